@@ -1,0 +1,42 @@
+# SPDX-License-Identifier: Apache-2.0
+# Sourced by tests/run.sh, examples/run.sh and tests/bench/run.sh, which set $root to the repository: what a bare Debian 12
+# needs to build petzval, and the build. POSIX sh.
+
+library_packages="g++ cmake ninja-build pkg-config libglm-dev nlohmann-json3-dev libceres-dev libopenexr-dev libpng-dev"
+example_packages="libcli11-dev libfreetype-dev libfontconfig-dev fonts-dejavu-core"
+test_packages="libgtest-dev"
+
+BUILD_DIR=${BUILD_DIR:-$root/build}
+case $BUILD_DIR in
+  /*) ;;
+  *) BUILD_DIR=$PWD/$BUILD_DIR ;;
+esac
+
+# need PACKAGE...: installs those that are missing. Where none is, it asks for neither root nor network.
+need() {
+  if ! command -v dpkg-query >/dev/null; then
+    echo "Not a Debian system: install the equivalents of $* yourself; going on with what is there." >&2
+    return 0
+  fi
+  missing=
+  for package in "$@"; do
+    case $(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null) in
+      installed*) ;;
+      *) missing="$missing $package" ;;
+    esac
+  done
+  [ -n "$missing" ] || return 0
+  echo "== Installing$missing"
+  as_root=
+  [ "$(id -u)" -eq 0 ] || as_root=sudo
+  $as_root apt-get update
+  $as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends $missing
+}
+
+# build OPTION...: configures with the CMake options given and builds, in $BUILD_DIR.
+build() {
+  echo "== Configuring in $BUILD_DIR"
+  cmake -S "$root" -B "$BUILD_DIR" -G Ninja -DCMAKE_BUILD_TYPE=Release "$@"
+  echo "== Building"
+  NINJA_STATUS="[%f/%t, %es] " cmake --build "$BUILD_DIR"
+}

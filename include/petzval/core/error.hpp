@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+#include "petzval/core/export.hpp"
+
+namespace petzval {
+
+/// Thrown when a thing cannot be built or read. The message says where, what was found and what was wanted:
+/// `data/lenses/x.json: surface 4: thickness is nan, wanted a finite length in mm`.
+/// Nothing is half-built when it leaves a function. what() is one line of at most 1,000 bytes, whatever a file had in
+/// it: control characters become spaces, and what is longer loses its middle.
+class PETZVAL_API Error : public std::runtime_error {
+ public:
+  explicit Error(std::string message);
+  ~Error() override;
+};
+
+}  // namespace petzval

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cmath>
+#include <limits>
+
+/// The seam between the kernels and the numbers they run on.
+///
+/// A kernel is written once over a scalar `T`: float, double or an automatic-differentiation number such as
+/// `ceres::Jet` (SIMD lanes fit the same seam). It asks `T` for arithmetic, comparison, `sqrt` by argument-dependent
+/// look-up, and the names below. Ray data steers no branch but through `select`, `any` and `all_of`.
+namespace petzval::kernel {
+
+namespace detail {
+template <class T>
+struct StorageOf {
+  using type = T;
+};
+template <class T>
+  requires requires { typename T::Scalar; }
+struct StorageOf<T> {
+  using type = typename T::Scalar;
+};
+}  // namespace detail
+
+/// The plain floating-point type in which the constants of a lens are stored for the scalar `T`.
+template <class T>
+using Storage = typename detail::StorageOf<T>::type;
+
+/// What a comparison of two scalars gives: bool, or a lane mask.
+template <class T>
+using Mask = decltype(T() < T());
+
+static_assert(std::numeric_limits<float>::is_iec559 && std::numeric_limits<double>::is_iec559,
+              "the masks of the kernels need IEEE comparisons: do not build with -ffast-math");
+
+/// mask ? a : b, lane by lane. Both sides are computed, so both must be harmless.
+template <class T>
+constexpr T select(bool mask, const T& a, const T& b) noexcept {
+  return mask ? a : b;
+}
+
+constexpr bool any(bool mask) noexcept { return mask; }
+
+/// The lanes for which every condition holds.
+template <class... Masks>
+constexpr bool all_of(bool first, Masks... rest) noexcept {
+  return (first && ... && rest);
+}
+
+/// |x|, without the branch on a derivative at zero that a library function may have.
+template <class T>
+T absolute(const T& x) noexcept {
+  return select(x < Storage<T>(0), T(-x), x);
+}
+
+/// False for NaN and infinities: a comparison with either is false.
+template <class T>
+Mask<T> finite(const T& x) noexcept {
+  return absolute(x) <= std::numeric_limits<Storage<T>>::max();
+}
+
+/// a / b. Numbers with derivatives often divide by way of 1/b, which costs a rounding: here their value is the plain
+/// quotient, so that a ray traced with derivatives is the plain ray to the bit.
+template <class T>
+T quotient(const T& a, const T& b) noexcept {
+  if constexpr (requires {
+                  a.a;
+                  a.v;
+                }) {
+    const auto value = a.a / b.a;
+    return T(value, (a.v - b.v * value) * (1 / b.a));
+  } else {
+    return a / b;
+  }
+}
+
+/// The root of x where x > 0, else 0: keeps lanes that are not used finite, and their derivatives too.
+template <class T>
+T safe_sqrt(const T& x) noexcept {
+  using std::sqrt;
+  const auto positive = x > Storage<T>(0);
+  return select(positive, T(sqrt(select(positive, x, T(1)))), T(0));
+}
+
+}  // namespace petzval::kernel

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+
+#include "petzval/core/export.hpp"
+#include "petzval/lens/lens.hpp"
+
+namespace petzval {
+
+/// A ray-transfer (ABCD) matrix on (y, n u): height in mm and optical direction, n the signed index (negative while
+/// light runs backwards after a mirror). Its determinant is 1.
+struct RayMatrix {
+  double a = 1, b = 0, c = 0, d = 1;
+
+  /// The matrix of `*this` followed by `next`.
+  constexpr RayMatrix then(const RayMatrix& next) const noexcept {
+    return {next.a * a + next.b * c, next.a * b + next.b * d, next.c * a + next.d * c, next.c * b + next.d * d};
+  }
+  /// Light power of the section: the negative of c, in 1/mm.
+  constexpr double power() const noexcept { return -c; }
+};
+
+/// The meridian in which to look at a lens with cylinders; the same for both elsewhere.
+enum class Meridian { y, x };
+
+/// Index of the medium before surface `space`, negative where light runs backwards, after an odd number of mirrors.
+PETZVAL_API double signed_index(const Lens& lens, std::size_t space, std::size_t wavelength = 0) noexcept;
+
+/// From the vertex of surface `first` (before refraction) to that of surface `last - 1` (after it); `last` beyond the
+/// end means the whole rest. Surfaces count by their curvature at the vertex: terms of order 2 add to it, cylinders
+/// have none along x or y.
+PETZVAL_API RayMatrix ray_matrix(const Lens& lens, std::size_t first, std::size_t last, std::size_t wavelength = 0,
+                                 Meridian meridian = Meridian::y);
+
+/// From the first vertex (before refraction) to the vertex of `surface`, before refraction there too.
+PETZVAL_API RayMatrix ray_matrix_to(const Lens& lens, std::size_t surface, std::size_t wavelength = 0,
+                                    Meridian meridian = Meridian::y);
+
+/// The first-order data of a lens, all z in the lens frame (mm), lengths signed.
+///
+/// power = sum of h_i phi_i over the surfaces, h_i the height of a ray that enters parallel to the axis at height 1 and
+/// phi_i the power of the surface. Where it cancels to less than 1e-12 of the sum of |h_i phi_i|, the lens is afocal:
+/// power is 0, the focal length infinite, and so are the focal, principal and nodal points, which it has not (front
+/// -inf, rear +inf). Never NaN.
+struct FirstOrder {
+  bool afocal = false;
+  double power = 0;                   ///< 1/mm, exactly 0 when afocal
+  double effective_focal_length = 0;  ///< 1 / power
+  double front_focal_z = 0;
+  double rear_focal_z = 0;
+  double front_principal_z = 0;
+  double rear_principal_z = 0;
+  double front_nodal_z = 0;
+  double rear_nodal_z = 0;
+  double front_focal_distance = 0;           ///< first vertex to front focal point, signed along z
+  double back_focal_distance = 0;            ///< last vertex to rear focal point, signed along z
+  double petzval_sum = 0;                    ///< sum of (n' - n) c / (n n'), 1/mm, signed indices at mirrors
+  double object_index = 1, image_index = 1;  ///< signed
+};
+
+PETZVAL_API FirstOrder first_order(const Lens& lens, std::size_t wavelength = 0, Meridian meridian = Meridian::y);
+
+/// The meridian that focal length, f-number and focus refer to: y, or x where a lens has power in x only.
+PETZVAL_API Meridian main_meridian(const Lens& lens, std::size_t wavelength = 0);
+
+/// Where the paraxial image of an axial point lies (lens frame, mm). object_z may be infinite; so may the result (+inf:
+/// an object within a few ulp of the front focal point, or a distant one before an afocal lens). Beyond 1e100 mm counts
+/// as infinite. Never NaN for an object_z that is not.
+PETZVAL_API double paraxial_image_z(const Lens& lens, double object_z, std::size_t wavelength = 0,
+                                    Meridian meridian = Meridian::y);
+
+/// Focal length of a single lens element of index n in air: 1/f = (n-1) (c1 - c2 + (n-1) t c1 c2 / n), in curvatures,
+/// so that planes and equal radii lose nothing. t = 0 gives the thin lens. Infinite where the power is 0.
+PETZVAL_API double lensmaker_focal_length(double n, double c1, double c2, double thickness = 0) noexcept;
+
+}  // namespace petzval

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "petzval/core/export.hpp"
+
+namespace petzval {
+
+/// Point `index` of the two-dimensional Sobol sequence, Owen-scrambled by a hash of `seed`: in [0, 1)^2, random access,
+/// no state.
+///
+/// Any 2^k consecutive points that start at a multiple of 2^k are a (0, k, 2)-net: one of them in every box of 2^-i by
+/// 2^(i-k). Sources: Sobol 1967 for the sequence; Owen 1995, "Randomly permuted (t,m,s)-nets and (t,s)-sequences", for
+/// the scrambling; Laine and Karras 2011, "Stratified sampling for stochastic transparency", and Burley 2020,
+/// "Practical hash-based Owen scrambling", for doing it by a hash in which no bit depends on a lower one.
+PETZVAL_API std::array<double, 2> owen_sobol(std::uint32_t index, std::uint32_t seed) noexcept;
+
+}  // namespace petzval

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+
+#include "petzval/core/export.hpp"
+#include "petzval/lens/lens.hpp"
+#include "petzval/paraxial/first_order.hpp"
+
+namespace petzval {
+
+/// A paraxial pupil: the image of the aperture stop. Infinite z and diameter where the lens is telecentric on that
+/// side.
+struct Pupil {
+  double z = 0;         ///< lens frame, mm
+  double diameter = 0;  ///< mm
+};
+
+/// Entrance and exit pupil of a lens, and the surface that limits it.
+struct Pupils {
+  Pupil entrance;
+  Pupil exit;
+  std::size_t stop = 0;
+  bool stop_inferred =
+      false;  ///< no surface is marked: the one that clips the axial beam from infinity first (paraxially)
+};
+
+/// Throws Error where every surface is unlimited and nothing can stop a beam.
+PETZVAL_API Pupils pupils(const Lens& lens, std::size_t wavelength = 0, Meridian meridian = Meridian::y);
+
+/// |EFL| / entrance pupil diameter, in the main meridian. Infinite for an afocal lens or an empty pupil.
+PETZVAL_API double paraxial_f_number(const Lens& lens, std::size_t wavelength = 0);
+
+/// |EFL| / (2 y), y the height of the axis-parallel ray (in the main meridian) whose exact trace meets the rim of the
+/// stop; the ray is traced through the front part alone, whatever clips it elsewhere. Where rays end before they get as
+/// high as the rim, y is the height of the last that reaches the stop. Infinite for an afocal lens or an empty stop, 0
+/// where nothing limits y. Throws Error where pupils() does.
+PETZVAL_API double real_f_number(const Lens& lens, std::size_t wavelength = 0);
+
+/// The lens stopped down to an f-number (real_f_number, by exact rays): the stop gets the semi-diameter at which the
+/// axis-parallel ray of height |EFL| / (2 N) passes it, so that real_f_number gives N back within 1e-12. Throws Error
+/// for N <= 0 or not finite, an afocal lens, and N faster (by more than 1e-9) than the lens can give, naming the
+/// fastest possible.
+PETZVAL_API Lens with_f_number(const Lens& lens, double f_number, std::size_t wavelength = 0);
+
+}  // namespace petzval

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+
+#include "petzval/core/ray.hpp"
+#include "petzval/lens/tables.hpp"
+
+namespace petzval::kernel {
+
+/// A part of the lens and how to look at it: surfaces [first, last) in table order, whichever way the ray goes.
+struct Path {
+  Travel travel = Travel::to_film;
+  std::size_t wavelength = 0;
+  bool apertures = true;
+  std::size_t first = 0;
+  std::size_t last = static_cast<std::size_t>(-1);  ///< beyond the end: all surfaces
+};
+
+/// A ray on its way, lens frame, any scalar.
+template <class T>
+struct Passage {
+  Vec<T> origin, direction;
+  RayFate fate = RayFate::transmitted;
+  int surface = -1;
+};
+
+struct NoObserver {
+  template <class T>
+  void operator()(int, const Vec<T>&) const noexcept {}
+};
+
+/// Traces one ray through a part of the lens, surface by surface, and leaves early when it ends.
+///
+/// direction: unit length (within a few ulp); so is the result where the ray was transmitted. observer(surface, point)
+/// sees each hit within the lens, lens frame. The one loop for both ways of travel and every scalar; batches and
+/// drawings run on it too.
+template <class T, class Observer = NoObserver>
+Passage<T> trace(const LensView<Storage<T>>& lens, const Vec<T>& origin, const Vec<T>& direction, const Path& path,
+                 Observer&& observer = {}) noexcept {
+  using R = Storage<T>;
+  using std::sqrt;
+  const bool to_film = path.travel == Travel::to_film;
+  const std::size_t last = path.last < lens.count ? path.last : lens.count;
+  const Interface<R>* interfaces = (to_film ? lens.to_film : lens.to_scene) + path.wavelength * lens.count;
+
+  bool bent = false;
+  Passage<T> ray{origin, direction, RayFate::transmitted, -1};
+  if (path.first >= last) return ray;
+  std::size_t i = to_film ? path.first : last - 1;
+  Vec<T> p{origin.x, origin.y, T(origin.z - lens.vertex_z[i])};
+  for (;;) {
+    const SurfaceTable<R>& surface = lens.surfaces[i];
+    // To the scene everything is the other way round, and light comes to a mirror from where it went to.
+    const R sense = to_film || surface.mirror ? surface.sense : -surface.sense;
+    const auto end = [&](RayFate fate) {
+      ray.fate = fate;
+      ray.surface = static_cast<int>(i);
+      return ray;
+    };
+
+    Vec<T> n;
+    T cosine;
+    if (surface.asphere < 0) {
+      const auto [point, hit, slant] = intersect(surface.quadric, p, ray.direction, sense);
+      if (!hit) return end(RayFate::missed_surface);
+      p = point;
+      n = gradient(surface.quadric, p);
+      cosine = slant;
+      if (!surface.quadric.sphere) {
+        const T scale = R(1) / sqrt(dot(n, n));
+        n = n * scale;
+        cosine = cosine * scale;
+      }
+    } else {
+      const Asphere<R>& asphere = lens.aspheres[surface.asphere];
+      const auto [point, hit, converged] = intersect(asphere, p, ray.direction, sense);
+      if (!hit) return end(converged ? RayFate::missed_surface : RayFate::no_convergence);
+      p = point;
+      n = normal(asphere, p);
+      cosine = absolute(dot(ray.direction, n));
+    }
+    ray.origin = {p.x, p.y, T(p.z + lens.vertex_z[i])};
+    observer(static_cast<int>(i), ray.origin);
+
+    const T r2 = p.x * p.x + p.y * p.y;
+    if (path.apertures && !(r2 <= surface.semi_diameter_squared && r2 >= surface.inner_squared)) {
+      return end(RayFate::vignetted);
+    }
+    if (surface.mirror) {
+      ray.direction = reflect(ray.direction, n);
+    } else if (interfaces[i].k != R(0)) {  // equal media leave the ray as it is, to the bit
+      const auto [refracted, transmitted] = refract(ray.direction, n, cosine, sense, interfaces[i]);
+      if (!transmitted) return end(RayFate::totally_reflected);
+      ray.direction = refracted;
+      bent = true;
+    }
+    ray.surface = static_cast<int>(i);
+
+    if (to_film) {
+      if (++i == last) break;
+      p.z = p.z - lens.surfaces[i - 1].gap;
+    } else {
+      if (i == path.first) break;
+      --i;
+      p.z = p.z + lens.surfaces[i].gap;
+    }
+  }
+  if (bent) ray.direction = renormalised(ray.direction);
+  return ray;
+}
+
+}  // namespace petzval::kernel

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "petzval/core/ray.hpp"
+
+namespace petzval {
+
+std::string_view name(RayFate fate) noexcept {
+  switch (fate) {
+    case RayFate::transmitted: return "transmitted";
+    case RayFate::missed_surface: return "missed_surface";
+    case RayFate::totally_reflected: return "totally_reflected";
+    case RayFate::vignetted: return "vignetted";
+    case RayFate::no_convergence: return "no_convergence";
+  }
+  return "unknown";
+}
+
+}  // namespace petzval

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+
+#include "petzval/core/error.hpp"
+#include "petzval/core/text.hpp"
+#include "petzval/focus/focus.hpp"
+
+namespace petzval {
+namespace {
+
+void require(bool holds, const char* where, const char* what, double found, const char* wanted) {
+  if (!holds) throw Error(std::string(where) + ": " + what + " is " + number(found) + " mm, wanted " + wanted);
+}
+
+}  // namespace
+
+double thin_lens_blur_diameter(double focal_length, double diameter, double subject, double focused) {
+  constexpr auto where = "thin_lens_blur_diameter";
+  require(focal_length > 0 && std::isfinite(focal_length), where, "focal length", focal_length, "a finite one above 0");
+  require(diameter >= 0 && std::isfinite(diameter), where, "diameter", diameter, "a finite one, 0 or more");
+  require(subject > 0, where, "subject distance", subject, "one above 0");
+  require(focused > focal_length, where, "focused distance", focused, "more than the focal length");
+
+  // The differences of the distances as they are given: by way of their reciprocals the digits next to the focus are
+  // lost.
+  if (std::isinf(focused)) return std::isinf(subject) ? 0 : diameter * (focal_length / subject);
+  const double magnification = focal_length / (focused - focal_length);
+  if (std::isinf(subject)) return diameter * magnification;
+  return diameter * (magnification * (std::abs(subject - focused) / subject));
+}
+
+double thin_lens_extension(double focal_length, double subject) {
+  constexpr auto where = "thin_lens_extension";
+  require(focal_length > 0 && std::isfinite(focal_length), where, "focal length", focal_length, "a finite one above 0");
+  require(subject > focal_length, where, "subject distance", subject, "more than the focal length");
+  return focal_length * (focal_length / (subject - focal_length));
+}
+
+}  // namespace petzval

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "petzval/lens/lens.hpp"
+
+namespace petzval::detail {
+
+/// Indices of every medium at every wavelength, and how far the media are known.
+struct Indices {
+  std::vector<double> values;  ///< [wavelength * (surfaces + 1) + space], space 0 before the first surface
+  Dispersion dispersion = Dispersion::none;
+  std::vector<std::string> missing_glasses;
+};
+
+Indices indices(const Prescription& prescription, std::span<const double> wavelengths_nm, const CompileOptions& options,
+                const std::string& where);
+
+}  // namespace petzval::detail

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "petzval/lens/lens.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "build_tables.hpp"
+#include "indices.hpp"
+#include "petzval/core/error.hpp"
+#include "petzval/core/text.hpp"
+
+namespace petzval {
+
+struct Lens::Data {
+  std::string name;
+  std::vector<LensSurface> surfaces;
+  std::optional<std::size_t> stop;
+  double film_z = 0;
+  std::vector<double> wavelengths_nm;
+  detail::Indices indices;
+  detail::Tables<float> single;
+  detail::Tables<double> twice;
+
+  void build() {
+    single = detail::build_tables<float>(surfaces, indices.values, wavelengths_nm.size());
+    twice = detail::build_tables<double>(surfaces, indices.values, wavelengths_nm.size());
+  }
+};
+
+std::string_view name(Dispersion dispersion) noexcept {
+  switch (dispersion) {
+    case Dispersion::catalogue: return "catalogue";
+    case Dispersion::abbe: return "abbe";
+    case Dispersion::none: return "none";
+  }
+  return "unknown";
+}
+
+const std::string& Lens::name() const noexcept { return data_->name; }
+std::span<const LensSurface> Lens::surfaces() const noexcept { return data_->surfaces; }
+std::optional<std::size_t> Lens::stop() const noexcept { return data_->stop; }
+double Lens::film_z() const noexcept { return data_->film_z; }
+std::span<const double> Lens::wavelengths_nm() const noexcept { return data_->wavelengths_nm; }
+Dispersion Lens::dispersion() const noexcept { return data_->indices.dispersion; }
+std::span<const std::string> Lens::missing_glasses() const noexcept { return data_->indices.missing_glasses; }
+
+double Lens::index(std::size_t space, std::size_t wavelength) const noexcept {
+  return data_->indices.values[wavelength * (surface_count() + 1) + space];
+}
+
+std::size_t Lens::wavelength(double nm) const {
+  const auto& list = data_->wavelengths_nm;
+  const auto found = std::find_if(list.begin(), list.end(), [nm](double w) { return std::abs(w - nm) <= 1e-6; });
+  if (found != list.end()) return static_cast<std::size_t>(found - list.begin());
+  std::string compiled;
+  for (const double w : list) compiled += (compiled.empty() ? "" : ", ") + number(w);
+  throw Error(name() + ": wavelength is " + number(nm) + " nm, wanted one the lens was compiled for: " + compiled);
+}
+
+bool Lens::rotationally_symmetric() const noexcept {
+  return std::all_of(data_->surfaces.begin(), data_->surfaces.end(),
+                     [](const LensSurface& s) { return s.curved_in == Section::both; });
+}
+
+template <>
+kernel::LensView<float> Lens::view<float>() const noexcept {
+  return data_->single.view();
+}
+template <>
+kernel::LensView<double> Lens::view<double>() const noexcept {
+  return data_->twice.view();
+}
+
+Lens compile(const Prescription& prescription, std::span<const double> wavelengths_nm, const CompileOptions& options) {
+  const std::string where = prescription.name.empty() ? std::string("lens") : prescription.name;
+  validate(prescription, where);
+  if (wavelengths_nm.empty()) throw Error(where + ": no wavelength to compile for, wanted one at least");
+
+  auto data = std::make_shared<Lens::Data>();
+  data->name = where;
+  data->wavelengths_nm.assign(wavelengths_nm.begin(), wavelengths_nm.end());
+  double z = 0;
+  for (const SurfaceRow& row : prescription.surfaces) {
+    LensSurface s;
+    s.vertex_z = z;
+    s.thickness = row.thickness;
+    s.curvature = row.radius == 0 ? 0 : 1 / row.radius;
+    s.conic = row.conic;
+    s.curved_in = row.curved_in;
+    s.aspheric = row.aspheric;
+    s.semi_diameter = row.semi_diameter.value_or(std::numeric_limits<double>::infinity());
+    s.inner_semi_diameter = row.inner_semi_diameter.value_or(0);
+    s.mirror = row.mirror;
+    if (row.stop && !data->stop) data->stop = data->surfaces.size();
+    data->surfaces.push_back(std::move(s));
+    z += row.thickness;
+  }
+  data->film_z = z;
+  data->indices = detail::indices(prescription, wavelengths_nm, options, where);
+  data->build();
+  return Lens(std::move(data));
+}
+
+Lens compile(const Prescription& prescription, const CompileOptions& options) {
+  return compile(prescription, std::array{prescription.reference_wavelength_nm}, options);
+}
+
+Lens with_semi_diameter(const Lens& lens, std::size_t surface, double semi_diameter) {
+  if (surface >= lens.surface_count()) {
+    throw Error(lens.name() + ": surface " + std::to_string(surface) + " does not exist, wanted one of " +
+                std::to_string(lens.surface_count()));
+  }
+  if (!(semi_diameter >= 0)) {
+    throw Error(lens.name() + ": surface " + std::to_string(surface) + ": semi_diameter is " + number(semi_diameter) +
+                " mm, wanted 0 or more");
+  }
+  auto data = std::make_shared<Lens::Data>(*lens.data_);
+  data->surfaces[surface].semi_diameter = semi_diameter;
+  data->build();
+  return Lens(std::move(data));
+}
+
+Lens with_film(const Lens& lens, double film_z) {
+  if (!std::isfinite(film_z)) throw Error(lens.name() + ": film_z is " + number(film_z) + " mm, wanted a finite place");
+  auto data = std::make_shared<Lens::Data>(*lens.data_);
+  data->film_z = film_z;
+  return Lens(std::move(data));
+}
+
+}  // namespace petzval

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gaps.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "petzval/paraxial/first_order.hpp"
+
+namespace petzval::detail {
+namespace {
+
+double sag(const Lens& lens, std::size_t surface, double x, double y) {
+  const kernel::LensView<double> view = lens.view<double>();
+  const kernel::SurfaceTable<double>& table = view.surfaces[surface];
+  const kernel::Quadric<double>& q = table.quadric;
+  const double r2 = q.ax * x * x + q.ay * y * y;
+  if (table.asphere >= 0) return kernel::sag(view.aspheres[table.asphere], r2).z;
+  return q.curvature * r2 / (1 + std::sqrt(std::max(0.0, 1 - q.e * q.curvature * q.curvature * r2)));
+}
+
+}  // namespace
+
+double domain(const LensSurface& surface) {
+  const double bend = 1 + surface.conic;
+  if (!(bend > 0) || surface.curvature == 0) return std::numeric_limits<double>::infinity();
+  return 1 / (std::abs(surface.curvature) * std::sqrt(bend));
+}
+
+std::optional<Gap> least_gap(const Lens& lens, std::size_t surface) {
+  const LensSurface& front = lens.surfaces()[surface];
+  const LensSurface& rear = lens.surfaces()[surface + 1];
+  const double from = std::max(front.inner_semi_diameter, rear.inner_semi_diameter);
+  const double to = std::min({front.semi_diameter, rear.semi_diameter, domain(front), domain(rear)});
+  if (!std::isfinite(front.semi_diameter) || !std::isfinite(rear.semi_diameter) || to < from) return {};
+
+  // Where light runs backwards, behind a mirror, the next surface lies at smaller z.
+  const double sense = signed_index(lens, surface + 1) > 0 ? 1 : -1;
+  // Cylinders along x and y differ most along an axis or between them.
+  constexpr std::array<std::array<double, 2>, 3> azimuths{{{0, 1}, {1, 0}, {0.7071067811865476, 0.7071067811865476}}};
+  const std::size_t azimuth_count = lens.rotationally_symmetric() ? 1 : azimuths.size();
+  constexpr int samples = 200;
+  Gap least{std::numeric_limits<double>::infinity(), 0};
+  for (std::size_t azimuth = 0; azimuth < azimuth_count; ++azimuth) {
+    for (int i = 0; i <= samples; ++i) {
+      const double height = from + (to - from) * i / samples;
+      const double x = azimuths[azimuth][0] * height, y = azimuths[azimuth][1] * height;
+      const double width = sense * (front.thickness + sag(lens, surface + 1, x, y) - sag(lens, surface, x, y));
+      if (width < least.width) least = {width, height};
+    }
+  }
+  return least;
+}
+
+}  // namespace petzval::detail

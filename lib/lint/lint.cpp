@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "petzval/lint/lint.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "gaps.hpp"
+#include "petzval/core/text.hpp"
+#include "petzval/paraxial/first_order.hpp"
+#include "petzval/pupil/pupil.hpp"
+
+namespace petzval {
+namespace {
+
+using Kind = Finding::Kind;
+constexpr double tolerance = 0.02;
+
+std::string mm(double value) { return number(value, 6) + " mm"; }
+
+std::string at(int surface) { return "surface " + std::to_string(surface) + ": "; }
+
+bool differs(double found, double wanted) { return !(std::abs(found - wanted) <= tolerance * std::abs(wanted)); }
+
+using Findings = std::vector<Finding>;
+
+void check_stops(const Prescription& prescription, Findings& findings) {
+  int stops = 0, last = 0;
+  for (const SurfaceRow& row : prescription.surfaces) {
+    if (row.stop) ++stops, last = static_cast<int>(&row - prescription.surfaces.data());
+  }
+  if (stops == 0) {
+    findings.push_back(
+        {Kind::no_stop, {}, 0, 1, "no surface is marked as stop; the one that clips the axial beam first is used"});
+  } else if (stops > 1) {
+    findings.push_back(
+        {Kind::several_stops, last, static_cast<double>(stops), 1,
+         at(last) + "is one of " + std::to_string(stops) + " marked as stop; the first of them is used"});
+  }
+}
+
+void check_surfaces(const Lens& lens, Findings& findings) {
+  const int count = static_cast<int>(lens.surface_count());
+  for (int i = 0; i < count; ++i) {
+    const auto position = static_cast<std::size_t>(i);
+    const LensSurface& surface = lens.surfaces()[position];
+    const double domain = detail::domain(surface);
+    if (std::isfinite(surface.semi_diameter) && surface.semi_diameter > domain) {
+      findings.push_back({Kind::semi_diameter, i, surface.semi_diameter, domain,
+                          at(i) + "semi_diameter is " + mm(surface.semi_diameter) +
+                              ", beyond the surface, which ends at " + mm(domain)});
+    }
+    if (i + 1 == count) break;
+    const auto gap = detail::least_gap(lens, position);
+    if (gap && gap->width < -1e-9 * std::max(gap->height, std::abs(surface.thickness))) {
+      findings.push_back(
+          {Kind::overlap, i, gap->width, 0,
+           at(i) + "the next surface comes " + mm(-gap->width) + " before it at a height of " + mm(gap->height)});
+    }
+  }
+}
+
+/// False where an unlimited stop, or no clear aperture at all, says nothing of the f-number.
+bool limits_the_beam(const Lens& lens) {
+  const auto surfaces = lens.stop() ? lens.surfaces().subspan(*lens.stop(), 1) : lens.surfaces();
+  return std::any_of(surfaces.begin(), surfaces.end(),
+                     [](const LensSurface& s) { return std::isfinite(s.semi_diameter); });
+}
+
+void check_first_order(const Prescription& prescription, const Lens& lens, Findings& findings) {
+  const FirstOrder data = first_order(lens, 0, main_meridian(lens));
+  const double focal_length = data.effective_focal_length;
+  if (prescription.focal_length_mm && differs(focal_length, *prescription.focal_length_mm)) {
+    findings.push_back({Kind::focal_length,
+                        {},
+                        focal_length,
+                        *prescription.focal_length_mm,
+                        "focal length is " + mm(focal_length) + ", declared " + mm(*prescription.focal_length_mm)});
+  }
+  if (prescription.f_number && limits_the_beam(lens)) {
+    const double f_number = real_f_number(lens);
+    if (differs(f_number, *prescription.f_number)) {
+      findings.push_back({Kind::f_number,
+                          {},
+                          f_number,
+                          *prescription.f_number,
+                          "f-number is " + number(f_number, 6) + ", declared " + number(*prescription.f_number, 6)});
+    }
+  }
+  const int last = static_cast<int>(lens.surface_count()) - 1;
+  const double gap = lens.surfaces().back().thickness;
+  if (!data.afocal && std::abs(gap - data.back_focal_distance) > tolerance * std::abs(focal_length)) {
+    findings.push_back(
+        {Kind::image_distance, last, gap, data.back_focal_distance,
+         at(last) + "the film is " + mm(gap) + " behind it, the paraxial focus " + mm(data.back_focal_distance)});
+  }
+}
+
+}  // namespace
+
+std::string_view name(Finding::Kind kind) noexcept {
+  switch (kind) {
+    case Kind::focal_length: return "focal_length";
+    case Kind::f_number: return "f_number";
+    case Kind::overlap: return "overlap";
+    case Kind::semi_diameter: return "semi_diameter";
+    case Kind::no_stop: return "no_stop";
+    case Kind::several_stops: return "several_stops";
+    case Kind::image_distance: return "image_distance";
+  }
+  return "unknown";
+}
+
+std::vector<Finding> lint(const Prescription& prescription) {
+  const Lens lens = compile(prescription);
+  Findings findings;
+  check_stops(prescription, findings);
+  check_surfaces(lens, findings);
+  check_first_order(prescription, lens, findings);
+  return findings;
+}
+
+}  // namespace petzval

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <dlfcn.h>
+
+#include <system_error>
+
+#include "petzval/core/error.hpp"
+#include "petzval/media/catalogue.hpp"
+
+namespace petzval {
+namespace {
+
+/// The file this code was loaded from: the shared library, or the program it was linked into.
+std::filesystem::path own_module() {
+  static const char anchor = 0;
+  Dl_info info{};
+  std::string name;
+  if (dladdr(&anchor, &info) != 0 && info.dli_fname != nullptr) name = info.dli_fname;
+  // A bare name is how a program was called and was looked up in PATH; the kernel knows where that led.
+  if (name.find('/') == std::string::npos) name = "/proc/self/exe";
+  std::error_code failed;
+  const auto file = std::filesystem::canonical(name, failed);
+  if (failed)
+    throw Error("data directory: " + name + ": " + failed.message() + ", wanted the file of the loaded library");
+  return file;
+}
+
+}  // namespace
+
+std::filesystem::path data_directory() {
+  constexpr int levels = 5;
+  const std::filesystem::path module = own_module();
+  std::filesystem::path folder = module.parent_path();
+  for (int level = 0; level < levels; ++level, folder = folder.parent_path()) {
+    const auto candidate = folder / "share" / "petzval";
+    std::error_code missing;
+    if (std::filesystem::is_directory(candidate / "glass", missing)) return candidate;
+  }
+  throw Error("data directory: none of the " + std::to_string(levels) + " folders above " + module.string() +
+              " holds share/petzval/glass, wanted the data beside the library");
+}
+
+}  // namespace petzval

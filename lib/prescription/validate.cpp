@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+#include <set>
+
+#include "petzval/core/error.hpp"
+#include "petzval/core/text.hpp"
+#include "petzval/prescription/prescription.hpp"
+
+namespace petzval {
+namespace {
+
+// Below this a radius has a curvature whose square leaves the range of float; above the other, a thickness is the
+// "infinity" of some file format and no place for a surface.
+constexpr double smallest_radius = 1e-12;
+constexpr double longest_thickness = 1e10;
+constexpr std::size_t most_surfaces = 10'000;
+
+[[noreturn]] void refuse(const std::string& where, const std::string& what, double found, const std::string& wanted) {
+  throw Error(where + ": " + what + " is " + number(found) + ", wanted " + wanted);
+}
+
+void check_finite(const std::string& where, const char* what, double value, const std::string& wanted) {
+  if (!std::isfinite(value)) refuse(where, what, value, wanted);
+}
+
+void check_nominal(const std::string& where, const char* what, const std::optional<double>& value) {
+  if (value) check_finite(where, what, *value, "a finite number or none");
+}
+
+void check_medium(const std::string& where, const Medium& medium) {
+  if (!(medium.nd > 0 && medium.nd <= 5)) refuse(where, "nd", medium.nd, "an index above 0 and up to 5");
+  if (medium.vd && !(*medium.vd > 0 && std::isfinite(*medium.vd)))
+    refuse(where, "vd", *medium.vd, "a finite number above 0");
+}
+
+void check_surface(const std::string& where, const SurfaceRow& row, const Medium& before) {
+  if (!std::isfinite(row.radius) || (row.radius != 0 && std::abs(row.radius) < smallest_radius)) {
+    refuse(where, "radius", row.radius, "a finite length of at least 1e-12 mm, or 0 for a plane");
+  }
+  if (!(std::abs(row.thickness) < longest_thickness))
+    refuse(where, "thickness", row.thickness, "a finite length below 1e10 mm");
+  check_medium(where, row.medium);
+  if (row.mirror && row.medium != before) {
+    throw Error(where + ": the medium of the mirror (nd " + number(row.medium.nd) + ") is not the one before it (nd " +
+                number(before.nd) + "), wanted the medium the light stays in");
+  }
+
+  if (row.semi_diameter && !(*row.semi_diameter >= 0))
+    refuse(where, "semi_diameter", *row.semi_diameter, "0 mm or more");
+  if (row.inner_semi_diameter) {
+    const double inner = *row.inner_semi_diameter;
+    if (!(inner >= 0 && std::isfinite(inner)))
+      refuse(where, "inner_semi_diameter", inner, "a finite length of 0 mm or more");
+    if (inner > 0 && row.semi_diameter && inner >= *row.semi_diameter) {
+      refuse(where, "inner_semi_diameter", inner,
+             "less than the semi_diameter of " + number(*row.semi_diameter) + " mm");
+    }
+  }
+
+  check_finite(where, "conic", row.conic, "a finite number");
+  std::set<int> orders;
+  for (const auto& [order, coefficient] : row.aspheric) {
+    if (order < 2 || order > 40) refuse(where, "aspheric order", order, "2 to 40");
+    const std::string term = "aspheric coefficient of order " + std::to_string(order);
+    check_finite(where, term.c_str(), coefficient, "a finite number");
+    if (!orders.insert(order).second) throw Error(where + ": " + term + " is given twice, wanted once");
+  }
+}
+
+}  // namespace
+
+void validate(const Prescription& p, const std::string& where) {
+  check_nominal(where, "focal_length_mm", p.focal_length_mm);
+  if (p.f_number && !(*p.f_number > 0 && std::isfinite(*p.f_number))) {
+    refuse(where, "f_number", *p.f_number, "a finite number above 0 or none");
+  }
+  check_nominal(where, "half_field_deg", p.half_field_deg);
+  check_nominal(where, "image_diagonal_mm", p.image_diagonal_mm);
+  if (!(p.reference_wavelength_nm >= 10 && p.reference_wavelength_nm <= 1e5)) {
+    refuse(where, "reference_wavelength_nm", p.reference_wavelength_nm, "10 to 100000 nm");
+  }
+  check_medium(where + ": object_space", p.object_space);
+  if (p.surfaces.empty()) throw Error(where + ": no surfaces, wanted one at least");
+
+  if (p.surfaces.size() > most_surfaces) {
+    throw Error(where + ": " + std::to_string(p.surfaces.size()) + " surfaces, wanted at most " +
+                std::to_string(most_surfaces));
+  }
+
+  const Medium* before = &p.object_space;
+  for (std::size_t i = 0; i < p.surfaces.size(); ++i) {
+    check_surface(where + ": surface " + std::to_string(i), p.surfaces[i], *before);
+    before = &p.surfaces[i].medium;
+  }
+  if (!p.zoom) return;
+  for (const auto& [surface, gap] : p.zoom->variable_gaps) {
+    if (surface < 0 || static_cast<std::size_t>(surface) >= p.surfaces.size()) {
+      refuse(where + ": zoom", "variable gap's surface", surface, "one of " + std::to_string(p.surfaces.size()));
+    }
+    const std::string what = "variable gap " + std::to_string(surface);
+    check_finite(where + ": zoom", what.c_str(), gap, "a finite length in mm");
+  }
+}
+
+}  // namespace petzval

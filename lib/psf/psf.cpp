@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "petzval/psf/psf.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "petzval/core/error.hpp"
+#include "petzval/core/text.hpp"
+
+namespace petzval {
+namespace {
+
+void validate(const PsfOptions& options) {
+  if (options.samples == 0) throw Error("point_image: samples is 0, wanted 1 or more");
+  constexpr int most = 1 << 15;
+  if (options.pixels < 1 || options.pixels > most) {
+    throw Error("point_image: pixels is " + std::to_string(options.pixels) + ", wanted 1 to " + std::to_string(most));
+  }
+  if (!std::isfinite(options.half_width_mm) || options.half_width_mm < 0) {
+    throw Error("point_image: half_width_mm is " + number(options.half_width_mm) + ", wanted a length, or 0 to fit");
+  }
+}
+
+/// Half the side of a square about the centroid that holds all hits.
+double fitting_half_width(const std::vector<FilmHits>& sets, const SpotSize& size) {
+  double extent = 0;
+  for (const FilmHits& hits : sets) {
+    for (const double x : hits.x) extent = std::max(extent, std::abs(x - size.centroid[0]));
+    for (const double y : hits.y) extent = std::max(extent, std::abs(y - size.centroid[1]));
+  }
+  return std::max(1.05 * extent, 1e-4);
+}
+
+void fill_counts(Psf& psf, const std::vector<FilmHits>& sets) {
+  const auto side = static_cast<std::size_t>(psf.pixels);
+  psf.counts.assign(sets.size() * side * side, 0);
+  const double half = psf.pixel_mm * psf.pixels / 2;
+  for (std::size_t w = 0; w < sets.size(); ++w) {
+    std::uint64_t* plane = psf.counts.data() + w * side * side;
+    for (std::size_t i = 0; i < sets[w].x.size(); ++i) {
+      const double column = (sets[w].x[i] - psf.centre[0] + half) / psf.pixel_mm;
+      const double row = (psf.centre[1] + half - sets[w].y[i]) / psf.pixel_mm;
+      if (!(column >= 0 && column < psf.pixels && row >= 0 && row < psf.pixels)) continue;
+      ++plane[static_cast<std::size_t>(row) * side + static_cast<std::size_t>(column)];
+    }
+  }
+}
+
+void fill_profile(PointImage& image, const std::vector<FilmHits>& sets) {
+  constexpr std::size_t rings = std::tuple_size_v<decltype(PointImage::radial_profile)>;
+  const auto& [cx, cy] = image.size.centroid;
+  const double width = image.size.max_radius / rings;
+  if (width == 0) return;
+  for (std::size_t w = 0; w < sets.size(); ++w) {
+    std::array<std::uint64_t, rings> counts{};
+    for (std::size_t i = 0; i < sets[w].x.size(); ++i) {
+      const double r = std::hypot(sets[w].x[i] - cx, sets[w].y[i] - cy);
+      ++counts[static_cast<std::size_t>(std::min(r / width, rings - 1.0))];
+    }
+    for (std::size_t k = 0; k < rings; ++k) {
+      const double area = std::numbers::pi * width * width * static_cast<double>(2 * k + 1);
+      image.radial_profile[k] +=
+          image.psf.ray_weight(w) * static_cast<double>(counts[k]) / area / static_cast<double>(sets.size());
+    }
+  }
+}
+
+}  // namespace
+
+double Psf::ray_weight(std::size_t wavelength) const noexcept {
+  if (entrance_pupil_area == 0 || sent[wavelength] == 0) return 0;
+  return window_area[wavelength] / (static_cast<double>(sent[wavelength]) * entrance_pupil_area);
+}
+
+double Psf::throughput(std::size_t wavelength) const noexcept {
+  return ray_weight(wavelength) * static_cast<double>(transmitted[wavelength]);
+}
+
+PointImage point_image(const Lens& lens, const ScenePoint& point, const PsfOptions& options) {
+  validate(options);
+  PointImage image;
+  Psf& psf = image.psf;
+  psf.wavelengths_nm.assign(lens.wavelengths_nm().begin(), lens.wavelengths_nm().end());
+  psf.entrance_pupil_area = std::numbers::pi / 4 * pupils(lens, 0, Meridian::x).entrance.diameter *
+                            pupils(lens, 0, Meridian::y).entrance.diameter;
+  std::vector<FilmHits> sets;
+  for (std::size_t w = 0; w < psf.wavelengths_nm.size(); ++w) {
+    const PupilWindow window = pupil_window(lens, point, w);
+    sets.push_back(trace_bundle(lens, window, options.samples, w, options.seed, options.threads));
+    psf.sent.push_back(options.samples);
+    psf.transmitted.push_back(sets.back().x.size());
+    psf.window_area.push_back(window.area());
+    image.throughput += psf.throughput(w) / static_cast<double>(psf.wavelengths_nm.size());
+  }
+  image.size = spot_size(sets);
+  psf.centre = image.size.centroid;
+  psf.pixels = options.pixels;
+  const double half = options.half_width_mm > 0 ? options.half_width_mm : fitting_half_width(sets, image.size);
+  psf.pixel_mm = 2 * half / options.pixels;
+  fill_counts(psf, sets);
+  fill_profile(image, sets);
+  return image;
+}
+
+}  // namespace petzval

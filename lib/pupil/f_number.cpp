@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "petzval/core/bisect.hpp"
+#include "petzval/core/error.hpp"
+#include "petzval/core/text.hpp"
+#include "petzval/pupil/pupil.hpp"
+#include "petzval/trace/sequential.hpp"
+
+namespace petzval {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// Axis-parallel rays in the main meridian, on their way from object space to the stop.
+class StopHeight {
+ public:
+  StopHeight(const Lens& lens, std::size_t stop, std::size_t wavelength)
+      : lens_(lens), stop_(stop), along_y_(main_meridian(lens, wavelength) == Meridian::y) {
+    path_.wavelength = wavelength;
+    path_.apertures = false;
+    path_.last = stop + 1;
+  }
+
+  /// Height at which the ray that enters at height y meets the stop; none where it does not get there. What happens to
+  /// it at the stop's own surface does not matter.
+  std::optional<double> operator()(double y) const noexcept {
+    const kernel::Vec<double> start{along_y_ ? 0 : y, along_y_ ? y : 0, lens_.surfaces().front().vertex_z};
+    const auto end = kernel::trace(lens_.view<double>(), start, kernel::Vec<double>{0, 0, 1}, path_);
+    const bool met = end.surface == static_cast<int>(stop_) &&
+                     (end.fate == RayFate::transmitted || end.fate == RayFate::totally_reflected);
+    if (!met) return {};
+    return std::hypot(end.origin.x, end.origin.y);
+  }
+
+ private:
+  const Lens& lens_;
+  std::size_t stop_;
+  bool along_y_;
+  kernel::Path path_;
+};
+
+/// Largest entering height of the beam within the rim of the stop: where the ray meets the rim, or, where rays end
+/// before they get so high, the last one that gets to the stop. `expected`: first-order estimate, for the size of the
+/// steps.
+double entering_height(const StopHeight& stop_height, double rim, double expected) {
+  const auto inside = [&](double y) {
+    const auto height = stop_height(y);
+    return height && *height <= rim;
+  };
+  // Steps small beside the beam find the first crossing where spherical aberration turns the heights round further out;
+  // they grow where the estimate turns out to be far too small.
+  double step = expected / 16;
+  double low = 0, high = step;
+  while (inside(high)) {
+    low = high;
+    if (low > 4 * expected) step *= 2;
+    high += step;
+    if (!(high < 1e100)) return infinity;
+  }
+  return detail::last_with(low, high, inside);
+}
+
+/// The same for the stop of a lens as it is.
+double beam_height(const Lens& lens, const Pupils& p, double focal_length, std::size_t wavelength) {
+  const double rim = lens.surfaces()[p.stop].semi_diameter;
+  if (rim == 0) return 0;
+  const double expected = std::min(p.entrance.diameter / 2, focal_length);
+  return entering_height(StopHeight(lens, p.stop, wavelength), rim, expected);
+}
+
+double focal_length(const Lens& lens, std::size_t wavelength) {
+  return std::abs(first_order(lens, wavelength, main_meridian(lens, wavelength)).effective_focal_length);
+}
+
+double f_number(double focal_length, double beam_height) {
+  return std::isinf(focal_length) ? infinity : focal_length / (2 * beam_height);
+}
+
+}  // namespace
+
+double paraxial_f_number(const Lens& lens, std::size_t wavelength) {
+  const Pupils p = pupils(lens, wavelength, main_meridian(lens, wavelength));
+  return f_number(focal_length(lens, wavelength), p.entrance.diameter / 2);
+}
+
+double real_f_number(const Lens& lens, std::size_t wavelength) {
+  const Pupils p = pupils(lens, wavelength, main_meridian(lens, wavelength));
+  const double length = focal_length(lens, wavelength);
+  return std::isinf(length) ? infinity : f_number(length, beam_height(lens, p, length, wavelength));
+}
+
+Lens with_f_number(const Lens& lens, double f_number, std::size_t wavelength) {
+  if (!(f_number > 0 && std::isfinite(f_number))) {
+    throw Error(lens.name() + ": f-number is " + number(f_number) + ", wanted a finite one above 0");
+  }
+  const double length = focal_length(lens, wavelength);
+  if (std::isinf(length))
+    throw Error(lens.name() + ": the lens is afocal, wanted a focal length to set an f-number by");
+
+  const Pupils p = pupils(lens, wavelength, main_meridian(lens, wavelength));
+  const double y = length / (2 * f_number);
+  const double largest = beam_height(lens, p, length, wavelength);
+  const auto height = StopHeight(lens, p.stop, wavelength)(y);
+  // One part in 1e9 of tolerance takes back the f-number that real_f_number printed.
+  if (!height || y > largest * (1 + 1e-9)) {
+    throw Error(lens.name() + ": f-number is " + number(f_number) + ", wanted " + number(length / (2 * largest), 10) +
+                " (the fastest the lens can give) or more");
+  }
+  return with_semi_diameter(lens, p.stop, std::min(*height, lens.surfaces()[p.stop].semi_diameter));
+}
+
+}  // namespace petzval

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "petzval/pupil/pupil.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "petzval/core/error.hpp"
+
+namespace petzval {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// The surface that clips the axial beam from infinity first: least semi-diameter over the height of a ray that enters
+/// at height 1, in whichever meridian of a lens with cylinders that ray is higher.
+std::size_t limiting_surface(const Lens& lens, std::size_t wavelength) {
+  std::size_t limiting = lens.surface_count();
+  double least = infinity;
+  for (std::size_t i = 0; i < lens.surface_count(); ++i) {
+    const double height = std::max(std::abs(ray_matrix_to(lens, i, wavelength, Meridian::y).a),
+                                   std::abs(ray_matrix_to(lens, i, wavelength, Meridian::x).a));
+    const double semi_diameter = lens.surfaces()[i].semi_diameter;
+    const double entering = semi_diameter == 0 ? 0 : semi_diameter / height;
+    if (entering < least) {
+      least = entering;
+      limiting = i;
+    }
+  }
+  if (limiting == lens.surface_count()) {
+    throw Error(lens.name() +
+                ": no stop is marked and no surface limits the axial beam, wanted a stop or a semi_diameter");
+  }
+  return limiting;
+}
+
+/// The image of the stop where a ray from the middle of it has the height y and the slope u at a vertex. By the
+/// invariant of Lagrange the optical slope n u, 1 at the stop, is the size of the stop over that of its image. An image
+/// more than 1e12 times the stop is at infinity: the rounding of a telecentric design.
+Pupil pupil(double vertex_z, double n, double y, double nu, double semi_diameter) {
+  if (std::abs(nu) < 1e-12) return {infinity, infinity};
+  return {vertex_z - n * y / nu, 2 * semi_diameter / std::abs(nu)};
+}
+
+}  // namespace
+
+Pupils pupils(const Lens& lens, std::size_t wavelength, Meridian meridian) {
+  Pupils result;
+  result.stop_inferred = !lens.stop();
+  result.stop = lens.stop() ? *lens.stop() : limiting_surface(lens, wavelength);
+
+  // The ray (0, 1) at the vertex of the stop: (-b, a) of the front part before, by the inverse matrix, and (b, d) of
+  // the rear after.
+  const RayMatrix front = ray_matrix_to(lens, result.stop, wavelength, meridian);
+  const RayMatrix rear = ray_matrix(lens, result.stop, lens.surface_count(), wavelength, meridian);
+  const double n = signed_index(lens, 0, wavelength);
+  const double n_image = signed_index(lens, lens.surface_count(), wavelength);
+  const double semi_diameter = lens.surfaces()[result.stop].semi_diameter;
+  result.entrance = pupil(lens.surfaces().front().vertex_z, n, -front.b, front.a, semi_diameter);
+  result.exit = pupil(lens.surfaces().back().vertex_z, n_image, rear.b, rear.d, semi_diameter);
+  return result;
+}
+
+}  // namespace petzval

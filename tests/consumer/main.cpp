@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+// A program of someone who links petzval: one lens from code, one from the data that came with the library.
+//
+//     consumer DATA_DIRECTORY      the data directory that the library is expected to find
+#include <cmath>
+#include <filesystem>
+#include <iostream>
+
+#include "petzval/core/error.hpp"
+#include "petzval/io/prescription_json.hpp"
+#include "petzval/lens/lens.hpp"
+#include "petzval/media/catalogue.hpp"
+#include "petzval/trace/trace.hpp"
+
+namespace {
+
+/// Distance behind the last vertex at which a ray parallel to the axis, 0.01 mm above it, crosses the axis.
+double focus_behind(const petzval::Lens& lens) {
+  const auto [ray, fate, surface] = petzval::trace(lens, petzval::Ray<double>{{0, 0.01, -10}, {0, 0, 1}});
+  if (fate != petzval::RayFate::transmitted) throw petzval::Error(lens.name() + ": the ray is lost");
+  return ray.origin.z - ray.origin.y * ray.direction.z / ray.direction.y - lens.surfaces().back().vertex_z;
+}
+
+bool near(const char* what, double found, double wanted) {
+  std::cout << what << ": focus " << found << " mm behind the last vertex, wanted " << wanted << " mm\n";
+  return std::abs(found - wanted) < 1e-6 * wanted;
+}
+
+bool throws_an_error_that_can_be_caught() {
+  try {
+    petzval::parse_prescription("{", "nothing");
+  } catch (const petzval::Error& error) {
+    std::cout << "an error, as wanted: " << error.what() << '\n';
+    return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc != 2) return 2;
+
+  // By the lens-maker's equation: curvatures 1/50 and -1/50, thickness 5 mm, index 1.5.
+  petzval::Prescription singlet;
+  singlet.name = "singlet";
+  singlet.surfaces = {{.radius = 50, .thickness = 5, .medium = {.nd = 1.5}, .semi_diameter = 10, .stop = true},
+                      {.radius = -50, .thickness = 48, .semi_diameter = 10}};
+  const double power = 0.5 * (1.0 / 50 + 1.0 / 50) - 0.5 * 0.5 * 5 / (1.5 * 50 * 50);
+  const double back_focus = (1 - 0.5 * 5 / (1.5 * 50)) / power;
+  bool good = near("singlet from code", focus_behind(petzval::compile(singlet)), back_focus);
+
+  const auto data = petzval::data_directory();
+  std::cout << "data found in " << data << '\n';
+  good = std::filesystem::equivalent(data, argv[1]) && good;
+  const auto lens = petzval::read_prescription(data / "lenses" / "analytic_plano_hyperbolic_100mm.json");
+  good = near("lens from data", focus_behind(petzval::compile(lens)), 100) && good;
+
+  return throws_an_error_that_can_be_caught() && good ? 0 : 1;
+}

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "petzval/core/ray.hpp"
+
+#include <gtest/gtest.h>
+
+#include <set>
+#include <string>
+
+#include "petzval/core/error.hpp"
+
+namespace {
+
+using petzval::RayFate;
+
+TEST(Ray, EveryFateHasItsOwnName) {
+  std::set<std::string_view> names;
+  for (const RayFate fate : {RayFate::transmitted, RayFate::missed_surface, RayFate::totally_reflected,
+                             RayFate::vignetted, RayFate::no_convergence}) {
+    names.insert(name(fate));
+  }
+  EXPECT_EQ(names, (std::set<std::string_view>{"transmitted", "missed_surface", "totally_reflected", "vignetted",
+                                               "no_convergence"}));
+}
+
+TEST(Ray, RunsTowardsTheFilmAlongTheAxisUnlessSaid) {
+  const petzval::Ray<float> ray;
+  EXPECT_EQ(ray.origin, petzval::Vec3<float>(0, 0, 0));
+  EXPECT_EQ(ray.direction, petzval::Vec3<float>(0, 0, 1));
+}
+
+TEST(Error, IsCaughtAcrossTheBorderOfTheLibraryWithItsMessage) {
+  try {
+    throw petzval::Error("lens: thickness is nan, wanted a finite length in mm");
+  } catch (const std::runtime_error& error) {
+    EXPECT_STREQ(error.what(), "lens: thickness is nan, wanted a finite length in mm");
+  }
+}
+
+}  // namespace

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "petzval/io/prescription_json.hpp"
+#include "petzval/lens/lens.hpp"
+
+namespace petzval::testing {
+
+inline Prescription data_prescription(const std::string& id) {
+  return read_prescription(std::filesystem::path(PETZVAL_TEST_DATA) / "lenses" / (id + ".json"));
+}
+
+inline Lens data_lens(const std::string& id) { return compile(data_prescription(id)); }
+
+/// Every lens of data/lenses, in the order of names.
+inline std::vector<Prescription> data_prescriptions() {
+  std::vector<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::directory_iterator(std::filesystem::path(PETZVAL_TEST_DATA) / "lenses")) {
+    if (entry.path().extension() == ".json") files.push_back(entry.path());
+  }
+  std::sort(files.begin(), files.end());
+  std::vector<Prescription> result;
+  for (const auto& file : files) result.push_back(read_prescription(file));
+  return result;
+}
+
+}  // namespace petzval::testing

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "../message.hpp"
+#include "petzval/focus/focus.hpp"
+
+namespace petzval {
+namespace {
+
+using testing::message;
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double eps = std::numeric_limits<double>::epsilon();
+
+TEST(ThinLensExtension, IsWithinFourEpsFromTheFocusToTheStars) {
+  static_assert(std::numeric_limits<long double>::digits >= 64, "the reference needs more digits than double");
+  for (const double f : {50.0, 0.3, 1234.5}) {
+    for (double excess = 1e-6; excess < 1e13; excess *= 3.7) {
+      const double u = f * (1 + excess);
+      const long double lf = f, exact = lf * lf / (static_cast<long double>(u) - lf);
+      EXPECT_LE(std::abs(static_cast<double>(thin_lens_extension(f, u) - exact)), 4 * eps * static_cast<double>(exact))
+          << u;
+    }
+    EXPECT_EQ(thin_lens_extension(f, infinity), 0);
+  }
+}
+
+TEST(ThinLensBlur, IsWithinFourEpsAlsoNextToTheFocus) {
+  const double f = 50, diameter = 25;
+  for (const double focused : {f * (1 + 1e-6), 51.0, 1000.0, 1e6, 1e12}) {
+    for (const double subject :
+         {1.0, 60.0, 1000.0, std::nextafter(1000.0, 0), 1000 * (1 + 1e-5), 2000.0, 1e9, 1e20, 1e36}) {
+      const long double lf = f, lu = subject, lv = focused;
+      const long double exact = diameter * lf * std::abs(lu - lv) / lu / (lv - lf);
+      EXPECT_LE(std::abs(static_cast<double>(thin_lens_blur_diameter(f, diameter, subject, focused) - exact)),
+                4 * eps * static_cast<double>(exact))
+          << subject << " " << focused;
+    }
+  }
+}
+
+TEST(ThinLensBlur, HasItsLimitsAtInfinity) {
+  EXPECT_EQ(thin_lens_blur_diameter(50, 25, infinity, infinity), 0);
+  EXPECT_EQ(thin_lens_blur_diameter(50, 25, 1000, infinity), 25 * (50.0 / 1000));
+  EXPECT_EQ(thin_lens_blur_diameter(50, 25, infinity, 1050), 25 * (50.0 / 1000));
+  EXPECT_NEAR(thin_lens_blur_diameter(50, 25, 1e300, 1e301), 0, 1e-290);
+  EXPECT_EQ(thin_lens_blur_diameter(50, 25, 700, 700), 0);
+}
+
+TEST(ThinLens, RefusesWhatHasNoImage) {
+  EXPECT_EQ(message([] { thin_lens_extension(50, 50); }),
+            "thin_lens_extension: subject distance is 50 mm, wanted more than the focal length");
+  EXPECT_EQ(message([] { thin_lens_extension(50, std::nan("")); }),
+            "thin_lens_extension: subject distance is nan mm, wanted more than the focal length");
+  EXPECT_EQ(message([] { thin_lens_extension(-50, 10); }),
+            "thin_lens_extension: focal length is -50 mm, wanted a finite one above 0");
+  EXPECT_EQ(message([] { thin_lens_blur_diameter(50, 25, 0, 1000); }),
+            "thin_lens_blur_diameter: subject distance is 0 mm, wanted one above 0");
+  EXPECT_EQ(message([] { thin_lens_blur_diameter(50, 25, 1000, 40); }),
+            "thin_lens_blur_diameter: focused distance is 40 mm, wanted more than the focal length");
+  EXPECT_EQ(message([] { thin_lens_blur_diameter(50, -1, 1000, 400); }),
+            "thin_lens_blur_diameter: diameter is -1 mm, wanted a finite one, 0 or more");
+}
+
+}  // namespace
+}  // namespace petzval

@@ -1,0 +1,36 @@
+# SPDX-License-Identifier: Apache-2.0
+# cmake -DCLANG=clang++-14 -DCOMPILER=/usr/bin/c++ -DBUILD=... -DFOLDER=... -P clang.cmake: every source below a folder passes
+# another compiler too, under the flags with which COMPILER built it.
+cmake_minimum_required(VERSION 3.25)
+
+file(READ ${BUILD}/compile_commands.json commands)
+string(JSON count LENGTH "${commands}")
+math(EXPR last "${count} - 1")
+set(faults "")
+set(checked 0)
+foreach(i RANGE ${last})
+  string(JSON file GET "${commands}" ${i} file)
+  string(FIND "${file}" "${FOLDER}/" position)
+  if(NOT position EQUAL 0)
+    continue()
+  endif()
+  string(JSON command GET "${commands}" ${i} command)
+  separate_arguments(arguments UNIX_COMMAND "${command}")
+  list(FIND arguments ${COMPILER} position)  # a launcher such as ccache may stand before it
+  math(EXPR position "${position} + 1")
+  list(SUBLIST arguments ${position} -1 arguments)
+  list(FIND arguments -o position)
+  list(REMOVE_AT arguments ${position})
+  list(REMOVE_AT arguments ${position})
+  execute_process(COMMAND ${CLANG} -fsyntax-only ${arguments} -Werror -Wno-unknown-warning-option WORKING_DIRECTORY ${BUILD}
+    RESULT_VARIABLE failed ERROR_VARIABLE messages)
+  if(failed)
+    string(APPEND faults "\n${messages}")
+  endif()
+  math(EXPR checked "${checked} + 1")
+endforeach()
+if(faults)
+  message(FATAL_ERROR "${CLANG} objects:${faults}")
+elseif(checked EQUAL 0)
+  message(FATAL_ERROR "no source below ${FOLDER} in ${BUILD}/compile_commands.json")
+endif()

@@ -1,0 +1,432 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "petzval/io/prescription_json.hpp"
+
+#include <gtest/gtest.h>
+
+#include <clocale>
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <locale>
+#include <random>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "../message.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+using petzval::format_prescription;
+using petzval::parse_prescription;
+using petzval::Prescription;
+using petzval::testing::message;
+
+std::string text_of(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+std::vector<fs::path> lens_files() {
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(fs::path(PETZVAL_TEST_DATA) / "lenses"))
+    files.push_back(entry.path());
+  return files;
+}
+
+const std::string head = R"({"format": "petzval-lens 1", )";
+const std::string row = R"({"radius": 50, "thickness": 5.5, "nd": 1.5})";
+
+/// A lens file with these members beside the format.
+std::string file(const std::string& members) { return head + members + "}"; }
+/// A lens of one good surface and this one.
+std::string with_surface(const std::string& surface) { return file("\"surfaces\": [" + row + ", " + surface + "]"); }
+/// The same with one member added to a good surface.
+std::string with_member(const std::string& member) {
+  return with_surface(R"({"radius": 50, "thickness": 5.5, "nd": 1.5, )" + member + "}");
+}
+
+std::string refusal(const std::string& text) {
+  return message([&] { parse_prescription(text, "x.json"); });
+}
+
+TEST(PrescriptionJson, EveryLensOfTheDataIsWrittenBackByteForByte) {
+  const auto files = lens_files();
+  EXPECT_EQ(files.size(), 75u);
+  for (const auto& lens : files)
+    EXPECT_EQ(format_prescription(petzval::read_prescription(lens)), text_of(lens)) << lens;
+}
+
+TEST(PrescriptionJson, SaysWhatTheFileSays) {
+  const auto lens =
+      petzval::read_prescription(fs::path(PETZVAL_TEST_DATA) / "lenses" / "catadioptric_mangin_1000mm_f7.5.json");
+  EXPECT_EQ(lens.id, "catadioptric_mangin_1000mm_f7.5");
+  EXPECT_EQ(lens.source_design, "US 5,331,467, example 1");
+  EXPECT_EQ(lens.focal_length_mm, 1000);
+  EXPECT_FALSE(lens.image_diagonal_mm);
+  EXPECT_EQ(lens.glass_names, "source (nearest modern glasses)");
+  ASSERT_EQ(lens.surfaces.size(), 24u);
+  EXPECT_EQ(lens.surfaces[1].inner_semi_diameter, 25);
+  EXPECT_EQ(lens.surfaces[3].thickness, -15);
+  EXPECT_TRUE(lens.surfaces[3].mirror && lens.surfaces[3].stop);
+  EXPECT_EQ(lens.surfaces[8].medium.catalogue, "hikari");
+  const auto zoom = petzval::read_prescription(fs::path(PETZVAL_TEST_DATA) / "lenses" / "zoom_14-30mm_f4_middle.json");
+  EXPECT_EQ(zoom.zoom->variable_gaps,
+            (std::map<int, double>{{7, 12.942}, {13, 6.371}, {20, 2.261}, {22, 6.196}, {26, 26.809}}));
+  EXPECT_EQ(zoom.surfaces[1].aspheric[2], (petzval::AsphereTerm{8, 6.9126e-11}));
+}
+
+/// Any double a lens may hold, of any size.
+double random_number(std::mt19937_64& random, double smallest, double largest) {
+  std::uniform_real_distribution<double> exponent(std::log(smallest), std::log(largest));
+  const double value = std::exp(exponent(random));
+  return random() % 2 == 0 ? value : -value;
+}
+
+Prescription random_prescription(std::mt19937_64& random) {
+  const auto often = [&] { return random() % 2 == 0; };
+  const auto length = [&] { return random_number(random, 1e-9, 1e9); };
+  const std::vector<std::string> texts = {"",
+                                          "plain",
+                                          "quote \" backslash \\ slash /",
+                                          "tab\tline\nreturn\r",
+                                          "\x01\x1f\x7f",
+                                          "\u00b5 \u00e9 \u4f60 \U0001F4F7",
+                                          "null"};
+  const auto text = [&] { return texts[random() % texts.size()]; };
+  const auto maybe_text = [&]() -> std::optional<std::string> {
+    return often() ? std::optional(text()) : std::nullopt;
+  };
+  const auto maybe = [&]() -> std::optional<double> {
+    return often() ? std::optional(std::abs(length())) : std::nullopt;
+  };
+  const auto medium = [&] {
+    petzval::Medium m;
+    m.glass = maybe_text();
+    if (m.glass) m.catalogue = maybe_text();
+    if (m.glass) m.glass_origin = maybe_text();
+    m.nd = 1 + 4 * std::generate_canonical<double, 53>(random);
+    m.vd = maybe();
+    return m;
+  };
+
+  Prescription p;
+  p.id = text(), p.name = text(), p.source_design = text(), p.source_numbers = text();
+  p.focal_length_mm = maybe(), p.f_number = maybe(), p.half_field_deg = maybe(), p.image_diagonal_mm = maybe();
+  p.reference_wavelength_nm = 400 + std::generate_canonical<double, 53>(random);
+  p.semi_diameters = maybe_text(), p.stop_size = maybe_text(), p.image_distance = maybe_text();
+  p.glass_names = maybe_text(), p.notes = maybe_text();
+  for (auto i = random() % 3; i > 0; --i) p.aliases.push_back(text());
+  if (often()) p.object_space = medium();
+  for (auto i = 1 + random() % 5; i > 0; --i) {
+    petzval::SurfaceRow s;
+    s.radius = often() ? length() : often() ? 0.0 : -0.0;
+    s.thickness = often() ? length() : static_cast<double>(random() % 1000000);
+    s.mirror = random() % 4 == 0;
+    s.medium = !s.mirror ? medium() : p.surfaces.empty() ? p.object_space : p.surfaces.back().medium;
+    s.semi_diameter = maybe();
+    if (s.semi_diameter && often()) s.inner_semi_diameter = *s.semi_diameter / 3;
+    s.conic = often() ? 0 : length();
+    for (int order = 2; order <= 40 && often(); ++order)
+      s.aspheric.push_back({order, random_number(random, 1e-300, 1e300)});
+    s.stop = often();
+    s.curved_in = often() ? petzval::Section::both : often() ? petzval::Section::x : petzval::Section::y;
+    p.surfaces.push_back(s);
+  }
+  if (often()) p.zoom = petzval::ZoomPosition{text(), {}};
+  if (p.zoom && often()) p.zoom->variable_gaps = {{0, length()}};
+  return p;
+}
+
+TEST(PrescriptionJson, AnyLensComesBackAsItWas) {
+  std::mt19937_64 random(1);
+  for (int i = 0; i < 2000; ++i) {
+    const Prescription p = random_prescription(random);
+    const std::string text = format_prescription(p);
+    const Prescription back = parse_prescription(text, "x.json");
+    ASSERT_EQ(back, p) << text;
+    ASSERT_EQ(format_prescription(back), text);
+  }
+}
+
+TEST(PrescriptionJson, NumbersAreTheShortestThatReadBack) {
+  Prescription p = parse_prescription(file("\"surfaces\": [" + row + "]"), "x.json");
+  const auto written = [&p](double radius) {
+    p.surfaces[0].radius = radius;
+    const std::string text = format_prescription(p);
+    const auto from = text.find("\"radius\": ") + 10;
+    return text.substr(from, text.find(',', from) - from);
+  };
+  const std::vector<std::pair<double, std::string>> numbers = {{0, "0.0"},
+                                                               {-0.0, "-0.0"},
+                                                               {100000, "100000.0"},
+                                                               {1e15, "1000000000000000.0"},
+                                                               {1e16, "1e+16"},
+                                                               {1e22, "1e+22"},
+                                                               {0.1, "0.1"},
+                                                               {0.1 + 0.2, "0.30000000000000004"},
+                                                               {1e-4, "0.0001"},
+                                                               {1e-5, "1e-05"},
+                                                               {-1.33157e-5, "-1.33157e-05"},
+                                                               {206.96100000000004, "206.96100000000004"},
+                                                               {1.7976931348623157e308, "1.7976931348623157e+308"}};
+  for (const auto& [value, text] : numbers) EXPECT_EQ(written(value), text);
+}
+
+TEST(PrescriptionJson, UnlimitedAperturesAreWrittenAsNone) {
+  Prescription p = parse_prescription(file("\"surfaces\": [" + row + "]"), "x.json");
+  p.surfaces[0].semi_diameter = std::numeric_limits<double>::infinity();
+  EXPECT_NE(format_prescription(p).find("\"semi_diameter\": null"), std::string::npos);
+}
+
+TEST(PrescriptionJson, WhatCannotBeReadIsNotWritten) {
+  Prescription p;
+  p.name = "empty";
+  EXPECT_EQ(message([&] { format_prescription(p); }), "empty: no surfaces, wanted one at least");
+  p = parse_prescription(file("\"surfaces\": [" + row + "]"), "x.json");
+  p.surfaces[0].thickness = std::nan("");
+  EXPECT_EQ(message([&] { format_prescription(p); }),
+            "lens: surface 0: thickness is nan, wanted a finite length below 1e10 mm");
+  p.surfaces[0].thickness = 0;
+  p.notes = "\xb5m";  // Latin-1
+  EXPECT_EQ(message([&] { format_prescription(p); }), "a text of the lens is not UTF-8, wanted UTF-8 to write JSON");
+}
+
+TEST(PrescriptionJson, FilesThatCannotBeOpenedAreNamed) {
+  const fs::path folder = ::testing::TempDir();
+  const std::string absent = (folder / "no such folder" / "lens.json").string();
+  EXPECT_EQ(message([&] { petzval::read_prescription(absent); }), absent + ": cannot be opened, wanted a lens file");
+  EXPECT_EQ(message([&] { petzval::read_prescription(folder); }), folder.string() + ": cannot be read to its end");
+  const Prescription p = parse_prescription(file("\"surfaces\": [" + row + "]"), "x.json");
+  EXPECT_EQ(message([&] { petzval::write_prescription(p, absent); }),
+            absent + ": cannot be written, wanted a folder that exists, may be written and has room");
+  const fs::path written = folder / "petzval_written.json";
+  petzval::write_prescription(p, written);
+  EXPECT_EQ(petzval::read_prescription(written), p);
+  fs::remove(written);
+}
+
+TEST(PrescriptionJson, SpaceByteOrderMarkAndLineEndsDoNotMatter) {
+  const fs::path lens = fs::path(PETZVAL_TEST_DATA) / "lenses" / "compact_31mm_f2.1.json";
+  const std::string text = text_of(lens);
+  const Prescription p = parse_prescription(text, "x.json");
+  const auto with = [&](const std::string& end, const std::string& before) {
+    std::string changed = before;
+    for (const char c : text) changed += c == '\n' ? end : std::string(1, c);
+    return changed;
+  };
+  EXPECT_EQ(parse_prescription(with("\r\n", ""), "x.json"), p);
+  EXPECT_EQ(parse_prescription(with("\r", ""), "x.json"), p);
+  EXPECT_EQ(parse_prescription(with("\t \n", ""), "x.json"), p);
+  EXPECT_EQ(parse_prescription(with("", ""), "x.json"), p);
+  EXPECT_EQ(parse_prescription(with("\n", "\xEF\xBB\xBF"), "x.json"), p);
+  EXPECT_EQ(parse_prescription(std::string(1'000'000, ' ') + text, "x.json"), p);
+}
+
+TEST(PrescriptionJson, MembersMayBeLeftOutButNotTheSurfaceItself) {
+  const Prescription p = parse_prescription(file("\"surfaces\": [" + row + "]"), "x.json");
+  petzval::Prescription expected;
+  expected.surfaces = {{.radius = 50, .thickness = 5.5, .medium = {.nd = 1.5}}};
+  EXPECT_EQ(p, expected);
+  EXPECT_EQ(refusal("{}"), "x.json: key \"format\" is missing");
+  EXPECT_EQ(refusal(file("\"id\": \"a\"")), "x.json: key \"surfaces\" is missing");
+  EXPECT_EQ(refusal(with_surface(R"({"thickness": 5, "nd": 1})")), "x.json: surface 1: key \"radius\" is missing");
+  EXPECT_EQ(refusal(with_surface(R"({"radius": 5, "nd": 1})")), "x.json: surface 1: key \"thickness\" is missing");
+  EXPECT_EQ(refusal(with_surface(R"({"radius": 5, "thickness": 1})")), "x.json: surface 1: key \"nd\" is missing");
+  EXPECT_EQ(refusal(with_member(R"("aspheric": [{"order": 4}])")),
+            "x.json: surface 1: aspheric 0: key \"coefficient\" is missing");
+  EXPECT_EQ(refusal(file("\"surfaces\": []")), "x.json: no surfaces, wanted one at least");
+}
+
+TEST(PrescriptionJson, ValuesOfTheWrongKindAreNamed) {
+  EXPECT_EQ(refusal(R"({"format": "petzval-lens 2"})"),
+            "x.json: format is \"petzval-lens 2\", wanted \"petzval-lens 1\"");
+  EXPECT_EQ(refusal("[]"), "x.json: document is a list, wanted an object");
+  EXPECT_EQ(refusal("7"), "x.json: document is 7, wanted an object");
+  EXPECT_EQ(refusal("\"text\""), "x.json: document is \"text\", wanted an object");
+  EXPECT_EQ(refusal(file(R"("name": 5)")), "x.json: name is 5, wanted a text");
+  EXPECT_EQ(refusal(file(R"("name": null)")), "x.json: name is null, wanted a text");
+  EXPECT_EQ(refusal(file(R"("name": ["a"])")), "x.json: name is a list, wanted a plain value");
+  EXPECT_EQ(refusal(file(R"("source": "a book")")), "x.json: source is \"a book\", wanted an object");
+  EXPECT_EQ(refusal(file(R"("source": [])")), "x.json: source is a list, wanted an object");
+  EXPECT_EQ(refusal(file(R"("source": {"design": 1})")), "x.json: source: design is 1, wanted a text");
+  EXPECT_EQ(refusal(file(R"("aliases": ["a", 2])")), "x.json: aliases is 2, wanted a text");
+  EXPECT_EQ(refusal(file(R"("aliases": [{}])")), "x.json: aliases is an object, wanted a text");
+  EXPECT_EQ(refusal(file(R"("zoom": {"position": "wide", "variable_gaps": {"3": "5"}})")),
+            "x.json: zoom: variable_gaps is \"5\", wanted a number");
+  EXPECT_EQ(refusal(file(R"("zoom": {"variable_gaps": {"03": 5}})")),
+            "x.json: zoom: variable_gaps: key \"03\", wanted the number of a surface");
+  EXPECT_EQ(refusal(file(R"("surfaces": {})")), "x.json: surfaces is an object, wanted a list");
+  EXPECT_EQ(refusal(file(R"("surfaces": [5])")), "x.json: surface 0 is 5, wanted an object");
+  EXPECT_EQ(refusal(with_surface("[]")), "x.json: surface 1 is a list, wanted an object");
+  EXPECT_EQ(refusal(with_surface(R"({"radius": "50"})")), "x.json: surface 1: radius is \"50\", wanted a number");
+  EXPECT_EQ(refusal(with_surface(R"({"radius": "1,5"})")), "x.json: surface 1: radius is \"1,5\", wanted a number");
+  EXPECT_EQ(refusal(with_surface(R"({"radius": null})")), "x.json: surface 1: radius is null, wanted a number");
+  EXPECT_EQ(refusal(with_surface(R"({"radius": {}})")), "x.json: surface 1: radius is an object, wanted a plain value");
+  EXPECT_EQ(refusal(with_member(R"("stop": 1)")), "x.json: surface 1: stop is 1, wanted true or false");
+  EXPECT_EQ(refusal(with_member(R"("curved_in": "z")")),
+            "x.json: surface 1: curved_in is \"z\", wanted \"x\" or \"y\"");
+  EXPECT_EQ(refusal(with_member(R"("aspheric": [1])")), "x.json: surface 1: aspheric 0 is 1, wanted an object");
+  EXPECT_EQ(refusal(with_member(R"("aspheric": [{"order": 4.5}])")),
+            "x.json: surface 1: aspheric 0: order is 4.5, wanted a whole number from 2 to 40");
+  EXPECT_EQ(refusal(with_member(R"("glass": true)")), "x.json: surface 1: glass is true, wanted a text");
+  EXPECT_EQ(refusal(file(R"("object_space": {"nd": "water"})")),
+            "x.json: object_space: nd is \"water\", wanted a number");
+}
+
+TEST(PrescriptionJson, UnknownAndDuplicateKeysAreRefused) {
+  EXPECT_EQ(refusal(with_member(R"("semidiameter": 5)")),
+            "x.json: surface 1: key \"semidiameter\" is unknown, wanted one of glass, catalogue, glass_origin, nd, vd, "
+            "radius, "
+            "thickness, semi_diameter, inner_semi_diameter, conic, aspheric, stop, mirror, curved_in");
+  EXPECT_EQ(refusal(file(R"("source": {"year": 1952})")),
+            "x.json: source: key \"year\" is unknown, wanted one of design, numbers");
+  EXPECT_EQ(refusal(file(R"("object_space": {"nd": 1.3, "radius": 5})")),
+            "x.json: object_space: key \"radius\" is unknown, wanted one of glass, catalogue, glass_origin, nd, vd");
+  EXPECT_EQ(refusal(with_member(R"("radius": 50)")), "x.json: surface 1: key \"radius\" is given twice, wanted once");
+  EXPECT_EQ(refusal(file(R"("id": "a", "id": "a")")), "x.json: key \"id\" is given twice, wanted once");
+  EXPECT_EQ(refusal(file(R"("zoom": {"variable_gaps": {"0": 1, "0": 1}})")),
+            "x.json: zoom: variable_gaps: key \"0\" is given twice, wanted once");
+  EXPECT_EQ(refusal(with_member(R"("aspheric": [{"order": 4, "coefficient": 1}, {"order": 4, "coefficient": 2}])")),
+            "x.json: surface 1: aspheric coefficient of order 4 is given twice, wanted once");
+}
+
+TEST(PrescriptionJson, WhatIsNotALensIsRefusedWithTheSurface) {
+  EXPECT_EQ(refusal(with_surface(R"({"radius": 50, "thickness": 5, "nd": -1})")),
+            "x.json: surface 1: nd is -1, wanted an index above 0 and up to 5");
+  EXPECT_EQ(refusal(with_member(R"("semi_diameter": -3)")),
+            "x.json: surface 1: semi_diameter is -3, wanted 0 mm or more");
+  EXPECT_EQ(refusal(file(R"("zoom": {"variable_gaps": {"1": 5}}, "surfaces": [)" + row + "]")),
+            "x.json: zoom: variable gap's surface is 1, wanted one of 1");
+}
+
+TEST(PrescriptionJson, NumbersBeyondDoubleAreRefused) {
+  const auto radius = [](const std::string& number) { return refusal(with_surface("{\"radius\": " + number)); };
+  EXPECT_NE(radius("1e309").find("not JSON number overflow parsing '1e309'"), std::string::npos) << radius("1e309");
+  EXPECT_EQ(radius("1e-400,"), "x.json: surface 1: radius is 1e-400, wanted a number within the range of double");
+  EXPECT_EQ(radius("9007199254740993,"), "x.json: surface 1: radius is 9007199254740993, wanted an integer up to 2^53");
+  EXPECT_EQ(radius("-9223372036854775808,"),
+            "x.json: surface 1: radius is -9223372036854775808, wanted an integer up to 2^53");
+  EXPECT_EQ(radius("18446744073709551616,"),
+            "x.json: surface 1: radius is 18446744073709551616, wanted an integer up to 2^53");
+  const auto lens =
+      parse_prescription(with_surface(R"({"radius": 9007199254740992, "thickness": 0, "nd": 1})"), "x.json");
+  EXPECT_EQ(lens.surfaces[1].radius, 0x1p53);
+}
+
+TEST(PrescriptionJson, WhatJsonDoesNotKnowIsRefusedWithTheByte) {
+  const std::string start = with_surface("{\"radius\": ");
+  const std::string before = start.substr(0, start.size() - 3);  // up to the value
+  const std::string prefix = "x.json: byte ";
+  for (const std::string& wrong : std::vector<std::string>{"NaN",
+                                                           "nan",
+                                                           "Infinity",
+                                                           "-Infinity",
+                                                           "+1",
+                                                           ".5",
+                                                           "5.",
+                                                           "0x1p3",
+                                                           "1,5",
+                                                           "01",
+                                                           "1.5D+01",
+                                                           "'a'",
+                                                           "1 // comment\n",
+                                                           "/* */ 1",
+                                                           "1e",
+                                                           "\"\\ud800\"",
+                                                           "\"\\udc00\"",
+                                                           "\"\\ud800\\u0041\"",
+                                                           "\"\xff\"",
+                                                           "\"\xc0\x80\"",
+                                                           "\"\xed\xa0\x80\"",
+                                                           "\"line\nend\"",
+                                                           "\"\\x\""}) {
+    const std::string said = refusal(before + wrong + ", \"thickness\": 5, \"nd\": 1}]}");
+    EXPECT_EQ(said.substr(0, prefix.size()), prefix) << wrong;
+    EXPECT_NE(said.find(": not JSON "), std::string::npos) << wrong << ": " << said;
+  }
+  for (const std::string& wrong :
+       std::vector<std::string>{"[" + row + ",]", "[" + row + "]]", "[" + row + " " + row + "]"}) {
+    EXPECT_EQ(refusal(file("\"surfaces\": " + wrong)).substr(0, prefix.size()), prefix) << wrong;
+  }
+  const std::string good = file("\"surfaces\": [" + row + "]");
+  EXPECT_EQ(refusal(good), "no error");
+  EXPECT_EQ(refusal(good + "x").substr(0, prefix.size()), prefix);
+  EXPECT_EQ(refusal(good + std::string(1, '\0') + "x"),
+            prefix + std::to_string(good.size() + 1) + " is zero, wanted JSON in UTF-8");
+  for (const std::string& nothing : std::vector<std::string>{"", " \n", "\xEF\xBB\xBF", "\xEF\xBB", "\xFE\xFF"}) {
+    EXPECT_EQ(refusal(nothing).substr(0, prefix.size()), prefix) << nothing.size();
+  }
+}
+
+TEST(PrescriptionJson, ATextCutOffAtAnyByteIsRefused) {
+  for (const char* id : {"zoom_14-30mm_f4_middle", "catadioptric_mangin_1000mm_f7.5", "double_gauss_100mm_f1.35"}) {
+    std::string text = text_of(fs::path(PETZVAL_TEST_DATA) / "lenses" / (std::string(id) + ".json"));
+    text.resize(text.find_last_of('}') + 1);
+    for (std::size_t length = 0; length < text.size(); ++length) {
+      ASSERT_TRUE(refusal(text.substr(0, length)).starts_with("x.json: ")) << id << " cut at " << length;
+    }
+  }
+}
+
+TEST(PrescriptionJson, ATextWithAnyByteChangedIsReadOrRefused) {
+  std::mt19937 random(3);
+  const std::string good = text_of(fs::path(PETZVAL_TEST_DATA) / "lenses" / "zoom_14-30mm_f4_middle.json");
+  int refused = 0;
+  for (int i = 0; i < 5000; ++i) {
+    std::string text = good;
+    for (auto changes = 1 + random() % 3; changes > 0; --changes) {
+      text[random() % text.size()] =
+          static_cast<char>(random() % 3 ? "{}[]\":,.-e0 \\n"[random() % 15] : random() % 256);
+    }
+    refused += refusal(text) != "no error";  // any exception but Error would end the test
+  }
+  EXPECT_GT(refused, 2500);
+}
+
+TEST(PrescriptionJson, HugeTextsAreRefusedEarly) {
+  std::string rows = row;
+  for (int i = 1; i < 10'000; ++i) rows += "," + row;
+  EXPECT_EQ(parse_prescription(file("\"surfaces\": [" + rows + "]"), "x.json").surfaces.size(), 10'000u);
+  // What follows the surface too many is not looked at: it is no JSON.
+  EXPECT_EQ(refusal(file("\"surfaces\": [" + rows + "," + row + "] !")),
+            "x.json: more than 10000 surfaces, wanted a lens");
+  std::string aliases = "\"\"";
+  for (int i = 0; i < 10'000; ++i) aliases += ",\"\"";
+  EXPECT_EQ(refusal(file("\"aliases\": [" + aliases + "]")),
+            "x.json: more than 10000 entries in a list, wanted a lens");
+  // Nesting ends at the first bracket that has no place in a lens, be it one or a hundred thousand.
+  const std::string deep(100'000, '[');
+  EXPECT_EQ(refusal(deep), "x.json: document is a list, wanted an object");
+  EXPECT_EQ(refusal(file("\"surfaces\": [" + deep)), "x.json: surface 0 is a list, wanted an object");
+  EXPECT_EQ(refusal(file("\"notes\": " + deep)), "x.json: notes is a list, wanted a plain value");
+  // A long text in a message is cut short.
+  const std::string said = refusal(file("\"" + std::string(1'000'000, 'k') + "\": 1"));
+  EXPECT_TRUE(said.starts_with("x.json: key \"" + std::string(60, 'k') + "...\" is unknown")) << said.substr(0, 100);
+  EXPECT_LT(refusal(file("\"f_number\": " + std::string(1'000'000, '1'))).size(), 300u);
+}
+
+struct DecimalComma : std::numpunct<char> {
+  char do_decimal_point() const override { return ','; }
+  char do_thousands_sep() const override { return '.'; }
+  std::string do_grouping() const override { return "\3"; }
+};
+
+TEST(PrescriptionJson, TheLocaleDoesNotMatter) {
+  // For streams everywhere; for the C library where the machine has such a locale.
+  const std::locale before = std::locale::global(std::locale(std::locale::classic(), new DecimalComma));
+  for (const char* name : {"de_DE.UTF-8", "fr_FR.UTF-8"}) {
+    if (std::setlocale(LC_ALL, name) != nullptr) break;
+  }
+  const fs::path lens = fs::path(PETZVAL_TEST_DATA) / "lenses" / "zoom_14-30mm_f4_middle.json";
+  const std::string written = format_prescription(petzval::read_prescription(lens));
+  std::locale::global(before);
+  std::setlocale(LC_ALL, "C");
+  EXPECT_EQ(written, text_of(lens));
+}
+
+}  // namespace

@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <string>
+
+#include "../data_lenses.hpp"
+#include "../message.hpp"
+#include "petzval/core/text.hpp"
+#include "petzval/lens/lens.hpp"
+
+namespace {
+
+using petzval::compile;
+using petzval::Dispersion;
+using petzval::GlassCatalogue;
+using petzval::IndexPolicy;
+using petzval::MissingGlass;
+using petzval::Prescription;
+using petzval::testing::message;
+
+constexpr double d = petzval::d_line_nm, f = 486.1327, c = 656.2725;
+constexpr std::array<double, 3> visible{f, d, c};
+
+const GlassCatalogue& glasses() {
+  static const auto catalogue = GlassCatalogue::load(std::filesystem::path(PETZVAL_TEST_DATA) / "glass");
+  return catalogue;
+}
+
+double catalogue_index(const char* name, const char* catalogue, double nm) {
+  return petzval::refractive_index(*glasses().find(name, catalogue), nm);
+}
+
+/// A cemented pair: a glass of the tables whose printed index is rounded, then what each test puts there.
+Prescription doublet(const petzval::Medium& second) {
+  Prescription p;
+  p.name = "pair";
+  p.surfaces = {
+      {.radius = 60, .thickness = 6, .medium = {.glass = "N-BK7", .catalogue = "schott", .nd = 1.517, .vd = 64.2}},
+      {.radius = -40, .thickness = 3, .medium = second},
+      {.radius = -90, .thickness = 90}};
+  return p;
+}
+
+const petzval::Medium flint{.glass = "N-SF5", .catalogue = "schott", .nd = 1.673, .vd = 32.2};
+const petzval::Medium unknown{.glass = "MYSTERIUM", .catalogue = "atlantis", .nd = 1.673, .vd = 32.2};
+const petzval::Medium nameless{.nd = 1.673, .vd = 32.2};
+const petzval::Medium bare{.nd = 1.673};
+
+TEST(Compile, PrintedIndicesStandAtDAndTheCatalogueAddsDispersion) {
+  const auto lens = compile(doublet(flint), visible, {.glasses = &glasses()});
+  EXPECT_EQ(lens.index(1, 1), 1.517);
+  EXPECT_EQ(lens.index(2, 1), 1.673);
+  for (const std::size_t w : {0u, 2u}) {
+    EXPECT_EQ(lens.index(0, w), 1);
+    EXPECT_EQ(lens.index(3, w), 1);
+    EXPECT_DOUBLE_EQ(lens.index(1, w) - 1.517,
+                     catalogue_index("N-BK7", "schott", visible[w]) - catalogue_index("N-BK7", "schott", d));
+    EXPECT_DOUBLE_EQ(lens.index(2, w) - 1.673,
+                     catalogue_index("N-SF5", "schott", visible[w]) - catalogue_index("N-SF5", "schott", d));
+  }
+  EXPECT_EQ(lens.dispersion(), Dispersion::catalogue);
+  EXPECT_TRUE(lens.missing_glasses().empty());
+}
+
+TEST(Compile, TheCataloguePolicyTakesTheCatalogueAloneAtDToo) {
+  const auto lens = compile(doublet(flint), visible, {.glasses = &glasses(), .index_policy = IndexPolicy::catalogue});
+  for (std::size_t w = 0; w < 3; ++w) {
+    EXPECT_EQ(lens.index(0, w), 1);
+    EXPECT_EQ(lens.index(1, w), catalogue_index("N-BK7", "schott", visible[w]));
+    EXPECT_EQ(lens.index(2, w), catalogue_index("N-SF5", "schott", visible[w]));
+  }
+}
+
+TEST(Compile, TheReferenceWavelengthIsThatOfTheTable) {
+  Prescription p = doublet(flint);
+  p.reference_wavelength_nm = 546.074;
+  const auto lens = compile(p, std::array{546.074, d}, {.glasses = &glasses()});
+  EXPECT_EQ(lens.index(1, 0), 1.517);
+  EXPECT_DOUBLE_EQ(lens.index(1, 1) - 1.517,
+                   catalogue_index("N-BK7", "schott", d) - catalogue_index("N-BK7", "schott", 546.074));
+}
+
+TEST(Compile, AGlassNoTableKnowsIsAnErrorThatNamesIt) {
+  const std::string tail = ", wanted one for its index at 486.1327 nm (or the n_d/V_d model, on request)";
+  const petzval::CompileOptions strict{.glasses = &glasses()};
+  EXPECT_EQ(message([&] { compile(doublet(unknown), visible, strict); }),
+            "pair: surface 1: glass \"MYSTERIUM\" of catalogue \"atlantis\" is in no glass table" + tail);
+  EXPECT_EQ(message([&] { compile(doublet(nameless), visible, strict); }),
+            "pair: surface 1: a medium of index 1.673 without a glass name is in no glass table" + tail);
+  EXPECT_EQ(message([&] { compile(doublet(flint), visible); }),
+            "pair: surface 0: glass \"N-BK7\" of catalogue \"schott\" is in no glass table" + tail);
+  Prescription immersed = doublet(flint);
+  immersed.object_space = {.glass = "SEA WATER", .nd = 1.34};
+  EXPECT_EQ(message([&] { compile(immersed, visible, strict); }),
+            "pair: object space: glass \"SEA WATER\" is in no glass table" + tail);
+  // The catalogue alone cannot say what it does not know, at d no more than elsewhere.
+  EXPECT_EQ(message([&] {
+              compile(doublet(unknown), std::array{d}, {.glasses = &glasses(), .index_policy = IndexPolicy::catalogue});
+            }),
+            "pair: surface 1: glass \"MYSTERIUM\" of catalogue \"atlantis\" is in no glass table, wanted one for its "
+            "index at "
+            "587.5618 nm (or the n_d/V_d model, on request)");
+}
+
+TEST(Compile, AtTheReferenceWavelengthNoGlassIsNeeded) {
+  const auto lens = compile(doublet(unknown));
+  EXPECT_EQ(lens.index(2, 0), 1.673);
+  EXPECT_EQ(lens.dispersion(), Dispersion::abbe);
+  ASSERT_EQ(lens.missing_glasses().size(), 2u);
+  EXPECT_EQ(lens.missing_glasses()[1],
+            "pair: surface 1: glass \"MYSTERIUM\" of catalogue \"atlantis\" is in no glass table");
+}
+
+TEST(Compile, TheAbbeModelStandsInOnRequest) {
+  const petzval::CompileOptions options{.glasses = &glasses(), .missing_glass = MissingGlass::abbe};
+  for (const auto& medium : {unknown, nameless}) {
+    const auto lens = compile(doublet(medium), visible, options);
+    EXPECT_EQ(lens.index(2, 1), 1.673);
+    EXPECT_NEAR((1.673 - 1) / (lens.index(2, 0) - lens.index(2, 2)), 32.2, 1e-9);
+    EXPECT_DOUBLE_EQ(lens.index(2, 0), petzval::abbe_index(1.673, 32.2, f));
+    EXPECT_DOUBLE_EQ(lens.index(1, 0) - 1.517,
+                     catalogue_index("N-BK7", "schott", f) - catalogue_index("N-BK7", "schott", d));
+    EXPECT_EQ(lens.dispersion(), Dispersion::abbe);
+    EXPECT_EQ(lens.missing_glasses().size(), 1u);
+  }
+}
+
+TEST(Compile, WithoutAnAbbeNumberOnlyTheReferenceWavelengthCanBeUsed) {
+  const petzval::CompileOptions options{.glasses = &glasses(), .missing_glass = MissingGlass::abbe};
+  EXPECT_EQ(message([&] { compile(doublet(bare), visible, options); }),
+            "pair: surface 1: a medium of index 1.673 without a glass name is in no glass table and has no V_d, wanted "
+            "one of "
+            "them for its index at 486.1327 nm (only 587.5618 nm can be used)");
+  const auto lens = compile(doublet(bare), std::array{d}, options);
+  EXPECT_EQ(lens.index(2, 0), 1.673);
+  EXPECT_EQ(lens.dispersion(), Dispersion::none);
+}
+
+TEST(Compile, TheReferenceLineMayBeWrittenWithOneDecimal) {
+  const petzval::CompileOptions options{.glasses = &glasses(), .missing_glass = MissingGlass::abbe};
+  EXPECT_EQ(compile(doublet(bare), std::array{587.6}, options).index(2, 0), 1.673);
+  EXPECT_NE(message([&] { compile(doublet(bare), std::array{587.7}, options); }), "no error");
+}
+
+TEST(Compile, TheStandInAtTheReferenceWavelengthIsThePrintedIndex) {
+  for (const auto& medium : {unknown, nameless, bare}) {
+    const auto lens =
+        compile(doublet(medium), std::array{d},
+                {.glasses = &glasses(), .index_policy = IndexPolicy::catalogue, .missing_glass = MissingGlass::abbe});
+    EXPECT_EQ(lens.index(2, 0), 1.673);
+    EXPECT_EQ(lens.index(1, 0), catalogue_index("N-BK7", "schott", d));
+  }
+}
+
+TEST(Compile, AGlassWithoutACatalogueIsTheOneWithTheNearestIndex) {
+  petzval::Medium medium{.glass = "F2", .nd = 1.62};
+  const petzval::CompileOptions options{.glasses = &glasses(), .index_policy = IndexPolicy::catalogue};
+  EXPECT_NEAR(compile(doublet(medium), std::array{d}, options).index(2, 0), 1.62004, 1e-5);
+  medium.nd = 1.613;
+  EXPECT_NEAR(compile(doublet(medium), std::array{d}, options).index(2, 0), 1.61293, 1e-5);
+  medium.nd = 1.7;  // some other glass that happens to be called so
+  EXPECT_NE(message([&] { compile(doublet(medium), std::array{d}, options); }).find("\"F2\" is in no glass table"),
+            std::string::npos);
+}
+
+TEST(Compile, WavelengthsNoGlassKnowsAreRefusedWithSurfaceAndRange) {
+  const petzval::CompileOptions options{.glasses = &glasses()};
+  EXPECT_EQ(message([&] { compile(doublet(flint), std::array{d, 2400.0}, options); }), "no error");
+  EXPECT_EQ(message([&] {
+              compile(doublet(flint), std::array{d, 310.0}, options);
+            }),
+            "pair: surface 1: schott N-SF5: wavelength is 310 nm, wanted 370 to 2500 nm");
+  EXPECT_EQ(message([&] {
+              compile(doublet(nameless), std::array{350.0},
+                      {.glasses = &glasses(), .missing_glass = MissingGlass::abbe});
+            }),
+            "pair: surface 1: n_d 1.673, V_d 32.2: wavelength is 350 nm, wanted 365 to 1014 nm");
+}
+
+TEST(Compile, WavelengthsThatAreNoneAreRefusedForMirrorsToo) {
+  Prescription mirror;
+  mirror.surfaces = {{.radius = -400, .thickness = -200, .mirror = true}};
+  for (const double nm : {std::nan(""), std::numeric_limits<double>::infinity(), 0.0, -d, 0.5876, 587561.8}) {
+    EXPECT_EQ(message([&] { compile(mirror, std::array{nm}); }),
+              "lens: wavelength is " + petzval::number(nm) + " nm, wanted 10 to 100000 nm");
+  }
+  EXPECT_EQ(message([&] { compile(mirror, std::span<const double>{}); }),
+            "lens: no wavelength to compile for, wanted one at least");
+  EXPECT_EQ(compile(mirror, std::array{400.0, 10000.0}).index(1, 1), 1);
+}
+
+TEST(Compile, IndicesNoGlassHasAreRefused) {
+  petzval::Glass heavy;
+  heavy.catalogue = "atlantis", heavy.name = "MYSTERIUM";
+  heavy.shortest_nm = 300, heavy.longest_nm = 900;
+  heavy.coefficients = {6};
+  const GlassCatalogue odd({heavy});
+  EXPECT_EQ(message([&] {
+              compile(doublet(unknown), std::array{d},
+                      {.glasses = &odd, .index_policy = IndexPolicy::catalogue, .missing_glass = MissingGlass::abbe});
+            }),
+            "pair: surface 1: index at 587.5618 nm is 6, wanted 0 < n <= 5");
+}
+
+TEST(Compile, DispersionHasAName) {
+  EXPECT_EQ(petzval::name(Dispersion::catalogue), "catalogue");
+  EXPECT_EQ(petzval::name(Dispersion::abbe), "abbe");
+  EXPECT_EQ(petzval::name(Dispersion::none), "none");
+}
+
+// Most of the 75 lenses have a medium no table knows, so that the stand-in is the normal way.
+TEST(Compile, EveryLensOfTheDataCompilesAsFarAsItsGlassesAreKnown) {
+  int by_catalogue = 0, by_abbe = 0, at_d_only = 0;
+  for (const Prescription& p : petzval::testing::data_prescriptions()) {
+    SCOPED_TRACE(p.id);
+    const auto lens = compile(p, std::array{p.reference_wavelength_nm}, {.glasses = &glasses()});
+    const std::string strict = message([&] { compile(p, visible, {.glasses = &glasses()}); });
+    const std::string relaxed =
+        message([&] { compile(p, visible, {.glasses = &glasses(), .missing_glass = MissingGlass::abbe}); });
+    switch (lens.dispersion()) {
+      case Dispersion::catalogue:
+        ++by_catalogue;
+        EXPECT_EQ(strict, "no error");
+        break;
+      case Dispersion::abbe:
+        ++by_abbe;
+        EXPECT_NE(strict.find("in no glass table"), std::string::npos) << strict;
+        EXPECT_EQ(relaxed, "no error");
+        break;
+      case Dispersion::none:
+        ++at_d_only;
+        EXPECT_EQ(relaxed == "no error", lens.missing_glasses().empty()) << relaxed;
+        break;
+    }
+  }
+  EXPECT_EQ(by_catalogue, 25);
+  EXPECT_EQ(by_abbe, 39);
+  EXPECT_EQ(at_d_only, 11);
+}
+
+}  // namespace

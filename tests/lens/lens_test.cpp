@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "petzval/lens/lens.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "petzval/core/error.hpp"
+#include "petzval/trace/trace.hpp"
+
+namespace {
+
+petzval::Prescription singlet() {
+  petzval::Prescription p;
+  p.name = "singlet";
+  p.surfaces = {{.radius = 50, .thickness = 5, .medium = {.nd = 1.5168}, .semi_diameter = 12, .stop = true},
+                {.radius = -50, .thickness = 48, .semi_diameter = 12}};
+  return p;
+}
+
+std::string message(const auto& work) {
+  try {
+    work();
+  } catch (const petzval::Error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(Lens, SaysWhatThePrescriptionSays) {
+  const petzval::Lens lens = petzval::compile(singlet());
+  EXPECT_EQ(lens.name(), "singlet");
+  EXPECT_EQ(lens.surface_count(), 2u);
+  EXPECT_EQ(lens.stop(), 0u);
+  EXPECT_EQ(lens.film_z(), 53);
+  EXPECT_EQ(lens.surfaces()[1].vertex_z, 5);
+  EXPECT_EQ(lens.surfaces()[1].curvature, -0.02);
+  EXPECT_EQ(lens.index(0, 0), 1);
+  EXPECT_EQ(lens.index(1, 0), 1.5168);
+  EXPECT_EQ(lens.index(2, 0), 1);
+  EXPECT_TRUE(lens.rotationally_symmetric());
+}
+
+TEST(Lens, FindsItsWavelengthsAndNamesThemWhereItDoesNot) {
+  petzval::Prescription p = singlet();
+  p.surfaces[0].medium.vd = 64.2;
+  const petzval::Lens lens =
+      petzval::compile(p, std::array{486.1327, petzval::d_line_nm}, {.missing_glass = petzval::MissingGlass::abbe});
+  EXPECT_EQ(lens.wavelength(petzval::d_line_nm), 1u);
+  EXPECT_EQ(lens.wavelength(486.1327 + 5e-7), 0u);
+  EXPECT_GT(lens.index(1, 0), lens.index(1, 1));
+  EXPECT_EQ(message([&] { return lens.wavelength(500); }),
+            "singlet: wavelength is 500 nm, wanted one the lens was compiled for: 486.1327, 587.5618");
+}
+
+TEST(Lens, AChangeMakesANewLens) {
+  const petzval::Lens lens = petzval::compile(singlet());
+  const petzval::Lens stopped = petzval::with_semi_diameter(lens, 0, 3), moved = petzval::with_film(lens, 60);
+  const petzval::Ray<float> ray{{0, 5, -10}, {0, 0, 1}};
+  EXPECT_TRUE(petzval::trace(lens, ray).transmitted());
+  EXPECT_EQ(petzval::trace(stopped, ray).fate, petzval::RayFate::vignetted);
+  EXPECT_EQ(lens.surfaces()[0].semi_diameter, 12);
+  EXPECT_EQ(lens.film_z(), 53);
+  EXPECT_EQ(moved.film_z(), 60);
+}
+
+TEST(Lens, RefusesAChangeThatMakesNoLens) {
+  const petzval::Lens lens = petzval::compile(singlet());
+  EXPECT_EQ(message([&] { petzval::with_semi_diameter(lens, 2, 3); }),
+            "singlet: surface 2 does not exist, wanted one of 2");
+  EXPECT_EQ(message([&] { petzval::with_semi_diameter(lens, 1, -3); }),
+            "singlet: surface 1: semi_diameter is -3 mm, wanted 0 or more");
+  EXPECT_EQ(message([&] { petzval::with_semi_diameter(lens, 1, std::nan("")); }),
+            "singlet: surface 1: semi_diameter is nan mm, wanted 0 or more");
+  EXPECT_EQ(message([&] { petzval::with_film(lens, std::numeric_limits<double>::infinity()); }),
+            "singlet: film_z is inf mm, wanted a finite place");
+}
+
+TEST(Lens, TheStopOfAnAsphericSurfaceMayBeClosed) {
+  petzval::Prescription p = singlet();
+  p.surfaces[0].aspheric = {{4, -1e-6}};
+  const petzval::Lens lens = petzval::compile(p);
+  for (const double radius : {6.0, 1e-3, 0.0}) {
+    const petzval::Lens closed = petzval::with_semi_diameter(lens, 0, radius);
+    EXPECT_TRUE(petzval::trace(closed, petzval::Ray<double>{{0, 0, -10}, {0, 0, 1}}).transmitted()) << radius;
+    EXPECT_EQ(petzval::trace(closed, petzval::Ray<double>{{0, 6.1, -10}, {0, 0, 1}}).fate, petzval::RayFate::vignetted)
+        << radius;
+  }
+}
+
+}  // namespace

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "petzval/lint/lint.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "../data_lenses.hpp"
+#include "petzval/core/error.hpp"
+#include "petzval/paraxial/first_order.hpp"
+
+namespace petzval {
+namespace {
+
+using Kind = Finding::Kind;
+using testing::data_prescription;
+
+/// f = 100 mm, f/5, its film at the paraxial focus: nothing to find.
+Prescription singlet() {
+  Prescription p;
+  p.name = "singlet";
+  p.focal_length_mm = 100;
+  p.f_number = 5;
+  p.surfaces = {{.radius = 0, .thickness = 4, .medium = {.nd = 1.5}, .semi_diameter = 10, .stop = true},
+                {.radius = -50, .thickness = 100, .semi_diameter = 12}};
+  return p;
+}
+
+void expect_one(const Prescription& p, Kind kind, std::optional<int> surface, const std::string& message) {
+  const std::vector<Finding> findings = lint(p);
+  ASSERT_EQ(findings.size(), 1u);
+  EXPECT_EQ(findings[0].kind, kind);
+  EXPECT_EQ(findings[0].surface, surface);
+  EXPECT_EQ(findings[0].message, message);
+}
+
+TEST(Lint, FindsNothingInASoundLens) { EXPECT_TRUE(lint(singlet()).empty()); }
+
+TEST(Lint, FindsAnotherFocalLengthThanDeclared) {
+  Prescription p = singlet();
+  p.focal_length_mm = 101.9;
+  EXPECT_TRUE(lint(p).empty());
+  p.focal_length_mm = 103;
+  expect_one(p, Kind::focal_length, {}, "focal length is 100 mm, declared 103 mm");
+  EXPECT_NEAR(lint(p)[0].found, 100, 1e-12);
+  EXPECT_EQ(lint(p)[0].wanted, 103);
+  p.focal_length_mm.reset();
+  EXPECT_TRUE(lint(p).empty());
+}
+
+TEST(Lint, FindsAnotherFNumberThanDeclared) {
+  Prescription p = singlet();
+  p.f_number = 4;
+  expect_one(p, Kind::f_number, {}, "f-number is 5, declared 4");
+  p.surfaces[0].semi_diameter.reset();  // an unlimited stop says nothing of the speed
+  EXPECT_TRUE(lint(p).empty());
+}
+
+TEST(Lint, FindsSurfacesThatCross) {
+  // The rear surface bends forward by 50 - sqrt(50^2 - h^2), the glass is 4 mm thick: room up to a height of 19.6 mm.
+  Prescription p = singlet();
+  p.f_number.reset();
+  p.surfaces[0].semi_diameter = 25;
+  p.surfaces[1].semi_diameter = 19;
+  EXPECT_TRUE(lint(p).empty());
+  p.surfaces[1].semi_diameter = 21;
+  expect_one(p, Kind::overlap, 0, "surface 0: the next surface comes 0.623795 mm before it at a height of 21 mm");
+}
+
+TEST(Lint, LooksForCrossingsBetweenRimAndHoleOnly) {
+  Prescription p = singlet();
+  p.f_number.reset();
+  p.surfaces[0].thickness = -1;  // in the middle the rear surface lies in front, from a height of 10 mm on behind
+  p.surfaces[1].radius = 50.5;
+  p.focal_length_mm.reset();
+  p.surfaces[1].thickness = first_order(compile(p)).back_focal_distance;
+  p.surfaces[0].semi_diameter = p.surfaces[1].semi_diameter = 15;
+  EXPECT_EQ(lint(p).at(0).kind, Kind::overlap);
+  p.surfaces[1].inner_semi_diameter = 11;
+  EXPECT_TRUE(lint(p).empty());
+  p.surfaces[1].inner_semi_diameter = 9;
+  EXPECT_EQ(lint(p).at(0).kind, Kind::overlap);
+}
+
+TEST(Lint, FollowsTheLightBehindMirrors) {
+  Prescription p = data_prescription("catadioptric_mangin_1000mm_f7.5");
+  EXPECT_TRUE(lint(p).empty());
+  p.surfaces[3].thickness = 2;  // as if light went on through the mirror
+  bool crosses = false;
+  for (const Finding& finding : lint(p)) crosses = crosses || (finding.kind == Kind::overlap && finding.surface == 3);
+  EXPECT_TRUE(crosses);
+}
+
+TEST(Lint, SeesCylindersInBothSections) {
+  Prescription p = singlet();
+  p.focal_length_mm.reset();
+  p.f_number.reset();
+  p.surfaces[1].thickness = 0;
+  p.surfaces.push_back({.radius = 0, .semi_diameter = 12});
+  for (const Section section : {Section::x, Section::y}) {
+    p.surfaces[1].curved_in = section;
+    p.surfaces[1].radius = 50;
+    bool crosses = false;
+    for (const Finding& finding : lint(p)) crosses = crosses || finding.kind == Kind::overlap;
+    EXPECT_TRUE(crosses);
+  }
+}
+
+TEST(Lint, FindsASemiDiameterBeyondTheSurface) {
+  Prescription p = singlet();
+  p.surfaces[1].semi_diameter = 51;
+  expect_one(p, Kind::semi_diameter, 1, "surface 1: semi_diameter is 51 mm, beyond the surface, which ends at 50 mm");
+  p.surfaces[1].conic = -1;  // a paraboloid has no end
+  EXPECT_TRUE(lint(p).empty());
+  p.surfaces[1].conic = 3;
+  EXPECT_NEAR(lint(p).at(0).wanted, 25, 1e-12);
+  p.surfaces[1].conic = -0.75;
+  EXPECT_TRUE(lint(p).empty());
+}
+
+TEST(Lint, FindsNoStopAndSeveral) {
+  Prescription p = singlet();
+  p.surfaces[0].stop = false;
+  expect_one(p, Kind::no_stop, {}, "no surface is marked as stop; the one that clips the axial beam first is used");
+  p.surfaces[0].stop = p.surfaces[1].stop = true;
+  expect_one(p, Kind::several_stops, 1, "surface 1: is one of 2 marked as stop; the first of them is used");
+}
+
+TEST(Lint, FindsAFilmAwayFromTheFocus) {
+  Prescription p = singlet();
+  p.surfaces[1].thickness = 97;
+  expect_one(p, Kind::image_distance, 1, "surface 1: the film is 97 mm behind it, the paraxial focus 100 mm");
+  p.surfaces[1].thickness = 101;
+  EXPECT_TRUE(lint(p).empty());
+}
+
+TEST(Lint, TakesALensWithoutFocalLengthOrRims) {
+  Prescription p;
+  p.surfaces = {{.medium = {.nd = 1.5}, .stop = true}};
+  EXPECT_TRUE(lint(p).empty());
+  p.focal_length_mm = 50;
+  expect_one(p, Kind::focal_length, {}, "focal length is inf mm, declared 50 mm");
+}
+
+TEST(Lint, RefusesAnInvalidPrescriptionOnly) {
+  Prescription p = singlet();
+  p.surfaces[0].thickness = std::nan("");
+  EXPECT_THROW(lint(p), Error);
+}
+
+// What the tables in data are known for. Most of these have estimated diameters.
+TEST(Lint, FindsInDataTheKnownOverlapsAndNothingElse) {
+  const std::map<std::string, std::vector<int>> known{
+      {"biotar_100mm_f1.4", {4}},         {"double_gauss_100mm_f1.7_substitute", {3}},
+      {"modern_50mm_f1.0", {6}},          {"retrofocus_100mm_f2", {3}},
+      {"telephoto_200mm_f1.8", {3}},      {"telephoto_392mm_f2.9", {12, 23}},
+      {"tessar_100mm_f5.5_1902", {0, 6}}, {"zoom_70-210mm_f4_middle", {6}},
+      {"zoom_70-210mm_f4_tele", {6}},     {"zoom_70-210mm_f4_wide", {6}},
+  };
+  std::size_t count = 0;
+  for (const Prescription& p : testing::data_prescriptions()) {
+    std::vector<int> overlaps;
+    for (const Finding& finding : lint(p)) {
+      EXPECT_EQ(finding.kind, Kind::overlap) << p.id << ": " << finding.message;
+      overlaps.push_back(finding.surface.value_or(-1));
+    }
+    const auto wanted = known.find(p.id);
+    EXPECT_EQ(overlaps, wanted == known.end() ? std::vector<int>{} : wanted->second) << p.id;
+    ++count;
+  }
+  EXPECT_EQ(count, 75u);
+}
+
+}  // namespace
+}  // namespace petzval

@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "petzval/media/dispersion.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "../message.hpp"
+#include "petzval/core/text.hpp"
+#include "petzval/core/units.hpp"
+#include "petzval/media/catalogue.hpp"
+
+namespace {
+
+using petzval::DispersionFormula;
+using petzval::Glass;
+using petzval::refractive_index;
+using petzval::spectral_line_nm;
+using petzval::testing::message;
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+const petzval::GlassCatalogue& glasses() {
+  static const auto catalogue = petzval::GlassCatalogue::load(std::filesystem::path(PETZVAL_TEST_DATA) / "glass");
+  return catalogue;
+}
+
+Glass made_up(DispersionFormula formula, std::vector<double> coefficients) {
+  Glass glass;
+  glass.catalogue = "test";
+  glass.name = "X";
+  glass.formula = formula;
+  glass.shortest_nm = 200;
+  glass.longest_nm = 2000;
+  glass.coefficients = std::move(coefficients);
+  return glass;
+}
+
+TEST(Dispersion, EveryGlassGivesItsPrintedIndexAndAbbeNumber) {
+  ASSERT_GE(glasses().glasses().size(), 2600u);
+  for (const Glass& glass : glasses().glasses()) {
+    const double nd = refractive_index(glass, spectral_line_nm("d"));
+    const double vd =
+        (nd - 1) / (refractive_index(glass, spectral_line_nm("F")) - refractive_index(glass, spectral_line_nm("C")));
+    EXPECT_NEAR(nd, glass.nd, 3e-5) << glass.catalogue << ' ' << glass.name;
+    EXPECT_NEAR(vd, glass.vd, 0.05) << glass.catalogue << ' ' << glass.name;
+  }
+}
+
+TEST(Dispersion, EveryGlassBendsBlueMoreThanRed) {
+  for (const Glass& glass : glasses().glasses()) {
+    double before = infinity;
+    for (double nm = std::max(400.0, glass.shortest_nm); nm <= std::min(700.0, glass.longest_nm); nm += 5) {
+      const double n = refractive_index(glass, nm);
+      ASSERT_LT(n, before) << glass.catalogue << ' ' << glass.name << " at " << nm << " nm";
+      before = n;
+    }
+  }
+}
+
+// The maker's data sheet of N-BK7 prints these five decimals, from the near ultraviolet to the infrared.
+TEST(Dispersion, BoroCrownHasTheIndicesOfItsDataSheet) {
+  const Glass* glass = glasses().find("N-BK7", "schott");
+  ASSERT_NE(glass, nullptr);
+  const std::vector<std::pair<double, double>> sheet = {{2325.4, 1.48921},
+                                                        {1970.1, 1.49495},
+                                                        {1529.6, 1.50091},
+                                                        {1060.0, 1.50669},
+                                                        {spectral_line_nm("t"), 1.50731},
+                                                        {spectral_line_nm("s"), 1.50980},
+                                                        {spectral_line_nm("r"), 1.51289},
+                                                        {spectral_line_nm("C"), 1.51432},
+                                                        {spectral_line_nm("C'"), 1.51472},
+                                                        {632.8, 1.51509},
+                                                        {spectral_line_nm("D"), 1.51673},
+                                                        {spectral_line_nm("d"), 1.51680},
+                                                        {spectral_line_nm("e"), 1.51872},
+                                                        {spectral_line_nm("F"), 1.52238},
+                                                        {spectral_line_nm("F'"), 1.52283},
+                                                        {spectral_line_nm("g"), 1.52668},
+                                                        {spectral_line_nm("h"), 1.53024},
+                                                        {spectral_line_nm("i"), 1.53627}};
+  for (const auto& [nm, n] : sheet) EXPECT_NEAR(refractive_index(*glass, nm), n, 5.5e-6) << nm;
+}
+
+// One glass in each formula, worked out by hand at a wavelength that keeps the numbers round.
+TEST(Dispersion, EachFormulaIsTheOneOfItsName) {
+  using enum DispersionFormula;
+  EXPECT_DOUBLE_EQ(refractive_index(made_up(sellmeier, {0.5, 1, 0.5}), 1000), std::sqrt(1 + 0.5 + 1 / (1 - 0.5)));
+  EXPECT_DOUBLE_EQ(refractive_index(made_up(sellmeier_squared, {0.5, 1, 0.5}), 1000),
+                   std::sqrt(1 + 0.5 + 1 / (1 - 0.25)));
+  EXPECT_DOUBLE_EQ(refractive_index(made_up(polynomial, {2, 0.25, 2, 0.5, -2}), 500), std::sqrt(2 + 0.0625 + 2.0));
+  EXPECT_DOUBLE_EQ(refractive_index(made_up(cauchy, {1.5, 0.25, -2}), 500), 2.5);
+  EXPECT_DOUBLE_EQ(refractive_index(made_up(buchdahl, {1.5, -0.0625, 0.125}), 974), 1.5 - 0.0625 * 0.2 + 0.125 * 0.04);
+}
+
+TEST(Dispersion, SpectralLinesAreThoseOfTheTable) {
+  std::ifstream table(std::filesystem::path(PETZVAL_TEST_DATA) / "glass" / "spectral_lines.csv");
+  std::string line;
+  std::getline(table, line);
+  int count = 0;
+  for (; std::getline(table, line); ++count) {
+    const auto first = line.find(','), second = line.find(',', first + 1);
+    EXPECT_EQ(spectral_line_nm(line.substr(0, first)), std::stod(line.substr(first + 1, second - first - 1))) << line;
+  }
+  EXPECT_EQ(count, 14);
+  EXPECT_EQ(spectral_line_nm("d"), petzval::d_line_nm);
+  EXPECT_EQ(message([] { spectral_line_nm("z"); }),
+            "spectral line \"z\" is unknown, wanted one of i h g F' F e d D C' C r A' s t");
+}
+
+TEST(Dispersion, WavelengthsOutsideTheRangeAreRefusedWithTheRange) {
+  const Glass& glass = *glasses().find("N-BK7", "schott");
+  for (const double nm : {nan, infinity, -infinity, 0.0, -587.5618, 0.5875618, 299.9, 2500.1, 150000.0}) {
+    EXPECT_EQ(message([&] { refractive_index(glass, nm); }),
+              "schott N-BK7: wavelength is " + petzval::number(nm) + " nm, wanted 300 to 2500 nm");
+  }
+}
+
+TEST(Dispersion, TheEndsOfTheRangeBelongToIt) {
+  for (const Glass& glass : glasses().glasses()) {
+    EXPECT_GT(refractive_index(glass, glass.shortest_nm), 1) << glass.name;
+    EXPECT_GT(refractive_index(glass, glass.longest_nm), 1) << glass.name;
+  }
+  // The t line, 1013.98 nm, is the printed end of ranges that micrometres round to 1013.9799999999999.
+  EXPECT_GT(refractive_index(*glasses().find("BAC4", "hoya"), spectral_line_nm("t")), 1.5);
+}
+
+TEST(Dispersion, NoIndexComesFromBeyondAPole) {
+  using enum DispersionFormula;
+  const std::string at = "test X: square of the index at 500 nm is ";
+  EXPECT_EQ(message([] {
+              refractive_index(made_up(sellmeier, {0, 1, 0.25}), 500);
+            }),
+            at + "inf, wanted one above 1e-6");
+  EXPECT_EQ(message([] { refractive_index(made_up(sellmeier, {0, 1, 0.5}), 500); }), at + "0, wanted one above 1e-6");
+  EXPECT_EQ(message([] { refractive_index(made_up(polynomial, {1e-6}), 500); }), at + "1e-06, wanted one above 1e-6");
+  EXPECT_EQ(message([] { refractive_index(made_up(cauchy, {-1.5}), 500); }), at + "-2.25, wanted one above 1e-6");
+  EXPECT_EQ(message([] { refractive_index(made_up(cauchy, {nan}), 500); }), at + "nan, wanted one above 1e-6");
+}
+
+TEST(Dispersion, AFormulaWithAPieceMissingIsRefused) {
+  using enum DispersionFormula;
+  EXPECT_EQ(message([] {
+              refractive_index(made_up(sellmeier, {0, 1}), 500);
+            }),
+            "test X: formula has 2 coefficients, wanted c0 and pairs (buchdahl: 3)");
+  EXPECT_EQ(message([] { refractive_index(made_up(cauchy, {}), 500); }),
+            "test X: formula has 0 coefficients, wanted c0 and pairs (buchdahl: 3)");
+  EXPECT_EQ(message([] { refractive_index(made_up(buchdahl, {1.5}), 500); }),
+            "test X: formula has 1 coefficients, wanted c0 and pairs (buchdahl: 3)");
+}
+
+TEST(Dispersion, TheAbbeModelKeepsIndexAndAbbeNumber) {
+  for (const auto& [nd, vd] :
+       {std::pair{1.5168, 64.17}, std::pair{1.80518, 25.4}, std::pair{0.9, 30.0}, std::pair{4.0, 100.0}}) {
+    const double n_f = petzval::abbe_index(nd, vd, spectral_line_nm("F")),
+                 n_c = petzval::abbe_index(nd, vd, spectral_line_nm("C"));
+    EXPECT_EQ(petzval::abbe_index(nd, vd, petzval::d_line_nm), nd);
+    EXPECT_NEAR((nd - 1) / (n_f - n_c), vd, 1e-11 * vd);
+  }
+}
+
+TEST(Dispersion, TheAbbeModelIsAsGoodAsItSays) {
+  std::vector<double> errors;
+  for (const Glass& glass : glasses().glasses()) {
+    double worst = 0;
+    for (double nm = std::max(420.0, glass.shortest_nm); nm <= std::min(680.0, glass.longest_nm); nm += 10) {
+      worst = std::max(worst, std::abs(petzval::abbe_index(glass.nd, glass.vd, nm) - refractive_index(glass, nm)));
+    }
+    errors.push_back(worst);
+  }
+  std::sort(errors.begin(), errors.end());
+  EXPECT_LT(errors[errors.size() / 2], 5e-4);
+  EXPECT_LT(errors[errors.size() * 95 / 100], 5e-3);
+  EXPECT_LT(errors.back(), 0.0165);
+}
+
+TEST(Dispersion, TheAbbeModelRefusesWhatItCannotStandFor) {
+  EXPECT_EQ(message([] { petzval::abbe_index(1.5, 0, 500); }),
+            "n_d 1.5, V_d 0: V_d is 0, wanted a finite number above 0");
+  EXPECT_EQ(message([] { petzval::abbe_index(1.5, nan, 500); }),
+            "n_d 1.5, V_d nan: V_d is nan, wanted a finite number above 0");
+  EXPECT_EQ(message([] { petzval::abbe_index(-1, 60, 500); }),
+            "n_d -1, V_d 60: n_d is -1, wanted a finite number above 0");
+  EXPECT_EQ(message([] { petzval::abbe_index(1.5, 60, 0.5); }),
+            "n_d 1.5, V_d 60: wavelength is 0.5 nm, wanted 365 to 1014 nm");
+}
+
+}  // namespace

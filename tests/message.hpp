@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "petzval/core/error.hpp"
+
+namespace petzval::testing {
+
+/// What the Error says that `work` throws; any other exception gets through and fails the test.
+std::string message(const auto& work) {
+  try {
+    work();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+}  // namespace petzval::testing

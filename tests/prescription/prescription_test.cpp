@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "petzval/prescription/prescription.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "../data_lenses.hpp"
+#include "../message.hpp"
+#include "petzval/core/text.hpp"
+
+namespace {
+
+using petzval::Prescription;
+using petzval::testing::message;
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+Prescription singlet() {
+  Prescription p;
+  p.name = "singlet";
+  p.surfaces = {{.radius = 50, .thickness = 5, .medium = {.nd = 1.5168}, .semi_diameter = 12, .stop = true},
+                {.radius = -50, .thickness = 48, .semi_diameter = 12}};
+  return p;
+}
+
+/// What validate says of the singlet after a change.
+std::string refusal(const std::function<void(Prescription&)>& change) {
+  Prescription p = singlet();
+  change(p);
+  return message([&] { petzval::validate(p, "s"); });
+}
+
+TEST(Validate, AcceptsEveryLensOfTheData) {
+  for (const Prescription& p : petzval::testing::data_prescriptions()) EXPECT_NO_THROW(petzval::validate(p, p.id));
+}
+
+TEST(Validate, NumbersThatNoSurfaceHasAreRefusedByNameAndSurface) {
+  const std::string finite_radius = ", wanted a finite length of at least 1e-12 mm, or 0 for a plane";
+  const std::string finite_thickness = ", wanted a finite length below 1e10 mm";
+  for (const double value : {nan, infinity, -infinity}) {
+    const std::string is = " is " + petzval::number(value);
+    EXPECT_EQ(refusal([&](auto& p) { p.surfaces[1].radius = value; }), "s: surface 1: radius" + is + finite_radius);
+    EXPECT_EQ(refusal([&](auto& p) { p.surfaces[0].thickness = value; }),
+              "s: surface 0: thickness" + is + finite_thickness);
+    EXPECT_EQ(refusal([&](auto& p) { p.surfaces[1].conic = value; }),
+              "s: surface 1: conic" + is + ", wanted a finite number");
+    EXPECT_EQ(refusal([&](auto& p) { p.surfaces[0].medium.nd = value; }),
+              "s: surface 0: nd" + is + ", wanted an index above 0 and up to 5");
+    EXPECT_EQ(refusal([&](auto& p) { p.surfaces[0].medium.vd = value; }),
+              "s: surface 0: vd" + is + ", wanted a finite number above 0");
+    EXPECT_EQ(refusal([&](auto& p) { p.surfaces[0].inner_semi_diameter = value; }),
+              "s: surface 0: inner_semi_diameter" + is + ", wanted a finite length of 0 mm or more");
+    EXPECT_EQ(refusal([&](auto& p) {
+                p.surfaces[0].aspheric = {{6, 0.0}, {4, value}};
+              }),
+              "s: surface 0: aspheric coefficient of order 4" + is + ", wanted a finite number");
+    EXPECT_EQ(refusal([&](auto& p) { p.f_number = value; }),
+              "s: f_number" + is + ", wanted a finite number above 0 or none");
+    EXPECT_EQ(refusal([&](auto& p) { p.focal_length_mm = value; }),
+              "s: focal_length_mm" + is + ", wanted a finite number or none");
+    EXPECT_EQ(refusal([&](auto& p) { p.reference_wavelength_nm = value; }),
+              "s: reference_wavelength_nm" + is + ", wanted 10 to 100000 nm");
+    EXPECT_EQ(refusal([&](auto& p) { p.object_space.nd = value; }),
+              "s: object_space: nd" + is + ", wanted an index above 0 and up to 5");
+  }
+  EXPECT_EQ(refusal([](auto& p) { p.surfaces[0].radius = 5e-324; }), "s: surface 0: radius is 5e-324" + finite_radius);
+  EXPECT_EQ(refusal([](auto& p) { p.surfaces[0].thickness = 1e10; }),
+            "s: surface 0: thickness is 1e+10" + finite_thickness);
+  EXPECT_EQ(refusal([](auto& p) { p.surfaces[0].medium.nd = 0; }),
+            "s: surface 0: nd is 0, wanted an index above 0 and up to 5");
+  EXPECT_EQ(refusal([](auto& p) { p.surfaces[0].medium.nd = -1.5; }),
+            "s: surface 0: nd is -1.5, wanted an index above 0 and up to 5");
+  EXPECT_EQ(refusal([](auto& p) { p.surfaces[0].medium.nd = 5.1; }),
+            "s: surface 0: nd is 5.1, wanted an index above 0 and up to 5");
+  EXPECT_EQ(refusal([](auto& p) { p.surfaces[0].semi_diameter = -1; }),
+            "s: surface 0: semi_diameter is -1, wanted 0 mm or more");
+  EXPECT_EQ(refusal([](auto& p) { p.surfaces[0].semi_diameter = nan; }),
+            "s: surface 0: semi_diameter is nan, wanted 0 mm or more");
+  EXPECT_EQ(refusal([](auto& p) { p.reference_wavelength_nm = 0.5876; }),
+            "s: reference_wavelength_nm is 0.5876, wanted 10 to 100000 nm");
+}
+
+TEST(Validate, FieldsThatContradictEachOtherAreRefused) {
+  EXPECT_EQ(refusal([](auto& p) { p.surfaces.clear(); }), "s: no surfaces, wanted one at least");
+  EXPECT_EQ(refusal([](auto& p) { p.surfaces.resize(10'001); }), "s: 10001 surfaces, wanted at most 10000");
+  EXPECT_EQ(refusal([](auto& p) { p.surfaces[0].inner_semi_diameter = 12; }),
+            "s: surface 0: inner_semi_diameter is 12, wanted less than the semi_diameter of 12 mm");
+  EXPECT_EQ(refusal([](auto& p) { p.surfaces[1].mirror = true; }),
+            "s: surface 1: the medium of the mirror (nd 1) is not the one before it (nd 1.5168), wanted the medium the "
+            "light stays in");
+  EXPECT_EQ(refusal([](auto& p) {
+              p.surfaces[0].aspheric = {{1, 0.5}};
+            }),
+            "s: surface 0: aspheric order is 1, wanted 2 to 40");
+  EXPECT_EQ(refusal([](auto& p) {
+              p.surfaces[0].aspheric = {{41, 0.5}};
+            }),
+            "s: surface 0: aspheric order is 41, wanted 2 to 40");
+  EXPECT_EQ(refusal([](auto& p) {
+              p.surfaces[0].aspheric = {{4, 0.5}, {4, 0.5}};
+            }),
+            "s: surface 0: aspheric coefficient of order 4 is given twice, wanted once");
+  EXPECT_EQ(refusal([](auto& p) {
+              p.zoom = {.position = "wide", .variable_gaps = {{2, 5.0}}};
+            }),
+            "s: zoom: variable gap's surface is 2, wanted one of 2");
+  EXPECT_EQ(refusal([](auto& p) {
+              p.zoom = {.position = "wide", .variable_gaps = {{1, nan}}};
+            }),
+            "s: zoom: variable gap 1 is nan, wanted a finite length in mm");
+}
+
+TEST(Validate, StrangeButLegalLensesPass) {
+  const std::vector<std::function<void(Prescription&)>> changes = {
+      [](auto& p) { p.surfaces[0].thickness = 0; },
+      [](auto& p) { p.surfaces[0].thickness = -3; },
+      [](auto& p) { p.surfaces[0].radius = 0; },
+      [](auto& p) { p.surfaces[0].radius = -0.0; },
+      [](auto& p) { p.surfaces[0].radius = 1e300; },
+      [](auto& p) { p.surfaces[0].semi_diameter = 0; },
+      [](auto& p) { p.surfaces[0].semi_diameter = infinity; },
+      [](auto& p) { p.surfaces[0].semi_diameter.reset(); },
+      [](auto& p) { p.surfaces[0].medium.nd = 0.8; },
+      [](auto& p) { p.surfaces[0].stop = false; },
+      [](auto& p) { p.surfaces[1].stop = true; },
+      [](auto& p) { p.surfaces.pop_back(); },
+      [](auto& p) { p.surfaces[0].curved_in = petzval::Section::x; },
+      [](auto& p) { p.object_space.nd = 1.333; },
+      [](auto& p) {
+        p.surfaces = {{.radius = -100, .thickness = -50, .mirror = true, .curved_in = petzval::Section::y}};
+      },
+      [](auto& p) {
+        p.surfaces[0].aspheric = {{2, 1e-3}, {3, 1e-4}, {40, 1e-50}};
+      }};
+  for (std::size_t i = 0; i < changes.size(); ++i) EXPECT_EQ(refusal(changes[i]), "no error") << "change " << i;
+}
+
+TEST(Scale, PowersOfTwoComeBackBitForBit) {
+  for (const Prescription& p : petzval::testing::data_prescriptions()) {
+    for (const double factor : {2.0, 0x1p-10, 0x1p20}) {
+      const Prescription scaled = petzval::scale(p, factor);
+      EXPECT_EQ(petzval::scale(scaled, 1 / factor), p) << p.id << " times " << factor;
+      EXPECT_EQ(scaled.surfaces.front().thickness, p.surfaces.front().thickness * factor);
+    }
+  }
+}
+
+// Similar surfaces have similar sags: scaling r and z alike leaves z = k r^m on the surface.
+TEST(Scale, AspheresStaySimilar) {
+  Prescription p = singlet();
+  p.surfaces[0].aspheric = {{3, 2e-4}, {10, -3e-12}};
+  const Prescription scaled = petzval::scale(p, 3);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const auto& [order, before] = p.surfaces[0].aspheric[i];
+    const double after = scaled.surfaces[0].aspheric[i].coefficient, r = 7;
+    EXPECT_NEAR(after * std::pow(3 * r, order), 3 * before * std::pow(r, order),
+                1e-14 * std::abs(before) * std::pow(r, order));
+  }
+}
+
+TEST(Scale, LengthsFollowAndRatiosStay) {
+  Prescription p = petzval::testing::data_prescription("zoom_14-30mm_f4_middle");
+  const Prescription scaled = petzval::scale(p, 2);
+  EXPECT_EQ(scaled.focal_length_mm, 40.0);
+  EXPECT_EQ(scaled.image_diagonal_mm, 2 * 43.4);
+  EXPECT_EQ(scaled.f_number, p.f_number);
+  EXPECT_EQ(scaled.half_field_deg, p.half_field_deg);
+  EXPECT_EQ(scaled.zoom->variable_gaps.at(7), 2 * 12.942);
+  EXPECT_EQ(scaled.surfaces[1].conic, -1);
+  EXPECT_EQ(scaled.surfaces[0].semi_diameter, 2 * 29.285);
+}
+
+TEST(Scale, RefusesFactorsThatMakeNoLens) {
+  for (const double factor : {0.0, -1.0, nan, infinity}) {
+    EXPECT_EQ(message([&] { petzval::scale(singlet(), factor); }),
+              "singlet: scale factor is " + petzval::number(factor) + ", wanted a finite number above 0");
+  }
+  EXPECT_EQ(message([] { petzval::scale(singlet(), 0x1p-1060); }),
+            "singlet: surface 0: 50 scaled by 8.095e-320 is 4.047386e-318, wanted a number that double holds in full");
+  EXPECT_EQ(message([] { petzval::scale(singlet(), 1e307); }),
+            "singlet: surface 0: 50 scaled by 1e+307 is inf, wanted a number that double holds in full");
+}
+
+}  // namespace

@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "petzval/psf/psf.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <numeric>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "lenses.hpp"
+#include "petzval/core/error.hpp"
+#include "petzval/core/units.hpp"
+#include "petzval/pupil/pupil.hpp"
+#include "petzval/trace/trace.hpp"
+
+namespace petzval {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+std::uint64_t sum(const Psf& psf) { return std::accumulate(psf.counts.begin(), psf.counts.end(), std::uint64_t(0)); }
+
+double profile_light(const PointImage& image) {
+  const double width = image.size.max_radius / 64;
+  double light = 0;
+  for (std::size_t k = 0; k < 64; ++k) {
+    light += image.radial_profile[k] * std::numbers::pi * width * width * static_cast<double>(2 * k + 1);
+  }
+  return light;
+}
+
+TEST(PointImage, PictureHoldsEveryTransmittedRay) {
+  const Lens lens = data_lens("double_gauss_100mm_f1.35");
+  for (const double field : {0.0, 14.0}) {
+    for (const double z : {-infinity, -1000.0}) {
+      const PointImage image = point_image(lens, {radians(field), z}, {.samples = 1 << 15, .pixels = 101});
+      EXPECT_GT(image.psf.transmitted[0], 10000u);
+      EXPECT_EQ(sum(image.psf), image.psf.transmitted[0]);
+      EXPECT_EQ(image.psf.sent[0], 1u << 15);
+      EXPECT_EQ(image.psf.centre, image.size.centroid);
+      EXPECT_NEAR(profile_light(image), image.throughput, 1e-14);
+    }
+  }
+}
+
+TEST(PointImage, CropTakesNothingFromThroughputOrProfile) {
+  const Lens lens = data_lens("double_gauss_100mm_f1.35");
+  const ScenePoint point{radians(10), -700};
+  const PointImage whole = point_image(lens, point, {.samples = 1 << 14, .pixels = 64});
+  const PointImage cropped =
+      point_image(lens, point, {.samples = 1 << 14, .pixels = 64, .half_width_mm = whole.size.rms_radius / 2});
+  EXPECT_LT(sum(cropped.psf), sum(whole.psf) / 2);
+  EXPECT_GT(sum(cropped.psf), 0u);
+  EXPECT_EQ(cropped.throughput, whole.throughput);
+  EXPECT_EQ(cropped.radial_profile, whole.radial_profile);
+  EXPECT_EQ(cropped.psf.pixel_mm * 64, whole.size.rms_radius);
+}
+
+TEST(PointImage, ThreadsLeaveNoTrace) {
+  const Lens lens = data_lens("double_gauss_100mm_f1.35");
+  const ScenePoint point{radians(8), -1300};
+  const PointImage one = point_image(lens, point, {.samples = 30000, .threads = 1});
+  const PointImage five = point_image(lens, point, {.samples = 30000, .threads = 5});
+  EXPECT_EQ(one.psf.counts, five.psf.counts);
+  EXPECT_EQ(one.size.rms_radius, five.size.rms_radius);
+  EXPECT_EQ(one.radial_profile, five.radial_profile);
+}
+
+TEST(PointImage, SeedsAgreeWithinTheirError) {
+  const Lens lens = data_lens("double_gauss_100mm_f1.35");
+  const ScenePoint point{radians(8), -1300};
+  const PointImage a = point_image(lens, point, {.samples = 1 << 15, .seed = 1});
+  const PointImage b = point_image(lens, point, {.samples = 1 << 15, .seed = 2});
+  EXPECT_NE(a.psf.counts, b.psf.counts);
+  EXPECT_NEAR(a.throughput / b.throughput, 1, 2e-3);
+  EXPECT_NEAR(a.size.rms_radius / b.size.rms_radius, 1, 2e-3);
+}
+
+TEST(PointImage, MirrorsWithTheField) {
+  const Lens lens = data_lens("double_gauss_100mm_f1.35");
+  const PointImage up = point_image(lens, {radians(12), -1300}, {.samples = 1 << 15});
+  const PointImage down = point_image(lens, {radians(-12), -1300}, {.samples = 1 << 15});
+  EXPECT_NEAR(up.size.centroid[1] / down.size.centroid[1], -1, 1e-4);
+  EXPECT_NEAR(up.throughput / down.throughput, 1, 2e-3);
+  EXPECT_LT(up.size.centroid[1], 0);
+  // Left and right of the meridian are alike, too.
+  const auto side = static_cast<std::size_t>(up.psf.pixels);
+  std::uint64_t left = 0;
+  for (std::size_t i = 0; i < up.psf.counts.size(); ++i) left += i % side < side / 2 ? up.psf.counts[i] : 0;
+  EXPECT_NEAR(static_cast<double>(left) / static_cast<double>(sum(up.psf)), 0.5, 2e-3);
+}
+
+TEST(PointImage, RowsRunFromTheTop) {
+  // Coma: the light gathers on one side of the spot. Its first moments by the picture and by the hits must agree.
+  const Lens lens = data_lens("double_gauss_100mm_f2.0");
+  const ScenePoint point{radians(10), -infinity};
+  const PointImage image = point_image(lens, point, {.samples = 1 << 14, .pixels = 40, .half_width_mm = 0.05});
+  const FilmHits hits = trace_bundle(lens, pupil_window(lens, point), 1 << 14);
+  std::uint64_t above = 0, above_left = 0;
+  const auto& [cx, cy] = image.psf.centre;
+  for (std::size_t i = 0; i < hits.x.size(); ++i) {
+    if (std::abs(hits.x[i] - cx) >= 0.05 || std::abs(hits.y[i] - cy) >= 0.05 || hits.y[i] <= cy + 0.02) continue;
+    ++above;
+    above_left += hits.x[i] < cx - 0.01;
+  }
+  std::uint64_t counted = 0, counted_left = 0;
+  for (std::size_t row = 0; row < 12; ++row) {
+    for (std::size_t column = 0; column < 40; ++column) {
+      counted += image.psf.counts[row * 40 + column];
+      counted_left += column < 16 ? image.psf.counts[row * 40 + column] : 0;
+    }
+  }
+  EXPECT_NE(above, 0u);
+  EXPECT_EQ(counted, above);
+  EXPECT_EQ(counted_left, above_left);
+}
+
+TEST(PointImage, AllLightOfAFrontStopArrives) {
+  const Lens lens = front_stop_lens(2);
+  for (const double field : {0.0, 5.0}) {
+    for (const double z : {-infinity, -1000.0}) {
+      const PointImage image = point_image(lens, {radians(field), z}, {.samples = 1 << 18});
+      EXPECT_NEAR(image.psf.entrance_pupil_area, 4 * std::numbers::pi, 1e-12);
+      EXPECT_NEAR(image.throughput, 1, 3e-4) << field << " " << z;
+    }
+  }
+}
+
+TEST(PointImage, DefocusOfAPerfectLensIsAUniformDisc) {
+  // f/10: the edge of the cone is brighter by a few tenths of a per cent, since tan and sin part there.
+  constexpr double n = 10, defocus = 3;
+  const Lens sharp = with_f_number(data_lens("analytic_plano_hyperbolic_100mm"), n);
+  for (const double side : {-1.0, 1.0}) {
+    const Lens lens = with_film(sharp, sharp.film_z() + side * defocus);
+    const PointImage image = point_image(lens, {0, -infinity}, {.samples = 1 << 20});
+    const double radius = defocus / (2 * n);
+    EXPECT_NEAR(image.size.max_radius / radius, 1, 3e-3);
+    EXPECT_NEAR(image.size.rms_radius / (radius / std::sqrt(2.0)), 1, 3e-3);
+    const double flat = image.throughput / (std::numbers::pi * image.size.max_radius * image.size.max_radius);
+    // Rings of few rays and the rim itself apart; the sampling error of a ring of 16,000 rays is below 1 %.
+    for (std::size_t k = 4; k < 63; ++k) EXPECT_NEAR(image.radial_profile[k] / flat, 1, 0.015) << k;
+  }
+}
+
+TEST(PointImage, PerfectFocusIsAPoint) {
+  const PointImage image =
+      point_image(data_lens("analytic_plano_hyperbolic_100mm"), {0, -infinity}, {.samples = 4096, .pixels = 5});
+  EXPECT_EQ(image.psf.counts[12], image.psf.transmitted[0]);
+  EXPECT_EQ(image.psf.pixel_mm, 2e-4 / 5);
+}
+
+TEST(PointImage, NothingGetsThroughAFieldTooWide) {
+  const PointImage image =
+      point_image(data_lens("double_gauss_100mm_f1.35"), {radians(50), -infinity}, {.samples = 1000, .pixels = 8});
+  EXPECT_EQ(image.throughput, 0);
+  EXPECT_EQ(sum(image.psf), 0u);
+  EXPECT_EQ(image.size.max_radius, 0);
+  for (const double value : image.radial_profile) EXPECT_EQ(value, 0);
+}
+
+/// RMS error, over the 12 x 12 bins of a vignetted bokeh and some seeds, of the light in a bin against many rays' mean.
+class BinError {
+ public:
+  BinError() {
+    lens_ = with_film(lens_, lens_.film_z() + 2);
+    window_ = pupil_window(lens_, {radians(14), -infinity});
+    const FilmHits many = trace_bundle(lens_, window_, 1 << 19, 0, 1000);
+    size_ = spot_size(many.x, many.y);
+    reference_ = bins(many.x, many.y, 1 << 19);
+  }
+
+  double sobol(std::uint32_t count) const {
+    return error([&](std::uint32_t seed) {
+      const FilmHits hits = trace_bundle(lens_, window_, count, 0, seed);
+      return bins(hits.x, hits.y, count);
+    });
+  }
+
+  double random(std::uint32_t count) const {
+    return error([&](std::uint32_t seed) {
+      std::mt19937_64 generator(seed);
+      std::uniform_real_distribution<double> x(window_.x_min, window_.x_max), y(window_.y_min, window_.y_max);
+      std::vector<double> hit_x, hit_y;
+      for (std::uint32_t i = 0; i < count; ++i) {
+        const double px = x(generator), py = y(generator);
+        const auto end = trace(lens_, ray_through(window_.point, {window_.plane_z, 0}, px, py));
+        if (!end.transmitted()) continue;
+        const double t = (lens_.film_z() - end.ray.origin.z) / end.ray.direction.z;
+        hit_x.push_back(end.ray.origin.x + t * end.ray.direction.x);
+        hit_y.push_back(end.ray.origin.y + t * end.ray.direction.y);
+      }
+      return bins(hit_x, hit_y, count);
+    });
+  }
+
+ private:
+  using Bins = std::array<double, 144>;
+
+  Bins bins(const std::vector<double>& x, const std::vector<double>& y, std::uint32_t count) const {
+    Bins result{};
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      const double u = (x[i] - size_.centroid[0]) / size_.max_radius, v = (y[i] - size_.centroid[1]) / size_.max_radius;
+      if (std::abs(u) >= 1 || std::abs(v) >= 1) continue;
+      result[static_cast<std::size_t>(6 * (u + 1)) * 12 + static_cast<std::size_t>(6 * (v + 1))] += 1.0 / count;
+    }
+    return result;
+  }
+
+  template <class Sample>
+  double error(Sample&& sample) const {
+    constexpr std::uint32_t seeds = 12;
+    double squares = 0;
+    for (std::uint32_t seed = 0; seed < seeds; ++seed) {
+      const Bins found = sample(seed);
+      for (std::size_t i = 0; i < found.size(); ++i) squares += std::pow(found[i] - reference_[i], 2);
+    }
+    return std::sqrt(squares / seeds / 144);
+  }
+
+  Lens lens_ = data_lens("double_gauss_100mm_f1.35");
+  PupilWindow window_;
+  SpotSize size_;
+  Bins reference_{};
+};
+
+TEST(PointImage, BinsConvergeFasterThanRandomOnes) {
+  // The rim of the pupil is a step, so the slope is near -3/4 and not -1; random sampling has -1/2.
+  const BinError error;
+  const double slope = std::log2(error.sobol(1 << 14) / error.sobol(1 << 6)) / 8;
+  EXPECT_LE(slope, -0.65);
+  EXPECT_LE(error.sobol(1 << 12), 0.45 * error.random(1 << 12));
+  RecordProperty("slope", std::to_string(slope));
+}
+
+TEST(PointImage, RefusesOptionsWithoutAMeaning) {
+  const Lens lens = front_stop_lens();
+  const auto message = [&](const PsfOptions& options) -> std::string {
+    try {
+      point_image(lens, {0, -infinity}, options);
+    } catch (const Error& e) {
+      return e.what();
+    }
+    return "no error";
+  };
+  EXPECT_EQ(message({.samples = 0}), "point_image: samples is 0, wanted 1 or more");
+  EXPECT_EQ(message({.pixels = 0}), "point_image: pixels is 0, wanted 1 to 32768");
+  EXPECT_EQ(message({.half_width_mm = -1}), "point_image: half_width_mm is -1, wanted a length, or 0 to fit");
+  EXPECT_EQ(message({.threads = 0}), "trace_bundle: threads is 0, wanted 1 or more");
+}
+
+}  // namespace
+}  // namespace petzval

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "petzval/psf/spot.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "lenses.hpp"
+#include "petzval/core/error.hpp"
+#include "petzval/core/units.hpp"
+#include "petzval/paraxial/first_order.hpp"
+
+namespace petzval {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+TEST(SpotSize, OfACross) {
+  const std::vector<double> x{1, 3, 2, 2}, y{5, 5, 4, 6};
+  const SpotSize size = spot_size(x, y);
+  EXPECT_DOUBLE_EQ(size.centroid[0], 2);
+  EXPECT_DOUBLE_EQ(size.centroid[1], 5);
+  EXPECT_DOUBLE_EQ(size.rms_radius, 1);
+  EXPECT_DOUBLE_EQ(size.max_radius, 1);
+}
+
+TEST(SpotSize, OfNoneAndOne) {
+  EXPECT_EQ(spot_size({}, {}).max_radius, 0);
+  EXPECT_EQ(spot_size(std::array{4.0}, std::array{-7.0}).centroid, (std::array{4.0, -7.0}));
+  EXPECT_EQ(spot_size(std::array{4.0}, std::array{-7.0}).rms_radius, 0);
+}
+
+TEST(SpotSize, KeepsSmallSpotsFarFromTheAxis) {
+  // A ring of a nanometre at a height of 40 mm: 1e-8 of it is what the coordinates themselves resolve.
+  std::vector<double> x, y;
+  for (int i = 0; i < 100000; ++i) {
+    x.push_back(1e-6 * std::cos(radians(i * 0.36)));
+    y.push_back(40 + 1e-6 * std::sin(radians(i * 0.36)));
+  }
+  const SpotSize size = spot_size(x, y);
+  EXPECT_NEAR(size.rms_radius / 1e-6, 1, 2e-8);
+  EXPECT_NEAR(size.max_radius / 1e-6, 1, 2e-8);
+}
+
+TEST(SpotSize, SetsCountAsOne) {
+  const std::vector<FilmHits> sets{{.x = {1, 3}, .y = {5, 5}}, {.x = {}, .y = {}}, {.x = {2, 2}, .y = {4, 6}}};
+  EXPECT_DOUBLE_EQ(spot_size(sets).rms_radius, 1);
+  EXPECT_DOUBLE_EQ(spot_size(sets).centroid[1], 5);
+}
+
+TEST(SpotDiagram, ImagesTheFieldUpsideDown) {
+  const Lens lens = data_lens("double_gauss_100mm_f2.0");
+  const double f = first_order(lens).effective_focal_length;
+  const std::array fields{radians(0.0), radians(5.0), radians(10.0), radians(-10.0)};
+  const auto spots = spot_diagram(lens, -infinity, fields, 2048);
+  ASSERT_EQ(spots.size(), 4u);
+  EXPECT_NEAR(spots[0].chief_ray_height.value(), 0, 1e-12);
+  for (std::size_t i = 1; i < 4; ++i) {
+    const double ideal = -f * std::tan(fields[i]);
+    EXPECT_EQ(spots[i].point.field_rad, fields[i]);
+    EXPECT_NEAR(spots[i].chief_ray_height.value() / ideal, 1, 0.02);  // distortion
+    EXPECT_NEAR(spots[i].size.centroid[1] / ideal, 1, 0.03);
+    EXPECT_NEAR(spots[i].size.centroid[0], 0, 2e-3);
+    EXPECT_LE(spots[i].size.rms_radius, spots[i].size.max_radius);
+    EXPECT_EQ(spots[i].hits.sent, 2048u);
+  }
+  EXPECT_DOUBLE_EQ(spots[2].chief_ray_height.value(), -spots[3].chief_ray_height.value());
+}
+
+TEST(SpotDiagram, GoesFieldByFieldAndByWavelengthWithin) {
+  Prescription p = read_prescription(lens_file("double_gauss_100mm_f2.0"));
+  for (auto& row : p.surfaces) {
+    row.medium = {.nd = row.medium.nd, .vd = row.medium.vd};
+    row.medium.vd = row.medium.nd > 1 ? std::optional(50.0) : std::nullopt;
+  }
+  const std::array wavelengths{486.1, 587.5618, 656.3};
+  const Lens lens = compile(p, wavelengths, {.missing_glass = MissingGlass::abbe});
+  const std::array fields{0.0, 0.1};
+  const auto spots = spot_diagram(lens, -1000, fields, 512);
+  ASSERT_EQ(spots.size(), 6u);
+  for (std::size_t i = 0; i < 6; ++i) {
+    EXPECT_EQ(spots[i].point.field_rad, fields[i / 3]);
+    EXPECT_EQ(spots[i].wavelength, i % 3);
+  }
+  // One scene point for all: what differs on the film is the lens's colour error alone.
+  EXPECT_NE(spots[3].chief_ray_height.value(), spots[5].chief_ray_height.value());
+  EXPECT_NEAR(spots[3].chief_ray_height.value(), spots[5].chief_ray_height.value(), 0.1);
+}
+
+TEST(SpotDiagram, PerfectLensMakesAPoint) {
+  const Lens lens = data_lens("analytic_plano_hyperbolic_100mm");
+  const std::array axis{0.0};
+  const auto spots = spot_diagram(lens, -infinity, axis);
+  EXPECT_GT(spots[0].hits.x.size(), 1000u);
+  EXPECT_LT(spots[0].size.max_radius, 1e-12);
+}
+
+TEST(SpotDiagram, ChiefRayPassesTheHoleOfAMirror) {
+  const std::array fields{radians(0.5)};
+  const auto spots = spot_diagram(data_lens("catadioptric_mangin_1000mm_f7.5"), -infinity, fields, 256);
+  EXPECT_NEAR(spots[0].chief_ray_height.value(), -1000 * std::tan(radians(0.5)), 0.2);
+}
+
+TEST(SpotDiagram, SaysWhereThereIsNoChiefRay) {
+  // The paraxial pupil of a fisheye lies where no ray of a steep field goes.
+  const Lens lens = data_lens("fisheye_10mm_f4");
+  const std::array fields{radians(0.0), radians(75.0)};
+  const auto spots = spot_diagram(lens, -infinity, fields, 256);
+  EXPECT_TRUE(spots[0].chief_ray_height.has_value());
+  EXPECT_FALSE(spots[1].chief_ray_height.has_value());
+}
+
+}  // namespace
+}  // namespace petzval

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "../data_lenses.hpp"
+#include "../message.hpp"
+#include "petzval/core/error.hpp"
+#include "petzval/pupil/pupil.hpp"
+#include "petzval/trace/sequential.hpp"
+
+namespace petzval {
+namespace {
+
+using testing::data_lens;
+using testing::data_prescriptions;
+using testing::message;
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+double focal_length(const Lens& lens) { return std::abs(first_order(lens).effective_focal_length); }
+
+Prescription telescope() {
+  Prescription p;
+  p.name = "telescope";
+  p.surfaces = {{.medium = {.nd = 1.5}, .semi_diameter = 5, .stop = true}};
+  return p;
+}
+
+TEST(RealFNumber, OfEveryLensInDataIsWithinTwoPercentOfTheDeclared) {
+  for (const Prescription& p : data_prescriptions()) {
+    if (!p.f_number) continue;
+    EXPECT_NEAR(real_f_number(compile(p)), *p.f_number, 0.02 * *p.f_number) << p.id;
+  }
+}
+
+TEST(RealFNumber, BelongsToTheRayThatMeetsTheRimOfTheStop) {
+  for (const Prescription& p : data_prescriptions()) {
+    SCOPED_TRACE(p.id);
+    const Lens lens = compile(p);
+    const std::size_t stop = lens.stop().value();
+    const double y = focal_length(lens) / (2 * real_f_number(lens));
+    const auto end = kernel::trace(lens.view<double>(), kernel::Vec<double>{0, y, 0}, kernel::Vec<double>{0, 0, 1},
+                                   {.apertures = false, .last = stop + 1});
+    ASSERT_EQ(end.surface, static_cast<int>(stop));
+    EXPECT_NEAR(std::abs(end.origin.y), lens.surfaces()[stop].semi_diameter, 1e-12 * y);
+  }
+}
+
+TEST(RealFNumber, TendsToTheParaxialOneAsTheStopCloses) {
+  for (const Prescription& p : data_prescriptions()) {
+    const Lens lens = compile(p);
+    const std::size_t stop = lens.stop().value();
+    const Lens closed = with_semi_diameter(lens, stop, 1e-4 * lens.surfaces()[stop].semi_diameter);
+    EXPECT_NEAR(real_f_number(closed) / paraxial_f_number(closed), 1, 1e-8) << p.id;
+  }
+}
+
+TEST(RealFNumber, AsksTheRayToReachTheStopNotToLeaveIt) {
+  // From glass of 1.5 onto a sphere of 20 mm the critical angle lies at a height of 13.3 mm, the rim of the stop at 16.
+  Prescription p;
+  p.name = "hemisphere";
+  p.surfaces = {{.thickness = 25, .medium = {.nd = 1.5}}, {.radius = -20, .semi_diameter = 16, .stop = true}};
+  EXPECT_NEAR(real_f_number(compile(p)), 40.0 / 32, 1e-14);
+  // No ray gets higher than the sphere: the rim is out of reach.
+  p.surfaces[1].semi_diameter = 30;
+  EXPECT_NEAR(real_f_number(compile(p)), 1, 1e-14);
+}
+
+TEST(WithFNumber, IsWhatRealFNumberFinds) {
+  for (const Prescription& p : data_prescriptions()) {
+    SCOPED_TRACE(p.id);
+    const Lens lens = compile(p);
+    const double fastest = real_f_number(lens);
+    const std::size_t stop = lens.stop().value();
+    EXPECT_LE(with_f_number(lens, fastest * (1 - 1e-10)).surfaces()[stop].semi_diameter,
+              lens.surfaces()[stop].semi_diameter);
+    EXPECT_THROW(with_f_number(lens, fastest * (1 - 1e-8)), Error);
+    for (const double n : {fastest, fastest * 1.0001, fastest * 1.4, 5.6 * fastest, 64 * fastest}) {
+      EXPECT_NEAR(real_f_number(with_f_number(lens, n)), n, 1e-12 * n);
+    }
+  }
+}
+
+TEST(WithFNumber, RunsFromTheFastestLensesToPinholes) {
+  const Lens lens = with_semi_diameter(data_lens("modern_58mm_f0.95"), 13, infinity);
+  for (const double n : {0.95, 1.0, 1.4, 8.0, 64.0}) EXPECT_NEAR(real_f_number(with_f_number(lens, n)), n, 1e-12 * n);
+}
+
+TEST(WithFNumber, WorksOnAnInferredStop) {
+  Prescription p = testing::data_prescription("singlet_50mm_biconvex");
+  for (SurfaceRow& row : p.surfaces) row.stop = false;
+  const Lens stopped = with_f_number(compile(p), 8);
+  EXPECT_NEAR(real_f_number(stopped), 8, 1e-12);
+}
+
+TEST(WithFNumber, RefusesWhatIsNoFNumber) {
+  const Lens lens = data_lens("double_gauss_100mm_f1.35");
+  const std::string name = lens.name();
+  EXPECT_EQ(message([&] { with_f_number(lens, 0); }), name + ": f-number is 0, wanted a finite one above 0");
+  EXPECT_EQ(message([&] { with_f_number(lens, -2); }), name + ": f-number is -2, wanted a finite one above 0");
+  EXPECT_EQ(message([&] { with_f_number(lens, std::nan("")); }),
+            name + ": f-number is nan, wanted a finite one above 0");
+  EXPECT_EQ(message([&] { with_f_number(lens, infinity); }), name + ": f-number is inf, wanted a finite one above 0");
+}
+
+TEST(WithFNumber, NamesTheFastestWhereTheLensIsSlower) {
+  const Lens lens = data_lens("double_gauss_100mm_f1.35");
+  const std::string found = message([&] { with_f_number(lens, 1.2); });
+  const std::string start = lens.name() + ": f-number is 1.2, wanted 1.353";
+  EXPECT_EQ(found.substr(0, start.size()), start);
+  EXPECT_NE(found.find("(the fastest the lens can give) or more"), std::string::npos);
+  // No stop is wide enough for a ray that misses the glass.
+  const Lens open = with_semi_diameter(lens, 5, infinity);
+  EXPECT_NE(message([&] { with_f_number(open, 0.1); }).find("wanted 1.013132236 ("), std::string::npos)
+      << message([&] { with_f_number(open, 0.1); });
+}
+
+TEST(WithFNumber, RefusesAnAfocalLens) {
+  const Lens lens = compile(telescope());
+  EXPECT_EQ(real_f_number(lens), infinity);
+  EXPECT_EQ(paraxial_f_number(lens), infinity);
+  EXPECT_EQ(message([&] { with_f_number(lens, 4); }),
+            "telescope: the lens is afocal, wanted a focal length to set an f-number by");
+}
+
+TEST(RealFNumber, OfAnUnlimitedStopInAMirrorIsZero) {
+  Prescription p = testing::data_prescription("mirror_newton_200mm_f8");
+  p.surfaces[0].semi_diameter.reset();
+  EXPECT_EQ(real_f_number(compile(p)), 0);
+}
+
+}  // namespace
+}  // namespace petzval

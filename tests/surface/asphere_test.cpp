@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "petzval/surface/asphere.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "petzval/lens/lens.hpp"
+
+namespace {
+
+using petzval::AsphereTerm;
+using petzval::SurfaceRow;
+using petzval::kernel::Asphere;
+using petzval::kernel::Vec;
+
+struct Named {
+  std::string name;
+  SurfaceRow row;
+};
+
+SurfaceRow row(double radius, double conic, double semi_diameter, std::vector<AsphereTerm> terms) {
+  SurfaceRow r;
+  r.radius = radius;
+  r.conic = conic;
+  r.semi_diameter = semi_diameter;
+  r.aspheric = std::move(terms);
+  return r;
+}
+
+/// From a gentle camera asphere to surfaces of phone lenses that turn back before their rim, and one that waves.
+std::vector<Named> surfaces() {
+  return {
+      {"camera", row(40, -0.5, 18, {{4, -2e-6}, {6, 3e-9}, {8, -4e-12}})},
+      {"phone, odd terms", row(1.674, -8.617, 2.5,
+                               {{3, 0.07429},
+                                {4, -0.06933},
+                                {5, -0.005811},
+                                {6, 0.002396},
+                                {7, 0.0021},
+                                {8, -0.0003119},
+                                {9, -5.552e-05},
+                                {10, 7.969e-06}})},
+      {"phone, steep conic", row(5.694, -222.1, 2.0,
+                                 {{3, -0.07876},
+                                  {4, 0.0702},
+                                  {5, 0.001575},
+                                  {6, -0.009958},
+                                  {7, -0.007322},
+                                  {8, 0.0006914},
+                                  {9, 0.00254},
+                                  {10, -0.000765}})},
+      {"gull wing", row(2.2, -1, 2.8, {{4, -0.085}, {6, 0.0075}, {8, -0.0002}})},
+      {"gull wing, plane base", row(0, 0, 3, {{2, 0.3}, {4, -0.06}, {6, 0.003}})},
+      {"wave", row(0, 0, 3, {{2, 0.5}, {4, -0.15}, {6, 0.0105}})},
+      {"coefficient denormal in float", row(1000, 0, 300, {{16, 1e-41}})},
+  };
+}
+
+petzval::Lens compiled(const SurfaceRow& r) {
+  petzval::Prescription p;
+  p.name = "asphere";
+  p.surfaces = {r};
+  return petzval::compile(p);
+}
+
+struct Crossing {
+  double t, cos_incidence;
+};
+
+/// The sag of a row by its definition, over long double.
+struct Sag {
+  const SurfaceRow& row;
+
+  long double value(long double r) const {
+    const long double c = row.radius == 0 ? 0 : 1 / static_cast<long double>(row.radius);
+    long double z = c * r * r / (1 + std::sqrt(1 - (1 + static_cast<long double>(row.conic)) * c * c * r * r));
+    long double power = r;
+    int reached = 1;
+    for (const auto& [order, a] : row.aspheric) {  // in rising order
+      for (; reached < order; ++reached) power *= r;
+      z += a * power;
+    }
+    return z;
+  }
+  long double clearance(const Vec<double>& p, const Vec<double>& d, long double t) const {
+    return p.z + t * d.z - value(std::hypot(p.x + t * d.x, p.y + t * d.y));
+  }
+};
+
+/// Crossings in the sense of travel within the aperture, by a scan in small steps.
+/// None at all where two crossings lie so close that the scan could not tell.
+std::optional<std::vector<Crossing>> scan(const SurfaceRow& r, const Vec<double>& p, const Vec<double>& d, int sense) {
+  const Sag sag{r};
+  const double rim = *r.semi_diameter;
+  const double across = d.x * d.x + d.y * d.y, middle = -(p.x * d.x + p.y * d.y) / across;
+  const double closest = std::hypot(p.x + middle * d.x, p.y + middle * d.y);
+  if (closest >= rim) return std::vector<Crossing>{};
+  const double half = std::sqrt((rim * rim - closest * closest) / across);
+  // A ray near the axis leaves the aperture far away; a few rims on both sides of the surface are enough.
+  const long double from = std::max(middle - half, -2 * rim), to = std::min(middle + half, 4 * rim);
+  constexpr int steps = 300;
+  std::vector<Crossing> found;
+  long double low = from, below = sag.clearance(p, d, low);
+  for (int i = 1; i <= steps; ++i) {
+    const long double high = from + (to - from) * i / steps, above = sag.clearance(p, d, high);
+    const long double little = 0.1L * (high - low);
+    if (std::abs(below) < little && std::abs(above - below) < little) return std::nullopt;
+    if (below * sense <= 0 && above * sense > 0) {
+      long double a = low, b = high;
+      for (int k = 0; k < 70; ++k) {
+        const long double m = (a + b) / 2;
+        (sag.clearance(p, d, m) * sense <= 0 ? a : b) = m;
+      }
+      const long double h = 1e-7L * rim, rate = (sag.clearance(p, d, a + h) - sag.clearance(p, d, a - h)) / (2 * h);
+      const long double radius = std::hypot(p.x + a * d.x, p.y + a * d.y);
+      const long double slope = (sag.value(radius + h) - sag.value(radius - h)) / (2 * h);
+      const double cosine = static_cast<double>(std::abs(rate) / std::sqrt(1 + slope * slope));
+      if (cosine < 0.02) return std::nullopt;
+      found.push_back({static_cast<double>(a), cosine});
+    }
+    low = high;
+    below = above;
+  }
+  return found;
+}
+
+template <class T>
+class AsphereOf : public testing::Test {};
+using Plain = testing::Types<float, double>;
+TYPED_TEST_SUITE(AsphereOf, Plain);
+
+TYPED_TEST(AsphereOf, FindsTheFirstCrossingOfSteepRays) {
+  const double eps = std::numeric_limits<TypeParam>::epsilon();
+  double most = 0;
+  int several = 0;
+  for (const auto& [name, r] : surfaces()) {
+    const petzval::Lens lens = compiled(r);
+    const auto view = lens.view<TypeParam>();
+    const Asphere<TypeParam>& asphere = view.aspheres[0];
+    const double rim = *r.semi_diameter;
+    std::mt19937 random(5);
+    std::uniform_real_distribution<double> uniform(0, 1);
+    int lost = 0, wrong = 0, doubtful = 0, inaccurate = 0;
+    constexpr int rays = 10000;
+    for (int i = 0; i < rays; ++i) {
+      const double reach = rim * std::sqrt(uniform(random)), turn = 6.3 * uniform(random);
+      const double slope = 0.9 * uniform(random), heading = 6.3 * uniform(random);
+      const int sense = i % 2 ? 1 : -1;
+      const Vec<TypeParam> d{static_cast<TypeParam>(slope * std::cos(heading)),
+                             static_cast<TypeParam>(slope * std::sin(heading)),
+                             static_cast<TypeParam>(sense * std::sqrt(1 - slope * slope))};
+      const Vec<TypeParam> target{static_cast<TypeParam>(reach * std::cos(turn)),
+                                  static_cast<TypeParam>(reach * std::sin(turn)),
+                                  static_cast<TypeParam>(Sag{r}.value(reach))};
+      const Vec<TypeParam> start = target - d * static_cast<TypeParam>(rim);
+      const Vec<double> p{start.x, start.y, start.z}, direction{d.x, d.y, d.z};
+      const auto crossings = scan(r, p, direction, sense);
+      if (!crossings) {
+        ++doubtful;
+        continue;
+      }
+      const auto [point, hit, converged] = intersect(asphere, start, d, static_cast<TypeParam>(sense));
+      EXPECT_TRUE(converged) << name << " ray " << i;
+      const bool inside = hit && std::hypot(point.x, point.y) <= rim * (1 + 4 * eps);
+      several += crossings->size() > 1;
+      if (crossings->empty()) {
+        wrong += inside && std::hypot(point.x, point.y) < rim * (1 - 16 * eps);
+        continue;
+      }
+      if (!inside) {
+        const auto& [t, c] = crossings->front();
+        const double radius = std::hypot(p.x + t * direction.x, p.y + t * direction.y);
+        lost += radius < rim * (1 - 8 * eps);
+        continue;
+      }
+      const auto& [t, cosine] = crossings->front();
+      const double error = std::hypot(point.x - (p.x + t * direction.x), point.y - (p.y + t * direction.y),
+                                      point.z - (p.z + t * direction.z));
+      // Anything as far off as this is another crossing.
+      if (error > 1e-3 * rim) {
+        ++wrong;
+      } else {
+        most = std::max(most, error * cosine / (eps * rim));
+        inaccurate += error * cosine > 4 * eps * rim;
+      }
+    }
+    EXPECT_EQ(lost, 0) << name;
+    EXPECT_EQ(wrong, 0) << name;
+    EXPECT_EQ(inaccurate, 0) << name << ", worst " << most;
+    EXPECT_LT(doubtful, rays / 10) << name;
+  }
+  EXPECT_GT(several, 50) << "the rays are too easy";
+  this->RecordProperty("worst_eps", std::to_string(most));
+}
+
+}  // namespace

@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: Apache-2.0
+// What must hold for every ray through every lens, whatever the numbers of the lens.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include "lenses.hpp"
+
+namespace {
+
+using petzval::Ray;
+using petzval::RayFate;
+using petzval::TracedRay;
+using petzval::Travel;
+using petzval::Vec3;
+using testing_lenses::all;
+using testing_lenses::passing_rays;
+using testing_lenses::Sample;
+
+template <class T>
+Ray<T> converted(const Ray<double>& r) {
+  return {Vec3<T>(r.origin), Vec3<T>(r.direction)};
+}
+
+double length(const Vec3<double>& v) { return std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z); }
+
+template <class T>
+double distance(const Vec3<T>& a, const Vec3<T>& b) {
+  return length(Vec3<double>(a) - Vec3<double>(b));
+}
+
+/// First hit of a ray that passes.
+template <class T>
+Vec3<T> first_hit(const petzval::Lens& lens, const Ray<T>& ray) {
+  Vec3<T> first{0, 0, 0};
+  bool seen = false;
+  petzval::kernel::trace(lens.view<T>(), petzval::kernel::to_kernel(ray.origin),
+                         petzval::kernel::to_kernel(ray.direction), {}, [&](int, const petzval::kernel::Vec<T>& p) {
+                           if (!seen) first = petzval::kernel::to_public(p);
+                           seen = true;
+                         });
+  return first;
+}
+
+template <class T>
+void same_bits(const TracedRay<T>& a, const TracedRay<T>& b, const std::string& what) {
+  EXPECT_EQ(a.fate, b.fate) << what;
+  EXPECT_EQ(a.surface, b.surface) << what;
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_EQ(a.ray.origin[i], b.ray.origin[i]) << what;
+    EXPECT_EQ(a.ray.direction[i], b.ray.direction[i]) << what;
+  }
+}
+
+TEST(Laws, EveryLensLetsRaysThrough) {
+  EXPECT_GE(all().size(), 70u);
+  for (const Sample& s : all()) EXPECT_GE(passing_rays(s.lens, 12).size(), 4u) << s.id;
+}
+
+template <class T>
+class LawsOf : public testing::Test {};
+using Plain = testing::Types<float, double>;
+TYPED_TEST_SUITE(LawsOf, Plain);
+
+// Mirror lenses, cylinders, aspheres and the eye (which ends in water) among them.
+TYPED_TEST(LawsOf, ATurnedRayComesBack) {
+  using T = TypeParam;
+  const double eps = std::numeric_limits<T>::epsilon();
+  double place = 0, turn = 0;
+  std::string where;
+  for (const Sample& s : all()) {
+    for (const Ray<double>& in : passing_rays(s.lens, 12)) {
+      const Ray<T> ray = converted<T>(in);
+      const auto out = petzval::trace(s.lens, ray);
+      if (!out.transmitted()) continue;  // at a rim, in float
+      const auto back = petzval::trace(s.lens, Ray<T>{out.ray.origin, -out.ray.direction},
+                                       {.travel = Travel::to_scene, .apertures = false});
+      ASSERT_TRUE(back.transmitted()) << s.id;
+      const double p = distance(back.ray.origin, first_hit(s.lens, ray)) / (eps * s.size);
+      const double d = distance(back.ray.direction, -ray.direction) / eps;
+      EXPECT_LE(p, 200) << s.id;
+      EXPECT_LE(d, 20) << s.id;
+      if (p > place) where = s.id;
+      place = std::max(place, p);
+      turn = std::max(turn, d);
+    }
+  }
+  this->RecordProperty("worst_place_eps", std::to_string(place) + " " + where);
+  this->RecordProperty("worst_direction_eps", std::to_string(turn));
+}
+
+TEST(Laws, TheReversedLensIsTheLensTakenTheOtherWay) {
+  for (const Sample& s : all()) {
+    if (std::any_of(s.prescription.surfaces.begin(), s.prescription.surfaces.end(),
+                    [](const auto& r) { return r.mirror; }))
+      continue;
+    const petzval::Lens reversed = petzval::compile(petzval::reverse(s.prescription));
+    const double end = s.lens.surfaces().back().vertex_z;
+    for (const Ray<double>& in : passing_rays(s.lens, 6)) {
+      const auto out = petzval::trace(s.lens, in);
+      const Ray<double> turned{out.ray.origin, -out.ray.direction};
+      const auto back = petzval::trace(s.lens, turned, {.travel = Travel::to_scene});
+      const auto& [o, d] = turned;
+      const auto there = petzval::trace(reversed, Ray<double>{{o.x, o.y, end - o.z}, {d.x, d.y, -d.z}});
+      ASSERT_EQ(there.fate, back.fate) << s.id;
+      const Vec3<double> place{there.ray.origin.x, there.ray.origin.y, end - there.ray.origin.z};
+      const Vec3<double> direction{there.ray.direction.x, there.ray.direction.y, -there.ray.direction.z};
+      const double eps = std::numeric_limits<double>::epsilon();
+      EXPECT_LE(distance(place, back.ray.origin), 200 * eps * s.size) << s.id;
+      EXPECT_LE(distance(direction, back.ray.direction), 20 * eps) << s.id;
+    }
+  }
+}
+
+TYPED_TEST(LawsOf, ALensScaledByAPowerOfTwoScalesItsRaysToTheBit) {
+  using T = TypeParam;
+  for (const double factor : {0.25, 8.0}) {
+    for (const Sample& s : all()) {
+      const petzval::Lens scaled = petzval::compile(petzval::scale(s.prescription, factor));
+      const T f = static_cast<T>(factor);
+      for (const Ray<double>& in : passing_rays(s.lens, 6)) {
+        const Ray<T> ray = converted<T>(in);
+        auto wanted = petzval::trace(s.lens, ray);
+        wanted.ray.origin *= f;
+        same_bits(petzval::trace(scaled, Ray<T>{ray.origin * f, ray.direction}), wanted, s.id);
+      }
+    }
+  }
+}
+
+TYPED_TEST(LawsOf, TheMirroredRayIsTheMirrorImageToTheBit) {
+  using T = TypeParam;
+  for (const Sample& s : all()) {
+    for (const Ray<double>& in : passing_rays(s.lens, 6)) {
+      const Ray<T> ray = converted<T>(in);
+      for (const Vec3<T>& flip : {Vec3<T>{-1, 1, 1}, Vec3<T>{1, -1, 1}}) {
+        auto wanted = petzval::trace(s.lens, ray);
+        wanted.ray.origin *= flip;
+        wanted.ray.direction *= flip;
+        same_bits(petzval::trace(s.lens, Ray<T>{ray.origin * flip, ray.direction * flip}), wanted, s.id);
+      }
+    }
+  }
+}
+
+TYPED_TEST(LawsOf, ScalingByAnyFactorIsWithinRounding) {
+  using T = TypeParam;
+  const double eps = std::numeric_limits<T>::epsilon();
+  double most = 0;
+  for (const Sample& s : all()) {
+    const petzval::Lens scaled = petzval::compile(petzval::scale(s.prescription, 0.37));
+    for (const Ray<double>& in : passing_rays(s.lens, 6)) {
+      const Ray<T> ray = converted<T>(in);
+      const auto wanted = petzval::trace(s.lens, ray);
+      const auto found = petzval::trace(scaled, Ray<T>{ray.origin * T(0.37), ray.direction});
+      if (!wanted.transmitted() || !found.transmitted()) continue;  // at a rim
+      const double p = distance(found.ray.origin, wanted.ray.origin * T(0.37)) / (eps * s.size * 0.37);
+      EXPECT_LE(p, 50) << s.id;
+      EXPECT_LE(distance(found.ray.direction, wanted.ray.direction) / eps, 50) << s.id;
+      most = std::max(most, p);
+    }
+  }
+  this->RecordProperty("worst_eps", std::to_string(most));
+}
+
+TYPED_TEST(LawsOf, RotationAboutTheAxisIsWithinRounding) {
+  using T = TypeParam;
+  const double eps = std::numeric_limits<T>::epsilon(), c = std::cos(1.1), sn = std::sin(1.1);
+  const auto rotated = [&](const auto& v) {
+    return Vec3<T>(Vec3<double>{c * v.x - sn * v.y, sn * v.x + c * v.y, v.z});
+  };
+  double most = 0;
+  for (const Sample& s : all()) {
+    if (!s.lens.rotationally_symmetric()) continue;
+    for (const Ray<double>& in : passing_rays(s.lens, 6)) {
+      const auto wanted = petzval::trace(s.lens, converted<T>(in));
+      const auto found = petzval::trace(s.lens, Ray<T>{rotated(in.origin), rotated(in.direction)});
+      if (!wanted.transmitted() || !found.transmitted()) continue;  // at a rim
+      const double p = distance(found.ray.origin, rotated(wanted.ray.origin)) / (eps * s.size);
+      EXPECT_LE(p, 50) << s.id;
+      EXPECT_LE(distance(found.ray.direction, rotated(wanted.ray.direction)) / eps, 50) << s.id;
+      most = std::max(most, p);
+    }
+  }
+  this->RecordProperty("worst_eps", std::to_string(most));
+}
+
+TYPED_TEST(LawsOf, EqualMediaLeaveARayAsItIsToTheBit) {
+  using T = TypeParam;
+  petzval::Prescription p;
+  p.name = "air";
+  p.object_space.nd = 1.5;
+  p.surfaces = {{.radius = 30, .thickness = 3, .medium = {.nd = 1.5}},
+                {.radius = -20, .thickness = 2, .medium = {.nd = 1.5}, .conic = -2.5},
+                {.radius = 25, .thickness = 2, .medium = {.nd = 1.5}, .aspheric = {{4, 1e-5}, {5, 1e-6}}},
+                {.radius = 0, .thickness = 1, .medium = {.nd = 1.5}}};
+  p.surfaces[2].semi_diameter = 12;
+  const petzval::Lens lens = petzval::compile(p);
+  std::mt19937 random(4);
+  std::uniform_real_distribution<T> uniform(T(-0.3), T(0.3));
+  for (int i = 0; i < 200; ++i) {  // among them directions that are not of unit length in their last bit
+    const T x = uniform(random), y = uniform(random);
+    const Ray<T> ray{{1, 2, -4}, {x, y, std::sqrt(1 - x * x - y * y)}};
+    for (const Travel travel : {Travel::to_film, Travel::to_scene}) {
+      const Ray<T> start = travel == Travel::to_film ? ray : Ray<T>{ray.origin + ray.direction * T(20), -ray.direction};
+      const auto out = petzval::trace(lens, start, {.travel = travel});
+      ASSERT_TRUE(out.transmitted());
+      EXPECT_EQ(out.ray.direction, start.direction);
+    }
+  }
+}
+
+TEST(Laws, RimAndHoleBelongToTheClearAperture) {
+  petzval::Prescription p;
+  p.name = "ring";
+  p.surfaces = {{.radius = 0, .thickness = 1, .semi_diameter = 12.7, .inner_semi_diameter = 3.3}};
+  const petzval::Lens lens = petzval::compile(p);
+  const auto fate = [&](double x) { return petzval::trace(lens, Ray<double>{{x, 0, -1}, {0, 0, 1}}).fate; };
+  EXPECT_EQ(fate(12.7), RayFate::transmitted);
+  EXPECT_EQ(fate(12.7 * (1 + 1e-9)), RayFate::vignetted);
+  EXPECT_EQ(fate(-12.7), RayFate::transmitted);
+  EXPECT_EQ(fate(3.3), RayFate::transmitted);
+  EXPECT_EQ(fate(3.3 * (1 - 1e-9)), RayFate::vignetted);
+  EXPECT_EQ(fate(0), RayFate::vignetted);
+  EXPECT_EQ(petzval::trace(lens, Ray<double>{{0, 0, -1}, {0, 0, 1}}, {.apertures = false}).fate, RayFate::transmitted);
+
+  const petzval::Lens closed = petzval::with_semi_diameter(
+      petzval::compile(
+          petzval::Prescription{.name = "closed", .surfaces = {{.radius = 50, .thickness = 1, .medium = {.nd = 1.5}}}}),
+      0, 0);
+  EXPECT_TRUE(petzval::trace(closed, Ray<double>{{0, 0, -1}, {0, 0, 1}}).transmitted());
+  EXPECT_EQ(petzval::trace(closed, Ray<double>{{1e-9, 0, -1}, {0, 0, 1}}).fate, RayFate::vignetted);
+}
+
+}  // namespace

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <optional>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "petzval/io/prescription_json.hpp"
+#include "petzval/lens/lens.hpp"
+#include "petzval/trace/sequential.hpp"
+#include "petzval/trace/trace.hpp"
+
+/// The lenses of data/lenses and rays that pass them.
+namespace testing_lenses {
+
+struct Sample {
+  std::string id;
+  petzval::Prescription prescription;
+  petzval::Lens lens;
+  double size;  ///< largest clear aperture, mm
+};
+
+inline Sample load_file(const std::filesystem::path& file) {
+  auto prescription = petzval::read_prescription(file);
+  auto lens = petzval::compile(prescription);
+  double size = 0;
+  for (const auto& s : lens.surfaces()) {
+    if (std::isfinite(s.semi_diameter)) size = std::max(size, s.semi_diameter);
+  }
+  return {file.stem().string(), std::move(prescription), std::move(lens), size};
+}
+
+inline Sample load(const std::string& id) {
+  return load_file(std::filesystem::path(PETZVAL_TEST_DATA) / "lenses" / (id + ".json"));
+}
+
+/// Every lens of data/lenses, in the order of names.
+inline const std::vector<Sample>& all() {
+  static const std::vector<Sample> samples = [] {
+    std::vector<std::filesystem::path> files;
+    for (const auto& entry : std::filesystem::directory_iterator(std::filesystem::path(PETZVAL_TEST_DATA) / "lenses")) {
+      if (entry.path().extension() == ".json") files.push_back(entry.path());
+    }
+    std::sort(files.begin(), files.end());
+    std::vector<Sample> result;
+    for (const auto& file : files) result.push_back(load_file(file));
+    return result;
+  }();
+  return samples;
+}
+
+/// Rays in object space that pass the lens to the film: found from points of the stop (or of the first surface)
+/// outwards. Deterministic. Fewer than `count` where a lens lets hardly any through.
+inline std::vector<petzval::Ray<double>> passing_rays(const petzval::Lens& lens, std::size_t count, unsigned seed = 1) {
+  using petzval::Travel;
+  const auto view = lens.view<double>();
+  const std::size_t stop = lens.stop().value_or(0);
+  const auto& at = lens.surfaces()[stop];
+  const bool mirrors =
+      std::any_of(lens.surfaces().begin(), lens.surfaces().end(), [](const auto& s) { return s.mirror; });
+  double towards = -1;
+  for (std::size_t i = 0; i < stop; ++i) towards *= lens.surfaces()[i].mirror ? -1 : 1;
+
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  std::vector<petzval::Ray<double>> rays;
+  for (int i = 0; i < 4000 && rays.size() < count; ++i) {
+    const double reach = 0.98 * at.semi_diameter * std::sqrt(uniform(random)), turn = 6.3 * uniform(random);
+    const double slope = (mirrors ? 0.02 : 0.4) * std::pow(uniform(random), 2), heading = 6.3 * uniform(random);
+    const petzval::kernel::Vec<double> d{slope * std::cos(heading), slope * std::sin(heading),
+                                         towards * std::sqrt(1 - slope * slope)};
+    petzval::kernel::Vec<double> p{reach * std::cos(turn), reach * std::sin(turn), at.vertex_z};
+    const auto out = trace(view, p, d, {.travel = Travel::to_scene, .last = stop});
+    if (out.fate != petzval::RayFate::transmitted) continue;
+    const auto start = out.origin + out.direction * (1 + 10 * uniform(random));
+    const petzval::Ray<double> ray{petzval::kernel::to_public(start), petzval::kernel::to_public(out.direction * -1.0)};
+    if (petzval::trace(lens, ray).transmitted()) rays.push_back(ray);
+  }
+  return rays;
+}
+
+}  // namespace testing_lenses

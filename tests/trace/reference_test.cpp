@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+// Rays computed with 60 digits by tests/reference/make_rays.py, which shares no formula with the library.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <charconv>
+#include <fstream>
+#include <map>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "lenses.hpp"
+#include "petzval/core/text.hpp"
+
+namespace {
+
+using petzval::Ray;
+using petzval::RayFate;
+using petzval::Travel;
+
+struct Row {
+  int line;
+  std::string lens, fate;
+  Travel travel;
+  std::array<double, 6> in, out;
+  int surface;
+};
+
+double parsed(const std::string& text) {
+  double value = std::numeric_limits<double>::quiet_NaN();
+  std::from_chars(text.data(), text.data() + text.size(), value);
+  return value;
+}
+
+std::vector<Row> rows() {
+  std::ifstream file(std::string(PETZVAL_TEST_REFERENCE) + "/rays.csv");
+  std::vector<Row> result;
+  std::string line;
+  for (int number = 1; std::getline(file, line); ++number) {
+    if (line.starts_with('#') || line.starts_with("lens,")) continue;
+    std::vector<std::string> cells;
+    std::istringstream cut(line);
+    for (std::string cell; std::getline(cut, cell, ',');) cells.push_back(cell);
+    if (cells.size() != 16) return {};
+    Row row{number, cells[0], cells[8],           cells[1] == "to_film" ? Travel::to_film : Travel::to_scene,
+            {},     {},       std::stoi(cells[9])};
+    for (std::size_t i = 0; i < 6; ++i) {
+      row.in[i] = parsed(cells[2 + i]);
+      row.out[i] = parsed(cells[10 + i]);
+    }
+    result.push_back(row);
+  }
+  return result;
+}
+
+template <class T>
+class ReferenceRays : public testing::Test {
+ public:
+  static constexpr double bound = std::is_same_v<T, float> ? 1e-5 : 1e-13;
+};
+using Plain = testing::Types<float, double>;
+TYPED_TEST_SUITE(ReferenceRays, Plain);
+
+TYPED_TEST(ReferenceRays, AgreeInPlaceDirectionFateAndSurface) {
+  using T = TypeParam;
+  const auto reference = rows();
+  ASSERT_GT(reference.size(), 600u);
+  std::map<std::string, testing_lenses::Sample> lenses;
+  double most = 0;
+  std::string where;
+  for (const Row& row : reference) {
+    const auto& sample = lenses.contains(row.lens)
+                             ? lenses.at(row.lens)
+                             : lenses.emplace(row.lens, testing_lenses::load(row.lens)).first->second;
+    const auto& in = row.in;
+    const Ray<T> ray{{static_cast<T>(in[0]), static_cast<T>(in[1]), static_cast<T>(in[2])},
+                     {static_cast<T>(in[3]), static_cast<T>(in[4]), static_cast<T>(in[5])}};
+    const auto end = petzval::trace(sample.lens, ray, {.travel = row.travel});
+    ASSERT_EQ(name(end.fate), row.fate) << "rays.csv:" << row.line;
+    ASSERT_EQ(end.surface, row.surface) << "rays.csv:" << row.line;
+    const std::array<T, 6> out{end.ray.origin.x,    end.ray.origin.y,    end.ray.origin.z,
+                               end.ray.direction.x, end.ray.direction.y, end.ray.direction.z};
+    // Places over the size of the lens (a ray lost far outside: over its distance from the axis), directions as they
+    // are.
+    const double scale = std::max(sample.size, std::hypot(row.out[0], row.out[1]));
+    for (std::size_t i = 0; i < 6; ++i) {
+      const double error = std::abs(static_cast<double>(out[i]) - row.out[i]) / (i < 3 ? scale : 1);
+      EXPECT_LE(error, this->bound) << "rays.csv:" << row.line << " column " << i;
+      if (error > most) {
+        most = error;
+        where = "line " + std::to_string(row.line) + " column " + std::to_string(i);
+      }
+    }
+  }
+  this->RecordProperty("worst", petzval::number(most, 2) + " " + where);
+}
+
+}  // namespace

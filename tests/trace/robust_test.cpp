@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: Apache-2.0
+// Whatever goes in: every slot of the answer is written and finite.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <vector>
+
+#include "lenses.hpp"
+
+namespace {
+
+using petzval::Ray;
+using petzval::RayArrays;
+using petzval::RayFate;
+using petzval::TracedRay;
+using petzval::TraceOptions;
+using petzval::Travel;
+
+using Random = std::mt19937;
+
+double uniform(Random& random, double low, double high) {
+  return std::uniform_real_distribution<double>(low, high)(random);
+}
+
+/// A lens nobody would build: 1 to 40 surfaces of all kinds, of any size.
+petzval::Lens random_lens(Random& random) {
+  const double scale = std::pow(10.0, uniform(random, -6, 6));
+  petzval::Prescription p;
+  p.name = "random";
+  const std::size_t count = 1 + random() % 40;
+  for (std::size_t i = 0; i < count; ++i) {
+    petzval::SurfaceRow row;
+    const auto kind = random() % 8;
+    row.radius = kind == 0 ? 0 : scale * std::pow(10.0, uniform(random, -1, 3)) * (random() % 2 ? 1 : -1);
+    row.thickness = scale * uniform(random, random() % 10 ? 0 : -1, 1);
+    row.medium.nd = random() % 2 ? 1 : uniform(random, 0.8, 4);
+    if (random() % 3) row.semi_diameter = scale * uniform(random, 0.1, 3);
+    if (random() % 10 == 0) row.inner_semi_diameter = row.semi_diameter.value_or(scale) * 0.3;
+    if (kind == 1) row.conic = uniform(random, -20, 5);
+    if (kind == 2 && row.radius != 0) row.curved_in = random() % 2 ? petzval::Section::x : petzval::Section::y;
+    if (kind == 3) {
+      for (const int order : {3, 4, 6, 7})
+        row.aspheric.push_back({order, uniform(random, -0.2, 0.2) * std::pow(scale, 1 - order)});
+    }
+    if (random() % 12 == 0) {
+      row.mirror = true;
+      row.medium = p.surfaces.empty() ? petzval::Medium{} : p.surfaces.back().medium;
+    }
+    row.stop = i == count / 2;
+    p.surfaces.push_back(std::move(row));
+  }
+  return petzval::compile(p);
+}
+
+/// Mostly rays that do something; some absurd in place or direction.
+template <class T>
+Ray<T> random_ray(Random& random, double scale) {
+  constexpr auto limits = std::numeric_limits<T>();
+  const std::array<T, 10> absurd{0,
+                                 -T(0),
+                                 1,
+                                 limits.max(),
+                                 -limits.max(),
+                                 limits.min(),
+                                 limits.denorm_min(),
+                                 limits.quiet_NaN(),
+                                 limits.infinity(),
+                                 T(1e18)};
+  Ray<T> ray;
+  const double x = uniform(random, -0.4, 0.4), y = uniform(random, -0.4, 0.4);
+  ray.direction = {static_cast<T>(x), static_cast<T>(y),
+                   static_cast<T>((random() % 8 ? 1 : -1) * std::sqrt(1 - x * x - y * y))};
+  for (int i = 0; i < 3; ++i) ray.origin[i] = static_cast<T>(scale * uniform(random, -1.5, 1.5));
+  if (random() % 4 == 0) ray.origin[static_cast<int>(random() % 3)] = absurd[random() % absurd.size()];
+  if (random() % 8 == 0) ray.direction[static_cast<int>(random() % 3)] = absurd[random() % absurd.size()];
+  return ray;
+}
+
+template <class T>
+bool finite(const Ray<T>& r) {
+  return std::isfinite(r.origin.x) && std::isfinite(r.origin.y) && std::isfinite(r.origin.z) &&
+         std::isfinite(r.direction.x) && std::isfinite(r.direction.y) && std::isfinite(r.direction.z);
+}
+
+template <class T>
+class Robust : public testing::Test {};
+using Plain = testing::Types<float, double>;
+TYPED_TEST_SUITE(Robust, Plain);
+
+TYPED_TEST(Robust, NothingButFiniteNumbersComesOutOfAnyLens) {
+  using T = TypeParam;
+  Random random(2024);
+  std::array<int, 5> fates{};
+  for (int lens_number = 0; lens_number < 1000; ++lens_number) {
+    const petzval::Lens lens = random_lens(random);
+    double scale = 1;
+    for (const auto& s : lens.surfaces()) scale = std::max(std::abs(s.thickness), scale * (s.vertex_z == 0 ? 0 : 1));
+    for (int i = 0; i < 500; ++i) {
+      const Ray<T> ray = random_ray<T>(random, scale);
+      const Travel travel = random() % 2 ? Travel::to_film : Travel::to_scene;
+      const TracedRay<T> end = petzval::trace(lens, ray, {.travel = travel, .apertures = random() % 2 == 0});
+      ASSERT_TRUE(finite(end.ray)) << "lens " << lens_number << " ray " << i;
+      ASSERT_LE(static_cast<std::size_t>(end.fate), 4u) << "lens " << lens_number << " ray " << i;
+      ASSERT_GE(end.surface, 0) << "lens " << lens_number << " ray " << i;
+      ASSERT_LT(end.surface, static_cast<int>(lens.surface_count())) << "lens " << lens_number << " ray " << i;
+      ++fates[static_cast<std::size_t>(end.fate)];
+    }
+  }
+  // Every fate but the last, which should be rare, came up.
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_GT(fates[i], 1000) << petzval::name(static_cast<RayFate>(i));
+  EXPECT_LT(fates[4], 50);
+  this->RecordProperty("no_convergence", fates[4]);
+}
+
+TEST(Robust, RaysThatAreNoRaysAreMisses) {
+  const auto lens = testing_lenses::load("double_gauss_100mm_f2.0").lens;
+  const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
+  const int last = static_cast<int>(lens.surface_count()) - 1;
+  for (const Ray<double>& ray : {Ray<double>{{nan, 0, 0}, {0, 0, 1}}, Ray<double>{{0, inf, 0}, {0, 0, 1}},
+                                 Ray<double>{{0, 0, -9}, {0, 0, 0}}, Ray<double>{{0, 0, -9}, {0, 0, 1e200}},
+                                 Ray<double>{{0, 0, -9}, {0, 0, 1.1}}, Ray<double>{{0, 0, -9}, {0, nan, 1}}}) {
+    const auto in = petzval::trace(lens, ray);
+    EXPECT_EQ(in.fate, RayFate::missed_surface);
+    EXPECT_EQ(in.surface, 0);
+    EXPECT_TRUE(finite(in.ray));
+    const auto out = petzval::trace(lens, ray, {.travel = Travel::to_scene});
+    EXPECT_EQ(out.fate, RayFate::missed_surface);
+    EXPECT_EQ(out.surface, last);
+  }
+}
+
+TEST(Robust, AWavelengthThatWasNotCompiledLosesEveryRay) {
+  const auto lens = testing_lenses::load("double_gauss_100mm_f2.0").lens;
+  const Ray<double> axial{{0, 0, -9}, {0, 0, 1}};
+  EXPECT_TRUE(petzval::trace(lens, axial, {.wavelength = 0}).transmitted());
+  for (const std::size_t beyond : {std::size_t{1}, std::size_t{1000000}, static_cast<std::size_t>(-1)}) {
+    const auto end = petzval::trace(lens, axial, {.wavelength = beyond});
+    EXPECT_EQ(end.fate, RayFate::missed_surface);
+    EXPECT_EQ(end.surface, 0);
+  }
+}
+
+template <class T>
+struct Arrays {
+  std::array<std::vector<T>, 6> v;
+
+  explicit Arrays(std::size_t n) {
+    for (auto& a : v) a.assign(n, T(-77));
+  }
+  RayArrays<T> out() { return {v[0].data(), v[1].data(), v[2].data(), v[3].data(), v[4].data(), v[5].data()}; }
+  RayArrays<const T> in() const {
+    return {v[0].data(), v[1].data(), v[2].data(), v[3].data(), v[4].data(), v[5].data()};
+  }
+};
+
+TYPED_TEST(Robust, ABatchIsItsRaysOneByOneToTheBit) {
+  using T = TypeParam;
+  const auto lens = testing_lenses::load("phone_5.6mm_f3.5").lens;
+  Random random(3);
+  for (const std::size_t count : {std::size_t{0}, std::size_t{1}, std::size_t{7}, std::size_t{1000}}) {
+    Arrays<T> in(count), out(count), both(count), bare(count);
+    std::vector<Ray<T>> rays;
+    for (std::size_t i = 0; i < count; ++i) {
+      const Ray<T> ray = random_ray<T>(random, 1);
+      rays.push_back(ray);
+      for (int k = 0; k < 3; ++k) {
+        in.v[static_cast<std::size_t>(k)][i] = ray.origin[k];
+        in.v[static_cast<std::size_t>(k + 3)][i] = ray.direction[k];
+      }
+    }
+    both = in;
+    std::vector<RayFate> fates(count);
+    std::vector<int> surfaces(count, -7);
+    for (const Travel travel : {Travel::to_film, Travel::to_scene}) {
+      const TraceOptions options{.travel = travel};
+      petzval::trace<T>(lens, count, in.in(), out.out(), fates.data(), surfaces.data(), options);
+      both = in;
+      petzval::trace<T>(lens, count, both.in(), both.out(), fates.data(), surfaces.data(), options);
+      petzval::trace<T>(lens, count, in.in(), bare.out(), nullptr, nullptr, options);
+      EXPECT_EQ(both.v, out.v);
+      EXPECT_EQ(bare.v, out.v);
+      for (std::size_t i = 0; i < count; ++i) {
+        const auto one = petzval::trace(lens, rays[i], options);
+        ASSERT_EQ(one.fate, fates[i]);
+        ASSERT_EQ(one.surface, surfaces[i]);
+        for (int k = 0; k < 3; ++k) {
+          ASSERT_EQ(one.ray.origin[k], out.v[static_cast<std::size_t>(k)][i]);
+          ASSERT_EQ(one.ray.direction[k], out.v[static_cast<std::size_t>(k + 3)][i]);
+        }
+      }
+    }
+  }
+}
+
+TEST(Robust, AnEmptyBatchNeedsNoArrays) {
+  const auto lens = testing_lenses::load("ball_10mm").lens;
+  petzval::trace<double>(lens, 0, {}, {}, nullptr, nullptr);
+}
+
+}  // namespace
