@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+#include "petzval/core/export.hpp"
+
+namespace petzval {
+
+/// A linear RGB image in float: width x height pixels of 3 values, rows from the top.
+struct RgbImage {
+  int width = 0;
+  int height = 0;
+  std::vector<float> pixels;
+
+  RgbImage() = default;
+  RgbImage(int w, int h)
+      : width(w), height(h), pixels(static_cast<std::size_t>(w) * static_cast<std::size_t>(h) * 3, 0.0f) {}
+  float* pixel(int x, int y) noexcept { return &pixels[offset(x, y)]; }
+  const float* pixel(int x, int y) const noexcept { return &pixels[offset(x, y)]; }
+
+ private:
+  std::size_t offset(int x, int y) const noexcept {
+    return (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)) * 3;
+  }
+};
+
+/// An 8-bit sRGB image: width x height pixels of 3 values, rows from the top.
+struct Rgb8Image {
+  int width = 0;
+  int height = 0;
+  std::vector<std::uint8_t> pixels;
+};
+
+/// Writes 32-bit float channels R, G, B, without loss. Throws Error that names the file; a file is written as a whole
+/// or not at all.
+PETZVAL_API void write_exr(const RgbImage& image, const std::filesystem::path& file);
+
+/// Reads channels R, G, B of any EXR file as float. Throws Error that names the file.
+PETZVAL_API RgbImage read_exr(const std::filesystem::path& file);
+
+/// Writes an 8-bit sRGB PNG. Throws Error that names the file; a file is written as a whole or not at all.
+PETZVAL_API void write_png(const Rgb8Image& image, const std::filesystem::path& file);
+
+/// Linear light times `exposure` to 8-bit sRGB; negative values and those above 1 are clipped, NaN is black.
+PETZVAL_API Rgb8Image to_srgb8(const RgbImage& image, float exposure = 1.0f);
+
+}  // namespace petzval

@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "petzval/figure/spot_figure.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "petzval/core/error.hpp"
+#include "petzval/core/text.hpp"
+#include "petzval/core/units.hpp"
+#include "petzval/paraxial/first_order.hpp"
+#include "petzval/pupil/pupil.hpp"
+#include "svg.hpp"
+
+namespace petzval {
+namespace {
+
+using detail::Svg;
+using detail::svg_number;
+
+constexpr double cell = 190, gap = 14, under = 22;  // a cell, between cells, for the line below one
+constexpr double left = 118, top = 112, bottom = 76;
+constexpr std::size_t drawn_rays = 600;
+constexpr std::string_view small = "font-size=\"11\" fill=\"#555\"";
+constexpr std::string_view small_centred = "font-size=\"11\" fill=\"#555\" text-anchor=\"middle\"";
+
+/// How a wavelength looks: from violet to brown by its rank, up to three blue, green and red, the custom for F, d and
+/// C.
+struct Look {
+  std::string_view colour;
+  std::size_t marker;
+};
+
+std::vector<Look> looks(std::span<const double> wavelengths_nm) {
+  constexpr std::array<std::string_view, 7> palette{"#7b3fb5", "#2459c9", "#00808a", "#1b8a3a",
+                                                    "#b06f00", "#d03020", "#7a1f1f"};
+  const std::size_t count = wavelengths_nm.size();
+  const std::size_t first = count <= 3 ? 1 : 0, last = count <= 3 ? 5 : 6;
+  std::vector<Look> result;
+  for (const double nm : wavelengths_nm) {
+    const auto rank = static_cast<std::size_t>(
+        std::count_if(wavelengths_nm.begin(), wavelengths_nm.end(), [nm](double other) { return other < nm; }));
+    const std::size_t step = count == 1 ? 0 : (2 * rank * (last - first) + count - 1) / (2 * (count - 1));
+    result.push_back({palette[first + step], rank});
+  }
+  return result;
+}
+
+/// One marker as path commands: plus, cross, square, triangle, diamond by turns.
+std::string marker(std::size_t kind, double x, double y) {
+  const auto at = [](double px, double py) { return "M" + svg_number(px) + " " + svg_number(py); };
+  switch (kind % 5) {
+    case 0: return at(x - 2, y) + "h4" + at(x, y - 2) + "v4";
+    case 1: return at(x - 1.5, y - 1.5) + "l3 3" + at(x - 1.5, y + 1.5) + "l3-3";
+    case 2: return at(x - 1.5, y - 1.5) + "h3v3h-3z";
+    case 3: return at(x, y - 2) + "l1.8 3.2h-3.6z";
+    default: return at(x, y - 2) + "l2 2-2 2-2-2z";
+  }
+}
+
+/// 1, 2 or 5 times a power of ten, not above x.
+double round_length(double x) {
+  const double power = std::pow(10, std::floor(std::log10(x)));
+  return power * (x >= 5 * power ? 5 : x >= 2 * power ? 2 : 1);
+}
+
+std::string micrometres(double mm) { return number(mm * 1e3, 3) + " \u00b5m"; }
+
+/// Of the cone of light that the lens throws on its film.
+double film_side_f_number(const Lens& lens) {
+  const Pupil exit = pupils(lens).exit;
+  return std::isfinite(exit.z) ? std::abs((lens.film_z() - exit.z) / exit.diameter) : paraxial_f_number(lens);
+}
+
+class Figure {
+ public:
+  Figure(const Lens& lens, std::span<const Spot> spots)
+      : lens_(lens),
+        spots_(spots),
+        wavelengths_(lens.wavelengths_nm().size()),
+        rows_(spots.size() / wavelengths_),
+        columns_(wavelengths_ == 1 ? 1 : 1 + wavelengths_),
+        looks_(looks(lens.wavelengths_nm())),
+        f_number_(film_side_f_number(lens)),
+        svg_(std::max(800.0, left + static_cast<double>(columns_) * (cell + gap) + gap),
+             top + static_cast<double>(rows_) * (cell + under + gap) + bottom) {
+    std::vector<std::size_t> order(wavelengths_);
+    std::iota(order.begin(), order.end(), std::size_t(0));
+    const auto nm = lens.wavelengths_nm();
+    std::nth_element(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(wavelengths_ / 2), order.end(),
+                     [&](auto a, auto b) { return nm[a] < nm[b]; });
+    middle_ = order[wavelengths_ / 2];
+    for (std::size_t row = 0; row < rows_; ++row) {
+      std::vector<FilmHits> hits;
+      for (const Spot& spot : of(row)) hits.push_back(spot.hits);
+      sizes_.push_back(spot_size(hits));
+    }
+    limit_ = 1.08 * std::max(extent(), airy(middle_));
+    if (!(limit_ > 0 && std::isfinite(limit_))) limit_ = 1e-3;
+  }
+
+  std::string draw() && {
+    title();
+    for (std::size_t row = 0; row < rows_; ++row) {
+      label(row);
+      for (std::size_t column = 0; column < columns_; ++column) draw_cell(row, column);
+    }
+    footer();
+    return std::move(svg_).finish();
+  }
+
+ private:
+  std::span<const Spot> of(std::size_t row) const { return spots_.subspan(row * wavelengths_, wavelengths_); }
+  double airy(std::size_t w) const { return 1.22 * lens_.wavelengths_nm()[w] * 1e-6 * f_number_; }
+  double cell_x(std::size_t column) const { return left + static_cast<double>(column) * (cell + gap); }
+  double cell_y(std::size_t row) const { return top + static_cast<double>(row) * (cell + under + gap); }
+
+  /// The farthest hit from its row's origin, along x or y.
+  double extent() const {
+    double farthest = 0;
+    for (std::size_t row = 0; row < rows_; ++row) {
+      for (const Spot& spot : of(row)) {
+        for (const double x : spot.hits.x) farthest = std::max(farthest, std::abs(x - sizes_[row].centroid[0]));
+        for (const double y : spot.hits.y) farthest = std::max(farthest, std::abs(y - sizes_[row].centroid[1]));
+      }
+    }
+    return farthest;
+  }
+
+  void title() {
+    const FirstOrder data = first_order(lens_, middle_);
+    const double subject_z = spots_.front().point.z;
+    svg_.text(gap, 26, lens_.name(), "font-size=\"17\" font-weight=\"bold\"");
+    svg_.text(gap, 48,
+              "Spot diagram.  EFL " + number(data.effective_focal_length, 5) + " mm,  f/" +
+                  number(paraxial_f_number(lens_, middle_), 3) + ",  subject at " +
+                  (std::isinf(subject_z) ? "infinity" : "z = " + number(subject_z, 6) + " mm") +
+                  ",  film at z = " + number(lens_.film_z(), 7) + " mm (from the first vertex)");
+    double x = gap;
+    for (std::size_t w = 0; w < wavelengths_; ++w) {
+      svg_.path(marker(looks_[w].marker, x + 4, 65), stroke(w));
+      const std::string name = number(lens_.wavelengths_nm()[w], 6) + " nm";
+      svg_.text(x + 12, 69, name);
+      x += 90;
+    }
+    for (std::size_t column = 0; columns_ > 1 && column < columns_; ++column) {
+      svg_.text(cell_x(column) + cell / 2, top - 10,
+                column == 0 ? "all wavelengths" : number(lens_.wavelengths_nm()[column - 1], 6) + " nm", small_centred);
+    }
+  }
+
+  std::string stroke(std::size_t w) const {
+    return "fill=\"none\" stroke=\"" + std::string(looks_[w].colour) + "\" stroke-width=\"0.8\"";
+  }
+
+  void label(std::size_t row) {
+    const double y = cell_y(row) + cell / 2;
+    svg_.text(gap, y - 6, "field " + number(degrees(of(row).front().point.field_rad), 4) + "\u00b0",
+              "font-weight=\"bold\"");
+    const auto& chief = of(row)[middle_].chief_ray_height;
+    svg_.text(gap, y + 12, "chief ray at", small);
+    svg_.text(gap, y + 27, chief ? "y = " + number(*chief, 4) + " mm" : "none", small);
+  }
+
+  void draw_cell(std::size_t row, std::size_t column) {
+    const double x = cell_x(column), y = cell_y(row);
+    const double cx = x + cell / 2, cy = y + cell / 2, scale = cell / 2 / limit_;
+    const auto [origin_x, origin_y] = sizes_[row].centroid;
+    svg_.rect(x, y, cell, cell, "fill=\"none\" stroke=\"#999\"");
+    svg_.path("M" + svg_number(x) + " " + svg_number(cy) + "h" + svg_number(cell) + "M" + svg_number(cx) + " " +
+                  svg_number(y) + "v" + svg_number(cell),
+              "stroke=\"#e4e4e4\"");
+    const std::size_t first = column == 0 ? 0 : column - 1, last = column == 0 ? wavelengths_ : column;
+    for (std::size_t w = first; w < last; ++w) {
+      const FilmHits& hits = of(row)[w].hits;
+      std::string d;
+      for (std::size_t i = 0; i < std::min(drawn_rays, hits.x.size()); ++i) {
+        d += marker(looks_[w].marker, cx + (hits.x[i] - origin_x) * scale, cy - (hits.y[i] - origin_y) * scale);
+      }
+      if (!d.empty()) svg_.path(d, stroke(w));
+    }
+    const double circle = airy(column == 0 ? middle_ : first) * scale;
+    if (circle < cell / 2) {
+      svg_.circle(cx, cy, circle, "fill=\"none\" stroke=\"#000\" stroke-width=\"1\" stroke-dasharray=\"3 2\"");
+    }
+    const bool empty = std::all_of(of(row).begin() + static_cast<std::ptrdiff_t>(first),
+                                   of(row).begin() + static_cast<std::ptrdiff_t>(last),
+                                   [](const Spot& spot) { return spot.hits.x.empty(); });
+    const SpotSize& size = column == 0 ? sizes_[row] : of(row)[first].size;
+    svg_.text(cx, y + cell + 15,
+              empty ? "no rays" : "RMS " + micrometres(size.rms_radius) + ",  max " + micrometres(size.max_radius),
+              small_centred);
+  }
+
+  void footer() {
+    const double y = cell_y(rows_) + 14, bar = round_length(limit_), length = bar * cell / 2 / limit_;
+    svg_.path("M" + svg_number(left) + " " + svg_number(y) + "v-6m0 3h" + svg_number(length) + "m0-3v6",
+              "fill=\"none\" stroke=\"#222\" stroke-width=\"1.2\"");
+    svg_.text(left + length + 8, y + 1, micrometres(bar) + ",  the same in all cells");
+    svg_.text(
+        gap, y + 24,
+        "Origin: centroid of all rays of the field. RMS and max: radii about the centroid of the rays in the cell. "
+        "Wavelengths have equal weight.",
+        small);
+    svg_.text(gap, y + 40,
+              "Dashed: Airy circle, 1.22 wavelength N, N = " + number(f_number_, 3) + " on the film's side; " +
+                  micrometres(airy(middle_)) + " at " + number(lens_.wavelengths_nm()[middle_], 6) + " nm. " +
+                  std::to_string(spots_.front().hits.sent) + " rays sent a spot, " + std::to_string(drawn_rays) +
+                  " drawn at most.",
+              small);
+  }
+
+  const Lens& lens_;
+  std::span<const Spot> spots_;
+  std::size_t wavelengths_, rows_, columns_;
+  std::size_t middle_ = 0;  // the wavelength in the middle of the set, for what has one wavelength
+  std::vector<Look> looks_;
+  double f_number_;
+  Svg svg_;
+  std::vector<SpotSize> sizes_;  // of a row
+  double limit_ = 0;             // half a cell, mm
+};
+
+}  // namespace
+
+std::string spot_figure(const Lens& lens, std::span<const Spot> spots) {
+  const std::size_t wavelengths = lens.wavelengths_nm().size();
+  bool ordered = !spots.empty() && spots.size() % wavelengths == 0;
+  for (std::size_t i = 0; ordered && i < spots.size(); ++i) ordered = spots[i].wavelength == i % wavelengths;
+  if (!ordered) {
+    throw Error("spot_figure: " + std::to_string(spots.size()) + " spots, wanted fields by " +
+                std::to_string(wavelengths) + " wavelengths in the order of spot_diagram");
+  }
+  return Figure(lens, spots).draw();
+}
+
+}  // namespace petzval

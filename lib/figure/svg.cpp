@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "svg.hpp"
+
+#include <cmath>
+#include <utility>
+
+#include "petzval/core/text.hpp"
+
+namespace petzval::detail {
+namespace {
+
+std::string attribute(std::string_view name, double value) {
+  return " " + std::string(name) + "=\"" + svg_number(value) + "\"";
+}
+
+}  // namespace
+
+std::string svg_number(double value) {
+  const double rounded = std::round(value * 100) / 100;
+  return number(rounded == 0 ? 0.0 : rounded);  // no "-0"
+}
+
+Svg::Svg(double width, double height) {
+  out_ = "<svg xmlns=\"http://www.w3.org/2000/svg\"" + attribute("width", width) + attribute("height", height) +
+         " viewBox=\"0 0 " + svg_number(width) + " " + svg_number(height) +
+         "\" font-family=\"sans-serif\" font-size=\"12\" fill=\"#222\">\n";
+  rect(0, 0, width, height, "fill=\"#fff\"");
+}
+
+void Svg::element(std::string_view head, std::string_view attributes) {
+  out_.append("<").append(head).append(attributes.empty() ? "" : " ").append(attributes).append("/>\n");
+}
+
+void Svg::rect(double x, double y, double width, double height, std::string_view attributes) {
+  element("rect" + attribute("x", x) + attribute("y", y) + attribute("width", width) + attribute("height", height),
+          attributes);
+}
+
+void Svg::circle(double x, double y, double radius, std::string_view attributes) {
+  element("circle" + attribute("cx", x) + attribute("cy", y) + attribute("r", radius), attributes);
+}
+
+void Svg::path(std::string_view d, std::string_view attributes) {
+  element("path d=\"" + std::string(d) + "\"", attributes);
+}
+
+void Svg::text(double x, double y, std::string_view text, std::string_view attributes) {
+  out_ += "<text" + attribute("x", x) + attribute("y", y);
+  out_.append(attributes.empty() ? "" : " ").append(attributes).append(">");
+  for (const char c : text) {
+    switch (c) {
+      case '&': out_ += "&amp;"; break;
+      case '<': out_ += "&lt;"; break;
+      case '>': out_ += "&gt;"; break;
+      default: out_ += c;
+    }
+  }
+  out_ += "</text>\n";
+}
+
+std::string Svg::finish() && {
+  out_ += "</svg>\n";
+  return std::move(out_);
+}
+
+}  // namespace petzval::detail

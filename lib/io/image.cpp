@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "petzval/io/image.hpp"
+
+#include <ImathBox.h>
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfInputFile.h>
+#include <ImfOutputFile.h>
+#include <ImfStdIO.h>
+#include <png.h>
+
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <string_view>
+#include <system_error>
+
+#include "petzval/core/error.hpp"
+#include "write_whole.hpp"
+
+namespace petzval {
+namespace {
+
+constexpr std::array<const char*, 3> channel_names{"R", "G", "B"};
+constexpr std::size_t most_pixels = std::size_t(1)
+                                    << 28;  // an unpacked image of 3 GiB; a header may claim more than any disk holds
+
+template <class Image>
+void validate(const Image& image, const std::filesystem::path& file) {
+  if (image.width > 0 && image.height > 0 &&
+      image.pixels.size() == static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height) * 3) {
+    return;
+  }
+  throw Error(file.string() + ": image is " + std::to_string(image.width) + " x " + std::to_string(image.height) +
+              " with " + std::to_string(image.pixels.size()) + " values, wanted 3 a pixel and one pixel at least");
+}
+
+/// The three channels of interleaved float pixels whose upper left corner is the data window's.
+Imf::FrameBuffer frame(float* pixels, const Imath::Box2i& window, int width, int height) {
+  Imf::FrameBuffer buffer;
+  for (std::size_t c = 0; c < channel_names.size(); ++c) {
+    buffer.insert(channel_names[c],
+                  Imf::Slice::Make(Imf::FLOAT, pixels + c, window.min, width, height, 3 * sizeof(float),
+                                   3 * sizeof(float) * static_cast<std::size_t>(width)));
+  }
+  return buffer;
+}
+
+float srgb(float linear) noexcept {
+  return linear <= 0.0031308f ? 12.92f * linear : 1.055f * std::pow(linear, 1 / 2.4f) - 0.055f;
+}
+
+}  // namespace
+
+void write_exr(const RgbImage& image, const std::filesystem::path& file) {
+  validate(image, file);
+  Imf::StdOSStream stream;
+  try {
+    Imf::Header header(image.width, image.height);
+    for (const char* name : channel_names) header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+    Imf::OutputFile out(stream, header, 0);
+    out.setFrameBuffer(frame(const_cast<float*>(image.pixels.data()), header.dataWindow(), image.width, image.height));
+    out.writePixels(image.height);
+  } catch (const std::exception& e) {
+    throw Error(file.string() + ": " + e.what());
+  }
+  detail::write_whole(stream.str(), file);
+}
+
+RgbImage read_exr(const std::filesystem::path& file) {
+  try {
+    Imf::InputFile in(file.string().c_str(), 0);
+    for (const char* name : channel_names) {
+      if (!in.header().channels().findChannel(name))
+        throw Error(std::string("no channel ") + name + ", wanted R, G and B");
+    }
+    const Imath::Box2i window = in.header().dataWindow();
+    const auto width = std::int64_t(window.max.x) - window.min.x + 1;
+    const auto height = std::int64_t(window.max.y) - window.min.y + 1;
+    if (static_cast<std::size_t>(width) > most_pixels / static_cast<std::size_t>(height)) {
+      throw Error("image is " + std::to_string(width) + " x " + std::to_string(height) + ", wanted " +
+                  std::to_string(most_pixels) + " pixels at most");
+    }
+    RgbImage image(static_cast<int>(width), static_cast<int>(height));
+    in.setFrameBuffer(frame(image.pixels.data(), window, image.width, image.height));
+    in.readPixels(window.min.y, window.max.y);
+    return image;
+  } catch (const std::exception& e) {
+    throw Error(file.string() + ": " + e.what());
+  }
+}
+
+void write_png(const Rgb8Image& image, const std::filesystem::path& file) {
+  validate(image, file);
+  png_image png{};
+  png.version = PNG_IMAGE_VERSION;
+  png.width = static_cast<png_uint_32>(image.width);
+  png.height = static_cast<png_uint_32>(image.height);
+  png.format = PNG_FORMAT_RGB;
+  // A bound on the packed size saves the first of two packings that asking for it would take.
+  png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(png);
+  std::string bytes(size, '\0');
+  if (!png_image_write_to_memory(&png, bytes.data(), &size, 0, image.pixels.data(), 0, nullptr)) {
+    throw Error(file.string() + ": " + png.message);
+  }
+  detail::write_whole({bytes.data(), size}, file);
+}
+
+Rgb8Image to_srgb8(const RgbImage& image, float exposure) {
+  Rgb8Image out{image.width, image.height, {}};
+  out.pixels.reserve(image.pixels.size());
+  for (const float linear : image.pixels) {
+    const float light = linear * exposure;
+    // The comparisons are false for NaN, which becomes black.
+    const float clipped = light > 0 ? (light < 1 ? light : 1.0f) : 0.0f;
+    out.pixels.push_back(static_cast<std::uint8_t>(255 * srgb(clipped) + 0.5f));
+  }
+  return out;
+}
+
+}  // namespace petzval

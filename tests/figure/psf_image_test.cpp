@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "petzval/figure/psf_image.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "petzval/core/error.hpp"
+#include "petzval/core/units.hpp"
+#include "petzval/io/prescription_json.hpp"
+#include "petzval/pupil/pupil.hpp"
+
+namespace petzval {
+namespace {
+
+double light(const RgbImage& image, double pixel_mm) {
+  double sum = 0;
+  for (std::size_t i = 0; i < image.pixels.size(); i += 3) sum += static_cast<double>(image.pixels[i]);
+  return sum * pixel_mm * pixel_mm;
+}
+
+TEST(Render, PixelsSumToTheThroughput) {
+  const Lens lens =
+      compile(read_prescription(std::filesystem::path(PETZVAL_TEST_DATA) / "lenses" / "double_gauss_100mm_f1.35.json"));
+  const std::vector<std::array<double, 3>> white{{1, 1, 1}};
+  for (const double f_number : {1.4, 4.0}) {
+    for (const int pixels : {32, 200}) {
+      const PointImage image =
+          point_image(with_f_number(lens, f_number), {radians(5), -1200}, {.samples = 1 << 14, .pixels = pixels});
+      const RgbImage picture = render(image.psf, white);
+      EXPECT_EQ(picture.width, pixels);
+      EXPECT_NEAR(light(picture, image.psf.pixel_mm) / image.throughput, 1, 1e-6);
+    }
+  }
+}
+
+TEST(Render, WeighsWavelengths) {
+  Psf psf;
+  psf.pixels = 2;
+  psf.pixel_mm = 0.5;
+  psf.wavelengths_nm = {450, 650};
+  psf.counts = {0, 10, 0, 0, /**/ 0, 20, 0, 5};
+  psf.sent = {100, 100};
+  psf.transmitted = {10, 25};
+  psf.window_area = {2, 4};
+  psf.entrance_pupil_area = 8;
+  const RgbImage image = render(psf, std::vector<std::array<double, 3>>{{0, 0.25, 1}, {1, 0.75, -0.5}});
+  // A ray carries 2 / (100 * 8) or 4 / (100 * 8), spread over 0.25 mm^2: 0.01 and 0.02 per mm^2.
+  const std::vector<float> expected{0, 0, 0, 0.4f, 0.325f, -0.1f, 0, 0, 0, 0.1f, 0.075f, -0.05f};
+  ASSERT_EQ(image.pixels.size(), expected.size());
+  for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_NEAR(image.pixels[i], expected[i], 1e-7f) << i;
+}
+
+TEST(Render, WantsAWeightForEachWavelength) {
+  Psf psf;
+  psf.wavelengths_nm = {450, 650};
+  try {
+    render(psf, std::vector<std::array<double, 3>>{{1, 1, 1}});
+    FAIL();
+  } catch (const Error& e) {
+    EXPECT_STREQ(e.what(), "render: 1 weights, wanted one for each of 2 wavelengths");
+  }
+}
+
+}  // namespace
+}  // namespace petzval

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "petzval/figure/spot_figure.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <filesystem>
+#include <limits>
+#include <regex>
+#include <string>
+
+#include "petzval/core/error.hpp"
+#include "petzval/core/text.hpp"
+#include "petzval/core/units.hpp"
+#include "petzval/io/prescription_json.hpp"
+
+namespace petzval {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// Wavelengths are made up by the Abbe model: the figure asks only that there be several.
+Lens lens_of(const std::string& id, std::span<const double> wavelengths, const std::string& name = {}) {
+  Prescription p = read_prescription(std::filesystem::path(PETZVAL_TEST_DATA) / "lenses" / (id + ".json"));
+  if (!name.empty()) p.name = name;
+  for (auto& row : p.surfaces) {
+    row.medium = {.nd = row.medium.nd, .vd = row.medium.vd};
+    row.medium.vd = row.medium.nd > 1 ? std::optional(50.0) : std::nullopt;
+  }
+  return compile(p, wavelengths, {.missing_glass = MissingGlass::abbe});
+}
+
+std::size_t count(const std::string& text, const std::string& part) {
+  std::size_t found = 0;
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++found;
+  return found;
+}
+
+TEST(SpotFigure, HasACellForEachFieldAndWavelength) {
+  const std::array wavelengths{486.1, 587.6, 656.3};
+  const Lens lens = lens_of("double_gauss_100mm_f2.0", wavelengths);
+  const std::array fields{0.0, radians(7.0), radians(14.0)};
+  const auto spots = spot_diagram(lens, -infinity, fields, 512);
+  const std::string svg = spot_figure(lens, spots);
+  EXPECT_EQ(count(svg, "stroke=\"#999\""), 3u * 4u);
+  EXPECT_EQ(count(svg, "stroke-dasharray"), 3u * 4u);
+  EXPECT_EQ(count(svg, "RMS "), 3u * 4u + 1u);
+  EXPECT_NE(svg.find("field 14\u00b0"), std::string::npos);
+  EXPECT_NE(svg.find("subject at infinity"), std::string::npos);
+  for (const char* name : {"486.1 nm", "587.6 nm", "656.3 nm"}) EXPECT_EQ(count(svg, ">" + std::string(name)), 2u);
+  for (const Spot& spot : spots) {
+    EXPECT_NE(svg.find("RMS " + number(1e3 * spot.size.rms_radius, 3) + " \u00b5m,  max " +
+                       number(1e3 * spot.size.max_radius, 3) + " \u00b5m"),
+              std::string::npos);
+  }
+  EXPECT_EQ(svg, spot_figure(lens, spots));
+}
+
+TEST(SpotFigure, DrawsWithinItsCells) {
+  const std::array wavelengths{587.5618};
+  const Lens lens = lens_of("double_gauss_100mm_f1.35", wavelengths);
+  const std::array fields{0.0, radians(15.0)};
+  const std::string svg = spot_figure(lens, spot_diagram(lens, -1500, fields, 2000));
+  const std::regex cell("<rect x=\"([0-9.]+)\" y=\"([0-9.]+)\" width=\"([0-9.]+)\" height=\"[0-9.]+\" fill=\"none\"");
+  const std::regex move("M([-0-9.]+) ([-0-9.]+)h4");
+  std::size_t marks = 0;
+  for (std::sregex_iterator it(svg.begin(), svg.end(), cell), end; it != end; ++it) {
+    const double x = std::stod((*it)[1]), y = std::stod((*it)[2]), side = std::stod((*it)[3]);
+    // The markers of this cell stand between its frame and the line of text below it.
+    const auto from = static_cast<std::size_t>(it->position()), to = svg.find("<text", from);
+    const std::string content = svg.substr(from, to - from);
+    for (std::sregex_iterator m(content.begin(), content.end(), move); m != end; ++m, ++marks) {
+      EXPECT_GE(std::stod((*m)[1]) + 2, x);
+      EXPECT_LE(std::stod((*m)[1]) + 2, x + side);
+      EXPECT_GE(std::stod((*m)[2]), y);
+      EXPECT_LE(std::stod((*m)[2]), y + side);
+    }
+  }
+  EXPECT_EQ(marks, 2u * 600u);
+}
+
+TEST(SpotFigure, SaysWhereThereIsNothing) {
+  const std::array wavelengths{587.5618};
+  const Lens lens = lens_of("double_gauss_100mm_f1.35", wavelengths);
+  const std::array fields{0.0, radians(60.0)};
+  const std::string svg = spot_figure(lens, spot_diagram(lens, -infinity, fields, 256));
+  EXPECT_EQ(count(svg, "no rays"), 1u);
+  EXPECT_EQ(svg.find("nan"), std::string::npos);
+  EXPECT_EQ(svg.find("inf "), std::string::npos);
+}
+
+TEST(SpotFigure, OfAPerfectLensShowsTheAiryCircle) {
+  const std::array wavelengths{587.5618};
+  const Lens lens = lens_of("analytic_plano_hyperbolic_100mm", wavelengths);
+  const std::array fields{0.0};
+  const std::string svg = spot_figure(lens, spot_diagram(lens, -infinity, fields, 256));
+  EXPECT_EQ(count(svg, "stroke-dasharray"), 1u);
+  EXPECT_NE(svg.find("at 587.562 nm"), std::string::npos);
+}
+
+TEST(SpotFigure, EscapesTheNameOfTheLens) {
+  const std::array wavelengths{587.5618};
+  const Lens lens = lens_of("double_gauss_100mm_f1.35", wavelengths, "A < B & C");
+  const std::array fields{0.0};
+  const std::string svg = spot_figure(lens, spot_diagram(lens, -infinity, fields, 64));
+  EXPECT_NE(svg.find(">A &lt; B &amp; C</text>"), std::string::npos);
+}
+
+TEST(SpotFigure, RefusesSpotsOfAnotherSet) {
+  const std::array wavelengths{486.1, 656.3};
+  const Lens lens = lens_of("double_gauss_100mm_f1.35", wavelengths);
+  const std::array fields{0.0};
+  auto spots = spot_diagram(lens, -infinity, fields, 16);
+  EXPECT_THROW(spot_figure(lens, {}), Error);
+  EXPECT_THROW(spot_figure(lens, std::span(spots).first(1)), Error);
+  std::swap(spots[0], spots[1]);
+  EXPECT_THROW(spot_figure(lens, spots), Error);
+}
+
+}  // namespace
+}  // namespace petzval

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "petzval/io/image.hpp"
+
+#include <gtest/gtest.h>
+#include <png.h>
+
+#include <bit>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <random>
+#include <string>
+
+#include "../message.hpp"
+
+namespace petzval {
+namespace {
+
+using testing::message;
+
+/// A folder of the test's own, gone afterwards.
+class ImageFiles : public ::testing::Test {
+ protected:
+  ImageFiles() : folder_(std::filesystem::path(::testing::TempDir()) / ("petzval_image_" + std::string(test_name()))) {
+    std::filesystem::remove_all(folder_);
+    std::filesystem::create_directories(folder_);
+  }
+  ~ImageFiles() override { std::filesystem::remove_all(folder_); }
+
+  static const char* test_name() { return ::testing::UnitTest::GetInstance()->current_test_info()->name(); }
+  std::size_t files() const {
+    return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(folder_), {}));
+  }
+
+  std::filesystem::path folder_;
+};
+
+RgbImage random_floats(int width, int height) {
+  RgbImage image(width, height);
+  std::mt19937 random(7);
+  for (float& value : image.pixels) {
+    do value = std::bit_cast<float>(static_cast<std::uint32_t>(random()));
+    while (std::isnan(value));
+  }
+  image.pixels[0] = -0.0f;
+  image.pixels[1] = std::numeric_limits<float>::denorm_min();
+  image.pixels[2] = std::numeric_limits<float>::infinity();
+  return image;
+}
+
+TEST_F(ImageFiles, ExrKeepsEveryBitOfEveryFloat) {
+  const auto file = folder_ / "a.exr";
+  for (const auto& [width, height] : {std::pair{1, 1}, {37, 5}, {5, 37}, {130, 67}}) {
+    const RgbImage image = random_floats(width, height);
+    write_exr(image, file);
+    const RgbImage back = read_exr(file);
+    ASSERT_EQ(back.width, width);
+    ASSERT_EQ(back.height, height);
+    for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+      ASSERT_EQ(std::bit_cast<std::uint32_t>(back.pixels[i]), std::bit_cast<std::uint32_t>(image.pixels[i])) << i;
+    }
+  }
+  EXPECT_EQ(files(), 1u);
+}
+
+TEST_F(ImageFiles, PngDecodesToTheSamePixels) {
+  Rgb8Image image{19, 7, {}};
+  for (int i = 0; i < 19 * 7 * 3; ++i) image.pixels.push_back(static_cast<std::uint8_t>(i * 37));
+  const auto file = folder_ / "a.png";
+  write_png(image, file);
+  EXPECT_EQ(files(), 1u);
+
+  std::ifstream in(file, std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+  EXPECT_EQ(bytes.substr(0, 8), "\x89PNG\r\n\x1a\n");
+  EXPECT_EQ(bytes.substr(12, 4), "IHDR");
+  EXPECT_EQ(bytes.substr(24, 2), std::string("\x08\x02", 2));  // 8 bits, RGB
+  EXPECT_NE(bytes.find("sRGB"), std::string::npos);
+
+  png_image png{};
+  png.version = PNG_IMAGE_VERSION;
+  ASSERT_TRUE(png_image_begin_read_from_file(&png, file.c_str()));
+  ASSERT_EQ(png.width, 19u);
+  ASSERT_EQ(png.height, 7u);
+  png.format = PNG_FORMAT_RGB;
+  std::vector<std::uint8_t> pixels(PNG_IMAGE_SIZE(png));
+  ASSERT_TRUE(png_image_finish_read(&png, nullptr, pixels.data(), 0, nullptr));
+  EXPECT_EQ(pixels, image.pixels);
+}
+
+TEST_F(ImageFiles, FailureNamesTheFileAndLeavesNothingBehind) {
+  const RgbImage linear(2, 2);
+  const Rgb8Image bytes = to_srgb8(linear);
+  const auto nowhere = folder_ / "missing" / "a";
+  EXPECT_NE(message([&] { write_exr(linear, nowhere); }).find(nowhere.string() + ": cannot be written"),
+            std::string::npos);
+  EXPECT_NE(message([&] { write_png(bytes, nowhere); }).find(nowhere.string() + ": cannot be written"),
+            std::string::npos);
+  // The name of a folder: the last step fails, when all has been written.
+  const auto taken = folder_ / "taken";
+  std::filesystem::create_directories(taken / "inside");
+  EXPECT_NE(message([&] { write_exr(linear, taken); }).find(taken.string() + ": cannot be written"), std::string::npos);
+  EXPECT_NE(message([&] { write_png(bytes, taken); }).find(taken.string() + ": cannot be written"), std::string::npos);
+  EXPECT_EQ(files(), 1u);
+}
+
+TEST_F(ImageFiles, RefusesImagesWithoutPixelsOrWithTooFew) {
+  const auto file = folder_ / "a.exr";
+  RgbImage torn(3, 2);
+  torn.pixels.pop_back();
+  EXPECT_EQ(message([&] { write_exr(torn, file); }),
+            file.string() + ": image is 3 x 2 with 17 values, wanted 3 a pixel and one pixel at least");
+  EXPECT_EQ(message([&] { write_png(Rgb8Image{}, file); }),
+            file.string() + ": image is 0 x 0 with 0 values, wanted 3 a pixel and one pixel at least");
+  EXPECT_EQ(files(), 0u);
+}
+
+TEST_F(ImageFiles, ReadingSaysWhichFileIsBad) {
+  const auto absent = folder_ / "absent.exr";
+  EXPECT_NE(message([&] { read_exr(absent); }).find(absent.string()), std::string::npos);
+
+  const auto file = folder_ / "a.exr";
+  write_exr(random_floats(64, 64), file);
+  const auto size = std::filesystem::file_size(file);
+  for (const auto kept : {size / 2, std::uintmax_t(100), std::uintmax_t(4), std::uintmax_t(0)}) {
+    std::filesystem::resize_file(file, kept);
+    EXPECT_NE(message([&] { read_exr(file); }).find(file.string()), std::string::npos) << kept;
+  }
+}
+
+TEST(Image, SrgbOfLinearLight) {
+  RgbImage image(3, 1);
+  // IEC 61966-2-1 by hand: 0.5 is 0.735 of full scale; the last three lie about the straight part.
+  image.pixels = {0.0f, 1.0f, 0.5f, -1.0f, 7.0f, 0.0031308f, std::numeric_limits<float>::quiet_NaN(), 0.25f, 0.002f};
+  EXPECT_EQ(to_srgb8(image).pixels, (std::vector<std::uint8_t>{0, 255, 188, 0, 255, 10, 0, 137, 7}));
+  EXPECT_EQ(to_srgb8(image, 2).pixels, (std::vector<std::uint8_t>{0, 255, 255, 0, 255, 18, 0, 188, 13}));
+}
+
+}  // namespace
+}  // namespace petzval
