@@ -10,6 +10,6 @@ root=$(CDPATH= cd -- "$(dirname -- "$0")/.." && pwd)
 . "$root/cmake/build.sh"
 
 need $library_packages $example_packages $test_packages
-build -DPETZVAL_BUILD_TESTS=ON -DCMAKE_COMPILE_WARNING_AS_ERROR=ON
+build -DPETZVAL_BUILD_TESTS=ON -DPETZVAL_BUILD_EXAMPLES=ON -DCMAKE_COMPILE_WARNING_AS_ERROR=ON
 echo "== Testing"
 exec ctest --test-dir "$BUILD_DIR" -j "$(nproc)" --output-on-failure "$@"

@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: Apache-2.0
+// Renders what a lens makes of a point light, for several focus distances: one EXR and one PNG each, a contact sheet,
+// and the numbers behind them as JSON.
+//
+//   bokeh_psf data/lenses/double_gauss_100mm_f1.35.json --subject-distance-mm 1000
+//             --focus-mm 800,900,1000,1100,1200 --out out
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+#include <string>
+#include <vector>
+
+#include "petzval/core/error.hpp"
+#include "petzval/core/text.hpp"
+#include "petzval/core/units.hpp"
+#include "petzval/pupil/pupil.hpp"
+#include "support/bokeh.hpp"
+#include "support/cli.hpp"
+#include "support/files.hpp"
+#include "support/load_lens.hpp"
+
+namespace {
+
+using examples::finite_or_null;
+using examples::Json;
+
+constexpr int picture_pixels = 512, tile_pixels = 320;
+
+struct Options {
+  std::string lens_file, out_folder, origin = "front_vertex", criterion = "paraxial";
+  std::vector<double> focus_mm, wavelengths_nm{petzval::d_line_nm};
+  double subject_mm = 0, f_number = 0, field_deg = 0;  // f_number 0: wide open
+  std::uint32_t samples = 1u << 21;
+};
+
+struct Picture {
+  double focus_mm = 0;
+  examples::BokehScene scene;
+  petzval::PointImage image;
+};
+
+/// The lens stopped down, as the d line sees it: one size of the stop for all wavelengths.
+petzval::Lens stopped_down(const petzval::Lens& lens, const petzval::Lens& d_line_stopped) {
+  const std::size_t stop = petzval::pupils(d_line_stopped).stop;
+  return petzval::with_semi_diameter(lens, stop, d_line_stopped.surfaces()[stop].semi_diameter);
+}
+
+std::vector<Picture> render(const examples::LoadedLens& loaded, const Options& options,
+                            const examples::BokehSetup& setup) {
+  petzval::Lens lens = loaded.lens, d_line = examples::at_d_line(loaded);
+  if (options.f_number > 0) {
+    d_line = petzval::with_f_number(d_line, options.f_number);
+    lens = stopped_down(lens, d_line);
+  }
+  examples::Progress progress("bokeh", options.focus_mm.size());
+  std::vector<Picture> pictures;
+  for (const double focus : options.focus_mm) {
+    progress.step(examples::focus_caption(focus));
+    auto scene = examples::focused_scene(lens, d_line, focus, setup);
+    auto image = petzval::point_image(
+        scene.lens, scene.light,
+        {.samples = options.samples, .pixels = picture_pixels, .threads = examples::worker_threads()});
+    pictures.push_back({focus, std::move(scene), std::move(image)});
+  }
+  return pictures;
+}
+
+/// All tiles at one scale: that of the largest blur.
+examples::Sheet contact_sheet(const std::vector<Picture>& pictures, const examples::LoadedLens& loaded,
+                              const Options& options) {
+  double half_width = 1e-4;  // a perfect point has no size of its own
+  for (const Picture& p : pictures) half_width = std::max(half_width, 1.08 * p.image.size.max_radius);
+  examples::SheetRow row{
+      .title = loaded.lens.name(),
+      .subtitle = "point light at " + petzval::number(options.subject_mm) + " mm, " +
+                  petzval::number(options.field_deg) + "°; distances from the " +
+                  (options.origin == "film" ? "film" : "front vertex") + "; focus " + options.criterion +
+                  (options.f_number > 0 ? "; f/" + petzval::number(options.f_number) : "; wide open"),
+      .pixel_mm = 2 * half_width / tile_pixels,
+      .tiles = {}};
+  examples::Progress progress("contact sheet", pictures.size());
+  for (const Picture& p : pictures) {
+    progress.step(examples::focus_caption(p.focus_mm));
+    const auto image = petzval::point_image(p.scene.lens, p.scene.light,
+                                            {.samples = options.samples,
+                                             .pixels = tile_pixels,
+                                             .half_width_mm = half_width,
+                                             .threads = examples::worker_threads()});
+    row.tiles.push_back(examples::bokeh_tile(p.focus_mm, image));
+  }
+  return {"Bokeh of a point light", {std::move(row)}, examples::bokeh_notes()};
+}
+
+Json to_json(const std::vector<Picture>& pictures, const examples::LoadedLens& loaded, const Options& options) {
+  Json json{{"lens", loaded.lens.name()},
+            {"dispersion", petzval::name(loaded.lens.dispersion())},
+            {"wavelengths_nm", options.wavelengths_nm},
+            {"subject_distance_mm", finite_or_null(options.subject_mm)},
+            {"distance_from", options.origin},
+            {"f_number", options.f_number > 0 ? options.f_number : petzval::real_f_number(examples::at_d_line(loaded))},
+            {"field_deg", options.field_deg},
+            {"samples", options.samples},
+            {"results", Json::array()}};
+  for (const Picture& p : pictures) {
+    json["results"].push_back({{"focus_mm", finite_or_null(p.focus_mm)},
+                               {"film_z_mm", p.scene.lens.film_z()},
+                               {"criterion", options.criterion},
+                               {"throughput", p.image.throughput},
+                               {"centroid_mm", p.image.size.centroid},
+                               {"rms_radius_mm", p.image.size.rms_radius},
+                               {"radius_mm", p.image.size.max_radius},
+                               {"radial_profile", p.image.radial_profile},
+                               {"picture_centre_mm", p.image.psf.centre},
+                               {"picture_pixel_mm", p.image.psf.pixel_mm}});
+  }
+  return json;
+}
+
+void write_all(const std::vector<Picture>& pictures, const examples::LoadedLens& loaded, const Options& options) {
+  const auto sheet = examples::draw_sheet(contact_sheet(pictures, loaded, options));
+  const std::filesystem::path folder = options.out_folder;
+  examples::make_folder(folder);
+  const auto written = [](const std::filesystem::path& file) { std::cout << file.string() << '\n'; };
+  for (const Picture& p : pictures) {
+    const std::string stem = loaded.id + "_focus_" + petzval::number(p.focus_mm) + "mm";
+    const petzval::RgbImage image = examples::irradiance(p.image.psf);
+    petzval::write_exr(image, folder / (stem + ".exr"));
+    written(folder / (stem + ".exr"));
+    petzval::write_png(examples::expose(image).picture, folder / (stem + ".png"));
+    written(folder / (stem + ".png"));
+  }
+  petzval::write_png(sheet, folder / (loaded.id + "_bokeh.png"));
+  written(folder / (loaded.id + "_bokeh.png"));
+  examples::write_text(folder / (loaded.id + "_bokeh.json"), to_json(pictures, loaded, options).dump(1) + '\n');
+  written(folder / (loaded.id + "_bokeh.json"));
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options options;
+  CLI::App app(
+      "Renders the geometric point spread function of a lens for a point light, focused at several distances.\n"
+      "Writes to DIR, and prints the paths: LENS_focus_<D>mm.exr (float, linear: the light that the paraxial entrance "
+      "pupil "
+      "takes in counts 1, per mm^2 of film), LENS_focus_<D>mm.png (each exposed for itself), LENS_bokeh.png (all at "
+      "one "
+      "scale) and LENS_bokeh.json. Pictures show the film with x to the right and y upwards. The lens is focused for "
+      "the "
+      "d line (587.5618 nm).",
+      "bokeh_psf");
+  app.add_option("LENS.json", options.lens_file, "lens prescription (JSON as in data/lenses)")->required();
+  examples::add_number(app, "--subject-distance-mm", options.subject_mm, examples::positive_length,
+                       "distance of the light (mm), or inf")
+      ->required()
+      ->default_str("");
+  examples::add_numbers(app, "--focus-mm", options.focus_mm, examples::positive_length,
+                        "distances to focus at (mm), or inf")
+      ->required();
+  app.add_option("--distance-from", options.origin, "where the distances of light and focus begin")
+      ->check(CLI::IsMember({"front_vertex", "film"}))
+      ->capture_default_str();
+  app.add_option("--criterion", options.criterion, "what in focus means: cardinal points, or least RMS blur on axis")
+      ->check(CLI::IsMember({"paraxial", "min_rms"}))
+      ->capture_default_str();
+  examples::add_numbers(app, "--wavelengths-nm", options.wavelengths_nm, examples::positive_number,
+                        "wavelengths of the light (nm); several are weighted to RGB by the CIE 1931 functions");
+  examples::add_number(app, "--f-number", options.f_number, examples::positive_number,
+                       "stop the lens down (by exact rays)")
+      ->default_str("wide open");
+  examples::add_number(app, "--field-deg", options.field_deg, examples::finite_number,
+                       "angle of the light towards +y, seen from the paraxial entrance pupil (degrees)");
+  examples::add_samples(app, options.samples);
+  app.add_option("--out", options.out_folder, "folder for the results")->required()->type_name("DIR");
+
+  return examples::run(app, argc, argv, [&] {
+    const auto loaded = examples::load_lens(options.lens_file, options.wavelengths_nm);
+    const examples::BokehSetup setup{
+        .light_mm = options.subject_mm,
+        .origin = options.origin == "film" ? petzval::DistanceOrigin::film : petzval::DistanceOrigin::front_vertex,
+        .criterion =
+            options.criterion == "min_rms" ? petzval::FocusCriterion::min_rms : petzval::FocusCriterion::paraxial,
+        .field_rad = petzval::radians(options.field_deg)};
+    write_all(render(loaded, options, setup), loaded, options);
+  });
+}

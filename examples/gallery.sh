@@ -1,0 +1,43 @@
+#!/bin/sh
+# SPDX-License-Identifier: Apache-2.0
+# Renders the gallery with programs that are built: bokeh after figure 7 of Wu et al. 2010, spot diagrams, and index.html.
+#
+#   sh examples/gallery.sh PROGRAMS OUT        (examples/run.sh calls it with build/examples and out)
+set -eu
+if [ $# -ne 2 ]; then
+  echo "usage: sh examples/gallery.sh PROGRAMS OUT" >&2
+  exit 2
+fi
+programs=$1
+out=$2
+here=$(CDPATH= cd -- "$(dirname -- "$0")" && pwd)
+lenses=$here/../data/lenses
+mkdir -p "$out"
+
+echo "== Figure 7 of Wu et al. 2010 (1/4)"
+"$programs/wu_figure7" --criterion min_rms --out "$out/wu_figure7.png"
+"$programs/wu_figure7" --criterion paraxial --out "$out/wu_figure7_paraxial.png"
+
+echo "== What the paper says about it, by number (2/4)"
+"$programs/wu_statements" --html "$out/wu_statements.html" > "$out/wu_statements.txt"
+echo "$out/wu_statements.txt"
+
+echo "== Bokeh off axis, in colour (3/4)"
+"$programs/bokeh_psf" "$lenses/double_gauss_100mm_f1.35.json" --subject-distance-mm 1000 \
+  --focus-mm 800,900,1000,1100,1200 --field-deg 8 --wavelengths-nm "$(seq -s , 430 10 670)" --samples 262144 \
+  --out "$out/bokeh"
+
+echo "== Spot diagrams of five lenses (4/4)"
+# spots LENS FIELDS WAVELENGTHS
+spots() {
+  "$programs/spot_diagram" "$lenses/$1.json" --field-deg "$2" --wavelengths-nm "$3" --out "$out/spots"
+}
+f_d_c=486.1327,587.5618,656.2725  # the spectral lines F, d and C (nm)
+spots double_gauss_100mm_f1.35 0,7,12 $f_d_c
+spots double_gauss_100mm_f2_28deg 0,10,14 $f_d_c
+spots cooke_triplet_50mm_f5 0,14,20 $f_d_c
+spots petzval_portrait_100mm_f3.4 0,7,12 $f_d_c
+spots fisheye_10mm_f4 0,40,70 587.5618
+
+sed -e "/@statements@/r $out/wu_statements.html" -e "/@statements@/d" "$here/gallery.html" > "$out/index.html"
+echo "== Done: open $out/index.html"

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+// Spot diagrams: where the rays of a point meet the film, for several field angles and wavelengths.
+//
+//   spot_diagram data/lenses/cooke_triplet_50mm_f5.json --field-deg 0,14,20 --wavelengths-nm 486.1,587.6,656.3 --out
+//   out
+#include <iostream>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "petzval/core/text.hpp"
+#include "petzval/core/units.hpp"
+#include "petzval/figure/spot_figure.hpp"
+#include "petzval/focus/focus.hpp"
+#include "petzval/psf/spot.hpp"
+#include "support/cli.hpp"
+#include "support/files.hpp"
+#include "support/load_lens.hpp"
+
+namespace {
+
+using examples::Json;
+
+struct Options {
+  std::string lens_file, out_folder;
+  std::vector<double> field_deg, wavelengths_nm;
+  double subject_mm = std::numeric_limits<double>::infinity(), defocus_mm = 0;
+  std::uint32_t samples = 4096;
+};
+
+std::vector<petzval::Spot> spots(const petzval::Lens& lens, const Options& options) {
+  std::vector<double> fields;
+  for (const double degrees : options.field_deg) fields.push_back(petzval::radians(degrees));
+  return petzval::spot_diagram(lens, -options.subject_mm, fields, options.samples);
+}
+
+/// Spots come field by field; the angle as it was given, not as it comes back from radians.
+double field_deg(const Options& options, std::size_t spot) {
+  return options.field_deg[spot / options.wavelengths_nm.size()];
+}
+
+std::string hits_csv(const std::vector<petzval::Spot>& all, const Options& options) {
+  std::string csv = "field_deg,wavelength_nm,x_mm,y_mm\n";
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const std::string start =
+        petzval::number(field_deg(options, i)) + ',' + petzval::number(options.wavelengths_nm[all[i].wavelength]) + ',';
+    for (std::size_t k = 0; k < all[i].hits.x.size(); ++k) {
+      csv += start + petzval::number(all[i].hits.x[k]) + ',' + petzval::number(all[i].hits.y[k]) + '\n';
+    }
+  }
+  return csv;
+}
+
+Json to_json(const std::vector<petzval::Spot>& all, const petzval::Lens& lens, const Options& options) {
+  Json rows = Json::array();
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const petzval::Spot& spot = all[i];
+    const bool empty = spot.hits.x.empty();  // nothing gets through: no size either
+    rows.push_back({{"field_deg", field_deg(options, i)},
+                    {"wavelength_nm", options.wavelengths_nm[spot.wavelength]},
+                    {"chief_ray_height_mm", spot.chief_ray_height ? Json(*spot.chief_ray_height) : Json(nullptr)},
+                    {"rms_radius_mm", empty ? Json(nullptr) : Json(spot.size.rms_radius)},
+                    {"max_radius_mm", empty ? Json(nullptr) : Json(spot.size.max_radius)},
+                    {"reference", "centroid"},
+                    {"rays_sent", spot.hits.sent},
+                    {"rays_transmitted", spot.hits.x.size()},
+                    {"film_z_mm", lens.film_z()},
+                    {"dispersion", petzval::name(lens.dispersion())}});
+  }
+  return rows;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options options;
+  CLI::App app(
+      "Draws spot diagrams. The film stands at the paraxial image of the subject at the d line (587.5618 nm), plus "
+      "--defocus-mm.\n"
+      "Writes to DIR, and prints the paths: LENS_spots.svg, LENS_spots.csv (the hits: "
+      "field_deg,wavelength_nm,x_mm,y_mm) and "
+      "LENS_spots.json (a row per field and wavelength: chief ray height, RMS and largest radius about the centroid; "
+      "null "
+      "where no ray gets through).",
+      "spot_diagram");
+  app.add_option("LENS.json", options.lens_file, "lens prescription (JSON as in data/lenses)")->required();
+  examples::add_numbers(app, "--field-deg", options.field_deg, examples::finite_number,
+                        "field angles towards +y, in object space at the paraxial entrance pupil (degrees)")
+      ->required();
+  examples::add_numbers(app, "--wavelengths-nm", options.wavelengths_nm, examples::positive_number, "wavelengths (nm)")
+      ->required();
+  examples::add_number(app, "--subject-distance-mm", options.subject_mm, examples::positive_length,
+                       "distance of the subject from the front vertex (mm), or inf");
+  examples::add_number(app, "--defocus-mm", options.defocus_mm, examples::finite_number,
+                       "shift of the film away from the lens (mm)");
+  examples::add_samples(app, options.samples);
+  app.add_option("--out", options.out_folder, "folder for the results")->required()->type_name("DIR");
+
+  return examples::run(app, argc, argv, [&] {
+    const auto loaded = examples::load_lens(options.lens_file, options.wavelengths_nm);
+    const double image_z = petzval::with_focus(examples::at_d_line(loaded), options.subject_mm).film_z();
+    const petzval::Lens lens = petzval::with_film(loaded.lens, image_z + options.defocus_mm);
+    const auto all = spots(lens, options);
+
+    const std::filesystem::path folder = options.out_folder;
+    const auto write = [&](const char* kind, const std::string& text) {
+      const auto file = folder / (loaded.id + "_spots." + kind);
+      examples::write_text(file, text);
+      std::cout << file.string() << '\n';
+    };
+    const std::string figure = petzval::spot_figure(lens, all);
+    examples::make_folder(folder);
+    write("svg", figure);
+    write("csv", hits_csv(all, options));
+    write("json", to_json(all, lens, options).dump(1) + '\n');
+  });
+}

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bokeh.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <thread>
+
+#include "petzval/core/error.hpp"
+#include "petzval/core/text.hpp"
+#include "petzval/figure/psf_image.hpp"
+#include "petzval/media/catalogue.hpp"
+#include "petzval/psf/colour.hpp"
+
+namespace examples {
+
+BokehScene focused_scene(const petzval::Lens& lens, const petzval::Lens& d_line, double focus_mm,
+                         const BokehSetup& setup) {
+  const double film_z = petzval::with_focus(d_line, focus_mm, setup.criterion, setup.origin).film_z();
+  const double light_z = (setup.origin == petzval::DistanceOrigin::film ? film_z : 0.0) - setup.light_mm;
+  if (!(light_z < 0)) {
+    throw petzval::Error(lens.name() + ": a light " + petzval::number(setup.light_mm) + " mm from the film lies " +
+                         petzval::number(light_z) + " mm behind the front vertex, wanted one in front of it");
+  }
+  return {petzval::with_film(lens, film_z), {setup.field_rad, light_z}};
+}
+
+petzval::RgbImage irradiance(const petzval::Psf& psf) {
+  const auto file = petzval::data_directory() / "glass" / "cie1931_2deg_5nm.csv";
+  return petzval::render(psf, petzval::rgb_weights(psf.wavelengths_nm, petzval::ColourMatching::load(file)));
+}
+
+Exposed expose(const petzval::RgbImage& image) {
+  std::vector<float> lit;
+  for (std::size_t i = 0; i < image.pixels.size(); i += 3) {
+    const float brightest = std::max({image.pixels[i], image.pixels[i + 1], image.pixels[i + 2]});
+    if (brightest > 0) lit.push_back(brightest);
+  }
+  if (lit.empty()) return {petzval::to_srgb8(image), 0};
+  const auto rank = lit.begin() + static_cast<std::ptrdiff_t>((lit.size() - 1) * 99 / 100);
+  std::nth_element(lit.begin(), rank, lit.end());
+  return {petzval::to_srgb8(image, 1 / *rank), *rank};
+}
+
+std::string focus_caption(double focus_mm) {
+  return std::isinf(focus_mm) ? "focus infinity" : "focus " + petzval::number(focus_mm) + " mm";
+}
+
+namespace {
+
+/// Three digits, without an exponent.
+std::string short_number(double value) {
+  return value < 100 ? petzval::number(value, 3) : petzval::number(std::round(value));
+}
+
+}  // namespace
+
+Tile bokeh_tile(double focus_mm, const petzval::PointImage& image) {
+  Exposed exposed = expose(irradiance(image.psf));
+  return {std::move(exposed.picture),
+          {focus_caption(focus_mm),
+           "radius " + short_number(image.size.max_radius) + " mm, RMS " + short_number(image.size.rms_radius) + " mm",
+           "white " + short_number(exposed.white_per_mm2) + " / mm²"}};
+}
+
+std::vector<std::string> bokeh_notes() {
+  return {
+      "Radius: largest hit distance from the centroid. Film scale is the same along a row; brightness is not: each "
+      "tile "
+      "is exposed for itself.",
+      "White: the 99th percentile of its lit pixels, as a share of the light that the entrance pupil takes in, per mm² "
+      "of film."};
+}
+
+int worker_threads() { return static_cast<int>(std::max(1u, std::thread::hardware_concurrency())); }
+
+}  // namespace examples

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <vector>
+
+/// What the example programs share. It is no part of the library.
+namespace examples {
+
+/// Values that a number on the command line may take; NaN never.
+struct Range {
+  double least = -std::numeric_limits<double>::max();
+  double most = std::numeric_limits<double>::max();
+  const char* words = "a finite number";
+};
+inline constexpr Range finite_number{};
+inline constexpr Range positive_length{std::numeric_limits<double>::min(), std::numeric_limits<double>::infinity(),
+                                       "a number above 0, or inf"};
+inline constexpr Range positive_number{std::numeric_limits<double>::min(), std::numeric_limits<double>::max(),
+                                       "a finite number above 0"};
+
+/// A whole text as one decimal number, whatever the locale. Throws petzval::Error beginning with `where`.
+double parse_number(const std::string& where, std::string_view text, const Range& range);
+
+/// "10" or "0,10,20". Throws petzval::Error beginning with `where`.
+std::vector<double> parse_numbers(const std::string& where, std::string_view text, const Range& range);
+
+/// Options whose values are read by the functions above; the variable's value is the default that --help shows.
+CLI::Option* add_number(CLI::App& app, const std::string& flag, double& value, const Range& range,
+                        const std::string& help);
+CLI::Option* add_numbers(CLI::App& app, const std::string& flag, std::vector<double>& values, const Range& range,
+                         const std::string& help);
+
+/// Rays per wavelength, 1 to 2^26.
+CLI::Option* add_samples(CLI::App& app, std::uint32_t& samples);
+
+/// Reads the command line, runs the body and gives the exit status: 0, or 1 with the reason in one line on standard
+/// error.
+int run(CLI::App& app, int argc, char** argv, const std::function<void()>& body);
+
+/// Shows how far a long job is, in place, where standard error is a terminal.
+class Progress {
+ public:
+  Progress(std::string title, std::size_t steps);
+  ~Progress();
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+  void step(const std::string& what);
+
+ private:
+  std::string title_;
+  std::size_t steps_, done_ = 0;
+  bool shown_;
+};
+
+}  // namespace examples

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "contact_sheet.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "font.hpp"
+#include "petzval/core/text.hpp"
+
+namespace examples {
+namespace {
+
+constexpr Colour paper{14, 15, 18}, ink{236, 237, 240}, faint{150, 154, 162};
+constexpr int margin = 36, gap = 10, line = 21;
+constexpr int title_size = 26, row_title_size = 20, caption_size = 15;
+constexpr int title_height = 44, row_title_height = 64;
+
+void fill(petzval::Rgb8Image& picture, int x0, int y0, int width, int height, const Colour& colour) {
+  for (int y = y0; y < y0 + height; ++y) {
+    for (int x = x0; x < x0 + width; ++x) {
+      const auto pixel =
+          (static_cast<std::size_t>(y) * static_cast<std::size_t>(picture.width) + static_cast<std::size_t>(x)) * 3;
+      std::copy(colour.begin(), colour.end(), picture.pixels.begin() + static_cast<std::ptrdiff_t>(pixel));
+    }
+  }
+}
+
+void place(petzval::Rgb8Image& picture, int x, int y, const petzval::Rgb8Image& tile) {
+  for (int row = 0; row < tile.height; ++row) {
+    const auto from = static_cast<std::ptrdiff_t>(row) * tile.width * 3;
+    const auto to = (static_cast<std::ptrdiff_t>(y + row) * picture.width + x) * 3;
+    std::copy_n(tile.pixels.begin() + from, tile.width * 3, picture.pixels.begin() + to);
+  }
+}
+
+/// The longest of 1, 2, 5 x 10^k mm that is no longer than the limit.
+double round_length(double limit) {
+  const double decade = std::pow(10.0, std::floor(std::log10(limit)));
+  for (const double step : {5.0, 2.0}) {
+    if (step * decade <= limit) return step * decade;
+  }
+  return decade;
+}
+
+void draw_scale_bar(petzval::Rgb8Image& picture, Font& font, int x, int bottom, int tile_width, double pixel_mm) {
+  const double length = round_length(pixel_mm * tile_width / 3);
+  const int width = std::max(1, static_cast<int>(std::lround(length / pixel_mm)));
+  fill(picture, x + 12, bottom - 14, width, 3, ink);
+  font.draw(picture, x + 12, bottom - 21, 13, petzval::number(length, 3) + " mm", ink);
+}
+
+}  // namespace
+
+petzval::Rgb8Image draw_sheet(const Sheet& sheet) {
+  Font font;
+  int width = 2 * margin, height = margin + title_height + margin;
+  width += font.width(sheet.title, title_size);
+  for (const std::string& note : sheet.notes) width = std::max(width, 2 * margin + font.width(note, caption_size));
+  for (const SheetRow& row : sheet.rows) {
+    const int tile = row.tiles.front().picture.width;
+    const int lines = static_cast<int>(row.tiles.front().captions.size());
+    width = std::max(width, 2 * margin + static_cast<int>(row.tiles.size()) * (tile + gap) - gap);
+    width = std::max(width, 2 * margin + font.width(row.subtitle, caption_size));
+    height += row_title_height + tile + lines * line + 2 * gap;
+  }
+  height += static_cast<int>(sheet.notes.size()) * line;
+
+  petzval::Rgb8Image picture{width, height, {}};
+  picture.pixels.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 3);
+  fill(picture, 0, 0, width, height, paper);
+
+  int y = margin;
+  font.draw(picture, margin, y + title_size, title_size, sheet.title, ink);
+  y += title_height;
+  for (const SheetRow& row : sheet.rows) {
+    font.draw(picture, margin, y + 28, row_title_size, row.title, ink);
+    font.draw(picture, margin, y + 50, caption_size, row.subtitle, faint);
+    y += row_title_height;
+    const int tile_size = row.tiles.front().picture.width;
+    int x = margin;
+    for (const Tile& tile : row.tiles) {
+      place(picture, x, y, tile.picture);
+      int baseline = y + tile_size + line;
+      for (const std::string& caption : tile.captions) {
+        font.draw(picture, x + 2, baseline, caption_size, caption, &caption == &tile.captions.front() ? ink : faint);
+        baseline += line;
+      }
+      x += tile_size + gap;
+    }
+    draw_scale_bar(picture, font, margin, y + tile_size, tile_size, row.pixel_mm);
+    y += tile_size + static_cast<int>(row.tiles.front().captions.size()) * line + 2 * gap;
+  }
+  y += line;
+  for (const std::string& note : sheet.notes) {
+    font.draw(picture, margin, y, caption_size, note, faint);
+    y += line;
+  }
+  return picture;
+}
+
+}  // namespace examples

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "petzval/io/image.hpp"
+
+namespace examples {
+
+/// A picture and the lines below it.
+struct Tile {
+  petzval::Rgb8Image picture;
+  std::vector<std::string> captions;
+};
+
+/// Tiles side by side, all at one scale: `pixel_mm` of film a pixel, from which the scale bar is drawn.
+struct SheetRow {
+  std::string title;
+  std::string subtitle;
+  double pixel_mm = 0;
+  std::vector<Tile> tiles;
+};
+
+struct Sheet {
+  std::string title;
+  std::vector<SheetRow> rows;
+  std::vector<std::string> notes;  ///< lines at the foot
+};
+
+/// Lays the tiles out on a near-black sheet with captions. Tiles are square and of one size.
+petzval::Rgb8Image draw_sheet(const Sheet& sheet);
+
+}  // namespace examples

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "files.hpp"
+
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <sstream>
+#include <system_error>
+
+#include "petzval/core/error.hpp"
+
+namespace examples {
+
+Json finite_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+std::string read_text(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  if (!in) throw petzval::Error(file.string() + ": cannot be opened: " + std::strerror(errno));
+  std::ostringstream text;
+  text << in.rdbuf();
+  if (!in || in.bad()) throw petzval::Error(file.string() + ": cannot be read");
+  return std::move(text).str();
+}
+
+void write_text(const std::filesystem::path& file, const std::string& text) {
+  std::ofstream out(file, std::ios::binary);
+  if (!out) throw petzval::Error(file.string() + ": cannot be written: " + std::strerror(errno));
+  out << text;
+  out.close();
+  if (!out) throw petzval::Error(file.string() + ": cannot be written to its end");
+}
+
+void make_folder(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (!std::filesystem::is_directory(folder)) {
+    throw petzval::Error(folder.string() + ": cannot be made a folder" + (error ? ": " + error.message() : ""));
+  }
+}
+
+}  // namespace examples

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string_view>
+
+#include "petzval/io/image.hpp"
+
+namespace examples {
+
+using Colour = std::array<std::uint8_t, 3>;
+
+/// Draws text on pictures in the system's sans-serif font, as Fontconfig names it.
+class Font {
+ public:
+  /// Throws petzval::Error where the system has no font.
+  Font();
+  ~Font();
+
+  /// Width of an UTF-8 text, in pixels.
+  int width(std::string_view text, int pixel_size);
+
+  /// Draws with the left end of the baseline at (x, y); what falls outside the picture is clipped.
+  void draw(petzval::Rgb8Image& picture, int x, int y, int pixel_size, std::string_view text, const Colour& colour);
+
+ private:
+  struct Face;
+  std::unique_ptr<Face> face_;
+};
+
+}  // namespace examples

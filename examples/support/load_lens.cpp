@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "load_lens.hpp"
+
+#include <array>
+#include <iostream>
+#include <utility>
+
+#include "petzval/core/text.hpp"
+#include "petzval/core/units.hpp"
+#include "petzval/io/prescription_json.hpp"
+
+namespace examples {
+namespace {
+
+petzval::CompileOptions with_stand_ins(const petzval::GlassCatalogue& glasses) {
+  return {.glasses = &glasses, .missing_glass = petzval::MissingGlass::abbe};
+}
+
+void say_what_is_known(const LoadedLens& loaded) {
+  if (loaded.lens.dispersion() == petzval::Dispersion::catalogue) return;
+  const std::size_t missing = loaded.lens.missing_glasses().size();
+  const std::string line = petzval::number(loaded.prescription.reference_wavelength_nm) + " nm";
+  std::cerr << "note: " << loaded.id << ": ";
+  if (missing == 0) {
+    std::cerr << "no medium disperses\n";
+    return;
+  }
+  std::cerr << missing << (missing == 1 ? " medium is" : " media are") << " in no glass table; "
+            << (loaded.lens.dispersion() == petzval::Dispersion::abbe
+                    ? "the n_d/V_d model stands in away from " + line
+                    : "without V_d the lens can be used at " + line + " only")
+            << '\n';
+}
+
+}  // namespace
+
+LoadedLens load_lens(const std::filesystem::path& file, std::span<const double> wavelengths_nm) {
+  petzval::Prescription prescription = petzval::read_prescription(file);
+  auto glasses = petzval::GlassCatalogue::load(petzval::data_directory() / "glass");
+  petzval::Lens lens = petzval::compile(prescription, wavelengths_nm, with_stand_ins(glasses));
+  LoadedLens loaded{file.stem().string(), std::move(prescription), std::move(glasses), std::move(lens)};
+  say_what_is_known(loaded);
+  return loaded;
+}
+
+petzval::Lens at_d_line(const LoadedLens& loaded) {
+  return petzval::compile(loaded.prescription, std::array{petzval::d_line_nm}, with_stand_ins(loaded.glasses));
+}
+
+}  // namespace examples

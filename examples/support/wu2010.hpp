@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace examples {
+
+/// Looks of a defocused point light, as Wu et al. 2010 put them into words for their figure 7.
+enum class Look {
+  ring,           ///< dark disc with a bright ring
+  ring_and_core,  ///< the same with a slightly bright core
+  hollow_core,    ///< bright core with a dark centre, dark ring around
+  core,           ///< bright core, dark ring around
+  uniform,        ///< uniform disc
+  point,          ///< in focus: the sharpest of the five
+};
+const char* words(Look look);
+
+/// One row of their figure 7 as it is repeated here.
+struct WuRow {
+  const char* lens;  ///< file below data/lenses, without .json
+  const char* title;
+  const char* subtitle;  ///< where the lens comes from
+  std::array<Look, 5> printed;
+};
+
+/// A light at 1000 mm, on axis, at the d line, focused at five distances.
+inline constexpr double wu_light_mm = 1000;
+inline constexpr std::array<double, 5> wu_focus_mm{800, 900, 1000, 1100, 1200};
+std::span<const WuRow> wu_rows();
+
+/// What a radial profile says in numbers. Irradiance is relative to its mean over the disc.
+struct ProfileShape {
+  double centre = 0;     ///< mean within 0.1 of the radius
+  double core = 0;       ///< mean within 0.2 of the radius
+  double brightest = 0;  ///< of ten rings of equal width
+  int brightest_ring = 0;
+  double darkest_inside = 0;  ///< of the rings within the brightest one; 0 where there is none
+  double deviation = 0;       ///< RMS over the area of the disc, ten rings
+};
+ProfileShape profile_shape(std::span<const double, 64> profile);
+
+/// The look of a profile; never `point`, which is a matter of comparison.
+Look look(const ProfileShape& shape);
+
+}  // namespace examples

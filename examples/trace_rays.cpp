@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+// Traces rays from a CSV file through a lens and writes where they ended, and why.
+//
+//   printf 'x_mm,y_mm,z_mm,dx,dy,dz\n0,10,-50,0,0,1\n' > rays.csv
+//   trace_rays data/lenses/double_gauss_100mm_f1.35.json --rays rays.csv --out traced.csv
+#include "petzval/trace/trace.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "petzval/core/error.hpp"
+#include "petzval/core/text.hpp"
+#include "petzval/core/units.hpp"
+#include "support/cli.hpp"
+#include "support/files.hpp"
+#include "support/load_lens.hpp"
+#include "support/rays_csv.hpp"
+
+namespace {
+
+using examples::RayTable;
+
+/// Directions are made unit vectors in double, whatever their length was.
+void normalise(RayTable& rays) {
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    // Through a power of two, so that neither tiny nor huge components lose digits.
+    const double largest = std::max({std::abs(rays.dx[i]), std::abs(rays.dy[i]), std::abs(rays.dz[i])});
+    const int exponent = std::ilogb(largest);
+    const double x = std::scalbn(rays.dx[i], -exponent);
+    const double y = std::scalbn(rays.dy[i], -exponent);
+    const double z = std::scalbn(rays.dz[i], -exponent);
+    const double length = std::sqrt(x * x + y * y + z * z);
+    rays.dx[i] = x / length;
+    rays.dy[i] = y / length;
+    rays.dz[i] = z / length;
+  }
+}
+
+template <class T>
+std::vector<T> rounded(const std::vector<double>& values, const std::string& where, const char* column) {
+  std::vector<T> result;
+  result.reserve(values.size());
+  for (const double value : values) {
+    if (std::abs(value) > static_cast<double>(std::numeric_limits<T>::max())) {
+      throw petzval::Error(where + ": line " + std::to_string(result.size() + 2) + ", column " + column + ": found " +
+                           petzval::number(value) + ", wanted a number within the range of float");
+    }
+    result.push_back(static_cast<T>(value));
+  }
+  return result;
+}
+
+template <class T>
+std::string traced_csv(const petzval::Lens& lens, const RayTable& rays, const petzval::TraceOptions& options,
+                       const std::string& where) {
+  auto x = rounded<T>(rays.x, where, "x_mm"), y = rounded<T>(rays.y, where, "y_mm"),
+       z = rounded<T>(rays.z, where, "z_mm");
+  auto dx = rounded<T>(rays.dx, where, "dx"), dy = rounded<T>(rays.dy, where, "dy"),
+       dz = rounded<T>(rays.dz, where, "dz");
+  std::vector<petzval::RayFate> fates(rays.size());
+  std::vector<int> surfaces(rays.size());
+  petzval::trace<T>(lens, rays.size(), {x.data(), y.data(), z.data(), dx.data(), dy.data(), dz.data()},
+                    {x.data(), y.data(), z.data(), dx.data(), dy.data(), dz.data()}, fates.data(), surfaces.data(),
+                    options);
+
+  std::string csv = "x_mm,y_mm,z_mm,dx,dy,dz,fate,surface\n";
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    for (const T value : {x[i], y[i], z[i], dx[i], dy[i], dz[i]}) csv += examples::digits17(value) + ',';
+    csv += petzval::name(fates[i]);
+    csv += ',' + std::to_string(surfaces[i]) + '\n';
+  }
+  return csv;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  std::string lens_file, rays_file, out_file, precision = "double", travel = "to_film";
+  double wavelength_nm = petzval::d_line_nm;
+  bool ignore_apertures = false;
+
+  CLI::App app(
+      "Traces rays through a lens, surface by surface. All lengths in mm, in the lens frame: origin at the first "
+      "vertex, "
+      "light runs towards +z.",
+      "trace_rays");
+  app.add_option("LENS.json", lens_file, "lens prescription (JSON as in data/lenses)")->required();
+  app.add_option("--rays", rays_file, "CSV with the columns x_mm,y_mm,z_mm,dx,dy,dz; directions of any length")
+      ->required()
+      ->type_name("CSV");
+  app.add_option(
+         "--out", out_file,
+         "CSV to write, one line per ray in the same order: x_mm,y_mm,z_mm,dx,dy,dz,fate,surface; the point is the "
+         "hit on the last surface reached, surfaces count from 0, 17 digits")
+      ->required()
+      ->type_name("CSV");
+  app.add_option("--precision", precision, "arithmetic of the trace")
+      ->check(CLI::IsMember({"float", "double"}))
+      ->capture_default_str();
+  app.add_option("--travel", travel, "way of the light through the lens")
+      ->check(CLI::IsMember({"to_film", "to_scene"}))
+      ->capture_default_str();
+  examples::add_number(app, "--wavelength-nm", wavelength_nm, examples::positive_number, "wavelength (nm)");
+  app.add_flag("--ignore-apertures", ignore_apertures, "let rays pass outside the clear diameters");
+
+  return examples::run(app, argc, argv, [&] {
+    const auto loaded = examples::load_lens(lens_file, std::array{wavelength_nm});
+    RayTable rays = examples::parse_rays(examples::read_text(rays_file), rays_file);
+    normalise(rays);
+    const petzval::TraceOptions options{
+        .travel = travel == "to_film" ? petzval::Travel::to_film : petzval::Travel::to_scene,
+        .apertures = !ignore_apertures};
+    examples::write_text(out_file, precision == "float" ? traced_csv<float>(loaded.lens, rays, options, rays_file)
+                                                        : traced_csv<double>(loaded.lens, rays, options, rays_file));
+  });
+}

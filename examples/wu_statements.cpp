@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: Apache-2.0
+// Holds what Wu et al. 2010 say about their figure 7 against radial profiles, by number: for both meanings of "in
+// focus" and both origins of "distance from the lens".
+//
+//   wu_statements --html wu_statements.html
+#include <array>
+#include <iostream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "petzval/core/text.hpp"
+#include "petzval/core/units.hpp"
+#include "petzval/media/catalogue.hpp"
+#include "support/bokeh.hpp"
+#include "support/cli.hpp"
+#include "support/files.hpp"
+#include "support/load_lens.hpp"
+#include "support/wu2010.hpp"
+
+namespace {
+
+using examples::Look;
+
+struct Verdict {
+  std::string lens;
+  double focus_mm = 0;
+  Look printed{};
+  std::string criterion, origin;
+  Look found{};
+  bool agrees = false;
+  double rms_radius = 0;
+  examples::ProfileShape shape;
+};
+
+/// The five pictures of one lens under one reading of the text.
+std::vector<Verdict> verdicts(const examples::WuRow& wu, const petzval::Lens& lens, const examples::BokehSetup& setup,
+                              std::uint32_t samples) {
+  std::vector<Verdict> row;
+  std::size_t sharpest = 0;
+  for (std::size_t i = 0; i < examples::wu_focus_mm.size(); ++i) {
+    const double focus = examples::wu_focus_mm[i];
+    const auto scene = examples::focused_scene(lens, lens, focus, setup);
+    const auto image =
+        petzval::point_image(scene.lens, scene.light, {.samples = samples, .threads = examples::worker_threads()});
+    const auto shape = examples::profile_shape(image.radial_profile);
+    row.push_back({.lens = wu.lens,
+                   .focus_mm = focus,
+                   .printed = wu.printed[i],
+                   .criterion = std::string(petzval::name(setup.criterion)),
+                   .origin = setup.origin == petzval::DistanceOrigin::film ? "film" : "front_vertex",
+                   .found = examples::look(shape),
+                   .agrees = false,
+                   .rms_radius = image.size.rms_radius,
+                   .shape = shape});
+    if (row[i].rms_radius < row[sharpest].rms_radius) sharpest = i;
+  }
+  // Only the picture that is said to be in focus is judged by its sharpness.
+  for (std::size_t i = 0; i < row.size(); ++i) {
+    if (row[i].printed == Look::point && i == sharpest) row[i].found = Look::point;
+    row[i].agrees = row[i].found == row[i].printed;
+  }
+  return row;
+}
+
+std::vector<Verdict> all_verdicts(std::uint32_t samples) {
+  using petzval::DistanceOrigin, petzval::FocusCriterion;
+  std::vector<Verdict> all;
+  examples::Progress progress("statements", examples::wu_rows().size() * 4);
+  for (const examples::WuRow& wu : examples::wu_rows()) {
+    const auto file = petzval::data_directory() / "lenses" / (std::string(wu.lens) + ".json");
+    const auto loaded = examples::load_lens(file, std::array{petzval::d_line_nm});
+    for (const FocusCriterion criterion : {FocusCriterion::paraxial, FocusCriterion::min_rms}) {
+      for (const DistanceOrigin origin : {DistanceOrigin::front_vertex, DistanceOrigin::film}) {
+        progress.step(wu.lens);
+        const auto row = verdicts(
+            wu, loaded.lens, {.light_mm = examples::wu_light_mm, .origin = origin, .criterion = criterion}, samples);
+        all.insert(all.end(), row.begin(), row.end());
+      }
+    }
+  }
+  return all;
+}
+
+std::string fixed(double value, int decimals) {
+  std::ostringstream text;
+  text.imbue(std::locale::classic());
+  text << std::fixed << std::setprecision(decimals) << value;
+  return text.str();
+}
+
+std::array<std::string, 12> cells(const Verdict& v) {
+  return {v.lens,
+          petzval::number(v.focus_mm),
+          v.criterion,
+          v.origin,
+          words(v.printed),
+          words(v.found),
+          v.agrees ? "yes" : "NO",
+          fixed(v.rms_radius, 3),
+          fixed(v.shape.core, 2),
+          fixed(v.shape.brightest, 2) + " at " + fixed(0.1 * v.shape.brightest_ring + 0.05, 2),
+          fixed(v.shape.darkest_inside, 2),
+          fixed(v.shape.deviation, 2)};
+}
+
+constexpr std::array<const char*, 12> headings{"lens",    "focus mm",       "criterion",      "distances from",
+                                               "printed", "found",          "agrees",         "RMS mm",
+                                               "core",    "brightest ring", "darkest inside", "deviation"};
+
+std::string to_text(const std::vector<Verdict>& all) {
+  std::vector<std::array<std::string, 12>> rows;
+  std::array<std::size_t, 12> widths{};
+  std::array<std::string, 12> top;
+  for (std::size_t c = 0; c < top.size(); ++c) top[c] = headings[c];
+  rows.push_back(top);
+  for (const Verdict& v : all) rows.push_back(cells(v));
+  for (const auto& row : rows) {
+    for (std::size_t c = 0; c < row.size(); ++c) widths[c] = std::max(widths[c], row[c].size());
+  }
+  std::ostringstream text;
+  for (const auto& row : rows) {
+    for (std::size_t c = 0; c < row.size(); ++c) {
+      text << row[c] << (c + 1 < row.size() ? std::string(widths[c] - row[c].size() + 2, ' ') : "\n");
+    }
+  }
+  return text.str();
+}
+
+/// A table for the gallery: a line a statement, the four readings side by side.
+std::string to_html(const std::vector<Verdict>& all) {
+  std::ostringstream html;
+  html << "<table class=\"statements\">\n<thead><tr><th rowspan=\"2\">lens</th><th rowspan=\"2\">focus</th>"
+          "<th rowspan=\"2\">the paper says</th><th colspan=\"2\">film at the paraxial focus</th>"
+          "<th colspan=\"2\">film at least RMS blur</th></tr>\n<tr>";
+  for (int i = 0; i < 2; ++i) html << "<th>from front vertex</th><th>from film</th>";
+  html << "</tr></thead>\n<tbody>\n";
+  const std::size_t columns = examples::wu_focus_mm.size();
+  for (std::size_t lens = 0; lens < examples::wu_rows().size(); ++lens) {
+    for (std::size_t i = 0; i < columns; ++i) {
+      const Verdict* first = &all[lens * 4 * columns + i];
+      html << "<tr" << (i == 0 ? " class=\"first\"" : "") << '>';
+      if (i == 0) html << "<th rowspan=\"" << columns << "\">" << examples::wu_rows()[lens].title << "</th>";
+      html << "<td>" << petzval::number(first->focus_mm) << " mm</td><td>" << words(first->printed) << "</td>";
+      for (std::size_t reading = 0; reading < 4; ++reading) {
+        const Verdict& v = first[reading * columns];
+        html << "<td class=\"" << (v.agrees ? "yes\">&#10003; " : "no\">&#10007; ") << words(v.found) << "</td>";
+      }
+      html << "</tr>\n";
+    }
+  }
+  html << "</tbody></table>\n";
+  return html.str();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  std::string html_file;
+  std::uint32_t samples = 1u << 18;
+  CLI::App app(
+      "Checks the statements of Wu et al. 2010 about their figure 7 by radial profiles, and prints a table.\n"
+      "Irradiances are relative to the mean of the disc: core, within 0.2 of its radius; brightest of ten rings, and "
+      "where; the "
+      "darkest ring inside it; deviation, RMS over the area. Uniform: deviation below 0.25. Ring: the brightest ring "
+      "lies in "
+      "the outer half; with a slight core where the core is 1.5 times as bright as the darkest ring. Core: the "
+      "brightest ring "
+      "lies in the inner half; with a dark centre where the innermost tenth is below 0.95 of it. Sharpest: least RMS "
+      "radius.",
+      "wu_statements");
+  examples::add_samples(app, samples);
+  app.add_option("--html", html_file, "write the table as HTML, too")->type_name("FILE");
+
+  return examples::run(app, argc, argv, [&] {
+    const std::vector<Verdict> all = all_verdicts(samples);
+    if (!html_file.empty()) examples::write_text(html_file, to_html(all));
+    std::cout << to_text(all);
+  });
+}

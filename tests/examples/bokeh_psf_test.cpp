@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "petzval/focus/focus.hpp"
+#include "petzval/io/image.hpp"
+#include "petzval/io/prescription_json.hpp"
+#include "program.hpp"
+
+namespace {
+
+class BokehPsf : public Programs {
+ protected:
+  static constexpr const char* id = "double_gauss_100mm_f1.35";
+
+  nlohmann::json bokeh(std::vector<std::string> more, const std::string& out = "bokeh") const {
+    std::vector<std::string> arguments{lens(id), "--out", path(out), "--samples", "32768"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const auto outcome = run("bokeh_psf", arguments);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_EQ(outcome.err, "");
+    for (const auto& file : lines(outcome.out)) EXPECT_TRUE(std::filesystem::exists(file)) << file;
+    return read_json(path(out + '/' + id + "_bokeh.json"));
+  }
+
+  static double ring_sum(const nlohmann::json& result) {
+    const double width = result["radius_mm"].get<double>() / 64;
+    double sum = 0;
+    for (int k = 0; k < 64; ++k) {
+      sum += result["radial_profile"][static_cast<std::size_t>(k)].get<double>() * std::numbers::pi * width * width *
+             (2 * k + 1);
+    }
+    return sum;
+  }
+};
+
+TEST_F(BokehPsf, KeepsAllTheLight) {
+  const auto json = bokeh({"--subject-distance-mm", "1000", "--focus-mm", "800,1200"});
+  EXPECT_EQ(json["dispersion"], "catalogue");
+  ASSERT_EQ(json["results"].size(), 2u);
+  const std::array<const char*, 2> names{"800", "1200"};
+  for (std::size_t i = 0; i < 2; ++i) {
+    const auto& result = json["results"][i];
+    EXPECT_EQ(result["focus_mm"], std::stod(names[i]));
+    EXPECT_EQ(result["criterion"], "paraxial");
+    ASSERT_EQ(result["radial_profile"].size(), 64u);
+    const double throughput = result["throughput"];
+    EXPECT_GT(throughput, 0.9);
+    EXPECT_NEAR(ring_sum(result), throughput, 1e-12);
+
+    const auto image = petzval::read_exr(path(std::string("bokeh/") + id + "_focus_" + names[i] + "mm.exr"));
+    const double pixel_mm = result["picture_pixel_mm"];
+    double sum = 0;
+    for (std::size_t p = 0; p < image.pixels.size(); p += 3) sum += image.pixels[p] * pixel_mm * pixel_mm;
+    EXPECT_NEAR(sum, throughput, 1e-6);
+    EXPECT_TRUE(read(path(std::string("bokeh/") + id + "_focus_" + names[i] + "mm.png")).starts_with("\x89PNG"));
+  }
+  EXPECT_TRUE(read(path(std::string("bokeh/") + id + "_bokeh.png")).starts_with("\x89PNG"));
+}
+
+TEST_F(BokehPsf, BlursAsTheThinLensSaysWhenStoppedDown) {
+  const auto json = bokeh({"--subject-distance-mm", "3000", "--focus-mm", "1500", "--f-number", "16"});
+  const double expected = petzval::thin_lens_blur_diameter(100.437, 100.437 / 16, 3081.11, 1581.11) / 2;
+  EXPECT_NEAR(json["results"][0]["radius_mm"].get<double>(), expected, 0.01 * expected);
+  EXPECT_EQ(json["f_number"], 16.0);
+}
+
+TEST_F(BokehPsf, MeasuresDistancesFromWhereItIsTold) {
+  const petzval::Lens double_gauss = petzval::compile(petzval::read_prescription(lens(id)));
+  const auto film_z = [&](const std::string& criterion, const std::string& origin) {
+    const auto json = bokeh(
+        {"--subject-distance-mm", "1000", "--focus-mm", "900", "--criterion", criterion, "--distance-from", origin});
+    EXPECT_EQ(json["distance_from"], origin);
+    EXPECT_EQ(json["results"][0]["criterion"], criterion);
+    return json["results"][0]["film_z_mm"].get<double>();
+  };
+  using petzval::DistanceOrigin, petzval::FocusCriterion;
+  for (const auto criterion : {FocusCriterion::paraxial, FocusCriterion::min_rms}) {
+    for (const auto origin : {DistanceOrigin::front_vertex, DistanceOrigin::film}) {
+      EXPECT_NEAR(
+          film_z(std::string(petzval::name(criterion)), origin == DistanceOrigin::film ? "film" : "front_vertex"),
+          petzval::solve_focus(double_gauss, 900, criterion, origin).film_z, 1e-9);
+    }
+  }
+}
+
+TEST_F(BokehPsf, IsSharpestWhereItIsFocused) {
+  for (const std::string origin : {"front_vertex", "film"}) {
+    const auto json = bokeh({"--subject-distance-mm", "1000", "--focus-mm", "900,1000,1100", "--criterion", "min_rms",
+                             "--distance-from", origin});
+    const auto rms = [&](std::size_t i) { return json["results"][i]["rms_radius_mm"].get<double>(); };
+    EXPECT_LT(rms(1), rms(0) / 3) << origin;
+    EXPECT_LT(rms(1), rms(2) / 3) << origin;
+  }
+}
+
+TEST_F(BokehPsf, GivesTheSameBytesTwice) {
+  const std::vector<std::string> arguments{"--subject-distance-mm", "inf",         "--focus-mm",  "1000,inf",
+                                           "--wavelengths-nm",      "480,550,620", "--field-deg", "7"};
+  EXPECT_EQ(bokeh(arguments, "one"), bokeh(arguments, "two"));
+  for (const std::string name : {"_focus_1000mm.exr", "_focus_infmm.png", "_bokeh.png", "_bokeh.json"}) {
+    EXPECT_EQ(read(path("one/" + (id + name))), read(path("two/" + (id + name)))) << name;
+  }
+}
+
+TEST_F(BokehPsf, RefusesABadCommandLineInOneLine) {
+  const auto refuse = [&](std::vector<std::string> more, const std::string& reason) {
+    std::vector<std::string> arguments{lens(id), "--out", path("bokeh")};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    expect_failure("bokeh_psf", arguments, reason);
+    EXPECT_FALSE(std::filesystem::exists(path("bokeh")));
+  };
+  refuse({"--subject-distance-mm", "1000"}, "--focus-mm is required");
+  refuse({"--focus-mm", "1000"}, "--subject-distance-mm is required");
+  refuse({"--subject-distance-mm", "1000", "--focus-mm", "10x"}, "--focus-mm: found \"10x\"");
+  refuse({"--subject-distance-mm", "0", "--focus-mm", "1000"}, "--subject-distance-mm: found \"0\"");
+  refuse({"--subject-distance-mm", "nan", "--focus-mm", "1000"}, "--subject-distance-mm: found \"nan\"");
+  refuse({"--subject-distance-mm", "1000", "--focus-mm", "15"}, "cannot be focused");
+  refuse({"--subject-distance-mm", "100", "--distance-from", "film", "--focus-mm", "1000"}, "in front of");
+  refuse({"--subject-distance-mm", "1000", "--focus-mm", "1000", "--f-number", "1"}, "f-number is 1");
+  refuse({"--subject-distance-mm", "1000", "--focus-mm", "1000", "--criterion", "sharp"}, "--criterion");
+  refuse({"--subject-distance-mm", "1000", "--focus-mm", "1000", "--distance-from", "moon"}, "--distance-from");
+  refuse({"--subject-distance-mm", "1000", "--focus-mm", "1000", "--field-deg", "95"}, "95");
+  refuse({"--subject-distance-mm", "1000", "--focus-mm", "1000", "--samples", "-1"}, "--samples");
+}
+
+}  // namespace

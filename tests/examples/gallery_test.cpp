@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <map>
+
+#include "program.hpp"
+
+namespace {
+
+class Gallery : public Programs {};
+
+TEST_F(Gallery, HelloLensPrintsWhatTheReadmeShows) {
+  const auto outcome = run("hello_lens", {});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(outcome.out,
+            "Double Gauss 100 mm f/1.35 (Lowenthal)\n"
+            "focal length 100.437 mm, f/1.35331\n"
+            "ray at 20 mm: transmitted at y = 11.2809 mm\n"
+            "at 1 m the film moves back 10.3655 mm\n");
+}
+
+TEST_F(Gallery, DrawsFigure7) {
+  const auto outcome = run("wu_figure7", {"--samples", "1024", "--out", path("figure.png")});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_TRUE(read(path("figure.png")).starts_with("\x89PNG"));
+}
+
+/// Wu et al. 2010 say in words what their figure 7 shows; four readings of "in focus" and "distance from the lens"
+/// each.
+TEST_F(Gallery, TheProfilesAgreeWithThePapersWordsButWhereKnown) {
+  const auto outcome = run("wu_statements", {"--samples", "16384", "--html", path("table.html")});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const auto rows = lines(outcome.out);
+  ASSERT_EQ(rows.size(), 81u);
+  std::map<std::string, int> disagree;
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    const bool no = rows[i].find("  NO  ") != std::string::npos;
+    ASSERT_NE(no, rows[i].find("  yes  ") != std::string::npos) << rows[i];
+    if (no) ++disagree[rows[i].substr(0, rows[i].find(' '))];
+  }
+  EXPECT_EQ(disagree.count("double_gauss_100mm_f1.35"), 0u);
+  EXPECT_EQ(disagree.count("double_gauss_100mm_f1.7_substitute"), 0u);
+  // The third row at the paraxial focus is sharpest when focused at 1100 mm, not at 1000.
+  EXPECT_EQ(disagree["double_gauss_100mm_f2_28deg"], 2) << outcome.out;
+  // The Tronnier does the reverse at every distance but 1000 mm.
+  EXPECT_EQ(disagree["double_gauss_100mm_f2.0"], 16) << outcome.out;
+  EXPECT_NE(read(path("table.html")).find("</table>"), std::string::npos);
+}
+
+}  // namespace

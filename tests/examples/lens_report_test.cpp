@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "petzval/io/prescription_json.hpp"
+#include "petzval/paraxial/first_order.hpp"
+#include "petzval/pupil/pupil.hpp"
+#include "program.hpp"
+
+namespace {
+
+class LensReport : public Programs {};
+
+TEST_F(LensReport, SaysWhatTheLibraryFinds) {
+  const std::string file = lens("double_gauss_100mm_f1.35");
+  const auto outcome = run("lens_report", {file, "--json"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(outcome.err, "");
+  const auto json = nlohmann::json::parse(outcome.out);
+
+  const petzval::Lens lens = petzval::compile(petzval::read_prescription(file));
+  const auto first = petzval::first_order(lens);
+  const auto pupils = petzval::pupils(lens);
+  EXPECT_EQ(json["effective_focal_length_mm"], first.effective_focal_length);
+  EXPECT_EQ(json["back_focal_distance_mm"], first.back_focal_distance);
+  EXPECT_EQ(json["front_focal_distance_mm"], first.front_focal_distance);
+  EXPECT_EQ(json["front_principal_z_mm"], first.front_principal_z);
+  EXPECT_EQ(json["rear_principal_z_mm"], first.rear_principal_z);
+  EXPECT_EQ(json["entrance_pupil_z_mm"], pupils.entrance.z);
+  EXPECT_EQ(json["entrance_pupil_diameter_mm"], pupils.entrance.diameter);
+  EXPECT_EQ(json["exit_pupil_z_mm"], pupils.exit.z);
+  EXPECT_EQ(json["exit_pupil_diameter_mm"], pupils.exit.diameter);
+  EXPECT_EQ(json["f_number"], petzval::paraxial_f_number(lens));
+  EXPECT_EQ(json["f_number_real"], petzval::real_f_number(lens));
+  EXPECT_EQ(json["petzval_sum_per_mm"], first.petzval_sum);
+  EXPECT_EQ(json["dispersion"], "catalogue");
+  EXPECT_EQ(json["stop_surface"], 5);
+  EXPECT_TRUE(json["lint"].is_array());
+
+  // What the sources print (data/README.md).
+  EXPECT_NEAR(json["effective_focal_length_mm"].get<double>(), 100.437, 0.0005);
+  EXPECT_NEAR(json["f_number_real"].get<double>(), 1.353, 0.0005);
+}
+
+TEST_F(LensReport, PrintsATable) {
+  const auto outcome = run("lens_report", {lens("double_gauss_100mm_f1.35")});
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_NE(outcome.out.find("Double Gauss 100 mm f/1.35 (Lowenthal)\n11 surfaces, stop: surface 5\n"),
+            std::string::npos);
+  EXPECT_NE(outcome.out.find("100.4369 mm\n"), std::string::npos);
+  EXPECT_NE(outcome.out.find("lint: nothing to ask about\n"), std::string::npos);
+}
+
+TEST_F(LensReport, FollowsTheWavelength) {
+  const auto focal_length = [&](const std::string& nm) {
+    const auto outcome = run("lens_report", {lens("singlet_50mm_biconvex"), "--json", "--wavelength-nm", nm});
+    return nlohmann::json::parse(outcome.out)["effective_focal_length_mm"].get<double>();
+  };
+  EXPECT_LT(focal_length("486.1327"), focal_length("656.2725"));
+}
+
+constexpr const char* two_planes = R"({"format": "petzval-lens 1", "id": "window", "name": "Window",
+  "source": {"design": "test", "numbers": "test"}, "focal_length_mm": null, "f_number": null, "half_field_deg": null,
+  "image_diagonal_mm": null, "reference_wavelength_nm": 587.5618,
+  "surfaces": [
+    {"radius": 0.0, "thickness": 5.0, "glass": null, "nd": 1.5, "vd": 60.0, "semi_diameter": 10.0, "conic": 0.0, "aspheric": [], "stop": false},
+    {"radius": 0.0, "thickness": 50.0, "glass": null, "nd": 1.0, "vd": null, "semi_diameter": 10.0, "conic": 0.0, "aspheric": [], "stop": false}
+  ]
+})";
+
+TEST_F(LensReport, HasNoFocalLengthForAWindowAndFindingsAreNoFailure) {
+  write("window.json", two_planes);
+  const auto outcome = run("lens_report", {path("window.json"), "--json"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const auto json = nlohmann::json::parse(outcome.out);
+  EXPECT_EQ(json["afocal"], true);
+  EXPECT_TRUE(json["effective_focal_length_mm"].is_null());
+  EXPECT_EQ(json["stop_inferred"], true);
+  ASSERT_FALSE(json["lint"].empty());
+  EXPECT_EQ(json["lint"][0]["kind"], "no_stop");
+  EXPECT_FALSE(json["lint"][0]["message"].get<std::string>().empty());
+}
+
+TEST_F(LensReport, SaysOnceThatTheAbbeModelStandsIn) {
+  const auto outcome = run("lens_report", {lens("petzval_portrait_100mm_f3.4"), "--json", "--wavelength-nm", "500"});
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_EQ(nlohmann::json::parse(outcome.out)["dispersion"], "abbe");
+  EXPECT_EQ(outcome.err,
+            "note: petzval_portrait_100mm_f3.4: 4 media are in no glass table; the n_d/V_d model stands in away from "
+            "587.5618 nm\n");
+}
+
+TEST_F(LensReport, AllowsTheDLineAloneWithoutVd) {
+  const auto outcome = run("lens_report", {lens("fisheye_10mm_f4"), "--json"});
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_EQ(nlohmann::json::parse(outcome.out)["dispersion"], "none");
+  EXPECT_NE(outcome.err.find("without V_d the lens can be used at 587.5618 nm only\n"), std::string::npos);
+  expect_failure("lens_report", {lens("fisheye_10mm_f4"), "--wavelength-nm", "500"}, "500 nm");
+}
+
+TEST_F(LensReport, RefusesABadCommandLineInOneLine) {
+  const std::string file = lens("double_gauss_100mm_f1.35");
+  expect_failure("lens_report", {}, "LENS.json is required");
+  expect_failure("lens_report", {path("none.json")}, "none.json");
+  expect_failure("lens_report", {file, "--colour"}, "--colour");
+  expect_failure("lens_report", {file, "--wavelength-nm", "10x"}, "--wavelength-nm: found \"10x\"");
+  expect_failure("lens_report", {file, "--wavelength-nm", "nan"}, "--wavelength-nm: found \"nan\"");
+  expect_failure("lens_report", {file, "--wavelength-nm", "0"}, "a finite number above 0");
+  expect_failure("lens_report", {file, "--wavelength-nm", "inf"}, "a finite number above 0");
+}
+
+TEST_F(LensReport, EveryProgramExplainsItself) {
+  for (const char* program :
+       {"lens_report", "trace_rays", "spot_diagram", "bokeh_psf", "wu_figure7", "wu_statements"}) {
+    const auto outcome = run(program, {"--help"});
+    EXPECT_EQ(outcome.status, 0) << program;
+    EXPECT_EQ(outcome.err, "") << program;
+    EXPECT_NE(outcome.out.find("Usage: " + std::string(program)), std::string::npos) << outcome.out;
+  }
+}
+
+}  // namespace
