@@ -92,23 +92,25 @@ examples::Sheet contact_sheet(const std::vector<Picture>& pictures, const exampl
 }
 
 Json to_json(const std::vector<Picture>& pictures, const examples::LoadedLens& loaded, const Options& options) {
-  Json json{{"lens", loaded.lens.name()},
-            {"dispersion", petzval::name(loaded.lens.dispersion())},
-            {"wavelengths_nm", options.wavelengths_nm},
-            {"subject_distance_mm", finite_or_null(options.subject_mm)},
-            {"distance_from", options.origin},
-            {"f_number", options.f_number > 0 ? options.f_number : petzval::real_f_number(examples::at_d_line(loaded))},
-            {"field_deg", options.field_deg},
-            {"samples", options.samples},
-            {"results", Json::array()}};
+  Json json{
+      {"lens", loaded.lens.name()},
+      {"dispersion", petzval::name(loaded.lens.dispersion())},
+      {"wavelengths_nm", options.wavelengths_nm},
+      {"subject_distance_mm", finite_or_null(options.subject_mm)},
+      {"distance_from", options.origin},
+      {"f_number_real", options.f_number > 0 ? options.f_number : petzval::real_f_number(examples::at_d_line(loaded))},
+      {"field_deg", options.field_deg},
+      {"samples", options.samples},
+      {"results", Json::array()}};
   for (const Picture& p : pictures) {
+    const auto if_any = [&](const auto& size) { return p.image.throughput > 0 ? Json(size) : Json(); };
     json["results"].push_back({{"focus_mm", finite_or_null(p.focus_mm)},
                                {"film_z_mm", p.scene.lens.film_z()},
                                {"criterion", options.criterion},
                                {"throughput", p.image.throughput},
-                               {"centroid_mm", p.image.size.centroid},
-                               {"rms_radius_mm", p.image.size.rms_radius},
-                               {"radius_mm", p.image.size.max_radius},
+                               {"centroid_mm", if_any(p.image.size.centroid)},
+                               {"rms_radius_mm", if_any(p.image.size.rms_radius)},
+                               {"radius_mm", if_any(p.image.size.max_radius)},
                                {"radial_profile", p.image.radial_profile},
                                {"picture_centre_mm", p.image.psf.centre},
                                {"picture_pixel_mm", p.image.psf.pixel_mm}});
@@ -163,8 +165,9 @@ int main(int argc, char** argv) {
   app.add_option("--criterion", options.criterion, "what in focus means: cardinal points, or least RMS blur on axis")
       ->check(CLI::IsMember({"paraxial", "min_rms"}))
       ->capture_default_str();
-  examples::add_numbers(app, "--wavelengths-nm", options.wavelengths_nm, examples::positive_number,
-                        "wavelengths of the light (nm); several are weighted to RGB by the CIE 1931 functions");
+  examples::add_numbers(
+      app, "--wavelengths-nm", options.wavelengths_nm, examples::positive_number,
+      "wavelengths of the light (nm); several, from 420 to 680, are weighted to RGB by the CIE 1931 functions");
   examples::add_number(app, "--f-number", options.f_number, examples::positive_number,
                        "stop the lens down (by exact rays)")
       ->default_str("wide open");
@@ -174,6 +177,7 @@ int main(int argc, char** argv) {
   app.add_option("--out", options.out_folder, "folder for the results")->required()->type_name("DIR");
 
   return examples::run(app, argc, argv, [&] {
+    examples::rgb_weights(options.wavelengths_nm);  // refuses a bad set before the work
     const auto loaded = examples::load_lens(options.lens_file, options.wavelengths_nm);
     const examples::BokehSetup setup{
         .light_mm = options.subject_mm,

@@ -24,10 +24,12 @@ BokehScene focused_scene(const petzval::Lens& lens, const petzval::Lens& d_line,
   return {petzval::with_film(lens, film_z), {setup.field_rad, light_z}};
 }
 
-petzval::RgbImage irradiance(const petzval::Psf& psf) {
+std::vector<std::array<double, 3>> rgb_weights(std::span<const double> wavelengths_nm) {
   const auto file = petzval::data_directory() / "glass" / "cie1931_2deg_5nm.csv";
-  return petzval::render(psf, petzval::rgb_weights(psf.wavelengths_nm, petzval::ColourMatching::load(file)));
+  return petzval::rgb_weights(wavelengths_nm, petzval::ColourMatching::load(file));
 }
+
+petzval::RgbImage irradiance(const petzval::Psf& psf) { return petzval::render(psf, rgb_weights(psf.wavelengths_nm)); }
 
 Exposed expose(const petzval::RgbImage& image) {
   std::vector<float> lit;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+#include <span>
 #include <string>
 
 #include "contact_sheet.hpp"
@@ -33,6 +35,10 @@ BokehScene focused_scene(const petzval::Lens& lens, const petzval::Lens& d_line,
 /// The picture of a PSF, linear, in the units of petzval::render; several wavelengths are weighted to RGB by the CIE
 /// 1931 functions.
 petzval::RgbImage irradiance(const petzval::Psf& psf);
+
+/// Weights of wavelengths by the colour matching functions in the data directory; throws Error for a set without a
+/// meaning.
+std::vector<std::array<double, 3>> rgb_weights(std::span<const double> wavelengths_nm);
 
 /// A picture for the eye, and the irradiance that it shows as white: the 99th percentile of the lit pixels.
 struct Exposed {

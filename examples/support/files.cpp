@@ -15,6 +15,7 @@ namespace examples {
 Json finite_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 std::string read_text(const std::filesystem::path& file) {
+  if (std::filesystem::is_directory(file)) throw petzval::Error(file.string() + ": is a folder, wanted a file");
   std::ifstream in(file, std::ios::binary);
   if (!in) throw petzval::Error(file.string() + ": cannot be opened: " + std::strerror(errno));
   std::ostringstream text;

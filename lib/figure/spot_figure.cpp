@@ -72,7 +72,7 @@ std::string micrometres(double mm) { return number(mm * 1e3, 3) + " \u00b5m"; }
 
 /// Of the cone of light that the lens throws on its film.
 double film_side_f_number(const Lens& lens) {
-  const Pupil exit = pupils(lens).exit;
+  const Pupil exit = pupils(lens, lens.central_wavelength()).exit;
   return std::isfinite(exit.z) ? std::abs((lens.film_z() - exit.z) / exit.diameter) : paraxial_f_number(lens);
 }
 

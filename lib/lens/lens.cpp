@@ -47,8 +47,22 @@ std::span<const double> Lens::wavelengths_nm() const noexcept { return data_->wa
 Dispersion Lens::dispersion() const noexcept { return data_->indices.dispersion; }
 std::span<const std::string> Lens::missing_glasses() const noexcept { return data_->indices.missing_glasses; }
 
-double Lens::index(std::size_t space, std::size_t wavelength) const noexcept {
+double Lens::index(std::size_t space, std::size_t wavelength) const {
+  const auto demand = [&](const char* what, std::size_t found, std::size_t count) {
+    if (found < count) return;
+    throw Error(name() + ": " + what + " " + std::to_string(found) + " does not exist, wanted one of " +
+                std::to_string(count));
+  };
+  demand("wavelength", wavelength, data_->wavelengths_nm.size());
+  demand("space", space, surface_count() + 1);
   return data_->indices.values[wavelength * (surface_count() + 1) + space];
+}
+
+std::size_t Lens::central_wavelength() const noexcept {
+  const auto& list = data_->wavelengths_nm;
+  const auto nearest = std::min_element(
+      list.begin(), list.end(), [](double a, double b) { return std::abs(a - d_line_nm) < std::abs(b - d_line_nm); });
+  return static_cast<std::size_t>(nearest - list.begin());
 }
 
 std::size_t Lens::wavelength(double nm) const {

@@ -27,7 +27,7 @@ double vertex_curvature(const LensSurface& surface, Meridian meridian) noexcept 
   return curvature;
 }
 
-VertexSurface at_vertex(const Lens& lens, std::size_t i, std::size_t wavelength, Meridian meridian) noexcept {
+VertexSurface at_vertex(const Lens& lens, std::size_t i, std::size_t wavelength, Meridian meridian) {
   return {signed_index(lens, i, wavelength), signed_index(lens, i + 1, wavelength),
           vertex_curvature(lens.surfaces()[i], meridian)};
 }
@@ -39,7 +39,7 @@ RayMatrix transfer_to(const Lens& lens, std::size_t i, double n) noexcept {
 
 }  // namespace
 
-double signed_index(const Lens& lens, std::size_t space, std::size_t wavelength) noexcept {
+double signed_index(const Lens& lens, std::size_t space, std::size_t wavelength) {
   const auto before = lens.surfaces().first(space);
   const auto mirrors = std::count_if(before.begin(), before.end(), [](const LensSurface& s) { return s.mirror; });
   return mirrors % 2 == 0 ? lens.index(space, wavelength) : -lens.index(space, wavelength);

@@ -83,8 +83,9 @@ PointImage point_image(const Lens& lens, const ScenePoint& point, const PsfOptio
   PointImage image;
   Psf& psf = image.psf;
   psf.wavelengths_nm.assign(lens.wavelengths_nm().begin(), lens.wavelengths_nm().end());
-  psf.entrance_pupil_area = std::numbers::pi / 4 * pupils(lens, 0, Meridian::x).entrance.diameter *
-                            pupils(lens, 0, Meridian::y).entrance.diameter;
+  psf.entrance_pupil_area = std::numbers::pi / 4 *
+                            pupils(lens, lens.central_wavelength(), Meridian::x).entrance.diameter *
+                            pupils(lens, lens.central_wavelength(), Meridian::y).entrance.diameter;
   std::vector<FilmHits> sets;
   for (std::size_t w = 0; w < psf.wavelengths_nm.size(); ++w) {
     const PupilWindow window = pupil_window(lens, point, w);

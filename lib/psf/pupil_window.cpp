@@ -100,7 +100,7 @@ void check(const Lens& lens, const ScenePoint& point, const Pupil& entrance, std
 }  // namespace
 
 PupilWindow pupil_window(const Lens& lens, const ScenePoint& point, std::size_t wavelength) {
-  const Pupil entrance = pupils(lens).entrance;
+  const Pupil entrance = pupils(lens, lens.central_wavelength()).entrance;
   check(lens, point, entrance, wavelength);
   const Front front = front_of(lens, entrance);
   if (!(point.z < front.z_min)) {

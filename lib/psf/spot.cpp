@@ -56,7 +56,7 @@ SpotSize spot_size(std::span<const FilmHits> sets) noexcept {
 
 std::vector<Spot> spot_diagram(const Lens& lens, double subject_z, std::span<const double> fields_rad,
                                std::uint32_t samples) {
-  const Pupil entrance = pupils(lens).entrance;
+  const Pupil entrance = pupils(lens, lens.central_wavelength()).entrance;
   const detail::Film film(lens);
   std::vector<Spot> spots;
   for (const double field : fields_rad) {

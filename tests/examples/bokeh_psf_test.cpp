@@ -63,7 +63,22 @@ TEST_F(BokehPsf, BlursAsTheThinLensSaysWhenStoppedDown) {
   const auto json = bokeh({"--subject-distance-mm", "3000", "--focus-mm", "1500", "--f-number", "16"});
   const double expected = petzval::thin_lens_blur_diameter(100.437, 100.437 / 16, 3081.11, 1581.11) / 2;
   EXPECT_NEAR(json["results"][0]["radius_mm"].get<double>(), expected, 0.01 * expected);
-  EXPECT_EQ(json["f_number"], 16.0);
+  EXPECT_EQ(json["f_number_real"], 16.0);
+}
+
+TEST_F(BokehPsf, HasNoSizeWhereNothingGetsThrough) {
+  const auto result = bokeh({"--subject-distance-mm", "1000", "--focus-mm", "1000", "--field-deg", "50"})["results"][0];
+  EXPECT_EQ(result["throughput"], 0.0);
+  for (const char* key : {"centroid_mm", "rms_radius_mm", "radius_mm"}) EXPECT_TRUE(result[key].is_null()) << key;
+}
+
+TEST_F(BokehPsf, TheOrderOfWavelengthsDoesNotMatter) {
+  const auto throughput = [&](const char* wavelengths) {
+    const auto json = bokeh(
+        {"--subject-distance-mm", "1000", "--focus-mm", "1000", "--f-number", "8", "--wavelengths-nm", wavelengths});
+    return json["results"][0]["throughput"].get<double>();
+  };
+  EXPECT_NEAR(throughput("450,550,650"), throughput("650,450,550"), 1e-12);
 }
 
 TEST_F(BokehPsf, MeasuresDistancesFromWhereItIsTold) {

@@ -242,4 +242,14 @@ TEST(Compile, EveryLensOfTheDataCompilesAsFarAsItsGlassesAreKnown) {
   EXPECT_EQ(at_d_only, 11);
 }
 
+TEST(Compile, AnIndexTheLensHasNotIsAnError) {
+  const auto lens = compile(doublet(bare));
+  EXPECT_EQ(message([&] { lens.index(0, 1); }), "pair: wavelength 1 does not exist, wanted one of 1");
+  EXPECT_EQ(message([&] { lens.index(lens.surface_count() + 1, 0); }).substr(0, 13), "pair: space 4");
+}
+
+TEST(Compile, TheWavelengthNearestTheDLineSpeaksForTheLens) {
+  EXPECT_EQ(compile(doublet(flint), std::array{f, c, d}, {.glasses = &glasses()}).central_wavelength(), 2u);
+}
+
 }  // namespace

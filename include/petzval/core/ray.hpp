@@ -9,7 +9,7 @@
 
 namespace petzval {
 
-/// A half line in the lens frame: millimetres, right-handed, origin at the vertex of the first surface, light from
+/// A ray in the lens frame: millimetres, right-handed, origin at the vertex of the first surface, light from
 /// scene to film travels towards +z.
 template <class T>
 struct Ray {

@@ -79,9 +79,13 @@ class PETZVAL_API Lens {
   std::span<const double> wavelengths_nm() const noexcept;
   /// Position of a compiled wavelength (within 1e-6 nm); throws Error with the list where it is not one.
   std::size_t wavelength(double nm) const;
+  /// Position of the compiled wavelength nearest to the d line: the one that speaks for the lens, in whatever order
+  /// they stand.
+  std::size_t central_wavelength() const noexcept;
 
   /// Index of the medium before surface `space` (space 0 is object space, surface_count() is image space).
-  double index(std::size_t space, std::size_t wavelength) const noexcept;
+  /// Throws Error for a space or a wavelength that the lens has not.
+  double index(std::size_t space, std::size_t wavelength) const;
 
   Dispersion dispersion() const noexcept;
   /// Surfaces whose medium has no catalogue glass, in the words of a message each; empty where dispersion() is

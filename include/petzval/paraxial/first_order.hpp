@@ -25,7 +25,7 @@ struct RayMatrix {
 enum class Meridian { y, x };
 
 /// Index of the medium before surface `space`, negative where light runs backwards, after an odd number of mirrors.
-PETZVAL_API double signed_index(const Lens& lens, std::size_t space, std::size_t wavelength = 0) noexcept;
+PETZVAL_API double signed_index(const Lens& lens, std::size_t space, std::size_t wavelength = 0);
 
 /// From the vertex of surface `first` (before refraction) to that of surface `last - 1` (after it); `last` beyond the
 /// end means the whole rest. Surfaces count by their curvature at the vertex: terms of order 2 add to it, cylinders

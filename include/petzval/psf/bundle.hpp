@@ -15,8 +15,8 @@ namespace petzval {
 /// A point of the scene: towards +y from the axis, seen from the centre of the paraxial entrance pupil. So a field of
 /// +10 degrees is imaged at negative y by a lens that turns its image upside down.
 ///
-/// The pupil is that of the first compiled wavelength and the meridian y, so that a point is the same for every
-/// wavelength.
+/// The pupil is that of the compiled wavelength nearest to the d line and the meridian y, so that a point is the same
+/// for every wavelength.
 struct ScenePoint {
   double field_rad = 0;  ///< within 90 degrees: a plane takes in no more
   double z = 0;          ///< lens frame, mm; the plane the point lies in; -inf at infinity

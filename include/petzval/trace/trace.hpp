@@ -20,11 +20,12 @@ struct TraceOptions {
 /// Traces one ray (double or float) through the whole lens. Sequential: every surface in its order, in either
 /// direction.
 ///
-/// ray: lens frame, direction of unit length. Rays towards the scene start anywhere on the film side.
+/// ray: lens frame, direction of unit length. It counts as the whole line: surfaces are met in their order, also those
+/// behind the origin, so that a ray may start anywhere on its line.
 /// A ray that is not finite or whose direction is not of unit length (|d|^2 within 1e-3) counts as missed_surface at
 /// the first surface met, and so does every ray at a wavelength that was not compiled; a finite origin and direction
 /// come back. Start rays from infinity or far objects near the lens: the rounding of a direction alone moves the hit by
-/// eps x distance. Accuracy: double within 1e-13 relative, float within 1e-5, of 50-digit references (tests/trace).
+/// eps x distance. Accuracy: double within 1e-13 relative, float within 1e-5, of 60-digit references (tests/trace).
 template <class T>
 PETZVAL_API TracedRay<T> trace(const Lens& lens, const Ray<T>& ray, const TraceOptions& options = {}) noexcept;
 
