@@ -144,12 +144,9 @@ int main(int argc, char** argv) {
   CLI::App app(
       "Renders the geometric point spread function of a lens for a point light, focused at several distances.\n"
       "Writes to DIR, and prints the paths: LENS_focus_<D>mm.exr (float, linear: the light that the paraxial entrance "
-      "pupil "
-      "takes in counts 1, per mm^2 of film), LENS_focus_<D>mm.png (each exposed for itself), LENS_bokeh.png (all at "
-      "one "
-      "scale) and LENS_bokeh.json. Pictures show the film with x to the right and y upwards. The lens is focused for "
-      "the "
-      "d line (587.5618 nm).",
+      "pupil takes in counts 1, per mm^2 of film), LENS_focus_<D>mm.png (each exposed for itself), LENS_bokeh.png (all "
+      "at one scale) and LENS_bokeh.json. Pictures show the film with x to the right and y upwards. The lens is "
+      "focused for the d line (587.5618 nm).",
       "bokeh_psf");
   app.add_option("LENS.json", options.lens_file, "lens prescription (JSON as in data/lenses)")->required();
   examples::add_number(app, "--subject-distance-mm", options.subject_mm, examples::positive_length,

@@ -67,8 +67,7 @@ Tile bokeh_tile(double focus_mm, const petzval::PointImage& image) {
 std::vector<std::string> bokeh_notes() {
   return {
       "Radius: largest hit distance from the centroid. Film scale is the same along a row; brightness is not: each "
-      "tile "
-      "is exposed for itself.",
+      "tile is exposed for itself.",
       "White: the 99th percentile of its lit pixels, as a share of the light that the entrance pupil takes in, per mm² "
       "of film."};
 }

@@ -133,8 +133,7 @@ TEST(Compile, WithoutAnAbbeNumberOnlyTheReferenceWavelengthCanBeUsed) {
   const petzval::CompileOptions options{.glasses = &glasses(), .missing_glass = MissingGlass::abbe};
   EXPECT_EQ(message([&] { compile(doublet(bare), visible, options); }),
             "pair: surface 1: a medium of index 1.673 without a glass name is in no glass table and has no V_d, wanted "
-            "one of "
-            "them for its index at 486.1327 nm (only 587.5618 nm can be used)");
+            "one of them for its index at 486.1327 nm (only 587.5618 nm can be used)");
   const auto lens = compile(doublet(bare), std::array{d}, options);
   EXPECT_EQ(lens.index(2, 0), 1.673);
   EXPECT_EQ(lens.dispersion(), Dispersion::none);
