@@ -11,7 +11,7 @@ build=${BUILD_DIR:-$root/build}
 results=$(mktemp)
 trap 'rm -f "$results"' EXIT
 for test in surface/surface_quadric surface/surface_asphere surface/surface_snell trace/trace_reference trace/trace_laws trace/trace_derivative \
-  psf/psf_psf; do
+  pupil/pupil_aim pupil/pupil_pupil_sampler psf/psf_psf; do
   "$build/tests/${test}_test" "--gtest_output=xml:$results" >/dev/null
   sed -n -e 's/.*<testcase name="\([^"]*\)".*type_param="\([^"]*\)".*classname="\([^"/]*\).*/\3.\1 (\2)/' -e 't keep' \
     -e 's/.*<testcase name="\([^"]*\)".*classname="\([^"]*\)".*/\2.\1/' -e 't keep' -e 'b value' -e ': keep' -e 'h' -e 'd' -e ': value' \

@@ -17,6 +17,16 @@ inline Prescription data_prescription(const std::string& id) {
 
 inline Lens data_lens(const std::string& id) { return compile(data_prescription(id)); }
 
+/// A biconvex lens of 100 mm behind a plane stop, so that the stop is the entrance pupil and nothing else clips.
+inline Lens front_stop_lens(double stop_semi_diameter = 2) {
+  Prescription p;
+  p.name = "front stop";
+  p.surfaces = {{.thickness = 2, .semi_diameter = stop_semi_diameter, .stop = true},
+                {.radius = 102.16, .thickness = 4, .medium = {.nd = 1.5168}, .semi_diameter = 30},
+                {.radius = -102.16, .thickness = 98.6, .semi_diameter = 30}};
+  return compile(p);
+}
+
 /// Every lens of data/lenses, in the order of names.
 inline std::vector<Prescription> data_prescriptions() {
   std::vector<std::filesystem::path> files;

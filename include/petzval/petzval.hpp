@@ -7,7 +7,9 @@
 /// an immutable value, always valid, cheap to copy, safe to share between threads. Everything else asks the Lens.
 ///
 ///     Prescription  --compile-->  Lens  -->  first_order, pupils, real_f_number     numbers about the lens
-///                                       -->  solve_focus, with_focus                where the film belongs
+///                                       -->  chief_ray, aim, pupil_outline          which rays of a point get through
+///                                       -->  relative_illumination                  how much light the film gets
+///                                       -->  solve_focus, with_focus               where the film belongs
 ///                                       -->  trace                                  rays, either way, float or double
 ///                                       -->  spot_diagram, point_image              what the film sees of a point
 ///
@@ -39,5 +41,9 @@
 #include "petzval/psf/colour.hpp"
 #include "petzval/psf/psf.hpp"
 #include "petzval/psf/spot.hpp"
+#include "petzval/pupil/aim.hpp"
+#include "petzval/pupil/illumination.hpp"
+#include "petzval/pupil/outline.hpp"
 #include "petzval/pupil/pupil.hpp"
+#include "petzval/pupil/pupil_sampler.hpp"
 #include "petzval/trace/trace.hpp"

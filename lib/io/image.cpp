@@ -12,12 +12,10 @@
 
 #include <array>
 #include <cmath>
-#include <fstream>
 #include <string_view>
-#include <system_error>
 
 #include "petzval/core/error.hpp"
-#include "write_whole.hpp"
+#include "petzval/io/write_file.hpp"
 
 namespace petzval {
 namespace {
@@ -65,7 +63,7 @@ void write_exr(const RgbImage& image, const std::filesystem::path& file) {
   } catch (const std::exception& e) {
     throw Error(file.string() + ": " + e.what());
   }
-  detail::write_whole(stream.str(), file);
+  write_file(stream.str(), file);
 }
 
 RgbImage read_exr(const std::filesystem::path& file) {
@@ -104,7 +102,7 @@ void write_png(const Rgb8Image& image, const std::filesystem::path& file) {
   if (!png_image_write_to_memory(&png, bytes.data(), &size, 0, image.pixels.data(), 0, nullptr)) {
     throw Error(file.string() + ": " + png.message);
   }
-  detail::write_whole({bytes.data(), size}, file);
+  write_file({bytes.data(), size}, file);
 }
 
 Rgb8Image to_srgb8(const RgbImage& image, float exposure) {

@@ -7,7 +7,7 @@
 
 #include "petzval/core/error.hpp"
 #include "petzval/io/prescription_json.hpp"
-#include "write_whole.hpp"
+#include "petzval/io/write_file.hpp"
 
 namespace petzval {
 namespace {
@@ -114,7 +114,7 @@ std::string format_prescription(const Prescription& p) {
 }
 
 void write_prescription(const Prescription& prescription, const std::filesystem::path& file) {
-  detail::write_whole(format_prescription(prescription), file);
+  write_file(format_prescription(prescription), file);
 }
 
 }  // namespace petzval

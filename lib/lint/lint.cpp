@@ -49,6 +49,10 @@ void check_surfaces(const Lens& lens, Findings& findings) {
                           at(i) + "semi_diameter is " + mm(surface.semi_diameter) +
                               ", beyond the surface, which ends at " + mm(domain)});
     }
+    // A stop of 0 is a closed iris, another rim that lets through nothing but the axis hardly one that is meant.
+    if (surface.semi_diameter == 0 && lens.stop() != position) {
+      findings.push_back({Kind::semi_diameter, i, 0, domain, at(i) + "semi_diameter is 0 mm: only the axis passes it"});
+    }
     if (i + 1 == count) break;
     const auto gap = detail::least_gap(lens, position);
     if (gap && gap->width < -1e-9 * std::max(gap->height, std::abs(surface.thickness))) {

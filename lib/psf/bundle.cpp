@@ -14,22 +14,13 @@
 
 namespace petzval {
 
-Ray<double> ray_through(const ScenePoint& point, const Pupil& entrance, double x, double y) noexcept {
-  // The point lies at (0, tan(field) distance, -distance) from the pupil's centre; the direction divided by the
-  // distance has no large numbers in it, and at infinity the first terms are 0.
-  const double distance = entrance.z - point.z;
-  const Vec3<double> d{x / distance, y / distance - std::tan(point.field_rad), 1};
-  const double length = std::sqrt(d.x * d.x + d.y * d.y + d.z * d.z);
-  return {{x, y, entrance.z}, d / length};
-}
-
-FilmHits trace_bundle(const Lens& lens, const PupilWindow& window, std::uint32_t samples, std::size_t wavelength,
-                      std::uint32_t seed, int threads) {
+FilmHits trace_bundle(const Lens& lens, const PupilSampler& pupil, std::uint32_t samples, std::uint32_t seed,
+                      int threads) {
   if (threads < 1) throw Error("trace_bundle: threads is " + std::to_string(threads) + ", wanted 1 or more");
   FilmHits hits;
   hits.sent = samples;
-  hits.window_area = window.area();
-  if (window.empty || samples == 0) return hits;
+  hits.sampled_area = pupil.area();
+  if (pupil.empty() || samples == 0) return hits;
 
   // Chunks of fixed size, each with its own hits, joined in their order: which thread did one leaves no trace.
   constexpr std::uint32_t chunk_size = 4096;
@@ -39,7 +30,6 @@ FilmHits trace_bundle(const Lens& lens, const PupilWindow& window, std::uint32_t
   };
   std::vector<Chunk> found(chunks);
   const detail::Film film(lens);
-  const Pupil plane{window.plane_z, 0};
   const auto work = [&](std::uint32_t first, std::uint32_t stride) {
     detail::RayBatch batch(chunk_size);
     for (std::uint32_t c = first; c < chunks; c += stride) {
@@ -47,10 +37,10 @@ FilmHits trace_bundle(const Lens& lens, const PupilWindow& window, std::uint32_t
       const std::uint32_t begin = c * chunk_size;
       for (std::uint32_t i = 0; i < std::min(chunk_size, samples - begin); ++i) {
         const auto [u, v] = owen_sobol(begin + i, seed);
-        batch.push(ray_through(window.point, plane, window.x_min + u * (window.x_max - window.x_min),
-                               window.y_min + v * (window.y_max - window.y_min)));
+        const auto [x, y] = pupil(u, v);
+        batch.push(pupil.plane().ray(x, y));
       }
-      batch.trace(lens, wavelength);
+      batch.trace(lens, pupil.wavelength());
       Chunk chunk;
       for (std::size_t i = 0; i < batch.size(); ++i) {
         const auto hit = batch.transmitted(i) ? film.meet(batch[i]) : std::nullopt;

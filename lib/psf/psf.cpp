@@ -8,6 +8,7 @@
 
 #include "petzval/core/error.hpp"
 #include "petzval/core/text.hpp"
+#include "petzval/pupil/pupil.hpp"
 
 namespace petzval {
 namespace {
@@ -71,7 +72,7 @@ void fill_profile(PointImage& image, const std::vector<FilmHits>& sets) {
 
 double Psf::ray_weight(std::size_t wavelength) const noexcept {
   if (entrance_pupil_area == 0 || sent[wavelength] == 0) return 0;
-  return window_area[wavelength] / (static_cast<double>(sent[wavelength]) * entrance_pupil_area);
+  return sampled_area[wavelength] / (static_cast<double>(sent[wavelength]) * entrance_pupil_area);
 }
 
 double Psf::throughput(std::size_t wavelength) const noexcept {
@@ -88,11 +89,11 @@ PointImage point_image(const Lens& lens, const ScenePoint& point, const PsfOptio
                             pupils(lens, lens.central_wavelength(), Meridian::y).entrance.diameter;
   std::vector<FilmHits> sets;
   for (std::size_t w = 0; w < psf.wavelengths_nm.size(); ++w) {
-    const PupilWindow window = pupil_window(lens, point, w);
-    sets.push_back(trace_bundle(lens, window, options.samples, w, options.seed, options.threads));
+    const PupilSampler pupil(pupil_outline(lens, point, w));
+    sets.push_back(trace_bundle(lens, pupil, options.samples, options.seed, options.threads));
     psf.sent.push_back(options.samples);
     psf.transmitted.push_back(sets.back().x.size());
-    psf.window_area.push_back(window.area());
+    psf.sampled_area.push_back(pupil.area());
     image.throughput += psf.throughput(w) / static_cast<double>(psf.wavelengths_nm.size());
   }
   image.size = spot_size(sets);

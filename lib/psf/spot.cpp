@@ -5,7 +5,8 @@
 #include <cmath>
 
 #include "film.hpp"
-#include "petzval/trace/trace.hpp"
+#include "petzval/pupil/aim.hpp"
+#include "petzval/pupil/illumination.hpp"
 
 namespace petzval {
 namespace {
@@ -56,7 +57,6 @@ SpotSize spot_size(std::span<const FilmHits> sets) noexcept {
 
 std::vector<Spot> spot_diagram(const Lens& lens, double subject_z, std::span<const double> fields_rad,
                                std::uint32_t samples) {
-  const Pupil entrance = pupils(lens, lens.central_wavelength()).entrance;
   const detail::Film film(lens);
   std::vector<Spot> spots;
   for (const double field : fields_rad) {
@@ -65,10 +65,11 @@ std::vector<Spot> spot_diagram(const Lens& lens, double subject_z, std::span<con
       Spot spot;
       spot.point = point;
       spot.wavelength = w;
-      spot.hits = trace_bundle(lens, pupil_window(lens, point, w), samples, w);
+      spot.hits = trace_bundle(lens, PupilSampler(pupil_outline(lens, point, w)), samples);
       spot.size = spot_size(spot.hits.x, spot.hits.y);
-      const auto chief = trace(lens, ray_through(point, entrance, 0, 0), {.wavelength = w, .apertures = false});
-      const auto hit = chief.transmitted() ? film.meet(chief.ray) : std::nullopt;
+      spot.relative_illumination = relative_illumination(lens, point, w);
+      const AimedRay chief = chief_ray(lens, point, w);
+      const auto hit = chief && chief.end.transmitted() ? film.meet(chief.end.ray) : std::nullopt;
       if (hit) spot.chief_ray_height = (*hit)[1];
       spots.push_back(std::move(spot));
     }

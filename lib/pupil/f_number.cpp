@@ -104,11 +104,17 @@ Lens with_f_number(const Lens& lens, double f_number, std::size_t wavelength) {
   const Pupils p = pupils(lens, wavelength, main_meridian(lens, wavelength));
   const double y = length / (2 * f_number);
   const double largest = beam_height(lens, p, length, wavelength);
-  const auto height = StopHeight(lens, p.stop, wavelength)(y);
+  const StopHeight stop_height(lens, p.stop, wavelength);
+  const auto height = stop_height(y);
   // One part in 1e9 of tolerance takes back the f-number that real_f_number printed.
   if (!height || y > largest * (1 + 1e-9)) {
     throw Error(lens.name() + ": f-number is " + number(f_number) + ", wanted " + number(length / (2 * largest), 10) +
                 " (the fastest the lens can give) or more");
+  }
+  if (const double hole = lens.surfaces()[p.stop].inner_semi_diameter; hole > 0 && *height <= hole) {
+    const double smallest = entering_height(stop_height, hole, p.entrance.diameter / 2);
+    throw Error(lens.name() + ": f-number is " + number(f_number) + ", wanted less than " +
+                number(length / (2 * smallest), 10) + ": the stop has a hole of that size");
   }
   return with_semi_diameter(lens, p.stop, std::min(*height, lens.surfaces()[p.stop].semi_diameter));
 }

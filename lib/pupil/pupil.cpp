@@ -44,6 +44,11 @@ Pupil pupil(double vertex_z, double n, double y, double nu, double semi_diameter
 
 }  // namespace
 
+bool has_pupils(const Lens& lens) noexcept {
+  const auto limits = [](const LensSurface& s) { return std::isfinite(s.semi_diameter); };
+  return std::any_of(lens.surfaces().begin(), lens.surfaces().end(), limits);
+}
+
 Pupils pupils(const Lens& lens, std::size_t wavelength, Meridian meridian) {
   Pupils result;
   result.stop_inferred = !lens.stop();

@@ -11,7 +11,7 @@ root=$(CDPATH= cd -- "$(dirname -- "$0")/../.." && pwd)
 
 need $library_packages libbenchmark-dev
 build -DPETZVAL_BUILD_BENCHMARKS=ON -DPETZVAL_BUILD_TESTS=OFF -DPETZVAL_BUILD_EXAMPLES=OFF
-for bench in trace psf; do
+for bench in trace pupil psf; do
   echo
   "$BUILD_DIR/tests/bench/${bench}_bench" "$@"
 done

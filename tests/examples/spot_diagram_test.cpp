@@ -89,7 +89,7 @@ TEST_F(SpotDiagram, RefusesABadCommandLineInOneLine) {
   refuse(triplet, {"--field-deg", "0,,10", "--wavelengths-nm", "500"}, "--field-deg: found \"\"");
   refuse(triplet, {"--field-deg", "0,10x", "--wavelengths-nm", "500"}, "--field-deg: found \"10x\"");
   refuse(triplet, {"--field-deg", "nan", "--wavelengths-nm", "500"}, "--field-deg: found \"nan\"");
-  refuse(triplet, {"--field-deg", "90", "--wavelengths-nm", "500"}, "90");
+  refuse(triplet, {"--field-deg", "190", "--wavelengths-nm", "500"}, "190");
   refuse(triplet, {"--field-deg", "0", "--wavelengths-nm", "-500"}, "--wavelengths-nm: found \"-500\"");
   refuse(triplet, {"--field-deg", "0", "--wavelengths-nm", "5"}, "5 nm");
   refuse(triplet, {"--field-deg", "0", "--wavelengths-nm", "500", "--samples", "0"}, "--samples: found \"0\"");

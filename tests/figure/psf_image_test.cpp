@@ -46,7 +46,7 @@ TEST(Render, WeighsWavelengths) {
   psf.counts = {0, 10, 0, 0, /**/ 0, 20, 0, 5};
   psf.sent = {100, 100};
   psf.transmitted = {10, 25};
-  psf.window_area = {2, 4};
+  psf.sampled_area = {2, 4};
   psf.entrance_pupil_area = 8;
   const RgbImage image = render(psf, std::vector<std::array<double, 3>>{{0, 0.25, 1}, {1, 0.75, -0.5}});
   // A ray carries 2 / (100 * 8) or 4 / (100 * 8), spread over 0.25 mm^2: 0.01 and 0.02 per mm^2.

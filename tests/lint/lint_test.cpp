@@ -122,6 +122,21 @@ TEST(Lint, FindsASemiDiameterBeyondTheSurface) {
   EXPECT_TRUE(lint(p).empty());
 }
 
+TEST(Lint, FindsARimThatOnlyTheAxisPasses) {
+  Prescription p = singlet();
+  p.surfaces[1].semi_diameter = 0;
+  expect_one(p, Kind::semi_diameter, 1, "surface 1: semi_diameter is 0 mm: only the axis passes it");
+  EXPECT_EQ(lint(p)[0].found, 0);
+  EXPECT_EQ(lint(p)[0].wanted, 50);
+  p = singlet();
+  p.surfaces[0].semi_diameter = 0;  // a closed iris
+  for (const Finding& finding : lint(p)) EXPECT_NE(finding.kind, Kind::semi_diameter) << finding.message;
+  p.surfaces[0].stop = false;
+  bool found = false;
+  for (const Finding& finding : lint(p)) found = found || (finding.kind == Kind::semi_diameter && finding.surface == 0);
+  EXPECT_TRUE(found);
+}
+
 TEST(Lint, FindsNoStopAndSeveral) {
   Prescription p = singlet();
   p.surfaces[0].stop = false;

@@ -3,11 +3,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include "../data_lenses.hpp"
 #include "../message.hpp"
+#include "petzval/paraxial/first_order.hpp"
 #include "petzval/prescription/prescription.hpp"
+#include "petzval/pupil/aim.hpp"
+#include "petzval/pupil/pupil.hpp"
 #include "petzval/trace/trace.hpp"
 
 namespace {
@@ -67,6 +71,74 @@ TEST(Reverse, LightTakesTheSameWay) {
     }
     EXPECT_GT(through, 5);
   }
+}
+
+/// Whether a reversed lens begins with light towards +z in the sense of its indices: behind an odd number of mirrors
+/// it does not.
+bool ends_forwards(const petzval::Lens& lens) { return petzval::signed_index(lens, lens.surface_count()) > 0; }
+
+TEST(Reverse, SwapsPrincipalPlanesAndPupils) {
+  for (const Prescription& p : petzval::testing::data_prescriptions()) {
+    const petzval::Lens lens = petzval::compile(p), reversed = petzval::compile(petzval::reverse(p));
+    if (!ends_forwards(lens)) continue;
+    const double z_last = lens.surfaces().back().vertex_z;
+    for (const auto meridian : {petzval::Meridian::y, petzval::Meridian::x}) {
+      SCOPED_TRACE(p.id + (meridian == petzval::Meridian::y ? " y" : " x"));
+      const auto before = petzval::pupils(lens, 0, meridian), after = petzval::pupils(reversed, 0, meridian);
+      EXPECT_EQ(after.stop, lens.surface_count() - 1 - before.stop);
+      const auto expect_swapped = [&](const petzval::Pupil& was, const petzval::Pupil& is) {
+        EXPECT_NEAR(is.z, z_last - was.z, 1e-12 * (1 + std::abs(z_last) + std::abs(was.z)));
+        EXPECT_NEAR(is.diameter, was.diameter, 1e-12 * was.diameter);
+      };
+      expect_swapped(before.entrance, after.exit);
+      expect_swapped(before.exit, after.entrance);
+
+      const auto there = petzval::first_order(lens, 0, meridian), back = petzval::first_order(reversed, 0, meridian);
+      ASSERT_EQ(there.afocal, back.afocal);
+      if (there.afocal) continue;
+      const double size = std::abs(z_last) + std::abs(there.effective_focal_length) +
+                          std::abs(there.front_principal_z) + std::abs(there.rear_principal_z);
+      EXPECT_NEAR(back.effective_focal_length, there.effective_focal_length, 1e-12 * size);
+      EXPECT_NEAR(back.front_principal_z, z_last - there.rear_principal_z, 1e-12 * size);
+      EXPECT_NEAR(back.rear_principal_z, z_last - there.front_principal_z, 1e-12 * size);
+      EXPECT_NEAR(back.front_nodal_z, z_last - there.rear_nodal_z, 1e-12 * size);
+    }
+  }
+}
+
+// A ray through the centre of the stop is one from either side: aimed at from a point of it behind the lens, through
+// the reversed lens, it comes back as the line that entered.
+TEST(Reverse, ChiefRaysAreTheSameLines) {
+  int compared = 0;
+  for (const Prescription& p : petzval::testing::data_prescriptions()) {
+    const petzval::Lens lens = petzval::compile(p), reversed = petzval::compile(petzval::reverse(p));
+    if (!ends_forwards(lens)) continue;
+    const double pupil_z = petzval::pupils(reversed).entrance.z;
+    for (const double share : {0.2, 0.6, 1.0}) {
+      SCOPED_TRACE(p.id + " " + std::to_string(share));
+      const double field = share * petzval::radians(p.half_field_deg.value_or(1));
+      const auto chief = petzval::chief_ray(lens, {field, -std::numeric_limits<double>::infinity()});
+      if (!chief || !chief.end.transmitted()) continue;
+      // A point of it behind the lens, seen from the other side. (Farther out chief rays of the phone lens cross, and
+      // one point has two.)
+      const Ray<double> behind = turned(lens, chief.end.ray);
+      const double focal_length = std::abs(*p.focal_length_mm);
+      const double t = (std::min(0.0, pupil_z) - 2 * focal_length - behind.origin.z) / behind.direction.z;
+      const double z = behind.origin.z + t * behind.direction.z, y = behind.origin.y + t * behind.direction.y;
+      const auto back = petzval::chief_ray(reversed, {std::atan2(y, pupil_z - z), z});
+      ASSERT_TRUE(back);
+      EXPECT_LE(back.residual, 1e-12);
+      const Ray<double> entered = turned(lens, chief.ray), left = back.end.ray;
+      const auto offset = left.origin - entered.origin;
+      const double sine = left.direction.y * entered.direction.z - left.direction.z * entered.direction.y;
+      const double miss = offset.y * entered.direction.z - offset.z * entered.direction.y;
+      EXPECT_GT(left.direction.y * -entered.direction.y + left.direction.z * -entered.direction.z, 0);
+      EXPECT_NEAR(sine, 0, 1e-12);
+      EXPECT_NEAR(miss, 0, 1e-12 * (focal_length + std::abs(offset.z)));
+      ++compared;
+    }
+  }
+  EXPECT_GT(compared, 150);
 }
 
 TEST(Reverse, TwiceGivesTheLensBackButForWhatOneSideHas) {

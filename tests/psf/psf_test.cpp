@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "lenses.hpp"
+#include "../data_lenses.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/units.hpp"
 #include "petzval/pupil/pupil.hpp"
@@ -20,6 +20,9 @@
 
 namespace petzval {
 namespace {
+
+using testing::data_lens;
+using testing::front_stop_lens;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
@@ -100,7 +103,7 @@ TEST(PointImage, RowsRunFromTheTop) {
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
   const ScenePoint point{radians(10), -infinity};
   const PointImage image = point_image(lens, point, {.samples = 1 << 14, .pixels = 40, .half_width_mm = 0.05});
-  const FilmHits hits = trace_bundle(lens, pupil_window(lens, point), 1 << 14);
+  const FilmHits hits = trace_bundle(lens, PupilSampler(pupil_outline(lens, point)), 1 << 14);
   std::uint64_t above = 0, above_left = 0;
   const auto& [cx, cy] = image.psf.centre;
   for (std::size_t i = 0; i < hits.x.size(); ++i) {
@@ -167,16 +170,14 @@ TEST(PointImage, NothingGetsThroughAFieldTooWide) {
 class BinError {
  public:
   BinError() {
-    lens_ = with_film(lens_, lens_.film_z() + 2);
-    window_ = pupil_window(lens_, {radians(14), -infinity});
-    const FilmHits many = trace_bundle(lens_, window_, 1 << 19, 0, 1000);
+    const FilmHits many = trace_bundle(lens_, pupil_, 1 << 19, 1000);
     size_ = spot_size(many.x, many.y);
     reference_ = bins(many.x, many.y, 1 << 19);
   }
 
   double sobol(std::uint32_t count) const {
     return error([&](std::uint32_t seed) {
-      const FilmHits hits = trace_bundle(lens_, window_, count, 0, seed);
+      const FilmHits hits = trace_bundle(lens_, pupil_, count, seed);
       return bins(hits.x, hits.y, count);
     });
   }
@@ -184,11 +185,12 @@ class BinError {
   double random(std::uint32_t count) const {
     return error([&](std::uint32_t seed) {
       std::mt19937_64 generator(seed);
-      std::uniform_real_distribution<double> x(window_.x_min, window_.x_max), y(window_.y_min, window_.y_max);
+      std::uniform_real_distribution<double> uniform(0, 1);
       std::vector<double> hit_x, hit_y;
       for (std::uint32_t i = 0; i < count; ++i) {
-        const double px = x(generator), py = y(generator);
-        const auto end = trace(lens_, ray_through(window_.point, {window_.plane_z, 0}, px, py));
+        const double u = uniform(generator), v = uniform(generator);
+        const auto [x, y] = pupil_(u, v);
+        const auto end = trace(lens_, pupil_.plane().ray(x, y));
         if (!end.transmitted()) continue;
         const double t = (lens_.film_z() - end.ray.origin.z) / end.ray.direction.z;
         hit_x.push_back(end.ray.origin.x + t * end.ray.direction.x);
@@ -222,8 +224,10 @@ class BinError {
     return std::sqrt(squares / seeds / 144);
   }
 
-  Lens lens_ = data_lens("double_gauss_100mm_f1.35");
-  PupilWindow window_;
+  static Lens defocused(const Lens& lens) { return with_film(lens, lens.film_z() + 2); }
+
+  Lens lens_ = defocused(data_lens("double_gauss_100mm_f1.35"));
+  PupilSampler pupil_{pupil_outline(lens_, {radians(14), -infinity})};
   SpotSize size_;
   Bins reference_{};
 };

@@ -8,13 +8,16 @@
 #include <limits>
 #include <vector>
 
-#include "lenses.hpp"
+#include "../data_lenses.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/units.hpp"
 #include "petzval/paraxial/first_order.hpp"
+#include "petzval/pupil/aim.hpp"
 
 namespace petzval {
 namespace {
+
+using testing::data_lens;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
@@ -71,7 +74,7 @@ TEST(SpotDiagram, ImagesTheFieldUpsideDown) {
 }
 
 TEST(SpotDiagram, GoesFieldByFieldAndByWavelengthWithin) {
-  Prescription p = read_prescription(lens_file("double_gauss_100mm_f2.0"));
+  Prescription p = testing::data_prescription("double_gauss_100mm_f2.0");
   for (auto& row : p.surfaces) {
     row.medium = {.nd = row.medium.nd, .vd = row.medium.vd};
     row.medium.vd = row.medium.nd > 1 ? std::optional(50.0) : std::nullopt;
@@ -104,13 +107,39 @@ TEST(SpotDiagram, ChiefRayPassesTheHoleOfAMirror) {
   EXPECT_NEAR(spots[0].chief_ray_height.value(), -1000 * std::tan(radians(0.5)), 0.2);
 }
 
-TEST(SpotDiagram, SaysWhereThereIsNoChiefRay) {
-  // The paraxial pupil of a fisheye lies where no ray of a steep field goes.
+TEST(SpotDiagram, ReachesTheEdgeOfA220DegreeFisheye) {
+  const Lens lens = data_lens("fisheye_6.3mm_f2.8");
+  const std::array fields{radians(0.0), radians(60.0), radians(89.0), radians(110.0)};
+  const auto spots = spot_diagram(lens, -infinity, fields, 1024);
+  double height = 1, light = 1.1;
+  for (const Spot& spot : spots) {
+    EXPECT_GE(spot.hits.x.size(), 0.95 * spot.hits.sent);
+    EXPECT_NEAR(spot.chief_ray_height.value(), spot.size.centroid[1], 0.02);
+    EXPECT_LT(spot.chief_ray_height.value(), height);
+    EXPECT_LT(spot.relative_illumination.value(), light);
+    height = *spot.chief_ray_height;
+    light = *spot.relative_illumination;
+  }
+  EXPECT_NEAR(height, -11.7, 0.2);  // half of the 23.4 mm that the file declares
+}
+
+TEST(SpotDiagram, ChiefRayIsThatThroughTheCentreOfTheStop) {
   const Lens lens = data_lens("fisheye_10mm_f4");
-  const std::array fields{radians(0.0), radians(75.0)};
+  const std::array fields{radians(70.0)};
   const auto spots = spot_diagram(lens, -infinity, fields, 256);
-  EXPECT_TRUE(spots[0].chief_ray_height.has_value());
+  const AimedRay chief = chief_ray(lens, {radians(70.0), -infinity});
+  ASSERT_LE(chief.residual, 1e-12);
+  const auto& ray = chief.end.ray;
+  EXPECT_NEAR(spots[0].chief_ray_height.value(),
+              ray.origin.y + (lens.film_z() - ray.origin.z) / ray.direction.z * ray.direction.y, 1e-13);
+}
+
+TEST(SpotDiagram, SaysWhereThereIsNoChiefRay) {
+  const std::array fields{radians(0.0), radians(89.5)};
+  const auto spots = spot_diagram(data_lens("double_gauss_100mm_f2.0"), -infinity, fields, 256);
+  EXPECT_EQ(spots[0].relative_illumination.value(), 1);
   EXPECT_FALSE(spots[1].chief_ray_height.has_value());
+  EXPECT_FALSE(spots[1].relative_illumination.has_value());
 }
 
 }  // namespace

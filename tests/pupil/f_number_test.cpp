@@ -78,7 +78,9 @@ TEST(WithFNumber, IsWhatRealFNumberFinds) {
     EXPECT_LE(with_f_number(lens, fastest * (1 - 1e-10)).surfaces()[stop].semi_diameter,
               lens.surfaces()[stop].semi_diameter);
     EXPECT_THROW(with_f_number(lens, fastest * (1 - 1e-8)), Error);
-    for (const double n : {fastest, fastest * 1.0001, fastest * 1.4, 5.6 * fastest, 64 * fastest}) {
+    const double hole = lens.surfaces()[stop].inner_semi_diameter / lens.surfaces()[stop].semi_diameter;
+    for (const double n : {fastest, fastest * 1.0001, fastest * 1.4, 5.6 * fastest, 64 * fastest, 1000 * fastest}) {
+      if (n * hole > 0.99 * fastest) continue;
       EXPECT_NEAR(real_f_number(with_f_number(lens, n)), n, 1e-12 * n);
     }
   }
@@ -87,6 +89,77 @@ TEST(WithFNumber, IsWhatRealFNumberFinds) {
 TEST(WithFNumber, RunsFromTheFastestLensesToPinholes) {
   const Lens lens = with_semi_diameter(data_lens("modern_58mm_f0.95"), 13, infinity);
   for (const double n : {0.95, 1.0, 1.4, 8.0, 64.0}) EXPECT_NEAR(real_f_number(with_f_number(lens, n)), n, 1e-12 * n);
+}
+
+// Whole stops from f/0.95 to f/64, f/1000: a lens gives it, or says how far it opens.
+TEST(WithFNumber, GivesOrNamesEveryStandardFNumber) {
+  int given = 0, refused = 0;
+  for (const Prescription& p : data_prescriptions()) {
+    const Lens lens = compile(p);
+    const double fastest = real_f_number(lens);
+    if (lens.surfaces()[lens.stop().value()].inner_semi_diameter > 0) continue;
+    for (const double n : {0.95, 1.0, 1.4, 2.0, 2.8, 4.0, 5.6, 8.0, 11.0, 16.0, 22.0, 32.0, 45.0, 64.0, 1000.0}) {
+      SCOPED_TRACE(p.id + " f/" + std::to_string(n));
+      if (n >= fastest) {
+        EXPECT_NEAR(real_f_number(with_f_number(lens, n)), n, 1e-12 * n);
+        ++given;
+      } else if (n < fastest * (1 - 1e-8)) {
+        // The number that the message names is one that the lens takes.
+        const std::string found = message([&] { with_f_number(lens, n); });
+        const auto wanted = found.find("wanted ");
+        ASSERT_NE(wanted, std::string::npos) << found;
+        const double named = std::stod(found.substr(wanted + 7));
+        EXPECT_NEAR(named, fastest, 1e-9 * fastest);
+        EXPECT_NO_THROW(with_f_number(lens, named));
+        ++refused;
+      }
+    }
+  }
+  EXPECT_GT(given, 500);
+  EXPECT_GT(refused, 200);
+}
+
+TEST(WithFNumber, OfAStopInFrontIsFocalLengthOverDiameter) {
+  Prescription p;
+  p.name = "front stop";
+  p.surfaces = {{.thickness = 3, .semi_diameter = 12, .stop = true},
+                {.radius = 50, .thickness = 5, .medium = {.nd = 1.5}, .semi_diameter = 20},
+                {.radius = -70, .semi_diameter = 20}};
+  const Lens lens = compile(p);
+  for (const double n : {4.0, 64.0, 1000.0}) {
+    EXPECT_EQ(with_f_number(lens, n).surfaces()[0].semi_diameter, focal_length(lens) / (2 * n));
+  }
+  // On the glass itself the ray has not been bent either.
+  p.surfaces[0].stop = false;
+  p.surfaces[1].stop = true;
+  EXPECT_NEAR(with_f_number(compile(p), 8).surfaces()[1].semi_diameter, focal_length(lens) / 16, 1e-15);
+}
+
+TEST(WithFNumber, OfAnAnnularStopEndsAtItsHole) {
+  const Lens lens = data_lens("catadioptric_maksutov_1280mm_f14.4");
+  EXPECT_NEAR(real_f_number(with_f_number(lens, 22)), 22, 22e-12);
+  EXPECT_EQ(with_f_number(lens, 22).surfaces()[2].inner_semi_diameter, lens.surfaces()[2].inner_semi_diameter);
+  const std::string found = message([&] { with_f_number(lens, 100); });
+  const std::string start = lens.name() + ": f-number is 100, wanted less than ";
+  ASSERT_EQ(found.substr(0, start.size()), start);
+  EXPECT_NE(found.find(": the stop has a hole of that size"), std::string::npos) << found;
+  const double hole = std::stod(found.substr(start.size()));
+  EXPECT_NO_THROW(with_f_number(lens, hole * (1 - 1e-8)));
+  EXPECT_THROW(with_f_number(lens, hole * (1 + 1e-8)), Error);
+}
+
+TEST(WithFNumber, LeavesAnInferredStopTheStop) {
+  for (Prescription p : data_prescriptions()) {
+    SCOPED_TRACE(p.id);
+    for (SurfaceRow& row : p.surfaces) row.stop = false;
+    const Lens lens = compile(p);
+    const Pupils before = pupils(lens, 0, main_meridian(lens));
+    if (lens.surfaces()[before.stop].inner_semi_diameter > 0) continue;
+    const double n = 1.5 * real_f_number(lens);
+    const Lens stopped = with_f_number(lens, n);
+    EXPECT_EQ(pupils(stopped).stop, before.stop);
+    EXPECT_NEAR(real_f_number(stopped), n, 1e-12 * n);
+  }
 }
 
 TEST(WithFNumber, WorksOnAnInferredStop) {

@@ -115,6 +115,21 @@ TYPED_TEST(Robust, NothingButFiniteNumbersComesOutOfAnyLens) {
   this->RecordProperty("no_convergence", fates[4]);
 }
 
+TEST(Robust, AMissLeavesTheRayOnTheSurfaceBefore) {
+  petzval::Prescription p;
+  p.name = "window and ball";
+  p.surfaces = {{.radius = 0, .thickness = 5}, {.radius = 10, .thickness = 20, .medium = {.nd = 1.5}}};
+  const petzval::Lens lens = petzval::compile(p);
+  for (const auto travel : {Travel::to_film, Travel::to_scene}) {
+    const double sense = travel == Travel::to_film ? 1 : -1;
+    const auto end = petzval::trace(lens, Ray<double>{{0, 11, 40}, {0, 0, sense}}, {.travel = travel});
+    EXPECT_EQ(end.fate, RayFate::missed_surface);
+    EXPECT_EQ(end.surface, 1);
+    EXPECT_EQ(end.ray.origin, petzval::Vec3<double>(0, 11, travel == Travel::to_film ? 0 : 40));
+    EXPECT_EQ(end.ray.direction, petzval::Vec3<double>(0, 0, sense));
+  }
+}
+
 TEST(Robust, RaysThatAreNoRaysAreMisses) {
   const auto lens = testing_lenses::load("double_gauss_100mm_f2.0").lens;
   const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();

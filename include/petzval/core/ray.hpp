@@ -36,7 +36,9 @@ PETZVAL_API std::string_view name(RayFate fate) noexcept;
 /// A traced ray: where and how it went on, or where it ended.
 ///
 /// origin is the hit on the last surface reached, direction the direction after it (before it, where the ray ended
-/// there). Always finite. surface counts from 0: the last surface passed when transmitted, else the one that ended it.
+/// there). A ray that ended as missed_surface or no_convergence did not reach the surface that ended it: its origin is
+/// the hit on the surface met before that one, and its own old origin where there is none. Always finite. surface
+/// counts from 0: the last surface passed when transmitted, else the one that ended it.
 template <class T>
 struct TracedRay {
   Ray<T> ray;

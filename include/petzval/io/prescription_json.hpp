@@ -24,6 +24,7 @@ PETZVAL_API Prescription parse_prescription(std::string_view json, const std::st
 /// was read from such a text gives the same bytes.
 PETZVAL_API std::string format_prescription(const Prescription& prescription);
 
+/// That text into a file, as a whole or not at all. Throws Error that names the file.
 PETZVAL_API void write_prescription(const Prescription& prescription, const std::filesystem::path& file);
 
 }  // namespace petzval

@@ -43,7 +43,7 @@ struct CompileOptions {
   MissingGlass missing_glass = MissingGlass::error;
 };
 
-/// One surface of a compiled lens, in double. Curvature, never radius.
+/// One surface of a compiled lens, in double. Millimetres. Curvature, never radius.
 struct LensSurface {
   double vertex_z = 0;   ///< lens frame, mm
   double thickness = 0;  ///< signed, to the next vertex or the film
@@ -118,7 +118,7 @@ PETZVAL_API Lens compile(const Prescription& prescription, std::span<const doubl
 /// At the prescription's reference wavelength alone.
 PETZVAL_API Lens compile(const Prescription& prescription, const CompileOptions& options = {});
 
-/// The lens with another clear aperture at one surface (mm, >= 0).
+/// The lens with another clear aperture at one surface (mm, >= 0; nothing passes one no larger than its hole).
 PETZVAL_API Lens with_semi_diameter(const Lens& lens, std::size_t surface, double semi_diameter);
 
 /// The lens with its film at another place (lens frame, mm).

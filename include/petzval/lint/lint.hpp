@@ -18,7 +18,7 @@ struct Finding {
     focal_length,   ///< computed differs from declared by more than 2 %
     f_number,       ///< the same for the f-number by exact ray
     overlap,        ///< neighbouring surfaces cross inside their clear apertures
-    semi_diameter,  ///< beyond the surface's domain (past the equator of the conic)
+    semi_diameter,  ///< beyond the surface's domain (past the equator of the conic), or 0 away from the stop
     no_stop,
     several_stops,
     image_distance,  ///< the last gap differs from the paraxial focus by more than 2 % of the focal length

@@ -11,7 +11,7 @@ namespace petzval {
 /// A ray-transfer (ABCD) matrix on (y, n u): height in mm and optical direction, n the signed index (negative while
 /// light runs backwards after a mirror). Its determinant is 1.
 struct RayMatrix {
-  double a = 1, b = 0, c = 0, d = 1;
+  double a = 1, b = 0, c = 0, d = 1;  ///< b in mm, c in 1/mm
 
   /// The matrix of `*this` followed by `next`.
   constexpr RayMatrix then(const RayMatrix& next) const noexcept {
@@ -37,7 +37,7 @@ PETZVAL_API RayMatrix ray_matrix(const Lens& lens, std::size_t first, std::size_
 PETZVAL_API RayMatrix ray_matrix_to(const Lens& lens, std::size_t surface, std::size_t wavelength = 0,
                                     Meridian meridian = Meridian::y);
 
-/// The first-order data of a lens, all z in the lens frame (mm), lengths signed.
+/// The first-order data of a lens: all z in the lens frame, lengths and distances signed, all in mm.
 ///
 /// power = sum of h_i phi_i over the surfaces, h_i the height of a ray that enters parallel to the axis at height 1 and
 /// phi_i the power of the surface. Where it cancels to less than 1e-12 of the sum of |h_i phi_i|, the lens is afocal:
@@ -71,7 +71,8 @@ PETZVAL_API double paraxial_image_z(const Lens& lens, double object_z, std::size
                                     Meridian meridian = Meridian::y);
 
 /// Focal length of a single lens element of index n in air: 1/f = (n-1) (c1 - c2 + (n-1) t c1 c2 / n), in curvatures,
-/// so that planes and equal radii lose nothing. t = 0 gives the thin lens. Infinite where the power is 0.
+/// so that planes and equal radii lose nothing; mm and 1/mm, or any other unit throughout. t = 0 gives the thin lens.
+/// Infinite where the power is 0.
 PETZVAL_API double lensmaker_focal_length(double n, double c1, double c2, double thickness = 0) noexcept;
 
 }  // namespace petzval

@@ -49,7 +49,7 @@ struct SurfaceRow {
   bool operator==(const SurfaceRow&) const = default;
 };
 
-/// The position of a zoom lens that a file stands for: the gaps that vary, by surface number from 0.
+/// The position of a zoom lens that a file stands for: the gaps that vary (mm), by surface number from 0.
 struct ZoomPosition {
   std::string position{};
   std::map<int, double> variable_gaps{};

@@ -24,13 +24,14 @@ struct Psf {
   std::vector<std::uint64_t> counts;       ///< [wavelength][row][column]
   std::vector<std::uint64_t> sent;         ///< rays started, per wavelength
   std::vector<std::uint64_t> transmitted;  ///< rays that reached the film, on the picture or beside it
-  std::vector<double> window_area;         ///< mm^2 of pupil plane the rays were spread over, per wavelength
+  std::vector<double> sampled_area;        ///< mm^2 of pupil plane the rays were spread over, per wavelength
   double entrance_pupil_area = 0;  ///< of the paraxial entrance pupil, mm^2; an ellipse in a lens with cylinders
 
   /// What one ray carries: its share of the light that falls onto the paraxial entrance pupil. 0 for an empty pupil.
   PETZVAL_API double ray_weight(std::size_t wavelength) const noexcept;
 
-  /// Transmitted area of the entrance-pupil plane over that of the paraxial entrance pupil, before the picture's crop.
+  /// Transmitted area of the PupilPlane over that of the paraxial entrance pupil, before the picture's crop. (From 89
+  /// degrees on that plane faces the point, and so does the pupil it is compared with.)
   PETZVAL_API double throughput(std::size_t wavelength) const noexcept;
 };
 
@@ -54,8 +55,8 @@ struct PointImage {
 };
 
 /// Traces a point light onto the lens's film at every compiled wavelength; the picture is centred on the centroid.
-/// Where nothing gets through all is 0. Throws Error where pupil_window does, and for no samples, pixels or threads and
-/// a half width that is no length.
+/// Where nothing gets through all is 0. Throws Error where pupil_outline does, and for no samples, pixels or threads
+/// and a half width that is no length.
 PETZVAL_API PointImage point_image(const Lens& lens, const ScenePoint& point, const PsfOptions& options = {});
 
 }  // namespace petzval

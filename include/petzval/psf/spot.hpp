@@ -28,15 +28,17 @@ PETZVAL_API SpotSize spot_size(std::span<const FilmHits> sets) noexcept;
 struct Spot {
   ScenePoint point;
   std::size_t wavelength = 0;
-  /// y on the film of the ray through the centre of the paraxial entrance pupil, apertures ignored. Nothing where no
-  /// such ray reaches the film: the pupils of wide lenses move with the field.
+  /// y on the film of the chief ray, exactly through the centre of the stop, clear apertures ignored. Nothing where no
+  /// such ray reaches the film.
   std::optional<double> chief_ray_height;
+  /// Of the film here to that on the axis, as relative_illumination gives it. Nothing where the axis is dark.
+  std::optional<double> relative_illumination;
   FilmHits hits;
   SpotSize size;
 };
 
 /// Spots of several fields on the lens's film, at every compiled wavelength: field by field, and by wavelength within.
-/// subject_z: lens frame, mm, -inf at infinity. Throws Error where pupil_window does.
+/// subject_z: lens frame, mm, -inf at infinity. Throws Error where pupil_outline does.
 PETZVAL_API std::vector<Spot> spot_diagram(const Lens& lens, double subject_z, std::span<const double> fields_rad,
                                            std::uint32_t samples = 4096);
 

@@ -25,6 +25,9 @@ struct Pupils {
       false;  ///< no surface is marked: the one that clips the axial beam from infinity first (paraxially)
 };
 
+/// Whether any surface limits the beam: without one there is nothing that pupils could be images of.
+PETZVAL_API bool has_pupils(const Lens& lens) noexcept;
+
 /// Throws Error where every surface is unlimited and nothing can stop a beam.
 PETZVAL_API Pupils pupils(const Lens& lens, std::size_t wavelength = 0, Meridian meridian = Meridian::y);
 
@@ -39,8 +42,8 @@ PETZVAL_API double real_f_number(const Lens& lens, std::size_t wavelength = 0);
 
 /// The lens stopped down to an f-number (real_f_number, by exact rays): the stop gets the semi-diameter at which the
 /// axis-parallel ray of height |EFL| / (2 N) passes it, so that real_f_number gives N back within 1e-12. Throws Error
-/// for N <= 0 or not finite, an afocal lens, and N faster (by more than 1e-9) than the lens can give, naming the
-/// fastest possible.
+/// for N <= 0 or not finite, an afocal lens, N faster (by more than 1e-9) than the lens can give, naming the fastest
+/// possible, and N so slow that the hole of an annular stop takes all of it, naming that of the hole.
 PETZVAL_API Lens with_f_number(const Lens& lens, double f_number, std::size_t wavelength = 0);
 
 }  // namespace petzval

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+
+#include "petzval/core/export.hpp"
+#include "petzval/core/ray.hpp"
+#include "petzval/lens/lens.hpp"
+
+namespace petzval {
+
+/// A pupil as the textbook method finds it: one disc on the axis, and the ray that gave it.
+struct TextbookPupil {
+  double z = 0;         ///< of the paraxial image of the stop (lens frame, mm); infinite: telecentric
+  double diameter = 0;  ///< of the marginal ray in that plane, mm
+  std::size_t limiting =
+      0;  ///< the surface that ends the next ray outwards: the first rim to clip, not always the stop
+  RayFate beyond = RayFate::vignetted;  ///< what becomes of that next ray
+  /// The outermost ray, traced and transmitted; as it meets the lens: in object space (entrance) or image space (exit).
+  Ray<double> marginal{};
+};
+
+/// The entrance pupil by the textbook method: the outermost ray that the lens passes from a point of the axis, found by
+/// bisection between the axis and the rim of the first surface, in the plane of the paraxial image of the stop.
+///
+/// It is here as the baseline that the literature samples lenses by, and to show what is wrong with it (the numbers:
+/// tests/pupil/textbook_test.cpp, a double Gauss f/2):
+///   - its ray belongs to the first rim that clips, which need not be the stop: f/2.018 where the stop gives f/2.004;
+///   - it is a disc on the axis: 10 degrees or more off, rims and the aberrations of the pupil cut and shift what
+///     passes. In the corner of the film a fifth of the disc passes;
+///   - stopped down, when no rim clips any more, the disc is in the wrong place all the same: it misses a fifth of the
+///     passing rays in that corner. And what passes on the axis need not reach the axis: a lens with a hole
+///     in it has no such pupil.
+/// Use pupils() for the image of the stop, aim() for its rays and pupil_outline() for what passes.
+///
+/// object_z: lens frame, mm; infinite, or anywhere but in the first vertex (a converging beam aims behind it).
+/// Steps 1 to 8 of Wu et al. 2010, section 5.1.2, repaired: the result is the last ray that passed (theirs is a middle
+/// of the bracket that nobody traced); rays count by their distance from the vertex, which an infinite conjugate has
+/// too; steps 6 to 8 are their limit, the paraxial matrices. Throws Error where pupils() does, for a wavelength that
+/// was not compiled, an object_z in the vertex or NaN, where the ray along the axis is lost, and where no ray is.
+PETZVAL_API TextbookPupil textbook_entrance_pupil(const Lens& lens, double object_z, std::size_t wavelength = 0);
+
+/// The exit pupil by the same method from the other side: rays from the axial point of a film, traced to the scene.
+PETZVAL_API TextbookPupil textbook_exit_pupil(const Lens& lens, double film_z, std::size_t wavelength = 0);
+
+}  // namespace petzval

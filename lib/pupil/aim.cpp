@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "aim.hpp"
+
+#include <ceres/jet.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <numbers>
+#include <optional>
+#include <string>
+
+#include "face.hpp"
+#include "petzval/core/bisect.hpp"
+#include "petzval/core/error.hpp"
+#include "petzval/lens/sag.hpp"
+#include "petzval/pupil/pupil.hpp"
+#include "petzval/trace/sequential.hpp"
+#include "petzval/trace/trace.hpp"
+
+namespace petzval {
+namespace {
+
+using Jet = ceres::Jet<double, 2>;
+using kernel::Vec;
+
+/// The unknown: transverse components of the unit direction in which a ray leaves the stop towards the scene.
+struct Slope {
+  double x = 0, y = 0;
+
+  Slope operator+(const Slope& s) const noexcept { return {x + s.x, y + s.y}; }
+  Slope operator*(double s) const noexcept { return {x * s, y * s}; }
+};
+
+/// A ray that left the stop and the lens, and how it misses the point: components of the sine of the
+/// angle between its direction and the point's, in the meridian of the field and across it.
+template <class T>
+struct Departure {
+  Vec<T> origin, direction, wanted;
+  T along, across;
+};
+
+/// Solves for rays of one point, of the scene or the film, and wavelength. Lengths at the stop in mm here.
+class Aimer {
+ public:
+  Aimer(const Lens& lens, const PupilPlane& plane, std::size_t wavelength)
+      : lens_(lens), plane_(plane), wavelength_(wavelength), stop_(pupils(lens, wavelength).stop) {
+    // Light leaves the stop for the film as it runs there, and for the scene the other way.
+    const bool to_point_is_to_scene = plane.travel() == Travel::to_film;
+    const auto sense = [&](std::size_t space) { return signed_index(lens, space, wavelength) > 0 ? 1.0 : -1.0; };
+    from_stop_ = to_point_is_to_scene ? -sense(stop_) : sense(stop_ + 1);
+    at_point_ = to_point_is_to_scene ? -1 : sense(lens.surface_count());
+    departure_ = {.travel = to_point_is_to_scene ? Travel::to_scene : Travel::to_film,
+                  .wavelength = wavelength,
+                  .apertures = false};
+    arrival_ = {.travel = plane.travel(), .wavelength = wavelength, .apertures = false};
+    (to_point_is_to_scene ? departure_.last : departure_.first) = to_point_is_to_scene ? stop_ : stop_ + 1;
+    (to_point_is_to_scene ? arrival_.last : arrival_.first) = to_point_is_to_scene ? stop_ + 1 : stop_;
+
+    const Vec3<double>& towards = plane.towards();
+    const double across = std::hypot(towards.x, towards.y);
+    outwards_ = across > 0 ? Slope{towards.x / across, towards.y / across} : Slope{0, 1};
+    lateral_ = {outwards_.y, -outwards_.x, 0};
+    meridian_ = glm::cross(lateral_, towards);
+    // A stop closed to a pinhole is still hit as well as numbers allow.
+    acceptance_ = 1e-6 * std::max(unit(), 1e-3 * detail::face_of(lens, 0, pupils(lens, wavelength).entrance).half);
+    if (const auto axis = differentiated({}, {})) mirrored_ = mirrored(*axis);
+  }
+
+  /// What a StopPoint counts in.
+  double unit() const noexcept {
+    const double semi_diameter = lens_.surfaces()[stop_].semi_diameter;
+    return semi_diameter > 0 && std::isfinite(semi_diameter) ? semi_diameter : 1;
+  }
+
+  AimedRay operator()(const StopPoint& target) const noexcept {
+    const StopPoint place{target.x * unit(), target.y * unit()};
+    const auto slope = solve(place);
+    return slope ? tested(place, *slope) : AimedRay{};
+  }
+
+ private:
+  template <class T>
+  std::optional<Departure<T>> leave(const StopPoint& from, const T& x, const T& y) const noexcept {
+    using std::sqrt;
+    const T squared = T(1) - x * x - y * y;
+    const double z = lens_.surfaces()[stop_].vertex_z + sag(lens_, stop_, from.x, from.y);
+    if (!(squared > 0.0) || !std::isfinite(z)) return {};
+    const auto end = kernel::trace(lens_.view<double>(), Vec<T>{T(from.x), T(from.y), T(z)},
+                                   Vec<T>{x, y, T(sqrt(squared) * from_stop_)}, departure_);
+    if (end.fate != RayFate::transmitted) return {};
+
+    const auto vector = [](const Vec3<double>& v) { return Vec<T>{T(v.x), T(v.y), T(v.z)}; };
+    Vec<T> wanted = vector(plane_.towards()) - (end.origin - vector(plane_.centre())) * T(plane_.reciprocal_distance());
+    const T length = sqrt(dot(wanted, wanted));
+    wanted = wanted * T((plane_.reciprocal_distance() < 0 ? -1.0 : 1.0) / length);
+    const Vec<T>& d = end.direction;
+    const Vec<T> turn{d.y * wanted.z - d.z * wanted.y, d.z * wanted.x - d.x * wanted.z,
+                      d.x * wanted.y - d.y * wanted.x};
+    return Departure<T>{end.origin, d, wanted, dot(turn, vector(lateral_)), dot(turn, vector(meridian_))};
+  }
+
+  std::optional<Slope> solve(const StopPoint& target) const noexcept {
+    const StopPoint centre{};
+    // From the axis a few steps lead to fields of which the lens makes a picture without bending it much.
+    const bool narrow = plane_.towards().z * at_point_ > std::numbers::sqrt2 / 2;
+    auto chief = narrow ? newton(centre, Slope{}) : std::nullopt;
+    if (!chief) {
+      if (const auto edge = bracket(centre)) chief = newton(centre, *edge);
+    }
+    if (target.x == 0 && target.y == 0) return chief;
+    if (chief) {
+      if (const auto slope = newton(target, *chief)) return slope;
+      auto slope = chief;
+      constexpr int steps = 16;
+      for (int i = 1; slope && i <= steps; ++i) {
+        slope = newton({target.x * i / steps, target.y * i / steps}, *slope);
+      }
+      if (slope) return slope;
+    }
+    const auto edge = bracket(target);
+    return edge ? newton(target, *edge) : std::nullopt;
+  }
+
+  std::optional<Departure<Jet>> differentiated(const StopPoint& from, const Slope& s) const noexcept {
+    return leave(from, Jet(s.x, 0), Jet(s.y, 1));
+  }
+
+  /// Which way round directions in object space turn when those at the stop turn.
+  static bool mirrored(const Departure<Jet>& ray) noexcept {
+    const Vec<Jet> e = ray.direction - ray.wanted;
+    const auto part = [&](int i) { return Vec<double>{e.x.v[i], e.y.v[i], e.z.v[i]}; };
+    const Vec<double> a = part(0), b = part(1);
+    const Vec<double> d{ray.direction.x.a, ray.direction.y.a, ray.direction.z.a};
+    return dot(Vec<double>{a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}, d) < 0;
+  }
+
+  /// Damped, so that a step never ends outside the lens or farther from the point. Far beyond their rims surfaces bend
+  /// rays back, and the same angle is met once more, on a sheet turned over: such an answer is none.
+  std::optional<Slope> newton(const StopPoint& from, Slope slope) const noexcept {
+    constexpr double rounding = 1e-15, good = 1e-9;
+    const auto at = [&](const Slope& s) { return differentiated(from, s); };
+    const auto miss = [](const Departure<Jet>& d) {
+      const bool away = !(dot(d.direction, d.wanted) > 0.0);
+      return away ? 2.0 : std::hypot(d.along.a, d.across.a);
+    };
+    auto now = at(slope);
+    if (!now) return {};
+    for (int iteration = 0; iteration < 40 && miss(*now) > rounding; ++iteration) {
+      const Jet &f = now->along, &g = now->across;
+      const double d = f.v[0] * g.v[1] - f.v[1] * g.v[0];
+      Slope step{(f.v[1] * g.a - f.a * g.v[1]) / d, (f.a * g.v[0] - f.v[0] * g.a) / d};
+      if (!std::isfinite(step.x) || !std::isfinite(step.y)) return {};
+      bool nearer = false;
+      for (int halving = 0; halving < 12 && !nearer; ++halving, step = step * 0.5) {
+        const auto next = at(slope + step);
+        nearer = next && miss(*next) < miss(*now);
+        if (nearer) slope = slope + step, now = next;
+      }
+      if (!nearer) break;
+    }
+    return miss(*now) < good && mirrored(*now) == mirrored_ ? std::optional(slope) : std::nullopt;
+  }
+
+  /// The last slope in the meridian of the field at which rays from a place on the stop leave the lens flatter than the
+  /// point is seen: their angle grows with the slope, until they miss a surface, which counts as too steep.
+  std::optional<Slope> bracket(const StopPoint& from) const noexcept {
+    // How much flatter than the point is seen, in rad.
+    const auto flatness = [&](double slope) {
+      const auto d = leave(from, outwards_.x * slope, outwards_.y * slope);
+      const auto angle = [&](const Vec<double>& v) {
+        return std::atan2(v.x * outwards_.x + v.y * outwards_.y, v.z * at_point_);
+      };
+      return d ? angle(d->wanted) - angle(d->direction) : -1;
+    };
+    const double middle = flatness(0), beside = flatness(1e-4);
+    if (!(middle > 0)) return {};
+    const double sign = beside < middle ? 1 : -1;
+    constexpr int steps = 32;
+    constexpr double tolerance = 1e-9;  // Newton's iteration takes over
+    double low = 0, at_low = middle;
+    for (int i = 1; i <= steps; ++i) {
+      const double high = sign * i / steps, at_high = flatness(high);
+      if (at_high < 0) {
+        const double slope = detail::last_above(low, at_low, high, at_high, tolerance, flatness);
+        return Slope{outwards_.x * slope, outwards_.y * slope};
+      }
+      low = high, at_low = at_high;
+    }
+    return {};
+  }
+
+  /// The ray turned round and traced forwards.
+  AimedRay tested(const StopPoint& target, const Slope& slope) const noexcept {
+    const auto out = leave(target, slope.x, slope.y);
+    if (!out) return {};
+    // From where it is nearest to the pupil's centre: a steep field meets the pupil's plane far off, and what is
+    // rounded there is large beside a small stop.
+    const Vec3<double> exit = kernel::to_public(out->origin), backwards = kernel::to_public(out->direction);
+    const Vec3<double> start = exit + backwards * glm::dot(plane_.centre() - exit, backwards);
+    AimedRay result;
+    result.ray = {start, plane_.direction_at(start)};
+
+    const auto hit = kernel::trace(lens_.view<double>(), kernel::to_kernel(result.ray.origin),
+                                   kernel::to_kernel(result.ray.direction), arrival_);
+    const bool met = hit.surface == static_cast<int>(stop_) &&
+                     (hit.fate == RayFate::transmitted || hit.fate == RayFate::totally_reflected);
+    result.residual = std::hypot(hit.origin.x - target.x, hit.origin.y - target.y) / unit();
+    if (!met || !(result.residual * unit() < acceptance_)) return {};
+
+    const auto clipped = trace(lens_, result.ray, {.travel = plane_.travel(), .wavelength = wavelength_});
+    result.end = trace(lens_, result.ray, {.travel = plane_.travel(), .wavelength = wavelength_, .apertures = false});
+    result.status = clipped.transmitted() ? AimStatus::converged : AimStatus::vignetted;
+    if (!clipped.transmitted()) result.surface = clipped.surface;
+    return result;
+  }
+
+  const Lens& lens_;
+  const PupilPlane& plane_;
+  std::size_t wavelength_, stop_;
+  double from_stop_, at_point_;       // sense along z of rays on their way to the point
+  kernel::Path departure_, arrival_;  // from the stop to the point; from the point to the stop
+  Slope outwards_;                    // unit vector across the axis, towards the point
+  Vec3<double> lateral_, meridian_;   // unit vectors across the line to the point: across the meridian, and within it
+  double acceptance_;                 // how far from its place on the stop a ray may arrive, mm
+  bool mirrored_ = false;             // as near the axis
+};
+
+}  // namespace
+
+std::string_view name(AimStatus status) noexcept {
+  switch (status) {
+    case AimStatus::converged: return "converged";
+    case AimStatus::vignetted: return "vignetted";
+    case AimStatus::no_ray: return "no_ray";
+  }
+  return "unknown";
+}
+
+AimedRay detail::aim(const Lens& lens, const PupilPlane& plane, const StopPoint& target, std::size_t wavelength) {
+  lens.index(0, wavelength);  // throws where there is no such wavelength
+  return Aimer(lens, plane, wavelength)(target);
+}
+
+AimedRay aim(const Lens& lens, const ScenePoint& point, const StopPoint& target, std::size_t wavelength) {
+  return detail::aim(lens, PupilPlane(lens, point), target, wavelength);
+}
+
+AimedRay chief_ray(const Lens& lens, const ScenePoint& point, std::size_t wavelength) {
+  return aim(lens, point, {}, wavelength);
+}
+
+}  // namespace petzval

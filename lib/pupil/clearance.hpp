@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+
+#include "petzval/core/ray.hpp"
+#include "petzval/lens/lens.hpp"
+#include "petzval/pupil/pupil_plane.hpp"
+
+namespace petzval::detail {
+
+/// How near a ray comes to being lost.
+struct Clearance {
+  /// The least of 1 - r^2 / R^2 over the rims (R their semi-diameters; of r^2 / R^2 - i^2 / R^2 at holes): continuous,
+  /// 0 at an edge, negative for rays that a rim or hole stops, and lower the sooner a surface loses them otherwise.
+  double value = -1;
+  int surface = -1;  ///< of the least; where the ray is lost otherwise, there
+  RayFate fate = RayFate::transmitted;
+
+  bool passes() const noexcept { return value >= 0; }
+};
+
+/// Of the ray through (x, y) of the plane. It passes exactly when `trace` transmits it.
+Clearance clearance(const Lens& lens, const PupilPlane& plane, double x, double y, std::size_t wavelength) noexcept;
+
+}  // namespace petzval::detail

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "face.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "petzval/lens/sag.hpp"
+
+namespace petzval::detail {
+
+Face face_of(const Lens& lens, std::size_t surface, const Pupil& entrance) noexcept {
+  Face face;
+  face.half = lens.surfaces()[surface].semi_diameter;
+  if (!std::isfinite(face.half)) {
+    double widest = std::isfinite(entrance.diameter) ? entrance.diameter / 2 : 0;
+    for (const LensSurface& s : lens.surfaces()) {
+      if (std::isfinite(s.semi_diameter)) widest = std::max(widest, s.semi_diameter);
+    }
+    face.half = 4 * widest;
+  }
+  // Cylinders are curved in one of the two sections.
+  constexpr int samples = 64;
+  for (const bool along_x : {false, true}) {
+    for (int i = 0; i <= samples; ++i) {
+      const double r = face.half * i / samples;
+      const double z = sag(lens, surface, along_x ? r : 0, along_x ? 0 : r);
+      if (std::isnan(z)) break;
+      face.z_min = std::min(face.z_min, z);
+      face.z_max = std::max(face.z_max, z);
+    }
+  }
+  const double between_samples = 0.02 * (face.z_max - face.z_min), vertex_z = lens.surfaces()[surface].vertex_z;
+  face.z_min += vertex_z - between_samples;
+  face.z_max += vertex_z + between_samples;
+  return face;
+}
+
+}  // namespace petzval::detail

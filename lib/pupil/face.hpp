@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+
+#include "petzval/lens/lens.hpp"
+#include "petzval/pupil/pupil.hpp"
+
+namespace petzval::detail {
+
+/// An outer surface as a box around its clear part: half height, lowest and highest z of the lens frame. Where the
+/// surface is unlimited, four times the widest rim or pupil stands for its half height.
+struct Face {
+  double half = 0, z_min = 0, z_max = 0;
+};
+
+Face face_of(const Lens& lens, std::size_t surface, const Pupil& entrance) noexcept;
+
+}  // namespace petzval::detail

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "petzval/pupil/illumination.hpp"
+
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <numbers>
+
+#include "petzval/pupil/aim.hpp"
+#include "petzval/pupil/outline.hpp"
+
+namespace petzval {
+
+double film_irradiance(const Lens& lens, const FilmPoint& point, std::size_t wavelength) {
+  const PupilPlane plane = PupilPlane::of_film(lens, point);
+  const bool alike_all_round = plane.on_axis() && lens.rotationally_symmetric();
+  const PupilOutline outline =
+      alike_all_round ? exit_pupil_outline(lens, point, wavelength, 1) : exit_pupil_outline(lens, point, wavelength);
+  // Part dA of the plane, gap away from the film, is seen in the projected solid angle cos^4 dA / gap^2. Gauss and
+  // Legendre's three nodes in the squared radius, of which equal steps are equal areas.
+  const double gap = plane.towards().z / plane.reciprocal_distance(), offset = std::sqrt(0.6);
+  const std::array<std::array<double, 2>, 3> nodes{
+      {{(1 - offset) / 2, 5.0 / 18}, {0.5, 8.0 / 18}, {(1 + offset) / 2, 5.0 / 18}}};
+  double sum = 0;
+  for (const PupilSpan& span : outline.spans) {
+    const double from = span.from_radius * span.from_radius, to = span.to_radius * span.to_radius;
+    for (const auto& [node, weight] : nodes) {
+      const auto [x, y] = outline.at(span.direction, std::sqrt(from + node * (to - from)));
+      const double cosine = plane.ray(x, y).direction.z;
+      sum += weight * (to - from) * std::pow(cosine, 4);
+    }
+  }
+  if (sum == 0) return 0;
+  const double n = lens.index(lens.surface_count(), wavelength);
+  return n * n * sum * std::numbers::pi / static_cast<double>(outline.directions) * outline.half_axes[0] *
+         outline.half_axes[1] / (gap * gap);
+}
+
+std::optional<double> relative_illumination(const Lens& lens, const ScenePoint& point, std::size_t wavelength) {
+  const double axis = film_irradiance(lens, {}, wavelength);
+  const AimedRay chief = chief_ray(lens, point, wavelength);
+  if (axis == 0 || !chief || !chief.end.transmitted()) return {};
+  const Ray<double>& ray = chief.end.ray;
+  const double t = (lens.film_z() - ray.origin.z) / ray.direction.z;
+  const FilmPoint image{ray.origin.x + t * ray.direction.x, ray.origin.y + t * ray.direction.y};
+  return film_irradiance(lens, image, wavelength) / axis;
+}
+
+}  // namespace petzval

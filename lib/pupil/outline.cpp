@@ -1,0 +1,302 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "petzval/pupil/outline.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "aim.hpp"
+#include "clearance.hpp"
+#include "face.hpp"
+#include "petzval/core/bisect.hpp"
+#include "petzval/core/error.hpp"
+#include "petzval/pupil/pupil.hpp"
+
+namespace petzval {
+namespace {
+
+using Point = std::array<double, 2>;
+
+struct Box {
+  Point low{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+  Point high{-std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+
+  void take(const Point& p) noexcept {
+    for (int i : {0, 1}) low[i] = std::min(low[i], p[i]), high[i] = std::max(high[i], p[i]);
+  }
+  Point middle() const noexcept { return {(low[0] + high[0]) / 2, (low[1] + high[1]) / 2}; }
+  Point half() const noexcept { return {(high[0] - low[0]) / 2, (high[1] - low[1]) / 2}; }
+};
+
+/// An edge on the way: the last radius that passes, what it meets behind the lens, and what ends the next ray.
+struct Edge {
+  double radius;
+  detail::Clearance inside, outside;
+};
+
+/// Looks along the directions of an outline. Radii are in units of its half axes.
+class Tracer {
+ public:
+  Tracer(const Lens& lens, PupilOutline& outline)
+      : lens_(lens), outline_(outline), middle_(clearance(outline.middle)) {}
+
+  bool middle_passes() const noexcept { return middle_.passes(); }
+
+  /// One span from the middle, which passes; its edge is looked for about `near`.
+  void trace_disc(std::size_t direction, double near) {
+    begin(direction, {0, middle_, {}});
+    finish(outer_edge(direction, near, 0, middle_));
+  }
+
+  /// One span of a ring, whose edges are looked for about those of the direction before. False where they are not
+  /// there.
+  bool trace_ring(std::size_t direction, double near_from, double near_to) {
+    const double low = 0.95 * near_from, high = 1.05 * near_from;
+    const auto hole = clearance(outline_.at(direction, low)), inside = clearance(outline_.at(direction, high));
+    if (hole.passes() || !inside.passes() || !(high < near_to)) return false;
+    begin(direction, close_in(direction, {high, inside, hole}, low));
+    finish(outer_edge(direction, near_to, high, inside));
+    return true;
+  }
+
+  /// All spans between the middle and `reach`, found by looking at `steps` places.
+  void scan_spans(std::size_t direction, double reach, int steps) {
+    double before = 0;
+    auto last = middle_;
+    if (last.passes()) begin(direction, {0, middle_, {}});
+    for (int i = 1; i <= steps; ++i) {
+      const double radius = reach * i / steps;
+      const auto now = clearance(outline_.at(direction, radius));
+      if (now.passes() && !last.passes()) begin(direction, close_in(direction, {radius, now, last}, before));
+      if (!now.passes() && last.passes()) finish(close_in(direction, {before, last, now}, radius));
+      before = radius, last = now;
+    }
+    // Beyond all that the first surface lets in; what still passes touches the rim there.
+    if (last.passes()) finish({reach, last, last});
+  }
+
+ private:
+  detail::Clearance clearance(const Point& p) const noexcept {
+    return detail::clearance(lens_, outline_.plane, p[0], p[1], outline_.wavelength);
+  }
+
+  /// About `near`, farther out than a ray that passes.
+  Edge outer_edge(std::size_t direction, double near, double passing, const detail::Clearance& passes) const {
+    double low = 0.95 * near, high = 1.05 * near;
+    auto inside = clearance(outline_.at(direction, low)), outside = clearance(outline_.at(direction, high));
+    while (inside.passes() && outside.passes()) {
+      low = high, inside = outside;
+      outside = clearance(outline_.at(direction, high *= 1.25));
+    }
+    if (inside.passes()) return close_in(direction, {low, inside, outside}, high);
+    return close_in(direction, {passing, passes, inside}, low);
+  }
+
+  /// From a ray inside and the radius of one outside.
+  Edge close_in(std::size_t direction, Edge edge, double outside) const {
+    constexpr double tolerance = 4e-14;
+    edge.radius =
+        detail::last_above(edge.radius, edge.inside.value, outside, edge.outside.value, tolerance, [&](double radius) {
+          const auto now = clearance(outline_.at(direction, radius));
+          (now.passes() ? edge.inside : edge.outside) = now;
+          return now.value;
+        });
+    return edge;
+  }
+
+  PupilEdge public_edge(std::size_t direction, const Edge& edge) const noexcept {
+    const auto [x, y] = outline_.at(direction, edge.radius);
+    return {x, y, edge.outside.surface, edge.outside.fate};
+  }
+  void begin(std::size_t direction, const Edge& edge) {
+    outline_.spans.push_back({direction, edge.radius, 0, public_edge(direction, edge), {}});
+  }
+  void finish(const Edge& edge) {
+    PupilSpan& span = outline_.spans.back();
+    span.to_radius = edge.radius;
+    span.to = public_edge(span.direction, edge);
+  }
+
+  const Lens& lens_;
+  PupilOutline& outline_;
+  detail::Clearance middle_;
+};
+
+/// What of the plane the rays cross that meet the surface through which they enter: the shadow of a box around it.
+Box shadow(const Lens& lens, const PupilPlane& plane) {
+  const std::size_t entered = plane.travel() == Travel::to_film ? 0 : lens.surface_count() - 1;
+  const detail::Face face = detail::face_of(lens, entered, pupils(lens, lens.central_wavelength()).entrance);
+  Box box;
+  for (const double z : {face.z_min, face.z_max}) {
+    for (const double y : {-face.half, face.half}) {
+      for (const double x : {-face.half, face.half}) {
+        const Vec3<double> corner{x, y, z};
+        box.take(plane.meet({corner, plane.direction_at(corner)}));
+      }
+    }
+  }
+  return box;
+}
+
+/// A ray that passes, or none, looked for about a middle. Seen as a function over the plane, the least clearance of all
+/// rims has one summit where rays get through the lens at all: the grid closes in on it.
+std::optional<Point> summit_near(const Lens& lens, const PupilPlane& plane, std::size_t wavelength, Point middle,
+                                 Point half) {
+  int steps = 16;  // a side, from the middle
+  for (int pass = 0; pass < 24; ++pass) {
+    double highest = -std::numeric_limits<double>::infinity();
+    Point summit = middle;
+    for (int j = -steps; j <= steps; ++j) {
+      for (int i = -steps; i <= steps; ++i) {
+        const Point p{middle[0] + half[0] * i / steps, middle[1] + half[1] * j / steps};
+        const auto here = detail::clearance(lens, plane, p[0], p[1], wavelength);
+        if (here.passes()) return p;
+        if (here.value > highest) highest = here.value, summit = p;
+      }
+    }
+    middle = summit;
+    half = {2 * half[0] / steps, 2 * half[1] / steps};
+    steps = 4;
+  }
+  return {};
+}
+
+/// A ray that passes, or none: the chief ray, or one that is found about it or anywhere.
+std::optional<Point> passing_point(const Lens& lens, const PupilPlane& plane, std::size_t wavelength, const Box& box) {
+  const AimedRay chief = detail::aim(lens, plane, {}, wavelength);
+  if (chief.status == AimStatus::converged) return plane.meet(chief.ray);
+  const Point half = box.half();
+  if (chief) {
+    const auto near = summit_near(lens, plane, wavelength, plane.meet(chief.ray), {half[0] / 2, half[1] / 2});
+    if (near) return near;
+  }
+  return summit_near(lens, plane, wavelength, box.middle(), half);
+}
+
+/// The largest radius, in units of half axes, at which the box has a point.
+double reach(const Box& box, const Point& middle, const Point& half_axes) noexcept {
+  double farthest = 0;
+  for (const double x : {box.low[0], box.high[0]}) {
+    for (const double y : {box.low[1], box.high[1]}) {
+      farthest = std::max(farthest, std::hypot((x - middle[0]) / half_axes[0], (y - middle[1]) / half_axes[1]));
+    }
+  }
+  return farthest;
+}
+
+/// What a region looks like from its middle: one span from it in each direction, one around it, or anything else.
+enum class Shape { disc, ring, other };
+
+/// Finds middle and half axes of what passes: from a ray that does, then from the middle of what that saw, until it
+/// sees no more.
+Shape measure(const Lens& lens, PupilOutline& outline, const Point& start, const Box& box) {
+  outline.middle = start;
+  outline.half_axes = box.half();
+  Shape shape = Shape::disc;
+  for (int pass = 0; pass < 6; ++pass) {
+    // Horseshoes and crescents, whose tips lie behind their own edges, are looked at more closely.
+    const bool simple = shape != Shape::other;
+    outline.directions = simple ? 24 : 96;
+    const int steps = simple ? 32 : 128;
+    const double farthest = reach(box, outline.middle, outline.half_axes);
+    outline.spans.clear();
+    Tracer tracer(lens, outline);
+    // What a disc is from one of its points it is from its middle.
+    const bool disc = pass > 0 && shape == Shape::disc && tracer.middle_passes();
+    for (std::size_t k = 0; k < outline.directions; ++k) {
+      if (disc) {
+        tracer.trace_disc(k, 1);
+      } else {
+        tracer.scan_spans(k, farthest, steps);
+      }
+    }
+    if (outline.spans.empty()) break;
+    const bool one_each = outline.spans.size() == outline.directions;
+    shape = !one_each ? Shape::other : tracer.middle_passes() ? Shape::disc : Shape::ring;
+    Box seen;
+    for (const PupilSpan& s : outline.spans) seen.take({s.from.x, s.from.y}), seen.take({s.to.x, s.to.y});
+    const Point before = std::exchange(outline.half_axes, seen.half());
+    outline.middle = seen.middle();
+    const bool settled =
+        std::abs(outline.half_axes[0] / before[0] - 1) < 0.1 && std::abs(outline.half_axes[1] / before[1] - 1) < 0.1;
+    if (settled && simple == (shape != Shape::other)) break;
+  }
+  return shape;
+}
+
+/// The outline from a ray that passes, and the box in which to look.
+void trace_outline(const Lens& lens, PupilOutline& outline, const Point& start, const Box& box,
+                   std::size_t directions) {
+  constexpr int steps = 96;
+  if (directions == 1) {  // alike all round
+    outline.directions = 1;
+    outline.half_axes = {std::max(box.half()[0], box.half()[1]), std::max(box.half()[0], box.half()[1])};
+    Tracer(lens, outline).scan_spans(0, 1, steps);
+    return;
+  }
+  Shape shape = measure(lens, outline, start, box);
+  const double farthest = std::min(reach(box, outline.middle, outline.half_axes), 1.5);
+  outline.directions = directions;
+  outline.spans.clear();
+  Tracer tracer(lens, outline);
+  if (shape == Shape::disc && !tracer.middle_passes()) shape = Shape::other;
+  for (std::size_t k = 0; k < directions; ++k) {
+    // Edges move little from one direction to the next.
+    const bool first = outline.spans.empty();
+    const double near_from = first ? 0 : outline.spans.back().from_radius;
+    const double near_to = first ? 1 : outline.spans.back().to_radius;
+    if (shape == Shape::disc) {
+      tracer.trace_disc(k, near_to);
+    } else if (shape == Shape::other || first || !tracer.trace_ring(k, near_from, near_to)) {
+      tracer.scan_spans(k, farthest, steps);
+    }
+  }
+}
+
+PupilOutline outline_of(const Lens& lens, const PupilPlane& plane, std::size_t wavelength, std::size_t directions) {
+  lens.index(0, wavelength);  // throws where there is no such wavelength
+  if (directions < 3 && !(directions == 1 && plane.on_axis() && lens.rotationally_symmetric())) {
+    throw Error(lens.name() + ": pupil outline: directions is " + std::to_string(directions) +
+                ", wanted 3 or more, or 1 on the axis of a lens of revolution");
+  }
+  PupilOutline outline{.plane = plane, .wavelength = wavelength};
+  const auto closed = [](const LensSurface& s) { return s.semi_diameter == 0; };
+  if (std::any_of(lens.surfaces().begin(), lens.surfaces().end(), closed)) return outline;
+  const Box box = shadow(lens, plane);
+  const auto start = passing_point(lens, plane, wavelength, box);
+  if (start) trace_outline(lens, outline, *start, box, directions);
+  return outline;
+}
+
+}  // namespace
+
+std::array<double, 2> PupilOutline::unit(std::size_t direction) const noexcept {
+  const double angle = 2 * std::numbers::pi * (static_cast<double>(direction) + 0.5) / static_cast<double>(directions);
+  return {std::sin(angle), std::cos(angle)};
+}
+
+std::array<double, 2> PupilOutline::at(std::size_t direction, double radius) const noexcept {
+  const auto [x, y] = unit(direction);
+  return {middle[0] + half_axes[0] * radius * x, middle[1] + half_axes[1] * radius * y};
+}
+
+double PupilOutline::area() const noexcept {
+  double sum = 0;
+  for (const PupilSpan& s : spans) sum += (s.to_radius - s.from_radius) * (s.to_radius + s.from_radius);
+  return directions == 0 ? 0 : sum * std::numbers::pi / static_cast<double>(directions) * half_axes[0] * half_axes[1];
+}
+
+PupilOutline pupil_outline(const Lens& lens, const ScenePoint& point, std::size_t wavelength, std::size_t directions) {
+  return outline_of(lens, PupilPlane(lens, point), wavelength, directions);
+}
+
+PupilOutline exit_pupil_outline(const Lens& lens, const FilmPoint& point, std::size_t wavelength,
+                                std::size_t directions) {
+  return outline_of(lens, PupilPlane::of_film(lens, point), wavelength, directions);
+}
+
+}  // namespace petzval

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "petzval/pupil/pupil_plane.hpp"
+
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <numbers>
+#include <string>
+
+#include "face.hpp"
+#include "petzval/core/error.hpp"
+#include "petzval/core/text.hpp"
+#include "petzval/core/units.hpp"
+#include "petzval/pupil/pupil.hpp"
+
+namespace petzval {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+void check(const Lens& lens, const ScenePoint& point, const Pupil& entrance) {
+  const std::string where = lens.name() + ": scene point: ";
+  if (!(std::abs(point.field_rad) <= std::numbers::pi)) {
+    throw Error(where + "field is " + number(degrees(point.field_rad), 6) + " degrees, wanted -180 to 180");
+  }
+  if (!std::isfinite(point.azimuth_rad)) {
+    throw Error(where + "azimuth is " + number(point.azimuth_rad) + " rad, wanted a finite angle");
+  }
+  if (!std::isfinite(entrance.z)) {
+    throw Error(where + "the entrance pupil is at infinity, wanted one at a finite place: fields are seen from it");
+  }
+  if (!(point.z < infinity)) throw Error(where + "z is " + number(point.z) + " mm, wanted a finite one or -inf");
+  if (point.z == entrance.z) {
+    throw Error(where + "z is " + number(point.z) + " mm, that of the entrance pupil, wanted another");
+  }
+
+  // A plane in front of the lens is met by fields below 90 degrees; the others meet planes beside and behind it.
+  const std::string field = number(degrees(point.field_rad), 6) + " degrees";
+  if (std::abs(point.field_rad) < std::numbers::pi / 2) {
+    const double front = detail::face_of(lens, 0, entrance).z_min;
+    if (!(point.z < front)) {
+      throw Error(where + "z is " + number(point.z) + " mm, wanted less than where the first surface begins, " +
+                  number(front) + " mm");
+    }
+  } else if (std::isfinite(point.z)) {
+    const double side = std::abs(std::tan(point.field_rad) * (entrance.z - point.z));
+    if (!(point.z > entrance.z && side > detail::face_of(lens, 0, entrance).half)) {
+      throw Error(where + "z is " + number(point.z) + " mm at a field of " + field +
+                  ", wanted -inf, or a plane behind the entrance pupil (" + number(entrance.z) +
+                  " mm) that this field meets outside the lens");
+    }
+  }
+}
+
+}  // namespace
+
+PupilPlane::PupilPlane(const Lens& lens, const ScenePoint& point) {
+  const Pupil entrance = pupils(lens, lens.central_wavelength()).entrance;
+  check(lens, point, entrance);
+  const double sine = std::sin(point.field_rad), cosine = std::cos(point.field_rad);
+  const Vec3<double> across{std::sin(point.azimuth_rad), std::cos(point.azimuth_rad), 0};
+  centre_ = {0, 0, entrance.z};
+  towards_ = {across.x * sine, across.y * sine, -cosine};
+  reciprocal_distance_ = std::isinf(point.z) ? 0 : cosine / (entrance.z - point.z);
+  turned_ = cosine < std::cos(radians(89.0));
+  if (turned_) {
+    x_axis_ = {across.y, -across.x, 0};
+    y_axis_ = {across.x * cosine, across.y * cosine, sine};
+    normal_ = towards_;
+  }
+}
+
+PupilPlane PupilPlane::of_film(const Lens& lens, const FilmPoint& point) {
+  const std::string where = lens.name() + ": film point: ";
+  for (const double coordinate : {point.x, point.y}) {
+    if (std::isfinite(coordinate)) continue;
+    throw Error(where + "a coordinate is " + number(coordinate) + " mm, wanted a finite place");
+  }
+  const double last_z = lens.surfaces().back().vertex_z;
+  if (lens.film_z() == last_z) {
+    throw Error(where + "the film is at z = " + number(last_z) + " mm, that of the last vertex, wanted it elsewhere");
+  }
+  const Vec3<double> to_point{point.x, point.y, lens.film_z() - last_z};
+  // Of a film in front of the last vertex the lens sends a virtual image: its rays run as if it lay behind.
+  const double sense = signed_index(lens, lens.surface_count()) > 0 ? 1 : -1;
+  const double distance = std::copysign(glm::length(to_point), to_point.z * sense);
+  PupilPlane plane;
+  plane.travel_ = Travel::to_scene;
+  plane.centre_ = {0, 0, last_z};
+  plane.towards_ = to_point / distance;
+  plane.reciprocal_distance_ = 1 / distance;
+  return plane;
+}
+
+Vec3<double> PupilPlane::direction_at(const Vec3<double>& place) const noexcept {
+  // (place - point) / distance has no large numbers in it, and at infinity the first term is 0.
+  const Vec3<double> d = (place - centre_) * reciprocal_distance_ - towards_;
+  return d * ((reciprocal_distance_ < 0 ? -1 : 1) / glm::length(d));
+}
+
+Ray<double> PupilPlane::ray(double x, double y) const noexcept {
+  const Vec3<double> place = centre_ + x_axis_ * x + y_axis_ * y;
+  return {place, direction_at(place)};
+}
+
+std::array<double, 2> PupilPlane::meet(const Ray<double>& ray) const noexcept {
+  const double t = glm::dot(centre_ - ray.origin, normal_) / glm::dot(ray.direction, normal_);
+  const Vec3<double> place = ray.origin + ray.direction * t - centre_;
+  return {glm::dot(place, x_axis_), glm::dot(place, y_axis_)};
+}
+
+}  // namespace petzval

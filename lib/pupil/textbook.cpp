@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "petzval/pupil/textbook.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "petzval/core/bisect.hpp"
+#include "petzval/core/error.hpp"
+#include "petzval/core/text.hpp"
+#include "petzval/lens/sag.hpp"
+#include "petzval/paraxial/first_order.hpp"
+#include "petzval/pupil/pupil.hpp"
+#include "petzval/trace/trace.hpp"
+
+namespace petzval {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// The rays of one point of the axis in the main meridian, told apart by their signed distance from the vertex of the
+/// surface they meet first: sine of the angle = distance from the vertex / distance of the point, for any point.
+class AxialFan {
+ public:
+  AxialFan(const Lens& lens, Travel travel, double point_z, std::size_t wavelength)
+      : lens_(lens),
+        options_{.travel = travel, .wavelength = wavelength},
+        first_(travel == Travel::to_film ? 0 : lens.surface_count() - 1),
+        along_y_(main_meridian(lens, wavelength) == Meridian::y) {
+    const std::size_t space = travel == Travel::to_film ? 0 : lens.surface_count();
+    forward_ = (travel == Travel::to_film) == (signed_index(lens, space, wavelength) > 0) ? 1 : -1;
+    distance_ = std::isinf(point_z) ? infinity : forward_ * (lens.surfaces()[first_].vertex_z - point_z);
+  }
+
+  /// The ray at a distance p from the vertex, started at its point nearest to that: the rounding of a far object's
+  /// direction is not carried to the lens.
+  Ray<double> ray(double p) const noexcept {
+    const double sine = p / distance_, cosine = std::sqrt((1 - sine) * (1 + sine));
+    return {placed(p * cosine, lens_.surfaces()[first_].vertex_z - forward_ * p * sine),
+            placed(sine, forward_ * cosine)};
+  }
+
+  TracedRay<double> trace(double p) const noexcept { return petzval::trace(lens_, ray(p), options_); }
+
+  /// Distance from the vertex of the ray to the point of the first surface at some height; at most that of the ray at
+  /// a right angle to the axis.
+  double towards(double height) const noexcept {
+    const double sag = petzval::sag(lens_, first_, along_y_ ? 0 : height, along_y_ ? height : 0);
+    const double depth = distance_ + forward_ * (std::isnan(sag) ? 0 : sag);
+    if (std::isinf(distance_)) return height;
+    return depth * distance_ > 0 ? std::abs(distance_) * height / std::hypot(height, depth) : std::abs(distance_);
+  }
+
+  /// Where the ray crosses the axis-normal plane at z.
+  double height_at(double p, double z) const noexcept {
+    if (std::isinf(z)) return infinity;
+    const Ray<double> r = ray(p);
+    const double slope = (along_y_ ? r.direction.y : r.direction.x) / r.direction.z;
+    return (along_y_ ? r.origin.y : r.origin.x) + slope * (z - r.origin.z);
+  }
+
+  bool at_vertex() const noexcept { return distance_ == 0; }
+
+  /// Half height to begin with: the rim of the first surface, or the widest rim where it has none.
+  double rim() const noexcept {
+    const double own = lens_.surfaces()[first_].semi_diameter;
+    if (std::isfinite(own)) return own;
+    double widest = 1;
+    for (const LensSurface& s : lens_.surfaces()) {
+      if (std::isfinite(s.semi_diameter)) widest = std::max(widest, s.semi_diameter);
+    }
+    return widest;
+  }
+
+ private:
+  Vec3<double> placed(double across, double z) const noexcept {
+    return along_y_ ? Vec3<double>{0, across, z} : Vec3<double>{across, 0, z};
+  }
+
+  const Lens& lens_;
+  TraceOptions options_;
+  std::size_t first_;
+  bool along_y_;
+  double forward_ = 1;   // along z of the way to the lens
+  double distance_ = 0;  // of the point in front of the vertex; negative where the beam converges to it
+};
+
+TextbookPupil textbook_pupil(const Lens& lens, Travel travel, double point_z, std::size_t wavelength) {
+  const bool entrance = travel == Travel::to_film;
+  const std::string where = lens.name() + ": textbook " + (entrance ? "entrance" : "exit") + " pupil: ";
+  lens.index(0, wavelength);  // throws where there is no such wavelength
+  const Pupils paraxial = pupils(lens, wavelength, main_meridian(lens, wavelength));
+  const AxialFan fan(lens, travel, point_z, wavelength);
+  if (std::isnan(point_z) || fan.at_vertex()) {
+    throw Error(where + (entrance ? "object_z" : "film_z") + " is " + number(point_z) +
+                " mm, wanted infinity or a place off the vertex of the lens");
+  }
+  const auto passes = [&](double p) { return fan.trace(p).transmitted(); };
+  if (const auto axial = fan.trace(0); !axial.transmitted()) {
+    throw Error(where + "the ray along the axis ends at surface " + std::to_string(axial.surface) + " (" +
+                std::string(name(axial.fate)) + "), wanted one that passes: the bisection starts from it");
+  }
+
+  // Steps 1 to 5. The ray to the rim itself is the first that is tried; without a rim, farther and farther out.
+  double height = fan.rim(), outermost = fan.towards(height);
+  const bool limited = std::isfinite(lens.surfaces()[entrance ? 0 : lens.surface_count() - 1].semi_diameter);
+  while (!limited && passes(outermost) && height < 1e100) outermost = fan.towards(height *= 2);
+  if (!passes(outermost)) {
+    outermost = detail::last_with(0.0, outermost, passes);
+  } else if (!limited) {
+    throw Error(where + "no surface ends a ray from z = " + number(point_z) + " mm, wanted a rim");
+  }
+
+  // Steps 6 to 8.
+  const Pupil& image = entrance ? paraxial.entrance : paraxial.exit;
+  const auto next = fan.trace(std::nextafter(outermost, infinity));
+  return {.z = image.z,
+          .diameter = 2 * std::abs(fan.height_at(outermost, image.z)),
+          .limiting =
+              next.transmitted() ? (entrance ? 0 : lens.surface_count() - 1) : static_cast<std::size_t>(next.surface),
+          .beyond = next.transmitted() ? RayFate::vignetted : next.fate,
+          .marginal = fan.ray(outermost)};
+}
+
+}  // namespace
+
+TextbookPupil textbook_entrance_pupil(const Lens& lens, double object_z, std::size_t wavelength) {
+  return textbook_pupil(lens, Travel::to_film, object_z, wavelength);
+}
+
+TextbookPupil textbook_exit_pupil(const Lens& lens, double film_z, std::size_t wavelength) {
+  return textbook_pupil(lens, Travel::to_scene, film_z, wavelength);
+}
+
+}  // namespace petzval

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a pupil costs, one thread, in microseconds and in rays traced through the same lens: a chief ray, an outline of
+// 64 or 256 directions, and the 64 outlines (of 256) from the axis to the edge of the field that set up a camera.
+// Points at infinity.
+#include <benchmark/benchmark.h>
+
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "petzval/core/units.hpp"
+#include "petzval/io/prescription_json.hpp"
+#include "petzval/psf/sobol.hpp"
+#include "petzval/pupil/aim.hpp"
+#include "petzval/pupil/outline.hpp"
+#include "petzval/pupil/pupil_sampler.hpp"
+#include "petzval/trace/trace.hpp"
+#include "table.hpp"
+
+namespace {
+
+using petzval::ScenePoint;
+
+struct Setup {
+  petzval::Lens lens;
+  std::vector<ScenePoint> near_field;  ///< 64 fields within 1 % of the one measured, so that no two runs are the same
+  std::vector<ScenePoint> all_fields;  ///< 64 from the axis to the edge
+};
+
+ScenePoint at_infinity(double field_deg) {
+  return {.field_rad = petzval::radians(field_deg), .z = -std::numeric_limits<double>::infinity()};
+}
+
+/// edge_deg: half the field that the lens is declared to have.
+Setup setup(const std::string& id, double field_deg, double edge_deg) {
+  Setup result{
+      petzval::compile(petzval::read_prescription(std::string(PETZVAL_BENCH_DATA) + "/lenses/" + id + ".json")),
+      {},
+      {}};
+  for (int i = 0; i < 64; ++i) {
+    result.near_field.push_back(at_infinity(field_deg * (0.99 + 0.02 * i / 63)));
+    result.all_fields.push_back(at_infinity(edge_deg * i / 63));
+  }
+  return result;
+}
+
+/// Rays all over the pupil of the field, ray by ray; the unit of the others.
+void traced(benchmark::State& state, const Setup& setup) {
+  const petzval::PupilSampler sampler(petzval::pupil_outline(setup.lens, setup.near_field.front()));
+  std::vector<petzval::Ray<double>> rays;
+  for (std::uint32_t i = 0; i < 4096; ++i) {
+    const auto [u, v] = petzval::owen_sobol(i, 0);
+    const auto [x, y] = sampler(u, v);
+    rays.push_back(sampler.plane().ray(x, y));
+  }
+  for (auto _ : state) {
+    for (const auto& ray : rays) {
+      const auto end = petzval::trace(setup.lens, ray);
+      benchmark::DoNotOptimize(&end);
+      benchmark::ClobberMemory();
+    }
+  }
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(rays.size()));
+}
+
+void chief(benchmark::State& state, const Setup& setup) {
+  for (auto _ : state) {
+    for (const ScenePoint& point : setup.near_field) benchmark::DoNotOptimize(petzval::chief_ray(setup.lens, point));
+  }
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(setup.near_field.size()));
+}
+
+void outline(benchmark::State& state, const Setup& setup, std::size_t directions) {
+  std::size_t i = 0;
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(petzval::pupil_outline(setup.lens, setup.near_field[i++ % 64], 0, directions));
+  }
+  state.SetItemsProcessed(state.iterations());
+}
+
+void fields(benchmark::State& state, const Setup& setup) {
+  for (auto _ : state) {
+    for (const ScenePoint& point : setup.all_fields) {
+      benchmark::DoNotOptimize(petzval::pupil_outline(setup.lens, point));
+    }
+  }
+  state.SetItemsProcessed(state.iterations());
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  initialize(argc, argv, 7);
+  const auto add = [](const std::string& name, const std::string& id, int field_deg, int edge_deg) {
+    const Setup lens = setup(id, field_deg, edge_deg);
+    const std::string there = " at " + std::to_string(field_deg) + " deg/" + name;
+    const std::string everywhere = ", 0 to " + std::to_string(edge_deg) + " deg/" + name;
+    benchmark::RegisterBenchmark(("traced ray" + there).c_str(), traced, lens);
+    benchmark::RegisterBenchmark(("chief ray" + there).c_str(), chief, lens);
+    benchmark::RegisterBenchmark(("outline of 64" + there).c_str(), outline, lens, 64);
+    benchmark::RegisterBenchmark(("outline of 256" + there).c_str(), outline, lens, 256);
+    benchmark::RegisterBenchmark(("64 outlines" + everywhere).c_str(), fields, lens);
+  };
+  add("Gauss f2", "double_gauss_100mm_f2.0", 15, 22);
+  add("fisheye", "fisheye_6.3mm_f2.8", 100, 110);
+  Table table("result", Compare::cost, "in traced rays (minima)");
+  benchmark::RunSpecifiedBenchmarks(&table);
+  return 0;
+}

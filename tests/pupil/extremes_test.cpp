@@ -1,0 +1,284 @@
+// SPDX-License-Identifier: Apache-2.0
+// Aiming and outlines on every lens of data/ and at the ends of what may be asked: laws, and answers to bad questions.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "../data_lenses.hpp"
+#include "../message.hpp"
+#include "petzval/core/units.hpp"
+#include "petzval/pupil/aim.hpp"
+#include "petzval/pupil/illumination.hpp"
+#include "petzval/pupil/outline.hpp"
+#include "petzval/pupil/pupil.hpp"
+#include "petzval/trace/trace.hpp"
+
+namespace petzval {
+namespace {
+
+using testing::data_lens;
+using testing::data_prescriptions;
+using testing::message;
+constexpr double infinity = std::numeric_limits<double>::infinity(), nan = std::numeric_limits<double>::quiet_NaN();
+
+double edge_deg(const Prescription& p) { return p.half_field_deg.value_or(1); }
+
+RayFate fate(const Lens& lens, const PupilOutline& outline, const PupilSpan& span, double radius) {
+  const auto [x, y] = outline.at(span.direction, radius);
+  return trace(lens, outline.plane.ray(x, y)).fate;
+}
+
+TEST(Extremes, EveryEdgeOfEveryLensPassesAndTheNextRayIsLost) {
+  int edges = 0;
+  for (const Prescription& p : data_prescriptions()) {
+    const Lens lens = compile(p);
+    for (const double share : {0.0, 0.5, 1.0}) {
+      for (const double z : {-infinity, -20 * std::abs(*p.focal_length_mm)}) {
+        if (std::isfinite(z) && share * edge_deg(p) > 80) continue;
+        SCOPED_TRACE(p.id + " at " + std::to_string(share * edge_deg(p)) + " of z " + std::to_string(z));
+        const PupilOutline outline = pupil_outline(lens, {radians(share * edge_deg(p)), z}, 0, 12);
+        EXPECT_FALSE(outline.empty() && share < 1);
+        for (const PupilSpan& span : outline.spans) {
+          ASSERT_EQ(fate(lens, outline, span, span.to_radius), RayFate::transmitted);
+          ASSERT_EQ(fate(lens, outline, span, span.from_radius), RayFate::transmitted);
+          const auto [x, y] = outline.at(span.direction, span.to_radius + 1e-12);
+          const auto next = trace(lens, outline.plane.ray(x, y));
+          ASSERT_FALSE(next.transmitted());
+          EXPECT_EQ(next.surface, span.to.surface);
+          EXPECT_EQ(next.fate, span.to.beyond);
+          ++edges;
+        }
+      }
+    }
+  }
+  EXPECT_GT(edges, 4500);
+}
+
+TEST(Extremes, AreaOfEveryLensIsThatOfAGridOfRays) {
+  for (const Prescription& p : data_prescriptions()) {
+    const Lens lens = compile(p);
+    for (const double share : {0.7, 1.0}) {
+      SCOPED_TRACE(p.id + " at " + std::to_string(share * edge_deg(p)));
+      const PupilOutline outline = pupil_outline(lens, {radians(share * edge_deg(p)), -infinity}, 0, 128);
+      if (outline.empty()) continue;
+      // Over twice the pupil's box, so that parts that the outline has missed count.
+      constexpr int nodes = 160;
+      int passed = 0;
+      for (int j = 0; j < nodes; ++j) {
+        for (int i = 0; i < nodes; ++i) {
+          const double x = outline.middle[0] + 2 * outline.half_axes[0] * ((2 * i + 1.0) / nodes - 1);
+          const double y = outline.middle[1] + 2 * outline.half_axes[1] * ((2 * j + 1.0) / nodes - 1);
+          passed += trace(lens, outline.plane.ray(x, y)).transmitted();
+        }
+      }
+      const double box = 16 * outline.half_axes[0] * outline.half_axes[1];
+      EXPECT_NEAR(outline.area() / (box * passed / (nodes * nodes)), 1, 6e-3);
+    }
+  }
+}
+
+// A pupil turns with its point; so do areas, in any direction in which they are cut.
+TEST(Extremes, PupilsTurnWithTheAzimuth) {
+  for (const Prescription& p : data_prescriptions()) {
+    const Lens lens = compile(p);
+    if (!lens.rotationally_symmetric()) continue;
+    const double field = radians(0.8 * edge_deg(p));
+    const double area = pupil_outline(lens, {field, -infinity}, 0, 96).area();
+    for (const double azimuth : {0.7, -2.5}) {
+      SCOPED_TRACE(p.id + " " + std::to_string(azimuth));
+      const PupilOutline turned = pupil_outline(lens, {field, -infinity, azimuth}, 0, 96);
+      EXPECT_NEAR(turned.area(), area, 2e-3 * area);
+    }
+    EXPECT_NEAR(pupil_outline(lens, {-field, -infinity}, 0, 96).area(), area, 1e-9 * area) << p.id;
+    EXPECT_NEAR(pupil_outline(lens, {field, -infinity, std::numbers::pi}, 0, 96).area(), area, 1e-9 * area) << p.id;
+  }
+}
+
+TEST(Extremes, PupilsAreMirrorImages) {
+  for (const Prescription& p : data_prescriptions()) {
+    const Lens lens = compile(p);
+    for (const double share : {0.4, 0.9}) {
+      SCOPED_TRACE(p.id + " " + std::to_string(share));
+      const PupilOutline outline = pupil_outline(lens, {radians(share * edge_deg(p)), -infinity}, 0, 16);
+      EXPECT_NEAR(outline.middle[0], 0, 1e-8 * outline.half_axes[0]);  // where a search found it
+      for (const PupilSpan& span : outline.spans) {
+        const auto mirror = std::find_if(outline.spans.begin(), outline.spans.end(), [&](const PupilSpan& s) {
+          return s.direction == outline.directions - 1 - span.direction &&
+                 std::abs(s.to_radius - span.to_radius) < 1e-7;
+        });
+        ASSERT_NE(mirror, outline.spans.end()) << span.direction;
+        EXPECT_EQ(mirror->to.surface, span.to.surface);
+        EXPECT_NEAR(mirror->from_radius, span.from_radius, 1e-7);
+      }
+    }
+  }
+}
+
+TEST(Extremes, ALensScaledByAPowerOfTwoScalesToTheBit) {
+  for (const Prescription& p : data_prescriptions()) {
+    SCOPED_TRACE(p.id);
+    const Lens lens = compile(p), large = compile(scale(p, 8));
+    const double field = radians(0.7 * edge_deg(p));
+    const AimedRay ray = aim(lens, {field, -infinity}, {0.3, -0.5}), big = aim(large, {field, -infinity}, {0.3, -0.5});
+    EXPECT_EQ(ray.status, big.status);
+    EXPECT_EQ(ray.ray.origin * 8.0, big.ray.origin);
+    EXPECT_EQ(ray.ray.direction, big.ray.direction);
+    EXPECT_EQ(ray.residual, big.residual);
+    const PupilOutline outline = pupil_outline(lens, {field, -infinity}, 0, 12);
+    const PupilOutline wide = pupil_outline(large, {field, -infinity}, 0, 12);
+    ASSERT_EQ(outline.spans.size(), wide.spans.size());
+    EXPECT_EQ(outline.half_axes[1] * 8, wide.half_axes[1]);
+    for (std::size_t i = 0; i < outline.spans.size(); ++i) {
+      EXPECT_EQ(outline.spans[i].to_radius, wide.spans[i].to_radius);
+      EXPECT_EQ(outline.spans[i].to.surface, wide.spans[i].to.surface);
+    }
+  }
+}
+
+// A field that no lens sees gives no ray, an empty pupil and no light, and nothing that is not a number.
+TEST(Extremes, FieldsBeyondTheLensAreDark) {
+  for (const Prescription& p : data_prescriptions()) {
+    const Lens lens = compile(p);
+    for (const double field : {88.0, 89.5, 91.0, 120.0, 179.9, 180.0}) {
+      if (field < 1.3 * edge_deg(p)) continue;
+      SCOPED_TRACE(p.id + " at " + std::to_string(field));
+      const AimedRay chief = chief_ray(lens, {radians(field), -infinity});
+      if (chief) {
+        // Rays that graze a surface before a rim ends them are known no better.
+        EXPECT_LE(chief.residual, chief.status == AimStatus::converged ? 1e-12 : 1e-7);
+        EXPECT_TRUE(std::isfinite(chief.end.ray.origin.y) && std::isfinite(chief.end.ray.direction.y));
+      }
+      const PupilOutline outline = pupil_outline(lens, {radians(field), -infinity}, 0, 16);
+      EXPECT_TRUE(std::isfinite(outline.area()));
+      if (chief.status != AimStatus::converged && field > 110) {  // a bulging front takes in a little more than 90
+        EXPECT_TRUE(outline.empty());
+      }
+      const auto light = relative_illumination(lens, {radians(field), -infinity});
+      if (light) {
+        EXPECT_TRUE(*light >= 0 && *light < 1.5) << *light;
+      }
+    }
+  }
+}
+
+TEST(Extremes, WithoutAMarkedStopTheLimitingApertureServes) {
+  for (Prescription p : data_prescriptions()) {
+    for (SurfaceRow& row : p.surfaces) row.stop = false;
+    const Lens lens = compile(p);
+    SCOPED_TRACE(p.id);
+    ASSERT_TRUE(pupils(lens).stop_inferred);
+    for (const double share : {0.0, 0.3}) {
+      const ScenePoint point{radians(share * edge_deg(p)), -infinity};
+      const AimedRay edge = aim(lens, point, {0, 1});
+      if (edge) {
+        EXPECT_LE(edge.residual, 1e-12);
+      }
+      EXPECT_TRUE(chief_ray(lens, point));
+      EXPECT_FALSE(pupil_outline(lens, point, 0, 8).empty());
+    }
+  }
+}
+
+TEST(Extremes, AStopOfRadiusZeroHasItsCentreOnly) {
+  for (const Prescription& p : data_prescriptions()) {
+    SCOPED_TRACE(p.id);
+    const Lens open = compile(p);
+    const Lens lens = with_semi_diameter(open, *open.stop(), 0);
+    const ScenePoint point{radians(0.5 * edge_deg(p)), -infinity};
+    const AimedRay chief = chief_ray(lens, point), wide = chief_ray(open, point);
+    ASSERT_EQ(static_cast<bool>(chief), static_cast<bool>(wide));
+    if (chief) {
+      EXPECT_EQ(chief.ray.origin, wide.ray.origin);
+    }
+    EXPECT_TRUE(pupil_outline(lens, point, 0, 8).empty());
+    EXPECT_FALSE(relative_illumination(lens, point).has_value());
+  }
+}
+
+TEST(Extremes, StopsFromHugeToTinyAreFound) {
+  const Lens open = data_lens("double_gauss_100mm_f2.0");
+  for (const double semi_diameter : {1e6, infinity, 1.0, 1e-3, 1e-6}) {
+    SCOPED_TRACE(semi_diameter);
+    const Lens lens = with_semi_diameter(open, 5, semi_diameter);
+    const ScenePoint point{radians(15), -infinity};
+    EXPECT_TRUE(chief_ray(lens, point));
+    const PupilOutline outline = pupil_outline(lens, point, 0, 32);
+    ASSERT_FALSE(outline.empty());
+    if (semi_diameter > 1) continue;
+    // The pupil of a small stop is its image: an ellipse whose area goes with the square.
+    const double unit = pupil_outline(with_semi_diameter(open, 5, 0.1), point, 0, 32).area() / 0.01;
+    EXPECT_NEAR(outline.area() / (semi_diameter * semi_diameter) / unit, 1, 2e-3);
+  }
+}
+
+TEST(Extremes, PointsThatAreNoneAreRefused) {
+  const Lens lens = data_lens("double_gauss_100mm_f1.35");
+  const std::vector<ScenePoint> bad{{nan, -infinity},
+                                    {infinity, -infinity},
+                                    {-4, -infinity},
+                                    {0.1, nan},
+                                    {0.1, infinity},
+                                    {0.1, 0},
+                                    {0.1, 30},
+                                    {0.1, 1e4},
+                                    {0.1, -infinity, nan},
+                                    {0.1, -1, infinity},
+                                    {radians(100), -50}};
+  for (const ScenePoint& point : bad) {
+    const std::string start = lens.name() + ": scene point: ";
+    for (const std::string& said :
+         {message([&] { chief_ray(lens, point); }), message([&] { pupil_outline(lens, point); }), message([&] {
+            aim(lens, point, {0, 1});
+          }),
+          message([&] { relative_illumination(lens, point); })}) {
+      EXPECT_EQ(said.substr(0, start.size()), start) << point.field_rad << " " << point.z << ": " << said;
+    }
+  }
+  for (const FilmPoint& point : {FilmPoint{nan, 0}, FilmPoint{0, -infinity}}) {
+    EXPECT_NE(message([&] { exit_pupil_outline(lens, point); }).find(": film point: "), std::string::npos);
+    EXPECT_NE(message([&] { film_irradiance(lens, point); }).find(": film point: "), std::string::npos);
+  }
+}
+
+TEST(Extremes, WavelengthsOutsideTheSetAreRefused) {
+  const Lens lens = data_lens("double_gauss_100mm_f1.35");
+  const std::string wanted = lens.name() + ": wavelength 1 does not exist, wanted one of 1";
+  EXPECT_EQ(message([&] { chief_ray(lens, {0, -infinity}, 1); }), wanted);
+  EXPECT_EQ(message([&] { pupil_outline(lens, {0, -infinity}, 1); }), wanted);
+  EXPECT_EQ(message([&] { exit_pupil_outline(lens, {0, 0}, 1); }), wanted);
+  EXPECT_EQ(message([&] { relative_illumination(lens, {0, -infinity}, 1); }), wanted);
+}
+
+TEST(Extremes, TargetsThatAreNoPlacesGetNoRay) {
+  const Lens lens = data_lens("double_gauss_100mm_f1.35");
+  for (const StopPoint& target : {StopPoint{nan, 0}, StopPoint{0, infinity}, StopPoint{1e300, 0}, StopPoint{0, -1e3}}) {
+    EXPECT_EQ(aim(lens, {0.1, -infinity}, target).status, AimStatus::no_ray) << target.x << " " << target.y;
+  }
+  // Outside the rim there is glass still: a ray gets there, and the stop ends it.
+  const AimedRay outside = aim(lens, {0, -infinity}, {0, 1.05});
+  EXPECT_EQ(outside.status, AimStatus::vignetted);
+}
+
+TEST(Extremes, ATelecentricLensIsRefusedFromTheSceneOnly) {
+  Prescription p;
+  p.name = "telecentric";
+  p.surfaces = {{.radius = 60, .thickness = 5, .medium = {.nd = 1.6}, .semi_diameter = 12},
+                {.radius = -80, .semi_diameter = 12}};
+  p.surfaces[1].thickness = first_order(compile(p)).back_focal_distance;
+  p.surfaces.push_back({.thickness = 40, .semi_diameter = 3, .stop = true});
+  const Lens lens = compile(p);
+  const std::string said = message([&] { chief_ray(lens, {0, -infinity}); });
+  EXPECT_NE(said.find("the entrance pupil is at infinity"), std::string::npos) << said;
+  EXPECT_EQ(message([&] { pupil_outline(lens, {0.1, -100}); }), said);
+  // The film sees the stop as it sees any other: 3 mm, 40 mm away.
+  EXPECT_NEAR(film_irradiance(lens, {0, 0}), std::numbers::pi * 9 / (9 + 1600), 1e-6);
+}
+
+}  // namespace
+}  // namespace petzval

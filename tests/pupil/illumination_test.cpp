@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "petzval/pupil/illumination.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <ostream>
+#include <string>
+
+#include "../data_lenses.hpp"
+#include "petzval/core/units.hpp"
+#include "petzval/pupil/aim.hpp"
+#include "petzval/pupil/outline.hpp"
+#include "petzval/pupil/pupil.hpp"
+#include "petzval/trace/trace.hpp"
+
+namespace petzval {
+namespace {
+
+using testing::data_lens;
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double pi = std::numbers::pi;
+
+double on_film(const Lens& lens, const Ray<double>& ray) {
+  return ray.origin.y + (lens.film_z() - ray.origin.z) / ray.direction.z * ray.direction.y;
+}
+
+/// The projected solid angle in which a film point (0, y) sees the scene, by a grid of rays against the light.
+double seen_from_film(const Lens& lens, double y, int nodes) {
+  const double back = lens.surfaces().back().vertex_z, gap = lens.film_z() - back;
+  const double reach = 1.3 * lens.surfaces().back().semi_diameter;
+  double sum = 0;
+  for (int j = 0; j < nodes; ++j) {
+    for (int i = 0; i < nodes; ++i) {
+      const double px = reach * ((2 * i + 1.0) / nodes - 1), py = reach * ((2 * j + 1.0) / nodes - 1);
+      const double length = std::hypot(px, py - y, gap);
+      const Ray<double> ray{{px, py, back}, {px / length, (py - y) / length, -gap / length}};
+      if (trace(lens, ray, {.travel = Travel::to_scene}).transmitted()) sum += std::pow(gap / length, 4);
+    }
+  }
+  return sum * 4 * reach * reach / nodes / nodes / (gap * gap);
+}
+
+struct Case {
+  const char* lens;
+  double field_deg;
+};
+
+std::ostream& operator<<(std::ostream& out, const Case& c) { return out << c.lens << " at " << c.field_deg; }
+
+class FilmIrradiance : public ::testing::TestWithParam<Case> {};
+
+TEST_P(FilmIrradiance, IsTheSolidAngleOfAGridOfRays) {
+  const auto& [id, field_deg] = GetParam();
+  const Lens open = data_lens(id);
+  const Lens lens = with_film(open, paraxial_image_z(open, -infinity));
+  const AimedRay chief = chief_ray(lens, {radians(field_deg), -infinity});
+  ASSERT_TRUE(chief.end.transmitted());
+  const double y = on_film(lens, chief.end.ray);
+  EXPECT_NEAR(film_irradiance(lens, {0, y}) / seen_from_film(lens, y, 600), 1, 2e-3);
+}
+
+INSTANTIATE_TEST_SUITE_P(Lenses, FilmIrradiance,
+                         ::testing::Values(Case{"double_gauss_100mm_f2.0", 0}, Case{"double_gauss_100mm_f2.0", 14},
+                                           Case{"biogon_35mm_f2.8", 25}, Case{"fisheye_10mm_f4", 60},
+                                           Case{"fisheye_16mm_f2.8", 80}, Case{"tessar_100mm_f2.8", 15},
+                                           Case{"telephoto_200mm_f1.8", 5}, Case{"retrofocus_100mm_f2.8", 20}));
+
+TEST(FilmIrradiance, IsPiSineSquaredOnTheAxis) {
+  // Seen from the axial image of a lens without spherical aberration the edge of the pupil is a circle.
+  const Lens lens = data_lens("analytic_plano_hyperbolic_100mm");
+  const PupilOutline axis = pupil_outline(lens, {0, -infinity}, 0, 1);
+  const auto [x, y] = axis.at(0, axis.spans.back().to_radius);
+  const auto rim = trace(lens, axis.plane.ray(x, y)).ray.direction;
+  EXPECT_NEAR(film_irradiance(lens, {}) / (pi * (rim.x * rim.x + rim.y * rim.y)), 1, 1e-6);
+}
+
+TEST(RelativeIllumination, IsTheLightThatThePupilTakesInAndTheImageSpreads) {
+  // In front of the lens: area cos sin / (h dh/dfield) over area / f^2 on the axis, with the chief ray's map of the
+  // field onto the film. Etendue is kept, so both sides agree where the lens is stopped down and in focus.
+  for (const auto& [id, field_deg] : {std::pair{"double_gauss_100mm_f2.0", 10.0},
+                                      {"biogon_35mm_f2.8", 25.0},
+                                      {"fisheye_10mm_f4", 60.0},
+                                      {"fisheye_16mm_f2.8", 70.0},
+                                      {"tessar_100mm_f2.8", 15.0},
+                                      {"retrofocus_100mm_f2.8", 25.0}}) {
+    SCOPED_TRACE(id);
+    const Lens lens = with_f_number(data_lens(id), 22);
+    const auto height = [&](double field) {
+      return std::abs(on_film(lens, chief_ray(lens, {field, -infinity}).end.ray));
+    };
+    const double field = radians(field_deg), step = 1e-4;
+    const double slope = (height(field + step) - height(field - step)) / (2 * step), axis = height(step) / step;
+    const double mapped = pupil_outline(lens, {field, -infinity}).area() / pupil_outline(lens, {0, -infinity}).area() *
+                          std::cos(field) * std::sin(field) * axis * axis / (height(field) * slope);
+    EXPECT_NEAR(*relative_illumination(lens, {field, -infinity}) / mapped, 1, 1e-3);
+  }
+}
+
+TEST(RelativeIllumination, IsOneOnTheAxis) {
+  for (const char* id : {"double_gauss_100mm_f2.0", "catadioptric_mangin_1000mm_f7.5", "anamorphic_60mm_2x"}) {
+    EXPECT_NEAR(*relative_illumination(data_lens(id), {0, -infinity}), 1, 1e-12) << id;
+  }
+}
+
+TEST(RelativeIllumination, OfNothingIsNothing) {
+  const Lens lens = data_lens("double_gauss_100mm_f1.35");
+  EXPECT_EQ(relative_illumination(lens, {radians(40), -infinity}).value_or(0), 0);
+  const Lens closed = with_semi_diameter(lens, *lens.stop(), 0);
+  EXPECT_FALSE(relative_illumination(closed, {0, -infinity}).has_value());
+}
+
+TEST(RelativeIllumination, ReachesBeyond90Degrees) {
+  const Lens lens = data_lens("fisheye_6.3mm_f2.8");
+  double last = 1.01;
+  for (const double field : {0.0, 30.0, 60.0, 85.0, 88.9, 89.1, 100.0, 110.0}) {
+    const auto now = relative_illumination(lens, {radians(field), -infinity});
+    EXPECT_LT(*now, last) << field;
+    EXPECT_GT(*now, 0.1) << field;
+    last = *now;
+  }
+}
+
+}  // namespace
+}  // namespace petzval

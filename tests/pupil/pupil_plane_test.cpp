@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "petzval/pupil/pupil_plane.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <string>
+
+#include "../data_lenses.hpp"
+#include "../message.hpp"
+#include "petzval/core/units.hpp"
+#include "petzval/pupil/pupil.hpp"
+#include "petzval/trace/trace.hpp"
+
+namespace petzval {
+namespace {
+
+using testing::data_lens;
+using testing::front_stop_lens;
+using testing::message;
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+TEST(PupilPlane, RaysRunFromTheScenePointThroughThePupilPoint) {
+  const Lens lens = data_lens("double_gauss_100mm_f2.0");
+  const double pupil_z = pupils(lens).entrance.z;
+  const ScenePoint point{radians(25), pupil_z - 1000};
+  const Ray<double> ray = PupilPlane(lens, point).ray(3, -4);
+  EXPECT_EQ(ray.origin, Vec3<double>(3, -4, pupil_z));
+  EXPECT_NEAR(glm::length(ray.direction), 1, 4e-16);
+  const double t = (point.z - ray.origin.z) / ray.direction.z;
+  EXPECT_NEAR(ray.origin.x + t * ray.direction.x, 0, 1e-12);
+  EXPECT_NEAR(ray.origin.y + t * ray.direction.y, 1000 * std::tan(radians(25)), 1e-12);
+}
+
+TEST(PupilPlane, AzimuthTurnsFromYToX) {
+  const Lens lens = front_stop_lens();
+  const PupilPlane plane(lens, {.field_rad = 0.3, .z = -infinity, .azimuth_rad = radians(90)});
+  EXPECT_NEAR(plane.towards().x, std::sin(0.3), 1e-15);
+  EXPECT_NEAR(plane.towards().y, 0, 1e-15);
+  EXPECT_NEAR(plane.towards().z, -std::cos(0.3), 1e-15);
+}
+
+TEST(PupilPlane, FarPointsBecomeInfinity) {
+  const Lens lens = front_stop_lens();
+  const auto at_infinity = PupilPlane(lens, {radians(40), -infinity}).ray(5, 7);
+  EXPECT_NEAR(at_infinity.direction.y, -std::sin(radians(40)), 2e-16);
+  for (const double z : {-1e9, -1e15, -1e300}) {
+    const auto ray = PupilPlane(lens, {radians(40), z}).ray(5, 7);
+    EXPECT_NEAR(ray.direction.x, 5 / -z * std::cos(radians(40)), std::abs(500 / (z * z)) + 1e-30);
+    EXPECT_NEAR(ray.direction.y, at_infinity.direction.y, std::abs(7 / z) + 2e-16);
+  }
+}
+
+TEST(PupilPlane, MirrorsBitForBit) {
+  const Lens lens = data_lens("double_gauss_100mm_f1.35");
+  for (const double z : {-infinity, -700.0}) {
+    const PupilPlane above(lens, {0.2, z}), below(lens, {-0.2, z});
+    for (int i = 0; i < 200; ++i) {
+      const double x = 0.3 * (i % 14) - 2, y = 4.0 * (i / 14) - 28;
+      const auto up = trace(lens, above.ray(x, y)), down = trace(lens, below.ray(-x, -y));
+      ASSERT_EQ(up.fate, down.fate);
+      ASSERT_EQ(up.ray.origin.x, -down.ray.origin.x);
+      ASSERT_EQ(up.ray.origin.y, -down.ray.origin.y);
+      ASSERT_EQ(up.ray.direction.y, -down.ray.direction.y);
+    }
+  }
+}
+
+TEST(PupilPlane, FacesThePointFrom89DegreesOn) {
+  const Lens lens = data_lens("fisheye_6.3mm_f2.8");
+  EXPECT_FALSE(PupilPlane(lens, {radians(88.9), -infinity}).turned());
+  for (const double field : {89.1, 90.0, 110.0, -110.0, 179.0}) {
+    const PupilPlane plane(lens, {radians(field), -infinity});
+    ASSERT_TRUE(plane.turned()) << field;
+    const Ray<double> middle = plane.ray(0, 0), other = plane.ray(1.5, -2.5);
+    EXPECT_NEAR(glm::dot(other.origin - middle.origin, middle.direction), 0, 1e-15);
+    EXPECT_NEAR(glm::length(other.origin - middle.origin), std::hypot(1.5, 2.5), 4e-15);
+    // Seen from the point, x and y lie as in the pupil's own plane.
+    EXPECT_GT((other.origin - middle.origin).x, 0);
+  }
+}
+
+TEST(PupilPlane, MeetsItsOwnRays) {
+  const Lens lens = data_lens("fisheye_6.3mm_f2.8");
+  for (const double field : {0.0, 50.0, 88.0, 95.0, 110.0}) {
+    for (const double azimuth : {0.0, 1.0, -2.5}) {
+      const PupilPlane plane(lens, {radians(field), -infinity, azimuth});
+      Ray<double> ray = plane.ray(0.7, -1.1);
+      ray.origin = ray.origin + ray.direction * 25.0;
+      const auto [x, y] = plane.meet(ray);
+      EXPECT_NEAR(x, 0.7, 1e-12) << field;
+      EXPECT_NEAR(y, -1.1, 1e-12) << field;
+    }
+  }
+}
+
+TEST(PupilPlane, SeesPlanesBesideTheLensBeyond90Degrees) {
+  const Lens lens = data_lens("fisheye_6.3mm_f2.8");
+  const double pupil_z = pupils(lens).entrance.z, z = pupil_z + 200;
+  const Ray<double> ray = PupilPlane(lens, {radians(100), z}).ray(0.4, 0.2);
+  const Vec3<double> point{0, -200 * std::tan(radians(100)), z};
+  EXPECT_GT(point.y, 0);
+  EXPECT_LT(glm::length(glm::cross(point - ray.origin, ray.direction)), 1e-12);
+  EXPECT_LT(glm::dot(point - ray.origin, ray.direction), 0);
+}
+
+TEST(PupilPlane, OfAFilmPointSendsRaysAgainstTheLight) {
+  const Lens lens = data_lens("double_gauss_100mm_f2.0");
+  const PupilPlane plane = PupilPlane::of_film(lens, {3, -20});
+  EXPECT_EQ(plane.travel(), Travel::to_scene);
+  const Ray<double> ray = plane.ray(5, 7);
+  EXPECT_EQ(ray.origin, Vec3<double>(5, 7, lens.surfaces().back().vertex_z));
+  EXPECT_LT(ray.direction.z, 0);
+  const Vec3<double> point{3, -20, lens.film_z()};
+  EXPECT_LT(glm::length(glm::cross(point - ray.origin, ray.direction)), 1e-13);
+  EXPECT_EQ(message([&] {
+              PupilPlane::of_film(lens, {std::nan(""), 0});
+            }),
+            lens.name() + ": film point: a coordinate is nan mm, wanted a finite place");
+  const double last_z = lens.surfaces().back().vertex_z;
+  EXPECT_NE(message([&] { PupilPlane::of_film(with_film(lens, last_z), {}); }).find("that of the last vertex"),
+            std::string::npos);
+}
+
+TEST(PupilPlane, RefusesPointsThatItCannotSee) {
+  const Lens lens = front_stop_lens();
+  const auto said = [&](const ScenePoint& point) { return message([&] { PupilPlane(lens, point); }); };
+  const std::string start = "front stop: scene point: ";
+  EXPECT_EQ(said({radians(181), -1000}), start + "field is 181 degrees, wanted -180 to 180");
+  EXPECT_EQ(said({std::nan(""), -1000}), start + "field is nan degrees, wanted -180 to 180");
+  EXPECT_EQ(said({0, -1000, infinity}), start + "azimuth is inf rad, wanted a finite angle");
+  EXPECT_EQ(said({0, std::nan("")}), start + "z is nan mm, wanted a finite one or -inf");
+  EXPECT_EQ(said({0, infinity}), start + "z is inf mm, wanted a finite one or -inf");
+  EXPECT_EQ(said({0, 50}), start + "z is 50 mm, wanted less than where the first surface begins, 0 mm");
+  EXPECT_EQ(said({0, 0}), start + "z is 0 mm, that of the entrance pupil, wanted another");
+  EXPECT_EQ(said({radians(100), -1000}),
+            start +
+                "z is -1000 mm at a field of 100 degrees, wanted -inf, or a plane behind the entrance pupil (0 mm) "
+                "that this field meets outside the lens");
+  EXPECT_EQ(said({radians(100), 0.1}).substr(0, start.size() + 10), start + "z is 0.1 m");
+
+  // The stop in the rear focal plane of what stands before it.
+  Prescription p;
+  p.name = "front stop";
+  p.surfaces = {{.radius = 50, .medium = {.nd = 1.5}, .semi_diameter = 10},
+                {.thickness = 100, .semi_diameter = 10},
+                {.thickness = 20, .semi_diameter = 5, .stop = true}};
+  EXPECT_EQ(message([&] {
+              PupilPlane(compile(p), {0, -1000});
+            }),
+            start + "the entrance pupil is at infinity, wanted one at a finite place: fields are seen from it");
+}
+
+}  // namespace
+}  // namespace petzval

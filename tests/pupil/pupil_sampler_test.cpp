@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "petzval/pupil/pupil_sampler.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include "../data_lenses.hpp"
+#include "petzval/core/text.hpp"
+#include "petzval/core/units.hpp"
+#include "petzval/trace/trace.hpp"
+
+namespace petzval {
+namespace {
+
+using testing::data_lens;
+using testing::data_prescriptions;
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double pi = std::numbers::pi;
+
+/// Angle (from +y, 0 to 2 pi) and radius of a point in an outline's units.
+std::pair<double, double> polar(const PupilOutline& outline, const std::array<double, 2>& p) {
+  const double x = (p[0] - outline.middle[0]) / outline.half_axes[0];
+  const double y = (p[1] - outline.middle[1]) / outline.half_axes[1];
+  const double angle = std::atan2(x, y);
+  return {angle < 0 ? angle + 2 * pi : angle, std::hypot(x, y)};
+}
+
+TEST(PupilSampler, SendsFewRaysInVain) {
+  double worst = 1;
+  for (const Prescription& p : data_prescriptions()) {
+    SCOPED_TRACE(p.id);
+    const Lens lens = compile(p);
+    for (const double part : {0.0, 0.6, 0.9, 1.0}) {
+      const PupilOutline outline = pupil_outline(lens, {radians(part * p.half_field_deg.value_or(10)), -infinity});
+      if (outline.empty()) continue;
+      const PupilSampler sampler(outline);
+      constexpr int side = 24;
+      int passed = 0;
+      for (int i = 0; i < side * side; ++i) {
+        const auto [x, y] = sampler((i % side + 0.5) / side, (i / side + 0.5) / side);
+        passed += trace(lens, sampler.plane().ray(x, y)).transmitted();
+      }
+      EXPECT_GE(passed, 0.96 * side * side) << part;
+      EXPECT_GE(outline.area() / sampler.area(), 0.97) << part;
+      worst = std::min(worst, outline.area() / sampler.area());
+    }
+  }
+  RecordProperty("share", number(worst, 4));
+}
+
+TEST(PupilSampler, LeavesNothingOut) {
+  // The edges found in eight times as many directions lie within the sampled region.
+  for (const Prescription& p : data_prescriptions()) {
+    SCOPED_TRACE(p.id);
+    const Lens lens = compile(p);
+    for (const double part : {0.7, 1.0}) {
+      const ScenePoint point{radians(part * p.half_field_deg.value_or(10)), -infinity};
+      const PupilOutline outline = pupil_outline(lens, point);
+      if (outline.empty()) continue;
+      const PupilSampler sampler(outline);
+      struct Bound {
+        double angle, inner, outer;
+      };
+      std::vector<Bound> bounds;
+      constexpr int many = 20000;
+      for (int i = 0; i < many; ++i) {
+        const double u = (i + 0.5) / many;
+        const auto [angle, inner] = polar(outline, sampler(u, 0));
+        const auto [same, outer] = polar(outline, sampler(u, 1 - 1e-16));
+        bounds.push_back({outer > inner + 1e-9 ? same : angle, inner, outer});
+      }
+      std::sort(bounds.begin(), bounds.end(), [](const Bound& a, const Bound& b) { return a.angle < b.angle; });
+      for (const PupilSpan& span : pupil_outline(lens, point, 0, 2048).spans) {
+        for (const PupilEdge& edge : {span.from, span.to}) {
+          if (edge.surface < 0) continue;
+          const auto [angle, radius] = polar(outline, {edge.x, edge.y});
+          auto bound = std::lower_bound(bounds.begin(), bounds.end(), angle,
+                                        [](const Bound& b, double a) { return b.angle < a; });
+          if (bound == bounds.end()) --bound;
+          ASSERT_LE(radius, bound->outer) << part << " at " << angle;
+          ASSERT_GE(radius, bound->inner - 1e-12) << part << " at " << angle;
+        }
+      }
+    }
+  }
+}
+
+TEST(PupilSampler, IsEven) {
+  // Equal squares of (u, v) fall on equal areas: the second moment of a disc is a quarter of its squared radius.
+  const Lens lens = data_lens("double_gauss_100mm_f1.35");
+  const PupilOutline outline = pupil_outline(lens, {0, -infinity});
+  const PupilSampler sampler(outline);
+  constexpr int side = 512;
+  double xx = 0, yy = 0, xy = 0;
+  for (int i = 0; i < side * side; ++i) {
+    const auto [x, y] = sampler((i % side + 0.5) / side, (i / side + 0.5) / side);
+    xx += x * x, yy += y * y, xy += x * y;
+  }
+  const double radius_squared = sampler.area() / pi;
+  EXPECT_NEAR(xx / side / side / radius_squared, 0.25, 1e-5);
+  EXPECT_NEAR(yy / side / side / radius_squared, 0.25, 1e-5);
+  EXPECT_NEAR(xy / side / side / radius_squared, 0, 1e-5);
+}
+
+TEST(PupilSampler, OfNothingIsEmpty) {
+  const PupilSampler sampler(pupil_outline(data_lens("double_gauss_100mm_f1.35"), {radians(60), -infinity}));
+  EXPECT_TRUE(sampler.empty());
+  EXPECT_EQ(sampler.area(), 0);
+}
+
+}  // namespace
+}  // namespace petzval
