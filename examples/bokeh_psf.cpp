@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iostream>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -39,18 +40,12 @@ struct Picture {
   petzval::PointImage image;
 };
 
-/// The lens stopped down, as the d line sees it: one size of the stop for all wavelengths.
-petzval::Lens stopped_down(const petzval::Lens& lens, const petzval::Lens& d_line_stopped) {
-  const std::size_t stop = petzval::pupils(d_line_stopped).stop;
-  return petzval::with_semi_diameter(lens, stop, d_line_stopped.surfaces()[stop].semi_diameter);
-}
-
 std::vector<Picture> render(const examples::LoadedLens& loaded, const Options& options,
                             const examples::BokehSetup& setup) {
   petzval::Lens lens = loaded.lens, d_line = examples::at_d_line(loaded);
   if (options.f_number > 0) {
     d_line = petzval::with_f_number(d_line, options.f_number);
-    lens = stopped_down(lens, d_line);
+    lens = examples::stopped_like(lens, d_line);
   }
   examples::Progress progress("bokeh", options.focus_mm.size());
   std::vector<Picture> pictures;
@@ -102,6 +97,7 @@ Json to_json(const std::vector<Picture>& pictures, const examples::LoadedLens& l
       {"field_deg", options.field_deg},
       {"samples", options.samples},
       {"results", Json::array()}};
+  const auto sum = [](const auto& rays) { return std::accumulate(rays.begin(), rays.end(), std::uint64_t(0)); };
   for (const Picture& p : pictures) {
     const auto if_any = [&](const auto& size) { return p.image.throughput > 0 ? Json(size) : Json(); };
     json["results"].push_back({{"focus_mm", finite_or_null(p.focus_mm)},
@@ -111,6 +107,8 @@ Json to_json(const std::vector<Picture>& pictures, const examples::LoadedLens& l
                                {"centroid_mm", if_any(p.image.size.centroid)},
                                {"rms_radius_mm", if_any(p.image.size.rms_radius)},
                                {"radius_mm", if_any(p.image.size.max_radius)},
+                               {"rays_sent", sum(p.image.psf.sent)},
+                               {"rays_transmitted", sum(p.image.psf.transmitted)},
                                {"radial_profile", p.image.radial_profile},
                                {"picture_centre_mm", p.image.psf.centre},
                                {"picture_pixel_mm", p.image.psf.pixel_mm}});
@@ -159,8 +157,10 @@ int main(int argc, char** argv) {
   app.add_option("--distance-from", options.origin, "where the distances of light and focus begin")
       ->check(CLI::IsMember({"front_vertex", "film"}))
       ->capture_default_str();
-  app.add_option("--criterion", options.criterion, "what in focus means: cardinal points, or least RMS blur on axis")
-      ->check(CLI::IsMember({"paraxial", "min_rms"}))
+  app.add_option(
+         "--criterion", options.criterion,
+         "what in focus means, on axis: cardinal points (of a thin or the thick lens), least RMS or least largest blur")
+      ->check(CLI::IsMember(examples::names(examples::focus_criteria)))
       ->capture_default_str();
   examples::add_numbers(
       app, "--wavelengths-nm", options.wavelengths_nm, examples::positive_number,
@@ -176,12 +176,10 @@ int main(int argc, char** argv) {
   return examples::run(app, argc, argv, [&] {
     examples::rgb_weights(options.wavelengths_nm);  // refuses a bad set before the work
     const auto loaded = examples::load_lens(options.lens_file, options.wavelengths_nm);
-    const examples::BokehSetup setup{
-        .light_mm = options.subject_mm,
-        .origin = options.origin == "film" ? petzval::DistanceOrigin::film : petzval::DistanceOrigin::front_vertex,
-        .criterion =
-            options.criterion == "min_rms" ? petzval::FocusCriterion::min_rms : petzval::FocusCriterion::paraxial,
-        .field_rad = petzval::radians(options.field_deg)};
+    const examples::BokehSetup setup{.light_mm = options.subject_mm,
+                                     .origin = examples::named(options.origin, examples::distance_origins),
+                                     .criterion = examples::named(options.criterion, examples::focus_criteria),
+                                     .field_rad = petzval::radians(options.field_deg)};
     write_all(render(loaded, options, setup), loaded, options);
   });
 }

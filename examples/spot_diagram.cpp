@@ -5,6 +5,7 @@
 //   out
 #include <iostream>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,9 @@
 namespace {
 
 using examples::Json;
+
+/// A kilometre, more than any camera has; from 1e150 mm on the squares of hits overflow.
+constexpr examples::Range film_shift{-1e6, 1e6, "a number from -1000000 to 1000000"};
 
 struct Options {
   std::string lens_file, out_folder;
@@ -52,13 +56,15 @@ std::string hits_csv(const std::vector<petzval::Spot>& all, const Options& optio
 }
 
 Json to_json(const std::vector<petzval::Spot>& all, const petzval::Lens& lens, const Options& options) {
+  const auto or_null = [](const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); };
   Json rows = Json::array();
   for (std::size_t i = 0; i < all.size(); ++i) {
     const petzval::Spot& spot = all[i];
     const bool empty = spot.hits.x.empty();  // nothing gets through: no size either
     rows.push_back({{"field_deg", field_deg(options, i)},
                     {"wavelength_nm", options.wavelengths_nm[spot.wavelength]},
-                    {"chief_ray_height_mm", spot.chief_ray_height ? Json(*spot.chief_ray_height) : Json(nullptr)},
+                    {"chief_ray_height_mm", or_null(spot.chief_ray_height)},
+                    {"relative_illumination", or_null(spot.relative_illumination)},
                     {"rms_radius_mm", empty ? Json(nullptr) : Json(spot.size.rms_radius)},
                     {"max_radius_mm", empty ? Json(nullptr) : Json(spot.size.max_radius)},
                     {"reference", "centroid"},
@@ -79,9 +85,10 @@ int main(int argc, char** argv) {
       "--defocus-mm.\n"
       "Writes to DIR, and prints the paths: LENS_spots.svg, LENS_spots.csv (the hits: "
       "field_deg,wavelength_nm,x_mm,y_mm) and "
-      "LENS_spots.json (a row per field and wavelength: chief ray height, RMS and largest radius about the centroid; "
-      "null "
-      "where no ray gets through).",
+      "LENS_spots.json (a row per field and wavelength: height of the chief ray, aimed at the centre of the stop; "
+      "illumination of the film relative to the axis; RMS and largest radius about the centroid; null where there is "
+      "no "
+      "such ray).",
       "spot_diagram");
   app.add_option("LENS.json", options.lens_file, "lens prescription (JSON as in data/lenses)")->required();
   examples::add_numbers(app, "--field-deg", options.field_deg, examples::finite_number,
@@ -91,8 +98,8 @@ int main(int argc, char** argv) {
       ->required();
   examples::add_number(app, "--subject-distance-mm", options.subject_mm, examples::positive_length,
                        "distance of the subject from the front vertex (mm), or inf");
-  examples::add_number(app, "--defocus-mm", options.defocus_mm, examples::finite_number,
-                       "shift of the film away from the lens (mm)");
+  examples::add_number(app, "--defocus-mm", options.defocus_mm, film_shift,
+                       "shift of the film away from the lens (mm), -1000000 to 1000000");
   examples::add_samples(app, options.samples);
   app.add_option("--out", options.out_folder, "folder for the results")->required()->type_name("DIR");
 

@@ -95,7 +95,8 @@ int main(int argc, char** argv) {
   app.add_option(
          "--out", out_file,
          "CSV to write, one line per ray in the same order: x_mm,y_mm,z_mm,dx,dy,dz,fate,surface; the point is the "
-         "hit on the last surface reached, surfaces count from 0, 17 digits")
+         "hit on the last surface reached, surfaces count from 0, 17 digits. After missed_surface and no_convergence "
+         "that is the surface before the one named, and where the first was missed the ray's own origin")
       ->required()
       ->type_name("CSV");
   app.add_option("--precision", precision, "arithmetic of the trace")

@@ -61,9 +61,8 @@ int main(int argc, char** argv) {
   app.add_option("--out", out_file, "picture to write")->required()->type_name("PNG");
 
   return examples::run(app, argc, argv, [&] {
-    const examples::BokehSetup setup{
-        .light_mm = examples::wu_light_mm,
-        .criterion = criterion == "min_rms" ? petzval::FocusCriterion::min_rms : petzval::FocusCriterion::paraxial};
+    const examples::BokehSetup setup{.light_mm = examples::wu_light_mm,
+                                     .criterion = examples::named(criterion, examples::focus_criteria)};
     examples::Sheet sheet{"A point light at 1000 mm, and what five focus distances make of it", {}, {}};
     {
       examples::Progress progress("figure 7", examples::wu_rows().size() * examples::wu_focus_mm.size());

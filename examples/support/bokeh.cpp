@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <thread>
 
 #include "petzval/core/error.hpp"
@@ -12,16 +13,41 @@
 #include "petzval/psf/colour.hpp"
 
 namespace examples {
+namespace {
+
+/// In front of all of the first surface, where it bulges forward too.
+bool in_front(const petzval::Lens& lens, double z) {
+  try {
+    petzval::PupilPlane(lens, {.z = z});
+    return true;
+  } catch (const petzval::Error&) {
+    return false;
+  }
+}
+
+/// Refuses a light that is not in front of the lens, and says in terms of its distance where it may stand.
+void check_light(const petzval::Lens& lens, const BokehSetup& setup, double origin_z) {
+  if (in_front(lens, origin_z - setup.light_mm)) return;
+  petzval::PupilPlane(lens, {.z = -std::numeric_limits<double>::infinity()});  // refuses a lens without fields
+  double refused = setup.light_mm, enough = std::max(1.0, refused);
+  while (!in_front(lens, origin_z - enough)) enough *= 2;
+  while (enough - refused > 1e-7 * enough) {
+    const double middle = (enough + refused) / 2;
+    (in_front(lens, origin_z - middle) ? enough : refused) = middle;
+  }
+  throw petzval::Error(lens.name() + ": a light " + petzval::number(setup.light_mm) + " mm from the " +
+                       (setup.origin == petzval::DistanceOrigin::film ? "film" : "front vertex") +
+                       " is not in front of the lens, wanted more than " + petzval::number(enough, 6) + " mm");
+}
+
+}  // namespace
 
 BokehScene focused_scene(const petzval::Lens& lens, const petzval::Lens& d_line, double focus_mm,
                          const BokehSetup& setup) {
-  const double film_z = petzval::with_focus(d_line, focus_mm, setup.criterion, setup.origin).film_z();
-  const double light_z = (setup.origin == petzval::DistanceOrigin::film ? film_z : 0.0) - setup.light_mm;
-  if (!(light_z < 0)) {
-    throw petzval::Error(lens.name() + ": a light " + petzval::number(setup.light_mm) + " mm from the film lies " +
-                         petzval::number(light_z) + " mm behind the front vertex, wanted one in front of it");
-  }
-  return {petzval::with_film(lens, film_z), {setup.field_rad, light_z}};
+  const double film_z = petzval::with_focus(d_line, focus_mm, {setup.criterion, setup.origin}).film_z();
+  const double origin_z = setup.origin == petzval::DistanceOrigin::film ? film_z : 0;
+  check_light(lens, setup, origin_z);
+  return {petzval::with_film(lens, film_z), {setup.field_rad, origin_z - setup.light_mm}};
 }
 
 std::vector<std::array<double, 3>> rgb_weights(std::span<const double> wavelengths_nm) {

@@ -2,11 +2,15 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
 #include <functional>
 #include <limits>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "petzval/focus/focus.hpp"
 
 /// What the example programs share. It is no part of the library.
 namespace examples {
@@ -26,7 +30,7 @@ inline constexpr Range positive_number{std::numeric_limits<double>::min(), std::
 /// A whole text as one decimal number, whatever the locale. Throws petzval::Error beginning with `where`.
 double parse_number(const std::string& where, std::string_view text, const Range& range);
 
-/// "10" or "0,10,20". Throws petzval::Error beginning with `where`.
+/// "10" or "0,10,20", every number once. Throws petzval::Error beginning with `where`.
 std::vector<double> parse_numbers(const std::string& where, std::string_view text, const Range& range);
 
 /// Options whose values are read by the functions above; the variable's value is the default that --help shows.
@@ -34,6 +38,25 @@ CLI::Option* add_number(CLI::App& app, const std::string& flag, double& value, c
                         const std::string& help);
 CLI::Option* add_numbers(CLI::App& app, const std::string& flag, std::vector<double>& values, const Range& range,
                          const std::string& help);
+
+/// The criteria of focus and the origins of distances that the programs know, and any of them by its name.
+inline constexpr std::array focus_criteria{petzval::FocusCriterion::thin, petzval::FocusCriterion::paraxial,
+                                           petzval::FocusCriterion::min_rms, petzval::FocusCriterion::min_max};
+inline constexpr std::array distance_origins{petzval::DistanceOrigin::front_vertex, petzval::DistanceOrigin::film,
+                                             petzval::DistanceOrigin::front_principal};
+
+template <class Enum, std::size_t count>
+std::vector<std::string> names(const std::array<Enum, count>& all) {
+  std::vector<std::string> result;
+  for (const Enum e : all) result.emplace_back(petzval::name(e));
+  return result;
+}
+
+/// The one of that name, which is there.
+template <class Enum, std::size_t count>
+Enum named(const std::string& text, const std::array<Enum, count>& all) {
+  return *std::find_if(all.begin(), all.end(), [&](Enum e) { return petzval::name(e) == text; });
+}
 
 /// Rays per wavelength, 1 to 2^26.
 CLI::Option* add_samples(CLI::App& app, std::uint32_t& samples);

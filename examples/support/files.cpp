@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "petzval/core/error.hpp"
+#include "petzval/io/write_file.hpp"
 
 namespace examples {
 
@@ -24,13 +25,7 @@ std::string read_text(const std::filesystem::path& file) {
   return std::move(text).str();
 }
 
-void write_text(const std::filesystem::path& file, const std::string& text) {
-  std::ofstream out(file, std::ios::binary);
-  if (!out) throw petzval::Error(file.string() + ": cannot be written: " + std::strerror(errno));
-  out << text;
-  out.close();
-  if (!out) throw petzval::Error(file.string() + ": cannot be written to its end");
-}
+void write_text(const std::filesystem::path& file, const std::string& text) { petzval::write_file(text, file); }
 
 void make_folder(const std::filesystem::path& folder) {
   std::error_code error;

@@ -13,7 +13,7 @@ using Json = nlohmann::ordered_json;
 /// JSON knows no infinity: such a number becomes null.
 Json finite_or_null(double value);
 
-/// The whole file. Throws petzval::Error that names it.
+/// The whole file, or none of it. Throws petzval::Error that names it.
 std::string read_text(const std::filesystem::path& file);
 void write_text(const std::filesystem::path& file, const std::string& text);
 

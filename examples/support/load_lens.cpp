@@ -8,6 +8,7 @@
 #include "petzval/core/text.hpp"
 #include "petzval/core/units.hpp"
 #include "petzval/io/prescription_json.hpp"
+#include "petzval/pupil/pupil.hpp"
 
 namespace examples {
 namespace {
@@ -32,6 +33,12 @@ void say_what_is_known(const LoadedLens& loaded) {
             << '\n';
 }
 
+void say_what_limits(const LoadedLens& loaded) {
+  if (loaded.lens.stop() || !petzval::has_pupils(loaded.lens)) return;
+  std::cerr << "note: " << loaded.id << ": no stop is marked; surface " << petzval::pupils(loaded.lens).stop
+            << ", which limits the axial beam, serves as one\n";
+}
+
 }  // namespace
 
 LoadedLens load_lens(const std::filesystem::path& file, std::span<const double> wavelengths_nm) {
@@ -40,11 +47,19 @@ LoadedLens load_lens(const std::filesystem::path& file, std::span<const double> 
   petzval::Lens lens = petzval::compile(prescription, wavelengths_nm, with_stand_ins(glasses));
   LoadedLens loaded{file.stem().string(), std::move(prescription), std::move(glasses), std::move(lens)};
   say_what_is_known(loaded);
+  say_what_limits(loaded);
   return loaded;
 }
 
-petzval::Lens at_d_line(const LoadedLens& loaded) {
-  return petzval::compile(loaded.prescription, std::array{petzval::d_line_nm}, with_stand_ins(loaded.glasses));
+petzval::Lens compiled_for(const LoadedLens& loaded, std::span<const double> wavelengths_nm) {
+  return petzval::compile(loaded.prescription, wavelengths_nm, with_stand_ins(loaded.glasses));
+}
+
+petzval::Lens at_d_line(const LoadedLens& loaded) { return compiled_for(loaded, std::array{petzval::d_line_nm}); }
+
+petzval::Lens stopped_like(const petzval::Lens& lens, const petzval::Lens& other) {
+  const std::size_t stop = petzval::pupils(other).stop;
+  return petzval::with_semi_diameter(lens, stop, other.surfaces()[stop].semi_diameter);
 }
 
 }  // namespace examples

@@ -20,10 +20,17 @@ struct LoadedLens {
 };
 
 /// Reads and compiles a lens with the glass tables that came with petzval. Where a medium is in none of them, the
-/// n_d/V_d model stands in (without V_d only the reference wavelength is left), and one line on standard error says so.
+/// n_d/V_d model stands in (without V_d only the reference wavelength is left), and one line on standard error says so;
+/// another says which surface serves as the stop where none is marked.
 LoadedLens load_lens(const std::filesystem::path& file, std::span<const double> wavelengths_nm);
+
+/// The prescription compiled for other wavelengths, in the same way.
+petzval::Lens compiled_for(const LoadedLens& loaded, std::span<const double> wavelengths_nm);
 
 /// The same lens at the d line alone, at which the programs focus it and stop it down.
 petzval::Lens at_d_line(const LoadedLens& loaded);
+
+/// `lens` with the stop of `other`, the same lens compiled for other wavelengths: one size of the stop for all of them.
+petzval::Lens stopped_like(const petzval::Lens& lens, const petzval::Lens& other);
 
 }  // namespace examples

@@ -56,6 +56,8 @@ RayTable parse_rays(std::string_view csv, const std::string& where) {
     throw petzval::Error(where + ": line 1: found \"" + std::string(first.substr(0, 60)) + "\", wanted \"" +
                          std::string(header) + "\"");
   }
+  // Editors and spreadsheets leave empty lines behind the last row.
+  csv = csv.substr(0, csv.find_last_not_of(" \t\r\n") + 1);
   RayTable rays;
   for (std::size_t line = 2; !csv.empty(); ++line) {
     const auto values = parse_ray(next_line(csv), where + ": line " + std::to_string(line));

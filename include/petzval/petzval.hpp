@@ -9,7 +9,7 @@
 ///     Prescription  --compile-->  Lens  -->  first_order, pupils, real_f_number     numbers about the lens
 ///                                       -->  chief_ray, aim, pupil_outline          which rays of a point get through
 ///                                       -->  relative_illumination                  how much light the film gets
-///                                       -->  solve_focus, with_focus               where the film belongs
+///                                       -->  solve_focus, depth_of_field            where the film belongs
 ///                                       -->  trace                                  rays, either way, float or double
 ///                                       -->  spot_diagram, point_image              what the film sees of a point
 ///
@@ -31,7 +31,9 @@
 #include "petzval/core/error.hpp"
 #include "petzval/core/ray.hpp"
 #include "petzval/core/units.hpp"
+#include "petzval/focus/depth_of_field.hpp"
 #include "petzval/focus/focus.hpp"
+#include "petzval/focus/thin_lens.hpp"
 #include "petzval/io/prescription_json.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/lint/lint.hpp"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 
-#include "conjugates.hpp"
+#include "model.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/text.hpp"
 
@@ -15,36 +15,71 @@ std::string_view name(FocusCriterion criterion) noexcept {
     case FocusCriterion::thin: return "thin";
     case FocusCriterion::paraxial: return "paraxial";
     case FocusCriterion::min_rms: return "min_rms";
+    case FocusCriterion::min_max: return "min_max";
   }
   return "unknown";
 }
 
-FocusSolution solve_focus(const Lens& lens, double distance_mm, FocusCriterion criterion, DistanceOrigin origin,
-                          std::size_t wavelength) {
+std::string_view name(DistanceOrigin origin) noexcept {
+  switch (origin) {
+    case DistanceOrigin::front_vertex: return "front_vertex";
+    case DistanceOrigin::film: return "film";
+    case DistanceOrigin::front_principal: return "front_principal";
+  }
+  return "unknown";
+}
+
+std::string_view name(FocusStatus status) noexcept {
+  switch (status) {
+    case FocusStatus::solved: return "solved";
+    case FocusStatus::unreachable: return "unreachable";
+    case FocusStatus::no_rays: return "no_rays";
+    case FocusStatus::afocal: return "afocal";
+    case FocusStatus::too_blurred: return "too_blurred";
+  }
+  return "unknown";
+}
+
+FocusSolution solve_focus(const Lens& lens, double distance_mm, const FocusOptions& options) {
   if (!(distance_mm > 0)) {
     throw Error(lens.name() + ": subject distance is " + number(distance_mm) + " mm, wanted one above 0 (or infinity)");
   }
-  const FirstOrder data = first_order(lens, wavelength, main_meridian(lens, wavelength));
-  if (data.afocal) return {.status = FocusSolution::Status::afocal};
-  const detail::Conjugates c = detail::conjugates(lens, data, criterion);
-  return criterion == FocusCriterion::min_rms ? detail::solve_min_rms(lens, c, distance_mm, origin, wavelength)
-                                              : detail::solve(c, distance_mm, origin);
+  const detail::Model model(lens, options);
+  return model.afocal() ? FocusSolution{.status = FocusStatus::afocal} : model.focus(distance_mm);
 }
 
-Lens with_focus(const Lens& lens, double distance_mm, FocusCriterion criterion, DistanceOrigin origin,
-                std::size_t wavelength) {
-  const FocusSolution solution = solve_focus(lens, distance_mm, criterion, origin, wavelength);
+FocusSolution solve_subject(const Lens& lens, double film_z, const FocusOptions& options) {
+  if (!std::isfinite(film_z)) {
+    throw Error(lens.name() + ": film_z is " + number(film_z) + " mm, wanted a finite place");
+  }
+  const detail::Model model(lens, options);
+  return model.afocal() ? FocusSolution{.status = FocusStatus::afocal} : model.subject(film_z);
+}
+
+FocusSolution nearest_focus(const Lens& lens, const FocusOptions& options) {
+  const detail::Model model(lens, options);
+  return model.afocal() ? FocusSolution{.status = FocusStatus::afocal} : model.nearest();
+}
+
+Lens with_focus(const Lens& lens, double distance_mm, const FocusOptions& options) {
+  const FocusSolution solution = solve_focus(lens, distance_mm, options);
   if (solution) return with_film(lens, solution.film_z);
 
-  const std::string subject = lens.name() + ": a subject " + number(distance_mm) + " mm from the " +
-                              (origin == DistanceOrigin::film ? "film" : "front vertex") + " cannot be focused (" +
-                              std::string(name(criterion)) + ")";
-  const double nearest = solution.nearest_distance;
+  const auto place = [&] {
+    switch (options.origin) {
+      case DistanceOrigin::film: return "film";
+      case DistanceOrigin::front_principal: return "front principal plane";
+      default: return "front vertex";
+    }
+  };
+  const std::string subject = lens.name() + ": a subject " + number(distance_mm) + " mm from the " + place() +
+                              " cannot be focused (" + std::string(name(options.criterion)) + ")";
   switch (solution.status) {
-    case FocusSolution::Status::no_rays: throw Error(subject + ": no ray gets through the lens");
-    case FocusSolution::Status::afocal: throw Error(subject + ": the lens is afocal");
+    case FocusStatus::no_rays: throw Error(subject + ": no ray gets through the lens");
+    case FocusStatus::afocal: throw Error(subject + ": the lens is afocal");
     default: break;
   }
+  const double nearest = solution.distance;
   if (std::isinf(nearest)) throw Error(subject + ": the lens forms no real image at any distance");
   throw Error(subject + ", wanted " + (distance_mm <= nearest ? "more than " : "at most ") + number(nearest, 9) +
               " mm");

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
+#include <string>
 
 #include "petzval/core/error.hpp"
 #include "petzval/core/text.hpp"
-#include "petzval/focus/focus.hpp"
+#include "petzval/focus/thin_lens.hpp"
 
 namespace petzval {
 namespace {
@@ -34,6 +35,23 @@ double thin_lens_extension(double focal_length, double subject) {
   require(focal_length > 0 && std::isfinite(focal_length), where, "focal length", focal_length, "a finite one above 0");
   require(subject > focal_length, where, "subject distance", subject, "more than the focal length");
   return focal_length * (focal_length / (subject - focal_length));
+}
+
+double thin_lens_subject(double focal_length, double extension) {
+  constexpr auto where = "thin_lens_subject";
+  require(focal_length > 0 && std::isfinite(focal_length), where, "focal length", focal_length, "a finite one above 0");
+  require(extension >= 0, where, "extension", extension, "0 or more");
+  return focal_length + focal_length * (focal_length / extension);
+}
+
+double thin_lens_film_distance(double focal_length, double subject_to_film) {
+  constexpr auto where = "thin_lens_film_distance";
+  require(focal_length > 0 && std::isfinite(focal_length), where, "focal length", focal_length, "a finite one above 0");
+  require(subject_to_film >= 4 * focal_length, where, "distance from subject to film", subject_to_film,
+          "4 focal lengths or more");
+  // By the ratio to the focal length nothing overflows, and the difference to 4 f is exact next to it.
+  const double root = std::sqrt((subject_to_film - 4 * focal_length) / subject_to_film);
+  return std::isinf(subject_to_film) ? focal_length : 2 * focal_length / (1 + root);
 }
 
 }  // namespace petzval

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "petzval/focus/focus.hpp"
+#include "petzval/focus/thin_lens.hpp"
 #include "petzval/io/image.hpp"
 #include "petzval/io/prescription_json.hpp"
 #include "program.hpp"
@@ -72,6 +73,16 @@ TEST_F(BokehPsf, HasNoSizeWhereNothingGetsThrough) {
   for (const char* key : {"centroid_mm", "rms_radius_mm", "radius_mm"}) EXPECT_TRUE(result[key].is_null()) << key;
 }
 
+TEST_F(BokehPsf, SendsFewRaysInVain) {
+  const auto json =
+      bokeh({"--subject-distance-mm", "1000", "--focus-mm", "900", "--field-deg", "12", "--wavelengths-nm", "500,600"});
+  const auto sent = json["results"][0]["rays_sent"].get<std::uint64_t>();
+  const auto transmitted = json["results"][0]["rays_transmitted"].get<std::uint64_t>();
+  EXPECT_EQ(sent, 2 * json["samples"].get<std::uint64_t>());
+  EXPECT_GT(static_cast<double>(transmitted), 0.975 * static_cast<double>(sent));
+  EXPECT_LT(transmitted, sent);
+}
+
 TEST_F(BokehPsf, TheOrderOfWavelengthsDoesNotMatter) {
   const auto throughput = [&](const char* wavelengths) {
     const auto json = bokeh(
@@ -91,11 +102,12 @@ TEST_F(BokehPsf, MeasuresDistancesFromWhereItIsTold) {
     return json["results"][0]["film_z_mm"].get<double>();
   };
   using petzval::DistanceOrigin, petzval::FocusCriterion;
-  for (const auto criterion : {FocusCriterion::paraxial, FocusCriterion::min_rms}) {
+  for (const auto criterion :
+       {FocusCriterion::thin, FocusCriterion::paraxial, FocusCriterion::min_rms, FocusCriterion::min_max}) {
     for (const auto origin : {DistanceOrigin::front_vertex, DistanceOrigin::film}) {
       EXPECT_NEAR(
           film_z(std::string(petzval::name(criterion)), origin == DistanceOrigin::film ? "film" : "front_vertex"),
-          petzval::solve_focus(double_gauss, 900, criterion, origin).film_z, 1e-9);
+          petzval::solve_focus(double_gauss, 900, {criterion, origin}).film_z, 1e-9);
     }
   }
 }
@@ -129,10 +141,21 @@ TEST_F(BokehPsf, RefusesABadCommandLineInOneLine) {
   refuse({"--subject-distance-mm", "1000"}, "--focus-mm is required");
   refuse({"--focus-mm", "1000"}, "--subject-distance-mm is required");
   refuse({"--subject-distance-mm", "1000", "--focus-mm", "10x"}, "--focus-mm: found \"10x\"");
+  refuse({"--subject-distance-mm", "1000", "--focus-mm", "800,1000,8e2"}, "--focus-mm: found 800 twice");
+  refuse({"--subject-distance-mm", "1000", "--focus-mm", "inf,inf"}, "--focus-mm: found inf twice");
+  refuse({"--subject-distance-mm", "1000", "--focus-mm", "1000", "--wavelengths-nm", "500,500"},
+         "--wavelengths-nm: found 500 twice");
   refuse({"--subject-distance-mm", "0", "--focus-mm", "1000"}, "--subject-distance-mm: found \"0\"");
   refuse({"--subject-distance-mm", "nan", "--focus-mm", "1000"}, "--subject-distance-mm: found \"nan\"");
   refuse({"--subject-distance-mm", "1000", "--focus-mm", "15"}, "cannot be focused");
-  refuse({"--subject-distance-mm", "100", "--distance-from", "film", "--focus-mm", "1000"}, "in front of");
+  refuse({"--subject-distance-mm", "100", "--distance-from", "film", "--focus-mm", "1000"},
+         "a light 100 mm from the film is not in front of the lens, wanted more than 167.831 mm");
+  refuse({"--subject-distance-mm", "1e-3", "--focus-mm", "1000"},
+         "a light 0.001 mm from the front vertex is not in front of the lens, wanted more than 0.178171 mm");
+  EXPECT_EQ(run("bokeh_psf", {lens(id), "--out", path("near"), "--samples", "64", "--subject-distance-mm", "0.1782",
+                              "--focus-mm", "1000"})
+                .status,
+            0);
   refuse({"--subject-distance-mm", "1000", "--focus-mm", "1000", "--f-number", "1"}, "f-number is 1");
   refuse({"--subject-distance-mm", "1000", "--focus-mm", "1000", "--criterion", "sharp"}, "--criterion");
   refuse({"--subject-distance-mm", "1000", "--focus-mm", "1000", "--distance-from", "moon"}, "--distance-from");

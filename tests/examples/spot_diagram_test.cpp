@@ -77,6 +77,23 @@ TEST_F(SpotDiagram, FocusesAnAnalyticLensToAPoint) {
   EXPECT_EQ(json[0]["rays_sent"], 1000);
 }
 
+TEST_F(SpotDiagram, TellsHowMuchLightReachesTheFilm) {
+  const auto json = rows("fisheye_6.3mm_f2.8", {"--field-deg", "0,60,90,110", "--wavelengths-nm", "587.5618"});
+  EXPECT_EQ(json[0]["relative_illumination"], 1.0);
+  for (std::size_t i = 1; i < 4; ++i) {
+    EXPECT_LT(json[i]["relative_illumination"].get<double>(), json[i - 1]["relative_illumination"].get<double>());
+    EXPECT_LT(json[i]["chief_ray_height_mm"].get<double>(), json[i - 1]["chief_ray_height_mm"].get<double>() - 2);
+    EXPECT_GT(json[i]["rays_transmitted"].get<double>(), 0.95 * json[i]["rays_sent"].get<double>());
+  }
+  EXPECT_GT(json[3]["relative_illumination"].get<double>(), 0.2);
+
+  const auto beyond = rows("cooke_triplet_50mm_f5", {"--field-deg", "90", "--wavelengths-nm", "587.5618"})[0];
+  for (const char* key : {"chief_ray_height_mm", "relative_illumination", "rms_radius_mm", "max_radius_mm"}) {
+    EXPECT_TRUE(beyond[key].is_null()) << key;
+  }
+  EXPECT_EQ(beyond["rays_transmitted"], 0);
+}
+
 TEST_F(SpotDiagram, RefusesABadCommandLineInOneLine) {
   const auto refuse = [&](const std::string& id, std::vector<std::string> more, const std::string& reason) {
     std::vector<std::string> arguments{lens(id), "--out", path("spots")};
@@ -89,12 +106,18 @@ TEST_F(SpotDiagram, RefusesABadCommandLineInOneLine) {
   refuse(triplet, {"--field-deg", "0,,10", "--wavelengths-nm", "500"}, "--field-deg: found \"\"");
   refuse(triplet, {"--field-deg", "0,10x", "--wavelengths-nm", "500"}, "--field-deg: found \"10x\"");
   refuse(triplet, {"--field-deg", "nan", "--wavelengths-nm", "500"}, "--field-deg: found \"nan\"");
-  refuse(triplet, {"--field-deg", "190", "--wavelengths-nm", "500"}, "190");
+  refuse(triplet, {"--field-deg", "190", "--wavelengths-nm", "500"}, "field is 190 degrees, wanted -180 to 180");
+  refuse(triplet, {"--field-deg", "95", "--wavelengths-nm", "500", "--subject-distance-mm", "1000"}, "95 degrees");
+  refuse(triplet, {"--field-deg", "0,10,-0", "--wavelengths-nm", "500"}, "twice, wanted every number once");
   refuse(triplet, {"--field-deg", "0", "--wavelengths-nm", "-500"}, "--wavelengths-nm: found \"-500\"");
   refuse(triplet, {"--field-deg", "0", "--wavelengths-nm", "5"}, "5 nm");
   refuse(triplet, {"--field-deg", "0", "--wavelengths-nm", "500", "--samples", "0"}, "--samples: found \"0\"");
   refuse(triplet, {"--field-deg", "0", "--wavelengths-nm", "500", "--samples", "1.5"}, "a whole number");
   refuse(triplet, {"--field-deg", "0", "--wavelengths-nm", "500", "--subject-distance-mm", "10"}, "cannot be focused");
+  for (const std::string shift : {"1e160", "-1e160", "1000001", "inf"}) {
+    refuse(triplet, {"--field-deg", "0", "--wavelengths-nm", "500", "--defocus-mm", shift},
+           "--defocus-mm: found \"" + shift + "\", wanted a number from -1000000 to 1000000");
+  }
   refuse("fisheye_10mm_f4", {"--field-deg", "0", "--wavelengths-nm", "500"}, "no V_d");
 }
 

@@ -111,11 +111,29 @@ TEST_F(TraceRays, ReadsWhatSpreadsheetsWrite) {
   EXPECT_EQ(traced("double_gauss_100mm_f1.35", "\xEF\xBB\xBFx_mm,y_mm,z_mm,dx,dy,dz\r\n0, 10.0 ,-50,0,0,1\r\n"), rows);
 }
 
+TEST_F(TraceRays, SkipsBlankLinesAtTheEnd) {
+  const std::string ray = "0,10,-50,0,0,1\n";
+  const auto rows = traced("double_gauss_100mm_f1.35", header + ray);
+  ASSERT_EQ(rows.size(), 1u);
+  for (const char* end : {"\n", "\r\n\r\n", "\n  \t\n\n", "   "}) {
+    EXPECT_EQ(traced("double_gauss_100mm_f1.35", header + ray + end), rows) << end;
+    EXPECT_TRUE(traced("double_gauss_100mm_f1.35", std::string(header) + end).empty()) << end;
+  }
+}
+
+TEST_F(TraceRays, WritesItsResultAsAWholeOrNotAtAll) {
+  traced("double_gauss_100mm_f1.35", header);
+  const std::string old = read(path("traced.csv"));
+  std::filesystem::create_hard_link(path("traced.csv"), path("kept.csv"));
+  traced("double_gauss_100mm_f1.35", std::string(header) + "0,10,-50,0,0,1\n");
+  EXPECT_EQ(read(path("kept.csv")), old);
+}
+
 TEST_F(TraceRays, NamesLineAndColumnOfWhatItCannotRead) {
   expect_refusal("", "line 1");
   expect_refusal("x,y,z,dx,dy,dz\n", "line 1: found \"x,y,z,dx,dy,dz\"");
   expect_refusal(std::string(header) + "0,0,0,0,0,1\n0,0,0,0,1\n", "line 3: found 5 values, wanted 6");
-  expect_refusal(std::string(header) + "0,0,0,0,0,1\n\n", "line 3: found 0 values, wanted 6");
+  expect_refusal(std::string(header) + "0,0,0,0,0,1\n\n0,0,0,0,0,1\n", "line 3: found 0 values, wanted 6");
   expect_refusal(std::string(header) + "0,0,0,0,0,1\n0,1x,0,0,0,1\n", "line 3, column y_mm: found \"1x\"");
   expect_refusal(std::string(header) + "0,0,nan,0,0,1\n", "line 2, column z_mm: found \"nan\"");
   expect_refusal(std::string(header) + "0,0,0,0,0,inf\n", "line 2, column dz: found \"inf\"");

@@ -18,7 +18,7 @@ namespace {
 
 using testing::data_lens;
 using testing::data_prescription;
-using Status = FocusSolution::Status;
+using Status = FocusStatus;
 using enum FocusCriterion;
 using enum DistanceOrigin;
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -27,7 +27,7 @@ TEST(MinRms, OfALensFreeOfSphericalAberrationIsTheParaxialFocus) {
   for (const char* id :
        {"analytic_ellipsoid_concentric_150mm", "analytic_plano_hyperbolic_100mm", "mirror_newton_200mm_f8"}) {
     const Lens lens = data_lens(id);
-    EXPECT_NEAR(solve_focus(lens, infinity, min_rms).film_z, solve_focus(lens, infinity).film_z, 1e-12) << id;
+    EXPECT_NEAR(solve_focus(lens, infinity, {min_rms}).film_z, solve_focus(lens, infinity).film_z, 1e-12) << id;
   }
 }
 
@@ -53,7 +53,7 @@ TEST(MinRms, HasTheLeastSpreadOfABundleOverTheWholeAperture) {
         Case{"cylinder_3.9mm", 100, 1e-2}, Case{"phone_5.6mm_f3.5", 500, 5e-5}}) {
     SCOPED_TRACE(id);
     const Lens lens = data_lens(id);
-    const double film_z = solve_focus(lens, distance, min_rms).film_z;
+    const double film_z = solve_focus(lens, distance, {min_rms}).film_z;
     double radius = 0;
     for (const LensSurface& s : lens.surfaces()) radius = std::max(radius, s.semi_diameter);
     std::vector<TracedRay<double>> rays;
@@ -85,7 +85,7 @@ TEST(MinRms, OfANarrowZoneIsWhereItsRaysCrossTheAxis) {
     const auto [ray, fate, surface] = trace(lens, Ray<double>{{0, height, 0}, {0, 0, 1}}, {.apertures = false});
     return ray.origin.z - ray.origin.y * ray.direction.z / ray.direction.y;
   };
-  const double film_z = solve_focus(lens, infinity, min_rms).film_z;
+  const double film_z = solve_focus(lens, infinity, {min_rms}).film_z;
   EXPECT_LT(film_z, crossing(lens.surfaces()[0].inner_semi_diameter));
   EXPECT_GT(film_z, crossing(lens.surfaces()[0].semi_diameter));
 }
@@ -94,13 +94,19 @@ TEST(MinRms, OfANarrowZoneIsWhereItsRaysCrossTheAxis) {
 TEST(MinRms, OfTheDoubleGaussLiesWhereAnIndependentTraceFoundIt) {
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
   const auto difference_um = [&](double distance) {
-    return 1000 * (solve_focus(lens, distance).film_z - solve_focus(lens, distance, min_rms).film_z);
+    return 1000 * (solve_focus(lens, distance).film_z - solve_focus(lens, distance, {min_rms}).film_z);
   };
   EXPECT_NEAR(difference_um(200), -900, 50);
   EXPECT_NEAR(difference_um(500), 88, 2.5);
   EXPECT_NEAR(difference_um(1000), 76, 2.5);
   EXPECT_NEAR(difference_um(10000), -37, 0.5);
   EXPECT_NEAR(difference_um(infinity), -53, 0.5);
+  // It also saw the image of least RMS become virtual at 55 mm, before the paraxial one at 54.245 mm: there the film
+  // has come back from its farthest place already.
+  const double nearest = nearest_focus(lens, {min_rms}).distance;
+  EXPECT_GT(nearest, 55);
+  EXPECT_LT(nearest, 57);
+  EXPECT_EQ(solve_focus(lens, 55, {min_rms}).status, Status::unreachable);
 }
 
 TEST(MinRms, FromTheFilmKeepsTheDistance) {
@@ -110,19 +116,19 @@ TEST(MinRms, FromTheFilmKeepsTheDistance) {
     const Lens lens = data_lens(id);
     const double f = std::abs(first_order(lens).effective_focal_length);
     for (const double distance : {30 * f, 1e4 * f}) {
-      const FocusSolution solution = solve_focus(lens, distance, min_rms, film);
+      const FocusSolution solution = solve_focus(lens, distance, {min_rms, film});
       ASSERT_EQ(solution.status, Status::solved);
       EXPECT_NEAR(solution.film_z - solution.subject_z, distance, 1e-14 * distance);
-      EXPECT_NEAR(solve_focus(lens, -solution.subject_z, min_rms).film_z, solution.film_z, 1e-9 * f);
+      EXPECT_NEAR(solve_focus(lens, -solution.subject_z, {min_rms}).film_z, solution.film_z, 1e-9 * f);
     }
-    EXPECT_EQ(solve_focus(lens, infinity, min_rms, film).film_z, solve_focus(lens, infinity, min_rms).film_z);
+    EXPECT_EQ(solve_focus(lens, infinity, {min_rms, film}).film_z, solve_focus(lens, infinity, {min_rms}).film_z);
   }
 }
 
 TEST(MinRms, IsSmoothInTheDistance) {
   const Lens lens = data_lens("double_gauss_100mm_f1.35");
   std::vector<double> films;
-  for (int i = 0; i < 40; ++i) films.push_back(solve_focus(lens, 1000 + 0.01 * i, min_rms).film_z);
+  for (int i = 0; i < 40; ++i) films.push_back(solve_focus(lens, 1000 + 0.01 * i, {min_rms}).film_z);
   // The step is so small that third differences are nothing but noise.
   for (std::size_t i = 0; i + 3 < films.size(); ++i) {
     EXPECT_NEAR(films[i + 3] - 3 * films[i + 2] + 3 * films[i + 1] - films[i], 0, 1e-10);
@@ -131,11 +137,11 @@ TEST(MinRms, IsSmoothInTheDistance) {
 
 TEST(MinRms, WithoutRaysSaysSo) {
   const Lens closed = with_semi_diameter(data_lens("double_gauss_100mm_f1.35"), 5, 0);
-  EXPECT_EQ(solve_focus(closed, 1000, min_rms).status, Status::no_rays);
-  EXPECT_EQ(solve_focus(closed, 1000, min_rms, film).status, Status::no_rays);
+  EXPECT_EQ(solve_focus(closed, 1000, {min_rms}).status, Status::no_rays);
+  EXPECT_EQ(solve_focus(closed, 1000, {min_rms, film}).status, Status::no_rays);
   EXPECT_EQ(solve_focus(closed, 1000).status, Status::solved);
   try {
-    with_focus(closed, 1000, min_rms);
+    with_focus(closed, 1000, {min_rms});
     FAIL() << "no error";
   } catch (const Error& error) {
     EXPECT_EQ(
@@ -150,16 +156,15 @@ TEST(MinRms, WithoutAnyRimIsAnError) {
   p.name = "endless";
   for (SurfaceRow& row : p.surfaces) row.semi_diameter.reset();
   try {
-    solve_focus(compile(p), 1000, min_rms);
+    solve_focus(compile(p), 1000, {min_rms});
     FAIL() << "no error";
   } catch (const Error& error) {
-    EXPECT_STREQ(error.what(),
-                 "endless: no surface limits the beam, wanted a semi_diameter for the focus of least blur");
+    EXPECT_STREQ(error.what(), "endless: no surface limits the beam, wanted a semi_diameter for a blur to have a size");
   }
   // Any rim will do, marked as stop or not.
   p.surfaces[1].semi_diameter = 5;
   p.surfaces[0].stop = false;
-  EXPECT_EQ(solve_focus(compile(p), 1000, min_rms).status, Status::solved);
+  EXPECT_EQ(solve_focus(compile(p), 1000, {min_rms}).status, Status::solved);
 }
 
 }  // namespace

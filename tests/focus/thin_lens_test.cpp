@@ -6,7 +6,7 @@
 #include <string>
 
 #include "../message.hpp"
-#include "petzval/focus/focus.hpp"
+#include "petzval/focus/thin_lens.hpp"
 
 namespace petzval {
 namespace {
@@ -51,6 +51,37 @@ TEST(ThinLensBlur, HasItsLimitsAtInfinity) {
   EXPECT_EQ(thin_lens_blur_diameter(50, 25, 700, 700), 0);
 }
 
+TEST(ThinLensSubject, IsTheInverseOfTheExtensionWithinFourEps) {
+  for (const double f : {50.0, 0.3, 1234.5}) {
+    for (double extension = f * 1e-13; extension < f * 1e6; extension *= 3.7) {
+      const long double lf = f, exact = lf + lf * lf / static_cast<long double>(extension);
+      EXPECT_LE(std::abs(static_cast<double>(thin_lens_subject(f, extension) - exact)),
+                4 * eps * static_cast<double>(exact))
+          << extension;
+    }
+    EXPECT_EQ(thin_lens_subject(f, 0), infinity);
+    // Far from the focus the way back is as good as its two halves.
+    for (const double u : {3 * f, 100 * f, 1e9 * f}) {
+      EXPECT_NEAR(thin_lens_subject(f, thin_lens_extension(f, u)), u, 8 * eps * u);
+    }
+  }
+}
+
+TEST(ThinLensFilmDistance, IsWithinEightEpsFromFourFocalLengthsToTheStars) {
+  for (const double f : {50.0, 0.3, 1234.5}) {
+    for (double excess = 1e-3; excess < 1e30; excess *= 3.7) {
+      const double t = 4 * f * (1 + excess);
+      const long double lf = f, lt = t, exact = 2 * lf * lt / (lt + std::sqrt(lt * (lt - 4 * lf)));
+      EXPECT_LE(std::abs(static_cast<double>(thin_lens_film_distance(f, t) - exact)),
+                8 * eps * static_cast<double>(exact))
+          << t;
+    }
+    EXPECT_EQ(thin_lens_film_distance(f, 4 * f), 2 * f);
+    EXPECT_EQ(thin_lens_film_distance(f, 1e308), f);
+    EXPECT_EQ(thin_lens_film_distance(f, infinity), f);
+  }
+}
+
 TEST(ThinLens, RefusesWhatHasNoImage) {
   EXPECT_EQ(message([] { thin_lens_extension(50, 50); }),
             "thin_lens_extension: subject distance is 50 mm, wanted more than the focal length");
@@ -64,6 +95,9 @@ TEST(ThinLens, RefusesWhatHasNoImage) {
             "thin_lens_blur_diameter: focused distance is 40 mm, wanted more than the focal length");
   EXPECT_EQ(message([] { thin_lens_blur_diameter(50, -1, 1000, 400); }),
             "thin_lens_blur_diameter: diameter is -1 mm, wanted a finite one, 0 or more");
+  EXPECT_EQ(message([] { thin_lens_subject(50, -1); }), "thin_lens_subject: extension is -1 mm, wanted 0 or more");
+  EXPECT_EQ(message([] { thin_lens_film_distance(50, 199); }),
+            "thin_lens_film_distance: distance from subject to film is 199 mm, wanted 4 focal lengths or more");
 }
 
 }  // namespace

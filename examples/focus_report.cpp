@@ -1,0 +1,265 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where the film belongs for several subject distances and criteria, how deep the field is there, and how the image
+// breathes.
+//
+//   focus_report data/lenses/double_gauss_100mm_f2.0.json
+//   focus_report data/lenses/double_gauss_100mm_f2.0.json --json --distance-mm 700,2000,inf --criterion min_rms
+//                --blur-mm 0.05 --f-number 4 --field-deg 0,10
+#include <algorithm>
+#include <cmath>
+#include <iomanip>
+#include <iostream>
+#include <limits>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "petzval/core/error.hpp"
+#include "petzval/core/text.hpp"
+#include "petzval/core/units.hpp"
+#include "petzval/focus/depth_of_field.hpp"
+#include "petzval/focus/focus.hpp"
+#include "petzval/paraxial/first_order.hpp"
+#include "petzval/pupil/pupil.hpp"
+#include "support/cli.hpp"
+#include "support/files.hpp"
+#include "support/load_lens.hpp"
+
+namespace {
+
+using examples::finite_or_null;
+using examples::Json;
+using petzval::FocusStatus;
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double none = std::numeric_limits<double>::quiet_NaN();  // what does not exist
+
+struct Options {
+  std::string lens_file, origin = "front_vertex";
+  std::vector<std::string> criteria{"paraxial", "min_rms", "min_max"};
+  std::vector<double> distance_mm, field_deg{0}, wavelengths_nm{petzval::d_line_nm};
+  double blur_mm = 0.03, f_number = 0;  // f_number 0: wide open
+  bool json = false;
+};
+
+struct Row {
+  std::string criterion, refusal{};  ///< why the library would not compute it
+  double distance = 0;
+  petzval::FocusSolution focus{};
+  double near = none, far = none, blur = none, breathing = none;
+  FocusStatus depth = FocusStatus::unreachable;
+};
+
+/// What does not depend on the distance.
+struct Limits {
+  std::string criterion;
+  petzval::FocusSolution hyperfocal{.status = FocusStatus::unreachable}, nearest{.status = FocusStatus::unreachable};
+};
+
+struct Report {
+  petzval::Lens lens;
+  std::vector<Row> rows;  ///< criterion by criterion, by distance within
+  std::vector<Limits> limits;
+};
+
+/// As barrels are engraved, for a lens of 50 to 100 mm; others in proportion, to two digits.
+std::vector<double> usual_distances(const petzval::Lens& lens) {
+  const auto first = petzval::first_order(lens, 0, petzval::main_meridian(lens));
+  std::vector<double> distances;
+  if (!first.afocal) {
+    for (const double focal_lengths : {10.0, 20.0, 50.0, 100.0}) {
+      const double distance = focal_lengths * std::abs(first.effective_focal_length);
+      const double step = std::pow(10, std::floor(std::log10(distance)) - 1);
+      distances.push_back(std::round(distance / step) * step);
+    }
+  }
+  distances.push_back(infinity);
+  return distances;
+}
+
+petzval::FocusOptions focus_options(const std::string& criterion, const Options& options) {
+  petzval::FocusOptions result{.criterion = examples::named(criterion, examples::focus_criteria),
+                               .origin = examples::named(options.origin, examples::distance_origins),
+                               .fields = {}};
+  for (const double degrees : options.field_deg) result.fields.push_back({petzval::radians(degrees), 1});
+  result.wavelength_weights.assign(options.wavelengths_nm.size(), 1);
+  return result;
+}
+
+petzval::Lens stopped_down(const examples::LoadedLens& loaded, double f_number) {
+  if (f_number == 0) return loaded.lens;
+  return examples::stopped_like(loaded.lens, petzval::with_f_number(examples::at_d_line(loaded), f_number));
+}
+
+void solve(Row& row, const petzval::Lens& lens, const petzval::FocusOptions& focus, double blur_mm) {
+  row.focus = petzval::solve_focus(lens, row.distance, focus);
+  row.depth = row.focus.status;
+  if (!row.focus) return;
+  const petzval::Lens set = petzval::with_film(lens, row.focus.film_z);
+  row.blur = petzval::blur_diameter(set, row.distance, focus).value_or(none);
+  row.breathing = petzval::breathing(lens, row.focus.film_z, focus).value_or(none);
+  const petzval::DepthOfField depth = petzval::depth_of_field(set, blur_mm, focus);
+  row.depth = depth.status;
+  if (depth) row.near = depth.near_distance, row.far = depth.far_distance;
+}
+
+/// What the lens refuses, a subject within its front or a field that does not see the subject's plane, costs the row.
+template <class Work>
+std::string refusal(Work&& work) {
+  try {
+    work();
+  } catch (const petzval::Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+Report report(const examples::LoadedLens& loaded, const Options& options) {
+  Report result{stopped_down(loaded, options.f_number), {}, {}};
+  const auto distances = options.distance_mm.empty() ? usual_distances(result.lens) : options.distance_mm;
+  examples::Progress progress("focus", options.criteria.size() * distances.size());
+  for (const std::string& criterion : options.criteria) {
+    const petzval::FocusOptions focus = focus_options(criterion, options);
+    Limits limits{.criterion = criterion};
+    refusal([&] {
+      limits.hyperfocal = petzval::hyperfocal(result.lens, options.blur_mm, focus);
+      limits.nearest = petzval::nearest_focus(result.lens, focus);
+    });
+    result.limits.push_back(std::move(limits));
+    for (const double distance : distances) {
+      progress.step(criterion);
+      Row row{.criterion = criterion, .distance = distance};
+      row.refusal = refusal([&] { solve(row, result.lens, focus, options.blur_mm); });
+      result.rows.push_back(std::move(row));
+    }
+  }
+  if (std::ranges::none_of(result.rows, [](const Row& r) { return r.refusal.empty(); })) {
+    throw petzval::Error(result.rows.front().refusal);
+  }
+  return result;
+}
+
+bool solved(const Row& row) { return row.refusal.empty() && row.focus; }
+
+const Limits& limits_of(const Report& report, const std::string& criterion) {
+  return *std::ranges::find(report.limits, criterion, &Limits::criterion);
+}
+
+Json to_json(const Report& report, const Options& options) {
+  const auto distance_or_null = [](const petzval::FocusSolution& s) { return s ? finite_or_null(s.distance) : Json(); };
+  Json rows = Json::array();
+  for (const Row& r : report.rows) {
+    const Limits& limits = limits_of(report, r.criterion);
+    rows.push_back({{"criterion", r.criterion},
+                    {"distance_mm", finite_or_null(r.distance)},
+                    {"distance_from", options.origin},
+                    {"status", r.refusal.empty() ? std::string(petzval::name(r.focus.status)) : "refused"},
+                    {"message", r.refusal.empty() ? Json() : Json(r.refusal)},
+                    {"film_z_mm", solved(r) ? finite_or_null(r.focus.film_z) : Json()},
+                    {"focus_blur_mm", finite_or_null(r.blur)},
+                    {"blur_mm", options.blur_mm},
+                    {"near_limit_mm", finite_or_null(r.near)},
+                    {"far_limit_mm", finite_or_null(r.far)},
+                    {"depth_status", r.refusal.empty() ? std::string(petzval::name(r.depth)) : "refused"},
+                    {"hyperfocal_mm", distance_or_null(limits.hyperfocal)},
+                    {"breathing", finite_or_null(r.breathing)},
+                    {"nearest_distance_mm", distance_or_null(limits.nearest)}});
+  }
+  return rows;
+}
+
+std::string in_words(double value, int decimals) {
+  if (std::isnan(value)) return "-";
+  if (std::isinf(value)) return "infinity";
+  std::ostringstream text;
+  text.imbue(std::locale::classic());
+  text << std::fixed << std::setprecision(decimals) << value;
+  return text.str();
+}
+
+std::string to_text(const Report& report, const Options& options) {
+  std::ostringstream text;
+  text << report.lens.name() << "\ndistances in mm from the "
+       << (options.origin == "film"           ? "film"
+           : options.origin == "front_vertex" ? "front vertex"
+                                              : "front principal plane")
+       << "; film_z from the front vertex; depth of field for a blur of " << petzval::number(options.blur_mm)
+       << " mm in diameter\n";
+  std::string before;
+  for (const Row& r : report.rows) {
+    if (r.criterion != before) {
+      const Limits& limits = limits_of(report, r.criterion);
+      const auto reached = [](const petzval::FocusSolution& s) {
+        return s ? in_words(s.distance, 1) : std::string(petzval::name(s.status));
+      };
+      text << '\n'
+           << r.criterion << ": nearest " << reached(limits.nearest) << ", hyperfocal " << reached(limits.hyperfocal)
+           << '\n'
+           << std::setw(12) << "distance" << std::setw(14) << "film_z" << std::setw(11) << "blur" << std::setw(14)
+           << "near limit" << std::setw(14) << "far limit" << std::setw(12) << "breathing" << '\n';
+      before = r.criterion;
+    }
+    text << std::setw(12) << in_words(r.distance, 1);
+    if (!solved(r)) {
+      text << "  " << (r.refusal.empty() ? petzval::name(r.focus.status) : r.refusal) << '\n';
+      continue;
+    }
+    text << std::setw(14) << in_words(r.focus.film_z, 4) << std::setw(11) << in_words(r.blur, 4);
+    if (r.depth == FocusStatus::solved) {
+      text << std::setw(14) << in_words(r.near, 1) << std::setw(14) << in_words(r.far, 1);
+    } else {
+      text << std::setw(28) << petzval::name(r.depth);
+    }
+    text << std::setw(12) << (std::isnan(r.breathing) ? "-" : in_words(100 * r.breathing, 3) + '%') << '\n';
+  }
+  return text.str();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options options;
+  CLI::App app(
+      "Reports, for subject distances and criteria of focus: where the film belongs, the blur of the subject there, "
+      "the depth of field, the hyperfocal distance, the nearest distance, and breathing (how much larger the image is "
+      "than at infinity focus).\n"
+      "Criteria: thin (a thin lens of the same focal length), paraxial (the cardinal points), min_rms and min_max "
+      "(exact rays through the whole aperture: least RMS and least largest radius of the blur). A blur is a diameter: "
+      "of the paraxial cone, of the even disc of that RMS radius, twice the largest radius.\n"
+      "thin and paraxial look at the axis and the wavelength nearest to the d line (587.5618 nm) alone.",
+      "focus_report");
+  app.add_option("LENS.json", options.lens_file, "lens prescription (JSON as in data/lenses)")->required();
+  app.add_flag("--json", options.json,
+               "print an array of rows, one per criterion and distance; null stands for infinity, and for what does "
+               "not exist, as status and depth_status say (refused: message says why); blur_mm is the one asked for, "
+               "breathing a fraction");
+  examples::add_numbers(app, "--distance-mm", options.distance_mm, examples::positive_length,
+                        "subject distances (mm), or inf")
+      ->default_str("10, 20, 50, 100 focal lengths, rounded, and inf");
+  app.add_option("--criterion", options.criteria, "criteria of focus")
+      ->delimiter(',')
+      ->check(CLI::IsMember(examples::names(examples::focus_criteria)))
+      ->capture_default_str();
+  app.add_option("--distance-from", options.origin, "where distances begin")
+      ->check(CLI::IsMember(examples::names(examples::distance_origins)))
+      ->capture_default_str();
+  examples::add_number(app, "--blur-mm", options.blur_mm, examples::positive_number,
+                       "largest blur in the depth of field, a diameter on the film (mm); 0.03 is usual for 24 x 36 mm");
+  examples::add_number(app, "--f-number", options.f_number, examples::positive_number,
+                       "stop the lens down (by exact rays)")
+      ->default_str("wide open");
+  examples::add_numbers(app, "--field-deg", options.field_deg, examples::finite_number,
+                        "fields that count in min_rms and min_max, with the same weight (degrees)");
+  examples::add_numbers(app, "--wavelengths-nm", options.wavelengths_nm, examples::positive_number,
+                        "wavelengths that count in min_rms and min_max, with the same weight (nm)");
+
+  return examples::run(app, argc, argv, [&] {
+    for (const std::string& criterion : options.criteria) {
+      if (std::ranges::count(options.criteria, criterion) == 1) continue;
+      throw petzval::Error("--criterion: found " + criterion + " twice, wanted every criterion once");
+    }
+    const Report r = report(examples::load_lens(options.lens_file, options.wavelengths_nm), options);
+    std::cout << (options.json ? to_json(r, options).dump(1) + '\n' : to_text(r, options));
+  });
+}

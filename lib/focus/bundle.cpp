@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bundle.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+#include "petzval/core/bisect.hpp"
+#include "petzval/paraxial/first_order.hpp"
+#include "petzval/pupil/outline.hpp"
+#include "petzval/pupil/pupil_plane.hpp"
+#include "petzval/trace/trace.hpp"
+
+namespace petzval::detail {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+struct Node {
+  double x, weight;  // on (0, 1)
+};
+
+/// Nodes of Gauss and Legendre, by Newton's iteration on the three-term recurrence.
+template <std::size_t count>
+std::array<Node, count> gauss_legendre() {
+  std::array<Node, count> nodes;
+  for (std::size_t i = 0; i < count; ++i) {
+    double x = std::cos(std::numbers::pi * (static_cast<double>(i) + 0.75) / (count + 0.5));
+    double slope = 0;
+    for (int iteration = 0; iteration < 6; ++iteration) {
+      double p = 1, before = 0;
+      for (std::size_t k = 0; k < count; ++k) {
+        const double order = static_cast<double>(k);
+        const double next = ((2 * order + 1) * x * p - order * before) / (order + 1);
+        before = p;
+        p = next;
+      }
+      slope = count * (x * p - before) / (x * x - 1);
+      x -= p / slope;
+    }
+    nodes[i] = {(1 + x) / 2, 1 / ((1 - x * x) * slope * slope)};
+  }
+  return nodes;
+}
+
+/// The bundle of one field, its rays where they meet a plane.
+class Bundle {
+ public:
+  Bundle(const Lens& lens, double plane_z, bool edges)
+      : lens_(lens), plane_z_(plane_z), sense_(signed_index(lens, lens.surface_count()) > 0 ? 1 : -1), edges_(edges) {}
+
+  void add(const ScenePoint& point, const WavelengthWeight& colour) {
+    // On the axis of a lens of revolution one meridian stands for all: its centroid is the axis.
+    centred_ = point.field_rad == 0 && lens_.rotationally_symmetric();
+    const PupilOutline outline = pupil_outline(lens_, point, colour.wavelength, centred_ ? 1 : directions);
+    static const auto nodes = gauss_legendre<radial>();
+    const double cell = outline.half_axes[0] * outline.half_axes[1] * colour.weight;
+    for (const PupilSpan& span : outline.spans) {
+      const double inner = span.from_radius * span.from_radius;
+      const double area = (span.to_radius - span.from_radius) * (span.to_radius + span.from_radius);
+      for (const Node& node : nodes) {
+        add_ray(outline, outline.at(span.direction, std::sqrt(inner + area * node.x)), cell * area * node.weight);
+      }
+      if (!edges_) continue;
+      add_ray(outline, {span.from.x, span.from.y}, 0);
+      add_ray(outline, {span.to.x, span.to.y}, 0);
+    }
+    if (edges_) add_corners(outline);
+  }
+
+  /// Turns the lines into those relative to the centroid, of weights that sum to 1. False where there is no light.
+  bool normalise() {
+    double total = 0;
+    for (const Line& line : lines) total += line.weight;
+    if (!(total > 0)) return false;
+    Line mean;
+    for (Line& line : lines) {
+      line.weight /= total;
+      if (centred_) continue;
+      mean.x += line.weight * line.x, mean.y += line.weight * line.y;
+      mean.slope_x += line.weight * line.slope_x, mean.slope_y += line.weight * line.slope_y;
+    }
+    for (Line& line : lines) {
+      line.x -= mean.x, line.y -= mean.y;
+      line.slope_x -= mean.slope_x, line.slope_y -= mean.slope_y;
+    }
+    return true;
+  }
+
+  std::vector<Line> lines;
+
+ private:
+  static constexpr std::size_t directions = 96, radial = 32;
+  using Place = std::array<double, 2>;
+
+  TracedRay<double> traced(const PupilOutline& outline, const Place& place) const {
+    return trace(lens_, outline.plane.ray(place[0], place[1]), {.wavelength = outline.wavelength});
+  }
+
+  void add_ray(const PupilOutline& outline, const Place& place, double weight) {
+    const auto [ray, fate, surface] = traced(outline, place);
+    if (fate != RayFate::transmitted || !(ray.direction.z * sense_ > 0)) return;
+    const double u = ray.direction.x / ray.direction.z, v = ray.direction.y / ray.direction.z;
+    const double to_plane = plane_z_ - ray.origin.z;
+    lines.push_back({ray.origin.x + to_plane * u, ray.origin.y + to_plane * v, u, v, weight});
+  }
+
+  /// The corners of a pupil, where one rim takes over from another, lie farther out than the edges beside them: found
+  /// between the last direction with the one and the first with the other.
+  void add_corners(const PupilOutline& outline) {
+    const std::size_t count = outline.spans.size();
+    if (count != outline.directions || count < 3) return;
+    for (std::size_t k = 0; k < count; ++k) {
+      const PupilSpan &one = outline.spans[k], &other = outline.spans[(k + 1) % count];
+      if (one.to.surface == other.to.surface || one.from_radius > 0 || other.from_radius > 0) continue;
+      // By the chord, which every line from the middle crosses once.
+      const auto edge = [&](double part) {
+        const Place chord{one.to.x + part * (other.to.x - one.to.x), one.to.y + part * (other.to.y - one.to.y)};
+        const auto at = [&](double reach) {
+          return Place{outline.middle[0] + reach * (chord[0] - outline.middle[0]),
+                       outline.middle[1] + reach * (chord[1] - outline.middle[1])};
+        };
+        int surface = one.to.surface;
+        const double last = last_with(0.5, 2.0, [&](double reach) {
+          const auto end = traced(outline, at(reach));
+          if (!end.transmitted()) surface = end.surface;
+          return end.transmitted();
+        });
+        return std::pair(at(last), surface);
+      };
+      const double part = last_with(0.0, 1.0, [&](double p) { return edge(p).second == one.to.surface; });
+      add_ray(outline, edge(part).first, 0);
+    }
+  }
+
+  const Lens& lens_;
+  double plane_z_;
+  int sense_;
+  bool edges_;
+  bool centred_ = false;
+};
+
+double square(double x) { return x * x; }
+
+/// The mean square radius is a parabola over the film's position, with its vertex at -cov(p, u) / var(u), p the point
+/// in the plane and u the slope.
+Image least_rms(const std::vector<Line>& lines, double plane_z) {
+  double covariance = 0, variance = 0, least = 0;
+  for (const Line& line : lines) {
+    covariance += line.weight * (line.x * line.slope_x + line.y * line.slope_y);
+    variance += line.weight * (square(line.slope_x) + square(line.slope_y));
+  }
+  const double shift = variance == 0 ? infinity : -covariance / variance;
+  for (const Line& line : lines) {
+    least += line.weight * (square(line.x + shift * line.slope_x) + square(line.y + shift * line.slope_y));
+  }
+  // An even disc has an RMS radius of its diameter over the root of 8.
+  return {.film_z = plane_z + shift,
+          .plane_z = plane_z,
+          .least = std::sqrt(8 * least),
+          .slope = std::sqrt(8 * variance),
+          .lines = {}};
+}
+
+/// The largest of the squared radii, each a parabola over the film's position, is convex: it falls where the parabola
+/// that is largest there falls.
+Image least_maximum(std::vector<Line> lines, double plane_z) {
+  const auto rises = [&](double shift) {
+    double largest = -1, slope = 0;
+    for (const Line& line : lines) {
+      const double x = line.x + shift * line.slope_x, y = line.y + shift * line.slope_y;
+      const double radius2 = square(x) + square(y);
+      if (radius2 > largest) largest = radius2, slope = x * line.slope_x + y * line.slope_y;
+    }
+    return slope > 0;
+  };
+  double low = infinity, high = -infinity;
+  for (const Line& line : lines) {
+    const double steepness = square(line.slope_x) + square(line.slope_y);
+    if (steepness == 0) continue;
+    const double vertex = -(line.x * line.slope_x + line.y * line.slope_y) / steepness;
+    low = std::min(low, vertex), high = std::max(high, vertex);
+  }
+  double shift = low;
+  if (low < high) shift = rises(low) ? low : last_with(low, high, [&](double z) { return !rises(z); });
+  return {.film_z = plane_z + shift, .plane_z = plane_z, .lines = std::move(lines)};
+}
+
+}  // namespace
+
+double Image::diameter(double film) const noexcept {
+  if (lines.empty()) return std::hypot(least, slope * (film - film_z));
+  double largest = 0;
+  for (const Line& line : lines) {
+    const double shift = film - plane_z;
+    largest = std::max(largest, square(line.x + shift * line.slope_x) + square(line.y + shift * line.slope_y));
+  }
+  return 2 * std::sqrt(largest);
+}
+
+std::optional<Image> exact_image(const Lens& lens, double subject_z, std::span<const FocusField> fields,
+                                 std::span<const WavelengthWeight> wavelengths, FocusCriterion criterion) {
+  const double plane_z = lens.surfaces().back().vertex_z;
+  const bool rms = criterion == FocusCriterion::min_rms;
+  double total = 0, most = 0;
+  for (const FocusField& field : fields) total += field.weight, most = std::max(most, field.weight);
+
+  // A field that does not meet the plane is refused before others are traced.
+  for (const FocusField& field : fields) PupilPlane(lens, {field.field_rad, subject_z});
+
+  std::vector<Line> lines;
+  for (const FocusField& field : fields) {
+    Bundle bundle(lens, plane_z, !rms);
+    for (const WavelengthWeight& colour : wavelengths) bundle.add({field.field_rad, subject_z}, colour);
+    if (!bundle.normalise()) return {};
+    for (Line line : bundle.lines) {
+      if (rms) {
+        line.weight *= field.weight / total;
+      } else {
+        const double scale = field.weight / most;
+        line.x *= scale, line.y *= scale, line.slope_x *= scale, line.slope_y *= scale;
+      }
+      lines.push_back(line);
+    }
+  }
+  return rms ? least_rms(lines, plane_z) : least_maximum(std::move(lines), plane_z);
+}
+
+}  // namespace petzval::detail

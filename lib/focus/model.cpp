@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "model.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "petzval/core/error.hpp"
+#include "petzval/core/text.hpp"
+#include "petzval/pupil/pupil.hpp"
+#include "search.hpp"
+
+namespace petzval::detail {
+namespace {
+
+void check_weight(const Lens& lens, const char* what, double weight) {
+  if (weight >= 0 && std::isfinite(weight)) return;
+  throw Error(lens.name() + ": focus: weight of a " + what + " is " + number(weight) +
+              ", wanted a finite one, 0 or more");
+}
+
+std::vector<FocusField> weighted_fields(const Lens& lens, const FocusOptions& options) {
+  std::vector<FocusField> fields;
+  for (const FocusField& field : options.fields) {
+    check_weight(lens, "field", field.weight);
+    if (!std::isfinite(field.field_rad)) {
+      throw Error(lens.name() + ": focus: field is " + number(field.field_rad) + " rad, wanted a finite angle");
+    }
+    if (field.weight > 0) fields.push_back(field);
+  }
+  if (fields.empty()) throw Error(lens.name() + ": focus: no field has a weight, wanted at least one above 0");
+  return fields;
+}
+
+std::vector<WavelengthWeight> weighted_wavelengths(const Lens& lens, const FocusOptions& options) {
+  const std::vector<double>& weights = options.wavelength_weights;
+  if (weights.empty()) return {{lens.central_wavelength(), 1.0}};
+  const std::size_t wanted = lens.wavelengths_nm().size();
+  if (weights.size() != wanted) {
+    throw Error(lens.name() + ": focus: " + std::to_string(weights.size()) + " wavelength weights, wanted " +
+                std::to_string(wanted) + ", one per compiled wavelength");
+  }
+  std::vector<WavelengthWeight> result;
+  for (std::size_t i = 0; i < wanted; ++i) {
+    check_weight(lens, "wavelength", weights[i]);
+    if (weights[i] > 0) result.push_back({i, weights[i]});
+  }
+  if (result.empty()) throw Error(lens.name() + ": focus: no wavelength has a weight, wanted at least one above 0");
+  return result;
+}
+
+}  // namespace
+
+Model::Model(const Lens& lens, const FocusOptions& options)
+    : lens_(lens),
+      options_(options),
+      fields_(weighted_fields(lens, options)),
+      wavelengths_(weighted_wavelengths(lens, options)) {
+  // The heaviest; of several the one that speaks for the lens.
+  wavelength_ = std::ranges::max_element(wavelengths_, {}, [&](const WavelengthWeight& w) {
+                  return std::pair(w.weight, w.wavelength == lens.central_wavelength());
+                })->wavelength;
+  meridian_ = main_meridian(lens, wavelength_);
+  data_ = first_order(lens, wavelength_, meridian_);
+  if (!data_.afocal) conjugates_ = detail::conjugates(lens, data_, options.criterion, options.origin);
+}
+
+bool Model::exact() const noexcept {
+  return options_.criterion == FocusCriterion::min_rms || options_.criterion == FocusCriterion::min_max;
+}
+
+FocusSolution Model::focus(double distance) const {
+  return exact() ? Search(*this).focus(distance) : paraxial_focus(conjugates_, distance);
+}
+
+FocusSolution Model::subject(double film_z) const {
+  return exact() ? Search(*this).subject(film_z) : paraxial_subject(conjugates_, film_z);
+}
+
+FocusSolution Model::nearest() const { return exact() ? Search(*this).nearest() : paraxial_nearest(conjugates_); }
+
+std::optional<Image> Model::image(double subject_z) const {
+  if (!(subject_z < 0)) {
+    throw Error(lens_.name() + ": subject at z = " + number(subject_z) +
+                " mm, wanted one in front of the lens (z < 0)");
+  }
+  const auto unlimited = [](const LensSurface& s) { return std::isinf(s.semi_diameter); };
+  if (std::ranges::all_of(lens_.surfaces(), unlimited)) {
+    throw Error(lens_.name() + ": no surface limits the beam, wanted a semi_diameter for a blur to have a size");
+  }
+  if (exact()) return exact_image(lens_, subject_z, fields_, wavelengths_, options_.criterion);
+  return cone(subject_z);
+}
+
+/// The cone of the paraxial pupil as its one marginal ray, in the rear focal plane: what height a ray has there is a
+/// matter of its slope in front of the lens alone, and its slope there one of its height in the front focal plane.
+Image Model::cone(double subject_z) const {
+  const bool infinite = std::isinf(subject_z);
+  const Pupils stop = pupils(lens_, wavelength_, meridian_);
+  if (std::isinf(lens_.surfaces()[stop.stop].semi_diameter)) {
+    throw Error(lens_.name() + ": the stop (surface " + std::to_string(stop.stop) +
+                ") has no semi_diameter, wanted one for a blur to have a size");
+  }
+  double slope = 0, height = 0;  // in front of the lens; in the front focal plane
+  const double p = conjugates_.front_focal_z - subject_z;
+  if (options_.criterion == FocusCriterion::thin) {
+    const double radius = stop.entrance.diameter / 2;
+    if (std::isinf(radius)) {
+      throw Error(lens_.name() +
+                  ": the entrance pupil is at infinity, wanted a finite one for the blur of a thin lens");
+    }
+    slope = infinite ? 0 : radius / (data_.rear_principal_z - subject_z);
+    height = infinite ? radius : slope * p;
+  } else {
+    // By the matrix up to the stop, not by the entrance pupil, which may be at infinity.
+    const RayMatrix m = ray_matrix_to(lens_, stop.stop, wavelength_, meridian_);
+    const double radius = lens_.surfaces()[stop.stop].semi_diameter;
+    if (infinite && std::isinf(stop.entrance.z)) {
+      throw Error(lens_.name() +
+                  ": the entrance pupil is at infinity, wanted a subject that is not: the stop limits no "
+                  "beam from there");
+    }
+    slope = infinite ? 0 : radius / (m.b * data_.object_index - m.a * subject_z);
+    height = infinite ? radius / m.a : slope * p;
+  }
+  const Line marginal{.y = data_.object_index * slope * data_.effective_focal_length,
+                      .slope_y = -height * data_.power / data_.image_index};
+  return {.film_z = conjugates_.film_z(p), .plane_z = data_.rear_focal_z, .lines = {marginal}};
+}
+
+}  // namespace petzval::detail

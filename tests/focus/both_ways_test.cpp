@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "../data_lenses.hpp"
+#include "../message.hpp"
+#include "petzval/core/units.hpp"
+#include "petzval/focus/focus.hpp"
+#include "petzval/paraxial/first_order.hpp"
+
+namespace petzval {
+namespace {
+
+using testing::data_lens;
+using testing::data_prescription;
+using testing::data_prescriptions;
+using testing::message;
+using enum FocusCriterion;
+using enum DistanceOrigin;
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double eps = std::numeric_limits<double>::epsilon();
+
+double focal_length(const Lens& lens) {
+  return std::abs(first_order(lens, lens.central_wavelength(), main_meridian(lens)).effective_focal_length);
+}
+
+/// From the film to the distance and back to the film, from far away to magnifications of a quarter.
+void expect_round_trips(const Lens& lens, const FocusOptions& options, double tolerance,
+                        std::initializer_list<double> focal_lengths) {
+  const double f = focal_length(lens);
+  const double sense = first_order(lens).image_index > 0 ? 1 : -1;
+  double before = -infinity;
+  for (const double multiple : focal_lengths) {
+    const FocusSolution there = solve_focus(lens, multiple * f, options);
+    if (!there) continue;  // inside the front focus, or nearer to the film than the lens is long
+    const FocusSolution back = solve_subject(lens, there.film_z, options);
+    ASSERT_TRUE(back) << multiple << ' ' << name(back.status);
+    EXPECT_EQ(back.film_z, there.film_z);
+    EXPECT_NEAR(solve_focus(lens, back.distance, options).film_z, there.film_z,
+                tolerance * (f + std::abs(there.film_z)))
+        << multiple;
+    // Monotone: the film moves away from the lens, along the light, as the subject comes nearer.
+    EXPECT_GE(sense * there.film_z, before) << multiple;
+    before = sense * there.film_z;
+  }
+  EXPECT_TRUE(std::isfinite(before));
+}
+
+TEST(BothWays, ReturnToTheFilmInEveryLens) {
+  for (const Prescription& p : data_prescriptions()) {
+    const Lens lens = compile(p);
+    for (const DistanceOrigin origin : {front_vertex, film, front_principal}) {
+      SCOPED_TRACE(p.id + ' ' + std::string(name(origin)));
+      for (const FocusCriterion criterion : {thin, paraxial}) {
+        expect_round_trips(lens, {criterion, origin}, 4 * eps, {1e18, 1e9, 1e5, 1e3, 300, 100, 50, 35});
+      }
+    }
+  }
+}
+
+TEST(BothWays, ReturnToTheFilmByExactRaysInEveryLens) {
+  for (const Prescription& p : data_prescriptions()) {
+    // A rod lit to its equator: its blur across is as wide as itself on every film, and least inside it.
+    if (p.id == "cylinder_3.9mm") continue;
+    SCOPED_TRACE(p.id);
+    const Lens lens = compile(p);
+    expect_round_trips(lens, {min_rms}, 1e-13, {infinity, 1e6, 100, 8});
+    expect_round_trips(lens, {min_max, film}, 1e-13, {1e6, 50});
+  }
+}
+
+TEST(BothWays, ReturnToTheFilmForFieldsAndColours) {
+  const Lens triplet = data_lens("cooke_triplet_50mm_f5");
+  const std::vector<FocusField> fields{{0, 1}, {radians(14), 0.5}};
+  for (const FocusCriterion criterion : {min_rms, min_max}) {
+    expect_round_trips(triplet, {criterion, front_vertex, fields}, 1e-13, {infinity, 100, 10});
+    expect_round_trips(triplet, {criterion, film, fields}, 1e-13, {100});
+  }
+}
+
+TEST(BothWays, ParaxialSubjectIsTheOneImagedThere) {
+  for (const char* id : {"double_gauss_100mm_f2.0", "mirror_newton_200mm_f8", "eye_gullstrand_le_grand"}) {
+    const Lens lens = data_lens(id);
+    const FirstOrder data = first_order(lens);
+    for (const double extension : {1e-9, 1e-3, 1.0, 20.0}) {
+      const double film_z = data.rear_focal_z + (data.image_index > 0 ? extension : -extension);
+      const FocusSolution solution = solve_subject(lens, film_z);
+      ASSERT_TRUE(solution);
+      EXPECT_NEAR(paraxial_image_z(lens, solution.subject_z), film_z, 1e-12 * (100 + std::abs(film_z)));
+      EXPECT_NEAR(solution.distance, -solution.subject_z, 4 * eps * solution.distance);
+    }
+  }
+}
+
+TEST(BothWays, OriginsAreThreePlacesForOneSubject) {
+  const Lens lens = data_lens("double_gauss_100mm_f2.0");
+  const FirstOrder data = first_order(lens);
+  for (const FocusCriterion criterion : {thin, paraxial, min_rms, min_max}) {
+    SCOPED_TRACE(name(criterion));
+    const FocusSolution vertex = solve_focus(lens, 1000, {criterion});
+    const FocusSolution from_plane = solve_focus(lens, 1000 + data.front_principal_z, {criterion, front_principal});
+    const FocusSolution from_film = solve_focus(lens, 1000 + vertex.film_z, {criterion, film});
+    EXPECT_NEAR(from_plane.film_z, vertex.film_z, 1e-11);
+    EXPECT_NEAR(from_film.film_z, vertex.film_z, 1e-11);
+    EXPECT_NEAR(from_film.subject_z, -1000, 1e-9);
+    for (const DistanceOrigin origin : {front_vertex, film, front_principal}) {
+      const FocusSolution back = solve_subject(lens, vertex.film_z, {criterion, origin});
+      EXPECT_NEAR(back.subject_z, -1000, 1e-9);
+      const double from = origin == film ? vertex.film_z : origin == front_principal ? data.front_principal_z : 0;
+      EXPECT_NEAR(back.distance, 1000 + from, 1e-9);
+    }
+  }
+  // From the principal plane, Newton's and Gauss's forms are the textbooks': 1 / U + 1 / V = 1 / f.
+  const double v = solve_focus(lens, 400, {paraxial, front_principal}).film_z - data.rear_principal_z;
+  EXPECT_NEAR(1 / 400.0 + 1 / v, 1 / data.effective_focal_length, 1e-16);
+}
+
+TEST(BothWays, AFilmTooFarInSeesNothingBeyondInfinity) {
+  const Lens lens = data_lens("double_gauss_100mm_f2.0");
+  for (const FocusCriterion criterion : {thin, paraxial, min_rms, min_max}) {
+    const double infinite = solve_focus(lens, infinity, {criterion}).film_z;
+    for (const double film_z : {infinite - 1e-6, lens.surfaces().back().vertex_z, -50.0}) {
+      const FocusSolution solution = solve_subject(lens, film_z, {criterion});
+      EXPECT_EQ(solution.status, FocusStatus::unreachable) << name(criterion) << film_z;
+      EXPECT_EQ(solution.distance, infinity);
+      EXPECT_EQ(solution.film_z, infinite);
+    }
+    EXPECT_EQ(solve_subject(lens, infinite, {criterion}).distance, infinity);
+  }
+}
+
+TEST(BothWays, AFilmBeyondTheLimitNamesTheNearestSubject) {
+  const Lens lens = data_lens("achromat_100mm");
+  const FocusSolution nearest = nearest_focus(lens, {min_rms});
+  // Rays with aberrations never all leave parallel: the film turns back 5.6 m behind the lens.
+  EXPECT_TRUE(std::isfinite(nearest.film_z));
+  const FocusSolution beyond = solve_subject(lens, 2 * nearest.film_z, {min_rms});
+  EXPECT_EQ(beyond.status, FocusStatus::unreachable);
+  EXPECT_NEAR(beyond.distance, nearest.distance, 1e-7 * nearest.distance);
+  EXPECT_EQ(solve_focus(lens, 0.99 * nearest.distance, {min_rms}).status, FocusStatus::unreachable);
+  EXPECT_EQ(nearest_focus(lens).film_z, infinity);
+}
+
+TEST(BothWays, RefuseWhatIsNoFieldAndNoWeight) {
+  const Lens lens = data_lens("double_gauss_100mm_f2.0");
+  const auto error = [&](const FocusOptions& options) { return message([&] { solve_focus(lens, 1000, options); }); };
+  const std::string where = lens.name() + ": focus: ";
+  EXPECT_EQ(error({.fields = {}}), where + "no field has a weight, wanted at least one above 0");
+  EXPECT_EQ(error({.fields = {{0, 0}}}), where + "no field has a weight, wanted at least one above 0");
+  EXPECT_EQ(error({.fields = {{0, -1}}}), where + "weight of a field is -1, wanted a finite one, 0 or more");
+  EXPECT_EQ(error({.fields = {{std::nan(""), 1}}}), where + "field is nan rad, wanted a finite angle");
+  EXPECT_EQ(error({.wavelength_weights = {1, 2}}),
+            where + "2 wavelength weights, wanted 1, one per compiled wavelength");
+  EXPECT_EQ(error({.wavelength_weights = {0}}), where + "no wavelength has a weight, wanted at least one above 0");
+  EXPECT_EQ(error({.wavelength_weights = {std::nan("")}}),
+            where + "weight of a wavelength is nan, wanted a finite one, 0 or more");
+  EXPECT_EQ(message([&] { solve_subject(lens, infinity); }), lens.name() + ": film_z is inf mm, wanted a finite place");
+  EXPECT_EQ(message([&] { nearest_focus(lens, {.fields = {}}); }),
+            where + "no field has a weight, wanted at least one above 0");
+}
+
+TEST(BothWays, AFieldBeyondTheLensHasNoRays) {
+  const Lens lens = data_lens("cooke_triplet_50mm_f5");
+  const FocusOptions beyond{.criterion = min_rms, .fields = {{0, 1}, {radians(75), 1}}};
+  EXPECT_EQ(solve_focus(lens, 1000, beyond).status, FocusStatus::no_rays);
+  EXPECT_EQ(solve_subject(lens, 60, beyond).status, FocusStatus::no_rays);
+  EXPECT_EQ(nearest_focus(lens, beyond).status, FocusStatus::no_rays);
+  EXPECT_NE(message([&] { with_focus(lens, 1000, beyond); }).find("no ray gets through the lens"), std::string::npos);
+}
+
+TEST(BothWays, FieldsPastTheLensCountAtInfinityAlone) {
+  const Lens lens = data_lens("fisheye_6.3mm_f2.8");
+  const FocusOptions wide{.criterion = min_rms, .fields = {{0, 1}, {radians(80), 1}, {radians(100), 1}}};
+  const FocusSolution infinite = solve_focus(lens, infinity, wide);
+  ASSERT_TRUE(infinite);
+  EXPECT_EQ(solve_subject(lens, infinite.film_z, wide).distance, infinity);
+  EXPECT_EQ(solve_subject(lens, infinite.film_z + 0.01, wide).status, FocusStatus::unreachable);
+  EXPECT_NE(message([&] { solve_focus(lens, 1000, wide); }).find("at a field of 100 degrees"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace petzval

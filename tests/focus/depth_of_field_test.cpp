@@ -1,0 +1,261 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "petzval/focus/depth_of_field.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "../data_lenses.hpp"
+#include "../message.hpp"
+#include "petzval/focus/thin_lens.hpp"
+#include "petzval/paraxial/first_order.hpp"
+#include "petzval/pupil/pupil.hpp"
+
+namespace petzval {
+namespace {
+
+using testing::data_lens;
+using testing::data_prescription;
+using testing::message;
+using enum FocusCriterion;
+using enum DistanceOrigin;
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr auto criteria = {thin, paraxial, min_rms, min_max};
+
+/// A singlet of 50 mm at f/10, as thin as a lens can be and still be traced.
+Lens thin_singlet(double semi_diameter = 2.5) {
+  Prescription p;
+  p.name = "thin singlet";
+  p.surfaces = {
+      {.radius = 51.68, .thickness = 1e-6, .medium = {.nd = 1.5168}, .semi_diameter = semi_diameter, .stop = true},
+      {.radius = -51.68, .semi_diameter = 2 * semi_diameter}};
+  return compile(p);
+}
+
+TEST(BlurDiameter, OfTheThinCriterionIsTheFormula) {
+  const Lens lens = data_lens("double_gauss_100mm_f2.0");
+  const FirstOrder data = first_order(lens);
+  const double f = data.effective_focal_length, diameter = pupils(lens).entrance.diameter;
+  for (const double focused : {500.0, 2000.0, infinity}) {
+    const Lens set = with_focus(lens, focused, {thin});
+    for (const double subject : {150.0, 300.0, 1999.0, 3e4, infinity}) {
+      const double expected =
+          thin_lens_blur_diameter(f, diameter, subject + data.rear_principal_z, focused + data.rear_principal_z);
+      EXPECT_NEAR(blur_diameter(set, subject, {thin}).value(), expected, 1e-12 * (1 + expected))
+          << focused << " " << subject;
+    }
+  }
+}
+
+TEST(BlurDiameter, OfTheParaxialCriterionIsTheConeOfTheExitPupil) {
+  for (const char* id : {"double_gauss_100mm_f2.0", "retrofocus_100mm_f2", "mirror_newton_200mm_f8", "cylinder_3.9mm",
+                         "eye_gullstrand_le_grand"}) {
+    SCOPED_TRACE(id);
+    const Lens lens = data_lens(id);
+    const Meridian meridian = main_meridian(lens);
+    const Pupil exit = pupils(lens, 0, meridian).exit;
+    for (const double subject : {300.0, 5000.0, infinity}) {
+      const double image_z = paraxial_image_z(lens, -subject, 0, meridian);
+      for (const double shift : {-0.3, 0.0, 0.2}) {
+        const double cone = std::abs(exit.diameter * shift / (image_z - exit.z));
+        EXPECT_NEAR(blur_diameter(with_film(lens, image_z + shift), subject).value(), cone,
+                    1e-12 * (1 + exit.diameter));
+      }
+    }
+  }
+}
+
+TEST(BlurDiameter, OfAllCriteriaIsThatOfTheThinLensWhereTheLensIsOne) {
+  const Lens lens = thin_singlet(1.25);
+  const double f = first_order(lens).effective_focal_length;
+  const Lens set = with_focus(lens, 1000);
+  for (const double subject : {300.0, 600.0, 4000.0, infinity}) {
+    const double expected = thin_lens_blur_diameter(f, 2.5, subject, 1000);
+    for (const FocusCriterion criterion : criteria) {
+      // Spherical aberration at f/20 is a few micrometres; eight times that at f/10.
+      EXPECT_NEAR(blur_diameter(set, subject, {criterion}).value(), expected, 0.004) << name(criterion) << subject;
+    }
+  }
+}
+
+TEST(BlurDiameter, GrowsInProportionToTheStopFarFromFocus) {
+  for (const FocusCriterion criterion : criteria) {
+    const auto blur = [&](double semi_diameter) {
+      return blur_diameter(with_focus(thin_singlet(semi_diameter), 500), infinity, {criterion}).value();
+    };
+    EXPECT_NEAR(blur(0.5) / blur(0.25), 2, criterion == thin || criterion == paraxial ? 1e-12 : 3e-3);
+  }
+}
+
+TEST(DepthOfField, HasTheBlurAtItsLimits) {
+  for (const char* id :
+       {"double_gauss_100mm_f2.0", "modern_41mm_f1.45", "telephoto_100mm_f5.6", "anamorphic_60mm_2x"}) {
+    for (const FocusCriterion criterion : criteria) {
+      for (const DistanceOrigin origin : {front_vertex, film, front_principal}) {
+        SCOPED_TRACE(std::string(id) + ' ' + std::string(name(criterion)) + ' ' + std::string(name(origin)));
+        const FocusOptions options{criterion, origin};
+        const double distance = 3000, blur = 0.2;
+        const Lens lens = with_focus(data_lens(id), distance, options);
+        const DepthOfField depth = depth_of_field(lens, blur, options);
+        ASSERT_TRUE(depth) << name(depth.status);
+        EXPECT_LT(depth.near_distance, distance);
+        EXPECT_GT(depth.far_distance, distance);
+        EXPECT_NEAR(blur_diameter(lens, depth.near_distance, options).value(), blur, 1e-9 * blur);
+        if (std::isfinite(depth.far_distance)) {
+          EXPECT_NEAR(blur_diameter(lens, depth.far_distance, options).value(), blur, 1e-9 * blur);
+        } else {
+          EXPECT_LE(blur_diameter(lens, infinity, options).value(), blur);
+        }
+        const DepthOfField wider = depth_of_field(lens, 1.5 * blur, options);
+        EXPECT_LT(wider.near_distance, depth.near_distance);
+      }
+    }
+  }
+}
+
+TEST(DepthOfField, OfAThinLensIsTheTextbooks) {
+  // Near and far limit: U D f / (D f +- c (U - f)), distances from the lens.
+  const Lens lens = thin_singlet();
+  const double f = first_order(lens).effective_focal_length, diameter = 5, u = 2000, c = 0.05;
+  const DepthOfField depth = depth_of_field(with_focus(lens, u, {thin}), c, {thin});
+  EXPECT_NEAR(depth.near_distance, u * diameter * f / (diameter * f + c * (u - f)), 1e-5);
+  EXPECT_NEAR(depth.far_distance, u * diameter * f / (diameter * f - c * (u - f)), 1e-5);
+}
+
+TEST(DepthOfField, IsNoneWhereEvenTheFocusIsBlurred) {
+  const Lens lens = with_focus(data_lens("singlet_50mm_biconvex"), 2000, {min_rms});
+  const double sharpest = blur_diameter(lens, 2000, {min_rms}).value();
+  EXPECT_EQ(depth_of_field(lens, 0.99 * sharpest, {min_rms}).status, FocusStatus::too_blurred);
+  EXPECT_TRUE(depth_of_field(lens, 1.01 * sharpest, {min_rms}));
+  EXPECT_TRUE(depth_of_field(with_focus(lens, 2000), 1e-6));
+  EXPECT_EQ(hyperfocal(lens, 1e-3, {min_rms}).status, FocusStatus::too_blurred);
+}
+
+TEST(DepthOfField, OfAFilmTooFarInIsAboutInfinity) {
+  const Lens lens = data_lens("double_gauss_100mm_f2.0");
+  const Lens inside = with_film(lens, first_order(lens).rear_focal_z - 0.01);
+  const DepthOfField depth = depth_of_field(inside, 0.03);
+  EXPECT_TRUE(depth);
+  EXPECT_EQ(depth.far_distance, infinity);
+  EXPECT_GT(depth.near_distance, depth_of_field(with_film(lens, first_order(lens).rear_focal_z), 0.03).near_distance);
+}
+
+TEST(DepthOfField, ReachesTheLensWhereNothingIsBlurredEnough) {
+  const DepthOfField depth = depth_of_field(with_focus(data_lens("double_gauss_100mm_f2.0"), 1000), 1e4);
+  ASSERT_TRUE(depth);
+  EXPECT_NEAR(depth.near_distance, 0, 1e-9);
+  EXPECT_EQ(depth.far_distance, infinity);
+}
+
+TEST(Hyperfocal, IsTheNearestFocusWithInfinityAtTheLimit) {
+  for (const char* id : {"double_gauss_100mm_f2.0", "telephoto_100mm_f5.6", "fisheye_8mm_f2.8"}) {
+    for (const FocusCriterion criterion : criteria) {
+      SCOPED_TRACE(std::string(id) + ' ' + std::string(name(criterion)));
+      const FocusOptions options{criterion, front_principal};
+      const double blur = 0.15;
+      const Lens lens = data_lens(id);
+      const FocusSolution at = hyperfocal(lens, blur, options);
+      ASSERT_TRUE(at) << name(at.status);
+      const Lens set = with_film(lens, at.film_z);
+      EXPECT_NEAR(blur_diameter(set, infinity, options).value(), blur, 1e-9 * blur);
+      EXPECT_NEAR(with_focus(lens, at.distance, options).film_z(), at.film_z, 1e-12 * at.film_z);
+      EXPECT_EQ(depth_of_field(set, blur, options).far_distance, infinity);
+
+      const auto far = [&](double distance) {
+        return depth_of_field(with_focus(lens, distance, options), blur, options).far_distance;
+      };
+      EXPECT_EQ(far(at.distance * 1.001), infinity);
+      EXPECT_LT(far(at.distance * 0.999), infinity);
+
+      // Near limit about half of it, the more so the nearer the pupil is to the principal plane and the smaller the
+      // aberrations are beside the blur.
+      const double near = depth_of_field(set, blur * (1 + 1e-9), options).near_distance;
+      EXPECT_NEAR(near / at.distance, 0.5, 0.12);
+    }
+  }
+}
+
+TEST(Hyperfocal, OfAThinLensIsTheTextbooks) {
+  const Lens lens = thin_singlet();
+  const double f = first_order(lens).effective_focal_length, diameter = 5, c = 0.03;
+  const FocusSolution at = hyperfocal(lens, c, {thin});
+  EXPECT_NEAR(at.distance, f + diameter * f / c, 1e-5);
+  const Lens set = with_film(lens, at.film_z);
+  EXPECT_NEAR(depth_of_field(set, c * (1 + 1e-12), {thin}).near_distance, at.distance / 2, 1e-5);
+}
+
+TEST(DepthOfField, ScalesWithTheLens) {
+  const Prescription p = data_prescription("double_gauss_100mm_f2.0");
+  const Lens lens = compile(p), twice = compile(scale(p, 2));
+  for (const FocusCriterion criterion : criteria) {
+    const auto depth = depth_of_field(with_focus(lens, 1500, {criterion}), 0.1, {criterion});
+    const auto doubled = depth_of_field(with_focus(twice, 3000, {criterion}), 0.2, {criterion});
+    EXPECT_NEAR(doubled.near_distance, 2 * depth.near_distance, 1e-8 * depth.near_distance);
+    EXPECT_NEAR(doubled.far_distance, 2 * depth.far_distance, 1e-8 * depth.far_distance);
+    EXPECT_NEAR(hyperfocal(twice, 0.2, {criterion}).distance, 2 * hyperfocal(lens, 0.1, {criterion}).distance, 1e-4);
+  }
+}
+
+TEST(Breathing, FollowsTheChiefRayThroughTheExitPupil) {
+  for (const char* id : {"double_gauss_100mm_f2.0", "retrofocus_100mm_f2", "telephoto_100mm_f5.6"}) {
+    SCOPED_TRACE(id);
+    const Lens lens = data_lens(id);
+    const double infinite = first_order(lens).rear_focal_z, exit_z = pupils(lens).exit.z;
+    EXPECT_EQ(breathing(lens, infinite).value(), 0);
+    const double near = solve_focus(lens, 1000).film_z;
+    EXPECT_NEAR(breathing(lens, near).value(), (near - exit_z) / (infinite - exit_z) - 1, 1e-13);
+    // The image grows as the film moves out of a pupil in front of it.
+    EXPECT_GT(breathing(lens, near).value() * (infinite - exit_z), 0);
+    EXPECT_GT(std::abs(breathing(lens, solve_focus(lens, 700).film_z).value()),
+              std::abs(breathing(lens, near).value()));
+  }
+}
+
+TEST(Breathing, IsNoneBehindATelecentricLens) {
+  Prescription p = data_prescription("singlet_50mm_biconvex");
+  const Lens bare = compile(p);
+  // The stop in the front focal plane.
+  for (SurfaceRow& row : p.surfaces) row.stop = false;
+  p.surfaces.insert(
+      p.surfaces.begin(),
+      SurfaceRow{.radius = 0, .thickness = -first_order(bare).front_focal_z, .semi_diameter = 3, .stop = true});
+  const Lens lens = compile(p);
+  EXPECT_EQ(breathing(lens, solve_focus(lens, 300).film_z), 0);
+}
+
+TEST(DepthOfField, SaysWhatIsMissing) {
+  const Lens lens = data_lens("double_gauss_100mm_f2.0");
+  for (const double blur : {0.0, -1.0, std::nan(""), infinity}) {
+    const std::string expected = lens.name() + ": blur is ";
+    EXPECT_EQ(message([&] { depth_of_field(lens, blur); }).substr(0, expected.size()), expected);
+    EXPECT_EQ(message([&] { hyperfocal(lens, blur); }).substr(0, expected.size()), expected);
+  }
+  EXPECT_EQ(message([&] { blur_diameter(lens, 0); }),
+            lens.name() + ": subject distance is 0 mm, wanted one above 0 (or infinity)");
+  EXPECT_EQ(message([&] { blur_diameter(lens, 10, {paraxial, film}); }).find(lens.name() + ": subject at z = "), 0u);
+  EXPECT_EQ(message([&] { breathing(lens, std::nan("")); }), lens.name() + ": film_z is nan mm, wanted a finite place");
+
+  const Lens closed = with_semi_diameter(lens, pupils(lens).stop, 0);
+  EXPECT_EQ(depth_of_field(closed, 0.03, {min_rms}).status, FocusStatus::no_rays);
+  EXPECT_EQ(hyperfocal(closed, 0.03, {min_max}).status, FocusStatus::no_rays);
+  EXPECT_EQ(blur_diameter(closed, 1000, {min_rms}), std::nullopt);
+  // A pinhole to first order: nothing is blurred.
+  EXPECT_EQ(blur_diameter(closed, 1000), 0);
+  EXPECT_EQ(depth_of_field(closed, 0.03).far_distance, infinity);
+  EXPECT_EQ(hyperfocal(closed, 0.03).distance, nearest_focus(lens).distance);
+
+  Prescription window = data_prescription("singlet_50mm_biconvex");
+  for (SurfaceRow& row : window.surfaces) row.radius = 0;
+  const Lens afocal = compile(window);
+  EXPECT_EQ(depth_of_field(afocal, 0.03).status, FocusStatus::afocal);
+  EXPECT_EQ(hyperfocal(afocal, 0.03).status, FocusStatus::afocal);
+  EXPECT_EQ(blur_diameter(afocal, 1000), std::nullopt);
+  EXPECT_EQ(breathing(afocal, 100), std::nullopt);
+  EXPECT_EQ(solve_subject(afocal, 100).status, FocusStatus::afocal);
+}
+
+}  // namespace
+}  // namespace petzval
