@@ -1,6 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
-# Renders the gallery with programs that are built: bokeh after figure 7 of Wu et al. 2010, spot diagrams, and index.html.
+# Renders the gallery with programs that are built: bokeh after figure 7 of Wu et al. 2010, spot diagrams, reports of
+# twelve lenses, and index.html.
 #
 #   sh examples/gallery.sh PROGRAMS OUT        (examples/run.sh calls it with build/examples and out)
 set -eu
@@ -14,20 +15,20 @@ here=$(CDPATH= cd -- "$(dirname -- "$0")" && pwd)
 lenses=$here/../data/lenses
 mkdir -p "$out"
 
-echo "== Figure 7 of Wu et al. 2010 (1/4)"
+echo "== Figure 7 of Wu et al. 2010 (1/5)"
 "$programs/wu_figure7" --criterion min_rms --out "$out/wu_figure7.png"
 "$programs/wu_figure7" --criterion paraxial --out "$out/wu_figure7_paraxial.png"
 
-echo "== What the paper says about it, by number (2/4)"
+echo "== What the paper says about it, by number (2/5)"
 "$programs/wu_statements" --html "$out/wu_statements.html" > "$out/wu_statements.txt"
 echo "$out/wu_statements.txt"
 
-echo "== Bokeh off axis, in colour (3/4)"
+echo "== Bokeh off axis, in colour (3/5)"
 "$programs/bokeh_psf" "$lenses/double_gauss_100mm_f1.35.json" --subject-distance-mm 1000 \
   --focus-mm 800,900,1000,1100,1200 --field-deg 8 --wavelengths-nm "$(seq -s , 430 10 670)" --samples 262144 \
   --out "$out/bokeh"
 
-echo "== Spot diagrams of five lenses (4/4)"
+echo "== Spot diagrams of five lenses (4/5)"
 # spots LENS FIELDS WAVELENGTHS
 spots() {
   "$programs/spot_diagram" "$lenses/$1.json" --field-deg "$2" --wavelengths-nm "$3" --out "$out/spots"
@@ -38,6 +39,13 @@ spots double_gauss_100mm_f2_28deg 0,10,14 $f_d_c
 spots cooke_triplet_50mm_f5 0,14,20 $f_d_c
 spots petzval_portrait_100mm_f3.4 0,7,12 $f_d_c
 spots fisheye_10mm_f4 0,40,70 587.5618
+
+echo "== Reports of twelve lenses (5/5)"
+for lens in petzval_portrait_100mm_f3.4 cooke_triplet_50mm_f5 planar_1896_f4.5 tessar_100mm_f5.5_1902 \
+  sonnar_180mm_f2.8 biogon_35mm_f2.8 telephoto_250mm_f5.6 retrofocus_100mm_f2 \
+  catadioptric_mangin_1000mm_f7.5 anamorphic_60mm_2x modern_58mm_f0.95 fisheye_6.3mm_f2.8; do
+  "$programs/lens_report" "$lenses/$lens.json" --out "$out/lenses"
+done
 
 sed -e "/@statements@/r $out/wu_statements.html" -e "/@statements@/d" "$here/gallery.html" > "$out/index.html"
 echo "== Done: open $out/index.html"

@@ -1,157 +1,121 @@
 // SPDX-License-Identifier: Apache-2.0
-// Prints what a lens is to first order, its pupils and f-numbers, and what a careful reader would ask about its table.
+// Prints what a lens is to first order, its pupils and f-numbers, and what a careful reader would ask about its table;
+// with --out it draws the lens, its spots, pupils, focus and brightness too, and makes a page of them.
 //
 //   lens_report data/lenses/double_gauss_100mm_f1.35.json
 //   lens_report data/lenses/double_gauss_100mm_f1.35.json --json --wavelength-nm 486.1327
-#include <algorithm>
+//   lens_report data/lenses/double_gauss_100mm_f1.35.json --out out --field-deg 0,6,12 --f-number 2
 #include <array>
-#include <cmath>
-#include <iomanip>
+#include <filesystem>
 #include <iostream>
-#include <optional>
-#include <sstream>
 #include <string>
 #include <vector>
 
-#include "petzval/core/text.hpp"
+#include "petzval/core/error.hpp"
 #include "petzval/core/units.hpp"
-#include "petzval/lint/lint.hpp"
-#include "petzval/paraxial/first_order.hpp"
+#include "petzval/focus/focus.hpp"
 #include "petzval/pupil/pupil.hpp"
 #include "support/cli.hpp"
 #include "support/files.hpp"
+#include "support/lens_report.hpp"
 #include "support/load_lens.hpp"
+#ifdef EXAMPLES_WITH_FIGURES
+#include "support/lens_page.hpp"
+#endif
 
 namespace {
 
-using examples::finite_or_null;
-using examples::Json;
-
-/// One number of the report: its key in the JSON, and how the table says it.
-struct Entry {
-  const char* key;
-  const char* label;
-  const char* unit;
-  double value;
+struct Options {
+  std::string lens_file;
+  double wavelength_nm = petzval::d_line_nm;
+  bool json = false;
+  double f_number = 0;    // 0: wide open
+  double subject_mm = 0;  // 0: at infinity, with the film where the table has it
+#ifdef EXAMPLES_WITH_FIGURES
+  std::string out_folder;
+  std::vector<double> field_deg;
+#endif
 };
 
-struct Report {
-  examples::LoadedLens loaded;
-  petzval::FirstOrder first_order;
-  std::optional<petzval::Pupils> pupils;  ///< none where nothing limits the beam
-  std::vector<Entry> entries;
-  std::vector<petzval::Finding> findings;
-};
-
-Report report(examples::LoadedLens loaded) {
-  const petzval::Lens& lens = loaded.lens;
-  const petzval::Meridian meridian = petzval::main_meridian(lens);
-  const petzval::FirstOrder first = petzval::first_order(lens, 0, meridian);
-  std::vector<Entry> entries{
-      {"effective_focal_length_mm", "effective focal length", "mm", first.effective_focal_length},
-      {"back_focal_distance_mm", "back focal distance (last vertex to rear focal point)", "mm",
-       first.back_focal_distance},
-      {"front_focal_distance_mm", "front focal distance (first vertex to front focal point)", "mm",
-       first.front_focal_distance},
-      {"front_principal_z_mm", "front principal plane, z", "mm", first.front_principal_z},
-      {"rear_principal_z_mm", "rear principal plane, z", "mm", first.rear_principal_z}};
-
-  // Pupils are images of the rim that limits the beam: without one there are none.
-  std::optional<petzval::Pupils> pupils;
-  const auto limits = [](const petzval::LensSurface& s) { return std::isfinite(s.semi_diameter); };
-  if (std::ranges::any_of(lens.surfaces(), limits)) {
-    pupils = petzval::pupils(lens, 0, meridian);
-    entries.insert(
-        entries.end(),
-        {{"entrance_pupil_z_mm", "entrance pupil, z", "mm", pupils->entrance.z},
-         {"entrance_pupil_diameter_mm", "entrance pupil, diameter", "mm", pupils->entrance.diameter},
-         {"exit_pupil_z_mm", "exit pupil, z", "mm", pupils->exit.z},
-         {"exit_pupil_diameter_mm", "exit pupil, diameter", "mm", pupils->exit.diameter},
-         {"f_number", "f-number, paraxial", "", petzval::paraxial_f_number(lens)},
-         {"f_number_real", "f-number by the exact ray to the rim of the stop", "", petzval::real_f_number(lens)}});
+/// The lens stopped down and focused as asked for, at the d line like the other programs.
+examples::LoadedLens load(const Options& options) {
+  examples::LoadedLens loaded = examples::load_lens(options.lens_file, std::array{options.wavelength_nm});
+  if (options.f_number == 0 && options.subject_mm == 0) return loaded;
+  petzval::Lens d_line = examples::at_d_line(loaded);
+  if (options.f_number > 0) {
+    d_line = petzval::with_f_number(d_line, options.f_number);
+    loaded.lens = examples::stopped_like(loaded.lens, d_line);
   }
-  entries.push_back({"petzval_sum_per_mm", "Petzval sum", "1/mm", first.petzval_sum});
-  entries.push_back({"film_z_mm", "film, z", "mm", lens.film_z()});
-  auto findings = petzval::lint(loaded.prescription);
-  return {std::move(loaded), first, pupils, std::move(entries), std::move(findings)};
+  if (options.subject_mm > 0) {
+    loaded.lens = petzval::with_film(loaded.lens, petzval::with_focus(d_line, options.subject_mm).film_z());
+  }
+  return loaded;
 }
 
-Json to_json(const Report& r) {
-  const petzval::Lens& lens = r.loaded.lens;
-  Json json{{"name", lens.name()},
-            {"dispersion", petzval::name(lens.dispersion())},
-            {"wavelength_nm", lens.wavelengths_nm()[0]},
-            {"afocal", r.first_order.afocal},
-            {"stop_surface", r.pupils ? Json(r.pupils->stop) : Json(nullptr)},
-            {"stop_inferred", r.pupils && r.pupils->stop_inferred}};
-  for (const char* key : {"entrance_pupil_z_mm", "entrance_pupil_diameter_mm", "exit_pupil_z_mm",
-                          "exit_pupil_diameter_mm", "f_number", "f_number_real"}) {
-    json[key] = nullptr;
+#ifdef EXAMPLES_WITH_FIGURES
+/// F, d and C where the media's colours are known and none was asked for.
+std::vector<double> figure_wavelengths(const Options& options, const petzval::Lens& lens) {
+  if (options.wavelength_nm != petzval::d_line_nm || lens.dispersion() == petzval::Dispersion::none) {
+    return {options.wavelength_nm};
   }
-  for (const Entry& entry : r.entries) json[entry.key] = finite_or_null(entry.value);
-  json["lint"] = Json::array();
-  for (const petzval::Finding& finding : r.findings) {
-    json["lint"].push_back({{"kind", petzval::name(finding.kind)},
-                            {"surface", finding.surface ? Json(*finding.surface) : Json(nullptr)},
-                            {"found", finite_or_null(finding.found)},
-                            {"wanted", finite_or_null(finding.wanted)},
-                            {"message", finding.message}});
-  }
-  return json;
+  return {486.1327, petzval::d_line_nm, 656.2725};
 }
 
-std::string stop_in_words(const std::optional<petzval::Pupils>& pupils) {
-  if (!pupils) return "none: nothing limits the beam";
-  return "surface " + std::to_string(pupils->stop) + (pupils->stop_inferred ? " (inferred: none is marked)" : "");
-}
+void write_page(const examples::Report& report, const Options& options) {
+  examples::PageOptions page{.field_deg = options.field_deg,
+                             .wavelengths_nm = figure_wavelengths(options, report.loaded.lens)};
+  if (options.subject_mm > 0) page.subject_mm = options.subject_mm;
+  const auto figures = examples::lens_figures(report, page);
 
-/// Fixed decimals as an optician reads them; small sums in scientific notation.
-std::string in_words(double value) {
-  if (std::isinf(value)) return value > 0 ? "infinite" : "-infinite";
-  std::ostringstream text;
-  text.imbue(std::locale::classic());
-  text << (value != 0 && (std::abs(value) < 0.01 || std::abs(value) >= 1e7) ? std::scientific : std::fixed)
-       << std::setprecision(4) << value;
-  return text.str();
+  const std::filesystem::path folder = options.out_folder;
+  examples::make_folder(folder);
+  const auto write = [&](const std::string& ending, const std::string& text) {
+    const auto file = folder / (report.loaded.id + ending);
+    examples::write_text(file, text);
+    std::cout << file.string() << '\n';
+  };
+  for (const examples::LensFigure& figure : figures) write('_' + figure.name + ".svg", figure.svg);
+  write(".html", examples::lens_page(report, figures));
 }
-
-std::string to_text(const Report& r) {
-  const petzval::Lens& lens = r.loaded.lens;
-  std::ostringstream text;
-  text << lens.name() << '\n'
-       << lens.surface_count() << (lens.surface_count() == 1 ? " surface" : " surfaces")
-       << ", stop: " << stop_in_words(r.pupils) << "\nat " << petzval::number(lens.wavelengths_nm()[0])
-       << " nm, dispersion: " << petzval::name(lens.dispersion())
-       << "; z counts from the first vertex towards the film\n\n";
-  for (const Entry& entry : r.entries) {
-    text << "  " << std::left << std::setw(58) << entry.label << std::right << std::setw(14) << in_words(entry.value)
-         << (*entry.unit ? " " : "") << entry.unit << '\n';
-  }
-  if (r.first_order.afocal) text << "\nThe lens is afocal: it has no focal length and no focal or principal points.\n";
-  text << "\nlint: " << (r.findings.empty() ? "nothing to ask about" : "") << '\n';
-  for (const petzval::Finding& finding : r.findings) {
-    text << "  " << petzval::name(finding.kind) << ": " << finding.message << '\n';
-  }
-  return text.str();
-}
+#endif
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  std::string lens_file;
-  double wavelength_nm = petzval::d_line_nm;
-  bool json = false;
-
+  Options options;
   CLI::App app(
-      "Reports the first-order data, pupils, f-numbers and lint findings of a lens. Lengths in mm; z from the "
-      "first vertex, towards the film. Findings are no failure.",
+      "Reports the first-order data, pupils, f-numbers and lint findings of a lens; of a lens with cylinders in both "
+      "sections. Lengths in mm; z from the first vertex, towards the film. Findings are no failure.\n"
+      "With --out: writes LENS_layout.svg (and LENS_layout_x.svg of a lens with cylinders), LENS_spots.svg, "
+      "LENS_footprints.svg, LENS_focus.svg, LENS_illumination.svg and LENS.html, a page with all of them, to DIR, and "
+      "prints the paths instead.",
       "lens_report");
-  app.add_option("LENS.json", lens_file, "lens prescription (JSON as in data/lenses)")->required();
-  app.add_flag("--json", json, "print one JSON object; null stands for infinite and for what the lens has not");
-  examples::add_number(app, "--wavelength-nm", wavelength_nm, examples::positive_number, "wavelength (nm)");
+  app.add_option("LENS.json", options.lens_file, "lens prescription (JSON as in data/lenses)")->required();
+  app.add_flag("--json", options.json, "print one JSON object; null stands for infinite and for what the lens has not");
+  examples::add_number(app, "--wavelength-nm", options.wavelength_nm, examples::positive_number,
+                       "wavelength (nm); figures show F, d and C where it is not given");
+  examples::add_number(app, "--f-number", options.f_number, examples::positive_number,
+                       "stop the lens down to this f-number")
+      ->default_str("wide open");
+  examples::add_number(
+      app, "--subject-distance-mm", options.subject_mm, examples::positive_length,
+      "put the film at the paraxial image of a subject at this distance from the front vertex (mm), or "
+      "inf")
+      ->default_str("at infinity, the film where the table has it");
+#ifdef EXAMPLES_WITH_FIGURES
+  auto* out = app.add_option("--out", options.out_folder, "draw figures and a page in this folder")->type_name("DIR");
+  examples::add_numbers(app, "--field-deg", options.field_deg, examples::finite_number,
+                        "fields of the figures (degrees)")
+      ->default_str("the axis, 0.7 and 1 of the declared half field")
+      ->needs(out);
+  out->excludes("--json");
+#endif
 
   return examples::run(app, argc, argv, [&] {
-    const Report r = report(examples::load_lens(lens_file, std::array{wavelength_nm}));
-    std::cout << (json ? to_json(r).dump(2) + '\n' : to_text(r));
+    const examples::Report report = examples::report(load(options));
+#ifdef EXAMPLES_WITH_FIGURES
+    if (out->count() > 0) return write_page(report, options);
+#endif
+    std::cout << (options.json ? examples::to_json(report).dump(2) + '\n' : examples::to_text(report));
   });
 }

@@ -14,19 +14,19 @@
 #include "petzval/core/units.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/pupil.hpp"
-#include "svg.hpp"
+#include "sheet.hpp"
 
 namespace petzval {
 namespace {
 
+using detail::small_centred;
+using detail::small_text;
 using detail::Svg;
 using detail::svg_number;
 
 constexpr double cell = 190, gap = 14, under = 22;  // a cell, between cells, for the line below one
 constexpr double left = 118, top = 112, bottom = 76;
 constexpr std::size_t drawn_rays = 600;
-constexpr std::string_view small = "font-size=\"11\" fill=\"#555\"";
-constexpr std::string_view small_centred = "font-size=\"11\" fill=\"#555\" text-anchor=\"middle\"";
 
 /// How a wavelength looks: from violet to brown by its rank, up to three blue, green and red, the custom for F, d and
 /// C.
@@ -62,14 +62,6 @@ std::string marker(std::size_t kind, double x, double y) {
   }
 }
 
-/// 1, 2 or 5 times a power of ten, not above x.
-double round_length(double x) {
-  const double power = std::pow(10, std::floor(std::log10(x)));
-  return power * (x >= 5 * power ? 5 : x >= 2 * power ? 2 : 1);
-}
-
-std::string micrometres(double mm) { return number(mm * 1e3, 3) + " \u00b5m"; }
-
 /// Of the cone of light that the lens throws on its film.
 double film_side_f_number(const Lens& lens) {
   const Pupil exit = pupils(lens, lens.central_wavelength()).exit;
@@ -86,7 +78,7 @@ class Figure {
         columns_(wavelengths_ == 1 ? 1 : 1 + wavelengths_),
         looks_(looks(lens.wavelengths_nm())),
         f_number_(film_side_f_number(lens)),
-        svg_(std::max(800.0, left + static_cast<double>(columns_) * (cell + gap) + gap),
+        svg_(std::max(960.0, left + static_cast<double>(columns_) * (cell + gap) + gap),
              top + static_cast<double>(rows_) * (cell + under + gap) + bottom) {
     std::vector<std::size_t> order(wavelengths_);
     std::iota(order.begin(), order.end(), std::size_t(0));
@@ -132,14 +124,7 @@ class Figure {
   }
 
   void title() {
-    const FirstOrder data = first_order(lens_, middle_);
-    const double subject_z = spots_.front().point.z;
-    svg_.text(gap, 26, lens_.name(), "font-size=\"17\" font-weight=\"bold\"");
-    svg_.text(gap, 48,
-              "Spot diagram.  EFL " + number(data.effective_focal_length, 5) + " mm,  f/" +
-                  number(paraxial_f_number(lens_, middle_), 3) + ",  subject at " +
-                  (std::isinf(subject_z) ? "infinity" : "z = " + number(subject_z, 6) + " mm") +
-                  ",  film at z = " + number(lens_.film_z(), 7) + " mm (from the first vertex)");
+    detail::draw_head(svg_, lens_, "Spot diagram", spots_.front().point.z, middle_);
     double x = gap;
     for (std::size_t w = 0; w < wavelengths_; ++w) {
       svg_.path(marker(looks_[w].marker, x + 4, 65), stroke(w));
@@ -162,8 +147,8 @@ class Figure {
     svg_.text(gap, y - 6, "field " + number(degrees(of(row).front().point.field_rad), 4) + "\u00b0",
               "font-weight=\"bold\"");
     const auto& chief = of(row)[middle_].chief_ray_height;
-    svg_.text(gap, y + 12, "chief ray at", small);
-    svg_.text(gap, y + 27, chief ? "y = " + number(*chief, 4) + " mm" : "none", small);
+    svg_.text(gap, y + 12, "chief ray at", small_text);
+    svg_.text(gap, y + 27, chief ? "y = " + number(*chief, 4) + " mm" : "none", small_text);
   }
 
   void draw_cell(std::size_t row, std::size_t column) {
@@ -192,26 +177,29 @@ class Figure {
                                    [](const Spot& spot) { return spot.hits.x.empty(); });
     const SpotSize& size = column == 0 ? sizes_[row] : of(row)[first].size;
     svg_.text(cx, y + cell + 15,
-              empty ? "no rays" : "RMS " + micrometres(size.rms_radius) + ",  max " + micrometres(size.max_radius),
+              empty ? "no rays"
+                    : "RMS " + detail::length_text(size.rms_radius) + ",  max " + detail::length_text(size.max_radius),
               small_centred);
   }
 
   void footer() {
-    const double y = cell_y(rows_) + 14, bar = round_length(limit_), length = bar * cell / 2 / limit_;
-    svg_.path("M" + svg_number(left) + " " + svg_number(y) + "v-6m0 3h" + svg_number(length) + "m0-3v6",
-              "fill=\"none\" stroke=\"#222\" stroke-width=\"1.2\"");
-    svg_.text(left + length + 8, y + 1, micrometres(bar) + ",  the same in all cells");
+    const double y = cell_y(rows_) + 11;
+    detail::draw_scale_bar(svg_, left, y, cell / 2 / limit_, cell / 2, ",  the same in all cells");
     svg_.text(
         gap, y + 24,
         "Origin: centroid of all rays of the field. RMS and max: radii about the centroid of the rays in the cell. "
-        "Wavelengths have equal weight.",
-        small);
+        "Wavelengths have equal weight. Chief ray: through the stop's centre.",
+        small_text);
+    // Of a shut stop there is no circle.
+    const std::string circle = !std::isfinite(f_number_)
+                                   ? std::string()
+                                   : "Dashed: Airy circle, 1.22 wavelength N, N = " + number(f_number_, 3) +
+                                         " on the film's side; " + detail::length_text(airy(middle_)) + " at " +
+                                         number(lens_.wavelengths_nm()[middle_], 6) + " nm. ";
     svg_.text(gap, y + 40,
-              "Dashed: Airy circle, 1.22 wavelength N, N = " + number(f_number_, 3) + " on the film's side; " +
-                  micrometres(airy(middle_)) + " at " + number(lens_.wavelengths_nm()[middle_], 6) + " nm. " +
-                  std::to_string(spots_.front().hits.sent) + " rays sent a spot, " + std::to_string(drawn_rays) +
+              circle + std::to_string(spots_.front().hits.sent) + " rays sent a spot, " + std::to_string(drawn_rays) +
                   " drawn at most.",
-              small);
+              small_text);
   }
 
   const Lens& lens_;

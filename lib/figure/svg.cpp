@@ -40,6 +40,12 @@ void Svg::circle(double x, double y, double radius, std::string_view attributes)
   element("circle" + attribute("cx", x) + attribute("cy", y) + attribute("r", radius), attributes);
 }
 
+void Svg::ellipse(double x, double y, double half_width, double half_height, std::string_view attributes) {
+  element(
+      "ellipse" + attribute("cx", x) + attribute("cy", y) + attribute("rx", half_width) + attribute("ry", half_height),
+      attributes);
+}
+
 void Svg::path(std::string_view d, std::string_view attributes) {
   element("path d=\"" + std::string(d) + "\"", attributes);
 }

@@ -17,6 +17,7 @@ class Svg {
   /// attributes: as in SVG, 'fill="none" stroke="#888"'.
   void rect(double x, double y, double width, double height, std::string_view attributes);
   void circle(double x, double y, double radius, std::string_view attributes);
+  void ellipse(double x, double y, double half_width, double half_height, std::string_view attributes);
   void path(std::string_view d, std::string_view attributes);
   void text(double x, double y, std::string_view text, std::string_view attributes = {});
 

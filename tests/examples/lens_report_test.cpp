@@ -73,6 +73,7 @@ TEST_F(LensReport, HasNoFocalLengthForAWindowAndFindingsAreNoFailure) {
   EXPECT_EQ(json["afocal"], true);
   EXPECT_TRUE(json["effective_focal_length_mm"].is_null());
   EXPECT_EQ(json["stop_inferred"], true);
+  EXPECT_NE(outcome.err.find("no stop is marked; surface "), std::string::npos) << outcome.err;
   ASSERT_FALSE(json["lint"].empty());
   EXPECT_EQ(json["lint"][0]["kind"], "no_stop");
   EXPECT_FALSE(json["lint"][0]["message"].get<std::string>().empty());
@@ -104,6 +105,101 @@ TEST_F(LensReport, RefusesABadCommandLineInOneLine) {
   expect_failure("lens_report", {file, "--wavelength-nm", "nan"}, "--wavelength-nm: found \"nan\"");
   expect_failure("lens_report", {file, "--wavelength-nm", "0"}, "a finite number above 0");
   expect_failure("lens_report", {file, "--wavelength-nm", "inf"}, "a finite number above 0");
+}
+
+TEST_F(LensReport, ReportsBothSectionsOfALensWithCylinders) {
+  const std::string file = lens("anamorphic_60mm_2x");
+  const auto json = nlohmann::json::parse(run("lens_report", {file, "--json"}).out);
+  EXPECT_EQ(json["meridian"], "y");
+  const auto &x = json["meridians"]["x"], &y = json["meridians"]["y"];
+  // What the patent prints.
+  EXPECT_NEAR(y["effective_focal_length_mm"].get<double>(), 60.55, 0.01);
+  EXPECT_NEAR(x["effective_focal_length_mm"].get<double>(), 31.49, 0.01);
+  for (const auto& [key, value] : y.items()) EXPECT_EQ(json[key], value) << key;
+  const auto compiled = petzval::compile(petzval::read_prescription(file));
+  const auto pupils = petzval::pupils(compiled, 0, petzval::Meridian::x);
+  EXPECT_EQ(x["entrance_pupil_diameter_mm"], pupils.entrance.diameter);
+  EXPECT_EQ(x["f_number"], x["effective_focal_length_mm"].get<double>() / pupils.entrance.diameter);
+
+  const std::string text = run("lens_report", {file}).out;
+  EXPECT_NE(text.find("in the section y-z:\n"), std::string::npos);
+  EXPECT_NE(text.find("in the section x-z:\n"), std::string::npos);
+  EXPECT_NE(text.find("31.4876 mm\n"), std::string::npos);
+
+  const auto round = nlohmann::json::parse(run("lens_report", {lens("cooke_triplet_50mm_f5"), "--json"}).out);
+  EXPECT_TRUE(round["meridians"].is_null());
+  EXPECT_EQ(round["meridian"], "y");
+}
+
+TEST_F(LensReport, StopsDownAndFocuses) {
+  const auto json = nlohmann::json::parse(run("lens_report", {lens("double_gauss_100mm_f1.35"), "--json", "--f-number",
+                                                              "4", "--subject-distance-mm", "1000"})
+                                              .out);
+  EXPECT_NEAR(json["f_number_real"].get<double>(), 4, 1e-9);
+  const auto wide = nlohmann::json::parse(run("lens_report", {lens("double_gauss_100mm_f1.35"), "--json"}).out);
+  EXPECT_GT(json["film_z_mm"].get<double>(), wide["film_z_mm"].get<double>() + 10);
+  expect_failure("lens_report", {lens("double_gauss_100mm_f1.35"), "--f-number", "1"}, "f/1");
+  expect_failure("lens_report", {lens("double_gauss_100mm_f1.35"), "--subject-distance-mm", "15"}, "focus");
+}
+
+TEST_F(LensReport, DrawsFiguresAndAPage) {
+  const std::string file = lens("cooke_triplet_50mm_f5");
+  const auto outcome = run("lens_report", {file, "--out", path("out")});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const auto written = lines(outcome.out);
+  const std::vector<std::string> names{"layout.svg", "spots.svg", "footprints.svg", "focus.svg", "illumination.svg"};
+  ASSERT_EQ(written.size(), names.size() + 1);
+  const std::string page = read(path("out/cooke_triplet_50mm_f5.html"));
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    EXPECT_EQ(written[i], path("out/cooke_triplet_50mm_f5_" + names[i]));
+    const std::string svg = read(written[i]);
+    EXPECT_TRUE(svg.starts_with("<svg")) << names[i];
+    EXPECT_NE(page.find(svg), std::string::npos) << names[i] << " is in the page";
+  }
+  // Its fields are the axis, 0.7 and 1 of the declared 20 degrees; the page names its source and its lint.
+  for (const char* field : {"field 0\u00b0", "field 14\u00b0", "field 20\u00b0"}) {
+    EXPECT_NE(page.find(field), std::string::npos) << field;
+  }
+  EXPECT_NE(page.find("textbook Cooke triplet"), std::string::npos);
+  EXPECT_NE(page.find("Questions to the table"), std::string::npos);
+  EXPECT_EQ(page.find("href"), std::string::npos) << "it needs no other file";
+
+  run("lens_report", {file, "--out", path("again")});
+  EXPECT_EQ(read(path("again/cooke_triplet_50mm_f5.html")), page);
+}
+
+TEST_F(LensReport, DrawsTheFieldsAskedForAndBothSections) {
+  const auto outcome = run("lens_report", {lens("anamorphic_60mm_2x"), "--out", path("out"), "--field-deg", "3,6",
+                                           "--wavelength-nm", "550", "--f-number", "8"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_NE(read(path("out/anamorphic_60mm_2x_layout.svg")).find("Section y-z"), std::string::npos);
+  EXPECT_NE(read(path("out/anamorphic_60mm_2x_layout_x.svg")).find("Section x-z"), std::string::npos);
+  const std::string spots = read(path("out/anamorphic_60mm_2x_spots.svg"));
+  EXPECT_NE(spots.find("field 6\u00b0"), std::string::npos);
+  EXPECT_EQ(spots.find("field 0\u00b0"), std::string::npos);
+  EXPECT_NE(spots.find("f/7.99,"), std::string::npos);  // f/8 at the d line
+  EXPECT_NE(spots.find("550 nm"), std::string::npos);
+  EXPECT_EQ(spots.find("656"), std::string::npos);
+}
+
+TEST_F(LensReport, DrawsALensThatLimitsNothing) {
+  std::string unlimited = two_planes;
+  for (std::size_t at; (at = unlimited.find("\"semi_diameter\": 10.0")) != std::string::npos;) {
+    unlimited.replace(at, 21, "\"semi_diameter\": null");
+  }
+  write("open.json", unlimited);
+  const auto outcome = run("lens_report", {path("open.json"), "--out", path("out")});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(lines(outcome.out).size(), 2u);  // the layout and the page
+}
+
+TEST_F(LensReport, RefusesFieldsWithoutFigures) {
+  const std::string file = lens("cooke_triplet_50mm_f5");
+  expect_failure("lens_report", {file, "--field-deg", "5"}, "--out");
+  expect_failure("lens_report", {file, "--out", path("out"), "--json"}, "--json");
+  expect_failure("lens_report", {file, "--out", path("out"), "--field-deg", "200"}, "200 degrees");
+  write("taken", "");
+  expect_failure("lens_report", {file, "--out", path("taken")}, "taken");
 }
 
 TEST_F(LensReport, EveryProgramExplainsItself) {

@@ -89,6 +89,16 @@ TEST(SpotFigure, SaysWhereThereIsNothing) {
   EXPECT_EQ(svg.find("inf "), std::string::npos);
 }
 
+TEST(SpotFigure, OfAShutStopHasNoAiryCircle) {
+  const std::array wavelengths{587.5618};
+  const Lens lens = with_semi_diameter(lens_of("double_gauss_100mm_f1.35", wavelengths), 5, 0);
+  const std::array fields{0.0};
+  const std::string svg = spot_figure(lens, spot_diagram(lens, -infinity, fields, 256));
+  EXPECT_EQ(count(svg, "no rays"), 1u);
+  EXPECT_EQ(count(svg, "Airy"), 0u);
+  EXPECT_EQ(count(svg, "inf "), 0u);
+}
+
 TEST(SpotFigure, OfAPerfectLensShowsTheAiryCircle) {
   const std::array wavelengths{587.5618};
   const Lens lens = lens_of("analytic_plano_hyperbolic_100mm", wavelengths);

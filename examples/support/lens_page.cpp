@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lens_page.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <string_view>
+#include <utility>
+
+#include "petzval/core/text.hpp"
+#include "petzval/core/units.hpp"
+#include "petzval/figure/focus_figure.hpp"
+#include "petzval/figure/footprint_figure.hpp"
+#include "petzval/figure/illumination_figure.hpp"
+#include "petzval/figure/layout_figure.hpp"
+#include "petzval/figure/spot_figure.hpp"
+#include "petzval/focus/focus.hpp"
+#include "petzval/psf/spot.hpp"
+
+namespace examples {
+namespace {
+
+/// Of the design: as declared, or by the image's diagonal, or 10 degrees where the source says nothing.
+double half_field_deg(const Report& r) {
+  const petzval::Prescription& p = r.loaded.prescription;
+  if (p.half_field_deg) return *p.half_field_deg;
+  const double focal_length = std::abs(r.main().first_order.effective_focal_length);
+  if (p.image_diagonal_mm && std::isfinite(focal_length)) {
+    return std::round(100 * petzval::degrees(std::atan(*p.image_diagonal_mm / 2 / focal_length))) / 100;
+  }
+  return 10;
+}
+
+std::vector<double> fields_rad(const Report& r, const PageOptions& options) {
+  std::vector<double> fields = options.field_deg;
+  if (fields.empty()) {
+    const double half = half_field_deg(r);
+    // 0.7 as half of the picture's area lies within it, rounded to three digits so that captions stay short.
+    fields = {0, half};
+    const double power = std::pow(10, std::floor(std::log10(0.7 * half)) - 2);
+    if (half > 0) fields.insert(fields.begin() + 1, std::round(0.7 * half / power) * power);
+  }
+  for (double& field : fields) field = petzval::radians(field);
+  return fields;
+}
+
+std::string escaped(std::string_view text) {
+  std::string result;
+  for (const char c : text) {
+    switch (c) {
+      case '&': result += "&amp;"; break;
+      case '<': result += "&lt;"; break;
+      case '>': result += "&gt;"; break;
+      default: result += c;
+    }
+  }
+  return result;
+}
+
+constexpr std::string_view style =
+    R"(  body { margin: 0 auto; max-width: 62rem; padding: 2rem 1.5rem 4rem; font: 16px/1.55 system-ui, sans-serif;
+         color: #1d2026; background: #fbfbfa; }
+  h1 { font-size: 1.8rem; margin: 0 0 .3rem; }
+  h2 { font-size: 1.2rem; margin: 2.6rem 0 .4rem; border-top: 1px solid #dcdcd8; padding-top: 1.2rem; }
+  .lead, figcaption { color: #565b66; max-width: 46rem; }
+  figure { margin: .8rem 0 0; }
+  figure svg { display: block; max-width: 100%; height: auto; border: 1px solid #dcdcd8; background: #fff; }
+  figcaption { font-size: .93rem; margin-top: .5rem; }
+  .scroll { overflow-x: auto; }
+  table { border-collapse: collapse; font-size: .88rem; line-height: 1.35; }
+  th, td { text-align: left; vertical-align: top; padding: .25rem .8rem .25rem 0; border-bottom: 1px solid #e6e6e2; }
+  td.number, th.number { text-align: right; font-variant-numeric: tabular-nums; }
+)";
+
+/// Numbers of the same kind side by side, one column a meridian.
+void first_order_table(std::ostream& html, const Report& r) {
+  html << "<table>\n";
+  if (r.meridians.size() > 1) {
+    html << "<tr><th></th>";
+    for (const auto& m : r.meridians) html << "<th class=\"number\">" << section_name(m.meridian) << "</th>";
+    html << "<th></th></tr>\n";
+  }
+  for (const Entry& entry : r.main().entries) {
+    html << "<tr><td>" << entry.label << "</td>";
+    for (const auto& m : r.meridians) {
+      const auto same =
+          std::ranges::find_if(m.entries, [&](const Entry& other) { return std::string_view(other.key) == entry.key; });
+      html << "<td class=\"number\">" << (same == m.entries.end() ? "" : in_words(same->value)) << "</td>";
+    }
+    html << "<td>" << entry.unit << "</td></tr>\n";
+  }
+  html << "<tr><td>film, z</td><td class=\"number\">" << in_words(r.loaded.lens.film_z()) << "</td>"
+       << (r.meridians.size() > 1 ? "<td></td>" : "") << "<td>mm</td></tr>\n</table>\n";
+}
+
+void surface_table(std::ostream& html, const Report& r) {
+  const petzval::Prescription& p = r.loaded.prescription;
+  html << "<div class=\"scroll\"><table>\n<tr><th class=\"number\">surface</th><th class=\"number\">radius</th>"
+          "<th class=\"number\">thickness</th><th class=\"number\">n<sub>d</sub></th><th class=\"number\">V<sub>d</sub>"
+          "</th><th>glass</th><th class=\"number\">semi-diameter</th><th></th></tr>\n";
+  const auto cell = [](const std::string& words) { return "<td class=\"number\">" + words + "</td>"; };
+  for (std::size_t i = 0; i < p.surfaces.size(); ++i) {
+    const petzval::SurfaceRow& row = p.surfaces[i];
+    const petzval::LensSurface& compiled = r.loaded.lens.surfaces()[i];
+    std::string remarks;
+    const auto remark = [&](const std::string& words) { remarks += (remarks.empty() ? "" : ", ") + words; };
+    if (row.stop) remark("stop");
+    if (row.mirror) remark("mirror");
+    if (row.curved_in != petzval::Section::both) {
+      remark(std::string("cylinder, curved in ") + (row.curved_in == petzval::Section::x ? "x" : "y"));
+    }
+    if (row.conic != 0) remark("conic " + petzval::number(row.conic, 6));
+    if (!row.aspheric.empty()) remark("asphere of order " + std::to_string(row.aspheric.back().order));
+    if (row.inner_semi_diameter) remark("hole " + petzval::number(*row.inner_semi_diameter, 5));
+    html << "<tr>" << cell(std::to_string(i)) << cell(row.radius == 0 ? "plane" : petzval::number(row.radius, 8))
+         << cell(petzval::number(row.thickness, 7)) << cell(row.medium.nd == 1 ? "" : petzval::number(row.medium.nd, 7))
+         << cell(row.medium.vd ? petzval::number(*row.medium.vd, 5) : "") << "<td>"
+         << escaped(row.medium.glass.value_or("")) << "</td>"
+         << cell(std::isfinite(compiled.semi_diameter) ? petzval::number(compiled.semi_diameter, 5) : "unlimited")
+         << "<td>" << remarks << "</td></tr>\n";
+  }
+  html << "</table></div>\n";
+}
+
+void sources(std::ostream& html, const petzval::Prescription& p) {
+  html << "<table>\n";
+  const auto line = [&](const char* label, const std::string& words) {
+    if (!words.empty()) html << "<tr><td>" << label << "</td><td>" << escaped(words) << "</td></tr>\n";
+  };
+  line("design", p.source_design);
+  line("numbers from", p.source_numbers);
+  line("semi-diameters", p.semi_diameters.value_or(""));
+  line("size of the stop", p.stop_size.value_or(""));
+  line("film", p.image_distance.value_or(""));
+  line("glass names", p.glass_names.value_or(""));
+  line("notes", p.notes.value_or(""));
+  html << "</table>\n";
+}
+
+}  // namespace
+
+std::vector<LensFigure> lens_figures(const Report& r, const PageOptions& options) {
+  const petzval::Lens& lens = r.loaded.lens;
+  const double subject_z = -options.subject_mm;
+  std::vector<LensFigure> result;
+  const auto add = [&](const char* name, const char* title, const char* caption, std::string svg) {
+    result.push_back({name, title, caption, std::move(svg)});
+  };
+  const bool limited = r.main().pupils.has_value();
+  const std::vector<double> fields = limited ? fields_rad(r, options) : std::vector<double>();
+
+  add("layout", "The lens",
+      "Follow one colour from the left: its rays come from one far point and should meet in one point of the film. "
+      "Where a field's rays do not fill the stop from tick to tick, rims cut the pupil and the corner darkens.",
+      petzval::layout_figure(lens, subject_z, fields));
+  if (!lens.rotationally_symmetric()) {
+    add("layout_x", "The lens, in the other section",
+        "The same lens cut along x: cylinders are curved in one of the sections only, so that it has another focal "
+        "length here.",
+        petzval::layout_figure(lens, subject_z, fields, {.section = petzval::Meridian::x}));
+  }
+  if (!limited) return result;
+
+  const petzval::Lens colours =
+      petzval::with_film(stopped_like(compiled_for(r.loaded, options.wavelengths_nm), lens), lens.film_z());
+  add("spots", "Spots",
+      "Where the rays of a point meet the film. Compare the spot with the dashed Airy circle: within it, diffraction "
+      "decides. A comet is coma, a line or a cross astigmatism, colours apart are lateral colour.",
+      petzval::spot_figure(colours, petzval::spot_diagram(colours, subject_z, fields)));
+  add("footprints", "Pupils",
+      "The openings through which the film sees each point. The more of the dashed circle is missing, the darker the "
+      "corner, and the shape is that of the blur of bright points out of focus there.",
+      petzval::footprint_figure(lens, subject_z, fields));
+  add("focus", "Focus",
+      "How large the spots are while the film moves. Minima apart from each other are curvature of field; a high, flat "
+      "minimum is an aberration that no focusing removes.",
+      petzval::focus_figure(colours, subject_z, fields));
+  const double farthest = *std::ranges::max_element(fields, {}, [](double f) { return std::abs(f); });
+  if (farthest != 0) {
+    add("illumination", "Brightness",
+        "Light on the film from the middle to the edge of the field. Below cos\u2074 the rims vignette; above it the "
+        "pupil grows with the field, as in fisheyes and retrofocus lenses.",
+        petzval::illumination_figure(lens, subject_z, std::abs(farthest)));
+  }
+  return result;
+}
+
+std::string lens_page(const Report& r, const std::vector<LensFigure>& figures) {
+  const petzval::Lens& lens = r.loaded.lens;
+  const std::string name = escaped(lens.name());
+  std::ostringstream html;
+  html.imbue(std::locale::classic());
+  html << "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+          "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>"
+       << name << "</title>\n<style>\n"
+       << style << "</style>\n</head>\n<body>\n<h1>" << name << "</h1>\n<p class=\"lead\">"
+       << escaped(r.loaded.prescription.source_design) << "</p>\n";
+  for (const LensFigure& figure : figures) {
+    html << "<h2>" << figure.title << "</h2>\n<figure>\n"
+         << figure.svg << "<figcaption>" << figure.caption << "</figcaption>\n</figure>\n";
+  }
+  html << "<h2>First order</h2>\n<p class=\"lead\">At " << petzval::number(lens.wavelengths_nm()[0])
+       << " nm. Stop: " << stop_in_words(r.main().pupils) << ". z counts from the first vertex towards the film.</p>\n";
+  first_order_table(html, r);
+  html << "<h2>Questions to the table</h2>\n";
+  if (r.findings.empty()) html << "<p class=\"lead\">None: what it declares is what it is.</p>\n";
+  if (!r.findings.empty()) {
+    html << "<ul>\n";
+    for (const petzval::Finding& finding : r.findings) html << "<li>" << escaped(finding.message) << "</li>\n";
+    html << "</ul>\n";
+  }
+  html << "<h2>Table</h2>\n<p class=\"lead\">Millimetres.</p>\n";
+  surface_table(html, r);
+  html << "<h2>Sources</h2>\n";
+  sources(html, r.loaded.prescription);
+  html << "</body>\n</html>\n";
+  return std::move(html).str();
+}
+
+}  // namespace examples

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "lens_report.hpp"
+
+namespace examples {
+
+/// What the figures of a report show.
+struct PageOptions {
+  std::vector<double> field_deg;  ///< empty: the axis, 0.7 and 1 of the declared half field
+  double subject_mm = std::numeric_limits<double>::infinity();  ///< from the front vertex
+  std::vector<double> wavelengths_nm;                           ///< of the spots and the focus curve
+};
+
+struct LensFigure {
+  std::string name;  ///< "layout"; its file is LENS_layout.svg
+  std::string title, caption;
+  std::string svg;
+};
+
+/// The figures of a lens. Where nothing limits the beam only the layout, without rays.
+/// Throws petzval::Error for fields and subjects that the lens cannot look at.
+std::vector<LensFigure> lens_figures(const Report& report, const PageOptions& options);
+
+/// One page with the figures in it, the numbers, the table and where it comes from. It needs no other file.
+std::string lens_page(const Report& report, const std::vector<LensFigure>& figures);
+
+}  // namespace examples

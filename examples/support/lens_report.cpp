@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lens_report.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iomanip>
+#include <locale>
+#include <sstream>
+#include <utility>
+
+#include "petzval/core/text.hpp"
+
+namespace examples {
+namespace {
+
+MeridianReport in_meridian(const petzval::Lens& lens, petzval::Meridian meridian) {
+  MeridianReport r{meridian, petzval::first_order(lens, 0, meridian), std::nullopt, {}};
+  const petzval::FirstOrder& first = r.first_order;
+  r.entries = {{"effective_focal_length_mm", "effective focal length", "mm", first.effective_focal_length},
+               {"back_focal_distance_mm", "back focal distance (last vertex to rear focal point)", "mm",
+                first.back_focal_distance},
+               {"front_focal_distance_mm", "front focal distance (first vertex to front focal point)", "mm",
+                first.front_focal_distance},
+               {"front_principal_z_mm", "front principal plane, z", "mm", first.front_principal_z},
+               {"rear_principal_z_mm", "rear principal plane, z", "mm", first.rear_principal_z}};
+
+  // Pupils are images of the rim that limits the beam: without one there are none.
+  if (petzval::has_pupils(lens)) {
+    r.pupils = petzval::pupils(lens, 0, meridian);
+    const petzval::Pupil &entrance = r.pupils->entrance, &exit = r.pupils->exit;
+    r.entries.insert(r.entries.end(),
+                     {{"entrance_pupil_z_mm", "entrance pupil, z", "mm", entrance.z},
+                      {"entrance_pupil_diameter_mm", "entrance pupil, diameter", "mm", entrance.diameter},
+                      {"exit_pupil_z_mm", "exit pupil, z", "mm", exit.z},
+                      {"exit_pupil_diameter_mm", "exit pupil, diameter", "mm", exit.diameter}});
+    if (meridian == petzval::main_meridian(lens)) {
+      r.entries.insert(r.entries.end(), {{"f_number", "f-number, paraxial", "", petzval::paraxial_f_number(lens)},
+                                         {"f_number_real", "f-number by the exact ray to the rim of the stop", "",
+                                          petzval::real_f_number(lens)}});
+    } else {
+      r.entries.push_back(
+          {"f_number", "f-number, paraxial", "", std::abs(first.effective_focal_length) / entrance.diameter});
+    }
+  }
+  r.entries.push_back({"petzval_sum_per_mm", "Petzval sum", "1/mm", first.petzval_sum});
+  return r;
+}
+
+/// The numbers of one meridian; null for what it has not.
+Json numbers(const MeridianReport& r) {
+  Json json{{"afocal", r.first_order.afocal}};
+  for (const char* key : {"entrance_pupil_z_mm", "entrance_pupil_diameter_mm", "exit_pupil_z_mm",
+                          "exit_pupil_diameter_mm", "f_number", "f_number_real"}) {
+    json[key] = nullptr;
+  }
+  for (const Entry& entry : r.entries) json[entry.key] = finite_or_null(entry.value);
+  return json;
+}
+
+}  // namespace
+
+Report report(LoadedLens loaded) {
+  const petzval::Lens& lens = loaded.lens;
+  const petzval::Meridian main = petzval::main_meridian(lens);
+  std::vector<MeridianReport> meridians{in_meridian(lens, main)};
+  if (!lens.rotationally_symmetric()) {
+    meridians.push_back(in_meridian(lens, main == petzval::Meridian::y ? petzval::Meridian::x : petzval::Meridian::y));
+  }
+  auto findings = petzval::lint(loaded.prescription);
+  return {std::move(loaded), std::move(meridians), std::move(findings)};
+}
+
+Json to_json(const Report& r) {
+  const petzval::Lens& lens = r.loaded.lens;
+  const auto& pupils = r.main().pupils;
+  Json json{{"name", lens.name()},
+            {"dispersion", petzval::name(lens.dispersion())},
+            {"wavelength_nm", lens.wavelengths_nm()[0]},
+            {"stop_surface", pupils ? Json(pupils->stop) : Json(nullptr)},
+            {"stop_inferred", pupils && pupils->stop_inferred}};
+  json.update(numbers(r.main()));
+  json["film_z_mm"] = finite_or_null(lens.film_z());
+  json["meridian"] = r.main().meridian == petzval::Meridian::y ? "y" : "x";
+  json["meridians"] = nullptr;
+  if (r.meridians.size() > 1) {
+    json["meridians"] = Json::object();
+    for (const MeridianReport& meridian : r.meridians) {
+      json["meridians"][meridian.meridian == petzval::Meridian::y ? "y" : "x"] = numbers(meridian);
+    }
+  }
+  json["lint"] = Json::array();
+  for (const petzval::Finding& finding : r.findings) {
+    json["lint"].push_back({{"kind", petzval::name(finding.kind)},
+                            {"surface", finding.surface ? Json(*finding.surface) : Json(nullptr)},
+                            {"found", finite_or_null(finding.found)},
+                            {"wanted", finite_or_null(finding.wanted)},
+                            {"message", finding.message}});
+  }
+  return json;
+}
+
+const char* section_name(petzval::Meridian meridian) { return meridian == petzval::Meridian::y ? "y-z" : "x-z"; }
+
+std::string stop_in_words(const std::optional<petzval::Pupils>& pupils) {
+  if (!pupils) return "none: nothing limits the beam";
+  return "surface " + std::to_string(pupils->stop) + (pupils->stop_inferred ? " (inferred: none is marked)" : "");
+}
+
+std::string in_words(double value) {
+  if (std::isinf(value)) return value > 0 ? "infinite" : "-infinite";
+  std::ostringstream text;
+  text.imbue(std::locale::classic());
+  text << (value != 0 && (std::abs(value) < 0.01 || std::abs(value) >= 1e7) ? std::scientific : std::fixed)
+       << std::setprecision(4) << value;
+  return text.str();
+}
+
+std::string to_text(const Report& r) {
+  const petzval::Lens& lens = r.loaded.lens;
+  std::ostringstream text;
+  text << lens.name() << '\n'
+       << lens.surface_count() << (lens.surface_count() == 1 ? " surface" : " surfaces")
+       << ", stop: " << stop_in_words(r.main().pupils) << "\nat " << petzval::number(lens.wavelengths_nm()[0])
+       << " nm, dispersion: " << petzval::name(lens.dispersion())
+       << "; z counts from the first vertex towards the film\n";
+  const auto line = [&](const char* label, double value, const char* unit) {
+    text << "  " << std::left << std::setw(58) << label << std::right << std::setw(14) << in_words(value)
+         << (*unit ? " " : "") << unit << '\n';
+  };
+  for (const MeridianReport& meridian : r.meridians) {
+    text << '\n';
+    if (r.meridians.size() > 1) text << "in the section " << section_name(meridian.meridian) << ":\n";
+    for (const Entry& entry : meridian.entries) line(entry.label, entry.value, entry.unit);
+    if (&meridian == &r.main()) line("film, z", lens.film_z(), "mm");
+    if (meridian.first_order.afocal) {
+      text << "\nThe lens is afocal: it has no focal length and no focal or principal points.\n";
+    }
+  }
+  text << "\nlint: " << (r.findings.empty() ? "nothing to ask about" : "") << '\n';
+  for (const petzval::Finding& finding : r.findings) {
+    text << "  " << petzval::name(finding.kind) << ": " << finding.message << '\n';
+  }
+  return text.str();
+}
+
+}  // namespace examples

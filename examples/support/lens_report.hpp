@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "files.hpp"
+#include "load_lens.hpp"
+#include "petzval/lint/lint.hpp"
+#include "petzval/paraxial/first_order.hpp"
+#include "petzval/pupil/pupil.hpp"
+
+namespace examples {
+
+/// One number of the report: its key in the JSON, and how the table says it.
+struct Entry {
+  const char* key;
+  const char* label;
+  const char* unit;
+  double value;
+};
+
+/// What a lens is to first order in one meridian.
+struct MeridianReport {
+  petzval::Meridian meridian;
+  petzval::FirstOrder first_order;
+  std::optional<petzval::Pupils> pupils;  ///< none where nothing limits the beam
+  std::vector<Entry> entries;
+};
+
+struct Report {
+  LoadedLens loaded;
+  std::vector<MeridianReport> meridians;  ///< the main one first; one only in a lens of revolution
+  std::vector<petzval::Finding> findings;
+
+  const MeridianReport& main() const { return meridians.front(); }
+};
+
+Report report(LoadedLens loaded);
+
+Json to_json(const Report& report);
+std::string to_text(const Report& report);
+
+/// "y-z" or "x-z".
+const char* section_name(petzval::Meridian meridian);
+/// "surface 5", and whether the table says so.
+std::string stop_in_words(const std::optional<petzval::Pupils>& pupils);
+/// Fixed decimals as an optician reads them; small sums in scientific notation.
+std::string in_words(double value);
+
+}  // namespace examples

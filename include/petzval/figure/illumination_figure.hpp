@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "petzval/core/export.hpp"
+#include "petzval/lens/lens.hpp"
+
+namespace petzval {
+
+/// Relative illumination of the film against the field angle, from the axis to a field, as SVG text; cos^4 of the angle
+/// stands beside it. At the compiled wavelength nearest to the d line.
+///
+/// subject_z: lens frame, mm, -inf at infinity. Throws Error where relative_illumination does, and for a field that is
+/// not above 0.
+PETZVAL_API std::string illumination_figure(const Lens& lens, double subject_z, double field_rad);
+
+}  // namespace petzval

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "svg.hpp"
+
+namespace petzval::detail {
+
+/// One axis of a diagram: what it spans, and its title with the unit.
+struct Axis {
+  double from = 0, to = 1;
+  std::string title;
+};
+
+/// A diagram: a frame with ticks at round values, and curves cut off at the frame.
+class Axes {
+ public:
+  using Point = std::pair<double, double>;
+
+  /// x, y: of the frame's upper left corner, px. Draws frame, grid, ticks and titles, which take 64 px to the left and
+  /// 40 px below.
+  Axes(Svg& svg, double x, double y, double width, double height, Axis horizontal, Axis vertical);
+
+  double x(double value) const { return x_ + (value - across_.from) / (across_.to - across_.from) * width_; }
+  double y(double value) const { return y_ + height_ - (value - up_.from) / (up_.to - up_.from) * height_; }
+
+  /// A line through points, as far as it lies within the frame. Points that are not finite interrupt it.
+  void curve(std::span<const Point> points, std::string_view attributes);
+
+  /// Vertical lines through the whole frame, with names above it: a row of 15 px for each, the leftmost on top, so that
+  /// no line runs through a name. Marks outside are left out.
+  struct Mark {
+    double value = 0;
+    std::string_view name, attributes;
+  };
+  void marks(std::vector<Mark> marks);
+
+ private:
+  /// Of the stretch from a to b, 0 to 1, what lies within the frame; nothing where from > to.
+  struct Part {
+    double from = 0, to = 1;
+  };
+  Part within(const Point& a, const Point& b) const;
+
+  Svg& svg_;
+  double x_, y_, width_, height_;
+  Axis across_, up_;
+};
+
+}  // namespace petzval::detail

@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "petzval/figure/focus_figure.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "axes.hpp"
+#include "petzval/core/error.hpp"
+#include "petzval/core/text.hpp"
+#include "petzval/paraxial/first_order.hpp"
+#include "petzval/psf/spot.hpp"
+#include "sheet.hpp"
+
+namespace petzval {
+namespace {
+
+using detail::Svg;
+
+constexpr double width = 960, left = 78, right = 24, top = 140, plot_height = 340, row = 18;
+constexpr std::uint32_t rays = 4096;
+
+/// Mean square radius of a spot over film positions: least + steepness (z - best)^2.
+struct Parabola {
+  double best = 0, least = 0, steepness = 0;
+
+  double rms(double z) const { return std::sqrt(std::max(0.0, least + steepness * (z - best) * (z - best))); }
+  double least_rms() const { return std::sqrt(std::max(0.0, least)); }
+};
+
+/// Through the values at z - step, z and z + step. Nothing where it has no bottom: rays parallel, or none.
+std::optional<Parabola> parabola(const std::array<double, 3>& values, double z, double step) {
+  const double bend = (values[0] - 2 * values[1] + values[2]) / 2, slope = (values[2] - values[0]) / 2;
+  if (!(bend > 0)) return std::nullopt;
+  const double shift = -slope / (2 * bend);
+  return Parabola{z + shift * step, values[1] - bend * shift * shift, bend / (step * step)};
+}
+
+std::vector<std::optional<Parabola>> parabolas(const Lens& lens, double subject_z, std::span<const double> fields_rad) {
+  const double step = 0.01 * std::max(std::abs(lens.film_z() - lens.surfaces().back().vertex_z), 1e-3);
+  const std::array shifted{with_film(lens, lens.film_z() - step), lens, with_film(lens, lens.film_z() + step)};
+  std::vector<std::optional<Parabola>> result;
+  for (const double field : fields_rad) {
+    std::vector<PupilSampler> samplers;
+    for (std::size_t w = 0; w < lens.wavelengths_nm().size(); ++w) {
+      samplers.emplace_back(pupil_outline(lens, {field, subject_z}, w));
+    }
+    std::array<double, 3> squares{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      std::vector<FilmHits> hits;
+      for (const PupilSampler& sampler : samplers) hits.push_back(trace_bundle(shifted[k], sampler, rays));
+      const double rms = spot_size(hits).rms_radius;
+      squares[k] = rms * rms;
+    }
+    result.push_back(parabola(squares, lens.film_z(), step));
+  }
+  return result;
+}
+
+/// Of several, each with the same weight.
+std::optional<Parabola> mean(const std::vector<std::optional<Parabola>>& fields) {
+  double count = 0, steepness = 0, moment = 0;
+  for (const auto& f : fields) {
+    if (f) ++count, steepness += f->steepness, moment += f->steepness * f->best;
+  }
+  if (count == 0) return std::nullopt;
+  const double best = moment / steepness;
+  double least = 0;
+  for (const auto& f : fields) {
+    if (f) least += f->rms(best) * f->rms(best);
+  }
+  return Parabola{best, least / count, steepness / count};
+}
+
+class Figure {
+ public:
+  Figure(const Lens& lens, double subject_z, std::span<const double> fields_rad)
+      : lens_(lens), subject_z_(subject_z), fields_(fields_rad) {
+    std::vector<double> with_axis(fields_rad.begin(), fields_rad.end());
+    with_axis.push_back(0);
+    curves_ = parabolas(lens, subject_z, with_axis);
+    axis_ = curves_.back();
+    curves_.pop_back();
+    mean_ = mean(curves_);
+    const double paraxial = paraxial_image_z(lens, subject_z, lens.central_wavelength(), main_meridian(lens));
+    paraxial_ = std::isfinite(paraxial);
+    zero_ = paraxial_ ? paraxial : lens.film_z();
+    measure();
+  }
+
+  std::string draw() {
+    const double rows = static_cast<double>(fields_.size() + (several() ? 1 : 0));
+    Svg svg(width, top + plot_height + 62 + row * rows + 34);
+    detail::draw_head(svg, lens_, "Blur against film position", subject_z_, lens_.central_wavelength());
+    const bool micrometres = highest_ < 0.5;
+    const double unit = micrometres ? 1e3 : 1;
+    detail::Axes axes(svg, left, top, width - left - right, plot_height,
+                      {from_ - zero_, to_ - zero_,
+                       std::string("film shift from ") + (paraxial_ ? "paraxial focus" : "its place") + " (mm)"},
+                      {0, unit * highest_, std::string("RMS radius (") + (micrometres ? "\u00b5m)" : "mm)")});
+
+    constexpr std::string_view film = "fill=\"none\" stroke=\"#111\" stroke-width=\"1.4\"";
+    constexpr std::string_view thin = "fill=\"none\" stroke=\"#777\" stroke-width=\"0.8\"";
+    constexpr std::string_view dashed = "fill=\"none\" stroke=\"#777\" stroke-width=\"0.8\" stroke-dasharray=\"5 3\"";
+    std::vector<detail::Axes::Mark> marks{{lens_.film_z() - zero_, "film", film}};
+    if (paraxial_) marks.push_back({0, "paraxial focus", thin});
+    if (axis_) marks.push_back({axis_->best - zero_, "least RMS on the axis", dashed});
+    if (several() && mean_) marks.push_back({mean_->best - zero_, "least mean of the fields", dashed});
+    axes.marks(std::move(marks));
+
+    const auto curve = [&](const Parabola& p, const std::string& stroke) {
+      constexpr int steps = 240;
+      std::vector<std::pair<double, double>> points;
+      for (int k = 0; k <= steps; ++k) {
+        const double z = from_ + (to_ - from_) * k / steps;
+        points.push_back({z - zero_, unit * p.rms(z)});
+      }
+      axes.curve(points, "fill=\"none\" stroke-linejoin=\"round\" " + stroke);
+    };
+    double y = top + plot_height + 62;
+    const auto entry = [&](std::string_view colour, const std::string& name, const std::optional<Parabola>& p) {
+      detail::draw_key(
+          svg, left, y, colour,
+          name + (p ? ":  least RMS " + detail::length_text(p->least_rms()) + " at " + signed_mm(p->best - zero_) +
+                          ",  " + detail::length_text(p->rms(lens_.film_z())) + " on the film"
+                    : ":  no focus, no ray passes"));
+      y += row;
+    };
+    for (std::size_t i = 0; i < fields_.size(); ++i) {
+      const std::string colour(detail::field_colour(i));
+      if (curves_[i]) curve(*curves_[i], "stroke=\"" + colour + "\" stroke-width=\"1.6\"");
+      entry(colour, "field " + detail::field_text(fields_[i]), curves_[i]);
+    }
+    if (several()) {
+      if (mean_) curve(*mean_, "stroke=\"#111\" stroke-width=\"1.6\" stroke-dasharray=\"7 3\"");
+      entry("#111", "mean of the fields (dashed)", mean_);
+    }
+    svg.text(detail::sheet_margin, y + 12,
+             "RMS radius about the centroid, all of the vignetted pupil by area" + wavelengths_in_words() +
+                 ". Mean: root of the mean square, fields with equal weight.",
+             detail::small_text);
+    return std::move(svg).finish();
+  }
+
+ private:
+  bool several() const { return fields_.size() > 1; }
+
+  std::string wavelengths_in_words() const {
+    const auto count = lens_.wavelengths_nm().size();
+    return count == 1 ? "" : ", " + std::to_string(count) + " wavelengths with equal weight";
+  }
+
+  static std::string signed_mm(double mm) {
+    return (mm >= 0 ? "+" : "\u2212") + number(std::abs(mm) < 5e-7 ? 0.0 : std::abs(mm), 3) + " mm";
+  }
+
+  /// All that is marked, and some of the curves' flanks around it.
+  void measure() {
+    from_ = to_ = lens_.film_z();
+    const auto take = [&](double z) { from_ = std::min(from_, z), to_ = std::max(to_, z); };
+    if (std::abs(zero_ - lens_.film_z()) < 0.1 * std::abs(lens_.film_z())) take(zero_);
+    for (const auto* p : {&axis_, &mean_}) {
+      if (*p) take((*p)->best);
+    }
+    for (const auto& p : curves_) {
+      if (p) take(p->best);
+    }
+    // At least to where the axial curve is at three times its least, and some depths of focus, 4 lambda N^2: the RMS
+    // radius of a uniform cone grows by 1 / sqrt(8) / N.
+    double pad = 0.25 * (to_ - from_);
+    if (axis_) {
+      const double lambda = lens_.wavelengths_nm()[lens_.central_wavelength()] * 1e-6;
+      pad =
+          std::max({pad, std::sqrt(8 * std::max(axis_->least, 0.0) / axis_->steepness), 2 * lambda / axis_->steepness});
+    }
+    if (!(pad > 0)) pad = 1;
+    from_ -= pad;
+    to_ += pad;
+    for (const auto& p : curves_) {
+      if (p) highest_ = std::max({highest_, 1.3 * p->rms(mean_->best), 1.3 * p->rms(lens_.film_z())});
+    }
+    if (axis_) highest_ = std::max(highest_, 2.5 * axis_->least_rms());
+    if (!(highest_ > 0)) highest_ = 1e-3;
+  }
+
+  const Lens& lens_;
+  double subject_z_;
+  std::span<const double> fields_;
+  std::vector<std::optional<Parabola>> curves_;  // of fields_
+  std::optional<Parabola> axis_, mean_;
+  bool paraxial_ = false;
+  double zero_ = 0;  // of the horizontal axis, lens frame
+  double from_ = 0, to_ = 0, highest_ = 0;
+};
+
+}  // namespace
+
+std::string focus_figure(const Lens& lens, double subject_z, std::span<const double> fields_rad) {
+  if (fields_rad.empty()) throw Error("focus_figure: no fields, wanted at least one");
+  return Figure(lens, subject_z, fields_rad).draw();
+}
+
+}  // namespace petzval

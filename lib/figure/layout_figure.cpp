@@ -1,0 +1,291 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "petzval/figure/layout_figure.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "petzval/core/error.hpp"
+#include "petzval/pupil/pupil.hpp"
+#include "ray_paths.hpp"
+#include "section.hpp"
+#include "sheet.hpp"
+
+namespace petzval {
+namespace {
+
+using detail::LensSection;
+using detail::RayPath;
+using detail::SectionLine;
+using detail::SectionPoint;
+using detail::Svg;
+using detail::svg_number;
+
+constexpr double width = 960, side = 22, top = 64, bottom = 86, tallest = 520;
+
+/// What must be on the paper.
+struct Box {
+  double z_min = 0, z_max = 0, low = 0, high = 0;
+
+  void take(const SectionPoint& p) {
+    z_min = std::min(z_min, p.z);
+    z_max = std::max(z_max, p.z);
+    low = std::min(low, p.height);
+    high = std::max(high, p.height);
+  }
+};
+
+/// From pale to deep as the index goes from 1.4 to 1.95.
+std::string tint(double index) {
+  const double t = std::clamp((index - 1.4) / 0.55, 0.0, 1.0);
+  const auto mixed = [t](double pale, double deep) { return std::to_string(std::lround(pale + t * (deep - pale))); };
+  return "rgb(" + mixed(232, 152) + "," + mixed(243, 190) + "," + mixed(251, 224) + ")";
+}
+
+class Figure {
+ public:
+  Figure(const Lens& lens, double subject_z, std::span<const double> fields_rad, const LayoutOptions& options)
+      : lens_(lens),
+        subject_z_(subject_z),
+        fields_(fields_rad),
+        options_(options),
+        wavelength_(lens.central_wavelength()),
+        rays_(detail::ray_paths(lens, subject_z, fields_rad, options.section, options.rays, wavelength_)),
+        section_(lens, options.section, heights_needed(), wavelength_) {
+    if (has_pupils(lens)) stop_ = pupils(lens, wavelength_, options.section);
+    measure();
+  }
+
+  std::string draw() {
+    const double height = (box_.high - box_.low) * scale_;
+    Svg svg(width, top + height + bottom);
+    detail::draw_head(svg, lens_, options_.section == Meridian::y ? "Section y-z" : "Section x-z", subject_z_,
+                      wavelength_);
+    svg.path("M" + svg_number(side / 2) + " " + svg_number(y(0)) + "H" + svg_number(width - side / 2),
+             "fill=\"none\" stroke=\"#888\" stroke-width=\"0.8\" stroke-dasharray=\"14 3 2 3\"");
+    draw_glass(svg);
+    draw_rays(svg);
+    for (const SectionLine& mirror : section_.mirrors()) {
+      svg.path(path_of(mirror), "fill=\"none\" stroke=\"#333\" stroke-width=\"3.5\"");
+    }
+    draw_stop(svg);
+    svg.path(path_of({{lens_.film_z(), -film_half_}, {lens_.film_z(), film_half_}}),
+             "fill=\"none\" stroke=\"#111\" stroke-width=\"2\"");
+    draw_legend(svg, top + height);
+    return std::move(svg).finish();
+  }
+
+ private:
+  double x(double z) const { return left_ + (z - box_.z_min) * scale_; }
+  double y(double height) const { return top + (box_.high - height) * scale_; }
+
+  std::string path_of(const SectionLine& line, bool closed = false) const {
+    std::string d;
+    for (const SectionPoint& p : line) {
+      d += (d.empty() ? "M" : "L") + svg_number(x(p.z)) + " " + svg_number(y(p.height));
+    }
+    return closed ? d + "z" : d;
+  }
+
+  std::vector<double> heights_needed() const {
+    std::vector<double> result(lens_.surface_count(), 0.0);
+    for (const RayPath& ray : rays_) {
+      for (std::size_t i = 0; i < ray.hits.size(); ++i) result[i] = std::max(result[i], std::abs(ray.hits[i].height));
+    }
+    return result;
+  }
+
+  bool arrives(const RayPath& ray) const {
+    const double way = lens_.film_z() - ray.hits.back().z;
+    return ray.fate == RayFate::transmitted && way * ray.behind.z > 0;
+  }
+
+  SectionPoint on_film(const RayPath& ray) const {
+    const SectionPoint last = ray.hits.back();
+    return {lens_.film_z(), last.height + ray.behind.height / ray.behind.z * (lens_.film_z() - last.z)};
+  }
+
+  /// Where a ray that runs away from the film is let go: its image is virtual.
+  SectionPoint past_lens(const RayPath& ray) const {
+    const SectionPoint last = ray.hits.back();
+    return {last.z + tail_ * ray.behind.z, last.height + tail_ * ray.behind.height};
+  }
+
+  /// The lens and its film first; then how long rays in front of it are, which takes some more paper.
+  void measure() {
+    for (std::size_t i = 0; i < lens_.surface_count(); ++i) {
+      for (const SectionLine& line : section_.surface(i)) {
+        for (const SectionPoint& p : line) {
+          box_.take(p);
+          box_.take({p.z, -p.height});
+        }
+      }
+    }
+    body_half_ = box_.high;
+    box_.take({lens_.film_z(), 0});
+    for (std::size_t field = 0; field < fields_.size(); ++field) {
+      // The ray nearest to the chief ray tells how high the film is: one at the edge may leave almost along the film.
+      const RayPath* nearest = nullptr;
+      for (const RayPath& ray : rays_) {
+        if (ray.field != field || !arrives(ray)) continue;
+        if (!nearest || std::abs(ray.stop_height) < std::abs(nearest->stop_height)) nearest = &ray;
+      }
+      if (nearest) film_half_ = std::max(film_half_, 1.05 * std::abs(on_film(*nearest).height));
+    }
+    film_half_ = std::max(film_half_, 0.05 * std::max(box_.high, 0.3 * (box_.z_max - box_.z_min)));
+    box_.take({lens_.film_z(), film_half_});
+    box_.take({lens_.film_z(), -film_half_});
+    film_and_body_half_ = box_.high;
+    if (stop_) {
+      tick_ = 0.03 * std::max(box_.high - box_.low, 0.3 * (box_.z_max - box_.z_min));
+      const double rim = section_.rim(stop_->stop), z = section_.z(stop_->stop, rim);
+      box_.take({z, rim + tick_});
+      box_.take({z, -rim - tick_});
+    }
+
+    tail_ = 0.12 * std::max(box_.z_max - box_.z_min, box_.high - box_.low);
+    const double z_front = box_.z_min - tail_;
+    for (std::size_t field = 0; field < fields_.size(); ++field) start_rays(field, z_front);
+    for (const SectionPoint& p : starts_) box_.take(p);
+    for (const RayPath& ray : rays_) {
+      if (ray.fate == RayFate::transmitted && !arrives(ray)) box_.take({past_lens(ray).z, 0});
+    }
+    box_.z_max += 0.01 * (box_.z_max - box_.z_min);
+    scale_ = std::min((width - 2 * side) / (box_.z_max - box_.z_min), tallest / (box_.high - box_.low));
+    left_ = (width - (box_.z_max - box_.z_min) * scale_) / 2;
+  }
+
+  /// Rays begin in one plane in front of the lens, or at the subject where that is nearer. A steep field begins on a
+  /// wavefront of its own: such rays come from the side or from behind.
+  void start_rays(std::size_t field, double z_front) {
+    const bool steep = std::abs(fields_[field]) > 0.95;  // rad
+    double wavefront = 0;
+    bool first = true;
+    for (const RayPath& ray : rays_) {
+      if (ray.field != field) continue;
+      const SectionPoint hit = ray.hits.front(), chief = direction(field);
+      const double along = hit.z * chief.z + hit.height * chief.height;
+      wavefront = first ? along : std::min(wavefront, along);
+      first = false;
+    }
+    for (const RayPath& ray : rays_) {
+      if (ray.field != field) continue;
+      const SectionPoint hit = ray.hits.front(), chief = direction(field);
+      const double along = hit.z * chief.z + hit.height * chief.height;
+      const double back =
+          steep ? (along - wavefront + tail_) / (ray.before.z * chief.z + ray.before.height * chief.height)
+                : (hit.z - std::max(z_front, subject_z_)) / ray.before.z;
+      starts_.push_back({hit.z - back * ray.before.z, hit.height - back * ray.before.height});
+    }
+  }
+
+  /// In which the light of a field comes.
+  SectionPoint direction(std::size_t field) const { return {std::cos(fields_[field]), -std::sin(fields_[field])}; }
+
+  void draw_glass(Svg& svg) const {
+    constexpr const char* line = " stroke=\"#3d5a73\" stroke-width=\"1\" stroke-linejoin=\"round\"";
+    const std::size_t count = lens_.surface_count();
+    const double image_index = lens_.index(count, wavelength_);
+    if (image_index > 1.01 && lens_.film_z() > lens_.surfaces()[count - 1].vertex_z) {
+      // Glass, or the eye's humour, up to the film.
+      SectionLine outline = section_.surface(count - 1).front();
+      const double rim = outline.back().height;
+      outline.push_back({lens_.film_z(), rim});
+      outline.push_back({lens_.film_z(), -rim});
+      svg.path(path_of(outline, true), "fill=\"" + tint(image_index) + "\"" + line);
+    }
+    for (const detail::GlassBody& body : section_.bodies()) {
+      std::string d;
+      for (const SectionLine& outline : body.outlines) d += path_of(outline, true);
+      svg.path(d, "fill=\"" + tint(body.index) + "\"" + line);
+    }
+  }
+
+  /// The end of the last stretch of a ray, no higher than the limit: a surface goes on beside its rim on paper only,
+  /// and a ray along the film meets it far away.
+  static SectionPoint cut(const SectionPoint& from, const SectionPoint& to, double limit) {
+    if (std::abs(to.height) <= limit || std::abs(from.height) >= limit) return to;
+    const double t = (std::copysign(limit, to.height) - from.height) / (to.height - from.height);
+    return {from.z + t * (to.z - from.z), std::copysign(limit, to.height)};
+  }
+
+  void draw_rays(Svg& svg) const {
+    for (std::size_t i = 0; i < rays_.size(); ++i) {
+      const RayPath& ray = rays_[i];
+      SectionLine line{starts_[i]};
+      line.insert(line.end(), ray.hits.begin(), ray.hits.end());
+      const bool passes = ray.fate == RayFate::transmitted;
+      if (passes) line.push_back(arrives(ray) ? on_film(ray) : past_lens(ray));
+      line.back() = cut(line[line.size() - 2], line.back(), passes ? film_and_body_half_ : body_half_);
+      svg.path(path_of(line), "fill=\"none\" stroke=\"" + std::string(detail::field_colour(ray.field)) + "\"" +
+                                  (passes ? " stroke-width=\"0.9\"" : " stroke-width=\"0.6\" stroke-opacity=\"0.5\""));
+    }
+  }
+
+  void draw_stop(Svg& svg) const {
+    if (!stop_) return;
+    const double rim = section_.rim(stop_->stop), z = section_.z(stop_->stop, rim);
+    const std::string line = std::string("fill=\"none\" stroke=\"#111\" stroke-width=\"2.2\"") +
+                             (stop_->stop_inferred ? " stroke-dasharray=\"3 2\"" : "");
+    svg.path(path_of({{z, rim}, {z, rim + tick_}}), line);
+    svg.path(path_of({{z, -rim}, {z, -rim - tick_}}), line);
+  }
+
+  void draw_legend(Svg& svg, double y) const {
+    double x = detail::draw_scale_bar(svg, detail::sheet_margin, y + 26, scale_, 160) + 30;
+    for (std::size_t field = 0; field < fields_.size(); ++field) {
+      const bool any = std::ranges::any_of(
+          rays_, [&](const RayPath& ray) { return ray.field == field && ray.fate == RayFate::transmitted; });
+      x = 21 + detail::draw_key(svg, x, y + 26, detail::field_colour(field),
+                                detail::field_text(fields_[field]) + (any ? "" : " (none passes)"));
+    }
+    svg.text(detail::sheet_margin, y + 50,
+             "To scale. " + stop_in_words() + " Upright line: film. Glass: the darker, the higher its index.",
+             detail::small_text);
+    if (!fields_.empty()) {
+      svg.text(detail::sheet_margin, y + 66,
+               "Rays: the chief ray, the outermost that pass and others between. Thin: rays through the stop's rim or "
+               "centre that end at a surface.",
+               detail::small_text);
+    }
+  }
+
+  std::string stop_in_words() const {
+    if (!stop_) return "No stop: nothing limits the beam.";
+    const std::string surface = "surface " + std::to_string(stop_->stop) + ".";
+    return stop_->stop_inferred ? "Dashed ticks: none is marked as stop, the beam is limited by " + surface
+                                : "Ticks: stop, " + surface;
+  }
+
+  const Lens& lens_;
+  double subject_z_;
+  std::span<const double> fields_;
+  LayoutOptions options_;
+  std::size_t wavelength_;
+  std::vector<RayPath> rays_;
+  LensSection section_;
+  std::optional<Pupils> stop_;
+  Box box_;
+  SectionLine starts_;    // of rays_
+  double film_half_ = 0;  // of the line that stands for the film
+  double body_half_ = 0;  // of the lens
+  double film_and_body_half_ = 0;
+  double tick_ = 0;  // length of the stop's
+  double tail_ = 0;  // of rays in front of the lens
+  double scale_ = 1, left_ = 0;
+};
+
+}  // namespace
+
+std::string layout_figure(const Lens& lens, double subject_z, std::span<const double> fields_rad,
+                          const LayoutOptions& options) {
+  if (options.rays < 3 || options.rays > 7) {
+    throw Error("layout_figure: " + std::to_string(options.rays) + " rays a field, wanted 3 to 7");
+  }
+  return Figure(lens, subject_z, fields_rad, options).draw();
+}
+
+}  // namespace petzval

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "petzval/lens/lens.hpp"
+#include "petzval/paraxial/first_order.hpp"
+
+namespace petzval::detail {
+
+/// A point of a section through the axis: z, and the height y (or x) in it. Lens frame, mm.
+struct SectionPoint {
+  double z = 0, height = 0;
+};
+using SectionLine = std::vector<SectionPoint>;
+
+/// One glass body of a lens, from edge to edge: closed lines, one, or two where a hole goes through it.
+struct GlassBody {
+  double index = 1;
+  std::vector<SectionLine> outlines;
+};
+
+/// The cut of a lens by the plane y-z (or x-z) as an optician draws it.
+class LensSection {
+ public:
+  /// needed: for each surface the largest height at which rays come to it, for those without a rim.
+  LensSection(const Lens& lens, Meridian meridian, std::span<const double> needed, std::size_t wavelength);
+
+  /// What lies between two surfaces at which the index changes. Rims of different height are joined as lenses are
+  /// made: a flat ring out from the lower rim, then the cylinder of the higher one; where the ring would cut the other
+  /// surface, a straight edge. Cemented surfaces reach as far as their neighbours.
+  std::vector<GlassBody> bodies() const;
+
+  std::vector<SectionLine> mirrors() const;
+
+  /// The surface itself from its lower rim to its upper; two pieces where it has a hole.
+  std::vector<SectionLine> surface(std::size_t i) const;
+
+  double z(std::size_t surface, double height) const;
+  double rim(std::size_t surface) const { return rims_[surface]; }
+
+ private:
+  struct Edge {
+    double front = 0, back = 0;  ///< heights at which the two surfaces of a body end
+  };
+
+  bool bends(std::size_t i) const;
+  bool glass_behind(std::size_t i) const;
+  double farthest_defined(std::size_t surface, double height) const;
+  SectionLine line(std::size_t surface, double from, double to) const;
+  double gap(std::size_t front, std::size_t back, double height) const;
+  void extend_cemented(const std::vector<std::size_t>& bending);
+  GlassBody body(std::size_t front, std::size_t back, double index) const;
+  SectionLine edge(std::size_t front, std::size_t back, const Edge& edge) const;
+
+  Lens lens_;
+  Meridian meridian_;
+  std::size_t wavelength_;
+  std::vector<double> rims_;
+  std::vector<double> drawn_;  ///< rims, cemented surfaces extended
+};
+
+}  // namespace petzval::detail

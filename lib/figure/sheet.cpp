@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sheet.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "petzval/core/text.hpp"
+#include "petzval/core/units.hpp"
+#include "petzval/paraxial/first_order.hpp"
+#include "petzval/pupil/pupil.hpp"
+
+namespace petzval::detail {
+namespace {
+
+/// Width of small text, near enough to place what follows it.
+double width_of(std::string_view text) { return 6.4 * static_cast<double>(text.size()); }
+
+std::string focal_length_text(const Lens& lens, std::size_t wavelength) {
+  const auto in = [&](Meridian meridian) {
+    const FirstOrder data = first_order(lens, wavelength, meridian);
+    return data.afocal ? std::string("infinite") : length_text(data.effective_focal_length);
+  };
+  return lens.rotationally_symmetric() ? "EFL " + in(Meridian::y)
+                                       : "EFL " + in(Meridian::y) + " in y, " + in(Meridian::x) + " in x";
+}
+
+}  // namespace
+
+double round_length(double x) {
+  const double power = std::pow(10, std::floor(std::log10(x)));
+  return power * (x >= 5 * power ? 5 : x >= 2 * power ? 2 : 1);
+}
+
+std::string length_text(double mm) {
+  const double size = std::abs(mm);
+  if (size >= 9999.5) return number(mm * 1e-3, 4) + " m";  // telescopes
+  if (size >= 0.9995 || size == 0) return number(mm, 4) + " mm";
+  return number(std::round(mm * 1e6) * 1e-3, 3) + " \u00b5m";  // rounding, below a nanometre
+}
+
+std::string field_text(double field_rad) { return number(degrees(field_rad), 4) + "\u00b0"; }
+
+std::string_view field_colour(std::size_t field) {
+  constexpr std::array<std::string_view, 7> palette{"#1f5fc4", "#1a8f3c", "#d0331f", "#b97a00",
+                                                    "#7b3fb5", "#00858f", "#8a4b2a"};
+  return palette[field % palette.size()];
+}
+
+void draw_head(Svg& svg, const Lens& lens, std::string_view kind, double subject_z, std::size_t wavelength) {
+  svg.text(sheet_margin, 26, lens.name(), "font-size=\"17\" font-weight=\"bold\"");
+  const double f_number = has_pupils(lens) ? real_f_number(lens, wavelength) : 0;
+  svg.text(sheet_margin, 46,
+           std::string(kind) + ".  " + focal_length_text(lens, wavelength) +
+               (f_number > 0 && std::isfinite(f_number) ? ",  f/" + number(f_number, 3) : "") + ",  subject at " +
+               (std::isinf(subject_z) ? "infinity" : "z = " + number(subject_z, 6) + " mm") + ",  film at z = " +
+               number(lens.film_z(), 6) + " mm,  " + number(lens.wavelengths_nm()[wavelength], 6) + " nm");
+}
+
+double draw_scale_bar(Svg& svg, double x, double y, double px_per_mm, double longest, std::string_view remark) {
+  const double length = round_length(longest / px_per_mm), right = x + length * px_per_mm;
+  svg.path("M" + svg_number(x) + " " + svg_number(y - 3) + "v6m0-3H" + svg_number(right) + "m0-3v6",
+           "fill=\"none\" stroke=\"#222\" stroke-width=\"1.2\"");
+  const std::string words = (length < 1000 ? length_text(length) : number(length * 1e-3) + " m") + std::string(remark);
+  svg.text(right + 8, y + 4, words);
+  return right + 8 + width_of(words);
+}
+
+double draw_key(Svg& svg, double x, double y, std::string_view colour, std::string_view words) {
+  svg.path("M" + svg_number(x) + " " + svg_number(y) + "h18",
+           "stroke=\"" + std::string(colour) + "\" stroke-width=\"2\"");
+  svg.text(x + 23, y + 4, words);
+  return x + 23 + width_of(words);
+}
+
+}  // namespace petzval::detail

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+#include "petzval/lens/lens.hpp"
+#include "svg.hpp"
+
+/// What the figures share: head line, colours of fields, scale bar, lengths in words.
+namespace petzval::detail {
+
+inline constexpr double sheet_margin = 14;  ///< px, left of all text
+inline constexpr std::string_view small_text = "font-size=\"11\" fill=\"#555\"";
+inline constexpr std::string_view small_centred = "font-size=\"11\" fill=\"#555\" text-anchor=\"middle\"";
+
+/// The largest of 1, 2 or 5 times a power of ten that is not above x.
+double round_length(double x);
+
+/// "20 um" (with the Greek letter), "5 mm", "2 m": in the unit that reads best, three digits.
+std::string length_text(double mm);
+
+/// "10 degrees" with its sign.
+std::string field_text(double field_rad);
+
+/// Colour of a field, by its place in the list; the same in every figure of a lens.
+std::string_view field_colour(std::size_t field);
+
+/// Name of the lens, and a line that begins with the kind of figure and tells focal length, f-number, subject, film
+/// and wavelength. Takes the top 56 px.
+void draw_head(Svg& svg, const Lens& lens, std::string_view kind, double subject_z, std::size_t wavelength);
+
+/// A bar of round length, at most `longest` px, its left end at (x, y), and its length in words to the right of it.
+/// Returns where the words end, roughly.
+double draw_scale_bar(Svg& svg, double x, double y, double px_per_mm, double longest, std::string_view remark = {});
+
+/// A coloured stroke and what it stands for, from (x, y). Returns where the words end, roughly.
+double draw_key(Svg& svg, double x, double y, std::string_view colour, std::string_view words);
+
+}  // namespace petzval::detail
