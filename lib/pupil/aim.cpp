@@ -25,7 +25,7 @@ namespace {
 using Jet = ceres::Jet<double, 2>;
 using kernel::Vec;
 
-/// The unknown: transverse components of the unit direction in which a ray leaves the stop towards the scene.
+/// The unknown: transverse components of the unit direction in which a ray leaves the stop towards the point.
 struct Slope {
   double x = 0, y = 0;
 
@@ -33,8 +33,8 @@ struct Slope {
   Slope operator*(double s) const noexcept { return {x * s, y * s}; }
 };
 
-/// A ray that left the stop and the lens, and how it misses the point: components of the sine of the
-/// angle between its direction and the point's, in the meridian of the field and across it.
+/// A ray that left the stop and the lens, and how it misses the point: components of the sine of the angle between its
+/// direction and the point's, in the meridian of the point and across it.
 template <class T>
 struct Departure {
   Vec<T> origin, direction, wanted;
@@ -45,18 +45,26 @@ struct Departure {
 class Aimer {
  public:
   Aimer(const Lens& lens, const PupilPlane& plane, std::size_t wavelength)
-      : lens_(lens), plane_(plane), wavelength_(wavelength), stop_(pupils(lens, wavelength).stop) {
+      : lens_(lens), plane_(plane), wavelength_(wavelength) {
+    const Pupils p = pupils(lens, wavelength);
+    stop_ = p.stop;
     // Light leaves the stop for the film as it runs there, and for the scene the other way.
-    const bool to_point_is_to_scene = plane.travel() == Travel::to_film;
     const auto sense = [&](std::size_t space) { return signed_index(lens, space, wavelength) > 0 ? 1.0 : -1.0; };
-    from_stop_ = to_point_is_to_scene ? -sense(stop_) : sense(stop_ + 1);
-    at_point_ = to_point_is_to_scene ? -1 : sense(lens.surface_count());
-    departure_ = {.travel = to_point_is_to_scene ? Travel::to_scene : Travel::to_film,
-                  .wavelength = wavelength,
-                  .apertures = false};
+    departure_ = {.wavelength = wavelength, .apertures = false};
     arrival_ = {.travel = plane.travel(), .wavelength = wavelength, .apertures = false};
-    (to_point_is_to_scene ? departure_.last : departure_.first) = to_point_is_to_scene ? stop_ : stop_ + 1;
-    (to_point_is_to_scene ? arrival_.last : arrival_.first) = to_point_is_to_scene ? stop_ + 1 : stop_;
+    if (plane.travel() == Travel::to_film) {
+      from_stop_ = -sense(stop_);
+      at_point_ = -1;
+      departure_.travel = Travel::to_scene;
+      departure_.last = stop_;
+      arrival_.last = stop_ + 1;
+    } else {
+      from_stop_ = sense(stop_ + 1);
+      at_point_ = sense(lens.surface_count());
+      departure_.travel = Travel::to_film;
+      departure_.first = stop_ + 1;
+      arrival_.first = stop_;
+    }
 
     const Vec3<double>& towards = plane.towards();
     const double across = std::hypot(towards.x, towards.y);
@@ -64,7 +72,7 @@ class Aimer {
     lateral_ = {outwards_.y, -outwards_.x, 0};
     meridian_ = glm::cross(lateral_, towards);
     // A stop closed to a pinhole is still hit as well as numbers allow.
-    acceptance_ = 1e-6 * std::max(unit(), 1e-3 * detail::face_of(lens, 0, pupils(lens, wavelength).entrance).half);
+    acceptance_ = 1e-6 * std::max(unit(), 1e-3 * detail::half_height(lens, 0, p.entrance));
     if (const auto axis = differentiated({}, {})) mirrored_ = mirrored(*axis);
   }
 
@@ -209,16 +217,21 @@ class Aimer {
     result.residual = std::hypot(hit.origin.x - target.x, hit.origin.y - target.y) / unit();
     if (!met || !(result.residual * unit() < acceptance_)) return {};
 
-    const auto clipped = trace(lens_, result.ray, {.travel = plane_.travel(), .wavelength = wavelength_});
-    result.end = trace(lens_, result.ray, {.travel = plane_.travel(), .wavelength = wavelength_, .apertures = false});
-    result.status = clipped.transmitted() ? AimStatus::converged : AimStatus::vignetted;
-    if (!clipped.transmitted()) result.surface = clipped.surface;
+    TraceOptions options{.travel = plane_.travel(), .wavelength = wavelength_};
+    result.end = trace(lens_, result.ray, options);
+    result.status = AimStatus::converged;
+    if (!result.end.transmitted()) {
+      result.status = AimStatus::vignetted;
+      result.surface = result.end.surface;
+      options.apertures = false;
+      result.end = trace(lens_, result.ray, options);
+    }
     return result;
   }
 
   const Lens& lens_;
   const PupilPlane& plane_;
-  std::size_t wavelength_, stop_;
+  std::size_t wavelength_, stop_ = 0;
   double from_stop_, at_point_;       // sense along z of rays on their way to the point
   kernel::Path departure_, arrival_;  // from the stop to the point; from the point to the stop
   Slope outwards_;                    // unit vector across the axis, towards the point

@@ -8,16 +8,18 @@
 
 namespace petzval::detail {
 
-Face face_of(const Lens& lens, std::size_t surface, const Pupil& entrance) noexcept {
-  Face face;
-  face.half = lens.surfaces()[surface].semi_diameter;
-  if (!std::isfinite(face.half)) {
-    double widest = std::isfinite(entrance.diameter) ? entrance.diameter / 2 : 0;
-    for (const LensSurface& s : lens.surfaces()) {
-      if (std::isfinite(s.semi_diameter)) widest = std::max(widest, s.semi_diameter);
-    }
-    face.half = 4 * widest;
+double half_height(const Lens& lens, std::size_t surface, const Pupil& entrance) noexcept {
+  const double own = lens.surfaces()[surface].semi_diameter;
+  if (std::isfinite(own)) return own;
+  double widest = std::isfinite(entrance.diameter) ? entrance.diameter / 2 : 0;
+  for (const LensSurface& s : lens.surfaces()) {
+    if (std::isfinite(s.semi_diameter)) widest = std::max(widest, s.semi_diameter);
   }
+  return 4 * widest;
+}
+
+Face face_of(const Lens& lens, std::size_t surface, const Pupil& entrance) noexcept {
+  Face face{.half = half_height(lens, surface, entrance)};
   // Cylinders are curved in one of the two sections.
   constexpr int samples = 64;
   for (const bool along_x : {false, true}) {

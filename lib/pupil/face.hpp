@@ -8,8 +8,10 @@
 
 namespace petzval::detail {
 
-/// An outer surface as a box around its clear part: half height, lowest and highest z of the lens frame. Where the
-/// surface is unlimited, four times the widest rim or pupil stands for its half height.
+/// Half height of what an outer surface lets in: its own, or where it is unlimited four times the widest rim or pupil.
+double half_height(const Lens& lens, std::size_t surface, const Pupil& entrance) noexcept;
+
+/// An outer surface as a box around its clear part: half height, lowest and highest z of the lens frame.
 struct Face {
   double half = 0, z_min = 0, z_max = 0;
 };

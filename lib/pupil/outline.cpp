@@ -32,7 +32,7 @@ struct Box {
   Point half() const noexcept { return {(high[0] - low[0]) / 2, (high[1] - low[1]) / 2}; }
 };
 
-/// An edge on the way: the last radius that passes, what it meets behind the lens, and what ends the next ray.
+/// An edge on the way: the last radius that passes, how near it is to being lost, and what ends the next ray.
 struct Edge {
   double radius;
   detail::Clearance inside, outside;

@@ -19,35 +19,37 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 void check(const Lens& lens, const ScenePoint& point, const Pupil& entrance) {
-  const std::string where = lens.name() + ": scene point: ";
+  const auto refuse = [&](const std::string& found_and_wanted) {
+    throw Error(lens.name() + ": scene point: " + found_and_wanted);
+  };
   if (!(std::abs(point.field_rad) <= std::numbers::pi)) {
-    throw Error(where + "field is " + number(degrees(point.field_rad), 6) + " degrees, wanted -180 to 180");
+    refuse("field is " + number(degrees(point.field_rad), 6) + " degrees, wanted -180 to 180");
   }
   if (!std::isfinite(point.azimuth_rad)) {
-    throw Error(where + "azimuth is " + number(point.azimuth_rad) + " rad, wanted a finite angle");
+    refuse("azimuth is " + number(point.azimuth_rad) + " rad, wanted a finite angle");
   }
   if (!std::isfinite(entrance.z)) {
-    throw Error(where + "the entrance pupil is at infinity, wanted one at a finite place: fields are seen from it");
+    refuse("the entrance pupil is at infinity, wanted one at a finite place: fields are seen from it");
   }
-  if (!(point.z < infinity)) throw Error(where + "z is " + number(point.z) + " mm, wanted a finite one or -inf");
+  if (!(point.z < infinity)) refuse("z is " + number(point.z) + " mm, wanted a finite one or -inf");
   if (point.z == entrance.z) {
-    throw Error(where + "z is " + number(point.z) + " mm, that of the entrance pupil, wanted another");
+    refuse("z is " + number(point.z) + " mm, that of the entrance pupil, wanted another");
   }
+  if (std::isinf(point.z)) return;
 
   // A plane in front of the lens is met by fields below 90 degrees; the others meet planes beside and behind it.
-  const std::string field = number(degrees(point.field_rad), 6) + " degrees";
   if (std::abs(point.field_rad) < std::numbers::pi / 2) {
     const double front = detail::face_of(lens, 0, entrance).z_min;
     if (!(point.z < front)) {
-      throw Error(where + "z is " + number(point.z) + " mm, wanted less than where the first surface begins, " +
-                  number(front) + " mm");
+      refuse("z is " + number(point.z) + " mm, wanted less than where the first surface begins, " + number(front) +
+             " mm");
     }
-  } else if (std::isfinite(point.z)) {
+  } else {
     const double side = std::abs(std::tan(point.field_rad) * (entrance.z - point.z));
-    if (!(point.z > entrance.z && side > detail::face_of(lens, 0, entrance).half)) {
-      throw Error(where + "z is " + number(point.z) + " mm at a field of " + field +
-                  ", wanted -inf, or a plane behind the entrance pupil (" + number(entrance.z) +
-                  " mm) that this field meets outside the lens");
+    if (!(point.z > entrance.z && side > detail::half_height(lens, 0, entrance))) {
+      refuse("z is " + number(point.z) + " mm at a field of " + number(degrees(point.field_rad), 6) +
+             " degrees, wanted -inf, or a plane behind the entrance pupil (" + number(entrance.z) +
+             " mm) that this field meets outside the lens");
     }
   }
 }
