@@ -44,19 +44,6 @@ std::vector<double> fields_rad(const Report& r, const PageOptions& options) {
   return fields;
 }
 
-std::string escaped(std::string_view text) {
-  std::string result;
-  for (const char c : text) {
-    switch (c) {
-      case '&': result += "&amp;"; break;
-      case '<': result += "&lt;"; break;
-      case '>': result += "&gt;"; break;
-      default: result += c;
-    }
-  }
-  return result;
-}
-
 constexpr std::string_view style =
     R"(  body { margin: 0 auto; max-width: 62rem; padding: 2rem 1.5rem 4rem; font: 16px/1.55 system-ui, sans-serif;
          color: #1d2026; background: #fbfbfa; }
@@ -115,7 +102,7 @@ void surface_table(std::ostream& html, const Report& r) {
     html << "<tr>" << cell(std::to_string(i)) << cell(row.radius == 0 ? "plane" : petzval::number(row.radius, 8))
          << cell(petzval::number(row.thickness, 7)) << cell(row.medium.nd == 1 ? "" : petzval::number(row.medium.nd, 7))
          << cell(row.medium.vd ? petzval::number(*row.medium.vd, 5) : "") << "<td>"
-         << escaped(row.medium.glass.value_or("")) << "</td>"
+         << petzval::escaped_xml(row.medium.glass.value_or("")) << "</td>"
          << cell(std::isfinite(compiled.semi_diameter) ? petzval::number(compiled.semi_diameter, 5) : "unlimited")
          << "<td>" << remarks << "</td></tr>\n";
   }
@@ -125,7 +112,7 @@ void surface_table(std::ostream& html, const Report& r) {
 void sources(std::ostream& html, const petzval::Prescription& p) {
   html << "<table>\n";
   const auto line = [&](const char* label, const std::string& words) {
-    if (!words.empty()) html << "<tr><td>" << label << "</td><td>" << escaped(words) << "</td></tr>\n";
+    if (!words.empty()) html << "<tr><td>" << label << "</td><td>" << petzval::escaped_xml(words) << "</td></tr>\n";
   };
   line("design", p.source_design);
   line("numbers from", p.source_numbers);
@@ -187,14 +174,14 @@ std::vector<LensFigure> lens_figures(const Report& r, const PageOptions& options
 
 std::string lens_page(const Report& r, const std::vector<LensFigure>& figures) {
   const petzval::Lens& lens = r.loaded.lens;
-  const std::string name = escaped(lens.name());
+  const std::string name = petzval::escaped_xml(lens.name());
   std::ostringstream html;
   html.imbue(std::locale::classic());
   html << "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
           "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>"
        << name << "</title>\n<style>\n"
        << style << "</style>\n</head>\n<body>\n<h1>" << name << "</h1>\n<p class=\"lead\">"
-       << escaped(r.loaded.prescription.source_design) << "</p>\n";
+       << petzval::escaped_xml(r.loaded.prescription.source_design) << "</p>\n";
   for (const LensFigure& figure : figures) {
     html << "<h2>" << figure.title << "</h2>\n<figure>\n"
          << figure.svg << "<figcaption>" << figure.caption << "</figcaption>\n</figure>\n";
@@ -206,7 +193,8 @@ std::string lens_page(const Report& r, const std::vector<LensFigure>& figures) {
   if (r.findings.empty()) html << "<p class=\"lead\">None: what it declares is what it is.</p>\n";
   if (!r.findings.empty()) {
     html << "<ul>\n";
-    for (const petzval::Finding& finding : r.findings) html << "<li>" << escaped(finding.message) << "</li>\n";
+    for (const petzval::Finding& finding : r.findings)
+      html << "<li>" << petzval::escaped_xml(finding.message) << "</li>\n";
     html << "</ul>\n";
   }
   html << "<h2>Table</h2>\n<p class=\"lead\">Millimetres.</p>\n";

@@ -20,4 +20,17 @@ std::string number(double value, int significant_digits) {
   return {buffer.data(), end};
 }
 
+std::string escaped_xml(std::string_view words) {
+  std::string result;
+  for (const char c : words) {
+    switch (c) {
+      case '&': result += "&amp;"; break;
+      case '<': result += "&lt;"; break;
+      case '>': result += "&gt;"; break;
+      default: result += c;
+    }
+  }
+  return result;
+}
+
 }  // namespace petzval

@@ -53,15 +53,7 @@ void Svg::path(std::string_view d, std::string_view attributes) {
 void Svg::text(double x, double y, std::string_view text, std::string_view attributes) {
   out_ += "<text" + attribute("x", x) + attribute("y", y);
   out_.append(attributes.empty() ? "" : " ").append(attributes).append(">");
-  for (const char c : text) {
-    switch (c) {
-      case '&': out_ += "&amp;"; break;
-      case '<': out_ += "&lt;"; break;
-      case '>': out_ += "&gt;"; break;
-      default: out_ += c;
-    }
-  }
-  out_ += "</text>\n";
+  out_ += escaped_xml(text) + "</text>\n";
 }
 
 std::string Svg::finish() && {

@@ -5,10 +5,10 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <utility>
 
 #include "petzval/core/bisect.hpp"
+#include "petzval/core/quadrature.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/outline.hpp"
 #include "petzval/pupil/pupil_plane.hpp"
@@ -18,33 +18,6 @@ namespace petzval::detail {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-
-struct Node {
-  double x, weight;  // on (0, 1)
-};
-
-/// Nodes of Gauss and Legendre, by Newton's iteration on the three-term recurrence.
-template <std::size_t count>
-std::array<Node, count> gauss_legendre() {
-  std::array<Node, count> nodes;
-  for (std::size_t i = 0; i < count; ++i) {
-    double x = std::cos(std::numbers::pi * (static_cast<double>(i) + 0.75) / (count + 0.5));
-    double slope = 0;
-    for (int iteration = 0; iteration < 6; ++iteration) {
-      double p = 1, before = 0;
-      for (std::size_t k = 0; k < count; ++k) {
-        const double order = static_cast<double>(k);
-        const double next = ((2 * order + 1) * x * p - order * before) / (order + 1);
-        before = p;
-        p = next;
-      }
-      slope = count * (x * p - before) / (x * x - 1);
-      x -= p / slope;
-    }
-    nodes[i] = {(1 + x) / 2, 1 / ((1 - x * x) * slope * slope)};
-  }
-  return nodes;
-}
 
 /// The bundle of one field, its rays where they meet a plane.
 class Bundle {
@@ -61,7 +34,7 @@ class Bundle {
     for (const PupilSpan& span : outline.spans) {
       const double inner = span.from_radius * span.from_radius;
       const double area = (span.to_radius - span.from_radius) * (span.to_radius + span.from_radius);
-      for (const Node& node : nodes) {
+      for (const QuadratureNode& node : nodes) {
         add_ray(outline, outline.at(span.direction, std::sqrt(inner + area * node.x)), cell * area * node.weight);
       }
       if (!edges_) continue;

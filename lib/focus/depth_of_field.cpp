@@ -29,15 +29,7 @@ class Excess {
   Excess(const detail::Model& model, double film_z, double blur) : model_(model), film_z_(film_z), blur_(blur) {}
 
   double operator()(double nearness) const {
-    const double z = nearness > 0 ? model_.conjugates().subject_at(nearness) : -infinity;
-    // Exact rays end before the vertex where the first surface is hollow.
-    const auto image = [&]() -> std::optional<detail::Image> {
-      try {
-        return model_.image(z);
-      } catch (const Error&) {
-        return {};
-      }
-    }();
+    const auto image = model_.image_at(nearness);
     // Capped: the search wants finite numbers.
     return image ? std::min(image->diameter(film_z_), 4 * blur_) - blur_ : 3 * blur_;
   }
@@ -50,9 +42,7 @@ class Excess {
 }  // namespace
 
 std::optional<double> blur_diameter(const Lens& lens, double distance_mm, const FocusOptions& options) {
-  if (!(distance_mm > 0)) {
-    throw Error(lens.name() + ": subject distance is " + number(distance_mm) + " mm, wanted one above 0 (or infinity)");
-  }
+  detail::check_distance(lens, distance_mm);
   const detail::Model model(lens, options);
   if (model.afocal()) return {};
   const double origin_z = options.origin == DistanceOrigin::film ? lens.film_z() : model.conjugates().origin_z;
@@ -107,9 +97,7 @@ FocusSolution hyperfocal(const Lens& lens, double blur_mm, const FocusOptions& o
 }
 
 std::optional<double> breathing(const Lens& lens, double film_z, const FocusOptions& options) {
-  if (!std::isfinite(film_z)) {
-    throw Error(lens.name() + ": film_z is " + number(film_z) + " mm, wanted a finite place");
-  }
+  detail::check_film(lens, film_z);
   const detail::Model model(lens, options);
   if (model.afocal()) return {};
   const FocusSolution infinite = model.focus(infinity);

@@ -41,17 +41,13 @@ std::string_view name(FocusStatus status) noexcept {
 }
 
 FocusSolution solve_focus(const Lens& lens, double distance_mm, const FocusOptions& options) {
-  if (!(distance_mm > 0)) {
-    throw Error(lens.name() + ": subject distance is " + number(distance_mm) + " mm, wanted one above 0 (or infinity)");
-  }
+  detail::check_distance(lens, distance_mm);
   const detail::Model model(lens, options);
   return model.afocal() ? FocusSolution{.status = FocusStatus::afocal} : model.focus(distance_mm);
 }
 
 FocusSolution solve_subject(const Lens& lens, double film_z, const FocusOptions& options) {
-  if (!std::isfinite(film_z)) {
-    throw Error(lens.name() + ": film_z is " + number(film_z) + " mm, wanted a finite place");
-  }
+  detail::check_film(lens, film_z);
   const detail::Model model(lens, options);
   return model.afocal() ? FocusSolution{.status = FocusStatus::afocal} : model.subject(film_z);
 }

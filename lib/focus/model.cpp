@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <utility>
 
@@ -52,6 +53,16 @@ std::vector<WavelengthWeight> weighted_wavelengths(const Lens& lens, const Focus
 
 }  // namespace
 
+void check_distance(const Lens& lens, double distance_mm) {
+  if (distance_mm > 0) return;
+  throw Error(lens.name() + ": subject distance is " + number(distance_mm) + " mm, wanted one above 0 (or infinity)");
+}
+
+void check_film(const Lens& lens, double film_z) {
+  if (std::isfinite(film_z)) return;
+  throw Error(lens.name() + ": film_z is " + number(film_z) + " mm, wanted a finite place");
+}
+
 Model::Model(const Lens& lens, const FocusOptions& options)
     : lens_(lens),
       options_(options),
@@ -91,6 +102,14 @@ std::optional<Image> Model::image(double subject_z) const {
   }
   if (exact()) return exact_image(lens_, subject_z, fields_, wavelengths_, options_.criterion);
   return cone(subject_z);
+}
+
+std::optional<Image> Model::image_at(double nearness) const {
+  try {
+    return image(nearness > 0 ? conjugates_.subject_at(nearness) : -std::numeric_limits<double>::infinity());
+  } catch (const Error&) {
+    return {};
+  }
 }
 
 /// The cone of the paraxial pupil as its one marginal ray, in the rear focal plane: what height a ray has there is a

@@ -13,6 +13,10 @@
 
 namespace petzval::detail {
 
+/// Throw Error: for a subject distance that is NaN or not above 0; for a film_z that is not finite.
+void check_distance(const Lens& lens, double distance_mm);
+void check_film(const Lens& lens, double film_z);
+
 /// A lens as one criterion sees it: what the functions on focus, depth of field and breathing share.
 class Model {
  public:
@@ -32,6 +36,9 @@ class Model {
   /// None where a field has no rays. Throws Error for a subject that is not in front of the lens, and where nothing
   /// limits the beam.
   std::optional<Image> image(double subject_z) const;
+  /// By the subject's nearness (Conjugates). None, too, where image throws: exact rays end before the vertex where the
+  /// first surface is hollow.
+  std::optional<Image> image_at(double nearness) const;
 
  private:
   Image cone(double subject_z) const;

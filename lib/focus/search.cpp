@@ -6,7 +6,6 @@
 #include <limits>
 #include <optional>
 
-#include "petzval/core/error.hpp"
 #include "root.hpp"
 
 namespace petzval::detail {
@@ -29,12 +28,8 @@ double Search::subject_at(double nearness) const noexcept { return nearness > 0 
 /// None where there is no image, next to the front of the lens above all.
 std::optional<double> Search::film(double nearness) const {
   if (!(nearness > 0)) return infinite_film_;
-  try {
-    const auto image = model_.image(c_.subject_at(nearness));
-    return image ? std::optional(image->film_z) : std::nullopt;
-  } catch (const Error&) {
-    return {};
-  }
+  const auto image = model_.image_at(nearness);
+  return image ? std::optional(image->film_z) : std::nullopt;
 }
 
 /// The film on the subjects' scale. A virtual image is that of a subject too near, and a real one anywhere else that of

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "petzval/pupil/illumination.hpp"
 
-#include <array>
 #include <cmath>
-#include <glm/geometric.hpp>
 #include <numbers>
 
+#include "petzval/core/quadrature.hpp"
 #include "petzval/pupil/aim.hpp"
 #include "petzval/pupil/outline.hpp"
 
@@ -16,11 +15,10 @@ double film_irradiance(const Lens& lens, const FilmPoint& point, std::size_t wav
   const bool alike_all_round = plane.on_axis() && lens.rotationally_symmetric();
   const PupilOutline outline =
       alike_all_round ? exit_pupil_outline(lens, point, wavelength, 1) : exit_pupil_outline(lens, point, wavelength);
-  // Part dA of the plane, gap away from the film, is seen in the projected solid angle cos^4 dA / gap^2. Gauss and
-  // Legendre's three nodes in the squared radius, of which equal steps are equal areas.
-  const double gap = plane.towards().z / plane.reciprocal_distance(), offset = std::sqrt(0.6);
-  const std::array<std::array<double, 2>, 3> nodes{
-      {{(1 - offset) / 2, 5.0 / 18}, {0.5, 8.0 / 18}, {(1 + offset) / 2, 5.0 / 18}}};
+  // Part dA of the plane, gap away from the film, is seen in the projected solid angle cos^4 dA / gap^2. The
+  // nodes lie in the squared radius, of which equal steps are equal areas.
+  const double gap = plane.towards().z / plane.reciprocal_distance();
+  const auto nodes = detail::gauss_legendre<3>();
   double sum = 0;
   for (const PupilSpan& span : outline.spans) {
     const double from = span.from_radius * span.from_radius, to = span.to_radius * span.to_radius;

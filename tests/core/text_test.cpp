@@ -49,4 +49,10 @@ TEST(Number, DoesNotFollowTheLocale) {
   if (before != nullptr) std::setlocale(LC_NUMERIC, "C");
 }
 
+TEST(EscapedXml, LeavesNothingThatAReaderTakesForATag) {
+  EXPECT_EQ(petzval::escaped_xml("a < b && c > \"d\""), "a &lt; b &amp;&amp; c &gt; \"d\"");
+  EXPECT_EQ(petzval::escaped_xml("&lt;"), "&amp;lt;");
+  EXPECT_EQ(petzval::escaped_xml(""), "");
+}
+
 }  // namespace
