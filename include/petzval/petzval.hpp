@@ -29,6 +29,7 @@
 /// petzval/io/image.hpp and petzval/figure/ (petzval::image), fits in petzval/movement/plane_fit.hpp (petzval::fit).
 
 #include "petzval/core/error.hpp"
+#include "petzval/core/parallel.hpp"
 #include "petzval/core/ray.hpp"
 #include "petzval/core/units.hpp"
 #include "petzval/focus/depth_of_field.hpp"
