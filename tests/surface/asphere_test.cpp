@@ -166,7 +166,7 @@ TYPED_TEST(AsphereOf, FindsTheFirstCrossingOfSteepRays) {
         ++doubtful;
         continue;
       }
-      const auto [point, hit, converged] = intersect(asphere, start, d, static_cast<TypeParam>(sense));
+      const auto [point, hit, converged, beside] = intersect(asphere, start, d, static_cast<TypeParam>(sense));
       EXPECT_TRUE(converged) << name << " ray " << i;
       const bool inside = hit && std::hypot(point.x, point.y) <= rim * (1 + 4 * eps);
       several += crossings->size() > 1;

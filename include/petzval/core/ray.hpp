@@ -26,8 +26,8 @@ enum class RayFate : std::uint8_t {
   transmitted,        ///< left the last surface asked for
   missed_surface,     ///< has no point in common with the surface (or only on its far sheet)
   totally_reflected,  ///< beyond the critical angle
-  vignetted,          ///< outside the clear aperture, or inside the hole of an annular one
-  no_convergence,     ///< the iteration for an asphere found no answer
+  vignetted,  ///< outside the clear aperture (or what is described of an asphere), or in the hole of an annular one
+  no_convergence,  ///< the iteration for an asphere found no answer
 };
 
 /// The fate in words, as the programs print it: "transmitted", "missed_surface", ...

@@ -74,8 +74,10 @@ Passage<T> trace(const LensView<Storage<T>>& lens, const Vec<T>& origin, const V
       }
     } else {
       const Asphere<R>& asphere = lens.aspheres[surface.asphere];
-      const auto [point, hit, converged] = intersect(asphere, p, ray.direction, sense);
-      if (!hit) return end(converged ? RayFate::missed_surface : RayFate::no_convergence);
+      const auto [point, hit, converged, beside] = intersect(asphere, p, ray.direction, sense);
+      if (!hit) {
+        return end(beside ? RayFate::vignetted : converged ? RayFate::missed_surface : RayFate::no_convergence);
+      }
       p = point;
       n = normal(asphere, p);
       cosine = absolute(dot(ray.direction, n));
