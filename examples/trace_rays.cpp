@@ -57,21 +57,19 @@ std::vector<T> rounded(const std::vector<double>& values, const std::string& whe
 template <class T>
 std::string traced_csv(const petzval::Lens& lens, const RayTable& rays, const petzval::TraceOptions& options,
                        const std::string& where) {
-  auto x = rounded<T>(rays.x, where, "x_mm"), y = rounded<T>(rays.y, where, "y_mm"),
-       z = rounded<T>(rays.z, where, "z_mm");
-  auto dx = rounded<T>(rays.dx, where, "dx"), dy = rounded<T>(rays.dy, where, "dy"),
-       dz = rounded<T>(rays.dz, where, "dz");
-  std::vector<petzval::RayFate> fates(rays.size());
-  std::vector<int> surfaces(rays.size());
-  petzval::trace<T>(lens, rays.size(), {x.data(), y.data(), z.data(), dx.data(), dy.data(), dz.data()},
-                    {x.data(), y.data(), z.data(), dx.data(), dy.data(), dz.data()}, fates.data(), surfaces.data(),
-                    options);
-
+  const auto x = rounded<T>(rays.x, where, "x_mm"), y = rounded<T>(rays.y, where, "y_mm"),
+             z = rounded<T>(rays.z, where, "z_mm");
+  const auto dx = rounded<T>(rays.dx, where, "dx"), dy = rounded<T>(rays.dy, where, "dy"),
+             dz = rounded<T>(rays.dz, where, "dz");
   std::string csv = "x_mm,y_mm,z_mm,dx,dy,dz,fate,surface\n";
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    for (const T value : {x[i], y[i], z[i], dx[i], dy[i], dz[i]}) csv += examples::digits17(value) + ',';
-    csv += petzval::name(fates[i]);
-    csv += ',' + std::to_string(surfaces[i]) + '\n';
+    const auto end = petzval::trace(lens, petzval::Ray<T>{{x[i], y[i], z[i]}, {dx[i], dy[i], dz[i]}}, options);
+    const auto& [origin, direction] = end.ray;
+    for (const T value : {origin.x, origin.y, origin.z, direction.x, direction.y, direction.z}) {
+      csv += examples::digits17(value) + ',';
+    }
+    csv += petzval::name(end.fate);
+    csv += ',' + std::to_string(end.surface) + '\n';
   }
   return csv;
 }

@@ -3,13 +3,54 @@
 # Builds petzval with its examples and runs the tests; installs what a bare Debian 12 lacks.
 #
 #   sh tests/run.sh [arguments of ctest, such as -R Snell]
+#   sh tests/run.sh --report    prints the worst that the accuracy tests met: the tables "How exact" and "Limits" of README
 #
 # BUILD_DIR=... builds elsewhere than in build/.
 set -eu
 root=$(CDPATH= cd -- "$(dirname -- "$0")/.." && pwd)
 . "$root/cmake/build.sh"
 
+# table PROGRAM...: what they put into the report (tests/report.hpp), a row for each name in the order of appearance.
+table() {
+  files=
+  for program; do
+    file=$work/$(basename "$program").xml
+    files="$files $file"
+    "$BUILD_DIR/tests/$program" "--gtest_output=xml:$file" >"$work/log" || { cat "$work/log" >&2; exit 1; }
+  done
+  awk -F '"' '
+    BEGIN {
+      split("float, double, batch float, batch double", columns, ", ")
+      print "\n| case | float | double | batch float, fast / reproducible | batch double, fast / reproducible | bound |"
+      print "|---|---|---|---|---|---|"
+    }
+    /<property name=".* [|] / {
+      split($2, key, " [|] ")
+      if (!(key[1] in bound)) { row[++rows] = key[1]; bound[key[1]] = key[3] }
+      else if (index(bound[key[1]], key[3]) == 0) bound[key[1]] = bound[key[1]] ", " key[3]
+      cell[key[1], key[2]] = $4
+    }
+    END {
+      for (i = 1; i <= rows; ++i) {
+        line = "| " row[i] " |"
+        for (c = 1; c <= 4; ++c) line = line " " cell[row[i], columns[c]] " |"
+        print line " " bound[row[i]] " |"
+      }
+    }' $files
+}
+
 need $library_packages $example_packages $test_packages
 build -DPETZVAL_BUILD_TESTS=ON -DPETZVAL_BUILD_EXAMPLES=ON -DCMAKE_COMPILE_WARNING_AS_ERROR=ON
+if [ "${1-}" = --report ]; then
+  work=$(mktemp -d)
+  trap 'rm -rf "$work"' EXIT
+  printf '\nHow exact'
+  table surface/surface_quadric_test surface/surface_asphere_test surface/surface_snell_test trace/trace_reference_test \
+    trace/trace_batch_reference_test trace/trace_laws_test trace/trace_derivative_test \
+    trace/trace_differentials_reference_test trace/trace_differentials_test pupil/pupil_aim_test
+  printf '\nLimits'
+  table trace/trace_extremes_test
+  exit
+fi
 echo "== Testing"
 exec ctest --test-dir "$BUILD_DIR" -j "$(nproc)" --output-on-failure "$@"

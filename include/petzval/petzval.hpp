@@ -10,7 +10,8 @@
 ///                                       -->  chief_ray, aim, pupil_outline          which rays of a point get through
 ///                                       -->  relative_illumination                  how much light the film gets
 ///                                       -->  solve_focus, depth_of_field            where the film belongs
-///                                       -->  trace                                  rays, either way, float or double
+///                                       -->  trace, trace_differentials             rays, either way, float or double,
+///                                                                                   one or in batches on SIMD lanes
 ///                                       -->  spot_diagram, point_image              what the film sees of a point
 ///
 /// Lens frame: right-handed, millimetres, light travels towards +z, origin at the vertex of the first surface; the
@@ -49,4 +50,6 @@
 #include "petzval/pupil/outline.hpp"
 #include "petzval/pupil/pupil.hpp"
 #include "petzval/pupil/pupil_sampler.hpp"
+#include "petzval/trace/batch.hpp"
+#include "petzval/trace/differentials.hpp"
 #include "petzval/trace/trace.hpp"

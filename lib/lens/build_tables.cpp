@@ -94,11 +94,12 @@ kernel::Asphere<R> rounded(const kernel::Asphere<double>& a) {
 }  // namespace
 
 template <class R>
-Tables<R> build_tables(std::span<const LensSurface> surfaces, std::span<const double> indices,
-                       std::size_t wavelengths) {
+Tables<R> build_tables(std::span<const LensSurface> surfaces, std::optional<std::size_t> stop,
+                       std::span<const double> indices, std::size_t wavelengths) {
   const std::size_t count = surfaces.size();
   Tables<R> tables;
   tables.wavelengths = wavelengths;
+  if (stop) tables.stop = static_cast<std::int32_t>(*stop);
   R sense = 1;
   for (std::size_t i = 0; i < count; ++i) {
     const LensSurface& s = surfaces[i];
@@ -124,10 +125,14 @@ Tables<R> build_tables(std::span<const LensSurface> surfaces, std::span<const do
       tables.to_scene.push_back(kernel::make_interface<R>(n[i + 1], n[i]));
     }
   }
+  tables.course_to_film = build_course<R>(surfaces, stop, indices, wavelengths, Travel::to_film);
+  tables.course_to_scene = build_course<R>(surfaces, stop, indices, wavelengths, Travel::to_scene);
   return tables;
 }
 
-template Tables<float> build_tables(std::span<const LensSurface>, std::span<const double>, std::size_t);
-template Tables<double> build_tables(std::span<const LensSurface>, std::span<const double>, std::size_t);
+template Tables<float> build_tables(std::span<const LensSurface>, std::optional<std::size_t>, std::span<const double>,
+                                    std::size_t);
+template Tables<double> build_tables(std::span<const LensSurface>, std::optional<std::size_t>, std::span<const double>,
+                                     std::size_t);
 
 }  // namespace petzval::detail

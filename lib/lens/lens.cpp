@@ -25,8 +25,8 @@ struct Lens::Data {
   detail::Tables<double> twice;
 
   void build() {
-    single = detail::build_tables<float>(surfaces, indices.values, wavelengths_nm.size());
-    twice = detail::build_tables<double>(surfaces, indices.values, wavelengths_nm.size());
+    single = detail::build_tables<float>(surfaces, stop, indices.values, wavelengths_nm.size());
+    twice = detail::build_tables<double>(surfaces, stop, indices.values, wavelengths_nm.size());
   }
 };
 

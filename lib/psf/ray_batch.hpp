@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "petzval/trace/trace.hpp"
+#include "petzval/trace/batch.hpp"
 
 namespace petzval::detail {
 

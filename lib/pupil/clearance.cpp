@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "petzval/trace/sequential.hpp"
+#include "petzval/trace/trace.hpp"
 
 namespace petzval::detail {
 
@@ -15,8 +15,8 @@ Clearance clearance(const Lens& lens, const PupilPlane& plane, double x, double 
   const auto take = [&](double value, int surface) {
     if (value < result.value) result.value = value, result.surface = surface;
   };
-  // The same numbers as in the kernel's own test of the rim, so that sign and fate agree to the bit.
-  const auto watch = [&](int surface, const kernel::Vec<double>& point) {
+  // The same numbers as in the trace's own test of the rim, so that sign and fate agree to the bit.
+  const auto watch = [&](int surface, const Vec3<double>& point) {
     const auto& row = view.surfaces[surface];
     const double r2 = point.x * point.x + point.y * point.y;
     if (std::isinf(row.semi_diameter_squared)) return;
@@ -24,8 +24,7 @@ Clearance clearance(const Lens& lens, const PupilPlane& plane, double x, double 
     take((row.semi_diameter_squared - r2) / scale, surface);
     if (row.inner_squared > 0) take((r2 - row.inner_squared) / scale, surface);
   };
-  const Ray<double> ray = plane.ray(x, y);
-  const auto end = kernel::trace(view, kernel::to_kernel(ray.origin), kernel::to_kernel(ray.direction),
+  const auto end = trace<double>(lens, plane.ray(x, y),
                                  {.travel = plane.travel(), .wavelength = wavelength, .apertures = false}, watch);
   // Within (-1, 0) for rays that rims stop, however small the stop is beside the lens, and below for the others.
   if (result.value < 0) result.value /= 1 - result.value;

@@ -1,65 +1,120 @@
 // SPDX-License-Identifier: Apache-2.0
+// One ray: the batch of a single lane, which leaves where the ray ends and tells where that was.
+#define PETZVAL_ONE_LANE
+#define PETZVAL_FAST 0
+
 #include "petzval/trace/trace.hpp"
 
-#include "petzval/trace/sequential.hpp"
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+
+#include "job.hpp"
+#include "march.hpp"
 
 namespace petzval {
+namespace detail {
 namespace {
 
-template <class T>
-bool usable(const Ray<T>& ray) noexcept {
+/// Where and whither, in the lens frame.
+template <class R>
+Ray<R> in_lens_frame(const Bundle<R>& b, R z, R pz, const kernel::Step<R>& s, R vertex_z, R per_n) noexcept {
+  const Vec3<R> d{per_n * b.px[0].v, per_n * b.py[0].v, s.sense * (per_n * pz)};
+  const R scale = R(1.5) - R(0.5) * (d.x * d.x + d.y * d.y + d.z * d.z);
+  return {{b.x[0].v, b.y[0].v, s.sense * z + vertex_z}, d * scale};
+}
+
+/// Beyond all reason numbers overflow.
+template <class R>
+void keep_finite(const Ray<R>& found, Ray<R>& ray) noexcept {
   using kernel::finite;
-  const auto& o = ray.origin;
-  const T length = dot(kernel::to_kernel(ray.direction), kernel::to_kernel(ray.direction));
-  return finite(o.x) && finite(o.y) && finite(o.z) && length > T(0.999) && length < T(1.001);
+  const auto& [o, d] = found;
+  if (finite(o.x) && finite(o.y) && finite(o.z) && finite(d.x) && finite(d.y) && finite(d.z)) ray = found;
 }
 
-template <class T>
-TracedRay<T> trace_one(const kernel::LensView<T>& view, const Ray<T>& ray, const kernel::Path& path) noexcept {
-  if (!usable(ray) || path.wavelength >= view.wavelengths) {
-    const bool to_film = path.travel == Travel::to_film;
-    const int first_met = to_film ? 0 : static_cast<int>(view.count) - 1;
-    return {{{0, 0, 0}, {0, 0, to_film ? T(1) : T(-1)}}, RayFate::missed_surface, first_met};
+/// A ray that ended at step j: before, in front of that step; after, behind it.
+template <class R>
+TracedRay<R> ended(const BlockJob<R>& job, const R* vertex_z, std::size_t j, bool unsettled, const Ray<R>& ray,
+                   const Bundle<R>& before, const Bundle<R>& after) noexcept {
+  const kernel::Step<R>& s = job.course.steps[j];
+  const auto tally = after.tally[0] - static_cast<std::int32_t>(4 * j);
+  const RayFate fate = unsettled    ? RayFate::no_convergence
+                       : tally == 0 ? RayFate::missed_surface
+                       : tally == 1 ? RayFate::vignetted
+                                    : RayFate::totally_reflected;
+  TracedRay<R> end{ray, fate, s.surface};
+  const kernel::Bend<R>& bend = job.course.bends[job.wavelength * job.steps + j];
+  const R per_n = std::sqrt(bend.per_n2);
+  if (j > 0) {
+    const auto last = job.course.steps[j - 1].surface;
+    keep_finite(in_lens_frame(before, before.z[0].v, before.pz[0].v, s, vertex_z[last], per_n), end.ray);
   }
-  const auto end = kernel::trace(view, kernel::to_kernel(ray.origin), kernel::to_kernel(ray.direction), path);
-  return {{kernel::to_public(end.origin), kernel::to_public(end.direction)}, end.fate, end.surface};
+  if (tally > 0) {
+    Bundle<R> hit = before;
+    hit.x[0] = after.x[0];
+    hit.y[0] = after.y[0];
+    const R z = s.mirror ? -after.z[0].v : after.z[0].v;
+    keep_finite(in_lens_frame(hit, z, before.pz[0].v, s, vertex_z[s.surface], per_n), end.ray);
+  }
+  return end;
 }
 
-kernel::Path whole_lens(const TraceOptions& options) noexcept {
-  return {.travel = options.travel, .wavelength = options.wavelength, .apertures = options.apertures};
+template <class R, class Seen>
+TracedRay<R> trace_one(const Lens& lens, const Ray<R>& ray, const TraceOptions& options, const Seen& seen) {
+  const auto view = lens.view<R>();
+  const auto job = job_for<R>(view, options);
+  const auto& course = job.course;
+  TracedRay<R> end{ray, RayFate::missed_surface, course.steps[0].surface};
+  auto& [origin, direction] = end.ray;
+  const RayArrays<R> own{&origin.x, &origin.y, &origin.z, &direction.x, &direction.y, &direction.z};
+  const RayArrays<const R> in{&ray.origin.x,    &ray.origin.y,    &ray.origin.z,
+                              &ray.direction.x, &ray.direction.y, &ray.direction.z};
+  Bundle<R> b;
+  enter(job, in, course.n_first + job.wavelength, b);
+  if (!any(b.alive[0])) {
+    put_on_axis(job, own);
+    return end;
+  }
+  const kernel::Bend<R>* bends = course.bends + job.wavelength * job.steps;
+  std::uint8_t unsettled = 0;
+  NoTangents none;
+  for (std::size_t j = 0; j < job.steps; ++j) {
+    const Bundle<R> before = b;
+    pass(job, j, SharedMedia<R>{bends + j}, &unsettled, b, none);
+    if constexpr (!std::is_null_pointer_v<Seen>) {
+      const kernel::Step<R>& s = course.steps[j];
+      const R z = s.mirror ? -b.z[0].v : b.z[0].v;
+      const Vec3<R> point{b.x[0].v, b.y[0].v, s.sense * z + view.vertex_z[s.surface]};
+      const bool hit = b.tally[0] > static_cast<std::int32_t>(4 * j);
+      if (hit && kernel::finite(point.x) && kernel::finite(point.y) && kernel::finite(point.z)) seen(s.surface, point);
+    }
+    if (!any(b.alive[0])) return ended(job, view.vertex_z, j, unsettled != 0, ray, before, b);
+  }
+  leave(job, in, course.per_n_last + job.wavelength, b, own);
+  end.surface = course.steps[job.steps - 1].surface;
+  if (any(b.alive[0])) end.fate = RayFate::transmitted;
+  return end;
 }
 
 }  // namespace
+}  // namespace detail
 
 template <class T>
 TracedRay<T> trace(const Lens& lens, const Ray<T>& ray, const TraceOptions& options) noexcept {
-  return trace_one(lens.view<T>(), ray, whole_lens(options));
+  return detail::trace_one(lens, ray, options, nullptr);
 }
 
 template <class T>
-void trace(const Lens& lens, std::size_t count, const RayArrays<const T>& in, const RayArrays<T>& out, RayFate* fates,
-           int* surfaces, const TraceOptions& options) noexcept {
-  const auto view = lens.view<T>();
-  const auto path = whole_lens(options);
-  for (std::size_t i = 0; i < count; ++i) {
-    const Ray<T> ray{{in.x[i], in.y[i], in.z[i]}, {in.dx[i], in.dy[i], in.dz[i]}};
-    const auto [end, fate, surface] = trace_one(view, ray, path);
-    out.x[i] = end.origin.x;
-    out.y[i] = end.origin.y;
-    out.z[i] = end.origin.z;
-    out.dx[i] = end.direction.x;
-    out.dy[i] = end.direction.y;
-    out.dz[i] = end.direction.z;
-    if (fates) fates[i] = fate;
-    if (surfaces) surfaces[i] = surface;
-  }
+TracedRay<T> trace(const Lens& lens, const Ray<T>& ray, const TraceOptions& options,
+                   const std::function<void(int, const Vec3<T>&)>& seen) {
+  return detail::trace_one(lens, ray, options, seen);
 }
 
 template PETZVAL_API TracedRay<float> trace(const Lens&, const Ray<float>&, const TraceOptions&) noexcept;
 template PETZVAL_API TracedRay<double> trace(const Lens&, const Ray<double>&, const TraceOptions&) noexcept;
-template PETZVAL_API void trace(const Lens&, std::size_t, const RayArrays<const float>&, const RayArrays<float>&,
-                                RayFate*, int*, const TraceOptions&) noexcept;
-template PETZVAL_API void trace(const Lens&, std::size_t, const RayArrays<const double>&, const RayArrays<double>&,
-                                RayFate*, int*, const TraceOptions&) noexcept;
+template PETZVAL_API TracedRay<float> trace(const Lens&, const Ray<float>&, const TraceOptions&,
+                                            const std::function<void(int, const Vec3<float>&)>&);
+template PETZVAL_API TracedRay<double> trace(const Lens&, const Ray<double>&, const TraceOptions&,
+                                             const std::function<void(int, const Vec3<double>&)>&);
 
 }  // namespace petzval

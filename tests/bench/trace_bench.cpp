@@ -13,6 +13,7 @@
 
 #include "../trace/extended.hpp"
 #include "petzval/io/prescription_json.hpp"
+#include "petzval/trace/batch.hpp"
 #include "petzval/trace/sequential.hpp"
 #include "petzval/trace/trace.hpp"
 #include "table.hpp"
@@ -119,7 +120,7 @@ void batch(benchmark::State& state, const Rays& rays) {
   for (auto _ : state) {
     petzval::trace<T>(lens, count, {a[0].data(), a[1].data(), a[2].data(), a[3].data(), a[4].data(), a[5].data()},
                       {a[6].data(), a[7].data(), a[8].data(), a[9].data(), a[10].data(), a[11].data()}, fates.data(),
-                      surfaces.data(), backwards);
+                      surfaces.data(), {.travel = Travel::to_scene});
     benchmark::ClobberMemory();
   }
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(count));

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "../report.hpp"
 #include "petzval/lens/lens.hpp"
 
 namespace {
@@ -197,7 +198,8 @@ TYPED_TEST(AsphereOf, FindsTheFirstCrossingOfSteepRays) {
     EXPECT_LT(doubtful, rays / 10) << name;
   }
   EXPECT_GT(several, 50) << "the rays are too easy";
-  this->RecordProperty("worst_eps", std::to_string(most));
+  testing_report::put("first crossing of steep rays with aspheres, x cos(incidence)",
+                      testing_report::one_ray<TypeParam>, most, "4 eps");
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <random>
 #include <string>
 
+#include "../report.hpp"
 #include "quad.hpp"
 
 namespace {
@@ -80,7 +81,7 @@ TYPED_TEST(SnellOf, DirectionIsWithinFourEpsOverTheCosine) {
     }
   }
   EXPECT_LE(most, 4);
-  this->RecordProperty("worst_eps", std::to_string(most));
+  testing_report::put("refraction, x cos(refraction)", testing_report::one_ray<TypeParam>, most, "4 eps");
 }
 
 TYPED_TEST(SnellOf, DirectionIsOfUnitLength) {

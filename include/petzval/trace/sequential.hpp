@@ -2,9 +2,12 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <limits>
 
 #include "petzval/core/ray.hpp"
 #include "petzval/lens/tables.hpp"
+#include "petzval/trace/iris.hpp"
 
 namespace petzval::kernel {
 
@@ -15,6 +18,7 @@ struct Path {
   bool apertures = true;
   std::size_t first = 0;
   std::size_t last = static_cast<std::size_t>(-1);  ///< beyond the end: all surfaces
+  Iris iris = {};
 };
 
 /// A ray on its way, lens frame, any scalar.
@@ -25,6 +29,17 @@ struct Passage {
   int surface = -1;
 };
 
+/// Whether a point of the stop's plane lies within the iris; its edges count as inside.
+template <class T>
+Mask<T> within(const Iris& iris, const T& x, const T& y) noexcept {
+  using R = Storage<T>;
+  Mask<T> inside = x <= std::numeric_limits<R>::max();
+  for (const IrisEdge& edge : iris) {
+    inside = all_of(inside, x * static_cast<R>(edge.nx) + y * static_cast<R>(edge.ny) <= static_cast<R>(edge.distance));
+  }
+  return inside;
+}
+
 struct NoObserver {
   template <class T>
   void operator()(int, const Vec<T>&) const noexcept {}
@@ -33,8 +48,8 @@ struct NoObserver {
 /// Traces one ray through a part of the lens, surface by surface, and leaves early when it ends.
 ///
 /// direction: unit length (within a few ulp); so is the result where the ray was transmitted. observer(surface, point)
-/// sees each hit within the lens, lens frame. The one loop for both ways of travel and every scalar; batches and
-/// drawings run on it too.
+/// sees each hit within the lens, lens frame. The one loop for both ways of travel and every scalar: derivatives, parts
+/// of the lens and drawings run on it, and the faster recurrence of `trace` and of batches is tested against it.
 template <class T, class Observer = NoObserver>
 Passage<T> trace(const LensView<Storage<T>>& lens, const Vec<T>& origin, const Vec<T>& direction, const Path& path,
                  Observer&& observer = {}) noexcept {
@@ -87,6 +102,9 @@ Passage<T> trace(const LensView<Storage<T>>& lens, const Vec<T>& origin, const V
 
     const T r2 = p.x * p.x + p.y * p.y;
     if (path.apertures && !(r2 <= surface.semi_diameter_squared && r2 >= surface.inner_squared)) {
+      return end(RayFate::vignetted);
+    }
+    if (path.apertures && static_cast<std::int32_t>(i) == lens.stop && !within(path.iris, p.x, p.y)) {
       return end(RayFate::vignetted);
     }
     if (surface.mirror) {

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+#include "petzval/core/export.hpp"
+#include "petzval/core/ray.hpp"
+#include "petzval/lens/lens.hpp"
+#include "petzval/trace/iris.hpp"
+
+namespace petzval {
+
+/// How a batch computes. Either way a ray's answer depends on that ray alone, not on its neighbours, the size of the
+/// batch or the number of threads.
+enum class Arithmetic : std::uint8_t {
+  fast,          ///< fused operations and approximate roots with Newton steps, where the processor has them
+  reproducible,  ///< IEEE operations only: the same bits from every instruction set and compiler
+};
+
+/// What the processor offers to the loops over rays. On processors other than x86-64 there is only `baseline`.
+enum class InstructionSet : std::uint8_t { baseline, avx2, avx512 };
+
+/// "fast" or "reproducible".
+PETZVAL_API std::string_view name(Arithmetic arithmetic) noexcept;
+/// "baseline", "avx2" or "avx512".
+PETZVAL_API std::string_view name(InstructionSet set) noexcept;
+
+/// Those of this processor, narrowest first.
+PETZVAL_API std::span<const InstructionSet> instruction_sets() noexcept;
+
+/// How to trace a batch.
+struct BatchOptions {
+  Travel travel = Travel::to_film;
+  std::size_t wavelength = 0;                  ///< position among the compiled ones
+  const std::uint16_t* wavelengths = nullptr;  ///< N, one for each ray, instead of `wavelength`
+  bool apertures = true;                       ///< whether clear apertures and the iris clip
+  Iris iris = {};                              ///< blades in the plane of the stop
+  Arithmetic arithmetic = Arithmetic::fast;
+  InstructionSet instruction_set = InstructionSet::avx512;  ///< at most: the widest up to it that the processor has
+};
+
+/// Rays as a structure of arrays: N values each, lens frame, unit directions.
+template <class T>
+struct RayArrays {
+  T* x = nullptr;
+  T* y = nullptr;
+  T* z = nullptr;
+  T* dx = nullptr;
+  T* dy = nullptr;
+  T* dz = nullptr;
+};
+
+/// Traces N rays (double or float) through the whole lens, in blocks of 64 on the lanes of the processor.
+///
+/// in, out: N each, same order, any alignment (of 64 bytes is fastest); out may be in (the same arrays, not shifted
+/// ones). fates and surfaces: N each, or null where not wanted; the surface as in TracedRay. Rays count as whole lines,
+/// as for the trace of one ray, and the same rays are refused. A ray that is lost comes back as it went in (at the
+/// origin along the axis where it was not finite): every slot of the results is written and finite. A transmitted ray
+/// has its point on the last surface met and its new direction.
+///
+/// Reproducible batches are rays traced one by one, to the bit; fast ones agree with them within 8 eps of what an eps
+/// in the ray itself does (tests/trace), fates except as close to an edge. Direction errors by lens: README. No
+/// allocation, no threads: give parts of the arrays to parallel_for.
+template <class T>
+PETZVAL_API void trace(const Lens& lens, std::size_t count, const RayArrays<const T>& in, const RayArrays<T>& out,
+                       RayFate* fates, int* surfaces, const BatchOptions& options = {}) noexcept;
+
+/// The same for rays as an array of structures: they are transposed block by block. rays, traced: N each.
+template <class T>
+PETZVAL_API void trace(const Lens& lens, std::span<const Ray<T>> rays, TracedRay<T>* traced,
+                       const BatchOptions& options = {}) noexcept;
+
+}  // namespace petzval

@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "petzval/trace/batch.hpp"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+#include "block.hpp"
+#include "job.hpp"
+#include "petzval/trace/differentials.hpp"
+
+namespace petzval {
+namespace {
+
+using detail::block_rays;
+using detail::BlockJob;
+
+constexpr std::size_t block = block_rays;
+
+const detail::BlockTracer& tracer([[maybe_unused]] InstructionSet set,
+                                  [[maybe_unused]] Arithmetic arithmetic) noexcept {
+#if defined(__x86_64__)
+  const bool fast = arithmetic == Arithmetic::fast;
+  switch (std::min(set, instruction_sets().back())) {
+    case InstructionSet::avx512: return fast ? detail::avx512_fast : detail::avx512_reproducible;
+    case InstructionSet::avx2: return fast ? detail::avx2_fast : detail::avx2_reproducible;
+    case InstructionSet::baseline: break;
+  }
+#endif
+  return detail::baseline;
+}
+
+template <class R>
+detail::TraceBlocks<R> loops(const detail::BlockTracer& tracer) noexcept {
+  if constexpr (sizeof(R) == sizeof(float)) {
+    return tracer.single;
+  } else {
+    return tracer.twice;
+  }
+}
+
+/// Where each ray has its wavelength, that of the batch is not looked at.
+template <class R>
+BlockJob<R> job_for(const Lens& lens, BatchOptions options) noexcept {
+  if (options.wavelengths) options.wavelength = 0;
+  auto job = detail::job_for<R>(lens.view<R>(), options);
+  job.wavelengths = options.wavelengths;
+  return job;
+}
+
+/// A block of rays, and of their derivatives, in memory of its own: for the rest of a batch, and for rays that come as
+/// structures.
+template <class R>
+struct Block {
+  alignas(64) std::array<std::array<R, block>, 18> v{};
+  std::array<RayFate, block> fates;
+  std::array<int, block> surfaces;
+  std::array<std::uint16_t, block> wavelengths{};
+
+  template <class T = R>
+  RayArrays<T> arrays(std::size_t first = 0) noexcept {
+    const auto at = [&](std::size_t k) { return v[first + k].data(); };
+    return {at(0), at(1), at(2), at(3), at(4), at(5)};
+  }
+  template <class T = R>
+  RayTangents<T> tangents() noexcept {
+    return {arrays<T>(6), arrays<T>(12)};
+  }
+};
+
+template <class T>
+std::array<T*, 6> pointers(const RayArrays<T>& a) noexcept {
+  return {a.x, a.y, a.z, a.dx, a.dy, a.dz};
+}
+
+/// The first `count` rays of a block, from and to arrays.
+template <class R>
+void take(const RayArrays<const R>& from, std::size_t begin, std::size_t count, const RayArrays<R>& to) noexcept {
+  for (std::size_t k = 0; k < 6; ++k) {
+    const R* const first = pointers(from)[k] + begin;
+    std::copy(first, first + count, pointers(to)[k]);
+  }
+}
+template <class R>
+void give(const RayArrays<R>& from, std::size_t count, const RayArrays<R>& to, std::size_t begin) noexcept {
+  for (std::size_t k = 0; k < 6; ++k) {
+    const R* const first = pointers(from)[k];
+    std::copy(first, first + count, pointers(to)[k] + begin);
+  }
+}
+
+/// Points a job at a block.
+template <class R>
+void use(Block<R>& rays, BlockJob<R>& job) noexcept {
+  job.blocks = 1;
+  job.in = rays.template arrays<const R>();
+  job.out = rays.arrays();
+  job.fates = rays.fates.data();
+  job.surfaces = rays.surfaces.data();
+  if (job.wavelengths) job.wavelengths = rays.wavelengths.data();
+}
+
+template <class R>
+void trace_all(const Lens& lens, std::size_t count, const RayArrays<const R>& in,
+               const RayTangents<const R>* tangents_in, const RayArrays<R>& out, const RayTangents<R>& tangents_out,
+               RayFate* fates, int* surfaces, const BatchOptions& options) noexcept {
+  const auto trace_blocks = loops<R>(tracer(options.instruction_set, options.arithmetic));
+  auto job = job_for<R>(lens, options);
+  job.blocks = count / block;
+  job.in = in;
+  job.out = out;
+  job.fates = fates;
+  job.surfaces = surfaces;
+  job.tangents_in = tangents_in;
+  job.tangents_out = tangents_out;
+  trace_blocks(job);
+
+  const std::size_t done = job.blocks * block, rest = count - done;
+  if (rest == 0) return;
+  Block<R> last;
+  std::fill(last.v[5].begin(), last.v[5].end(), R(1));
+  take(in, done, rest, last.arrays());
+  if (job.wavelengths) std::copy(options.wavelengths + done, options.wavelengths + count, last.wavelengths.begin());
+  use(last, job);
+  const auto tangents = last.template tangents<const R>();
+  if (tangents_in) {
+    take(tangents_in->u, done, rest, last.arrays(6));
+    take(tangents_in->v, done, rest, last.arrays(12));
+    job.tangents_in = &tangents;
+    job.tangents_out = last.tangents();
+  }
+  trace_blocks(job);
+  give(last.arrays(), rest, out, done);
+  if (tangents_in) {
+    give(last.arrays(6), rest, tangents_out.u, done);
+    give(last.arrays(12), rest, tangents_out.v, done);
+  }
+  if (fates) std::copy_n(last.fates.begin(), rest, fates + done);
+  if (surfaces) std::copy_n(last.surfaces.begin(), rest, surfaces + done);
+}
+
+}  // namespace
+
+std::string_view name(Arithmetic arithmetic) noexcept {
+  return arithmetic == Arithmetic::fast ? "fast" : "reproducible";
+}
+
+std::string_view name(InstructionSet set) noexcept {
+  switch (set) {
+    case InstructionSet::baseline: return "baseline";
+    case InstructionSet::avx2: return "avx2";
+    case InstructionSet::avx512: return "avx512";
+  }
+  return "unknown";
+}
+
+std::span<const InstructionSet> instruction_sets() noexcept {
+  static constexpr InstructionSet all[] = {InstructionSet::baseline, InstructionSet::avx2, InstructionSet::avx512};
+#if defined(__x86_64__)
+  static const std::size_t count = [] {
+    __builtin_cpu_init();
+    const bool avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+    const bool avx512 = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+                        __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl");
+    return std::size_t{1} + (avx2 ? 1 : 0) + (avx2 && avx512 ? 1 : 0);
+  }();
+  return {all, count};
+#else
+  return {all, 1};
+#endif
+}
+
+template <class T>
+void trace(const Lens& lens, std::size_t count, const RayArrays<const T>& in, const RayArrays<T>& out, RayFate* fates,
+           int* surfaces, const BatchOptions& options) noexcept {
+  trace_all<T>(lens, count, in, nullptr, out, {}, fates, surfaces, options);
+}
+
+template <class T>
+void trace_differentials(const Lens& lens, std::size_t count, const RayArrays<const T>& in,
+                         const RayTangents<const T>& tangents_in, const RayArrays<T>& out,
+                         const RayTangents<T>& tangents_out, RayFate* fates, int* surfaces,
+                         const BatchOptions& options) noexcept {
+  trace_all<T>(lens, count, in, &tangents_in, out, tangents_out, fates, surfaces, options);
+}
+
+template <class T>
+void trace(const Lens& lens, std::span<const Ray<T>> rays, TracedRay<T>* traced, const BatchOptions& options) noexcept {
+  const auto trace_blocks = loops<T>(tracer(options.instruction_set, options.arithmetic));
+  auto job = job_for<T>(lens, options);
+  Block<T> some;
+  use(some, job);
+  const auto& [x, y, z, dx, dy, dz] = some.arrays();
+  for (std::size_t begin = 0; begin < rays.size(); begin += block) {
+    const std::size_t count = std::min(block, rays.size() - begin);
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto& [origin, direction] = rays[begin + i];
+      x[i] = origin.x, y[i] = origin.y, z[i] = origin.z;
+      dx[i] = direction.x, dy[i] = direction.y, dz[i] = direction.z;
+    }
+    if (options.wavelengths) std::copy_n(options.wavelengths + begin, count, some.wavelengths.begin());
+    trace_blocks(job);
+    for (std::size_t i = 0; i < count; ++i) {
+      traced[begin + i] = {{{x[i], y[i], z[i]}, {dx[i], dy[i], dz[i]}}, some.fates[i], some.surfaces[i]};
+    }
+  }
+}
+
+template PETZVAL_API void trace(const Lens&, std::size_t, const RayArrays<const float>&, const RayArrays<float>&,
+                                RayFate*, int*, const BatchOptions&) noexcept;
+template PETZVAL_API void trace(const Lens&, std::size_t, const RayArrays<const double>&, const RayArrays<double>&,
+                                RayFate*, int*, const BatchOptions&) noexcept;
+template PETZVAL_API void trace_differentials(const Lens&, std::size_t, const RayArrays<const float>&,
+                                              const RayTangents<const float>&, const RayArrays<float>&,
+                                              const RayTangents<float>&, RayFate*, int*, const BatchOptions&) noexcept;
+template PETZVAL_API void trace_differentials(const Lens&, std::size_t, const RayArrays<const double>&,
+                                              const RayTangents<const double>&, const RayArrays<double>&,
+                                              const RayTangents<double>&, RayFate*, int*, const BatchOptions&) noexcept;
+template PETZVAL_API void trace(const Lens&, std::span<const Ray<float>>, TracedRay<float>*,
+                                const BatchOptions&) noexcept;
+template PETZVAL_API void trace(const Lens&, std::span<const Ray<double>>, TracedRay<double>*,
+                                const BatchOptions&) noexcept;
+
+}  // namespace petzval

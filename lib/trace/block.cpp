@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+// The loops over blocks of rays, compiled once for each instruction set and arithmetic: PETZVAL_TRACER names the
+// result, PETZVAL_FAST chooses between Arithmetic::fast and reproducible.
+#include "block.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+
+#include "march.hpp"
+
+namespace petzval::detail {
+namespace {
+
+/// Arrays from a position on.
+template <class R, class T>
+RayArrays<T> from(const RayArrays<T>& a, std::size_t o) noexcept {
+  return {a.x + o, a.y + o, a.z + o, a.dx + o, a.dy + o, a.dz + o};
+}
+
+/// Fates and surfaces from the tallies.
+template <class R>
+void report(const BlockJob<R>& job, const Bundle<R>& b, const std::uint8_t* unsettled, std::size_t o) noexcept {
+  constexpr int rays = Bundle<R>::rays;
+  typename Native<R>::Bit tally[rays];
+  __builtin_memcpy(tally, b.tally, sizeof tally);
+  // Surfaces rise or fall from step to step.
+  const auto steps = static_cast<std::int32_t>(job.steps);
+  const std::int32_t first = job.course.steps[0].surface;
+  const std::int32_t by = first == 0 ? 1 : -1;
+  if (job.surfaces) {
+    for (int l = 0; l < rays; ++l) {
+      const auto passed = static_cast<std::int32_t>(tally[l]) >> 2;
+      job.surfaces[o + static_cast<std::size_t>(l)] = first + by * (passed < steps ? passed : steps - 1);
+    }
+  }
+  if (job.fates) {
+    for (int l = 0; l < rays; ++l) {
+      const auto t = static_cast<std::int32_t>(tally[l]);
+      const std::int32_t cause = t & 3;
+      std::int32_t fate = cause == 0 ? static_cast<std::int32_t>(RayFate::missed_surface)
+                                     : static_cast<std::int32_t>(RayFate::totally_reflected);
+      fate = cause == 1 ? static_cast<std::int32_t>(RayFate::vignetted) : fate;
+      fate = unsettled[l] != 0 ? static_cast<std::int32_t>(RayFate::no_convergence) : fate;
+      fate = t > 4 * steps ? static_cast<std::int32_t>(RayFate::transmitted) : fate;
+      job.fates[o + static_cast<std::size_t>(l)] = static_cast<RayFate>(fate);
+    }
+  }
+}
+
+/// One bundle of a job: the rays from o on. index, per_index: in front of the lens and one over that behind it, by ray.
+template <class R, class MediaAt>
+void trace_bundle(const BlockJob<R>& job, std::size_t o, const R* index, const R* per_index, const MediaAt& media_at) {
+  const auto in = from<R>(job.in, o);
+  const auto out = from<R>(job.out, o);
+  std::uint8_t unsettled[Bundle<R>::rays] = {};
+  Bundle<R> b;
+  enter(job, in, index, b);
+  Mask<R> taken = b.alive[0];
+  for (int i = 1; i < Bundle<R>::vectors; ++i) taken = taken & b.alive[i];
+  if (job.tangents_in) {
+    TwoTangents<R> tangents;
+    enter(job, from<R>(job.tangents_in->u, o), index, tangents.u);
+    enter(job, from<R>(job.tangents_in->v, o), index, tangents.v);
+    for (std::size_t j = 0; j < job.steps; ++j) pass(job, j, media_at(j), unsettled, b, tangents);
+    leave(job, in, per_index, b, out);
+    leave(job, per_index, b, tangents.u, from<R>(job.tangents_out.u, o));
+    leave(job, per_index, b, tangents.v, from<R>(job.tangents_out.v, o));
+  } else {
+    NoTangents none;
+    for (std::size_t j = 0; j < job.steps; ++j) pass(job, j, media_at(j), unsettled, b, none);
+    leave(job, in, per_index, b, out);
+  }
+  if (!every(taken)) put_on_axis(job, out);
+  report(job, b, unsettled, o);
+}
+
+template <class R>
+void trace_blocks(const BlockJob<R>& job) noexcept {
+  constexpr std::size_t rays = Bundle<R>::rays;
+  const auto& course = job.course;
+  R index[rays], per_index[rays];
+  if (!job.wavelengths) {
+    const kernel::Bend<R>* bends = course.bends + job.wavelength * job.steps;
+    for (std::size_t l = 0; l < rays; ++l) {
+      index[l] = course.n_first[job.wavelength];
+      per_index[l] = course.per_n_last[job.wavelength];
+    }
+    for (std::size_t o = 0; o < job.blocks * block_rays; o += rays) {
+      trace_bundle(job, o, index, per_index, [&](std::size_t j) { return SharedMedia<R>{bends + j}; });
+    }
+    return;
+  }
+  for (std::size_t o = 0; o < job.blocks * block_rays; o += rays) {
+    std::uint16_t wavelengths[rays];
+    for (std::size_t l = 0; l < rays; ++l) {
+      // A wavelength that was not compiled loses the ray: there is no index.
+      const bool known = job.wavelengths[o + l] < job.compiled_wavelengths;
+      wavelengths[l] = known ? job.wavelengths[o + l] : std::uint16_t{0};
+      index[l] = known ? course.n_first[wavelengths[l]] : std::numeric_limits<R>::quiet_NaN();
+      per_index[l] = course.per_n_last[wavelengths[l]];
+    }
+    trace_bundle(job, o, index, per_index, [&](std::size_t j) {
+      return MediaByRay<R>{course.bends + j, job.steps, wavelengths};
+    });
+  }
+}
+
+}  // namespace
+
+const BlockTracer PETZVAL_TRACER{trace_blocks<float>, trace_blocks<double>};
+
+}  // namespace petzval::detail

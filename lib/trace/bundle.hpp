@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+// Rays on their way, lane by lane. Included like lanes.hpp.
+#pragma once
+
+#include "block.hpp"
+#if defined(PETZVAL_ONE_LANE)
+#include "one_lane.hpp"
+#else
+#include "lanes.hpp"
+#endif
+
+/// Where there are registers for four vectors of rays, the loop over them is laid out.
+#if defined(__AVX512F__)
+#define PETZVAL_UNROLL _Pragma("GCC unroll 4")
+#else
+#define PETZVAL_UNROLL
+#endif
+
+namespace petzval::detail {
+namespace {
+
+/// Rays in front of the step to come: points from its vertex, directions p of length n (the index), in the turned frame
+/// of kernel::Step. Rays that have ended go on and their numbers mean nothing; `alive` and `tally` tell.
+template <class R>
+struct Bundle {
+  using V = Lanes<R>;
+  static constexpr int rays = rays_in_bundle<R>;
+  static constexpr int vectors = rays / V::width;
+  static_assert(block_rays % rays == 0);
+
+  V x[vectors], y[vectors], z[vectors];
+  V px[vectors], py[vectors], pz[vectors];
+  V r2[vectors];  ///< x^2 + y^2
+  Mask<R> alive[vectors];
+  /// Four for every surface passed: one for the hit, one for the rim, two for the refraction. What is missing at the
+  /// last one tells the ray's fate.
+  typename Native<R>::Bits tally[vectors];
+};
+
+/// How points and directions change with one parameter.
+template <class R>
+struct Tangent {
+  Lanes<R> x[Bundle<R>::vectors], y[Bundle<R>::vectors], z[Bundle<R>::vectors];
+  Lanes<R> px[Bundle<R>::vectors], py[Bundle<R>::vectors], pz[Bundle<R>::vectors];
+};
+
+}  // namespace
+}  // namespace petzval::detail

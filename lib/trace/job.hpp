@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <limits>
+
+#include "block.hpp"
+
+namespace petzval::detail {
+
+/// The search over an asphere by the kernel of one ray.
+template <class R>
+Found search_asphere(const kernel::Asphere<R>& asphere, R sense, BeforeAsphere<R>& ray) {
+  const auto [point, hit, converged, beside] =
+      kernel::intersect(asphere, kernel::Vec<R>{ray.x, ray.y, ray.z}, kernel::Vec<R>{ray.dx, ray.dy, ray.dz}, sense);
+  ray.x = point.x;
+  ray.y = point.y;
+  ray.z = point.z;
+  if (hit) return Found::hit;
+  return beside ? Found::beside : converged ? Found::miss : Found::no_convergence;
+}
+
+/// What a lens and some options say of a job; whose rays, is left to say. Options: of one ray or of a batch.
+template <class R, class Options>
+BlockJob<R> job_for(const kernel::LensView<R>& view, const Options& options) noexcept {
+  BlockJob<R> job;
+  job.course = options.travel == Travel::to_film ? view.course_to_film : view.course_to_scene;
+  job.steps = view.count;
+  job.aspheres = view.aspheres;
+  job.search = search_asphere<R>;
+  job.compiled_wavelengths = view.wavelengths;
+  job.apertures = options.apertures;
+  job.iris = options.iris;
+  if (options.wavelength < view.wavelengths) {
+    job.wavelength = options.wavelength;
+  } else {
+    static constexpr R no_index = std::numeric_limits<R>::quiet_NaN();
+    job.course.n_first = &no_index;  // which loses every ray
+  }
+  return job;
+}
+
+}  // namespace petzval::detail

@@ -1,0 +1,280 @@
+// SPDX-License-Identifier: Apache-2.0
+// As many rays side by side as a register holds: numbers and masks of the seam in core/scalar.hpp, on the vectors of
+// the compiler. (Google Highway would bring its own: the one in Debian 12 has no SSE2 and no approximate root of
+// doubles.)
+//
+// Included by the sources of one instruction set each, in a namespace without a name: what two of them have under one
+// name must never meet in the linker. For the same reason they call no function of another library.
+#pragma once
+
+#include <cstdint>
+
+#if defined(__x86_64__)
+#include <immintrin.h>
+#endif
+
+namespace petzval::detail {
+namespace {
+
+#if defined(__AVX512F__)
+inline constexpr int lane_bytes = 64;
+#elif defined(__AVX2__)
+inline constexpr int lane_bytes = 32;
+#else
+inline constexpr int lane_bytes = 16;
+#endif
+
+template <class R>
+struct Native;
+template <>
+struct Native<float> {
+  using Values = float __attribute__((vector_size(lane_bytes)));
+  using Bit = std::int32_t;
+  using Bits = std::int32_t __attribute__((vector_size(lane_bytes)));
+};
+template <>
+struct Native<double> {
+  using Values = double __attribute__((vector_size(lane_bytes)));
+  using Bit = std::int64_t;
+  using Bits = std::int64_t __attribute__((vector_size(lane_bytes)));
+};
+
+#define PETZVAL_INLINE inline __attribute__((always_inline))
+
+/// 64 or 32 rays go together, enough to hide the latency of a root behind the others.
+template <class R>
+inline constexpr int rays_in_bundle = 256 / static_cast<int>(sizeof(R));
+
+/// Which lanes: a comparison's answer.
+template <class R>
+struct Mask {
+#if defined(__AVX512F__)
+  using Bits = std::uint16_t;
+#else
+  using Bits = typename Native<R>::Bits;
+#endif
+  Bits bits;
+
+  friend PETZVAL_INLINE Mask operator&(Mask a, Mask b) noexcept { return {static_cast<Bits>(a.bits & b.bits)}; }
+  friend PETZVAL_INLINE Mask operator|(Mask a, Mask b) noexcept { return {static_cast<Bits>(a.bits | b.bits)}; }
+  /// a where not b.
+  friend PETZVAL_INLINE Mask without(Mask a, Mask b) noexcept { return {static_cast<Bits>(a.bits & ~b.bits)}; }
+};
+
+/// One number for each of `width` rays.
+template <class R>
+struct Lanes {
+  using Scalar = R;
+  using Values = typename Native<R>::Values;
+  static constexpr int width = lane_bytes / static_cast<int>(sizeof(R));
+  Values v;
+
+  Lanes() = default;
+  PETZVAL_INLINE Lanes(Values values) noexcept : v(values) {}
+  PETZVAL_INLINE Lanes(R value) noexcept : v(value - Values{}) {}
+
+  friend PETZVAL_INLINE Lanes operator+(Lanes a, Lanes b) noexcept { return a.v + b.v; }
+  friend PETZVAL_INLINE Lanes operator-(Lanes a, Lanes b) noexcept { return a.v - b.v; }
+  friend PETZVAL_INLINE Lanes operator*(Lanes a, Lanes b) noexcept { return a.v * b.v; }
+  friend PETZVAL_INLINE Lanes operator/(Lanes a, Lanes b) noexcept { return a.v / b.v; }
+  friend PETZVAL_INLINE Lanes operator-(Lanes a) noexcept { return -a.v; }
+
+#if defined(__AVX512F__)
+  template <int predicate>
+  static PETZVAL_INLINE Mask<R> compare(Lanes a, Lanes b) noexcept {
+    if constexpr (sizeof(R) == 4) {
+      return {_mm512_cmp_ps_mask(a.v, b.v, predicate)};
+    } else {
+      return {_mm512_cmp_pd_mask(a.v, b.v, predicate)};
+    }
+  }
+  friend PETZVAL_INLINE Mask<R> operator<(Lanes a, Lanes b) noexcept { return compare<_CMP_LT_OQ>(a, b); }
+  friend PETZVAL_INLINE Mask<R> operator<=(Lanes a, Lanes b) noexcept { return compare<_CMP_LE_OQ>(a, b); }
+  friend PETZVAL_INLINE Mask<R> operator>(Lanes a, Lanes b) noexcept { return compare<_CMP_GT_OQ>(a, b); }
+  friend PETZVAL_INLINE Mask<R> operator>=(Lanes a, Lanes b) noexcept { return compare<_CMP_GE_OQ>(a, b); }
+#else
+  friend PETZVAL_INLINE Mask<R> operator<(Lanes a, Lanes b) noexcept { return {a.v < b.v}; }
+  friend PETZVAL_INLINE Mask<R> operator<=(Lanes a, Lanes b) noexcept { return {a.v <= b.v}; }
+  friend PETZVAL_INLINE Mask<R> operator>(Lanes a, Lanes b) noexcept { return {a.v > b.v}; }
+  friend PETZVAL_INLINE Mask<R> operator>=(Lanes a, Lanes b) noexcept { return {a.v >= b.v}; }
+#endif
+};
+
+template <class R>
+PETZVAL_INLINE Lanes<R> select(Mask<R> mask, Lanes<R> a, Lanes<R> b) noexcept {
+#if defined(__AVX512F__)
+  if constexpr (sizeof(R) == 4) {
+    return Lanes<R>(_mm512_mask_blend_ps(mask.bits, b.v, a.v));
+  } else {
+    return Lanes<R>(_mm512_mask_blend_pd(static_cast<__mmask8>(mask.bits), b.v, a.v));
+  }
+#else
+  return Lanes<R>(mask.bits ? a.v : b.v);
+#endif
+}
+
+template <class R>
+PETZVAL_INLINE bool any(Mask<R> mask) noexcept {
+#if defined(__AVX512F__)
+  return mask.bits != 0;
+#elif defined(__AVX2__)
+  return _mm256_movemask_epi8(reinterpret_cast<__m256i>(mask.bits)) != 0;
+#elif defined(__x86_64__)
+  return _mm_movemask_epi8(reinterpret_cast<__m128i>(mask.bits)) != 0;
+#else
+  std::int64_t word[2];
+  __builtin_memcpy(word, &mask.bits, sizeof word);
+  return (word[0] | word[1]) != 0;
+#endif
+}
+
+template <class R>
+PETZVAL_INLINE Mask<R> all_of(Mask<R> a, Mask<R> b) noexcept {
+  return a & b;
+}
+template <class R>
+PETZVAL_INLINE Mask<R> all_of(Mask<R> a, Mask<R> b, Mask<R> c) noexcept {
+  return a & b & c;
+}
+
+/// The square root, as IEEE has it.
+template <class R>
+PETZVAL_INLINE Lanes<R> sqrt(Lanes<R> x) noexcept {
+#if defined(__AVX512F__)
+  if constexpr (sizeof(R) == 4) {
+    return Lanes<R>(_mm512_maskz_sqrt_ps(0xffff, x.v));
+  } else {
+    return Lanes<R>(_mm512_maskz_sqrt_pd(0xff, x.v));
+  }
+#elif defined(__AVX2__)
+  if constexpr (sizeof(R) == 4) {
+    return Lanes<R>(_mm256_sqrt_ps(x.v));
+  } else {
+    return Lanes<R>(_mm256_sqrt_pd(x.v));
+  }
+#elif defined(__x86_64__)
+  if constexpr (sizeof(R) == 4) {
+    return Lanes<R>(_mm_sqrt_ps(x.v));
+  } else {
+    return Lanes<R>(_mm_sqrt_pd(x.v));
+  }
+#else
+  for (int i = 0; i < Lanes<R>::width; ++i) {
+    if constexpr (sizeof(R) == 4) {
+      x.v[i] = __builtin_sqrtf(x.v[i]);
+    } else {
+      x.v[i] = __builtin_sqrt(x.v[i]);
+    }
+  }
+  return x;
+#endif
+}
+
+/// Whether a mask of comparisons has every lane.
+template <class R>
+PETZVAL_INLINE bool every(Mask<R> mask) noexcept {
+#if defined(__AVX512F__)
+  return mask.bits == (1u << Lanes<R>::width) - 1;
+#else
+  return !any(Mask<R>{~mask.bits});
+#endif
+}
+
+/// The square root at the speed that the arithmetic allows: approximate, and then corrected, where that is faster. Not
+/// a number at 0 then.
+template <class R>
+PETZVAL_INLINE Lanes<R> root(Lanes<R> x) noexcept {
+#if PETZVAL_FAST && defined(__AVX512F__)
+  const Lanes<R> half(R(0.5));
+  if constexpr (sizeof(R) == 4) {
+    const Lanes<R> y(_mm512_maskz_rsqrt14_ps(0xffff, x.v));
+    const Lanes<R> s = x * y;
+    return s + half * y * (x - s * s);
+  } else {
+    const Lanes<R> y(_mm512_maskz_rsqrt14_pd(0xff, x.v));
+    const Lanes<R> s = x * y, h = half * y;
+    const Lanes<R> e = half - s * h;
+    const Lanes<R> closer = s + s * e;
+    return closer + (h + h * e) * (x - closer * closer);
+  }
+#else
+  return sqrt(x);
+#endif
+}
+
+/// A second root beside root(): of doubles under AVX2 by way of the float one, so that the two do not wait for the one
+/// divider. For numbers within the range of float.
+template <class R>
+PETZVAL_INLINE Lanes<R> second_root(Lanes<R> x) noexcept {
+#if PETZVAL_FAST && defined(__AVX2__) && !defined(__AVX512F__)
+  if constexpr (sizeof(R) == 8) {
+    const Lanes<R> half(R(0.5));
+    const Lanes<R> y(_mm256_cvtps_pd(_mm_rsqrt_ps(_mm256_cvtpd_ps(x.v))));
+    const Lanes<R> s = x * y, h = half * y;
+    const Lanes<R> e = half - s * h;
+    const Lanes<R> closer = s + s * e, h_closer = h + h * e;
+    const Lanes<R> f = half - closer * h_closer;
+    const Lanes<R> close = closer + closer * f;
+    return close + (h_closer + h_closer * f) * (x - close * close);
+  }
+#endif
+  return root(x);
+}
+
+/// Where root() and second_root() are numbers.
+template <class R>
+PETZVAL_INLINE Mask<R> has_root(Lanes<R> x) noexcept {
+#if PETZVAL_FAST && defined(__AVX2__)
+  return x > Lanes<R>(R(0));
+#else
+  return x >= Lanes<R>(R(0));
+#endif
+}
+
+/// Adds a small number to a counter where the mask is set.
+template <int by, class R>
+PETZVAL_INLINE void count(typename Native<R>::Bits& counter, Mask<R> mask) noexcept {
+#if defined(__AVX512F__)
+  using Bits = typename Native<R>::Bits;
+  const auto c = reinterpret_cast<__m512i>(counter);
+  if constexpr (sizeof(R) == 4) {
+    counter = reinterpret_cast<Bits>(_mm512_mask_add_epi32(c, mask.bits, c, _mm512_set1_epi32(by)));
+  } else {
+    counter =
+        reinterpret_cast<Bits>(_mm512_mask_add_epi64(c, static_cast<__mmask8>(mask.bits), c, _mm512_set1_epi64(by)));
+  }
+#else
+  for (int i = 0; i < by; ++i) counter -= mask.bits;
+#endif
+}
+
+/// Puts the other counter where the mask is set.
+template <class R>
+PETZVAL_INLINE void keep(typename Native<R>::Bits& counter, Mask<R> mask, typename Native<R>::Bits other) noexcept {
+#if defined(__AVX512F__)
+  using Bits = typename Native<R>::Bits;
+  const auto c = reinterpret_cast<__m512i>(counter), o = reinterpret_cast<__m512i>(other);
+  if constexpr (sizeof(R) == 4) {
+    counter = reinterpret_cast<Bits>(_mm512_mask_blend_epi32(mask.bits, c, o));
+  } else {
+    counter = reinterpret_cast<Bits>(_mm512_mask_blend_epi64(static_cast<__mmask8>(mask.bits), c, o));
+  }
+#else
+  counter = mask.bits ? other : counter;
+#endif
+}
+
+/// Unaligned.
+template <class R>
+PETZVAL_INLINE Lanes<R> load(const R* from) noexcept {
+  typename Lanes<R>::Values v;
+  __builtin_memcpy(&v, from, sizeof v);
+  return Lanes<R>(v);
+}
+template <class R>
+PETZVAL_INLINE void store(R* to, Lanes<R> x) noexcept {
+  __builtin_memcpy(to, &x.v, sizeof x.v);
+}
+
+}  // namespace
+}  // namespace petzval::detail

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+// A bundle into the lens, through its surfaces and out again. Included like lanes.hpp.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+
+#include "aspheres.hpp"
+#include "steps.hpp"
+#include "tangents.hpp"
+
+namespace petzval::detail {
+namespace {
+
+/// Loads rays and turns them into the frame of the first step. Rays that are not finite or not of unit length are not
+/// alive.
+template <class R>
+void enter(const BlockJob<R>& job, const RayArrays<const R>& in, const R* index, Bundle<R>& b) noexcept {
+  using V = Lanes<R>;
+  const V sense(job.course.first_sense);
+  for (int i = 0; i < Bundle<R>::vectors; ++i) {
+    const int o = i * V::width;
+    const V x = load(in.x + o), y = load(in.y + o), z = load(in.z + o);
+    const V dx = load(in.dx + o), dy = load(in.dy + o), dz = load(in.dz + o);
+    const V length = dx * dx + dy * dy + dz * dz;
+    const V scale = load(index + o) * (V(R(1.5)) - V(R(0.5)) * length);
+    b.x[i] = x;
+    b.y[i] = y;
+    b.z[i] = sense * (z - V(job.course.first_z));
+    b.px[i] = scale * dx;
+    b.py[i] = scale * dy;
+    b.pz[i] = sense * (scale * dz);
+    b.r2[i] = x * x + y * y;
+    const V zero = (x + y + z) * V(R(0));  // unless one of them is not finite
+    b.alive[i] = (length > V(R(0.999))) & (length < V(R(1.001))) & (zero >= V(R(0)));
+    b.tally[i] = typename Native<R>::Bits{};
+  }
+}
+
+template <class R>
+void enter(const BlockJob<R>& job, const RayArrays<const R>& in, const R* index, Tangent<R>& d) noexcept {
+  using V = Lanes<R>;
+  const V sense(job.course.first_sense);
+  for (int i = 0; i < Bundle<R>::vectors; ++i) {
+    const int o = i * V::width;
+    const V n = load(index + o);
+    d.x[i] = load(in.x + o);
+    d.y[i] = load(in.y + o);
+    d.z[i] = sense * load(in.z + o);
+    d.px[i] = n * load(in.dx + o);
+    d.py[i] = n * load(in.dy + o);
+    d.pz[i] = sense * (n * load(in.dz + o));
+  }
+}
+
+/// Puts the lengths of directions right.
+template <class R, class Media>
+void refresh(const Media& media, Bundle<R>& b) noexcept {
+  using V = Lanes<R>;
+  for (int i = 0; i < Bundle<R>::vectors; ++i) {
+    const V length = (b.px[i] * b.px[i] + b.py[i] * b.py[i] + b.pz[i] * b.pz[i]) * media.per_n2(i);
+    const V scale = V(R(1.5)) - V(R(0.5)) * length;
+    b.px[i] = b.px[i] * scale;
+    b.py[i] = b.py[i] * scale;
+    b.pz[i] = b.pz[i] * scale;
+  }
+}
+
+/// Back to the lens frame and to unit directions. A lost ray leaves as it came in.
+template <class R>
+void leave(const BlockJob<R>& job, const RayArrays<const R>& in, const R* per_index, Bundle<R>& b,
+           const RayArrays<R>& out) noexcept {
+  using V = Lanes<R>;
+  const V sense(job.course.last_sense);
+  for (int i = 0; i < Bundle<R>::vectors; ++i) {
+    const int o = i * V::width;
+    const V per_n = load(per_index + o);
+    const V dx = per_n * b.px[i], dy = per_n * b.py[i], dz = per_n * b.pz[i];
+    const V length = dx * dx + dy * dy + dz * dz;
+    const V scale = V(R(1.5)) - V(R(0.5)) * length;
+    // Rays beyond all reason, whose numbers have overflowed, count as lost at the last surface.
+    const Mask<R> sound = b.alive[i] & (length + b.z[i] * V(R(0)) < V(R(1.1)));
+    count<1>(b.tally[i], sound);
+    const auto put = [&](R* to, V value, const R* before) { store(to + o, select(sound, value, load(before + o))); };
+    put(out.x, b.x[i], in.x);
+    put(out.y, b.y[i], in.y);
+    put(out.z, sense * b.z[i] + V(job.course.last_z), in.z);
+    put(out.dx, dx * scale, in.dx);
+    put(out.dy, dy * scale, in.dy);
+    put(out.dz, sense * (dz * scale), in.dz);
+    b.alive[i] = sound;
+  }
+}
+
+template <class R>
+void leave(const BlockJob<R>& job, const R* per_index, const Bundle<R>& b, const Tangent<R>& d,
+           const RayArrays<R>& out) noexcept {
+  using V = Lanes<R>;
+  const V sense(job.course.last_sense), none(R(0));
+  for (int i = 0; i < Bundle<R>::vectors; ++i) {
+    const int o = i * V::width;
+    const V per_n = load(per_index + o);
+    const auto put = [&](R* to, V value) { store(to + o, select(b.alive[i], value, none)); };
+    put(out.x, d.x[i]);
+    put(out.y, d.y[i]);
+    put(out.z, sense * d.z[i]);
+    put(out.dx, per_n * d.px[i]);
+    put(out.dy, per_n * d.py[i]);
+    put(out.dz, sense * (per_n * d.pz[i]));
+  }
+}
+
+/// Puts rays that came in without finite numbers on the axis, in the sense of travel.
+template <class R>
+void put_on_axis(const BlockJob<R>& job, const RayArrays<R>& out) noexcept {
+  const auto finite = [](R value) { return value - value == 0; };
+  for (int l = 0; l < Bundle<R>::rays; ++l) {
+    if (finite(out.x[l]) && finite(out.y[l]) && finite(out.z[l]) && finite(out.dx[l]) && finite(out.dy[l]) &&
+        finite(out.dz[l])) {
+      continue;
+    }
+    out.x[l] = out.y[l] = out.z[l] = out.dx[l] = out.dy[l] = 0;
+    out.dz[l] = job.course.first_sense;
+  }
+}
+
+/// One surface.
+template <class R, class Media, class Follow>
+void pass(const BlockJob<R>& job, std::size_t j, const Media& media, std::uint8_t* unsettled, Bundle<R>& b,
+          Follow& follow) noexcept {
+  const kernel::Step<R>& s = job.course.steps[j];
+  const Lanes<R> rim2(job.apertures ? s.rim2 : std::numeric_limits<R>::max());
+  if (s.refresh) refresh(media, b);
+  switch (s.kind) {
+    case kernel::StepKind::plane: plane(s, rim2, media, b, follow); break;
+    case kernel::StepKind::sphere:
+      s.far ? sphere<true>(s, rim2, media, b, follow) : sphere<false>(s, rim2, media, b, follow);
+      break;
+    case kernel::StepKind::quadric: quadric(s, rim2, media, b, follow); break;
+    case kernel::StepKind::asphere: asphere(s, rim2, job, unsettled, media, b, follow); break;
+  }
+  const Iris iris = s.stop ? job.iris : Iris{};
+  if (job.apertures && (s.hole2 > 0 || !iris.empty())) clip(s, iris, j, b);
+}
+
+}  // namespace
+}  // namespace petzval::detail

@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: Apache-2.0
+// One surface for a bundle of rays. Included like lanes.hpp.
+//
+// Directions are scaled by the index, |p| = n, so that refraction needs no division: p' = p + gamma N, where N is half
+// the gradient of the surface's equation, and (p N) and (p' N) come from two roots that do not wait for each other.
+// (The algebra of Feder 1951 and of Spencer and Murty 1962, in these directions.) References: kernel::intersect and
+// kernel::refract, which the results are tested against.
+#pragma once
+
+#include <limits>
+
+#include "bundle.hpp"
+
+namespace petzval::detail {
+namespace {
+
+/// The media at a step, for a batch of one wavelength.
+template <class R>
+struct SharedMedia {
+  const kernel::Bend<R>* bend;
+
+  PETZVAL_INLINE Lanes<R> cn2(int) const noexcept { return bend->cn2; }
+  PETZVAL_INLINE Lanes<R> k(int) const noexcept { return bend->k; }
+  PETZVAL_INLINE Lanes<R> per_n2(int) const noexcept { return bend->per_n2; }
+};
+
+/// The media at a step, where each ray has its wavelength.
+template <class R>
+struct MediaByRay {
+  const kernel::Bend<R>* bends;  ///< of the step, at the first wavelength
+  std::size_t stride;            ///< from one wavelength to the next
+  const std::uint16_t* wavelengths;
+
+  template <R kernel::Bend<R>::*member>
+  PETZVAL_INLINE Lanes<R> gather(int i) const noexcept {
+    R values[Lanes<R>::width];
+    for (int l = 0; l < Lanes<R>::width; ++l) values[l] = bends[wavelengths[i * Lanes<R>::width + l] * stride].*member;
+    return load(values);
+  }
+  PETZVAL_INLINE Lanes<R> cn2(int i) const noexcept { return gather<&kernel::Bend<R>::cn2>(i); }
+  PETZVAL_INLINE Lanes<R> k(int i) const noexcept { return gather<&kernel::Bend<R>::k>(i); }
+  PETZVAL_INLINE Lanes<R> per_n2(int i) const noexcept { return gather<&kernel::Bend<R>::per_n2>(i); }
+};
+
+/// Where rays met a surface and how they went on; what derivatives need beside the bundle.
+template <class R>
+struct Contact {
+  Lanes<R> q;              ///< the way there, in steps of p
+  Lanes<R> px, py, pz;     ///< in front of the surface
+  Lanes<R> gx, gy, w;      ///< N = (-gx, -gy, w)
+  Lanes<R> nn;             ///< N N
+  Lanes<R> xi, xo, gamma;  ///< p N, p' N, (xo - xi) / nn
+  Lanes<R> k;
+  Lanes<R> cx, cy, cz;  ///< N changes by -(cx dx, cy dy, cz dz) ...
+  Lanes<R> bx, by;      ///< ... - (bx x, by y, 0) (ax x dx + ay y dy)
+};
+
+/// For rays without derivatives.
+struct NoTangents {
+  template <class R>
+  PETZVAL_INLINE void shift(int, Lanes<R>) noexcept {}
+  template <class R>
+  PETZVAL_INLINE void pass(const kernel::Step<R>&, const Bundle<R>&, int, const Contact<R>&) noexcept {}
+  static constexpr bool wanted = false;
+};
+
+/// Books what became of vector i of a bundle.
+template <class R>
+PETZVAL_INLINE void book(Bundle<R>& b, int i, Mask<R> found, Mask<R> inside, Mask<R> refracted) noexcept {
+  const Mask<R> hit = b.alive[i] & found;
+  const Mask<R> let_in = hit & inside;
+  b.alive[i] = let_in & refracted;
+  count<1>(b.tally[i], hit);
+  count<1>(b.tally[i], let_in);
+  count<2>(b.tally[i], b.alive[i]);
+}
+
+/// Clips by what few surfaces have, a hole or an iris, after the fact. j: the step.
+template <class R>
+void clip(const kernel::Step<R>& s, const Iris& iris, std::size_t j, Bundle<R>& b) noexcept {
+  using V = Lanes<R>;
+  using Bits = typename Native<R>::Bits;
+  for (int i = 0; i < Bundle<R>::vectors; ++i) {
+    Mask<R> open = b.r2[i] >= V(s.hole2);
+    for (std::size_t e = 0; e < iris.size(); ++e) {
+      const IrisEdge& edge = iris.data()[e];
+      const V nx(static_cast<R>(edge.nx)), ny(static_cast<R>(edge.ny)), distance(static_cast<R>(edge.distance));
+      open = open & (b.x[i] * nx + b.y[i] * ny <= distance);
+    }
+    b.alive[i] = b.alive[i] & open;
+    const auto rim = static_cast<typename Native<R>::Bit>(4 * j + 1);  // the tally of a ray that hit and was clipped
+    Bits clipped = Bits{} + rim;
+    keep(clipped, open, b.tally[i]);
+    b.tally[i] = b.tally[i] > rim ? clipped : b.tally[i];
+  }
+}
+
+template <class R, class Media, class Follow>
+void plane(const kernel::Step<R>& s, const Lanes<R>& rim2, const Media& media, Bundle<R>& b, Follow& follow) noexcept {
+  using V = Lanes<R>;
+  PETZVAL_UNROLL
+  for (int i = 0; i < Bundle<R>::vectors; ++i) {
+    const V pz = b.pz[i];
+    const V q = (V(s.gap) - b.z[i]) / pz;
+    b.x[i] = b.x[i] + q * b.px[i];
+    b.y[i] = b.y[i] + q * b.py[i];
+    b.z[i] = V(R(0));
+    b.r2[i] = b.x[i] * b.x[i] + b.y[i] * b.y[i];
+    const Mask<R> found = pz > V(R(0));
+    const V k = media.k(i);
+    const V squared = pz * pz + k;
+    if (s.bends) b.pz[i] = root(squared);
+    book(b, i, found, b.r2[i] <= rim2, has_root(squared));
+    const V none(R(0));
+    follow.pass(s, b, i,
+                {q, b.px[i], b.py[i], pz, none, none, V(R(1)), V(R(1)), pz, b.pz[i], b.pz[i] - pz, k, none, none, none,
+                 none, none});
+  }
+}
+
+/// Brings rays from afar near the vertex, into its plane or where they slant too much or run back to the nearest point,
+/// so that the quadratic loses no digits.
+template <class R, class Media, class Follow>
+PETZVAL_INLINE void approach(const kernel::Step<R>& s, const Media& media, Bundle<R>& b, int i,
+                             Follow& follow) noexcept {
+  using V = Lanes<R>;
+  const V px = b.px[i], py = b.py[i], pz = b.pz[i], z = b.z[i] - V(s.gap);
+  const Mask<R> upright = pz * kernel::absolute(pz) * media.per_n2(i) > V(R(0.09));
+  const V across = V(s.ax) * px * px + V(s.ay) * py * py + pz * pz;
+  const V along = V(s.ax) * b.x[i] * px + V(s.ay) * b.y[i] * py + z * pz;
+  const V t = -select(upright, z, along) / select(upright, pz, across);
+  b.x[i] = b.x[i] + t * px;
+  b.y[i] = b.y[i] + t * py;
+  b.z[i] = select(upright, V(R(0)), z + t * pz);
+  b.r2[i] = b.x[i] * b.x[i] + b.y[i] * b.y[i];
+  follow.shift(i, t);
+}
+
+/// A refracting sphere.
+template <bool far, class R, class Media, class Follow>
+void sphere(const kernel::Step<R>& s, const Lanes<R>& rim2, const Media& media, Bundle<R>& b, Follow& follow) noexcept {
+  using V = Lanes<R>;
+  const V c(s.curvature);
+  PETZVAL_UNROLL
+  for (int i = 0; i < Bundle<R>::vectors; ++i) {
+    if constexpr (far) approach(s, media, b, i, follow);
+    const V px = b.px[i], py = b.py[i], pz = b.pz[i];
+    const V z = far ? b.z[i] : b.z[i] - V(s.gap);
+    const V f = c * (b.r2[i] + z * z) - (z + z);
+    const V slant = pz - c * (b.x[i] * px + b.y[i] * py + z * pz);
+    const V cn2 = media.cn2(i), k = media.k(i);
+    const V d = slant * slant - cn2 * f;
+    const V d_out = d + k;
+    const V xi = root(d), xo = second_root(d_out);
+    V q;
+    if constexpr (far) {  // beyond 90 degrees the same root by its other form
+      const Mask<R> facing = slant >= V(R(0));
+      q = select(facing, f, slant - xi) / select(facing, slant + xi, cn2);
+    } else {
+      q = f / (slant + xi);
+    }
+    b.x[i] = b.x[i] + q * px;
+    b.y[i] = b.y[i] + q * py;
+    b.z[i] = z + q * pz;
+    b.r2[i] = b.x[i] * b.x[i] + b.y[i] * b.y[i];
+
+    const V w = V(R(1)) - c * b.z[i];
+    const V gamma = xo - xi;
+    const V bend = gamma * c;
+    b.px[i] = px - bend * b.x[i];
+    b.py[i] = py - bend * b.y[i];
+    b.pz[i] = pz + gamma * w;
+    book(b, i, w > V(R(0)), b.r2[i] <= rim2, has_root(d_out));
+    if constexpr (Follow::wanted) {
+      const V none(R(0));
+      follow.pass(s, b, i, {q, px, py, pz, c * b.x[i], c * b.y[i], w, V(R(1)), xi, xo, gamma, k, c, c, c, none, none});
+    }
+  }
+}
+
+/// Turns the frame round behind a mirror.
+template <class R>
+PETZVAL_INLINE void turn(Bundle<R>& b, int i) noexcept {
+  b.z[i] = -b.z[i];
+  b.pz[i] = -b.pz[i];
+}
+
+/// Changes directions at points whose N is known: books, bends or mirrors, follows.
+template <class R, class Media, class Follow>
+PETZVAL_INLINE void bend(const kernel::Step<R>& s, const Lanes<R>& rim2, const Media& media, Bundle<R>& b, int i,
+                         Mask<R> found, Contact<R> at, Follow& follow) noexcept {
+  using V = Lanes<R>;
+  b.r2[i] = b.x[i] * b.x[i] + b.y[i] * b.y[i];
+  at.nn = at.gx * at.gx + at.gy * at.gy + at.w * at.w;
+  at.k = s.mirror ? V(R(0)) : media.k(i);
+  const V d_out = at.xi * at.xi + at.k * at.nn;
+  at.xo = s.mirror ? -at.xi : second_root(d_out);
+  at.gamma = (at.xo - at.xi) / at.nn;
+  b.px[i] = at.px - at.gamma * at.gx;
+  b.py[i] = at.py - at.gamma * at.gy;
+  b.pz[i] = at.pz + at.gamma * at.w;
+  book(b, i, found, b.r2[i] <= rim2, has_root(d_out));
+  follow.pass(s, b, i, at);
+  if (s.mirror) turn(b, i);
+}
+
+/// Conics and cylinders, and whatever is a mirror.
+template <class R, class Media, class Follow>
+void quadric(const kernel::Step<R>& s, const Lanes<R>& rim2, const Media& media, Bundle<R>& b,
+             Follow& follow) noexcept {
+  using V = Lanes<R>;
+  const V c(s.curvature), ax(s.ax), ay(s.ay), e(s.e);
+  for (int i = 0; i < Bundle<R>::vectors; ++i) {
+    approach(s, media, b, i, follow);
+    const V px = b.px[i], py = b.py[i], pz = b.pz[i];
+    const V f = c * (ax * b.x[i] * b.x[i] + ay * b.y[i] * b.y[i] + e * b.z[i] * b.z[i]) - (b.z[i] + b.z[i]);
+    const V slant = pz - c * (ax * b.x[i] * px + ay * b.y[i] * py + e * b.z[i] * pz);
+    const V a = c * (ax * px * px + ay * py * py + e * pz * pz);
+    const V xi = root(slant * slant - a * f);
+    const Mask<R> facing = slant >= V(R(0));
+    const V q = select(facing, f, slant - xi) / select(facing, slant + xi, a);
+    b.x[i] = b.x[i] + q * px;
+    b.y[i] = b.y[i] + q * py;
+    b.z[i] = b.z[i] + q * pz;
+    const V w = V(R(1)) - c * e * b.z[i];
+    const V none(R(0));
+    const Mask<R> found = (w > none) & (kernel::absolute(q) <= V(std::numeric_limits<R>::max()));
+    bend(s, rim2, media, b, i, found,
+         {q, px, py, pz, c * ax * b.x[i], c * ay * b.y[i], w, none, xi, none, none, none, c * ax, c * ay, c * e, none,
+          none},
+         follow);
+  }
+}
+
+}  // namespace
+}  // namespace petzval::detail

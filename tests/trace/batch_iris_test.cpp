@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: Apache-2.0
+// The iris of a batch, against where each ray crosses the plane of the stop.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <vector>
+
+#include "batches.hpp"
+
+namespace {
+
+using namespace testing_batches;
+using petzval::IrisEdge;
+
+/// A regular hexagon, turned so that no edge is along an axis.
+std::vector<IrisEdge> hexagon(double distance) {
+  std::vector<IrisEdge> edges;
+  for (int i = 0; i < 6; ++i) {
+    const double angle = 0.3 + i * std::numbers::pi / 3;
+    edges.push_back({std::cos(angle), std::sin(angle), distance});
+  }
+  return edges;
+}
+
+/// Distance of a ray's crossing of the stop to the nearest edge, > 0 inside; none where the ray does not come so far.
+template <class T>
+std::optional<double> room_at_the_stop(const Lens& lens, const Ray<T>& ray, Travel travel,
+                                       const std::vector<IrisEdge>& edges) {
+  std::optional<double> room;
+  const auto stop = static_cast<int>(*lens.stop());
+  const Ray<double> exact{petzval::Vec3<double>(ray.origin), petzval::Vec3<double>(ray.direction)};
+  petzval::kernel::trace(lens.view<double>(), petzval::kernel::to_kernel(exact.origin),
+                         petzval::kernel::to_kernel(exact.direction), {.travel = travel, .apertures = false},
+                         [&](int surface, const petzval::kernel::Vec<double>& p) {
+                           if (surface != stop) return;
+                           room = std::numeric_limits<double>::infinity();
+                           for (const auto& e : edges) {
+                             room = std::min(*room, e.distance - (p.x * e.nx + p.y * e.ny));
+                           }
+                         });
+  return room;
+}
+
+template <class T>
+class BatchIris : public testing::Test {};
+using Plain = testing::Types<float, double>;
+TYPED_TEST_SUITE(BatchIris, Plain);
+
+TYPED_TEST(BatchIris, ClipsWhatCrossesTheStopOutsideAnEdge) {
+  using T = TypeParam;
+  for (const char* id : {"double_gauss_100mm_f2.0", "fisheye_10mm_f4", "modern_58mm_f0.95", "anamorphic_60mm_2x"}) {
+    const auto sample = testing_lenses::load(id);
+    const Lens& lens = sample.lens;
+    const auto edges = hexagon(0.5 * lens.surfaces()[lens.stop().value()].semi_diameter);
+    const int stop = static_cast<int>(lens.stop().value());
+    for (const Travel travel : {Travel::to_film, Travel::to_scene}) {
+      const auto rays = rays_for<T>(sample, travel, 600);
+      for (BatchOptions options : ways(travel)) {
+        const auto open = traced(lens, rays, options);
+        options.iris = edges;
+        const auto clipped = traced(lens, rays, options);
+        int inside = 0, outside = 0;
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+          const std::string what = sample.id + " " + text(options) + " ray " + std::to_string(i);
+          const bool reached = open.fates[i] == RayFate::transmitted ||
+                               (travel == Travel::to_film ? open.surfaces[i] > stop : open.surfaces[i] < stop);
+          const auto room = reached ? room_at_the_stop(lens, rays[i], travel, edges) : std::nullopt;
+          // Where the crossing itself is known no better than the edge is near, either is right.
+          if (room && std::abs(*room) < 1000 * std::numeric_limits<T>::epsilon() * sample.size) continue;
+          if (room) {
+            const auto one = petzval::trace(lens, rays[i], {.travel = travel, .iris = edges});
+            ASSERT_EQ(one.fate == RayFate::vignetted && one.surface == stop, *room < 0) << what;
+          }
+          if (room && *room < 0) {
+            ASSERT_EQ(clipped.fates[i], RayFate::vignetted) << what;
+            ASSERT_EQ(clipped.surfaces[i], stop) << what;
+            ASSERT_TRUE(same_bits(clipped.rays[i], rays[i])) << what;
+            ++outside;
+          } else {
+            ASSERT_TRUE(same_bits(clipped, i, open, i)) << what;
+            inside += room.has_value();
+          }
+        }
+        EXPECT_GT(inside, 10) << sample.id << " " << text(options);
+        EXPECT_GT(outside, 3) << sample.id << " " << text(options);
+      }
+    }
+  }
+}
+
+/// A plane stop of 10 mm between two more planes, in air.
+petzval::Prescription window(bool with_stop) {
+  petzval::Prescription p;
+  p.name = "window";
+  p.surfaces = {{.thickness = 2}, {.thickness = 3, .semi_diameter = 10, .stop = with_stop}, {.thickness = 1}};
+  return p;
+}
+
+/// Fates of rays along the axis at places of the stop.
+template <class T>
+std::vector<RayFate> fates_at(const Lens& lens, const std::vector<std::array<T, 2>>& places,
+                              const BatchOptions& options) {
+  std::vector<Ray<T>> rays;
+  for (const auto& [x, y] : places) {
+    rays.push_back(options.travel == Travel::to_film ? Ray<T>{{x, y, -1}, {0, 0, 1}} : Ray<T>{{x, y, 9}, {0, 0, -1}});
+  }
+  return traced(lens, rays, options).fates;
+}
+
+TYPED_TEST(BatchIris, CountsItsEdgesAsInside) {
+  using T = TypeParam;
+  const Lens lens = petzval::compile(window(true));
+  const std::vector<IrisEdge> edges{{1, 0, 3}, {0, -1, 2}, {0.75, 0.5, 3}};
+  const T above = std::nextafter(T(3), T(4)), below = std::nextafter(T(-2), T(-3));
+  constexpr auto in = RayFate::transmitted, out = RayFate::vignetted;
+  for (const Travel travel : {Travel::to_film, Travel::to_scene}) {
+    for (BatchOptions options : ways(travel)) {
+      options.iris = edges;
+      const auto fates = fates_at<T>(
+          lens, {{3, 0}, {above, 0}, {0, -2}, {0, below}, {3, -2}, {2, 3}, {2, T(3.00001)}, {-10, 0}, {-8, 6}, {-8, 7}},
+          options);
+      EXPECT_EQ(fates, (std::vector<RayFate>{in, out, in, out, in, in, out, in, in, out})) << text(options);
+    }
+  }
+}
+
+TYPED_TEST(BatchIris, MayLieBeyondTheAxis) {
+  using T = TypeParam;
+  const Lens lens = petzval::compile(window(true));
+  const std::vector<IrisEdge> edges{{-1, 0, -2}};  // x >= 2
+  for (BatchOptions options : ways()) {
+    options.iris = edges;
+    EXPECT_EQ(
+        fates_at<T>(lens, {{0, 0}, {2, 0}, {5, 5}, {-3, 0}}, options),
+        (std::vector<RayFate>{RayFate::vignetted, RayFate::transmitted, RayFate::transmitted, RayFate::vignetted}))
+        << text(options);
+  }
+}
+
+TYPED_TEST(BatchIris, IsIgnoredWithoutAStopAndWithoutApertures) {
+  using T = TypeParam;
+  const std::vector<IrisEdge> edges{{1, 0, -20}};  // lets nothing through
+  for (const Travel travel : {Travel::to_film, Travel::to_scene}) {
+    for (BatchOptions options : ways(travel)) {
+      options.iris = edges;
+      EXPECT_EQ(fates_at<T>(petzval::compile(window(false)), {{0, 0}, {11, 0}}, options),
+                (std::vector<RayFate>{RayFate::transmitted, RayFate::vignetted}));
+      EXPECT_EQ(fates_at<T>(petzval::compile(window(true)), {{0, 0}}, options), std::vector{RayFate::vignetted});
+      options.apertures = false;
+      EXPECT_EQ(fates_at<T>(petzval::compile(window(true)), {{0, 0}, {11, 0}}, options),
+                (std::vector<RayFate>{RayFate::transmitted, RayFate::transmitted}));
+    }
+  }
+}
+
+TYPED_TEST(BatchIris, WithoutAperturesEveryRimIsOpen) {
+  using T = TypeParam;
+  for (const auto& sample : telling()) {
+    petzval::Prescription wide = sample.prescription;
+    if (std::any_of(wide.surfaces.begin(), wide.surfaces.end(), [](const auto& s) { return !s.aspheric.empty(); })) {
+      continue;  // their description depends on the aperture
+    }
+    for (auto& s : wide.surfaces) s.semi_diameter = s.inner_semi_diameter = std::nullopt;
+    const Lens open = petzval::compile(wide);
+    for (const Travel travel : {Travel::to_film, Travel::to_scene}) {
+      const auto rays = rays_for<T>(sample, travel, 200);
+      for (BatchOptions options : ways(travel)) {
+        const auto wanted = traced(open, rays, options);
+        options.apertures = false;
+        const auto found = traced(sample.lens, rays, options);
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+          ASSERT_EQ(found.fates[i], wanted.fates[i]) << sample.id << " " << text(options) << " ray " << i;
+          ASSERT_EQ(found.surfaces[i], wanted.surfaces[i]) << sample.id << " " << text(options) << " ray " << i;
+          ASSERT_NE(found.fates[i], RayFate::vignetted) << sample.id << " " << text(options) << " ray " << i;
+        }
+      }
+    }
+  }
+}
+
+}  // namespace

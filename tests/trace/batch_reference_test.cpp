@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every lens, both ways, against rays in long double: fates, surfaces, places and directions.
+#include <gtest/gtest.h>
+
+#include "limits.hpp"
+
+namespace {
+
+using namespace testing_limits;
+using testing_batches::rays_for;
+
+template <class T>
+class BatchReference : public testing::Test {};
+using Plain = testing::Types<float, double>;
+TYPED_TEST_SUITE(BatchReference, Plain);
+
+TYPED_TEST(BatchReference, RaysAndFatesOfEveryLensAreThoseOfExactRays) {
+  using T = TypeParam;
+  Judge<T> judge;
+  for (const auto& sample : testing_lenses::all()) {
+    for (const Travel travel : {Travel::to_film, Travel::to_scene}) {
+      judge(sample.lens, rays_for<T>(sample, travel, 400), travel, {.place = sample.size, .turn = 1}, sample.id);
+    }
+  }
+  judge.close("all 75 lenses, both ways", 8);
+  EXPECT_LE(judge.beside(), 1e-3);
+  this->RecordProperty("fates_beside", std::to_string(judge.beside()));
+}
+
+}  // namespace
