@@ -43,6 +43,7 @@
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/prescription/prescription.hpp"
 #include "petzval/psf/colour.hpp"
+#include "petzval/psf/histogram.hpp"
 #include "petzval/psf/psf.hpp"
 #include "petzval/psf/spot.hpp"
 #include "petzval/pupil/aim.hpp"

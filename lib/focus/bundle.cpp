@@ -12,6 +12,7 @@
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/outline.hpp"
 #include "petzval/pupil/pupil_plane.hpp"
+#include "petzval/trace/batch.hpp"
 #include "petzval/trace/trace.hpp"
 
 namespace petzval::detail {
@@ -31,17 +32,27 @@ class Bundle {
     const PupilOutline outline = pupil_outline(lens_, point, colour.wavelength, centred_ ? 1 : directions);
     static const auto nodes = gauss_legendre<radial>();
     const double cell = outline.half_axes[0] * outline.half_axes[1] * colour.weight;
+    std::vector<Ray<double>> rays;
+    std::vector<double> weights;
+    const auto send = [&](const Place& place, double weight) {
+      rays.push_back(outline.plane.ray(place[0], place[1]));
+      weights.push_back(weight);
+    };
     for (const PupilSpan& span : outline.spans) {
       const double inner = span.from_radius * span.from_radius;
       const double area = (span.to_radius - span.from_radius) * (span.to_radius + span.from_radius);
       for (const QuadratureNode& node : nodes) {
-        add_ray(outline, outline.at(span.direction, std::sqrt(inner + area * node.x)), cell * area * node.weight);
+        send(outline.at(span.direction, std::sqrt(inner + area * node.x)), cell * area * node.weight);
       }
       if (!edges_) continue;
-      add_ray(outline, {span.from.x, span.from.y}, 0);
-      add_ray(outline, {span.to.x, span.to.y}, 0);
+      send({span.from.x, span.from.y}, 0);
+      send({span.to.x, span.to.y}, 0);
     }
     if (edges_) add_corners(outline);
+    // Reproducible batches agree with the trace of one ray to the bit: edges found by that pass here too.
+    std::vector<TracedRay<double>> ends(rays.size());
+    trace<double>(lens_, rays, ends.data(), {.wavelength = colour.wavelength, .arithmetic = Arithmetic::reproducible});
+    for (std::size_t i = 0; i < ends.size(); ++i) add_line(ends[i], weights[i]);
   }
 
   /// Turns the lines into those relative to the centroid, of weights that sum to 1. False where there is no light.
@@ -73,8 +84,8 @@ class Bundle {
     return trace(lens_, outline.plane.ray(place[0], place[1]), {.wavelength = outline.wavelength});
   }
 
-  void add_ray(const PupilOutline& outline, const Place& place, double weight) {
-    const auto [ray, fate, surface] = traced(outline, place);
+  void add_line(const TracedRay<double>& end, double weight) {
+    const auto& [ray, fate, surface] = end;
     if (fate != RayFate::transmitted || !(ray.direction.z * sense_ > 0)) return;
     const double u = ray.direction.x / ray.direction.z, v = ray.direction.y / ray.direction.z;
     const double to_plane = plane_z_ - ray.origin.z;
@@ -105,7 +116,7 @@ class Bundle {
         return std::pair(at(last), surface);
       };
       const double part = last_with(0.0, 1.0, [&](double p) { return edge(p).second == one.to.surface; });
-      add_ray(outline, edge(part).first, 0);
+      add_line(traced(outline, edge(part).first), 0);
     }
   }
 

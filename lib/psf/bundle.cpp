@@ -2,17 +2,43 @@
 #include "petzval/psf/bundle.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <array>
+#include <span>
 #include <string>
-#include <thread>
 #include <utility>
 
 #include "film.hpp"
 #include "petzval/core/error.hpp"
+#include "petzval/core/parallel.hpp"
 #include "petzval/psf/sobol.hpp"
-#include "ray_batch.hpp"
 
 namespace petzval {
+namespace {
+
+/// The block's rays behind the lens, from point `first` of the sequence on.
+void trace_block(const Lens& lens, const PupilSampler& pupil, std::uint32_t first, std::size_t count,
+                 std::uint32_t seed, detail::RayBlock& rays) noexcept {
+  std::array<double, detail::RayBlock::size> room_u, room_v;
+  const std::span u(room_u.data(), count), v(room_v.data(), count);
+  owen_sobol(first, seed, u, v);
+  pupil(u, v, u, v);
+  pupil.plane().rays(u, v, rays.arrays());
+  // The same bits from every processor: a picture is a measurement.
+  trace<double>(lens, count, std::as_const(rays).arrays(), rays.arrays(), rays.fates.data(), nullptr,
+                {.wavelength = pupil.wavelength(), .arithmetic = Arithmetic::reproducible});
+}
+
+/// Moves what each block found at its own place to the front, one behind the other.
+void close_gaps(std::vector<double>& values, const std::vector<std::size_t>& found) {
+  auto end = values.begin();
+  for (std::size_t k = 0; k < found.size(); ++k) {
+    const auto begin = values.begin() + static_cast<std::ptrdiff_t>(k * detail::RayBlock::size);
+    end = std::copy(begin, begin + static_cast<std::ptrdiff_t>(found[k]), end);
+  }
+  values.erase(end, values.end());
+}
+
+}  // namespace
 
 FilmHits trace_bundle(const Lens& lens, const PupilSampler& pupil, std::uint32_t samples, std::uint32_t seed,
                       int threads) {
@@ -22,47 +48,19 @@ FilmHits trace_bundle(const Lens& lens, const PupilSampler& pupil, std::uint32_t
   hits.sampled_area = pupil.area();
   if (pupil.empty() || samples == 0) return hits;
 
-  // Chunks of fixed size, each with its own hits, joined in their order: which thread did one leaves no trace.
-  constexpr std::uint32_t chunk_size = 4096;
-  const std::uint32_t chunks = (samples - 1) / chunk_size + 1;
-  struct Chunk {
-    std::vector<double> x, y;
-  };
-  std::vector<Chunk> found(chunks);
+  // Every block has its place: which thread did it leaves no trace.
+  constexpr std::size_t size = detail::RayBlock::size;
+  hits.x.resize(samples);
+  hits.y.resize(samples);
+  std::vector<std::size_t> found((samples - 1) / size + 1);
   const detail::Film film(lens);
-  const auto work = [&](std::uint32_t first, std::uint32_t stride) {
-    detail::RayBatch batch(chunk_size);
-    for (std::uint32_t c = first; c < chunks; c += stride) {
-      batch.clear();
-      const std::uint32_t begin = c * chunk_size;
-      for (std::uint32_t i = 0; i < std::min(chunk_size, samples - begin); ++i) {
-        const auto [u, v] = owen_sobol(begin + i, seed);
-        const auto [x, y] = pupil(u, v);
-        batch.push(pupil.plane().ray(x, y));
-      }
-      batch.trace(lens, pupil.wavelength());
-      Chunk chunk;
-      for (std::size_t i = 0; i < batch.size(); ++i) {
-        const auto hit = batch.transmitted(i) ? film.meet(batch[i]) : std::nullopt;
-        if (!hit) continue;
-        chunk.x.push_back((*hit)[0]);
-        chunk.y.push_back((*hit)[1]);
-      }
-      found[c] = std::move(chunk);
-    }
-  };
-  const auto workers = std::min(static_cast<std::uint32_t>(threads), chunks);
-  if (workers == 1) {
-    work(0, 1);
-  } else {
-    std::vector<std::jthread> team;
-    for (std::uint32_t t = 0; t < workers; ++t) team.emplace_back(work, t, workers);
-  }
-
-  for (const Chunk& chunk : found) {
-    hits.x.insert(hits.x.end(), chunk.x.begin(), chunk.x.end());
-    hits.y.insert(hits.y.end(), chunk.y.begin(), chunk.y.end());
-  }
+  parallel_for(samples, size, threads, [&](std::size_t begin, std::size_t end) {
+    detail::RayBlock rays;
+    trace_block(lens, pupil, static_cast<std::uint32_t>(begin), end - begin, seed, rays);
+    found[begin / size] = film.meet(end - begin, rays, &hits.x[begin], &hits.y[begin]);
+  });
+  close_gaps(hits.x, found);
+  close_gaps(hits.y, found);
   return hits;
 }
 

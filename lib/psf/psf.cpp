@@ -4,10 +4,13 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
 #include <string>
 
+#include "lanes.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/text.hpp"
+#include "petzval/psf/histogram.hpp"
 #include "petzval/pupil/pupil.hpp"
 
 namespace petzval {
@@ -26,40 +29,50 @@ void validate(const PsfOptions& options) {
 
 /// Half the side of a square about the centroid that holds all hits.
 double fitting_half_width(const std::vector<FilmHits>& sets, const SpotSize& size) {
-  double extent = 0;
-  for (const FilmHits& hits : sets) {
-    for (const double x : hits.x) extent = std::max(extent, std::abs(x - size.centroid[0]));
-    for (const double y : hits.y) extent = std::max(extent, std::abs(y - size.centroid[1]));
-  }
-  return std::max(1.05 * extent, 1e-4);
+  const auto [cx, cy] = size.centroid;
+  detail::Lanes extent{};
+  detail::for_each(sets, [&, cx = cx, cy = cy](std::size_t lane, double x, double y) {
+    extent[lane] = std::max(extent[lane], std::max(std::abs(x - cx), std::abs(y - cy)));
+  });
+  return std::max(1.05 * detail::largest(extent), 1e-4);
 }
 
 void fill_counts(Psf& psf, const std::vector<FilmHits>& sets) {
-  const auto side = static_cast<std::size_t>(psf.pixels);
-  psf.counts.assign(sets.size() * side * side, 0);
-  const double half = psf.pixel_mm * psf.pixels / 2;
+  const PixelGrid grid{psf.centre, psf.pixel_mm, psf.pixels};
+  const std::size_t plane = static_cast<std::size_t>(psf.pixels) * static_cast<std::size_t>(psf.pixels);
+  psf.counts.assign(sets.size() * plane, 0);
   for (std::size_t w = 0; w < sets.size(); ++w) {
-    std::uint64_t* plane = psf.counts.data() + w * side * side;
-    for (std::size_t i = 0; i < sets[w].x.size(); ++i) {
-      const double column = (sets[w].x[i] - psf.centre[0] + half) / psf.pixel_mm;
-      const double row = (psf.centre[1] + half - sets[w].y[i]) / psf.pixel_mm;
-      if (!(column >= 0 && column < psf.pixels && row >= 0 && row < psf.pixels)) continue;
-      ++plane[static_cast<std::size_t>(row) * side + static_cast<std::size_t>(column)];
-    }
+    count_points(grid, sets[w].x, sets[w].y, std::span(psf.counts).subspan(w * plane, plane));
   }
 }
 
+constexpr std::size_t rings = std::tuple_size_v<decltype(PointImage::radial_profile)>;
+
+/// How many hits fall into each ring of a width about a centre; into the last one also those beyond, by rounding.
+std::array<std::uint64_t, rings> count_by_ring(const FilmHits& hits, const std::array<double, 2>& centre,
+                                               double width) {
+  constexpr std::size_t block = 256;
+  std::array<std::int32_t, block> ring;
+  std::array<std::uint64_t, rings> counts{};
+  const auto [cx, cy] = centre;
+  const double scale = 1 / width;
+  for (std::size_t begin = 0; begin < hits.x.size(); begin += block) {
+    const std::size_t count = std::min(block, hits.x.size() - begin);
+    const double *x = hits.x.data() + begin, *y = hits.y.data() + begin;
+    for (std::size_t i = 0; i < count; ++i) {
+      const double r = std::sqrt((x[i] - cx) * (x[i] - cx) + (y[i] - cy) * (y[i] - cy)) * scale;
+      ring[i] = static_cast<std::int32_t>(r < rings - 1.0 ? r : rings - 1.0);
+    }
+    for (std::size_t i = 0; i < count; ++i) ++counts[static_cast<std::size_t>(ring[i])];
+  }
+  return counts;
+}
+
 void fill_profile(PointImage& image, const std::vector<FilmHits>& sets) {
-  constexpr std::size_t rings = std::tuple_size_v<decltype(PointImage::radial_profile)>;
-  const auto& [cx, cy] = image.size.centroid;
   const double width = image.size.max_radius / rings;
   if (width == 0) return;
   for (std::size_t w = 0; w < sets.size(); ++w) {
-    std::array<std::uint64_t, rings> counts{};
-    for (std::size_t i = 0; i < sets[w].x.size(); ++i) {
-      const double r = std::hypot(sets[w].x[i] - cx, sets[w].y[i] - cy);
-      ++counts[static_cast<std::size_t>(std::min(r / width, rings - 1.0))];
-    }
+    const auto counts = count_by_ring(sets[w], image.size.centroid, width);
     for (std::size_t k = 0; k < rings; ++k) {
       const double area = std::numbers::pi * width * width * static_cast<double>(2 * k + 1);
       image.radial_profile[k] +=

@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "petzval/psf/sobol.hpp"
 
+#include "petzval/trace/batch.hpp"
+
 namespace petzval {
 namespace {
 
-/// The bits of x in the opposite order.
+/// The bits of x in the opposite order. Nibbles are turned between pairs of bytes and pairs of those: side by side the
+/// last two are taken for one instruction that lanes of a baseline processor do not have.
 constexpr std::uint32_t reversed(std::uint32_t x) noexcept {
   x = ((x >> 1) & 0x55555555u) | ((x & 0x55555555u) << 1);
   x = ((x >> 2) & 0x33333333u) | ((x & 0x33333333u) << 2);
-  x = ((x >> 4) & 0x0f0f0f0fu) | ((x & 0x0f0f0f0fu) << 4);
   x = ((x >> 8) & 0x00ff00ffu) | ((x & 0x00ff00ffu) << 8);
+  x = ((x >> 4) & 0x0f0f0f0fu) | ((x & 0x0f0f0f0fu) << 4);
   return (x >> 16) | (x << 16);
 }
 
@@ -39,23 +42,73 @@ constexpr std::uint64_t mixed(std::uint64_t x) noexcept {
 ///
 /// Adding a key, multiplying by an odd number and x ^= x * (even number) change a bit by those below it and by the key
 /// alone, and each can be undone. Three rounds under fresh keys let every bit reach all above.
-constexpr std::uint32_t scrambled(std::uint32_t x, std::uint64_t key) noexcept {
-  for (int round = 0; round < 3; ++round) {
-    key = mixed(key);
-    x += static_cast<std::uint32_t>(key);
-    x ^= x * (static_cast<std::uint32_t>(key >> 32) & ~1u);
-    x *= static_cast<std::uint32_t>(key >> 16) | 1u;
-  }
-  return x;
+class Scrambling {
+ public:
+  explicit constexpr Scrambling(std::uint64_t key) noexcept
+      : first_(mixed(key)), second_(mixed(mixed(key))), third_(mixed(mixed(mixed(key)))) {}
+
+  constexpr std::uint32_t operator()(std::uint32_t x) const noexcept { return third_(second_(first_(x))); }
+
+ private:
+  struct Round {
+    std::uint32_t added, even, odd;
+
+    explicit constexpr Round(std::uint64_t key) noexcept
+        : added(static_cast<std::uint32_t>(key)),
+          even(static_cast<std::uint32_t>(key >> 32) & ~1u),
+          odd(static_cast<std::uint32_t>(key >> 16) | 1u) {}
+
+    constexpr std::uint32_t operator()(std::uint32_t x) const noexcept {
+      x += added;
+      x ^= x * even;
+      return x * odd;
+    }
+  };
+  Round first_, second_, third_;
+};
+
+/// By way of a signed number, which vectors of a baseline processor convert; every step is exact.
+constexpr double unit(std::uint32_t digits) noexcept {
+  return static_cast<std::int32_t>(reversed(digits) ^ 0x80000000u) * 0x1p-32 + 0.5;
 }
 
-constexpr double unit(std::uint32_t digits) noexcept { return reversed(digits) * 0x1p-32; }
+/// Written so that lanes run it as it is: see owen_sobol for many.
+[[gnu::always_inline]] inline void fill(std::uint32_t first, std::uint32_t seed, std::span<double> u,
+                                        std::span<double> v) noexcept {
+  const std::uint64_t key = std::uint64_t(seed) << 1;
+  const Scrambling of_u(key), of_v(key | 1);
+  for (std::size_t i = 0; i < u.size(); ++i) u[i] = unit(of_u(first + static_cast<std::uint32_t>(i)));
+  for (std::size_t i = 0; i < v.size(); ++i) v[i] = unit(of_v(pascal(first + static_cast<std::uint32_t>(i))));
+}
+
+#if defined(__x86_64__) && defined(__GNUC__)
+// The products of the scrambling are what lanes of the baseline lack. All is exact: the same points from each.
+[[gnu::target("avx2")]] void fill_avx2(std::uint32_t first, std::uint32_t seed, std::span<double> u,
+                                       std::span<double> v) noexcept {
+  fill(first, seed, u, v);
+}
+
+[[gnu::target("avx512f")]] void fill_avx512(std::uint32_t first, std::uint32_t seed, std::span<double> u,
+                                            std::span<double> v) noexcept {
+  fill(first, seed, u, v);
+}
+#endif
 
 }  // namespace
 
 std::array<double, 2> owen_sobol(std::uint32_t index, std::uint32_t seed) noexcept {
-  const std::uint64_t key = std::uint64_t(seed) << 1;
-  return {unit(scrambled(index, key)), unit(scrambled(pascal(index), key | 1))};
+  std::array<double, 2> point;
+  fill(index, seed, std::span(&point[0], 1), std::span(&point[1], 1));
+  return point;
+}
+
+void owen_sobol(std::uint32_t first, std::uint32_t seed, std::span<double> u, std::span<double> v) noexcept {
+#if defined(__x86_64__) && defined(__GNUC__)
+  const InstructionSet widest = instruction_sets().back();
+  if (widest == InstructionSet::avx512) return fill_avx512(first, seed, u, v);
+  if (widest == InstructionSet::avx2) return fill_avx2(first, seed, u, v);
+#endif
+  fill(first, seed, u, v);
 }
 
 }  // namespace petzval

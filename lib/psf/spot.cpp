@@ -2,58 +2,59 @@
 #include "petzval/psf/spot.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "film.hpp"
+#include "lanes.hpp"
 #include "petzval/pupil/aim.hpp"
 #include "petzval/pupil/illumination.hpp"
 
 namespace petzval {
 namespace {
 
-/// for_each calls its argument with every point, always in the same order.
-template <class ForEach>
-SpotSize size_of(std::size_t count, ForEach&& for_each) noexcept {
-  SpotSize size;
-  if (count == 0) return size;
-  const auto n = static_cast<double>(count);
-  double& cx = size.centroid[0];
-  double& cy = size.centroid[1];
-  for_each([&](double x, double y) { cx += x, cy += y; });
-  cx /= n, cy /= n;
-  // Once more about the first mean: its rounding grows with the number of points, and shows in a spot far off the axis.
-  double dx = 0, dy = 0;
-  for_each([&](double x, double y) { dx += x - cx, dy += y - cy; });
-  cx += dx / n, cy += dy / n;
+struct Points {
+  std::span<const double> x, y;
+};
 
-  double sum = 0, largest = 0;
-  for_each([&](double x, double y) {
+/// Sets: of what has points x and y, N each.
+template <class Sets>
+SpotSize size_of(const Sets& sets) noexcept {
+  SpotSize size;
+  std::size_t count = 0;
+  for (const auto& points : sets) {
+    if (count == 0 && !points.x.empty()) size.centroid = {points.x[0], points.y[0]};
+    count += points.x.size();
+  }
+  if (count == 0) return size;
+
+  // From one of the points: rounding then grows with the spot and not with how far off the axis it lies.
+  const auto n = static_cast<double>(count);
+  const auto [x0, y0] = size.centroid;
+  detail::Lanes dx{}, dy{};
+  detail::for_each(
+      sets, [&, x0 = x0, y0 = y0](std::size_t lane, double x, double y) { dx[lane] += x - x0, dy[lane] += y - y0; });
+  const double cx = x0 + detail::sum(dx) / n, cy = y0 + detail::sum(dy) / n;
+
+  detail::Lanes squares{}, farthest{};
+  detail::for_each(sets, [&](std::size_t lane, double x, double y) {
     const double squared = (x - cx) * (x - cx) + (y - cy) * (y - cy);
-    sum += squared;
-    largest = std::max(largest, squared);
+    squares[lane] += squared;
+    farthest[lane] = std::max(farthest[lane], squared);
   });
-  size.rms_radius = std::sqrt(sum / n);
-  size.max_radius = std::sqrt(largest);
+  size.centroid = {cx, cy};
+  size.rms_radius = std::sqrt(detail::sum(squares) / n);
+  size.max_radius = std::sqrt(detail::largest(farthest));
   return size;
 }
 
 }  // namespace
 
 SpotSize spot_size(std::span<const double> x, std::span<const double> y) noexcept {
-  return size_of(x.size(), [&](auto&& point) {
-    for (std::size_t i = 0; i < x.size(); ++i) point(x[i], y[i]);
-  });
+  return size_of(std::array{Points{x, y}});
 }
 
-SpotSize spot_size(std::span<const FilmHits> sets) noexcept {
-  std::size_t count = 0;
-  for (const FilmHits& hits : sets) count += hits.x.size();
-  return size_of(count, [&](auto&& point) {
-    for (const FilmHits& hits : sets) {
-      for (std::size_t i = 0; i < hits.x.size(); ++i) point(hits.x[i], hits.y[i]);
-    }
-  });
-}
+SpotSize spot_size(std::span<const FilmHits> sets) noexcept { return size_of(sets); }
 
 std::vector<Spot> spot_diagram(const Lens& lens, double subject_z, std::span<const double> fields_rad,
                                std::uint32_t samples) {

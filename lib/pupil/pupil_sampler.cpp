@@ -2,7 +2,9 @@
 #include "petzval/pupil/pupil_sampler.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace petzval {
@@ -32,7 +34,11 @@ PupilSampler::PupilSampler(const PupilOutline& outline)
   if (outline.empty()) return;
   const auto along = extents(outline);
   const std::size_t n = outline.directions;
-  turn_ = 2 * std::numbers::pi / static_cast<double>(n);
+  // Pieces are so slim that a few terms of a series are their sine and cosine.
+  constexpr std::size_t least_pieces = 64;
+  const std::size_t parts = (least_pieces + n - 1) / n;
+  const double turn = 2 * std::numbers::pi / static_cast<double>(n * parts);
+  half_turn_ = turn / 2;
 
   // Between two directions an edge may reach past both of them by half of what it gains in a step, at a corner where
   // two rims meet, and by the bulge of an arc.
@@ -51,23 +57,63 @@ PupilSampler::PupilSampler(const PupilOutline& outline)
     const double least = !a.any ? b.from : !b.any ? a.from : std::min(a.from, b.from);
     const double inner = std::max(0.0, least - inner_step / 2 - margin);
     const double outer = std::max(a.to, b.to) + outer_step / 2 + margin;
-    sum += (outer - inner) * (outer + inner);
-    const double angle = turn_ * (static_cast<double>(k) + 0.5);
-    sectors_.push_back({sum, angle, inner * inner, outer * outer});
+    const double squares = (outer - inner) * (outer + inner);
+    for (std::size_t part = 0; part < parts; ++part) {
+      const double angle = half_turn_ * static_cast<double>((2 * k + 1) * parts + 2 * part + 1);
+      pieces_.push_back({sum, squares, std::sin(angle), std::cos(angle), inner * inner, squares});
+      until_.push_back(sum += squares);
+    }
   }
-  for (Sector& s : sectors_) s.until /= sum;
-  sectors_.back().until = 1;
-  area_ = sum * turn_ / 2 * half_axes_[0] * half_axes_[1];
+  area_ = sum * half_turn_ * half_axes_[0] * half_axes_[1];
+  for (Piece& p : pieces_) p.before /= sum, p.angle_per_share = turn / (p.angle_per_share / sum);
+  for (double& share : until_) share /= sum;
+  until_.back() = std::numeric_limits<double>::infinity();  // and what rounding leaves
+
+  // Few steps have the ends of several pieces in them.
+  first_.resize(4 * std::bit_ceil(pieces_.size()));
+  const double step = 1 / static_cast<double>(first_.size());
+  for (std::size_t i = 0, piece = 0; i < first_.size(); ++i) {
+    while (until_[piece] <= step * static_cast<double>(i)) ++piece;
+    first_[i] = static_cast<std::uint32_t>(piece);
+  }
 }
 
 std::array<double, 2> PupilSampler::operator()(double u, double v) const noexcept {
-  const auto after = [](double share, const Sector& s) { return share < s.until; };
-  auto sector = std::upper_bound(sectors_.begin(), sectors_.end(), u, after);
-  if (sector == sectors_.end()) --sector;
-  const double before = sector == sectors_.begin() ? 0 : std::prev(sector)->until;
-  const double angle = sector->angle + turn_ * ((u - before) / (sector->until - before));
-  const double radius = std::sqrt(sector->inner_squared + v * (sector->outer_squared - sector->inner_squared));
-  return {middle_[0] + half_axes_[0] * radius * std::sin(angle), middle_[1] + half_axes_[1] * radius * std::cos(angle)};
+  std::array<double, 2> point{u, v};
+  const std::span x(&point[0], 1), y(&point[1], 1);
+  (*this)(x, y, x, y);
+  return point;
+}
+
+void PupilSampler::operator()(std::span<const double> u, std::span<const double> v, std::span<double> x,
+                              std::span<double> y) const noexcept {
+  constexpr std::size_t block = 64;
+  const auto steps = static_cast<double>(first_.size());
+  const std::size_t last = first_.size() - 1;
+  for (std::size_t begin = 0; begin < u.size(); begin += block) {
+    const std::size_t count = std::min(block, u.size() - begin);
+    // One end is passed or not without a branch, which would be guessed wrong as often as not.
+    std::array<std::uint32_t, block> at;
+    std::array<double, block> across, up;
+    for (std::size_t i = 0; i < count; ++i) {
+      const double share = u[begin + i];
+      std::uint32_t piece = first_[std::min(static_cast<std::size_t>(share * steps), last)];
+      piece += until_[piece] <= share;
+      while (until_[piece] <= share) ++piece;
+      at[i] = piece;
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      const Piece& p = pieces_[at[i]];
+      const double a = (u[begin + i] - p.before) * p.angle_per_share - half_turn_, aa = a * a;
+      const double sine = a * (1 + aa * (-1.0 / 6 + aa * (1.0 / 120 + aa * (-1.0 / 5040))));
+      const double cosine = 1 + aa * (-0.5 + aa * (1.0 / 24 + aa * (-1.0 / 720 + aa * (1.0 / 40320))));
+      const double radius = std::sqrt(p.inner_squared + v[begin + i] * p.outer_less_inner);
+      across[i] = middle_[0] + half_axes_[0] * radius * (p.sine * cosine + p.cosine * sine);
+      up[i] = middle_[1] + half_axes_[1] * radius * (p.cosine * cosine - p.sine * sine);
+    }
+    std::copy_n(across.begin(), count, x.begin() + begin);
+    std::copy_n(up.begin(), count, y.begin() + begin);
+  }
 }
 
 }  // namespace petzval

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <set>
 #include <vector>
@@ -39,6 +40,25 @@ TEST(OwenSobol, LiesInTheUnitSquare) {
       ASSERT_TRUE(x >= 0 && x < 1 && y >= 0 && y < 1) << seed << " " << n;
     }
   }
+}
+
+TEST(OwenSobol, BlocksHoldThePointsOneByOne) {
+  for (const std::uint32_t first : {0u, 5u, 4096u, 0xfffffff0u}) {
+    for (const std::size_t count : {0u, 1u, 3u, 64u, 101u}) {
+      std::vector<double> u(count, -1), v(count, -1);
+      owen_sobol(first, 7, u, v);
+      for (std::uint32_t i = 0; i < count; ++i) {
+        EXPECT_EQ((std::array{u[i], v[i]}), owen_sobol(first + i, 7)) << first << " + " << i;
+      }
+    }
+  }
+}
+
+TEST(OwenSobol, KeepsItsPoints) {
+  // By the first version, point by point: a seed goes on to mean the same picture.
+  EXPECT_EQ(owen_sobol(0, 0), (std::array{0x1.cc53569ep-1, 0x1.603b991p-4}));
+  EXPECT_EQ(owen_sobol(123456789, 42), (std::array{0x1.27296c98p-2, 0x1.34a4f066p-1}));
+  EXPECT_EQ(owen_sobol(0xffffffff, 0xffffffff), (std::array{0x1.bab421ep-5, 0x1.cb7b1ecp-4}));
 }
 
 TEST(OwenSobol, IsAFunctionOfIndexAndSeed) {

@@ -107,6 +107,41 @@ TEST(PupilSampler, IsEven) {
   EXPECT_NEAR(xy / side / side / radius_squared, 0, 1e-5);
 }
 
+TEST(PupilSampler, ManyPointsAreThoseOneByOne) {
+  const Lens lens = data_lens("double_gauss_100mm_f1.35");
+  for (const std::size_t directions : {1u, 3u, 50u, 256u, 300u}) {
+    const PupilSampler sampler(pupil_outline(lens, {0, -1000}, 0, directions));
+    for (const std::size_t count : {0u, 1u, 63u, 64u, 65u, 200u}) {
+      std::vector<double> u(count), v(count);
+      for (std::size_t i = 0; i < count; ++i) {
+        u[i] = static_cast<double>(i * i % 199) / 199, v[i] = static_cast<double>(i * 7 % 199) / 199;
+      }
+      std::vector<double> x(count), y(count);
+      sampler(u, v, x, y);
+      for (std::size_t i = 0; i < count; ++i) EXPECT_EQ((std::array{x[i], y[i]}), sampler(u[i], v[i]));
+      sampler(u, v, u, v);
+      EXPECT_EQ(u, x);
+      EXPECT_EQ(v, y);
+    }
+  }
+}
+
+TEST(PupilSampler, TurnsWithUAndWidensWithV) {
+  // A disc: u runs around it from half a direction after +y, v is the share of the area within the radius.
+  const Lens lens = data_lens("double_gauss_100mm_f1.35");
+  for (const int directions : {1, 3, 50, 256}) {
+    const PupilSampler sampler(pupil_outline(lens, {0, -infinity}, 0, static_cast<std::size_t>(directions)));
+    const double radius = std::sqrt(sampler.area() / pi), start = pi / directions;
+    for (int i = 0; i < 1000; ++i) {
+      const double u = i / 1000.0, v = (i * 37 % 1000) / 1000.0;
+      const auto [x, y] = sampler(u, v);
+      // The edge that was traced is round to 2e-13 of the half axes.
+      EXPECT_NEAR(x, radius * std::sqrt(v) * std::sin(2 * pi * u + start), 2e-12 * radius) << directions;
+      EXPECT_NEAR(y, radius * std::sqrt(v) * std::cos(2 * pi * u + start), 2e-12 * radius) << directions;
+    }
+  }
+}
+
 TEST(PupilSampler, OfNothingIsEmpty) {
   const PupilSampler sampler(pupil_outline(data_lens("double_gauss_100mm_f1.35"), {radians(60), -infinity}));
   EXPECT_TRUE(sampler.empty());

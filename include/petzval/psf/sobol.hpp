@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 
 #include "petzval/core/export.hpp"
 
@@ -16,5 +17,8 @@ namespace petzval {
 /// the scrambling; Laine and Karras 2011, "Stratified sampling for stochastic transparency", and Burley 2020,
 /// "Practical hash-based Owen scrambling", for doing it by a hash in which no bit depends on a lower one.
 PETZVAL_API std::array<double, 2> owen_sobol(std::uint32_t index, std::uint32_t seed) noexcept;
+
+/// The points from `first` on, the same and sooner than one by one. u, v: N each.
+PETZVAL_API void owen_sobol(std::uint32_t first, std::uint32_t seed, std::span<double> u, std::span<double> v) noexcept;
 
 }  // namespace petzval

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <array>
+#include <span>
 
 #include "petzval/core/export.hpp"
 #include "petzval/core/ray.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/pupil/scene_point.hpp"
+#include "petzval/trace/batch.hpp"
 
 namespace petzval {
 
@@ -43,6 +45,8 @@ class PETZVAL_API PupilPlane {
   /// The ray of the point through (x, y), started in the plane and never at the point: nothing is lost however far that
   /// is.
   Ray<double> ray(double x, double y) const noexcept;
+  /// The same for many. x, y, and rays: N each, apart in memory.
+  void rays(std::span<const double> x, std::span<const double> y, const RayArrays<double>& rays) const noexcept;
 
   /// Where the line of a ray meets the plane.
   std::array<double, 2> meet(const Ray<double>& ray) const noexcept;

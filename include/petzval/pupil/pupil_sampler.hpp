@@ -2,6 +2,8 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
+#include <span>
 #include <vector>
 
 #include "petzval/core/export.hpp"
@@ -22,7 +24,7 @@ class PETZVAL_API PupilSampler {
   explicit PupilSampler(const PupilOutline& outline);
 
   /// Nothing to sample: the outline is empty.
-  bool empty() const noexcept { return sectors_.empty(); }
+  bool empty() const noexcept { return pieces_.empty(); }
 
   const PupilPlane& plane() const noexcept { return plane_; }
   std::size_t wavelength() const noexcept { return wavelength_; }
@@ -32,19 +34,26 @@ class PETZVAL_API PupilSampler {
 
   /// The point (x, y) of the plane for u, v in [0, 1). Not for an empty sampler.
   std::array<double, 2> operator()(double u, double v) const noexcept;
+  /// The same for many. u, v, x, y: N each; x and y may be u and v.
+  void operator()(std::span<const double> u, std::span<const double> v, std::span<double> x,
+                  std::span<double> y) const noexcept;
 
  private:
-  struct Sector {
-    double until;  ///< share of the area of the sectors up to the end of this one
-    double angle;  ///< where it begins, from +y
-    double inner_squared, outer_squared;
+  /// A slim part of a ring: it lies about the unit vector (sine, cosine) from +y.
+  struct Piece {
+    double before;           ///< share of the area of all pieces before this one
+    double angle_per_share;  ///< from one side of it to the other
+    double sine, cosine;
+    double inner_squared, outer_less_inner;  ///< squared radii
   };
 
   PupilPlane plane_;
   std::size_t wavelength_;
   std::array<double, 2> middle_, half_axes_;
-  double turn_ = 0, area_ = 0;
-  std::vector<Sector> sectors_;
+  double half_turn_ = 0, area_ = 0;
+  std::vector<Piece> pieces_;
+  std::vector<double> until_;         ///< share of the area up to the end of each piece
+  std::vector<std::uint32_t> first_;  ///< that begins in or before each of as many equal steps of u
 };
 
 }  // namespace petzval
