@@ -2,8 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 # Builds the benchmarks and prints their tables; under a minute when built.
 #
-#   sh tests/bench/run.sh [--benchmark_filter=... and other options of Google Benchmark]
+#   sh tests/bench/run.sh [--json FILE] [--isa baseline|avx2|avx512] [--benchmark_filter=... and others of the library]
 #
+# --json writes the rows of the trace as an array of objects, --isa measures its batches on one instruction set alone.
 # BUILD_DIR=... builds elsewhere than in build/.
 set -eu
 root=$(CDPATH= cd -- "$(dirname -- "$0")/../.." && pwd)
@@ -11,7 +12,18 @@ root=$(CDPATH= cd -- "$(dirname -- "$0")/../.." && pwd)
 
 need $library_packages libbenchmark-dev
 build -DPETZVAL_BUILD_BENCHMARKS=ON -DPETZVAL_BUILD_TESTS=OFF -DPETZVAL_BUILD_EXAMPLES=OFF
-for bench in trace pupil psf; do
+echo
+"$BUILD_DIR/tests/bench/trace_bench" "$@"
+
+# What the trace alone knows is taken out for the others.
+left=$#
+while [ "$left" -gt 0 ]; do
+  case $1 in
+    --json | --isa) shift 2; left=$((left - 2)) ;;
+    *) set -- "$@" "$1"; shift; left=$((left - 1)) ;;
+  esac
+done
+for bench in pupil psf; do
   echo
   "$BUILD_DIR/tests/bench/${bench}_bench" "$@"
 done

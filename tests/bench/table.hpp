@@ -7,33 +7,47 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <cstdlib>
 #include <string>
 #include <vector>
 
-/// Options of the caller win over the defaults set here: rounds of all benchmarks, interleaved.
-inline void initialize(int argc, char** argv, int rounds = 15) {
+/// Options of the caller win over the defaults set here: rounds of all benchmarks, interleaved, and the time (s) that
+/// each takes in a round.
+inline void initialize(int argc, char** argv, int rounds = 15, double round_time = 0.02) {
   std::vector<std::string> defaults{"--benchmark_repetitions=" + std::to_string(rounds),
-                                    "--benchmark_enable_random_interleaving=true", "--benchmark_min_time=0.02"};
+                                    "--benchmark_enable_random_interleaving=true",
+                                    "--benchmark_min_time=" + std::to_string(round_time)};
   std::vector<char*> arguments{argv[0]};
   for (std::string& option : defaults) arguments.push_back(option.data());
   arguments.insert(arguments.end(), argv + 1, argv + argc);
   int count = static_cast<int>(arguments.size());
   benchmark::Initialize(&count, arguments.data());
+  if (benchmark::ReportUnrecognizedArguments(count, arguments.data())) std::exit(1);
 }
 
-/// What the last column of a table compares with the first benchmark of the same group.
-enum class Compare {
-  speed,  ///< how often the fastest round fits into the first's; times in nanoseconds
-  cost    ///< how often the first's fits into the fastest round; times in microseconds
-};
+/// Significant digits, without an exponent.
+inline std::string digits(double value, int count = 4) {
+  char text[32];
+  const int places = std::max(0, count - 1 - static_cast<int>(std::floor(std::log10(value))));
+  std::snprintf(text, sizeof text, "%.*f", places, value);
+  return text;
+}
 
-/// Prints one line per benchmark, in the order of registration: fastest, median and slowest round, and the comparison
-/// with the first benchmark of the same group (the part of the name behind '/').
-class Table : public benchmark::BenchmarkReporter {
+/// Keeps what every round of every benchmark took per item.
+class Rounds : public benchmark::BenchmarkReporter {
  public:
-  /// unit: what a time is for; comparison: the heading of the last column.
-  explicit Table(std::string unit, Compare compare = Compare::speed, std::string comparison = "times as fast (minima)")
-      : unit_(std::move(unit)), compare_(compare), comparison_(std::move(comparison)) {}
+  struct Line {
+    std::string name;
+    std::vector<double> seconds;  ///< sorted
+    std::int64_t order;           ///< of registration
+
+    double min() const { return seconds.front(); }
+    double median() const { return seconds[seconds.size() / 2]; }
+    double max() const { return seconds.back(); }
+  };
+
+  /// Benchmarks that ran, in the order of registration.
+  const std::vector<Line>& lines() const { return lines_; }
 
   bool ReportContext(const Context&) override { return true; }
 
@@ -43,43 +57,52 @@ class Table : public benchmark::BenchmarkReporter {
       const std::string name = run.run_name.function_name;
       auto line = std::find_if(lines_.begin(), lines_.end(), [&](const Line& l) { return l.name == name; });
       if (line == lines_.end()) line = lines_.insert(lines_.end(), Line{name, {}, run.family_index});
-      line->times.push_back((cost() ? 1e6 : 1e9) / run.counters.at("items_per_second"));
+      line->seconds.push_back(1 / run.counters.at("items_per_second"));
     }
   }
 
   void Finalize() override {
-    std::printf("%-34s %9s %9s %9s %10s   %s\n", ((cost() ? "us per " : "ns per ") + unit_).c_str(), "min", "median",
-                "max", cost() ? "1000/s" : "million/s", comparison_.c_str());
     std::sort(lines_.begin(), lines_.end(), [](const Line& a, const Line& b) { return a.order < b.order; });
-    for (Line& line : lines_) std::sort(line.times.begin(), line.times.end());
-    for (const Line& line : lines_) {
+    for (Line& line : lines_) std::sort(line.seconds.begin(), line.seconds.end());
+  }
+
+ private:
+  std::vector<Line> lines_;
+};
+
+/// What the last column of a table compares with the first benchmark of the same group.
+enum class Compare {
+  speed,  ///< how often the fastest round fits into the first's; times in nanoseconds
+  cost    ///< how often the first's fits into the fastest round; times in microseconds
+};
+
+/// Prints one line per benchmark, in the order of registration: fastest, median and slowest round, and the comparison
+/// with the first benchmark of the same group (the part of the name behind '/').
+class Table : public Rounds {
+ public:
+  /// unit: what a time is for; comparison: the heading of the last column.
+  explicit Table(std::string unit, Compare compare = Compare::speed, std::string comparison = "times as fast (minima)")
+      : unit_(std::move(unit)), compare_(compare), comparison_(std::move(comparison)) {}
+
+  void Finalize() override {
+    Rounds::Finalize();
+    const bool cost = compare_ == Compare::cost;
+    const double scale = cost ? 1e6 : 1e9;
+    std::printf("%-34s %9s %9s %9s %10s   %s\n", ((cost ? "us per " : "ns per ") + unit_).c_str(), "min", "median",
+                "max", cost ? "1000/s" : "million/s", comparison_.c_str());
+    for (const Line& line : lines()) {
       const std::string group = line.name.substr(line.name.find('/') + 1);
       const auto first =
-          std::find_if(lines_.begin(), lines_.end(), [&](const Line& l) { return l.name.ends_with("/" + group); });
-      const double best = line.times.front(), times = first->times.front() / best;
-      std::printf("%-34s %9s %9s %9s %10s   %s\n", line.name.c_str(), digits(best).c_str(),
-                  digits(line.times[line.times.size() / 2]).c_str(), digits(line.times.back()).c_str(),
-                  digits(1e3 / best).c_str(), digits(cost() ? 1 / times : times, 3).c_str());
+          std::find_if(lines().begin(), lines().end(), [&](const Line& l) { return l.name.ends_with("/" + group); });
+      const double times = first->min() / line.min();
+      std::printf("%-34s %9s %9s %9s %10s   %s\n", line.name.c_str(), digits(scale * line.min()).c_str(),
+                  digits(scale * line.median()).c_str(), digits(scale * line.max()).c_str(),
+                  digits(1e3 / (scale * line.min())).c_str(), digits(cost ? 1 / times : times, 3).c_str());
     }
   }
 
  private:
-  struct Line {
-    std::string name;
-    std::vector<double> times;
-    std::int64_t order;
-  };
-  /// Significant digits, without an exponent.
-  static std::string digits(double value, int count = 4) {
-    char text[32];
-    const int places = std::max(0, count - 1 - static_cast<int>(std::floor(std::log10(value))));
-    std::snprintf(text, sizeof text, "%.*f", places, value);
-    return text;
-  }
-  bool cost() const { return compare_ == Compare::cost; }
-
   std::string unit_;
   Compare compare_;
   std::string comparison_;
-  std::vector<Line> lines_;
 };

@@ -8,15 +8,15 @@
 #include "petzval/lens/lens.hpp"
 
 /// The tracer that a textbook leads to, in float, for the library to be measured against: spheres in the frame of their
-/// centre, the quadratic solved without cancellation, glm::refract, everything normalised, an early way out. Stops by a
-/// radius of zero.
+/// centre, the quadratic solved without cancellation, conics and aspheres by Newton's method on their sag,
+/// glm::refract, everything normalised, an early way out.
 class TextbookTracer {
  public:
   struct Ray {
     glm::vec3 origin, direction;
   };
 
-  /// Spherical surfaces only.
+  /// Rotationally symmetric surfaces without odd terms, no mirrors.
   explicit TextbookTracer(const petzval::Lens& lens);
 
   /// From the film to the scene; false where the ray is lost.
@@ -25,7 +25,20 @@ class TextbookTracer {
  private:
   struct Element {
     float radius, thickness, index, aperture_radius;  ///< index of the medium behind, thickness to the next surface
+    int shape = -1;  ///< position among the shapes, or -1: a sphere, or a plane by a radius of 0
   };
+  struct Shape {
+    float conic;
+    std::vector<float> even;  ///< coefficients of r^4, r^6, ...
+  };
+  struct Hit {
+    bool found = false;
+    float t = 0;
+    glm::vec3 normal{};
+  };
+  static Hit intersect_sag(float radius, const Shape& shape, float vertex_z, Ray ray);
+
   std::vector<Element> elements_;
+  std::vector<Shape> shapes_;
   float rear_z_;
 };

@@ -1,189 +1,264 @@
 // SPDX-License-Identifier: Apache-2.0
-// The scalar kernel against a textbook tracer, film to scene, on the Tronnier double Gauss f/2.0 (11 surfaces).
+// What a ray costs on its way from the film through the lens, and how exact it comes out: the textbook tracer, the
+// library ray by ray, and its batches on every instruction set of the processor.
 //
-// Rays: `mix` from film points all over the frame towards the rear element, as a renderer that knows no pupil shoots
-// them; `pass` those of them that get out. All of them every round, rounds of all benchmarks interleaved.
+//   trace_bench [--isa baseline|avx2|avx512] [--json FILE] [options of Google Benchmark]
+//
+// All rays of a set every round, rounds of all rows interleaved, threads pinned; ratios are of the fastest rounds, for
+// on a shared machine a slow one measures the neighbours. One thread is timed by its own clock, two by the wall's.
+// Directions are judged by each row's own results.
 #include <benchmark/benchmark.h>
+#include <pthread.h>
+#include <sched.h>
 
-#include <array>
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <random>
+#include <deque>
+#include <exception>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
 #include <vector>
 
-#include "../trace/extended.hpp"
+#include "petzval/core/error.hpp"
 #include "petzval/io/prescription_json.hpp"
-#include "petzval/trace/batch.hpp"
-#include "petzval/trace/sequential.hpp"
-#include "petzval/trace/trace.hpp"
+#include "petzval/io/write_file.hpp"
 #include "table.hpp"
-#include "textbook_tracer.hpp"
+#include "trace_rays.hpp"
+#include "trace_report.hpp"
+#include "trace_work.hpp"
 
 namespace {
 
-using petzval::Ray;
-using petzval::TraceOptions;
-using petzval::Travel;
+using petzval::Arithmetic;
+using petzval::BatchOptions;
+using petzval::InstructionSet;
 
-constexpr TraceOptions backwards{.travel = Travel::to_scene};
+constexpr std::size_t ray_count = 16384;
 
-/// The same rays in the forms that the tracers take; exact in float.
-struct Rays {
-  std::vector<TextbookTracer::Ray> textbook;
-  std::vector<Ray<float>> single;
-  std::vector<Ray<double>> twice;
-
-  void add(const Ray<float>& r) {
-    textbook.push_back({r.origin, r.direction});
-    single.push_back(r);
-    twice.push_back({petzval::Vec3<double>(r.origin), petzval::Vec3<double>(r.direction)});
+/// Processors that this program may use; before the first thread is pinned.
+std::vector<int> processors() {
+  cpu_set_t allowed;
+  std::vector<int> result;
+  if (sched_getaffinity(0, sizeof allowed, &allowed) != 0) return result;
+  for (int i = 0; i < CPU_SETSIZE; ++i) {
+    if (CPU_ISSET(i, &allowed)) result.push_back(i);
   }
-  template <class T>
-  const std::vector<Ray<T>>& of() const {
-    if constexpr (std::is_same_v<T, float>)
-      return single;
-    else
-      return twice;
-  }
-};
-
-struct Setup {
-  petzval::Lens lens = petzval::compile(
-      petzval::read_prescription(std::string(PETZVAL_BENCH_DATA) + "/lenses/double_gauss_100mm_f2.0.json"));
-  TextbookTracer textbook{lens};
-  Rays mix, pass;
-
-  Setup() {
-    std::mt19937 random(1);
-    std::uniform_real_distribution<float> uniform(-1, 1);
-    const auto& rear = lens.surfaces().back();
-    const auto rim = static_cast<float>(rear.semi_diameter), z = static_cast<float>(rear.vertex_z);
-    const auto film_z = static_cast<float>(lens.film_z());
-    while (mix.single.size() < 8192 || pass.single.size() < 8192) {
-      const float x = uniform(random), y = uniform(random);
-      if (x * x + y * y > 1) continue;
-      const petzval::Vec3<float> film{33.6f * uniform(random), 22.4f * uniform(random), film_z},
-          at{rim * x, rim * y, z};
-      const petzval::Vec3<double> d(at - film);
-      const double length = std::sqrt(d.x * d.x + d.y * d.y + d.z * d.z);
-      const Ray<float> ray{film, petzval::Vec3<float>(d / length)};
-      if (mix.single.size() < 8192) mix.add(ray);
-      if (pass.single.size() < 8192 && petzval::trace(lens, ray, backwards).transmitted()) pass.add(ray);
-    }
-  }
-};
-
-const Setup& setup() {
-  static const Setup s;
-  return s;
+  return result;
 }
 
-void textbook(benchmark::State& state, const Rays& rays) {
-  const TextbookTracer& tracer = setup().textbook;
-  for (auto _ : state) {
-    for (const auto& ray : rays.textbook) {
-      TextbookTracer::Ray out;
-      benchmark::DoNotOptimize(tracer.trace(ray, out));
-      benchmark::DoNotOptimize(out);
-    }
-  }
-  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(rays.textbook.size()));
+void pin(int processor) {
+  cpu_set_t one;
+  CPU_ZERO(&one);
+  CPU_SET(processor, &one);
+  pthread_setaffinity_np(pthread_self(), sizeof one, &one);
 }
 
-template <class T>
-void one_by_one(benchmark::State& state, const Rays& rays) {
-  const petzval::Lens& lens = setup().lens;
+void measure(benchmark::State& state, const Row& row, const std::vector<int>& cores) {
+  const auto thread = static_cast<std::size_t>(state.thread_index());
+  if (thread < cores.size()) pin(cores[thread]);
+  const auto work = row.make();
   for (auto _ : state) {
-    for (const auto& ray : rays.of<T>()) {
-      const auto out = petzval::trace(lens, ray, backwards);
-      benchmark::DoNotOptimize(&out);
-      benchmark::ClobberMemory();
-    }
-  }
-  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(rays.of<T>().size()));
-}
-
-template <class T>
-void batch(benchmark::State& state, const Rays& rays) {
-  const petzval::Lens& lens = setup().lens;
-  const std::size_t count = rays.of<T>().size();
-  std::array<std::vector<T>, 12> a;
-  for (auto& v : a) v.resize(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      a[k][i] = rays.of<T>()[i].origin[static_cast<int>(k)];
-      a[k + 3][i] = rays.of<T>()[i].direction[static_cast<int>(k)];
-    }
-  }
-  std::vector<petzval::RayFate> fates(count);
-  std::vector<int> surfaces(count);
-  for (auto _ : state) {
-    petzval::trace<T>(lens, count, {a[0].data(), a[1].data(), a[2].data(), a[3].data(), a[4].data(), a[5].data()},
-                      {a[6].data(), a[7].data(), a[8].data(), a[9].data(), a[10].data(), a[11].data()}, fates.data(),
-                      surfaces.data(), {.travel = Travel::to_scene});
+    work->trace();
     benchmark::ClobberMemory();
   }
-  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(count));
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(ray_count));
 }
 
-/// Direction errors of rays that both get out, against the kernel over long double on the same rays.
-template <class Traced>
-void print_error(const char* name, const Traced& traced) {
-  const auto tables = testing_lenses::extended(setup().lens.view<double>());
-  double sum = 0, most = 0;
+/// Over the rays that get out by this row and in truth.
+template <class T>
+DirectionError direction_error(const Work& work, const RaySet::Of<T>& set) {
+  DirectionError error;
+  double sum = 0;
   int count = 0;
-  for (std::size_t i = 0; i < setup().pass.twice.size(); ++i) {
-    const auto& ray = setup().pass.twice[i];
-    using L = petzval::kernel::Vec<long double>;
-    const auto exact = trace(tables.view(), L{ray.origin.x, ray.origin.y, ray.origin.z},
-                             L{ray.direction.x, ray.direction.y, ray.direction.z}, {.travel = Travel::to_scene});
-    petzval::Vec3<double> d;
-    if (exact.fate != petzval::RayFate::transmitted || !traced(i, d)) continue;
-    const long double x = d.x - exact.direction.x, y = d.y - exact.direction.y, z = d.z - exact.direction.z;
-    const auto off = static_cast<double>(std::sqrt(x * x + y * y + z * z));
-    sum += off * off;
-    most = std::max(most, off);
+  for (std::size_t i = 0; i < set.exact.size(); ++i) {
+    const auto d = work.direction(i);
+    if (!d || !set.exact[i]) continue;
+    const auto off = *set.exact[i] - petzval::kernel::Vec<long double>{d->x, d->y, d->z};
+    const auto square = static_cast<double>(dot(off, off));
+    sum += square;
+    error.max = std::max(error.max, std::sqrt(square));
     ++count;
   }
-  std::printf("%-34s %.2e  %.2e   (%d rays)\n", name, std::sqrt(sum / count), most, count);
+  error.rms = std::sqrt(sum / count);
+  return error;
 }
 
-template <class T>
-void print_kernel_error(const char* name) {
-  print_error(name, [](std::size_t i, petzval::Vec3<double>& d) {
-    const auto out = petzval::trace(setup().lens, setup().pass.of<T>()[i], backwards);
-    d = petzval::Vec3<double>(out.ray.direction);
-    return out.transmitted();
-  });
+DirectionError direction_error(const Row& row) {
+  const auto work = row.make();
+  work->trace();
+  return row.in_double ? direction_error(*work, row.set->in_double) : direction_error(*work, row.set->in_float);
+}
+
+// ---- What is measured
+
+template <template <class> class Single, class T>
+Row one_by_one(const BenchLens& bench, const RaySet& set, const std::string& rays, const std::string& code) {
+  Row row{.bench = &bench, .set = &set, .rays = rays, .code = code, .in_double = std::is_same_v<T, double>};
+  row.make = [&bench, &set] { return std::make_unique<Single<T>>(bench, set); };
+  return row;
+}
+
+template <template <class> class Batch, class T>
+Row batch(const BenchLens& bench, const RaySet& set, const std::string& rays, const std::string& code,
+          InstructionSet isa, Arithmetic mode, int threads = 1) {
+  Row row{&bench, &set, rays, code, std::is_same_v<T, double>, threads, isa, mode};
+  const BatchOptions options{.travel = petzval::Travel::to_scene, .arithmetic = mode, .instruction_set = isa};
+  row.make = [&bench, &set, options] { return std::make_unique<Batch<T>>(bench, set, options); };
+  return row;
+}
+
+/// Every code on one lens and set; extra: also what needs to be shown once: two threads, arrays of
+/// structures, derivatives.
+std::vector<Row> rows_of(const BenchLens& bench, const RaySet& set, const std::string& rays,
+                         const std::vector<InstructionSet>& sets, bool extra, bool two_threads) {
+  std::vector<Row> rows;
+  rows.push_back({.bench = &bench, .set = &set, .rays = rays, .code = "textbook", .in_double = false});
+  rows.back().make = [&bench, &set] { return std::make_unique<TextbookWork>(bench, set); };
+  rows.push_back(one_by_one<TemplateWork, float>(bench, set, rays, "template"));
+  rows.push_back(one_by_one<TemplateWork, double>(bench, set, rays, "template"));
+  rows.push_back(one_by_one<SingleWork, float>(bench, set, rays, "scalar"));
+  rows.push_back(one_by_one<SingleWork, double>(bench, set, rays, "scalar"));
+  for (const InstructionSet isa : sets) {
+    for (const Arithmetic mode : {Arithmetic::fast, Arithmetic::reproducible}) {
+      rows.push_back(batch<ArraysWork, float>(bench, set, rays, "batch", isa, mode));
+      rows.push_back(batch<ArraysWork, double>(bench, set, rays, "batch", isa, mode));
+    }
+  }
+  if (!extra) return rows;
+  const InstructionSet widest = sets.back();
+  if (two_threads) {
+    rows.push_back(batch<ArraysWork, float>(bench, set, rays, "batch", widest, Arithmetic::fast, 2));
+    rows.push_back(batch<ArraysWork, double>(bench, set, rays, "batch", widest, Arithmetic::fast, 2));
+  }
+  rows.push_back(batch<StructuresWork, float>(bench, set, rays, "batch_aos", widest, Arithmetic::fast));
+  rows.push_back(batch<StructuresWork, double>(bench, set, rays, "batch_aos", widest, Arithmetic::fast));
+  if (rays != "pass") return rows;
+  rows.push_back(batch<DifferentialsWork, float>(bench, set, rays, "differentials", widest, Arithmetic::fast));
+  rows.push_back(batch<DifferentialsWork, double>(bench, set, rays, "differentials", widest, Arithmetic::fast));
+  return rows;
+}
+
+/// Eleven refracting surfaces of weak menisci, all of one kind, so that nothing but the kind differs.
+petzval::Prescription eleven(const std::string& kind, double conic, const std::vector<petzval::AsphereTerm>& terms) {
+  petzval::Prescription p;
+  p.id = "eleven_" + kind;
+  p.name = kind;
+  for (const double nd : {1.5, 1., 1.6, 1., 1.5, 1.7, 1., 1.6, 1., 1.5, 1.}) {
+    const double place = static_cast<double>(p.surfaces.size());
+    p.surfaces.push_back({.radius = 90 + 2 * place,
+                          .thickness = nd > 1 ? 4. : 1.,
+                          .medium = {.nd = nd},
+                          .semi_diameter = 20,
+                          .conic = conic,
+                          .aspheric = terms});
+  }
+  p.surfaces.back().thickness = 60;
+  return p;
+}
+
+// ---- The program
+
+struct Options {
+  std::vector<InstructionSet> sets;
+  std::string json_file;
+};
+
+/// Takes this program's own options out of the command line.
+Options own_options(std::vector<char*>& arguments) {
+  Options options;
+  const auto available = petzval::instruction_sets();
+  options.sets.assign(available.begin(), available.end());
+  const auto take = [&](const std::string& flag) -> std::optional<std::string> {
+    const auto at = std::find(arguments.begin() + 1, arguments.end(), flag);
+    if (at == arguments.end()) return {};
+    if (at + 1 == arguments.end()) throw petzval::Error("trace_bench: " + flag + ": found nothing behind it");
+    std::string value = *(at + 1);
+    arguments.erase(at, at + 2);
+    return value;
+  };
+  if (const auto file = take("--json")) options.json_file = *file;
+  if (const auto isa = take("--isa")) {
+    std::erase_if(options.sets, [&](InstructionSet set) { return petzval::name(set) != *isa; });
+    if (options.sets.empty()) {
+      throw petzval::Error("trace_bench: --isa: found \"" + *isa + "\", wanted one that this processor has");
+    }
+  }
+  return options;
+}
+
+int run(std::vector<char*> arguments) {
+  const Options options = own_options(arguments);
+  initialize(static_cast<int>(arguments.size()), arguments.data(), 15, 0.005);
+  const auto file = [](const char* id) {
+    return petzval::read_prescription(std::string(PETZVAL_BENCH_DATA) + "/lenses/" + id + ".json");
+  };
+  // Half diagonals: 22 degrees, 9 degrees, the image circle, the frame of 24 x 36 mm.
+  std::deque<BenchLens> lenses;
+  lenses.emplace_back(file("double_gauss_100mm_f2.0"), 40.4, ray_count);
+  lenses.emplace_back(file("petzval_100mm_f1.6"), 16, ray_count);
+  lenses.emplace_back(file("fisheye_10mm_f4"), 13, ray_count);
+  lenses.emplace_back(file("modern_58mm_f0.95"), 21.6, ray_count);
+  std::deque<BenchLens> kinds;
+  kinds.emplace_back(eleven("spheres", 0, {}), 10, ray_count);
+  kinds.emplace_back(eleven("conics", -0.5, {}), 10, ray_count);
+  kinds.emplace_back(eleven("aspheres", 0, {{4, 1e-7}, {6, 1e-10}, {8, -1e-13}, {10, 1e-16}}), 10, ray_count);
+
+  const std::vector<int> cores = processors();
+  std::vector<Row> rows, kind_rows;
+  for (const BenchLens& bench : lenses) {
+    for (const bool pass : {true, false}) {
+      const auto some = rows_of(bench, pass ? bench.pass : bench.mix, pass ? "pass" : "mix", options.sets,
+                                &bench == &lenses.front(), cores.size() > 1);
+      rows.insert(rows.end(), some.begin(), some.end());
+    }
+  }
+  for (const BenchLens& bench : kinds) {
+    const InstructionSet widest = options.sets.back();
+    kind_rows.push_back(batch<ArraysWork, float>(bench, bench.pass, "pass", "batch", widest, Arithmetic::fast));
+    kind_rows.push_back(batch<ArraysWork, double>(bench, bench.pass, "pass", "batch", widest, Arithmetic::fast));
+  }
+  for (const auto* some : {&rows, &kind_rows}) {
+    for (const Row& row : *some) {
+      auto* registered = benchmark::RegisterBenchmark(row.name().c_str(), measure, row, cores);
+      if (row.threads > 1) registered->Threads(row.threads)->UseRealTime();
+    }
+  }
+  Rounds rounds;
+  benchmark::RunSpecifiedBenchmarks(&rounds);
+
+  // Only what ran: the caller may have asked for less.
+  const auto results_of = [&](const std::vector<Row>& asked) {
+    std::vector<Result> results;
+    for (const Row& row : asked) {
+      const auto times = std::find_if(rounds.lines().begin(), rounds.lines().end(),
+                                      [&](const Rounds::Line& line) { return line.name == row.name(); });
+      if (times != rounds.lines().end()) results.push_back({row, *times, direction_error(row)});
+    }
+    for (Result& r : results) {
+      const auto textbook = std::find_if(results.begin(), results.end(), [&](const Result& t) {
+        return t.row.code == "textbook" && t.row.beside(r.row);
+      });
+      if (textbook != results.end()) r.textbook = &*textbook;
+    }
+    return results;
+  };
+  const std::vector<Result> results = results_of(rows);
+  print_results(results);
+  print_kinds(results_of(kind_rows));
+  if (!options.json_file.empty()) petzval::write_file(json(results), options.json_file);
+  return 0;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  initialize(argc, argv);
-  const auto add = [](const std::string& group, const Rays& rays) {
-    const auto one = [&](const std::string& name, auto* run) {
-      benchmark::RegisterBenchmark((name + "/" + group).c_str(), run, rays);
-    };
-    one("textbook float", textbook);
-    one("petzval float, ray by ray", one_by_one<float>);
-    one("petzval double, ray by ray", one_by_one<double>);
-    one("petzval float, batch", batch<float>);
-    one("petzval double, batch", batch<double>);
-  };
-  add("pass", setup().pass);
-  add("mix", setup().mix);
-  Table table("ray, 11 surfaces");
-  benchmark::RunSpecifiedBenchmarks(&table);
-
-  std::printf("\n%-34s %-9s %-9s\n", "direction error (rad)", "rms", "max");
-  print_error("textbook float", [](std::size_t i, petzval::Vec3<double>& d) {
-    TextbookTracer::Ray out;
-    const bool passed = setup().textbook.trace(setup().pass.textbook[i], out);
-    d = petzval::Vec3<double>(out.direction);
-    return passed;
-  });
-  print_kernel_error<float>("petzval float");
-  print_kernel_error<double>("petzval double");
-  return 0;
+  try {
+    return run({argv, argv + argc});
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 1;
+  }
 }

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "petzval/core/kernel_vec.hpp"
+#include "petzval/core/ray.hpp"
+#include "petzval/lens/lens.hpp"
+#include "textbook_tracer.hpp"
+
+/// Rays in double, and in float as a caller in float has them: rounded, directions too.
+struct RaySet {
+  template <class T>
+  struct Of {
+    std::vector<petzval::Ray<T>> rays;
+    /// Where each leaves for, in long double; none where it is lost.
+    std::vector<std::optional<petzval::kernel::Vec<long double>>> exact;
+  };
+  Of<float> in_float;
+  Of<double> in_double;
+  double passing = 0;  ///< the part of them that gets out
+
+  template <class T>
+  const Of<T>& of() const {
+    if constexpr (std::is_same_v<T, float>) {
+      return in_float;
+    } else {
+      return in_double;
+    }
+  }
+};
+
+/// A lens and rays from its film towards the scene, as a renderer shoots them.
+///
+/// mix: film points all over a frame of 3:2, towards boxes in the plane of the rear vertex: pbrt's way, who keeps for
+/// each of 64 rings of the film the bounding box of what gets out. pass: those of them that get out.
+struct BenchLens {
+  std::string id, name;
+  petzval::Lens lens;
+  TextbookTracer textbook{lens};
+  RaySet pass{}, mix{};
+
+  /// half_diagonal: of the frame, mm. count: rays of each set.
+  BenchLens(const petzval::Prescription& prescription, double half_diagonal, std::size_t count);
+};
