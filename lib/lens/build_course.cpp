@@ -66,7 +66,6 @@ CourseTables<R> build_course(std::span<const LensSurface> surfaces, std::optiona
   tables.course.last_z = static_cast<R>((to_film ? surfaces.back() : surfaces.front()).vertex_z);
   tables.course.last_sense = static_cast<R>(sense);
 
-  for (auto& step : tables.steps) step.bends = false;
   for (std::size_t w = 0; w < wavelengths; ++w) {
     const double* n = indices.data() + w * (count + 1);
     for (auto& step : tables.steps) {

@@ -122,7 +122,7 @@ void asphere(const kernel::Step<R>& s, const Lanes<R>& rim2, const BlockJob<R>& 
              const Media& media, Bundle<R>& b, Follow& follow) noexcept {
   using V = Lanes<R>;
   const kernel::Asphere<R>& surface = job.aspheres[s.asphere];
-  const V c(s.curvature), ax(s.ax), ay(s.ay), e(s.e), none(R(0)), size(surface.height);
+  const V ax(s.ax), ay(s.ay), none(R(0)), size(surface.height);
   constexpr R eps = std::numeric_limits<R>::epsilon();
   for (int i = 0; i < Bundle<R>::vectors; ++i) {
     approach(s, media, b, i, follow);
@@ -130,9 +130,7 @@ void asphere(const kernel::Step<R>& s, const Lanes<R>& rim2, const BlockJob<R>& 
     const V x = b.x[i], y = b.y[i], z = b.z[i];
 
     // The hit on the base conic; where there is none, the place that approach() found.
-    const V f = c * (ax * x * x + ay * y * y + e * z * z) - (z + z);
-    const V slant = pz - c * (ax * x * px + ay * y * py + e * z * pz);
-    const V a = c * (ax * px * px + ay * py * py + e * pz * pz);
+    const auto [a, slant, f] = quadratic(s, b, i);
     const V disc = slant * slant - a * f;
     const Mask<R> on_base = (disc > none) & (slant > none);
     V q = select(on_base, f / (slant + root(disc)), none);

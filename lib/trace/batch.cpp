@@ -73,20 +73,11 @@ std::array<T*, 6> pointers(const RayArrays<T>& a) noexcept {
   return {a.x, a.y, a.z, a.dx, a.dy, a.dz};
 }
 
-/// The first `count` rays of a block, from and to arrays.
-template <class R>
-void take(const RayArrays<const R>& from, std::size_t begin, std::size_t count, const RayArrays<R>& to) noexcept {
-  for (std::size_t k = 0; k < 6; ++k) {
-    const R* const first = pointers(from)[k] + begin;
-    std::copy(first, first + count, pointers(to)[k]);
-  }
-}
-template <class R>
-void give(const RayArrays<R>& from, std::size_t count, const RayArrays<R>& to, std::size_t begin) noexcept {
-  for (std::size_t k = 0; k < 6; ++k) {
-    const R* const first = pointers(from)[k];
-    std::copy(first, first + count, pointers(to)[k] + begin);
-  }
+/// `count` rays from one place to another.
+template <class T, class R>
+void copy(std::size_t count, const RayArrays<T>& from, std::size_t begin, const RayArrays<R>& to,
+          std::size_t to_begin) noexcept {
+  for (std::size_t k = 0; k < 6; ++k) std::copy_n(pointers(from)[k] + begin, count, pointers(to)[k] + to_begin);
 }
 
 /// Points a job at a block.
@@ -119,21 +110,21 @@ void trace_all(const Lens& lens, std::size_t count, const RayArrays<const R>& in
   if (rest == 0) return;
   Block<R> last;
   std::fill(last.v[5].begin(), last.v[5].end(), R(1));
-  take(in, done, rest, last.arrays());
+  copy(rest, in, done, last.arrays(), 0);
   if (job.wavelengths) std::copy(options.wavelengths + done, options.wavelengths + count, last.wavelengths.begin());
   use(last, job);
   const auto tangents = last.template tangents<const R>();
   if (tangents_in) {
-    take(tangents_in->u, done, rest, last.arrays(6));
-    take(tangents_in->v, done, rest, last.arrays(12));
+    copy(rest, tangents_in->u, done, last.arrays(6), 0);
+    copy(rest, tangents_in->v, done, last.arrays(12), 0);
     job.tangents_in = &tangents;
     job.tangents_out = last.tangents();
   }
   trace_blocks(job);
-  give(last.arrays(), rest, out, done);
+  copy(rest, last.arrays(), 0, out, done);
   if (tangents_in) {
-    give(last.arrays(6), rest, tangents_out.u, done);
-    give(last.arrays(12), rest, tangents_out.v, done);
+    copy(rest, last.arrays(6), 0, tangents_out.u, done);
+    copy(rest, last.arrays(12), 0, tangents_out.v, done);
   }
   if (fates) std::copy_n(last.fates.begin(), rest, fates + done);
   if (surfaces) std::copy_n(last.surfaces.begin(), rest, surfaces + done);

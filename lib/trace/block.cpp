@@ -37,12 +37,8 @@ void report(const BlockJob<R>& job, const Bundle<R>& b, const std::uint8_t* unse
   if (job.fates) {
     for (int l = 0; l < rays; ++l) {
       const auto t = static_cast<std::int32_t>(tally[l]);
-      const std::int32_t cause = t & 3;
-      std::int32_t fate = cause == 0 ? static_cast<std::int32_t>(RayFate::missed_surface)
-                                     : static_cast<std::int32_t>(RayFate::totally_reflected);
-      fate = cause == 1 ? static_cast<std::int32_t>(RayFate::vignetted) : fate;
-      fate = unsettled[l] != 0 ? static_cast<std::int32_t>(RayFate::no_convergence) : fate;
-      fate = t > 4 * steps ? static_cast<std::int32_t>(RayFate::transmitted) : fate;
+      const std::int32_t fate =
+          t > 4 * steps ? static_cast<std::int32_t>(RayFate::transmitted) : lost_by(t & 3, unsettled[l] != 0);
       job.fates[o + static_cast<std::size_t>(l)] = static_cast<RayFate>(fate);
     }
   }

@@ -2,6 +2,8 @@
 // Rays on their way, lane by lane. Included like lanes.hpp.
 #pragma once
 
+#include <cstdint>
+
 #include "block.hpp"
 #if defined(PETZVAL_ONE_LANE)
 #include "one_lane.hpp"
@@ -36,6 +38,15 @@ struct Bundle {
   /// last one tells the ray's fate.
   typename Native<R>::Bits tally[vectors];
 };
+
+/// What ended a ray, from what its tally has beyond the surfaces passed, as a number that loops can run on lanes;
+/// unsettled: the search for a hit gave up.
+PETZVAL_INLINE std::int32_t lost_by(std::int32_t beyond, bool unsettled) noexcept {
+  std::int32_t fate = beyond == 0 ? static_cast<std::int32_t>(RayFate::missed_surface)
+                                  : static_cast<std::int32_t>(RayFate::totally_reflected);
+  fate = beyond == 1 ? static_cast<std::int32_t>(RayFate::vignetted) : fate;
+  return unsettled ? static_cast<std::int32_t>(RayFate::no_convergence) : fate;
+}
 
 /// How points and directions change with one parameter.
 template <class R>

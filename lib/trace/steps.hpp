@@ -10,6 +10,7 @@
 #include <limits>
 
 #include "bundle.hpp"
+#include "petzval/trace/sequential.hpp"
 
 namespace petzval::detail {
 namespace {
@@ -81,12 +82,7 @@ void clip(const kernel::Step<R>& s, const Iris& iris, std::size_t j, Bundle<R>& 
   using V = Lanes<R>;
   using Bits = typename Native<R>::Bits;
   for (int i = 0; i < Bundle<R>::vectors; ++i) {
-    Mask<R> open = b.r2[i] >= V(s.hole2);
-    for (std::size_t e = 0; e < iris.size(); ++e) {
-      const IrisEdge& edge = iris.data()[e];
-      const V nx(static_cast<R>(edge.nx)), ny(static_cast<R>(edge.ny)), distance(static_cast<R>(edge.distance));
-      open = open & (b.x[i] * nx + b.y[i] * ny <= distance);
-    }
+    const Mask<R> open = (b.r2[i] >= V(s.hole2)) & kernel::within(iris, b.x[i], b.y[i]);
     b.alive[i] = b.alive[i] & open;
     const auto rim = static_cast<typename Native<R>::Bit>(4 * j + 1);  // the tally of a ray that hit and was clipped
     Bits clipped = Bits{} + rim;
@@ -204,6 +200,21 @@ PETZVAL_INLINE void bend(const kernel::Step<R>& s, const Lanes<R>& rim2, const M
   if (s.mirror) turn(b, i);
 }
 
+/// The quadratic for the steps q of p to a quadric, a q^2 - 2 slant q + f = 0.
+template <class R>
+struct Quadratic {
+  Lanes<R> a, slant, f;
+};
+
+template <class R>
+PETZVAL_INLINE Quadratic<R> quadratic(const kernel::Step<R>& s, const Bundle<R>& b, int i) noexcept {
+  using V = Lanes<R>;
+  const V c(s.curvature), ax(s.ax), ay(s.ay), e(s.e);
+  const V x = b.x[i], y = b.y[i], z = b.z[i], px = b.px[i], py = b.py[i], pz = b.pz[i];
+  return {c * (ax * px * px + ay * py * py + e * pz * pz), pz - c * (ax * x * px + ay * y * py + e * z * pz),
+          c * (ax * x * x + ay * y * y + e * z * z) - (z + z)};
+}
+
 /// Conics and cylinders, and whatever is a mirror.
 template <class R, class Media, class Follow>
 void quadric(const kernel::Step<R>& s, const Lanes<R>& rim2, const Media& media, Bundle<R>& b,
@@ -213,9 +224,7 @@ void quadric(const kernel::Step<R>& s, const Lanes<R>& rim2, const Media& media,
   for (int i = 0; i < Bundle<R>::vectors; ++i) {
     approach(s, media, b, i, follow);
     const V px = b.px[i], py = b.py[i], pz = b.pz[i];
-    const V f = c * (ax * b.x[i] * b.x[i] + ay * b.y[i] * b.y[i] + e * b.z[i] * b.z[i]) - (b.z[i] + b.z[i]);
-    const V slant = pz - c * (ax * b.x[i] * px + ay * b.y[i] * py + e * b.z[i] * pz);
-    const V a = c * (ax * px * px + ay * py * py + e * pz * pz);
+    const auto [a, slant, f] = quadratic(s, b, i);
     const V xi = root(slant * slant - a * f);
     const Mask<R> facing = slant >= V(R(0));
     const V q = select(facing, f, slant - xi) / select(facing, slant + xi, a);

@@ -24,6 +24,12 @@ Ray<R> in_lens_frame(const Bundle<R>& b, R z, R pz, const kernel::Step<R>& s, R 
   return {{b.x[0].v, b.y[0].v, s.sense * z + vertex_z}, d * scale};
 }
 
+/// The height of the hit behind a step, in the frame in front of it.
+template <class R>
+R z_before_turning(const kernel::Step<R>& s, const Bundle<R>& behind) noexcept {
+  return s.mirror ? -behind.z[0].v : behind.z[0].v;
+}
+
 /// Beyond all reason numbers overflow.
 template <class R>
 void keep_finite(const Ray<R>& found, Ray<R>& ray) noexcept {
@@ -38,11 +44,7 @@ TracedRay<R> ended(const BlockJob<R>& job, const R* vertex_z, std::size_t j, boo
                    const Bundle<R>& before, const Bundle<R>& after) noexcept {
   const kernel::Step<R>& s = job.course.steps[j];
   const auto tally = after.tally[0] - static_cast<std::int32_t>(4 * j);
-  const RayFate fate = unsettled    ? RayFate::no_convergence
-                       : tally == 0 ? RayFate::missed_surface
-                       : tally == 1 ? RayFate::vignetted
-                                    : RayFate::totally_reflected;
-  TracedRay<R> end{ray, fate, s.surface};
+  TracedRay<R> end{ray, static_cast<RayFate>(lost_by(tally, unsettled)), s.surface};
   const kernel::Bend<R>& bend = job.course.bends[job.wavelength * job.steps + j];
   const R per_n = std::sqrt(bend.per_n2);
   if (j > 0) {
@@ -53,8 +55,7 @@ TracedRay<R> ended(const BlockJob<R>& job, const R* vertex_z, std::size_t j, boo
     Bundle<R> hit = before;
     hit.x[0] = after.x[0];
     hit.y[0] = after.y[0];
-    const R z = s.mirror ? -after.z[0].v : after.z[0].v;
-    keep_finite(in_lens_frame(hit, z, before.pz[0].v, s, vertex_z[s.surface], per_n), end.ray);
+    keep_finite(in_lens_frame(hit, z_before_turning(s, after), before.pz[0].v, s, vertex_z[s.surface], per_n), end.ray);
   }
   return end;
 }
@@ -83,8 +84,7 @@ TracedRay<R> trace_one(const Lens& lens, const Ray<R>& ray, const TraceOptions& 
     pass(job, j, SharedMedia<R>{bends + j}, &unsettled, b, none);
     if constexpr (!std::is_null_pointer_v<Seen>) {
       const kernel::Step<R>& s = course.steps[j];
-      const R z = s.mirror ? -b.z[0].v : b.z[0].v;
-      const Vec3<R> point{b.x[0].v, b.y[0].v, s.sense * z + view.vertex_z[s.surface]};
+      const Vec3<R> point{b.x[0].v, b.y[0].v, s.sense * z_before_turning(s, b) + view.vertex_z[s.surface]};
       const bool hit = b.tally[0] > static_cast<std::int32_t>(4 * j);
       if (hit && kernel::finite(point.x) && kernel::finite(point.y) && kernel::finite(point.z)) seen(s.surface, point);
     }

@@ -14,6 +14,7 @@ namespace {
 using namespace testing_batches;
 using petzval::Prescription;
 using petzval::SurfaceRow;
+using testing_lenses::one_surface;
 
 template <class T>
 class EdgesOf : public testing::Test {
@@ -23,14 +24,6 @@ class EdgesOf : public testing::Test {
 };
 using Plain = testing::Types<float, double>;
 TYPED_TEST_SUITE(EdgesOf, Plain);
-
-Lens one_surface(const SurfaceRow& row, double n_in = 1) {
-  Prescription p;
-  p.name = "one surface";
-  p.object_space.nd = n_in;
-  p.surfaces = {row};
-  return petzval::compile(p);
-}
 
 SurfaceRow surface(double radius, double conic, double n_behind) {
   SurfaceRow row;

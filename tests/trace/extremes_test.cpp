@@ -24,20 +24,12 @@ using petzval::Vec3;
 using testing_batches::Numbers;
 using testing_batches::text;
 using testing_batches::through;
+using testing_lenses::one_surface;
 
 template <class T>
 class ExtremesOf : public testing::Test {};
 using Plain = testing::Types<float, double>;
 TYPED_TEST_SUITE(ExtremesOf, Plain);
-
-/// A lens of one surface between two media.
-Lens one_surface(const SurfaceRow& row, double n_in = 1) {
-  Prescription p;
-  p.name = "one surface";
-  p.object_space.nd = n_in;
-  p.surfaces = {row};
-  return petzval::compile(p);
-}
 
 SurfaceRow glass(double radius, double conic = 0, double n = 1.5) {
   SurfaceRow row;

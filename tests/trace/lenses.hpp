@@ -54,6 +54,15 @@ inline const std::vector<Sample>& all() {
   return samples;
 }
 
+/// A lens of one surface between two media.
+inline petzval::Lens one_surface(const petzval::SurfaceRow& row, double n_in = 1) {
+  petzval::Prescription p;
+  p.name = "one surface";
+  p.object_space.nd = n_in;
+  p.surfaces = {row};
+  return petzval::compile(p);
+}
+
 /// Rays in object space that pass the lens to the film: found from points of the stop (or of the first surface)
 /// outwards. Deterministic. Fewer than `count` where a lens lets hardly any through.
 inline std::vector<petzval::Ray<double>> passing_rays(const petzval::Lens& lens, std::size_t count, unsigned seed = 1) {

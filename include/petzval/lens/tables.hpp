@@ -31,7 +31,7 @@ template <class R>
 struct Step {
   StepKind kind = StepKind::plane;
   bool far = false;          ///< begins so far off that the ray must be brought near the vertex first
-  bool bends = true;         ///< the media on its sides differ, at one wavelength at least
+  bool bends = false;        ///< the media on its sides differ, at one wavelength at least
   bool mirror = false;       ///< after which the frame turns round
   bool stop = false;         ///< where the iris stands
   bool refresh = false;      ///< directions have gathered the rounding of many surfaces: put their length right
