@@ -33,6 +33,46 @@ function(petzval_module library module)
     PUBLIC FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR}/include FILES ${arg_HEADERS})
 endfunction()
 
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+  set(PETZVAL_X86_64 ON)
+endif()
+
+# petzval_lanes(block.cpp tracer_avx2_fast avx2 PETZVAL_FAST=1 ...): loops for one instruction set, as an object of the core with
+# flags and definitions of its own. Fused operations where PETZVAL_FAST=1 is among these. Optimised whatever the kind of build,
+# so that no inline function of a header stays behind for the linker to give to files of another instruction set.
+function(petzval_lanes file name set)
+  set(flags_avx2 -mavx2 -mfma)
+  set(flags_avx512 ${flags_avx2} -mavx512f -mavx512dq -mavx512bw -mavx512vl)
+  set(contract off)
+  if("PETZVAL_FAST=1" IN_LIST ARGN)
+    set(contract fast)
+  endif()
+  add_library(petzval-${name} OBJECT ${file})
+  target_compile_features(petzval-${name} PRIVATE cxx_std_20)
+  target_compile_definitions(petzval-${name} PRIVATE ${ARGN})
+  target_compile_options(petzval-${name} PRIVATE -O3 -fno-math-errno -fno-trapping-math -ffp-contract=${contract} ${flags_${set}}
+    -Wno-psabi)  # vectors pass between functions of this file only
+  target_include_directories(petzval-${name} PRIVATE ${PROJECT_SOURCE_DIR}/include)
+  target_link_libraries(petzval-${name} PRIVATE glm::glm)
+  set_target_properties(petzval-${name} PROPERTIES CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON
+    POSITION_INDEPENDENT_CODE ON)
+  petzval_warnings(petzval-${name})
+  target_sources(petzval-core PRIVATE $<TARGET_OBJECTS:petzval-${name}>)
+endfunction()
+
+# petzval_loops(pupil_map.cpp pupil_map): a file of loops for every instruction set; PETZVAL_LOOPS names what each defines:
+# pupil_map_baseline, pupil_map_avx2, pupil_map_avx512. Tuned for processors that gather: tables of pupils are read twice as fast.
+function(petzval_loops file name)
+  petzval_lanes(${file} ${name}_baseline baseline PETZVAL_LOOPS=${name}_baseline)
+  if(PETZVAL_X86_64)
+    foreach(set avx2 avx512)
+      petzval_lanes(${file} ${name}_${set} ${set} PETZVAL_LOOPS=${name}_${set} PETZVAL_FAST=1)
+    endforeach()
+    target_compile_options(petzval-${name}_avx2 PRIVATE -mtune=haswell)
+    target_compile_options(petzval-${name}_avx512 PRIVATE -mtune=icelake-server -mprefer-vector-width=512)
+  endif()
+endfunction()
+
 # petzval_test(trace/reference_test.cpp core): one test program, discovered case by case.
 function(petzval_test file)
   string(REGEX REPLACE "[/.]" "_" name ${file})

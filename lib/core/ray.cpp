@@ -10,6 +10,8 @@ std::string_view name(RayFate fate) noexcept {
     case RayFate::totally_reflected: return "totally_reflected";
     case RayFate::vignetted: return "vignetted";
     case RayFate::no_convergence: return "no_convergence";
+    case RayFate::outside_fit: return "outside_fit";
+    case RayFate::outside_film: return "outside_film";
   }
   return "unknown";
 }

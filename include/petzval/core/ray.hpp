@@ -28,6 +28,8 @@ enum class RayFate : std::uint8_t {
   totally_reflected,  ///< beyond the critical angle
   vignetted,  ///< outside the clear aperture (or what is described of an asphere), or in the hole of an annular one
   no_convergence,  ///< the iteration for an asphere found no answer
+  outside_fit,     ///< outside the domain of a fitted model of the lens
+  outside_film,    ///< starts, or ends, beside the film of a camera
 };
 
 /// The fate in words, as the programs print it: "transmitted", "missed_surface", ...
