@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "petzval/core/export.hpp"
+#include "petzval/core/ray.hpp"
+#include "petzval/core/vec3.hpp"
+#include "petzval/lens/lens.hpp"
+#include "petzval/pupil/pupil_map.hpp"
+#include "petzval/trace/batch.hpp"
+
+namespace petzval {
+
+/// A line from a scene point into the lens.
+struct EntranceSample {
+  Vec3<double> place{0, 0, 0};      ///< lens frame, mm: where the line passes the pupil
+  Vec3<double> direction{0, 0, 1};  ///< unit, from the point to the place
+  double distance = 0;              ///< between them, mm
+  double pdf = 0;                   ///< of the direction at the point, 1/sr; 0: the point does not see the pupil
+};
+
+/// Lines behind the lens, spread over a film and its pupils, edges included: those to build an EntranceMap from, before
+/// they go through the lens. All azimuths of the film, or +y alone where they are alike.
+struct SpreadLines {
+  std::vector<double> film_x, film_y, pupil_x, pupil_y;
+};
+PETZVAL_API SpreadLines spread_lines(const PupilMap& pupils, bool azimuths_alike, std::size_t wavelength);
+
+/// What decides where a pupil ends.
+enum class PupilEnds : std::uint8_t {
+  at_rims,    ///< what rays do: lines tell of it only from within
+  with_lines  ///< the lines, as in models of a lens that have no rims
+};
+
+/// Which of N rays of the scene get through: passes[i] for each, at a wavelength.
+using ScenePassing = std::function<void(std::size_t count, const RayArrays<const double>& rays, std::size_t wavelength,
+                                        std::uint8_t* passes)>;
+
+/// What the points of a scene see of a lens's pupil, as a table over field and reciprocal distance, one for each
+/// wavelength.
+///
+/// A point is told by its distance from the pupil's centre and the angle (its field) between the line there and the
+/// axis; the pupil it sees lies in the plane across that line, so that 90 degrees and more are like any other field.
+/// Pupils are stars of 64 corners, interpolated; they contain all that passes and a little more. Points nearer to the
+/// lens than the table goes, and all points of lenses without symmetry of revolution, get a cone about a ball that all
+/// lines meet. Either way every ray that passes can be drawn: estimates have no bias.
+///
+/// Immutable, cheap to copy, free to share between threads.
+class PETZVAL_API EntranceMap {
+ public:
+  /// lines: for each wavelength, what leaves the lens towards the scene of its spread_lines(). They say how far fields
+  /// reach and where to look.
+  EntranceMap(const Lens& lens, std::span<const std::vector<Ray<double>>> lines, const ScenePassing& passing,
+              PupilEnds ends = PupilEnds::at_rims);
+
+  /// Whether a point lies where the lens may see it, finite and not behind its first surface.
+  bool in_front(const Vec3<double>& point) const noexcept;
+
+  /// A line from a point (lens frame, mm) for u and v in [0, 1]. Nothing (pdf 0) for a point that is not in front of
+  /// the lens or beyond all fields, numbers that are not finite, and wavelengths that are not in the map.
+  EntranceSample sample(const Vec3<double>& point, double u, double v, std::size_t wavelength = 0) const noexcept;
+
+  /// The density with which `sample` gives a direction, 1/sr.
+  double pdf(const Vec3<double>& point, const Vec3<double>& direction, std::size_t wavelength = 0) const noexcept;
+
+ private:
+  struct Data;
+  std::shared_ptr<const Data> data_;
+};
+
+}  // namespace petzval

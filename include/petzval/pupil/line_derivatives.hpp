@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "petzval/core/ray.hpp"
+
+namespace petzval {
+
+/// A line of the film's space: where it meets the film and the plane of the pupil, mm.
+struct FilmLine {
+  double film_x = 0, film_y = 0, pupil_x = 0, pupil_y = 0;
+};
+
+/// A line and its derivatives by two parameters.
+struct LineDerivatives {
+  FilmLine line{}, by_u{}, by_v{};
+};
+
+/// A ray and the derivatives of its point and direction by two parameters; a ray that is lost has none (0).
+struct RayDerivatives {
+  RayFate fate = RayFate::transmitted;
+  Ray<double> ray{}, by_u{{0, 0, 0}, {0, 0, 0}}, by_v{{0, 0, 0}, {0, 0, 0}};
+};
+
+}  // namespace petzval

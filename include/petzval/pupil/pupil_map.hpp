@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "petzval/core/export.hpp"
+#include "petzval/lens/lens.hpp"
+#include "petzval/lens/ray_wavelengths.hpp"
+#include "petzval/pupil/film_lines.hpp"
+#include "petzval/pupil/scene_point.hpp"
+
+namespace petzval {
+
+/// A disc in the plane of the pupil whose centre moves with the film point: it lies at shift times that point.
+struct PupilDisc {
+  double shift = 0;
+  double radius = 0;  ///< mm
+};
+
+/// A sample of a pupil: its place in the plane of the pupil and the pupil's whole area, mm and mm^2. Samples are spread
+/// evenly, so that their density is 1 / area. Area 0: nothing to sample, the place is (0, 0).
+struct PupilSample {
+  double x = 0, y = 0, area = 0;
+};
+
+/// The pupils of every point of a film: the parts of the plane behind the lens through which the points see the scene,
+/// as a table over the distance from the axis, one for each compiled wavelength.
+///
+/// A pupil is a star of 64 corners about a middle (or a ring of such stars, where the lens has a hole). Corners and
+/// middles are interpolated between 65 distances, so that the pupil, and with it the sample for a given u and v, moves
+/// continuously with the film point: a picture has no rings. Areas are exact for the interpolated star.
+/// Lenses without symmetry of revolution have one pupil for all points, which contains all of theirs.
+///
+/// Immutable, cheap to copy, free to share between threads.
+class PETZVAL_API PupilMap {
+ public:
+  /// Contains every ray that the lens passes and little else; rays still have to be traced. Of the pupils' area at most
+  /// 1e-5 is missed (tests/pupil/pupil_map_test.cpp: every lens of data/ wide open over its declared field, some of
+  /// them stopped down), but where a pupil falls apart into more than two pieces along a line: a ball lens stopped down
+  /// or far off the axis, catadioptrics beyond their field. film_radius: of the farthest film point, mm, >= 0. The film
+  /// is the lens's. Throws Error for a film in the plane of the last vertex and for a film_radius that is negative or
+  /// not finite.
+  static PupilMap covering(const Lens& lens, double film_radius);
+
+  /// The pupils themselves, as well as stars of the same area can have their shape, for models without rims.
+  static PupilMap matching(const Lens& lens, double film_radius);
+
+  /// What lies within all of some discs (one list for each wavelength), as well as stars of the same area can have it.
+  static PupilMap of_discs(const FilmSpace& space, std::span<const std::vector<PupilDisc>> discs, double film_radius);
+
+  /// The planes that film points and samples lie in.
+  const FilmSpace& space() const noexcept;
+  double film_radius() const noexcept;
+  std::size_t wavelengths() const noexcept;
+
+  /// The pupil of a film point, evenly, for u and v in [0, 1] (clamped); u runs around the middle
+  /// (from the lens's +y, so that samples of neighbouring points are neighbours), v outwards. Nothing
+  /// for points outside the film's radius, numbers that are not finite and wavelengths that are not in the map.
+  PupilSample sample(const FilmPoint& film, double u, double v, std::size_t wavelength = 0) const noexcept;
+  /// The same for many: film_x, film_y, u, v, x, y and areas: N each; x and y may be u and v. Float or double.
+  template <class T>
+  void sample(std::size_t count, const T* film_x, const T* film_y, const T* u, const T* v,
+              const RayWavelengths& wavelengths, T* x, T* y, T* areas) const noexcept;
+
+  /// Area of the pupil of a film point, mm^2; 0 as in `sample`.
+  double area(const FilmPoint& film, std::size_t wavelength = 0) const noexcept;
+  /// Its middle: where the star's rays begin; the centre of the hole where there is one.
+  std::array<double, 2> middle(const FilmPoint& film, std::size_t wavelength = 0) const noexcept;
+  /// Whether a place in the plane of the pupil belongs to the pupil of a film point.
+  bool contains(const FilmPoint& film, double x, double y, std::size_t wavelength = 0) const noexcept;
+
+  /// How the sample moves with the film point, u and v held: derivatives of (x, y) by film x and by film y.
+  struct Motion {
+    std::array<double, 2> by_film_x{0, 0}, by_film_y{0, 0};
+  };
+  Motion motion(const FilmPoint& film, double u, double v, std::size_t wavelength = 0) const noexcept;
+
+ private:
+  struct Data;
+  static PupilMap traced(const Lens& lens, double film_radius, bool covering);
+  explicit PupilMap(std::shared_ptr<const Data> data) noexcept : data_(std::move(data)) {}
+  std::shared_ptr<const Data> data_;
+};
+
+}  // namespace petzval

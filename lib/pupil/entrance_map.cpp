@@ -1,0 +1,500 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "petzval/pupil/entrance_map.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <utility>
+
+#include "face.hpp"
+#include "petzval/core/bisect.hpp"
+#include "petzval/lens/sag.hpp"
+#include "petzval/pupil/pupil.hpp"
+#include "petzval/pupil/pupil_star.hpp"
+
+namespace petzval {
+namespace {
+
+using detail::PupilStar;
+
+constexpr double pi = std::numbers::pi;
+/// Nodes of the table less one: in field, from the axis to the last; in reciprocal distance, from infinity to nearest.
+constexpr std::size_t field_steps = 12, distance_steps = 2;
+constexpr std::size_t fields = field_steps + 1, distances = distance_steps + 1;
+
+/// The plane through the pupil's centre across the line to a point, and the lines of that point.
+struct View {
+  Vec3<double> towards{0, 0, -1};  // unit, from the centre to the point
+  Vec3<double> x_axis{1, 0, 0}, y_axis{0, 1, 0};
+  double reciprocal = 0;  // 1 / distance from the centre, 1/mm
+
+  View(double field, double azimuth_x, double azimuth_y, double reciprocal_distance) noexcept
+      : reciprocal(reciprocal_distance) {
+    const double sine = std::sin(field), cosine = std::cos(field);
+    towards = {azimuth_x * sine, azimuth_y * sine, -cosine};
+    x_axis = {azimuth_y, -azimuth_x, 0};
+    y_axis = {azimuth_x * cosine, azimuth_y * cosine, sine};
+  }
+
+  /// From the centre.
+  Vec3<double> place(double x, double y) const noexcept { return x_axis * x + y_axis * y; }
+  Vec3<double> direction(const Vec3<double>& place) const noexcept {
+    return glm::normalize(place * reciprocal - towards);
+  }
+};
+
+/// Where a direction from the centre lies.
+struct Bearing {
+  double field = 0, azimuth_x = 0, azimuth_y = 1;
+
+  explicit Bearing(const Vec3<double>& unit) noexcept {
+    const double across = std::hypot(unit.x, unit.y);
+    field = std::atan2(across, -unit.z);
+    if (across > 0) azimuth_x = unit.x / across, azimuth_y = unit.y / across;
+  }
+};
+
+/// What the lines of one node and its neighbours take of its plane.
+struct Bounds {
+  double low = 0, high = 0, across = 0;
+  bool any = false;
+
+  void take(double x, double y) noexcept {
+    low = any ? std::min(low, y) : y;
+    high = any ? std::max(high, y) : y;
+    across = std::max(across, std::abs(x));
+    any = true;
+  }
+};
+
+double squared(double x) noexcept { return x * x; }
+
+/// The solid angle of a cone about a ball of some radius, seen from some distance; from within, all directions.
+double cone(double radius, double distance) noexcept {
+  if (!(distance > radius)) return 4 * pi;
+  const double sine2 = squared(radius / distance);
+  return 2 * pi * sine2 / (1 + std::sqrt(1 - sine2));  // 1 - cosine, without cancellation
+}
+
+PupilStar mean(const PupilStar* stars, const std::array<std::size_t, 4>& nodes,
+               const std::array<double, 4>& weights) noexcept {
+  PupilStar result;
+  for (std::size_t j = 0; j < 4; ++j) {
+    const PupilStar& star = stars[nodes[j]];
+    const double w = weights[j];
+    for (int i : {0, 1}) result.middle[i] += w * star.middle[i];
+    for (std::size_t k = 0; k < detail::star_corners; ++k) {
+      for (int i : {0, 1}) result.corners[k][i] += w * star.corners[k][i];
+      result.gap_from[k] += w * star.gap_from[k];
+      result.gap[k] += w * star.gap[k];
+    }
+  }
+  return result;
+}
+
+/// Outwards and, where it has a gap, into that.
+void widen(PupilStar& star, double by) noexcept {
+  for (auto& corner : star.corners) corner = {by * corner[0], by * corner[1]};
+  for (std::size_t k = 0; k < detail::star_corners; ++k) {
+    const double to = (star.gap_from[k] + star.gap[k]) / (by * by * by * by);
+    star.gap[k] = std::max(to - star.gap_from[k], 0.0);
+  }
+}
+
+/// Instead of a star where nothing passes any more: between it and the last one, which has some before it, the pupil
+/// ends and moves on as it did, faster even.
+PupilStar beyond(const PupilStar* star, std::size_t before) noexcept {
+  constexpr double room = 1.2;
+  PupilStar result = star[-1];
+  if (before > 1) {
+    for (int i : {0, 1}) result.middle[i] += star[-1].middle[i] - star[-2].middle[i];
+  }
+  widen(result, room);
+  return result;
+}
+
+/// How far out in a star a place lies: its edge is at 1, gaps count as -1; infinite where no sector has it.
+double reach(const PupilStar& star, double x, double y) noexcept {
+  const double qx = x - star.middle[0], qy = y - star.middle[1];
+  for (std::size_t k = 0; k < detail::star_corners; ++k) {
+    const auto &a = star.corners[k], &b = star.corners[(k + 1) % detail::star_corners];
+    const double whole = b[0] * a[1] - a[0] * b[1];
+    const double first = b[0] * qy - qx * b[1], second = qx * a[1] - a[0] * qy;
+    if (!(whole > 0) || first < 0 || second < 0) continue;
+    const double out = (first + second) / whole;
+    const double gap = out * out - star.gap_from[k];
+    return gap >= 0 && gap < star.gap[k] ? -1 : out;
+  }
+  return std::numeric_limits<double>::infinity();
+}
+
+}  // namespace
+
+struct EntranceMap::Data {
+  /// One wavelength.
+  struct Table {
+    std::array<double, distances> widest{};  // field of the last node, rad
+    std::vector<PupilStar> stars;            // [distance][field]; none: cones only
+    double ball = 0;                         // radius about the centre, mm; 0: nothing passes
+  };
+  Lens lens;
+  Vec3<double> centre{0, 0, 0};
+  double front_half = 0, steepest = 0;  // steepest: largest reciprocal distance of the table, 1/mm
+  std::vector<Table> tables;
+
+  explicit Data(const Lens& l) : lens(l) {}
+
+  bool in_front(const Vec3<double>& point) const noexcept {
+    constexpr double farthest = 1e100;  // mm: squares of distances must be numbers
+    const auto near_enough = [](double x) { return std::abs(x) <= farthest; };
+    if (!near_enough(point.x) || !near_enough(point.y) || !near_enough(point.z)) return false;
+    const double r = std::hypot(point.x, point.y);
+    // Beside the front element fields of more than 90 degrees see past it.
+    return r > front_half || point.z < sag(lens, 0, point.x, point.y);
+  }
+
+  /// Where a line leaves the sphere of a radius about the centre.
+  Bearing bearing_of(const Ray<double>& line, double reciprocal_radius) const noexcept {
+    const Vec3<double> from = line.origin - centre;
+    const double b = glm::dot(from, line.direction), beside2 = glm::dot(from, from) - b * b;
+    const double along = std::sqrt(std::max(1 - beside2 * squared(reciprocal_radius), 0.0)) - b * reciprocal_radius;
+    return Bearing(from * reciprocal_radius + line.direction * along);
+  }
+  /// Where its line passes the plane across the line to that place.
+  static std::array<double, 2> place_in(const View& view, const Vec3<double>& from_centre,
+                                        const Vec3<double>& direction) noexcept {
+    const Vec3<double> place =
+        from_centre - direction * (glm::dot(from_centre, view.towards) / glm::dot(direction, view.towards));
+    return {glm::dot(place, view.x_axis), glm::dot(place, view.y_axis)};
+  }
+  double widest_of(const std::vector<Ray<double>>& lines, double reciprocal_radius) const noexcept {
+    double widest = 0;
+    for (const Ray<double>& line : lines) widest = std::max(widest, bearing_of(line, reciprocal_radius).field);
+    return widest;
+  }
+
+  /// From a place on the axis to the farthest of some lines.
+  double farthest(const std::vector<Ray<double>>& lines, double z) const noexcept;
+  /// The place on the axis that all lines pass most nearly.
+  double least_ball(std::span<const std::vector<Ray<double>>> lines, double first, double last) const noexcept;
+  void fill(Table& table, const std::vector<Ray<double>>& lines, std::size_t wavelength, const ScenePassing& passing,
+            PupilEnds ends) const;
+
+  /// The nodes about a field at a distance, and what each counts for.
+  struct Cell {
+    std::array<std::size_t, 4> nodes{};
+    std::array<double, 4> weights{};
+    bool inside = false;  // the table speaks for this field
+  };
+  Cell cell_of(const Table& table, double field, double reciprocal) const noexcept {
+    const double row = reciprocal / steepest * distance_steps;
+    const auto i = std::min(static_cast<std::size_t>(row), distance_steps - 1);
+    const double down = row - static_cast<double>(i);
+    const double last = table.widest[i] + down * (table.widest[i + 1] - table.widest[i]);
+    const double column = field / last * field_steps;
+    if (!(column <= field_steps)) return {};
+    const auto j = std::min(static_cast<std::size_t>(column), field_steps - 1);
+    const double right = column - static_cast<double>(j);
+    const std::size_t node = i * fields + j;
+    return {{node, node + 1, node + fields, node + fields + 1},
+            {(1 - down) * (1 - right), (1 - down) * right, down * (1 - right), down * right},
+            true};
+  }
+  /// The star of a point: empty where the table does not speak for it.
+  PupilStar star_at(const Table& table, double field, double reciprocal) const noexcept {
+    const Cell cell = cell_of(table, field, reciprocal);
+    return cell.inside ? mean(table.stars.data(), cell.nodes, cell.weights) : PupilStar{};
+  }
+
+  /// The table to use for a point, its place seen from the centre; none where nothing can be seen.
+  const Table* table_for(const Vec3<double>& point, std::size_t wavelength) const noexcept {
+    if (!(wavelength < tables.size()) || !(tables[wavelength].ball > 0)) return nullptr;
+    return in_front(point) ? &tables[wavelength] : nullptr;
+  }
+  bool covers(const Table& table, double distance) const noexcept {
+    return !table.stars.empty() && steepest * distance >= 1;
+  }
+};
+
+double EntranceMap::Data::farthest(const std::vector<Ray<double>>& lines, double z) const noexcept {
+  double farthest = 0;
+  for (const Ray<double>& line : lines) {
+    farthest = std::max(farthest, glm::length(glm::cross(line.origin - Vec3<double>{0, 0, z}, line.direction)));
+  }
+  return farthest;
+}
+
+double EntranceMap::Data::least_ball(std::span<const std::vector<Ray<double>>> lines, double first,
+                                     double last) const noexcept {
+  const auto radius = [&](double z) {
+    double largest = 0;
+    for (const auto& own : lines) largest = std::max(largest, farthest(own, z));
+    return largest;
+  };
+  // The distance from a line is convex along the axis, and so is the largest of them.
+  for (int i = 0; i < 24; ++i) {
+    const double a = first + (last - first) / 3, b = last - (last - first) / 3;
+    if (radius(a) < radius(b)) {
+      last = b;
+    } else {
+      first = a;
+    }
+  }
+  return (first + last) / 2;
+}
+
+void EntranceMap::Data::fill(Table& table, const std::vector<Ray<double>>& lines, std::size_t wavelength,
+                             const ScenePassing& passing, PupilEnds ends) const {
+  // The nodes, and places half way between them to look whether means of nodes contain what they should.
+  constexpr std::size_t rows = 2 * distance_steps + 1, columns = 2 * field_steps + 1;
+  const auto reciprocal_of = [&](std::size_t row) { return steepest * static_cast<double>(row) / (rows - 1); };
+
+  // How far fields reach at each distance, where the lines it is known from leave room between them.
+  constexpr double between_lines = 1.05, on_axis = 1e-6;
+  std::array<double, rows> widest{};
+  for (std::size_t row = 0; row < rows; ++row) {
+    widest[row] = std::min(between_lines * widest_of(lines, reciprocal_of(row)) + on_axis, pi);
+  }
+  for (std::size_t row = 1; row < rows; row += 2) {
+    const double lacking = widest[row] - (widest[row - 1] + widest[row + 1]) / 2;
+    if (lacking > 0) widest[row - 1] += lacking, widest[row + 1] += lacking;
+  }
+  for (std::size_t row = 1; row < rows; row += 2) widest[row] = (widest[row - 1] + widest[row + 1]) / 2;
+  for (std::size_t i = 0; i < distances; ++i) table.widest[i] = widest[2 * i];
+
+  // Where to look for the pupil of a field: about what the lines take of its plane at the distance at which those of a
+  // film point are most nearly of one field.
+  const auto sharpest = static_cast<std::size_t>(std::min_element(widest.begin(), widest.end()) - widest.begin());
+  std::vector<Bounds> bounds(columns);
+  for (const Ray<double>& line : lines) {
+    const Bearing bearing = bearing_of(line, reciprocal_of(sharpest));
+    const View view(bearing.field, bearing.azimuth_x, bearing.azimuth_y, 0);
+    const auto [x, y] = place_in(view, line.origin - centre, line.direction);
+    const auto nearest = static_cast<std::size_t>(std::lround(bearing.field / widest[sharpest] * (columns - 1)));
+    for (std::size_t j = nearest - std::min<std::size_t>(nearest, 2); j <= std::min(nearest + 2, columns - 1); ++j) {
+      bounds[j].take(x, y);
+    }
+  }
+  // The axis may be dark.
+  const auto lit = std::find_if(bounds.begin(), bounds.end(), [](const Bounds& b) { return b.any; });
+  std::fill(bounds.begin(), lit, *lit);
+  double room = 0, across = 0;
+  for (std::size_t j = 0; j < columns; ++j) {
+    if (!bounds[j].any) bounds[j] = bounds[j - 1];
+    room = std::max(room, (bounds[j].high - bounds[j].low) / 2);
+    across = std::max(across, bounds[j].across);
+  }
+  std::vector<detail::PupilGuess> guesses;  // rows x columns
+  std::vector<View> views;
+  for (std::size_t row = 0; row < rows; ++row) {
+    for (std::size_t j = 0; j < columns; ++j) {
+      const double field = widest[row] * static_cast<double>(j) / (columns - 1);
+      const double known = std::min(field / widest[sharpest], 1.0) * (columns - 1);
+      const Bounds& b = bounds[static_cast<std::size_t>(std::lround(known))];
+      guesses.push_back({0, b.low - room, b.high + room, std::max(across, room)});
+      views.emplace_back(field, 0, 1, reciprocal_of(row));
+    }
+  }
+
+  constexpr std::size_t directions = 32;
+  std::array<std::vector<double>, 6> ray;
+  const auto passes = [&](std::size_t count, const std::uint32_t* which, const double* x, const double* y,
+                          std::uint8_t* through) {
+    for (auto& component : ray) component.resize(count);
+    for (std::size_t r = 0; r < count; ++r) {
+      const View& view = views[which[r]];
+      const Vec3<double> place = view.place(x[r], y[r]), direction = view.direction(place);
+      for (int i : {0, 1, 2}) ray[i][r] = centre[i] + place[i], ray[3 + i][r] = direction[i];
+    }
+    passing(count, {ray[0].data(), ray[1].data(), ray[2].data(), ray[3].data(), ray[4].data(), ray[5].data()},
+            wavelength, through);
+  };
+  const auto edges = detail::find_edges(guesses, columns, directions, true, passes);
+
+  const auto node = [](std::size_t place) { return place / columns / 2 * fields + place % columns / 2; };
+  table.stars.resize(distances * fields);
+  std::vector<detail::Between> between;
+  for (std::size_t p = 0; p < edges.size(); ++p) {
+    const std::size_t row = p / columns, column = p % columns, at = node(p);
+    if (row % 2 == 0 && column % 2 == 0) {
+      table.stars[at] = detail::star_of(edges[p], true);
+      if (edges[p].empty() && at % fields > 0) table.stars[at] = beyond(table.stars.data() + at, at % fields);
+    } else {
+      const std::size_t down = row % 2 * fields, right = column % 2;
+      between.push_back({&edges[p], {at, at + right, at + down, at + down + right}, {0.25, 0.25, 0.25, 0.25}});
+    }
+  }
+  detail::grow(table.stars, between);
+  constexpr double elsewhere = 1.008;  // in cells, away from the places looked at
+  for (PupilStar& star : table.stars) widen(star, elsewhere);
+  // A hole is worth leaving out that all pupils have around their middles. Others, and gaps, move and are cut off
+  // sooner than places tell.
+  const auto holed = [](const PupilStar& star) {
+    return *std::max_element(star.gap_from.begin(), star.gap_from.end()) == 0 &&
+           *std::min_element(star.gap.begin(), star.gap.end()) > 0;
+  };
+  const bool holes = std::all_of(table.stars.begin(), table.stars.end(), holed);
+  if (!holes) {
+    for (PupilStar& star : table.stars) star.gap.fill(0);
+  }
+
+  // Where pupils dwindle, in the last fields, their edges bend more than a few places tell: the lines themselves do,
+  // and do everywhere where nothing else ends a pupil.
+  const bool all = holes || ends == PupilEnds::with_lines;
+  constexpr double about_lines = 1.08, last_fields = 0.75, in_gaps = 0.8;
+  for (std::size_t row = 0; row < rows; ++row) {
+    const double reciprocal = reciprocal_of(row);
+    for (const Ray<double>& line : lines) {
+      const Bearing bearing = bearing_of(line, reciprocal);
+      if (!all && bearing.field < last_fields * widest[row]) continue;
+      const View view(bearing.field, bearing.azimuth_x, bearing.azimuth_y, reciprocal);
+      const auto [x, y] = place_in(view, line.origin - centre, line.direction);
+      const Cell cell = cell_of(table, bearing.field, reciprocal);
+      const double out = reach(mean(table.stars.data(), cell.nodes, cell.weights), x, y);
+      if (std::isinf(out)) {  // a pupil of another shape than a star's or ring's
+        table.stars.clear();
+        return;
+      }
+      for (std::size_t j = 0; j < 4; ++j) {
+        if (cell.weights[j] == 0) continue;
+        PupilStar& star = table.stars[cell.nodes[j]];
+        if (out < 0) {
+          for (double& gap : star.gap) gap *= in_gaps;
+        } else if (about_lines * out > 1) {
+          widen(star, about_lines * out);
+        }
+      }
+    }
+  }
+}
+
+SpreadLines spread_lines(const PupilMap& pupils, bool azimuths_alike, std::size_t wavelength) {
+  constexpr int radii = 32, around = 16;
+  const auto seen = [&](double radius) { return pupils.area({0, radius}, wavelength) > 0; };
+  double last = pupils.film_radius();
+  if (!seen(last)) {
+    const double dark = last;
+    last = 0;
+    for (int i = 1; i <= radii && seen(dark * i / radii); ++i) last = dark * i / radii;
+    last = detail::last_with(last, std::min(last + dark / radii, dark), seen);
+  }
+  SpreadLines lines;
+  const auto add = [&](double radius, double turn, double u, double v) {
+    const FilmPoint film{radius * std::sin(turn), radius * std::cos(turn)};
+    const PupilSample s = pupils.sample(film, u, v, wavelength);
+    if (!(s.area > 0)) return;
+    lines.film_x.push_back(film.x), lines.film_y.push_back(film.y);
+    lines.pupil_x.push_back(s.x), lines.pupil_y.push_back(s.y);
+  };
+  int turns = 0;
+  for (int i = 0; i <= radii; ++i) {
+    // Closer where the light ends.
+    const double radius = last * (1 - std::pow(1 - static_cast<double>(i) / radii, 1.5));
+    if (azimuths_alike) {
+      for (int k = 0; k <= around / 2; ++k) {  // half of a pupil is as the other
+        for (const double v : {0.0, 0.85, 0.95, 1.0}) add(radius, 0, static_cast<double>(k) / around, v);
+      }
+      continue;
+    }
+    // The pupil is that of all points, and of much of it nothing gets through: everywhere, by irrational steps.
+    for (int k = 0; k < 16 * around; ++k, ++turns) {
+      add(radius, 2 * pi * turns * std::numbers::phi, std::fmod(turns * std::numbers::sqrt2, 1.0),
+          std::fmod(turns * std::numbers::sqrt3, 1.0));
+    }
+  }
+  return lines;
+}
+
+EntranceMap::EntranceMap(const Lens& lens, std::span<const std::vector<Ray<double>>> lines, const ScenePassing& passing,
+                         PupilEnds ends) {
+  auto data = std::make_shared<Data>(lens);
+  const Pupil entrance = pupils(lens, lens.central_wavelength()).entrance;
+  const detail::Face face = detail::face_of(lens, 0, entrance);
+  data->front_half = face.half;
+  // Any centre does; fields look best from the pupil's. It must not lie before the lens, where points may be, nor so
+  // far behind that all of them are alike.
+  const double length = std::abs(lens.surfaces().back().vertex_z) + face.half;
+  const double first = face.z_min, last = face.z_max + 4 * length;
+  data->centre.z = std::clamp(entrance.z, first, last);
+  if (!lens.rotationally_symmetric()) data->centre.z = data->least_ball(lines, first, last);
+  double reach = std::hypot(face.half, data->centre.z - face.z_min);
+  for (const auto& own : lines) {
+    data->tables.emplace_back();
+    const double between_lines = lens.rotationally_symmetric() ? 1.15 : 1.2;
+    data->tables.back().ball = between_lines * data->farthest(own, data->centre.z);
+    reach = std::max(reach, data->tables.back().ball);
+  }
+  data->steepest = 0.8 / reach;
+  // Where the film sees a point through a small part of the pupil only, fields lose their meaning.
+  for (const auto& own : lines) {
+    constexpr double no_field = 1e-6;
+    const double farthest = data->widest_of(own, 0) + no_field;
+    while (data->widest_of(own, data->steepest) > 1.5 * farthest) data->steepest *= 0.7;
+  }
+  for (std::size_t w = 0; w < lines.size(); ++w) {
+    Data::Table& table = data->tables[w];
+    if (lens.rotationally_symmetric() && table.ball > 0) data->fill(table, lines[w], w, passing, ends);
+  }
+  data_ = std::move(data);
+}
+
+bool EntranceMap::in_front(const Vec3<double>& point) const noexcept { return data_->in_front(point); }
+
+EntranceSample EntranceMap::sample(const Vec3<double>& point, double u, double v,
+                                   std::size_t wavelength) const noexcept {
+  EntranceSample result{.place = data_->centre};
+  const Data::Table* table = data_->table_for(point, wavelength);
+  if (!table || !std::isfinite(u) || !std::isfinite(v)) return result;
+  const Vec3<double> from_centre = point - data_->centre;
+  const double distance = glm::length(from_centre);
+  const Bearing bearing(from_centre / distance);
+  const View view(bearing.field, bearing.azimuth_x, bearing.azimuth_y, 1 / distance);
+
+  if (data_->covers(*table, distance)) {
+    const auto [x, y, area] = data_->star_at(*table, bearing.field, view.reciprocal).sample(u, v);
+    if (!(area > 0)) return result;
+    const Vec3<double> place = view.place(x, y);
+    result.place = data_->centre + place;
+    result.direction = view.direction(place);
+    result.distance = std::hypot(distance, x, y);
+    result.pdf = squared(result.distance) * (result.distance / distance) / area;
+    return result;
+  }
+  const double solid = cone(table->ball, distance), less = std::clamp(v, 0.0, 1.0) * solid / (2 * pi);
+  const double sine = std::sqrt(less * (2 - less)), angle = 2 * pi * u;
+  result.direction =
+      view.towards * (less - 1) + view.x_axis * (sine * std::cos(angle)) + view.y_axis * (sine * std::sin(angle));
+  result.distance = std::max(distance * (1 - less), 0.0);
+  result.place = point + result.direction * result.distance;
+  result.pdf = 1 / solid;
+  return result;
+}
+
+double EntranceMap::pdf(const Vec3<double>& point, const Vec3<double>& direction,
+                        std::size_t wavelength) const noexcept {
+  const Data::Table* table = data_->table_for(point, wavelength);
+  if (!table) return 0;
+  const Vec3<double> from_centre = point - data_->centre;
+  const double distance = glm::length(from_centre);
+  const Bearing bearing(from_centre / distance);
+  const View view(bearing.field, bearing.azimuth_x, bearing.azimuth_y, 1 / distance);
+  const double cosine = -glm::dot(direction, view.towards);
+  if (data_->covers(*table, distance)) {
+    if (!(cosine > 0)) return 0;
+    const auto [x, y] = Data::place_in(view, from_centre, direction);
+    const PupilStar star = data_->star_at(*table, bearing.field, view.reciprocal);
+    const double out = reach(star, x, y);
+    if (!(out >= 0 && out <= 1)) return 0;
+    double area = 0;
+    for (const double part : star.areas()) area += part;
+    return squared(distance) / (area * cosine * squared(cosine));
+  }
+  const double solid = cone(table->ball, distance);
+  return 1 - cosine <= solid / (2 * pi) * (1 + 1e-12) ? 1 / solid : 0;
+}
+
+}  // namespace petzval

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "petzval/pupil/film_lines.hpp"
+
+#include <cmath>
+
+#include "petzval/core/error.hpp"
+#include "petzval/core/text.hpp"
+#include "petzval/paraxial/first_order.hpp"
+#include "petzval/pupil/pupil.hpp"
+
+namespace petzval {
+
+FilmSpace film_space(const Lens& lens) {
+  const double film_z = lens.film_z(), last_z = lens.surfaces().back().vertex_z;
+  if (film_z == last_z) {
+    throw Error(lens.name() + ": film: it is at z = " + number(last_z) +
+                " mm, that of the last vertex, wanted it elsewhere");
+  }
+  if (!has_pupils(lens)) return {film_z, last_z};
+  const std::size_t wavelength = lens.central_wavelength();
+  const Meridian meridian = main_meridian(lens, wavelength);
+  const double exit_z = pupils(lens, wavelength, meridian).exit.z;
+  const double reach = std::abs(first_order(lens, wavelength, meridian).effective_focal_length);
+  const double depth = std::abs(exit_z - film_z);
+  constexpr double nearest = 0.05, farthest = 20;  // focal lengths
+  return {film_z, depth > nearest * reach && depth < farthest * reach ? exit_z : last_z};
+}
+
+}  // namespace petzval

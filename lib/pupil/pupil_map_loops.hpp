@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "petzval/lens/ray_wavelengths.hpp"
+#include "petzval/pupil/pupil_star.hpp"
+#include "petzval/trace/widest.hpp"
+
+namespace petzval::detail {
+
+/// The stars between two distances from the axis, as polynomials of the fraction t of the way, in one row of numbers
+/// that loops gather from: what is used together lies together. Corners count from the middle; what lies before a
+/// sector is the area of those before it.
+struct StripLayout {
+  static constexpr std::size_t middle_y = 0;  ///< y, y by t; x is 0
+  static constexpr std::size_t whole = 4;     ///< area by powers of t
+  static constexpr std::size_t sectors = 8;   ///< [65] first corner x, y, x by t, y by t; area before by powers of t
+  static constexpr std::size_t sector = 8;    ///< numbers of one
+  static constexpr std::size_t gaps = sectors + sector * (star_corners + 1);  ///< [64] begin, width, these by t
+  static constexpr std::size_t size = gaps + 4 * star_corners;
+};
+
+/// The strips of all wavelengths, borrowed.
+template <class R>
+struct StripTable {
+  const R* strips = nullptr;  ///< [wavelength * count + strip] StripLayout
+  std::size_t count = 0, wavelengths = 0;
+  R lit_radius = 0, strips_per_mm = 0;
+  bool turned = true;   ///< the stars are those of film points on +y and turn with the point
+  bool gapped = false;  ///< at least one sector has a gap
+  int corrections = 0;  ///< by how many sectors equal shares may miss the right one; 0: by half a one
+};
+
+namespace {
+
+/// The angle of (x, y) from +y to +x, as a part of the whole turn (|turn| <= 1/2), within 5e-8: a sample's u counts
+/// from +y of the film's frame, not from the film point's own direction, so that near the axis the samples of
+/// neighbours are neighbours. A polynomial, so that all numbers, derivatives among them, take the same one. Not both 0.
+template <class T>
+inline T turn_of(const T& x, const T& y) noexcept {
+  const T across = x < T(0) ? T(-x) : x, along = y < T(0) ? T(-y) : y;
+  const bool steep = across > along;
+  const T a = steep ? T(along / across) : T(across / along);
+  const T s = a * a;
+  // atan(a) / 2 pi by least squares of the largest error, 1/8 at 1.
+  T turn =
+      a *
+      (T(0.1591542876) +
+       s * (T(-0.05302502705) +
+            s * (T(0.03151395312) +
+                 s * (T(-0.02101824254) + s * (T(0.01259214695) + s * (T(-0.005277491396) + s * T(0.001060373263)))))));
+  turn = steep ? T(T(0.25) - turn) : turn;
+  turn = y < T(0) ? T(T(0.5) - turn) : turn;
+  return x < T(0) ? T(-turn) : turn;
+}
+
+}  // namespace
+
+struct PupilMapLoops {
+  using Float = void (*)(const StripTable<float>&, std::size_t, const float*, const float*, const float*, const float*,
+                         const RayWavelengths&, float*, float*, float*) noexcept;
+  using Double = void (*)(const StripTable<double>&, std::size_t, const double*, const double*, const double*,
+                          const double*, const RayWavelengths&, double*, double*, double*) noexcept;
+  Float single;
+  Double twice;
+};
+
+PETZVAL_WIDEST(PupilMapLoops, pupil_map)
+
+}  // namespace petzval::detail

@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "petzval/pupil/entrance_map.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "../data_lenses.hpp"
+#include "../kronecker.hpp"
+#include "petzval/paraxial/first_order.hpp"
+#include "petzval/psf/sobol.hpp"
+#include "petzval/pupil/outline.hpp"
+#include "petzval/pupil/pupil.hpp"
+#include "petzval/pupil/pupil_map.hpp"
+#include "petzval/trace/trace.hpp"
+
+namespace petzval {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+/// A lens with its map, for a film of some radius.
+struct Seen {
+  Lens lens;
+  double radius;
+  PupilMap pupils;
+  EntranceMap map;
+
+  Seen(const Lens& l, double film_radius)
+      : lens(l), radius(film_radius), pupils(PupilMap::covering(l, film_radius)), map(build()) {}
+
+  /// What leaves the lens of a line behind it.
+  TracedRay<double> leaving(const FilmPoint& film, double pupil_x, double pupil_y) const {
+    const double depth = pupils.space().depth();
+    const Vec3<double> along = glm::normalize(Vec3<double>{pupil_x - film.x, pupil_y - film.y, depth});
+    return trace(lens, Ray<double>{{pupil_x, pupil_y, pupils.space().pupil_z}, along * (depth < 0 ? 1.0 : -1.0)},
+                 {.travel = Travel::to_scene});
+  }
+
+  EntranceMap build() const {
+    std::vector<std::vector<Ray<double>>> lines(1);
+    const SpreadLines spread = spread_lines(pupils, lens.rotationally_symmetric(), 0);
+    for (std::size_t i = 0; i < spread.film_x.size(); ++i) {
+      const auto end = leaving({spread.film_x[i], spread.film_y[i]}, spread.pupil_x[i], spread.pupil_y[i]);
+      if (end.transmitted()) lines[0].push_back(end.ray);
+    }
+    const auto passing = [&](std::size_t count, const RayArrays<const double>& rays, std::size_t wavelength,
+                             std::uint8_t* passes) {
+      std::vector<double> out(6 * count);
+      std::vector<RayFate> fates(count);
+      const auto at = [&](std::size_t k) { return out.data() + k * count; };
+      trace<double>(lens, count, rays, {at(0), at(1), at(2), at(3), at(4), at(5)}, fates.data(), nullptr,
+                    {.wavelength = wavelength});
+      for (std::size_t i = 0; i < count; ++i) passes[i] = fates[i] == RayFate::transmitted;
+    };
+    return EntranceMap(lens, lines, passing);
+  }
+};
+
+double film_radius(const Prescription& p, const Lens& lens) {
+  if (p.image_diagonal_mm) return *p.image_diagonal_mm / 2;
+  const double field = p.half_field_deg.value_or(15) * pi / 180;
+  return std::abs(first_order(lens).effective_focal_length) * (field > 1 ? field : std::tan(field));
+}
+
+Seen seen(const std::string& id) {
+  const Prescription p = testing::data_prescription(id);
+  const Lens lens = compile(p);
+  return {lens, film_radius(p, lens)};
+}
+
+/// Of lines from the whole film through all of its pupils, seen from places 10 mm to 1 km before the lens: how many
+/// pass, and how many of these the map cannot draw.
+struct Count {
+  std::uint32_t passed = 0, missed = 0;
+};
+
+Count count_missed(const Seen& s, std::uint32_t lines) {
+  const testing::Kronecker<5> random(1);
+  Count count;
+  for (std::uint32_t i = 0; i < lines; ++i) {
+    const auto [a, b, u, v, e] = random(i);
+    const double r = s.radius * std::sqrt(a);
+    const FilmPoint film{r * std::sin(2 * pi * b), r * std::cos(2 * pi * b)};
+    const PupilSample at = s.pupils.sample(film, u, v);
+    if (!(at.area > 0)) continue;
+    const auto end = s.leaving(film, at.x, at.y);
+    if (!end.transmitted()) continue;
+    const Vec3<double> point = end.ray.origin + end.ray.direction * std::pow(10, 1 + 5 * e);
+    ++count.passed;
+    count.missed += !(s.map.pdf(point, -end.ray.direction) > 0);
+  }
+  return count;
+}
+
+class EntranceMaps : public ::testing::TestWithParam<const char*> {};
+
+// Were more than 1e-5 of the lines missed, none of 3e5 would be with a probability below 5 %.
+TEST_P(EntranceMaps, MissNoneOf300000LinesFromTheFilm) {
+  const Count count = count_missed(seen(GetParam()), 300000);
+  EXPECT_GT(count.passed, 250000U);
+  EXPECT_EQ(count.missed, 0U);
+}
+
+INSTANTIATE_TEST_SUITE_P(Lenses, EntranceMaps,
+                         ::testing::Values("double_gauss_100mm_f2_28deg", "biogon_35mm_f2.8", "fisheye_6.3mm_f2.8",
+                                           "petzval_100mm_f1.25"));
+
+TEST(EntranceMap, MissesNextToNothingOfAnyLens) {
+  for (const Prescription& p : testing::data_prescriptions()) {
+    SCOPED_TRACE(p.id);
+    const Lens lens = compile(p);
+    const double radius = film_radius(p, lens);
+    if (!std::isfinite(radius)) continue;
+    // Of 100000, 97 are missed of the ball, which makes no sharp image, and one of all others together.
+    EXPECT_LE(count_missed({lens, radius}, 10000).missed, p.id == "ball_10mm" ? 20U : 0U);
+  }
+}
+
+TEST(EntranceMap, HasTheDensityItSays) {
+  for (const char* id : {"double_gauss_100mm_f2_28deg", "fisheye_8mm_f2.8", "cylinder_3.9mm"}) {
+    SCOPED_TRACE(id);
+    const Seen s = seen(id);
+    for (const Vec3<double> point : {Vec3<double>{0, 0, -2000}, Vec3<double>{300, -200, -3000},
+                                     Vec3<double>{-15, 20, -60}, Vec3<double>{4, 3, -30}}) {
+      SCOPED_TRACE(point.z);
+      // The mean of 1 / pdf is the solid angle that is drawn from.
+      constexpr std::uint32_t draws = 1 << 12;
+      double solid = 0, widest = 0;
+      const Vec3<double> axis = s.map.sample(point, 0.5, 0).direction;
+      for (std::uint32_t i = 0; i < draws; ++i) {
+        const auto [u, v] = owen_sobol(i, 4);
+        const EntranceSample sample = s.map.sample(point, u, v);
+        ASSERT_GT(sample.pdf, 0);
+        EXPECT_NEAR(glm::length(sample.direction), 1, 1e-12);
+        EXPECT_NEAR(s.map.pdf(point, sample.direction) / sample.pdf, 1, 1e-7);
+        EXPECT_NEAR(glm::distance(point + sample.direction * sample.distance, sample.place), 0, 1e-9);
+        solid += 1 / sample.pdf / draws;
+        widest = std::max(widest, 1 - glm::dot(axis, sample.direction));
+      }
+      // Directions spread evenly over a cone about that meet the same solid angle.
+      const double cone = std::min(1.01 * widest, 2.0);
+      const Vec3<double> x = glm::normalize(glm::cross(axis, Vec3<double>{0.3, 1, 0.2})), y = glm::cross(axis, x);
+      double met = 0, whole = 0;
+      for (std::uint32_t i = 0; i < 4 * draws; ++i) {
+        const auto [u, v] = owen_sobol(i, 5);
+        const double sine = std::sqrt(cone * v * (2 - cone * v));
+        const Vec3<double> d =
+            axis * (1 - cone * v) + x * (sine * std::cos(2 * pi * u)) + y * (sine * std::sin(2 * pi * u));
+        const double pdf = s.map.pdf(point, d);
+        met += (pdf > 0 ? 1.0 : 0.0) * 2 * pi * cone / (4 * draws);
+        whole += pdf * 2 * pi * cone / (4 * draws);
+      }
+      EXPECT_NEAR(met / solid, 1, 0.01);
+      EXPECT_NEAR(whole, 1, 0.01);
+    }
+  }
+}
+
+TEST(EntranceMap, EstimatesTheSolidAngleOfThePupil) {
+  for (const char* id : {"double_gauss_100mm_f2_28deg", "tessar_100mm_f2.8", "fisheye_8mm_f2.8"}) {
+    const Seen s = seen(id);
+    const double pupil_z = pupils(s.lens).entrance.z;
+    for (const double degrees : {0.0, 7.0, 12.0}) {
+      for (const double z : {-1e9, -5000.0, -800.0}) {
+        SCOPED_TRACE(id + std::string(" at ") + std::to_string(degrees) + " degrees, z " + std::to_string(z));
+        const double tangent = std::tan(degrees * pi / 180);
+        const Vec3<double> point{0, tangent * (pupil_z - z), z};
+        const auto outline = pupil_outline(s.lens, {degrees * pi / 180, z}, 0, 512);
+        // By triangles from the outline's middle: each seen from the point.
+        double wanted = 0;
+        for (std::size_t k = 0; k < outline.spans.size(); ++k) {
+          const auto &a = outline.spans[k].to, &b = outline.spans[(k + 1) % outline.spans.size()].to;
+          const auto [mx, my] = outline.middle;
+          const double twice = std::abs((a.x - mx) * (b.y - my) - (a.y - my) * (b.x - mx));
+          const Vec3<double> to = Vec3<double>{(a.x + b.x + mx) / 3, (a.y + b.y + my) / 3, pupil_z} - point;
+          wanted += twice / 2 * to.z / std::pow(glm::length(to), 3);
+        }
+        constexpr std::uint32_t draws = 1 << 14;
+        double found = 0;
+        for (std::uint32_t i = 0; i < draws; ++i) {
+          const auto [u, v] = owen_sobol(i, 6);
+          const EntranceSample sample = s.map.sample(point, u, v);
+          ASSERT_GT(sample.pdf, 0);
+          if (trace(s.lens, Ray<double>{sample.place, sample.direction}).transmitted()) found += 1 / sample.pdf / draws;
+        }
+        EXPECT_NEAR(found / wanted, 1, 2e-3);
+      }
+    }
+  }
+}
+
+TEST(EntranceMap, HasNothingForWhatIsNotInFrontOfTheLens) {
+  const Seen s = seen("double_gauss_100mm_f2_28deg");
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
+  for (const Vec3<double> point : {Vec3<double>{0, 0, 20}, Vec3<double>{0, 0, 1}, Vec3<double>{5, 5, 500},
+                                   Vec3<double>{0, 5000, 300}, Vec3<double>{nan, 0, -100}, Vec3<double>{0, inf, -100},
+                                   Vec3<double>{0, 0, -inf}, Vec3<double>{0, 9000, -1000}}) {
+    const EntranceSample sample = s.map.sample(point, 0.4, 0.6);
+    EXPECT_EQ(sample.pdf, 0) << point.x << ' ' << point.y << ' ' << point.z;
+    EXPECT_TRUE(std::isfinite(sample.place.x + sample.direction.x + sample.distance));
+    EXPECT_EQ(s.map.pdf(point, {0, 0, 1}), 0);
+  }
+  EXPECT_EQ(s.map.sample({0, 0, -1000}, 0.4, 0.6, 1).pdf, 0);
+  EXPECT_EQ(s.map.sample({0, 0, -1000}, nan, 0.6).pdf, 0);
+  EXPECT_EQ(s.map.pdf({0, 0, -1000}, {nan, 0, 1}), 0);
+  EXPECT_EQ(s.map.pdf({0, 0, -1000}, {0, 0, -1}), 0);
+  EXPECT_GT(s.map.sample({0, 0, -1000}, 0, 1).pdf, 0);
+}
+
+}  // namespace
+}  // namespace petzval

@@ -1,0 +1,378 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "petzval/pupil/pupil_map.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <random>
+#include <tuple>
+
+#include "../data_lenses.hpp"
+#include "petzval/core/error.hpp"
+#include "petzval/core/units.hpp"
+#include "petzval/paraxial/first_order.hpp"
+#include "petzval/pupil/aim.hpp"
+#include "petzval/pupil/pupil.hpp"
+#include "petzval/trace/batch.hpp"
+
+namespace {
+
+using namespace petzval;
+using petzval::testing::data_lens;
+using petzval::testing::data_prescriptions;
+
+/// Which of some places in the plane of the pupil a film point sees the scene through, by tracing.
+std::vector<bool> passing(const Lens& lens, const PupilMap& map, const FilmPoint& film,
+                          const std::vector<std::array<double, 2>>& places) {
+  const FilmSpace& space = map.space();
+  const double sense = signed_index(lens, lens.surface_count()) > 0 ? -1 : 1;
+  std::vector<Ray<double>> rays;
+  for (const auto& [x, y] : places) {
+    const Vec3<double> d{x - film.x, y - film.y, space.depth()};
+    const double length = std::sqrt(d.x * d.x + d.y * d.y + d.z * d.z) * (d.z * sense > 0 ? 1 : -1);
+    rays.push_back({{x, y, space.pupil_z}, d / length});
+  }
+  std::vector<TracedRay<double>> traced(rays.size());
+  trace<double>(lens, rays, traced.data(), {.travel = Travel::to_scene});
+  std::vector<bool> result;
+  for (const auto& ray : traced) result.push_back(ray.transmitted());
+  return result;
+}
+
+/// Where the declared field, or 60 degrees, meets the film.
+double declared_radius(const Prescription& p, const Lens& lens) {
+  const double field = radians(std::min(p.half_field_deg.value_or(10.0), 60.0));
+  try {
+    const auto& [origin, direction] = chief_ray(lens, {field, -std::numeric_limits<double>::infinity()}).end.ray;
+    const double t = (lens.film_z() - origin.z) / direction.z;
+    return std::hypot(origin.x + t * direction.x, origin.y + t * direction.y);
+  } catch (const Error&) {
+    return std::abs(first_order(lens).effective_focal_length) * std::tan(std::min(field, 0.5));
+  }
+}
+
+struct Coverage {
+  double mean = 0, worst = 1;  // parts of the samples that pass: over film points, and of the worst of them
+  double missed = 0;           // part of the pupils that is not sampled
+};
+
+/// Samples of film points at some radii. What is missed is known by rays of two kinds that were not sampled: in a band
+/// outside the star's edge, of a tenth of its area, where misses by small errors lie, and in a box half as large again
+/// as the star, for lost parts; those of them that pass are missed.
+Coverage coverage(const Lens& lens, const PupilMap& map, double radius, int points, int samples) {
+  std::mt19937_64 random(points);
+  std::uniform_real_distribution<double> unit(0, 1);
+  Coverage result;
+  double band_missed = 0, box_missed = 0, box_passed = 0;
+  int lit = 0;
+  for (int i = 0; i < points; ++i) {
+    const double r = radius * (i + unit(random)) / points, azimuth = 2 * std::numbers::pi * unit(random);
+    const FilmPoint film{r * std::sin(azimuth), r * std::cos(azimuth)};
+    if (map.area(film) == 0) continue;
+    ++lit;
+    std::vector<std::array<double, 2>> inside, band, box;
+    const auto [mx, my] = map.middle(film);
+    double reach = 0;
+    for (int k = 0; k < samples; ++k) {
+      const PupilSample s = map.sample(film, unit(random), unit(random));
+      const PupilSample edge = map.sample(film, unit(random), 1);
+      const double out = std::sqrt(1 + 0.1 * unit(random));
+      inside.push_back({s.x, s.y});
+      band.push_back({mx + out * (edge.x - mx), my + out * (edge.y - my)});
+      reach = std::max(reach, std::hypot(edge.x - mx, edge.y - my));
+    }
+    for (int k = 0; k < samples; ++k) {
+      box.push_back({mx + 1.5 * reach * (2 * unit(random) - 1), my + 1.5 * reach * (2 * unit(random) - 1)});
+    }
+    const auto in = passing(lens, map, film, inside), beside = passing(lens, map, film, band),
+               all = passing(lens, map, film, box);
+    const double part = static_cast<double>(std::count(in.begin(), in.end(), true)) / samples;
+    result.mean += part;
+    result.worst = std::min(result.worst, part);
+    for (int k = 0; k < samples; ++k) {
+      const auto outside = [&](const std::array<double, 2>& p) { return !map.contains(film, p[0], p[1]); };
+      if (beside[k] && outside(band[k])) band_missed += 0.1 / samples;
+      if (all[k]) box_passed += 1, box_missed += outside(box[k]);
+    }
+  }
+  result.mean /= std::max(lit, 1);
+  result.missed = band_missed / std::max(lit, 1) + box_missed / std::max(box_passed, 1.0);
+  return result;
+}
+
+class DoubleGauss : public ::testing::TestWithParam<double> {};
+
+TEST_P(DoubleGauss, SamplesReachTheSceneAtEveryField) {
+  const Lens lens = with_f_number(data_lens("double_gauss_100mm_f2.0"), GetParam());
+  constexpr double corner = 40.4;  // mm, 22 degrees
+  const Coverage c = coverage(lens, PupilMap::covering(lens, corner), corner, 64, 8000);
+  RecordProperty("worst", std::to_string(c.worst));
+  EXPECT_GT(c.worst, 0.98);
+  EXPECT_LE(c.missed, 1e-5);
+}
+
+INSTANTIATE_TEST_SUITE_P(PupilMap, DoubleGauss, ::testing::Values(2.01, 4.0, 22.0));
+
+TEST(PupilMap, CoversThePupilsOfEveryLens) {
+  for (const Prescription& p : data_prescriptions()) {
+    const Lens lens = compile(p);
+    const double radius = declared_radius(p, lens);
+    const Coverage c = coverage(lens, PupilMap::covering(lens, radius), radius, 20, 2500);
+    EXPECT_GT(c.mean, lens.rotationally_symmetric() ? 0.93 : 0.85) << p.name;
+    EXPECT_LE(c.missed, 1e-5) << p.name;
+  }
+}
+
+TEST(PupilMap, CoversSmallPupilsToo) {
+  for (const auto& [id, f_number, radius] :
+       {std::tuple{"petzval_100mm_f1.25", 16.0, 21.0}, std::tuple{"modern_58mm_f0.95", 64.0, 21.0},
+        std::tuple{"catadioptric_mangin_1000mm_f7.5", 16.0, 21.6}, std::tuple{"fisheye_8mm_f2.8", 32.0, 8.0},
+        std::tuple{"anamorphic_60mm_2x", 16.0, 21.6}, std::tuple{"phone_5.6mm_f3.5", 11.0, 3.6}}) {
+    const Lens lens = with_f_number(data_lens(id), f_number);
+    const Coverage c = coverage(lens, PupilMap::covering(lens, radius), radius, 16, 1500);
+    EXPECT_GT(c.mean, lens.rotationally_symmetric() ? 0.93 : 0.4) << id;
+    EXPECT_LE(c.missed, 1e-5) << id;
+  }
+}
+
+TEST(PupilMap, SeesThroughAGlassCloseToTheFilm) {
+  Prescription p = petzval::testing::data_prescription("double_gauss_100mm_f2.0");
+  // A plate of 2 mm, 0.1 mm before the film, which moves back by what the plate shifts the image.
+  const Lens bare = compile(p);
+  const double gap = bare.film_z() - bare.surfaces().back().vertex_z;
+  p.surfaces.back().thickness = gap - 2 / 1.5 - 0.1;
+  p.surfaces.push_back({.thickness = 2, .medium = {.nd = 1.5}, .semi_diameter = 40});
+  p.surfaces.push_back({.thickness = 0.1, .semi_diameter = 40});
+  for (const double f_number : {2.8, 16.0}) {
+    const PupilMap map = PupilMap::covering(with_f_number(compile(p), f_number), 21);
+    for (int i = 0; i <= 100; ++i) EXPECT_GT(map.area({0, 0.21 * i}), 0) << f_number << " at " << 0.21 * i;
+  }
+}
+
+TEST(PupilMap, MatchesTheShapeOfPupils) {
+  for (const char* id : {"double_gauss_100mm_f1.35", "fisheye_8mm_f2.8", "catadioptric_mangin_1000mm_f7.5"}) {
+    const Lens lens = data_lens(id);
+    const double radius = 7.5;
+    const PupilMap map = PupilMap::matching(lens, radius), cover = PupilMap::covering(lens, radius);
+    std::mt19937_64 random(7);
+    std::uniform_real_distribution<double> unit(0, 1);
+    for (const double r : {0.0, 0.31, 0.77, 0.99}) {
+      const FilmPoint film{0.6 * r * radius, 0.8 * r * radius};
+      std::vector<std::array<double, 2>> places;
+      for (int i = 0; i < 20000; ++i) {
+        const PupilSample s = cover.sample(film, unit(random), unit(random));
+        places.push_back({s.x, s.y});
+      }
+      const auto in = passing(lens, map, film, places);
+      double differ = 0, passes = 0;
+      for (std::size_t i = 0; i < places.size(); ++i) {
+        differ += map.contains(film, places[i][0], places[i][1]) != in[i];
+        passes += in[i];
+      }
+      EXPECT_LT(differ / passes, 0.005) << id << ", film point at " << r;
+      EXPECT_NEAR(map.area(film) / cover.area(film), passes / static_cast<double>(places.size()), 0.004) << id;
+    }
+  }
+}
+
+TEST(PupilMap, SpreadsSamplesEvenly) {
+  const Lens lens = data_lens("double_gauss_100mm_f1.35");
+  const PupilMap map = PupilMap::covering(lens, 22);
+  const FilmPoint film{-9, 17};
+  // Means of the samples and of places that belong to the pupil.
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<double> unit(0, 1);
+  std::array<double, 5> sampled{}, inside{};
+  const auto moments = [](double x, double y) { return std::array<double, 5>{x, y, x * x, x * y, y * y}; };
+  constexpr int side = 512;
+  for (int i = 0; i < side; ++i) {
+    for (int j = 0; j < side; ++j) {
+      const PupilSample s = map.sample(film, (i + 0.5) / side, (j + 0.5) / side);
+      const auto m = moments(s.x, s.y);
+      for (std::size_t k = 0; k < 5; ++k) sampled[k] += m[k] / (side * side);
+    }
+  }
+  const auto [mx, my] = map.middle(film);
+  constexpr double half = 50;
+  int count = 0;
+  for (int i = 0; i < 1024; ++i) {
+    for (int j = 0; j < 1024; ++j) {
+      const double x = mx + half * ((i + 0.5) / 512 - 1), y = my + half * ((j + 0.5) / 512 - 1);
+      if (!map.contains(film, x, y)) continue;
+      const auto m = moments(x, y);
+      for (std::size_t k = 0; k < 5; ++k) inside[k] += m[k];
+      ++count;
+    }
+  }
+  for (std::size_t k = 0; k < 5; ++k) EXPECT_NEAR(sampled[k], inside[k] / count, k < 2 ? 0.02 : 0.3) << k;
+  EXPECT_NEAR(map.area(film), count * std::pow(2 * half / 1024, 2), 1e-3 * map.area(film));
+}
+
+TEST(PupilMap, MovesWithoutJumpsAcrossTheTable) {
+  const Lens lens = data_lens("double_gauss_100mm_f2.0");
+  constexpr double radius = 40;
+  const PupilMap map = PupilMap::covering(lens, radius);
+  for (const auto& [u, v] : {std::array{0.1, 0.9}, std::array{0.43, 0.5}, std::array{0.86, 0.99}}) {
+    const auto at = [&, u = u, v = v](double r) { return map.sample({0.28 * r, -0.96 * r}, u, v); };
+    // Steps across the nodes of the table against those within its strips.
+    constexpr int steps = 64 * 16;
+    double across = 0, within = 0;
+    for (int i = 1; i < steps; ++i) {
+      const PupilSample a = at(radius * (i - 0.5) / steps), b = at(radius * (i + 0.5) / steps);
+      double& largest = i % 16 == 0 ? across : within;
+      largest = std::max(largest, std::hypot(a.x - b.x, a.y - b.y));
+    }
+    EXPECT_LT(across, 1.5 * within);
+    for (int i = 1; i < 64; ++i) {
+      const double node = radius * i / 64, next = std::nextafter(node, radius), before = std::nextafter(node, 0);
+      EXPECT_NEAR(at(before).x, at(next).x, 1e-10);
+      EXPECT_NEAR(at(before).y, at(next).y, 1e-10);
+      EXPECT_NEAR(at(before).area, at(next).area, 1e-9);
+    }
+  }
+}
+
+TEST(PupilMap, IsContinuousAroundTheAxis) {
+  const Lens lens = data_lens("double_gauss_100mm_f2.0");
+  const PupilMap map = PupilMap::covering(lens, 40);
+  const PupilSample axis = map.sample({0, 0}, 0.3, 0.8);
+  for (int i = 0; i < 32; ++i) {
+    const double azimuth = 2 * std::numbers::pi * i / 32;
+    const PupilSample s = map.sample({1e-6 * std::sin(azimuth), 1e-6 * std::cos(azimuth)}, 0.3, 0.8);
+    // A star of 64 corners is round within 1 - cos(pi / 64).
+    EXPECT_NEAR(std::hypot(s.x - axis.x, s.y - axis.y), 0, 0.0025 * std::sqrt(axis.area));
+  }
+}
+
+TEST(PupilMap, SamplesBatchesLikeSinglePoints) {
+  const Lens lens = data_lens("catadioptric_mangin_1000mm_f7.5");
+  const PupilMap map = PupilMap::covering(lens, 20);
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> unit(0, 1);
+  for (const std::size_t count : {1u, 7u, 8u, 63u, 64u, 129u}) {
+    std::vector<double> x(count), y(count), u(count), v(count), px(count), py(count), areas(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      x[i] = 26 * unit(random) - 13, y[i] = 26 * unit(random) - 13, u[i] = unit(random), v[i] = unit(random);
+    }
+    map.sample<double>(count, x.data(), y.data(), u.data(), v.data(), {}, px.data(), py.data(), areas.data());
+    const std::vector<float> fx(x.begin(), x.end()), fy(y.begin(), y.end()), fu(u.begin(), u.end()),
+        fv(v.begin(), v.end());
+    std::vector<float> fpx(count), fpy(count), fareas(count);
+    map.sample<float>(count, fx.data(), fy.data(), fu.data(), fv.data(), {}, fpx.data(), fpy.data(), fareas.data());
+    for (std::size_t i = 0; i < count; ++i) {
+      const PupilSample s = map.sample({x[i], y[i]}, u[i], v[i]);
+      const double size = std::sqrt(s.area);
+      EXPECT_NEAR(px[i], s.x, 1e-12 * size);
+      EXPECT_NEAR(py[i], s.y, 1e-12 * size);
+      EXPECT_NEAR(areas[i], s.area, 1e-13 * s.area);
+      EXPECT_NEAR(fpx[i], s.x, 2e-4 * size);
+      EXPECT_NEAR(fpy[i], s.y, 2e-4 * size);
+      EXPECT_NEAR(fareas[i], s.area, 1e-5 * s.area);
+    }
+    // In place, and the same.
+    map.sample<double>(count, x.data(), y.data(), u.data(), v.data(), {}, u.data(), v.data(), areas.data());
+    EXPECT_EQ(u, px);
+    EXPECT_EQ(v, py);
+  }
+}
+
+TEST(PupilMap, KnowsHowItsSamplesMove) {
+  const Lens lens = data_lens("fisheye_8mm_f2.8");
+  const PupilMap map = PupilMap::covering(lens, 7);
+  std::mt19937_64 random(11);
+  std::uniform_real_distribution<double> unit(0, 1);
+  for (int i = 0; i < 200; ++i) {
+    const FilmPoint film{9 * unit(random) - 4.5, 9 * unit(random) - 4.5};
+    const double u = unit(random), v = unit(random), h = 1e-6;
+    const auto motion = map.motion(film, u, v);
+    const auto at = [&](double dx, double dy) { return map.sample({film.x + dx, film.y + dy}, u, v); };
+    const PupilSample right = at(h, 0), left = at(-h, 0), above = at(0, h), below = at(0, -h);
+    // A corner of the star or a node of the table may lie between.
+    const double slack = 1e-6 + 0.3 *
+                                    (std::hypot(right.x + left.x - 2 * at(0, 0).x, above.x + below.x - 2 * at(0, 0).x,
+                                                right.y + left.y - 2 * at(0, 0).y) +
+                                     std::abs(above.y + below.y - 2 * at(0, 0).y)) /
+                                    h;
+    EXPECT_NEAR(motion.by_film_x[0], (right.x - left.x) / (2 * h), slack);
+    EXPECT_NEAR(motion.by_film_x[1], (right.y - left.y) / (2 * h), slack);
+    EXPECT_NEAR(motion.by_film_y[0], (above.x - below.x) / (2 * h), slack);
+    EXPECT_NEAR(motion.by_film_y[1], (above.y - below.y) / (2 * h), slack);
+  }
+}
+
+TEST(PupilMap, HoldsWhatLiesInAllOfSomeDiscs) {
+  const std::vector<std::vector<PupilDisc>> discs{{{0.2, 10}, {-0.5, 9}}};
+  const PupilMap map = PupilMap::of_discs({50, 0}, discs, 12);
+  for (const double r : {0.0, 3.0, 8.0, 12.0}) {
+    const double distance = 0.7 * r, a = 10, b = 9;
+    double area = std::numbers::pi * b * b;
+    if (distance > a - b) {
+      const double x = (distance * distance + a * a - b * b) / (2 * distance), y = std::sqrt(a * a - x * x);
+      area = a * a * std::atan2(y, x) + b * b * std::atan2(y, distance - x) - distance * y;
+    }
+    EXPECT_NEAR(map.area({0, r}), area, 1e-4 * area) << r;
+    EXPECT_TRUE(map.contains({r, 0}, -0.15 * r, 0));
+    EXPECT_FALSE(map.contains({r, 0}, 0.2 * r - 10.1, 0));
+  }
+}
+
+TEST(PupilMap, HasNothingOutsideItsFilm) {
+  const Lens lens = data_lens("double_gauss_100mm_f2.0");
+  const PupilMap map = PupilMap::covering(lens, 20);
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
+  std::vector<double> x{0, 21, nan, 0, 0, infinity, 3, 3, 0, 0}, y(10, 0), u{0.5, 0.5, 0.5, nan, 0.5, 0.5, -1, 2, 1, 0},
+      v{0.5, 0.5, 0.5, 0.5, infinity, 0.5, -1, 2, 1, 0}, px(10), py(10), areas(10);
+  map.sample<double>(10, x.data(), y.data(), u.data(), v.data(), {}, px.data(), py.data(), areas.data());
+  for (std::size_t i = 0; i < 10; ++i) {
+    const PupilSample s = map.sample({x[i], y[i]}, u[i], v[i]);
+    const bool sound = i == 0 || i > 5;
+    EXPECT_EQ(s.area > 0, sound) << i;
+    EXPECT_EQ(areas[i] > 0, sound) << i;
+    EXPECT_TRUE(std::isfinite(px[i]) && std::isfinite(py[i]) && std::isfinite(s.x) && std::isfinite(s.y));
+    EXPECT_TRUE(sound || px[i] == 0);
+  }
+  EXPECT_EQ(map.sample({0, 0}, 0.5, 0.5, 1).area, 0);
+  EXPECT_EQ(map.area({0, 21}), 0);
+  EXPECT_FALSE(map.contains({0, 21}, 0, 0));
+  EXPECT_THROW((void)PupilMap::covering(lens, nan), Error);
+  EXPECT_THROW((void)PupilMap::covering(lens, -1), Error);
+  EXPECT_THROW((void)PupilMap::covering(with_film(lens, lens.surfaces().back().vertex_z), 10), Error);
+  EXPECT_THROW((void)PupilMap::matching(data_lens("anamorphic_60mm_2x"), 10), Error);
+  const PupilMap dark = PupilMap::covering(with_semi_diameter(lens, *lens.stop(), 0), 20);
+  EXPECT_EQ(dark.sample({1, 2}, 0.5, 0.5).area, 0);
+}
+
+TEST(PupilMap, HasNothingInTheMiddleOfAHole) {
+  for (const PupilMap& map : {PupilMap::covering(data_lens("catadioptric_mangin_1000mm_f7.5"), 20),
+                              PupilMap::matching(data_lens("catadioptric_mangin_1000mm_f7.5"), 20)}) {
+    for (const FilmPoint& film : {FilmPoint{0, 0}, FilmPoint{3, 7}}) {
+      const auto [x, y] = map.middle(film);
+      EXPECT_FALSE(map.contains(film, x, y));
+      EXPECT_FALSE(map.contains(film, x + 0.1, y));
+    }
+  }
+}
+
+TEST(PupilMap, HasOneTableForEachWavelength) {
+  const Prescription p = petzval::testing::data_prescription("double_gauss_100mm_f2.0");
+  const std::vector<double> nm{450, 650};
+  const Lens lens = compile(p, nm, {.glasses = nullptr, .missing_glass = MissingGlass::abbe});
+  const PupilMap map = PupilMap::covering(lens, 20);
+  ASSERT_EQ(map.wavelengths(), 2u);
+  const std::vector<std::uint16_t> each{1, 0, 2, 1, 0, 1, 0, 1};
+  std::vector<double> x(8, 7), y(8, -11), u(8, 0.37), v(8, 0.81), px(8), py(8), areas(8);
+  map.sample<double>(8, x.data(), y.data(), u.data(), v.data(), {.each = each.data()}, px.data(), py.data(),
+                     areas.data());
+  for (std::size_t i = 0; i < 8; ++i) {
+    const PupilSample s = map.sample({7, -11}, 0.37, 0.81, each[i]);
+    EXPECT_NEAR(px[i], s.x, 1e-12);
+    EXPECT_NEAR(py[i], s.y, 1e-12);
+    EXPECT_EQ(areas[i] == 0, each[i] == 2);
+  }
+  EXPECT_NE(map.area({7, -11}, 0), map.area({7, -11}, 1));
+}
+
+}  // namespace
