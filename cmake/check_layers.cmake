@@ -11,9 +11,9 @@ set(layer_1 media surface prescription)
 set(layer_2 lens)
 set(layer_3 paraxial trace)
 set(layer_4 pupil)
-set(layer_5 focus lint)  # lint compares what a prescription declares with what the modules below compute
+set(layer_5 focus lint polynomial)  # lint compares what a prescription declares with what the modules below compute
 set(layer_6 movement)
-set(layer_7)             # camera
+set(layer_7 camera)
 set(layer_8 psf)
 set(layer_9 io figure)   # the edge
 set(edge 9)

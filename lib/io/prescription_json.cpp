@@ -2,29 +2,23 @@
 #include "petzval/io/prescription_json.hpp"
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
-#include <cstdint>
-#include <fstream>
-#include <nlohmann/json.hpp>
 #include <span>
 #include <system_error>
-#include <variant>
 
+#include "json.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/core/text.hpp"
 
 namespace petzval {
 namespace {
 
+using detail::describe;
+using detail::in_quotes;
+using detail::JsonValue;
+
 constexpr std::string_view format_name = "petzval-lens 1";
 constexpr std::size_t longest_list = 10'000;
-constexpr std::int64_t largest_integer = std::int64_t{1} << 53;  // beyond it not every integer is a double
-constexpr const char* wanted_integer = "an integer up to 2^53";
-
-/// A value that is not a list or an object.
-using Value = std::variant<std::nullptr_t, bool, double, std::string>;
 
 /// The brackets of the format: what a list or an object stands for.
 enum class Place { file, source, zoom, variable_gaps, aliases, object_space, surfaces, surface, aspheric, term };
@@ -33,49 +27,18 @@ constexpr bool is_list(Place place) {
   return place == Place::aliases || place == Place::surfaces || place == Place::aspheric;
 }
 
-/// Texts of a document are of any length, messages are not.
-std::string shortened(std::string_view text, std::size_t longest = 60) {
-  if (text.size() <= longest) return std::string(text);
-  while (longest > 0 && (static_cast<unsigned char>(text[longest]) & 0xC0) == 0x80) --longest;  // whole characters only
-  return std::string(text.substr(0, longest)) + "...";
-}
-
-std::string in_quotes(std::string_view text) { return '"' + shortened(text) + '"'; }
-
-std::string describe(const Value& value) {
-  if (std::holds_alternative<std::nullptr_t>(value)) return "null";
-  if (const bool* flag = std::get_if<bool>(&value)) return *flag ? "true" : "false";
-  if (const double* n = std::get_if<double>(&value)) return number(*n);
-  return in_quotes(std::get<std::string>(value));
-}
-
 /// Builds a prescription while nlohmann's parser walks the text: nothing but the prescription itself is stored, and
 /// what does not belong there is refused where it stands.
-class Reader {
+class Reader : public detail::JsonReader {
  public:
-  explicit Reader(std::string where) : where_(std::move(where)) {}
+  using JsonReader::JsonReader;
   Prescription take() { return std::move(lens_); }
-
-  // What the parser calls.
-  bool null() { return assign(nullptr); }
-  bool boolean(bool flag) { return assign(flag); }
-  bool number_integer(std::int64_t n);
-  bool number_unsigned(std::uint64_t n);
-  bool number_float(double, const std::string& token);
-  bool string(std::string& text) { return assign(std::move(text)); }
-  bool binary(std::vector<std::uint8_t>&) { return false; }  // no such thing in text
-  bool start_object(std::size_t) { return open(false); }
-  bool start_array(std::size_t) { return open(true); }
-  bool end_object() { return close(); }
-  bool end_array() { return close(); }
-  bool key(std::string& name);
-  bool parse_error(std::size_t position, const std::string&, const nlohmann::json::exception& error);
 
  private:
   struct Key {
     std::string_view name;
-    void (*set)(Reader&, const Value&);  ///< for a plain value
-    std::optional<Place> opens = {};     ///< for a list or an object
+    void (*set)(Reader&, const JsonValue&);  ///< for a plain value
+    std::optional<Place> opens = {};         ///< for a list or an object
     bool required = false;
   };
   struct Open {
@@ -89,22 +52,13 @@ class Reader {
   SurfaceRow& row() { return lens_.surfaces.back(); }
   Medium& medium() { return open_.back().place == Place::surface ? row().medium : lens_.object_space; }
 
-  bool assign(Value value);
-  bool open(bool list);
-  bool close();
+  void key(const std::string& name) override;
+  void assign(JsonValue value) override;
+  void open(bool list) override;
+  void close() override;
+  std::string here() const override;
   void count_entry();
-  std::string here() const;
-  [[noreturn]] void refuse(const std::string& found, const std::string& wanted) const {
-    throw Error(here() + " is " + found + ", wanted " + wanted);
-  }
 
-  double number_of(const Value& value) const;
-  std::optional<double> maybe_number(const Value& value) const;
-  std::string text_of(const Value& value) const;
-  std::optional<std::string> maybe_text(const Value& value) const;
-  bool flag_of(const Value& value) const;
-
-  std::string where_;
   Prescription lens_;
   std::vector<Open> open_;
   int key_ = -1;  ///< the key just read, by number in the table of the innermost place
@@ -113,7 +67,7 @@ class Reader {
 
 std::span<const Reader::Key> Reader::keys(Place place) {
   using R = Reader;
-  using V = const Value;
+  using V = const JsonValue;
   static constexpr std::array<Key, 18> file = {{
       {"format",
        [](R& r, V& v) {
@@ -212,7 +166,7 @@ std::string Reader::here() const {
   return text;
 }
 
-bool Reader::key(std::string& name) {
+void Reader::key(const std::string& name) {
   Open& object = open_.back();
   if (object.place == Place::variable_gaps) {
     const auto [end, status] = std::from_chars(name.data(), name.data() + name.size(), gap_);
@@ -222,7 +176,7 @@ bool Reader::key(std::string& name) {
     }
     if (lens_.zoom->variable_gaps.contains(gap_))
       throw Error(here() + ": key " + in_quotes(name) + " is given twice, wanted once");
-    return true;
+    return;
   }
   const auto table = keys(object.place);
   key_ = -1;
@@ -237,17 +191,16 @@ bool Reader::key(std::string& name) {
   if (object.seen & bit) throw Error(here() + ": key " + in_quotes(name) + " is given twice, wanted once");
   object.seen |= bit;
   key_ = index;
-  return true;
 }
 
-bool Reader::assign(Value value) {
+void Reader::assign(JsonValue value) {
   if (open_.empty()) throw Error(where_ + ": document is " + describe(value) + ", wanted an object");
   switch (open_.back().place) {
-    case Place::variable_gaps: lens_.zoom->variable_gaps[gap_] = number_of(value); return true;
+    case Place::variable_gaps: lens_.zoom->variable_gaps[gap_] = number_of(value); return;
     case Place::aliases:
       count_entry();
       lens_.aliases.push_back(text_of(value));
-      return true;
+      return;
     case Place::surfaces:
     case Place::aspheric: count_entry(); refuse(describe(value), "an object");
     default: break;
@@ -255,7 +208,6 @@ bool Reader::assign(Value value) {
   const Key& key = *current();
   if (key.opens) refuse(describe(value), is_list(*key.opens) ? "a list" : "an object");
   key.set(*this, value);
-  return true;
 }
 
 void Reader::count_entry() {
@@ -265,12 +217,12 @@ void Reader::count_entry() {
               ", wanted a lens");
 }
 
-bool Reader::open(bool list) {
+void Reader::open(bool list) {
   const std::string found = list ? "a list" : "an object";
   if (open_.empty()) {
     if (list) throw Error(where_ + ": document is a list, wanted an object");
     open_.push_back({Place::file});
-    return true;
+    return;
   }
   const Place outer = open_.back().place;
   std::optional<Place> inner;
@@ -290,10 +242,9 @@ bool Reader::open(bool list) {
   if (inner == Place::surface) lens_.surfaces.emplace_back();
   if (inner == Place::term) row().aspheric.emplace_back();
   if (inner == Place::zoom) lens_.zoom.emplace();
-  return true;
 }
 
-bool Reader::close() {
+void Reader::close() {
   const Open closed = open_.back();
   key_ = -1;
   const auto table = keys(closed.place);
@@ -303,92 +254,20 @@ bool Reader::close() {
     }
   }
   open_.pop_back();
-  return true;
-}
-
-bool Reader::number_integer(std::int64_t n) {
-  if (n < -largest_integer || n > largest_integer) refuse(std::to_string(n), wanted_integer);
-  return assign(static_cast<double>(n));
-}
-
-bool Reader::number_unsigned(std::uint64_t n) {
-  if (n > static_cast<std::uint64_t>(largest_integer)) refuse(std::to_string(n), wanted_integer);
-  return assign(static_cast<double>(n));
-}
-
-bool Reader::number_float(double, const std::string& token) {
-  // Read again from the digits: the parser's value went through the C locale's decimal point, and says nothing of a
-  // number too small for double.
-  std::string digits = token;
-  for (char& c : digits) {
-    if (!(c >= '0' && c <= '9') && c != '-' && c != '+' && c != 'e' && c != 'E') c = '.';
-  }
-  double value = 0;
-  const auto status = std::from_chars(digits.data(), digits.data() + digits.size(), value).ec;
-  if (digits.find_first_of(".eE") == std::string::npos) refuse(shortened(digits), wanted_integer);
-  if (status != std::errc()) refuse(shortened(digits), "a number within the range of double");
-  return assign(value);
-}
-
-bool Reader::parse_error(std::size_t position, const std::string&, const nlohmann::json::exception& error) {
-  std::string reason = error.what();
-  for (const std::string_view prefix : {"] ", ": syntax error "}) {
-    if (const auto at = reason.find(prefix); at != std::string::npos) reason.erase(0, at + prefix.size());
-  }
-  throw Error(where_ + ": byte " + std::to_string(position) + ": not JSON " + shortened(reason, 160));
-}
-
-double Reader::number_of(const Value& value) const {
-  if (const double* n = std::get_if<double>(&value)) return *n;
-  refuse(describe(value), "a number");
-}
-
-std::optional<double> Reader::maybe_number(const Value& value) const {
-  if (std::holds_alternative<std::nullptr_t>(value)) return {};
-  return number_of(value);
-}
-
-std::string Reader::text_of(const Value& value) const {
-  if (const std::string* text = std::get_if<std::string>(&value)) return *text;
-  refuse(describe(value), "a text");
-}
-
-std::optional<std::string> Reader::maybe_text(const Value& value) const {
-  if (std::holds_alternative<std::nullptr_t>(value)) return {};
-  return text_of(value);
-}
-
-bool Reader::flag_of(const Value& value) const {
-  if (const bool* flag = std::get_if<bool>(&value)) return *flag;
-  refuse(describe(value), "true or false");
 }
 
 }  // namespace
 
 Prescription parse_prescription(std::string_view json, const std::string& where) {
-  // nlohmann's parser takes a zero byte for the end of the text and would not see what follows.
-  if (const auto zero = json.find('\0'); zero != std::string_view::npos) {
-    throw Error(where + ": byte " + std::to_string(zero + 1) + " is zero, wanted JSON in UTF-8");
-  }
   Reader reader(where);
-  nlohmann::json::sax_parse(json, &reader);
+  reader.parse(json);
   Prescription prescription = reader.take();
   validate(prescription, where);
   return prescription;
 }
 
 Prescription read_prescription(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw Error(file.string() + ": cannot be opened, wanted a lens file");
-  std::string text;
-  std::error_code unknown;
-  if (const auto size = std::filesystem::file_size(file, unknown); !unknown) text.reserve(size);
-  std::array<char, 65536> block;
-  while (stream.read(block.data(), block.size()), stream.gcount() > 0) {
-    text.append(block.data(), static_cast<std::size_t>(stream.gcount()));
-  }
-  if (stream.bad()) throw Error(file.string() + ": cannot be read to its end");
-  return parse_prescription(text, file.string());
+  return parse_prescription(detail::read_text(file, "a lens file"), file.string());
 }
 
 }  // namespace petzval

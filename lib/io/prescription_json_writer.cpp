@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <array>
-#include <charconv>
 #include <cmath>
-#include <cstdlib>
 #include <nlohmann/json.hpp>
 
+#include "json.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/io/prescription_json.hpp"
 #include "petzval/io/write_file.hpp"
@@ -12,18 +10,7 @@
 namespace petzval {
 namespace {
 
-/// Shortest decimals that read back; plain from 1e-4 to 1e16 and with a point always, so that a number looks like one.
-std::string json(double value) {
-  std::array<char, 64> buffer;
-  const auto print = [&](std::chars_format layout) {
-    return std::string(buffer.data(), std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, layout).ptr);
-  };
-  const std::string scientific = print(std::chars_format::scientific);
-  const int exponent = std::atoi(scientific.c_str() + scientific.find('e') + 1);
-  if (exponent < -4 || exponent >= 16) return scientific;
-  const std::string plain = print(std::chars_format::fixed);
-  return plain.find('.') == std::string::npos ? plain + ".0" : plain;
-}
+std::string json(double value) { return detail::json_number(value); }
 
 std::string json(const std::string& text) {
   try {

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "petzval/core/vec3.hpp"
+
+namespace petzval::detail {
+
+/// A line on the scene's side as two vectors that turn with it about the axis.
+///
+/// s: its direction towards the scene in stereographic projection, d = (2 s, |s|^2 - 1) / (1 + |s|^2): 0 along the
+/// axis, of length 1 at 90 degrees, infinite for nothing but what comes from behind along the axis. o: from a reference
+/// point on the axis to the foot of its perpendicular on the line, turned back by the shortest turn that takes -z to d.
+/// That turn makes v - (v.h) h / (1 - d_z) of a vector v across the axis, h = d - z: (v, 0) + 2 (s.v) (-s, 1) / (1 +
+/// |s|^2). Back, of a vector w across d, it is w_xy + w_z s.
+struct SceneLine {
+  double sx = 0, sy = 0, ox = 0, oy = 0;
+};
+
+/// direction: unit length, towards the scene; point: on the line, from the reference point.
+inline SceneLine scene_line(const Vec3<double>& direction, const Vec3<double>& point) noexcept {
+  const double per_length = 1 / (1 - direction.z);
+  const double sx = direction.x * per_length, sy = direction.y * per_length;
+  const double along = point.x * direction.x + point.y * direction.y + point.z * direction.z;
+  const double foot_z = point.z - along * direction.z;
+  return {sx, sy, point.x - along * direction.x + foot_z * sx, point.y - along * direction.y + foot_z * sy};
+}
+
+}  // namespace petzval::detail

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "loops.hpp"
+#include "petzval/polynomial/ray_polynomial.hpp"
+
+namespace petzval {
+
+struct RayPolynomial::Data {
+  template <class R>
+  struct In {
+    detail::Scales<R> scales;
+    std::vector<R> coefficients;  ///< by wavelength, as in ToSceneJob
+  };
+
+  int degree;
+  Domain domain;
+  std::vector<Fit> fits;
+  In<float> in_float{};
+  In<double> in_double{};
+
+  Data(int degree, const Domain& domain, std::vector<Fit> fits);
+
+  /// Where the loops for the degree stand.
+  std::size_t loop() const noexcept { return static_cast<std::size_t>(degree - 3) / 2; }
+};
+
+namespace detail {
+
+template <class R>
+const auto& in(const auto& data) noexcept {
+  if constexpr (sizeof(R) == sizeof(float)) {
+    return data.in_float;
+  } else {
+    return data.in_double;
+  }
+}
+
+template <class R>
+const ToSceneLoops<R>& to_scene_loops() noexcept {
+  if constexpr (sizeof(R) == sizeof(float)) {
+    return polynomial_loops().in_float;
+  } else {
+    return polynomial_loops().in_double;
+  }
+}
+
+}  // namespace detail
+}  // namespace petzval

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "least_squares.hpp"
+#include "petzval/core/error.hpp"
+#include "petzval/polynomial/ray_polynomial.hpp"
+#include "petzval/pupil/pupil.hpp"
+
+namespace petzval {
+namespace {
+
+using detail::MeridianLines;
+
+constexpr std::size_t fitted = 1536, judged = 4096;
+
+/// The samples u, v of pupils as lines, less those of empty pupils.
+MeridianLines lines_of(const PupilMap& pupils, std::size_t wavelength, const std::vector<double>& heights,
+                       const std::vector<double>& u, const std::vector<double>& v) {
+  const std::size_t count = heights.size();
+  const std::vector<double> film_x(count, 0.0);
+  std::vector<double> x(count), y(count), areas(count);
+  pupils.sample<double>(count, film_x.data(), heights.data(), u.data(), v.data(), {wavelength}, x.data(), y.data(),
+                        areas.data());
+  MeridianLines lines;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!(areas[i] > 0)) continue;
+    lines.film_y.push_back(heights[i]);
+    lines.pupil_x.push_back(x[i]);
+    lines.pupil_y.push_back(y[i]);
+  }
+  return lines;
+}
+
+/// Lines spread over film and pupils. The points of an additive recurrence by the powers of the root of g^4 = g + 1
+/// fill three dimensions evenly from any `first` on. Evenly by area, or more densely towards the edges of film and
+/// pupil, as the nodes of Chebyshev are: that takes some tenths from the largest errors, and adds one to the RMS.
+MeridianLines spread(const PupilMap& pupils, std::size_t wavelength, std::size_t first, std::size_t count, bool dense) {
+  constexpr double g = 1.2207440846057596, quarter = std::numbers::pi / 2;
+  std::vector<double> heights(count), u(count), v(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto part = [&](double step) {
+      const double x = (static_cast<double>(first + i) + 0.5) * step;
+      return x - std::floor(x);
+    };
+    const double a = part(1 / g), b = part(1 / (g * g * g)), edge = std::sin(quarter * b);
+    heights[i] = pupils.film_radius() * (dense ? std::sin(quarter * a) : std::sqrt(a));
+    u[i] = part(1 / (g * g));
+    v[i] = dense ? edge * edge : b;
+  }
+  return lines_of(pupils, wavelength, heights, u, v);
+}
+
+/// The rims of the pupils.
+MeridianLines rims(const PupilMap& pupils, std::size_t wavelength) {
+  constexpr int steps = 64, around = 128;
+  std::vector<double> heights, u;
+  for (int i = 0; i <= steps; ++i) {
+    for (int k = 0; k < around; ++k) {
+      heights.push_back(pupils.film_radius() * i / steps);
+      u.push_back(static_cast<double>(k) / around);
+    }
+  }
+  return lines_of(pupils, wavelength, heights, u, std::vector<double>(u.size(), 1.0));
+}
+
+/// The smallest discs, moving with the film point, that hold the rims of all wavelengths.
+void enclose(const std::vector<MeridianLines>& rims, RayPolynomial::Domain& domain) {
+  struct Farthest {
+    double square = 0, side = 0;  ///< side: of the disc's middle, > 0 where a larger shift comes nearer to it
+  };
+  const auto farthest = [&](double shift) {
+    Farthest result;
+    for (const MeridianLines& lines : rims) {
+      for (std::size_t i = 0; i < lines.size(); ++i) {
+        const double y = lines.pupil_y[i] - shift * lines.film_y[i];
+        const double square = lines.pupil_x[i] * lines.pupil_x[i] + y * y;
+        if (square > result.square) result = {square, y * lines.film_y[i]};
+      }
+    }
+    return result;
+  };
+  // The radius is convex in the shift: what is farthest says on which side of the best one it is.
+  double high = 2 * std::sqrt(farthest(0).square) / domain.film_radius, low = -high;
+  for (int halving = 0; halving < 30; ++halving) {
+    const double middle = (low + high) / 2;
+    (farthest(middle).side > 0 ? low : high) = middle;
+  }
+  domain.pupil_shift = (low + high) / 2;
+  domain.pupil_radius = 1.01 * std::sqrt(farthest(domain.pupil_shift).square);  // corners lie between the places seen
+}
+
+/// The centre of the entrance pupil, but not far from the lens: rays begin about it.
+double reference_of(const Lens& lens) {
+  const double longest = 10 * std::abs(lens.film_z() - lens.surfaces().front().vertex_z);
+  const double z = has_pupils(lens) ? pupils(lens, lens.central_wavelength()).entrance.z : 0;
+  return std::abs(z) <= longest ? z : 0;
+}
+
+}  // namespace
+
+RayPolynomial RayPolynomial::fit(const Lens& lens, const PupilMap& pupils, int degree) {
+  const std::string where = lens.name() + ": polynomial: ";
+  if (!lens.rotationally_symmetric()) {
+    throw Error(where + "the lens has surfaces that are curved in one section only, wanted a lens of revolution");
+  }
+  if (!(degree >= 3 && degree <= 11 && degree % 2 == 1)) {
+    throw Error(where + "degree is " + std::to_string(degree) + ", wanted 3, 5, 7, 9 or 11");
+  }
+  if (pupils.wavelengths() != lens.wavelengths_nm().size()) {
+    throw Error(where + "the pupils are of " + std::to_string(pupils.wavelengths()) +
+                " wavelengths, wanted the lens's " + std::to_string(lens.wavelengths_nm().size()));
+  }
+  if (!(pupils.film_radius() > 0)) throw Error(where + "the film's radius is 0, wanted more than one point");
+  std::vector<MeridianLines> edges;
+  for (std::size_t wavelength = 0; wavelength < pupils.wavelengths(); ++wavelength) {
+    edges.push_back(rims(pupils, wavelength));
+    if (edges.back().size() == 0) throw Error(where + "the pupils are empty, wanted rays");
+  }
+
+  Domain domain;
+  domain.space = pupils.space();
+  domain.film_radius = pupils.film_radius();
+  domain.reference_z = reference_of(lens);
+  enclose(edges, domain);
+  std::vector<Fit> fits;
+  for (std::size_t wavelength = 0; wavelength < pupils.wavelengths(); ++wavelength) {
+    fits.push_back(detail::fit(lens, domain, degree, wavelength, spread(pupils, wavelength, 0, fitted, true),
+                               spread(pupils, wavelength, fitted, judged, false), edges[wavelength]));
+  }
+  return RayPolynomial(degree, domain, std::move(fits));
+}
+
+}  // namespace petzval

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "least_squares.hpp"
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <string>
+
+#include "chart.hpp"
+#include "petzval/core/error.hpp"
+#include "petzval/core/text.hpp"
+#include "petzval/paraxial/first_order.hpp"
+#include "petzval/trace/batch.hpp"
+
+namespace petzval::detail {
+namespace {
+
+/// Rays as arrays of their own.
+struct Rays {
+  std::array<std::vector<double>, 6> v;
+  std::vector<RayFate> fates;
+
+  explicit Rays(std::size_t count) : fates(count) { v.fill(std::vector<double>(count)); }
+  std::size_t size() const noexcept { return fates.size(); }
+  template <class T>
+  RayArrays<T> arrays() noexcept {
+    return {v[0].data(), v[1].data(), v[2].data(), v[3].data(), v[4].data(), v[5].data()};
+  }
+  Vec3<double> origin(std::size_t i) const noexcept { return {v[0][i], v[1][i], v[2][i]}; }
+  Vec3<double> direction(std::size_t i) const noexcept { return {v[3][i], v[4][i], v[5][i]}; }
+};
+
+/// The lines through the lens, exactly. They start at the last vertex: however far film and pupil are, nothing is lost.
+Rays trace(const Lens& lens, const FilmSpace& space, const MeridianLines& lines, std::size_t wavelength) {
+  const double last_z = lens.surfaces().back().vertex_z;
+  const double part = (last_z - space.film_z) / space.depth();  // of the way from the film to the pupil
+  const double sign = signed_index(lens, lens.surface_count()) * space.depth() > 0 ? -1 : 1;  // against the light
+  Rays rays(lines.size());
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const double dx = lines.pupil_x[i], dy = lines.pupil_y[i] - lines.film_y[i], dz = space.depth();
+    const double per_length = sign / std::sqrt(dx * dx + dy * dy + dz * dz);
+    const std::array<double, 6> ray{
+        part * dx, lines.film_y[i] + part * dy, last_z, dx * per_length, dy * per_length, dz * per_length};
+    for (std::size_t k = 0; k < ray.size(); ++k) rays.v[k][i] = ray[k];
+  }
+  petzval::trace(lens, rays.size(), rays.arrays<const double>(), rays.arrays<double>(), rays.fates.data(), nullptr,
+                 {.travel = Travel::to_scene, .wavelength = wavelength});
+  return rays;
+}
+
+double square(const Vec3<double>& v) noexcept { return glm::dot(v, v); }
+
+/// Sums of squares and the largest.
+struct Errors {
+  double sum = 0, largest = 0;
+  std::size_t count = 0;
+
+  void see(double squared) noexcept {
+    sum += squared;
+    largest = std::max(largest, squared);
+    ++count;
+  }
+  double rms() const noexcept { return count > 0 ? std::sqrt(sum / static_cast<double>(count)) : 0; }
+  double max() const noexcept { return std::sqrt(largest); }
+};
+
+/// The errors that a fit makes of some lines, direction and offset.
+std::array<Errors, 2> errors_of(const Lens& lens, const RayPolynomial& polynomial, std::size_t wavelength,
+                                const MeridianLines& lines) {
+  const double reference_z = polynomial.domain().reference_z;
+  const Rays exact = trace(lens, polynomial.domain().space, lines, wavelength);
+  Rays rays(lines.size());
+  const std::vector<double> film_x(lines.size(), 0.0);
+  polynomial.to_scene<double>(lines.size(),
+                              {film_x.data(), lines.film_y.data(), lines.pupil_x.data(), lines.pupil_y.data()}, {},
+                              rays.arrays<double>(), rays.fates.data());
+  Errors direction, offset;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    if (exact.fates[i] != RayFate::transmitted || rays.fates[i] != RayFate::transmitted) continue;
+    const Vec3<double> towards = exact.direction(i);
+    direction.see(square(rays.direction(i) - towards));
+    const Vec3<double> apart = rays.origin(i) - exact.origin(i);  // of two feet, once the exact ray begins at its own
+    const Vec3<double> from_reference = exact.origin(i) - Vec3<double>(0, 0, reference_z);
+    offset.see(square(apart + glm::dot(from_reference, towards) * towards));
+  }
+  return {direction, offset};
+}
+
+}  // namespace
+
+RayPolynomial::Fit fit(const Lens& lens, const RayPolynomial::Domain& domain, int degree, std::size_t wavelength,
+                       const MeridianLines& lines, const MeridianLines& fresh, const MeridianLines& rims) {
+  const std::vector<RayPolynomial::Term> terms = RayPolynomial::terms(degree);
+  const auto count = static_cast<Eigen::Index>(terms.size());
+  const Rays rays = trace(lens, domain.space, lines, wavelength);
+  const auto passed = std::count(rays.fates.begin(), rays.fates.end(), RayFate::transmitted);
+  const double nm = lens.wavelengths_nm()[wavelength];
+  if (passed < 2 * count) {
+    throw Error(lens.name() + ": polynomial of degree " + std::to_string(degree) + ": " + std::to_string(passed) +
+                " of " + std::to_string(lines.size()) + " rays get through at " + number(nm) + " nm, wanted " +
+                std::to_string(2 * count) + " or more");
+  }
+
+  // Two equations for each ray, along x and along y, for A (left) and B (right); the direction's numbers and the
+  // offset's are two right-hand sides of the same equations.
+  Eigen::MatrixXd equations(2 * passed, 2 * count);
+  Eigen::MatrixX2d wanted(2 * passed, 2);
+  const int n = (degree - 1) / 2;
+  std::array<std::array<double, 6>, 3> powers;
+  Eigen::Index row = 0;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    if (rays.fates[i] != RayFate::transmitted) continue;
+    const double fy = lines.film_y[i] / domain.film_radius;
+    const double px = lines.pupil_x[i] / domain.pupil_radius;
+    const double py = (lines.pupil_y[i] - domain.pupil_shift * lines.film_y[i]) / domain.pupil_radius;
+    const std::array<double, 3> invariants{fy * fy, fy * py, px * px + py * py};
+    for (std::size_t k = 0; k < 3; ++k) {
+      powers[k][0] = 1;
+      for (std::size_t e = 0; e < static_cast<std::size_t>(n); ++e) powers[k][e + 1] = powers[k][e] * invariants[k];
+    }
+    for (Eigen::Index k = 0; k < count; ++k) {
+      const auto [u, v, w] = terms[static_cast<std::size_t>(k)];
+      const double term = powers[0][static_cast<std::size_t>(u)] * powers[1][static_cast<std::size_t>(v)] *
+                          powers[2][static_cast<std::size_t>(w)];
+      equations(row, k) = 0;
+      equations(row, count + k) = term * px;
+      equations(row + 1, k) = term * fy;
+      equations(row + 1, count + k) = term * py;
+    }
+    const SceneLine line = scene_line(rays.direction(i), rays.origin(i) - Vec3<double>(0, 0, domain.reference_z));
+    wanted.row(row) << line.sx, line.ox;
+    wanted.row(row + 1) << line.sy, line.oy;
+    row += 2;
+  }
+  const Eigen::MatrixX2d solution = equations.householderQr().solve(wanted);
+
+  const auto part = [&](Eigen::Index column, Eigen::Index from) {
+    const auto numbers = solution.col(column).segment(from, count);
+    return std::vector<double>(numbers.begin(), numbers.end());
+  };
+  RayPolynomial::Fit fit;
+  fit.wavelength_nm = nm;
+  fit.direction_by_film = part(0, 0);
+  fit.direction_by_pupil = part(0, count);
+  fit.offset_by_film = part(1, 0);
+  fit.offset_by_pupil = part(1, count);
+
+  const RayPolynomial polynomial(degree, domain, {fit});
+  const auto [direction, offset] = errors_of(lens, polynomial, wavelength, fresh);
+  const auto [direction_at_rims, offset_at_rims] = errors_of(lens, polynomial, wavelength, rims);
+  fit.rms_rad = direction.rms();
+  fit.max_rad = std::max(direction.max(), direction_at_rims.max());
+  fit.rms_mm = offset.rms();
+  fit.max_mm = std::max(offset.max(), offset_at_rims.max());
+  return fit;
+}
+
+}  // namespace petzval::detail

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "petzval/lens/lens.hpp"
+#include "petzval/polynomial/ray_polynomial.hpp"
+
+namespace petzval::detail {
+
+/// Lines of film points on the axis +y: what lies elsewhere is the same turned about the axis.
+struct MeridianLines {
+  std::vector<double> film_y, pupil_x, pupil_y;
+
+  std::size_t size() const noexcept { return film_y.size(); }
+};
+
+/// The fit at one wavelength to those of the lines that get through, its errors from those of others and of the pupils'
+/// rims.
+RayPolynomial::Fit fit(const Lens& lens, const RayPolynomial::Domain& domain, int degree, std::size_t wavelength,
+                       const MeridianLines& lines, const MeridianLines& fresh, const MeridianLines& rims);
+
+}  // namespace petzval::detail

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// From lines to rays towards the scene, many at a time: what to_scene.cpp defines for each instruction set.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "petzval/core/ray.hpp"
+#include "petzval/lens/ray_wavelengths.hpp"
+#include "petzval/pupil/film_lines.hpp"
+#include "petzval/trace/widest.hpp"
+
+namespace petzval::detail {
+
+/// Degrees 3, 5, 7, 9, 11.
+inline constexpr std::size_t degree_count = 5;
+
+/// The constants of a domain, rounded once from double.
+template <class R>
+struct Scales {
+  R per_film_radius, pupil_shift, per_pupil_radius, reference_z;
+};
+
+/// Of u and w, squares of lengths that are at most 1: lines on the rim of the domain belong to it in float too.
+inline constexpr double within_domain = 1 + 1e-5;
+
+template <class R>
+struct ToSceneJob {
+  const R* coefficients;  ///< by wavelength: A, B, C, D: direction by film and by pupil, offset by film and by pupil
+  std::size_t fits;
+  Scales<R> scales;
+  std::size_t count;
+  FilmLines<const R> lines;
+  RayWavelengths wavelengths;
+  RayArrays<R> rays;
+  RayFate* fates;
+};
+
+template <class R>
+using ToSceneLoops = std::array<void (*)(const ToSceneJob<R>&) noexcept, degree_count>;
+
+/// By (degree - 3) / 2.
+struct PolynomialLoops {
+  ToSceneLoops<float> in_float;
+  ToSceneLoops<double> in_double;
+};
+
+PETZVAL_WIDEST(PolynomialLoops, polynomial_loops)
+
+}  // namespace petzval::detail

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "petzval/polynomial/ray_polynomial.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <string>
+#include <utility>
+
+#include "data.hpp"
+#include "horner.hpp"
+#include "petzval/core/error.hpp"
+#include "petzval/core/text.hpp"
+
+namespace petzval {
+namespace {
+
+/// Beyond it products leave the range of float; no lens comes near.
+constexpr double largest = 1e12;
+
+void check(const std::string& what, double value, double from, double to) {
+  if (value >= from && value <= to) return;
+  throw Error(what + " is " + number(value) + ", wanted a number from " + number(from) + " to " + number(to));
+}
+
+void check(int degree, const RayPolynomial::Domain& domain, const std::vector<RayPolynomial::Fit>& fits) {
+  const std::string where = "polynomial: ";
+  if (!(degree >= 3 && degree <= 11 && degree % 2 == 1)) {
+    throw Error(where + "degree is " + std::to_string(degree) + ", wanted 3, 5, 7, 9 or 11");
+  }
+  check(where + "film_z", domain.space.film_z, -largest, largest);
+  check(where + "pupil_z", domain.space.pupil_z, -largest, largest);
+  if (domain.space.depth() == 0) {
+    throw Error(where + "pupil_z is that of the film, " + number(domain.space.film_z) + " mm, wanted another");
+  }
+  check(where + "film_radius", domain.film_radius, 1 / largest, largest);
+  check(where + "pupil_shift", domain.pupil_shift, -largest, largest);
+  check(where + "pupil_radius", domain.pupil_radius, 1 / largest, largest);
+  check(where + "reference_z", domain.reference_z, -largest, largest);
+  if (fits.empty()) throw Error(where + "there are no fits, wanted one for each wavelength");
+  const auto terms = static_cast<std::size_t>(detail::term_count((degree - 1) / 2));
+  for (std::size_t i = 0; i < fits.size(); ++i) {
+    const RayPolynomial::Fit& fit = fits[i];
+    const std::string here = where + "fit " + std::to_string(i) + ": ";
+    const auto check_all = [&](const char* name, const std::vector<double>& coefficients) {
+      if (coefficients.size() != terms) {
+        throw Error(here + name + " has " + std::to_string(coefficients.size()) + " numbers, wanted " +
+                    std::to_string(terms) + " for degree " + std::to_string(degree));
+      }
+      for (std::size_t k = 0; k < terms; ++k) {
+        check(here + name + ": number " + std::to_string(k), coefficients[k], -largest, largest);
+      }
+    };
+    check(here + "wavelength_nm", fit.wavelength_nm, 1 / largest, largest);
+    check_all("direction_by_film", fit.direction_by_film);
+    check_all("direction_by_pupil", fit.direction_by_pupil);
+    check_all("offset_by_film", fit.offset_by_film);
+    check_all("offset_by_pupil", fit.offset_by_pupil);
+    check(here + "rms_rad", fit.rms_rad, 0, largest);
+    check(here + "max_rad", fit.max_rad, 0, largest);
+    check(here + "rms_mm", fit.rms_mm, 0, largest);
+    check(here + "max_mm", fit.max_mm, 0, largest);
+  }
+}
+
+template <class R, class In>
+void round_to(In& in, const RayPolynomial::Domain& domain, const std::vector<RayPolynomial::Fit>& fits) {
+  in.scales = {static_cast<R>(1 / domain.film_radius), static_cast<R>(domain.pupil_shift),
+               static_cast<R>(1 / domain.pupil_radius), static_cast<R>(domain.reference_z)};
+  for (const RayPolynomial::Fit& fit : fits) {
+    for (const auto* c : {&fit.direction_by_film, &fit.direction_by_pupil, &fit.offset_by_film, &fit.offset_by_pupil}) {
+      std::transform(c->begin(), c->end(), std::back_inserter(in.coefficients),
+                     [](double value) { return static_cast<R>(value); });
+    }
+  }
+}
+
+}  // namespace
+
+RayPolynomial::Data::Data(int of_degree, const Domain& of_domain, std::vector<Fit> all)
+    : degree(of_degree), domain(of_domain), fits(std::move(all)) {
+  check(degree, domain, fits);
+  round_to<float>(in_float, domain, fits);
+  round_to<double>(in_double, domain, fits);
+}
+
+std::vector<RayPolynomial::Term> RayPolynomial::terms(int degree) {
+  const int n = (degree - 1) / 2;
+  std::vector<Term> result;
+  for (int w = 0; w <= n; ++w) {
+    for (int v = 0; v <= n - w; ++v) {
+      for (int u = 0; u <= n - w - v; ++u) result.push_back({u, v, w});
+    }
+  }
+  return result;
+}
+
+RayPolynomial::RayPolynomial(int degree, const Domain& domain, std::vector<Fit> fits)
+    : data_(std::make_shared<const Data>(degree, domain, std::move(fits))) {}
+
+int RayPolynomial::degree() const noexcept { return data_->degree; }
+const RayPolynomial::Domain& RayPolynomial::domain() const noexcept { return data_->domain; }
+const std::vector<RayPolynomial::Fit>& RayPolynomial::fits() const noexcept { return data_->fits; }
+
+template <class T>
+void RayPolynomial::to_scene(std::size_t count, const FilmLines<const T>& lines, const RayWavelengths& wavelengths,
+                             const RayArrays<T>& rays, RayFate* fates) const noexcept {
+  const auto& in = detail::in<T>(*data_);
+  detail::to_scene_loops<T>()[data_->loop()](
+      {in.coefficients.data(), data_->fits.size(), in.scales, count, lines, wavelengths, rays, fates});
+}
+
+template PETZVAL_API void RayPolynomial::to_scene<float>(std::size_t, const FilmLines<const float>&,
+                                                         const RayWavelengths&, const RayArrays<float>&,
+                                                         RayFate*) const noexcept;
+template PETZVAL_API void RayPolynomial::to_scene<double>(std::size_t, const FilmLines<const double>&,
+                                                          const RayWavelengths&, const RayArrays<double>&,
+                                                          RayFate*) const noexcept;
+
+}  // namespace petzval

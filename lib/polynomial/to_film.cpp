@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <ceres/jet.h>
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "chart.hpp"
+#include "data.hpp"
+#include "horner.hpp"
+
+namespace petzval {
+namespace {
+
+using detail::SceneLine;
+using detail::term_count;
+using Place = Eigen::Vector4d;  // f and p, scaled to the domain
+using Jet = ceres::Jet<double, 3>;
+
+/// One of the four sums A f + B p and what moves it: the derivatives of A and B by u, v and w, of these by the place.
+void add(const Jet& by_film, const Jet& by_pupil, const Place& x, const Eigen::Matrix<double, 3, 4>& invariants,
+         int row, Eigen::Matrix4d& slope, Place& value) noexcept {
+  const Eigen::RowVector4d film_slope = by_film.v.transpose() * invariants;
+  const Eigen::RowVector4d pupil_slope = by_pupil.v.transpose() * invariants;
+  for (int axis = 0; axis < 2; ++axis) {
+    value[row + axis] = by_film.a * x[axis] + by_pupil.a * x[axis + 2];
+    slope.row(row + axis) = film_slope * x[axis] + pupil_slope * x[axis + 2];
+    slope(row + axis, axis) += by_film.a;
+    slope(row + axis, axis + 2) += by_pupil.a;
+  }
+}
+
+/// s and o at a place, with their derivatives.
+template <int n>
+void evaluate(const double* c, const Place& x, Place& value, Eigen::Matrix4d& slope) noexcept {
+  const Jet u(x[0] * x[0] + x[1] * x[1], 0), v(x[0] * x[2] + x[1] * x[3], 1), w(x[2] * x[2] + x[3] * x[3], 2);
+  Eigen::Matrix<double, 3, 4> invariants;
+  invariants << 2 * x[0], 2 * x[1], 0, 0, x[2], x[3], x[0], x[1], 0, 0, 2 * x[2], 2 * x[3];
+  constexpr int terms = term_count(n);
+  add(detail::horner<n>(c, u, v, w), detail::horner<n>(c + terms, u, v, w), x, invariants, 0, slope, value);
+  add(detail::horner<n>(c + 2 * terms, u, v, w), detail::horner<n>(c + 3 * terms, u, v, w), x, invariants, 2, slope,
+      value);
+}
+
+bool within(const Place& x, double square) noexcept {
+  return x.head<2>().squaredNorm() <= square && x.tail<2>().squaredNorm() <= square;
+}
+
+/// Newton's iteration; false where its steps do not at least halve, for then it may be on its way to another branch of
+/// the polynomial, and where it leaves the domain's neighbourhood.
+template <int n>
+bool correct(const double* c, const Place& wanted, Place& x) noexcept {
+  constexpr double far = 2, settled = 1e-12, rounding = 1e-9;
+  Place value;
+  Eigen::Matrix4d slope;
+  for (double last = std::numeric_limits<double>::infinity();;) {
+    evaluate<n>(c, x, value, slope);
+    const Place move = slope.partialPivLu().solve(wanted - value);
+    const double length = move.norm();
+    x += move;
+    if (!within(x, far)) return false;
+    if (length < settled) return true;
+    if (!(length < last / 2)) return length < rounding;
+    last = length;
+  }
+}
+
+/// The film point from which the line through the pupil's middle leaves in the direction of a line, or the nearest that
+/// there is.
+template <int n>
+Place chief(const double* c, const SceneLine& line) noexcept {
+  constexpr int halvings = 12;
+  const double length = std::hypot(line.sx, line.sy), sign = c[0] < 0 ? -1 : 1;
+  double low = 0, high = 1;
+  for (int i = 0; i < halvings; ++i) {
+    const double middle = (low + high) / 2;
+    (sign * middle * detail::along_u<n>(c, middle * middle) < length ? low : high) = middle;
+  }
+  const double part = length > 0 ? sign * high / length : 0;
+  return {part * line.sx, part * line.sy, 0, 0};
+}
+
+/// The place from which a line comes; false where there is none in the domain. From the place of a line of about the
+/// same direction by way of lines in between, in steps that the iteration can follow: mostly one, several for a
+/// fisheye.
+template <int n>
+bool solve(const double* c, const SceneLine& line, Place& x) noexcept {
+  const Place wanted(line.sx, line.sy, line.ox, line.oy);
+  x = chief<n>(c, line);
+  Place first;
+  Eigen::Matrix4d slope;
+  evaluate<n>(c, x, first, slope);
+  double left = 1, step = 1;
+  while (left > 0) {
+    const double next = std::max(left - step, 0.0);
+    Place there = x;
+    if (correct<n>(c, wanted + next * (first - wanted), there)) {
+      x = there;
+      left = next;
+      step *= 2;
+    } else if ((step /= 2) < 1.0 / 64) {
+      return false;
+    }
+  }
+  return within(x, detail::within_domain);
+}
+
+using Solve = bool (*)(const double*, const SceneLine&, Place&) noexcept;
+constexpr std::array<Solve, detail::degree_count> solvers{solve<1>, solve<2>, solve<3>, solve<4>, solve<5>};
+
+}  // namespace
+
+void RayPolynomial::to_film(std::size_t count, const RayArrays<const double>& rays, const RayWavelengths& wavelengths,
+                            const FilmLines<double>& lines, RayFate* fates) const noexcept {
+  const auto& in = data_->in_double;
+  const Solve solve = solvers[data_->loop()];
+  const std::size_t per_fit = in.coefficients.size() / data_->fits.size();
+  const Domain& domain = data_->domain;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Vec3<double> direction(-rays.dx[i], -rays.dy[i], -rays.dz[i]);
+    const Vec3<double> point(rays.x[i], rays.y[i], rays.z[i] - domain.reference_z);
+    const SceneLine line = detail::scene_line(direction, point);
+    Place x;
+    const double length = direction.x * direction.x + direction.y * direction.y + direction.z * direction.z;
+    const bool found = std::abs(length - 1) < 1e-3 && wavelengths[i] < data_->fits.size() &&
+                       solve(in.coefficients.data() + wavelengths[i] * per_fit, line, x);
+    if (!found) x.setZero();
+    lines.film_x[i] = x[0] * domain.film_radius;
+    lines.film_y[i] = x[1] * domain.film_radius;
+    lines.pupil_x[i] = x[2] * domain.pupil_radius + domain.pupil_shift * lines.film_x[i];
+    lines.pupil_y[i] = x[3] * domain.pupil_radius + domain.pupil_shift * lines.film_y[i];
+    fates[i] = found ? RayFate::transmitted : RayFate::outside_fit;
+  }
+}
+
+}  // namespace petzval

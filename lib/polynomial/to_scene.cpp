@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+// Compiled once for each instruction set: PETZVAL_LOOPS names the result. A ray's answer depends on nothing but the
+// ray: the rest of a batch goes through the same vectors as all others.
+#include <cstddef>
+#include <cstdint>
+
+#include "horner.hpp"
+#include "loops.hpp"
+
+namespace petzval::detail {
+namespace {
+
+#if defined(__AVX512F__)
+constexpr std::size_t lane_bytes = 64;
+#elif defined(__AVX2__)
+constexpr std::size_t lane_bytes = 32;
+#else
+constexpr std::size_t lane_bytes = 16;
+#endif
+
+template <class R>
+struct Vector;
+template <>
+struct Vector<float> {
+  using Values = float __attribute__((vector_size(lane_bytes)));
+  using Bit = std::int32_t;
+  using Bits = Bit __attribute__((vector_size(lane_bytes)));
+  using Bytes = std::uint8_t __attribute__((vector_size(lane_bytes / sizeof(float))));
+};
+template <>
+struct Vector<double> {
+  using Values = double __attribute__((vector_size(lane_bytes)));
+  using Bit = std::int64_t;
+  using Bits = Bit __attribute__((vector_size(lane_bytes)));
+  using Bytes = std::uint8_t __attribute__((vector_size(lane_bytes / sizeof(double))));
+};
+
+/// A, B, C and D of some lanes.
+template <class R>
+struct Sums {
+  typename Vector<R>::Values a{}, b{}, by_film{}, by_pupil{};
+};
+
+/// The sums at one wavelength.
+template <int n, class R, class Values>
+PETZVAL_INLINE Sums<R> sums(const R* c, const Values& u, const Values& v, const Values& w) noexcept {
+  constexpr int terms = term_count(n);
+  return {horner<n>(c, u, v, w), horner<n>(c + terms, u, v, w), horner<n>(c + 2 * terms, u, v, w),
+          horner<n>(c + 3 * terms, u, v, w)};
+}
+
+/// The same where each lane has its wavelength: all lanes at each wavelength met, smallest first, and of these the ones
+/// that it is for. known: the lanes whose wavelength has a fit.
+template <int n, class R, class Values>
+PETZVAL_INLINE Sums<R> mixed_sums(const ToSceneJob<R>& job, const std::uint16_t* each, std::size_t count,
+                                  const Values& u, const Values& v, const Values& w,
+                                  typename Vector<R>::Bits& known) noexcept {
+  using Bit = typename Vector<R>::Bit;
+  constexpr std::size_t lanes = lane_bytes / sizeof(R);
+  constexpr Bit none = 1 << 16;
+  const Bit fits = job.fits < none ? static_cast<Bit>(job.fits) : none;
+  Bit own[lanes];
+  for (std::size_t l = 0; l < lanes; ++l) own[l] = l < count ? each[l] : none;
+  const auto next = [&](Bit last) {
+    Bit smallest = none;
+    for (std::size_t l = 0; l < lanes; ++l) smallest = own[l] > last && own[l] < smallest ? own[l] : smallest;
+    return smallest;
+  };
+  typename Vector<R>::Bits owns;
+  __builtin_memcpy(&owns, own, sizeof owns);
+  known = owns < fits;
+  Sums<R> result;
+  for (Bit at = next(-1); at < fits; at = next(at)) {
+    const auto theirs = owns == at;
+    const Sums<R> found = sums<n, R>(job.coefficients + 4 * term_count(n) * at, u, v, w);
+    result.a = theirs ? found.a : result.a;
+    result.b = theirs ? found.b : result.b;
+    result.by_film = theirs ? found.by_film : result.by_film;
+    result.by_pupil = theirs ? found.by_pupil : result.by_pupil;
+  }
+  return result;
+}
+
+/// `count` rays, at most as many as there are lanes.
+template <int n, class R>
+PETZVAL_INLINE void map_lanes(const ToSceneJob<R>& job, std::size_t o, std::size_t count) noexcept {
+  using Values = typename Vector<R>::Values;
+  const auto load = [&](const R* from) {
+    Values v{};
+    __builtin_memcpy(&v, from + o, count * sizeof(R));
+    return v;
+  };
+  const Scales<R>& scales = job.scales;
+  const Values film_x = load(job.lines.film_x), film_y = load(job.lines.film_y);
+  const Values fx = film_x * scales.per_film_radius, fy = film_y * scales.per_film_radius;
+  const Values px = (load(job.lines.pupil_x) - scales.pupil_shift * film_x) * scales.per_pupil_radius;
+  const Values py = (load(job.lines.pupil_y) - scales.pupil_shift * film_y) * scales.per_pupil_radius;
+  const Values u = fx * fx + fy * fy, v = fx * px + fy * py, w = px * px + py * py;
+  typename Vector<R>::Bits inside = (u <= static_cast<R>(within_domain)) & (w <= static_cast<R>(within_domain));
+
+  Sums<R> polynomials;
+  if (job.wavelengths.each) {
+    typename Vector<R>::Bits known;
+    polynomials = mixed_sums<n, R>(job, job.wavelengths.each + o, count, u, v, w, known);
+    inside &= known;
+  } else if (job.wavelengths.all < job.fits) {
+    const auto skipped = static_cast<std::ptrdiff_t>(job.wavelengths.all) * 4 * term_count(n);
+    polynomials = sums<n, R>(job.coefficients + skipped, u, v, w);
+  } else {
+    inside = inside != inside;
+  }
+  const auto& [a, b, by_film, by_pupil] = polynomials;
+  const Values sx = a * fx + b * px, sy = a * fy + b * py;
+  const Values ox = by_film * fx + by_pupil * px, oy = by_film * fy + by_pupil * py;
+
+  // Out of the chart (chart.hpp).
+  const Values square = sx * sx + sy * sy;
+  const Values twice = R(2) / (square + R(1));
+  const Values along = twice * (sx * ox + sy * oy);
+  const auto store = [&](R* to, const Values& ray, R otherwise) {
+    const Values result = inside ? ray : Values{} + otherwise;
+    __builtin_memcpy(to + o, &result, count * sizeof(R));
+  };
+  store(job.rays.x, ox - sx * along, 0);
+  store(job.rays.y, oy - sy * along, 0);
+  store(job.rays.z, along + scales.reference_z, scales.reference_z);
+  store(job.rays.dx, twice * sx, 0);
+  store(job.rays.dy, twice * sy, 0);
+  store(job.rays.dz, twice * (square - R(1)) / R(2), -1);
+
+  static_assert(sizeof(RayFate) == 1 && static_cast<int>(RayFate::transmitted) == 0);
+  const auto fates =
+      __builtin_convertvector(~inside & static_cast<int>(RayFate::outside_fit), typename Vector<R>::Bytes);
+  __builtin_memcpy(job.fates + o, &fates, count);
+}
+
+template <int n, class R>
+void to_scene(const ToSceneJob<R>& job) noexcept {
+  constexpr std::size_t lanes = lane_bytes / sizeof(R);
+  std::size_t o = 0;
+  for (; o + lanes <= job.count; o += lanes) map_lanes<n>(job, o, lanes);
+  if (o < job.count) map_lanes<n>(job, o, job.count - o);
+}
+
+template <class R>
+constexpr ToSceneLoops<R> loops{to_scene<1, R>, to_scene<2, R>, to_scene<3, R>, to_scene<4, R>, to_scene<5, R>};
+
+}  // namespace
+
+extern const PolynomialLoops PETZVAL_LOOPS;
+const PolynomialLoops PETZVAL_LOOPS{loops<float>, loops<double>};
+
+}  // namespace petzval::detail

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "petzval/io/ray_polynomial_json.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+#include "../message.hpp"
+
+namespace petzval {
+namespace {
+
+using testing::message;
+
+RayPolynomial polynomial(int degree, std::size_t wavelengths) {
+  const RayPolynomial::Domain domain{.space = {.film_z = 100.1, .pupil_z = -20.25},
+                                     .film_radius = 21.6,
+                                     .pupil_shift = -0.1,
+                                     .pupil_radius = 1.0 / 3,
+                                     .reference_z = 1e-5};
+  std::vector<RayPolynomial::Fit> fits(wavelengths);
+  double x = 0.1;
+  for (RayPolynomial::Fit& fit : fits) {
+    fit = {.wavelength_nm = 400 + x, .rms_rad = 1e-7 * x, .max_rad = 3e-7 * x, .rms_mm = 1e-5, .max_mm = 0};
+    for (auto* list : {&fit.direction_by_film, &fit.direction_by_pupil, &fit.offset_by_film, &fit.offset_by_pupil}) {
+      for (std::size_t k = 0; k < RayPolynomial::terms(degree).size(); ++k) {
+        x = std::fmod(3.7 * x * (1 - x) + 1e-3, 1);
+        list->push_back(std::pow(x - 0.5, 7) * (k % 5 == 0 ? 1e9 : 1));
+      }
+    }
+  }
+  return RayPolynomial(degree, domain, fits);
+}
+
+std::string bytes(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+/// The text of a good file with one part of it replaced.
+std::string with(const std::string& part, const std::string& instead) {
+  std::string text = format_ray_polynomial(polynomial(3, 2));
+  const auto at = text.rfind(part);
+  EXPECT_NE(at, std::string::npos) << part;
+  return text.replace(at, part.size(), instead);
+}
+
+std::string why(const std::string& text) {
+  return message([&] { parse_ray_polynomial(text, "x.json"); });
+}
+
+TEST(RayPolynomialJson, ReadsBackTheSameNumbersAndWritesTheSameBytes) {
+  const auto file = std::filesystem::path(::testing::TempDir()) / "ray_polynomial_json_test.json";
+  for (int degree = 3; degree <= 11; degree += 2) {
+    const RayPolynomial written = polynomial(degree, 3);
+    write_ray_polynomial(written, file);
+    const std::string text = bytes(file);
+    const RayPolynomial read = read_ray_polynomial(file);
+    write_ray_polynomial(read, file);
+    EXPECT_EQ(bytes(file), text);
+
+    EXPECT_EQ(read.degree(), degree);
+    const auto &a = read.domain(), &b = written.domain();
+    EXPECT_EQ(a.space.film_z, b.space.film_z);
+    EXPECT_EQ(a.space.pupil_z, b.space.pupil_z);
+    EXPECT_EQ(a.film_radius, b.film_radius);
+    EXPECT_EQ(a.pupil_shift, b.pupil_shift);
+    EXPECT_EQ(a.pupil_radius, b.pupil_radius);
+    EXPECT_EQ(a.reference_z, b.reference_z);
+    ASSERT_EQ(read.fits().size(), 3u);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto &c = read.fits()[i], &d = written.fits()[i];
+      EXPECT_EQ(c.wavelength_nm, d.wavelength_nm);
+      EXPECT_EQ(c.rms_rad, d.rms_rad);
+      EXPECT_EQ(c.max_rad, d.max_rad);
+      EXPECT_EQ(c.rms_mm, d.rms_mm);
+      EXPECT_EQ(c.max_mm, d.max_mm);
+      EXPECT_EQ(c.direction_by_film, d.direction_by_film);
+      EXPECT_EQ(c.direction_by_pupil, d.direction_by_pupil);
+      EXPECT_EQ(c.offset_by_film, d.offset_by_film);
+      EXPECT_EQ(c.offset_by_pupil, d.offset_by_pupil);
+    }
+  }
+  std::filesystem::remove(file);
+}
+
+TEST(RayPolynomialJson, SaysWhatIsWrongAndWhere) {
+  const std::string format = "\"format\": \"petzval-ray-polynomial 1\"";
+  EXPECT_EQ(why(with(format, "\"format\": \"petzval-lens 1\"")),
+            "x.json: format is \"petzval-lens 1\", wanted \"petzval-ray-polynomial 1\"");
+  EXPECT_EQ(why(with(format + ",", "")), "x.json: key \"format\" is missing");
+  EXPECT_EQ(why(with("\"degree\": 3", "\"degree\": 4")), "x.json: polynomial: degree is 4, wanted 3, 5, 7, 9 or 11");
+  EXPECT_EQ(why(with("\"degree\": 3", "\"degree\": 3.5")), "x.json: degree is 3.5, wanted 3, 5, 7, 9 or 11");
+  EXPECT_EQ(why(with("\"degree\": 3", "\"degree\": 1e300")), "x.json: degree is 1e+300, wanted 3, 5, 7, 9 or 11");
+  EXPECT_EQ(why(with("\"degree\": 3", "\"degree\": 5")),
+            "x.json: polynomial: fit 0: direction_by_film has 4 numbers, wanted 10 for degree 5");
+  EXPECT_EQ(why(with("\"degree\": 3", "\"power\": 3")),
+            "x.json: key \"power\" is unknown, wanted one of format, film_z_mm, pupil_z_mm, film_radius_mm, "
+            "pupil_shift, pupil_radius_mm, reference_z_mm, degree, fits");
+  EXPECT_EQ(why(with("\"degree\": 3", "\"degree\": 3, \"degree\": 3")),
+            "x.json: key \"degree\" is given twice, wanted once");
+  EXPECT_EQ(why(with("\"degree\": 3", "\"degree\": [3]")), "x.json: degree is a list, wanted a plain value");
+  EXPECT_EQ(why(with("\"degree\": 3", "\"degree\": \"3\"")), "x.json: degree is \"3\", wanted a number");
+  EXPECT_EQ(why(with("\"film_z_mm\": 100.1", "\"film_z_mm\": null")), "x.json: film_z_mm is null, wanted a number");
+  EXPECT_EQ(why(with("\"film_z_mm\": 100.1", "\"film_z_mm\": 1e-999")),
+            "x.json: film_z_mm is 1e-999, wanted a number within the range of double");
+  EXPECT_EQ(why(with("\"film_radius_mm\": 21.6", "\"film_radius_mm\": -1.0")),
+            "x.json: polynomial: film_radius is -1, wanted a number from 1e-12 to 1e+12");
+  EXPECT_EQ(why(with("\"rms_mm\": ", "\"rms_um\": ")),
+            "x.json: fit 1: key \"rms_um\" is unknown, wanted one of wavelength_nm, rms_rad, max_rad, rms_mm, max_mm, "
+            "direction_by_film, direction_by_pupil, offset_by_film, offset_by_pupil");
+  EXPECT_EQ(why(with("\"max_mm\": 0.0,", "")), "x.json: fit 1: key \"max_mm\" is missing");
+  EXPECT_EQ(why(with("\"max_mm\": 0.0,", "\"max_mm\": true,")), "x.json: fit 1: max_mm is true, wanted a number");
+  EXPECT_EQ(why(with("\"offset_by_film\": [", "\"offset_by_film\": [\"a\", ")),
+            "x.json: fit 1: offset_by_film is \"a\", wanted a number");
+  EXPECT_EQ(why(with("\"offset_by_film\": [", "\"offset_by_film\": [[")),
+            "x.json: fit 1: offset_by_film is a list, wanted a number");
+  EXPECT_EQ(why(with("\"offset_by_film\": [", "\"offset_by_film\": [{")),
+            "x.json: fit 1: offset_by_film is an object, wanted a number");
+  EXPECT_EQ(why(with("\"fits\": [", "\"fits\": [1, ")), "x.json: fits is 1, wanted an object");
+  EXPECT_EQ(why(with("\"fits\": [", "\"fits\": [[], ")), "x.json: fits is a list, wanted an object");
+  EXPECT_EQ(why("[]"), "x.json is a list, wanted an object");
+  EXPECT_EQ(why("{}"), "x.json: key \"format\" is missing");
+  EXPECT_EQ(why("3"), "x.json is 3, wanted an object");
+  EXPECT_NE(why("").find("x.json: byte 1: not JSON"), std::string::npos);
+  EXPECT_NE(why(with("\n}\n", "")).find("not JSON"), std::string::npos);
+  EXPECT_EQ(why(std::string("{\0}", 3)), "x.json: byte 2 is zero, wanted JSON in UTF-8");
+  EXPECT_EQ(message([] { read_ray_polynomial("/nowhere/x.json"); }),
+            "/nowhere/x.json: cannot be opened, wanted a file of a ray polynomial");
+}
+
+TEST(RayPolynomialJson, EndsWhereFilesAreTooLarge) {
+  std::string numbers;
+  for (int i = 0; i < 100; ++i) numbers += "1.0, ";
+  EXPECT_EQ(why(with("\"offset_by_film\": [", "\"offset_by_film\": [" + numbers)),
+            "x.json: fit 1: offset_by_film has more than 56 numbers, wanted a polynomial of degree 11 or less");
+  EXPECT_NE(why(std::string(1'000'000, '[')).find("wanted an object"), std::string::npos);
+  std::string one = format_ray_polynomial(polynomial(3, 1));
+  const auto from = one.rfind("    {"), to = one.rfind("\n  ]");
+  const std::string fit = one.substr(from, to - from);
+  std::string fits;
+  for (int i = 0; i < 10'000; ++i) fits += fit + ",\n";
+  EXPECT_EQ(why(one.insert(from, fits)), "x.json: more than 10000 fits, wanted one for each wavelength");
+}
+
+TEST(RayPolynomialJson, EveryCutAndEveryLostByteIsRefusedOrReads) {
+  const std::string text = format_ray_polynomial(polynomial(3, 1));
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    EXPECT_EQ(why(text.substr(0, i)) == "no error", i + 1 == text.size()) << i;
+    const std::string found = why(text.substr(0, i) + text.substr(i + 1));
+    EXPECT_TRUE(found == "no error" || found.starts_with("x.json")) << found;
+  }
+}
+
+}  // namespace
+}  // namespace petzval

@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: Apache-2.0
+// What fits make of real lenses, against exact rays.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "../data_lenses.hpp"
+#include "../message.hpp"
+#include "lines.hpp"
+#include "petzval/core/text.hpp"
+#include "petzval/paraxial/first_order.hpp"
+#include "petzval/pupil/pupil.hpp"
+#include "petzval/trace/trace.hpp"
+
+namespace petzval {
+namespace {
+
+using testing::data_lens;
+using testing::data_prescription;
+using testing::Lines;
+using testing::lines_through;
+
+struct Case {
+  std::string id;
+  double f_number, film_radius;  ///< 0: wide open
+};
+const std::array<Case, 5> cases{{{"double_gauss_100mm_f2.0", 0, 40},
+                                 {"double_gauss_100mm_f2.0", 4, 40},
+                                 {"fisheye_6.3mm_f2.8", 0, 11.7},
+                                 {"compact_31mm_f2.1", 0, 13.6},
+                                 {"catadioptric_maksutov_1280mm_f14.4", 0, 5.6}}};
+
+Lens lens_of(const Case& c) {
+  const Lens lens = data_lens(c.id);
+  return c.f_number > 0 ? with_f_number(lens, c.f_number) : lens;
+}
+
+/// The exact ray of a line; started in the plane of the last vertex.
+TracedRay<double> exact(const Lens& lens, const FilmSpace& space, const Lines<double>& lines, std::size_t i,
+                        std::size_t wavelength = 0) {
+  const Vec3<double> film(lines.film_x[i], lines.film_y[i], space.film_z);
+  const Vec3<double> along = Vec3<double>(lines.pupil_x[i], lines.pupil_y[i], space.pupil_z) - film;
+  const double against_light = signed_index(lens, lens.surface_count()) > 0 ? -1 : 1;
+  const Vec3<double> start = film + along * ((lens.surfaces().back().vertex_z - space.film_z) / along.z);
+  return trace<double>(lens, {start, glm::normalize(along) * (against_light * along.z > 0 ? 1.0 : -1.0)},
+                       {.travel = Travel::to_scene, .wavelength = wavelength});
+}
+
+struct Errors {
+  double rms_rad = 0, max_rad = 0, rms_mm = 0, max_mm = 0;
+  double share = 0;  ///< of the lines that get through
+};
+
+/// Errors of the direction, and of where the ray passes the reference point.
+template <class T>
+Errors errors(const Lens& lens, const RayPolynomial& polynomial, const Lines<T>& rays, const Lines<double>& lines,
+              std::size_t wavelength = 0) {
+  Errors result;
+  double passed = 0;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    EXPECT_EQ(rays.fates[i], RayFate::transmitted);
+    const TracedRay<double> ray = exact(lens, polynomial.domain().space, lines, i, wavelength);
+    if (!ray.transmitted()) continue;
+    ++passed;
+    const double rad = glm::length(rays.direction(i) - ray.ray.direction);
+    const Vec3<double> reference(0, 0, polynomial.domain().reference_z);
+    const Vec3<double> apart = ray.ray.origin - reference;
+    const Vec3<double> foot = apart - glm::dot(apart, ray.ray.direction) * ray.ray.direction;
+    const double mm = glm::length(rays.origin(i) - reference - foot);
+    result.rms_rad += rad * rad, result.max_rad = std::max(result.max_rad, rad);
+    result.rms_mm += mm * mm, result.max_mm = std::max(result.max_mm, mm);
+  }
+  result.rms_rad = std::sqrt(result.rms_rad / passed);
+  result.rms_mm = std::sqrt(result.rms_mm / passed);
+  result.share = passed / static_cast<double>(lines.size());
+  return result;
+}
+
+TEST(PolynomialFit, ErrorsFallWithTheDegreeAndAreWhatIsStated) {
+  for (const Case& c : cases) {
+    SCOPED_TRACE(c.id);
+    const Lens lens = lens_of(c);
+    const PupilMap pupils = PupilMap::matching(lens, c.film_radius);
+    const Lines<double> lines = lines_through<double>(pupils, 10000, 1);
+    double last = std::numeric_limits<double>::infinity();
+    for (int degree = 3; degree <= 11; degree += 2) {
+      SCOPED_TRACE(degree);
+      const RayPolynomial polynomial = RayPolynomial::fit(lens, pupils, degree);
+      ASSERT_EQ(polynomial.fits().size(), 1u);
+      const RayPolynomial::Fit& fit = polynomial.fits()[0];
+      Lines<double> rays = lines;
+      const Errors found = errors(lens, polynomial, rays.through(polynomial), lines);
+      EXPECT_GT(found.share, 0.99);
+      EXPECT_NEAR(found.rms_rad, fit.rms_rad, 0.1 * fit.rms_rad);
+      EXPECT_NEAR(found.rms_mm, fit.rms_mm, 0.1 * fit.rms_mm);
+      EXPECT_LT(found.max_rad, 1.25 * fit.max_rad);
+      EXPECT_LT(found.max_mm, 1.25 * fit.max_mm);
+      EXPECT_GT(found.max_rad, 0.6 * fit.max_rad);
+      EXPECT_LT(found.rms_rad, last / 2.5);
+      last = found.rms_rad;
+    }
+  }
+}
+
+TEST(PolynomialFit, DoubleGaussIsAsGoodAsKnown) {
+  // RMS angle times focal length, in micrometres: least squares over an even spread give 28.6, 6.2, 1.03, 0.144 and
+  // 0.019 at f/2 and 12.3, 1.28, 0.132, 0.0124 and 0.0011 at f/4.
+  const std::array<std::array<double, 5>, 2> limits{{{31, 6.8, 1.2, 0.17, 0.023}, {13.5, 1.4, 0.15, 0.014, 0.0013}}};
+  for (std::size_t k = 0; k < limits.size(); ++k) {
+    const Lens lens = lens_of(cases[k]);
+    const PupilMap pupils = PupilMap::matching(lens, cases[k].film_radius);
+    const double focal_length = first_order(lens).effective_focal_length;
+    for (int degree = 3; degree <= 11; degree += 2) {
+      const RayPolynomial polynomial = RayPolynomial::fit(lens, pupils, degree);
+      EXPECT_LT(1e3 * focal_length * polynomial.fits()[0].rms_rad, limits[k][static_cast<std::size_t>(degree - 3) / 2]);
+    }
+  }
+}
+
+TEST(PolynomialFit, HoldsThePupilsOfItsMap) {
+  for (const Case& c : cases) {
+    const Lens lens = lens_of(c);
+    const PupilMap pupils = PupilMap::covering(lens, c.film_radius);
+    const RayPolynomial polynomial = RayPolynomial::fit(lens, pupils, 3);
+    Lines<float> lines = lines_through<float>(pupils, 5000, 2);
+    double unmoved = 0;               // the radius that discs about the axis would need
+    for (int i = 0; i < 2000; ++i) {  // rims, also those of the film's edge
+      const double turn = 0.1 * i, r = i % 2 == 0 ? c.film_radius : c.film_radius * i / 2000;
+      const FilmPoint film{r * std::sin(turn), r * std::cos(turn)};
+      const PupilSample sample = pupils.sample(film, 0.618 * i - std::floor(0.618 * i), 1);
+      if (sample.area > 0) lines.add(film.x, film.y, sample.x, sample.y);
+      unmoved = std::max(unmoved, std::hypot(sample.x, sample.y));
+    }
+    lines.through(polynomial);
+    EXPECT_EQ(std::count(lines.fates.begin(), lines.fates.end(), RayFate::outside_fit), 0) << c.id;
+    EXPECT_LT(polynomial.domain().pupil_radius, 1.02 * unmoved) << c.id;
+  }
+}
+
+TEST(PolynomialFit, FindsTheWayBack) {
+  for (const Case& c : cases) {
+    const Lens lens = lens_of(c);
+    const PupilMap pupils = PupilMap::matching(lens, c.film_radius);
+    for (int degree = 3; degree <= 11; degree += 2) {
+      const RayPolynomial polynomial = RayPolynomial::fit(lens, pupils, degree);
+      Lines<double> lines = lines_through<double>(pupils, 1000, 3);
+      lines.through(polynomial);
+      Lines<double> back = lines;
+      for (std::size_t k = 3; k < 6; ++k) {
+        for (double& d : lines.ray[k]) d = -d;
+      }
+      polynomial.to_film(lines.size(), lines.rays<const double>(), {},
+                         {back.film_x.data(), back.film_y.data(), back.pupil_x.data(), back.pupil_y.data()},
+                         back.fates.data());
+      double farthest = 0;
+      for (std::size_t i = 0; i < lines.size(); ++i) {
+        EXPECT_EQ(back.fates[i], RayFate::transmitted);
+        farthest =
+            std::max({farthest, std::abs(back.film_x[i] - lines.film_x[i]), std::abs(back.film_y[i] - lines.film_y[i]),
+                      std::abs(back.pupil_x[i] - lines.pupil_x[i]), std::abs(back.pupil_y[i] - lines.pupil_y[i])});
+      }
+      EXPECT_LT(farthest, 1e-9) << c.id << " " << degree;
+    }
+  }
+}
+
+TEST(PolynomialFit, FloatAddsLittle) {
+  for (const Case& c : cases) {
+    const Lens lens = lens_of(c);
+    const PupilMap pupils = PupilMap::matching(lens, c.film_radius);
+    for (const int degree : {3, 7, 11}) {
+      const RayPolynomial polynomial = RayPolynomial::fit(lens, pupils, degree);
+      Lines<float> single = lines_through<float>(pupils, 2000, 4);
+      Lines<double> twice;
+      for (std::size_t i = 0; i < single.size(); ++i) {
+        twice.add(single.film_x[i], single.film_y[i], single.pupil_x[i], single.pupil_y[i]);
+      }
+      single.through(polynomial), twice.through(polynomial);
+      double rad = 0, mm = 0;
+      for (std::size_t i = 0; i < single.size(); ++i) {
+        ASSERT_EQ(single.fates[i], RayFate::transmitted);
+        rad = std::max(rad, glm::length(single.direction(i) - twice.direction(i)));
+        mm = std::max(mm, glm::length(single.origin(i) - twice.origin(i)));
+      }
+      EXPECT_LT(rad, 4e-7) << c.id;
+      EXPECT_LT(mm, 3e-5) << c.id;
+    }
+  }
+}
+
+TEST(PolynomialFit, EveryWavelengthHasItsOwn) {
+  const GlassCatalogue glasses = GlassCatalogue::load(std::filesystem::path(PETZVAL_TEST_DATA) / "glass");
+  const std::array<double, 3> nm{656.2725, 587.5618, 486.1327};
+  const Lens lens = compile(data_prescription("double_gauss_100mm_f2_28deg"), nm, {.glasses = &glasses});
+  const PupilMap pupils = PupilMap::matching(lens, 20);
+  const RayPolynomial polynomial = RayPolynomial::fit(lens, pupils, 9);
+  ASSERT_EQ(polynomial.fits().size(), 3u);
+  const double focal_length = first_order(lens).effective_focal_length;
+  for (std::size_t w = 0; w < 3; ++w) {
+    EXPECT_EQ(polynomial.fits()[w].wavelength_nm, nm[w]);
+    const Lines<double> lines = lines_through<double>(pupils, 1000, 5, w);
+    Lines<double> rays = lines;
+    EXPECT_LT(1e3 * focal_length * errors(lens, polynomial, rays.through(polynomial, {w}), lines, w).rms_rad, 0.1);
+    // Another wavelength's is worse by the colour of the lens.
+    const std::size_t other = (w + 1) % 3;
+    EXPECT_GT(1e3 * focal_length * errors(lens, polynomial, rays.through(polynomial, {other}), lines, w).rms_rad, 1);
+  }
+}
+
+TEST(PolynomialFit, SaysWhyThereIsNone) {
+  const Lens lens = data_lens("double_gauss_100mm_f2_28deg");
+  const PupilMap pupils = PupilMap::matching(lens, 20);
+  const auto why = [&](const Lens& of, const PupilMap& map, int degree) {
+    return testing::message([&] { RayPolynomial::fit(of, map, degree); });
+  };
+  const std::string where = lens.name() + ": polynomial: ";
+  EXPECT_EQ(why(lens, pupils, 6), where + "degree is 6, wanted 3, 5, 7, 9 or 11");
+  EXPECT_EQ(why(lens, PupilMap::matching(lens, 0), 5), where + "the film's radius is 0, wanted more than one point");
+  const Lens cylinder = data_lens("anamorphic_60mm_2x");
+  EXPECT_EQ(why(cylinder, pupils, 5), cylinder.name() +
+                                          ": polynomial: the lens has surfaces that are curved in one section only, "
+                                          "wanted a lens of revolution");
+  const GlassCatalogue glasses = GlassCatalogue::load(std::filesystem::path(PETZVAL_TEST_DATA) / "glass");
+  const std::array<double, 2> nm{656.2725, 486.1327};
+  const Lens coloured = compile(data_prescription("double_gauss_100mm_f2_28deg"), nm, {.glasses = &glasses});
+  EXPECT_EQ(why(coloured, pupils, 5), where + "the pupils are of 1 wavelengths, wanted the lens's 2");
+  // The pupils of the open lens, through one that is all but closed.
+  EXPECT_NE(why(with_f_number(lens, 200), pupils, 11).find("rays get through"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace petzval

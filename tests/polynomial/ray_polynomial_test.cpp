@@ -1,0 +1,327 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "petzval/polynomial/ray_polynomial.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
+#include <limits>
+#include <numbers>
+#include <string>
+
+#include "../message.hpp"
+#include "lines.hpp"
+
+namespace petzval {
+namespace {
+
+using testing::Lines;
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+RayPolynomial::Domain domain() {
+  return {.space = {.film_z = 100, .pupil_z = 20},
+          .film_radius = 20,
+          .pupil_shift = 0.25,
+          .pupil_radius = 10,
+          .reference_z = 30};
+}
+
+/// s = slope f + 0.05 p, o = 0.5 f + 8 p, and some higher terms.
+RayPolynomial::Fit numbers(int degree, double slope, double higher = 0, double nm = 587.5618) {
+  const std::size_t count = RayPolynomial::terms(degree).size();
+  RayPolynomial::Fit fit;
+  fit.wavelength_nm = nm;
+  for (auto* list : {&fit.direction_by_film, &fit.direction_by_pupil, &fit.offset_by_film, &fit.offset_by_pupil}) {
+    for (std::size_t k = 0; k < count; ++k) {
+      list->push_back(higher * std::sin(static_cast<double>(k) + static_cast<double>(list->size())));
+    }
+  }
+  fit.direction_by_film[0] = slope, fit.direction_by_pupil[0] = 0.05;
+  fit.offset_by_film[0] = 0.5, fit.offset_by_pupil[0] = 8;
+  return fit;
+}
+
+/// Lines all over the domain, edges and middle among them.
+template <class T>
+Lines<T> all_over() {
+  Lines<T> lines;
+  const auto d = domain();
+  for (const double r : {0.0, 0.3, 0.7, 1.0}) {
+    for (const double q : {0.0, 0.5, 1.0}) {
+      for (int k = 0; k < 12; ++k) {
+        const double x = r * d.film_radius * std::sin(k * 0.7), y = r * d.film_radius * std::cos(k * 0.7);
+        lines.add(x, y, d.pupil_shift * x + q * d.pupil_radius * std::sin(k * 1.9),
+                  d.pupil_shift * y + q * d.pupil_radius * std::cos(k * 1.9));
+      }
+    }
+  }
+  return lines;
+}
+
+TEST(RayPolynomial, TermsAreAllOfTheDegree) {
+  const std::size_t counts[] = {4, 10, 20, 35, 56};
+  for (int degree = 3; degree <= 11; degree += 2) {
+    const auto terms = RayPolynomial::terms(degree);
+    EXPECT_EQ(terms.size(), counts[(degree - 3) / 2]);
+    for (std::size_t i = 0; i < terms.size(); ++i) {
+      EXPECT_LE(terms[i].u + terms[i].v + terms[i].w, (degree - 1) / 2);
+      for (std::size_t k = 0; k < i; ++k) {
+        EXPECT_FALSE(terms[i].u == terms[k].u && terms[i].v == terms[k].v && terms[i].w == terms[k].w);
+      }
+    }
+  }
+}
+
+TEST(RayPolynomial, AddsTheTermsInTheirOrder) {
+  // Against the sum written out, the direction by the angle 2 atan |s| from the axis, the offset by its length and
+  // its angle to the plane of axis and direction, which no turn about their normal changes. Fields to 130 degrees.
+  const auto d = domain();
+  for (int degree = 3; degree <= 11; degree += 2) {
+    const auto terms = RayPolynomial::terms(degree);
+    const RayPolynomial::Fit fit = numbers(degree, -1.6, 0.02);
+    const RayPolynomial polynomial(degree, d, {fit});
+    Lines<double> lines = all_over<double>();
+    lines.through(polynomial);
+    double widest = 0;
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      ASSERT_EQ(lines.fates[i], RayFate::transmitted);
+      const glm::dvec2 film(lines.film_x[i], lines.film_y[i]), pupil(lines.pupil_x[i], lines.pupil_y[i]);
+      const glm::dvec2 f = film / d.film_radius, p = (pupil - d.pupil_shift * film) / d.pupil_radius;
+      glm::dvec2 s(0), o(0);
+      for (std::size_t k = 0; k < terms.size(); ++k) {
+        const double term = std::pow(glm::dot(f, f), terms[k].u) * std::pow(glm::dot(f, p), terms[k].v) *
+                            std::pow(glm::dot(p, p), terms[k].w);
+        s += term * (fit.direction_by_film[k] * f + fit.direction_by_pupil[k] * p);
+        o += term * (fit.offset_by_film[k] * f + fit.offset_by_pupil[k] * p);
+      }
+      const Vec3<double> direction = lines.direction(i), offset = lines.origin(i) - Vec3<double>(0, 0, d.reference_z);
+      EXPECT_NEAR(glm::length(direction), 1, 1e-15);
+      const double angle = 2 * std::atan(glm::length(s));
+      widest = std::max(widest, angle);
+      EXPECT_NEAR(std::atan2(std::hypot(direction.x, direction.y), -direction.z), angle, 1e-13);
+      EXPECT_NEAR(direction.x * s.y, direction.y * s.x, 1e-13);
+      EXPECT_NEAR(glm::dot(direction, offset), 0, 1e-13);
+      EXPECT_NEAR(glm::length(offset), glm::length(o), 1e-12);
+      if (glm::length(s) > 0) {
+        EXPECT_NEAR((s.x * offset.y - s.y * offset.x) / glm::length(s), (s.x * o.y - s.y * o.x) / glm::length(s),
+                    1e-12);
+      }
+    }
+    EXPECT_GT(widest, 1.9);
+  }
+}
+
+TEST(RayPolynomial, TurnsAndMirrorsWithItsLines) {
+  const RayPolynomial polynomial(7, domain(), {numbers(7, -0.6, 0.02)});
+  Lines<double> lines = all_over<double>(), mirrored, turned;
+  const double c = std::cos(0.4), s = std::sin(0.4);
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    mirrored.add(-lines.film_x[i], lines.film_y[i], -lines.pupil_x[i], lines.pupil_y[i]);
+    turned.add(c * lines.film_x[i] - s * lines.film_y[i], s * lines.film_x[i] + c * lines.film_y[i],
+               c * lines.pupil_x[i] - s * lines.pupil_y[i], s * lines.pupil_x[i] + c * lines.pupil_y[i]);
+  }
+  lines.through(polynomial), mirrored.through(polynomial), turned.through(polynomial);
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    for (const std::size_t k : {0u, 3u}) {
+      EXPECT_EQ(mirrored.ray[k][i], -lines.ray[k][i]);  // to the bit
+      EXPECT_EQ(mirrored.ray[k + 1][i], lines.ray[k + 1][i]);
+      EXPECT_EQ(mirrored.ray[k + 2][i], lines.ray[k + 2][i]);
+      EXPECT_NEAR(turned.ray[k][i], c * lines.ray[k][i] - s * lines.ray[k + 1][i], 3e-14);
+      EXPECT_NEAR(turned.ray[k + 1][i], s * lines.ray[k][i] + c * lines.ray[k + 1][i], 3e-14);
+      EXPECT_NEAR(turned.ray[k + 2][i], lines.ray[k + 2][i], 3e-14);
+    }
+  }
+}
+
+TEST(RayPolynomial, ComesBackToItsLines) {
+  for (int degree = 3; degree <= 11; degree += 2) {
+    const RayPolynomial polynomial(degree, domain(), {numbers(degree, -1.6, 0.02)});
+    Lines<double> lines = all_over<double>();
+    lines.through(polynomial);
+    // From anywhere on the ray, the other way.
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      const double far = i % 3 == 0 ? 0 : i % 3 == 1 ? 1e3 : 1e6;
+      for (std::size_t k = 0; k < 3; ++k) {
+        lines.ray[k][i] += far * lines.ray[k + 3][i];
+        lines.ray[k + 3][i] *= -1;
+      }
+    }
+    Lines<double> back = lines;
+    polynomial.to_film(lines.size(), lines.rays<const double>(), {},
+                       {back.film_x.data(), back.film_y.data(), back.pupil_x.data(), back.pupil_y.data()},
+                       back.fates.data());
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      ASSERT_EQ(back.fates[i], RayFate::transmitted) << degree << " " << i;
+      const double far = i % 3 == 2 ? 2e-8 : 1e-10;  // 1e6 mm away a direction's rounding moves the line by 1e-10 mm
+      EXPECT_NEAR(back.film_x[i], lines.film_x[i], far);
+      EXPECT_NEAR(back.film_y[i], lines.film_y[i], far);
+      EXPECT_NEAR(back.pupil_x[i], lines.pupil_x[i], far);
+      EXPECT_NEAR(back.pupil_y[i], lines.pupil_y[i], far);
+    }
+  }
+}
+
+TEST(RayPolynomial, DerivativesAreDifferences) {
+  // Film and pupil point of all lines move by two parameters; central differences of 1e-4 are right to 1e-7.
+  for (const int degree : {3, 7, 11}) {
+    const RayPolynomial polynomial(degree, domain(), {numbers(degree, -0.9, 0.02)});
+    const FilmLine by_u{1, -2, 0.5, 0.25}, by_v{0.5, 1, -2, 1};
+    const auto moved = [](const FilmLine& line, const FilmLine& by, double step) {
+      return FilmLine{0.9 * line.film_x + step * by.film_x, 0.9 * line.film_y + step * by.film_y,
+                      0.9 * line.pupil_x + step * by.pupil_x, 0.9 * line.pupil_y + step * by.pupil_y};
+    };
+    const Lines<double> lines = all_over<double>();
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      const FilmLine at{lines.film_x[i], lines.film_y[i], lines.pupil_x[i], lines.pupil_y[i]};
+      constexpr double step = 1e-4;
+      Lines<double> near;
+      for (const FilmLine& l : {moved(at, by_u, 0), moved(at, by_u, step), moved(at, by_u, -step),
+                                moved(at, by_v, step), moved(at, by_v, -step)}) {
+        near.add(l.film_x, l.film_y, l.pupil_x, l.pupil_y);
+      }
+      near.through(polynomial);
+      const RayDerivatives found = polynomial.to_scene({moved(at, by_u, 0), by_u, by_v}, 0);
+      ASSERT_EQ(found.fate, RayFate::transmitted);
+      EXPECT_LT(glm::distance(found.ray.origin, near.origin(0)), 1e-13);
+      EXPECT_LT(glm::distance(found.ray.direction, near.direction(0)), 1e-15);
+      for (const std::size_t k : {1u, 3u}) {
+        const Ray<double>& by = k == 1 ? found.by_u : found.by_v;
+        EXPECT_LT(glm::distance(by.origin, (near.origin(k) - near.origin(k + 1)) / (2 * step)), 1e-7);
+        EXPECT_LT(glm::distance(by.direction, (near.direction(k) - near.direction(k + 1)) / (2 * step)), 1e-7);
+      }
+    }
+    EXPECT_EQ(polynomial.to_scene({{20.1, 0, 0, 0}, by_u, by_v}, 0).fate, RayFate::outside_fit);
+    EXPECT_EQ(polynomial.to_scene({{0, 0, 0, 0}, by_u, by_v}, 1).fate, RayFate::outside_fit);
+  }
+}
+
+template <class T>
+void expect_nothing(const Lines<T>& lines, std::size_t i) {
+  EXPECT_EQ(lines.fates[i], RayFate::outside_fit) << i;
+  EXPECT_EQ(lines.origin(i), Vec3<double>(0, 0, 30)) << i;
+  EXPECT_EQ(lines.direction(i), Vec3<double>(0, 0, -1)) << i;
+}
+
+TEST(RayPolynomial, GivesNothingOutsideItsDomain) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const RayPolynomial polynomial(5, domain(), {numbers(5, -0.6, 0.02)});
+  const auto check = [&]<class T>(T) {
+    Lines<T> lines;
+    lines.add(20.01, 0, 0, 0);
+    lines.add(0, -20.01, 0, 0);
+    lines.add(0, 0, 7.1, 7.1);
+    lines.add(20, 0, -5.1, 0);  // the pupil's domain has moved to x = 5
+    for (const double bad : {nan, infinity, -infinity}) {
+      lines.add(bad, 0, 0, 0);
+      lines.add(0, 0, 0, bad);
+    }
+    lines.through(polynomial);
+    for (std::size_t i = 0; i < lines.size(); ++i) expect_nothing(lines, i);
+
+    Lines<T> edge;
+    edge.add(20, 0, 15, 0);
+    edge.through(polynomial);
+    EXPECT_EQ(edge.fates[0], RayFate::transmitted);
+    edge.through(polynomial, {1});
+    expect_nothing(edge, 0);
+    const std::uint16_t each[] = {3};
+    edge.through(polynomial, {0, each});
+    expect_nothing(edge, 0);
+  };
+  check(float()), check(double());
+}
+
+TEST(RayPolynomial, FindsNoLinesForRaysFromElsewhere) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const RayPolynomial polynomial(5, domain(), {numbers(5, -0.6, 0.02)});
+  struct Case {
+    Ray<double> ray;
+    RayFate fate;
+  };
+  const Case cases[] = {
+      {{{0, 0, -50}, {0, 0, 1}}, RayFate::transmitted},
+      {{{0, 0, -50}, {0, 0, -1}}, RayFate::outside_fit},  // from behind
+      {{{0, 40, -50}, {0, 0, 1}}, RayFate::outside_fit},
+      {{{0, 0, 30}, {0, 0.999, std::sqrt(1 - 0.999 * 0.999)}}, RayFate::outside_fit},
+      {{{nan, 0, -50}, {0, 0, 1}}, RayFate::outside_fit},
+      {{{0, 0, -50}, {0, nan, 1}}, RayFate::outside_fit},
+      {{{0, infinity, -50}, {0, 0, 1}}, RayFate::outside_fit},
+      {{{0, 0, -50}, {0, 0, 0}}, RayFate::outside_fit},
+      {{{0, 0, -50}, {0, 0, 2}}, RayFate::outside_fit},
+  };
+  for (const Case& c : cases) {
+    const auto& [o, d] = c.ray;
+    double place[4] = {nan, nan, nan, nan};
+    RayFate fate{};
+    polynomial.to_film(1, {&o.x, &o.y, &o.z, &d.x, &d.y, &d.z}, {}, {place, place + 1, place + 2, place + 3}, &fate);
+    EXPECT_EQ(fate, c.fate) << o.y << " " << d.z;
+    for (const double x : place) EXPECT_NEAR(x, 0, 1e-12);
+    polynomial.to_film(1, {&o.x, &o.y, &o.z, &d.x, &d.y, &d.z}, {1}, {place, place + 1, place + 2, place + 3}, &fate);
+    EXPECT_EQ(fate, RayFate::outside_fit);
+  }
+}
+
+TEST(RayPolynomial, RaysDoNotDependOnTheirNeighbours) {
+  const auto check = [&]<class T>(T) {
+    const RayPolynomial polynomial(9, domain(), {numbers(9, -0.6, 0.02), numbers(9, -0.5, 0.03), numbers(9, -0.4)});
+    Lines<T> all = all_over<T>();
+    for (int k = 0; k < 3; ++k) {  // more than a block of mixed wavelengths
+      const Lines<T> more = all_over<T>();
+      for (std::size_t i = 0; i < more.size(); ++i) {
+        all.add(more.film_x[i], more.film_y[i], more.pupil_x[i], more.pupil_y[i]);
+      }
+    }
+    std::vector<std::uint16_t> each;
+    for (std::size_t i = 0; i < all.size(); ++i) each.push_back(static_cast<std::uint16_t>(i * i % 7 % 4));
+    all.through(polynomial, {0, each.data()});
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      Lines<T> one;
+      one.add(all.film_x[i], all.film_y[i], all.pupil_x[i], all.pupil_y[i]);
+      one.through(polynomial, {each[i]});
+      EXPECT_EQ(one.fates[0], all.fates[i]);
+      EXPECT_EQ(one.fates[0], each[i] == 3 ? RayFate::outside_fit : RayFate::transmitted);
+      for (std::size_t k = 0; k < 6; ++k) EXPECT_EQ(one.ray[k][0], all.ray[k][i]) << i;
+    }
+  };
+  check(float()), check(double());
+}
+
+TEST(RayPolynomial, RefusesWhatIsNotConsistent) {
+  using Domain = RayPolynomial::Domain;
+  using Fits = std::vector<RayPolynomial::Fit>;
+  struct Case {
+    int degree;
+    std::function<void(Domain&, Fits&)> spoil;
+    std::string message;
+  };
+  const auto nothing = [](Domain&, Fits&) {};
+  const Case cases[] = {
+      {4, nothing, "polynomial: degree is 4, wanted 3, 5, 7, 9 or 11"},
+      {13, nothing, "polynomial: degree is 13, wanted 3, 5, 7, 9 or 11"},
+      {7, nothing, "polynomial: fit 0: direction_by_film has 10 numbers, wanted 20 for degree 7"},
+      {5, [](Domain&, Fits& f) { f.clear(); }, "polynomial: there are no fits, wanted one for each wavelength"},
+      {5, [](Domain& d, Fits&) { d.space.pupil_z = 100; },
+       "polynomial: pupil_z is that of the film, 100 mm, wanted another"},
+      {5, [](Domain& d, Fits&) { d.film_radius = 0; },
+       "polynomial: film_radius is 0, wanted a number from 1e-12 to 1e+12"},
+      {5, [](Domain& d, Fits&) { d.pupil_radius = infinity; },
+       "polynomial: pupil_radius is inf, wanted a number from 1e-12 to 1e+12"},
+      {5, [](Domain& d, Fits&) { d.reference_z = std::nan(""); },
+       "polynomial: reference_z is nan, wanted a number from -1e+12 to 1e+12"},
+      {5, [](Domain&, Fits& f) { f.push_back(f[0]), f[1].offset_by_pupil[3] = infinity; },
+       "polynomial: fit 1: offset_by_pupil: number 3 is inf, wanted a number from -1e+12 to 1e+12"},
+      {5, [](Domain&, Fits& f) { f[0].max_rad = -1; },
+       "polynomial: fit 0: max_rad is -1, wanted a number from 0 to 1e+12"},
+  };
+  for (const Case& c : cases) {
+    Domain d = domain();
+    Fits fits{numbers(5, -0.6)};
+    c.spoil(d, fits);
+    EXPECT_EQ(testing::message([&] { RayPolynomial(c.degree, d, fits); }), c.message);
+  }
+}
+
+}  // namespace
+}  // namespace petzval
