@@ -18,6 +18,7 @@
 #include "support/cli.hpp"
 #include "support/files.hpp"
 #include "support/load_lens.hpp"
+#include "support/number_csv.hpp"
 #include "support/rays_csv.hpp"
 
 namespace {

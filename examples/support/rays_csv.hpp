@@ -14,11 +14,7 @@ struct RayTable {
   std::size_t size() const noexcept { return x.size(); }
 };
 
-/// Reads "x_mm,y_mm,z_mm,dx,dy,dz" and one ray a line (LF or CRLF; a byte-order mark, and blank lines at the end, are
-/// skipped). Throws petzval::Error that names `where`, the line (from 1) and the column.
+/// Reads "x_mm,y_mm,z_mm,dx,dy,dz" and one ray a line, as parse_columns does; refuses the direction 0,0,0 too.
 RayTable parse_rays(std::string_view csv, const std::string& where);
-
-/// A number with 17 significant digits, from which a double reads back exactly.
-std::string digits17(double value);
 
 }  // namespace examples

@@ -23,7 +23,7 @@ while [ "$left" -gt 0 ]; do
     *) set -- "$@" "$1"; shift; left=$((left - 1)) ;;
   esac
 done
-for bench in pupil psf; do
+for bench in camera pupil psf; do
   echo
   "$BUILD_DIR/tests/bench/${bench}_bench" "$@"
 done

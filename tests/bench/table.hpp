@@ -8,8 +8,11 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <optional>
 #include <string>
 #include <vector>
+
+#include "petzval/core/error.hpp"
 
 /// Options of the caller win over the defaults set here: rounds of all benchmarks, interleaved, and the time (s) that
 /// each takes in a round.
@@ -23,6 +26,19 @@ inline void initialize(int argc, char** argv, int rounds = 15, double round_time
   int count = static_cast<int>(arguments.size());
   benchmark::Initialize(&count, arguments.data());
   if (benchmark::ReportUnrecognizedArguments(count, arguments.data())) std::exit(1);
+}
+
+/// Takes an option of the program itself, and the value behind it, out of the command line; nothing where it is not
+/// there.
+inline std::optional<std::string> take_option(std::vector<char*>& arguments, const std::string& flag) {
+  const auto at = std::find(arguments.begin() + 1, arguments.end(), flag);
+  if (at == arguments.end()) return {};
+  if (at + 1 == arguments.end()) {
+    throw petzval::Error(std::string(arguments[0]) + ": " + flag + ": found nothing behind it, wanted a value");
+  }
+  std::string value = *(at + 1);
+  arguments.erase(at, at + 2);
+  return value;
 }
 
 /// Significant digits, without an exponent.

@@ -171,16 +171,8 @@ Options own_options(std::vector<char*>& arguments) {
   Options options;
   const auto available = petzval::instruction_sets();
   options.sets.assign(available.begin(), available.end());
-  const auto take = [&](const std::string& flag) -> std::optional<std::string> {
-    const auto at = std::find(arguments.begin() + 1, arguments.end(), flag);
-    if (at == arguments.end()) return {};
-    if (at + 1 == arguments.end()) throw petzval::Error("trace_bench: " + flag + ": found nothing behind it");
-    std::string value = *(at + 1);
-    arguments.erase(at, at + 2);
-    return value;
-  };
-  if (const auto file = take("--json")) options.json_file = *file;
-  if (const auto isa = take("--isa")) {
+  if (const auto file = take_option(arguments, "--json")) options.json_file = *file;
+  if (const auto isa = take_option(arguments, "--isa")) {
     std::erase_if(options.sets, [&](InstructionSet set) { return petzval::name(set) != *isa; });
     if (options.sets.empty()) {
       throw petzval::Error("trace_bench: --isa: found \"" + *isa + "\", wanted one that this processor has");

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+// Turns samples of a film, from a CSV file, into the rays that a renderer would trace, by any model of the lens.
+//
+//   printf 'film_x_mm,film_y_mm,pupil_u,pupil_v,wavelength_nm\n0,-10,0.25,0.5,587.5618\n' > samples.csv
+//   camera_rays data/lenses/double_gauss_100mm_f2.0.json --samples samples.csv --out rays.csv --model exact_double
+//               --focus-mm 3000 --f-number 4
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "petzval/camera/camera.hpp"
+#include "petzval/core/error.hpp"
+#include "petzval/core/units.hpp"
+#include "support/camera_setup.hpp"
+#include "support/cli.hpp"
+#include "support/files.hpp"
+#include "support/load_lens.hpp"
+#include "support/number_csv.hpp"
+
+namespace {
+
+using examples::CsvColumn;
+using examples::LoadedLens;
+
+constexpr examples::Range unit_interval{0, 1, "a number from 0 to 1"};
+constexpr std::array<CsvColumn, 5> sample_columns{{{"film_x_mm"},
+                                                   {"film_y_mm"},
+                                                   {"pupil_u", unit_interval},
+                                                   {"pupil_v", unit_interval},
+                                                   {"wavelength_nm", examples::positive_number}}};
+
+struct Samples {
+  std::vector<double> film_x, film_y, pupil_u, pupil_v;
+  std::vector<std::uint16_t> wavelength;  ///< positions among
+  std::vector<double> wavelengths_nm;     ///< every one once, in the order of the file
+  std::vector<std::size_t> first_row;     ///< of each of these
+
+  std::size_t size() const noexcept { return film_x.size(); }
+};
+
+Samples parse_samples(const std::string& csv, const std::string& where) {
+  auto all = examples::parse_columns(csv, sample_columns, where);
+  Samples samples{all[0], all[1], all[2], all[3], {}, {}, {}};
+  for (std::size_t row = 0; row < samples.size(); ++row) {
+    auto& known = samples.wavelengths_nm;
+    const double nm = all[4][row];
+    const auto found = std::find(known.begin(), known.end(), nm);
+    samples.wavelength.push_back(static_cast<std::uint16_t>(found - known.begin()));
+    if (found != known.end()) continue;
+    if (known.size() == 1000) {
+      throw petzval::Error(examples::line_of_row(where, row) + ": found another wavelength, wanted at most 1000");
+    }
+    known.push_back(nm);
+    samples.first_row.push_back(row);
+  }
+  return samples;
+}
+
+/// Compiled for the wavelengths of the samples; where one cannot be, the error names its line.
+LoadedLens load_for(const Samples& samples, const std::string& lens_file, const std::string& where) {
+  LoadedLens loaded = examples::load_lens(lens_file, std::array{petzval::d_line_nm});
+  for (std::size_t w = 0; w < samples.wavelengths_nm.size(); ++w) {
+    try {
+      examples::compiled_for(loaded, std::array{samples.wavelengths_nm[w]});
+    } catch (const petzval::Error& error) {
+      throw petzval::Error(examples::line_of_row(where, samples.first_row[w]) +
+                           ", column wavelength_nm: " + error.what());
+    }
+  }
+  if (samples.size() > 0) loaded.lens = examples::compiled_for(loaded, samples.wavelengths_nm);
+  return loaded;
+}
+
+std::string rays_csv(const petzval::Camera& camera, const Samples& samples) {
+  const std::size_t count = samples.size();
+  std::array<std::vector<double>, 9> columns;
+  for (auto& column : columns) column.resize(count);
+  std::vector<petzval::RayFate> fates(count);
+  auto& [x, y, z, dx, dy, dz, weights, pdf_pupil, pdf_direction] = columns;
+  camera.sample<double>(count,
+                        {samples.film_x.data(),
+                         samples.film_y.data(),
+                         samples.pupil_u.data(),
+                         samples.pupil_v.data(),
+                         {.each = samples.wavelength.data()}},
+                        {{x.data(), y.data(), z.data(), dx.data(), dy.data(), dz.data()},
+                         weights.data(),
+                         fates.data(),
+                         pdf_pupil.data(),
+                         pdf_direction.data()});
+  std::string csv = "x_mm,y_mm,z_mm,dx,dy,dz,weight,pdf_pupil_per_mm2,pdf_direction_per_sr,fate\n";
+  for (std::size_t i = 0; i < count; ++i) {
+    for (const auto& column : columns) csv += examples::digits17(column[i]) + ',';
+    csv += petzval::name(fates[i]);
+    csv += '\n';
+  }
+  return csv;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  std::string lens_file, samples_file, out_file, model;
+  examples::CameraSetup setup;
+  CLI::App app(
+      "Samples camera rays: from points of the film, through the lens, into the scene. Lengths in mm, in the lens "
+      "frame: origin at the first vertex, light runs towards +z (these rays run against it); the image on the film is "
+      "upside down.",
+      "camera_rays");
+  app.add_option("LENS.json", lens_file, "lens prescription (JSON as in data/lenses)")->required();
+  app.add_option("--samples", samples_file,
+                 "CSV with the columns film_x_mm,film_y_mm,pupil_u,pupil_v,wavelength_nm; pupil_u and pupil_v from 0 "
+                 "to 1, evenly by area over the model's own pupil of the film point")
+      ->required()
+      ->type_name("CSV");
+  app.add_option("--out", out_file,
+                 "CSV to write, one line per sample in the same order: x_mm,y_mm,z_mm,dx,dy,dz,weight,"
+                 "pdf_pupil_per_mm2,pdf_direction_per_sr,fate, with 17 digits; the mean of weight x radiance is the "
+                 "irradiance of the film point, and the weight is 0 unless the fate is transmitted")
+      ->required()
+      ->type_name("CSV");
+  std::vector<std::string> model_names;
+  for (const petzval::Model m : petzval::models()) model_names.emplace_back(petzval::name(m));
+  app.add_option("--model", model, "model of the lens")->required()->check(CLI::IsMember(model_names));
+  examples::add_camera(app, setup);
+  app.get_option("--focus-mm")->required();
+
+  return examples::run(app, argc, argv, [&] {
+    const auto [width, height] = setup.film_size();
+    const Samples samples = parse_samples(examples::read_text(samples_file), samples_file);
+    const LoadedLens loaded = load_for(samples, lens_file, samples_file);
+    const petzval::Camera camera(examples::focused(loaded, setup), {.width_mm = width, .height_mm = height},
+                                 {.model = *petzval::model_named(model)});
+    examples::write_text(out_file, rays_csv(camera, samples));
+  });
+}

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "camera_setup.hpp"
+
+#include "petzval/core/error.hpp"
+#include "petzval/focus/focus.hpp"
+#include "petzval/pupil/pupil.hpp"
+
+namespace examples {
+
+std::array<double, 2> CameraSetup::film_size() const { return parse_size("--film-mm", film_mm, positive_number); }
+
+void add_camera(CLI::App& app, CameraSetup& setup) {
+  add_number(app, "--f-number", setup.f_number, positive_number, "stop the lens down (by exact rays)")
+      ->default_str("wide open");
+  add_number(app, "--focus-mm", setup.focus_mm, positive_length,
+             "distance of the subject in focus (paraxially, at the d line) from the film (mm), or inf");
+  app.add_option("--film-mm", setup.film_mm, "width and height of the film (mm)")
+      ->type_name("WxH")
+      ->capture_default_str();
+}
+
+std::array<double, 2> parse_size(const std::string& where, std::string_view text, const Range& range) {
+  const std::size_t x = text.find('x');
+  if (x == std::string_view::npos) {
+    throw petzval::Error(where + ": found \"" + std::string(text.substr(0, 60)) + "\", wanted a size like 36x24");
+  }
+  return {parse_number(where, text.substr(0, x), range), parse_number(where, text.substr(x + 1), range)};
+}
+
+petzval::Lens focused(const LoadedLens& loaded, const CameraSetup& setup) {
+  petzval::Lens lens = loaded.lens, d_line = at_d_line(loaded);
+  if (setup.f_number > 0) {
+    d_line = petzval::with_f_number(d_line, setup.f_number);
+    lens = stopped_like(lens, d_line);
+  }
+  const auto focus = petzval::with_focus(d_line, setup.focus_mm, {.origin = petzval::DistanceOrigin::film});
+  return petzval::with_film(lens, focus.film_z());
+}
+
+}  // namespace examples

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <array>
+#include <string>
+#include <string_view>
+
+#include "cli.hpp"
+#include "load_lens.hpp"
+#include "petzval/lens/lens.hpp"
+
+namespace examples {
+
+/// What the programs with a camera are told about it.
+struct CameraSetup {
+  double f_number = 0;     ///< 0: wide open
+  double focus_mm = 3000;  ///< of the subject from the film
+  std::string film_mm = "36x24";
+
+  /// Width and height of the film. Throws petzval::Error.
+  std::array<double, 2> film_size() const;
+};
+
+/// Options --f-number, --focus-mm and --film-mm.
+void add_camera(CLI::App& app, CameraSetup& setup);
+
+/// "36x24". Throws petzval::Error beginning with `where`.
+std::array<double, 2> parse_size(const std::string& where, std::string_view text, const Range& range);
+
+/// The loaded lens, stopped down and focused paraxially as the setup says: at the d line, for all its wavelengths.
+petzval::Lens focused(const LoadedLens& loaded, const CameraSetup& setup);
+
+}  // namespace examples

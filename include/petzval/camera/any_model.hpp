@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <variant>
+
+#include "petzval/camera/exact_model.hpp"
+#include "petzval/camera/paraxial_model.hpp"
+#include "petzval/camera/polynomial_model.hpp"
+#include "petzval/core/export.hpp"
+
+namespace petzval {
+
+/// Any rung of the ladder: visited once for a batch, not for a ray.
+using AnyModel = std::variant<ParaxialModel, PolynomialModel, ExactModel<float>, ExactModel<double>>;
+
+/// Builds a rung for a film no point of which is farther from the axis than film_radius (mm). Throws Error where the
+/// model's own constructor does.
+PETZVAL_API AnyModel make_model(Model model, const Lens& lens, double film_radius);
+
+/// Which rung it is.
+PETZVAL_API Model kind_of(const AnyModel& model) noexcept;
+
+}  // namespace petzval

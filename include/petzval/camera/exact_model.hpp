@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <utility>
+
+#include "petzval/camera/ray_model.hpp"
+#include "petzval/lens/lens.hpp"
+
+namespace petzval {
+
+/// The lens itself: rays traced through every surface, in float or double whatever numbers come and go.
+template <class R>
+class ExactModel {
+ public:
+  /// Throws Error where PupilMap::covering does.
+  ExactModel(const Lens& lens, double film_radius) : ExactModel(lens, PupilMap::covering(lens, film_radius)) {}
+  ExactModel(const Lens& lens, PupilMap covering) : lens_(lens), pupils_(std::move(covering)) {}
+
+  const PupilMap& pupils() const noexcept { return pupils_; }
+  template <class T>
+  void to_scene(std::size_t count, const FilmLines<const T>& lines, const RayWavelengths& wavelengths,
+                const RayArrays<T>& rays, RayFate* fates) const noexcept;
+  void to_film(std::size_t count, const RayArrays<const double>& rays, const RayWavelengths& wavelengths,
+               const FilmLines<double>& lines, RayFate* fates) const noexcept;
+
+  /// One line with its derivatives, in double.
+  RayDerivatives to_scene(const LineDerivatives& line, std::size_t wavelength) const noexcept;
+
+  const Lens& lens() const noexcept { return lens_; }
+
+ private:
+  Lens lens_;
+  PupilMap pupils_;
+};
+
+}  // namespace petzval

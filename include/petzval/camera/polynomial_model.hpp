@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <utility>
+
+#include "petzval/camera/ray_model.hpp"
+#include "petzval/polynomial/ray_polynomial.hpp"
+
+namespace petzval {
+
+/// Fitted polynomials within pupils that have the real ones' shape.
+class PolynomialModel {
+ public:
+  PolynomialModel(RayPolynomial polynomial, PupilMap matching)
+      : polynomial_(std::move(polynomial)), pupils_(std::move(matching)) {}
+
+  const PupilMap& pupils() const noexcept { return pupils_; }
+  const RayPolynomial& polynomial() const noexcept { return polynomial_; }
+  template <class T>
+  void to_scene(std::size_t count, const FilmLines<const T>& lines, const RayWavelengths& wavelengths,
+                const RayArrays<T>& rays, RayFate* fates) const noexcept {
+    polynomial_.to_scene<T>(count, lines, wavelengths, rays, fates);
+  }
+  /// One line with its derivatives.
+  RayDerivatives to_scene(const LineDerivatives& line, std::size_t wavelength) const noexcept {
+    return polynomial_.to_scene(line, wavelength);
+  }
+  void to_film(std::size_t count, const RayArrays<const double>& rays, const RayWavelengths& wavelengths,
+               const FilmLines<double>& lines, RayFate* fates) const noexcept {
+    polynomial_.to_film(count, rays, wavelengths, lines, fates);
+  }
+
+ private:
+  RayPolynomial polynomial_;
+  PupilMap pupils_;
+};
+
+}  // namespace petzval

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "petzval/camera/camera.hpp"
+
+#include <array>
+#include <numbers>
+
+#include "camera_data.hpp"
+#include "check_film.hpp"
+#include "petzval/camera/sample_rays.hpp"
+#include "petzval/core/error.hpp"
+#include "petzval/core/text.hpp"
+
+namespace petzval {
+namespace {
+
+/// A model that somebody else built has to be one of this lens and film, as far as can be told.
+void check_model(const Lens& lens, const Film& film, const PupilMap& pupils) {
+  const std::size_t wavelengths = lens.wavelengths_nm().size();
+  if (pupils.wavelengths() != wavelengths) {
+    throw Error(lens.name() + ": camera: the model is one for " + std::to_string(pupils.wavelengths()) +
+                " wavelengths, wanted the lens's " + std::to_string(wavelengths));
+  }
+  constexpr double near = 1e-6;  // mm
+  if (!(std::abs(pupils.space().film_z - lens.film_z()) <= near)) {
+    throw Error(lens.name() + ": camera: the model has its film at z = " + number(pupils.space().film_z) +
+                " mm, wanted the lens's, " + number(lens.film_z()) + " mm");
+  }
+  constexpr double rounding = 1e-9;
+  if (!(film.radius_mm() <= pupils.film_radius() * (1 + rounding))) {
+    throw Error(lens.name() + ": camera: the model is one for film points up to " + number(pupils.film_radius()) +
+                " mm from the axis, wanted " + number(film.radius_mm()) + " mm or more");
+  }
+}
+
+/// One sample by the batch call.
+CameraRay one(const auto& model, const Film& film, const double* scale, const CameraSample& s) noexcept {
+  CameraRay out;
+  auto& [o, d] = out.ray;
+  const auto wavelength = RayWavelengths{.all = s.wavelength};
+  sample_rays<std::decay_t<decltype(model)>, double>(
+      model, film, scale, 1, {&s.film.x, &s.film.y, &s.pupil_u, &s.pupil_v, wavelength},
+      {{&o.x, &o.y, &o.z, &d.x, &d.y, &d.z}, &out.weight, &out.fate, &out.pdf_pupil, &out.pdf_direction});
+  out.pdf_film = 1 / film.area_mm2();
+  return out;
+}
+
+/// Mean weight on the axis, by samples each of which has a v of its own: a grid has so few that the pupil's edge, which
+/// passes between two of them all around, would decide by steps.
+double on_axis(const auto& model, std::size_t wavelength) {
+  constexpr std::size_t count = 4096;
+  const std::vector<double> unit(wavelength + 1, 1);
+  const std::vector<double> zero(count, 0);
+  std::vector<double> u, v;
+  for (std::size_t i = 0; i < count; ++i) {
+    u.push_back(std::fmod(static_cast<double>(i) * std::numbers::phi, 1.0));
+    v.push_back((static_cast<double>(i) + 0.5) / count);
+  }
+  std::array<std::vector<double>, 7> out;
+  for (auto& values : out) values.resize(count);
+  const auto at = [&](std::size_t k) { return out[k].data(); };
+  sample_rays<std::decay_t<decltype(model)>, double>(
+      model, Film{}, unit.data(), count, {zero.data(), zero.data(), u.data(), v.data(), {.all = wavelength}},
+      {{at(0), at(1), at(2), at(3), at(4), at(5)}, at(6)});
+  double sum = 0;
+  for (const double weight : out[6]) sum += weight;
+  return sum / count;
+}
+
+std::vector<double> scales(const Lens& lens, const AnyModel& model, Normalisation normalisation) {
+  std::vector<double> result;
+  for (std::size_t w = 0; w < lens.wavelengths_nm().size(); ++w) {
+    if (normalisation == Normalisation::irradiance) {
+      const double index = lens.index(lens.surface_count(), w);
+      result.push_back(index * index);
+      continue;
+    }
+    const double axis = std::visit([&](const auto& m) { return on_axis(m, w); }, model);
+    if (!(axis > 0)) {
+      throw Error(lens.name() + ": camera: the axis is dark, wanted light there for weights that are unity on it");
+    }
+    result.push_back(1 / axis);
+  }
+  return result;
+}
+
+}  // namespace
+
+Camera::Camera(const Lens& lens, const Film& film, const CameraOptions& options) {
+  detail::check_film(lens, film);
+  AnyModel model = make_model(options.model, lens, film.radius_mm());
+  *this = Camera(lens, film, std::move(model), options.normalisation);
+}
+
+Camera::Camera(const Lens& lens, const Film& film, AnyModel model, Normalisation normalisation) {
+  detail::check_film(lens, film);
+  check_model(lens, film, std::visit([](const auto& m) -> const PupilMap& { return m.pupils(); }, model));
+  std::vector<double> scale = scales(lens, model, normalisation);
+  detail::SceneSide scene(lens, film, model, scale);
+  data_ = std::make_shared<const Data>(Data{lens, film, std::move(model), std::move(scale), std::move(scene)});
+}
+
+const Lens& Camera::lens() const noexcept { return data_->lens; }
+const Film& Camera::film() const noexcept { return data_->film; }
+Model Camera::model() const noexcept { return kind_of(data_->model); }
+const PupilMap& Camera::pupils() const noexcept {
+  return std::visit([](const auto& m) -> const PupilMap& { return m.pupils(); }, data_->model);
+}
+
+CameraRay Camera::sample(const CameraSample& sample) const noexcept {
+  return std::visit([&](const auto& m) { return one(m, data_->film, data_->scale.data(), sample); }, data_->model);
+}
+
+template <class T>
+void Camera::sample(std::size_t count, const CameraSamples<T>& samples, const CameraRays<T>& rays) const noexcept {
+  std::visit([&](const auto& m) { sample_rays(m, data_->film, data_->scale.data(), count, samples, rays); },
+             data_->model);
+}
+
+CameraRayDifferential Camera::sample_differential(const CameraSample& s) const noexcept {
+  CameraRayDifferential result{sample(s)};
+  if (!result.sample) return result;
+  const PupilSample at = pupils().sample(s.film, s.pupil_u, s.pupil_v, s.wavelength);
+  const auto [by_x, by_y] = pupils().motion(s.film, s.pupil_u, s.pupil_v, s.wavelength);
+  const LineDerivatives line{{s.film.x, s.film.y, at.x, at.y}, {1, 0, by_x[0], by_x[1]}, {0, 1, by_y[0], by_y[1]}};
+  const auto moved = std::visit([&](const auto& m) { return m.to_scene(line, s.wavelength); }, data_->model);
+  result.by_film_x = moved.by_u;
+  result.by_film_y = moved.by_v;
+  return result;
+}
+
+template PETZVAL_API void Camera::sample(std::size_t, const CameraSamples<float>&,
+                                         const CameraRays<float>&) const noexcept;
+template PETZVAL_API void Camera::sample(std::size_t, const CameraSamples<double>&,
+                                         const CameraRays<double>&) const noexcept;
+
+}  // namespace petzval

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "petzval/camera/camera_ray.hpp"
+#include "petzval/camera/film.hpp"
+#include "petzval/pupil/film_lines.hpp"
+#include "petzval/trace/widest.hpp"
+
+namespace petzval::detail {
+
+/// The film as loops want it.
+template <class T>
+struct FilmBounds {
+  T centre_x, centre_y, half_width, half_height;
+};
+
+/// Loops over samples, for float or double.
+template <class T>
+struct CameraLoopsOf {
+  void (*keep_on_film)(const FilmBounds<T>&, std::size_t, const T* film_x, const T* film_y, T* kept_x,
+                       T* kept_y) noexcept;
+  /// Lines as rays that start in the plane of the pupil. sense: along z, of rays towards the scene.
+  void (*start)(const FilmSpace&, T sense, std::size_t, const FilmLines<const T>&, const RayArrays<T>&) noexcept;
+  /// scale: by ray, 0 for those without a wavelength.
+  void (*weigh)(const FilmBounds<T>&, T depth, std::size_t, const T* film_x, const T* film_y, const FilmLines<const T>&,
+                const T* areas, const T* scale, RayFate*, const CameraRays<T>&) noexcept;
+};
+struct CameraLoops {
+  CameraLoopsOf<float> single;
+  CameraLoopsOf<double> twice;
+
+  template <class T>
+  const CameraLoopsOf<T>& of() const noexcept {
+    if constexpr (sizeof(T) == sizeof(float)) {
+      return single;
+    } else {
+      return twice;
+    }
+  }
+};
+
+PETZVAL_WIDEST(CameraLoops, camera_loops)
+
+}  // namespace petzval::detail

@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chief_lines.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <utility>
+
+#include "petzval/paraxial/first_order.hpp"
+#include "petzval/pupil/film_lines.hpp"
+#include "petzval/pupil/pupil.hpp"
+#include "petzval/trace/sequential.hpp"
+#include "petzval/trace/trace.hpp"
+
+namespace petzval::detail {
+namespace {
+
+/// How far tables go, in film radii: points beside the film are told from those that no ray sees.
+constexpr double beyond_film = 1.5;
+constexpr int steps = 24;  // of the table over the film
+
+struct Heights {
+  double film = 0, pupil = 0;
+};
+
+/// Rays of one meridian: heights are along y, or along x.
+struct Section {
+  bool along_x = false;
+
+  template <class V>
+  double of(const V& v) const noexcept {
+    return along_x ? v.x : v.y;
+  }
+  Vec3<double> vector(double height, double z) const noexcept {
+    return along_x ? Vec3<double>{height, 0, z} : Vec3<double>{0, height, z};
+  }
+};
+
+/// Film and pupil height of the exact ray that leaves the centre of the stop for the film with a slope (a sine).
+class FromStop {
+ public:
+  FromStop(const Lens& lens, const FilmSpace& space, std::size_t wavelength, Section section)
+      : lens_(lens), space_(space), wavelength_(wavelength), section_(section), stop_(pupils(lens, wavelength).stop) {}
+
+  std::optional<Heights> operator()(double slope) const noexcept {
+    if (!(slope < 1)) return {};
+    const double sense = signed_index(lens_, stop_ + 1, wavelength_) > 0 ? 1 : -1;
+    const Vec3<double> direction = section_.vector(slope, sense * std::sqrt(1 - slope * slope));
+    const auto end = kernel::trace(
+        lens_.view<double>(), kernel::to_kernel(Vec3<double>{0, 0, lens_.surfaces()[stop_].vertex_z}),
+        kernel::to_kernel(direction), {.wavelength = wavelength_, .apertures = false, .first = stop_ + 1});
+    if (end.fate != RayFate::transmitted || end.direction.z == 0) return {};
+    const double height = section_.of(end.origin), per_z = section_.of(end.direction) / end.direction.z;
+    const Heights h{height + per_z * (space_.film_z - end.origin.z), height + per_z * (space_.pupil_z - end.origin.z)};
+    return h.film < 0 ? Heights{-h.film, -h.pupil} : h;
+  }
+
+ private:
+  const Lens& lens_;
+  FilmSpace space_;
+  std::size_t wavelength_;
+  Section section_;
+  std::size_t stop_;
+};
+
+/// Where an exact line of the film's space goes, clear apertures ignored.
+std::optional<Ray<double>> to_scene(const Lens& lens, const FilmSpace& space, std::size_t wavelength, Section section,
+                                    const Heights& h) noexcept {
+  const double towards = signed_index(lens, lens.surface_count(), wavelength) > 0 ? -1 : 1;
+  const Vec3<double> along = section.vector(h.pupil - h.film, space.depth());
+  const double sense = towards * space.depth() > 0 ? 1 : -1;
+  const auto end =
+      trace(lens, Ray<double>{section.vector(h.pupil, space.pupil_z), along * (sense / glm::length(along))},
+            {.travel = Travel::to_scene, .wavelength = wavelength, .apertures = false});
+  return end.transmitted() ? std::optional(end.ray) : std::nullopt;
+}
+
+std::optional<Ray<double>> to_scene(const ParaxialModel& model, std::size_t wavelength, const Heights& h) noexcept {
+  const double zero = 0;
+  Ray<double> ray;
+  auto& [o, d] = ray;
+  RayFate fate = RayFate::missed_surface;
+  model.to_scene<double>(1, {&zero, &h.film, &zero, &h.pupil}, {.all = wavelength},
+                         {&o.x, &o.y, &o.z, &d.x, &d.y, &d.z}, &fate);
+  return fate == RayFate::transmitted ? std::optional(ray) : std::nullopt;
+}
+
+}  // namespace
+
+ChiefLines::ChiefLines(const Lens& lens, const AnyModel& model, double film_radius, std::size_t wavelength) {
+  const auto* first_order = std::get_if<ParaxialModel>(&model);
+  const FilmSpace space = std::visit([](const auto& m) { return m.pupils().space(); }, model);
+  // Adds a chief ray; false where it does not get to the scene.
+  const auto add = [&](Meridian& nodes, Section section, const Heights& h, double ratio) {
+    const auto ray =
+        first_order ? to_scene(*first_order, wavelength, h) : to_scene(lens, space, wavelength, section, h);
+    if (!ray) return false;
+    nodes.push_back(
+        {h.film, ratio, section.of(ray->origin), ray->origin.z, section.of(ray->direction), ray->direction.z});
+    return true;
+  };
+  if (first_order) {
+    const PupilMap& pupils = first_order->pupils();
+    for (int i = 0; i <= steps; ++i) {
+      const double film = film_radius * beyond_film * i / steps,
+                   near = std::clamp(film, 1e-3 * film_radius, film_radius);
+      const double ratio = pupils.middle({0, near}, wavelength)[1] / near;
+      add(y_, {}, {film, ratio * film}, ratio);
+    }
+    return;
+  }
+
+  const auto fill = [&](Meridian& nodes, Section section) {
+    const FromStop from_stop(lens, space, wavelength, section);
+    constexpr double small = 1e-5;
+    const auto first = from_stop(small);
+    if (!first || !(first->film > 0)) return;
+    add(nodes, section, {}, first->pupil / first->film);
+    // Equal steps of slope: as long as the lens keeps to first order, steps of the film too.
+    const double step = std::min(film_radius * beyond_film / (first->film / small), 1.0) / steps;
+    const auto next = [&](double slope) {
+      const auto h = from_stop(slope);
+      return h && !nodes.empty() && h->film > nodes.back().film && add(nodes, section, *h, h->pupil / h->film);
+    };
+    for (int i = 1; i <= 4 * steps && !nodes.empty() && nodes.back().film < beyond_film * film_radius; ++i) {
+      if (next(step * i)) continue;
+      // The last ray that gets through, nearly: the edge of a fisheye's picture.
+      double good = step * (i - 1);
+      for (double by = step / 2; by > 1e-4 * step; by /= 2) {
+        if (next(good + by)) good += by;
+      }
+      break;
+    }
+  };
+  fill(y_, {});
+  if (!lens.rotationally_symmetric()) fill(x_, {.along_x = true});
+}
+
+double ChiefLines::ratio(const Meridian& nodes, double film) noexcept {
+  if (nodes.size() < 4) return nodes.empty() ? 0 : nodes.front().ratio;
+  const auto above =
+      std::upper_bound(nodes.begin(), nodes.end(), film, [](double f, const Node& node) { return f < node.film; });
+  const auto at = static_cast<std::size_t>(above - nodes.begin());
+  const std::size_t first = std::clamp<std::size_t>(at, 2, nodes.size() - 2) - 2;
+  // Lagrange's cubic in the square of the height: the ratio is even.
+  const double t = std::min(film, nodes.back().film) * std::min(film, nodes.back().film);
+  double sum = 0;
+  for (std::size_t i = first; i < first + 4; ++i) {
+    double part = nodes[i].ratio;
+    for (std::size_t j = first; j < first + 4; ++j) {
+      const double ti = nodes[i].film * nodes[i].film, tj = nodes[j].film * nodes[j].film;
+      if (j != i) part *= (t - tj) / (ti - tj);
+    }
+    sum += part;
+  }
+  return sum;
+}
+
+std::array<double, 2> ChiefLines::pupil_point(const FilmPoint& film) const noexcept {
+  const double height = std::hypot(film.x, film.y);
+  const double y = ratio(y_, height);
+  return {film.x * (x_.empty() ? y : ratio(x_, height)), film.y * y};
+}
+
+std::optional<double> ChiefLines::find(const Meridian& nodes, double height, double z) noexcept {
+  // How much the line of a node, of positive or negative film height, passes the point by on one side: the sine.
+  const auto passes_by = [&](const Node& node, double sign) -> std::optional<double> {
+    const double h = height - sign * node.height, along = z - node.z;
+    const double dh = sign * node.direction_height, dz = node.direction_z;
+    if (!(h * dh + along * dz > 0)) return {};
+    return (dh * along - dz * h) / std::hypot(h, along);
+  };
+  std::optional<double> last[2];
+  for (std::size_t k = 0; k < nodes.size(); ++k) {
+    for (int side : {0, 1}) {
+      const double sign = side ? -1 : 1;
+      const auto now = passes_by(nodes[k], sign);
+      const auto before = std::exchange(last[side], now);
+      if (!now) continue;
+      if (*now == 0) return sign * nodes[k].film;
+      if (!before || (*before < 0) == (*now < 0)) continue;
+      const double t = *before / (*before - *now);
+      return sign * (nodes[k - 1].film + t * (nodes[k].film - nodes[k - 1].film));
+    }
+  }
+  return {};
+}
+
+std::optional<FilmPoint> ChiefLines::about(const Vec3<double>& point) const noexcept {
+  if (!x_.empty()) {
+    const auto x = find(x_, point.x, point.z), y = find(y_, point.y, point.z);
+    if (!x || !y) return {};
+    return FilmPoint{*x, *y};
+  }
+  const double height = std::hypot(point.x, point.y);
+  const auto film = find(y_, height, point.z);
+  if (!film) return {};
+  if (!(height > 0)) return FilmPoint{};
+  return FilmPoint{*film * point.x / height, *film * point.y / height};
+}
+
+}  // namespace petzval::detail

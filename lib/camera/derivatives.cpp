@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+// Rays with their derivatives by two parameters: each model once more, over dual numbers.
+#include <ceres/jet.h>
+
+#include <cmath>
+
+#include "petzval/camera/exact_model.hpp"
+#include "petzval/camera/paraxial_model.hpp"
+#include "petzval/core/kernel_vec.hpp"
+#include "petzval/paraxial/first_order.hpp"
+#include "petzval/trace/sequential.hpp"
+
+namespace petzval {
+namespace {
+
+using Jet = ceres::Jet<double, 2>;
+using Vec = kernel::Vec<Jet>;
+
+struct Line {
+  Jet film_x, film_y, pupil_x, pupil_y;
+};
+
+Line line_of(const LineDerivatives& d) noexcept {
+  const auto jet = [&](double FilmLine::*part) {
+    Jet x(d.line.*part);
+    x.v[0] = d.by_u.*part;
+    x.v[1] = d.by_v.*part;
+    return x;
+  };
+  return {jet(&FilmLine::film_x), jet(&FilmLine::film_y), jet(&FilmLine::pupil_x), jet(&FilmLine::pupil_y)};
+}
+
+RayDerivatives derivatives_of(const Vec& origin, const Vec& direction) noexcept {
+  const auto part = [](const Vec& v, int k) { return Vec3<double>(v.x.v[k], v.y.v[k], v.z.v[k]); };
+  const auto value = [](const Vec& v) { return Vec3<double>(v.x.a, v.y.a, v.z.a); };
+  return {RayFate::transmitted,
+          {value(origin), value(direction)},
+          {part(origin, 0), part(direction, 0)},
+          {part(origin, 1), part(direction, 1)}};
+}
+
+}  // namespace
+
+template <class R>
+RayDerivatives ExactModel<R>::to_scene(const LineDerivatives& line, std::size_t wavelength) const noexcept {
+  const FilmSpace& space = pupils_.space();
+  const auto [film_x, film_y, pupil_x, pupil_y] = line_of(line);
+  const double sense = signed_index(lens_, lens_.surface_count()) > 0 ? -1 : 1;
+  const double depth = space.depth(), towards = depth * sense > 0 ? 1 : -1;
+  const Jet x = pupil_x - film_x, y = pupil_y - film_y;
+  const Jet per_length = towards / sqrt(x * x + y * y + depth * depth);
+  const Vec origin{pupil_x, pupil_y, Jet(space.pupil_z)};
+  const Vec direction{x * per_length, y * per_length, depth * per_length};
+  RayDerivatives start = derivatives_of(origin, direction);
+  start.by_u = start.by_v = {{0, 0, 0}, {0, 0, 0}};
+  start.fate = RayFate::missed_surface;
+  if (wavelength >= lens_.wavelengths_nm().size()) return start;
+  const auto end = kernel::trace(lens_.template view<double>(), origin, direction,
+                                 {.travel = Travel::to_scene, .wavelength = wavelength});
+  start.fate = end.fate;
+  return end.fate == RayFate::transmitted ? derivatives_of(end.origin, end.direction) : start;
+}
+
+template RayDerivatives ExactModel<float>::to_scene(const LineDerivatives&, std::size_t) const noexcept;
+template RayDerivatives ExactModel<double>::to_scene(const LineDerivatives&, std::size_t) const noexcept;
+
+RayDerivatives ParaxialModel::to_scene(const LineDerivatives& line, std::size_t wavelength) const noexcept {
+  if (wavelength >= to_scene_.size()) return {RayFate::missed_surface};
+  const auto [film_x, film_y, pupil_x, pupil_y] = line_of(line);
+  const detail::PairMap& m = to_scene_[wavelength];
+  const Jet slope_x = m.c * film_x + m.d * pupil_x, slope_y = m.c * film_y + m.d * pupil_y;
+  const Jet down = -1.0 / sqrt(slope_x * slope_x + slope_y * slope_y + 1.0);
+  return derivatives_of({m.a * film_x + m.b * pupil_x, m.a * film_y + m.b * pupil_y, Jet(z_)},
+                        {slope_x * down, slope_y * down, down});
+}
+
+}  // namespace petzval

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "petzval/camera/exact_model.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <type_traits>
+
+#include "camera_loops.hpp"
+#include "petzval/paraxial/first_order.hpp"
+#include "petzval/trace/batch.hpp"
+#include "petzval/trace/trace.hpp"
+
+namespace petzval {
+namespace {
+
+constexpr std::size_t block = 256;
+
+/// Rays of a block in memory of their own.
+template <class R>
+struct Block {
+  alignas(64) std::array<std::array<R, block>, 6> v;
+
+  template <class T = R>
+  RayArrays<T> arrays() noexcept {
+    return {v[0].data(), v[1].data(), v[2].data(), v[3].data(), v[4].data(), v[5].data()};
+  }
+};
+
+/// Traces rays in place; a few of them one by one, before a block would have begun.
+template <class R>
+void trace_in_place(const Lens& lens, Travel travel, std::size_t count, const RayArrays<R>& rays,
+                    const RayWavelengths& wavelengths, RayFate* fates) noexcept {
+  constexpr std::size_t few = 8;
+  if (count >= few) {
+    trace<R>(lens, count, {rays.x, rays.y, rays.z, rays.dx, rays.dy, rays.dz}, rays, fates, nullptr,
+             {.travel = travel, .wavelength = wavelengths.all, .wavelengths = wavelengths.each});
+    return;
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    const Ray<R> ray{{rays.x[i], rays.y[i], rays.z[i]}, {rays.dx[i], rays.dy[i], rays.dz[i]}};
+    const auto end = trace<R>(lens, ray, {.travel = travel, .wavelength = wavelengths[i]});
+    fates[i] = end.fate;
+    if (!end.transmitted()) continue;
+    const auto& [o, d] = end.ray;
+    rays.x[i] = o.x, rays.y[i] = o.y, rays.z[i] = o.z;
+    rays.dx[i] = d.x, rays.dy[i] = d.y, rays.dz[i] = d.z;
+  }
+}
+
+}  // namespace
+
+template <class R>
+template <class T>
+void ExactModel<R>::to_scene(std::size_t count, const FilmLines<const T>& lines, const RayWavelengths& wavelengths,
+                             const RayArrays<T>& rays, RayFate* fates) const noexcept {
+  const R sense = signed_index(lens_, lens_.surface_count()) > 0 ? R(-1) : R(1);
+  const auto& loops = detail::camera_loops().of<R>();
+  if constexpr (std::is_same_v<R, T>) {
+    loops.start(pupils_.space(), sense, count, lines, rays);
+    trace_in_place<R>(lens_, Travel::to_scene, count, rays, wavelengths, fates);
+  } else {
+    Block<R> own;
+    std::array<std::array<R, block>, 4> line;
+    for (std::size_t begin = 0; begin < count; begin += block) {
+      const std::size_t n = std::min(block, count - begin);
+      const T* const from[] = {lines.film_x, lines.film_y, lines.pupil_x, lines.pupil_y};
+      for (std::size_t k = 0; k < 4; ++k) {
+        std::transform(from[k] + begin, from[k] + begin + n, line[k].begin(), [](T x) { return static_cast<R>(x); });
+      }
+      loops.start(pupils_.space(), sense, n, {line[0].data(), line[1].data(), line[2].data(), line[3].data()},
+                  own.arrays());
+      trace_in_place<R>(lens_, Travel::to_scene, n, own.arrays(), wavelengths.from(begin), fates + begin);
+      T* const to[] = {rays.x, rays.y, rays.z, rays.dx, rays.dy, rays.dz};
+      for (std::size_t k = 0; k < 6; ++k) {
+        std::transform(own.v[k].begin(), own.v[k].begin() + n, to[k] + begin, [](R x) { return static_cast<T>(x); });
+      }
+    }
+  }
+}
+
+template <class R>
+void ExactModel<R>::to_film(std::size_t count, const RayArrays<const double>& rays, const RayWavelengths& wavelengths,
+                            const FilmLines<double>& lines, RayFate* fates) const noexcept {
+  const FilmSpace& space = pupils_.space();
+  Block<R> own;
+  for (std::size_t begin = 0; begin < count; begin += block) {
+    const std::size_t n = std::min(block, count - begin);
+    // From where the line is nearest to the first vertex, before anything is rounded.
+    for (std::size_t i = 0; i < n; ++i) {
+      const Vec3<double> o{rays.x[begin + i], rays.y[begin + i], rays.z[begin + i]};
+      const Vec3<double> d{rays.dx[begin + i], rays.dy[begin + i], rays.dz[begin + i]};
+      const double t = -(o.x * d.x + o.y * d.y + o.z * d.z);
+      own.v[0][i] = static_cast<R>(o.x + t * d.x);
+      own.v[1][i] = static_cast<R>(o.y + t * d.y);
+      own.v[2][i] = static_cast<R>(o.z + t * d.z);
+      own.v[3][i] = static_cast<R>(d.x), own.v[4][i] = static_cast<R>(d.y), own.v[5][i] = static_cast<R>(d.z);
+    }
+    trace_in_place<R>(lens_, Travel::to_film, n, own.arrays(), wavelengths.from(begin), fates + begin);
+    for (std::size_t i = 0; i < n; ++i) {
+      const double x = own.v[0][i], y = own.v[1][i], z = own.v[2][i];
+      const double per_z = 1 / static_cast<double>(own.v[5][i]);
+      const double slope_x = own.v[3][i] * per_z, slope_y = own.v[4][i] * per_z;
+      RayFate& fate = fates[begin + i];
+      if (fate == RayFate::transmitted && !std::isfinite(per_z)) fate = RayFate::missed_surface;
+      const bool arrives = fate == RayFate::transmitted;
+      const auto at = [&](double from, double slope, double plane) { return arrives ? from + slope * (plane - z) : 0; };
+      lines.film_x[begin + i] = at(x, slope_x, space.film_z);
+      lines.film_y[begin + i] = at(y, slope_y, space.film_z);
+      lines.pupil_x[begin + i] = at(x, slope_x, space.pupil_z);
+      lines.pupil_y[begin + i] = at(y, slope_y, space.pupil_z);
+    }
+  }
+}
+
+template class PETZVAL_API ExactModel<float>;
+template class PETZVAL_API ExactModel<double>;
+#define PETZVAL_EXACT(R, T)                                                                                        \
+  template PETZVAL_API void ExactModel<R>::to_scene(std::size_t, const FilmLines<const T>&, const RayWavelengths&, \
+                                                    const RayArrays<T>&, RayFate*) const noexcept;
+PETZVAL_EXACT(float, float)
+PETZVAL_EXACT(float, double)
+PETZVAL_EXACT(double, float)
+PETZVAL_EXACT(double, double)
+#undef PETZVAL_EXACT
+
+}  // namespace petzval

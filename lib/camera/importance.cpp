@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: Apache-2.0
+// Film and scene hold the same light. With the radiance L divided by the square of the index (as every weight here
+// takes it), it is the same all along a ray, and so is the etendue n^2 cos dA dw of a pencil about it. Hence
+//
+//     mean over the film of (n'^2 L cos dw) = 1/A integral n'^2 cos L dw dA = integral (n^2 / A) L cos' dA' dw',
+//
+// n' behind the lens and n before it: We = n^2 / A for every ray that arrives, whatever the film lies in.
+//
+// A film sample has the density p_film p_pupil in film point and place in the pupil's plane. Over that plane, seen
+// under the angle t from len away, dw = cos t dA_pupil / len^2 with cos t = |depth| / len, so that it has the density
+// p_film p_pupil len^4 / depth^2 in cos dA dw at the film, and n^2 / n'^2 times that in cos' dA' dw' of the scene. We
+// divided by it is the weight of the film sample: reciprocity.
+//
+// Models of first order are linear in slopes and conserve the area of heights and slopes instead; in cos dA dw they
+// lack (cos t / cos t')^4, t' the angle of the ray in the scene. It belongs to both, for theirs to be the weights that
+// their film samples have.
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <glm/geometric.hpp>
+#include <numbers>
+
+#include "camera_data.hpp"
+#include "petzval/pupil/pupil.hpp"
+#include "petzval/trace/batch.hpp"
+#include "scene_side.hpp"
+
+namespace petzval {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+double squared(double x) noexcept { return x * x; }
+
+bool finite(const Vec3<double>& v) noexcept { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
+/// What of the model's lines leaves for the scene.
+template <class M>
+std::vector<std::vector<Ray<double>>> lines_of(const M& model, bool azimuths_alike) {
+  std::vector<std::vector<Ray<double>>> result(model.pupils().wavelengths());
+  for (std::size_t w = 0; w < result.size(); ++w) {
+    const auto [film_x, film_y, pupil_x, pupil_y] = spread_lines(model.pupils(), azimuths_alike, w);
+    const std::size_t count = film_x.size();
+    std::array<std::vector<double>, 6> ray;
+    for (auto& values : ray) values.resize(count);
+    std::vector<RayFate> fates(count);
+    model.template to_scene<double>(
+        count, {film_x.data(), film_y.data(), pupil_x.data(), pupil_y.data()}, {.all = w},
+        {ray[0].data(), ray[1].data(), ray[2].data(), ray[3].data(), ray[4].data(), ray[5].data()}, fates.data());
+    for (std::size_t i = 0; i < count; ++i) {
+      if (fates[i] != RayFate::transmitted) continue;
+      result[w].push_back({{ray[0][i], ray[1][i], ray[2][i]}, {ray[3][i], ray[4][i], ray[5][i]}});
+    }
+  }
+  return result;
+}
+
+/// The scene's pupils of a model. Whether rays meet the film is left out: pupils would end abruptly with the film.
+EntranceMap entrance_of(const Lens& lens, const AnyModel& any) {
+  const auto of_lens = [&](std::size_t count, const RayArrays<const double>& rays, std::size_t wavelength,
+                           std::uint8_t* passes) {
+    std::array<std::vector<double>, 6> out;
+    for (auto& values : out) values.resize(count);
+    std::vector<RayFate> fates(count);
+    trace<double>(lens, count, rays,
+                  {out[0].data(), out[1].data(), out[2].data(), out[3].data(), out[4].data(), out[5].data()},
+                  fates.data(), nullptr, {.wavelength = wavelength});
+    for (std::size_t i = 0; i < count; ++i) passes[i] = fates[i] == RayFate::transmitted;
+  };
+  return std::visit(
+      [&](const auto& model) {
+        const auto lines = lines_of(model, lens.rotationally_symmetric());
+        if constexpr (std::is_same_v<std::decay_t<decltype(model)>, ParaxialModel>) {
+          const PupilMap& pupils = model.pupils();
+          if (model.model() == Model::pinhole) {  // it needs no more than to know what lies in front
+            return EntranceMap(lens, std::vector<std::vector<Ray<double>>>(lines.size()), {});
+          }
+          const auto within = [&](std::size_t count, const RayArrays<const double>& rays, std::size_t wavelength,
+                                  std::uint8_t* passes) {
+            std::array<std::vector<double>, 4> line;
+            for (auto& values : line) values.resize(count);
+            std::vector<RayFate> fates(count);
+            model.to_film(count, rays, {.all = wavelength},
+                          {line[0].data(), line[1].data(), line[2].data(), line[3].data()}, fates.data());
+            for (std::size_t i = 0; i < count; ++i) {
+              // Points beside the film see the pupil of its edge.
+              const double radius = std::hypot(line[0][i], line[1][i]);
+              const double part = radius > pupils.film_radius() ? pupils.film_radius() / radius : 1;
+              passes[i] = fates[i] == RayFate::transmitted &&
+                          pupils.contains({part * line[0][i], part * line[1][i]}, line[2][i], line[3][i], wavelength);
+            }
+          };
+          return EntranceMap(lens, lines, within, PupilEnds::with_lines);
+        } else if constexpr (std::is_same_v<std::decay_t<decltype(model)>, PolynomialModel>) {
+          return EntranceMap(lens, lines, of_lens, PupilEnds::with_lines);
+        } else {
+          return EntranceMap(lens, lines, of_lens);
+        }
+      },
+      any);
+}
+
+}  // namespace
+
+namespace detail {
+
+SceneSide::SceneSide(const Lens& lens, const Film& film, const AnyModel& model, std::span<const double> scale)
+    : film_(film),
+      space_(std::visit([](const auto& m) { return m.pupils().space(); }, model)),
+      entrance_(entrance_of(lens, model)) {
+  for (std::size_t w = 0; w < scale.size(); ++w) {
+    const double n = lens.index(0, w), n_film = lens.index(lens.surface_count(), w), etendue = squared(n / n_film);
+    const Pupil entrance = pupils(lens, w).entrance;
+    wavelengths_.push_back({.we = etendue * scale[w] / film.area_mm2(),
+                            .density = etendue / film.area_mm2() / squared(space_.depth()),
+                            .entrance_z = entrance.z,
+                            .entrance_area = pi / 4 * squared(entrance.diameter),
+                            .chiefs = ChiefLines(lens, model, film.radius_mm(), w)});
+  }
+}
+
+SceneSide::Arrival SceneSide::arrive(const AnyModel& any, const Ray<double>& ray,
+                                     std::size_t wavelength) const noexcept {
+  Arrival result;
+  // As the tracers take rays.
+  const bool unit = std::abs(glm::dot(ray.direction, ray.direction) - 1) < 1e-3;
+  if (wavelength >= wavelengths_.size() || !finite(ray.origin) || !unit) return result;
+  // Nothing is lost on the way from a far point where the line begins near the lens.
+  const Vec3<double>&d = ray.direction, o = ray.origin - d * glm::dot(ray.origin, d);
+  const FilmLines<double> line{&result.film.x, &result.film.y, &result.pupil.x, &result.pupil.y};
+  std::visit(
+      [&](const auto& m) {
+        m.to_film(1, {&o.x, &o.y, &o.z, &d.x, &d.y, &d.z}, {.all = wavelength}, line, &result.fate);
+      },
+      any);
+  return result;
+}
+
+Importance SceneSide::weighed(const AnyModel& any, const Arrival& arrival, double cosine,
+                              std::size_t wavelength) const noexcept {
+  Importance result{.fate = arrival.fate};
+  if (arrival.fate != RayFate::transmitted) return result;
+  const auto& [fate, film, pupil] = arrival;
+  result.film = film;
+  result.raster = film_.raster(film);
+  if (!film_.contains(film)) {
+    result.fate = RayFate::outside_film;
+    return result;
+  }
+  const PupilMap& pupils = std::visit([](const auto& m) -> const PupilMap& { return m.pupils(); }, any);
+  const bool within = pupils.contains(film, pupil.x, pupil.y, wavelength);
+  const bool first_order = std::holds_alternative<ParaxialModel>(any);
+  if (!within && (first_order || std::holds_alternative<PolynomialModel>(any))) {
+    result.fate = RayFate::vignetted;
+    return result;
+  }
+  const Wavelength& at = wavelengths_[wavelength];
+  const double depth2 = squared(space_.depth());
+  const double length2 = squared(pupil.x - film.x) + squared(pupil.y - film.y) + depth2;
+  const double slopes = first_order ? squared(depth2 / (length2 * squared(cosine))) : 1;
+  result.we = at.we * slopes;
+  result.pdf_film = 1 / film_.area_mm2();
+  result.pdf_pupil = within ? 1 / pupils.area(film, wavelength) : 0;
+  // A pupil at infinity has no place; all of the density is the direction's.
+  result.pdf_position = std::isfinite(at.entrance_area) ? 1 / at.entrance_area : 1;
+  result.pdf_direction = at.density * squared(length2) * slopes * result.pdf_pupil / result.pdf_position;
+  return result;
+}
+
+Importance SceneSide::importance(const AnyModel& model, const Ray<double>& ray, std::size_t wavelength) const noexcept {
+  // No ray meets a point but one that was aimed at it.
+  if (kind_of(model) == Model::pinhole) return {};
+  return weighed(model, arrive(model, ray, wavelength), ray.direction.z, wavelength);
+}
+
+ImportanceSample SceneSide::sample_importance(const AnyModel& model, const Vec3<double>& point, double u, double v,
+                                              std::size_t wavelength) const noexcept {
+  if (kind_of(model) == Model::pinhole) return through_pinhole(model, point, u, v, wavelength);
+  const EntranceSample s = entrance_.sample(point, u, v, wavelength);
+  if (!(s.pdf > 0)) return {};
+  return {s.direction, s.distance, s.place, s.pdf, importance(model, {s.place, s.direction}, wavelength)};
+}
+
+ImportanceSample SceneSide::through_pinhole(const AnyModel& model, const Vec3<double>& point, double u, double v,
+                                            std::size_t wavelength) const noexcept {
+  ImportanceSample result;
+  if (wavelength >= wavelengths_.size() || !entrance_.in_front(point)) return result;
+  const Wavelength& at = wavelengths_[wavelength];
+  const Vec3<double> pupil{0, 0, at.entrance_z}, to = pupil - point;
+  const double distance = glm::length(to);
+  if (!std::isfinite(distance) || !std::isfinite(at.entrance_area) || !(to.z > 0)) return result;
+  result = {.direction = to / distance, .distance = distance, .on_pupil = pupil};
+  // The weights are those of all the thick lens's pupil, and so are the places in it that the film sees it through.
+  result.pdf = squared(distance) / (at.entrance_area * result.direction.z);
+  Arrival arrival = arrive(model, {pupil, result.direction}, wavelength);
+  const PupilSample s = std::get<ParaxialModel>(model).pupils().sample(arrival.film, u, v, wavelength);
+  arrival.pupil = {s.x, s.y};
+  result.importance = weighed(model, arrival, result.direction.z, wavelength);
+  return result;
+}
+
+double SceneSide::pdf(const AnyModel& model, const Vec3<double>& point, const Vec3<double>& direction,
+                      std::size_t wavelength) const noexcept {
+  return kind_of(model) == Model::pinhole ? 0 : entrance_.pdf(point, direction, wavelength);
+}
+
+}  // namespace detail
+
+Importance Camera::importance(const Ray<double>& ray, std::size_t wavelength) const noexcept {
+  return data_->scene.importance(data_->model, ray, wavelength);
+}
+
+ImportanceSample Camera::sample_importance(const Vec3<double>& point, double u, double v,
+                                           std::size_t wavelength) const noexcept {
+  return data_->scene.sample_importance(data_->model, point, u, v, wavelength);
+}
+
+double Camera::pdf_importance(const Vec3<double>& point, const Vec3<double>& direction,
+                              std::size_t wavelength) const noexcept {
+  return data_->scene.pdf(data_->model, point, direction, wavelength);
+}
+
+Projection Camera::project(const Vec3<double>& point, std::size_t wavelength) const noexcept {
+  return data_->scene.project(data_->model, point, wavelength);
+}
+
+}  // namespace petzval

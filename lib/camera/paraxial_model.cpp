@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "petzval/camera/paraxial_model.hpp"
+
+#include <array>
+#include <cmath>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "paraxial_loops.hpp"
+#include "petzval/core/error.hpp"
+#include "petzval/core/text.hpp"
+#include "petzval/paraxial/first_order.hpp"
+#include "petzval/pupil/pupil.hpp"
+#include "petzval/pupil/pupil_map.hpp"
+#include "petzval/pupil/pupil_star.hpp"
+#include "petzval/trace/widest.hpp"
+#include "two_disc_fit.hpp"
+
+namespace petzval {
+namespace detail {
+PETZVAL_WIDEST(ParaxialLoops, paraxial_loops)
+}  // namespace detail
+
+namespace {
+
+using detail::PairMap;
+
+PairMap inverse(const PairMap& m) noexcept {
+  const double determinant = m.a * m.d - m.b * m.c;
+  return {m.d / determinant, -m.b / determinant, -m.c / determinant, m.a / determinant};
+}
+
+PairMap then(const PairMap& m, const PairMap& next) noexcept {
+  return {next.a * m.a + next.b * m.c, next.a * m.b + next.b * m.d, next.c * m.a + next.d * m.c,
+          next.c * m.b + next.d * m.d};
+}
+
+/// Film and pupil point of a line to its height and slope in the plane z behind the lens.
+PairMap line_at(const FilmSpace& space, double z) noexcept {
+  const double slope = 1 / space.depth(), far = (z - space.film_z) * slope;
+  return {1 - far, far, -slope, slope};
+}
+
+/// A ray-transfer matrix on heights and slopes.
+PairMap on_slopes(const RayMatrix& m, double n_in, double n_out) noexcept {
+  return {m.a, m.b * n_in, m.c / n_out, m.d * n_in / n_out};
+}
+
+/// Film and pupil point to place and slope in the plane z of object space.
+PairMap to_scene_map(const Lens& lens, std::size_t wavelength, const FilmSpace& space, double z) {
+  const std::size_t last = lens.surface_count();
+  const PairMap forward = on_slopes(ray_matrix(lens, 0, last, wavelength), signed_index(lens, 0, wavelength),
+                                    signed_index(lens, last, wavelength));
+  const PairMap in_front = then(line_at(space, lens.surfaces().back().vertex_z), inverse(forward));
+  return then(in_front, {1, z - lens.surfaces().front().vertex_z, 0, 1});
+}
+
+/// The disc of the pupil's plane through which lines have a height, of a map's first row, below `radius`.
+PupilDisc disc_of(const Lens& lens, const PairMap& height, double radius, const char* where) {
+  if (height.b == 0) {
+    throw Error(lens.name() + ": the film lies in " + where + ", wanted it elsewhere for a first-order model");
+  }
+  return {-height.a / height.b, radius / std::abs(height.b)};
+}
+
+PupilDisc thick_disc(const Lens& lens, std::size_t wavelength, const FilmSpace& space) {
+  const std::size_t stop = pupils(lens, wavelength).stop, last = lens.surface_count();
+  const PairMap behind_stop = on_slopes(ray_matrix(lens, stop, last, wavelength), signed_index(lens, stop, wavelength),
+                                        signed_index(lens, last, wavelength));
+  // Heights in the stop itself: a pupil at infinity is no special case.
+  const PairMap at_stop = then(line_at(space, lens.surfaces().back().vertex_z), inverse(behind_stop));
+  const double radius = lens.surfaces()[stop].semi_diameter;
+  if (!std::isfinite(radius)) {
+    throw Error(lens.name() + ": surface " + std::to_string(stop) +
+                ": found a stop without limits, wanted a semi_diameter for a first-order model");
+  }
+  return disc_of(lens, at_stop, radius, "the image of the stop");
+}
+
+PupilDisc thin_disc(const Lens& lens, std::size_t wavelength, const FilmSpace& space) {
+  const double diameter = pupils(lens, wavelength).entrance.diameter;
+  if (!std::isfinite(diameter)) {
+    throw Error(lens.name() + ": found the entrance pupil at infinity, wanted a finite one for a thin lens");
+  }
+  const double z = first_order(lens, wavelength).rear_principal_z;
+  return disc_of(lens, line_at(space, z), diameter / 2, "the rear principal plane");
+}
+
+/// Edges of the real pupils of some film points, at equal steps of film area; none where hardly any light comes.
+std::vector<detail::EdgePoint> real_edges(const PupilMap& real, std::size_t wavelength) {
+  constexpr int fields = 16, directions = detail::star_corners / 2;
+  // The stars stand for pupils of the same area; this part of the way between their corners they cross a round one.
+  constexpr double crossing = 0.21, step = 2.0 / detail::star_corners;
+  constexpr double darkest = 0.01;  // of the pupil's area on the axis
+  std::vector<detail::EdgePoint> edges;
+  for (int j = 0; j <= fields; ++j) {
+    const FilmPoint film{0, real.film_radius() * std::sqrt(static_cast<double>(j) / fields)};
+    std::array<PupilSample, directions> points;
+    for (int k = 0; k < directions; ++k) points[k] = real.sample(film, (k + crossing / 2) * step, 1, wavelength);
+    if (!(points[0].area > darkest * real.area({}, wavelength))) continue;
+    for (int k = 0; k < directions; ++k) {
+      const PupilSample &before = points[(k + directions - 1) % directions], &after = points[(k + 1) % directions];
+      const double length = std::hypot(after.x - before.x, after.y - before.y) / 2;
+      edges.push_back({film.y, points[k].x, points[k].y, length / points[k].area});
+    }
+  }
+  return edges;
+}
+
+PupilMap pupils_of(Model model, const Lens& lens, double film_radius) {
+  if (model > Model::thick) {
+    throw Error(lens.name() + ": found " + std::string(name(model)) + ", wanted a first-order model");
+  }
+  if (!lens.rotationally_symmetric()) {
+    throw Error(lens.name() + ": found cylinders, wanted a lens that is alike in all sections for a first-order model");
+  }
+  const std::size_t wavelengths = lens.wavelengths_nm().size();
+  for (std::size_t w = 0; w < wavelengths; ++w) {
+    if (first_order(lens, w).afocal) {
+      throw Error(lens.name() + ": found an afocal lens, wanted a focal length for a first-order model");
+    }
+  }
+  std::vector<std::vector<PupilDisc>> discs(wavelengths);
+  if (model == Model::thin_two_disc) {
+    const PupilMap real = PupilMap::matching(lens, film_radius);
+    for (std::size_t w = 0; w < wavelengths; ++w) {
+      const auto fitted = detail::fit_two_discs(real_edges(real, w));
+      discs[w].assign(fitted.begin(), fitted.end());
+    }
+    return PupilMap::of_discs(real.space(), discs, film_radius);
+  }
+  const FilmSpace space = film_space(lens);
+  for (std::size_t w = 0; w < wavelengths; ++w) {
+    discs[w] = {model == Model::thin ? thin_disc(lens, w, space) : thick_disc(lens, w, space)};
+  }
+  return PupilMap::of_discs(space, discs, film_radius);
+}
+
+/// Where rays are given: the entrance pupil, unless it is so far that digits of the place would be lost.
+double scene_plane(const Lens& lens) {
+  const std::size_t wavelength = lens.central_wavelength();
+  const double z = pupils(lens, wavelength).entrance.z, first_z = lens.surfaces().front().vertex_z;
+  const double reach = std::abs(first_order(lens, wavelength).effective_focal_length);
+  return std::abs(z - first_z) < 20 * reach ? z : first_z;
+}
+
+}  // namespace
+
+ParaxialModel::ParaxialModel(Model model, const Lens& lens, double film_radius)
+    : model_(model), pupils_(pupils_of(model, lens, film_radius)), z_(scene_plane(lens)) {
+  const FilmSpace& space = pupils_.space();
+  for (std::size_t w = 0; w < lens.wavelengths_nm().size(); ++w) {
+    PairMap map = to_scene_map(lens, w, space, z_);
+    to_film_.push_back(inverse(map));
+    if (model == Model::pinhole) {
+      const double middle = thick_disc(lens, w, space).shift;
+      map = {map.a + map.b * middle, 0, map.c + map.d * middle, 0};
+    }
+    to_scene_.push_back(map);
+  }
+}
+
+template <class T>
+void ParaxialModel::to_scene(std::size_t count, const FilmLines<const T>& lines, const RayWavelengths& wavelengths,
+                             const RayArrays<T>& rays, RayFate* fates) const noexcept {
+  const detail::ParaxialJob job{to_scene_.data(), to_scene_.size(), z_, wavelengths};
+  if constexpr (std::is_same_v<T, float>) {
+    detail::paraxial_loops().of_float(count, job, lines, rays, fates);
+  } else {
+    detail::paraxial_loops().of_double(count, job, lines, rays, fates);
+  }
+}
+
+void ParaxialModel::to_film(std::size_t count, const RayArrays<const double>& rays, const RayWavelengths& wavelengths,
+                            const FilmLines<double>& lines, RayFate* fates) const noexcept {
+  constexpr double reach = 1e12;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double slope_x = rays.dx[i] / rays.dz[i], slope_y = rays.dy[i] / rays.dz[i], away = z_ - rays.z[i];
+    const double x = rays.x[i] + slope_x * away, y = rays.y[i] + slope_y * away;
+    const bool good = wavelengths[i] < to_film_.size() && rays.dz[i] > 0 &&
+                      std::abs(x) + std::abs(y) + std::abs(slope_x) + std::abs(slope_y) <= reach;
+    const PairMap m = good ? to_film_[wavelengths[i]] : PairMap{};
+    fates[i] = good ? RayFate::transmitted : RayFate::missed_surface;
+    lines.film_x[i] = good ? m.a * x + m.b * slope_x : 0;
+    lines.film_y[i] = good ? m.a * y + m.b * slope_y : 0;
+    lines.pupil_x[i] = good ? m.c * x + m.d * slope_x : 0;
+    lines.pupil_y[i] = good ? m.c * y + m.d * slope_y : 0;
+  }
+}
+
+template PETZVAL_API void ParaxialModel::to_scene(std::size_t, const FilmLines<const float>&, const RayWavelengths&,
+                                                  const RayArrays<float>&, RayFate*) const noexcept;
+template PETZVAL_API void ParaxialModel::to_scene(std::size_t, const FilmLines<const double>&, const RayWavelengths&,
+                                                  const RayArrays<double>&, RayFate*) const noexcept;
+
+}  // namespace petzval

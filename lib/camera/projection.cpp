@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <optional>
+
+#include "petzval/camera/importance.hpp"
+#include "scene_side.hpp"
+
+namespace petzval {
+
+std::string_view name(ProjectionStatus status) noexcept {
+  switch (status) {
+    case ProjectionStatus::converged: return "converged";
+    case ProjectionStatus::outside_film: return "outside_film";
+    case ProjectionStatus::vignetted: return "vignetted";
+    case ProjectionStatus::not_visible: return "not_visible";
+  }
+  return "unknown";
+}
+
+namespace detail {
+namespace {
+
+/// How the chief rays of a film point and of two beside it miss a point: sines of angles, across two axes.
+struct Misses {
+  std::array<std::array<double, 2>, 3> by{};
+  bool lost = false;
+};
+
+}  // namespace
+
+Projection SceneSide::project(const AnyModel& any, const Vec3<double>& point, std::size_t wavelength) const noexcept {
+  Projection result;
+  if (wavelength >= wavelengths_.size() || !entrance_.in_front(point)) return result;
+  const ChiefLines& chiefs = wavelengths_[wavelength].chiefs;
+  const auto start = chiefs.about(point);
+  if (!start) return result;
+
+  const double beside = 1e-3 * film_.radius_mm();
+  const auto misses = [&](const FilmPoint& film, double hx, double hy) noexcept {
+    std::array<std::array<double, 3>, 4> line;
+    std::array<std::array<double, 3>, 6> ray;
+    std::array<RayFate, 3> fates;
+    for (int i : {0, 1, 2}) {
+      const FilmPoint f{film.x + (i == 1 ? hx : 0), film.y + (i == 2 ? hy : 0)};
+      const auto [x, y] = chiefs.pupil_point(f);
+      line[0][i] = f.x, line[1][i] = f.y, line[2][i] = x, line[3][i] = y;
+    }
+    std::visit(
+        [&](const auto& m) {
+          m.template to_scene<double>(
+              3, {line[0].data(), line[1].data(), line[2].data(), line[3].data()}, {.all = wavelength},
+              {ray[0].data(), ray[1].data(), ray[2].data(), ray[3].data(), ray[4].data(), ray[5].data()}, fates.data());
+        },
+        any);
+    Misses found;
+    Vec3<double> across{1, 0, 0}, up{0, 1, 0};
+    for (int i : {0, 1, 2}) {
+      found.lost |= fates[i] != RayFate::transmitted;
+      const Vec3<double> direction{ray[3][i], ray[4][i], ray[5][i]};
+      const Vec3<double> wanted = glm::normalize(point - Vec3<double>{ray[0][i], ray[1][i], ray[2][i]});
+      if (i == 0) {
+        across = glm::normalize(
+            glm::cross(wanted, std::abs(wanted.x) < 0.5 ? Vec3<double>{1, 0, 0} : Vec3<double>{0, 1, 0}));
+        up = glm::cross(wanted, across);
+      }
+      const Vec3<double> turn = glm::cross(direction, wanted);
+      found.by[i] = {glm::dot(turn, across), glm::dot(turn, up)};
+    }
+    return found;
+  };
+
+  FilmPoint film = *start;
+  const auto done = [&](ProjectionStatus status) {
+    result = {film_.contains(film) ? status : ProjectionStatus::outside_film, film, film_.raster(film)};
+    return result;
+  };
+  // Newton's iteration, until its steps are as small as the numbers of the model allow.
+  double last = film_.radius_mm();
+  const double settled = 1e-12 * last, good = 1e-5 * last;
+  for (;;) {
+    // Beside towards the axis, where rays are less likely to be lost.
+    const double hx = std::copysign(beside, -film.x), hy = std::copysign(beside, -film.y);
+    const auto [by, lost] = misses(film, hx, hy);
+    if (lost) return done(ProjectionStatus::vignetted);
+    const double xx = (by[1][0] - by[0][0]) / hx, xy = (by[2][0] - by[0][0]) / hy;
+    const double yx = (by[1][1] - by[0][1]) / hx, yy = (by[2][1] - by[0][1]) / hy;
+    const double determinant = xx * yy - xy * yx;
+    const double dx = (by[0][1] * xy - by[0][0] * yy) / determinant, dy = (by[0][0] * yx - by[0][1] * xx) / determinant;
+    const double step = std::hypot(dx, dy);
+    if (!(step < last)) {
+      if (last < good) break;
+      return result;
+    }
+    film = {film.x + dx, film.y + dy};
+    last = step;
+    if (step < settled) break;
+  }
+  const bool rims = !std::holds_alternative<ParaxialModel>(any) && !std::holds_alternative<PolynomialModel>(any);
+  const auto [x, y] = chiefs.pupil_point(film);
+  const PupilMap& pupils = std::visit([](const auto& m) -> const PupilMap& { return m.pupils(); }, any);
+  const bool within = rims || pupils.contains(film, x, y, wavelength);
+  return done(within ? ProjectionStatus::converged : ProjectionStatus::vignetted);
+}
+
+}  // namespace detail
+}  // namespace petzval

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "two_disc_fit.hpp"
+
+#include <ceres/tiny_solver.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace petzval::detail {
+namespace {
+
+using Discs = std::array<PupilDisc, 2>;
+
+/// How far outside of a disc a point lies; negative within.
+double outside(const EdgePoint& point, const PupilDisc& disc) noexcept {
+  return std::hypot(point.x, point.y - disc.shift * point.field) - disc.radius;
+}
+
+/// The same for what lies in both.
+double outside(const EdgePoint& point, const Discs& discs) noexcept {
+  return std::max(outside(point, discs[0]), outside(point, discs[1]));
+}
+
+/// Distances of edge points from the edge of what both discs contain, for a solver. Unknown: centre of each disc at the
+/// largest field, and radius. Lengths in units of `unit`, so that the solver's tolerances mean something.
+struct EdgeDistances {
+  using Scalar = double;
+  enum { NUM_RESIDUALS = Eigen::Dynamic, NUM_PARAMETERS = 4 };
+
+  std::span<const EdgePoint> edges;
+  std::span<const double> weights;
+  double unit = 1, field = 1;
+
+  int NumResiduals() const { return static_cast<int>(edges.size()); }
+
+  Discs discs(const double* p) const noexcept {
+    return {{{p[0] * unit / field, p[1] * unit}, {p[2] * unit / field, p[3] * unit}}};
+  }
+  void parameters(const Discs& discs, double* p) const noexcept {
+    for (std::size_t i = 0; i < 2; ++i) {
+      p[2 * i] = discs[i].shift * field / unit;
+      p[2 * i + 1] = discs[i].radius / unit;
+    }
+  }
+
+  /// jacobian: residuals x 4, by columns, or null.
+  bool operator()(const double* p, double* residuals, double* jacobian) const {
+    const Discs both = discs(p);
+    const std::size_t count = edges.size();
+    if (jacobian) std::fill_n(jacobian, 4 * count, 0.0);
+    for (std::size_t i = 0; i < count; ++i) {
+      const EdgePoint& e = edges[i];
+      const double first = outside(e, both[0]), second = outside(e, both[1]);
+      const std::size_t disc = first >= second ? 0 : 1;
+      residuals[i] = weights[i] * std::max(first, second) / unit;
+      if (!jacobian) continue;
+      const double dy = e.y - both[disc].shift * e.field;
+      const double length = std::max(std::hypot(e.x, dy), std::numeric_limits<double>::min());
+      jacobian[2 * disc * count + i] = -weights[i] * dy / length * e.field / field;
+      jacobian[(2 * disc + 1) * count + i] = -weights[i];
+    }
+    return true;
+  }
+};
+
+/// Discs to start from: each touches the pupil of the field on one side, above or below, one of them wider than
+/// the pupil on the axis.
+void add_starts(std::span<const EdgePoint> pupil, double radius, std::vector<Discs>& starts) {
+  const auto [lowest, highest] =
+      std::minmax_element(pupil.begin(), pupil.end(), [](const EdgePoint& a, const EdgePoint& b) { return a.y < b.y; });
+  const double field = pupil.front().field;
+  for (const auto& [below, above] : {std::array{1.0, 1.0}, std::array{1.0, 1.6}, std::array{1.6, 1.0}}) {
+    starts.push_back({{{(lowest->y + below * radius) / field, below * radius},
+                       {(highest->y - above * radius) / field, above * radius}}});
+  }
+}
+
+}  // namespace
+
+double two_disc_error(std::span<const EdgePoint> edges, const Discs& discs) noexcept {
+  double sum = 0;
+  for (const EdgePoint& e : edges) sum += std::abs(outside(e, discs)) * e.share;
+  return sum;
+}
+
+std::array<PupilDisc, 2> fit_two_discs(std::span<const EdgePoint> edges) {
+  if (edges.empty()) return {};
+  std::vector<std::span<const EdgePoint>> pupils;
+  for (auto from = edges.begin(); from != edges.end();) {
+    const auto to = std::find_if(from, edges.end(), [&](const EdgePoint& e) { return e.field != from->field; });
+    pupils.emplace_back(from, to);
+    from = to;
+  }
+  const auto wider = [](const EdgePoint& a, const EdgePoint& b) { return a.x < b.x; };
+  const double radius = std::max_element(pupils[0].begin(), pupils[0].end(), wider)->x;
+  std::vector<Discs> starts{{{{0, radius}, {0, radius}}}};
+  if (pupils.back()[0].field > 0) add_starts(pupils.back(), radius, starts);
+  if (pupils.size() > 2) add_starts(pupils[pupils.size() / 2], radius, starts);
+
+  std::vector<double> weights(edges.size());
+  const double last_field = pupils.back()[0].field;
+  const EdgeDistances distances{edges, weights, radius, last_field > 0 ? last_field : 1};
+  ceres::TinySolver<EdgeDistances> solver;
+  solver.options.function_tolerance = 1e-9;
+  Discs best{};
+  double least = std::numeric_limits<double>::infinity();
+  const auto improve = [&](const Discs& start) {
+    Eigen::Vector4d p;
+    distances.parameters(start, p.data());
+    solver.Solve(distances, &p);
+    const Discs discs = distances.discs(p.data());
+    const double error = two_disc_error(edges, discs);
+    if (error < least) least = error, best = discs;
+  };
+  std::transform(edges.begin(), edges.end(), weights.begin(),
+                 [&](const EdgePoint& e) { return std::sqrt(e.share * radius); });
+  for (const Discs& start : starts) improve(start);
+  // Squares again, weighted so that their sum becomes that of the distances: the area between the edges.
+  for (int round = 0; round < 4; ++round) {
+    std::transform(edges.begin(), edges.end(), weights.begin(), [&](const EdgePoint& e) {
+      return std::sqrt(e.share * radius / (0.01 + std::abs(outside(e, best)) / radius));
+    });
+    improve(best);
+  }
+  return best;
+}
+
+}  // namespace petzval::detail

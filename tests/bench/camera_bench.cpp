@@ -1,0 +1,261 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a camera ray costs, one thread: pupil sample, ray, weight, by every model of a lens, in batches of 4096 samples
+// and one by one; and what a camera takes to set up.
+//
+//   camera_bench [--json FILE] [options of Google Benchmark]
+//
+// A useful ray is one that reaches the scene: samples cost what they cost whether they do or not. The textbook tracer
+// is timed in the same run on the ray mix of trace_bench. pbrt-v4 takes 535 ns for a useful ray where it traces one of
+// the mix in 379 ns, and the textbook tracer needs about 0.508 of that: a useful ray of pbrt-v4 stands for 2.78
+// textbook rays. Samples lie all over a frame of 3:2 at the lens's full aperture.
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <deque>
+#include <exception>
+#include <functional>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <random>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "petzval/camera/camera.hpp"
+#include "petzval/core/error.hpp"
+#include "petzval/io/prescription_json.hpp"
+#include "petzval/io/write_file.hpp"
+#include "table.hpp"
+#include "trace_rays.hpp"
+#include "trace_work.hpp"
+
+namespace {
+
+using petzval::Camera;
+using petzval::Film;
+using petzval::Model;
+
+constexpr std::size_t sample_count = 16384, batch_size = 4096;
+constexpr double textbook_rays_per_pbrt_ray = 535 / (0.508 * 379);
+
+template <class T>
+using Column = std::vector<T, OnCacheLines<T>>;
+
+/// Samples all over the film, and room for what becomes of them.
+template <class T>
+struct Samples {
+  Column<T> film_x, film_y, pupil_u, pupil_v;
+  std::array<Column<T>, 6> rays;
+  Column<T> weights;
+  std::vector<petzval::RayFate> fates;
+
+  explicit Samples(const Film& film) : weights(sample_count), fates(sample_count) {
+    std::mt19937 random(1);
+    std::uniform_real_distribution<double> one;
+    for (std::size_t i = 0; i < sample_count; ++i) {
+      film_x.push_back(static_cast<T>((one(random) - 0.5) * film.width_mm));
+      film_y.push_back(static_cast<T>((one(random) - 0.5) * film.height_mm));
+      pupil_u.push_back(static_cast<T>(one(random)));
+      pupil_v.push_back(static_cast<T>(one(random)));
+    }
+    for (auto& column : rays) column.resize(sample_count);
+  }
+};
+
+/// A way to sample rays of a camera, timed as a round.
+struct Row {
+  std::string lens, call;
+  Model model;
+  bool in_double;
+  Camera camera;
+  double textbook_ns = 0, useful = 0, ns = 0;  ///< useful: share of the samples
+
+  std::string name() const { return lens + '/' + std::string(petzval::name(model)) + '/' + call; }
+  const char* precision() const { return in_double ? "double" : "float"; }
+  double ns_per_useful() const { return ns / useful; }
+  double ratio() const { return textbook_ns / ns_per_useful(); }
+};
+
+template <class T>
+void sample_batches(const Camera& camera, Samples<T>& s) {
+  for (std::size_t i = 0; i < sample_count; i += batch_size) {
+    const petzval::CameraSamples<T> samples{s.film_x.data() + i, s.film_y.data() + i, s.pupil_u.data() + i,
+                                            s.pupil_v.data() + i};
+    const auto ray = [&](std::size_t k) { return s.rays[k].data() + i; };
+    camera.sample<T>(batch_size, samples,
+                     {{ray(0), ray(1), ray(2), ray(3), ray(4), ray(5)}, s.weights.data() + i, s.fates.data() + i});
+  }
+}
+
+template <class T>
+void time_batches(benchmark::State& state, const Row& row) {
+  Samples<T> samples(row.camera.film());
+  for (auto _ : state) {
+    sample_batches(row.camera, samples);
+    benchmark::ClobberMemory();
+  }
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(sample_count));
+}
+
+void time_single(benchmark::State& state, const Row& row) {
+  const Samples<double> s(row.camera.film());
+  std::vector<petzval::CameraRay> rays(sample_count);
+  for (auto _ : state) {
+    for (std::size_t i = 0; i < sample_count; ++i) {
+      rays[i] =
+          row.camera.sample({.film = {s.film_x[i], s.film_y[i]}, .pupil_u = s.pupil_u[i], .pupil_v = s.pupil_v[i]});
+    }
+    benchmark::ClobberMemory();
+  }
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(sample_count));
+}
+
+void time_textbook(benchmark::State& state, const BenchLens& bench) {
+  TextbookWork work(bench, bench.mix);
+  for (auto _ : state) {
+    work.trace();
+    benchmark::ClobberMemory();
+  }
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(bench.mix.in_float.rays.size()));
+}
+
+double useful_share(const Camera& camera) {
+  Samples<double> samples(camera.film());
+  sample_batches(camera, samples);
+  const auto useful = std::count_if(samples.weights.begin(), samples.weights.end(), [](double w) { return w > 0; });
+  return static_cast<double>(useful) / static_cast<double>(sample_count);
+}
+
+/// The least of three times, ms.
+double setup_ms(const std::function<void()>& work) {
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < 3; ++i) {
+    const auto start = std::chrono::steady_clock::now();
+    work();
+    const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
+    least = std::min(least, took.count());
+  }
+  return least;
+}
+
+struct Bench {
+  BenchLens lens;
+  Film film;
+  double half_diagonal;
+
+  Bench(const std::string& id, double half)
+      : lens(petzval::read_prescription(std::string(PETZVAL_BENCH_DATA) + "/lenses/" + id + ".json"), half,
+             sample_count),
+        film{.width_mm = 6 / std::sqrt(13.) * half, .height_mm = 4 / std::sqrt(13.) * half},
+        half_diagonal(half) {}
+};
+
+void print_rows(const Bench& bench, const std::vector<Row>& rows) {
+  const auto mine = [&](const Row& row) { return row.lens == bench.lens.id; };
+  const auto first = std::find_if(rows.begin(), rows.end(), mine);
+  if (first == rows.end()) return;
+  std::printf("\n%s, %zu surfaces, film %.0f x %.0f mm; textbook tracer %s ns per ray of the mix\n\n",
+              bench.lens.name.c_str(), bench.lens.lens.surface_count(), bench.film.width_mm, bench.film.height_mm,
+              digits(first->textbook_ns).c_str());
+  std::printf(
+      "| model         | call   | precision | ns per sample | useful  | ns per useful ray | x textbook ray | x "
+      "pbrt-v4* |\n"
+      "|---------------|--------|-----------|--------------:|--------:|------------------:|---------------:|-----------"
+      ":|\n");
+  for (const Row& row : rows) {
+    if (!mine(row)) continue;
+    std::printf("| %-13s | %-6s | %-9s | %13s | %5.1f %% | %17s | %14s | %10s |\n",
+                std::string(petzval::name(row.model)).c_str(), row.call.c_str(), row.precision(),
+                digits(row.ns).c_str(), 100 * row.useful, digits(row.ns_per_useful()).c_str(),
+                digits(row.ratio(), 3).c_str(), digits(textbook_rays_per_pbrt_ray * row.ratio(), 3).c_str());
+  }
+}
+
+void print_setup(const Bench& bench) {
+  const petzval::Lens& lens = bench.lens.lens;
+  std::printf("\n%s, set-up, ms\n\n| what                  |      ms |\n|-----------------------|--------:|\n",
+              bench.lens.name.c_str());
+  const auto print = [](const std::string& what, const std::function<void()>& work) {
+    std::printf("| %-21s | %7s |\n", what.c_str(), digits(setup_ms(work), 3).c_str());
+  };
+  print("PupilMap::covering", [&] { petzval::PupilMap::covering(lens, bench.half_diagonal); });
+  print("Camera, exact_float", [&] { Camera(lens, bench.film); });
+  for (const Model model : petzval::models()) {
+    print(std::string(petzval::name(model)), [&] { petzval::make_model(model, lens, bench.half_diagonal); });
+  }
+}
+
+std::string json(const std::vector<Row>& rows) {
+  using Json = nlohmann::ordered_json;
+  Json array = Json::array();
+  for (const Row& row : rows) {
+    array.push_back({{"lens", row.lens},
+                     {"model", petzval::name(row.model)},
+                     {"call", row.call},
+                     {"precision", row.precision()},
+                     {"ns_per_sample", row.ns},
+                     {"useful", row.useful},
+                     {"ns_per_useful_ray", row.ns_per_useful()},
+                     {"textbook_ns_per_ray", row.textbook_ns},
+                     {"ratio_to_textbook", row.ratio()},
+                     {"ratio_to_pbrt_v4_estimated", textbook_rays_per_pbrt_ray * row.ratio()}});
+  }
+  return array.dump(1) + '\n';
+}
+
+int run(std::vector<char*> arguments) {
+  const auto json_file = take_option(arguments, "--json");
+  initialize(static_cast<int>(arguments.size()), arguments.data(), 15, 0.005);
+  std::deque<Bench> benches;
+  benches.emplace_back("double_gauss_100mm_f2.0", 40.4);
+  benches.emplace_back("modern_58mm_f0.95", 21.6);
+  std::deque<Row> rows;
+  for (const Bench& bench : benches) {
+    benchmark::RegisterBenchmark((bench.lens.id + "/textbook").c_str(), time_textbook, bench.lens);
+    for (const Model model : petzval::models()) {
+      const Camera camera(bench.lens.lens, bench.film, {.model = model});
+      const bool in_double = model == Model::exact_double;
+      rows.push_back({bench.lens.id, "batch", model, in_double, camera});
+      benchmark::RegisterBenchmark(rows.back().name().c_str(), in_double ? time_batches<double> : time_batches<float>,
+                                   rows.back());
+      rows.push_back({bench.lens.id, "single", model, true, camera});
+      benchmark::RegisterBenchmark(rows.back().name().c_str(), time_single, rows.back());
+    }
+  }
+  Rounds rounds;
+  benchmark::RunSpecifiedBenchmarks(&rounds);
+
+  // Only what ran: the caller may have asked for less.
+  const auto ns_of = [&](const std::string& name) {
+    const auto line = std::find_if(rounds.lines().begin(), rounds.lines().end(),
+                                   [&](const Rounds::Line& l) { return l.name == name; });
+    return line == rounds.lines().end() ? std::numeric_limits<double>::quiet_NaN() : 1e9 * line->min();
+  };
+  std::vector<Row> results;
+  for (Row& row : rows) {
+    row.ns = ns_of(row.name());
+    row.textbook_ns = ns_of(row.lens + "/textbook");
+    if (!std::isfinite(row.ns) || !std::isfinite(row.textbook_ns)) continue;
+    row.useful = useful_share(row.camera);
+    results.push_back(row);
+  }
+  for (const Bench& bench : benches) print_rows(bench, results);
+  if (!results.empty()) std::printf("\n* for a useful ray of which 2.78 textbook rays stand\n");
+  for (const Bench& bench : benches) print_setup(bench);
+  if (json_file) petzval::write_file(json(results), *json_file);
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run({argv, argv + argc});
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 1;
+  }
+}

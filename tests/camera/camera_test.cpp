@@ -1,0 +1,426 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "petzval/camera/camera.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <numbers>
+#include <numeric>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "../data_lenses.hpp"
+#include "../kronecker.hpp"
+#include "../message.hpp"
+#include "camera_samples.hpp"
+#include "petzval/camera/sample_rays.hpp"
+#include "petzval/core/error.hpp"
+#include "petzval/focus/focus.hpp"
+#include "petzval/pupil/pupil.hpp"
+
+namespace petzval {
+namespace {
+
+using testing::random_samples;
+using testing::Samples;
+
+Lens focused(const char* id) { return with_focus(testing::data_lens(id), 3000, {.origin = DistanceOrigin::film}); }
+
+/// Of single rays against batches.
+double precision(Model model) { return model == Model::exact_double ? 1e-11 : 2e-5; }
+
+TEST(Camera, GivesTheSameRaySinglyAndInABatch) {
+  const Lens lens = focused("double_gauss_100mm_f2.0");
+  for (const Model model : models()) {
+    const Camera camera(lens, {}, {.model = model});
+    EXPECT_EQ(camera.model(), model);
+    auto samples = random_samples(camera.film(), 300);
+    samples.run(camera);
+    int other_fates = 0;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      const CameraRay one = camera.sample(samples.one(i));
+      other_fates += one.fate != samples.fates[i];
+      if (one.fate != samples.fates[i]) continue;
+      const double eps = precision(model);
+      EXPECT_NEAR(one.weight, samples.weights[i], eps * std::max(one.weight, 1e-3)) << name(model) << ' ' << i;
+      EXPECT_NEAR(one.pdf_pupil, samples.pdf_pupil[i], eps * one.pdf_pupil);
+      EXPECT_NEAR(one.pdf_direction, samples.pdf_direction[i], eps * one.pdf_direction);
+      EXPECT_NEAR(one.pdf_film, 1 / camera.film().area_mm2(), 1e-15);
+      EXPECT_EQ(one.weight > 0, one.fate == RayFate::transmitted);
+      if (!one) continue;
+      EXPECT_NEAR(glm::length(one.ray.direction - samples.ray(i).direction), 0, eps) << name(model);
+      EXPECT_NEAR(glm::length(one.ray.origin - samples.ray(i).origin), 0, 100 * eps) << name(model);
+      EXPECT_NEAR(glm::length(one.ray.direction), 1, eps);
+    }
+    EXPECT_LE(other_fates, 1) << name(model);
+  }
+}
+
+template <class T>
+void expect_same_whatever_the_neighbours(const Camera& camera) {
+  auto whole = random_samples<T>(camera.film(), 600), parts = whole;
+  whole.run(camera);
+  std::size_t first = 0;
+  for (const std::size_t count : {1, 2, 7, 64, 255, 271}) {
+    parts.run(camera, first, count);
+    first += count;
+  }
+  ASSERT_EQ(first, whole.size());
+  const bool in_float = std::is_same_v<T, float> || camera.model() == Model::exact_float;
+  const double eps = in_float ? 1e-6 : 2e-15;
+  for (std::size_t i = 0; i < whole.size(); ++i) {
+    EXPECT_EQ(whole.fates[i], parts.fates[i]) << name(camera.model());
+    EXPECT_NEAR(whole.weights[i], parts.weights[i], eps * whole.weights[i]);
+    EXPECT_NEAR(glm::length(whole.ray(i).direction - parts.ray(i).direction), 0, eps);
+    EXPECT_NEAR(glm::length(whole.ray(i).origin - parts.ray(i).origin), 0, 100 * eps);
+  }
+}
+
+TEST(Camera, AsksNothingOfTheNeighboursInABatch) {
+  const Lens lens = focused("tessar_100mm_f2.8");
+  for (const Model model : models()) {
+    const Camera camera(lens, {}, {.model = model});
+    expect_same_whatever_the_neighbours<float>(camera);
+    expect_same_whatever_the_neighbours<double>(camera);
+  }
+}
+
+TEST(Camera, TakesAWavelengthForEveryRay) {
+  const GlassCatalogue glasses = GlassCatalogue::load(std::filesystem::path(PETZVAL_TEST_DATA) / "glass");
+  const std::array lines_nm{486.1327, 587.5618, 656.2725};
+  const Lens lens = compile(testing::data_prescription("double_gauss_100mm_f2.0"), lines_nm,
+                            {.glasses = &glasses, .missing_glass = MissingGlass::abbe});
+  for (const Model model : models()) {
+    const Camera camera(lens, {}, {.model = model});
+    auto mixed = random_samples(camera.film(), 300);
+    for (std::size_t i = 0; i < mixed.size(); ++i) mixed.wavelengths.push_back(static_cast<std::uint16_t>(i * i % 3));
+    mixed.run(camera);
+    for (std::size_t i = 0; i < mixed.size(); ++i) {
+      const CameraRay one = camera.sample(mixed.one(i));
+      if (one.fate != mixed.fates[i]) continue;
+      EXPECT_NEAR(one.weight, mixed.weights[i], precision(model) * one.weight) << name(model);
+      EXPECT_NEAR(glm::length(one.ray.direction - mixed.ray(i).direction), 0, precision(model)) << name(model);
+    }
+    CameraSample s{{4, 11}, 0.3, 0.4};
+    const CameraRay blue = camera.sample(s);
+    s.wavelength = 2;
+    EXPECT_GT(glm::length(camera.sample(s).ray.direction - blue.ray.direction), 1e-7) << name(model);
+  }
+}
+
+TEST(Camera, HasItsFilmWhereItIsShiftedTo) {
+  const Lens lens = focused("double_gauss_100mm_f2.0");
+  const Camera shifted(lens, {.width_mm = 10, .height_mm = 10, .centre_x_mm = 12}, {.model = Model::exact_double});
+  const Camera wide(lens, {.width_mm = 36, .height_mm = 36}, {.model = Model::exact_double});
+  EXPECT_EQ(shifted.sample({{6.9, 0}, 0.5, 0.5}).fate, RayFate::outside_film);
+  const CameraRay a = shifted.sample({{16.9, 4.9}, 0.5, 0.5}), b = wide.sample({{16.9, 4.9}, 0.5, 0.5});
+  EXPECT_EQ(a.fate, RayFate::transmitted);
+  EXPECT_NEAR(glm::length(a.ray.direction - b.ray.direction), 0, 5e-3);  // tables of other steps
+}
+
+TEST(Camera, HasItsEdgesOnTheFilm) {
+  const Lens lens = focused("double_gauss_100mm_f2.0");
+  const testing::Kronecker<4> random(1);
+  for (std::uint32_t i = 0; i < 40; ++i) {
+    const auto [a, b, c, d] = random(i);
+    const Film film{.width_mm = 5 + 20 * a, .height_mm = 5 + 15 * b, .centre_x_mm = 9 * c, .centre_y_mm = -9 * d};
+    const Camera camera(lens, film, {.model = Model::thick});
+    Samples<float> rounded;
+    for (const double column : {0.0, 0.5 * film.columns, 1.0 * film.columns}) {
+      for (const double row : {0.0, 0.5 * film.rows, 1.0 * film.rows}) {
+        const FilmPoint point = film.point(column, row);
+        EXPECT_TRUE(film.contains(point));
+        EXPECT_TRUE(camera.sample({point, 0.3, 0.6}));
+        rounded.add(point.x, point.y, 0.3, 0.6);
+      }
+    }
+    rounded.run(camera);
+    for (const RayFate fate : rounded.fates) EXPECT_EQ(fate, RayFate::transmitted);
+  }
+}
+
+/// A renderer's own model: a hole of 2 by 2 mm in a plane 50 mm before the film.
+class HoleModel {
+ public:
+  explicit HoleModel(double film_radius)
+      : pupils_(PupilMap::of_discs({.film_z = 50, .pupil_z = 0}, std::array{std::vector<PupilDisc>{{0, 2}}},
+                                   film_radius)) {}
+  const PupilMap& pupils() const noexcept { return pupils_; }
+  template <class T>
+  void to_scene(std::size_t count, const FilmLines<const T>& lines, const RayWavelengths&, const RayArrays<T>& rays,
+                RayFate* fates) const noexcept {
+    for (std::size_t i = 0; i < count; ++i) {
+      const bool passes = std::abs(lines.pupil_x[i]) <= 1 && std::abs(lines.pupil_y[i]) <= 1;
+      const T dx = lines.pupil_x[i] - lines.film_x[i], dy = lines.pupil_y[i] - lines.film_y[i];
+      const T length = std::sqrt(dx * dx + dy * dy + T(2500));
+      rays.x[i] = lines.pupil_x[i], rays.y[i] = lines.pupil_y[i], rays.z[i] = T(0);
+      rays.dx[i] = dx / length, rays.dy[i] = dy / length, rays.dz[i] = T(-50) / length;
+      fates[i] = passes ? RayFate::transmitted : RayFate::vignetted;
+    }
+  }
+  void to_film(std::size_t count, const RayArrays<const double>&, const RayWavelengths&, const FilmLines<double>& lines,
+               RayFate* fates) const noexcept {
+    for (std::size_t i = 0; i < count; ++i) {
+      lines.film_x[i] = lines.film_y[i] = lines.pupil_x[i] = lines.pupil_y[i] = 0;
+      fates[i] = RayFate::vignetted;
+    }
+  }
+
+ private:
+  PupilMap pupils_;
+};
+static_assert(RayModel<HoleModel>);
+static_assert(RayModel<ParaxialModel> && RayModel<PolynomialModel>);
+static_assert(RayModel<ExactModel<float>> && RayModel<ExactModel<double>>);
+
+TEST(SampleRays, TakesAModelOfTheCallersOwn) {
+  const Film film{.width_mm = 20, .height_mm = 20};
+  Samples<double> samples;
+  constexpr int count = 20000;
+  for (int i = 0; i < count; ++i) samples.add(6, -8, std::fmod(i * std::numbers::phi, 1.0), (i + 0.5) / count);
+  std::array<std::vector<double>, 7> out;
+  for (auto& column : out) column.resize(count);
+  const auto at = [&](std::size_t k) { return out[k].data(); };
+  const double scale = 1;
+  sample_rays<HoleModel, double>(
+      HoleModel(film.radius_mm()), film, &scale, count,
+      {samples.film_x.data(), samples.film_y.data(), samples.pupil_u.data(), samples.pupil_v.data()},
+      {{at(0), at(1), at(2), at(3), at(4), at(5)}, at(6)});
+  // A small hole of 4 mm^2 under cos^4 / 50^2.
+  const double mean = std::accumulate(out[6].begin(), out[6].end(), 0.0) / count;
+  const double square = 2500.0 / (2500 + 100);
+  EXPECT_NEAR(mean / (4 * square * square / 2500), 1, 3e-3);
+}
+
+// A sample (film x, y, u, v) and the ray in the phase space of the scene (place and direction cosines across the axis)
+// are two coordinates of the same light. Etendue being conserved, the Jacobian between them is the weight: n'^2 cos /
+// pdf.
+TEST(Camera, ConservesEtendue) {
+  for (const char* id : {"double_gauss_100mm_f2.0", "fisheye_10mm_f4", "eye_gullstrand_le_grand", "modern_50mm_f1.0"}) {
+    const Lens lens = testing::data_lens(id);
+    const double size = id == std::string("eye_gullstrand_le_grand") ? 3 : 14;
+    const Camera camera(lens, {.width_mm = size, .height_mm = size}, {.model = Model::exact_double});
+    const auto samples = random_samples(camera.film(), 40);
+    int checked = 0;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      const CameraSample s = samples.one(i);
+      const CameraRay middle = camera.sample(s);
+      if (!middle) continue;
+      constexpr double h = 1e-5;
+      std::array<std::array<double, 4>, 4> j{};
+      bool whole = true;
+      for (std::size_t k = 0; k < 4; ++k) {
+        const auto moved = [&](double by) {
+          CameraSample t = s;
+          (k == 0 ? t.film.x : k == 1 ? t.film.y : k == 2 ? t.pupil_u : t.pupil_v) += by;
+          const CameraRay r = camera.sample(t);
+          whole = whole && r.fate == RayFate::transmitted;
+          // Where the ray passes the plane through the middle one's point.
+          const double t_plane = (middle.ray.origin.z - r.ray.origin.z) / r.ray.direction.z;
+          const Vec3<double> p = r.ray.origin + t_plane * r.ray.direction;
+          return std::array{p.x, p.y, r.ray.direction.x, r.ray.direction.y};
+        };
+        const auto after = moved(h), before = moved(-h);
+        for (std::size_t row = 0; row < 4; ++row) j[row][k] = (after[row] - before[row]) / (2 * h);
+      }
+      // Corners of the tables are no place for differences; the edge of the pupil neither.
+      if (!whole) continue;
+      const auto minor = [&](std::size_t r0, std::size_t r1, std::size_t c0, std::size_t c1) {
+        return j[r0][c0] * j[r1][c1] - j[r0][c1] * j[r1][c0];
+      };
+      const double determinant = minor(0, 1, 0, 1) * minor(2, 3, 2, 3) - minor(0, 1, 0, 2) * minor(2, 3, 1, 3) +
+                                 minor(0, 1, 0, 3) * minor(2, 3, 1, 2) + minor(0, 1, 1, 2) * minor(2, 3, 0, 3) -
+                                 minor(0, 1, 1, 3) * minor(2, 3, 0, 2) + minor(0, 1, 2, 3) * minor(2, 3, 0, 1);
+      EXPECT_NEAR(std::abs(determinant) / middle.weight, 1, 2e-5) << id << ' ' << i;
+      ++checked;
+    }
+    EXPECT_GT(checked, 25) << id;
+  }
+}
+
+// The symplectic form of two neighbours of a ray, n (dr1 dp2 - dr2 dp1), is the same on both sides of the lens.
+TEST(Camera, HasSymplecticDifferentials) {
+  const Lens lens = focused("double_gauss_100mm_f2.0");
+  const Camera camera(lens, {}, {.model = Model::exact_double});
+  const PupilMap& pupils = camera.pupils();
+  const double depth = pupils.space().depth();
+  const auto samples = random_samples(camera.film(), 50);
+  double largest = 0;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const CameraSample s = samples.one(i);
+    const CameraRayDifferential d = camera.sample_differential(s);
+    if (!d.sample) continue;
+    const PupilSample p = pupils.sample(s.film, s.pupil_u, s.pupil_v);
+    const auto motion = pupils.motion(s.film, s.pupil_u, s.pupil_v);
+    const Vec3<double> line{p.x - s.film.x, p.y - s.film.y, depth};
+    const double length = glm::length(line);
+    const auto turned = [&](double x, double y) {
+      const Vec3<double> by{x, y, 0};
+      return (by - line * (glm::dot(line, by) / (length * length))) / length;
+    };
+    const Vec3<double> by_x = turned(motion.by_film_x[0] - 1, motion.by_film_x[1]);
+    const Vec3<double> by_y = turned(motion.by_film_y[0], motion.by_film_y[1] - 1);
+    const double film = by_y.x - by_x.y;
+    const double scene =
+        glm::dot(d.by_film_x.origin, d.by_film_y.direction) - glm::dot(d.by_film_y.origin, d.by_film_x.direction);
+    EXPECT_NEAR(scene, film, 1e-10);
+    largest = std::max(largest, std::abs(film));
+  }
+  EXPECT_GT(largest, 1e-5);
+}
+
+TEST(Camera, DifferentiatesAsDifferencesDo) {
+  const Lens lens = focused("double_gauss_100mm_f2.0");
+  for (const Model model : models()) {
+    const Camera camera(lens, {}, {.model = model});
+    // Differences of float rays are noise; their derivatives are near those of the same lens in double.
+    const Camera reference(lens, {}, {.model = model == Model::exact_float ? Model::exact_double : model});
+    const auto samples = random_samples(camera.film(), 40);
+    int checked = 0;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      const CameraSample s = samples.one(i);
+      const CameraRayDifferential d = camera.sample_differential(s);
+      const CameraRay same = camera.sample(s);
+      EXPECT_EQ(d.sample.fate, same.fate);
+      EXPECT_NEAR(d.sample.weight, same.weight, precision(model) * same.weight);
+      if (!d.sample) continue;
+      constexpr double h = 1e-4;
+      for (const bool by_x : {true, false}) {
+        const auto moved = [&](double by) {
+          CameraSample t = s;
+          (by_x ? t.film.x : t.film.y) += by;
+          return reference.sample(t);
+        };
+        const CameraRay after = moved(h), before = moved(-h);
+        if (!after || !before) continue;
+        const Ray<double>& derivative = by_x ? d.by_film_x : d.by_film_y;
+        const Vec3<double> direction = (after.ray.direction - before.ray.direction) / (2 * h);
+        const Vec3<double> origin = (after.ray.origin - before.ray.origin) / (2 * h);
+        const double bound = model == Model::exact_float ? 1e-4 : 1e-7;
+        EXPECT_NEAR(glm::length(derivative.direction - direction), 0, bound) << name(model) << ' ' << i;
+        EXPECT_NEAR(glm::length(derivative.origin - origin), 0, 100 * bound) << name(model) << ' ' << i;
+        ++checked;
+      }
+    }
+    EXPECT_GT(checked, 50) << name(model);
+  }
+}
+
+void expect_lost(const Camera& camera, const CameraSample& sample, RayFate fate) {
+  const CameraRay one = camera.sample(sample);
+  const CameraRayDifferential d = camera.sample_differential(sample);
+  EXPECT_EQ(one.fate, fate) << name(camera.model());
+  EXPECT_EQ(d.sample.fate, fate) << name(camera.model());
+  EXPECT_EQ(one.weight, 0);
+  for (const Ray<double>& ray : {one.ray, d.sample.ray, d.by_film_x, d.by_film_y}) {
+    for (int k = 0; k < 3; ++k) EXPECT_TRUE(std::isfinite(ray.origin[k]) && std::isfinite(ray.direction[k]));
+  }
+  for (const double value : {one.pdf_film, one.pdf_pupil, one.pdf_direction}) EXPECT_TRUE(std::isfinite(value));
+}
+
+TEST(Camera, GivesAFateToBadSamples) {
+  const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
+  const Lens lens = focused("double_gauss_100mm_f2.0");
+  for (const Model model : models()) {
+    const Camera camera(lens, {}, {.model = model});
+    for (const FilmPoint& point : {FilmPoint{18.01, 0}, FilmPoint{0, -12.01}, FilmPoint{nan, 0}, FilmPoint{0, nan},
+                                   FilmPoint{inf, 0}, FilmPoint{1e300, -1e300}}) {
+      expect_lost(camera, {point, 0.5, 0.5}, RayFate::outside_film);
+    }
+    expect_lost(camera, {{1, 2}, nan, 0.5}, RayFate::vignetted);
+    expect_lost(camera, {{1, 2}, 0.5, nan}, RayFate::vignetted);
+    expect_lost(camera, {{1, 2}, inf, 0.5}, RayFate::vignetted);
+    expect_lost(camera, {{1, 2}, 0.5, 0.5, 1}, RayFate::missed_surface);
+    expect_lost(camera, {{1, 2}, 0.5, 0.5, 1u << 20}, RayFate::missed_surface);
+    // The corners of film and pupil square belong to them.
+    for (const double u : {0.0, 1.0}) {
+      const CameraRay corner = camera.sample({{18, -12}, u, 1 - u});
+      EXPECT_NE(corner.fate, RayFate::outside_film);
+      EXPECT_NE(corner.fate, RayFate::missed_surface);
+    }
+  }
+}
+
+TEST(Camera, GivesAFateToBadSamplesInBatches) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const Lens lens = focused("double_gauss_100mm_f2.0");
+  for (const Model model : models()) {
+    const Camera camera(lens, {}, {.model = model});
+    auto samples = random_samples<float>(camera.film(), 100);
+    samples.wavelengths.assign(100, 0);
+    samples.film_x[3] = static_cast<float>(nan), samples.film_y[40] = 13, samples.pupil_u[50] = static_cast<float>(nan);
+    samples.wavelengths[60] = 1, samples.film_x[99] = std::numeric_limits<float>::infinity();
+    samples.run(camera);
+    EXPECT_EQ(samples.fates[3], RayFate::outside_film) << name(model);
+    EXPECT_EQ(samples.fates[40], RayFate::outside_film) << name(model);
+    EXPECT_EQ(samples.fates[50], RayFate::vignetted) << name(model);
+    EXPECT_EQ(samples.fates[60], RayFate::missed_surface) << name(model);
+    EXPECT_EQ(samples.fates[99], RayFate::outside_film) << name(model);
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      const auto& [origin, direction] = samples.ray(i);
+      for (int k = 0; k < 3; ++k) EXPECT_TRUE(std::isfinite(origin[k]) && std::isfinite(direction[k]));
+      EXPECT_TRUE(std::isfinite(samples.weights[i]) && std::isfinite(samples.pdf_direction[i]));
+      EXPECT_EQ(samples.weights[i] > 0, samples.fates[i] == RayFate::transmitted) << name(model) << ' ' << i;
+    }
+  }
+}
+
+TEST(Camera, IsDarkBehindAShutStop) {
+  const Lens lens = focused("double_gauss_100mm_f2.0");
+  const Lens shut = with_semi_diameter(lens, pupils(lens).stop, 0);
+  for (const Model model : {Model::pinhole, Model::thin, Model::thick, Model::exact_float, Model::exact_double}) {
+    expect_lost(Camera(shut, {}, {.model = model}), {{3, 4}, 0.3, 0.6}, RayFate::vignetted);
+  }
+}
+
+TEST(Camera, SeesBehindItselfWithAFisheye) {
+  const Lens lens = testing::data_lens("fisheye_6.3mm_f2.8");
+  const Film film{.width_mm = 24, .height_mm = 24};
+  const Camera camera(lens, film, {.model = Model::exact_double});
+  auto samples = random_samples(film, 20000);
+  samples.run(camera);
+  int beyond = 0;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const auto& [origin, direction] = samples.ray(i);
+    for (int k = 0; k < 3; ++k) ASSERT_TRUE(std::isfinite(origin[k]) && std::isfinite(direction[k]));
+    beyond += samples.fates[i] == RayFate::transmitted && direction.z > 0;
+  }
+  EXPECT_GT(beyond, 100);  // rays run towards -z; beyond 90 degrees they run towards +z
+}
+
+TEST(Camera, RefusesFilmsThatAreNone) {
+  const Lens lens = testing::data_lens("tessar_100mm_f2.8");
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const Film& film :
+       {Film{.width_mm = 0}, Film{.height_mm = -24}, Film{.width_mm = nan}, Film{.columns = 0}, Film{.rows = -1},
+        Film{.centre_x_mm = nan}, Film{.tilt_rad = 0.1}, Film{.swing_rad = -0.1}}) {
+    EXPECT_THROW(Camera(lens, film), Error);
+  }
+  EXPECT_THROW(Camera(with_film(lens, lens.surfaces().back().vertex_z), {}), Error);
+  EXPECT_THROW(Camera(testing::data_lens("anamorphic_60mm_2x"), {}, {.model = Model::thick}), Error);
+}
+
+TEST(Camera, RefusesModelsOfAnotherLensOrFilm) {
+  const auto refusal = [](const Lens& lens, const AnyModel& model) {
+    return testing::message([&] { Camera(lens, {}, model); });
+  };
+  const auto has = [](const std::string& text, const char* part) { return text.find(part) != std::string::npos; };
+  const Lens lens = focused("tessar_100mm_f2.8");
+  EXPECT_EQ(refusal(lens, make_model(Model::thick, lens, Film{}.radius_mm())), "no error");
+  EXPECT_TRUE(has(refusal(lens, make_model(Model::thick, lens, 5)), "up to 5 mm"));
+  EXPECT_TRUE(has(refusal(lens, make_model(Model::thick, testing::data_lens("tessar_100mm_f2.8"), 22)), "film at z"));
+  Prescription singlet;
+  singlet.surfaces = {
+      {.radius = 50, .thickness = 5, .medium = {.nd = 1.5, .vd = 60}, .semi_diameter = 12, .stop = true},
+      {.radius = -50, .thickness = 48, .semi_diameter = 12}};
+  const Lens two = compile(singlet, std::array{486.0, 587.5618}, {.missing_glass = MissingGlass::abbe});
+  EXPECT_TRUE(has(refusal(compile(singlet), make_model(Model::thick, two, 22)), "for 2 wavelengths"));
+}
+
+}  // namespace
+}  // namespace petzval

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "petzval/camera/host_frame.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <string>
+
+#include "../data_lenses.hpp"
+#include "../message.hpp"
+#include "petzval/core/error.hpp"
+#include "petzval/paraxial/first_order.hpp"
+#include "petzval/pupil/pupil.hpp"
+
+namespace petzval {
+namespace {
+
+constexpr std::array hosts{Host::pbrt, Host::mitsuba, Host::cycles, Host::arnold, Host::appleseed};
+constexpr std::array origins{FrameOrigin::film, FrameOrigin::front_vertex, FrameOrigin::entrance_pupil};
+
+const Lens& gauss() {
+  static const Lens lens = testing::data_lens("double_gauss_100mm_f2_28deg");
+  return lens;
+}
+
+/// What a host says of its camera: where things lie that are right, above and in front of it, and its unit.
+struct Says {
+  Host host;
+  Vec3<double> right, up, ahead;
+  double per_mm;
+};
+
+class HostFrames : public ::testing::TestWithParam<Says> {};
+
+TEST_P(HostFrames, HaveTheirHostsAxesAndUnits) {
+  const auto& [host, right, up, ahead, per_mm] = GetParam();
+  const HostFrame frame(host, gauss(), FrameOrigin::front_vertex);
+  EXPECT_EQ(frame.units_per_mm(), per_mm);
+  // In the lens frame a camera looks along -z, +y is up and so +x to the right.
+  EXPECT_EQ(frame.direction_to_host({1, 0, 0}), right);
+  EXPECT_EQ(frame.direction_to_host({0, 1, 0}), up);
+  EXPECT_EQ(frame.direction_to_host({0, 0, -1}), ahead);
+  EXPECT_NEAR(
+      glm::distance(frame.point_to_host({2000, 3000, -5000}), (right * 2000.0 + up * 3000.0 + ahead * 5000.0) * per_mm),
+      0, 1e-12 * 5000 * per_mm);
+  // Looking ahead with up above, a right-handed frame has its right where the cross product points.
+  const bool right_handed = glm::dot(glm::cross(ahead, up), right) > 0;
+  EXPECT_EQ(right_handed, host == Host::mitsuba || host == Host::arnold || host == Host::appleseed);
+}
+
+INSTANTIATE_TEST_SUITE_P(Hosts, HostFrames,
+                         ::testing::Values(Says{Host::pbrt, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, 0.001},
+                                           Says{Host::mitsuba, {-1, 0, 0}, {0, 1, 0}, {0, 0, 1}, 0.001},
+                                           Says{Host::cycles, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, 0.001},
+                                           Says{Host::arnold, {1, 0, 0}, {0, 1, 0}, {0, 0, -1}, 0.1},
+                                           Says{Host::appleseed, {1, 0, 0}, {0, 1, 0}, {0, 0, -1}, 0.001}));
+
+TEST(HostFrame, GoesThereAndBack) {
+  const Ray<double> ray{{12.5, -340, -2000}, {0.36, 0.48, 0.8}};
+  for (const Host host : hosts) {
+    for (const FrameOrigin origin : origins) {
+      for (const double per_mm : {0.001, 0.1, 1.0, 0.5}) {
+        const HostFrame frame(host, gauss(), origin, per_mm);
+        EXPECT_EQ(frame.units_per_mm(), per_mm);
+        const Ray<double> there = frame.to_host(ray), back = frame.to_lens(there);
+        EXPECT_NEAR(glm::distance(back.origin, ray.origin), 0, 1e-12);
+        EXPECT_EQ(back.direction, ray.direction);
+        EXPECT_NEAR(glm::length(there.direction), 1, 1e-15);
+        EXPECT_EQ(there.origin, frame.point_to_host(ray.origin));
+        EXPECT_EQ(there.direction, frame.direction_to_host(ray.direction));
+        // Lengths scale, whatever the host.
+        EXPECT_NEAR(glm::distance(there.origin, frame.point_to_host({0, 0, 0})), glm::length(ray.origin) * per_mm,
+                    1e-12 * 2000 * per_mm);
+      }
+    }
+  }
+}
+
+TEST(HostFrame, HasItsOriginWhereItIsAsked) {
+  const double pupil_z = pupils(gauss()).entrance.z;
+  for (const Host host : hosts) {
+    const auto at = [&](FrameOrigin origin, double z) {
+      return HostFrame(host, gauss(), origin).point_to_host({0, 0, z});
+    };
+    EXPECT_EQ(at(FrameOrigin::film, gauss().film_z()), Vec3<double>(0));
+    EXPECT_EQ(at(FrameOrigin::front_vertex, 0), Vec3<double>(0));
+    EXPECT_EQ(at(FrameOrigin::entrance_pupil, pupil_z), Vec3<double>(0));
+  }
+}
+
+TEST(HostFrame, RefusesWhatMakesNoFrame) {
+  using testing::message;
+  for (const double unit : {0.0, -0.001, std::nan(""), std::numeric_limits<double>::infinity()}) {
+    EXPECT_NE(message([&] { HostFrame(Host::pbrt, gauss(), FrameOrigin::film, unit); }).find("units per mm"),
+              std::string::npos);
+  }
+  Prescription p;
+  p.name = "telecentric";
+  p.surfaces = {{.radius = 60, .thickness = 5, .medium = {.nd = 1.6}, .semi_diameter = 12},
+                {.radius = -80, .semi_diameter = 12}};
+  p.surfaces[1].thickness = first_order(compile(p)).back_focal_distance;
+  p.surfaces.push_back({.semi_diameter = 3, .stop = true});
+  const Lens telecentric = compile(p);
+  EXPECT_NE(message([&] { HostFrame(Host::pbrt, telecentric, FrameOrigin::entrance_pupil); }).find("at infinity"),
+            std::string::npos);
+  EXPECT_EQ(message([&] { HostFrame(Host::pbrt, telecentric, FrameOrigin::film); }), "no error");
+}
+
+}  // namespace
+}  // namespace petzval

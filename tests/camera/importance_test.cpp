@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "petzval/camera/importance.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <ostream>
+#include <string>
+
+#include "../data_lenses.hpp"
+#include "../kronecker.hpp"
+#include "petzval/camera/camera.hpp"
+#include "petzval/pupil/pupil.hpp"
+
+namespace petzval {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
+const Film film{.width_mm = 36, .height_mm = 24}, small{.width_mm = 6, .height_mm = 6};
+
+CameraSample sample_at(const Film& f, const std::array<double, 5>& x) {
+  return {.film = f.point(x[0] * f.columns, x[1] * f.rows), .pupil_u = x[2], .pupil_v = x[3]};
+}
+
+void expect_finite(const Importance& i) {
+  EXPECT_TRUE(std::isfinite(i.we + i.film.x + i.film.y + i.raster[0] + i.raster[1] + i.pdf_film + i.pdf_pupil +
+                            i.pdf_position + i.pdf_direction));
+}
+
+struct Case {
+  std::string lens;
+  Film film;
+  Model model;
+  double near;  ///< how exactly lines come back, mm on the film
+};
+
+std::ostream& operator<<(std::ostream& out, const Case& c) { return out << c.lens << ' ' << name(c.model); }
+
+class Importances : public ::testing::TestWithParam<Case> {};
+
+TEST_P(Importances, OfACameraRayAreItsOwnSampleTurnedRound) {
+  const auto& [id, f, model, near] = GetParam();
+  const Camera camera(testing::data_lens(id), f, {.model = model});
+  const testing::Kronecker<5> random(3);
+  int seen = 0, at_edges = 0;
+  for (std::uint32_t i = 0; i < 4000; ++i) {
+    const auto x = random(i);
+    const CameraSample s = sample_at(f, x);
+    const CameraRay r = camera.sample(s);
+    if (!r) continue;
+    ++seen;
+    const Vec3<double> point = r.ray.origin + r.ray.direction * std::pow(10, 9 * x[4]);
+    const Importance back = camera.importance({point, -r.ray.direction});
+    expect_finite(back);
+    // A line by an edge may lie on its other side when it comes back.
+    at_edges += !back || back.pdf_pupil == 0;
+    if (!back || back.pdf_pupil == 0) continue;
+    EXPECT_EQ(back.fate, RayFate::transmitted);
+    EXPECT_NEAR(std::hypot(back.film.x - s.film.x, back.film.y - s.film.y), 0, near);
+    const auto raster = f.raster(s.film);
+    EXPECT_NEAR(back.raster[0], raster[0], near / f.width_mm * f.columns);
+    EXPECT_NEAR(back.raster[1], raster[1], near / f.width_mm * f.columns);
+    EXPECT_EQ(back.pdf_film, r.pdf_film);
+    EXPECT_NEAR(back.pdf_pupil / r.pdf_pupil, 1, 1e-2 * near);
+    // Reciprocity: a ray's importance over its density is its weight.
+    EXPECT_NEAR(back.we / (back.pdf_position * back.pdf_direction) / r.weight, 1, 1e-2 * near);
+  }
+  EXPECT_GT(seen, 1500);
+  EXPECT_LE(at_edges, seen / 500);
+}
+
+TEST_P(Importances, OfWhatTheCameraSeesAreConnected) {
+  const auto& [id, f, model, near] = GetParam();
+  const Camera camera(testing::data_lens(id), f, {.model = model});
+  const testing::Kronecker<5> random(4);
+  std::uint32_t seen = 0, missed = 0;
+  for (std::uint32_t i = 0; i < 20000; ++i) {
+    const auto x = random(i);
+    const CameraRay r = camera.sample(sample_at(f, x));
+    if (!r) continue;
+    // First order begins in the pupil, in the middle of the lens.
+    const double leaves = r.ray.direction.z < 0 ? std::max((r.ray.origin.z + 2) / -r.ray.direction.z, 0.0) : 0;
+    const Vec3<double> point = r.ray.origin + r.ray.direction * (leaves + 10 * std::pow(10, 5 * x[4]));
+    ++seen;
+    missed += !(camera.pdf_importance(point, -r.ray.direction) > 0);
+    const ImportanceSample s = camera.sample_importance(point, x[0], x[1]);
+    expect_finite(s.importance);
+    if (!(s.pdf > 0)) continue;
+    EXPECT_NEAR(camera.pdf_importance(point, s.direction) / s.pdf, 1, 1e-6);
+    EXPECT_NEAR(glm::length(s.direction), 1, 1e-12);
+    EXPECT_NEAR(glm::distance(point + s.direction * s.distance, s.on_pupil) / (1 + s.distance), 0, 1e-14);
+    // The connection is what the camera makes of its ray.
+    const Importance again = camera.importance({point, s.direction});
+    EXPECT_EQ(again.fate, s.importance.fate);
+    EXPECT_NEAR(again.film.x, s.importance.film.x, near);
+  }
+  EXPECT_GT(seen, 8000U);
+  EXPECT_EQ(missed, 0U);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Models, Importances,
+    ::testing::Values(Case{"double_gauss_100mm_f2_28deg", film, Model::exact_double, 1e-5},
+                      Case{"double_gauss_100mm_f2_28deg", film, Model::exact_float, 1e-2},
+                      Case{"double_gauss_100mm_f2_28deg", film, Model::thin, 1e-5},
+                      Case{"double_gauss_100mm_f2_28deg", film, Model::thin_two_disc, 1e-5},
+                      Case{"double_gauss_100mm_f2_28deg", film, Model::thick, 1e-5},
+                      Case{"double_gauss_100mm_f2_28deg", film, Model::polynomial_3, 1e-5},
+                      Case{"double_gauss_100mm_f2_28deg", film, Model::polynomial_9, 1e-5},
+                      Case{"fisheye_10mm_f4", {.width_mm = 24, .height_mm = 16}, Model::exact_double, 1e-5},
+                      Case{"eye_gullstrand_le_grand", small, Model::exact_double, 1e-5},
+                      Case{"anamorphic_60mm_2x", film, Model::exact_double, 1e-5}));
+
+TEST(Importance, OfAPinholeIsThatOfTheThickLensInOnePoint) {
+  const Lens lens = testing::data_lens("double_gauss_100mm_f2_28deg");
+  const Camera pinhole(lens, film, {.model = Model::pinhole}), thick(lens, film, {.model = Model::thick});
+  for (const Vec3<double> point : {Vec3<double>{0, 0, -3000}, Vec3<double>{200, -150, -2500}}) {
+    ASSERT_TRUE(pinhole.sample_importance(point, 0.3, 0.7));
+    double one = 0, all = 0;
+    const testing::Kronecker<2> random(5);
+    constexpr std::uint32_t draws = 1 << 14;
+    for (std::uint32_t i = 0; i < draws; ++i) {
+      const auto [u, v] = random(i);
+      const ImportanceSample s = thick.sample_importance(point, u, v), p = pinhole.sample_importance(point, u, v);
+      if (s) all += s.importance.we / s.pdf / draws;
+      one += p.importance.we / p.pdf / draws;
+      EXPECT_NEAR(glm::distance(p.on_pupil, Vec3<double>{0, 0, pupils(lens).entrance.z}), 0, 1e-12);
+      EXPECT_EQ(pinhole.importance({point, p.direction}).we, 0);
+    }
+    // Not the same: the cosines of all those rays are there in the scene, and not here.
+    EXPECT_NEAR(one / all, 1, 1e-2);
+  }
+}
+
+TEST(Importance, IsNothingForWhatMakesNoRay) {
+  const Lens lens = testing::data_lens("double_gauss_100mm_f2_28deg");
+  for (const Model model :
+       {Model::pinhole, Model::thick, Model::polynomial_5, Model::exact_float, Model::exact_double}) {
+    SCOPED_TRACE(name(model));
+    const Camera camera(lens, film, {.model = model});
+    for (const Vec3<double> point : {Vec3<double>{nan, 0, -1000}, Vec3<double>{0, infinity, -1000},
+                                     Vec3<double>{0, 0, 20}, Vec3<double>{0, 0, 1000}, Vec3<double>{0, 0, -infinity}}) {
+      const ImportanceSample s = camera.sample_importance(point, 0.4, 0.6);
+      EXPECT_FALSE(s);
+      EXPECT_EQ(s.importance.we, 0);
+      EXPECT_TRUE(std::isfinite(s.direction.x + s.distance + s.on_pupil.z + s.pdf));
+      expect_finite(s.importance);
+      EXPECT_EQ(camera.project(point).status, ProjectionStatus::not_visible) << point.z;
+    }
+    for (const Ray<double>& ray :
+         {Ray<double>{{nan, 0, -1000}, {0, 0, 1}}, Ray<double>{{0, 0, -1000}, {0, nan, 1}},
+          Ray<double>{{0, 0, -1000}, {0, 0, 0}}, Ray<double>{{0, 0, -1000}, {0, 0, 3}},
+          Ray<double>{{0, 0, -infinity}, {0, 0, 1}}, Ray<double>{{0, 500, -1000}, {0, 0, 1}}}) {
+      const Importance i = camera.importance(ray);
+      EXPECT_EQ(i.we, 0);
+      EXPECT_NE(i.fate, RayFate::transmitted);
+      expect_finite(i);
+    }
+    EXPECT_FALSE(camera.sample_importance({0, 0, -1000}, 0.4, 0.6, 1));
+    EXPECT_FALSE(camera.importance({{0, 0, -1000}, {0, 0, 1}}, 1));
+    EXPECT_FALSE(camera.project({0, 0, -1000}, 1));
+    if (model != Model::pinhole) {
+      EXPECT_FALSE(camera.sample_importance({0, 0, -1000}, nan, 0.6));
+    }
+  }
+}
+
+TEST(Importance, IsConnectedToAFilmThatIsDarkOnTheAxis) {
+  Prescription singlet;
+  singlet.name = "singlet";
+  singlet.surfaces = {{.radius = 50, .thickness = 5, .medium = {.nd = 1.5168}, .semi_diameter = 12, .stop = true},
+                      {.radius = -50, .thickness = 47, .semi_diameter = 12},
+                      {.thickness = 1, .semi_diameter = 40, .inner_semi_diameter = 12}};
+  const Camera camera(compile(singlet), film, {.model = Model::exact_double});
+  EXPECT_EQ(camera.pupils().area({}), 0);
+  const testing::Kronecker<5> random(5);
+  int seen = 0, missed = 0;
+  for (std::uint32_t i = 0; i < 2000; ++i) {
+    const CameraRay r = camera.sample(sample_at(film, random(i)));
+    if (!r) continue;
+    ++seen;
+    missed += !(camera.pdf_importance(r.ray.origin + r.ray.direction * 1000.0, -r.ray.direction) > 0);
+  }
+  EXPECT_GT(seen, 500);
+  EXPECT_LT(missed, 0.01 * seen);  // the disc ends pupils abruptly within a field
+}
+
+TEST(Importance, SaysWhereARayMissesTheFilm) {
+  const Camera camera(testing::data_lens("double_gauss_100mm_f2_28deg"), film, {.model = Model::exact_double});
+  const double angle = 0.21;  // 21 mm off the axis upwards, where the film ends at 12
+  const Importance i = camera.importance({{0, 0, 0}, {0, -std::sin(angle), std::cos(angle)}});
+  EXPECT_EQ(i.fate, RayFate::outside_film);
+  EXPECT_EQ(i.we, 0);
+  EXPECT_LT(i.film.y, -12);
+}
+
+}  // namespace
+}  // namespace petzval

@@ -1,0 +1,397 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "petzval/camera/paraxial_model.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <numbers>
+#include <random>
+#include <vector>
+
+#include "../data_lenses.hpp"
+#include "../message.hpp"
+#include "petzval/core/error.hpp"
+#include "petzval/focus/focus.hpp"
+#include "petzval/paraxial/first_order.hpp"
+#include "petzval/pupil/pupil.hpp"
+#include "petzval/trace/trace.hpp"
+
+namespace petzval {
+namespace {
+
+constexpr std::array first_order_models{Model::pinhole, Model::thin, Model::thin_two_disc, Model::thick};
+const double film_24x36 = std::hypot(18, 12);
+
+/// A line of the film's space.
+struct Line {
+  double fx, fy, px, py;
+};
+
+struct Result {
+  Ray<double> ray;
+  RayFate fate;
+};
+
+template <class T = double>
+std::vector<Result> to_scene(const ParaxialModel& model, const std::vector<Line>& lines,
+                             const RayWavelengths& wavelengths = {}) {
+  const std::size_t n = lines.size();
+  std::array<std::vector<T>, 10> a;
+  for (auto& v : a) v.resize(n, std::numeric_limits<T>::quiet_NaN());
+  for (std::size_t i = 0; i < n; ++i) {
+    a[0][i] = static_cast<T>(lines[i].fx), a[1][i] = static_cast<T>(lines[i].fy);
+    a[2][i] = static_cast<T>(lines[i].px), a[3][i] = static_cast<T>(lines[i].py);
+  }
+  std::vector<RayFate> fates(n, RayFate::no_convergence);
+  const auto at = [&](std::size_t k) { return a[k].data(); };
+  model.to_scene(n, FilmLines<const T>{at(0), at(1), at(2), at(3)}, wavelengths,
+                 RayArrays<T>{at(4), at(5), at(6), at(7), at(8), at(9)}, fates.data());
+  std::vector<Result> results;
+  for (std::size_t i = 0; i < n; ++i) {
+    results.push_back({{{a[4][i], a[5][i], a[6][i]}, {a[7][i], a[8][i], a[9][i]}}, fates[i]});
+  }
+  return results;
+}
+
+struct Back {
+  Line line;
+  RayFate fate;
+};
+
+Back to_film(const ParaxialModel& model, const Ray<double>& r, std::size_t wavelength = 0) {
+  Back b{};
+  model.to_film(1, {&r.origin.x, &r.origin.y, &r.origin.z, &r.direction.x, &r.direction.y, &r.direction.z},
+                {.all = wavelength}, {&b.line.fx, &b.line.fy, &b.line.px, &b.line.py}, &b.fate);
+  return b;
+}
+
+std::array<double, 2> meet(const Ray<double>& ray, double z) {
+  const double t = (z - ray.origin.z) / ray.direction.z;
+  return {ray.origin.x + t * ray.direction.x, ray.origin.y + t * ray.direction.y};
+}
+
+/// The exact lens, nothing clipped.
+Ray<double> exact(const Lens& lens, const Line& l, std::size_t wavelength = 0) {
+  const FilmSpace space = film_space(lens);
+  Vec3<double> d{l.px - l.fx, l.py - l.fy, space.depth()};
+  const double towards = signed_index(lens, lens.surface_count()) > 0 ? -1 : 1;
+  d *= (d.z * towards > 0 ? 1 : -1) / glm::length(d);
+  const auto end = trace(lens, Ray<double>{{l.fx, l.fy, space.film_z}, d},
+                         {.travel = Travel::to_scene, .wavelength = wavelength, .apertures = false});
+  EXPECT_EQ(end.fate, RayFate::transmitted);
+  return end.ray;
+}
+
+std::vector<Line> random_lines(int count, double film, double pupil, unsigned seed = 5) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> one(-1, 1);
+  std::vector<Line> lines;
+  for (int i = 0; i < count; ++i) {
+    lines.push_back({film * one(random), film * one(random), pupil * one(random), pupil * one(random)});
+  }
+  return lines;
+}
+
+/// An image-space telecentric lens: the stop stands in the front focal plane.
+Prescription telecentric() {
+  Prescription p;
+  p.name = "telecentric";
+  p.surfaces = {{.thickness = 100, .semi_diameter = 5, .stop = true},
+                {.radius = 102.16, .thickness = 4, .medium = {.nd = 1.5168}, .semi_diameter = 30},
+                {.radius = -102.16, .thickness = 98.6, .semi_diameter = 30}};
+  p.surfaces[0].thickness -= first_order(compile(p)).front_focal_z;
+  return p;
+}
+
+// The models are what the exact lens is near the axis: what they leave out is of third order.
+TEST(ParaxialModel, DiffersFromTheExactRayByTheCubeOfTheHeight) {
+  std::vector<Prescription> prescriptions;
+  for (const char* id : {"double_gauss_100mm_f2.0", "fisheye_10mm_f4", "eye_gullstrand_le_grand", "modern_50mm_f1.0",
+                         "catadioptric_mangin_1000mm_f7.5", "mirror_newton_200mm_f8", "telephoto_250mm_f5.6"}) {
+    prescriptions.push_back(testing::data_prescription(id));
+  }
+  // The film of the eye lies in water; the other way round the scene does.
+  prescriptions.push_back(reverse(testing::data_prescription("eye_gullstrand_le_grand")));
+  prescriptions.back().surfaces.back().thickness = 30;
+  for (const Prescription& prescription : prescriptions) {
+    SCOPED_TRACE(prescription.name);
+    const Lens lens = compile(prescription);
+    const double focal = std::abs(first_order(lens).effective_focal_length);
+    const ParaxialModel model(Model::thick, lens, 0.1 * focal);
+    const double depth = model.pupils().space().depth();
+    const auto difference = [&](double h) {
+      const Line line{0.3 * h * focal, 0.5 * h * focal, -0.4 * h * depth, 0.7 * h * depth};
+      const Ray<double> ray = to_scene(model, {line})[0].ray, real = exact(lens, line);
+      const auto a = meet(ray, -focal), b = meet(real, -focal);
+      return std::hypot(a[0] - b[0], a[1] - b[1]) / focal +
+             std::hypot(ray.direction.x - real.direction.x, ray.direction.y - real.direction.y);
+    };
+    const double h = 0.01, far = difference(h), near = difference(h / 2);
+    EXPECT_LT(far, 100 * h * h * h);
+    EXPECT_NEAR(far / near, 8, 0.2);
+  }
+}
+
+TEST(ParaxialModel, MakesPointsOfThePointsInFocus) {
+  const Lens lens = with_focus(testing::data_lens("double_gauss_100mm_f2.0"), 700);
+  for (const Model model : first_order_models) {
+    const ParaxialModel thick(model, lens, film_24x36);
+    const auto rays = to_scene(thick, {{10, -5, 0, 0}, {10, -5, 12, 3}, {10, -5, -20, 8}});
+    const auto point = meet(rays[0].ray, -700);
+    for (const auto& [ray, fate] : rays) {
+      EXPECT_EQ(fate, RayFate::transmitted);
+      EXPECT_NEAR(meet(ray, -700)[0], point[0], 1e-9);
+      EXPECT_NEAR(meet(ray, -700)[1], point[1], 1e-9);
+      EXPECT_LT(ray.direction.z, 0);
+      EXPECT_NEAR(glm::length(ray.direction), 1, 1e-15);
+    }
+    // The image is upside down, and smaller by the distances from the principal points.
+    const FirstOrder data = first_order(lens);
+    const double magnification = (lens.film_z() - data.rear_principal_z) / (-700 - data.front_principal_z);
+    EXPECT_NEAR(point[0], 10 / magnification, 1e-9);
+  }
+}
+
+TEST(ParaxialModel, GoesBackToTheLineThatItCameFrom) {
+  for (const char* id : {"tessar_100mm_f2.8", "mirror_newton_200mm_f8", "eye_gullstrand_le_grand"}) {
+    const Lens lens = testing::data_lens(id);
+    for (const Model name : {Model::pinhole, Model::thin, Model::thick}) {
+      const ParaxialModel model(name, lens, 5);
+      const auto lines = random_lines(20, 5, 3);
+      const auto rays = to_scene(model, lines);
+      for (std::size_t i = 0; i < lines.size(); ++i) {
+        // Anywhere on the line, running towards the lens.
+        const Ray<double> ray{rays[i].ray.origin + 37.0 * rays[i].ray.direction, -rays[i].ray.direction};
+        const Back back = to_film(model, ray);
+        EXPECT_EQ(back.fate, RayFate::transmitted);
+        EXPECT_NEAR(back.line.fx, lines[i].fx, 1e-10);
+        EXPECT_NEAR(back.line.fy, lines[i].fy, 1e-10);
+        const auto middle = model.pupils().middle({lines[i].fx, lines[i].fy});
+        EXPECT_NEAR(back.line.px, name == Model::pinhole ? middle[0] : lines[i].px, 1e-8);
+        EXPECT_NEAR(back.line.py, name == Model::pinhole ? middle[1] : lines[i].py, 1e-8);
+      }
+    }
+  }
+}
+
+TEST(ParaxialModel, SendsALineTheSameWayOnEveryRungButThePinhole) {
+  const Lens lens = testing::data_lens("retrofocus_100mm_f2");
+  const auto lines = random_lines(10, 20, 10);
+  const auto thick = to_scene(ParaxialModel(Model::thick, lens, film_24x36), lines);
+  for (const Model model : {Model::thin, Model::thin_two_disc}) {
+    const auto rays = to_scene(ParaxialModel(model, lens, film_24x36), lines);
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      EXPECT_EQ(rays[i].ray.origin, thick[i].ray.origin);
+      EXPECT_EQ(rays[i].ray.direction, thick[i].ray.direction);
+    }
+  }
+}
+
+TEST(ParaxialModel, IsBlindToThePupilSampleAsAPinhole) {
+  const Lens lens = testing::data_lens("double_gauss_100mm_f2.0");
+  const ParaxialModel pinhole(Model::pinhole, lens, film_24x36), thick(Model::thick, lens, film_24x36);
+  const auto middle = thick.pupils().middle({4, -9});
+  const auto rays = to_scene(pinhole, {{4, -9, 0, 0}, {4, -9, 25, -3}});
+  const auto chief = to_scene(thick, {{4, -9, middle[0], middle[1]}})[0].ray;
+  EXPECT_EQ(rays[0].ray.direction, rays[1].ray.direction);
+  EXPECT_NEAR(glm::length(rays[0].ray.direction - chief.direction), 0, 1e-14);
+  // All through one point: the middle of the entrance pupil.
+  EXPECT_NEAR(meet(rays[0].ray, pupils(lens).entrance.z)[0], 0, 1e-11);
+  EXPECT_NEAR(meet(rays[0].ray, pupils(lens).entrance.z)[1], 0, 1e-11);
+  // And the pupil is sampled as that of the thick lens: exposure stays the same.
+  EXPECT_EQ(pinhole.pupils().area({4, -9}), thick.pupils().area({4, -9}));
+}
+
+// A film point on the axis sees a disc whose rim lies u' off the axis: pi sin^2 u'.
+double axial_exposure(const PupilMap& pupils) {
+  const double depth = pupils.space().depth(), area = pupils.area({0, 0});
+  double sum = 0;
+  const int count = 4096;
+  for (int i = 0; i < count; ++i) {
+    const PupilSample s = pupils.sample({0, 0}, std::fmod(i * std::numbers::phi, 1.0), (i + 0.5) / count);
+    const double square = s.x * s.x + s.y * s.y + depth * depth;
+    sum += depth * depth / (square * square);
+  }
+  return sum * area / count;
+}
+
+TEST(ParaxialModel, ExposesTheAxisAsItsPupilSays) {
+  for (const char* id : {"double_gauss_100mm_f2.0", "fisheye_10mm_f4", "cooke_triplet_50mm_f5", "zoom_70-210mm_f4_tele",
+                         "phone_5.6mm_f3.5"}) {
+    SCOPED_TRACE(id);
+    const Lens lens = testing::data_lens(id);
+    const Pupils paraxial = pupils(lens);
+    const double tangent = paraxial.exit.diameter / 2 / (paraxial.exit.z - lens.film_z());
+    const double sine_squared = tangent * tangent / (1 + tangent * tangent);
+    EXPECT_NEAR(axial_exposure(ParaxialModel(Model::thick, lens, 10).pupils()) / (std::numbers::pi * sine_squared), 1,
+                1e-3);
+    // The thin lens: as wide as the entrance pupil, at the rear principal plane.
+    const double thin = paraxial.entrance.diameter / 2 / (first_order(lens).rear_principal_z - lens.film_z());
+    EXPECT_NEAR(axial_exposure(ParaxialModel(Model::thin, lens, 10).pupils()) /
+                    (std::numbers::pi * thin * thin / (1 + thin * thin)),
+                1, 1e-3);
+  }
+}
+
+// With the exit pupil at infinity every film point sees the same disc straight ahead.
+TEST(ParaxialModel, KnowsPupilsAtInfinity) {
+  const Lens lens = compile(telecentric());
+  ASSERT_GT(std::abs(pupils(lens).exit.z), 1e6);
+  const ParaxialModel model(Model::thick, lens, 20);
+  EXPECT_EQ(model.pupils().space().pupil_z, lens.surfaces().back().vertex_z);
+  for (const double y : {0.0, 7.0, 19.0}) {
+    EXPECT_NEAR(model.pupils().middle({0, y})[1], y, 0.05);
+    EXPECT_NEAR(model.pupils().area({0, y}), model.pupils().area({0, 0}), 1e-4);
+    const auto middle = model.pupils().middle({0, y});
+    const Result chief = to_scene(model, {{0, y, middle[0], middle[1]}})[0];
+    EXPECT_NEAR(meet(chief.ray, 0)[1], 0, 0.05);  // the stop
+  }
+  const auto [ray, fate] = to_scene(ParaxialModel(Model::pinhole, lens, 20), {{0, 19, 0, 3}})[0];
+  EXPECT_NEAR(meet(ray, 0)[1], 0, 1e-9);
+  // Scene side: rays are given in reach of the lens.
+  Prescription reversed = reverse(telecentric());
+  reversed.surfaces.back().thickness = 120;
+  const ParaxialModel turned(Model::thick, compile(reversed), 5);
+  EXPECT_LT(std::abs(to_scene(turned, {{0, 1, 0, 0}})[0].ray.origin.z), 1e-9);
+  EXPECT_NEAR(to_film(turned, {{0, 3, -50}, {0, 0, 1}}).line.fy,
+              -3 * 120 / first_order(compile(reversed)).effective_focal_length, 1e-9);
+}
+
+/// Symmetric difference over the area of the lens's own pupils, mean over a film.
+double shape_error(const Lens& lens, double film_radius, const PupilMap& pupils) {
+  const PupilMap real = PupilMap::matching(lens, film_radius);
+  constexpr int fields = 16, samples = 1024;
+  double sum = 0;
+  for (int j = 0; j < fields; ++j) {
+    const FilmPoint film{0, film_radius * std::sqrt((j + 0.5) / fields)};
+    int missed = 0, added = 0;
+    for (int k = 0; k < samples; ++k) {
+      const double u = (k + 0.5) / samples, v = std::fmod(k * std::numbers::phi, 1.0);
+      const PupilSample s = real.sample(film, u, v), m = pupils.sample(film, u, v);
+      missed += !pupils.contains(film, s.x, s.y);
+      added += !real.contains(film, m.x, m.y);
+    }
+    sum += (missed + added * pupils.area(film) / real.area(film)) / samples;
+  }
+  return sum / fields;
+}
+
+TEST(ParaxialModel, FitsTwoDiscsToTheRealPupils) {
+  struct Case {
+    const char* id;
+    double film_radius, bound;
+  };
+  for (const auto& [id, film_radius, bound] :
+       {Case{"double_gauss_100mm_f2.0", film_24x36, 0.009}, Case{"double_gauss_100mm_f1.35", film_24x36, 0.021},
+        Case{"tessar_100mm_f3.5", film_24x36, 0.018}, Case{"fisheye_10mm_f4", 11, 0.024}}) {
+    const Lens lens = testing::data_lens(id);
+    const double fitted =
+        shape_error(lens, film_radius, ParaxialModel(Model::thin_two_disc, lens, film_radius).pupils());
+    const double one_disc = shape_error(lens, film_radius, ParaxialModel(Model::thick, lens, film_radius).pupils());
+    EXPECT_LT(fitted, bound) << id;
+    EXPECT_LT(fitted, one_disc / 4) << id;
+  }
+}
+
+TEST(ParaxialModel, HasAMapForEveryWavelength) {
+  const Prescription prescription = testing::data_prescription("achromat_100mm");
+  const GlassCatalogue glasses = GlassCatalogue::load(std::filesystem::path(PETZVAL_TEST_DATA) / "glass");
+  const std::array lines_nm{486.1327, 587.5618, 656.2725};
+  const CompileOptions options{.glasses = &glasses, .missing_glass = MissingGlass::abbe};
+  const Lens lens = compile(prescription, lines_nm, options);
+  const ParaxialModel model(Model::thick, lens, 10);
+  const auto lines = random_lines(33, 10, 5);
+  std::vector<std::uint16_t> each;
+  for (std::size_t i = 0; i < lines.size(); ++i) each.push_back(static_cast<std::uint16_t>(i * 7 % 3));
+  const auto mixed = to_scene(model, lines, {.each = each.data()});
+  for (std::size_t w = 0; w < 3; ++w) {
+    const Lens alone = with_film(compile(prescription, std::array{lines_nm[w]}, options), lens.film_z());
+    const PupilMap pupils = ParaxialModel(Model::thick, alone, 10).pupils();
+    const auto same = to_scene(model, lines, {.all = w});
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      if (each[i] != w) continue;
+      EXPECT_NEAR(glm::length(mixed[i].ray.direction - same[i].ray.direction), 0, 1e-15);
+      const Back back = to_film(model, {mixed[i].ray.origin, -mixed[i].ray.direction}, w);
+      EXPECT_NEAR(back.line.px, lines[i].px, 1e-9);
+    }
+    EXPECT_NEAR(model.pupils().area({0, 3}, w), pupils.area({0, 3}), 1e-3 * pupils.area({0, 3}));
+  }
+  // The colours part.
+  EXPECT_GT(glm::length(to_scene(model, lines, {.all = 0})[0].ray.direction -
+                        to_scene(model, lines, {.all = 2})[0].ray.direction),
+            1e-6);
+}
+
+TEST(ParaxialModel, AnswersInFloatAndInBatchesOfAnySizeAlike) {
+  const Lens lens = testing::data_lens("double_gauss_100mm_f2.0");
+  const ParaxialModel model(Model::thick, lens, film_24x36);
+  const auto lines = random_lines(131, 20, 20);
+  const auto all = to_scene(model, lines), single = to_scene<float>(model, lines);
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const auto one = to_scene(model, {lines[i]})[0];
+    EXPECT_NEAR(glm::length(one.ray.direction - all[i].ray.direction), 0, 4e-16);
+    EXPECT_NEAR(glm::length(one.ray.origin - all[i].ray.origin), 0, 1e-13);
+    EXPECT_NEAR(glm::length(single[i].ray.direction - all[i].ray.direction), 0, 1e-6);
+    EXPECT_NEAR(glm::length(single[i].ray.origin - all[i].ray.origin), 0, 1e-4);
+  }
+}
+
+TEST(ParaxialModel, AnswersBadNumbersWithAFateAndFiniteRays) {
+  const ParaxialModel model(Model::thick, testing::data_lens("tessar_100mm_f2.8"), film_24x36);
+  const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
+  const std::vector<Line> bad{{nan, 0, 0, 0}, {0, inf, 0, 0}, {0, 0, -inf, 0}, {1, 2, 3, nan}, {1e300, 0, 0, 0}};
+  const auto check = [](const std::vector<Result>& results) {
+    for (const auto& [ray, fate] : results) {
+      EXPECT_EQ(fate, RayFate::missed_surface);
+      EXPECT_TRUE(std::isfinite(ray.origin.x + ray.origin.y + ray.origin.z));
+      EXPECT_NEAR(glm::length(ray.direction), 1, 1e-6);
+    }
+  };
+  check(to_scene(model, bad));
+  check(to_scene<float>(model, bad));
+  const std::vector<std::uint16_t> each{1, 7};
+  check(to_scene(model, {{0, 0, 0, 0}, {1, 2, 3, 4}}, {.each = each.data()}));
+  check(to_scene(model, {{0, 0, 0, 0}, {1, 2, 3, 4}}, {.all = 1}));
+
+  for (const Ray<double>& ray : {Ray<double>{{nan, 0, 0}, {0, 0, 1}}, Ray<double>{{0, 0, -5}, {0, 0, -1}},
+                                 Ray<double>{{0, 0, 0}, {0, 1, 0}}, Ray<double>{{0, 0, inf}, {0, 0.6, 0.8}}}) {
+    const Back back = to_film(model, ray);
+    EXPECT_EQ(back.fate, RayFate::missed_surface);
+    EXPECT_TRUE(std::isfinite(back.line.fx + back.line.fy + back.line.px + back.line.py));
+  }
+  EXPECT_EQ(to_film(model, {{0, 0, -5}, {0, 0, 1}}, 1).fate, RayFate::missed_surface);
+}
+
+TEST(ParaxialModel, HasNoPupilBehindAShutStop) {
+  const Lens lens = testing::data_lens("double_gauss_100mm_f2.0");
+  const Lens shut = with_semi_diameter(lens, pupils(lens).stop, 0);
+  for (const Model model : first_order_models) {
+    EXPECT_EQ(ParaxialModel(model, shut, film_24x36).pupils().area({0, 5}), 0) << name(model);
+  }
+}
+
+TEST(ParaxialModel, RefusesWhatItCannotBe) {
+  const Lens lens = testing::data_lens("double_gauss_100mm_f2.0");
+  const auto refusal = [](Model model, const Lens& of) {
+    return testing::message([&] { ParaxialModel(model, of, 20); });
+  };
+  EXPECT_NE(refusal(Model::exact_float, lens).find("exact_float"), std::string::npos);
+  EXPECT_NE(refusal(Model::thick, testing::data_lens("anamorphic_60mm_2x")).find("cylinders"), std::string::npos);
+  EXPECT_THROW(ParaxialModel(Model::thick, lens, -1), Error);
+
+  Prescription window;
+  window.name = "window";
+  window.surfaces = {{.thickness = 5, .medium = {.nd = 1.5}, .semi_diameter = 10},
+                     {.thickness = 20, .semi_diameter = 10}};
+  EXPECT_NE(refusal(Model::thick, compile(window)).find("afocal"), std::string::npos);
+
+  const Lens in_principal_plane = with_film(lens, first_order(lens).rear_principal_z);
+  EXPECT_NE(refusal(Model::thin, in_principal_plane).find("rear principal plane"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace petzval

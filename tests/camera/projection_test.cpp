@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <ostream>
+#include <string>
+
+#include "../data_lenses.hpp"
+#include "../kronecker.hpp"
+#include "petzval/camera/camera.hpp"
+#include "petzval/pupil/aim.hpp"
+#include "petzval/pupil/pupil.hpp"
+#include "petzval/trace/trace.hpp"
+
+namespace petzval {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+/// Where a ray that left the lens meets the film.
+FilmPoint at_film(const Lens& lens, const Ray<double>& ray) {
+  const double t = (lens.film_z() - ray.origin.z) / ray.direction.z;
+  return {ray.origin.x + t * ray.direction.x, ray.origin.y + t * ray.direction.y};
+}
+
+struct Case {
+  std::string lens;
+  Film film;
+  double widest;  ///< field, degrees
+};
+
+std::ostream& operator<<(std::ostream& out, const Case& c) { return out << c.lens; }
+
+class Projections : public ::testing::TestWithParam<Case> {};
+
+// Chief rays are found from the scene by another way: aimed at the stop.
+TEST_P(Projections, AreWhereChiefRaysMeetTheFilm) {
+  const auto& [id, film, widest] = GetParam();
+  const Lens lens = testing::data_lens(id);
+  const double pupil_z = pupils(lens).entrance.z;
+  const testing::Kronecker<3> random(6);
+  for (const Model model : {Model::exact_double, Model::exact_float}) {
+    const Camera camera(lens, film, {.model = model});
+    const double near = (model == Model::exact_double ? 2e-5 : 1e-4) * film.radius_mm();
+    int converged = 0;
+    for (std::uint32_t i = 0; i < 400; ++i) {
+      const auto [a, b, c] = random(i);
+      const double field = a * widest * pi / 180, azimuth = 2 * pi * b, distance = 200 * std::pow(10, 7 * c);
+      const double z = pupil_z - distance * std::cos(field);
+      const double across = distance * std::sin(field);
+      // What lies in front of the front element or, seen past it, beside it.
+      if (z > -30 && !(field > pi / 2 && across > 100)) continue;
+      const AimedRay chief = chief_ray(lens, {field, z, azimuth});
+      if (!chief) continue;
+      const FilmPoint wanted = at_film(lens, chief.end.ray);
+      const Projection p = camera.project({across * std::sin(azimuth), across * std::cos(azimuth), z});
+      SCOPED_TRACE(std::to_string(field * 180 / pi) + " degrees, " + std::to_string(distance) + " mm, " +
+                   std::string(name(p.status)));
+      if (!film.contains(wanted)) {
+        EXPECT_TRUE(p.status == ProjectionStatus::outside_film || p.status == ProjectionStatus::not_visible);
+        continue;
+      }
+      EXPECT_TRUE(p || (chief.status == AimStatus::vignetted && p.status == ProjectionStatus::vignetted));
+      if (!p) continue;
+      ++converged;
+      EXPECT_NEAR(std::hypot(p.film.x - wanted.x, p.film.y - wanted.y), 0, near);
+      EXPECT_EQ(p.raster, film.raster(p.film));
+    }
+    EXPECT_GT(converged, 100);
+  }
+}
+
+const Film wide{.width_mm = 36, .height_mm = 24};
+INSTANTIATE_TEST_SUITE_P(Lenses, Projections,
+                         ::testing::Values(Case{"double_gauss_100mm_f2_28deg", wide, 15},
+                                           Case{"biogon_35mm_f2.8", wide, 40},
+                                           Case{"fisheye_8mm_f2.8", {.width_mm = 24, .height_mm = 24}, 94},
+                                           Case{"fisheye_6.3mm_f2.8", {.width_mm = 24, .height_mm = 24}, 108},
+                                           Case{"telephoto_392mm_f2.9", wide, 5}));
+
+TEST(Projection, OfACameraRaysPointsAreItsFilmPoint) {
+  for (const Model model : {Model::pinhole, Model::thin, Model::thin_two_disc, Model::thick, Model::polynomial_3,
+                            Model::polynomial_9, Model::exact_float, Model::exact_double}) {
+    SCOPED_TRACE(name(model));
+    const Camera camera(testing::data_lens("double_gauss_100mm_f2_28deg"), wide, {.model = model});
+    for (const FilmPoint film : {FilmPoint{0, 0}, FilmPoint{0, 9}, FilmPoint{-17, 3}, FilmPoint{12, -10}}) {
+      // Any ray of the film point does: from where its chief ray goes the film point is found again.
+      const CameraRay any = camera.sample({.film = film, .pupil_u = 0.1, .pupil_v = 0.001});
+      ASSERT_TRUE(any);
+      for (const double distance : {150.0, 4000.0, 1e9}) {
+        const Projection first = camera.project(any.ray.origin + any.ray.direction * distance);
+        ASSERT_TRUE(first);
+        // Near the chief ray, the more so the nearer to focus.
+        EXPECT_NEAR(std::hypot(first.film.x - film.x, first.film.y - film.y), 0, distance < 1000 ? 4 : 0.5);
+        const auto [column, row] = first.raster;
+        const FilmPoint again = camera.film().point(column, row);
+        EXPECT_NEAR(std::hypot(again.x - first.film.x, again.y - first.film.y), 0, 1e-9);
+      }
+    }
+  }
+}
+
+TEST(Projection, PutsTheSceneUpright) {
+  const Camera camera(testing::data_lens("double_gauss_100mm_f2_28deg"), wide, {.model = Model::exact_double});
+  const Projection p = camera.project({300, 200, -5000});
+  ASSERT_TRUE(p);
+  EXPECT_GT(p.raster[0], wide.columns / 2.0);  // to the right
+  EXPECT_LT(p.raster[1], wide.rows / 2.0);     // above
+  EXPECT_EQ(camera.project({0, 0, -5000}).raster[0], wide.columns / 2.0);
+}
+
+TEST(Projection, FindsPointsThroughCylinders) {
+  const Lens lens = testing::data_lens("anamorphic_60mm_2x");
+  const Film film{.width_mm = 12, .height_mm = 8};
+  const Camera camera(lens, film, {.model = Model::exact_double});
+  for (const auto& [x, y] : {std::array{0.0, 0.0}, {150.0, 0.0}, {0.0, 120.0}, {-180.0, 90.0}}) {
+    const Vec3<double> point{x, y, -6000};
+    const Projection p = camera.project(point);
+    ASSERT_TRUE(p) << x << ' ' << y << ' ' << name(p.status);
+    // Connections spread about it, those through the middle of the pupil closest.
+    double sum_x = 0, sum_y = 0, weight = 0;
+    const testing::Kronecker<2> random(7);
+    for (std::uint32_t i = 0; i < 20000; ++i) {
+      const auto [u, v] = random(i);
+      const ImportanceSample s = camera.sample_importance(point, u, v);
+      if (!s) continue;
+      sum_x += s.importance.film.x / s.pdf, sum_y += s.importance.film.y / s.pdf, weight += 1 / s.pdf;
+    }
+    ASSERT_GT(weight, 0);
+    EXPECT_NEAR(p.film.x, sum_x / weight, 0.1);
+    EXPECT_NEAR(p.film.y, sum_y / weight, 0.1);
+  }
+}
+
+TEST(Projection, HasNames) {
+  EXPECT_EQ(name(ProjectionStatus::converged), "converged");
+  EXPECT_EQ(name(ProjectionStatus::outside_film), "outside_film");
+  EXPECT_EQ(name(ProjectionStatus::vignetted), "vignetted");
+  EXPECT_EQ(name(ProjectionStatus::not_visible), "not_visible");
+}
+
+}  // namespace
+}  // namespace petzval

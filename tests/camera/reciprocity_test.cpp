@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Apache-2.0
+// The power of a small light is the same, counted by rays from the film that meet it or by connections to the lens.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "../data_lenses.hpp"
+#include "../kronecker.hpp"
+#include "petzval/camera/camera.hpp"
+
+namespace petzval {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+constexpr std::uint32_t replicates = 16, samples = 1 << 13;
+
+/// A square that shines evenly, facing along the axis.
+struct Light {
+  Vec3<double> centre;
+  double side;
+};
+
+struct Estimate {
+  double mean = 0, sigma = 0;
+};
+
+/// Mean and its standard deviation over independent shifts.
+template <class Once>
+Estimate estimate(const Once& once) {
+  double sum = 0, squares = 0;
+  for (std::uint32_t r = 0; r < replicates; ++r) {
+    const double value = once(r);
+    sum += value, squares += value * value;
+  }
+  const double mean = sum / replicates;
+  return {mean, std::sqrt(std::max(squares / replicates - mean * mean, 0.0) / (replicates - 1))};
+}
+
+/// Mean irradiance of the film from places on the light and connections, and the part of the film it reaches.
+struct SceneSide {
+  Estimate irradiance;
+  double low_x = 1e9, high_x = -1e9, low_y = 1e9, high_y = -1e9;
+};
+
+SceneSide from_light(const Camera& camera, const Light& light) {
+  SceneSide result;
+  result.irradiance = estimate([&](std::uint32_t replicate) {
+    const testing::Kronecker<4> random(2 * replicate);
+    double sum = 0;
+    for (std::uint32_t i = 0; i < samples; ++i) {
+      const auto [a, b, u, v] = random(i);
+      const Vec3<double> point = light.centre + Vec3<double>{a - 0.5, b - 0.5, 0} * light.side;
+      const ImportanceSample s = camera.sample_importance(point, u, v);
+      if (!s) continue;
+      sum += s.importance.we * std::abs(s.direction.z) / s.pdf * light.side * light.side / samples;
+      const FilmPoint& f = s.importance.film;
+      result.low_x = std::min(result.low_x, f.x), result.high_x = std::max(result.high_x, f.x);
+      result.low_y = std::min(result.low_y, f.y), result.high_y = std::max(result.high_y, f.y);
+    }
+    return sum;
+  });
+  return result;
+}
+
+/// The same from film samples, all of them where the light's image is.
+Estimate from_film(const Camera& camera, const Light& light, const SceneSide& scene) {
+  const double margin_x = 0.02 * (scene.high_x - scene.low_x), margin_y = 0.02 * (scene.high_y - scene.low_y);
+  const double left = scene.low_x - margin_x, width = scene.high_x + margin_x - left;
+  const double bottom = scene.low_y - margin_y, height = scene.high_y + margin_y - bottom;
+  constexpr std::uint32_t count = 4 * samples;
+  std::array<std::vector<double>, 11> v;
+  for (auto& values : v) values.resize(count);
+  const auto at = [&](std::size_t k) { return v[k].data(); };
+  return estimate([&](std::uint32_t replicate) {
+    const testing::Kronecker<4> random(2 * replicate + 1);
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const auto [a, b, p, q] = random(i);
+      v[0][i] = left + a * width, v[1][i] = bottom + b * height;
+      v[2][i] = p, v[3][i] = q;
+    }
+    camera.sample<double>(count, {at(0), at(1), at(2), at(3)}, {{at(4), at(5), at(6), at(7), at(8), at(9)}, at(10)});
+    double sum = 0;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const double t = (light.centre.z - v[6][i]) / v[9][i];
+      const double x = v[4][i] + t * v[7][i] - light.centre.x, y = v[5][i] + t * v[8][i] - light.centre.y;
+      if (t > 0 && std::max(std::abs(x), std::abs(y)) <= light.side / 2) sum += v[10][i];
+    }
+    return sum / count * width * height / camera.film().area_mm2();
+  });
+}
+
+const Film wide{.width_mm = 36, .height_mm = 24}, square{.width_mm = 24, .height_mm = 24},
+    retina{.width_mm = 6, .height_mm = 6};
+
+struct Case {
+  std::string lens;
+  Film film;
+  double degrees, distance;  ///< of the light, from the front vertex
+};
+
+std::ostream& operator<<(std::ostream& out, const Case& c) { return out << c.lens << " at " << c.degrees; }
+
+void expect_reciprocity(const Lens& lens, const Film& film, const CameraOptions& options, double degrees,
+                        double distance, double tolerance = 0, double side = 0.04, double precision = 2e-3) {
+  const Camera camera(lens, film, options);
+  const double angle = degrees * pi / 180;
+  // Somewhat off the meridian, so that no symmetry helps.
+  const Light light{{0.3 * distance * std::sin(angle), 0.954 * distance * std::sin(angle), -distance * std::cos(angle)},
+                    side * distance};
+  const SceneSide scene = from_light(camera, light);
+  const Estimate film_side = from_film(camera, light, scene);
+  ASSERT_GT(scene.irradiance.mean, 0);
+  const double sigma = std::hypot(scene.irradiance.sigma, film_side.sigma);
+  EXPECT_LT(3 * sigma, precision * film_side.mean);
+  EXPECT_NEAR(scene.irradiance.mean, film_side.mean, 3 * sigma + tolerance * film_side.mean)
+      << "sigma " << sigma / film_side.mean << ", ratio less 1 " << scene.irradiance.mean / film_side.mean - 1;
+  ::testing::Test::RecordProperty("ratio_less_1", std::to_string(scene.irradiance.mean / film_side.mean - 1));
+}
+
+class Reciprocity : public ::testing::TestWithParam<Case> {};
+
+TEST_P(Reciprocity, HoldsForExactRays) {
+  const auto& [id, film, degrees, distance] = GetParam();
+  const Lens lens = testing::data_lens(id);
+  for (const Model model : {Model::exact_float, Model::exact_double}) {
+    SCOPED_TRACE(name(model));
+    expect_reciprocity(lens, film, {.model = model}, degrees, distance);
+  }
+}
+
+TEST(Reciprocity, HoldsForWeightsThatAreUnityOnTheAxis) {
+  expect_reciprocity(testing::data_lens("eye_gullstrand_le_grand"), retina,
+                     {.model = Model::exact_float, .normalisation = Normalisation::unity_on_axis}, 3, 300);
+}
+
+TEST(Reciprocity, HoldsUnderWater) {
+  Prescription p = testing::data_prescription("tessar_100mm_f2.8");
+  p.object_space.nd = 1.333;
+  p.surfaces.back().thickness = 150;
+  expect_reciprocity(compile(p), wide, {.model = Model::exact_double}, 3, 900, 0, 0.04, 1e-2);
+}
+
+// The last has water behind it.
+INSTANTIATE_TEST_SUITE_P(
+    Lenses, Reciprocity,
+    ::testing::Values(Case{"double_gauss_100mm_f2_28deg", wide, 0, 2500},
+                      Case{"double_gauss_100mm_f2_28deg", wide, 6, 2500}, Case{"tessar_100mm_f2.8", wide, 0, 900},
+                      Case{"tessar_100mm_f2.8", wide, 6, 900}, Case{"fisheye_8mm_f2.8", square, 0, 600},
+                      Case{"fisheye_8mm_f2.8", square, 70, 600}, Case{"eye_gullstrand_le_grand", retina, 5, 300}));
+
+TEST(Reciprocity, HoldsCloseToTheLens) {
+  expect_reciprocity(testing::data_lens("double_gauss_100mm_f2_28deg"), wide, {.model = Model::exact_double}, 3, 120, 0,
+                     0.5, 5e-3);
+}
+
+TEST(Reciprocity, HoldsForCylinders) {
+  expect_reciprocity(testing::data_lens("anamorphic_60mm_2x"), wide, {.model = Model::exact_double}, 5, 3000, 0, 0.04,
+                     1e-2);
+}
+
+TEST(Reciprocity, HoldsForModelsWithoutRims) {
+  const Lens lens = testing::data_lens("double_gauss_100mm_f2_28deg");
+  for (const Model model : {Model::pinhole, Model::thin, Model::thin_two_disc, Model::thick, Model::polynomial_7}) {
+    SCOPED_TRACE(name(model));
+    // Polynomials conserve etendue as well as they fit; stars have the area of a pinhole's disc as well as tables go.
+    const bool nearly = model == Model::polynomial_7 || model == Model::pinhole;
+    expect_reciprocity(lens, wide, {.model = model}, 6, 2500, nearly ? 1e-3 : 0);
+  }
+}
+
+}  // namespace
+}  // namespace petzval

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+// One camera shared by threads that ask everything of it at once. Each must find what a single thread finds; built with
+// -fsanitize=thread, the test also sees races that leave no trace in the numbers.
+#include <gtest/gtest.h>
+
+#include <barrier>
+#include <thread>
+#include <vector>
+
+#include "../data_lenses.hpp"
+#include "camera_samples.hpp"
+
+namespace petzval {
+namespace {
+
+/// What the camera says, number by number.
+std::vector<double> answers(const Camera& camera) {
+  std::vector<double> numbers;
+  const auto say = [&](const Ray<double>& ray) {
+    for (const auto& v : {ray.origin, ray.direction}) numbers.insert(numbers.end(), {v.x, v.y, v.z});
+  };
+  auto samples = testing::random_samples<float>(camera.film(), 1000);
+  samples.run(camera);
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    say(samples.ray(i));
+    numbers.insert(numbers.end(), {samples.weights[i], static_cast<double>(samples.fates[i])});
+  }
+  for (std::size_t i = 0; i < 100; ++i) {
+    const CameraRayDifferential d = camera.sample_differential(samples.one(i));
+    say(camera.sample(samples.one(i)).ray);
+    say(d.by_film_x);
+    say(d.by_film_y);
+    const Vec3<double> point = d.sample.ray.origin + 2000.0 * d.sample.ray.direction;
+    const Importance we = camera.importance({point, -d.sample.ray.direction});
+    const ImportanceSample sample = camera.sample_importance(point, 0.3, 0.7);
+    const Projection seen = camera.project(point);
+    numbers.insert(numbers.end(), {we.we, we.film.x, sample.pdf, sample.importance.we, seen.film.x, seen.film.y});
+  }
+  return numbers;
+}
+
+TEST(Camera, IsSharedByThreads) {
+  const Lens lens = testing::data_lens("double_gauss_100mm_f2.0");
+  for (const Model model : {Model::thin_two_disc, Model::polynomial_5, Model::exact_float, Model::exact_double}) {
+    const Camera camera(lens, {}, {.model = model});
+    const std::vector<double> alone = answers(camera);
+    constexpr int count = 16;
+    std::vector<std::vector<double>> found(count);
+    std::barrier start(count);
+    std::vector<std::thread> threads;
+    for (auto& numbers : found) {
+      threads.emplace_back([&camera, &start, &numbers] {
+        const Camera own = camera;  // copies share what was built
+        start.arrive_and_wait();
+        numbers = answers(own);
+      });
+    }
+    for (std::thread& thread : threads) thread.join();
+    for (const auto& numbers : found) EXPECT_EQ(numbers, alone) << name(model);
+  }
+}
+
+}  // namespace
+}  // namespace petzval

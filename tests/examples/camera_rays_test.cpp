@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <array>
+#include <cmath>
+#include <map>
+
+#include "petzval/camera/camera.hpp"
+#include "petzval/focus/focus.hpp"
+#include "petzval/io/prescription_json.hpp"
+#include "petzval/pupil/pupil.hpp"
+#include "program.hpp"
+
+namespace {
+
+class CameraRays : public Programs {
+ protected:
+  static constexpr const char* header = "film_x_mm,film_y_mm,pupil_u,pupil_v,wavelength_nm\n";
+
+  std::vector<std::string> arguments(const std::string& lens_id, const std::string& model,
+                                     const std::vector<std::string>& more) const {
+    std::vector<std::string> result{lens(lens_id), "--samples", path("samples.csv"), "--out", path("rays.csv"),
+                                    "--focus-mm",  "3000",      "--model",           model};
+    result.insert(result.end(), more.begin(), more.end());
+    return result;
+  }
+
+  /// Rows of the result, split at commas; the header is checked and left out.
+  std::vector<std::vector<std::string>> rays(const std::string& lens_id, const std::string& csv,
+                                             const std::string& model = "exact_double",
+                                             const std::vector<std::string>& more = {}) const {
+    write("samples.csv", csv);
+    const auto outcome = run("camera_rays", arguments(lens_id, model, more));
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_EQ(outcome.out, "");
+    auto rows = lines(read(path("rays.csv")));
+    EXPECT_EQ(rows.at(0), "x_mm,y_mm,z_mm,dx,dy,dz,weight,pdf_pupil_per_mm2,pdf_direction_per_sr,fate");
+    std::vector<std::vector<std::string>> result;
+    for (std::size_t i = 1; i < rows.size(); ++i) {
+      std::istringstream row(rows[i]);
+      result.emplace_back();
+      for (std::string cell; std::getline(row, cell, ',');) result.back().push_back(cell);
+      EXPECT_EQ(result.back().size(), 10u) << rows[i];
+    }
+    return result;
+  }
+
+  void expect_refusal(const std::string& csv, const std::string& reason,
+                      const std::string& lens_id = "double_gauss_100mm_f2.0") const {
+    write("samples.csv", csv);
+    expect_failure("camera_rays", arguments(lens_id, "exact_double", {}), reason);
+    EXPECT_FALSE(std::filesystem::exists(path("rays.csv")));
+  }
+};
+
+TEST_F(CameraRays, GivesTheLibrarysNumbers) {
+  const petzval::Lens wide_open = petzval::compile(petzval::read_prescription(lens("double_gauss_100mm_f2.0")));
+  const petzval::Lens lens_f4 =
+      petzval::with_focus(petzval::with_f_number(wide_open, 4), 3000, {.origin = petzval::DistanceOrigin::film});
+  const petzval::Camera camera(lens_f4, {}, {.model = petzval::Model::exact_double});
+  const auto rows = rays("double_gauss_100mm_f2.0", std::string(header) + "7.5,-10.25,0.125,0.75,587.5618\n",
+                         "exact_double", {"--f-number", "4"});
+  ASSERT_EQ(rows.size(), 1u);
+  const auto r = camera.sample({.film = {7.5, -10.25}, .pupil_u = 0.125, .pupil_v = 0.75});
+  ASSERT_TRUE(r);
+  const double expected[] = {r.ray.origin.x,    r.ray.origin.y, r.ray.origin.z, r.ray.direction.x, r.ray.direction.y,
+                             r.ray.direction.z, r.weight,       r.pdf_pupil,    r.pdf_direction};
+  for (std::size_t i = 0; i < 9; ++i) {
+    EXPECT_NEAR(std::stod(rows[0][i]), expected[i], 1e-12 * std::max(1.0, std::abs(expected[i]))) << i;
+  }
+  EXPECT_EQ(rows[0][9], "transmitted");
+}
+
+// The film is the physical one: its lower half sees what is above.
+TEST_F(CameraRays, TurnsTheImageUpsideDownOnEveryRung) {
+  for (const petzval::Model model : petzval::models()) {
+    const auto rows = rays("double_gauss_100mm_f2.0", std::string(header) + "3,-10,0.3,0.2,587.5618\n",
+                           std::string(petzval::name(model)));
+    ASSERT_EQ(rows.size(), 1u);
+    EXPECT_EQ(rows[0][9], "transmitted") << petzval::name(model);
+    EXPECT_NEAR(std::stod(rows[0][4]) / std::stod(rows[0][5]), -0.1, 0.03) << petzval::name(model);
+    EXPECT_LT(std::stod(rows[0][3]), 0) << petzval::name(model);
+    EXPECT_LT(std::stod(rows[0][5]), 0) << petzval::name(model);
+    EXPECT_GT(std::stod(rows[0][6]), 0) << petzval::name(model);
+  }
+}
+
+TEST_F(CameraRays, TellsWavelengthsApart) {
+  const std::string same = "0,-15,0.3,0.9,";
+  const auto rows = rays("achromat_100mm", header + same + "486.1327\n" + same + "656.2725\n" + same + "486.1327\n");
+  ASSERT_EQ(rows.size(), 3u);
+  EXPECT_EQ(rows[0], rows[2]);
+  EXPECT_NE(rows[0][4], rows[1][4]);
+  EXPECT_NEAR(std::stod(rows[0][4]), std::stod(rows[1][4]), 1e-2);
+}
+
+TEST_F(CameraRays, GivesAFateToWhatTheFilmDoesNotHave) {
+  const std::string csv = std::string(header) + "0,0,0.5,0.5,587.5618\n0,12.5,0.5,0.5,587.5618\n";
+  auto rows = rays("double_gauss_100mm_f2.0", csv);
+  EXPECT_EQ(rows[0][9], "transmitted");
+  EXPECT_EQ(rows[1][9], "outside_film");
+  EXPECT_EQ(std::stod(rows[1][6]), 0);
+  rows = rays("double_gauss_100mm_f2.0", csv, "exact_double", {"--film-mm", "24x36"});
+  EXPECT_EQ(rows[1][9], "transmitted");
+}
+
+TEST_F(CameraRays, HasNoRaysWithoutSamples) { EXPECT_TRUE(rays("double_gauss_100mm_f2.0", header).empty()); }
+
+TEST_F(CameraRays, NamesLineAndColumnOfWhatItCannotTake) {
+  const std::string good = std::string(header) + "0,0,0.5,0.5,587.5618\n";
+  expect_refusal("x,y\n", "line 1: found \"x,y\"");
+  expect_refusal(good + "0,0,0.5,0.5\n", "line 3: found 4 values, wanted 5");
+  expect_refusal(good + "0,nan,0.5,0.5,587.5618\n", "line 3, column film_y_mm: found \"nan\"");
+  expect_refusal(good + "0,0,1.5,0.5,587.5618\n", "line 3, column pupil_u: found \"1.5\"");
+  expect_refusal(good + "0,0,0.5,-0.1,587.5618\n", "line 3, column pupil_v: found \"-0.1\"");
+  expect_refusal(good + "0,0,0.5,0.5,0\n", "line 3, column wavelength_nm: found \"0\"");
+  expect_refusal(good + "0,0,0.5,0.5,20\n", "line 3, column wavelength_nm:", "achromat_100mm");
+}
+
+TEST_F(CameraRays, RefusesABadCommandLineInOneLine) {
+  write("samples.csv", header);
+  const auto with = [&](const std::vector<std::string>& more) {
+    return arguments("double_gauss_100mm_f2.0", "thick", more);
+  };
+  expect_failure("camera_rays", arguments("double_gauss_100mm_f2.0", "fisheye", {}), "--model");
+  expect_failure("camera_rays", with({"--film-mm", "36"}), "--film-mm: found \"36\"");
+  expect_failure("camera_rays", with({"--film-mm", "0x24"}), "--film-mm: found \"0\"");
+  expect_failure("camera_rays", with({"--f-number", "0.1"}), "0.1");
+  EXPECT_FALSE(std::filesystem::exists(path("rays.csv")));
+}
+
+}  // namespace
