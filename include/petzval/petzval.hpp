@@ -12,6 +12,9 @@
 ///                                       -->  solve_focus, depth_of_field            where the film belongs
 ///                                       -->  trace, trace_differentials             rays, either way, float or double,
 ///                                                                                   one or in batches on SIMD lanes
+///                                       -->  Camera                                 rays, importance and projection for a
+///                                                                                   renderer, by one of eleven models
+///                                       -->  choose_model                           the cheapest model inside a budget
 ///                                       -->  spot_diagram, point_image              what the film sees of a point
 ///
 /// Lens frame: right-handed, millimetres, light travels towards +z, origin at the vertex of the first surface; the
@@ -29,6 +32,10 @@
 /// This header has the core, for which a program links petzval::core and nothing but GLM. Images and figures are in
 /// petzval/io/image.hpp and petzval/figure/ (petzval::image), fits in petzval/movement/plane_fit.hpp (petzval::fit).
 
+#include "petzval/camera/camera.hpp"
+#include "petzval/camera/choose_model.hpp"
+#include "petzval/camera/host_frame.hpp"
+#include "petzval/camera/sample_rays.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/parallel.hpp"
 #include "petzval/core/ray.hpp"
@@ -37,10 +44,12 @@
 #include "petzval/focus/focus.hpp"
 #include "petzval/focus/thin_lens.hpp"
 #include "petzval/io/prescription_json.hpp"
+#include "petzval/io/ray_polynomial_json.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/lint/lint.hpp"
 #include "petzval/media/catalogue.hpp"
 #include "petzval/paraxial/first_order.hpp"
+#include "petzval/polynomial/ray_polynomial.hpp"
 #include "petzval/prescription/prescription.hpp"
 #include "petzval/psf/colour.hpp"
 #include "petzval/psf/histogram.hpp"

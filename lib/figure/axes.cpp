@@ -14,6 +14,16 @@ namespace {
 template <class Draw>
 void for_ticks(const Axis& axis, int most, Draw draw) {
   const double span = axis.to - axis.from;
+  if (axis.powers_of_ten) {
+    for (double k = std::floor(axis.from); k <= axis.to; ++k) {
+      for (const double digit : {1, 2, 5}) {
+        const double value = k + std::log10(digit);
+        if (digit != 1 && 3 * span > most) continue;
+        if (value >= axis.from && value <= axis.to) draw(value, number(digit * std::pow(10, k), 6));
+      }
+    }
+    return;
+  }
   double step = round_length(span / most);
   while (span / step > most) step = round_length(2.5 * step);
   for (double k = std::ceil(axis.from / step - 1e-9); k * step <= axis.to + 1e-9 * step; ++k) {

@@ -15,6 +15,7 @@ namespace petzval::detail {
 struct Axis {
   double from = 0, to = 1;
   std::string title;
+  bool powers_of_ten = false;  ///< of which values are the logarithms; ticks say the numbers
 };
 
 /// A diagram: a frame with ticks at round values, and curves cut off at the frame.

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+// What accuracy costs: errors and times of every model of a lens, and which of them are enough for four budgets.
+//
+//   accuracy_speed data/lenses/double_gauss_52mm_f1.8.json
+//   accuracy_speed data/lenses/double_gauss_52mm_f1.8.json --f-number 4 --json --out out
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <iostream>
+#include <string>
+#include <vector>
+
+#include "petzval/core/text.hpp"
+#include "petzval/paraxial/first_order.hpp"
+#include "support/cli.hpp"
+#include "support/files.hpp"
+#include "support/model_rows.hpp"
+#ifdef EXAMPLES_WITH_FIGURES
+#include "petzval/figure/pareto_figure.hpp"
+#endif
+
+namespace {
+
+constexpr std::array budgets_px{4.0, 1.0, 0.25, 0.05};
+
+struct Options : examples::ModelOptions {
+  std::string out_folder;
+};
+
+/// Half the distance in focus, but in front of the lens; of infinity as much as 100 focal lengths, which is next to it.
+double nearest_mm(const petzval::Lens& lens, const Options& options) {
+  const double far = 100 * std::abs(petzval::first_order(lens, 0, petzval::main_meridian(lens)).effective_focal_length);
+  const double half = std::min(options.setup.focus_mm, far) / 2;
+  // Where half the distance lies in the lens, as for macro lenses, the nearest is halfway from its front to the focus.
+  const double front = lens.film_z();
+  return half > front ? half : (front + std::min(options.setup.focus_mm, far)) / 2;
+}
+
+#ifdef EXAMPLES_WITH_FIGURES
+std::string figure(const std::vector<examples::ModelRow>& rows, const petzval::Lens& lens, const Options& options) {
+  std::vector<petzval::ParetoPoint> points;
+  for (const examples::ModelRow& row : rows) {
+    points.push_back({petzval::name(row.model), row.ns_per_ray, row.max_um, row.rms_um, row.on_front});
+  }
+  return petzval::pareto_figure(lens.name(), examples::conditions(lens, options), points);
+}
+#endif
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options options;
+  CLI::App app(
+      "Measures every model of a lens against exact rays in double: errors on the film (RMS, 99 %, largest; at planes "
+      "from half the focus distance to infinity, at the focus too; at infinity angle times focal length), of the "
+      "pupil's shape (symmetric difference over area) and of the exposure (largest over the film, fractions), ns per "
+      "ray in batches on one thread, and set-up time. Then it chooses the fastest model for budgets of 4, 1, 0.25 and "
+      "0.05 pixels, for rays alone (with --json it prints the rows only).\n"
+      "front: no other model is both faster and more accurate (max_um). At the d line (587.5618 nm).\n"
+      "--out writes DIR/LENS_accuracy_speed.csv and .svg and prints their paths (with --json on standard error).",
+      "accuracy_speed");
+  examples::add_model_options(app, options);
+  app.add_option("--out", options.out_folder, "folder for table and figure")->type_name("DIR");
+
+  return examples::run(app, argc, argv, [&] {
+    const petzval::Film film = options.film();
+    const petzval::Lens lens = examples::focused_lens(options);
+    std::vector<petzval::ErrorBudget> budgets;
+    for (const double px : budgets_px) budgets.push_back({.max_px = px});
+    const double nearest = nearest_mm(lens, options);
+    const auto choices =
+        petzval::choose_models(lens, {.near_mm = nearest, .film = film}, budgets, examples::all_threads());
+    const auto& table = choices.front().table;
+    examples::say_what_is_missing(table);
+    const auto rows = examples::model_rows(table, film, false);
+
+    if (!options.out_folder.empty()) {
+      const std::filesystem::path folder = options.out_folder;
+      examples::make_folder(folder);
+      const auto write = [&](const char* kind, const std::string& text) {
+        const auto file =
+            folder / (std::filesystem::path(options.lens_file).stem().string() + "_accuracy_speed." + kind);
+        examples::write_text(file, text);
+        (options.json ? std::cerr : std::cout) << file.string() << '\n';
+      };
+      write("csv", examples::to_csv(rows));
+#ifdef EXAMPLES_WITH_FIGURES
+      write("svg", figure(rows, lens, options));
+#endif
+    }
+    if (options.json) {
+      std::cout << examples::to_json(rows).dump(1) << '\n';
+      return;
+    }
+    std::cout << lens.name() << "\n"
+              << examples::conditions(lens, options) << "\nerrors from " << petzval::number(nearest, 6)
+              << " mm to infinity, and at the focus\n\n"
+              << examples::to_text(rows);
+    for (std::size_t k = 0; k < choices.size(); ++k) {
+      std::cout << '\n'
+                << petzval::number(budgets_px[k]) << " px: " << petzval::name(choices[k].model) << '\n'
+                << examples::bullets(choices[k].reasons);
+      if (choices[k].not_needed.empty()) continue;
+      std::cout << "  not needed:\n" << examples::bullets(choices[k].not_needed);
+    }
+  });
+}

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+// The fastest model of a lens that a scene allows, by an error budget, and the proof by fresh samples.
+//
+//   choose_camera data/lenses/double_gauss_52mm_f1.8.json --near-mm 1000 --far-mm inf --budget-px 0.25
+//   choose_camera data/lenses/double_gauss_52mm_f1.8.json --near-mm 1000 --far-mm 5000 --f-number 4 --focus-mm 2000
+//                 --budget-px 1 --json
+#include <algorithm>
+#include <iostream>
+#include <limits>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "petzval/camera/choose_model.hpp"
+#include "petzval/core/text.hpp"
+#include "support/cli.hpp"
+#include "support/files.hpp"
+#include "support/model_rows.hpp"
+
+namespace {
+
+struct Options : examples::ModelOptions {
+  double near_mm = 0, far_mm = 0, budget_px = 0;
+};
+
+constexpr examples::Range budget{0, std::numeric_limits<double>::max(), "a finite number, 0 or more"};
+
+/// The largest error of the model for samples that the choice has not seen: at the nearest and the farthest depth and
+/// at random ones between.
+double verified_max_px(const petzval::Lens& lens, const Options& options, petzval::Model model) {
+  std::mt19937 random(20'241);
+  std::uniform_real_distribution<double> unit;
+  const double near = 1 / options.near_mm, far = 1 / options.far_mm;
+  std::vector<double> depths{lens.film_z() - options.near_mm, lens.film_z() - options.far_mm};
+  for (int k = 0; k < 3; ++k) depths.push_back(lens.film_z() - 1 / (far + unit(random) * (near - far)));
+  const petzval::ErrorSamples samples{.depths_z = depths,
+                                      .film_points = 512,
+                                      .seed = static_cast<std::uint32_t>(random()),
+                                      .threads = examples::all_threads()};
+  return petzval::model_error(lens, options.film(), model, samples).all.max_px;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options options;
+  CLI::App app(
+      "Chooses the fastest model of a lens whose rays are off by no more than a budget anywhere on the film, in the "
+      "pupil and in the depths of a scene, whose exposure is within 1 % and whose pupil has the right shape within 2 % "
+      "of its area. Distances count from the film. At the d line (587.5618 nm).\n"
+      "predicted_max_px is the bound by which the choice was made, and max_px of the table that of every model; "
+      "verified_max_px is the largest error of samples that were not used for it.",
+      "choose_camera");
+  examples::add_model_options(app, options);
+  examples::add_number(app, "--near-mm", options.near_mm, examples::positive_number, "nearest thing in the scene (mm)")
+      ->required()
+      ->default_str("");
+  examples::add_number(app, "--far-mm", options.far_mm, examples::positive_length,
+                       "farthest thing in the scene (mm), or inf")
+      ->required()
+      ->default_str("");
+  examples::add_number(app, "--budget-px", options.budget_px, budget, "largest error of a ray (pixels)")
+      ->required()
+      ->default_str("");
+
+  return examples::run(app, argc, argv, [&] {
+    const petzval::Film film = options.film();
+    const petzval::Lens lens = examples::focused_lens(options);
+    const petzval::ModelChoice choice = petzval::choose_model(
+        lens, {.near_mm = options.near_mm, .far_mm = options.far_mm, .film = film},
+        {.max_px = options.budget_px, .exposure = 0.01, .pupil_shape = 0.02}, examples::all_threads());
+    examples::say_what_is_missing(choice.table);
+    const auto rows = examples::model_rows(choice.table, film, true);
+    const double predicted = std::ranges::find(choice.table, choice.model, &petzval::ModelCandidate::model)->bound_px;
+    const double verified = verified_max_px(lens, options, choice.model);
+    if (options.json) {
+      std::cout << examples::Json{{"model", petzval::name(choice.model)}, {"predicted_max_px", predicted},
+                                  {"verified_max_px", verified},          {"reasons", choice.reasons},
+                                  {"not_needed", choice.not_needed},      {"table", examples::to_json(rows)}}
+                       .dump(1)
+                << '\n';
+      return;
+    }
+    std::cout << lens.name() << '\n'
+              << examples::conditions(lens, options) << "\n\n"
+              << petzval::name(choice.model) << ": rays off by at most " << petzval::number(predicted, 3)
+              << " px as predicted, " << petzval::number(verified, 3) << " px in fresh samples\n"
+              << examples::bullets(choice.reasons);
+    if (!choice.not_needed.empty()) std::cout << "not needed:\n" << examples::bullets(choice.not_needed);
+    std::cout << "\nmax, pupil and exposure as bounds\n" << examples::to_text(rows);
+  });
+}

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "model_rows.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iomanip>
+#include <iostream>
+#include <sstream>
+#include <thread>
+#include <utility>
+
+#include "load_lens.hpp"
+#include "petzval/core/error.hpp"
+#include "petzval/core/text.hpp"
+#include "petzval/core/units.hpp"
+#include "petzval/pupil/pupil.hpp"
+
+namespace examples {
+namespace {
+
+constexpr Range pixel_count{1, 1e6, "a whole number from 1 to 1000000"};
+
+/// Names and values of a row, as JSON and CSV have them.
+template <class Use>
+void for_numbers(const ModelRow& row, Use use) {
+  use("rms_um", row.rms_um);
+  use("p99_um", row.p99_um);
+  use("max_um", row.max_um);
+  use("rms_px", row.rms_px);
+  use("max_px", row.max_px);
+  use("pupil_shape_error", row.pupil_shape_error);
+  use("exposure_error", row.exposure_error);
+  use("ns_per_ray", row.ns_per_ray);
+  use("setup_ms", row.setup_ms);
+}
+
+}  // namespace
+
+petzval::Film ModelOptions::film() const {
+  const auto [width, height] = setup.film_size();
+  const auto [columns, rows] = parse_size("--resolution", resolution, pixel_count);
+  if (columns != std::floor(columns) || rows != std::floor(rows)) {
+    throw petzval::Error("--resolution: found \"" + resolution + "\", wanted two whole numbers");
+  }
+  return {width, height, static_cast<int>(columns), static_cast<int>(rows)};
+}
+
+void add_model_options(CLI::App& app, ModelOptions& options) {
+  app.add_option("LENS.json", options.lens_file, "lens prescription (JSON as in data/lenses)")->required();
+  add_camera(app, options.setup);
+  app.add_option("--resolution", options.resolution, "pixels across and up")->type_name("WxH")->capture_default_str();
+  app.add_flag("--json", options.json, "print JSON");
+}
+
+petzval::Lens focused_lens(const ModelOptions& options) {
+  return focused(load_lens(options.lens_file, std::array{petzval::d_line_nm}), options.setup);
+}
+
+std::string conditions(const petzval::Lens& lens, const ModelOptions& options) {
+  const auto size = [](double a, double b) { return petzval::number(a) + " x " + petzval::number(b); };
+  const petzval::Film film = options.film();
+  const double focus = options.setup.focus_mm;
+  return "f/" + petzval::number(petzval::real_f_number(lens), 3) + ", focused at " +
+         (std::isinf(focus) ? "infinity" : petzval::number(focus) + " mm from the film") + ", film " +
+         size(film.width_mm, film.height_mm) + " mm, " + size(film.columns, film.rows) + " pixels of " +
+         petzval::number(1e3 * film.pixel_mm(), 3) + " um, " + petzval::number(petzval::d_line_nm, 6) + " nm";
+}
+
+std::vector<ModelRow> model_rows(std::span<const petzval::ModelCandidate> table, const petzval::Film& film,
+                                 bool guarded) {
+  const double um_per_px = 1e3 * film.pixel_mm();
+  std::vector<ModelRow> rows;
+  for (const petzval::ModelCandidate& rung : table) {
+    if (!rung.available) continue;
+    const petzval::RayErrors& rays = rung.error.all;
+    const double max_px = guarded ? rung.bound_px : rays.max_px;
+    rows.push_back({rung.model, 1e3 * rays.rms_mm, 1e3 * rays.p99_mm, max_px * um_per_px, rays.rms_px, max_px,
+                    guarded ? rung.bound_pupil_shape : rung.error.pupil_shape,
+                    guarded ? rung.bound_exposure : rung.error.exposure, rung.ns_per_ray, rung.setup_ms});
+  }
+  for (ModelRow& row : rows) {
+    row.on_front = std::ranges::none_of(rows, [&](const ModelRow& other) {
+      return other.ns_per_ray <= row.ns_per_ray && other.max_um <= row.max_um &&
+             (other.ns_per_ray < row.ns_per_ray || other.max_um < row.max_um);
+    });
+  }
+  return rows;
+}
+
+Json to_json(std::span<const ModelRow> rows) {
+  Json result = Json::array();
+  for (const ModelRow& row : rows) {
+    Json object{{"model", petzval::name(row.model)}};
+    for_numbers(row, [&](const char* name, double value) { object[name] = finite_or_null(value); });
+    object["on_front"] = row.on_front;
+    result.push_back(std::move(object));
+  }
+  return result;
+}
+
+std::string to_csv(std::span<const ModelRow> rows) {
+  std::string csv = "model";
+  for_numbers({}, [&](const char* name, double) { csv += std::string(",") + name; });
+  csv += ",on_front\n";
+  for (const ModelRow& row : rows) {
+    csv += petzval::name(row.model);
+    for_numbers(row, [&](const char*, double value) { csv += ',' + petzval::number(value); });
+    csv += row.on_front ? ",true\n" : ",false\n";
+  }
+  return csv;
+}
+
+std::string to_text(std::span<const ModelRow> rows) {
+  std::ostringstream text;
+  text << "model          rms um    99% um    max um    rms px    max px     pupil  exposure    ns/ray  setup ms\n";
+  for (const ModelRow& row : rows) {
+    text << std::left << std::setw(13) << petzval::name(row.model) << std::right;
+    for (const double value : {row.rms_um, row.p99_um, row.max_um, row.rms_px, row.max_px}) {
+      text << std::setw(9) << petzval::number(value, 3) << ' ';
+    }
+    for (const double value : {row.pupil_shape_error, row.exposure_error}) {
+      text << std::setw(8) << petzval::number(100 * value, 3) << "% ";
+    }
+    text << std::setw(8) << petzval::number(row.ns_per_ray, 3) << "  " << std::setw(8)
+         << petzval::number(row.setup_ms, 3) << (row.on_front ? "  front" : "") << '\n';
+  }
+  return std::move(text).str();
+}
+
+std::string bullets(std::span<const std::string> lines) {
+  std::string text;
+  for (const std::string& line : lines) text += "  - " + line + '\n';
+  return text;
+}
+
+void say_what_is_missing(std::span<const petzval::ModelCandidate> table) {
+  for (const petzval::ModelCandidate& rung : table) {
+    if (!rung.available) std::cerr << "note: no " << petzval::name(rung.model) << ": " << rung.remark << '\n';
+  }
+}
+
+int all_threads() { return std::max(1, static_cast<int>(std::thread::hardware_concurrency())); }
+
+}  // namespace examples

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "camera_setup.hpp"
+#include "files.hpp"
+#include "petzval/camera/choose_model.hpp"
+#include "petzval/camera/film.hpp"
+
+namespace examples {
+
+/// Command line of the programs that compare models: the camera, its pixels, and how to print.
+struct ModelOptions {
+  std::string lens_file;
+  CameraSetup setup;
+  std::string resolution = "3840x2560";
+  bool json = false;
+
+  /// Throws petzval::Error.
+  petzval::Film film() const;
+};
+void add_model_options(CLI::App& app, ModelOptions& options);
+
+/// The lens of the options at the d line, stopped down and focused.
+petzval::Lens focused_lens(const ModelOptions& options);
+/// What the numbers are for, in one line: "f/2, focused at 3000 mm from the film, ...".
+std::string conditions(const petzval::Lens& lens, const ModelOptions& options);
+
+/// A rung as the programs print it; rungs that cannot be built have none.
+struct ModelRow {
+  petzval::Model model{};
+  double rms_um = 0, p99_um = 0, max_um = 0, rms_px = 0, max_px = 0;
+  double pupil_shape_error = 0, exposure_error = 0, ns_per_ray = 0, setup_ms = 0;
+  bool on_front = false;  ///< no other row is both as fast and as accurate (max_um) and better in one of them
+};
+/// guarded: with the bounds that choices compare with budgets, instead of the largest errors seen.
+std::vector<ModelRow> model_rows(std::span<const petzval::ModelCandidate> table, const petzval::Film& film,
+                                 bool guarded);
+
+Json to_json(std::span<const ModelRow> rows);
+std::string to_csv(std::span<const ModelRow> rows);
+std::string to_text(std::span<const ModelRow> rows);
+/// "  - line" for each.
+std::string bullets(std::span<const std::string> lines);
+
+/// Says on standard error which rungs could not be built.
+void say_what_is_missing(std::span<const petzval::ModelCandidate> table);
+
+/// As many threads as the machine has.
+int all_threads();
+
+}  // namespace examples

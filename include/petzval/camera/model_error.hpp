@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "petzval/camera/any_model.hpp"
+#include "petzval/camera/film.hpp"
+#include "petzval/camera/ray_model.hpp"
+#include "petzval/core/export.hpp"
+#include "petzval/lens/lens.hpp"
+
+namespace petzval {
+
+/// Where a model is compared with the lens.
+struct ErrorSamples {
+  /// Planes z = ... of the scene (lens frame, mm) in which hits are compared; -inf is infinity.
+  std::vector<double> depths_z;
+  /// Besides, of each film point the plane between these two in which its spot is smallest: where errors are largest
+  /// against the local blur.
+  std::optional<std::array<double, 2>> sharpest_between_z = {};
+  std::size_t film_points = 256;              ///< of 128 lines for each wavelength
+  std::uint32_t seed = 0;                     ///< another seed: fresh samples
+  std::vector<std::size_t> wavelengths = {};  ///< positions among the compiled ones; empty: all
+  int threads = 1;
+};
+
+/// How far rays are off, on the film. RMS and 99 % are of even samples of film, pupil and depths; the maximum is also
+/// over samples in the film's corners and along its sides and the pupil's rims, where even samples rarely come.
+struct RayErrors {
+  double rms_mm = 0, p99_mm = 0, max_mm = 0;
+  double rms_px = 0, p99_px = 0, max_px = 0;  ///< in pixels of the film
+  /// Largest error over the local blur: the exact lens's largest spot diameter at that depth and field.
+  double max_of_blur = 0;
+  std::size_t rays = 0;  ///< that both pass
+};
+
+/// How far a model is from the exact lens, over film, pupil and depth.
+///
+/// The error of a ray at depth z is the distance of the model's hit on the plane z from that of the exact double ray,
+/// carried back to the film by the exact magnification of the chief ray there, along and across the radius: the inverse
+/// of the derivative of the chief ray's hit by the film point. At infinity it is angle times focal length. From 80
+/// degrees off axis on, where planes z are seen edge-on, a plane across the chief ray stands in, as far along the ray
+/// as the plane z lies at 80 degrees; a ray that does not run towards the plane has its angle measured. Rays correspond
+/// when they have the same film point and the same point of the plane of the pupil (the same line in the space of the
+/// film); one that is lost in one of the two counts in the shape of the pupil only, but at film points where model and
+/// lens have no line in common: there the model is compared along the lens's lines, rims aside. Rungs but exact_double
+/// are measured in float, as renderers run them. Film points with less than 1 % of the irradiance of the brightest have
+/// no errors: samples lie within the lit part.
+struct ModelError {
+  RayErrors all;                      ///< all wavelengths
+  std::vector<RayErrors> wavelength;  ///< one for each wavelength of the samples
+  /// Largest over film points and wavelengths: the area that belongs to one of the two pupils only, over that of the
+  /// exact one; 1 for a pinhole.
+  double pupil_shape = 0;
+  double exposure = 0;  ///< largest over film points and wavelengths: |irradiance / exact irradiance - 1|
+};
+
+/// Measures one of the models. Throws Error where it cannot be built (see Camera), for depths that are none or not in
+/// front of the lens, for wavelengths that were not compiled, for a lens without focal length, and for one without
+/// light on the film.
+PETZVAL_API ModelError model_error(const Lens& lens, const Film& film, Model model, const ErrorSamples& samples);
+/// The same for models that were built before, for this lens and film: exact rays are traced once for all of them.
+PETZVAL_API std::vector<ModelError> model_errors(const Lens& lens, const Film& film, std::span<const AnyModel> models,
+                                                 const ErrorSamples& samples);
+
+}  // namespace petzval

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "petzval/core/ray.hpp"
+#include "petzval/lens/lens.hpp"
+#include "petzval/pupil/film_lines.hpp"
+#include "petzval/pupil/scene_point.hpp"
+
+/// Errors in the scene as lengths on the film.
+namespace petzval::detail {
+
+/// What a film point sees of one plane of the scene, measured on the film.
+///
+/// Hits on a plane z are carried back by the exact magnification of the chief ray: by the inverse of the derivative of
+/// its hit by the film point, so that lengths along and across the radius each have their own. From 80 degrees on,
+/// where planes z are seen edge-on, a plane across the chief ray stands in, as far along the ray as the plane z lies at
+/// 80 degrees. At infinity, and for rays that do not run towards the plane, it is the angle times the focal length.
+class SceneView {
+ public:
+  /// Angles alone.
+  explicit SceneView(double focal_length, const Vec3<double>& chief = {0, 0, -1});
+  /// The plane `z`: chief, by_film_x and by_film_y: the chief ray and its derivatives by the film point.
+  SceneView(double focal_length, double z, const Ray<double>& chief, const Ray<double>& by_film_x,
+            const Ray<double>& by_film_y);
+
+  /// Where a ray passes, mm on the film, from where the chief ray does.
+  std::array<double, 2> place(const Ray<double>& ray) const noexcept;
+  /// How far apart two rays of the film point are, mm on the film.
+  double distance(const Ray<double>& a, const Ray<double>& b) const noexcept;
+
+ private:
+  std::array<double, 2> hit(const Ray<double>& ray) const noexcept;
+  bool meets(const Ray<double>& ray) const noexcept;
+
+  bool plane_ = false;
+  double focal_length_;
+  Vec3<double> centre_{0, 0, 0}, normal_, x_axis_, y_axis_;
+  std::array<double, 4> to_film_{1, 0, 0, 1};  // rows: film x and y by x and y in the plane
+};
+
+/// What a film point sees, by its chief ray: that through the middle of the pupil, rims left aside. As the film point
+/// moves, it turns about its place in the plane of the paraxial exit pupil.
+struct ChiefRay {
+  std::array<double, 2> pupil{0, 0};
+  bool found = false;  ///< else angles are measured in all planes
+  double focal_length = 0;
+  Ray<double> ray{}, by_film_x{}, by_film_y{};
+
+  /// The plane z; -inf: infinity.
+  SceneView view(double z) const;
+};
+
+/// Finds chief rays.
+class ChiefRays {
+ public:
+  /// Throws Error for a lens without focal length, which measures angles.
+  ChiefRays(const Lens& lens, const FilmSpace& space);
+  ChiefRay through(const FilmPoint& film, const std::array<double, 2>& pupil, std::size_t wavelength) const;
+
+ private:
+  Lens lens_;
+  FilmSpace space_;
+  double focal_length_ = 0, pivot_ = 0;  // from the film to the exit pupil; infinite where the lens is telecentric
+  double sense_ = 1;                     // of z in which light runs behind the lens
+};
+
+}  // namespace petzval::detail

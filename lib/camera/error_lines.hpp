@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "petzval/camera/any_model.hpp"
+#include "petzval/camera/film.hpp"
+#include "petzval/pupil/film_lines.hpp"
+
+/// The lines along which models are compared with the lens.
+namespace petzval::detail {
+
+/// Lines through each film point: the first half evenly over its pupil, by which means count, the others along the
+/// pupil's rims, where errors are largest and even samples rarely come.
+inline constexpr std::size_t lines_per_point = 128, even_lines = 64;
+
+/// What the largest error found is multiplied with to bound that of all lines there are: where models are smooth; for
+/// rays traced in float, whose errors are noise; against the blur, which has sharp minima over the film.
+inline constexpr double smooth_guard = 1.04, noise_guard = 1.5, blur_guard = 1.15;
+
+/// Points of the unit square that fill it evenly, whatever of them is taken from the first on: multiples of irrational
+/// steps (Roberts' generalised golden ratio), from a start that `seed` chooses.
+class EvenPoints {
+ public:
+  explicit EvenPoints(std::uint64_t seed) noexcept;
+  std::array<double, 2> operator[](std::size_t index) const noexcept;
+
+ private:
+  double u_, v_;
+};
+
+/// Film points darker than this part of the brightest have no errors worth the name.
+inline constexpr double darkest = 0.01;
+
+/// How far from the axis the film is lit, mm: to where it is `darkest`, or all of it. Of a lens without symmetry of
+/// revolution: all of it.
+double lit_radius(const ExactModel<double>& exact, const Film& film, std::size_t wavelength);
+
+/// Film points: every second one of an even spread over the film, the others by turns in a corner, on a side, and
+/// anywhere but rather near the sides. Those that the light does not reach are moved towards the axis, the farthest of
+/// them to the edge of the light.
+FilmPoint error_film_point(const Film& film, std::size_t index, std::uint32_t seed, double lit_radius) noexcept;
+/// Whether it is one of the even spread.
+inline bool is_even(std::size_t film_point) noexcept { return film_point % 2 == 0; }
+
+/// Film points for pupils, where most depends on the distance from the axis: of a lens of revolution at equal steps of
+/// it (within which the seed chooses), gathered towards the edge of the light, the nearest and the farthest point that
+/// is lit among them; of others as above.
+std::vector<FilmPoint> pupil_film_points(const Lens& lens, const Film& film, std::size_t count, std::uint32_t seed,
+                                         double lit_radius);
+
+/// Lines of one film point. All their numbers are such that float can hold, so that a model in float and the lens in
+/// double trace the same lines.
+struct PointLines {
+  FilmPoint film;
+  alignas(64) std::array<double, lines_per_point> film_x, film_y, pupil_x, pupil_y;
+  alignas(64) std::array<float, lines_per_point> film_x_float, film_y_float, pupil_x_float, pupil_y_float;
+
+  /// The film point of all lines, its coordinates numbers of float.
+  explicit PointLines(const FilmPoint& point) noexcept;
+  void put(std::size_t line, double x, double y) noexcept;
+
+  FilmLines<const double> lines() const noexcept {
+    return {film_x.data(), film_y.data(), pupil_x.data(), pupil_y.data()};
+  }
+  FilmLines<const float> float_lines() const noexcept {
+    return {film_x_float.data(), film_y_float.data(), pupil_x_float.data(), pupil_y_float.data()};
+  }
+};
+
+/// The lines of a film point through the lens's pupil, as described above. The film point must have one.
+PointLines error_lines(const FilmPoint& film, const ExactModel<double>& exact, std::size_t wavelength,
+                       std::uint64_t seed) noexcept;
+
+/// What a model makes of such lines.
+struct PointRays {
+  std::array<Ray<double>, lines_per_point> rays;
+  std::array<bool, lines_per_point> reaches;  ///< the model has a ray for the line
+  std::array<bool, lines_per_point> passes;   ///< and the line lies in the model's pupil
+};
+using Tracing = std::function<void(const PointLines& lines, std::size_t wavelength, PointRays& rays)>;
+
+/// A rung as a renderer runs it: in float, but exact_double. Rungs without rims pass what lies within their pupils; the
+/// one ray of a pinhole stands for every line. The model must outlive the result.
+Tracing tracing(const AnyModel& model);
+/// The same for lines that are known to lie within the model's own pupils.
+Tracing tracing_within(const AnyModel& model);
+
+}  // namespace petzval::detail

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "rung_table.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "check_film.hpp"
+#include "petzval/core/error.hpp"
+#include "petzval/core/text.hpp"
+#include "petzval/core/units.hpp"
+#include "petzval/focus/focus.hpp"
+#include "petzval/paraxial/first_order.hpp"
+#include "petzval/pupil/pupil.hpp"
+#include "rung_timing.hpp"
+
+namespace petzval::detail {
+namespace {
+
+constexpr std::size_t ray_film_points = 384, pupil_film_points = 40;
+
+/// z of the planes in which a scene's rays are compared.
+std::vector<double> depths_of(const Lens& lens, const SceneRequirements& scene) {
+  const double nearest = scene.near_mm, farthest = scene.far_mm, film_z = lens.film_z();
+  if (!(nearest <= farthest) || !(film_z - nearest < 0)) {
+    throw Error(lens.name() + ": choose_model: the scene is from " + number(nearest, 6) + " to " + number(farthest, 6) +
+                " mm from the film, wanted from more than " + number(film_z, 6) +
+                " mm, in front of the lens, to as far or farther");
+  }
+  // The plane of finite distance that measures as those near infinity do: there it is angles that count.
+  const double last = std::isinf(farthest) ? 1e4 * nearest : farthest;
+  constexpr int steps = 4;
+  std::vector<double> distances;
+  for (int k = 0; k <= steps; ++k) {
+    distances.push_back(k == 0 ? nearest : k == steps ? last : steps / ((steps - k) / nearest + k / farthest));
+  }
+  if (std::isinf(farthest)) distances.push_back(farthest);
+  const FocusSolution focus = solve_subject(lens, film_z, {.origin = DistanceOrigin::film});
+  if (focus && focus.distance > nearest && focus.distance < farthest) distances.push_back(focus.distance);
+  std::vector<double> depths;
+  for (const double distance : distances) depths.push_back(film_z - distance);
+  return depths;
+}
+
+/// The lens as the scene uses it, its samples, and everything exact about it.
+struct Setting {
+  Setting(const Lens& whole, const SceneRequirements& scene, std::span<const Tolerance> tolerances, int threads)
+      : lens(scene.f_number ? with_f_number(whole, *scene.f_number, whole.central_wavelength()) : whole),
+        film(scene.film),
+        samples{.depths_z = depths_of(lens, scene), .film_points = ray_film_points, .threads = threads},
+        exact(lens, film.radius_mm()) {
+    for (const double nm : scene.wavelengths_nm) samples.wavelengths.push_back(lens.wavelength(nm));
+    samples.wavelengths = wavelengths_of(lens, samples);
+    const bool blur = std::ranges::any_of(tolerances, [](const Tolerance& t) { return t.of_blur > 0; });
+    if (blur) samples.sharpest_between_z = {lens.film_z() - scene.near_mm, lens.film_z() - scene.far_mm};
+    rays.emplace(exact, film, samples, tolerances);
+    pupils.emplace(exact, film, pupil_film_points, samples);
+  }
+
+  Lens lens;
+  Film film;
+  ErrorSamples samples;
+  ExactModel<double> exact;
+  std::optional<RayStudy> rays;
+  std::optional<PupilStudy> pupils;
+};
+
+/// The bound for lines that were not looked at.
+RayStudy::Largest guarded(RayStudy::Largest largest, std::span<const Tolerance> tolerances, double guard) {
+  largest.mm *= guard;
+  largest.of_blur *= std::max(guard, blur_guard);
+  for (std::size_t t = 0; t < tolerances.size(); ++t) {
+    largest.of_tolerance[t] *= tolerances[t].of_blur > 0 ? std::max(guard, blur_guard) : guard;
+  }
+  return largest;
+}
+
+RayStudy::Largest chief_ray_errors(const RayStudy& rays, std::span<const Tolerance> tolerances, const Tracing& model) {
+  const RayStudy chief = rays.chief_rays();
+  const auto found = chief.measure(model);
+  RayStudy::Largest largest{found.all.max_mm, found.all.max_of_blur, {}};
+  for (const auto& maxima : found.of_tolerance) largest.of_tolerance.push_back(std::ranges::max(maxima));
+  return guarded(std::move(largest), tolerances, smooth_guard);
+}
+
+double focal_length(const Lens& lens) {
+  const std::size_t wavelength = lens.central_wavelength();
+  return std::abs(first_order(lens, wavelength, main_meridian(lens, wavelength)).effective_focal_length);
+}
+
+/// Of some wavelengths the one that speaks for them: that nearest to the d line.
+std::size_t central_of(const Lens& lens, const std::vector<std::size_t>& wavelengths) {
+  return *std::ranges::min_element(wavelengths, {},
+                                   [&](std::size_t w) { return std::abs(lens.wavelengths_nm()[w] - d_line_nm); });
+}
+
+/// What rungs cost, from times with some noise in them: first-order models run the same loops, and of polynomials those
+/// of more terms do all that the others do.
+std::vector<double> costs(std::span<const AnyModel> models, std::vector<double> times) {
+  double first_order = std::numeric_limits<double>::infinity(), fewer_terms = 0;
+  for (std::size_t k = 0; k < models.size(); ++k) {
+    if (std::holds_alternative<ParaxialModel>(models[k])) first_order = std::min(first_order, times[k]);
+  }
+  for (std::size_t k = 0; k < models.size(); ++k) {
+    if (std::holds_alternative<ParaxialModel>(models[k])) fewer_terms = times[k] = first_order;
+    if (std::holds_alternative<PolynomialModel>(models[k])) fewer_terms = times[k] = std::max(times[k], fewer_terms);
+  }
+  return times;
+}
+
+}  // namespace
+
+RungTable rung_table(const Lens& whole, const SceneRequirements& scene, std::span<const Tolerance> tolerances,
+                     int threads) {
+  check_film(whole, scene.film);
+  const Setting setting(whole, scene, tolerances, threads);
+  const Film& film = setting.film;
+  const double rounding = std::numeric_limits<float>::epsilon() * focal_length(setting.lens);
+  RungTable table;
+  std::vector<AnyModel> all;
+  for (const Model model : models()) {
+    ModelCandidate& rung = table.rungs.emplace_back();
+    rung.model = model;
+    std::vector<double>& of_tolerance = table.of_tolerance.emplace_back();
+    std::optional<AnyModel> built;
+    const auto start = std::chrono::steady_clock::now();
+    try {
+      built = make_model(model, setting.lens, film.radius_mm());
+    } catch (const Error& error) {
+      rung.available = false;
+      rung.remark = error.what();
+      continue;
+    }
+    rung.setup_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+
+    const Tracing traced = tracing(*built);
+    const auto found = setting.rays->measure(traced);
+    const auto rays = guarded(setting.rays->largest(found, traced), tolerances,
+                              model == Model::exact_float ? noise_guard : smooth_guard);
+    const auto pupils = setting.pupils->measure(pupils_of(*built));
+    rung.error = {found.all, found.wavelength, pupils.shape, pupils.exposure};
+    // In float, rounding adds noise to what is smooth.
+    rung.bound_px = (rays.mm + (model == Model::exact_double ? 0 : rounding)) / film.pixel_mm();
+    rung.bound_of_blur = rays.of_blur;
+    // The reference itself has no errors: nothing to be unsure of.
+    rung.bound_exposure = model == Model::exact_double ? 0 : pupils.exposure_bound;
+    rung.bound_pupil_shape = model == Model::exact_double ? 0 : pupils.shape_bound;
+    of_tolerance = rays.of_tolerance;
+    all.push_back(*built);
+    if (model == Model::thick) table.no_distortion = chief_ray_errors(*setting.rays, tolerances, traced);
+  }
+  const std::vector<double> times = costs(all, time_rays(all, film));
+  for (std::size_t k = 0, next = 0; k < table.rungs.size(); ++k) {
+    if (table.rungs[k].available) table.rungs[k].ns_per_ray = times[next++];
+  }
+
+  const AnyModel exact = setting.exact;
+  const ModelPupils pupils = pupils_of(exact);
+  const std::vector<std::size_t>& wavelengths = setting.samples.wavelengths;
+  const std::size_t central = central_of(setting.lens, wavelengths);
+  table.pixel_mm = film.pixel_mm();
+  table.wavelengths = wavelengths.size();
+  table.central_nm = setting.lens.wavelengths_nm()[central];
+  if (wavelengths.size() > 1) {
+    const Tracing one = [&](const PointLines& lines, std::size_t, PointRays& rays) {
+      pupils.tracing(lines, central, rays);
+    };
+    table.one_wavelength = guarded(setting.rays->largest(setting.rays->measure(one), one), tolerances, smooth_guard);
+  }
+  // The pupil of the middle of the film, everywhere.
+  const FilmPoint middle{film.centre_x_mm, film.centre_y_mm};
+  const Tracing from_middle = [&](const PointLines& lines, std::size_t w, PointRays& rays) {
+    PointLines moved(middle);
+    for (std::size_t i = 0; i < lines_per_point; ++i) moved.put(i, lines.pupil_x[i], lines.pupil_y[i]);
+    pupils.tracing(moved, w, rays);
+  };
+  const ModelPupils constant{pupils.map, from_middle, from_middle, false, middle};
+  table.constant_pupil_shape = setting.pupils->measure(constant).shape_bound;
+  return table;
+}
+
+}  // namespace petzval::detail

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Apache-2.0
+// A camera in a scene of radiance 1 all around: the mean weight of a film point's samples is its irradiance.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "../data_lenses.hpp"
+#include "camera_samples.hpp"
+#include "petzval/camera/model_error.hpp"
+#include "petzval/focus/focus.hpp"
+#include "petzval/psf/sobol.hpp"
+#include "petzval/pupil/illumination.hpp"
+#include "petzval/pupil/pupil.hpp"
+
+namespace petzval {
+namespace {
+
+double mean_weight(const Camera& camera, const FilmPoint& film, std::uint32_t count = 4096, std::uint32_t seed = 3) {
+  testing::Samples<double> samples;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const auto [u, v] = owen_sobol(i, seed);
+    samples.add(film.x, film.y, u, v);
+  }
+  samples.run(camera);
+  double sum = 0;
+  for (const double w : samples.weights) sum += w;
+  return sum / count;
+}
+
+/// Films within the fields that the lenses were made for.
+struct Case {
+  const char* id;
+  double half_width;  ///< of the film, mm
+};
+
+TEST(WhiteFurnace, ExposesAsTheLensDoes) {
+  for (const auto& [id, half_width] :
+       {Case{"double_gauss_100mm_f2.0", 30}, Case{"tessar_100mm_f3.5", 30}, Case{"fisheye_10mm_f4", 9},
+        Case{"modern_50mm_f1.0", 18}, Case{"catadioptric_mangin_1000mm_f7.5", 15}, Case{"eye_gullstrand_le_grand", 4},
+        Case{"anamorphic_60mm_2x", 10}}) {
+    const Lens lens = testing::data_lens(id);
+    const Film film{.width_mm = 2 * half_width, .height_mm = 2 * half_width};
+    for (const Model model : {Model::exact_float, Model::exact_double}) {
+      const Camera camera(lens, film, {.model = model});
+      const double axis = film_irradiance(lens, {});
+      for (const FilmPoint& part :
+           {FilmPoint{0, 0}, FilmPoint{0, 0.5}, FilmPoint{-0.31, 0.77}, FilmPoint{0.95, -0.9}}) {
+        const FilmPoint point{part.x * half_width, part.y * half_width};
+        EXPECT_NEAR(mean_weight(camera, point) / axis, film_irradiance(lens, point) / axis, 3e-3)
+            << id << ' ' << name(model) << " at " << point.x << ", " << point.y;
+      }
+    }
+  }
+}
+
+// pi sin^2 of the paraxial pupil's rim for first-order models, the lens's own exposure for those that are fitted.
+TEST(WhiteFurnace, ExposesOnEveryRungAsThatRungsPupil) {
+  const Lens lens = with_focus(with_f_number(testing::data_lens("double_gauss_100mm_f2.0"), 2.8), 3000);
+  const Pupils paraxial = pupils(lens);
+  const double tangent = paraxial.exit.diameter / 2 / (paraxial.exit.z - lens.film_z());
+  const double disc = std::numbers::pi * tangent * tangent / (1 + tangent * tangent);
+  const double real = film_irradiance(lens, {});
+  for (const Model model : models()) {
+    const bool one_disc = model == Model::pinhole || model == Model::thick;
+    const double expected = one_disc ? disc : real;
+    const double tolerance = one_disc                        ? 1e-3
+                             : model == Model::thin          ? 0.05
+                             : model == Model::thin_two_disc ? 0.03
+                                                             : 3e-3;
+    EXPECT_NEAR(mean_weight(Camera(lens, {}, {.model = model}), {}) / expected, 1, tolerance) << name(model);
+  }
+}
+
+// What is stated is the largest of many film points; other points may find a little more.
+TEST(WhiteFurnace, ExposesWithinTheErrorThatIsStatedForARung) {
+  const Lens lens = with_focus(testing::data_lens("double_gauss_100mm_f2_28deg"), 3000);
+  const std::array points{FilmPoint{1.2, -3.4}, FilmPoint{3.1, 5.7},  FilmPoint{-9.4, 2.2},
+                          FilmPoint{0, -11.9},  FilmPoint{17.5, 0.3}, FilmPoint{-17.9, 11.8}};
+  const ErrorSamples samples{.depths_z = {-3000}, .film_points = 256};
+  double least = 1, most = 0;
+  for (const Model model : models()) {
+    const double stated = model_error(lens, {}, model, samples).exposure;
+    const Camera camera(lens, {}, {.model = model});
+    for (const FilmPoint& point : points) {
+      EXPECT_NEAR(mean_weight(camera, point) / film_irradiance(lens, point), 1, 1.1 * stated + 2e-3)
+          << name(model) << " at " << point.x << ", " << point.y;
+    }
+    least = std::min(least, stated), most = std::max(most, stated);
+  }
+  EXPECT_LT(least, 5e-3);
+  EXPECT_GT(most, 0.1);
+}
+
+TEST(WhiteFurnace, GivesOneOnTheAxisWhereThatIsAskedFor) {
+  const Lens lens = testing::data_lens("tessar_100mm_f2.8");
+  for (const Model model : models()) {
+    const CameraOptions options{.model = model, .normalisation = Normalisation::unity_on_axis};
+    const Camera camera(lens, {}, options), absolute(lens, {}, {.model = model});
+    EXPECT_NEAR(mean_weight(camera, {}), 1, 1e-3) << name(model);
+    EXPECT_NEAR(mean_weight(camera, {10, 10}) / mean_weight(camera, {}),
+                mean_weight(absolute, {10, 10}) / mean_weight(absolute, {}), 1e-9)
+        << name(model);
+    if (model < Model::exact_float) continue;
+    const double scale = mean_weight(camera, {10, 10}) / mean_weight(absolute, {10, 10});
+    EXPECT_NEAR(scale * film_irradiance(lens, {}), 1, 6e-4) << name(model);
+  }
+}
+
+// Tables have 64 strips from the axis to the corner. Were a picture brighter where two of them meet than within one,
+// the mean over all strips at one place in them would show it.
+TEST(WhiteFurnace, ShowsNoRings) {
+  constexpr int strips = 64, places = 8, count = 4096;
+  for (const auto& [id, half_width] :
+       {Case{"double_gauss_100mm_f2.0", 28}, Case{"catadioptric_mangin_1000mm_f7.5", 15}}) {
+    const Lens lens = testing::data_lens(id);
+    const Film film{.width_mm = 2 * half_width, .height_mm = 2 * half_width};
+    const Camera camera(lens, film, {.model = Model::exact_float});
+    // The lens's own irradiance at every fourth radius, and evenly in between (within 1e-4).
+    const auto side_of = [&](double i) { return film.radius_mm() / std::numbers::sqrt2 * i / (strips * places); };
+    std::vector<double> irradiance;
+    for (int i = 0; i <= strips * places; i += 4) irradiance.push_back(film_irradiance(lens, {side_of(i), side_of(i)}));
+    std::mt19937 random(7);
+    std::uniform_real_distribution<float> one;
+    std::array<double, places> by_place{};
+    double before = 0, before_noise = 0, variance = 0;
+    for (int i = 0; i < strips * places; ++i) {
+      const double side = side_of(i + 0.5);
+      testing::Samples<float> samples;
+      for (int k = 0; k < count; ++k) samples.add(side, side, one(random), one(random));
+      samples.run(camera);
+      double sum = 0, squares = 0;
+      for (const double w : samples.weights) sum += w, squares += w * w;
+      const auto below = static_cast<std::size_t>(i / 4);
+      const double expected = std::lerp(irradiance[below], irradiance[below + 1], (i % 4 + 0.5) / 4);
+      const double exposure = sum / count / expected;
+      const double noise = std::sqrt((squares / count - sum / count * sum / count) / count) / expected;
+      if (i > 0) {
+        EXPECT_LT(std::abs(exposure - before), 5 * std::hypot(noise, before_noise)) << id << ' ' << i;
+      }
+      before = exposure, before_noise = noise;
+      by_place[static_cast<std::size_t>(i % places)] += exposure / strips;
+      variance += noise * noise / (strips * places);
+    }
+    const double sigma = std::sqrt(variance / strips);
+    for (const double exposure : by_place) EXPECT_NEAR(exposure, 1, 4 * sigma + 5e-4) << id;
+    const auto [least, most] = std::minmax_element(by_place.begin(), by_place.end());
+    EXPECT_LT(*most - *least, 6 * sigma) << id;
+  }
+}
+
+}  // namespace
+}  // namespace petzval

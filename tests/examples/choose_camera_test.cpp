@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "petzval/camera/ray_model.hpp"
+#include "program.hpp"
+
+namespace {
+
+using Arguments = std::vector<std::string>;
+
+class ChooseCamera : public Programs {
+ protected:
+  nlohmann::json choice(const Arguments& more) const {
+    Arguments arguments{lens("double_gauss_52mm_f1.8"), "--json"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const auto outcome = run("choose_camera", arguments);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return nlohmann::json::parse(outcome.out);
+  }
+};
+
+nlohmann::json row_of(const nlohmann::json& choice, const std::string& model) {
+  return *std::ranges::find_if(choice["table"], [&](const auto& row) { return row["model"] == model; });
+}
+
+TEST_F(ChooseCamera, KeepsTheBudgetAndProvesIt) {
+  for (const char* budget : {"2", "0.2", "0.01"}) {
+    const auto json = choice({"--near-mm", "1000", "--far-mm", "inf", "--budget-px", budget});
+    SCOPED_TRACE(json.dump());
+    const std::string model = json["model"];
+    const auto row = row_of(json, model);
+    EXPECT_LE(json["predicted_max_px"], std::stod(budget));
+    EXPECT_LE(json["verified_max_px"], json["predicted_max_px"]);
+    EXPECT_GT(json["verified_max_px"], 0.4 * json["predicted_max_px"].get<double>());
+    EXPECT_EQ(json["predicted_max_px"], row["max_px"]);
+    EXPECT_FALSE(json["reasons"].empty());
+    ASSERT_EQ(json["table"].size(), petzval::models().size());
+    for (const auto& other : json["table"]) {
+      const bool inside =
+          other["max_px"] <= std::stod(budget) && other["exposure_error"] <= 0.01 && other["pupil_shape_error"] <= 0.02;
+      if (inside) {
+        EXPECT_GE(other["ns_per_ray"], row["ns_per_ray"]) << other.dump();
+      }
+    }
+  }
+}
+
+TEST_F(ChooseCamera, LooksAtTheSceneOnly) {
+  // Far behind the nearest thing in focus a pinhole is off by more.
+  const auto all = choice({"--near-mm", "1000", "--far-mm", "inf", "--budget-px", "1"});
+  const auto focus = choice({"--near-mm", "2900", "--far-mm", "3100", "--budget-px", "1"});
+  EXPECT_LT(row_of(focus, "pinhole")["max_px"], row_of(all, "pinhole")["max_px"]);
+  const auto stopped = choice({"--near-mm", "1000", "--far-mm", "inf", "--budget-px", "1", "--f-number", "8"});
+  EXPECT_LT(row_of(stopped, "polynomial_5")["max_px"], 0.5 * row_of(all, "polynomial_5")["max_px"].get<double>());
+}
+
+TEST_F(ChooseCamera, GivesItsReasonsInWords) {
+  const auto outcome = run("choose_camera", {lens("double_gauss_52mm_f1.8"), "--near-mm", "1000", "--far-mm", "5000",
+                                             "--focus-mm", "2000", "--budget-px", "0.5"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("focused at 2000 mm from the film"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find(" is the fastest inside the budget: "), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find(" will not do: "), std::string::npos) << outcome.out;
+  EXPECT_EQ(outcome.out.find("nan"), std::string::npos);
+}
+
+TEST_F(ChooseCamera, ExplainsItselfAndRefusesABadCommandLine) {
+  const auto help = run("choose_camera", {"--help"});
+  EXPECT_EQ(help.status, 0);
+  EXPECT_NE(help.out.find("Usage: choose_camera"), std::string::npos);
+  const std::string file = lens("double_gauss_100mm_f2.0");
+  expect_failure("choose_camera", {file, "--far-mm", "inf", "--budget-px", "1"}, "--near-mm is required");
+  expect_failure("choose_camera", {file, "--near-mm", "1000", "--budget-px", "1"}, "--far-mm is required");
+  expect_failure("choose_camera", {file, "--near-mm", "1000", "--far-mm", "inf"}, "--budget-px is required");
+  expect_failure("choose_camera", {file, "--near-mm", "1000", "--far-mm", "500", "--budget-px", "1"},
+                 "to as far or farther");
+  expect_failure("choose_camera", {file, "--near-mm", "10", "--far-mm", "500", "--budget-px", "1"},
+                 "in front of the lens");
+  expect_failure("choose_camera", {file, "--near-mm", "1000", "--far-mm", "inf", "--budget-px", "-1"},
+                 "--budget-px: found \"-1\"");
+}
+
+}  // namespace
