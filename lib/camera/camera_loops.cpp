@@ -28,10 +28,10 @@ void keep_on_film(const FilmBounds<T>& film, std::size_t count, const T* film_x,
 }
 
 template <class T>
-void start(const FilmSpace& space, T sense, std::size_t count, const FilmLines<const T>& lines,
+void start(const FilmSpace& space, T towards, std::size_t count, const FilmLines<const T>& lines,
            const RayArrays<T>& rays) noexcept {
   const T z = static_cast<T>(space.pupil_z), depth = static_cast<T>(space.depth());
-  const T towards = depth * sense > T(0) ? T(1) : T(-1), depth2 = depth * depth;
+  const T depth2 = depth * depth;
   const auto [film_x, film_y, pupil_x, pupil_y] = lines;
   const auto [ox, oy, oz, dx, dy, dz] = rays;
   // Rays lie where nothing else does.

@@ -22,8 +22,8 @@ template <class T>
 struct CameraLoopsOf {
   void (*keep_on_film)(const FilmBounds<T>&, std::size_t, const T* film_x, const T* film_y, T* kept_x,
                        T* kept_y) noexcept;
-  /// Lines as rays that start in the plane of the pupil. sense: along z, of rays towards the scene.
-  void (*start)(const FilmSpace&, T sense, std::size_t, const FilmLines<const T>&, const RayArrays<T>&) noexcept;
+  /// Lines as rays that start in the plane of the pupil. towards: as towards_scene().
+  void (*start)(const FilmSpace&, T towards, std::size_t, const FilmLines<const T>&, const RayArrays<T>&) noexcept;
   /// scale: by ray, 0 for those without a wavelength.
   void (*weigh)(const FilmBounds<T>&, T depth, std::size_t, const T* film_x, const T* film_y, const FilmLines<const T>&,
                 const T* areas, const T* scale, RayFate*, const CameraRays<T>&) noexcept;

@@ -66,11 +66,10 @@ class FromStop {
 /// Where an exact line of the film's space goes, clear apertures ignored.
 std::optional<Ray<double>> to_scene(const Lens& lens, const FilmSpace& space, std::size_t wavelength, Section section,
                                     const Heights& h) noexcept {
-  const double towards = signed_index(lens, lens.surface_count(), wavelength) > 0 ? -1 : 1;
   const Vec3<double> along = section.vector(h.pupil - h.film, space.depth());
-  const double sense = towards * space.depth() > 0 ? 1 : -1;
+  const double towards = towards_scene(lens, space);
   const auto end =
-      trace(lens, Ray<double>{section.vector(h.pupil, space.pupil_z), along * (sense / glm::length(along))},
+      trace(lens, Ray<double>{section.vector(h.pupil, space.pupil_z), along * (towards / glm::length(along))},
             {.travel = Travel::to_scene, .wavelength = wavelength, .apertures = false});
   return end.transmitted() ? std::optional(end.ray) : std::nullopt;
 }

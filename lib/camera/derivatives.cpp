@@ -7,7 +7,6 @@
 #include "petzval/camera/exact_model.hpp"
 #include "petzval/camera/paraxial_model.hpp"
 #include "petzval/core/kernel_vec.hpp"
-#include "petzval/paraxial/first_order.hpp"
 #include "petzval/trace/sequential.hpp"
 
 namespace petzval {
@@ -45,10 +44,9 @@ template <class R>
 RayDerivatives ExactModel<R>::to_scene(const LineDerivatives& line, std::size_t wavelength) const noexcept {
   const FilmSpace& space = pupils_.space();
   const auto [film_x, film_y, pupil_x, pupil_y] = line_of(line);
-  const double sense = signed_index(lens_, lens_.surface_count()) > 0 ? -1 : 1;
-  const double depth = space.depth(), towards = depth * sense > 0 ? 1 : -1;
+  const double depth = space.depth();
   const Jet x = pupil_x - film_x, y = pupil_y - film_y;
-  const Jet per_length = towards / sqrt(x * x + y * y + depth * depth);
+  const Jet per_length = towards_ / sqrt(x * x + y * y + depth * depth);
   const Vec origin{pupil_x, pupil_y, Jet(space.pupil_z)};
   const Vec direction{x * per_length, y * per_length, depth * per_length};
   RayDerivatives start = derivatives_of(origin, direction);

@@ -7,7 +7,6 @@
 #include <type_traits>
 
 #include "camera_loops.hpp"
-#include "petzval/paraxial/first_order.hpp"
 #include "petzval/trace/batch.hpp"
 #include "petzval/trace/trace.hpp"
 
@@ -21,8 +20,7 @@ template <class R>
 struct Block {
   alignas(64) std::array<std::array<R, block>, 6> v;
 
-  template <class T = R>
-  RayArrays<T> arrays() noexcept {
+  RayArrays<R> arrays() noexcept {
     return {v[0].data(), v[1].data(), v[2].data(), v[3].data(), v[4].data(), v[5].data()};
   }
 };
@@ -54,10 +52,10 @@ template <class R>
 template <class T>
 void ExactModel<R>::to_scene(std::size_t count, const FilmLines<const T>& lines, const RayWavelengths& wavelengths,
                              const RayArrays<T>& rays, RayFate* fates) const noexcept {
-  const R sense = signed_index(lens_, lens_.surface_count()) > 0 ? R(-1) : R(1);
+  const R towards = static_cast<R>(towards_);
   const auto& loops = detail::camera_loops().of<R>();
   if constexpr (std::is_same_v<R, T>) {
-    loops.start(pupils_.space(), sense, count, lines, rays);
+    loops.start(pupils_.space(), towards, count, lines, rays);
     trace_in_place<R>(lens_, Travel::to_scene, count, rays, wavelengths, fates);
   } else {
     Block<R> own;
@@ -68,7 +66,7 @@ void ExactModel<R>::to_scene(std::size_t count, const FilmLines<const T>& lines,
       for (std::size_t k = 0; k < 4; ++k) {
         std::transform(from[k] + begin, from[k] + begin + n, line[k].begin(), [](T x) { return static_cast<R>(x); });
       }
-      loops.start(pupils_.space(), sense, n, {line[0].data(), line[1].data(), line[2].data(), line[3].data()},
+      loops.start(pupils_.space(), towards, n, {line[0].data(), line[1].data(), line[2].data(), line[3].data()},
                   own.arrays());
       trace_in_place<R>(lens_, Travel::to_scene, n, own.arrays(), wavelengths.from(begin), fates + begin);
       T* const to[] = {rays.x, rays.y, rays.z, rays.dx, rays.dy, rays.dz};

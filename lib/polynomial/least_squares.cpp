@@ -11,7 +11,6 @@
 #include "chart.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/text.hpp"
-#include "petzval/paraxial/first_order.hpp"
 #include "petzval/trace/batch.hpp"
 
 namespace petzval::detail {
@@ -36,11 +35,11 @@ struct Rays {
 Rays trace(const Lens& lens, const FilmSpace& space, const MeridianLines& lines, std::size_t wavelength) {
   const double last_z = lens.surfaces().back().vertex_z;
   const double part = (last_z - space.film_z) / space.depth();  // of the way from the film to the pupil
-  const double sign = signed_index(lens, lens.surface_count()) * space.depth() > 0 ? -1 : 1;  // against the light
+  const double towards = towards_scene(lens, space);
   Rays rays(lines.size());
   for (std::size_t i = 0; i < lines.size(); ++i) {
     const double dx = lines.pupil_x[i], dy = lines.pupil_y[i] - lines.film_y[i], dz = space.depth();
-    const double per_length = sign / std::sqrt(dx * dx + dy * dy + dz * dz);
+    const double per_length = towards / std::sqrt(dx * dx + dy * dy + dz * dz);
     const std::array<double, 6> ray{
         part * dx, lines.film_y[i] + part * dy, last_z, dx * per_length, dy * per_length, dz * per_length};
     for (std::size_t k = 0; k < ray.size(); ++k) rays.v[k][i] = ray[k];

@@ -26,4 +26,9 @@ FilmSpace film_space(const Lens& lens) {
   return {film_z, depth > nearest * reach && depth < farthest * reach ? exit_z : last_z};
 }
 
+double towards_scene(const Lens& lens, const FilmSpace& space) {
+  // Against the light, which runs towards +z but behind an odd number of mirrors.
+  return signed_index(lens, lens.surface_count()) * space.depth() > 0 ? -1 : 1;
+}
+
 }  // namespace petzval

@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "face.hpp"
-#include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/pupil.hpp"
 #include "petzval/trace/batch.hpp"
 
@@ -24,7 +23,7 @@ class FilmSide {
  public:
   FilmSide(const Lens& lens, const FilmSpace& space, std::vector<FilmPoint> points)
       : lens_(lens), space_(space), points_(std::move(points)) {
-    to_scene_ = signed_index(lens, lens.surface_count()) > 0 ? -1 : 1;
+    towards_ = towards_scene(lens, space);
   }
 
   std::vector<PupilEdges> edges(std::size_t wavelength) {
@@ -77,11 +76,11 @@ class FilmSide {
             std::uint8_t* passes) {
     for (auto& a : memory_) a.resize(count);
     fates_.resize(count);
-    const double depth = space_.depth(), towards = depth * to_scene_ > 0 ? 1 : -1;
+    const double depth = space_.depth();
     for (std::size_t i = 0; i < count; ++i) {
       const FilmPoint& film = points_[fields[i]];
       const double dx = x[i] - film.x, dy = y[i] - film.y;
-      const double per_length = towards / std::sqrt(dx * dx + dy * dy + depth * depth);
+      const double per_length = towards_ / std::sqrt(dx * dx + dy * dy + depth * depth);
       memory_[0][i] = x[i], memory_[1][i] = y[i], memory_[2][i] = space_.pupil_z;
       memory_[3][i] = dx * per_length, memory_[4][i] = dy * per_length, memory_[5][i] = depth * per_length;
     }
@@ -94,7 +93,7 @@ class FilmSide {
   const Lens& lens_;
   FilmSpace space_;
   std::vector<FilmPoint> points_;
-  double to_scene_;
+  double towards_;
   std::array<std::vector<double>, 6> memory_;
   std::vector<RayFate> fates_;
 };

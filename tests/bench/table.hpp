@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <exception>
 #include <optional>
 #include <string>
 #include <vector>
@@ -39,6 +40,16 @@ inline std::optional<std::string> take_option(std::vector<char*>& arguments, con
   std::string value = *(at + 1);
   arguments.erase(at, at + 2);
   return value;
+}
+
+/// A program whose errors are one line.
+inline int guarded(int (*run)(std::vector<char*> arguments), int argc, char** argv) {
+  try {
+    return run({argv, argv + argc});
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 1;
+  }
 }
 
 /// Significant digits, without an exponent.

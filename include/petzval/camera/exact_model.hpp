@@ -14,7 +14,8 @@ class ExactModel {
  public:
   /// Throws Error where PupilMap::covering does.
   ExactModel(const Lens& lens, double film_radius) : ExactModel(lens, PupilMap::covering(lens, film_radius)) {}
-  ExactModel(const Lens& lens, PupilMap covering) : lens_(lens), pupils_(std::move(covering)) {}
+  ExactModel(const Lens& lens, PupilMap covering)
+      : lens_(lens), pupils_(std::move(covering)), towards_(towards_scene(lens_, pupils_.space())) {}
 
   const PupilMap& pupils() const noexcept { return pupils_; }
   template <class T>
@@ -31,6 +32,7 @@ class ExactModel {
  private:
   Lens lens_;
   PupilMap pupils_;
+  double towards_;
 };
 
 }  // namespace petzval

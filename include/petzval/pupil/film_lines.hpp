@@ -23,6 +23,10 @@ struct FilmSpace {
 /// a film in the plane of the last vertex.
 PETZVAL_API FilmSpace film_space(const Lens& lens);
 
+/// 1 where lines run towards the scene on their way from the film to the plane of the pupil, -1 where they come from
+/// it.
+PETZVAL_API double towards_scene(const Lens& lens, const FilmSpace& space);
+
 /// Lines in the space of the film as a structure of arrays, N values each: where they meet the film and the plane of
 /// the pupil, mm. Which way light runs is left to the Travel at hand.
 template <class T>
