@@ -25,6 +25,7 @@ namespace {
 using examples::CsvColumn;
 using examples::LoadedLens;
 
+constexpr examples::Range below_quarter_turn{-89.9, 89.9, "an angle from -89.9 to 89.9"};
 constexpr examples::Range unit_interval{0, 1, "a number from 0 to 1"};
 constexpr std::array<CsvColumn, 5> sample_columns{{{"film_x_mm"},
                                                    {"film_y_mm"},
@@ -105,6 +106,7 @@ std::string rays_csv(const petzval::Camera& camera, const Samples& samples) {
 int main(int argc, char** argv) {
   std::string lens_file, samples_file, out_file, model;
   examples::CameraSetup setup;
+  double tilt_deg = 0, swing_deg = 0;
   CLI::App app(
       "Samples camera rays: from points of the film, through the lens, into the scene. Lengths in mm, in the lens "
       "frame: origin at the first vertex, light runs towards +z (these rays run against it); the image on the film is "
@@ -126,14 +128,22 @@ int main(int argc, char** argv) {
   for (const petzval::Model m : petzval::models()) model_names.emplace_back(petzval::name(m));
   app.add_option("--model", model, "model of the lens")->required()->check(CLI::IsMember(model_names));
   examples::add_camera(app, setup);
+  examples::add_number(
+      app, "--tilt-deg", tilt_deg, below_quarter_turn,
+      "lean the film about its +x by so much (degrees): its normal is Ry(swing) Rx(tilt) e_z, and film "
+      "points count along its own axes");
+  examples::add_number(app, "--swing-deg", swing_deg, below_quarter_turn, "and about its +y");
   app.get_option("--focus-mm")->required();
 
   return examples::run(app, argc, argv, [&] {
     const auto [width, height] = setup.film_size();
     const Samples samples = parse_samples(examples::read_text(samples_file), samples_file);
     const LoadedLens loaded = load_for(samples, lens_file, samples_file);
-    const petzval::Camera camera(examples::focused(loaded, setup), {.width_mm = width, .height_mm = height},
-                                 {.model = *petzval::model_named(model)});
+    const petzval::Film film{.width_mm = width,
+                             .height_mm = height,
+                             .tilt_rad = petzval::radians(tilt_deg),
+                             .swing_rad = petzval::radians(swing_deg)};
+    const petzval::Camera camera(examples::focused(loaded, setup), film, {.model = *petzval::model_named(model)});
     examples::write_text(out_file, rays_csv(camera, samples));
   });
 }

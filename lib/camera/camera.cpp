@@ -9,12 +9,13 @@
 #include "petzval/camera/sample_rays.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/text.hpp"
+#include "tilted_pinhole.hpp"
 
 namespace petzval {
 namespace {
 
 /// A model that somebody else built has to be one of this lens and film, as far as can be told.
-void check_model(const Lens& lens, const Film& film, const PupilMap& pupils) {
+void check_model(const Lens& lens, const Film& film, Model kind, const PupilMap& pupils) {
   const std::size_t wavelengths = lens.wavelengths_nm().size();
   if (pupils.wavelengths() != wavelengths) {
     throw Error(lens.name() + ": camera: the model is one for " + std::to_string(pupils.wavelengths()) +
@@ -26,27 +27,27 @@ void check_model(const Lens& lens, const Film& film, const PupilMap& pupils) {
                 " mm, wanted the lens's, " + number(lens.film_z()) + " mm");
   }
   constexpr double rounding = 1e-9;
-  if (!(film.radius_mm() <= pupils.film_radius() * (1 + rounding))) {
+  const double radius = upright_radius(lens, film, kind);
+  if (!(radius <= pupils.film_radius() * (1 + rounding))) {
     throw Error(lens.name() + ": camera: the model is one for film points up to " + number(pupils.film_radius()) +
-                " mm from the axis, wanted " + number(film.radius_mm()) + " mm or more");
+                " mm from the axis, wanted " + number(radius) + " mm or more");
   }
 }
 
-/// One sample by the batch call.
-CameraRay one(const auto& model, const Film& film, const double* scale, const CameraSample& s) noexcept {
+/// One sample by the batch call, of an upright or a tilted film.
+CameraRay one(const auto& model, const auto& film, const double* scale, const CameraSample& s) noexcept {
   CameraRay out;
   auto& [o, d] = out.ray;
   const auto wavelength = RayWavelengths{.all = s.wavelength};
   sample_rays<std::decay_t<decltype(model)>, double>(
       model, film, scale, 1, {&s.film.x, &s.film.y, &s.pupil_u, &s.pupil_v, wavelength},
       {{&o.x, &o.y, &o.z, &d.x, &d.y, &d.z}, &out.weight, &out.fate, &out.pdf_pupil, &out.pdf_direction});
-  out.pdf_film = 1 / film.area_mm2();
   return out;
 }
 
 /// Mean weight on the axis, by samples each of which has a v of its own: a grid has so few that the pupil's edge, which
 /// passes between two of them all around, would decide by steps.
-double on_axis(const auto& model, std::size_t wavelength) {
+double on_axis(const auto& model, const auto& film, std::size_t wavelength) {
   constexpr std::size_t count = 4096;
   const std::vector<double> unit(wavelength + 1, 1);
   const std::vector<double> zero(count, 0);
@@ -59,14 +60,14 @@ double on_axis(const auto& model, std::size_t wavelength) {
   for (auto& values : out) values.resize(count);
   const auto at = [&](std::size_t k) { return out[k].data(); };
   sample_rays<std::decay_t<decltype(model)>, double>(
-      model, Film{}, unit.data(), count, {zero.data(), zero.data(), u.data(), v.data(), {.all = wavelength}},
+      model, film, unit.data(), count, {zero.data(), zero.data(), u.data(), v.data(), {.all = wavelength}},
       {{at(0), at(1), at(2), at(3), at(4), at(5)}, at(6)});
   double sum = 0;
   for (const double weight : out[6]) sum += weight;
   return sum / count;
 }
 
-std::vector<double> scales(const Lens& lens, const AnyModel& model, Normalisation normalisation) {
+std::vector<double> scales(const Lens& lens, const Film& film, const AnyModel& model, Normalisation normalisation) {
   std::vector<double> result;
   for (std::size_t w = 0; w < lens.wavelengths_nm().size(); ++w) {
     if (normalisation == Normalisation::irradiance) {
@@ -74,7 +75,17 @@ std::vector<double> scales(const Lens& lens, const AnyModel& model, Normalisatio
       result.push_back(index * index);
       continue;
     }
-    const double axis = std::visit([&](const auto& m) { return on_axis(m, w); }, model);
+    // A film of its own, for shifted ones are beside the axis: small, for no more than its middle matters.
+    constexpr double part = 1. / 1024;
+    const Film about{.width_mm = part * film.width_mm,
+                     .height_mm = part * film.height_mm,
+                     .tilt_rad = film.tilt_rad,
+                     .swing_rad = film.swing_rad};
+    const double axis = std::visit(
+        [&](const auto& m) {
+          return film.tilted() ? on_axis(m, TiltedFilm(about, m.pupils()), w) : on_axis(m, about, w);
+        },
+        model);
     if (!(axis > 0)) {
       throw Error(lens.name() + ": camera: the axis is dark, wanted light there for weights that are unity on it");
     }
@@ -87,15 +98,18 @@ std::vector<double> scales(const Lens& lens, const AnyModel& model, Normalisatio
 
 Camera::Camera(const Lens& lens, const Film& film, const CameraOptions& options) {
   detail::check_film(lens, film);
-  AnyModel model = make_model(options.model, lens, film.radius_mm());
+  AnyModel model = make_model(options.model, lens, upright_radius(lens, film, options.model));
   *this = Camera(lens, film, std::move(model), options.normalisation);
 }
 
 Camera::Camera(const Lens& lens, const Film& film, AnyModel model, Normalisation normalisation) {
   detail::check_film(lens, film);
-  check_model(lens, film, std::visit([](const auto& m) -> const PupilMap& { return m.pupils(); }, model));
-  std::vector<double> scale = scales(lens, model, normalisation);
-  detail::SceneSide scene(lens, film, model, scale);
+  const PupilMap& pupils = std::visit([](const auto& m) -> const PupilMap& { return m.pupils(); }, model);
+  check_model(lens, film, kind_of(model), pupils);
+  std::optional<TiltedFilm> tilted;
+  if (film.tilted()) tilted.emplace(film, pupils);
+  std::vector<double> scale = scales(lens, film, model, normalisation);
+  detail::SceneSide scene(lens, film, std::move(tilted), model, scale);
   data_ = std::make_shared<const Data>(Data{lens, film, std::move(model), std::move(scale), std::move(scene)});
 }
 
@@ -106,22 +120,49 @@ const PupilMap& Camera::pupils() const noexcept {
   return std::visit([](const auto& m) -> const PupilMap& { return m.pupils(); }, data_->model);
 }
 
+const TiltedFilm* Camera::tilted_film() const noexcept { return data_->scene.tilted(); }
+
 CameraRay Camera::sample(const CameraSample& sample) const noexcept {
-  return std::visit([&](const auto& m) { return one(m, data_->film, data_->scale.data(), sample); }, data_->model);
+  const Data& data = *data_;
+  CameraRay ray = std::visit(
+      [&](const auto& m) {
+        const TiltedFilm* tilted = data.scene.tilted();
+        return tilted ? one(m, *tilted, data.scale.data(), sample) : one(m, data.film, data.scale.data(), sample);
+      },
+      data.model);
+  ray.pdf_film = data.film.contains(sample.film) ? 1 / data.film.area_mm2() : 0;
+  return ray;
 }
 
 template <class T>
 void Camera::sample(std::size_t count, const CameraSamples<T>& samples, const CameraRays<T>& rays) const noexcept {
-  std::visit([&](const auto& m) { sample_rays(m, data_->film, data_->scale.data(), count, samples, rays); },
-             data_->model);
+  const Data& data = *data_;
+  std::visit(
+      [&](const auto& m) {
+        if (const TiltedFilm* tilted = data.scene.tilted()) {
+          sample_rays(m, *tilted, data.scale.data(), count, samples, rays);
+        } else {
+          sample_rays(m, data.film, data.scale.data(), count, samples, rays);
+        }
+      },
+      data.model);
 }
 
 CameraRayDifferential Camera::sample_differential(const CameraSample& s) const noexcept {
   CameraRayDifferential result{sample(s)};
   if (!result.sample) return result;
-  const PupilSample at = pupils().sample(s.film, s.pupil_u, s.pupil_v, s.wavelength);
-  const auto [by_x, by_y] = pupils().motion(s.film, s.pupil_u, s.pupil_v, s.wavelength);
-  const LineDerivatives line{{s.film.x, s.film.y, at.x, at.y}, {1, 0, by_x[0], by_x[1]}, {0, 1, by_y[0], by_y[1]}};
+  const auto upright = [&]() -> LineDerivatives {
+    const PupilSample at = pupils().sample(s.film, s.pupil_u, s.pupil_v, s.wavelength);
+    const auto [by_x, by_y] = pupils().motion(s.film, s.pupil_u, s.pupil_v, s.wavelength);
+    return {{s.film.x, s.film.y, at.x, at.y}, {1, 0, by_x[0], by_x[1]}, {0, 1, by_y[0], by_y[1]}};
+  };
+  const auto* first_order = std::get_if<ParaxialModel>(&data_->model);
+  const bool pinhole = first_order && !first_order->pinhole_shifts().empty();
+  const TiltedFilm* tilted = data_->scene.tilted();
+  const LineDerivatives line = !tilted ? upright()
+                               : pinhole
+                                   ? detail::pinhole_line(*tilted, s.film, first_order->pinhole_shifts()[s.wavelength])
+                                   : tilted->line(s.film, s.pupil_u, s.pupil_v, s.wavelength);
   const auto moved = std::visit([&](const auto& m) { return m.to_scene(line, s.wavelength); }, data_->model);
   result.by_film_x = moved.by_u;
   result.by_film_y = moved.by_v;

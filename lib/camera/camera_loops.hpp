@@ -17,6 +17,12 @@ struct FilmBounds {
   T centre_x, centre_y, half_width, half_height;
 };
 
+/// A tilted film as loops want it: see detail::TiltedPlane.
+template <class T>
+struct TiltedBounds {
+  T x_by_x, x_by_y, y_by_y, depth_by_x, depth_by_y, slope_x, slope_y, cosine;
+};
+
 /// Loops over samples, for float or double.
 template <class T>
 struct CameraLoopsOf {
@@ -27,6 +33,13 @@ struct CameraLoopsOf {
   /// scale: by ray, 0 for those without a wavelength.
   void (*weigh)(const FilmBounds<T>&, T depth, std::size_t, const T* film_x, const T* film_y, const FilmLines<const T>&,
                 const T* areas, const T* scale, RayFate*, const CameraRays<T>&) noexcept;
+  /// Of a tilted film: the keys of film points, the upright film points of lines through the pupil, and the weights of
+  /// such lines made those of the film's.
+  void (*to_keys)(const TiltedBounds<T>&, std::size_t, const T* film_x, const T* film_y, T* key_x, T* key_y) noexcept;
+  void (*to_upright)(const TiltedBounds<T>&, std::size_t, const T* key_x, const T* key_y, const T* pupil_x,
+                     const T* pupil_y, T* film_x, T* film_y) noexcept;
+  void (*lean)(const TiltedBounds<T>&, std::size_t, const T* key_x, const T* key_y, const T* pupil_x, const T* pupil_y,
+               RayFate*, const CameraRays<T>&) noexcept;
 };
 struct CameraLoops {
   CameraLoopsOf<float> single;

@@ -2,16 +2,18 @@
 #include "check_film.hpp"
 
 #include <cmath>
+#include <numbers>
 #include <string>
 
 #include "petzval/core/error.hpp"
 #include "petzval/core/text.hpp"
+#include "petzval/movement/film_pose.hpp"
+#include "petzval/pupil/film_lines.hpp"
 
 namespace petzval::detail {
 
-void check_film(const Lens& lens, const Film& film) {
-  const std::string where = lens.name() + ": film: ";
-  const auto refuse = [&](const std::string& found_and_wanted) { throw Error(where + found_and_wanted); };
+void check_rectangle(const std::string& where, const Film& film) {
+  const auto refuse = [&](const std::string& found_and_wanted) { throw Error(where + ": " + found_and_wanted); };
   if (!(film.width_mm > 0 && film.height_mm > 0 && std::isnormal(film.area_mm2()))) {
     refuse("it is " + number(film.width_mm) + " by " + number(film.height_mm) +
            " mm, wanted positive lengths and an area that is a number");
@@ -22,10 +24,36 @@ void check_film(const Lens& lens, const Film& film) {
   if (!(std::isfinite(film.centre_x_mm) && std::isfinite(film.centre_y_mm))) {
     refuse("its centre is (" + number(film.centre_x_mm) + ", " + number(film.centre_y_mm) + ") mm, wanted a place");
   }
-  if (film.tilt_rad != 0 || film.swing_rad != 0) {
+  constexpr double quarter_turn = std::numbers::pi / 2;
+  if (!(std::abs(film.tilt_rad) < quarter_turn && std::abs(film.swing_rad) < quarter_turn)) {
     refuse("it is tilted by " + number(film.tilt_rad) + " and " + number(film.swing_rad) +
-           " rad, wanted one perpendicular to the axis");
+           " rad, wanted less than a quarter turn");
   }
+}
+
+void check_film(const Lens& lens, const Film& film) {
+  check_rectangle(lens.name() + ": film", film);
+  if (!film.tilted()) return;
+  const OuterFace face = last_face(lens);
+  const FilmPose pose{lens.film_z(), film.tilt_rad, film.swing_rad};
+  // Where the last surface ends on the film's side; its vertex, where it reaches around the upright film.
+  const double side = pose.film_z > face.vertex_z ? 1 : -1, edge = side > 0 ? face.z_max : face.z_min;
+  const double end = (pose.film_z - edge) * side > 0 ? edge : face.vertex_z;
+  for (const FilmPoint& corner : corners_of(film)) {
+    const double z = pose.at(corner).z;
+    if ((z - end) * side > 0) continue;
+    throw Error(lens.name() + ": film: tilted by " + number(film.tilt_rad) + " and " + number(film.swing_rad) +
+                " rad it has its corner (" + number(corner.x) + ", " + number(corner.y) + ") mm at z = " + number(z) +
+                " mm, wanted it " + (side > 0 ? "beyond " : "before ") + number(end) +
+                " mm, where the last surface ends");
+  }
+}
+
+void check_upright_film(const Lens& lens, const Film& film) {
+  check_film(lens, film);
+  if (!film.tilted()) return;
+  throw Error(lens.name() + ": film: it is tilted by " + number(film.tilt_rad) + " and " + number(film.swing_rad) +
+              " rad, wanted one perpendicular to the axis");
 }
 
 }  // namespace petzval::detail

@@ -11,6 +11,8 @@
 // p_film p_pupil len^4 / depth^2 in cos dA dw at the film, and n^2 / n'^2 times that in cos' dA' dw' of the scene. We
 // divided by it is the weight of the film sample: reciprocity.
 //
+// Where the film is tilted, its sample's density is that of the upright line over TiltedFilm::weight().
+//
 // Models of first order are linear in slopes and conserve the area of heights and slopes instead; in cos dA dw they
 // lack (cos t / cos t')^4, t' the angle of the ray in the scene. It belongs to both, for theirs to be the weights that
 // their film samples have.
@@ -22,8 +24,8 @@
 
 #include "camera_data.hpp"
 #include "petzval/pupil/pupil.hpp"
-#include "petzval/trace/batch.hpp"
 #include "scene_side.hpp"
+#include "tilted_pinhole.hpp"
 
 namespace petzval {
 namespace {
@@ -34,46 +36,29 @@ double squared(double x) noexcept { return x * x; }
 
 bool finite(const Vec3<double>& v) noexcept { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
+const PupilMap& pupils_of(const AnyModel& any) noexcept {
+  return std::visit([](const auto& m) -> const PupilMap& { return m.pupils(); }, any);
+}
+
 /// What of the model's lines leaves for the scene.
-template <class M>
-std::vector<std::vector<Ray<double>>> lines_of(const M& model, bool azimuths_alike) {
-  std::vector<std::vector<Ray<double>>> result(model.pupils().wavelengths());
-  for (std::size_t w = 0; w < result.size(); ++w) {
-    const auto [film_x, film_y, pupil_x, pupil_y] = spread_lines(model.pupils(), azimuths_alike, w);
-    const std::size_t count = film_x.size();
-    std::array<std::vector<double>, 6> ray;
-    for (auto& values : ray) values.resize(count);
-    std::vector<RayFate> fates(count);
-    model.template to_scene<double>(
-        count, {film_x.data(), film_y.data(), pupil_x.data(), pupil_y.data()}, {.all = w},
-        {ray[0].data(), ray[1].data(), ray[2].data(), ray[3].data(), ray[4].data(), ray[5].data()}, fates.data());
-    for (std::size_t i = 0; i < count; ++i) {
-      if (fates[i] != RayFate::transmitted) continue;
-      result[w].push_back({{ray[0][i], ray[1][i], ray[2][i]}, {ray[3][i], ray[4][i], ray[5][i]}});
-    }
-  }
-  return result;
+std::vector<std::vector<Ray<double>>> lines_of(const Lens& lens, const auto& model) {
+  return leaving_rays(model.pupils(), lens.rotationally_symmetric(),
+                      [&](std::size_t count, const FilmLines<const double>& lines, std::size_t wavelength,
+                          const RayArrays<double>& rays, RayFate* fates) {
+                        model.template to_scene<double>(count, lines, {.all = wavelength}, rays, fates);
+                      });
 }
 
 /// The scene's pupils of a model. Whether rays meet the film is left out: pupils would end abruptly with the film.
 EntranceMap entrance_of(const Lens& lens, const AnyModel& any) {
-  const auto of_lens = [&](std::size_t count, const RayArrays<const double>& rays, std::size_t wavelength,
-                           std::uint8_t* passes) {
-    std::array<std::vector<double>, 6> out;
-    for (auto& values : out) values.resize(count);
-    std::vector<RayFate> fates(count);
-    trace<double>(lens, count, rays,
-                  {out[0].data(), out[1].data(), out[2].data(), out[3].data(), out[4].data(), out[5].data()},
-                  fates.data(), nullptr, {.wavelength = wavelength});
-    for (std::size_t i = 0; i < count; ++i) passes[i] = fates[i] == RayFate::transmitted;
-  };
   return std::visit(
       [&](const auto& model) {
-        const auto lines = lines_of(model, lens.rotationally_symmetric());
-        if constexpr (std::is_same_v<std::decay_t<decltype(model)>, ParaxialModel>) {
-          const PupilMap& pupils = model.pupils();
-          if (model.model() == Model::pinhole) {  // it needs no more than to know what lies in front
-            return EntranceMap(lens, std::vector<std::vector<Ray<double>>>(lines.size()), {});
+        using M = std::decay_t<decltype(model)>;
+        const PupilMap& pupils = model.pupils();
+        if constexpr (std::is_same_v<M, ParaxialModel>) {
+          // A pinhole needs no more than to know what lies in front.
+          if (model.model() == Model::pinhole) {
+            return EntranceMap(lens, std::vector<std::vector<Ray<double>>>(pupils.wavelengths()), {});
           }
           const auto within = [&](std::size_t count, const RayArrays<const double>& rays, std::size_t wavelength,
                                   std::uint8_t* passes) {
@@ -90,11 +75,11 @@ EntranceMap entrance_of(const Lens& lens, const AnyModel& any) {
                           pupils.contains({part * line[0][i], part * line[1][i]}, line[2][i], line[3][i], wavelength);
             }
           };
-          return EntranceMap(lens, lines, within, PupilEnds::with_lines);
-        } else if constexpr (std::is_same_v<std::decay_t<decltype(model)>, PolynomialModel>) {
-          return EntranceMap(lens, lines, of_lens, PupilEnds::with_lines);
+          return EntranceMap(lens, lines_of(lens, model), within, PupilEnds::with_lines);
+        } else if constexpr (std::is_same_v<M, PolynomialModel>) {
+          return EntranceMap(lens, lines_of(lens, model), traced_passing(lens), PupilEnds::with_lines);
         } else {
-          return EntranceMap(lens, lines, of_lens);
+          return traced_entrances(lens, pupils);
         }
       },
       any);
@@ -104,9 +89,12 @@ EntranceMap entrance_of(const Lens& lens, const AnyModel& any) {
 
 namespace detail {
 
-SceneSide::SceneSide(const Lens& lens, const Film& film, const AnyModel& model, std::span<const double> scale)
+SceneSide::SceneSide(const Lens& lens, const Film& film, std::optional<TiltedFilm> tilted, const AnyModel& model,
+                     std::span<const double> scale)
     : film_(film),
-      space_(std::visit([](const auto& m) { return m.pupils().space(); }, model)),
+      tilted_(std::move(tilted)),
+      upright_radius_(upright_radius(lens, film, kind_of(model))),
+      space_(pupils_of(model).space()),
       entrance_(entrance_of(lens, model)) {
   for (std::size_t w = 0; w < scale.size(); ++w) {
     const double n = lens.index(0, w), n_film = lens.index(lens.surface_count(), w), etendue = squared(n / n_film);
@@ -115,7 +103,7 @@ SceneSide::SceneSide(const Lens& lens, const Film& film, const AnyModel& model, 
                             .density = etendue / film.area_mm2() / squared(space_.depth()),
                             .entrance_z = entrance.z,
                             .entrance_area = pi / 4 * squared(entrance.diameter),
-                            .chiefs = ChiefLines(lens, model, film.radius_mm(), w)});
+                            .chiefs = ChiefLines(lens, model, upright_radius_, w)});
   }
 }
 
@@ -127,7 +115,7 @@ SceneSide::Arrival SceneSide::arrive(const AnyModel& any, const Ray<double>& ray
   if (wavelength >= wavelengths_.size() || !finite(ray.origin) || !unit) return result;
   // Nothing is lost on the way from a far point where the line begins near the lens.
   const Vec3<double>&d = ray.direction, o = ray.origin - d * glm::dot(ray.origin, d);
-  const FilmLines<double> line{&result.film.x, &result.film.y, &result.pupil.x, &result.pupil.y};
+  const FilmLines<double> line{&result.upright.x, &result.upright.y, &result.pupil.x, &result.pupil.y};
   std::visit(
       [&](const auto& m) {
         m.to_film(1, {&o.x, &o.y, &o.z, &d.x, &d.y, &d.z}, {.all = wavelength}, line, &result.fate);
@@ -136,41 +124,57 @@ SceneSide::Arrival SceneSide::arrive(const AnyModel& any, const Ray<double>& ray
   return result;
 }
 
-Importance SceneSide::weighed(const AnyModel& any, const Arrival& arrival, double cosine,
-                              std::size_t wavelength) const noexcept {
+std::optional<SceneSide::OnFilm> SceneSide::on_film(const FilmPoint& upright, const FilmPoint& pupil) const noexcept {
+  if (!tilted_) return OnFilm{upright, upright};
+  const auto key = tilted_->key_of({upright.x, upright.y, pupil.x, pupil.y});
+  if (!key) return {};
+  return OnFilm{tilted_->point(*key), *key};
+}
+
+Importance SceneSide::met_by(const Arrival& arrival, const std::optional<OnFilm>& met) const noexcept {
   Importance result{.fate = arrival.fate};
   if (arrival.fate != RayFate::transmitted) return result;
-  const auto& [fate, film, pupil] = arrival;
-  result.film = film;
-  result.raster = film_.raster(film);
-  if (!film_.contains(film)) {
-    result.fate = RayFate::outside_film;
-    return result;
+  if (met) {
+    result.film = met->point;
+    result.raster = film_.raster(met->point);
   }
-  const PupilMap& pupils = std::visit([](const auto& m) -> const PupilMap& { return m.pupils(); }, any);
-  const bool within = pupils.contains(film, pupil.x, pupil.y, wavelength);
-  const bool first_order = std::holds_alternative<ParaxialModel>(any);
-  if (!within && (first_order || std::holds_alternative<PolynomialModel>(any))) {
-    result.fate = RayFate::vignetted;
-    return result;
-  }
-  const Wavelength& at = wavelengths_[wavelength];
-  const double depth2 = squared(space_.depth());
-  const double length2 = squared(pupil.x - film.x) + squared(pupil.y - film.y) + depth2;
-  const double slopes = first_order ? squared(depth2 / (length2 * squared(cosine))) : 1;
-  result.we = at.we * slopes;
-  result.pdf_film = 1 / film_.area_mm2();
-  result.pdf_pupil = within ? 1 / pupils.area(film, wavelength) : 0;
-  // A pupil at infinity has no place; all of the density is the direction's.
-  result.pdf_position = std::isfinite(at.entrance_area) ? 1 / at.entrance_area : 1;
-  result.pdf_direction = at.density * squared(length2) * slopes * result.pdf_pupil / result.pdf_position;
+  if (!met || !film_.contains(met->point)) result.fate = RayFate::outside_film;
   return result;
 }
 
-Importance SceneSide::importance(const AnyModel& model, const Ray<double>& ray, std::size_t wavelength) const noexcept {
+void SceneSide::weigh(Importance& result, const AnyModel& any, const Arrival& arrival, const FilmPoint& key,
+                      double cosine, double area, std::size_t wavelength) const noexcept {
+  const auto& [fate, upright, pupil] = arrival;
+  const Wavelength& at = wavelengths_[wavelength];
+  const double depth2 = squared(space_.depth());
+  const double length2 = squared(pupil.x - upright.x) + squared(pupil.y - upright.y) + depth2;
+  const double lean = tilted_ ? tilted_->weight(key, pupil.x, pupil.y) : 1;
+  const double slopes = std::holds_alternative<ParaxialModel>(any) ? squared(depth2 / (length2 * squared(cosine))) : 1;
+  result.we = at.we * slopes;
+  result.pdf_film = 1 / film_.area_mm2();
+  result.pdf_pupil = area > 0 ? 1 / area : 0;
+  // A pupil at infinity has no place; all of the density is the direction's.
+  result.pdf_position = std::isfinite(at.entrance_area) ? 1 / at.entrance_area : 1;
+  result.pdf_direction = at.density * squared(length2) / lean * slopes * result.pdf_pupil / result.pdf_position;
+}
+
+Importance SceneSide::importance(const AnyModel& any, const Ray<double>& ray, std::size_t wavelength) const noexcept {
   // No ray meets a point but one that was aimed at it.
-  if (kind_of(model) == Model::pinhole) return {};
-  return weighed(model, arrive(model, ray, wavelength), ray.direction.z, wavelength);
+  if (kind_of(any) == Model::pinhole) return {};
+  const Arrival arrival = arrive(any, ray, wavelength);
+  const auto& [fate, upright, pupil] = arrival;
+  const auto met = on_film(upright, pupil);
+  Importance result = met_by(arrival, met);
+  if (result.fate != RayFate::transmitted) return result;
+  const PupilMap &passing = pupils_of(any), &sampled = tilted_ ? tilted_->pupils() : passing;
+  const bool no_rims = std::holds_alternative<ParaxialModel>(any) || std::holds_alternative<PolynomialModel>(any);
+  if (no_rims && !passing.contains(upright, pupil.x, pupil.y, wavelength)) {
+    result.fate = RayFate::vignetted;
+    return result;
+  }
+  const bool within = sampled.contains(met->key, pupil.x, pupil.y, wavelength);
+  weigh(result, any, arrival, met->key, ray.direction.z, within ? sampled.area(met->key, wavelength) : 0, wavelength);
+  return result;
 }
 
 ImportanceSample SceneSide::sample_importance(const AnyModel& model, const Vec3<double>& point, double u, double v,
@@ -193,9 +197,30 @@ ImportanceSample SceneSide::through_pinhole(const AnyModel& model, const Vec3<do
   // The weights are those of all the thick lens's pupil, and so are the places in it that the film sees it through.
   result.pdf = squared(distance) / (at.entrance_area * result.direction.z);
   Arrival arrival = arrive(model, {pupil, result.direction}, wavelength);
-  const PupilSample s = std::get<ParaxialModel>(model).pupils().sample(arrival.film, u, v, wavelength);
-  arrival.pupil = {s.x, s.y};
-  result.importance = weighed(model, arrival, result.direction.z, wavelength);
+  const auto met = on_film(arrival.upright, arrival.pupil);
+  Importance& seen = result.importance = met_by(arrival, met);
+  if (seen.fate != RayFate::transmitted) return result;
+  const PupilSample s = pupils_of(model).sample(arrival.upright, u, v, wavelength);
+  FilmPoint place{s.x, s.y};
+  double area = s.area, spread = 1;
+  if (tilted_) {
+    const TiltedPlane& plane = tilted_->plane();
+    const FilmPoint chief = arrival.pupil;
+    const double part = part_of_place(plane, chief);
+    place = {chief.x + part * (s.x - chief.x), chief.y + part * (s.y - chief.y)};
+    area *= squared(part);
+    // Lines through the place spread over the film otherwise than those of the pinhole do.
+    spread = part_of_place(plane, place) / part;
+    const FilmLine line = tilted_->upright(met->key, place.x, place.y);
+    arrival.upright = {line.film_x, line.film_y};
+  }
+  arrival.pupil = place;
+  if (!(area > 0 && spread > 0)) {
+    seen.fate = RayFate::vignetted;
+    return result;
+  }
+  weigh(seen, model, arrival, met->key, result.direction.z, area, wavelength);
+  seen.we *= spread, seen.pdf_direction *= spread;
   return result;
 }
 

@@ -10,14 +10,14 @@
 namespace petzval {
 
 ModelError model_error(const Lens& lens, const Film& film, Model model, const ErrorSamples& samples) {
-  detail::check_film(lens, film);
+  detail::check_upright_film(lens, film);
   const AnyModel built = make_model(model, lens, film.radius_mm());
   return model_errors(lens, film, std::span(&built, 1), samples).front();
 }
 
 std::vector<ModelError> model_errors(const Lens& lens, const Film& film, std::span<const AnyModel> models,
                                      const ErrorSamples& samples) {
-  detail::check_film(lens, film);
+  detail::check_upright_film(lens, film);
   const ExactModel<double> exact(lens, film.radius_mm());
   const detail::RayStudy rays(exact, film, samples);
   const detail::PupilStudy pupils(exact, film, std::max<std::size_t>(16, samples.film_points / 8), samples);

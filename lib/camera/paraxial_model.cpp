@@ -155,6 +155,7 @@ ParaxialModel::ParaxialModel(Model model, const Lens& lens, double film_radius)
     to_film_.push_back(inverse(map));
     if (model == Model::pinhole) {
       const double middle = thick_disc(lens, w, space).shift;
+      pinhole_shifts_.push_back(middle);
       map = {map.a + map.b * middle, 0, map.c + map.d * middle, 0};
     }
     to_scene_.push_back(map);

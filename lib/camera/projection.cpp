@@ -38,7 +38,8 @@ Projection SceneSide::project(const AnyModel& any, const Vec3<double>& point, st
   const auto start = chiefs.about(point);
   if (!start) return result;
 
-  const double beside = 1e-3 * film_.radius_mm();
+  // In points of the upright film; what meets the film is the line in the end.
+  const double beside = 1e-3 * upright_radius_;
   const auto misses = [&](const FilmPoint& film, double hx, double hy) noexcept {
     std::array<std::array<double, 3>, 4> line;
     std::array<std::array<double, 3>, 6> ray;
@@ -74,11 +75,15 @@ Projection SceneSide::project(const AnyModel& any, const Vec3<double>& point, st
 
   FilmPoint film = *start;
   const auto done = [&](ProjectionStatus status) {
-    result = {film_.contains(film) ? status : ProjectionStatus::outside_film, film, film_.raster(film)};
+    const auto [x, y] = chiefs.pupil_point(film);
+    const auto met = on_film(film, {x, y});
+    if (!met) return result;
+    const FilmPoint& at = met->point;
+    result = {film_.contains(at) ? status : ProjectionStatus::outside_film, at, film_.raster(at)};
     return result;
   };
   // Newton's iteration, until its steps are as small as the numbers of the model allow.
-  double last = film_.radius_mm();
+  double last = upright_radius_;
   const double settled = 1e-12 * last, good = 1e-5 * last;
   for (;;) {
     // Beside towards the axis, where rays are less likely to be lost.

@@ -114,7 +114,7 @@ std::vector<double> costs(std::span<const AnyModel> models, std::vector<double> 
 
 RungTable rung_table(const Lens& whole, const SceneRequirements& scene, std::span<const Tolerance> tolerances,
                      int threads) {
-  check_film(whole, scene.film);
+  check_upright_film(whole, scene.film);
   const Setting setting(whole, scene, tolerances, threads);
   const Film& film = setting.film;
   const double rounding = std::numeric_limits<float>::epsilon() * focal_length(setting.lens);

@@ -4,17 +4,77 @@
 #include <array>
 
 #include "camera_loops.hpp"
+#include "tilted_pinhole.hpp"
 
 namespace petzval::detail {
 namespace {
 
+/// Nothing lies on a tilted film that is taken for an upright one.
 template <class T>
 FilmBounds<T> bounds_of(const Film& film) noexcept {
+  if (film.tilted()) return {T(0), T(0), T(-1), T(-1)};
   return {static_cast<T>(film.centre_x_mm), static_cast<T>(film.centre_y_mm), static_cast<T>(film.half_width<T>()),
           static_cast<T>(film.half_height<T>())};
 }
 
+template <class T>
+TiltedBounds<T> bounds_of(const TiltedFilm& film) noexcept {
+  const TiltedPlane& p = film.plane();
+  const auto number = [](double x) { return static_cast<T>(x); };
+  return {number(p.x_by_x),     number(p.x_by_y),  number(p.y_by_y),  number(p.depth_by_x),
+          number(p.depth_by_y), number(p.slope_x), number(p.slope_y), number(p.cosine)};
+}
+
 }  // namespace
+
+template <class T>
+void to_keys(std::size_t count, const TiltedFilm& film, const T* film_x, const T* film_y, T* key_x, T* key_y) noexcept {
+  camera_loops().of<T>().to_keys(bounds_of<T>(film), count, film_x, film_y, key_x, key_y);
+}
+
+template <class T>
+void to_upright(std::size_t count, const TiltedFilm& film, const T* key_x, const T* key_y, const T* pupil_x,
+                const T* pupil_y, T* film_x, T* film_y) noexcept {
+  camera_loops().of<T>().to_upright(bounds_of<T>(film), count, key_x, key_y, pupil_x, pupil_y, film_x, film_y);
+}
+
+template <class T>
+void sample_pinhole(std::size_t count, const TiltedFilm& film, const PupilMap& pupils, std::span<const double> shifts,
+                    const CameraSamples<T>& samples, const T* key_x, const T* key_y, T* film_x, T* film_y, T* x, T* y,
+                    T* areas) noexcept {
+  const auto shift = [&](std::size_t i) {
+    const std::size_t w = samples.wavelengths[i];
+    return w < shifts.size() ? shifts[w] : 0;
+  };
+  const auto part = [&](std::size_t i) { return part_of_key(film.plane(), {key_x[i], key_y[i]}, shift(i)); };
+  for (std::size_t i = 0; i < count; ++i) {
+    film_x[i] = static_cast<T>(key_x[i] * part(i)), film_y[i] = static_cast<T>(key_y[i] * part(i));
+  }
+  pupils.sample(count, film_x, film_y, samples.pupil_u, samples.pupil_v, samples.wavelengths, x, y, areas);
+  for (std::size_t i = 0; i < count; ++i) {
+    const double p = part(i), chief_x = shift(i) * film_x[i], chief_y = shift(i) * film_y[i];
+    x[i] = static_cast<T>(chief_x + p * (x[i] - chief_x)), y[i] = static_cast<T>(chief_y + p * (y[i] - chief_y));
+    areas[i] = static_cast<T>(p * p * areas[i]);
+  }
+}
+
+template <class T>
+void keep_within(std::size_t count, const PupilMap& pupils, const FilmLines<const T>& lines,
+                 const RayWavelengths& wavelengths, RayFate* fates) noexcept {
+  constexpr std::size_t block = 256;
+  std::array<std::uint8_t, block> within;
+  for (std::size_t begin = 0; begin < count; begin += block) {
+    const std::size_t n = std::min(block, count - begin);
+    pupils.contains(n, lines.from(begin), wavelengths.from(begin), within.data());
+    for (std::size_t i = 0; i < n; ++i) fates[begin + i] = within[i] ? fates[begin + i] : RayFate::vignetted;
+  }
+}
+
+template <class T>
+void lean(std::size_t count, const TiltedFilm& film, const T* key_x, const T* key_y, const T* pupil_x, const T* pupil_y,
+          RayFate* fates, const CameraRays<T>& rays) noexcept {
+  camera_loops().of<T>().lean(bounds_of<T>(film), count, key_x, key_y, pupil_x, pupil_y, fates, rays);
+}
 
 template <class T>
 void keep_on_film(std::size_t count, const Film& film, const T* film_x, const T* film_y, T* kept_x,
@@ -41,11 +101,20 @@ void weigh(std::size_t count, const Film& film, const FilmSpace& space, const Ca
   }
 }
 
-#define PETZVAL_SAMPLES(T)                                                                                   \
-  template PETZVAL_API void keep_on_film(std::size_t, const Film&, const T*, const T*, T*, T*) noexcept;     \
-  template PETZVAL_API void weigh(std::size_t, const Film&, const FilmSpace&, const CameraSamples<T>&,       \
-                                  const FilmLines<const T>&, const T*, const double*, std::size_t, RayFate*, \
-                                  const CameraRays<T>&) noexcept;
+#define PETZVAL_SAMPLES(T)                                                                                            \
+  template PETZVAL_API void keep_on_film(std::size_t, const Film&, const T*, const T*, T*, T*) noexcept;              \
+  template PETZVAL_API void weigh(std::size_t, const Film&, const FilmSpace&, const CameraSamples<T>&,                \
+                                  const FilmLines<const T>&, const T*, const double*, std::size_t, RayFate*,          \
+                                  const CameraRays<T>&) noexcept;                                                     \
+  template PETZVAL_API void to_keys(std::size_t, const TiltedFilm&, const T*, const T*, T*, T*) noexcept;             \
+  template PETZVAL_API void to_upright(std::size_t, const TiltedFilm&, const T*, const T*, const T*, const T*, T*,    \
+                                       T*) noexcept;                                                                  \
+  template PETZVAL_API void sample_pinhole(std::size_t, const TiltedFilm&, const PupilMap&, std::span<const double>,  \
+                                           const CameraSamples<T>&, const T*, const T*, T*, T*, T*, T*, T*) noexcept; \
+  template PETZVAL_API void keep_within(std::size_t, const PupilMap&, const FilmLines<const T>&,                      \
+                                        const RayWavelengths&, RayFate*) noexcept;                                    \
+  template PETZVAL_API void lean(std::size_t, const TiltedFilm&, const T*, const T*, const T*, const T*, RayFate*,    \
+                                 const CameraRays<T>&) noexcept;
 PETZVAL_SAMPLES(float)
 PETZVAL_SAMPLES(double)
 #undef PETZVAL_SAMPLES

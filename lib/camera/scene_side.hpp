@@ -10,6 +10,7 @@
 #include "petzval/camera/any_model.hpp"
 #include "petzval/camera/film.hpp"
 #include "petzval/camera/importance.hpp"
+#include "petzval/camera/tilted_film.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/pupil/entrance_map.hpp"
 
@@ -19,7 +20,11 @@ namespace petzval::detail {
 class SceneSide {
  public:
   /// scale: of weights, one for each wavelength, as for sample_rays().
-  SceneSide(const Lens& lens, const Film& film, const AnyModel& model, std::span<const double> scale);
+  SceneSide(const Lens& lens, const Film& film, std::optional<TiltedFilm> tilted, const AnyModel& model,
+            std::span<const double> scale);
+
+  /// Null for an upright film.
+  const TiltedFilm* tilted() const noexcept { return tilted_ ? &*tilted_ : nullptr; }
 
   Importance importance(const AnyModel& model, const Ray<double>& ray, std::size_t wavelength) const noexcept;
   ImportanceSample sample_importance(const AnyModel& model, const Vec3<double>& point, double u, double v,
@@ -35,19 +40,29 @@ class SceneSide {
     double entrance_z = 0, entrance_area = 0;
     ChiefLines chiefs;
   };
-  /// A ray's line behind the lens.
+  /// A ray's line behind the lens, by its point of the upright film.
   struct Arrival {
     RayFate fate = RayFate::missed_surface;
-    FilmPoint film, pupil;
+    FilmPoint upright, pupil;
   };
+  /// Where a line meets the film, and by which point the film's pupils are told: its key, or the point itself.
+  struct OnFilm {
+    FilmPoint point, key;
+  };
+  std::optional<OnFilm> on_film(const FilmPoint& upright, const FilmPoint& pupil) const noexcept;
   Arrival arrive(const AnyModel& model, const Ray<double>& ray, std::size_t wavelength) const noexcept;
-  /// cosine: of the ray's angle with the axis, in the scene.
-  Importance weighed(const AnyModel& model, const Arrival& arrival, double cosine,
-                     std::size_t wavelength) const noexcept;
+  /// Where a ray that arrives meets the film, and whether it does.
+  Importance met_by(const Arrival& arrival, const std::optional<OnFilm>& met) const noexcept;
+  /// Weight and densities of a ray that does. cosine: of its angle with the axis, in the scene; area: of the pupil that
+  /// samples of its film point have, 0 where none of them is the ray.
+  void weigh(Importance& result, const AnyModel& model, const Arrival& arrival, const FilmPoint& key, double cosine,
+             double area, std::size_t wavelength) const noexcept;
   ImportanceSample through_pinhole(const AnyModel& model, const Vec3<double>& point, double u, double v,
                                    std::size_t wavelength) const noexcept;
 
   Film film_;
+  std::optional<TiltedFilm> tilted_;
+  double upright_radius_ = 0;
   FilmSpace space_;
   std::vector<Wavelength> wavelengths_;
   EntranceMap entrance_;

@@ -11,7 +11,6 @@
 #include <utility>
 
 #include "face.hpp"
-#include "petzval/core/bisect.hpp"
 #include "petzval/lens/sag.hpp"
 #include "petzval/pupil/pupil.hpp"
 #include "petzval/pupil/pupil_star.hpp"
@@ -372,43 +371,6 @@ void EntranceMap::Data::fill(Table& table, const std::vector<Ray<double>>& lines
   }
 }
 
-SpreadLines spread_lines(const PupilMap& pupils, bool azimuths_alike, std::size_t wavelength) {
-  constexpr int radii = 32, around = 16;
-  const auto seen = [&](double radius) { return pupils.area({0, radius}, wavelength) > 0; };
-  double last = pupils.film_radius();
-  if (!seen(last)) {
-    const double dark = last;
-    last = 0;
-    for (int i = 1; i <= radii && seen(dark * i / radii); ++i) last = dark * i / radii;
-    last = detail::last_with(last, std::min(last + dark / radii, dark), seen);
-  }
-  SpreadLines lines;
-  const auto add = [&](double radius, double turn, double u, double v) {
-    const FilmPoint film{radius * std::sin(turn), radius * std::cos(turn)};
-    const PupilSample s = pupils.sample(film, u, v, wavelength);
-    if (!(s.area > 0)) return;
-    lines.film_x.push_back(film.x), lines.film_y.push_back(film.y);
-    lines.pupil_x.push_back(s.x), lines.pupil_y.push_back(s.y);
-  };
-  int turns = 0;
-  for (int i = 0; i <= radii; ++i) {
-    // Closer where the light ends.
-    const double radius = last * (1 - std::pow(1 - static_cast<double>(i) / radii, 1.5));
-    if (azimuths_alike) {
-      for (int k = 0; k <= around / 2; ++k) {  // half of a pupil is as the other
-        for (const double v : {0.0, 0.85, 0.95, 1.0}) add(radius, 0, static_cast<double>(k) / around, v);
-      }
-      continue;
-    }
-    // The pupil is that of all points, and of much of it nothing gets through: everywhere, by irrational steps.
-    for (int k = 0; k < 16 * around; ++k, ++turns) {
-      add(radius, 2 * pi * turns * std::numbers::phi, std::fmod(turns * std::numbers::sqrt2, 1.0),
-          std::fmod(turns * std::numbers::sqrt3, 1.0));
-    }
-  }
-  return lines;
-}
-
 EntranceMap::EntranceMap(const Lens& lens, std::span<const std::vector<Ray<double>>> lines, const ScenePassing& passing,
                          PupilEnds ends) {
   auto data = std::make_shared<Data>(lens);
@@ -444,33 +406,46 @@ EntranceMap::EntranceMap(const Lens& lens, std::span<const std::vector<Ray<doubl
 
 bool EntranceMap::in_front(const Vec3<double>& point) const noexcept { return data_->in_front(point); }
 
-EntranceSample EntranceMap::sample(const Vec3<double>& point, double u, double v,
-                                   std::size_t wavelength) const noexcept {
-  EntranceSample result{.place = data_->centre};
+void EntranceMap::sample(const Vec3<double>& point, std::size_t count, const double* u, const double* v,
+                         std::size_t wavelength, EntranceSample* samples) const noexcept {
+  std::fill_n(samples, count, EntranceSample{.place = data_->centre});
   const Data::Table* table = data_->table_for(point, wavelength);
-  if (!table || !std::isfinite(u) || !std::isfinite(v)) return result;
+  if (!table) return;
   const Vec3<double> from_centre = point - data_->centre;
   const double distance = glm::length(from_centre);
   const Bearing bearing(from_centre / distance);
   const View view(bearing.field, bearing.azimuth_x, bearing.azimuth_y, 1 / distance);
 
   if (data_->covers(*table, distance)) {
-    const auto [x, y, area] = data_->star_at(*table, bearing.field, view.reciprocal).sample(u, v);
-    if (!(area > 0)) return result;
-    const Vec3<double> place = view.place(x, y);
-    result.place = data_->centre + place;
-    result.direction = view.direction(place);
-    result.distance = std::hypot(distance, x, y);
-    result.pdf = squared(result.distance) * (result.distance / distance) / area;
-    return result;
+    const PupilStar star = data_->star_at(*table, bearing.field, view.reciprocal);
+    const detail::StarSampler sampler(star);
+    if (!(sampler.area() > 0)) return;
+    for (std::size_t i = 0; i < count; ++i) {
+      if (!std::isfinite(u[i]) || !std::isfinite(v[i])) continue;
+      const auto [x, y] = sampler(u[i], v[i]);
+      const Vec3<double> place = view.place(x, y);
+      const double far = std::sqrt(squared(distance) + squared(x) + squared(y));
+      samples[i] = {data_->centre + place, view.direction(place), far,
+                    squared(far) * (far / distance) / sampler.area()};
+    }
+    return;
   }
-  const double solid = cone(table->ball, distance), less = std::clamp(v, 0.0, 1.0) * solid / (2 * pi);
-  const double sine = std::sqrt(less * (2 - less)), angle = 2 * pi * u;
-  result.direction =
-      view.towards * (less - 1) + view.x_axis * (sine * std::cos(angle)) + view.y_axis * (sine * std::sin(angle));
-  result.distance = std::max(distance * (1 - less), 0.0);
-  result.place = point + result.direction * result.distance;
-  result.pdf = 1 / solid;
+  const double solid = cone(table->ball, distance);
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!std::isfinite(u[i]) || !std::isfinite(v[i])) continue;
+    const double less = std::clamp(v[i], 0.0, 1.0) * solid / (2 * pi);
+    const double sine = std::sqrt(less * (2 - less)), angle = 2 * pi * u[i];
+    const Vec3<double> direction =
+        view.towards * (less - 1) + view.x_axis * (sine * std::cos(angle)) + view.y_axis * (sine * std::sin(angle));
+    const double far = std::max(distance * (1 - less), 0.0);
+    samples[i] = {point + direction * far, direction, far, 1 / solid};
+  }
+}
+
+EntranceSample EntranceMap::sample(const Vec3<double>& point, double u, double v,
+                                   std::size_t wavelength) const noexcept {
+  EntranceSample result;
+  sample(point, 1, &u, &v, wavelength, &result);
   return result;
 }
 

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "face.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/text.hpp"
 #include "petzval/paraxial/first_order.hpp"
@@ -24,6 +25,13 @@ FilmSpace film_space(const Lens& lens) {
   const double depth = std::abs(exit_z - film_z);
   constexpr double nearest = 0.05, farthest = 20;  // focal lengths
   return {film_z, depth > nearest * reach && depth < farthest * reach ? exit_z : last_z};
+}
+
+OuterFace last_face(const Lens& lens) {
+  const std::size_t last = lens.surface_count() - 1;
+  const Pupil entrance = has_pupils(lens) ? pupils(lens, lens.central_wavelength()).entrance : Pupil{};
+  const detail::Face face = detail::face_of(lens, last, entrance);
+  return {face.half, lens.surfaces()[last].vertex_z, face.z_min, face.z_max};
 }
 
 double towards_scene(const Lens& lens, const FilmSpace& space) {

@@ -16,8 +16,6 @@
 namespace petzval::detail {
 namespace {
 
-constexpr std::size_t directions = 128;
-
 /// The rays of film points on the y axis at some heights, tested by tracing them.
 class FilmSide {
  public:
@@ -28,7 +26,7 @@ class FilmSide {
 
   std::vector<PupilEdges> edges(std::size_t wavelength) {
     const bool symmetric = lens_.rotationally_symmetric();
-    return find_edges(guesses(wavelength), symmetric ? points_.size() : 1, directions, symmetric,
+    return find_edges(guesses(wavelength), symmetric ? points_.size() : 1, edge_directions, symmetric,
                       [&](std::size_t count, const std::uint32_t* fields, const double* x, const double* y,
                           std::uint8_t* passes) { test(wavelength, count, fields, x, y, passes); });
   }
@@ -100,45 +98,64 @@ class FilmSide {
 
 }  // namespace
 
-double lit_radius(const Lens& lens, const FilmSpace& space, double film_radius, std::size_t wavelength) {
-  const auto lit = [&](std::vector<FilmPoint> points) {
+EdgesAt traced_edges(const Lens& lens, const FilmSpace& space, std::size_t wavelength) {
+  return [&lens, space, wavelength](std::span<const double> heights) {
+    std::vector<FilmPoint> points;
+    for (const double height : heights) points.push_back({0, height});
     return FilmSide(lens, space, std::move(points)).edges(wavelength);
   };
-  if (!lit({{0, film_radius}}).front().empty()) return film_radius;
+}
+
+double lit_radius(double film_radius, const EdgesAt& edges_at) {
+  // The last of some heights at which a pupil, of any row, has light; none: their number.
+  const auto last_lit = [&](const std::vector<double>& heights) {
+    const auto edges = edges_at(heights);
+    std::size_t last = heights.size();
+    for (std::size_t i = 0; i < edges.size(); ++i) {
+      const std::size_t at = i % heights.size();
+      if (!edges[i].empty() && (last == heights.size() || at > last)) last = at;
+    }
+    return last;
+  };
+  if (last_lit({film_radius}) == 0) return film_radius;
   double low = 0, high = film_radius;
   for (int round = 0; round < 4; ++round) {
     constexpr int parts = 16;
-    std::vector<FilmPoint> points;
-    for (int i = 0; i < parts; ++i) points.push_back({0, low + (high - low) * i / parts});
-    const auto edges = lit(points);
-    const auto last = std::find_if(edges.rbegin(), edges.rend(), [](const PupilEdges& e) { return !e.empty(); });
-    if (last == edges.rend()) return film_radius;
-    const auto at = static_cast<std::size_t>(edges.rend() - last) - 1;
-    low = points[at].y;
-    if (at + 1 < points.size()) high = points[at + 1].y;
+    std::vector<double> heights;
+    for (int i = 0; i < parts; ++i) heights.push_back(low + (high - low) * i / parts);
+    const std::size_t at = last_lit(heights);
+    if (at == heights.size()) return film_radius;
+    low = heights[at];
+    if (at + 1 < heights.size()) high = heights[at + 1];
   }
   return high;
 }
 
-std::vector<PupilStar> film_stars(const Lens& lens, const FilmSpace& space, double film_radius, bool covering,
-                                  std::size_t wavelength) {
+std::vector<PupilStar> film_stars(double film_radius, bool covering, const EdgesAt& edges_at) {
   // Heights by half film_strips.
-  std::vector<FilmPoint> points;
+  std::vector<double> heights;
   for (std::size_t i = 0; i <= 2 * film_strips; ++i) {
-    points.push_back({0, film_radius * static_cast<double>(i) / (2 * film_strips)});
+    heights.push_back(film_radius * static_cast<double>(i) / (2 * film_strips));
   }
-  const auto edges = FilmSide(lens, space, std::move(points)).edges(wavelength);
+  const auto edges = edges_at(heights);
+  const auto first_lit = [&](std::size_t height) -> const PupilEdges* {
+    for (std::size_t i = height; i < edges.size(); i += heights.size()) {
+      if (!edges[i].empty()) return &edges[i];
+    }
+    return nullptr;
+  };
   std::vector<PupilStar> stars(film_strips + 1);
   for (std::size_t i = 0; i <= film_strips; ++i) {
     const std::size_t at = 2 * i;
-    if (!edges[at].empty()) {
-      stars[i] = star_of(edges[at], covering);
+    if (const PupilEdges* lit = first_lit(at)) {
+      stars[i] = star_of(*lit, covering);
       continue;
     }
     // The film darkens within a strip: the last pupil goes on to its end, or, as one of no size, is where it ends.
     for (const std::size_t beside : {at - 1, at + 1, at - 2, at + 2}) {
-      if (beside >= edges.size() || edges[beside].empty()) continue;
-      stars[i] = star_of(edges[beside], covering);
+      const PupilEdges* lit = beside < heights.size() ? first_lit(beside) : nullptr;
+      if (!lit) continue;
+      stars[i] = star_of(*lit, covering);
       if (!covering) stars[i].corners = {};
       break;
     }
@@ -150,18 +167,18 @@ std::vector<PupilStar> film_stars(const Lens& lens, const FilmSpace& space, doub
     const double t = place - static_cast<double>(i);
     between.push_back({&e, {i, std::min(i + 1, film_strips), 0, 0}, {1 - t, t, 0, 0}});
   };
-  for (std::size_t j = 0; j < edges.size(); ++j) add(edges[j], static_cast<double>(j) / 2);
+  for (std::size_t j = 0; j < edges.size(); ++j) add(edges[j], static_cast<double>(j % heights.size()) / 2);
   // Where the light ends pupils shrink fast.
   std::vector<PupilEdges> shrinking;
   if (edges.back().empty()) {
     constexpr std::size_t parts = 16;
-    std::vector<FilmPoint> last;
+    std::vector<double> last;
     for (std::size_t i = 1; i < parts; ++i) {
-      last.push_back({0, film_radius * (1 - static_cast<double>(i) / (parts * film_strips))});
+      last.push_back(film_radius * (1 - static_cast<double>(i) / (parts * film_strips)));
     }
-    shrinking = FilmSide(lens, space, std::move(last)).edges(wavelength);
+    shrinking = edges_at(last);
     for (std::size_t i = 0; i < shrinking.size(); ++i) {
-      add(shrinking[i], static_cast<double>(film_strips) - static_cast<double>(i + 1) / parts);
+      add(shrinking[i], static_cast<double>(film_strips) - static_cast<double>(i % last.size() + 1) / parts);
     }
   }
   grow(stars, between);
@@ -224,7 +241,7 @@ std::vector<PupilStar> disc_stars(std::span<const PupilDisc> discs, double film_
     heights.push_back(height);
   }
   const auto edges = find_edges(
-      guesses, guesses.size(), directions, true,
+      guesses, guesses.size(), edge_directions, true,
       [&](std::size_t count, const std::uint32_t* fields, const double* x, const double* y, std::uint8_t* passes) {
         for (std::size_t i = 0; i < count; ++i) {
           passes[i] = std::all_of(discs.begin(), discs.end(), [&](const PupilDisc& disc) {

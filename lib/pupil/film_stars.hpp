@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -12,15 +13,25 @@
 
 namespace petzval::detail {
 
-inline constexpr std::size_t film_strips = 64;  ///< between the heights of stars
+inline constexpr std::size_t film_strips = 64;       ///< between the heights of stars
+inline constexpr std::size_t edge_directions = 128;  ///< of the edges that stars are made of
+
+/// The edges of the pupils of film points on +y at some heights: one for each or, of a film that has different points
+/// at one height, several of each, row by row.
+using EdgesAt = std::function<std::vector<PupilEdges>(std::span<const double> heights)>;
+
+/// Those of a lens of revolution, traced.
+EdgesAt traced_edges(const Lens& lens, const FilmSpace& space, std::size_t wavelength);
+/// Those of a film that leans, by keys: of the farthest and nearest points of each key, and of three between. upright:
+/// which lines pass.
+EdgesAt leaning_edges(const PupilMap& upright, const FilmLean& lean, std::size_t wavelength);
 
 /// Up to where the film gets light: film_radius, or where it is dark at last.
-double lit_radius(const Lens& lens, const FilmSpace& space, double film_radius, std::size_t wavelength);
+double lit_radius(double film_radius, const EdgesAt& edges_at);
 
-/// The pupils of film points on +y at 65 heights up to film_radius, traced; `covering`: with what lies between
-/// contained, else of their area.
-std::vector<PupilStar> film_stars(const Lens& lens, const FilmSpace& space, double film_radius, bool covering,
-                                  std::size_t wavelength);
+/// The pupils of film points on +y at 65 heights up to film_radius; `covering`: with what lies between contained, else
+/// of their area.
+std::vector<PupilStar> film_stars(double film_radius, bool covering, const EdgesAt& edges_at);
 
 /// One star that contains the pupils of all film points, for a lens without symmetry of revolution.
 PupilStar star_for_all(const Lens& lens, const FilmSpace& space, double film_radius, std::size_t wavelength);

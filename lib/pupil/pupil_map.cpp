@@ -194,11 +194,12 @@ PupilMap PupilMap::traced(const Lens& lens, double film_radius, bool covering) {
   const std::size_t wavelengths = lens.wavelengths_nm().size();
   data->lit_radius = data->turned ? 0 : film_radius;
   for (std::size_t w = 0; w < wavelengths && data->lit_radius < film_radius; ++w) {
-    data->lit_radius = std::max(data->lit_radius, detail::lit_radius(lens, data->space, film_radius, w));
+    const double lit = detail::lit_radius(film_radius, detail::traced_edges(lens, data->space, w));
+    data->lit_radius = std::max(data->lit_radius, lit);
   }
   for (std::size_t w = 0; w < wavelengths; ++w) {
     if (data->turned) {
-      data->add(detail::film_stars(lens, data->space, data->lit_radius, covering, w));
+      data->add(detail::film_stars(data->lit_radius, covering, detail::traced_edges(lens, data->space, w)));
     } else {
       data->add({{detail::star_for_all(lens, data->space, film_radius, w)}});
     }
@@ -222,6 +223,26 @@ PupilMap PupilMap::of_discs(const FilmSpace& space, std::span<const std::vector<
   data->space = space;
   data->film_radius = data->lit_radius = film_radius;
   for (const std::vector<PupilDisc>& set : discs) data->add(detail::disc_stars(set, film_radius));
+  return PupilMap(std::move(data));
+}
+
+PupilMap PupilMap::leaning(const FilmLean& lean) const {
+  check_film_radius("leaning film", lean.radius);
+  auto data = std::make_shared<Data>();
+  if (!data_->turned) {  // the one pupil holds all lines
+    *data = *data_;
+    data->film_radius = data->lit_radius = lean.radius;
+    return PupilMap(std::move(data));
+  }
+  data->space = data_->space;
+  data->film_radius = lean.radius;
+  for (std::size_t w = 0; w < wavelengths() && data->lit_radius < lean.radius; ++w) {
+    const double lit = detail::lit_radius(lean.radius, detail::leaning_edges(*this, lean, w));
+    data->lit_radius = std::max(data->lit_radius, lit);
+  }
+  for (std::size_t w = 0; w < wavelengths(); ++w) {
+    data->add(detail::film_stars(data->lit_radius, true, detail::leaning_edges(*this, lean, w)));
+  }
   return PupilMap(std::move(data));
 }
 
@@ -292,6 +313,25 @@ bool PupilMap::contains(const FilmPoint& film, double x, double y, std::size_t w
   return false;
 }
 
+template <class T>
+void PupilMap::contains(std::size_t count, const FilmLines<const T>& lines, const RayWavelengths& wavelengths,
+                        std::uint8_t* within) const noexcept {
+  const auto& [film_x, film_y, x, y] = lines;
+  constexpr std::size_t few = 4;
+  if (count < few) {
+    for (std::size_t i = 0; i < count; ++i) {
+      within[i] = contains(FilmPoint{film_x[i], film_y[i]}, x[i], y[i], wavelengths[i]);
+    }
+    return;
+  }
+  const auto& loops = detail::pupil_map();
+  if constexpr (sizeof(T) == sizeof(float)) {
+    loops.contains_single(data_->table<T>(), count, film_x, film_y, x, y, wavelengths, within);
+  } else {
+    loops.contains_twice(data_->table<T>(), count, film_x, film_y, x, y, wavelengths, within);
+  }
+}
+
 PupilMap::Motion PupilMap::motion(const FilmPoint& film, double u, double v, std::size_t wavelength) const noexcept {
   using Jet = ceres::Jet<double, 2>;
   // On the axis the directions around it meet: beside it is near enough.
@@ -322,6 +362,10 @@ PupilMap::Motion PupilMap::motion(const FilmPoint& film, double u, double v, std
   return {{qx.v[0], qy.v[0]}, {qx.v[1], qy.v[1]}};
 }
 
+template PETZVAL_API void PupilMap::contains(std::size_t, const FilmLines<const float>&, const RayWavelengths&,
+                                             std::uint8_t*) const noexcept;
+template PETZVAL_API void PupilMap::contains(std::size_t, const FilmLines<const double>&, const RayWavelengths&,
+                                             std::uint8_t*) const noexcept;
 template PETZVAL_API void PupilMap::sample(std::size_t, const float*, const float*, const float*, const float*,
                                            const RayWavelengths&, float*, float*, float*) const noexcept;
 template PETZVAL_API void PupilMap::sample(std::size_t, const double*, const double*, const double*, const double*,

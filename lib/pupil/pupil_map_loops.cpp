@@ -17,35 +17,51 @@ inline R clamped(R x) noexcept {
   return x < R(1) ? x : R(1);
 }
 
+/// Where a film point stands in the table, and which way it lies; nowhere: at the table's beginning.
+template <class R>
+struct Place {
+  R t, cosine, sine, film_x, film_y;  ///< the film point again, or (0, 1) where it has no direction
+  std::int32_t known, strip;
+};
+
+template <class R>
+inline Place<R> place_of(const StripTable<R>& table, R film_x, R film_y, std::int32_t sound,
+                         std::int32_t wavelength) noexcept {
+  const auto last = static_cast<std::int32_t>(table.count) - 1;
+  const R r2 = film_x * film_x + film_y * film_y;
+  const R r = root(r2);
+  const std::int32_t known = (r <= table.lit_radius) & (wavelength >= 0) & sound;
+  const std::int32_t turn = (table.turned ? 1 : 0) & known & (r2 > R(0));
+  const R fx = turn ? film_x : R(0), fy = turn ? film_y : R(1), length = turn ? r : R(1);
+  const R place = known ? r * table.strips_per_mm : R(0);
+  const auto at = static_cast<std::int32_t>(place);
+  const std::int32_t inner = at < last ? at : last;
+  const std::int32_t strip =
+      known ? (inner + wavelength * (last + 1)) * static_cast<std::int32_t>(StripLayout::size) : 0;
+  return {place - static_cast<R>(inner), fy / length, fx / length, fx, fy, known, strip};
+}
+
 /// One block, in loops without branches. Slots beyond `count` hold zeros.
 template <bool gapped, class R>
 void sample_block(const StripTable<R>& table, const R* film_x, const R* film_y, const R* u, const R* v,
                   const std::int32_t* wavelength, R* x, R* y, R* area) noexcept {
   using L = StripLayout;
   const auto index = [](std::size_t place) { return static_cast<std::int32_t>(place); };
-  constexpr auto corners = static_cast<std::int32_t>(star_corners), size = static_cast<std::int32_t>(L::size);
-  const R* all = table.strips;
-  const auto last = static_cast<std::int32_t>(table.count) - 1;
-  const R radius = table.lit_radius, strips_per_mm = table.strips_per_mm;
-  const std::int32_t turned = table.turned ? 1 : 0;
+  constexpr auto corners = static_cast<std::int32_t>(star_corners);
+  const StripTable<R> own_table = table;  // which nothing that is written overlaps
+  const R* all = own_table.strips;
   R t[block], cosine[block], sine[block], target[block], whole[block], outer[block], behind[block], beyond[block];
   std::int32_t strip[block], sector[block];
 
   for (std::size_t i = 0; i < block; ++i) {
-    const R r2 = film_x[i] * film_x[i] + film_y[i] * film_y[i];
-    const R r = root(r2);
     // Comparisons with what is not a number are false.
     const R sound = (film_x[i] + film_y[i] + u[i] + v[i]) * R(0);
-    const std::int32_t known = (r <= radius) & (wavelength[i] >= 0) & (sound >= R(0));
-    const std::int32_t turn = turned & known & (r2 > R(0));
-    const R fx = turn ? film_x[i] : R(0), fy = turn ? film_y[i] : R(1), length = turn ? r : R(1);
-    cosine[i] = fy / length;
-    sine[i] = fx / length;
-    const R place = known ? r * strips_per_mm : R(0);
-    const auto at = static_cast<std::int32_t>(place);
-    const std::int32_t inner = at < last ? at : last;
-    t[i] = place - static_cast<R>(inner);
-    strip[i] = known ? (inner + wavelength[i] * (last + 1)) * size : 0;
+    const auto [part, cos, sin, fx, fy, known, at] =
+        place_of(own_table, film_x[i], film_y[i], sound >= R(0), wavelength[i]);
+    t[i] = part;
+    cosine[i] = cos;
+    sine[i] = sin;
+    strip[i] = at;
     const R from = clamped(known ? u[i] : R(0)) - turn_of(fx, fy);
     const R fraction = from < R(0) ? from + R(1) : from;
     target[i] = fraction < R(1) ? fraction : fraction - R(1);
@@ -109,9 +125,64 @@ void sample_block(const StripTable<R>& table, const R* film_x, const R* film_y, 
   }
 }
 
-template <bool gapped, class R>
-void sample_blocks(const StripTable<R>& table, std::size_t count, const R* film_x, const R* film_y, const R* u,
-                   const R* v, const RayWavelengths& wavelengths, R* x, R* y, R* areas) noexcept {
+/// One block of places, told as pupils: sectors are found by halving.
+template <class R>
+void contains_block(const StripTable<R>& table, const R* film_x, const R* film_y, const R* x, const R* y,
+                    const std::int32_t* wavelength, std::uint8_t* within) noexcept {
+  using L = StripLayout;
+  const auto index = [](std::size_t place) { return static_cast<std::int32_t>(place); };
+  constexpr auto corners = static_cast<std::int32_t>(star_corners);
+  const StripTable<R> own_table = table;
+  const R* all = own_table.strips;
+  R t[block], qx[block], qy[block];
+  std::int32_t strip[block], sector[block], half[block], known[block];
+  for (std::size_t i = 0; i < block; ++i) {
+    const auto [part, cosine, sine, fx, fy, lit, at] = place_of(own_table, film_x[i], film_y[i], 1, wavelength[i]);
+    t[i] = part;
+    strip[i] = at;
+    known[i] = lit;
+    qx[i] = cosine * x[i] - sine * y[i];
+    qy[i] = sine * x[i] + cosine * y[i];
+  }
+  const auto sector_at = [&](std::size_t i, std::int32_t k) {
+    return strip[i] + index(L::sectors) + index(L::sector) * k;
+  };
+  // Half turns count from the first corner.
+  for (std::size_t i = 0; i < block; ++i) {
+    const std::int32_t m = strip[i] + index(L::middle_y), c = sector_at(i, 0);
+    qy[i] -= all[m] + t[i] * all[m + 1];
+    const R cx = all[c] + t[i] * all[c + 2], cy = all[c + 1] + t[i] * all[c + 3];
+    half[i] = qx[i] * cy - cx * qy[i] < R(0);
+    sector[i] = 0;
+  }
+  for (std::int32_t step = corners / 2; step > 0; step /= 2) {
+    for (std::size_t i = 0; i < block; ++i) {
+      const std::int32_t c = sector_at(i, sector[i] + step), first = sector_at(i, 0);
+      const R cx = all[c] + t[i] * all[c + 2], cy = all[c + 1] + t[i] * all[c + 3];
+      const R fx = all[first] + t[i] * all[first + 2], fy = all[first + 1] + t[i] * all[first + 3];
+      const std::int32_t corner_half = cx * fy - fx * cy < R(0), behind = qx[i] * cy - cx * qy[i] >= R(0);
+      sector[i] += (corner_half < half[i]) | ((corner_half == half[i]) & behind) ? step : 0;
+    }
+  }
+  PETZVAL_INDEPENDENT
+  for (std::size_t i = 0; i < block; ++i) {
+    const std::int32_t k = sector[i], a = sector_at(i, k), b = a + index(L::sector),
+                       g = strip[i] + index(L::gaps) + 4 * k;
+    const R ax = all[a] + t[i] * all[a + 2], ay = all[a + 1] + t[i] * all[a + 3];
+    const R bx = all[b] + t[i] * all[b + 2], by = all[b + 1] + t[i] * all[b + 3];
+    const R behind = qx[i] * ay - ax * qy[i], before = bx * qy[i] - qx[i] * by, whole = bx * ay - ax * by;
+    const R reach = (behind + before) / (whole > R(0) ? whole : R(1)), out = reach * reach;
+    const R gap_from = all[g] + t[i] * all[g + 2], gap_to = gap_from + all[g + 1] + t[i] * all[g + 3];
+    const std::int32_t inside = known[i] & (behind >= R(0)) & (before >= R(0)) & (whole > R(0)) & (out <= R(1));
+    const std::int32_t in_gap = (out >= gap_from) & (out < gap_to);
+    within[i] = static_cast<std::uint8_t>(inside & (1 - in_gap));
+  }
+}
+
+/// Calls body(begin, n, four arrays of inputs, wavelengths) for each block of n; slots beyond n hold zeros.
+template <class R, class Body>
+inline void by_blocks(const StripTable<R>& table, std::size_t count, const R* const (&in)[4],
+                      const RayWavelengths& wavelengths, const Body& body) noexcept {
   const auto known = [&](std::size_t w) { return w < table.wavelengths ? static_cast<std::int32_t>(w) : -1; };
   std::int32_t w[block];
   for (std::size_t i = 0; i < block; ++i) w[i] = known(wavelengths.all);
@@ -121,20 +192,45 @@ void sample_blocks(const StripTable<R>& table, std::size_t count, const R* film_
       for (std::size_t i = 0; i < n; ++i) w[i] = known(wavelengths.each[begin + i]);
     }
     if (n == block) {
-      sample_block<gapped>(table, film_x + begin, film_y + begin, u + begin, v + begin, w, x + begin, y + begin,
-                           areas + begin);
+      const R* const whole[4] = {in[0] + begin, in[1] + begin, in[2] + begin, in[3] + begin};
+      body(begin, n, whole, w);
       continue;
     }
-    R in[4][block] = {}, out[3][block];
-    for (std::size_t i = 0; i < n; ++i) {
-      in[0][i] = film_x[begin + i], in[1][i] = film_y[begin + i];
-      in[2][i] = u[begin + i], in[3][i] = v[begin + i];
+    R filled[4][block] = {};
+    for (std::size_t k = 0; k < 4; ++k) {
+      for (std::size_t i = 0; i < n; ++i) filled[k][i] = in[k][begin + i];
     }
-    sample_block<gapped>(table, in[0], in[1], in[2], in[3], w, out[0], out[1], out[2]);
-    for (std::size_t i = 0; i < n; ++i) {
-      x[begin + i] = out[0][i], y[begin + i] = out[1][i], areas[begin + i] = out[2][i];
-    }
+    const R* const part[4] = {filled[0], filled[1], filled[2], filled[3]};
+    body(begin, n, part, w);
   }
+}
+
+template <class R>
+void contains(const StripTable<R>& table, std::size_t count, const R* film_x, const R* film_y, const R* x, const R* y,
+              const RayWavelengths& wavelengths, std::uint8_t* within) noexcept {
+  by_blocks(table, count, {film_x, film_y, x, y}, wavelengths,
+            [&](std::size_t begin, std::size_t n, const R* const* in, const std::int32_t* w) {
+              std::uint8_t out[block];
+              contains_block(table, in[0], in[1], in[2], in[3], w, n == block ? within + begin : out);
+              for (std::size_t i = 0; n < block && i < n; ++i) within[begin + i] = out[i];
+            });
+}
+
+template <bool gapped, class R>
+void sample_blocks(const StripTable<R>& table, std::size_t count, const R* film_x, const R* film_y, const R* u,
+                   const R* v, const RayWavelengths& wavelengths, R* x, R* y, R* areas) noexcept {
+  by_blocks(table, count, {film_x, film_y, u, v}, wavelengths,
+            [&](std::size_t begin, std::size_t n, const R* const* in, const std::int32_t* w) {
+              if (n == block) {
+                sample_block<gapped>(table, in[0], in[1], in[2], in[3], w, x + begin, y + begin, areas + begin);
+                return;
+              }
+              R out[3][block];
+              sample_block<gapped>(table, in[0], in[1], in[2], in[3], w, out[0], out[1], out[2]);
+              for (std::size_t i = 0; i < n; ++i) {
+                x[begin + i] = out[0][i], y[begin + i] = out[1][i], areas[begin + i] = out[2][i];
+              }
+            });
 }
 
 template <class R>
@@ -146,6 +242,6 @@ void sample(const StripTable<R>& table, std::size_t count, const R* film_x, cons
 
 }  // namespace
 
-const PupilMapLoops PETZVAL_LOOPS{sample<float>, sample<double>};
+const PupilMapLoops PETZVAL_LOOPS{sample<float>, sample<double>, contains<float>, contains<double>};
 
 }  // namespace petzval::detail

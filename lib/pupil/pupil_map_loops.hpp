@@ -63,8 +63,13 @@ struct PupilMapLoops {
                          const RayWavelengths&, float*, float*, float*) noexcept;
   using Double = void (*)(const StripTable<double>&, std::size_t, const double*, const double*, const double*,
                           const double*, const RayWavelengths&, double*, double*, double*) noexcept;
+  template <class R>
+  using Contains = void (*)(const StripTable<R>&, std::size_t, const R* film_x, const R* film_y, const R* x, const R* y,
+                            const RayWavelengths&, std::uint8_t* within) noexcept;
   Float single;
   Double twice;
+  Contains<float> contains_single;
+  Contains<double> contains_twice;
 };
 
 PETZVAL_WIDEST(PupilMapLoops, pupil_map)

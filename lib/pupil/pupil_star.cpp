@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace petzval::detail {
 namespace {
@@ -132,19 +133,21 @@ std::array<double, star_corners> PupilStar::areas() const noexcept {
   return result;
 }
 
-std::array<double, 3> PupilStar::sample(double u, double v) const noexcept {
-  const auto parts = areas();
-  double area = 0;
-  for (const double part : parts) area += part;
-  if (!(area > 0)) return {middle[0], middle[1], 0};
-  double left = std::clamp(u, 0.0, 1.0) * area;
-  std::size_t k = 0;
-  while (k + 1 < star_corners && left > parts[k]) left -= parts[k++];
-  const double along = parts[k] > 0 ? std::clamp(left / parts[k], 0.0, 1.0) : 0;
+StarSampler::StarSampler(const PupilStar& star) noexcept : star_(star), until_(star.areas()) {
+  std::partial_sum(until_.begin(), until_.end(), until_.begin());
+}
+
+std::array<double, 2> StarSampler::operator()(double u, double v) const noexcept {
+  const double share = std::clamp(u, 0.0, 1.0) * area();
+  const auto end = std::lower_bound(until_.begin(), until_.end() - 1, share);
+  const auto k = static_cast<std::size_t>(end - until_.begin());
+  const double before = k > 0 ? until_[k - 1] : 0, part = until_[k] - before;
+  const double along = part > 0 ? std::clamp((share - before) / part, 0.0, 1.0) : 0;
+  const auto& [middle, corners, gap_from, gap] = star_;
   const Point &a = corners[k], &b = corners[(k + 1) % star_corners];
   const double within = (1 - gap[k]) * std::clamp(v, 0.0, 1.0);
   const double out = std::sqrt(within < gap_from[k] ? within : within + gap[k]);
-  return {middle[0] + out * (a[0] + along * (b[0] - a[0])), middle[1] + out * (a[1] + along * (b[1] - a[1])), area};
+  return {middle[0] + out * (a[0] + along * (b[0] - a[0])), middle[1] + out * (a[1] + along * (b[1] - a[1]))};
 }
 
 PupilStar star_of(const PupilEdges& edges, bool covering) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a camera ray costs, one thread: pupil sample, ray, weight, by every model of a lens, in batches of 4096 samples
-// and one by one; and what a camera takes to set up.
+// and one by one, and where the film is tilted; and what a camera takes to set up.
 //
 //   camera_bench [--json FILE] [options of Google Benchmark]
 //
@@ -25,6 +25,7 @@
 
 #include "petzval/camera/camera.hpp"
 #include "petzval/core/error.hpp"
+#include "petzval/core/units.hpp"
 #include "petzval/io/prescription_json.hpp"
 #include "petzval/io/write_file.hpp"
 #include "table.hpp"
@@ -142,23 +143,27 @@ double setup_ms(const std::function<void()>& work) {
 
 struct Bench {
   BenchLens lens;
-  Film film;
+  Film film, tilted;
   double half_diagonal;
 
-  Bench(const std::string& id, double half)
+  Bench(const std::string& id, double half, double tilt_deg)
       : lens(petzval::read_prescription(std::string(PETZVAL_BENCH_DATA) + "/lenses/" + id + ".json"), half,
              sample_count),
         film{.width_mm = 6 / std::sqrt(13.) * half, .height_mm = 4 / std::sqrt(13.) * half},
-        half_diagonal(half) {}
+        tilted(film),
+        half_diagonal(half) {
+    tilted.tilt_rad = petzval::radians(tilt_deg);
+  }
 };
 
 void print_rows(const Bench& bench, const std::vector<Row>& rows) {
   const auto mine = [&](const Row& row) { return row.lens == bench.lens.id; };
   const auto first = std::find_if(rows.begin(), rows.end(), mine);
   if (first == rows.end()) return;
-  std::printf("\n%s, %zu surfaces, film %.0f x %.0f mm; textbook tracer %s ns per ray of the mix\n\n",
-              bench.lens.name.c_str(), bench.lens.lens.surface_count(), bench.film.width_mm, bench.film.height_mm,
-              digits(first->textbook_ns).c_str());
+  std::printf(
+      "\n%s, %zu surfaces, film %.0f x %.0f mm (tilted by %.0f degrees); textbook tracer %s ns per ray of the mix\n\n",
+      bench.lens.name.c_str(), bench.lens.lens.surface_count(), bench.film.width_mm, bench.film.height_mm,
+      petzval::degrees(bench.tilted.tilt_rad), digits(first->textbook_ns).c_str());
   std::printf(
       "| model         | call   | precision | ns per sample | useful  | ns per useful ray | x textbook ray | x "
       "pbrt-v4* |\n"
@@ -182,6 +187,7 @@ void print_setup(const Bench& bench) {
   };
   print("PupilMap::covering", [&] { petzval::PupilMap::covering(lens, bench.half_diagonal); });
   print("Camera, exact_float", [&] { Camera(lens, bench.film); });
+  print("the same, tilted", [&] { Camera(lens, bench.tilted); });
   for (const Model model : petzval::models()) {
     print(std::string(petzval::name(model)), [&] { petzval::make_model(model, lens, bench.half_diagonal); });
   }
@@ -209,8 +215,8 @@ int run(std::vector<char*> arguments) {
   const auto json_file = take_option(arguments, "--json");
   initialize(static_cast<int>(arguments.size()), arguments.data(), 15, 0.005);
   std::deque<Bench> benches;
-  benches.emplace_back("double_gauss_100mm_f2.0", 40.4);
-  benches.emplace_back("modern_58mm_f0.95", 21.6);
+  benches.emplace_back("double_gauss_100mm_f2.0", 40.4, 8);
+  benches.emplace_back("modern_58mm_f0.95", 21.6, 4);
   std::deque<Row> rows;
   for (const Bench& bench : benches) {
     benchmark::RegisterBenchmark((bench.lens.id + "/textbook").c_str(), time_textbook, bench.lens);
@@ -222,6 +228,10 @@ int run(std::vector<char*> arguments) {
                                    rows.back());
       rows.push_back({bench.lens.id, "single", model, true, camera});
       benchmark::RegisterBenchmark(rows.back().name().c_str(), time_single, rows.back());
+      rows.push_back(
+          {bench.lens.id, "tilted", model, in_double, Camera(bench.lens.lens, bench.tilted, {.model = model})});
+      benchmark::RegisterBenchmark(rows.back().name().c_str(), in_double ? time_batches<double> : time_batches<float>,
+                                   rows.back());
     }
   }
   Rounds rounds;

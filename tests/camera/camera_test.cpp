@@ -18,6 +18,7 @@
 #include "../kronecker.hpp"
 #include "../message.hpp"
 #include "camera_samples.hpp"
+#include "leaning_films.hpp"
 #include "petzval/camera/sample_rays.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/focus/focus.hpp"
@@ -26,6 +27,7 @@
 namespace petzval {
 namespace {
 
+using testing::leaning;
 using testing::random_samples;
 using testing::Samples;
 
@@ -197,14 +199,43 @@ TEST(SampleRays, TakesAModelOfTheCallersOwn) {
   EXPECT_NEAR(mean / (4 * square * square / 2500), 1, 3e-3);
 }
 
+TEST(SampleRays, TakesATiltedFilmBehindIt) {
+  const double tilt = 0.3;
+  const Film film{.width_mm = 20, .height_mm = 20, .tilt_rad = tilt};
+  const HoleModel model(30);
+  const TiltedFilm tilted(film, model.pupils());
+  Samples<double> samples;
+  constexpr int count = 20000;
+  for (int i = 0; i < count; ++i) samples.add(6, -8, std::fmod(i * std::numbers::phi, 1.0), (i + 0.5) / count);
+  std::array<std::vector<double>, 7> out;
+  for (auto& column : out) column.resize(count);
+  const auto at = [&](std::size_t k) { return out[k].data(); };
+  const double scale = 1;
+  sample_rays<HoleModel, double>(
+      model, tilted, &scale, count,
+      {samples.film_x.data(), samples.film_y.data(), samples.pupil_u.data(), samples.pupil_v.data()},
+      {{at(0), at(1), at(2), at(3), at(4), at(5)}, at(6)});
+  const double mean = std::accumulate(out[6].begin(), out[6].end(), 0.0) / count;
+  // The small hole from a point at (6, -8 cos, 50 - 8 sin), whose normal is (0, -sin, cos).
+  const double y = -8 * std::cos(tilt), z = 50 - 8 * std::sin(tilt), length2 = 36 + y * y + z * z;
+  const double at_film = y * -std::sin(tilt) + z * std::cos(tilt);
+  EXPECT_NEAR(mean / (4 * z * at_film / (length2 * length2)), 1, 3e-3);
+}
+
 // A sample (film x, y, u, v) and the ray in the phase space of the scene (place and direction cosines across the axis)
 // are two coordinates of the same light. Etendue being conserved, the Jacobian between them is the weight: n'^2 cos /
 // pdf.
 TEST(Camera, ConservesEtendue) {
-  for (const char* id : {"double_gauss_100mm_f2.0", "fisheye_10mm_f4", "eye_gullstrand_le_grand", "modern_50mm_f1.0"}) {
+  const double angle = 0.2;
+  for (const auto& [id, film] :
+       {std::pair{"double_gauss_100mm_f2.0", Film{.width_mm = 14, .height_mm = 14}},
+        std::pair{"double_gauss_100mm_f2.0", Film{.centre_y_mm = 4, .tilt_rad = angle, .swing_rad = -angle}},
+        std::pair{"fisheye_10mm_f4", Film{.width_mm = 14, .height_mm = 14}},
+        std::pair{"fisheye_10mm_f4", Film{.width_mm = 14, .height_mm = 14, .tilt_rad = angle}},
+        std::pair{"eye_gullstrand_le_grand", Film{.width_mm = 3, .height_mm = 3}},
+        std::pair{"modern_50mm_f1.0", Film{.width_mm = 14, .height_mm = 14}}}) {
     const Lens lens = testing::data_lens(id);
-    const double size = id == std::string("eye_gullstrand_le_grand") ? 3 : 14;
-    const Camera camera(lens, {.width_mm = size, .height_mm = size}, {.model = Model::exact_double});
+    const Camera camera(lens, film, {.model = Model::exact_double});
     const auto samples = random_samples(camera.film(), 40);
     int checked = 0;
     for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -274,12 +305,13 @@ TEST(Camera, HasSymplecticDifferentials) {
   EXPECT_GT(largest, 1e-5);
 }
 
-TEST(Camera, DifferentiatesAsDifferencesDo) {
+/// Against differences of samples on a film, by all models.
+void expect_differences(const Film& film) {
   const Lens lens = focused("double_gauss_100mm_f2.0");
   for (const Model model : models()) {
-    const Camera camera(lens, {}, {.model = model});
+    const Camera camera(lens, film, {.model = model});
     // Differences of float rays are noise; their derivatives are near those of the same lens in double.
-    const Camera reference(lens, {}, {.model = model == Model::exact_float ? Model::exact_double : model});
+    const Camera reference(lens, film, {.model = model == Model::exact_float ? Model::exact_double : model});
     const auto samples = random_samples(camera.film(), 40);
     int checked = 0;
     for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -311,6 +343,11 @@ TEST(Camera, DifferentiatesAsDifferencesDo) {
   }
 }
 
+TEST(Camera, DifferentiatesAsDifferencesDo) {
+  expect_differences({});
+  expect_differences(leaning(testing::shifted, 10, -6));
+}
+
 void expect_lost(const Camera& camera, const CameraSample& sample, RayFate fate) {
   const CameraRay one = camera.sample(sample);
   const CameraRayDifferential d = camera.sample_differential(sample);
@@ -321,13 +358,14 @@ void expect_lost(const Camera& camera, const CameraSample& sample, RayFate fate)
     for (int k = 0; k < 3; ++k) EXPECT_TRUE(std::isfinite(ray.origin[k]) && std::isfinite(ray.direction[k]));
   }
   for (const double value : {one.pdf_film, one.pdf_pupil, one.pdf_direction}) EXPECT_TRUE(std::isfinite(value));
+  EXPECT_EQ(one.pdf_film > 0, fate != RayFate::outside_film);
 }
 
 TEST(Camera, GivesAFateToBadSamples) {
   const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
   const Lens lens = focused("double_gauss_100mm_f2.0");
-  for (const Model model : models()) {
-    const Camera camera(lens, {}, {.model = model});
+  const auto fates = [&](Model model, const Film& film) {
+    const Camera camera(lens, film, {.model = model});
     for (const FilmPoint& point : {FilmPoint{18.01, 0}, FilmPoint{0, -12.01}, FilmPoint{nan, 0}, FilmPoint{0, nan},
                                    FilmPoint{inf, 0}, FilmPoint{1e300, -1e300}}) {
       expect_lost(camera, {point, 0.5, 0.5}, RayFate::outside_film);
@@ -343,14 +381,18 @@ TEST(Camera, GivesAFateToBadSamples) {
       EXPECT_NE(corner.fate, RayFate::outside_film);
       EXPECT_NE(corner.fate, RayFate::missed_surface);
     }
+  };
+  for (const Model model : models()) {
+    fates(model, {});
+    fates(model, {.tilt_rad = 0.15, .swing_rad = -0.1});
   }
 }
 
 TEST(Camera, GivesAFateToBadSamplesInBatches) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const Lens lens = focused("double_gauss_100mm_f2.0");
-  for (const Model model : models()) {
-    const Camera camera(lens, {}, {.model = model});
+  const auto fates = [&](Model model, const Film& film) {
+    const Camera camera(lens, film, {.model = model});
     auto samples = random_samples<float>(camera.film(), 100);
     samples.wavelengths.assign(100, 0);
     samples.film_x[3] = static_cast<float>(nan), samples.film_y[40] = 13, samples.pupil_u[50] = static_cast<float>(nan);
@@ -367,6 +409,10 @@ TEST(Camera, GivesAFateToBadSamplesInBatches) {
       EXPECT_TRUE(std::isfinite(samples.weights[i]) && std::isfinite(samples.pdf_direction[i]));
       EXPECT_EQ(samples.weights[i] > 0, samples.fates[i] == RayFate::transmitted) << name(model) << ' ' << i;
     }
+  };
+  for (const Model model : models()) {
+    fates(model, {});
+    fates(model, {.tilt_rad = 0.15, .swing_rad = -0.1});
   }
 }
 
@@ -398,7 +444,7 @@ TEST(Camera, RefusesFilmsThatAreNone) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (const Film& film :
        {Film{.width_mm = 0}, Film{.height_mm = -24}, Film{.width_mm = nan}, Film{.columns = 0}, Film{.rows = -1},
-        Film{.centre_x_mm = nan}, Film{.tilt_rad = 0.1}, Film{.swing_rad = -0.1}}) {
+        Film{.centre_x_mm = nan}, Film{.tilt_rad = nan}, Film{.swing_rad = -1.6}}) {
     EXPECT_THROW(Camera(lens, film), Error);
   }
   EXPECT_THROW(Camera(with_film(lens, lens.surfaces().back().vertex_z), {}), Error);

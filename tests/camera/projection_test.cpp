@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <glm/geometric.hpp>
 #include <numbers>
 #include <ostream>
 #include <string>
@@ -11,6 +12,7 @@
 #include "../data_lenses.hpp"
 #include "../kronecker.hpp"
 #include "petzval/camera/camera.hpp"
+#include "petzval/movement/film_pose.hpp"
 #include "petzval/pupil/aim.hpp"
 #include "petzval/pupil/pupil.hpp"
 #include "petzval/trace/trace.hpp"
@@ -133,6 +135,41 @@ TEST(Projection, FindsPointsThroughCylinders) {
     EXPECT_NEAR(p.film.x, sum_x / weight, 0.1);
     EXPECT_NEAR(p.film.y, sum_y / weight, 0.1);
   }
+}
+
+// The chief ray of a scene point, found from the scene, meets the film in space where the projection says.
+TEST(Projection, IsWhereChiefRaysMeetATiltedFilm) {
+  const Film leaning{.width_mm = 36, .height_mm = 24, .centre_y_mm = 3, .tilt_rad = 0.2, .swing_rad = -0.12};
+  const Lens lens = testing::data_lens("double_gauss_100mm_f2_28deg");
+  const FilmPose pose{lens.film_z(), leaning.tilt_rad, leaning.swing_rad};
+  const Camera camera(lens, leaning, {.model = Model::exact_double});
+  const double pupil_z = pupils(lens).entrance.z;
+  const testing::Kronecker<3> random(6);
+  int converged = 0;
+  for (std::uint32_t i = 0; i < 300; ++i) {
+    const auto [a, b, c] = random(i);
+    const double field = a * 13 * pi / 180, azimuth = 2 * pi * b, distance = 300 * std::pow(10, 6 * c);
+    const double z = pupil_z - distance * std::cos(field), across = distance * std::sin(field);
+    const AimedRay chief = chief_ray(lens, {field, z, azimuth});
+    if (!chief) continue;
+    const auto& [origin, direction] = chief.end.ray;
+    const double t = glm::dot(pose.at({}) - origin, pose.normal()) / glm::dot(direction, pose.normal());
+    const FilmPoint wanted = pose.point(origin + t * direction);
+    const Projection p = camera.project({across * std::sin(azimuth), across * std::cos(azimuth), z});
+    if (!leaning.contains(wanted)) {
+      EXPECT_EQ(p.status, ProjectionStatus::outside_film);
+      continue;
+    }
+    EXPECT_TRUE(p || (chief.status == AimStatus::vignetted && p.status == ProjectionStatus::vignetted));
+    if (!p) continue;
+    ++converged;
+    EXPECT_NEAR(std::hypot(p.film.x - wanted.x, p.film.y - wanted.y), 0, 5e-4);
+    EXPECT_EQ(p.raster, leaning.raster(p.film));
+    const Importance chief_importance = camera.importance(chief.ray);
+    ASSERT_TRUE(chief_importance);
+    EXPECT_NEAR(std::hypot(chief_importance.film.x - wanted.x, chief_importance.film.y - wanted.y), 0, 1e-9);
+  }
+  EXPECT_GT(converged, 100);
 }
 
 TEST(Projection, HasNames) {

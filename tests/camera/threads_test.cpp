@@ -39,10 +39,9 @@ std::vector<double> answers(const Camera& camera) {
   return numbers;
 }
 
-TEST(Camera, IsSharedByThreads) {
-  const Lens lens = testing::data_lens("double_gauss_100mm_f2.0");
+void expect_shared(const Lens& lens, const Film& film) {
   for (const Model model : {Model::thin_two_disc, Model::polynomial_5, Model::exact_float, Model::exact_double}) {
-    const Camera camera(lens, {}, {.model = model});
+    const Camera camera(lens, film, {.model = model});
     const std::vector<double> alone = answers(camera);
     constexpr int count = 16;
     std::vector<std::vector<double>> found(count);
@@ -58,6 +57,12 @@ TEST(Camera, IsSharedByThreads) {
     for (std::thread& thread : threads) thread.join();
     for (const auto& numbers : found) EXPECT_EQ(numbers, alone) << name(model);
   }
+}
+
+TEST(Camera, IsSharedByThreads) {
+  const Lens lens = testing::data_lens("double_gauss_100mm_f2.0");
+  expect_shared(lens, {});
+  expect_shared(lens, {.tilt_rad = 0.1, .swing_rad = 0.05});
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <map>
 
 #include "petzval/camera/camera.hpp"
+#include "petzval/core/units.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/io/prescription_json.hpp"
 #include "petzval/pupil/pupil.hpp"
@@ -83,6 +84,27 @@ TEST_F(CameraRays, TurnsTheImageUpsideDownOnEveryRung) {
   }
 }
 
+// A film that leans has its upper edge elsewhere, and sees what a film point there sees.
+TEST_F(CameraRays, TiltsItsFilm) {
+  const petzval::Lens lens_3m =
+      petzval::with_focus(petzval::compile(petzval::read_prescription(lens("double_gauss_100mm_f2.0"))), 3000,
+                          {.origin = petzval::DistanceOrigin::film});
+  const petzval::Film film{.tilt_rad = petzval::radians(8.0), .swing_rad = petzval::radians(-3.0)};
+  const std::string csv = std::string(header) + "7.5,-10.25,0.125,0.75,587.5618\n";
+  for (const petzval::Model model : {petzval::Model::thick, petzval::Model::exact_double}) {
+    const auto rows = rays("double_gauss_100mm_f2.0", csv, std::string(petzval::name(model)),
+                           {"--tilt-deg", "8", "--swing-deg", "-3"});
+    const auto r = petzval::Camera(lens_3m, film, {.model = model}).sample({{7.5, -10.25}, 0.125, 0.75});
+    ASSERT_TRUE(r);
+    EXPECT_EQ(rows.at(0)[9], "transmitted");
+    EXPECT_NEAR(std::stod(rows[0][4]), r.ray.direction.y, 1e-12);
+    EXPECT_NEAR(std::stod(rows[0][6]), r.weight, 1e-12);
+    // Not what the upright film sees.
+    const auto upright = rays("double_gauss_100mm_f2.0", csv, std::string(petzval::name(model)));
+    EXPECT_GT(std::abs(std::stod(rows[0][4]) - std::stod(upright[0][4])), 1e-4);
+  }
+}
+
 TEST_F(CameraRays, TellsWavelengthsApart) {
   const std::string same = "0,-15,0.3,0.9,";
   const auto rows = rays("achromat_100mm", header + same + "486.1327\n" + same + "656.2725\n" + same + "486.1327\n");
@@ -124,6 +146,8 @@ TEST_F(CameraRays, RefusesABadCommandLineInOneLine) {
   expect_failure("camera_rays", with({"--film-mm", "36"}), "--film-mm: found \"36\"");
   expect_failure("camera_rays", with({"--film-mm", "0x24"}), "--film-mm: found \"0\"");
   expect_failure("camera_rays", with({"--f-number", "0.1"}), "0.1");
+  expect_failure("camera_rays", with({"--tilt-deg", "90"}), "--tilt-deg: found \"90\"");
+  expect_failure("camera_rays", with({"--film-mm", "36x240", "--tilt-deg", "60"}), "where the last surface ends");
   EXPECT_FALSE(std::filesystem::exists(path("rays.csv")));
 }
 

@@ -34,7 +34,7 @@ struct Seen {
   EntranceMap map;
 
   Seen(const Lens& l, double film_radius)
-      : lens(l), radius(film_radius), pupils(PupilMap::covering(l, film_radius)), map(build()) {}
+      : lens(l), radius(film_radius), pupils(PupilMap::covering(l, film_radius)), map(traced_entrances(l, pupils)) {}
 
   /// What leaves the lens of a line behind it.
   TracedRay<double> leaving(const FilmPoint& film, double pupil_x, double pupil_y) const {
@@ -42,25 +42,6 @@ struct Seen {
     const Vec3<double> along = glm::normalize(Vec3<double>{pupil_x - film.x, pupil_y - film.y, depth});
     return trace(lens, Ray<double>{{pupil_x, pupil_y, pupils.space().pupil_z}, along * (depth < 0 ? 1.0 : -1.0)},
                  {.travel = Travel::to_scene});
-  }
-
-  EntranceMap build() const {
-    std::vector<std::vector<Ray<double>>> lines(1);
-    const SpreadLines spread = spread_lines(pupils, lens.rotationally_symmetric(), 0);
-    for (std::size_t i = 0; i < spread.film_x.size(); ++i) {
-      const auto end = leaving({spread.film_x[i], spread.film_y[i]}, spread.pupil_x[i], spread.pupil_y[i]);
-      if (end.transmitted()) lines[0].push_back(end.ray);
-    }
-    const auto passing = [&](std::size_t count, const RayArrays<const double>& rays, std::size_t wavelength,
-                             std::uint8_t* passes) {
-      std::vector<double> out(6 * count);
-      std::vector<RayFate> fates(count);
-      const auto at = [&](std::size_t k) { return out.data() + k * count; };
-      trace<double>(lens, count, rays, {at(0), at(1), at(2), at(3), at(4), at(5)}, fates.data(), nullptr,
-                    {.wavelength = wavelength});
-      for (std::size_t i = 0; i < count; ++i) passes[i] = fates[i] == RayFate::transmitted;
-    };
-    return EntranceMap(lens, lines, passing);
   }
 };
 
@@ -194,6 +175,25 @@ TEST(EntranceMap, EstimatesTheSolidAngleOfThePupil) {
         EXPECT_NEAR(found / wanted, 1, 2e-3);
       }
     }
+  }
+}
+
+TEST(EntranceMap, SamplesManyAsOneByOne) {
+  const Seen s = seen("double_gauss_100mm_f2_28deg");
+  const std::vector<double> u{0, 0.3, 0.99, std::numeric_limits<double>::quiet_NaN(), 1}, v{0.5, 0, 1, 0.5, 0.7};
+  // By the table, by the cone of a point that is too near for it, beyond all fields.
+  for (const Vec3<double> point : {Vec3<double>{30, 50, -800}, Vec3<double>{0, 1, -3}, Vec3<double>{0, 9000, -1000}}) {
+    std::vector<EntranceSample> samples(u.size(), EntranceSample{.distance = 7, .pdf = 7});
+    s.map.sample(point, u.size(), u.data(), v.data(), 0, samples.data());
+    for (std::size_t i = 0; i < u.size(); ++i) {
+      const EntranceSample one = s.map.sample(point, u[i], v[i]);
+      EXPECT_EQ(samples[i].place, one.place);
+      EXPECT_EQ(samples[i].direction, one.direction);
+      EXPECT_EQ(samples[i].distance, one.distance);
+      EXPECT_EQ(samples[i].pdf, one.pdf);
+    }
+    EXPECT_EQ(samples[3].pdf, 0);
+    EXPECT_EQ(samples[1].pdf > 0, point.y < 9000);
   }
 }
 

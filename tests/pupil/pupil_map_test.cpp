@@ -279,6 +279,89 @@ TEST(PupilMap, SamplesBatchesLikeSinglePoints) {
   }
 }
 
+TEST(PupilMap, TellsOfManyPlacesWhatItTellsOfOne) {
+  const std::vector<double> nm{450, 650};
+  const auto with = [&](const char* id) {
+    return compile(petzval::testing::data_prescription(id), nm, {.missing_glass = MissingGlass::abbe});
+  };
+  for (const PupilMap& map :
+       {PupilMap::covering(with("double_gauss_100mm_f1.35"), 22), PupilMap::matching(with("fisheye_8mm_f2.8"), 9),
+        PupilMap::covering(with("catadioptric_mangin_1000mm_f7.5"), 22),
+        PupilMap::covering(with("anamorphic_60mm_2x"), 22), PupilMap::covering(with("biogon_35mm_f2.8"), 30)}) {
+    const double radius = map.film_radius(), size = std::sqrt(map.area({0, 0}));
+    std::mt19937_64 random(5);
+    std::uniform_real_distribution<double> unit(-1.1, 1.1);
+    constexpr std::size_t count = 5000;
+    std::vector<double> fx(count), fy(count), x(count), y(count);
+    std::vector<std::uint16_t> wavelengths(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      fx[i] = 0.8 * radius * unit(random), fy[i] = 0.8 * radius * unit(random);
+      const auto [mx, my] = map.middle({fx[i], fy[i]});
+      x[i] = mx + size * unit(random), y[i] = my + size * unit(random);
+      wavelengths[i] = static_cast<std::uint16_t>(i % 3);
+    }
+    fx[0] = std::numeric_limits<double>::quiet_NaN(), x[1] = std::numeric_limits<double>::quiet_NaN();
+    std::vector<std::uint8_t> within(count), within_float(count);
+    map.contains<double>(count, {fx.data(), fy.data(), x.data(), y.data()}, {.each = wavelengths.data()},
+                         within.data());
+    const std::vector<float> ffx(fx.begin(), fx.end()), ffy(fy.begin(), fy.end()), px(x.begin(), x.end()),
+        py(y.begin(), y.end());
+    map.contains<float>(count, {ffx.data(), ffy.data(), px.data(), py.data()}, {.each = wavelengths.data()},
+                        within_float.data());
+    int inside = 0, other_float = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      EXPECT_EQ(within[i] == 1, map.contains({fx[i], fy[i]}, x[i], y[i], wavelengths[i])) << i;
+      other_float += within_float[i] != within[i];
+      inside += within[i];
+    }
+    EXPECT_GT(inside, 300);
+    EXPECT_LE(other_float, 5);
+  }
+}
+
+// Of a film that leans: every line of the map that meets it, and not many more. The pupil of a key is that of the
+// upright film's points that its lines meet.
+TEST(PupilMap, CoversThePupilsOfAFilmThatLeans) {
+  for (const auto& [id, radius] : {std::pair{"double_gauss_100mm_f2.0", 22.0}, std::pair{"fisheye_8mm_f2.8", 8.0},
+                                   std::pair{"catadioptric_mangin_1000mm_f7.5", 20.0}}) {
+    const Lens lens = data_lens(id);
+    const double steep = std::tan(radians(10)) / -film_space(lens).depth();
+    const FilmLean lean{.slope_x = 0.8 * steep,
+                        .slope_y = -0.6 * steep,
+                        .low = -0.7 * radius * std::abs(steep),
+                        .high = 0.7 * radius * std::abs(steep),
+                        .radius = radius};
+    for (const PupilMap& upright : {PupilMap::covering(lens, 1.5 * radius), PupilMap::matching(lens, 1.5 * radius)}) {
+      const PupilMap map = upright.leaning(lean);
+      EXPECT_EQ(map.film_radius(), radius);
+      std::mt19937_64 random(2);
+      std::uniform_real_distribution<double> unit(0, 1);
+      double inside = 0, sampled = 0;
+      for (int i = 0; i < 2000; ++i) {
+        const double r = radius * std::sqrt(unit(random)), azimuth = 2 * std::numbers::pi * unit(random);
+        const FilmPoint key{r * std::sin(azimuth), r * std::cos(azimuth)};
+        const double leaning = lean.slope_x * key.x + lean.slope_y * key.y;
+        if (leaning < lean.low || leaning > lean.high || map.area(key) == 0) continue;
+        const auto passes = [&](double x, double y) {
+          return upright.contains({key.x - leaning * x, key.y - leaning * y}, x, y);
+        };
+        for (int k = 0; k < 20; ++k) {
+          const PupilSample s = map.sample(key, unit(random), unit(random)), edge = map.sample(key, unit(random), 1);
+          sampled += 1;
+          inside += passes(s.x, s.y);
+          const auto [mx, my] = map.middle(key);
+          const double out = 1 + 0.1 * unit(random) + 1e-9;
+          EXPECT_FALSE(passes(mx + out * (edge.x - mx), my + out * (edge.y - my))) << id << " at " << key.x;
+        }
+      }
+      EXPECT_GT(inside / sampled, 0.95) << id;
+    }
+  }
+  const PupilMap map = PupilMap::covering(data_lens("double_gauss_100mm_f2.0"), 20);
+  EXPECT_THROW((void)map.leaning({.radius = -1}), Error);
+  EXPECT_THROW((void)map.leaning({.radius = std::numeric_limits<double>::quiet_NaN()}), Error);
+}
+
 TEST(PupilMap, KnowsHowItsSamplesMove) {
   const Lens lens = data_lens("fisheye_8mm_f2.8");
   const PupilMap map = PupilMap::covering(lens, 7);

@@ -67,8 +67,9 @@ struct ModelChoice {
 ///     const ModelChoice choice = choose_model(lens, {.near_mm = 1000, .film = film}, {.max_px = 0.25});
 ///     const Camera camera(lens, film, {.model = choice.model});
 ///
-/// Throws Error for near_mm not in front of the lens or beyond far_mm, wavelengths that were not compiled, a part of
-/// the budget that is negative or NaN, and where with_f_number, Camera with Model::exact_double and model_error do.
+/// Throws Error for a tilted film, near_mm not in front of the lens or beyond far_mm, wavelengths that were not
+/// compiled, a part of the budget that is negative or NaN, and where with_f_number, Camera with Model::exact_double and
+/// model_error do.
 PETZVAL_API ModelChoice choose_model(const Lens& lens, const SceneRequirements& scene, const ErrorBudget& budget,
                                      int threads = 1);
 /// One choice for each of several budgets, from one measurement.

@@ -35,4 +35,7 @@ class ExactModel {
   double towards_;
 };
 
+template <class R>
+inline constexpr bool ends_at_rims<ExactModel<R>> = true;
+
 }  // namespace petzval

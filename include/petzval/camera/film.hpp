@@ -9,13 +9,15 @@
 
 namespace petzval {
 
-/// A rectangle of film, perpendicular to the axis, where the lens has its film plane.
+/// A rectangle of film where the lens has its film plane: perpendicular to the axis or leaning about the point on it.
+/// Film points count from the axis along the film's own right and up (FilmPose has their places).
 struct Film {
   double width_mm = 36, height_mm = 24;
   int columns = 3840, rows = 2560;
   double centre_x_mm = 0, centre_y_mm = 0;  ///< shift movements: where the rectangle's middle lies in the film plane
-  double tilt_rad = 0, swing_rad = 0;       ///< reserved: 0 alone is taken
+  double tilt_rad = 0, swing_rad = 0;       ///< its normal is Ry(swing) Rx(tilt) e_z
 
+  bool tilted() const noexcept { return tilt_rad != 0 || swing_rad != 0; }
   double area_mm2() const noexcept { return width_mm * height_mm; }
   /// The side of a square as large as a pixel.
   double pixel_mm() const noexcept { return std::sqrt(area_mm2() / (static_cast<double>(columns) * rows)); }

@@ -60,9 +60,9 @@ struct ModelError {
   double exposure = 0;  ///< largest over film points and wavelengths: |irradiance / exact irradiance - 1|
 };
 
-/// Measures one of the models. Throws Error where it cannot be built (see Camera), for depths that are none or not in
-/// front of the lens, for wavelengths that were not compiled, for a lens without focal length, and for one without
-/// light on the film.
+/// Measures one of the models. Throws Error where it cannot be built (see Camera), for a tilted film, for depths that
+/// are none or not in front of the lens, for wavelengths that were not compiled, for a lens without focal length, and
+/// for one without light on the film.
 PETZVAL_API ModelError model_error(const Lens& lens, const Film& film, Model model, const ErrorSamples& samples);
 /// The same for models that were built before, for this lens and film: exact rays are traced once for all of them.
 PETZVAL_API std::vector<ModelError> model_errors(const Lens& lens, const Film& film, std::span<const AnyModel> models,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "petzval/camera/ray_model.hpp"
@@ -42,6 +43,8 @@ class ParaxialModel {
 
   Model model() const noexcept { return model_; }
   const PupilMap& pupils() const noexcept { return pupils_; }
+  /// Of a pinhole: its rays pass the plane of the pupil at so many times the film point's place. Empty for the others.
+  std::span<const double> pinhole_shifts() const noexcept { return pinhole_shifts_; }
   /// missed_surface: numbers that are not finite (or beyond 1e12 mm) and wavelengths that were not compiled.
   template <class T>
   PETZVAL_API void to_scene(std::size_t count, const FilmLines<const T>& lines, const RayWavelengths& wavelengths,
@@ -58,6 +61,7 @@ class ParaxialModel {
   PupilMap pupils_;
   double z_ = 0;                                     // of the plane of object space that rays are given in
   std::vector<detail::PairMap> to_scene_, to_film_;  // of each wavelength
+  std::vector<double> pinhole_shifts_;
 };
 
 }  // namespace petzval

@@ -41,7 +41,8 @@ PETZVAL_API std::optional<Model> model_named(std::string_view name) noexcept;
 PETZVAL_API std::span<const Model> models() noexcept;
 
 /// What a Camera needs to know of a lens: its pupils, and where lines of the film's space go on the scene's side and
-/// back. A renderer's own model needs these three and can be given to sample_rays().
+/// back. A renderer's own model needs these three and can be given to sample_rays(). Two more are read where the film
+/// is tilted: `ends_at_rims`, and pinhole_shifts() of a model that has it, as ParaxialModel's.
 ///
 /// All calls are const, may come from many threads, never allocate, and write every slot of their results with finite
 /// numbers; what a ray became says its fate.
@@ -62,5 +63,9 @@ concept RayModel = requires(const M& model, std::size_t count, const RayWaveleng
   { model.to_film(count, from_scene, wavelengths, to_lines, fates) }
   noexcept;
 };
+
+/// Whether rays of a model end at rims: to_scene() alone says which of its lines pass, in its pupils or beside them.
+template <class M>
+inline constexpr bool ends_at_rims = false;
 
 }  // namespace petzval

@@ -12,6 +12,7 @@
 #include "petzval/core/ray.hpp"
 #include "petzval/core/vec3.hpp"
 #include "petzval/lens/lens.hpp"
+#include "petzval/pupil/film_lines.hpp"
 #include "petzval/pupil/pupil_map.hpp"
 #include "petzval/trace/batch.hpp"
 
@@ -25,12 +26,14 @@ struct EntranceSample {
   double pdf = 0;                   ///< of the direction at the point, 1/sr; 0: the point does not see the pupil
 };
 
-/// Lines behind the lens, spread over a film and its pupils, edges included: those to build an EntranceMap from, before
-/// they go through the lens. All azimuths of the film, or +y alone where they are alike.
-struct SpreadLines {
-  std::vector<double> film_x, film_y, pupil_x, pupil_y;
-};
-PETZVAL_API SpreadLines spread_lines(const PupilMap& pupils, bool azimuths_alike, std::size_t wavelength);
+/// Lines of the film's space as rays that leave the lens towards the scene: N of each.
+using LinesToScene = std::function<void(std::size_t count, const FilmLines<const double>& lines, std::size_t wavelength,
+                                        const RayArrays<double>& rays, RayFate* fates)>;
+
+/// What leaves the lens, for each wavelength, of lines that are spread over a film and its pupils, edges included:
+/// those to build an EntranceMap from. All azimuths of the film, or +y alone where they are alike.
+PETZVAL_API std::vector<std::vector<Ray<double>>> leaving_rays(const PupilMap& pupils, bool azimuths_alike,
+                                                               const LinesToScene& to_scene);
 
 /// What decides where a pupil ends.
 enum class PupilEnds : std::uint8_t {
@@ -54,8 +57,7 @@ using ScenePassing = std::function<void(std::size_t count, const RayArrays<const
 /// Immutable, cheap to copy, free to share between threads.
 class PETZVAL_API EntranceMap {
  public:
-  /// lines: for each wavelength, what leaves the lens towards the scene of its spread_lines(). They say how far fields
-  /// reach and where to look.
+  /// lines: leaving_rays(). They say how far fields reach and where to look.
   EntranceMap(const Lens& lens, std::span<const std::vector<Ray<double>>> lines, const ScenePassing& passing,
               PupilEnds ends = PupilEnds::at_rims);
 
@@ -65,6 +67,9 @@ class PETZVAL_API EntranceMap {
   /// A line from a point (lens frame, mm) for u and v in [0, 1]. Nothing (pdf 0) for a point that is not in front of
   /// the lens or beyond all fields, numbers that are not finite, and wavelengths that are not in the map.
   EntranceSample sample(const Vec3<double>& point, double u, double v, std::size_t wavelength = 0) const noexcept;
+  /// The same for many of one point, sooner than one by one. u, v, samples: N each.
+  void sample(const Vec3<double>& point, std::size_t count, const double* u, const double* v, std::size_t wavelength,
+              EntranceSample* samples) const noexcept;
 
   /// The density with which `sample` gives a direction, 1/sr.
   double pdf(const Vec3<double>& point, const Vec3<double>& direction, std::size_t wavelength = 0) const noexcept;
@@ -73,5 +78,11 @@ class PETZVAL_API EntranceMap {
   struct Data;
   std::shared_ptr<const Data> data_;
 };
+
+/// Whether exact rays get through a lens, which has to outlive this.
+PETZVAL_API ScenePassing traced_passing(const Lens& lens);
+
+/// What the scene sees of a lens by exact rays. pupils: of its film, covering.
+PETZVAL_API EntranceMap traced_entrances(const Lens& lens, const PupilMap& pupils);
 
 }  // namespace petzval

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>
@@ -19,6 +20,16 @@ namespace petzval {
 struct PupilDisc {
   double shift = 0;
   double radius = 0;  ///< mm
+};
+
+/// A film that leans, as pupils see it. A point of it is told by its key: where the line from the point to the middle
+/// of the pupil's plane meets the plane of the upright film. The point's line through q in the plane of the pupil meets
+/// that of the upright film in key - (slope . key) q, whatever the film's place along the key's line: 1 + slope . key
+/// is by how much nearer to the pupil's plane it stands than the upright film.
+struct FilmLean {
+  double slope_x = 0, slope_y = 0;  ///< 1/mm
+  double low = 0, high = 0;         ///< of slope . key on the film
+  double radius = 0;                ///< of the farthest key, mm
 };
 
 /// A sample of a pupil: its place in the plane of the pupil and the pupil's whole area, mm and mm^2. Samples are spread
@@ -52,6 +63,14 @@ class PETZVAL_API PupilMap {
   /// What lies within all of some discs (one list for each wavelength), as well as stars of the same area can have it.
   static PupilMap of_discs(const FilmSpace& space, std::span<const std::vector<PupilDisc>> discs, double film_radius);
 
+  /// The pupils of a film that leans, by keys in place of film points: they contain every line that meets the film and
+  /// is one of this map's (whose film_radius they must not exceed), and as few more as one pupil for each distance of
+  /// the key from the axis can: of several points at that distance, along one line, it holds the pupils of all. Of
+  /// their area at most 1e-5 is missed (tests/camera/tilted_exposure_test.cpp), but where `covering` misses more: of a
+  /// ball lens 10 mm across, tilted by 8 degrees, 2e-3 on a film of 3 x 2 mm, 2e-4 on one of 0.6 x 0.45 mm at f/8.
+  /// Throws Error for a radius that is negative or not finite.
+  PupilMap leaning(const FilmLean& lean) const;
+
   /// The planes that film points and samples lie in.
   const FilmSpace& space() const noexcept;
   double film_radius() const noexcept;
@@ -72,6 +91,11 @@ class PETZVAL_API PupilMap {
   std::array<double, 2> middle(const FilmPoint& film, std::size_t wavelength = 0) const noexcept;
   /// Whether a place in the plane of the pupil belongs to the pupil of a film point.
   bool contains(const FilmPoint& film, double x, double y, std::size_t wavelength = 0) const noexcept;
+
+  /// The same for many lines: within: N, 0 or 1. Float or double.
+  template <class T>
+  void contains(std::size_t count, const FilmLines<const T>& lines, const RayWavelengths& wavelengths,
+                std::uint8_t* within) const noexcept;
 
   /// How the sample moves with the film point, u and v held: derivatives of (x, y) by film x and by film y.
   struct Motion {

@@ -56,8 +56,21 @@ struct PupilStar {
 
   /// What each sector adds to the area, mm^2.
   std::array<double, star_corners> areas() const noexcept;
-  /// Evenly by area for u, v in [0, 1], and the area; nothing (area 0) in an empty star.
-  std::array<double, 3> sample(double u, double v) const noexcept;
+};
+
+/// Spreads points evenly by area over a star, which it does not keep.
+class PETZVAL_API StarSampler {
+ public:
+  explicit StarSampler(const PupilStar& star) noexcept;
+  explicit StarSampler(const PupilStar&& star) = delete;
+  /// mm^2; 0: nothing to sample.
+  double area() const noexcept { return until_[star_corners - 1]; }
+  /// For u and v in [0, 1] (clamped).
+  std::array<double, 2> operator()(double u, double v) const noexcept;
+
+ private:
+  const PupilStar& star_;
+  std::array<double, star_corners> until_;  // area of the sectors up to the end of each
 };
 
 /// Stars that contain the edges of each field (`covering`) or have their area, corners at equal steps of it.

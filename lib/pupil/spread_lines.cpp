@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "petzval/core/bisect.hpp"
+#include "petzval/pupil/entrance_map.hpp"
+
+namespace petzval {
+namespace {
+
+struct SpreadLines {
+  std::vector<double> film_x, film_y, pupil_x, pupil_y;
+};
+
+SpreadLines spread_lines(const PupilMap& pupils, bool azimuths_alike, std::size_t wavelength) {
+  constexpr int radii = 32, around = 16;
+  const auto seen = [&](double radius) { return pupils.area({0, radius}, wavelength) > 0; };
+  double last = pupils.film_radius();
+  if (!seen(last)) {
+    const double dark = last;
+    last = 0;
+    for (int i = 1; i <= radii && seen(dark * i / radii); ++i) last = dark * i / radii;
+    last = detail::last_with(last, std::min(last + dark / radii, dark), seen);
+  }
+  SpreadLines lines;
+  const auto add = [&](double radius, double turn, double u, double v) {
+    const FilmPoint film{radius * std::sin(turn), radius * std::cos(turn)};
+    const PupilSample s = pupils.sample(film, u, v, wavelength);
+    if (!(s.area > 0)) return;
+    lines.film_x.push_back(film.x), lines.film_y.push_back(film.y);
+    lines.pupil_x.push_back(s.x), lines.pupil_y.push_back(s.y);
+  };
+  int turns = 0;
+  for (int i = 0; i <= radii; ++i) {
+    // Closer where the light ends.
+    const double radius = last * (1 - std::pow(1 - static_cast<double>(i) / radii, 1.5));
+    if (azimuths_alike) {
+      for (int k = 0; k <= around / 2; ++k) {  // half of a pupil is as the other
+        for (const double v : {0.0, 0.85, 0.95, 1.0}) add(radius, 0, static_cast<double>(k) / around, v);
+      }
+      continue;
+    }
+    // The pupil is that of all points, and of much of it nothing gets through: everywhere, by irrational steps.
+    for (int k = 0; k < 16 * around; ++k, ++turns) {
+      add(radius, 2 * std::numbers::pi * turns * std::numbers::phi, std::fmod(turns * std::numbers::sqrt2, 1.0),
+          std::fmod(turns * std::numbers::sqrt3, 1.0));
+    }
+  }
+  return lines;
+}
+
+}  // namespace
+
+std::vector<std::vector<Ray<double>>> leaving_rays(const PupilMap& pupils, bool azimuths_alike,
+                                                   const LinesToScene& to_scene) {
+  std::vector<std::vector<Ray<double>>> result(pupils.wavelengths());
+  for (std::size_t w = 0; w < result.size(); ++w) {
+    const auto [film_x, film_y, pupil_x, pupil_y] = spread_lines(pupils, azimuths_alike, w);
+    const std::size_t count = film_x.size();
+    std::array<std::vector<double>, 6> ray;
+    for (auto& values : ray) values.resize(count);
+    std::vector<RayFate> fates(count);
+    to_scene(count, {film_x.data(), film_y.data(), pupil_x.data(), pupil_y.data()}, w,
+             {ray[0].data(), ray[1].data(), ray[2].data(), ray[3].data(), ray[4].data(), ray[5].data()}, fates.data());
+    for (std::size_t i = 0; i < count; ++i) {
+      if (fates[i] != RayFate::transmitted) continue;
+      result[w].push_back({{ray[0][i], ray[1][i], ray[2][i]}, {ray[3][i], ray[4][i], ray[5][i]}});
+    }
+  }
+  return result;
+}
+
+}  // namespace petzval

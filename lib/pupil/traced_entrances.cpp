@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <array>
+#include <glm/geometric.hpp>
+#include <vector>
+
+#include "petzval/pupil/entrance_map.hpp"
+#include "petzval/pupil/film_lines.hpp"
+
+namespace petzval {
+ScenePassing traced_passing(const Lens& lens) {
+  return [&lens](std::size_t count, const RayArrays<const double>& rays, std::size_t wavelength, std::uint8_t* passes) {
+    std::array<std::vector<double>, 6> ray;
+    for (auto& values : ray) values.resize(count);
+    std::vector<RayFate> fates(count);
+    trace<double>(lens, count, rays,
+                  {ray[0].data(), ray[1].data(), ray[2].data(), ray[3].data(), ray[4].data(), ray[5].data()},
+                  fates.data(), nullptr, {.wavelength = wavelength});
+    for (std::size_t i = 0; i < count; ++i) passes[i] = fates[i] == RayFate::transmitted;
+  };
+}
+
+EntranceMap traced_entrances(const Lens& lens, const PupilMap& pupils) {
+  const FilmSpace& space = pupils.space();
+  const double towards = towards_scene(lens, space);
+  const auto to_scene = [&](std::size_t count, const FilmLines<const double>& lines, std::size_t wavelength,
+                            const RayArrays<double>& rays, RayFate* fates) {
+    const auto [x, y, z, dx, dy, dz] = rays;
+    for (std::size_t i = 0; i < count; ++i) {
+      const Vec3<double> line{lines.pupil_x[i] - lines.film_x[i], lines.pupil_y[i] - lines.film_y[i], space.depth()};
+      const Vec3<double> d = glm::normalize(line) * towards;
+      x[i] = lines.pupil_x[i], y[i] = lines.pupil_y[i], z[i] = space.pupil_z;
+      dx[i] = d.x, dy[i] = d.y, dz[i] = d.z;
+    }
+    trace<double>(lens, count, {x, y, z, dx, dy, dz}, rays, fates, nullptr,
+                  {.travel = Travel::to_scene, .wavelength = wavelength});
+  };
+  return EntranceMap(lens, leaving_rays(pupils, lens.rotationally_symmetric(), to_scene), traced_passing(lens));
+}
+
+}  // namespace petzval

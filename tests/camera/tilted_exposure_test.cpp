@@ -1,0 +1,304 @@
+// SPDX-License-Identifier: Apache-2.0
+// Films that lean: pupils and exposures against rays traced from the film's points by other means.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <numbers>
+#include <ostream>
+#include <random>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "../data_lenses.hpp"
+#include "camera_samples.hpp"
+#include "leaning_films.hpp"
+#include "petzval/camera/camera.hpp"
+#include "petzval/paraxial/first_order.hpp"
+#include "petzval/psf/sobol.hpp"
+#include "petzval/pupil/pupil.hpp"
+#include "petzval/trace/batch.hpp"
+
+namespace petzval {
+namespace {
+
+using testing::leaning;
+using testing::pose_of;
+using testing::random_samples;
+using testing::Samples;
+using testing::shifted;
+using testing::wide;
+
+const Film square{.width_mm = 16, .height_mm = 16};
+
+struct Case {
+  std::string lens;
+  double f_number;  ///< 0: wide open
+  Film film;
+  double tilt_deg, swing_deg;
+  double useful;  ///< least part of the samples that pass
+
+  Lens focused() const {
+    const Lens open = testing::data_lens(lens);
+    return f_number > 0 ? with_f_number(open, f_number) : open;
+  }
+  Film leaning_film() const { return leaning(film, tilt_deg, swing_deg); }
+};
+
+std::ostream& operator<<(std::ostream& out, const Case& c) {
+  return out << c.lens << " at f/" << c.f_number << ", " << c.tilt_deg << " and " << c.swing_deg << " degrees";
+}
+
+/// Rays from a film point to places in a plane across the axis, traced: which pass, and what each adds to the
+/// irradiance for an area in that plane.
+struct Traced {
+  std::vector<bool> passes;
+  std::vector<double> per_area;
+};
+
+Traced traced(const Lens& lens, const FilmPose& pose, const FilmPoint& film, double z,
+              const std::vector<std::array<double, 2>>& places) {
+  const Vec3<double> from = pose.at(film), normal = pose.normal();
+  std::vector<Ray<double>> rays;
+  Traced result;
+  for (const auto& [x, y] : places) {
+    const Vec3<double> along = Vec3<double>{x, y, z} - from;
+    const double length = glm::length(along);
+    // Film and lens lie on either side of each other as in the lens: towards the scene.
+    const double towards = along.z < 0 ? 1 : -1;
+    rays.push_back({{x, y, z}, along * (towards / length)});
+    result.per_area.push_back(std::abs(along.z) * glm::dot(along, normal) * -towards / std::pow(length, 4));
+  }
+  std::vector<TracedRay<double>> ends(rays.size());
+  trace<double>(lens, rays, ends.data(), {.travel = Travel::to_scene});
+  for (std::size_t i = 0; i < ends.size(); ++i) {
+    result.passes.push_back(ends[i].transmitted() && result.per_area[i] > 0);
+  }
+  return result;
+}
+
+class Leaning : public ::testing::TestWithParam<Case> {};
+
+TEST_P(Leaning, SamplesReachTheSceneAndMissNothing) {
+  const Lens lens = GetParam().focused();
+  const Camera camera(lens, GetParam().leaning_film(), {.model = Model::exact_double});
+  const TiltedFilm& tilted = *camera.tilted_film();
+  const FilmPose pose = pose_of(lens, camera.film());
+  const double z = camera.pupils().space().pupil_z;
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> unit;
+  double useful = 0, worst = 1, missed = 0;
+  int lit = 0;
+  constexpr int points = 24, samples = 1500;
+  const auto film_points = random_samples(camera.film(), points, 9);
+  for (int i = 0; i < points; ++i) {
+    const FilmPoint corner = camera.film().point(i % 2 * camera.film().columns, i / 2 * camera.film().rows);
+    const FilmPoint film = i < 4 ? corner : FilmPoint{film_points.film_x[i], film_points.film_y[i]};
+    const FilmPoint key = tilted.key(film);
+    if (tilted.pupils().area(key) == 0) continue;
+    std::vector<std::array<double, 2>> inside, beside, box;
+    const auto [mx, my] = tilted.pupils().middle(key);
+    double reach = 0;
+    for (int k = 0; k < samples; ++k) {
+      const PupilSample s = tilted.pupils().sample(key, unit(random), unit(random));
+      const PupilSample edge = tilted.pupils().sample(key, unit(random), 1);
+      const double out = std::sqrt(1 + 0.1 * unit(random));
+      inside.push_back({s.x, s.y});
+      beside.push_back({mx + out * (edge.x - mx), my + out * (edge.y - my)});
+      reach = std::max(reach, std::hypot(edge.x - mx, edge.y - my));
+    }
+    for (int k = 0; k < samples; ++k) {
+      box.push_back({mx + 1.5 * reach * (2 * unit(random) - 1), my + 1.5 * reach * (2 * unit(random) - 1)});
+    }
+    const auto part = [&](const std::vector<bool>& passes) {
+      return static_cast<double>(std::count(passes.begin(), passes.end(), true)) / samples;
+    };
+    const auto in = traced(lens, pose, film, z, inside).passes;
+    if (part(in) == 0) continue;
+    ++lit;
+    useful += part(in);
+    worst = std::min(worst, part(in));
+    const auto out = traced(lens, pose, film, z, beside).passes, all = traced(lens, pose, film, z, box).passes;
+    for (int k = 0; k < samples; ++k) {
+      const auto outside = [&](const std::array<double, 2>& p) { return !tilted.pupils().contains(key, p[0], p[1]); };
+      if (out[k] && outside(beside[k])) missed += 0.1 / samples;
+      if (all[k] && outside(box[k])) missed += 1 / (points * part(all) * samples);
+    }
+  }
+  ASSERT_GT(lit, points / 2);
+  RecordProperty("useful", std::to_string(useful / lit));
+  RecordProperty("worst", std::to_string(worst));
+  EXPECT_GT(useful / lit, GetParam().useful);
+  EXPECT_LE(missed / lit, 1e-5);
+}
+
+/// Irradiance of a film point in a scene of radiance 1, by a grid of rays through the last vertex's plane.
+double irradiance(const Lens& lens, const FilmPose& pose, const FilmPoint& point) {
+  const OuterFace face = last_face(lens);
+  // First all that the last surface could take, then what of it passes.
+  std::array<double, 2> low{-1.6 * face.half, -1.6 * face.half}, high{1.6 * face.half, 1.6 * face.half};
+  double sum = 0;
+  for (const int side : {200, 600}) {
+    const std::array<double, 2> step{(high[0] - low[0]) / side, (high[1] - low[1]) / side};
+    std::vector<std::array<double, 2>> grid;
+    for (int i = 0; i < side * side; ++i) {
+      grid.push_back({low[0] + step[0] * (i % side + 0.5), low[1] + step[1] * (i / side + 0.5)});
+    }
+    const auto [passes, per_area] = traced(lens, pose, point, face.vertex_z, grid);
+    std::swap(low, high);
+    sum = 0;
+    for (std::size_t i = 0; i < grid.size(); ++i) {
+      if (!passes[i]) continue;
+      sum += per_area[i] * step[0] * step[1];
+      for (const std::size_t k : {0u, 1u}) {
+        low[k] = std::min(low[k], grid[i][k] - step[k]);
+        high[k] = std::max(high[k], grid[i][k] + step[k]);
+      }
+    }
+  }
+  return sum;
+}
+
+double mean_weight(const Camera& camera, const FilmPoint& film) {
+  Samples<double> samples;
+  constexpr std::uint32_t count = 8192;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const auto [u, v] = owen_sobol(i, 5);
+    samples.add(film.x, film.y, u, v);
+  }
+  samples.run(camera);
+  double sum = 0;
+  for (const double w : samples.weights) sum += w / count;
+  return sum;
+}
+
+void expect_exposures(const Lens& lens, const Film& film, double corner = 0.45, double tolerance = 2e-3) {
+  const Camera camera(lens, film, {.model = Model::exact_double});
+  for (const auto& [x, y] : {std::array{0.0, 0.0}, {corner, corner}, {-0.4, corner}, {0.1, -0.48}}) {
+    const FilmPoint point{film.centre_x_mm + x * film.width_mm, film.centre_y_mm + y * film.height_mm};
+    EXPECT_NEAR(mean_weight(camera, point) / irradiance(lens, pose_of(lens, film), point), 1, tolerance)
+        << point.x << ", " << point.y;
+  }
+}
+
+TEST_P(Leaning, ExposesAsRaysOfItsPointsDo) { expect_exposures(GetParam().focused(), GetParam().leaning_film()); }
+
+INSTANTIATE_TEST_SUITE_P(
+    Films, Leaning,
+    ::testing::Values(Case{"double_gauss_100mm_f2.0", 0, wide, 8, 0, 0.95},
+                      Case{"double_gauss_100mm_f2.0", 0, wide, 20, 0, 0.90},
+                      Case{"double_gauss_100mm_f2.0", 4, wide, 0, -8, 0.95},
+                      Case{"double_gauss_100mm_f2.0", 22, shifted, 12, 15, 0.95},
+                      Case{"double_gauss_100mm_f2.0", 2.8, shifted, -20, 10, 0.90},
+                      Case{"tessar_100mm_f2.8", 0, shifted, 8, 8, 0.95}, Case{"fisheye_10mm_f4", 0, square, 8, 4, 0.90},
+                      Case{"anamorphic_60mm_2x", 0, {.width_mm = 20, .height_mm = 14}, 6, 6, 0.5},
+                      Case{"catadioptric_mangin_1000mm_f7.5", 0, {.width_mm = 20, .height_mm = 20}, 8, 0, 0.9}));
+
+// A ball's paraxial exit pupil lies far behind the film, and its rays are elsewhere. Half of the samples pass: means
+// are as exact as they are many.
+TEST(TiltedFilm, ExposesWhereAberrationsMoveThePupil) {
+  expect_exposures(testing::data_lens("ball_10mm"), leaning({.width_mm = 0.6, .height_mm = 0.45}, -8, 5), 0.49, 4e-3);
+}
+
+// Where the exit pupil is at infinity, pupils lie in the plane of the last vertex.
+TEST(TiltedFilm, ExposesBehindATelecentricLens) {
+  Prescription p;
+  p.name = "telecentric";
+  p.surfaces = {{.thickness = 98.6, .semi_diameter = 8, .stop = true},
+                {.radius = 102.16, .thickness = 4, .medium = {.nd = 1.5168}, .semi_diameter = 30},
+                {.radius = -102.16, .thickness = 98.6, .semi_diameter = 30}};
+  expect_exposures(compile(p), leaning({.width_mm = 20, .height_mm = 20}, 15, -10));
+}
+
+// Models of one disc expose by what of it a film point sees.
+TEST(TiltedFilm, ExposesAsADiscDoes) {
+  for (const char* id : {"double_gauss_100mm_f2.0", "fisheye_16mm_f2.8"}) {
+    const Lens lens = testing::data_lens(id);
+    const Pupils paraxial = pupils(lens);
+    const Film film = leaning(id[0] == 'f' ? square : shifted, -12, 16);
+    const FilmPose pose = pose_of(lens, film);
+    struct Disc {
+      double z, radius;
+    };
+    const Disc exit{paraxial.exit.z, paraxial.exit.diameter / 2};
+    const Disc folded{first_order(lens).rear_principal_z, paraxial.entrance.diameter / 2};
+    for (const auto& [model, disc] :
+         {std::pair{Model::pinhole, exit}, std::pair{Model::thick, exit}, std::pair{Model::thin, folded}}) {
+      const Camera camera(lens, film, {.model = model});
+      for (const FilmPoint& point : {FilmPoint{0, 0}, film.point(0, 0), film.point(film.columns, film.rows)}) {
+        double wanted = 0;
+        constexpr int rings = 200, spokes = 200;
+        for (int i = 0; i < rings * spokes; ++i) {
+          const double r = disc.radius * std::sqrt((i % rings + 0.5) / rings),
+                       angle = 2 * std::numbers::pi * (i / rings) / spokes;
+          const Vec3<double> along = Vec3<double>{r * std::cos(angle), r * std::sin(angle), disc.z} - pose.at(point);
+          wanted += along.z * glm::dot(along, pose.normal()) / std::pow(glm::dot(along, along), 2) / (rings * spokes);
+        }
+        wanted *= std::numbers::pi * disc.radius * disc.radius;
+        EXPECT_NEAR(mean_weight(camera, point) / wanted, 1, 3e-3) << id << ' ' << name(model) << " at " << point.x;
+      }
+    }
+  }
+}
+
+// Each rung's exposure against the exact one's changes with a tilt by little more than it is off upright.
+TEST(TiltedFilm, ExposesAlikeOnEveryRung) {
+  const Lens lens = with_f_number(testing::data_lens("double_gauss_100mm_f2.0"), 4);
+  const Film film = leaning(wide, 10, 5);
+  const Camera exact(lens, film, {.model = Model::exact_double}), upright(lens, wide, {.model = Model::exact_double});
+  for (const Model model : models()) {
+    const Camera tilted(lens, film, {.model = model}), straight(lens, wide, {.model = model});
+    for (const FilmPoint& point : {FilmPoint{0, 0}, FilmPoint{-17, 11}, FilmPoint{16, -4}}) {
+      const double error = mean_weight(tilted, point) / mean_weight(exact, point) - 1;
+      const double upright_error = mean_weight(straight, point) / mean_weight(upright, point) - 1;
+      EXPECT_NEAR(error, upright_error, 8e-3) << name(model) << " at " << point.x << ", " << point.y;
+    }
+  }
+}
+
+// The pinhole's samples are of its own disc.
+TEST(TiltedFilm, LosesNoSampleOfAPinhole) {
+  for (const double tilt : {0.01, 20.0}) {
+    const Camera camera(testing::data_lens("double_gauss_100mm_f2.0"), leaning(shifted, tilt, tilt / 2),
+                        {.model = Model::pinhole});
+    auto samples = random_samples(camera.film(), 20000);
+    samples.run(camera);
+    EXPECT_EQ(std::count(samples.fates.begin(), samples.fates.end(), RayFate::transmitted), 20000) << tilt;
+  }
+}
+
+// Units do not matter: with all lengths times a power of two, the same numbers come out.
+TEST(TiltedFilm, WeighsAlikeInEveryUnit) {
+  const Prescription phone = scale(testing::data_prescription("phone_5.6mm_f3.5"), 0.03);
+  const Film film = leaning({.width_mm = 0.06, .height_mm = 0.04}, 20, 14);
+  for (const Model model : {Model::pinhole, Model::thick, Model::exact_double}) {
+    for (const auto normalisation : {Normalisation::irradiance, Normalisation::unity_on_axis}) {
+      std::vector<std::vector<double>> weights;
+      for (const double unit : {1.0, 64.0}) {
+        Film scaled = film;
+        scaled.width_mm *= unit, scaled.height_mm *= unit;
+        const Camera camera(compile(scale(phone, unit)), scaled, {.model = model, .normalisation = normalisation});
+        auto samples = random_samples(scaled, 500);
+        samples.run(camera);
+        weights.push_back(samples.weights);
+      }
+      for (std::size_t i = 0; i < weights[0].size(); ++i) {
+        EXPECT_NEAR(weights[1][i], weights[0][i], 1e-9 * weights[0][i]) << name(model) << ", sample " << i;
+      }
+    }
+  }
+}
+
+TEST(TiltedFilm, GivesOneOnTheAxisWhereThatIsAskedFor) {
+  const Lens lens = testing::data_lens("tessar_100mm_f2.8");
+  for (const Model model : {Model::pinhole, Model::thick, Model::exact_float}) {
+    const CameraOptions options{.model = model, .normalisation = Normalisation::unity_on_axis};
+    EXPECT_NEAR(mean_weight(Camera(lens, leaning(wide, 15, 0), options), {}), 1, 1e-3) << name(model);
+  }
+}
+
+}  // namespace
+}  // namespace petzval

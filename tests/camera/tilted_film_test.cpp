@@ -1,0 +1,290 @@
+// SPDX-License-Identifier: Apache-2.0
+// Films that lean: what their samples are, by the places of points in space.
+#include "petzval/camera/tilted_film.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <string>
+#include <vector>
+
+#include "../data_lenses.hpp"
+#include "../kronecker.hpp"
+#include "../message.hpp"
+#include "camera_samples.hpp"
+#include "leaning_films.hpp"
+#include "petzval/camera/camera.hpp"
+#include "petzval/camera/sample_rays.hpp"
+#include "petzval/core/units.hpp"
+#include "petzval/focus/focus.hpp"
+#include "petzval/movement/film_pose.hpp"
+#include "petzval/paraxial/first_order.hpp"
+#include "petzval/pupil/pupil.hpp"
+
+namespace petzval {
+namespace {
+
+using testing::leaning;
+using testing::pose_of;
+using testing::random_samples;
+using testing::Samples;
+using testing::shifted;
+using testing::wide;
+
+// A film that leans by next to nothing is upright: the same rays, weights and densities, as near as two tables are.
+TEST(TiltedFilm, IsAnUprightOneWhereItHardlyLeans) {
+  const Lens lens = testing::data_lens("double_gauss_100mm_f2.0");
+  for (const Model model : models()) {
+    const Camera upright(lens, shifted, {.model = model});
+    const Camera tilted(lens, leaning(shifted, 1e-9, -1e-9), {.model = model});
+    const testing::Kronecker<2> random(3);
+    for (const FilmPoint& film : {FilmPoint{0, 0}, FilmPoint{-20.5, 17.5}, FilmPoint{14, -5}}) {
+      double weights[2] = {0, 0}, area[2] = {0, 0};
+      constexpr std::uint32_t count = 4096;
+      for (std::uint32_t i = 0; i < count; ++i) {
+        const auto [u, v] = random(i);
+        int side = 0;
+        for (const Camera* camera : {&upright, &tilted}) {
+          const CameraRay ray = camera->sample({film, u, v});
+          weights[side] += ray.weight / count;
+          area[side++] += ray ? 1 / ray.pdf_pupil / count : 0;
+        }
+      }
+      EXPECT_NEAR(weights[1] / weights[0], 1, 1e-3) << name(model);
+      EXPECT_NEAR(area[1] / area[0], 1, 1e-3) << name(model);
+    }
+    // The same line is the same ray, with the same weight but for the density of its sample.
+    const TiltedFilm& film = *tilted.tilted_film();
+    for (std::uint32_t i = 0; i < 100; ++i) {
+      const auto [x, y] = random(i);
+      const FilmPoint point = upright.film().point(x * shifted.columns, y * shifted.rows), key = film.key(point);
+      EXPECT_NEAR(std::hypot(key.x - point.x, key.y - point.y), 0, 1e-8);
+      EXPECT_NEAR(film.weight(key, 10 * x, -10 * y), 1, 1e-8);
+      const FilmLine line = film.upright(key, 10 * x, -10 * y);
+      EXPECT_NEAR(std::hypot(line.film_x - point.x, line.film_y - point.y), 0, 1e-8);
+    }
+  }
+}
+
+// What key, line and weight are, by the places of points in space.
+TEST(TiltedFilm, TellsLinesAsSpaceDoes) {
+  const Lens lens = testing::data_lens("double_gauss_100mm_f2.0");
+  const Film film = leaning(shifted, 14, -9);
+  const PupilMap pupils = PupilMap::covering(lens, upright_radius(lens, film, Model::exact_double));
+  const TiltedFilm tilted(film, pupils);
+  const FilmPose pose = pose_of(lens, film);
+  const testing::Kronecker<4> random(8);
+  for (std::uint32_t i = 0; i < 200; ++i) {
+    const auto [a, b, c, d] = random(i);
+    const FilmPoint point = film.point(a * film.columns, b * film.rows), key = tilted.key(point);
+    const Vec3<double> place = pose.at(point), q{60 * (c - 0.5), 60 * (d - 0.5), pupils.space().pupil_z};
+    const FilmLine line = tilted.upright(key, q.x, q.y);
+    const Vec3<double> upright{line.film_x, line.film_y, pupils.space().film_z};
+    const Vec3<double> along = q - place, straight = q - upright, normal = pose.normal();
+    EXPECT_NEAR(glm::length(glm::cross(glm::normalize(along), glm::normalize(straight))), 0, 1e-14);
+    const double length2 = glm::dot(along, along), straight2 = glm::dot(straight, straight);
+    const double weight = along.z * glm::dot(along, normal) / (length2 * length2);
+    const double wanted = straight.z * straight.z / (straight2 * straight2);
+    EXPECT_NEAR(tilted.weight(key, q.x, q.y) * wanted / weight, 1, 1e-12);
+    const auto met = tilted.key_of(line);
+    ASSERT_TRUE(met);
+    EXPECT_NEAR(std::hypot(met->x - key.x, met->y - key.y), 0, 1e-12);
+    const FilmPoint again = tilted.point(*met);
+    EXPECT_NEAR(std::hypot(again.x - point.x, again.y - point.y), 0, 1e-12);
+  }
+}
+
+/// A pinhole's: what the film point sees, in the plane of the pupil, of the upright model's sample of the exit pupil.
+PupilSample pinhole_sample(const Lens& lens, const Camera& camera, const CameraSample& s) {
+  const Vec3<double> from = pose_of(lens, camera.film()).at(s.film);
+  const FilmSpace& space = camera.pupils().space();
+  const double exit_z = pupils(lens, s.wavelength).exit.z;
+  const auto along = [](const Vec3<double>& a, const Vec3<double>& b, double z) {
+    return a + (b - a) * ((z - a.z) / (b.z - a.z));
+  };
+  const Vec3<double> chief = along(from, {0, 0, exit_z}, space.film_z);
+  const PupilSample p = camera.pupils().sample({chief.x, chief.y}, s.pupil_u, s.pupil_v, s.wavelength);
+  const Vec3<double> exit = along(chief, {p.x, p.y, space.pupil_z}, exit_z), seen = along(from, exit, space.pupil_z);
+  const double larger = (space.pupil_z - from.z) / (exit_z - from.z) * (exit_z - chief.z) / (space.pupil_z - chief.z);
+  return {seen.x, seen.y, p.area * larger * larger};
+}
+
+// Densities of samples by the places of film point and pupil sample in space, and those that their rays, met from the
+// scene, are said to have.
+TEST(TiltedFilm, HasTheDensitiesOfItsSamples) {
+  const Lens lens = testing::data_lens("double_gauss_100mm_f2.0");
+  for (const Model model : models()) {
+    const Camera camera(lens, leaning(shifted, 14, -9), {.model = model});
+    const TiltedFilm& tilted = *camera.tilted_film();
+    const FilmPose pose = pose_of(lens, camera.film());
+    auto samples = random_samples(camera.film(), 60);
+    samples.run(camera);
+    int checked = 0;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      const CameraSample s = samples.one(i);
+      const PupilSample p = model == Model::pinhole ? pinhole_sample(lens, camera, s)
+                                                    : tilted.pupils().sample(tilted.key(s.film), s.pupil_u, s.pupil_v);
+      const Vec3<double> along = Vec3<double>{p.x, p.y, camera.pupils().space().pupil_z} - pose.at(s.film);
+      const double length = glm::length(along), pdf = std::pow(length, 3) / (p.area * std::abs(along.z));
+      EXPECT_NEAR(samples.pdf_pupil[i] * p.area, 1, 1e-9);
+      EXPECT_NEAR(samples.pdf_direction[i] / pdf, 1, 1e-9) << name(model);
+      if (samples.fates[i] != RayFate::transmitted) continue;
+      EXPECT_NEAR(samples.weights[i] * pdf * length / -glm::dot(along, pose.normal()), 1, 1e-9) << name(model);
+      if (model == Model::pinhole) continue;
+      const Importance met = camera.importance({samples.ray(i).origin, -samples.ray(i).direction});
+      if (!met) continue;  // at a rim, where a float ray does not come back
+      ++checked;
+      const double eps = model == Model::exact_double || model <= Model::thick ? 1e-9 : 2e-3;
+      EXPECT_NEAR(std::hypot(met.film.x - s.film.x, met.film.y - s.film.y), 0, 100 * eps) << name(model);
+      EXPECT_NEAR(met.we / (met.pdf_position * met.pdf_direction) / samples.weights[i], 1, eps) << name(model);
+      EXPECT_NEAR(met.pdf_pupil / samples.pdf_pupil[i], 1, eps);
+    }
+    EXPECT_GT(checked, model == Model::pinhole ? -1 : 50) << name(model);
+  }
+}
+
+// A line that meets the film from behind is not seen by it.
+TEST(TiltedFilm, HasABack) {
+  const Lens lens = testing::data_lens("double_gauss_100mm_f2.0");
+  const Film film = leaning({.width_mm = 4, .height_mm = 4}, 80, 0);
+  const TiltedFilm tilted(film, PupilMap::covering(lens, upright_radius(lens, film, Model::exact_double)));
+  const double reach = pose_of(lens, film).normal().z * -tilted.pupils().space().depth() / std::sin(radians(80.0));
+  EXPECT_GT(tilted.weight({0, 0}, 0, 0.99 * -reach), 0);
+  EXPECT_TRUE(tilted.key_of({0, 0, 0, 0.99 * -reach}));
+  EXPECT_EQ(tilted.weight({0, 0}, 0, 1.01 * -reach), 0);
+  EXPECT_FALSE(tilted.key_of({0, 0, 0, 1.01 * -reach}));
+}
+
+// Scheimpflug: the film's plane and the plane of focus of a thin lens meet in the lens's plane. With 1/s + 1/s' = 1/f,
+// film points (y, s' + y tan) are imaged to points of one plane, in which all rays of each meet.
+TEST(TiltedFilm, IsSharpInATiltedPlane) {
+  const Lens lens = with_focus(testing::data_lens("double_gauss_100mm_f2.0"), 2000);
+  const Film film = leaning(wide, 7, -4);
+  const Camera camera(lens, film, {.model = Model::thin});
+  const FirstOrder f = first_order(lens);
+  const FilmPose pose = pose_of(lens, film);
+  auto samples = random_samples(film, 400);
+  constexpr int rays = 16;
+  std::vector<Vec3<double>> images;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const Vec3<double> place = pose.at({samples.film_x[i], samples.film_y[i]});
+    // Gauss: the image by object and image distance from the principal planes.
+    const double behind = place.z - f.rear_principal_z;
+    const double before = 1 / (1 / f.effective_focal_length - 1 / behind);
+    const Vec3<double> image{-place.x * before / behind, -place.y * before / behind, f.front_principal_z - before};
+    images.push_back(image);
+    int passed = 0;
+    for (int k = 0; k < rays; ++k) {
+      const CameraRay ray = camera.sample({{samples.film_x[i], samples.film_y[i]}, (k + 0.5) / rays, 0.9});
+      if (!ray) continue;
+      ++passed;
+      const auto& [origin, direction] = ray.ray;
+      const Vec3<double> to = image - origin;
+      EXPECT_NEAR(glm::length(glm::cross(to, direction)) / before, 0, 1e-10);
+    }
+    EXPECT_GT(passed, rays / 2);
+  }
+  // One plane through all of them, that leans.
+  const auto side = [&](std::size_t a, std::size_t b, std::size_t c) {
+    return glm::normalize(glm::cross(images[b] - images[a], images[c] - images[a]));
+  };
+  const Vec3<double> normal = side(0, 1, 2);
+  for (const auto& image : images) EXPECT_NEAR(glm::dot(image - images[0], normal) / 2000, 0, 1e-10);
+  EXPECT_LT(std::abs(normal.z), 0.7);
+}
+
+TEST(TiltedFilm, GivesTheSameRaysSinglyAndInABatch) {
+  const Lens lens = testing::data_lens("double_gauss_100mm_f2.0");
+  for (const Model model : models()) {
+    const Camera camera(lens, leaning(shifted, 8, 5), {.model = model});
+    auto samples = random_samples(camera.film(), 600);
+    auto in_float = random_samples<float>(camera.film(), 600);
+    samples.film_x[7] = in_float.film_x[7] = 40;
+    samples.run(camera);
+    in_float.run(camera);
+    const double eps = model == Model::exact_float ? 2e-5 : 1e-11;
+    int others = 0;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      const CameraRay one = camera.sample(samples.one(i));
+      others += one.fate != samples.fates[i] || in_float.fates[i] != samples.fates[i];
+      EXPECT_EQ(one.weight > 0, one.fate == RayFate::transmitted);
+      if (one.fate != samples.fates[i]) continue;
+      EXPECT_NEAR(one.weight, samples.weights[i], eps * std::max(one.weight, 1e-3)) << name(model);
+      EXPECT_NEAR(one.pdf_direction, samples.pdf_direction[i], eps * one.pdf_direction);
+      EXPECT_NEAR(one.pdf_pupil, samples.pdf_pupil[i], eps * one.pdf_pupil);
+      if (!one || in_float.fates[i] != one.fate) continue;
+      EXPECT_NEAR(in_float.weights[i] / one.weight, 1, 1e-4) << name(model);
+      EXPECT_NEAR(glm::length(one.ray.direction - samples.ray(i).direction), 0, eps);
+      EXPECT_NEAR(glm::length(one.ray.direction - in_float.ray(i).direction), 0, 1e-4);
+    }
+    EXPECT_LE(others, 4) << name(model);
+    EXPECT_EQ(samples.fates[7], RayFate::outside_film);
+  }
+}
+
+TEST(TiltedFilm, IsNotTakenForAnUprightOne) {
+  const Lens lens = testing::data_lens("tessar_100mm_f2.8");
+  const Film film = leaning(wide, 8, 0);
+  const ParaxialModel model(Model::thick, lens, upright_radius(lens, film, Model::thick));
+  const double scale = 1, x = 1, y = 2, u = 0.3, v = 0.4;
+  std::array<double, 7> out{};
+  RayFate fate = RayFate::transmitted;
+  const CameraSamples<double> sample{&x, &y, &u, &v};
+  const CameraRays<double> ray{{&out[0], &out[1], &out[2], &out[3], &out[4], &out[5]}, &out[6], &fate};
+  sample_rays(model, film, &scale, 1, sample, ray);
+  EXPECT_EQ(fate, RayFate::outside_film);
+  EXPECT_EQ(out[6], 0);
+  sample_rays(model, TiltedFilm(film, model.pupils()), &scale, 1, sample, ray);
+  EXPECT_EQ(fate, RayFate::transmitted);
+  EXPECT_GT(out[6], 0);
+}
+
+TEST(TiltedFilm, IsRefusedInTheLens) {
+  const auto refusal = [](const char* id, const Film& film) {
+    return testing::message([&] { Camera(testing::data_lens(id), film, {.model = Model::exact_float}); });
+  };
+  const auto has = [](const std::string& text, const char* part) { return text.find(part) != std::string::npos; };
+  EXPECT_EQ(refusal("double_gauss_100mm_f2.0", leaning(wide, 30, 0)), "no error");
+  const std::string steep = refusal("double_gauss_100mm_f2.0", leaning({.width_mm = 36, .height_mm = 240}, 40, 0));
+  EXPECT_TRUE(has(steep, "corner (-18, -120) mm at z = ") && has(steep, "where the last surface ends")) << steep;
+  EXPECT_TRUE(has(refusal("double_gauss_100mm_f2.0", leaning(wide, 90, 0)), "less than a quarter turn"));
+  EXPECT_TRUE(has(refusal("tessar_100mm_f2.8", leaning(wide, std::nan(""), 0)), "less than a quarter turn"));
+  const Film steep_square = leaning({.width_mm = 20, .height_mm = 20}, 45, 0);
+  const Lens fisheye = testing::data_lens("fisheye_6.3mm_f2.8");
+  const auto thin = testing::message([&] { Camera(fisheye, steep_square, {.model = Model::thin}); });
+  EXPECT_TRUE(has(thin, "at least a tenth of the film's distance from the pupil")) << thin;
+  const Lens lens = testing::data_lens("tessar_100mm_f2.8");
+  const Film film = leaning(wide, 20, 0);
+  EXPECT_TRUE(has(testing::message([&] { Camera(lens, film, make_model(Model::thick, lens, film.radius_mm())); }),
+                  "the model is one for film points up to"));
+}
+
+// What makes up a camera refuses the same by itself.
+TEST(TiltedFilm, IsRefusedWithoutACameraToo) {
+  const auto has = [](const std::string& text, const char* part) { return text.find(part) != std::string::npos; };
+  const Lens lens = testing::data_lens("tessar_100mm_f2.8");
+  const Film film = leaning(wide, 20, 0), beyond = leaning(wide, 91, 0);
+  const Film flipped = leaning({.width_mm = -36, .height_mm = 24}, 20, 0);
+  const Film unknown = leaning({.width_mm = std::nan(""), .height_mm = 24}, 0, 0);
+  const Film close = leaning({.width_mm = 36, .height_mm = 300}, 60, 0);
+  const PupilMap pupils = PupilMap::covering(lens, upright_radius(lens, film, Model::exact_double));
+  const auto radius = [&](const Film& f) {
+    return testing::message([&] { upright_radius(lens, f, Model::exact_double); });
+  };
+  const auto tilted = [&](const Film& f) { return testing::message([&] { TiltedFilm(f, pupils); }); };
+  for (const auto& [wrong, wanted] :
+       {std::pair{beyond, "less than a quarter turn"}, std::pair{flipped, "wanted positive lengths"},
+        std::pair{unknown, "wanted positive lengths"}, std::pair{close, "at least a tenth of the film's distance"}}) {
+    EXPECT_TRUE(has(radius(wrong), wanted)) << radius(wrong);
+    EXPECT_TRUE(has(tilted(wrong), wanted)) << tilted(wrong);
+  }
+  EXPECT_EQ(tilted(film), "no error");
+  const std::string larger = tilted(leaning({.width_mm = 50, .height_mm = 24}, 20, 0));
+  EXPECT_TRUE(has(larger, "the pupils are those of film points up to")) << larger;
+}
+
+}  // namespace
+}  // namespace petzval
