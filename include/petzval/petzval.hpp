@@ -10,9 +10,11 @@
 ///                                       -->  chief_ray, aim, pupil_outline          which rays of a point get through
 ///                                       -->  relative_illumination                  how much light the film gets
 ///                                       -->  solve_focus, depth_of_field            where the film belongs
+///                                       -->  autofocus, fit_tilt                    a film for points to be sharp,
+///                                                                                   upright or tilted
 ///                                       -->  trace, trace_differentials             rays, either way, float or double,
 ///                                                                                   one or in batches on SIMD lanes
-///                                       -->  Camera                                 rays, importance and projection for a
+///                                       -->  Camera                                 rays, importance, projection for a
 ///                                                                                   renderer, by one of eleven models
 ///                                       -->  choose_model                           the cheapest model inside a budget
 ///                                       -->  spot_diagram, point_image              what the film sees of a point
@@ -30,7 +32,8 @@
 ///     PointImage bokeh = point_image(lens, {.field_rad = 0, .z = -1500});
 ///
 /// This header has the core, for which a program links petzval::core and nothing but GLM. Images and figures are in
-/// petzval/io/image.hpp and petzval/figure/ (petzval::image), fits in petzval/movement/plane_fit.hpp (petzval::fit).
+/// petzval/io/image.hpp and petzval/figure/ (petzval::image), the tilted film in petzval/movement/tilt_fit.hpp
+/// (petzval::fit).
 
 #include "petzval/camera/camera.hpp"
 #include "petzval/camera/choose_model.hpp"
@@ -48,6 +51,8 @@
 #include "petzval/lens/lens.hpp"
 #include "petzval/lint/lint.hpp"
 #include "petzval/media/catalogue.hpp"
+#include "petzval/movement/autofocus.hpp"
+#include "petzval/movement/focus_point.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/polynomial/ray_polynomial.hpp"
 #include "petzval/prescription/prescription.hpp"

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "petzval/core/export.hpp"
+#include "petzval/lens/lens.hpp"
+#include "petzval/movement/film_pose.hpp"
+#include "petzval/movement/ideal_lens.hpp"
+
+namespace petzval {
+
+/// The rays of one scene point behind the lens, spread evenly over what the lens passes: where they meet the plane
+/// z = plane_z, and their slopes per mm of z.
+struct PointBundle {
+  double plane_z = 0;
+  std::vector<double> x, y, slope_x, slope_y;
+
+  bool empty() const noexcept { return x.empty(); }
+};
+
+/// A blur of exact rays on a film.
+struct BundleBlur {
+  FilmPoint centroid;
+  double rms_radius = 0;      ///< mm, on the film about the centroid
+  double largest_radius = 0;  ///< mm, on the film about the centroid
+  /// The diameter of the even disc of the same RMS radius, 2 sqrt(2) rms_radius; negative where the rays meet behind
+  /// the film, as signed_blur(), unless defocus makes less than a tenth of it.
+  double signed_diameter = 0;
+};
+/// Nothing for an empty bundle, and where a ray runs along the film.
+PETZVAL_API std::optional<BundleBlur> blur_on(const PointBundle& bundle, const FilmPose& film);
+
+/// Sends bundles from scene points through a lens: set up once for a lens and a film (milliseconds), then some
+/// microseconds a point. Immutable, cheap to copy, free to share between threads.
+///
+/// One wavelength: the central one. Rays are spread evenly over the pupil as the point sees it: RMS radii are those of
+/// endlessly many within 1 % for 256 rays and 0.5 % for 1024 (tests/movement/point_bundles_test.cpp; lenses of
+/// revolution, with cylinders it may be a fifth); the largest
+/// radius is that of the rays there are, up to 40 % less than that of the pupil's edge.
+class PETZVAL_API PointBundles {
+ public:
+  /// film_radius: mm, of the farthest film point that matters: what lies beyond that has no bundles. rays: to send of
+  /// each point, at least 16; half of them or more get through (but where it is less than a 16th of what a lens
+  /// without symmetry of revolution may see). Throws Error where thick_lens and PupilMap::covering do.
+  PointBundles(const Lens& lens, double film_radius, std::size_t rays = 256);
+
+  const Lens& lens() const noexcept;
+  /// Cardinal points and pupils, of the same wavelength.
+  const IdealLens& ideal() const noexcept;
+  /// Empty for a place that the lens does not see.
+  PointBundle bundle(const ScenePlace& place) const;
+
+ private:
+  struct Data;
+  std::shared_ptr<const Data> data_;
+};
+
+}  // namespace petzval

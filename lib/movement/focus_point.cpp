@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "petzval/movement/focus_point.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "petzval/core/error.hpp"
+#include "petzval/core/text.hpp"
+#include "petzval/movement/disparity_fit.hpp"
+#include "petzval/movement/film_pose.hpp"
+#include "petzval/movement/keyframes.hpp"
+
+namespace petzval {
+namespace {
+
+bool finite(const Vec3<double>& v) noexcept { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
+void check(const ScenePlace& place, const std::string& where) {
+  const auto& [p, at_infinity] = place;
+  const bool nowhere = at_infinity && p.x == 0 && p.y == 0 && p.z == 0;
+  if (finite(p) && !nowhere) return;
+  throw Error(where + "the place is (" + number(p.x) + ", " + number(p.y) + ", " + number(p.z) + "), wanted " +
+              (at_infinity ? "a direction" : "finite coordinates"));
+}
+
+void check(const OnTriangle& place, std::size_t vertices, const std::string& where) {
+  const auto& [a, b, c] = place.barycentric;
+  constexpr double tolerance = 1e-9;
+  // NaN fails either comparison.
+  if (!(std::min({a, b, c}) >= -tolerance) || !(std::abs(a + b + c - 1) <= tolerance)) {
+    throw Error(where + "barycentric coordinates are (" + number(a) + ", " + number(b) + ", " + number(c) +
+                "), wanted 0 or more and a sum of 1");
+  }
+  for (const std::size_t vertex : place.vertices) {
+    if (vertex < vertices) continue;
+    throw Error(where + "it lies at vertex " + std::to_string(vertex) + ", wanted one of the " +
+                std::to_string(vertices) + " there are");
+  }
+}
+
+void check(const FocusPoint& point, std::size_t vertices, const std::string& where) {
+  if (point.keys.empty()) throw Error(where + "no keys, wanted one at least");
+  if (!(point.from <= point.until)) {
+    throw Error(where + "valid from " + number(point.from) + " s until " + number(point.until) +
+                " s, wanted an interval");
+  }
+  for (std::size_t k = 0; k < point.keys.size(); ++k) {
+    const FocusKey& key = point.keys[k];
+    const std::string at = where + "key " + std::to_string(k) + ": ";
+    if (!std::isfinite(key.time)) throw Error(at + "time is " + number(key.time) + " s, wanted a finite one");
+    if (k > 0 && !(key.time > point.keys[k - 1].time)) {
+      throw Error(at + "time is " + number(key.time) + " s, wanted one after " + number(point.keys[k - 1].time) + " s");
+    }
+    if (!std::isfinite(key.blur_mm)) throw Error(at + "blur is " + number(key.blur_mm) + " mm, wanted a finite one");
+    if (!std::isfinite(key.weight) || key.weight < 0) {
+      throw Error(at + "weight is " + number(key.weight) + ", wanted a finite one of 0 or more");
+    }
+    if (const auto* place = std::get_if<ScenePlace>(&key.anchor)) {
+      check(*place, at);
+    } else {
+      check(std::get<OnTriangle>(key.anchor), vertices, at);
+    }
+  }
+}
+
+void check(const FocusMoment& moment) {
+  if (std::isnan(moment.time)) throw Error("focus_targets: time is nan, wanted a number");
+  if (!moment.frame) return;
+  const auto& [width, height, x, y] = *moment.frame;
+  if (!(width >= 0 && height >= 0) || !std::isfinite(width + height + x + y) || !std::isfinite(moment.film_z)) {
+    throw Error("focus_targets: the frame is " + number(width) + " x " + number(height) + " mm about (" + number(x) +
+                ", " + number(y) + ") at z = " + number(moment.film_z) +
+                " mm, wanted finite numbers and no negative size");
+  }
+}
+
+/// A number of the keys at a time: `of` for each.
+double at_time(const FocusPoint& point, double time, const auto& of) {
+  if (point.keys.size() == 1) return of(0);
+  std::vector<double> times, values;
+  for (std::size_t k = 0; k < point.keys.size(); ++k) {
+    times.push_back(point.keys[k].time);
+    values.push_back(of(k));
+  }
+  return Keyframes(std::move(times), std::move(values)).at(time);
+}
+
+Vec3<double> place_of(const OnTriangle& on, const std::array<double, 3>& parts, const FocusMoment& moment) {
+  Vec3<double> sum{0, 0, 0};
+  for (std::size_t i = 0; i < 3; ++i) sum += moment.vertices[on.vertices[i]] * parts[i];
+  return sum;
+}
+
+/// The triangle that all keys lie on, or none.
+const OnTriangle* only_triangle(const FocusPoint& point) {
+  const auto* first = std::get_if<OnTriangle>(&point.keys.front().anchor);
+  const auto same = [&](const FocusKey& key) {
+    const auto* on = std::get_if<OnTriangle>(&key.anchor);
+    return on && on->vertices == first->vertices;
+  };
+  return first && std::all_of(point.keys.begin(), point.keys.end(), same) ? first : nullptr;
+}
+
+/// As seen from the front principal point, 1 / depth last.
+Vec3<double> seen(const ScenePlace& place, double principal_z) {
+  const DisparityPoint point = disparity_point(place, principal_z);
+  return {point.x, point.y, point.disparity};
+}
+
+/// Nothing where a vertex is nowhere, and on a way from behind the lens to infinity.
+std::optional<ScenePlace> place_at(const IdealLens& lens, const FocusPoint& point, const FocusMoment& moment) {
+  if (const OnTriangle* triangle = only_triangle(point)) {
+    std::array<double, 3> parts{};
+    double sum = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      parts[i] = at_time(point, moment.time,
+                         [&](std::size_t k) { return std::get<OnTriangle>(point.keys[k].anchor).barycentric[i]; });
+      sum += parts[i];
+    }
+    // Each stays within its keys, their sum does not.
+    for (double& part : parts) part /= sum;
+    return ScenePlace{place_of(*triangle, parts, moment), false};
+  }
+  std::vector<ScenePlace> places;
+  for (const FocusKey& key : point.keys) {
+    const auto* on = std::get_if<OnTriangle>(&key.anchor);
+    places.push_back(on ? ScenePlace{place_of(*on, on->barycentric, moment), false} : std::get<ScenePlace>(key.anchor));
+    if (!finite(places.back().position)) return {};
+  }
+  if (places.size() == 1) return places[0];
+
+  const double z = lens.front_principal_z();
+  const auto in_front = [&](const ScenePlace& place) {
+    return place.position.z < (place.at_infinity ? 0 : z) && finite(seen(place, z));
+  };
+  const auto at_infinity = [](const ScenePlace& place) { return place.at_infinity; };
+  Vec3<double> at{0, 0, 0};
+  if (std::all_of(places.begin(), places.end(), in_front)) {
+    for (int i = 0; i < 3; ++i) {
+      at[i] = at_time(point, moment.time, [&](std::size_t k) { return seen(places[k], z)[i]; });
+    }
+    const double depth = 1 / at.z;
+    if (!std::isfinite(depth)) return ScenePlace{{at.x, at.y, -1}, true};
+    return ScenePlace{{at.x * depth, at.y * depth, z - depth}, false};
+  }
+  if (std::any_of(places.begin(), places.end(), at_infinity)) return {};
+  for (int i = 0; i < 3; ++i) {
+    at[i] = at_time(point, moment.time, [&](std::size_t k) { return places[k].position[i]; });
+  }
+  return ScenePlace{at, false};
+}
+
+bool within(const FilmFrame& frame, double film_z, const ImagePoint& image) noexcept {
+  const double behind = film_z - image.position.z;
+  const double x = image.position.x + behind * image.slope_x, y = image.position.y + behind * image.slope_y;
+  return std::abs(x - frame.centre_x_mm) <= frame.width_mm / 2 &&
+         std::abs(y - frame.centre_y_mm) <= frame.height_mm / 2;
+}
+
+}  // namespace
+
+std::vector<FocusTarget> focus_targets(const IdealLens& lens, std::span<const FocusPoint> points,
+                                       const FocusMoment& moment) {
+  check(moment);
+  std::vector<FocusTarget> targets;
+  std::vector<double> nearness;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const FocusPoint& point = points[i];
+    check(point, moment.vertices.size(), "focus point " + std::to_string(i) + ": ");
+    if (moment.time < point.from || moment.time > point.until) continue;
+    const auto place = place_at(lens, point, moment);
+    const auto image = place ? lens.image(*place) : std::nullopt;
+    if (!image || (moment.frame && !within(*moment.frame, moment.film_z, *image))) continue;
+    targets.push_back({*place, at_time(point, moment.time, [&](std::size_t k) { return point.keys[k].blur_mm; }),
+                       at_time(point, moment.time, [&](std::size_t k) { return point.keys[k].weight; })});
+    nearness.push_back(seen(*place, lens.front_principal_z()).z);
+  }
+  if (moment.nearer_weighs_more && !targets.empty()) {
+    const double nearest = *std::max_element(nearness.begin(), nearness.end());
+    for (std::size_t i = 0; i < targets.size() && nearest > 0; ++i) targets[i].weight *= nearness[i] / nearest;
+  }
+  return targets;
+}
+
+}  // namespace petzval

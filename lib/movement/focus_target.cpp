@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "petzval/movement/focus_target.hpp"
+
+#include <cmath>
+#include <limits>
+
+namespace petzval {
+
+bool well_formed(const FocusTarget& target) noexcept {
+  const Vec3<double>& p = target.place.position;
+  const bool place = std::isfinite(p.x) && std::isfinite(p.y) && p.z < std::numeric_limits<double>::infinity();
+  return place && std::isfinite(target.blur_mm) && std::isfinite(target.weight) && target.weight >= 0;
+}
+
+std::string_view name(TargetUse use) noexcept {
+  switch (use) {
+    case TargetUse::used: return "used";
+    case TargetUse::no_weight: return "no_weight";
+    case TargetUse::not_finite: return "not_finite";
+    case TargetUse::no_image: return "no_image";
+    case TargetUse::outlier: return "outlier";
+    case TargetUse::no_rays: return "no_rays";
+  }
+  return "unknown";
+}
+
+}  // namespace petzval

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "petzval/movement/point_bundles.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <numbers>
+#include <string>
+
+#include "petzval/core/error.hpp"
+#include "petzval/pupil/entrance_map.hpp"
+#include "petzval/pupil/pupil_map.hpp"
+#include "petzval/trace/batch.hpp"
+#include "signed_diameter.hpp"
+
+namespace petzval {
+namespace {
+
+/// Where to look for a place; nothing where its coordinates say none.
+std::optional<Vec3<double>> seen_at(const ScenePlace& place) noexcept {
+  const auto& [p, at_infinity] = place;
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  constexpr double farthest = 1e50;  // mm: rays from there are parallel to the last bit
+  if (p.z == -infinity && !at_infinity && std::isfinite(p.x) && std::isfinite(p.y)) {
+    return Vec3<double>{0, 0, -farthest};
+  }
+  const double distance = std::hypot(p.x, p.y, p.z);
+  if (!std::isfinite(distance)) return {};
+  if (at_infinity || distance > farthest) {
+    if (!(distance > 0)) return {};
+    return p / distance * farthest;
+  }
+  return p;
+}
+
+}  // namespace
+
+std::optional<BundleBlur> blur_on(const PointBundle& bundle, const FilmPose& film) {
+  const std::size_t count = bundle.x.size();
+  if (count == 0) return {};
+  const Vec3<double> right = film.right(), up = film.up(), normal = film.normal();
+  const double to_film = film.film_z - bundle.plane_z;
+  // A ray meets the film where normal . (p - (0, 0, film_z)) = 0; p from there.
+  const auto rise = [&](std::size_t i) {
+    return normal.x * bundle.slope_x[i] + normal.y * bundle.slope_y[i] + normal.z;
+  };
+  const auto hit = [&](std::size_t i) {
+    const double t = (normal.z * to_film - normal.x * bundle.x[i] - normal.y * bundle.y[i]) / rise(i);
+    return Vec3<double>{bundle.x[i] + t * bundle.slope_x[i], bundle.y[i] + t * bundle.slope_y[i], t - to_film};
+  };
+  const bool ahead = rise(0) > 0;
+  Vec3<double> middle{0, 0, 0};
+  double slope_x = 0, slope_y = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    if ((rise(i) > 0) != ahead || rise(i) == 0) return {};
+    middle += hit(i);
+    slope_x += bundle.slope_x[i], slope_y += bundle.slope_y[i];
+  }
+  const double each = 1 / static_cast<double>(count);
+  middle *= each, slope_x *= each, slope_y *= each;
+  double square = 0, largest = 0, spreads = 0, steepness = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Vec3<double> from = hit(i) - middle;
+    const double radius2 = glm::dot(from, from);
+    square += radius2;
+    largest = std::max(largest, radius2);
+    // Rays that have met already run apart.
+    const double u = bundle.slope_x[i] - slope_x, v = bundle.slope_y[i] - slope_y;
+    spreads += from.x * u + from.y * v;
+    steepness += u * u + v * v;
+  }
+  const double rms = std::sqrt(square * each);
+  if (!std::isfinite(rms)) return {};
+  constexpr double diameter = 2 * std::numbers::sqrt2;  // of the even disc, over its RMS radius
+  const double defocus = steepness > 0 ? spreads * each / std::sqrt(steepness * each) : 0;
+  return BundleBlur{.centroid = {glm::dot(middle, right), glm::dot(middle, up)},
+                    .rms_radius = rms,
+                    .largest_radius = std::sqrt(largest),
+                    .signed_diameter = detail::signed_diameter(diameter * rms, diameter * defocus)};
+}
+
+struct PointBundles::Data {
+  Lens lens;
+  IdealLens ideal;
+  EntranceMap entrances;
+  std::size_t wanted;  // rays of each point
+
+  PointBundle send(const Vec3<double>& point, std::size_t count) const;
+};
+
+PointBundle PointBundles::Data::send(const Vec3<double>& point, std::size_t count) const {
+  // Fibonacci's lattice: with u around the pupil and v outwards the spiral of a sunflower.
+  std::vector<double> u(count), v(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    u[i] = std::fmod(static_cast<double>(i) * std::numbers::phi, 1.0);
+    v[i] = (static_cast<double>(i) + 0.5) / static_cast<double>(count);
+  }
+  const std::size_t wavelength = lens.central_wavelength();
+  std::vector<EntranceSample> samples(count);
+  entrances.sample(point, count, u.data(), v.data(), wavelength, samples.data());
+
+  std::vector<double> memory(6 * count);
+  std::vector<RayFate> fates(count);
+  const auto part = [&](std::size_t k) { return memory.data() + k * count; };
+  const RayArrays<double> rays{part(0), part(1), part(2), part(3), part(4), part(5)};
+  std::size_t sent = 0;
+  for (const auto& [at, along, distance, pdf] : samples) {
+    if (!(pdf > 0)) continue;
+    rays.x[sent] = at.x, rays.y[sent] = at.y, rays.z[sent] = at.z;
+    rays.dx[sent] = along.x, rays.dy[sent] = along.y, rays.dz[sent] = along.z;
+    ++sent;
+  }
+  trace<double>(lens, sent, {rays.x, rays.y, rays.z, rays.dx, rays.dy, rays.dz}, rays, fates.data(), nullptr,
+                {.wavelength = wavelength});
+
+  PointBundle result;
+  result.plane_z = lens.surfaces().back().vertex_z;
+  for (auto* values : {&result.x, &result.y, &result.slope_x, &result.slope_y}) values->reserve(sent);
+  for (std::size_t i = 0; i < sent; ++i) {
+    if (fates[i] != RayFate::transmitted || !(rays.dz[i] > 0)) continue;
+    const double slope_x = rays.dx[i] / rays.dz[i], slope_y = rays.dy[i] / rays.dz[i];
+    const double to_plane = result.plane_z - rays.z[i];
+    result.x.push_back(rays.x[i] + to_plane * slope_x);
+    result.y.push_back(rays.y[i] + to_plane * slope_y);
+    result.slope_x.push_back(slope_x);
+    result.slope_y.push_back(slope_y);
+  }
+  return result;
+}
+
+PointBundles::PointBundles(const Lens& lens, double film_radius, std::size_t rays) {
+  if (rays < 16) throw Error(lens.name() + ": point bundles: " + std::to_string(rays) + " rays, wanted 16 or more");
+  data_ = std::make_shared<const Data>(Data{
+      .lens = lens,
+      .ideal = thick_lens(lens, lens.central_wavelength()),
+      .entrances = traced_entrances(lens, PupilMap::covering(lens, film_radius)),
+      .wanted = rays,
+  });
+}
+
+const Lens& PointBundles::lens() const noexcept { return data_->lens; }
+const IdealLens& PointBundles::ideal() const noexcept { return data_->ideal; }
+
+PointBundle PointBundles::bundle(const ScenePlace& place) const {
+  const std::optional<Vec3<double>> point = seen_at(place);
+  if (!point) {
+    PointBundle none;
+    none.plane_z = data_->lens.surfaces().back().vertex_z;
+    return none;
+  }
+  const std::size_t rays = data_->wanted;
+  PointBundle bundle = data_->send(*point, rays);
+  // Where the lens passes little of what it was sent, as lenses without symmetry of revolution do.
+  const std::size_t kept = bundle.x.size();
+  if (kept == 0 || 2 * kept >= rays) return bundle;
+  return data_->send(*point, std::min(rays * rays / kept, 16 * rays));
+}
+
+}  // namespace petzval

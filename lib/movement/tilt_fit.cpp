@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "petzval/movement/tilt_fit.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <numbers>
+
+#include "petzval/core/error.hpp"
+#include "petzval/core/text.hpp"
+#include "tilt_problem.hpp"
+#include "tilt_rays.hpp"
+#include "weighted_rms.hpp"
+
+namespace petzval {
+namespace {
+
+void check(const TiltOptions& options) {
+  if (!(options.max_tilt_rad >= 0 && options.max_tilt_rad < std::numbers::pi / 2)) {
+    throw Error("fit_tilt: the largest tilt is " + number(options.max_tilt_rad) +
+                " rad, wanted one from 0 to less than a quarter turn");
+  }
+  const auto& [film_z, tilt, swing] = options.start;
+  if (!std::isfinite(film_z) || !std::isfinite(tilt) || !std::isfinite(swing)) {
+    throw Error("fit_tilt: the film stands at " + number(film_z) + " mm, " + number(tilt) + " and " + number(swing) +
+                " rad, wanted finite numbers");
+  }
+  const auto& [width, height, x, y] = options.frame;
+  if (!(width >= 0 && height >= 0) || !std::isfinite(width + height + x + y)) {
+    throw Error("fit_tilt: the frame is " + number(width) + " x " + number(height) + " mm about (" + number(x) + ", " +
+                number(y) + "), wanted finite numbers and no negative size");
+  }
+}
+
+/// Where the line that came to the middle of the picture meets another film.
+std::optional<FilmPoint> carried_centre(const IdealLens& lens, const TiltOptions& options, const FilmPose& film) {
+  const Vec3<double> middle = options.start.at({options.frame.centre_x_mm, options.frame.centre_y_mm});
+  const double pupil_z = lens.pupils.exit.z;
+  Vec3<double> line = middle - Vec3<double>(0, 0, pupil_z);
+  if (!std::isfinite(pupil_z) || (middle.x == 0 && middle.y == 0)) line = {0, 0, 1};
+  const Vec3<double> n = film.normal();
+  const double steps = glm::dot(n, Vec3<double>(0, 0, film.film_z) - middle) / glm::dot(n, line);
+  if (!std::isfinite(steps)) return {};
+  return film.point(middle + steps * line);
+}
+
+/// Whether the frame stands behind the lens, corners included.
+bool clear_of_lens(const IdealLens& lens, const FilmFrame& frame, const FilmPose& film, const FilmPoint& centre) {
+  const double x = frame.width_mm / 2, y = frame.height_mm / 2;
+  return std::min({film.at({centre.x - x, centre.y - y}).z, film.at({centre.x + x, centre.y - y}).z,
+                   film.at({centre.x - x, centre.y + y}).z, film.at({centre.x + x, centre.y + y}).z}) > lens.rear_z;
+}
+
+/// The film that was found, or the one that stays where it stood. blur_of: of a target on a film.
+TiltFit described(const IdealLens& lens, std::span<const FocusTarget> targets, const TiltOptions& options,
+                  std::span<const detail::SeenTarget> seen, const detail::TiltProblem& problem,
+                  const detail::TiltSolution& solution, const auto& blur_of) {
+  TiltFit fit;
+  fit.rank = problem.rank;
+  fit.film = options.start;
+  fit.centre = {options.frame.centre_x_mm, options.frame.centre_y_mm};
+  if (problem.rank == PlaneRank::none) {
+    fit.status = TiltFit::Status::no_targets;
+  } else if (!solution.converged) {
+    fit.status = TiltFit::Status::not_converged;
+  } else {
+    const FilmPose film = problem.frame.pose(solution.film);
+    const std::optional<FilmPoint> centre = carried_centre(lens, options, film);
+    if (!centre || !clear_of_lens(lens, options.frame, film, *centre)) {
+      fit.status = TiltFit::Status::unreachable;
+    } else {
+      fit.status = solution.limited                   ? TiltFit::Status::limited
+                   : problem.rank == PlaneRank::plane ? TiltFit::Status::solved
+                                                      : TiltFit::Status::least_tilt;
+      fit.film = film;
+      fit.centre = *centre;
+    }
+  }
+  fit.focus = focus_plane(lens, fit.film);
+  std::vector<double> errors, weights;
+  for (std::size_t i = 0; i < targets.size(); ++i) {
+    const TargetBlur blur{seen[i].use, targets[i].blur_mm, blur_of(i, fit.film)};
+    fit.blurs.push_back(blur);
+    if (!(seen[i].weight > 0)) continue;
+    errors.push_back(blur.blur_mm - blur.wanted_mm);
+    weights.push_back(targets[i].weight);
+  }
+  fit.rms_mm = detail::weighted_rms(errors, weights);
+  return fit;
+}
+
+/// The problem of the targets that count, outliers taken out.
+detail::TiltProblem sober_problem(const IdealLens& lens, std::span<detail::SeenTarget> seen,
+                                  const TiltOptions& options) {
+  constexpr std::size_t fewest = 5;  // of which one can be told from the others
+  const detail::TiltProblem problem = tilt_problem(lens, seen, options.max_tilt_rad);
+  if (!options.robust || problem.used.size() < fewest) return problem;
+  const std::vector<double> kept = robust_weights(problem, seen);
+  for (std::size_t i = 0; i < kept.size(); ++i) {
+    detail::SeenTarget& target = seen[problem.used[i]];
+    target.weight *= kept[i];
+    if (!(target.weight > 0)) target.use = TargetUse::outlier;
+  }
+  return tilt_problem(lens, seen, options.max_tilt_rad);
+}
+
+detail::TiltSolution solved(const detail::TiltProblem& problem) {
+  if (problem.rank == PlaneRank::none) return {};
+  std::vector<const detail::BlurErrors*> errors;
+  for (const auto& blur : problem.blurs) errors.push_back(&blur);
+  return least_blur(errors, problem.space, {.film = problem.start});
+}
+
+}  // namespace
+
+std::string_view name(TiltFit::Status status) noexcept {
+  switch (status) {
+    case TiltFit::Status::solved: return "solved";
+    case TiltFit::Status::least_tilt: return "least_tilt";
+    case TiltFit::Status::limited: return "limited";
+    case TiltFit::Status::no_targets: return "no_targets";
+    case TiltFit::Status::unreachable: return "unreachable";
+    case TiltFit::Status::not_converged: return "not_converged";
+  }
+  return "unknown";
+}
+
+TiltFit fit_tilt(const IdealLens& lens, std::span<const FocusTarget> targets, const TiltOptions& options) {
+  check(options);
+  std::vector<detail::SeenTarget> seen = detail::seen_targets(lens, targets);
+  const detail::TiltProblem problem = sober_problem(lens, seen, options);
+  return described(lens, targets, options, seen, problem, solved(problem), [&](std::size_t i, const FilmPose& film) {
+    return seen[i].image ? signed_blur(*seen[i].image, film) : std::numeric_limits<double>::quiet_NaN();
+  });
+}
+
+TiltFit fit_tilt(const PointBundles& lens, std::span<const FocusTarget> targets, const TiltOptions& options) {
+  check(options);
+  const IdealLens& ideal = lens.ideal();
+  std::vector<detail::SeenTarget> seen = detail::seen_targets(ideal, targets);
+  std::vector<PointBundle> bundles(targets.size());
+  for (std::size_t i = 0; i < targets.size(); ++i) {
+    if (!seen[i].image) continue;
+    bundles[i] = lens.bundle(targets[i].place);
+    if (bundles[i].empty() && seen[i].weight > 0) {
+      seen[i].use = TargetUse::no_rays;
+      seen[i].weight = 0;
+    }
+  }
+  const detail::TiltProblem problem = sober_problem(ideal, seen, options);
+  const detail::TiltSolution thick = solved(problem);
+  detail::TiltSolution solution = thick;
+  if (thick.converged) {
+    std::vector<detail::RayBlur> blurs;
+    std::vector<const detail::BlurErrors*> errors;
+    blurs.reserve(problem.used.size());
+    for (std::size_t k = 0; k < problem.used.size(); ++k) {
+      const std::size_t i = problem.used[k];
+      const double root = problem.blurs[k].root / seen[i].image->cone;
+      blurs.emplace_back(bundles[i], problem.frame, root, targets[i].blur_mm / problem.frame.unit);
+      errors.push_back(&blurs.back());
+    }
+    solution = least_blur(errors, problem.space, thick);
+  }
+  TiltFit fit = described(ideal, targets, options, seen, problem, solution, [&](std::size_t i, const FilmPose& film) {
+    const std::optional<BundleBlur> blur = blur_on(bundles[i], film);
+    return blur ? blur->signed_diameter : std::numeric_limits<double>::quiet_NaN();
+  });
+  // Aberrations move the film away from where cardinal points have it, by as much for all distances, nearly: what is
+  // in focus is what these put into focus on the film that they find for the same targets.
+  if (fit) fit.focus = focus_plane(ideal, problem.frame.pose(thick.film));
+  return fit;
+}
+
+}  // namespace petzval

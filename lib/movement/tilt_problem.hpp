@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "petzval/movement/disparity_fit.hpp"
+#include "petzval/movement/focus_target.hpp"
+#include "petzval/movement/ideal_lens.hpp"
+#include "petzval/movement/tilt_fit.hpp"
+
+namespace petzval::detail {
+
+/// The film z = z + p x + q y, in the coordinates of a TiltFrame.
+struct FilmSlopes {
+  double z = 0, p = 0, q = 0;
+};
+
+/// Coordinates in which a fit works: focal lengths from the centroid of the images that the film should pass. There a
+/// film's z and its slopes do not depend on each other, and the unit of length is gone.
+struct TiltFrame {
+  Vec3<double> origin{0, 0, 0};
+  double unit = 1;
+
+  FilmPose pose(const FilmSlopes& film) const;
+};
+
+/// The films that a fit chooses from. A slope across the targets' main direction counts where they spread that way.
+struct TiltSpace {
+  int parameters = 1;                                  ///< z; the slope along the main direction; the slope across
+  double along_x = 1, along_y = 0;                     ///< unit main direction of the targets' images
+  double spread_along = 1, spread_across = 1;          ///< RMS, which makes slopes parameters as large as z
+  double largest_slope = 0, largest_slope_across = 0;  ///< half axes of the ellipse of slopes within the limit
+
+  FilmSlopes film(double z, double along, double across) const noexcept {
+    return {z, along * along_x - across * along_y, along * along_y + across * along_x};
+  }
+  double along(const FilmSlopes& film) const noexcept { return film.p * along_x + film.q * along_y; }
+  double across(const FilmSlopes& film) const noexcept { return film.q * along_x - film.p * along_y; }
+};
+
+/// Rows of errors that a target has at most.
+inline constexpr int most_rows = 4;
+
+/// Errors of one target's blur, as they depend on the film.
+class BlurErrors {
+ public:
+  virtual ~BlurErrors() = default;
+  virtual int rows() const noexcept = 0;
+  /// errors: rows; derivatives: rows x 3, by z, p and q; or null. False for a film that light does not cross from the
+  /// front.
+  virtual bool operator()(const FilmSlopes& film, double* errors, double* derivatives) const = 0;
+};
+
+/// Of an ideal lens: root k (z - V) along the chief ray, V the place where the film should cross that.
+class IdealBlur final : public BlurErrors {
+ public:
+  double x = 0, y = 0, z = 0, slope_x = 0, slope_y = 0;  ///< in the frame
+  double root = 1;                                       ///< of weight times squared cone
+  int rows() const noexcept override { return 1; }
+  bool operator()(const FilmSlopes& film, double* errors, double* derivatives) const noexcept override;
+};
+
+/// What a fit may use of a target.
+struct SeenTarget {
+  TargetUse use = TargetUse::used;
+  double weight = 0;  ///< 0 unless used
+  std::optional<ImagePoint> image;
+  Vec3<double> wanted{0, 0, 0};  ///< where the chief ray should meet the film
+  DisparityPoint disparity;      ///< of the place that is imaged there
+};
+std::vector<SeenTarget> seen_targets(const IdealLens& lens, std::span<const FocusTarget> targets);
+
+/// Everything about targets of weight that films are fitted by.
+struct TiltProblem {
+  PlaneRank rank = PlaneRank::none;
+  TiltFrame frame;
+  TiltSpace space;
+  FilmSlopes start;               ///< least squares in disparity
+  std::vector<std::size_t> used;  ///< positions of the targets
+  std::vector<IdealBlur> blurs;   ///< of each of them
+};
+TiltProblem tilt_problem(const IdealLens& lens, std::span<const SeenTarget> targets, double max_tilt);
+
+struct TiltSolution {
+  bool converged = false, limited = false;
+  FilmSlopes film;
+  double restraint = 0;  ///< what the squared slopes of the limit have to cost, for the limit to hold
+};
+/// The film of least squared errors within the limit. One that converged, for nearly the same errors, is a start that
+/// needs a few steps only.
+TiltSolution least_blur(std::span<const BlurErrors* const> errors, const TiltSpace& space, const TiltSolution& start);
+/// The film of least Tukey loss (biweight, errors beyond `reach` have lost their weight) without a limit.
+std::optional<FilmSlopes> least_tukey_loss(std::span<const BlurErrors* const> errors, std::span<const double> weights,
+                                           const TiltSpace& space, const FilmSlopes& start, double reach);
+
+/// How much of its weight each target keeps, 0 to 1, one for each of problem.used.
+std::vector<double> robust_weights(const TiltProblem& problem, std::span<const SeenTarget> targets);
+
+}  // namespace petzval::detail

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+
+#include "petzval/movement/point_bundles.hpp"
+#include "tilt_problem.hpp"
+
+namespace petzval::detail {
+
+/// The blur of a bundle of exact rays: the distances of all hits from their middle, scaled so that their squares sum to
+/// that of the diameter; smooth where that is least, as the diameter itself is not. A bundle that should be blurred is
+/// one that should be sharp on a film so much nearer to the lens that defocus makes the blur: the diameter's square is
+/// the sum of that of defocus and of what aberrations leave on the sharpest film.
+class RayBlur final : public BlurErrors {
+ public:
+  /// wanted: signed diameter, in units of the frame.
+  RayBlur(const PointBundle& bundle, const TiltFrame& frame, double root, double wanted);
+  int rows() const noexcept override { return 4; }
+  bool operator()(const FilmSlopes& film, double* errors, double* derivatives) const override;
+
+ private:
+  Eigen::ArrayXd x_, y_, slope_x_, slope_y_;  // where rays cross z = 0 of the frame
+  double root_, defocus_ = 0;                 // the part of the wanted diameter that defocus has to make
+};
+
+}  // namespace petzval::detail

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+// What it costs to tilt a film to 24 focus points, one thread: the fit to an ideal lens, thin and thick, robust and
+// not, within the limit of tilt and on it; by exact rays, the bundles included; and the whole loop of a host that
+// follows a mouse: points over time, keyframes and mesh to a film pose.
+#include <benchmark/benchmark.h>
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "petzval/core/units.hpp"
+#include "petzval/io/prescription_json.hpp"
+#include "petzval/movement/focus_point.hpp"
+#include "petzval/movement/tilt_fit.hpp"
+#include "table.hpp"
+
+namespace {
+
+using namespace petzval;
+
+constexpr std::size_t point_count = 24;
+constexpr double film_radius = 21.7;
+
+/// Points about a plane that leans, over the frame, 1 to 4 m away; every fourth is elsewhere.
+std::vector<Vec3<double>> scene(const IdealLens& lens, unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  std::vector<Vec3<double>> points;
+  for (std::size_t i = 0; i < point_count; ++i) {
+    const double x = 15 / lens.rear_focal_length * unit(random), y = 10 / lens.rear_focal_length * unit(random);
+    const double disparity = 6e-4 + 3e-4 * lens.rear_focal_length / 10 * y;
+    const double depth = (i % 4 == 3 ? 1.5 + 0.2 * unit(random) : 1 + 0.003 * unit(random)) / disparity;
+    points.push_back({x * depth, y * depth, lens.front_principal_z() - depth});
+  }
+  return points;
+}
+
+/// Several draws, so that no branch is learned by heart.
+constexpr unsigned draws = 8;
+
+template <class Lens>
+void fit(benchmark::State& state, const Lens& lens, const IdealLens& ideal, bool robust, double max_tilt) {
+  TiltOptions options{.max_tilt_rad = max_tilt, .robust = robust};
+  options.start.film_z = ideal.rear_focal_z;
+  std::array<std::vector<FocusTarget>, draws> targets;
+  for (unsigned i = 0; i < draws; ++i) {
+    for (const auto& p : scene(ideal, i)) targets[i].push_back({.place = {p}});
+    if (!fit_tilt(lens, targets[i], options)) throw Error("movement_bench: draw " + std::to_string(i) + " has no film");
+  }
+  unsigned i = 0;
+  for (auto _ : state) benchmark::DoNotOptimize(fit_tilt(lens, targets[i++ % draws], options).film.film_z);
+  state.SetItemsProcessed(state.iterations());
+}
+
+/// Focus points on triangles of a mesh, with keys, whose time goes on.
+template <class Lens>
+void loop(benchmark::State& state, const Lens& lens, const IdealLens& ideal) {
+  const std::vector<Vec3<double>> first = scene(ideal, 0), last = scene(ideal, 1);
+  std::vector<FocusPoint> points;
+  for (std::size_t i = 0; i < point_count; ++i) {
+    const OnTriangle on{.vertices = {i, (i + 1) % point_count, (i + 2) % point_count}, .barycentric = {1, 0, 0}};
+    points.push_back({.keys = {{.time = 0, .anchor = on}, {.time = 1, .anchor = on, .weight = 2}}});
+  }
+  TiltOptions options{.robust = true};
+  options.start.film_z = ideal.rear_focal_z;
+  std::vector<Vec3<double>> vertices(point_count);
+  double time = 0;
+  for (auto _ : state) {
+    time = std::fmod(time + 0.0137, 1.0);
+    for (std::size_t i = 0; i < point_count; ++i) vertices[i] = first[i] + time * (last[i] - first[i]);
+    const FocusMoment moment{.time = time, .vertices = vertices, .frame = FilmFrame{}, .film_z = options.start.film_z};
+    const std::vector<FocusTarget> targets = focus_targets(ideal, points, moment);
+    benchmark::DoNotOptimize(fit_tilt(lens, targets, options).film.film_z);
+  }
+  state.SetItemsProcessed(state.iterations());
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  initialize(argc, argv);
+  const Lens gauss =
+      compile(read_prescription(std::string(PETZVAL_BENCH_DATA) + "/lenses/double_gauss_52mm_f1.8.json"));
+  const IdealLens thin = thin_lens(50, 2), thick = thick_lens(gauss);
+  const PointBundles bundles(gauss, film_radius);
+  const double limit = radians(20);
+  const auto add = [](const char* name, auto&&... work) { benchmark::RegisterBenchmark(name, work...); };
+  add("thin", fit<IdealLens>, thin, thin, false, limit);
+  add("thin, robust", fit<IdealLens>, thin, thin, true, limit);
+  add("thick", fit<IdealLens>, thick, thick, false, limit);
+  add("thick, robust", fit<IdealLens>, thick, thick, true, limit);
+  add("thick, robust, at the limit", fit<IdealLens>, thick, thick, true, radians(0.5));
+  add("exact rays", fit<PointBundles>, bundles, thick, false, limit);
+  add("exact rays, robust", fit<PointBundles>, bundles, thick, true, limit);
+  add("exact rays, at the limit", fit<PointBundles>, bundles, thick, false, radians(0.5));
+  add("loop, thick, robust", loop<IdealLens>, thick, thick);
+  add("loop, exact rays, robust", loop<PointBundles>, bundles, thick);
+  Rounds rounds;
+  benchmark::RunSpecifiedBenchmarks(&rounds);
+  std::printf("%-34s %9s\n", "film through 24 points (minima)", "us");
+  for (const auto& line : rounds.lines()) std::printf("%-34s %9.1f\n", line.name.c_str(), 1e6 * line.min());
+  return 0;
+}

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <random>
+#include <vector>
+
+#include "petzval/core/units.hpp"
+#include "petzval/movement/tilt_fit.hpp"
+
+namespace petzval::testing {
+
+/// A thin lens of 50 mm, f/2.
+inline IdealLens normal_lens() { return thin_lens(50, 2); }
+
+/// The film at infinity focus; so much tilt.
+inline TiltOptions behind(const IdealLens& lens, double max_tilt_deg = 20) {
+  TiltOptions options{.max_tilt_rad = radians(max_tilt_deg)};
+  options.start.film_z = lens.rear_focal_z;
+  return options;
+}
+
+inline FocusTarget target(double x, double y, double z, double weight = 1, double blur = 0) {
+  return {.place = {{x, y, z}}, .blur_mm = blur, .weight = weight};
+}
+
+/// Angle between planes, radians; exact where it is small.
+inline double angle(const Vec3<double>& a, const Vec3<double>& b) {
+  return std::asin(std::min(1.0, glm::length(glm::cross(a, b))));
+}
+
+/// The plane of points whose disparity is a x + b y + c.
+struct Scene {
+  double a, b, c;
+  IdealLens lens;
+
+  Vec3<double> at(double x, double y) const {
+    return Vec3<double>(x, y, -1) / (a * x + b * y + c) + Vec3<double>(0, 0, lens.front_principal_z());
+  }
+  Plane plane() const {
+    return plane_of({.rank = PlaneRank::plane, .a = a, .b = b, .c = c}, lens.front_principal_z()).value();
+  }
+  /// Spread over the picture.
+  std::vector<FocusTarget> targets(int count, double half_x, double half_y, unsigned seed = 1) const {
+    std::mt19937_64 random(seed);
+    std::uniform_real_distribution<double> unit(-1, 1);
+    std::vector<FocusTarget> list;
+    for (int i = 0; i < count; ++i) {
+      const double x = half_x * unit(random), y = half_y * unit(random);
+      list.push_back({.place = {at(x, y)}});
+    }
+    return list;
+  }
+};
+
+/// Targets that no film meets, with weights; a third of them should be blurred.
+inline std::vector<FocusTarget> inexact_targets(int count, unsigned seed) {
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  std::vector<FocusTarget> targets;
+  for (int i = 0; i < count; ++i) {
+    const double depth = 2500 + 1500 * unit(random), x = 0.36 * unit(random), y = 0.24 * unit(random);
+    const double weight = 1.5 + unit(random), blur = i % 3 == 0 ? 0.05 * unit(random) : 0;
+    targets.push_back(target(x * depth, y * depth, -depth, weight, blur));
+  }
+  return targets;
+}
+
+/// How far a film is from the least cost nearby: the largest foot of the parabolas through costs 1e-4 to either side,
+/// in its position (in units of `unit`) and its angles.
+double off_least(const auto& cost, const FilmPose& film, double unit) {
+  constexpr double h = 1e-4;
+  const double here = cost(film);
+  const auto foot = [&](const FilmPose& step) {
+    const auto moved = [&](double by) {
+      return cost(FilmPose{film.film_z + by * step.film_z, film.tilt_rad + by * step.tilt_rad,
+                           film.swing_rad + by * step.swing_rad});
+    };
+    const double before = moved(-h), behind = moved(h);
+    return std::abs(h / 2 * (behind - before) / (behind + before - 2 * here));
+  };
+  return std::max({foot({.film_z = unit}), foot({.tilt_rad = 1}), foot({.swing_rad = 1})});
+}
+
+}  // namespace petzval::testing
