@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
 # Renders the gallery with programs that are built: bokeh after figure 7 of Wu et al. 2010, spot diagrams, reports of
-# twelve lenses, camera rays, and index.html.
+# twelve lenses, camera rays, tilted films, a focus pull, and index.html.
 #
 #   sh examples/gallery.sh PROGRAMS OUT        (examples/run.sh calls it with build/examples and out)
 set -eu
@@ -15,20 +15,20 @@ here=$(CDPATH= cd -- "$(dirname -- "$0")" && pwd)
 lenses=$here/../data/lenses
 mkdir -p "$out"
 
-echo "== Figure 7 of Wu et al. 2010 (1/7)"
+echo "== Figure 7 of Wu et al. 2010 (1/8)"
 "$programs/wu_figure7" --criterion min_rms --out "$out/wu_figure7.png"
 "$programs/wu_figure7" --criterion paraxial --out "$out/wu_figure7_paraxial.png"
 
-echo "== What the paper says about it, by number (2/7)"
+echo "== What the paper says about it, by number (2/8)"
 "$programs/wu_statements" --html "$out/wu_statements.html" > "$out/wu_statements.txt"
 echo "$out/wu_statements.txt"
 
-echo "== Bokeh off axis, in colour (3/7)"
+echo "== Bokeh off axis, in colour (3/8)"
 "$programs/bokeh_psf" "$lenses/double_gauss_100mm_f1.35.json" --subject-distance-mm 1000 \
   --focus-mm 800,900,1000,1100,1200 --field-deg 8 --wavelengths-nm "$(seq -s , 430 10 670)" --samples 262144 \
   --out "$out/bokeh"
 
-echo "== Spot diagrams of five lenses (4/7)"
+echo "== Spot diagrams of five lenses (4/8)"
 # spots LENS FIELDS WAVELENGTHS
 spots() {
   "$programs/spot_diagram" "$lenses/$1.json" --field-deg "$2" --wavelengths-nm "$3" --out "$out/spots"
@@ -40,14 +40,14 @@ spots cooke_triplet_50mm_f5 0,14,20 $f_d_c
 spots petzval_portrait_100mm_f3.4 0,7,12 $f_d_c
 spots fisheye_10mm_f4 0,40,70 587.5618
 
-echo "== Reports of twelve lenses (5/7)"
+echo "== Reports of twelve lenses (5/8)"
 for lens in petzval_portrait_100mm_f3.4 cooke_triplet_50mm_f5 planar_1896_f4.5 tessar_100mm_f5.5_1902 \
   sonnar_180mm_f2.8 biogon_35mm_f2.8 telephoto_250mm_f5.6 retrofocus_100mm_f2 \
   catadioptric_mangin_1000mm_f7.5 anamorphic_60mm_2x modern_58mm_f0.95 fisheye_6.3mm_f2.8; do
   "$programs/lens_report" "$lenses/$lens.json" --out "$out/lenses"
 done
 
-echo "== Rays of a camera, by every model of its lens (6/7)"
+echo "== Rays of a camera, by every model of its lens (6/8)"
 mkdir -p "$out/camera_rays"
 awk 'BEGIN {
   print "film_x_mm,film_y_mm,pupil_u,pupil_v,wavelength_nm"
@@ -60,13 +60,33 @@ for model in pinhole thin thin_two_disc thick polynomial_3 polynomial_5 polynomi
 done
 echo "$out/camera_rays"
 
-echo "== What accuracy costs, and the model that a scene allows (7/7)"
+echo "== What accuracy costs, and the model that a scene allows (7/8)"
 "$programs/accuracy_speed" "$lenses/double_gauss_100mm_f2_28deg.json" --f-number 2 --out "$out/models" \
   > "$out/accuracy_speed.txt"
 "$programs/choose_camera" "$lenses/double_gauss_100mm_f2_28deg.json" --f-number 2 --near-mm 2000 --far-mm inf \
   --budget-px 0.5 > "$out/choose_camera.txt"
 echo "$out/accuracy_speed.txt"
 echo "$out/choose_camera.txt"
+
+echo "== Films that are tilted through points, and a focus pull (8/8)"
+# tilted FOLDER SCENE OPTION...
+tilted() {
+  folder=$out/tilt/$1
+  scene=$here/scenes/$2.json
+  shift 2
+  mkdir -p "$folder"
+  "$programs/tilt_shift" "$lenses/double_gauss_100mm_f2_28deg.json" --f-number 4 --points "$scene" "$@" --out "$folder" \
+    > "$folder/tilt_shift.txt"
+  echo "$folder"
+}
+tilted table table
+tilted facade facade
+tilted outlier facade_outlier
+tilted robust facade_outlier --robust
+mkdir -p "$out/focus_pull"
+"$programs/focus_pull" "$lenses/double_gauss_100mm_f2_28deg.json" --f-number 2 --keys "$here/scenes/rack.json" \
+  --out "$out/focus_pull" > "$out/focus_pull/focus_pull.txt"
+echo "$out/focus_pull"
 
 sed -e "/@statements@/r $out/wu_statements.html" -e "/@statements@/d" "$here/gallery.html" > "$out/index.html"
 echo "== Done: open $out/index.html"

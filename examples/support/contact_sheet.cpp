@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "canvas.hpp"
 #include "font.hpp"
 #include "petzval/core/text.hpp"
 
@@ -14,24 +15,6 @@ constexpr Colour paper{14, 15, 18}, ink{236, 237, 240}, faint{150, 154, 162};
 constexpr int margin = 36, gap = 10, line = 21;
 constexpr int title_size = 26, row_title_size = 20, caption_size = 15;
 constexpr int title_height = 44, row_title_height = 64;
-
-void fill(petzval::Rgb8Image& picture, int x0, int y0, int width, int height, const Colour& colour) {
-  for (int y = y0; y < y0 + height; ++y) {
-    for (int x = x0; x < x0 + width; ++x) {
-      const auto pixel =
-          (static_cast<std::size_t>(y) * static_cast<std::size_t>(picture.width) + static_cast<std::size_t>(x)) * 3;
-      std::copy(colour.begin(), colour.end(), picture.pixels.begin() + static_cast<std::ptrdiff_t>(pixel));
-    }
-  }
-}
-
-void place(petzval::Rgb8Image& picture, int x, int y, const petzval::Rgb8Image& tile) {
-  for (int row = 0; row < tile.height; ++row) {
-    const auto from = static_cast<std::ptrdiff_t>(row) * tile.width * 3;
-    const auto to = (static_cast<std::ptrdiff_t>(y + row) * picture.width + x) * 3;
-    std::copy_n(tile.pixels.begin() + from, tile.width * 3, picture.pixels.begin() + to);
-  }
-}
 
 /// The longest of 1, 2, 5 x 10^k mm that is no longer than the limit.
 double round_length(double limit) {
@@ -65,10 +48,7 @@ petzval::Rgb8Image draw_sheet(const Sheet& sheet) {
   }
   height += static_cast<int>(sheet.notes.size()) * line;
 
-  petzval::Rgb8Image picture{width, height, {}};
-  picture.pixels.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 3);
-  fill(picture, 0, 0, width, height, paper);
-
+  petzval::Rgb8Image picture = blank(width, height, paper);
   int y = margin;
   font.draw(picture, margin, y + title_size, title_size, sheet.title, ink);
   y += title_height;

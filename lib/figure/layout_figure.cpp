@@ -38,13 +38,6 @@ struct Box {
   }
 };
 
-/// From pale to deep as the index goes from 1.4 to 1.95.
-std::string tint(double index) {
-  const double t = std::clamp((index - 1.4) / 0.55, 0.0, 1.0);
-  const auto mixed = [t](double pale, double deep) { return std::to_string(std::lround(pale + t * (deep - pale))); };
-  return "rgb(" + mixed(232, 152) + "," + mixed(243, 190) + "," + mixed(251, 224) + ")";
-}
-
 class Figure {
  public:
   Figure(const Lens& lens, double subject_z, std::span<const double> fields_rad, const LayoutOptions& options)
@@ -195,12 +188,12 @@ class Figure {
       const double rim = outline.back().height;
       outline.push_back({lens_.film_z(), rim});
       outline.push_back({lens_.film_z(), -rim});
-      svg.path(path_of(outline, true), "fill=\"" + tint(image_index) + "\"" + line);
+      svg.path(path_of(outline, true), "fill=\"" + detail::glass_colour(image_index) + "\"" + line);
     }
     for (const detail::GlassBody& body : section_.bodies()) {
       std::string d;
       for (const SectionLine& outline : body.outlines) d += path_of(outline, true);
-      svg.path(d, "fill=\"" + tint(body.index) + "\"" + line);
+      svg.path(d, "fill=\"" + detail::glass_colour(body.index) + "\"" + line);
     }
   }
 

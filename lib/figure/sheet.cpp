@@ -47,6 +47,12 @@ std::string_view field_colour(std::size_t field) {
   return palette[field % palette.size()];
 }
 
+std::string glass_colour(double index) {
+  const double t = std::clamp((index - 1.4) / 0.55, 0.0, 1.0);
+  const auto mixed = [t](double pale, double deep) { return std::to_string(std::lround(pale + t * (deep - pale))); };
+  return "rgb(" + mixed(232, 152) + "," + mixed(243, 190) + "," + mixed(251, 224) + ")";
+}
+
 void draw_head(Svg& svg, const Lens& lens, std::string_view kind, double subject_z, std::size_t wavelength) {
   svg.text(sheet_margin, 26, lens.name(), "font-size=\"17\" font-weight=\"bold\"");
   const double f_number = has_pupils(lens) ? real_f_number(lens, wavelength) : 0;

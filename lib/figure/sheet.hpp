@@ -27,6 +27,9 @@ std::string field_text(double field_rad);
 /// Colour of a field, by its place in the list; the same in every figure of a lens.
 std::string_view field_colour(std::size_t field);
 
+/// Of glass in a section: from pale to deep as the index goes from 1.4 to 1.95.
+std::string glass_colour(double index);
+
 /// Name of the lens, and a line that begins with the kind of figure and tells focal length, f-number, subject, film
 /// and wavelength. Takes the top 56 px.
 void draw_head(Svg& svg, const Lens& lens, std::string_view kind, double subject_z, std::size_t wavelength);

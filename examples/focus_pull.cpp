@@ -1,0 +1,269 @@
+// SPDX-License-Identifier: Apache-2.0
+// Focus over time: points with keyframes become a film position for every frame, as a table and a plot.
+//
+//   focus_pull data/lenses/double_gauss_100mm_f2_28deg.json --keys examples/scenes/rack.json --out out
+//   focus_pull --model thin --thin-focal-length-mm 50 --f-number 2 --keys keys.json --json --out out
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+#include <limits>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "petzval/core/error.hpp"
+#include "petzval/core/text.hpp"
+#include "petzval/core/units.hpp"
+#include "petzval/figure/focus_pull_figure.hpp"
+#include "petzval/focus/depth_of_field.hpp"
+#include "petzval/focus/focus.hpp"
+#include "petzval/movement/autofocus.hpp"
+#include "petzval/movement/focus_point.hpp"
+#include "petzval/movement/tilt_fit.hpp"
+#include "support/cli.hpp"
+#include "support/files.hpp"
+#include "support/focus_json.hpp"
+#include "support/movement_setup.hpp"
+
+namespace {
+
+using examples::finite_or_null;
+using examples::Json;
+using petzval::number;
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double none = std::numeric_limits<double>::quiet_NaN();
+constexpr std::size_t most_frames = 100000;
+
+struct Options : examples::MovementOptions {
+  std::string keys_file, out_folder, criterion = "min_rms";
+  double frames_per_s = 24;
+  bool tilt = false, json = false;
+};
+
+struct Frame {
+  double time = 0;
+  petzval::FilmPose film = {};
+  double distance_mm = infinity, rms_um = none, breathing = none;
+  std::size_t targets = 0;
+  std::string status = {};
+};
+
+struct Times {
+  double from = infinity, to = -infinity;
+};
+
+/// From where the first point begins to count to where the last ceases to: its interval's ends, else its keys'.
+Times span_of(const std::vector<petzval::FocusPoint>& points) {
+  Times times;
+  for (const petzval::FocusPoint& p : points) {
+    const bool begins = std::isfinite(p.from), ends = std::isfinite(p.until);
+    const double from = begins ? p.from : std::min(p.keys.front().time, p.until);
+    times.from = std::min(times.from, from);
+    times.to = std::max(times.to, ends ? p.until : std::max(p.keys.back().time, from));
+  }
+  return times;
+}
+
+class Pull {
+ public:
+  Pull(const Options& options, const examples::MovingLens& lens, const std::vector<petzval::FocusPoint>& points)
+      : options_(options), lens_(lens), points_(points), film_{.film_z = lens.ideal.rear_focal_z} {
+    if (!lens.exact) return;
+    std::vector<petzval::ScenePlace> places;
+    for (const auto& point : points) {
+      for (const auto& key : point.keys) places.push_back(std::get<petzval::ScenePlace>(key.anchor));
+    }
+    bundles_ = lens.bundles(places, 256);
+  }
+
+  Frame at(double time) {
+    petzval::FocusMoment moment;
+    moment.time = time;
+    moment.film_z = film_.film_z;
+    if (options_.film_given) moment.frame = lens_.frame;
+    const auto targets = petzval::focus_targets(lens_.ideal, points_, moment);
+    Frame frame{.time = time, .targets = targets.size()};
+    options_.tilt ? tilt(targets, frame) : focus(targets, frame);
+    frame.film = film_;
+    frame.distance_mm = distance();
+    frame.breathing = breathing();
+    return frame;
+  }
+
+ private:
+  petzval::FocusCriterion criterion() const { return examples::named(options_.criterion, examples::focus_criteria); }
+
+  void focus(const std::vector<petzval::FocusTarget>& targets, Frame& frame) {
+    const auto found = bundles_ ? petzval::autofocus(*bundles_, targets, criterion())
+                                : petzval::autofocus(lens_.ideal, targets, film_.film_z);
+    frame.status = petzval::name(found.status);
+    if (!found) return;
+    film_ = {.film_z = found.film_z};
+    frame.rms_um = 1e3 * found.rms_mm;
+  }
+
+  void tilt(const std::vector<petzval::FocusTarget>& targets, Frame& frame) {
+    petzval::TiltOptions start{.start = film_};
+    if (options_.film_given) start.frame = lens_.frame;
+    const auto found =
+        bundles_ ? petzval::fit_tilt(*bundles_, targets, start) : petzval::fit_tilt(lens_.ideal, targets, start);
+    frame.status = petzval::name(found.status);
+    if (!found) return;
+    film_ = found.film;
+    frame.rms_um = 1e3 * found.rms_mm;
+  }
+
+  /// In focus on the axis, from the film: by rays for the real model. Infinite for a film that has nothing in focus.
+  double distance() const {
+    if (lens_.exact) {
+      const petzval::FocusOptions focus{.criterion = criterion(), .origin = petzval::DistanceOrigin::film};
+      return petzval::solve_subject(*lens_.lens, film_.film_z, focus).distance;
+    }
+    const petzval::ScenePlace place = lens_.ideal.scene_of({0, 0, film_.film_z});
+    const bool real = !place.at_infinity && place.position.z < lens_.ideal.front_focal_z;
+    return real ? film_.film_z - place.position.z : infinity;
+  }
+
+  /// By the chief ray through the exit pupil, against a film on which infinity is in focus.
+  double breathing() const {
+    if (lens_.exact) {
+      return petzval::breathing(*lens_.lens, film_.film_z, {.criterion = criterion()}).value_or(none);
+    }
+    return lens_.ideal.growth(film_.film_z, lens_.ideal.rear_focal_z);
+  }
+
+  const Options& options_;
+  const examples::MovingLens& lens_;
+  const std::vector<petzval::FocusPoint>& points_;
+  std::optional<petzval::PointBundles> bundles_;
+  petzval::FilmPose film_;  // of the frame before
+};
+
+std::vector<Frame> frames(const Options& options, const examples::MovingLens& lens,
+                          const std::vector<petzval::FocusPoint>& points) {
+  const Times times = span_of(points);
+  const double count = std::floor((times.to - times.from) * options.frames_per_s + 1e-6) + 1;
+  if (!(count <= most_frames)) {
+    throw petzval::Error(options.keys_file + ": found " + number(count) + " frames from " + number(times.from) +
+                         " s to " + number(times.to) + " s, wanted at most " + std::to_string(most_frames));
+  }
+  Pull pull(options, lens, points);
+  std::vector<Frame> result;
+  for (double k = 0; k < count; ++k) result.push_back(pull.at(times.from + k / options.frames_per_s));
+  if (std::ranges::none_of(result, [](const Frame& f) { return std::isfinite(f.rms_um); })) {
+    throw petzval::Error(options.keys_file + ": found no point to focus on in any frame (the first is " +
+                         result.front().status + "), wanted one in front of the lens");
+  }
+  return result;
+}
+
+std::string to_csv(const std::vector<Frame>& all) {
+  const auto cell = [](double value) { return std::isnan(value) ? std::string() : number(value); };
+  std::string csv = "time_s,film_z_mm,subject_distance_mm,tilt_deg,swing_deg,rms_blur_um,breathing,targets,status\n";
+  for (const Frame& f : all) {
+    csv += number(f.time) + "," + number(f.film.film_z) + "," + number(f.distance_mm) + "," +
+           number(petzval::degrees(f.film.tilt_rad)) + "," + number(petzval::degrees(f.film.swing_rad)) + "," +
+           cell(f.rms_um) + "," + cell(f.breathing) + "," + std::to_string(f.targets) + "," + f.status + "\n";
+  }
+  return csv;
+}
+
+Json to_json(const std::vector<Frame>& all) {
+  Json rows = Json::array();
+  for (const Frame& f : all) {
+    rows.push_back({{"time_s", f.time},
+                    {"film_z_mm", f.film.film_z},
+                    {"subject_distance_mm", finite_or_null(f.distance_mm)},
+                    {"tilt_deg", petzval::degrees(f.film.tilt_rad)},
+                    {"swing_deg", petzval::degrees(f.film.swing_rad)},
+                    {"rms_blur_um", finite_or_null(f.rms_um)},
+                    {"breathing", finite_or_null(f.breathing)},
+                    {"targets", f.targets},
+                    {"status", f.status}});
+  }
+  return rows;
+}
+
+std::string plot(const Options& options, const examples::MovingLens& lens,
+                 const std::vector<petzval::FocusPoint>& points, const std::vector<Frame>& all) {
+  std::vector<petzval::FocusPullFrame> shown;
+  for (const Frame& f : all) {
+    shown.push_back({f.time, f.film.film_z, f.distance_mm, f.film.tilt_rad, f.film.swing_rad, f.rms_um / 1e3});
+  }
+  std::set<double> keys;
+  for (const auto& point : points) {
+    for (const auto& key : point.keys) keys.insert(key.time);
+  }
+  const std::string remark = lens.conditions + ", " + std::to_string(points.size()) +
+                             (points.size() == 1 ? " focus point, " : " focus points, ") +
+                             number(options.frames_per_s) + " frames a second";
+  return petzval::focus_pull_figure(lens.title, remark, shown, std::vector<double>(keys.begin(), keys.end()));
+}
+
+/// A frame a second, and the last.
+std::string to_text(const std::vector<Frame>& all, double frames_per_s) {
+  const auto cell = [](double value, int digits) {
+    const std::string text = std::isnan(value) ? "-" : number(value, digits);
+    return std::string(text.size() < 12 ? 12 - text.size() : 1, ' ') + text;
+  };
+  std::string text = "    time, s  film z, mm in focus, mm    tilt, deg   swing, deg  RMS, um   breathing  status\n";
+  const auto step = static_cast<std::size_t>(std::max(1.0, std::round(frames_per_s)));
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (i % step != 0 && i + 1 != all.size()) continue;
+    const Frame& f = all[i];
+    text += cell(f.time, 5) + cell(f.film.film_z, 7) + cell(f.distance_mm, 6) +
+            cell(petzval::degrees(f.film.tilt_rad) + 0.0, 4) + cell(petzval::degrees(f.film.swing_rad) + 0.0, 4) +
+            cell(f.rms_um, 4) + cell(f.breathing, 3) + "  " + f.status + "\n";
+  }
+  return text;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options options;
+  CLI::App app(
+      "Moves the film for points of the scene that have keyframes, frame by frame.\n"
+      "keys.json: [{\"from_s\": 0, \"until_s\": 10, \"keys\": [{\"time_s\": 0, \"position_mm\": [x, y, z], \"weight\": "
+      "1, \"blur_mm\": 0, \"at_infinity\": false}, ...]}, ...] in the lens frame, the scene at negative z; a point "
+      "counts within its interval.\n"
+      "Where a frame has no point to serve (no_targets), none within reach (unreachable) or no film was found "
+      "(not_converged), the film stays as it was; it begins at infinity. subject_distance_mm: in focus on the axis, "
+      "from the film.\n"
+      "Writes NAME_focus_pull.csv and NAME_focus_pull.svg into DIR.",
+      "focus_pull");
+  examples::add_movement_options(app, options);
+  app.add_option("--keys", options.keys_file, "the points and their keys")->type_name("FILE")->required();
+  app.add_option("--out", options.out_folder, "folder for table and plot")->type_name("DIR")->required();
+  app.add_option("--criterion", options.criterion, "what the real model makes least without --tilt: min_rms, min_max")
+      ->check(CLI::IsMember({"min_rms", "min_max"}))
+      ->capture_default_str();
+  examples::add_number(app, "--frames-per-s", options.frames_per_s, examples::positive_number, "frames a second");
+  app.add_flag("--tilt", options.tilt, "tilt and swing the film too");
+  app.add_flag("--json", options.json, "print one JSON object instead of text");
+
+  return examples::run(app, argc, argv, [&] {
+    const examples::MovingLens lens = examples::moving_lens(options);
+    const auto points = examples::read_focus_points(options.keys_file);
+    const std::vector<Frame> all = frames(options, lens, points);
+    const std::string svg = plot(options, lens, points, all);
+    const std::filesystem::path folder = options.out_folder;
+    examples::make_folder(folder);
+    const std::string csv_file = (folder / (lens.id + "_focus_pull.csv")).string(),
+                      svg_file = (folder / (lens.id + "_focus_pull.svg")).string();
+    examples::write_text(csv_file, to_csv(all));
+    examples::write_text(svg_file, svg);
+    if (options.json) {
+      const Json json{
+          {"lens", lens.title}, {"model", options.model}, {"frames", to_json(all)}, {"files", {csv_file, svg_file}}};
+      std::cout << json.dump(1) << '\n';
+      return;
+    }
+    std::cout << lens.title << ", " << lens.conditions << "\n\n"
+              << to_text(all, options.frames_per_s) << '\n'
+              << csv_file << '\n'
+              << svg_file << '\n';
+  });
+}

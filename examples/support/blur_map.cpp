@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "blur_map.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "petzval/core/parallel.hpp"
+
+namespace examples {
+namespace {
+
+constexpr double none = std::numeric_limits<double>::quiet_NaN();
+
+std::size_t at(int x, int y, int width) {
+  return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+}
+
+double ideal_blur(const Picture& picture, const PointScene& scene, const petzval::IdealLens& lens, double x, double y) {
+  const auto place = scene.at(picture.film, picture.film_point(x, y));
+  const auto image = place ? lens.image(*place) : std::nullopt;
+  return image ? petzval::signed_blur(*image, picture.film) : none;
+}
+
+/// The rays that meet the film about a place of the picture come from nearly where the ideal lens says. beside: how far
+/// from the place to aim for that, as found for the neighbour, and then for this one; it changes slowly.
+double exact_blur(const Picture& picture, const PointScene& scene, const petzval::PointBundles& lens, double x,
+                  double y, petzval::FilmPoint& beside) {
+  const petzval::FilmPoint wanted = picture.film_point(x, y);
+  double result = none;
+  for (int step = 0; step < 2; ++step) {
+    const auto place = scene.at(picture.film, {wanted.x + beside.x, wanted.y + beside.y});
+    const auto blur = place ? petzval::blur_on(lens.bundle(*place), picture.film) : std::nullopt;
+    if (!blur) return result;
+    result = blur->signed_diameter;
+    beside.x += wanted.x - blur->centroid.x;
+    beside.y += wanted.y - blur->centroid.y;
+  }
+  return result;
+}
+
+/// Between the nodes of a grid. The size of a blur is interpolated without its sign: a real lens's is not 0 where that
+/// changes.
+double between(const std::vector<double>& nodes, int columns, double x, double y) {
+  const int i = static_cast<int>(x), j = static_cast<int>(y);
+  const double u = x - i, v = y - j;
+  const double values[]{nodes[at(i, j, columns)], nodes[at(i + 1, j, columns)], nodes[at(i, j + 1, columns)],
+                        nodes[at(i + 1, j + 1, columns)]};
+  const double weights[]{(1 - u) * (1 - v), u * (1 - v), (1 - u) * v, u * v};
+  double sum = 0, size = 0;
+  for (int k = 0; k < 4; ++k) {
+    sum += weights[k] * values[k];
+    size += weights[k] * std::abs(values[k]);
+  }
+  return std::copysign(size, sum) + (std::isnan(sum) ? none : 0);
+}
+
+}  // namespace
+
+double Picture::pixel_mm() const { return std::max(frame.width_mm, frame.height_mm) / pixels; }
+int Picture::width() const { return std::max(1, static_cast<int>(std::lround(frame.width_mm / pixel_mm()))); }
+int Picture::height() const { return std::max(1, static_cast<int>(std::lround(frame.height_mm / pixel_mm()))); }
+
+// The image on the film is upside down: what lies to the right and above in the scene is at negative x and y.
+petzval::FilmPoint Picture::film_point(double x, double y) const {
+  return {frame.centre_x_mm - (x - width() / 2.0) * pixel_mm(), frame.centre_y_mm + (y - height() / 2.0) * pixel_mm()};
+}
+
+std::pair<double, double> Picture::pixel(const petzval::FilmPoint& point) const {
+  return {width() / 2.0 - (point.x - frame.centre_x_mm) / pixel_mm(),
+          height() / 2.0 + (point.y - frame.centre_y_mm) / pixel_mm()};
+}
+
+BlurMap blur_map(const Picture& picture, const PointScene& scene, const petzval::IdealLens& lens,
+                 const petzval::PointBundles* exact, int threads) {
+  constexpr int step = 8;  // pixels between nodes, from the corner to beyond the last pixel
+  const int width = picture.width(), height = picture.height(), columns = width / step + 2, rows = height / step + 2;
+  std::vector<double> nodes(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows), none);
+  petzval::parallel_for(nodes.size(), static_cast<std::size_t>(columns), threads, [&](std::size_t begin, std::size_t) {
+    const int row = static_cast<int>(begin / static_cast<std::size_t>(columns));
+    petzval::FilmPoint beside;
+    for (int column = 0; column < columns; ++column) {
+      const double x = step * column, y = step * row;
+      nodes[at(column, row, columns)] =
+          exact ? exact_blur(picture, scene, *exact, x, y, beside) : ideal_blur(picture, scene, lens, x, y);
+    }
+  });
+  BlurMap result{width, height, {}};
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      result.diameter_mm.push_back(between(nodes, columns, (x + 0.5) / step, (y + 0.5) / step));
+    }
+  }
+  return result;
+}
+
+double scale_of(std::span<const BlurMap> maps) {
+  std::vector<double> sizes;
+  for (const BlurMap& map : maps) {
+    for (const double d : map.diameter_mm) {
+      if (std::isfinite(d)) sizes.push_back(std::abs(d));
+    }
+  }
+  if (sizes.empty()) return 1e-3;
+  const auto place = sizes.begin() + static_cast<std::ptrdiff_t>(0.99 * static_cast<double>(sizes.size() - 1));
+  std::nth_element(sizes.begin(), place, sizes.end());
+  const double wanted = std::max(*place, 1e-3), decade = std::pow(10, std::floor(std::log10(wanted)));
+  for (const double digit : {1.0, 2.0, 5.0}) {
+    if (digit * decade >= wanted) return digit * decade;
+  }
+  return 10 * decade;
+}
+
+}  // namespace examples

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "petzval/io/image.hpp"
+#include "petzval/movement/film_pose.hpp"
+#include "petzval/movement/point_bundles.hpp"
+#include "point_scene.hpp"
+
+namespace examples {
+
+/// Signed diameters of blurs over a picture, the right way up: rows from the top. NaN where no light comes.
+struct BlurMap {
+  int width = 0, height = 0;
+  std::vector<double> diameter_mm;
+};
+
+/// The picture that a film takes of a scene, its longer side `pixels` wide.
+struct Picture {
+  petzval::FilmPose film;
+  petzval::FilmFrame frame;
+  int pixels = 1080;
+
+  int width() const;
+  int height() const;
+  /// The film point of a place in the picture, in pixels from its upper left corner; and back.
+  petzval::FilmPoint film_point(double x, double y) const;
+  std::pair<double, double> pixel(const petzval::FilmPoint& point) const;
+
+ private:
+  double pixel_mm() const;
+};
+
+/// By the ideal lens, or (with exact) by bundles of rays; every 8 pixels, interpolated between. The result does not
+/// depend on the number of threads.
+BlurMap blur_map(const Picture& picture, const PointScene& scene, const petzval::IdealLens& lens,
+                 const petzval::PointBundles* exact, int threads);
+
+/// The blur that a scale should reach: 1, 2 or 5 times a power of ten, so that all but a hundredth of the maps lies
+/// within.
+double scale_of(std::span<const BlurMap> maps);
+
+/// A focus point in the picture.
+struct MarkedPoint {
+  std::optional<petzval::FilmPoint> where;
+  double blur_mm = 0;  ///< NaN: none
+  bool used = true;
+};
+
+struct BlurSheet {
+  std::string title = {}, subtitle = {};
+  std::vector<std::string> notes = {};  ///< lines at the foot
+  double scale_mm = 0;                  ///< blur of the deepest colours
+  double sharp_mm = 0;                  ///< blur along the thin lines
+  std::vector<MarkedPoint> points = {};
+};
+
+/// The map in colour with its scale, points and captions: blue is nearer than the plane of focus, red beyond it, white
+/// sharp, grey without light.
+petzval::Rgb8Image draw_blur_sheet(const BlurMap& map, const Picture& picture, const BlurSheet& sheet);
+
+}  // namespace examples

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "movement_setup.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "camera_setup.hpp"
+#include "cli.hpp"
+#include "load_lens.hpp"
+#include "petzval/core/error.hpp"
+#include "petzval/core/text.hpp"
+#include "petzval/core/units.hpp"
+#include "petzval/pupil/pupil.hpp"
+
+namespace examples {
+
+void add_movement_options(CLI::App& app, MovementOptions& options) {
+  app.add_option("LENS.json", options.lens_file, "lens prescription; may be left out for a thin lens");
+  app.add_option("--model", options.model,
+                 "what the lens is: thin (one plane), thick (cardinal points and pupils), real (exact rays)")
+      ->check(CLI::IsMember({"thin", "thick", "real"}))
+      ->capture_default_str();
+  add_number(app, "--thin-focal-length-mm", options.focal_length_mm, positive_number,
+             "focal length of a thin lens at the origin, in place of LENS.json; needs --model thin and --f-number")
+      ->default_str("none");
+  add_number(app, "--f-number", options.f_number, positive_number, "stop the lens down (by exact rays)")
+      ->default_str("wide open");
+  app.add_option_function<std::string>(
+         "--film-mm",
+         [&options](const std::string& text) {
+           options.film_mm = text;
+           options.film_given = true;
+         },
+         "width and height of the film (mm); where it is given, points outside the picture take no part")
+      ->type_name("WxH")
+      ->default_str(options.film_mm);
+}
+
+MovingLens moving_lens(const MovementOptions& options) {
+  MovingLens result;
+  const auto [width, height] = parse_size("--film-mm", options.film_mm, positive_number);
+  result.frame = {width, height};
+  if (options.focal_length_mm > 0) {
+    if (!options.lens_file.empty()) {
+      throw petzval::Error("--thin-focal-length-mm: found with " + options.lens_file + ", wanted one of them");
+    }
+    if (options.model != "thin") {
+      throw petzval::Error("--thin-focal-length-mm: found with --model " + options.model + ", wanted --model thin");
+    }
+    if (!(options.f_number > 0)) throw petzval::Error("--thin-focal-length-mm: found no --f-number, wanted one");
+    result.id = "thin_lens";
+    result.title = "Thin lens, " + petzval::number(options.focal_length_mm) + " mm";
+    result.conditions = "f/" + petzval::number(options.f_number, 3);
+    result.ideal = petzval::thin_lens(options.focal_length_mm, options.f_number);
+    return result;
+  }
+  if (options.lens_file.empty()) {
+    throw petzval::Error("LENS.json is required, or --model thin --thin-focal-length-mm F --f-number N");
+  }
+  const LoadedLens loaded = load_lens(options.lens_file, std::array{petzval::d_line_nm});
+  petzval::Lens lens = loaded.lens;
+  if (options.f_number > 0) lens = petzval::with_f_number(lens, options.f_number);
+  result.id = loaded.id;
+  result.title = lens.name();
+  result.conditions = "f/" + petzval::number(petzval::real_f_number(lens), 3) + ", " + options.model + " model";
+  result.ideal = options.model == "thin" ? petzval::thin_lens(lens) : petzval::thick_lens(lens);
+  result.exact = options.model == "real";
+  result.lens = std::move(lens);
+  return result;
+}
+
+petzval::PointBundles MovingLens::bundles(std::span<const petzval::ScenePlace> places, std::size_t rays) const {
+  // Room for a tilted and shifted film, and for points somewhat outside the picture; not for those far outside, whose
+  // light no lens lets through.
+  const double corner = std::hypot(frame.width_mm, frame.height_mm) / 2;
+  double farthest = 1.3 * corner;
+  for (const petzval::ScenePlace& place : places) {
+    const auto image = ideal.image(place);
+    if (image) farthest = std::max(farthest, 1.1 * std::hypot(image->position.x, image->position.y));
+  }
+  return {*lens, std::min(farthest, 3 * corner), rays};
+}
+
+const char* in_words(petzval::TargetUse use) {
+  switch (use) {
+    case petzval::TargetUse::used: return "";
+    case petzval::TargetUse::no_weight: return "looked at only: its weight is 0";
+    case petzval::TargetUse::not_finite: return "left out: not a number";
+    case petzval::TargetUse::no_image: return "left out: the lens forms no image of it that a film could reach";
+    case petzval::TargetUse::outlier: return "an outlier: it got no weight";
+    case petzval::TargetUse::no_rays: return "left out: no ray of it gets through the lens";
+  }
+  return "";
+}
+
+}  // namespace examples

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "petzval/lens/lens.hpp"
+#include "petzval/movement/film_pose.hpp"
+#include "petzval/movement/focus_target.hpp"
+#include "petzval/movement/ideal_lens.hpp"
+#include "petzval/movement/point_bundles.hpp"
+
+namespace examples {
+
+/// Command line of the programs that move the film.
+struct MovementOptions {
+  std::string lens_file, model = "real", film_mm = "36x24";
+  double f_number = 0, focal_length_mm = 0;  // 0: not given
+  bool film_given = false;
+};
+void add_movement_options(CLI::App& app, MovementOptions& options);
+
+/// The lens of the options as the model that is asked for sees it.
+struct MovingLens {
+  std::string id, title;              ///< names of files begin with id
+  std::string conditions;             ///< "f/4, real model"
+  std::optional<petzval::Lens> lens;  ///< none for an ideal lens without a file
+  petzval::IdealLens ideal;           ///< thin, or (thick and real) the cardinal points
+  bool exact = false;                 ///< the model is real: exact rays
+  petzval::FilmFrame frame;
+
+  /// Exact rays to the film, and as far beside it as the images of these places lie. There must be a lens.
+  petzval::PointBundles bundles(std::span<const petzval::ScenePlace> places, std::size_t rays) const;
+};
+MovingLens moving_lens(const MovementOptions& options);
+
+/// What became of a point, for people; empty where it is used.
+const char* in_words(petzval::TargetUse use);
+
+}  // namespace examples

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "point_scene.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+
+#include "petzval/core/error.hpp"
+
+namespace examples {
+
+PointScene::PointScene(const petzval::IdealLens& lens, std::span<const petzval::ScenePlace> points)
+    : lens_(lens), from_z_(lens.pupils.entrance.z), parallel_(!std::isfinite(from_z_)) {
+  if (parallel_) from_z_ = lens.front_focal_z;
+  for (const petzval::ScenePlace& point : points) {
+    const petzval::Vec3<double>& p = point.position;
+    const double depth = point.at_infinity ? -p.z : from_z_ - p.z;
+    if (!lens.image(point) || !(depth > 0) || (parallel_ && point.at_infinity)) continue;
+    const double by = parallel_ ? 1 : 1 / depth;
+    known_.push_back({p.x * by, p.y * by, point.at_infinity ? 0 : 1 / depth});
+  }
+  if (known_.empty()) throw petzval::Error("the scene: found no point in front of the lens, wanted one");
+}
+
+double PointScene::disparity(double x, double y) const {
+  // Weights over that of the nearest point: none overflows, and at a point it is that point's alone.
+  double nearest = std::numeric_limits<double>::infinity(), least = nearest, most = 0;
+  for (const Known& k : known_) {
+    nearest = std::min(nearest, std::hypot(k.x - x, k.y - y));
+    least = std::min(least, k.disparity), most = std::max(most, k.disparity);
+  }
+  const auto weight = [&](const Known& k) {
+    const double away = std::hypot(k.x - x, k.y - y), ratio = away > nearest ? nearest / away : 1;
+    return ratio * ratio * ratio * ratio;
+  };
+  double weights = 0, mean_x = 0, mean_y = 0, mean = 0;
+  for (const Known& k : known_) {
+    const double w = weight(k);
+    weights += w, mean_x += w * k.x, mean_y += w * k.y, mean += w * k.disparity;
+  }
+  mean_x /= weights, mean_y /= weights, mean /= weights;
+  double xx = 0, xy = 0, yy = 0, xd = 0, yd = 0;
+  for (const Known& k : known_) {
+    const double w = weight(k), dx = k.x - mean_x, dy = k.y - mean_y;
+    xx += w * dx * dx, xy += w * dx * dy, yy += w * dy * dy;
+    xd += w * dx * (k.disparity - mean), yd += w * dy * (k.disparity - mean);
+  }
+  // So little more that planes stay planes, and points in a line have no slope across it.
+  const double ridge = 1e-6 * (xx + yy);
+  xx += ridge, yy += ridge;
+  const double determinant = xx * yy - xy * xy, range = most - least;
+  if (determinant > 0) {
+    mean += ((yy * xd - xy * yd) * (x - mean_x) + (xx * yd - xy * xd) * (y - mean_y)) / determinant;
+  }
+  return std::clamp(mean, std::max(0.0, least - range), most + range);
+}
+
+std::optional<petzval::ScenePlace> PointScene::at(const petzval::FilmPose& film,
+                                                  const petzval::FilmPoint& point) const {
+  // The chief ray goes through the point's conjugate and the entrance pupil's centre.
+  const petzval::ScenePlace conjugate = lens_.scene_of(film.at(point));
+  petzval::Vec3<double> towards = conjugate.position;
+  if (parallel_) {
+    if (conjugate.at_infinity) return {};
+    const double w = disparity(towards.x, towards.y);
+    return petzval::ScenePlace{{towards.x, towards.y, from_z_ - 1 / w}, false};
+  }
+  if (!conjugate.at_infinity) towards.z -= from_z_;
+  if (towards.z == 0) return {};
+  const double x = -towards.x / towards.z, y = -towards.y / towards.z, w = disparity(x, y);
+  if (w == 0) return petzval::ScenePlace{{x, y, -1}, true};
+  return petzval::ScenePlace{{x / w, y / w, from_z_ - 1 / w}, false};
+}
+
+std::optional<petzval::FilmPoint> on_film(const petzval::IdealLens& lens, const petzval::FilmPose& film,
+                                          const petzval::ScenePlace& place) {
+  const auto image = lens.image(place);
+  if (!image) return {};
+  const petzval::Vec3<double> n = film.normal(), along{image->slope_x, image->slope_y, 1};
+  const petzval::Vec3<double> to_film = petzval::Vec3<double>(0, 0, film.film_z) - image->position;
+  const double by = glm::dot(n, to_film) / glm::dot(n, along);
+  if (!std::isfinite(by)) return {};
+  return film.point(image->position + by * along);
+}
+
+}  // namespace examples

@@ -1,0 +1,383 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tilts the film so that the plane of focus goes through points of the scene, and shows what that does: film, planes
+// and lines from the side, and the blur over the picture before and after.
+//
+//   tilt_shift data/lenses/double_gauss_100mm_f2_28deg.json --f-number 4 --points examples/scenes/table.json --out out
+//   tilt_shift --model thin --thin-focal-length-mm 50 --f-number 2 --points points.json --json --out out
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "petzval/core/error.hpp"
+#include "petzval/core/text.hpp"
+#include "petzval/core/units.hpp"
+#include "petzval/figure/tilt_figure.hpp"
+#include "petzval/io/image.hpp"
+#include "petzval/movement/autofocus.hpp"
+#include "petzval/movement/focus_point.hpp"
+#include "petzval/movement/tilt_fit.hpp"
+#include "support/blur_map.hpp"
+#include "support/bokeh.hpp"
+#include "support/cli.hpp"
+#include "support/files.hpp"
+#include "support/focus_json.hpp"
+#include "support/movement_setup.hpp"
+
+namespace {
+
+using examples::finite_or_null;
+using examples::Json;
+using petzval::number;
+using petzval::TargetUse;
+using petzval::TiltFit;
+using Vector = petzval::Vec3<double>;
+
+constexpr double none = std::numeric_limits<double>::quiet_NaN();
+constexpr std::size_t rays_to_fit = 1024, rays_to_check = 4096, rays_of_map = 96;
+
+struct Options : examples::MovementOptions {
+  std::string points_file, out_folder;
+  double max_tilt_deg = 20;
+  bool robust = false, json = false;
+};
+
+/// A point of the file and what became of it.
+struct Point {
+  petzval::FocusTarget target;
+  bool in_picture = true;
+  TargetUse use = TargetUse::used;
+  double before_mm = none, predicted_mm = none, traced_mm = none;
+
+  bool serves() const { return in_picture && use == TargetUse::used; }
+  /// Whether it shows where the scene is: an outlier does not.
+  bool shows() const { return in_picture && (use == TargetUse::used || use == TargetUse::no_weight); }
+  std::string use_name() const { return in_picture ? std::string(petzval::name(use)) : "outside_picture"; }
+  std::string use_in_words() const { return in_picture ? examples::in_words(use) : "left out: outside the picture"; }
+};
+
+struct Result {
+  examples::MovingLens lens;
+  std::vector<Point> points = {};
+  std::optional<petzval::PointBundles> bundles = {};  // of the real model
+  petzval::Autofocus before = {};
+  TiltFit after = {};
+};
+
+std::vector<petzval::ScenePlace> places(const std::vector<Point>& points, bool (Point::*which)() const = nullptr) {
+  std::vector<petzval::ScenePlace> result;
+  for (const Point& p : points) {
+    if (!which || (p.*which)()) result.push_back(p.target.place);
+  }
+  return result;
+}
+
+std::vector<petzval::FocusTarget> targets(const std::vector<Point>& points) {
+  std::vector<petzval::FocusTarget> result;
+  for (const Point& p : points) {
+    if (p.in_picture) result.push_back(p.target);
+  }
+  return result;
+}
+
+/// Why nothing can be done, in one line: the first reason stands for the others.
+[[noreturn]] void give_up(const Options& options, const std::vector<Point>& points) {
+  const auto first = std::ranges::find_if_not(points, &Point::serves);
+  const auto which = std::to_string(first - points.begin() + 1);
+  throw petzval::Error(options.points_file + ": found no point to focus on (point " + which + " is " +
+                       first->use_in_words() + "), wanted one or more in front of the lens, with a weight");
+}
+
+/// The upright film for the points that are in the picture; where no points are asked for, that of the lens, or of
+/// infinity without one.
+petzval::Autofocus focused(const Options& options, Result& result) {
+  if (result.points.empty()) {
+    return {.film_z = result.lens.lens ? result.lens.lens->film_z() : result.lens.ideal.rear_focal_z, .blurs = {}};
+  }
+  const auto served = targets(result.points);
+  const petzval::Autofocus focus = result.bundles
+                                       ? petzval::autofocus(*result.bundles, served, petzval::FocusCriterion::min_rms)
+                                       : petzval::autofocus(result.lens.ideal, served, result.lens.ideal.rear_focal_z);
+  std::size_t k = 0;
+  for (Point& p : result.points) {
+    if (!p.in_picture) continue;
+    p.use = focus.blurs[k].use;
+    p.before_mm = focus.blurs[k++].blur_mm;
+  }
+  if (focus.status == petzval::Autofocus::Status::no_targets) give_up(options, result.points);
+  if (!focus) throw petzval::Error(options.points_file + ": no film behind the lens has these points in focus");
+  return focus;
+}
+
+/// A film size that is given is a frame that points must lie in.
+void leave_out_what_is_beside(double film_z, Result& result) {
+  for (Point& p : result.points) {
+    if (p.use != TargetUse::used && p.use != TargetUse::no_weight) continue;
+    petzval::FocusPoint point;
+    point.keys.push_back({.anchor = p.target.place});
+    p.in_picture =
+        !petzval::focus_targets(result.lens.ideal, {&point, 1}, {.frame = result.lens.frame, .film_z = film_z}).empty();
+  }
+}
+
+Result solve(const Options& options) {
+  Result result{.lens = examples::moving_lens(options)};
+  for (const auto& target : examples::read_targets(options.points_file)) result.points.push_back({target});
+  if (result.lens.exact) result.bundles = result.lens.bundles(places(result.points), rays_to_fit);
+
+  result.before = focused(options, result);
+  if (options.film_given) {
+    leave_out_what_is_beside(result.before.film_z, result);
+    result.before = focused(options, result);
+  }
+  const petzval::TiltOptions tilt{.max_tilt_rad = petzval::radians(options.max_tilt_deg),
+                                  .robust = options.robust,
+                                  .start = {.film_z = result.before.film_z},
+                                  .frame = options.film_given ? result.lens.frame : petzval::TiltOptions{}.frame};
+  const auto served = targets(result.points);
+  result.after = result.bundles ? petzval::fit_tilt(*result.bundles, served, tilt)
+                                : petzval::fit_tilt(result.lens.ideal, served, tilt);
+  std::size_t k = 0;
+  for (Point& p : result.points) {
+    if (!p.in_picture) continue;
+    p.use = result.after.blurs[k].use;
+    p.predicted_mm = result.after.blurs[k++].blur_mm;
+  }
+  switch (result.after.status) {
+    case TiltFit::Status::no_targets:
+      if (result.points.empty()) break;
+      give_up(options, result.points);
+    case TiltFit::Status::unreachable:
+      throw petzval::Error(options.points_file + ": the film, " + number(result.lens.frame.width_mm) + " x " +
+                           number(result.lens.frame.height_mm) +
+                           " mm, would touch the lens, wanted points farther away or a smaller film");
+    case TiltFit::Status::not_converged:
+      throw petzval::Error(options.points_file + ": no film was found that serves these points");
+    default: break;
+  }
+  if (result.lens.lens) {
+    const auto check = result.lens.bundles(places(result.points), rays_to_check);
+    for (Point& p : result.points) {
+      if (std::isnan(p.predicted_mm)) continue;
+      const auto blur = petzval::blur_on(check.bundle(p.target.place), result.after.film);
+      if (blur) p.traced_mm = blur->signed_diameter;
+    }
+  }
+  return result;
+}
+
+std::string status_in_words(const Result& result, const Options& options) {
+  const std::string limit = number(options.max_tilt_deg) + " degrees";
+  if (result.after.status == TiltFit::Status::limited) {
+    return "limited: the film may lean by " + limit +
+           " only, and less across points that nearly lie on a line; within that this serves the points best";
+  }
+  if (result.after.status == TiltFit::Status::solved) return "solved: the points fix the plane of focus";
+  if (result.after.status == TiltFit::Status::no_targets) return "no targets: without points the film stays upright";
+  if (result.after.rank == petzval::PlaneRank::point) {
+    return "least tilt: one place of the picture fixes a distance and no slope, so the film stays upright";
+  }
+  return "least tilt: points on one line of the picture fix no slope across it; of all planes of focus this one tilts "
+         "the film least";
+}
+
+/// What rounding leaves of 0 is 0 for people.
+double tidy(double value) { return std::abs(value) < 1e-9 ? 0.0 : value; }
+
+std::string film_in_words(const petzval::FilmPose& film) {
+  if (film.upright()) return "upright";
+  const auto degrees = [](double rad) { return number(tidy(petzval::degrees(rad)), 4) + "\u00b0"; };
+  return "tilted by " + degrees(film.tilt_rad) + ", swung by " + degrees(film.swing_rad);
+}
+
+Json vector(const Vector& v) { return {v.x, v.y, v.z}; }
+
+Json line(const std::optional<petzval::FocusPlane>& focus,
+          std::optional<petzval::SpaceLine> petzval::FocusPlane::*which) {
+  if (!focus || !((*focus).*which)) return nullptr;
+  const petzval::SpaceLine& l = *((*focus).*which);
+  return {{"point_mm", vector(l.point)}, {"direction", vector(l.direction)}};
+}
+
+Json micrometres(double mm) { return finite_or_null(1e3 * mm); }
+
+Json to_json(const Result& result, const Options& options, const std::vector<std::string>& files) {
+  const TiltFit& fit = result.after;
+  Json blurs = Json::array(), before = Json::array(), uses = Json::array();
+  for (const Point& p : result.points) {
+    blurs.push_back({{"predicted", micrometres(p.predicted_mm)}, {"traced", micrometres(p.traced_mm)}});
+    before.push_back(micrometres(p.before_mm));
+    uses.push_back(p.use_name());
+  }
+  return {
+      {"lens", result.lens.title},
+      {"model", options.model},
+      {"status", petzval::name(fit.status)},
+      {"rank", petzval::name(fit.rank)},
+      {"message", status_in_words(result, options)},
+      {"plane_normal", result.after.focus ? vector(result.after.focus->plane.normal) : Json()},
+      {"plane_offset_mm", result.after.focus ? Json(result.after.focus->plane.offset) : Json()},
+      {"film_tilt_deg", petzval::degrees(fit.film.tilt_rad)},
+      {"film_swing_deg", petzval::degrees(fit.film.swing_rad)},
+      {"film_z_mm", fit.film.film_z},
+      {"film_centre_mm", {fit.centre.x, fit.centre.y}},
+      {"rms_um", 1e3 * fit.rms_mm},
+      {"blur_um", std::move(blurs)},
+      {"use", std::move(uses)},
+      {"hinge_line", line(result.after.focus, &petzval::FocusPlane::hinge)},
+      {"scheimpflug_line", line(result.after.focus, &petzval::FocusPlane::scheimpflug)},
+      {"before", {{"film_z_mm", result.before.film_z}, {"rms_um", 1e3 * result.before.rms_mm}, {"blur_um", before}}},
+      {"files", files}};
+}
+
+std::string padded(const std::string& text, std::size_t width) {
+  return text.size() < width ? std::string(width - text.size(), ' ') + text : text;
+}
+
+std::string to_text(const Result& result, const Options& options) {
+  const TiltFit& fit = result.after;
+  const auto triple = [](const Vector& v) {
+    return "(" + number(tidy(v.x), 6) + ", " + number(tidy(v.y), 6) + ", " + number(tidy(v.z), 6) + ")";
+  };
+  const auto cell = [](double mm) { return padded(std::isnan(mm) ? "-" : number(tidy(1e3 * mm), 4), 14); };
+  std::string text = result.lens.title + ", " + result.lens.conditions + "\n" + status_in_words(result, options) +
+                     "\n\nfilm at z = " + number(fit.film.film_z, 9) + " mm, " + film_in_words(fit.film) +
+                     " (upright before, at " + number(result.before.film_z, 9) + " mm)\n";
+  if (tidy(fit.centre.x) != 0 || tidy(fit.centre.y) != 0) {
+    text += "middle of the picture on it: " + number(tidy(fit.centre.x), 6) + ", " + number(tidy(fit.centre.y), 6) +
+            " mm\n";
+  }
+  text += result.after.focus ? "plane of focus: normal " + triple(result.after.focus->plane.normal) + ", " +
+                                   number(result.after.focus->plane.offset, 8) + " mm from the origin along it\n"
+                             : "in focus: infinity\n";
+  const auto add_line = [&](const char* name, const std::optional<petzval::SpaceLine>& l) {
+    if (l) text += std::string(name) + " through " + triple(l->point) + " mm along " + triple(l->direction) + "\n";
+  };
+  if (result.after.focus) {
+    add_line("hinge line", result.after.focus->hinge);
+    add_line("Scheimpflug line", result.after.focus->scheimpflug);
+  }
+  text += "RMS blur: " + number(tidy(1e3 * result.before.rms_mm), 4) + " um upright, " +
+          number(tidy(1e3 * fit.rms_mm), 4) + " um tilted\n\npoint     before, um  predicted, um     traced, um\n";
+  for (std::size_t i = 0; i < result.points.size(); ++i) {
+    const Point& p = result.points[i];
+    const std::string words = p.use_in_words();
+    text += padded(std::to_string(i + 1), 5) + cell(p.before_mm) + " " + cell(p.predicted_mm) + " " +
+            cell(p.traced_mm) + (words.empty() ? "" : "  " + words) + "\n";
+  }
+  return text;
+}
+
+/// The film's diagonal over 1442: 0.03 mm of 24 x 36 mm.
+double sharp_mm(const petzval::FilmFrame& frame) { return std::hypot(frame.width_mm, frame.height_mm) / 1442.2; }
+
+std::string side_view(const Result& result) {
+  std::vector<petzval::TiltFigurePoint> points;
+  for (const Point& p : result.points) points.push_back({p.target.place, p.serves()});
+  petzval::FilmFrame frame = result.lens.frame;
+  frame.centre_x_mm = result.after.centre.x;
+  frame.centre_y_mm = result.after.centre.y;
+  const std::string remark = result.lens.conditions + ", " + std::to_string(points.size()) +
+                             (points.size() == 1 ? " focus point" : " focus points");
+  return petzval::tilt_figure({.title = result.lens.title,
+                               .remark = remark,
+                               .lens = result.lens.ideal,
+                               .glass = result.lens.lens ? &*result.lens.lens : nullptr,
+                               .before = {.film_z = result.before.film_z},
+                               .after = result.after.film,
+                               .focus = result.bundles ? result.after.focus : std::nullopt,
+                               .frame = frame,
+                               .blur_mm = sharp_mm(frame),
+                               .points = points});
+}
+
+/// The pictures before and after, in one scale; none without points that show where the scene is.
+std::vector<petzval::Rgb8Image> blur_pictures(const Result& result) {
+  if (std::ranges::none_of(result.points, &Point::shows)) return {};
+  const petzval::IdealLens& ideal = result.lens.ideal;
+  const examples::PointScene scene(ideal, places(result.points, &Point::shows));
+  std::vector<examples::Picture> pictures(2, {.film = {.film_z = result.before.film_z}, .frame = result.lens.frame});
+  pictures[1].film = result.after.film;
+  pictures[1].frame.centre_x_mm = result.after.centre.x;
+  pictures[1].frame.centre_y_mm = result.after.centre.y;
+  std::optional<petzval::PointBundles> rays;
+  if (result.lens.exact) rays = result.lens.bundles({}, rays_of_map);
+  std::vector<examples::BlurMap> maps;
+  for (const auto& picture : pictures) {
+    maps.push_back(examples::blur_map(picture, scene, ideal, rays ? &*rays : nullptr, examples::worker_threads()));
+  }
+
+  examples::BlurSheet sheet{.scale_mm = examples::scale_of(maps), .sharp_mm = sharp_mm(result.lens.frame)};
+  sheet.subtitle = result.lens.title + ", " + result.lens.conditions + ", film " + number(result.lens.frame.width_mm) +
+                   " x " + number(result.lens.frame.height_mm) + " mm; the picture the right way up";
+  sheet.notes = {"Signed diameter of the blur on the film" +
+                     std::string(rays ? ": of the even disc with the RMS radius of the traced rays." : ".") +
+                     " Thin lines: " + number(1e3 * sheet.sharp_mm, 3) + " \u00b5m. Both pictures have one scale.",
+                 "Circles: the focus points, and the blur of each (grey: takes no part). Between them 1/distance is "
+                 "interpolated."};
+  const bool upright = result.after.film.upright();
+  const std::string titles[]{"Before: upright film, focused on the points",
+                             "After: film " + film_in_words(result.after.film)};
+  std::vector<petzval::Rgb8Image> sheets;
+  for (std::size_t k = 0; k < 2; ++k) {
+    sheet.title = titles[k] + (k == 1 && upright ? ", as before" : "");
+    sheet.points.clear();
+    for (const Point& p : result.points) {
+      sheet.points.push_back({examples::on_film(ideal, pictures[k].film, p.target.place),
+                              k == 0 ? p.before_mm : p.predicted_mm, p.serves()});
+    }
+    sheets.push_back(examples::draw_blur_sheet(maps[k], pictures[k], sheet));
+  }
+  return sheets;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options options;
+  CLI::App app(
+      "Tilts and swings the film so that points of the scene are sharp (or as blurred as wanted), by least squares of "
+      "their blurs.\n"
+      "points.json: [{\"position_mm\": [x, y, z], \"weight\": 1, \"blur_mm\": 0, \"at_infinity\": false}, ...] in the "
+      "lens frame, the scene at negative z; at infinity the position is a direction. Blurs are signed diameters on the "
+      "film: negative nearer than the plane of focus, positive beyond it.\n"
+      "predicted: by the model that was fitted; traced: by 4096 exact rays of each point, whatever the model (none "
+      "without LENS.json). Plane and lines of the real model are those of its cardinal points. Points that do not fix "
+      "a plane give the one of least tilt, and the status says so.\n"
+      "Writes NAME_side.svg, NAME_before.png and NAME_after.png into DIR.",
+      "tilt_shift");
+  examples::add_movement_options(app, options);
+  app.add_option("--points", options.points_file, "the points to focus on")->type_name("FILE")->required();
+  app.add_option("--out", options.out_folder, "folder for the pictures")->type_name("DIR")->required();
+  constexpr examples::Range angle{0, 89, "a number of degrees from 0 to 89"};
+  examples::add_number(app, "--max-tilt-deg", options.max_tilt_deg, angle, "how far the film may lean");
+  app.add_flag("--robust", options.robust, "points that fit no plane with most of the others lose their weight");
+  app.add_flag("--json", options.json, "print one JSON object instead of text");
+
+  return examples::run(app, argc, argv, [&] {
+    const Result result = solve(options);
+    const std::filesystem::path folder = options.out_folder;
+    const std::string svg = side_view(result);
+    const auto pictures = blur_pictures(result);
+    examples::make_folder(folder);
+    std::vector<std::string> files;
+    const auto named = [&](const char* ending) {
+      files.push_back((folder / (result.lens.id + ending)).string());
+      return files.back();
+    };
+    examples::write_text(named("_side.svg"), svg);
+    if (!pictures.empty()) {
+      petzval::write_png(pictures[0], named("_before.png"));
+      petzval::write_png(pictures[1], named("_after.png"));
+    }
+    if (options.json) {
+      std::cout << to_json(result, options, files).dump(1) << '\n';
+      return;
+    }
+    std::cout << to_text(result, options) << '\n';
+    for (const std::string& file : files) std::cout << file << '\n';
+  });
+}

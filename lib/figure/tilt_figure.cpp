@@ -1,0 +1,399 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "petzval/figure/tilt_figure.hpp"
+
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "petzval/core/error.hpp"
+#include "petzval/core/text.hpp"
+#include "petzval/core/units.hpp"
+#include "scene_panel.hpp"
+#include "sheet.hpp"
+
+namespace petzval {
+namespace {
+
+using detail::SceneFrame;
+using detail::ScenePanel;
+using detail::SectionBox;
+using detail::SectionLine;
+using detail::SectionPoint;
+using detail::SectionTrace;
+using detail::Svg;
+using detail::svg_number;
+
+constexpr std::string_view film_style = "fill=\"none\" stroke=\"#111\" stroke-width=\"2.6\"";
+constexpr std::string_view film_plane = "fill=\"none\" stroke=\"#111\" stroke-width=\"0.8\"";
+constexpr std::string_view film_before = "fill=\"none\" stroke=\"#111\" stroke-width=\"1.5\" stroke-dasharray=\"5 3\"";
+constexpr std::string_view focus_style = "fill=\"none\" stroke=\"#1a8f3c\" stroke-width=\"2\"";
+constexpr std::string_view focus_before =
+    "fill=\"none\" stroke=\"#1a8f3c\" stroke-width=\"1.2\" stroke-dasharray=\"5 3\"";
+constexpr std::string_view principal_plane = "fill=\"none\" stroke=\"#1f5fc4\" stroke-width=\"1\"";
+constexpr std::string_view focal_plane = "fill=\"none\" stroke=\"#b97a00\" stroke-width=\"1\" stroke-dasharray=\"2 3\"";
+constexpr std::string_view axis_style =
+    "fill=\"none\" stroke=\"#888\" stroke-width=\"0.8\" stroke-dasharray=\"14 3 2 3\"";
+constexpr std::string_view chief_style = "fill=\"none\" stroke=\"#d0331f\" stroke-width=\"0.6\"";
+constexpr std::string_view meeting_style = "fill=\"none\" stroke=\"#7b3fb5\" stroke-width=\"1.4\"";
+constexpr std::string_view wedge_style = "fill=\"#dff2e3\"";
+
+void check(const TiltView& view) {
+  for (const FilmPose* film : {&view.before, &view.after}) {
+    if (std::isfinite(film->film_z + film->tilt_rad + film->swing_rad)) continue;
+    throw Error("tilt_figure: a film stands at z = " + number(film->film_z) + " mm, tilt " + number(film->tilt_rad) +
+                ", swing " + number(film->swing_rad) + ", wanted finite numbers");
+  }
+  if (!(view.blur_mm > 0)) throw Error("tilt_figure: blur is " + number(view.blur_mm) + " mm, wanted more than 0");
+  if (!(view.frame.width_mm > 0 && view.frame.height_mm > 0)) {
+    throw Error("tilt_figure: the film is " + number(view.frame.width_mm) + " x " + number(view.frame.height_mm) +
+                " mm, wanted both above 0");
+  }
+}
+
+/// Rounding left out, and never "-0".
+std::string degrees_text(double angle_rad) {
+  return number(std::round(1e6 * degrees(angle_rad)) / 1e6 + 0.0, 4) + "\u00b0";
+}
+
+class Figure {
+ public:
+  explicit Figure(const TiltView& view) : view_(view), film_(view.after), ideal_(view.after) {
+    if (view.focus) {
+      if (const auto image = view.lens.image_of(view.focus->plane)) ideal_ = film_pose(*image);
+    }
+    focus_ = view.focus ? view.focus : focus_plane(view.lens, film_);
+    focus_before_ = focus_plane(view.lens, {.film_z = view.before.film_z + ideal_.film_z - film_.film_z});
+    const Vec3<double> n = ideal_.normal();
+    if (const double lean = std::hypot(n.x, n.y); lean > 1e-12) {
+      up_ = {n.x / lean, n.y / lean, 0};
+      if (std::abs(up_.y) >= std::abs(up_.x) ? up_.y < 0 : up_.x < 0) up_ = -up_;
+    }
+    for (const TiltFigurePoint& p : view.points) images_.push_back(view.lens.image(p.place));
+    // Half the rectangle's extent along the section.
+    film_half_ = (std::abs(up_.x) * view.frame.width_mm + std::abs(up_.y) * view.frame.height_mm) / 2;
+    lens_half_ = std::isfinite(view.lens.pupils.entrance.diameter) ? view.lens.pupils.entrance.diameter / 2 : 0;
+    if (view.glass) cut_glass(*view.glass);
+    if (!(lens_half_ > 0)) lens_half_ = film_half_;
+  }
+
+  std::string draw() {
+    const SceneFrame scene(scene_box(), 240, 440), close(close_box(), 240, 420);
+    constexpr double top = 96, gap = 74;
+    const double second = top + scene.height + gap, foot = second + close.height + 58;
+    Svg svg(960, foot + 92);
+    svg.text(detail::sheet_margin, 26, view_.title, "font-size=\"17\" font-weight=\"bold\"");
+    svg.text(detail::sheet_margin, 46, std::string("Side view.  ") + std::string(view_.remark));
+    svg.text(detail::sheet_margin, 64, film_in_words());
+    svg.text(SceneFrame::left, top - 8,
+             film_.upright() ? "The scene" : "The scene, and the planes that meet in one line", detail::small_text);
+    svg.text(SceneFrame::left, second - 8, "The lens and its film; small dots: where the lens images the points",
+             detail::small_text);
+    draw_scene(svg, top, scene);
+    draw_close(svg, second, close);
+    draw_legend(svg, foot);
+    return std::move(svg).finish();
+  }
+
+ private:
+  SectionPoint section(const Vec3<double>& p) const { return {p.z, glm::dot(p, up_)}; }
+  SectionTrace trace(const Plane& plane) const { return {plane.normal.z, glm::dot(plane.normal, up_), plane.offset}; }
+  static SectionTrace across_axis(double z) { return {1, 0, z}; }
+
+  /// "y"; "x"; "y turned 30 degrees to +x".
+  std::string across_name() const {
+    const double turn = std::atan2(up_.x, up_.y);
+    constexpr double hardly = 0.01;
+    if (std::abs(turn) < hardly) return "y";
+    if (std::abs(turn - radians(90)) < hardly) return "x";
+    return "y turned by " + number(degrees(turn), 3) + "\u00b0 towards +x";
+  }
+
+  std::string film_in_words() const {
+    const FilmPose& film = view_.after;
+    std::string words =
+        "Film at z = " + number(film.film_z, 7) + " mm (before: " + number(view_.before.film_z, 7) + " mm)";
+    if (film.upright()) return words + ", upright.";
+    return words + ", leaning by " + degrees_text(film.angle()) + " (tilt " + degrees_text(film.tilt_rad) + ", swing " +
+           degrees_text(film.swing_rad) + ").";
+  }
+
+  void cut_glass(const Lens& lens) {
+    const std::vector<double> needed(lens.surface_count(), lens_half_);
+    const Meridian meridian = std::abs(up_.y) >= std::abs(up_.x) ? Meridian::y : Meridian::x;
+    const std::size_t wavelength = lens.central_wavelength();
+    const detail::LensSection cut(lens, meridian, needed, wavelength);
+    bodies_ = cut.bodies();
+    mirrors_ = cut.mirrors();
+    for (const auto& body : bodies_) {
+      for (const auto& outline : body.outlines) {
+        for (const SectionPoint& p : outline) lens_half_ = std::max(lens_half_, std::abs(p.height));
+      }
+    }
+  }
+
+  bool thin() const {
+    const IdealLens& l = view_.lens;
+    return std::abs(l.front_principal_z() - l.rear_principal_z()) <= 1e-9 * std::abs(l.front_focal_length);
+  }
+
+  /// Ends of the exposed part of a film, in the section.
+  std::pair<SectionPoint, SectionPoint> film_ends(const FilmPose& film, bool shifted) const {
+    const Vec3<double> n = film.normal();
+    Vec3<double> along = up_ - glm::dot(up_, n) * n;
+    along /= std::sqrt(glm::dot(along, along));
+    const FilmPoint centre{shifted ? view_.frame.centre_x_mm : 0, shifted ? view_.frame.centre_y_mm : 0};
+    const Vec3<double> middle = film.at(centre);
+    return {section(middle - film_half_ * along), section(middle + film_half_ * along)};
+  }
+
+  /// Of the film's line with the rear principal plane: for an ideal lens as high as that of the plane of focus with the
+  /// front one.
+  std::optional<SectionPoint> rear_meeting() const {
+    const SectionTrace film = trace(film_.plane());
+    const double z = view_.lens.rear_principal_z(), height = (film.offset - film.along * z) / film.across;
+    if (!std::isfinite(height)) return {};
+    return SectionPoint{z, height};
+  }
+
+  SectionBox scene_box() const {
+    const IdealLens& lens = view_.lens;
+    SectionBox box({film_.film_z, 0});
+    box.take({lens.front_focal_z, 0});
+    for (const TiltFigurePoint& p : view_.points) {
+      if (p.used && !p.place.at_infinity) box.take(section(p.place.position));
+    }
+    const double reach = std::max(box.length(), 5 * std::abs(lens.front_focal_length));
+    if (focus_) {
+      const SectionTrace plane = trace(focus_->plane);
+      const double crossing = plane.offset / plane.along;
+      if (crossing < lens.front_focal_z && lens.front_focal_z - crossing < 1.3 * reach) box.take({crossing, 0});
+      for (const auto& line : {focus_->hinge, focus_->scheimpflug}) {
+        if (line && std::abs(section(line->point).height) < 0.6 * reach) box.take(section(line->point));
+      }
+    }
+    // Those that take no part where they are not far off.
+    for (const TiltFigurePoint& p : view_.points) {
+      if (p.used || p.place.at_infinity) continue;
+      const SectionPoint at = section(p.place.position);
+      if (std::abs(at.z - lens.front_focal_z) < 1.5 * reach && std::abs(at.height) < reach) box.take(at);
+    }
+    if (box.length() < reach) box.take({box.z_max - reach, 0});
+    for (const double side : {-0.1, 0.1}) box.take({lens.front_focal_z, side * reach});
+    return box;
+  }
+
+  SectionBox close_box() const {
+    const IdealLens& lens = view_.lens;
+    SectionBox box({lens.rear_z, 0});
+    for (const double z : {lens.front_z, lens.front_principal_z(), lens.rear_principal_z()}) {
+      if (std::abs(z - lens.rear_z) < 3 * std::abs(lens.rear_focal_length)) box.take({z, 0});
+    }
+    for (const auto& body : bodies_) {
+      for (const auto& outline : body.outlines) {
+        for (const SectionPoint& p : outline) box.take(p);
+      }
+    }
+    for (const double side : {-1.0, 1.0}) box.take({lens.rear_z, side * lens_half_});
+    for (const auto& [low, high] : {film_ends(view_.before, false), film_ends(film_, true)}) {
+      box.take(low), box.take(high);
+    }
+    return box;
+  }
+
+  /// Films parallel to this one on which the discs of what is sharp here are just too large, turned into planes: both
+  /// go through the hinge line. (Of a chief ray from the exit pupil's centre E to the image I the disc on a film with
+  /// the normal n is D n.(F - I) / n.(I - E), so that all I of one disc lie in a plane across n.)
+  std::optional<FocusPlane> limit(double blur) const {
+    const Pupil& exit = view_.lens.pupils.exit;
+    FilmPose film = ideal_;
+    if (std::isfinite(exit.z)) {
+      const double way = film.film_z - exit.z;
+      film.film_z = exit.z + way / (1 + std::copysign(1.0, way) * blur / exit.diameter);
+    } else {
+      const auto axial = view_.lens.image({{0, 0, -1}, true});
+      if (axial) film.film_z -= blur / axial->cone;
+    }
+    return focus_plane(view_.lens, film);
+  }
+
+  SectionLine wedge(const SectionBox& b) const {
+    const Pupil& exit = view_.lens.pupils.exit;
+    if (!focus_ || !(view_.blur_mm < 0.5 * exit.diameter)) return {};
+    SectionLine region{{b.z_min, b.low}, {b.z_max, b.low}, {b.z_max, b.high}, {b.z_min, b.high}};
+    region = cut_off(region, {-1, 0, -view_.lens.front_focal_z});
+    // A place of the plane of focus in front of the front focal plane tells on which side of the limits to stay.
+    const SectionTrace plane = trace(focus_->plane);
+    const double squared = plane.along * plane.along + plane.across * plane.across;
+    SectionPoint inside{plane.offset * plane.along / squared, plane.offset * plane.across / squared};
+    const double far = 10 * std::abs(view_.lens.front_focal_length) + std::abs(inside.z);
+    if (plane.across != 0) inside = {inside.z - far, inside.height + far * plane.along / plane.across};
+    for (const double blur : {-view_.blur_mm, view_.blur_mm}) {
+      const auto limiting = limit(blur);
+      if (!limiting) continue;
+      SectionTrace line = trace(limiting->plane);
+      if (line.side(inside) < 0) line = {-line.along, -line.across, -line.offset};
+      region = cut_off(region, line);
+    }
+    return region;
+  }
+
+  void draw_lens(Svg& svg, ScenePanel& panel, double least_half) const {
+    if (bodies_.empty() && mirrors_.empty()) {
+      const double z = view_.lens.rear_principal_z(), half = std::max(lens_half_, least_half);
+      const double x = panel.x({z, 0}), high = panel.y({z, half}), low = panel.y({z, -half});
+      const bool gathers = view_.lens.rear_focal_length > 0;
+      const std::string tip = gathers ? "l-5 8m5 -8l5 8" : "l-5 -8m5 8l5 -8",
+                        end = gathers ? "l-5 -8m5 8l5 -8" : "l-5 8m5 -8l5 8";
+      svg.path("M" + svg_number(x) + " " + svg_number(low) + "V" + svg_number(high) + tip + "M" + svg_number(x) + " " +
+                   svg_number(low) + end,
+               "fill=\"none\" stroke=\"#1f5fc4\" stroke-width=\"2\"");
+      return;
+    }
+    for (const auto& body : bodies_) {
+      for (const auto& outline : body.outlines) {
+        panel.fill(outline,
+                   "fill=\"" + detail::glass_colour(body.index) + "\" stroke=\"#3d5a73\" stroke-width=\"0.8\"");
+      }
+    }
+    for (const auto& mirror : mirrors_) {
+      for (std::size_t i = 0; i + 1 < mirror.size(); ++i) {
+        panel.stroke(mirror[i], mirror[i + 1], "fill=\"none\" stroke=\"#333\" stroke-width=\"2.5\"");
+      }
+    }
+  }
+
+  void draw_principal_planes(ScenePanel& panel) const {
+    panel.line(across_axis(view_.lens.front_principal_z()), principal_plane);
+    if (!thin()) panel.line(across_axis(view_.lens.rear_principal_z()), principal_plane);
+  }
+
+  void draw_scene(Svg& svg, double y, const SceneFrame& frame) const {
+    ScenePanel panel(svg, y, frame, across_name());
+    const SectionBox& box = frame.box;
+    panel.fill(wedge(box), wedge_style);
+    panel.stroke({box.z_min, 0}, {box.z_max, 0}, axis_style);
+    panel.line(across_axis(view_.lens.front_focal_z), focal_plane);
+    draw_principal_planes(panel);
+    panel.line(trace(film_.plane()), film_plane);
+    if (focus_before_) panel.line(trace(focus_before_->plane), focus_before);
+    if (focus_) panel.line(trace(focus_->plane), focus_style);
+    draw_lens(svg, panel, 12 / frame.px_per_mm);
+    const auto [low, high] = film_ends(film_, true);
+    panel.stroke(low, high, film_style);
+    for (std::size_t i = 0; i < view_.points.size(); ++i) {
+      const TiltFigurePoint& p = view_.points[i];
+      if (!p.place.at_infinity)
+        panel.mark(section(p.place.position), i + 1, p.used, 4);
+      else
+        draw_direction(panel, box, i);
+    }
+    if (!focus_ || !focus_->hinge || !focus_->scheimpflug) return;
+    panel.dot(section(focus_->hinge->point), "hinge line", -8);
+    const SectionPoint meeting = section(focus_->scheimpflug->point);
+    if (const auto rear = rear_meeting(); rear && !thin()) {
+      panel.stroke(*rear, meeting, meeting_style);
+      panel.dot(*rear, "", 0);
+    }
+    panel.dot(meeting, "Scheimpflug line", 16);
+  }
+
+  /// Towards a point at infinity: a stroke at the frame on the side of the scene.
+  void draw_direction(ScenePanel& panel, const SectionBox& box, std::size_t i) const {
+    const SectionPoint d = section(view_.points[i].place.position);
+    if (!(d.z < 0)) return;
+    const double way = box.z_min - view_.lens.front_principal_z();
+    const SectionPoint end{box.z_min, way * d.height / d.z}, start{0.94 * end.z, 0.94 * end.height};
+    panel.stroke(start, end, chief_style);
+    panel.mark(start, i + 1, view_.points[i].used, 4);
+  }
+
+  void draw_close(Svg& svg, double y, const SceneFrame& frame) const {
+    ScenePanel panel(svg, y, frame, across_name());
+    const IdealLens& lens = view_.lens;
+    const SectionBox& box = frame.box;
+    panel.stroke({box.z_min, 0}, {box.z_max, 0}, axis_style);
+    draw_lens(svg, panel, 0);
+    draw_principal_planes(panel);
+    if (!thin()) {
+      panel.words({lens.front_principal_z(), box.high}, "H", 14);
+      panel.words({lens.rear_principal_z(), box.high}, "H'", 14);
+    }
+    panel.line(across_axis(lens.front_focal_z), focal_plane);
+    panel.line(across_axis(lens.rear_focal_z), focal_plane);
+    for (std::size_t i = 0; i < images_.size(); ++i) {
+      if (!images_[i]) continue;
+      const ImagePoint& image = *images_[i];
+      const double back = image.position.z - lens.rear_z;
+      const Vec3<double> start = image.position - back * Vec3<double>(image.slope_x, image.slope_y, 1);
+      panel.stroke(section(start), section(image.position), chief_style);
+    }
+    const auto [before_low, before_high] = film_ends(view_.before, false);
+    panel.stroke(before_low, before_high, film_before);
+    panel.line(trace(film_.plane()), film_plane);
+    const auto [low, high] = film_ends(film_, true);
+    panel.stroke(low, high, film_style);
+    for (std::size_t i = 0; i < images_.size(); ++i) {
+      if (images_[i]) panel.mark(section(images_[i]->position), i + 1, view_.points[i].used, 2.5);
+    }
+    svg.text(panel.x(low) - 6, panel.y(low) + 14, "film, " + degrees_text(view_.after.angle()),
+             "font-size=\"11\" fill=\"#333\" text-anchor=\"end\"");
+  }
+
+  void draw_legend(Svg& svg, double y) const {
+    const auto key = [&](double x, std::string_view style, std::string_view words) {
+      svg.path("M" + svg_number(x) + " " + svg_number(y) + "h24", style);
+      svg.text(x + 29, y + 4, words);
+      return x + 29 + 6.4 * static_cast<double>(words.size()) + 16;
+    };
+    double x = key(detail::sheet_margin, film_style, "film");
+    x = key(x, film_before, "before, upright");
+    x = key(x, focus_style, "plane of focus");
+    x = key(x, focus_before, "before");
+    x = key(x, principal_plane, thin() ? "plane of the lens" : "principal planes");
+    key(x, focal_plane, "focal planes");
+    std::string wedge = "Pale green: blurred by at most " + detail::length_text(view_.blur_mm) + ".";
+    svg.text(detail::sheet_margin, y + 26, wedge + " " + lines_in_words(), detail::small_text);
+    svg.text(detail::sheet_margin, y + 42,
+             "The section holds the axis and the normal of the plane of focus; points are projected into it. Hollow: "
+             "takes no "
+             "part." +
+                 std::string(view_.focus ? " Cardinal points tell all but the film." : ""),
+             detail::small_text);
+    if (!thin() && !film_.upright()) {
+      svg.text(detail::sheet_margin, y + 58,
+               "The film's plane meets the rear principal plane (H') as far from the axis as the plane of focus meets "
+               "the front one (H)" +
+                   std::string(view_.focus ? ", but for aberrations" : "") + ": the violet line joins the two.",
+               detail::small_text);
+    }
+  }
+
+  std::string lines_in_words() const {
+    if (!focus_) return "What is in focus lies at infinity.";
+    if (!focus_->hinge || !focus_->scheimpflug) return "An upright film: no hinge line.";
+    const auto height = [&](const SpaceLine& line) { return detail::length_text(section(line.point).height); };
+    return "Hinge line (in the front focal plane) at " + height(*focus_->hinge) + ", Scheimpflug line at " +
+           height(*focus_->scheimpflug) + " from the axis.";
+  }
+
+  const TiltView& view_;
+  FilmPose film_;   ///< as it is
+  FilmPose ideal_;  ///< as the ideal lens has it for the plane of focus
+  std::optional<FocusPlane> focus_, focus_before_;
+  Vec3<double> up_{0, 1, 0};  ///< across the axis, in the section
+  std::vector<std::optional<ImagePoint>> images_;
+  double film_half_ = 0, lens_half_ = 0;
+  std::vector<detail::GlassBody> bodies_;
+  std::vector<SectionLine> mirrors_;
+};
+
+}  // namespace
+
+std::string tilt_figure(const TiltView& view) {
+  check(view);
+  return Figure(view).draw();
+}
+
+}  // namespace petzval

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "support/blur_map.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "../data_lenses.hpp"
+#include "petzval/core/error.hpp"
+#include "petzval/pupil/pupil.hpp"
+#include "support/point_scene.hpp"
+
+namespace {
+
+using examples::PointScene;
+using petzval::ScenePlace;
+
+const petzval::Plane table{{0.1, std::cos(0.3), std::sqrt(1 - 0.01 - std::cos(0.3) * std::cos(0.3))}, -300};
+
+/// Places of a plane at some depths, spread over the picture of a lens of 100 mm.
+std::vector<ScenePlace> places_of(const petzval::Plane& plane) {
+  std::vector<ScenePlace> result;
+  for (const auto& [x, z] :
+       {std::pair{-0.1, -850.0}, {0.12, -900.0}, {0.0, -1000.0}, {-0.13, -1150.0}, {0.1, -1200.0}}) {
+    const double across = x * -z;
+    const petzval::Vec3<double>& n = plane.normal;
+    result.push_back({{across, (plane.offset - n.x * across - n.z * z) / n.y, z}, false});
+  }
+  return result;
+}
+
+double at(const examples::BlurMap& map, double x, double y) {
+  return map
+      .diameter_mm[static_cast<std::size_t>(y) * static_cast<std::size_t>(map.width) + static_cast<std::size_t>(x)];
+}
+
+TEST(PointScene, GoesThroughItsPoints) {
+  const petzval::IdealLens lens = petzval::thick_lens(petzval::testing::data_lens("double_gauss_100mm_f2_28deg"));
+  const petzval::FilmPose film{.film_z = 150};
+  std::vector<ScenePlace> places = places_of(table);
+  places.push_back({{80, 30, -2000}, false});
+  places.push_back({{-0.05, 0.1, -1}, true});
+  const PointScene scene(lens, places);
+  for (const ScenePlace& place : places) {
+    const auto point = examples::on_film(lens, film, place);
+    ASSERT_TRUE(point);
+    const auto found = scene.at(film, *point);
+    ASSERT_TRUE(found);
+    const double depth = lens.pupils.entrance.z - found->position.z;
+    if (place.at_infinity) {
+      EXPECT_TRUE(found->at_infinity || depth > 1e9);
+      continue;
+    }
+    EXPECT_NEAR(found->position.x, place.position.x, 1e-6);
+    EXPECT_NEAR(found->position.y, place.position.y, 1e-6);
+    EXPECT_NEAR(found->position.z, place.position.z, 1e-5);
+  }
+}
+
+TEST(PointScene, WantsAPointInFront) {
+  const std::vector<ScenePlace> behind{{{0, 0, 100}, false}};
+  EXPECT_THROW(PointScene(petzval::thin_lens(50, 2), behind), petzval::Error);
+}
+
+TEST(BlurMap, APlaneIsSharpAllOverOnItsFilm) {
+  const petzval::IdealLens lens = petzval::thin_lens(100, 4);
+  const auto places = places_of(table);
+  const PointScene scene(lens, places);
+  examples::Picture picture{.film = petzval::film_pose(lens.image_of(table).value()), .frame = {36, 24}, .pixels = 180};
+  const auto sharp = examples::blur_map(picture, scene, lens, nullptr, 2);
+  ASSERT_EQ(sharp.width, 180);
+  ASSERT_EQ(sharp.height, 120);
+  for (const double y : {20.0, 60.0, 100.0}) {
+    for (const double x : {20.0, 90.0, 160.0}) EXPECT_LT(std::abs(at(sharp, x, y)), 1e-4) << x << ' ' << y;
+  }
+  picture.film = {.film_z = lens.image(places[2])->position.z};
+  const auto upright = examples::blur_map(picture, scene, lens, nullptr, 2);
+  EXPECT_GT(std::abs(at(upright, 90, 110)), 0.1);
+  EXPECT_EQ(examples::blur_map(picture, scene, lens, nullptr, 1).diameter_mm, upright.diameter_mm);
+}
+
+TEST(BlurMap, IsTheRightWayUpAndSigned) {
+  const petzval::IdealLens lens = petzval::thin_lens(50, 2);
+  // Near at the lower left, far at the upper right.
+  const std::vector<ScenePlace> places{{{-200, -150, -1000}, false}, {{600, 450, -3000}, false}};
+  const examples::Picture picture{
+      .film = {.film_z = lens.image({{0, 0, -1500}, false})->position.z}, .frame = {36, 24}, .pixels = 360};
+  const auto near = picture.pixel(*examples::on_film(lens, picture.film, places[0]));
+  const auto far = picture.pixel(*examples::on_film(lens, picture.film, places[1]));
+  EXPECT_LT(near.first, 180);
+  EXPECT_GT(near.second, 120);
+  EXPECT_GT(far.first, 180);
+  EXPECT_LT(far.second, 120);
+  const auto map = examples::blur_map(picture, PointScene(lens, places), lens, nullptr, 1);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const auto& [x, y] = i == 0 ? near : far;
+    const double blur = petzval::signed_blur(*lens.image(places[i]), picture.film);
+    EXPECT_EQ(blur < 0, i == 0);
+    EXPECT_NEAR(at(map, x, y), blur, 0.02 * std::abs(blur));
+  }
+}
+
+TEST(BlurMap, ExactRaysAgreeWithTheThickLensStoppedDown) {
+  const petzval::Lens lens = petzval::with_f_number(petzval::testing::data_lens("double_gauss_100mm_f2_28deg"), 32);
+  const petzval::PointBundles rays(lens, 30, 96);
+  const auto places = places_of(table);
+  const PointScene scene(rays.ideal(), places);
+  const examples::Picture picture{
+      .film = {.film_z = rays.ideal().image(places[2])->position.z}, .frame = {36, 24}, .pixels = 540};
+  const auto exact = examples::blur_map(picture, scene, rays.ideal(), &rays, 2);
+  const auto ideal = examples::blur_map(picture, scene, rays.ideal(), nullptr, 2);
+  double middle = 0, all = 0, largest = 0;
+  for (int y = 0; y < exact.height; ++y) {
+    for (int x = 0; x < exact.width; ++x) {
+      const double off = std::abs(at(exact, x, y) - at(ideal, x, y));
+      all = std::max(all, off);
+      largest = std::max(largest, std::abs(at(ideal, x, y)));
+      if (std::abs(x - 270) < 120 && std::abs(y - 180) < 84) middle = std::max(middle, off);
+    }
+  }
+  EXPECT_GT(largest, 0.09);
+  EXPECT_LT(middle, 0.01);
+  EXPECT_LT(all, 0.03);  // the curved field
+}
+
+TEST(BlurMap, ScalesReachNearlyAll) {
+  const std::vector<examples::BlurMap> maps{{2, 1, {0.012, -0.034}}, {1, 1, {std::nan("")}}};
+  EXPECT_DOUBLE_EQ(examples::scale_of(std::vector<examples::BlurMap>{{1, 2, {0.012, -0.012}}}), 0.02);
+  EXPECT_DOUBLE_EQ(examples::scale_of(maps), 0.02);  // the 99th percentile of two is the lower
+  EXPECT_DOUBLE_EQ(examples::scale_of(std::vector<examples::BlurMap>{maps[1]}), 1e-3);
+}
+
+}  // namespace

@@ -1,0 +1,356 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "petzval/core/units.hpp"
+#include "petzval/io/prescription_json.hpp"
+#include "petzval/movement/autofocus.hpp"
+#include "petzval/movement/tilt_fit.hpp"
+#include "petzval/pupil/pupil.hpp"
+#include "program.hpp"
+
+namespace {
+
+using nlohmann::json;
+using petzval::radians;
+using Arguments = std::vector<std::string>;
+
+/// Points of a table top, seen from above by a lens of 100 mm.
+constexpr const char* table = R"([{"position_mm": [-75, -73, -720]}, {"position_mm": [95, -54, -766]},
+  {"position_mm": [0, 2, -900]}, {"position_mm": [-150, 86, -1100]}, {"position_mm": [160, 107, -1150]}])";
+const Arguments thin_50{"--model", "thin", "--thin-focal-length-mm", "50", "--f-number", "2"};
+
+class TiltShift : public Programs {
+ protected:
+  Arguments command(Arguments arguments, const std::string& points, const Arguments& more) const {
+    write("points.json", points);
+    for (const std::string& a : {std::string("--points"), path("points.json"), std::string("--out"), path("out")}) {
+      arguments.push_back(a);
+    }
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return arguments;
+  }
+  json result(const Arguments& lens, const std::string& points, Arguments more = {}) const {
+    more.push_back("--json");
+    const auto outcome = run("tilt_shift", command(lens, points, more));
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return json::parse(outcome.out);
+  }
+  json gauss(const std::string& points, Arguments more = {}) const {
+    more.insert(more.end(), {"--f-number", "4"});
+    return result({lens("double_gauss_100mm_f2_28deg")}, points, more);
+  }
+  void refuses(const std::string& points, const std::string& reason, const Arguments& more = {}) const {
+    expect_failure("tilt_shift", command(thin_50, points, more), reason);
+    EXPECT_FALSE(std::filesystem::exists(path("out"))) << points;
+  }
+};
+
+std::vector<petzval::FocusTarget> targets_of(const std::string& points) {
+  std::vector<petzval::FocusTarget> result;
+  for (const json& p : json::parse(points)) {
+    const auto& at = p["position_mm"];
+    result.push_back({{{at[0], at[1], at[2]}, false}, 0, p.value("weight", 1.0)});
+  }
+  return result;
+}
+
+TEST_F(TiltShift, KeepsAnUprightFilmWithoutPoints) {
+  const json thin = result(thin_50, "[]"), real = gauss("[]");
+  for (const json& found : {thin, real}) {
+    EXPECT_EQ(found["status"], "no_targets");
+    EXPECT_EQ(found["film_tilt_deg"], 0);
+    EXPECT_EQ(found["film_swing_deg"], 0);
+    EXPECT_TRUE(found["blur_um"].empty());
+    EXPECT_TRUE(found["hinge_line"].is_null());
+    EXPECT_EQ(found["files"].size(), 1u);
+  }
+  EXPECT_EQ(thin["film_z_mm"], 50);
+  EXPECT_TRUE(thin["plane_normal"].is_null());  // infinity
+}
+
+TEST_F(TiltShift, TakesAnyUnitOfLength) {
+  const json usual = result(thin_50, table);
+  for (const double unit : {1e-6, 1e-3, 1e3, 1e6}) {
+    json points = json::parse(table);
+    for (auto& p : points) {
+      for (auto& x : p["position_mm"]) x = unit * x.get<double>();
+    }
+    const json found = result(
+        {"--model", "thin", "--thin-focal-length-mm", std::to_string(50 * unit), "--f-number", "2"}, points.dump());
+    EXPECT_NEAR(found["film_tilt_deg"], usual["film_tilt_deg"].get<double>(), 1e-9) << unit;
+    EXPECT_NEAR(found["film_z_mm"].get<double>() / unit, usual["film_z_mm"].get<double>(), 1e-9) << unit;
+  }
+}
+
+/// The plane through (0, 0, -2 m) with the normal (0, sin 30, cos 30), and a thin lens of 50 mm: film, hinge line and
+/// Scheimpflug line in closed form.
+TEST_F(TiltShift, SolvesAThinLensExactly) {
+  const double s = std::sin(radians(30)), c = std::cos(radians(30));
+  json points = json::array();
+  for (const auto& [x, y] : {std::pair{0.0, 0.0}, {300.0, 400.0}, {-400.0, -300.0}, {200.0, -250.0}}) {
+    points.push_back({{"position_mm", {x, y, -(2000 * c + s * y) / c}}});
+  }
+  const json found = result(thin_50, points.dump());
+  EXPECT_EQ(found["status"], "solved");
+  EXPECT_NEAR(found["film_tilt_deg"], 0.848136346759917, 1e-9);
+  EXPECT_NEAR(found["film_swing_deg"], 0, 1e-9);
+  EXPECT_NEAR(found["film_z_mm"], 51.282051282051282, 1e-9);
+  EXPECT_NEAR(found["plane_normal"][0], 0, 1e-9);
+  EXPECT_NEAR(found["plane_normal"][1], s, 1e-9);
+  EXPECT_NEAR(found["plane_normal"][2], c, 1e-9);
+  EXPECT_NEAR(found["plane_offset_mm"], -2000 * c, 1e-6);
+  EXPECT_NEAR(found["hinge_line"]["point_mm"][1], -3377.4990747593107, 1e-5);
+  EXPECT_NEAR(found["hinge_line"]["point_mm"][2], -50, 1e-12);
+  EXPECT_NEAR(found["scheimpflug_line"]["point_mm"][1], -3464.1016151377546, 1e-5);
+  EXPECT_NEAR(found["scheimpflug_line"]["point_mm"][2], 0, 1e-12);
+  EXPECT_NEAR(found["scheimpflug_line"]["direction"][0], 1, 1e-9);
+  ASSERT_EQ(found["blur_um"].size(), 4u);
+  for (const json& blur : found["blur_um"]) {
+    EXPECT_LT(std::abs(blur["predicted"].get<double>()), 1e-6);
+    EXPECT_TRUE(blur["traced"].is_null());  // there is no real lens
+  }
+  EXPECT_LT(found["rms_um"], 1e-6);
+  EXPECT_GT(found["before"]["rms_um"], 40);
+}
+
+TEST_F(TiltShift, HasTheKeysThatReadersRelyOn) {
+  const json found = gauss(table);
+  for (const char* key : {"plane_offset_mm", "film_tilt_deg", "film_swing_deg", "film_z_mm", "rms_um"}) {
+    EXPECT_TRUE(found[key].is_number()) << key;
+  }
+  for (const char* key : {"status", "rank", "message", "lens", "model"}) EXPECT_TRUE(found[key].is_string()) << key;
+  for (const char* key : {"hinge_line", "scheimpflug_line"}) {
+    EXPECT_EQ(found[key]["point_mm"].size(), 3u) << key;
+    EXPECT_EQ(found[key]["direction"].size(), 3u) << key;
+  }
+  EXPECT_EQ(found["plane_normal"].size(), 3u);
+  EXPECT_EQ(found["film_centre_mm"].size(), 2u);
+  EXPECT_EQ(found["use"], json::array({"used", "used", "used", "used", "used"}));
+  EXPECT_EQ(found["model"], "real");  // unless said
+  EXPECT_EQ(found["files"].size(), 3u);
+}
+
+TEST_F(TiltShift, SaysWhatTheLibraryFinds) {
+  const std::string id = "double_gauss_100mm_f2_28deg";
+  const petzval::Lens lens =
+      petzval::with_f_number(petzval::compile(petzval::read_prescription(Programs::lens(id))), 4);
+  const auto targets = targets_of(table);
+  for (const std::string model : {"thin", "thick"}) {
+    SCOPED_TRACE(model);
+    const petzval::IdealLens ideal = model == "thin" ? petzval::thin_lens(lens) : petzval::thick_lens(lens);
+    const auto before = petzval::autofocus(ideal, targets, ideal.rear_focal_z);
+    const auto after = petzval::fit_tilt(ideal, targets, {.start = {.film_z = before.film_z}, .frame = {36, 24}});
+    const json found = gauss(table, {"--model", model});
+    EXPECT_EQ(found["before"]["film_z_mm"], before.film_z);
+    EXPECT_EQ(found["film_z_mm"], after.film.film_z);
+    EXPECT_EQ(found["film_tilt_deg"], petzval::degrees(after.film.tilt_rad));
+    EXPECT_EQ(found["film_swing_deg"], petzval::degrees(after.film.swing_rad));
+    const petzval::PointBundles rays(lens, 1.3 * std::hypot(18, 12), 4096);
+    for (std::size_t i = 0; i < targets.size(); ++i) {
+      EXPECT_EQ(found["blur_um"][i]["predicted"], 1e3 * after.blurs[i].blur_mm);
+      const auto traced = petzval::blur_on(rays.bundle(targets[i].place), after.film);
+      EXPECT_NEAR(found["blur_um"][i]["traced"], 1e3 * traced->signed_diameter, 1e-2 * 1e3 * traced->rms_radius);
+    }
+  }
+}
+
+TEST_F(TiltShift, TheRealLensIsSharperTiltedAndThePredictionHolds) {
+  const json found = gauss(table);
+  EXPECT_EQ(found["status"], "solved");
+  EXPECT_GT(found["film_tilt_deg"], 10);
+  for (std::size_t i = 0; i < 5; ++i) {
+    const double before = found["before"]["blur_um"][i], predicted = found["blur_um"][i]["predicted"],
+                 traced = found["blur_um"][i]["traced"];
+    EXPECT_NEAR(predicted, traced, 0.05 * std::abs(traced)) << i;
+    if (i == 2) continue;  // the one in the middle is sharp before
+    EXPECT_LT(std::abs(traced), 0.5 * std::abs(before)) << i;
+  }
+  EXPECT_LT(found["rms_um"], 0.25 * found["before"]["rms_um"].get<double>());
+  // The plane is that of the points, which lie in one within a millimetre, wherever aberrations put the film.
+  for (const petzval::FocusTarget& target : targets_of(table)) {
+    const auto& p = target.place.position;
+    const double along = found["plane_normal"][0].get<double>() * p.x + found["plane_normal"][1].get<double>() * p.y +
+                         found["plane_normal"][2].get<double>() * p.z;
+    EXPECT_NEAR(along, found["plane_offset_mm"], 1);
+  }
+  // Exact rays know of spherical aberration what cardinal points do not.
+  const json thick = gauss(table, {"--model", "thick"});
+  EXPECT_LT(std::abs(thick["rms_um"].get<double>()), 5);
+  double real_squares = 0, thick_squares = 0;
+  for (std::size_t i = 0; i < 5; ++i) {
+    real_squares += std::pow(found["blur_um"][i]["traced"].get<double>(), 2);
+    thick_squares += std::pow(thick["blur_um"][i]["traced"].get<double>(), 2);
+  }
+  EXPECT_LT(real_squares, thick_squares);
+}
+
+TEST_F(TiltShift, GivesTheLeastTiltWhereThePointsFixNoPlane) {
+  const auto check = [&](const std::string& points, const std::string& rank, const std::string& words) {
+    SCOPED_TRACE(points);
+    const json found = result(thin_50, points);
+    EXPECT_EQ(found["status"], "least_tilt");
+    EXPECT_EQ(found["rank"], rank);
+    EXPECT_NE(found["message"].get<std::string>().find(words), std::string::npos) << found["message"];
+    for (const json& blur : found["blur_um"]) EXPECT_LT(std::abs(blur["predicted"].get<double>()), 1e-6);
+    return found;
+  };
+  const json one = check(R"([{"position_mm": [100, 50, -1000]}])", "point", "upright");
+  EXPECT_EQ(one["film_tilt_deg"], 0);
+  EXPECT_EQ(one["film_swing_deg"], 0);
+  EXPECT_TRUE(one["hinge_line"].is_null());
+  EXPECT_TRUE(one["scheimpflug_line"].is_null());
+  EXPECT_NEAR(one["plane_normal"][2], 1, 1e-12);
+  const std::string twice = R"({"position_mm": [100, 50, -1000]})";
+  check("[" + twice + "," + twice + "]", "point", "upright");
+  // Side by side: all the slope there is lies along x.
+  const json two = check(R"([{"position_mm": [-200, 0, -1000]}, {"position_mm": [300, 0, -1500]}])", "line", "line");
+  EXPECT_NEAR(two["film_tilt_deg"], 0, 1e-9);
+  EXPECT_GT(std::abs(two["film_swing_deg"].get<double>()), 0.1);
+  // One line in space.
+  check(R"([{"position_mm": [-200, 0, -1000]}, {"position_mm": [50, 0, -1250]}, {"position_mm": [300, 0, -1500]}])",
+        "line", "line");
+}
+
+TEST_F(TiltShift, KeepsTheLimit) {
+  const json found = gauss(table, {"--max-tilt-deg", "2"});
+  EXPECT_EQ(found["status"], "limited");
+  const double tilt = radians(found["film_tilt_deg"]), swing = radians(found["film_swing_deg"]);
+  EXPECT_NEAR(petzval::degrees(std::acos(std::cos(tilt) * std::cos(swing))), 2, 1e-6);
+  EXPECT_LT(found["rms_um"], found["before"]["rms_um"]);
+}
+
+TEST_F(TiltShift, SaysWhatBecameOfEveryPoint) {
+  const std::string points = R"([{"position_mm": [-200, -100, -1000]}, {"position_mm": [200, -100, -1000]},
+    {"position_mm": [0, 150, -1400]}, {"position_mm": [0, 0, 500]}, {"position_mm": [0, 0, -20]},
+    {"position_mm": [10, 20, -1300], "weight": 0}, {"position_mm": [0, 3000, -1000]}])";
+  const json all = result(thin_50, points);
+  EXPECT_EQ(all["use"], json::array({"used", "used", "used", "no_image", "no_image", "no_weight", "used"}));
+  const json framed = result(thin_50, points, {"--film-mm", "36x24"});
+  EXPECT_EQ(framed["use"],
+            json::array({"used", "used", "used", "no_image", "no_image", "no_weight", "outside_picture"}));
+  for (const std::size_t i : {3u, 4u, 6u}) {
+    EXPECT_TRUE(framed["blur_um"][i]["predicted"].is_null()) << i;
+    EXPECT_TRUE(framed["blur_um"][i]["traced"].is_null()) << i;
+  }
+  EXPECT_TRUE(framed["blur_um"][5]["predicted"].is_number());
+  EXPECT_EQ(framed["rank"], "plane");
+}
+
+TEST_F(TiltShift, TakesPointsAtInfinityAndWantedBlurs) {
+  const json far = result(thin_50, R"([{"position_mm": [0, -150, -1000]}, {"position_mm": [100, -150, -3000]},
+    {"position_mm": [0, 0.1, -2], "at_infinity": true}])");
+  EXPECT_EQ(far["status"], "solved");
+  for (const json& blur : far["blur_um"]) EXPECT_LT(std::abs(blur["predicted"].get<double>()), 1e-6);
+  const json blurred = result(thin_50, R"([{"position_mm": [0, 0, -1000], "blur_mm": 0.05}])");
+  EXPECT_NEAR(blurred["blur_um"][0]["predicted"], 50, 1e-6);
+  // Beyond the plane of focus, which is nearer then.
+  EXPECT_GT(blurred["plane_offset_mm"], -1000);
+  const json infinity = result(thin_50, R"([{"position_mm": [0, 0, -1], "at_infinity": true}])");
+  EXPECT_TRUE(infinity["plane_normal"].is_null());
+  EXPECT_TRUE(infinity["plane_offset_mm"].is_null());
+}
+
+TEST_F(TiltShift, RobustLeavesOutliersOut) {
+  std::string points = table;
+  points.insert(points.rfind(']'), R"(, {"position_mm": [60, 40, -650]}, {"position_mm": [-40, 20, -943]},
+    {"position_mm": [50, -20, -848]})");
+  const json clean = gauss(table), robust = gauss(points, {"--robust"}), plain = gauss(points);
+  EXPECT_EQ(robust["use"][5], "outlier");
+  EXPECT_EQ(robust["use"][0], "used");
+  EXPECT_EQ(plain["use"][5], "used");
+  EXPECT_NEAR(robust["film_tilt_deg"], clean["film_tilt_deg"].get<double>(), 0.2);
+  EXPECT_GT(std::abs(plain["film_tilt_deg"].get<double>() - clean["film_tilt_deg"].get<double>()), 1);
+  EXPECT_GT(std::abs(robust["blur_um"][5]["traced"].get<double>()), 500);
+}
+
+TEST_F(TiltShift, WritesThreePicturesAndNothingElse) {
+  const auto outcome = run("tilt_shift", command(thin_50, table, {}));
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  std::set<std::string> names;
+  for (const auto& file : std::filesystem::directory_iterator(path("out"))) names.insert(file.path().filename());
+  EXPECT_EQ(names, (std::set<std::string>{"thin_lens_side.svg", "thin_lens_before.png", "thin_lens_after.png"}));
+  EXPECT_TRUE(read(path("out/thin_lens_before.png")).starts_with("\x89PNG"));
+  EXPECT_TRUE(read(path("out/thin_lens_after.png")).starts_with("\x89PNG"));
+  EXPECT_NE(read(path("out/thin_lens_before.png")), read(path("out/thin_lens_after.png")));
+  const std::string svg = read(path("out/thin_lens_side.svg"));
+  EXPECT_TRUE(svg.starts_with("<svg"));
+  EXPECT_TRUE(svg.ends_with("</svg>\n"));
+  for (const std::string& name : names) EXPECT_NE(outcome.out.find(name), std::string::npos) << name;
+}
+
+TEST_F(TiltShift, SaysInWordsWhatItDid) {
+  const auto words = [&](const std::string& points, const Arguments& more = {}) {
+    const auto outcome = run("tilt_shift", command(thin_50, points, more));
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_EQ(outcome.out.find("nan"), std::string::npos);
+    return outcome.out;
+  };
+  const auto has = [](const std::string& text, const std::string& part) {
+    EXPECT_NE(text.find(part), std::string::npos) << text;
+  };
+  has(words(table), "solved: the points fix the plane of focus");
+  has(words(R"([{"position_mm": [0, 0, -1000]}])"), "least tilt: one place");
+  has(words(R"([{"position_mm": [0, 9, -1000]}, {"position_mm": [0, -90, -900]}])"), "no slope across it");
+  has(words(table, {"--max-tilt-deg", "1"}), "limited: the film may lean by 1 degrees only");
+  has(words(R"([{"position_mm": [0, 0, -1000]}, {"position_mm": [0, 0, 10]}])"),
+      "left out: the lens forms no image of it");
+}
+
+TEST_F(TiltShift, RefusesPointsThatAreNone) {
+  refuses("what", "points.json: not JSON: ");
+  refuses("", "points.json: not JSON: ");
+  refuses(R"([{"position_mm": [0, 0, NaN]}])", "points.json: not JSON: ");
+  refuses(R"([{"position_mm": [0, 0, -1e999]}])", "points.json: not JSON: ");
+  refuses(R"({"position_mm": [0, 0, -1000]})", "wanted a list of one point or more");
+  refuses("[1]", "points.json: point 1: found 1, wanted an object with position_mm");
+  refuses(R"([{"position_mm": [0, 0, -1000]}, {"position_mm": [0, -1000]}])",
+          "points.json: point 2: position_mm: found [0,-1000], wanted three finite numbers");
+  refuses(R"([{"position_mm": [0, "0", -1000]}])", "position_mm: found [0,\"0\",-1000], wanted three");
+  refuses(R"([{"position_mm": [0, null, -1000]}])", "wanted three finite numbers");
+  refuses(R"([{"weight": 1}])", "points.json: point 1: position_mm: found none");
+  refuses(R"([{"position_mm": [0, 0, -1000], "weight": -1}])", "weight: found -1, wanted a finite number, 0 or more");
+  refuses(R"([{"position_mm": [0, 0, -1000], "weight": "1"}])", "weight: found \"1\"");
+  refuses(R"([{"position_mm": [0, 0, -1000], "blur_mm": true}])", "blur_mm: found true, wanted a finite number");
+  refuses(R"([{"position_mm": [0, 0, -1000], "at_infinity": 1}])", "at_infinity: found 1, wanted true or false");
+  refuses(R"([{"position_mm": [0, 0, -1000], "wieght": 2}])", "found the key \"wieght\", wanted position_mm, weight");
+  refuses(R"([{"position_mm": [0, 0, -1000], "position_mm": [0, 0, -1]}])", "found the key \"position_mm\" twice");
+}
+
+TEST_F(TiltShift, RefusesPointsThatCannotBeInFocus) {
+  refuses(R"([{"position_mm": [0, 0, 1000]}])",
+          "found no point to focus on (point 1 is left out: the lens forms no image of it");
+  refuses(R"([{"position_mm": [0, 0, 0]}])", "found no point to focus on");
+  refuses(R"([{"position_mm": [0, 0, -1000], "weight": 0}])", "its weight is 0");
+  refuses(R"([{"position_mm": [0, 900, -1000]}])", "outside the picture", {"--film-mm", "36x24"});
+}
+
+TEST_F(TiltShift, ExplainsItselfAndRefusesABadCommandLine) {
+  const auto help = run("tilt_shift", {"--help"});
+  EXPECT_EQ(help.status, 0);
+  EXPECT_NE(help.out.find("Usage: tilt_shift"), std::string::npos);
+  EXPECT_NE(help.out.find("position_mm"), std::string::npos);
+  write("points.json", table);
+  const Arguments rest{"--points", path("points.json"), "--out", path("out")};
+  const auto fails = [&](Arguments arguments, const std::string& reason) {
+    arguments.insert(arguments.end(), rest.begin(), rest.end());
+    expect_failure("tilt_shift", arguments, reason);
+  };
+  const std::string file = lens("double_gauss_100mm_f2_28deg");
+  expect_failure("tilt_shift", {file, "--out", path("out")}, "--points is required");
+  expect_failure("tilt_shift", {file, "--points", path("points.json")}, "--out is required");
+  expect_failure("tilt_shift", {file, "--points", path("none.json"), "--out", path("out")}, "none.json");
+  fails({}, "LENS.json is required, or --model thin");
+  fails({path("none.json")}, "none.json: cannot be opened");
+  fails({"--thin-focal-length-mm", "50", "--f-number", "2"}, "found with --model real, wanted --model thin");
+  fails({"--model", "thin", "--thin-focal-length-mm", "50"}, "found no --f-number");
+  fails({"--model", "thin", "--thin-focal-length-mm", "0", "--f-number", "2"}, "--thin-focal-length-mm: found \"0\"");
+  fails({file, "--model", "thin", "--thin-focal-length-mm", "50", "--f-number", "2"}, "wanted one of them");
+  fails({file, "--model", "perfect"}, "--model");
+  fails({file, "--max-tilt-deg", "90"}, "--max-tilt-deg: found \"90\", wanted a number of degrees from 0 to 89");
+  fails({file, "--film-mm", "36"}, "--film-mm: found \"36\", wanted a size like 36x24");
+  fails({file, "--f-number", "0.1"}, "fast");
+}
+
+}  // namespace
