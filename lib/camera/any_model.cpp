@@ -14,6 +14,10 @@ AnyModel make_model(Model model, const Lens& lens, double film_radius) {
   return PolynomialModel(RayPolynomial::fit(lens, pupils, degree), pupils);
 }
 
+const PupilMap& pupil_map_of(const AnyModel& model) noexcept {
+  return std::visit([](const auto& m) -> const PupilMap& { return m.pupils(); }, model);
+}
+
 Model kind_of(const AnyModel& model) noexcept {
   struct Kind {
     Model operator()(const ParaxialModel& m) const noexcept { return m.model(); }

@@ -69,23 +69,25 @@ double on_axis(const auto& model, const auto& film, std::size_t wavelength) {
 
 std::vector<double> scales(const Lens& lens, const Film& film, const AnyModel& model, Normalisation normalisation) {
   std::vector<double> result;
-  for (std::size_t w = 0; w < lens.wavelengths_nm().size(); ++w) {
-    if (normalisation == Normalisation::irradiance) {
+  const std::size_t wavelengths = lens.wavelengths_nm().size();
+  if (normalisation == Normalisation::irradiance) {
+    for (std::size_t w = 0; w < wavelengths; ++w) {
       const double index = lens.index(lens.surface_count(), w);
       result.push_back(index * index);
-      continue;
     }
-    // A film of its own, for shifted ones are beside the axis: small, for no more than its middle matters.
-    constexpr double part = 1. / 1024;
-    const Film about{.width_mm = part * film.width_mm,
-                     .height_mm = part * film.height_mm,
-                     .tilt_rad = film.tilt_rad,
-                     .swing_rad = film.swing_rad};
-    const double axis = std::visit(
-        [&](const auto& m) {
-          return film.tilted() ? on_axis(m, TiltedFilm(about, m.pupils()), w) : on_axis(m, about, w);
-        },
-        model);
+    return result;
+  }
+  // A film of its own, for shifted ones are beside the axis: small, for no more than its middle matters.
+  constexpr double part = 1. / 1024;
+  const Film about{.width_mm = part * film.width_mm,
+                   .height_mm = part * film.height_mm,
+                   .tilt_rad = film.tilt_rad,
+                   .swing_rad = film.swing_rad};
+  std::optional<TiltedFilm> tilted;
+  if (film.tilted()) tilted.emplace(about, pupil_map_of(model));
+  for (std::size_t w = 0; w < wavelengths; ++w) {
+    const double axis =
+        std::visit([&](const auto& m) { return tilted ? on_axis(m, *tilted, w) : on_axis(m, about, w); }, model);
     if (!(axis > 0)) {
       throw Error(lens.name() + ": camera: the axis is dark, wanted light there for weights that are unity on it");
     }
@@ -104,7 +106,7 @@ Camera::Camera(const Lens& lens, const Film& film, const CameraOptions& options)
 
 Camera::Camera(const Lens& lens, const Film& film, AnyModel model, Normalisation normalisation) {
   detail::check_film(lens, film);
-  const PupilMap& pupils = std::visit([](const auto& m) -> const PupilMap& { return m.pupils(); }, model);
+  const PupilMap& pupils = pupil_map_of(model);
   check_model(lens, film, kind_of(model), pupils);
   std::optional<TiltedFilm> tilted;
   if (film.tilted()) tilted.emplace(film, pupils);
@@ -116,9 +118,7 @@ Camera::Camera(const Lens& lens, const Film& film, AnyModel model, Normalisation
 const Lens& Camera::lens() const noexcept { return data_->lens; }
 const Film& Camera::film() const noexcept { return data_->film; }
 Model Camera::model() const noexcept { return kind_of(data_->model); }
-const PupilMap& Camera::pupils() const noexcept {
-  return std::visit([](const auto& m) -> const PupilMap& { return m.pupils(); }, data_->model);
-}
+const PupilMap& Camera::pupils() const noexcept { return pupil_map_of(data_->model); }
 
 const TiltedFilm* Camera::tilted_film() const noexcept { return data_->scene.tilted(); }
 

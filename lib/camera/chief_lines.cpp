@@ -88,7 +88,7 @@ std::optional<Ray<double>> to_scene(const ParaxialModel& model, std::size_t wave
 
 ChiefLines::ChiefLines(const Lens& lens, const AnyModel& model, double film_radius, std::size_t wavelength) {
   const auto* first_order = std::get_if<ParaxialModel>(&model);
-  const FilmSpace space = std::visit([](const auto& m) { return m.pupils().space(); }, model);
+  const FilmSpace space = pupil_map_of(model).space();
   // Adds a chief ray; false where it does not get to the scene.
   const auto add = [&](Meridian& nodes, Section section, const Heights& h, double ratio) {
     const auto ray =

@@ -36,10 +36,6 @@ double squared(double x) noexcept { return x * x; }
 
 bool finite(const Vec3<double>& v) noexcept { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
-const PupilMap& pupils_of(const AnyModel& any) noexcept {
-  return std::visit([](const auto& m) -> const PupilMap& { return m.pupils(); }, any);
-}
-
 /// What of the model's lines leaves for the scene.
 std::vector<std::vector<Ray<double>>> lines_of(const Lens& lens, const auto& model) {
   return leaving_rays(model.pupils(), lens.rotationally_symmetric(),
@@ -94,7 +90,7 @@ SceneSide::SceneSide(const Lens& lens, const Film& film, std::optional<TiltedFil
     : film_(film),
       tilted_(std::move(tilted)),
       upright_radius_(upright_radius(lens, film, kind_of(model))),
-      space_(pupils_of(model).space()),
+      space_(pupil_map_of(model).space()),
       entrance_(entrance_of(lens, model)) {
   for (std::size_t w = 0; w < scale.size(); ++w) {
     const double n = lens.index(0, w), n_film = lens.index(lens.surface_count(), w), etendue = squared(n / n_film);
@@ -166,7 +162,7 @@ Importance SceneSide::importance(const AnyModel& any, const Ray<double>& ray, st
   const auto met = on_film(upright, pupil);
   Importance result = met_by(arrival, met);
   if (result.fate != RayFate::transmitted) return result;
-  const PupilMap &passing = pupils_of(any), &sampled = tilted_ ? tilted_->pupils() : passing;
+  const PupilMap &passing = pupil_map_of(any), &sampled = tilted_ ? tilted_->pupils() : passing;
   const bool no_rims = std::holds_alternative<ParaxialModel>(any) || std::holds_alternative<PolynomialModel>(any);
   if (no_rims && !passing.contains(upright, pupil.x, pupil.y, wavelength)) {
     result.fate = RayFate::vignetted;
@@ -200,7 +196,7 @@ ImportanceSample SceneSide::through_pinhole(const AnyModel& model, const Vec3<do
   const auto met = on_film(arrival.upright, arrival.pupil);
   Importance& seen = result.importance = met_by(arrival, met);
   if (seen.fate != RayFate::transmitted) return result;
-  const PupilSample s = pupils_of(model).sample(arrival.upright, u, v, wavelength);
+  const PupilSample s = pupil_map_of(model).sample(arrival.upright, u, v, wavelength);
   FilmPoint place{s.x, s.y};
   double area = s.area, spread = 1;
   if (tilted_) {

@@ -105,7 +105,7 @@ Projection SceneSide::project(const AnyModel& any, const Vec3<double>& point, st
   }
   const bool rims = !std::holds_alternative<ParaxialModel>(any) && !std::holds_alternative<PolynomialModel>(any);
   const auto [x, y] = chiefs.pupil_point(film);
-  const PupilMap& pupils = std::visit([](const auto& m) -> const PupilMap& { return m.pupils(); }, any);
+  const PupilMap& pupils = pupil_map_of(any);
   const bool within = rims || pupils.contains(film, x, y, wavelength);
   return done(within ? ProjectionStatus::converged : ProjectionStatus::vignetted);
 }

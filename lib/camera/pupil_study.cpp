@@ -42,7 +42,7 @@ EvenPoints even_points(const ErrorSamples& samples, std::size_t place) noexcept 
 }  // namespace
 
 ModelPupils pupils_of(const AnyModel& model) {
-  return {std::visit([](const auto& m) { return m.pupils(); }, model),
+  return {pupil_map_of(model),
           tracing_within(model),
           tracing(model),
           kind_of(model) == Model::pinhole,

@@ -50,7 +50,7 @@ class Work {
 std::vector<double> time_rays(std::span<const AnyModel> models, const Film& film) {
   std::vector<double> best(models.size(), std::numeric_limits<double>::infinity());
   if (models.empty()) return best;
-  const std::size_t wavelengths = std::visit([](const auto& m) { return m.pupils().wavelengths(); }, models[0]);
+  const std::size_t wavelengths = pupil_map_of(models[0]).wavelengths();
   Work<float> in_float(film, wavelengths);
   Work<double> in_double(film, wavelengths);
   for (int round = 0; round < rounds; ++round) {

@@ -5,12 +5,14 @@
 #include <cmath>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "petzval/core/bisect.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/text.hpp"
+#include "petzval/focus/image.hpp"
+#include "rms_error.hpp"
 #include "signed_diameter.hpp"
-#include "weighted_rms.hpp"
 
 namespace petzval {
 namespace {
@@ -61,10 +63,12 @@ std::optional<double> least_squares(std::span<const FocusTarget> targets, std::s
   return from + sum / weights;
 }
 
-/// Films: where it stood, and what infinity is in focus on. blur_of: of a target that has an image, on a film.
+/// Where the film stood, and what infinity is in focus on.
 struct Films {
   double before = 0, at_infinity = 0;
 };
+
+/// blur_of: of a target that has an image, on a film.
 Autofocus described(const IdealLens& lens, std::span<const FocusTarget> targets, std::span<const Asked> asked,
                     const Films& films, std::optional<double> found, const auto& blur_of) {
   using enum Autofocus::Status;
@@ -72,124 +76,52 @@ Autofocus described(const IdealLens& lens, std::span<const FocusTarget> targets,
   result.status = !found ? no_targets : std::isfinite(*found) && *found > lens.rear_z ? solved : unreachable;
   result.film_z = result ? *found : films.before;
 
-  std::vector<double> errors, weights;
   for (std::size_t i = 0; i < targets.size(); ++i) {
     const double blur = std::isnan(asked[i].film_z) ? nan : blur_of(i, result.film_z);
     result.blurs.push_back({asked[i].use, targets[i].blur_mm, blur});
-    if (asked[i].use != TargetUse::used) continue;
-    errors.push_back(blur - targets[i].blur_mm);
-    weights.push_back(targets[i].weight);
   }
-  result.rms_mm = detail::weighted_rms(errors, weights);
+  result.rms_mm = detail::rms_error(targets, result.blurs);
 
   result.breathing = lens.growth(result.film_z, films.at_infinity);
   result.magnification_change = lens.growth(result.film_z, films.before);
   return result;
 }
 
-/// The rays of a target about their centroid.
-struct Lines {
-  double plane_z = 0;
-  std::vector<double> x, y, slope_x, slope_y;
-
-  explicit Lines(const PointBundle& b) : plane_z(b.plane_z), x(b.x), y(b.y), slope_x(b.slope_x), slope_y(b.slope_y) {
-    for (auto* values : {&x, &y, &slope_x, &slope_y}) {
-      double sum = 0;
-      for (const double value : *values) sum += value;
-      for (double& value : *values) value -= sum / static_cast<double>(values->size());
-    }
+/// The rays of a bundle about their centroid.
+std::vector<detail::Line> lines_of(const PointBundle& bundle) {
+  const std::size_t count = bundle.x.size();
+  const double each = 1 / static_cast<double>(count);
+  detail::Line mean;
+  for (std::size_t i = 0; i < count; ++i) {
+    mean.x += each * bundle.x[i], mean.y += each * bundle.y[i];
+    mean.slope_x += each * bundle.slope_x[i], mean.slope_y += each * bundle.slope_y[i];
   }
-  std::size_t count() const noexcept { return x.size(); }
-};
-
-/// The mean square diameter is a parabola over the film's position: where it is least, how much it is there, how steep
-/// it becomes. An even disc has an RMS radius of its diameter over the root of 8.
-struct RmsBlur {
-  double film_z = nan, least = 0, steepness = 0;
-
-  explicit RmsBlur(const Lines& lines) {
-    if (lines.count() == 0) return;
-    double covariance = 0, variance = 0, squares = 0;
-    for (std::size_t i = 0; i < lines.count(); ++i) {
-      covariance += lines.x[i] * lines.slope_x[i] + lines.y[i] * lines.slope_y[i];
-      variance += square(lines.slope_x[i]) + square(lines.slope_y[i]);
-    }
-    const double shift = -covariance / variance;
-    for (std::size_t i = 0; i < lines.count(); ++i) {
-      squares += square(lines.x[i] + shift * lines.slope_x[i]) + square(lines.y[i] + shift * lines.slope_y[i]);
-    }
-    const auto count = static_cast<double>(lines.count());
-    film_z = lines.plane_z + shift;
-    least = std::sqrt(8 * squares / count);
-    steepness = std::sqrt(8 * variance / count);
+  std::vector<detail::Line> lines;
+  for (std::size_t i = 0; i < count; ++i) {
+    lines.push_back({bundle.x[i] - mean.x, bundle.y[i] - mean.y, bundle.slope_x[i] - mean.slope_x,
+                     bundle.slope_y[i] - mean.slope_y, each});
   }
-  /// Signed diameter.
-  double at(double z) const noexcept {
-    const double defocus = steepness * (z - film_z);
-    return detail::signed_diameter(std::hypot(least, defocus), defocus);
-  }
-  double film_of(double wanted) const noexcept {
-    if (!(std::abs(wanted) > least)) return film_z;
-    return film_z + std::copysign(std::sqrt(square(wanted) - square(least)) / steepness, wanted);
-  }
-};
+  return lines;
+}
 
-/// The largest radius of several targets, each times a scale and on a film of its own, some way from the common one.
-class LargestRadius {
- public:
-  void add(const Lines& lines, double scale, double shift) {
-    for (std::size_t i = 0; i < lines.count(); ++i) {
-      const double to_film = -lines.plane_z - shift, u = lines.slope_x[i], v = lines.slope_y[i];
-      rays_.push_back({scale * (lines.x[i] + to_film * u), scale * (lines.y[i] + to_film * v), scale * u, scale * v});
-    }
-  }
-  double at(double film_z) const noexcept { return std::sqrt(farthest(film_z).square); }
-  double signed_diameter(double film_z) const noexcept { return std::copysign(2 * at(film_z), film_z - least()); }
+/// The signed diameter on a film, by least RMS or by the largest radius.
+double signed_diameter(const detail::Image& image, double film_z) noexcept {
+  const double away = film_z - image.film_z, diameter = image.diameter(film_z);
+  return image.lines.empty() ? detail::signed_diameter(diameter, image.slope * away) : std::copysign(diameter, away);
+}
 
-  /// Squared radii are parabolas over the film's position, the largest of them is convex: it falls where the parabola
-  /// that is largest there falls.
-  double least() const noexcept {
-    double low = HUGE_VAL, high = -HUGE_VAL;
-    for (const Line& ray : rays_) {
-      const double steepness = square(ray.slope_x) + square(ray.slope_y);
-      if (steepness == 0) continue;
-      const double vertex = -(ray.x * ray.slope_x + ray.y * ray.slope_y) / steepness;
-      low = std::min(low, vertex), high = std::max(high, vertex);
-    }
-    if (!(low < high) || farthest(low).rises) return low;
-    return detail::last_with(low, high, [&](double film_z) { return !farthest(film_z).rises; });
+/// The film on the side of `wanted` where the diameter is that much; the sharpest where it always is more.
+double film_of(const detail::Image& image, double wanted) noexcept {
+  if (wanted == 0) return image.film_z;
+  if (image.lines.empty()) {
+    if (!(std::abs(wanted) > image.least)) return image.film_z;
+    return image.film_z + std::copysign(std::sqrt(square(wanted) - square(image.least)) / image.slope, wanted);
   }
-
-  /// The film on the side of `wanted` where twice the radius is that much; the sharpest where it always is more.
-  double film_of(double wanted) const noexcept {
-    const double sharpest = least();
-    const auto within = [&](double film_z) { return 2 * at(film_z) <= std::abs(wanted); };
-    if (wanted == 0) return sharpest;
-    double away = wanted;
-    while (within(sharpest + away)) away *= 2;
-    return detail::last_with(sharpest, sharpest + away, within);
-  }
-
- private:
-  struct Line {
-    double x = 0, y = 0, slope_x = 0, slope_y = 0;  // where z = 0
-  };
-  struct Farthest {
-    double square = -1;
-    bool rises = false;
-  };
-  Farthest farthest(double film_z) const noexcept {
-    Farthest result;
-    for (const Line& ray : rays_) {
-      const double x = ray.x + film_z * ray.slope_x, y = ray.y + film_z * ray.slope_y;
-      const double radius2 = square(x) + square(y);
-      if (radius2 > result.square) result = {radius2, x * ray.slope_x + y * ray.slope_y > 0};
-    }
-    return result;
-  }
-
-  std::vector<Line> rays_;
-};
+  const auto within = [&](double film_z) { return image.diameter(film_z) <= std::abs(wanted); };
+  double away = wanted;
+  while (within(image.film_z + away)) away *= 2;
+  return detail::last_with(image.film_z, image.film_z + away, within);
+}
 
 }  // namespace
 
@@ -227,20 +159,24 @@ Autofocus autofocus(const PointBundles& lens, std::span<const FocusTarget> targe
                 ", wanted min_rms or min_max, or an ideal lens");
   }
   const bool rms = criterion == FocusCriterion::min_rms;
+  const double plane_z = lens.lens().surfaces().back().vertex_z;
   std::vector<Asked> asked;
-  std::vector<RmsBlur> blurs;
-  std::vector<LargestRadius> radii;
-  std::vector<Lines> lines;
+  std::vector<std::vector<detail::Line>> lines;
+  std::vector<detail::Image> images;  // by the criterion, of targets that have one
   for (const FocusTarget& target : targets) {
-    const PointBundle bundle = lens.bundle(target.place);
-    const RmsBlur& blur = blurs.emplace_back(lines.emplace_back(bundle));
-    LargestRadius& radius = radii.emplace_back();
-    Asked asks{.use = TargetUse::used, .film_z = nan, .steepness = blur.steepness};
-    if (bundle.empty()) {
+    lines.push_back(lines_of(lens.bundle(target.place)));
+    detail::Image& image = images.emplace_back();
+    Asked asks;
+    if (lines.back().empty()) {
       asks.use = lens.ideal().image(target.place) ? TargetUse::no_rays : TargetUse::no_image;
-    } else if (blur.film_z > lens.ideal().rear_z) {  // else rays run apart behind the lens
-      asks.film_z = blur.film_of(target.blur_mm);
-      if (!rms) radius.add(lines.back(), 1, 0);
+    } else {
+      image = detail::least_rms(lines.back(), plane_z);
+      asks.steepness = image.slope;
+      // Else rays run apart behind the lens.
+      if (image.film_z > lens.ideal().rear_z) {
+        asks.film_z = film_of(image, target.blur_mm);
+        if (!rms) image = detail::least_maximum(lines.back(), plane_z);
+      }
     }
     asked.push_back(judged(lens.ideal(), target, asks));
   }
@@ -248,23 +184,22 @@ Autofocus autofocus(const PointBundles& lens, std::span<const FocusTarget> targe
   std::optional<double> found = least_squares(targets, asked);
   if (!rms && found) {
     const double largest = largest_weight(targets, asked);
-    LargestRadius all;
+    std::vector<detail::Line> all;
     for (std::size_t i = 0; i < targets.size(); ++i) {
       if (asked[i].use != TargetUse::used) continue;
-      const double wanted = targets[i].blur_mm;
-      all.add(lines[i], targets[i].weight / largest, wanted == 0 ? 0 : radii[i].film_of(wanted) - radii[i].least());
+      const double scale = targets[i].weight / largest;
+      const double shift = film_of(images[i], targets[i].blur_mm) - images[i].film_z;
+      for (const auto& [x, y, u, v, weight] : lines[i]) {
+        all.push_back({scale * (x - shift * u), scale * (y - shift * v), scale * u, scale * v, weight});
+      }
     }
-    found = all.least();
+    found = detail::least_maximum(std::move(all), plane_z).film_z;
   }
-  const Lines far(lens.bundle({{0, 0, -1}, true}));
-  double at_infinity = RmsBlur(far).film_z;
-  if (!rms && far.count() > 0) {
-    LargestRadius radius;
-    radius.add(far, 1, 0);
-    at_infinity = radius.least();
-  }
+  const std::vector<detail::Line> far = lines_of(lens.bundle({{0, 0, -1}, true}));
+  double at_infinity = nan;
+  if (!far.empty()) at_infinity = (rms ? detail::least_rms(far, plane_z) : detail::least_maximum(far, plane_z)).film_z;
   return described(lens.ideal(), targets, asked, {lens.lens().film_z(), at_infinity}, found,
-                   [&](std::size_t i, double z) { return rms ? blurs[i].at(z) : radii[i].signed_diameter(z); });
+                   [&](std::size_t i, double z) { return signed_diameter(images[i], z); });
 }
 
 std::vector<FocusTarget> region_targets(const Vec3<double>& centre, const Vec3<double>& half_width,

@@ -9,9 +9,9 @@
 
 #include "petzval/core/error.hpp"
 #include "petzval/core/text.hpp"
+#include "rms_error.hpp"
 #include "tilt_problem.hpp"
 #include "tilt_rays.hpp"
-#include "weighted_rms.hpp"
 
 namespace petzval {
 namespace {
@@ -78,15 +78,10 @@ TiltFit described(const IdealLens& lens, std::span<const FocusTarget> targets, c
     }
   }
   fit.focus = focus_plane(lens, fit.film);
-  std::vector<double> errors, weights;
   for (std::size_t i = 0; i < targets.size(); ++i) {
-    const TargetBlur blur{seen[i].use, targets[i].blur_mm, blur_of(i, fit.film)};
-    fit.blurs.push_back(blur);
-    if (!(seen[i].weight > 0)) continue;
-    errors.push_back(blur.blur_mm - blur.wanted_mm);
-    weights.push_back(targets[i].weight);
+    fit.blurs.push_back({seen[i].use, targets[i].blur_mm, blur_of(i, fit.film)});
   }
-  fit.rms_mm = detail::weighted_rms(errors, weights);
+  fit.rms_mm = detail::rms_error(targets, fit.blurs);
   return fit;
 }
 

@@ -180,8 +180,8 @@ static_assert(RayModel<HoleModel>);
 static_assert(RayModel<ParaxialModel> && RayModel<PolynomialModel>);
 static_assert(RayModel<ExactModel<float>> && RayModel<ExactModel<double>>);
 
-TEST(SampleRays, TakesAModelOfTheCallersOwn) {
-  const Film film{.width_mm = 20, .height_mm = 20};
+/// The mean weight at the film point (6, -8), of an upright or a tilted film.
+double mean_weight(const HoleModel& model, const auto& film) {
   Samples<double> samples;
   constexpr int count = 20000;
   for (int i = 0; i < count; ++i) samples.add(6, -8, std::fmod(i * std::numbers::phi, 1.0), (i + 0.5) / count);
@@ -190,11 +190,16 @@ TEST(SampleRays, TakesAModelOfTheCallersOwn) {
   const auto at = [&](std::size_t k) { return out[k].data(); };
   const double scale = 1;
   sample_rays<HoleModel, double>(
-      HoleModel(film.radius_mm()), film, &scale, count,
+      model, film, &scale, count,
       {samples.film_x.data(), samples.film_y.data(), samples.pupil_u.data(), samples.pupil_v.data()},
       {{at(0), at(1), at(2), at(3), at(4), at(5)}, at(6)});
+  return std::accumulate(out[6].begin(), out[6].end(), 0.0) / count;
+}
+
+TEST(SampleRays, TakesAModelOfTheCallersOwn) {
+  const Film film{.width_mm = 20, .height_mm = 20};
+  const double mean = mean_weight(HoleModel(film.radius_mm()), film);
   // A small hole of 4 mm^2 under cos^4 / 50^2.
-  const double mean = std::accumulate(out[6].begin(), out[6].end(), 0.0) / count;
   const double square = 2500.0 / (2500 + 100);
   EXPECT_NEAR(mean / (4 * square * square / 2500), 1, 3e-3);
 }
@@ -204,18 +209,7 @@ TEST(SampleRays, TakesATiltedFilmBehindIt) {
   const Film film{.width_mm = 20, .height_mm = 20, .tilt_rad = tilt};
   const HoleModel model(30);
   const TiltedFilm tilted(film, model.pupils());
-  Samples<double> samples;
-  constexpr int count = 20000;
-  for (int i = 0; i < count; ++i) samples.add(6, -8, std::fmod(i * std::numbers::phi, 1.0), (i + 0.5) / count);
-  std::array<std::vector<double>, 7> out;
-  for (auto& column : out) column.resize(count);
-  const auto at = [&](std::size_t k) { return out[k].data(); };
-  const double scale = 1;
-  sample_rays<HoleModel, double>(
-      model, tilted, &scale, count,
-      {samples.film_x.data(), samples.film_y.data(), samples.pupil_u.data(), samples.pupil_v.data()},
-      {{at(0), at(1), at(2), at(3), at(4), at(5)}, at(6)});
-  const double mean = std::accumulate(out[6].begin(), out[6].end(), 0.0) / count;
+  const double mean = mean_weight(model, tilted);
   // The small hole from a point at (6, -8 cos, 50 - 8 sin), whose normal is (0, -sin, cos).
   const double y = -8 * std::cos(tilt), z = 50 - 8 * std::sin(tilt), length2 = 36 + y * y + z * z;
   const double at_film = y * -std::sin(tilt) + z * std::cos(tilt);

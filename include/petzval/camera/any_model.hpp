@@ -17,6 +17,9 @@ using AnyModel = std::variant<ParaxialModel, PolynomialModel, ExactModel<float>,
 /// model's own constructor does.
 PETZVAL_API AnyModel make_model(Model model, const Lens& lens, double film_radius);
 
+/// The pupils that it samples.
+PETZVAL_API const PupilMap& pupil_map_of(const AnyModel& model) noexcept;
+
 /// Which rung it is.
 PETZVAL_API Model kind_of(const AnyModel& model) noexcept;
 
