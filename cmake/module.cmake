@@ -60,8 +60,8 @@ function(petzval_lanes file name set)
   target_sources(petzval-core PRIVATE $<TARGET_OBJECTS:petzval-${name}>)
 endfunction()
 
-# petzval_loops(pupil_map.cpp pupil_map): a file of loops for every instruction set; PETZVAL_LOOPS names what each defines:
-# pupil_map_baseline, pupil_map_avx2, pupil_map_avx512. Tuned for processors that gather: tables of pupils are read twice as fast.
+# petzval_loops(film_pupil_table.cpp film_pupil_table): a file of loops for every instruction set; PETZVAL_LOOPS names what each defines:
+# film_pupil_table_baseline, film_pupil_table_avx2, film_pupil_table_avx512. Tuned for processors that gather: tables of pupils are read twice as fast.
 function(petzval_loops file name)
   petzval_lanes(${file} ${name}_baseline baseline PETZVAL_LOOPS=${name}_baseline)
   if(PETZVAL_X86_64)

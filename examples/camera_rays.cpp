@@ -125,7 +125,7 @@ int main(int argc, char** argv) {
       ->required()
       ->type_name("CSV");
   std::vector<std::string> model_names;
-  for (const petzval::Model m : petzval::models()) model_names.emplace_back(petzval::name(m));
+  for (const petzval::ModelKind m : petzval::models()) model_names.emplace_back(petzval::name(m));
   app.add_option("--model", model, "model of the lens")->required()->check(CLI::IsMember(model_names));
   examples::add_camera(app, setup);
   examples::add_number(

@@ -27,7 +27,7 @@ constexpr examples::Range budget{0, std::numeric_limits<double>::max(), "a finit
 
 /// The largest error of the model for samples that the choice has not seen: at the nearest and the farthest depth and
 /// at random ones between.
-double verified_max_px(const petzval::Lens& lens, const Options& options, petzval::Model model) {
+double verified_max_px(const petzval::Lens& lens, const Options& options, petzval::ModelKind model) {
   std::mt19937 random(20'241);
   std::uniform_real_distribution<double> unit;
   const double near = 1 / options.near_mm, far = 1 / options.far_mm;

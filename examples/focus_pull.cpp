@@ -71,9 +71,9 @@ class Pull {
   Pull(const Options& options, const examples::MovingLens& lens, const std::vector<petzval::FocusPoint>& points)
       : options_(options), lens_(lens), points_(points), film_{.film_z = lens.ideal.rear_focal_z} {
     if (!lens.exact) return;
-    std::vector<petzval::ScenePlace> places;
+    std::vector<petzval::ScenePoint> places;
     for (const auto& point : points) {
-      for (const auto& key : point.keys) places.push_back(std::get<petzval::ScenePlace>(key.anchor));
+      for (const auto& key : point.keys) places.push_back(std::get<petzval::ScenePoint>(key.anchor));
     }
     bundles_ = lens.bundles(places, 256);
   }
@@ -121,7 +121,7 @@ class Pull {
       const petzval::FocusOptions focus{.criterion = criterion(), .origin = petzval::DistanceOrigin::film};
       return petzval::solve_subject(*lens_.lens, film_.film_z, focus).distance;
     }
-    const petzval::ScenePlace place = lens_.ideal.scene_of({0, 0, film_.film_z});
+    const petzval::ScenePoint place = lens_.ideal.scene_of({0, 0, film_.film_z});
     const bool real = !place.at_infinity && place.position.z < lens_.ideal.front_focal_z;
     return real ? film_.film_z - place.position.z : infinity;
   }
@@ -137,7 +137,7 @@ class Pull {
   const Options& options_;
   const examples::MovingLens& lens_;
   const std::vector<petzval::FocusPoint>& points_;
-  std::optional<petzval::PointBundles> bundles_;
+  std::optional<petzval::ImageRays> bundles_;
   petzval::FilmPose film_;  // of the frame before
 };
 

@@ -62,13 +62,13 @@ struct Point {
 struct Result {
   examples::MovingLens lens;
   std::vector<Point> points = {};
-  std::optional<petzval::PointBundles> bundles = {};  // of the real model
+  std::optional<petzval::ImageRays> bundles = {};  // of the real model
   petzval::Autofocus before = {};
   TiltFit after = {};
 };
 
-std::vector<petzval::ScenePlace> places(const std::vector<Point>& points, bool (Point::*which)() const = nullptr) {
-  std::vector<petzval::ScenePlace> result;
+std::vector<petzval::ScenePoint> places(const std::vector<Point>& points, bool (Point::*which)() const = nullptr) {
+  std::vector<petzval::ScenePoint> result;
   for (const Point& p : points) {
     if (!which || (p.*which)()) result.push_back(p.target.place);
   }
@@ -303,7 +303,7 @@ std::vector<petzval::Rgb8Image> blur_pictures(const Result& result) {
   pictures[1].film = result.after.film;
   pictures[1].frame.centre_x_mm = result.after.centre.x;
   pictures[1].frame.centre_y_mm = result.after.centre.y;
-  std::optional<petzval::PointBundles> rays;
+  std::optional<petzval::ImageRays> rays;
   if (result.lens.exact) rays = result.lens.bundles({}, rays_of_map);
   std::vector<examples::BlurMap> maps;
   for (const auto& picture : pictures) {

@@ -25,8 +25,8 @@ double ideal_blur(const Picture& picture, const PointScene& scene, const petzval
 
 /// The rays that meet the film about a place of the picture come from nearly where the ideal lens says. beside: how far
 /// from the place to aim for that, as found for the neighbour, and then for this one; it changes slowly.
-double exact_blur(const Picture& picture, const PointScene& scene, const petzval::PointBundles& lens, double x,
-                  double y, petzval::FilmPoint& beside) {
+double exact_blur(const Picture& picture, const PointScene& scene, const petzval::ImageRays& lens, double x, double y,
+                  petzval::FilmPoint& beside) {
   const petzval::FilmPoint wanted = picture.film_point(x, y);
   double result = none;
   for (int step = 0; step < 2; ++step) {
@@ -73,7 +73,7 @@ std::pair<double, double> Picture::pixel(const petzval::FilmPoint& point) const 
 }
 
 BlurMap blur_map(const Picture& picture, const PointScene& scene, const petzval::IdealLens& lens,
-                 const petzval::PointBundles* exact, int threads) {
+                 const petzval::ImageRays* exact, int threads) {
   constexpr int step = 8;  // pixels between nodes, from the corner to beyond the last pixel
   const int width = picture.width(), height = picture.height(), columns = width / step + 2, rows = height / step + 2;
   std::vector<double> nodes(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows), none);

@@ -8,7 +8,7 @@
 
 #include "petzval/io/image.hpp"
 #include "petzval/movement/film_pose.hpp"
-#include "petzval/movement/point_bundles.hpp"
+#include "petzval/movement/image_rays.hpp"
 #include "point_scene.hpp"
 
 namespace examples {
@@ -38,7 +38,7 @@ struct Picture {
 /// By the ideal lens, or (with exact) by bundles of rays; every 8 pixels, interpolated between. The result does not
 /// depend on the number of threads.
 BlurMap blur_map(const Picture& picture, const PointScene& scene, const petzval::IdealLens& lens,
-                 const petzval::PointBundles* exact, int threads);
+                 const petzval::ImageRays* exact, int threads);
 
 /// The blur that a scale should reach: 1, 2 or 5 times a power of ten, so that all but a hundredth of the maps lies
 /// within.

@@ -24,7 +24,7 @@ struct BokehSetup {
 /// The lens with its film where the focus distance puts it, and the light before it.
 struct BokehScene {
   petzval::Lens lens;
-  petzval::ScenePoint light;
+  petzval::FieldPoint light;
 };
 
 /// Focuses at the d line, whatever wavelengths the light has. Throws petzval::Error for a focus out of reach and a

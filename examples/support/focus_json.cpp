@@ -71,14 +71,14 @@ struct Entry {
     return x;
   }
 
-  petzval::ScenePlace place() const {
+  petzval::ScenePoint place() const {
     const std::string wanted = "three finite numbers, [x, y, z]";
     const Json& value = at("position_mm", wanted);
     const auto finite = [](const Json& c) { return c.is_number() && std::isfinite(c.get<double>()); };
     if (!value.is_array() || value.size() != 3 || !std::all_of(value.begin(), value.end(), finite)) {
       refuse(where + ": position_mm", value, wanted);
     }
-    petzval::ScenePlace result{{value[0], value[1], value[2]}, false};
+    petzval::ScenePoint result{{value[0], value[1], value[2]}, false};
     if (json.contains("at_infinity")) {
       if (!json["at_infinity"].is_boolean()) refuse(where + ": at_infinity", json["at_infinity"], "true or false");
       result.at_infinity = json["at_infinity"];

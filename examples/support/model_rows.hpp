@@ -31,7 +31,7 @@ std::string conditions(const petzval::Lens& lens, const ModelOptions& options);
 
 /// A rung as the programs print it; rungs that cannot be built have none.
 struct ModelRow {
-  petzval::Model model{};
+  petzval::ModelKind model{};
   double rms_um = 0, p99_um = 0, max_um = 0, rms_px = 0, max_px = 0;
   double pupil_shape_error = 0, exposure_error = 0, ns_per_ray = 0, setup_ms = 0;
   bool on_front = false;  ///< no other row is both as fast and as accurate (max_um) and better in one of them

@@ -69,12 +69,12 @@ MovingLens moving_lens(const MovementOptions& options) {
   return result;
 }
 
-petzval::PointBundles MovingLens::bundles(std::span<const petzval::ScenePlace> places, std::size_t rays) const {
+petzval::ImageRays MovingLens::bundles(std::span<const petzval::ScenePoint> places, std::size_t rays) const {
   // Room for a tilted and shifted film, and for points somewhat outside the picture; not for those far outside, whose
   // light no lens lets through.
   const double corner = std::hypot(frame.width_mm, frame.height_mm) / 2;
   double farthest = 1.3 * corner;
-  for (const petzval::ScenePlace& place : places) {
+  for (const petzval::ScenePoint& place : places) {
     const auto image = ideal.image(place);
     if (image) farthest = std::max(farthest, 1.1 * std::hypot(image->position.x, image->position.y));
   }

@@ -11,7 +11,7 @@
 #include "petzval/movement/film_pose.hpp"
 #include "petzval/movement/focus_target.hpp"
 #include "petzval/movement/ideal_lens.hpp"
-#include "petzval/movement/point_bundles.hpp"
+#include "petzval/movement/image_rays.hpp"
 
 namespace examples {
 
@@ -33,7 +33,7 @@ struct MovingLens {
   petzval::FilmFrame frame;
 
   /// Exact rays to the film, and as far beside it as the images of these places lie. There must be a lens.
-  petzval::PointBundles bundles(std::span<const petzval::ScenePlace> places, std::size_t rays) const;
+  petzval::ImageRays bundles(std::span<const petzval::ScenePoint> places, std::size_t rays) const;
 };
 MovingLens moving_lens(const MovementOptions& options);
 

@@ -10,10 +10,10 @@
 
 namespace examples {
 
-PointScene::PointScene(const petzval::IdealLens& lens, std::span<const petzval::ScenePlace> points)
+PointScene::PointScene(const petzval::IdealLens& lens, std::span<const petzval::ScenePoint> points)
     : lens_(lens), from_z_(lens.pupils.entrance.z), parallel_(!std::isfinite(from_z_)) {
   if (parallel_) from_z_ = lens.front_focal_z;
-  for (const petzval::ScenePlace& point : points) {
+  for (const petzval::ScenePoint& point : points) {
     const petzval::Vec3<double>& p = point.position;
     const double depth = point.at_infinity ? -p.z : from_z_ - p.z;
     if (!lens.image(point) || !(depth > 0) || (parallel_ && point.at_infinity)) continue;
@@ -56,25 +56,25 @@ double PointScene::disparity(double x, double y) const {
   return std::clamp(mean, std::max(0.0, least - range), most + range);
 }
 
-std::optional<petzval::ScenePlace> PointScene::at(const petzval::FilmPose& film,
+std::optional<petzval::ScenePoint> PointScene::at(const petzval::FilmPose& film,
                                                   const petzval::FilmPoint& point) const {
   // The chief ray goes through the point's conjugate and the entrance pupil's centre.
-  const petzval::ScenePlace conjugate = lens_.scene_of(film.at(point));
+  const petzval::ScenePoint conjugate = lens_.scene_of(film.at(point));
   petzval::Vec3<double> towards = conjugate.position;
   if (parallel_) {
     if (conjugate.at_infinity) return {};
     const double w = disparity(towards.x, towards.y);
-    return petzval::ScenePlace{{towards.x, towards.y, from_z_ - 1 / w}, false};
+    return petzval::ScenePoint{{towards.x, towards.y, from_z_ - 1 / w}, false};
   }
   if (!conjugate.at_infinity) towards.z -= from_z_;
   if (towards.z == 0) return {};
   const double x = -towards.x / towards.z, y = -towards.y / towards.z, w = disparity(x, y);
-  if (w == 0) return petzval::ScenePlace{{x, y, -1}, true};
-  return petzval::ScenePlace{{x / w, y / w, from_z_ - 1 / w}, false};
+  if (w == 0) return petzval::ScenePoint{{x, y, -1}, true};
+  return petzval::ScenePoint{{x / w, y / w, from_z_ - 1 / w}, false};
 }
 
 std::optional<petzval::FilmPoint> on_film(const petzval::IdealLens& lens, const petzval::FilmPose& film,
-                                          const petzval::ScenePlace& place) {
+                                          const petzval::ScenePoint& place) {
   const auto image = lens.image(place);
   if (!image) return {};
   const petzval::Vec3<double> n = film.normal(), along{image->slope_x, image->slope_y, 1};

@@ -17,10 +17,10 @@ namespace examples {
 class PointScene {
  public:
   /// Points behind the lens are left out; there must be another.
-  PointScene(const petzval::IdealLens& lens, std::span<const petzval::ScenePlace> points);
+  PointScene(const petzval::IdealLens& lens, std::span<const petzval::ScenePoint> points);
 
   /// What the ideal lens has at a film point, by the chief ray. Nothing where that does not come from the scene.
-  std::optional<petzval::ScenePlace> at(const petzval::FilmPose& film, const petzval::FilmPoint& point) const;
+  std::optional<petzval::ScenePoint> at(const petzval::FilmPose& film, const petzval::FilmPoint& point) const;
 
  private:
   struct Known {
@@ -36,6 +36,6 @@ class PointScene {
 
 /// Where the ideal lens's chief ray of a place meets the film. Nothing for one without a real image, or beside it.
 std::optional<petzval::FilmPoint> on_film(const petzval::IdealLens& lens, const petzval::FilmPose& film,
-                                          const petzval::ScenePlace& place);
+                                          const petzval::ScenePoint& place);
 
 }  // namespace examples

@@ -11,11 +11,11 @@
 #include "petzval/core/text.hpp"
 #include "tilted_pinhole.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 namespace {
 
 /// A model that somebody else built has to be one of this lens and film, as far as can be told.
-void check_model(const Lens& lens, const Film& film, Model kind, const PupilMap& pupils) {
+void check_model(const Lens& lens, const Film& film, ModelKind kind, const FilmPupilTable& pupils) {
   const std::size_t wavelengths = lens.wavelengths_nm().size();
   if (pupils.wavelengths() != wavelengths) {
     throw Error(lens.name() + ": camera: the model is one for " + std::to_string(pupils.wavelengths()) +
@@ -84,7 +84,7 @@ std::vector<double> scales(const Lens& lens, const Film& film, const AnyModel& m
                    .tilt_rad = film.tilt_rad,
                    .swing_rad = film.swing_rad};
   std::optional<TiltedFilm> tilted;
-  if (film.tilted()) tilted.emplace(about, pupil_map_of(model));
+  if (film.tilted()) tilted.emplace(about, film_pupil_table_of(model));
   for (std::size_t w = 0; w < wavelengths; ++w) {
     const double axis =
         std::visit([&](const auto& m) { return tilted ? on_axis(m, *tilted, w) : on_axis(m, about, w); }, model);
@@ -99,26 +99,26 @@ std::vector<double> scales(const Lens& lens, const Film& film, const AnyModel& m
 }  // namespace
 
 Camera::Camera(const Lens& lens, const Film& film, const CameraOptions& options) {
-  detail::check_film(lens, film);
+  camera_detail::check_film(lens, film);
   AnyModel model = make_model(options.model, lens, upright_radius(lens, film, options.model));
   *this = Camera(lens, film, std::move(model), options.normalisation);
 }
 
 Camera::Camera(const Lens& lens, const Film& film, AnyModel model, Normalisation normalisation) {
-  detail::check_film(lens, film);
-  const PupilMap& pupils = pupil_map_of(model);
+  camera_detail::check_film(lens, film);
+  const FilmPupilTable& pupils = film_pupil_table_of(model);
   check_model(lens, film, kind_of(model), pupils);
   std::optional<TiltedFilm> tilted;
   if (film.tilted()) tilted.emplace(film, pupils);
   std::vector<double> scale = scales(lens, film, model, normalisation);
-  detail::SceneSide scene(lens, film, std::move(tilted), model, scale);
+  camera_detail::SceneSide scene(lens, film, std::move(tilted), model, scale);
   data_ = std::make_shared<const Data>(Data{lens, film, std::move(model), std::move(scale), std::move(scene)});
 }
 
 const Lens& Camera::lens() const noexcept { return data_->lens; }
 const Film& Camera::film() const noexcept { return data_->film; }
-Model Camera::model() const noexcept { return kind_of(data_->model); }
-const PupilMap& Camera::pupils() const noexcept { return pupil_map_of(data_->model); }
+ModelKind Camera::model() const noexcept { return kind_of(data_->model); }
+const FilmPupilTable& Camera::pupils() const noexcept { return film_pupil_table_of(data_->model); }
 
 const TiltedFilm* Camera::tilted_film() const noexcept { return data_->scene.tilted(); }
 
@@ -159,10 +159,10 @@ CameraRayDifferential Camera::sample_differential(const CameraSample& s) const n
   const auto* first_order = std::get_if<ParaxialModel>(&data_->model);
   const bool pinhole = first_order && !first_order->pinhole_shifts().empty();
   const TiltedFilm* tilted = data_->scene.tilted();
-  const LineDerivatives line = !tilted ? upright()
-                               : pinhole
-                                   ? detail::pinhole_line(*tilted, s.film, first_order->pinhole_shifts()[s.wavelength])
-                                   : tilted->line(s.film, s.pupil_u, s.pupil_v, s.wavelength);
+  const LineDerivatives line =
+      !tilted   ? upright()
+      : pinhole ? camera_detail::pinhole_line(*tilted, s.film, first_order->pinhole_shifts()[s.wavelength])
+                : tilted->line(s.film, s.pupil_u, s.pupil_v, s.wavelength);
   const auto moved = std::visit([&](const auto& m) { return m.to_scene(line, s.wavelength); }, data_->model);
   result.by_film_x = moved.by_u;
   result.by_film_y = moved.by_v;
@@ -174,4 +174,4 @@ template PETZVAL_API void Camera::sample(std::size_t, const CameraSamples<float>
 template PETZVAL_API void Camera::sample(std::size_t, const CameraSamples<double>&,
                                          const CameraRays<double>&) const noexcept;
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

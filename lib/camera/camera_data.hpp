@@ -6,14 +6,14 @@
 #include "petzval/camera/camera.hpp"
 #include "scene_side.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 
 struct Camera::Data {
   Lens lens;
   Film film;
   AnyModel model;
   std::vector<double> scale;  ///< of weights and importance, by wavelength
-  detail::SceneSide scene;
+  camera_detail::SceneSide scene;
 };
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

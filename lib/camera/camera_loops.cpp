@@ -3,7 +3,7 @@
 // set. Names are local, and no other library is called, as in lib/trace/lanes.hpp.
 #include "camera_loops.hpp"
 
-namespace petzval::detail {
+namespace petzval::inline v0::camera_detail {
 namespace {
 
 inline float root(float x) noexcept { return __builtin_sqrtf(x); }
@@ -28,7 +28,7 @@ void keep_on_film(const FilmBounds<T>& film, std::size_t count, const T* film_x,
 }
 
 template <class T>
-void start(const FilmSpace& space, T towards, std::size_t count, const FilmLines<const T>& lines,
+void start(const TwoPlanes& space, T towards, std::size_t count, const TwoPlaneRays<const T>& lines,
            const RayArrays<T>& rays) noexcept {
   const T z = static_cast<T>(space.pupil_z), depth = static_cast<T>(space.depth());
   const T depth2 = depth * depth;
@@ -50,7 +50,7 @@ void start(const FilmSpace& space, T towards, std::size_t count, const FilmLines
 
 template <class T>
 void weigh(const FilmBounds<T>& film, T depth, std::size_t count, const T* film_x, const T* film_y,
-           const FilmLines<const T>& lines, const T* areas, const T* scale, RayFate* fates,
+           const TwoPlaneRays<const T>& lines, const T* areas, const T* scale, RayFate* fates,
            const CameraRays<T>& rays) noexcept {
   const FilmBounds<T> bounds = film;
   const T depth2 = depth * depth, along = depth < T(0) ? -depth : depth;
@@ -145,4 +145,4 @@ constexpr CameraLoopsOf<T> loops{keep_on_film<T>, start<T>, weigh<T>, to_keys<T>
 
 const CameraLoops PETZVAL_LOOPS{loops<float>, loops<double>};
 
-}  // namespace petzval::detail
+}  // namespace petzval::inline v0::camera_detail

@@ -6,10 +6,10 @@
 
 #include "petzval/camera/camera_ray.hpp"
 #include "petzval/camera/film.hpp"
-#include "petzval/pupil/film_lines.hpp"
+#include "petzval/pupil/two_plane_rays.hpp"
 #include "petzval/trace/widest.hpp"
 
-namespace petzval::detail {
+namespace petzval::inline v0::camera_detail {
 
 /// The film as loops want it.
 template <class T>
@@ -17,7 +17,7 @@ struct FilmBounds {
   T centre_x, centre_y, half_width, half_height;
 };
 
-/// A tilted film as loops want it: see detail::TiltedPlane.
+/// A tilted film as loops want it: see camera_detail::TiltedPlane.
 template <class T>
 struct TiltedBounds {
   T x_by_x, x_by_y, y_by_y, depth_by_x, depth_by_y, slope_x, slope_y, cosine;
@@ -29,10 +29,10 @@ struct CameraLoopsOf {
   void (*keep_on_film)(const FilmBounds<T>&, std::size_t, const T* film_x, const T* film_y, T* kept_x,
                        T* kept_y) noexcept;
   /// Lines as rays that start in the plane of the pupil. towards: as towards_scene().
-  void (*start)(const FilmSpace&, T towards, std::size_t, const FilmLines<const T>&, const RayArrays<T>&) noexcept;
+  void (*start)(const TwoPlanes&, T towards, std::size_t, const TwoPlaneRays<const T>&, const RayArrays<T>&) noexcept;
   /// scale: by ray, 0 for those without a wavelength.
-  void (*weigh)(const FilmBounds<T>&, T depth, std::size_t, const T* film_x, const T* film_y, const FilmLines<const T>&,
-                const T* areas, const T* scale, RayFate*, const CameraRays<T>&) noexcept;
+  void (*weigh)(const FilmBounds<T>&, T depth, std::size_t, const T* film_x, const T* film_y,
+                const TwoPlaneRays<const T>&, const T* areas, const T* scale, RayFate*, const CameraRays<T>&) noexcept;
   /// Of a tilted film: the keys of film points, the upright film points of lines through the pupil, and the weights of
   /// such lines made those of the film's.
   void (*to_keys)(const TiltedBounds<T>&, std::size_t, const T* film_x, const T* film_y, T* key_x, T* key_y) noexcept;
@@ -57,4 +57,4 @@ struct CameraLoops {
 
 PETZVAL_WIDEST(CameraLoops, camera_loops)
 
-}  // namespace petzval::detail
+}  // namespace petzval::inline v0::camera_detail

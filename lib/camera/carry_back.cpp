@@ -13,7 +13,7 @@
 #include "petzval/pupil/pupil.hpp"
 #include "petzval/trace/differentials.hpp"
 
-namespace petzval::detail {
+namespace petzval::inline v0::camera_detail {
 namespace {
 
 double angle(const Vec3<double>& a, const Vec3<double>& b) noexcept {
@@ -100,8 +100,8 @@ SceneView ChiefRay::view(double z) const {
   return SceneView(focal_length, z, ray, by_film_x, by_film_y);
 }
 
-ChiefRays::ChiefRays(const Lens& lens, const FilmSpace& space) : lens_(lens), space_(space) {
-  const std::size_t wavelength = lens.central_wavelength();
+ChiefRays::ChiefRays(const Lens& lens, const TwoPlanes& space) : lens_(lens), space_(space) {
+  const std::size_t wavelength = lens.primary_wavelength();
   const Meridian meridian = main_meridian(lens, wavelength);
   const FirstOrder first = first_order(lens, wavelength, meridian);
   if (first.afocal) throw Error(lens.name() + ": is afocal, wanted a focal length to measure errors by");
@@ -132,4 +132,4 @@ ChiefRay ChiefRays::through(const FilmPoint& film, const std::array<double, 2>& 
   return {pupil, fate == RayFate::transmitted, focal_length_, ray.ray(), ray.ray(6), ray.ray(12)};
 }
 
-}  // namespace petzval::detail
+}  // namespace petzval::inline v0::camera_detail

@@ -6,11 +6,11 @@
 
 #include "petzval/core/ray.hpp"
 #include "petzval/lens/lens.hpp"
-#include "petzval/pupil/film_lines.hpp"
-#include "petzval/pupil/scene_point.hpp"
+#include "petzval/pupil/field_point.hpp"
+#include "petzval/pupil/two_plane_rays.hpp"
 
 /// Errors in the scene as lengths on the film.
-namespace petzval::detail {
+namespace petzval::inline v0::camera_detail {
 
 /// What a film point sees of one plane of the scene, measured on the film.
 ///
@@ -57,14 +57,14 @@ struct ChiefRay {
 class ChiefRays {
  public:
   /// Throws Error for a lens without focal length, which measures angles.
-  ChiefRays(const Lens& lens, const FilmSpace& space);
+  ChiefRays(const Lens& lens, const TwoPlanes& space);
   ChiefRay through(const FilmPoint& film, const std::array<double, 2>& pupil, std::size_t wavelength) const;
 
  private:
   Lens lens_;
-  FilmSpace space_;
+  TwoPlanes space_;
   double focal_length_ = 0, pivot_ = 0;  // from the film to the exit pupil; infinite where the lens is telecentric
   double sense_ = 1;                     // of z in which light runs behind the lens
 };
 
-}  // namespace petzval::detail
+}  // namespace petzval::inline v0::camera_detail

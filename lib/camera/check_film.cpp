@@ -8,9 +8,9 @@
 #include "petzval/core/error.hpp"
 #include "petzval/core/text.hpp"
 #include "petzval/movement/film_pose.hpp"
-#include "petzval/pupil/film_lines.hpp"
+#include "petzval/pupil/two_plane_rays.hpp"
 
-namespace petzval::detail {
+namespace petzval::inline v0::camera_detail {
 
 void check_rectangle(const std::string& where, const Film& film) {
   const auto refuse = [&](const std::string& found_and_wanted) { throw Error(where + ": " + found_and_wanted); };
@@ -56,4 +56,4 @@ void check_upright_film(const Lens& lens, const Film& film) {
               " rad, wanted one perpendicular to the axis");
 }
 
-}  // namespace petzval::detail
+}  // namespace petzval::inline v0::camera_detail

@@ -7,7 +7,7 @@
 #include "petzval/camera/film.hpp"
 #include "petzval/lens/lens.hpp"
 
-namespace petzval::detail {
+namespace petzval::inline v0::camera_detail {
 
 /// Throws Error for a film without area, pixels or place, and for one that is tilted by a quarter turn or more.
 void check_rectangle(const std::string& where, const Film& film);
@@ -23,4 +23,4 @@ inline std::array<FilmPoint, 4> corners_of(const Film& film) noexcept {
           FilmPoint{x - half_width, y + half_height}, FilmPoint{x + half_width, y + half_height}};
 }
 
-}  // namespace petzval::detail
+}  // namespace petzval::inline v0::camera_detail

@@ -7,12 +7,12 @@
 #include <utility>
 
 #include "petzval/paraxial/first_order.hpp"
-#include "petzval/pupil/film_lines.hpp"
 #include "petzval/pupil/pupil.hpp"
+#include "petzval/pupil/two_plane_rays.hpp"
 #include "petzval/trace/sequential.hpp"
 #include "petzval/trace/trace.hpp"
 
-namespace petzval::detail {
+namespace petzval::inline v0::camera_detail {
 namespace {
 
 /// How far tables go, in film radii: points beside the film are told from those that no ray sees.
@@ -39,7 +39,7 @@ struct Section {
 /// Film and pupil height of the exact ray that leaves the centre of the stop for the film with a slope (a sine).
 class FromStop {
  public:
-  FromStop(const Lens& lens, const FilmSpace& space, std::size_t wavelength, Section section)
+  FromStop(const Lens& lens, const TwoPlanes& space, std::size_t wavelength, Section section)
       : lens_(lens), space_(space), wavelength_(wavelength), section_(section), stop_(pupils(lens, wavelength).stop) {}
 
   std::optional<Heights> operator()(double slope) const noexcept {
@@ -57,14 +57,14 @@ class FromStop {
 
  private:
   const Lens& lens_;
-  FilmSpace space_;
+  TwoPlanes space_;
   std::size_t wavelength_;
   Section section_;
   std::size_t stop_;
 };
 
 /// Where an exact line of the film's space goes, clear apertures ignored.
-std::optional<Ray<double>> to_scene(const Lens& lens, const FilmSpace& space, std::size_t wavelength, Section section,
+std::optional<Ray<double>> to_scene(const Lens& lens, const TwoPlanes& space, std::size_t wavelength, Section section,
                                     const Heights& h) noexcept {
   const Vec3<double> along = section.vector(h.pupil - h.film, space.depth());
   const double towards = towards_scene(lens, space);
@@ -88,7 +88,7 @@ std::optional<Ray<double>> to_scene(const ParaxialModel& model, std::size_t wave
 
 ChiefLines::ChiefLines(const Lens& lens, const AnyModel& model, double film_radius, std::size_t wavelength) {
   const auto* first_order = std::get_if<ParaxialModel>(&model);
-  const FilmSpace space = pupil_map_of(model).space();
+  const TwoPlanes space = film_pupil_table_of(model).space();
   // Adds a chief ray; false where it does not get to the scene.
   const auto add = [&](Meridian& nodes, Section section, const Heights& h, double ratio) {
     const auto ray =
@@ -99,7 +99,7 @@ ChiefLines::ChiefLines(const Lens& lens, const AnyModel& model, double film_radi
     return true;
   };
   if (first_order) {
-    const PupilMap& pupils = first_order->pupils();
+    const FilmPupilTable& pupils = first_order->pupils();
     for (int i = 0; i <= steps; ++i) {
       const double film = film_radius * beyond_film * i / steps,
                    near = std::clamp(film, 1e-3 * film_radius, film_radius);
@@ -198,4 +198,4 @@ std::optional<FilmPoint> ChiefLines::about(const Vec3<double>& point) const noex
   return FilmPoint{*film * point.x / height, *film * point.y / height};
 }
 
-}  // namespace petzval::detail
+}  // namespace petzval::inline v0::camera_detail

@@ -10,9 +10,9 @@
 #include "petzval/camera/film.hpp"
 #include "petzval/core/vec3.hpp"
 #include "petzval/lens/lens.hpp"
-#include "petzval/pupil/scene_point.hpp"
+#include "petzval/pupil/field_point.hpp"
 
-namespace petzval::detail {
+namespace petzval::inline v0::camera_detail {
 
 /// The chief rays of one wavelength, as lines of the film's space: through the centre of the stop, by exact rays, for
 /// every model of the lens but those of first order, whose pupils have middles of their own.
@@ -41,4 +41,4 @@ class ChiefLines {
   Meridian y_, x_;  // x_ is empty where it is as y_
 };
 
-}  // namespace petzval::detail
+}  // namespace petzval::inline v0::camera_detail

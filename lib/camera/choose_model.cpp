@@ -7,11 +7,11 @@
 #include "petzval/core/text.hpp"
 #include "rung_table.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 namespace {
 
-using detail::RungTable;
-using detail::Tolerance;
+using camera_detail::RungTable;
+using camera_detail::Tolerance;
 
 void check(const ErrorBudget& budget) {
   const auto refuse = [](const char* what, const std::optional<double>& part) {
@@ -70,7 +70,7 @@ Judgement judge(const ModelCandidate& rung, double of_tolerance, const ErrorBudg
 
 std::vector<std::string> not_needed(const RungTable& table, std::size_t budget_number, const ErrorBudget& budget) {
   std::vector<std::string> result;
-  const auto rays = [&](const std::optional<detail::RayStudy::Largest>& largest) -> std::optional<Part> {
+  const auto rays = [&](const std::optional<camera_detail::RayStudy::Largest>& largest) -> std::optional<Part> {
     if (!largest) return {};
     return ray_part(largest->mm / table.pixel_mm, largest->of_blur, largest->of_tolerance[budget_number], budget);
   };
@@ -134,10 +134,10 @@ std::vector<ModelChoice> choose_models(const Lens& lens, const SceneRequirements
     check(budget);
     tolerances.push_back({budget.max_px.value_or(0) * scene.film.pixel_mm(), budget.max_of_blur.value_or(0)});
   }
-  const RungTable table = detail::rung_table(lens, scene, tolerances, threads);
+  const RungTable table = camera_detail::rung_table(lens, scene, tolerances, threads);
   std::vector<ModelChoice> choices;
   for (std::size_t k = 0; k < budgets.size(); ++k) choices.push_back(choose(table, k, budgets[k]));
   return choices;
 }
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

@@ -9,7 +9,7 @@
 #include "petzval/core/kernel_vec.hpp"
 #include "petzval/trace/sequential.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 namespace {
 
 using Jet = ceres::Jet<double, 2>;
@@ -20,13 +20,13 @@ struct Line {
 };
 
 Line line_of(const LineDerivatives& d) noexcept {
-  const auto jet = [&](double FilmLine::*part) {
+  const auto jet = [&](double TwoPlaneRay::*part) {
     Jet x(d.line.*part);
     x.v[0] = d.by_u.*part;
     x.v[1] = d.by_v.*part;
     return x;
   };
-  return {jet(&FilmLine::film_x), jet(&FilmLine::film_y), jet(&FilmLine::pupil_x), jet(&FilmLine::pupil_y)};
+  return {jet(&TwoPlaneRay::film_x), jet(&TwoPlaneRay::film_y), jet(&TwoPlaneRay::pupil_x), jet(&TwoPlaneRay::pupil_y)};
 }
 
 RayDerivatives derivatives_of(const Vec& origin, const Vec& direction) noexcept {
@@ -42,7 +42,7 @@ RayDerivatives derivatives_of(const Vec& origin, const Vec& direction) noexcept 
 
 template <class R>
 RayDerivatives ExactModel<R>::to_scene(const LineDerivatives& line, std::size_t wavelength) const noexcept {
-  const FilmSpace& space = pupils_.space();
+  const TwoPlanes& space = pupils_.space();
   const auto [film_x, film_y, pupil_x, pupil_y] = line_of(line);
   const double depth = space.depth();
   const Jet x = pupil_x - film_x, y = pupil_y - film_y;
@@ -65,11 +65,11 @@ template RayDerivatives ExactModel<double>::to_scene(const LineDerivatives&, std
 RayDerivatives ParaxialModel::to_scene(const LineDerivatives& line, std::size_t wavelength) const noexcept {
   if (wavelength >= to_scene_.size()) return {RayFate::missed_surface};
   const auto [film_x, film_y, pupil_x, pupil_y] = line_of(line);
-  const detail::PairMap& m = to_scene_[wavelength];
+  const camera_detail::PairMap& m = to_scene_[wavelength];
   const Jet slope_x = m.c * film_x + m.d * pupil_x, slope_y = m.c * film_y + m.d * pupil_y;
   const Jet down = -1.0 / sqrt(slope_x * slope_x + slope_y * slope_y + 1.0);
   return derivatives_of({m.a * film_x + m.b * pupil_x, m.a * film_y + m.b * pupil_y, Jet(z_)},
                         {slope_x * down, slope_y * down, down});
 }
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

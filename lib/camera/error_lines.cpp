@@ -6,7 +6,7 @@
 
 #include "petzval/core/bisect.hpp"
 
-namespace petzval::detail {
+namespace petzval::inline v0::camera_detail {
 namespace {
 
 /// Steele, Lea and Flood's splitmix64: neighbouring seeds give starts that have nothing to do with each other.
@@ -44,7 +44,7 @@ std::array<double, 2> EvenPoints::operator[](std::size_t index) const noexcept {
 double lit_radius(const ExactModel<double>& exact, const Film& film, std::size_t wavelength) {
   const double farthest = film.radius_mm();
   if (!exact.lens().rotationally_symmetric()) return farthest;
-  const PupilMap& pupils = exact.pupils();
+  const FilmPupilTable& pupils = exact.pupils();
   const double depth2 = pupils.space().depth() * pupils.space().depth();
   const auto irradiance = [&](double r) {
     const double across = pupils.middle({0, r}, wavelength)[1] - r, cosine2 = depth2 / (across * across + depth2);
@@ -56,7 +56,7 @@ double lit_radius(const ExactModel<double>& exact, const Film& film, std::size_t
   const auto lit = [&](double r) { return irradiance(r) > darkest * brightest; };
   for (int i = steps; i >= 0; --i) {
     const double r = farthest * i / steps;
-    if (lit(r)) return i == steps ? farthest : last_with(r, farthest * (i + 1) / steps, lit);
+    if (lit(r)) return i == steps ? farthest : core_detail::last_with(r, farthest * (i + 1) / steps, lit);
   }
   return farthest;
 }
@@ -169,7 +169,7 @@ PointLines error_lines(const FilmPoint& film, const ExactModel<double>& exact, s
 namespace {
 
 template <class T, class M>
-void trace_lines(const M& model, bool own_pupil, const FilmLines<const T>& lines, const FilmPoint& film,
+void trace_lines(const M& model, bool own_pupil, const TwoPlaneRays<const T>& lines, const FilmPoint& film,
                  std::size_t wavelength, PointRays& out) {
   constexpr std::size_t count = lines_per_point;
   alignas(64) std::array<T, 6 * count> room;
@@ -186,7 +186,7 @@ void trace_lines(const M& model, bool own_pupil, const FilmLines<const T>& lines
 }
 
 Tracing tracing(const AnyModel& model, bool own_pupil) {
-  const bool in_double = kind_of(model) == Model::exact_double;
+  const bool in_double = kind_of(model) == ModelKind::exact_double;
   return [&model, in_double, own_pupil](const PointLines& lines, std::size_t wavelength, PointRays& out) {
     std::visit(
         [&](const auto& m) {
@@ -203,10 +203,11 @@ Tracing tracing(const AnyModel& model, bool own_pupil) {
 }  // namespace
 
 Tracing tracing(const AnyModel& model) {
-  const Model kind = kind_of(model);
-  return tracing(model, kind != Model::exact_float && kind != Model::exact_double && kind != Model::pinhole);
+  const ModelKind kind = kind_of(model);
+  return tracing(model,
+                 kind != ModelKind::exact_float && kind != ModelKind::exact_double && kind != ModelKind::pinhole);
 }
 
 Tracing tracing_within(const AnyModel& model) { return tracing(model, false); }
 
-}  // namespace petzval::detail
+}  // namespace petzval::inline v0::camera_detail

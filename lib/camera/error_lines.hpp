@@ -9,10 +9,10 @@
 
 #include "petzval/camera/any_model.hpp"
 #include "petzval/camera/film.hpp"
-#include "petzval/pupil/film_lines.hpp"
+#include "petzval/pupil/two_plane_rays.hpp"
 
 /// The lines along which models are compared with the lens.
-namespace petzval::detail {
+namespace petzval::inline v0::camera_detail {
 
 /// Lines through each film point: the first half evenly over its pupil, by which means count, the others along the
 /// pupil's rims, where errors are largest and even samples rarely come.
@@ -64,10 +64,10 @@ struct PointLines {
   explicit PointLines(const FilmPoint& point) noexcept;
   void put(std::size_t line, double x, double y) noexcept;
 
-  FilmLines<const double> lines() const noexcept {
+  TwoPlaneRays<const double> lines() const noexcept {
     return {film_x.data(), film_y.data(), pupil_x.data(), pupil_y.data()};
   }
-  FilmLines<const float> float_lines() const noexcept {
+  TwoPlaneRays<const float> float_lines() const noexcept {
     return {film_x_float.data(), film_y_float.data(), pupil_x_float.data(), pupil_y_float.data()};
   }
 };
@@ -90,4 +90,4 @@ Tracing tracing(const AnyModel& model);
 /// The same for lines that are known to lie within the model's own pupils.
 Tracing tracing_within(const AnyModel& model);
 
-}  // namespace petzval::detail
+}  // namespace petzval::inline v0::camera_detail

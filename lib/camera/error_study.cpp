@@ -13,7 +13,7 @@
 #include "petzval/core/parallel.hpp"
 #include "petzval/core/text.hpp"
 
-namespace petzval::detail {
+namespace petzval::inline v0::camera_detail {
 namespace {
 
 constexpr std::size_t block = 8;  // film points that a thread takes at once
@@ -285,4 +285,4 @@ RayStudy::Found RayStudy::measure(const Tracing& model) const {
   return found;
 }
 
-}  // namespace petzval::detail
+}  // namespace petzval::inline v0::camera_detail

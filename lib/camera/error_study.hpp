@@ -12,7 +12,7 @@
 #include "petzval/camera/model_error.hpp"
 
 /// Models held against a lens whose rays are traced once for all of them.
-namespace petzval::detail {
+namespace petzval::inline v0::camera_detail {
 
 /// What an error may be at a film point and depth: a length, or a fraction of the local blur where that is larger.
 struct Tolerance {
@@ -71,4 +71,4 @@ class RayStudy {
 /// Wavelengths that samples name, checked.
 std::vector<std::size_t> wavelengths_of(const Lens& lens, const ErrorSamples& samples);
 
-}  // namespace petzval::detail
+}  // namespace petzval::inline v0::camera_detail

@@ -10,7 +10,7 @@
 #include "petzval/trace/batch.hpp"
 #include "petzval/trace/trace.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 namespace {
 
 constexpr std::size_t block = 256;
@@ -50,10 +50,10 @@ void trace_in_place(const Lens& lens, Travel travel, std::size_t count, const Ra
 
 template <class R>
 template <class T>
-void ExactModel<R>::to_scene(std::size_t count, const FilmLines<const T>& lines, const RayWavelengths& wavelengths,
+void ExactModel<R>::to_scene(std::size_t count, const TwoPlaneRays<const T>& lines, const RayWavelengths& wavelengths,
                              const RayArrays<T>& rays, RayFate* fates) const noexcept {
   const R towards = static_cast<R>(towards_);
-  const auto& loops = detail::camera_loops().of<R>();
+  const auto& loops = camera_detail::camera_loops().of<R>();
   if constexpr (std::is_same_v<R, T>) {
     loops.start(pupils_.space(), towards, count, lines, rays);
     trace_in_place<R>(lens_, Travel::to_scene, count, rays, wavelengths, fates);
@@ -79,8 +79,8 @@ void ExactModel<R>::to_scene(std::size_t count, const FilmLines<const T>& lines,
 
 template <class R>
 void ExactModel<R>::to_film(std::size_t count, const RayArrays<const double>& rays, const RayWavelengths& wavelengths,
-                            const FilmLines<double>& lines, RayFate* fates) const noexcept {
-  const FilmSpace& space = pupils_.space();
+                            const TwoPlaneRays<double>& lines, RayFate* fates) const noexcept {
+  const TwoPlanes& space = pupils_.space();
   Block<R> own;
   for (std::size_t begin = 0; begin < count; begin += block) {
     const std::size_t n = std::min(block, count - begin);
@@ -113,8 +113,8 @@ void ExactModel<R>::to_film(std::size_t count, const RayArrays<const double>& ra
 
 template class PETZVAL_API ExactModel<float>;
 template class PETZVAL_API ExactModel<double>;
-#define PETZVAL_EXACT(R, T)                                                                                        \
-  template PETZVAL_API void ExactModel<R>::to_scene(std::size_t, const FilmLines<const T>&, const RayWavelengths&, \
+#define PETZVAL_EXACT(R, T)                                                                                           \
+  template PETZVAL_API void ExactModel<R>::to_scene(std::size_t, const TwoPlaneRays<const T>&, const RayWavelengths&, \
                                                     const RayArrays<T>&, RayFate*) const noexcept;
 PETZVAL_EXACT(float, float)
 PETZVAL_EXACT(float, double)
@@ -122,4 +122,4 @@ PETZVAL_EXACT(double, float)
 PETZVAL_EXACT(double, double)
 #undef PETZVAL_EXACT
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

@@ -8,7 +8,7 @@
 #include "petzval/core/text.hpp"
 #include "petzval/pupil/pupil.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 namespace {
 
 Vec3<double> signs_of(Host host) noexcept {
@@ -27,7 +27,7 @@ double usual_unit(Host host) noexcept { return host == Host::arnold ? 0.1 : 0.00
 double z_of(const Lens& lens, FrameOrigin origin) {
   if (origin == FrameOrigin::film) return lens.film_z();
   if (origin == FrameOrigin::front_vertex) return 0;
-  const double z = pupils(lens, lens.central_wavelength()).entrance.z;
+  const double z = pupils(lens, lens.primary_wavelength()).entrance.z;
   if (std::isfinite(z)) return z;
   throw Error(lens.name() +
               ": host frame: the entrance pupil is at infinity, wanted one at a finite place, or another origin");
@@ -67,4 +67,4 @@ Ray<double> HostFrame::to_lens(const Ray<double>& host) const noexcept {
   return {point_to_lens(host.origin), direction_to_lens(host.direction)};
 }
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

@@ -27,7 +27,7 @@
 #include "scene_side.hpp"
 #include "tilted_pinhole.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -39,22 +39,22 @@ bool finite(const Vec3<double>& v) noexcept { return std::isfinite(v.x) && std::
 /// What of the model's lines leaves for the scene.
 std::vector<std::vector<Ray<double>>> lines_of(const Lens& lens, const auto& model) {
   return leaving_rays(model.pupils(), lens.rotationally_symmetric(),
-                      [&](std::size_t count, const FilmLines<const double>& lines, std::size_t wavelength,
+                      [&](std::size_t count, const TwoPlaneRays<const double>& lines, std::size_t wavelength,
                           const RayArrays<double>& rays, RayFate* fates) {
                         model.template to_scene<double>(count, lines, {.all = wavelength}, rays, fates);
                       });
 }
 
 /// The scene's pupils of a model. Whether rays meet the film is left out: pupils would end abruptly with the film.
-EntranceMap entrance_of(const Lens& lens, const AnyModel& any) {
+EntrancePupilTable entrance_of(const Lens& lens, const AnyModel& any) {
   return std::visit(
       [&](const auto& model) {
         using M = std::decay_t<decltype(model)>;
-        const PupilMap& pupils = model.pupils();
+        const FilmPupilTable& pupils = model.pupils();
         if constexpr (std::is_same_v<M, ParaxialModel>) {
           // A pinhole needs no more than to know what lies in front.
-          if (model.model() == Model::pinhole) {
-            return EntranceMap(lens, std::vector<std::vector<Ray<double>>>(pupils.wavelengths()), {});
+          if (model.model() == ModelKind::pinhole) {
+            return EntrancePupilTable(lens, std::vector<std::vector<Ray<double>>>(pupils.wavelengths()), {});
           }
           const auto within = [&](std::size_t count, const RayArrays<const double>& rays, std::size_t wavelength,
                                   std::uint8_t* passes) {
@@ -71,9 +71,9 @@ EntranceMap entrance_of(const Lens& lens, const AnyModel& any) {
                           pupils.contains({part * line[0][i], part * line[1][i]}, line[2][i], line[3][i], wavelength);
             }
           };
-          return EntranceMap(lens, lines_of(lens, model), within, PupilEnds::with_lines);
+          return EntrancePupilTable(lens, lines_of(lens, model), within, ClippedBy::samples);
         } else if constexpr (std::is_same_v<M, PolynomialModel>) {
-          return EntranceMap(lens, lines_of(lens, model), traced_passing(lens), PupilEnds::with_lines);
+          return EntrancePupilTable(lens, lines_of(lens, model), traced_passing(lens), ClippedBy::samples);
         } else {
           return traced_entrances(lens, pupils);
         }
@@ -83,14 +83,14 @@ EntranceMap entrance_of(const Lens& lens, const AnyModel& any) {
 
 }  // namespace
 
-namespace detail {
+namespace camera_detail {
 
 SceneSide::SceneSide(const Lens& lens, const Film& film, std::optional<TiltedFilm> tilted, const AnyModel& model,
                      std::span<const double> scale)
     : film_(film),
       tilted_(std::move(tilted)),
       upright_radius_(upright_radius(lens, film, kind_of(model))),
-      space_(pupil_map_of(model).space()),
+      space_(film_pupil_table_of(model).space()),
       entrance_(entrance_of(lens, model)) {
   for (std::size_t w = 0; w < scale.size(); ++w) {
     const double n = lens.index(0, w), n_film = lens.index(lens.surface_count(), w), etendue = squared(n / n_film);
@@ -111,7 +111,7 @@ SceneSide::Arrival SceneSide::arrive(const AnyModel& any, const Ray<double>& ray
   if (wavelength >= wavelengths_.size() || !finite(ray.origin) || !unit) return result;
   // Nothing is lost on the way from a far point where the line begins near the lens.
   const Vec3<double>&d = ray.direction, o = ray.origin - d * glm::dot(ray.origin, d);
-  const FilmLines<double> line{&result.upright.x, &result.upright.y, &result.pupil.x, &result.pupil.y};
+  const TwoPlaneRays<double> line{&result.upright.x, &result.upright.y, &result.pupil.x, &result.pupil.y};
   std::visit(
       [&](const auto& m) {
         m.to_film(1, {&o.x, &o.y, &o.z, &d.x, &d.y, &d.z}, {.all = wavelength}, line, &result.fate);
@@ -156,13 +156,13 @@ void SceneSide::weigh(Importance& result, const AnyModel& any, const Arrival& ar
 
 Importance SceneSide::importance(const AnyModel& any, const Ray<double>& ray, std::size_t wavelength) const noexcept {
   // No ray meets a point but one that was aimed at it.
-  if (kind_of(any) == Model::pinhole) return {};
+  if (kind_of(any) == ModelKind::pinhole) return {};
   const Arrival arrival = arrive(any, ray, wavelength);
   const auto& [fate, upright, pupil] = arrival;
   const auto met = on_film(upright, pupil);
   Importance result = met_by(arrival, met);
   if (result.fate != RayFate::transmitted) return result;
-  const PupilMap &passing = pupil_map_of(any), &sampled = tilted_ ? tilted_->pupils() : passing;
+  const FilmPupilTable &passing = film_pupil_table_of(any), &sampled = tilted_ ? tilted_->pupils() : passing;
   const bool no_rims = std::holds_alternative<ParaxialModel>(any) || std::holds_alternative<PolynomialModel>(any);
   if (no_rims && !passing.contains(upright, pupil.x, pupil.y, wavelength)) {
     result.fate = RayFate::vignetted;
@@ -175,7 +175,7 @@ Importance SceneSide::importance(const AnyModel& any, const Ray<double>& ray, st
 
 ImportanceSample SceneSide::sample_importance(const AnyModel& model, const Vec3<double>& point, double u, double v,
                                               std::size_t wavelength) const noexcept {
-  if (kind_of(model) == Model::pinhole) return through_pinhole(model, point, u, v, wavelength);
+  if (kind_of(model) == ModelKind::pinhole) return through_pinhole(model, point, u, v, wavelength);
   const EntranceSample s = entrance_.sample(point, u, v, wavelength);
   if (!(s.pdf > 0)) return {};
   return {s.direction, s.distance, s.place, s.pdf, importance(model, {s.place, s.direction}, wavelength)};
@@ -196,7 +196,7 @@ ImportanceSample SceneSide::through_pinhole(const AnyModel& model, const Vec3<do
   const auto met = on_film(arrival.upright, arrival.pupil);
   Importance& seen = result.importance = met_by(arrival, met);
   if (seen.fate != RayFate::transmitted) return result;
-  const PupilSample s = pupil_map_of(model).sample(arrival.upright, u, v, wavelength);
+  const PupilSample s = film_pupil_table_of(model).sample(arrival.upright, u, v, wavelength);
   FilmPoint place{s.x, s.y};
   double area = s.area, spread = 1;
   if (tilted_) {
@@ -207,7 +207,7 @@ ImportanceSample SceneSide::through_pinhole(const AnyModel& model, const Vec3<do
     area *= squared(part);
     // Lines through the place spread over the film otherwise than those of the pinhole do.
     spread = part_of_place(plane, place) / part;
-    const FilmLine line = tilted_->upright(met->key, place.x, place.y);
+    const TwoPlaneRay line = tilted_->upright(met->key, place.x, place.y);
     arrival.upright = {line.film_x, line.film_y};
   }
   arrival.pupil = place;
@@ -222,10 +222,10 @@ ImportanceSample SceneSide::through_pinhole(const AnyModel& model, const Vec3<do
 
 double SceneSide::pdf(const AnyModel& model, const Vec3<double>& point, const Vec3<double>& direction,
                       std::size_t wavelength) const noexcept {
-  return kind_of(model) == Model::pinhole ? 0 : entrance_.pdf(point, direction, wavelength);
+  return kind_of(model) == ModelKind::pinhole ? 0 : entrance_.pdf(point, direction, wavelength);
 }
 
-}  // namespace detail
+}  // namespace camera_detail
 
 Importance Camera::importance(const Ray<double>& ray, std::size_t wavelength) const noexcept {
   return data_->scene.importance(data_->model, ray, wavelength);
@@ -245,4 +245,4 @@ Projection Camera::project(const Vec3<double>& point, std::size_t wavelength) co
   return data_->scene.project(data_->model, point, wavelength);
 }
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

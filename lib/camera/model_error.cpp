@@ -7,27 +7,27 @@
 #include "error_study.hpp"
 #include "pupil_study.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 
-ModelError model_error(const Lens& lens, const Film& film, Model model, const ErrorSamples& samples) {
-  detail::check_upright_film(lens, film);
+ModelError model_error(const Lens& lens, const Film& film, ModelKind model, const ErrorSamples& samples) {
+  camera_detail::check_upright_film(lens, film);
   const AnyModel built = make_model(model, lens, film.radius_mm());
   return model_errors(lens, film, std::span(&built, 1), samples).front();
 }
 
 std::vector<ModelError> model_errors(const Lens& lens, const Film& film, std::span<const AnyModel> models,
                                      const ErrorSamples& samples) {
-  detail::check_upright_film(lens, film);
+  camera_detail::check_upright_film(lens, film);
   const ExactModel<double> exact(lens, film.radius_mm());
-  const detail::RayStudy rays(exact, film, samples);
-  const detail::PupilStudy pupils(exact, film, std::max<std::size_t>(16, samples.film_points / 8), samples);
+  const camera_detail::RayStudy rays(exact, film, samples);
+  const camera_detail::PupilStudy pupils(exact, film, std::max<std::size_t>(16, samples.film_points / 8), samples);
   std::vector<ModelError> errors;
   for (const AnyModel& model : models) {
-    const auto of_rays = rays.measure(detail::tracing(model));
-    const auto of_pupils = pupils.measure(detail::pupils_of(model));
+    const auto of_rays = rays.measure(camera_detail::tracing(model));
+    const auto of_pupils = pupils.measure(camera_detail::pupils_of(model));
     errors.push_back({of_rays.all, of_rays.wavelength, of_pupils.shape, of_pupils.exposure});
   }
   return errors;
 }
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

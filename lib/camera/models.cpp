@@ -6,26 +6,27 @@
 
 #include "petzval/camera/ray_model.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 namespace {
 
-constexpr std::array all{Model::pinhole,       Model::thin,         Model::thin_two_disc, Model::thick,
-                         Model::polynomial_3,  Model::polynomial_5, Model::polynomial_7,  Model::polynomial_9,
-                         Model::polynomial_11, Model::exact_float,  Model::exact_double};
+constexpr std::array all{ModelKind::pinhole,      ModelKind::thin,         ModelKind::thin_two_disc,
+                         ModelKind::thick,        ModelKind::polynomial_3, ModelKind::polynomial_5,
+                         ModelKind::polynomial_7, ModelKind::polynomial_9, ModelKind::polynomial_11,
+                         ModelKind::exact_float,  ModelKind::exact_double};
 constexpr std::array<std::string_view, all.size()> names{
     "pinhole",      "thin",         "thin_two_disc", "thick",       "polynomial_3", "polynomial_5",
     "polynomial_7", "polynomial_9", "polynomial_11", "exact_float", "exact_double"};
 
 }  // namespace
 
-std::string_view name(Model model) noexcept { return names[static_cast<std::size_t>(model)]; }
+std::string_view name(ModelKind model) noexcept { return names[static_cast<std::size_t>(model)]; }
 
-std::optional<Model> model_named(std::string_view name) noexcept {
+std::optional<ModelKind> model_named(std::string_view name) noexcept {
   const auto found = std::find(names.begin(), names.end(), name);
   if (found == names.end()) return {};
   return all[static_cast<std::size_t>(std::distance(names.begin(), found))];
 }
 
-std::span<const Model> models() noexcept { return all; }
+std::span<const ModelKind> models() noexcept { return all; }
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
-namespace petzval::detail {
+namespace petzval::inline v0::camera_detail {
 namespace {
 
 /// Numbers of a line up to here give finite rays, in float too.
@@ -45,7 +45,7 @@ void fill(std::size_t count, const MapOf& map_of, const Known& known, T z, const
 }
 
 template <class T>
-void to_scene(std::size_t count, const ParaxialJob& job, const FilmLines<const T>& lines, const RayArrays<T>& rays,
+void to_scene(std::size_t count, const ParaxialJob& job, const TwoPlaneRays<const T>& lines, const RayArrays<T>& rays,
               RayFate* fates) noexcept {
   const auto run = [&](const auto& map_of, const auto& known) {
     fill(count, map_of, known, static_cast<T>(job.z), lines.film_x, lines.film_y, lines.pupil_x, lines.pupil_y, rays.x,
@@ -67,4 +67,4 @@ void to_scene(std::size_t count, const ParaxialJob& job, const FilmLines<const T
 extern const ParaxialLoops PETZVAL_LOOPS;
 const ParaxialLoops PETZVAL_LOOPS{&to_scene<float>, &to_scene<double>};
 
-}  // namespace petzval::detail
+}  // namespace petzval::inline v0::camera_detail

@@ -5,7 +5,7 @@
 
 #include "petzval/camera/paraxial_model.hpp"
 
-namespace petzval::detail {
+namespace petzval::inline v0::camera_detail {
 
 /// Film lines as rays in the plane z, for first-order models. maps: one for each wavelength, `known` of them.
 struct ParaxialJob {
@@ -16,10 +16,10 @@ struct ParaxialJob {
 };
 
 struct ParaxialLoops {
-  void (*of_float)(std::size_t count, const ParaxialJob& job, const FilmLines<const float>& lines,
+  void (*of_float)(std::size_t count, const ParaxialJob& job, const TwoPlaneRays<const float>& lines,
                    const RayArrays<float>& rays, RayFate* fates) noexcept;
-  void (*of_double)(std::size_t count, const ParaxialJob& job, const FilmLines<const double>& lines,
+  void (*of_double)(std::size_t count, const ParaxialJob& job, const TwoPlaneRays<const double>& lines,
                     const RayArrays<double>& rays, RayFate* fates) noexcept;
 };
 
-}  // namespace petzval::detail
+}  // namespace petzval::inline v0::camera_detail

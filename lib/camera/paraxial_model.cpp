@@ -11,20 +11,20 @@
 #include "petzval/core/error.hpp"
 #include "petzval/core/text.hpp"
 #include "petzval/paraxial/first_order.hpp"
+#include "petzval/pupil/film_pupil_table.hpp"
 #include "petzval/pupil/pupil.hpp"
-#include "petzval/pupil/pupil_map.hpp"
-#include "petzval/pupil/pupil_star.hpp"
+#include "petzval/pupil/pupil_polygon.hpp"
 #include "petzval/trace/widest.hpp"
 #include "two_disc_fit.hpp"
 
-namespace petzval {
-namespace detail {
+namespace petzval::inline v0 {
+namespace camera_detail {
 PETZVAL_WIDEST(ParaxialLoops, paraxial_loops)
-}  // namespace detail
+}  // namespace camera_detail
 
 namespace {
 
-using detail::PairMap;
+using camera_detail::PairMap;
 
 PairMap inverse(const PairMap& m) noexcept {
   const double determinant = m.a * m.d - m.b * m.c;
@@ -37,7 +37,7 @@ PairMap then(const PairMap& m, const PairMap& next) noexcept {
 }
 
 /// Film and pupil point of a line to its height and slope in the plane z behind the lens.
-PairMap line_at(const FilmSpace& space, double z) noexcept {
+PairMap line_at(const TwoPlanes& space, double z) noexcept {
   const double slope = 1 / space.depth(), far = (z - space.film_z) * slope;
   return {1 - far, far, -slope, slope};
 }
@@ -48,7 +48,7 @@ PairMap on_slopes(const RayMatrix& m, double n_in, double n_out) noexcept {
 }
 
 /// Film and pupil point to place and slope in the plane z of object space.
-PairMap to_scene_map(const Lens& lens, std::size_t wavelength, const FilmSpace& space, double z) {
+PairMap to_scene_map(const Lens& lens, std::size_t wavelength, const TwoPlanes& space, double z) {
   const std::size_t last = lens.surface_count();
   const PairMap forward = on_slopes(ray_matrix(lens, 0, last, wavelength), signed_index(lens, 0, wavelength),
                                     signed_index(lens, last, wavelength));
@@ -64,7 +64,7 @@ PupilDisc disc_of(const Lens& lens, const PairMap& height, double radius, const 
   return {-height.a / height.b, radius / std::abs(height.b)};
 }
 
-PupilDisc thick_disc(const Lens& lens, std::size_t wavelength, const FilmSpace& space) {
+PupilDisc thick_disc(const Lens& lens, std::size_t wavelength, const TwoPlanes& space) {
   const std::size_t stop = pupils(lens, wavelength).stop, last = lens.surface_count();
   const PairMap behind_stop = on_slopes(ray_matrix(lens, stop, last, wavelength), signed_index(lens, stop, wavelength),
                                         signed_index(lens, last, wavelength));
@@ -78,7 +78,7 @@ PupilDisc thick_disc(const Lens& lens, std::size_t wavelength, const FilmSpace& 
   return disc_of(lens, at_stop, radius, "the image of the stop");
 }
 
-PupilDisc thin_disc(const Lens& lens, std::size_t wavelength, const FilmSpace& space) {
+PupilDisc thin_disc(const Lens& lens, std::size_t wavelength, const TwoPlanes& space) {
   const double diameter = pupils(lens, wavelength).entrance.diameter;
   if (!std::isfinite(diameter)) {
     throw Error(lens.name() + ": found the entrance pupil at infinity, wanted a finite one for a thin lens");
@@ -88,12 +88,12 @@ PupilDisc thin_disc(const Lens& lens, std::size_t wavelength, const FilmSpace& s
 }
 
 /// Edges of the real pupils of some film points, at equal steps of film area; none where hardly any light comes.
-std::vector<detail::EdgePoint> real_edges(const PupilMap& real, std::size_t wavelength) {
-  constexpr int fields = 16, directions = detail::star_corners / 2;
+std::vector<camera_detail::EdgePoint> real_edges(const FilmPupilTable& real, std::size_t wavelength) {
+  constexpr int fields = 16, directions = pupil_detail::polygon_corners / 2;
   // The stars stand for pupils of the same area; this part of the way between their corners they cross a round one.
-  constexpr double crossing = 0.21, step = 2.0 / detail::star_corners;
+  constexpr double crossing = 0.21, step = 2.0 / pupil_detail::polygon_corners;
   constexpr double darkest = 0.01;  // of the pupil's area on the axis
-  std::vector<detail::EdgePoint> edges;
+  std::vector<camera_detail::EdgePoint> edges;
   for (int j = 0; j <= fields; ++j) {
     const FilmPoint film{0, real.film_radius() * std::sqrt(static_cast<double>(j) / fields)};
     std::array<PupilSample, directions> points;
@@ -108,8 +108,8 @@ std::vector<detail::EdgePoint> real_edges(const PupilMap& real, std::size_t wave
   return edges;
 }
 
-PupilMap pupils_of(Model model, const Lens& lens, double film_radius) {
-  if (model > Model::thick) {
+FilmPupilTable pupils_of(ModelKind model, const Lens& lens, double film_radius) {
+  if (model > ModelKind::thick) {
     throw Error(lens.name() + ": found " + std::string(name(model)) + ", wanted a first-order model");
   }
   if (!lens.rotationally_symmetric()) {
@@ -122,24 +122,24 @@ PupilMap pupils_of(Model model, const Lens& lens, double film_radius) {
     }
   }
   std::vector<std::vector<PupilDisc>> discs(wavelengths);
-  if (model == Model::thin_two_disc) {
-    const PupilMap real = PupilMap::matching(lens, film_radius);
+  if (model == ModelKind::thin_two_disc) {
+    const FilmPupilTable real = FilmPupilTable::equal_area(lens, film_radius);
     for (std::size_t w = 0; w < wavelengths; ++w) {
-      const auto fitted = detail::fit_two_discs(real_edges(real, w));
+      const auto fitted = camera_detail::fit_two_discs(real_edges(real, w));
       discs[w].assign(fitted.begin(), fitted.end());
     }
-    return PupilMap::of_discs(real.space(), discs, film_radius);
+    return FilmPupilTable::of_discs(real.space(), discs, film_radius);
   }
-  const FilmSpace space = film_space(lens);
+  const TwoPlanes space = two_planes(lens);
   for (std::size_t w = 0; w < wavelengths; ++w) {
-    discs[w] = {model == Model::thin ? thin_disc(lens, w, space) : thick_disc(lens, w, space)};
+    discs[w] = {model == ModelKind::thin ? thin_disc(lens, w, space) : thick_disc(lens, w, space)};
   }
-  return PupilMap::of_discs(space, discs, film_radius);
+  return FilmPupilTable::of_discs(space, discs, film_radius);
 }
 
 /// Where rays are given: the entrance pupil, unless it is so far that digits of the place would be lost.
 double scene_plane(const Lens& lens) {
-  const std::size_t wavelength = lens.central_wavelength();
+  const std::size_t wavelength = lens.primary_wavelength();
   const double z = pupils(lens, wavelength).entrance.z, first_z = lens.surfaces().front().vertex_z;
   const double reach = std::abs(first_order(lens, wavelength).effective_focal_length);
   return std::abs(z - first_z) < 20 * reach ? z : first_z;
@@ -147,13 +147,13 @@ double scene_plane(const Lens& lens) {
 
 }  // namespace
 
-ParaxialModel::ParaxialModel(Model model, const Lens& lens, double film_radius)
+ParaxialModel::ParaxialModel(ModelKind model, const Lens& lens, double film_radius)
     : model_(model), pupils_(pupils_of(model, lens, film_radius)), z_(scene_plane(lens)) {
-  const FilmSpace& space = pupils_.space();
+  const TwoPlanes& space = pupils_.space();
   for (std::size_t w = 0; w < lens.wavelengths_nm().size(); ++w) {
     PairMap map = to_scene_map(lens, w, space, z_);
     to_film_.push_back(inverse(map));
-    if (model == Model::pinhole) {
+    if (model == ModelKind::pinhole) {
       const double middle = thick_disc(lens, w, space).shift;
       pinhole_shifts_.push_back(middle);
       map = {map.a + map.b * middle, 0, map.c + map.d * middle, 0};
@@ -163,18 +163,18 @@ ParaxialModel::ParaxialModel(Model model, const Lens& lens, double film_radius)
 }
 
 template <class T>
-void ParaxialModel::to_scene(std::size_t count, const FilmLines<const T>& lines, const RayWavelengths& wavelengths,
+void ParaxialModel::to_scene(std::size_t count, const TwoPlaneRays<const T>& lines, const RayWavelengths& wavelengths,
                              const RayArrays<T>& rays, RayFate* fates) const noexcept {
-  const detail::ParaxialJob job{to_scene_.data(), to_scene_.size(), z_, wavelengths};
+  const camera_detail::ParaxialJob job{to_scene_.data(), to_scene_.size(), z_, wavelengths};
   if constexpr (std::is_same_v<T, float>) {
-    detail::paraxial_loops().of_float(count, job, lines, rays, fates);
+    camera_detail::paraxial_loops().of_float(count, job, lines, rays, fates);
   } else {
-    detail::paraxial_loops().of_double(count, job, lines, rays, fates);
+    camera_detail::paraxial_loops().of_double(count, job, lines, rays, fates);
   }
 }
 
 void ParaxialModel::to_film(std::size_t count, const RayArrays<const double>& rays, const RayWavelengths& wavelengths,
-                            const FilmLines<double>& lines, RayFate* fates) const noexcept {
+                            const TwoPlaneRays<double>& lines, RayFate* fates) const noexcept {
   constexpr double reach = 1e12;
   for (std::size_t i = 0; i < count; ++i) {
     const double slope_x = rays.dx[i] / rays.dz[i], slope_y = rays.dy[i] / rays.dz[i], away = z_ - rays.z[i];
@@ -190,9 +190,9 @@ void ParaxialModel::to_film(std::size_t count, const RayArrays<const double>& ra
   }
 }
 
-template PETZVAL_API void ParaxialModel::to_scene(std::size_t, const FilmLines<const float>&, const RayWavelengths&,
+template PETZVAL_API void ParaxialModel::to_scene(std::size_t, const TwoPlaneRays<const float>&, const RayWavelengths&,
                                                   const RayArrays<float>&, RayFate*) const noexcept;
-template PETZVAL_API void ParaxialModel::to_scene(std::size_t, const FilmLines<const double>&, const RayWavelengths&,
+template PETZVAL_API void ParaxialModel::to_scene(std::size_t, const TwoPlaneRays<const double>&, const RayWavelengths&,
                                                   const RayArrays<double>&, RayFate*) const noexcept;
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

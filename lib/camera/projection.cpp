@@ -8,7 +8,7 @@
 #include "petzval/camera/importance.hpp"
 #include "scene_side.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 
 std::string_view name(ProjectionStatus status) noexcept {
   switch (status) {
@@ -20,7 +20,7 @@ std::string_view name(ProjectionStatus status) noexcept {
   return "unknown";
 }
 
-namespace detail {
+namespace camera_detail {
 namespace {
 
 /// How the chief rays of a film point and of two beside it miss a point: sines of angles, across two axes.
@@ -105,10 +105,10 @@ Projection SceneSide::project(const AnyModel& any, const Vec3<double>& point, st
   }
   const bool rims = !std::holds_alternative<ParaxialModel>(any) && !std::holds_alternative<PolynomialModel>(any);
   const auto [x, y] = chiefs.pupil_point(film);
-  const PupilMap& pupils = pupil_map_of(any);
+  const FilmPupilTable& pupils = film_pupil_table_of(any);
   const bool within = rims || pupils.contains(film, x, y, wavelength);
   return done(within ? ProjectionStatus::converged : ProjectionStatus::vignetted);
 }
 
-}  // namespace detail
-}  // namespace petzval
+}  // namespace camera_detail
+}  // namespace petzval::inline v0

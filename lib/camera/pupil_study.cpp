@@ -7,7 +7,7 @@
 #include "error_study.hpp"
 #include "petzval/core/parallel.hpp"
 
-namespace petzval::detail {
+namespace petzval::inline v0::camera_detail {
 namespace {
 
 constexpr std::size_t blocks = 64;  // of lines for each pupil
@@ -42,11 +42,7 @@ EvenPoints even_points(const ErrorSamples& samples, std::size_t place) noexcept 
 }  // namespace
 
 ModelPupils pupils_of(const AnyModel& model) {
-  return {pupil_map_of(model),
-          tracing_within(model),
-          tracing(model),
-          kind_of(model) == Model::pinhole,
-          {}};
+  return {film_pupil_table_of(model), tracing_within(model), tracing(model), kind_of(model) == ModelKind::pinhole, {}};
 }
 
 /// What a line adds to the irradiance of its film point, per area of the pupil: cos^4 / depth^2.
@@ -132,4 +128,4 @@ PupilStudy::Found PupilStudy::measure(const ModelPupils& model) const {
   return found;
 }
 
-}  // namespace petzval::detail
+}  // namespace petzval::inline v0::camera_detail

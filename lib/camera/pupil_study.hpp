@@ -9,13 +9,13 @@
 #include "petzval/camera/exact_model.hpp"
 #include "petzval/camera/film.hpp"
 #include "petzval/camera/model_error.hpp"
-#include "petzval/pupil/pupil_map.hpp"
+#include "petzval/pupil/film_pupil_table.hpp"
 
-namespace petzval::detail {
+namespace petzval::inline v0::camera_detail {
 
 /// The pupils of a model: where its samples lie, which of these pass, and which lines in general.
 struct ModelPupils {
-  PupilMap map;
+  FilmPupilTable map;
   Tracing within, tracing;
   bool point = false;           ///< a pinhole: no area at all
   std::optional<FilmPoint> of;  ///< the samples are those of this film point, for all
@@ -59,4 +59,4 @@ class PupilStudy {
   std::vector<std::vector<Point>> points_;  // [wavelength of the samples], those with light
 };
 
-}  // namespace petzval::detail
+}  // namespace petzval::inline v0::camera_detail

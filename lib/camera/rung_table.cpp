@@ -16,7 +16,7 @@
 #include "petzval/pupil/pupil.hpp"
 #include "rung_timing.hpp"
 
-namespace petzval::detail {
+namespace petzval::inline v0::camera_detail {
 namespace {
 
 constexpr std::size_t ray_film_points = 384, pupil_film_points = 40;
@@ -47,7 +47,7 @@ std::vector<double> depths_of(const Lens& lens, const SceneRequirements& scene) 
 /// The lens as the scene uses it, its samples, and everything exact about it.
 struct Setting {
   Setting(const Lens& whole, const SceneRequirements& scene, std::span<const Tolerance> tolerances, int threads)
-      : lens(scene.f_number ? with_f_number(whole, *scene.f_number, whole.central_wavelength()) : whole),
+      : lens(scene.f_number ? with_f_number(whole, *scene.f_number, whole.primary_wavelength()) : whole),
         film(scene.film),
         samples{.depths_z = depths_of(lens, scene), .film_points = ray_film_points, .threads = threads},
         exact(lens, film.radius_mm()) {
@@ -86,7 +86,7 @@ RayStudy::Largest chief_ray_errors(const RayStudy& rays, std::span<const Toleran
 }
 
 double focal_length(const Lens& lens) {
-  const std::size_t wavelength = lens.central_wavelength();
+  const std::size_t wavelength = lens.primary_wavelength();
   return std::abs(first_order(lens, wavelength, main_meridian(lens, wavelength)).effective_focal_length);
 }
 
@@ -120,7 +120,7 @@ RungTable rung_table(const Lens& whole, const SceneRequirements& scene, std::spa
   const double rounding = std::numeric_limits<float>::epsilon() * focal_length(setting.lens);
   RungTable table;
   std::vector<AnyModel> all;
-  for (const Model model : models()) {
+  for (const ModelKind model : models()) {
     ModelCandidate& rung = table.rungs.emplace_back();
     rung.model = model;
     std::vector<double>& of_tolerance = table.of_tolerance.emplace_back();
@@ -138,18 +138,18 @@ RungTable rung_table(const Lens& whole, const SceneRequirements& scene, std::spa
     const Tracing traced = tracing(*built);
     const auto found = setting.rays->measure(traced);
     const auto rays = guarded(setting.rays->largest(found, traced), tolerances,
-                              model == Model::exact_float ? noise_guard : smooth_guard);
+                              model == ModelKind::exact_float ? noise_guard : smooth_guard);
     const auto pupils = setting.pupils->measure(pupils_of(*built));
     rung.error = {found.all, found.wavelength, pupils.shape, pupils.exposure};
     // In float, rounding adds noise to what is smooth.
-    rung.bound_px = (rays.mm + (model == Model::exact_double ? 0 : rounding)) / film.pixel_mm();
+    rung.bound_px = (rays.mm + (model == ModelKind::exact_double ? 0 : rounding)) / film.pixel_mm();
     rung.bound_of_blur = rays.of_blur;
     // The reference itself has no errors: nothing to be unsure of.
-    rung.bound_exposure = model == Model::exact_double ? 0 : pupils.exposure_bound;
-    rung.bound_pupil_shape = model == Model::exact_double ? 0 : pupils.shape_bound;
+    rung.bound_exposure = model == ModelKind::exact_double ? 0 : pupils.exposure_bound;
+    rung.bound_pupil_shape = model == ModelKind::exact_double ? 0 : pupils.shape_bound;
     of_tolerance = rays.of_tolerance;
     all.push_back(*built);
-    if (model == Model::thick) table.no_distortion = chief_ray_errors(*setting.rays, tolerances, traced);
+    if (model == ModelKind::thick) table.no_distortion = chief_ray_errors(*setting.rays, tolerances, traced);
   }
   const std::vector<double> times = costs(all, time_rays(all, film));
   for (std::size_t k = 0, next = 0; k < table.rungs.size(); ++k) {
@@ -181,4 +181,4 @@ RungTable rung_table(const Lens& whole, const SceneRequirements& scene, std::spa
   return table;
 }
 
-}  // namespace petzval::detail
+}  // namespace petzval::inline v0::camera_detail

@@ -9,7 +9,7 @@
 #include "petzval/camera/choose_model.hpp"
 #include "pupil_study.hpp"
 
-namespace petzval::detail {
+namespace petzval::inline v0::camera_detail {
 
 /// What a choice is made of: every rung measured for a scene, and what the scene might do without.
 struct RungTable {
@@ -28,4 +28,4 @@ struct RungTable {
 RungTable rung_table(const Lens& lens, const SceneRequirements& scene, std::span<const Tolerance> tolerances,
                      int threads);
 
-}  // namespace petzval::detail
+}  // namespace petzval::inline v0::camera_detail

@@ -8,7 +8,7 @@
 #include "error_lines.hpp"
 #include "petzval/camera/sample_rays.hpp"
 
-namespace petzval::detail {
+namespace petzval::inline v0::camera_detail {
 namespace {
 
 constexpr std::size_t rays = 8192;  // of float: 0.5 MB, which the second cache holds
@@ -50,16 +50,16 @@ class Work {
 std::vector<double> time_rays(std::span<const AnyModel> models, const Film& film) {
   std::vector<double> best(models.size(), std::numeric_limits<double>::infinity());
   if (models.empty()) return best;
-  const std::size_t wavelengths = pupil_map_of(models[0]).wavelengths();
+  const std::size_t wavelengths = film_pupil_table_of(models[0]).wavelengths();
   Work<float> in_float(film, wavelengths);
   Work<double> in_double(film, wavelengths);
   for (int round = 0; round < rounds; ++round) {
     for (std::size_t k = 0; k < models.size(); ++k) {
-      const bool exact = kind_of(models[k]) == Model::exact_double;
+      const bool exact = kind_of(models[k]) == ModelKind::exact_double;
       best[k] = std::min(best[k], exact ? in_double.ns_per_ray(models[k]) : in_float.ns_per_ray(models[k]));
     }
   }
   return best;
 }
 
-}  // namespace petzval::detail
+}  // namespace petzval::inline v0::camera_detail

@@ -6,7 +6,7 @@
 #include "camera_loops.hpp"
 #include "tilted_pinhole.hpp"
 
-namespace petzval::detail {
+namespace petzval::inline v0::camera_detail {
 namespace {
 
 /// Nothing lies on a tilted film that is taken for an upright one.
@@ -39,9 +39,9 @@ void to_upright(std::size_t count, const TiltedFilm& film, const T* key_x, const
 }
 
 template <class T>
-void sample_pinhole(std::size_t count, const TiltedFilm& film, const PupilMap& pupils, std::span<const double> shifts,
-                    const CameraSamples<T>& samples, const T* key_x, const T* key_y, T* film_x, T* film_y, T* x, T* y,
-                    T* areas) noexcept {
+void sample_pinhole(std::size_t count, const TiltedFilm& film, const FilmPupilTable& pupils,
+                    std::span<const double> shifts, const CameraSamples<T>& samples, const T* key_x, const T* key_y,
+                    T* film_x, T* film_y, T* x, T* y, T* areas) noexcept {
   const auto shift = [&](std::size_t i) {
     const std::size_t w = samples.wavelengths[i];
     return w < shifts.size() ? shifts[w] : 0;
@@ -59,7 +59,7 @@ void sample_pinhole(std::size_t count, const TiltedFilm& film, const PupilMap& p
 }
 
 template <class T>
-void keep_within(std::size_t count, const PupilMap& pupils, const FilmLines<const T>& lines,
+void keep_within(std::size_t count, const FilmPupilTable& pupils, const TwoPlaneRays<const T>& lines,
                  const RayWavelengths& wavelengths, RayFate* fates) noexcept {
   constexpr std::size_t block = 256;
   std::array<std::uint8_t, block> within;
@@ -83,8 +83,8 @@ void keep_on_film(std::size_t count, const Film& film, const T* film_x, const T*
 }
 
 template <class T>
-void weigh(std::size_t count, const Film& film, const FilmSpace& space, const CameraSamples<T>& samples,
-           const FilmLines<const T>& lines, const T* areas, const double* scale, std::size_t known_wavelengths,
+void weigh(std::size_t count, const Film& film, const TwoPlanes& space, const CameraSamples<T>& samples,
+           const TwoPlaneRays<const T>& lines, const T* areas, const double* scale, std::size_t known_wavelengths,
            RayFate* fates, const CameraRays<T>& rays) noexcept {
   constexpr std::size_t block = 64;
   std::array<T, block> scales;
@@ -101,22 +101,23 @@ void weigh(std::size_t count, const Film& film, const FilmSpace& space, const Ca
   }
 }
 
-#define PETZVAL_SAMPLES(T)                                                                                            \
-  template PETZVAL_API void keep_on_film(std::size_t, const Film&, const T*, const T*, T*, T*) noexcept;              \
-  template PETZVAL_API void weigh(std::size_t, const Film&, const FilmSpace&, const CameraSamples<T>&,                \
-                                  const FilmLines<const T>&, const T*, const double*, std::size_t, RayFate*,          \
-                                  const CameraRays<T>&) noexcept;                                                     \
-  template PETZVAL_API void to_keys(std::size_t, const TiltedFilm&, const T*, const T*, T*, T*) noexcept;             \
-  template PETZVAL_API void to_upright(std::size_t, const TiltedFilm&, const T*, const T*, const T*, const T*, T*,    \
-                                       T*) noexcept;                                                                  \
-  template PETZVAL_API void sample_pinhole(std::size_t, const TiltedFilm&, const PupilMap&, std::span<const double>,  \
-                                           const CameraSamples<T>&, const T*, const T*, T*, T*, T*, T*, T*) noexcept; \
-  template PETZVAL_API void keep_within(std::size_t, const PupilMap&, const FilmLines<const T>&,                      \
-                                        const RayWavelengths&, RayFate*) noexcept;                                    \
-  template PETZVAL_API void lean(std::size_t, const TiltedFilm&, const T*, const T*, const T*, const T*, RayFate*,    \
+#define PETZVAL_SAMPLES(T)                                                                                           \
+  template PETZVAL_API void keep_on_film(std::size_t, const Film&, const T*, const T*, T*, T*) noexcept;             \
+  template PETZVAL_API void weigh(std::size_t, const Film&, const TwoPlanes&, const CameraSamples<T>&,               \
+                                  const TwoPlaneRays<const T>&, const T*, const double*, std::size_t, RayFate*,      \
+                                  const CameraRays<T>&) noexcept;                                                    \
+  template PETZVAL_API void to_keys(std::size_t, const TiltedFilm&, const T*, const T*, T*, T*) noexcept;            \
+  template PETZVAL_API void to_upright(std::size_t, const TiltedFilm&, const T*, const T*, const T*, const T*, T*,   \
+                                       T*) noexcept;                                                                 \
+  template PETZVAL_API void sample_pinhole(std::size_t, const TiltedFilm&, const FilmPupilTable&,                    \
+                                           std::span<const double>, const CameraSamples<T>&, const T*, const T*, T*, \
+                                           T*, T*, T*, T*) noexcept;                                                 \
+  template PETZVAL_API void keep_within(std::size_t, const FilmPupilTable&, const TwoPlaneRays<const T>&,            \
+                                        const RayWavelengths&, RayFate*) noexcept;                                   \
+  template PETZVAL_API void lean(std::size_t, const TiltedFilm&, const T*, const T*, const T*, const T*, RayFate*,   \
                                  const CameraRays<T>&) noexcept;
 PETZVAL_SAMPLES(float)
 PETZVAL_SAMPLES(double)
 #undef PETZVAL_SAMPLES
 
-}  // namespace petzval::detail
+}  // namespace petzval::inline v0::camera_detail

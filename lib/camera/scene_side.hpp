@@ -12,9 +12,9 @@
 #include "petzval/camera/importance.hpp"
 #include "petzval/camera/tilted_film.hpp"
 #include "petzval/lens/lens.hpp"
-#include "petzval/pupil/entrance_map.hpp"
+#include "petzval/pupil/entrance_pupil_table.hpp"
 
-namespace petzval::detail {
+namespace petzval::inline v0::camera_detail {
 
 /// What a camera knows of the scene's side, beside its model: importance.cpp and projection.cpp.
 class SceneSide {
@@ -63,9 +63,9 @@ class SceneSide {
   Film film_;
   std::optional<TiltedFilm> tilted_;
   double upright_radius_ = 0;
-  FilmSpace space_;
+  TwoPlanes space_;
   std::vector<Wavelength> wavelengths_;
-  EntranceMap entrance_;
+  EntrancePupilTable entrance_;
 };
 
-}  // namespace petzval::detail
+}  // namespace petzval::inline v0::camera_detail

@@ -26,10 +26,10 @@
 #include "petzval/pupil/pupil.hpp"
 #include "tilted_pinhole.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 namespace {
 
-detail::TiltedPlane plane_of(const Film& film, const FilmSpace& space) {
+camera_detail::TiltedPlane plane_of(const Film& film, const TwoPlanes& space) {
   const FilmPose pose{space.film_z, film.tilt_rad, film.swing_rad};
   const Vec3<double> right = pose.right(), up = pose.up(), normal = pose.normal();
   const double distance = -space.depth();
@@ -44,7 +44,7 @@ detail::TiltedPlane plane_of(const Film& film, const FilmSpace& space) {
 }
 
 /// Distance from the plane of the pupil, in that of the upright film.
-double distance_at(const detail::TiltedPlane& plane, const FilmPoint& film) noexcept {
+double distance_at(const camera_detail::TiltedPlane& plane, const FilmPoint& film) noexcept {
   return 1 + plane.depth_by_x * film.x + plane.depth_by_y * film.y;
 }
 
@@ -57,7 +57,7 @@ struct Key {
   FilmPoint point() const noexcept { return {x.a, y.a}; }
 };
 
-Key differentiated_key(const detail::TiltedPlane& plane, const FilmPoint& film) noexcept {
+Key differentiated_key(const camera_detail::TiltedPlane& plane, const FilmPoint& film) noexcept {
   const Jet x(film.x, 0), y(film.y, 1);
   const Jet distance = 1.0 + plane.depth_by_x * x + plane.depth_by_y * y;
   const Jet key_x = (plane.x_by_x * x + plane.x_by_y * y) / distance, key_y = plane.y_by_y * y / distance;
@@ -65,7 +65,7 @@ Key differentiated_key(const detail::TiltedPlane& plane, const FilmPoint& film) 
 }
 
 LineDerivatives derivatives_of(const Jet& film_x, const Jet& film_y, const Jet& pupil_x, const Jet& pupil_y) noexcept {
-  const auto part = [&](int k) { return FilmLine{film_x.v[k], film_y.v[k], pupil_x.v[k], pupil_y.v[k]}; };
+  const auto part = [&](int k) { return TwoPlaneRay{film_x.v[k], film_y.v[k], pupil_x.v[k], pupil_y.v[k]}; };
   return {{film_x.a, film_y.a, pupil_x.a, pupil_y.a}, part(0), part(1)};
 }
 
@@ -85,24 +85,24 @@ struct Rim {
 
 /// Where the pupils of a model lie, at every wavelength, twice as wide as to first order: aberrations move and widen
 /// them, and the film's own pupils are looked for among points beside the film too. Those without a place are left out.
-std::vector<Rim> pupils_of(const Lens& lens, Model model) {
+std::vector<Rim> pupils_of(const Lens& lens, ModelKind model) {
   std::vector<Rim> rims;
   for (std::size_t w = 0; w < lens.wavelengths_nm().size() && has_pupils(lens); ++w) {
     const Pupils paraxial = pupils(lens, w);
-    const Rim rim = model == Model::thin ? Rim{paraxial.entrance.diameter, first_order(lens, w).rear_principal_z}
-                                         : Rim{paraxial.exit.diameter, paraxial.exit.z};
+    const Rim rim = model == ModelKind::thin ? Rim{paraxial.entrance.diameter, first_order(lens, w).rear_principal_z}
+                                             : Rim{paraxial.exit.diameter, paraxial.exit.z};
     if (std::isfinite(rim.z) && std::isfinite(rim.half)) rims.push_back(rim);
   }
   return rims;
 }
 
 /// Of the film: a projection maps rectangles to what their corners go around.
-FilmLean lean_of(const TiltedFilm& tilted) {
-  FilmLean lean{.slope_x = tilted.plane().slope_x,
+FilmTilt lean_of(const TiltedFilm& tilted) {
+  FilmTilt lean{.slope_x = tilted.plane().slope_x,
                 .slope_y = tilted.plane().slope_y,
                 .low = std::numeric_limits<double>::infinity(),
                 .high = -std::numeric_limits<double>::infinity()};
-  for (const FilmPoint& corner : detail::corners_of(tilted.film())) {
+  for (const FilmPoint& corner : camera_detail::corners_of(tilted.film())) {
     const FilmPoint key = tilted.key(corner);
     const double value = tilted.plane().slope_along(key);
     lean.low = std::min(lean.low, value);
@@ -114,20 +114,20 @@ FilmLean lean_of(const TiltedFilm& tilted) {
 
 }  // namespace
 
-double upright_radius(const Lens& lens, const Film& film, Model model) {
-  detail::check_rectangle(lens.name() + ": film", film);
+double upright_radius(const Lens& lens, const Film& film, ModelKind model) {
+  camera_detail::check_rectangle(lens.name() + ": film", film);
   if (!film.tilted()) return film.radius_mm();
   const FilmPose pose{lens.film_z(), film.tilt_rad, film.swing_rad};
-  const double pupil_z = film_space(lens).pupil_z;
+  const double pupil_z = two_planes(lens).pupil_z;
   const std::vector<Rim> pupils = pupils_of(lens, model);
   const OuterFace face = last_face(lens);
-  const bool discs = model <= Model::thick && model != Model::thin_two_disc;
+  const bool discs = model <= ModelKind::thick && model != ModelKind::thin_two_disc;
   // Aberrations move a pupil that lies behind the film by more than its size.
   const bool in_lens = !pupils.empty() && std::all_of(pupils.begin(), pupils.end(), [&](const Rim& rim) {
     return (rim.z - pose.film_z) * (face.vertex_z - pose.film_z) > 0;
   });
   double radius = 0;
-  for (const FilmPoint& corner : detail::corners_of(film)) {
+  for (const FilmPoint& corner : camera_detail::corners_of(film)) {
     const Vec3<double> place = pose.at(corner);
     const double height = std::hypot(place.x, place.y);
     const auto farthest = [&](const Rim& rim) {
@@ -148,15 +148,15 @@ double upright_radius(const Lens& lens, const Film& film, Model model) {
   return radius;
 }
 
-TiltedFilm::TiltedFilm(const Film& film, const PupilMap& pupils)
+TiltedFilm::TiltedFilm(const Film& film, const FilmPupilTable& pupils)
     : film_(film), plane_(plane_of(film, pupils.space())), pupils_(pupils) {
   const std::string where = "tilted film";
-  detail::check_rectangle(where, film);
+  camera_detail::check_rectangle(where, film);
   const FilmPose pose{pupils.space().film_z, film.tilt_rad, film.swing_rad};
-  for (const FilmPoint& corner : detail::corners_of(film)) {
+  for (const FilmPoint& corner : camera_detail::corners_of(film)) {
     check_distance(where, corner, pose.at(corner).z, pose.film_z, pupils.space().pupil_z);
   }
-  const FilmLean lean = lean_of(*this);
+  const FilmTilt lean = lean_of(*this);
   constexpr double rounding = 1e-9;
   if (!(lean.radius <= pupils.film_radius() * (1 + rounding))) {
     throw Error(where + ": the pupils are those of film points up to " + number(pupils.film_radius()) +
@@ -170,12 +170,12 @@ FilmPoint TiltedFilm::key(const FilmPoint& film) const noexcept {
   return {(plane_.x_by_x * film.x + plane_.x_by_y * film.y) * per_distance, plane_.y_by_y * film.y * per_distance};
 }
 
-FilmLine TiltedFilm::upright(const FilmPoint& key, double pupil_x, double pupil_y) const noexcept {
+TwoPlaneRay TiltedFilm::upright(const FilmPoint& key, double pupil_x, double pupil_y) const noexcept {
   const double lean = plane_.slope_along(key);
   return {key.x - lean * pupil_x, key.y - lean * pupil_y, pupil_x, pupil_y};
 }
 
-std::optional<FilmPoint> TiltedFilm::key_of(const FilmLine& line) const noexcept {
+std::optional<FilmPoint> TiltedFilm::key_of(const TwoPlaneRay& line) const noexcept {
   const double front = 1 - plane_.slope_along({line.pupil_x, line.pupil_y});
   const double lean = plane_.slope_along({line.film_x, line.film_y}) / front;
   if (!(front > 0 && 1 + lean > 0)) return {};
@@ -202,10 +202,10 @@ LineDerivatives TiltedFilm::line(const FilmPoint& film, double u, double v, std:
   return derivatives_of(key.x - key.lean * pupil_x, key.y - key.lean * pupil_y, pupil_x, pupil_y);
 }
 
-LineDerivatives detail::pinhole_line(const TiltedFilm& tilted, const FilmPoint& film, double shift) noexcept {
+LineDerivatives camera_detail::pinhole_line(const TiltedFilm& tilted, const FilmPoint& film, double shift) noexcept {
   const Key key = differentiated_key(tilted.plane(), film);
   const Jet x = key.x / (1.0 + key.lean * shift), y = key.y / (1.0 + key.lean * shift);
   return derivatives_of(x, y, shift * x, shift * y);
 }
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

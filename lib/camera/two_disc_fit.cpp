@@ -8,7 +8,7 @@
 #include <limits>
 #include <vector>
 
-namespace petzval::detail {
+namespace petzval::inline v0::camera_detail {
 namespace {
 
 using Discs = std::array<PupilDisc, 2>;
@@ -127,4 +127,4 @@ std::array<PupilDisc, 2> fit_two_discs(std::span<const EdgePoint> edges) {
   return best;
 }
 
-}  // namespace petzval::detail
+}  // namespace petzval::inline v0::camera_detail

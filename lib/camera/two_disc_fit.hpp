@@ -4,9 +4,9 @@
 #include <array>
 #include <span>
 
-#include "petzval/pupil/pupil_map.hpp"
+#include "petzval/pupil/film_pupil_table.hpp"
 
-namespace petzval::detail {
+namespace petzval::inline v0::camera_detail {
 
 /// A point of a pupil's edge, in the plane of the pupil, of a film point at (0, field), mm.
 struct EdgePoint {
@@ -22,4 +22,4 @@ double two_disc_error(std::span<const EdgePoint> edges, const std::array<PupilDi
 /// (wanted: some of the axis' and of others) the points stand together.
 std::array<PupilDisc, 2> fit_two_discs(std::span<const EdgePoint> edges);
 
-}  // namespace petzval::detail
+}  // namespace petzval::inline v0::camera_detail

@@ -12,7 +12,7 @@
 
 #include "petzval/core/error.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 
 void parallel_for(std::size_t count, std::size_t block, int threads,
                   const std::function<void(std::size_t, std::size_t)>& work) {
@@ -55,4 +55,4 @@ void parallel_for(std::size_t count, std::size_t block, int threads,
   if (thrown) std::rethrow_exception(thrown);
 }
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "petzval/core/ray.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 
 std::string_view name(RayFate fate) noexcept {
   switch (fate) {
@@ -16,4 +16,4 @@ std::string_view name(RayFate fate) noexcept {
   return "unknown";
 }
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

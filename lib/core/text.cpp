@@ -4,7 +4,7 @@
 #include <array>
 #include <charconv>
 
-namespace petzval {
+namespace petzval::inline v0 {
 
 std::string number(double value) {
   std::array<char, 32> buffer;
@@ -33,4 +33,4 @@ std::string escaped_xml(std::string_view words) {
   return result;
 }
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

@@ -7,7 +7,7 @@
 #include "petzval/core/text.hpp"
 #include "sheet.hpp"
 
-namespace petzval::detail {
+namespace petzval::inline v0::figure_detail {
 namespace {
 
 /// Calls draw(value, words) for round values within an axis.
@@ -109,4 +109,4 @@ void Axes::marks(std::vector<Mark> marks) {
   }
 }
 
-}  // namespace petzval::detail
+}  // namespace petzval::inline v0::figure_detail

@@ -9,7 +9,7 @@
 
 #include "svg.hpp"
 
-namespace petzval::detail {
+namespace petzval::inline v0::figure_detail {
 
 /// One axis of a diagram: what it spans, and its title with the unit.
 struct Axis {
@@ -53,4 +53,4 @@ class Axes {
   Axis across_, up_;
 };
 
-}  // namespace petzval::detail
+}  // namespace petzval::inline v0::figure_detail

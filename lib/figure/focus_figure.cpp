@@ -15,10 +15,10 @@
 #include "petzval/psf/spot.hpp"
 #include "sheet.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 namespace {
 
-using detail::Svg;
+using figure_detail::Svg;
 
 constexpr double width = 960, left = 78, right = 24, top = 140, plot_height = 340, row = 18;
 constexpr std::uint32_t rays = 4096;
@@ -85,7 +85,7 @@ class Figure {
     axis_ = curves_.back();
     curves_.pop_back();
     mean_ = mean(curves_);
-    const double paraxial = paraxial_image_z(lens, subject_z, lens.central_wavelength(), main_meridian(lens));
+    const double paraxial = paraxial_image_z(lens, subject_z, lens.primary_wavelength(), main_meridian(lens));
     paraxial_ = std::isfinite(paraxial);
     zero_ = paraxial_ ? paraxial : lens.film_z();
     measure();
@@ -94,18 +94,18 @@ class Figure {
   std::string draw() {
     const double rows = static_cast<double>(fields_.size() + (several() ? 1 : 0));
     Svg svg(width, top + plot_height + 62 + row * rows + 34);
-    detail::draw_head(svg, lens_, "Blur against film position", subject_z_, lens_.central_wavelength());
+    figure_detail::draw_head(svg, lens_, "Blur against film position", subject_z_, lens_.primary_wavelength());
     const bool micrometres = highest_ < 0.5;
     const double unit = micrometres ? 1e3 : 1;
-    detail::Axes axes(svg, left, top, width - left - right, plot_height,
-                      {from_ - zero_, to_ - zero_,
-                       std::string("film shift from ") + (paraxial_ ? "paraxial focus" : "its place") + " (mm)"},
-                      {0, unit * highest_, std::string("RMS radius (") + (micrometres ? "\u00b5m)" : "mm)")});
+    figure_detail::Axes axes(svg, left, top, width - left - right, plot_height,
+                             {from_ - zero_, to_ - zero_,
+                              std::string("film shift from ") + (paraxial_ ? "paraxial focus" : "its place") + " (mm)"},
+                             {0, unit * highest_, std::string("RMS radius (") + (micrometres ? "\u00b5m)" : "mm)")});
 
     constexpr std::string_view film = "fill=\"none\" stroke=\"#111\" stroke-width=\"1.4\"";
     constexpr std::string_view thin = "fill=\"none\" stroke=\"#777\" stroke-width=\"0.8\"";
     constexpr std::string_view dashed = "fill=\"none\" stroke=\"#777\" stroke-width=\"0.8\" stroke-dasharray=\"5 3\"";
-    std::vector<detail::Axes::Mark> marks{{lens_.film_z() - zero_, "film", film}};
+    std::vector<figure_detail::Axes::Mark> marks{{lens_.film_z() - zero_, "film", film}};
     if (paraxial_) marks.push_back({0, "paraxial focus", thin});
     if (axis_) marks.push_back({axis_->best - zero_, "least RMS on the axis", dashed});
     if (several() && mean_) marks.push_back({mean_->best - zero_, "least mean of the fields", dashed});
@@ -122,26 +122,26 @@ class Figure {
     };
     double y = top + plot_height + 62;
     const auto entry = [&](std::string_view colour, const std::string& name, const std::optional<Parabola>& p) {
-      detail::draw_key(
-          svg, left, y, colour,
-          name + (p ? ":  least RMS " + detail::length_text(p->least_rms()) + " at " + signed_mm(p->best - zero_) +
-                          ",  " + detail::length_text(p->rms(lens_.film_z())) + " on the film"
-                    : ":  no focus, no ray passes"));
+      figure_detail::draw_key(svg, left, y, colour,
+                              name + (p ? ":  least RMS " + figure_detail::length_text(p->least_rms()) + " at " +
+                                              signed_mm(p->best - zero_) + ",  " +
+                                              figure_detail::length_text(p->rms(lens_.film_z())) + " on the film"
+                                        : ":  no focus, no ray passes"));
       y += row;
     };
     for (std::size_t i = 0; i < fields_.size(); ++i) {
-      const std::string colour(detail::field_colour(i));
+      const std::string colour(figure_detail::field_colour(i));
       if (curves_[i]) curve(*curves_[i], "stroke=\"" + colour + "\" stroke-width=\"1.6\"");
-      entry(colour, "field " + detail::field_text(fields_[i]), curves_[i]);
+      entry(colour, "field " + figure_detail::field_text(fields_[i]), curves_[i]);
     }
     if (several()) {
       if (mean_) curve(*mean_, "stroke=\"#111\" stroke-width=\"1.6\" stroke-dasharray=\"7 3\"");
       entry("#111", "mean of the fields (dashed)", mean_);
     }
-    svg.text(detail::sheet_margin, y + 12,
+    svg.text(figure_detail::sheet_margin, y + 12,
              "RMS radius about the centroid, all of the vignetted pupil by area" + wavelengths_in_words() +
                  ". Mean: root of the mean square, fields with equal weight.",
-             detail::small_text);
+             figure_detail::small_text);
     return std::move(svg).finish();
   }
 
@@ -172,7 +172,7 @@ class Figure {
     // radius of a uniform cone grows by 1 / sqrt(8) / N.
     double pad = 0.25 * (to_ - from_);
     if (axis_) {
-      const double lambda = lens_.wavelengths_nm()[lens_.central_wavelength()] * 1e-6;
+      const double lambda = lens_.wavelengths_nm()[lens_.primary_wavelength()] * 1e-6;
       pad =
           std::max({pad, std::sqrt(8 * std::max(axis_->least, 0.0) / axis_->steepness), 2 * lambda / axis_->steepness});
     }
@@ -203,4 +203,4 @@ std::string focus_figure(const Lens& lens, double subject_z, std::span<const dou
   return Figure(lens, subject_z, fields_rad).draw();
 }
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

@@ -14,7 +14,7 @@
 #include "petzval/core/units.hpp"
 #include "sheet.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 namespace {
 
 using Frames = std::span<const FocusPullFrame>;
@@ -50,7 +50,7 @@ void check(Frames frames) {
 }
 
 /// All values with some room, and a span that is none widened.
-detail::Axis spanning(Frames frames, const Diagram& diagram) {
+figure_detail::Axis spanning(Frames frames, const Diagram& diagram) {
   double low = std::numeric_limits<double>::infinity(), high = -low;
   for (const Curve& curve : diagram.curves) {
     for (const FocusPullFrame& f : frames) {
@@ -81,24 +81,24 @@ std::string focus_pull_figure(std::string_view title, std::string_view remark, F
   }
   constexpr double width = 960, left = 78, top = 76, height = 170, gap = 56;
   const double foot = top + (height + gap) * static_cast<double>(diagrams.size());
-  detail::Svg svg(width, foot + 36);
-  svg.text(detail::sheet_margin, 26, title, "font-size=\"17\" font-weight=\"bold\"");
-  svg.text(detail::sheet_margin, 46, std::string("Focus pull.  ") + std::string(remark));
+  figure_detail::Svg svg(width, foot + 36);
+  svg.text(figure_detail::sheet_margin, 26, title, "font-size=\"17\" font-weight=\"bold\"");
+  svg.text(figure_detail::sheet_margin, 46, std::string("Focus pull.  ") + std::string(remark));
   double from = frames.front().time, to = frames.back().time;
   if (!(to > from)) from -= 0.5, to += 0.5;
 
   double y = top;
   for (const Diagram& diagram : diagrams) {
-    const detail::Axis up = spanning(frames, diagram);
-    detail::Axes axes(svg, left, y, width - left - 24, height, {from, to, "time (s)"}, up);
+    const figure_detail::Axis up = spanning(frames, diagram);
+    figure_detail::Axes axes(svg, left, y, width - left - 24, height, {from, to, "time (s)"}, up);
     for (const double key : key_times) {
-      const std::vector<detail::Axes::Point> line{{key, up.from}, {key, up.to}};
+      const std::vector<figure_detail::Axes::Point> line{{key, up.from}, {key, up.to}};
       axes.curve(line, "fill=\"none\" stroke=\"#999\" stroke-dasharray=\"2 3\"");
     }
     double key_x = left + 10;
     for (const Curve& curve : diagram.curves) {
       // The whole in grey, then what was served on top of it.
-      std::vector<detail::Axes::Point> all, served;
+      std::vector<figure_detail::Axes::Point> all, served;
       for (const FocusPullFrame& f : frames) {
         const double value = curve.value(f);
         all.push_back({f.time, value});
@@ -107,15 +107,15 @@ std::string focus_pull_figure(std::string_view title, std::string_view remark, F
       axes.curve(all, "fill=\"none\" stroke=\"#aaa\" stroke-width=\"2\"");
       axes.curve(served, "fill=\"none\" stroke-linejoin=\"round\" stroke=\"" + std::string(curve.colour) +
                              "\" stroke-width=\"2\"");
-      if (!curve.name.empty()) key_x = 12 + detail::draw_key(svg, key_x, y + 14, curve.colour, curve.name);
+      if (!curve.name.empty()) key_x = 12 + figure_detail::draw_key(svg, key_x, y + 14, curve.colour, curve.name);
     }
     y += height + gap;
   }
-  svg.text(detail::sheet_margin, foot + 4,
+  svg.text(figure_detail::sheet_margin, foot + 4,
            "In focus: on the axis, from the film, as 1/distance; 0 is infinity. Dotted: keys. Grey: no point to serve, "
            "the film stays.",
-           detail::small_text);
+           figure_detail::small_text);
   return std::move(svg).finish();
 }
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

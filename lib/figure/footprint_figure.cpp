@@ -16,11 +16,11 @@
 #include "petzval/pupil/pupil.hpp"
 #include "sheet.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 namespace {
 
-using detail::Svg;
-using detail::svg_number;
+using figure_detail::Svg;
+using figure_detail::svg_number;
 
 constexpr double cell = 220, gap = 14, top = 70, under = 68;
 constexpr std::size_t most_columns = 4;
@@ -32,7 +32,7 @@ struct Limit {
   bool operator==(const Limit&) const = default;
 };
 
-Limit limit_of(const PupilEdge& edge) { return {edge.surface, edge.beyond}; }
+Limit limit_of(const RimPoint& edge) { return {edge.surface, edge.beyond}; }
 
 std::string_view colour_of(std::size_t limit) {
   constexpr std::array<std::string_view, 8> palette{"#111111", "#d0331f", "#1f5fc4", "#1a8f3c",
@@ -63,7 +63,7 @@ struct Cell {
 class Figure {
  public:
   Figure(const Lens& lens, double subject_z, std::span<const double> fields_rad)
-      : lens_(lens), subject_z_(subject_z), fields_(fields_rad), wavelength_(lens.central_wavelength()) {
+      : lens_(lens), subject_z_(subject_z), fields_(fields_rad), wavelength_(lens.primary_wavelength()) {
     half_x_ = pupils(lens, wavelength_, Meridian::x).entrance.diameter / 2;
     half_y_ = pupils(lens, wavelength_, Meridian::y).entrance.diameter / 2;
     axial_area_ = pupil_outline(lens, {0, subject_z}, wavelength_).area();
@@ -72,7 +72,7 @@ class Figure {
       cells_.push_back(framed({outline, relative_illumination(lens, {field, subject_z}, wavelength_), {}, false}));
       half_ = std::max(half_, cells_.back().shown.half());
       for (const PupilSpan& span : outline.spans) {
-        for (const PupilEdge& edge : {span.from, span.to}) {
+        for (const RimPoint& edge : {span.from, span.to}) {
           if (edge.surface >= 0 && std::ranges::find(limits_, limit_of(edge)) == limits_.end()) {
             limits_.push_back(limit_of(edge));
           }
@@ -93,24 +93,24 @@ class Figure {
     const std::vector<std::string> names = limit_names();
     const std::size_t key_rows = (names.size() + 3) / 4;
     Svg svg(width, keys + 20 * static_cast<double>(key_rows + 1) + 40);
-    detail::draw_head(svg, lens_, "Pupil footprints", subject_z_, wavelength_);
+    figure_detail::draw_head(svg, lens_, "Pupil footprints", subject_z_, wavelength_);
     for (std::size_t i = 0; i < cells_.size(); ++i) {
       draw_cell(svg, cells_[i], fields_[i], gap + static_cast<double>(i % columns) * (cell + gap),
                 top + static_cast<double>(i / columns) * (cell + under + gap));
     }
     for (std::size_t i = 0; i < names.size(); ++i) {
-      detail::draw_key(svg, gap + 235 * static_cast<double>(i % 4), keys + 20 * static_cast<double>(i / 4),
-                       colour_of(i), names[i]);
+      figure_detail::draw_key(svg, gap + 235 * static_cast<double>(i % 4), keys + 20 * static_cast<double>(i / 4),
+                              colour_of(i), names[i]);
     }
     const double y = keys + 20 * static_cast<double>(key_rows) + 2;
-    detail::draw_scale_bar(svg, gap, y, cell / 2 / half_, cell, ",  the same in all cells");
-    svg.text(detail::sheet_margin, y + 24,
+    figure_detail::draw_scale_bar(svg, gap, y, cell / 2 / half_, cell, ",  the same in all cells");
+    svg.text(figure_detail::sheet_margin, y + 24,
              "Rays of a point that pass the lens, in the plane of the entrance pupil, seen against the light's way; +y "
              "up. The edge's colour names the surface that limits.",
-             detail::small_text);
-    svg.text(detail::sheet_margin, y + 40,
+             figure_detail::small_text);
+    svg.text(figure_detail::sheet_margin, y + 40,
              "Dashed: paraxial entrance pupil. Fields of 89\u00b0 and more: in the plane perpendicular to the field.",
-             detail::small_text);
+             figure_detail::small_text);
     return std::move(svg).finish();
   }
 
@@ -120,10 +120,10 @@ class Figure {
     Box paraxial{-half_x_, half_x_, -half_y_, half_y_};
     c.shown = paraxial;
     if (c.outline.empty()) return c;
-    const PupilEdge& any = c.outline.spans.front().to;
+    const RimPoint& any = c.outline.spans.front().to;
     Box real{any.x, any.x, any.y, any.y};
     for (const PupilSpan& span : c.outline.spans) {
-      for (const PupilEdge& edge : {span.from, span.to}) {
+      for (const RimPoint& edge : {span.from, span.to}) {
         real.take(edge.x, edge.y);
         c.shown.take(edge.x, edge.y);
       }
@@ -149,7 +149,7 @@ class Figure {
     const double cx = left + cell / 2, cy = upper + cell / 2, scale = cell / 2 / half_;
     const auto x = [&](double px) { return cx + (px - c.shown.x()) * scale; };
     const auto y = [&](double py) { return cy - (py - c.shown.y()) * scale; };
-    const auto at = [&](const PupilEdge& e) { return svg_number(x(e.x)) + " " + svg_number(y(e.y)); };
+    const auto at = [&](const RimPoint& e) { return svg_number(x(e.x)) + " " + svg_number(y(e.y)); };
     svg.rect(left, upper, cell, cell, "fill=\"none\" stroke=\"#bbb\"");
 
     // Each direction's span is joined with its neighbour's of the same rank, where both directions have as many.
@@ -186,22 +186,23 @@ class Figure {
                   "fill=\"none\" stroke=\"#555\" stroke-width=\"1\" stroke-dasharray=\"4 3\"");
     }
 
-    svg.text(left, upper + cell + 17, "field " + detail::field_text(field), "font-weight=\"bold\"");
+    svg.text(left, upper + cell + 17, "field " + figure_detail::field_text(field), "font-weight=\"bold\"");
     if (c.outline.empty()) {
-      svg.text(left, upper + cell + 33, "no ray passes", detail::small_text);
+      svg.text(left, upper + cell + 33, "no ray passes", figure_detail::small_text);
       return;
     }
     if (axial_area_ > 0) {
       svg.text(left, upper + cell + 33, "area " + number(c.outline.area() / axial_area_, 3) + " of that on the axis",
-               detail::small_text);
+               figure_detail::small_text);
     }
     if (c.illumination) {
-      svg.text(left, upper + cell + 48, "relative illumination " + number(*c.illumination, 3), detail::small_text);
+      svg.text(left, upper + cell + 48, "relative illumination " + number(*c.illumination, 3),
+               figure_detail::small_text);
     }
     if (c.away) {
       svg.text(left, upper + cell + 63,
-               "paraxial pupil " + detail::length_text(std::hypot(c.shown.x(), c.shown.y())) + " away",
-               detail::small_text);
+               "paraxial pupil " + figure_detail::length_text(std::hypot(c.shown.x(), c.shown.y())) + " away",
+               figure_detail::small_text);
     }
   }
 
@@ -223,4 +224,4 @@ std::string footprint_figure(const Lens& lens, double subject_z, std::span<const
   return Figure(lens, subject_z, fields_rad).draw();
 }
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

@@ -14,7 +14,7 @@
 #include "petzval/pupil/illumination.hpp"
 #include "sheet.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 
 std::string illumination_figure(const Lens& lens, double subject_z, double field_rad) {
   if (!(field_rad > 0)) {
@@ -22,7 +22,7 @@ std::string illumination_figure(const Lens& lens, double subject_z, double field
   }
   constexpr int steps = 30;
   constexpr double width = 960, left = 78, top = 70, height = 300;
-  const std::size_t wavelength = lens.central_wavelength();
+  const std::size_t wavelength = lens.primary_wavelength();
   std::vector<std::pair<double, double>> real, reference;
   double highest = 1;
   for (int k = 0; k <= steps; ++k) {
@@ -34,20 +34,20 @@ std::string illumination_figure(const Lens& lens, double subject_z, double field
     highest = std::max(highest, value);
   }
 
-  detail::Svg svg(width, top + height + 92);
-  detail::draw_head(svg, lens, "Relative illumination", subject_z, wavelength);
-  detail::Axes axes(svg, left, top, width - left - 24, height, {0, degrees(field_rad), "field angle (\u00b0)"},
-                    {0, 1.05 * highest, "relative illumination"});
+  figure_detail::Svg svg(width, top + height + 92);
+  figure_detail::draw_head(svg, lens, "Relative illumination", subject_z, wavelength);
+  figure_detail::Axes axes(svg, left, top, width - left - 24, height, {0, degrees(field_rad), "field angle (\u00b0)"},
+                           {0, 1.05 * highest, "relative illumination"});
   axes.curve(reference, "fill=\"none\" stroke=\"#888\" stroke-width=\"1\"");
   axes.curve(real, "fill=\"none\" stroke=\"#1f5fc4\" stroke-width=\"2\" stroke-linejoin=\"round\"");
   const double y = top + height + 58;
-  const double x = detail::draw_key(svg, left, y, "#1f5fc4", "this lens, vignetting included");
-  detail::draw_key(svg, x + 30, y, "#888", "cos\u2074 of the field angle");
-  svg.text(detail::sheet_margin, y + 24,
+  const double x = figure_detail::draw_key(svg, left, y, "#1f5fc4", "this lens, vignetting included");
+  figure_detail::draw_key(svg, x + 30, y, "#888", "cos\u2074 of the field angle");
+  svg.text(figure_detail::sheet_margin, y + 24,
            "Irradiance of the film at the image of a uniform scene over that on the axis: n'\u00b2 times the projected "
            "solid angle of the vignetted exit pupil.",
-           detail::small_text);
+           figure_detail::small_text);
   return std::move(svg).finish();
 }
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

@@ -14,15 +14,15 @@
 #include "section.hpp"
 #include "sheet.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 namespace {
 
-using detail::LensSection;
-using detail::RayPath;
-using detail::SectionLine;
-using detail::SectionPoint;
-using detail::Svg;
-using detail::svg_number;
+using figure_detail::LensSection;
+using figure_detail::RayPath;
+using figure_detail::SectionLine;
+using figure_detail::SectionPoint;
+using figure_detail::Svg;
+using figure_detail::svg_number;
 
 constexpr double width = 960, side = 22, top = 64, bottom = 86, tallest = 520;
 
@@ -45,8 +45,8 @@ class Figure {
         subject_z_(subject_z),
         fields_(fields_rad),
         options_(options),
-        wavelength_(lens.central_wavelength()),
-        rays_(detail::ray_paths(lens, subject_z, fields_rad, options.section, options.rays, wavelength_)),
+        wavelength_(lens.primary_wavelength()),
+        rays_(figure_detail::ray_paths(lens, subject_z, fields_rad, options.section, options.rays, wavelength_)),
         section_(lens, options.section, heights_needed(), wavelength_) {
     if (has_pupils(lens)) stop_ = pupils(lens, wavelength_, options.section);
     measure();
@@ -55,8 +55,8 @@ class Figure {
   std::string draw() {
     const double height = (box_.high - box_.low) * scale_;
     Svg svg(width, top + height + bottom);
-    detail::draw_head(svg, lens_, options_.section == Meridian::y ? "Section y-z" : "Section x-z", subject_z_,
-                      wavelength_);
+    figure_detail::draw_head(svg, lens_, options_.section == Meridian::y ? "Section y-z" : "Section x-z", subject_z_,
+                             wavelength_);
     svg.path("M" + svg_number(side / 2) + " " + svg_number(y(0)) + "H" + svg_number(width - side / 2),
              "fill=\"none\" stroke=\"#888\" stroke-width=\"0.8\" stroke-dasharray=\"14 3 2 3\"");
     draw_glass(svg);
@@ -188,12 +188,12 @@ class Figure {
       const double rim = outline.back().height;
       outline.push_back({lens_.film_z(), rim});
       outline.push_back({lens_.film_z(), -rim});
-      svg.path(path_of(outline, true), "fill=\"" + detail::glass_colour(image_index) + "\"" + line);
+      svg.path(path_of(outline, true), "fill=\"" + figure_detail::glass_colour(image_index) + "\"" + line);
     }
-    for (const detail::GlassBody& body : section_.bodies()) {
+    for (const figure_detail::GlassBody& body : section_.bodies()) {
       std::string d;
       for (const SectionLine& outline : body.outlines) d += path_of(outline, true);
-      svg.path(d, "fill=\"" + detail::glass_colour(body.index) + "\"" + line);
+      svg.path(d, "fill=\"" + figure_detail::glass_colour(body.index) + "\"" + line);
     }
   }
 
@@ -213,7 +213,7 @@ class Figure {
       const bool passes = ray.fate == RayFate::transmitted;
       if (passes) line.push_back(arrives(ray) ? on_film(ray) : past_lens(ray));
       line.back() = cut(line[line.size() - 2], line.back(), passes ? film_and_body_half_ : body_half_);
-      svg.path(path_of(line), "fill=\"none\" stroke=\"" + std::string(detail::field_colour(ray.field)) + "\"" +
+      svg.path(path_of(line), "fill=\"none\" stroke=\"" + std::string(figure_detail::field_colour(ray.field)) + "\"" +
                                   (passes ? " stroke-width=\"0.9\"" : " stroke-width=\"0.6\" stroke-opacity=\"0.5\""));
     }
   }
@@ -228,21 +228,21 @@ class Figure {
   }
 
   void draw_legend(Svg& svg, double y) const {
-    double x = detail::draw_scale_bar(svg, detail::sheet_margin, y + 26, scale_, 160) + 30;
+    double x = figure_detail::draw_scale_bar(svg, figure_detail::sheet_margin, y + 26, scale_, 160) + 30;
     for (std::size_t field = 0; field < fields_.size(); ++field) {
       const bool any = std::ranges::any_of(
           rays_, [&](const RayPath& ray) { return ray.field == field && ray.fate == RayFate::transmitted; });
-      x = 21 + detail::draw_key(svg, x, y + 26, detail::field_colour(field),
-                                detail::field_text(fields_[field]) + (any ? "" : " (none passes)"));
+      x = 21 + figure_detail::draw_key(svg, x, y + 26, figure_detail::field_colour(field),
+                                       figure_detail::field_text(fields_[field]) + (any ? "" : " (none passes)"));
     }
-    svg.text(detail::sheet_margin, y + 50,
+    svg.text(figure_detail::sheet_margin, y + 50,
              "To scale. " + stop_in_words() + " Upright line: film. Glass: the darker, the higher its index.",
-             detail::small_text);
+             figure_detail::small_text);
     if (!fields_.empty()) {
-      svg.text(detail::sheet_margin, y + 66,
+      svg.text(figure_detail::sheet_margin, y + 66,
                "Rays: the chief ray, the outermost that pass and others between. Thin: rays through the stop's rim or "
                "centre that end at a surface.",
-               detail::small_text);
+               figure_detail::small_text);
     }
   }
 
@@ -281,4 +281,4 @@ std::string layout_figure(const Lens& lens, double subject_z, std::span<const do
   return Figure(lens, subject_z, fields_rad, options).draw();
 }
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

@@ -12,7 +12,7 @@
 #include "petzval/core/text.hpp"
 #include "sheet.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -32,7 +32,7 @@ void check(std::span<const ParetoPoint> points) {
 }
 
 /// Logarithms from a decade (or a part of it) below the least value that is one to one above the largest.
-detail::Axis decades(const std::vector<double>& values, double margin, std::string title) {
+figure_detail::Axis decades(const std::vector<double>& values, double margin, std::string title) {
   double least = infinity, most = -infinity;
   for (const double value : values) {
     if (value > 0) least = std::min(least, std::log10(value)), most = std::max(most, std::log10(value));
@@ -53,25 +53,26 @@ std::string pareto_figure(std::string_view title, std::string_view remark, std::
     errors.push_back(p.max_um);
     errors.push_back(p.rms_um);
   }
-  const detail::Axis across = decades(times, 0.25, "ns per ray, one thread"),
-                     up = decades(errors, 0.5, "error on the film (\u00b5m)");
-  detail::Svg svg(width, top + height + 92);
-  svg.text(detail::sheet_margin, 26, title, "font-size=\"17\" font-weight=\"bold\"");
-  svg.text(detail::sheet_margin, 46, std::string("Accuracy and speed.  ") + std::string(remark));
-  detail::Axes axes(svg, left, top, width - left - 24, height, across, up);
+  const figure_detail::Axis across = decades(times, 0.25, "ns per ray, one thread"),
+                            up = decades(errors, 0.5, "error on the film (\u00b5m)");
+  figure_detail::Svg svg(width, top + height + 92);
+  svg.text(figure_detail::sheet_margin, 26, title, "font-size=\"17\" font-weight=\"bold\"");
+  svg.text(figure_detail::sheet_margin, 46, std::string("Accuracy and speed.  ") + std::string(remark));
+  figure_detail::Axes axes(svg, left, top, width - left - 24, height, across, up);
   const auto y_of = [&](double error) { return axes.y(error > 0 ? std::log10(error) : up.from); };
 
   std::vector<ParetoPoint> front;
   std::ranges::copy_if(points, std::back_inserter(front), &ParetoPoint::on_front);
   std::ranges::stable_sort(front, {}, &ParetoPoint::ns_per_ray);
-  std::vector<detail::Axes::Point> line;
+  std::vector<figure_detail::Axes::Point> line;
   for (const ParetoPoint& p : front) {
     line.push_back({std::log10(p.ns_per_ray), p.max_um > 0 ? std::log10(p.max_um) : up.from});
   }
   axes.curve(line, "fill=\"none\" stroke=\"#1f5fc4\" stroke-width=\"1.5\" stroke-linejoin=\"round\"");
   for (const ParetoPoint& p : points) {
     const double x = axes.x(std::log10(p.ns_per_ray)), high = y_of(p.max_um), low = y_of(p.rms_um);
-    svg.path("M" + detail::svg_number(x) + " " + detail::svg_number(high) + "V" + detail::svg_number(low),
+    svg.path("M" + figure_detail::svg_number(x) + " " + figure_detail::svg_number(high) + "V" +
+                 figure_detail::svg_number(low),
              "stroke=\"#aaa\"");
     svg.circle(x, low, 3, "fill=\"#fff\" stroke=\"#888\"");
     svg.circle(x, high, 5, p.on_front ? "fill=\"#1f5fc4\"" : "fill=\"#fff\" stroke=\"#1f5fc4\" stroke-width=\"1.5\"");
@@ -86,18 +87,18 @@ std::string pareto_figure(std::string_view title, std::string_view remark, std::
     };
     while (std::ranges::any_of(taken, hits)) y += 12;
     taken.push_back({x, y});
-    svg.text(x, y, std::string(p.name) + (p.max_um > 0 ? "" : " (0)"), detail::small_text);
+    svg.text(x, y, std::string(p.name) + (p.max_um > 0 ? "" : " (0)"), figure_detail::small_text);
   }
   const double y = top + height + 58;
-  const double x =
-      detail::draw_key(svg, left, y, colour, "largest error; filled: no other model is both faster and more accurate");
-  detail::draw_key(svg, x + 30, y, "#888", "RMS error");
+  const double x = figure_detail::draw_key(svg, left, y, colour,
+                                           "largest error; filled: no other model is both faster and more accurate");
+  figure_detail::draw_key(svg, x + 30, y, "#888", "RMS error");
   svg.text(
-      detail::sheet_margin, y + 24,
+      figure_detail::sheet_margin, y + 24,
       "Distance of rays from those of exact_double, carried back to the film by the chief ray's magnification, over "
       "film, pupil and depths.",
-      detail::small_text);
+      figure_detail::small_text);
   return std::move(svg).finish();
 }
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

@@ -6,7 +6,7 @@
 
 #include "petzval/core/error.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 
 RgbImage render(const Psf& psf, std::span<const std::array<double, 3>> weights) {
   if (weights.size() != psf.wavelengths_nm.size()) {
@@ -27,4 +27,4 @@ RgbImage render(const Psf& psf, std::span<const std::array<double, 3>> weights) 
   return image;
 }
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

@@ -8,13 +8,13 @@
 #include "petzval/pupil/aim.hpp"
 #include "petzval/trace/sequential.hpp"
 
-namespace petzval::detail {
+namespace petzval::inline v0::figure_detail {
 namespace {
 
 /// Rays of one field, told apart by the height at which they pass the stop: -1 to 1 in the section.
 class Fan {
  public:
-  Fan(const Lens& lens, const ScenePoint& point, Meridian meridian, std::size_t wavelength)
+  Fan(const Lens& lens, const FieldPoint& point, Meridian meridian, std::size_t wavelength)
       : lens_(lens), point_(point), in_y_(meridian == Meridian::y), wavelength_(wavelength) {}
 
   AimedRay at(double height) const {
@@ -61,7 +61,7 @@ class Fan {
 
  private:
   const Lens& lens_;
-  ScenePoint point_;
+  FieldPoint point_;
   bool in_y_;
   std::size_t wavelength_;
 };
@@ -91,4 +91,4 @@ std::vector<RayPath> ray_paths(const Lens& lens, double subject_z, std::span<con
   return result;
 }
 
-}  // namespace petzval::detail
+}  // namespace petzval::inline v0::figure_detail

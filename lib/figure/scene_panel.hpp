@@ -10,7 +10,7 @@
 #include "section.hpp"
 #include "svg.hpp"
 
-namespace petzval::detail {
+namespace petzval::inline v0::figure_detail {
 
 /// What must be on the paper: a part of a section, mm.
 struct SectionBox {
@@ -78,4 +78,4 @@ class ScenePanel {
   Axes axes_;
 };
 
-}  // namespace petzval::detail
+}  // namespace petzval::inline v0::figure_detail

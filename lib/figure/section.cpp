@@ -8,7 +8,7 @@
 #include "petzval/core/bisect.hpp"
 #include "petzval/lens/sag.hpp"
 
-namespace petzval::detail {
+namespace petzval::inline v0::figure_detail {
 namespace {
 
 /// The surface's own sag at a height of the section; NaN where it has none.
@@ -19,7 +19,7 @@ double sag_at(const Lens& lens, std::size_t surface, Meridian meridian, double h
 /// The largest value in [low, high] for which `holds`, given that it holds at low and fails beyond some place.
 template <class Predicate>
 double last_where(double low, double high, const Predicate& holds) {
-  return holds(high) ? high : last_with(low, high, holds);
+  return holds(high) ? high : core_detail::last_with(low, high, holds);
 }
 
 }  // namespace
@@ -160,4 +160,4 @@ std::vector<GlassBody> LensSection::bodies() const {
   return result;
 }
 
-}  // namespace petzval::detail
+}  // namespace petzval::inline v0::figure_detail

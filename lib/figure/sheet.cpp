@@ -10,7 +10,7 @@
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/pupil.hpp"
 
-namespace petzval::detail {
+namespace petzval::inline v0::figure_detail {
 namespace {
 
 /// Width of small text, near enough to place what follows it.
@@ -79,4 +79,4 @@ double draw_key(Svg& svg, double x, double y, std::string_view colour, std::stri
   return x + 23 + width_of(words);
 }
 
-}  // namespace petzval::detail
+}  // namespace petzval::inline v0::figure_detail

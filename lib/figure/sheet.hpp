@@ -9,7 +9,7 @@
 #include "svg.hpp"
 
 /// What the figures share: head line, colours of fields, scale bar, lengths in words.
-namespace petzval::detail {
+namespace petzval::inline v0::figure_detail {
 
 inline constexpr double sheet_margin = 14;  ///< px, left of all text
 inline constexpr std::string_view small_text = "font-size=\"11\" fill=\"#555\"";
@@ -41,4 +41,4 @@ double draw_scale_bar(Svg& svg, double x, double y, double px_per_mm, double lon
 /// A coloured stroke and what it stands for, from (x, y). Returns where the words end, roughly.
 double draw_key(Svg& svg, double x, double y, std::string_view colour, std::string_view words);
 
-}  // namespace petzval::detail
+}  // namespace petzval::inline v0::figure_detail

@@ -16,13 +16,13 @@
 #include "petzval/pupil/pupil.hpp"
 #include "sheet.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 namespace {
 
-using detail::small_centred;
-using detail::small_text;
-using detail::Svg;
-using detail::svg_number;
+using figure_detail::small_centred;
+using figure_detail::small_text;
+using figure_detail::Svg;
+using figure_detail::svg_number;
 
 constexpr double cell = 190, gap = 14, under = 22;  // a cell, between cells, for the line below one
 constexpr double left = 118, top = 112, bottom = 76;
@@ -64,7 +64,7 @@ std::string marker(std::size_t kind, double x, double y) {
 
 /// Of the cone of light that the lens throws on its film.
 double film_side_f_number(const Lens& lens) {
-  const Pupil exit = pupils(lens, lens.central_wavelength()).exit;
+  const Pupil exit = pupils(lens, lens.primary_wavelength()).exit;
   return std::isfinite(exit.z) ? std::abs((lens.film_z() - exit.z) / exit.diameter) : paraxial_f_number(lens);
 }
 
@@ -124,7 +124,7 @@ class Figure {
   }
 
   void title() {
-    detail::draw_head(svg_, lens_, "Spot diagram", spots_.front().point.z, middle_);
+    figure_detail::draw_head(svg_, lens_, "Spot diagram", spots_.front().point.z, middle_);
     double x = gap;
     for (std::size_t w = 0; w < wavelengths_; ++w) {
       svg_.path(marker(looks_[w].marker, x + 4, 65), stroke(w));
@@ -178,13 +178,14 @@ class Figure {
     const SpotSize& size = column == 0 ? sizes_[row] : of(row)[first].size;
     svg_.text(cx, y + cell + 15,
               empty ? "no rays"
-                    : "RMS " + detail::length_text(size.rms_radius) + ",  max " + detail::length_text(size.max_radius),
+                    : "RMS " + figure_detail::length_text(size.rms_radius) + ",  max " +
+                          figure_detail::length_text(size.max_radius),
               small_centred);
   }
 
   void footer() {
     const double y = cell_y(rows_) + 11;
-    detail::draw_scale_bar(svg_, left, y, cell / 2 / limit_, cell / 2, ",  the same in all cells");
+    figure_detail::draw_scale_bar(svg_, left, y, cell / 2 / limit_, cell / 2, ",  the same in all cells");
     svg_.text(
         gap, y + 24,
         "Origin: centroid of all rays of the field. RMS and max: radii about the centroid of the rays in the cell. "
@@ -194,7 +195,7 @@ class Figure {
     const std::string circle = !std::isfinite(f_number_)
                                    ? std::string()
                                    : "Dashed: Airy circle, 1.22 wavelength N, N = " + number(f_number_, 3) +
-                                         " on the film's side; " + detail::length_text(airy(middle_)) + " at " +
+                                         " on the film's side; " + figure_detail::length_text(airy(middle_)) + " at " +
                                          number(lens_.wavelengths_nm()[middle_], 6) + " nm. ";
     svg_.text(gap, y + 40,
               circle + std::to_string(spots_.front().hits.sent) + " rays sent a spot, " + std::to_string(drawn_rays) +
@@ -226,4 +227,4 @@ std::string spot_figure(const Lens& lens, std::span<const Spot> spots) {
   return Figure(lens, spots).draw();
 }
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

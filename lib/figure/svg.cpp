@@ -6,7 +6,7 @@
 
 #include "petzval/core/text.hpp"
 
-namespace petzval::detail {
+namespace petzval::inline v0::figure_detail {
 namespace {
 
 std::string attribute(std::string_view name, double value) {
@@ -61,4 +61,4 @@ std::string Svg::finish() && {
   return std::move(out_);
 }
 
-}  // namespace petzval::detail
+}  // namespace petzval::inline v0::figure_detail

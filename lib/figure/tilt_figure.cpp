@@ -13,17 +13,17 @@
 #include "scene_panel.hpp"
 #include "sheet.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 namespace {
 
-using detail::SceneFrame;
-using detail::ScenePanel;
-using detail::SectionBox;
-using detail::SectionLine;
-using detail::SectionPoint;
-using detail::SectionTrace;
-using detail::Svg;
-using detail::svg_number;
+using figure_detail::SceneFrame;
+using figure_detail::ScenePanel;
+using figure_detail::SectionBox;
+using figure_detail::SectionLine;
+using figure_detail::SectionPoint;
+using figure_detail::SectionTrace;
+using figure_detail::Svg;
+using figure_detail::svg_number;
 
 constexpr std::string_view film_style = "fill=\"none\" stroke=\"#111\" stroke-width=\"2.6\"";
 constexpr std::string_view film_plane = "fill=\"none\" stroke=\"#111\" stroke-width=\"0.8\"";
@@ -83,13 +83,14 @@ class Figure {
     constexpr double top = 96, gap = 74;
     const double second = top + scene.height + gap, foot = second + close.height + 58;
     Svg svg(960, foot + 92);
-    svg.text(detail::sheet_margin, 26, view_.title, "font-size=\"17\" font-weight=\"bold\"");
-    svg.text(detail::sheet_margin, 46, std::string("Side view.  ") + std::string(view_.remark));
-    svg.text(detail::sheet_margin, 64, film_in_words());
+    svg.text(figure_detail::sheet_margin, 26, view_.title, "font-size=\"17\" font-weight=\"bold\"");
+    svg.text(figure_detail::sheet_margin, 46, std::string("Side view.  ") + std::string(view_.remark));
+    svg.text(figure_detail::sheet_margin, 64, film_in_words());
     svg.text(SceneFrame::left, top - 8,
-             film_.upright() ? "The scene" : "The scene, and the planes that meet in one line", detail::small_text);
+             film_.upright() ? "The scene" : "The scene, and the planes that meet in one line",
+             figure_detail::small_text);
     svg.text(SceneFrame::left, second - 8, "The lens and its film; small dots: where the lens images the points",
-             detail::small_text);
+             figure_detail::small_text);
     draw_scene(svg, top, scene);
     draw_close(svg, second, close);
     draw_legend(svg, foot);
@@ -122,8 +123,8 @@ class Figure {
   void cut_glass(const Lens& lens) {
     const std::vector<double> needed(lens.surface_count(), lens_half_);
     const Meridian meridian = std::abs(up_.y) >= std::abs(up_.x) ? Meridian::y : Meridian::x;
-    const std::size_t wavelength = lens.central_wavelength();
-    const detail::LensSection cut(lens, meridian, needed, wavelength);
+    const std::size_t wavelength = lens.primary_wavelength();
+    const figure_detail::LensSection cut(lens, meridian, needed, wavelength);
     bodies_ = cut.bodies();
     mirrors_ = cut.mirrors();
     for (const auto& body : bodies_) {
@@ -254,7 +255,7 @@ class Figure {
     for (const auto& body : bodies_) {
       for (const auto& outline : body.outlines) {
         panel.fill(outline,
-                   "fill=\"" + detail::glass_colour(body.index) + "\" stroke=\"#3d5a73\" stroke-width=\"0.8\"");
+                   "fill=\"" + figure_detail::glass_colour(body.index) + "\" stroke=\"#3d5a73\" stroke-width=\"0.8\"");
       }
     }
     for (const auto& mirror : mirrors_) {
@@ -347,33 +348,33 @@ class Figure {
       svg.text(x + 29, y + 4, words);
       return x + 29 + 6.4 * static_cast<double>(words.size()) + 16;
     };
-    double x = key(detail::sheet_margin, film_style, "film");
+    double x = key(figure_detail::sheet_margin, film_style, "film");
     x = key(x, film_before, "before, upright");
     x = key(x, focus_style, "plane of focus");
     x = key(x, focus_before, "before");
     x = key(x, principal_plane, thin() ? "plane of the lens" : "principal planes");
     key(x, focal_plane, "focal planes");
-    std::string wedge = "Pale green: blurred by at most " + detail::length_text(view_.blur_mm) + ".";
-    svg.text(detail::sheet_margin, y + 26, wedge + " " + lines_in_words(), detail::small_text);
-    svg.text(detail::sheet_margin, y + 42,
+    std::string wedge = "Pale green: blurred by at most " + figure_detail::length_text(view_.blur_mm) + ".";
+    svg.text(figure_detail::sheet_margin, y + 26, wedge + " " + lines_in_words(), figure_detail::small_text);
+    svg.text(figure_detail::sheet_margin, y + 42,
              "The section holds the axis and the normal of the plane of focus; points are projected into it. Hollow: "
              "takes no "
              "part." +
                  std::string(view_.focus ? " Cardinal points tell all but the film." : ""),
-             detail::small_text);
+             figure_detail::small_text);
     if (!thin() && !film_.upright()) {
-      svg.text(detail::sheet_margin, y + 58,
+      svg.text(figure_detail::sheet_margin, y + 58,
                "The film's plane meets the rear principal plane (H') as far from the axis as the plane of focus meets "
                "the front one (H)" +
                    std::string(view_.focus ? ", but for aberrations" : "") + ": the violet line joins the two.",
-               detail::small_text);
+               figure_detail::small_text);
     }
   }
 
   std::string lines_in_words() const {
     if (!focus_) return "What is in focus lies at infinity.";
     if (!focus_->hinge || !focus_->scheimpflug) return "An upright film: no hinge line.";
-    const auto height = [&](const SpaceLine& line) { return detail::length_text(section(line.point).height); };
+    const auto height = [&](const SpaceLine& line) { return figure_detail::length_text(section(line.point).height); };
     return "Hinge line (in the front focal plane) at " + height(*focus_->hinge) + ", Scheimpflug line at " +
            height(*focus_->scheimpflug) + " from the axis.";
   }
@@ -385,7 +386,7 @@ class Figure {
   Vec3<double> up_{0, 1, 0};  ///< across the axis, in the section
   std::vector<std::optional<ImagePoint>> images_;
   double film_half_ = 0, lens_half_ = 0;
-  std::vector<detail::GlassBody> bodies_;
+  std::vector<figure_detail::GlassBody> bodies_;
   std::vector<SectionLine> mirrors_;
 };
 
@@ -396,4 +397,4 @@ std::string tilt_figure(const TiltView& view) {
   return Figure(view).draw();
 }
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

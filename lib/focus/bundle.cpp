@@ -14,7 +14,7 @@
 #include "petzval/trace/batch.hpp"
 #include "petzval/trace/trace.hpp"
 
-namespace petzval::detail {
+namespace petzval::inline v0::focus_detail {
 namespace {
 
 /// The bundle of one field, its rays where they meet a plane.
@@ -23,11 +23,11 @@ class Bundle {
   Bundle(const Lens& lens, double plane_z, bool edges)
       : lens_(lens), plane_z_(plane_z), sense_(signed_index(lens, lens.surface_count()) > 0 ? 1 : -1), edges_(edges) {}
 
-  void add(const ScenePoint& point, const WavelengthWeight& colour) {
+  void add(const FieldPoint& point, const WavelengthWeight& colour) {
     // On the axis of a lens of revolution one meridian stands for all: its centroid is the axis.
     centred_ = point.field_rad == 0 && lens_.rotationally_symmetric();
     const PupilOutline outline = pupil_outline(lens_, point, colour.wavelength, centred_ ? 1 : directions);
-    static const auto nodes = gauss_legendre<radial>();
+    static const auto nodes = core_detail::gauss_legendre<radial>();
     const double cell = outline.half_axes[0] * outline.half_axes[1] * colour.weight;
     std::vector<Ray<double>> rays;
     std::vector<double> weights;
@@ -38,7 +38,7 @@ class Bundle {
     for (const PupilSpan& span : outline.spans) {
       const double inner = span.from_radius * span.from_radius;
       const double area = (span.to_radius - span.from_radius) * (span.to_radius + span.from_radius);
-      for (const QuadratureNode& node : nodes) {
+      for (const core_detail::QuadratureNode& node : nodes) {
         send(outline.at(span.direction, std::sqrt(inner + area * node.x)), cell * area * node.weight);
       }
       if (!edges_) continue;
@@ -105,14 +105,14 @@ class Bundle {
                        outline.middle[1] + reach * (chord[1] - outline.middle[1])};
         };
         int surface = one.to.surface;
-        const double last = last_with(0.5, 2.0, [&](double reach) {
+        const double last = core_detail::last_with(0.5, 2.0, [&](double reach) {
           const auto end = traced(outline, at(reach));
           if (!end.transmitted()) surface = end.surface;
           return end.transmitted();
         });
         return std::pair(at(last), surface);
       };
-      const double part = last_with(0.0, 1.0, [&](double p) { return edge(p).second == one.to.surface; });
+      const double part = core_detail::last_with(0.0, 1.0, [&](double p) { return edge(p).second == one.to.surface; });
       add_line(traced(outline, edge(part).first), 0);
     }
   }
@@ -154,4 +154,4 @@ std::optional<Image> exact_image(const Lens& lens, double subject_z, std::span<c
   return rms ? least_rms(lines, plane_z) : least_maximum(std::move(lines), plane_z);
 }
 
-}  // namespace petzval::detail
+}  // namespace petzval::inline v0::focus_detail

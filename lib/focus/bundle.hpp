@@ -10,7 +10,7 @@
 #include "petzval/focus/image.hpp"
 #include "petzval/lens/lens.hpp"
 
-namespace petzval::detail {
+namespace petzval::inline v0::focus_detail {
 
 struct WavelengthWeight {
   std::size_t wavelength;
@@ -24,4 +24,4 @@ struct WavelengthWeight {
 std::optional<Image> exact_image(const Lens& lens, double subject_z, std::span<const FocusField> fields,
                                  std::span<const WavelengthWeight> wavelengths, FocusCriterion criterion);
 
-}  // namespace petzval::detail
+}  // namespace petzval::inline v0::focus_detail

@@ -4,7 +4,7 @@
 #include "petzval/focus/focus.hpp"
 #include "petzval/paraxial/first_order.hpp"
 
-namespace petzval::detail {
+namespace petzval::inline v0::focus_detail {
 
 /// Newton's form of the paraxial conjugates: a subject p in front of the front focal point has its image product / p
 /// behind the rear one. p is positive for every subject that can be focused.
@@ -51,4 +51,4 @@ FocusSolution paraxial_focus(const Conjugates& c, double distance) noexcept;
 FocusSolution paraxial_subject(const Conjugates& c, double film_z) noexcept;
 FocusSolution paraxial_nearest(const Conjugates& c) noexcept;
 
-}  // namespace petzval::detail
+}  // namespace petzval::inline v0::focus_detail

@@ -11,7 +11,7 @@
 #include "petzval/pupil/pupil.hpp"
 #include "root.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 namespace {
 
 using enum FocusStatus;
@@ -26,7 +26,8 @@ void check_blur(const Lens& lens, double blur_mm) {
 /// Blur on the lens's film over the nearness of the subject, less the one asked for.
 class Excess {
  public:
-  Excess(const detail::Model& model, double film_z, double blur) : model_(model), film_z_(film_z), blur_(blur) {}
+  Excess(const focus_detail::FocusModel& model, double film_z, double blur)
+      : model_(model), film_z_(film_z), blur_(blur) {}
 
   double operator()(double nearness) const {
     const auto image = model_.image_at(nearness);
@@ -35,15 +36,15 @@ class Excess {
   }
 
  private:
-  const detail::Model& model_;
+  const focus_detail::FocusModel& model_;
   double film_z_, blur_;
 };
 
 }  // namespace
 
 std::optional<double> blur_diameter(const Lens& lens, double distance_mm, const FocusOptions& options) {
-  detail::check_distance(lens, distance_mm);
-  const detail::Model model(lens, options);
+  focus_detail::check_distance(lens, distance_mm);
+  const focus_detail::FocusModel model(lens, options);
   if (model.afocal()) return {};
   const double origin_z = options.origin == DistanceOrigin::film ? lens.film_z() : model.conjugates().origin_z;
   const auto image = model.image(origin_z - distance_mm);
@@ -52,13 +53,13 @@ std::optional<double> blur_diameter(const Lens& lens, double distance_mm, const 
 
 DepthOfField depth_of_field(const Lens& lens, double blur_mm, const FocusOptions& options) {
   check_blur(lens, blur_mm);
-  const detail::Model model(lens, options);
+  const focus_detail::FocusModel model(lens, options);
   if (model.afocal()) return {.status = afocal};
   const double film_z = lens.film_z();
   const FocusSolution in_focus = model.subject(film_z);
   if (in_focus.status == no_rays || !model.image(-infinity)) return {.status = no_rays};
 
-  const detail::Conjugates& c = model.conjugates();
+  const focus_detail::Conjugates& c = model.conjugates();
   const Excess excess(model, film_z, blur_mm);
   const double vertex = c.nearness_of_vertex();
   const double middle = std::min(c.nearness(in_focus.subject_z), vertex);
@@ -68,11 +69,11 @@ DepthOfField depth_of_field(const Lens& lens, double blur_mm, const FocusOptions
     return nearness > 0 ? c.distance(c.subject_at(nearness), film_z) : infinity;
   };
   const double rounding = 1e-12 * blur_mm;  // a lens at its hyperfocal distance is sharp to infinity
-  const double far = excess(0) > rounding ? detail::root(excess, 0, middle) : 0;
+  const double far = excess(0) > rounding ? focus_detail::root(excess, 0, middle) : 0;
   double near = middle;
   for (double low = middle, step = (vertex - middle) / 1024; near < vertex && near == low; step *= 2) {
     const double high = std::min(low + step, vertex);
-    near = excess(high) > 0 ? detail::root(excess, low, high) : high;
+    near = excess(high) > 0 ? focus_detail::root(excess, low, high) : high;
     low = high;
   }
   return {solved, distance(near), distance(far)};
@@ -80,7 +81,7 @@ DepthOfField depth_of_field(const Lens& lens, double blur_mm, const FocusOptions
 
 FocusSolution hyperfocal(const Lens& lens, double blur_mm, const FocusOptions& options) {
   check_blur(lens, blur_mm);
-  const detail::Model model(lens, options);
+  const focus_detail::FocusModel model(lens, options);
   if (model.afocal()) return {.status = afocal};
   const auto infinite = model.image(-infinity);
   if (!infinite) return {.status = no_rays};
@@ -88,17 +89,17 @@ FocusSolution hyperfocal(const Lens& lens, double blur_mm, const FocusOptions& o
   if (!(infinite->diameter(focus) <= blur_mm)) return {too_blurred, focus, -infinity, infinity};
 
   // The film as far behind infinity's focus as that stays sharp enough.
-  const detail::Conjugates& c = model.conjugates();
+  const focus_detail::Conjugates& c = model.conjugates();
   const auto excess = [&](double shift) { return infinite->diameter(focus + c.sense * shift) - blur_mm; };
   double shift = blur_mm;
   for (int i = 0; i < 100 && excess(shift) <= 0; ++i) shift *= 2;
   if (excess(shift) <= 0) return model.nearest();
-  return model.subject(focus + c.sense * detail::root(excess, 0, shift));
+  return model.subject(focus + c.sense * focus_detail::root(excess, 0, shift));
 }
 
 std::optional<double> breathing(const Lens& lens, double film_z, const FocusOptions& options) {
-  detail::check_film(lens, film_z);
-  const detail::Model model(lens, options);
+  focus_detail::check_film(lens, film_z);
+  const focus_detail::FocusModel model(lens, options);
   if (model.afocal()) return {};
   const FocusSolution infinite = model.focus(infinity);
   if (!infinite) return {};
@@ -108,4 +109,4 @@ std::optional<double> breathing(const Lens& lens, double film_z, const FocusOpti
   return (film_z - infinite.film_z) / (infinite.film_z - exit_z);
 }
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

@@ -8,7 +8,7 @@
 #include "petzval/core/error.hpp"
 #include "petzval/core/text.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 
 std::string_view name(FocusCriterion criterion) noexcept {
   switch (criterion) {
@@ -41,19 +41,19 @@ std::string_view name(FocusStatus status) noexcept {
 }
 
 FocusSolution solve_focus(const Lens& lens, double distance_mm, const FocusOptions& options) {
-  detail::check_distance(lens, distance_mm);
-  const detail::Model model(lens, options);
+  focus_detail::check_distance(lens, distance_mm);
+  const focus_detail::FocusModel model(lens, options);
   return model.afocal() ? FocusSolution{.status = FocusStatus::afocal} : model.focus(distance_mm);
 }
 
 FocusSolution solve_subject(const Lens& lens, double film_z, const FocusOptions& options) {
-  detail::check_film(lens, film_z);
-  const detail::Model model(lens, options);
+  focus_detail::check_film(lens, film_z);
+  const focus_detail::FocusModel model(lens, options);
   return model.afocal() ? FocusSolution{.status = FocusStatus::afocal} : model.subject(film_z);
 }
 
 FocusSolution nearest_focus(const Lens& lens, const FocusOptions& options) {
-  const detail::Model model(lens, options);
+  const focus_detail::FocusModel model(lens, options);
   return model.afocal() ? FocusSolution{.status = FocusStatus::afocal} : model.nearest();
 }
 
@@ -81,4 +81,4 @@ Lens with_focus(const Lens& lens, double distance_mm, const FocusOptions& option
               " mm");
 }
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

@@ -8,7 +8,7 @@
 
 #include "petzval/core/bisect.hpp"
 
-namespace petzval::detail {
+namespace petzval::inline v0::focus_detail {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -67,8 +67,8 @@ Image least_maximum(std::vector<Line> lines, double plane_z) {
     low = std::min(low, vertex), high = std::max(high, vertex);
   }
   double shift = low;
-  if (low < high) shift = rises(low) ? low : last_with(low, high, [&](double z) { return !rises(z); });
+  if (low < high) shift = rises(low) ? low : core_detail::last_with(low, high, [&](double z) { return !rises(z); });
   return {.film_z = plane_z + shift, .plane_z = plane_z, .lines = std::move(lines)};
 }
 
-}  // namespace petzval::detail
+}  // namespace petzval::inline v0::focus_detail

@@ -12,7 +12,7 @@
 #include "petzval/pupil/pupil.hpp"
 #include "search.hpp"
 
-namespace petzval::detail {
+namespace petzval::inline v0::focus_detail {
 namespace {
 
 void check_weight(const Lens& lens, const char* what, double weight) {
@@ -36,7 +36,7 @@ std::vector<FocusField> weighted_fields(const Lens& lens, const FocusOptions& op
 
 std::vector<WavelengthWeight> weighted_wavelengths(const Lens& lens, const FocusOptions& options) {
   const std::vector<double>& weights = options.wavelength_weights;
-  if (weights.empty()) return {{lens.central_wavelength(), 1.0}};
+  if (weights.empty()) return {{lens.primary_wavelength(), 1.0}};
   const std::size_t wanted = lens.wavelengths_nm().size();
   if (weights.size() != wanted) {
     throw Error(lens.name() + ": focus: " + std::to_string(weights.size()) + " wavelength weights, wanted " +
@@ -63,35 +63,35 @@ void check_film(const Lens& lens, double film_z) {
   throw Error(lens.name() + ": film_z is " + number(film_z) + " mm, wanted a finite place");
 }
 
-Model::Model(const Lens& lens, const FocusOptions& options)
+FocusModel::FocusModel(const Lens& lens, const FocusOptions& options)
     : lens_(lens),
       options_(options),
       fields_(weighted_fields(lens, options)),
       wavelengths_(weighted_wavelengths(lens, options)) {
   // The heaviest; of several the one that speaks for the lens.
   wavelength_ = std::ranges::max_element(wavelengths_, {}, [&](const WavelengthWeight& w) {
-                  return std::pair(w.weight, w.wavelength == lens.central_wavelength());
+                  return std::pair(w.weight, w.wavelength == lens.primary_wavelength());
                 })->wavelength;
   meridian_ = main_meridian(lens, wavelength_);
   data_ = first_order(lens, wavelength_, meridian_);
-  if (!data_.afocal) conjugates_ = detail::conjugates(lens, data_, options.criterion, options.origin);
+  if (!data_.afocal) conjugates_ = focus_detail::conjugates(lens, data_, options.criterion, options.origin);
 }
 
-bool Model::exact() const noexcept {
+bool FocusModel::exact() const noexcept {
   return options_.criterion == FocusCriterion::min_rms || options_.criterion == FocusCriterion::min_max;
 }
 
-FocusSolution Model::focus(double distance) const {
+FocusSolution FocusModel::focus(double distance) const {
   return exact() ? Search(*this).focus(distance) : paraxial_focus(conjugates_, distance);
 }
 
-FocusSolution Model::subject(double film_z) const {
+FocusSolution FocusModel::subject(double film_z) const {
   return exact() ? Search(*this).subject(film_z) : paraxial_subject(conjugates_, film_z);
 }
 
-FocusSolution Model::nearest() const { return exact() ? Search(*this).nearest() : paraxial_nearest(conjugates_); }
+FocusSolution FocusModel::nearest() const { return exact() ? Search(*this).nearest() : paraxial_nearest(conjugates_); }
 
-std::optional<Image> Model::image(double subject_z) const {
+std::optional<Image> FocusModel::image(double subject_z) const {
   if (!(subject_z < 0)) {
     throw Error(lens_.name() + ": subject at z = " + number(subject_z) +
                 " mm, wanted one in front of the lens (z < 0)");
@@ -104,7 +104,7 @@ std::optional<Image> Model::image(double subject_z) const {
   return cone(subject_z);
 }
 
-std::optional<Image> Model::image_at(double nearness) const {
+std::optional<Image> FocusModel::image_at(double nearness) const {
   try {
     return image(nearness > 0 ? conjugates_.subject_at(nearness) : -std::numeric_limits<double>::infinity());
   } catch (const Error&) {
@@ -114,7 +114,7 @@ std::optional<Image> Model::image_at(double nearness) const {
 
 /// The cone of the paraxial pupil as its one marginal ray, in the rear focal plane: what height a ray has there is a
 /// matter of its slope in front of the lens alone, and its slope there one of its height in the front focal plane.
-Image Model::cone(double subject_z) const {
+Image FocusModel::cone(double subject_z) const {
   const bool infinite = std::isinf(subject_z);
   const Pupils stop = pupils(lens_, wavelength_, meridian_);
   if (std::isinf(lens_.surfaces()[stop.stop].semi_diameter)) {
@@ -148,4 +148,4 @@ Image Model::cone(double subject_z) const {
   return {.film_z = conjugates_.film_z(p), .plane_z = data_.rear_focal_z, .lines = {marginal}};
 }
 
-}  // namespace petzval::detail
+}  // namespace petzval::inline v0::focus_detail

@@ -11,17 +11,17 @@
 #include "petzval/lens/lens.hpp"
 #include "petzval/paraxial/first_order.hpp"
 
-namespace petzval::detail {
+namespace petzval::inline v0::focus_detail {
 
 /// Throw Error: for a subject distance that is NaN or not above 0; for a film_z that is not finite.
 void check_distance(const Lens& lens, double distance_mm);
 void check_film(const Lens& lens, double film_z);
 
 /// A lens as one criterion sees it: what the functions on focus, depth of field and breathing share.
-class Model {
+class FocusModel {
  public:
   /// Throws Error for fields and weights that are none. Borrows both.
-  Model(const Lens& lens, const FocusOptions& options);
+  FocusModel(const Lens& lens, const FocusOptions& options);
 
   bool afocal() const noexcept { return data_.afocal; }
   bool exact() const noexcept;
@@ -53,4 +53,4 @@ class Model {
   Conjugates conjugates_{};
 };
 
-}  // namespace petzval::detail
+}  // namespace petzval::inline v0::focus_detail

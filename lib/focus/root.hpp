@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace petzval::detail {
+namespace petzval::inline v0::focus_detail {
 
 /// Where f, of opposite signs at a and b (or 0), crosses zero: within 2 eps of x. Bisection, hastened by inverse
 /// quadratic interpolation where the last three points show f to be nearly straight there. f may jump, and be constant
@@ -59,4 +59,4 @@ double highest(const Function& f, double from, double to, double tolerance) {
   return at_a > at_b ? a : b;
 }
 
-}  // namespace petzval::detail
+}  // namespace petzval::inline v0::focus_detail

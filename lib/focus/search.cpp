@@ -8,7 +8,7 @@
 
 #include "root.hpp"
 
-namespace petzval::detail {
+namespace petzval::inline v0::focus_detail {
 namespace {
 
 using enum FocusStatus;
@@ -19,7 +19,8 @@ constexpr double flat = 1e-9;
 
 }  // namespace
 
-Search::Search(const Model& model) : model_(model), c_(model.conjugates()), cap_(4 * c_.nearness_of_infinite_film()) {
+Search::Search(const FocusModel& model)
+    : model_(model), c_(model.conjugates()), cap_(4 * c_.nearness_of_infinite_film()) {
   if (const auto image = model.image(-infinity)) infinite_film_ = image->film_z;
 }
 
@@ -183,4 +184,4 @@ FocusSolution Search::subject(double film_z) const {
   return {solved, film_z, subject_z, c_.distance(subject_z, film_z)};
 }
 
-}  // namespace petzval::detail
+}  // namespace petzval::inline v0::focus_detail

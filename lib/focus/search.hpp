@@ -5,7 +5,7 @@
 
 #include "model.hpp"
 
-namespace petzval::detail {
+namespace petzval::inline v0::focus_detail {
 
 /// The solvers for a model whose images can only be traced: the film of a subject is a function to evaluate, and
 /// everything else a search in it, over the nearness of the subject (Conjugates), along which the paraxial film is
@@ -17,7 +17,7 @@ namespace petzval::detail {
 class Search {
  public:
   /// Throws Error where nothing can be traced from infinity.
-  explicit Search(const Model& model);
+  explicit Search(const FocusModel& model);
 
   FocusSolution focus(double distance) const;
   FocusSolution subject(double film_z) const;
@@ -37,10 +37,10 @@ class Search {
   double limit() const;
   double turning_point() const;
 
-  const Model& model_;
+  const FocusModel& model_;
   const Conjugates& c_;
   std::optional<double> infinite_film_;  ///< of a subject at infinity
   double cap_;                           ///< film nearness beyond that of all films
 };
 
-}  // namespace petzval::detail
+}  // namespace petzval::inline v0::focus_detail

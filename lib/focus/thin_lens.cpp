@@ -6,7 +6,7 @@
 #include "petzval/core/text.hpp"
 #include "petzval/focus/thin_lens.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 namespace {
 
 void require(bool holds, const char* where, const char* what, double found, const char* wanted) {
@@ -54,4 +54,4 @@ double thin_lens_film_distance(double focal_length, double subject_to_film) {
   return std::isinf(subject_to_film) ? focal_length : 2 * focal_length / (1 + root);
 }
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

@@ -17,7 +17,7 @@
 #include "petzval/core/error.hpp"
 #include "petzval/io/write_file.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 namespace {
 
 constexpr std::array<const char*, 3> channel_names{"R", "G", "B"};
@@ -117,4 +117,4 @@ Rgb8Image to_srgb8(const RgbImage& image, float exposure) {
   return out;
 }
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

@@ -14,7 +14,7 @@
 #include "petzval/core/error.hpp"
 #include "petzval/core/text.hpp"
 
-namespace petzval::detail {
+namespace petzval::inline v0::io_detail {
 namespace {
 
 constexpr std::int64_t largest_integer = std::int64_t{1} << 53;  // beyond it not every integer is a double
@@ -156,4 +156,4 @@ std::string json_number(double value) {
   return plain.find('.') == std::string::npos ? plain + ".0" : plain;
 }
 
-}  // namespace petzval::detail
+}  // namespace petzval::inline v0::io_detail

@@ -9,7 +9,7 @@
 #include <utility>
 #include <variant>
 
-namespace petzval::detail {
+namespace petzval::inline v0::io_detail {
 
 /// A value that is not a list or an object.
 using JsonValue = std::variant<std::nullptr_t, bool, double, std::string>;
@@ -58,4 +58,4 @@ std::string read_text(const std::filesystem::path& file, const std::string& want
 /// Shortest decimals that read back; plain from 1e-4 to 1e16 and with a point always, so that a number looks like one.
 std::string json_number(double value);
 
-}  // namespace petzval::detail
+}  // namespace petzval::inline v0::io_detail

@@ -10,12 +10,12 @@
 #include "json.hpp"
 #include "petzval/core/error.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 namespace {
 
-using detail::describe;
-using detail::in_quotes;
-using detail::JsonValue;
+using io_detail::describe;
+using io_detail::in_quotes;
+using io_detail::JsonValue;
 
 constexpr std::string_view format_name = "petzval-lens 1";
 constexpr std::size_t longest_list = 10'000;
@@ -29,7 +29,7 @@ constexpr bool is_list(Place place) {
 
 /// Builds a prescription while nlohmann's parser walks the text: nothing but the prescription itself is stored, and
 /// what does not belong there is refused where it stands.
-class Reader : public detail::JsonReader {
+class Reader : public io_detail::JsonReader {
  public:
   using JsonReader::JsonReader;
   Prescription take() { return std::move(lens_); }
@@ -267,7 +267,7 @@ Prescription parse_prescription(std::string_view json, const std::string& where)
 }
 
 Prescription read_prescription(const std::filesystem::path& file) {
-  return parse_prescription(detail::read_text(file, "a lens file"), file.string());
+  return parse_prescription(io_detail::read_text(file, "a lens file"), file.string());
 }
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

@@ -7,10 +7,10 @@
 #include "petzval/io/prescription_json.hpp"
 #include "petzval/io/write_file.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 namespace {
 
-std::string json(double value) { return detail::json_number(value); }
+std::string json(double value) { return io_detail::json_number(value); }
 
 std::string json(const std::string& text) {
   try {
@@ -104,4 +104,4 @@ void write_prescription(const Prescription& prescription, const std::filesystem:
   write_file(format_prescription(prescription), file);
 }
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

@@ -13,12 +13,12 @@
 #include "petzval/core/error.hpp"
 #include "petzval/io/write_file.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 namespace {
 
-using detail::describe;
-using detail::in_quotes;
-using detail::JsonValue;
+using io_detail::describe;
+using io_detail::in_quotes;
+using io_detail::JsonValue;
 using Domain = RayPolynomial::Domain;
 using Fit = RayPolynomial::Fit;
 
@@ -75,7 +75,7 @@ constexpr std::array<std::string_view, 9> fit_keys{fit_numbers[0].name, fit_numb
 enum class Place { file, fits, fit, list };
 
 /// Builds the parts of a polynomial while the text is walked.
-class Reader : public detail::JsonReader {
+class Reader : public io_detail::JsonReader {
  public:
   using JsonReader::JsonReader;
   RayPolynomial take() { return RayPolynomial(degree_, domain_, std::move(fits_)); }
@@ -214,11 +214,11 @@ RayPolynomial parse_ray_polynomial(std::string_view json, const std::string& whe
 }
 
 RayPolynomial read_ray_polynomial(const std::filesystem::path& file) {
-  return parse_ray_polynomial(detail::read_text(file, "a file of a ray polynomial"), file.string());
+  return parse_ray_polynomial(io_detail::read_text(file, "a file of a ray polynomial"), file.string());
 }
 
 std::string format_ray_polynomial(const RayPolynomial& polynomial) {
-  using detail::json_number;
+  using io_detail::json_number;
   std::string text = "{\n  " + line("format", in_quotes(format_name));
   Domain domain = polynomial.domain();
   for (const auto& entry : domain_numbers) text += ",\n  " + line(entry.name, json_number(entry.of(domain)));
@@ -244,4 +244,4 @@ void write_ray_polynomial(const RayPolynomial& polynomial, const std::filesystem
   write_file(format_ray_polynomial(polynomial), file);
 }
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

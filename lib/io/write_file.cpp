@@ -8,7 +8,7 @@
 
 #include "petzval/core/error.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 namespace {
 
 namespace fs = std::filesystem;
@@ -54,4 +54,4 @@ void write_file(std::string_view bytes, const fs::path& file) {
               ", wanted a folder that exists, may be written and has room");
 }
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

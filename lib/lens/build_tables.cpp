@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace petzval::detail {
+namespace petzval::inline v0::lens_detail {
 namespace {
 
 kernel::Quadric<double> quadric(const LensSurface& s) {
@@ -125,8 +125,8 @@ Tables<R> build_tables(std::span<const LensSurface> surfaces, std::optional<std:
       tables.to_scene.push_back(kernel::make_interface<R>(n[i + 1], n[i]));
     }
   }
-  tables.course_to_film = build_course<R>(surfaces, stop, indices, wavelengths, Travel::to_film);
-  tables.course_to_scene = build_course<R>(surfaces, stop, indices, wavelengths, Travel::to_scene);
+  tables.sequence_to_film = build_sequence<R>(surfaces, stop, indices, wavelengths, Travel::to_film);
+  tables.sequence_to_scene = build_sequence<R>(surfaces, stop, indices, wavelengths, Travel::to_scene);
   return tables;
 }
 
@@ -135,4 +135,4 @@ template Tables<float> build_tables(std::span<const LensSurface>, std::optional<
 template Tables<double> build_tables(std::span<const LensSurface>, std::optional<std::size_t>, std::span<const double>,
                                      std::size_t);
 
-}  // namespace petzval::detail
+}  // namespace petzval::inline v0::lens_detail

@@ -8,17 +8,17 @@
 
 #include "petzval/lens/lens.hpp"
 
-namespace petzval::detail {
+namespace petzval::inline v0::lens_detail {
 
 /// The way of a batch, with what it points to.
 template <class R>
-struct CourseTables {
+struct SurfaceSequenceTables {
   std::vector<kernel::Step<R>> steps;
-  std::vector<kernel::Bend<R>> bends;
+  std::vector<kernel::RefractionConstants<R>> bends;
   std::vector<R> n_first, per_n_last;
-  kernel::Course<R> course;  ///< its pointers are set by view()
+  kernel::SurfaceSequence<R> course;  ///< its pointers are set by view()
 
-  kernel::Course<R> view() const noexcept {
+  kernel::SurfaceSequence<R> view() const noexcept {
     auto seen = course;
     seen.steps = steps.data();
     seen.bends = bends.data();
@@ -35,13 +35,13 @@ struct Tables {
   std::vector<kernel::Asphere<R>> aspheres;
   std::vector<kernel::Interface<R>> to_film, to_scene;
   std::vector<R> vertex_z;
-  CourseTables<R> course_to_film, course_to_scene;
+  SurfaceSequenceTables<R> sequence_to_film, sequence_to_scene;
   std::size_t wavelengths = 0;
   std::int32_t stop = -1;
 
   kernel::LensView<R> view() const noexcept {
-    return {surfaces.data(), aspheres.data(), to_film.data(), to_scene.data(),       surfaces.size(),
-            vertex_z.data(), wavelengths,     stop,           course_to_film.view(), course_to_scene.view()};
+    return {surfaces.data(), aspheres.data(), to_film.data(), to_scene.data(),         surfaces.size(),
+            vertex_z.data(), wavelengths,     stop,           sequence_to_film.view(), sequence_to_scene.view()};
   }
 };
 
@@ -52,7 +52,7 @@ Tables<R> build_tables(std::span<const LensSurface> surfaces, std::optional<std:
 
 /// The way of a batch: the surfaces in the order of travel.
 template <class R>
-CourseTables<R> build_course(std::span<const LensSurface> surfaces, std::optional<std::size_t> stop,
-                             std::span<const double> indices, std::size_t wavelengths, Travel travel);
+SurfaceSequenceTables<R> build_sequence(std::span<const LensSurface> surfaces, std::optional<std::size_t> stop,
+                                        std::span<const double> indices, std::size_t wavelengths, Travel travel);
 
-}  // namespace petzval::detail
+}  // namespace petzval::inline v0::lens_detail

@@ -7,7 +7,7 @@
 #include "petzval/core/text.hpp"
 #include "petzval/media/dispersion.hpp"
 
-namespace petzval::detail {
+namespace petzval::inline v0::lens_detail {
 namespace {
 
 /// The medium before the first surface, or behind surface space - 1; where that one is a mirror, light stays in what
@@ -93,4 +93,4 @@ Indices indices(const Prescription& prescription, std::span<const double> wavele
   return result;
 }
 
-}  // namespace petzval::detail
+}  // namespace petzval::inline v0::lens_detail

@@ -7,7 +7,7 @@
 
 #include "petzval/lens/lens.hpp"
 
-namespace petzval::detail {
+namespace petzval::inline v0::lens_detail {
 
 /// Indices of every medium at every wavelength, and how far the media are known.
 struct Indices {
@@ -19,4 +19,4 @@ struct Indices {
 Indices indices(const Prescription& prescription, std::span<const double> wavelengths_nm, const CompileOptions& options,
                 const std::string& where);
 
-}  // namespace petzval::detail
+}  // namespace petzval::inline v0::lens_detail

@@ -12,7 +12,7 @@
 #include "petzval/core/error.hpp"
 #include "petzval/core/text.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 
 struct Lens::Data {
   std::string name;
@@ -20,13 +20,13 @@ struct Lens::Data {
   std::optional<std::size_t> stop;
   double film_z = 0;
   std::vector<double> wavelengths_nm;
-  detail::Indices indices;
-  detail::Tables<float> single;
-  detail::Tables<double> twice;
+  lens_detail::Indices indices;
+  lens_detail::Tables<float> single;
+  lens_detail::Tables<double> twice;
 
   void build() {
-    single = detail::build_tables<float>(surfaces, stop, indices.values, wavelengths_nm.size());
-    twice = detail::build_tables<double>(surfaces, stop, indices.values, wavelengths_nm.size());
+    single = lens_detail::build_tables<float>(surfaces, stop, indices.values, wavelengths_nm.size());
+    twice = lens_detail::build_tables<double>(surfaces, stop, indices.values, wavelengths_nm.size());
   }
 };
 
@@ -58,7 +58,7 @@ double Lens::index(std::size_t space, std::size_t wavelength) const {
   return data_->indices.values[wavelength * (surface_count() + 1) + space];
 }
 
-std::size_t Lens::central_wavelength() const noexcept {
+std::size_t Lens::primary_wavelength() const noexcept {
   const auto& list = data_->wavelengths_nm;
   const auto nearest = std::min_element(
       list.begin(), list.end(), [](double a, double b) { return std::abs(a - d_line_nm) < std::abs(b - d_line_nm); });
@@ -113,7 +113,7 @@ Lens compile(const Prescription& prescription, std::span<const double> wavelengt
     z += row.thickness;
   }
   data->film_z = z;
-  data->indices = detail::indices(prescription, wavelengths_nm, options, where);
+  data->indices = lens_detail::indices(prescription, wavelengths_nm, options, where);
   data->build();
   return Lens(std::move(data));
 }
@@ -144,4 +144,4 @@ Lens with_film(const Lens& lens, double film_z) {
   return Lens(std::move(data));
 }
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

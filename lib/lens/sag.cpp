@@ -6,7 +6,7 @@
 
 #include "petzval/surface/asphere.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 
 double sag(const Lens& lens, std::size_t surface, double x, double y) noexcept {
   const auto view = lens.view<double>();
@@ -18,4 +18,4 @@ double sag(const Lens& lens, std::size_t surface, double x, double y) noexcept {
   return defined && std::isfinite(z) ? z : std::numeric_limits<double>::quiet_NaN();
 }
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

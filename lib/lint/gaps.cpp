@@ -8,7 +8,7 @@
 
 #include "petzval/paraxial/first_order.hpp"
 
-namespace petzval::detail {
+namespace petzval::inline v0::lint_detail {
 namespace {
 
 double sag(const Lens& lens, std::size_t surface, double x, double y) {
@@ -53,4 +53,4 @@ std::optional<Gap> least_gap(const Lens& lens, std::size_t surface) {
   return least;
 }
 
-}  // namespace petzval::detail
+}  // namespace petzval::inline v0::lint_detail

@@ -6,7 +6,7 @@
 
 #include "petzval/lens/lens.hpp"
 
-namespace petzval::detail {
+namespace petzval::inline v0::lint_detail {
 
 /// The height up to which the conic under a surface exists; infinite for a paraboloid, a hyperboloid and a plane.
 double domain(const LensSurface& surface);
@@ -21,4 +21,4 @@ struct Gap {
 /// height in common.
 std::optional<Gap> least_gap(const Lens& lens, std::size_t surface);
 
-}  // namespace petzval::detail
+}  // namespace petzval::inline v0::lint_detail

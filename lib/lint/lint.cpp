@@ -9,7 +9,7 @@
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/pupil.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 namespace {
 
 using Kind = Finding::Kind;
@@ -43,7 +43,7 @@ void check_surfaces(const Lens& lens, Findings& findings) {
   for (int i = 0; i < count; ++i) {
     const auto position = static_cast<std::size_t>(i);
     const LensSurface& surface = lens.surfaces()[position];
-    const double domain = detail::domain(surface);
+    const double domain = lint_detail::domain(surface);
     if (std::isfinite(surface.semi_diameter) && surface.semi_diameter > domain) {
       findings.push_back({Kind::semi_diameter, i, surface.semi_diameter, domain,
                           at(i) + "semi_diameter is " + mm(surface.semi_diameter) +
@@ -54,7 +54,7 @@ void check_surfaces(const Lens& lens, Findings& findings) {
       findings.push_back({Kind::semi_diameter, i, 0, domain, at(i) + "semi_diameter is 0 mm: only the axis passes it"});
     }
     if (i + 1 == count) break;
-    const auto gap = detail::least_gap(lens, position);
+    const auto gap = lint_detail::least_gap(lens, position);
     if (gap && gap->width < -1e-9 * std::max(gap->height, std::abs(surface.thickness))) {
       findings.push_back(
           {Kind::overlap, i, gap->width, 0,
@@ -123,4 +123,4 @@ std::vector<Finding> lint(const Prescription& prescription) {
   return findings;
 }
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

@@ -11,7 +11,7 @@
 
 #include "petzval/core/error.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 namespace {
 
 constexpr std::string_view header = "catalogue,name,nd,vd,formula,wl_min_um,wl_max_um,coefficients,origin";
@@ -153,4 +153,4 @@ const Glass* GlassCatalogue::find(std::string_view name, double nd) const noexce
   return nearest != candidates.end() && std::abs(nearest->nd - nd) <= 0.01 ? &*nearest : nullptr;
 }
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

@@ -6,7 +6,7 @@
 #include "petzval/core/error.hpp"
 #include "petzval/media/catalogue.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 namespace {
 
 /// The file this code was loaded from: the shared library, or the program it was linked into.
@@ -39,4 +39,4 @@ std::filesystem::path data_directory() {
               " holds share/petzval/glass, wanted the data beside the library");
 }
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

@@ -11,7 +11,7 @@
 #include "petzval/core/text.hpp"
 #include "petzval/core/units.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 namespace {
 
 // The ends of a range belong to it, whatever the rounding of micrometres to nanometres.
@@ -108,4 +108,4 @@ double spectral_line_nm(std::string_view symbol) {
   throw Error("spectral line \"" + std::string(symbol) + "\" is unknown, wanted one of " + known);
 }
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

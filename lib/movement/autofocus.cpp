@@ -14,7 +14,7 @@
 #include "rms_error.hpp"
 #include "signed_diameter.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -80,7 +80,7 @@ Autofocus described(const IdealLens& lens, std::span<const FocusTarget> targets,
     const double blur = std::isnan(asked[i].film_z) ? nan : blur_of(i, result.film_z);
     result.blurs.push_back({asked[i].use, targets[i].blur_mm, blur});
   }
-  result.rms_mm = detail::rms_error(targets, result.blurs);
+  result.rms_mm = movement_detail::rms_error(targets, result.blurs);
 
   result.breathing = lens.growth(result.film_z, films.at_infinity);
   result.magnification_change = lens.growth(result.film_z, films.before);
@@ -88,15 +88,15 @@ Autofocus described(const IdealLens& lens, std::span<const FocusTarget> targets,
 }
 
 /// The rays of a bundle about their centroid.
-std::vector<detail::Line> lines_of(const PointBundle& bundle) {
+std::vector<focus_detail::Line> lines_of(const RayBundle& bundle) {
   const std::size_t count = bundle.x.size();
   const double each = 1 / static_cast<double>(count);
-  detail::Line mean;
+  focus_detail::Line mean;
   for (std::size_t i = 0; i < count; ++i) {
     mean.x += each * bundle.x[i], mean.y += each * bundle.y[i];
     mean.slope_x += each * bundle.slope_x[i], mean.slope_y += each * bundle.slope_y[i];
   }
-  std::vector<detail::Line> lines;
+  std::vector<focus_detail::Line> lines;
   for (std::size_t i = 0; i < count; ++i) {
     lines.push_back({bundle.x[i] - mean.x, bundle.y[i] - mean.y, bundle.slope_x[i] - mean.slope_x,
                      bundle.slope_y[i] - mean.slope_y, each});
@@ -105,13 +105,14 @@ std::vector<detail::Line> lines_of(const PointBundle& bundle) {
 }
 
 /// The signed diameter on a film, by least RMS or by the largest radius.
-double signed_diameter(const detail::Image& image, double film_z) noexcept {
+double signed_diameter(const focus_detail::Image& image, double film_z) noexcept {
   const double away = film_z - image.film_z, diameter = image.diameter(film_z);
-  return image.lines.empty() ? detail::signed_diameter(diameter, image.slope * away) : std::copysign(diameter, away);
+  return image.lines.empty() ? movement_detail::signed_diameter(diameter, image.slope * away)
+                             : std::copysign(diameter, away);
 }
 
 /// The film on the side of `wanted` where the diameter is that much; the sharpest where it always is more.
-double film_of(const detail::Image& image, double wanted) noexcept {
+double film_of(const focus_detail::Image& image, double wanted) noexcept {
   if (wanted == 0) return image.film_z;
   if (image.lines.empty()) {
     if (!(std::abs(wanted) > image.least)) return image.film_z;
@@ -120,7 +121,7 @@ double film_of(const detail::Image& image, double wanted) noexcept {
   const auto within = [&](double film_z) { return image.diameter(film_z) <= std::abs(wanted); };
   double away = wanted;
   while (within(image.film_z + away)) away *= 2;
-  return detail::last_with(image.film_z, image.film_z + away, within);
+  return core_detail::last_with(image.film_z, image.film_z + away, within);
 }
 
 }  // namespace
@@ -153,7 +154,7 @@ Autofocus autofocus(const IdealLens& lens, std::span<const FocusTarget> targets,
                    [&](std::size_t i, double z) { return signed_blur(*images[i], upright(z)); });
 }
 
-Autofocus autofocus(const PointBundles& lens, std::span<const FocusTarget> targets, FocusCriterion criterion) {
+Autofocus autofocus(const ImageRays& lens, std::span<const FocusTarget> targets, FocusCriterion criterion) {
   if (criterion != FocusCriterion::min_rms && criterion != FocusCriterion::min_max) {
     throw Error("autofocus: criterion is " + std::string(name(criterion)) +
                 ", wanted min_rms or min_max, or an ideal lens");
@@ -161,21 +162,21 @@ Autofocus autofocus(const PointBundles& lens, std::span<const FocusTarget> targe
   const bool rms = criterion == FocusCriterion::min_rms;
   const double plane_z = lens.lens().surfaces().back().vertex_z;
   std::vector<Asked> asked;
-  std::vector<std::vector<detail::Line>> lines;
-  std::vector<detail::Image> images;  // by the criterion, of targets that have one
+  std::vector<std::vector<focus_detail::Line>> lines;
+  std::vector<focus_detail::Image> images;  // by the criterion, of targets that have one
   for (const FocusTarget& target : targets) {
     lines.push_back(lines_of(lens.bundle(target.place)));
-    detail::Image& image = images.emplace_back();
+    focus_detail::Image& image = images.emplace_back();
     Asked asks;
     if (lines.back().empty()) {
       asks.use = lens.ideal().image(target.place) ? TargetUse::no_rays : TargetUse::no_image;
     } else {
-      image = detail::least_rms(lines.back(), plane_z);
+      image = focus_detail::least_rms(lines.back(), plane_z);
       asks.steepness = image.slope;
       // Else rays run apart behind the lens.
       if (image.film_z > lens.ideal().rear_z) {
         asks.film_z = film_of(image, target.blur_mm);
-        if (!rms) image = detail::least_maximum(lines.back(), plane_z);
+        if (!rms) image = focus_detail::least_maximum(lines.back(), plane_z);
       }
     }
     asked.push_back(judged(lens.ideal(), target, asks));
@@ -184,7 +185,7 @@ Autofocus autofocus(const PointBundles& lens, std::span<const FocusTarget> targe
   std::optional<double> found = least_squares(targets, asked);
   if (!rms && found) {
     const double largest = largest_weight(targets, asked);
-    std::vector<detail::Line> all;
+    std::vector<focus_detail::Line> all;
     for (std::size_t i = 0; i < targets.size(); ++i) {
       if (asked[i].use != TargetUse::used) continue;
       const double scale = targets[i].weight / largest;
@@ -193,11 +194,12 @@ Autofocus autofocus(const PointBundles& lens, std::span<const FocusTarget> targe
         all.push_back({scale * (x - shift * u), scale * (y - shift * v), scale * u, scale * v, weight});
       }
     }
-    found = detail::least_maximum(std::move(all), plane_z).film_z;
+    found = focus_detail::least_maximum(std::move(all), plane_z).film_z;
   }
-  const std::vector<detail::Line> far = lines_of(lens.bundle({{0, 0, -1}, true}));
+  const std::vector<focus_detail::Line> far = lines_of(lens.bundle({{0, 0, -1}, true}));
   double at_infinity = nan;
-  if (!far.empty()) at_infinity = (rms ? detail::least_rms(far, plane_z) : detail::least_maximum(far, plane_z)).film_z;
+  if (!far.empty())
+    at_infinity = (rms ? focus_detail::least_rms(far, plane_z) : focus_detail::least_maximum(far, plane_z)).film_z;
   return described(lens.ideal(), targets, asked, {lens.lens().film_z(), at_infinity}, found,
                    [&](std::size_t i, double z) { return signed_diameter(images[i], z); });
 }
@@ -219,4 +221,4 @@ std::vector<FocusTarget> region_targets(const Vec3<double>& centre, const Vec3<d
   return targets;
 }
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

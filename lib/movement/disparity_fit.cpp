@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-namespace petzval {
+namespace petzval::inline v0 {
 
-DisparityPoint disparity_point(const ScenePlace& place, double z) noexcept {
+DisparityPoint disparity_point(const ScenePoint& place, double z) noexcept {
   const auto& [p, at_infinity] = place;
   if (std::isinf(p.z)) return {};
   const double depth = (at_infinity ? 0 : z) - p.z;
@@ -77,4 +77,4 @@ std::optional<Plane> plane_of(const DisparityFit& fit, double z) {
   return plane;
 }
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

@@ -7,7 +7,7 @@
 #include "petzval/core/error.hpp"
 #include "petzval/core/text.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 
 Vec3<double> FilmPose::right() const noexcept { return {std::cos(swing_rad), 0, -std::sin(swing_rad)}; }
 
@@ -51,4 +51,4 @@ FilmPose film_pose(const Plane& plane) {
   return {film_z, std::atan2(0 - n.y, std::hypot(n.x, n.z)), std::atan2(n.x + 0, n.z)};  // no -0
 }
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

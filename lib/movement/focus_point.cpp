@@ -12,12 +12,12 @@
 #include "petzval/movement/film_pose.hpp"
 #include "petzval/movement/keyframes.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 namespace {
 
 bool finite(const Vec3<double>& v) noexcept { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
-void check(const ScenePlace& place, const std::string& where) {
+void check(const ScenePoint& place, const std::string& where) {
   const auto& [p, at_infinity] = place;
   const bool nowhere = at_infinity && p.x == 0 && p.y == 0 && p.z == 0;
   if (finite(p) && !nowhere) return;
@@ -57,7 +57,7 @@ void check(const FocusPoint& point, std::size_t vertices, const std::string& whe
     if (!std::isfinite(key.weight) || key.weight < 0) {
       throw Error(at + "weight is " + number(key.weight) + ", wanted a finite one of 0 or more");
     }
-    if (const auto* place = std::get_if<ScenePlace>(&key.anchor)) {
+    if (const auto* place = std::get_if<ScenePoint>(&key.anchor)) {
       check(*place, at);
     } else {
       check(std::get<OnTriangle>(key.anchor), vertices, at);
@@ -104,13 +104,13 @@ const OnTriangle* only_triangle(const FocusPoint& point) {
 }
 
 /// As seen from the front principal point, 1 / depth last.
-Vec3<double> seen(const ScenePlace& place, double principal_z) {
+Vec3<double> seen(const ScenePoint& place, double principal_z) {
   const DisparityPoint point = disparity_point(place, principal_z);
   return {point.x, point.y, point.disparity};
 }
 
 /// Nothing where a vertex is nowhere, and on a way from behind the lens to infinity.
-std::optional<ScenePlace> place_at(const IdealLens& lens, const FocusPoint& point, const FocusMoment& moment) {
+std::optional<ScenePoint> place_at(const IdealLens& lens, const FocusPoint& point, const FocusMoment& moment) {
   if (const OnTriangle* triangle = only_triangle(point)) {
     std::array<double, 3> parts{};
     double sum = 0;
@@ -121,35 +121,35 @@ std::optional<ScenePlace> place_at(const IdealLens& lens, const FocusPoint& poin
     }
     // Each stays within its keys, their sum does not.
     for (double& part : parts) part /= sum;
-    return ScenePlace{place_of(*triangle, parts, moment), false};
+    return ScenePoint{place_of(*triangle, parts, moment), false};
   }
-  std::vector<ScenePlace> places;
+  std::vector<ScenePoint> places;
   for (const FocusKey& key : point.keys) {
     const auto* on = std::get_if<OnTriangle>(&key.anchor);
-    places.push_back(on ? ScenePlace{place_of(*on, on->barycentric, moment), false} : std::get<ScenePlace>(key.anchor));
+    places.push_back(on ? ScenePoint{place_of(*on, on->barycentric, moment), false} : std::get<ScenePoint>(key.anchor));
     if (!finite(places.back().position)) return {};
   }
   if (places.size() == 1) return places[0];
 
   const double z = lens.front_principal_z();
-  const auto in_front = [&](const ScenePlace& place) {
+  const auto in_front = [&](const ScenePoint& place) {
     return place.position.z < (place.at_infinity ? 0 : z) && finite(seen(place, z));
   };
-  const auto at_infinity = [](const ScenePlace& place) { return place.at_infinity; };
+  const auto at_infinity = [](const ScenePoint& place) { return place.at_infinity; };
   Vec3<double> at{0, 0, 0};
   if (std::all_of(places.begin(), places.end(), in_front)) {
     for (int i = 0; i < 3; ++i) {
       at[i] = at_time(point, moment.time, [&](std::size_t k) { return seen(places[k], z)[i]; });
     }
     const double depth = 1 / at.z;
-    if (!std::isfinite(depth)) return ScenePlace{{at.x, at.y, -1}, true};
-    return ScenePlace{{at.x * depth, at.y * depth, z - depth}, false};
+    if (!std::isfinite(depth)) return ScenePoint{{at.x, at.y, -1}, true};
+    return ScenePoint{{at.x * depth, at.y * depth, z - depth}, false};
   }
   if (std::any_of(places.begin(), places.end(), at_infinity)) return {};
   for (int i = 0; i < 3; ++i) {
     at[i] = at_time(point, moment.time, [&](std::size_t k) { return places[k].position[i]; });
   }
-  return ScenePlace{at, false};
+  return ScenePoint{at, false};
 }
 
 bool within(const FilmFrame& frame, double film_z, const ImagePoint& image) noexcept {
@@ -184,4 +184,4 @@ std::vector<FocusTarget> focus_targets(const IdealLens& lens, std::span<const Fo
   return targets;
 }
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

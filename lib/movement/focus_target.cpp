@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-namespace petzval {
+namespace petzval::inline v0 {
 
 bool well_formed(const FocusTarget& target) noexcept {
   const Vec3<double>& p = target.place.position;
@@ -24,4 +24,4 @@ std::string_view name(TargetUse use) noexcept {
   return "unknown";
 }
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

@@ -15,7 +15,7 @@
 #include "petzval/core/text.hpp"
 #include "petzval/paraxial/first_order.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -39,7 +39,7 @@ FirstOrder focusing(const Lens& lens, std::size_t wavelength, Meridian meridian)
 
 }  // namespace
 
-std::optional<ImagePoint> IdealLens::image(const ScenePlace& place) const noexcept {
+std::optional<ImagePoint> IdealLens::image(const ScenePoint& place) const noexcept {
   Vec3<double> p = place.position;
   double w = place.at_infinity ? 0 : 1;
   if (p.z == -infinity && std::isfinite(p.x) && std::isfinite(p.y)) p = {0, 0, -1}, w = 0;
@@ -64,7 +64,7 @@ std::optional<ImagePoint> IdealLens::image(const ScenePlace& place) const noexce
   return result;
 }
 
-ScenePlace IdealLens::scene_of(const Vec3<double>& image) const noexcept {
+ScenePoint IdealLens::scene_of(const Vec3<double>& image) const noexcept {
   const double from_focus = image.z - rear_focal_z;
   if (from_focus == 0) return {{-image.x / front_focal_length, -image.y / front_focal_length, -1}, true};
   // x = x' Z / f, without Z.
@@ -132,4 +132,4 @@ std::optional<FocusPlane> focus_plane(const IdealLens& lens, const FilmPose& fil
   return FocusPlane{*plane, line_at(*plane, lens.front_focal_z), line_at(*plane, lens.front_principal_z())};
 }
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

@@ -9,7 +9,7 @@
 #include "petzval/core/error.hpp"
 #include "petzval/core/text.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 
 Keyframes::Keyframes(std::vector<double> times, std::vector<double> values)
     : times_(std::move(times)), values_(std::move(values)), slopes_(times_.size()) {
@@ -59,4 +59,4 @@ double Keyframes::at(double time) const noexcept {
   return std::clamp(value, low, high);  // rounding
 }
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

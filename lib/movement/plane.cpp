@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace petzval {
+namespace petzval::inline v0 {
 
 std::optional<SpaceLine> line_at(const Plane& plane, double z) {
   const Vec3<double>& n = plane.normal;
@@ -15,4 +15,4 @@ std::optional<SpaceLine> line_at(const Plane& plane, double z) {
   return SpaceLine{{reach * ux, reach * uy, z}, turned ? Vec3<double>(-uy, ux, 0) : Vec3<double>(uy, -ux, 0)};
 }
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

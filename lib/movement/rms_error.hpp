@@ -7,7 +7,7 @@
 
 #include "petzval/movement/focus_target.hpp"
 
-namespace petzval::detail {
+namespace petzval::inline v0::movement_detail {
 
 /// The root of the weighted mean square of blur less wanted over the targets used, without overflow; 0 without any.
 inline double rms_error(std::span<const FocusTarget> targets, std::span<const TargetBlur> blurs) noexcept {
@@ -31,4 +31,4 @@ inline double rms_error(std::span<const FocusTarget> targets, std::span<const Ta
   return largest * std::sqrt(squares / total);
 }
 
-}  // namespace petzval::detail
+}  // namespace petzval::inline v0::movement_detail

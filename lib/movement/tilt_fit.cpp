@@ -13,7 +13,7 @@
 #include "tilt_problem.hpp"
 #include "tilt_rays.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 namespace {
 
 void check(const TiltOptions& options) {
@@ -54,8 +54,8 @@ bool clear_of_lens(const IdealLens& lens, const FilmFrame& frame, const FilmPose
 
 /// The film that was found, or the one that stays where it stood. blur_of: of a target on a film.
 TiltFit described(const IdealLens& lens, std::span<const FocusTarget> targets, const TiltOptions& options,
-                  std::span<const detail::SeenTarget> seen, const detail::TiltProblem& problem,
-                  const detail::TiltSolution& solution, const auto& blur_of) {
+                  std::span<const movement_detail::SeenTarget> seen, const movement_detail::TiltProblem& problem,
+                  const movement_detail::TiltSolution& solution, const auto& blur_of) {
   TiltFit fit;
   fit.rank = problem.rank;
   fit.film = options.start;
@@ -81,28 +81,28 @@ TiltFit described(const IdealLens& lens, std::span<const FocusTarget> targets, c
   for (std::size_t i = 0; i < targets.size(); ++i) {
     fit.blurs.push_back({seen[i].use, targets[i].blur_mm, blur_of(i, fit.film)});
   }
-  fit.rms_mm = detail::rms_error(targets, fit.blurs);
+  fit.rms_mm = movement_detail::rms_error(targets, fit.blurs);
   return fit;
 }
 
 /// The problem of the targets that count, outliers taken out.
-detail::TiltProblem sober_problem(const IdealLens& lens, std::span<detail::SeenTarget> seen,
-                                  const TiltOptions& options) {
+movement_detail::TiltProblem sober_problem(const IdealLens& lens, std::span<movement_detail::SeenTarget> seen,
+                                           const TiltOptions& options) {
   constexpr std::size_t fewest = 5;  // of which one can be told from the others
-  const detail::TiltProblem problem = tilt_problem(lens, seen, options.max_tilt_rad);
+  const movement_detail::TiltProblem problem = tilt_problem(lens, seen, options.max_tilt_rad);
   if (!options.robust || problem.used.size() < fewest) return problem;
   const std::vector<double> kept = robust_weights(problem, seen);
   for (std::size_t i = 0; i < kept.size(); ++i) {
-    detail::SeenTarget& target = seen[problem.used[i]];
+    movement_detail::SeenTarget& target = seen[problem.used[i]];
     target.weight *= kept[i];
     if (!(target.weight > 0)) target.use = TargetUse::outlier;
   }
   return tilt_problem(lens, seen, options.max_tilt_rad);
 }
 
-detail::TiltSolution solved(const detail::TiltProblem& problem) {
+movement_detail::TiltSolution solved(const movement_detail::TiltProblem& problem) {
   if (problem.rank == PlaneRank::none) return {};
-  std::vector<const detail::BlurErrors*> errors;
+  std::vector<const movement_detail::BlurErrors*> errors;
   for (const auto& blur : problem.blurs) errors.push_back(&blur);
   return least_blur(errors, problem.space, {.film = problem.start});
 }
@@ -123,18 +123,18 @@ std::string_view name(TiltFit::Status status) noexcept {
 
 TiltFit fit_tilt(const IdealLens& lens, std::span<const FocusTarget> targets, const TiltOptions& options) {
   check(options);
-  std::vector<detail::SeenTarget> seen = detail::seen_targets(lens, targets);
-  const detail::TiltProblem problem = sober_problem(lens, seen, options);
+  std::vector<movement_detail::SeenTarget> seen = movement_detail::seen_targets(lens, targets);
+  const movement_detail::TiltProblem problem = sober_problem(lens, seen, options);
   return described(lens, targets, options, seen, problem, solved(problem), [&](std::size_t i, const FilmPose& film) {
     return seen[i].image ? signed_blur(*seen[i].image, film) : std::numeric_limits<double>::quiet_NaN();
   });
 }
 
-TiltFit fit_tilt(const PointBundles& lens, std::span<const FocusTarget> targets, const TiltOptions& options) {
+TiltFit fit_tilt(const ImageRays& lens, std::span<const FocusTarget> targets, const TiltOptions& options) {
   check(options);
   const IdealLens& ideal = lens.ideal();
-  std::vector<detail::SeenTarget> seen = detail::seen_targets(ideal, targets);
-  std::vector<PointBundle> bundles(targets.size());
+  std::vector<movement_detail::SeenTarget> seen = movement_detail::seen_targets(ideal, targets);
+  std::vector<RayBundle> bundles(targets.size());
   for (std::size_t i = 0; i < targets.size(); ++i) {
     if (!seen[i].image) continue;
     bundles[i] = lens.bundle(targets[i].place);
@@ -143,12 +143,12 @@ TiltFit fit_tilt(const PointBundles& lens, std::span<const FocusTarget> targets,
       seen[i].weight = 0;
     }
   }
-  const detail::TiltProblem problem = sober_problem(ideal, seen, options);
-  const detail::TiltSolution thick = solved(problem);
-  detail::TiltSolution solution = thick;
+  const movement_detail::TiltProblem problem = sober_problem(ideal, seen, options);
+  const movement_detail::TiltSolution thick = solved(problem);
+  movement_detail::TiltSolution solution = thick;
   if (thick.converged) {
-    std::vector<detail::RayBlur> blurs;
-    std::vector<const detail::BlurErrors*> errors;
+    std::vector<movement_detail::RayBlur> blurs;
+    std::vector<const movement_detail::BlurErrors*> errors;
     blurs.reserve(problem.used.size());
     for (std::size_t k = 0; k < problem.used.size(); ++k) {
       const std::size_t i = problem.used[k];
@@ -168,4 +168,4 @@ TiltFit fit_tilt(const PointBundles& lens, std::span<const FocusTarget> targets,
   return fit;
 }
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

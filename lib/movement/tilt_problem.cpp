@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace petzval::detail {
+namespace petzval::inline v0::movement_detail {
 namespace {
 
 /// Where the film has to be for a plane of the scene. With v the distance behind the rear principal plane, disparity
@@ -140,4 +140,4 @@ TiltProblem tilt_problem(const IdealLens& lens, std::span<const SeenTarget> targ
   return problem;
 }
 
-}  // namespace petzval::detail
+}  // namespace petzval::inline v0::movement_detail

@@ -11,7 +11,7 @@
 #include "petzval/movement/ideal_lens.hpp"
 #include "petzval/movement/tilt_fit.hpp"
 
-namespace petzval::detail {
+namespace petzval::inline v0::movement_detail {
 
 /// The film z = z + p x + q y, in the coordinates of a TiltFrame.
 struct FilmSlopes {
@@ -99,4 +99,4 @@ std::optional<FilmSlopes> least_tukey_loss(std::span<const BlurErrors* const> er
 /// How much of its weight each target keeps, 0 to 1, one for each of problem.used.
 std::vector<double> robust_weights(const TiltProblem& problem, std::span<const SeenTarget> targets);
 
-}  // namespace petzval::detail
+}  // namespace petzval::inline v0::movement_detail

@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
-namespace petzval::detail {
+namespace petzval::inline v0::movement_detail {
 
-RayBlur::RayBlur(const PointBundle& bundle, const TiltFrame& frame, double root, double wanted) : root_(root) {
+RayBlur::RayBlur(const RayBundle& bundle, const TiltFrame& frame, double root, double wanted) : root_(root) {
   const auto array = [](const std::vector<double>& values) {
     return Eigen::Map<const Eigen::ArrayXd>(values.data(), static_cast<Eigen::Index>(values.size()));
   };
@@ -71,4 +71,4 @@ bool RayBlur::operator()(const FilmSlopes& film, double* errors, double* derivat
   return true;
 }
 
-}  // namespace petzval::detail
+}  // namespace petzval::inline v0::movement_detail

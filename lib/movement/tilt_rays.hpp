@@ -3,10 +3,10 @@
 
 #include <Eigen/Core>
 
-#include "petzval/movement/point_bundles.hpp"
+#include "petzval/movement/image_rays.hpp"
 #include "tilt_problem.hpp"
 
-namespace petzval::detail {
+namespace petzval::inline v0::movement_detail {
 
 /// The blur of a bundle of exact rays: the distances of all hits from their middle, scaled so that their squares sum to
 /// that of the diameter; smooth where that is least, as the diameter itself is not. A bundle that should be blurred is
@@ -15,7 +15,7 @@ namespace petzval::detail {
 class RayBlur final : public BlurErrors {
  public:
   /// wanted: signed diameter, in units of the frame.
-  RayBlur(const PointBundle& bundle, const TiltFrame& frame, double root, double wanted);
+  RayBlur(const RayBundle& bundle, const TiltFrame& frame, double root, double wanted);
   int rows() const noexcept override { return 4; }
   bool operator()(const FilmSlopes& film, double* errors, double* derivatives) const override;
 
@@ -24,4 +24,4 @@ class RayBlur final : public BlurErrors {
   double root_, defocus_ = 0;                 // the part of the wanted diameter that defocus has to make
 };
 
-}  // namespace petzval::detail
+}  // namespace petzval::inline v0::movement_detail

@@ -12,7 +12,7 @@
 
 #include "tilt_problem.hpp"
 
-namespace petzval::detail {
+namespace petzval::inline v0::movement_detail {
 namespace {
 
 /// The groups of `size` targets of `count`, each of them once up to `most` groups; more are thinned out evenly.
@@ -123,4 +123,4 @@ std::vector<double> robust_weights(const TiltProblem& problem, std::span<const S
   return weights;
 }
 
-}  // namespace petzval::detail
+}  // namespace petzval::inline v0::movement_detail

@@ -15,7 +15,7 @@
 #include "petzval/core/bisect.hpp"
 #include "tilt_problem.hpp"
 
-namespace petzval::detail {
+namespace petzval::inline v0::movement_detail {
 namespace {
 
 /// Films by parameters: z, and slopes times spreads as far as the targets tell them, from a film on.
@@ -209,7 +209,7 @@ std::optional<TiltSolution> least_nearby(std::span<const BlurErrors* const> erro
     if (result.limited) {
       double high = along * along;
       while (beyond(high)) high *= 4;
-      result.restraint = last_with(0.0, high, beyond);
+      result.restraint = core_detail::last_with(0.0, high, beyond);
     }
     const Eigen::Vector3d step = step_at(result.restraint);
     film = chart(step.data());
@@ -298,4 +298,4 @@ std::optional<FilmSlopes> least_tukey_loss(std::span<const BlurErrors* const> er
   return film;
 }
 
-}  // namespace petzval::detail
+}  // namespace petzval::inline v0::movement_detail

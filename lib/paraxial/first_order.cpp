@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace petzval {
+namespace petzval::inline v0 {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -132,4 +132,4 @@ double lensmaker_focal_length(double n, double c1, double c2, double thickness) 
   return power == 0 ? infinity : 1 / power;
 }
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

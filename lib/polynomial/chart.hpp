@@ -3,7 +3,7 @@
 
 #include "petzval/core/vec3.hpp"
 
-namespace petzval::detail {
+namespace petzval::inline v0::polynomial_detail {
 
 /// A line on the scene's side as two vectors that turn with it about the axis.
 ///
@@ -25,4 +25,4 @@ inline SceneLine scene_line(const Vec3<double>& direction, const Vec3<double>& p
   return {sx, sy, point.x - along * direction.x + foot_z * sx, point.y - along * direction.y + foot_z * sy};
 }
 
-}  // namespace petzval::detail
+}  // namespace petzval::inline v0::polynomial_detail

@@ -6,12 +6,12 @@
 #include "loops.hpp"
 #include "petzval/polynomial/ray_polynomial.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 
 struct RayPolynomial::Data {
   template <class R>
   struct In {
-    detail::Scales<R> scales;
+    polynomial_detail::Scales<R> scales;
     std::vector<R> coefficients;  ///< by wavelength, as in ToSceneJob
   };
 
@@ -27,7 +27,7 @@ struct RayPolynomial::Data {
   std::size_t loop() const noexcept { return static_cast<std::size_t>(degree - 3) / 2; }
 };
 
-namespace detail {
+namespace polynomial_detail {
 
 template <class R>
 const auto& in(const auto& data) noexcept {
@@ -47,5 +47,5 @@ const ToSceneLoops<R>& to_scene_loops() noexcept {
   }
 }
 
-}  // namespace detail
-}  // namespace petzval
+}  // namespace polynomial_detail
+}  // namespace petzval::inline v0

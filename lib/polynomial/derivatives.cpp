@@ -6,7 +6,7 @@
 #include "data.hpp"
 #include "horner.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 namespace {
 
 using Jet = ceres::Jet<double, 2>;
@@ -23,16 +23,16 @@ struct Pair {
 template <int n>
 std::array<Pair, 2> evaluate(const double* c, const Pair& f, const Pair& p) noexcept {
   const Jet u = dot(f, f), v = dot(f, p), w = dot(p, p);
-  constexpr int terms = detail::term_count(n);
+  constexpr int terms = polynomial_detail::term_count(n);
   const auto sum = [&](const double* at) {
-    return detail::horner<n>(at, u, v, w) * f + detail::horner<n>(at + terms, u, v, w) * p;
+    return polynomial_detail::horner<n>(at, u, v, w) * f + polynomial_detail::horner<n>(at + terms, u, v, w) * p;
   };
   return {sum(c), sum(c + 2 * terms)};
 }
 
 using Evaluate = std::array<Pair, 2> (*)(const double*, const Pair&, const Pair&) noexcept;
-constexpr std::array<Evaluate, detail::degree_count> evaluators{evaluate<1>, evaluate<2>, evaluate<3>, evaluate<4>,
-                                                                evaluate<5>};
+constexpr std::array<Evaluate, polynomial_detail::degree_count> evaluators{evaluate<1>, evaluate<2>, evaluate<3>,
+                                                                           evaluate<4>, evaluate<5>};
 
 }  // namespace
 
@@ -40,17 +40,18 @@ RayDerivatives RayPolynomial::to_scene(const LineDerivatives& line, std::size_t 
   const Domain& domain = data_->domain;
   RayDerivatives result{RayFate::outside_fit, {{0, 0, domain.reference_z}, {0, 0, -1}}};
   if (wavelength >= data_->fits.size()) return result;
-  const auto jet = [&](double FilmLine::*part, double scale) {
+  const auto jet = [&](double TwoPlaneRay::*part, double scale) {
     Jet x(line.line.*part * scale);
     x.v[0] = line.by_u.*part * scale;
     x.v[1] = line.by_v.*part * scale;
     return x;
   };
   const double per_film = 1 / domain.film_radius, per_pupil = 1 / domain.pupil_radius;
-  const Pair f{jet(&FilmLine::film_x, per_film), jet(&FilmLine::film_y, per_film)};
+  const Pair f{jet(&TwoPlaneRay::film_x, per_film), jet(&TwoPlaneRay::film_y, per_film)};
   const Jet shift(-domain.pupil_shift * domain.film_radius * per_pupil);
-  const Pair p = Pair{jet(&FilmLine::pupil_x, per_pupil), jet(&FilmLine::pupil_y, per_pupil)} + shift * f;
-  if (!(dot(f, f).a <= detail::within_domain && dot(p, p).a <= detail::within_domain)) return result;
+  const Pair p = Pair{jet(&TwoPlaneRay::pupil_x, per_pupil), jet(&TwoPlaneRay::pupil_y, per_pupil)} + shift * f;
+  if (!(dot(f, f).a <= polynomial_detail::within_domain && dot(p, p).a <= polynomial_detail::within_domain))
+    return result;
 
   const auto& in = data_->in_double;
   const std::size_t per_fit = in.coefficients.size() / data_->fits.size();
@@ -62,4 +63,4 @@ RayDerivatives RayPolynomial::to_scene(const LineDerivatives& line, std::size_t 
   return {RayFate::transmitted, {{x.a, y.a, z.a}, {dx.a, dy.a, dz.a}}, part(0), part(1)};
 }
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

@@ -11,15 +11,15 @@
 #include "petzval/polynomial/ray_polynomial.hpp"
 #include "petzval/pupil/pupil.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 namespace {
 
-using detail::MeridianLines;
+using polynomial_detail::MeridianLines;
 
 constexpr std::size_t fitted = 1536, judged = 4096;
 
 /// The samples u, v of pupils as lines, less those of empty pupils.
-MeridianLines lines_of(const PupilMap& pupils, std::size_t wavelength, const std::vector<double>& heights,
+MeridianLines lines_of(const FilmPupilTable& pupils, std::size_t wavelength, const std::vector<double>& heights,
                        const std::vector<double>& u, const std::vector<double>& v) {
   const std::size_t count = heights.size();
   const std::vector<double> film_x(count, 0.0);
@@ -39,7 +39,8 @@ MeridianLines lines_of(const PupilMap& pupils, std::size_t wavelength, const std
 /// Lines spread over film and pupils. The points of an additive recurrence by the powers of the root of g^4 = g + 1
 /// fill three dimensions evenly from any `first` on. Evenly by area, or more densely towards the edges of film and
 /// pupil, as the nodes of Chebyshev are: that takes some tenths from the largest errors, and adds one to the RMS.
-MeridianLines spread(const PupilMap& pupils, std::size_t wavelength, std::size_t first, std::size_t count, bool dense) {
+MeridianLines spread(const FilmPupilTable& pupils, std::size_t wavelength, std::size_t first, std::size_t count,
+                     bool dense) {
   constexpr double g = 1.2207440846057596, quarter = std::numbers::pi / 2;
   std::vector<double> heights(count), u(count), v(count);
   for (std::size_t i = 0; i < count; ++i) {
@@ -56,7 +57,7 @@ MeridianLines spread(const PupilMap& pupils, std::size_t wavelength, std::size_t
 }
 
 /// The rims of the pupils.
-MeridianLines rims(const PupilMap& pupils, std::size_t wavelength) {
+MeridianLines rims(const FilmPupilTable& pupils, std::size_t wavelength) {
   constexpr int steps = 64, around = 128;
   std::vector<double> heights, u;
   for (int i = 0; i <= steps; ++i) {
@@ -97,13 +98,13 @@ void enclose(const std::vector<MeridianLines>& rims, RayPolynomial::Domain& doma
 /// The centre of the entrance pupil, but not far from the lens: rays begin about it.
 double reference_of(const Lens& lens) {
   const double longest = 10 * std::abs(lens.film_z() - lens.surfaces().front().vertex_z);
-  const double z = has_pupils(lens) ? pupils(lens, lens.central_wavelength()).entrance.z : 0;
+  const double z = has_pupils(lens) ? pupils(lens, lens.primary_wavelength()).entrance.z : 0;
   return std::abs(z) <= longest ? z : 0;
 }
 
 }  // namespace
 
-RayPolynomial RayPolynomial::fit(const Lens& lens, const PupilMap& pupils, int degree) {
+RayPolynomial RayPolynomial::fit(const Lens& lens, const FilmPupilTable& pupils, int degree) {
   const std::string where = lens.name() + ": polynomial: ";
   if (!lens.rotationally_symmetric()) {
     throw Error(where + "the lens has surfaces that are curved in one section only, wanted a lens of revolution");
@@ -129,10 +130,10 @@ RayPolynomial RayPolynomial::fit(const Lens& lens, const PupilMap& pupils, int d
   enclose(edges, domain);
   std::vector<Fit> fits;
   for (std::size_t wavelength = 0; wavelength < pupils.wavelengths(); ++wavelength) {
-    fits.push_back(detail::fit(lens, domain, degree, wavelength, spread(pupils, wavelength, 0, fitted, true),
-                               spread(pupils, wavelength, fitted, judged, false), edges[wavelength]));
+    fits.push_back(polynomial_detail::fit(lens, domain, degree, wavelength, spread(pupils, wavelength, 0, fitted, true),
+                                          spread(pupils, wavelength, fitted, judged, false), edges[wavelength]));
   }
   return RayPolynomial(degree, domain, std::move(fits));
 }
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

@@ -4,7 +4,7 @@
 // several instruction sets (lib/README.md).
 #pragma once
 
-namespace petzval::detail {
+namespace petzval::inline v0::polynomial_detail {
 namespace {
 
 /// Coefficients of the terms u^i v^j w^k, i + j + k <= n.
@@ -44,4 +44,4 @@ PETZVAL_INLINE auto horner(const R* c, const T& u, const T& v, const T& w) noexc
 }
 
 }  // namespace
-}  // namespace petzval::detail
+}  // namespace petzval::inline v0::polynomial_detail

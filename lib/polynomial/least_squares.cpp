@@ -13,7 +13,7 @@
 #include "petzval/core/text.hpp"
 #include "petzval/trace/batch.hpp"
 
-namespace petzval::detail {
+namespace petzval::inline v0::polynomial_detail {
 namespace {
 
 /// Rays as arrays of their own.
@@ -32,7 +32,7 @@ struct Rays {
 };
 
 /// The lines through the lens, exactly. They start at the last vertex: however far film and pupil are, nothing is lost.
-Rays trace(const Lens& lens, const FilmSpace& space, const MeridianLines& lines, std::size_t wavelength) {
+Rays trace(const Lens& lens, const TwoPlanes& space, const MeridianLines& lines, std::size_t wavelength) {
   const double last_z = lens.surfaces().back().vertex_z;
   const double part = (last_z - space.film_z) / space.depth();  // of the way from the film to the pupil
   const double towards = towards_scene(lens, space);
@@ -156,4 +156,4 @@ RayPolynomial::Fit fit(const Lens& lens, const RayPolynomial::Domain& domain, in
   return fit;
 }
 
-}  // namespace petzval::detail
+}  // namespace petzval::inline v0::polynomial_detail

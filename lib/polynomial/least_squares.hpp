@@ -7,7 +7,7 @@
 #include "petzval/lens/lens.hpp"
 #include "petzval/polynomial/ray_polynomial.hpp"
 
-namespace petzval::detail {
+namespace petzval::inline v0::polynomial_detail {
 
 /// Lines of film points on the axis +y: what lies elsewhere is the same turned about the axis.
 struct MeridianLines {
@@ -21,4 +21,4 @@ struct MeridianLines {
 RayPolynomial::Fit fit(const Lens& lens, const RayPolynomial::Domain& domain, int degree, std::size_t wavelength,
                        const MeridianLines& lines, const MeridianLines& fresh, const MeridianLines& rims);
 
-}  // namespace petzval::detail
+}  // namespace petzval::inline v0::polynomial_detail

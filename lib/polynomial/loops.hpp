@@ -7,10 +7,10 @@
 
 #include "petzval/core/ray.hpp"
 #include "petzval/lens/ray_wavelengths.hpp"
-#include "petzval/pupil/film_lines.hpp"
+#include "petzval/pupil/two_plane_rays.hpp"
 #include "petzval/trace/widest.hpp"
 
-namespace petzval::detail {
+namespace petzval::inline v0::polynomial_detail {
 
 /// Degrees 3, 5, 7, 9, 11.
 inline constexpr std::size_t degree_count = 5;
@@ -30,7 +30,7 @@ struct ToSceneJob {
   std::size_t fits;
   Scales<R> scales;
   std::size_t count;
-  FilmLines<const R> lines;
+  TwoPlaneRays<const R> lines;
   RayWavelengths wavelengths;
   RayArrays<R> rays;
   RayFate* fates;
@@ -47,4 +47,4 @@ struct PolynomialLoops {
 
 PETZVAL_WIDEST(PolynomialLoops, polynomial_loops)
 
-}  // namespace petzval::detail
+}  // namespace petzval::inline v0::polynomial_detail

@@ -11,7 +11,7 @@
 #include "petzval/core/error.hpp"
 #include "petzval/core/text.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 namespace {
 
 /// Beyond it products leave the range of float; no lens comes near.
@@ -37,7 +37,7 @@ void check(int degree, const RayPolynomial::Domain& domain, const std::vector<Ra
   check(where + "pupil_radius", domain.pupil_radius, 1 / largest, largest);
   check(where + "reference_z", domain.reference_z, -largest, largest);
   if (fits.empty()) throw Error(where + "there are no fits, wanted one for each wavelength");
-  const auto terms = static_cast<std::size_t>(detail::term_count((degree - 1) / 2));
+  const auto terms = static_cast<std::size_t>(polynomial_detail::term_count((degree - 1) / 2));
   for (std::size_t i = 0; i < fits.size(); ++i) {
     const RayPolynomial::Fit& fit = fits[i];
     const std::string here = where + "fit " + std::to_string(i) + ": ";
@@ -102,18 +102,18 @@ const RayPolynomial::Domain& RayPolynomial::domain() const noexcept { return dat
 const std::vector<RayPolynomial::Fit>& RayPolynomial::fits() const noexcept { return data_->fits; }
 
 template <class T>
-void RayPolynomial::to_scene(std::size_t count, const FilmLines<const T>& lines, const RayWavelengths& wavelengths,
+void RayPolynomial::to_scene(std::size_t count, const TwoPlaneRays<const T>& lines, const RayWavelengths& wavelengths,
                              const RayArrays<T>& rays, RayFate* fates) const noexcept {
-  const auto& in = detail::in<T>(*data_);
-  detail::to_scene_loops<T>()[data_->loop()](
+  const auto& in = polynomial_detail::in<T>(*data_);
+  polynomial_detail::to_scene_loops<T>()[data_->loop()](
       {in.coefficients.data(), data_->fits.size(), in.scales, count, lines, wavelengths, rays, fates});
 }
 
-template PETZVAL_API void RayPolynomial::to_scene<float>(std::size_t, const FilmLines<const float>&,
+template PETZVAL_API void RayPolynomial::to_scene<float>(std::size_t, const TwoPlaneRays<const float>&,
                                                          const RayWavelengths&, const RayArrays<float>&,
                                                          RayFate*) const noexcept;
-template PETZVAL_API void RayPolynomial::to_scene<double>(std::size_t, const FilmLines<const double>&,
+template PETZVAL_API void RayPolynomial::to_scene<double>(std::size_t, const TwoPlaneRays<const double>&,
                                                           const RayWavelengths&, const RayArrays<double>&,
                                                           RayFate*) const noexcept;
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

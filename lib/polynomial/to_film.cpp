@@ -11,11 +11,11 @@
 #include "data.hpp"
 #include "horner.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 namespace {
 
-using detail::SceneLine;
-using detail::term_count;
+using polynomial_detail::SceneLine;
+using polynomial_detail::term_count;
 using Place = Eigen::Vector4d;  // f and p, scaled to the domain
 using Jet = ceres::Jet<double, 3>;
 
@@ -39,9 +39,10 @@ void evaluate(const double* c, const Place& x, Place& value, Eigen::Matrix4d& sl
   Eigen::Matrix<double, 3, 4> invariants;
   invariants << 2 * x[0], 2 * x[1], 0, 0, x[2], x[3], x[0], x[1], 0, 0, 2 * x[2], 2 * x[3];
   constexpr int terms = term_count(n);
-  add(detail::horner<n>(c, u, v, w), detail::horner<n>(c + terms, u, v, w), x, invariants, 0, slope, value);
-  add(detail::horner<n>(c + 2 * terms, u, v, w), detail::horner<n>(c + 3 * terms, u, v, w), x, invariants, 2, slope,
-      value);
+  add(polynomial_detail::horner<n>(c, u, v, w), polynomial_detail::horner<n>(c + terms, u, v, w), x, invariants, 0,
+      slope, value);
+  add(polynomial_detail::horner<n>(c + 2 * terms, u, v, w), polynomial_detail::horner<n>(c + 3 * terms, u, v, w), x,
+      invariants, 2, slope, value);
 }
 
 bool within(const Place& x, double square) noexcept {
@@ -76,7 +77,7 @@ Place chief(const double* c, const SceneLine& line) noexcept {
   double low = 0, high = 1;
   for (int i = 0; i < halvings; ++i) {
     const double middle = (low + high) / 2;
-    (sign * middle * detail::along_u<n>(c, middle * middle) < length ? low : high) = middle;
+    (sign * middle * polynomial_detail::along_u<n>(c, middle * middle) < length ? low : high) = middle;
   }
   const double part = length > 0 ? sign * high / length : 0;
   return {part * line.sx, part * line.sy, 0, 0};
@@ -104,16 +105,16 @@ bool solve(const double* c, const SceneLine& line, Place& x) noexcept {
       return false;
     }
   }
-  return within(x, detail::within_domain);
+  return within(x, polynomial_detail::within_domain);
 }
 
 using Solve = bool (*)(const double*, const SceneLine&, Place&) noexcept;
-constexpr std::array<Solve, detail::degree_count> solvers{solve<1>, solve<2>, solve<3>, solve<4>, solve<5>};
+constexpr std::array<Solve, polynomial_detail::degree_count> solvers{solve<1>, solve<2>, solve<3>, solve<4>, solve<5>};
 
 }  // namespace
 
 void RayPolynomial::to_film(std::size_t count, const RayArrays<const double>& rays, const RayWavelengths& wavelengths,
-                            const FilmLines<double>& lines, RayFate* fates) const noexcept {
+                            const TwoPlaneRays<double>& lines, RayFate* fates) const noexcept {
   const auto& in = data_->in_double;
   const Solve solve = solvers[data_->loop()];
   const std::size_t per_fit = in.coefficients.size() / data_->fits.size();
@@ -121,7 +122,7 @@ void RayPolynomial::to_film(std::size_t count, const RayArrays<const double>& ra
   for (std::size_t i = 0; i < count; ++i) {
     const Vec3<double> direction(-rays.dx[i], -rays.dy[i], -rays.dz[i]);
     const Vec3<double> point(rays.x[i], rays.y[i], rays.z[i] - domain.reference_z);
-    const SceneLine line = detail::scene_line(direction, point);
+    const SceneLine line = polynomial_detail::scene_line(direction, point);
     Place x;
     const double length = direction.x * direction.x + direction.y * direction.y + direction.z * direction.z;
     const bool found = std::abs(length - 1) < 1e-3 && wavelengths[i] < data_->fits.size() &&
@@ -135,4 +136,4 @@ void RayPolynomial::to_film(std::size_t count, const RayArrays<const double>& ra
   }
 }
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

@@ -7,7 +7,7 @@
 #include "horner.hpp"
 #include "loops.hpp"
 
-namespace petzval::detail {
+namespace petzval::inline v0::polynomial_detail {
 namespace {
 
 #if defined(__AVX512F__)
@@ -150,4 +150,4 @@ constexpr ToSceneLoops<R> loops{to_scene<1, R>, to_scene<2, R>, to_scene<3, R>, 
 extern const PolynomialLoops PETZVAL_LOOPS;
 const PolynomialLoops PETZVAL_LOOPS{loops<float>, loops<double>};
 
-}  // namespace petzval::detail
+}  // namespace petzval::inline v0::polynomial_detail

@@ -7,7 +7,7 @@
 #include "petzval/core/error.hpp"
 #include "petzval/core/text.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 namespace {
 
 std::string name_of(const Prescription& p) { return p.name.empty() ? std::string("lens") : p.name; }
@@ -86,4 +86,4 @@ Prescription reverse(const Prescription& prescription) {
   return p;
 }
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

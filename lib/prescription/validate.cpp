@@ -6,7 +6,7 @@
 #include "petzval/core/text.hpp"
 #include "petzval/prescription/prescription.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 namespace {
 
 // Below this a radius has a curvature whose square leaves the range of float; above the other, a thickness is the
@@ -102,4 +102,4 @@ void validate(const Prescription& p, const std::string& where) {
   }
 }
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

@@ -12,13 +12,13 @@
 #include "petzval/core/parallel.hpp"
 #include "petzval/psf/sobol.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 namespace {
 
 /// The block's rays behind the lens, from point `first` of the sequence on.
 void trace_block(const Lens& lens, const PupilSampler& pupil, std::uint32_t first, std::size_t count,
-                 std::uint32_t seed, detail::RayBlock& rays) noexcept {
-  std::array<double, detail::RayBlock::size> room_u, room_v;
+                 std::uint32_t seed, psf_detail::RayBlock& rays) noexcept {
+  std::array<double, psf_detail::RayBlock::size> room_u, room_v;
   const std::span u(room_u.data(), count), v(room_v.data(), count);
   owen_sobol(first, seed, u, v);
   pupil(u, v, u, v);
@@ -32,7 +32,7 @@ void trace_block(const Lens& lens, const PupilSampler& pupil, std::uint32_t firs
 void close_gaps(std::vector<double>& values, const std::vector<std::size_t>& found) {
   auto end = values.begin();
   for (std::size_t k = 0; k < found.size(); ++k) {
-    const auto begin = values.begin() + static_cast<std::ptrdiff_t>(k * detail::RayBlock::size);
+    const auto begin = values.begin() + static_cast<std::ptrdiff_t>(k * psf_detail::RayBlock::size);
     end = std::copy(begin, begin + static_cast<std::ptrdiff_t>(found[k]), end);
   }
   values.erase(end, values.end());
@@ -49,13 +49,13 @@ FilmHits trace_bundle(const Lens& lens, const PupilSampler& pupil, std::uint32_t
   if (pupil.empty() || samples == 0) return hits;
 
   // Every block has its place: which thread did it leaves no trace.
-  constexpr std::size_t size = detail::RayBlock::size;
+  constexpr std::size_t size = psf_detail::RayBlock::size;
   hits.x.resize(samples);
   hits.y.resize(samples);
   std::vector<std::size_t> found((samples - 1) / size + 1);
-  const detail::Film film(lens);
+  const psf_detail::Film film(lens);
   parallel_for(samples, size, threads, [&](std::size_t begin, std::size_t end) {
-    detail::RayBlock rays;
+    psf_detail::RayBlock rays;
     trace_block(lens, pupil, static_cast<std::uint32_t>(begin), end - begin, seed, rays);
     found[begin / size] = film.meet(end - begin, rays, &hits.x[begin], &hits.y[begin]);
   });
@@ -64,4 +64,4 @@ FilmHits trace_bundle(const Lens& lens, const PupilSampler& pupil, std::uint32_t
   return hits;
 }
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

@@ -12,7 +12,7 @@
 #include "petzval/core/error.hpp"
 #include "petzval/core/text.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 namespace {
 
 using Triple = std::array<double, 3>;
@@ -127,4 +127,4 @@ std::vector<Triple> rgb_weights(std::span<const double> wavelengths_nm, const Co
   return weights;
 }
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

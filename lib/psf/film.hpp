@@ -9,7 +9,7 @@
 #include "petzval/lens/lens.hpp"
 #include "petzval/trace/batch.hpp"
 
-namespace petzval::detail {
+namespace petzval::inline v0::psf_detail {
 
 /// Rays of a part of a bundle as a structure of arrays: few enough to stay in the first cache on their way from the
 /// pupil to the film, and enough blocks of the trace.
@@ -69,4 +69,4 @@ class Film {
   double sense_ = 1;
 };
 
-}  // namespace petzval::detail
+}  // namespace petzval::inline v0::psf_detail

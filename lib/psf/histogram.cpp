@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 
-namespace petzval {
+namespace petzval::inline v0 {
 
 void count_points(const PixelGrid& grid, std::span<const double> x, std::span<const double> y,
                   std::span<std::uint64_t> counts) noexcept {
@@ -33,4 +33,4 @@ void count_points(const PixelGrid& grid, std::span<const double> x, std::span<co
   }
 }
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

@@ -7,7 +7,7 @@
 #include <numeric>
 #include <span>
 
-namespace petzval::detail {
+namespace petzval::inline v0::psf_detail {
 
 /// A sum, or a maximum, for each of some lanes on which a loop over many points can run; what comes out does not depend
 /// on whether it does.
@@ -31,4 +31,4 @@ void for_each(const Sets& sets, See&& see) noexcept {
   }
 }
 
-}  // namespace petzval::detail
+}  // namespace petzval::inline v0::psf_detail

@@ -13,7 +13,7 @@
 #include "petzval/psf/histogram.hpp"
 #include "petzval/pupil/pupil.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 namespace {
 
 void validate(const PsfOptions& options) {
@@ -30,11 +30,11 @@ void validate(const PsfOptions& options) {
 /// Half the side of a square about the centroid that holds all hits.
 double fitting_half_width(const std::vector<FilmHits>& sets, const SpotSize& size) {
   const auto [cx, cy] = size.centroid;
-  detail::Lanes extent{};
-  detail::for_each(sets, [&, cx = cx, cy = cy](std::size_t lane, double x, double y) {
+  psf_detail::Lanes extent{};
+  psf_detail::for_each(sets, [&, cx = cx, cy = cy](std::size_t lane, double x, double y) {
     extent[lane] = std::max(extent[lane], std::max(std::abs(x - cx), std::abs(y - cy)));
   });
-  return std::max(1.05 * detail::largest(extent), 1e-4);
+  return std::max(1.05 * psf_detail::largest(extent), 1e-4);
 }
 
 void fill_counts(Psf& psf, const std::vector<FilmHits>& sets) {
@@ -92,14 +92,14 @@ double Psf::throughput(std::size_t wavelength) const noexcept {
   return ray_weight(wavelength) * static_cast<double>(transmitted[wavelength]);
 }
 
-PointImage point_image(const Lens& lens, const ScenePoint& point, const PsfOptions& options) {
+PointImage point_image(const Lens& lens, const FieldPoint& point, const PsfOptions& options) {
   validate(options);
   PointImage image;
   Psf& psf = image.psf;
   psf.wavelengths_nm.assign(lens.wavelengths_nm().begin(), lens.wavelengths_nm().end());
   psf.entrance_pupil_area = std::numbers::pi / 4 *
-                            pupils(lens, lens.central_wavelength(), Meridian::x).entrance.diameter *
-                            pupils(lens, lens.central_wavelength(), Meridian::y).entrance.diameter;
+                            pupils(lens, lens.primary_wavelength(), Meridian::x).entrance.diameter *
+                            pupils(lens, lens.primary_wavelength(), Meridian::y).entrance.diameter;
   std::vector<FilmHits> sets;
   for (std::size_t w = 0; w < psf.wavelengths_nm.size(); ++w) {
     const PupilSampler pupil(pupil_outline(lens, point, w));
@@ -119,4 +119,4 @@ PointImage point_image(const Lens& lens, const ScenePoint& point, const PsfOptio
   return image;
 }
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

@@ -3,7 +3,7 @@
 
 #include "petzval/trace/batch.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 namespace {
 
 /// The bits of x in the opposite order. Nibbles are turned between pairs of bytes and pairs of those: side by side the
@@ -111,4 +111,4 @@ void owen_sobol(std::uint32_t first, std::uint32_t seed, std::span<double> u, st
   fill(first, seed, u, v);
 }
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

@@ -10,7 +10,7 @@
 #include "petzval/pupil/aim.hpp"
 #include "petzval/pupil/illumination.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 namespace {
 
 struct Points {
@@ -31,20 +31,20 @@ SpotSize size_of(const Sets& sets) noexcept {
   // From one of the points: rounding then grows with the spot and not with how far off the axis it lies.
   const auto n = static_cast<double>(count);
   const auto [x0, y0] = size.centroid;
-  detail::Lanes dx{}, dy{};
-  detail::for_each(
+  psf_detail::Lanes dx{}, dy{};
+  psf_detail::for_each(
       sets, [&, x0 = x0, y0 = y0](std::size_t lane, double x, double y) { dx[lane] += x - x0, dy[lane] += y - y0; });
-  const double cx = x0 + detail::sum(dx) / n, cy = y0 + detail::sum(dy) / n;
+  const double cx = x0 + psf_detail::sum(dx) / n, cy = y0 + psf_detail::sum(dy) / n;
 
-  detail::Lanes squares{}, farthest{};
-  detail::for_each(sets, [&](std::size_t lane, double x, double y) {
+  psf_detail::Lanes squares{}, farthest{};
+  psf_detail::for_each(sets, [&](std::size_t lane, double x, double y) {
     const double squared = (x - cx) * (x - cx) + (y - cy) * (y - cy);
     squares[lane] += squared;
     farthest[lane] = std::max(farthest[lane], squared);
   });
   size.centroid = {cx, cy};
-  size.rms_radius = std::sqrt(detail::sum(squares) / n);
-  size.max_radius = std::sqrt(detail::largest(farthest));
+  size.rms_radius = std::sqrt(psf_detail::sum(squares) / n);
+  size.max_radius = std::sqrt(psf_detail::largest(farthest));
   return size;
 }
 
@@ -58,10 +58,10 @@ SpotSize spot_size(std::span<const FilmHits> sets) noexcept { return size_of(set
 
 std::vector<Spot> spot_diagram(const Lens& lens, double subject_z, std::span<const double> fields_rad,
                                std::uint32_t samples) {
-  const detail::Film film(lens);
+  const psf_detail::Film film(lens);
   std::vector<Spot> spots;
   for (const double field : fields_rad) {
-    const ScenePoint point{field, subject_z};
+    const FieldPoint point{field, subject_z};
     for (std::size_t w = 0; w < lens.wavelengths_nm().size(); ++w) {
       Spot spot;
       spot.point = point;
@@ -78,4 +78,4 @@ std::vector<Spot> spot_diagram(const Lens& lens, double subject_z, std::span<con
   return spots;
 }
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

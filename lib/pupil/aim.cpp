@@ -19,7 +19,7 @@
 #include "petzval/trace/sequential.hpp"
 #include "petzval/trace/trace.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 namespace {
 
 using Jet = ceres::Jet<double, 2>;
@@ -72,7 +72,7 @@ class Aimer {
     lateral_ = {outwards_.y, -outwards_.x, 0};
     meridian_ = glm::cross(lateral_, towards);
     // A stop closed to a pinhole is still hit as well as numbers allow.
-    acceptance_ = 1e-6 * std::max(unit(), 1e-3 * detail::half_height(lens, 0, p.entrance));
+    acceptance_ = 1e-6 * std::max(unit(), 1e-3 * pupil_detail::half_height(lens, 0, p.entrance));
     if (const auto axis = differentiated({}, {})) mirrored_ = mirrored(*axis);
   }
 
@@ -191,7 +191,7 @@ class Aimer {
     for (int i = 1; i <= steps; ++i) {
       const double high = sign * i / steps, at_high = flatness(high);
       if (at_high < 0) {
-        const double slope = detail::last_above(low, at_low, high, at_high, tolerance, flatness);
+        const double slope = core_detail::last_above(low, at_low, high, at_high, tolerance, flatness);
         return Slope{outwards_.x * slope, outwards_.y * slope};
       }
       low = high, at_low = at_high;
@@ -232,12 +232,12 @@ class Aimer {
   const Lens& lens_;
   const PupilPlane& plane_;
   std::size_t wavelength_, stop_ = 0;
-  double from_stop_, at_point_;       // sense along z of rays on their way to the point
-  kernel::Path departure_, arrival_;  // from the stop to the point; from the point to the stop
-  Slope outwards_;                    // unit vector across the axis, towards the point
-  Vec3<double> lateral_, meridian_;   // unit vectors across the line to the point: across the meridian, and within it
-  double acceptance_;                 // how far from its place on the stop a ray may arrive, mm
-  bool mirrored_ = false;             // as near the axis
+  double from_stop_, at_point_;               // sense along z of rays on their way to the point
+  kernel::SurfaceRange departure_, arrival_;  // from the stop to the point; from the point to the stop
+  Slope outwards_;                            // unit vector across the axis, towards the point
+  Vec3<double> lateral_, meridian_;  // unit vectors across the line to the point: across the meridian, and within it
+  double acceptance_;                // how far from its place on the stop a ray may arrive, mm
+  bool mirrored_ = false;            // as near the axis
 };
 
 }  // namespace
@@ -251,17 +251,17 @@ std::string_view name(AimStatus status) noexcept {
   return "unknown";
 }
 
-AimedRay detail::aim(const Lens& lens, const PupilPlane& plane, const StopPoint& target, std::size_t wavelength) {
+AimedRay pupil_detail::aim(const Lens& lens, const PupilPlane& plane, const StopPoint& target, std::size_t wavelength) {
   lens.index(0, wavelength);  // throws where there is no such wavelength
   return Aimer(lens, plane, wavelength)(target);
 }
 
-AimedRay aim(const Lens& lens, const ScenePoint& point, const StopPoint& target, std::size_t wavelength) {
-  return detail::aim(lens, PupilPlane(lens, point), target, wavelength);
+AimedRay aim(const Lens& lens, const FieldPoint& point, const StopPoint& target, std::size_t wavelength) {
+  return pupil_detail::aim(lens, PupilPlane(lens, point), target, wavelength);
 }
 
-AimedRay chief_ray(const Lens& lens, const ScenePoint& point, std::size_t wavelength) {
+AimedRay chief_ray(const Lens& lens, const FieldPoint& point, std::size_t wavelength) {
   return aim(lens, point, {}, wavelength);
 }
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

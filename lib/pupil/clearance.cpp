@@ -7,7 +7,7 @@
 
 #include "petzval/trace/trace.hpp"
 
-namespace petzval::detail {
+namespace petzval::inline v0::pupil_detail {
 
 Clearance clearance(const Lens& lens, const PupilPlane& plane, double x, double y, std::size_t wavelength) noexcept {
   const auto view = lens.view<double>();
@@ -40,4 +40,4 @@ Clearance clearance(const Lens& lens, const PupilPlane& plane, double x, double 
   return result;
 }
 
-}  // namespace petzval::detail
+}  // namespace petzval::inline v0::pupil_detail

@@ -7,7 +7,7 @@
 #include "petzval/lens/lens.hpp"
 #include "petzval/pupil/pupil_plane.hpp"
 
-namespace petzval::detail {
+namespace petzval::inline v0::pupil_detail {
 
 /// How near a ray comes to being lost.
 struct Clearance {
@@ -23,4 +23,4 @@ struct Clearance {
 /// Of the ray through (x, y) of the plane. It passes exactly when `trace` transmits it.
 Clearance clearance(const Lens& lens, const PupilPlane& plane, double x, double y, std::size_t wavelength) noexcept;
 
-}  // namespace petzval::detail
+}  // namespace petzval::inline v0::pupil_detail

@@ -10,7 +10,7 @@
 #include "petzval/pupil/pupil.hpp"
 #include "petzval/trace/sequential.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -40,7 +40,7 @@ class StopHeight {
   const Lens& lens_;
   std::size_t stop_;
   bool along_y_;
-  kernel::Path path_;
+  kernel::SurfaceRange path_;
 };
 
 /// Largest entering height of the beam within the rim of the stop: where the ray meets the rim, or, where rays end
@@ -61,7 +61,7 @@ double entering_height(const StopHeight& stop_height, double rim, double expecte
     high += step;
     if (!(high < 1e100)) return infinity;
   }
-  return detail::last_with(low, high, inside);
+  return core_detail::last_with(low, high, inside);
 }
 
 /// The same for the stop of a lens as it is.
@@ -119,4 +119,4 @@ Lens with_f_number(const Lens& lens, double f_number, std::size_t wavelength) {
   return with_semi_diameter(lens, p.stop, std::min(*height, lens.surfaces()[p.stop].semi_diameter));
 }
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

@@ -6,7 +6,7 @@
 
 #include "petzval/lens/sag.hpp"
 
-namespace petzval::detail {
+namespace petzval::inline v0::pupil_detail {
 
 double half_height(const Lens& lens, std::size_t surface, const Pupil& entrance) noexcept {
   const double own = lens.surfaces()[surface].semi_diameter;
@@ -37,4 +37,4 @@ Face face_of(const Lens& lens, std::size_t surface, const Pupil& entrance) noexc
   return face;
 }
 
-}  // namespace petzval::detail
+}  // namespace petzval::inline v0::pupil_detail

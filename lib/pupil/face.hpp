@@ -6,7 +6,7 @@
 #include "petzval/lens/lens.hpp"
 #include "petzval/pupil/pupil.hpp"
 
-namespace petzval::detail {
+namespace petzval::inline v0::pupil_detail {
 
 /// Half height of what an outer surface lets in: its own, or where it is unlimited four times the widest rim or pupil.
 double half_height(const Lens& lens, std::size_t surface, const Pupil& entrance) noexcept;
@@ -18,4 +18,4 @@ struct Face {
 
 Face face_of(const Lens& lens, std::size_t surface, const Pupil& entrance) noexcept;
 
-}  // namespace petzval::detail
+}  // namespace petzval::inline v0::pupil_detail

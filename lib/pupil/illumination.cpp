@@ -8,7 +8,7 @@
 #include "petzval/pupil/aim.hpp"
 #include "petzval/pupil/outline.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 
 double film_irradiance(const Lens& lens, const FilmPoint& point, std::size_t wavelength) {
   const PupilPlane plane = PupilPlane::of_film(lens, point);
@@ -18,7 +18,7 @@ double film_irradiance(const Lens& lens, const FilmPoint& point, std::size_t wav
   // Part dA of the plane, gap away from the film, is seen in the projected solid angle cos^4 dA / gap^2. The
   // nodes lie in the squared radius, of which equal steps are equal areas.
   const double gap = plane.towards().z / plane.reciprocal_distance();
-  const auto nodes = detail::gauss_legendre<3>();
+  const auto nodes = core_detail::gauss_legendre<3>();
   double sum = 0;
   for (const PupilSpan& span : outline.spans) {
     const double from = span.from_radius * span.from_radius, to = span.to_radius * span.to_radius;
@@ -34,7 +34,7 @@ double film_irradiance(const Lens& lens, const FilmPoint& point, std::size_t wav
          outline.half_axes[1] / (gap * gap);
 }
 
-std::optional<double> relative_illumination(const Lens& lens, const ScenePoint& point, std::size_t wavelength) {
+std::optional<double> relative_illumination(const Lens& lens, const FieldPoint& point, std::size_t wavelength) {
   const double axis = film_irradiance(lens, {}, wavelength);
   const AimedRay chief = chief_ray(lens, point, wavelength);
   if (axis == 0 || !chief || !chief.end.transmitted()) return {};
@@ -44,4 +44,4 @@ std::optional<double> relative_illumination(const Lens& lens, const ScenePoint& 
   return film_irradiance(lens, image, wavelength) / axis;
 }
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

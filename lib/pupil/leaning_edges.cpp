@@ -6,9 +6,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "film_stars.hpp"
+#include "film_polygons.hpp"
 
-namespace petzval::detail {
+namespace petzval::inline v0::pupil_detail {
 namespace {
 
 /// A film point on +y by its key, and slope . key there.
@@ -22,7 +22,7 @@ struct Expected {
   bool ring = false;
 };
 
-Expected expected_of(const PupilMap& upright, std::size_t wavelength) {
+Expected expected_of(const FilmPupilTable& upright, std::size_t wavelength) {
   Expected result;
   constexpr int heights = 64;
   for (int i = 0; i <= heights; ++i) {
@@ -39,7 +39,7 @@ Expected expected_of(const PupilMap& upright, std::size_t wavelength) {
 
 }  // namespace
 
-EdgesAt leaning_edges(const PupilMap& upright, const FilmLean& lean, std::size_t wavelength) {
+EdgesAt leaning_edges(const FilmPupilTable& upright, const FilmTilt& lean, std::size_t wavelength) {
   const Expected expected = expected_of(upright, wavelength);
   return [upright, lean, wavelength, expected](std::span<const double> heights) {
     const double steepest = std::hypot(lean.slope_x, lean.slope_y);
@@ -77,4 +77,4 @@ EdgesAt leaning_edges(const PupilMap& upright, const FilmLean& lean, std::size_t
   };
 }
 
-}  // namespace petzval::detail
+}  // namespace petzval::inline v0::pupil_detail

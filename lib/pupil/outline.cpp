@@ -16,7 +16,7 @@
 #include "petzval/core/error.hpp"
 #include "petzval/pupil/pupil.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 namespace {
 
 using Point = std::array<double, 2>;
@@ -35,7 +35,7 @@ struct Box {
 /// An edge on the way: the last radius that passes, how near it is to being lost, and what ends the next ray.
 struct Edge {
   double radius;
-  detail::Clearance inside, outside;
+  pupil_detail::Clearance inside, outside;
 };
 
 /// Looks along the directions of an outline. Radii are in units of its half axes.
@@ -80,12 +80,12 @@ class Tracer {
   }
 
  private:
-  detail::Clearance clearance(const Point& p) const noexcept {
-    return detail::clearance(lens_, outline_.plane, p[0], p[1], outline_.wavelength);
+  pupil_detail::Clearance clearance(const Point& p) const noexcept {
+    return pupil_detail::clearance(lens_, outline_.plane, p[0], p[1], outline_.wavelength);
   }
 
   /// About `near`, farther out than a ray that passes.
-  Edge outer_edge(std::size_t direction, double near, double passing, const detail::Clearance& passes) const {
+  Edge outer_edge(std::size_t direction, double near, double passing, const pupil_detail::Clearance& passes) const {
     double low = 0.95 * near, high = 1.05 * near;
     auto inside = clearance(outline_.at(direction, low)), outside = clearance(outline_.at(direction, high));
     while (inside.passes() && outside.passes()) {
@@ -99,16 +99,16 @@ class Tracer {
   /// From a ray inside and the radius of one outside.
   Edge close_in(std::size_t direction, Edge edge, double outside) const {
     constexpr double tolerance = 4e-14;
-    edge.radius =
-        detail::last_above(edge.radius, edge.inside.value, outside, edge.outside.value, tolerance, [&](double radius) {
-          const auto now = clearance(outline_.at(direction, radius));
-          (now.passes() ? edge.inside : edge.outside) = now;
-          return now.value;
-        });
+    edge.radius = core_detail::last_above(edge.radius, edge.inside.value, outside, edge.outside.value, tolerance,
+                                          [&](double radius) {
+                                            const auto now = clearance(outline_.at(direction, radius));
+                                            (now.passes() ? edge.inside : edge.outside) = now;
+                                            return now.value;
+                                          });
     return edge;
   }
 
-  PupilEdge public_edge(std::size_t direction, const Edge& edge) const noexcept {
+  RimPoint public_edge(std::size_t direction, const Edge& edge) const noexcept {
     const auto [x, y] = outline_.at(direction, edge.radius);
     return {x, y, edge.outside.surface, edge.outside.fate};
   }
@@ -123,13 +123,14 @@ class Tracer {
 
   const Lens& lens_;
   PupilOutline& outline_;
-  detail::Clearance middle_;
+  pupil_detail::Clearance middle_;
 };
 
 /// What of the plane the rays cross that meet the surface through which they enter: the shadow of a box around it.
 Box shadow(const Lens& lens, const PupilPlane& plane) {
   const std::size_t entered = plane.travel() == Travel::to_film ? 0 : lens.surface_count() - 1;
-  const detail::Face face = detail::face_of(lens, entered, pupils(lens, lens.central_wavelength()).entrance);
+  const pupil_detail::Face face =
+      pupil_detail::face_of(lens, entered, pupils(lens, lens.primary_wavelength()).entrance);
   Box box;
   for (const double z : {face.z_min, face.z_max}) {
     for (const double y : {-face.half, face.half}) {
@@ -153,7 +154,7 @@ std::optional<Point> summit_near(const Lens& lens, const PupilPlane& plane, std:
     for (int j = -steps; j <= steps; ++j) {
       for (int i = -steps; i <= steps; ++i) {
         const Point p{middle[0] + half[0] * i / steps, middle[1] + half[1] * j / steps};
-        const auto here = detail::clearance(lens, plane, p[0], p[1], wavelength);
+        const auto here = pupil_detail::clearance(lens, plane, p[0], p[1], wavelength);
         if (here.passes()) return p;
         if (here.value > highest) highest = here.value, summit = p;
       }
@@ -167,7 +168,7 @@ std::optional<Point> summit_near(const Lens& lens, const PupilPlane& plane, std:
 
 /// A ray that passes, or none: the chief ray, or one that is found about it or anywhere.
 std::optional<Point> passing_point(const Lens& lens, const PupilPlane& plane, std::size_t wavelength, const Box& box) {
-  const AimedRay chief = detail::aim(lens, plane, {}, wavelength);
+  const AimedRay chief = pupil_detail::aim(lens, plane, {}, wavelength);
   if (chief.status == AimStatus::converged) return plane.meet(chief.ray);
   const Point half = box.half();
   if (chief) {
@@ -290,7 +291,7 @@ double PupilOutline::area() const noexcept {
   return directions == 0 ? 0 : sum * std::numbers::pi / static_cast<double>(directions) * half_axes[0] * half_axes[1];
 }
 
-PupilOutline pupil_outline(const Lens& lens, const ScenePoint& point, std::size_t wavelength, std::size_t directions) {
+PupilOutline pupil_outline(const Lens& lens, const FieldPoint& point, std::size_t wavelength, std::size_t directions) {
   return outline_of(lens, PupilPlane(lens, point), wavelength, directions);
 }
 
@@ -299,4 +300,4 @@ PupilOutline exit_pupil_outline(const Lens& lens, const FilmPoint& point, std::s
   return outline_of(lens, PupilPlane::of_film(lens, point), wavelength, directions);
 }
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

@@ -7,7 +7,7 @@
 
 #include "petzval/core/error.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -66,4 +66,4 @@ Pupils pupils(const Lens& lens, std::size_t wavelength, Meridian meridian) {
   return result;
 }
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

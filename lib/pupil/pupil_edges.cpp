@@ -7,9 +7,9 @@
 #include <numbers>
 #include <vector>
 
-#include "petzval/pupil/pupil_star.hpp"
+#include "petzval/pupil/pupil_polygon.hpp"
 
-namespace petzval::detail {
+namespace petzval::inline v0::pupil_detail {
 namespace {
 
 /// A walk along a line in the plane of one field, from `from` by multiples of `step`.
@@ -342,4 +342,4 @@ std::vector<PupilEdges> find_edges(std::span<const PupilGuess> fields, std::size
   return search.take();
 }
 
-}  // namespace petzval::detail
+}  // namespace petzval::inline v0::pupil_detail

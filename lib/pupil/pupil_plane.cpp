@@ -13,12 +13,12 @@
 #include "petzval/core/units.hpp"
 #include "petzval/pupil/pupil.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-void check(const Lens& lens, const ScenePoint& point, const Pupil& entrance) {
+void check(const Lens& lens, const FieldPoint& point, const Pupil& entrance) {
   const auto refuse = [&](const std::string& found_and_wanted) {
     throw Error(lens.name() + ": scene point: " + found_and_wanted);
   };
@@ -39,14 +39,14 @@ void check(const Lens& lens, const ScenePoint& point, const Pupil& entrance) {
 
   // A plane in front of the lens is met by fields below 90 degrees; the others meet planes beside and behind it.
   if (std::abs(point.field_rad) < std::numbers::pi / 2) {
-    const double front = detail::face_of(lens, 0, entrance).z_min;
+    const double front = pupil_detail::face_of(lens, 0, entrance).z_min;
     if (!(point.z < front)) {
       refuse("z is " + number(point.z) + " mm, wanted less than where the first surface begins, " + number(front) +
              " mm");
     }
   } else {
     const double side = std::abs(std::tan(point.field_rad) * (entrance.z - point.z));
-    if (!(point.z > entrance.z && side > detail::half_height(lens, 0, entrance))) {
+    if (!(point.z > entrance.z && side > pupil_detail::half_height(lens, 0, entrance))) {
       refuse("z is " + number(point.z) + " mm at a field of " + number(degrees(point.field_rad), 6) +
              " degrees, wanted -inf, or a plane behind the entrance pupil (" + number(entrance.z) +
              " mm) that this field meets outside the lens");
@@ -64,8 +64,8 @@ Vec3<double> direction_from(const Vec3<double>& place, const Vec3<double>& towar
 
 }  // namespace
 
-PupilPlane::PupilPlane(const Lens& lens, const ScenePoint& point) {
-  const Pupil entrance = pupils(lens, lens.central_wavelength()).entrance;
+PupilPlane::PupilPlane(const Lens& lens, const FieldPoint& point) {
+  const Pupil entrance = pupils(lens, lens.primary_wavelength()).entrance;
   check(lens, point, entrance);
   const double sine = std::sin(point.field_rad), cosine = std::cos(point.field_rad);
   const Vec3<double> across{std::sin(point.azimuth_rad), std::cos(point.azimuth_rad), 0};
@@ -134,4 +134,4 @@ std::array<double, 2> PupilPlane::meet(const Ray<double>& ray) const noexcept {
   return {glm::dot(place, x_axis_), glm::dot(place, y_axis_)};
 }
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

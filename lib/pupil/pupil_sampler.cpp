@@ -7,7 +7,7 @@
 #include <limits>
 #include <numbers>
 
-namespace petzval {
+namespace petzval::inline v0 {
 namespace {
 
 /// What passes along one direction, its gaps filled.
@@ -116,4 +116,4 @@ void PupilSampler::operator()(std::span<const double> u, std::span<const double>
   }
 }
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

@@ -5,16 +5,16 @@
 #include <numbers>
 
 #include "petzval/core/bisect.hpp"
-#include "petzval/pupil/entrance_map.hpp"
+#include "petzval/pupil/entrance_pupil_table.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 namespace {
 
 struct SpreadLines {
   std::vector<double> film_x, film_y, pupil_x, pupil_y;
 };
 
-SpreadLines spread_lines(const PupilMap& pupils, bool azimuths_alike, std::size_t wavelength) {
+SpreadLines spread_lines(const FilmPupilTable& pupils, bool azimuths_alike, std::size_t wavelength) {
   constexpr int radii = 32, around = 16;
   const auto seen = [&](double radius) { return pupils.area({0, radius}, wavelength) > 0; };
   double last = pupils.film_radius();
@@ -22,7 +22,7 @@ SpreadLines spread_lines(const PupilMap& pupils, bool azimuths_alike, std::size_
     const double dark = last;
     last = 0;
     for (int i = 1; i <= radii && seen(dark * i / radii); ++i) last = dark * i / radii;
-    last = detail::last_with(last, std::min(last + dark / radii, dark), seen);
+    last = core_detail::last_with(last, std::min(last + dark / radii, dark), seen);
   }
   SpreadLines lines;
   const auto add = [&](double radius, double turn, double u, double v) {
@@ -53,8 +53,8 @@ SpreadLines spread_lines(const PupilMap& pupils, bool azimuths_alike, std::size_
 
 }  // namespace
 
-std::vector<std::vector<Ray<double>>> leaving_rays(const PupilMap& pupils, bool azimuths_alike,
-                                                   const LinesToScene& to_scene) {
+std::vector<std::vector<Ray<double>>> leaving_rays(const FilmPupilTable& pupils, bool azimuths_alike,
+                                                   const TwoPlaneRaysToScene& to_scene) {
   std::vector<std::vector<Ray<double>>> result(pupils.wavelengths());
   for (std::size_t w = 0; w < result.size(); ++w) {
     const auto [film_x, film_y, pupil_x, pupil_y] = spread_lines(pupils, azimuths_alike, w);
@@ -72,4 +72,4 @@ std::vector<std::vector<Ray<double>>> leaving_rays(const PupilMap& pupils, bool 
   return result;
 }
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

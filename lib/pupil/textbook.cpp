@@ -14,7 +14,7 @@
 #include "petzval/pupil/pupil.hpp"
 #include "petzval/trace/trace.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -107,7 +107,7 @@ TextbookPupil textbook_pupil(const Lens& lens, Travel travel, double point_z, st
   const bool limited = std::isfinite(lens.surfaces()[entrance ? 0 : lens.surface_count() - 1].semi_diameter);
   while (!limited && passes(outermost) && height < 1e100) outermost = fan.towards(height *= 2);
   if (!passes(outermost)) {
-    outermost = detail::last_with(0.0, outermost, passes);
+    outermost = core_detail::last_with(0.0, outermost, passes);
   } else if (!limited) {
     throw Error(where + "no surface ends a ray from z = " + number(point_z) + " mm, wanted a rim");
   }
@@ -133,4 +133,4 @@ TextbookPupil textbook_exit_pupil(const Lens& lens, double film_z, std::size_t w
   return textbook_pupil(lens, Travel::to_scene, film_z, wavelength);
 }
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

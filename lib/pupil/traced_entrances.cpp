@@ -3,10 +3,10 @@
 #include <glm/geometric.hpp>
 #include <vector>
 
-#include "petzval/pupil/entrance_map.hpp"
-#include "petzval/pupil/film_lines.hpp"
+#include "petzval/pupil/entrance_pupil_table.hpp"
+#include "petzval/pupil/two_plane_rays.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 ScenePassing traced_passing(const Lens& lens) {
   return [&lens](std::size_t count, const RayArrays<const double>& rays, std::size_t wavelength, std::uint8_t* passes) {
     std::array<std::vector<double>, 6> ray;
@@ -19,10 +19,10 @@ ScenePassing traced_passing(const Lens& lens) {
   };
 }
 
-EntranceMap traced_entrances(const Lens& lens, const PupilMap& pupils) {
-  const FilmSpace& space = pupils.space();
+EntrancePupilTable traced_entrances(const Lens& lens, const FilmPupilTable& pupils) {
+  const TwoPlanes& space = pupils.space();
   const double towards = towards_scene(lens, space);
-  const auto to_scene = [&](std::size_t count, const FilmLines<const double>& lines, std::size_t wavelength,
+  const auto to_scene = [&](std::size_t count, const TwoPlaneRays<const double>& lines, std::size_t wavelength,
                             const RayArrays<double>& rays, RayFate* fates) {
     const auto [x, y, z, dx, dy, dz] = rays;
     for (std::size_t i = 0; i < count; ++i) {
@@ -34,7 +34,7 @@ EntranceMap traced_entrances(const Lens& lens, const PupilMap& pupils) {
     trace<double>(lens, count, {x, y, z, dx, dy, dz}, rays, fates, nullptr,
                   {.travel = Travel::to_scene, .wavelength = wavelength});
   };
-  return EntranceMap(lens, leaving_rays(pupils, lens.rotationally_symmetric(), to_scene), traced_passing(lens));
+  return EntrancePupilTable(lens, leaving_rays(pupils, lens.rotationally_symmetric(), to_scene), traced_passing(lens));
 }
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

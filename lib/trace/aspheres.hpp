@@ -4,7 +4,7 @@
 
 #include "steps.hpp"
 
-namespace petzval::detail {
+namespace petzval::inline v0::trace_detail {
 namespace {
 
 /// A number and its derivative, for the slope of the slope of a sag.
@@ -190,4 +190,4 @@ void asphere(const kernel::Step<R>& s, const Lanes<R>& rim2, const BlockJob<R>& 
 }
 
 }  // namespace
-}  // namespace petzval::detail
+}  // namespace petzval::inline v0::trace_detail

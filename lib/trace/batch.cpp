@@ -9,29 +9,29 @@
 #include "job.hpp"
 #include "petzval/trace/differentials.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 namespace {
 
-using detail::block_rays;
-using detail::BlockJob;
+using trace_detail::block_rays;
+using trace_detail::BlockJob;
 
 constexpr std::size_t block = block_rays;
 
-const detail::BlockTracer& tracer([[maybe_unused]] InstructionSet set,
-                                  [[maybe_unused]] Arithmetic arithmetic) noexcept {
+const trace_detail::BlockTracer& tracer([[maybe_unused]] InstructionSet set,
+                                        [[maybe_unused]] Arithmetic arithmetic) noexcept {
 #if defined(__x86_64__)
   const bool fast = arithmetic == Arithmetic::fast;
   switch (std::min(set, instruction_sets().back())) {
-    case InstructionSet::avx512: return fast ? detail::avx512_fast : detail::avx512_reproducible;
-    case InstructionSet::avx2: return fast ? detail::avx2_fast : detail::avx2_reproducible;
+    case InstructionSet::avx512: return fast ? trace_detail::avx512_fast : trace_detail::avx512_reproducible;
+    case InstructionSet::avx2: return fast ? trace_detail::avx2_fast : trace_detail::avx2_reproducible;
     case InstructionSet::baseline: break;
   }
 #endif
-  return detail::baseline;
+  return trace_detail::baseline;
 }
 
 template <class R>
-detail::TraceBlocks<R> loops(const detail::BlockTracer& tracer) noexcept {
+trace_detail::TraceBlocks<R> loops(const trace_detail::BlockTracer& tracer) noexcept {
   if constexpr (sizeof(R) == sizeof(float)) {
     return tracer.single;
   } else {
@@ -43,7 +43,7 @@ detail::TraceBlocks<R> loops(const detail::BlockTracer& tracer) noexcept {
 template <class R>
 BlockJob<R> job_for(const Lens& lens, BatchOptions options) noexcept {
   if (options.wavelengths) options.wavelength = 0;
-  auto job = detail::job_for<R>(lens.view<R>(), options);
+  auto job = trace_detail::job_for<R>(lens.view<R>(), options);
   job.wavelengths = options.wavelengths;
   return job;
 }
@@ -212,4 +212,4 @@ template PETZVAL_API void trace(const Lens&, std::span<const Ray<float>>, Traced
 template PETZVAL_API void trace(const Lens&, std::span<const Ray<double>>, TracedRay<double>*,
                                 const BatchOptions&) noexcept;
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

@@ -9,7 +9,7 @@
 
 #include "march.hpp"
 
-namespace petzval::detail {
+namespace petzval::inline v0::trace_detail {
 namespace {
 
 /// Arrays from a position on.
@@ -77,7 +77,7 @@ void trace_blocks(const BlockJob<R>& job) noexcept {
   const auto& course = job.course;
   R index[rays], per_index[rays];
   if (!job.wavelengths) {
-    const kernel::Bend<R>* bends = course.bends + job.wavelength * job.steps;
+    const kernel::RefractionConstants<R>* bends = course.bends + job.wavelength * job.steps;
     for (std::size_t l = 0; l < rays; ++l) {
       index[l] = course.n_first[job.wavelength];
       per_index[l] = course.per_n_last[job.wavelength];
@@ -106,4 +106,4 @@ void trace_blocks(const BlockJob<R>& job) noexcept {
 
 const BlockTracer PETZVAL_TRACER{trace_blocks<float>, trace_blocks<double>};
 
-}  // namespace petzval::detail
+}  // namespace petzval::inline v0::trace_detail

@@ -7,7 +7,7 @@
 #include "petzval/trace/differentials.hpp"
 #include "petzval/trace/iris.hpp"
 
-namespace petzval::detail {
+namespace petzval::inline v0::trace_detail {
 
 /// Rays in a block: so many that the latency of a root is hidden behind the others.
 inline constexpr int block_rays = 64;
@@ -27,7 +27,7 @@ using AsphereSearch = Found (*)(const kernel::Asphere<R>& asphere, R sense, Befo
 /// What the loops over blocks are to do: plain data. Every array holds `blocks` times block_rays values.
 template <class R>
 struct BlockJob {
-  kernel::Course<R> course;
+  kernel::SurfaceSequence<R> course;
   std::size_t steps = 0;
   const kernel::Asphere<R>* aspheres = nullptr;
   AsphereSearch<R> search = nullptr;
@@ -58,4 +58,4 @@ extern const BlockTracer baseline;
 extern const BlockTracer avx2_fast, avx2_reproducible, avx512_fast, avx512_reproducible;
 #endif
 
-}  // namespace petzval::detail
+}  // namespace petzval::inline v0::trace_detail

@@ -18,7 +18,7 @@
 #define PETZVAL_UNROLL
 #endif
 
-namespace petzval::detail {
+namespace petzval::inline v0::trace_detail {
 namespace {
 
 /// Rays in front of the step to come: points from its vertex, directions p of length n (the index), in the turned frame
@@ -56,4 +56,4 @@ struct Tangent {
 };
 
 }  // namespace
-}  // namespace petzval::detail
+}  // namespace petzval::inline v0::trace_detail

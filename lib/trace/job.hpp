@@ -5,7 +5,7 @@
 
 #include "block.hpp"
 
-namespace petzval::detail {
+namespace petzval::inline v0::trace_detail {
 
 /// The search over an asphere by the kernel of one ray.
 template <class R>
@@ -23,7 +23,7 @@ Found search_asphere(const kernel::Asphere<R>& asphere, R sense, BeforeAsphere<R
 template <class R, class Options>
 BlockJob<R> job_for(const kernel::LensView<R>& view, const Options& options) noexcept {
   BlockJob<R> job;
-  job.course = options.travel == Travel::to_film ? view.course_to_film : view.course_to_scene;
+  job.course = options.travel == Travel::to_film ? view.sequence_to_film : view.sequence_to_scene;
   job.steps = view.count;
   job.aspheres = view.aspheres;
   job.search = search_asphere<R>;
@@ -39,4 +39,4 @@ BlockJob<R> job_for(const kernel::LensView<R>& view, const Options& options) noe
   return job;
 }
 
-}  // namespace petzval::detail
+}  // namespace petzval::inline v0::trace_detail

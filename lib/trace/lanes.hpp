@@ -13,7 +13,7 @@
 #include <immintrin.h>
 #endif
 
-namespace petzval::detail {
+namespace petzval::inline v0::trace_detail {
 namespace {
 
 #if defined(__AVX512F__)
@@ -277,4 +277,4 @@ PETZVAL_INLINE void store(R* to, Lanes<R> x) noexcept {
 }
 
 }  // namespace
-}  // namespace petzval::detail
+}  // namespace petzval::inline v0::trace_detail

@@ -10,7 +10,7 @@
 #include "steps.hpp"
 #include "tangents.hpp"
 
-namespace petzval::detail {
+namespace petzval::inline v0::trace_detail {
 namespace {
 
 /// Loads rays and turns them into the frame of the first step. Rays that are not finite or not of unit length are not
@@ -145,4 +145,4 @@ void pass(const BlockJob<R>& job, std::size_t j, const Media& media, std::uint8_
 }
 
 }  // namespace
-}  // namespace petzval::detail
+}  // namespace petzval::inline v0::trace_detail

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <cstring>
 
-namespace petzval::detail {
+namespace petzval::inline v0::trace_detail {
 namespace {
 
 template <class R>
@@ -103,4 +103,4 @@ void store(R* to, Lanes<R> x) noexcept {
 }
 
 }  // namespace
-}  // namespace petzval::detail
+}  // namespace petzval::inline v0::trace_detail

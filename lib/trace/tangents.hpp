@@ -4,7 +4,7 @@
 
 #include "steps.hpp"
 
-namespace petzval::detail {
+namespace petzval::inline v0::trace_detail {
 namespace {
 
 /// Carries derivatives beside the rays, by the chain rule: a dot is d/du or d/dv.
@@ -72,4 +72,4 @@ struct TwoTangents {
 };
 
 }  // namespace
-}  // namespace petzval::detail
+}  // namespace petzval::inline v0::trace_detail

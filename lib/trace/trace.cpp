@@ -12,8 +12,8 @@
 #include "job.hpp"
 #include "march.hpp"
 
-namespace petzval {
-namespace detail {
+namespace petzval::inline v0 {
+namespace trace_detail {
 namespace {
 
 /// Where and whither, in the lens frame.
@@ -45,7 +45,7 @@ TracedRay<R> ended(const BlockJob<R>& job, const R* vertex_z, std::size_t j, boo
   const kernel::Step<R>& s = job.course.steps[j];
   const auto tally = after.tally[0] - static_cast<std::int32_t>(4 * j);
   TracedRay<R> end{ray, static_cast<RayFate>(lost_by(tally, unsettled)), s.surface};
-  const kernel::Bend<R>& bend = job.course.bends[job.wavelength * job.steps + j];
+  const kernel::RefractionConstants<R>& bend = job.course.bends[job.wavelength * job.steps + j];
   const R per_n = std::sqrt(bend.per_n2);
   if (j > 0) {
     const auto last = job.course.steps[j - 1].surface;
@@ -76,7 +76,7 @@ TracedRay<R> trace_one(const Lens& lens, const Ray<R>& ray, const TraceOptions& 
     put_on_axis(job, own);
     return end;
   }
-  const kernel::Bend<R>* bends = course.bends + job.wavelength * job.steps;
+  const kernel::RefractionConstants<R>* bends = course.bends + job.wavelength * job.steps;
   std::uint8_t unsettled = 0;
   NoTangents none;
   for (std::size_t j = 0; j < job.steps; ++j) {
@@ -97,17 +97,17 @@ TracedRay<R> trace_one(const Lens& lens, const Ray<R>& ray, const TraceOptions& 
 }
 
 }  // namespace
-}  // namespace detail
+}  // namespace trace_detail
 
 template <class T>
 TracedRay<T> trace(const Lens& lens, const Ray<T>& ray, const TraceOptions& options) noexcept {
-  return detail::trace_one(lens, ray, options, nullptr);
+  return trace_detail::trace_one(lens, ray, options, nullptr);
 }
 
 template <class T>
 TracedRay<T> trace(const Lens& lens, const Ray<T>& ray, const TraceOptions& options,
                    const std::function<void(int, const Vec3<T>&)>& seen) {
-  return detail::trace_one(lens, ray, options, seen);
+  return trace_detail::trace_one(lens, ray, options, seen);
 }
 
 template PETZVAL_API TracedRay<float> trace(const Lens&, const Ray<float>&, const TraceOptions&) noexcept;
@@ -117,4 +117,4 @@ template PETZVAL_API TracedRay<float> trace(const Lens&, const Ray<float>&, cons
 template PETZVAL_API TracedRay<double> trace(const Lens&, const Ray<double>&, const TraceOptions&,
                                              const std::function<void(int, const Vec3<double>&)>&);
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

@@ -36,7 +36,7 @@ namespace {
 
 using petzval::Camera;
 using petzval::Film;
-using petzval::Model;
+using petzval::ModelKind;
 
 constexpr std::size_t sample_count = 16384, batch_size = 4096;
 constexpr double textbook_rays_per_pbrt_ray = 535 / (0.508 * 379);
@@ -68,7 +68,7 @@ struct Samples {
 /// A way to sample rays of a camera, timed as a round.
 struct Row {
   std::string lens, call;
-  Model model;
+  ModelKind model;
   bool in_double;
   Camera camera;
   double textbook_ns = 0, useful = 0, ns = 0;  ///< useful: share of the samples
@@ -185,10 +185,10 @@ void print_setup(const Bench& bench) {
   const auto print = [](const std::string& what, const std::function<void()>& work) {
     std::printf("| %-21s | %7s |\n", what.c_str(), digits(setup_ms(work), 3).c_str());
   };
-  print("PupilMap::covering", [&] { petzval::PupilMap::covering(lens, bench.half_diagonal); });
+  print("FilmPupilTable::enclosing", [&] { petzval::FilmPupilTable::enclosing(lens, bench.half_diagonal); });
   print("Camera, exact_float", [&] { Camera(lens, bench.film); });
   print("the same, tilted", [&] { Camera(lens, bench.tilted); });
-  for (const Model model : petzval::models()) {
+  for (const ModelKind model : petzval::models()) {
     print(std::string(petzval::name(model)), [&] { petzval::make_model(model, lens, bench.half_diagonal); });
   }
 }
@@ -220,9 +220,9 @@ int run(std::vector<char*> arguments) {
   std::deque<Row> rows;
   for (const Bench& bench : benches) {
     benchmark::RegisterBenchmark((bench.lens.id + "/textbook").c_str(), time_textbook, bench.lens);
-    for (const Model model : petzval::models()) {
+    for (const ModelKind model : petzval::models()) {
       const Camera camera(bench.lens.lens, bench.film, {.model = model});
-      const bool in_double = model == Model::exact_double;
+      const bool in_double = model == ModelKind::exact_double;
       rows.push_back({bench.lens.id, "batch", model, in_double, camera});
       benchmark::RegisterBenchmark(rows.back().name().c_str(), in_double ? time_batches<double> : time_batches<float>,
                                    rows.back());

@@ -85,7 +85,7 @@ int main(int argc, char** argv) {
   const Lens gauss =
       compile(read_prescription(std::string(PETZVAL_BENCH_DATA) + "/lenses/double_gauss_52mm_f1.8.json"));
   const IdealLens thin = thin_lens(50, 2), thick = thick_lens(gauss);
-  const PointBundles bundles(gauss, film_radius);
+  const ImageRays bundles(gauss, film_radius);
   const double limit = radians(20);
   const auto add = [](const char* name, auto&&... work) { benchmark::RegisterBenchmark(name, work...); };
   add("thin", fit<IdealLens>, thin, thin, false, limit);
@@ -93,11 +93,11 @@ int main(int argc, char** argv) {
   add("thick", fit<IdealLens>, thick, thick, false, limit);
   add("thick, robust", fit<IdealLens>, thick, thick, true, limit);
   add("thick, robust, at the limit", fit<IdealLens>, thick, thick, true, radians(0.5));
-  add("exact rays", fit<PointBundles>, bundles, thick, false, limit);
-  add("exact rays, robust", fit<PointBundles>, bundles, thick, true, limit);
-  add("exact rays, at the limit", fit<PointBundles>, bundles, thick, false, radians(0.5));
+  add("exact rays", fit<ImageRays>, bundles, thick, false, limit);
+  add("exact rays, robust", fit<ImageRays>, bundles, thick, true, limit);
+  add("exact rays, at the limit", fit<ImageRays>, bundles, thick, false, radians(0.5));
   add("loop, thick, robust", loop<IdealLens>, thick, thick);
-  add("loop, exact rays, robust", loop<PointBundles>, bundles, thick);
+  add("loop, exact rays, robust", loop<ImageRays>, bundles, thick);
   Rounds rounds;
   benchmark::RunSpecifiedBenchmarks(&rounds);
   std::printf("%-34s %9s\n", "film through 24 points (minima)", "us");

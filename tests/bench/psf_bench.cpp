@@ -35,7 +35,7 @@ struct Block {
 
 struct Light {
   petzval::Lens lens;
-  petzval::ScenePoint point;
+  petzval::FieldPoint point;
   petzval::PupilSampler pupil{petzval::pupil_outline(lens, point)};
 
   Light(const std::string& id, double field_deg)

@@ -19,15 +19,15 @@
 
 namespace {
 
-using petzval::ScenePoint;
+using petzval::FieldPoint;
 
 struct Setup {
   petzval::Lens lens;
-  std::vector<ScenePoint> near_field;  ///< 64 fields within 1 % of the one measured, so that no two runs are the same
-  std::vector<ScenePoint> all_fields;  ///< 64 from the axis to the edge
+  std::vector<FieldPoint> near_field;  ///< 64 fields within 1 % of the one measured, so that no two runs are the same
+  std::vector<FieldPoint> all_fields;  ///< 64 from the axis to the edge
 };
 
-ScenePoint at_infinity(double field_deg) {
+FieldPoint at_infinity(double field_deg) {
   return {.field_rad = petzval::radians(field_deg), .z = -std::numeric_limits<double>::infinity()};
 }
 
@@ -65,7 +65,7 @@ void traced(benchmark::State& state, const Setup& setup) {
 
 void chief(benchmark::State& state, const Setup& setup) {
   for (auto _ : state) {
-    for (const ScenePoint& point : setup.near_field) benchmark::DoNotOptimize(petzval::chief_ray(setup.lens, point));
+    for (const FieldPoint& point : setup.near_field) benchmark::DoNotOptimize(petzval::chief_ray(setup.lens, point));
   }
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(setup.near_field.size()));
 }
@@ -80,7 +80,7 @@ void outline(benchmark::State& state, const Setup& setup, std::size_t directions
 
 void fields(benchmark::State& state, const Setup& setup) {
   for (auto _ : state) {
-    for (const ScenePoint& point : setup.all_fields) {
+    for (const FieldPoint& point : setup.all_fields) {
       benchmark::DoNotOptimize(petzval::pupil_outline(setup.lens, point));
     }
   }

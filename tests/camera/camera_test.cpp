@@ -34,11 +34,11 @@ using testing::Samples;
 Lens focused(const char* id) { return with_focus(testing::data_lens(id), 3000, {.origin = DistanceOrigin::film}); }
 
 /// Of single rays against batches.
-double precision(Model model) { return model == Model::exact_double ? 1e-11 : 2e-5; }
+double precision(ModelKind model) { return model == ModelKind::exact_double ? 1e-11 : 2e-5; }
 
 TEST(Camera, GivesTheSameRaySinglyAndInABatch) {
   const Lens lens = focused("double_gauss_100mm_f2.0");
-  for (const Model model : models()) {
+  for (const ModelKind model : models()) {
     const Camera camera(lens, {}, {.model = model});
     EXPECT_EQ(camera.model(), model);
     auto samples = random_samples(camera.film(), 300);
@@ -73,7 +73,7 @@ void expect_same_whatever_the_neighbours(const Camera& camera) {
     first += count;
   }
   ASSERT_EQ(first, whole.size());
-  const bool in_float = std::is_same_v<T, float> || camera.model() == Model::exact_float;
+  const bool in_float = std::is_same_v<T, float> || camera.model() == ModelKind::exact_float;
   const double eps = in_float ? 1e-6 : 2e-15;
   for (std::size_t i = 0; i < whole.size(); ++i) {
     EXPECT_EQ(whole.fates[i], parts.fates[i]) << name(camera.model());
@@ -85,7 +85,7 @@ void expect_same_whatever_the_neighbours(const Camera& camera) {
 
 TEST(Camera, AsksNothingOfTheNeighboursInABatch) {
   const Lens lens = focused("tessar_100mm_f2.8");
-  for (const Model model : models()) {
+  for (const ModelKind model : models()) {
     const Camera camera(lens, {}, {.model = model});
     expect_same_whatever_the_neighbours<float>(camera);
     expect_same_whatever_the_neighbours<double>(camera);
@@ -97,7 +97,7 @@ TEST(Camera, TakesAWavelengthForEveryRay) {
   const std::array lines_nm{486.1327, 587.5618, 656.2725};
   const Lens lens = compile(testing::data_prescription("double_gauss_100mm_f2.0"), lines_nm,
                             {.glasses = &glasses, .missing_glass = MissingGlass::abbe});
-  for (const Model model : models()) {
+  for (const ModelKind model : models()) {
     const Camera camera(lens, {}, {.model = model});
     auto mixed = random_samples(camera.film(), 300);
     for (std::size_t i = 0; i < mixed.size(); ++i) mixed.wavelengths.push_back(static_cast<std::uint16_t>(i * i % 3));
@@ -117,8 +117,8 @@ TEST(Camera, TakesAWavelengthForEveryRay) {
 
 TEST(Camera, HasItsFilmWhereItIsShiftedTo) {
   const Lens lens = focused("double_gauss_100mm_f2.0");
-  const Camera shifted(lens, {.width_mm = 10, .height_mm = 10, .centre_x_mm = 12}, {.model = Model::exact_double});
-  const Camera wide(lens, {.width_mm = 36, .height_mm = 36}, {.model = Model::exact_double});
+  const Camera shifted(lens, {.width_mm = 10, .height_mm = 10, .centre_x_mm = 12}, {.model = ModelKind::exact_double});
+  const Camera wide(lens, {.width_mm = 36, .height_mm = 36}, {.model = ModelKind::exact_double});
   EXPECT_EQ(shifted.sample({{6.9, 0}, 0.5, 0.5}).fate, RayFate::outside_film);
   const CameraRay a = shifted.sample({{16.9, 4.9}, 0.5, 0.5}), b = wide.sample({{16.9, 4.9}, 0.5, 0.5});
   EXPECT_EQ(a.fate, RayFate::transmitted);
@@ -131,7 +131,7 @@ TEST(Camera, HasItsEdgesOnTheFilm) {
   for (std::uint32_t i = 0; i < 40; ++i) {
     const auto [a, b, c, d] = random(i);
     const Film film{.width_mm = 5 + 20 * a, .height_mm = 5 + 15 * b, .centre_x_mm = 9 * c, .centre_y_mm = -9 * d};
-    const Camera camera(lens, film, {.model = Model::thick});
+    const Camera camera(lens, film, {.model = ModelKind::thick});
     Samples<float> rounded;
     for (const double column : {0.0, 0.5 * film.columns, 1.0 * film.columns}) {
       for (const double row : {0.0, 0.5 * film.rows, 1.0 * film.rows}) {
@@ -150,11 +150,11 @@ TEST(Camera, HasItsEdgesOnTheFilm) {
 class HoleModel {
  public:
   explicit HoleModel(double film_radius)
-      : pupils_(PupilMap::of_discs({.film_z = 50, .pupil_z = 0}, std::array{std::vector<PupilDisc>{{0, 2}}},
-                                   film_radius)) {}
-  const PupilMap& pupils() const noexcept { return pupils_; }
+      : pupils_(FilmPupilTable::of_discs({.film_z = 50, .pupil_z = 0}, std::array{std::vector<PupilDisc>{{0, 2}}},
+                                         film_radius)) {}
+  const FilmPupilTable& pupils() const noexcept { return pupils_; }
   template <class T>
-  void to_scene(std::size_t count, const FilmLines<const T>& lines, const RayWavelengths&, const RayArrays<T>& rays,
+  void to_scene(std::size_t count, const TwoPlaneRays<const T>& lines, const RayWavelengths&, const RayArrays<T>& rays,
                 RayFate* fates) const noexcept {
     for (std::size_t i = 0; i < count; ++i) {
       const bool passes = std::abs(lines.pupil_x[i]) <= 1 && std::abs(lines.pupil_y[i]) <= 1;
@@ -165,8 +165,8 @@ class HoleModel {
       fates[i] = passes ? RayFate::transmitted : RayFate::vignetted;
     }
   }
-  void to_film(std::size_t count, const RayArrays<const double>&, const RayWavelengths&, const FilmLines<double>& lines,
-               RayFate* fates) const noexcept {
+  void to_film(std::size_t count, const RayArrays<const double>&, const RayWavelengths&,
+               const TwoPlaneRays<double>& lines, RayFate* fates) const noexcept {
     for (std::size_t i = 0; i < count; ++i) {
       lines.film_x[i] = lines.film_y[i] = lines.pupil_x[i] = lines.pupil_y[i] = 0;
       fates[i] = RayFate::vignetted;
@@ -174,7 +174,7 @@ class HoleModel {
   }
 
  private:
-  PupilMap pupils_;
+  FilmPupilTable pupils_;
 };
 static_assert(RayModel<HoleModel>);
 static_assert(RayModel<ParaxialModel> && RayModel<PolynomialModel>);
@@ -229,7 +229,7 @@ TEST(Camera, ConservesEtendue) {
         std::pair{"eye_gullstrand_le_grand", Film{.width_mm = 3, .height_mm = 3}},
         std::pair{"modern_50mm_f1.0", Film{.width_mm = 14, .height_mm = 14}}}) {
     const Lens lens = testing::data_lens(id);
-    const Camera camera(lens, film, {.model = Model::exact_double});
+    const Camera camera(lens, film, {.model = ModelKind::exact_double});
     const auto samples = random_samples(camera.film(), 40);
     int checked = 0;
     for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -271,8 +271,8 @@ TEST(Camera, ConservesEtendue) {
 // The symplectic form of two neighbours of a ray, n (dr1 dp2 - dr2 dp1), is the same on both sides of the lens.
 TEST(Camera, HasSymplecticDifferentials) {
   const Lens lens = focused("double_gauss_100mm_f2.0");
-  const Camera camera(lens, {}, {.model = Model::exact_double});
-  const PupilMap& pupils = camera.pupils();
+  const Camera camera(lens, {}, {.model = ModelKind::exact_double});
+  const FilmPupilTable& pupils = camera.pupils();
   const double depth = pupils.space().depth();
   const auto samples = random_samples(camera.film(), 50);
   double largest = 0;
@@ -302,10 +302,10 @@ TEST(Camera, HasSymplecticDifferentials) {
 /// Against differences of samples on a film, by all models.
 void expect_differences(const Film& film) {
   const Lens lens = focused("double_gauss_100mm_f2.0");
-  for (const Model model : models()) {
+  for (const ModelKind model : models()) {
     const Camera camera(lens, film, {.model = model});
     // Differences of float rays are noise; their derivatives are near those of the same lens in double.
-    const Camera reference(lens, film, {.model = model == Model::exact_float ? Model::exact_double : model});
+    const Camera reference(lens, film, {.model = model == ModelKind::exact_float ? ModelKind::exact_double : model});
     const auto samples = random_samples(camera.film(), 40);
     int checked = 0;
     for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -327,7 +327,7 @@ void expect_differences(const Film& film) {
         const Ray<double>& derivative = by_x ? d.by_film_x : d.by_film_y;
         const Vec3<double> direction = (after.ray.direction - before.ray.direction) / (2 * h);
         const Vec3<double> origin = (after.ray.origin - before.ray.origin) / (2 * h);
-        const double bound = model == Model::exact_float ? 1e-4 : 1e-7;
+        const double bound = model == ModelKind::exact_float ? 1e-4 : 1e-7;
         EXPECT_NEAR(glm::length(derivative.direction - direction), 0, bound) << name(model) << ' ' << i;
         EXPECT_NEAR(glm::length(derivative.origin - origin), 0, 100 * bound) << name(model) << ' ' << i;
         ++checked;
@@ -358,7 +358,7 @@ void expect_lost(const Camera& camera, const CameraSample& sample, RayFate fate)
 TEST(Camera, GivesAFateToBadSamples) {
   const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
   const Lens lens = focused("double_gauss_100mm_f2.0");
-  const auto fates = [&](Model model, const Film& film) {
+  const auto fates = [&](ModelKind model, const Film& film) {
     const Camera camera(lens, film, {.model = model});
     for (const FilmPoint& point : {FilmPoint{18.01, 0}, FilmPoint{0, -12.01}, FilmPoint{nan, 0}, FilmPoint{0, nan},
                                    FilmPoint{inf, 0}, FilmPoint{1e300, -1e300}}) {
@@ -376,7 +376,7 @@ TEST(Camera, GivesAFateToBadSamples) {
       EXPECT_NE(corner.fate, RayFate::missed_surface);
     }
   };
-  for (const Model model : models()) {
+  for (const ModelKind model : models()) {
     fates(model, {});
     fates(model, {.tilt_rad = 0.15, .swing_rad = -0.1});
   }
@@ -385,7 +385,7 @@ TEST(Camera, GivesAFateToBadSamples) {
 TEST(Camera, GivesAFateToBadSamplesInBatches) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const Lens lens = focused("double_gauss_100mm_f2.0");
-  const auto fates = [&](Model model, const Film& film) {
+  const auto fates = [&](ModelKind model, const Film& film) {
     const Camera camera(lens, film, {.model = model});
     auto samples = random_samples<float>(camera.film(), 100);
     samples.wavelengths.assign(100, 0);
@@ -404,7 +404,7 @@ TEST(Camera, GivesAFateToBadSamplesInBatches) {
       EXPECT_EQ(samples.weights[i] > 0, samples.fates[i] == RayFate::transmitted) << name(model) << ' ' << i;
     }
   };
-  for (const Model model : models()) {
+  for (const ModelKind model : models()) {
     fates(model, {});
     fates(model, {.tilt_rad = 0.15, .swing_rad = -0.1});
   }
@@ -413,7 +413,8 @@ TEST(Camera, GivesAFateToBadSamplesInBatches) {
 TEST(Camera, IsDarkBehindAShutStop) {
   const Lens lens = focused("double_gauss_100mm_f2.0");
   const Lens shut = with_semi_diameter(lens, pupils(lens).stop, 0);
-  for (const Model model : {Model::pinhole, Model::thin, Model::thick, Model::exact_float, Model::exact_double}) {
+  for (const ModelKind model :
+       {ModelKind::pinhole, ModelKind::thin, ModelKind::thick, ModelKind::exact_float, ModelKind::exact_double}) {
     expect_lost(Camera(shut, {}, {.model = model}), {{3, 4}, 0.3, 0.6}, RayFate::vignetted);
   }
 }
@@ -421,7 +422,7 @@ TEST(Camera, IsDarkBehindAShutStop) {
 TEST(Camera, SeesBehindItselfWithAFisheye) {
   const Lens lens = testing::data_lens("fisheye_6.3mm_f2.8");
   const Film film{.width_mm = 24, .height_mm = 24};
-  const Camera camera(lens, film, {.model = Model::exact_double});
+  const Camera camera(lens, film, {.model = ModelKind::exact_double});
   auto samples = random_samples(film, 20000);
   samples.run(camera);
   int beyond = 0;
@@ -442,7 +443,7 @@ TEST(Camera, RefusesFilmsThatAreNone) {
     EXPECT_THROW(Camera(lens, film), Error);
   }
   EXPECT_THROW(Camera(with_film(lens, lens.surfaces().back().vertex_z), {}), Error);
-  EXPECT_THROW(Camera(testing::data_lens("anamorphic_60mm_2x"), {}, {.model = Model::thick}), Error);
+  EXPECT_THROW(Camera(testing::data_lens("anamorphic_60mm_2x"), {}, {.model = ModelKind::thick}), Error);
 }
 
 TEST(Camera, RefusesModelsOfAnotherLensOrFilm) {
@@ -451,15 +452,16 @@ TEST(Camera, RefusesModelsOfAnotherLensOrFilm) {
   };
   const auto has = [](const std::string& text, const char* part) { return text.find(part) != std::string::npos; };
   const Lens lens = focused("tessar_100mm_f2.8");
-  EXPECT_EQ(refusal(lens, make_model(Model::thick, lens, Film{}.radius_mm())), "no error");
-  EXPECT_TRUE(has(refusal(lens, make_model(Model::thick, lens, 5)), "up to 5 mm"));
-  EXPECT_TRUE(has(refusal(lens, make_model(Model::thick, testing::data_lens("tessar_100mm_f2.8"), 22)), "film at z"));
+  EXPECT_EQ(refusal(lens, make_model(ModelKind::thick, lens, Film{}.radius_mm())), "no error");
+  EXPECT_TRUE(has(refusal(lens, make_model(ModelKind::thick, lens, 5)), "up to 5 mm"));
+  EXPECT_TRUE(
+      has(refusal(lens, make_model(ModelKind::thick, testing::data_lens("tessar_100mm_f2.8"), 22)), "film at z"));
   Prescription singlet;
   singlet.surfaces = {
       {.radius = 50, .thickness = 5, .medium = {.nd = 1.5, .vd = 60}, .semi_diameter = 12, .stop = true},
       {.radius = -50, .thickness = 48, .semi_diameter = 12}};
   const Lens two = compile(singlet, std::array{486.0, 587.5618}, {.missing_glass = MissingGlass::abbe});
-  EXPECT_TRUE(has(refusal(compile(singlet), make_model(Model::thick, two, 22)), "for 2 wavelengths"));
+  EXPECT_TRUE(has(refusal(compile(singlet), make_model(ModelKind::thick, two, 22)), "for 2 wavelengths"));
 }
 
 }  // namespace

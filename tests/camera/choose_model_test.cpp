@@ -28,7 +28,7 @@ Lens focused(const std::string& id, double distance) {
   return with_focus(data_lens(id), distance, {.origin = DistanceOrigin::film});
 }
 
-const ModelCandidate& rung(const ModelChoice& choice, Model model) {
+const ModelCandidate& rung(const ModelChoice& choice, ModelKind model) {
   return *std::ranges::find(choice.table, model, &ModelCandidate::model);
 }
 
@@ -167,8 +167,8 @@ TEST(ChooseModel, MeasuresEveryRungInOrder) {
     EXPECT_GE(c.bound_px, c.error.all.max_px);
     EXPECT_EQ(c.inside, c.bound_px <= 1) << name(c.model);
   }
-  EXPECT_EQ(rung(choice, Model::exact_double).bound_px, 0);
-  EXPECT_EQ(rung(choice, Model::exact_double).bound_pupil_shape, 0);
+  EXPECT_EQ(rung(choice, ModelKind::exact_double).bound_px, 0);
+  EXPECT_EQ(rung(choice, ModelKind::exact_double).bound_pupil_shape, 0);
   EXPECT_TRUE(rung(choice, choice.model).inside);
 }
 
@@ -180,7 +180,7 @@ TEST(ChooseModel, TakesTheFastestInside) {
     }
   }
   EXPECT_TRUE(std::ranges::all_of(usual_choices()[none].table, &ModelCandidate::inside));
-  EXPECT_EQ(usual_choices()[zero_px].model, Model::exact_double);
+  EXPECT_EQ(usual_choices()[zero_px].model, ModelKind::exact_double);
   EXPECT_EQ(std::ranges::count_if(usual_choices()[zero_px].table, &ModelCandidate::inside), 1);
 }
 
@@ -239,17 +239,17 @@ TEST(ChooseModel, LeavesOutWhatCannotBeBuilt) {
   const Lens lens = focused("anamorphic_60mm_2x", 5000);
   const ModelChoice choice =
       choose_model(lens, {.near_mm = 3000, .film = {.width_mm = 20, .height_mm = 13}}, {.max_px = 4});
-  EXPECT_EQ(choice.model, Model::exact_float);
-  EXPECT_FALSE(rung(choice, Model::thick).available);
-  EXPECT_FALSE(rung(choice, Model::thick).inside);
-  EXPECT_FALSE(rung(choice, Model::thick).remark.empty());
+  EXPECT_EQ(choice.model, ModelKind::exact_float);
+  EXPECT_FALSE(rung(choice, ModelKind::thick).available);
+  EXPECT_FALSE(rung(choice, ModelKind::thick).inside);
+  EXPECT_FALSE(rung(choice, ModelKind::thick).remark.empty());
   EXPECT_TRUE(says(choice.reasons, "thick cannot be built: "));
 }
 
 TEST(ChooseModel, StopsTheLensDown) {
-  const double open = rung(usual_choices()[none], Model::polynomial_5).bound_px;
+  const double open = rung(usual_choices()[none], ModelKind::polynomial_5).bound_px;
   const double stopped =
-      rung(choose_model(usual_lens(), {.near_mm = 1500, .f_number = 8}, {}), Model::polynomial_5).bound_px;
+      rung(choose_model(usual_lens(), {.near_mm = 1500, .f_number = 8}, {}), ModelKind::polynomial_5).bound_px;
   EXPECT_LT(stopped, 0.5 * open);
 }
 

@@ -46,7 +46,7 @@ TEST(WhiteFurnace, ExposesAsTheLensDoes) {
         Case{"anamorphic_60mm_2x", 10}}) {
     const Lens lens = testing::data_lens(id);
     const Film film{.width_mm = 2 * half_width, .height_mm = 2 * half_width};
-    for (const Model model : {Model::exact_float, Model::exact_double}) {
+    for (const ModelKind model : {ModelKind::exact_float, ModelKind::exact_double}) {
       const Camera camera(lens, film, {.model = model});
       const double axis = film_irradiance(lens, {});
       for (const FilmPoint& part :
@@ -66,13 +66,13 @@ TEST(WhiteFurnace, ExposesOnEveryRungAsThatRungsPupil) {
   const double tangent = paraxial.exit.diameter / 2 / (paraxial.exit.z - lens.film_z());
   const double disc = std::numbers::pi * tangent * tangent / (1 + tangent * tangent);
   const double real = film_irradiance(lens, {});
-  for (const Model model : models()) {
-    const bool one_disc = model == Model::pinhole || model == Model::thick;
+  for (const ModelKind model : models()) {
+    const bool one_disc = model == ModelKind::pinhole || model == ModelKind::thick;
     const double expected = one_disc ? disc : real;
-    const double tolerance = one_disc                        ? 1e-3
-                             : model == Model::thin          ? 0.05
-                             : model == Model::thin_two_disc ? 0.03
-                                                             : 3e-3;
+    const double tolerance = one_disc                            ? 1e-3
+                             : model == ModelKind::thin          ? 0.05
+                             : model == ModelKind::thin_two_disc ? 0.03
+                                                                 : 3e-3;
     EXPECT_NEAR(mean_weight(Camera(lens, {}, {.model = model}), {}) / expected, 1, tolerance) << name(model);
   }
 }
@@ -84,7 +84,7 @@ TEST(WhiteFurnace, ExposesWithinTheErrorThatIsStatedForARung) {
                           FilmPoint{0, -11.9},  FilmPoint{17.5, 0.3}, FilmPoint{-17.9, 11.8}};
   const ErrorSamples samples{.depths_z = {-3000}, .film_points = 256};
   double least = 1, most = 0;
-  for (const Model model : models()) {
+  for (const ModelKind model : models()) {
     const double stated = model_error(lens, {}, model, samples).exposure;
     const Camera camera(lens, {}, {.model = model});
     for (const FilmPoint& point : points) {
@@ -99,14 +99,14 @@ TEST(WhiteFurnace, ExposesWithinTheErrorThatIsStatedForARung) {
 
 TEST(WhiteFurnace, GivesOneOnTheAxisWhereThatIsAskedFor) {
   const Lens lens = testing::data_lens("tessar_100mm_f2.8");
-  for (const Model model : models()) {
+  for (const ModelKind model : models()) {
     const CameraOptions options{.model = model, .normalisation = Normalisation::unity_on_axis};
     const Camera camera(lens, {}, options), absolute(lens, {}, {.model = model});
     EXPECT_NEAR(mean_weight(camera, {}), 1, 1e-3) << name(model);
     EXPECT_NEAR(mean_weight(camera, {10, 10}) / mean_weight(camera, {}),
                 mean_weight(absolute, {10, 10}) / mean_weight(absolute, {}), 1e-9)
         << name(model);
-    if (model < Model::exact_float) continue;
+    if (model < ModelKind::exact_float) continue;
     const double scale = mean_weight(camera, {10, 10}) / mean_weight(absolute, {10, 10});
     EXPECT_NEAR(scale * film_irradiance(lens, {}), 1, 6e-4) << name(model);
   }
@@ -120,7 +120,7 @@ TEST(WhiteFurnace, ShowsNoRings) {
        {Case{"double_gauss_100mm_f2.0", 28}, Case{"catadioptric_mangin_1000mm_f7.5", 15}}) {
     const Lens lens = testing::data_lens(id);
     const Film film{.width_mm = 2 * half_width, .height_mm = 2 * half_width};
-    const Camera camera(lens, film, {.model = Model::exact_float});
+    const Camera camera(lens, film, {.model = ModelKind::exact_float});
     // The lens's own irradiance at every fourth radius, and evenly in between (within 1e-4).
     const auto side_of = [&](double i) { return film.radius_mm() / std::numbers::sqrt2 * i / (strips * places); };
     std::vector<double> irradiance;

@@ -34,7 +34,7 @@ void expect_finite(const Importance& i) {
 struct Case {
   std::string lens;
   Film film;
-  Model model;
+  ModelKind model;
   double near;  ///< how exactly lines come back, mm on the film
 };
 
@@ -104,20 +104,20 @@ TEST_P(Importances, OfWhatTheCameraSeesAreConnected) {
 
 INSTANTIATE_TEST_SUITE_P(
     Models, Importances,
-    ::testing::Values(Case{"double_gauss_100mm_f2_28deg", film, Model::exact_double, 1e-5},
-                      Case{"double_gauss_100mm_f2_28deg", film, Model::exact_float, 1e-2},
-                      Case{"double_gauss_100mm_f2_28deg", film, Model::thin, 1e-5},
-                      Case{"double_gauss_100mm_f2_28deg", film, Model::thin_two_disc, 1e-5},
-                      Case{"double_gauss_100mm_f2_28deg", film, Model::thick, 1e-5},
-                      Case{"double_gauss_100mm_f2_28deg", film, Model::polynomial_3, 1e-5},
-                      Case{"double_gauss_100mm_f2_28deg", film, Model::polynomial_9, 1e-5},
-                      Case{"fisheye_10mm_f4", {.width_mm = 24, .height_mm = 16}, Model::exact_double, 1e-5},
-                      Case{"eye_gullstrand_le_grand", small, Model::exact_double, 1e-5},
-                      Case{"anamorphic_60mm_2x", film, Model::exact_double, 1e-5}));
+    ::testing::Values(Case{"double_gauss_100mm_f2_28deg", film, ModelKind::exact_double, 1e-5},
+                      Case{"double_gauss_100mm_f2_28deg", film, ModelKind::exact_float, 1e-2},
+                      Case{"double_gauss_100mm_f2_28deg", film, ModelKind::thin, 1e-5},
+                      Case{"double_gauss_100mm_f2_28deg", film, ModelKind::thin_two_disc, 1e-5},
+                      Case{"double_gauss_100mm_f2_28deg", film, ModelKind::thick, 1e-5},
+                      Case{"double_gauss_100mm_f2_28deg", film, ModelKind::polynomial_3, 1e-5},
+                      Case{"double_gauss_100mm_f2_28deg", film, ModelKind::polynomial_9, 1e-5},
+                      Case{"fisheye_10mm_f4", {.width_mm = 24, .height_mm = 16}, ModelKind::exact_double, 1e-5},
+                      Case{"eye_gullstrand_le_grand", small, ModelKind::exact_double, 1e-5},
+                      Case{"anamorphic_60mm_2x", film, ModelKind::exact_double, 1e-5}));
 
 TEST(Importance, OfAPinholeIsThatOfTheThickLensInOnePoint) {
   const Lens lens = testing::data_lens("double_gauss_100mm_f2_28deg");
-  const Camera pinhole(lens, film, {.model = Model::pinhole}), thick(lens, film, {.model = Model::thick});
+  const Camera pinhole(lens, film, {.model = ModelKind::pinhole}), thick(lens, film, {.model = ModelKind::thick});
   for (const Vec3<double> point : {Vec3<double>{0, 0, -3000}, Vec3<double>{200, -150, -2500}}) {
     ASSERT_TRUE(pinhole.sample_importance(point, 0.3, 0.7));
     double one = 0, all = 0;
@@ -138,8 +138,8 @@ TEST(Importance, OfAPinholeIsThatOfTheThickLensInOnePoint) {
 
 TEST(Importance, IsNothingForWhatMakesNoRay) {
   const Lens lens = testing::data_lens("double_gauss_100mm_f2_28deg");
-  for (const Model model :
-       {Model::pinhole, Model::thick, Model::polynomial_5, Model::exact_float, Model::exact_double}) {
+  for (const ModelKind model : {ModelKind::pinhole, ModelKind::thick, ModelKind::polynomial_5, ModelKind::exact_float,
+                                ModelKind::exact_double}) {
     SCOPED_TRACE(name(model));
     const Camera camera(lens, film, {.model = model});
     for (const Vec3<double> point : {Vec3<double>{nan, 0, -1000}, Vec3<double>{0, infinity, -1000},
@@ -163,7 +163,7 @@ TEST(Importance, IsNothingForWhatMakesNoRay) {
     EXPECT_FALSE(camera.sample_importance({0, 0, -1000}, 0.4, 0.6, 1));
     EXPECT_FALSE(camera.importance({{0, 0, -1000}, {0, 0, 1}}, 1));
     EXPECT_FALSE(camera.project({0, 0, -1000}, 1));
-    if (model != Model::pinhole) {
+    if (model != ModelKind::pinhole) {
       EXPECT_FALSE(camera.sample_importance({0, 0, -1000}, nan, 0.6));
     }
   }
@@ -175,7 +175,7 @@ TEST(Importance, IsConnectedToAFilmThatIsDarkOnTheAxis) {
   singlet.surfaces = {{.radius = 50, .thickness = 5, .medium = {.nd = 1.5168}, .semi_diameter = 12, .stop = true},
                       {.radius = -50, .thickness = 47, .semi_diameter = 12},
                       {.thickness = 1, .semi_diameter = 40, .inner_semi_diameter = 12}};
-  const Camera camera(compile(singlet), film, {.model = Model::exact_double});
+  const Camera camera(compile(singlet), film, {.model = ModelKind::exact_double});
   EXPECT_EQ(camera.pupils().area({}), 0);
   const testing::Kronecker<5> random(5);
   int seen = 0, missed = 0;
@@ -190,7 +190,7 @@ TEST(Importance, IsConnectedToAFilmThatIsDarkOnTheAxis) {
 }
 
 TEST(Importance, SaysWhereARayMissesTheFilm) {
-  const Camera camera(testing::data_lens("double_gauss_100mm_f2_28deg"), film, {.model = Model::exact_double});
+  const Camera camera(testing::data_lens("double_gauss_100mm_f2_28deg"), film, {.model = ModelKind::exact_double});
   const double angle = 0.21;  // 21 mm off the axis upwards, where the film ends at 12
   const Importance i = camera.importance({{0, 0, 0}, {0, -std::sin(angle), std::cos(angle)}});
   EXPECT_EQ(i.fate, RayFate::outside_film);

@@ -41,7 +41,7 @@ ErrorSamples at(const Lens& lens, std::vector<double> distances, std::uint32_t s
 TEST(ModelError, OfExactDoubleIsNone) {
   for (const char* id : {"double_gauss_52mm_f1.8", "anamorphic_60mm_2x", "fisheye_8mm_f2.8"}) {
     const Lens lens = focused(id, 3000);
-    const ModelError error = model_error(lens, {}, Model::exact_double, at(lens, {1500, infinity}));
+    const ModelError error = model_error(lens, {}, ModelKind::exact_double, at(lens, {1500, infinity}));
     EXPECT_EQ(error.all.max_mm, 0) << id;
     EXPECT_EQ(error.all.max_of_blur, 0) << id;
     EXPECT_EQ(error.pupil_shape, 0) << id;
@@ -54,7 +54,7 @@ TEST(ModelError, OfExactDoubleIsNone) {
 TEST(ModelError, OfExactFloatIsRounding) {
   for (const double f_number : {2.0, 4.0}) {
     const Lens lens = focused("double_gauss_52mm_f1.8", 3000, f_number);
-    const ModelError error = model_error(lens, {}, Model::exact_float, at(lens, {1500, 3000, infinity}));
+    const ModelError error = model_error(lens, {}, ModelKind::exact_float, at(lens, {1500, 3000, infinity}));
     EXPECT_GT(error.all.rms_mm, 1e-6);
     EXPECT_LT(error.all.rms_mm, 1e-5);
     EXPECT_LT(error.all.max_mm, 4e-5);
@@ -65,10 +65,10 @@ TEST(ModelError, OfExactFloatIsRounding) {
 TEST(ModelError, CountsInPixelsToo) {
   const Lens lens = focused("double_gauss_52mm_f1.8", 3000);
   Film film;
-  const RayErrors fine = model_error(lens, film, Model::thick, at(lens, {1500, infinity})).all;
+  const RayErrors fine = model_error(lens, film, ModelKind::thick, at(lens, {1500, infinity})).all;
   EXPECT_DOUBLE_EQ(fine.max_px, fine.max_mm / (36.0 / 3840));
   film.columns /= 4, film.rows /= 4;
-  const RayErrors coarse = model_error(lens, film, Model::thick, at(lens, {1500, infinity})).all;
+  const RayErrors coarse = model_error(lens, film, ModelKind::thick, at(lens, {1500, infinity})).all;
   EXPECT_EQ(coarse.max_mm, fine.max_mm);
   EXPECT_DOUBLE_EQ(coarse.rms_px * 4, fine.rms_px);
   EXPECT_LE(fine.rms_mm, fine.p99_mm);
@@ -79,8 +79,8 @@ TEST(ModelError, CountsInPixelsToo) {
 TEST(ModelError, IsTheDistanceInThePlaneOverTheMagnification) {
   const Lens lens = focused("double_gauss_52mm_f1.8", 3000, 5.6);
   const ExactModel<double> exact(lens, 22);
-  const AnyModel thick = make_model(Model::thick, lens, 22);
-  const PupilMap& thick_pupils = std::get<ParaxialModel>(thick).pupils();
+  const AnyModel thick = make_model(ModelKind::thick, lens, 22);
+  const FilmPupilTable& thick_pupils = std::get<ParaxialModel>(thick).pupils();
   const double z = lens.film_z() - 3000;
 
   constexpr std::size_t count = 2000;
@@ -96,7 +96,7 @@ TEST(ModelError, IsTheDistanceInThePlaneOverTheMagnification) {
   for (std::size_t i = count - 3; i < count; ++i) px[i] = middle_x, py[i] = middle_y;
   fx[count - 2] -= step, fy[count - 1] -= step;
 
-  const FilmLines<const double> lines{fx.data(), fy.data(), px.data(), py.data()};
+  const TwoPlaneRays<const double> lines{fx.data(), fy.data(), px.data(), py.data()};
   const auto hits = [&](const auto& model, std::vector<RayFate>& fates) {
     std::vector<double> v(6 * count);
     const RayArrays<double> rays{&v[0], &v[count], &v[2 * count], &v[3 * count], &v[4 * count], &v[5 * count]};
@@ -118,7 +118,7 @@ TEST(ModelError, IsTheDistanceInThePlaneOverTheMagnification) {
     largest = std::max(largest, apart(a[i], b[i]) / magnification);
   }
   EXPECT_NEAR(magnification, (3000 - 60) / 52.0, 5);
-  EXPECT_NEAR(model_error(lens, {}, Model::thick, at(lens, {3000})).all.max_mm / largest, 1, 0.05);
+  EXPECT_NEAR(model_error(lens, {}, ModelKind::thick, at(lens, {3000})).all.max_mm / largest, 1, 0.05);
 }
 
 /// A thin lens of weak power: first order is exact in the limit, and errors fall with the square of the size.
@@ -126,16 +126,17 @@ TEST(ModelError, OfFirstOrderFallsWithTheCubeOfTheSize) {
   const Lens lens = with_focus(testing::front_stop_lens(4), 3000, {.origin = DistanceOrigin::film});
   const Lens stopped = with_focus(testing::front_stop_lens(2), 3000, {.origin = DistanceOrigin::film});
   const Film film{.width_mm = 8, .height_mm = 6}, half{.width_mm = 4, .height_mm = 3};
-  const double large = model_error(lens, film, Model::thick, at(lens, {3000})).all.max_mm;
-  const double small = model_error(stopped, half, Model::thick, at(stopped, {3000})).all.max_mm;
+  const double large = model_error(lens, film, ModelKind::thick, at(lens, {3000})).all.max_mm;
+  const double small = model_error(stopped, half, ModelKind::thick, at(stopped, {3000})).all.max_mm;
   EXPECT_NEAR(large / small, 8, 0.4);
 }
 
 TEST(ModelError, OfPolynomialsFallsWithTheDegree) {
   const Lens lens = focused("double_gauss_52mm_f1.8", 3000, 2);
   double before = infinity;
-  for (const Model model : {Model::thick, Model::polynomial_3, Model::polynomial_5, Model::polynomial_7,
-                            Model::polynomial_9, Model::polynomial_11, Model::exact_float}) {
+  for (const ModelKind model :
+       {ModelKind::thick, ModelKind::polynomial_3, ModelKind::polynomial_5, ModelKind::polynomial_7,
+        ModelKind::polynomial_9, ModelKind::polynomial_11, ModelKind::exact_float}) {
     const ModelError error = model_error(lens, {}, model, at(lens, {1500, 3000, infinity}));
     EXPECT_LT(error.all.max_mm, 0.5 * before) << name(model);
     before = error.all.max_mm;
@@ -145,9 +146,9 @@ TEST(ModelError, OfPolynomialsFallsWithTheDegree) {
 TEST(ModelError, IsTheSameForAnyNumberOfThreads) {
   const Lens lens = focused("double_gauss_52mm_f1.8", 3000);
   ErrorSamples samples = at(lens, {1500, infinity});
-  const ModelError one = model_error(lens, {}, Model::polynomial_5, samples);
+  const ModelError one = model_error(lens, {}, ModelKind::polynomial_5, samples);
   samples.threads = 3;
-  const ModelError three = model_error(lens, {}, Model::polynomial_5, samples);
+  const ModelError three = model_error(lens, {}, ModelKind::polynomial_5, samples);
   EXPECT_EQ(one.all.rms_mm, three.all.rms_mm);
   EXPECT_EQ(one.all.max_mm, three.all.max_mm);
   EXPECT_EQ(one.pupil_shape, three.pupil_shape);
@@ -157,7 +158,7 @@ TEST(ModelError, IsTheSameForAnyNumberOfThreads) {
 /// Fresh samples agree: the largest errors are found by either set.
 TEST(ModelError, HardlyDependsOnTheSamples) {
   const Lens lens = focused("double_gauss_52mm_f1.8", 3000);
-  for (const Model model : {Model::thick, Model::polynomial_5, Model::polynomial_9}) {
+  for (const ModelKind model : {ModelKind::thick, ModelKind::polynomial_5, ModelKind::polynomial_9}) {
     std::vector<ModelError> found;
     for (const std::uint32_t seed : {0, 1, 2}) {
       ErrorSamples samples = at(lens, {1500, infinity}, seed);
@@ -176,7 +177,7 @@ TEST(ModelError, HardlyDependsOnTheSamples) {
 /// The error of a pinhole is half the blur and what first order does to the chief ray; a large blur leaves the first.
 TEST(ModelError, OfAPinholeIsHalfTheBlurFarFromTheFocus) {
   const Lens lens = focused("double_gauss_52mm_f1.8", 1000, 5.6);
-  const ModelError error = model_error(lens, {.width_mm = 6, .height_mm = 4}, Model::pinhole, at(lens, {infinity}));
+  const ModelError error = model_error(lens, {.width_mm = 6, .height_mm = 4}, ModelKind::pinhole, at(lens, {infinity}));
   EXPECT_NEAR(error.all.max_of_blur, 0.5, 0.03);
   EXPECT_EQ(error.pupil_shape, 1);
 }
@@ -187,10 +188,10 @@ TEST(ModelError, TellsWavelengthsApart) {
                                        {.glasses = &glasses, .missing_glass = MissingGlass::abbe}),
                                3000, {.origin = DistanceOrigin::film});
   ErrorSamples samples = at(lens, {3000, infinity});
-  const ModelError all = model_error(lens, {}, Model::polynomial_5, samples);
+  const ModelError all = model_error(lens, {}, ModelKind::polynomial_5, samples);
   ASSERT_EQ(all.wavelength.size(), 3u);
   samples.wavelengths = {2};
-  const ModelError red = model_error(lens, {}, Model::polynomial_5, samples);
+  const ModelError red = model_error(lens, {}, ModelKind::polynomial_5, samples);
   ASSERT_EQ(red.wavelength.size(), 1u);
   EXPECT_EQ(red.all.max_mm, all.wavelength[2].max_mm);
   EXPECT_NEAR(red.all.rms_mm, all.wavelength[2].rms_mm, 1e-12);
@@ -207,35 +208,35 @@ TEST(ModelError, IsFiniteForEveryKindOfLens) {
                          "mirror_newton_200mm_f8", "hologon_15mm_f8"}) {
     const Lens lens = focused(id, 20000);
     const Film film{.width_mm = 12, .height_mm = 8};
-    for (const Model model : {Model::thick, Model::exact_float}) {
-      if (model == Model::thick && !lens.rotationally_symmetric()) continue;
+    for (const ModelKind model : {ModelKind::thick, ModelKind::exact_float}) {
+      if (model == ModelKind::thick && !lens.rotationally_symmetric()) continue;
       const ModelError error = model_error(lens, film, model, at(lens, {10000, 1e8, infinity}));
       for (const double x : {error.all.rms_mm, error.all.p99_mm, error.all.max_mm, error.all.max_of_blur,
                              error.pupil_shape, error.exposure}) {
         EXPECT_TRUE(std::isfinite(x)) << id << ' ' << name(model);
       }
       EXPECT_GT(error.all.rays, 1000u) << id;
-      EXPECT_LT(error.all.max_mm, model == Model::exact_float ? 2e-3 : infinity) << id;
+      EXPECT_LT(error.all.max_mm, model == ModelKind::exact_float ? 2e-3 : infinity) << id;
     }
   }
 }
 
 TEST(ModelError, RefusesWhatItCannotMeasure) {
   const Lens lens = focused("double_gauss_52mm_f1.8", 3000);
-  const auto refusal = [&](const Film& film, Model model, const ErrorSamples& samples) {
+  const auto refusal = [&](const Film& film, ModelKind model, const ErrorSamples& samples) {
     return testing::message([&] { model_error(lens, film, model, samples); });
   };
-  EXPECT_NE(refusal({}, Model::thick, {}).find("no depths"), std::string::npos);
+  EXPECT_NE(refusal({}, ModelKind::thick, {}).find("no depths"), std::string::npos);
   for (const double z : {0.0, 10.0, std::nan("")}) {
-    EXPECT_NE(refusal({}, Model::thick, {.depths_z = {z}}).find("in front of the lens"), std::string::npos) << z;
+    EXPECT_NE(refusal({}, ModelKind::thick, {.depths_z = {z}}).find("in front of the lens"), std::string::npos) << z;
   }
-  EXPECT_NE(refusal({}, Model::thick, {.depths_z = {-1000}, .wavelengths = {1}}).find("wavelength 1"),
+  EXPECT_NE(refusal({}, ModelKind::thick, {.depths_z = {-1000}, .wavelengths = {1}}).find("wavelength 1"),
             std::string::npos);
-  EXPECT_NE(refusal({.width_mm = 0}, Model::thick, {.depths_z = {-1000}}).find("film: it is 0 by 24"),
+  EXPECT_NE(refusal({.width_mm = 0}, ModelKind::thick, {.depths_z = {-1000}}).find("film: it is 0 by 24"),
             std::string::npos);
-  EXPECT_NE(refusal({.tilt_rad = 0.1}, Model::thick, {.depths_z = {-1000}}).find("tilted"), std::string::npos);
+  EXPECT_NE(refusal({.tilt_rad = 0.1}, ModelKind::thick, {.depths_z = {-1000}}).find("tilted"), std::string::npos);
   const Lens cylinders = focused("anamorphic_60mm_2x", 3000);
-  EXPECT_THROW(model_error(cylinders, {}, Model::thick, at(cylinders, {3000})), Error);
+  EXPECT_THROW(model_error(cylinders, {}, ModelKind::thick, at(cylinders, {3000})), Error);
 }
 
 }  // namespace

@@ -23,7 +23,8 @@
 namespace petzval {
 namespace {
 
-constexpr std::array first_order_models{Model::pinhole, Model::thin, Model::thin_two_disc, Model::thick};
+constexpr std::array first_order_models{ModelKind::pinhole, ModelKind::thin, ModelKind::thin_two_disc,
+                                        ModelKind::thick};
 const double film_24x36 = std::hypot(18, 12);
 
 /// A line of the film's space.
@@ -48,7 +49,7 @@ std::vector<Result> to_scene(const ParaxialModel& model, const std::vector<Line>
   }
   std::vector<RayFate> fates(n, RayFate::no_convergence);
   const auto at = [&](std::size_t k) { return a[k].data(); };
-  model.to_scene(n, FilmLines<const T>{at(0), at(1), at(2), at(3)}, wavelengths,
+  model.to_scene(n, TwoPlaneRays<const T>{at(0), at(1), at(2), at(3)}, wavelengths,
                  RayArrays<T>{at(4), at(5), at(6), at(7), at(8), at(9)}, fates.data());
   std::vector<Result> results;
   for (std::size_t i = 0; i < n; ++i) {
@@ -76,7 +77,7 @@ std::array<double, 2> meet(const Ray<double>& ray, double z) {
 
 /// The exact lens, nothing clipped.
 Ray<double> exact(const Lens& lens, const Line& l, std::size_t wavelength = 0) {
-  const FilmSpace space = film_space(lens);
+  const TwoPlanes space = two_planes(lens);
   Vec3<double> d{l.px - l.fx, l.py - l.fy, space.depth()};
   const double towards = signed_index(lens, lens.surface_count()) > 0 ? -1 : 1;
   d *= (d.z * towards > 0 ? 1 : -1) / glm::length(d);
@@ -121,7 +122,7 @@ TEST(ParaxialModel, DiffersFromTheExactRayByTheCubeOfTheHeight) {
     SCOPED_TRACE(prescription.name);
     const Lens lens = compile(prescription);
     const double focal = std::abs(first_order(lens).effective_focal_length);
-    const ParaxialModel model(Model::thick, lens, 0.1 * focal);
+    const ParaxialModel model(ModelKind::thick, lens, 0.1 * focal);
     const double depth = model.pupils().space().depth();
     const auto difference = [&](double h) {
       const Line line{0.3 * h * focal, 0.5 * h * focal, -0.4 * h * depth, 0.7 * h * depth};
@@ -138,7 +139,7 @@ TEST(ParaxialModel, DiffersFromTheExactRayByTheCubeOfTheHeight) {
 
 TEST(ParaxialModel, MakesPointsOfThePointsInFocus) {
   const Lens lens = with_focus(testing::data_lens("double_gauss_100mm_f2.0"), 700);
-  for (const Model model : first_order_models) {
+  for (const ModelKind model : first_order_models) {
     const ParaxialModel thick(model, lens, film_24x36);
     const auto rays = to_scene(thick, {{10, -5, 0, 0}, {10, -5, 12, 3}, {10, -5, -20, 8}});
     const auto point = meet(rays[0].ray, -700);
@@ -159,7 +160,7 @@ TEST(ParaxialModel, MakesPointsOfThePointsInFocus) {
 TEST(ParaxialModel, GoesBackToTheLineThatItCameFrom) {
   for (const char* id : {"tessar_100mm_f2.8", "mirror_newton_200mm_f8", "eye_gullstrand_le_grand"}) {
     const Lens lens = testing::data_lens(id);
-    for (const Model name : {Model::pinhole, Model::thin, Model::thick}) {
+    for (const ModelKind name : {ModelKind::pinhole, ModelKind::thin, ModelKind::thick}) {
       const ParaxialModel model(name, lens, 5);
       const auto lines = random_lines(20, 5, 3);
       const auto rays = to_scene(model, lines);
@@ -171,8 +172,8 @@ TEST(ParaxialModel, GoesBackToTheLineThatItCameFrom) {
         EXPECT_NEAR(back.line.fx, lines[i].fx, 1e-10);
         EXPECT_NEAR(back.line.fy, lines[i].fy, 1e-10);
         const auto middle = model.pupils().middle({lines[i].fx, lines[i].fy});
-        EXPECT_NEAR(back.line.px, name == Model::pinhole ? middle[0] : lines[i].px, 1e-8);
-        EXPECT_NEAR(back.line.py, name == Model::pinhole ? middle[1] : lines[i].py, 1e-8);
+        EXPECT_NEAR(back.line.px, name == ModelKind::pinhole ? middle[0] : lines[i].px, 1e-8);
+        EXPECT_NEAR(back.line.py, name == ModelKind::pinhole ? middle[1] : lines[i].py, 1e-8);
       }
     }
   }
@@ -181,8 +182,8 @@ TEST(ParaxialModel, GoesBackToTheLineThatItCameFrom) {
 TEST(ParaxialModel, SendsALineTheSameWayOnEveryRungButThePinhole) {
   const Lens lens = testing::data_lens("retrofocus_100mm_f2");
   const auto lines = random_lines(10, 20, 10);
-  const auto thick = to_scene(ParaxialModel(Model::thick, lens, film_24x36), lines);
-  for (const Model model : {Model::thin, Model::thin_two_disc}) {
+  const auto thick = to_scene(ParaxialModel(ModelKind::thick, lens, film_24x36), lines);
+  for (const ModelKind model : {ModelKind::thin, ModelKind::thin_two_disc}) {
     const auto rays = to_scene(ParaxialModel(model, lens, film_24x36), lines);
     for (std::size_t i = 0; i < lines.size(); ++i) {
       EXPECT_EQ(rays[i].ray.origin, thick[i].ray.origin);
@@ -193,7 +194,7 @@ TEST(ParaxialModel, SendsALineTheSameWayOnEveryRungButThePinhole) {
 
 TEST(ParaxialModel, IsBlindToThePupilSampleAsAPinhole) {
   const Lens lens = testing::data_lens("double_gauss_100mm_f2.0");
-  const ParaxialModel pinhole(Model::pinhole, lens, film_24x36), thick(Model::thick, lens, film_24x36);
+  const ParaxialModel pinhole(ModelKind::pinhole, lens, film_24x36), thick(ModelKind::thick, lens, film_24x36);
   const auto middle = thick.pupils().middle({4, -9});
   const auto rays = to_scene(pinhole, {{4, -9, 0, 0}, {4, -9, 25, -3}});
   const auto chief = to_scene(thick, {{4, -9, middle[0], middle[1]}})[0].ray;
@@ -207,7 +208,7 @@ TEST(ParaxialModel, IsBlindToThePupilSampleAsAPinhole) {
 }
 
 // A film point on the axis sees a disc whose rim lies u' off the axis: pi sin^2 u'.
-double axial_exposure(const PupilMap& pupils) {
+double axial_exposure(const FilmPupilTable& pupils) {
   const double depth = pupils.space().depth(), area = pupils.area({0, 0});
   double sum = 0;
   const int count = 4096;
@@ -227,11 +228,11 @@ TEST(ParaxialModel, ExposesTheAxisAsItsPupilSays) {
     const Pupils paraxial = pupils(lens);
     const double tangent = paraxial.exit.diameter / 2 / (paraxial.exit.z - lens.film_z());
     const double sine_squared = tangent * tangent / (1 + tangent * tangent);
-    EXPECT_NEAR(axial_exposure(ParaxialModel(Model::thick, lens, 10).pupils()) / (std::numbers::pi * sine_squared), 1,
-                1e-3);
+    EXPECT_NEAR(axial_exposure(ParaxialModel(ModelKind::thick, lens, 10).pupils()) / (std::numbers::pi * sine_squared),
+                1, 1e-3);
     // The thin lens: as wide as the entrance pupil, at the rear principal plane.
     const double thin = paraxial.entrance.diameter / 2 / (first_order(lens).rear_principal_z - lens.film_z());
-    EXPECT_NEAR(axial_exposure(ParaxialModel(Model::thin, lens, 10).pupils()) /
+    EXPECT_NEAR(axial_exposure(ParaxialModel(ModelKind::thin, lens, 10).pupils()) /
                     (std::numbers::pi * thin * thin / (1 + thin * thin)),
                 1, 1e-3);
   }
@@ -241,7 +242,7 @@ TEST(ParaxialModel, ExposesTheAxisAsItsPupilSays) {
 TEST(ParaxialModel, KnowsPupilsAtInfinity) {
   const Lens lens = compile(telecentric());
   ASSERT_GT(std::abs(pupils(lens).exit.z), 1e6);
-  const ParaxialModel model(Model::thick, lens, 20);
+  const ParaxialModel model(ModelKind::thick, lens, 20);
   EXPECT_EQ(model.pupils().space().pupil_z, lens.surfaces().back().vertex_z);
   for (const double y : {0.0, 7.0, 19.0}) {
     EXPECT_NEAR(model.pupils().middle({0, y})[1], y, 0.05);
@@ -250,20 +251,20 @@ TEST(ParaxialModel, KnowsPupilsAtInfinity) {
     const Result chief = to_scene(model, {{0, y, middle[0], middle[1]}})[0];
     EXPECT_NEAR(meet(chief.ray, 0)[1], 0, 0.05);  // the stop
   }
-  const auto [ray, fate] = to_scene(ParaxialModel(Model::pinhole, lens, 20), {{0, 19, 0, 3}})[0];
+  const auto [ray, fate] = to_scene(ParaxialModel(ModelKind::pinhole, lens, 20), {{0, 19, 0, 3}})[0];
   EXPECT_NEAR(meet(ray, 0)[1], 0, 1e-9);
   // Scene side: rays are given in reach of the lens.
   Prescription reversed = reverse(telecentric());
   reversed.surfaces.back().thickness = 120;
-  const ParaxialModel turned(Model::thick, compile(reversed), 5);
+  const ParaxialModel turned(ModelKind::thick, compile(reversed), 5);
   EXPECT_LT(std::abs(to_scene(turned, {{0, 1, 0, 0}})[0].ray.origin.z), 1e-9);
   EXPECT_NEAR(to_film(turned, {{0, 3, -50}, {0, 0, 1}}).line.fy,
               -3 * 120 / first_order(compile(reversed)).effective_focal_length, 1e-9);
 }
 
 /// Symmetric difference over the area of the lens's own pupils, mean over a film.
-double shape_error(const Lens& lens, double film_radius, const PupilMap& pupils) {
-  const PupilMap real = PupilMap::matching(lens, film_radius);
+double shape_error(const Lens& lens, double film_radius, const FilmPupilTable& pupils) {
+  const FilmPupilTable real = FilmPupilTable::equal_area(lens, film_radius);
   constexpr int fields = 16, samples = 1024;
   double sum = 0;
   for (int j = 0; j < fields; ++j) {
@@ -290,8 +291,8 @@ TEST(ParaxialModel, FitsTwoDiscsToTheRealPupils) {
         Case{"tessar_100mm_f3.5", film_24x36, 0.018}, Case{"fisheye_10mm_f4", 11, 0.024}}) {
     const Lens lens = testing::data_lens(id);
     const double fitted =
-        shape_error(lens, film_radius, ParaxialModel(Model::thin_two_disc, lens, film_radius).pupils());
-    const double one_disc = shape_error(lens, film_radius, ParaxialModel(Model::thick, lens, film_radius).pupils());
+        shape_error(lens, film_radius, ParaxialModel(ModelKind::thin_two_disc, lens, film_radius).pupils());
+    const double one_disc = shape_error(lens, film_radius, ParaxialModel(ModelKind::thick, lens, film_radius).pupils());
     EXPECT_LT(fitted, bound) << id;
     EXPECT_LT(fitted, one_disc / 4) << id;
   }
@@ -303,14 +304,14 @@ TEST(ParaxialModel, HasAMapForEveryWavelength) {
   const std::array lines_nm{486.1327, 587.5618, 656.2725};
   const CompileOptions options{.glasses = &glasses, .missing_glass = MissingGlass::abbe};
   const Lens lens = compile(prescription, lines_nm, options);
-  const ParaxialModel model(Model::thick, lens, 10);
+  const ParaxialModel model(ModelKind::thick, lens, 10);
   const auto lines = random_lines(33, 10, 5);
   std::vector<std::uint16_t> each;
   for (std::size_t i = 0; i < lines.size(); ++i) each.push_back(static_cast<std::uint16_t>(i * 7 % 3));
   const auto mixed = to_scene(model, lines, {.each = each.data()});
   for (std::size_t w = 0; w < 3; ++w) {
     const Lens alone = with_film(compile(prescription, std::array{lines_nm[w]}, options), lens.film_z());
-    const PupilMap pupils = ParaxialModel(Model::thick, alone, 10).pupils();
+    const FilmPupilTable pupils = ParaxialModel(ModelKind::thick, alone, 10).pupils();
     const auto same = to_scene(model, lines, {.all = w});
     for (std::size_t i = 0; i < lines.size(); ++i) {
       if (each[i] != w) continue;
@@ -328,7 +329,7 @@ TEST(ParaxialModel, HasAMapForEveryWavelength) {
 
 TEST(ParaxialModel, AnswersInFloatAndInBatchesOfAnySizeAlike) {
   const Lens lens = testing::data_lens("double_gauss_100mm_f2.0");
-  const ParaxialModel model(Model::thick, lens, film_24x36);
+  const ParaxialModel model(ModelKind::thick, lens, film_24x36);
   const auto lines = random_lines(131, 20, 20);
   const auto all = to_scene(model, lines), single = to_scene<float>(model, lines);
   for (std::size_t i = 0; i < lines.size(); ++i) {
@@ -341,7 +342,7 @@ TEST(ParaxialModel, AnswersInFloatAndInBatchesOfAnySizeAlike) {
 }
 
 TEST(ParaxialModel, AnswersBadNumbersWithAFateAndFiniteRays) {
-  const ParaxialModel model(Model::thick, testing::data_lens("tessar_100mm_f2.8"), film_24x36);
+  const ParaxialModel model(ModelKind::thick, testing::data_lens("tessar_100mm_f2.8"), film_24x36);
   const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
   const std::vector<Line> bad{{nan, 0, 0, 0}, {0, inf, 0, 0}, {0, 0, -inf, 0}, {1, 2, 3, nan}, {1e300, 0, 0, 0}};
   const auto check = [](const std::vector<Result>& results) {
@@ -369,28 +370,28 @@ TEST(ParaxialModel, AnswersBadNumbersWithAFateAndFiniteRays) {
 TEST(ParaxialModel, HasNoPupilBehindAShutStop) {
   const Lens lens = testing::data_lens("double_gauss_100mm_f2.0");
   const Lens shut = with_semi_diameter(lens, pupils(lens).stop, 0);
-  for (const Model model : first_order_models) {
+  for (const ModelKind model : first_order_models) {
     EXPECT_EQ(ParaxialModel(model, shut, film_24x36).pupils().area({0, 5}), 0) << name(model);
   }
 }
 
 TEST(ParaxialModel, RefusesWhatItCannotBe) {
   const Lens lens = testing::data_lens("double_gauss_100mm_f2.0");
-  const auto refusal = [](Model model, const Lens& of) {
+  const auto refusal = [](ModelKind model, const Lens& of) {
     return testing::message([&] { ParaxialModel(model, of, 20); });
   };
-  EXPECT_NE(refusal(Model::exact_float, lens).find("exact_float"), std::string::npos);
-  EXPECT_NE(refusal(Model::thick, testing::data_lens("anamorphic_60mm_2x")).find("cylinders"), std::string::npos);
-  EXPECT_THROW(ParaxialModel(Model::thick, lens, -1), Error);
+  EXPECT_NE(refusal(ModelKind::exact_float, lens).find("exact_float"), std::string::npos);
+  EXPECT_NE(refusal(ModelKind::thick, testing::data_lens("anamorphic_60mm_2x")).find("cylinders"), std::string::npos);
+  EXPECT_THROW(ParaxialModel(ModelKind::thick, lens, -1), Error);
 
   Prescription window;
   window.name = "window";
   window.surfaces = {{.thickness = 5, .medium = {.nd = 1.5}, .semi_diameter = 10},
                      {.thickness = 20, .semi_diameter = 10}};
-  EXPECT_NE(refusal(Model::thick, compile(window)).find("afocal"), std::string::npos);
+  EXPECT_NE(refusal(ModelKind::thick, compile(window)).find("afocal"), std::string::npos);
 
   const Lens in_principal_plane = with_film(lens, first_order(lens).rear_principal_z);
-  EXPECT_NE(refusal(Model::thin, in_principal_plane).find("rear principal plane"), std::string::npos);
+  EXPECT_NE(refusal(ModelKind::thin, in_principal_plane).find("rear principal plane"), std::string::npos);
 }
 
 }  // namespace

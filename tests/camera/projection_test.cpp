@@ -44,9 +44,9 @@ TEST_P(Projections, AreWhereChiefRaysMeetTheFilm) {
   const Lens lens = testing::data_lens(id);
   const double pupil_z = pupils(lens).entrance.z;
   const testing::Kronecker<3> random(6);
-  for (const Model model : {Model::exact_double, Model::exact_float}) {
+  for (const ModelKind model : {ModelKind::exact_double, ModelKind::exact_float}) {
     const Camera camera(lens, film, {.model = model});
-    const double near = (model == Model::exact_double ? 2e-5 : 1e-4) * film.radius_mm();
+    const double near = (model == ModelKind::exact_double ? 2e-5 : 1e-4) * film.radius_mm();
     int converged = 0;
     for (std::uint32_t i = 0; i < 400; ++i) {
       const auto [a, b, c] = random(i);
@@ -84,8 +84,9 @@ INSTANTIATE_TEST_SUITE_P(Lenses, Projections,
                                            Case{"telephoto_392mm_f2.9", wide, 5}));
 
 TEST(Projection, OfACameraRaysPointsAreItsFilmPoint) {
-  for (const Model model : {Model::pinhole, Model::thin, Model::thin_two_disc, Model::thick, Model::polynomial_3,
-                            Model::polynomial_9, Model::exact_float, Model::exact_double}) {
+  for (const ModelKind model :
+       {ModelKind::pinhole, ModelKind::thin, ModelKind::thin_two_disc, ModelKind::thick, ModelKind::polynomial_3,
+        ModelKind::polynomial_9, ModelKind::exact_float, ModelKind::exact_double}) {
     SCOPED_TRACE(name(model));
     const Camera camera(testing::data_lens("double_gauss_100mm_f2_28deg"), wide, {.model = model});
     for (const FilmPoint film : {FilmPoint{0, 0}, FilmPoint{0, 9}, FilmPoint{-17, 3}, FilmPoint{12, -10}}) {
@@ -106,7 +107,7 @@ TEST(Projection, OfACameraRaysPointsAreItsFilmPoint) {
 }
 
 TEST(Projection, PutsTheSceneUpright) {
-  const Camera camera(testing::data_lens("double_gauss_100mm_f2_28deg"), wide, {.model = Model::exact_double});
+  const Camera camera(testing::data_lens("double_gauss_100mm_f2_28deg"), wide, {.model = ModelKind::exact_double});
   const Projection p = camera.project({300, 200, -5000});
   ASSERT_TRUE(p);
   EXPECT_GT(p.raster[0], wide.columns / 2.0);  // to the right
@@ -117,7 +118,7 @@ TEST(Projection, PutsTheSceneUpright) {
 TEST(Projection, FindsPointsThroughCylinders) {
   const Lens lens = testing::data_lens("anamorphic_60mm_2x");
   const Film film{.width_mm = 12, .height_mm = 8};
-  const Camera camera(lens, film, {.model = Model::exact_double});
+  const Camera camera(lens, film, {.model = ModelKind::exact_double});
   for (const auto& [x, y] : {std::array{0.0, 0.0}, {150.0, 0.0}, {0.0, 120.0}, {-180.0, 90.0}}) {
     const Vec3<double> point{x, y, -6000};
     const Projection p = camera.project(point);
@@ -142,7 +143,7 @@ TEST(Projection, IsWhereChiefRaysMeetATiltedFilm) {
   const Film leaning{.width_mm = 36, .height_mm = 24, .centre_y_mm = 3, .tilt_rad = 0.2, .swing_rad = -0.12};
   const Lens lens = testing::data_lens("double_gauss_100mm_f2_28deg");
   const FilmPose pose{lens.film_z(), leaning.tilt_rad, leaning.swing_rad};
-  const Camera camera(lens, leaning, {.model = Model::exact_double});
+  const Camera camera(lens, leaning, {.model = ModelKind::exact_double});
   const double pupil_z = pupils(lens).entrance.z;
   const testing::Kronecker<3> random(6);
   int converged = 0;

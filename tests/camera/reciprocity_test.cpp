@@ -129,7 +129,7 @@ class Reciprocity : public ::testing::TestWithParam<Case> {};
 TEST_P(Reciprocity, HoldsForExactRays) {
   const auto& [id, film, degrees, distance] = GetParam();
   const Lens lens = testing::data_lens(id);
-  for (const Model model : {Model::exact_float, Model::exact_double}) {
+  for (const ModelKind model : {ModelKind::exact_float, ModelKind::exact_double}) {
     SCOPED_TRACE(name(model));
     expect_reciprocity(lens, film, {.model = model}, degrees, distance);
   }
@@ -137,14 +137,14 @@ TEST_P(Reciprocity, HoldsForExactRays) {
 
 TEST(Reciprocity, HoldsForWeightsThatAreUnityOnTheAxis) {
   expect_reciprocity(testing::data_lens("eye_gullstrand_le_grand"), retina,
-                     {.model = Model::exact_float, .normalisation = Normalisation::unity_on_axis}, 3, 300);
+                     {.model = ModelKind::exact_float, .normalisation = Normalisation::unity_on_axis}, 3, 300);
 }
 
 TEST(Reciprocity, HoldsUnderWater) {
   Prescription p = testing::data_prescription("tessar_100mm_f2.8");
   p.object_space.nd = 1.333;
   p.surfaces.back().thickness = 150;
-  expect_reciprocity(compile(p), wide, {.model = Model::exact_double}, 3, 900, 0, 0.04, 1e-2);
+  expect_reciprocity(compile(p), wide, {.model = ModelKind::exact_double}, 3, 900, 0, 0.04, 1e-2);
 }
 
 // The last has water behind it.
@@ -156,21 +156,22 @@ INSTANTIATE_TEST_SUITE_P(
                       Case{"fisheye_8mm_f2.8", square, 70, 600}, Case{"eye_gullstrand_le_grand", retina, 5, 300}));
 
 TEST(Reciprocity, HoldsCloseToTheLens) {
-  expect_reciprocity(testing::data_lens("double_gauss_100mm_f2_28deg"), wide, {.model = Model::exact_double}, 3, 120, 0,
-                     0.5, 5e-3);
+  expect_reciprocity(testing::data_lens("double_gauss_100mm_f2_28deg"), wide, {.model = ModelKind::exact_double}, 3,
+                     120, 0, 0.5, 5e-3);
 }
 
 TEST(Reciprocity, HoldsForCylinders) {
-  expect_reciprocity(testing::data_lens("anamorphic_60mm_2x"), wide, {.model = Model::exact_double}, 5, 3000, 0, 0.04,
-                     1e-2);
+  expect_reciprocity(testing::data_lens("anamorphic_60mm_2x"), wide, {.model = ModelKind::exact_double}, 5, 3000, 0,
+                     0.04, 1e-2);
 }
 
 TEST(Reciprocity, HoldsForModelsWithoutRims) {
   const Lens lens = testing::data_lens("double_gauss_100mm_f2_28deg");
-  for (const Model model : {Model::pinhole, Model::thin, Model::thin_two_disc, Model::thick, Model::polynomial_7}) {
+  for (const ModelKind model :
+       {ModelKind::pinhole, ModelKind::thin, ModelKind::thin_two_disc, ModelKind::thick, ModelKind::polynomial_7}) {
     SCOPED_TRACE(name(model));
     // Polynomials conserve etendue as well as they fit; stars have the area of a pinhole's disc as well as tables go.
-    const bool nearly = model == Model::polynomial_7 || model == Model::pinhole;
+    const bool nearly = model == ModelKind::polynomial_7 || model == ModelKind::pinhole;
     expect_reciprocity(lens, wide, {.model = model}, 6, 2500, nearly ? 1e-3 : 0);
   }
 }
@@ -181,22 +182,23 @@ TEST(Reciprocity, HoldsForTiltedFilms) {
   const Film twenty{
       .width_mm = 36, .height_mm = 24, .centre_x_mm = 2, .tilt_rad = -5 * degree, .swing_rad = 20 * degree};
   const Lens lens = testing::data_lens("double_gauss_100mm_f2_28deg");
-  for (const auto& [film, model] : {std::pair{eight, Model::thin_two_disc}, std::pair{eight, Model::exact_float},
-                                    std::pair{twenty, Model::pinhole}, std::pair{twenty, Model::thick},
-                                    std::pair{twenty, Model::polynomial_7}, std::pair{twenty, Model::exact_double}}) {
+  for (const auto& [film, model] :
+       {std::pair{eight, ModelKind::thin_two_disc}, std::pair{eight, ModelKind::exact_float},
+        std::pair{twenty, ModelKind::pinhole}, std::pair{twenty, ModelKind::thick},
+        std::pair{twenty, ModelKind::polynomial_7}, std::pair{twenty, ModelKind::exact_double}}) {
     SCOPED_TRACE(name(model));
-    const bool nearly = model == Model::polynomial_7 || model == Model::pinhole;
+    const bool nearly = model == ModelKind::polynomial_7 || model == ModelKind::pinhole;
     expect_reciprocity(lens, film, {.model = model}, 6, 2500, nearly ? 1e-3 : 0);
   }
   // Far off the axis, where a pinhole's ray is not the mean of its sample's lines.
   expect_reciprocity(lens, {.width_mm = 30, .height_mm = 30, .centre_y_mm = -14, .tilt_rad = 20 * degree},
-                     {.model = Model::pinhole}, 13, 2500, 1e-3);
+                     {.model = ModelKind::pinhole}, 13, 2500, 1e-3);
   expect_reciprocity(testing::data_lens("fisheye_8mm_f2.8"),
                      {.width_mm = 16, .height_mm = 16, .tilt_rad = 6 * degree, .swing_rad = 6 * degree},
-                     {.model = Model::exact_double}, 50, 600, 0, 0.04, 3e-3);
+                     {.model = ModelKind::exact_double}, 50, 600, 0, 0.04, 3e-3);
   expect_reciprocity(testing::data_lens("anamorphic_60mm_2x"),
                      {.width_mm = 20, .height_mm = 14, .tilt_rad = 8 * degree, .swing_rad = 4 * degree},
-                     {.model = Model::exact_double}, 3, 3000, 0, 0.04, 1e-2);
+                     {.model = ModelKind::exact_double}, 3, 3000, 0, 0.04, 1e-2);
 }
 
 }  // namespace

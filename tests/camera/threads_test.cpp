@@ -40,7 +40,8 @@ std::vector<double> answers(const Camera& camera) {
 }
 
 void expect_shared(const Lens& lens, const Film& film) {
-  for (const Model model : {Model::thin_two_disc, Model::polynomial_5, Model::exact_float, Model::exact_double}) {
+  for (const ModelKind model :
+       {ModelKind::thin_two_disc, ModelKind::polynomial_5, ModelKind::exact_float, ModelKind::exact_double}) {
     const Camera camera(lens, film, {.model = model});
     const std::vector<double> alone = answers(camera);
     constexpr int count = 16;

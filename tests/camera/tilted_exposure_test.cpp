@@ -84,7 +84,7 @@ class Leaning : public ::testing::TestWithParam<Case> {};
 
 TEST_P(Leaning, SamplesReachTheSceneAndMissNothing) {
   const Lens lens = GetParam().focused();
-  const Camera camera(lens, GetParam().leaning_film(), {.model = Model::exact_double});
+  const Camera camera(lens, GetParam().leaning_film(), {.model = ModelKind::exact_double});
   const TiltedFilm& tilted = *camera.tilted_film();
   const FilmPose pose = pose_of(lens, camera.film());
   const double z = camera.pupils().space().pupil_z;
@@ -176,7 +176,7 @@ double mean_weight(const Camera& camera, const FilmPoint& film) {
 }
 
 void expect_exposures(const Lens& lens, const Film& film, double corner = 0.45, double tolerance = 2e-3) {
-  const Camera camera(lens, film, {.model = Model::exact_double});
+  const Camera camera(lens, film, {.model = ModelKind::exact_double});
   for (const auto& [x, y] : {std::array{0.0, 0.0}, {corner, corner}, {-0.4, corner}, {0.1, -0.48}}) {
     const FilmPoint point{film.centre_x_mm + x * film.width_mm, film.centre_y_mm + y * film.height_mm};
     EXPECT_NEAR(mean_weight(camera, point) / irradiance(lens, pose_of(lens, film), point), 1, tolerance)
@@ -226,7 +226,7 @@ TEST(TiltedFilm, ExposesAsADiscDoes) {
     const Disc exit{paraxial.exit.z, paraxial.exit.diameter / 2};
     const Disc folded{first_order(lens).rear_principal_z, paraxial.entrance.diameter / 2};
     for (const auto& [model, disc] :
-         {std::pair{Model::pinhole, exit}, std::pair{Model::thick, exit}, std::pair{Model::thin, folded}}) {
+         {std::pair{ModelKind::pinhole, exit}, std::pair{ModelKind::thick, exit}, std::pair{ModelKind::thin, folded}}) {
       const Camera camera(lens, film, {.model = model});
       for (const FilmPoint& point : {FilmPoint{0, 0}, film.point(0, 0), film.point(film.columns, film.rows)}) {
         double wanted = 0;
@@ -248,8 +248,9 @@ TEST(TiltedFilm, ExposesAsADiscDoes) {
 TEST(TiltedFilm, ExposesAlikeOnEveryRung) {
   const Lens lens = with_f_number(testing::data_lens("double_gauss_100mm_f2.0"), 4);
   const Film film = leaning(wide, 10, 5);
-  const Camera exact(lens, film, {.model = Model::exact_double}), upright(lens, wide, {.model = Model::exact_double});
-  for (const Model model : models()) {
+  const Camera exact(lens, film, {.model = ModelKind::exact_double}),
+      upright(lens, wide, {.model = ModelKind::exact_double});
+  for (const ModelKind model : models()) {
     const Camera tilted(lens, film, {.model = model}), straight(lens, wide, {.model = model});
     for (const FilmPoint& point : {FilmPoint{0, 0}, FilmPoint{-17, 11}, FilmPoint{16, -4}}) {
       const double error = mean_weight(tilted, point) / mean_weight(exact, point) - 1;
@@ -263,7 +264,7 @@ TEST(TiltedFilm, ExposesAlikeOnEveryRung) {
 TEST(TiltedFilm, LosesNoSampleOfAPinhole) {
   for (const double tilt : {0.01, 20.0}) {
     const Camera camera(testing::data_lens("double_gauss_100mm_f2.0"), leaning(shifted, tilt, tilt / 2),
-                        {.model = Model::pinhole});
+                        {.model = ModelKind::pinhole});
     auto samples = random_samples(camera.film(), 20000);
     samples.run(camera);
     EXPECT_EQ(std::count(samples.fates.begin(), samples.fates.end(), RayFate::transmitted), 20000) << tilt;
@@ -274,7 +275,7 @@ TEST(TiltedFilm, LosesNoSampleOfAPinhole) {
 TEST(TiltedFilm, WeighsAlikeInEveryUnit) {
   const Prescription phone = scale(testing::data_prescription("phone_5.6mm_f3.5"), 0.03);
   const Film film = leaning({.width_mm = 0.06, .height_mm = 0.04}, 20, 14);
-  for (const Model model : {Model::pinhole, Model::thick, Model::exact_double}) {
+  for (const ModelKind model : {ModelKind::pinhole, ModelKind::thick, ModelKind::exact_double}) {
     for (const auto normalisation : {Normalisation::irradiance, Normalisation::unity_on_axis}) {
       std::vector<std::vector<double>> weights;
       for (const double unit : {1.0, 64.0}) {
@@ -294,7 +295,7 @@ TEST(TiltedFilm, WeighsAlikeInEveryUnit) {
 
 TEST(TiltedFilm, GivesOneOnTheAxisWhereThatIsAskedFor) {
   const Lens lens = testing::data_lens("tessar_100mm_f2.8");
-  for (const Model model : {Model::pinhole, Model::thick, Model::exact_float}) {
+  for (const ModelKind model : {ModelKind::pinhole, ModelKind::thick, ModelKind::exact_float}) {
     const CameraOptions options{.model = model, .normalisation = Normalisation::unity_on_axis};
     EXPECT_NEAR(mean_weight(Camera(lens, leaning(wide, 15, 0), options), {}), 1, 1e-3) << name(model);
   }

@@ -37,7 +37,7 @@ using testing::wide;
 // A film that leans by next to nothing is upright: the same rays, weights and densities, as near as two tables are.
 TEST(TiltedFilm, IsAnUprightOneWhereItHardlyLeans) {
   const Lens lens = testing::data_lens("double_gauss_100mm_f2.0");
-  for (const Model model : models()) {
+  for (const ModelKind model : models()) {
     const Camera upright(lens, shifted, {.model = model});
     const Camera tilted(lens, leaning(shifted, 1e-9, -1e-9), {.model = model});
     const testing::Kronecker<2> random(3);
@@ -63,7 +63,7 @@ TEST(TiltedFilm, IsAnUprightOneWhereItHardlyLeans) {
       const FilmPoint point = upright.film().point(x * shifted.columns, y * shifted.rows), key = film.key(point);
       EXPECT_NEAR(std::hypot(key.x - point.x, key.y - point.y), 0, 1e-8);
       EXPECT_NEAR(film.weight(key, 10 * x, -10 * y), 1, 1e-8);
-      const FilmLine line = film.upright(key, 10 * x, -10 * y);
+      const TwoPlaneRay line = film.upright(key, 10 * x, -10 * y);
       EXPECT_NEAR(std::hypot(line.film_x - point.x, line.film_y - point.y), 0, 1e-8);
     }
   }
@@ -73,7 +73,7 @@ TEST(TiltedFilm, IsAnUprightOneWhereItHardlyLeans) {
 TEST(TiltedFilm, TellsLinesAsSpaceDoes) {
   const Lens lens = testing::data_lens("double_gauss_100mm_f2.0");
   const Film film = leaning(shifted, 14, -9);
-  const PupilMap pupils = PupilMap::covering(lens, upright_radius(lens, film, Model::exact_double));
+  const FilmPupilTable pupils = FilmPupilTable::enclosing(lens, upright_radius(lens, film, ModelKind::exact_double));
   const TiltedFilm tilted(film, pupils);
   const FilmPose pose = pose_of(lens, film);
   const testing::Kronecker<4> random(8);
@@ -81,7 +81,7 @@ TEST(TiltedFilm, TellsLinesAsSpaceDoes) {
     const auto [a, b, c, d] = random(i);
     const FilmPoint point = film.point(a * film.columns, b * film.rows), key = tilted.key(point);
     const Vec3<double> place = pose.at(point), q{60 * (c - 0.5), 60 * (d - 0.5), pupils.space().pupil_z};
-    const FilmLine line = tilted.upright(key, q.x, q.y);
+    const TwoPlaneRay line = tilted.upright(key, q.x, q.y);
     const Vec3<double> upright{line.film_x, line.film_y, pupils.space().film_z};
     const Vec3<double> along = q - place, straight = q - upright, normal = pose.normal();
     EXPECT_NEAR(glm::length(glm::cross(glm::normalize(along), glm::normalize(straight))), 0, 1e-14);
@@ -100,7 +100,7 @@ TEST(TiltedFilm, TellsLinesAsSpaceDoes) {
 /// A pinhole's: what the film point sees, in the plane of the pupil, of the upright model's sample of the exit pupil.
 PupilSample pinhole_sample(const Lens& lens, const Camera& camera, const CameraSample& s) {
   const Vec3<double> from = pose_of(lens, camera.film()).at(s.film);
-  const FilmSpace& space = camera.pupils().space();
+  const TwoPlanes& space = camera.pupils().space();
   const double exit_z = pupils(lens, s.wavelength).exit.z;
   const auto along = [](const Vec3<double>& a, const Vec3<double>& b, double z) {
     return a + (b - a) * ((z - a.z) / (b.z - a.z));
@@ -116,7 +116,7 @@ PupilSample pinhole_sample(const Lens& lens, const Camera& camera, const CameraS
 // scene, are said to have.
 TEST(TiltedFilm, HasTheDensitiesOfItsSamples) {
   const Lens lens = testing::data_lens("double_gauss_100mm_f2.0");
-  for (const Model model : models()) {
+  for (const ModelKind model : models()) {
     const Camera camera(lens, leaning(shifted, 14, -9), {.model = model});
     const TiltedFilm& tilted = *camera.tilted_film();
     const FilmPose pose = pose_of(lens, camera.film());
@@ -125,24 +125,25 @@ TEST(TiltedFilm, HasTheDensitiesOfItsSamples) {
     int checked = 0;
     for (std::size_t i = 0; i < samples.size(); ++i) {
       const CameraSample s = samples.one(i);
-      const PupilSample p = model == Model::pinhole ? pinhole_sample(lens, camera, s)
-                                                    : tilted.pupils().sample(tilted.key(s.film), s.pupil_u, s.pupil_v);
+      const PupilSample p = model == ModelKind::pinhole
+                                ? pinhole_sample(lens, camera, s)
+                                : tilted.pupils().sample(tilted.key(s.film), s.pupil_u, s.pupil_v);
       const Vec3<double> along = Vec3<double>{p.x, p.y, camera.pupils().space().pupil_z} - pose.at(s.film);
       const double length = glm::length(along), pdf = std::pow(length, 3) / (p.area * std::abs(along.z));
       EXPECT_NEAR(samples.pdf_pupil[i] * p.area, 1, 1e-9);
       EXPECT_NEAR(samples.pdf_direction[i] / pdf, 1, 1e-9) << name(model);
       if (samples.fates[i] != RayFate::transmitted) continue;
       EXPECT_NEAR(samples.weights[i] * pdf * length / -glm::dot(along, pose.normal()), 1, 1e-9) << name(model);
-      if (model == Model::pinhole) continue;
+      if (model == ModelKind::pinhole) continue;
       const Importance met = camera.importance({samples.ray(i).origin, -samples.ray(i).direction});
       if (!met) continue;  // at a rim, where a float ray does not come back
       ++checked;
-      const double eps = model == Model::exact_double || model <= Model::thick ? 1e-9 : 2e-3;
+      const double eps = model == ModelKind::exact_double || model <= ModelKind::thick ? 1e-9 : 2e-3;
       EXPECT_NEAR(std::hypot(met.film.x - s.film.x, met.film.y - s.film.y), 0, 100 * eps) << name(model);
       EXPECT_NEAR(met.we / (met.pdf_position * met.pdf_direction) / samples.weights[i], 1, eps) << name(model);
       EXPECT_NEAR(met.pdf_pupil / samples.pdf_pupil[i], 1, eps);
     }
-    EXPECT_GT(checked, model == Model::pinhole ? -1 : 50) << name(model);
+    EXPECT_GT(checked, model == ModelKind::pinhole ? -1 : 50) << name(model);
   }
 }
 
@@ -150,7 +151,7 @@ TEST(TiltedFilm, HasTheDensitiesOfItsSamples) {
 TEST(TiltedFilm, HasABack) {
   const Lens lens = testing::data_lens("double_gauss_100mm_f2.0");
   const Film film = leaning({.width_mm = 4, .height_mm = 4}, 80, 0);
-  const TiltedFilm tilted(film, PupilMap::covering(lens, upright_radius(lens, film, Model::exact_double)));
+  const TiltedFilm tilted(film, FilmPupilTable::enclosing(lens, upright_radius(lens, film, ModelKind::exact_double)));
   const double reach = pose_of(lens, film).normal().z * -tilted.pupils().space().depth() / std::sin(radians(80.0));
   EXPECT_GT(tilted.weight({0, 0}, 0, 0.99 * -reach), 0);
   EXPECT_TRUE(tilted.key_of({0, 0, 0, 0.99 * -reach}));
@@ -163,7 +164,7 @@ TEST(TiltedFilm, HasABack) {
 TEST(TiltedFilm, IsSharpInATiltedPlane) {
   const Lens lens = with_focus(testing::data_lens("double_gauss_100mm_f2.0"), 2000);
   const Film film = leaning(wide, 7, -4);
-  const Camera camera(lens, film, {.model = Model::thin});
+  const Camera camera(lens, film, {.model = ModelKind::thin});
   const FirstOrder f = first_order(lens);
   const FilmPose pose = pose_of(lens, film);
   auto samples = random_samples(film, 400);
@@ -198,14 +199,14 @@ TEST(TiltedFilm, IsSharpInATiltedPlane) {
 
 TEST(TiltedFilm, GivesTheSameRaysSinglyAndInABatch) {
   const Lens lens = testing::data_lens("double_gauss_100mm_f2.0");
-  for (const Model model : models()) {
+  for (const ModelKind model : models()) {
     const Camera camera(lens, leaning(shifted, 8, 5), {.model = model});
     auto samples = random_samples(camera.film(), 600);
     auto in_float = random_samples<float>(camera.film(), 600);
     samples.film_x[7] = in_float.film_x[7] = 40;
     samples.run(camera);
     in_float.run(camera);
-    const double eps = model == Model::exact_float ? 2e-5 : 1e-11;
+    const double eps = model == ModelKind::exact_float ? 2e-5 : 1e-11;
     int others = 0;
     for (std::size_t i = 0; i < samples.size(); ++i) {
       const CameraRay one = camera.sample(samples.one(i));
@@ -228,7 +229,7 @@ TEST(TiltedFilm, GivesTheSameRaysSinglyAndInABatch) {
 TEST(TiltedFilm, IsNotTakenForAnUprightOne) {
   const Lens lens = testing::data_lens("tessar_100mm_f2.8");
   const Film film = leaning(wide, 8, 0);
-  const ParaxialModel model(Model::thick, lens, upright_radius(lens, film, Model::thick));
+  const ParaxialModel model(ModelKind::thick, lens, upright_radius(lens, film, ModelKind::thick));
   const double scale = 1, x = 1, y = 2, u = 0.3, v = 0.4;
   std::array<double, 7> out{};
   RayFate fate = RayFate::transmitted;
@@ -244,7 +245,7 @@ TEST(TiltedFilm, IsNotTakenForAnUprightOne) {
 
 TEST(TiltedFilm, IsRefusedInTheLens) {
   const auto refusal = [](const char* id, const Film& film) {
-    return testing::message([&] { Camera(testing::data_lens(id), film, {.model = Model::exact_float}); });
+    return testing::message([&] { Camera(testing::data_lens(id), film, {.model = ModelKind::exact_float}); });
   };
   const auto has = [](const std::string& text, const char* part) { return text.find(part) != std::string::npos; };
   EXPECT_EQ(refusal("double_gauss_100mm_f2.0", leaning(wide, 30, 0)), "no error");
@@ -254,11 +255,11 @@ TEST(TiltedFilm, IsRefusedInTheLens) {
   EXPECT_TRUE(has(refusal("tessar_100mm_f2.8", leaning(wide, std::nan(""), 0)), "less than a quarter turn"));
   const Film steep_square = leaning({.width_mm = 20, .height_mm = 20}, 45, 0);
   const Lens fisheye = testing::data_lens("fisheye_6.3mm_f2.8");
-  const auto thin = testing::message([&] { Camera(fisheye, steep_square, {.model = Model::thin}); });
+  const auto thin = testing::message([&] { Camera(fisheye, steep_square, {.model = ModelKind::thin}); });
   EXPECT_TRUE(has(thin, "at least a tenth of the film's distance from the pupil")) << thin;
   const Lens lens = testing::data_lens("tessar_100mm_f2.8");
   const Film film = leaning(wide, 20, 0);
-  EXPECT_TRUE(has(testing::message([&] { Camera(lens, film, make_model(Model::thick, lens, film.radius_mm())); }),
+  EXPECT_TRUE(has(testing::message([&] { Camera(lens, film, make_model(ModelKind::thick, lens, film.radius_mm())); }),
                   "the model is one for film points up to"));
 }
 
@@ -270,9 +271,9 @@ TEST(TiltedFilm, IsRefusedWithoutACameraToo) {
   const Film flipped = leaning({.width_mm = -36, .height_mm = 24}, 20, 0);
   const Film unknown = leaning({.width_mm = std::nan(""), .height_mm = 24}, 0, 0);
   const Film close = leaning({.width_mm = 36, .height_mm = 300}, 60, 0);
-  const PupilMap pupils = PupilMap::covering(lens, upright_radius(lens, film, Model::exact_double));
+  const FilmPupilTable pupils = FilmPupilTable::enclosing(lens, upright_radius(lens, film, ModelKind::exact_double));
   const auto radius = [&](const Film& f) {
-    return testing::message([&] { upright_radius(lens, f, Model::exact_double); });
+    return testing::message([&] { upright_radius(lens, f, ModelKind::exact_double); });
   };
   const auto tilted = [&](const Film& f) { return testing::message([&] { TiltedFilm(f, pupils); }); };
   for (const auto& [wrong, wanted] :

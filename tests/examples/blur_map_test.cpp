@@ -14,13 +14,13 @@
 namespace {
 
 using examples::PointScene;
-using petzval::ScenePlace;
+using petzval::ScenePoint;
 
 const petzval::Plane table{{0.1, std::cos(0.3), std::sqrt(1 - 0.01 - std::cos(0.3) * std::cos(0.3))}, -300};
 
 /// Places of a plane at some depths, spread over the picture of a lens of 100 mm.
-std::vector<ScenePlace> places_of(const petzval::Plane& plane) {
-  std::vector<ScenePlace> result;
+std::vector<ScenePoint> places_of(const petzval::Plane& plane) {
+  std::vector<ScenePoint> result;
   for (const auto& [x, z] :
        {std::pair{-0.1, -850.0}, {0.12, -900.0}, {0.0, -1000.0}, {-0.13, -1150.0}, {0.1, -1200.0}}) {
     const double across = x * -z;
@@ -38,11 +38,11 @@ double at(const examples::BlurMap& map, double x, double y) {
 TEST(PointScene, GoesThroughItsPoints) {
   const petzval::IdealLens lens = petzval::thick_lens(petzval::testing::data_lens("double_gauss_100mm_f2_28deg"));
   const petzval::FilmPose film{.film_z = 150};
-  std::vector<ScenePlace> places = places_of(table);
+  std::vector<ScenePoint> places = places_of(table);
   places.push_back({{80, 30, -2000}, false});
   places.push_back({{-0.05, 0.1, -1}, true});
   const PointScene scene(lens, places);
-  for (const ScenePlace& place : places) {
+  for (const ScenePoint& place : places) {
     const auto point = examples::on_film(lens, film, place);
     ASSERT_TRUE(point);
     const auto found = scene.at(film, *point);
@@ -59,7 +59,7 @@ TEST(PointScene, GoesThroughItsPoints) {
 }
 
 TEST(PointScene, WantsAPointInFront) {
-  const std::vector<ScenePlace> behind{{{0, 0, 100}, false}};
+  const std::vector<ScenePoint> behind{{{0, 0, 100}, false}};
   EXPECT_THROW(PointScene(petzval::thin_lens(50, 2), behind), petzval::Error);
 }
 
@@ -83,7 +83,7 @@ TEST(BlurMap, APlaneIsSharpAllOverOnItsFilm) {
 TEST(BlurMap, IsTheRightWayUpAndSigned) {
   const petzval::IdealLens lens = petzval::thin_lens(50, 2);
   // Near at the lower left, far at the upper right.
-  const std::vector<ScenePlace> places{{{-200, -150, -1000}, false}, {{600, 450, -3000}, false}};
+  const std::vector<ScenePoint> places{{{-200, -150, -1000}, false}, {{600, 450, -3000}, false}};
   const examples::Picture picture{
       .film = {.film_z = lens.image({{0, 0, -1500}, false})->position.z}, .frame = {36, 24}, .pixels = 360};
   const auto near = picture.pixel(*examples::on_film(lens, picture.film, places[0]));
@@ -103,7 +103,7 @@ TEST(BlurMap, IsTheRightWayUpAndSigned) {
 
 TEST(BlurMap, ExactRaysAgreeWithTheThickLensStoppedDown) {
   const petzval::Lens lens = petzval::with_f_number(petzval::testing::data_lens("double_gauss_100mm_f2_28deg"), 32);
-  const petzval::PointBundles rays(lens, 30, 96);
+  const petzval::ImageRays rays(lens, 30, 96);
   const auto places = places_of(table);
   const PointScene scene(rays.ideal(), places);
   const examples::Picture picture{

@@ -56,7 +56,7 @@ TEST_F(CameraRays, GivesTheLibrarysNumbers) {
   const petzval::Lens wide_open = petzval::compile(petzval::read_prescription(lens("double_gauss_100mm_f2.0")));
   const petzval::Lens lens_f4 =
       petzval::with_focus(petzval::with_f_number(wide_open, 4), 3000, {.origin = petzval::DistanceOrigin::film});
-  const petzval::Camera camera(lens_f4, {}, {.model = petzval::Model::exact_double});
+  const petzval::Camera camera(lens_f4, {}, {.model = petzval::ModelKind::exact_double});
   const auto rows = rays("double_gauss_100mm_f2.0", std::string(header) + "7.5,-10.25,0.125,0.75,587.5618\n",
                          "exact_double", {"--f-number", "4"});
   ASSERT_EQ(rows.size(), 1u);
@@ -72,7 +72,7 @@ TEST_F(CameraRays, GivesTheLibrarysNumbers) {
 
 // The film is the physical one: its lower half sees what is above.
 TEST_F(CameraRays, TurnsTheImageUpsideDownOnEveryRung) {
-  for (const petzval::Model model : petzval::models()) {
+  for (const petzval::ModelKind model : petzval::models()) {
     const auto rows = rays("double_gauss_100mm_f2.0", std::string(header) + "3,-10,0.3,0.2,587.5618\n",
                            std::string(petzval::name(model)));
     ASSERT_EQ(rows.size(), 1u);
@@ -91,7 +91,7 @@ TEST_F(CameraRays, TiltsItsFilm) {
                           {.origin = petzval::DistanceOrigin::film});
   const petzval::Film film{.tilt_rad = petzval::radians(8.0), .swing_rad = petzval::radians(-3.0)};
   const std::string csv = std::string(header) + "7.5,-10.25,0.125,0.75,587.5618\n";
-  for (const petzval::Model model : {petzval::Model::thick, petzval::Model::exact_double}) {
+  for (const petzval::ModelKind model : {petzval::ModelKind::thick, petzval::ModelKind::exact_double}) {
     const auto rows = rays("double_gauss_100mm_f2.0", csv, std::string(petzval::name(model)),
                            {"--tilt-deg", "8", "--swing-deg", "-3"});
     const auto r = petzval::Camera(lens_3m, film, {.model = model}).sample({{7.5, -10.25}, 0.125, 0.75});

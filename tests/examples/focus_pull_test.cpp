@@ -67,9 +67,9 @@ TEST_F(FocusPull, SaysWhatTheLibraryFinds) {
   const petzval::Lens lens =
       petzval::with_f_number(petzval::compile(petzval::read_prescription(Programs::lens(id))), 4);
   petzval::FocusPoint point;
-  point.keys.push_back({1, petzval::ScenePlace{{0, 0, -1000}, false}});
-  point.keys.push_back({3, petzval::ScenePlace{{100, 0, -4000}, false}});
-  const petzval::PointBundles rays(lens, 1.3 * std::hypot(18, 12));
+  point.keys.push_back({1, petzval::ScenePoint{{0, 0, -1000}, false}});
+  point.keys.push_back({3, petzval::ScenePoint{{100, 0, -4000}, false}});
+  const petzval::ImageRays rays(lens, 1.3 * std::hypot(18, 12));
   for (const std::string criterion : {"min_rms", "min_max"}) {
     const json all =
         frames({Programs::lens(id)}, rack, {"--f-number", "4", "--criterion", criterion, "--frames-per-s", "2"});

@@ -147,7 +147,7 @@ TEST_F(TiltShift, SaysWhatTheLibraryFinds) {
     EXPECT_EQ(found["film_z_mm"], after.film.film_z);
     EXPECT_EQ(found["film_tilt_deg"], petzval::degrees(after.film.tilt_rad));
     EXPECT_EQ(found["film_swing_deg"], petzval::degrees(after.film.swing_rad));
-    const petzval::PointBundles rays(lens, 1.3 * std::hypot(18, 12), 4096);
+    const petzval::ImageRays rays(lens, 1.3 * std::hypot(18, 12), 4096);
     for (std::size_t i = 0; i < targets.size(); ++i) {
       EXPECT_EQ(found["blur_um"][i]["predicted"], 1e3 * after.blurs[i].blur_mm);
       const auto traced = petzval::blur_on(rays.bundle(targets[i].place), after.film);

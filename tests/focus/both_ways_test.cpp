@@ -25,7 +25,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double eps = std::numeric_limits<double>::epsilon();
 
 double focal_length(const Lens& lens) {
-  return std::abs(first_order(lens, lens.central_wavelength(), main_meridian(lens)).effective_focal_length);
+  return std::abs(first_order(lens, lens.primary_wavelength(), main_meridian(lens)).effective_focal_length);
 }
 
 /// From the film to the distance and back to the film, from far away to magnifications of a quarter.

@@ -30,7 +30,7 @@ struct Spread {
 };
 
 /// About the centroid on a film, of a square grid of rays over the pupil's plane.
-Spread spread(const Lens& lens, const ScenePoint& point, double film_z, const std::vector<double>& colours = {1},
+Spread spread(const Lens& lens, const FieldPoint& point, double film_z, const std::vector<double>& colours = {1},
               int across = 201) {
   const PupilPlane plane(lens, point);
   double reach = 0;

@@ -248,7 +248,7 @@ TEST(Compile, AnIndexTheLensHasNotIsAnError) {
 }
 
 TEST(Compile, TheWavelengthNearestTheDLineSpeaksForTheLens) {
-  EXPECT_EQ(compile(doublet(flint), std::array{f, c, d}, {.glasses = &glasses()}).central_wavelength(), 2u);
+  EXPECT_EQ(compile(doublet(flint), std::array{f, c, d}, {.glasses = &glasses()}).primary_wavelength(), 2u);
 }
 
 }  // namespace

@@ -49,7 +49,7 @@ TEST(Autofocus, OfOneTargetOnTheAxisIsSolveFocus) {
   for (const char* id : {"double_gauss_100mm_f2.0", "telephoto_100mm_f5.6", "retrofocus_100mm_f2.8", "fisheye_8mm_f2.8",
                          "zoom_57-143mm_f2.8_tele", "anamorphic_60mm_2x"}) {
     const Lens lens = data_lens(id);
-    const std::size_t wavelength = lens.central_wavelength();
+    const std::size_t wavelength = lens.primary_wavelength();
     for (const double distance : {2000.0, 1e5, 1e12, infinity}) {
       SCOPED_TRACE(std::string(id) + " at " + std::to_string(distance));
       for (const auto criterion : {thin, paraxial}) {
@@ -71,7 +71,7 @@ TEST(Autofocus, ByExactRaysIsSolveFocusAsFarAsTheRaysTell) {
     double rms_mm, max_mm;
   };
   for (const auto& [rays, rms_mm, max_mm] : {Case{256, 0.004, 0.05}, Case{1024, 0.004, 0.02}}) {
-    const PointBundles bundles(lens, 22, rays);
+    const ImageRays bundles(lens, 22, rays);
     for (const double degrees : {0.0, 3.0, 6.0, 10.0}) {
       const double field = degrees * std::numbers::pi / 180;
       for (const double distance : {1500.0, 1e4, 1e9}) {
@@ -131,7 +131,7 @@ TEST(Autofocus, HasNoBetterNeighbour) {
 TEST(Autofocus, ByExactRaysHasNoBetterNeighbour) {
   const std::vector targets{at(0, 0, -1000, 0, 2), at(150, 60, -1300, 0, 1), at(-100, 20, -1100, 0, 0.5)};
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
-  const PointBundles bundles(lens, 22);
+  const ImageRays bundles(lens, 22);
   const auto blur = [&](std::size_t i, double film_z) {
     return *blur_on(bundles.bundle(targets[i].place), {film_z, 0, 0});
   };
@@ -157,7 +157,7 @@ TEST(Autofocus, ByExactRaysHasNoBetterNeighbour) {
 TEST(Autofocus, BlursOneTargetAsWanted) {
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
   const IdealLens ideal = thick_lens(lens);
-  const PointBundles bundles(lens, 22);
+  const ImageRays bundles(lens, 22);
   for (const double wanted : {-0.5, -0.2, 0.2, 2.0}) {
     const std::vector target{at(50, -100, -1500, wanted)};
     EXPECT_NEAR(autofocus(ideal, target, lens.film_z()).blurs[0].blur_mm, wanted, 1e-12);
@@ -173,7 +173,7 @@ TEST(Autofocus, BlursOneTargetAsWanted) {
 
 TEST(Autofocus, DoesNotDependOnOrderAndCountsDuplicatesAsWeight) {
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
-  const PointBundles bundles(lens, 22);
+  const ImageRays bundles(lens, 22);
   const FocusTarget a = at(0, 0, -1000), b = at(100, 50, -1500, 0.02, 3), c = at(-50, 0, -4000, 0, 0.2);
   FocusTarget b1 = b, none = at(0, 0, -300);
   b1.weight = 1, none.weight = 0;
@@ -194,7 +194,7 @@ TEST(Autofocus, DoesNotDependOnOrderAndCountsDuplicatesAsWeight) {
 
 TEST(Autofocus, ReachesInfinity) {
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
-  const PointBundles bundles(lens, 22);
+  const ImageRays bundles(lens, 22);
   const std::vector<FocusTarget> far{{{{0, 0, -1}, true}, 0, 1}};
   EXPECT_NEAR(autofocus(bundles.ideal(), far, 100).film_z, bundles.ideal().rear_focal_z, 1e-12 * 100);
   EXPECT_NEAR(autofocus(bundles, far).film_z, solve_focus(lens, infinity, {.criterion = min_rms}).film_z, 0.005);
@@ -206,7 +206,7 @@ TEST(Autofocus, ReachesInfinity) {
 TEST(Autofocus, ReportsBreathingAndTheChangeOfMagnification) {
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
   const double before = lens.film_z(), exit_z = pupils(lens).exit.z;
-  const Autofocus focus = autofocus(PointBundles(lens, 22), std::vector{at(0, 0, -1000)}, min_rms);
+  const Autofocus focus = autofocus(ImageRays(lens, 22), std::vector{at(0, 0, -1000)}, min_rms);
   EXPECT_GT(focus.breathing, 0.05);
   // Infinity focus of bundles is within 4 um of that of the solver.
   EXPECT_NEAR(focus.breathing, *breathing(lens, focus.film_z, {.criterion = min_rms}), 1e-4);
@@ -226,7 +226,7 @@ TEST(Autofocus, ReportsBreathingAndTheChangeOfMagnification) {
 
 TEST(Autofocus, LeavesTheFilmWhereNothingCanBeDone) {
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
-  const PointBundles bundles(lens, 22);
+  const ImageRays bundles(lens, 22);
   const std::vector useless{at(0, 0, 100),
                             at(nan, 0, -1000),
                             at(0, 0, -1000, nan),
@@ -234,9 +234,8 @@ TEST(Autofocus, LeavesTheFilmWhereNothingCanBeDone) {
                             at(0, 0, -1000, 0, infinity),
                             at(0, 0, -1000, 0, 0),
                             at(0, 0, -10)};
-  const std::vector expected{TargetUse::no_image, TargetUse::not_finite, TargetUse::not_finite,
-                             TargetUse::not_finite,   TargetUse::not_finite, TargetUse::no_weight,
-                             TargetUse::no_image};
+  const std::vector expected{TargetUse::no_image,   TargetUse::not_finite, TargetUse::not_finite, TargetUse::not_finite,
+                             TargetUse::not_finite, TargetUse::no_weight,  TargetUse::no_image};
   for (const Autofocus& focus : {autofocus(bundles.ideal(), useless, lens.film_z()),
                                  autofocus(bundles, useless, min_rms), autofocus(bundles, useless, min_max)}) {
     EXPECT_EQ(focus.status, no_targets);
@@ -265,7 +264,7 @@ TEST(Autofocus, LeavesTheFilmWhereNothingCanBeDone) {
 }
 
 TEST(Autofocus, SaysWhatIsWrong) {
-  const PointBundles bundles(data_lens("double_gauss_100mm_f2.0"), 22);
+  const ImageRays bundles(data_lens("double_gauss_100mm_f2.0"), 22);
   EXPECT_EQ(message([&] { autofocus(bundles.ideal(), {}, nan); }),
             "autofocus: the film stands at z = nan mm, wanted a finite place");
   EXPECT_EQ(message([&] { autofocus(bundles, {}, paraxial); }),

@@ -24,9 +24,9 @@ using Vec = Vec3<double>;
 const IdealLens thin = thin_lens(50, 2);
 
 FocusKey key(double time, const Vec& place, double blur_mm = 0, double weight = 1) {
-  return {time, ScenePlace{place, false}, blur_mm, weight};
+  return {time, ScenePoint{place, false}, blur_mm, weight};
 }
-FocusKey far_key(double time, const Vec& direction) { return {time, ScenePlace{direction, true}, 0, 1}; }
+FocusKey far_key(double time, const Vec& direction) { return {time, ScenePoint{direction, true}, 0, 1}; }
 FocusKey on_triangle(double time, const std::array<std::size_t, 3>& vertices, const std::array<double, 3>& parts) {
   return {time, OnTriangle{vertices, parts}, 0, 1};
 }
@@ -55,7 +55,7 @@ TEST(FocusPoints, AreAtTheirKeys) {
       point({key(0, {10, -20, -1000}, 0.1, 2), key(1, {300, 40, -2500}, -0.05, 0), key(4, {1, 2, -400})});
   for (const FocusKey& k : p.keys) {
     const FocusTarget t = only(p, moment(k.time));
-    expect_near(t.place.position, std::get<ScenePlace>(k.anchor).position, 1e-9);
+    expect_near(t.place.position, std::get<ScenePoint>(k.anchor).position, 1e-9);
     EXPECT_EQ(t.blur_mm, k.blur_mm);
     EXPECT_EQ(t.weight, k.weight);
   }

@@ -190,7 +190,7 @@ TEST(IdealLens, MapsPointsOnAPlaneToPointsOnItsImageAndBack) {
       EXPECT_NEAR(glm::dot(film.normal, image), film.offset, 1e-10);
       EXPECT_NEAR(glm::length(film.normal), 1, 1e-15);
       EXPECT_GE(film.normal.z, 0);
-      const ScenePlace back = lens.scene_of(image);
+      const ScenePoint back = lens.scene_of(image);
       EXPECT_FALSE(back.at_infinity);
       expect_near(back.position, place, 1e-11);
       const Plane plane = lens.scene_of(film).value();
@@ -211,7 +211,7 @@ TEST(IdealLens, FarPointsRunIntoThoseAtInfinity) {
       EXPECT_NEAR(image.slope_y, ideal.slope_y, 1e-9);
       EXPECT_NEAR(image.cone, ideal.cone, 1e-9);
     }
-    const ScenePlace back = lens.scene_of(ideal.position);
+    const ScenePoint back = lens.scene_of(ideal.position);
     EXPECT_TRUE(back.at_infinity);
     EXPECT_NEAR(glm::length(glm::normalize(back.position) - glm::normalize(direction)), 0, 1e-14);
     EXPECT_EQ(lens.image({{3, 4, -infinity}})->position, Vec(0, 0, lens.rear_focal_z));

@@ -23,8 +23,8 @@ const Lens& gauss() {
   static const Lens lens = data_lens("double_gauss_52mm_f1.8");
   return lens;
 }
-const PointBundles& bundles() {
-  static const PointBundles result(gauss(), 30);
+const ImageRays& bundles() {
+  static const ImageRays result(gauss(), 30);
   return result;
 }
 
@@ -35,7 +35,7 @@ Scene leaning(const IdealLens& lens) { return {3e-4, -1.5e-3, 5e-4, lens}; }
 struct Parabola {
   double z = 0, least = 0, by_z = 0;  ///< diameter^2 = least + by_z (film_z - z)^2
 };
-Parabola parabola(const PointBundle& bundle, const FilmPose& film) {
+Parabola parabola(const RayBundle& bundle, const FilmPose& film) {
   const auto square = [&](double step) {
     const double d = blur_on(bundle, {film.film_z + step, film.tilt_rad, film.swing_rad})->signed_diameter;
     return d * d;
@@ -50,7 +50,7 @@ Parabola parabola(const PointBundle& bundle, const FilmPose& film) {
 double rms(const Targets& targets, const FilmPose& film) {
   double sum = 0, weights = 0;
   for (const FocusTarget& t : targets) {
-    const PointBundle bundle = bundles().bundle(t.place);
+    const RayBundle bundle = bundles().bundle(t.place);
     const Parabola here = parabola(bundle, film), upright = parabola(bundle, {.film_z = film.film_z});
     const double defocus =
         std::copysign(std::sqrt(std::max(t.blur_mm * t.blur_mm - upright.least, 0.0) / here.by_z), t.blur_mm);
@@ -178,8 +178,8 @@ TEST(RayTiltFit, UprightIsAutofocus) {
 
 TEST(RayTiltFit, OnePointGetsItsSharpestFilm) {
   // On an upright film the squared RMS radius is a parabola in z, its foot at -cov(x, s) / var(s).
-  const ScenePlace place{{150, -80, -1500}};
-  const PointBundle bundle = bundles().bundle(place);
+  const ScenePoint place{{150, -80, -1500}};
+  const RayBundle bundle = bundles().bundle(place);
   const auto count = static_cast<double>(bundle.x.size());
   double x = 0, y = 0, sx = 0, sy = 0;
   for (std::size_t i = 0; i < bundle.x.size(); ++i) {
@@ -210,7 +210,7 @@ TEST(RayTiltFit, ThreeTargetsGetTheBlursTheyWant) {
 TEST(RayTiltFit, TendsToTheThickLensAsApertureAndFieldShrink) {
   double last = 0;
   for (const double size : {1.0, 0.5, 0.25}) {
-    const PointBundles narrow(with_f_number(gauss(), 8 / size), 30);
+    const ImageRays narrow(with_f_number(gauss(), 8 / size), 30);
     const Targets targets = leaning(narrow.ideal()).targets(12, 0.06 * size, 0.04 * size);
     const TiltFit rays = fit_tilt(narrow, targets, behind(narrow.ideal()));
     const TiltFit thick = fit_tilt(narrow.ideal(), targets, behind(narrow.ideal()));
@@ -228,7 +228,7 @@ TEST(RayTiltFit, UnitOfLengthDoesNotMatter) {
   const Targets targets = leaning(bundles().ideal()).targets(9, 0.25, 0.18);
   const TiltFit base = fit_tilt(bundles(), targets, behind(bundles().ideal()));
   for (const double unit : {0x1p-20, 0x1p20}) {  // exact, so that no ray at a rim changes its mind
-    const PointBundles scaled(compile(scale(data_prescription("double_gauss_52mm_f1.8"), unit)), 30 * unit);
+    const ImageRays scaled(compile(scale(data_prescription("double_gauss_52mm_f1.8"), unit)), 30 * unit);
     Targets there = targets;
     for (FocusTarget& t : there) t.place.position *= unit;
     TiltOptions options = behind(scaled.ideal());

@@ -42,7 +42,7 @@ Lens lens_of(const Case& c) {
 }
 
 /// The exact ray of a line; started in the plane of the last vertex.
-TracedRay<double> exact(const Lens& lens, const FilmSpace& space, const Lines<double>& lines, std::size_t i,
+TracedRay<double> exact(const Lens& lens, const TwoPlanes& space, const Lines<double>& lines, std::size_t i,
                         std::size_t wavelength = 0) {
   const Vec3<double> film(lines.film_x[i], lines.film_y[i], space.film_z);
   const Vec3<double> along = Vec3<double>(lines.pupil_x[i], lines.pupil_y[i], space.pupil_z) - film;
@@ -86,7 +86,7 @@ TEST(PolynomialFit, ErrorsFallWithTheDegreeAndAreWhatIsStated) {
   for (const Case& c : cases) {
     SCOPED_TRACE(c.id);
     const Lens lens = lens_of(c);
-    const PupilMap pupils = PupilMap::matching(lens, c.film_radius);
+    const FilmPupilTable pupils = FilmPupilTable::equal_area(lens, c.film_radius);
     const Lines<double> lines = lines_through<double>(pupils, 10000, 1);
     double last = std::numeric_limits<double>::infinity();
     for (int degree = 3; degree <= 11; degree += 2) {
@@ -114,7 +114,7 @@ TEST(PolynomialFit, DoubleGaussIsAsGoodAsKnown) {
   const std::array<std::array<double, 5>, 2> limits{{{31, 6.8, 1.2, 0.17, 0.023}, {13.5, 1.4, 0.15, 0.014, 0.0013}}};
   for (std::size_t k = 0; k < limits.size(); ++k) {
     const Lens lens = lens_of(cases[k]);
-    const PupilMap pupils = PupilMap::matching(lens, cases[k].film_radius);
+    const FilmPupilTable pupils = FilmPupilTable::equal_area(lens, cases[k].film_radius);
     const double focal_length = first_order(lens).effective_focal_length;
     for (int degree = 3; degree <= 11; degree += 2) {
       const RayPolynomial polynomial = RayPolynomial::fit(lens, pupils, degree);
@@ -126,7 +126,7 @@ TEST(PolynomialFit, DoubleGaussIsAsGoodAsKnown) {
 TEST(PolynomialFit, HoldsThePupilsOfItsMap) {
   for (const Case& c : cases) {
     const Lens lens = lens_of(c);
-    const PupilMap pupils = PupilMap::covering(lens, c.film_radius);
+    const FilmPupilTable pupils = FilmPupilTable::enclosing(lens, c.film_radius);
     const RayPolynomial polynomial = RayPolynomial::fit(lens, pupils, 3);
     Lines<float> lines = lines_through<float>(pupils, 5000, 2);
     double unmoved = 0;               // the radius that discs about the axis would need
@@ -146,7 +146,7 @@ TEST(PolynomialFit, HoldsThePupilsOfItsMap) {
 TEST(PolynomialFit, FindsTheWayBack) {
   for (const Case& c : cases) {
     const Lens lens = lens_of(c);
-    const PupilMap pupils = PupilMap::matching(lens, c.film_radius);
+    const FilmPupilTable pupils = FilmPupilTable::equal_area(lens, c.film_radius);
     for (int degree = 3; degree <= 11; degree += 2) {
       const RayPolynomial polynomial = RayPolynomial::fit(lens, pupils, degree);
       Lines<double> lines = lines_through<double>(pupils, 1000, 3);
@@ -173,7 +173,7 @@ TEST(PolynomialFit, FindsTheWayBack) {
 TEST(PolynomialFit, FloatAddsLittle) {
   for (const Case& c : cases) {
     const Lens lens = lens_of(c);
-    const PupilMap pupils = PupilMap::matching(lens, c.film_radius);
+    const FilmPupilTable pupils = FilmPupilTable::equal_area(lens, c.film_radius);
     for (const int degree : {3, 7, 11}) {
       const RayPolynomial polynomial = RayPolynomial::fit(lens, pupils, degree);
       Lines<float> single = lines_through<float>(pupils, 2000, 4);
@@ -198,7 +198,7 @@ TEST(PolynomialFit, EveryWavelengthHasItsOwn) {
   const GlassCatalogue glasses = GlassCatalogue::load(std::filesystem::path(PETZVAL_TEST_DATA) / "glass");
   const std::array<double, 3> nm{656.2725, 587.5618, 486.1327};
   const Lens lens = compile(data_prescription("double_gauss_100mm_f2_28deg"), nm, {.glasses = &glasses});
-  const PupilMap pupils = PupilMap::matching(lens, 20);
+  const FilmPupilTable pupils = FilmPupilTable::equal_area(lens, 20);
   const RayPolynomial polynomial = RayPolynomial::fit(lens, pupils, 9);
   ASSERT_EQ(polynomial.fits().size(), 3u);
   const double focal_length = first_order(lens).effective_focal_length;
@@ -215,13 +215,14 @@ TEST(PolynomialFit, EveryWavelengthHasItsOwn) {
 
 TEST(PolynomialFit, SaysWhyThereIsNone) {
   const Lens lens = data_lens("double_gauss_100mm_f2_28deg");
-  const PupilMap pupils = PupilMap::matching(lens, 20);
-  const auto why = [&](const Lens& of, const PupilMap& map, int degree) {
+  const FilmPupilTable pupils = FilmPupilTable::equal_area(lens, 20);
+  const auto why = [&](const Lens& of, const FilmPupilTable& map, int degree) {
     return testing::message([&] { RayPolynomial::fit(of, map, degree); });
   };
   const std::string where = lens.name() + ": polynomial: ";
   EXPECT_EQ(why(lens, pupils, 6), where + "degree is 6, wanted 3, 5, 7, 9 or 11");
-  EXPECT_EQ(why(lens, PupilMap::matching(lens, 0), 5), where + "the film's radius is 0, wanted more than one point");
+  EXPECT_EQ(why(lens, FilmPupilTable::equal_area(lens, 0), 5),
+            where + "the film's radius is 0, wanted more than one point");
   const Lens cylinder = data_lens("anamorphic_60mm_2x");
   EXPECT_EQ(why(cylinder, pupils, 5), cylinder.name() +
                                           ": polynomial: the lens has surfaces that are curved in one section only, "

@@ -24,7 +24,7 @@ struct Lines {
     film_x.push_back(static_cast<T>(fx)), film_y.push_back(static_cast<T>(fy));
     pupil_x.push_back(static_cast<T>(px)), pupil_y.push_back(static_cast<T>(py));
   }
-  FilmLines<const T> lines() const { return {film_x.data(), film_y.data(), pupil_x.data(), pupil_y.data()}; }
+  TwoPlaneRays<const T> lines() const { return {film_x.data(), film_y.data(), pupil_x.data(), pupil_y.data()}; }
   template <class U = T>
   RayArrays<U> rays() {
     return {ray[0].data(), ray[1].data(), ray[2].data(), ray[3].data(), ray[4].data(), ray[5].data()};
@@ -44,7 +44,8 @@ struct Lines {
 
 /// `count` lines evenly through the pupils of the whole film.
 template <class T>
-Lines<T> lines_through(const PupilMap& pupils, std::size_t count, std::uint32_t seed, std::size_t wavelength = 0) {
+Lines<T> lines_through(const FilmPupilTable& pupils, std::size_t count, std::uint32_t seed,
+                       std::size_t wavelength = 0) {
   std::mt19937 generator(seed);
   std::uniform_real_distribution<double> uniform(0, 1);
   Lines<T> result;

@@ -167,18 +167,18 @@ TEST(RayPolynomial, DerivativesAreDifferences) {
   // Film and pupil point of all lines move by two parameters; central differences of 1e-4 are right to 1e-7.
   for (const int degree : {3, 7, 11}) {
     const RayPolynomial polynomial(degree, domain(), {numbers(degree, -0.9, 0.02)});
-    const FilmLine by_u{1, -2, 0.5, 0.25}, by_v{0.5, 1, -2, 1};
-    const auto moved = [](const FilmLine& line, const FilmLine& by, double step) {
-      return FilmLine{0.9 * line.film_x + step * by.film_x, 0.9 * line.film_y + step * by.film_y,
-                      0.9 * line.pupil_x + step * by.pupil_x, 0.9 * line.pupil_y + step * by.pupil_y};
+    const TwoPlaneRay by_u{1, -2, 0.5, 0.25}, by_v{0.5, 1, -2, 1};
+    const auto moved = [](const TwoPlaneRay& line, const TwoPlaneRay& by, double step) {
+      return TwoPlaneRay{0.9 * line.film_x + step * by.film_x, 0.9 * line.film_y + step * by.film_y,
+                         0.9 * line.pupil_x + step * by.pupil_x, 0.9 * line.pupil_y + step * by.pupil_y};
     };
     const Lines<double> lines = all_over<double>();
     for (std::size_t i = 0; i < lines.size(); ++i) {
-      const FilmLine at{lines.film_x[i], lines.film_y[i], lines.pupil_x[i], lines.pupil_y[i]};
+      const TwoPlaneRay at{lines.film_x[i], lines.film_y[i], lines.pupil_x[i], lines.pupil_y[i]};
       constexpr double step = 1e-4;
       Lines<double> near;
-      for (const FilmLine& l : {moved(at, by_u, 0), moved(at, by_u, step), moved(at, by_u, -step),
-                                moved(at, by_v, step), moved(at, by_v, -step)}) {
+      for (const TwoPlaneRay& l : {moved(at, by_u, 0), moved(at, by_u, step), moved(at, by_u, -step),
+                                   moved(at, by_v, step), moved(at, by_v, -step)}) {
         near.add(l.film_x, l.film_y, l.pupil_x, l.pupil_y);
       }
       near.through(polynomial);

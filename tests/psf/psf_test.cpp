@@ -53,7 +53,7 @@ TEST(PointImage, PictureHoldsEveryTransmittedRay) {
 
 TEST(PointImage, CropTakesNothingFromThroughputOrProfile) {
   const Lens lens = data_lens("double_gauss_100mm_f1.35");
-  const ScenePoint point{radians(10), -700};
+  const FieldPoint point{radians(10), -700};
   const PointImage whole = point_image(lens, point, {.samples = 1 << 14, .pixels = 64});
   const PointImage cropped =
       point_image(lens, point, {.samples = 1 << 14, .pixels = 64, .half_width_mm = whole.size.rms_radius / 2});
@@ -66,7 +66,7 @@ TEST(PointImage, CropTakesNothingFromThroughputOrProfile) {
 
 TEST(PointImage, ThreadsLeaveNoTrace) {
   const Lens lens = data_lens("double_gauss_100mm_f1.35");
-  const ScenePoint point{radians(8), -1300};
+  const FieldPoint point{radians(8), -1300};
   const PointImage one = point_image(lens, point, {.samples = 30000, .threads = 1});
   const PointImage five = point_image(lens, point, {.samples = 30000, .threads = 5});
   EXPECT_EQ(one.psf.counts, five.psf.counts);
@@ -76,7 +76,7 @@ TEST(PointImage, ThreadsLeaveNoTrace) {
 
 TEST(PointImage, SeedsAgreeWithinTheirError) {
   const Lens lens = data_lens("double_gauss_100mm_f1.35");
-  const ScenePoint point{radians(8), -1300};
+  const FieldPoint point{radians(8), -1300};
   const PointImage a = point_image(lens, point, {.samples = 1 << 15, .seed = 1});
   const PointImage b = point_image(lens, point, {.samples = 1 << 15, .seed = 2});
   EXPECT_NE(a.psf.counts, b.psf.counts);
@@ -101,7 +101,7 @@ TEST(PointImage, MirrorsWithTheField) {
 TEST(PointImage, RowsRunFromTheTop) {
   // Coma: the light gathers on one side of the spot. Its first moments by the picture and by the hits must agree.
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
-  const ScenePoint point{radians(10), -infinity};
+  const FieldPoint point{radians(10), -infinity};
   const PointImage image = point_image(lens, point, {.samples = 1 << 14, .pixels = 40, .half_width_mm = 0.05});
   const FilmHits hits = trace_bundle(lens, PupilSampler(pupil_outline(lens, point)), 1 << 14);
   std::uint64_t above = 0, above_left = 0;

@@ -100,7 +100,7 @@ TEST(Aim, StatusIsThatOfTheRayTracedAnew) {
     const Lens lens = compile(p);
     for (double part = 0; part <= 1.2; part += 0.1) {
       for (const StopPoint& target : places()) {
-        const ScenePoint point{radians(part * *p.half_field_deg), -infinity, 0.3};
+        const FieldPoint point{radians(part * *p.half_field_deg), -infinity, 0.3};
         const AimedRay aimed = aim(lens, point, {0.98 * target.x, 0.98 * target.y});
         if (!aimed) continue;
         const auto traced = trace(lens, aimed.ray);
@@ -118,7 +118,7 @@ TEST(Aim, RayComesFromTheScenePoint) {
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
   const double pupil_z = pupils(lens).entrance.z;
   for (const double z : {-150.0, -1000.0, -1e6}) {
-    const ScenePoint point{radians(12), z, radians(30)};
+    const FieldPoint point{radians(12), z, radians(30)};
     const AimedRay aimed = aim(lens, point, {0.3, -0.6});
     ASSERT_TRUE(aimed);
     const double height = std::tan(radians(12)) * (pupil_z - z);

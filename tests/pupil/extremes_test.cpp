@@ -174,7 +174,7 @@ TEST(Extremes, WithoutAMarkedStopTheLimitingApertureServes) {
     SCOPED_TRACE(p.id);
     ASSERT_TRUE(pupils(lens).stop_inferred);
     for (const double share : {0.0, 0.3}) {
-      const ScenePoint point{radians(share * edge_deg(p)), -infinity};
+      const FieldPoint point{radians(share * edge_deg(p)), -infinity};
       const AimedRay edge = aim(lens, point, {0, 1});
       if (edge) {
         EXPECT_LE(edge.residual, 1e-12);
@@ -190,7 +190,7 @@ TEST(Extremes, AStopOfRadiusZeroHasItsCentreOnly) {
     SCOPED_TRACE(p.id);
     const Lens open = compile(p);
     const Lens lens = with_semi_diameter(open, *open.stop(), 0);
-    const ScenePoint point{radians(0.5 * edge_deg(p)), -infinity};
+    const FieldPoint point{radians(0.5 * edge_deg(p)), -infinity};
     const AimedRay chief = chief_ray(lens, point), wide = chief_ray(open, point);
     ASSERT_EQ(static_cast<bool>(chief), static_cast<bool>(wide));
     if (chief) {
@@ -206,7 +206,7 @@ TEST(Extremes, StopsFromHugeToTinyAreFound) {
   for (const double semi_diameter : {1e6, infinity, 1.0, 1e-3, 1e-6}) {
     SCOPED_TRACE(semi_diameter);
     const Lens lens = with_semi_diameter(open, 5, semi_diameter);
-    const ScenePoint point{radians(15), -infinity};
+    const FieldPoint point{radians(15), -infinity};
     EXPECT_TRUE(chief_ray(lens, point));
     const PupilOutline outline = pupil_outline(lens, point, 0, 32);
     ASSERT_FALSE(outline.empty());
@@ -219,7 +219,7 @@ TEST(Extremes, StopsFromHugeToTinyAreFound) {
 
 TEST(Extremes, PointsThatAreNoneAreRefused) {
   const Lens lens = data_lens("double_gauss_100mm_f1.35");
-  const std::vector<ScenePoint> bad{{nan, -infinity},
+  const std::vector<FieldPoint> bad{{nan, -infinity},
                                     {infinity, -infinity},
                                     {-4, -infinity},
                                     {0.1, nan},
@@ -230,7 +230,7 @@ TEST(Extremes, PointsThatAreNoneAreRefused) {
                                     {0.1, -infinity, nan},
                                     {0.1, -1, infinity},
                                     {radians(100), -50}};
-  for (const ScenePoint& point : bad) {
+  for (const FieldPoint& point : bad) {
     const std::string start = lens.name() + ": scene point: ";
     for (const std::string& said :
          {message([&] { chief_ray(lens, point); }), message([&] { pupil_outline(lens, point); }), message([&] {

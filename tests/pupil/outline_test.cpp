@@ -74,7 +74,7 @@ TEST_P(Outline, HasTheAreaOfAGridOfRays) {
 
 TEST_P(Outline, FewDirectionsGiveNearlyTheAreaOfMany) {
   const Lens lens = data_lens(GetParam().lens);
-  const ScenePoint point{radians(GetParam().field_deg), -infinity};
+  const FieldPoint point{radians(GetParam().field_deg), -infinity};
   const PupilOutline usual = pupil_outline(lens, point), fine = pupil_outline(lens, point, 0, 2048);
   const bool crescent = GetParam().lens == std::string("cylinder_3.9mm");
   EXPECT_NEAR(usual.area() / fine.area(), 1, crescent ? 3e-3 : 5e-4);
@@ -155,7 +155,7 @@ TEST(PupilOutline, FindsThinRegionsThatTheChiefRayMisses) {
   int slivers = 0;
   double last = infinity;
   for (double field = 14; field < 26; field += 0.5) {
-    const ScenePoint point{radians(field), -infinity};
+    const FieldPoint point{radians(field), -infinity};
     const PupilOutline outline = pupil_outline(lens, point);
     EXPECT_LT(outline.area(), last) << field;
     last = std::max(outline.area(), 1e-9);

@@ -25,7 +25,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 TEST(PupilPlane, RaysRunFromTheScenePointThroughThePupilPoint) {
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
   const double pupil_z = pupils(lens).entrance.z;
-  const ScenePoint point{radians(25), pupil_z - 1000};
+  const FieldPoint point{radians(25), pupil_z - 1000};
   const Ray<double> ray = PupilPlane(lens, point).ray(3, -4);
   EXPECT_EQ(ray.origin, Vec3<double>(3, -4, pupil_z));
   EXPECT_NEAR(glm::length(ray.direction), 1, 4e-16);
@@ -126,7 +126,7 @@ TEST(PupilPlane, OfAFilmPointSendsRaysAgainstTheLight) {
 
 TEST(PupilPlane, RefusesPointsThatItCannotSee) {
   const Lens lens = front_stop_lens();
-  const auto said = [&](const ScenePoint& point) { return message([&] { PupilPlane(lens, point); }); };
+  const auto said = [&](const FieldPoint& point) { return message([&] { PupilPlane(lens, point); }); };
   const std::string start = "front stop: scene point: ";
   EXPECT_EQ(said({radians(181), -1000}), start + "field is 181 degrees, wanted -180 to 180");
   EXPECT_EQ(said({std::nan(""), -1000}), start + "field is nan degrees, wanted -180 to 180");

@@ -59,7 +59,7 @@ TEST(PupilSampler, LeavesNothingOut) {
     SCOPED_TRACE(p.id);
     const Lens lens = compile(p);
     for (const double part : {0.7, 1.0}) {
-      const ScenePoint point{radians(part * p.half_field_deg.value_or(10)), -infinity};
+      const FieldPoint point{radians(part * p.half_field_deg.value_or(10)), -infinity};
       const PupilOutline outline = pupil_outline(lens, point);
       if (outline.empty()) continue;
       const PupilSampler sampler(outline);
@@ -76,7 +76,7 @@ TEST(PupilSampler, LeavesNothingOut) {
       }
       std::sort(bounds.begin(), bounds.end(), [](const Bound& a, const Bound& b) { return a.angle < b.angle; });
       for (const PupilSpan& span : pupil_outline(lens, point, 0, 2048).spans) {
-        for (const PupilEdge& edge : {span.from, span.to}) {
+        for (const RimPoint& edge : {span.from, span.to}) {
           if (edge.surface < 0) continue;
           const auto [angle, radius] = polar(outline, {edge.x, edge.y});
           auto bound = std::lower_bound(bounds.begin(), bounds.end(), angle,

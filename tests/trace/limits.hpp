@@ -24,7 +24,7 @@ using petzval::RayFate;
 using petzval::Travel;
 
 using L = long double;
-using Exactly = petzval::kernel::Passage<L>;
+using Exactly = petzval::kernel::TraceState<L>;
 
 /// How many eps of its own numbers a ray may lie beside one whose fate it is given.
 inline constexpr int eps_beside = 64;

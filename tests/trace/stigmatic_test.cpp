@@ -25,7 +25,7 @@ Vec<double> cross(const Vec<double>& a, const Vec<double>& b) {
 }
 
 /// Distance of a point of the axis from the line of a ray.
-double miss(const petzval::kernel::Passage<double>& ray, double z) {
+double miss(const petzval::kernel::TraceState<double>& ray, double z) {
   const auto c = cross(Vec<double>{-ray.origin.x, -ray.origin.y, z - ray.origin.z}, ray.direction);
   return std::sqrt(dot(c, c));
 }

@@ -12,7 +12,7 @@
 #include "petzval/core/export.hpp"
 #include "petzval/lens/lens.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 
 /// What the weights of a camera are measured in.
 enum class Normalisation : std::uint8_t {
@@ -21,7 +21,7 @@ enum class Normalisation : std::uint8_t {
 };
 
 struct CameraOptions {
-  Model model = Model::exact_float;
+  ModelKind model = ModelKind::exact_float;
   Normalisation normalisation = Normalisation::irradiance;
 };
 
@@ -48,9 +48,9 @@ class PETZVAL_API Camera {
 
   const Lens& lens() const noexcept;
   const Film& film() const noexcept;
-  Model model() const noexcept;
+  ModelKind model() const noexcept;
   /// Those of the model, by points of the upright film.
-  const PupilMap& pupils() const noexcept;
+  const FilmPupilTable& pupils() const noexcept;
   /// A tilted film and its pupils; null for an upright one.
   const TiltedFilm* tilted_film() const noexcept;
 
@@ -81,4 +81,4 @@ class PETZVAL_API Camera {
   std::shared_ptr<const Data> data_;
 };
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

@@ -5,10 +5,10 @@
 
 #include "petzval/core/ray.hpp"
 #include "petzval/lens/ray_wavelengths.hpp"
-#include "petzval/pupil/scene_point.hpp"
+#include "petzval/pupil/field_point.hpp"
 #include "petzval/trace/batch.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 
 /// What a renderer asks for: a point of the film, a sample of its pupil, a wavelength.
 struct CameraSample {
@@ -72,4 +72,4 @@ struct CameraRayDifferential {
   Ray<double> by_film_x{{0, 0, 0}, {0, 0, 0}}, by_film_y{{0, 0, 0}, {0, 0, 0}};
 };
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

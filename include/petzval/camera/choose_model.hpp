@@ -13,7 +13,7 @@
 #include "petzval/core/export.hpp"
 #include "petzval/lens/lens.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 
 /// What a scene asks of a camera.
 struct SceneRequirements {
@@ -40,7 +40,7 @@ struct ErrorBudget {
 /// sharpest depth where a budget asks for it), and float's eps times the focal length. For exposure and pupil shape:
 /// 4 % and what the counting of samples leaves uncertain.
 struct ModelCandidate {
-  Model model{};
+  ModelKind model{};
   bool available = true;  ///< false: it cannot be built for this lens, and `remark` says why
   std::string remark = {};
   ModelError error = {};  ///< as measured; RMS and 99 % are of this
@@ -51,8 +51,8 @@ struct ModelCandidate {
 };
 
 struct ModelChoice {
-  Model model = Model::exact_double;      ///< which is always inside: its errors are 0 by definition
-  std::vector<std::string> reasons = {};  ///< why this one, and why not each cheaper one, with the numbers
+  ModelKind model = ModelKind::exact_double;  ///< which is always inside: its errors are 0 by definition
+  std::vector<std::string> reasons = {};      ///< why this one, and why not each cheaper one, with the numbers
   /// What else the scene does without, with the numbers: each by itself inside the budget, not all at once.
   std::vector<std::string> not_needed = {};
   std::vector<ModelCandidate> table = {};  ///< every rung, in the order of models()
@@ -68,12 +68,12 @@ struct ModelChoice {
 ///     const Camera camera(lens, film, {.model = choice.model});
 ///
 /// Throws Error for a tilted film, near_mm not in front of the lens or beyond far_mm, wavelengths that were not
-/// compiled, a part of the budget that is negative or NaN, and where with_f_number, Camera with Model::exact_double and
-/// model_error do.
+/// compiled, a part of the budget that is negative or NaN, and where with_f_number, Camera with ModelKind::exact_double
+/// and model_error do.
 PETZVAL_API ModelChoice choose_model(const Lens& lens, const SceneRequirements& scene, const ErrorBudget& budget,
                                      int threads = 1);
 /// One choice for each of several budgets, from one measurement.
 PETZVAL_API std::vector<ModelChoice> choose_models(const Lens& lens, const SceneRequirements& scene,
                                                    std::span<const ErrorBudget> budgets, int threads = 1);
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

@@ -6,23 +6,23 @@
 #include "petzval/camera/ray_model.hpp"
 #include "petzval/lens/lens.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 
 /// The lens itself: rays traced through every surface, in float or double whatever numbers come and go.
 template <class R>
 class ExactModel {
  public:
-  /// Throws Error where PupilMap::covering does.
-  ExactModel(const Lens& lens, double film_radius) : ExactModel(lens, PupilMap::covering(lens, film_radius)) {}
-  ExactModel(const Lens& lens, PupilMap covering)
-      : lens_(lens), pupils_(std::move(covering)), towards_(towards_scene(lens_, pupils_.space())) {}
+  /// Throws Error where FilmPupilTable::enclosing does.
+  ExactModel(const Lens& lens, double film_radius) : ExactModel(lens, FilmPupilTable::enclosing(lens, film_radius)) {}
+  ExactModel(const Lens& lens, FilmPupilTable enclosing)
+      : lens_(lens), pupils_(std::move(enclosing)), towards_(towards_scene(lens_, pupils_.space())) {}
 
-  const PupilMap& pupils() const noexcept { return pupils_; }
+  const FilmPupilTable& pupils() const noexcept { return pupils_; }
   template <class T>
-  void to_scene(std::size_t count, const FilmLines<const T>& lines, const RayWavelengths& wavelengths,
+  void to_scene(std::size_t count, const TwoPlaneRays<const T>& lines, const RayWavelengths& wavelengths,
                 const RayArrays<T>& rays, RayFate* fates) const noexcept;
   void to_film(std::size_t count, const RayArrays<const double>& rays, const RayWavelengths& wavelengths,
-               const FilmLines<double>& lines, RayFate* fates) const noexcept;
+               const TwoPlaneRays<double>& lines, RayFate* fates) const noexcept;
 
   /// One line with its derivatives, in double.
   RayDerivatives to_scene(const LineDerivatives& line, std::size_t wavelength) const noexcept;
@@ -31,11 +31,11 @@ class ExactModel {
 
  private:
   Lens lens_;
-  PupilMap pupils_;
+  FilmPupilTable pupils_;
   double towards_;
 };
 
 template <class R>
 inline constexpr bool ends_at_rims<ExactModel<R>> = true;
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

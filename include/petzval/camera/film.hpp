@@ -5,9 +5,9 @@
 #include <cmath>
 #include <limits>
 
-#include "petzval/pupil/scene_point.hpp"
+#include "petzval/pupil/field_point.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 
 /// A rectangle of film where the lens has its film plane: perpendicular to the axis or leaning about the point on it.
 /// Film points count from the axis along the film's own right and up (FilmPose has their places).
@@ -56,4 +56,4 @@ struct Film {
   static constexpr double rounding = 2 * std::numeric_limits<T>::epsilon();
 };
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

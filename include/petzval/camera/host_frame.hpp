@@ -7,7 +7,7 @@
 #include "petzval/core/ray.hpp"
 #include "petzval/lens/lens.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 
 /// Renderers whose camera frames are known here.
 enum class Host : std::uint8_t { pbrt, mitsuba, cycles, arnold, appleseed };
@@ -39,4 +39,4 @@ class PETZVAL_API HostFrame {
   double origin_z_ = 0, units_per_mm_ = 1;
 };
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

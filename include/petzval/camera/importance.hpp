@@ -8,9 +8,9 @@
 #include "petzval/core/export.hpp"
 #include "petzval/core/ray.hpp"
 #include "petzval/core/vec3.hpp"
-#include "petzval/pupil/scene_point.hpp"
+#include "petzval/pupil/field_point.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 
 /// What a camera makes of a ray from the scene, for light tracing and bidirectional methods.
 ///
@@ -66,4 +66,4 @@ struct Projection {
   explicit operator bool() const noexcept { return status == ProjectionStatus::converged; }
 };
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

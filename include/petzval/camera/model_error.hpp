@@ -14,7 +14,7 @@
 #include "petzval/core/export.hpp"
 #include "petzval/lens/lens.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 
 /// Where a model is compared with the lens.
 struct ErrorSamples {
@@ -63,9 +63,9 @@ struct ModelError {
 /// Measures one of the models. Throws Error where it cannot be built (see Camera), for a tilted film, for depths that
 /// are none or not in front of the lens, for wavelengths that were not compiled, for a lens without focal length, and
 /// for one without light on the film.
-PETZVAL_API ModelError model_error(const Lens& lens, const Film& film, Model model, const ErrorSamples& samples);
+PETZVAL_API ModelError model_error(const Lens& lens, const Film& film, ModelKind model, const ErrorSamples& samples);
 /// The same for models that were built before, for this lens and film: exact rays are traced once for all of them.
 PETZVAL_API std::vector<ModelError> model_errors(const Lens& lens, const Film& film, std::span<const AnyModel> models,
                                                  const ErrorSamples& samples);
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

@@ -10,14 +10,14 @@
 #include "petzval/lens/lens.hpp"
 #include "petzval/trace/batch.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 
-namespace detail {
+namespace camera_detail {
 /// A linear map of pairs, alike for x and y: from film and pupil point to place and slope of a ray, or back.
 struct PairMap {
   double a = 0, b = 0, c = 0, d = 0;  ///< (p, q) to (a p + b q, c p + d q)
 };
-}  // namespace detail
+}  // namespace camera_detail
 
 /// The lens to first order: pinhole, thin, thin_two_disc and thick.
 ///
@@ -39,29 +39,29 @@ class ParaxialModel {
   /// film_radius: of the farthest film point, mm. Throws Error for another model, and for a lens that is afocal, has no
   /// pupils or no finite one that the model is made of, is not alike in all sections, or has its film where no pupil
   /// can be told: in the image of the stop or, for thin lenses, in the rear principal plane.
-  PETZVAL_API ParaxialModel(Model model, const Lens& lens, double film_radius);
+  PETZVAL_API ParaxialModel(ModelKind model, const Lens& lens, double film_radius);
 
-  Model model() const noexcept { return model_; }
-  const PupilMap& pupils() const noexcept { return pupils_; }
+  ModelKind model() const noexcept { return model_; }
+  const FilmPupilTable& pupils() const noexcept { return pupils_; }
   /// Of a pinhole: its rays pass the plane of the pupil at so many times the film point's place. Empty for the others.
   std::span<const double> pinhole_shifts() const noexcept { return pinhole_shifts_; }
   /// missed_surface: numbers that are not finite (or beyond 1e12 mm) and wavelengths that were not compiled.
   template <class T>
-  PETZVAL_API void to_scene(std::size_t count, const FilmLines<const T>& lines, const RayWavelengths& wavelengths,
+  PETZVAL_API void to_scene(std::size_t count, const TwoPlaneRays<const T>& lines, const RayWavelengths& wavelengths,
                             const RayArrays<T>& rays, RayFate* fates) const noexcept;
   /// One line with its derivatives.
   PETZVAL_API RayDerivatives to_scene(const LineDerivatives& line, std::size_t wavelength) const noexcept;
   /// The lines that to_scene makes into these rays (a pinhole's: those of the thick lens). missed_surface as there, and
   /// rays that do not run towards the lens.
   PETZVAL_API void to_film(std::size_t count, const RayArrays<const double>& rays, const RayWavelengths& wavelengths,
-                           const FilmLines<double>& lines, RayFate* fates) const noexcept;
+                           const TwoPlaneRays<double>& lines, RayFate* fates) const noexcept;
 
  private:
-  Model model_;
-  PupilMap pupils_;
-  double z_ = 0;                                     // of the plane of object space that rays are given in
-  std::vector<detail::PairMap> to_scene_, to_film_;  // of each wavelength
+  ModelKind model_;
+  FilmPupilTable pupils_;
+  double z_ = 0;                                            // of the plane of object space that rays are given in
+  std::vector<camera_detail::PairMap> to_scene_, to_film_;  // of each wavelength
   std::vector<double> pinhole_shifts_;
 };
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

@@ -6,18 +6,18 @@
 #include "petzval/camera/ray_model.hpp"
 #include "petzval/polynomial/ray_polynomial.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 
 /// Fitted polynomials within pupils that have the real ones' shape.
 class PolynomialModel {
  public:
-  PolynomialModel(RayPolynomial polynomial, PupilMap matching)
-      : polynomial_(std::move(polynomial)), pupils_(std::move(matching)) {}
+  PolynomialModel(RayPolynomial polynomial, FilmPupilTable equal_area)
+      : polynomial_(std::move(polynomial)), pupils_(std::move(equal_area)) {}
 
-  const PupilMap& pupils() const noexcept { return pupils_; }
+  const FilmPupilTable& pupils() const noexcept { return pupils_; }
   const RayPolynomial& polynomial() const noexcept { return polynomial_; }
   template <class T>
-  void to_scene(std::size_t count, const FilmLines<const T>& lines, const RayWavelengths& wavelengths,
+  void to_scene(std::size_t count, const TwoPlaneRays<const T>& lines, const RayWavelengths& wavelengths,
                 const RayArrays<T>& rays, RayFate* fates) const noexcept {
     polynomial_.to_scene<T>(count, lines, wavelengths, rays, fates);
   }
@@ -26,13 +26,13 @@ class PolynomialModel {
     return polynomial_.to_scene(line, wavelength);
   }
   void to_film(std::size_t count, const RayArrays<const double>& rays, const RayWavelengths& wavelengths,
-               const FilmLines<double>& lines, RayFate* fates) const noexcept {
+               const TwoPlaneRays<double>& lines, RayFate* fates) const noexcept {
     polynomial_.to_film(count, rays, wavelengths, lines, fates);
   }
 
  private:
   RayPolynomial polynomial_;
-  PupilMap pupils_;
+  FilmPupilTable pupils_;
 };
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

@@ -11,15 +11,15 @@
 #include "petzval/core/export.hpp"
 #include "petzval/core/ray.hpp"
 #include "petzval/lens/ray_wavelengths.hpp"
-#include "petzval/pupil/film_lines.hpp"
+#include "petzval/pupil/film_pupil_table.hpp"
 #include "petzval/pupil/line_derivatives.hpp"
-#include "petzval/pupil/pupil_map.hpp"
+#include "petzval/pupil/two_plane_rays.hpp"
 #include "petzval/trace/batch.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 
 /// The rungs of the ladder from the cheapest model of a lens to the most accurate one.
-enum class Model : std::uint8_t {
+enum class ModelKind : std::uint8_t {
   pinhole,  ///< first order, all of it through the middle of the pupil
   thin,     ///< first order, with the iris in the lens: a disc as wide as the entrance pupil in the principal plane
   thin_two_disc,  ///< first order, with a pupil of two discs that move apart with the field, fitted to the real one's
@@ -34,11 +34,11 @@ enum class Model : std::uint8_t {
 };
 
 /// "pinhole", "thin", "thin_two_disc", "thick", "polynomial_3", ..., "exact_float", "exact_double".
-PETZVAL_API std::string_view name(Model model) noexcept;
+PETZVAL_API std::string_view name(ModelKind model) noexcept;
 /// The model of a name; nothing where no model has it.
-PETZVAL_API std::optional<Model> model_named(std::string_view name) noexcept;
+PETZVAL_API std::optional<ModelKind> model_named(std::string_view name) noexcept;
 /// All of them, in the order above.
-PETZVAL_API std::span<const Model> models() noexcept;
+PETZVAL_API std::span<const ModelKind> models() noexcept;
 
 /// What a Camera needs to know of a lens: its pupils, and where lines of the film's space go on the scene's side and
 /// back. A renderer's own model needs these three and can be given to sample_rays(). Two more are read where the film
@@ -48,12 +48,12 @@ PETZVAL_API std::span<const Model> models() noexcept;
 /// numbers; what a ray became says its fate.
 template <class M>
 concept RayModel = requires(const M& model, std::size_t count, const RayWavelengths& wavelengths, RayFate* fates,
-                            const FilmLines<const float>& lines, const RayArrays<float>& rays,
-                            const FilmLines<const double>& exact_lines, const RayArrays<double>& exact_rays,
-                            const RayArrays<const double>& from_scene, const FilmLines<double>& to_lines) {
+                            const TwoPlaneRays<const float>& lines, const RayArrays<float>& rays,
+                            const TwoPlaneRays<const double>& exact_lines, const RayArrays<double>& exact_rays,
+                            const RayArrays<const double>& from_scene, const TwoPlaneRays<double>& to_lines) {
   /// The pupils that are sampled. A model without rims passes what lies within them, and no more.
   { model.pupils() }
-  noexcept->std::convertible_to<const PupilMap&>;
+  noexcept->std::convertible_to<const FilmPupilTable&>;
   /// Lines from the film as rays that leave the lens towards the scene; fates: N, never null.
   { model.to_scene(count, lines, wavelengths, rays, fates) }
   noexcept;
@@ -68,4 +68,4 @@ concept RayModel = requires(const M& model, std::size_t count, const RayWaveleng
 template <class M>
 inline constexpr bool ends_at_rims = false;
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

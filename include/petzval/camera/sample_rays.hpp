@@ -12,9 +12,9 @@
 #include "petzval/camera/tilted_film.hpp"
 #include "petzval/core/export.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 
-namespace detail {
+namespace camera_detail {
 /// Film points for models to work with: those of the film, its middle instead of all others.
 template <class T>
 PETZVAL_API void keep_on_film(std::size_t count, const Film& film, const T* film_x, const T* film_y, T* kept_x,
@@ -24,8 +24,8 @@ PETZVAL_API void keep_on_film(std::size_t count, const Film& film, const T* film
 /// outside_film, those without a wavelength missed_surface, those without a pupil vignetted, and none of them a weight.
 /// scale: [wavelength].
 template <class T>
-PETZVAL_API void weigh(std::size_t count, const Film& film, const FilmSpace& space, const CameraSamples<T>& samples,
-                       const FilmLines<const T>& lines, const T* areas, const double* scale,
+PETZVAL_API void weigh(std::size_t count, const Film& film, const TwoPlanes& space, const CameraSamples<T>& samples,
+                       const TwoPlaneRays<const T>& lines, const T* areas, const double* scale,
                        std::size_t known_wavelengths, RayFate* fates, const CameraRays<T>& rays) noexcept;
 
 /// Of a tilted film: keys of film points; upright film points of their lines through the pupil; a pinhole's samples
@@ -38,16 +38,16 @@ template <class T>
 PETZVAL_API void to_upright(std::size_t count, const TiltedFilm& film, const T* key_x, const T* key_y, const T* pupil_x,
                             const T* pupil_y, T* film_x, T* film_y) noexcept;
 template <class T>
-PETZVAL_API void sample_pinhole(std::size_t count, const TiltedFilm& film, const PupilMap& pupils,
+PETZVAL_API void sample_pinhole(std::size_t count, const TiltedFilm& film, const FilmPupilTable& pupils,
                                 std::span<const double> shifts, const CameraSamples<T>& samples, const T* key_x,
                                 const T* key_y, T* film_x, T* film_y, T* x, T* y, T* areas) noexcept;
 template <class T>
-PETZVAL_API void keep_within(std::size_t count, const PupilMap& pupils, const FilmLines<const T>& lines,
+PETZVAL_API void keep_within(std::size_t count, const FilmPupilTable& pupils, const TwoPlaneRays<const T>& lines,
                              const RayWavelengths& wavelengths, RayFate* fates) noexcept;
 template <class T>
 PETZVAL_API void lean(std::size_t count, const TiltedFilm& film, const T* key_x, const T* key_y, const T* pupil_x,
                       const T* pupil_y, RayFate* fates, const CameraRays<T>& rays) noexcept;
-}  // namespace detail
+}  // namespace camera_detail
 
 /// Samples N camera rays of any model, block by block: pupil, ray, weight.
 ///
@@ -60,18 +60,18 @@ void sample_rays(const M& model, const Film& film, const double* scale, std::siz
   constexpr std::size_t block = 256;
   alignas(64) std::array<T, block> film_x, film_y, x, y, areas;
   std::array<RayFate, block> local_fates;
-  const PupilMap& pupils = model.pupils();
+  const FilmPupilTable& pupils = model.pupils();
   for (std::size_t begin = 0; begin < count; begin += block) {
     const std::size_t n = std::min(block, count - begin);
     const CameraSamples<T> some = samples.from(begin);
-    detail::keep_on_film(n, film, some.film_x, some.film_y, film_x.data(), film_y.data());
+    camera_detail::keep_on_film(n, film, some.film_x, some.film_y, film_x.data(), film_y.data());
     pupils.sample(n, film_x.data(), film_y.data(), some.pupil_u, some.pupil_v, some.wavelengths, x.data(), y.data(),
                   areas.data());
-    const FilmLines<const T> lines{film_x.data(), film_y.data(), x.data(), y.data()};
+    const TwoPlaneRays<const T> lines{film_x.data(), film_y.data(), x.data(), y.data()};
     const CameraRays<T> rays = out.from(begin);
     RayFate* fates = rays.fates ? rays.fates : local_fates.data();
     model.to_scene(n, lines, some.wavelengths, rays.rays, fates);
-    detail::weigh(n, film, pupils.space(), some, lines, areas.data(), scale, pupils.wavelengths(), fates, rays);
+    camera_detail::weigh(n, film, pupils.space(), some, lines, areas.data(), scale, pupils.wavelengths(), fates, rays);
   }
 }
 
@@ -82,7 +82,7 @@ void sample_rays(const M& model, const TiltedFilm& tilted, const double* scale, 
   constexpr std::size_t block = 256;
   alignas(64) std::array<T, block> key_x, key_y, film_x, film_y, x, y, areas;
   std::array<RayFate, block> local_fates;
-  const PupilMap& pupils = model.pupils();
+  const FilmPupilTable& pupils = model.pupils();
   Film flat = tilted.film();  // the rectangle in the film's own plane
   flat.tilt_rad = flat.swing_rad = 0;
   std::span<const double> pinhole_shifts;
@@ -91,17 +91,18 @@ void sample_rays(const M& model, const TiltedFilm& tilted, const double* scale, 
   for (std::size_t begin = 0; begin < count; begin += block) {
     const std::size_t n = std::min(block, count - begin);
     const CameraSamples<T> some = samples.from(begin);
-    detail::keep_on_film(n, flat, some.film_x, some.film_y, film_x.data(), film_y.data());
-    detail::to_keys(n, tilted, film_x.data(), film_y.data(), key_x.data(), key_y.data());
-    const FilmLines<const T> lines{film_x.data(), film_y.data(), x.data(), y.data()};
+    camera_detail::keep_on_film(n, flat, some.film_x, some.film_y, film_x.data(), film_y.data());
+    camera_detail::to_keys(n, tilted, film_x.data(), film_y.data(), key_x.data(), key_y.data());
+    const TwoPlaneRays<const T> lines{film_x.data(), film_y.data(), x.data(), y.data()};
     const CameraRays<T> rays = out.from(begin);
     RayFate* fates = rays.fates ? rays.fates : local_fates.data();
     const auto to_upright = [&] {
-      detail::to_upright(n, tilted, key_x.data(), key_y.data(), x.data(), y.data(), film_x.data(), film_y.data());
+      camera_detail::to_upright(n, tilted, key_x.data(), key_y.data(), x.data(), y.data(), film_x.data(),
+                                film_y.data());
     };
     if (pinhole) {
-      detail::sample_pinhole(n, tilted, pupils, pinhole_shifts, some, key_x.data(), key_y.data(), film_x.data(),
-                             film_y.data(), x.data(), y.data(), areas.data());
+      camera_detail::sample_pinhole(n, tilted, pupils, pinhole_shifts, some, key_x.data(), key_y.data(), film_x.data(),
+                                    film_y.data(), x.data(), y.data(), areas.data());
     } else {
       tilted.pupils().sample(n, key_x.data(), key_y.data(), some.pupil_u, some.pupil_v, some.wavelengths, x.data(),
                              y.data(), areas.data());
@@ -111,11 +112,11 @@ void sample_rays(const M& model, const TiltedFilm& tilted, const double* scale, 
     if (pinhole) {
       to_upright();  // of the lines that the weights are for
     } else if constexpr (!ends_at_rims<M>) {
-      detail::keep_within(n, pupils, lines, some.wavelengths, fates);
+      camera_detail::keep_within(n, pupils, lines, some.wavelengths, fates);
     }
-    detail::weigh(n, flat, pupils.space(), some, lines, areas.data(), scale, pupils.wavelengths(), fates, rays);
-    detail::lean(n, tilted, key_x.data(), key_y.data(), x.data(), y.data(), fates, rays);
+    camera_detail::weigh(n, flat, pupils.space(), some, lines, areas.data(), scale, pupils.wavelengths(), fates, rays);
+    camera_detail::lean(n, tilted, key_x.data(), key_y.data(), x.data(), y.data(), fates, rays);
   }
 }
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

@@ -8,29 +8,29 @@
 #include "petzval/camera/ray_model.hpp"
 #include "petzval/core/export.hpp"
 #include "petzval/lens/lens.hpp"
-#include "petzval/pupil/film_lines.hpp"
+#include "petzval/pupil/field_point.hpp"
+#include "petzval/pupil/film_pupil_table.hpp"
 #include "petzval/pupil/line_derivatives.hpp"
-#include "petzval/pupil/pupil_map.hpp"
-#include "petzval/pupil/scene_point.hpp"
+#include "petzval/pupil/two_plane_rays.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 
-namespace detail {
+namespace camera_detail {
 /// What loops know of a tilted film, by numbers of the film's own axes.
 struct TiltedPlane {
   double x_by_x = 1, x_by_y = 0, y_by_y = 1;    ///< place across the axis; y does not change with x
   double depth_by_x = 0, depth_by_y = 0;        ///< distance from the pupil's plane, in that of the upright film
-  double slope_x = 0, slope_y = 0, cosine = 1;  ///< as in FilmLean; between the film's normal and the axis
+  double slope_x = 0, slope_y = 0, cosine = 1;  ///< as in FilmTilt; between the film's normal and the axis
 
   double slope_along(const FilmPoint& p) const noexcept { return slope_x * p.x + slope_y * p.y; }
 };
-}  // namespace detail
+}  // namespace camera_detail
 
 /// How far from the axis the lines of a film's points meet the plane of the upright film: what a model has to be built
 /// for, mm. Of an upright film its own radius. Throws Error for a film that is no rectangle or tilted by a quarter turn
 /// or more, and for a tilted one that comes near to the plane of the pupil or to the pupil of a model of first order:
 /// of a thin lens, its rear principal plane.
-PETZVAL_API double upright_radius(const Lens& lens, const Film& film, Model model);
+PETZVAL_API double upright_radius(const Lens& lens, const Film& film, ModelKind model);
 
 /// A tilted film before a model.
 ///
@@ -46,18 +46,18 @@ class PETZVAL_API TiltedFilm {
  public:
   /// pupils: of the model, for a film of upright_radius(). Throws Error for a film that is no rectangle, tilted by a
   /// quarter turn or more, or near to the plane of the pupil, and for pupils of a smaller one.
-  TiltedFilm(const Film& film, const PupilMap& pupils);
+  TiltedFilm(const Film& film, const FilmPupilTable& pupils);
 
   const Film& film() const noexcept { return film_; }
   /// The film's own pupils, by keys.
-  const PupilMap& pupils() const noexcept { return pupils_; }
+  const FilmPupilTable& pupils() const noexcept { return pupils_; }
 
   /// Where the line from a film point to the middle of the pupil's plane meets the plane of the upright film.
   FilmPoint key(const FilmPoint& film) const noexcept;
   /// The upright film's line that is the one of a key's film point through a place in the plane of the pupil.
-  FilmLine upright(const FilmPoint& key, double pupil_x, double pupil_y) const noexcept;
+  TwoPlaneRay upright(const FilmPoint& key, double pupil_x, double pupil_y) const noexcept;
   /// The key of the film point that a line meets; nothing for a line that meets the back of the film, or runs along it.
-  std::optional<FilmPoint> key_of(const FilmLine& line) const noexcept;
+  std::optional<FilmPoint> key_of(const TwoPlaneRay& line) const noexcept;
   /// The film point of a key.
   FilmPoint point(const FilmPoint& key) const noexcept;
   /// By how much the weight of a film sample differs from that of its upright line; 0: it meets the film's back.
@@ -65,12 +65,12 @@ class PETZVAL_API TiltedFilm {
   /// The upright line of a film sample, with its derivatives by film x and y.
   LineDerivatives line(const FilmPoint& film, double u, double v, std::size_t wavelength) const noexcept;
 
-  const detail::TiltedPlane& plane() const noexcept { return plane_; }
+  const camera_detail::TiltedPlane& plane() const noexcept { return plane_; }
 
  private:
   Film film_;
-  detail::TiltedPlane plane_;
-  PupilMap pupils_;
+  camera_detail::TiltedPlane plane_;
+  FilmPupilTable pupils_;
 };
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

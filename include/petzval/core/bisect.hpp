@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace petzval::detail {
+namespace petzval::inline v0::core_detail {
 
 /// The last parameter with a property, between one that has it and one that has not: bisection down to neighbouring
 /// doubles.
@@ -48,4 +48,4 @@ double last_above(double above, double at_above, double below, double at_below, 
   return above;
 }
 
-}  // namespace petzval::detail
+}  // namespace petzval::inline v0::core_detail

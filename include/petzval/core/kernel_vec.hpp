@@ -3,7 +3,7 @@
 
 #include "petzval/core/vec3.hpp"
 
-namespace petzval::kernel {
+namespace petzval::inline v0::kernel {
 
 /// Three components of any scalar. GLM stays at the public face: its vectors cannot hold derivatives or lanes.
 template <class T>
@@ -29,4 +29,4 @@ Vec3<T> to_public(const Vec<T>& v) noexcept {
   return {v.x, v.y, v.z};
 }
 
-}  // namespace petzval::kernel
+}  // namespace petzval::inline v0::kernel

@@ -6,7 +6,7 @@
 
 #include "petzval/core/export.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 
 /// Does `work(begin, end)` for the blocks [0, block), [block, 2 block), ... of `count` things, the last one shorter, on
 /// `threads` threads (the calling one among them), and returns when all are done.
@@ -18,4 +18,4 @@ namespace petzval {
 PETZVAL_API void parallel_for(std::size_t count, std::size_t block, int threads,
                               const std::function<void(std::size_t begin, std::size_t end)>& work);
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

@@ -7,7 +7,7 @@
 #include "petzval/core/export.hpp"
 #include "petzval/core/vec3.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 
 /// A ray in the lens frame: millimetres, right-handed, origin at the vertex of the first surface, light from
 /// scene to film travels towards +z.
@@ -50,4 +50,4 @@ struct TracedRay {
   bool transmitted() const noexcept { return fate == RayFate::transmitted; }
 };
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

@@ -9,7 +9,7 @@
 /// A kernel is written once over a scalar `T`: float, double or an automatic-differentiation number such as
 /// `ceres::Jet` (SIMD lanes fit the same seam). It asks `T` for arithmetic, comparison, `sqrt` by argument-dependent
 /// look-up, and the names below. Ray data steers no branch but through `select`, `any` and `all_of`.
-namespace petzval::kernel {
+namespace petzval::inline v0::kernel {
 
 namespace detail {
 template <class T>
@@ -83,4 +83,4 @@ T safe_sqrt(const T& x) noexcept {
   return select(positive, T(sqrt(select(positive, x, T(1)))), T(0));
 }
 
-}  // namespace petzval::kernel
+}  // namespace petzval::inline v0::kernel

@@ -6,7 +6,7 @@
 
 #include "petzval/core/export.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 
 /// A number for messages, figures and JSON: the shortest decimals that read back to the same double, whatever the
 /// locale ("0.1", "1e+30", "nan").
@@ -18,4 +18,4 @@ PETZVAL_API std::string number(double value, int significant_digits);
 /// Words as the content of an element of XML or HTML: & < > by their names.
 PETZVAL_API std::string escaped_xml(std::string_view words);
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

@@ -3,7 +3,7 @@
 
 #include <numbers>
 
-namespace petzval {
+namespace petzval::inline v0 {
 
 /// The helium d line, at which tables print their indices (nm).
 inline constexpr double d_line_nm = 587.5618;
@@ -11,4 +11,4 @@ inline constexpr double d_line_nm = 587.5618;
 constexpr double radians(double degrees) noexcept { return degrees * (std::numbers::pi / 180.0); }
 constexpr double degrees(double radians) noexcept { return radians * (180.0 / std::numbers::pi); }
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

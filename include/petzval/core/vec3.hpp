@@ -3,7 +3,7 @@
 
 #include <glm/vec3.hpp>
 
-namespace petzval {
+namespace petzval::inline v0 {
 
 /// Three components in the lens frame.
 ///
@@ -13,4 +13,4 @@ namespace petzval {
 template <class T>
 using Vec3 = glm::vec<3, T, glm::packed_highp>;
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

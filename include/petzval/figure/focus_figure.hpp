@@ -7,7 +7,7 @@
 #include "petzval/core/export.hpp"
 #include "petzval/lens/lens.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 
 /// Sharpness against film position, as SVG text: the RMS radius of the spot of each field, and the root of the mean
 /// square of all, over shifts of the film from the paraxial focus. Lines mark the paraxial focus, the film, and where
@@ -19,4 +19,4 @@ namespace petzval {
 /// subject_z: lens frame, mm, -inf at infinity. Throws Error where pupil_outline does, and for no fields.
 PETZVAL_API std::string focus_figure(const Lens& lens, double subject_z, std::span<const double> fields_rad);
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

@@ -7,7 +7,7 @@
 
 #include "petzval/core/export.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 
 /// A film at one time, and what it has in focus.
 struct FocusPullFrame {
@@ -27,4 +27,4 @@ struct FocusPullFrame {
 PETZVAL_API std::string focus_pull_figure(std::string_view title, std::string_view remark,
                                           std::span<const FocusPullFrame> frames, std::span<const double> key_times);
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

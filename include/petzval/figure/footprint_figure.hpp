@@ -7,7 +7,7 @@
 #include "petzval/core/export.hpp"
 #include "petzval/lens/lens.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 
 /// The pupil that each field sees, as SVG text: a cell with the region of the entrance-pupil plane that passes, its
 /// edge in a colour for each surface that limits there, and dashed the paraxial entrance pupil. All cells have one
@@ -19,4 +19,4 @@ namespace petzval {
 /// subject_z: lens frame, mm, -inf at infinity. Throws Error where pupil_outline does, and for no fields.
 PETZVAL_API std::string footprint_figure(const Lens& lens, double subject_z, std::span<const double> fields_rad);
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

@@ -6,7 +6,7 @@
 #include "petzval/core/export.hpp"
 #include "petzval/lens/lens.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 
 /// Relative illumination of the film against the field angle, from the axis to a field, as SVG text; cos^4 of the angle
 /// stands beside it. At the compiled wavelength nearest to the d line.
@@ -15,4 +15,4 @@ namespace petzval {
 /// not above 0.
 PETZVAL_API std::string illumination_figure(const Lens& lens, double subject_z, double field_rad);
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

@@ -9,7 +9,7 @@
 #include "petzval/lens/lens.hpp"
 #include "petzval/paraxial/first_order.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 
 struct LayoutOptions {
   std::size_t rays = 5;            ///< that pass, a field: 3 to 7
@@ -30,4 +30,4 @@ struct LayoutOptions {
 PETZVAL_API std::string layout_figure(const Lens& lens, double subject_z, std::span<const double> fields_rad,
                                       const LayoutOptions& options = {});
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

@@ -8,7 +8,7 @@
 #include "petzval/io/image.hpp"
 #include "petzval/psf/psf.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 
 /// The picture of a PSF: irradiance on the film, per mm^2 and in units of the light that falls onto the paraxial
 /// entrance pupil, so that pictures of one light through different lenses and apertures compare, and the pixels' sum
@@ -18,4 +18,4 @@ namespace petzval {
 /// Throws Error where their number is not that of the wavelengths.
 PETZVAL_API RgbImage render(const Psf& psf, std::span<const std::array<double, 3>> weights);
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

@@ -8,7 +8,7 @@
 #include "petzval/lens/lens.hpp"
 #include "petzval/psf/spot.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 
 /// A spot diagram as SVG text: a row for each field; first a column with all wavelengths, then one for each.
 ///
@@ -21,4 +21,4 @@ namespace petzval {
 /// Throws Error for no spots, or some that do not fill fields by the lens's wavelengths.
 PETZVAL_API std::string spot_figure(const Lens& lens, std::span<const Spot> spots);
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

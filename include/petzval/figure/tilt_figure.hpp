@@ -11,11 +11,11 @@
 #include "petzval/movement/film_pose.hpp"
 #include "petzval/movement/ideal_lens.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 
 /// A focus point in the figure; one that takes no part is drawn hollow.
 struct TiltFigurePoint {
-  ScenePlace place;
+  ScenePoint place;
   bool used = true;
 };
 
@@ -43,4 +43,4 @@ struct TiltView {
 /// above 0 and a frame without size.
 PETZVAL_API std::string tilt_figure(const TiltView& view);
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

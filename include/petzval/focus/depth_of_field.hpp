@@ -7,7 +7,7 @@
 #include "petzval/focus/focus.hpp"
 #include "petzval/lens/lens.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 
 /// Diameter of the blur (circle of confusion) on the lens's film of a subject at some distance, in the measure of the
 /// criterion; several fields: the root of the weighted mean square (min_rms), the largest weighted with the largest
@@ -42,4 +42,4 @@ PETZVAL_API FocusSolution hyperfocal(const Lens& lens, double blur_mm, const Foc
 /// is not in focus on any film, and where that lies in the exit pupil.
 PETZVAL_API std::optional<double> breathing(const Lens& lens, double film_z, const FocusOptions& options = {});
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

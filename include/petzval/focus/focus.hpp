@@ -8,7 +8,7 @@
 #include "petzval/core/export.hpp"
 #include "petzval/lens/lens.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 
 /// What "in focus" means, and how large a blur is (its diameter).
 enum class FocusCriterion : std::uint8_t {
@@ -38,7 +38,7 @@ PETZVAL_API std::string_view name(FocusCriterion criterion) noexcept;
 PETZVAL_API std::string_view name(DistanceOrigin origin) noexcept;
 PETZVAL_API std::string_view name(FocusStatus status) noexcept;
 
-/// A field that has a say in the focus: seen from the entrance pupil, as in ScenePoint. All fields share the plane
+/// A field that has a say in the focus: seen from the entrance pupil, as in FieldPoint. All fields share the plane
 /// perpendicular to the axis in which the subject lies.
 struct FocusField {
   double field_rad = 0;
@@ -94,4 +94,4 @@ PETZVAL_API FocusSolution nearest_focus(const Lens& lens, const FocusOptions& op
 /// focus.
 PETZVAL_API Lens with_focus(const Lens& lens, double distance_mm, const FocusOptions& options = {});
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

@@ -7,7 +7,7 @@
 #include "petzval/core/export.hpp"
 
 /// How the blur of rays depends on where an upright film stands.
-namespace petzval::detail {
+namespace petzval::inline v0::focus_detail {
 
 /// A ray behind the lens as it moves across a film: at (x, y) in a plane, and how much further a millimetre behind it.
 struct Line {
@@ -33,4 +33,4 @@ PETZVAL_API Image least_rms(std::span<const Line> lines, double plane_z);
 /// By the largest radius; weights do not count.
 PETZVAL_API Image least_maximum(std::vector<Line> lines, double plane_z);
 
-}  // namespace petzval::detail
+}  // namespace petzval::inline v0::focus_detail

@@ -4,7 +4,7 @@
 #include "petzval/core/export.hpp"
 
 /// The thin lens in closed form, safe at infinity and next to the focus. Lengths in mm.
-namespace petzval {
+namespace petzval::inline v0 {
 
 /// Blur diameter c = D f |U - Uf| / (U (Uf - f)) of a thin lens of focal length f and diameter D focused at Uf for a
 /// subject at U, distances from the lens, either may be infinite. Safe at infinity, next to f, and for U next to Uf:
@@ -24,4 +24,4 @@ PETZVAL_API double thin_lens_subject(double focal_length, double extension);
 /// in. Throws Error unless T >= 4 f > 0.
 PETZVAL_API double thin_lens_film_distance(double focal_length, double subject_to_film);
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

@@ -8,7 +8,7 @@
 
 #include "petzval/core/export.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 
 /// A linear RGB image in float: width x height pixels of 3 values, rows from the top.
 struct RgbImage {
@@ -48,4 +48,4 @@ PETZVAL_API void write_png(const Rgb8Image& image, const std::filesystem::path& 
 /// Linear light times `exposure` to 8-bit sRGB; negative values and those above 1 are clipped, NaN is black.
 PETZVAL_API Rgb8Image to_srgb8(const RgbImage& image, float exposure = 1.0f);
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

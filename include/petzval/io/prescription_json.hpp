@@ -8,7 +8,7 @@
 #include "petzval/core/export.hpp"
 #include "petzval/prescription/prescription.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 
 /// Reads a lens from the JSON of data/lenses (format "petzval-lens 1", keys in data/README.md). Throws Error that names
 /// the file, the surface (from 0), the key, what was found and what was wanted, or the byte where the text is no JSON.
@@ -27,4 +27,4 @@ PETZVAL_API std::string format_prescription(const Prescription& prescription);
 /// That text into a file, as a whole or not at all. Throws Error that names the file.
 PETZVAL_API void write_prescription(const Prescription& prescription, const std::filesystem::path& file);
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

@@ -8,7 +8,7 @@
 #include "petzval/core/export.hpp"
 #include "petzval/polynomial/ray_polynomial.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 
 /// Reads polynomials of rays from their JSON (format "petzval-ray-polynomial 1"). Throws Error that names the file, the
 /// fit (from 0), the key, what was found and what was wanted, or the byte where the text is no JSON. Every key must be
@@ -26,4 +26,4 @@ PETZVAL_API std::string format_ray_polynomial(const RayPolynomial& polynomial);
 /// That text into a file, as a whole or not at all. Throws Error that names the file.
 PETZVAL_API void write_ray_polynomial(const RayPolynomial& polynomial, const std::filesystem::path& file);
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

@@ -15,7 +15,7 @@
 #include "petzval/media/catalogue.hpp"
 #include "petzval/prescription/prescription.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 
 /// Where indices come from away from the reference wavelength.
 enum class IndexPolicy {
@@ -81,7 +81,7 @@ class PETZVAL_API Lens {
   std::size_t wavelength(double nm) const;
   /// Position of the compiled wavelength nearest to the d line: the one that speaks for the lens, in whatever order
   /// they stand.
-  std::size_t central_wavelength() const noexcept;
+  std::size_t primary_wavelength() const noexcept;
 
   /// Index of the medium before surface `space` (space 0 is object space, surface_count() is image space).
   /// Throws Error for a space or a wavelength that the lens has not.
@@ -129,4 +129,4 @@ PETZVAL_API kernel::LensView<float> Lens::view<float>() const noexcept;
 template <>
 PETZVAL_API kernel::LensView<double> Lens::view<double>() const noexcept;
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

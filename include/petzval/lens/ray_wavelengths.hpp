@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace petzval {
+namespace petzval::inline v0 {
 
 /// The wavelengths of N rays, as positions among the compiled ones: one for all, or one each.
 struct RayWavelengths {
@@ -16,4 +16,4 @@ struct RayWavelengths {
   RayWavelengths from(std::size_t ray) const noexcept { return {all, each ? each + ray : nullptr}; }
 };
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

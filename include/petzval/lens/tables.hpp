@@ -8,7 +8,7 @@
 #include "petzval/surface/quadric.hpp"
 #include "petzval/surface/snell.hpp"
 
-namespace petzval::kernel {
+namespace petzval::inline v0::kernel {
 
 /// One surface as the kernels read it.
 template <class R>
@@ -45,7 +45,7 @@ struct Step {
 
 /// What refraction at a step needs in the algebra of directions scaled by the index, |p| = n.
 template <class R>
-struct Bend {
+struct RefractionConstants {
   R cn2 = 0;     ///< curvature n^2, in front
   R k = 0;       ///< n'^2 - n^2
   R per_n2 = 1;  ///< 1 / n^2, in front
@@ -53,13 +53,13 @@ struct Bend {
 
 /// The way of a batch through the lens.
 template <class R>
-struct Course {
+struct SurfaceSequence {
   const Step<R>* steps = nullptr;
-  const Bend<R>* bends = nullptr;     ///< [wavelength * count + step]
-  const R* n_first = nullptr;         ///< [wavelength], in front of the lens
-  const R* per_n_last = nullptr;      ///< [wavelength], behind it
-  R first_z = 0, last_z = 0;          ///< vertices of the first and the last step, lens frame
-  R first_sense = 1, last_sense = 1;  ///< -1 where the frame in front and behind is turned
+  const RefractionConstants<R>* bends = nullptr;  ///< [wavelength * count + step]
+  const R* n_first = nullptr;                     ///< [wavelength], in front of the lens
+  const R* per_n_last = nullptr;                  ///< [wavelength], behind it
+  R first_z = 0, last_z = 0;                      ///< vertices of the first and the last step, lens frame
+  R first_sense = 1, last_sense = 1;              ///< -1 where the frame in front and behind is turned
 };
 
 /// The compiled lens seen by the kernels: flat arrays, borrowed from the Lens.
@@ -73,7 +73,7 @@ struct LensView {
   const R* vertex_z = nullptr;
   std::size_t wavelengths = 0;
   std::int32_t stop = -1;  ///< where the iris stands, or -1
-  Course<R> course_to_film{}, course_to_scene{};
+  SurfaceSequence<R> sequence_to_film{}, sequence_to_scene{};
 };
 
-}  // namespace petzval::kernel
+}  // namespace petzval::inline v0::kernel

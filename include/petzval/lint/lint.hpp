@@ -9,7 +9,7 @@
 #include "petzval/core/export.hpp"
 #include "petzval/prescription/prescription.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 
 /// Something in a prescription that a careful reader would ask about. Data, not failure: the lens can be traced as it
 /// is.
@@ -37,4 +37,4 @@ PETZVAL_API std::string_view name(Finding::Kind kind) noexcept;
 /// only.
 PETZVAL_API std::vector<Finding> lint(const Prescription& prescription);
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

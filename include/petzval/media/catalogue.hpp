@@ -9,7 +9,7 @@
 #include "petzval/core/export.hpp"
 #include "petzval/media/dispersion.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 
 /// The glasses known to a program; immutable once loaded, safe to share between threads.
 ///
@@ -44,4 +44,4 @@ class PETZVAL_API GlassCatalogue {
 /// none; a program linked statically and moved elsewhere passes its own path instead.
 PETZVAL_API std::filesystem::path data_directory();
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

@@ -7,7 +7,7 @@
 
 #include "petzval/core/export.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 
 /// The shapes in which catalogues print n(lambda); l is the wavelength in micrometres.
 enum class DispersionFormula {
@@ -44,4 +44,4 @@ PETZVAL_API double abbe_index(double nd, double vd, double wavelength_nm);
 /// one.
 PETZVAL_API double spectral_line_nm(std::string_view symbol);
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

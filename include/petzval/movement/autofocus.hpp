@@ -11,9 +11,9 @@
 #include "petzval/core/vec3.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/movement/focus_target.hpp"
-#include "petzval/movement/point_bundles.hpp"
+#include "petzval/movement/image_rays.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 
 /// An upright film that serves focus targets.
 struct Autofocus {
@@ -51,7 +51,7 @@ PETZVAL_API Autofocus autofocus(const IdealLens& lens, std::span<const FocusTarg
 /// Accuracy, of one target against solve_focus, which sends rays to the edges of pupils too (tests/movement; double
 /// Gauss 100 mm f/2, on the axis and to 10 degrees off): min_rms within 4 um; min_max within 50 um with 256 rays, 20 um
 /// with 1024.
-PETZVAL_API Autofocus autofocus(const PointBundles& lens, std::span<const FocusTarget> targets,
+PETZVAL_API Autofocus autofocus(const ImageRays& lens, std::span<const FocusTarget> targets,
                                 FocusCriterion criterion = FocusCriterion::min_rms);
 
 /// A region to focus on as targets: columns x rows of them, in the middles of as many equal parts of the parallelogram
@@ -59,4 +59,4 @@ PETZVAL_API Autofocus autofocus(const PointBundles& lens, std::span<const FocusT
 PETZVAL_API std::vector<FocusTarget> region_targets(const Vec3<double>& centre, const Vec3<double>& half_width,
                                                     const Vec3<double>& half_height, int columns, int rows);
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

@@ -9,7 +9,7 @@
 #include "petzval/movement/ideal_lens.hpp"
 #include "petzval/movement/plane.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 
 /// A point as a pinhole at the principal point sees it: x and y over depth, and the reciprocal of the depth.
 struct DisparityPoint {
@@ -26,7 +26,7 @@ inline constexpr double line_aspect = 0.02;
 inline constexpr double one_place = 1e-5;
 
 /// What a pinhole at (0, 0, z) sees of a place in front of it.
-PETZVAL_API DisparityPoint disparity_point(const ScenePlace& place, double z) noexcept;
+PETZVAL_API DisparityPoint disparity_point(const ScenePoint& place, double z) noexcept;
 
 /// How much of a plane points tell.
 enum class PlaneRank : unsigned char {
@@ -58,4 +58,4 @@ PETZVAL_API DisparityFit fit_disparity(std::span<const DisparityPoint> points);
 /// The plane in the scene, for depths from z towards -z: normal.z >= 0. Nothing where it is the plane at infinity.
 PETZVAL_API std::optional<Plane> plane_of(const DisparityFit& fit, double z);
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

@@ -4,9 +4,9 @@
 #include "petzval/core/export.hpp"
 #include "petzval/core/vec3.hpp"
 #include "petzval/movement/plane.hpp"
-#include "petzval/pupil/scene_point.hpp"
+#include "petzval/pupil/field_point.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 
 /// Where a film stands: through the axis at film_z, its normal Ry(swing) Rx(tilt) e_z (tilt about +x first). Film
 /// points count from the axis along what +x and +y of the lens frame become. Lens frame, mm.
@@ -37,4 +37,4 @@ struct FilmFrame {
 /// the axis and numbers that are not finite.
 PETZVAL_API FilmPose film_pose(const Plane& plane);
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

@@ -13,7 +13,7 @@
 #include "petzval/movement/focus_target.hpp"
 #include "petzval/movement/ideal_lens.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 
 /// A point on a triangle of a mesh that moves: it goes where the vertices go.
 struct OnTriangle {
@@ -24,7 +24,7 @@ struct OnTriangle {
 /// What a focus point asks for at one time.
 struct FocusKey {
   double time = 0;  ///< s
-  std::variant<ScenePlace, OnTriangle> anchor = ScenePlace{};
+  std::variant<ScenePoint, OnTriangle> anchor = ScenePoint{};
   double blur_mm = 0;  ///< as in FocusTarget
   double weight = 1;   ///< 0 or more
 };
@@ -57,4 +57,4 @@ struct FocusMoment {
 PETZVAL_API std::vector<FocusTarget> focus_targets(const IdealLens& lens, std::span<const FocusPoint> points,
                                                    const FocusMoment& moment);
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

@@ -6,11 +6,11 @@
 #include "petzval/core/export.hpp"
 #include "petzval/movement/ideal_lens.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 
 /// A point of the scene that focus has to serve, at one moment.
 struct FocusTarget {
-  ScenePlace place;
+  ScenePoint place;
   double blur_mm = 0;  ///< wanted on the film: 0 sharp; negative: in front of the plane of focus; positive: beyond it
   double weight = 1;   ///< of the squared error of the blur; 0: looked at, not served
 };
@@ -42,4 +42,4 @@ struct TargetBlur {
   double blur_mm = 0;  ///< signed; NaN where it has no image
 };
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

@@ -11,10 +11,10 @@
 #include "petzval/movement/plane.hpp"
 #include "petzval/pupil/pupil.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 
 /// A point of the scene, or a direction to one at infinity.
-struct ScenePlace {
+struct ScenePoint {
   Vec3<double> position{0, 0, 0};  ///< lens frame, mm; at infinity: the direction towards it, of any length
   bool at_infinity = false;
 };
@@ -41,10 +41,10 @@ struct PETZVAL_API IdealLens {
 
   /// The image of a place. Nothing for places that are not in front of the lens and of its front focal plane (no real
   /// image), and for coordinates that are not finite (but z = -inf with a finite x and y: at infinity on the axis).
-  std::optional<ImagePoint> image(const ScenePlace& place) const noexcept;
+  std::optional<ImagePoint> image(const ScenePoint& place) const noexcept;
   /// The place whose image lies there; at infinity for a point of the rear focal plane, behind the front focal plane
   /// (virtual) for one before that.
-  ScenePlace scene_of(const Vec3<double>& image) const noexcept;
+  ScenePoint scene_of(const Vec3<double>& image) const noexcept;
 
   /// How much larger images are on a film at film_z than at another place, as a fraction, by the chief ray through the
   /// exit pupil: 0 for a telecentric lens, NaN for a film that stood in the exit pupil.
@@ -81,4 +81,4 @@ struct FocusPlane {
 /// Nothing for a film whose plane of focus is at infinity.
 PETZVAL_API std::optional<FocusPlane> focus_plane(const IdealLens& lens, const FilmPose& film);
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

@@ -5,7 +5,7 @@
 
 #include "petzval/core/export.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 
 /// A number over time, through keys: a piecewise cubic with a continuous derivative that never leaves the span of the
 /// two keys about it. Constant before the first key and after the last, where it comes to rest smoothly too.
@@ -25,4 +25,4 @@ class PETZVAL_API Keyframes {
   std::vector<double> times_, values_, slopes_;
 };
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

@@ -6,7 +6,7 @@
 #include "petzval/core/export.hpp"
 #include "petzval/core/vec3.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 
 /// The points p with normal . p = offset; unit normal. Lens frame, mm.
 struct Plane {
@@ -23,4 +23,4 @@ struct SpaceLine {
 /// Where a plane meets the plane across the axis at z. Nothing where both are parallel within rounding.
 PETZVAL_API std::optional<SpaceLine> line_at(const Plane& plane, double z);
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

@@ -11,9 +11,9 @@
 #include "petzval/movement/disparity_fit.hpp"
 #include "petzval/movement/focus_target.hpp"
 #include "petzval/movement/ideal_lens.hpp"
-#include "petzval/movement/point_bundles.hpp"
+#include "petzval/movement/image_rays.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 
 struct TiltOptions {
   double max_tilt_rad = 0.3490658503988659;  ///< 20 degrees; between film and the plane across the axis
@@ -81,7 +81,7 @@ PETZVAL_API TiltFit fit_tilt(const IdealLens& lens, std::span<const FocusTarget>
 /// film count as sharp; those that can all be met are met within 1e-4 of themselves. Outliers, what the targets fix,
 /// and the plane of focus are those of the thick lens: aberrations move the film, and hardly what is in focus. 24
 /// targets of 256 rays take 1.5 ms, on the limit of tilt or within it.
-PETZVAL_API TiltFit fit_tilt(const PointBundles& lens, std::span<const FocusTarget> targets,
+PETZVAL_API TiltFit fit_tilt(const ImageRays& lens, std::span<const FocusTarget> targets,
                              const TiltOptions& options = {});
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

@@ -6,7 +6,7 @@
 #include "petzval/core/export.hpp"
 #include "petzval/lens/lens.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 
 /// A ray-transfer (ABCD) matrix on (y, n u): height in mm and optical direction, n the signed index (negative while
 /// light runs backwards after a mirror). Its determinant is 1.
@@ -75,4 +75,4 @@ PETZVAL_API double paraxial_image_z(const Lens& lens, double object_z, std::size
 /// Infinite where the power is 0.
 PETZVAL_API double lensmaker_focal_length(double n, double c1, double c2, double thickness = 0) noexcept;
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

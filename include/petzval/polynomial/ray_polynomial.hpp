@@ -11,16 +11,16 @@
 #include "petzval/core/ray.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/lens/ray_wavelengths.hpp"
-#include "petzval/pupil/film_lines.hpp"
+#include "petzval/pupil/film_pupil_table.hpp"
 #include "petzval/pupil/line_derivatives.hpp"
-#include "petzval/pupil/pupil_map.hpp"
+#include "petzval/pupil/two_plane_rays.hpp"
 #include "petzval/trace/batch.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 
 /// Rays of a lens of revolution as polynomials of film point f and pupil point p, of degree 3, 5, 7, 9 or 11.
 ///
-///     auto pupils = petzval::PupilMap::matching(lens, 21.6);
+///     auto pupils = petzval::FilmPupilTable::equal_area(lens, 21.6);
 ///     auto polynomial = petzval::RayPolynomial::fit(lens, pupils, 7);
 ///     polynomial.to_scene<float>(count, lines, {}, rays, fates);
 ///     petzval::write_ray_polynomial(polynomial, "lens_polynomial.json");
@@ -49,7 +49,7 @@ class PETZVAL_API RayPolynomial {
     double rms_rad = 0, max_rad = 0, rms_mm = 0, max_mm = 0;
   };
   struct Domain {
-    FilmSpace space;
+    TwoPlanes space;
     double film_radius = 0;   ///< |f| <= film_radius, mm
     double pupil_shift = 0;   ///< the middle of the pupil's domain lies at pupil_shift * f
     double pupil_radius = 0;  ///< mm
@@ -66,7 +66,7 @@ class PETZVAL_API RayPolynomial {
   /// the smallest that holds all of them. Within 20 ms for each wavelength. Throws Error for another degree, a lens
   /// that is not rotationally symmetric, pupils of other wavelengths, a film of one point, and where fewer rays get
   /// through than there are coefficients.
-  static RayPolynomial fit(const Lens& lens, const PupilMap& pupils, int degree);
+  static RayPolynomial fit(const Lens& lens, const FilmPupilTable& pupils, int degree);
   /// From data; throws Error, naming what, where it is not consistent.
   RayPolynomial(int degree, const Domain& domain, std::vector<Fit> fits);
 
@@ -77,18 +77,18 @@ class PETZVAL_API RayPolynomial {
   /// Lines as rays towards the scene. Outside the domain, and of a wavelength without a fit: outside_fit, at the
   /// reference point along the axis. A ray depends on its own line alone, to the bit.
   template <class T>
-  void to_scene(std::size_t count, const FilmLines<const T>& lines, const RayWavelengths& wavelengths,
+  void to_scene(std::size_t count, const TwoPlaneRays<const T>& lines, const RayWavelengths& wavelengths,
                 const RayArrays<T>& rays, RayFate* fates) const noexcept;
   /// One line with its derivatives, in double.
   RayDerivatives to_scene(const LineDerivatives& line, std::size_t wavelength) const noexcept;
   /// Rays from the scene, anywhere on their lines, as the lines that to_scene makes rays of, within 1e-9 mm, by
   /// Newton's iteration. outside_fit, and the axis, where none in the domain is found.
   void to_film(std::size_t count, const RayArrays<const double>& rays, const RayWavelengths& wavelengths,
-               const FilmLines<double>& lines, RayFate* fates) const noexcept;
+               const TwoPlaneRays<double>& lines, RayFate* fates) const noexcept;
 
  private:
   struct Data;
   std::shared_ptr<const Data> data_;
 };
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

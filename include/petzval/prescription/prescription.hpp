@@ -9,7 +9,7 @@
 #include "petzval/core/export.hpp"
 #include "petzval/core/units.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 
 /// What lies behind a surface. nd is what the published table prints; the glass, where it is known, gives dispersion.
 struct Medium {
@@ -108,4 +108,4 @@ PETZVAL_API Prescription scale(const Prescription& prescription, double factor);
 /// f_number, half_field_deg, image_diagonal_mm, image_distance, and a variable gap in front of the film.
 PETZVAL_API Prescription reverse(const Prescription& prescription);
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

@@ -9,7 +9,7 @@
 #include "petzval/lens/lens.hpp"
 #include "petzval/pupil/pupil_sampler.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 
 /// Where the rays of one point and wavelength meet the film.
 struct FilmHits {
@@ -27,4 +27,4 @@ struct FilmHits {
 PETZVAL_API FilmHits trace_bundle(const Lens& lens, const PupilSampler& pupil, std::uint32_t samples,
                                   std::uint32_t seed = 0, int threads = 1);
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

@@ -8,7 +8,7 @@
 
 #include "petzval/core/export.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 
 /// The CIE 1931 2 degree colour matching functions, sampled.
 struct ColourMatching {
@@ -27,4 +27,4 @@ struct ColourMatching {
 PETZVAL_API std::vector<std::array<double, 3>> rgb_weights(std::span<const double> wavelengths_nm,
                                                            const ColourMatching& table);
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

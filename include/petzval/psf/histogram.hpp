@@ -7,7 +7,7 @@
 
 #include "petzval/core/export.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 
 /// Square pixels on the film in a square: `pixels` a side, 1 to 32768, rows from the top (largest y first).
 struct PixelGrid {
@@ -21,4 +21,4 @@ struct PixelGrid {
 PETZVAL_API void count_points(const PixelGrid& grid, std::span<const double> x, std::span<const double> y,
                               std::span<std::uint64_t> counts) noexcept;
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

@@ -10,7 +10,7 @@
 #include "petzval/psf/bundle.hpp"
 #include "petzval/psf/spot.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 
 /// Geometric image of a point light: how the light that the entrance pupil takes in spreads over the film.
 ///
@@ -57,6 +57,6 @@ struct PointImage {
 /// Traces a point light onto the lens's film at every compiled wavelength; the picture is centred on the centroid.
 /// Where nothing gets through all is 0. Throws Error where pupil_outline does, and for no samples, pixels or threads
 /// and a half width that is no length.
-PETZVAL_API PointImage point_image(const Lens& lens, const ScenePoint& point, const PsfOptions& options = {});
+PETZVAL_API PointImage point_image(const Lens& lens, const FieldPoint& point, const PsfOptions& options = {});
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

@@ -7,7 +7,7 @@
 
 #include "petzval/core/export.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 
 /// Point `index` of the two-dimensional Sobol sequence, Owen-scrambled by a hash of `seed`: in [0, 1)^2, random access,
 /// no state.
@@ -21,4 +21,4 @@ PETZVAL_API std::array<double, 2> owen_sobol(std::uint32_t index, std::uint32_t 
 /// The points from `first` on, the same and sooner than one by one. u, v: N each.
 PETZVAL_API void owen_sobol(std::uint32_t first, std::uint32_t seed, std::span<double> u, std::span<double> v) noexcept;
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

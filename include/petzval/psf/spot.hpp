@@ -10,7 +10,7 @@
 #include "petzval/core/export.hpp"
 #include "petzval/psf/bundle.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 
 /// Centroid, RMS and largest radius of a set of film points (mm); zeros for none.
 struct SpotSize {
@@ -26,7 +26,7 @@ PETZVAL_API SpotSize spot_size(std::span<const FilmHits> sets) noexcept;
 
 /// The spot of one field and wavelength.
 struct Spot {
-  ScenePoint point;
+  FieldPoint point;
   std::size_t wavelength = 0;
   /// y on the film of the chief ray, exactly through the centre of the stop, clear apertures ignored. Nothing where no
   /// such ray reaches the film.
@@ -42,4 +42,4 @@ struct Spot {
 PETZVAL_API std::vector<Spot> spot_diagram(const Lens& lens, double subject_z, std::span<const double> fields_rad,
                                            std::uint32_t samples = 4096);
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

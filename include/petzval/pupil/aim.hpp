@@ -9,9 +9,9 @@
 #include "petzval/core/export.hpp"
 #include "petzval/core/ray.hpp"
 #include "petzval/lens/lens.hpp"
-#include "petzval/pupil/scene_point.hpp"
+#include "petzval/pupil/field_point.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 
 /// How the search for a ray ended.
 enum class AimStatus : std::uint8_t {
@@ -54,10 +54,10 @@ struct AimedRay {
 /// that graze a surface far outside its rim, and of a billionth of the lens where the stop is smaller than a thousandth
 /// of it. Throws Error where PupilPlane does, where nothing limits the beam, and for a wavelength that was not
 /// compiled.
-PETZVAL_API AimedRay aim(const Lens& lens, const ScenePoint& point, const StopPoint& target,
+PETZVAL_API AimedRay aim(const Lens& lens, const FieldPoint& point, const StopPoint& target,
                          std::size_t wavelength = 0);
 
 /// The chief ray: aimed at the centre of the stop.
-PETZVAL_API AimedRay chief_ray(const Lens& lens, const ScenePoint& point, std::size_t wavelength = 0);
+PETZVAL_API AimedRay chief_ray(const Lens& lens, const FieldPoint& point, std::size_t wavelength = 0);
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

@@ -3,16 +3,16 @@
 
 #include "petzval/core/ray.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 
 /// A line of the film's space: where it meets the film and the plane of the pupil, mm.
-struct FilmLine {
+struct TwoPlaneRay {
   double film_x = 0, film_y = 0, pupil_x = 0, pupil_y = 0;
 };
 
 /// A line and its derivatives by two parameters.
 struct LineDerivatives {
-  FilmLine line{}, by_u{}, by_v{};
+  TwoPlaneRay line{}, by_u{}, by_v{};
 };
 
 /// A ray and the derivatives of its point and direction by two parameters; a ray that is lost has none (0).
@@ -21,4 +21,4 @@ struct RayDerivatives {
   Ray<double> ray{}, by_u{{0, 0, 0}, {0, 0, 0}}, by_v{{0, 0, 0}, {0, 0, 0}};
 };
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

@@ -10,10 +10,10 @@
 #include "petzval/lens/lens.hpp"
 #include "petzval/pupil/pupil_plane.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 
 /// A point of a pupil's edge: the last ray that still passes, and what ends the next one.
-struct PupilEdge {
+struct RimPoint {
   double x = 0, y = 0;                  ///< in the PupilPlane, mm
   int surface = -1;                     ///< the rim that limits here; -1 at the middle of the outline, which is no edge
   RayFate beyond = RayFate::vignetted;  ///< what becomes of a ray just outside
@@ -24,7 +24,7 @@ struct PupilEdge {
 struct PupilSpan {
   std::size_t direction = 0;              ///< one of PupilOutline::directions
   double from_radius = 0, to_radius = 0;  ///< in units of the outline's half axes
-  PupilEdge from, to;
+  RimPoint from, to;
 };
 
 /// The pupil of a point of the scene or the film: which of its rays a lens passes, by tracing the boundary of that
@@ -59,11 +59,11 @@ struct PETZVAL_API PupilOutline {
 /// directions: 3 or more, or 1, which is enough on the axis of a lens of revolution; 256 give areas within 5e-4 (3e-3
 /// for crescents with tips as fine as needles).
 /// Throws Error where PupilPlane does, for a wavelength that was not compiled, and for other directions.
-PETZVAL_API PupilOutline pupil_outline(const Lens& lens, const ScenePoint& point, std::size_t wavelength = 0,
+PETZVAL_API PupilOutline pupil_outline(const Lens& lens, const FieldPoint& point, std::size_t wavelength = 0,
                                        std::size_t directions = 256);
 
 /// The same for a point of the film: what of the lens it sees the scene through.
 PETZVAL_API PupilOutline exit_pupil_outline(const Lens& lens, const FilmPoint& point, std::size_t wavelength = 0,
                                             std::size_t directions = 256);
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

@@ -7,7 +7,7 @@
 #include "petzval/lens/lens.hpp"
 #include "petzval/paraxial/first_order.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 
 /// A paraxial pupil: the image of the aperture stop. Infinite z and diameter where the lens is telecentric on that
 /// side.
@@ -46,4 +46,4 @@ PETZVAL_API double real_f_number(const Lens& lens, std::size_t wavelength = 0);
 /// possible, and N so slow that the hole of an annular stop takes all of it, naming that of the hole.
 PETZVAL_API Lens with_f_number(const Lens& lens, double f_number, std::size_t wavelength = 0);
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

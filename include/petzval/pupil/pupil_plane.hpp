@@ -7,10 +7,10 @@
 #include "petzval/core/export.hpp"
 #include "petzval/core/ray.hpp"
 #include "petzval/lens/lens.hpp"
-#include "petzval/pupil/scene_point.hpp"
+#include "petzval/pupil/field_point.hpp"
 #include "petzval/trace/batch.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 
 /// The plane in which the rays of a point are told apart, those of a scene point in front of the lens, those of a film
 /// point (which run against the light) behind it.
@@ -23,7 +23,7 @@ class PETZVAL_API PupilPlane {
   /// Throws Error for a field beyond 180 degrees or not finite, an entrance pupil at infinity (object-space
   /// telecentric: a field angle has no meaning there), and a point that is not in front of the lens: in the pupil's
   /// plane, in or behind the first surface, or at a plane that the field's line does not meet.
-  PupilPlane(const Lens& lens, const ScenePoint& point);
+  PupilPlane(const Lens& lens, const FieldPoint& point);
 
   /// Throws Error for a point that is not finite and a film in the plane of the last vertex.
   static PupilPlane of_film(const Lens& lens, const FilmPoint& point);
@@ -64,4 +64,4 @@ class PETZVAL_API PupilPlane {
   double reciprocal_distance_ = 0;
 };
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

@@ -9,7 +9,7 @@
 #include "petzval/core/export.hpp"
 #include "petzval/pupil/outline.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 
 /// Spreads points evenly over a pupil: over a region little larger than the outline, made of one ring sector between
 /// each two neighbouring directions, so that next to all rays sent through them pass and none that would is left out.
@@ -56,4 +56,4 @@ class PETZVAL_API PupilSampler {
   std::vector<std::uint32_t> first_;  ///< that begins in or before each of as many equal steps of u
 };
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

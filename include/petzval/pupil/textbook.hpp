@@ -7,7 +7,7 @@
 #include "petzval/core/ray.hpp"
 #include "petzval/lens/lens.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 
 /// A pupil as the textbook method finds it: one disc on the axis, and the ray that gave it.
 struct TextbookPupil {
@@ -43,4 +43,4 @@ PETZVAL_API TextbookPupil textbook_entrance_pupil(const Lens& lens, double objec
 /// The exit pupil by the same method from the other side: rays from the axial point of a film, traced to the scene.
 PETZVAL_API TextbookPupil textbook_exit_pupil(const Lens& lens, double film_z, std::size_t wavelength = 0);
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

@@ -7,7 +7,7 @@
 
 #include "petzval/surface/quadric.hpp"
 
-namespace petzval::kernel {
+namespace petzval::inline v0::kernel {
 
 /// Highest order of an aspheric term.
 inline constexpr int max_asphere_order = 40;
@@ -80,7 +80,7 @@ struct AsphereHit {
   bool beside = false;  ///< no hit, because the ray passes outside the height to which the surface is described
 };
 
-namespace detail {
+namespace surface_detail {
 
 /// Signed height of a point of the ray above the surface, and its rate along the ray.
 template <class T>
@@ -176,7 +176,7 @@ AsphereHit<T> refine(const Asphere<Storage<T>>& s, const Vec<T>& p, const Vec<T>
   return {p, false, false};
 }
 
-}  // namespace detail
+}  // namespace surface_detail
 
 /// Where a ray meets an asphere: the first crossing inside the clear aperture in the sense of travel.
 ///
@@ -205,7 +205,7 @@ AsphereHit<T> intersect(const Asphere<Storage<T>>& s, const Vec<T>& start, const
   const T offset = absolute(p.x) + absolute(p.y) + absolute(p.z);
   bool usable = false;
   for (int i = 0; i < 10 && !usable; ++i) {
-    const auto f = detail::clearance(s, p, d, t);
+    const auto f = surface_detail::clearance(s, p, d, t);
     if (!f.defined || !(absolute(f.rate) > R(0))) break;
     const T step = quotient(f.value, f.rate);
     const T scale = s.height + offset + absolute(t);
@@ -219,29 +219,29 @@ AsphereHit<T> intersect(const Asphere<Storage<T>>& s, const Vec<T>& start, const
   const Vec<T> candidate = p + d * t;
   usable = usable && finite(candidate.x) && finite(candidate.y) && finite(candidate.z);
   const T x = s.base.ax * candidate.x, y = s.base.ay * candidate.y;
-  const T across = detail::across(s, d);
+  const T across = surface_detail::across(s, d);
   const bool only_one = d.z * d.z > s.steepest * s.steepest * across;
   if (usable && only_one && x * x + y * y <= s.height * s.height) return {candidate, true, true};
 
-  if (detail::passes_beside(s, p, d, any(only_one))) {
+  if (surface_detail::passes_beside(s, p, d, any(only_one))) {
     if (usable) return {candidate, true, true};
     return {start, false, true, true};
   }
 
-  const auto [from, to] = detail::segment(s, p, d);
+  const auto [from, to] = surface_detail::segment(s, p, d);
   if (from < to) {
     using std::sqrt;
     const T fastest = absolute(d.z) + s.steepest * sqrt(across);  // bound of the rate of clearance
     const T least = (to - from) * R(1.0 / 64);
     T low = from;
-    auto below = detail::clearance(s, p, d, low);
+    auto below = surface_detail::clearance(s, p, d, low);
     for (int i = 0; i < 80 && below.defined && low < to; ++i) {  // 64 steps, and some for rounding
       const T safe = low + quotient(absolute(below.value), fastest);
       T high = safe > low + least ? safe : low + least;
       if (!(high < to)) high = to;
-      const auto above = detail::clearance(s, p, d, high);
+      const auto above = surface_detail::clearance(s, p, d, high);
       if (above.defined && below.value * sense <= R(0) && above.value * sense >= R(0)) {
-        return detail::refine(s, p, d, sense, {low, high});
+        return surface_detail::refine(s, p, d, sense, {low, high});
       }
       low = high;
       below = above;
@@ -262,4 +262,4 @@ Vec<T> normal(const Asphere<Storage<T>>& s, const Vec<T>& point) noexcept {
   return n * T(R(1) / sqrt(dot(n, n)));
 }
 
-}  // namespace petzval::kernel
+}  // namespace petzval::inline v0::kernel

@@ -4,7 +4,7 @@
 #include "petzval/core/kernel_vec.hpp"
 #include "petzval/core/scalar.hpp"
 
-namespace petzval::kernel {
+namespace petzval::inline v0::kernel {
 
 /// Plane, sphere, conic and cylinder in one: c (ax x^2 + ay y^2 + e z^2) = 2 z in the vertex frame, e = 1 + k.
 /// Curvature and not radius, so that a plane is nothing special and R = 1e12 loses nothing.
@@ -112,4 +112,4 @@ Vec<T> normal(const Quadric<Storage<T>>& q, const Vec<T>& point) noexcept {
   return q.sphere ? n : n * T(R(1) / sqrt(dot(n, n)));
 }
 
-}  // namespace petzval::kernel
+}  // namespace petzval::inline v0::kernel

@@ -4,7 +4,7 @@
 #include "petzval/core/kernel_vec.hpp"
 #include "petzval/core/scalar.hpp"
 
-namespace petzval::kernel {
+namespace petzval::inline v0::kernel {
 
 /// What refraction needs to know of the two media, computed once in double: mu = n/n', k = (n'-n)(n'+n)/n'^2.
 /// The product keeps k exact to an ulp where the indices nearly agree.
@@ -77,4 +77,4 @@ Vec<T> reflect(const Vec<T>& direction, const Vec<T>& normal) noexcept {
   return renormalised(direction - normal * T(R(2) * dot(direction, normal)));
 }
 
-}  // namespace petzval::kernel
+}  // namespace petzval::inline v0::kernel

@@ -11,7 +11,7 @@
 #include "petzval/lens/lens.hpp"
 #include "petzval/trace/iris.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 
 /// How a batch computes. Either way a ray's answer depends on that ray alone, not on its neighbours, the size of the
 /// batch or the number of threads.
@@ -73,4 +73,4 @@ template <class T>
 PETZVAL_API void trace(const Lens& lens, std::span<const Ray<T>> rays, TracedRay<T>* traced,
                        const BatchOptions& options = {}) noexcept;
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

@@ -6,7 +6,7 @@
 #include "petzval/core/export.hpp"
 #include "petzval/trace/batch.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 
 /// How N rays change with two parameters u and v, such as the steps of a pixel: the derivatives of their points and
 /// directions, N values each.
@@ -29,4 +29,4 @@ PETZVAL_API void trace_differentials(const Lens& lens, std::size_t count, const 
                                      const RayTangents<T>& tangents_out, RayFate* fates, int* surfaces,
                                      const BatchOptions& options = {}) noexcept;
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

@@ -3,7 +3,7 @@
 
 #include <span>
 
-namespace petzval {
+namespace petzval::inline v0 {
 
 /// One straight edge of an iris in the plane of the stop: light passes where x nx + y ny <= distance (mm).
 struct IrisEdge {
@@ -15,4 +15,4 @@ struct IrisEdge {
 /// the caller. No edges, or a lens without a stop: no iris.
 using Iris = std::span<const IrisEdge>;
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

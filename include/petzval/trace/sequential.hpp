@@ -9,10 +9,10 @@
 #include "petzval/lens/tables.hpp"
 #include "petzval/trace/iris.hpp"
 
-namespace petzval::kernel {
+namespace petzval::inline v0::kernel {
 
 /// A part of the lens and how to look at it: surfaces [first, last) in table order, whichever way the ray goes.
-struct Path {
+struct SurfaceRange {
   Travel travel = Travel::to_film;
   std::size_t wavelength = 0;
   bool apertures = true;
@@ -23,7 +23,7 @@ struct Path {
 
 /// A ray on its way, lens frame, any scalar.
 template <class T>
-struct Passage {
+struct TraceState {
   Vec<T> origin, direction;
   RayFate fate = RayFate::transmitted;
   int surface = -1;
@@ -51,8 +51,8 @@ struct NoObserver {
 /// sees each hit within the lens, lens frame. The one loop for both ways of travel and every scalar: derivatives, parts
 /// of the lens and drawings run on it, and the faster recurrence of `trace` and of batches is tested against it.
 template <class T, class Observer = NoObserver>
-Passage<T> trace(const LensView<Storage<T>>& lens, const Vec<T>& origin, const Vec<T>& direction, const Path& path,
-                 Observer&& observer = {}) noexcept {
+TraceState<T> trace(const LensView<Storage<T>>& lens, const Vec<T>& origin, const Vec<T>& direction,
+                    const SurfaceRange& path, Observer&& observer = {}) noexcept {
   using R = Storage<T>;
   using std::sqrt;
   const bool to_film = path.travel == Travel::to_film;
@@ -60,7 +60,7 @@ Passage<T> trace(const LensView<Storage<T>>& lens, const Vec<T>& origin, const V
   const Interface<R>* interfaces = (to_film ? lens.to_film : lens.to_scene) + path.wavelength * lens.count;
 
   bool bent = false;
-  Passage<T> ray{origin, direction, RayFate::transmitted, -1};
+  TraceState<T> ray{origin, direction, RayFate::transmitted, -1};
   if (path.first >= last) return ray;
   std::size_t i = to_film ? path.first : last - 1;
   Vec<T> p{origin.x, origin.y, T(origin.z - lens.vertex_z[i])};
@@ -130,4 +130,4 @@ Passage<T> trace(const LensView<Storage<T>>& lens, const Vec<T>& origin, const V
   return ray;
 }
 
-}  // namespace petzval::kernel
+}  // namespace petzval::inline v0::kernel

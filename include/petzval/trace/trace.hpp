@@ -9,7 +9,7 @@
 #include "petzval/lens/lens.hpp"
 #include "petzval/trace/iris.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 
 /// How to trace one ray.
 struct TraceOptions {
@@ -39,4 +39,4 @@ template <class T>
 PETZVAL_API TracedRay<T> trace(const Lens& lens, const Ray<T>& ray, const TraceOptions& options,
                                const std::function<void(int surface, const Vec3<T>& point)>& seen);
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

@@ -5,10 +5,10 @@
 #include <cstdint>
 
 #include "petzval/lens/ray_wavelengths.hpp"
-#include "petzval/pupil/pupil_star.hpp"
+#include "petzval/pupil/pupil_polygon.hpp"
 #include "petzval/trace/widest.hpp"
 
-namespace petzval::detail {
+namespace petzval::inline v0::pupil_detail {
 
 /// The stars between two distances from the axis, as polynomials of the fraction t of the way, in one row of numbers
 /// that loops gather from: what is used together lies together. Corners count from the middle; what lies before a
@@ -18,8 +18,8 @@ struct StripLayout {
   static constexpr std::size_t whole = 4;     ///< area by powers of t
   static constexpr std::size_t sectors = 8;   ///< [65] first corner x, y, x by t, y by t; area before by powers of t
   static constexpr std::size_t sector = 8;    ///< numbers of one
-  static constexpr std::size_t gaps = sectors + sector * (star_corners + 1);  ///< [64] begin, width, these by t
-  static constexpr std::size_t size = gaps + 4 * star_corners;
+  static constexpr std::size_t gaps = sectors + sector * (polygon_corners + 1);  ///< [64] begin, width, these by t
+  static constexpr std::size_t size = gaps + 4 * polygon_corners;
 };
 
 /// The strips of all wavelengths, borrowed.
@@ -72,6 +72,6 @@ struct PupilMapLoops {
   Contains<double> contains_twice;
 };
 
-PETZVAL_WIDEST(PupilMapLoops, pupil_map)
+PETZVAL_WIDEST(PupilMapLoops, film_pupil_table)
 
-}  // namespace petzval::detail
+}  // namespace petzval::inline v0::pupil_detail

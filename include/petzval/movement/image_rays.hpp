@@ -11,11 +11,11 @@
 #include "petzval/movement/film_pose.hpp"
 #include "petzval/movement/ideal_lens.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 
 /// The rays of one scene point behind the lens, spread evenly over what the lens passes: where they meet the plane
 /// z = plane_z, and their slopes per mm of z.
-struct PointBundle {
+struct RayBundle {
   double plane_z = 0;
   std::vector<double> x, y, slope_x, slope_y;
 
@@ -32,31 +32,31 @@ struct BundleBlur {
   double signed_diameter = 0;
 };
 /// Nothing for an empty bundle, and where a ray runs along the film.
-PETZVAL_API std::optional<BundleBlur> blur_on(const PointBundle& bundle, const FilmPose& film);
+PETZVAL_API std::optional<BundleBlur> blur_on(const RayBundle& bundle, const FilmPose& film);
 
 /// Sends bundles from scene points through a lens: set up once for a lens and a film (milliseconds), then some
 /// microseconds a point. Immutable, cheap to copy, free to share between threads.
 ///
 /// One wavelength: the central one. Rays are spread evenly over the pupil as the point sees it: RMS radii are those of
-/// endlessly many within 1 % for 256 rays and 0.5 % for 1024 (tests/movement/point_bundles_test.cpp; lenses of
+/// endlessly many within 1 % for 256 rays and 0.5 % for 1024 (tests/movement/image_rays_test.cpp; lenses of
 /// revolution, with cylinders it may be a fifth); the largest
 /// radius is that of the rays there are, up to 40 % less than that of the pupil's edge.
-class PETZVAL_API PointBundles {
+class PETZVAL_API ImageRays {
  public:
   /// film_radius: mm, of the farthest film point that matters: what lies beyond that has no bundles. rays: to send of
   /// each point, at least 16; half of them or more get through (but where it is less than a 16th of what a lens
-  /// without symmetry of revolution may see). Throws Error where thick_lens and PupilMap::covering do.
-  PointBundles(const Lens& lens, double film_radius, std::size_t rays = 256);
+  /// without symmetry of revolution may see). Throws Error where thick_lens and FilmPupilTable::enclosing do.
+  ImageRays(const Lens& lens, double film_radius, std::size_t rays = 256);
 
   const Lens& lens() const noexcept;
   /// Cardinal points and pupils, of the same wavelength.
   const IdealLens& ideal() const noexcept;
   /// Empty for a place that the lens does not see.
-  PointBundle bundle(const ScenePlace& place) const;
+  RayBundle bundle(const ScenePoint& place) const;
 
  private:
   struct Data;
   std::shared_ptr<const Data> data_;
 };
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

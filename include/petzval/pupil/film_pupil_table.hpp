@@ -11,10 +11,10 @@
 #include "petzval/core/export.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/lens/ray_wavelengths.hpp"
-#include "petzval/pupil/film_lines.hpp"
-#include "petzval/pupil/scene_point.hpp"
+#include "petzval/pupil/field_point.hpp"
+#include "petzval/pupil/two_plane_rays.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 
 /// A disc in the plane of the pupil whose centre moves with the film point: it lies at shift times that point.
 struct PupilDisc {
@@ -26,7 +26,7 @@ struct PupilDisc {
 /// of the pupil's plane meets the plane of the upright film. The point's line through q in the plane of the pupil meets
 /// that of the upright film in key - (slope . key) q, whatever the film's place along the key's line: 1 + slope . key
 /// is by how much nearer to the pupil's plane it stands than the upright film.
-struct FilmLean {
+struct FilmTilt {
   double slope_x = 0, slope_y = 0;  ///< 1/mm
   double low = 0, high = 0;         ///< of slope . key on the film
   double radius = 0;                ///< of the farthest key, mm
@@ -47,21 +47,22 @@ struct PupilSample {
 /// Lenses without symmetry of revolution have one pupil for all points, which contains all of theirs.
 ///
 /// Immutable, cheap to copy, free to share between threads.
-class PETZVAL_API PupilMap {
+class PETZVAL_API FilmPupilTable {
  public:
   /// Contains every ray that the lens passes and little else; rays still have to be traced. Of the pupils' area at most
-  /// 1e-5 is missed (tests/pupil/pupil_map_test.cpp: every lens of data/ wide open over its declared field, some of
-  /// them stopped down), but where a pupil falls apart into more than two pieces along a line: a ball lens stopped down
-  /// or far off the axis, catadioptrics beyond their field. film_radius: of the farthest film point, mm, >= 0. The film
-  /// is the lens's. Throws Error for a film in the plane of the last vertex and for a film_radius that is negative or
-  /// not finite.
-  static PupilMap covering(const Lens& lens, double film_radius);
+  /// 1e-5 is missed (tests/pupil/film_pupil_table_test.cpp: every lens of data/ wide open over its declared field, some
+  /// of them stopped down), but where a pupil falls apart into more than two pieces along a line: a ball lens stopped
+  /// down or far off the axis, catadioptrics beyond their field. film_radius: of the farthest film point, mm, >= 0. The
+  /// film is the lens's. Throws Error for a film in the plane of the last vertex and for a film_radius that is negative
+  /// or not finite.
+  static FilmPupilTable enclosing(const Lens& lens, double film_radius);
 
   /// The pupils themselves, as well as stars of the same area can have their shape, for models without rims.
-  static PupilMap matching(const Lens& lens, double film_radius);
+  static FilmPupilTable equal_area(const Lens& lens, double film_radius);
 
   /// What lies within all of some discs (one list for each wavelength), as well as stars of the same area can have it.
-  static PupilMap of_discs(const FilmSpace& space, std::span<const std::vector<PupilDisc>> discs, double film_radius);
+  static FilmPupilTable of_discs(const TwoPlanes& space, std::span<const std::vector<PupilDisc>> discs,
+                                 double film_radius);
 
   /// The pupils of a film that leans, by keys in place of film points: they contain every line that meets the film and
   /// is one of this map's (whose film_radius they must not exceed), and as few more as one pupil for each distance of
@@ -69,10 +70,10 @@ class PETZVAL_API PupilMap {
   /// their area at most 1e-5 is missed (tests/camera/tilted_exposure_test.cpp), but where `covering` misses more: of a
   /// ball lens 10 mm across, tilted by 8 degrees, 2e-3 on a film of 3 x 2 mm, 2e-4 on one of 0.6 x 0.45 mm at f/8.
   /// Throws Error for a radius that is negative or not finite.
-  PupilMap leaning(const FilmLean& lean) const;
+  FilmPupilTable leaning(const FilmTilt& lean) const;
 
   /// The planes that film points and samples lie in.
-  const FilmSpace& space() const noexcept;
+  const TwoPlanes& space() const noexcept;
   double film_radius() const noexcept;
   std::size_t wavelengths() const noexcept;
 
@@ -94,7 +95,7 @@ class PETZVAL_API PupilMap {
 
   /// The same for many lines: within: N, 0 or 1. Float or double.
   template <class T>
-  void contains(std::size_t count, const FilmLines<const T>& lines, const RayWavelengths& wavelengths,
+  void contains(std::size_t count, const TwoPlaneRays<const T>& lines, const RayWavelengths& wavelengths,
                 std::uint8_t* within) const noexcept;
 
   /// How the sample moves with the film point, u and v held: derivatives of (x, y) by film x and by film y.
@@ -105,9 +106,9 @@ class PETZVAL_API PupilMap {
 
  private:
   struct Data;
-  static PupilMap traced(const Lens& lens, double film_radius, bool covering);
-  explicit PupilMap(std::shared_ptr<const Data> data) noexcept : data_(std::move(data)) {}
+  static FilmPupilTable traced(const Lens& lens, double film_radius, bool covering);
+  explicit FilmPupilTable(std::shared_ptr<const Data> data) noexcept : data_(std::move(data)) {}
   std::shared_ptr<const Data> data_;
 };
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/pupil/entrance_map.hpp"
+#include "petzval/pupil/entrance_pupil_table.hpp"
 
 #include <algorithm>
 #include <array>
@@ -13,12 +13,12 @@
 #include "face.hpp"
 #include "petzval/lens/sag.hpp"
 #include "petzval/pupil/pupil.hpp"
-#include "petzval/pupil/pupil_star.hpp"
+#include "petzval/pupil/pupil_polygon.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 namespace {
 
-using detail::PupilStar;
+using pupil_detail::PupilPolygon;
 
 constexpr double pi = std::numbers::pi;
 /// Nodes of the table less one: in field, from the axis to the last; in reciprocal distance, from infinity to nearest.
@@ -79,14 +79,14 @@ double cone(double radius, double distance) noexcept {
   return 2 * pi * sine2 / (1 + std::sqrt(1 - sine2));  // 1 - cosine, without cancellation
 }
 
-PupilStar mean(const PupilStar* stars, const std::array<std::size_t, 4>& nodes,
-               const std::array<double, 4>& weights) noexcept {
-  PupilStar result;
+PupilPolygon mean(const PupilPolygon* stars, const std::array<std::size_t, 4>& nodes,
+                  const std::array<double, 4>& weights) noexcept {
+  PupilPolygon result;
   for (std::size_t j = 0; j < 4; ++j) {
-    const PupilStar& star = stars[nodes[j]];
+    const PupilPolygon& star = stars[nodes[j]];
     const double w = weights[j];
     for (int i : {0, 1}) result.middle[i] += w * star.middle[i];
-    for (std::size_t k = 0; k < detail::star_corners; ++k) {
+    for (std::size_t k = 0; k < pupil_detail::polygon_corners; ++k) {
       for (int i : {0, 1}) result.corners[k][i] += w * star.corners[k][i];
       result.gap_from[k] += w * star.gap_from[k];
       result.gap[k] += w * star.gap[k];
@@ -96,9 +96,9 @@ PupilStar mean(const PupilStar* stars, const std::array<std::size_t, 4>& nodes,
 }
 
 /// Outwards and, where it has a gap, into that.
-void widen(PupilStar& star, double by) noexcept {
+void widen(PupilPolygon& star, double by) noexcept {
   for (auto& corner : star.corners) corner = {by * corner[0], by * corner[1]};
-  for (std::size_t k = 0; k < detail::star_corners; ++k) {
+  for (std::size_t k = 0; k < pupil_detail::polygon_corners; ++k) {
     const double to = (star.gap_from[k] + star.gap[k]) / (by * by * by * by);
     star.gap[k] = std::max(to - star.gap_from[k], 0.0);
   }
@@ -106,9 +106,9 @@ void widen(PupilStar& star, double by) noexcept {
 
 /// Instead of a star where nothing passes any more: between it and the last one, which has some before it, the pupil
 /// ends and moves on as it did, faster even.
-PupilStar beyond(const PupilStar* star, std::size_t before) noexcept {
+PupilPolygon beyond(const PupilPolygon* star, std::size_t before) noexcept {
   constexpr double room = 1.2;
-  PupilStar result = star[-1];
+  PupilPolygon result = star[-1];
   if (before > 1) {
     for (int i : {0, 1}) result.middle[i] += star[-1].middle[i] - star[-2].middle[i];
   }
@@ -117,10 +117,10 @@ PupilStar beyond(const PupilStar* star, std::size_t before) noexcept {
 }
 
 /// How far out in a star a place lies: its edge is at 1, gaps count as -1; infinite where no sector has it.
-double reach(const PupilStar& star, double x, double y) noexcept {
+double reach(const PupilPolygon& star, double x, double y) noexcept {
   const double qx = x - star.middle[0], qy = y - star.middle[1];
-  for (std::size_t k = 0; k < detail::star_corners; ++k) {
-    const auto &a = star.corners[k], &b = star.corners[(k + 1) % detail::star_corners];
+  for (std::size_t k = 0; k < pupil_detail::polygon_corners; ++k) {
+    const auto &a = star.corners[k], &b = star.corners[(k + 1) % pupil_detail::polygon_corners];
     const double whole = b[0] * a[1] - a[0] * b[1];
     const double first = b[0] * qy - qx * b[1], second = qx * a[1] - a[0] * qy;
     if (!(whole > 0) || first < 0 || second < 0) continue;
@@ -133,11 +133,11 @@ double reach(const PupilStar& star, double x, double y) noexcept {
 
 }  // namespace
 
-struct EntranceMap::Data {
+struct EntrancePupilTable::Data {
   /// One wavelength.
   struct Table {
     std::array<double, distances> widest{};  // field of the last node, rad
-    std::vector<PupilStar> stars;            // [distance][field]; none: cones only
+    std::vector<PupilPolygon> stars;         // [distance][field]; none: cones only
     double ball = 0;                         // radius about the centre, mm; 0: nothing passes
   };
   Lens lens;
@@ -181,7 +181,7 @@ struct EntranceMap::Data {
   /// The place on the axis that all lines pass most nearly.
   double least_ball(std::span<const std::vector<Ray<double>>> lines, double first, double last) const noexcept;
   void fill(Table& table, const std::vector<Ray<double>>& lines, std::size_t wavelength, const ScenePassing& passing,
-            PupilEnds ends) const;
+            ClippedBy ends) const;
 
   /// The nodes about a field at a distance, and what each counts for.
   struct Cell {
@@ -204,9 +204,9 @@ struct EntranceMap::Data {
             true};
   }
   /// The star of a point: empty where the table does not speak for it.
-  PupilStar star_at(const Table& table, double field, double reciprocal) const noexcept {
+  PupilPolygon star_at(const Table& table, double field, double reciprocal) const noexcept {
     const Cell cell = cell_of(table, field, reciprocal);
-    return cell.inside ? mean(table.stars.data(), cell.nodes, cell.weights) : PupilStar{};
+    return cell.inside ? mean(table.stars.data(), cell.nodes, cell.weights) : PupilPolygon{};
   }
 
   /// The table to use for a point, its place seen from the centre; none where nothing can be seen.
@@ -219,7 +219,7 @@ struct EntranceMap::Data {
   }
 };
 
-double EntranceMap::Data::farthest(const std::vector<Ray<double>>& lines, double z) const noexcept {
+double EntrancePupilTable::Data::farthest(const std::vector<Ray<double>>& lines, double z) const noexcept {
   double farthest = 0;
   for (const Ray<double>& line : lines) {
     farthest = std::max(farthest, glm::length(glm::cross(line.origin - Vec3<double>{0, 0, z}, line.direction)));
@@ -227,8 +227,8 @@ double EntranceMap::Data::farthest(const std::vector<Ray<double>>& lines, double
   return farthest;
 }
 
-double EntranceMap::Data::least_ball(std::span<const std::vector<Ray<double>>> lines, double first,
-                                     double last) const noexcept {
+double EntrancePupilTable::Data::least_ball(std::span<const std::vector<Ray<double>>> lines, double first,
+                                            double last) const noexcept {
   const auto radius = [&](double z) {
     double largest = 0;
     for (const auto& own : lines) largest = std::max(largest, farthest(own, z));
@@ -246,8 +246,8 @@ double EntranceMap::Data::least_ball(std::span<const std::vector<Ray<double>>> l
   return (first + last) / 2;
 }
 
-void EntranceMap::Data::fill(Table& table, const std::vector<Ray<double>>& lines, std::size_t wavelength,
-                             const ScenePassing& passing, PupilEnds ends) const {
+void EntrancePupilTable::Data::fill(Table& table, const std::vector<Ray<double>>& lines, std::size_t wavelength,
+                                    const ScenePassing& passing, ClippedBy ends) const {
   // The nodes, and places half way between them to look whether means of nodes contain what they should.
   constexpr std::size_t rows = 2 * distance_steps + 1, columns = 2 * field_steps + 1;
   const auto reciprocal_of = [&](std::size_t row) { return steepest * static_cast<double>(row) / (rows - 1); };
@@ -287,7 +287,7 @@ void EntranceMap::Data::fill(Table& table, const std::vector<Ray<double>>& lines
     room = std::max(room, (bounds[j].high - bounds[j].low) / 2);
     across = std::max(across, bounds[j].across);
   }
-  std::vector<detail::PupilGuess> guesses;  // rows x columns
+  std::vector<pupil_detail::PupilGuess> guesses;  // rows x columns
   std::vector<View> views;
   for (std::size_t row = 0; row < rows; ++row) {
     for (std::size_t j = 0; j < columns; ++j) {
@@ -312,38 +312,38 @@ void EntranceMap::Data::fill(Table& table, const std::vector<Ray<double>>& lines
     passing(count, {ray[0].data(), ray[1].data(), ray[2].data(), ray[3].data(), ray[4].data(), ray[5].data()},
             wavelength, through);
   };
-  const auto edges = detail::find_edges(guesses, columns, directions, true, passes);
+  const auto edges = pupil_detail::find_edges(guesses, columns, directions, true, passes);
 
   const auto node = [](std::size_t place) { return place / columns / 2 * fields + place % columns / 2; };
   table.stars.resize(distances * fields);
-  std::vector<detail::Between> between;
+  std::vector<pupil_detail::InterpolationCheck> between;
   for (std::size_t p = 0; p < edges.size(); ++p) {
     const std::size_t row = p / columns, column = p % columns, at = node(p);
     if (row % 2 == 0 && column % 2 == 0) {
-      table.stars[at] = detail::star_of(edges[p], true);
+      table.stars[at] = pupil_detail::polygon_of(edges[p], true);
       if (edges[p].empty() && at % fields > 0) table.stars[at] = beyond(table.stars.data() + at, at % fields);
     } else {
       const std::size_t down = row % 2 * fields, right = column % 2;
       between.push_back({&edges[p], {at, at + right, at + down, at + down + right}, {0.25, 0.25, 0.25, 0.25}});
     }
   }
-  detail::grow(table.stars, between);
+  pupil_detail::expand_to_cover(table.stars, between);
   constexpr double elsewhere = 1.008;  // in cells, away from the places looked at
-  for (PupilStar& star : table.stars) widen(star, elsewhere);
+  for (PupilPolygon& star : table.stars) widen(star, elsewhere);
   // A hole is worth leaving out that all pupils have around their middles. Others, and gaps, move and are cut off
   // sooner than places tell.
-  const auto holed = [](const PupilStar& star) {
+  const auto holed = [](const PupilPolygon& star) {
     return *std::max_element(star.gap_from.begin(), star.gap_from.end()) == 0 &&
            *std::min_element(star.gap.begin(), star.gap.end()) > 0;
   };
   const bool holes = std::all_of(table.stars.begin(), table.stars.end(), holed);
   if (!holes) {
-    for (PupilStar& star : table.stars) star.gap.fill(0);
+    for (PupilPolygon& star : table.stars) star.gap.fill(0);
   }
 
   // Where pupils dwindle, in the last fields, their edges bend more than a few places tell: the lines themselves do,
   // and do everywhere where nothing else ends a pupil.
-  const bool all = holes || ends == PupilEnds::with_lines;
+  const bool all = holes || ends == ClippedBy::samples;
   constexpr double about_lines = 1.08, last_fields = 0.75, in_gaps = 0.8;
   for (std::size_t row = 0; row < rows; ++row) {
     const double reciprocal = reciprocal_of(row);
@@ -360,7 +360,7 @@ void EntranceMap::Data::fill(Table& table, const std::vector<Ray<double>>& lines
       }
       for (std::size_t j = 0; j < 4; ++j) {
         if (cell.weights[j] == 0) continue;
-        PupilStar& star = table.stars[cell.nodes[j]];
+        PupilPolygon& star = table.stars[cell.nodes[j]];
         if (out < 0) {
           for (double& gap : star.gap) gap *= in_gaps;
         } else if (about_lines * out > 1) {
@@ -371,11 +371,11 @@ void EntranceMap::Data::fill(Table& table, const std::vector<Ray<double>>& lines
   }
 }
 
-EntranceMap::EntranceMap(const Lens& lens, std::span<const std::vector<Ray<double>>> lines, const ScenePassing& passing,
-                         PupilEnds ends) {
+EntrancePupilTable::EntrancePupilTable(const Lens& lens, std::span<const std::vector<Ray<double>>> lines,
+                                       const ScenePassing& passing, ClippedBy ends) {
   auto data = std::make_shared<Data>(lens);
-  const Pupil entrance = pupils(lens, lens.central_wavelength()).entrance;
-  const detail::Face face = detail::face_of(lens, 0, entrance);
+  const Pupil entrance = pupils(lens, lens.primary_wavelength()).entrance;
+  const pupil_detail::Face face = pupil_detail::face_of(lens, 0, entrance);
   data->front_half = face.half;
   // Any centre does; fields look best from the pupil's. It must not lie before the lens, where points may be, nor so
   // far behind that all of them are alike.
@@ -404,10 +404,10 @@ EntranceMap::EntranceMap(const Lens& lens, std::span<const std::vector<Ray<doubl
   data_ = std::move(data);
 }
 
-bool EntranceMap::in_front(const Vec3<double>& point) const noexcept { return data_->in_front(point); }
+bool EntrancePupilTable::in_front(const Vec3<double>& point) const noexcept { return data_->in_front(point); }
 
-void EntranceMap::sample(const Vec3<double>& point, std::size_t count, const double* u, const double* v,
-                         std::size_t wavelength, EntranceSample* samples) const noexcept {
+void EntrancePupilTable::sample(const Vec3<double>& point, std::size_t count, const double* u, const double* v,
+                                std::size_t wavelength, EntranceSample* samples) const noexcept {
   std::fill_n(samples, count, EntranceSample{.place = data_->centre});
   const Data::Table* table = data_->table_for(point, wavelength);
   if (!table) return;
@@ -417,8 +417,8 @@ void EntranceMap::sample(const Vec3<double>& point, std::size_t count, const dou
   const View view(bearing.field, bearing.azimuth_x, bearing.azimuth_y, 1 / distance);
 
   if (data_->covers(*table, distance)) {
-    const PupilStar star = data_->star_at(*table, bearing.field, view.reciprocal);
-    const detail::StarSampler sampler(star);
+    const PupilPolygon star = data_->star_at(*table, bearing.field, view.reciprocal);
+    const pupil_detail::PolygonSampler sampler(star);
     if (!(sampler.area() > 0)) return;
     for (std::size_t i = 0; i < count; ++i) {
       if (!std::isfinite(u[i]) || !std::isfinite(v[i])) continue;
@@ -442,15 +442,15 @@ void EntranceMap::sample(const Vec3<double>& point, std::size_t count, const dou
   }
 }
 
-EntranceSample EntranceMap::sample(const Vec3<double>& point, double u, double v,
-                                   std::size_t wavelength) const noexcept {
+EntranceSample EntrancePupilTable::sample(const Vec3<double>& point, double u, double v,
+                                          std::size_t wavelength) const noexcept {
   EntranceSample result;
   sample(point, 1, &u, &v, wavelength, &result);
   return result;
 }
 
-double EntranceMap::pdf(const Vec3<double>& point, const Vec3<double>& direction,
-                        std::size_t wavelength) const noexcept {
+double EntrancePupilTable::pdf(const Vec3<double>& point, const Vec3<double>& direction,
+                               std::size_t wavelength) const noexcept {
   const Data::Table* table = data_->table_for(point, wavelength);
   if (!table) return 0;
   const Vec3<double> from_centre = point - data_->centre;
@@ -461,7 +461,7 @@ double EntranceMap::pdf(const Vec3<double>& point, const Vec3<double>& direction
   if (data_->covers(*table, distance)) {
     if (!(cosine > 0)) return 0;
     const auto [x, y] = Data::place_in(view, from_centre, direction);
-    const PupilStar star = data_->star_at(*table, bearing.field, view.reciprocal);
+    const PupilPolygon star = data_->star_at(*table, bearing.field, view.reciprocal);
     const double out = reach(star, x, y);
     if (!(out >= 0 && out <= 1)) return 0;
     double area = 0;
@@ -472,4 +472,4 @@ double EntranceMap::pdf(const Vec3<double>& point, const Vec3<double>& direction
   return 1 - cosine <= solid / (2 * pi) * (1 + 1e-12) ? 1 / solid : 0;
 }
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

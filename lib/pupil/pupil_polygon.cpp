@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/pupil/pupil_star.hpp"
+#include "petzval/pupil/pupil_polygon.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
-namespace petzval::detail {
+namespace petzval::inline v0::pupil_detail {
 namespace {
 
 using Point = std::array<double, 2>;
@@ -100,58 +100,58 @@ struct Gap {
 };
 
 /// The sector in whose cone a point lies, looked for from one on.
-std::size_t sector_of(const std::array<Point, star_corners>& corners, const Point& q, std::size_t from) noexcept {
-  for (std::size_t i = 0; i < star_corners; ++i) {
-    const std::size_t k = (from + i) % star_corners;
-    const Point &a = corners[k], &b = corners[(k + 1) % star_corners];
+std::size_t sector_of(const std::array<Point, polygon_corners>& corners, const Point& q, std::size_t from) noexcept {
+  for (std::size_t i = 0; i < polygon_corners; ++i) {
+    const std::size_t k = (from + i) % polygon_corners;
+    const Point &a = corners[k], &b = corners[(k + 1) % polygon_corners];
     if (turn(a, q) >= 0 && turn(q, b) > 0 && turn(a, b) > 0) return k;
   }
-  return star_corners;
+  return polygon_corners;
 }
 
 /// Scales the corners; the gaps stay where they are.
-void stretch(PupilStar& star, const std::array<double, star_corners>& scale) {
-  for (std::size_t k = 0; k < star_corners; ++k) {
-    const double larger = std::max(scale[k], scale[(k + 1) % star_corners]);
-    const double smaller = std::min(scale[k], scale[(k + 1) % star_corners]);
+void stretch(PupilPolygon& star, const std::array<double, polygon_corners>& scale) {
+  for (std::size_t k = 0; k < polygon_corners; ++k) {
+    const double larger = std::max(scale[k], scale[(k + 1) % polygon_corners]);
+    const double smaller = std::min(scale[k], scale[(k + 1) % polygon_corners]);
     // Of a sector that is stretched more at one side, what was its gap at both.
     const double from = star.gap_from[k] / (smaller * smaller);
     const double to = (star.gap_from[k] + star.gap[k]) / (larger * larger);
     star.gap_from[k] = from < to ? from : 0;
     star.gap[k] = std::max(to - from, 0.0);
   }
-  for (std::size_t k = 0; k < star_corners; ++k) star.corners[k] = star.corners[k] * scale[k];
+  for (std::size_t k = 0; k < polygon_corners; ++k) star.corners[k] = star.corners[k] * scale[k];
 }
 
 }  // namespace
 
-std::array<double, star_corners> PupilStar::areas() const noexcept {
-  std::array<double, star_corners> result;
-  for (std::size_t k = 0; k < star_corners; ++k) {
-    result[k] = std::max(turn(corners[k], corners[(k + 1) % star_corners]) / 2 * (1 - gap[k]), 0.0);
+std::array<double, polygon_corners> PupilPolygon::areas() const noexcept {
+  std::array<double, polygon_corners> result;
+  for (std::size_t k = 0; k < polygon_corners; ++k) {
+    result[k] = std::max(turn(corners[k], corners[(k + 1) % polygon_corners]) / 2 * (1 - gap[k]), 0.0);
   }
   return result;
 }
 
-StarSampler::StarSampler(const PupilStar& star) noexcept : star_(star), until_(star.areas()) {
+PolygonSampler::PolygonSampler(const PupilPolygon& star) noexcept : star_(star), until_(star.areas()) {
   std::partial_sum(until_.begin(), until_.end(), until_.begin());
 }
 
-std::array<double, 2> StarSampler::operator()(double u, double v) const noexcept {
+std::array<double, 2> PolygonSampler::operator()(double u, double v) const noexcept {
   const double share = std::clamp(u, 0.0, 1.0) * area();
   const auto end = std::lower_bound(until_.begin(), until_.end() - 1, share);
   const auto k = static_cast<std::size_t>(end - until_.begin());
   const double before = k > 0 ? until_[k - 1] : 0, part = until_[k] - before;
   const double along = part > 0 ? std::clamp((share - before) / part, 0.0, 1.0) : 0;
   const auto& [middle, corners, gap_from, gap] = star_;
-  const Point &a = corners[k], &b = corners[(k + 1) % star_corners];
+  const Point &a = corners[k], &b = corners[(k + 1) % polygon_corners];
   const double within = (1 - gap[k]) * std::clamp(v, 0.0, 1.0);
   const double out = std::sqrt(within < gap_from[k] ? within : within + gap[k]);
   return {middle[0] + out * (a[0] + along * (b[0] - a[0])), middle[1] + out * (a[1] + along * (b[1] - a[1]))};
 }
 
-PupilStar star_of(const PupilEdges& edges, bool covering) {
-  PupilStar star;
+PupilPolygon polygon_of(const PupilEdges& edges, bool covering) {
+  PupilPolygon star;
   star.middle = edges.middle;
   if (edges.empty()) return star;
   const Rim rim = rim_of(edges, covering);
@@ -161,21 +161,21 @@ PupilStar star_of(const PupilEdges& edges, bool covering) {
   // Corners at equal steps of the area.
   std::vector<double> until{0};
   for (std::size_t i = 0; i < n; ++i) until.push_back(until.back() + std::max(turn(point(i), point(i + 1)), 0.0));
-  std::array<std::size_t, star_corners + 1> segment{};
-  for (std::size_t k = 0, i = 0; k < star_corners; ++k) {
-    const double wanted = until.back() * static_cast<double>(k) / star_corners;
+  std::array<std::size_t, polygon_corners + 1> segment{};
+  for (std::size_t k = 0, i = 0; k < polygon_corners; ++k) {
+    const double wanted = until.back() * static_cast<double>(k) / polygon_corners;
     while (i + 1 < n && until[i + 1] <= wanted) ++i;
     segment[k] = i;
     const double step = until[i + 1] - until[i], t = step > 0 ? (wanted - until[i]) / step : 0;
     const Point &a = point(i), &b = point(i + 1);
     star.corners[k] = {a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])};
   }
-  segment[star_corners] = n - 1;
+  segment[polygon_corners] = n - 1;
 
-  std::array<double, star_corners> scale;
+  std::array<double, polygon_corners> scale;
   scale.fill(1);
-  for (std::size_t k = 0; k < star_corners; ++k) {
-    const std::size_t next = (k + 1) % star_corners;
+  for (std::size_t k = 0; k < polygon_corners; ++k) {
+    const std::size_t next = (k + 1) % polygon_corners;
     Gap gap;
     for (std::size_t i = segment[k]; i <= segment[k + 1] + 1; ++i) {
       if (i > segment[k] && i <= segment[k + 1]) {
@@ -196,9 +196,10 @@ PupilStar star_of(const PupilEdges& edges, bool covering) {
   }
   // The whole area right: the outer one by the corners, that of the gap by the sectors.
   double outer = 0, kept = 0, gaps = 0;
-  for (std::size_t k = 0; k < star_corners; ++k) outer += turn(star.corners[k], star.corners[(k + 1) % star_corners]);
+  for (std::size_t k = 0; k < polygon_corners; ++k)
+    outer += turn(star.corners[k], star.corners[(k + 1) % polygon_corners]);
   const double larger = outer > 0 ? std::sqrt(2 * rim.area / outer) : 1;
-  for (std::size_t k = 0; k < star_corners; ++k) {
+  for (std::size_t k = 0; k < polygon_corners; ++k) {
     star.corners[k] = star.corners[k] * larger;
   }
   const std::size_t directions = edges.to.size();
@@ -209,8 +210,8 @@ PupilStar star_of(const PupilEdges& edges, bool covering) {
     };
     gaps += between(edges.gap_to) - between(edges.gap_from);
   }
-  for (std::size_t k = 0; k < star_corners; ++k) {
-    kept += star.gap[k] * turn(star.corners[k], star.corners[(k + 1) % star_corners]);
+  for (std::size_t k = 0; k < polygon_corners; ++k) {
+    kept += star.gap[k] * turn(star.corners[k], star.corners[(k + 1) % polygon_corners]);
   }
   if (kept > 0) {
     for (double& gap : star.gap) gap = std::min(gap * gaps / kept, 1.0);
@@ -218,28 +219,28 @@ PupilStar star_of(const PupilEdges& edges, bool covering) {
   return star;
 }
 
-void grow(std::span<PupilStar> stars, std::span<const Between> between) {
+void expand_to_cover(std::span<PupilPolygon> stars, std::span<const InterpolationCheck> between) {
   // Edges between those looked at reach a little farther still.
   constexpr double beyond = 1.4, always = 2e-4;
-  std::vector<std::array<double, star_corners>> scales(stars.size());
-  std::vector<std::array<Gap, star_corners>> gaps(stars.size());
+  std::vector<std::array<double, polygon_corners>> scales(stars.size());
+  std::vector<std::array<Gap, polygon_corners>> gaps(stars.size());
   for (auto& scale : scales) scale.fill(1 + always);
   for (std::size_t s = 0; s < stars.size(); ++s) {
-    for (std::size_t k = 0; k < star_corners; ++k) {
+    for (std::size_t k = 0; k < polygon_corners; ++k) {
       gaps[s][k] = {stars[s].gap_from[k], stars[s].gap_from[k] + stars[s].gap[k]};
     }
   }
-  for (const Between& field : between) {
+  for (const InterpolationCheck& field : between) {
     if (!field.edges || field.edges->empty()) continue;
     Point middle{0, 0};
-    std::array<Point, star_corners> corners{};
-    std::array<Gap, star_corners> expected;
+    std::array<Point, polygon_corners> corners{};
+    std::array<Gap, polygon_corners> expected;
     expected.fill({0, 0});
     for (std::size_t j = 0; j < field.stars.size(); ++j) {
-      const PupilStar& star = stars[field.stars[j]];
+      const PupilPolygon& star = stars[field.stars[j]];
       const double w = field.weights[j];
       middle = {middle[0] + w * star.middle[0], middle[1] + w * star.middle[1]};
-      for (std::size_t k = 0; k < star_corners; ++k) {
+      for (std::size_t k = 0; k < polygon_corners; ++k) {
         corners[k] = {corners[k][0] + w * star.corners[k][0], corners[k][1] + w * star.corners[k][1]};
         expected[k].from += w * star.gap_from[k];
         expected[k].to += w * (star.gap_from[k] + star.gap[k]);
@@ -254,9 +255,9 @@ void grow(std::span<PupilStar> stars, std::span<const Between> between) {
       };
       const Point q = at(1);
       const std::size_t found = sector_of(corners, q, k);
-      if (found == star_corners) continue;
+      if (found == polygon_corners) continue;
       k = found;
-      const std::size_t next = (k + 1) % star_corners;
+      const std::size_t next = (k + 1) % polygon_corners;
       const double r = reach(corners[k], corners[next], q);
       const double wanted = r > 1 ? 1 + beyond * (r - 1) + always : 1;
       for (std::size_t j = 0; j < field.stars.size(); ++j) {
@@ -270,7 +271,7 @@ void grow(std::span<PupilStar> stars, std::span<const Between> between) {
     }
   }
   for (std::size_t s = 0; s < stars.size(); ++s) {
-    for (std::size_t k = 0; k < star_corners; ++k) {
+    for (std::size_t k = 0; k < polygon_corners; ++k) {
       const Gap& gap = gaps[s][k];
       stars[s].gap_from[k] = gap.open() ? gap.from : 0;
       stars[s].gap[k] = gap.open() ? gap.to - gap.from : 0;
@@ -279,4 +280,4 @@ void grow(std::span<PupilStar> stars, std::span<const Between> between) {
   }
 }
 
-}  // namespace petzval::detail
+}  // namespace petzval::inline v0::pupil_detail

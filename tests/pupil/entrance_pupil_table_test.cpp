@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/pupil/entrance_map.hpp"
+#include "petzval/pupil/entrance_pupil_table.hpp"
 
 #include <gtest/gtest.h>
 
@@ -16,9 +16,9 @@
 #include "../kronecker.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/psf/sobol.hpp"
+#include "petzval/pupil/film_pupil_table.hpp"
 #include "petzval/pupil/outline.hpp"
 #include "petzval/pupil/pupil.hpp"
-#include "petzval/pupil/pupil_map.hpp"
 #include "petzval/trace/trace.hpp"
 
 namespace petzval {
@@ -30,11 +30,14 @@ constexpr double pi = std::numbers::pi;
 struct Seen {
   Lens lens;
   double radius;
-  PupilMap pupils;
-  EntranceMap map;
+  FilmPupilTable pupils;
+  EntrancePupilTable map;
 
   Seen(const Lens& l, double film_radius)
-      : lens(l), radius(film_radius), pupils(PupilMap::covering(l, film_radius)), map(traced_entrances(l, pupils)) {}
+      : lens(l),
+        radius(film_radius),
+        pupils(FilmPupilTable::enclosing(l, film_radius)),
+        map(traced_entrances(l, pupils)) {}
 
   /// What leaves the lens of a line behind it.
   TracedRay<double> leaving(const FilmPoint& film, double pupil_x, double pupil_y) const {
@@ -94,7 +97,7 @@ INSTANTIATE_TEST_SUITE_P(Lenses, EntranceMaps,
                          ::testing::Values("double_gauss_100mm_f2_28deg", "biogon_35mm_f2.8", "fisheye_6.3mm_f2.8",
                                            "petzval_100mm_f1.25"));
 
-TEST(EntranceMap, MissesNextToNothingOfAnyLens) {
+TEST(EntrancePupilTable, MissesNextToNothingOfAnyLens) {
   for (const Prescription& p : testing::data_prescriptions()) {
     SCOPED_TRACE(p.id);
     const Lens lens = compile(p);
@@ -105,7 +108,7 @@ TEST(EntranceMap, MissesNextToNothingOfAnyLens) {
   }
 }
 
-TEST(EntranceMap, HasTheDensityItSays) {
+TEST(EntrancePupilTable, HasTheDensityItSays) {
   for (const char* id : {"double_gauss_100mm_f2_28deg", "fisheye_8mm_f2.8", "cylinder_3.9mm"}) {
     SCOPED_TRACE(id);
     const Seen s = seen(id);
@@ -145,7 +148,7 @@ TEST(EntranceMap, HasTheDensityItSays) {
   }
 }
 
-TEST(EntranceMap, EstimatesTheSolidAngleOfThePupil) {
+TEST(EntrancePupilTable, EstimatesTheSolidAngleOfThePupil) {
   for (const char* id : {"double_gauss_100mm_f2_28deg", "tessar_100mm_f2.8", "fisheye_8mm_f2.8"}) {
     const Seen s = seen(id);
     const double pupil_z = pupils(s.lens).entrance.z;
@@ -178,7 +181,7 @@ TEST(EntranceMap, EstimatesTheSolidAngleOfThePupil) {
   }
 }
 
-TEST(EntranceMap, SamplesManyAsOneByOne) {
+TEST(EntrancePupilTable, SamplesManyAsOneByOne) {
   const Seen s = seen("double_gauss_100mm_f2_28deg");
   const std::vector<double> u{0, 0.3, 0.99, std::numeric_limits<double>::quiet_NaN(), 1}, v{0.5, 0, 1, 0.5, 0.7};
   // By the table, by the cone of a point that is too near for it, beyond all fields.
@@ -197,7 +200,7 @@ TEST(EntranceMap, SamplesManyAsOneByOne) {
   }
 }
 
-TEST(EntranceMap, HasNothingForWhatIsNotInFrontOfTheLens) {
+TEST(EntrancePupilTable, HasNothingForWhatIsNotInFrontOfTheLens) {
   const Seen s = seen("double_gauss_100mm_f2_28deg");
   constexpr double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
   for (const Vec3<double> point : {Vec3<double>{0, 0, 20}, Vec3<double>{0, 0, 1}, Vec3<double>{5, 5, 500},

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/pupil/pupil_map.hpp"
+#include "petzval/pupil/film_pupil_table.hpp"
 
 #include <gtest/gtest.h>
 
@@ -25,9 +25,9 @@ using petzval::testing::data_lens;
 using petzval::testing::data_prescriptions;
 
 /// Which of some places in the plane of the pupil a film point sees the scene through, by tracing.
-std::vector<bool> passing(const Lens& lens, const PupilMap& map, const FilmPoint& film,
+std::vector<bool> passing(const Lens& lens, const FilmPupilTable& map, const FilmPoint& film,
                           const std::vector<std::array<double, 2>>& places) {
-  const FilmSpace& space = map.space();
+  const TwoPlanes& space = map.space();
   const double sense = signed_index(lens, lens.surface_count()) > 0 ? -1 : 1;
   std::vector<Ray<double>> rays;
   for (const auto& [x, y] : places) {
@@ -62,7 +62,7 @@ struct Coverage {
 /// Samples of film points at some radii. What is missed is known by rays of two kinds that were not sampled: in a band
 /// outside the star's edge, of a tenth of its area, where misses by small errors lie, and in a box half as large again
 /// as the star, for lost parts; those of them that pass are missed.
-Coverage coverage(const Lens& lens, const PupilMap& map, double radius, int points, int samples) {
+Coverage coverage(const Lens& lens, const FilmPupilTable& map, double radius, int points, int samples) {
   std::mt19937_64 random(points);
   std::uniform_real_distribution<double> unit(0, 1);
   Coverage result;
@@ -108,37 +108,37 @@ class DoubleGauss : public ::testing::TestWithParam<double> {};
 TEST_P(DoubleGauss, SamplesReachTheSceneAtEveryField) {
   const Lens lens = with_f_number(data_lens("double_gauss_100mm_f2.0"), GetParam());
   constexpr double corner = 40.4;  // mm, 22 degrees
-  const Coverage c = coverage(lens, PupilMap::covering(lens, corner), corner, 64, 8000);
+  const Coverage c = coverage(lens, FilmPupilTable::enclosing(lens, corner), corner, 64, 8000);
   RecordProperty("worst", std::to_string(c.worst));
   EXPECT_GT(c.worst, 0.98);
   EXPECT_LE(c.missed, 1e-5);
 }
 
-INSTANTIATE_TEST_SUITE_P(PupilMap, DoubleGauss, ::testing::Values(2.01, 4.0, 22.0));
+INSTANTIATE_TEST_SUITE_P(FilmPupilTable, DoubleGauss, ::testing::Values(2.01, 4.0, 22.0));
 
-TEST(PupilMap, CoversThePupilsOfEveryLens) {
+TEST(FilmPupilTable, CoversThePupilsOfEveryLens) {
   for (const Prescription& p : data_prescriptions()) {
     const Lens lens = compile(p);
     const double radius = declared_radius(p, lens);
-    const Coverage c = coverage(lens, PupilMap::covering(lens, radius), radius, 20, 2500);
+    const Coverage c = coverage(lens, FilmPupilTable::enclosing(lens, radius), radius, 20, 2500);
     EXPECT_GT(c.mean, lens.rotationally_symmetric() ? 0.93 : 0.85) << p.name;
     EXPECT_LE(c.missed, 1e-5) << p.name;
   }
 }
 
-TEST(PupilMap, CoversSmallPupilsToo) {
+TEST(FilmPupilTable, CoversSmallPupilsToo) {
   for (const auto& [id, f_number, radius] :
        {std::tuple{"petzval_100mm_f1.25", 16.0, 21.0}, std::tuple{"modern_58mm_f0.95", 64.0, 21.0},
         std::tuple{"catadioptric_mangin_1000mm_f7.5", 16.0, 21.6}, std::tuple{"fisheye_8mm_f2.8", 32.0, 8.0},
         std::tuple{"anamorphic_60mm_2x", 16.0, 21.6}, std::tuple{"phone_5.6mm_f3.5", 11.0, 3.6}}) {
     const Lens lens = with_f_number(data_lens(id), f_number);
-    const Coverage c = coverage(lens, PupilMap::covering(lens, radius), radius, 16, 1500);
+    const Coverage c = coverage(lens, FilmPupilTable::enclosing(lens, radius), radius, 16, 1500);
     EXPECT_GT(c.mean, lens.rotationally_symmetric() ? 0.93 : 0.4) << id;
     EXPECT_LE(c.missed, 1e-5) << id;
   }
 }
 
-TEST(PupilMap, SeesThroughAGlassCloseToTheFilm) {
+TEST(FilmPupilTable, SeesThroughAGlassCloseToTheFilm) {
   Prescription p = petzval::testing::data_prescription("double_gauss_100mm_f2.0");
   // A plate of 2 mm, 0.1 mm before the film, which moves back by what the plate shifts the image.
   const Lens bare = compile(p);
@@ -147,16 +147,17 @@ TEST(PupilMap, SeesThroughAGlassCloseToTheFilm) {
   p.surfaces.push_back({.thickness = 2, .medium = {.nd = 1.5}, .semi_diameter = 40});
   p.surfaces.push_back({.thickness = 0.1, .semi_diameter = 40});
   for (const double f_number : {2.8, 16.0}) {
-    const PupilMap map = PupilMap::covering(with_f_number(compile(p), f_number), 21);
+    const FilmPupilTable map = FilmPupilTable::enclosing(with_f_number(compile(p), f_number), 21);
     for (int i = 0; i <= 100; ++i) EXPECT_GT(map.area({0, 0.21 * i}), 0) << f_number << " at " << 0.21 * i;
   }
 }
 
-TEST(PupilMap, MatchesTheShapeOfPupils) {
+TEST(FilmPupilTable, MatchesTheShapeOfPupils) {
   for (const char* id : {"double_gauss_100mm_f1.35", "fisheye_8mm_f2.8", "catadioptric_mangin_1000mm_f7.5"}) {
     const Lens lens = data_lens(id);
     const double radius = 7.5;
-    const PupilMap map = PupilMap::matching(lens, radius), cover = PupilMap::covering(lens, radius);
+    const FilmPupilTable map = FilmPupilTable::equal_area(lens, radius),
+                         cover = FilmPupilTable::enclosing(lens, radius);
     std::mt19937_64 random(7);
     std::uniform_real_distribution<double> unit(0, 1);
     for (const double r : {0.0, 0.31, 0.77, 0.99}) {
@@ -178,9 +179,9 @@ TEST(PupilMap, MatchesTheShapeOfPupils) {
   }
 }
 
-TEST(PupilMap, SpreadsSamplesEvenly) {
+TEST(FilmPupilTable, SpreadsSamplesEvenly) {
   const Lens lens = data_lens("double_gauss_100mm_f1.35");
-  const PupilMap map = PupilMap::covering(lens, 22);
+  const FilmPupilTable map = FilmPupilTable::enclosing(lens, 22);
   const FilmPoint film{-9, 17};
   // Means of the samples and of places that belong to the pupil.
   std::mt19937_64 random(3);
@@ -211,10 +212,10 @@ TEST(PupilMap, SpreadsSamplesEvenly) {
   EXPECT_NEAR(map.area(film), count * std::pow(2 * half / 1024, 2), 1e-3 * map.area(film));
 }
 
-TEST(PupilMap, MovesWithoutJumpsAcrossTheTable) {
+TEST(FilmPupilTable, MovesWithoutJumpsAcrossTheTable) {
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
   constexpr double radius = 40;
-  const PupilMap map = PupilMap::covering(lens, radius);
+  const FilmPupilTable map = FilmPupilTable::enclosing(lens, radius);
   for (const auto& [u, v] : {std::array{0.1, 0.9}, std::array{0.43, 0.5}, std::array{0.86, 0.99}}) {
     const auto at = [&, u = u, v = v](double r) { return map.sample({0.28 * r, -0.96 * r}, u, v); };
     // Steps across the nodes of the table against those within its strips.
@@ -235,9 +236,9 @@ TEST(PupilMap, MovesWithoutJumpsAcrossTheTable) {
   }
 }
 
-TEST(PupilMap, IsContinuousAroundTheAxis) {
+TEST(FilmPupilTable, IsContinuousAroundTheAxis) {
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
-  const PupilMap map = PupilMap::covering(lens, 40);
+  const FilmPupilTable map = FilmPupilTable::enclosing(lens, 40);
   const PupilSample axis = map.sample({0, 0}, 0.3, 0.8);
   for (int i = 0; i < 32; ++i) {
     const double azimuth = 2 * std::numbers::pi * i / 32;
@@ -247,9 +248,9 @@ TEST(PupilMap, IsContinuousAroundTheAxis) {
   }
 }
 
-TEST(PupilMap, SamplesBatchesLikeSinglePoints) {
+TEST(FilmPupilTable, SamplesBatchesLikeSinglePoints) {
   const Lens lens = data_lens("catadioptric_mangin_1000mm_f7.5");
-  const PupilMap map = PupilMap::covering(lens, 20);
+  const FilmPupilTable map = FilmPupilTable::enclosing(lens, 20);
   std::mt19937_64 random(5);
   std::uniform_real_distribution<double> unit(0, 1);
   for (const std::size_t count : {1u, 7u, 8u, 63u, 64u, 129u}) {
@@ -279,15 +280,16 @@ TEST(PupilMap, SamplesBatchesLikeSinglePoints) {
   }
 }
 
-TEST(PupilMap, TellsOfManyPlacesWhatItTellsOfOne) {
+TEST(FilmPupilTable, TellsOfManyPlacesWhatItTellsOfOne) {
   const std::vector<double> nm{450, 650};
   const auto with = [&](const char* id) {
     return compile(petzval::testing::data_prescription(id), nm, {.missing_glass = MissingGlass::abbe});
   };
-  for (const PupilMap& map :
-       {PupilMap::covering(with("double_gauss_100mm_f1.35"), 22), PupilMap::matching(with("fisheye_8mm_f2.8"), 9),
-        PupilMap::covering(with("catadioptric_mangin_1000mm_f7.5"), 22),
-        PupilMap::covering(with("anamorphic_60mm_2x"), 22), PupilMap::covering(with("biogon_35mm_f2.8"), 30)}) {
+  for (const FilmPupilTable& map : {FilmPupilTable::enclosing(with("double_gauss_100mm_f1.35"), 22),
+                                    FilmPupilTable::equal_area(with("fisheye_8mm_f2.8"), 9),
+                                    FilmPupilTable::enclosing(with("catadioptric_mangin_1000mm_f7.5"), 22),
+                                    FilmPupilTable::enclosing(with("anamorphic_60mm_2x"), 22),
+                                    FilmPupilTable::enclosing(with("biogon_35mm_f2.8"), 30)}) {
     const double radius = map.film_radius(), size = std::sqrt(map.area({0, 0}));
     std::mt19937_64 random(5);
     std::uniform_real_distribution<double> unit(-1.1, 1.1);
@@ -321,18 +323,19 @@ TEST(PupilMap, TellsOfManyPlacesWhatItTellsOfOne) {
 
 // Of a film that leans: every line of the map that meets it, and not many more. The pupil of a key is that of the
 // upright film's points that its lines meet.
-TEST(PupilMap, CoversThePupilsOfAFilmThatLeans) {
+TEST(FilmPupilTable, CoversThePupilsOfAFilmThatLeans) {
   for (const auto& [id, radius] : {std::pair{"double_gauss_100mm_f2.0", 22.0}, std::pair{"fisheye_8mm_f2.8", 8.0},
                                    std::pair{"catadioptric_mangin_1000mm_f7.5", 20.0}}) {
     const Lens lens = data_lens(id);
-    const double steep = std::tan(radians(10)) / -film_space(lens).depth();
-    const FilmLean lean{.slope_x = 0.8 * steep,
+    const double steep = std::tan(radians(10)) / -two_planes(lens).depth();
+    const FilmTilt lean{.slope_x = 0.8 * steep,
                         .slope_y = -0.6 * steep,
                         .low = -0.7 * radius * std::abs(steep),
                         .high = 0.7 * radius * std::abs(steep),
                         .radius = radius};
-    for (const PupilMap& upright : {PupilMap::covering(lens, 1.5 * radius), PupilMap::matching(lens, 1.5 * radius)}) {
-      const PupilMap map = upright.leaning(lean);
+    for (const FilmPupilTable& upright :
+         {FilmPupilTable::enclosing(lens, 1.5 * radius), FilmPupilTable::equal_area(lens, 1.5 * radius)}) {
+      const FilmPupilTable map = upright.leaning(lean);
       EXPECT_EQ(map.film_radius(), radius);
       std::mt19937_64 random(2);
       std::uniform_real_distribution<double> unit(0, 1);
@@ -357,14 +360,14 @@ TEST(PupilMap, CoversThePupilsOfAFilmThatLeans) {
       EXPECT_GT(inside / sampled, 0.95) << id;
     }
   }
-  const PupilMap map = PupilMap::covering(data_lens("double_gauss_100mm_f2.0"), 20);
+  const FilmPupilTable map = FilmPupilTable::enclosing(data_lens("double_gauss_100mm_f2.0"), 20);
   EXPECT_THROW((void)map.leaning({.radius = -1}), Error);
   EXPECT_THROW((void)map.leaning({.radius = std::numeric_limits<double>::quiet_NaN()}), Error);
 }
 
-TEST(PupilMap, KnowsHowItsSamplesMove) {
+TEST(FilmPupilTable, KnowsHowItsSamplesMove) {
   const Lens lens = data_lens("fisheye_8mm_f2.8");
-  const PupilMap map = PupilMap::covering(lens, 7);
+  const FilmPupilTable map = FilmPupilTable::enclosing(lens, 7);
   std::mt19937_64 random(11);
   std::uniform_real_distribution<double> unit(0, 1);
   for (int i = 0; i < 200; ++i) {
@@ -386,9 +389,9 @@ TEST(PupilMap, KnowsHowItsSamplesMove) {
   }
 }
 
-TEST(PupilMap, HoldsWhatLiesInAllOfSomeDiscs) {
+TEST(FilmPupilTable, HoldsWhatLiesInAllOfSomeDiscs) {
   const std::vector<std::vector<PupilDisc>> discs{{{0.2, 10}, {-0.5, 9}}};
-  const PupilMap map = PupilMap::of_discs({50, 0}, discs, 12);
+  const FilmPupilTable map = FilmPupilTable::of_discs({50, 0}, discs, 12);
   for (const double r : {0.0, 3.0, 8.0, 12.0}) {
     const double distance = 0.7 * r, a = 10, b = 9;
     double area = std::numbers::pi * b * b;
@@ -402,9 +405,9 @@ TEST(PupilMap, HoldsWhatLiesInAllOfSomeDiscs) {
   }
 }
 
-TEST(PupilMap, HasNothingOutsideItsFilm) {
+TEST(FilmPupilTable, HasNothingOutsideItsFilm) {
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
-  const PupilMap map = PupilMap::covering(lens, 20);
+  const FilmPupilTable map = FilmPupilTable::enclosing(lens, 20);
   constexpr double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
   std::vector<double> x{0, 21, nan, 0, 0, infinity, 3, 3, 0, 0}, y(10, 0), u{0.5, 0.5, 0.5, nan, 0.5, 0.5, -1, 2, 1, 0},
       v{0.5, 0.5, 0.5, 0.5, infinity, 0.5, -1, 2, 1, 0}, px(10), py(10), areas(10);
@@ -420,17 +423,17 @@ TEST(PupilMap, HasNothingOutsideItsFilm) {
   EXPECT_EQ(map.sample({0, 0}, 0.5, 0.5, 1).area, 0);
   EXPECT_EQ(map.area({0, 21}), 0);
   EXPECT_FALSE(map.contains({0, 21}, 0, 0));
-  EXPECT_THROW((void)PupilMap::covering(lens, nan), Error);
-  EXPECT_THROW((void)PupilMap::covering(lens, -1), Error);
-  EXPECT_THROW((void)PupilMap::covering(with_film(lens, lens.surfaces().back().vertex_z), 10), Error);
-  EXPECT_THROW((void)PupilMap::matching(data_lens("anamorphic_60mm_2x"), 10), Error);
-  const PupilMap dark = PupilMap::covering(with_semi_diameter(lens, *lens.stop(), 0), 20);
+  EXPECT_THROW((void)FilmPupilTable::enclosing(lens, nan), Error);
+  EXPECT_THROW((void)FilmPupilTable::enclosing(lens, -1), Error);
+  EXPECT_THROW((void)FilmPupilTable::enclosing(with_film(lens, lens.surfaces().back().vertex_z), 10), Error);
+  EXPECT_THROW((void)FilmPupilTable::equal_area(data_lens("anamorphic_60mm_2x"), 10), Error);
+  const FilmPupilTable dark = FilmPupilTable::enclosing(with_semi_diameter(lens, *lens.stop(), 0), 20);
   EXPECT_EQ(dark.sample({1, 2}, 0.5, 0.5).area, 0);
 }
 
-TEST(PupilMap, HasNothingInTheMiddleOfAHole) {
-  for (const PupilMap& map : {PupilMap::covering(data_lens("catadioptric_mangin_1000mm_f7.5"), 20),
-                              PupilMap::matching(data_lens("catadioptric_mangin_1000mm_f7.5"), 20)}) {
+TEST(FilmPupilTable, HasNothingInTheMiddleOfAHole) {
+  for (const FilmPupilTable& map : {FilmPupilTable::enclosing(data_lens("catadioptric_mangin_1000mm_f7.5"), 20),
+                                    FilmPupilTable::equal_area(data_lens("catadioptric_mangin_1000mm_f7.5"), 20)}) {
     for (const FilmPoint& film : {FilmPoint{0, 0}, FilmPoint{3, 7}}) {
       const auto [x, y] = map.middle(film);
       EXPECT_FALSE(map.contains(film, x, y));
@@ -439,11 +442,11 @@ TEST(PupilMap, HasNothingInTheMiddleOfAHole) {
   }
 }
 
-TEST(PupilMap, HasOneTableForEachWavelength) {
+TEST(FilmPupilTable, HasOneTableForEachWavelength) {
   const Prescription p = petzval::testing::data_prescription("double_gauss_100mm_f2.0");
   const std::vector<double> nm{450, 650};
   const Lens lens = compile(p, nm, {.glasses = nullptr, .missing_glass = MissingGlass::abbe});
-  const PupilMap map = PupilMap::covering(lens, 20);
+  const FilmPupilTable map = FilmPupilTable::enclosing(lens, 20);
   ASSERT_EQ(map.wavelengths(), 2u);
   const std::vector<std::uint16_t> each{1, 0, 2, 1, 0, 1, 0, 1};
   std::vector<double> x(8, 7), y(8, -11), u(8, 0.37), v(8, 0.81), px(8), py(8), areas(8);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Samples of many pupils, compiled once for each instruction set: plain loops over blocks, which the compiler runs on
 // its lanes. Names are local, and no other library is called, as in lib/trace/lanes.hpp.
-#include "pupil_map_loops.hpp"
+#include "film_pupil_table_loops.hpp"
 
-namespace petzval::detail {
+namespace petzval::inline v0::pupil_detail {
 namespace {
 
 constexpr std::size_t block = 64;
@@ -47,7 +47,7 @@ void sample_block(const StripTable<R>& table, const R* film_x, const R* film_y, 
                   const std::int32_t* wavelength, R* x, R* y, R* area) noexcept {
   using L = StripLayout;
   const auto index = [](std::size_t place) { return static_cast<std::int32_t>(place); };
-  constexpr auto corners = static_cast<std::int32_t>(star_corners);
+  constexpr auto corners = static_cast<std::int32_t>(polygon_corners);
   const StripTable<R> own_table = table;  // which nothing that is written overlaps
   const R* all = own_table.strips;
   R t[block], cosine[block], sine[block], target[block], whole[block], outer[block], behind[block], beyond[block];
@@ -79,7 +79,7 @@ void sample_block(const StripTable<R>& table, const R* film_x, const R* film_y, 
   const R early = table.corrections > 0 ? R(0) : R(0.5);
   for (std::size_t i = 0; i < block; ++i) {
     whole[i] = whole[i] * area_at(i, strip[i] + index(L::whole));
-    const auto k = static_cast<std::int32_t>(target[i] * R(star_corners) - early);
+    const auto k = static_cast<std::int32_t>(target[i] * R(polygon_corners) - early);
     sector[i] = k < corners ? k : corners - 1;
     target[i] = target[i] * whole[i];
   }
@@ -131,7 +131,7 @@ void contains_block(const StripTable<R>& table, const R* film_x, const R* film_y
                     const std::int32_t* wavelength, std::uint8_t* within) noexcept {
   using L = StripLayout;
   const auto index = [](std::size_t place) { return static_cast<std::int32_t>(place); };
-  constexpr auto corners = static_cast<std::int32_t>(star_corners);
+  constexpr auto corners = static_cast<std::int32_t>(polygon_corners);
   const StripTable<R> own_table = table;
   const R* all = own_table.strips;
   R t[block], qx[block], qy[block];
@@ -244,4 +244,4 @@ void sample(const StripTable<R>& table, std::size_t count, const R* film_x, cons
 
 const PupilMapLoops PETZVAL_LOOPS{sample<float>, sample<double>, contains<float>, contains<double>};
 
-}  // namespace petzval::detail
+}  // namespace petzval::inline v0::pupil_detail

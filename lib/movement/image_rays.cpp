@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/movement/point_bundles.hpp"
+#include "petzval/movement/image_rays.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,16 +9,16 @@
 #include <string>
 
 #include "petzval/core/error.hpp"
-#include "petzval/pupil/entrance_map.hpp"
-#include "petzval/pupil/pupil_map.hpp"
+#include "petzval/pupil/entrance_pupil_table.hpp"
+#include "petzval/pupil/film_pupil_table.hpp"
 #include "petzval/trace/batch.hpp"
 #include "signed_diameter.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 namespace {
 
 /// Where to look for a place; nothing where its coordinates say none.
-std::optional<Vec3<double>> seen_at(const ScenePlace& place) noexcept {
+std::optional<Vec3<double>> seen_at(const ScenePoint& place) noexcept {
   const auto& [p, at_infinity] = place;
   constexpr double infinity = std::numeric_limits<double>::infinity();
   constexpr double farthest = 1e50;  // mm: rays from there are parallel to the last bit
@@ -36,7 +36,7 @@ std::optional<Vec3<double>> seen_at(const ScenePlace& place) noexcept {
 
 }  // namespace
 
-std::optional<BundleBlur> blur_on(const PointBundle& bundle, const FilmPose& film) {
+std::optional<BundleBlur> blur_on(const RayBundle& bundle, const FilmPose& film) {
   const std::size_t count = bundle.x.size();
   if (count == 0) return {};
   const Vec3<double> right = film.right(), up = film.up(), normal = film.normal();
@@ -77,26 +77,26 @@ std::optional<BundleBlur> blur_on(const PointBundle& bundle, const FilmPose& fil
   return BundleBlur{.centroid = {glm::dot(middle, right), glm::dot(middle, up)},
                     .rms_radius = rms,
                     .largest_radius = std::sqrt(largest),
-                    .signed_diameter = detail::signed_diameter(diameter * rms, diameter * defocus)};
+                    .signed_diameter = movement_detail::signed_diameter(diameter * rms, diameter * defocus)};
 }
 
-struct PointBundles::Data {
+struct ImageRays::Data {
   Lens lens;
   IdealLens ideal;
-  EntranceMap entrances;
+  EntrancePupilTable entrances;
   std::size_t wanted;  // rays of each point
 
-  PointBundle send(const Vec3<double>& point, std::size_t count) const;
+  RayBundle send(const Vec3<double>& point, std::size_t count) const;
 };
 
-PointBundle PointBundles::Data::send(const Vec3<double>& point, std::size_t count) const {
+RayBundle ImageRays::Data::send(const Vec3<double>& point, std::size_t count) const {
   // Fibonacci's lattice: with u around the pupil and v outwards the spiral of a sunflower.
   std::vector<double> u(count), v(count);
   for (std::size_t i = 0; i < count; ++i) {
     u[i] = std::fmod(static_cast<double>(i) * std::numbers::phi, 1.0);
     v[i] = (static_cast<double>(i) + 0.5) / static_cast<double>(count);
   }
-  const std::size_t wavelength = lens.central_wavelength();
+  const std::size_t wavelength = lens.primary_wavelength();
   std::vector<EntranceSample> samples(count);
   entrances.sample(point, count, u.data(), v.data(), wavelength, samples.data());
 
@@ -114,7 +114,7 @@ PointBundle PointBundles::Data::send(const Vec3<double>& point, std::size_t coun
   trace<double>(lens, sent, {rays.x, rays.y, rays.z, rays.dx, rays.dy, rays.dz}, rays, fates.data(), nullptr,
                 {.wavelength = wavelength});
 
-  PointBundle result;
+  RayBundle result;
   result.plane_z = lens.surfaces().back().vertex_z;
   for (auto* values : {&result.x, &result.y, &result.slope_x, &result.slope_y}) values->reserve(sent);
   for (std::size_t i = 0; i < sent; ++i) {
@@ -129,32 +129,32 @@ PointBundle PointBundles::Data::send(const Vec3<double>& point, std::size_t coun
   return result;
 }
 
-PointBundles::PointBundles(const Lens& lens, double film_radius, std::size_t rays) {
+ImageRays::ImageRays(const Lens& lens, double film_radius, std::size_t rays) {
   if (rays < 16) throw Error(lens.name() + ": point bundles: " + std::to_string(rays) + " rays, wanted 16 or more");
   data_ = std::make_shared<const Data>(Data{
       .lens = lens,
-      .ideal = thick_lens(lens, lens.central_wavelength()),
-      .entrances = traced_entrances(lens, PupilMap::covering(lens, film_radius)),
+      .ideal = thick_lens(lens, lens.primary_wavelength()),
+      .entrances = traced_entrances(lens, FilmPupilTable::enclosing(lens, film_radius)),
       .wanted = rays,
   });
 }
 
-const Lens& PointBundles::lens() const noexcept { return data_->lens; }
-const IdealLens& PointBundles::ideal() const noexcept { return data_->ideal; }
+const Lens& ImageRays::lens() const noexcept { return data_->lens; }
+const IdealLens& ImageRays::ideal() const noexcept { return data_->ideal; }
 
-PointBundle PointBundles::bundle(const ScenePlace& place) const {
+RayBundle ImageRays::bundle(const ScenePoint& place) const {
   const std::optional<Vec3<double>> point = seen_at(place);
   if (!point) {
-    PointBundle none;
+    RayBundle none;
     none.plane_z = data_->lens.surfaces().back().vertex_z;
     return none;
   }
   const std::size_t rays = data_->wanted;
-  PointBundle bundle = data_->send(*point, rays);
+  RayBundle bundle = data_->send(*point, rays);
   // Where the lens passes little of what it was sent, as lenses without symmetry of revolution do.
   const std::size_t kept = bundle.x.size();
   if (kept == 0 || 2 * kept >= rays) return bundle;
   return data_->send(*point, std::min(rays * rays / kept, 16 * rays));
 }
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

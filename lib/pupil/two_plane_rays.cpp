@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/pupil/film_lines.hpp"
+#include "petzval/pupil/two_plane_rays.hpp"
 
 #include <cmath>
 
@@ -9,16 +9,16 @@
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/pupil.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 
-FilmSpace film_space(const Lens& lens) {
+TwoPlanes two_planes(const Lens& lens) {
   const double film_z = lens.film_z(), last_z = lens.surfaces().back().vertex_z;
   if (film_z == last_z) {
     throw Error(lens.name() + ": film: it is at z = " + number(last_z) +
                 " mm, that of the last vertex, wanted it elsewhere");
   }
   if (!has_pupils(lens)) return {film_z, last_z};
-  const std::size_t wavelength = lens.central_wavelength();
+  const std::size_t wavelength = lens.primary_wavelength();
   const Meridian meridian = main_meridian(lens, wavelength);
   const double exit_z = pupils(lens, wavelength, meridian).exit.z;
   const double reach = std::abs(first_order(lens, wavelength, meridian).effective_focal_length);
@@ -29,14 +29,14 @@ FilmSpace film_space(const Lens& lens) {
 
 OuterFace last_face(const Lens& lens) {
   const std::size_t last = lens.surface_count() - 1;
-  const Pupil entrance = has_pupils(lens) ? pupils(lens, lens.central_wavelength()).entrance : Pupil{};
-  const detail::Face face = detail::face_of(lens, last, entrance);
+  const Pupil entrance = has_pupils(lens) ? pupils(lens, lens.primary_wavelength()).entrance : Pupil{};
+  const pupil_detail::Face face = pupil_detail::face_of(lens, last, entrance);
   return {face.half, lens.surfaces()[last].vertex_z, face.z_min, face.z_max};
 }
 
-double towards_scene(const Lens& lens, const FilmSpace& space) {
+double towards_scene(const Lens& lens, const TwoPlanes& space) {
   // Against the light, which runs towards +z but behind an odd number of mirrors.
   return signed_index(lens, lens.surface_count()) * space.depth() > 0 ? -1 : 1;
 }
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

@@ -11,9 +11,9 @@
 #include "petzval/core/export.hpp"
 
 /// Pupils as tables hold them: found by tracing their edges, kept as stars of 64 corners.
-namespace petzval::detail {
+namespace petzval::inline v0::pupil_detail {
 
-inline constexpr std::size_t star_corners = 64;
+inline constexpr std::size_t polygon_corners = 64;
 
 /// Where the light of one field passes a plane: for each of equally spaced angles about `middle`, in coordinates
 /// divided by `half_axes`, from the middle to one distance, but for a gap (a hole of the lens; a ring of strongly
@@ -49,40 +49,40 @@ PETZVAL_API std::vector<PupilEdges> find_edges(std::span<const PupilGuess> field
 
 /// A region of a plane: a middle and 64 corners around it in order, from +y to +x. Sector k lies between the corners k
 /// and k + 1; of the way from the middle to its outer edge a part may be missing, a hole or a gap.
-struct PupilStar {
+struct PupilPolygon {
   std::array<double, 2> middle{0, 0};
-  std::array<std::array<double, 2>, star_corners> corners{};  ///< from the middle
-  std::array<double, star_corners> gap_from{}, gap{};         ///< begin and width as squared fractions, by sector
+  std::array<std::array<double, 2>, polygon_corners> corners{};  ///< from the middle
+  std::array<double, polygon_corners> gap_from{}, gap{};         ///< begin and width as squared fractions, by sector
 
   /// What each sector adds to the area, mm^2.
-  std::array<double, star_corners> areas() const noexcept;
+  std::array<double, polygon_corners> areas() const noexcept;
 };
 
 /// Spreads points evenly by area over a star, which it does not keep.
-class PETZVAL_API StarSampler {
+class PETZVAL_API PolygonSampler {
  public:
-  explicit StarSampler(const PupilStar& star) noexcept;
-  explicit StarSampler(const PupilStar&& star) = delete;
+  explicit PolygonSampler(const PupilPolygon& star) noexcept;
+  explicit PolygonSampler(const PupilPolygon&& star) = delete;
   /// mm^2; 0: nothing to sample.
-  double area() const noexcept { return until_[star_corners - 1]; }
+  double area() const noexcept { return until_[polygon_corners - 1]; }
   /// For u and v in [0, 1] (clamped).
   std::array<double, 2> operator()(double u, double v) const noexcept;
 
  private:
-  const PupilStar& star_;
-  std::array<double, star_corners> until_;  // area of the sectors up to the end of each
+  const PupilPolygon& star_;
+  std::array<double, polygon_corners> until_;  // area of the sectors up to the end of each
 };
 
 /// Stars that contain the edges of each field (`covering`) or have their area, corners at equal steps of it.
-PETZVAL_API PupilStar star_of(const PupilEdges& edges, bool covering);
+PETZVAL_API PupilPolygon polygon_of(const PupilEdges& edges, bool covering);
 
 /// Grows stars so that every weighted mean of them contains the edges of a field in between: of fields[i] the edges
 /// were found, and its star would be the mean of stars[parts[i].first[k]] with the weights parts[i].second[k].
-struct Between {
+struct InterpolationCheck {
   const PupilEdges* edges = nullptr;
   std::array<std::size_t, 4> stars{0, 0, 0, 0};
   std::array<double, 4> weights{0, 0, 0, 0};
 };
-PETZVAL_API void grow(std::span<PupilStar> stars, std::span<const Between> between);
+PETZVAL_API void expand_to_cover(std::span<PupilPolygon> stars, std::span<const InterpolationCheck> between);
 
-}  // namespace petzval::detail
+}  // namespace petzval::inline v0::pupil_detail

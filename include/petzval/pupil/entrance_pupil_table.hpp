@@ -12,11 +12,11 @@
 #include "petzval/core/ray.hpp"
 #include "petzval/core/vec3.hpp"
 #include "petzval/lens/lens.hpp"
-#include "petzval/pupil/film_lines.hpp"
-#include "petzval/pupil/pupil_map.hpp"
+#include "petzval/pupil/film_pupil_table.hpp"
+#include "petzval/pupil/two_plane_rays.hpp"
 #include "petzval/trace/batch.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 
 /// A line from a scene point into the lens.
 struct EntranceSample {
@@ -27,18 +27,18 @@ struct EntranceSample {
 };
 
 /// Lines of the film's space as rays that leave the lens towards the scene: N of each.
-using LinesToScene = std::function<void(std::size_t count, const FilmLines<const double>& lines, std::size_t wavelength,
-                                        const RayArrays<double>& rays, RayFate* fates)>;
+using TwoPlaneRaysToScene = std::function<void(std::size_t count, const TwoPlaneRays<const double>& lines,
+                                               std::size_t wavelength, const RayArrays<double>& rays, RayFate* fates)>;
 
 /// What leaves the lens, for each wavelength, of lines that are spread over a film and its pupils, edges included:
-/// those to build an EntranceMap from. All azimuths of the film, or +y alone where they are alike.
-PETZVAL_API std::vector<std::vector<Ray<double>>> leaving_rays(const PupilMap& pupils, bool azimuths_alike,
-                                                               const LinesToScene& to_scene);
+/// those to build an EntrancePupilTable from. All azimuths of the film, or +y alone where they are alike.
+PETZVAL_API std::vector<std::vector<Ray<double>>> leaving_rays(const FilmPupilTable& pupils, bool azimuths_alike,
+                                                               const TwoPlaneRaysToScene& to_scene);
 
 /// What decides where a pupil ends.
-enum class PupilEnds : std::uint8_t {
-  at_rims,    ///< what rays do: lines tell of it only from within
-  with_lines  ///< the lines, as in models of a lens that have no rims
+enum class ClippedBy : std::uint8_t {
+  apertures,    ///< what rays do: lines tell of it only from within
+  samples  ///< the lines, as in models of a lens that have no rims
 };
 
 /// Which of N rays of the scene get through: passes[i] for each, at a wavelength.
@@ -55,11 +55,11 @@ using ScenePassing = std::function<void(std::size_t count, const RayArrays<const
 /// lines meet. Either way every ray that passes can be drawn: estimates have no bias.
 ///
 /// Immutable, cheap to copy, free to share between threads.
-class PETZVAL_API EntranceMap {
+class PETZVAL_API EntrancePupilTable {
  public:
   /// lines: leaving_rays(). They say how far fields reach and where to look.
-  EntranceMap(const Lens& lens, std::span<const std::vector<Ray<double>>> lines, const ScenePassing& passing,
-              PupilEnds ends = PupilEnds::at_rims);
+  EntrancePupilTable(const Lens& lens, std::span<const std::vector<Ray<double>>> lines, const ScenePassing& passing,
+                     ClippedBy ends = ClippedBy::apertures);
 
   /// Whether a point lies where the lens may see it, finite and not behind its first surface.
   bool in_front(const Vec3<double>& point) const noexcept;
@@ -83,6 +83,6 @@ class PETZVAL_API EntranceMap {
 PETZVAL_API ScenePassing traced_passing(const Lens& lens);
 
 /// What the scene sees of a lens by exact rays. pupils: of its film, covering.
-PETZVAL_API EntranceMap traced_entrances(const Lens& lens, const PupilMap& pupils);
+PETZVAL_API EntrancePupilTable traced_entrances(const Lens& lens, const FilmPupilTable& pupils);
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

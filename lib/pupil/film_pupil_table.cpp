@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/pupil/pupil_map.hpp"
+#include "petzval/pupil/film_pupil_table.hpp"
 
 #include <ceres/jet.h>
 
@@ -8,22 +8,22 @@
 #include <string>
 #include <vector>
 
-#include "film_stars.hpp"
+#include "film_polygons.hpp"
+#include "film_pupil_table_loops.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/text.hpp"
-#include "petzval/pupil/pupil_star.hpp"
-#include "pupil_map_loops.hpp"
+#include "petzval/pupil/pupil_polygon.hpp"
 
-namespace petzval {
+namespace petzval::inline v0 {
 namespace {
 
-using detail::PupilStar;
-using detail::star_corners;
-using detail::StripTable;
-using L = detail::StripLayout;
+using pupil_detail::polygon_corners;
+using pupil_detail::PupilPolygon;
+using pupil_detail::StripTable;
+using L = pupil_detail::StripLayout;
 
 /// A strip from the stars at its sides.
-std::array<double, L::size> strip_between(const PupilStar& a, const PupilStar& b) {
+std::array<double, L::size> strip_between(const PupilPolygon& a, const PupilPolygon& b) {
   std::array<double, L::size> strip;
   const auto put = [&](std::size_t at, const std::array<double, 2>& from, const std::array<double, 2>& to) {
     strip[at] = from[0], strip[at + 1] = from[1];
@@ -31,11 +31,11 @@ std::array<double, L::size> strip_between(const PupilStar& a, const PupilStar& b
   };
   strip[L::middle_y] = a.middle[1], strip[L::middle_y + 1] = b.middle[1] - a.middle[1];
   std::array<double, 4> before{0, 0, 0, 0};
-  for (std::size_t k = 0; k <= star_corners; ++k) {
-    const std::size_t at = k % star_corners, next = (k + 1) % star_corners;
+  for (std::size_t k = 0; k <= polygon_corners; ++k) {
+    const std::size_t at = k % polygon_corners, next = (k + 1) % polygon_corners;
     put(L::sectors + L::sector * k, a.corners[at], b.corners[at]);
     std::copy(before.begin(), before.end(), &strip[L::sectors + L::sector * k + 4]);
-    if (k == star_corners) break;
+    if (k == polygon_corners) break;
     const double gap[] = {a.gap_from[k], a.gap[k], b.gap_from[k] - a.gap_from[k], b.gap[k] - a.gap[k]};
     std::copy(std::begin(gap), std::end(gap), &strip[L::gaps + 4 * k]);
     // Half of (p + t dp) x (q + t dq), times what the gap leaves.
@@ -55,7 +55,7 @@ std::array<double, L::size> strip_between(const PupilStar& a, const PupilStar& b
   return strip;
 }
 
-/// Area before a sector at the fraction t of a strip; `star_corners`: the whole.
+/// Area before a sector at the fraction t of a strip; `polygon_corners`: the whole.
 template <class T>
 T area_before(const double* strip, std::size_t sector, const T& t) {
   const double* f = strip + L::sectors + L::sector * sector + 4;
@@ -70,11 +70,11 @@ std::array<T, 2> along_strip(const double* from, const T& t) {
 
 /// The sector in which the area before a sample lies.
 std::size_t sector_with(const double* strip, double t, double area) {
-  const double whole = area_before(strip, star_corners, t);
-  auto k = static_cast<std::size_t>(std::clamp(area / whole, 0.0, 1.0) * star_corners);
-  k = std::min(k, star_corners - 1);
+  const double whole = area_before(strip, polygon_corners, t);
+  auto k = static_cast<std::size_t>(std::clamp(area / whole, 0.0, 1.0) * polygon_corners);
+  k = std::min(k, polygon_corners - 1);
   while (k > 0 && area < area_before(strip, k, t)) --k;
-  while (k + 1 < star_corners && area >= area_before(strip, k + 1, t)) ++k;
+  while (k + 1 < polygon_corners && area >= area_before(strip, k + 1, t)) ++k;
   return k;
 }
 
@@ -87,7 +87,7 @@ std::array<T, 2> place(const double* strip, std::size_t k, const T& t, const T& 
   const T my = strip[L::middle_y] + t * strip[L::middle_y + 1];
   const auto [gap_from, gap] = along_strip(strip + L::gaps + 4 * k, t);
   const T own = 0.5 * (bx * ay - ax * by) * (1.0 - gap);
-  T along = (area_before(strip, star_corners, t) * u - area_before(strip, k, t)) / own;
+  T along = (area_before(strip, polygon_corners, t) * u - area_before(strip, k, t)) / own;
   if (!(along <= 1.0)) along = T(1.0);
   const T within = (1.0 - gap) * v;
   const T squared = within < gap_from ? within : T(within + gap);
@@ -97,8 +97,8 @@ std::array<T, 2> place(const double* strip, std::size_t k, const T& t, const T& 
 
 }  // namespace
 
-struct PupilMap::Data {
-  FilmSpace space;
+struct FilmPupilTable::Data {
+  TwoPlanes space;
   double film_radius = 0;
   double lit_radius = 0;  // to which the strips reach: beyond it is dark
   std::size_t wavelengths = 0, strips_each = 0;
@@ -108,25 +108,25 @@ struct PupilMap::Data {
   std::vector<float> single;
 
   /// Adds a wavelength. Without symmetry there is one star.
-  void add(const std::vector<PupilStar>& stars) {
+  void add(const std::vector<PupilPolygon>& stars) {
     ++wavelengths;
     strips_each = std::max<std::size_t>(stars.size() - 1, 1);
     for (std::size_t i = 0; i < strips_each; ++i) {
-      const PupilStar &a = stars[i], &b = stars[std::min(i + 1, stars.size() - 1)];
+      const PupilPolygon &a = stars[i], &b = stars[std::min(i + 1, stars.size() - 1)];
       const auto strip = strip_between(a, b);
       twice.insert(twice.end(), strip.begin(), strip.end());
       for (const double value : strip) single.push_back(static_cast<float>(value));
-      for (std::size_t k = 0; k < star_corners; ++k) gapped = gapped || a.gap[k] > 0 || b.gap[k] > 0;
+      for (std::size_t k = 0; k < polygon_corners; ++k) gapped = gapped || a.gap[k] > 0 || b.gap[k] > 0;
       count_corrections(strip.data());
     }
   }
 
   void count_corrections(const double* strip) {
     for (int step = 0; step <= 8; ++step) {
-      const double t = step / 8.0, whole = area_before(strip, star_corners, t);
+      const double t = step / 8.0, whole = area_before(strip, polygon_corners, t);
       if (!(whole > 0)) continue;
-      for (std::size_t k = 0; k < star_corners; ++k) {
-        const double off = std::abs(area_before(strip, k, t) / whole * star_corners - static_cast<double>(k));
+      for (std::size_t k = 0; k < polygon_corners; ++k) {
+        const double off = std::abs(area_before(strip, k, t) / whole * polygon_corners - static_cast<double>(k));
         if (off > 0.49) corrections = std::max(corrections, std::min(static_cast<int>(std::ceil(off)), 64));
       }
     }
@@ -171,7 +171,7 @@ struct PupilMap::Data {
   /// u, from the film point's own direction.
   double share(const Place& place, double u) const noexcept {
     if (!turned) return u;
-    const double from = u - detail::turn_of(place.sine, place.cosine);
+    const double from = u - pupil_detail::turn_of(place.sine, place.cosine);
     return from < 0 ? from + 1 : from < 1 ? from : from - 1;
   }
 };
@@ -185,31 +185,34 @@ void check_film_radius(const std::string& where, double film_radius) {
 
 }  // namespace
 
-PupilMap PupilMap::traced(const Lens& lens, double film_radius, bool covering) {
+FilmPupilTable FilmPupilTable::traced(const Lens& lens, double film_radius, bool covering) {
   check_film_radius(lens.name(), film_radius);
   auto data = std::make_shared<Data>();
-  data->space = film_space(lens);
+  data->space = two_planes(lens);
   data->film_radius = film_radius;
   data->turned = lens.rotationally_symmetric();
   const std::size_t wavelengths = lens.wavelengths_nm().size();
   data->lit_radius = data->turned ? 0 : film_radius;
   for (std::size_t w = 0; w < wavelengths && data->lit_radius < film_radius; ++w) {
-    const double lit = detail::lit_radius(film_radius, detail::traced_edges(lens, data->space, w));
+    const double lit = pupil_detail::lit_radius(film_radius, pupil_detail::traced_edges(lens, data->space, w));
     data->lit_radius = std::max(data->lit_radius, lit);
   }
   for (std::size_t w = 0; w < wavelengths; ++w) {
     if (data->turned) {
-      data->add(detail::film_stars(data->lit_radius, covering, detail::traced_edges(lens, data->space, w)));
+      data->add(
+          pupil_detail::film_polygons(data->lit_radius, covering, pupil_detail::traced_edges(lens, data->space, w)));
     } else {
-      data->add({{detail::star_for_all(lens, data->space, film_radius, w)}});
+      data->add({{pupil_detail::star_for_all(lens, data->space, film_radius, w)}});
     }
   }
-  return PupilMap(std::move(data));
+  return FilmPupilTable(std::move(data));
 }
 
-PupilMap PupilMap::covering(const Lens& lens, double film_radius) { return traced(lens, film_radius, true); }
+FilmPupilTable FilmPupilTable::enclosing(const Lens& lens, double film_radius) {
+  return traced(lens, film_radius, true);
+}
 
-PupilMap PupilMap::matching(const Lens& lens, double film_radius) {
+FilmPupilTable FilmPupilTable::equal_area(const Lens& lens, double film_radius) {
   if (!lens.rotationally_symmetric()) {
     throw Error(lens.name() +
                 ": pupils: the lens has cylinders, wanted one of revolution for pupils by distance alone");
@@ -217,43 +220,44 @@ PupilMap PupilMap::matching(const Lens& lens, double film_radius) {
   return traced(lens, film_radius, false);
 }
 
-PupilMap PupilMap::of_discs(const FilmSpace& space, std::span<const std::vector<PupilDisc>> discs, double film_radius) {
+FilmPupilTable FilmPupilTable::of_discs(const TwoPlanes& space, std::span<const std::vector<PupilDisc>> discs,
+                                        double film_radius) {
   check_film_radius("pupil map", film_radius);
   auto data = std::make_shared<Data>();
   data->space = space;
   data->film_radius = data->lit_radius = film_radius;
-  for (const std::vector<PupilDisc>& set : discs) data->add(detail::disc_stars(set, film_radius));
-  return PupilMap(std::move(data));
+  for (const std::vector<PupilDisc>& set : discs) data->add(pupil_detail::disc_stars(set, film_radius));
+  return FilmPupilTable(std::move(data));
 }
 
-PupilMap PupilMap::leaning(const FilmLean& lean) const {
+FilmPupilTable FilmPupilTable::leaning(const FilmTilt& lean) const {
   check_film_radius("leaning film", lean.radius);
   auto data = std::make_shared<Data>();
   if (!data_->turned) {  // the one pupil holds all lines
     *data = *data_;
     data->film_radius = data->lit_radius = lean.radius;
-    return PupilMap(std::move(data));
+    return FilmPupilTable(std::move(data));
   }
   data->space = data_->space;
   data->film_radius = lean.radius;
   for (std::size_t w = 0; w < wavelengths() && data->lit_radius < lean.radius; ++w) {
-    const double lit = detail::lit_radius(lean.radius, detail::leaning_edges(*this, lean, w));
+    const double lit = pupil_detail::lit_radius(lean.radius, pupil_detail::leaning_edges(*this, lean, w));
     data->lit_radius = std::max(data->lit_radius, lit);
   }
   for (std::size_t w = 0; w < wavelengths(); ++w) {
-    data->add(detail::film_stars(data->lit_radius, true, detail::leaning_edges(*this, lean, w)));
+    data->add(pupil_detail::film_polygons(data->lit_radius, true, pupil_detail::leaning_edges(*this, lean, w)));
   }
-  return PupilMap(std::move(data));
+  return FilmPupilTable(std::move(data));
 }
 
-const FilmSpace& PupilMap::space() const noexcept { return data_->space; }
-double PupilMap::film_radius() const noexcept { return data_->film_radius; }
-std::size_t PupilMap::wavelengths() const noexcept { return data_->wavelengths; }
+const TwoPlanes& FilmPupilTable::space() const noexcept { return data_->space; }
+double FilmPupilTable::film_radius() const noexcept { return data_->film_radius; }
+std::size_t FilmPupilTable::wavelengths() const noexcept { return data_->wavelengths; }
 
-PupilSample PupilMap::sample(const FilmPoint& film, double u, double v, std::size_t wavelength) const noexcept {
+PupilSample FilmPupilTable::sample(const FilmPoint& film, double u, double v, std::size_t wavelength) const noexcept {
   const auto found = data_->find(film, wavelength);
   if (!found.strip || !(u - u == 0 && v - v == 0)) return {};
-  const double whole = area_before(found.strip, star_corners, found.t);
+  const double whole = area_before(found.strip, polygon_corners, found.t);
   if (!(whole > 0)) return {};
   const double share = data_->share(found, std::clamp(u, 0.0, 1.0));
   const std::size_t k = sector_with(found.strip, found.t, share * whole);
@@ -262,8 +266,8 @@ PupilSample PupilMap::sample(const FilmPoint& film, double u, double v, std::siz
 }
 
 template <class T>
-void PupilMap::sample(std::size_t count, const T* film_x, const T* film_y, const T* u, const T* v,
-                      const RayWavelengths& wavelengths, T* x, T* y, T* areas) const noexcept {
+void FilmPupilTable::sample(std::size_t count, const T* film_x, const T* film_y, const T* u, const T* v,
+                            const RayWavelengths& wavelengths, T* x, T* y, T* areas) const noexcept {
   // A few are done before a block has begun.
   constexpr std::size_t few = 8;
   if (count < few) {
@@ -273,7 +277,7 @@ void PupilMap::sample(std::size_t count, const T* film_x, const T* film_y, const
     }
     return;
   }
-  const auto& loops = detail::pupil_map();
+  const auto& loops = pupil_detail::film_pupil_table();
   if constexpr (sizeof(T) == sizeof(float)) {
     loops.single(data_->table<T>(), count, film_x, film_y, u, v, wavelengths, x, y, areas);
   } else {
@@ -281,25 +285,25 @@ void PupilMap::sample(std::size_t count, const T* film_x, const T* film_y, const
   }
 }
 
-double PupilMap::area(const FilmPoint& film, std::size_t wavelength) const noexcept {
+double FilmPupilTable::area(const FilmPoint& film, std::size_t wavelength) const noexcept {
   const auto [strip, t, cosine, sine] = data_->find(film, wavelength);
   if (!strip) return 0;
-  return std::max(area_before(strip, star_corners, t), 0.0);
+  return std::max(area_before(strip, polygon_corners, t), 0.0);
 }
 
-std::array<double, 2> PupilMap::middle(const FilmPoint& film, std::size_t wavelength) const noexcept {
+std::array<double, 2> FilmPupilTable::middle(const FilmPoint& film, std::size_t wavelength) const noexcept {
   const auto [strip, t, cosine, sine] = data_->find(film, wavelength);
   if (!strip) return {0, 0};
   const double y = strip[L::middle_y] + t * strip[L::middle_y + 1];
   return {sine * y, cosine * y};
 }
 
-bool PupilMap::contains(const FilmPoint& film, double x, double y, std::size_t wavelength) const noexcept {
+bool FilmPupilTable::contains(const FilmPoint& film, double x, double y, std::size_t wavelength) const noexcept {
   const auto [strip, t, cosine, sine] = data_->find(film, wavelength);
   if (!strip) return false;
   const double qx = cosine * x - sine * y;
   const double qy = sine * x + cosine * y - strip[L::middle_y] - t * strip[L::middle_y + 1];
-  for (std::size_t k = 0; k < star_corners; ++k) {
+  for (std::size_t k = 0; k < polygon_corners; ++k) {
     const auto [ax, ay] = along_strip(strip + L::sectors + L::sector * k, t);
     const auto [bx, by] = along_strip(strip + L::sectors + L::sector * (k + 1), t);
     const double behind = qx * ay - ax * qy, before = bx * qy - qx * by;
@@ -314,8 +318,8 @@ bool PupilMap::contains(const FilmPoint& film, double x, double y, std::size_t w
 }
 
 template <class T>
-void PupilMap::contains(std::size_t count, const FilmLines<const T>& lines, const RayWavelengths& wavelengths,
-                        std::uint8_t* within) const noexcept {
+void FilmPupilTable::contains(std::size_t count, const TwoPlaneRays<const T>& lines, const RayWavelengths& wavelengths,
+                              std::uint8_t* within) const noexcept {
   const auto& [film_x, film_y, x, y] = lines;
   constexpr std::size_t few = 4;
   if (count < few) {
@@ -324,7 +328,7 @@ void PupilMap::contains(std::size_t count, const FilmLines<const T>& lines, cons
     }
     return;
   }
-  const auto& loops = detail::pupil_map();
+  const auto& loops = pupil_detail::film_pupil_table();
   if constexpr (sizeof(T) == sizeof(float)) {
     loops.contains_single(data_->table<T>(), count, film_x, film_y, x, y, wavelengths, within);
   } else {
@@ -332,7 +336,8 @@ void PupilMap::contains(std::size_t count, const FilmLines<const T>& lines, cons
   }
 }
 
-PupilMap::Motion PupilMap::motion(const FilmPoint& film, double u, double v, std::size_t wavelength) const noexcept {
+FilmPupilTable::Motion FilmPupilTable::motion(const FilmPoint& film, double u, double v,
+                                              std::size_t wavelength) const noexcept {
   using Jet = ceres::Jet<double, 2>;
   // On the axis the directions around it meet: beside it is near enough.
   const double beside = 1e-4 * data_->film_radius;
@@ -349,11 +354,11 @@ PupilMap::Motion PupilMap::motion(const FilmPoint& film, double u, double v, std
   t.a = found.t;
   Jet share(u);
   if (turn) {
-    share -= detail::turn_of(x, y);
+    share -= pupil_detail::turn_of(x, y);
     if (share.a < 0) share += 1.0;
     if (share.a >= 1) share -= 1.0;
   }
-  const double whole = area_before(found.strip, star_corners, t.a);
+  const double whole = area_before(found.strip, polygon_corners, t.a);
   if (!(whole > 0)) return {};
   const std::size_t k = sector_with(found.strip, t.a, share.a * whole);
   const auto [px, py] = place(found.strip, k, t, share, v);
@@ -362,13 +367,14 @@ PupilMap::Motion PupilMap::motion(const FilmPoint& film, double u, double v, std
   return {{qx.v[0], qy.v[0]}, {qx.v[1], qy.v[1]}};
 }
 
-template PETZVAL_API void PupilMap::contains(std::size_t, const FilmLines<const float>&, const RayWavelengths&,
-                                             std::uint8_t*) const noexcept;
-template PETZVAL_API void PupilMap::contains(std::size_t, const FilmLines<const double>&, const RayWavelengths&,
-                                             std::uint8_t*) const noexcept;
-template PETZVAL_API void PupilMap::sample(std::size_t, const float*, const float*, const float*, const float*,
-                                           const RayWavelengths&, float*, float*, float*) const noexcept;
-template PETZVAL_API void PupilMap::sample(std::size_t, const double*, const double*, const double*, const double*,
-                                           const RayWavelengths&, double*, double*, double*) const noexcept;
+template PETZVAL_API void FilmPupilTable::contains(std::size_t, const TwoPlaneRays<const float>&, const RayWavelengths&,
+                                                   std::uint8_t*) const noexcept;
+template PETZVAL_API void FilmPupilTable::contains(std::size_t, const TwoPlaneRays<const double>&,
+                                                   const RayWavelengths&, std::uint8_t*) const noexcept;
+template PETZVAL_API void FilmPupilTable::sample(std::size_t, const float*, const float*, const float*, const float*,
+                                                 const RayWavelengths&, float*, float*, float*) const noexcept;
+template PETZVAL_API void FilmPupilTable::sample(std::size_t, const double*, const double*, const double*,
+                                                 const double*, const RayWavelengths&, double*, double*,
+                                                 double*) const noexcept;
 
-}  // namespace petzval
+}  // namespace petzval::inline v0

@@ -5,7 +5,7 @@
 
 #include "build_tables.hpp"
 
-namespace petzval::detail {
+namespace petzval::inline v0::lens_detail {
 namespace {
 
 /// The gap, in radii of curvature, beyond which a ray is brought near the vertex before it is intersected: from afar
@@ -20,8 +20,8 @@ constexpr double steep_rim = 0.75;
 }  // namespace
 
 template <class R>
-CourseTables<R> build_course(std::span<const LensSurface> surfaces, std::optional<std::size_t> stop,
-                             std::span<const double> indices, std::size_t wavelengths, Travel travel) {
+SurfaceSequenceTables<R> build_sequence(std::span<const LensSurface> surfaces, std::optional<std::size_t> stop,
+                                        std::span<const double> indices, std::size_t wavelengths, Travel travel) {
   using kernel::StepKind;
   const std::size_t count = surfaces.size();
   const bool to_film = travel == Travel::to_film;
@@ -32,7 +32,7 @@ CourseTables<R> build_course(std::span<const LensSurface> surfaces, std::optiona
   std::int32_t seen = 0;
   for (const LensSurface& s : surfaces) aspheres.push_back(s.aspheric.empty() ? -1 : seen++);
 
-  CourseTables<R> tables;
+  SurfaceSequenceTables<R> tables;
   tables.course.first_sense = static_cast<R>(sense);
   for (std::size_t j = 0; j < count; ++j) {
     const std::size_t i = to_film ? j : count - 1 - j;
@@ -82,9 +82,9 @@ CourseTables<R> build_course(std::span<const LensSurface> surfaces, std::optiona
   return tables;
 }
 
-template CourseTables<float> build_course(std::span<const LensSurface>, std::optional<std::size_t>,
-                                          std::span<const double>, std::size_t, Travel);
-template CourseTables<double> build_course(std::span<const LensSurface>, std::optional<std::size_t>,
-                                           std::span<const double>, std::size_t, Travel);
+template SurfaceSequenceTables<float> build_sequence(std::span<const LensSurface>, std::optional<std::size_t>,
+                                                     std::span<const double>, std::size_t, Travel);
+template SurfaceSequenceTables<double> build_sequence(std::span<const LensSurface>, std::optional<std::size_t>,
+                                                      std::span<const double>, std::size_t, Travel);
 
-}  // namespace petzval::detail
+}  // namespace petzval::inline v0::lens_detail

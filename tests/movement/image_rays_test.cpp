@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/movement/point_bundles.hpp"
+#include "petzval/movement/image_rays.hpp"
 
 #include <gtest/gtest.h>
 
@@ -25,7 +25,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double degree = std::numbers::pi / 180;
 
-/// A place as ScenePoint has it: its field as the entrance pupil sees it, azimuth from +y to +x.
+/// A place as FieldPoint has it: its field as the entrance pupil sees it, azimuth from +y to +x.
 Vec3<double> place_at(const Lens& lens, double field_deg, double z, double azimuth = 0) {
   const double height = (pupils(lens).entrance.z - z) * std::tan(field_deg * degree);
   return {height * std::sin(azimuth), height * std::cos(azimuth), z};
@@ -33,18 +33,18 @@ Vec3<double> place_at(const Lens& lens, double field_deg, double z, double azimu
 
 FilmPose upright(double film_z) { return {.film_z = film_z, .tilt_rad = 0, .swing_rad = 0}; }
 
-BundleBlur blur(const PointBundles& bundles, const Vec3<double>& place, const FilmPose& film) {
+BundleBlur blur(const ImageRays& bundles, const Vec3<double>& place, const FilmPose& film) {
   const auto result = blur_on(bundles.bundle({place, false}), film);
   EXPECT_TRUE(result);
   return result.value_or(BundleBlur{});
 }
 
-TEST(PointBundles, OfALensStoppedDownBlurAsTheThickLensDoes) {
+TEST(ImageRays, OfALensStoppedDownBlurAsTheThickLensDoes) {
   for (const char* id : {"double_gauss_100mm_f2.0", "telephoto_100mm_f5.6", "retrofocus_100mm_f2.8",
                          "zoom_57-143mm_f2.8_tele", "singlet_50mm_biconvex"}) {
     SCOPED_TRACE(id);
     const Lens lens = with_f_number(data_lens(id), 64);
-    const PointBundles bundles(lens, 20);
+    const ImageRays bundles(lens, 20);
     const IdealLens& ideal = bundles.ideal();
     for (const double distance : {5.0, 20.0, 1e4}) {
       const Vec3<double> place{0, 0, -distance * ideal.rear_focal_length};
@@ -61,7 +61,7 @@ TEST(PointBundles, OfALensStoppedDownBlurAsTheThickLensDoes) {
 }
 
 // Two ways through other code: outlines of each point and scrambled points; tables of all points and a lattice.
-TEST(PointBundles, HaveTheSpotsOfOutlines) {
+TEST(ImageRays, HaveTheSpotsOfOutlines) {
   for (const char* id :
        {"double_gauss_100mm_f2.0", "modern_50mm_f1.0", "zoom_57-143mm_f2.8_tele", "fisheye_8mm_f2.8"}) {
     const Prescription prescription = testing::data_prescription(id);
@@ -69,14 +69,14 @@ TEST(PointBundles, HaveTheSpotsOfOutlines) {
     const double f = std::abs(thick_lens(lens).rear_focal_length), film_z = lens.film_z() + 0.01 * f;
     for (const std::size_t rays : {256, 1024}) {
       const double relative = rays == 256 ? 0.01 : 0.005;
-      const PointBundles bundles(lens, 0.4 * f, rays);
+      const ImageRays bundles(lens, 0.4 * f, rays);
       for (const double field : {0.0, 0.5, 0.9}) {
         for (const double distance : {20 * f, 1e9}) {
           const double degrees = field * std::min(prescription.half_field_deg.value_or(15), 20.0);
           SCOPED_TRACE(std::string(id) + ", rays " + std::to_string(rays) + ", degrees " + std::to_string(degrees) +
                        ", mm " + std::to_string(distance));
           const double seen_at = distance == 1e9 ? -infinity : -distance;
-          const PupilSampler pupil(pupil_outline(lens, {degrees * degree, seen_at}, lens.central_wavelength()));
+          const PupilSampler pupil(pupil_outline(lens, {degrees * degree, seen_at}, lens.primary_wavelength()));
           const FilmHits hits = trace_bundle(with_film(lens, film_z), pupil, 1 << 16);
           const SpotSize expected = spot_size(hits.x, hits.y);
           const BundleBlur size = blur(bundles, place_at(lens, degrees, -distance), upright(film_z));
@@ -91,9 +91,9 @@ TEST(PointBundles, HaveTheSpotsOfOutlines) {
   }
 }
 
-TEST(PointBundles, TurnWithTheirPoints) {
+TEST(ImageRays, TurnWithTheirPoints) {
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
-  const PointBundles bundles(lens, 22);
+  const ImageRays bundles(lens, 22);
   const FilmPose film = upright(lens.film_z());
   const BundleBlur first = blur(bundles, place_at(lens, 10, -1500), film);
   const double height = std::hypot(first.centroid.x, first.centroid.y);
@@ -106,9 +106,9 @@ TEST(PointBundles, TurnWithTheirPoints) {
   }
 }
 
-TEST(PointBundles, AreMirroredWithTheirPoints) {
+TEST(ImageRays, AreMirroredWithTheirPoints) {
   const Lens lens = data_lens("anamorphic_60mm_2x");
-  const PointBundles bundles(lens, 12);
+  const ImageRays bundles(lens, 12);
   const FilmPose film = upright(lens.film_z());
   const Vec3<double> place{200, 100, -1500};
   const BundleBlur one = blur(bundles, place, film);
@@ -120,14 +120,14 @@ TEST(PointBundles, AreMirroredWithTheirPoints) {
   }
 }
 
-TEST(PointBundles, OfFarPointsAreThoseOfInfinity) {
+TEST(ImageRays, OfFarPointsAreThoseOfInfinity) {
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
-  const PointBundles bundles(lens, 22);
+  const ImageRays bundles(lens, 22);
   for (const Vec3<double>& direction : {Vec3<double>{0, 0, -1}, Vec3<double>{0.1, 0.15, -1}}) {
-    const PointBundle infinite = bundles.bundle({direction * 1e-3, true});
+    const RayBundle infinite = bundles.bundle({direction * 1e-3, true});
     ASSERT_GT(infinite.x.size(), 128u);
     for (const double distance : {1e9, 1e18, 1e60, 1e160}) {
-      const PointBundle far = bundles.bundle({direction * distance, false});
+      const RayBundle far = bundles.bundle({direction * distance, false});
       ASSERT_EQ(far.x.size(), infinite.x.size()) << distance;
       for (std::size_t i = 0; i < far.x.size(); ++i) {
         EXPECT_NEAR(far.x[i], infinite.x[i], 3e-6);
@@ -138,39 +138,39 @@ TEST(PointBundles, OfFarPointsAreThoseOfInfinity) {
   EXPECT_EQ(bundles.bundle({{3, 4, -infinity}, false}).x, bundles.bundle({{0, 0, -1}, true}).x);
 }
 
-TEST(PointBundles, KeepHalfOfTheirRays) {
+TEST(ImageRays, KeepHalfOfTheirRays) {
   for (const char* id : {"anamorphic_60mm_2x", "cylinder_3.9mm", "double_gauss_100mm_f2.0"}) {
-    const PointBundles bundles(data_lens(id), 10, 200);
+    const ImageRays bundles(data_lens(id), 10, 200);
     EXPECT_GE(bundles.bundle({{20, 30, -900}, false}).x.size(), 100u) << id;
   }
 }
 
-TEST(PointBundles, AreEmptyWhereTheLensSeesNothing) {
+TEST(ImageRays, AreEmptyWhereTheLensSeesNothing) {
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
-  const PointBundles bundles(lens, 22);
-  for (const ScenePlace& place :
-       {ScenePlace{{0, 0, 500}, false}, ScenePlace{{0, 0, 10}, false}, ScenePlace{{2000, 0, -500}, false},
-        ScenePlace{{nan, 0, -500}, false}, ScenePlace{{0, infinity, -500}, false}, ScenePlace{{0, 0, 0}, true},
-        ScenePlace{{0, 0, 1}, true}, ScenePlace{{0.1, 0, 1}, true}, ScenePlace{{0, 0, nan}, true},
-        ScenePlace{{infinity, 0, -infinity}, false}}) {
-    const PointBundle bundle = bundles.bundle(place);
+  const ImageRays bundles(lens, 22);
+  for (const ScenePoint& place :
+       {ScenePoint{{0, 0, 500}, false}, ScenePoint{{0, 0, 10}, false}, ScenePoint{{2000, 0, -500}, false},
+        ScenePoint{{nan, 0, -500}, false}, ScenePoint{{0, infinity, -500}, false}, ScenePoint{{0, 0, 0}, true},
+        ScenePoint{{0, 0, 1}, true}, ScenePoint{{0.1, 0, 1}, true}, ScenePoint{{0, 0, nan}, true},
+        ScenePoint{{infinity, 0, -infinity}, false}}) {
+    const RayBundle bundle = bundles.bundle(place);
     EXPECT_TRUE(bundle.empty()) << place.position.x << " " << place.position.y << " " << place.position.z;
     EXPECT_EQ(bundle.plane_z, lens.surfaces().back().vertex_z);
     EXPECT_FALSE(blur_on(bundle, upright(100)));
   }
 }
 
-TEST(PointBundles, AreRefusedWithoutRaysOrFilm) {
+TEST(ImageRays, AreRefusedWithoutRaysOrFilm) {
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
-  EXPECT_THROW(PointBundles(lens, 22, 15), Error);
-  EXPECT_THROW(PointBundles(lens, nan), Error);
-  EXPECT_THROW(PointBundles(lens, -1), Error);
-  EXPECT_THROW(PointBundles(data_lens("mirror_newton_200mm_f8"), 10), Error);  // light leaves it towards -z
+  EXPECT_THROW(ImageRays(lens, 22, 15), Error);
+  EXPECT_THROW(ImageRays(lens, nan), Error);
+  EXPECT_THROW(ImageRays(lens, -1), Error);
+  EXPECT_THROW(ImageRays(data_lens("mirror_newton_200mm_f8"), 10), Error);  // light leaves it towards -z
 }
 
 TEST(BundleBlur, OnATiltedFilmIsWhereRaysMeetItsPlane) {
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
-  const PointBundle bundle = PointBundles(lens, 22).bundle({{150, -250, -1200}, false});
+  const RayBundle bundle = ImageRays(lens, 22).bundle({{150, -250, -1200}, false});
   for (const auto& [tilt, swing] : {std::pair(0.0, 0.0), std::pair(0.2, 0.0), std::pair(-0.15, 0.3)}) {
     const FilmPose film{.film_z = lens.film_z() + 2, .tilt_rad = tilt, .swing_rad = swing};
     const auto [normal, offset] = film.plane();
@@ -194,7 +194,7 @@ TEST(BundleBlur, OnATiltedFilmIsWhereRaysMeetItsPlane) {
 
 TEST(BundleBlur, IsPositiveBehindWhereRaysMeet) {
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
-  const PointBundle bundle = PointBundles(lens, 22).bundle({{0, 100, -1200}, false});
+  const RayBundle bundle = ImageRays(lens, 22).bundle({{0, 100, -1200}, false});
   const double film_z = solve_focus(lens, 1200, {.criterion = FocusCriterion::min_rms}).film_z;
   for (const double tilt : {0.0, 0.3}) {
     EXPECT_GT(blur_on(bundle, {film_z + 5, tilt, 0})->signed_diameter, 0.8);
@@ -204,10 +204,10 @@ TEST(BundleBlur, IsPositiveBehindWhereRaysMeet) {
 
 TEST(BundleBlur, HasASignThatFewRaysAgreeOnNextToTheSharpestFilm) {
   const Lens lens = with_f_number(data_lens("double_gauss_100mm_f2_28deg"), 4);
-  const ScenePlace place{{-150, 86, -1100}};
-  const PointBundle few = PointBundles(lens, 22, 256).bundle(place), many = PointBundles(lens, 22, 4096).bundle(place);
+  const ScenePoint place{{-150, 86, -1100}};
+  const RayBundle few = ImageRays(lens, 22, 256).bundle(place), many = ImageRays(lens, 22, 4096).bundle(place);
   const double sharpest =
-      autofocus(PointBundles(lens, 22), std::vector{FocusTarget{.place = place}}, FocusCriterion::min_rms).film_z;
+      autofocus(ImageRays(lens, 22), std::vector{FocusTarget{.place = place}}, FocusCriterion::min_rms).film_z;
   for (const double away : {-2e-3, -1e-3, 0.0, 1e-3, 2e-3}) {
     const double a = blur_on(few, {.film_z = sharpest + away})->signed_diameter;
     const double b = blur_on(many, {.film_z = sharpest + away})->signed_diameter;
@@ -218,7 +218,7 @@ TEST(BundleBlur, HasASignThatFewRaysAgreeOnNextToTheSharpestFilm) {
 }
 
 TEST(BundleBlur, IsNothingOnAFilmThatRaysRunAlong) {
-  const PointBundle bundle = PointBundles(data_lens("double_gauss_100mm_f2.0"), 22).bundle({{0, 0, -1200}, false});
+  const RayBundle bundle = ImageRays(data_lens("double_gauss_100mm_f2.0"), 22).bundle({{0, 0, -1200}, false});
   EXPECT_FALSE(blur_on(bundle, {100, std::numbers::pi / 2, 0}));
   EXPECT_FALSE(blur_on(bundle, {nan, 0, 0}));
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "film_stars.hpp"
+#include "film_polygons.hpp"
 
 #include <algorithm>
 #include <array>
@@ -13,13 +13,13 @@
 #include "petzval/pupil/pupil.hpp"
 #include "petzval/trace/batch.hpp"
 
-namespace petzval::detail {
+namespace petzval::inline v0::pupil_detail {
 namespace {
 
 /// The rays of film points on the y axis at some heights, tested by tracing them.
 class FilmSide {
  public:
-  FilmSide(const Lens& lens, const FilmSpace& space, std::vector<FilmPoint> points)
+  FilmSide(const Lens& lens, const TwoPlanes& space, std::vector<FilmPoint> points)
       : lens_(lens), space_(space), points_(std::move(points)) {
     towards_ = towards_scene(lens, space);
   }
@@ -89,7 +89,7 @@ class FilmSide {
   }
 
   const Lens& lens_;
-  FilmSpace space_;
+  TwoPlanes space_;
   std::vector<FilmPoint> points_;
   double towards_;
   std::array<std::vector<double>, 6> memory_;
@@ -98,7 +98,7 @@ class FilmSide {
 
 }  // namespace
 
-EdgesAt traced_edges(const Lens& lens, const FilmSpace& space, std::size_t wavelength) {
+EdgesAt traced_edges(const Lens& lens, const TwoPlanes& space, std::size_t wavelength) {
   return [&lens, space, wavelength](std::span<const double> heights) {
     std::vector<FilmPoint> points;
     for (const double height : heights) points.push_back({0, height});
@@ -131,7 +131,7 @@ double lit_radius(double film_radius, const EdgesAt& edges_at) {
   return high;
 }
 
-std::vector<PupilStar> film_stars(double film_radius, bool covering, const EdgesAt& edges_at) {
+std::vector<PupilPolygon> film_polygons(double film_radius, bool covering, const EdgesAt& edges_at) {
   // Heights by half film_strips.
   std::vector<double> heights;
   for (std::size_t i = 0; i <= 2 * film_strips; ++i) {
@@ -144,24 +144,24 @@ std::vector<PupilStar> film_stars(double film_radius, bool covering, const Edges
     }
     return nullptr;
   };
-  std::vector<PupilStar> stars(film_strips + 1);
+  std::vector<PupilPolygon> stars(film_strips + 1);
   for (std::size_t i = 0; i <= film_strips; ++i) {
     const std::size_t at = 2 * i;
     if (const PupilEdges* lit = first_lit(at)) {
-      stars[i] = star_of(*lit, covering);
+      stars[i] = polygon_of(*lit, covering);
       continue;
     }
     // The film darkens within a strip: the last pupil goes on to its end, or, as one of no size, is where it ends.
     for (const std::size_t beside : {at - 1, at + 1, at - 2, at + 2}) {
       const PupilEdges* lit = beside < heights.size() ? first_lit(beside) : nullptr;
       if (!lit) continue;
-      stars[i] = star_of(*lit, covering);
+      stars[i] = polygon_of(*lit, covering);
       if (!covering) stars[i].corners = {};
       break;
     }
   }
   if (!covering) return stars;
-  std::vector<Between> between;
+  std::vector<InterpolationCheck> between;
   const auto add = [&](const PupilEdges& e, double place) {
     const auto i = static_cast<std::size_t>(place);
     const double t = place - static_cast<double>(i);
@@ -181,11 +181,11 @@ std::vector<PupilStar> film_stars(double film_radius, bool covering, const Edges
       add(shrinking[i], static_cast<double>(film_strips) - static_cast<double>(i % last.size() + 1) / parts);
     }
   }
-  grow(stars, between);
+  expand_to_cover(stars, between);
   return stars;
 }
 
-PupilStar star_for_all(const Lens& lens, const FilmSpace& space, double film_radius, std::size_t wavelength) {
+PupilPolygon star_for_all(const Lens& lens, const TwoPlanes& space, double film_radius, std::size_t wavelength) {
   const auto edges_at = [&](double radius, int rings, int spokes) {
     std::vector<FilmPoint> points{{}};
     for (int ring = 1; ring <= rings; ++ring) {
@@ -209,20 +209,20 @@ PupilStar star_for_all(const Lens& lens, const FilmSpace& space, double film_rad
   }
   const auto edges = edges_at(lit, 12, 24);
   const auto seed = std::find_if(edges.begin(), edges.end(), [](const PupilEdges& e) { return !e.empty(); });
-  std::vector<PupilStar> stars{star_of(*seed, true)};
+  std::vector<PupilPolygon> stars{polygon_of(*seed, true)};
   // All pupils together are as symmetric as the lens: about the axis.
   for (auto& corner : stars[0].corners) corner[0] += stars[0].middle[0];
   stars[0].middle[0] = 0;
-  std::vector<Between> all;
+  std::vector<InterpolationCheck> all;
   for (const PupilEdges& e : edges) all.push_back({&e, {0, 0, 0, 0}, {1, 0, 0, 0}});
-  grow(stars, all);
+  expand_to_cover(stars, all);
   constexpr double between_points = 1.02;
   for (auto& corner : stars[0].corners) corner = {between_points * corner[0], between_points * corner[1]};
   for (double& gap : stars[0].gap) gap = 0;  // of one point, perhaps
   return stars.front();
 }
 
-std::vector<PupilStar> disc_stars(std::span<const PupilDisc> discs, double film_radius) {
+std::vector<PupilPolygon> disc_stars(std::span<const PupilDisc> discs, double film_radius) {
   std::vector<PupilGuess> guesses;
   std::vector<double> heights;
   for (std::size_t i = 0; i <= film_strips; ++i) {
@@ -249,9 +249,9 @@ std::vector<PupilStar> disc_stars(std::span<const PupilDisc> discs, double film_
           });
         }
       });
-  std::vector<PupilStar> stars;
-  for (const PupilEdges& e : edges) stars.push_back(star_of(e, false));
+  std::vector<PupilPolygon> stars;
+  for (const PupilEdges& e : edges) stars.push_back(polygon_of(e, false));
   return stars;
 }
 
-}  // namespace petzval::detail
+}  // namespace petzval::inline v0::pupil_detail
