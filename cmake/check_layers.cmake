@@ -3,7 +3,8 @@
 #
 # A module (a folder of include/petzval and of lib) includes itself and modules of lower layers. Two modules of one layer do not
 # know each other. The edge, formats and figures, may include everything and is included by nothing but examples, tests and
-# itself; include/petzval/petzval.hpp stands above all. Public headers name no third party but GLM.
+# itself; include/petzval/petzval.hpp stands above all. Headers in lib/<module> are the inside: the library's own sources name
+# them "module/header.hpp", or "header.hpp" in their own folder; public headers never do, and name no third party but GLM.
 cmake_minimum_required(VERSION 3.25)
 
 set(layer_0 core)
@@ -32,21 +33,24 @@ function(check file line)
   set(quote "${CMAKE_MATCH_1}")
   set(target "${CMAKE_MATCH_2}")
   set(fault "")
-  if(target MATCHES "^petzval/([a-z0-9_]+)/")
-    set(other ${CMAKE_MATCH_1})
+  string(REGEX MATCH "^(petzval/)?([a-z0-9_]+)/[a-z0-9_/]+\\.hpp$" inner "${target}")
+  if(quote STREQUAL "\"" AND inner)
+    set(other ${CMAKE_MATCH_2})
     if(NOT DEFINED layer_of_${other})
       set(fault "includes ${other}, a module without a layer")
-    elseif(module STREQUAL other)
-      return()
-    elseif(layer LESS edge AND NOT layer_of_${other} LESS layer)
+    elseif(file MATCHES "^include/" AND NOT target MATCHES "^petzval/")
+      set(fault "a public header includes \"${target}\", which is inside")
+    elseif(NOT module STREQUAL other AND layer LESS edge AND NOT layer_of_${other} LESS layer)
       set(fault "${module} (layer ${layer}) includes ${other} (layer ${layer_of_${other}})")
+    elseif(NOT target MATCHES "^petzval/" AND NOT EXISTS "${ROOT}/lib/${target}")
+      set(fault "includes \"${target}\", which lib/ does not have")
     endif()
   elseif(target MATCHES "^petzval/")
     set(fault "${module} includes ${target}, which stands above all modules")
   elseif(quote STREQUAL "\"")
     get_filename_component(folder "${ROOT}/${file}" DIRECTORY)
     if(file MATCHES "^include/" OR target MATCHES "\\.\\./" OR NOT EXISTS "${folder}/${target}")
-      set(fault "includes \"${target}\": a public header by its full name, or a private one of the same folder, is wanted")
+      set(fault "includes \"${target}\": a public header by its full name, an inside one as module/header.hpp, or one of the same folder is wanted")
     endif()
   elseif(file MATCHES "^include/" AND NOT target MATCHES "^(glm/.*|[a-z0-9_]+)$")
     set(fault "a public header includes <${target}>: only GLM and the standard library are wanted")

@@ -19,6 +19,7 @@ function(petzval_library name)
   target_compile_options(petzval-${name} PRIVATE -ffp-contract=off -fno-math-errno -fno-trapping-math)
   target_link_options(petzval-${name} PRIVATE LINKER:--version-script=${PROJECT_SOURCE_DIR}/cmake/exports.map)
   set_property(TARGET petzval-${name} PROPERTY LINK_DEPENDS ${PROJECT_SOURCE_DIR}/cmake/exports.map)
+  target_include_directories(petzval-${name} PRIVATE ${PROJECT_SOURCE_DIR}/lib)  # "module/header.hpp": the inside
   target_sources(petzval-${name} PUBLIC FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR}/include FILES ${ARGN})
   set_target_properties(petzval-${name} PROPERTIES VERIFY_INTERFACE_HEADER_SETS ON)
   petzval_warnings(petzval-${name})
@@ -52,7 +53,7 @@ function(petzval_lanes file name set)
   target_compile_definitions(petzval-${name} PRIVATE ${ARGN})
   target_compile_options(petzval-${name} PRIVATE -O3 -fno-math-errno -fno-trapping-math -ffp-contract=${contract} ${flags_${set}}
     -Wno-psabi)  # vectors pass between functions of this file only
-  target_include_directories(petzval-${name} PRIVATE ${PROJECT_SOURCE_DIR}/include)
+  target_include_directories(petzval-${name} PRIVATE ${PROJECT_SOURCE_DIR}/include ${PROJECT_SOURCE_DIR}/lib)
   target_link_libraries(petzval-${name} PRIVATE glm::glm)
   set_target_properties(petzval-${name} PROPERTIES CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON
     POSITION_INDEPENDENT_CODE ON)
