@@ -14,7 +14,7 @@
 #include "petzval/core/error.hpp"
 #include "petzval/core/text.hpp"
 #include "petzval/core/units.hpp"
-#include "petzval/pupil/pupil.hpp"
+#include "petzval/pupil/f_number.hpp"
 #include "support/bokeh.hpp"
 #include "support/cli.hpp"
 #include "support/files.hpp"

@@ -21,7 +21,7 @@
 #include "petzval/focus/depth_of_field.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/paraxial/first_order.hpp"
-#include "petzval/pupil/pupil.hpp"
+#include "petzval/pupil/f_number.hpp"
 #include "support/cli.hpp"
 #include "support/files.hpp"
 #include "support/load_lens.hpp"

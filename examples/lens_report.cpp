@@ -14,7 +14,7 @@
 #include "petzval/core/error.hpp"
 #include "petzval/core/units.hpp"
 #include "petzval/focus/focus.hpp"
-#include "petzval/pupil/pupil.hpp"
+#include "petzval/pupil/f_number.hpp"
 #include "support/cli.hpp"
 #include "support/files.hpp"
 #include "support/lens_report.hpp"

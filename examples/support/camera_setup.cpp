@@ -3,7 +3,7 @@
 
 #include "petzval/core/error.hpp"
 #include "petzval/focus/focus.hpp"
-#include "petzval/pupil/pupil.hpp"
+#include "petzval/pupil/f_number.hpp"
 
 namespace examples {
 

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "petzval/core/text.hpp"
+#include "petzval/pupil/f_number.hpp"
 
 namespace examples {
 namespace {

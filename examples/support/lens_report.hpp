@@ -9,7 +9,7 @@
 #include "load_lens.hpp"
 #include "petzval/lint/lint.hpp"
 #include "petzval/paraxial/first_order.hpp"
-#include "petzval/pupil/pupil.hpp"
+#include "petzval/paraxial/pupils.hpp"
 
 namespace examples {
 

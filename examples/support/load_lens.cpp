@@ -8,7 +8,7 @@
 #include "petzval/core/text.hpp"
 #include "petzval/core/units.hpp"
 #include "petzval/io/prescription_json.hpp"
-#include "petzval/pupil/pupil.hpp"
+#include "petzval/paraxial/pupils.hpp"
 
 namespace examples {
 namespace {

@@ -10,7 +10,7 @@
 #include "petzval/core/error.hpp"
 #include "petzval/core/units.hpp"
 #include "petzval/paraxial/first_order.hpp"
-#include "petzval/pupil/pupil.hpp"
+#include "petzval/paraxial/pupils.hpp"
 #include "petzval/trace/differentials.hpp"
 
 namespace petzval::inline v0::camera_detail {

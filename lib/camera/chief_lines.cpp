@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "petzval/paraxial/first_order.hpp"
-#include "petzval/pupil/pupil.hpp"
+#include "petzval/paraxial/pupils.hpp"
 #include "petzval/pupil/two_plane_rays.hpp"
 #include "petzval/trace/sequential.hpp"
 #include "petzval/trace/trace.hpp"

@@ -23,7 +23,7 @@
 #include <numbers>
 
 #include "camera_data.hpp"
-#include "petzval/pupil/pupil.hpp"
+#include "petzval/paraxial/pupils.hpp"
 #include "scene_side.hpp"
 #include "tilted_pinhole.hpp"
 

@@ -13,7 +13,7 @@
 #include "petzval/core/units.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/paraxial/first_order.hpp"
-#include "petzval/pupil/pupil.hpp"
+#include "petzval/pupil/f_number.hpp"
 #include "rung_timing.hpp"
 
 namespace petzval::inline v0::camera_detail {

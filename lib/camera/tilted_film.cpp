@@ -23,7 +23,7 @@
 #include "petzval/core/text.hpp"
 #include "petzval/movement/film_pose.hpp"
 #include "petzval/paraxial/first_order.hpp"
-#include "petzval/pupil/pupil.hpp"
+#include "petzval/paraxial/pupils.hpp"
 #include "tilted_pinhole.hpp"
 
 namespace petzval::inline v0 {

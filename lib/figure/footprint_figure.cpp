@@ -11,9 +11,9 @@
 
 #include "petzval/core/error.hpp"
 #include "petzval/core/text.hpp"
+#include "petzval/paraxial/pupils.hpp"
 #include "petzval/pupil/illumination.hpp"
 #include "petzval/pupil/outline.hpp"
-#include "petzval/pupil/pupil.hpp"
 #include "sheet.hpp"
 
 namespace petzval::inline v0 {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "petzval/core/error.hpp"
-#include "petzval/pupil/pupil.hpp"
+#include "petzval/paraxial/pupils.hpp"
 #include "ray_paths.hpp"
 #include "section.hpp"
 #include "sheet.hpp"

@@ -13,7 +13,7 @@
 #include "petzval/core/text.hpp"
 #include "petzval/core/units.hpp"
 #include "petzval/paraxial/first_order.hpp"
-#include "petzval/pupil/pupil.hpp"
+#include "petzval/paraxial/pupils.hpp"
 #include "sheet.hpp"
 
 namespace petzval::inline v0 {

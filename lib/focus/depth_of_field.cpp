@@ -8,7 +8,7 @@
 #include "model.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/text.hpp"
-#include "petzval/pupil/pupil.hpp"
+#include "petzval/paraxial/pupils.hpp"
 #include "root.hpp"
 
 namespace petzval::inline v0 {

@@ -9,7 +9,7 @@
 
 #include "petzval/core/error.hpp"
 #include "petzval/core/text.hpp"
-#include "petzval/pupil/pupil.hpp"
+#include "petzval/paraxial/pupils.hpp"
 #include "search.hpp"
 
 namespace petzval::inline v0::focus_detail {

@@ -7,7 +7,7 @@
 #include "gaps.hpp"
 #include "petzval/core/text.hpp"
 #include "petzval/paraxial/first_order.hpp"
-#include "petzval/pupil/pupil.hpp"
+#include "petzval/pupil/f_number.hpp"
 
 namespace petzval::inline v0 {
 namespace {

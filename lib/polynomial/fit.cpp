@@ -8,8 +8,8 @@
 
 #include "least_squares.hpp"
 #include "petzval/core/error.hpp"
+#include "petzval/paraxial/pupils.hpp"
 #include "petzval/polynomial/ray_polynomial.hpp"
-#include "petzval/pupil/pupil.hpp"
 
 namespace petzval::inline v0 {
 namespace {

@@ -10,8 +10,8 @@
 #include "lanes.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/text.hpp"
+#include "petzval/paraxial/pupils.hpp"
 #include "petzval/psf/histogram.hpp"
-#include "petzval/pupil/pupil.hpp"
 
 namespace petzval::inline v0 {
 namespace {

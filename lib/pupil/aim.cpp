@@ -15,7 +15,7 @@
 #include "petzval/core/bisect.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/lens/sag.hpp"
-#include "petzval/pupil/pupil.hpp"
+#include "petzval/paraxial/pupils.hpp"
 #include "petzval/trace/sequential.hpp"
 #include "petzval/trace/trace.hpp"
 

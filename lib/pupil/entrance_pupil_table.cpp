@@ -12,7 +12,7 @@
 
 #include "face.hpp"
 #include "petzval/lens/sag.hpp"
-#include "petzval/pupil/pupil.hpp"
+#include "petzval/paraxial/pupils.hpp"
 #include "petzval/pupil/pupil_polygon.hpp"
 
 namespace petzval::inline v0 {

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "petzval/pupil/f_number.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -7,7 +9,7 @@
 #include "petzval/core/bisect.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/text.hpp"
-#include "petzval/pupil/pupil.hpp"
+#include "petzval/paraxial/pupils.hpp"
 #include "petzval/trace/sequential.hpp"
 
 namespace petzval::inline v0 {
@@ -81,11 +83,6 @@ double f_number(double focal_length, double beam_height) {
 }
 
 }  // namespace
-
-double paraxial_f_number(const Lens& lens, std::size_t wavelength) {
-  const Pupils p = pupils(lens, wavelength, main_meridian(lens, wavelength));
-  return f_number(focal_length(lens, wavelength), p.entrance.diameter / 2);
-}
 
 double real_f_number(const Lens& lens, std::size_t wavelength) {
   const Pupils p = pupils(lens, wavelength, main_meridian(lens, wavelength));

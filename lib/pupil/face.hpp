@@ -4,7 +4,7 @@
 #include <cstddef>
 
 #include "petzval/lens/lens.hpp"
-#include "petzval/pupil/pupil.hpp"
+#include "petzval/paraxial/pupils.hpp"
 
 namespace petzval::inline v0::pupil_detail {
 

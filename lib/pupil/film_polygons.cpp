@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "face.hpp"
-#include "petzval/pupil/pupil.hpp"
+#include "petzval/paraxial/pupils.hpp"
 #include "petzval/trace/batch.hpp"
 
 namespace petzval::inline v0::pupil_detail {

@@ -14,7 +14,7 @@
 #include "face.hpp"
 #include "petzval/core/bisect.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/pupil/pupil.hpp"
+#include "petzval/paraxial/pupils.hpp"
 
 namespace petzval::inline v0 {
 namespace {

@@ -11,7 +11,7 @@
 #include "petzval/core/error.hpp"
 #include "petzval/core/text.hpp"
 #include "petzval/core/units.hpp"
-#include "petzval/pupil/pupil.hpp"
+#include "petzval/paraxial/pupils.hpp"
 
 namespace petzval::inline v0 {
 namespace {

@@ -11,7 +11,7 @@
 #include "petzval/core/text.hpp"
 #include "petzval/lens/sag.hpp"
 #include "petzval/paraxial/first_order.hpp"
-#include "petzval/pupil/pupil.hpp"
+#include "petzval/paraxial/pupils.hpp"
 #include "petzval/trace/trace.hpp"
 
 namespace petzval::inline v0 {

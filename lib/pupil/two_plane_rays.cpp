@@ -7,7 +7,7 @@
 #include "petzval/core/error.hpp"
 #include "petzval/core/text.hpp"
 #include "petzval/paraxial/first_order.hpp"
-#include "petzval/pupil/pupil.hpp"
+#include "petzval/paraxial/pupils.hpp"
 
 namespace petzval::inline v0 {
 

@@ -22,7 +22,7 @@
 #include "petzval/camera/sample_rays.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/focus/focus.hpp"
-#include "petzval/pupil/pupil.hpp"
+#include "petzval/paraxial/pupils.hpp"
 
 namespace petzval {
 namespace {

@@ -14,9 +14,10 @@
 #include "camera_samples.hpp"
 #include "petzval/camera/model_error.hpp"
 #include "petzval/focus/focus.hpp"
+#include "petzval/paraxial/pupils.hpp"
 #include "petzval/psf/sobol.hpp"
+#include "petzval/pupil/f_number.hpp"
 #include "petzval/pupil/illumination.hpp"
-#include "petzval/pupil/pupil.hpp"
 
 namespace petzval {
 namespace {

@@ -14,7 +14,7 @@
 #include "../data_lenses.hpp"
 #include "../kronecker.hpp"
 #include "petzval/camera/camera.hpp"
-#include "petzval/pupil/pupil.hpp"
+#include "petzval/paraxial/pupils.hpp"
 
 namespace petzval {
 namespace {

@@ -15,7 +15,8 @@
 #include "petzval/focus/focus.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/paraxial/first_order.hpp"
-#include "petzval/pupil/pupil.hpp"
+#include "petzval/paraxial/pupils.hpp"
+#include "petzval/pupil/f_number.hpp"
 
 namespace petzval {
 namespace {

@@ -13,8 +13,8 @@
 #include "../kronecker.hpp"
 #include "petzval/camera/camera.hpp"
 #include "petzval/movement/film_pose.hpp"
+#include "petzval/paraxial/pupils.hpp"
 #include "petzval/pupil/aim.hpp"
-#include "petzval/pupil/pupil.hpp"
 #include "petzval/trace/trace.hpp"
 
 namespace petzval {

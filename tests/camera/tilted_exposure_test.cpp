@@ -18,8 +18,9 @@
 #include "leaning_films.hpp"
 #include "petzval/camera/camera.hpp"
 #include "petzval/paraxial/first_order.hpp"
+#include "petzval/paraxial/pupils.hpp"
 #include "petzval/psf/sobol.hpp"
-#include "petzval/pupil/pupil.hpp"
+#include "petzval/pupil/f_number.hpp"
 #include "petzval/trace/batch.hpp"
 
 namespace petzval {

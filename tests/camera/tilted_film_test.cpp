@@ -22,7 +22,7 @@
 #include "petzval/focus/focus.hpp"
 #include "petzval/movement/film_pose.hpp"
 #include "petzval/paraxial/first_order.hpp"
-#include "petzval/pupil/pupil.hpp"
+#include "petzval/paraxial/pupils.hpp"
 
 namespace petzval {
 namespace {

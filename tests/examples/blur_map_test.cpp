@@ -8,7 +8,7 @@
 
 #include "../data_lenses.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/pupil/pupil.hpp"
+#include "petzval/pupil/f_number.hpp"
 #include "support/point_scene.hpp"
 
 namespace {

@@ -4,9 +4,9 @@
 #include <numbers>
 
 #include "petzval/focus/focus.hpp"
-#include "petzval/focus/thin_lens.hpp"
 #include "petzval/io/image.hpp"
 #include "petzval/io/prescription_json.hpp"
+#include "petzval/paraxial/thin_lens.hpp"
 #include "program.hpp"
 
 namespace {

@@ -7,7 +7,7 @@
 #include "petzval/core/units.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/io/prescription_json.hpp"
-#include "petzval/pupil/pupil.hpp"
+#include "petzval/pupil/f_number.hpp"
 #include "program.hpp"
 
 namespace {

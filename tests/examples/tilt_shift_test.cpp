@@ -7,7 +7,7 @@
 #include "petzval/io/prescription_json.hpp"
 #include "petzval/movement/autofocus.hpp"
 #include "petzval/movement/tilt_fit.hpp"
-#include "petzval/pupil/pupil.hpp"
+#include "petzval/pupil/f_number.hpp"
 #include "program.hpp"
 
 namespace {

@@ -14,9 +14,9 @@
 #include "petzval/core/error.hpp"
 #include "petzval/core/text.hpp"
 #include "petzval/core/units.hpp"
+#include "petzval/paraxial/pupils.hpp"
 #include "petzval/pupil/illumination.hpp"
 #include "petzval/pupil/outline.hpp"
-#include "petzval/pupil/pupil.hpp"
 #include "svg_parts.hpp"
 
 namespace petzval {

@@ -10,9 +10,9 @@
 
 #include "../data_lenses.hpp"
 #include "../message.hpp"
-#include "petzval/focus/thin_lens.hpp"
 #include "petzval/paraxial/first_order.hpp"
-#include "petzval/pupil/pupil.hpp"
+#include "petzval/paraxial/pupils.hpp"
+#include "petzval/paraxial/thin_lens.hpp"
 
 namespace petzval {
 namespace {

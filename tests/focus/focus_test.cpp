@@ -9,8 +9,8 @@
 
 #include "../data_lenses.hpp"
 #include "../message.hpp"
-#include "petzval/focus/thin_lens.hpp"
 #include "petzval/paraxial/first_order.hpp"
+#include "petzval/paraxial/thin_lens.hpp"
 
 namespace petzval {
 namespace {

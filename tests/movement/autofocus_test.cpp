@@ -14,7 +14,7 @@
 #include "../message.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/focus/depth_of_field.hpp"
-#include "petzval/pupil/pupil.hpp"
+#include "petzval/paraxial/pupils.hpp"
 
 namespace petzval {
 namespace {

@@ -14,8 +14,8 @@
 #include "petzval/core/units.hpp"
 #include "petzval/focus/depth_of_field.hpp"
 #include "petzval/focus/focus.hpp"
-#include "petzval/focus/thin_lens.hpp"
 #include "petzval/lens/tables.hpp"
+#include "petzval/paraxial/thin_lens.hpp"
 
 namespace petzval {
 namespace {

@@ -13,9 +13,10 @@
 #include "petzval/core/error.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/movement/autofocus.hpp"
+#include "petzval/paraxial/pupils.hpp"
 #include "petzval/psf/spot.hpp"
+#include "petzval/pupil/f_number.hpp"
 #include "petzval/pupil/outline.hpp"
-#include "petzval/pupil/pupil.hpp"
 
 namespace petzval {
 namespace {

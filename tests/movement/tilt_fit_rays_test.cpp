@@ -9,7 +9,7 @@
 #include "petzval/core/units.hpp"
 #include "petzval/movement/autofocus.hpp"
 #include "petzval/movement/tilt_fit.hpp"
-#include "petzval/pupil/pupil.hpp"
+#include "petzval/pupil/f_number.hpp"
 #include "tilt_scene.hpp"
 
 namespace petzval {

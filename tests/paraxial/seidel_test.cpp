@@ -12,7 +12,7 @@
 #include "../seidel.hpp"
 #include "../trace/extended.hpp"
 #include "petzval/core/units.hpp"
-#include "petzval/pupil/pupil.hpp"
+#include "petzval/paraxial/pupils.hpp"
 #include "petzval/trace/sequential.hpp"
 
 namespace petzval {

@@ -15,7 +15,7 @@
 #include "lines.hpp"
 #include "petzval/core/text.hpp"
 #include "petzval/paraxial/first_order.hpp"
-#include "petzval/pupil/pupil.hpp"
+#include "petzval/pupil/f_number.hpp"
 #include "petzval/trace/trace.hpp"
 
 namespace petzval {

@@ -15,7 +15,7 @@
 #include "../data_lenses.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/units.hpp"
-#include "petzval/pupil/pupil.hpp"
+#include "petzval/pupil/f_number.hpp"
 #include "petzval/trace/trace.hpp"
 
 namespace petzval {

@@ -15,9 +15,10 @@
 #include "petzval/lint/lint.hpp"
 #include "petzval/media/catalogue.hpp"
 #include "petzval/paraxial/first_order.hpp"
+#include "petzval/paraxial/pupils.hpp"
 #include "petzval/psf/psf.hpp"
 #include "petzval/psf/spot.hpp"
-#include "petzval/pupil/pupil.hpp"
+#include "petzval/pupil/f_number.hpp"
 #include "petzval/trace/trace.hpp"
 
 namespace petzval {

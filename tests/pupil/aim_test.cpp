@@ -16,7 +16,8 @@
 #include "../report.hpp"
 #include "petzval/core/text.hpp"
 #include "petzval/core/units.hpp"
-#include "petzval/pupil/pupil.hpp"
+#include "petzval/paraxial/pupils.hpp"
+#include "petzval/pupil/f_number.hpp"
 #include "petzval/trace/sequential.hpp"
 #include "petzval/trace/trace.hpp"
 

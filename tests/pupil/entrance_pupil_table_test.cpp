@@ -15,10 +15,10 @@
 #include "../data_lenses.hpp"
 #include "../kronecker.hpp"
 #include "petzval/paraxial/first_order.hpp"
+#include "petzval/paraxial/pupils.hpp"
 #include "petzval/psf/sobol.hpp"
 #include "petzval/pupil/film_pupil_table.hpp"
 #include "petzval/pupil/outline.hpp"
-#include "petzval/pupil/pupil.hpp"
 #include "petzval/trace/trace.hpp"
 
 namespace petzval {

@@ -12,9 +12,9 @@
 #include <vector>
 
 #include "../data_lenses.hpp"
+#include "petzval/paraxial/pupils.hpp"
 #include "petzval/psf/sobol.hpp"
 #include "petzval/pupil/outline.hpp"
-#include "petzval/pupil/pupil.hpp"
 #include "petzval/trace/trace.hpp"
 
 namespace petzval {

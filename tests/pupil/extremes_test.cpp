@@ -13,10 +13,10 @@
 #include "../data_lenses.hpp"
 #include "../message.hpp"
 #include "petzval/core/units.hpp"
+#include "petzval/paraxial/pupils.hpp"
 #include "petzval/pupil/aim.hpp"
 #include "petzval/pupil/illumination.hpp"
 #include "petzval/pupil/outline.hpp"
-#include "petzval/pupil/pupil.hpp"
 #include "petzval/trace/trace.hpp"
 
 namespace petzval {

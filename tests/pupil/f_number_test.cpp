@@ -9,7 +9,8 @@
 #include "../data_lenses.hpp"
 #include "../message.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/pupil/pupil.hpp"
+#include "petzval/paraxial/pupils.hpp"
+#include "petzval/pupil/f_number.hpp"
 #include "petzval/trace/sequential.hpp"
 
 namespace petzval {

@@ -15,7 +15,7 @@
 #include "petzval/core/units.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/aim.hpp"
-#include "petzval/pupil/pupil.hpp"
+#include "petzval/pupil/f_number.hpp"
 #include "petzval/trace/batch.hpp"
 
 namespace {

@@ -11,9 +11,10 @@
 
 #include "../data_lenses.hpp"
 #include "petzval/core/units.hpp"
+#include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/aim.hpp"
+#include "petzval/pupil/f_number.hpp"
 #include "petzval/pupil/outline.hpp"
-#include "petzval/pupil/pupil.hpp"
 #include "petzval/trace/trace.hpp"
 
 namespace petzval {

@@ -14,7 +14,7 @@
 #include "../message.hpp"
 #include "petzval/core/units.hpp"
 #include "petzval/pupil/aim.hpp"
-#include "petzval/pupil/pupil.hpp"
+#include "petzval/pupil/f_number.hpp"
 #include "petzval/trace/trace.hpp"
 
 namespace petzval {

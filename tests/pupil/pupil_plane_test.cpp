@@ -11,7 +11,7 @@
 #include "../data_lenses.hpp"
 #include "../message.hpp"
 #include "petzval/core/units.hpp"
-#include "petzval/pupil/pupil.hpp"
+#include "petzval/paraxial/pupils.hpp"
 #include "petzval/trace/trace.hpp"
 
 namespace petzval {

@@ -9,7 +9,7 @@
 #include "petzval/lens/lens.hpp"
 #include "petzval/movement/film_pose.hpp"
 #include "petzval/movement/plane.hpp"
-#include "petzval/pupil/pupil.hpp"
+#include "petzval/paraxial/pupils.hpp"
 
 namespace petzval::inline v0 {
 

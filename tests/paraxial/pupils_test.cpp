@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/pupil/pupil.hpp"
+#include "petzval/paraxial/pupils.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,6 +8,7 @@
 
 #include "../data_lenses.hpp"
 #include "petzval/core/error.hpp"
+#include "petzval/pupil/f_number.hpp"
 
 namespace petzval {
 namespace {

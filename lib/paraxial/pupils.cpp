@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/pupil/pupil.hpp"
+#include "petzval/paraxial/pupils.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -64,6 +64,13 @@ Pupils pupils(const Lens& lens, std::size_t wavelength, Meridian meridian) {
   result.entrance = pupil(lens.surfaces().front().vertex_z, n, -front.b, front.a, semi_diameter);
   result.exit = pupil(lens.surfaces().back().vertex_z, n_image, rear.b, rear.d, semi_diameter);
   return result;
+}
+
+double paraxial_f_number(const Lens& lens, std::size_t wavelength) {
+  const Meridian meridian = main_meridian(lens, wavelength);
+  const double diameter = pupils(lens, wavelength, meridian).entrance.diameter;
+  const FirstOrder data = first_order(lens, wavelength, meridian);
+  return data.afocal ? infinity : std::abs(data.effective_focal_length) / diameter;
 }
 
 }  // namespace petzval::inline v0

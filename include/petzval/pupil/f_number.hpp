@@ -5,34 +5,8 @@
 
 #include "petzval/core/export.hpp"
 #include "petzval/lens/lens.hpp"
-#include "petzval/paraxial/first_order.hpp"
 
 namespace petzval::inline v0 {
-
-/// A paraxial pupil: the image of the aperture stop. Infinite z and diameter where the lens is telecentric on that
-/// side.
-struct Pupil {
-  double z = 0;         ///< lens frame, mm
-  double diameter = 0;  ///< mm
-};
-
-/// Entrance and exit pupil of a lens, and the surface that limits it.
-struct Pupils {
-  Pupil entrance;
-  Pupil exit;
-  std::size_t stop = 0;
-  bool stop_inferred =
-      false;  ///< no surface is marked: the one that clips the axial beam from infinity first (paraxially)
-};
-
-/// Whether any surface limits the beam: without one there is nothing that pupils could be images of.
-PETZVAL_API bool has_pupils(const Lens& lens) noexcept;
-
-/// Throws Error where every surface is unlimited and nothing can stop a beam.
-PETZVAL_API Pupils pupils(const Lens& lens, std::size_t wavelength = 0, Meridian meridian = Meridian::y);
-
-/// |EFL| / entrance pupil diameter, in the main meridian. Infinite for an afocal lens or an empty pupil.
-PETZVAL_API double paraxial_f_number(const Lens& lens, std::size_t wavelength = 0);
 
 /// |EFL| / (2 y), y the height of the axis-parallel ray (in the main meridian) whose exact trace meets the rim of the
 /// stop; the ray is traced through the front part alone, whatever clips it elsewhere. Where rays end before they get as

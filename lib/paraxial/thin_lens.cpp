@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "petzval/paraxial/thin_lens.hpp"
+
 #include <cmath>
 #include <string>
 
 #include "petzval/core/error.hpp"
 #include "petzval/core/text.hpp"
-#include "petzval/focus/thin_lens.hpp"
 
 namespace petzval::inline v0 {
 namespace {
