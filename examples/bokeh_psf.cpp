@@ -42,16 +42,12 @@ struct Picture {
 
 std::vector<Picture> render(const examples::LoadedLens& loaded, const Options& options,
                             const examples::BokehSetup& setup) {
-  petzval::Lens lens = loaded.lens, d_line = examples::at_d_line(loaded);
-  if (options.f_number > 0) {
-    d_line = petzval::with_f_number(d_line, options.f_number);
-    lens = examples::stopped_like(lens, d_line);
-  }
+  const petzval::Lens lens = options.f_number > 0 ? petzval::with_f_number(loaded.lens, options.f_number) : loaded.lens;
   examples::Progress progress("bokeh", options.focus_mm.size());
   std::vector<Picture> pictures;
   for (const double focus : options.focus_mm) {
     progress.step(examples::focus_caption(focus));
-    auto scene = examples::focused_scene(lens, d_line, focus, setup);
+    auto scene = examples::focused_scene(lens, focus, setup);
     auto image = petzval::point_image(
         scene.lens, scene.light,
         {.samples = options.samples, .pixels = picture_pixels, .threads = examples::worker_threads()});
@@ -87,16 +83,15 @@ examples::Sheet contact_sheet(const std::vector<Picture>& pictures, const exampl
 }
 
 Json to_json(const std::vector<Picture>& pictures, const examples::LoadedLens& loaded, const Options& options) {
-  Json json{
-      {"lens", loaded.lens.name()},
-      {"dispersion", petzval::name(loaded.lens.dispersion())},
-      {"wavelengths_nm", options.wavelengths_nm},
-      {"subject_distance_mm", finite_or_null(options.subject_mm)},
-      {"distance_from", options.origin},
-      {"f_number_real", options.f_number > 0 ? options.f_number : petzval::real_f_number(examples::at_d_line(loaded))},
-      {"field_deg", options.field_deg},
-      {"samples", options.samples},
-      {"results", Json::array()}};
+  Json json{{"lens", loaded.lens.name()},
+            {"dispersion", petzval::name(loaded.lens.dispersion())},
+            {"wavelengths_nm", options.wavelengths_nm},
+            {"subject_distance_mm", finite_or_null(options.subject_mm)},
+            {"distance_from", options.origin},
+            {"f_number_real", options.f_number > 0 ? options.f_number : petzval::real_f_number(loaded.lens)},
+            {"field_deg", options.field_deg},
+            {"samples", options.samples},
+            {"results", Json::array()}};
   const auto sum = [](const auto& rays) { return std::accumulate(rays.begin(), rays.end(), std::uint64_t(0)); };
   for (const Picture& p : pictures) {
     const auto if_any = [&](const auto& size) { return p.image.throughput > 0 ? Json(size) : Json(); };
@@ -144,7 +139,7 @@ int main(int argc, char** argv) {
       "Writes to DIR, and prints the paths: LENS_focus_<D>mm.exr (float, linear: the light that the paraxial entrance "
       "pupil takes in counts 1, per mm^2 of film), LENS_focus_<D>mm.png (each exposed for itself), LENS_bokeh.png (all "
       "at one scale) and LENS_bokeh.json. Pictures show the film with x to the right and y upwards. The lens is "
-      "focused for the d line (587.5618 nm).",
+      "focused at the primary wavelength: the one nearest to the d line (587.5618 nm).",
       "bokeh_psf");
   app.add_option("LENS.json", options.lens_file, "lens prescription (JSON as in data/lenses)")->required();
   examples::add_number(app, "--subject-distance-mm", options.subject_mm, examples::positive_length,

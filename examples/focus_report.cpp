@@ -89,7 +89,7 @@ petzval::FocusOptions focus_options(const std::string& criterion, const Options&
 
 petzval::Lens stopped_down(const examples::LoadedLens& loaded, double f_number) {
   if (f_number == 0) return loaded.lens;
-  return examples::stopped_like(loaded.lens, petzval::with_f_number(examples::at_d_line(loaded), f_number));
+  return petzval::with_f_number(loaded.lens, f_number);
 }
 
 void solve(Row& row, const petzval::Lens& lens, const petzval::FocusOptions& focus, double blur_mm) {

@@ -37,18 +37,15 @@ struct Options {
 #endif
 };
 
-/// The lens stopped down and focused as asked for, at the d line like the other programs.
+/// A lens stopped down and focused as asked for.
+petzval::Lens set(petzval::Lens lens, const Options& options) {
+  if (options.f_number > 0) lens = petzval::with_f_number(lens, options.f_number);
+  return options.subject_mm > 0 ? petzval::with_focus(lens, options.subject_mm) : lens;
+}
+
 examples::LoadedLens load(const Options& options) {
   examples::LoadedLens loaded = examples::load_lens(options.lens_file, std::array{options.wavelength_nm});
-  if (options.f_number == 0 && options.subject_mm == 0) return loaded;
-  petzval::Lens d_line = examples::at_d_line(loaded);
-  if (options.f_number > 0) {
-    d_line = petzval::with_f_number(d_line, options.f_number);
-    loaded.lens = examples::stopped_like(loaded.lens, d_line);
-  }
-  if (options.subject_mm > 0) {
-    loaded.lens = petzval::with_film(loaded.lens, petzval::with_focus(d_line, options.subject_mm).film_z());
-  }
+  loaded.lens = set(loaded.lens, options);
   return loaded;
 }
 
@@ -62,8 +59,8 @@ std::vector<double> figure_wavelengths(const Options& options, const petzval::Le
 }
 
 void write_page(const examples::Report& report, const Options& options) {
-  examples::PageOptions page{.field_deg = options.field_deg,
-                             .wavelengths_nm = figure_wavelengths(options, report.loaded.lens)};
+  const auto colours = examples::compiled_for(report.loaded, figure_wavelengths(options, report.loaded.lens));
+  examples::PageOptions page{.field_deg = options.field_deg, .colours = set(colours, options)};
   if (options.subject_mm > 0) page.subject_mm = options.subject_mm;
   const auto figures = examples::lens_figures(report, page);
 

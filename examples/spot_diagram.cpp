@@ -81,8 +81,8 @@ Json to_json(const std::vector<petzval::Spot>& all, const petzval::Lens& lens, c
 int main(int argc, char** argv) {
   Options options;
   CLI::App app(
-      "Draws spot diagrams. The film stands at the paraxial image of the subject at the d line (587.5618 nm), plus "
-      "--defocus-mm.\n"
+      "Draws spot diagrams. The film stands at the paraxial image of the subject at the primary wavelength (the "
+      "one nearest to the d line, 587.5618 nm), plus --defocus-mm.\n"
       "Writes to DIR, and prints the paths: LENS_spots.svg, LENS_spots.csv (the hits: "
       "field_deg,wavelength_nm,x_mm,y_mm) and "
       "LENS_spots.json (a row per field and wavelength: height of the chief ray, aimed at the centre of the stop; "
@@ -105,7 +105,7 @@ int main(int argc, char** argv) {
 
   return examples::run(app, argc, argv, [&] {
     const auto loaded = examples::load_lens(options.lens_file, options.wavelengths_nm);
-    const double image_z = petzval::with_focus(examples::at_d_line(loaded), options.subject_mm).film_z();
+    const double image_z = petzval::with_focus(loaded.lens, options.subject_mm).film_z();
     const petzval::Lens lens = petzval::with_film(loaded.lens, image_z + options.defocus_mm);
     const auto all = spots(lens, options);
 

@@ -28,7 +28,7 @@ examples::SheetRow sheet_row(const examples::WuRow& wu, const examples::BokehSet
   std::vector<examples::BokehScene> scenes;
   double half_width = 0;
   for (const double focus : examples::wu_focus_mm) {
-    scenes.push_back(examples::focused_scene(loaded.lens, loaded.lens, focus, setup));
+    scenes.push_back(examples::focused_scene(loaded.lens, focus, setup));
     const auto sketch = petzval::point_image(scenes.back().lens, scenes.back().light, {.samples = 1u << 14});
     half_width = std::max(half_width, 1.08 * sketch.size.max_radius);
   }

@@ -40,7 +40,7 @@ std::vector<Verdict> verdicts(const examples::WuRow& wu, const petzval::Lens& le
   std::size_t sharpest = 0;
   for (std::size_t i = 0; i < examples::wu_focus_mm.size(); ++i) {
     const double focus = examples::wu_focus_mm[i];
-    const auto scene = examples::focused_scene(lens, lens, focus, setup);
+    const auto scene = examples::focused_scene(lens, focus, setup);
     const auto image =
         petzval::point_image(scene.lens, scene.light, {.samples = samples, .threads = examples::worker_threads()});
     const auto shape = examples::profile_shape(image.radial_profile);

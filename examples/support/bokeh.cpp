@@ -42,12 +42,11 @@ void check_light(const petzval::Lens& lens, const BokehSetup& setup, double orig
 
 }  // namespace
 
-BokehScene focused_scene(const petzval::Lens& lens, const petzval::Lens& d_line, double focus_mm,
-                         const BokehSetup& setup) {
-  const double film_z = petzval::with_focus(d_line, focus_mm, {setup.criterion, setup.origin}).film_z();
-  const double origin_z = setup.origin == petzval::DistanceOrigin::film ? film_z : 0;
+BokehScene focused_scene(const petzval::Lens& lens, double focus_mm, const BokehSetup& setup) {
+  const petzval::Lens focused = petzval::with_focus(lens, focus_mm, {setup.criterion, setup.origin});
+  const double origin_z = setup.origin == petzval::DistanceOrigin::film ? focused.film_z() : 0;
   check_light(lens, setup, origin_z);
-  return {petzval::with_film(lens, film_z), {setup.field_rad, origin_z - setup.light_mm}};
+  return {focused, {setup.field_rad, origin_z - setup.light_mm}};
 }
 
 std::vector<std::array<double, 3>> rgb_weights(std::span<const double> wavelengths_nm) {

@@ -27,10 +27,9 @@ struct BokehScene {
   petzval::FieldPoint light;
 };
 
-/// Focuses at the d line, whatever wavelengths the light has. Throws petzval::Error for a focus out of reach and a
-/// light that is not in front of the lens.
-BokehScene focused_scene(const petzval::Lens& lens, const petzval::Lens& d_line, double focus_mm,
-                         const BokehSetup& setup);
+/// Focuses at the primary wavelength. Throws petzval::Error for a focus out of reach and a light that is not in front
+/// of the lens.
+BokehScene focused_scene(const petzval::Lens& lens, double focus_mm, const BokehSetup& setup);
 
 /// The picture of a PSF, linear, in the units of petzval::render; several wavelengths are weighted to RGB by the CIE
 /// 1931 functions.

@@ -13,7 +13,7 @@ void add_camera(CLI::App& app, CameraSetup& setup) {
   add_number(app, "--f-number", setup.f_number, positive_number, "stop the lens down (by exact rays)")
       ->default_str("wide open");
   add_number(app, "--focus-mm", setup.focus_mm, positive_length,
-             "distance of the subject in focus (paraxially, at the d line) from the film (mm), or inf");
+             "distance of the subject in focus (paraxially, at the primary wavelength) from the film (mm), or inf");
   app.add_option("--film-mm", setup.film_mm, "width and height of the film (mm)")
       ->type_name("WxH")
       ->capture_default_str();
@@ -28,13 +28,8 @@ std::array<double, 2> parse_size(const std::string& where, std::string_view text
 }
 
 petzval::Lens focused(const LoadedLens& loaded, const CameraSetup& setup) {
-  petzval::Lens lens = loaded.lens, d_line = at_d_line(loaded);
-  if (setup.f_number > 0) {
-    d_line = petzval::with_f_number(d_line, setup.f_number);
-    lens = stopped_like(lens, d_line);
-  }
-  const auto focus = petzval::with_focus(d_line, setup.focus_mm, {.origin = petzval::DistanceOrigin::film});
-  return petzval::with_film(lens, focus.film_z());
+  const petzval::Lens lens = setup.f_number > 0 ? petzval::with_f_number(loaded.lens, setup.f_number) : loaded.lens;
+  return petzval::with_focus(lens, setup.focus_mm, {.origin = petzval::DistanceOrigin::film});
 }
 
 }  // namespace examples

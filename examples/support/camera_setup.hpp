@@ -28,7 +28,7 @@ void add_camera(CLI::App& app, CameraSetup& setup);
 /// "36x24". Throws petzval::Error beginning with `where`.
 std::array<double, 2> parse_size(const std::string& where, std::string_view text, const Range& range);
 
-/// The loaded lens, stopped down and focused paraxially as the setup says: at the d line, for all its wavelengths.
+/// The loaded lens, stopped down and focused paraxially as the setup says, at its primary wavelength.
 petzval::Lens focused(const LoadedLens& loaded, const CameraSetup& setup);
 
 }  // namespace examples

@@ -148,8 +148,7 @@ std::vector<LensFigure> lens_figures(const Report& r, const PageOptions& options
   }
   if (!limited) return result;
 
-  const petzval::Lens colours =
-      petzval::with_film(stopped_like(compiled_for(r.loaded, options.wavelengths_nm), lens), lens.film_z());
+  const petzval::Lens& colours = options.colours;
   add("spots", "Spots",
       "Where the rays of a point meet the film. Compare the spot with the dashed Airy circle: within it, diffraction "
       "decides. A comet is coma, a line or a cross astigmatism, colours apart are lateral colour.",

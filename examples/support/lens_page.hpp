@@ -13,7 +13,7 @@ namespace examples {
 struct PageOptions {
   std::vector<double> field_deg;  ///< empty: the axis, 0.7 and 1 of the declared half field
   double subject_mm = std::numeric_limits<double>::infinity();  ///< from the front vertex
-  std::vector<double> wavelengths_nm;                           ///< of the spots and the focus curve
+  petzval::Lens colours;  ///< the lens for the wavelengths of the spots and the focus curve
 };
 
 struct LensFigure {

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "load_lens.hpp"
 
-#include <array>
 #include <iostream>
 #include <utility>
 
 #include "petzval/core/text.hpp"
-#include "petzval/core/units.hpp"
 #include "petzval/io/prescription_json.hpp"
 #include "petzval/paraxial/pupils.hpp"
 
@@ -53,13 +51,6 @@ LoadedLens load_lens(const std::filesystem::path& file, std::span<const double> 
 
 petzval::Lens compiled_for(const LoadedLens& loaded, std::span<const double> wavelengths_nm) {
   return petzval::compile(loaded.prescription, wavelengths_nm, with_stand_ins(loaded.glasses));
-}
-
-petzval::Lens at_d_line(const LoadedLens& loaded) { return compiled_for(loaded, std::array{petzval::d_line_nm}); }
-
-petzval::Lens stopped_like(const petzval::Lens& lens, const petzval::Lens& other) {
-  const std::size_t stop = petzval::pupils(other).stop;
-  return petzval::with_semi_diameter(lens, stop, other.surfaces()[stop].semi_diameter);
 }
 
 }  // namespace examples

@@ -27,10 +27,4 @@ LoadedLens load_lens(const std::filesystem::path& file, std::span<const double> 
 /// The prescription compiled for other wavelengths, in the same way.
 petzval::Lens compiled_for(const LoadedLens& loaded, std::span<const double> wavelengths_nm);
 
-/// The same lens at the d line alone, at which the programs focus it and stop it down.
-petzval::Lens at_d_line(const LoadedLens& loaded);
-
-/// `lens` with the stop of `other`, the same lens compiled for other wavelengths: one size of the stop for all of them.
-petzval::Lens stopped_like(const petzval::Lens& lens, const petzval::Lens& other);
-
 }  // namespace examples

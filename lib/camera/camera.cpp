@@ -151,9 +151,10 @@ void Camera::sample(std::size_t count, const CameraSamples<T>& samples, const Ca
 CameraRayDifferential Camera::sample_differential(const CameraSample& s) const noexcept {
   CameraRayDifferential result{sample(s)};
   if (!result.sample) return result;
+  const std::size_t wavelength = lens().position(s.wavelength);
   const auto upright = [&]() -> LineDerivatives {
-    const PupilSample at = pupils().sample(s.film, s.pupil_u, s.pupil_v, s.wavelength);
-    const auto [by_x, by_y] = pupils().motion(s.film, s.pupil_u, s.pupil_v, s.wavelength);
+    const PupilSample at = pupils().sample(s.film, s.pupil_u, s.pupil_v, wavelength);
+    const auto [by_x, by_y] = pupils().motion(s.film, s.pupil_u, s.pupil_v, wavelength);
     return {{s.film.x, s.film.y, at.x, at.y}, {1, 0, by_x[0], by_x[1]}, {0, 1, by_y[0], by_y[1]}};
   };
   const auto* first_order = std::get_if<ParaxialModel>(&data_->model);
@@ -161,9 +162,9 @@ CameraRayDifferential Camera::sample_differential(const CameraSample& s) const n
   const TiltedFilm* tilted = data_->scene.tilted();
   const LineDerivatives line =
       !tilted   ? upright()
-      : pinhole ? camera_detail::pinhole_line(*tilted, s.film, first_order->pinhole_shifts()[s.wavelength])
-                : tilted->line(s.film, s.pupil_u, s.pupil_v, s.wavelength);
-  const auto moved = std::visit([&](const auto& m) { return m.to_scene(line, s.wavelength); }, data_->model);
+      : pinhole ? camera_detail::pinhole_line(*tilted, s.film, first_order->pinhole_shifts()[wavelength])
+                : tilted->line(s.film, s.pupil_u, s.pupil_v, wavelength);
+  const auto moved = std::visit([&](const auto& m) { return m.to_scene(line, wavelength); }, data_->model);
   result.by_film_x = moved.by_u;
   result.by_film_y = moved.by_v;
   return result;

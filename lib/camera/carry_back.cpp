@@ -127,7 +127,7 @@ ChiefRay ChiefRays::through(const FilmPoint& film, const std::array<double, 2>& 
   RayFate fate;
   trace_differentials<double>(lens_, 1, ray.const_arrays(), {ray.const_arrays(6), ray.const_arrays(12)}, ray.arrays(),
                               {ray.arrays(6), ray.arrays(12)}, &fate, nullptr,
-                              {.travel = Travel::to_scene, .wavelength = wavelength, .apertures = false});
+                              {.travel = Travel::to_scene, .wavelengths = {wavelength}, .apertures = false});
 
   return {pupil, fate == RayFate::transmitted, focal_length_, ray.ray(), ray.ray(6), ray.ray(12)};
 }

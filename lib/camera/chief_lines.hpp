@@ -8,7 +8,7 @@
 
 #include "petzval/camera/any_model.hpp"
 #include "petzval/camera/film.hpp"
-#include "petzval/core/vec3.hpp"
+#include "petzval/core/vec.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/pupil/field_point.hpp"
 

@@ -32,12 +32,13 @@ void trace_in_place(const Lens& lens, Travel travel, std::size_t count, const Ra
   constexpr std::size_t few = 8;
   if (count >= few) {
     trace<R>(lens, count, {rays.x, rays.y, rays.z, rays.dx, rays.dy, rays.dz}, rays, fates, nullptr,
-             {.travel = travel, .wavelength = wavelengths.all, .wavelengths = wavelengths.each});
+             {.travel = travel, .wavelengths = wavelengths});
     return;
   }
+  const std::size_t primary = lens.primary_wavelength();
   for (std::size_t i = 0; i < count; ++i) {
     const Ray<R> ray{{rays.x[i], rays.y[i], rays.z[i]}, {rays.dx[i], rays.dy[i], rays.dz[i]}};
-    const auto end = trace<R>(lens, ray, {.travel = travel, .wavelength = wavelengths[i]});
+    const auto end = trace<R>(lens, ray, {.travel = travel, .wavelength = wavelengths.position(i, primary)});
     fates[i] = end.fate;
     if (!end.transmitted()) continue;
     const auto& [o, d] = end.ray;

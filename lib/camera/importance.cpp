@@ -227,22 +227,22 @@ double SceneSide::pdf(const AnyModel& model, const Vec3<double>& point, const Ve
 
 }  // namespace camera_detail
 
-Importance Camera::importance(const Ray<double>& ray, std::size_t wavelength) const noexcept {
-  return data_->scene.importance(data_->model, ray, wavelength);
+Importance Camera::importance(const Ray<double>& ray, Wavelength wavelength) const noexcept {
+  return data_->scene.importance(data_->model, ray, data_->lens.position(wavelength));
 }
 
 ImportanceSample Camera::sample_importance(const Vec3<double>& point, double u, double v,
-                                           std::size_t wavelength) const noexcept {
-  return data_->scene.sample_importance(data_->model, point, u, v, wavelength);
+                                           Wavelength wavelength) const noexcept {
+  return data_->scene.sample_importance(data_->model, point, u, v, data_->lens.position(wavelength));
 }
 
 double Camera::pdf_importance(const Vec3<double>& point, const Vec3<double>& direction,
-                              std::size_t wavelength) const noexcept {
-  return data_->scene.pdf(data_->model, point, direction, wavelength);
+                              Wavelength wavelength) const noexcept {
+  return data_->scene.pdf(data_->model, point, direction, data_->lens.position(wavelength));
 }
 
-Projection Camera::project(const Vec3<double>& point, std::size_t wavelength) const noexcept {
-  return data_->scene.project(data_->model, point, wavelength);
+Projection Camera::project(const Vec3<double>& point, Wavelength wavelength) const noexcept {
+  return data_->scene.project(data_->model, point, data_->lens.position(wavelength));
 }
 
 }  // namespace petzval::inline v0

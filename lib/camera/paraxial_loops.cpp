@@ -56,8 +56,9 @@ void to_scene(std::size_t count, const ParaxialJob& job, const TwoPlaneRays<cons
     const auto known = [&](std::size_t i) { return each[i] < job.known; };
     run([&](std::size_t i) -> const PairMap& { return job.maps[known(i) ? each[i] : 0]; }, known);
   } else {
-    const bool known = job.wavelengths.all < job.known;
-    run([map = job.maps[known ? job.wavelengths.all : 0]](std::size_t) -> const PairMap& { return map; },
+    const std::size_t all = job.wavelengths.all.position(job.primary);
+    const bool known = all < job.known;
+    run([map = job.maps[known ? all : 0]](std::size_t) -> const PairMap& { return map; },
         [known](std::size_t) { return known; });
   }
 }

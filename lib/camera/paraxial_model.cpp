@@ -128,13 +128,13 @@ FilmPupilTable pupils_of(ModelKind model, const Lens& lens, double film_radius) 
       const auto fitted = camera_detail::fit_two_discs(real_edges(real, w));
       discs[w].assign(fitted.begin(), fitted.end());
     }
-    return FilmPupilTable::of_discs(real.space(), discs, film_radius);
+    return FilmPupilTable::of_discs(real.space(), discs, film_radius, lens.primary_wavelength());
   }
   const TwoPlanes space = two_planes(lens);
   for (std::size_t w = 0; w < wavelengths; ++w) {
     discs[w] = {model == ModelKind::thin ? thin_disc(lens, w, space) : thick_disc(lens, w, space)};
   }
-  return FilmPupilTable::of_discs(space, discs, film_radius);
+  return FilmPupilTable::of_discs(space, discs, film_radius, lens.primary_wavelength());
 }
 
 /// Where rays are given: the entrance pupil, unless it is so far that digits of the place would be lost.
@@ -165,7 +165,8 @@ ParaxialModel::ParaxialModel(ModelKind model, const Lens& lens, double film_radi
 template <class T>
 void ParaxialModel::to_scene(std::size_t count, const TwoPlaneRays<const T>& lines, const RayWavelengths& wavelengths,
                              const RayArrays<T>& rays, RayFate* fates) const noexcept {
-  const camera_detail::ParaxialJob job{to_scene_.data(), to_scene_.size(), z_, wavelengths};
+  const camera_detail::ParaxialJob job{to_scene_.data(), to_scene_.size(), pupils_.primary_wavelength(), z_,
+                                       wavelengths};
   if constexpr (std::is_same_v<T, float>) {
     camera_detail::paraxial_loops().of_float(count, job, lines, rays, fates);
   } else {
@@ -179,9 +180,10 @@ void ParaxialModel::to_film(std::size_t count, const RayArrays<const double>& ra
   for (std::size_t i = 0; i < count; ++i) {
     const double slope_x = rays.dx[i] / rays.dz[i], slope_y = rays.dy[i] / rays.dz[i], away = z_ - rays.z[i];
     const double x = rays.x[i] + slope_x * away, y = rays.y[i] + slope_y * away;
-    const bool good = wavelengths[i] < to_film_.size() && rays.dz[i] > 0 &&
+    const std::size_t wavelength = wavelengths.position(i, pupils_.primary_wavelength());
+    const bool good = wavelength < to_film_.size() && rays.dz[i] > 0 &&
                       std::abs(x) + std::abs(y) + std::abs(slope_x) + std::abs(slope_y) <= reach;
-    const PairMap m = good ? to_film_[wavelengths[i]] : PairMap{};
+    const PairMap m = good ? to_film_[wavelength] : PairMap{};
     fates[i] = good ? RayFate::transmitted : RayFate::missed_surface;
     lines.film_x[i] = good ? m.a * x + m.b * slope_x : 0;
     lines.film_y[i] = good ? m.a * y + m.b * slope_y : 0;

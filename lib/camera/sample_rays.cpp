@@ -43,7 +43,7 @@ void sample_pinhole(std::size_t count, const TiltedFilm& film, const FilmPupilTa
                     std::span<const double> shifts, const CameraSamples<T>& samples, const T* key_x, const T* key_y,
                     T* film_x, T* film_y, T* x, T* y, T* areas) noexcept {
   const auto shift = [&](std::size_t i) {
-    const std::size_t w = samples.wavelengths[i];
+    const std::size_t w = samples.wavelengths.position(i, pupils.primary_wavelength());
     return w < shifts.size() ? shifts[w] : 0;
   };
   const auto part = [&](std::size_t i) { return part_of_key(film.plane(), {key_x[i], key_y[i]}, shift(i)); };
@@ -83,19 +83,19 @@ void keep_on_film(std::size_t count, const Film& film, const T* film_x, const T*
 }
 
 template <class T>
-void weigh(std::size_t count, const Film& film, const TwoPlanes& space, const CameraSamples<T>& samples,
-           const TwoPlaneRays<const T>& lines, const T* areas, const double* scale, std::size_t known_wavelengths,
-           RayFate* fates, const CameraRays<T>& rays) noexcept {
+void weigh(std::size_t count, const Film& film, const FilmPupilTable& pupils, const CameraSamples<T>& samples,
+           const TwoPlaneRays<const T>& lines, const T* areas, const double* scale, RayFate* fates,
+           const CameraRays<T>& rays) noexcept {
   constexpr std::size_t block = 64;
   std::array<T, block> scales;
-  const auto scale_of = [&](std::size_t w) { return w < known_wavelengths ? static_cast<T>(scale[w]) : T(0); };
-  if (!samples.wavelengths.each) scales.fill(scale_of(samples.wavelengths.all));
+  const auto scale_of = [&](std::size_t w) { return w < pupils.wavelengths() ? static_cast<T>(scale[w]) : T(0); };
+  if (!samples.wavelengths.each) scales.fill(scale_of(samples.wavelengths.all.position(pupils.primary_wavelength())));
   for (std::size_t begin = 0; begin < count; begin += block) {
     const std::size_t n = std::min(block, count - begin);
     if (samples.wavelengths.each) {
       for (std::size_t i = 0; i < n; ++i) scales[i] = scale_of(samples.wavelengths.each[begin + i]);
     }
-    camera_loops().of<T>().weigh(bounds_of<T>(film), static_cast<T>(space.depth()), n, samples.film_x + begin,
+    camera_loops().of<T>().weigh(bounds_of<T>(film), static_cast<T>(pupils.space().depth()), n, samples.film_x + begin,
                                  samples.film_y + begin, lines.from(begin), areas + begin, scales.data(), fates + begin,
                                  rays.from(begin));
   }
@@ -103,8 +103,8 @@ void weigh(std::size_t count, const Film& film, const TwoPlanes& space, const Ca
 
 #define PETZVAL_SAMPLES(T)                                                                                           \
   template PETZVAL_API void keep_on_film(std::size_t, const Film&, const T*, const T*, T*, T*) noexcept;             \
-  template PETZVAL_API void weigh(std::size_t, const Film&, const TwoPlanes&, const CameraSamples<T>&,               \
-                                  const TwoPlaneRays<const T>&, const T*, const double*, std::size_t, RayFate*,      \
+  template PETZVAL_API void weigh(std::size_t, const Film&, const FilmPupilTable&, const CameraSamples<T>&,          \
+                                  const TwoPlaneRays<const T>&, const T*, const double*, RayFate*,                   \
                                   const CameraRays<T>&) noexcept;                                                    \
   template PETZVAL_API void to_keys(std::size_t, const TiltedFilm&, const T*, const T*, T*, T*) noexcept;            \
   template PETZVAL_API void to_upright(std::size_t, const TiltedFilm&, const T*, const T*, const T*, const T*, T*,   \

@@ -48,7 +48,8 @@ class Bundle {
     if (edges_) add_corners(outline);
     // Reproducible batches agree with the trace of one ray to the bit: edges found by that pass here too.
     std::vector<TracedRay<double>> ends(rays.size());
-    trace<double>(lens_, rays, ends.data(), {.wavelength = colour.wavelength, .arithmetic = Arithmetic::reproducible});
+    trace<double>(lens_, rays, ends.data(),
+                  {.wavelengths = {colour.wavelength}, .arithmetic = Arithmetic::reproducible});
     for (std::size_t i = 0; i < ends.size(); ++i) add_line(ends[i], weights[i]);
   }
 

@@ -36,12 +36,21 @@ struct Tables {
   std::vector<kernel::Interface<R>> to_film, to_scene;
   std::vector<R> vertex_z;
   SurfaceSequenceTables<R> sequence_to_film, sequence_to_scene;
-  std::size_t wavelengths = 0;
+  std::size_t wavelengths = 0, primary = 0;
   std::int32_t stop = -1;
 
   kernel::LensView<R> view() const noexcept {
-    return {surfaces.data(), aspheres.data(), to_film.data(), to_scene.data(),         surfaces.size(),
-            vertex_z.data(), wavelengths,     stop,           sequence_to_film.view(), sequence_to_scene.view()};
+    return {.surfaces = surfaces.data(),
+            .aspheres = aspheres.data(),
+            .to_film = to_film.data(),
+            .to_scene = to_scene.data(),
+            .count = surfaces.size(),
+            .vertex_z = vertex_z.data(),
+            .wavelengths = wavelengths,
+            .primary = primary,
+            .stop = stop,
+            .sequence_to_film = sequence_to_film.view(),
+            .sequence_to_scene = sequence_to_scene.view()};
   }
 };
 

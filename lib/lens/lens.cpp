@@ -20,6 +20,7 @@ struct Lens::Data {
   std::optional<std::size_t> stop;
   double film_z = 0;
   std::vector<double> wavelengths_nm;
+  std::size_t primary = 0;
   lens_detail::Indices indices;
   lens_detail::Tables<float> single;
   lens_detail::Tables<double> twice;
@@ -27,8 +28,31 @@ struct Lens::Data {
   void build() {
     single = lens_detail::build_tables<float>(surfaces, stop, indices.values, wavelengths_nm.size());
     twice = lens_detail::build_tables<double>(surfaces, stop, indices.values, wavelengths_nm.size());
+    single.primary = twice.primary = primary;
   }
 };
+
+namespace {
+
+/// Position of a wavelength in a list, within 1e-6 nm.
+std::optional<std::size_t> compiled(const std::vector<double>& list, double nm) {
+  const auto found = std::find_if(list.begin(), list.end(), [nm](double w) { return std::abs(w - nm) <= 1e-6; });
+  if (found == list.end()) return {};
+  return static_cast<std::size_t>(found - list.begin());
+}
+
+std::size_t nearest(const std::vector<double>& list, double nm) {
+  const auto closer = [nm](double a, double b) { return std::abs(a - nm) < std::abs(b - nm); };
+  return static_cast<std::size_t>(std::min_element(list.begin(), list.end(), closer) - list.begin());
+}
+
+void demand(const Lens& lens, const char* what, std::size_t found, std::size_t count) {
+  if (found < count) return;
+  throw Error(lens.name() + ": " + what + " " + std::to_string(found) + " does not exist, wanted one of " +
+              std::to_string(count));
+}
+
+}  // namespace
 
 std::string_view name(Dispersion dispersion) noexcept {
   switch (dispersion) {
@@ -47,31 +71,32 @@ std::span<const double> Lens::wavelengths_nm() const noexcept { return data_->wa
 Dispersion Lens::dispersion() const noexcept { return data_->indices.dispersion; }
 std::span<const std::string> Lens::missing_glasses() const noexcept { return data_->indices.missing_glasses; }
 
-double Lens::index(std::size_t space, std::size_t wavelength) const {
-  const auto demand = [&](const char* what, std::size_t found, std::size_t count) {
-    if (found < count) return;
-    throw Error(name() + ": " + what + " " + std::to_string(found) + " does not exist, wanted one of " +
-                std::to_string(count));
-  };
-  demand("wavelength", wavelength, data_->wavelengths_nm.size());
-  demand("space", space, surface_count() + 1);
-  return data_->indices.values[wavelength * (surface_count() + 1) + space];
+std::size_t Lens::primary_wavelength() const noexcept { return data_->primary; }
+
+double Lens::index(std::size_t space, Wavelength wavelength) const {
+  const std::size_t w = position(wavelength);
+  demand(*this, "wavelength", w, data_->wavelengths_nm.size());
+  demand(*this, "space", space, surface_count() + 1);
+  return data_->indices.values[w * (surface_count() + 1) + space];
 }
 
-std::size_t Lens::primary_wavelength() const noexcept {
-  const auto& list = data_->wavelengths_nm;
-  const auto nearest = std::min_element(
-      list.begin(), list.end(), [](double a, double b) { return std::abs(a - d_line_nm) < std::abs(b - d_line_nm); });
-  return static_cast<std::size_t>(nearest - list.begin());
+double Lens::light_direction(std::size_t space) const {
+  demand(*this, "space", space, surface_count() + 1);
+  if (space == 0) return 1;
+  const kernel::SurfaceTable<double>& before = data_->twice.surfaces[space - 1];
+  return before.mirror ? -before.sense : before.sense;
 }
 
 std::size_t Lens::wavelength(double nm) const {
-  const auto& list = data_->wavelengths_nm;
-  const auto found = std::find_if(list.begin(), list.end(), [nm](double w) { return std::abs(w - nm) <= 1e-6; });
-  if (found != list.end()) return static_cast<std::size_t>(found - list.begin());
-  std::string compiled;
-  for (const double w : list) compiled += (compiled.empty() ? "" : ", ") + number(w);
-  throw Error(name() + ": wavelength is " + number(nm) + " nm, wanted one the lens was compiled for: " + compiled);
+  if (const auto found = compiled(data_->wavelengths_nm, nm)) return *found;
+  std::string list;
+  for (const double w : data_->wavelengths_nm) list += (list.empty() ? "" : ", ") + number(w);
+  throw Error(name() + ": wavelength is " + number(nm) + " nm, wanted one the lens was compiled for: " + list);
+}
+
+std::size_t Lens::nearest_wavelength(double nm) const {
+  if (!std::isfinite(nm)) throw Error(name() + ": wavelength is " + number(nm) + " nm, wanted a finite one");
+  return nearest(data_->wavelengths_nm, nm);
 }
 
 bool Lens::rotationally_symmetric() const noexcept {
@@ -96,6 +121,8 @@ Lens compile(const Prescription& prescription, std::span<const double> wavelengt
   auto data = std::make_shared<Lens::Data>();
   data->name = where;
   data->wavelengths_nm.assign(wavelengths_nm.begin(), wavelengths_nm.end());
+  data->primary = compiled(data->wavelengths_nm, prescription.reference_wavelength_nm)
+                      .value_or(nearest(data->wavelengths_nm, d_line_nm));
   double z = 0;
   for (const SurfaceRow& row : prescription.surfaces) {
     LensSurface s;
@@ -123,10 +150,7 @@ Lens compile(const Prescription& prescription, const CompileOptions& options) {
 }
 
 Lens with_semi_diameter(const Lens& lens, std::size_t surface, double semi_diameter) {
-  if (surface >= lens.surface_count()) {
-    throw Error(lens.name() + ": surface " + std::to_string(surface) + " does not exist, wanted one of " +
-                std::to_string(lens.surface_count()));
-  }
+  demand(lens, "surface", surface, lens.surface_count());
   if (!(semi_diameter >= 0)) {
     throw Error(lens.name() + ": surface " + std::to_string(surface) + ": semi_diameter is " + number(semi_diameter) +
                 " mm, wanted 0 or more");

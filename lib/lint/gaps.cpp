@@ -36,7 +36,7 @@ std::optional<Gap> least_gap(const Lens& lens, std::size_t surface) {
   if (!std::isfinite(front.semi_diameter) || !std::isfinite(rear.semi_diameter) || to < from) return {};
 
   // Where light runs backwards, behind a mirror, the next surface lies at smaller z.
-  const double sense = signed_index(lens, surface + 1) > 0 ? 1 : -1;
+  const double sense = lens.light_direction(surface + 1);
   // Cylinders along x and y differ most along an axis or between them.
   constexpr std::array<std::array<double, 2>, 3> azimuths{{{0, 1}, {1, 0}, {0.7071067811865476, 0.7071067811865476}}};
   const std::size_t azimuth_count = lens.rotationally_symmetric() ? 1 : azimuths.size();

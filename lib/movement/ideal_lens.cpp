@@ -28,7 +28,7 @@ std::optional<Plane> plane(const Vec3<double>& normal, double offset) {
   return result;
 }
 
-FirstOrder focusing(const Lens& lens, std::size_t wavelength, Meridian meridian) {
+FirstOrder focusing(const Lens& lens, Wavelength wavelength, Meridian meridian) {
   const FirstOrder data = first_order(lens, wavelength, meridian);
   if (data.afocal) throw Error(lens.name() + ": ideal lens: it has no focal length, wanted one");
   if (data.image_index < 0) {
@@ -101,7 +101,7 @@ IdealLens thin_lens(double focal_length, double f_number, double z) {
   return {z - focal_length, z + focal_length, focal_length, focal_length, {pupil, pupil}, z, z};
 }
 
-IdealLens thin_lens(const Lens& lens, std::size_t wavelength) {
+IdealLens thin_lens(const Lens& lens, Wavelength wavelength) {
   const Meridian meridian = main_meridian(lens, wavelength);
   const FirstOrder data = focusing(lens, wavelength, meridian);
   const double z = data.rear_principal_z, front = data.object_index / data.power, rear = data.image_index / data.power;
@@ -109,7 +109,7 @@ IdealLens thin_lens(const Lens& lens, std::size_t wavelength) {
   return {z - front, z + rear, front, rear, {pupil, pupil}, z, z};
 }
 
-IdealLens thick_lens(const Lens& lens, std::size_t wavelength) {
+IdealLens thick_lens(const Lens& lens, Wavelength wavelength) {
   const Meridian meridian = main_meridian(lens, wavelength);
   const FirstOrder data = focusing(lens, wavelength, meridian);
   return {data.front_focal_z,

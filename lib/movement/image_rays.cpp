@@ -112,7 +112,7 @@ RayBundle ImageRays::Data::send(const Vec3<double>& point, std::size_t count) co
     ++sent;
   }
   trace<double>(lens, sent, {rays.x, rays.y, rays.z, rays.dx, rays.dy, rays.dz}, rays, fates.data(), nullptr,
-                {.wavelength = wavelength});
+                {.wavelengths = {wavelength}});
 
   RayBundle result;
   result.plane_z = lens.surfaces().back().vertex_z;

@@ -27,7 +27,7 @@ double vertex_curvature(const LensSurface& surface, Meridian meridian) noexcept 
   return curvature;
 }
 
-VertexSurface at_vertex(const Lens& lens, std::size_t i, std::size_t wavelength, Meridian meridian) {
+VertexSurface at_vertex(const Lens& lens, std::size_t i, Wavelength wavelength, Meridian meridian) {
   return {signed_index(lens, i, wavelength), signed_index(lens, i + 1, wavelength),
           vertex_curvature(lens.surfaces()[i], meridian)};
 }
@@ -39,13 +39,11 @@ RayMatrix transfer_to(const Lens& lens, std::size_t i, double n) noexcept {
 
 }  // namespace
 
-double signed_index(const Lens& lens, std::size_t space, std::size_t wavelength) {
-  const auto before = lens.surfaces().first(space);
-  const auto mirrors = std::count_if(before.begin(), before.end(), [](const LensSurface& s) { return s.mirror; });
-  return mirrors % 2 == 0 ? lens.index(space, wavelength) : -lens.index(space, wavelength);
+double signed_index(const Lens& lens, std::size_t space, Wavelength wavelength) {
+  return lens.light_direction(space) * lens.index(space, wavelength);
 }
 
-RayMatrix ray_matrix(const Lens& lens, std::size_t first, std::size_t last, std::size_t wavelength, Meridian meridian) {
+RayMatrix ray_matrix(const Lens& lens, std::size_t first, std::size_t last, Wavelength wavelength, Meridian meridian) {
   last = std::min(last, lens.surface_count());
   RayMatrix m;
   for (std::size_t i = first; i < last; ++i) {
@@ -56,13 +54,13 @@ RayMatrix ray_matrix(const Lens& lens, std::size_t first, std::size_t last, std:
   return m;
 }
 
-RayMatrix ray_matrix_to(const Lens& lens, std::size_t surface, std::size_t wavelength, Meridian meridian) {
+RayMatrix ray_matrix_to(const Lens& lens, std::size_t surface, Wavelength wavelength, Meridian meridian) {
   if (surface == 0) return {};
   return ray_matrix(lens, 0, surface, wavelength, meridian)
       .then(transfer_to(lens, surface, signed_index(lens, surface, wavelength)));
 }
 
-FirstOrder first_order(const Lens& lens, std::size_t wavelength, Meridian meridian) {
+FirstOrder first_order(const Lens& lens, Wavelength wavelength, Meridian meridian) {
   const std::size_t count = lens.surface_count();
   FirstOrder result;
   RayMatrix m;
@@ -102,13 +100,13 @@ FirstOrder first_order(const Lens& lens, std::size_t wavelength, Meridian meridi
   return result;
 }
 
-Meridian main_meridian(const Lens& lens, std::size_t wavelength) {
+Meridian main_meridian(const Lens& lens, Wavelength wavelength) {
   const bool only_x = !lens.rotationally_symmetric() && first_order(lens, wavelength, Meridian::y).afocal &&
                       !first_order(lens, wavelength, Meridian::x).afocal;
   return only_x ? Meridian::x : Meridian::y;
 }
 
-double paraxial_image_z(const Lens& lens, double object_z, std::size_t wavelength, Meridian meridian) {
+double paraxial_image_z(const Lens& lens, double object_z, Wavelength wavelength, Meridian meridian) {
   const FirstOrder data = first_order(lens, wavelength, meridian);
   RayMatrix m = ray_matrix(lens, 0, lens.surface_count(), wavelength, meridian);
   if (data.afocal) m.c = 0;

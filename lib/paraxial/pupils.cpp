@@ -14,7 +14,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// The surface that clips the axial beam from infinity first: least semi-diameter over the height of a ray that enters
 /// at height 1, in whichever meridian of a lens with cylinders that ray is higher.
-std::size_t limiting_surface(const Lens& lens, std::size_t wavelength) {
+std::size_t limiting_surface(const Lens& lens, Wavelength wavelength) {
   std::size_t limiting = lens.surface_count();
   double least = infinity;
   for (std::size_t i = 0; i < lens.surface_count(); ++i) {
@@ -49,7 +49,7 @@ bool has_pupils(const Lens& lens) noexcept {
   return std::any_of(lens.surfaces().begin(), lens.surfaces().end(), limits);
 }
 
-Pupils pupils(const Lens& lens, std::size_t wavelength, Meridian meridian) {
+Pupils pupils(const Lens& lens, Wavelength wavelength, Meridian meridian) {
   Pupils result;
   result.stop_inferred = !lens.stop();
   result.stop = lens.stop() ? *lens.stop() : limiting_surface(lens, wavelength);
@@ -66,7 +66,7 @@ Pupils pupils(const Lens& lens, std::size_t wavelength, Meridian meridian) {
   return result;
 }
 
-double paraxial_f_number(const Lens& lens, std::size_t wavelength) {
+double paraxial_f_number(const Lens& lens, Wavelength wavelength) {
   const Meridian meridian = main_meridian(lens, wavelength);
   const double diameter = pupils(lens, wavelength, meridian).entrance.diameter;
   const FirstOrder data = first_order(lens, wavelength, meridian);

@@ -18,10 +18,11 @@ struct RayPolynomial::Data {
   int degree;
   Domain domain;
   std::vector<Fit> fits;
+  std::size_t primary;  ///< position of the primary wavelength
   In<float> in_float{};
   In<double> in_double{};
 
-  Data(int degree, const Domain& domain, std::vector<Fit> fits);
+  Data(int degree, const Domain& domain, std::vector<Fit> fits, std::optional<std::size_t> primary);
 
   /// Where the loops for the degree stand.
   std::size_t loop() const noexcept { return static_cast<std::size_t>(degree - 3) / 2; }

@@ -133,7 +133,7 @@ RayPolynomial RayPolynomial::fit(const Lens& lens, const FilmPupilTable& pupils,
     fits.push_back(polynomial_detail::fit(lens, domain, degree, wavelength, spread(pupils, wavelength, 0, fitted, true),
                                           spread(pupils, wavelength, fitted, judged, false), edges[wavelength]));
   }
-  return RayPolynomial(degree, domain, std::move(fits));
+  return RayPolynomial(degree, domain, std::move(fits), lens.primary_wavelength());
 }
 
 }  // namespace petzval::inline v0

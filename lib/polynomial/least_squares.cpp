@@ -45,7 +45,7 @@ Rays trace(const Lens& lens, const TwoPlanes& space, const MeridianLines& lines,
     for (std::size_t k = 0; k < ray.size(); ++k) rays.v[k][i] = ray[k];
   }
   petzval::trace(lens, rays.size(), rays.arrays<const double>(), rays.arrays<double>(), rays.fates.data(), nullptr,
-                 {.travel = Travel::to_scene, .wavelength = wavelength});
+                 {.travel = Travel::to_scene, .wavelengths = {wavelength}});
   return rays;
 }
 

@@ -6,7 +6,7 @@
 #include <cstddef>
 
 #include "petzval/core/ray.hpp"
-#include "petzval/lens/ray_wavelengths.hpp"
+#include "petzval/lens/wavelength.hpp"
 #include "petzval/pupil/two_plane_rays.hpp"
 #include "petzval/trace/widest.hpp"
 
@@ -27,7 +27,7 @@ inline constexpr double within_domain = 1 + 1e-5;
 template <class R>
 struct ToSceneJob {
   const R* coefficients;  ///< by wavelength: A, B, C, D: direction by film and by pupil, offset by film and by pupil
-  std::size_t fits;
+  std::size_t fits, primary;
   Scales<R> scales;
   std::size_t count;
   TwoPlaneRays<const R> lines;

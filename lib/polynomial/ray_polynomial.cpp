@@ -2,6 +2,7 @@
 #include "petzval/polynomial/ray_polynomial.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <string>
 #include <utility>
@@ -10,6 +11,7 @@
 #include "horner.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/text.hpp"
+#include "petzval/core/units.hpp"
 
 namespace petzval::inline v0 {
 namespace {
@@ -62,6 +64,13 @@ void check(int degree, const RayPolynomial::Domain& domain, const std::vector<Ra
   }
 }
 
+std::size_t nearest_to_d(const std::vector<RayPolynomial::Fit>& fits) {
+  const auto closer = [](const RayPolynomial::Fit& a, const RayPolynomial::Fit& b) {
+    return std::abs(a.wavelength_nm - d_line_nm) < std::abs(b.wavelength_nm - d_line_nm);
+  };
+  return static_cast<std::size_t>(std::min_element(fits.begin(), fits.end(), closer) - fits.begin());
+}
+
 template <class R, class In>
 void round_to(In& in, const RayPolynomial::Domain& domain, const std::vector<RayPolynomial::Fit>& fits) {
   in.scales = {static_cast<R>(1 / domain.film_radius), static_cast<R>(domain.pupil_shift),
@@ -76,9 +85,15 @@ void round_to(In& in, const RayPolynomial::Domain& domain, const std::vector<Ray
 
 }  // namespace
 
-RayPolynomial::Data::Data(int of_degree, const Domain& of_domain, std::vector<Fit> all)
+RayPolynomial::Data::Data(int of_degree, const Domain& of_domain, std::vector<Fit> all,
+                          std::optional<std::size_t> of_primary)
     : degree(of_degree), domain(of_domain), fits(std::move(all)) {
   check(degree, domain, fits);
+  primary = of_primary.value_or(nearest_to_d(fits));
+  if (primary >= fits.size()) {
+    throw Error("polynomial: primary_wavelength is " + std::to_string(primary) + ", wanted one of " +
+                std::to_string(fits.size()));
+  }
   round_to<float>(in_float, domain, fits);
   round_to<double>(in_double, domain, fits);
 }
@@ -94,19 +109,21 @@ std::vector<RayPolynomial::Term> RayPolynomial::terms(int degree) {
   return result;
 }
 
-RayPolynomial::RayPolynomial(int degree, const Domain& domain, std::vector<Fit> fits)
-    : data_(std::make_shared<const Data>(degree, domain, std::move(fits))) {}
+RayPolynomial::RayPolynomial(int degree, const Domain& domain, std::vector<Fit> fits,
+                             std::optional<std::size_t> primary_wavelength)
+    : data_(std::make_shared<const Data>(degree, domain, std::move(fits), primary_wavelength)) {}
 
 int RayPolynomial::degree() const noexcept { return data_->degree; }
 const RayPolynomial::Domain& RayPolynomial::domain() const noexcept { return data_->domain; }
 const std::vector<RayPolynomial::Fit>& RayPolynomial::fits() const noexcept { return data_->fits; }
+std::size_t RayPolynomial::primary_wavelength() const noexcept { return data_->primary; }
 
 template <class T>
 void RayPolynomial::to_scene(std::size_t count, const TwoPlaneRays<const T>& lines, const RayWavelengths& wavelengths,
                              const RayArrays<T>& rays, RayFate* fates) const noexcept {
   const auto& in = polynomial_detail::in<T>(*data_);
   polynomial_detail::to_scene_loops<T>()[data_->loop()](
-      {in.coefficients.data(), data_->fits.size(), in.scales, count, lines, wavelengths, rays, fates});
+      {in.coefficients.data(), data_->fits.size(), data_->primary, in.scales, count, lines, wavelengths, rays, fates});
 }
 
 template PETZVAL_API void RayPolynomial::to_scene<float>(std::size_t, const TwoPlaneRays<const float>&,

@@ -124,9 +124,10 @@ void RayPolynomial::to_film(std::size_t count, const RayArrays<const double>& ra
     const Vec3<double> point(rays.x[i], rays.y[i], rays.z[i] - domain.reference_z);
     const SceneLine line = polynomial_detail::scene_line(direction, point);
     Place x;
+    const std::size_t wavelength = wavelengths.position(i, data_->primary);
     const double length = direction.x * direction.x + direction.y * direction.y + direction.z * direction.z;
-    const bool found = std::abs(length - 1) < 1e-3 && wavelengths[i] < data_->fits.size() &&
-                       solve(in.coefficients.data() + wavelengths[i] * per_fit, line, x);
+    const bool found = std::abs(length - 1) < 1e-3 && wavelength < data_->fits.size() &&
+                       solve(in.coefficients.data() + wavelength * per_fit, line, x);
     if (!found) x.setZero();
     lines.film_x[i] = x[0] * domain.film_radius;
     lines.film_y[i] = x[1] * domain.film_radius;

@@ -103,8 +103,8 @@ PETZVAL_INLINE void map_lanes(const ToSceneJob<R>& job, std::size_t o, std::size
     typename Vector<R>::Bits known;
     polynomials = mixed_sums<n, R>(job, job.wavelengths.each + o, count, u, v, w, known);
     inside &= known;
-  } else if (job.wavelengths.all < job.fits) {
-    const auto skipped = static_cast<std::ptrdiff_t>(job.wavelengths.all) * 4 * term_count(n);
+  } else if (const std::size_t all = job.wavelengths.all.position(job.primary); all < job.fits) {
+    const auto skipped = static_cast<std::ptrdiff_t>(all) * 4 * term_count(n);
     polynomials = sums<n, R>(job.coefficients + skipped, u, v, w);
   } else {
     inside = inside != inside;

@@ -25,7 +25,7 @@ void trace_block(const Lens& lens, const PupilSampler& pupil, std::uint32_t firs
   pupil.plane().rays(u, v, rays.arrays());
   // The same bits from every processor: a picture is a measurement.
   trace<double>(lens, count, std::as_const(rays).arrays(), rays.arrays(), rays.fates.data(), nullptr,
-                {.wavelength = pupil.wavelength(), .arithmetic = Arithmetic::reproducible});
+                {.wavelengths = {pupil.wavelength()}, .arithmetic = Arithmetic::reproducible});
 }
 
 /// Moves what each block found at its own place to the front, one behind the other.

@@ -28,11 +28,7 @@ struct RayBlock {
 /// front of the last surface is met in the rays' continuation backwards.
 class Film {
  public:
-  explicit Film(const Lens& lens) : z_(lens.film_z()) {
-    for (const LensSurface& surface : lens.surfaces()) {
-      if (surface.mirror) sense_ = -sense_;
-    }
-  }
+  explicit Film(const Lens& lens) : z_(lens.film_z()), sense_(lens.light_direction(lens.surface_count())) {}
 
   std::optional<std::array<double, 2>> meet(const Ray<double>& ray) const noexcept {
     const auto& [origin, direction] = ray;
@@ -65,8 +61,7 @@ class Film {
     return kernel::all_of(dz * sense_ > 0, kernel::finite(x), kernel::finite(y));
   }
 
-  double z_;
-  double sense_ = 1;
+  double z_, sense_;
 };
 
 }  // namespace petzval::inline v0::psf_detail

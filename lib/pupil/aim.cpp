@@ -49,18 +49,17 @@ class Aimer {
     const Pupils p = pupils(lens, wavelength);
     stop_ = p.stop;
     // Light leaves the stop for the film as it runs there, and for the scene the other way.
-    const auto sense = [&](std::size_t space) { return signed_index(lens, space, wavelength) > 0 ? 1.0 : -1.0; };
     departure_ = {.wavelength = wavelength, .apertures = false};
     arrival_ = {.travel = plane.travel(), .wavelength = wavelength, .apertures = false};
     if (plane.travel() == Travel::to_film) {
-      from_stop_ = -sense(stop_);
+      from_stop_ = -lens.light_direction(stop_);
       at_point_ = -1;
       departure_.travel = Travel::to_scene;
       departure_.last = stop_;
       arrival_.last = stop_ + 1;
     } else {
-      from_stop_ = sense(stop_ + 1);
-      at_point_ = sense(lens.surface_count());
+      from_stop_ = lens.light_direction(stop_ + 1);
+      at_point_ = lens.light_direction(lens.surface_count());
       departure_.travel = Travel::to_film;
       departure_.first = stop_ + 1;
       arrival_.first = stop_;
@@ -251,16 +250,16 @@ std::string_view name(AimStatus status) noexcept {
   return "unknown";
 }
 
-AimedRay pupil_detail::aim(const Lens& lens, const PupilPlane& plane, const StopPoint& target, std::size_t wavelength) {
+AimedRay pupil_detail::aim(const Lens& lens, const PupilPlane& plane, const StopPoint& target, Wavelength wavelength) {
   lens.index(0, wavelength);  // throws where there is no such wavelength
-  return Aimer(lens, plane, wavelength)(target);
+  return Aimer(lens, plane, lens.position(wavelength))(target);
 }
 
-AimedRay aim(const Lens& lens, const FieldPoint& point, const StopPoint& target, std::size_t wavelength) {
+AimedRay aim(const Lens& lens, const FieldPoint& point, const StopPoint& target, Wavelength wavelength) {
   return pupil_detail::aim(lens, PupilPlane(lens, point), target, wavelength);
 }
 
-AimedRay chief_ray(const Lens& lens, const FieldPoint& point, std::size_t wavelength) {
+AimedRay chief_ray(const Lens& lens, const FieldPoint& point, Wavelength wavelength) {
   return aim(lens, point, {}, wavelength);
 }
 

@@ -144,6 +144,7 @@ struct EntrancePupilTable::Data {
   Vec3<double> centre{0, 0, 0};
   double front_half = 0, steepest = 0;  // steepest: largest reciprocal distance of the table, 1/mm
   std::vector<Table> tables;
+  std::size_t primary = 0;
 
   explicit Data(const Lens& l) : lens(l) {}
 
@@ -210,7 +211,8 @@ struct EntrancePupilTable::Data {
   }
 
   /// The table to use for a point, its place seen from the centre; none where nothing can be seen.
-  const Table* table_for(const Vec3<double>& point, std::size_t wavelength) const noexcept {
+  const Table* table_for(const Vec3<double>& point, Wavelength at) const noexcept {
+    const std::size_t wavelength = at.position(primary);
     if (!(wavelength < tables.size()) || !(tables[wavelength].ball > 0)) return nullptr;
     return in_front(point) ? &tables[wavelength] : nullptr;
   }
@@ -374,6 +376,7 @@ void EntrancePupilTable::Data::fill(Table& table, const std::vector<Ray<double>>
 EntrancePupilTable::EntrancePupilTable(const Lens& lens, std::span<const std::vector<Ray<double>>> lines,
                                        const ScenePassing& passing, ClippedBy ends) {
   auto data = std::make_shared<Data>(lens);
+  data->primary = lens.primary_wavelength();
   const Pupil entrance = pupils(lens, lens.primary_wavelength()).entrance;
   const pupil_detail::Face face = pupil_detail::face_of(lens, 0, entrance);
   data->front_half = face.half;
@@ -407,7 +410,7 @@ EntrancePupilTable::EntrancePupilTable(const Lens& lens, std::span<const std::ve
 bool EntrancePupilTable::in_front(const Vec3<double>& point) const noexcept { return data_->in_front(point); }
 
 void EntrancePupilTable::sample(const Vec3<double>& point, std::size_t count, const double* u, const double* v,
-                                std::size_t wavelength, EntranceSample* samples) const noexcept {
+                                Wavelength wavelength, EntranceSample* samples) const noexcept {
   std::fill_n(samples, count, EntranceSample{.place = data_->centre});
   const Data::Table* table = data_->table_for(point, wavelength);
   if (!table) return;
@@ -443,14 +446,14 @@ void EntrancePupilTable::sample(const Vec3<double>& point, std::size_t count, co
 }
 
 EntranceSample EntrancePupilTable::sample(const Vec3<double>& point, double u, double v,
-                                          std::size_t wavelength) const noexcept {
+                                          Wavelength wavelength) const noexcept {
   EntranceSample result;
   sample(point, 1, &u, &v, wavelength, &result);
   return result;
 }
 
 double EntrancePupilTable::pdf(const Vec3<double>& point, const Vec3<double>& direction,
-                               std::size_t wavelength) const noexcept {
+                               Wavelength wavelength) const noexcept {
   const Data::Table* table = data_->table_for(point, wavelength);
   if (!table) return 0;
   const Vec3<double> from_centre = point - data_->centre;

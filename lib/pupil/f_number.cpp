@@ -20,9 +20,9 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 /// Axis-parallel rays in the main meridian, on their way from object space to the stop.
 class StopHeight {
  public:
-  StopHeight(const Lens& lens, std::size_t stop, std::size_t wavelength)
+  StopHeight(const Lens& lens, std::size_t stop, Wavelength wavelength)
       : lens_(lens), stop_(stop), along_y_(main_meridian(lens, wavelength) == Meridian::y) {
-    path_.wavelength = wavelength;
+    path_.wavelength = lens.position(wavelength);
     path_.apertures = false;
     path_.last = stop + 1;
   }
@@ -67,14 +67,14 @@ double entering_height(const StopHeight& stop_height, double rim, double expecte
 }
 
 /// The same for the stop of a lens as it is.
-double beam_height(const Lens& lens, const Pupils& p, double focal_length, std::size_t wavelength) {
+double beam_height(const Lens& lens, const Pupils& p, double focal_length, Wavelength wavelength) {
   const double rim = lens.surfaces()[p.stop].semi_diameter;
   if (rim == 0) return 0;
   const double expected = std::min(p.entrance.diameter / 2, focal_length);
   return entering_height(StopHeight(lens, p.stop, wavelength), rim, expected);
 }
 
-double focal_length(const Lens& lens, std::size_t wavelength) {
+double focal_length(const Lens& lens, Wavelength wavelength) {
   return std::abs(first_order(lens, wavelength, main_meridian(lens, wavelength)).effective_focal_length);
 }
 
@@ -84,13 +84,13 @@ double f_number(double focal_length, double beam_height) {
 
 }  // namespace
 
-double real_f_number(const Lens& lens, std::size_t wavelength) {
+double real_f_number(const Lens& lens, Wavelength wavelength) {
   const Pupils p = pupils(lens, wavelength, main_meridian(lens, wavelength));
   const double length = focal_length(lens, wavelength);
   return std::isinf(length) ? infinity : f_number(length, beam_height(lens, p, length, wavelength));
 }
 
-Lens with_f_number(const Lens& lens, double f_number, std::size_t wavelength) {
+Lens with_f_number(const Lens& lens, double f_number, Wavelength wavelength) {
   if (!(f_number > 0 && std::isfinite(f_number))) {
     throw Error(lens.name() + ": f-number is " + number(f_number) + ", wanted a finite one above 0");
   }

@@ -84,7 +84,7 @@ class FilmSide {
     }
     const auto at = [&](std::size_t k) { return memory_[k].data(); };
     trace<double>(lens_, count, {at(0), at(1), at(2), at(3), at(4), at(5)}, {at(0), at(1), at(2), at(3), at(4), at(5)},
-                  fates_.data(), nullptr, {.travel = Travel::to_scene, .wavelength = wavelength});
+                  fates_.data(), nullptr, {.travel = Travel::to_scene, .wavelengths = {wavelength}});
     for (std::size_t i = 0; i < count; ++i) passes[i] = fates_[i] == RayFate::transmitted;
   }
 

@@ -101,7 +101,7 @@ struct FilmPupilTable::Data {
   TwoPlanes space;
   double film_radius = 0;
   double lit_radius = 0;  // to which the strips reach: beyond it is dark
-  std::size_t wavelengths = 0, strips_each = 0;
+  std::size_t wavelengths = 0, primary = 0, strips_each = 0;
   bool turned = true, gapped = false;
   int corrections = 0;
   std::vector<double> twice;  // strips by StripLayout
@@ -144,6 +144,7 @@ struct FilmPupilTable::Data {
     }
     result.count = strips_each;
     result.wavelengths = wavelengths;
+    result.primary = primary;
     // The corner itself, rounded, still belongs to the film.
     result.lit_radius = static_cast<R>(lit_radius * (1 + 1e-6));
     result.strips_per_mm = static_cast<R>(strips_per_mm());
@@ -158,7 +159,8 @@ struct FilmPupilTable::Data {
     const double* strip = nullptr;  // null: nowhere
     double t = 0, cosine = 1, sine = 0;
   };
-  Place find(const FilmPoint& film, std::size_t wavelength) const noexcept {
+  Place find(const FilmPoint& film, Wavelength at_wavelength) const noexcept {
+    const std::size_t wavelength = at_wavelength.position(primary);
     const double r = std::sqrt(film.x * film.x + film.y * film.y);
     if (!(r <= lit_radius * (1 + 1e-6)) || wavelength >= wavelengths) return {};
     const double at = r * strips_per_mm();
@@ -190,6 +192,7 @@ FilmPupilTable FilmPupilTable::traced(const Lens& lens, double film_radius, bool
   auto data = std::make_shared<Data>();
   data->space = two_planes(lens);
   data->film_radius = film_radius;
+  data->primary = lens.primary_wavelength();
   data->turned = lens.rotationally_symmetric();
   const std::size_t wavelengths = lens.wavelengths_nm().size();
   data->lit_radius = data->turned ? 0 : film_radius;
@@ -221,9 +224,10 @@ FilmPupilTable FilmPupilTable::equal_area(const Lens& lens, double film_radius) 
 }
 
 FilmPupilTable FilmPupilTable::of_discs(const TwoPlanes& space, std::span<const std::vector<PupilDisc>> discs,
-                                        double film_radius) {
+                                        double film_radius, std::size_t primary_wavelength) {
   check_film_radius("pupil map", film_radius);
   auto data = std::make_shared<Data>();
+  data->primary = primary_wavelength;
   data->space = space;
   data->film_radius = data->lit_radius = film_radius;
   for (const std::vector<PupilDisc>& set : discs) data->add(pupil_detail::disc_stars(set, film_radius));
@@ -239,6 +243,7 @@ FilmPupilTable FilmPupilTable::leaning(const FilmTilt& lean) const {
     return FilmPupilTable(std::move(data));
   }
   data->space = data_->space;
+  data->primary = data_->primary;
   data->film_radius = lean.radius;
   for (std::size_t w = 0; w < wavelengths() && data->lit_radius < lean.radius; ++w) {
     const double lit = pupil_detail::lit_radius(lean.radius, pupil_detail::leaning_edges(*this, lean, w));
@@ -253,8 +258,9 @@ FilmPupilTable FilmPupilTable::leaning(const FilmTilt& lean) const {
 const TwoPlanes& FilmPupilTable::space() const noexcept { return data_->space; }
 double FilmPupilTable::film_radius() const noexcept { return data_->film_radius; }
 std::size_t FilmPupilTable::wavelengths() const noexcept { return data_->wavelengths; }
+std::size_t FilmPupilTable::primary_wavelength() const noexcept { return data_->primary; }
 
-PupilSample FilmPupilTable::sample(const FilmPoint& film, double u, double v, std::size_t wavelength) const noexcept {
+PupilSample FilmPupilTable::sample(const FilmPoint& film, double u, double v, Wavelength wavelength) const noexcept {
   const auto found = data_->find(film, wavelength);
   if (!found.strip || !(u - u == 0 && v - v == 0)) return {};
   const double whole = area_before(found.strip, polygon_corners, found.t);
@@ -272,7 +278,8 @@ void FilmPupilTable::sample(std::size_t count, const T* film_x, const T* film_y,
   constexpr std::size_t few = 8;
   if (count < few) {
     for (std::size_t i = 0; i < count; ++i) {
-      const PupilSample s = sample(FilmPoint{film_x[i], film_y[i]}, u[i], v[i], wavelengths[i]);
+      const PupilSample s =
+          sample(FilmPoint{film_x[i], film_y[i]}, u[i], v[i], wavelengths.position(i, data_->primary));
       x[i] = static_cast<T>(s.x), y[i] = static_cast<T>(s.y), areas[i] = static_cast<T>(s.area);
     }
     return;
@@ -285,20 +292,20 @@ void FilmPupilTable::sample(std::size_t count, const T* film_x, const T* film_y,
   }
 }
 
-double FilmPupilTable::area(const FilmPoint& film, std::size_t wavelength) const noexcept {
+double FilmPupilTable::area(const FilmPoint& film, Wavelength wavelength) const noexcept {
   const auto [strip, t, cosine, sine] = data_->find(film, wavelength);
   if (!strip) return 0;
   return std::max(area_before(strip, polygon_corners, t), 0.0);
 }
 
-std::array<double, 2> FilmPupilTable::middle(const FilmPoint& film, std::size_t wavelength) const noexcept {
+std::array<double, 2> FilmPupilTable::middle(const FilmPoint& film, Wavelength wavelength) const noexcept {
   const auto [strip, t, cosine, sine] = data_->find(film, wavelength);
   if (!strip) return {0, 0};
   const double y = strip[L::middle_y] + t * strip[L::middle_y + 1];
   return {sine * y, cosine * y};
 }
 
-bool FilmPupilTable::contains(const FilmPoint& film, double x, double y, std::size_t wavelength) const noexcept {
+bool FilmPupilTable::contains(const FilmPoint& film, double x, double y, Wavelength wavelength) const noexcept {
   const auto [strip, t, cosine, sine] = data_->find(film, wavelength);
   if (!strip) return false;
   const double qx = cosine * x - sine * y;
@@ -324,7 +331,7 @@ void FilmPupilTable::contains(std::size_t count, const TwoPlaneRays<const T>& li
   constexpr std::size_t few = 4;
   if (count < few) {
     for (std::size_t i = 0; i < count; ++i) {
-      within[i] = contains(FilmPoint{film_x[i], film_y[i]}, x[i], y[i], wavelengths[i]);
+      within[i] = contains(FilmPoint{film_x[i], film_y[i]}, x[i], y[i], wavelengths.position(i, data_->primary));
     }
     return;
   }
@@ -337,7 +344,7 @@ void FilmPupilTable::contains(std::size_t count, const TwoPlaneRays<const T>& li
 }
 
 FilmPupilTable::Motion FilmPupilTable::motion(const FilmPoint& film, double u, double v,
-                                              std::size_t wavelength) const noexcept {
+                                              Wavelength wavelength) const noexcept {
   using Jet = ceres::Jet<double, 2>;
   // On the axis the directions around it meet: beside it is near enough.
   const double beside = 1e-4 * data_->film_radius;

@@ -185,7 +185,7 @@ inline void by_blocks(const StripTable<R>& table, std::size_t count, const R* co
                       const RayWavelengths& wavelengths, const Body& body) noexcept {
   const auto known = [&](std::size_t w) { return w < table.wavelengths ? static_cast<std::int32_t>(w) : -1; };
   std::int32_t w[block];
-  for (std::size_t i = 0; i < block; ++i) w[i] = known(wavelengths.all);
+  for (std::size_t i = 0; i < block; ++i) w[i] = known(wavelengths.all.position(table.primary));
   for (std::size_t begin = 0; begin < count; begin += block) {
     const std::size_t n = count - begin < block ? count - begin : block;
     if (wavelengths.each) {

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "petzval/lens/ray_wavelengths.hpp"
+#include "petzval/lens/wavelength.hpp"
 #include "petzval/pupil/pupil_polygon.hpp"
 #include "petzval/trace/widest.hpp"
 
@@ -26,7 +26,7 @@ struct StripLayout {
 template <class R>
 struct StripTable {
   const R* strips = nullptr;  ///< [wavelength * count + strip] StripLayout
-  std::size_t count = 0, wavelengths = 0;
+  std::size_t count = 0, wavelengths = 0, primary = 0;
   R lit_radius = 0, strips_per_mm = 0;
   bool turned = true;   ///< the stars are those of film points on +y and turn with the point
   bool gapped = false;  ///< at least one sector has a gap

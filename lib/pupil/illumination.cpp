@@ -10,7 +10,7 @@
 
 namespace petzval::inline v0 {
 
-double film_irradiance(const Lens& lens, const FilmPoint& point, std::size_t wavelength) {
+double film_irradiance(const Lens& lens, const FilmPoint& point, Wavelength wavelength) {
   const PupilPlane plane = PupilPlane::of_film(lens, point);
   const bool alike_all_round = plane.on_axis() && lens.rotationally_symmetric();
   const PupilOutline outline =
@@ -34,7 +34,7 @@ double film_irradiance(const Lens& lens, const FilmPoint& point, std::size_t wav
          outline.half_axes[1] / (gap * gap);
 }
 
-std::optional<double> relative_illumination(const Lens& lens, const FieldPoint& point, std::size_t wavelength) {
+std::optional<double> relative_illumination(const Lens& lens, const FieldPoint& point, Wavelength wavelength) {
   const double axis = film_irradiance(lens, {}, wavelength);
   const AimedRay chief = chief_ray(lens, point, wavelength);
   if (axis == 0 || !chief || !chief.end.transmitted()) return {};

@@ -258,7 +258,8 @@ void trace_outline(const Lens& lens, PupilOutline& outline, const Point& start, 
   }
 }
 
-PupilOutline outline_of(const Lens& lens, const PupilPlane& plane, std::size_t wavelength, std::size_t directions) {
+PupilOutline outline_of(const Lens& lens, const PupilPlane& plane, Wavelength at, std::size_t directions) {
+  const std::size_t wavelength = lens.position(at);
   lens.index(0, wavelength);  // throws where there is no such wavelength
   if (directions < 3 && !(directions == 1 && plane.on_axis() && lens.rotationally_symmetric())) {
     throw Error(lens.name() + ": pupil outline: directions is " + std::to_string(directions) +
@@ -291,11 +292,11 @@ double PupilOutline::area() const noexcept {
   return directions == 0 ? 0 : sum * std::numbers::pi / static_cast<double>(directions) * half_axes[0] * half_axes[1];
 }
 
-PupilOutline pupil_outline(const Lens& lens, const FieldPoint& point, std::size_t wavelength, std::size_t directions) {
+PupilOutline pupil_outline(const Lens& lens, const FieldPoint& point, Wavelength wavelength, std::size_t directions) {
   return outline_of(lens, PupilPlane(lens, point), wavelength, directions);
 }
 
-PupilOutline exit_pupil_outline(const Lens& lens, const FilmPoint& point, std::size_t wavelength,
+PupilOutline exit_pupil_outline(const Lens& lens, const FilmPoint& point, Wavelength wavelength,
                                 std::size_t directions) {
   return outline_of(lens, PupilPlane::of_film(lens, point), wavelength, directions);
 }

@@ -23,13 +23,13 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 /// surface they meet first: sine of the angle = distance from the vertex / distance of the point, for any point.
 class AxialFan {
  public:
-  AxialFan(const Lens& lens, Travel travel, double point_z, std::size_t wavelength)
+  AxialFan(const Lens& lens, Travel travel, double point_z, Wavelength wavelength)
       : lens_(lens),
         options_{.travel = travel, .wavelength = wavelength},
         first_(travel == Travel::to_film ? 0 : lens.surface_count() - 1),
         along_y_(main_meridian(lens, wavelength) == Meridian::y) {
     const std::size_t space = travel == Travel::to_film ? 0 : lens.surface_count();
-    forward_ = (travel == Travel::to_film) == (signed_index(lens, space, wavelength) > 0) ? 1 : -1;
+    forward_ = (travel == Travel::to_film) == (lens.light_direction(space) > 0) ? 1 : -1;
     distance_ = std::isinf(point_z) ? infinity : forward_ * (lens.surfaces()[first_].vertex_z - point_z);
   }
 
@@ -86,7 +86,7 @@ class AxialFan {
   double distance_ = 0;  // of the point in front of the vertex; negative where the beam converges to it
 };
 
-TextbookPupil textbook_pupil(const Lens& lens, Travel travel, double point_z, std::size_t wavelength) {
+TextbookPupil textbook_pupil(const Lens& lens, Travel travel, double point_z, Wavelength wavelength) {
   const bool entrance = travel == Travel::to_film;
   const std::string where = lens.name() + ": textbook " + (entrance ? "entrance" : "exit") + " pupil: ";
   lens.index(0, wavelength);  // throws where there is no such wavelength
@@ -125,11 +125,11 @@ TextbookPupil textbook_pupil(const Lens& lens, Travel travel, double point_z, st
 
 }  // namespace
 
-TextbookPupil textbook_entrance_pupil(const Lens& lens, double object_z, std::size_t wavelength) {
+TextbookPupil textbook_entrance_pupil(const Lens& lens, double object_z, Wavelength wavelength) {
   return textbook_pupil(lens, Travel::to_film, object_z, wavelength);
 }
 
-TextbookPupil textbook_exit_pupil(const Lens& lens, double film_z, std::size_t wavelength) {
+TextbookPupil textbook_exit_pupil(const Lens& lens, double film_z, Wavelength wavelength) {
   return textbook_pupil(lens, Travel::to_scene, film_z, wavelength);
 }
 

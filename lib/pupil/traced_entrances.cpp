@@ -14,7 +14,7 @@ ScenePassing traced_passing(const Lens& lens) {
     std::vector<RayFate> fates(count);
     trace<double>(lens, count, rays,
                   {ray[0].data(), ray[1].data(), ray[2].data(), ray[3].data(), ray[4].data(), ray[5].data()},
-                  fates.data(), nullptr, {.wavelength = wavelength});
+                  fates.data(), nullptr, {.wavelengths = {wavelength}});
     for (std::size_t i = 0; i < count; ++i) passes[i] = fates[i] == RayFate::transmitted;
   };
 }
@@ -32,7 +32,7 @@ EntrancePupilTable traced_entrances(const Lens& lens, const FilmPupilTable& pupi
       dx[i] = d.x, dy[i] = d.y, dz[i] = d.z;
     }
     trace<double>(lens, count, {x, y, z, dx, dy, dz}, rays, fates, nullptr,
-                  {.travel = Travel::to_scene, .wavelength = wavelength});
+                  {.travel = Travel::to_scene, .wavelengths = {wavelength}});
   };
   return EntrancePupilTable(lens, leaving_rays(pupils, lens.rotationally_symmetric(), to_scene), traced_passing(lens));
 }

@@ -36,7 +36,7 @@ OuterFace last_face(const Lens& lens) {
 
 double towards_scene(const Lens& lens, const TwoPlanes& space) {
   // Against the light, which runs towards +z but behind an odd number of mirrors.
-  return signed_index(lens, lens.surface_count()) * space.depth() > 0 ? -1 : 1;
+  return lens.light_direction(lens.surface_count()) * space.depth() > 0 ? -1 : 1;
 }
 
 }  // namespace petzval::inline v0

@@ -39,12 +39,13 @@ trace_detail::TraceBlocks<R> loops(const trace_detail::BlockTracer& tracer) noex
   }
 }
 
-/// Where each ray has its wavelength, that of the batch is not looked at.
+/// Where each ray has its own wavelength, that of the batch is ignored.
 template <class R>
-BlockJob<R> job_for(const Lens& lens, BatchOptions options) noexcept {
-  if (options.wavelengths) options.wavelength = 0;
-  auto job = trace_detail::job_for<R>(lens.view<R>(), options);
-  job.wavelengths = options.wavelengths;
+BlockJob<R> job_for(const Lens& lens, const BatchOptions& options) noexcept {
+  const auto view = lens.view<R>();
+  const auto& [all, each] = options.wavelengths;
+  auto job = trace_detail::job_for<R>(view, options, each ? 0 : all.position(view.primary));
+  job.wavelengths = each;
   return job;
 }
 
@@ -111,7 +112,7 @@ void trace_all(const Lens& lens, std::size_t count, const RayArrays<const R>& in
   Block<R> last;
   std::fill(last.v[5].begin(), last.v[5].end(), R(1));
   copy(rest, in, done, last.arrays(), 0);
-  if (job.wavelengths) std::copy(options.wavelengths + done, options.wavelengths + count, last.wavelengths.begin());
+  if (job.wavelengths) std::copy_n(options.wavelengths.each + done, rest, last.wavelengths.begin());
   use(last, job);
   const auto tangents = last.template tangents<const R>();
   if (tangents_in) {
@@ -189,7 +190,7 @@ void trace(const Lens& lens, std::span<const Ray<T>> rays, TracedRay<T>* traced,
       x[i] = origin.x, y[i] = origin.y, z[i] = origin.z;
       dx[i] = direction.x, dy[i] = direction.y, dz[i] = direction.z;
     }
-    if (options.wavelengths) std::copy_n(options.wavelengths + begin, count, some.wavelengths.begin());
+    if (options.wavelengths.each) std::copy_n(options.wavelengths.each + begin, count, some.wavelengths.begin());
     trace_blocks(job);
     for (std::size_t i = 0; i < count; ++i) {
       traced[begin + i] = {{{x[i], y[i], z[i]}, {dx[i], dy[i], dz[i]}}, some.fates[i], some.surfaces[i]};

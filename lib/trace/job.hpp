@@ -19,9 +19,9 @@ Found search_asphere(const kernel::Asphere<R>& asphere, R sense, BeforeAsphere<R
   return beside ? Found::beside : converged ? Found::miss : Found::no_convergence;
 }
 
-/// What a lens and some options say of a job; whose rays, is left to say. Options: of one ray or of a batch.
+/// What a lens and some options say of a job, but for the rays. Options: of one ray or of a batch, at one wavelength.
 template <class R, class Options>
-BlockJob<R> job_for(const kernel::LensView<R>& view, const Options& options) noexcept {
+BlockJob<R> job_for(const kernel::LensView<R>& view, const Options& options, std::size_t wavelength) noexcept {
   BlockJob<R> job;
   job.course = options.travel == Travel::to_film ? view.sequence_to_film : view.sequence_to_scene;
   job.steps = view.count;
@@ -30,8 +30,8 @@ BlockJob<R> job_for(const kernel::LensView<R>& view, const Options& options) noe
   job.compiled_wavelengths = view.wavelengths;
   job.apertures = options.apertures;
   job.iris = options.iris;
-  if (options.wavelength < view.wavelengths) {
-    job.wavelength = options.wavelength;
+  if (wavelength < view.wavelengths) {
+    job.wavelength = wavelength;
   } else {
     static constexpr R no_index = std::numeric_limits<R>::quiet_NaN();
     job.course.n_first = &no_index;  // which loses every ray

@@ -63,7 +63,7 @@ TracedRay<R> ended(const BlockJob<R>& job, const R* vertex_z, std::size_t j, boo
 template <class R, class Seen>
 TracedRay<R> trace_one(const Lens& lens, const Ray<R>& ray, const TraceOptions& options, const Seen& seen) {
   const auto view = lens.view<R>();
-  const auto job = job_for<R>(view, options);
+  const auto job = job_for<R>(view, options, options.wavelength.position(view.primary));
   const auto& course = job.course;
   TracedRay<R> end{ray, RayFate::missed_surface, course.steps[0].surface};
   auto& [origin, direction] = end.ray;

@@ -56,6 +56,47 @@ TEST(Lens, FindsItsWavelengthsAndNamesThemWhereItDoesNot) {
             "singlet: wavelength is 500 nm, wanted one the lens was compiled for: 486.1327, 587.5618");
 }
 
+TEST(Lens, ItsPrimaryWavelengthIsTheReferenceElseTheOneNearestTheDLine) {
+  petzval::Prescription p = singlet();
+  p.surfaces[0].medium.vd = 64.2;
+  const auto primary = [&](std::vector<double> wavelengths_nm) {
+    return petzval::compile(p, wavelengths_nm, {.missing_glass = petzval::MissingGlass::abbe}).primary_wavelength();
+  };
+  EXPECT_EQ(primary({656.2725, 486.1327, petzval::d_line_nm}), 2u);
+  EXPECT_EQ(primary({656.2725, 600, 486.1327}), 1u);
+  p.reference_wavelength_nm = 546.0740;
+  EXPECT_EQ(primary({petzval::d_line_nm, 546.0740 + 5e-7}), 1u);
+  EXPECT_EQ(primary({480, 656.2725, petzval::d_line_nm}), 2u);
+}
+
+TEST(Lens, ItsWavelengthsAreFoundByPositionByNanometresAndByDefault) {
+  petzval::Prescription p = singlet();
+  p.surfaces[0].medium.vd = 64.2;
+  const petzval::Lens lens = petzval::compile(p, std::array{486.1327, petzval::d_line_nm, 656.2725},
+                                              {.missing_glass = petzval::MissingGlass::abbe});
+  EXPECT_EQ(lens.position({}), 1u);
+  EXPECT_EQ(lens.position(2), 2u);
+  EXPECT_EQ(lens.position(static_cast<std::size_t>(-1)), static_cast<std::size_t>(-2)) << "no lens has so many";
+  EXPECT_EQ(lens.index(1), lens.index(1, 1));
+  EXPECT_EQ(lens.nearest_wavelength(540), 1u);
+  EXPECT_EQ(lens.nearest_wavelength(530), 0u);
+  EXPECT_EQ(lens.nearest_wavelength(2000), 2u);
+  EXPECT_EQ(message([&] { lens.nearest_wavelength(std::numeric_limits<double>::quiet_NaN()); }),
+            "singlet: wavelength is nan nm, wanted a finite one");
+}
+
+TEST(Lens, LightRunsBackwardsBehindAnOddNumberOfMirrors) {
+  petzval::Prescription p;
+  p.name = "two mirrors";
+  p.surfaces = {{.thickness = 10},
+                {.radius = -200, .thickness = -50, .mirror = true},
+                {.radius = -100, .thickness = 70, .mirror = true}};
+  const petzval::Lens lens = petzval::compile(p);
+  const double wanted[] = {1, 1, -1, 1};
+  for (std::size_t space = 0; space < 4; ++space) EXPECT_EQ(lens.light_direction(space), wanted[space]);
+  EXPECT_EQ(message([&] { lens.light_direction(4); }), "two mirrors: space 4 does not exist, wanted one of 4");
+}
+
 TEST(Lens, AChangeMakesANewLens) {
   const petzval::Lens lens = petzval::compile(singlet());
   const petzval::Lens stopped = petzval::with_semi_diameter(lens, 0, 3), moved = petzval::with_film(lens, 60);

@@ -44,11 +44,11 @@ TYPED_TEST(BatchWavelengths, MixedInABatchAreWhatEachGivesAlone) {
 
       for (BatchOptions options : ways(travel)) {
         std::vector<Answer<T>> alone;
-        for (options.wavelength = 0; options.wavelength < wavelengths_nm.size(); ++options.wavelength) {
+        for (std::size_t w = 0; w < wavelengths_nm.size(); ++w) {
+          options.wavelengths = {w};
           alone.push_back(traced(sample.lens, rays, options));
         }
-        options.wavelength = 0;
-        options.wavelengths = mixed.data();
+        options.wavelengths = {.each = mixed.data()};
         const Answer<T> found = traced(sample.lens, rays, options);
         int coloured = 0;
         for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -76,10 +76,9 @@ TYPED_TEST(BatchWavelengths, GivenForEachRayTakeThePlaceOfTheCommonOne) {
   const auto rays = rays_for<T>(sample, Travel::to_film, 70);
   const std::vector<std::uint16_t> second(rays.size(), 1);
   for (BatchOptions options : ways()) {
-    options.wavelength = 1;
+    options.wavelengths = {1};
     const auto wanted = traced(sample.lens, rays, options);
-    options.wavelength = static_cast<std::size_t>(-1);
-    options.wavelengths = second.data();
+    options.wavelengths = {static_cast<std::size_t>(-1), second.data()};
     const auto found = traced(sample.lens, rays, options);
     for (std::size_t i = 0; i < rays.size(); ++i) ASSERT_TRUE(same_bits(found, i, wanted, i)) << text(options);
   }
@@ -92,7 +91,7 @@ TYPED_TEST(BatchWavelengths, ThatWereNotCompiledLoseTheWholeBatch) {
       const auto rays = rays_for<T>(sample, travel, 70);
       for (BatchOptions options : ways(travel)) {
         for (const std::size_t beyond : {std::size_t{1}, std::size_t{1} << 32, static_cast<std::size_t>(-1)}) {
-          options.wavelength = beyond;
+          options.wavelengths = {beyond};
           const auto answer = traced(sample.lens, rays, options);
           for (std::size_t i = 0; i < rays.size(); ++i) {
             ASSERT_EQ(answer.fates[i], RayFate::missed_surface) << sample.id << " " << text(options);

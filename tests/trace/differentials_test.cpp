@@ -292,10 +292,11 @@ TYPED_TEST(DifferentialsOf, WavelengthsMixedInABatchAreWhatEachGivesAlone) {
       for (std::size_t i = 0; i < mixed.size(); ++i) mixed[i] = static_cast<std::uint16_t>(i * i % 7 % 4);  // 3: none
       for (auto options : ways(travel)) {
         std::vector<Followed<T>> alone;
-        for (options.wavelength = 0; options.wavelength < 4; ++options.wavelength) {
+        for (std::size_t w = 0; w < 4; ++w) {
+          options.wavelengths = {w};
           alone.push_back(followed(sample.lens, beam, options));
         }
-        options.wavelengths = mixed.data();
+        options.wavelengths = {.each = mixed.data()};
         const auto found = followed(sample.lens, beam, options);
         for (std::size_t i = 0; i < mixed.size(); ++i) {
           const std::string what = std::string(id) + " ray " + std::to_string(i);

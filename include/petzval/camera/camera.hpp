@@ -11,6 +11,7 @@
 #include "petzval/camera/tilted_film.hpp"
 #include "petzval/core/export.hpp"
 #include "petzval/lens/lens.hpp"
+#include "petzval/lens/wavelength.hpp"
 
 namespace petzval::inline v0 {
 
@@ -65,16 +66,16 @@ class PETZVAL_API Camera {
   CameraRayDifferential sample_differential(const CameraSample& sample) const noexcept;
 
   /// What the camera makes of a ray from the scene, anywhere on its line, running towards the lens.
-  Importance importance(const Ray<double>& ray, std::size_t wavelength = 0) const noexcept;
+  Importance importance(const Ray<double>& ray, Wavelength wavelength = {}) const noexcept;
   /// Connects a scene point (lens frame, mm) to the lens: a sample of what of the entrance pupil it sees.
   ImportanceSample sample_importance(const Vec3<double>& point, double u, double v,
-                                     std::size_t wavelength = 0) const noexcept;
+                                     Wavelength wavelength = {}) const noexcept;
   /// The density with which `sample_importance` gives a direction at a point, 1/sr.
   double pdf_importance(const Vec3<double>& point, const Vec3<double>& direction,
-                        std::size_t wavelength = 0) const noexcept;
+                        Wavelength wavelength = {}) const noexcept;
 
   /// Where the camera sees a scene point: its chief ray's film point and place in the picture.
-  Projection project(const Vec3<double>& point, std::size_t wavelength = 0) const noexcept;
+  Projection project(const Vec3<double>& point, Wavelength wavelength = {}) const noexcept;
 
  private:
   struct Data;

@@ -4,7 +4,7 @@
 #include <cstddef>
 
 #include "petzval/core/ray.hpp"
-#include "petzval/lens/ray_wavelengths.hpp"
+#include "petzval/lens/wavelength.hpp"
 #include "petzval/pupil/field_point.hpp"
 #include "petzval/trace/batch.hpp"
 
@@ -14,7 +14,7 @@ namespace petzval::inline v0 {
 struct CameraSample {
   FilmPoint film;
   double pupil_u = 0, pupil_v = 0;  ///< in the unit square; evenly over the model's own pupil of this film point
-  std::size_t wavelength = 0;       ///< position among the compiled ones
+  Wavelength wavelength = {};
 };
 
 /// A ray that leaves the lens towards the scene.

@@ -19,7 +19,7 @@ class PolynomialModel {
   template <class T>
   void to_scene(std::size_t count, const TwoPlaneRays<const T>& lines, const RayWavelengths& wavelengths,
                 const RayArrays<T>& rays, RayFate* fates) const noexcept {
-    polynomial_.to_scene<T>(count, lines, wavelengths, rays, fates);
+    polynomial_.to_scene<T>(count, lines, wavelengths.resolved(pupils_.primary_wavelength()), rays, fates);
   }
   /// One line with its derivatives.
   RayDerivatives to_scene(const LineDerivatives& line, std::size_t wavelength) const noexcept {
@@ -27,7 +27,7 @@ class PolynomialModel {
   }
   void to_film(std::size_t count, const RayArrays<const double>& rays, const RayWavelengths& wavelengths,
                const TwoPlaneRays<double>& lines, RayFate* fates) const noexcept {
-    polynomial_.to_film(count, rays, wavelengths, lines, fates);
+    polynomial_.to_film(count, rays, wavelengths.resolved(pupils_.primary_wavelength()), lines, fates);
   }
 
  private:

@@ -10,7 +10,7 @@
 
 #include "petzval/core/export.hpp"
 #include "petzval/core/ray.hpp"
-#include "petzval/lens/ray_wavelengths.hpp"
+#include "petzval/lens/wavelength.hpp"
 #include "petzval/pupil/film_pupil_table.hpp"
 #include "petzval/pupil/line_derivatives.hpp"
 #include "petzval/pupil/two_plane_rays.hpp"

@@ -24,9 +24,9 @@ PETZVAL_API void keep_on_film(std::size_t count, const Film& film, const T* film
 /// outside_film, those without a wavelength missed_surface, those without a pupil vignetted, and none of them a weight.
 /// scale: [wavelength].
 template <class T>
-PETZVAL_API void weigh(std::size_t count, const Film& film, const TwoPlanes& space, const CameraSamples<T>& samples,
-                       const TwoPlaneRays<const T>& lines, const T* areas, const double* scale,
-                       std::size_t known_wavelengths, RayFate* fates, const CameraRays<T>& rays) noexcept;
+PETZVAL_API void weigh(std::size_t count, const Film& film, const FilmPupilTable& pupils,
+                       const CameraSamples<T>& samples, const TwoPlaneRays<const T>& lines, const T* areas,
+                       const double* scale, RayFate* fates, const CameraRays<T>& rays) noexcept;
 
 /// Of a tilted film: keys of film points; upright film points of their lines through the pupil; a pinhole's samples
 /// (the upright film points of its rays, and places of the pupil); lines outside a model's pupils vignetted; weights
@@ -71,7 +71,7 @@ void sample_rays(const M& model, const Film& film, const double* scale, std::siz
     const CameraRays<T> rays = out.from(begin);
     RayFate* fates = rays.fates ? rays.fates : local_fates.data();
     model.to_scene(n, lines, some.wavelengths, rays.rays, fates);
-    camera_detail::weigh(n, film, pupils.space(), some, lines, areas.data(), scale, pupils.wavelengths(), fates, rays);
+    camera_detail::weigh(n, film, pupils, some, lines, areas.data(), scale, fates, rays);
   }
 }
 
@@ -114,7 +114,7 @@ void sample_rays(const M& model, const TiltedFilm& tilted, const double* scale, 
     } else if constexpr (!ends_at_rims<M>) {
       camera_detail::keep_within(n, pupils, lines, some.wavelengths, fates);
     }
-    camera_detail::weigh(n, flat, pupils.space(), some, lines, areas.data(), scale, pupils.wavelengths(), fates, rays);
+    camera_detail::weigh(n, flat, pupils, some, lines, areas.data(), scale, fates, rays);
     camera_detail::lean(n, tilted, key_x.data(), key_y.data(), x.data(), y.data(), fates, rays);
   }
 }

@@ -12,6 +12,7 @@
 #include "petzval/core/export.hpp"
 #include "petzval/core/ray.hpp"
 #include "petzval/lens/tables.hpp"
+#include "petzval/lens/wavelength.hpp"
 #include "petzval/media/catalogue.hpp"
 #include "petzval/prescription/prescription.hpp"
 
@@ -75,17 +76,25 @@ class PETZVAL_API Lens {
   /// The film, where the table puts it or `with_film` did.
   double film_z() const noexcept;
 
-  /// Wavelengths the lens was compiled for; everywhere else a wavelength is a position in this list.
+  /// Wavelengths the lens was compiled for.
   std::span<const double> wavelengths_nm() const noexcept;
-  /// Position of a compiled wavelength (within 1e-6 nm); throws Error with the list where it is not one.
-  std::size_t wavelength(double nm) const;
-  /// Position of the compiled wavelength nearest to the d line: the one that speaks for the lens, in whatever order
-  /// they stand.
+  /// Position of the wavelength at which every function works unless told otherwise: the reference wavelength of the
+  /// prescription where it was compiled (within 1e-6 nm), else the compiled one nearest to the d line. It does not
+  /// depend on the order of wavelengths.
   std::size_t primary_wavelength() const noexcept;
+  /// Position of a compiled wavelength (within 1e-6 nm); throws Error with the list if it was not compiled.
+  std::size_t wavelength(double nm) const;
+  /// Position of the compiled wavelength nearest to one in nm; throws Error if that is not finite.
+  std::size_t nearest_wavelength(double nm) const;
+  /// Position that a Wavelength stands for. A given position is not checked.
+  std::size_t position(Wavelength wavelength) const noexcept { return wavelength.position(primary_wavelength()); }
 
   /// Index of the medium before surface `space` (space 0 is object space, surface_count() is image space).
-  /// Throws Error for a space or a wavelength that the lens has not.
-  double index(std::size_t space, std::size_t wavelength) const;
+  /// Throws Error for a space or a wavelength that the lens does not have.
+  double index(std::size_t space, Wavelength wavelength = {}) const;
+  /// Direction along z of light from the scene in a space: +1, or -1 behind an odd number of mirrors. Throws Error for
+  /// a space that the lens does not have.
+  double light_direction(std::size_t space) const;
 
   Dispersion dispersion() const noexcept;
   /// Surfaces whose medium has no catalogue glass, in the words of a message each; empty where dispersion() is

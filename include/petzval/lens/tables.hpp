@@ -72,7 +72,8 @@ struct LensView {
   std::size_t count = 0;
   const R* vertex_z = nullptr;
   std::size_t wavelengths = 0;
-  std::int32_t stop = -1;  ///< where the iris stands, or -1
+  std::size_t primary = 0;  ///< position of the primary wavelength
+  std::int32_t stop = -1;   ///< where the iris stands, or -1
   SurfaceSequence<R> sequence_to_film{}, sequence_to_scene{};
 };
 

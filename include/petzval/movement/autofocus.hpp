@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "petzval/core/export.hpp"
-#include "petzval/core/vec3.hpp"
+#include "petzval/core/vec.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/movement/focus_target.hpp"
 #include "petzval/movement/image_rays.hpp"

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "petzval/core/export.hpp"
-#include "petzval/core/vec3.hpp"
+#include "petzval/core/vec.hpp"
 #include "petzval/movement/plane.hpp"
 #include "petzval/pupil/field_point.hpp"
 

@@ -5,8 +5,9 @@
 #include <optional>
 
 #include "petzval/core/export.hpp"
-#include "petzval/core/vec3.hpp"
+#include "petzval/core/vec.hpp"
 #include "petzval/lens/lens.hpp"
+#include "petzval/lens/wavelength.hpp"
 #include "petzval/movement/film_pose.hpp"
 #include "petzval/movement/plane.hpp"
 #include "petzval/paraxial/pupils.hpp"
@@ -61,10 +62,10 @@ PETZVAL_API IdealLens thin_lens(double focal_length, double f_number, double z =
 /// The thin lens in place of a real one: same focal lengths, all at the rear principal plane, which becomes the pupil
 /// too, as wide as the entrance pupil (as FocusCriterion::thin has it). Throws Error for an afocal lens, one that light
 /// leaves towards -z, and where pupils() does.
-PETZVAL_API IdealLens thin_lens(const Lens& lens, std::size_t wavelength = 0);
+PETZVAL_API IdealLens thin_lens(const Lens& lens, Wavelength wavelength = {});
 /// Cardinal points and paraxial pupils. Throws Error as thin_lens; for a lens with cylinders it is that of the main
 /// meridian.
-PETZVAL_API IdealLens thick_lens(const Lens& lens, std::size_t wavelength = 0);
+PETZVAL_API IdealLens thick_lens(const Lens& lens, Wavelength wavelength = {});
 
 /// Diameter of the blur of an image point on a film, across the axis where the chief ray meets the film: negative in
 /// front of the plane of focus (its image lies behind the film), positive beyond it. Infinite for a chief ray along the

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "petzval/core/export.hpp"
-#include "petzval/core/vec3.hpp"
+#include "petzval/core/vec.hpp"
 
 namespace petzval::inline v0 {
 

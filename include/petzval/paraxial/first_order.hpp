@@ -5,6 +5,7 @@
 
 #include "petzval/core/export.hpp"
 #include "petzval/lens/lens.hpp"
+#include "petzval/lens/wavelength.hpp"
 
 namespace petzval::inline v0 {
 
@@ -25,16 +26,16 @@ struct RayMatrix {
 enum class Meridian { y, x };
 
 /// Index of the medium before surface `space`, negative where light runs backwards, after an odd number of mirrors.
-PETZVAL_API double signed_index(const Lens& lens, std::size_t space, std::size_t wavelength = 0);
+PETZVAL_API double signed_index(const Lens& lens, std::size_t space, Wavelength wavelength = {});
 
 /// From the vertex of surface `first` (before refraction) to that of surface `last - 1` (after it); `last` beyond the
 /// end means the whole rest. Surfaces count by their curvature at the vertex: terms of order 2 add to it, cylinders
 /// have none along x or y.
-PETZVAL_API RayMatrix ray_matrix(const Lens& lens, std::size_t first, std::size_t last, std::size_t wavelength = 0,
+PETZVAL_API RayMatrix ray_matrix(const Lens& lens, std::size_t first, std::size_t last, Wavelength wavelength = {},
                                  Meridian meridian = Meridian::y);
 
 /// From the first vertex (before refraction) to the vertex of `surface`, before refraction there too.
-PETZVAL_API RayMatrix ray_matrix_to(const Lens& lens, std::size_t surface, std::size_t wavelength = 0,
+PETZVAL_API RayMatrix ray_matrix_to(const Lens& lens, std::size_t surface, Wavelength wavelength = {},
                                     Meridian meridian = Meridian::y);
 
 /// The first-order data of a lens: all z in the lens frame, lengths and distances signed, all in mm.
@@ -59,15 +60,15 @@ struct FirstOrder {
   double object_index = 1, image_index = 1;  ///< signed
 };
 
-PETZVAL_API FirstOrder first_order(const Lens& lens, std::size_t wavelength = 0, Meridian meridian = Meridian::y);
+PETZVAL_API FirstOrder first_order(const Lens& lens, Wavelength wavelength = {}, Meridian meridian = Meridian::y);
 
 /// The meridian that focal length, f-number and focus refer to: y, or x where a lens has power in x only.
-PETZVAL_API Meridian main_meridian(const Lens& lens, std::size_t wavelength = 0);
+PETZVAL_API Meridian main_meridian(const Lens& lens, Wavelength wavelength = {});
 
 /// Where the paraxial image of an axial point lies (lens frame, mm). object_z may be infinite; so may the result (+inf:
 /// an object within a few ulp of the front focal point, or a distant one before an afocal lens). Beyond 1e100 mm counts
 /// as infinite. Never NaN for an object_z that is not.
-PETZVAL_API double paraxial_image_z(const Lens& lens, double object_z, std::size_t wavelength = 0,
+PETZVAL_API double paraxial_image_z(const Lens& lens, double object_z, Wavelength wavelength = {},
                                     Meridian meridian = Meridian::y);
 
 /// Focal length of a single lens element of index n in air: 1/f = (n-1) (c1 - c2 + (n-1) t c1 c2 / n), in curvatures,

@@ -5,6 +5,7 @@
 
 #include "petzval/core/export.hpp"
 #include "petzval/lens/lens.hpp"
+#include "petzval/lens/wavelength.hpp"
 #include "petzval/paraxial/first_order.hpp"
 
 namespace petzval::inline v0 {
@@ -29,9 +30,9 @@ struct Pupils {
 PETZVAL_API bool has_pupils(const Lens& lens) noexcept;
 
 /// Throws Error where no surface is marked as stop and none limits the beam.
-PETZVAL_API Pupils pupils(const Lens& lens, std::size_t wavelength = 0, Meridian meridian = Meridian::y);
+PETZVAL_API Pupils pupils(const Lens& lens, Wavelength wavelength = {}, Meridian meridian = Meridian::y);
 
 /// |EFL| / entrance pupil diameter, in the main meridian. Infinite for an afocal lens or an empty pupil.
-PETZVAL_API double paraxial_f_number(const Lens& lens, std::size_t wavelength = 0);
+PETZVAL_API double paraxial_f_number(const Lens& lens, Wavelength wavelength = {});
 
 }  // namespace petzval::inline v0

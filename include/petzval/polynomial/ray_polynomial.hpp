@@ -4,13 +4,14 @@
 #include <array>
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "petzval/core/export.hpp"
 #include "petzval/core/ray.hpp"
 #include "petzval/lens/lens.hpp"
-#include "petzval/lens/ray_wavelengths.hpp"
+#include "petzval/lens/wavelength.hpp"
 #include "petzval/pupil/film_pupil_table.hpp"
 #include "petzval/pupil/line_derivatives.hpp"
 #include "petzval/pupil/two_plane_rays.hpp"
@@ -67,12 +68,16 @@ class PETZVAL_API RayPolynomial {
   /// that is not rotationally symmetric, pupils of other wavelengths, a film of one point, and where fewer rays get
   /// through than there are coefficients.
   static RayPolynomial fit(const Lens& lens, const FilmPupilTable& pupils, int degree);
-  /// From data; throws Error, naming what, where it is not consistent.
-  RayPolynomial(int degree, const Domain& domain, std::vector<Fit> fits);
+  /// From data; throws Error, naming what, where it is not consistent. primary_wavelength: position of the fit that is
+  /// used by default; unset, the one nearest to the d line.
+  RayPolynomial(int degree, const Domain& domain, std::vector<Fit> fits,
+                std::optional<std::size_t> primary_wavelength = {});
 
   int degree() const noexcept;
   const Domain& domain() const noexcept;
   const std::vector<Fit>& fits() const noexcept;
+  /// Position of the fit for the lens's primary wavelength, the default of all calls.
+  std::size_t primary_wavelength() const noexcept;
 
   /// Lines as rays towards the scene. Outside the domain, and of a wavelength without a fit: outside_fit, at the
   /// reference point along the axis. A ray depends on its own line alone, to the bit.
@@ -80,7 +85,7 @@ class PETZVAL_API RayPolynomial {
   void to_scene(std::size_t count, const TwoPlaneRays<const T>& lines, const RayWavelengths& wavelengths,
                 const RayArrays<T>& rays, RayFate* fates) const noexcept;
   /// One line with its derivatives, in double.
-  RayDerivatives to_scene(const LineDerivatives& line, std::size_t wavelength) const noexcept;
+  RayDerivatives to_scene(const LineDerivatives& line, Wavelength wavelength = {}) const noexcept;
   /// Rays from the scene, anywhere on their lines, as the lines that to_scene makes rays of, within 1e-9 mm, by
   /// Newton's iteration. outside_fit, and the axis, where none in the domain is found.
   void to_film(std::size_t count, const RayArrays<const double>& rays, const RayWavelengths& wavelengths,

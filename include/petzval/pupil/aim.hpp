@@ -9,6 +9,7 @@
 #include "petzval/core/export.hpp"
 #include "petzval/core/ray.hpp"
 #include "petzval/lens/lens.hpp"
+#include "petzval/lens/wavelength.hpp"
 #include "petzval/pupil/field_point.hpp"
 
 namespace petzval::inline v0 {
@@ -55,9 +56,9 @@ struct AimedRay {
 /// of it. Throws Error where PupilPlane does, where nothing limits the beam, and for a wavelength that was not
 /// compiled.
 PETZVAL_API AimedRay aim(const Lens& lens, const FieldPoint& point, const StopPoint& target,
-                         std::size_t wavelength = 0);
+                         Wavelength wavelength = {});
 
 /// The chief ray: aimed at the centre of the stop.
-PETZVAL_API AimedRay chief_ray(const Lens& lens, const FieldPoint& point, std::size_t wavelength = 0);
+PETZVAL_API AimedRay chief_ray(const Lens& lens, const FieldPoint& point, Wavelength wavelength = {});
 
 }  // namespace petzval::inline v0

@@ -10,8 +10,9 @@
 
 #include "petzval/core/export.hpp"
 #include "petzval/core/ray.hpp"
-#include "petzval/core/vec3.hpp"
+#include "petzval/core/vec.hpp"
 #include "petzval/lens/lens.hpp"
+#include "petzval/lens/wavelength.hpp"
 #include "petzval/pupil/film_pupil_table.hpp"
 #include "petzval/pupil/two_plane_rays.hpp"
 #include "petzval/trace/batch.hpp"
@@ -37,8 +38,8 @@ PETZVAL_API std::vector<std::vector<Ray<double>>> leaving_rays(const FilmPupilTa
 
 /// What decides where a pupil ends.
 enum class ClippedBy : std::uint8_t {
-  apertures,    ///< what rays do: lines tell of it only from within
-  samples  ///< the lines, as in models of a lens that have no rims
+  apertures,  ///< what rays do: lines tell of it only from within
+  samples     ///< the lines, as in models of a lens that have no rims
 };
 
 /// Which of N rays of the scene get through: passes[i] for each, at a wavelength.
@@ -66,13 +67,13 @@ class PETZVAL_API EntrancePupilTable {
 
   /// A line from a point (lens frame, mm) for u and v in [0, 1]. Nothing (pdf 0) for a point that is not in front of
   /// the lens or beyond all fields, numbers that are not finite, and wavelengths that are not in the map.
-  EntranceSample sample(const Vec3<double>& point, double u, double v, std::size_t wavelength = 0) const noexcept;
+  EntranceSample sample(const Vec3<double>& point, double u, double v, Wavelength wavelength = {}) const noexcept;
   /// The same for many of one point, sooner than one by one. u, v, samples: N each.
-  void sample(const Vec3<double>& point, std::size_t count, const double* u, const double* v, std::size_t wavelength,
+  void sample(const Vec3<double>& point, std::size_t count, const double* u, const double* v, Wavelength wavelength,
               EntranceSample* samples) const noexcept;
 
   /// The density with which `sample` gives a direction, 1/sr.
-  double pdf(const Vec3<double>& point, const Vec3<double>& direction, std::size_t wavelength = 0) const noexcept;
+  double pdf(const Vec3<double>& point, const Vec3<double>& direction, Wavelength wavelength = {}) const noexcept;
 
  private:
   struct Data;

@@ -5,6 +5,7 @@
 
 #include "petzval/core/export.hpp"
 #include "petzval/lens/lens.hpp"
+#include "petzval/lens/wavelength.hpp"
 
 namespace petzval::inline v0 {
 
@@ -12,12 +13,12 @@ namespace petzval::inline v0 {
 /// stop; the ray is traced through the front part alone, whatever clips it elsewhere. Where rays end before they get as
 /// high as the rim, y is the height of the last that reaches the stop. Infinite for an afocal lens or an empty stop, 0
 /// where nothing limits y. Throws Error where pupils() does.
-PETZVAL_API double real_f_number(const Lens& lens, std::size_t wavelength = 0);
+PETZVAL_API double real_f_number(const Lens& lens, Wavelength wavelength = {});
 
 /// The lens stopped down to an f-number (real_f_number, by exact rays): the stop gets the semi-diameter at which the
 /// axis-parallel ray of height |EFL| / (2 N) passes it, so that real_f_number gives N back within 1e-12. Throws Error
 /// for N <= 0 or not finite, an afocal lens, N faster (by more than 1e-9) than the lens can give, naming the fastest
 /// possible, and N so slow that the hole of an annular stop takes all of it, naming that of the hole.
-PETZVAL_API Lens with_f_number(const Lens& lens, double f_number, std::size_t wavelength = 0);
+PETZVAL_API Lens with_f_number(const Lens& lens, double f_number, Wavelength wavelength = {});
 
 }  // namespace petzval::inline v0

@@ -10,7 +10,7 @@
 
 #include "petzval/core/export.hpp"
 #include "petzval/lens/lens.hpp"
-#include "petzval/lens/ray_wavelengths.hpp"
+#include "petzval/lens/wavelength.hpp"
 #include "petzval/pupil/field_point.hpp"
 #include "petzval/pupil/two_plane_rays.hpp"
 
@@ -62,7 +62,7 @@ class PETZVAL_API FilmPupilTable {
 
   /// What lies within all of some discs (one list for each wavelength), as well as stars of the same area can have it.
   static FilmPupilTable of_discs(const TwoPlanes& space, std::span<const std::vector<PupilDisc>> discs,
-                                 double film_radius);
+                                 double film_radius, std::size_t primary_wavelength = 0);
 
   /// The pupils of a film that leans, by keys in place of film points: they contain every line that meets the film and
   /// is one of this map's (whose film_radius they must not exceed), and as few more as one pupil for each distance of
@@ -76,22 +76,24 @@ class PETZVAL_API FilmPupilTable {
   const TwoPlanes& space() const noexcept;
   double film_radius() const noexcept;
   std::size_t wavelengths() const noexcept;
+  /// Position of the lens's primary wavelength, the default of all calls.
+  std::size_t primary_wavelength() const noexcept;
 
   /// The pupil of a film point, evenly, for u and v in [0, 1] (clamped); u runs around the middle
   /// (from the lens's +y, so that samples of neighbouring points are neighbours), v outwards. Nothing
   /// for points outside the film's radius, numbers that are not finite and wavelengths that are not in the map.
-  PupilSample sample(const FilmPoint& film, double u, double v, std::size_t wavelength = 0) const noexcept;
+  PupilSample sample(const FilmPoint& film, double u, double v, Wavelength wavelength = {}) const noexcept;
   /// The same for many: film_x, film_y, u, v, x, y and areas: N each; x and y may be u and v. Float or double.
   template <class T>
   void sample(std::size_t count, const T* film_x, const T* film_y, const T* u, const T* v,
               const RayWavelengths& wavelengths, T* x, T* y, T* areas) const noexcept;
 
   /// Area of the pupil of a film point, mm^2; 0 as in `sample`.
-  double area(const FilmPoint& film, std::size_t wavelength = 0) const noexcept;
+  double area(const FilmPoint& film, Wavelength wavelength = {}) const noexcept;
   /// Its middle: where the star's rays begin; the centre of the hole where there is one.
-  std::array<double, 2> middle(const FilmPoint& film, std::size_t wavelength = 0) const noexcept;
+  std::array<double, 2> middle(const FilmPoint& film, Wavelength wavelength = {}) const noexcept;
   /// Whether a place in the plane of the pupil belongs to the pupil of a film point.
-  bool contains(const FilmPoint& film, double x, double y, std::size_t wavelength = 0) const noexcept;
+  bool contains(const FilmPoint& film, double x, double y, Wavelength wavelength = {}) const noexcept;
 
   /// The same for many lines: within: N, 0 or 1. Float or double.
   template <class T>
@@ -102,7 +104,7 @@ class PETZVAL_API FilmPupilTable {
   struct Motion {
     std::array<double, 2> by_film_x{0, 0}, by_film_y{0, 0};
   };
-  Motion motion(const FilmPoint& film, double u, double v, std::size_t wavelength = 0) const noexcept;
+  Motion motion(const FilmPoint& film, double u, double v, Wavelength wavelength = {}) const noexcept;
 
  private:
   struct Data;

@@ -8,6 +8,7 @@
 #include "petzval/core/export.hpp"
 #include "petzval/core/ray.hpp"
 #include "petzval/lens/lens.hpp"
+#include "petzval/lens/wavelength.hpp"
 #include "petzval/pupil/pupil_plane.hpp"
 
 namespace petzval::inline v0 {
@@ -59,11 +60,11 @@ struct PETZVAL_API PupilOutline {
 /// directions: 3 or more, or 1, which is enough on the axis of a lens of revolution; 256 give areas within 5e-4 (3e-3
 /// for crescents with tips as fine as needles).
 /// Throws Error where PupilPlane does, for a wavelength that was not compiled, and for other directions.
-PETZVAL_API PupilOutline pupil_outline(const Lens& lens, const FieldPoint& point, std::size_t wavelength = 0,
+PETZVAL_API PupilOutline pupil_outline(const Lens& lens, const FieldPoint& point, Wavelength wavelength = {},
                                        std::size_t directions = 256);
 
 /// The same for a point of the film: what of the lens it sees the scene through.
-PETZVAL_API PupilOutline exit_pupil_outline(const Lens& lens, const FilmPoint& point, std::size_t wavelength = 0,
+PETZVAL_API PupilOutline exit_pupil_outline(const Lens& lens, const FilmPoint& point, Wavelength wavelength = {},
                                             std::size_t directions = 256);
 
 }  // namespace petzval::inline v0

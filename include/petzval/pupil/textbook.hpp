@@ -6,6 +6,7 @@
 #include "petzval/core/export.hpp"
 #include "petzval/core/ray.hpp"
 #include "petzval/lens/lens.hpp"
+#include "petzval/lens/wavelength.hpp"
 
 namespace petzval::inline v0 {
 
@@ -38,9 +39,9 @@ struct TextbookPupil {
 /// of the bracket that nobody traced); rays count by their distance from the vertex, which an infinite conjugate has
 /// too; steps 6 to 8 are their limit, the paraxial matrices. Throws Error where pupils() does, for a wavelength that
 /// was not compiled, an object_z in the vertex or NaN, where the ray along the axis is lost, and where no ray is.
-PETZVAL_API TextbookPupil textbook_entrance_pupil(const Lens& lens, double object_z, std::size_t wavelength = 0);
+PETZVAL_API TextbookPupil textbook_entrance_pupil(const Lens& lens, double object_z, Wavelength wavelength = {});
 
 /// The exit pupil by the same method from the other side: rays from the axial point of a film, traced to the scene.
-PETZVAL_API TextbookPupil textbook_exit_pupil(const Lens& lens, double film_z, std::size_t wavelength = 0);
+PETZVAL_API TextbookPupil textbook_exit_pupil(const Lens& lens, double film_z, Wavelength wavelength = {});
 
 }  // namespace petzval::inline v0

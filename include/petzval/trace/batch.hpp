@@ -9,6 +9,7 @@
 #include "petzval/core/export.hpp"
 #include "petzval/core/ray.hpp"
 #include "petzval/lens/lens.hpp"
+#include "petzval/lens/wavelength.hpp"
 #include "petzval/trace/iris.hpp"
 
 namespace petzval::inline v0 {
@@ -34,10 +35,9 @@ PETZVAL_API std::span<const InstructionSet> instruction_sets() noexcept;
 /// How to trace a batch.
 struct BatchOptions {
   Travel travel = Travel::to_film;
-  std::size_t wavelength = 0;                  ///< position among the compiled ones
-  const std::uint16_t* wavelengths = nullptr;  ///< N, one for each ray, instead of `wavelength`
-  bool apertures = true;                       ///< whether clear apertures and the iris clip
-  Iris iris = {};                              ///< blades in the plane of the stop
+  RayWavelengths wavelengths = {};
+  bool apertures = true;  ///< whether clear apertures and the iris clip
+  Iris iris = {};         ///< blades in the plane of the stop
   Arithmetic arithmetic = Arithmetic::fast;
   InstructionSet instruction_set = InstructionSet::avx512;  ///< at most: the widest up to it that the processor has
 };

@@ -7,6 +7,7 @@
 #include "petzval/core/export.hpp"
 #include "petzval/core/ray.hpp"
 #include "petzval/lens/lens.hpp"
+#include "petzval/lens/wavelength.hpp"
 #include "petzval/trace/iris.hpp"
 
 namespace petzval::inline v0 {
@@ -14,9 +15,9 @@ namespace petzval::inline v0 {
 /// How to trace one ray.
 struct TraceOptions {
   Travel travel = Travel::to_film;
-  std::size_t wavelength = 0;  ///< position among the compiled ones
-  bool apertures = true;       ///< whether clear apertures and the iris clip
-  Iris iris = {};              ///< blades in the plane of the stop
+  Wavelength wavelength = {};
+  bool apertures = true;  ///< whether clear apertures and the iris clip
+  Iris iris = {};         ///< blades in the plane of the stop
 };
 
 /// Traces one ray (double or float) through the whole lens. Sequential: every surface in its order, in either
