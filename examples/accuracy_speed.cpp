@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "petzval/core/parallel.hpp"
 #include "petzval/core/text.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "support/cli.hpp"
@@ -70,7 +71,7 @@ int main(int argc, char** argv) {
     for (const double px : budgets_px) budgets.push_back({.max_px = px});
     const double nearest = nearest_mm(lens, options);
     const auto choices =
-        petzval::choose_models(lens, {.near_mm = nearest, .film = film}, budgets, examples::all_threads());
+        petzval::choose_models(lens, {.near_mm = nearest, .film = film}, budgets, petzval::processor_threads());
     const auto& table = choices.front().table;
     examples::say_what_is_missing(table);
     const auto rows = examples::model_rows(table, film, false);

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "petzval/core/error.hpp"
+#include "petzval/core/parallel.hpp"
 #include "petzval/core/text.hpp"
 #include "petzval/core/units.hpp"
 #include "petzval/pupil/f_number.hpp"
@@ -50,7 +51,7 @@ std::vector<Picture> render(const examples::LoadedLens& loaded, const Options& o
     auto scene = examples::focused_scene(lens, focus, setup);
     auto image = petzval::point_image(
         scene.lens, scene.light,
-        {.samples = options.samples, .pixels = picture_pixels, .threads = examples::worker_threads()});
+        {.samples = options.samples, .pixels = picture_pixels, .threads = petzval::processor_threads()});
     pictures.push_back({focus, std::move(scene), std::move(image)});
   }
   return pictures;
@@ -76,7 +77,7 @@ examples::Sheet contact_sheet(const std::vector<Picture>& pictures, const exampl
                                             {.samples = options.samples,
                                              .pixels = tile_pixels,
                                              .half_width_mm = half_width,
-                                             .threads = examples::worker_threads()});
+                                             .threads = petzval::processor_threads()});
     row.tiles.push_back(examples::bokeh_tile(p.focus_mm, image));
   }
   return {"Bokeh of a point light", {std::move(row)}, examples::bokeh_notes()};

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "petzval/camera/choose_model.hpp"
+#include "petzval/core/parallel.hpp"
 #include "petzval/core/text.hpp"
 #include "support/cli.hpp"
 #include "support/files.hpp"
@@ -36,7 +37,7 @@ double verified_max_px(const petzval::Lens& lens, const Options& options, petzva
   const petzval::ErrorSamples samples{.depths_z = depths,
                                       .film_points = 512,
                                       .seed = static_cast<std::uint32_t>(random()),
-                                      .threads = examples::all_threads()};
+                                      .threads = petzval::processor_threads()};
   return petzval::model_error(lens, options.film(), model, samples).all.max_px;
 }
 
@@ -68,7 +69,7 @@ int main(int argc, char** argv) {
     const petzval::Lens lens = examples::focused_lens(options);
     const petzval::ModelChoice choice = petzval::choose_model(
         lens, {.near_mm = options.near_mm, .far_mm = options.far_mm, .film = film},
-        {.max_px = options.budget_px, .exposure = 0.01, .pupil_shape = 0.02}, examples::all_threads());
+        {.max_px = options.budget_px, .exposure = 0.01, .pupil_shape = 0.02}, petzval::processor_threads());
     examples::say_what_is_missing(choice.table);
     const auto rows = examples::model_rows(choice.table, film, true);
     const double predicted = std::ranges::find(choice.table, choice.model, &petzval::ModelCandidate::model)->bound_px;

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "petzval/core/error.hpp"
+#include "petzval/core/parallel.hpp"
 #include "petzval/core/text.hpp"
 #include "petzval/core/units.hpp"
 #include "petzval/figure/tilt_figure.hpp"
@@ -307,7 +308,7 @@ std::vector<petzval::Rgb8Image> blur_pictures(const Result& result) {
   if (result.lens.exact) rays = result.lens.bundles({}, rays_of_map);
   std::vector<examples::BlurMap> maps;
   for (const auto& picture : pictures) {
-    maps.push_back(examples::blur_map(picture, scene, ideal, rays ? &*rays : nullptr, examples::worker_threads()));
+    maps.push_back(examples::blur_map(picture, scene, ideal, rays ? &*rays : nullptr, petzval::processor_threads()));
   }
 
   examples::BlurSheet sheet{.scale_mm = examples::scale_of(maps), .sharp_mm = sharp_mm(result.lens.frame)};

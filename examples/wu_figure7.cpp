@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "petzval/core/parallel.hpp"
 #include "petzval/core/text.hpp"
 #include "petzval/core/units.hpp"
 #include "petzval/media/catalogue.hpp"
@@ -39,7 +40,7 @@ examples::SheetRow sheet_row(const examples::WuRow& wu, const examples::BokehSet
                                             {.samples = samples,
                                              .pixels = tile_pixels,
                                              .half_width_mm = half_width,
-                                             .threads = examples::worker_threads()});
+                                             .threads = petzval::processor_threads()});
     row.tiles.push_back(examples::bokeh_tile(examples::wu_focus_mm[i], image));
   }
   return row;

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <thread>
 
 #include "petzval/core/error.hpp"
 #include "petzval/core/text.hpp"
@@ -96,7 +95,5 @@ std::vector<std::string> bokeh_notes() {
       "White: the 99th percentile of its lit pixels, as a share of the light that the entrance pupil takes in, per mm² "
       "of film."};
 }
-
-int worker_threads() { return static_cast<int>(std::max(1u, std::thread::hardware_concurrency())); }
 
 }  // namespace examples

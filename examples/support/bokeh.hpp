@@ -55,7 +55,4 @@ Tile bokeh_tile(double focus_mm, const petzval::PointImage& image);
 /// What the lines below a tile mean.
 std::vector<std::string> bokeh_notes();
 
-/// Threads for the tracing; the pictures do not depend on it.
-int worker_threads();
-
 }  // namespace examples

@@ -7,7 +7,6 @@
 #include <iomanip>
 #include <iostream>
 #include <sstream>
-#include <thread>
 #include <utility>
 
 #include "load_lens.hpp"
@@ -139,7 +138,5 @@ void say_what_is_missing(std::span<const petzval::ModelCandidate> table) {
     if (!rung.available) std::cerr << "note: no " << petzval::name(rung.model) << ": " << rung.remark << '\n';
   }
 }
-
-int all_threads() { return std::max(1, static_cast<int>(std::thread::hardware_concurrency())); }
 
 }  // namespace examples

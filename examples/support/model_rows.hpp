@@ -49,7 +49,4 @@ std::string bullets(std::span<const std::string> lines);
 /// Says on standard error which rungs could not be built.
 void say_what_is_missing(std::span<const petzval::ModelCandidate> table);
 
-/// As many threads as the machine has.
-int all_threads();
-
 }  // namespace examples

@@ -2,10 +2,10 @@
 #include "petzval/camera/camera.hpp"
 
 #include <array>
-#include <numbers>
 
 #include "camera_data.hpp"
 #include "check_film.hpp"
+#include "core/low_discrepancy.hpp"
 #include "petzval/camera/sample_rays.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/text.hpp"
@@ -53,8 +53,8 @@ double on_axis(const auto& model, const auto& film, std::size_t wavelength) {
   const std::vector<double> zero(count, 0);
   std::vector<double> u, v;
   for (std::size_t i = 0; i < count; ++i) {
-    u.push_back(std::fmod(static_cast<double>(i) * std::numbers::phi, 1.0));
-    v.push_back((static_cast<double>(i) + 0.5) / count);
+    const auto [at_u, at_v] = core_detail::fibonacci_point(i, count);
+    u.push_back(at_u), v.push_back(at_v);
   }
   std::array<std::vector<double>, 7> out;
   for (auto& values : out) values.resize(count);

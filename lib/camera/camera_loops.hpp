@@ -4,10 +4,10 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "core/widest.hpp"
 #include "petzval/camera/camera_ray.hpp"
 #include "petzval/camera/film.hpp"
 #include "petzval/pupil/two_plane_rays.hpp"
-#include "petzval/trace/widest.hpp"
 
 namespace petzval::inline v0::camera_detail {
 

@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "core/meet_plane.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/units.hpp"
 #include "petzval/paraxial/first_order.hpp"
@@ -75,8 +76,7 @@ bool SceneView::meets(const Ray<double>& ray) const noexcept {
 }
 
 std::array<double, 2> SceneView::hit(const Ray<double>& ray) const noexcept {
-  const Vec3<double> from = ray.origin - centre_;
-  const Vec3<double> place = from - ray.direction * (glm::dot(from, normal_) / glm::dot(ray.direction, normal_));
+  const Vec3<double> place = core_detail::meet_plane(ray, centre_, normal_) - centre_;
   const double x = glm::dot(place, x_axis_), y = glm::dot(place, y_axis_);
   return {to_film_[0] * x + to_film_[1] * y, to_film_[2] * x + to_film_[3] * y};
 }

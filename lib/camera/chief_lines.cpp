@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 #include <utility>
 
+#include "core/meet_plane.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/paraxial/pupils.hpp"
 #include "petzval/pupil/two_plane_rays.hpp"
@@ -50,8 +51,9 @@ class FromStop {
         lens_.view<double>(), kernel::to_kernel(Vec3<double>{0, 0, lens_.surfaces()[stop_].vertex_z}),
         kernel::to_kernel(direction), {.wavelength = wavelength_, .apertures = false, .first = stop_ + 1});
     if (end.fate != RayFate::transmitted || end.direction.z == 0) return {};
-    const double height = section_.of(end.origin), per_z = section_.of(end.direction) / end.direction.z;
-    const Heights h{height + per_z * (space_.film_z - end.origin.z), height + per_z * (space_.pupil_z - end.origin.z)};
+    const Ray<double> ray{kernel::to_public(end.origin), kernel::to_public(end.direction)};
+    const Heights h{section_.of(core_detail::meet_plane(ray, space_.film_z)),
+                    section_.of(core_detail::meet_plane(ray, space_.pupil_z))};
     return h.film < 0 ? Heights{-h.film, -h.pupil} : h;
   }
 

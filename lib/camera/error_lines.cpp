@@ -4,20 +4,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/low_discrepancy.hpp"
 #include "petzval/core/bisect.hpp"
 
 namespace petzval::inline v0::camera_detail {
 namespace {
 
-/// Steele, Lea and Flood's splitmix64: neighbouring seeds give starts that have nothing to do with each other.
-std::uint64_t mixed(std::uint64_t x) noexcept {
-  x += 0x9e3779b97f4a7c15u;
-  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
-  x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
-  return x ^ (x >> 31);
-}
-
-double unit(std::uint64_t bits) noexcept { return static_cast<double>(bits >> 11) * 0x1p-53; }
+using core_detail::Kronecker;
 
 /// From [0, 1] to [-1, 1], gathered at both ends.
 double to_the_ends(double t) noexcept {
@@ -32,14 +25,6 @@ double towards_zero(double x) noexcept {
 }
 
 }  // namespace
-
-EvenPoints::EvenPoints(std::uint64_t seed) noexcept : u_(unit(mixed(2 * seed))), v_(unit(mixed(2 * seed + 1))) {}
-
-std::array<double, 2> EvenPoints::operator[](std::size_t index) const noexcept {
-  constexpr double plastic = 1.32471795724474602596;  // x^3 = x + 1
-  const double i = static_cast<double>(index), u = u_ + i / plastic, v = v_ + i / (plastic * plastic);
-  return {u - std::floor(u), v - std::floor(v)};
-}
 
 double lit_radius(const ExactModel<double>& exact, const Film& film, std::size_t wavelength) {
   const double farthest = film.radius_mm();
@@ -63,7 +48,7 @@ double lit_radius(const ExactModel<double>& exact, const Film& film, std::size_t
 
 FilmPoint error_film_point(const Film& film, std::size_t index, std::uint32_t seed, double lit_radius) noexcept {
   const std::size_t kind = index % 8, turn = index / 8;
-  auto [x, y] = EvenPoints(2ull * seed + (is_even(index) ? 0 : 1))[index / 2];
+  auto [x, y] = Kronecker<2>(2ull * seed + (is_even(index) ? 0 : 1))(index / 2);
   if (is_even(index)) {
     x = 2 * x - 1, y = 2 * y - 1;
   } else if (kind == 1) {
@@ -95,10 +80,10 @@ std::vector<FilmPoint> pupil_film_points(const Lens& lens, const Film& film, std
                corner_y = farthest(film.centre_y_mm, film.height_mm / 2);
   const double corner = std::hypot(corner_x, corner_y), part = std::min(lit_radius / corner, 1.0);
   const double far_x = part * corner_x, far_y = part * corner_y;
-  const EvenPoints chance(2ull * seed);
+  const Kronecker<2> chance(2ull * seed);
   for (std::size_t k = 0; k < count; ++k) {
     const bool end = k == 0 || k + 1 == count;
-    const double step = static_cast<double>(k) + (end ? 0 : chance[k][0] - 0.5);
+    const double step = static_cast<double>(k) + (end ? 0 : chance(k)[0] - 0.5);
     const double even = step / static_cast<double>(std::max<std::size_t>(count - 1, 1));
     // Where the light ends on the film, pupils shrink fast.
     const double t = part < 1 ? 1 - (1 - even) * (1 - even) * (1 - even) : even;
@@ -130,9 +115,9 @@ PointLines error_lines(const FilmPoint& film, const ExactModel<double>& exact, s
                           x.data(), y.data(), areas.data());
     for (std::size_t i = 0; i < count; ++i) lines.put(first + i, x[i], y[i]);
   };
-  const EvenPoints even(2 * seed), rims(2 * seed + 1);
+  const Kronecker<2> even(2 * seed), rims(2 * seed + 1);
   for (std::size_t i = 0; i < count; ++i) {
-    const auto point = even[i];
+    const auto point = even(i);
     u[i] = point[0], v[i] = point[1];
   }
   put(0);
@@ -142,7 +127,7 @@ PointLines error_lines(const FilmPoint& film, const ExactModel<double>& exact, s
   std::array<double, count> passing, beyond, chance;
   passing.fill(0.5);
   for (std::size_t i = 0; i < count; ++i) {
-    const auto point = rims[i];
+    const auto point = rims(i);
     u[i] = point[0], chance[i] = point[1];
     v[i] = beyond[i] = i % 4 == 3 ? 0 : 1;
   }

@@ -22,17 +22,6 @@ inline constexpr std::size_t lines_per_point = 128, even_lines = 64;
 /// rays traced in float, whose errors are noise; against the blur, which has sharp minima over the film.
 inline constexpr double smooth_guard = 1.04, noise_guard = 1.5, blur_guard = 1.15;
 
-/// Points of the unit square that fill it evenly, whatever of them is taken from the first on: multiples of irrational
-/// steps (Roberts' generalised golden ratio), from a start that `seed` chooses.
-class EvenPoints {
- public:
-  explicit EvenPoints(std::uint64_t seed) noexcept;
-  std::array<double, 2> operator[](std::size_t index) const noexcept;
-
- private:
-  double u_, v_;
-};
-
 /// Film points darker than this part of the brightest have no errors worth the name.
 inline constexpr double darkest = 0.01;
 

@@ -7,6 +7,7 @@
 #include <type_traits>
 
 #include "camera_loops.hpp"
+#include "core/meet_plane.hpp"
 #include "petzval/trace/batch.hpp"
 #include "petzval/trace/trace.hpp"
 
@@ -97,17 +98,17 @@ void ExactModel<R>::to_film(std::size_t count, const RayArrays<const double>& ra
     }
     trace_in_place<R>(lens_, Travel::to_film, n, own.arrays(), wavelengths.from(begin), fates + begin);
     for (std::size_t i = 0; i < n; ++i) {
-      const double x = own.v[0][i], y = own.v[1][i], z = own.v[2][i];
-      const double per_z = 1 / static_cast<double>(own.v[5][i]);
-      const double slope_x = own.v[3][i] * per_z, slope_y = own.v[4][i] * per_z;
+      const Ray<double> ray{{own.v[0][i], own.v[1][i], own.v[2][i]}, {own.v[3][i], own.v[4][i], own.v[5][i]}};
+      const auto line = core_detail::slope_ray(ray);
+      const auto on_film = line.moved(space.film_z - ray.origin.z), in_pupil = line.moved(space.pupil_z - ray.origin.z);
       RayFate& fate = fates[begin + i];
-      if (fate == RayFate::transmitted && !std::isfinite(per_z)) fate = RayFate::missed_surface;
+      const bool met = std::isfinite(on_film.x + on_film.y + in_pupil.x + in_pupil.y);
+      if (fate == RayFate::transmitted && !met) fate = RayFate::missed_surface;
       const bool arrives = fate == RayFate::transmitted;
-      const auto at = [&](double from, double slope, double plane) { return arrives ? from + slope * (plane - z) : 0; };
-      lines.film_x[begin + i] = at(x, slope_x, space.film_z);
-      lines.film_y[begin + i] = at(y, slope_y, space.film_z);
-      lines.pupil_x[begin + i] = at(x, slope_x, space.pupil_z);
-      lines.pupil_y[begin + i] = at(y, slope_y, space.pupil_z);
+      lines.film_x[begin + i] = arrives ? on_film.x : 0;
+      lines.film_y[begin + i] = arrives ? on_film.y : 0;
+      lines.pupil_x[begin + i] = arrives ? in_pupil.x : 0;
+      lines.pupil_y[begin + i] = arrives ? in_pupil.y : 0;
     }
   }
 }

@@ -7,6 +7,8 @@
 #include <type_traits>
 #include <vector>
 
+#include "core/meet_plane.hpp"
+#include "core/widest.hpp"
 #include "paraxial_loops.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/text.hpp"
@@ -14,7 +16,6 @@
 #include "petzval/paraxial/pupils.hpp"
 #include "petzval/pupil/film_pupil_table.hpp"
 #include "petzval/pupil/pupil_polygon.hpp"
-#include "petzval/trace/widest.hpp"
 #include "two_disc_fit.hpp"
 
 namespace petzval::inline v0 {
@@ -178,8 +179,7 @@ void ParaxialModel::to_film(std::size_t count, const RayArrays<const double>& ra
                             const TwoPlaneRays<double>& lines, RayFate* fates) const noexcept {
   constexpr double reach = 1e12;
   for (std::size_t i = 0; i < count; ++i) {
-    const double slope_x = rays.dx[i] / rays.dz[i], slope_y = rays.dy[i] / rays.dz[i], away = z_ - rays.z[i];
-    const double x = rays.x[i] + slope_x * away, y = rays.y[i] + slope_y * away;
+    const auto [x, y, slope_x, slope_y] = core_detail::slope_ray(core_detail::ray_at(rays, i), z_);
     const std::size_t wavelength = wavelengths.position(i, pupils_.primary_wavelength());
     const bool good = wavelength < to_film_.size() && rays.dz[i] > 0 &&
                       std::abs(x) + std::abs(y) + std::abs(slope_x) + std::abs(slope_y) <= reach;

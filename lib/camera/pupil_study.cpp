@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/low_discrepancy.hpp"
 #include "error_study.hpp"
 #include "petzval/core/parallel.hpp"
 
@@ -14,15 +15,15 @@ constexpr std::size_t blocks = 64;  // of lines for each pupil
 
 /// Calls use(block, lines) for blocks of lines spread evenly over a pupil, and gives its area.
 template <class Use>
-double for_lines(const ModelPupils& pupils, const FilmPoint& film, std::size_t wavelength, const EvenPoints& even,
-                 Use use) {
+double for_lines(const ModelPupils& pupils, const FilmPoint& film, std::size_t wavelength,
+                 const core_detail::Kronecker<2>& even, Use use) {
   const FilmPoint of = pupils.of.value_or(film);
   std::array<double, lines_per_point> film_x, film_y, u, v, areas;
   film_x.fill(of.x), film_y.fill(of.y);
   PointLines lines(film);
   for (std::size_t b = 0; b < blocks; ++b) {
     for (std::size_t i = 0; i < lines_per_point; ++i) {
-      const auto [at_u, at_v] = even[b * lines_per_point + i];
+      const auto [at_u, at_v] = even(b * lines_per_point + i);
       u[i] = at_u, v[i] = at_v;
     }
     pupils.map.sample(lines_per_point, film_x.data(), film_y.data(), u.data(), v.data(), {.all = wavelength}, u.data(),
@@ -35,8 +36,8 @@ double for_lines(const ModelPupils& pupils, const FilmPoint& film, std::size_t w
 
 constexpr double total = blocks * lines_per_point;
 
-EvenPoints even_points(const ErrorSamples& samples, std::size_t place) noexcept {
-  return EvenPoints((std::uint64_t{samples.seed} << 32 | place) + 0x5bd1e995);
+core_detail::Kronecker<2> even_points(const ErrorSamples& samples, std::size_t place) noexcept {
+  return core_detail::Kronecker<2>((std::uint64_t{samples.seed} << 32 | place) + 0x5bd1e995);
 }
 
 }  // namespace
@@ -87,7 +88,7 @@ PupilStudy::PupilStudy(const ExactModel<double>& exact, const Film& film, std::s
 }
 
 PupilStudy::Errors PupilStudy::errors_of(const Point& point, const ModelPupils& model, std::size_t wavelength) const {
-  const EvenPoints even = even_points(samples_, point.place);
+  const core_detail::Kronecker<2> even = even_points(samples_, point.place);
   PointRays exact, rays;
   double exact_alone = 0, model_alone = 0, irradiance = 0;
   const double exact_area =

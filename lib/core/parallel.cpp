@@ -14,6 +14,8 @@
 
 namespace petzval::inline v0 {
 
+int processor_threads() noexcept { return std::max(1, static_cast<int>(std::thread::hardware_concurrency())); }
+
 void parallel_for(std::size_t count, std::size_t block, int threads,
                   const std::function<void(std::size_t, std::size_t)>& work) {
   if (block == 0) throw Error("parallel_for: block is 0, wanted 1 or more");

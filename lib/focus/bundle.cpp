@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/meet_plane.hpp"
 #include "petzval/core/bisect.hpp"
 #include "petzval/core/quadrature.hpp"
 #include "petzval/paraxial/first_order.hpp"
@@ -85,9 +86,8 @@ class Bundle {
   void add_line(const TracedRay<double>& end, double weight) {
     const auto& [ray, fate, surface] = end;
     if (fate != RayFate::transmitted || !(ray.direction.z * sense_ > 0)) return;
-    const double u = ray.direction.x / ray.direction.z, v = ray.direction.y / ray.direction.z;
-    const double to_plane = plane_z_ - ray.origin.z;
-    lines.push_back({ray.origin.x + to_plane * u, ray.origin.y + to_plane * v, u, v, weight});
+    const auto [x, y, slope_x, slope_y] = core_detail::slope_ray(ray, plane_z_);
+    lines.push_back({x, y, slope_x, slope_y, weight});
   }
 
   /// The corners of a pupil, where one rim takes over from another, lie farther out than the edges beside them: found

@@ -8,6 +8,8 @@
 #include <numbers>
 #include <string>
 
+#include "core/low_discrepancy.hpp"
+#include "core/meet_plane.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/pupil/entrance_pupil_table.hpp"
 #include "petzval/pupil/film_pupil_table.hpp"
@@ -41,13 +43,13 @@ std::optional<BundleBlur> blur_on(const RayBundle& bundle, const FilmPose& film)
   if (count == 0) return {};
   const Vec3<double> right = film.right(), up = film.up(), normal = film.normal();
   const double to_film = film.film_z - bundle.plane_z;
-  // A ray meets the film where normal . (p - (0, 0, film_z)) = 0; p from there.
   const auto rise = [&](std::size_t i) {
     return normal.x * bundle.slope_x[i] + normal.y * bundle.slope_y[i] + normal.z;
   };
+  // From the film's point on the axis.
   const auto hit = [&](std::size_t i) {
-    const double t = (normal.z * to_film - normal.x * bundle.x[i] - normal.y * bundle.y[i]) / rise(i);
-    return Vec3<double>{bundle.x[i] + t * bundle.slope_x[i], bundle.y[i] + t * bundle.slope_y[i], t - to_film};
+    const Ray<double> ray{{bundle.x[i], bundle.y[i], -to_film}, {bundle.slope_x[i], bundle.slope_y[i], 1}};
+    return core_detail::meet_plane(ray, {0, 0, 0}, normal);
   };
   const bool ahead = rise(0) > 0;
   Vec3<double> middle{0, 0, 0};
@@ -90,11 +92,10 @@ struct ImageRays::Data {
 };
 
 RayBundle ImageRays::Data::send(const Vec3<double>& point, std::size_t count) const {
-  // Fibonacci's lattice: with u around the pupil and v outwards the spiral of a sunflower.
   std::vector<double> u(count), v(count);
   for (std::size_t i = 0; i < count; ++i) {
-    u[i] = std::fmod(static_cast<double>(i) * std::numbers::phi, 1.0);
-    v[i] = (static_cast<double>(i) + 0.5) / static_cast<double>(count);
+    const auto [around, outwards] = core_detail::fibonacci_point(i, count);
+    u[i] = around, v[i] = outwards;
   }
   const std::size_t wavelength = lens.primary_wavelength();
   std::vector<EntranceSample> samples(count);
@@ -119,12 +120,9 @@ RayBundle ImageRays::Data::send(const Vec3<double>& point, std::size_t count) co
   for (auto* values : {&result.x, &result.y, &result.slope_x, &result.slope_y}) values->reserve(sent);
   for (std::size_t i = 0; i < sent; ++i) {
     if (fates[i] != RayFate::transmitted || !(rays.dz[i] > 0)) continue;
-    const double slope_x = rays.dx[i] / rays.dz[i], slope_y = rays.dy[i] / rays.dz[i];
-    const double to_plane = result.plane_z - rays.z[i];
-    result.x.push_back(rays.x[i] + to_plane * slope_x);
-    result.y.push_back(rays.y[i] + to_plane * slope_y);
-    result.slope_x.push_back(slope_x);
-    result.slope_y.push_back(slope_y);
+    const auto [x, y, slope_x, slope_y] = core_detail::slope_ray(core_detail::ray_at(rays, i), result.plane_z);
+    result.x.push_back(x), result.y.push_back(y);
+    result.slope_x.push_back(slope_x), result.slope_y.push_back(slope_y);
   }
   return result;
 }

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/low_discrepancy.hpp"
 #include "least_squares.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/paraxial/pupils.hpp"
@@ -36,21 +37,18 @@ MeridianLines lines_of(const FilmPupilTable& pupils, std::size_t wavelength, con
   return lines;
 }
 
-/// Lines spread over film and pupils. The points of an additive recurrence by the powers of the root of g^4 = g + 1
-/// fill three dimensions evenly from any `first` on. Evenly by area, or more densely towards the edges of film and
-/// pupil, as the nodes of Chebyshev are: that takes some tenths from the largest errors, and adds one to the RMS.
+/// Uniform lines over film and pupils, from any `first` on. Uniform by area, or denser towards the edges of film and
+/// pupil, as Chebyshev nodes are: that takes some tenths from the largest errors, and adds one to the RMS.
 MeridianLines spread(const FilmPupilTable& pupils, std::size_t wavelength, std::size_t first, std::size_t count,
                      bool dense) {
-  constexpr double g = 1.2207440846057596, quarter = std::numbers::pi / 2;
+  constexpr double quarter = std::numbers::pi / 2;
+  const core_detail::Kronecker<3> points;
   std::vector<double> heights(count), u(count), v(count);
   for (std::size_t i = 0; i < count; ++i) {
-    const auto part = [&](double step) {
-      const double x = (static_cast<double>(first + i) + 0.5) * step;
-      return x - std::floor(x);
-    };
-    const double a = part(1 / g), b = part(1 / (g * g * g)), edge = std::sin(quarter * b);
+    const auto [a, around, b] = points(first + i);
+    const double edge = std::sin(quarter * b);
     heights[i] = pupils.film_radius() * (dense ? std::sin(quarter * a) : std::sqrt(a));
-    u[i] = part(1 / (g * g));
+    u[i] = around;
     v[i] = dense ? edge * edge : b;
   }
   return lines_of(pupils, wavelength, heights, u, v);

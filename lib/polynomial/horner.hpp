@@ -4,13 +4,13 @@
 // several instruction sets (lib/README.md).
 #pragma once
 
+#include "core/simd.hpp"
+
 namespace petzval::inline v0::polynomial_detail {
 namespace {
 
 /// Coefficients of the terms u^i v^j w^k, i + j + k <= n.
 constexpr int term_count(int n) { return (n + 1) * (n + 2) * (n + 3) / 6; }
-
-#define PETZVAL_INLINE inline __attribute__((always_inline))
 
 /// c[0] + c[1] u + ... + c[n] u^n.
 template <int n, class R, class T>

@@ -5,10 +5,10 @@
 #include <array>
 #include <cstddef>
 
+#include "core/widest.hpp"
 #include "petzval/core/ray.hpp"
 #include "petzval/lens/wavelength.hpp"
 #include "petzval/pupil/two_plane_rays.hpp"
-#include "petzval/trace/widest.hpp"
 
 namespace petzval::inline v0::polynomial_detail {
 

@@ -4,41 +4,20 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "core/simd.hpp"
 #include "horner.hpp"
 #include "loops.hpp"
 
 namespace petzval::inline v0::polynomial_detail {
 namespace {
 
-#if defined(__AVX512F__)
-constexpr std::size_t lane_bytes = 64;
-#elif defined(__AVX2__)
-constexpr std::size_t lane_bytes = 32;
-#else
-constexpr std::size_t lane_bytes = 16;
-#endif
-
-template <class R>
-struct Vector;
-template <>
-struct Vector<float> {
-  using Values = float __attribute__((vector_size(lane_bytes)));
-  using Bit = std::int32_t;
-  using Bits = Bit __attribute__((vector_size(lane_bytes)));
-  using Bytes = std::uint8_t __attribute__((vector_size(lane_bytes / sizeof(float))));
-};
-template <>
-struct Vector<double> {
-  using Values = double __attribute__((vector_size(lane_bytes)));
-  using Bit = std::int64_t;
-  using Bits = Bit __attribute__((vector_size(lane_bytes)));
-  using Bytes = std::uint8_t __attribute__((vector_size(lane_bytes / sizeof(double))));
-};
+using core_detail::lane_count;
+using core_detail::Native;
 
 /// A, B, C and D of some lanes.
 template <class R>
 struct Sums {
-  typename Vector<R>::Values a{}, b{}, by_film{}, by_pupil{};
+  typename Native<R>::Values a{}, b{}, by_film{}, by_pupil{};
 };
 
 /// The sums at one wavelength.
@@ -54,9 +33,9 @@ PETZVAL_INLINE Sums<R> sums(const R* c, const Values& u, const Values& v, const 
 template <int n, class R, class Values>
 PETZVAL_INLINE Sums<R> mixed_sums(const ToSceneJob<R>& job, const std::uint16_t* each, std::size_t count,
                                   const Values& u, const Values& v, const Values& w,
-                                  typename Vector<R>::Bits& known) noexcept {
-  using Bit = typename Vector<R>::Bit;
-  constexpr std::size_t lanes = lane_bytes / sizeof(R);
+                                  typename Native<R>::Bits& known) noexcept {
+  using Bit = typename Native<R>::Bit;
+  constexpr std::size_t lanes = lane_count<R>;
   constexpr Bit none = 1 << 16;
   const Bit fits = job.fits < none ? static_cast<Bit>(job.fits) : none;
   Bit own[lanes];
@@ -66,7 +45,7 @@ PETZVAL_INLINE Sums<R> mixed_sums(const ToSceneJob<R>& job, const std::uint16_t*
     for (std::size_t l = 0; l < lanes; ++l) smallest = own[l] > last && own[l] < smallest ? own[l] : smallest;
     return smallest;
   };
-  typename Vector<R>::Bits owns;
+  typename Native<R>::Bits owns;
   __builtin_memcpy(&owns, own, sizeof owns);
   known = owns < fits;
   Sums<R> result;
@@ -84,7 +63,7 @@ PETZVAL_INLINE Sums<R> mixed_sums(const ToSceneJob<R>& job, const std::uint16_t*
 /// `count` rays, at most as many as there are lanes.
 template <int n, class R>
 PETZVAL_INLINE void map_lanes(const ToSceneJob<R>& job, std::size_t o, std::size_t count) noexcept {
-  using Values = typename Vector<R>::Values;
+  using Values = typename Native<R>::Values;
   const auto load = [&](const R* from) {
     Values v{};
     __builtin_memcpy(&v, from + o, count * sizeof(R));
@@ -96,11 +75,11 @@ PETZVAL_INLINE void map_lanes(const ToSceneJob<R>& job, std::size_t o, std::size
   const Values px = (load(job.lines.pupil_x) - scales.pupil_shift * film_x) * scales.per_pupil_radius;
   const Values py = (load(job.lines.pupil_y) - scales.pupil_shift * film_y) * scales.per_pupil_radius;
   const Values u = fx * fx + fy * fy, v = fx * px + fy * py, w = px * px + py * py;
-  typename Vector<R>::Bits inside = (u <= static_cast<R>(within_domain)) & (w <= static_cast<R>(within_domain));
+  typename Native<R>::Bits inside = (u <= static_cast<R>(within_domain)) & (w <= static_cast<R>(within_domain));
 
   Sums<R> polynomials;
   if (job.wavelengths.each) {
-    typename Vector<R>::Bits known;
+    typename Native<R>::Bits known;
     polynomials = mixed_sums<n, R>(job, job.wavelengths.each + o, count, u, v, w, known);
     inside &= known;
   } else if (const std::size_t all = job.wavelengths.all.position(job.primary); all < job.fits) {
@@ -130,13 +109,13 @@ PETZVAL_INLINE void map_lanes(const ToSceneJob<R>& job, std::size_t o, std::size
 
   static_assert(sizeof(RayFate) == 1 && static_cast<int>(RayFate::transmitted) == 0);
   const auto fates =
-      __builtin_convertvector(~inside & static_cast<int>(RayFate::outside_fit), typename Vector<R>::Bytes);
+      __builtin_convertvector(~inside & static_cast<int>(RayFate::outside_fit), typename Native<R>::Bytes);
   __builtin_memcpy(job.fates + o, &fates, count);
 }
 
 template <int n, class R>
 void to_scene(const ToSceneJob<R>& job) noexcept {
-  constexpr std::size_t lanes = lane_bytes / sizeof(R);
+  constexpr std::size_t lanes = lane_count<R>;
   std::size_t o = 0;
   for (; o + lanes <= job.count; o += lanes) map_lanes<n>(job, o, lanes);
   if (o < job.count) map_lanes<n>(job, o, job.count - o);

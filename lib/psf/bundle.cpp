@@ -10,7 +10,7 @@
 #include "film.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/parallel.hpp"
-#include "petzval/psf/sobol.hpp"
+#include "petzval/core/sobol.hpp"
 
 namespace petzval::inline v0 {
 namespace {

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <optional>
 
+#include "core/meet_plane.hpp"
 #include "petzval/core/scalar.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/trace/batch.hpp"
@@ -31,11 +32,9 @@ class Film {
   explicit Film(const Lens& lens) : z_(lens.film_z()), sense_(lens.light_direction(lens.surface_count())) {}
 
   std::optional<std::array<double, 2>> meet(const Ray<double>& ray) const noexcept {
-    const auto& [origin, direction] = ray;
-    const double t = (z_ - origin.z) / direction.z;
-    const double x = origin.x + t * direction.x, y = origin.y + t * direction.y;
-    if (!counts(x, y, direction.z)) return {};
-    return std::array{x, y};
+    const Vec3<double> hit = core_detail::meet_plane(ray, z_);
+    if (!counts(hit.x, hit.y, ray.direction.z)) return {};
+    return std::array{hit.x, hit.y};
   }
 
   /// Where the transmitted ones of `count` rays meet the film, side by side in their order; returns how many do.
@@ -43,9 +42,8 @@ class Film {
   std::size_t meet(std::size_t count, const RayBlock& rays, double* x, double* y) const noexcept {
     std::array<double, RayBlock::size> all_x, all_y;
     for (std::size_t i = 0; i < count; ++i) {
-      const double t = (z_ - rays.z[i]) / rays.dz[i];
-      all_x[i] = rays.x[i] + t * rays.dx[i];
-      all_y[i] = rays.y[i] + t * rays.dy[i];
+      const Vec3<double> hit = core_detail::meet_plane(core_detail::ray_at(rays.arrays(), i), z_);
+      all_x[i] = hit.x, all_y[i] = hit.y;
     }
     // A place is written for every ray and kept for those that arrive: few are lost, but none can foretell which.
     std::size_t kept = 0;

@@ -10,6 +10,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/meet_plane.hpp"
 #include "face.hpp"
 #include "petzval/lens/sag.hpp"
 #include "petzval/paraxial/pupils.hpp"
@@ -167,8 +168,7 @@ struct EntrancePupilTable::Data {
   /// Where its line passes the plane across the line to that place.
   static std::array<double, 2> place_in(const View& view, const Vec3<double>& from_centre,
                                         const Vec3<double>& direction) noexcept {
-    const Vec3<double> place =
-        from_centre - direction * (glm::dot(from_centre, view.towards) / glm::dot(direction, view.towards));
+    const Vec3<double> place = core_detail::meet_plane({from_centre, direction}, {0, 0, 0}, view.towards);
     return {glm::dot(place, view.x_axis), glm::dot(place, view.y_axis)};
   }
   double widest_of(const std::vector<Ray<double>>& lines, double reciprocal_radius) const noexcept {

@@ -4,9 +4,9 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "core/widest.hpp"
 #include "petzval/lens/wavelength.hpp"
 #include "petzval/pupil/pupil_polygon.hpp"
-#include "petzval/trace/widest.hpp"
 
 namespace petzval::inline v0::pupil_detail {
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/meet_plane.hpp"
 #include "petzval/core/quadrature.hpp"
 #include "petzval/pupil/aim.hpp"
 #include "petzval/pupil/outline.hpp"
@@ -38,10 +39,8 @@ std::optional<double> relative_illumination(const Lens& lens, const FieldPoint& 
   const double axis = film_irradiance(lens, {}, wavelength);
   const AimedRay chief = chief_ray(lens, point, wavelength);
   if (axis == 0 || !chief || !chief.end.transmitted()) return {};
-  const Ray<double>& ray = chief.end.ray;
-  const double t = (lens.film_z() - ray.origin.z) / ray.direction.z;
-  const FilmPoint image{ray.origin.x + t * ray.direction.x, ray.origin.y + t * ray.direction.y};
-  return film_irradiance(lens, image, wavelength) / axis;
+  const Vec3<double> image = core_detail::meet_plane(chief.end.ray, lens.film_z());
+  return film_irradiance(lens, {image.x, image.y}, wavelength) / axis;
 }
 
 }  // namespace petzval::inline v0

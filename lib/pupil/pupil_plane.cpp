@@ -7,6 +7,7 @@
 #include <numbers>
 #include <string>
 
+#include "core/meet_plane.hpp"
 #include "face.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/text.hpp"
@@ -129,8 +130,7 @@ void PupilPlane::rays(std::span<const double> x, std::span<const double> y,
 }
 
 std::array<double, 2> PupilPlane::meet(const Ray<double>& ray) const noexcept {
-  const double t = glm::dot(centre_ - ray.origin, normal_) / glm::dot(ray.direction, normal_);
-  const Vec3<double> place = ray.origin + ray.direction * t - centre_;
+  const Vec3<double> place = core_detail::meet_plane(ray, centre_, normal_) - centre_;
   return {glm::dot(place, x_axis_), glm::dot(place, y_axis_)};
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/low_discrepancy.hpp"
 #include "petzval/core/bisect.hpp"
 #include "petzval/pupil/entrance_pupil_table.hpp"
 
@@ -32,7 +33,8 @@ SpreadLines spread_lines(const FilmPupilTable& pupils, bool azimuths_alike, std:
     lines.film_x.push_back(film.x), lines.film_y.push_back(film.y);
     lines.pupil_x.push_back(s.x), lines.pupil_y.push_back(s.y);
   };
-  int turns = 0;
+  const core_detail::Kronecker<3> points;
+  std::size_t index = 0;
   for (int i = 0; i <= radii; ++i) {
     // Closer where the light ends.
     const double radius = last * (1 - std::pow(1 - static_cast<double>(i) / radii, 1.5));
@@ -42,10 +44,10 @@ SpreadLines spread_lines(const FilmPupilTable& pupils, bool azimuths_alike, std:
       }
       continue;
     }
-    // The pupil is that of all points, and of much of it nothing gets through: everywhere, by irrational steps.
-    for (int k = 0; k < 16 * around; ++k, ++turns) {
-      add(radius, 2 * std::numbers::pi * turns * std::numbers::phi, std::fmod(turns * std::numbers::sqrt2, 1.0),
-          std::fmod(turns * std::numbers::sqrt3, 1.0));
+    // The pupil is that of all points, and much of it passes nothing: uniform samples of all of it.
+    for (int k = 0; k < 16 * around; ++k, ++index) {
+      const auto [turn, u, v] = points(index);
+      add(radius, 2 * std::numbers::pi * turn, u, v);
     }
   }
   return lines;

@@ -6,6 +6,7 @@
 #include <limits>
 #include <string>
 
+#include "core/meet_plane.hpp"
 #include "petzval/core/bisect.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/text.hpp"
@@ -55,9 +56,8 @@ class AxialFan {
   /// Where the ray crosses the axis-normal plane at z.
   double height_at(double p, double z) const noexcept {
     if (std::isinf(z)) return infinity;
-    const Ray<double> r = ray(p);
-    const double slope = (along_y_ ? r.direction.y : r.direction.x) / r.direction.z;
-    return (along_y_ ? r.origin.y : r.origin.x) + slope * (z - r.origin.z);
+    const Vec3<double> hit = core_detail::meet_plane(ray(p), z);
+    return along_y_ ? hit.y : hit.x;
   }
 
   bool at_vertex() const noexcept { return distance_ == 0; }

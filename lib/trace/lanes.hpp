@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// As many rays side by side as a register holds: numbers and masks of the seam in core/scalar.hpp, on the vectors of
-// the compiler. (Google Highway would bring its own: the one in Debian 12 has no SSE2 and no approximate root of
-// doubles.)
-//
-// Included by the sources of one instruction set each, in a namespace without a name: what two of them have under one
-// name must never meet in the linker. For the same reason they call no function of another library.
+// As many rays side by side as a register holds: numbers and masks of the seam in core/scalar.hpp. Included, like
+// core/simd.hpp, by the sources of one instruction set each.
 #pragma once
 
 #include <cstdint>
@@ -13,33 +9,12 @@
 #include <immintrin.h>
 #endif
 
+#include "core/simd.hpp"
+
 namespace petzval::inline v0::trace_detail {
 namespace {
 
-#if defined(__AVX512F__)
-inline constexpr int lane_bytes = 64;
-#elif defined(__AVX2__)
-inline constexpr int lane_bytes = 32;
-#else
-inline constexpr int lane_bytes = 16;
-#endif
-
-template <class R>
-struct Native;
-template <>
-struct Native<float> {
-  using Values = float __attribute__((vector_size(lane_bytes)));
-  using Bit = std::int32_t;
-  using Bits = std::int32_t __attribute__((vector_size(lane_bytes)));
-};
-template <>
-struct Native<double> {
-  using Values = double __attribute__((vector_size(lane_bytes)));
-  using Bit = std::int64_t;
-  using Bits = std::int64_t __attribute__((vector_size(lane_bytes)));
-};
-
-#define PETZVAL_INLINE inline __attribute__((always_inline))
+using core_detail::Native;
 
 /// 64 or 32 rays go together, enough to hide the latency of a root behind the others.
 template <class R>
@@ -66,7 +41,7 @@ template <class R>
 struct Lanes {
   using Scalar = R;
   using Values = typename Native<R>::Values;
-  static constexpr int width = lane_bytes / static_cast<int>(sizeof(R));
+  static constexpr int width = core_detail::lane_count<R>;
   Values v;
 
   Lanes() = default;

@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <cstring>
 
+#include "core/simd.hpp"
+
 namespace petzval::inline v0::trace_detail {
 namespace {
 
@@ -14,8 +16,6 @@ struct Native {
   using Bit = std::int32_t;
   using Bits = std::int32_t;
 };
-
-#define PETZVAL_INLINE inline __attribute__((always_inline))
 
 template <class R>
 inline constexpr int rays_in_bundle = 1;

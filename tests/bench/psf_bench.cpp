@@ -11,10 +11,10 @@
 #include <string>
 #include <vector>
 
+#include "petzval/core/sobol.hpp"
 #include "petzval/io/prescription_json.hpp"
 #include "petzval/psf/histogram.hpp"
 #include "petzval/psf/psf.hpp"
-#include "petzval/psf/sobol.hpp"
 #include "petzval/trace/batch.hpp"
 #include "table.hpp"
 

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "petzval/core/sobol.hpp"
 #include "petzval/core/units.hpp"
 #include "petzval/io/prescription_json.hpp"
-#include "petzval/psf/sobol.hpp"
 #include "petzval/pupil/aim.hpp"
 #include "petzval/pupil/outline.hpp"
 #include "petzval/pupil/pupil_sampler.hpp"

@@ -15,9 +15,9 @@
 #include <vector>
 
 #include "../data_lenses.hpp"
-#include "../kronecker.hpp"
 #include "../message.hpp"
 #include "camera_samples.hpp"
+#include "core/low_discrepancy.hpp"
 #include "leaning_films.hpp"
 #include "petzval/camera/sample_rays.hpp"
 #include "petzval/core/error.hpp"
@@ -127,7 +127,7 @@ TEST(Camera, HasItsFilmWhereItIsShiftedTo) {
 
 TEST(Camera, HasItsEdgesOnTheFilm) {
   const Lens lens = focused("double_gauss_100mm_f2.0");
-  const testing::Kronecker<4> random(1);
+  const core_detail::Kronecker<4> random(1);
   for (std::uint32_t i = 0; i < 40; ++i) {
     const auto [a, b, c, d] = random(i);
     const Film film{.width_mm = 5 + 20 * a, .height_mm = 5 + 15 * b, .centre_x_mm = 9 * c, .centre_y_mm = -9 * d};

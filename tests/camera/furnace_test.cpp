@@ -13,9 +13,9 @@
 #include "../data_lenses.hpp"
 #include "camera_samples.hpp"
 #include "petzval/camera/model_error.hpp"
+#include "petzval/core/sobol.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/paraxial/pupils.hpp"
-#include "petzval/psf/sobol.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "petzval/pupil/illumination.hpp"
 

@@ -12,7 +12,7 @@
 #include <string>
 
 #include "../data_lenses.hpp"
-#include "../kronecker.hpp"
+#include "core/low_discrepancy.hpp"
 #include "petzval/camera/camera.hpp"
 #include "petzval/paraxial/pupils.hpp"
 
@@ -45,7 +45,7 @@ class Importances : public ::testing::TestWithParam<Case> {};
 TEST_P(Importances, OfACameraRayAreItsOwnSampleTurnedRound) {
   const auto& [id, f, model, near] = GetParam();
   const Camera camera(testing::data_lens(id), f, {.model = model});
-  const testing::Kronecker<5> random(3);
+  const core_detail::Kronecker<5> random(3);
   int seen = 0, at_edges = 0;
   for (std::uint32_t i = 0; i < 4000; ++i) {
     const auto x = random(i);
@@ -76,7 +76,7 @@ TEST_P(Importances, OfACameraRayAreItsOwnSampleTurnedRound) {
 TEST_P(Importances, OfWhatTheCameraSeesAreConnected) {
   const auto& [id, f, model, near] = GetParam();
   const Camera camera(testing::data_lens(id), f, {.model = model});
-  const testing::Kronecker<5> random(4);
+  const core_detail::Kronecker<5> random(4);
   std::uint32_t seen = 0, missed = 0;
   for (std::uint32_t i = 0; i < 20000; ++i) {
     const auto x = random(i);
@@ -121,7 +121,7 @@ TEST(Importance, OfAPinholeIsThatOfTheThickLensInOnePoint) {
   for (const Vec3<double> point : {Vec3<double>{0, 0, -3000}, Vec3<double>{200, -150, -2500}}) {
     ASSERT_TRUE(pinhole.sample_importance(point, 0.3, 0.7));
     double one = 0, all = 0;
-    const testing::Kronecker<2> random(5);
+    const core_detail::Kronecker<2> random(5);
     constexpr std::uint32_t draws = 1 << 14;
     for (std::uint32_t i = 0; i < draws; ++i) {
       const auto [u, v] = random(i);
@@ -177,7 +177,7 @@ TEST(Importance, IsConnectedToAFilmThatIsDarkOnTheAxis) {
                       {.thickness = 1, .semi_diameter = 40, .inner_semi_diameter = 12}};
   const Camera camera(compile(singlet), film, {.model = ModelKind::exact_double});
   EXPECT_EQ(camera.pupils().area({}), 0);
-  const testing::Kronecker<5> random(5);
+  const core_detail::Kronecker<5> random(5);
   int seen = 0, missed = 0;
   for (std::uint32_t i = 0; i < 2000; ++i) {
     const CameraRay r = camera.sample(sample_at(film, random(i)));

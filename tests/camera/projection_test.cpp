@@ -10,7 +10,7 @@
 #include <string>
 
 #include "../data_lenses.hpp"
-#include "../kronecker.hpp"
+#include "core/low_discrepancy.hpp"
 #include "petzval/camera/camera.hpp"
 #include "petzval/movement/film_pose.hpp"
 #include "petzval/paraxial/pupils.hpp"
@@ -43,7 +43,7 @@ TEST_P(Projections, AreWhereChiefRaysMeetTheFilm) {
   const auto& [id, film, widest] = GetParam();
   const Lens lens = testing::data_lens(id);
   const double pupil_z = pupils(lens).entrance.z;
-  const testing::Kronecker<3> random(6);
+  const core_detail::Kronecker<3> random(6);
   for (const ModelKind model : {ModelKind::exact_double, ModelKind::exact_float}) {
     const Camera camera(lens, film, {.model = model});
     const double near = (model == ModelKind::exact_double ? 2e-5 : 1e-4) * film.radius_mm();
@@ -125,7 +125,7 @@ TEST(Projection, FindsPointsThroughCylinders) {
     ASSERT_TRUE(p) << x << ' ' << y << ' ' << name(p.status);
     // Connections spread about it, those through the middle of the pupil closest.
     double sum_x = 0, sum_y = 0, weight = 0;
-    const testing::Kronecker<2> random(7);
+    const core_detail::Kronecker<2> random(7);
     for (std::uint32_t i = 0; i < 20000; ++i) {
       const auto [u, v] = random(i);
       const ImportanceSample s = camera.sample_importance(point, u, v);
@@ -145,7 +145,7 @@ TEST(Projection, IsWhereChiefRaysMeetATiltedFilm) {
   const FilmPose pose{lens.film_z(), leaning.tilt_rad, leaning.swing_rad};
   const Camera camera(lens, leaning, {.model = ModelKind::exact_double});
   const double pupil_z = pupils(lens).entrance.z;
-  const testing::Kronecker<3> random(6);
+  const core_detail::Kronecker<3> random(6);
   int converged = 0;
   for (std::uint32_t i = 0; i < 300; ++i) {
     const auto [a, b, c] = random(i);

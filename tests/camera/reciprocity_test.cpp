@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "../data_lenses.hpp"
-#include "../kronecker.hpp"
+#include "core/low_discrepancy.hpp"
 #include "petzval/camera/camera.hpp"
 
 namespace petzval {
@@ -52,7 +52,7 @@ struct SceneSide {
 SceneSide from_light(const Camera& camera, const Light& light) {
   SceneSide result;
   result.irradiance = estimate([&](std::uint32_t replicate) {
-    const testing::Kronecker<4> random(2 * replicate);
+    const core_detail::Kronecker<4> random(2 * replicate);
     double sum = 0;
     for (std::uint32_t i = 0; i < samples; ++i) {
       const auto [a, b, u, v] = random(i);
@@ -79,7 +79,7 @@ Estimate from_film(const Camera& camera, const Light& light, const SceneSide& sc
   for (auto& values : v) values.resize(count);
   const auto at = [&](std::size_t k) { return v[k].data(); };
   return estimate([&](std::uint32_t replicate) {
-    const testing::Kronecker<4> random(2 * replicate + 1);
+    const core_detail::Kronecker<4> random(2 * replicate + 1);
     for (std::uint32_t i = 0; i < count; ++i) {
       const auto [a, b, p, q] = random(i);
       v[0][i] = left + a * width, v[1][i] = bottom + b * height;

@@ -17,9 +17,9 @@
 #include "camera_samples.hpp"
 #include "leaning_films.hpp"
 #include "petzval/camera/camera.hpp"
+#include "petzval/core/sobol.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/paraxial/pupils.hpp"
-#include "petzval/psf/sobol.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "petzval/trace/batch.hpp"
 

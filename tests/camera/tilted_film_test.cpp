@@ -12,9 +12,9 @@
 #include <vector>
 
 #include "../data_lenses.hpp"
-#include "../kronecker.hpp"
 #include "../message.hpp"
 #include "camera_samples.hpp"
+#include "core/low_discrepancy.hpp"
 #include "leaning_films.hpp"
 #include "petzval/camera/camera.hpp"
 #include "petzval/camera/sample_rays.hpp"
@@ -40,7 +40,7 @@ TEST(TiltedFilm, IsAnUprightOneWhereItHardlyLeans) {
   for (const ModelKind model : models()) {
     const Camera upright(lens, shifted, {.model = model});
     const Camera tilted(lens, leaning(shifted, 1e-9, -1e-9), {.model = model});
-    const testing::Kronecker<2> random(3);
+    const core_detail::Kronecker<2> random(3);
     for (const FilmPoint& film : {FilmPoint{0, 0}, FilmPoint{-20.5, 17.5}, FilmPoint{14, -5}}) {
       double weights[2] = {0, 0}, area[2] = {0, 0};
       constexpr std::uint32_t count = 4096;
@@ -76,7 +76,7 @@ TEST(TiltedFilm, TellsLinesAsSpaceDoes) {
   const FilmPupilTable pupils = FilmPupilTable::enclosing(lens, upright_radius(lens, film, ModelKind::exact_double));
   const TiltedFilm tilted(film, pupils);
   const FilmPose pose = pose_of(lens, film);
-  const testing::Kronecker<4> random(8);
+  const core_detail::Kronecker<4> random(8);
   for (std::uint32_t i = 0; i < 200; ++i) {
     const auto [a, b, c, d] = random(i);
     const FilmPoint point = film.point(a * film.columns, b * film.rows), key = tilted.key(point);

@@ -119,6 +119,8 @@ TEST(ParallelFor, LetsTheFirstExceptionOut) {
   }
 }
 
+TEST(ProcessorThreads, AreAtLeastOne) { EXPECT_GE(processor_threads(), 1); }
+
 TEST(ParallelFor, RefusesWhatMakesNoSense) {
   const auto message = [](std::size_t block, int threads) -> std::string {
     try {

@@ -10,8 +10,8 @@
 
 #include "../data_lenses.hpp"
 #include "petzval/core/error.hpp"
+#include "petzval/core/sobol.hpp"
 #include "petzval/core/units.hpp"
-#include "petzval/psf/sobol.hpp"
 #include "petzval/trace/trace.hpp"
 
 namespace petzval {

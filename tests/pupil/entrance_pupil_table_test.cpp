@@ -13,10 +13,10 @@
 #include <vector>
 
 #include "../data_lenses.hpp"
-#include "../kronecker.hpp"
+#include "core/low_discrepancy.hpp"
+#include "petzval/core/sobol.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/paraxial/pupils.hpp"
-#include "petzval/psf/sobol.hpp"
 #include "petzval/pupil/film_pupil_table.hpp"
 #include "petzval/pupil/outline.hpp"
 #include "petzval/trace/trace.hpp"
@@ -67,7 +67,7 @@ struct Count {
 };
 
 Count count_missed(const Seen& s, std::uint32_t lines) {
-  const testing::Kronecker<5> random(1);
+  const core_detail::Kronecker<5> random(1);
   Count count;
   for (std::uint32_t i = 0; i < lines; ++i) {
     const auto [a, b, u, v, e] = random(i);

@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "../data_lenses.hpp"
+#include "petzval/core/sobol.hpp"
 #include "petzval/paraxial/pupils.hpp"
-#include "petzval/psf/sobol.hpp"
 #include "petzval/pupil/outline.hpp"
 #include "petzval/trace/trace.hpp"
 

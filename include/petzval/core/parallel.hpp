@@ -8,6 +8,9 @@
 
 namespace petzval::inline v0 {
 
+/// How many threads the processor runs at once, at least 1: what a program may give to functions that take `threads`.
+PETZVAL_API int processor_threads() noexcept;
+
 /// Does `work(begin, end)` for the blocks [0, block), [block, 2 block), ... of `count` things, the last one shorter, on
 /// `threads` threads (the calling one among them), and returns when all are done.
 ///

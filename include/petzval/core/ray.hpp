@@ -17,6 +17,17 @@ struct Ray {
   Vec3<T> direction{0, 0, 1};  ///< unit length
 };
 
+/// Rays as a structure of arrays: N values each, lens frame, unit directions.
+template <class T>
+struct RayArrays {
+  T* x = nullptr;
+  T* y = nullptr;
+  T* z = nullptr;
+  T* dx = nullptr;
+  T* dy = nullptr;
+  T* dz = nullptr;
+};
+
 /// Which way a ray goes through the lens. It decides the order of surfaces and indices and the root of each
 /// intersection; the sign of the ray's own z component does not (a fisheye takes rays that run towards -z).
 enum class Travel : std::uint8_t { to_film, to_scene };

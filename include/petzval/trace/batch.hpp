@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "petzval/core/export.hpp"
+#include "petzval/core/instruction_set.hpp"
 #include "petzval/core/ray.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/lens/wavelength.hpp"
@@ -21,16 +22,8 @@ enum class Arithmetic : std::uint8_t {
   reproducible,  ///< IEEE operations only: the same bits from every instruction set and compiler
 };
 
-/// What the processor offers to the loops over rays. On processors other than x86-64 there is only `baseline`.
-enum class InstructionSet : std::uint8_t { baseline, avx2, avx512 };
-
 /// "fast" or "reproducible".
 PETZVAL_API std::string_view name(Arithmetic arithmetic) noexcept;
-/// "baseline", "avx2" or "avx512".
-PETZVAL_API std::string_view name(InstructionSet set) noexcept;
-
-/// Those of this processor, narrowest first.
-PETZVAL_API std::span<const InstructionSet> instruction_sets() noexcept;
 
 /// How to trace a batch.
 struct BatchOptions {
@@ -40,17 +33,6 @@ struct BatchOptions {
   Iris iris = {};         ///< blades in the plane of the stop
   Arithmetic arithmetic = Arithmetic::fast;
   InstructionSet instruction_set = InstructionSet::avx512;  ///< at most: the widest up to it that the processor has
-};
-
-/// Rays as a structure of arrays: N values each, lens frame, unit directions.
-template <class T>
-struct RayArrays {
-  T* x = nullptr;
-  T* y = nullptr;
-  T* z = nullptr;
-  T* dx = nullptr;
-  T* dy = nullptr;
-  T* dz = nullptr;
 };
 
 /// Traces N rays (double or float) through the whole lens, in blocks of 64 on the lanes of the processor.

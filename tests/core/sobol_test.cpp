@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/psf/sobol.hpp"
+#include "petzval/core/sobol.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/psf/sobol.hpp"
+#include "petzval/core/sobol.hpp"
 
-#include "petzval/trace/batch.hpp"
+#include "low_discrepancy.hpp"
+#include "petzval/core/instruction_set.hpp"
 
 namespace petzval::inline v0 {
 namespace {
+
+using core_detail::mixed;
 
 /// The bits of x in the opposite order. Nibbles are turned between pairs of bytes and pairs of those: side by side the
 /// last two are taken for one instruction that lanes of a baseline processor do not have.
@@ -28,14 +31,6 @@ constexpr std::uint32_t pascal(std::uint32_t x) noexcept {
   x ^= (x >> 4) & 0x0f0f0f0fu;
   x ^= (x >> 8) & 0x00ff00ffu;
   return x ^ (x >> 16);
-}
-
-/// A hash of all bits to all bits (the finaliser of splitmix64), for keys.
-constexpr std::uint64_t mixed(std::uint64_t x) noexcept {
-  x += 0x9e3779b97f4a7c15u;
-  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
-  x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
-  return x ^ (x >> 31);
 }
 
 /// Owen's scrambling of digits that start at the lowest bit: each bit is flipped or not by a hash of the bits below it.

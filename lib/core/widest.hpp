@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "petzval/trace/batch.hpp"
+#include "petzval/core/instruction_set.hpp"
 
-/// The loops of a file that was compiled for every instruction set (petzval_loops in cmake/module.cmake): those for the
-/// widest that this processor has. Type, name: of the constants that the objects define in petzval::detail.
+/// PETZVAL_WIDEST(Type, name) defines name(): the loops of a file that petzval_loops (cmake/module.cmake) compiles for
+/// every instruction set, those of the widest set of this processor. Type, name: of the constants that the objects
+/// define, in the namespace where the macro stands.
 #if defined(__x86_64__)
 #define PETZVAL_WIDEST(Type, name)                               \
   extern const Type name##_baseline, name##_avx2, name##_avx512; \
@@ -22,7 +23,7 @@
   inline const Type& name() noexcept { return name##_baseline; }
 #endif
 
-/// Before a loop: what it writes is nothing that it reads in another turn, so that it can run on lanes.
+/// Stands before a loop in which no iteration reads what another one writes, so that the compiler may run it on lanes.
 #if defined(__clang__)
 #define PETZVAL_INDEPENDENT _Pragma("clang loop vectorize(assume_safety)")
 #else

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+#include "petzval/core/export.hpp"
+
+namespace petzval::inline v0 {
+
+/// The vector instructions that a processor offers to loops over rays. Processors other than x86-64 have `baseline`
+/// only.
+enum class InstructionSet : std::uint8_t { baseline, avx2, avx512 };
+
+/// "baseline", "avx2" or "avx512".
+PETZVAL_API std::string_view name(InstructionSet set) noexcept;
+
+/// The sets of this processor, narrowest first.
+PETZVAL_API std::span<const InstructionSet> instruction_sets() noexcept;
+
+}  // namespace petzval::inline v0
