@@ -18,10 +18,11 @@
 #include "petzval/focus/focus.hpp"
 #include "petzval/media/catalogue.hpp"
 #include "petzval/paraxial/first_order.hpp"
+#include "petzval/paraxial/pupils.hpp"
 #include "petzval/psf/psf.hpp"
 #include "petzval/pupil/aim.hpp"
-#include "petzval/pupil/illumination.hpp"
 #include "petzval/pupil/f_number.hpp"
+#include "petzval/pupil/illumination.hpp"
 
 namespace petzval {
 namespace {
@@ -89,7 +90,7 @@ std::optional<Numbers> camera_numbers(const Lens& lens) {
   const Vec3<double> point{100, 50, -3000};
   const Projection seen = camera->project(point);
   const ImportanceSample towards = camera->sample_importance(point, 0.3, 0.6);
-  found.insert(found.end(), {seen.film.x, seen.film.y, towards.weight, towards.direction.x,
+  found.insert(found.end(), {seen.film.x, seen.film.y, towards.importance.we, towards.direction.x,
                              camera->pdf_importance(point, towards.direction), camera->pupils().area({0.5, 0.5})});
   return found;
 }
@@ -164,7 +165,9 @@ TEST(WavelengthOrder, ChangesNothingThatALensSays) {
       const std::string where = whole.name() + ", primary at " + std::to_string(whole.primary_wavelength());
       EXPECT_EQ(bits(numbers), bits(*wanted)) << where;
       ASSERT_EQ(rays.has_value(), wanted_rays.has_value()) << where;
-      if (rays) EXPECT_EQ(bits(*rays), bits(*wanted_rays)) << where;
+      if (rays) {
+        EXPECT_EQ(bits(*rays), bits(*wanted_rays)) << where;
+      }
       EXPECT_EQ(seen.area, wanted_picture->area) << where;
       EXPECT_EQ(seen.transmitted, wanted_picture->transmitted) << where;
       EXPECT_EQ(seen.entrance_area, wanted_picture->entrance_area) << where;
