@@ -44,7 +44,7 @@ struct Options : examples::MovementOptions {
 
 struct Frame {
   double time = 0;
-  petzval::FilmPose film = {};
+  petzval::Film film = {};
   double distance_mm = infinity, rms_um = none, breathing = none;
   std::size_t targets = 0;
   std::string status = {};
@@ -69,7 +69,8 @@ Times span_of(const std::vector<petzval::FocusPoint>& points) {
 class Pull {
  public:
   Pull(const Options& options, const examples::MovingLens& lens, const std::vector<petzval::FocusPoint>& points)
-      : options_(options), lens_(lens), points_(points), film_{.film_z = lens.ideal.rear_focal_z} {
+      : options_(options), lens_(lens), points_(points), film_(lens.film) {
+    film_.z_mm = lens.ideal.rear_focal_z;
     if (!lens.exact) return;
     std::vector<petzval::ScenePoint> places;
     for (const auto& point : points) {
@@ -81,8 +82,7 @@ class Pull {
   Frame at(double time) {
     petzval::FocusMoment moment;
     moment.time = time;
-    moment.film_z = film_.film_z;
-    if (options_.film_given) moment.frame = lens_.frame;
+    if (options_.film_given) moment.film = film_;
     const auto targets = petzval::focus_targets(lens_.ideal, points_, moment);
     Frame frame{.time = time, .targets = targets.size()};
     options_.tilt ? tilt(targets, frame) : focus(targets, frame);
@@ -96,19 +96,18 @@ class Pull {
   petzval::FocusCriterion criterion() const { return examples::named(options_.criterion, examples::focus_criteria); }
 
   void focus(const std::vector<petzval::FocusTarget>& targets, Frame& frame) {
-    const auto found = bundles_ ? petzval::autofocus(*bundles_, targets, criterion())
-                                : petzval::autofocus(lens_.ideal, targets, film_.film_z);
+    const auto found = bundles_ ? petzval::autofocus(*bundles_, targets, film_, criterion())
+                                : petzval::autofocus(lens_.ideal, targets, film_);
     frame.status = petzval::name(found.status);
     if (!found) return;
-    film_ = {.film_z = found.film_z};
+    film_ = found.film;
     frame.rms_um = 1e3 * found.rms_mm;
   }
 
   void tilt(const std::vector<petzval::FocusTarget>& targets, Frame& frame) {
-    petzval::TiltOptions start{.start = film_};
-    if (options_.film_given) start.frame = lens_.frame;
+    const petzval::TiltOptions tilt{.film = film_};
     const auto found =
-        bundles_ ? petzval::fit_tilt(*bundles_, targets, start) : petzval::fit_tilt(lens_.ideal, targets, start);
+        bundles_ ? petzval::fit_tilt(*bundles_, targets, tilt) : petzval::fit_tilt(lens_.ideal, targets, tilt);
     frame.status = petzval::name(found.status);
     if (!found) return;
     film_ = found.film;
@@ -119,26 +118,26 @@ class Pull {
   double distance() const {
     if (lens_.exact) {
       const petzval::FocusOptions focus{.criterion = criterion(), .origin = petzval::DistanceOrigin::film};
-      return petzval::solve_subject(*lens_.lens, film_.film_z, focus).distance;
+      return petzval::solve_subject(*lens_.lens, film_.z(), focus).distance;
     }
-    const petzval::ScenePoint place = lens_.ideal.scene_of({0, 0, film_.film_z});
+    const petzval::ScenePoint place = lens_.ideal.scene_of({0, 0, film_.z()});
     const bool real = !place.at_infinity && place.position.z < lens_.ideal.front_focal_z;
-    return real ? film_.film_z - place.position.z : infinity;
+    return real ? film_.z() - place.position.z : infinity;
   }
 
   /// By the chief ray through the exit pupil, against a film on which infinity is in focus.
   double breathing() const {
     if (lens_.exact) {
-      return petzval::breathing(*lens_.lens, film_.film_z, {.criterion = criterion()}).value_or(none);
+      return petzval::breathing(*lens_.lens, film_.z(), {.criterion = criterion()}).value_or(none);
     }
-    return lens_.ideal.growth(film_.film_z, lens_.ideal.rear_focal_z);
+    return lens_.ideal.growth(film_.z(), lens_.ideal.rear_focal_z);
   }
 
   const Options& options_;
   const examples::MovingLens& lens_;
   const std::vector<petzval::FocusPoint>& points_;
   std::optional<petzval::ImageRays> bundles_;
-  petzval::FilmPose film_;  // of the frame before
+  petzval::Film film_;  // of the frame before
 };
 
 std::vector<Frame> frames(const Options& options, const examples::MovingLens& lens,
@@ -163,7 +162,7 @@ std::string to_csv(const std::vector<Frame>& all) {
   const auto cell = [](double value) { return std::isnan(value) ? std::string() : number(value); };
   std::string csv = "time_s,film_z_mm,subject_distance_mm,tilt_deg,swing_deg,rms_blur_um,breathing,targets,status\n";
   for (const Frame& f : all) {
-    csv += number(f.time) + "," + number(f.film.film_z) + "," + number(f.distance_mm) + "," +
+    csv += number(f.time) + "," + number(f.film.z()) + "," + number(f.distance_mm) + "," +
            number(petzval::degrees(f.film.tilt_rad)) + "," + number(petzval::degrees(f.film.swing_rad)) + "," +
            cell(f.rms_um) + "," + cell(f.breathing) + "," + std::to_string(f.targets) + "," + f.status + "\n";
   }
@@ -174,7 +173,7 @@ Json to_json(const std::vector<Frame>& all) {
   Json rows = Json::array();
   for (const Frame& f : all) {
     rows.push_back({{"time_s", f.time},
-                    {"film_z_mm", f.film.film_z},
+                    {"film_z_mm", f.film.z()},
                     {"subject_distance_mm", finite_or_null(f.distance_mm)},
                     {"tilt_deg", petzval::degrees(f.film.tilt_rad)},
                     {"swing_deg", petzval::degrees(f.film.swing_rad)},
@@ -190,7 +189,7 @@ std::string plot(const Options& options, const examples::MovingLens& lens,
                  const std::vector<petzval::FocusPoint>& points, const std::vector<Frame>& all) {
   std::vector<petzval::FocusPullFrame> shown;
   for (const Frame& f : all) {
-    shown.push_back({f.time, f.film.film_z, f.distance_mm, f.film.tilt_rad, f.film.swing_rad, f.rms_um / 1e3});
+    shown.push_back({f.time, f.film, f.distance_mm, f.rms_um / 1e3});
   }
   std::set<double> keys;
   for (const auto& point : points) {
@@ -213,7 +212,7 @@ std::string to_text(const std::vector<Frame>& all, double frames_per_s) {
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (i % step != 0 && i + 1 != all.size()) continue;
     const Frame& f = all[i];
-    text += cell(f.time, 5) + cell(f.film.film_z, 7) + cell(f.distance_mm, 6) +
+    text += cell(f.time, 5) + cell(f.film.z(), 7) + cell(f.distance_mm, 6) +
             cell(petzval::degrees(f.film.tilt_rad) + 0.0, 4) + cell(petzval::degrees(f.film.swing_rad) + 0.0, 4) +
             cell(f.rms_um, 4) + cell(f.breathing, 3) + "  " + f.status + "\n";
   }

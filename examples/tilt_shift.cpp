@@ -96,12 +96,13 @@ std::vector<petzval::FocusTarget> targets(const std::vector<Point>& points) {
 /// infinity without one.
 petzval::Autofocus focused(const Options& options, Result& result) {
   if (result.points.empty()) {
-    return {.film_z = result.lens.lens ? result.lens.lens->film_z() : result.lens.ideal.rear_focal_z, .blurs = {}};
+    petzval::Film film = result.lens.film;
+    film.z_mm = result.lens.lens ? result.lens.lens->film_z() : result.lens.ideal.rear_focal_z;
+    return {.film = film, .blurs = {}};
   }
   const auto served = targets(result.points);
-  const petzval::Autofocus focus = result.bundles
-                                       ? petzval::autofocus(*result.bundles, served, petzval::FocusCriterion::min_rms)
-                                       : petzval::autofocus(result.lens.ideal, served, result.lens.ideal.rear_focal_z);
+  const petzval::Autofocus focus = result.bundles ? petzval::autofocus(*result.bundles, served, result.lens.film)
+                                                  : petzval::autofocus(result.lens.ideal, served, result.lens.film);
   std::size_t k = 0;
   for (Point& p : result.points) {
     if (!p.in_picture) continue;
@@ -113,14 +114,13 @@ petzval::Autofocus focused(const Options& options, Result& result) {
   return focus;
 }
 
-/// A film size that is given is a frame that points must lie in.
-void leave_out_what_is_beside(double film_z, Result& result) {
+/// Points must lie in the picture of a film whose size is given.
+void leave_out_what_is_beside(const petzval::Film& film, Result& result) {
   for (Point& p : result.points) {
     if (p.use != TargetUse::used && p.use != TargetUse::no_weight) continue;
     petzval::FocusPoint point;
     point.keys.push_back({.anchor = p.target.place});
-    p.in_picture =
-        !petzval::focus_targets(result.lens.ideal, {&point, 1}, {.frame = result.lens.frame, .film_z = film_z}).empty();
+    p.in_picture = !petzval::focus_targets(result.lens.ideal, {&point, 1}, {.film = film}).empty();
   }
 }
 
@@ -131,13 +131,11 @@ Result solve(const Options& options) {
 
   result.before = focused(options, result);
   if (options.film_given) {
-    leave_out_what_is_beside(result.before.film_z, result);
+    leave_out_what_is_beside(petzval::Film(result.before.film), result);
     result.before = focused(options, result);
   }
-  const petzval::TiltOptions tilt{.max_tilt_rad = petzval::radians(options.max_tilt_deg),
-                                  .robust = options.robust,
-                                  .start = {.film_z = result.before.film_z},
-                                  .frame = options.film_given ? result.lens.frame : petzval::TiltOptions{}.frame};
+  const petzval::TiltOptions tilt{
+      .max_tilt_rad = petzval::radians(options.max_tilt_deg), .robust = options.robust, .film = result.before.film};
   const auto served = targets(result.points);
   result.after = result.bundles ? petzval::fit_tilt(*result.bundles, served, tilt)
                                 : petzval::fit_tilt(result.lens.ideal, served, tilt);
@@ -152,8 +150,8 @@ Result solve(const Options& options) {
       if (result.points.empty()) break;
       give_up(options, result.points);
     case TiltFit::Status::unreachable:
-      throw petzval::Error(options.points_file + ": the film, " + number(result.lens.frame.width_mm) + " x " +
-                           number(result.lens.frame.height_mm) +
+      throw petzval::Error(options.points_file + ": the film, " + number(result.lens.film.width_mm) + " x " +
+                           number(result.lens.film.height_mm) +
                            " mm, would touch the lens, wanted points farther away or a smaller film");
     case TiltFit::Status::not_converged:
       throw petzval::Error(options.points_file + ": no film was found that serves these points");
@@ -188,8 +186,8 @@ std::string status_in_words(const Result& result, const Options& options) {
 /// What rounding leaves of 0 is 0 for people.
 double tidy(double value) { return std::abs(value) < 1e-9 ? 0.0 : value; }
 
-std::string film_in_words(const petzval::FilmPose& film) {
-  if (film.upright()) return "upright";
+std::string film_in_words(const petzval::Film& film) {
+  if (!film.tilted()) return "upright";
   const auto degrees = [](double rad) { return number(tidy(petzval::degrees(rad)), 4) + "\u00b0"; };
   return "tilted by " + degrees(film.tilt_rad) + ", swung by " + degrees(film.swing_rad);
 }
@@ -223,14 +221,14 @@ Json to_json(const Result& result, const Options& options, const std::vector<std
       {"plane_offset_mm", result.after.focus ? Json(result.after.focus->plane.offset) : Json()},
       {"film_tilt_deg", petzval::degrees(fit.film.tilt_rad)},
       {"film_swing_deg", petzval::degrees(fit.film.swing_rad)},
-      {"film_z_mm", fit.film.film_z},
-      {"film_centre_mm", {fit.centre.x, fit.centre.y}},
+      {"film_z_mm", fit.film.z()},
+      {"film_centre_mm", {fit.film.shift_x_mm, fit.film.shift_y_mm}},
       {"rms_um", 1e3 * fit.rms_mm},
       {"blur_um", std::move(blurs)},
       {"use", std::move(uses)},
       {"hinge_line", line(result.after.focus, &petzval::FocusPlane::hinge)},
       {"scheimpflug_line", line(result.after.focus, &petzval::FocusPlane::scheimpflug)},
-      {"before", {{"film_z_mm", result.before.film_z}, {"rms_um", 1e3 * result.before.rms_mm}, {"blur_um", before}}},
+      {"before", {{"film_z_mm", result.before.film.z()}, {"rms_um", 1e3 * result.before.rms_mm}, {"blur_um", before}}},
       {"files", files}};
 }
 
@@ -245,11 +243,11 @@ std::string to_text(const Result& result, const Options& options) {
   };
   const auto cell = [](double mm) { return padded(std::isnan(mm) ? "-" : number(tidy(1e3 * mm), 4), 14); };
   std::string text = result.lens.title + ", " + result.lens.conditions + "\n" + status_in_words(result, options) +
-                     "\n\nfilm at z = " + number(fit.film.film_z, 9) + " mm, " + film_in_words(fit.film) +
-                     " (upright before, at " + number(result.before.film_z, 9) + " mm)\n";
-  if (tidy(fit.centre.x) != 0 || tidy(fit.centre.y) != 0) {
-    text += "middle of the picture on it: " + number(tidy(fit.centre.x), 6) + ", " + number(tidy(fit.centre.y), 6) +
-            " mm\n";
+                     "\n\nfilm at z = " + number(fit.film.z(), 9) + " mm, " + film_in_words(fit.film) +
+                     " (upright before, at " + number(result.before.film.z(), 9) + " mm)\n";
+  if (tidy(fit.film.shift_x_mm) != 0 || tidy(fit.film.shift_y_mm) != 0) {
+    text += "middle of the picture on it: " + number(tidy(fit.film.shift_x_mm), 6) + ", " +
+            number(tidy(fit.film.shift_y_mm), 6) + " mm\n";
   }
   text += result.after.focus ? "plane of focus: normal " + triple(result.after.focus->plane.normal) + ", " +
                                    number(result.after.focus->plane.offset, 8) + " mm from the origin along it\n"
@@ -273,25 +271,21 @@ std::string to_text(const Result& result, const Options& options) {
 }
 
 /// The film's diagonal over 1442: 0.03 mm of 24 x 36 mm.
-double sharp_mm(const petzval::FilmFrame& frame) { return std::hypot(frame.width_mm, frame.height_mm) / 1442.2; }
+double sharp_mm(const petzval::Film& film) { return std::hypot(film.width_mm, film.height_mm) / 1442.2; }
 
 std::string side_view(const Result& result) {
   std::vector<petzval::TiltFigurePoint> points;
   for (const Point& p : result.points) points.push_back({p.target.place, p.serves()});
-  petzval::FilmFrame frame = result.lens.frame;
-  frame.centre_x_mm = result.after.centre.x;
-  frame.centre_y_mm = result.after.centre.y;
   const std::string remark = result.lens.conditions + ", " + std::to_string(points.size()) +
                              (points.size() == 1 ? " focus point" : " focus points");
   return petzval::tilt_figure({.title = result.lens.title,
                                .remark = remark,
                                .lens = result.lens.ideal,
                                .glass = result.lens.lens ? &*result.lens.lens : nullptr,
-                               .before = {.film_z = result.before.film_z},
+                               .before = result.before.film,
                                .after = result.after.film,
                                .focus = result.bundles ? result.after.focus : std::nullopt,
-                               .frame = frame,
-                               .blur_mm = sharp_mm(frame),
+                               .blur_mm = sharp_mm(result.lens.film),
                                .points = points});
 }
 
@@ -300,26 +294,23 @@ std::vector<petzval::Rgb8Image> blur_pictures(const Result& result) {
   if (std::ranges::none_of(result.points, &Point::shows)) return {};
   const petzval::IdealLens& ideal = result.lens.ideal;
   const examples::PointScene scene(ideal, places(result.points, &Point::shows));
-  std::vector<examples::Picture> pictures(2, {.film = {.film_z = result.before.film_z}, .frame = result.lens.frame});
-  pictures[1].film = result.after.film;
-  pictures[1].frame.centre_x_mm = result.after.centre.x;
-  pictures[1].frame.centre_y_mm = result.after.centre.y;
+  const petzval::Film films[]{examples::with_pixels(result.before.film), examples::with_pixels(result.after.film)};
   std::optional<petzval::ImageRays> rays;
   if (result.lens.exact) rays = result.lens.bundles({}, rays_of_map);
   std::vector<examples::BlurMap> maps;
-  for (const auto& picture : pictures) {
-    maps.push_back(examples::blur_map(picture, scene, ideal, rays ? &*rays : nullptr, petzval::processor_threads()));
+  for (const petzval::Film& film : films) {
+    maps.push_back(examples::blur_map(film, scene, ideal, rays ? &*rays : nullptr, petzval::processor_threads()));
   }
 
-  examples::BlurSheet sheet{.scale_mm = examples::scale_of(maps), .sharp_mm = sharp_mm(result.lens.frame)};
-  sheet.subtitle = result.lens.title + ", " + result.lens.conditions + ", film " + number(result.lens.frame.width_mm) +
-                   " x " + number(result.lens.frame.height_mm) + " mm; the picture the right way up";
+  examples::BlurSheet sheet{.scale_mm = examples::scale_of(maps), .sharp_mm = sharp_mm(result.lens.film)};
+  sheet.subtitle = result.lens.title + ", " + result.lens.conditions + ", film " + number(result.lens.film.width_mm) +
+                   " x " + number(result.lens.film.height_mm) + " mm; the picture the right way up";
   sheet.notes = {"Signed diameter of the blur on the film" +
                      std::string(rays ? ": of the even disc with the RMS radius of the traced rays." : ".") +
                      " Thin lines: " + number(1e3 * sheet.sharp_mm, 3) + " \u00b5m. Both pictures have one scale.",
                  "Circles: the focus points, and the blur of each (grey: takes no part). Between them 1/distance is "
                  "interpolated."};
-  const bool upright = result.after.film.upright();
+  const bool upright = !result.after.film.tilted();
   const std::string titles[]{"Before: upright film, focused on the points",
                              "After: film " + film_in_words(result.after.film)};
   std::vector<petzval::Rgb8Image> sheets;
@@ -327,10 +318,10 @@ std::vector<petzval::Rgb8Image> blur_pictures(const Result& result) {
     sheet.title = titles[k] + (k == 1 && upright ? ", as before" : "");
     sheet.points.clear();
     for (const Point& p : result.points) {
-      sheet.points.push_back({examples::on_film(ideal, pictures[k].film, p.target.place),
-                              k == 0 ? p.before_mm : p.predicted_mm, p.serves()});
+      sheet.points.push_back(
+          {examples::on_film(ideal, films[k], p.target.place), k == 0 ? p.before_mm : p.predicted_mm, p.serves()});
     }
-    sheets.push_back(examples::draw_blur_sheet(maps[k], pictures[k], sheet));
+    sheets.push_back(examples::draw_blur_sheet(maps[k], films[k], sheet));
   }
   return sheets;
 }

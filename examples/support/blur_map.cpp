@@ -17,21 +17,22 @@ std::size_t at(int x, int y, int width) {
   return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
 }
 
-double ideal_blur(const Picture& picture, const PointScene& scene, const petzval::IdealLens& lens, double x, double y) {
-  const auto place = scene.at(picture.film, picture.film_point(x, y));
+double ideal_blur(const petzval::Film& film, const PointScene& scene, const petzval::IdealLens& lens, double x,
+                  double y) {
+  const auto place = scene.at(film, film.point(x, y));
   const auto image = place ? lens.image(*place) : std::nullopt;
-  return image ? petzval::signed_blur(*image, picture.film) : none;
+  return image ? petzval::signed_blur(*image, film) : none;
 }
 
 /// The rays that meet the film about a place of the picture come from nearly where the ideal lens says. beside: how far
 /// from the place to aim for that, as found for the neighbour, and then for this one; it changes slowly.
-double exact_blur(const Picture& picture, const PointScene& scene, const petzval::ImageRays& lens, double x, double y,
-                  petzval::FilmPoint& beside) {
-  const petzval::FilmPoint wanted = picture.film_point(x, y);
+double exact_blur(const petzval::Film& film, const PointScene& scene, const petzval::ImageRays& lens, double x,
+                  double y, petzval::FilmPoint& beside) {
+  const petzval::FilmPoint wanted = film.point(x, y);
   double result = none;
   for (int step = 0; step < 2; ++step) {
-    const auto place = scene.at(picture.film, {wanted.x + beside.x, wanted.y + beside.y});
-    const auto blur = place ? petzval::blur_on(lens.bundle(*place), picture.film) : std::nullopt;
+    const auto place = scene.at(film, {wanted.x + beside.x, wanted.y + beside.y});
+    const auto blur = place ? petzval::blur_on(lens.bundle(*place), film) : std::nullopt;
     if (!blur) return result;
     result = blur->signed_diameter;
     beside.x += wanted.x - blur->centroid.x;
@@ -58,24 +59,18 @@ double between(const std::vector<double>& nodes, int columns, double x, double y
 
 }  // namespace
 
-double Picture::pixel_mm() const { return std::max(frame.width_mm, frame.height_mm) / pixels; }
-int Picture::width() const { return std::max(1, static_cast<int>(std::lround(frame.width_mm / pixel_mm()))); }
-int Picture::height() const { return std::max(1, static_cast<int>(std::lround(frame.height_mm / pixel_mm()))); }
-
-// The image on the film is upside down: what lies to the right and above in the scene is at negative x and y.
-petzval::FilmPoint Picture::film_point(double x, double y) const {
-  return {frame.centre_x_mm - (x - width() / 2.0) * pixel_mm(), frame.centre_y_mm + (y - height() / 2.0) * pixel_mm()};
+petzval::Film with_pixels(petzval::Film film, int longer_side) {
+  const double pixel_mm = std::max(film.width_mm, film.height_mm) / longer_side;
+  const auto pixels = [&](double length) { return std::max(1, static_cast<int>(std::lround(length / pixel_mm))); };
+  film.columns = pixels(film.width_mm);
+  film.rows = pixels(film.height_mm);
+  return film;
 }
 
-std::pair<double, double> Picture::pixel(const petzval::FilmPoint& point) const {
-  return {width() / 2.0 - (point.x - frame.centre_x_mm) / pixel_mm(),
-          height() / 2.0 + (point.y - frame.centre_y_mm) / pixel_mm()};
-}
-
-BlurMap blur_map(const Picture& picture, const PointScene& scene, const petzval::IdealLens& lens,
+BlurMap blur_map(const petzval::Film& film, const PointScene& scene, const petzval::IdealLens& lens,
                  const petzval::ImageRays* exact, int threads) {
   constexpr int step = 8;  // pixels between nodes, from the corner to beyond the last pixel
-  const int width = picture.width(), height = picture.height(), columns = width / step + 2, rows = height / step + 2;
+  const int width = film.columns, height = film.rows, columns = width / step + 2, rows = height / step + 2;
   std::vector<double> nodes(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows), none);
   petzval::parallel_for(nodes.size(), static_cast<std::size_t>(columns), threads, [&](std::size_t begin, std::size_t) {
     const int row = static_cast<int>(begin / static_cast<std::size_t>(columns));
@@ -83,7 +78,7 @@ BlurMap blur_map(const Picture& picture, const PointScene& scene, const petzval:
     for (int column = 0; column < columns; ++column) {
       const double x = step * column, y = step * row;
       nodes[at(column, row, columns)] =
-          exact ? exact_blur(picture, scene, *exact, x, y, beside) : ideal_blur(picture, scene, lens, x, y);
+          exact ? exact_blur(film, scene, *exact, x, y, beside) : ideal_blur(film, scene, lens, x, y);
     }
   });
   BlurMap result{width, height, {}};

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "petzval/film/film.hpp"
 #include "petzval/io/image.hpp"
-#include "petzval/movement/film_pose.hpp"
 #include "petzval/movement/image_rays.hpp"
 #include "point_scene.hpp"
 
@@ -19,25 +19,12 @@ struct BlurMap {
   std::vector<double> diameter_mm;
 };
 
-/// The picture that a film takes of a scene, its longer side `pixels` wide.
-struct Picture {
-  petzval::FilmPose film;
-  petzval::FilmFrame frame;
-  int pixels = 1080;
+/// The film with so many square pixels along its longer side.
+petzval::Film with_pixels(petzval::Film film, int longer_side = 1080);
 
-  int width() const;
-  int height() const;
-  /// The film point of a place in the picture, in pixels from its upper left corner; and back.
-  petzval::FilmPoint film_point(double x, double y) const;
-  std::pair<double, double> pixel(const petzval::FilmPoint& point) const;
-
- private:
-  double pixel_mm() const;
-};
-
-/// By the ideal lens, or (with exact) by bundles of rays; every 8 pixels, interpolated between. The result does not
-/// depend on the number of threads.
-BlurMap blur_map(const Picture& picture, const PointScene& scene, const petzval::IdealLens& lens,
+/// One value for each pixel of the film: by the ideal lens, or (with exact) by bundles of rays; every 8 pixels,
+/// interpolated between. The result does not depend on the number of threads.
+BlurMap blur_map(const petzval::Film& film, const PointScene& scene, const petzval::IdealLens& lens,
                  const petzval::ImageRays* exact, int threads);
 
 /// The blur that a scale should reach: 1, 2 or 5 times a power of ten, so that all but a hundredth of the maps lies
@@ -61,6 +48,6 @@ struct BlurSheet {
 
 /// The map in colour with its scale, points and captions: blue is nearer than the plane of focus, red beyond it, white
 /// sharp, grey without light.
-petzval::Rgb8Image draw_blur_sheet(const BlurMap& map, const Picture& picture, const BlurSheet& sheet);
+petzval::Rgb8Image draw_blur_sheet(const BlurMap& map, const petzval::Film& film, const BlurSheet& sheet);
 
 }  // namespace examples

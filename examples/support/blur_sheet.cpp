@@ -51,12 +51,12 @@ void draw_map(petzval::Rgb8Image& page, const BlurMap& map, const BlurSheet& she
   }
 }
 
-void draw_points(petzval::Rgb8Image& page, Font& font, const Picture& picture, const BlurMap& map,
+void draw_points(petzval::Rgb8Image& page, Font& font, const petzval::Film& film, const BlurMap& map,
                  const BlurSheet& sheet) {
   for (std::size_t i = 0; i < sheet.points.size(); ++i) {
     const MarkedPoint& point = sheet.points[i];
     if (!point.where) continue;
-    const auto [x, y] = picture.pixel(*point.where);
+    const auto [x, y] = film.raster(*point.where);
     if (!(x >= 0 && x < map.width && y >= 0 && y < map.height)) continue;
     const std::string number = std::to_string(i + 1);
     const std::string words = std::isnan(point.blur_mm) ? "" : micrometres(point.blur_mm);
@@ -97,7 +97,7 @@ void draw_scale(petzval::Rgb8Image& page, Font& font, int y, int width, const Bl
 
 }  // namespace
 
-petzval::Rgb8Image draw_blur_sheet(const BlurMap& map, const Picture& picture, const BlurSheet& sheet) {
+petzval::Rgb8Image draw_blur_sheet(const BlurMap& map, const petzval::Film& film, const BlurSheet& sheet) {
   Font font;
   int width = std::max(map.width, 700);
   width = std::max({width, font.width(sheet.title, title_size), font.width(sheet.subtitle, subtitle_size)});
@@ -109,7 +109,7 @@ petzval::Rgb8Image draw_blur_sheet(const BlurMap& map, const Picture& picture, c
   font.draw(page, margin, 72, subtitle_size, sheet.subtitle, faint);
   fill(page, margin - 1, top - 1, map.width + 2, map.height + 2, line_colour);
   draw_map(page, map, sheet);
-  draw_points(page, font, picture, map, sheet);
+  draw_points(page, font, film, map, sheet);
   draw_scale(page, font, bar, std::max(map.width, 700), sheet);
   for (std::size_t i = 0; i < sheet.notes.size(); ++i) {
     font.draw(page, margin, notes + static_cast<int>(i) * line, small, sheet.notes[i], faint);

@@ -8,7 +8,7 @@
 #include "camera_setup.hpp"
 #include "files.hpp"
 #include "petzval/camera/choose_model.hpp"
-#include "petzval/camera/film.hpp"
+#include "petzval/film/film.hpp"
 
 namespace examples {
 

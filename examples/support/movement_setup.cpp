@@ -39,7 +39,7 @@ void add_movement_options(CLI::App& app, MovementOptions& options) {
 MovingLens moving_lens(const MovementOptions& options) {
   MovingLens result;
   const auto [width, height] = parse_size("--film-mm", options.film_mm, positive_number);
-  result.frame = {width, height};
+  result.film = {.width_mm = width, .height_mm = height};
   if (options.focal_length_mm > 0) {
     if (!options.lens_file.empty()) {
       throw petzval::Error("--thin-focal-length-mm: found with " + options.lens_file + ", wanted one of them");
@@ -72,7 +72,7 @@ MovingLens moving_lens(const MovementOptions& options) {
 petzval::ImageRays MovingLens::bundles(std::span<const petzval::ScenePoint> places, std::size_t rays) const {
   // Room for a tilted and shifted film, and for points somewhat outside the picture; not for those far outside, whose
   // light no lens lets through.
-  const double corner = std::hypot(frame.width_mm, frame.height_mm) / 2;
+  const double corner = std::hypot(film.width_mm, film.height_mm) / 2;
   double farthest = 1.3 * corner;
   for (const petzval::ScenePoint& place : places) {
     const auto image = ideal.image(place);

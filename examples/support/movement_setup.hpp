@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "petzval/film/film.hpp"
 #include "petzval/lens/lens.hpp"
-#include "petzval/movement/film_pose.hpp"
 #include "petzval/movement/focus_target.hpp"
 #include "petzval/movement/ideal_lens.hpp"
 #include "petzval/movement/image_rays.hpp"
@@ -30,7 +30,7 @@ struct MovingLens {
   std::optional<petzval::Lens> lens;  ///< none for an ideal lens without a file
   petzval::IdealLens ideal;           ///< thin, or (thick and real) the cardinal points
   bool exact = false;                 ///< the model is real: exact rays
-  petzval::FilmFrame frame;
+  petzval::Film film;                 ///< its size
 
   /// Exact rays to the film, and as far beside it as the images of these places lie. There must be a lens.
   petzval::ImageRays bundles(std::span<const petzval::ScenePoint> places, std::size_t rays) const;

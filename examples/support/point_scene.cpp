@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/geometric.hpp>
 #include <limits>
 
 #include "petzval/core/error.hpp"
@@ -56,10 +55,9 @@ double PointScene::disparity(double x, double y) const {
   return std::clamp(mean, std::max(0.0, least - range), most + range);
 }
 
-std::optional<petzval::ScenePoint> PointScene::at(const petzval::FilmPose& film,
-                                                  const petzval::FilmPoint& point) const {
+std::optional<petzval::ScenePoint> PointScene::at(const petzval::Film& film, const petzval::FilmPoint& point) const {
   // The chief ray goes through the point's conjugate and the entrance pupil's centre.
-  const petzval::ScenePoint conjugate = lens_.scene_of(film.at(point));
+  const petzval::ScenePoint conjugate = lens_.scene_of(film.position(point));
   petzval::Vec3<double> towards = conjugate.position;
   if (parallel_) {
     if (conjugate.at_infinity) return {};
@@ -73,15 +71,10 @@ std::optional<petzval::ScenePoint> PointScene::at(const petzval::FilmPose& film,
   return petzval::ScenePoint{{x / w, y / w, from_z_ - 1 / w}, false};
 }
 
-std::optional<petzval::FilmPoint> on_film(const petzval::IdealLens& lens, const petzval::FilmPose& film,
+std::optional<petzval::FilmPoint> on_film(const petzval::IdealLens& lens, const petzval::Film& film,
                                           const petzval::ScenePoint& place) {
   const auto image = lens.image(place);
-  if (!image) return {};
-  const petzval::Vec3<double> n = film.normal(), along{image->slope_x, image->slope_y, 1};
-  const petzval::Vec3<double> to_film = petzval::Vec3<double>(0, 0, film.film_z) - image->position;
-  const double by = glm::dot(n, to_film) / glm::dot(n, along);
-  if (!std::isfinite(by)) return {};
-  return film.point(image->position + by * along);
+  return image ? petzval::chief_point(*image, film) : std::nullopt;
 }
 
 }  // namespace examples

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "petzval/movement/film_pose.hpp"
+#include "petzval/film/film.hpp"
 #include "petzval/movement/ideal_lens.hpp"
 
 namespace examples {
@@ -20,7 +20,7 @@ class PointScene {
   PointScene(const petzval::IdealLens& lens, std::span<const petzval::ScenePoint> points);
 
   /// What the ideal lens has at a film point, by the chief ray. Nothing where that does not come from the scene.
-  std::optional<petzval::ScenePoint> at(const petzval::FilmPose& film, const petzval::FilmPoint& point) const;
+  std::optional<petzval::ScenePoint> at(const petzval::Film& film, const petzval::FilmPoint& point) const;
 
  private:
   struct Known {
@@ -35,7 +35,7 @@ class PointScene {
 };
 
 /// Where the ideal lens's chief ray of a place meets the film. Nothing for one without a real image, or beside it.
-std::optional<petzval::FilmPoint> on_film(const petzval::IdealLens& lens, const petzval::FilmPose& film,
+std::optional<petzval::FilmPoint> on_film(const petzval::IdealLens& lens, const petzval::Film& film,
                                           const petzval::ScenePoint& place);
 
 }  // namespace examples

@@ -98,13 +98,15 @@ std::vector<double> scales(const Lens& lens, const Film& film, const AnyModel& m
 
 }  // namespace
 
-Camera::Camera(const Lens& lens, const Film& film, const CameraOptions& options) {
+Camera::Camera(const Lens& given_lens, const Film& given_film, const CameraOptions& options) {
+  const auto [lens, film] = camera_detail::placed(given_lens, given_film);
   camera_detail::check_film(lens, film);
   AnyModel model = make_model(options.model, lens, upright_radius(lens, film, options.model));
   *this = Camera(lens, film, std::move(model), options.normalisation);
 }
 
-Camera::Camera(const Lens& lens, const Film& film, AnyModel model, Normalisation normalisation) {
+Camera::Camera(const Lens& given_lens, const Film& given_film, AnyModel model, Normalisation normalisation) {
+  const auto [lens, film] = camera_detail::placed(given_lens, given_film);
   camera_detail::check_film(lens, film);
   const FilmPupilTable& pupils = film_pupil_table_of(model);
   check_model(lens, film, kind_of(model), pupils);

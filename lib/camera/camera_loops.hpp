@@ -5,17 +5,13 @@
 #include <cstdint>
 
 #include "core/widest.hpp"
+#include "film/film_bounds.hpp"
 #include "petzval/camera/camera_ray.hpp"
-#include "petzval/camera/film.hpp"
 #include "petzval/pupil/two_plane_rays.hpp"
 
 namespace petzval::inline v0::camera_detail {
 
-/// The film as loops want it.
-template <class T>
-struct FilmBounds {
-  T centre_x, centre_y, half_width, half_height;
-};
+using film_detail::FilmBounds;
 
 /// A tilted film as loops want it: see camera_detail::TiltedPlane.
 template <class T>

@@ -5,8 +5,8 @@
 #include <cstddef>
 
 #include "petzval/core/ray.hpp"
+#include "petzval/film/film.hpp"
 #include "petzval/lens/lens.hpp"
-#include "petzval/pupil/field_point.hpp"
 #include "petzval/pupil/two_plane_rays.hpp"
 
 /// Errors in the scene as lengths on the film.

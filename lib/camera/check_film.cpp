@@ -7,7 +7,7 @@
 
 #include "petzval/core/error.hpp"
 #include "petzval/core/text.hpp"
-#include "petzval/movement/film_pose.hpp"
+#include "petzval/film/film.hpp"
 #include "petzval/pupil/two_plane_rays.hpp"
 
 namespace petzval::inline v0::camera_detail {
@@ -21,8 +21,8 @@ void check_rectangle(const std::string& where, const Film& film) {
   if (film.columns <= 0 || film.rows <= 0) {
     refuse("it has " + std::to_string(film.columns) + " by " + std::to_string(film.rows) + " pixels, wanted some");
   }
-  if (!(std::isfinite(film.centre_x_mm) && std::isfinite(film.centre_y_mm))) {
-    refuse("its centre is (" + number(film.centre_x_mm) + ", " + number(film.centre_y_mm) + ") mm, wanted a place");
+  if (!(std::isfinite(film.shift_x_mm) && std::isfinite(film.shift_y_mm))) {
+    refuse("its centre is (" + number(film.shift_x_mm) + ", " + number(film.shift_y_mm) + ") mm, wanted a place");
   }
   constexpr double quarter_turn = std::numbers::pi / 2;
   if (!(std::abs(film.tilt_rad) < quarter_turn && std::abs(film.swing_rad) < quarter_turn)) {
@@ -31,16 +31,22 @@ void check_rectangle(const std::string& where, const Film& film) {
   }
 }
 
+FilmBehindLens placed(const Lens& lens, const Film& film) {
+  FilmBehindLens result{film.z_mm ? with_film(lens, *film.z_mm) : lens, film};
+  result.film.z_mm = result.lens.film_z();
+  return result;
+}
+
 void check_film(const Lens& lens, const Film& film) {
   check_rectangle(lens.name() + ": film", film);
   if (!film.tilted()) return;
   const OuterFace face = last_face(lens);
-  const FilmPose pose{lens.film_z(), film.tilt_rad, film.swing_rad};
+  const double film_z = film.z();
   // Where the last surface ends on the film's side; its vertex, where it reaches around the upright film.
-  const double side = pose.film_z > face.vertex_z ? 1 : -1, edge = side > 0 ? face.z_max : face.z_min;
-  const double end = (pose.film_z - edge) * side > 0 ? edge : face.vertex_z;
-  for (const FilmPoint& corner : corners_of(film)) {
-    const double z = pose.at(corner).z;
+  const double side = film_z > face.vertex_z ? 1 : -1, edge = side > 0 ? face.z_max : face.z_min;
+  const double end = (film_z - edge) * side > 0 ? edge : face.vertex_z;
+  for (const FilmPoint& corner : film.corners()) {
+    const double z = film.position(corner).z;
     if ((z - end) * side > 0) continue;
     throw Error(lens.name() + ": film: tilted by " + number(film.tilt_rad) + " and " + number(film.swing_rad) +
                 " rad it has its corner (" + number(corner.x) + ", " + number(corner.y) + ") mm at z = " + number(z) +

@@ -7,10 +7,9 @@
 #include <vector>
 
 #include "petzval/camera/any_model.hpp"
-#include "petzval/camera/film.hpp"
 #include "petzval/core/vec.hpp"
+#include "petzval/film/film.hpp"
 #include "petzval/lens/lens.hpp"
-#include "petzval/pupil/field_point.hpp"
 
 namespace petzval::inline v0::camera_detail {
 

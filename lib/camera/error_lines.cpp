@@ -59,7 +59,7 @@ FilmPoint error_film_point(const Film& film, std::size_t index, std::uint32_t se
   } else {
     x = to_the_ends(x), y = to_the_ends(y);
   }
-  const double film_x = film.centre_x_mm + x * film.width_mm / 2, film_y = film.centre_y_mm + y * film.height_mm / 2;
+  const double film_x = film.shift_x_mm + x * film.width_mm / 2, film_y = film.shift_y_mm + y * film.height_mm / 2;
   const double r = std::hypot(film_x, film_y), room = film.radius_mm() - lit_radius;
   const double part = r > lit_radius ? lit_radius / r * std::sqrt((r - lit_radius) / room) : 1;
   return {towards_zero(part * film_x), towards_zero(part * film_y)};
@@ -74,10 +74,10 @@ std::vector<FilmPoint> pupil_film_points(const Lens& lens, const Film& film, std
   }
   const auto nearest = [](double centre, double half) { return std::clamp(0.0, centre - half, centre + half); };
   const auto farthest = [](double centre, double half) { return centre + std::copysign(half, centre); };
-  const double near_x = nearest(film.centre_x_mm, film.width_mm / 2),
-               near_y = nearest(film.centre_y_mm, film.height_mm / 2),
-               corner_x = farthest(film.centre_x_mm, film.width_mm / 2),
-               corner_y = farthest(film.centre_y_mm, film.height_mm / 2);
+  const double near_x = nearest(film.shift_x_mm, film.width_mm / 2),
+               near_y = nearest(film.shift_y_mm, film.height_mm / 2),
+               corner_x = farthest(film.shift_x_mm, film.width_mm / 2),
+               corner_y = farthest(film.shift_y_mm, film.height_mm / 2);
   const double corner = std::hypot(corner_x, corner_y), part = std::min(lit_radius / corner, 1.0);
   const double far_x = part * corner_x, far_y = part * corner_y;
   const Kronecker<2> chance(2ull * seed);

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "petzval/camera/any_model.hpp"
-#include "petzval/camera/film.hpp"
+#include "petzval/film/film.hpp"
 #include "petzval/pupil/two_plane_rays.hpp"
 
 /// The lines along which models are compared with the lens.

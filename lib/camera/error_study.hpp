@@ -8,8 +8,8 @@
 #include "carry_back.hpp"
 #include "error_lines.hpp"
 #include "petzval/camera/exact_model.hpp"
-#include "petzval/camera/film.hpp"
 #include "petzval/camera/model_error.hpp"
+#include "petzval/film/film.hpp"
 
 /// Models held against a lens whose rays are traced once for all of them.
 namespace petzval::inline v0::camera_detail {

@@ -10,13 +10,15 @@
 namespace petzval::inline v0 {
 
 ModelError model_error(const Lens& lens, const Film& film, ModelKind model, const ErrorSamples& samples) {
-  camera_detail::check_upright_film(lens, film);
-  const AnyModel built = make_model(model, lens, film.radius_mm());
-  return model_errors(lens, film, std::span(&built, 1), samples).front();
+  const Lens placed = camera_detail::placed(lens, film).lens;
+  camera_detail::check_upright_film(placed, film);
+  const AnyModel built = make_model(model, placed, film.radius_mm());
+  return model_errors(placed, film, std::span(&built, 1), samples).front();
 }
 
-std::vector<ModelError> model_errors(const Lens& lens, const Film& film, std::span<const AnyModel> models,
+std::vector<ModelError> model_errors(const Lens& given, const Film& film, std::span<const AnyModel> models,
                                      const ErrorSamples& samples) {
+  const Lens lens = camera_detail::placed(given, film).lens;
   camera_detail::check_upright_film(lens, film);
   const ExactModel<double> exact(lens, film.radius_mm());
   const camera_detail::RayStudy rays(exact, film, samples);

@@ -7,8 +7,8 @@
 
 #include "error_lines.hpp"
 #include "petzval/camera/exact_model.hpp"
-#include "petzval/camera/film.hpp"
 #include "petzval/camera/model_error.hpp"
+#include "petzval/film/film.hpp"
 #include "petzval/pupil/film_pupil_table.hpp"
 
 namespace petzval::inline v0::camera_detail {

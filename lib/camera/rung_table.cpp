@@ -112,8 +112,9 @@ std::vector<double> costs(std::span<const AnyModel> models, std::vector<double> 
 
 }  // namespace
 
-RungTable rung_table(const Lens& whole, const SceneRequirements& scene, std::span<const Tolerance> tolerances,
+RungTable rung_table(const Lens& given, const SceneRequirements& scene, std::span<const Tolerance> tolerances,
                      int threads) {
+  const Lens whole = placed(given, scene.film).lens;
   check_upright_film(whole, scene.film);
   const Setting setting(whole, scene, tolerances, threads);
   const Film& film = setting.film;
@@ -170,7 +171,7 @@ RungTable rung_table(const Lens& whole, const SceneRequirements& scene, std::spa
     table.one_wavelength = guarded(setting.rays->largest(setting.rays->measure(one), one), tolerances, smooth_guard);
   }
   // The pupil of the middle of the film, everywhere.
-  const FilmPoint middle{film.centre_x_mm, film.centre_y_mm};
+  const FilmPoint middle{film.shift_x_mm, film.shift_y_mm};
   const Tracing from_middle = [&](const PointLines& lines, std::size_t w, PointRays& rays) {
     PointLines moved(middle);
     for (std::size_t i = 0; i < lines_per_point; ++i) moved.put(i, lines.pupil_x[i], lines.pupil_y[i]);

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "petzval/camera/any_model.hpp"
-#include "petzval/camera/film.hpp"
+#include "petzval/film/film.hpp"
 
 namespace petzval::inline v0::camera_detail {
 

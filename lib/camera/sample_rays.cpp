@@ -13,8 +13,7 @@ namespace {
 template <class T>
 FilmBounds<T> bounds_of(const Film& film) noexcept {
   if (film.tilted()) return {T(0), T(0), T(-1), T(-1)};
-  return {static_cast<T>(film.centre_x_mm), static_cast<T>(film.centre_y_mm), static_cast<T>(film.half_width<T>()),
-          static_cast<T>(film.half_height<T>())};
+  return film_detail::bounds_of<T>(film);
 }
 
 template <class T>

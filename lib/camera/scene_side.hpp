@@ -8,9 +8,9 @@
 
 #include "chief_lines.hpp"
 #include "petzval/camera/any_model.hpp"
-#include "petzval/camera/film.hpp"
 #include "petzval/camera/importance.hpp"
 #include "petzval/camera/tilted_film.hpp"
+#include "petzval/film/film.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/pupil/entrance_pupil_table.hpp"
 

@@ -21,7 +21,7 @@
 #include "check_film.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/text.hpp"
-#include "petzval/movement/film_pose.hpp"
+#include "petzval/film/film.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/paraxial/pupils.hpp"
 #include "tilted_pinhole.hpp"
@@ -30,8 +30,7 @@ namespace petzval::inline v0 {
 namespace {
 
 camera_detail::TiltedPlane plane_of(const Film& film, const TwoPlanes& space) {
-  const FilmPose pose{space.film_z, film.tilt_rad, film.swing_rad};
-  const Vec3<double> right = pose.right(), up = pose.up(), normal = pose.normal();
+  const Vec3<double> right = film.right(), up = film.up(), normal = film.normal();
   const double distance = -space.depth();
   return {.x_by_x = right.x,
           .x_by_y = up.x,
@@ -102,7 +101,7 @@ FilmTilt lean_of(const TiltedFilm& tilted) {
                 .slope_y = tilted.plane().slope_y,
                 .low = std::numeric_limits<double>::infinity(),
                 .high = -std::numeric_limits<double>::infinity()};
-  for (const FilmPoint& corner : camera_detail::corners_of(tilted.film())) {
+  for (const FilmPoint& corner : tilted.film().corners()) {
     const FilmPoint key = tilted.key(corner);
     const double value = tilted.plane().slope_along(key);
     lean.low = std::min(lean.low, value);
@@ -114,30 +113,31 @@ FilmTilt lean_of(const TiltedFilm& tilted) {
 
 }  // namespace
 
-double upright_radius(const Lens& lens, const Film& film, ModelKind model) {
-  camera_detail::check_rectangle(lens.name() + ": film", film);
-  if (!film.tilted()) return film.radius_mm();
-  const FilmPose pose{lens.film_z(), film.tilt_rad, film.swing_rad};
+double upright_radius(const Lens& given_lens, const Film& given_film, ModelKind model) {
+  camera_detail::check_rectangle(given_lens.name() + ": film", given_film);
+  if (!given_film.tilted()) return given_film.radius_mm();
+  const auto [lens, film] = camera_detail::placed(given_lens, given_film);
+  const double film_z = film.z();
   const double pupil_z = two_planes(lens).pupil_z;
   const std::vector<Rim> pupils = pupils_of(lens, model);
   const OuterFace face = last_face(lens);
   const bool discs = model <= ModelKind::thick && model != ModelKind::thin_two_disc;
   // Aberrations move a pupil that lies behind the film by more than its size.
   const bool in_lens = !pupils.empty() && std::all_of(pupils.begin(), pupils.end(), [&](const Rim& rim) {
-    return (rim.z - pose.film_z) * (face.vertex_z - pose.film_z) > 0;
+    return (rim.z - film_z) * (face.vertex_z - film_z) > 0;
   });
   double radius = 0;
-  for (const FilmPoint& corner : camera_detail::corners_of(film)) {
-    const Vec3<double> place = pose.at(corner);
+  for (const FilmPoint& corner : film.corners()) {
+    const Vec3<double> place = film.position(corner);
     const double height = std::hypot(place.x, place.y);
     const auto farthest = [&](const Rim& rim) {
-      return height + (height + rim.half) * std::abs((pose.film_z - place.z) / (rim.z - place.z));
+      return height + (height + rim.half) * std::abs((film_z - place.z) / (rim.z - place.z));
     };
-    check_distance(lens.name(), corner, place.z, pose.film_z, pupil_z);
+    check_distance(lens.name(), corner, place.z, film_z, pupil_z);
     radius = std::max(radius, farthest({0, pupil_z}));  // of keys
     double through_pupil = 0;
     for (const Rim& rim : pupils) {
-      if (discs) check_distance(lens.name(), corner, place.z, pose.film_z, rim.z);
+      if (discs) check_distance(lens.name(), corner, place.z, film_z, rim.z);
       through_pupil = std::max(through_pupil, farthest(rim));
     }
     // Light comes through the last surface too, and aberrations have nothing to move there.
@@ -152,9 +152,9 @@ TiltedFilm::TiltedFilm(const Film& film, const FilmPupilTable& pupils)
     : film_(film), plane_(plane_of(film, pupils.space())), pupils_(pupils) {
   const std::string where = "tilted film";
   camera_detail::check_rectangle(where, film);
-  const FilmPose pose{pupils.space().film_z, film.tilt_rad, film.swing_rad};
-  for (const FilmPoint& corner : camera_detail::corners_of(film)) {
-    check_distance(where, corner, pose.at(corner).z, pose.film_z, pupils.space().pupil_z);
+  film_.z_mm = pupils.space().film_z;
+  for (const FilmPoint& corner : film.corners()) {
+    check_distance(where, corner, film_.position(corner).z, film_.z(), pupils.space().pupil_z);
   }
   const FilmTilt lean = lean_of(*this);
   constexpr double rounding = 1e-9;

@@ -36,7 +36,7 @@ void check(Frames frames) {
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const FocusPullFrame& f = frames[i];
     const std::string where = "focus_pull_figure: frame " + std::to_string(i) + ": ";
-    if (!std::isfinite(f.time + f.film_z + f.tilt_rad + f.swing_rad)) {
+    if (!std::isfinite(f.time + f.film.z() + f.film.tilt_rad + f.film.swing_rad)) {
       throw Error(where + "time, film or tilt is not a finite number, wanted such");
     }
     if (!(f.subject_distance > 0)) {
@@ -72,12 +72,12 @@ std::string focus_pull_figure(std::string_view title, std::string_view remark, F
   check(frames);
   std::vector<Diagram> diagrams{
       {"in focus (1/m)", {{[](const auto& f) { return 1e3 / f.subject_distance; }, "#1a8f3c", {}}}, true},
-      {"film at z (mm)", {{[](const auto& f) { return f.film_z; }, "#1f5fc4", {}}}},
+      {"film at z (mm)", {{[](const auto& f) { return f.film.z(); }, "#1f5fc4", {}}}},
       {"RMS blur (\u00b5m)", {{[](const auto& f) { return 1e3 * f.rms_mm; }, "#d0331f", {}}}, true}};
-  if (std::ranges::any_of(frames, [](const auto& f) { return f.tilt_rad != 0 || f.swing_rad != 0; })) {
+  if (std::ranges::any_of(frames, [](const auto& f) { return f.film.tilted(); })) {
     diagrams.push_back({"tilt, swing (\u00b0)",
-                        {{[](const auto& f) { return degrees(f.tilt_rad); }, "#7b3fb5", "tilt"},
-                         {[](const auto& f) { return degrees(f.swing_rad); }, "#b97a00", "swing"}}});
+                        {{[](const auto& f) { return degrees(f.film.tilt_rad); }, "#7b3fb5", "tilt"},
+                         {[](const auto& f) { return degrees(f.film.swing_rad); }, "#b97a00", "swing"}}});
   }
   constexpr double width = 960, left = 78, top = 76, height = 170, gap = 56;
   const double foot = top + (height + gap) * static_cast<double>(diagrams.size());

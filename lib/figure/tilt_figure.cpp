@@ -40,16 +40,16 @@ constexpr std::string_view meeting_style = "fill=\"none\" stroke=\"#7b3fb5\" str
 constexpr std::string_view wedge_style = "fill=\"#dff2e3\"";
 
 void check(const TiltView& view) {
-  for (const FilmPose* film : {&view.before, &view.after}) {
-    if (std::isfinite(film->film_z + film->tilt_rad + film->swing_rad)) continue;
-    throw Error("tilt_figure: a film stands at z = " + number(film->film_z) + " mm, tilt " + number(film->tilt_rad) +
+  for (const Film* film : {&view.before, &view.after}) {
+    if (!(film->width_mm > 0 && film->height_mm > 0)) {
+      throw Error("tilt_figure: the film is " + number(film->width_mm) + " x " + number(film->height_mm) +
+                  " mm, wanted both above 0");
+    }
+    if (std::isfinite(film->z() + film->tilt_rad + film->swing_rad)) continue;
+    throw Error("tilt_figure: a film stands at z = " + number(film->z()) + " mm, tilt " + number(film->tilt_rad) +
                 ", swing " + number(film->swing_rad) + ", wanted finite numbers");
   }
   if (!(view.blur_mm > 0)) throw Error("tilt_figure: blur is " + number(view.blur_mm) + " mm, wanted more than 0");
-  if (!(view.frame.width_mm > 0 && view.frame.height_mm > 0)) {
-    throw Error("tilt_figure: the film is " + number(view.frame.width_mm) + " x " + number(view.frame.height_mm) +
-                " mm, wanted both above 0");
-  }
 }
 
 /// Rounding left out, and never "-0".
@@ -61,10 +61,10 @@ class Figure {
  public:
   explicit Figure(const TiltView& view) : view_(view), film_(view.after), ideal_(view.after) {
     if (view.focus) {
-      if (const auto image = view.lens.image_of(view.focus->plane)) ideal_ = film_pose(*image);
+      if (const auto image = view.lens.image_of(view.focus->plane)) ideal_ = film_in(*image, view.after);
     }
     focus_ = view.focus ? view.focus : focus_plane(view.lens, film_);
-    focus_before_ = focus_plane(view.lens, {.film_z = view.before.film_z + ideal_.film_z - film_.film_z});
+    focus_before_ = focus_plane(view.lens, {.z_mm = view.before.z() + ideal_.z() - film_.z()});
     const Vec3<double> n = ideal_.normal();
     if (const double lean = std::hypot(n.x, n.y); lean > 1e-12) {
       up_ = {n.x / lean, n.y / lean, 0};
@@ -72,7 +72,7 @@ class Figure {
     }
     for (const TiltFigurePoint& p : view.points) images_.push_back(view.lens.image(p.place));
     // Half the rectangle's extent along the section.
-    film_half_ = (std::abs(up_.x) * view.frame.width_mm + std::abs(up_.y) * view.frame.height_mm) / 2;
+    film_half_ = (std::abs(up_.x) * view.after.width_mm + std::abs(up_.y) * view.after.height_mm) / 2;
     lens_half_ = std::isfinite(view.lens.pupils.entrance.diameter) ? view.lens.pupils.entrance.diameter / 2 : 0;
     if (view.glass) cut_glass(*view.glass);
     if (!(lens_half_ > 0)) lens_half_ = film_half_;
@@ -87,7 +87,7 @@ class Figure {
     svg.text(figure_detail::sheet_margin, 46, std::string("Side view.  ") + std::string(view_.remark));
     svg.text(figure_detail::sheet_margin, 64, film_in_words());
     svg.text(SceneFrame::left, top - 8,
-             film_.upright() ? "The scene" : "The scene, and the planes that meet in one line",
+             film_.tilted() ? "The scene, and the planes that meet in one line" : "The scene",
              figure_detail::small_text);
     svg.text(SceneFrame::left, second - 8, "The lens and its film; small dots: where the lens images the points",
              figure_detail::small_text);
@@ -112,10 +112,9 @@ class Figure {
   }
 
   std::string film_in_words() const {
-    const FilmPose& film = view_.after;
-    std::string words =
-        "Film at z = " + number(film.film_z, 7) + " mm (before: " + number(view_.before.film_z, 7) + " mm)";
-    if (film.upright()) return words + ", upright.";
+    const Film& film = view_.after;
+    std::string words = "Film at z = " + number(film.z(), 7) + " mm (before: " + number(view_.before.z(), 7) + " mm)";
+    if (!film.tilted()) return words + ", upright.";
     return words + ", leaning by " + degrees_text(film.angle()) + " (tilt " + degrees_text(film.tilt_rad) + ", swing " +
            degrees_text(film.swing_rad) + ").";
   }
@@ -140,12 +139,11 @@ class Figure {
   }
 
   /// Ends of the exposed part of a film, in the section.
-  std::pair<SectionPoint, SectionPoint> film_ends(const FilmPose& film, bool shifted) const {
+  std::pair<SectionPoint, SectionPoint> film_ends(const Film& film) const {
     const Vec3<double> n = film.normal();
     Vec3<double> along = up_ - glm::dot(up_, n) * n;
     along /= std::sqrt(glm::dot(along, along));
-    const FilmPoint centre{shifted ? view_.frame.centre_x_mm : 0, shifted ? view_.frame.centre_y_mm : 0};
-    const Vec3<double> middle = film.at(centre);
+    const Vec3<double> middle = film.position({film.shift_x_mm, film.shift_y_mm});
     return {section(middle - film_half_ * along), section(middle + film_half_ * along)};
   }
 
@@ -160,7 +158,7 @@ class Figure {
 
   SectionBox scene_box() const {
     const IdealLens& lens = view_.lens;
-    SectionBox box({film_.film_z, 0});
+    SectionBox box({film_.z(), 0});
     box.take({lens.front_focal_z, 0});
     for (const TiltFigurePoint& p : view_.points) {
       if (p.used && !p.place.at_infinity) box.take(section(p.place.position));
@@ -197,7 +195,7 @@ class Figure {
       }
     }
     for (const double side : {-1.0, 1.0}) box.take({lens.rear_z, side * lens_half_});
-    for (const auto& [low, high] : {film_ends(view_.before, false), film_ends(film_, true)}) {
+    for (const auto& [low, high] : {film_ends(view_.before), film_ends(film_)}) {
       box.take(low), box.take(high);
     }
     return box;
@@ -208,13 +206,13 @@ class Figure {
   /// the normal n is D n.(F - I) / n.(I - E), so that all I of one disc lie in a plane across n.)
   std::optional<FocusPlane> limit(double blur) const {
     const Pupil& exit = view_.lens.pupils.exit;
-    FilmPose film = ideal_;
+    Film film = ideal_;
     if (std::isfinite(exit.z)) {
-      const double way = film.film_z - exit.z;
-      film.film_z = exit.z + way / (1 + std::copysign(1.0, way) * blur / exit.diameter);
+      const double way = film.z() - exit.z;
+      film.z_mm = exit.z + way / (1 + std::copysign(1.0, way) * blur / exit.diameter);
     } else {
       const auto axial = view_.lens.image({{0, 0, -1}, true});
-      if (axial) film.film_z -= blur / axial->cone;
+      if (axial) film.z_mm = film.z() - blur / axial->cone;
     }
     return focus_plane(view_.lens, film);
   }
@@ -281,7 +279,7 @@ class Figure {
     if (focus_before_) panel.line(trace(focus_before_->plane), focus_before);
     if (focus_) panel.line(trace(focus_->plane), focus_style);
     draw_lens(svg, panel, 12 / frame.px_per_mm);
-    const auto [low, high] = film_ends(film_, true);
+    const auto [low, high] = film_ends(film_);
     panel.stroke(low, high, film_style);
     for (std::size_t i = 0; i < view_.points.size(); ++i) {
       const TiltFigurePoint& p = view_.points[i];
@@ -330,10 +328,10 @@ class Figure {
       const Vec3<double> start = image.position - back * Vec3<double>(image.slope_x, image.slope_y, 1);
       panel.stroke(section(start), section(image.position), chief_style);
     }
-    const auto [before_low, before_high] = film_ends(view_.before, false);
+    const auto [before_low, before_high] = film_ends(view_.before);
     panel.stroke(before_low, before_high, film_before);
     panel.line(trace(film_.plane()), film_plane);
-    const auto [low, high] = film_ends(film_, true);
+    const auto [low, high] = film_ends(film_);
     panel.stroke(low, high, film_style);
     for (std::size_t i = 0; i < images_.size(); ++i) {
       if (images_[i]) panel.mark(section(images_[i]->position), i + 1, view_.points[i].used, 2.5);
@@ -362,7 +360,7 @@ class Figure {
              "part." +
                  std::string(view_.focus ? " Cardinal points tell all but the film." : ""),
              figure_detail::small_text);
-    if (!thin() && !film_.upright()) {
+    if (!thin() && film_.tilted()) {
       svg.text(figure_detail::sheet_margin, y + 58,
                "The film's plane meets the rear principal plane (H') as far from the axis as the plane of focus meets "
                "the front one (H)" +
@@ -380,8 +378,8 @@ class Figure {
   }
 
   const TiltView& view_;
-  FilmPose film_;   ///< as it is
-  FilmPose ideal_;  ///< as the ideal lens has it for the plane of focus
+  Film film_;   ///< as it is
+  Film ideal_;  ///< as the ideal lens has it for the plane of focus
   std::optional<FocusPlane> focus_, focus_before_;
   Vec3<double> up_{0, 1, 0};  ///< across the axis, in the section
   std::vector<std::optional<ImagePoint>> images_;

@@ -21,7 +21,21 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 double square(double x) noexcept { return x * x; }
 
-FilmPose upright(double film_z) noexcept { return {.film_z = film_z, .tilt_rad = 0, .swing_rad = 0}; }
+Film moved(Film film, double z) noexcept {
+  film.z_mm = z;
+  return film;
+}
+
+/// The film before it moves. Throws Error for one that cannot be moved along the axis.
+Film standing(const Film& film, double unset_z) {
+  const double z = film.z_mm.value_or(unset_z);
+  if (!std::isfinite(z)) throw Error("autofocus: the film stands at z = " + number(z) + " mm, wanted a finite place");
+  if (film.tilted()) {
+    throw Error("autofocus: the film is tilted by " + number(film.tilt_rad) + " and " + number(film.swing_rad) +
+                " rad, wanted an upright one");
+  }
+  return moved(film, z);
+}
 
 /// What a target asks for.
 struct Asked {
@@ -63,27 +77,24 @@ std::optional<double> least_squares(std::span<const FocusTarget> targets, std::s
   return from + sum / weights;
 }
 
-/// Where the film stood, and what infinity is in focus on.
-struct Films {
-  double before = 0, at_infinity = 0;
-};
-
-/// blur_of: of a target that has an image, on a film.
+/// before: the film as it stood; infinity_z: of the film on which infinity is in focus; blur_of: of a target that has
+/// an image, on a film.
 Autofocus described(const IdealLens& lens, std::span<const FocusTarget> targets, std::span<const Asked> asked,
-                    const Films& films, std::optional<double> found, const auto& blur_of) {
+                    const Film& before, double infinity_z, std::optional<double> found, const auto& blur_of) {
   using enum Autofocus::Status;
   Autofocus result;
   result.status = !found ? no_targets : std::isfinite(*found) && *found > lens.rear_z ? solved : unreachable;
-  result.film_z = result ? *found : films.before;
+  result.film = result ? moved(before, *found) : before;
+  const double z = result.film.z(), z_before = before.z();
 
   for (std::size_t i = 0; i < targets.size(); ++i) {
-    const double blur = std::isnan(asked[i].film_z) ? nan : blur_of(i, result.film_z);
+    const double blur = std::isnan(asked[i].film_z) ? nan : blur_of(i, result.film);
     result.blurs.push_back({asked[i].use, targets[i].blur_mm, blur});
   }
   result.rms_mm = movement_detail::rms_error(targets, result.blurs);
 
-  result.breathing = lens.growth(result.film_z, films.at_infinity);
-  result.magnification_change = lens.growth(result.film_z, films.before);
+  result.breathing = lens.growth(z, infinity_z);
+  result.magnification_change = lens.growth(z, z_before);
   return result;
 }
 
@@ -135,10 +146,8 @@ std::string_view name(Autofocus::Status status) noexcept {
   return "unknown";
 }
 
-Autofocus autofocus(const IdealLens& lens, std::span<const FocusTarget> targets, double film_z) {
-  if (!std::isfinite(film_z)) {
-    throw Error("autofocus: the film stands at z = " + number(film_z) + " mm, wanted a finite place");
-  }
+Autofocus autofocus(const IdealLens& lens, std::span<const FocusTarget> targets, const Film& film) {
+  const Film before = standing(film, lens.rear_focal_z);
   std::vector<Asked> asked;
   std::vector<std::optional<ImagePoint>> images;
   for (const FocusTarget& target : targets) {
@@ -150,15 +159,17 @@ Autofocus autofocus(const IdealLens& lens, std::span<const FocusTarget> targets,
     }
     asked.push_back(judged(lens, target, asks));
   }
-  return described(lens, targets, asked, {film_z, lens.rear_focal_z}, least_squares(targets, asked),
-                   [&](std::size_t i, double z) { return signed_blur(*images[i], upright(z)); });
+  return described(lens, targets, asked, before, lens.rear_focal_z, least_squares(targets, asked),
+                   [&](std::size_t i, const Film& last) { return signed_blur(*images[i], last); });
 }
 
-Autofocus autofocus(const ImageRays& lens, std::span<const FocusTarget> targets, FocusCriterion criterion) {
+Autofocus autofocus(const ImageRays& lens, std::span<const FocusTarget> targets, const Film& film,
+                    FocusCriterion criterion) {
   if (criterion != FocusCriterion::min_rms && criterion != FocusCriterion::min_max) {
     throw Error("autofocus: criterion is " + std::string(name(criterion)) +
                 ", wanted min_rms or min_max, or an ideal lens");
   }
+  const Film before = standing(film, lens.lens().film_z());
   const bool rms = criterion == FocusCriterion::min_rms;
   const double plane_z = lens.lens().surfaces().back().vertex_z;
   std::vector<Asked> asked;
@@ -200,8 +211,8 @@ Autofocus autofocus(const ImageRays& lens, std::span<const FocusTarget> targets,
   double at_infinity = nan;
   if (!far.empty())
     at_infinity = (rms ? focus_detail::least_rms(far, plane_z) : focus_detail::least_maximum(far, plane_z)).film_z;
-  return described(lens.ideal(), targets, asked, {lens.lens().film_z(), at_infinity}, found,
-                   [&](std::size_t i, double z) { return signed_diameter(images[i], z); });
+  return described(lens.ideal(), targets, asked, before, at_infinity, found,
+                   [&](std::size_t i, const Film& last) { return signed_diameter(images[i], last.z()); });
 }
 
 std::vector<FocusTarget> region_targets(const Vec3<double>& centre, const Vec3<double>& half_width,

@@ -8,8 +8,8 @@
 
 #include "petzval/core/error.hpp"
 #include "petzval/core/text.hpp"
+#include "petzval/film/film.hpp"
 #include "petzval/movement/disparity_fit.hpp"
-#include "petzval/movement/film_pose.hpp"
 #include "petzval/movement/keyframes.hpp"
 
 namespace petzval::inline v0 {
@@ -67,12 +67,13 @@ void check(const FocusPoint& point, std::size_t vertices, const std::string& whe
 
 void check(const FocusMoment& moment) {
   if (std::isnan(moment.time)) throw Error("focus_targets: time is nan, wanted a number");
-  if (!moment.frame) return;
-  const auto& [width, height, x, y] = *moment.frame;
-  if (!(width >= 0 && height >= 0) || !std::isfinite(width + height + x + y) || !std::isfinite(moment.film_z)) {
-    throw Error("focus_targets: the frame is " + number(width) + " x " + number(height) + " mm about (" + number(x) +
-                ", " + number(y) + ") at z = " + number(moment.film_z) +
-                " mm, wanted finite numbers and no negative size");
+  if (!moment.film) return;
+  const Film& film = *moment.film;
+  const double width = film.width_mm, height = film.height_mm, x = film.shift_x_mm, y = film.shift_y_mm;
+  const double z = film.z_mm.value_or(0), turns = film.tilt_rad + film.swing_rad;
+  if (!(width >= 0 && height >= 0) || !std::isfinite(width + height + x + y + z + turns)) {
+    throw Error("focus_targets: the film is " + number(width) + " x " + number(height) + " mm about (" + number(x) +
+                ", " + number(y) + ") at z = " + number(z) + " mm, wanted finite numbers and no negative size");
   }
 }
 
@@ -152,11 +153,10 @@ std::optional<ScenePoint> place_at(const IdealLens& lens, const FocusPoint& poin
   return ScenePoint{at, false};
 }
 
-bool within(const FilmFrame& frame, double film_z, const ImagePoint& image) noexcept {
-  const double behind = film_z - image.position.z;
-  const double x = image.position.x + behind * image.slope_x, y = image.position.y + behind * image.slope_y;
-  return std::abs(x - frame.centre_x_mm) <= frame.width_mm / 2 &&
-         std::abs(y - frame.centre_y_mm) <= frame.height_mm / 2;
+bool within(Film film, const IdealLens& lens, const ImagePoint& image) {
+  film.z_mm = film.z_mm.value_or(lens.rear_focal_z);
+  const std::optional<FilmPoint> hit = chief_point(image, film);
+  return hit && film.contains(*hit);
 }
 
 }  // namespace
@@ -172,7 +172,7 @@ std::vector<FocusTarget> focus_targets(const IdealLens& lens, std::span<const Fo
     if (moment.time < point.from || moment.time > point.until) continue;
     const auto place = place_at(lens, point, moment);
     const auto image = place ? lens.image(*place) : std::nullopt;
-    if (!image || (moment.frame && !within(*moment.frame, moment.film_z, *image))) continue;
+    if (!image || (moment.film && !within(*moment.film, lens, *image))) continue;
     targets.push_back({*place, at_time(point, moment.time, [&](std::size_t k) { return point.keys[k].blur_mm; }),
                        at_time(point, moment.time, [&](std::size_t k) { return point.keys[k].weight; })});
     nearness.push_back(seen(*place, lens.front_principal_z()).z);

@@ -121,12 +121,19 @@ IdealLens thick_lens(const Lens& lens, Wavelength wavelength) {
           lens.surfaces().back().vertex_z};
 }
 
-double signed_blur(const ImagePoint& image, const FilmPose& film) noexcept {
-  const Vec3<double> n = film.normal(), to_film = Vec3<double>(0, 0, film.film_z) - image.position;
+double signed_blur(const ImagePoint& image, const Film& film) {
+  const Vec3<double> n = film.normal(), to_film = Vec3<double>(0, 0, film.z()) - image.position;
   return image.cone * glm::dot(n, to_film) / (n.z + n.x * image.slope_x + n.y * image.slope_y);
 }
 
-std::optional<FocusPlane> focus_plane(const IdealLens& lens, const FilmPose& film) {
+std::optional<FilmPoint> chief_point(const ImagePoint& image, const Film& film) {
+  const Vec3<double> n = film.normal(), along{image.slope_x, image.slope_y, 1};
+  const double by = glm::dot(n, Vec3<double>(0, 0, film.z()) - image.position) / glm::dot(n, along);
+  if (!std::isfinite(by)) return {};
+  return film.point(image.position + by * along);
+}
+
+std::optional<FocusPlane> focus_plane(const IdealLens& lens, const Film& film) {
   const std::optional<Plane> plane = lens.scene_of(film.plane());
   if (!plane) return {};
   return FocusPlane{*plane, line_at(*plane, lens.front_focal_z), line_at(*plane, lens.front_principal_z())};

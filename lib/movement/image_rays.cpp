@@ -38,11 +38,11 @@ std::optional<Vec3<double>> seen_at(const ScenePoint& place) noexcept {
 
 }  // namespace
 
-std::optional<BundleBlur> blur_on(const RayBundle& bundle, const FilmPose& film) {
+std::optional<BundleBlur> blur_on(const RayBundle& bundle, const Film& film) {
   const std::size_t count = bundle.x.size();
   if (count == 0) return {};
   const Vec3<double> right = film.right(), up = film.up(), normal = film.normal();
-  const double to_film = film.film_z - bundle.plane_z;
+  const double to_film = film.z() - bundle.plane_z;
   const auto rise = [&](std::size_t i) {
     return normal.x * bundle.slope_x[i] + normal.y * bundle.slope_y[i] + normal.z;
   };

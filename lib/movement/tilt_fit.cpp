@@ -16,40 +16,44 @@
 namespace petzval::inline v0 {
 namespace {
 
-void check(const TiltOptions& options) {
+/// With the film's place set. Throws Error for what cannot be fitted.
+TiltOptions checked(TiltOptions options, double unset_z) {
   if (!(options.max_tilt_rad >= 0 && options.max_tilt_rad < std::numbers::pi / 2)) {
     throw Error("fit_tilt: the largest tilt is " + number(options.max_tilt_rad) +
                 " rad, wanted one from 0 to less than a quarter turn");
   }
-  const auto& [film_z, tilt, swing] = options.start;
-  if (!std::isfinite(film_z) || !std::isfinite(tilt) || !std::isfinite(swing)) {
-    throw Error("fit_tilt: the film stands at " + number(film_z) + " mm, " + number(tilt) + " and " + number(swing) +
-                " rad, wanted finite numbers");
+  Film& film = options.film;
+  film.z_mm = film.z_mm.value_or(unset_z);
+  if (!std::isfinite(film.z()) || !std::isfinite(film.tilt_rad) || !std::isfinite(film.swing_rad)) {
+    throw Error("fit_tilt: the film stands at " + number(film.z()) + " mm, " + number(film.tilt_rad) + " and " +
+                number(film.swing_rad) + " rad, wanted finite numbers");
   }
-  const auto& [width, height, x, y] = options.frame;
-  if (!(width >= 0 && height >= 0) || !std::isfinite(width + height + x + y)) {
-    throw Error("fit_tilt: the frame is " + number(width) + " x " + number(height) + " mm about (" + number(x) + ", " +
-                number(y) + "), wanted finite numbers and no negative size");
+  const double sum = film.width_mm + film.height_mm + film.shift_x_mm + film.shift_y_mm;
+  if (!(film.width_mm >= 0 && film.height_mm >= 0) || !std::isfinite(sum)) {
+    throw Error("fit_tilt: the film is " + number(film.width_mm) + " x " + number(film.height_mm) + " mm about (" +
+                number(film.shift_x_mm) + ", " + number(film.shift_y_mm) +
+                "), wanted finite numbers and no negative size");
   }
+  return options;
 }
 
 /// Where the line that came to the middle of the picture meets another film.
-std::optional<FilmPoint> carried_centre(const IdealLens& lens, const TiltOptions& options, const FilmPose& film) {
-  const Vec3<double> middle = options.start.at({options.frame.centre_x_mm, options.frame.centre_y_mm});
+std::optional<FilmPoint> carried_centre(const IdealLens& lens, const Film& before, const Film& film) {
+  const Vec3<double> middle = before.position({before.shift_x_mm, before.shift_y_mm});
   const double pupil_z = lens.pupils.exit.z;
   Vec3<double> line = middle - Vec3<double>(0, 0, pupil_z);
   if (!std::isfinite(pupil_z) || (middle.x == 0 && middle.y == 0)) line = {0, 0, 1};
   const Vec3<double> n = film.normal();
-  const double steps = glm::dot(n, Vec3<double>(0, 0, film.film_z) - middle) / glm::dot(n, line);
+  const double steps = glm::dot(n, Vec3<double>(0, 0, film.z()) - middle) / glm::dot(n, line);
   if (!std::isfinite(steps)) return {};
   return film.point(middle + steps * line);
 }
 
-/// Whether the frame stands behind the lens, corners included.
-bool clear_of_lens(const IdealLens& lens, const FilmFrame& frame, const FilmPose& film, const FilmPoint& centre) {
-  const double x = frame.width_mm / 2, y = frame.height_mm / 2;
-  return std::min({film.at({centre.x - x, centre.y - y}).z, film.at({centre.x + x, centre.y - y}).z,
-                   film.at({centre.x - x, centre.y + y}).z, film.at({centre.x + x, centre.y + y}).z}) > lens.rear_z;
+/// Whether the film stands behind the lens, corners included.
+bool clear_of_lens(const IdealLens& lens, const Film& film) {
+  const auto corners = film.corners();
+  return std::all_of(corners.begin(), corners.end(),
+                     [&](const FilmPoint& corner) { return film.position(corner).z > lens.rear_z; });
 }
 
 /// The film that was found, or the one that stays where it stood. blur_of: of a target on a film.
@@ -58,23 +62,22 @@ TiltFit described(const IdealLens& lens, std::span<const FocusTarget> targets, c
                   const movement_detail::TiltSolution& solution, const auto& blur_of) {
   TiltFit fit;
   fit.rank = problem.rank;
-  fit.film = options.start;
-  fit.centre = {options.frame.centre_x_mm, options.frame.centre_y_mm};
+  fit.film = options.film;
   if (problem.rank == PlaneRank::none) {
     fit.status = TiltFit::Status::no_targets;
   } else if (!solution.converged) {
     fit.status = TiltFit::Status::not_converged;
   } else {
-    const FilmPose film = problem.frame.pose(solution.film);
-    const std::optional<FilmPoint> centre = carried_centre(lens, options, film);
-    if (!centre || !clear_of_lens(lens, options.frame, film, *centre)) {
+    Film film = problem.frame.film(solution.film, options.film);
+    const std::optional<FilmPoint> centre = carried_centre(lens, options.film, film);
+    if (centre) film.shift_x_mm = centre->x, film.shift_y_mm = centre->y;
+    if (!centre || !clear_of_lens(lens, film)) {
       fit.status = TiltFit::Status::unreachable;
     } else {
       fit.status = solution.limited                   ? TiltFit::Status::limited
                    : problem.rank == PlaneRank::plane ? TiltFit::Status::solved
                                                       : TiltFit::Status::least_tilt;
       fit.film = film;
-      fit.centre = *centre;
     }
   }
   fit.focus = focus_plane(lens, fit.film);
@@ -121,17 +124,17 @@ std::string_view name(TiltFit::Status status) noexcept {
   return "unknown";
 }
 
-TiltFit fit_tilt(const IdealLens& lens, std::span<const FocusTarget> targets, const TiltOptions& options) {
-  check(options);
+TiltFit fit_tilt(const IdealLens& lens, std::span<const FocusTarget> targets, const TiltOptions& given) {
+  const TiltOptions options = checked(given, lens.rear_focal_z);
   std::vector<movement_detail::SeenTarget> seen = movement_detail::seen_targets(lens, targets);
   const movement_detail::TiltProblem problem = sober_problem(lens, seen, options);
-  return described(lens, targets, options, seen, problem, solved(problem), [&](std::size_t i, const FilmPose& film) {
+  return described(lens, targets, options, seen, problem, solved(problem), [&](std::size_t i, const Film& film) {
     return seen[i].image ? signed_blur(*seen[i].image, film) : std::numeric_limits<double>::quiet_NaN();
   });
 }
 
-TiltFit fit_tilt(const ImageRays& lens, std::span<const FocusTarget> targets, const TiltOptions& options) {
-  check(options);
+TiltFit fit_tilt(const ImageRays& lens, std::span<const FocusTarget> targets, const TiltOptions& given) {
+  const TiltOptions options = checked(given, lens.lens().film_z());
   const IdealLens& ideal = lens.ideal();
   std::vector<movement_detail::SeenTarget> seen = movement_detail::seen_targets(ideal, targets);
   std::vector<RayBundle> bundles(targets.size());
@@ -158,13 +161,13 @@ TiltFit fit_tilt(const ImageRays& lens, std::span<const FocusTarget> targets, co
     }
     solution = least_blur(errors, problem.space, thick);
   }
-  TiltFit fit = described(ideal, targets, options, seen, problem, solution, [&](std::size_t i, const FilmPose& film) {
+  TiltFit fit = described(ideal, targets, options, seen, problem, solution, [&](std::size_t i, const Film& film) {
     const std::optional<BundleBlur> blur = blur_on(bundles[i], film);
     return blur ? blur->signed_diameter : std::numeric_limits<double>::quiet_NaN();
   });
   // Aberrations move the film away from where cardinal points have it, by as much for all distances, nearly: what is
   // in focus is what these put into focus on the film that they find for the same targets.
-  if (fit) fit.focus = focus_plane(ideal, problem.frame.pose(thick.film));
+  if (fit) fit.focus = focus_plane(ideal, problem.frame.film(thick.film, options.film));
   return fit;
 }
 

@@ -46,10 +46,10 @@ TiltSpace tilt_space(const DisparityFit& fit, std::span<const IdealBlur> blurs, 
 
 }  // namespace
 
-FilmPose TiltFrame::pose(const FilmSlopes& film) const {
-  const double film_z = origin.z + unit * film.z - film.p * origin.x - film.q * origin.y;
-  const double length = std::hypot(film.p, film.q, 1.0);
-  return film_pose({Vec3<double>(0 - film.p, 0 - film.q, 1) / length, film_z / length});
+Film TiltFrame::film(const FilmSlopes& slopes, const Film& like) const {
+  const double z = origin.z + unit * slopes.z - slopes.p * origin.x - slopes.q * origin.y;
+  const double length = std::hypot(slopes.p, slopes.q, 1.0);
+  return film_in({Vec3<double>(0 - slopes.p, 0 - slopes.q, 1) / length, z / length}, like);
 }
 
 bool IdealBlur::operator()(const FilmSlopes& film, double* errors, double* derivatives) const noexcept {

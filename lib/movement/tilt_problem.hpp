@@ -24,7 +24,8 @@ struct TiltFrame {
   Vec3<double> origin{0, 0, 0};
   double unit = 1;
 
-  FilmPose pose(const FilmSlopes& film) const;
+  /// `like` with the place, tilt and swing of these slopes.
+  Film film(const FilmSlopes& slopes, const Film& like) const;
 };
 
 /// The films that a fit chooses from. A slope across the targets' main direction counts where they spread that way.

@@ -44,14 +44,14 @@ constexpr unsigned draws = 8;
 template <class Lens>
 void fit(benchmark::State& state, const Lens& lens, const IdealLens& ideal, bool robust, double max_tilt) {
   TiltOptions options{.max_tilt_rad = max_tilt, .robust = robust};
-  options.start.film_z = ideal.rear_focal_z;
+  options.film.z_mm = ideal.rear_focal_z;
   std::array<std::vector<FocusTarget>, draws> targets;
   for (unsigned i = 0; i < draws; ++i) {
     for (const auto& p : scene(ideal, i)) targets[i].push_back({.place = {p}});
     if (!fit_tilt(lens, targets[i], options)) throw Error("movement_bench: draw " + std::to_string(i) + " has no film");
   }
   unsigned i = 0;
-  for (auto _ : state) benchmark::DoNotOptimize(fit_tilt(lens, targets[i++ % draws], options).film.film_z);
+  for (auto _ : state) benchmark::DoNotOptimize(fit_tilt(lens, targets[i++ % draws], options).film.z());
   state.SetItemsProcessed(state.iterations());
 }
 
@@ -65,15 +65,15 @@ void loop(benchmark::State& state, const Lens& lens, const IdealLens& ideal) {
     points.push_back({.keys = {{.time = 0, .anchor = on}, {.time = 1, .anchor = on, .weight = 2}}});
   }
   TiltOptions options{.robust = true};
-  options.start.film_z = ideal.rear_focal_z;
+  options.film.z_mm = ideal.rear_focal_z;
   std::vector<Vec3<double>> vertices(point_count);
   double time = 0;
   for (auto _ : state) {
     time = std::fmod(time + 0.0137, 1.0);
     for (std::size_t i = 0; i < point_count; ++i) vertices[i] = first[i] + time * (last[i] - first[i]);
-    const FocusMoment moment{.time = time, .vertices = vertices, .frame = FilmFrame{}, .film_z = options.start.film_z};
+    const FocusMoment moment{.time = time, .vertices = vertices, .film = options.film};
     const std::vector<FocusTarget> targets = focus_targets(ideal, points, moment);
-    benchmark::DoNotOptimize(fit_tilt(lens, targets, options).film.film_z);
+    benchmark::DoNotOptimize(fit_tilt(lens, targets, options).film.z());
   }
   state.SetItemsProcessed(state.iterations());
 }

@@ -60,7 +60,7 @@ Samples<T> random_samples(const Film& film, std::size_t count, unsigned seed = 1
   Samples<T> samples;
   for (std::size_t i = 0; i < count; ++i) {
     const double x = film.width_mm * (one(random) - 0.5), y = film.height_mm * (one(random) - 0.5), u = one(random);
-    samples.add(film.centre_x_mm + x, film.centre_y_mm + y, u, one(random));
+    samples.add(film.shift_x_mm + x, film.shift_y_mm + y, u, one(random));
   }
   return samples;
 }

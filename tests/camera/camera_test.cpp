@@ -117,7 +117,7 @@ TEST(Camera, TakesAWavelengthForEveryRay) {
 
 TEST(Camera, HasItsFilmWhereItIsShiftedTo) {
   const Lens lens = focused("double_gauss_100mm_f2.0");
-  const Camera shifted(lens, {.width_mm = 10, .height_mm = 10, .centre_x_mm = 12}, {.model = ModelKind::exact_double});
+  const Camera shifted(lens, {.width_mm = 10, .height_mm = 10, .shift_x_mm = 12}, {.model = ModelKind::exact_double});
   const Camera wide(lens, {.width_mm = 36, .height_mm = 36}, {.model = ModelKind::exact_double});
   EXPECT_EQ(shifted.sample({{6.9, 0}, 0.5, 0.5}).fate, RayFate::outside_film);
   const CameraRay a = shifted.sample({{16.9, 4.9}, 0.5, 0.5}), b = wide.sample({{16.9, 4.9}, 0.5, 0.5});
@@ -125,12 +125,28 @@ TEST(Camera, HasItsFilmWhereItIsShiftedTo) {
   EXPECT_NEAR(glm::length(a.ray.direction - b.ray.direction), 0, 5e-3);  // tables of other steps
 }
 
+TEST(Camera, HasItsFilmWhereThatSays) {
+  const Lens lens = focused("double_gauss_100mm_f2.0");
+  Film film{.shift_y_mm = 3, .z_mm = lens.film_z() + 1.5, .tilt_rad = 0.1};
+  const Camera camera(lens, film, {.model = ModelKind::thick});
+  EXPECT_EQ(camera.lens().film_z(), *film.z_mm);
+  EXPECT_EQ(camera.film().z(), *film.z_mm);
+  const Lens moved = with_film(lens, *film.z_mm);
+  film.z_mm.reset();
+  const Camera same(moved, film, {.model = ModelKind::thick});
+  EXPECT_EQ(same.film().z(), moved.film_z());
+  const CameraSample sample{film.point(1000, 700), 0.3, 0.8};
+  EXPECT_TRUE(camera.sample(sample));
+  EXPECT_EQ(camera.sample(sample).ray.origin, same.sample(sample).ray.origin);
+  EXPECT_EQ(camera.sample(sample).ray.direction, same.sample(sample).ray.direction);
+}
+
 TEST(Camera, HasItsEdgesOnTheFilm) {
   const Lens lens = focused("double_gauss_100mm_f2.0");
   const core_detail::Kronecker<4> random(1);
   for (std::uint32_t i = 0; i < 40; ++i) {
     const auto [a, b, c, d] = random(i);
-    const Film film{.width_mm = 5 + 20 * a, .height_mm = 5 + 15 * b, .centre_x_mm = 9 * c, .centre_y_mm = -9 * d};
+    const Film film{.width_mm = 5 + 20 * a, .height_mm = 5 + 15 * b, .shift_x_mm = 9 * c, .shift_y_mm = -9 * d};
     const Camera camera(lens, film, {.model = ModelKind::thick});
     Samples<float> rounded;
     for (const double column : {0.0, 0.5 * film.columns, 1.0 * film.columns}) {
@@ -223,7 +239,7 @@ TEST(Camera, ConservesEtendue) {
   const double angle = 0.2;
   for (const auto& [id, film] :
        {std::pair{"double_gauss_100mm_f2.0", Film{.width_mm = 14, .height_mm = 14}},
-        std::pair{"double_gauss_100mm_f2.0", Film{.centre_y_mm = 4, .tilt_rad = angle, .swing_rad = -angle}},
+        std::pair{"double_gauss_100mm_f2.0", Film{.shift_y_mm = 4, .tilt_rad = angle, .swing_rad = -angle}},
         std::pair{"fisheye_10mm_f4", Film{.width_mm = 14, .height_mm = 14}},
         std::pair{"fisheye_10mm_f4", Film{.width_mm = 14, .height_mm = 14, .tilt_rad = angle}},
         std::pair{"eye_gullstrand_le_grand", Film{.width_mm = 3, .height_mm = 3}},
@@ -437,9 +453,8 @@ TEST(Camera, SeesBehindItselfWithAFisheye) {
 TEST(Camera, RefusesFilmsThatAreNone) {
   const Lens lens = testing::data_lens("tessar_100mm_f2.8");
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  for (const Film& film :
-       {Film{.width_mm = 0}, Film{.height_mm = -24}, Film{.width_mm = nan}, Film{.columns = 0}, Film{.rows = -1},
-        Film{.centre_x_mm = nan}, Film{.tilt_rad = nan}, Film{.swing_rad = -1.6}}) {
+  for (const Film& film : {Film{.width_mm = 0}, Film{.height_mm = -24}, Film{.width_mm = nan}, Film{.columns = 0},
+                           Film{.rows = -1}, Film{.shift_x_mm = nan}, Film{.tilt_rad = nan}, Film{.swing_rad = -1.6}}) {
     EXPECT_THROW(Camera(lens, film), Error);
   }
   EXPECT_THROW(Camera(with_film(lens, lens.surfaces().back().vertex_z), {}), Error);

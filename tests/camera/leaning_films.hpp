@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "petzval/camera/film.hpp"
 #include "petzval/core/units.hpp"
+#include "petzval/film/film.hpp"
 #include "petzval/lens/lens.hpp"
-#include "petzval/movement/film_pose.hpp"
 
 namespace petzval::testing {
 
 inline const Film wide{.width_mm = 36, .height_mm = 24};
-inline const Film shifted{.width_mm = 36, .height_mm = 24, .centre_x_mm = -3, .centre_y_mm = 6};
+inline const Film shifted{.width_mm = 36, .height_mm = 24, .shift_x_mm = -3, .shift_y_mm = 6};
 
 inline Film leaning(Film film, double tilt_deg, double swing_deg) {
   film.tilt_rad = radians(tilt_deg);
@@ -17,6 +16,9 @@ inline Film leaning(Film film, double tilt_deg, double swing_deg) {
   return film;
 }
 
-inline FilmPose pose_of(const Lens& lens, const Film& film) { return {lens.film_z(), film.tilt_rad, film.swing_rad}; }
+inline Film pose_of(const Lens& lens, Film film) {
+  film.z_mm = lens.film_z();
+  return film;
+}
 
 }  // namespace petzval::testing

@@ -12,7 +12,7 @@
 #include "../data_lenses.hpp"
 #include "core/low_discrepancy.hpp"
 #include "petzval/camera/camera.hpp"
-#include "petzval/movement/film_pose.hpp"
+#include "petzval/film/film.hpp"
 #include "petzval/paraxial/pupils.hpp"
 #include "petzval/pupil/aim.hpp"
 #include "petzval/trace/trace.hpp"
@@ -140,9 +140,9 @@ TEST(Projection, FindsPointsThroughCylinders) {
 
 // The chief ray of a scene point, found from the scene, meets the film in space where the projection says.
 TEST(Projection, IsWhereChiefRaysMeetATiltedFilm) {
-  const Film leaning{.width_mm = 36, .height_mm = 24, .centre_y_mm = 3, .tilt_rad = 0.2, .swing_rad = -0.12};
   const Lens lens = testing::data_lens("double_gauss_100mm_f2_28deg");
-  const FilmPose pose{lens.film_z(), leaning.tilt_rad, leaning.swing_rad};
+  const Film leaning{
+      .width_mm = 36, .height_mm = 24, .shift_y_mm = 3, .z_mm = lens.film_z(), .tilt_rad = 0.2, .swing_rad = -0.12};
   const Camera camera(lens, leaning, {.model = ModelKind::exact_double});
   const double pupil_z = pupils(lens).entrance.z;
   const core_detail::Kronecker<3> random(6);
@@ -154,8 +154,8 @@ TEST(Projection, IsWhereChiefRaysMeetATiltedFilm) {
     const AimedRay chief = chief_ray(lens, {field, z, azimuth});
     if (!chief) continue;
     const auto& [origin, direction] = chief.end.ray;
-    const double t = glm::dot(pose.at({}) - origin, pose.normal()) / glm::dot(direction, pose.normal());
-    const FilmPoint wanted = pose.point(origin + t * direction);
+    const double t = glm::dot(leaning.position({}) - origin, leaning.normal()) / glm::dot(direction, leaning.normal());
+    const FilmPoint wanted = leaning.point(origin + t * direction);
     const Projection p = camera.project({across * std::sin(azimuth), across * std::cos(azimuth), z});
     if (!leaning.contains(wanted)) {
       EXPECT_EQ(p.status, ProjectionStatus::outside_film);

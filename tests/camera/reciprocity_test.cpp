@@ -180,7 +180,7 @@ TEST(Reciprocity, HoldsForTiltedFilms) {
   constexpr double degree = pi / 180;
   const Film eight{.width_mm = 36, .height_mm = 24, .tilt_rad = 8 * degree, .swing_rad = -3 * degree};
   const Film twenty{
-      .width_mm = 36, .height_mm = 24, .centre_x_mm = 2, .tilt_rad = -5 * degree, .swing_rad = 20 * degree};
+      .width_mm = 36, .height_mm = 24, .shift_x_mm = 2, .tilt_rad = -5 * degree, .swing_rad = 20 * degree};
   const Lens lens = testing::data_lens("double_gauss_100mm_f2_28deg");
   for (const auto& [film, model] :
        {std::pair{eight, ModelKind::thin_two_disc}, std::pair{eight, ModelKind::exact_float},
@@ -191,7 +191,7 @@ TEST(Reciprocity, HoldsForTiltedFilms) {
     expect_reciprocity(lens, film, {.model = model}, 6, 2500, nearly ? 1e-3 : 0);
   }
   // Far off the axis, where a pinhole's ray is not the mean of its sample's lines.
-  expect_reciprocity(lens, {.width_mm = 30, .height_mm = 30, .centre_y_mm = -14, .tilt_rad = 20 * degree},
+  expect_reciprocity(lens, {.width_mm = 30, .height_mm = 30, .shift_y_mm = -14, .tilt_rad = 20 * degree},
                      {.model = ModelKind::pinhole}, 13, 2500, 1e-3);
   expect_reciprocity(testing::data_lens("fisheye_8mm_f2.8"),
                      {.width_mm = 16, .height_mm = 16, .tilt_rad = 6 * degree, .swing_rad = 6 * degree},

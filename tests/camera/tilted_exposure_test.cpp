@@ -60,9 +60,9 @@ struct Traced {
   std::vector<double> per_area;
 };
 
-Traced traced(const Lens& lens, const FilmPose& pose, const FilmPoint& film, double z,
+Traced traced(const Lens& lens, const Film& pose, const FilmPoint& film, double z,
               const std::vector<std::array<double, 2>>& places) {
-  const Vec3<double> from = pose.at(film), normal = pose.normal();
+  const Vec3<double> from = pose.position(film), normal = pose.normal();
   std::vector<Ray<double>> rays;
   Traced result;
   for (const auto& [x, y] : places) {
@@ -87,7 +87,7 @@ TEST_P(Leaning, SamplesReachTheSceneAndMissNothing) {
   const Lens lens = GetParam().focused();
   const Camera camera(lens, GetParam().leaning_film(), {.model = ModelKind::exact_double});
   const TiltedFilm& tilted = *camera.tilted_film();
-  const FilmPose pose = pose_of(lens, camera.film());
+  const Film pose = pose_of(lens, camera.film());
   const double z = camera.pupils().space().pupil_z;
   std::mt19937_64 random(5);
   std::uniform_real_distribution<double> unit;
@@ -137,7 +137,7 @@ TEST_P(Leaning, SamplesReachTheSceneAndMissNothing) {
 }
 
 /// Irradiance of a film point in a scene of radiance 1, by a grid of rays through the last vertex's plane.
-double irradiance(const Lens& lens, const FilmPose& pose, const FilmPoint& point) {
+double irradiance(const Lens& lens, const Film& pose, const FilmPoint& point) {
   const OuterFace face = last_face(lens);
   // First all that the last surface could take, then what of it passes.
   std::array<double, 2> low{-1.6 * face.half, -1.6 * face.half}, high{1.6 * face.half, 1.6 * face.half};
@@ -179,7 +179,7 @@ double mean_weight(const Camera& camera, const FilmPoint& film) {
 void expect_exposures(const Lens& lens, const Film& film, double corner = 0.45, double tolerance = 2e-3) {
   const Camera camera(lens, film, {.model = ModelKind::exact_double});
   for (const auto& [x, y] : {std::array{0.0, 0.0}, {corner, corner}, {-0.4, corner}, {0.1, -0.48}}) {
-    const FilmPoint point{film.centre_x_mm + x * film.width_mm, film.centre_y_mm + y * film.height_mm};
+    const FilmPoint point{film.shift_x_mm + x * film.width_mm, film.shift_y_mm + y * film.height_mm};
     EXPECT_NEAR(mean_weight(camera, point) / irradiance(lens, pose_of(lens, film), point), 1, tolerance)
         << point.x << ", " << point.y;
   }
@@ -220,7 +220,7 @@ TEST(TiltedFilm, ExposesAsADiscDoes) {
     const Lens lens = testing::data_lens(id);
     const Pupils paraxial = pupils(lens);
     const Film film = leaning(id[0] == 'f' ? square : shifted, -12, 16);
-    const FilmPose pose = pose_of(lens, film);
+    const Film pose = pose_of(lens, film);
     struct Disc {
       double z, radius;
     };
@@ -235,7 +235,8 @@ TEST(TiltedFilm, ExposesAsADiscDoes) {
         for (int i = 0; i < rings * spokes; ++i) {
           const double r = disc.radius * std::sqrt((i % rings + 0.5) / rings),
                        angle = 2 * std::numbers::pi * (i / rings) / spokes;
-          const Vec3<double> along = Vec3<double>{r * std::cos(angle), r * std::sin(angle), disc.z} - pose.at(point);
+          const Vec3<double> along =
+              Vec3<double>{r * std::cos(angle), r * std::sin(angle), disc.z} - pose.position(point);
           wanted += along.z * glm::dot(along, pose.normal()) / std::pow(glm::dot(along, along), 2) / (rings * spokes);
         }
         wanted *= std::numbers::pi * disc.radius * disc.radius;

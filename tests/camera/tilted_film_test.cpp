@@ -19,8 +19,8 @@
 #include "petzval/camera/camera.hpp"
 #include "petzval/camera/sample_rays.hpp"
 #include "petzval/core/units.hpp"
+#include "petzval/film/film.hpp"
 #include "petzval/focus/focus.hpp"
-#include "petzval/movement/film_pose.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/paraxial/pupils.hpp"
 
@@ -75,12 +75,12 @@ TEST(TiltedFilm, TellsLinesAsSpaceDoes) {
   const Film film = leaning(shifted, 14, -9);
   const FilmPupilTable pupils = FilmPupilTable::enclosing(lens, upright_radius(lens, film, ModelKind::exact_double));
   const TiltedFilm tilted(film, pupils);
-  const FilmPose pose = pose_of(lens, film);
+  const Film pose = pose_of(lens, film);
   const core_detail::Kronecker<4> random(8);
   for (std::uint32_t i = 0; i < 200; ++i) {
     const auto [a, b, c, d] = random(i);
     const FilmPoint point = film.point(a * film.columns, b * film.rows), key = tilted.key(point);
-    const Vec3<double> place = pose.at(point), q{60 * (c - 0.5), 60 * (d - 0.5), pupils.space().pupil_z};
+    const Vec3<double> place = pose.position(point), q{60 * (c - 0.5), 60 * (d - 0.5), pupils.space().pupil_z};
     const TwoPlaneRay line = tilted.upright(key, q.x, q.y);
     const Vec3<double> upright{line.film_x, line.film_y, pupils.space().film_z};
     const Vec3<double> along = q - place, straight = q - upright, normal = pose.normal();
@@ -99,7 +99,7 @@ TEST(TiltedFilm, TellsLinesAsSpaceDoes) {
 
 /// A pinhole's: what the film point sees, in the plane of the pupil, of the upright model's sample of the exit pupil.
 PupilSample pinhole_sample(const Lens& lens, const Camera& camera, const CameraSample& s) {
-  const Vec3<double> from = pose_of(lens, camera.film()).at(s.film);
+  const Vec3<double> from = pose_of(lens, camera.film()).position(s.film);
   const TwoPlanes& space = camera.pupils().space();
   const double exit_z = pupils(lens, s.wavelength).exit.z;
   const auto along = [](const Vec3<double>& a, const Vec3<double>& b, double z) {
@@ -119,7 +119,7 @@ TEST(TiltedFilm, HasTheDensitiesOfItsSamples) {
   for (const ModelKind model : models()) {
     const Camera camera(lens, leaning(shifted, 14, -9), {.model = model});
     const TiltedFilm& tilted = *camera.tilted_film();
-    const FilmPose pose = pose_of(lens, camera.film());
+    const Film pose = pose_of(lens, camera.film());
     auto samples = random_samples(camera.film(), 60);
     samples.run(camera);
     int checked = 0;
@@ -128,7 +128,7 @@ TEST(TiltedFilm, HasTheDensitiesOfItsSamples) {
       const PupilSample p = model == ModelKind::pinhole
                                 ? pinhole_sample(lens, camera, s)
                                 : tilted.pupils().sample(tilted.key(s.film), s.pupil_u, s.pupil_v);
-      const Vec3<double> along = Vec3<double>{p.x, p.y, camera.pupils().space().pupil_z} - pose.at(s.film);
+      const Vec3<double> along = Vec3<double>{p.x, p.y, camera.pupils().space().pupil_z} - pose.position(s.film);
       const double length = glm::length(along), pdf = std::pow(length, 3) / (p.area * std::abs(along.z));
       EXPECT_NEAR(samples.pdf_pupil[i] * p.area, 1, 1e-9);
       EXPECT_NEAR(samples.pdf_direction[i] / pdf, 1, 1e-9) << name(model);
@@ -166,12 +166,12 @@ TEST(TiltedFilm, IsSharpInATiltedPlane) {
   const Film film = leaning(wide, 7, -4);
   const Camera camera(lens, film, {.model = ModelKind::thin});
   const FirstOrder f = first_order(lens);
-  const FilmPose pose = pose_of(lens, film);
+  const Film pose = pose_of(lens, film);
   auto samples = random_samples(film, 400);
   constexpr int rays = 16;
   std::vector<Vec3<double>> images;
   for (std::size_t i = 0; i < samples.size(); ++i) {
-    const Vec3<double> place = pose.at({samples.film_x[i], samples.film_y[i]});
+    const Vec3<double> place = pose.position({samples.film_x[i], samples.film_y[i]});
     // Gauss: the image by object and image distance from the principal planes.
     const double behind = place.z - f.rear_principal_z;
     const double before = 1 / (1 / f.effective_focal_length - 1 / behind);

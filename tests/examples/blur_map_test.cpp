@@ -37,7 +37,7 @@ double at(const examples::BlurMap& map, double x, double y) {
 
 TEST(PointScene, GoesThroughItsPoints) {
   const petzval::IdealLens lens = petzval::thick_lens(petzval::testing::data_lens("double_gauss_100mm_f2_28deg"));
-  const petzval::FilmPose film{.film_z = 150};
+  const petzval::Film film{.z_mm = 150};
   std::vector<ScenePoint> places = places_of(table);
   places.push_back({{80, 30, -2000}, false});
   places.push_back({{-0.05, 0.1, -1}, true});
@@ -67,35 +67,34 @@ TEST(BlurMap, APlaneIsSharpAllOverOnItsFilm) {
   const petzval::IdealLens lens = petzval::thin_lens(100, 4);
   const auto places = places_of(table);
   const PointScene scene(lens, places);
-  examples::Picture picture{.film = petzval::film_pose(lens.image_of(table).value()), .frame = {36, 24}, .pixels = 180};
-  const auto sharp = examples::blur_map(picture, scene, lens, nullptr, 2);
+  petzval::Film film = examples::with_pixels(petzval::film_in(lens.image_of(table).value()), 180);
+  const auto sharp = examples::blur_map(film, scene, lens, nullptr, 2);
   ASSERT_EQ(sharp.width, 180);
   ASSERT_EQ(sharp.height, 120);
   for (const double y : {20.0, 60.0, 100.0}) {
     for (const double x : {20.0, 90.0, 160.0}) EXPECT_LT(std::abs(at(sharp, x, y)), 1e-4) << x << ' ' << y;
   }
-  picture.film = {.film_z = lens.image(places[2])->position.z};
-  const auto upright = examples::blur_map(picture, scene, lens, nullptr, 2);
+  film = examples::with_pixels({.z_mm = lens.image(places[2])->position.z}, 180);
+  const auto upright = examples::blur_map(film, scene, lens, nullptr, 2);
   EXPECT_GT(std::abs(at(upright, 90, 110)), 0.1);
-  EXPECT_EQ(examples::blur_map(picture, scene, lens, nullptr, 1).diameter_mm, upright.diameter_mm);
+  EXPECT_EQ(examples::blur_map(film, scene, lens, nullptr, 1).diameter_mm, upright.diameter_mm);
 }
 
 TEST(BlurMap, IsTheRightWayUpAndSigned) {
   const petzval::IdealLens lens = petzval::thin_lens(50, 2);
   // Near at the lower left, far at the upper right.
   const std::vector<ScenePoint> places{{{-200, -150, -1000}, false}, {{600, 450, -3000}, false}};
-  const examples::Picture picture{
-      .film = {.film_z = lens.image({{0, 0, -1500}, false})->position.z}, .frame = {36, 24}, .pixels = 360};
-  const auto near = picture.pixel(*examples::on_film(lens, picture.film, places[0]));
-  const auto far = picture.pixel(*examples::on_film(lens, picture.film, places[1]));
-  EXPECT_LT(near.first, 180);
-  EXPECT_GT(near.second, 120);
-  EXPECT_GT(far.first, 180);
-  EXPECT_LT(far.second, 120);
-  const auto map = examples::blur_map(picture, PointScene(lens, places), lens, nullptr, 1);
+  const petzval::Film film = examples::with_pixels({.z_mm = lens.image({{0, 0, -1500}, false})->position.z}, 360);
+  const auto near = film.raster(*examples::on_film(lens, film, places[0]));
+  const auto far = film.raster(*examples::on_film(lens, film, places[1]));
+  EXPECT_LT(near[0], 180);
+  EXPECT_GT(near[1], 120);
+  EXPECT_GT(far[0], 180);
+  EXPECT_LT(far[1], 120);
+  const auto map = examples::blur_map(film, PointScene(lens, places), lens, nullptr, 1);
   for (std::size_t i = 0; i < 2; ++i) {
     const auto& [x, y] = i == 0 ? near : far;
-    const double blur = petzval::signed_blur(*lens.image(places[i]), picture.film);
+    const double blur = petzval::signed_blur(*lens.image(places[i]), film);
     EXPECT_EQ(blur < 0, i == 0);
     EXPECT_NEAR(at(map, x, y), blur, 0.02 * std::abs(blur));
   }
@@ -106,10 +105,9 @@ TEST(BlurMap, ExactRaysAgreeWithTheThickLensStoppedDown) {
   const petzval::ImageRays rays(lens, 30, 96);
   const auto places = places_of(table);
   const PointScene scene(rays.ideal(), places);
-  const examples::Picture picture{
-      .film = {.film_z = rays.ideal().image(places[2])->position.z}, .frame = {36, 24}, .pixels = 540};
-  const auto exact = examples::blur_map(picture, scene, rays.ideal(), &rays, 2);
-  const auto ideal = examples::blur_map(picture, scene, rays.ideal(), nullptr, 2);
+  const petzval::Film film = examples::with_pixels({.z_mm = rays.ideal().image(places[2])->position.z}, 540);
+  const auto exact = examples::blur_map(film, scene, rays.ideal(), &rays, 2);
+  const auto ideal = examples::blur_map(film, scene, rays.ideal(), nullptr, 2);
   double middle = 0, all = 0, largest = 0;
   for (int y = 0; y < exact.height; ++y) {
     for (int x = 0; x < exact.width; ++x) {

@@ -22,7 +22,7 @@ std::vector<FocusPullFrame> pull() {
   std::vector<FocusPullFrame> frames;
   for (const double distance : {500.0, 1000.0, 2000.0, infinity}) {
     const auto time = static_cast<double>(frames.size());
-    frames.push_back({.time = time, .film_z = 60 - time, .subject_distance = distance, .rms_mm = 0.01});
+    frames.push_back({.time = time, .film = {.z_mm = 60 - time}, .subject_distance = distance, .rms_mm = 0.01});
   }
   return frames;
 }
@@ -52,12 +52,12 @@ TEST(FocusPullFigure, LeavesTheColourOutWhereTheFilmStayed) {
 
 TEST(FocusPullFigure, ShowsTiltWhereThereIsSome) {
   auto frames = pull();
-  frames[2].tilt_rad = 0.1;
+  frames[2].film.tilt_rad = 0.1;
   EXPECT_NE(focus_pull_figure("", "", frames, {}).find(">tilt, swing"), std::string::npos);
 }
 
 TEST(FocusPullFigure, DrawsOneFrame) {
-  const std::vector<FocusPullFrame> one{{.time = 3, .film_z = 50, .subject_distance = 1000, .rms_mm = 0}};
+  const std::vector<FocusPullFrame> one{{.time = 3, .film = {.z_mm = 50}, .subject_distance = 1000, .rms_mm = 0}};
   EXPECT_EQ(focus_pull_figure("", "", one, {}).find("nan"), std::string::npos);
 }
 
@@ -69,11 +69,11 @@ TEST(FocusPullFigure, WantsFramesInOrderWithNumbers) {
     EXPECT_THROW(focus_pull_figure("", "", frames, {}), Error);
   };
   refuses([](FocusPullFrame& f) { f.time = 0; });
-  refuses([](FocusPullFrame& f) { f.film_z = infinity; });
+  refuses([](FocusPullFrame& f) { f.film.z_mm = infinity; });
   refuses([](FocusPullFrame& f) { f.subject_distance = 0; });
   refuses([](FocusPullFrame& f) { f.subject_distance = std::nan(""); });
   refuses([](FocusPullFrame& f) { f.rms_mm = infinity; });
-  refuses([](FocusPullFrame& f) { f.swing_rad = std::nan(""); });
+  refuses([](FocusPullFrame& f) { f.film.swing_rad = std::nan(""); });
 }
 
 }  // namespace

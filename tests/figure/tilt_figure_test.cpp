@@ -41,8 +41,8 @@ TiltView view(const IdealLens& lens, const Plane& plane, const std::vector<TiltF
   result.title = "A <lens>";
   result.remark = "f/4 & more";
   result.lens = lens;
-  result.after = film_pose(lens.image_of(plane).value());
-  result.before.film_z = lens.image({{0, 0, -1000}, false})->position.z;
+  result.after = film_in(lens.image_of(plane).value());
+  result.before.z_mm = lens.image({{0, 0, -1000}, false})->position.z;
   result.points = points;
   return result;
 }
@@ -144,8 +144,8 @@ TEST(TiltFigure, AKnownPlaneOfFocusIsDrawnWhereverTheFilmIs) {
   const auto points = points_of(table);
   const TiltView ideal = view(thin_lens(100, 4), table, points);
   TiltView real = ideal;
-  real.after.film_z -= 0.5;
-  real.before.film_z -= 0.5;
+  real.after.z_mm = real.after.z() - 0.5;
+  real.before.z_mm = real.before.z() - 0.5;
   const auto hinge = [](const std::string& svg) {
     const auto at = svg.find("Hinge line");
     return svg.substr(at, svg.find("from the axis", at) - at);
@@ -179,7 +179,7 @@ TEST(TiltFigure, AnUprightFilmHasNoLinesAndPointsAtInfinityArrows) {
   for (const char* word : {"nan", "inf\"", "-0\u00b0"}) EXPECT_EQ(svg.find(word), std::string::npos) << word;
   EXPECT_EQ(count(svg, "A &lt;lens&gt;"), 1u);
   // A film in the rear focal plane.
-  upright.after.film_z = upright.lens.rear_focal_z;
+  upright.after.z_mm = upright.lens.rear_focal_z;
   EXPECT_NE(tilt_figure(upright).find("What is in focus lies at infinity."), std::string::npos);
 }
 
@@ -191,7 +191,7 @@ TEST(TiltFigure, WantsFiniteFilmsABlurAndAFrame) {
     v.after.tilt_rad = bad;
     EXPECT_THROW(tilt_figure(v), Error);
     v = good;
-    v.before.film_z = bad;
+    v.before.z_mm = bad;
     EXPECT_THROW(tilt_figure(v), Error);
   }
   for (const double bad : {0.0, -1.0, std::nan("")}) {
@@ -199,7 +199,7 @@ TEST(TiltFigure, WantsFiniteFilmsABlurAndAFrame) {
     v.blur_mm = bad;
     EXPECT_THROW(tilt_figure(v), Error);
     v = good;
-    v.frame.width_mm = bad;
+    v.after.width_mm = bad;
     EXPECT_THROW(tilt_figure(v), Error);
   }
 }

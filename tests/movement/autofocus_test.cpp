@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "../data_lenses.hpp"
+#include "../film_at.hpp"
 #include "../message.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/focus/depth_of_field.hpp"
@@ -20,6 +21,7 @@ namespace petzval {
 namespace {
 
 using testing::data_lens;
+using testing::film_at;
 using testing::message;
 using enum Autofocus::Status;
 using enum FocusCriterion;
@@ -32,14 +34,14 @@ FocusTarget at(double x, double y, double z, double blur_mm = 0, double weight =
 
 TEST(Autofocus, OfAThinLensFollowsItsFormula) {
   const IdealLens lens = thin_lens(50, 2);
-  EXPECT_NEAR(autofocus(lens, std::vector{at(0, 0, -2000)}, 60).film_z, 51.282051282051282, 1e-12 * 51);
-  EXPECT_NEAR(autofocus(lens, std::vector{at(0, 0, -500)}, 60).film_z, 55.555555555555556, 1e-12 * 55);
+  EXPECT_NEAR(autofocus(lens, std::vector{at(0, 0, -2000)}, film_at(60)).film.z(), 51.282051282051282, 1e-12 * 51);
+  EXPECT_NEAR(autofocus(lens, std::vector{at(0, 0, -500)}, film_at(60)).film.z(), 55.555555555555556, 1e-12 * 55);
   // Badly conditioned: 50.0001 itself is known to 7e-15 of the 1e-4 that count.
-  EXPECT_NEAR(autofocus(lens, std::vector{at(0, 0, -50.0001)}, 60).film_z, 25000050, 25000050 * 1e-10);
+  EXPECT_NEAR(autofocus(lens, std::vector{at(0, 0, -50.0001)}, film_at(60)).film.z(), 25000050, 25000050 * 1e-10);
   for (const double z : {-50.0, -49.0, 0.0, 10.0}) {
-    const Autofocus none = autofocus(lens, std::vector{at(0, 0, z)}, 60);
+    const Autofocus none = autofocus(lens, std::vector{at(0, 0, z)}, film_at(60));
     EXPECT_EQ(none.status, no_targets) << z;
-    EXPECT_EQ(none.film_z, 60);
+    EXPECT_EQ(none.film.z(), 60);
     EXPECT_EQ(none.blurs[0].use, TargetUse::no_image);
     EXPECT_TRUE(std::isnan(none.blurs[0].blur_mm));
   }
@@ -54,10 +56,10 @@ TEST(Autofocus, OfOneTargetOnTheAxisIsSolveFocus) {
       SCOPED_TRACE(std::string(id) + " at " + std::to_string(distance));
       for (const auto criterion : {thin, paraxial}) {
         const IdealLens ideal = criterion == thin ? thin_lens(lens, wavelength) : thick_lens(lens, wavelength);
-        const Autofocus focus = autofocus(ideal, std::vector{at(0, 0, -distance)}, lens.film_z());
+        const Autofocus focus = autofocus(ideal, std::vector{at(0, 0, -distance)}, film_at(lens.film_z()));
         EXPECT_TRUE(focus);
         const double expected = solve_focus(lens, distance, {.criterion = criterion}).film_z;
-        EXPECT_NEAR(focus.film_z, expected, 1e-12 * std::abs(expected));
+        EXPECT_NEAR(focus.film.z(), expected, 1e-12 * std::abs(expected));
         EXPECT_NEAR(focus.rms_mm, 0, 1e-12);
       }
     }
@@ -79,9 +81,9 @@ TEST(Autofocus, ByExactRaysIsSolveFocusAsFarAsTheRaysTell) {
         for (const auto& [criterion, tolerance] : {std::pair(min_rms, rms_mm), std::pair(min_max, max_mm)}) {
           const FocusOptions options{.criterion = criterion, .fields = {{field, 1}}};
           const double expected = solve_focus(lens, distance == 1e9 ? infinity : distance, options).film_z;
-          const Autofocus focus = autofocus(bundles, std::vector{at(0, y, -distance)}, criterion);
+          const Autofocus focus = autofocus(bundles, std::vector{at(0, y, -distance)}, {}, criterion);
           EXPECT_TRUE(focus);
-          EXPECT_NEAR(focus.film_z, expected, tolerance) << rays << " " << degrees << " " << distance;
+          EXPECT_NEAR(focus.film.z(), expected, tolerance) << rays << " " << degrees << " " << distance;
         }
       }
     }
@@ -91,7 +93,7 @@ TEST(Autofocus, ByExactRaysIsSolveFocusAsFarAsTheRaysTell) {
 TEST(Autofocus, SharesTheBlurBetweenTwoTargets) {
   const IdealLens lens = thin_lens(50, 2);
   const std::vector targets{at(0, 0, -1000), at(200, 0, -3000)};
-  const Autofocus focus = autofocus(lens, targets, 50);
+  const Autofocus focus = autofocus(lens, targets, film_at(50));
   ASSERT_TRUE(focus);
   EXPECT_LT(focus.blurs[0].blur_mm, 0);  // in front of the plane of focus
   EXPECT_GT(focus.blurs[1].blur_mm, 0);
@@ -115,13 +117,13 @@ TEST(Autofocus, HasNoBetterNeighbour) {
                             at(40, -90, -800, -0.1, 1)};
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
   const IdealLens ideal = thick_lens(lens);
-  const Autofocus focus = autofocus(ideal, targets, lens.film_z());
+  const Autofocus focus = autofocus(ideal, targets, film_at(lens.film_z()));
   ASSERT_TRUE(focus);
   EXPECT_NEAR(squares(focus, targets), 4.5 * focus.rms_mm * focus.rms_mm, 1e-12);
   for (const double step : {-1e-3, 1e-3}) {
     double sum = 0;
     for (const FocusTarget& t : targets) {
-      const double blur = signed_blur(*ideal.image(t.place), {focus.film_z + step, 0, 0});
+      const double blur = signed_blur(*ideal.image(t.place), film_at(focus.film.z() + step));
       sum += t.weight * std::pow(blur - t.blur_mm, 2);
     }
     EXPECT_GT(sum, squares(focus, targets));
@@ -133,10 +135,10 @@ TEST(Autofocus, ByExactRaysHasNoBetterNeighbour) {
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
   const ImageRays bundles(lens, 22);
   const auto blur = [&](std::size_t i, double film_z) {
-    return *blur_on(bundles.bundle(targets[i].place), {film_z, 0, 0});
+    return *blur_on(bundles.bundle(targets[i].place), film_at(film_z));
   };
-  const double by_rms = autofocus(bundles, targets, min_rms).film_z;
-  const double by_max = autofocus(bundles, targets, min_max).film_z;
+  const double by_rms = autofocus(bundles, targets, {}, min_rms).film.z();
+  const double by_max = autofocus(bundles, targets, {}, min_max).film.z();
   EXPECT_GT(std::abs(by_rms - by_max), 0.01);
   const auto sum = [&](double z) {
     double result = 0;
@@ -160,14 +162,14 @@ TEST(Autofocus, BlursOneTargetAsWanted) {
   const ImageRays bundles(lens, 22);
   for (const double wanted : {-0.5, -0.2, 0.2, 2.0}) {
     const std::vector target{at(50, -100, -1500, wanted)};
-    EXPECT_NEAR(autofocus(ideal, target, lens.film_z()).blurs[0].blur_mm, wanted, 1e-12);
-    EXPECT_NEAR(autofocus(bundles, target, min_rms).blurs[0].blur_mm, wanted, 1e-12);
-    EXPECT_NEAR(autofocus(bundles, target, min_max).blurs[0].blur_mm, wanted, 1e-12);
+    EXPECT_NEAR(autofocus(ideal, target, film_at(lens.film_z())).blurs[0].blur_mm, wanted, 1e-12);
+    EXPECT_NEAR(autofocus(bundles, target, {}, min_rms).blurs[0].blur_mm, wanted, 1e-12);
+    EXPECT_NEAR(autofocus(bundles, target, {}, min_max).blurs[0].blur_mm, wanted, 1e-12);
   }
   // Less than it has at best: as sharp as can be.
   for (const auto criterion : {min_rms, min_max}) {
-    EXPECT_EQ(autofocus(bundles, std::vector{at(50, -100, -1500, 1e-4)}, criterion).film_z,
-              autofocus(bundles, std::vector{at(50, -100, -1500)}, criterion).film_z);
+    EXPECT_EQ(autofocus(bundles, std::vector{at(50, -100, -1500, 1e-4)}, {}, criterion).film.z(),
+              autofocus(bundles, std::vector{at(50, -100, -1500)}, {}, criterion).film.z());
   }
 }
 
@@ -180,11 +182,11 @@ TEST(Autofocus, DoesNotDependOnOrderAndCountsDuplicatesAsWeight) {
   const std::vector<std::vector<FocusTarget>> alike{{a, b, c}, {c, a, b}, {b1, a, b1, c, b1}, {none, a, b, c}};
   std::vector<double> films[3];
   for (const auto& targets : alike) {
-    films[0].push_back(autofocus(bundles.ideal(), targets, 100).film_z);
-    films[1].push_back(autofocus(bundles, targets, min_rms).film_z);
+    films[0].push_back(autofocus(bundles.ideal(), targets, film_at(100)).film.z());
+    films[1].push_back(autofocus(bundles, targets, {}, min_rms).film.z());
   }
-  films[2] = {autofocus(bundles, alike[0], min_max).film_z, autofocus(bundles, alike[1], min_max).film_z,
-              autofocus(bundles, alike[3], min_max).film_z};
+  films[2] = {autofocus(bundles, alike[0], {}, min_max).film.z(), autofocus(bundles, alike[1], {}, min_max).film.z(),
+              autofocus(bundles, alike[3], {}, min_max).film.z()};
   for (const auto& of_one : films) {
     for (const double film_z : of_one) EXPECT_NEAR(film_z, of_one[0], 1e-12 * film_z);
   }
@@ -196,32 +198,32 @@ TEST(Autofocus, ReachesInfinity) {
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
   const ImageRays bundles(lens, 22);
   const std::vector<FocusTarget> far{{{{0, 0, -1}, true}, 0, 1}};
-  EXPECT_NEAR(autofocus(bundles.ideal(), far, 100).film_z, bundles.ideal().rear_focal_z, 1e-12 * 100);
-  EXPECT_NEAR(autofocus(bundles, far).film_z, solve_focus(lens, infinity, {.criterion = min_rms}).film_z, 0.005);
+  EXPECT_NEAR(autofocus(bundles.ideal(), far, film_at(100)).film.z(), bundles.ideal().rear_focal_z, 1e-12 * 100);
+  EXPECT_NEAR(autofocus(bundles, far).film.z(), solve_focus(lens, infinity, {.criterion = min_rms}).film_z, 0.005);
   for (const FocusCriterion criterion : {min_rms, FocusCriterion::min_max}) {
-    EXPECT_EQ(autofocus(bundles, far, criterion).breathing, 0);
+    EXPECT_EQ(autofocus(bundles, far, {}, criterion).breathing, 0);
   }
 }
 
 TEST(Autofocus, ReportsBreathingAndTheChangeOfMagnification) {
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
   const double before = lens.film_z(), exit_z = pupils(lens).exit.z;
-  const Autofocus focus = autofocus(ImageRays(lens, 22), std::vector{at(0, 0, -1000)}, min_rms);
+  const Autofocus focus = autofocus(ImageRays(lens, 22), std::vector{at(0, 0, -1000)}, {}, min_rms);
   EXPECT_GT(focus.breathing, 0.05);
   // Infinity focus of bundles is within 4 um of that of the solver.
-  EXPECT_NEAR(focus.breathing, *breathing(lens, focus.film_z, {.criterion = min_rms}), 1e-4);
-  EXPECT_NEAR(1 + focus.magnification_change, (focus.film_z - exit_z) / (before - exit_z), 1e-12);
-  const Autofocus ideal = autofocus(thick_lens(lens), std::vector{at(0, 0, -1000)}, focus.film_z);
-  EXPECT_NEAR(ideal.breathing, *breathing(lens, ideal.film_z), 1e-12);
-  EXPECT_NEAR(1 + ideal.magnification_change, (ideal.film_z - exit_z) / (focus.film_z - exit_z), 1e-12);
+  EXPECT_NEAR(focus.breathing, *breathing(lens, focus.film.z(), {.criterion = min_rms}), 1e-4);
+  EXPECT_NEAR(1 + focus.magnification_change, (focus.film.z() - exit_z) / (before - exit_z), 1e-12);
+  const Autofocus ideal = autofocus(thick_lens(lens), std::vector{at(0, 0, -1000)}, focus.film);
+  EXPECT_NEAR(ideal.breathing, *breathing(lens, ideal.film.z()), 1e-12);
+  EXPECT_NEAR(1 + ideal.magnification_change, (ideal.film.z() - exit_z) / (focus.film.z() - exit_z), 1e-12);
   // A film that stood in the exit pupil has no magnification.
-  EXPECT_TRUE(std::isnan(autofocus(thin_lens(50, 2), std::vector{at(0, 0, -1000)}, 0).magnification_change));
+  EXPECT_TRUE(std::isnan(autofocus(thin_lens(50, 2), std::vector{at(0, 0, -1000)}, film_at(0)).magnification_change));
   // A stop in the front focal plane: the exit pupil at infinity.
   IdealLens telecentric = thin_lens(50, 2);
   telecentric.pupils.entrance = {telecentric.front_focal_z, 10};
   telecentric.pupils.exit = {infinity, infinity};
-  EXPECT_EQ(autofocus(telecentric, std::vector{at(0, 0, -1000)}, 60).breathing, 0);
-  EXPECT_EQ(autofocus(telecentric, std::vector{at(0, 0, -1000)}, 60).magnification_change, 0);
+  EXPECT_EQ(autofocus(telecentric, std::vector{at(0, 0, -1000)}, film_at(60)).breathing, 0);
+  EXPECT_EQ(autofocus(telecentric, std::vector{at(0, 0, -1000)}, film_at(60)).magnification_change, 0);
 }
 
 TEST(Autofocus, LeavesTheFilmWhereNothingCanBeDone) {
@@ -236,10 +238,10 @@ TEST(Autofocus, LeavesTheFilmWhereNothingCanBeDone) {
                             at(0, 0, -10)};
   const std::vector expected{TargetUse::no_image,   TargetUse::not_finite, TargetUse::not_finite, TargetUse::not_finite,
                              TargetUse::not_finite, TargetUse::no_weight,  TargetUse::no_image};
-  for (const Autofocus& focus : {autofocus(bundles.ideal(), useless, lens.film_z()),
-                                 autofocus(bundles, useless, min_rms), autofocus(bundles, useless, min_max)}) {
+  for (const Autofocus& focus : {autofocus(bundles.ideal(), useless, film_at(lens.film_z())),
+                                 autofocus(bundles, useless, {}, min_rms), autofocus(bundles, useless, {}, min_max)}) {
     EXPECT_EQ(focus.status, no_targets);
-    EXPECT_EQ(focus.film_z, lens.film_z());
+    EXPECT_EQ(focus.film.z(), lens.film_z());
     EXPECT_EQ(focus.rms_mm, 0);
     EXPECT_EQ(focus.magnification_change, 0);
     for (std::size_t i = 0; i < useless.size(); ++i) {
@@ -250,14 +252,14 @@ TEST(Autofocus, LeavesTheFilmWhereNothingCanBeDone) {
   EXPECT_EQ(autofocus(bundles, {}).status, no_targets);
   const std::vector beside{at(900, 0, -1000)};
   EXPECT_EQ(autofocus(bundles, beside).blurs[0].use, TargetUse::no_rays);
-  EXPECT_EQ(autofocus(bundles.ideal(), beside, lens.film_z()).blurs[0].use, TargetUse::used);
+  EXPECT_EQ(autofocus(bundles.ideal(), beside, film_at(lens.film_z())).blurs[0].use, TargetUse::used);
 
   // So much blur in front of the plane of focus that the film would stand in the lens.
   const std::vector blurred{at(0, 0, -1000, -70)};
-  for (const Autofocus& focus : {autofocus(bundles.ideal(), blurred, lens.film_z()),
-                                 autofocus(bundles, blurred, min_rms), autofocus(bundles, blurred, min_max)}) {
+  for (const Autofocus& focus : {autofocus(bundles.ideal(), blurred, film_at(lens.film_z())),
+                                 autofocus(bundles, blurred, {}, min_rms), autofocus(bundles, blurred, {}, min_max)}) {
     EXPECT_EQ(focus.status, unreachable);
-    EXPECT_EQ(focus.film_z, lens.film_z());
+    EXPECT_EQ(focus.film.z(), lens.film_z());
     EXPECT_TRUE(std::isfinite(focus.blurs[0].blur_mm));
     EXPECT_NEAR(focus.rms_mm, 65, 5);
   }
@@ -265,9 +267,9 @@ TEST(Autofocus, LeavesTheFilmWhereNothingCanBeDone) {
 
 TEST(Autofocus, SaysWhatIsWrong) {
   const ImageRays bundles(data_lens("double_gauss_100mm_f2.0"), 22);
-  EXPECT_EQ(message([&] { autofocus(bundles.ideal(), {}, nan); }),
+  EXPECT_EQ(message([&] { autofocus(bundles.ideal(), {}, film_at(nan)); }),
             "autofocus: the film stands at z = nan mm, wanted a finite place");
-  EXPECT_EQ(message([&] { autofocus(bundles, {}, paraxial); }),
+  EXPECT_EQ(message([&] { autofocus(bundles, {}, {}, paraxial); }),
             "autofocus: criterion is paraxial, wanted min_rms or min_max, or an ideal lens");
   EXPECT_EQ(message([] { region_targets({}, {}, {}, 0, 2); }), "region_targets: 0 x 2 targets, wanted 1 x 1 or more");
 }

@@ -53,12 +53,12 @@ TEST(DisparityFit, IsAPlaneInTheSceneAndOfTheFilm) {
   EXPECT_NEAR(-sign * plane.normal.z, 0.57118023684786267, 1e-12);
   EXPECT_GE(plane.normal.z, 0);
   const IdealLens lens = thin_lens(0.05, 2);
-  const FilmPose film = film_pose(lens.image_of(plane).value());
+  const Film film = film_in(lens.image_of(plane).value());
   EXPECT_NEAR(degrees(film.angle()), 1.6799842871979173, 1e-9);
   // A steeper one, and the slope at which the film's tilt reaches 20 degrees.
   const double steepest = 7.1338165916175663;
   const Plane steep = plane_of({PlaneRank::plane, steepest * 0.6, steepest * -0.8, 0.4}, 0).value();
-  EXPECT_NEAR(degrees(film_pose(lens.image_of(steep).value()).angle()), 20, 1e-9);
+  EXPECT_NEAR(degrees(film_in(lens.image_of(steep).value()).angle()), 20, 1e-9);
 }
 
 TEST(DisparityFit, PlaneHoldsThePointsItWasFittedTo) {

@@ -207,15 +207,14 @@ TEST(FocusPoints, WithoutAnImageAreLeftOut) {
 
 TEST(FocusPoints, OutsideThePictureAreLeftOut) {
   FocusMoment when = moment(0);
-  when.film_z = 52;
   // Chief rays go straight through a thin lens: from x at depth 1000 to -0.052 x.
   const auto seen = [&](double x, double y) { return targets({point({key(0, {x, y, -1000})})}, when).size() == 1; };
   EXPECT_TRUE(seen(1e6, 0));
-  when.frame = FilmFrame{};
+  when.film = Film{.z_mm = 52};
   EXPECT_TRUE(seen(17.99 / 0.052, -11.99 / 0.052));
   EXPECT_FALSE(seen(18.01 / 0.052, 0));
   EXPECT_FALSE(seen(0, 12.01 / 0.052));
-  when.frame->centre_x_mm = -10;  // shifted to -x: sees more of +x
+  when.film->shift_x_mm = -10;  // shifted to -x: sees more of +x
   EXPECT_TRUE(seen(27.99 / 0.052, 0));
   EXPECT_FALSE(seen(28.01 / 0.052, 0));
   EXPECT_TRUE(seen(-7.99 / 0.052, 0));
@@ -275,7 +274,7 @@ TEST(FocusPoints, SayWhatIsWrongWithThem) {
   late.from = 2, late.until = 1;
   EXPECT_EQ(says(late), "focus point 1: valid from 2 s until 1 s, wanted an interval");
   EXPECT_EQ(message([&] { targets({good}, moment(nan)); }), "focus_targets: time is nan, wanted a number");
-  when.frame = FilmFrame{.width_mm = -36};
+  when.film = Film{.width_mm = -36};
   EXPECT_NE(message([&] { targets({good}, when); }).find("wanted finite numbers and no negative size"),
             std::string::npos);
 }

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "../data_lenses.hpp"
+#include "../film_at.hpp"
 #include "../message.hpp"
 #include "petzval/core/units.hpp"
 #include "petzval/focus/depth_of_field.hpp"
@@ -22,6 +23,7 @@ namespace {
 
 using testing::data_lens;
 using testing::data_prescriptions;
+using testing::film_at;
 using testing::message;
 using Vec = Vec3<double>;
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -61,8 +63,8 @@ TEST(IdealLens, ThinLensImagesWhereItIsKnownTo) {
 TEST(IdealLens, ThinLensTiltsWhereItIsKnownTo) {
   const IdealLens lens = thin_lens(F, 2);
   const Plane scene{{0, sin30, -cos30}, 2 * cos30};
-  const FilmPose film = film_pose(lens.image_of(scene).value());
-  EXPECT_NEAR(film.film_z, 0.051282051282051282, eps9 * F);
+  const Film film = film_in(lens.image_of(scene).value());
+  EXPECT_NEAR(film.z(), 0.051282051282051282, eps9 * F);
   EXPECT_NEAR(degrees(film.angle()), 0.848136346759917, eps9);
   const FocusPlane focus = focus_plane(lens, film).value();
   EXPECT_NEAR(focus.hinge->point.y, 3.3774990747593107, 4 * eps9);
@@ -75,8 +77,8 @@ TEST(IdealLens, ThinLensTiltsWhereItIsKnownTo) {
   EXPECT_NEAR(signed_blur(*image, film), 0, 1e-15);
 
   // A ground 1.5 below.
-  const FilmPose ground = film_pose(lens.image_of({{0, -1, 0}, 1.5}).value());
-  EXPECT_NEAR(ground.film_z, F, eps9 * F);
+  const Film ground = film_in(lens.image_of({{0, -1, 0}, 1.5}).value());
+  EXPECT_NEAR(ground.z(), F, eps9 * F);
   EXPECT_NEAR(degrees(ground.angle()), 1.9091524329963762, eps9);
   const SpaceLine hinge = focus_plane(lens, ground)->hinge.value();
   EXPECT_NEAR(std::hypot(hinge.point.y, F), 1.5008331019803634, 2 * eps9);
@@ -106,8 +108,8 @@ TEST(IdealLens, ThickLensTiltsWhereItIsKnownTo) {
   EXPECT_NEAR(lens.front_principal_z() - middle, -3.1746205089002949, eps12 * 100);
   EXPECT_NEAR(lens.image({{0, 0, middle - 2 * m}})->position.z - 20, 98.6260404657158, eps12 * 100);
   const Plane scene{{0, sin30, -cos30}, (2 * m - middle) * cos30};
-  const FilmPose film = film_pose(lens.image_of(scene).value());
-  EXPECT_NEAR(film.film_z - middle, 108.62604046571582, eps9 * 100);
+  const Film film = film_in(lens.image_of(scene).value());
+  EXPECT_NEAR(film.z() - middle, 108.62604046571582, eps9 * 100);
   EXPECT_NEAR(degrees(film.angle()), 1.7463843377726925, eps9);
   const double z = 2 * m + 400 * std::tan(radians(30));  // of the point on that plane
   const auto image = lens.image({{300, -400, middle - z}});
@@ -158,7 +160,7 @@ TEST(IdealLens, ThickLensIsTheParaxialOneOfEveryLens) {
 
 TEST(IdealLens, BlurIsThatOfTheFocusSolvers) {
   const Lens compiled = with_focus(data_lens("double_gauss_100mm_f2_28deg"), 2000);
-  const FilmPose film{compiled.film_z()};
+  const Film film = film_at(compiled.film_z());
   const IdealLens thick = thick_lens(compiled), thin = thin_lens(compiled);
   for (const double distance : {300.0, 1000.0, 1999.0, 2001.0, 1e4, 1e9, infinity}) {
     const double wanted = blur_diameter(compiled, distance).value() * (distance > 2000 ? 1 : -1);
@@ -169,7 +171,7 @@ TEST(IdealLens, BlurIsThatOfTheFocusSolvers) {
   const double f = 50, n = 2, focus = 3000;
   const IdealLens alone = thin_lens(f, n);
   for (const double distance : {100.0, 2999.0, 4000.0, 1e6}) {
-    const FilmPose at{f + thin_lens_extension(f, focus)};
+    const Film at = film_at(f + thin_lens_extension(f, focus));
     EXPECT_NEAR(std::abs(signed_blur(*alone.image({{0, 0, -distance}}), at)),
                 thin_lens_blur_diameter(f, f / n, distance, focus), 1e-13);
   }
@@ -240,11 +242,11 @@ TEST(IdealLens, TelecentricLensesHaveConesAndChiefRays) {
 
 TEST(IdealLens, BlurIsSignedAndTheChiefRayCarriesItToATiltedFilm) {
   const IdealLens lens = thin_lens(50, 2);
-  const FilmPose film = film_pose(lens.image_of({{0, 0, 1}, -2000}).value());
+  const Film film = film_in(lens.image_of({{0, 0, 1}, -2000}).value());
   EXPECT_LT(signed_blur(*lens.image({{100, 0, -1900}}), film), 0);
   EXPECT_GT(signed_blur(*lens.image({{100, 0, -2100}}), film), 0);
   // A pencil drawn by hand: the edges of the pupil to the image, on to where the chief ray meets the film.
-  const FilmPose tilted{52, radians(12), radians(-7)};
+  const Film tilted = film_at(52, radians(12), radians(-7));
   const ImagePoint image = lens.image({{300, 200, -1500}}).value();
   const Vec chief = image.position, n = tilted.normal();
   const double along = tilted.plane().offset / glm::dot(n, chief);
@@ -262,22 +264,22 @@ TEST(IdealLens, GrowsImagesAsChiefRaysHaveThem) {
 
 TEST(IdealLens, HingeAndScheimpflugLinesStayWhereTheyAre) {
   const IdealLens lens = thick_lens(data_lens("double_gauss_100mm_f2_28deg"));
-  const FilmPose film{lens.rear_focal_z + 8, radians(6), radians(-4)};
+  const Film film = film_at(lens.rear_focal_z + 8, radians(6), radians(-4));
   const FocusPlane focus = focus_plane(lens, film).value();
   EXPECT_NEAR(focus.hinge->point.z, lens.front_focal_z, 1e-12);
   EXPECT_NEAR(focus.scheimpflug->point.z, lens.front_principal_z(), 1e-12);
   // The film moves along the axis: the plane of focus turns about the hinge line.
-  FilmPose moved = film;
-  moved.film_z += 3;
+  Film moved = film;
+  moved.z_mm = moved.z() + 3;
   EXPECT_NEAR(glm::length(focus_plane(lens, moved)->hinge->point - focus.hinge->point), 0, 1e-8);
   EXPECT_NEAR(glm::length(focus_plane(lens, moved)->hinge->direction - focus.hinge->direction), 0, 1e-12);
   // Film and rear principal plane meet in a line as far from the axis as Scheimpflug's: its conjugate.
   const SpaceLine behind = line_at(film.plane(), lens.rear_principal_z()).value();
   EXPECT_NEAR(behind.point.x, focus.scheimpflug->point.x, 1e-8);
   EXPECT_NEAR(behind.point.y, focus.scheimpflug->point.y, 1e-8);
-  EXPECT_FALSE(focus_plane(lens, {film.film_z})->hinge);
-  EXPECT_FALSE(focus_plane(lens, {film.film_z})->scheimpflug);
-  EXPECT_FALSE(focus_plane(lens, {lens.rear_focal_z}));  // infinity
+  EXPECT_FALSE(focus_plane(lens, film_at(film.z()))->hinge);
+  EXPECT_FALSE(focus_plane(lens, film_at(film.z()))->scheimpflug);
+  EXPECT_FALSE(focus_plane(lens, film_at(lens.rear_focal_z)));  // infinity
 }
 
 TEST(IdealLens, RefusesWhatIsNoLens) {

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "../data_lenses.hpp"
+#include "../film_at.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/movement/autofocus.hpp"
@@ -22,6 +23,7 @@ namespace petzval {
 namespace {
 
 using testing::data_lens;
+using testing::film_at;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double degree = std::numbers::pi / 180;
@@ -32,9 +34,7 @@ Vec3<double> place_at(const Lens& lens, double field_deg, double z, double azimu
   return {height * std::sin(azimuth), height * std::cos(azimuth), z};
 }
 
-FilmPose upright(double film_z) { return {.film_z = film_z, .tilt_rad = 0, .swing_rad = 0}; }
-
-BundleBlur blur(const ImageRays& bundles, const Vec3<double>& place, const FilmPose& film) {
+BundleBlur blur(const ImageRays& bundles, const Vec3<double>& place, const Film& film) {
   const auto result = blur_on(bundles.bundle({place, false}), film);
   EXPECT_TRUE(result);
   return result.value_or(BundleBlur{});
@@ -52,7 +52,7 @@ TEST(ImageRays, OfALensStoppedDownBlurAsTheThickLensDoes) {
       const auto image = ideal.image({place, false});
       ASSERT_TRUE(image);
       for (const double behind : {-0.05, 0.03, 0.2}) {
-        const FilmPose film = upright(image->position.z + behind * ideal.rear_focal_length);
+        const Film film = film_at(image->position.z + behind * ideal.rear_focal_length);
         const double expected = signed_blur(*image, film);
         EXPECT_NEAR(blur(bundles, place, film).signed_diameter, expected, 0.01 * std::abs(expected))
             << distance << " " << behind;
@@ -80,7 +80,7 @@ TEST(ImageRays, HaveTheSpotsOfOutlines) {
           const PupilSampler pupil(pupil_outline(lens, {degrees * degree, seen_at}, lens.primary_wavelength()));
           const FilmHits hits = trace_bundle(with_film(lens, film_z), pupil, 1 << 16);
           const SpotSize expected = spot_size(hits.x, hits.y);
-          const BundleBlur size = blur(bundles, place_at(lens, degrees, -distance), upright(film_z));
+          const BundleBlur size = blur(bundles, place_at(lens, degrees, -distance), film_at(film_z));
           EXPECT_NEAR(size.rms_radius, expected.rms_radius, relative * expected.rms_radius);
           EXPECT_NEAR(size.centroid.x, 0, 0.02 * expected.rms_radius);
           EXPECT_NEAR(size.centroid.y, expected.centroid[1], 0.02 * expected.rms_radius);
@@ -95,7 +95,7 @@ TEST(ImageRays, HaveTheSpotsOfOutlines) {
 TEST(ImageRays, TurnWithTheirPoints) {
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
   const ImageRays bundles(lens, 22);
-  const FilmPose film = upright(lens.film_z());
+  const Film film = film_at(lens.film_z());
   const BundleBlur first = blur(bundles, place_at(lens, 10, -1500), film);
   const double height = std::hypot(first.centroid.x, first.centroid.y);
   for (int turn = 1; turn < 16; ++turn) {
@@ -110,7 +110,7 @@ TEST(ImageRays, TurnWithTheirPoints) {
 TEST(ImageRays, AreMirroredWithTheirPoints) {
   const Lens lens = data_lens("anamorphic_60mm_2x");
   const ImageRays bundles(lens, 12);
-  const FilmPose film = upright(lens.film_z());
+  const Film film = film_at(lens.film_z());
   const Vec3<double> place{200, 100, -1500};
   const BundleBlur one = blur(bundles, place, film);
   for (const auto& [x, y] : {std::pair(-1, 1), std::pair(1, -1), std::pair(-1, -1)}) {
@@ -157,7 +157,7 @@ TEST(ImageRays, AreEmptyWhereTheLensSeesNothing) {
     const RayBundle bundle = bundles.bundle(place);
     EXPECT_TRUE(bundle.empty()) << place.position.x << " " << place.position.y << " " << place.position.z;
     EXPECT_EQ(bundle.plane_z, lens.surfaces().back().vertex_z);
-    EXPECT_FALSE(blur_on(bundle, upright(100)));
+    EXPECT_FALSE(blur_on(bundle, film_at(100)));
   }
 }
 
@@ -173,7 +173,7 @@ TEST(BundleBlur, OnATiltedFilmIsWhereRaysMeetItsPlane) {
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
   const RayBundle bundle = ImageRays(lens, 22).bundle({{150, -250, -1200}, false});
   for (const auto& [tilt, swing] : {std::pair(0.0, 0.0), std::pair(0.2, 0.0), std::pair(-0.15, 0.3)}) {
-    const FilmPose film{.film_z = lens.film_z() + 2, .tilt_rad = tilt, .swing_rad = swing};
+    const Film film = film_at(lens.film_z() + 2, tilt, swing);
     const auto [normal, offset] = film.plane();
     std::vector<double> x, y;
     for (std::size_t i = 0; i < bundle.x.size(); ++i) {
@@ -198,8 +198,8 @@ TEST(BundleBlur, IsPositiveBehindWhereRaysMeet) {
   const RayBundle bundle = ImageRays(lens, 22).bundle({{0, 100, -1200}, false});
   const double film_z = solve_focus(lens, 1200, {.criterion = FocusCriterion::min_rms}).film_z;
   for (const double tilt : {0.0, 0.3}) {
-    EXPECT_GT(blur_on(bundle, {film_z + 5, tilt, 0})->signed_diameter, 0.8);
-    EXPECT_LT(blur_on(bundle, {film_z - 5, tilt, 0})->signed_diameter, -0.8);
+    EXPECT_GT(blur_on(bundle, film_at(film_z + 5, tilt))->signed_diameter, 0.8);
+    EXPECT_LT(blur_on(bundle, film_at(film_z - 5, tilt))->signed_diameter, -0.8);
   }
 }
 
@@ -207,21 +207,20 @@ TEST(BundleBlur, HasASignThatFewRaysAgreeOnNextToTheSharpestFilm) {
   const Lens lens = with_f_number(data_lens("double_gauss_100mm_f2_28deg"), 4);
   const ScenePoint place{{-150, 86, -1100}};
   const RayBundle few = ImageRays(lens, 22, 256).bundle(place), many = ImageRays(lens, 22, 4096).bundle(place);
-  const double sharpest =
-      autofocus(ImageRays(lens, 22), std::vector{FocusTarget{.place = place}}, FocusCriterion::min_rms).film_z;
+  const double sharpest = autofocus(ImageRays(lens, 22), std::vector{FocusTarget{.place = place}}).film.z();
   for (const double away : {-2e-3, -1e-3, 0.0, 1e-3, 2e-3}) {
-    const double a = blur_on(few, {.film_z = sharpest + away})->signed_diameter;
-    const double b = blur_on(many, {.film_z = sharpest + away})->signed_diameter;
+    const double a = blur_on(few, film_at(sharpest + away))->signed_diameter;
+    const double b = blur_on(many, film_at(sharpest + away))->signed_diameter;
     EXPECT_GT(a, 0);
     EXPECT_NEAR(a, b, 0.02 * b);
   }
-  EXPECT_LT(blur_on(few, {.film_z = sharpest - 0.1})->signed_diameter, 0);
+  EXPECT_LT(blur_on(few, film_at(sharpest - 0.1))->signed_diameter, 0);
 }
 
 TEST(BundleBlur, IsNothingOnAFilmThatRaysRunAlong) {
   const RayBundle bundle = ImageRays(data_lens("double_gauss_100mm_f2.0"), 22).bundle({{0, 0, -1200}, false});
-  EXPECT_FALSE(blur_on(bundle, {100, std::numbers::pi / 2, 0}));
-  EXPECT_FALSE(blur_on(bundle, {nan, 0, 0}));
+  EXPECT_FALSE(blur_on(bundle, film_at(100, std::numbers::pi / 2)));
+  EXPECT_FALSE(blur_on(bundle, film_at(nan)));
 }
 
 }  // namespace

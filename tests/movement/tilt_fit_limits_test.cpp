@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "../data_lenses.hpp"
+#include "../film_at.hpp"
 #include "../message.hpp"
 #include "petzval/core/units.hpp"
 #include "petzval/movement/tilt_fit.hpp"
@@ -20,6 +21,8 @@
 
 namespace petzval {
 namespace {
+
+using testing::film_at;
 
 using namespace testing;
 using Status = TiltFit::Status;
@@ -29,11 +32,11 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double F = 50;
 
-/// Film slopes: z = film_z + p x + q y.
+/// Film slopes: z = z_mm + p x + q y.
 struct Slopes {
   double p, q;
 };
-Slopes slopes(const FilmPose& film) {
+Slopes slopes(const Film& film) {
   const Vec n = film.normal();
   return {-n.x / n.z, -n.y / n.z};
 }
@@ -55,7 +58,7 @@ TEST(TiltFitLimit, IsTheBestFilmWithinTheLimit) {
       for (const FocusTarget& t : targets) {
         const ImagePoint image = *normal_lens().image(t.place);
         const auto blur = [&](double z) {
-          return signed_blur(image, film_pose({Vec(-p, -q, 1) / length, z / length})) - t.blur_mm;
+          return signed_blur(image, film_in({Vec(-p, -q, 1) / length, z / length})) - t.blur_mm;
         };
         const double at = blur(F), slope = blur(F + 1) - at;
         weights += t.weight * slope * slope, by += t.weight * slope * at, square += t.weight * at * at;
@@ -77,26 +80,26 @@ TEST(TiltFitLimit, OfZeroIsAnUprightFilm) {
   const Targets targets = inexact_targets(9, 1);
   const TiltFit fit = fit_tilt(normal_lens(), targets, behind(normal_lens(), 0));
   EXPECT_EQ(fit.status, Status::limited);
-  EXPECT_TRUE(fit.film.upright());
+  EXPECT_FALSE(fit.film.tilted());
   double weights = 0, sum = 0;  // its z is a weighted mean
   for (const FocusTarget& t : targets) {
     const ImagePoint image = *normal_lens().image(t.place);
     const double weight = t.weight * image.cone * image.cone;
     weights += weight, sum += weight * (image.position.z + t.blur_mm / image.cone);
   }
-  EXPECT_NEAR(fit.film.film_z, sum / weights, 1e-12);
+  EXPECT_NEAR(fit.film.z(), sum / weights, 1e-12);
 }
 
 /// The largest change of the film from step to step while something moves from 0 to 1.
 double largest_change(const auto& targets_at, int steps, const TiltOptions& options) {
   double largest = 0;
-  std::optional<FilmPose> last;
+  std::optional<Film> last;
   for (int i = 0; i <= steps; ++i) {
     const TiltFit fit = fit_tilt(normal_lens(), targets_at(static_cast<double>(i) / steps), options);
     EXPECT_TRUE(fit) << i;
     const Slopes now = slopes(fit.film), before = slopes(last.value_or(fit.film));
     largest = std::max({largest, std::abs(now.p - before.p), std::abs(now.q - before.q),
-                        std::abs(fit.film.film_z - last.value_or(fit.film).film_z) / F});
+                        std::abs(fit.film.z() - last.value_or(fit.film).z()) / F});
     last = fit.film;
   }
   return largest;
@@ -192,8 +195,8 @@ TEST(TiltFitSets, OnePlaceGivesAnUprightFilm) {
     const TiltFit fit = fit_tilt(normal_lens(), targets, behind(normal_lens()));
     EXPECT_EQ(fit.status, Status::least_tilt);
     EXPECT_EQ(fit.rank, PlaneRank::point);
-    EXPECT_TRUE(fit.film.upright());
-    EXPECT_NEAR(fit.film.film_z, F * 2000 / 1950, 1e-12);
+    EXPECT_FALSE(fit.film.tilted());
+    EXPECT_NEAR(fit.film.z(), F * 2000 / 1950, 1e-12);
     for (const TargetBlur& blur : fit.blurs) EXPECT_NEAR(blur.blur_mm, 0, 1e-12);
   }
 }
@@ -230,30 +233,30 @@ TEST(TiltFitSets, PointsAtInfinityBelongToPlanes) {
   ASSERT_EQ(fit.status, Status::solved);
   EXPECT_LT(angle(fit.focus->plane.normal, {0, 1, 0}), 1e-9);
   EXPECT_NEAR(std::tan(fit.film.angle()), F / 1500, 1e-12);
-  EXPECT_NEAR(fit.film.film_z, F, 1e-12);
+  EXPECT_NEAR(fit.film.z(), F, 1e-12);
   EXPECT_LT(fit.rms_mm, 1e-12);
 
   const Targets sky{infinitely(0, 0), infinitely(0.1, 0.2), infinitely(-0.1, 0.1), target(3, 4, -infinity)};
   const TiltFit far = fit_tilt(normal_lens(), sky, behind(normal_lens()));
   EXPECT_EQ(far.status, Status::solved);
-  EXPECT_NEAR(far.film.film_z, F, 1e-12);
+  EXPECT_NEAR(far.film.z(), F, 1e-12);
   EXPECT_LT(far.film.angle(), 1e-12);
   EXPECT_LT(far.rms_mm, 1e-13);
 }
 
 TEST(TiltFitSets, WithoutTargetsTheFilmStays) {
   TiltOptions options = behind(normal_lens());
-  options.start = {.film_z = 51, .tilt_rad = 0.1, .swing_rad = -0.05};
-  options.frame.centre_x_mm = 4;
+  options.film = film_at(51, 0.1, -0.05);
+  options.film.shift_x_mm = 4;
   for (const Targets& targets : {Targets{}, Targets{target(0, 0, -2000, 0)},
                                  Targets{target(0, 0, 100), target(0, 0, nan)}, Targets{target(0, 0, -40)}}) {
     const TiltFit fit = fit_tilt(normal_lens(), targets, options);
     EXPECT_EQ(fit.status, Status::no_targets);
     EXPECT_FALSE(fit);
-    EXPECT_EQ(fit.film.film_z, 51);
+    EXPECT_EQ(fit.film.z(), 51);
     EXPECT_EQ(fit.film.tilt_rad, 0.1);
     EXPECT_EQ(fit.film.swing_rad, -0.05);
-    EXPECT_EQ(fit.centre.x, 4);
+    EXPECT_EQ(fit.film.shift_x_mm, 4);
     EXPECT_EQ(fit.blurs.size(), targets.size());
     EXPECT_EQ(fit.rms_mm, 0);
     EXPECT_TRUE(fit.focus);
@@ -290,7 +293,7 @@ TEST(TiltFitSets, WhatCannotBeServedTakesNoPart) {
     targets.insert(targets.end(), good.begin(), good.end());
     const TiltFit fit = fit_tilt(normal_lens(), targets, behind(normal_lens()));
     ASSERT_EQ(fit.status, wanted.status);
-    EXPECT_EQ(fit.film.film_z, wanted.film.film_z);
+    EXPECT_EQ(fit.film.z(), wanted.film.z());
     EXPECT_EQ(fit.film.tilt_rad, wanted.film.tilt_rad);
     EXPECT_EQ(fit.rms_mm, wanted.rms_mm);
     std::size_t at = 0;
@@ -320,11 +323,12 @@ TEST(TiltFitSets, ExtremesAreNumbersAndStatuses) {
     TiltOptions options = behind(normal_lens());
     options.robust = draw % 3 == 0;
     const TiltFit fit = fit_tilt(normal_lens(), targets, options);
-    EXPECT_TRUE(std::isfinite(fit.film.film_z + fit.film.tilt_rad + fit.film.swing_rad + fit.centre.x + fit.centre.y));
+    EXPECT_TRUE(std::isfinite(fit.film.z() + fit.film.tilt_rad + fit.film.swing_rad + fit.film.shift_x_mm +
+                              fit.film.shift_y_mm));
     EXPECT_LE(fit.film.angle(), radians(20) * (1 + 1e-12))
-        << draw << " " << name(fit.status) << " rank " << static_cast<int>(fit.rank) << " " << fit.film.film_z;
+        << draw << " " << name(fit.status) << " rank " << static_cast<int>(fit.rank) << " " << fit.film.z();
     if (!fit) {
-      EXPECT_EQ(fit.film.film_z, options.start.film_z) << draw;
+      EXPECT_EQ(fit.film.z(), options.film.z()) << draw;
     }
   }
 }
@@ -349,7 +353,7 @@ TEST(TiltFitSets, FilmDoesNotDependOnTheSizeOfCones) {
         const TiltFit fit = fit_tilt(thin_lens(F, f_number), sharp, options);
         EXPECT_EQ(::testing::internal::GetCapturedStderr(), "") << f_number;
         EXPECT_EQ(fit.status, wanted.status) << f_number;
-        EXPECT_NEAR(fit.film.film_z, wanted.film.film_z, 1e-9) << f_number;
+        EXPECT_NEAR(fit.film.z(), wanted.film.z(), 1e-9) << f_number;
         EXPECT_NEAR(fit.film.tilt_rad, wanted.film.tilt_rad, 1e-9) << f_number;
         EXPECT_NEAR(fit.film.swing_rad, wanted.film.swing_rad, 1e-9) << f_number;
       }
@@ -361,24 +365,25 @@ TEST(TiltFitFrame, ShiftKeepsTheMiddleOfThePicture) {
   const IdealLens gauss = thick_lens(data_lens("double_gauss_52mm_f1.8"));
   for (const IdealLens& lens : {normal_lens(), gauss}) {
     TiltOptions options = behind(lens, 40);
-    options.start.tilt_rad = 0.1;
-    options.frame.centre_x_mm = 5;
-    options.frame.centre_y_mm = -3;
+    options.film.tilt_rad = 0.1;
+    options.film.shift_x_mm = 5;
+    options.film.shift_y_mm = -3;
     const Scene scene{4e-3, -2e-3, 8e-4, lens};
     const TiltFit fit = fit_tilt(lens, scene.targets(9, 0.1, 0.1), options);
     ASSERT_EQ(fit.status, Status::solved);
     const Vec pupil(0, 0, lens.pupils.exit.z);
-    const Vec before = options.start.at({5, -3}) - pupil, now = fit.film.at(fit.centre) - pupil;
+    const Vec before = options.film.position({5, -3}) - pupil,
+              now = fit.film.position({fit.film.shift_x_mm, fit.film.shift_y_mm}) - pupil;
     EXPECT_LT(glm::length(glm::cross(glm::normalize(before), glm::normalize(now))), 1e-12);
     EXPECT_GT(glm::length(before - now), 0.1);
   }
   // The axis is its own line, wherever the film stood.
   for (const double start : {0.0, 50.0}) {
     const Scene scene{4e-3, -2e-3, 8e-4, normal_lens()};
-    const TiltFit fit = fit_tilt(normal_lens(), scene.targets(9, 0.1, 0.1), {.start = {.film_z = start}});
+    const TiltFit fit = fit_tilt(normal_lens(), scene.targets(9, 0.1, 0.1), {.film = film_at(start)});
     ASSERT_EQ(fit.status, Status::solved);
-    EXPECT_NEAR(fit.centre.x, 0, 1e-12);
-    EXPECT_NEAR(fit.centre.y, 0, 1e-12);
+    EXPECT_NEAR(fit.film.shift_x_mm, 0, 1e-12);
+    EXPECT_NEAR(fit.film.shift_y_mm, 0, 1e-12);
   }
 }
 
@@ -386,11 +391,11 @@ TEST(TiltFitFrame, FilmThatWouldTouchTheLensStays) {
   const Scene scene{0, 1 / F - 1e-3, 1e-3, normal_lens()};  // a tilt of 45 degrees
   TiltOptions options = behind(normal_lens(), 50);
   EXPECT_EQ(fit_tilt(normal_lens(), scene.targets(9, 0.01, 0.01), options).status, Status::solved);
-  options.frame.height_mm = 160;
+  options.film.height_mm = 160;
   const TiltFit fit = fit_tilt(normal_lens(), scene.targets(9, 0.01, 0.01), options);
   EXPECT_EQ(fit.status, Status::unreachable);
-  EXPECT_EQ(fit.film.film_z, F);
-  EXPECT_TRUE(fit.film.upright());
+  EXPECT_EQ(fit.film.z(), F);
+  EXPECT_FALSE(fit.film.tilted());
   // A lens of negative power has no real images.
   EXPECT_EQ(fit_tilt(thin_lens(-F, 2), inexact_targets(5, 1), behind(normal_lens())).status, Status::unreachable);
 }
@@ -404,12 +409,11 @@ TEST(TiltFitInput, IsCheckedAndNamed) {
   EXPECT_EQ(said({.max_tilt_rad = nan}),
             "fit_tilt: the largest tilt is nan rad, wanted one from 0 to less than a quarter turn");
   EXPECT_NE(said({.max_tilt_rad = std::numbers::pi / 2}), "no error");
-  EXPECT_EQ(said({.start = {.film_z = nan}}),
-            "fit_tilt: the film stands at nan mm, 0 and 0 rad, wanted finite numbers");
-  EXPECT_EQ(said({.frame = {.width_mm = -1}}),
-            "fit_tilt: the frame is -1 x 24 mm about (0, 0), wanted finite numbers and no negative size");
-  EXPECT_EQ(said({.frame = {.centre_x_mm = infinity}}),
-            "fit_tilt: the frame is 36 x 24 mm about (inf, 0), wanted finite numbers and no negative size");
+  EXPECT_EQ(said({.film = film_at(nan)}), "fit_tilt: the film stands at nan mm, 0 and 0 rad, wanted finite numbers");
+  EXPECT_EQ(said({.film = {.width_mm = -1}}),
+            "fit_tilt: the film is -1 x 24 mm about (0, 0), wanted finite numbers and no negative size");
+  EXPECT_EQ(said({.film = {.shift_x_mm = infinity}}),
+            "fit_tilt: the film is 36 x 24 mm about (inf, 0), wanted finite numbers and no negative size");
   EXPECT_EQ(said({.max_tilt_rad = radians(89.9)}), "no error");
 }
 

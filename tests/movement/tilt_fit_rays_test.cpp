@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "../data_lenses.hpp"
+#include "../film_at.hpp"
 #include "petzval/core/units.hpp"
 #include "petzval/movement/autofocus.hpp"
 #include "petzval/movement/tilt_fit.hpp"
@@ -14,6 +15,8 @@
 
 namespace petzval {
 namespace {
+
+using testing::film_at;
 
 using namespace testing;
 using Status = TiltFit::Status;
@@ -35,26 +38,26 @@ Scene leaning(const IdealLens& lens) { return {3e-4, -1.5e-3, 5e-4, lens}; }
 struct Parabola {
   double z = 0, least = 0, by_z = 0;  ///< diameter^2 = least + by_z (film_z - z)^2
 };
-Parabola parabola(const RayBundle& bundle, const FilmPose& film) {
+Parabola parabola(const RayBundle& bundle, const Film& film) {
   const auto square = [&](double step) {
-    const double d = blur_on(bundle, {film.film_z + step, film.tilt_rad, film.swing_rad})->signed_diameter;
+    const double d = blur_on(bundle, film_at(film.z() + step, film.tilt_rad, film.swing_rad))->signed_diameter;
     return d * d;
   };
   const double before = square(-1), here = square(0), behind = square(1);
   const double by_z = (behind + before) / 2 - here, foot = (before - behind) / (4 * by_z);
-  return {film.film_z + foot, here - by_z * foot * foot, by_z};
+  return {film.z() + foot, here - by_z * foot * foot, by_z};
 }
 
 /// Weighted RMS: of diameters; of a target that should be blurred, on a film so much nearer that defocus makes what
 /// aberrations leave of the blur wanted.
-double rms(const Targets& targets, const FilmPose& film) {
+double rms(const Targets& targets, const Film& film) {
   double sum = 0, weights = 0;
   for (const FocusTarget& t : targets) {
     const RayBundle bundle = bundles().bundle(t.place);
-    const Parabola here = parabola(bundle, film), upright = parabola(bundle, {.film_z = film.film_z});
+    const Parabola here = parabola(bundle, film), upright = parabola(bundle, film_at(film.z()));
     const double defocus =
         std::copysign(std::sqrt(std::max(t.blur_mm * t.blur_mm - upright.least, 0.0) / here.by_z), t.blur_mm);
-    sum += t.weight * (here.least + here.by_z * std::pow(film.film_z - here.z - defocus, 2));
+    sum += t.weight * (here.least + here.by_z * std::pow(film.z() - here.z - defocus, 2));
     weights += t.weight;
   }
   return std::sqrt(sum / weights);
@@ -76,14 +79,14 @@ TEST(RayTiltFit, IsTheLeastSumOfSquaredBlurs) {
       squares += targets[i].weight * std::pow(blur - targets[i].blur_mm, 2), weights += targets[i].weight;
     }
     EXPECT_NEAR(fit.rms_mm, std::sqrt(squares / weights), 1e-14);
-    const auto& [z, tilt, swing] = fit.film;
+    const double z = fit.film.z(), tilt = fit.film.tilt_rad, swing = fit.film.swing_rad;
     const double least = rms(targets, fit.film);
     for (const double step : {-1e-4, 1e-4}) {
-      EXPECT_GT(rms(targets, {z + 30 * step, tilt, swing}), least);
-      EXPECT_GT(rms(targets, {z, tilt + step, swing}), least);
-      EXPECT_GT(rms(targets, {z, tilt, swing + step}), least);
+      EXPECT_GT(rms(targets, film_at(z + 30 * step, tilt, swing)), least);
+      EXPECT_GT(rms(targets, film_at(z, tilt + step, swing)), least);
+      EXPECT_GT(rms(targets, film_at(z, tilt, swing + step)), least);
     }
-    const auto square = [&](const FilmPose& film) { return rms(targets, film) * rms(targets, film); };
+    const auto square = [&](const Film& film) { return rms(targets, film) * rms(targets, film); };
     EXPECT_LT(off_least(square, fit.film, 50), 1e-7);
     // The film of the thick lens is a good start, and no more.
     const TiltFit thick = fit_tilt(bundles().ideal(), targets, behind(bundles().ideal()));
@@ -92,14 +95,14 @@ TEST(RayTiltFit, IsTheLeastSumOfSquaredBlurs) {
 }
 
 /// The least cost that a search by halved steps finds from a film.
-double searched(const Targets& targets, FilmPose film) {
+double searched(const Targets& targets, Film film) {
   double least = rms(targets, film);
   for (double step = 0.02; step > 1e-6;) {
     bool better = false;
     for (const double by : {-step, step}) {
-      for (const FilmPose& there : {FilmPose{film.film_z + 10 * by, film.tilt_rad, film.swing_rad},
-                                    FilmPose{film.film_z, film.tilt_rad + by, film.swing_rad},
-                                    FilmPose{film.film_z, film.tilt_rad, film.swing_rad + by}}) {
+      for (const Film& there : {film_at(film.z() + 10 * by, film.tilt_rad, film.swing_rad),
+                                film_at(film.z(), film.tilt_rad + by, film.swing_rad),
+                                film_at(film.z(), film.tilt_rad, film.swing_rad + by)}) {
         const double cost = rms(targets, there);
         if (cost < least) least = cost, film = there, better = true;
       }
@@ -121,8 +124,8 @@ TEST(RayTiltFit, NoSearchFindsBetterBlurs) {
       const TiltFit fit = fit_tilt(bundles(), targets, behind(bundles().ideal()));
       ASSERT_EQ(fit.status, Status::solved);
       const double least = rms(targets, fit.film);
-      for (const FilmPose& from : {fit.film, FilmPose{fit.film.film_z + 0.3, 0, 0},
-                                   FilmPose{fit.film.film_z, fit.film.tilt_rad - 0.03, fit.film.swing_rad + 0.03}}) {
+      for (const Film& from : {fit.film, film_at(fit.film.z() + 0.3, 0, 0),
+                               film_at(fit.film.z(), fit.film.tilt_rad - 0.03, fit.film.swing_rad + 0.03)}) {
         EXPECT_GT(searched(targets, from), least * (1 - 1e-9)) << seed << " " << contradictory;
       }
     }
@@ -138,9 +141,9 @@ TEST(RayTiltFit, BlursThatAreWantedMakeNoJump) {
     for (FocusTarget& t : targets) t.blur_mm = want * (sign *= turned);
     return fit_tilt(bundles(), targets, behind(bundles().ideal())).film;
   };
-  const auto change = [](const FilmPose& a, const FilmPose& b) {
+  const auto change = [](const Film& a, const Film& b) {
     return std::max(
-        {std::abs(a.film_z - b.film_z) / 50, std::abs(a.tilt_rad - b.tilt_rad), std::abs(a.swing_rad - b.swing_rad)});
+        {std::abs(a.z() - b.z()) / 50, std::abs(a.tilt_rad - b.tilt_rad), std::abs(a.swing_rad - b.swing_rad)});
   };
   double sharp = 0, blurred = 0;
   for (double depth = 924; depth < 930; depth += 0.5) {
@@ -154,9 +157,9 @@ TEST(RayTiltFit, BlursThatAreWantedMakeNoJump) {
   EXPECT_GT(sharp, 0);
   EXPECT_LT(blurred, 2 * sharp);
   // Nor does a blur that is wanted more and more.
-  FilmPose last = film_at(900, 0, -1);
+  Film last = film_at(900, 0, -1);
   for (double want = 0; want < 0.05; want += 1e-4) {
-    const FilmPose film = film_at(900, want, -1);
+    const Film film = film_at(900, want, -1);
     EXPECT_LT(change(film, last), 1e-3) << want;
     last = film;
   }
@@ -170,9 +173,9 @@ TEST(RayTiltFit, UprightIsAutofocus) {
     targets[i].weight = 1 + static_cast<double>(i);
   }
   const TiltFit fit = fit_tilt(bundles(), targets, behind(bundles().ideal(), 0));
-  const Autofocus focus = autofocus(bundles(), targets, FocusCriterion::min_rms);
+  const Autofocus focus = autofocus(bundles(), targets);
   ASSERT_TRUE(focus);
-  EXPECT_NEAR(fit.film.film_z, focus.film_z, 1e-10);
+  EXPECT_NEAR(fit.film.z(), focus.film.z(), 1e-10);
   EXPECT_NEAR(fit.rms_mm, focus.rms_mm, 1e-10);
 }
 
@@ -194,8 +197,8 @@ TEST(RayTiltFit, OnePointGetsItsSharpestFilm) {
   }
   const TiltFit fit = fit_tilt(bundles(), Targets{{.place = place}}, behind(bundles().ideal()));
   EXPECT_EQ(fit.status, Status::least_tilt);
-  EXPECT_TRUE(fit.film.upright());
-  EXPECT_NEAR(fit.film.film_z, bundle.plane_z - covariance / variance, 1e-10);
+  EXPECT_FALSE(fit.film.tilted());
+  EXPECT_NEAR(fit.film.z(), bundle.plane_z - covariance / variance, 1e-10);
 }
 
 TEST(RayTiltFit, ThreeTargetsGetTheBlursTheyWant) {
@@ -215,7 +218,7 @@ TEST(RayTiltFit, TendsToTheThickLensAsApertureAndFieldShrink) {
     const TiltFit rays = fit_tilt(narrow, targets, behind(narrow.ideal()));
     const TiltFit thick = fit_tilt(narrow.ideal(), targets, behind(narrow.ideal()));
     ASSERT_EQ(rays.status, Status::solved);
-    const double difference = std::abs(rays.film.film_z - thick.film.film_z);
+    const double difference = std::abs(rays.film.z() - thick.film.z());
     EXPECT_LT(difference, 0.02);
     if (last > 0) {
       EXPECT_NEAR(difference / last, 0.25, 0.05) << size;
@@ -232,9 +235,9 @@ TEST(RayTiltFit, UnitOfLengthDoesNotMatter) {
     Targets there = targets;
     for (FocusTarget& t : there) t.place.position *= unit;
     TiltOptions options = behind(scaled.ideal());
-    options.frame = {36 * unit, 24 * unit};
+    options.film = {.width_mm = 36 * unit, .height_mm = 24 * unit};
     const TiltFit fit = fit_tilt(scaled, there, options);
-    EXPECT_NEAR(fit.film.film_z / unit, base.film.film_z, 1e-12 * base.film.film_z);
+    EXPECT_NEAR(fit.film.z() / unit, base.film.z(), 1e-12 * base.film.z());
     EXPECT_NEAR(fit.film.tilt_rad, base.film.tilt_rad, 1e-12);
     EXPECT_NEAR(fit.film.swing_rad, base.film.swing_rad, 1e-12);
   }
@@ -246,15 +249,15 @@ TEST(RayTiltFit, HoldsTheLimitAsBestItCan) {
   const TiltFit fit = fit_tilt(bundles(), targets, behind(bundles().ideal(), 1));
   ASSERT_EQ(fit.status, Status::limited);
   EXPECT_NEAR(fit.film.angle(), limit, 1e-12);
-  const auto& [z, tilt, swing] = fit.film;
+  const double z = fit.film.z(), tilt = fit.film.tilt_rad, swing = fit.film.swing_rad;
   const double least = rms(targets, fit.film);
   const double turn = std::atan2(tilt, swing);
   for (const double step : {-0.02, 0.02}) {  // around the limit, for such small angles
-    EXPECT_GT(rms(targets, {z, limit * std::sin(turn + step), limit * std::cos(turn + step)}), least);
-    EXPECT_GT(rms(targets, {z + 0.1 * step, tilt, swing}), least);
+    EXPECT_GT(rms(targets, film_at(z, limit * std::sin(turn + step), limit * std::cos(turn + step))), least);
+    EXPECT_GT(rms(targets, film_at(z + 0.1 * step, tilt, swing)), least);
   }
   const TiltFit upright = fit_tilt(bundles(), targets, behind(bundles().ideal(), 0));
-  EXPECT_TRUE(upright.film.upright());
+  EXPECT_FALSE(upright.film.tilted());
   EXPECT_GT(upright.rms_mm, fit.rms_mm);
 }
 
@@ -270,7 +273,7 @@ TEST(RayTiltFit, LimitIsThatOfItsOwnFilm) {
     if (rays.film.angle() < thick.film.angle()) {
       less = true;
       EXPECT_EQ(fit.status, Status::solved);
-      EXPECT_NEAR(fit.film.film_z, rays.film.film_z, 1e-9);
+      EXPECT_NEAR(fit.film.z(), rays.film.z(), 1e-9);
       EXPECT_NEAR(fit.film.angle(), rays.film.angle(), 1e-9);
     } else {
       more = true;
@@ -286,7 +289,7 @@ TEST(RayTiltFit, FilmThatNoRaysCrossIsNoEnd) {
   // The film through both ideal images leans so much that rays of both would reach it from behind.
   const Targets targets{target(0, 10, -1000), target(0, 30, -4000)};
   TiltOptions options = behind(bundles().ideal(), 89.9);
-  options.frame = {.width_mm = 0, .height_mm = 0};
+  options.film = {.width_mm = 0, .height_mm = 0};
   const TiltFit thick = fit_tilt(bundles().ideal(), targets, options);
   ASSERT_TRUE(thick);
   EXPECT_GT(thick.film.angle(), radians(80));
@@ -305,13 +308,13 @@ TEST(RayTiltFit, TakesTheOutliersOfTheThickLens) {
   EXPECT_EQ(fit.blurs[0].use, TargetUse::outlier);
   EXPECT_EQ(fit.blurs[1].use, TargetUse::outlier);
   EXPECT_GT(std::abs(fit.blurs[0].blur_mm), 0.05);
-  EXPECT_NEAR(fit.film.film_z, wanted.film.film_z, 1e-8);
+  EXPECT_NEAR(fit.film.z(), wanted.film.z(), 1e-8);
   EXPECT_NEAR(fit.rms_mm, wanted.rms_mm, 1e-8);
 }
 
 TEST(RayTiltFit, WhatTheLensDoesNotSeeTakesNoPart) {
   const Targets good = leaning(bundles().ideal()).targets(6, 0.25, 0.18);
-  const FilmPose wanted = fit_tilt(bundles(), good, behind(bundles().ideal())).film;
+  const Film wanted = fit_tilt(bundles(), good, behind(bundles().ideal())).film;
   Targets targets = good;
   targets.push_back(target(9000, 0, -1000));  // far beside the picture
   targets.push_back(target(0, 0, -1));        // within the focal length
@@ -322,7 +325,7 @@ TEST(RayTiltFit, WhatTheLensDoesNotSeeTakesNoPart) {
   EXPECT_EQ(fit.blurs[7].use, TargetUse::no_image);
   EXPECT_EQ(fit.blurs[8].use, TargetUse::no_weight);
   EXPECT_TRUE(std::isfinite(fit.blurs[8].blur_mm));
-  EXPECT_EQ(fit.film.film_z, wanted.film_z);
+  EXPECT_EQ(fit.film.z(), wanted.z());
   EXPECT_EQ(fit.film.tilt_rad, wanted.tilt_rad);
   const TiltFit none = fit_tilt(bundles(), Targets{targets[6]}, behind(bundles().ideal()));
   EXPECT_EQ(none.status, Status::no_targets);

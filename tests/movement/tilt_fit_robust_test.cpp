@@ -97,7 +97,7 @@ TEST(RobustTiltFit, OfFourTargetsNoneIsAnOutlier) {
   const Targets targets = with_outliers(scene, 4, 1);
   const TiltFit plain = fit_tilt(scene.lens, targets, behind(scene.lens));
   const TiltFit fit = fit_tilt(scene.lens, targets, robust(scene.lens));
-  EXPECT_EQ(fit.film.film_z, plain.film.film_z);
+  EXPECT_EQ(fit.film.z(), plain.film.z());
   EXPECT_EQ(fit.film.tilt_rad, plain.film.tilt_rad);
   for (const TargetBlur& blur : fit.blurs) EXPECT_EQ(blur.use, TargetUse::used);
 }
@@ -112,7 +112,7 @@ TEST(RobustTiltFit, NoiseAloneMakesNoOutliersAndLittleDifference) {
     for (FocusTarget& t : targets) t.place.position *= noise(random);
     const TiltFit plain = fit_tilt(scene.lens, targets, behind(scene.lens));
     const TiltFit fit = fit_tilt(scene.lens, targets, robust(scene.lens));
-    EXPECT_NEAR(fit.film.film_z, plain.film.film_z, 0.01) << seed;
+    EXPECT_NEAR(fit.film.z(), plain.film.z(), 0.01) << seed;
     EXPECT_LT(angle(fit.film.normal(), plain.film.normal()), 1e-3) << seed;
     for (const TargetBlur& blur : fit.blurs) outliers += blur.use == TargetUse::outlier;
   }
@@ -134,12 +134,12 @@ TEST(RobustTiltFit, TargetsBecomeOutliersByAndBy) {
     targets[0].place.position = still * (1 + 0.05 * i / steps);
     const TiltFit fit = fit_tilt(scene.lens, targets, robust(scene.lens));
     if (i > 0) {
-      EXPECT_NEAR(fit.film.film_z, last, 2e-5) << i;
+      EXPECT_NEAR(fit.film.z(), last, 2e-5) << i;
     }
     if (i == 0 || i == steps) {
       EXPECT_EQ(fit.blurs[0].use, i == 0 ? TargetUse::used : TargetUse::outlier);
     }
-    last = fit.film.film_z;
+    last = fit.film.z();
   }
 }
 
@@ -159,8 +159,8 @@ TEST(RobustTiltFit, ServesLinesAndPlacesToo) {
   EXPECT_EQ(along.film.tilt_rad, 0);
   const TiltFit at = fit_tilt(normal_lens(), place, robust(normal_lens()));
   EXPECT_EQ(at.rank, PlaneRank::point);
-  EXPECT_TRUE(at.film.upright());
-  EXPECT_NEAR(at.film.film_z, 50 * 2000 / 1950.0, 1e-12);
+  EXPECT_FALSE(at.film.tilted());
+  EXPECT_NEAR(at.film.z(), 50 * 2000 / 1950.0, 1e-12);
   for (std::size_t i = 0; i < 11; ++i) {
     EXPECT_EQ(along.blurs[i].use == TargetUse::outlier, i % 4 == 3) << i;
     EXPECT_EQ(at.blurs[i].use == TargetUse::outlier, i % 4 == 3) << i;

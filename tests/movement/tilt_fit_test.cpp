@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "../data_lenses.hpp"
+#include "../film_at.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/units.hpp"
 #include "tilt_scene.hpp"
@@ -18,14 +19,16 @@
 namespace petzval {
 namespace {
 
+using testing::film_at;
+
 using namespace testing;
 using Status = TiltFit::Status;
 using Targets = std::vector<FocusTarget>;
 using Vec = Vec3<double>;
 constexpr double F = 50;
 
-void expect_same_film(const FilmPose& found, const FilmPose& wanted, double tolerance, double unit = F) {
-  EXPECT_NEAR(found.film_z / unit, wanted.film_z / unit, tolerance);
+void expect_same_film(const Film& found, const Film& wanted, double tolerance, double unit = F) {
+  EXPECT_NEAR(found.z() / unit, wanted.z() / unit, tolerance);
   EXPECT_NEAR(found.tilt_rad, wanted.tilt_rad, tolerance);
   EXPECT_NEAR(found.swing_rad, wanted.swing_rad, tolerance);
 }
@@ -61,7 +64,7 @@ TEST(TiltFit, ExactPointsGiveTheirPlaneForEveryThickLens) {
     const Scene scene{0.6 * slope, -0.8 * slope, c, lens};
     const Targets targets = scene.targets(12, 0.1, 0.1);
     TiltOptions options = behind(lens);
-    options.frame = {.width_mm = 0.1 * f, .height_mm = 0.1 * f};
+    options.film = {.width_mm = 0.1 * f, .height_mm = 0.1 * f};
     const TiltFit fit = fit_tilt(lens, targets, options);
     if (fit.status == Status::unreachable) {  // the tilted film would touch the lens
       EXPECT_LT(lens.rear_focal_z - lens.rear_z, 0.02 * f) << prescription.name;
@@ -90,10 +93,10 @@ TEST(TiltFit, GivesTheTiltsThatAreKnown) {
   const Vec leaning(0, 0.5, -std::sqrt(0.75));
   const IdealLens thin = thin_lens(0.05, 2);
   TiltOptions options = behind(thin);
-  options.frame = {.width_mm = 0.036, .height_mm = 0.024};
+  options.film = {.width_mm = 0.036, .height_mm = 0.024};
   const TiltFit tilted = fit_tilt(thin, points_of({leaning, std::sqrt(3)}, 0), options);
   ASSERT_EQ(tilted.status, Status::solved);
-  EXPECT_NEAR(tilted.film.film_z, 0.051282051282051282, 1e-9 * 0.05);
+  EXPECT_NEAR(tilted.film.z(), 0.051282051282051282, 1e-9 * 0.05);
   EXPECT_NEAR(degrees(tilted.film.angle()), 0.848136346759917, 1e-9);
   EXPECT_NEAR(tilted.focus->hinge->point.y, 3.3774990747593107, 4e-9);
   EXPECT_NEAR(tilted.focus->scheimpflug->point.y, 3.4641016151377546, 4e-9);
@@ -101,7 +104,7 @@ TEST(TiltFit, GivesTheTiltsThatAreKnown) {
 
   const Targets low{target(-0.2, -1.5, -3), target(0.4, -1.5, -4), target(0.1, -1.5, -9)};
   const TiltFit ground = fit_tilt(thin, low, options);
-  EXPECT_NEAR(ground.film.film_z, 0.05, 1e-9 * 0.05);
+  EXPECT_NEAR(ground.film.z(), 0.05, 1e-9 * 0.05);
   EXPECT_NEAR(degrees(ground.film.angle()), 1.9091524329963762, 1e-9);
 
   // Thick: R = +-100 mm, 20 mm thick; numbers from the middle of the lens.
@@ -113,7 +116,7 @@ TEST(TiltFit, GivesTheTiltsThatAreKnown) {
   const Plane scene{leaning, 1990 * std::sqrt(0.75)};
   const TiltFit through = fit_tilt(thick, points_of(scene, thick.front_principal_z()), behind(thick));
   ASSERT_EQ(through.status, Status::solved);
-  EXPECT_NEAR(through.film.film_z - 10, 108.62604046571582, 1e-9 * 100);
+  EXPECT_NEAR(through.film.z() - 10, 108.62604046571582, 1e-9 * 100);
   EXPECT_NEAR(degrees(through.film.angle()), 1.7463843377726925, 1e-9);
 }
 
@@ -121,7 +124,7 @@ TEST(TiltFit, GivesThePlaneOfThreePoints) {
   // Disparity -.5 x + y + .4.
   const IdealLens lens = thin_lens(0.05, 2);
   TiltOptions options = behind(lens);
-  options.frame = {.width_mm = 0.036, .height_mm = 0.024};
+  options.film = {.width_mm = 0.036, .height_mm = 0.024};
   const Targets targets{target(-0.4, 0, -2), target(0.2 / 0.3, 0, -1 / 0.3), target(0, 0.2, -2)};
   const TiltFit fit = fit_tilt(lens, targets, options);
   ASSERT_EQ(fit.status, Status::solved);
@@ -135,7 +138,7 @@ TEST(TiltFit, MeetsWhatThreeTargetsWant) {
   const std::vector<FocusTarget> targets{
       {.place = {{-300, -200, -1500}}}, {.place = {{400, -100, -2500}}}, {.place = {{0, 300, -4000}}, .blur_mm = 0.05}};
   TiltOptions options;
-  options.start.film_z = lens.rear_focal_z;
+  options.film.z_mm = lens.rear_focal_z;
   const TiltFit fit = fit_tilt(lens, targets, options);
   ASSERT_EQ(fit.status, Status::solved);
   for (const TargetBlur& blur : fit.blurs) EXPECT_NEAR(blur.blur_mm, blur.wanted_mm, 1e-12);
@@ -156,7 +159,7 @@ TEST(TiltFit, IsTheLeastSumOfSquares) {
     }
     const TiltFit fit = fit_tilt(lens, targets, behind(lens, 60));
     ASSERT_TRUE(fit) << draw;
-    const auto cost = [&](const FilmPose& film) {
+    const auto cost = [&](const Film& film) {
       double sum = 0, weights = 0;
       for (const FocusTarget& t : targets) {
         const double error = signed_blur(*lens.image(t.place), film) - t.blur_mm;
@@ -167,11 +170,11 @@ TEST(TiltFit, IsTheLeastSumOfSquares) {
     };
     EXPECT_NEAR(fit.rms_mm, cost(fit.film), 1e-12);
     for (const double step : {-1e-3, 1e-3}) {
-      EXPECT_GT(cost({fit.film.film_z + 10 * step, fit.film.tilt_rad, fit.film.swing_rad}), fit.rms_mm);
-      EXPECT_GT(cost({fit.film.film_z, fit.film.tilt_rad + step, fit.film.swing_rad}), fit.rms_mm);
-      EXPECT_GT(cost({fit.film.film_z, fit.film.tilt_rad, fit.film.swing_rad + step}), fit.rms_mm);
+      EXPECT_GT(cost(film_at(fit.film.z() + 10 * step, fit.film.tilt_rad, fit.film.swing_rad)), fit.rms_mm);
+      EXPECT_GT(cost(film_at(fit.film.z(), fit.film.tilt_rad + step, fit.film.swing_rad)), fit.rms_mm);
+      EXPECT_GT(cost(film_at(fit.film.z(), fit.film.tilt_rad, fit.film.swing_rad + step)), fit.rms_mm);
     }
-    EXPECT_LT(off_least([&](const FilmPose& film) { return cost(film) * cost(film); }, fit.film, F), 1e-7);
+    EXPECT_LT(off_least([&](const Film& film) { return cost(film) * cost(film); }, fit.film, F), 1e-7);
   }
 }
 
@@ -187,15 +190,14 @@ TEST(TiltFit, UnitOfLengthDoesNotMatter) {
       Targets scaled = targets;
       for (FocusTarget& t : scaled) t.place.position *= unit, t.blur_mm *= unit;
       TiltOptions scaled_options = options;
-      scaled_options.start.film_z *= unit;
-      scaled_options.frame = {36 * unit, 24 * unit};
+      scaled_options.film = {.width_mm = 36 * unit, .height_mm = 24 * unit, .z_mm = unit * options.film.z()};
       const TiltFit fit = fit_tilt(thin_lens(F * unit, 2), scaled, scaled_options);
       ASSERT_EQ(fit.status, Status::solved);
-      EXPECT_NEAR(fit.film.film_z / unit / base.film.film_z, 1, tolerance) << unit;
+      EXPECT_NEAR(fit.film.z() / unit / base.film.z(), 1, tolerance) << unit;
       EXPECT_NEAR(fit.film.tilt_rad, base.film.tilt_rad, tolerance) << unit;
       EXPECT_NEAR(fit.film.swing_rad, base.film.swing_rad, tolerance) << unit;
       EXPECT_NEAR(fit.rms_mm / unit / base.rms_mm, 1, tolerance) << unit;
-      EXPECT_NEAR(fit.centre.x / unit, base.centre.x, tolerance * F);
+      EXPECT_NEAR(fit.film.shift_x_mm / unit, base.film.shift_x_mm, tolerance * F);
     }
   }
 }
@@ -203,7 +205,7 @@ TEST(TiltFit, UnitOfLengthDoesNotMatter) {
 TEST(TiltFit, OrderAndScaleOfWeightsDoNotMatterAndRepetitionIsWeight) {
   Targets targets = inexact_targets(9, 6);
   const TiltOptions options = behind(normal_lens(), 40);
-  const FilmPose base = fit_tilt(normal_lens(), targets, options).film;
+  const Film base = fit_tilt(normal_lens(), targets, options).film;
   std::mt19937 random(7);
   for (int i = 0; i < 10; ++i) {
     std::shuffle(targets.begin(), targets.end(), random);
@@ -231,10 +233,12 @@ TEST(TiltFit, MirroredTargetsGiveTheMirroredFilm) {
       Targets x = targets, y = targets;
       for (FocusTarget& t : x) t.place.position.x *= -1;
       for (FocusTarget& t : y) t.place.position.y *= -1;
-      const FilmPose base = fit_tilt(normal_lens(), targets, options).film;
-      expect_same_film(fit_tilt(normal_lens(), x, options).film, {base.film_z, base.tilt_rad, -base.swing_rad}, 1e-9);
+      const Film base = fit_tilt(normal_lens(), targets, options).film;
+      expect_same_film(fit_tilt(normal_lens(), x, options).film, film_at(base.z(), base.tilt_rad, -base.swing_rad),
+                       1e-9);
       // Tilt first: the mirror image of (p, q) is (p, -q), and tan(tilt) = q cos(swing).
-      expect_same_film(fit_tilt(normal_lens(), y, options).film, {base.film_z, -base.tilt_rad, base.swing_rad}, 1e-9);
+      expect_same_film(fit_tilt(normal_lens(), y, options).film, film_at(base.z(), -base.tilt_rad, base.swing_rad),
+                       1e-9);
     }
   }
 }

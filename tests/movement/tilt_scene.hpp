@@ -7,6 +7,7 @@
 #include <random>
 #include <vector>
 
+#include "../film_at.hpp"
 #include "petzval/core/units.hpp"
 #include "petzval/movement/tilt_fit.hpp"
 
@@ -18,7 +19,7 @@ inline IdealLens normal_lens() { return thin_lens(50, 2); }
 /// The film at infinity focus; so much tilt.
 inline TiltOptions behind(const IdealLens& lens, double max_tilt_deg = 20) {
   TiltOptions options{.max_tilt_rad = radians(max_tilt_deg)};
-  options.start.film_z = lens.rear_focal_z;
+  options.film.z_mm = lens.rear_focal_z;
   return options;
 }
 
@@ -70,18 +71,17 @@ inline std::vector<FocusTarget> inexact_targets(int count, unsigned seed) {
 
 /// How far a film is from the least cost nearby: the largest foot of the parabolas through costs 1e-4 to either side,
 /// in its position (in units of `unit`) and its angles.
-double off_least(const auto& cost, const FilmPose& film, double unit) {
+double off_least(const auto& cost, const Film& film, double unit) {
   constexpr double h = 1e-4;
   const double here = cost(film);
-  const auto foot = [&](const FilmPose& step) {
+  const auto foot = [&](double z, double tilt, double swing) {
     const auto moved = [&](double by) {
-      return cost(FilmPose{film.film_z + by * step.film_z, film.tilt_rad + by * step.tilt_rad,
-                           film.swing_rad + by * step.swing_rad});
+      return cost(film_at(film.z() + by * z, film.tilt_rad + by * tilt, film.swing_rad + by * swing));
     };
     const double before = moved(-h), behind = moved(h);
     return std::abs(h / 2 * (behind - before) / (behind + before - 2 * here));
   };
-  return std::max({foot({.film_z = unit}), foot({.tilt_rad = 1}), foot({.swing_rad = 1})});
+  return std::max({foot(unit, 0, 0), foot(0, 1, 0), foot(0, 0, 1)});
 }
 
 }  // namespace petzval::testing

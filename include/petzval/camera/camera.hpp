@@ -5,11 +5,11 @@
 
 #include "petzval/camera/any_model.hpp"
 #include "petzval/camera/camera_ray.hpp"
-#include "petzval/camera/film.hpp"
 #include "petzval/camera/importance.hpp"
 #include "petzval/camera/ray_model.hpp"
 #include "petzval/camera/tilted_film.hpp"
 #include "petzval/core/export.hpp"
+#include "petzval/film/film.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/lens/wavelength.hpp"
 

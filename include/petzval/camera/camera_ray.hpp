@@ -4,6 +4,7 @@
 #include <cstddef>
 
 #include "petzval/core/ray.hpp"
+#include "petzval/film/film.hpp"
 #include "petzval/lens/wavelength.hpp"
 #include "petzval/pupil/field_point.hpp"
 #include "petzval/trace/batch.hpp"

@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "petzval/camera/film.hpp"
 #include "petzval/camera/model_error.hpp"
 #include "petzval/camera/ray_model.hpp"
 #include "petzval/core/export.hpp"
+#include "petzval/film/film.hpp"
 #include "petzval/lens/lens.hpp"
 
 namespace petzval::inline v0 {

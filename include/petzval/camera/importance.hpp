@@ -8,6 +8,7 @@
 #include "petzval/core/export.hpp"
 #include "petzval/core/ray.hpp"
 #include "petzval/core/vec.hpp"
+#include "petzval/film/film.hpp"
 #include "petzval/pupil/field_point.hpp"
 
 namespace petzval::inline v0 {

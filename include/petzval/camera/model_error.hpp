@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "petzval/camera/any_model.hpp"
-#include "petzval/camera/film.hpp"
 #include "petzval/camera/ray_model.hpp"
 #include "petzval/core/export.hpp"
+#include "petzval/film/film.hpp"
 #include "petzval/lens/lens.hpp"
 
 namespace petzval::inline v0 {

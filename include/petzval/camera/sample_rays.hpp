@@ -7,10 +7,10 @@
 #include <span>
 
 #include "petzval/camera/camera_ray.hpp"
-#include "petzval/camera/film.hpp"
 #include "petzval/camera/ray_model.hpp"
 #include "petzval/camera/tilted_film.hpp"
 #include "petzval/core/export.hpp"
+#include "petzval/film/film.hpp"
 
 namespace petzval::inline v0 {
 

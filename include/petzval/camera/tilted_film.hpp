@@ -4,11 +4,10 @@
 #include <cstddef>
 #include <optional>
 
-#include "petzval/camera/film.hpp"
 #include "petzval/camera/ray_model.hpp"
 #include "petzval/core/export.hpp"
+#include "petzval/film/film.hpp"
 #include "petzval/lens/lens.hpp"
-#include "petzval/pupil/field_point.hpp"
 #include "petzval/pupil/film_pupil_table.hpp"
 #include "petzval/pupil/line_derivatives.hpp"
 #include "petzval/pupil/two_plane_rays.hpp"

@@ -6,16 +6,16 @@
 #include <string_view>
 
 #include "petzval/core/export.hpp"
+#include "petzval/film/film.hpp"
 
 namespace petzval::inline v0 {
 
 /// A film at one time, and what it has in focus.
 struct FocusPullFrame {
   double time = 0;              ///< s
-  double film_z = 0;            ///< on the axis, lens frame, mm
+  Film film;                    ///< z_mm is set
   double subject_distance = 0;  ///< in focus on the axis, from the film, mm, > 0; may be infinite
-  double tilt_rad = 0, swing_rad = 0;
-  double rms_mm = 0;  ///< blur of the points that were served; NaN: there was none, and the film stayed
+  double rms_mm = 0;            ///< blur of the points that were served; NaN: there was none, and the film stayed
 };
 
 /// Focus over time, as SVG text: the distance in focus (as 1/distance, in which infinity has a place), where the film

@@ -7,8 +7,8 @@
 #include <string_view>
 
 #include "petzval/core/export.hpp"
+#include "petzval/film/film.hpp"
 #include "petzval/lens/lens.hpp"
-#include "petzval/movement/film_pose.hpp"
 #include "petzval/movement/ideal_lens.hpp"
 
 namespace petzval::inline v0 {
@@ -25,10 +25,9 @@ struct TiltView {
   std::string_view remark;      ///< a line about the conditions, of which the figure knows nothing
   IdealLens lens;               ///< whose planes and lines these are
   const Lens* glass = nullptr;  ///< the real lens, cut open; without one a double arrow
-  FilmPose before, after;
+  Film before, after;           ///< with their places; before upright
   /// What is in focus, where exact rays put the film elsewhere for it than `lens` does. Nothing: by `lens`.
   std::optional<FocusPlane> focus = {};
-  FilmFrame frame;        ///< on the film after
   double blur_mm = 0.03;  ///< largest blur that counts as sharp, > 0
   std::span<const TiltFigurePoint> points;
 };
@@ -39,8 +38,8 @@ struct TiltView {
 /// from 1.
 ///
 /// What is sharp within blur_mm is a wedge with its edge on the hinge line: by the disc that a chief ray across the
-/// film's normal would have, as signed_blur() has it. Throws Error for poses that are not finite, a blur that is not
-/// above 0 and a frame without size.
+/// film's normal would have, as signed_blur() has it. Throws Error for films that are not finite or without a place or
+/// size, and a blur that is not above 0.
 PETZVAL_API std::string tilt_figure(const TiltView& view);
 
 }  // namespace petzval::inline v0

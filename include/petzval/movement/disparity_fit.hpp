@@ -6,8 +6,8 @@
 #include <string_view>
 
 #include "petzval/core/export.hpp"
+#include "petzval/core/plane.hpp"
 #include "petzval/movement/ideal_lens.hpp"
-#include "petzval/movement/plane.hpp"
 
 namespace petzval::inline v0 {
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "petzval/core/export.hpp"
+#include "petzval/film/film.hpp"
 #include "petzval/movement/focus_target.hpp"
 #include "petzval/movement/ideal_lens.hpp"
 
@@ -45,13 +46,13 @@ struct FocusPoint {
 struct FocusMoment {
   double time = 0;                              ///< s
   std::span<const Vec3<double>> vertices = {};  ///< of the mesh at that time, lens frame, mm
-  std::optional<FilmFrame> frame;               ///< points whose chief rays miss it are left out
-  double film_z = 0;                            ///< with frame: where the (upright) film stands
-  bool nearer_weighs_more = false;              ///< weights over depth: that of the nearest stays
+  /// Points whose chief rays miss it are left out; a place that is not set is the rear focal point.
+  std::optional<Film> film = {};
+  bool nearer_weighs_more = false;  ///< weights over depth: that of the nearest stays
 };
 
 /// The targets at a moment: of the points, in their order, that are valid then, of which the lens forms an image, and
-/// that lie in the picture. Throws Error for a time that is none; a frame of negative size or not finite; points
+/// that lie in the picture. Throws Error for a NaN time; a film of negative size or not finite; points
 /// without keys, with times out of order, an interval that ends before it begins, positions, blurs or weights that are
 /// not finite or negative, coordinates that are none of a triangle, and vertices that are not there.
 PETZVAL_API std::vector<FocusTarget> focus_targets(const IdealLens& lens, std::span<const FocusPoint> points,

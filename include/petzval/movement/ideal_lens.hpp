@@ -5,11 +5,11 @@
 #include <optional>
 
 #include "petzval/core/export.hpp"
+#include "petzval/core/plane.hpp"
 #include "petzval/core/vec.hpp"
+#include "petzval/film/film.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/lens/wavelength.hpp"
-#include "petzval/movement/film_pose.hpp"
-#include "petzval/movement/plane.hpp"
 #include "petzval/paraxial/pupils.hpp"
 
 namespace petzval::inline v0 {
@@ -69,8 +69,10 @@ PETZVAL_API IdealLens thick_lens(const Lens& lens, Wavelength wavelength = {});
 
 /// Diameter of the blur of an image point on a film, across the axis where the chief ray meets the film: negative in
 /// front of the plane of focus (its image lies behind the film), positive beyond it. Infinite for a chief ray along the
-/// film.
-PETZVAL_API double signed_blur(const ImagePoint& image, const FilmPose& film) noexcept;
+/// film. Throws Error, as chief_point() and focus_plane(), for a film without a place.
+PETZVAL_API double signed_blur(const ImagePoint& image, const Film& film);
+/// Where the chief ray of an image point meets a film. Nothing for one along the film.
+PETZVAL_API std::optional<FilmPoint> chief_point(const ImagePoint& image, const Film& film);
 
 /// What of the scene is in focus on a film, and the two lines about which it turns: the hinge line, in the front focal
 /// plane, when the film moves along the axis, Scheimpflug's, in the front principal plane, when the film turns about
@@ -80,6 +82,6 @@ struct FocusPlane {
   std::optional<SpaceLine> hinge, scheimpflug;
 };
 /// Nothing for a film whose plane of focus is at infinity.
-PETZVAL_API std::optional<FocusPlane> focus_plane(const IdealLens& lens, const FilmPose& film);
+PETZVAL_API std::optional<FocusPlane> focus_plane(const IdealLens& lens, const Film& film);
 
 }  // namespace petzval::inline v0

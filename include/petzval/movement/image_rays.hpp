@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "petzval/core/export.hpp"
+#include "petzval/film/film.hpp"
 #include "petzval/lens/lens.hpp"
-#include "petzval/movement/film_pose.hpp"
 #include "petzval/movement/ideal_lens.hpp"
 
 namespace petzval::inline v0 {
@@ -31,8 +31,8 @@ struct BundleBlur {
   /// the film, as signed_blur(), unless defocus makes less than a tenth of it.
   double signed_diameter = 0;
 };
-/// Nothing for an empty bundle, and where a ray runs along the film.
-PETZVAL_API std::optional<BundleBlur> blur_on(const RayBundle& bundle, const FilmPose& film);
+/// Nothing for an empty bundle, and where a ray runs along the film. Throws Error for a film without a place.
+PETZVAL_API std::optional<BundleBlur> blur_on(const RayBundle& bundle, const Film& film);
 
 /// Sends bundles from scene points through a lens: set up once for a lens and a film (milliseconds), then some
 /// microseconds a point. Immutable, cheap to copy, free to share between threads.

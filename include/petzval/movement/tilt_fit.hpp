@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "petzval/core/export.hpp"
+#include "petzval/film/film.hpp"
 #include "petzval/movement/disparity_fit.hpp"
 #include "petzval/movement/focus_target.hpp"
 #include "petzval/movement/ideal_lens.hpp"
@@ -18,9 +19,10 @@ namespace petzval::inline v0 {
 struct TiltOptions {
   double max_tilt_rad = 0.3490658503988659;  ///< 20 degrees; between film and the plane across the axis
   bool robust = false;                       ///< outliers lose their weight: least median of squares, then Tukey's loss
-  FilmPose start = {};                       ///< where the film stands: what is given back where nothing can be solved
-  /// On that film: its middle is to be kept, its corners clear of the lens (the axis alone unless a size is given).
-  FilmFrame frame = {.width_mm = 0, .height_mm = 0};
+  /// As it stands. The fit keeps the middle of its picture and its corners clear of the lens (of a film without size
+  /// the middle alone), and gives it back where nothing can be solved. A place that is not set is the rear focal point
+  /// of an ideal lens, and else the lens's own.
+  Film film = {};
 };
 
 /// How a tilted film serves focus targets.
@@ -35,8 +37,7 @@ struct TiltFit {
   };
   Status status = Status::no_targets;
   PlaneRank rank = PlaneRank::none;
-  FilmPose film;
-  FilmPoint centre;                 ///< shift: where on the film the middle of the picture is now
+  Film film;                        ///< shifted so that the middle of the picture stays; z_mm is set
   std::optional<FocusPlane> focus;  ///< nothing where all that is in focus is at infinity
   std::vector<TargetBlur> blurs;    ///< of each target, used or not
   double rms_mm = 0;                ///< weighted, of blur less wanted, over the targets used
@@ -52,10 +53,8 @@ PETZVAL_API std::string_view name(TiltFit::Status status) noexcept;
 ///     const std::vector<FocusTarget> targets{{.place = {{-300, -200, -1500}}},
 ///                                            {.place = {{400, -100, -2500}}},
 ///                                            {.place = {{0, 300, -4000}}, .blur_mm = 0.05}};
-///     TiltOptions options;
-///     options.start.film_z = lens.rear_focal_z;
-///     const TiltFit fit = fit_tilt(lens, targets, options);
-///     if (fit) draw(fit.film, fit.centre);
+///     const TiltFit fit = fit_tilt(lens, targets, {.film = {.width_mm = 36, .height_mm = 24}});
+///     if (fit) draw(fit.film);
 ///
 /// What targets do not fix is left as upright as it can be: one place in the picture gives an upright film, a line
 /// the film of least tilt through it. Beyond the limit of tilt it is the best film on the limit. The film is continuous
@@ -71,7 +70,7 @@ PETZVAL_API std::string_view name(TiltFit::Status status) noexcept;
 /// Accuracy (tests/movement): targets that can all be met give their film within 1e-9, in any unit from 1e-6 to 1e6,
 /// for thin lenses and the thick ones of data/lenses; 24 points with 3 mm of noise, 8 of them anywhere else, their
 /// plane within 1 degree. 24 targets take 0.03 ms, robust 0.3 ms (tests/bench). Throws Error for a limit that is not
-/// from 0 to less than a quarter turn, and for a film or a frame that is not finite.
+/// from 0 to less than a quarter turn, and for a film that is not finite or of negative size.
 PETZVAL_API TiltFit fit_tilt(const IdealLens& lens, std::span<const FocusTarget> targets,
                              const TiltOptions& options = {});
 /// By exact rays: as above for the thick lens, and from there the least weighted squares of the bundles' diameters (see

@@ -16,9 +16,4 @@ struct FieldPoint {
   double azimuth_rad = 0;  ///< 0: towards +y; a quarter turn: towards +x
 };
 
-/// A point of the lens's film, mm.
-struct FilmPoint {
-  double x = 0, y = 0;
-};
-
 }  // namespace petzval::inline v0

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "petzval/core/export.hpp"
+#include "petzval/film/film.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/lens/wavelength.hpp"
 #include "petzval/pupil/field_point.hpp"

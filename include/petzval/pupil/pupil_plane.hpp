@@ -6,6 +6,7 @@
 
 #include "petzval/core/export.hpp"
 #include "petzval/core/ray.hpp"
+#include "petzval/film/film.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/pupil/field_point.hpp"
 #include "petzval/trace/batch.hpp"

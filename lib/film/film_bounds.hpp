@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cmath>
+#include <limits>
+
+#include "petzval/film/film.hpp"
+
+namespace petzval::inline v0::film_detail {
+
+/// The rectangle of a film in numbers of type T. The half sides leave room for edge points that were rounded to T.
+template <class T>
+struct FilmBounds {
+  T centre_x, centre_y, half_width, half_height;
+};
+
+template <class T>
+FilmBounds<T> bounds_of(const Film& film) noexcept {
+  constexpr double rounding = 2 * std::numeric_limits<T>::epsilon();
+  const auto half = [](double length, double shift) { return length / 2 + rounding * (std::abs(shift) + length); };
+  return {static_cast<T>(film.shift_x_mm), static_cast<T>(film.shift_y_mm),
+          static_cast<T>(half(film.width_mm, film.shift_x_mm)), static_cast<T>(half(film.height_mm, film.shift_y_mm))};
+}
+
+}  // namespace petzval::inline v0::film_detail
