@@ -12,11 +12,11 @@
 #include <vector>
 
 #include "petzval/core/parallel.hpp"
-#include "petzval/core/text.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "support/cli.hpp"
 #include "support/files.hpp"
 #include "support/model_rows.hpp"
+#include "support/text.hpp"
 #ifdef EXAMPLES_WITH_FIGURES
 #include "petzval/figure/pareto_figure.hpp"
 #endif
@@ -95,12 +95,12 @@ int main(int argc, char** argv) {
       return;
     }
     std::cout << lens.name() << "\n"
-              << examples::conditions(lens, options) << "\nerrors from " << petzval::number(nearest, 6)
+              << examples::conditions(lens, options) << "\nerrors from " << examples::number(nearest, 6)
               << " mm to infinity, and at the focus\n\n"
               << examples::to_text(rows);
     for (std::size_t k = 0; k < choices.size(); ++k) {
       std::cout << '\n'
-                << petzval::number(budgets_px[k]) << " px: " << petzval::name(choices[k].model) << '\n'
+                << examples::number(budgets_px[k]) << " px: " << petzval::name(choices[k].model) << '\n'
                 << examples::bullets(choices[k].reasons);
       if (choices[k].not_needed.empty()) continue;
       std::cout << "  not needed:\n" << examples::bullets(choices[k].not_needed);

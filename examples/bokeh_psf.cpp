@@ -13,13 +13,13 @@
 
 #include "petzval/core/error.hpp"
 #include "petzval/core/parallel.hpp"
-#include "petzval/core/text.hpp"
 #include "petzval/core/units.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "support/bokeh.hpp"
 #include "support/cli.hpp"
 #include "support/files.hpp"
 #include "support/load_lens.hpp"
+#include "support/text.hpp"
 
 namespace {
 
@@ -64,10 +64,10 @@ examples::Sheet contact_sheet(const std::vector<Picture>& pictures, const exampl
   for (const Picture& p : pictures) half_width = std::max(half_width, 1.08 * p.image.size.max_radius);
   examples::SheetRow row{
       .title = loaded.lens.name(),
-      .subtitle = "point light at " + petzval::number(options.subject_mm) + " mm, " +
-                  petzval::number(options.field_deg) + "°; distances from the " +
+      .subtitle = "point light at " + examples::number(options.subject_mm) + " mm, " +
+                  examples::number(options.field_deg) + "°; distances from the " +
                   (options.origin == "film" ? "film" : "front vertex") + "; focus " + options.criterion +
-                  (options.f_number > 0 ? "; f/" + petzval::number(options.f_number) : "; wide open"),
+                  (options.f_number > 0 ? "; f/" + examples::number(options.f_number) : "; wide open"),
       .pixel_mm = 2 * half_width / tile_pixels,
       .tiles = {}};
   examples::Progress progress("contact sheet", pictures.size());
@@ -118,7 +118,7 @@ void write_all(const std::vector<Picture>& pictures, const examples::LoadedLens&
   examples::make_folder(folder);
   const auto written = [](const std::filesystem::path& file) { std::cout << file.string() << '\n'; };
   for (const Picture& p : pictures) {
-    const std::string stem = loaded.id + "_focus_" + petzval::number(p.focus_mm) + "mm";
+    const std::string stem = loaded.id + "_focus_" + examples::number(p.focus_mm) + "mm";
     const petzval::RgbImage image = examples::irradiance(p.image.psf);
     petzval::write_exr(image, folder / (stem + ".exr"));
     written(folder / (stem + ".exr"));

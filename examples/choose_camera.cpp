@@ -13,10 +13,10 @@
 
 #include "petzval/camera/choose_model.hpp"
 #include "petzval/core/parallel.hpp"
-#include "petzval/core/text.hpp"
 #include "support/cli.hpp"
 #include "support/files.hpp"
 #include "support/model_rows.hpp"
+#include "support/text.hpp"
 
 namespace {
 
@@ -84,8 +84,8 @@ int main(int argc, char** argv) {
     }
     std::cout << lens.name() << '\n'
               << examples::conditions(lens, options) << "\n\n"
-              << petzval::name(choice.model) << ": rays off by at most " << petzval::number(predicted, 3)
-              << " px as predicted, " << petzval::number(verified, 3) << " px in fresh samples\n"
+              << petzval::name(choice.model) << ": rays off by at most " << examples::number(predicted, 3)
+              << " px as predicted, " << examples::number(verified, 3) << " px in fresh samples\n"
               << examples::bullets(choice.reasons);
     if (!choice.not_needed.empty()) std::cout << "not needed:\n" << examples::bullets(choice.not_needed);
     std::cout << "\nmax, pupil and exposure as bounds\n" << examples::to_text(rows);

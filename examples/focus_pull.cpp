@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "petzval/core/error.hpp"
-#include "petzval/core/text.hpp"
 #include "petzval/core/units.hpp"
 #include "petzval/figure/focus_pull_figure.hpp"
 #include "petzval/focus/depth_of_field.hpp"
@@ -25,12 +24,13 @@
 #include "support/files.hpp"
 #include "support/focus_json.hpp"
 #include "support/movement_setup.hpp"
+#include "support/text.hpp"
 
 namespace {
 
 using examples::finite_or_null;
 using examples::Json;
-using petzval::number;
+using examples::number;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double none = std::numeric_limits<double>::quiet_NaN();

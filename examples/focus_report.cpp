@@ -16,7 +16,6 @@
 #include <vector>
 
 #include "petzval/core/error.hpp"
-#include "petzval/core/text.hpp"
 #include "petzval/core/units.hpp"
 #include "petzval/focus/depth_of_field.hpp"
 #include "petzval/focus/focus.hpp"
@@ -25,6 +24,7 @@
 #include "support/cli.hpp"
 #include "support/files.hpp"
 #include "support/load_lens.hpp"
+#include "support/text.hpp"
 
 namespace {
 
@@ -184,7 +184,7 @@ std::string to_text(const Report& report, const Options& options) {
        << (options.origin == "film"           ? "film"
            : options.origin == "front_vertex" ? "front vertex"
                                               : "front principal plane")
-       << "; film_z from the front vertex; depth of field for a blur of " << petzval::number(options.blur_mm)
+       << "; film_z from the front vertex; depth of field for a blur of " << examples::number(options.blur_mm)
        << " mm in diameter\n";
   std::string before;
   for (const Row& r : report.rows) {

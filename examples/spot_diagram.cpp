@@ -9,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "petzval/core/text.hpp"
 #include "petzval/core/units.hpp"
 #include "petzval/figure/spot_figure.hpp"
 #include "petzval/focus/focus.hpp"
@@ -17,6 +16,7 @@
 #include "support/cli.hpp"
 #include "support/files.hpp"
 #include "support/load_lens.hpp"
+#include "support/text.hpp"
 
 namespace {
 
@@ -46,10 +46,10 @@ double field_deg(const Options& options, std::size_t spot) {
 std::string hits_csv(const std::vector<petzval::Spot>& all, const Options& options) {
   std::string csv = "field_deg,wavelength_nm,x_mm,y_mm\n";
   for (std::size_t i = 0; i < all.size(); ++i) {
-    const std::string start =
-        petzval::number(field_deg(options, i)) + ',' + petzval::number(options.wavelengths_nm[all[i].wavelength]) + ',';
+    const std::string start = examples::number(field_deg(options, i)) + ',' +
+                              examples::number(options.wavelengths_nm[all[i].wavelength]) + ',';
     for (std::size_t k = 0; k < all[i].hits.x.size(); ++k) {
-      csv += start + petzval::number(all[i].hits.x[k]) + ',' + petzval::number(all[i].hits.y[k]) + '\n';
+      csv += start + examples::number(all[i].hits.x[k]) + ',' + examples::number(all[i].hits.y[k]) + '\n';
     }
   }
   return csv;

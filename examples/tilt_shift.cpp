@@ -14,7 +14,6 @@
 
 #include "petzval/core/error.hpp"
 #include "petzval/core/parallel.hpp"
-#include "petzval/core/text.hpp"
 #include "petzval/core/units.hpp"
 #include "petzval/figure/tilt_figure.hpp"
 #include "petzval/io/image.hpp"
@@ -27,12 +26,13 @@
 #include "support/files.hpp"
 #include "support/focus_json.hpp"
 #include "support/movement_setup.hpp"
+#include "support/text.hpp"
 
 namespace {
 
 using examples::finite_or_null;
 using examples::Json;
-using petzval::number;
+using examples::number;
 using petzval::TargetUse;
 using petzval::TiltFit;
 using Vector = petzval::Vec3<double>;

@@ -13,13 +13,13 @@
 #include <vector>
 
 #include "petzval/core/error.hpp"
-#include "petzval/core/text.hpp"
 #include "petzval/core/units.hpp"
 #include "support/cli.hpp"
 #include "support/files.hpp"
 #include "support/load_lens.hpp"
 #include "support/number_csv.hpp"
 #include "support/rays_csv.hpp"
+#include "support/text.hpp"
 
 namespace {
 
@@ -48,7 +48,7 @@ std::vector<T> rounded(const std::vector<double>& values, const std::string& whe
   for (const double value : values) {
     if (std::abs(value) > static_cast<double>(std::numeric_limits<T>::max())) {
       throw petzval::Error(where + ": line " + std::to_string(result.size() + 2) + ", column " + column + ": found " +
-                           petzval::number(value) + ", wanted a number within the range of float");
+                           examples::number(value) + ", wanted a number within the range of float");
     }
     result.push_back(static_cast<T>(value));
   }

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "petzval/core/parallel.hpp"
-#include "petzval/core/text.hpp"
 #include "petzval/core/units.hpp"
 #include "petzval/media/catalogue.hpp"
 #include "support/bokeh.hpp"

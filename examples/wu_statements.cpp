@@ -10,13 +10,13 @@
 #include <vector>
 
 #include "petzval/core/parallel.hpp"
-#include "petzval/core/text.hpp"
 #include "petzval/core/units.hpp"
 #include "petzval/media/catalogue.hpp"
 #include "support/bokeh.hpp"
 #include "support/cli.hpp"
 #include "support/files.hpp"
 #include "support/load_lens.hpp"
+#include "support/text.hpp"
 #include "support/wu2010.hpp"
 
 namespace {
@@ -92,7 +92,7 @@ std::string fixed(double value, int decimals) {
 
 std::array<std::string, 12> cells(const Verdict& v) {
   return {v.lens,
-          petzval::number(v.focus_mm),
+          examples::number(v.focus_mm),
           v.criterion,
           v.origin,
           words(v.printed),
@@ -142,7 +142,7 @@ std::string to_html(const std::vector<Verdict>& all) {
       const Verdict* first = &all[lens * 4 * columns + i];
       html << "<tr" << (i == 0 ? " class=\"first\"" : "") << '>';
       if (i == 0) html << "<th rowspan=\"" << columns << "\">" << examples::wu_rows()[lens].title << "</th>";
-      html << "<td>" << petzval::number(first->focus_mm) << " mm</td><td>" << words(first->printed) << "</td>";
+      html << "<td>" << examples::number(first->focus_mm) << " mm</td><td>" << words(first->printed) << "</td>";
       for (std::size_t reading = 0; reading < 4; ++reading) {
         const Verdict& v = first[reading * columns];
         html << "<td class=\"" << (v.agrees ? "yes\">&#10003; " : "no\">&#10007; ") << words(v.found) << "</td>";

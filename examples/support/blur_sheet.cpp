@@ -5,7 +5,7 @@
 #include "blur_map.hpp"
 #include "canvas.hpp"
 #include "font.hpp"
-#include "petzval/core/text.hpp"
+#include "text.hpp"
 
 namespace examples {
 namespace {
@@ -30,7 +30,7 @@ Colour colour_of(double t) {
 std::string micrometres(double mm) {
   const double um = std::round(1e4 * mm) / 10 + 0.0;
   const double shown = std::abs(um) >= 10 ? std::round(um) : um;
-  return (shown < 0 ? "\u2212" : shown > 0 ? "+" : "") + petzval::number(std::abs(shown)) + " \u00b5m";
+  return (shown < 0 ? "\u2212" : shown > 0 ? "+" : "") + number(std::abs(shown)) + " \u00b5m";
 }
 
 void draw_map(petzval::Rgb8Image& page, const BlurMap& map, const BlurSheet& sheet) {

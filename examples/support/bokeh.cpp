@@ -6,10 +6,10 @@
 #include <limits>
 
 #include "petzval/core/error.hpp"
-#include "petzval/core/text.hpp"
 #include "petzval/figure/psf_image.hpp"
 #include "petzval/media/catalogue.hpp"
 #include "petzval/psf/colour.hpp"
+#include "text.hpp"
 
 namespace examples {
 namespace {
@@ -34,9 +34,9 @@ void check_light(const petzval::Lens& lens, const BokehSetup& setup, double orig
     const double middle = (enough + refused) / 2;
     (in_front(lens, origin_z - middle) ? enough : refused) = middle;
   }
-  throw petzval::Error(lens.name() + ": a light " + petzval::number(setup.light_mm) + " mm from the " +
+  throw petzval::Error(lens.name() + ": a light " + number(setup.light_mm) + " mm from the " +
                        (setup.origin == petzval::DistanceOrigin::film ? "film" : "front vertex") +
-                       " is not in front of the lens, wanted more than " + petzval::number(enough, 6) + " mm");
+                       " is not in front of the lens, wanted more than " + number(enough, 6) + " mm");
 }
 
 }  // namespace
@@ -68,15 +68,13 @@ Exposed expose(const petzval::RgbImage& image) {
 }
 
 std::string focus_caption(double focus_mm) {
-  return std::isinf(focus_mm) ? "focus infinity" : "focus " + petzval::number(focus_mm) + " mm";
+  return std::isinf(focus_mm) ? "focus infinity" : "focus " + number(focus_mm) + " mm";
 }
 
 namespace {
 
 /// Three digits, without an exponent.
-std::string short_number(double value) {
-  return value < 100 ? petzval::number(value, 3) : petzval::number(std::round(value));
-}
+std::string short_number(double value) { return value < 100 ? number(value, 3) : number(std::round(value)); }
 
 }  // namespace
 

@@ -9,14 +9,14 @@
 #include <memory>
 
 #include "petzval/core/error.hpp"
-#include "petzval/core/text.hpp"
+#include "text.hpp"
 
 namespace examples {
 namespace {
 
 std::string joined(const std::vector<double>& values) {
   std::string text;
-  for (const double value : values) text += (text.empty() ? "" : ",") + petzval::number(value);
+  for (const double value : values) text += (text.empty() ? "" : ",") + number(value);
   return text;
 }
 
@@ -48,7 +48,7 @@ std::vector<double> parse_numbers(const std::string& where, std::string_view tex
   std::vector<double> sorted = values;
   std::sort(sorted.begin(), sorted.end());
   if (const auto twice = std::adjacent_find(sorted.begin(), sorted.end()); twice != sorted.end()) {
-    throw petzval::Error(where + ": found " + petzval::number(*twice) + " twice, wanted every number once");
+    throw petzval::Error(where + ": found " + number(*twice) + " twice, wanted every number once");
   }
   return values;
 }
@@ -59,7 +59,7 @@ CLI::Option* add_number(CLI::App& app, const std::string& flag, double& value, c
       .add_option_function<std::string>(
           flag, [&value, flag, range](const std::string& text) { value = parse_number(flag, text, range); }, help)
       ->type_name("NUMBER")
-      ->default_str(petzval::number(value));
+      ->default_str(number(value));
 }
 
 CLI::Option* add_numbers(CLI::App& app, const std::string& flag, std::vector<double>& values, const Range& range,

@@ -6,7 +6,7 @@
 
 #include "canvas.hpp"
 #include "font.hpp"
-#include "petzval/core/text.hpp"
+#include "text.hpp"
 
 namespace examples {
 namespace {
@@ -29,7 +29,7 @@ void draw_scale_bar(petzval::Rgb8Image& picture, Font& font, int x, int bottom, 
   const double length = round_length(pixel_mm * tile_width / 3);
   const int width = std::max(1, static_cast<int>(std::lround(length / pixel_mm)));
   fill(picture, x + 12, bottom - 14, width, 3, ink);
-  font.draw(picture, x + 12, bottom - 21, 13, petzval::number(length, 3) + " mm", ink);
+  font.draw(picture, x + 12, bottom - 21, 13, number(length, 3) + " mm", ink);
 }
 
 }  // namespace

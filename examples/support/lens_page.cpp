@@ -7,7 +7,6 @@
 #include <string_view>
 #include <utility>
 
-#include "petzval/core/text.hpp"
 #include "petzval/core/units.hpp"
 #include "petzval/figure/focus_figure.hpp"
 #include "petzval/figure/footprint_figure.hpp"
@@ -16,6 +15,7 @@
 #include "petzval/figure/spot_figure.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/psf/spot.hpp"
+#include "text.hpp"
 
 namespace examples {
 namespace {
@@ -96,15 +96,15 @@ void surface_table(std::ostream& html, const Report& r) {
     if (row.curved_in != petzval::Section::both) {
       remark(std::string("cylinder, curved in ") + (row.curved_in == petzval::Section::x ? "x" : "y"));
     }
-    if (row.conic != 0) remark("conic " + petzval::number(row.conic, 6));
+    if (row.conic != 0) remark("conic " + number(row.conic, 6));
     if (!row.aspheric.empty()) remark("asphere of order " + std::to_string(row.aspheric.back().order));
-    if (row.inner_semi_diameter) remark("hole " + petzval::number(*row.inner_semi_diameter, 5));
-    html << "<tr>" << cell(std::to_string(i)) << cell(row.radius == 0 ? "plane" : petzval::number(row.radius, 8))
-         << cell(petzval::number(row.thickness, 7)) << cell(row.medium.nd == 1 ? "" : petzval::number(row.medium.nd, 7))
-         << cell(row.medium.vd ? petzval::number(*row.medium.vd, 5) : "") << "<td>"
-         << petzval::escaped_xml(row.medium.glass.value_or("")) << "</td>"
-         << cell(std::isfinite(compiled.semi_diameter) ? petzval::number(compiled.semi_diameter, 5) : "unlimited")
-         << "<td>" << remarks << "</td></tr>\n";
+    if (row.inner_semi_diameter) remark("hole " + number(*row.inner_semi_diameter, 5));
+    html << "<tr>" << cell(std::to_string(i)) << cell(row.radius == 0 ? "plane" : number(row.radius, 8))
+         << cell(number(row.thickness, 7)) << cell(row.medium.nd == 1 ? "" : number(row.medium.nd, 7))
+         << cell(row.medium.vd ? number(*row.medium.vd, 5) : "") << "<td>"
+         << escaped_html(row.medium.glass.value_or("")) << "</td>"
+         << cell(std::isfinite(compiled.semi_diameter) ? number(compiled.semi_diameter, 5) : "unlimited") << "<td>"
+         << remarks << "</td></tr>\n";
   }
   html << "</table></div>\n";
 }
@@ -112,7 +112,7 @@ void surface_table(std::ostream& html, const Report& r) {
 void sources(std::ostream& html, const petzval::Prescription& p) {
   html << "<table>\n";
   const auto line = [&](const char* label, const std::string& words) {
-    if (!words.empty()) html << "<tr><td>" << label << "</td><td>" << petzval::escaped_xml(words) << "</td></tr>\n";
+    if (!words.empty()) html << "<tr><td>" << label << "</td><td>" << escaped_html(words) << "</td></tr>\n";
   };
   line("design", p.source_design);
   line("numbers from", p.source_numbers);
@@ -173,27 +173,26 @@ std::vector<LensFigure> lens_figures(const Report& r, const PageOptions& options
 
 std::string lens_page(const Report& r, const std::vector<LensFigure>& figures) {
   const petzval::Lens& lens = r.loaded.lens;
-  const std::string name = petzval::escaped_xml(lens.name());
+  const std::string name = escaped_html(lens.name());
   std::ostringstream html;
   html.imbue(std::locale::classic());
   html << "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
           "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>"
        << name << "</title>\n<style>\n"
        << style << "</style>\n</head>\n<body>\n<h1>" << name << "</h1>\n<p class=\"lead\">"
-       << petzval::escaped_xml(r.loaded.prescription.source_design) << "</p>\n";
+       << escaped_html(r.loaded.prescription.source_design) << "</p>\n";
   for (const LensFigure& figure : figures) {
     html << "<h2>" << figure.title << "</h2>\n<figure>\n"
          << figure.svg << "<figcaption>" << figure.caption << "</figcaption>\n</figure>\n";
   }
-  html << "<h2>First order</h2>\n<p class=\"lead\">At " << petzval::number(lens.wavelengths_nm()[0])
+  html << "<h2>First order</h2>\n<p class=\"lead\">At " << number(lens.wavelengths_nm()[0])
        << " nm. Stop: " << stop_in_words(r.main().pupils) << ". z counts from the first vertex towards the film.</p>\n";
   first_order_table(html, r);
   html << "<h2>Questions to the table</h2>\n";
   if (r.findings.empty()) html << "<p class=\"lead\">None: what it declares is what it is.</p>\n";
   if (!r.findings.empty()) {
     html << "<ul>\n";
-    for (const petzval::Finding& finding : r.findings)
-      html << "<li>" << petzval::escaped_xml(finding.message) << "</li>\n";
+    for (const petzval::Finding& finding : r.findings) html << "<li>" << escaped_html(finding.message) << "</li>\n";
     html << "</ul>\n";
   }
   html << "<h2>Table</h2>\n<p class=\"lead\">Millimetres.</p>\n";

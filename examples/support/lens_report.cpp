@@ -8,8 +8,8 @@
 #include <sstream>
 #include <utility>
 
-#include "petzval/core/text.hpp"
 #include "petzval/pupil/f_number.hpp"
+#include "text.hpp"
 
 namespace examples {
 namespace {
@@ -121,7 +121,7 @@ std::string to_text(const Report& r) {
   std::ostringstream text;
   text << lens.name() << '\n'
        << lens.surface_count() << (lens.surface_count() == 1 ? " surface" : " surfaces")
-       << ", stop: " << stop_in_words(r.main().pupils) << "\nat " << petzval::number(lens.wavelengths_nm()[0])
+       << ", stop: " << stop_in_words(r.main().pupils) << "\nat " << number(lens.wavelengths_nm()[0])
        << " nm, dispersion: " << petzval::name(lens.dispersion())
        << "; z counts from the first vertex towards the film\n";
   const auto line = [&](const char* label, double value, const char* unit) {

@@ -4,9 +4,9 @@
 #include <iostream>
 #include <utility>
 
-#include "petzval/core/text.hpp"
 #include "petzval/io/prescription_json.hpp"
 #include "petzval/paraxial/pupils.hpp"
+#include "text.hpp"
 
 namespace examples {
 namespace {
@@ -18,7 +18,7 @@ petzval::CompileOptions with_stand_ins(const petzval::GlassCatalogue& glasses) {
 void say_what_is_known(const LoadedLens& loaded) {
   if (loaded.lens.dispersion() == petzval::Dispersion::catalogue) return;
   const std::size_t missing = loaded.lens.missing_glasses().size();
-  const std::string line = petzval::number(loaded.prescription.reference_wavelength_nm) + " nm";
+  const std::string line = number(loaded.prescription.reference_wavelength_nm) + " nm";
   std::cerr << "note: " << loaded.id << ": ";
   if (missing == 0) {
     std::cerr << "no medium disperses\n";

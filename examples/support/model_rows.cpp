@@ -11,9 +11,9 @@
 
 #include "load_lens.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/core/text.hpp"
 #include "petzval/core/units.hpp"
 #include "petzval/pupil/f_number.hpp"
+#include "text.hpp"
 
 namespace examples {
 namespace {
@@ -57,13 +57,13 @@ petzval::Lens focused_lens(const ModelOptions& options) {
 }
 
 std::string conditions(const petzval::Lens& lens, const ModelOptions& options) {
-  const auto size = [](double a, double b) { return petzval::number(a) + " x " + petzval::number(b); };
+  const auto size = [](double a, double b) { return number(a) + " x " + number(b); };
   const petzval::Film film = options.film();
   const double focus = options.setup.focus_mm;
-  return "f/" + petzval::number(petzval::real_f_number(lens), 3) + ", focused at " +
-         (std::isinf(focus) ? "infinity" : petzval::number(focus) + " mm from the film") + ", film " +
+  return "f/" + number(petzval::real_f_number(lens), 3) + ", focused at " +
+         (std::isinf(focus) ? "infinity" : number(focus) + " mm from the film") + ", film " +
          size(film.width_mm, film.height_mm) + " mm, " + size(film.columns, film.rows) + " pixels of " +
-         petzval::number(1e3 * film.pixel_mm(), 3) + " um, " + petzval::number(petzval::d_line_nm, 6) + " nm";
+         number(1e3 * film.pixel_mm(), 3) + " um, " + number(petzval::d_line_nm, 6) + " nm";
 }
 
 std::vector<ModelRow> model_rows(std::span<const petzval::ModelCandidate> table, const petzval::Film& film,
@@ -104,7 +104,7 @@ std::string to_csv(std::span<const ModelRow> rows) {
   csv += ",on_front\n";
   for (const ModelRow& row : rows) {
     csv += petzval::name(row.model);
-    for_numbers(row, [&](const char*, double value) { csv += ',' + petzval::number(value); });
+    for_numbers(row, [&](const char*, double value) { csv += ',' + number(value); });
     csv += row.on_front ? ",true\n" : ",false\n";
   }
   return csv;
@@ -116,13 +116,13 @@ std::string to_text(std::span<const ModelRow> rows) {
   for (const ModelRow& row : rows) {
     text << std::left << std::setw(13) << petzval::name(row.model) << std::right;
     for (const double value : {row.rms_um, row.p99_um, row.max_um, row.rms_px, row.max_px}) {
-      text << std::setw(9) << petzval::number(value, 3) << ' ';
+      text << std::setw(9) << number(value, 3) << ' ';
     }
     for (const double value : {row.pupil_shape_error, row.exposure_error}) {
-      text << std::setw(8) << petzval::number(100 * value, 3) << "% ";
+      text << std::setw(8) << number(100 * value, 3) << "% ";
     }
-    text << std::setw(8) << petzval::number(row.ns_per_ray, 3) << "  " << std::setw(8)
-         << petzval::number(row.setup_ms, 3) << (row.on_front ? "  front" : "") << '\n';
+    text << std::setw(8) << number(row.ns_per_ray, 3) << "  " << std::setw(8) << number(row.setup_ms, 3)
+         << (row.on_front ? "  front" : "") << '\n';
   }
   return std::move(text).str();
 }

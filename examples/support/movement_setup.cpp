@@ -8,9 +8,9 @@
 #include "cli.hpp"
 #include "load_lens.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/core/text.hpp"
 #include "petzval/core/units.hpp"
 #include "petzval/pupil/f_number.hpp"
+#include "text.hpp"
 
 namespace examples {
 
@@ -49,8 +49,8 @@ MovingLens moving_lens(const MovementOptions& options) {
     }
     if (!(options.f_number > 0)) throw petzval::Error("--thin-focal-length-mm: found no --f-number, wanted one");
     result.id = "thin_lens";
-    result.title = "Thin lens, " + petzval::number(options.focal_length_mm) + " mm";
-    result.conditions = "f/" + petzval::number(options.f_number, 3);
+    result.title = "Thin lens, " + number(options.focal_length_mm) + " mm";
+    result.conditions = "f/" + number(options.f_number, 3);
     result.ideal = petzval::thin_lens(options.focal_length_mm, options.f_number);
     return result;
   }
@@ -62,7 +62,7 @@ MovingLens moving_lens(const MovementOptions& options) {
   if (options.f_number > 0) lens = petzval::with_f_number(lens, options.f_number);
   result.id = loaded.id;
   result.title = lens.name();
-  result.conditions = "f/" + petzval::number(petzval::real_f_number(lens), 3) + ", " + options.model + " model";
+  result.conditions = "f/" + number(petzval::real_f_number(lens), 3) + ", " + options.model + " model";
   result.ideal = options.model == "thin" ? petzval::thin_lens(lens) : petzval::thick_lens(lens);
   result.exact = options.model == "real";
   result.lens = std::move(lens);

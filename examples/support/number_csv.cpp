@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "petzval/core/error.hpp"
-#include "petzval/core/text.hpp"
+#include "text.hpp"
 
 namespace examples {
 namespace {
@@ -67,6 +67,6 @@ std::string line_of_row(const std::string& where, std::size_t row) {
   return where + ": line " + std::to_string(row + 2);
 }
 
-std::string digits17(double value) { return petzval::number(value, 17); }
+std::string digits17(double value) { return number(value, 17); }
 
 }  // namespace examples

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "text.hpp"
+
+#include <array>
+#include <charconv>
+
+namespace examples {
+namespace {
+
+/// The digits that std::to_chars writes; no number takes more than the buffer holds.
+template <class... Format>
+std::string digits(double value, Format... format) {
+  std::array<char, 64> buffer;
+  return {buffer.data(), std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, format...).ptr};
+}
+
+}  // namespace
+
+std::string number(double value) { return digits(value); }
+
+std::string number(double value, int significant_digits) {
+  return digits(value, std::chars_format::general, significant_digits);
+}
+
+std::string escaped_html(std::string_view text) {
+  std::string result;
+  for (const char c : text) {
+    switch (c) {
+      case '&': result += "&amp;"; break;
+      case '<': result += "&lt;"; break;
+      case '>': result += "&gt;"; break;
+      default: result += c;
+    }
+  }
+  return result;
+}
+
+}  // namespace examples

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace examples {
+
+/// A number for messages and tables, the same in every locale: the shortest decimals that read back to the same double
+/// ("0.1", "1e+30", "nan").
+std::string number(double value);
+
+/// The same rounded to a number of significant digits.
+std::string number(double value, int significant_digits);
+
+/// Text as the content of an HTML element: & < > by their names.
+std::string escaped_html(std::string_view text);
+
+}  // namespace examples
