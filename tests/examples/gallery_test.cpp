@@ -7,16 +7,6 @@ namespace {
 
 class Gallery : public Programs {};
 
-TEST_F(Gallery, HelloLensPrintsWhatTheReadmeShows) {
-  const auto outcome = run("hello_lens", {});
-  EXPECT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_EQ(outcome.out,
-            "Double Gauss 100 mm f/1.35 (Lowenthal)\n"
-            "focal length 100.437 mm, f/1.35331\n"
-            "ray at 20 mm: transmitted at y = 11.2809 mm\n"
-            "at 1 m the film moves back 10.3655 mm\n");
-}
-
 TEST_F(Gallery, DrawsFigure7) {
   const auto outcome = run("wu_figure7", {"--samples", "1024", "--out", path("figure.png")});
   EXPECT_EQ(outcome.status, 0) << outcome.err;

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+// The pages of the repository: their code is that of programs, their output what these print, their paths exist.
+#include <algorithm>
+#include <filesystem>
+#include <regex>
+
+#include "program.hpp"
+
+namespace {
+
+class Readme : public Programs {
+ protected:
+  static std::filesystem::path root() { return std::filesystem::path(PETZVAL_TEST_DATA).parent_path(); }
+
+  /// The code between ```cpp and ```, block by block.
+  static std::vector<std::string> blocks(const std::string& page) {
+    const std::string open = "```cpp\n", close = "```";
+    std::vector<std::string> result;
+    for (std::size_t at = page.find(open); at != std::string::npos; at = page.find(open, at)) {
+      at += open.size();
+      const std::size_t end = page.find(close, at);
+      result.push_back(page.substr(at, end - at));
+      at = end;
+    }
+    return result;
+  }
+
+  /// Every line moved to the right, without blanks at its end.
+  static std::string indented(const std::string& text, std::size_t columns) {
+    std::string result;
+    for (const std::string& line : lines(text)) {
+      const std::size_t length = line.find_last_not_of(' ') + 1;
+      result += (length > 0 ? std::string(columns, ' ') : "") + line.substr(0, length) + '\n';
+    }
+    return result;
+  }
+};
+
+TEST_F(Readme, ShowsTheCodeOfPrograms) {
+  const auto code = blocks(read(root() / "README.md"));
+  ASSERT_EQ(code.size(), 2u);
+  EXPECT_NE(read(root() / "examples/hello_lens.cpp").find(code[0]), std::string::npos) << code[0];
+  EXPECT_NE(read(root() / "examples/hello_camera.cpp").find(indented(code[1], 2)), std::string::npos) << code[1];
+}
+
+TEST_F(Readme, ShowsWhatTheProgramsPrint) {
+  const std::string page = read(root() / "README.md");
+  for (const char* program : {"hello_lens", "hello_camera"}) {
+    const auto outcome = run(program, {});
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_GT(lines(outcome.out).size(), 3u);
+    EXPECT_NE(page.find("prints\n\n" + indented(outcome.out, 4)), std::string::npos) << indented(outcome.out, 4);
+  }
+}
+
+TEST_F(Readme, HasAtMost150Lines) { EXPECT_LE(lines(read(root() / "README.md")).size(), 150u); }
+
+/// A path in back quotes, or one that a link leads to, is looked up from the root of the repository or from the page's
+/// own folder.
+TEST_F(Readme, PathsOfAllPagesExist) {
+  const std::regex path("(`|\\]\\()((cmake|data|examples|include|lib|tests)/[A-Za-z0-9_./-]*)[`)]");
+  std::size_t found = 0;
+  for (const char* page : {"README.md", "data/README.md", "tests/README.md", "tests/bench/README.md"}) {
+    const std::string text = read(root() / page);
+    for (std::sregex_iterator match(text.begin(), text.end(), path), end; match != end; ++match, ++found) {
+      const std::string name = (*match)[2];
+      EXPECT_TRUE(std::filesystem::exists(root() / name)) << page << ": " << name;
+    }
+  }
+  EXPECT_GT(found, 10u);
+}
+
+}  // namespace
