@@ -3,7 +3,7 @@
 # Builds petzval with its examples and runs the tests; installs what a bare Debian 12 lacks.
 #
 #   sh tests/run.sh [arguments of ctest, such as -R Snell]
-#   sh tests/run.sh --report    prints the worst that the accuracy tests met: the tables "How exact" and "Limits" of README
+#   sh tests/run.sh --report    prints the worst cases of the accuracy tests: the tables of tests/README.md
 #
 # BUILD_DIR=... builds elsewhere than in build/.
 set -eu
@@ -44,7 +44,7 @@ build -DPETZVAL_BUILD_TESTS=ON -DPETZVAL_BUILD_EXAMPLES=ON -DCMAKE_COMPILE_WARNI
 if [ "${1-}" = --report ]; then
   work=$(mktemp -d)
   trap 'rm -rf "$work"' EXIT
-  printf '\nHow exact'
+  printf '\nAccuracy'
   table surface/surface_quadric_test surface/surface_asphere_test surface/surface_snell_test trace/trace_reference_test \
     trace/trace_batch_reference_test trace/trace_laws_test trace/trace_derivative_test \
     trace/trace_differentials_reference_test trace/trace_differentials_test pupil/pupil_aim_test

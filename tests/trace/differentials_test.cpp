@@ -91,7 +91,7 @@ TYPED_TEST(DifferentialsOf, TheInvariantOfLagrangeIsKept) {
       most(options, std::abs(after - before) / terms, sample.id);
     }
   });
-  most.close("differentials: invariant of Lagrange", 128);
+  most.close("differentials: Lagrange invariant", 128);
 }
 
 TYPED_TEST(DifferentialsOf, DirectionsKeepTheirLength) {
@@ -107,7 +107,7 @@ TYPED_TEST(DifferentialsOf, DirectionsKeepTheirLength) {
       }
     }
   });
-  most.close("differentials: directions of unit length", 32);
+  most.close("differentials: unit length of directions", 32);
 }
 
 // Doubled derivatives double to the bit; those of a sum are the sum.
@@ -132,7 +132,7 @@ TYPED_TEST(DifferentialsOf, AreLinear) {
       most(options, length(sum.direction - (a.direction + b.direction)) / turn, sample.id + " direction");
     }
   });
-  most.close("differentials: linear", 64);
+  most.close("differentials: linearity", 64);
 }
 
 // Turned round behind the lens, a ray and its neighbours come back along their own lines.
@@ -165,7 +165,7 @@ TYPED_TEST(DifferentialsOf, TurnedRoundComeBack) {
       judge(in_double(beam.v[i]), in_double(found.v[i]), in_double(back.v[i]));
     }
   });
-  most.close("differentials: turned round", 512);
+  most.close("differentials: reversed", 512);
 }
 
 // ---- Slots
@@ -187,7 +187,7 @@ TYPED_TEST(DifferentialsOf, RaysAreThoseOfTheTraceWithoutDerivatives) {
       most(options, length(a.direction - b.direction), what + " direction");
     }
   });
-  most.close("differentials: rays beside those of the trace", 16);
+  most.close("differentials: rays against those of the trace", 16);
 }
 
 TYPED_TEST(DifferentialsOf, OfLostRaysAreZeroAndEverySlotIsFinite) {

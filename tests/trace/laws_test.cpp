@@ -88,10 +88,8 @@ TYPED_TEST(LawsOf, ATurnedRayComesBack) {
       turn = std::max(turn, d);
     }
   }
-  testing_report::put("a ray turned round comes back, all 75 lenses, place", testing_report::one_ray<T>, place,
-                      "200 eps");
-  testing_report::put("a ray turned round comes back, all 75 lenses, direction", testing_report::one_ray<T>, turn,
-                      "20 eps");
+  testing_report::put("reversed rays return, all 75 lenses, position", testing_report::one_ray<T>, place, "200 eps");
+  testing_report::put("reversed rays return, all 75 lenses, direction", testing_report::one_ray<T>, turn, "20 eps");
 }
 
 TEST(Laws, TheReversedLensIsTheLensTakenTheOtherWay) {
@@ -165,7 +163,7 @@ TYPED_TEST(LawsOf, ScalingByAnyFactorIsWithinRounding) {
       most = std::max(most, p);
     }
   }
-  testing_report::put("a lens scaled by 0.37 scales its rays, place", testing_report::one_ray<T>, most, "50 eps");
+  testing_report::put("a lens scaled by 0.37 scales its rays, position", testing_report::one_ray<T>, most, "50 eps");
 }
 
 TYPED_TEST(LawsOf, RotationAboutTheAxisIsWithinRounding) {
@@ -187,7 +185,7 @@ TYPED_TEST(LawsOf, RotationAboutTheAxisIsWithinRounding) {
       most = std::max(most, p);
     }
   }
-  testing_report::put("rays turned about the axis, place", testing_report::one_ray<T>, most, "50 eps");
+  testing_report::put("rays rotated about the axis, position", testing_report::one_ray<T>, most, "50 eps");
 }
 
 TYPED_TEST(LawsOf, EqualMediaLeaveARayAsItIs) {
