@@ -21,8 +21,8 @@ namespace petzval::inline v0 {
 namespace {
 
 constexpr std::array<const char*, 3> channel_names{"R", "G", "B"};
-constexpr std::size_t most_pixels = std::size_t(1)
-                                    << 28;  // an unpacked image of 3 GiB; a header may claim more than any disk holds
+// 3 GiB in memory. A damaged header may claim any size.
+constexpr std::size_t most_pixels = std::size_t(1) << 28;
 
 template <class Image>
 void validate(const Image& image, const std::filesystem::path& file) {
@@ -31,10 +31,10 @@ void validate(const Image& image, const std::filesystem::path& file) {
     return;
   }
   throw Error(file.string() + ": image is " + std::to_string(image.width) + " x " + std::to_string(image.height) +
-              " with " + std::to_string(image.pixels.size()) + " values, wanted 3 a pixel and one pixel at least");
+              " with " + std::to_string(image.pixels.size()) + " values, wanted 3 a pixel and at least one pixel");
 }
 
-/// The three channels of interleaved float pixels whose upper left corner is the data window's.
+/// The three channels of interleaved float pixels; the first pixel is the upper left corner of the data window.
 Imf::FrameBuffer frame(float* pixels, const Imath::Box2i& window, int width, int height) {
   Imf::FrameBuffer buffer;
   for (std::size_t c = 0; c < channel_names.size(); ++c) {
@@ -78,7 +78,7 @@ RgbImage read_exr(const std::filesystem::path& file) {
     const auto height = std::int64_t(window.max.y) - window.min.y + 1;
     if (static_cast<std::size_t>(width) > most_pixels / static_cast<std::size_t>(height)) {
       throw Error("image is " + std::to_string(width) + " x " + std::to_string(height) + ", wanted " +
-                  std::to_string(most_pixels) + " pixels at most");
+                  std::to_string(most_pixels) + " pixels or fewer");
     }
     RgbImage image(static_cast<int>(width), static_cast<int>(height));
     in.setFrameBuffer(frame(image.pixels.data(), window, image.width, image.height));
@@ -96,7 +96,7 @@ void write_png(const Rgb8Image& image, const std::filesystem::path& file) {
   png.width = static_cast<png_uint_32>(image.width);
   png.height = static_cast<png_uint_32>(image.height);
   png.format = PNG_FORMAT_RGB;
-  // A bound on the packed size saves the first of two packings that asking for it would take.
+  // This bound on the packed size avoids packing twice, once only for the size.
   png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(png);
   std::string bytes(size, '\0');
   if (!png_image_write_to_memory(&png, bytes.data(), &size, 0, image.pixels.data(), 0, nullptr)) {
@@ -110,7 +110,7 @@ Rgb8Image to_srgb8(const RgbImage& image, float exposure) {
   out.pixels.reserve(image.pixels.size());
   for (const float linear : image.pixels) {
     const float light = linear * exposure;
-    // The comparisons are false for NaN, which becomes black.
+    // Comparisons with NaN are false: it becomes black.
     const float clipped = light > 0 ? (light < 1 ? light : 1.0f) : 0.0f;
     out.pixels.push_back(static_cast<std::uint8_t>(255 * srgb(clipped) + 0.5f));
   }

@@ -20,14 +20,14 @@ namespace {
 constexpr std::int64_t largest_integer = std::int64_t{1} << 53;  // beyond it not every integer is a double
 constexpr const char* wanted_integer = "an integer up to 2^53";
 
-/// Texts of a document are of any length, messages are not.
+/// Strings of a document have any length; messages must not.
 std::string shortened(std::string_view text, std::size_t longest = 60) {
   if (text.size() <= longest) return std::string(text);
   while (longest > 0 && (static_cast<unsigned char>(text[longest]) & 0xC0) == 0x80) --longest;  // whole characters only
   return std::string(text.substr(0, longest)) + "...";
 }
 
-/// What nlohmann's parser calls.
+/// Receives the events of nlohmann's parser.
 class Sax {
  public:
   Sax(JsonReader& reader, const std::string& where) : reader_(reader), where_(where) {}
@@ -44,7 +44,7 @@ class Sax {
   }
   bool number_float(double, const std::string& token);
   bool string(std::string& text) { return assign(std::move(text)); }
-  bool binary(std::vector<std::uint8_t>&) { return false; }  // no such thing in text
+  bool binary(std::vector<std::uint8_t>&) { return false; }  // does not occur in JSON text
   bool start_object(std::size_t) { return reader_.open(false), true; }
   bool start_array(std::size_t) { return reader_.open(true), true; }
   bool end_object() { return reader_.close(), true; }
@@ -60,8 +60,7 @@ class Sax {
 };
 
 bool Sax::number_float(double, const std::string& token) {
-  // Read again from the digits: the parser's value went through the C locale's decimal point, and says nothing of a
-  // number too small for double.
+  // Read the digits again: the parser's value depends on the decimal point of the C locale and hides an underflow.
   std::string digits = token;
   for (char& c : digits) {
     if (!(c >= '0' && c <= '9') && c != '-' && c != '+' && c != 'e' && c != 'E') c = '.';
@@ -93,7 +92,7 @@ std::string describe(const JsonValue& value) {
 }
 
 void JsonReader::parse(std::string_view json) {
-  // nlohmann's parser takes a zero byte for the end of the text and would not see what follows.
+  // nlohmann's parser takes a zero byte for the end of the text and ignores the rest.
   if (const auto zero = json.find('\0'); zero != std::string_view::npos) {
     throw Error(where_ + ": byte " + std::to_string(zero + 1) + " is zero, wanted JSON in UTF-8");
   }
@@ -117,7 +116,7 @@ std::optional<double> JsonReader::maybe_number(const JsonValue& value) const {
 
 std::string JsonReader::text_of(const JsonValue& value) const {
   if (const std::string* text = std::get_if<std::string>(&value)) return *text;
-  refuse(describe(value), "a text");
+  refuse(describe(value), "a string");
 }
 
 std::optional<std::string> JsonReader::maybe_text(const JsonValue& value) const {

@@ -14,13 +14,13 @@ namespace petzval::inline v0::io_detail {
 /// A value that is not a list or an object.
 using JsonValue = std::variant<std::nullptr_t, bool, double, std::string>;
 
-/// The text in quotes for a message, its end left out where it is long.
+/// The text in quotes for a message, shortened if it is long.
 std::string in_quotes(std::string_view text);
 /// The value for a message.
 std::string describe(const JsonValue& value);
 
-/// What a document becomes while nlohmann's parser walks its text: nothing but the result is stored, and what does not
-/// belong there is refused where it stands.
+/// Builds a result while nlohmann's parser walks the text. Only the result is stored; whatever does not belong to the
+/// format is refused at its place.
 class JsonReader {
  public:
   /// where: the file's name, for messages.
@@ -29,11 +29,11 @@ class JsonReader {
   JsonReader& operator=(const JsonReader&) = delete;
   virtual ~JsonReader() = default;
 
-  /// Throws Error with the byte where the text is no JSON, for integers beyond 2^53 and numbers beyond double, and what
-  /// the calls below throw. Numbers are read from their digits, whatever the locale.
+  /// Throws Error for text that is not JSON (with the byte), for integers beyond 2^53 and numbers out of range of
+  /// double, and whatever the calls below throw. Numbers are read from their digits in every locale.
   void parse(std::string_view json);
 
-  // What the text has, in its order.
+  // The events, in the order of the text.
   virtual void key(const std::string& name) = 0;
   virtual void assign(JsonValue value) = 0;
   virtual void open(bool list) = 0;  ///< a list or an object
@@ -52,10 +52,10 @@ class JsonReader {
   std::string where_;
 };
 
-/// A file's bytes; wanted: what it should be, for the message where it cannot be opened.
+/// The bytes of a file. wanted: its kind, for the message if it cannot be opened.
 std::string read_text(const std::filesystem::path& file, const std::string& wanted);
 
-/// Shortest decimals that read back; plain from 1e-4 to 1e16 and with a point always, so that a number looks like one.
+/// The shortest decimals that read back; without an exponent from 1e-4 to 1e16, and always with a point.
 std::string json_number(double value);
 
 }  // namespace petzval::inline v0::io_detail

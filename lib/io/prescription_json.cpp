@@ -20,15 +20,14 @@ using io_detail::JsonValue;
 constexpr std::string_view format_name = "petzval-lens 1";
 constexpr std::size_t longest_list = 10'000;
 
-/// The brackets of the format: what a list or an object stands for.
+/// The lists and objects of the format.
 enum class Place { file, source, zoom, variable_gaps, aliases, object_space, surfaces, surface, aspheric, term };
 
 constexpr bool is_list(Place place) {
   return place == Place::aliases || place == Place::surfaces || place == Place::aspheric;
 }
 
-/// Builds a prescription while nlohmann's parser walks the text: nothing but the prescription itself is stored, and
-/// what does not belong there is refused where it stands.
+/// Builds a prescription while nlohmann's parser walks the text.
 class Reader : public io_detail::JsonReader {
  public:
   using JsonReader::JsonReader;
@@ -101,7 +100,7 @@ std::span<const Reader::Key> Reader::keys(Place place) {
       {"position", [](R& r, V& v) { r.lens_.zoom->position = r.text_of(v); }},
       {"variable_gaps", nullptr, Place::variable_gaps},
   }};
-  // The medium comes first: object_space has these keys alone.
+  // The keys of the medium come first: object_space has only these.
   static constexpr std::array<Key, 14> surface = {{
       {"glass", [](R& r, V& v) { r.medium().glass = r.maybe_text(v); }},
       {"catalogue", [](R& r, V& v) { r.medium().catalogue = r.maybe_text(v); }},
@@ -214,7 +213,7 @@ void Reader::count_entry() {
   if (open_.back().entries++ < longest_list) return;
   const bool surfaces = open_.back().place == Place::surfaces;
   throw Error(where_ + ": more than " + std::to_string(longest_list) + (surfaces ? " surfaces" : " entries in a list") +
-              ", wanted a lens");
+              ", wanted fewer");
 }
 
 void Reader::open(bool list) {
@@ -228,7 +227,7 @@ void Reader::open(bool list) {
   std::optional<Place> inner;
   if (is_list(outer)) {
     count_entry();
-    if (list || outer == Place::aliases) refuse(found, outer == Place::aliases ? "a text" : "an object");
+    if (list || outer == Place::aliases) refuse(found, outer == Place::aliases ? "a string" : "an object");
     inner = outer == Place::surfaces ? Place::surface : Place::term;
   } else if (outer == Place::variable_gaps) {
     refuse(found, "a number");

@@ -16,7 +16,7 @@ std::string json(const std::string& text) {
   try {
     return nlohmann::json(text).dump();
   } catch (const nlohmann::json::exception&) {
-    throw Error("a text of the lens is not UTF-8, wanted UTF-8 to write JSON");
+    throw Error("a string of the lens is not UTF-8, wanted UTF-8 to write JSON");
   }
 }
 

@@ -26,7 +26,7 @@ constexpr std::string_view format_name = "petzval-ray-polynomial 1";
 constexpr std::size_t most_fits = 10'000;
 constexpr int highest_degree = 11;
 
-/// A key and where its number belongs.
+/// A key and the member that holds its number.
 template <class Part>
 struct Number {
   std::string_view name;
@@ -74,7 +74,7 @@ constexpr std::array<std::string_view, 9> fit_keys{fit_numbers[0].name, fit_numb
 
 enum class Place { file, fits, fit, list };
 
-/// Builds the parts of a polynomial while the text is walked.
+/// Builds a polynomial while nlohmann's parser walks the text.
 class Reader : public io_detail::JsonReader {
  public:
   using JsonReader::JsonReader;
@@ -90,7 +90,7 @@ class Reader : public io_detail::JsonReader {
   static std::span<const std::string_view> keys(Place place) {
     return place == Place::file ? std::span(file_keys) : std::span(fit_keys);
   }
-  /// The list or object that the place wants next; nothing for a plain value.
+  /// The list or object that must come next; nothing for a plain value.
   std::optional<Place> wanted() const;
 
   void key(const std::string& name) override;
@@ -119,7 +119,7 @@ void Reader::key(const std::string& name) {
   Open& object = open_.back();
   const auto known = keys(object.place);
   const auto found = std::find(known.begin(), known.end(), name);
-  const std::uint32_t seen = std::exchange(object.seen, 0);  // messages are about this key, not the last one
+  const std::uint32_t seen = std::exchange(object.seen, 0);  // messages name this key, not the one before
   if (found == known.end()) {
     std::string all;
     for (const std::string_view k : known) all += (all.empty() ? "" : ", ") + std::string(k);
@@ -214,7 +214,7 @@ RayPolynomial parse_ray_polynomial(std::string_view json, const std::string& whe
 }
 
 RayPolynomial read_ray_polynomial(const std::filesystem::path& file) {
-  return parse_ray_polynomial(io_detail::read_text(file, "a file of a ray polynomial"), file.string());
+  return parse_ray_polynomial(io_detail::read_text(file, "a ray polynomial file"), file.string());
 }
 
 std::string format_ray_polynomial(const RayPolynomial& polynomial) {

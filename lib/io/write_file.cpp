@@ -13,8 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The place that a new file may take; nothing for a pipe, a device or a link to nowhere, which a new file would push
-/// aside.
+/// The path that a new file may replace; nothing for a pipe, a device or a dangling link.
 std::optional<fs::path> place(const fs::path& file) {
   std::error_code error;
   const auto entry = fs::symlink_status(file, error).type();
@@ -51,7 +50,7 @@ void write_file(std::string_view bytes, const fs::path& file) {
     return;
   }
   throw Error(file.string() + ": cannot be written" + (error ? " (" + error.message() + ")" : std::string()) +
-              ", wanted a folder that exists, may be written and has room");
+              ", wanted an existing, writable folder with space");
 }
 
 }  // namespace petzval::inline v0

@@ -8,16 +8,16 @@
 
 namespace petzval::inline v0::lint_detail {
 
-/// The height up to which the conic under a surface exists; infinite for a paraboloid, a hyperboloid and a plane.
+/// The height of the equator of a surface's conic; infinite for a paraboloid, a hyperboloid and a plane.
 double domain(const LensSurface& surface);
 
 /// Where two neighbouring surfaces come closest.
 struct Gap {
-  double width;   ///< along the axis, positive as light runs, mm
+  double width;   ///< mm along the axis, positive in the direction of light
   double height;  ///< from the axis, mm
 };
 
-/// The least gap behind a surface within both clear apertures; none where one of them is unlimited or they have no
+/// The least gap behind a surface within both clear apertures; nothing if one of them is unlimited or they have no
 /// height in common.
 std::optional<Gap> least_gap(const Lens& lens, std::size_t surface);
 

@@ -32,9 +32,8 @@ void check_stops(const Prescription& prescription, Findings& findings) {
     findings.push_back(
         {Kind::no_stop, {}, 0, 1, "no surface is marked as stop; the one that clips the axial beam first is used"});
   } else if (stops > 1) {
-    findings.push_back(
-        {Kind::several_stops, last, static_cast<double>(stops), 1,
-         at(last) + "is one of " + std::to_string(stops) + " marked as stop; the first of them is used"});
+    findings.push_back({Kind::several_stops, last, static_cast<double>(stops), 1,
+                        at(last) + "is the last of " + std::to_string(stops) + " marked as stop; the first is used"});
   }
 }
 
@@ -46,24 +45,25 @@ void check_surfaces(const Lens& lens, Findings& findings) {
     const double domain = lint_detail::domain(surface);
     if (std::isfinite(surface.semi_diameter) && surface.semi_diameter > domain) {
       findings.push_back({Kind::semi_diameter, i, surface.semi_diameter, domain,
-                          at(i) + "semi_diameter is " + mm(surface.semi_diameter) +
-                              ", beyond the surface, which ends at " + mm(domain)});
+                          at(i) + "semi_diameter is " + mm(surface.semi_diameter) + ", wanted at most " + mm(domain) +
+                              ", where the surface ends"});
     }
-    // A stop of 0 is a closed iris, another rim that lets through nothing but the axis hardly one that is meant.
+    // A stop of 0 is a closed iris. Any other rim of 0 is hardly intended.
     if (surface.semi_diameter == 0 && lens.stop() != position) {
-      findings.push_back({Kind::semi_diameter, i, 0, domain, at(i) + "semi_diameter is 0 mm: only the axis passes it"});
+      findings.push_back(
+          {Kind::semi_diameter, i, 0, domain, at(i) + "semi_diameter is 0 mm; only the axial ray passes"});
     }
     if (i + 1 == count) break;
     const auto gap = lint_detail::least_gap(lens, position);
     if (gap && gap->width < -1e-9 * std::max(gap->height, std::abs(surface.thickness))) {
       findings.push_back(
           {Kind::overlap, i, gap->width, 0,
-           at(i) + "the next surface comes " + mm(-gap->width) + " before it at a height of " + mm(gap->height)});
+           at(i) + "overlaps the next surface by " + mm(-gap->width) + " at a height of " + mm(gap->height)});
     }
   }
 }
 
-/// False where an unlimited stop, or no clear aperture at all, says nothing of the f-number.
+/// False for an unlimited stop and for a lens without clear apertures: they do not fix the f-number.
 bool limits_the_beam(const Lens& lens) {
   const auto surfaces = lens.stop() ? lens.surfaces().subspan(*lens.stop(), 1) : lens.surfaces();
   return std::any_of(surfaces.begin(), surfaces.end(),
@@ -95,7 +95,7 @@ void check_first_order(const Prescription& prescription, const Lens& lens, Findi
   if (!data.afocal && std::abs(gap - data.back_focal_distance) > tolerance * std::abs(focal_length)) {
     findings.push_back(
         {Kind::image_distance, last, gap, data.back_focal_distance,
-         at(last) + "the film is " + mm(gap) + " behind it, the paraxial focus " + mm(data.back_focal_distance)});
+         at(last) + "the film is " + mm(gap) + " behind it and the paraxial focus " + mm(data.back_focal_distance)});
   }
 }
 

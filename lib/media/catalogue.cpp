@@ -85,7 +85,7 @@ Glass parse_glass(std::string_view line, const std::string& where) {
   }
   if (!(glass.shortest_nm > 0 && glass.shortest_nm < glass.longest_nm)) {
     throw Error(where + ": range is " + std::string(cells[5]) + " to " + std::string(cells[6]) +
-                " um, wanted two rising positive numbers");
+                " um, wanted two increasing positive numbers");
   }
   return glass;
 }
@@ -122,7 +122,7 @@ GlassCatalogue GlassCatalogue::load(const std::filesystem::path& directory) {
     if (name.starts_with("glass_") && name.ends_with(".csv")) files.push_back(entry->path());
   }
   if (failed) throw Error(directory.string() + ": " + failed.message() + ", wanted a folder of glass tables");
-  if (files.empty()) throw Error(directory.string() + ": no file glass_*.csv, wanted one at least");
+  if (files.empty()) throw Error(directory.string() + ": no file glass_*.csv, wanted at least one");
   std::sort(files.begin(), files.end());
   std::vector<Glass> glasses;
   for (const auto& file : files) read_table(file, glasses);
@@ -149,7 +149,7 @@ const Glass* GlassCatalogue::find(std::string_view name, double nd) const noexce
   const auto nearest = std::min_element(candidates.begin(), candidates.end(), [nd](const Glass& a, const Glass& b) {
     return std::abs(a.nd - nd) < std::abs(b.nd - nd);
   });
-  // Moulding moves n_d by up to 0.002; what is farther off is another glass of the same name.
+  // Moulding changes n_d by up to 0.002; a larger difference means another glass of the same name.
   return nearest != candidates.end() && std::abs(nearest->nd - nd) <= 0.01 ? &*nearest : nullptr;
 }
 

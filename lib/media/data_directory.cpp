@@ -15,7 +15,7 @@ std::filesystem::path own_module() {
   Dl_info info{};
   std::string name;
   if (dladdr(&anchor, &info) != 0 && info.dli_fname != nullptr) name = info.dli_fname;
-  // A bare name is how a program was called and was looked up in PATH; the kernel knows where that led.
+  // A bare name was looked up in PATH; the kernel knows the result.
   if (name.find('/') == std::string::npos) name = "/proc/self/exe";
   std::error_code failed;
   const auto file = std::filesystem::canonical(name, failed);

@@ -14,7 +14,7 @@
 namespace petzval::inline v0 {
 namespace {
 
-// The ends of a range belong to it, whatever the rounding of micrometres to nanometres.
+// The ends of a range belong to it; converting micrometres to nanometres rounds them.
 constexpr double edge_nm = 1e-6;
 
 constexpr std::array<std::pair<std::string_view, double>, 14> lines = {{
@@ -40,7 +40,7 @@ void check_wavelength(const std::string& where, double nm, double shortest, doub
               number(longest, 7) + " nm");
 }
 
-/// c0 + sum of a pair's first number times `shape` of its second.
+/// first + the sum over pairs of the first number times `shape` of the second.
 template <class Shape>
 double sum(std::span<const double> c, double first, Shape shape) {
   double total = first;
@@ -79,10 +79,10 @@ double refractive_index(const Glass& glass, double wavelength_nm) {
       break;
     }
   }
-  // Near a pole or beyond it a formula gives no index that light could have.
+  // Near a pole the formula gives no physical index.
   if (!(n2 > 1e-6 && std::isfinite(n2))) {
     throw Error(where + ": square of the index at " + number(wavelength_nm) + " nm is " + number(n2) +
-                ", wanted one above 1e-6");
+                ", wanted above 1e-6");
   }
   return n > 0 ? n : std::sqrt(n2);
 }

@@ -12,12 +12,12 @@ namespace {
 
 std::string name_of(const Prescription& p) { return p.name.empty() ? std::string("lens") : p.name; }
 
-/// value * factor; refused where it leaves the normal doubles, for a radius that became 0 would be a plane.
+/// value * factor. Refuses a product outside the normal range of double: a radius that became 0 would be a plane.
 double times(double value, double factor, const std::string& where) {
   const double product = value * factor;
   if (value == 0 || !std::isfinite(value) || std::isnormal(product)) return product;
   throw Error(where + ": " + number(value) + " scaled by " + number(factor) + " is " + number(product) +
-              ", wanted a number that double holds in full");
+              ", wanted a number in the normal range of double");
 }
 
 }  // namespace
@@ -50,11 +50,11 @@ Prescription scale(const Prescription& prescription, double factor) {
 
 Prescription reverse(const Prescription& prescription) {
   Prescription p = prescription;
-  if (p.surfaces.empty()) throw Error(name_of(p) + ": no surfaces to reverse, wanted one at least");
+  if (p.surfaces.empty()) throw Error(name_of(p) + ": no surfaces to reverse, wanted at least one");
 
-  // Light must enter towards +z. With an even number of mirrors it left the lens towards +z, so the way back is seen
-  // from the other side: sags change sign and gaps keep theirs (both ends of a gap are exchanged and mirrored). With an
-  // odd number it left towards -z, and the way back already runs towards +z: sags stay and gaps change sign.
+  // Light must enter towards +z. With an even number of mirrors it left the lens towards +z, so the reversed lens is a
+  // mirror image in z: sags change sign, thicknesses keep theirs (the ends of each are exchanged and mirrored). With an
+  // odd number it left towards -z and the way back runs towards +z: sags stay, thicknesses change sign.
   const auto mirrors =
       std::count_if(p.surfaces.begin(), p.surfaces.end(), [](const SurfaceRow& row) { return row.mirror; });
   const bool turned = mirrors % 2 == 0;

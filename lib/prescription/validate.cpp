@@ -9,8 +9,8 @@
 namespace petzval::inline v0 {
 namespace {
 
-// Below this a radius has a curvature whose square leaves the range of float; above the other, a thickness is the
-// "infinity" of some file format and no place for a surface.
+// The curvature of a smaller radius has a square beyond float. A longer thickness is the "infinity" of some file
+// format.
 constexpr double smallest_radius = 1e-12;
 constexpr double longest_thickness = 1e10;
 constexpr std::size_t most_surfaces = 10'000;
@@ -24,7 +24,7 @@ void check_finite(const std::string& where, const char* what, double value, cons
 }
 
 void check_nominal(const std::string& where, const char* what, const std::optional<double>& value) {
-  if (value) check_finite(where, what, *value, "a finite number or none");
+  if (value) check_finite(where, what, *value, "a finite number or no value");
 }
 
 void check_medium(const std::string& where, const Medium& medium) {
@@ -41,8 +41,8 @@ void check_surface(const std::string& where, const SurfaceRow& row, const Medium
     refuse(where, "thickness", row.thickness, "a finite length below 1e10 mm");
   check_medium(where, row.medium);
   if (row.mirror && row.medium != before) {
-    throw Error(where + ": the medium of the mirror (nd " + number(row.medium.nd) + ") is not the one before it (nd " +
-                number(before.nd) + "), wanted the medium the light stays in");
+    throw Error(where + ": the medium of the mirror (nd " + number(row.medium.nd) +
+                ") is not the one in front of it (nd " + number(before.nd) + "), wanted the same medium");
   }
 
   if (row.semi_diameter && !(*row.semi_diameter >= 0))
@@ -72,7 +72,7 @@ void check_surface(const std::string& where, const SurfaceRow& row, const Medium
 void validate(const Prescription& p, const std::string& where) {
   check_nominal(where, "focal_length_mm", p.focal_length_mm);
   if (p.f_number && !(*p.f_number > 0 && std::isfinite(*p.f_number))) {
-    refuse(where, "f_number", *p.f_number, "a finite number above 0 or none");
+    refuse(where, "f_number", *p.f_number, "a finite number above 0 or no value");
   }
   check_nominal(where, "half_field_deg", p.half_field_deg);
   check_nominal(where, "image_diagonal_mm", p.image_diagonal_mm);
@@ -80,7 +80,7 @@ void validate(const Prescription& p, const std::string& where) {
     refuse(where, "reference_wavelength_nm", p.reference_wavelength_nm, "10 to 100000 nm");
   }
   check_medium(where + ": object_space", p.object_space);
-  if (p.surfaces.empty()) throw Error(where + ": no surfaces, wanted one at least");
+  if (p.surfaces.empty()) throw Error(where + ": no surfaces, wanted at least one");
 
   if (p.surfaces.size() > most_surfaces) {
     throw Error(where + ": " + std::to_string(p.surfaces.size()) + " surfaces, wanted at most " +

@@ -19,7 +19,7 @@ namespace {
 
 using testing::message;
 
-/// A folder of the test's own, gone afterwards.
+/// A temporary folder for the test.
 class ImageFiles : public ::testing::Test {
  protected:
   ImageFiles() : folder_(std::filesystem::path(::testing::TempDir()) / ("petzval_image_" + std::string(test_name()))) {
@@ -97,7 +97,7 @@ TEST_F(ImageFiles, FailureNamesTheFileAndLeavesNothingBehind) {
             std::string::npos);
   EXPECT_NE(message([&] { write_png(bytes, nowhere); }).find(nowhere.string() + ": cannot be written"),
             std::string::npos);
-  // The name of a folder: the last step fails, when all has been written.
+  // The name of a folder: only the last step, the renaming, fails.
   const auto taken = folder_ / "taken";
   std::filesystem::create_directories(taken / "inside");
   EXPECT_NE(message([&] { write_exr(linear, taken); }).find(taken.string() + ": cannot be written"), std::string::npos);
@@ -110,9 +110,9 @@ TEST_F(ImageFiles, RefusesImagesWithoutPixelsOrWithTooFew) {
   RgbImage torn(3, 2);
   torn.pixels.pop_back();
   EXPECT_EQ(message([&] { write_exr(torn, file); }),
-            file.string() + ": image is 3 x 2 with 17 values, wanted 3 a pixel and one pixel at least");
+            file.string() + ": image is 3 x 2 with 17 values, wanted 3 a pixel and at least one pixel");
   EXPECT_EQ(message([&] { write_png(Rgb8Image{}, file); }),
-            file.string() + ": image is 0 x 0 with 0 values, wanted 3 a pixel and one pixel at least");
+            file.string() + ": image is 0 x 0 with 0 values, wanted 3 a pixel and at least one pixel");
   EXPECT_EQ(files(), 0u);
 }
 
@@ -131,7 +131,7 @@ TEST_F(ImageFiles, ReadingSaysWhichFileIsBad) {
 
 TEST(Image, SrgbOfLinearLight) {
   RgbImage image(3, 1);
-  // IEC 61966-2-1 by hand: 0.5 is 0.735 of full scale; the last three lie about the straight part.
+  // IEC 61966-2-1 by hand: 0.5 is 0.735 of full scale. The last three lie at the linear part.
   image.pixels = {0.0f, 1.0f, 0.5f, -1.0f, 7.0f, 0.0031308f, std::numeric_limits<float>::quiet_NaN(), 0.25f, 0.002f};
   EXPECT_EQ(to_srgb8(image).pixels, (std::vector<std::uint8_t>{0, 255, 188, 0, 255, 10, 0, 137, 7}));
   EXPECT_EQ(to_srgb8(image, 2).pixels, (std::vector<std::uint8_t>{0, 255, 255, 0, 255, 18, 0, 188, 13}));

@@ -41,11 +41,11 @@ std::vector<fs::path> lens_files() {
 const std::string head = R"({"format": "petzval-lens 1", )";
 const std::string row = R"({"radius": 50, "thickness": 5.5, "nd": 1.5})";
 
-/// A lens file with these members beside the format.
+/// A lens file with these members and the format.
 std::string file(const std::string& members) { return head + members + "}"; }
-/// A lens of one good surface and this one.
+/// A lens of one valid surface and this one.
 std::string with_surface(const std::string& surface) { return file("\"surfaces\": [" + row + ", " + surface + "]"); }
-/// The same with one member added to a good surface.
+/// The same with one member added to a valid surface.
 std::string with_member(const std::string& member) {
   return with_surface(R"({"radius": 50, "thickness": 5.5, "nd": 1.5, )" + member + "}");
 }
@@ -80,7 +80,7 @@ TEST(PrescriptionJson, SaysWhatTheFileSays) {
   EXPECT_EQ(zoom.surfaces[1].aspheric[2], (petzval::AsphereTerm{8, 6.9126e-11}));
 }
 
-/// Any double a lens may hold, of any size.
+/// A double of any size that a lens may have.
 double random_number(std::mt19937_64& random, double smallest, double largest) {
   std::uniform_real_distribution<double> exponent(std::log(smallest), std::log(largest));
   const double value = std::exp(exponent(random));
@@ -186,14 +186,14 @@ TEST(PrescriptionJson, UnlimitedAperturesAreWrittenAsNone) {
 TEST(PrescriptionJson, WhatCannotBeReadIsNotWritten) {
   Prescription p;
   p.name = "empty";
-  EXPECT_EQ(message([&] { format_prescription(p); }), "empty: no surfaces, wanted one at least");
+  EXPECT_EQ(message([&] { format_prescription(p); }), "empty: no surfaces, wanted at least one");
   p = parse_prescription(file("\"surfaces\": [" + row + "]"), "x.json");
   p.surfaces[0].thickness = std::nan("");
   EXPECT_EQ(message([&] { format_prescription(p); }),
             "lens: surface 0: thickness is nan, wanted a finite length below 1e10 mm");
   p.surfaces[0].thickness = 0;
   p.notes = "\xb5m";  // Latin-1
-  EXPECT_EQ(message([&] { format_prescription(p); }), "a text of the lens is not UTF-8, wanted UTF-8 to write JSON");
+  EXPECT_EQ(message([&] { format_prescription(p); }), "a string of the lens is not UTF-8, wanted UTF-8 to write JSON");
 }
 
 TEST(PrescriptionJson, FilesThatCannotBeOpenedAreNamed) {
@@ -203,7 +203,7 @@ TEST(PrescriptionJson, FilesThatCannotBeOpenedAreNamed) {
   EXPECT_EQ(message([&] { petzval::read_prescription(folder); }), folder.string() + ": cannot be read to its end");
   const Prescription p = parse_prescription(file("\"surfaces\": [" + row + "]"), "x.json");
   EXPECT_EQ(message([&] { petzval::write_prescription(p, absent); }),
-            absent + ": cannot be written, wanted a folder that exists, may be written and has room");
+            absent + ": cannot be written, wanted an existing, writable folder with space");
   const fs::path written = folder / "petzval_written.json";
   petzval::write_prescription(p, written);
   EXPECT_EQ(petzval::read_prescription(written), p);
@@ -239,7 +239,7 @@ TEST(PrescriptionJson, MembersMayBeLeftOutButNotTheSurfaceItself) {
   EXPECT_EQ(refusal(with_surface(R"({"radius": 5, "thickness": 1})")), "x.json: surface 1: key \"nd\" is missing");
   EXPECT_EQ(refusal(with_member(R"("aspheric": [{"order": 4}])")),
             "x.json: surface 1: aspheric 0: key \"coefficient\" is missing");
-  EXPECT_EQ(refusal(file("\"surfaces\": []")), "x.json: no surfaces, wanted one at least");
+  EXPECT_EQ(refusal(file("\"surfaces\": []")), "x.json: no surfaces, wanted at least one");
 }
 
 TEST(PrescriptionJson, ValuesOfTheWrongKindAreNamed) {
@@ -248,14 +248,14 @@ TEST(PrescriptionJson, ValuesOfTheWrongKindAreNamed) {
   EXPECT_EQ(refusal("[]"), "x.json: document is a list, wanted an object");
   EXPECT_EQ(refusal("7"), "x.json: document is 7, wanted an object");
   EXPECT_EQ(refusal("\"text\""), "x.json: document is \"text\", wanted an object");
-  EXPECT_EQ(refusal(file(R"("name": 5)")), "x.json: name is 5, wanted a text");
-  EXPECT_EQ(refusal(file(R"("name": null)")), "x.json: name is null, wanted a text");
+  EXPECT_EQ(refusal(file(R"("name": 5)")), "x.json: name is 5, wanted a string");
+  EXPECT_EQ(refusal(file(R"("name": null)")), "x.json: name is null, wanted a string");
   EXPECT_EQ(refusal(file(R"("name": ["a"])")), "x.json: name is a list, wanted a plain value");
   EXPECT_EQ(refusal(file(R"("source": "a book")")), "x.json: source is \"a book\", wanted an object");
   EXPECT_EQ(refusal(file(R"("source": [])")), "x.json: source is a list, wanted an object");
-  EXPECT_EQ(refusal(file(R"("source": {"design": 1})")), "x.json: source: design is 1, wanted a text");
-  EXPECT_EQ(refusal(file(R"("aliases": ["a", 2])")), "x.json: aliases is 2, wanted a text");
-  EXPECT_EQ(refusal(file(R"("aliases": [{}])")), "x.json: aliases is an object, wanted a text");
+  EXPECT_EQ(refusal(file(R"("source": {"design": 1})")), "x.json: source: design is 1, wanted a string");
+  EXPECT_EQ(refusal(file(R"("aliases": ["a", 2])")), "x.json: aliases is 2, wanted a string");
+  EXPECT_EQ(refusal(file(R"("aliases": [{}])")), "x.json: aliases is an object, wanted a string");
   EXPECT_EQ(refusal(file(R"("zoom": {"position": "wide", "variable_gaps": {"3": "5"}})")),
             "x.json: zoom: variable_gaps is \"5\", wanted a number");
   EXPECT_EQ(refusal(file(R"("zoom": {"variable_gaps": {"03": 5}})")),
@@ -273,7 +273,7 @@ TEST(PrescriptionJson, ValuesOfTheWrongKindAreNamed) {
   EXPECT_EQ(refusal(with_member(R"("aspheric": [1])")), "x.json: surface 1: aspheric 0 is 1, wanted an object");
   EXPECT_EQ(refusal(with_member(R"("aspheric": [{"order": 4.5}])")),
             "x.json: surface 1: aspheric 0: order is 4.5, wanted a whole number from 2 to 40");
-  EXPECT_EQ(refusal(with_member(R"("glass": true)")), "x.json: surface 1: glass is true, wanted a text");
+  EXPECT_EQ(refusal(with_member(R"("glass": true)")), "x.json: surface 1: glass is true, wanted a string");
   EXPECT_EQ(refusal(file(R"("object_space": {"nd": "water"})")),
             "x.json: object_space: nd is \"water\", wanted a number");
 }
@@ -392,19 +392,18 @@ TEST(PrescriptionJson, HugeTextsAreRefusedEarly) {
   std::string rows = row;
   for (int i = 1; i < 10'000; ++i) rows += "," + row;
   EXPECT_EQ(parse_prescription(file("\"surfaces\": [" + rows + "]"), "x.json").surfaces.size(), 10'000u);
-  // What follows the surface too many is not looked at: it is no JSON.
+  // The reader stops at the first surface too many; the rest is not JSON.
   EXPECT_EQ(refusal(file("\"surfaces\": [" + rows + "," + row + "] !")),
-            "x.json: more than 10000 surfaces, wanted a lens");
+            "x.json: more than 10000 surfaces, wanted fewer");
   std::string aliases = "\"\"";
   for (int i = 0; i < 10'000; ++i) aliases += ",\"\"";
-  EXPECT_EQ(refusal(file("\"aliases\": [" + aliases + "]")),
-            "x.json: more than 10000 entries in a list, wanted a lens");
-  // Nesting ends at the first bracket that has no place in a lens, be it one or a hundred thousand.
+  EXPECT_EQ(refusal(file("\"aliases\": [" + aliases + "]")), "x.json: more than 10000 entries in a list, wanted fewer");
+  // The reader stops at the first bracket that the format does not have, of one or a hundred thousand.
   const std::string deep(100'000, '[');
   EXPECT_EQ(refusal(deep), "x.json: document is a list, wanted an object");
   EXPECT_EQ(refusal(file("\"surfaces\": [" + deep)), "x.json: surface 0 is a list, wanted an object");
   EXPECT_EQ(refusal(file("\"notes\": " + deep)), "x.json: notes is a list, wanted a plain value");
-  // A long text in a message is cut short.
+  // Messages shorten long strings.
   const std::string said = refusal(file("\"" + std::string(1'000'000, 'k') + "\": 1"));
   EXPECT_TRUE(said.starts_with("x.json: key \"" + std::string(60, 'k') + "...\" is unknown")) << said.substr(0, 100);
   EXPECT_LT(refusal(file("\"f_number\": " + std::string(1'000'000, '1'))).size(), 300u);
@@ -417,7 +416,7 @@ struct DecimalComma : std::numpunct<char> {
 };
 
 TEST(PrescriptionJson, TheLocaleDoesNotMatter) {
-  // For streams everywhere; for the C library where the machine has such a locale.
+  // Sets the locale of streams, and of the C library if the machine has it.
   const std::locale before = std::locale::global(std::locale(std::locale::classic(), new DecimalComma));
   for (const char* name : {"de_DE.UTF-8", "fr_FR.UTF-8"}) {
     if (std::setlocale(LC_ALL, name) != nullptr) break;

@@ -41,7 +41,7 @@ std::string bytes(const std::filesystem::path& file) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-/// The text of a good file with one part of it replaced.
+/// The text of a valid file with one part replaced.
 std::string with(const std::string& part, const std::string& instead) {
   std::string text = format_ray_polynomial(polynomial(3, 2));
   const auto at = text.rfind(part);
@@ -130,7 +130,7 @@ TEST(RayPolynomialJson, SaysWhatIsWrongAndWhere) {
   EXPECT_NE(why(with("\n}\n", "")).find("not JSON"), std::string::npos);
   EXPECT_EQ(why(std::string("{\0}", 3)), "x.json: byte 2 is zero, wanted JSON in UTF-8");
   EXPECT_EQ(message([] { read_ray_polynomial("/nowhere/x.json"); }),
-            "/nowhere/x.json: cannot be opened, wanted a file of a ray polynomial");
+            "/nowhere/x.json: cannot be opened, wanted a ray polynomial file");
 }
 
 TEST(RayPolynomialJson, EndsWhereFilesAreTooLarge) {

@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::message;
 
-/// A folder of the test's own, gone afterwards.
+/// A temporary folder for the test.
 class WriteFile : public ::testing::Test {
  protected:
   WriteFile() {
@@ -59,7 +59,7 @@ TEST_F(WriteFile, AFailureLeavesTheOldFile) {
   write_file("old", file_);
   fs::create_directory(folder_ / "a.txt.part");  // the new one cannot be written
   EXPECT_EQ(message([&] { write_file("new", file_); }),
-            file_.string() + ": cannot be written, wanted a folder that exists, may be written and has room");
+            file_.string() + ": cannot be written, wanted an existing, writable folder with space");
   EXPECT_EQ(text(file_), "old");
   EXPECT_TRUE(fs::is_directory(folder_ / "a.txt.part"));
   fs::create_directories(folder_ / "taken" / "inside");

@@ -19,7 +19,7 @@ namespace {
 using Kind = Finding::Kind;
 using testing::data_prescription;
 
-/// f = 100 mm, f/5, its film at the paraxial focus: nothing to find.
+/// f = 100 mm, f/5, the film at the paraxial focus: no findings.
 Prescription singlet() {
   Prescription p;
   p.name = "singlet";
@@ -56,7 +56,7 @@ TEST(Lint, FindsAnotherFNumberThanDeclared) {
   Prescription p = singlet();
   p.f_number = 4;
   expect_one(p, Kind::f_number, {}, "f-number is 5, declared 4");
-  p.surfaces[0].semi_diameter.reset();  // an unlimited stop says nothing of the speed
+  p.surfaces[0].semi_diameter.reset();  // an unlimited stop gives no f-number
   EXPECT_TRUE(lint(p).empty());
 }
 
@@ -68,13 +68,13 @@ TEST(Lint, FindsSurfacesThatCross) {
   p.surfaces[1].semi_diameter = 19;
   EXPECT_TRUE(lint(p).empty());
   p.surfaces[1].semi_diameter = 21;
-  expect_one(p, Kind::overlap, 0, "surface 0: the next surface comes 0.623795 mm before it at a height of 21 mm");
+  expect_one(p, Kind::overlap, 0, "surface 0: overlaps the next surface by 0.623795 mm at a height of 21 mm");
 }
 
-TEST(Lint, LooksForCrossingsBetweenRimAndHoleOnly) {
+TEST(Lint, LooksForOverlapsOutsideCentralObscurationsOnly) {
   Prescription p = singlet();
   p.f_number.reset();
-  p.surfaces[0].thickness = -1;  // in the middle the rear surface lies in front, from a height of 10 mm on behind
+  p.surfaces[0].thickness = -1;  // the rear surface lies in front of the other up to a height of 10 mm
   p.surfaces[1].radius = 50.5;
   p.focal_length_mm.reset();
   p.surfaces[1].thickness = first_order(compile(p)).back_focal_distance;
@@ -113,8 +113,9 @@ TEST(Lint, SeesCylindersInBothSections) {
 TEST(Lint, FindsASemiDiameterBeyondTheSurface) {
   Prescription p = singlet();
   p.surfaces[1].semi_diameter = 51;
-  expect_one(p, Kind::semi_diameter, 1, "surface 1: semi_diameter is 51 mm, beyond the surface, which ends at 50 mm");
-  p.surfaces[1].conic = -1;  // a paraboloid has no end
+  expect_one(p, Kind::semi_diameter, 1,
+             "surface 1: semi_diameter is 51 mm, wanted at most 50 mm, where the surface ends");
+  p.surfaces[1].conic = -1;  // a paraboloid has no equator
   EXPECT_TRUE(lint(p).empty());
   p.surfaces[1].conic = 3;
   EXPECT_NEAR(lint(p).at(0).wanted, 25, 1e-12);
@@ -125,7 +126,7 @@ TEST(Lint, FindsASemiDiameterBeyondTheSurface) {
 TEST(Lint, FindsARimThatOnlyTheAxisPasses) {
   Prescription p = singlet();
   p.surfaces[1].semi_diameter = 0;
-  expect_one(p, Kind::semi_diameter, 1, "surface 1: semi_diameter is 0 mm: only the axis passes it");
+  expect_one(p, Kind::semi_diameter, 1, "surface 1: semi_diameter is 0 mm; only the axial ray passes");
   EXPECT_EQ(lint(p)[0].found, 0);
   EXPECT_EQ(lint(p)[0].wanted, 50);
   p = singlet();
@@ -142,13 +143,13 @@ TEST(Lint, FindsNoStopAndSeveral) {
   p.surfaces[0].stop = false;
   expect_one(p, Kind::no_stop, {}, "no surface is marked as stop; the one that clips the axial beam first is used");
   p.surfaces[0].stop = p.surfaces[1].stop = true;
-  expect_one(p, Kind::several_stops, 1, "surface 1: is one of 2 marked as stop; the first of them is used");
+  expect_one(p, Kind::several_stops, 1, "surface 1: is the last of 2 marked as stop; the first is used");
 }
 
 TEST(Lint, FindsAFilmAwayFromTheFocus) {
   Prescription p = singlet();
   p.surfaces[1].thickness = 97;
-  expect_one(p, Kind::image_distance, 1, "surface 1: the film is 97 mm behind it, the paraxial focus 100 mm");
+  expect_one(p, Kind::image_distance, 1, "surface 1: the film is 97 mm behind it and the paraxial focus 100 mm");
   p.surfaces[1].thickness = 101;
   EXPECT_TRUE(lint(p).empty());
 }
@@ -167,7 +168,7 @@ TEST(Lint, RefusesAnInvalidPrescriptionOnly) {
   EXPECT_THROW(lint(p), Error);
 }
 
-// What the tables in data are known for. Most of these have estimated diameters.
+// Known overlaps in the data. Most of these lenses have estimated diameters.
 TEST(Lint, FindsInDataTheKnownOverlapsAndNothingElse) {
   const std::map<std::string, std::vector<int>> known{
       {"biotar_100mm_f1.4", {4}},         {"double_gauss_100mm_f1.7_substitute", {3}},

@@ -32,7 +32,7 @@ class TableFolder : public ::testing::Test {
     std::ofstream(folder / name, std::ios::binary) << text;
   }
 
-  /// What loading says of one table, without the folder's name.
+  /// The message of loading one table, without the name of the folder.
   std::string refusal(const std::string& text) const {
     write("glass_a.csv", text);
     const std::string all = message([&] { GlassCatalogue::load(folder); });
@@ -115,9 +115,9 @@ TEST_F(TableFolder, ABadTableIsRefusedWithFileLineAndReason) {
   EXPECT_EQ(refusal(header + "mine,X1,1.5,60,magic,0.4,0.7,1.5,me\n"),
             ": line 2: formula is \"magic\", wanted sellmeier, sellmeier_squared, polynomial, cauchy or buchdahl");
   EXPECT_EQ(refusal(header + "mine,X1,1.5,60,cauchy,0.7,0.4,1.5,me\n"),
-            ": line 2: range is 0.7 to 0.4 um, wanted two rising positive numbers");
+            ": line 2: range is 0.7 to 0.4 um, wanted two increasing positive numbers");
   EXPECT_EQ(refusal(header + "mine,X1,1.5,60,cauchy,0,0.4,1.5,me\n"),
-            ": line 2: range is 0 to 0.4 um, wanted two rising positive numbers");
+            ": line 2: range is 0 to 0.4 um, wanted two increasing positive numbers");
   EXPECT_EQ(refusal(header + "mine,X1,1.5,60,cauchy,0.4,0.7,1.5 0.1,me\n"),
             ": line 2: 2 coefficients, wanted c0 and pairs");
   EXPECT_EQ(refusal(header + "mine,X1,1.5,60,buchdahl,0.4,0.7,1.5,me\n"), ": line 2: 1 coefficients, wanted 3");
@@ -130,7 +130,7 @@ TEST_F(TableFolder, ABadTableIsRefusedWithFileLineAndReason) {
 
 TEST_F(TableFolder, AFolderWithoutTablesIsRefused) {
   EXPECT_EQ(message([&] { GlassCatalogue::load(folder); }),
-            folder.string() + ": no file glass_*.csv, wanted one at least");
+            folder.string() + ": no file glass_*.csv, wanted at least one");
   EXPECT_EQ(message([&] { GlassCatalogue::load(folder / "absent"); }),
             (folder / "absent").string() + ": No such file or directory, wanted a folder of glass tables");
 }

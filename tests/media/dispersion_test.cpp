@@ -65,7 +65,7 @@ TEST(Dispersion, EveryGlassBendsBlueMoreThanRed) {
   }
 }
 
-// The maker's data sheet of N-BK7 prints these five decimals, from the near ultraviolet to the infrared.
+// The data sheet of N-BK7 prints these five decimals, from the near ultraviolet to the infrared.
 TEST(Dispersion, BoroCrownHasTheIndicesOfItsDataSheet) {
   const Glass* glass = glasses().find("N-BK7", "schott");
   ASSERT_NE(glass, nullptr);
@@ -90,7 +90,7 @@ TEST(Dispersion, BoroCrownHasTheIndicesOfItsDataSheet) {
   for (const auto& [nm, n] : sheet) EXPECT_NEAR(refractive_index(*glass, nm), n, 5.5e-6) << nm;
 }
 
-// One glass in each formula, worked out by hand at a wavelength that keeps the numbers round.
+// One glass per formula, computed by hand at a wavelength that gives round numbers.
 TEST(Dispersion, EachFormulaIsTheOneOfItsName) {
   using enum DispersionFormula;
   EXPECT_DOUBLE_EQ(refractive_index(made_up(sellmeier, {0.5, 1, 0.5}), 1000), std::sqrt(1 + 0.5 + 1 / (1 - 0.5)));
@@ -136,14 +136,11 @@ TEST(Dispersion, TheEndsOfTheRangeBelongToIt) {
 TEST(Dispersion, NoIndexComesFromBeyondAPole) {
   using enum DispersionFormula;
   const std::string at = "test X: square of the index at 500 nm is ";
-  EXPECT_EQ(message([] {
-              refractive_index(made_up(sellmeier, {0, 1, 0.25}), 500);
-            }),
-            at + "inf, wanted one above 1e-6");
-  EXPECT_EQ(message([] { refractive_index(made_up(sellmeier, {0, 1, 0.5}), 500); }), at + "0, wanted one above 1e-6");
-  EXPECT_EQ(message([] { refractive_index(made_up(polynomial, {1e-6}), 500); }), at + "1e-06, wanted one above 1e-6");
-  EXPECT_EQ(message([] { refractive_index(made_up(cauchy, {-1.5}), 500); }), at + "-2.25, wanted one above 1e-6");
-  EXPECT_EQ(message([] { refractive_index(made_up(cauchy, {nan}), 500); }), at + "nan, wanted one above 1e-6");
+  EXPECT_EQ(message([] { refractive_index(made_up(sellmeier, {0, 1, 0.25}), 500); }), at + "inf, wanted above 1e-6");
+  EXPECT_EQ(message([] { refractive_index(made_up(sellmeier, {0, 1, 0.5}), 500); }), at + "0, wanted above 1e-6");
+  EXPECT_EQ(message([] { refractive_index(made_up(polynomial, {1e-6}), 500); }), at + "1e-06, wanted above 1e-6");
+  EXPECT_EQ(message([] { refractive_index(made_up(cauchy, {-1.5}), 500); }), at + "-2.25, wanted above 1e-6");
+  EXPECT_EQ(message([] { refractive_index(made_up(cauchy, {nan}), 500); }), at + "nan, wanted above 1e-6");
 }
 
 TEST(Dispersion, AFormulaWithAPieceMissingIsRefused) {

@@ -30,7 +30,7 @@ Prescription singlet() {
   return p;
 }
 
-/// What validate says of the singlet after a change.
+/// The message of validate for the singlet after a change.
 std::string refusal(const std::function<void(Prescription&)>& change) {
   Prescription p = singlet();
   change(p);
@@ -62,9 +62,9 @@ TEST(Validate, NumbersThatNoSurfaceHasAreRefusedByNameAndSurface) {
               }),
               "s: surface 0: aspheric coefficient of order 4" + is + ", wanted a finite number");
     EXPECT_EQ(refusal([&](auto& p) { p.f_number = value; }),
-              "s: f_number" + is + ", wanted a finite number above 0 or none");
+              "s: f_number" + is + ", wanted a finite number above 0 or no value");
     EXPECT_EQ(refusal([&](auto& p) { p.focal_length_mm = value; }),
-              "s: focal_length_mm" + is + ", wanted a finite number or none");
+              "s: focal_length_mm" + is + ", wanted a finite number or no value");
     EXPECT_EQ(refusal([&](auto& p) { p.reference_wavelength_nm = value; }),
               "s: reference_wavelength_nm" + is + ", wanted 10 to 100000 nm");
     EXPECT_EQ(refusal([&](auto& p) { p.object_space.nd = value; }),
@@ -88,13 +88,13 @@ TEST(Validate, NumbersThatNoSurfaceHasAreRefusedByNameAndSurface) {
 }
 
 TEST(Validate, FieldsThatContradictEachOtherAreRefused) {
-  EXPECT_EQ(refusal([](auto& p) { p.surfaces.clear(); }), "s: no surfaces, wanted one at least");
+  EXPECT_EQ(refusal([](auto& p) { p.surfaces.clear(); }), "s: no surfaces, wanted at least one");
   EXPECT_EQ(refusal([](auto& p) { p.surfaces.resize(10'001); }), "s: 10001 surfaces, wanted at most 10000");
   EXPECT_EQ(refusal([](auto& p) { p.surfaces[0].inner_semi_diameter = 12; }),
             "s: surface 0: inner_semi_diameter is 12, wanted less than the semi_diameter of 12 mm");
   EXPECT_EQ(refusal([](auto& p) { p.surfaces[1].mirror = true; }),
-            "s: surface 1: the medium of the mirror (nd 1) is not the one before it (nd 1.5168), wanted the medium the "
-            "light stays in");
+            "s: surface 1: the medium of the mirror (nd 1) is not the one in front of it (nd 1.5168), wanted the "
+            "same medium");
   EXPECT_EQ(refusal([](auto& p) {
               p.surfaces[0].aspheric = {{1, 0.5}};
             }),
@@ -152,7 +152,7 @@ TEST(Scale, PowersOfTwoComeBackBitForBit) {
   }
 }
 
-// Similar surfaces have similar sags: scaling r and z alike leaves z = k r^m on the surface.
+// Similar surfaces have similar sags: scaling r and z by one factor keeps z = k r^m on the surface.
 TEST(Scale, AspheresStaySimilar) {
   Prescription p = singlet();
   p.surfaces[0].aspheric = {{3, 2e-4}, {10, -3e-12}};
@@ -182,10 +182,11 @@ TEST(Scale, RefusesFactorsThatMakeNoLens) {
     EXPECT_EQ(message([&] { petzval::scale(singlet(), factor); }),
               "singlet: scale factor is " + petzval::number(factor) + ", wanted a finite number above 0");
   }
-  EXPECT_EQ(message([] { petzval::scale(singlet(), 0x1p-1060); }),
-            "singlet: surface 0: 50 scaled by 8.095e-320 is 4.047386e-318, wanted a number that double holds in full");
+  EXPECT_EQ(
+      message([] { petzval::scale(singlet(), 0x1p-1060); }),
+      "singlet: surface 0: 50 scaled by 8.095e-320 is 4.047386e-318, wanted a number in the normal range of double");
   EXPECT_EQ(message([] { petzval::scale(singlet(), 1e307); }),
-            "singlet: surface 0: 50 scaled by 1e+307 is inf, wanted a number that double holds in full");
+            "singlet: surface 0: 50 scaled by 1e+307 is inf, wanted a number in the normal range of double");
 }
 
 }  // namespace

@@ -29,8 +29,8 @@ Ray<double> turned(const petzval::Lens& lens, const Ray<double>& ray) {
           {ray.direction.x, ray.direction.y, sign * ray.direction.z}};
 }
 
-/// Traces a ray from the film side through the lens and, seen from the other side, through the reversed lens.
-/// Returns whether it got through.
+/// Traces a ray to the scene through the lens and the same ray to the film through the reversed lens. Returns whether
+/// it passed.
 bool expect_same_way(const petzval::Lens& lens, const petzval::Lens& reversed, const Ray<double>& ray) {
   const auto there = petzval::trace(lens, ray, {.travel = Travel::to_scene});
   const auto back = petzval::trace(reversed, turned(lens, ray));
@@ -45,8 +45,8 @@ bool expect_same_way(const petzval::Lens& lens, const petzval::Lens& reversed, c
   return there.transmitted();
 }
 
-// Light that retraces its way through the lens is light that runs forward through the reversed one: refracting lenses,
-// even and odd numbers of mirrors, aspheres, cylinders, an eye with water behind it.
+// A ray that travels to the scene through a lens travels to the film through the reversed lens: refracting lenses, even
+// and odd numbers of mirrors, aspheres, cylinders, an eye with water behind it.
 TEST(Reverse, LightTakesTheSameWay) {
   std::mt19937 random(20);
   std::uniform_real_distribution<double> uniform(-1, 1);
@@ -65,7 +65,7 @@ TEST(Reverse, LightTakesTheSameWay) {
       if (!exit.transmitted()) continue;
       const auto& d = exit.ray.direction;
       through += expect_same_way(lens, reversed, {exit.ray.origin, {-d.x, -d.y, -d.z}});
-      // And one that has no reason to get through.
+      // And a random ray, which mostly does not pass.
       const double bend = 0.1 * uniform(random), norm = std::sqrt(1 + 2 * bend * d.x + bend * bend);
       expect_same_way(lens, reversed, {exit.ray.origin, {-(d.x + bend) / norm, -d.y / norm, -d.z / norm}});
     }
@@ -73,8 +73,7 @@ TEST(Reverse, LightTakesTheSameWay) {
   }
 }
 
-/// Whether a reversed lens begins with light towards +z in the sense of its indices: behind an odd number of mirrors
-/// it does not.
+/// Whether the signed index in front of a reversed lens is positive: with an odd number of mirrors it is not.
 bool ends_forwards(const petzval::Lens& lens) { return petzval::signed_index(lens, lens.surface_count()) > 0; }
 
 TEST(Reverse, SwapsPrincipalPlanesAndPupils) {
@@ -106,8 +105,8 @@ TEST(Reverse, SwapsPrincipalPlanesAndPupils) {
   }
 }
 
-// A ray through the centre of the stop is one from either side: aimed at from a point of it behind the lens, through
-// the reversed lens, it comes back as the line that entered.
+// A chief ray is the same line from both sides: aimed from a point behind the lens through the reversed lens, it comes
+// out as the line that entered.
 TEST(Reverse, ChiefRaysAreTheSameLines) {
   int compared = 0;
   for (const Prescription& p : petzval::testing::data_prescriptions()) {
@@ -119,8 +118,8 @@ TEST(Reverse, ChiefRaysAreTheSameLines) {
       const double field = share * petzval::radians(p.half_field_deg.value_or(1));
       const auto chief = petzval::chief_ray(lens, {field, -std::numeric_limits<double>::infinity()});
       if (!chief || !chief.end.transmitted()) continue;
-      // A point of it behind the lens, seen from the other side. (Farther out chief rays of the phone lens cross, and
-      // one point has two.)
+      // A point of the ray behind the lens, in the reversed frame. Farther out chief rays of the phone lens cross, and
+      // a point has two.
       const Ray<double> behind = turned(lens, chief.end.ray);
       const double focal_length = std::abs(*p.focal_length_mm);
       const double t = (std::min(0.0, pupil_z) - 2 * focal_length - behind.origin.z) / behind.direction.z;
@@ -175,7 +174,7 @@ TEST(Reverse, MediaAndTheStopMoveWithTheirSurfaces) {
   EXPECT_EQ(r.surfaces[2].thickness, 0);
   EXPECT_TRUE(r.surfaces[2].stop);
   EXPECT_EQ(petzval::testing::message([] { petzval::reverse({}); }),
-            "lens: no surfaces to reverse, wanted one at least");
+            "lens: no surfaces to reverse, wanted at least one");
 }
 
 }  // namespace

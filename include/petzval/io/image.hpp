@@ -35,17 +35,16 @@ struct Rgb8Image {
   std::vector<std::uint8_t> pixels;
 };
 
-/// Writes 32-bit float channels R, G, B, without loss. Throws Error that names the file; a file is written as a whole
-/// or not at all.
+/// Writes 32-bit float channels R, G, B, without loss, as write_file does. Throws Error that names the file.
 PETZVAL_API void write_exr(const RgbImage& image, const std::filesystem::path& file);
 
 /// Reads channels R, G, B of any EXR file as float. Throws Error that names the file.
 PETZVAL_API RgbImage read_exr(const std::filesystem::path& file);
 
-/// Writes an 8-bit sRGB PNG. Throws Error that names the file; a file is written as a whole or not at all.
+/// Writes an 8-bit sRGB PNG as write_file does. Throws Error that names the file.
 PETZVAL_API void write_png(const Rgb8Image& image, const std::filesystem::path& file);
 
-/// Linear light times `exposure` to 8-bit sRGB; negative values and those above 1 are clipped, NaN is black.
+/// Converts linear light times `exposure` to 8-bit sRGB. Values are clipped to 0 and 1; NaN becomes black.
 PETZVAL_API Rgb8Image to_srgb8(const RgbImage& image, float exposure = 1.0f);
 
 }  // namespace petzval::inline v0

@@ -10,21 +10,21 @@
 
 namespace petzval::inline v0 {
 
-/// Reads a lens from the JSON of data/lenses (format "petzval-lens 1", keys in data/README.md). Throws Error that names
-/// the file, the surface (from 0), the key, what was found and what was wanted, or the byte where the text is no JSON.
-/// Refused are unknown and duplicate keys, comments, NaN, numbers beyond double, brackets nested deeper than a lens has
-/// them, lists of more than 10,000 entries, and what `validate` refuses. Takes time in proportion to the file and up to
-/// 4 times its memory (8 where it is one number of megabytes).
+/// Reads a lens from a JSON file (format "petzval-lens 1"; data/README.md has its keys). Throws Error that names the
+/// file, the surface (from 0), the key, what was found and what was wanted, or the byte at which the text is not JSON.
+/// It refuses unknown and duplicate keys, comments, NaN, numbers out of range of double, brackets nested deeper than
+/// the format has them, lists of more than 10,000 entries, and all that `validate` refuses. Time is proportional to the
+/// size of the file, memory at most 4 times its size (8 times for a file that is one number of megabytes).
 PETZVAL_API Prescription read_prescription(const std::filesystem::path& file);
 
-/// The same from memory; `where` stands for the file's name in messages.
+/// The same from memory. `where` is the name of the source in messages.
 PETZVAL_API Prescription parse_prescription(std::string_view json, const std::string& where);
 
-/// The JSON text of a lens: one surface a line, numbers as the shortest decimals that read back exactly. Writing what
-/// was read from such a text gives the same bytes.
+/// The lens as JSON: one surface a line, numbers as the shortest decimals that read back exactly. Reading and writing
+/// such a text again gives the same bytes.
 PETZVAL_API std::string format_prescription(const Prescription& prescription);
 
-/// That text into a file, as a whole or not at all. Throws Error that names the file.
+/// Writes that text as write_file does. Throws Error that names the file.
 PETZVAL_API void write_prescription(const Prescription& prescription, const std::filesystem::path& file);
 
 }  // namespace petzval::inline v0

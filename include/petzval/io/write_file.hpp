@@ -8,9 +8,8 @@
 
 namespace petzval::inline v0 {
 
-/// Writes a file as a whole or not at all: first beside it, under its name with .part behind, then in its place. A
-/// failure leaves neither a torn file nor the loss of an old one. Links are followed; what is no ordinary file, a pipe
-/// or a device, is written to as it is. Throws Error that names the file.
+/// Writes a whole file or none: first to FILE.part, which then replaces FILE. A failure keeps the old file and leaves
+/// no partial one. Links are followed. Pipes and devices are written to directly. Throws Error that names the file.
 PETZVAL_API void write_file(std::string_view bytes, const std::filesystem::path& file);
 
 }  // namespace petzval::inline v0

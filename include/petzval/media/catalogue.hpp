@@ -11,7 +11,7 @@
 
 namespace petzval::inline v0 {
 
-/// The glasses known to a program; immutable once loaded, safe to share between threads.
+/// The glasses that a program knows. Immutable once loaded; threads may share it.
 ///
 ///     const auto glasses = petzval::GlassCatalogue::load(petzval::data_directory() / "glass");
 ///     double n = petzval::refractive_index(*glasses.find("N-BK7", "schott"), 486.1327);
@@ -20,15 +20,16 @@ class PETZVAL_API GlassCatalogue {
   GlassCatalogue() = default;
   explicit GlassCatalogue(std::vector<Glass> glasses);
 
-  /// Reads every glass_*.csv of a folder, in the order of their names. Throws Error with file and line for a bad one.
+  /// Reads every glass_*.csv of a folder, in the order of their names. Throws Error with file and line for an invalid
+  /// one.
   static GlassCatalogue load(const std::filesystem::path& directory);
 
-  /// The glass of that name in that catalogue, letter case ignored; nullptr when there is none.
-  /// Pointers live as long as the catalogue.
+  /// The glass of that name in that catalogue, ignoring case; nullptr if there is none. The pointer is valid as long as
+  /// the catalogue.
   const Glass* find(std::string_view name, std::string_view catalogue) const noexcept;
 
-  /// Where only the name is known, of all glasses so called (F2 is n_d 1.62004 in one table and 1.61293 in another) the
-  /// one with the nearest n_d, if that is within 0.01; nullptr otherwise.
+  /// The glass of that name with the nearest n_d, if it is within 0.01; nullptr otherwise. For media without a
+  /// catalogue: F2 has n_d 1.62004 in one catalogue and 1.61293 in another.
   const Glass* find(std::string_view name, double nd) const noexcept;
 
   const std::vector<Glass>& glasses() const noexcept { return glasses_; }

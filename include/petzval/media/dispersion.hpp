@@ -9,7 +9,7 @@
 
 namespace petzval::inline v0 {
 
-/// The shapes in which catalogues print n(lambda); l is the wavelength in micrometres.
+/// The formulas in which catalogues print n(lambda); l is the wavelength in micrometres.
 enum class DispersionFormula {
   sellmeier,          ///< n^2 = 1 + c0 + sum B l^2 / (l^2 - C)
   sellmeier_squared,  ///< n^2 = 1 + c0 + sum B l^2 / (l^2 - C^2)
@@ -30,18 +30,17 @@ struct Glass {
   std::vector<double> coefficients;  ///< in the order of the formula
 };
 
-/// Index of a glass relative to air. Throws Error, naming the glass and its range, when the wavelength is not finite,
-/// not positive or outside the range, and when the formula has no real index there.
+/// The index of a glass relative to air. Throws Error that names the glass and its range for a wavelength outside the
+/// range, and for a formula that gives no real index there.
 PETZVAL_API double refractive_index(const Glass& glass, double wavelength_nm);
 
-/// Index from n_d and the Abbe number alone: n = A + B / lambda^2 through n_d with the n_F - n_C that V_d states. A
-/// stand-in where no glass is known: over 420-680 nm it is within 5e-4 of half of the glasses in data/glass, within
-/// 5e-3 of 95 % of them and 0.016 off for the densest flints (table in tests/media/dispersion_test.cpp). From 365 to
-/// 1014 nm.
+/// The index from n_d and the Abbe number: n = A + B / lambda^2, with n_d and n_F - n_C as stated. For media whose
+/// glass is unknown. From 420 to 680 nm the error is at most 5e-4 for half of the glasses in data/glass, 5e-3 for 95 %
+/// of them and 0.016 for the densest flints (table in tests/media/dispersion_test.cpp). Valid from 365 to 1014 nm.
 PETZVAL_API double abbe_index(double nd, double vd, double wavelength_nm);
 
-/// Wavelength of a spectral line by its letter ("d", "F", "C", "e", "F'", ...), in nm. Throws Error naming an unknown
-/// one.
+/// The wavelength of a spectral line by its letter ("d", "F", "C", "e", "F'", ...), nm. Throws Error for an unknown
+/// letter.
 PETZVAL_API double spectral_line_nm(std::string_view symbol);
 
 }  // namespace petzval::inline v0

@@ -11,10 +11,10 @@
 
 namespace petzval::inline v0 {
 
-/// What lies behind a surface. nd is what the published table prints; the glass, where it is known, gives dispersion.
+/// The medium behind a surface. nd is the printed index; the glass, if known, gives the dispersion.
 struct Medium {
   std::optional<std::string> glass{};         ///< "N-BK7"
-  std::optional<std::string> catalogue{};     ///< the table that holds it; any when absent
+  std::optional<std::string> catalogue{};     ///< of the glass; absent: any
   std::optional<std::string> glass_origin{};  ///< "matched": found by nd and vd, not printed in the source
   double nd = 1;
   std::optional<double> vd{};
@@ -35,11 +35,11 @@ enum class Section { both, x, y };
 
 /// One row of a lens table: a surface and what follows it. Millimetres.
 struct SurfaceRow {
-  double radius = 0;     ///< at the vertex; positive when the centre lies on the +z side; 0 is a plane
-  double thickness = 0;  ///< to the next vertex (the last: to the film); negative while light runs backwards
-  Medium medium{};       ///< behind the surface; at a mirror, the medium the light stays in
+  double radius = 0;     ///< at the vertex; positive if the centre lies on the +z side; 0 is a plane
+  double thickness = 0;  ///< to the next vertex (the last: to the film); negative where light runs backwards
+  Medium medium{};       ///< behind the surface; of a mirror: the medium in front of it
   std::optional<double> semi_diameter{};        ///< of the clear aperture; absent: unlimited
-  std::optional<double> inner_semi_diameter{};  ///< rays inside it are lost
+  std::optional<double> inner_semi_diameter{};  ///< of a central obscuration; rays inside it are lost
   double conic = 0;                             ///< k in c r^2 / (1 + sqrt(1 - (1+k) c^2 r^2))
   std::vector<AsphereTerm> aspheric{};
   bool stop = false;
@@ -49,7 +49,7 @@ struct SurfaceRow {
   bool operator==(const SurfaceRow&) const = default;
 };
 
-/// The position of a zoom lens that a file stands for: the gaps that vary (mm), by surface number from 0.
+/// The position of a zoom lens that a file describes: its variable thicknesses (mm) by surface number, from 0.
 struct ZoomPosition {
   std::string position{};
   std::map<int, double> variable_gaps{};
@@ -57,7 +57,7 @@ struct ZoomPosition {
   bool operator==(const ZoomPosition&) const = default;
 };
 
-/// A lens as its source states it: plain data, free to edit. `compile` makes a Lens of it.
+/// A lens as its source prints it: plain data that a program may edit. `compile` makes a Lens of it.
 ///
 ///     petzval::Prescription singlet;
 ///     singlet.name = "singlet";
@@ -65,18 +65,18 @@ struct ZoomPosition {
 ///                         {.radius = -50, .thickness = 48, .semi_diameter = 12}};
 ///     petzval::Lens lens = petzval::compile(singlet);
 ///
-/// The strings of provenance carry what the file says; nothing computes with them.
+/// Strings hold what the file says; nothing is computed from them.
 struct Prescription {
   std::string id{};
   std::string name{};
   std::string source_design{};
   std::string source_numbers{};
-  std::optional<double> focal_length_mm{};  ///< nominal, as the source states it
+  std::optional<double> focal_length_mm{};  ///< nominal, as printed
   std::optional<double> f_number{};
   std::optional<double> half_field_deg{};
   std::optional<double> image_diagonal_mm{};
   double reference_wavelength_nm = d_line_nm;   ///< of the printed nd
-  std::optional<std::string> semi_diameters{};  ///< where the diameters come from
+  std::optional<std::string> semi_diameters{};  ///< origin of the diameters
   std::optional<std::string> stop_size{};
   std::optional<std::string> image_distance{};
   std::optional<std::string> glass_names{};
@@ -89,23 +89,22 @@ struct Prescription {
   bool operator==(const Prescription&) const = default;
 };
 
-/// Throws Error for what no lens can have: a number that is not finite, |radius| below 1e-12 mm (0 is a plane),
-/// |thickness| of 1e10 mm or more (an object at infinity is no surface), an index outside 0 < n <= 5, a hole not
-/// smaller than its surface, an asphere order outside 2..40 or given twice, a mirror whose medium is not the one before
-/// it, no surface at all or more than 10,000. `where` begins the message: a file name, or the lens's.
+/// Throws Error for a number that is not finite, |radius| below 1e-12 mm (0 is a plane), |thickness| of 1e10 mm or more
+/// (an object at infinity is not a surface), an index outside 0 < n <= 5, a central obscuration not smaller than its
+/// surface, an asphere order outside 2 to 40 or given twice, a mirror whose medium differs from the one in front of it,
+/// no surface, or more than 10,000. The message begins with `where`, the name of the file or of the lens.
 PETZVAL_API void validate(const Prescription& prescription, const std::string& where);
 
-/// The lens made `factor` times as large: lengths and asphere coefficients follow; powers of two change no digit.
-/// Throws Error for a factor that is not finite and positive, and where a number would leave the normal range of
-/// double.
+/// The lens, `factor` times as large. Powers of two change no digit. Throws Error for a factor that is not finite and
+/// positive, and if a number would leave the normal range of double.
 PETZVAL_API Prescription scale(const Prescription& prescription, double factor);
 
-/// The lens turned round: last surface first, light the other way, the old image space before it. Where the lens frame
-/// of the old one has z, that of the new one has z_last - z, or with an odd number of mirrors z - z_last (z_last: the
-/// old last vertex), so that light enters towards +z again.
+/// The reversed lens: the last surface comes first, and the old image space is in front of it. Light enters towards +z
+/// again: z of the old lens frame is z_last - z in the new one, or z - z_last with an odd number of mirrors (z_last:
+/// the old last vertex).
 ///
-/// Plain data do not say how far the new film is: the last thickness is 0. What held on one side only is left out:
-/// f_number, half_field_deg, image_diagonal_mm, image_distance, and a variable gap in front of the film.
+/// The place of the new film is unknown: the last thickness is 0. Data of one side are dropped: f_number,
+/// half_field_deg, image_diagonal_mm, image_distance, and a variable thickness in front of the film.
 PETZVAL_API Prescription reverse(const Prescription& prescription);
 
 }  // namespace petzval::inline v0
