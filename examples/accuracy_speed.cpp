@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What accuracy costs: errors and times of every model of a lens, and which of them are enough for four budgets.
+// Errors and times of every model of a lens, and the model that each of four error budgets allows.
 //
 //   accuracy_speed data/lenses/double_gauss_52mm_f1.8.json
 //   accuracy_speed data/lenses/double_gauss_52mm_f1.8.json --f-number 4 --json --out out
@@ -29,11 +29,11 @@ struct Options : examples::ModelOptions {
   std::string out_folder;
 };
 
-/// Half the distance in focus, but in front of the lens; of infinity as much as 100 focal lengths, which is next to it.
+/// Half the focus distance, in front of the lens. Infinity counts as 100 focal lengths.
 double nearest_mm(const petzval::Lens& lens, const Options& options) {
   const double far = 100 * std::abs(petzval::first_order(lens, 0, petzval::main_meridian(lens)).effective_focal_length);
   const double half = std::min(options.setup.focus_mm, far) / 2;
-  // Where half the distance lies in the lens, as for macro lenses, the nearest is halfway from its front to the focus.
+  // If half the distance lies inside the lens (macro), take the middle between its front and the focus.
   const double front = lens.film_z();
   return half > front ? half : (front + std::min(options.setup.focus_mm, far)) / 2;
 }
@@ -53,16 +53,17 @@ std::string figure(const std::vector<examples::ModelRow>& rows, const petzval::L
 int main(int argc, char** argv) {
   Options options;
   CLI::App app(
-      "Measures every model of a lens against exact rays in double: errors on the film (RMS, 99 %, largest; at planes "
-      "from half the focus distance to infinity, at the focus too; at infinity angle times focal length), of the "
-      "pupil's shape (symmetric difference over area) and of the exposure (largest over the film, fractions), ns per "
-      "ray in batches on one thread, and set-up time. Then it chooses the fastest model for budgets of 4, 1, 0.25 and "
-      "0.05 pixels, for rays alone (with --json it prints the rows only).\n"
+      "Compares every model of a lens with exact rays in double. Prints the errors on the film (RMS, 99 %, largest; "
+      "for "
+      "planes from half the focus distance to infinity, and for the plane in focus; at infinity angle times focal "
+      "length), of the pupil's shape (symmetric difference over area) and of the exposure (largest over the film), ns "
+      "per ray in batches on one thread, and set-up time. Then chooses the fastest model whose rays are within 4, 1, "
+      "0.25 and 0.05 pixels. With --json prints the rows only.\n"
       "front: no other model is both faster and more accurate (max_um). At the d line (587.5618 nm).\n"
       "--out writes DIR/LENS_accuracy_speed.csv and .svg and prints their paths (with --json on standard error).",
       "accuracy_speed");
   examples::add_model_options(app, options);
-  app.add_option("--out", options.out_folder, "folder for table and figure")->type_name("DIR");
+  app.add_option("--out", options.out_folder, "folder for the table and the figure")->type_name("DIR");
 
   return examples::run(app, argc, argv, [&] {
     const petzval::Film film = options.film();

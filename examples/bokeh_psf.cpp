@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Renders what a lens makes of a point light, for several focus distances: one EXR and one PNG each, a contact sheet,
-// and the numbers behind them as JSON.
+// Renders the image of a point light for several focus distances: an EXR and a PNG for each, a contact sheet, and the
+// numbers as JSON.
 //
 //   bokeh_psf data/lenses/double_gauss_100mm_f1.35.json --subject-distance-mm 1000
 //             --focus-mm 800,900,1000,1100,1200 --out out
@@ -57,10 +57,10 @@ std::vector<Picture> render(const examples::LoadedLens& loaded, const Options& o
   return pictures;
 }
 
-/// All tiles at one scale: that of the largest blur.
+/// All tiles have the scale of the largest blur.
 examples::Sheet contact_sheet(const std::vector<Picture>& pictures, const examples::LoadedLens& loaded,
                               const Options& options) {
-  double half_width = 1e-4;  // a perfect point has no size of its own
+  double half_width = 1e-4;  // a perfect point has no size
   for (const Picture& p : pictures) half_width = std::max(half_width, 1.08 * p.image.size.max_radius);
   examples::SheetRow row{
       .title = loaded.lens.name(),
@@ -137,25 +137,25 @@ int main(int argc, char** argv) {
   Options options;
   CLI::App app(
       "Renders the geometric point spread function of a lens for a point light, focused at several distances.\n"
-      "Writes to DIR, and prints the paths: LENS_focus_<D>mm.exr (float, linear: the light that the paraxial entrance "
-      "pupil takes in counts 1, per mm^2 of film), LENS_focus_<D>mm.png (each exposed for itself), LENS_bokeh.png (all "
-      "at one scale) and LENS_bokeh.json. Pictures show the film with x to the right and y upwards. The lens is "
-      "focused at the primary wavelength: the one nearest to the d line (587.5618 nm).",
+      "Writes to DIR, and prints the paths: LENS_focus_<D>mm.exr (float, linear: share of the light in the paraxial "
+      "entrance pupil, per mm^2 of film), LENS_focus_<D>mm.png (each with its own exposure), LENS_bokeh.png (all at "
+      "one "
+      "scale) and LENS_bokeh.json. Images show the film with x to the right and y upwards. The lens is focused at the "
+      "primary wavelength: the one nearest to the d line (587.5618 nm).",
       "bokeh_psf");
   app.add_option("LENS.json", options.lens_file, "lens prescription (JSON as in data/lenses)")->required();
   examples::add_number(app, "--subject-distance-mm", options.subject_mm, examples::positive_length,
                        "distance of the light (mm), or inf")
       ->required()
       ->default_str("");
-  examples::add_numbers(app, "--focus-mm", options.focus_mm, examples::positive_length,
-                        "distances to focus at (mm), or inf")
+  examples::add_numbers(app, "--focus-mm", options.focus_mm, examples::positive_length, "focus distances (mm), or inf")
       ->required();
-  app.add_option("--distance-from", options.origin, "where the distances of light and focus begin")
+  app.add_option("--distance-from", options.origin, "origin of the distances of light and focus")
       ->check(CLI::IsMember({"front_vertex", "film"}))
       ->capture_default_str();
-  app.add_option(
-         "--criterion", options.criterion,
-         "what in focus means, on axis: cardinal points (of a thin or the thick lens), least RMS or least largest blur")
+  app.add_option("--criterion", options.criterion,
+                 "criterion of focus, on axis: cardinal points (of a thin or the thick lens), least RMS blur or least "
+                 "largest blur")
       ->check(CLI::IsMember(examples::names(examples::focus_criteria)))
       ->capture_default_str();
   examples::add_numbers(
@@ -170,7 +170,7 @@ int main(int argc, char** argv) {
   app.add_option("--out", options.out_folder, "folder for the results")->required()->type_name("DIR");
 
   return examples::run(app, argc, argv, [&] {
-    examples::rgb_weights(options.wavelengths_nm);  // refuses a bad set before the work
+    examples::rgb_weights(options.wavelengths_nm);  // refuses an invalid set before the work
     const auto loaded = examples::load_lens(options.lens_file, options.wavelengths_nm);
     const examples::BokehSetup setup{.light_mm = options.subject_mm,
                                      .origin = examples::named(options.origin, examples::distance_origins),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Turns samples of a film, from a CSV file, into the rays that a renderer would trace, by any model of the lens.
+// Turns film samples from a CSV file into the rays that a renderer would trace, by any model of the lens.
 //
 //   printf 'film_x_mm,film_y_mm,pupil_u,pupil_v,wavelength_nm\n0,-10,0.25,0.5,587.5618\n' > samples.csv
 //   camera_rays data/lenses/double_gauss_100mm_f2.0.json --samples samples.csv --out rays.csv --model exact_double
@@ -35,9 +35,9 @@ constexpr std::array<CsvColumn, 5> sample_columns{{{"film_x_mm"},
 
 struct Samples {
   std::vector<double> film_x, film_y, pupil_u, pupil_v;
-  std::vector<std::uint16_t> wavelength;  ///< positions among
-  std::vector<double> wavelengths_nm;     ///< every one once, in the order of the file
-  std::vector<std::size_t> first_row;     ///< of each of these
+  std::vector<std::uint16_t> wavelength;  ///< positions in
+  std::vector<double> wavelengths_nm;     ///< each once, in the order of the file
+  std::vector<std::size_t> first_row;     ///< of each wavelength
 
   std::size_t size() const noexcept { return film_x.size(); }
 };
@@ -52,7 +52,8 @@ Samples parse_samples(const std::string& csv, const std::string& where) {
     samples.wavelength.push_back(static_cast<std::uint16_t>(found - known.begin()));
     if (found != known.end()) continue;
     if (known.size() == 1000) {
-      throw petzval::Error(examples::line_of_row(where, row) + ": found another wavelength, wanted at most 1000");
+      throw petzval::Error(examples::line_of_row(where, row) +
+                           ": found more than 1000 wavelengths, wanted at most 1000");
     }
     known.push_back(nm);
     samples.first_row.push_back(row);
@@ -60,7 +61,7 @@ Samples parse_samples(const std::string& csv, const std::string& where) {
   return samples;
 }
 
-/// Compiled for the wavelengths of the samples; where one cannot be, the error names its line.
+/// The lens compiled for the wavelengths of the samples. An error names the line of its wavelength.
 LoadedLens load_for(const Samples& samples, const std::string& lens_file, const std::string& where) {
   LoadedLens loaded = examples::load_lens(lens_file, std::array{petzval::d_line_nm});
   for (std::size_t w = 0; w < samples.wavelengths_nm.size(); ++w) {
@@ -108,20 +109,20 @@ int main(int argc, char** argv) {
   examples::CameraSetup setup;
   double tilt_deg = 0, swing_deg = 0;
   CLI::App app(
-      "Samples camera rays: from points of the film, through the lens, into the scene. Lengths in mm, in the lens "
-      "frame: origin at the first vertex, light runs towards +z (these rays run against it); the image on the film is "
+      "Samples camera rays from points of the film through the lens into the scene. Lengths in mm, in the lens frame: "
+      "origin at the first vertex, light travels towards +z, and these rays the other way. The image on the film is "
       "upside down.",
       "camera_rays");
   app.add_option("LENS.json", lens_file, "lens prescription (JSON as in data/lenses)")->required();
   app.add_option("--samples", samples_file,
                  "CSV with the columns film_x_mm,film_y_mm,pupil_u,pupil_v,wavelength_nm; pupil_u and pupil_v from 0 "
-                 "to 1, evenly by area over the model's own pupil of the film point")
+                 "to 1, uniform by area over the model's pupil of the film point")
       ->required()
       ->type_name("CSV");
   app.add_option("--out", out_file,
                  "CSV to write, one line per sample in the same order: x_mm,y_mm,z_mm,dx,dy,dz,weight,"
-                 "pdf_pupil_per_mm2,pdf_direction_per_sr,fate, with 17 digits; the mean of weight x radiance is the "
-                 "irradiance of the film point, and the weight is 0 unless the fate is transmitted")
+                 "pdf_pupil_per_mm2,pdf_direction_per_sr,fate, with 17 digits. The mean of weight x radiance is the "
+                 "irradiance of the film point; the weight is 0 unless the fate is transmitted")
       ->required()
       ->type_name("CSV");
   std::vector<std::string> model_names;
@@ -130,9 +131,9 @@ int main(int argc, char** argv) {
   examples::add_camera(app, setup);
   examples::add_number(
       app, "--tilt-deg", tilt_deg, below_quarter_turn,
-      "lean the film about its +x by so much (degrees): its normal is Ry(swing) Rx(tilt) e_z, and film "
-      "points count along its own axes");
-  examples::add_number(app, "--swing-deg", swing_deg, below_quarter_turn, "and about its +y");
+      "tilt of the film about +x (degrees); its normal is Ry(swing) Rx(tilt) e_z, and film points are in its own "
+      "axes");
+  examples::add_number(app, "--swing-deg", swing_deg, below_quarter_turn, "swing of the film about +y (degrees)");
   app.get_option("--focus-mm")->required();
 
   return examples::run(app, argc, argv, [&] {

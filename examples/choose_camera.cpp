@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The fastest model of a lens that a scene allows, by an error budget, and the proof by fresh samples.
+// The fastest model of a lens for a scene and an error budget, verified on fresh samples.
 //
 //   choose_camera data/lenses/double_gauss_52mm_f1.8.json --near-mm 1000 --far-mm inf --budget-px 0.25
 //   choose_camera data/lenses/double_gauss_52mm_f1.8.json --near-mm 1000 --far-mm 5000 --f-number 4 --focus-mm 2000
@@ -26,8 +26,8 @@ struct Options : examples::ModelOptions {
 
 constexpr examples::Range budget{0, std::numeric_limits<double>::max(), "a finite number, 0 or more"};
 
-/// The largest error of the model for samples that the choice has not seen: at the nearest and the farthest depth and
-/// at random ones between.
+/// The largest error of the model for samples that the choice has not seen: at the nearest and the farthest depth, and
+/// at random depths between them.
 double verified_max_px(const petzval::Lens& lens, const Options& options, petzval::ModelKind model) {
   std::mt19937 random(20'241);
   std::uniform_real_distribution<double> unit;
@@ -46,18 +46,20 @@ double verified_max_px(const petzval::Lens& lens, const Options& options, petzva
 int main(int argc, char** argv) {
   Options options;
   CLI::App app(
-      "Chooses the fastest model of a lens whose rays are off by no more than a budget anywhere on the film, in the "
-      "pupil and in the depths of a scene, whose exposure is within 1 % and whose pupil has the right shape within 2 % "
-      "of its area. Distances count from the film. At the d line (587.5618 nm).\n"
-      "predicted_max_px is the bound by which the choice was made, and max_px of the table that of every model; "
-      "verified_max_px is the largest error of samples that were not used for it.",
+      "Chooses the fastest model of a lens for a scene. The error of its rays must be within a budget for all points "
+      "of "
+      "the film and the pupil and all depths of the scene, its exposure within 1 %, and the shape of its pupil within "
+      "2 % of the area. Distances count from the film. At the d line (587.5618 nm).\n"
+      "predicted_max_px is the bound that the choice used; max_px in the table is the bound of each model; "
+      "verified_max_px is the largest error of fresh samples.",
       "choose_camera");
   examples::add_model_options(app, options);
-  examples::add_number(app, "--near-mm", options.near_mm, examples::positive_number, "nearest thing in the scene (mm)")
+  examples::add_number(app, "--near-mm", options.near_mm, examples::positive_number,
+                       "distance of the nearest object (mm)")
       ->required()
       ->default_str("");
   examples::add_number(app, "--far-mm", options.far_mm, examples::positive_length,
-                       "farthest thing in the scene (mm), or inf")
+                       "distance of the farthest object (mm), or inf")
       ->required()
       ->default_str("");
   examples::add_number(app, "--budget-px", options.budget_px, budget, "largest error of a ray (pixels)")
@@ -84,10 +86,10 @@ int main(int argc, char** argv) {
     }
     std::cout << lens.name() << '\n'
               << examples::conditions(lens, options) << "\n\n"
-              << petzval::name(choice.model) << ": rays off by at most " << examples::number(predicted, 3)
-              << " px as predicted, " << examples::number(verified, 3) << " px in fresh samples\n"
+              << petzval::name(choice.model) << ": error of rays at most " << examples::number(predicted, 3)
+              << " px predicted, " << examples::number(verified, 3) << " px on fresh samples\n"
               << examples::bullets(choice.reasons);
     if (!choice.not_needed.empty()) std::cout << "not needed:\n" << examples::bullets(choice.not_needed);
-    std::cout << "\nmax, pupil and exposure as bounds\n" << examples::to_text(rows);
+    std::cout << "\nmax, pupil and exposure are bounds\n" << examples::to_text(rows);
   });
 }

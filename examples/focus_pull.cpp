@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Focus over time: points with keyframes become a film position for every frame, as a table and a plot.
+// Focus over time: points with keyframes give a film position for every frame, as a table and a plot.
 //
 //   focus_pull data/lenses/double_gauss_100mm_f2_28deg.json --keys examples/scenes/rack.json --out out
 //   focus_pull --model thin --thin-focal-length-mm 50 --f-number 2 --keys keys.json --json --out out
@@ -54,7 +54,7 @@ struct Times {
   double from = infinity, to = -infinity;
 };
 
-/// From where the first point begins to count to where the last ceases to: its interval's ends, else its keys'.
+/// From the start of the first point to the end of the last: of its interval, or of its keys if that is unbounded.
 Times span_of(const std::vector<petzval::FocusPoint>& points) {
   Times times;
   for (const petzval::FocusPoint& p : points) {
@@ -114,7 +114,7 @@ class Pull {
     frame.rms_um = 1e3 * found.rms_mm;
   }
 
-  /// In focus on the axis, from the film: by rays for the real model. Infinite for a film that has nothing in focus.
+  /// The distance in focus on the axis, from the film; by rays for the real model. Infinite if nothing is in focus.
   double distance() const {
     if (lens_.exact) {
       const petzval::FocusOptions focus{.criterion = criterion(), .origin = petzval::DistanceOrigin::film};
@@ -125,7 +125,7 @@ class Pull {
     return real ? film_.z() - place.position.z : infinity;
   }
 
-  /// By the chief ray through the exit pupil, against a film on which infinity is in focus.
+  /// By the chief ray through the exit pupil, compared with a film focused at infinity.
   double breathing() const {
     if (lens_.exact) {
       return petzval::breathing(*lens_.lens, film_.z(), {.criterion = criterion()}).value_or(none);
@@ -137,7 +137,7 @@ class Pull {
   const examples::MovingLens& lens_;
   const std::vector<petzval::FocusPoint>& points_;
   std::optional<petzval::ImageRays> bundles_;
-  petzval::Film film_;  // of the frame before
+  petzval::Film film_;  // of the previous frame
 };
 
 std::vector<Frame> frames(const Options& options, const examples::MovingLens& lens,
@@ -201,7 +201,7 @@ std::string plot(const Options& options, const examples::MovingLens& lens,
   return petzval::focus_pull_figure(lens.title, remark, shown, std::vector<double>(keys.begin(), keys.end()));
 }
 
-/// A frame a second, and the last.
+/// One frame per second, and the last one.
 std::string to_text(const std::vector<Frame>& all, double frames_per_s) {
   const auto cell = [](double value, int digits) {
     const std::string text = std::isnan(value) ? "-" : number(value, digits);
@@ -226,21 +226,22 @@ int main(int argc, char** argv) {
   CLI::App app(
       "Moves the film for points of the scene that have keyframes, frame by frame.\n"
       "keys.json: [{\"from_s\": 0, \"until_s\": 10, \"keys\": [{\"time_s\": 0, \"position_mm\": [x, y, z], \"weight\": "
-      "1, \"blur_mm\": 0, \"at_infinity\": false}, ...]}, ...] in the lens frame, the scene at negative z; a point "
-      "counts within its interval.\n"
-      "Where a frame has no point to serve (no_targets), none within reach (unreachable) or no film was found "
-      "(not_converged), the film stays as it was; it begins at infinity. subject_distance_mm: in focus on the axis, "
-      "from the film.\n"
+      "1, \"blur_mm\": 0, \"at_infinity\": false}, ...]}, ...] in the lens frame, the scene at negative z; a point is "
+      "used within its interval.\n"
+      "The film starts at infinity focus. It keeps its place in a frame without points (no_targets), with points out "
+      "of "
+      "reach (unreachable) or without a solution (not_converged). subject_distance_mm: in focus on the axis, from the "
+      "film.\n"
       "Writes NAME_focus_pull.csv and NAME_focus_pull.svg into DIR.",
       "focus_pull");
   examples::add_movement_options(app, options);
-  app.add_option("--keys", options.keys_file, "the points and their keys")->type_name("FILE")->required();
-  app.add_option("--out", options.out_folder, "folder for table and plot")->type_name("DIR")->required();
-  app.add_option("--criterion", options.criterion, "what the real model makes least without --tilt: min_rms, min_max")
+  app.add_option("--keys", options.keys_file, "points and their keys")->type_name("FILE")->required();
+  app.add_option("--out", options.out_folder, "folder for the table and the plot")->type_name("DIR")->required();
+  app.add_option("--criterion", options.criterion, "criterion of the real model without --tilt: min_rms, min_max")
       ->check(CLI::IsMember({"min_rms", "min_max"}))
       ->capture_default_str();
   examples::add_number(app, "--frames-per-s", options.frames_per_s, examples::positive_number, "frames a second");
-  app.add_flag("--tilt", options.tilt, "tilt and swing the film too");
+  app.add_flag("--tilt", options.tilt, "also tilt and swing the film");
   app.add_flag("--json", options.json, "print one JSON object instead of text");
 
   return examples::run(app, argc, argv, [&] {

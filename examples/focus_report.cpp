@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the film belongs for several subject distances and criteria, how deep the field is there, and how the image
-// breathes.
+// Film position, depth of field and breathing for several subject distances and criteria of focus.
 //
 //   focus_report data/lenses/double_gauss_100mm_f2.0.json
 //   focus_report data/lenses/double_gauss_100mm_f2.0.json --json --distance-mm 700,2000,inf --criterion min_rms
@@ -33,7 +32,7 @@ using examples::Json;
 using petzval::FocusStatus;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double none = std::numeric_limits<double>::quiet_NaN();  // what does not exist
+constexpr double none = std::numeric_limits<double>::quiet_NaN();  // no value
 
 struct Options {
   std::string lens_file, origin = "front_vertex";
@@ -44,14 +43,14 @@ struct Options {
 };
 
 struct Row {
-  std::string criterion, refusal{};  ///< why the library would not compute it
+  std::string criterion, refusal{};  ///< the reason if the library refuses the row
   double distance = 0;
   petzval::FocusSolution focus{};
   double near = none, far = none, blur = none, breathing = none;
   FocusStatus depth = FocusStatus::unreachable;
 };
 
-/// What does not depend on the distance.
+/// Results that do not depend on the distance.
 struct Limits {
   std::string criterion;
   petzval::FocusSolution hyperfocal{.status = FocusStatus::unreachable}, nearest{.status = FocusStatus::unreachable};
@@ -63,7 +62,7 @@ struct Report {
   std::vector<Limits> limits;
 };
 
-/// As barrels are engraved, for a lens of 50 to 100 mm; others in proportion, to two digits.
+/// Distances as engraved on lenses of 50 to 100 mm; in proportion for others, rounded to two digits.
 std::vector<double> usual_distances(const petzval::Lens& lens) {
   const auto first = petzval::first_order(lens, 0, petzval::main_meridian(lens));
   std::vector<double> distances;
@@ -104,7 +103,8 @@ void solve(Row& row, const petzval::Lens& lens, const petzval::FocusOptions& foc
   if (depth) row.near = depth.near_distance, row.far = depth.far_distance;
 }
 
-/// What the lens refuses, a subject within its front or a field that does not see the subject's plane, costs the row.
+/// The message of a refusal (a subject inside the lens, a field that does not see the subject's plane), which costs one
+/// row only.
 template <class Work>
 std::string refusal(Work&& work) {
   try {
@@ -221,19 +221,21 @@ std::string to_text(const Report& report, const Options& options) {
 int main(int argc, char** argv) {
   Options options;
   CLI::App app(
-      "Reports, for subject distances and criteria of focus: where the film belongs, the blur of the subject there, "
-      "the depth of field, the hyperfocal distance, the nearest distance, and breathing (how much larger the image is "
-      "than at infinity focus).\n"
+      "Reports, for subject distances and criteria of focus: the film position, the blur of the subject there, the "
+      "depth "
+      "of field, the hyperfocal distance, the nearest distance, and breathing (growth of the image compared with focus "
+      "at "
+      "infinity).\n"
       "Criteria: thin (a thin lens of the same focal length), paraxial (the cardinal points), min_rms and min_max "
-      "(exact rays through the whole aperture: least RMS and least largest radius of the blur). A blur is a diameter: "
-      "of the paraxial cone, of the even disc of that RMS radius, twice the largest radius.\n"
-      "thin and paraxial look at the axis and the wavelength nearest to the d line (587.5618 nm) alone.",
+      "(exact rays through the whole aperture: least RMS and least largest radius of the blur). Blurs are diameters: "
+      "of the paraxial cone, of the uniform disc with that RMS radius, twice the largest radius.\n"
+      "thin and paraxial use the axis and the wavelength nearest to the d line (587.5618 nm) only.",
       "focus_report");
   app.add_option("LENS.json", options.lens_file, "lens prescription (JSON as in data/lenses)")->required();
   app.add_flag("--json", options.json,
-               "print an array of rows, one per criterion and distance; null stands for infinity, and for what does "
-               "not exist, as status and depth_status say (refused: message says why); blur_mm is the one asked for, "
-               "breathing a fraction");
+               "print an array of rows, one per criterion and distance; null is an infinite or absent value, explained "
+               "by status and depth_status (refused: by message); blur_mm is the value of --blur-mm, breathing a "
+               "fraction");
   examples::add_numbers(app, "--distance-mm", options.distance_mm, examples::positive_length,
                         "subject distances (mm), or inf")
       ->default_str("10, 20, 50, 100 focal lengths, rounded, and inf");
@@ -241,7 +243,7 @@ int main(int argc, char** argv) {
       ->delimiter(',')
       ->check(CLI::IsMember(examples::names(examples::focus_criteria)))
       ->capture_default_str();
-  app.add_option("--distance-from", options.origin, "where distances begin")
+  app.add_option("--distance-from", options.origin, "origin of distances")
       ->check(CLI::IsMember(examples::names(examples::distance_origins)))
       ->capture_default_str();
   examples::add_number(app, "--blur-mm", options.blur_mm, examples::positive_number,
@@ -250,9 +252,9 @@ int main(int argc, char** argv) {
                        "stop the lens down (by exact rays)")
       ->default_str("wide open");
   examples::add_numbers(app, "--field-deg", options.field_deg, examples::finite_number,
-                        "fields that count in min_rms and min_max, with the same weight (degrees)");
+                        "fields of min_rms and min_max, of equal weight (degrees)");
   examples::add_numbers(app, "--wavelengths-nm", options.wavelengths_nm, examples::positive_number,
-                        "wavelengths that count in min_rms and min_max, with the same weight (nm)");
+                        "wavelengths of min_rms and min_max, of equal weight (nm)");
 
   return examples::run(app, argc, argv, [&] {
     for (const std::string& criterion : options.criteria) {

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
-# Renders the gallery with programs that are built: bokeh after figure 7 of Wu et al. 2010, spot diagrams, reports of
-# twelve lenses, camera rays, tilted films, a focus pull, and index.html.
+# Renders the gallery with the example programs: bokeh after figure 7 of Wu et al. 2010, spot diagrams, reports of twelve
+# lenses, camera rays, tilted films, a focus pull, and index.html.
 #
 #   sh examples/gallery.sh PROGRAMS OUT        (examples/run.sh calls it with build/examples and out)
 set -eu
@@ -19,7 +19,7 @@ echo "== Figure 7 of Wu et al. 2010 (1/8)"
 "$programs/wu_figure7" --criterion min_rms --out "$out/wu_figure7.png"
 "$programs/wu_figure7" --criterion paraxial --out "$out/wu_figure7_paraxial.png"
 
-echo "== What the paper says about it, by number (2/8)"
+echo "== The statements of the paper, by number (2/8)"
 "$programs/wu_statements" --html "$out/wu_statements.html" > "$out/wu_statements.txt"
 echo "$out/wu_statements.txt"
 
@@ -60,7 +60,7 @@ for model in pinhole thin thin_two_disc thick polynomial_3 polynomial_5 polynomi
 done
 echo "$out/camera_rays"
 
-echo "== What accuracy costs, and the model that a scene allows (7/8)"
+echo "== Accuracy and speed of the models, and the model for a scene (7/8)"
 "$programs/accuracy_speed" "$lenses/double_gauss_100mm_f2_28deg.json" --f-number 2 --out "$out/models" \
   > "$out/accuracy_speed.txt"
 "$programs/choose_camera" "$lenses/double_gauss_100mm_f2_28deg.json" --f-number 2 --near-mm 2000 --far-mm inf \
@@ -68,7 +68,7 @@ echo "== What accuracy costs, and the model that a scene allows (7/8)"
 echo "$out/accuracy_speed.txt"
 echo "$out/choose_camera.txt"
 
-echo "== Films that are tilted through points, and a focus pull (8/8)"
+echo "== Films tilted to points, and a focus pull (8/8)"
 # tilted FOLDER SCENE OPTION...
 tilted() {
   folder=$out/tilt/$1

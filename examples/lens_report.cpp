@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Prints what a lens is to first order, its pupils and f-numbers, and what a careful reader would ask about its table;
-// with --out it draws the lens, its spots, pupils, focus and brightness too, and makes a page of them.
+// Prints the first-order data of a lens, its pupils and f-numbers, and the doubtful entries of its prescription. With
+// --out it draws the lens, its spots, pupils, focus and brightness, and makes a page of them.
 //
 //   lens_report data/lenses/double_gauss_100mm_f1.35.json
 //   lens_report data/lenses/double_gauss_100mm_f1.35.json --json --wavelength-nm 486.1327
@@ -30,14 +30,14 @@ struct Options {
   double wavelength_nm = petzval::d_line_nm;
   bool json = false;
   double f_number = 0;    // 0: wide open
-  double subject_mm = 0;  // 0: at infinity, with the film where the table has it
+  double subject_mm = 0;  // 0: at infinity, with the film of the prescription
 #ifdef EXAMPLES_WITH_FIGURES
   std::string out_folder;
   std::vector<double> field_deg;
 #endif
 };
 
-/// A lens stopped down and focused as asked for.
+/// The lens, stopped down and focused.
 petzval::Lens set(petzval::Lens lens, const Options& options) {
   if (options.f_number > 0) lens = petzval::with_f_number(lens, options.f_number);
   return options.subject_mm > 0 ? petzval::with_focus(lens, options.subject_mm) : lens;
@@ -50,7 +50,7 @@ examples::LoadedLens load(const Options& options) {
 }
 
 #ifdef EXAMPLES_WITH_FIGURES
-/// F, d and C where the media's colours are known and none was asked for.
+/// F, d and C if the dispersion is known and no wavelength is given.
 std::vector<double> figure_wavelengths(const Options& options, const petzval::Lens& lens) {
   if (options.wavelength_nm != petzval::d_line_nm || lens.dispersion() == petzval::Dispersion::none) {
     return {options.wavelength_nm};
@@ -81,16 +81,16 @@ void write_page(const examples::Report& report, const Options& options) {
 int main(int argc, char** argv) {
   Options options;
   CLI::App app(
-      "Reports the first-order data, pupils, f-numbers and lint findings of a lens; of a lens with cylinders in both "
-      "sections. Lengths in mm; z from the first vertex, towards the film. Findings are no failure.\n"
+      "Reports the first-order data, pupils, f-numbers and lint findings of a lens, for a lens with cylinders in both "
+      "sections. Lengths in mm; z from the first vertex, towards the film. Findings are not failures.\n"
       "With --out: writes LENS_layout.svg (and LENS_layout_x.svg of a lens with cylinders), LENS_spots.svg, "
       "LENS_footprints.svg, LENS_focus.svg, LENS_illumination.svg and LENS.html, a page with all of them, to DIR, and "
-      "prints the paths instead.",
+      "prints their paths instead.",
       "lens_report");
   app.add_option("LENS.json", options.lens_file, "lens prescription (JSON as in data/lenses)")->required();
-  app.add_flag("--json", options.json, "print one JSON object; null stands for infinite and for what the lens has not");
+  app.add_flag("--json", options.json, "print one JSON object; null is an infinite or absent value");
   examples::add_number(app, "--wavelength-nm", options.wavelength_nm, examples::positive_number,
-                       "wavelength (nm); figures show F, d and C where it is not given");
+                       "wavelength (nm); without it figures show F, d and C");
   examples::add_number(app, "--f-number", options.f_number, examples::positive_number,
                        "stop the lens down to this f-number")
       ->default_str("wide open");
@@ -98,7 +98,7 @@ int main(int argc, char** argv) {
       app, "--subject-distance-mm", options.subject_mm, examples::positive_length,
       "put the film at the paraxial image of a subject at this distance from the front vertex (mm), or "
       "inf")
-      ->default_str("at infinity, the film where the table has it");
+      ->default_str("infinity, with the film of the prescription");
 #ifdef EXAMPLES_WITH_FIGURES
   auto* out = app.add_option("--out", options.out_folder, "draw figures and a page in this folder")->type_name("DIR");
   examples::add_numbers(app, "--field-deg", options.field_deg, examples::finite_number,

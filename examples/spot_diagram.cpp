@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Spot diagrams: where the rays of a point meet the film, for several field angles and wavelengths.
+// Spot diagrams: the hits of a point's rays on the film, for several field angles and wavelengths.
 //
 //   spot_diagram data/lenses/cooke_triplet_50mm_f5.json --field-deg 0,14,20 --wavelengths-nm 486.1,587.6,656.3 --out
 //   out
@@ -22,7 +22,7 @@ namespace {
 
 using examples::Json;
 
-/// A kilometre, more than any camera has; from 1e150 mm on the squares of hits overflow.
+/// A kilometre. Beyond 1e150 mm the squares of hits would overflow.
 constexpr examples::Range film_shift{-1e6, 1e6, "a number from -1000000 to 1000000"};
 
 struct Options {
@@ -38,7 +38,7 @@ std::vector<petzval::Spot> spots(const petzval::Lens& lens, const Options& optio
   return petzval::spot_diagram(lens, -options.subject_mm, fields, options.samples);
 }
 
-/// Spots come field by field; the angle as it was given, not as it comes back from radians.
+/// The field of a spot as given, without a conversion to radians and back. Spots are ordered by field.
 double field_deg(const Options& options, std::size_t spot) {
   return options.field_deg[spot / options.wavelengths_nm.size()];
 }
@@ -60,7 +60,7 @@ Json to_json(const std::vector<petzval::Spot>& all, const petzval::Lens& lens, c
   Json rows = Json::array();
   for (std::size_t i = 0; i < all.size(); ++i) {
     const petzval::Spot& spot = all[i];
-    const bool empty = spot.hits.x.empty();  // nothing gets through: no size either
+    const bool empty = spot.hits.x.empty();  // no ray passes: no size
     rows.push_back({{"field_deg", field_deg(options, i)},
                     {"wavelength_nm", options.wavelengths_nm[spot.wavelength]},
                     {"chief_ray_height_mm", or_null(spot.chief_ray_height)},
@@ -84,11 +84,10 @@ int main(int argc, char** argv) {
       "Draws spot diagrams. The film stands at the paraxial image of the subject at the primary wavelength (the "
       "one nearest to the d line, 587.5618 nm), plus --defocus-mm.\n"
       "Writes to DIR, and prints the paths: LENS_spots.svg, LENS_spots.csv (the hits: "
-      "field_deg,wavelength_nm,x_mm,y_mm) and "
-      "LENS_spots.json (a row per field and wavelength: height of the chief ray, aimed at the centre of the stop; "
-      "illumination of the film relative to the axis; RMS and largest radius about the centroid; null where there is "
-      "no "
-      "such ray).",
+      "field_deg,wavelength_nm,x_mm,y_mm) and LENS_spots.json (one row per field and wavelength: height of the chief "
+      "ray "
+      "through the centre of the stop; illumination of the film relative to the axis; RMS and largest radius about the "
+      "centroid; null if no such ray exists).",
       "spot_diagram");
   app.add_option("LENS.json", options.lens_file, "lens prescription (JSON as in data/lenses)")->required();
   examples::add_numbers(app, "--field-deg", options.field_deg, examples::finite_number,

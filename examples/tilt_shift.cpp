@@ -46,7 +46,7 @@ struct Options : examples::MovementOptions {
   bool robust = false, json = false;
 };
 
-/// A point of the file and what became of it.
+/// A point of the file and its results.
 struct Point {
   petzval::FocusTarget target;
   bool in_picture = true;
@@ -54,7 +54,7 @@ struct Point {
   double before_mm = none, predicted_mm = none, traced_mm = none;
 
   bool serves() const { return in_picture && use == TargetUse::used; }
-  /// Whether it shows where the scene is: an outlier does not.
+  /// Whether it lies on the scene: an outlier does not.
   bool shows() const { return in_picture && (use == TargetUse::used || use == TargetUse::no_weight); }
   std::string use_name() const { return in_picture ? std::string(petzval::name(use)) : "outside_picture"; }
   std::string use_in_words() const { return in_picture ? examples::in_words(use) : "left out: outside the picture"; }
@@ -84,7 +84,7 @@ std::vector<petzval::FocusTarget> targets(const std::vector<Point>& points) {
   return result;
 }
 
-/// Why nothing can be done, in one line: the first reason stands for the others.
+/// Throws with the reason of the first point that cannot serve.
 [[noreturn]] void give_up(const Options& options, const std::vector<Point>& points) {
   const auto first = std::ranges::find_if_not(points, &Point::serves);
   const auto which = std::to_string(first - points.begin() + 1);
@@ -92,8 +92,7 @@ std::vector<petzval::FocusTarget> targets(const std::vector<Point>& points) {
                        first->use_in_words() + "), wanted one or more in front of the lens, with a weight");
 }
 
-/// The upright film for the points that are in the picture; where no points are asked for, that of the lens, or of
-/// infinity without one.
+/// The upright film for the points in the picture. Without points: the film of the lens, or focus at infinity.
 petzval::Autofocus focused(const Options& options, Result& result) {
   if (result.points.empty()) {
     petzval::Film film = result.lens.film;
@@ -110,7 +109,7 @@ petzval::Autofocus focused(const Options& options, Result& result) {
     p.before_mm = focus.blurs[k++].blur_mm;
   }
   if (focus.status == petzval::Autofocus::Status::no_targets) give_up(options, result.points);
-  if (!focus) throw petzval::Error(options.points_file + ": no film behind the lens has these points in focus");
+  if (!focus) throw petzval::Error(options.points_file + ": no film behind the lens can focus on these points");
   return focus;
 }
 
@@ -154,7 +153,7 @@ Result solve(const Options& options) {
                            number(result.lens.film.height_mm) +
                            " mm, would touch the lens, wanted points farther away or a smaller film");
     case TiltFit::Status::not_converged:
-      throw petzval::Error(options.points_file + ": no film was found that serves these points");
+      throw petzval::Error(options.points_file + ": found no film that serves these points");
     default: break;
   }
   if (result.lens.lens) {
@@ -171,19 +170,19 @@ Result solve(const Options& options) {
 std::string status_in_words(const Result& result, const Options& options) {
   const std::string limit = number(options.max_tilt_deg) + " degrees";
   if (result.after.status == TiltFit::Status::limited) {
-    return "limited: the film may lean by " + limit +
-           " only, and less across points that nearly lie on a line; within that this serves the points best";
+    return "limited: the tilt may be at most " + limit +
+           ", less across points that nearly lie on a line; this is the best film within the limit";
   }
-  if (result.after.status == TiltFit::Status::solved) return "solved: the points fix the plane of focus";
+  if (result.after.status == TiltFit::Status::solved) return "solved: the points determine the plane of focus";
   if (result.after.status == TiltFit::Status::no_targets) return "no targets: without points the film stays upright";
   if (result.after.rank == petzval::PlaneRank::point) {
-    return "least tilt: one place of the picture fixes a distance and no slope, so the film stays upright";
+    return "least tilt: one place in the picture determines a distance but no slope, so the film stays upright";
   }
-  return "least tilt: points on one line of the picture fix no slope across it; of all planes of focus this one tilts "
-         "the film least";
+  return "least tilt: points on one line of the picture determine no slope across it; this plane of focus tilts the "
+         "film least";
 }
 
-/// What rounding leaves of 0 is 0 for people.
+/// Rounding errors of 0 are shown as 0.
 double tidy(double value) { return std::abs(value) < 1e-9 ? 0.0 : value; }
 
 std::string film_in_words(const petzval::Film& film) {
@@ -289,7 +288,7 @@ std::string side_view(const Result& result) {
                                .points = points});
 }
 
-/// The pictures before and after, in one scale; none without points that show where the scene is.
+/// The pictures before and after, with one scale; none if no point lies on the scene.
 std::vector<petzval::Rgb8Image> blur_pictures(const Result& result) {
   if (std::ranges::none_of(result.points, &Point::shows)) return {};
   const petzval::IdealLens& ideal = result.lens.ideal;
@@ -304,12 +303,12 @@ std::vector<petzval::Rgb8Image> blur_pictures(const Result& result) {
 
   examples::BlurSheet sheet{.scale_mm = examples::scale_of(maps), .sharp_mm = sharp_mm(result.lens.film)};
   sheet.subtitle = result.lens.title + ", " + result.lens.conditions + ", film " + number(result.lens.film.width_mm) +
-                   " x " + number(result.lens.film.height_mm) + " mm; the picture the right way up";
+                   " x " + number(result.lens.film.height_mm) + " mm; picture upright";
   sheet.notes = {"Signed diameter of the blur on the film" +
-                     std::string(rays ? ": of the even disc with the RMS radius of the traced rays." : ".") +
-                     " Thin lines: " + number(1e3 * sheet.sharp_mm, 3) + " \u00b5m. Both pictures have one scale.",
-                 "Circles: the focus points, and the blur of each (grey: takes no part). Between them 1/distance is "
-                 "interpolated."};
+                     std::string(rays ? ": of the uniform disc with the RMS radius of the traced rays." : ".") +
+                     " Thin lines: " + number(1e3 * sheet.sharp_mm, 3) + " \u00b5m. Both pictures have the same scale.",
+                 "Circles: the focus points and their blurs (grey: not used). 1/distance is interpolated between "
+                 "them."};
   const bool upright = !result.after.film.tilted();
   const std::string titles[]{"Before: upright film, focused on the points",
                              "After: film " + film_in_words(result.after.film)};
@@ -331,22 +330,25 @@ std::vector<petzval::Rgb8Image> blur_pictures(const Result& result) {
 int main(int argc, char** argv) {
   Options options;
   CLI::App app(
-      "Tilts and swings the film so that points of the scene are sharp (or as blurred as wanted), by least squares of "
-      "their blurs.\n"
+      "Tilts and swings the film so that points of the scene are sharp (or have a given blur), by least squares of "
+      "their "
+      "blurs.\n"
       "points.json: [{\"position_mm\": [x, y, z], \"weight\": 1, \"blur_mm\": 0, \"at_infinity\": false}, ...] in the "
       "lens frame, the scene at negative z; at infinity the position is a direction. Blurs are signed diameters on the "
       "film: negative nearer than the plane of focus, positive beyond it.\n"
-      "predicted: by the model that was fitted; traced: by 4096 exact rays of each point, whatever the model (none "
-      "without LENS.json). Plane and lines of the real model are those of its cardinal points. Points that do not fix "
-      "a plane give the one of least tilt, and the status says so.\n"
+      "predicted: by the fitted model; traced: by 4096 exact rays of each point for every model (needs LENS.json). "
+      "Plane "
+      "and lines of the real model are those of its cardinal points. If the points do not determine a plane, the "
+      "result "
+      "is the one of least tilt, and status is least_tilt.\n"
       "Writes NAME_side.svg, NAME_before.png and NAME_after.png into DIR.",
       "tilt_shift");
   examples::add_movement_options(app, options);
   app.add_option("--points", options.points_file, "the points to focus on")->type_name("FILE")->required();
   app.add_option("--out", options.out_folder, "folder for the pictures")->type_name("DIR")->required();
   constexpr examples::Range angle{0, 89, "a number of degrees from 0 to 89"};
-  examples::add_number(app, "--max-tilt-deg", options.max_tilt_deg, angle, "how far the film may lean");
-  app.add_flag("--robust", options.robust, "points that fit no plane with most of the others lose their weight");
+  examples::add_number(app, "--max-tilt-deg", options.max_tilt_deg, angle, "largest tilt of the film (degrees)");
+  app.add_flag("--robust", options.robust, "ignore outliers: points far from the plane of most others get no weight");
   app.add_flag("--json", options.json, "print one JSON object instead of text");
 
   return examples::run(app, argc, argv, [&] {

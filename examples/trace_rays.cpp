@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Traces rays from a CSV file through a lens and writes where they ended, and why.
+// Traces rays from a CSV file through a lens and writes where and why each ended.
 //
 //   printf 'x_mm,y_mm,z_mm,dx,dy,dz\n0,10,-50,0,0,1\n' > rays.csv
 //   trace_rays data/lenses/double_gauss_100mm_f1.35.json --rays rays.csv --out traced.csv
@@ -25,10 +25,10 @@ namespace {
 
 using examples::RayTable;
 
-/// Directions are made unit vectors in double, whatever their length was.
+/// Makes directions of any length unit vectors in double.
 void normalise(RayTable& rays) {
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    // Through a power of two, so that neither tiny nor huge components lose digits.
+    // Scaled by a power of two first, so that tiny and huge components lose no digits.
     const double largest = std::max({std::abs(rays.dx[i]), std::abs(rays.dy[i]), std::abs(rays.dz[i])});
     const int exponent = std::ilogb(largest);
     const double x = std::scalbn(rays.dx[i], -exponent);
@@ -83,9 +83,8 @@ int main(int argc, char** argv) {
   bool ignore_apertures = false;
 
   CLI::App app(
-      "Traces rays through a lens, surface by surface. All lengths in mm, in the lens frame: origin at the first "
-      "vertex, "
-      "light runs towards +z.",
+      "Traces rays through a lens, surface by surface. Lengths in mm, in the lens frame: origin at the first vertex, "
+      "light travels towards +z.",
       "trace_rays");
   app.add_option("LENS.json", lens_file, "lens prescription (JSON as in data/lenses)")->required();
   app.add_option("--rays", rays_file, "CSV with the columns x_mm,y_mm,z_mm,dx,dy,dz; directions of any length")
@@ -93,19 +92,19 @@ int main(int argc, char** argv) {
       ->type_name("CSV");
   app.add_option(
          "--out", out_file,
-         "CSV to write, one line per ray in the same order: x_mm,y_mm,z_mm,dx,dy,dz,fate,surface; the point is the "
-         "hit on the last surface reached, surfaces count from 0, 17 digits. After missed_surface and no_convergence "
-         "that is the surface before the one named, and where the first was missed the ray's own origin")
+         "CSV to write, one line per ray in the same order: x_mm,y_mm,z_mm,dx,dy,dz,fate,surface, with 17 digits. The "
+         "point is the hit on the last surface that the ray reached; surfaces count from 0. After missed_surface and "
+         "no_convergence it is the hit on the surface before, or the ray's origin if there is none")
       ->required()
       ->type_name("CSV");
   app.add_option("--precision", precision, "arithmetic of the trace")
       ->check(CLI::IsMember({"float", "double"}))
       ->capture_default_str();
-  app.add_option("--travel", travel, "way of the light through the lens")
+  app.add_option("--travel", travel, "direction of travel through the lens")
       ->check(CLI::IsMember({"to_film", "to_scene"}))
       ->capture_default_str();
   examples::add_number(app, "--wavelength-nm", wavelength_nm, examples::positive_number, "wavelength (nm)");
-  app.add_flag("--ignore-apertures", ignore_apertures, "let rays pass outside the clear diameters");
+  app.add_flag("--ignore-apertures", ignore_apertures, "rays pass outside the clear diameters too");
 
   return examples::run(app, argc, argv, [&] {
     const auto loaded = examples::load_lens(lens_file, std::array{wavelength_nm});

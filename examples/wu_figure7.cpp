@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Repeats figure 7 of Wu et al. 2010, "Realistic rendering of bokeh effect based on optical aberrations": a point light
-// at 1000 mm through three double Gauss lenses (and a fourth beside them), focused at five distances.
+// at 1000 mm through three double Gauss lenses and a fourth one, focused at five distances.
 //
 //   wu_figure7 --out wu_figure7.png
 #include <algorithm>
@@ -54,7 +54,7 @@ int main(int argc, char** argv) {
       "Repeats figure 7 of Wu et al. 2010: a point light at 1000 mm from the front vertex, on axis, at the d line, "
       "through four double Gauss lenses focused at 800 to 1200 mm. One PNG.",
       "wu_figure7");
-  app.add_option("--criterion", criterion, "what in focus means: least RMS blur on axis, or cardinal points")
+  app.add_option("--criterion", criterion, "criterion of focus: least RMS blur on axis, or cardinal points")
       ->check(CLI::IsMember({"min_rms", "paraxial"}))
       ->capture_default_str();
   examples::add_samples(app, samples);

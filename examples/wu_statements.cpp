@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Holds what Wu et al. 2010 say about their figure 7 against radial profiles, by number: for both meanings of "in
-// focus" and both origins of "distance from the lens".
+// Compares the statements of Wu et al. 2010 about their figure 7 with radial profiles, for two meanings of "in focus"
+// and two origins of "distance from the lens".
 //
 //   wu_statements --html wu_statements.html
 #include <array>
@@ -56,7 +56,7 @@ std::vector<Verdict> verdicts(const examples::WuRow& wu, const petzval::Lens& le
                    .shape = shape});
     if (row[i].rms_radius < row[sharpest].rms_radius) sharpest = i;
   }
-  // Only the picture that is said to be in focus is judged by its sharpness.
+  // Sharpness decides only about the picture that the paper calls in focus.
   for (std::size_t i = 0; i < row.size(); ++i) {
     if (row[i].printed == Look::point && i == sharpest) row[i].found = Look::point;
     row[i].agrees = row[i].found == row[i].printed;
@@ -128,7 +128,7 @@ std::string to_text(const std::vector<Verdict>& all) {
   return text.str();
 }
 
-/// A table for the gallery: a line a statement, the four readings side by side.
+/// A table for the gallery: one line per statement, the four readings side by side.
 std::string to_html(const std::vector<Verdict>& all) {
   std::ostringstream html;
   html << "<table class=\"statements\">\n<thead><tr><th rowspan=\"2\">lens</th><th rowspan=\"2\">focus</th>"
@@ -160,18 +160,18 @@ int main(int argc, char** argv) {
   std::string html_file;
   std::uint32_t samples = 1u << 18;
   CLI::App app(
-      "Checks the statements of Wu et al. 2010 about their figure 7 by radial profiles, and prints a table.\n"
-      "Irradiances are relative to the mean of the disc: core, within 0.2 of its radius; brightest of ten rings, and "
-      "where; the "
-      "darkest ring inside it; deviation, RMS over the area. Uniform: deviation below 0.25. Ring: the brightest ring "
-      "lies in "
-      "the outer half; with a slight core where the core is 1.5 times as bright as the darkest ring. Core: the "
-      "brightest ring "
-      "lies in the inner half; with a dark centre where the innermost tenth is below 0.95 of it. Sharpest: least RMS "
-      "radius.",
+      "Compares the statements of Wu et al. 2010 about their figure 7 with radial profiles, and prints a table.\n"
+      "Irradiances are relative to the mean of the disc: of the core (within 0.2 of the radius), of the brightest of "
+      "ten "
+      "rings, of the darkest ring inside that; deviation: RMS over the area. Uniform: the deviation is below 0.25. "
+      "Ring: "
+      "the brightest ring lies in the outer half; with a slight core if the core is 1.5 times as bright as the darkest "
+      "ring. Core: the brightest ring lies in the inner half; with a dark centre if the innermost tenth is below 0.95 "
+      "of "
+      "it. Sharpest: least RMS radius.",
       "wu_statements");
   examples::add_samples(app, samples);
-  app.add_option("--html", html_file, "write the table as HTML, too")->type_name("FILE");
+  app.add_option("--html", html_file, "also write the table as HTML")->type_name("FILE");
 
   return examples::run(app, argc, argv, [&] {
     const std::vector<Verdict> all = all_verdicts(samples);

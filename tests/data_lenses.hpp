@@ -17,7 +17,7 @@ inline Prescription data_prescription(const std::string& id) {
 
 inline Lens data_lens(const std::string& id) { return compile(data_prescription(id)); }
 
-/// A biconvex lens of 100 mm behind a plane stop, so that the stop is the entrance pupil and nothing else clips.
+/// A biconvex 100 mm lens behind its stop: the stop is the entrance pupil, and nothing else clips.
 inline Lens front_stop_lens(double stop_semi_diameter = 2) {
   Prescription p;
   p.name = "front stop";

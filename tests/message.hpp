@@ -7,7 +7,7 @@
 
 namespace petzval::testing {
 
-/// What the Error says that `work` throws; any other exception gets through and fails the test.
+/// The message of the Error that `work` throws. Any other exception fails the test.
 std::string message(const auto& work) {
   try {
     work();

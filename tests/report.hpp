@@ -7,8 +7,8 @@
 
 #include "petzval/core/text.hpp"
 
-/// Cells of the tables that `sh tests/run.sh --report` prints: the worst that a test met. They travel as properties of
-/// the test in the XML of GoogleTest; cells of one row meet there by its name, whatever tests they come from.
+/// Cells of the tables that `sh tests/run.sh --report` prints: the worst case of a test. They are properties of the
+/// test in the XML of GoogleTest. Cells with the name of one row may come from several tests.
 namespace testing_report {
 
 template <class T>
@@ -16,7 +16,7 @@ inline constexpr const char* one_ray = sizeof(T) == 4 ? "float" : "double";
 template <class T>
 inline constexpr const char* batch = sizeof(T) == 4 ? "batch float" : "batch double";
 
-/// row, column: no " | " in them. bound: with its unit, which is that of the value too.
+/// row, column: without " | ". bound: with the unit of the value.
 inline void put(const std::string& row, const std::string& column, const std::string& value, const std::string& bound) {
   testing::Test::RecordProperty(row + " | " + column + " | " + bound, value);
 }

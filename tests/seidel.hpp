@@ -9,12 +9,12 @@
 
 namespace petzval::testing {
 
-/// Seidel's sums of a lens of revolution for an object at infinity: spherical aberration, coma, astigmatism, Petzval
+/// Seidel sums of a lens of revolution for an object at infinity: spherical aberration, coma, astigmatism, Petzval
 /// and distortion, of a marginal ray that enters at height 1 and a chief ray of slope 1 through (0, 0, pupil_z).
 ///
-/// From Welford, Aberrations of Optical Systems: A = n (y c + u), H = n (u ybar - ubar y); the sum of distortion is
-/// rearranged so that it does not divide by A. What an asphere has beyond its sphere counts as G r^4. Indices and
-/// thicknesses are signed, which takes in mirrors.
+/// From Welford, Aberrations of Optical Systems: A = n (y c + u), H = n (u ybar - ubar y). The sum of distortion is
+/// rearranged to avoid a division by A. An asphere is its sphere plus G r^4. Indices and thicknesses are signed, which
+/// covers mirrors.
 struct SeidelSums {
   long double s1 = 0, s2 = 0, s3 = 0, s4 = 0, s5 = 0;
   long double image_z = 0;       ///< paraxial focus, lens frame

@@ -24,8 +24,8 @@ double ideal_blur(const petzval::Film& film, const PointScene& scene, const petz
   return image ? petzval::signed_blur(*image, film) : none;
 }
 
-/// The rays that meet the film about a place of the picture come from nearly where the ideal lens says. beside: how far
-/// from the place to aim for that, as found for the neighbour, and then for this one; it changes slowly.
+/// The blur of the scene point whose rays meet the film about a place of the picture. The ideal lens gives nearly that
+/// point. beside: the correction of the place, in from the neighbour, out for this place; it changes slowly.
 double exact_blur(const petzval::Film& film, const PointScene& scene, const petzval::ImageRays& lens, double x,
                   double y, petzval::FilmPoint& beside) {
   const petzval::FilmPoint wanted = film.point(x, y);
@@ -41,8 +41,8 @@ double exact_blur(const petzval::Film& film, const PointScene& scene, const petz
   return result;
 }
 
-/// Between the nodes of a grid. The size of a blur is interpolated without its sign: a real lens's is not 0 where that
-/// changes.
+/// Interpolates between the nodes of a grid. The size is interpolated without its sign: the blur of a real lens is not
+/// 0 where its sign changes.
 double between(const std::vector<double>& nodes, int columns, double x, double y) {
   const int i = static_cast<int>(x), j = static_cast<int>(y);
   const double u = x - i, v = y - j;
@@ -69,7 +69,7 @@ petzval::Film with_pixels(petzval::Film film, int longer_side) {
 
 BlurMap blur_map(const petzval::Film& film, const PointScene& scene, const petzval::IdealLens& lens,
                  const petzval::ImageRays* exact, int threads) {
-  constexpr int step = 8;  // pixels between nodes, from the corner to beyond the last pixel
+  constexpr int step = 8;  // pixels between nodes; the last node lies beyond the last pixel
   const int width = film.columns, height = film.rows, columns = width / step + 2, rows = height / step + 2;
   std::vector<double> nodes(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows), none);
   petzval::parallel_for(nodes.size(), static_cast<std::size_t>(columns), threads, [&](std::size_t begin, std::size_t) {

@@ -13,28 +13,27 @@
 
 namespace examples {
 
-/// Signed diameters of blurs over a picture, the right way up: rows from the top. NaN where no light comes.
+/// Signed diameters of blurs over an upright picture, rows from the top. NaN: no light.
 struct BlurMap {
   int width = 0, height = 0;
   std::vector<double> diameter_mm;
 };
 
-/// The film with so many square pixels along its longer side.
+/// The film with a number of square pixels along its longer side.
 petzval::Film with_pixels(petzval::Film film, int longer_side = 1080);
 
-/// One value for each pixel of the film: by the ideal lens, or (with exact) by bundles of rays; every 8 pixels,
-/// interpolated between. The result does not depend on the number of threads.
+/// A blur for each pixel of the film, by the ideal lens or (with exact) by bundles of rays, computed at every 8th pixel
+/// and interpolated. The result does not depend on the number of threads.
 BlurMap blur_map(const petzval::Film& film, const PointScene& scene, const petzval::IdealLens& lens,
                  const petzval::ImageRays* exact, int threads);
 
-/// The blur that a scale should reach: 1, 2 or 5 times a power of ten, so that all but a hundredth of the maps lies
-/// within.
+/// The end of a scale: 1, 2 or 5 times a power of ten that 99 % of the maps do not exceed.
 double scale_of(std::span<const BlurMap> maps);
 
 /// A focus point in the picture.
 struct MarkedPoint {
   std::optional<petzval::FilmPoint> where;
-  double blur_mm = 0;  ///< NaN: none
+  double blur_mm = 0;  ///< NaN: unknown
   bool used = true;
 };
 
@@ -46,8 +45,8 @@ struct BlurSheet {
   std::vector<MarkedPoint> points = {};
 };
 
-/// The map in colour with its scale, points and captions: blue is nearer than the plane of focus, red beyond it, white
-/// sharp, grey without light.
+/// The map in colour with its scale, points and captions. Blue: nearer than the plane of focus; red: beyond it; white:
+/// sharp; grey: no light.
 petzval::Rgb8Image draw_blur_sheet(const BlurMap& map, const petzval::Film& film, const BlurSheet& sheet);
 
 }  // namespace examples

@@ -14,7 +14,7 @@
 namespace examples {
 namespace {
 
-/// In front of all of the first surface, where it bulges forward too.
+/// Whether z lies in front of the whole first surface, also of one that bulges forward.
 bool in_front(const petzval::Lens& lens, double z) {
   try {
     petzval::PupilPlane(lens, {.z = z});
@@ -24,7 +24,7 @@ bool in_front(const petzval::Lens& lens, double z) {
   }
 }
 
-/// Refuses a light that is not in front of the lens, and says in terms of its distance where it may stand.
+/// Refuses a light that is not in front of the lens and names the least distance.
 void check_light(const petzval::Lens& lens, const BokehSetup& setup, double origin_z) {
   if (in_front(lens, origin_z - setup.light_mm)) return;
   petzval::PupilPlane(lens, {.z = -std::numeric_limits<double>::infinity()});  // refuses a lens without fields
@@ -88,10 +88,9 @@ Tile bokeh_tile(double focus_mm, const petzval::PointImage& image) {
 
 std::vector<std::string> bokeh_notes() {
   return {
-      "Radius: largest hit distance from the centroid. Film scale is the same along a row; brightness is not: each "
-      "tile is exposed for itself.",
-      "White: the 99th percentile of its lit pixels, as a share of the light that the entrance pupil takes in, per mm² "
-      "of film."};
+      "Radius: largest distance of a hit from the centroid. Tiles of a row have the same scale of film and their own "
+      "exposure.",
+      "White: the 99th percentile of the lit pixels, as a share of the light in the entrance pupil, per mm² of film."};
 }
 
 }  // namespace examples

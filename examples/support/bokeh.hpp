@@ -13,33 +13,31 @@
 
 namespace examples {
 
-/// A point light and the way in which the lens is focused elsewhere.
+/// A point light and how the lens is focused.
 struct BokehSetup {
-  double light_mm = 1000;  ///< distance of the light, may be infinite; from `origin`, as the focus distance
+  double light_mm = 1000;  ///< distance of the light from `origin`, may be infinite
   petzval::DistanceOrigin origin = petzval::DistanceOrigin::front_vertex;
   petzval::FocusCriterion criterion = petzval::FocusCriterion::paraxial;
   double field_rad = 0;
 };
 
-/// The lens with its film where the focus distance puts it, and the light before it.
+/// The focused lens and the light in front of it.
 struct BokehScene {
   petzval::Lens lens;
   petzval::FieldPoint light;
 };
 
-/// Focuses at the primary wavelength. Throws petzval::Error for a focus out of reach and a light that is not in front
-/// of the lens.
+/// Focuses at the primary wavelength. Throws petzval::Error for a focus out of reach and for a light that is not in
+/// front of the lens.
 BokehScene focused_scene(const petzval::Lens& lens, double focus_mm, const BokehSetup& setup);
 
-/// The picture of a PSF, linear, in the units of petzval::render; several wavelengths are weighted to RGB by the CIE
-/// 1931 functions.
+/// The linear image of a PSF, in the units of petzval::render. The CIE 1931 functions weight wavelengths to RGB.
 petzval::RgbImage irradiance(const petzval::Psf& psf);
 
-/// Weights of wavelengths by the colour matching functions in the data directory; throws Error for a set without a
-/// meaning.
+/// Weights of wavelengths by the colour matching functions of the data directory. Throws Error for an invalid set.
 std::vector<std::array<double, 3>> rgb_weights(std::span<const double> wavelengths_nm);
 
-/// A picture for the eye, and the irradiance that it shows as white: the 99th percentile of the lit pixels.
+/// A displayable picture, and the irradiance that it shows as white: the 99th percentile of the lit pixels.
 struct Exposed {
   petzval::Rgb8Image picture;
   double white_per_mm2 = 0;
@@ -49,10 +47,10 @@ Exposed expose(const petzval::RgbImage& image);
 /// "focus 800 mm"; "focus infinity".
 std::string focus_caption(double focus_mm);
 
-/// The tile of a contact sheet: the picture, the focus distance, the size of the blur and the exposure.
+/// A tile of a contact sheet: picture, focus distance, size of the blur, exposure.
 Tile bokeh_tile(double focus_mm, const petzval::PointImage& image);
 
-/// What the lines below a tile mean.
+/// Explains the lines below a tile.
 std::vector<std::string> bokeh_notes();
 
 }  // namespace examples

@@ -12,7 +12,7 @@
 
 namespace examples {
 
-/// What the programs with a camera are told about it.
+/// Command line of the programs with a camera.
 struct CameraSetup {
   double f_number = 0;     ///< 0: wide open
   double focus_mm = 3000;  ///< of the subject from the film
@@ -28,7 +28,7 @@ void add_camera(CLI::App& app, CameraSetup& setup);
 /// "36x24". Throws petzval::Error beginning with `where`.
 std::array<double, 2> parse_size(const std::string& where, std::string_view text, const Range& range);
 
-/// The loaded lens, stopped down and focused paraxially as the setup says, at its primary wavelength.
+/// The loaded lens, stopped down and focused paraxially at its primary wavelength.
 petzval::Lens focused(const LoadedLens& loaded, const CameraSetup& setup);
 
 }  // namespace examples

@@ -44,7 +44,7 @@ std::vector<double> parse_numbers(const std::string& where, std::string_view tex
     values.push_back(parse_number(where, text.substr(begin, end - begin), range));
     begin = end + 1;
   }
-  // Results go by these numbers: one that came twice would be written over itself.
+  // These numbers name results: a repeated one would overwrite a result.
   std::vector<double> sorted = values;
   std::sort(sorted.begin(), sorted.end());
   if (const auto twice = std::adjacent_find(sorted.begin(), sorted.end()); twice != sorted.end()) {

@@ -12,10 +12,10 @@
 
 #include "petzval/focus/focus.hpp"
 
-/// What the example programs share. It is no part of the library.
+/// Shared code of the example programs, not a part of the library.
 namespace examples {
 
-/// Values that a number on the command line may take; NaN never.
+/// The range of a number on the command line. NaN is never in it.
 struct Range {
   double least = -std::numeric_limits<double>::max();
   double most = std::numeric_limits<double>::max();
@@ -27,19 +27,19 @@ inline constexpr Range positive_length{std::numeric_limits<double>::min(), std::
 inline constexpr Range positive_number{std::numeric_limits<double>::min(), std::numeric_limits<double>::max(),
                                        "a finite number above 0"};
 
-/// A whole text as one decimal number, whatever the locale. Throws petzval::Error beginning with `where`.
+/// The whole text as one decimal number, in every locale. Throws petzval::Error beginning with `where`.
 double parse_number(const std::string& where, std::string_view text, const Range& range);
 
-/// "10" or "0,10,20", every number once. Throws petzval::Error beginning with `where`.
+/// "10" or "0,10,20"; refuses repeated numbers. Throws petzval::Error beginning with `where`.
 std::vector<double> parse_numbers(const std::string& where, std::string_view text, const Range& range);
 
-/// Options whose values are read by the functions above; the variable's value is the default that --help shows.
+/// Options read by the functions above. --help shows the value of the variable as the default.
 CLI::Option* add_number(CLI::App& app, const std::string& flag, double& value, const Range& range,
                         const std::string& help);
 CLI::Option* add_numbers(CLI::App& app, const std::string& flag, std::vector<double>& values, const Range& range,
                          const std::string& help);
 
-/// The criteria of focus and the origins of distances that the programs know, and any of them by its name.
+/// The criteria of focus and the origins of distances.
 inline constexpr std::array focus_criteria{petzval::FocusCriterion::thin, petzval::FocusCriterion::paraxial,
                                            petzval::FocusCriterion::min_rms, petzval::FocusCriterion::min_max};
 inline constexpr std::array distance_origins{petzval::DistanceOrigin::front_vertex, petzval::DistanceOrigin::film,
@@ -52,7 +52,7 @@ std::vector<std::string> names(const std::array<Enum, count>& all) {
   return result;
 }
 
-/// The one of that name, which is there.
+/// The one with that name, which must exist.
 template <class Enum, std::size_t count>
 Enum named(const std::string& text, const std::array<Enum, count>& all) {
   return *std::find_if(all.begin(), all.end(), [&](Enum e) { return petzval::name(e) == text; });
@@ -61,11 +61,11 @@ Enum named(const std::string& text, const std::array<Enum, count>& all) {
 /// Rays per wavelength, 1 to 2^26.
 CLI::Option* add_samples(CLI::App& app, std::uint32_t& samples);
 
-/// Reads the command line, runs the body and gives the exit status: 0, or 1 with the reason in one line on standard
-/// error.
+/// Reads the command line, runs the body and returns the exit status: 0, or 1 after one line with the reason on
+/// standard error.
 int run(CLI::App& app, int argc, char** argv, const std::function<void()>& body);
 
-/// Shows how far a long job is, in place, where standard error is a terminal.
+/// Shows the progress of a long job in one line if standard error is a terminal.
 class Progress {
  public:
   Progress(std::string title, std::size_t steps);

@@ -15,7 +15,7 @@ struct Tile {
   std::vector<std::string> captions;
 };
 
-/// Tiles side by side, all at one scale: `pixel_mm` of film a pixel, from which the scale bar is drawn.
+/// Tiles side by side, all at one scale: a pixel is `pixel_mm` of film.
 struct SheetRow {
   std::string title;
   std::string subtitle;
@@ -29,7 +29,7 @@ struct Sheet {
   std::vector<std::string> notes;  ///< lines at the foot
 };
 
-/// Lays the tiles out on a near-black sheet with captions. Tiles are square and of one size.
+/// Lays out the tiles on a dark sheet with captions. Tiles are square and of one size.
 petzval::Rgb8Image draw_sheet(const Sheet& sheet);
 
 }  // namespace examples

@@ -31,7 +31,7 @@ void make_folder(const std::filesystem::path& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (!std::filesystem::is_directory(folder)) {
-    throw petzval::Error(folder.string() + ": cannot be made a folder" + (error ? ": " + error.message() : ""));
+    throw petzval::Error(folder.string() + ": cannot be created as a folder" + (error ? ": " + error.message() : ""));
   }
 }
 

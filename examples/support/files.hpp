@@ -7,17 +7,17 @@
 
 namespace examples {
 
-/// Keys stay in the order in which they are written down.
+/// Keys keep their order.
 using Json = nlohmann::ordered_json;
 
-/// JSON knows no infinity: such a number becomes null.
+/// JSON has no infinity: it becomes null.
 Json finite_or_null(double value);
 
-/// The whole file, or none of it. Throws petzval::Error that names it.
+/// Read and write whole files. Throw petzval::Error that names the file.
 std::string read_text(const std::filesystem::path& file);
 void write_text(const std::filesystem::path& file, const std::string& text);
 
-/// Makes the folder, and those above it, where missing. Throws petzval::Error that names it.
+/// Makes the folder and its parents if missing. Throws petzval::Error that names it.
 void make_folder(const std::filesystem::path& folder);
 
 }  // namespace examples

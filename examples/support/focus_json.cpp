@@ -23,7 +23,7 @@ constexpr Range weight_range{0, std::numeric_limits<double>::max(), "a finite nu
   throw petzval::Error(where + ": found " + text + ", wanted " + wanted);
 }
 
-/// The whole document. A key that comes twice would hide one of its values.
+/// The document. Refuses a repeated key, which would hide a value.
 Json parse(const std::filesystem::path& file) {
   const std::string text = read_text(file);
   std::vector<std::set<std::string>> open;
@@ -31,7 +31,7 @@ Json parse(const std::filesystem::path& file) {
     if (event == Json::parse_event_t::object_start) open.emplace_back();
     if (event == Json::parse_event_t::object_end) open.pop_back();
     if (event == Json::parse_event_t::key && !open.back().insert(value.get<std::string>()).second) {
-      throw petzval::Error(file.string() + ": found the key " + value.dump() + " twice in one object, wanted it once");
+      throw petzval::Error(file.string() + ": found the key " + value.dump() + " twice in one object, wanted once");
     }
     return true;
   };
@@ -44,7 +44,7 @@ Json parse(const std::filesystem::path& file) {
   }
 }
 
-/// An object of the file, and what it is called in messages.
+/// An object of the file and its name in messages.
 struct Entry {
   std::string where;
   const Json& json;
@@ -87,7 +87,7 @@ struct Entry {
   }
 };
 
-/// Calls read(entry) for the elements of a list, which are called `name` and counted from 1.
+/// Calls read(entry) for the elements of a list, named `name` and counted from 1.
 template <class Read>
 void for_entries(const std::string& where, const Json& list, const std::string& name, Read read) {
   if (!list.is_array() || list.empty()) refuse(where, list, "a list of one " + name + " or more");
@@ -117,7 +117,7 @@ std::vector<petzval::FocusPoint> read_focus_points(const std::filesystem::path& 
     point.from = entry.number("from_s", point.from, finite_number);
     point.until = entry.number("until_s", point.until, finite_number);
     if (!(point.until >= point.from)) {
-      refuse(entry.where + ": until_s", entry.json["until_s"], "a time that is not before from_s");
+      refuse(entry.where + ": until_s", entry.json["until_s"], "a time not before from_s");
     }
     for_entries(entry.where + ": keys", entry.at("keys", "a list of keys"), "key", [&](const Entry& key) {
       key.keys({"time_s", "position_mm", "weight", "blur_mm", "at_infinity"},
@@ -126,7 +126,7 @@ std::vector<petzval::FocusPoint> read_focus_points(const std::filesystem::path& 
       point.keys.push_back({key.number("time_s", 0, finite_number), key.place(),
                             key.number("blur_mm", 0, finite_number), key.number("weight", 1, weight_range)});
       if (point.keys.size() > 1 && !(point.keys.end()[-2].time < point.keys.back().time)) {
-        refuse(key.where + ": time_s", key.json["time_s"], "a time after that of the key before");
+        refuse(key.where + ": time_s", key.json["time_s"], "a time after the previous key");
       }
     });
     result.push_back(std::move(point));

@@ -9,8 +9,8 @@
 
 namespace examples {
 
-/// A list of [{"position_mm":[x,y,z],"weight":1,"blur_mm":0,"at_infinity":false}, ...], all but the position optional;
-/// at infinity the position is a direction towards the point. Lens frame, the scene at negative z. Throws
+/// A list of [{"position_mm":[x,y,z],"weight":1,"blur_mm":0,"at_infinity":false}, ...], all but the position optional.
+/// At infinity the position is a direction towards the point. Lens frame, the scene at negative z. Throws
 /// petzval::Error that names the file, the point (from 1) and the key.
 std::vector<petzval::FocusTarget> read_targets(const std::filesystem::path& file);
 

@@ -13,7 +13,7 @@
 namespace examples {
 namespace {
 
-/// Path of the font file that stands for "sans" on this system; empty where there is none.
+/// Path of the font file for "sans" on this system; empty if there is none.
 std::string sans_file() {
   const std::unique_ptr<FcPattern, void (*)(FcPattern*)> wanted(FcPatternCreate(), FcPatternDestroy);
   FcPatternAddString(wanted.get(), FC_FAMILY, reinterpret_cast<const FcChar8*>("sans"));
@@ -28,7 +28,7 @@ std::string sans_file() {
   return reinterpret_cast<const char*>(file);
 }
 
-/// Takes one character off an UTF-8 text; a byte that is none counts as a question mark.
+/// Removes one character from a UTF-8 text. An invalid byte counts as a question mark.
 FcChar32 next_character(std::string_view& text) {
   FcChar32 character = '?';
   const int length =
@@ -48,7 +48,7 @@ struct Font::Face {
     if (library) FT_Done_FreeType(library);
   }
 
-  /// Calls `use(glyph, x)` for each rendered character; returns where the pen ends.
+  /// Calls `use(glyph, x)` for each rendered character; returns the final place of the pen.
   template <class Use>
   int each_glyph(std::string_view text, int pixel_size, Use&& use) {
     FT_Set_Pixel_Sizes(face, 0, static_cast<FT_UInt>(pixel_size));

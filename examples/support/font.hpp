@@ -12,17 +12,17 @@ namespace examples {
 
 using Colour = std::array<std::uint8_t, 3>;
 
-/// Draws text on pictures in the system's sans-serif font, as Fontconfig names it.
+/// Draws text on pictures in the sans-serif font that Fontconfig names.
 class Font {
  public:
-  /// Throws petzval::Error where the system has no font.
+  /// Throws petzval::Error if the system has no font.
   Font();
   ~Font();
 
   /// Width of an UTF-8 text, in pixels.
   int width(std::string_view text, int pixel_size);
 
-  /// Draws with the left end of the baseline at (x, y); what falls outside the picture is clipped.
+  /// Draws with the left end of the baseline at (x, y), clipped to the picture.
   void draw(petzval::Rgb8Image& picture, int x, int y, int pixel_size, std::string_view text, const Colour& colour);
 
  private:

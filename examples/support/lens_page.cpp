@@ -20,7 +20,7 @@
 namespace examples {
 namespace {
 
-/// Of the design: as declared, or by the image's diagonal, or 10 degrees where the source says nothing.
+/// As declared, or by the diagonal of the image, or 10 degrees if the source has neither.
 double half_field_deg(const Report& r) {
   const petzval::Prescription& p = r.loaded.prescription;
   if (p.half_field_deg) return *p.half_field_deg;
@@ -35,7 +35,7 @@ std::vector<double> fields_rad(const Report& r, const PageOptions& options) {
   std::vector<double> fields = options.field_deg;
   if (fields.empty()) {
     const double half = half_field_deg(r);
-    // 0.7 as half of the picture's area lies within it, rounded to three digits so that captions stay short.
+    // Half of the picture's area lies within 0.7 of its radius. Three digits keep captions short.
     fields = {0, half};
     const double power = std::pow(10, std::floor(std::log10(0.7 * half)) - 2);
     if (half > 0) fields.insert(fields.begin() + 1, std::round(0.7 * half / power) * power);
@@ -59,7 +59,7 @@ constexpr std::string_view style =
   td.number, th.number { text-align: right; font-variant-numeric: tabular-nums; }
 )";
 
-/// Numbers of the same kind side by side, one column a meridian.
+/// One row per number, one column per meridian.
 void first_order_table(std::ostream& html, const Report& r) {
   html << "<table>\n";
   if (r.meridians.size() > 1) {
@@ -98,7 +98,7 @@ void surface_table(std::ostream& html, const Report& r) {
     }
     if (row.conic != 0) remark("conic " + number(row.conic, 6));
     if (!row.aspheric.empty()) remark("asphere of order " + std::to_string(row.aspheric.back().order));
-    if (row.inner_semi_diameter) remark("hole " + number(*row.inner_semi_diameter, 5));
+    if (row.inner_semi_diameter) remark("central obscuration " + number(*row.inner_semi_diameter, 5));
     html << "<tr>" << cell(std::to_string(i)) << cell(row.radius == 0 ? "plane" : number(row.radius, 8))
          << cell(number(row.thickness, 7)) << cell(row.medium.nd == 1 ? "" : number(row.medium.nd, 7))
          << cell(row.medium.vd ? number(*row.medium.vd, 5) : "") << "<td>"
@@ -137,35 +137,36 @@ std::vector<LensFigure> lens_figures(const Report& r, const PageOptions& options
   const std::vector<double> fields = limited ? fields_rad(r, options) : std::vector<double>();
 
   add("layout", "The lens",
-      "Follow one colour from the left: its rays come from one far point and should meet in one point of the film. "
-      "Where a field's rays do not fill the stop from tick to tick, rims cut the pupil and the corner darkens.",
+      "Follow one colour from the left: its rays come from one far point and should meet in one point of the film. If "
+      "the rays of a field do not fill the stop from tick to tick, rims clip the pupil and the corner darkens.",
       petzval::layout_figure(lens, subject_z, fields));
   if (!lens.rotationally_symmetric()) {
-    add("layout_x", "The lens, in the other section",
-        "The same lens cut along x: cylinders are curved in one of the sections only, so that it has another focal "
-        "length here.",
+    add("layout_x", "The lens in the other section",
+        "The same lens cut along x. Cylinders are curved in one section only, so the focal length differs.",
         petzval::layout_figure(lens, subject_z, fields, {.section = petzval::Meridian::x}));
   }
   if (!limited) return result;
 
   const petzval::Lens& colours = options.colours;
   add("spots", "Spots",
-      "Where the rays of a point meet the film. Compare the spot with the dashed Airy circle: within it, diffraction "
-      "decides. A comet is coma, a line or a cross astigmatism, colours apart are lateral colour.",
+      "Hits of a point's rays on the film. Compare the spot with the dashed Airy circle: within it, diffraction "
+      "dominates. A comet is coma, a line or a cross astigmatism; separate colours are lateral colour.",
       petzval::spot_figure(colours, petzval::spot_diagram(colours, subject_z, fields)));
   add("footprints", "Pupils",
-      "The openings through which the film sees each point. The more of the dashed circle is missing, the darker the "
-      "corner, and the shape is that of the blur of bright points out of focus there.",
+      "The vignetted pupil of each field point. The more of the dashed circle is missing, the darker the corner. "
+      "Bright "
+      "points out of focus have blurs of this shape.",
       petzval::footprint_figure(lens, subject_z, fields));
   add("focus", "Focus",
-      "How large the spots are while the film moves. Minima apart from each other are curvature of field; a high, flat "
-      "minimum is an aberration that no focusing removes.",
+      "Size of the spots against the film position. Separate minima mean curvature of field; a high, flat minimum is "
+      "an "
+      "aberration that focusing does not remove.",
       petzval::focus_figure(colours, subject_z, fields));
   const double farthest = *std::ranges::max_element(fields, {}, [](double f) { return std::abs(f); });
   if (farthest != 0) {
     add("illumination", "Brightness",
-        "Light on the film from the middle to the edge of the field. Below cos\u2074 the rims vignette; above it the "
-        "pupil grows with the field, as in fisheyes and retrofocus lenses.",
+        "Light on the film from the middle to the edge of the field. Below cos\u2074 rims vignette; above it the pupil "
+        "grows with the field, as in fisheyes and retrofocus lenses.",
         petzval::illumination_figure(lens, subject_z, std::abs(farthest)));
   }
   return result;
@@ -188,8 +189,8 @@ std::string lens_page(const Report& r, const std::vector<LensFigure>& figures) {
   html << "<h2>First order</h2>\n<p class=\"lead\">At " << number(lens.wavelengths_nm()[0])
        << " nm. Stop: " << stop_in_words(r.main().pupils) << ". z counts from the first vertex towards the film.</p>\n";
   first_order_table(html, r);
-  html << "<h2>Questions to the table</h2>\n";
-  if (r.findings.empty()) html << "<p class=\"lead\">None: what it declares is what it is.</p>\n";
+  html << "<h2>Lint</h2>\n";
+  if (r.findings.empty()) html << "<p class=\"lead\">No findings: declared and computed values agree.</p>\n";
   if (!r.findings.empty()) {
     html << "<ul>\n";
     for (const petzval::Finding& finding : r.findings) html << "<li>" << escaped_html(finding.message) << "</li>\n";

@@ -9,7 +9,7 @@
 
 namespace examples {
 
-/// What the figures of a report show.
+/// Options of the figures of a report.
 struct PageOptions {
   std::vector<double> field_deg;  ///< empty: the axis, 0.7 and 1 of the declared half field
   double subject_mm = std::numeric_limits<double>::infinity();  ///< from the front vertex
@@ -22,11 +22,11 @@ struct LensFigure {
   std::string svg;
 };
 
-/// The figures of a lens. Where nothing limits the beam only the layout, without rays.
-/// Throws petzval::Error for fields and subjects that the lens cannot look at.
+/// The figures of a lens; only the layout, without rays, if nothing limits the beam. Throws petzval::Error for fields
+/// and subjects that the lens cannot see.
 std::vector<LensFigure> lens_figures(const Report& report, const PageOptions& options);
 
-/// One page with the figures in it, the numbers, the table and where it comes from. It needs no other file.
+/// A page with the figures, the numbers, the prescription and its sources. It needs no other file.
 std::string lens_page(const Report& report, const std::vector<LensFigure>& figures);
 
 }  // namespace examples

@@ -25,7 +25,7 @@ MeridianReport in_meridian(const petzval::Lens& lens, petzval::Meridian meridian
                {"front_principal_z_mm", "front principal plane, z", "mm", first.front_principal_z},
                {"rear_principal_z_mm", "rear principal plane, z", "mm", first.rear_principal_z}};
 
-  // Pupils are images of the rim that limits the beam: without one there are none.
+  // Pupils are images of the rim that limits the beam.
   if (petzval::has_pupils(lens)) {
     r.pupils = petzval::pupils(lens, 0, meridian);
     const petzval::Pupil &entrance = r.pupils->entrance, &exit = r.pupils->exit;
@@ -47,7 +47,7 @@ MeridianReport in_meridian(const petzval::Lens& lens, petzval::Meridian meridian
   return r;
 }
 
-/// The numbers of one meridian; null for what it has not.
+/// The numbers of one meridian; null for absent ones.
 Json numbers(const MeridianReport& r) {
   Json json{{"afocal", r.first_order.afocal}};
   for (const char* key : {"entrance_pupil_z_mm", "entrance_pupil_diameter_mm", "exit_pupil_z_mm",
@@ -137,7 +137,7 @@ std::string to_text(const Report& r) {
       text << "\nThe lens is afocal: it has no focal length and no focal or principal points.\n";
     }
   }
-  text << "\nlint: " << (r.findings.empty() ? "nothing to ask about" : "") << '\n';
+  text << "\nlint: " << (r.findings.empty() ? "no findings" : "") << '\n';
   for (const petzval::Finding& finding : r.findings) {
     text << "  " << petzval::name(finding.kind) << ": " << finding.message << '\n';
   }

@@ -13,7 +13,7 @@
 
 namespace examples {
 
-/// One number of the report: its key in the JSON, and how the table says it.
+/// One number of the report: its key in JSON, its label and unit in the table.
 struct Entry {
   const char* key;
   const char* label;
@@ -21,17 +21,17 @@ struct Entry {
   double value;
 };
 
-/// What a lens is to first order in one meridian.
+/// First-order data of a lens in one meridian.
 struct MeridianReport {
   petzval::Meridian meridian;
   petzval::FirstOrder first_order;
-  std::optional<petzval::Pupils> pupils;  ///< none where nothing limits the beam
+  std::optional<petzval::Pupils> pupils;  ///< absent if nothing limits the beam
   std::vector<Entry> entries;
 };
 
 struct Report {
   LoadedLens loaded;
-  std::vector<MeridianReport> meridians;  ///< the main one first; one only in a lens of revolution
+  std::vector<MeridianReport> meridians;  ///< the main one first; a lens of revolution has one
   std::vector<petzval::Finding> findings;
 
   const MeridianReport& main() const { return meridians.front(); }
@@ -44,9 +44,9 @@ std::string to_text(const Report& report);
 
 /// "y-z" or "x-z".
 const char* section_name(petzval::Meridian meridian);
-/// "surface 5", and whether the table says so.
+/// "surface 5", with a remark if it is inferred.
 std::string stop_in_words(const std::optional<petzval::Pupils>& pupils);
-/// Fixed decimals as an optician reads them; small sums in scientific notation.
+/// Four decimals; scientific notation for very small and large numbers.
 std::string in_words(double value);
 
 }  // namespace examples

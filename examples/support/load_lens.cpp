@@ -26,7 +26,7 @@ void say_what_is_known(const LoadedLens& loaded) {
   }
   std::cerr << missing << (missing == 1 ? " medium is" : " media are") << " in no glass table; "
             << (loaded.lens.dispersion() == petzval::Dispersion::abbe
-                    ? "the n_d/V_d model stands in away from " + line
+                    ? "the n_d/V_d model is used away from " + line
                     : "without V_d the lens can be used at " + line + " only")
             << '\n';
 }

@@ -11,17 +11,17 @@
 
 namespace examples {
 
-/// A lens file as the programs use it.
+/// A lens file, read and compiled.
 struct LoadedLens {
-  std::string id;  ///< the file's name without .json; names of outputs begin with it
+  std::string id;  ///< the name of the file without .json; output files begin with it
   petzval::Prescription prescription;
   petzval::GlassCatalogue glasses;
-  petzval::Lens lens;  ///< for the wavelengths asked for
+  petzval::Lens lens;  ///< for the given wavelengths
 };
 
-/// Reads and compiles a lens with the glass tables that came with petzval. Where a medium is in none of them, the
-/// n_d/V_d model stands in (without V_d only the reference wavelength is left), and one line on standard error says so;
-/// another says which surface serves as the stop where none is marked.
+/// Reads and compiles a lens with the glass tables of petzval. The n_d/V_d model replaces glasses that are in no table
+/// (without V_d only the reference wavelength is left). Notes on standard error report this, and the surface that
+/// serves as the stop if none is marked.
 LoadedLens load_lens(const std::filesystem::path& file, std::span<const double> wavelengths_nm);
 
 /// The prescription compiled for other wavelengths, in the same way.

@@ -20,7 +20,7 @@ namespace {
 
 constexpr Range pixel_count{1, 1e6, "a whole number from 1 to 1000000"};
 
-/// Names and values of a row, as JSON and CSV have them.
+/// Names and values of a row in JSON and CSV.
 template <class Use>
 void for_numbers(const ModelRow& row, Use use) {
   use("rms_um", row.rms_um);

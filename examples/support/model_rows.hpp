@@ -12,7 +12,7 @@
 
 namespace examples {
 
-/// Command line of the programs that compare models: the camera, its pixels, and how to print.
+/// Command line of the programs that compare models.
 struct ModelOptions {
   std::string lens_file;
   CameraSetup setup;
@@ -26,17 +26,17 @@ void add_model_options(CLI::App& app, ModelOptions& options);
 
 /// The lens of the options at the d line, stopped down and focused.
 petzval::Lens focused_lens(const ModelOptions& options);
-/// What the numbers are for, in one line: "f/2, focused at 3000 mm from the film, ...".
+/// The conditions in one line: "f/2, focused at 3000 mm from the film, ...".
 std::string conditions(const petzval::Lens& lens, const ModelOptions& options);
 
-/// A rung as the programs print it; rungs that cannot be built have none.
+/// A model as the programs print it. Models that cannot be built have no row.
 struct ModelRow {
   petzval::ModelKind model{};
   double rms_um = 0, p99_um = 0, max_um = 0, rms_px = 0, max_px = 0;
   double pupil_shape_error = 0, exposure_error = 0, ns_per_ray = 0, setup_ms = 0;
   bool on_front = false;  ///< no other row is both as fast and as accurate (max_um) and better in one of them
 };
-/// guarded: with the bounds that choices compare with budgets, instead of the largest errors seen.
+/// guarded: shows the bounds that are compared with budgets instead of the largest errors measured.
 std::vector<ModelRow> model_rows(std::span<const petzval::ModelCandidate> table, const petzval::Film& film,
                                  bool guarded);
 
@@ -46,7 +46,7 @@ std::string to_text(std::span<const ModelRow> rows);
 /// "  - line" for each.
 std::string bullets(std::span<const std::string> lines);
 
-/// Says on standard error which rungs could not be built.
+/// Notes on standard error which models could not be built.
 void say_what_is_missing(std::span<const petzval::ModelCandidate> table);
 
 }  // namespace examples

@@ -17,7 +17,7 @@ namespace examples {
 void add_movement_options(CLI::App& app, MovementOptions& options) {
   app.add_option("LENS.json", options.lens_file, "lens prescription; may be left out for a thin lens");
   app.add_option("--model", options.model,
-                 "what the lens is: thin (one plane), thick (cardinal points and pupils), real (exact rays)")
+                 "model of the lens: thin (one plane), thick (cardinal points and pupils), real (exact rays)")
       ->check(CLI::IsMember({"thin", "thick", "real"}))
       ->capture_default_str();
   add_number(app, "--thin-focal-length-mm", options.focal_length_mm, positive_number,
@@ -31,7 +31,7 @@ void add_movement_options(CLI::App& app, MovementOptions& options) {
            options.film_mm = text;
            options.film_given = true;
          },
-         "width and height of the film (mm); where it is given, points outside the picture take no part")
+         "width and height of the film (mm); if given, points outside the picture are left out")
       ->type_name("WxH")
       ->default_str(options.film_mm);
 }
@@ -70,8 +70,8 @@ MovingLens moving_lens(const MovementOptions& options) {
 }
 
 petzval::ImageRays MovingLens::bundles(std::span<const petzval::ScenePoint> places, std::size_t rays) const {
-  // Room for a tilted and shifted film, and for points somewhat outside the picture; not for those far outside, whose
-  // light no lens lets through.
+  // Room for a tilted and shifted film and for points somewhat outside the picture. Light of points far outside does
+  // not pass the lens.
   const double corner = std::hypot(film.width_mm, film.height_mm) / 2;
   double farthest = 1.3 * corner;
   for (const petzval::ScenePoint& place : places) {
@@ -84,11 +84,11 @@ petzval::ImageRays MovingLens::bundles(std::span<const petzval::ScenePoint> plac
 const char* in_words(petzval::TargetUse use) {
   switch (use) {
     case petzval::TargetUse::used: return "";
-    case petzval::TargetUse::no_weight: return "looked at only: its weight is 0";
+    case petzval::TargetUse::no_weight: return "shown only: its weight is 0";
     case petzval::TargetUse::not_finite: return "left out: not a number";
-    case petzval::TargetUse::no_image: return "left out: the lens forms no image of it that a film could reach";
+    case petzval::TargetUse::no_image: return "left out: no film can reach its image";
     case petzval::TargetUse::outlier: return "an outlier: it got no weight";
-    case petzval::TargetUse::no_rays: return "left out: no ray of it gets through the lens";
+    case petzval::TargetUse::no_rays: return "left out: none of its rays passes the lens";
   }
   return "";
 }

@@ -23,21 +23,21 @@ struct MovementOptions {
 };
 void add_movement_options(CLI::App& app, MovementOptions& options);
 
-/// The lens of the options as the model that is asked for sees it.
+/// The lens of the options with the chosen model.
 struct MovingLens {
-  std::string id, title;              ///< names of files begin with id
+  std::string id, title;              ///< output files begin with id
   std::string conditions;             ///< "f/4, real model"
-  std::optional<petzval::Lens> lens;  ///< none for an ideal lens without a file
+  std::optional<petzval::Lens> lens;  ///< absent for an ideal lens without a file
   petzval::IdealLens ideal;           ///< thin, or (thick and real) the cardinal points
   bool exact = false;                 ///< the model is real: exact rays
   petzval::Film film;                 ///< its size
 
-  /// Exact rays to the film, and as far beside it as the images of these places lie. There must be a lens.
+  /// Exact rays to the film and to the images of these places beside it. Needs a lens.
   petzval::ImageRays bundles(std::span<const petzval::ScenePoint> places, std::size_t rays) const;
 };
 MovingLens moving_lens(const MovementOptions& options);
 
-/// What became of a point, for people; empty where it is used.
+/// The use of a point in words; empty if it is used.
 const char* in_words(petzval::TargetUse use);
 
 }  // namespace examples

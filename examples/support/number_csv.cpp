@@ -9,7 +9,7 @@
 namespace examples {
 namespace {
 
-/// Takes a line off the text; the last one may lack its end.
+/// Removes a line from the text; the last one may lack its end.
 std::string_view next_line(std::string_view& text) {
   const std::size_t end = std::min(text.find('\n'), text.size());
   std::string_view line = text.substr(0, end);

@@ -11,22 +11,22 @@
 
 namespace examples {
 
-/// A column of numbers, and which of them it may hold.
+/// A column of numbers and their range.
 struct CsvColumn {
   const char* name;
   Range range = finite_number;
 };
 
-/// Reads the columns' names and then as many numbers a line (LF or CRLF; a byte-order mark, and blank lines at the end,
-/// are skipped): all numbers of the first column, all of the second, ... Throws petzval::Error that names `where`, the
-/// line (from 1) and the column.
+/// Reads a header with the names of the columns and then one line of numbers per row (LF or CRLF; a byte-order mark and
+/// blank lines at the end are skipped). Returns the columns. Throws petzval::Error that names `where`, the line (from
+/// 1) and the column.
 std::vector<std::vector<double>> parse_columns(std::string_view csv, std::span<const CsvColumn> columns,
                                                const std::string& where);
 
 /// "in.csv: line 2", for row 0: the header is line 1.
 std::string line_of_row(const std::string& where, std::size_t row);
 
-/// A number with 17 significant digits, from which a double reads back exactly.
+/// A number with 17 significant digits, which read back to the same double.
 std::string digits17(double value);
 
 }  // namespace examples

@@ -23,7 +23,7 @@ PointScene::PointScene(const petzval::IdealLens& lens, std::span<const petzval::
 }
 
 double PointScene::disparity(double x, double y) const {
-  // Weights over that of the nearest point: none overflows, and at a point it is that point's alone.
+  // Weights relative to the nearest point do not overflow; at a point only its own counts.
   double nearest = std::numeric_limits<double>::infinity(), least = nearest, most = 0;
   for (const Known& k : known_) {
     nearest = std::min(nearest, std::hypot(k.x - x, k.y - y));
@@ -45,7 +45,7 @@ double PointScene::disparity(double x, double y) const {
     xx += w * dx * dx, xy += w * dx * dy, yy += w * dy * dy;
     xd += w * dx * (k.disparity - mean), yd += w * dy * (k.disparity - mean);
   }
-  // So little more that planes stay planes, and points in a line have no slope across it.
+  // A small ridge: planes stay planes, and points on a line have no slope across it.
   const double ridge = 1e-6 * (xx + yy);
   xx += ridge, yy += ridge;
   const double determinant = xx * yy - xy * xy, range = most - least;
@@ -56,7 +56,7 @@ double PointScene::disparity(double x, double y) const {
 }
 
 std::optional<petzval::ScenePoint> PointScene::at(const petzval::Film& film, const petzval::FilmPoint& point) const {
-  // The chief ray goes through the point's conjugate and the entrance pupil's centre.
+  // The chief ray passes through the conjugate of the point and the centre of the entrance pupil.
   const petzval::ScenePoint conjugate = lens_.scene_of(film.position(point));
   petzval::Vec3<double> towards = conjugate.position;
   if (parallel_) {

@@ -10,16 +10,16 @@
 
 namespace examples {
 
-/// A scene of which some points are known. In between, its 1/distance follows a plane fitted to theirs anew at every
-/// place, with weights by the inverse fourth power of how far off they look (moving least squares): it goes through
-/// every point, and points of a plane show that plane. Away from all points it leaves their range by no more than that
-/// range, and stays real.
+/// A scene through known points. At every place 1/distance is that of a plane fitted to the points, with weights by the
+/// inverse fourth power of their angular distance (moving least squares). The scene contains every point; points of a
+/// plane give that plane. 1/distance exceeds the range of the points by at most that range, and is never negative.
 class PointScene {
  public:
-  /// Points behind the lens are left out; there must be another.
+  /// Leaves out points behind the lens. Needs at least one other.
   PointScene(const petzval::IdealLens& lens, std::span<const petzval::ScenePoint> points);
 
-  /// What the ideal lens has at a film point, by the chief ray. Nothing where that does not come from the scene.
+  /// The scene point that the ideal lens images at a film point, by the chief ray. Nothing if that ray does not come
+  /// from the scene.
   std::optional<petzval::ScenePoint> at(const petzval::Film& film, const petzval::FilmPoint& point) const;
 
  private:
@@ -34,7 +34,7 @@ class PointScene {
   std::vector<Known> known_;
 };
 
-/// Where the ideal lens's chief ray of a place meets the film. Nothing for one without a real image, or beside it.
+/// The hit of a scene point's chief ray on the film. Nothing if the point has no real image or the ray misses the film.
 std::optional<petzval::FilmPoint> on_film(const petzval::IdealLens& lens, const petzval::Film& film,
                                           const petzval::ScenePoint& place);
 

@@ -14,7 +14,7 @@ struct RayTable {
   std::size_t size() const noexcept { return x.size(); }
 };
 
-/// Reads "x_mm,y_mm,z_mm,dx,dy,dz" and one ray a line, as parse_columns does; refuses the direction 0,0,0 too.
+/// Reads "x_mm,y_mm,z_mm,dx,dy,dz" and one ray per line, as parse_columns does. Refuses the direction 0,0,0.
 RayTable parse_rays(std::string_view csv, const std::string& where);
 
 }  // namespace examples

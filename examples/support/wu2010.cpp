@@ -7,7 +7,7 @@
 namespace examples {
 namespace {
 
-/// Mean irradiance of the bins [first, last), each counted by the area of its ring.
+/// Mean irradiance of the bins [first, last), weighted by the areas of their rings.
 double mean(std::span<const double, 64> profile, int first, int last) {
   double sum = 0, area = 0;
   for (int k = first; k < last; ++k) {
@@ -17,7 +17,7 @@ double mean(std::span<const double, 64> profile, int first, int last) {
   return area > 0 ? sum / area : 0;
 }
 
-/// The bin at which a tenth of the radius begins.
+/// The first bin of a tenth of the radius.
 int bin(int tenth) { return static_cast<int>(std::lround(6.4 * tenth)); }
 
 }  // namespace
@@ -48,11 +48,11 @@ std::span<const WuRow> wu_rows() {
        {ring, ring_and_core, point, hollow_core, hollow_core}},
       {"double_gauss_100mm_f2_28deg",
        "f/2  double Gauss, 28° field",
-       "their row (c); chosen among two candidates because it behaves as the paper says",
+       "their row (c); of two candidates the one that behaves as the paper says",
        {uniform, core, point, ring, ring}},
       {"double_gauss_100mm_f2.0",
        "f/2  double Gauss (Tronnier)",
-       "the other candidate for their row (c): it does the reverse, ring when focused nearer, core when farther",
+       "the other candidate for their row (c): it does the opposite, a ring when focused nearer, a core when farther",
        {uniform, core, point, ring, ring}},
   }};
   return rows;

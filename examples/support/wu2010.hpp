@@ -8,7 +8,7 @@
 
 namespace examples {
 
-/// Looks of a defocused point light, as Wu et al. 2010 put them into words for their figure 7.
+/// Looks of a defocused point light in the words of Wu et al. 2010 about their figure 7.
 enum class Look {
   ring,           ///< dark disc with a bright ring
   ring_and_core,  ///< the same with a slightly bright core
@@ -19,11 +19,11 @@ enum class Look {
 };
 const char* words(Look look);
 
-/// One row of their figure 7 as it is repeated here.
+/// One row of their figure 7.
 struct WuRow {
-  const char* lens;  ///< file below data/lenses, without .json
+  const char* lens;  ///< file in data/lenses, without .json
   const char* title;
-  const char* subtitle;  ///< where the lens comes from
+  const char* subtitle;  ///< origin of the lens
   std::array<Look, 5> printed;
 };
 
@@ -32,18 +32,18 @@ inline constexpr double wu_light_mm = 1000;
 inline constexpr std::array<double, 5> wu_focus_mm{800, 900, 1000, 1100, 1200};
 std::span<const WuRow> wu_rows();
 
-/// What a radial profile says in numbers. Irradiance is relative to its mean over the disc.
+/// Measures of a radial profile. Irradiances are relative to the mean over the disc.
 struct ProfileShape {
   double centre = 0;     ///< mean within 0.1 of the radius
   double core = 0;       ///< mean within 0.2 of the radius
   double brightest = 0;  ///< of ten rings of equal width
   int brightest_ring = 0;
-  double darkest_inside = 0;  ///< of the rings within the brightest one; 0 where there is none
+  double darkest_inside = 0;  ///< of the rings inside the brightest one; 0 if there is none
   double deviation = 0;       ///< RMS over the area of the disc, ten rings
 };
 ProfileShape profile_shape(std::span<const double, 64> profile);
 
-/// The look of a profile; never `point`, which is a matter of comparison.
+/// The look of a profile; never `point`, which needs a comparison.
 Look look(const ProfileShape& shape);
 
 }  // namespace examples

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A program of someone who links petzval: one lens from code, one from the data that came with the library.
+// A program of a user of petzval: one lens from code, one from the data of the library.
 //
 //     consumer DATA_DIRECTORY      the data directory that the library is expected to find
 #include <cmath>

@@ -45,7 +45,7 @@ TEST(ParallelFor, CutsTheSameBlocksForAnyNumberOfThreads) {
 }
 
 TEST(ParallelFor, SumsOfBlocksDoNotDependOnThreads) {
-  // Sums whose rounding depends on their order: block by block, each in its place, they are the same to the bit.
+  // The rounding of sums depends on their order. Sums of blocks, each in its place, are equal to the bit.
   const auto sum = [](int threads) {
     std::vector<double> parts(101, 0);
     parallel_for(10007, 100, threads, [&](std::size_t begin, std::size_t end) {
@@ -83,7 +83,7 @@ TEST(ParallelFor, StartsNoThreadForOneOrASingleBlock) {
 }
 
 TEST(ParallelFor, WorksOnAsManyThreadsAsAskedForAndBlocksGo) {
-  // Every block waits until as many have begun: that many threads, the caller's among them, or the test would hang.
+  // Every block waits until all have begun: fewer threads, with the caller's, would hang the test.
   const auto caller = std::this_thread::get_id();
   for (const int threads : {3, 50}) {
     const std::size_t together = std::min(threads, 6);
@@ -113,7 +113,7 @@ TEST(ParallelFor, LetsTheFirstExceptionOut) {
     } catch (const std::runtime_error& e) {
       EXPECT_STREQ(e.what(), "40") << threads;
     }
-    // Blocks that had not begun are left: at most one more for each of the other threads.
+    // Blocks that had not begun are skipped: at most one more runs on each other thread.
     EXPECT_GE(begun, 41);
     EXPECT_LE(begun, 40 + threads);
   }

@@ -24,7 +24,7 @@ class CameraRays : public Programs {
     return result;
   }
 
-  /// Rows of the result, split at commas; the header is checked and left out.
+  /// Rows of the result without the header, split at commas.
   std::vector<std::vector<std::string>> rays(const std::string& lens_id, const std::string& csv,
                                              const std::string& model = "exact_double",
                                              const std::vector<std::string>& more = {}) const {
@@ -70,7 +70,7 @@ TEST_F(CameraRays, GivesTheLibrarysNumbers) {
   EXPECT_EQ(rows[0][9], "transmitted");
 }
 
-// The film is the physical one: its lower half sees what is above.
+// The image on the film is upside down: the lower half of the film sees the upper half of the scene.
 TEST_F(CameraRays, TurnsTheImageUpsideDownOnEveryRung) {
   for (const petzval::ModelKind model : petzval::models()) {
     const auto rows = rays("double_gauss_100mm_f2.0", std::string(header) + "3,-10,0.3,0.2,587.5618\n",
@@ -84,7 +84,7 @@ TEST_F(CameraRays, TurnsTheImageUpsideDownOnEveryRung) {
   }
 }
 
-// A film that leans has its upper edge elsewhere, and sees what a film point there sees.
+// Tilting moves the upper edge of the film; it sees what a film point at its new place sees.
 TEST_F(CameraRays, TiltsItsFilm) {
   const petzval::Lens lens_3m =
       petzval::with_focus(petzval::compile(petzval::read_prescription(lens("double_gauss_100mm_f2.0"))), 3000,
@@ -99,7 +99,7 @@ TEST_F(CameraRays, TiltsItsFilm) {
     EXPECT_EQ(rows.at(0)[9], "transmitted");
     EXPECT_NEAR(std::stod(rows[0][4]), r.ray.direction.y, 1e-12);
     EXPECT_NEAR(std::stod(rows[0][6]), r.weight, 1e-12);
-    // Not what the upright film sees.
+    // The upright film sees something else.
     const auto upright = rays("double_gauss_100mm_f2.0", csv, std::string(petzval::name(model)));
     EXPECT_GT(std::abs(std::stod(rows[0][4]) - std::stod(upright[0][4])), 1e-4);
   }

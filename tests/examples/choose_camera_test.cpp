@@ -48,7 +48,7 @@ TEST_F(ChooseCamera, KeepsTheBudgetAndProvesIt) {
 }
 
 TEST_F(ChooseCamera, LooksAtTheSceneOnly) {
-  // Far behind the nearest thing in focus a pinhole is off by more.
+  // The error of a pinhole grows far behind the plane of focus.
   const auto all = choice({"--near-mm", "1000", "--far-mm", "inf", "--budget-px", "1"});
   const auto focus = choice({"--near-mm", "2900", "--far-mm", "3100", "--budget-px", "1"});
   EXPECT_LT(row_of(focus, "pinhole")["max_px"], row_of(all, "pinhole")["max_px"]);

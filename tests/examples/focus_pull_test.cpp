@@ -40,12 +40,12 @@ class FocusPull : public Programs {
   }
 };
 
-/// Of the thin lens of 50 mm at the origin.
+/// The image distance of the 50 mm thin lens at the origin.
 double film_of(double distance) { return 50 * distance / (distance - 50); }
 
 TEST_F(FocusPull, PassesItsKeysAndStaysBetweenThem) {
   const json all = frames(thin_50, rack);
-  ASSERT_EQ(all.size(), 97u);  // 4 s of 24, both ends
+  ASSERT_EQ(all.size(), 97u);  // 4 s at 24 frames per s, with both ends
   EXPECT_EQ(all[0]["time_s"], 0);
   EXPECT_EQ(all[96]["time_s"], 4);
   for (const std::size_t i : {0u, 12u, 24u}) {
@@ -105,7 +105,7 @@ TEST_F(FocusPull, KeepsTheFilmWhereNothingIsToBeServed) {
 }
 
 TEST_F(FocusPull, LastsAsLongAsItsPointsDo) {
-  // Keys may lie outside the interval in which they count.
+  // Keys may lie outside the interval of their point.
   const json late = frames(thin_50, R"([{"from_s": 9, "keys": [{"time_s": 0, "position_mm": [0, 0, -1000]}]}])");
   ASSERT_EQ(late.size(), 1u);
   EXPECT_EQ(late[0]["time_s"], 9);

@@ -70,7 +70,7 @@ TEST_F(FocusReport, HasRowsForUsualDistancesUnasked) {
   EXPECT_TRUE(json[4]["distance_mm"].is_null());
   EXPECT_EQ(json[4]["breathing"], 0);
   EXPECT_TRUE(json[4]["far_limit_mm"].is_null());
-  // 0.07 mm of spherical aberration at f/2 are more than the 0.03 asked for.
+  // Spherical aberration at f/2 gives a blur of 0.07 mm, more than the 0.03 mm allowed.
   EXPECT_EQ(json[5]["status"], "solved");
   EXPECT_EQ(json[5]["depth_status"], "too_blurred");
   EXPECT_TRUE(json[5]["near_limit_mm"].is_null());

@@ -13,9 +13,9 @@ TEST_F(Gallery, DrawsFigure7) {
   EXPECT_TRUE(read(path("figure.png")).starts_with("\x89PNG"));
 }
 
-/// Wu et al. 2010 say in words what their figure 7 shows; four readings of "in focus" and "distance from the lens"
-/// each.
-TEST_F(Gallery, TheProfilesAgreeWithThePapersWordsButWhereKnown) {
+/// Wu et al. 2010 describe their figure 7 in words, tested here for four readings of "in focus" and "distance from the
+/// lens".
+TEST_F(Gallery, TheProfilesAgreeWithThePapersWordsExceptWhereKnown) {
   const auto outcome = run("wu_statements", {"--samples", "16384", "--html", path("table.html")});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const auto rows = lines(outcome.out);
@@ -30,7 +30,7 @@ TEST_F(Gallery, TheProfilesAgreeWithThePapersWordsButWhereKnown) {
   EXPECT_EQ(disagree.count("double_gauss_100mm_f1.7_substitute"), 0u);
   // The third row at the paraxial focus is sharpest when focused at 1100 mm, not at 1000.
   EXPECT_EQ(disagree["double_gauss_100mm_f2_28deg"], 2) << outcome.out;
-  // The Tronnier does the reverse at every distance but 1000 mm.
+  // The Tronnier does the opposite at every distance except 1000 mm.
   EXPECT_EQ(disagree["double_gauss_100mm_f2.0"], 16) << outcome.out;
   EXPECT_NE(read(path("table.html")).find("</table>"), std::string::npos);
 }

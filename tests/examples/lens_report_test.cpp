@@ -35,7 +35,7 @@ TEST_F(LensReport, SaysWhatTheLibraryFinds) {
   EXPECT_EQ(json["stop_surface"], 5);
   EXPECT_TRUE(json["lint"].is_array());
 
-  // What the sources print (data/README.md).
+  // Values printed by the sources (data/README.md).
   EXPECT_NEAR(json["effective_focal_length_mm"].get<double>(), 100.437, 0.0005);
   EXPECT_NEAR(json["f_number_real"].get<double>(), 1.353, 0.0005);
 }
@@ -46,7 +46,7 @@ TEST_F(LensReport, PrintsATable) {
   EXPECT_NE(outcome.out.find("Double Gauss 100 mm f/1.35 (Lowenthal)\n11 surfaces, stop: surface 5\n"),
             std::string::npos);
   EXPECT_NE(outcome.out.find("100.4369 mm\n"), std::string::npos);
-  EXPECT_NE(outcome.out.find("lint: nothing to ask about\n"), std::string::npos);
+  EXPECT_NE(outcome.out.find("lint: no findings\n"), std::string::npos);
 }
 
 TEST_F(LensReport, FollowsTheWavelength) {
@@ -85,7 +85,7 @@ TEST_F(LensReport, SaysOnceThatTheAbbeModelStandsIn) {
   EXPECT_EQ(outcome.status, 0);
   EXPECT_EQ(nlohmann::json::parse(outcome.out)["dispersion"], "abbe");
   EXPECT_EQ(outcome.err,
-            "note: petzval_portrait_100mm_f3.4: 4 media are in no glass table; the n_d/V_d model stands in away from "
+            "note: petzval_portrait_100mm_f3.4: 4 media are in no glass table; the n_d/V_d model is used away from "
             "587.5618 nm\n");
 }
 
@@ -113,7 +113,7 @@ TEST_F(LensReport, ReportsBothSectionsOfALensWithCylinders) {
   const auto json = nlohmann::json::parse(run("lens_report", {file, "--json"}).out);
   EXPECT_EQ(json["meridian"], "y");
   const auto &x = json["meridians"]["x"], &y = json["meridians"]["y"];
-  // What the patent prints.
+  // Values printed by the patent.
   EXPECT_NEAR(y["effective_focal_length_mm"].get<double>(), 60.55, 0.01);
   EXPECT_NEAR(x["effective_focal_length_mm"].get<double>(), 31.49, 0.01);
   for (const auto& [key, value] : y.items()) EXPECT_EQ(json[key], value) << key;
@@ -157,12 +157,12 @@ TEST_F(LensReport, DrawsFiguresAndAPage) {
     EXPECT_TRUE(svg.starts_with("<svg")) << names[i];
     EXPECT_NE(page.find(svg), std::string::npos) << names[i] << " is in the page";
   }
-  // Its fields are the axis, 0.7 and 1 of the declared 20 degrees; the page names its source and its lint.
+  // The fields are 0, 0.7 and 1 of the declared 20 degrees; the page names the source and the findings.
   for (const char* field : {"field 0\u00b0", "field 14\u00b0", "field 20\u00b0"}) {
     EXPECT_NE(page.find(field), std::string::npos) << field;
   }
   EXPECT_NE(page.find("textbook Cooke triplet"), std::string::npos);
-  EXPECT_NE(page.find("Questions to the table"), std::string::npos);
+  EXPECT_NE(page.find("<h2>Lint</h2>"), std::string::npos);
   EXPECT_EQ(page.find("href"), std::string::npos) << "it needs no other file";
 
   run("lens_report", {file, "--out", path("again")});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The pages of the repository: their code is that of programs, their output what these print, their paths exist.
+// The pages of the repository: their code is code of programs, their output is printed by them, their paths exist.
 #include <algorithm>
 #include <filesystem>
 #include <regex>
@@ -25,7 +25,7 @@ class Readme : public Programs {
     return result;
   }
 
-  /// Every line moved to the right, without blanks at its end.
+  /// Every line indented, without trailing blanks.
   static std::string indented(const std::string& text, std::size_t columns) {
     std::string result;
     for (const std::string& line : lines(text)) {

@@ -16,7 +16,7 @@ using nlohmann::json;
 using petzval::radians;
 using Arguments = std::vector<std::string>;
 
-/// Points of a table top, seen from above by a lens of 100 mm.
+/// Points of a table top, seen from above by a 100 mm lens.
 constexpr const char* table = R"([{"position_mm": [-75, -73, -720]}, {"position_mm": [95, -54, -766]},
   {"position_mm": [0, 2, -900]}, {"position_mm": [-150, 86, -1100]}, {"position_mm": [160, 107, -1150]}])";
 const Arguments thin_50{"--model", "thin", "--thin-focal-length-mm", "50", "--f-number", "2"};
@@ -109,7 +109,7 @@ TEST_F(TiltShift, SolvesAThinLensExactly) {
   ASSERT_EQ(found["blur_um"].size(), 4u);
   for (const json& blur : found["blur_um"]) {
     EXPECT_LT(std::abs(blur["predicted"].get<double>()), 1e-6);
-    EXPECT_TRUE(blur["traced"].is_null());  // there is no real lens
+    EXPECT_TRUE(blur["traced"].is_null());  // an ideal lens has no rays
   }
   EXPECT_LT(found["rms_um"], 1e-6);
   EXPECT_GT(found["before"]["rms_um"], 40);
@@ -128,7 +128,7 @@ TEST_F(TiltShift, HasTheKeysThatReadersRelyOn) {
   EXPECT_EQ(found["plane_normal"].size(), 3u);
   EXPECT_EQ(found["film_centre_mm"].size(), 2u);
   EXPECT_EQ(found["use"], json::array({"used", "used", "used", "used", "used"}));
-  EXPECT_EQ(found["model"], "real");  // unless said
+  EXPECT_EQ(found["model"], "real");  // the default
   EXPECT_EQ(found["files"].size(), 3u);
 }
 
@@ -164,18 +164,18 @@ TEST_F(TiltShift, TheRealLensIsSharperTiltedAndThePredictionHolds) {
     const double before = found["before"]["blur_um"][i], predicted = found["blur_um"][i]["predicted"],
                  traced = found["blur_um"][i]["traced"];
     EXPECT_NEAR(predicted, traced, 0.05 * std::abs(traced)) << i;
-    if (i == 2) continue;  // the one in the middle is sharp before
+    if (i == 2) continue;  // the middle one is already sharp
     EXPECT_LT(std::abs(traced), 0.5 * std::abs(before)) << i;
   }
   EXPECT_LT(found["rms_um"], 0.25 * found["before"]["rms_um"].get<double>());
-  // The plane is that of the points, which lie in one within a millimetre, wherever aberrations put the film.
+  // The points lie in a plane within a millimetre, and it is the plane of focus despite aberrations.
   for (const petzval::FocusTarget& target : targets_of(table)) {
     const auto& p = target.place.position;
     const double along = found["plane_normal"][0].get<double>() * p.x + found["plane_normal"][1].get<double>() * p.y +
                          found["plane_normal"][2].get<double>() * p.z;
     EXPECT_NEAR(along, found["plane_offset_mm"], 1);
   }
-  // Exact rays know of spherical aberration what cardinal points do not.
+  // Exact rays show spherical aberration, cardinal points do not.
   const json thick = gauss(table, {"--model", "thick"});
   EXPECT_LT(std::abs(thick["rms_um"].get<double>()), 5);
   double real_squares = 0, thick_squares = 0;
@@ -204,11 +204,11 @@ TEST_F(TiltShift, GivesTheLeastTiltWhereThePointsFixNoPlane) {
   EXPECT_NEAR(one["plane_normal"][2], 1, 1e-12);
   const std::string twice = R"({"position_mm": [100, 50, -1000]})";
   check("[" + twice + "," + twice + "]", "point", "upright");
-  // Side by side: all the slope there is lies along x.
+  // Points side by side have a slope along x only.
   const json two = check(R"([{"position_mm": [-200, 0, -1000]}, {"position_mm": [300, 0, -1500]}])", "line", "line");
   EXPECT_NEAR(two["film_tilt_deg"], 0, 1e-9);
   EXPECT_GT(std::abs(two["film_swing_deg"].get<double>()), 0.1);
-  // One line in space.
+  // All points lie on one line.
   check(R"([{"position_mm": [-200, 0, -1000]}, {"position_mm": [50, 0, -1250]}, {"position_mm": [300, 0, -1500]}])",
         "line", "line");
 }
@@ -245,7 +245,7 @@ TEST_F(TiltShift, TakesPointsAtInfinityAndWantedBlurs) {
   for (const json& blur : far["blur_um"]) EXPECT_LT(std::abs(blur["predicted"].get<double>()), 1e-6);
   const json blurred = result(thin_50, R"([{"position_mm": [0, 0, -1000], "blur_mm": 0.05}])");
   EXPECT_NEAR(blurred["blur_um"][0]["predicted"], 50, 1e-6);
-  // Beyond the plane of focus, which is nearer then.
+  // Now the point lies beyond the plane of focus.
   EXPECT_GT(blurred["plane_offset_mm"], -1000);
   const json infinity = result(thin_50, R"([{"position_mm": [0, 0, -1], "at_infinity": true}])");
   EXPECT_TRUE(infinity["plane_normal"].is_null());
@@ -290,12 +290,12 @@ TEST_F(TiltShift, SaysInWordsWhatItDid) {
   const auto has = [](const std::string& text, const std::string& part) {
     EXPECT_NE(text.find(part), std::string::npos) << text;
   };
-  has(words(table), "solved: the points fix the plane of focus");
+  has(words(table), "solved: the points determine the plane of focus");
   has(words(R"([{"position_mm": [0, 0, -1000]}])"), "least tilt: one place");
   has(words(R"([{"position_mm": [0, 9, -1000]}, {"position_mm": [0, -90, -900]}])"), "no slope across it");
-  has(words(table, {"--max-tilt-deg", "1"}), "limited: the film may lean by 1 degrees only");
+  has(words(table, {"--max-tilt-deg", "1"}), "limited: the tilt may be at most 1 degrees");
   has(words(R"([{"position_mm": [0, 0, -1000]}, {"position_mm": [0, 0, 10]}])"),
-      "left out: the lens forms no image of it");
+      "left out: no film can reach its image");
 }
 
 TEST_F(TiltShift, RefusesPointsThatAreNone) {
@@ -320,7 +320,7 @@ TEST_F(TiltShift, RefusesPointsThatAreNone) {
 
 TEST_F(TiltShift, RefusesPointsThatCannotBeInFocus) {
   refuses(R"([{"position_mm": [0, 0, 1000]}])",
-          "found no point to focus on (point 1 is left out: the lens forms no image of it");
+          "found no point to focus on (point 1 is left out: no film can reach its image");
   refuses(R"([{"position_mm": [0, 0, 0]}])", "found no point to focus on");
   refuses(R"([{"position_mm": [0, 0, -1000], "weight": 0}])", "its weight is 0");
   refuses(R"([{"position_mm": [0, 900, -1000]}])", "outside the picture", {"--film-mm", "36x24"});

@@ -12,7 +12,7 @@ class TraceRays : public Programs {
  protected:
   static constexpr const char* header = "x_mm,y_mm,z_mm,dx,dy,dz\n";
 
-  /// Rows of the result, split at commas; the header is checked and left out.
+  /// Rows of the result without the header, split at commas.
   std::vector<std::vector<std::string>> traced(const std::string& lens_id, const std::string& csv,
                                                std::vector<std::string> more = {}) const {
     write("rays.csv", csv);
