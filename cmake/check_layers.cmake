@@ -12,12 +12,13 @@ set(layer_1 media surface prescription film)
 set(layer_2 lens)
 set(layer_3 paraxial trace)
 set(layer_4 pupil)
-set(layer_5 focus lint polynomial)  # lint compares what a prescription declares with what the modules below compute
-set(layer_6 movement)
-set(layer_7 camera)
-set(layer_8 psf)
-set(layer_9 io figure)   # the edge
-set(edge 9)
+set(layer_5 pupil_table lint)  # lint compares what a prescription declares with what the modules below compute
+set(layer_6 focus polynomial)
+set(layer_7 movement)
+set(layer_8 camera)
+set(layer_9 psf)
+set(layer_10 io figure)   # the edge
+set(edge 10)
 foreach(layer RANGE ${edge})
   foreach(module IN LISTS layer_${layer})
     set(layer_of_${module} ${layer})
@@ -62,7 +63,7 @@ endfunction()
 
 get_filename_component(ROOT "${ROOT}" ABSOLUTE)
 file(GLOB_RECURSE files RELATIVE "${ROOT}" "${ROOT}/include/*.hpp" "${ROOT}/lib/*.hpp" "${ROOT}/lib/*.cpp")
-set(layer_of_all 10)
+set(layer_of_all 11)
 foreach(file IN LISTS files)
   string(REGEX REPLACE "^(include/petzval|lib)/([^/]+)/.*$" "\\2" module "${file}")
   if(file STREQUAL "include/petzval/petzval.hpp")

@@ -7,7 +7,7 @@
 /// an immutable value, always valid, cheap to copy, safe to share between threads. Everything else asks the Lens.
 ///
 ///     Prescription  --compile-->  Lens  -->  first_order, pupils, real_f_number     numbers about the lens
-///                                       -->  chief_ray, aim, pupil_outline          which rays of a point get through
+///                                       -->  chief_ray, aim, pupil_boundary          which rays of a point get through
 ///                                       -->  relative_illumination                  how much light the film gets
 ///                                       -->  solve_focus, depth_of_field            where the film belongs
 ///                                       -->  autofocus, fit_tilt                    a film for points to be sharp,
@@ -64,7 +64,7 @@
 #include "petzval/pupil/aim.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "petzval/pupil/illumination.hpp"
-#include "petzval/pupil/outline.hpp"
+#include "petzval/pupil/pupil_boundary.hpp"
 #include "petzval/pupil/pupil_sampler.hpp"
 #include "petzval/trace/batch.hpp"
 #include "petzval/trace/differentials.hpp"

@@ -154,15 +154,15 @@ CameraRayDifferential Camera::sample_differential(const CameraSample& s) const n
   CameraRayDifferential result{sample(s)};
   if (!result.sample) return result;
   const std::size_t wavelength = lens().position(s.wavelength);
-  const auto upright = [&]() -> LineDerivatives {
+  const auto upright = [&]() -> TwoPlaneRayDerivatives {
     const PupilSample at = pupils().sample(s.film, s.pupil_u, s.pupil_v, wavelength);
-    const auto [by_x, by_y] = pupils().motion(s.film, s.pupil_u, s.pupil_v, wavelength);
+    const auto [by_x, by_y] = pupils().derivatives(s.film, s.pupil_u, s.pupil_v, wavelength);
     return {{s.film.x, s.film.y, at.x, at.y}, {1, 0, by_x[0], by_x[1]}, {0, 1, by_y[0], by_y[1]}};
   };
   const auto* first_order = std::get_if<ParaxialModel>(&data_->model);
   const bool pinhole = first_order && !first_order->pinhole_shifts().empty();
   const TiltedFilm* tilted = data_->scene.tilted();
-  const LineDerivatives line =
+  const TwoPlaneRayDerivatives line =
       !tilted   ? upright()
       : pinhole ? camera_detail::pinhole_line(*tilted, s.film, first_order->pinhole_shifts()[wavelength])
                 : tilted->line(s.film, s.pupil_u, s.pupil_v, wavelength);

@@ -7,7 +7,7 @@
 #include "core/widest.hpp"
 #include "film/film_bounds.hpp"
 #include "petzval/camera/camera_ray.hpp"
-#include "petzval/pupil/two_plane_rays.hpp"
+#include "petzval/pupil_table/two_plane_rays.hpp"
 
 namespace petzval::inline v0::camera_detail {
 

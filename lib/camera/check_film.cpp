@@ -8,7 +8,8 @@
 #include "petzval/core/error.hpp"
 #include "petzval/core/text.hpp"
 #include "petzval/film/film.hpp"
-#include "petzval/pupil/two_plane_rays.hpp"
+#include "petzval/pupil_table/two_plane_rays.hpp"
+#include "pupil/face.hpp"
 
 namespace petzval::inline v0::camera_detail {
 
@@ -40,7 +41,7 @@ FilmBehindLens placed(const Lens& lens, const Film& film) {
 void check_film(const Lens& lens, const Film& film) {
   check_rectangle(lens.name() + ": film", film);
   if (!film.tilted()) return;
-  const OuterFace face = last_face(lens);
+  const pupil_detail::Face face = pupil_detail::last_face(lens);
   const double film_z = film.z();
   // Where the last surface ends on the film's side; its vertex, where it reaches around the upright film.
   const double side = film_z > face.vertex_z ? 1 : -1, edge = side > 0 ? face.z_max : face.z_min;

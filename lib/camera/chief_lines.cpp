@@ -9,7 +9,7 @@
 #include "core/meet_plane.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/paraxial/pupils.hpp"
-#include "petzval/pupil/two_plane_rays.hpp"
+#include "petzval/pupil_table/two_plane_rays.hpp"
 #include "petzval/trace/sequential.hpp"
 #include "petzval/trace/trace.hpp"
 

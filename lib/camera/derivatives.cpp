@@ -19,7 +19,7 @@ struct Line {
   Jet film_x, film_y, pupil_x, pupil_y;
 };
 
-Line line_of(const LineDerivatives& d) noexcept {
+Line line_of(const TwoPlaneRayDerivatives& d) noexcept {
   const auto jet = [&](double TwoPlaneRay::*part) {
     Jet x(d.line.*part);
     x.v[0] = d.by_u.*part;
@@ -41,7 +41,7 @@ RayDerivatives derivatives_of(const Vec& origin, const Vec& direction) noexcept 
 }  // namespace
 
 template <class R>
-RayDerivatives ExactModel<R>::to_scene(const LineDerivatives& line, std::size_t wavelength) const noexcept {
+RayDerivatives ExactModel<R>::to_scene(const TwoPlaneRayDerivatives& line, std::size_t wavelength) const noexcept {
   const TwoPlanes& space = pupils_.space();
   const auto [film_x, film_y, pupil_x, pupil_y] = line_of(line);
   const double depth = space.depth();
@@ -59,10 +59,10 @@ RayDerivatives ExactModel<R>::to_scene(const LineDerivatives& line, std::size_t 
   return end.fate == RayFate::transmitted ? derivatives_of(end.origin, end.direction) : start;
 }
 
-template RayDerivatives ExactModel<float>::to_scene(const LineDerivatives&, std::size_t) const noexcept;
-template RayDerivatives ExactModel<double>::to_scene(const LineDerivatives&, std::size_t) const noexcept;
+template RayDerivatives ExactModel<float>::to_scene(const TwoPlaneRayDerivatives&, std::size_t) const noexcept;
+template RayDerivatives ExactModel<double>::to_scene(const TwoPlaneRayDerivatives&, std::size_t) const noexcept;
 
-RayDerivatives ParaxialModel::to_scene(const LineDerivatives& line, std::size_t wavelength) const noexcept {
+RayDerivatives ParaxialModel::to_scene(const TwoPlaneRayDerivatives& line, std::size_t wavelength) const noexcept {
   if (wavelength >= to_scene_.size()) return {RayFate::missed_surface};
   const auto [film_x, film_y, pupil_x, pupil_y] = line_of(line);
   const camera_detail::PairMap& m = to_scene_[wavelength];

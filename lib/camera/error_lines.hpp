@@ -9,7 +9,7 @@
 
 #include "petzval/camera/any_model.hpp"
 #include "petzval/film/film.hpp"
-#include "petzval/pupil/two_plane_rays.hpp"
+#include "petzval/pupil_table/two_plane_rays.hpp"
 
 /// The lines along which models are compared with the lens.
 namespace petzval::inline v0::camera_detail {

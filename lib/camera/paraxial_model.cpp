@@ -14,8 +14,8 @@
 #include "petzval/core/text.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/paraxial/pupils.hpp"
-#include "petzval/pupil/film_pupil_table.hpp"
-#include "petzval/pupil/pupil_polygon.hpp"
+#include "petzval/pupil_table/film_pupil_table.hpp"
+#include "pupil_table/sector.hpp"
 #include "two_disc_fit.hpp"
 
 namespace petzval::inline v0 {
@@ -90,9 +90,9 @@ PupilDisc thin_disc(const Lens& lens, std::size_t wavelength, const TwoPlanes& s
 
 /// Edges of the real pupils of some film points, at equal steps of film area; none where hardly any light comes.
 std::vector<camera_detail::EdgePoint> real_edges(const FilmPupilTable& real, std::size_t wavelength) {
-  constexpr int fields = 16, directions = pupil_detail::polygon_corners / 2;
+  constexpr int fields = 16, directions = pupil_table_detail::polygon_corners / 2;
   // The stars stand for pupils of the same area; this part of the way between their corners they cross a round one.
-  constexpr double crossing = 0.21, step = 2.0 / pupil_detail::polygon_corners;
+  constexpr double crossing = 0.21, step = 2.0 / pupil_table_detail::polygon_corners;
   constexpr double darkest = 0.01;  // of the pupil's area on the axis
   std::vector<camera_detail::EdgePoint> edges;
   for (int j = 0; j <= fields; ++j) {

@@ -9,7 +9,7 @@
 #include "petzval/camera/exact_model.hpp"
 #include "petzval/camera/model_error.hpp"
 #include "petzval/film/film.hpp"
-#include "petzval/pupil/film_pupil_table.hpp"
+#include "petzval/pupil_table/film_pupil_table.hpp"
 
 namespace petzval::inline v0::camera_detail {
 

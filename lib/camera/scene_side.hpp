@@ -12,7 +12,7 @@
 #include "petzval/camera/tilted_film.hpp"
 #include "petzval/film/film.hpp"
 #include "petzval/lens/lens.hpp"
-#include "petzval/pupil/entrance_pupil_table.hpp"
+#include "pupil_table/entrance_pupil_table.hpp"
 
 namespace petzval::inline v0::camera_detail {
 

@@ -24,6 +24,7 @@
 #include "petzval/film/film.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/paraxial/pupils.hpp"
+#include "pupil/face.hpp"
 #include "tilted_pinhole.hpp"
 
 namespace petzval::inline v0 {
@@ -63,7 +64,8 @@ Key differentiated_key(const camera_detail::TiltedPlane& plane, const FilmPoint&
   return {key_x, key_y, plane.slope_x * key_x + plane.slope_y * key_y};
 }
 
-LineDerivatives derivatives_of(const Jet& film_x, const Jet& film_y, const Jet& pupil_x, const Jet& pupil_y) noexcept {
+TwoPlaneRayDerivatives derivatives_of(const Jet& film_x, const Jet& film_y, const Jet& pupil_x,
+                                      const Jet& pupil_y) noexcept {
   const auto part = [&](int k) { return TwoPlaneRay{film_x.v[k], film_y.v[k], pupil_x.v[k], pupil_y.v[k]}; };
   return {{film_x.a, film_y.a, pupil_x.a, pupil_y.a}, part(0), part(1)};
 }
@@ -120,7 +122,7 @@ double upright_radius(const Lens& given_lens, const Film& given_film, ModelKind 
   const double film_z = film.z();
   const double pupil_z = two_planes(lens).pupil_z;
   const std::vector<Rim> pupils = pupils_of(lens, model);
-  const OuterFace face = last_face(lens);
+  const pupil_detail::Face face = pupil_detail::last_face(lens);
   const bool discs = model <= ModelKind::thick && model != ModelKind::thin_two_disc;
   // Aberrations move a pupil that lies behind the film by more than its size.
   const bool in_lens = !pupils.empty() && std::all_of(pupils.begin(), pupils.end(), [&](const Rim& rim) {
@@ -162,7 +164,7 @@ TiltedFilm::TiltedFilm(const Film& film, const FilmPupilTable& pupils)
     throw Error(where + ": the pupils are those of film points up to " + number(pupils.film_radius()) +
                 " mm from the axis, wanted " + number(lean.radius) + " mm or more");
   }
-  pupils_ = pupils.leaning(lean);
+  pupils_ = pupils.for_tilted_film(lean);
 }
 
 FilmPoint TiltedFilm::key(const FilmPoint& film) const noexcept {
@@ -192,17 +194,19 @@ double TiltedFilm::weight(const FilmPoint& key, double pupil_x, double pupil_y) 
   return std::max(plane_.cosine * front * near * near * near, 0.0);
 }
 
-LineDerivatives TiltedFilm::line(const FilmPoint& film, double u, double v, std::size_t wavelength) const noexcept {
+TwoPlaneRayDerivatives TiltedFilm::line(const FilmPoint& film, double u, double v,
+                                        std::size_t wavelength) const noexcept {
   const Key key = differentiated_key(plane_, film);
   const PupilSample at = pupils_.sample(key.point(), u, v, wavelength);
-  const auto [by_x, by_y] = pupils_.motion(key.point(), u, v, wavelength);
+  const auto [by_x, by_y] = pupils_.derivatives(key.point(), u, v, wavelength);
   Jet pupil_x(at.x), pupil_y(at.y);
   pupil_x.v = by_x[0] * key.x.v + by_y[0] * key.y.v;
   pupil_y.v = by_x[1] * key.x.v + by_y[1] * key.y.v;
   return derivatives_of(key.x - key.lean * pupil_x, key.y - key.lean * pupil_y, pupil_x, pupil_y);
 }
 
-LineDerivatives camera_detail::pinhole_line(const TiltedFilm& tilted, const FilmPoint& film, double shift) noexcept {
+TwoPlaneRayDerivatives camera_detail::pinhole_line(const TiltedFilm& tilted, const FilmPoint& film,
+                                                   double shift) noexcept {
   const Key key = differentiated_key(tilted.plane(), film);
   const Jet x = key.x / (1.0 + key.lean * shift), y = key.y / (1.0 + key.lean * shift);
   return derivatives_of(x, y, shift * x, shift * y);

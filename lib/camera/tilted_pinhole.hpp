@@ -17,6 +17,6 @@ inline double part_of_place(const TiltedPlane& plane, const FilmPoint& place) no
 }
 
 /// The upright line of a film point's ray, with its derivatives by film x and y.
-LineDerivatives pinhole_line(const TiltedFilm& tilted, const FilmPoint& film, double shift) noexcept;
+TwoPlaneRayDerivatives pinhole_line(const TiltedFilm& tilted, const FilmPoint& film, double shift) noexcept;
 
 }  // namespace petzval::inline v0::camera_detail

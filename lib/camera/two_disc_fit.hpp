@@ -4,7 +4,7 @@
 #include <array>
 #include <span>
 
-#include "petzval/pupil/film_pupil_table.hpp"
+#include "petzval/pupil_table/film_pupil_table.hpp"
 
 namespace petzval::inline v0::camera_detail {
 

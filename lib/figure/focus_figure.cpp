@@ -46,7 +46,7 @@ std::vector<std::optional<Parabola>> parabolas(const Lens& lens, double subject_
   for (const double field : fields_rad) {
     std::vector<PupilSampler> samplers;
     for (std::size_t w = 0; w < lens.wavelengths_nm().size(); ++w) {
-      samplers.emplace_back(pupil_outline(lens, {field, subject_z}, w));
+      samplers.emplace_back(pupil_boundary(lens, {field, subject_z}, w));
     }
     std::array<double, 3> squares{};
     for (std::size_t k = 0; k < 3; ++k) {

@@ -13,7 +13,7 @@
 #include "petzval/core/text.hpp"
 #include "petzval/paraxial/pupils.hpp"
 #include "petzval/pupil/illumination.hpp"
-#include "petzval/pupil/outline.hpp"
+#include "petzval/pupil/pupil_boundary.hpp"
 #include "sheet.hpp"
 
 namespace petzval::inline v0 {
@@ -54,7 +54,7 @@ struct Box {
 };
 
 struct Cell {
-  PupilOutline outline;
+  PupilBoundary outline;
   std::optional<double> illumination;
   Box shown;
   bool away = false;  ///< the paraxial pupil is left out
@@ -66,9 +66,9 @@ class Figure {
       : lens_(lens), subject_z_(subject_z), fields_(fields_rad), wavelength_(lens.primary_wavelength()) {
     half_x_ = pupils(lens, wavelength_, Meridian::x).entrance.diameter / 2;
     half_y_ = pupils(lens, wavelength_, Meridian::y).entrance.diameter / 2;
-    axial_area_ = pupil_outline(lens, {0, subject_z}, wavelength_).area();
+    axial_area_ = pupil_boundary(lens, {0, subject_z}, wavelength_).area();
     for (const double field : fields_rad) {
-      const PupilOutline outline = pupil_outline(lens, {field, subject_z}, wavelength_);
+      const PupilBoundary outline = pupil_boundary(lens, {field, subject_z}, wavelength_);
       cells_.push_back(framed({outline, relative_illumination(lens, {field, subject_z}, wavelength_), {}, false}));
       half_ = std::max(half_, cells_.back().shown.half());
       for (const PupilSpan& span : outline.spans) {

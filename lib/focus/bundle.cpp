@@ -10,7 +10,7 @@
 #include "petzval/core/bisect.hpp"
 #include "petzval/core/quadrature.hpp"
 #include "petzval/paraxial/first_order.hpp"
-#include "petzval/pupil/outline.hpp"
+#include "petzval/pupil/pupil_boundary.hpp"
 #include "petzval/pupil/pupil_plane.hpp"
 #include "petzval/trace/batch.hpp"
 #include "petzval/trace/trace.hpp"
@@ -27,7 +27,7 @@ class Bundle {
   void add(const FieldPoint& point, const WavelengthWeight& colour) {
     // On the axis of a lens of revolution one meridian stands for all: its centroid is the axis.
     centred_ = point.field_rad == 0 && lens_.rotationally_symmetric();
-    const PupilOutline outline = pupil_outline(lens_, point, colour.wavelength, centred_ ? 1 : directions);
+    const PupilBoundary outline = pupil_boundary(lens_, point, colour.wavelength, centred_ ? 1 : directions);
     static const auto nodes = core_detail::gauss_legendre<radial>();
     const double cell = outline.half_axes[0] * outline.half_axes[1] * colour.weight;
     std::vector<Ray<double>> rays;
@@ -79,7 +79,7 @@ class Bundle {
   static constexpr std::size_t directions = 96, radial = 32;
   using Place = std::array<double, 2>;
 
-  TracedRay<double> traced(const PupilOutline& outline, const Place& place) const {
+  TracedRay<double> traced(const PupilBoundary& outline, const Place& place) const {
     return trace(lens_, outline.plane.ray(place[0], place[1]), {.wavelength = outline.wavelength});
   }
 
@@ -92,7 +92,7 @@ class Bundle {
 
   /// The corners of a pupil, where one rim takes over from another, lie farther out than the edges beside them: found
   /// between the last direction with the one and the first with the other.
-  void add_corners(const PupilOutline& outline) {
+  void add_corners(const PupilBoundary& outline) {
     const std::size_t count = outline.spans.size();
     if (count != outline.directions || count < 3) return;
     for (std::size_t k = 0; k < count; ++k) {

@@ -18,9 +18,9 @@ struct WavelengthWeight {
 };
 
 /// By exact rays through whatever passes every rim, in bundles of all fields and wavelengths from the plane
-/// subject_z. Rays lie at the nodes of a quadrature within the spans of pupil_outline, so that the result is a smooth
+/// subject_z. Rays lie at the nodes of a quadrature within the spans of pupil_boundary, so that the result is a smooth
 /// function of the subject and can be solved for. None where a field has no rays. criterion: min_rms or min_max.
-/// Weights: above 0. Throws Error where pupil_outline does.
+/// Weights: above 0. Throws Error where pupil_boundary does.
 std::optional<Image> exact_image(const Lens& lens, double subject_z, std::span<const FocusField> fields,
                                  std::span<const WavelengthWeight> wavelengths, FocusCriterion criterion);
 

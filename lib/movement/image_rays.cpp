@@ -11,9 +11,9 @@
 #include "core/low_discrepancy.hpp"
 #include "core/meet_plane.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/pupil/entrance_pupil_table.hpp"
-#include "petzval/pupil/film_pupil_table.hpp"
+#include "petzval/pupil_table/film_pupil_table.hpp"
 #include "petzval/trace/batch.hpp"
+#include "pupil_table/entrance_pupil_table.hpp"
 #include "signed_diameter.hpp"
 
 namespace petzval::inline v0 {

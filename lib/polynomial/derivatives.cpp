@@ -36,7 +36,7 @@ constexpr std::array<Evaluate, polynomial_detail::degree_count> evaluators{evalu
 
 }  // namespace
 
-RayDerivatives RayPolynomial::to_scene(const LineDerivatives& line, Wavelength at) const noexcept {
+RayDerivatives RayPolynomial::to_scene(const TwoPlaneRayDerivatives& line, Wavelength at) const noexcept {
   const std::size_t wavelength = at.position(data_->primary);
   const Domain& domain = data_->domain;
   RayDerivatives result{RayFate::outside_fit, {{0, 0, domain.reference_z}, {0, 0, -1}}};

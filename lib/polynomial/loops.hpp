@@ -8,7 +8,7 @@
 #include "core/widest.hpp"
 #include "petzval/core/ray.hpp"
 #include "petzval/lens/wavelength.hpp"
-#include "petzval/pupil/two_plane_rays.hpp"
+#include "petzval/pupil_table/two_plane_rays.hpp"
 
 namespace petzval::inline v0::polynomial_detail {
 

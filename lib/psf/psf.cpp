@@ -102,7 +102,7 @@ PointImage point_image(const Lens& lens, const FieldPoint& point, const PsfOptio
                             pupils(lens, lens.primary_wavelength(), Meridian::y).entrance.diameter;
   std::vector<FilmHits> sets;
   for (std::size_t w = 0; w < psf.wavelengths_nm.size(); ++w) {
-    const PupilSampler pupil(pupil_outline(lens, point, w));
+    const PupilSampler pupil(pupil_boundary(lens, point, w));
     sets.push_back(trace_bundle(lens, pupil, options.samples, options.seed, options.threads));
     psf.sent.push_back(options.samples);
     psf.transmitted.push_back(sets.back().x.size());

@@ -66,7 +66,7 @@ std::vector<Spot> spot_diagram(const Lens& lens, double subject_z, std::span<con
       Spot spot;
       spot.point = point;
       spot.wavelength = w;
-      spot.hits = trace_bundle(lens, PupilSampler(pupil_outline(lens, point, w)), samples);
+      spot.hits = trace_bundle(lens, PupilSampler(pupil_boundary(lens, point, w)), samples);
       spot.size = spot_size(spot.hits.x, spot.hits.y);
       spot.relative_illumination = relative_illumination(lens, point, w);
       const AimedRay chief = chief_ray(lens, point, w);

@@ -19,7 +19,7 @@ double half_height(const Lens& lens, std::size_t surface, const Pupil& entrance)
 }
 
 Face face_of(const Lens& lens, std::size_t surface, const Pupil& entrance) noexcept {
-  Face face{.half = half_height(lens, surface, entrance)};
+  Face face{.half = half_height(lens, surface, entrance), .vertex_z = lens.surfaces()[surface].vertex_z};
   // Cylinders are curved in one of the two sections.
   constexpr int samples = 64;
   for (const bool along_x : {false, true}) {
@@ -31,10 +31,15 @@ Face face_of(const Lens& lens, std::size_t surface, const Pupil& entrance) noexc
       face.z_max = std::max(face.z_max, z);
     }
   }
-  const double between_samples = 0.02 * (face.z_max - face.z_min), vertex_z = lens.surfaces()[surface].vertex_z;
-  face.z_min += vertex_z - between_samples;
-  face.z_max += vertex_z + between_samples;
+  const double between_samples = 0.02 * (face.z_max - face.z_min);
+  face.z_min += face.vertex_z - between_samples;
+  face.z_max += face.vertex_z + between_samples;
   return face;
+}
+
+Face last_face(const Lens& lens) {
+  const Pupil entrance = has_pupils(lens) ? pupils(lens, lens.primary_wavelength()).entrance : Pupil{};
+  return face_of(lens, lens.surface_count() - 1, entrance);
 }
 
 }  // namespace petzval::inline v0::pupil_detail

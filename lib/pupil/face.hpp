@@ -3,19 +3,25 @@
 
 #include <cstddef>
 
+#include "petzval/core/export.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/paraxial/pupils.hpp"
 
 namespace petzval::inline v0::pupil_detail {
 
-/// Half height of what an outer surface lets in: its own, or where it is unlimited four times the widest rim or pupil.
+/// Half height through which light enters an outer surface: its own, or where it is unlimited four times that of the
+/// widest rim or pupil.
 double half_height(const Lens& lens, std::size_t surface, const Pupil& entrance) noexcept;
 
-/// An outer surface as a box around its clear part: half height, lowest and highest z of the lens frame.
+/// An outer surface as a box around its clear part, lens frame, mm.
 struct Face {
-  double half = 0, z_min = 0, z_max = 0;
+  double half = 0;  ///< half height
+  double vertex_z = 0, z_min = 0, z_max = 0;
 };
 
 Face face_of(const Lens& lens, std::size_t surface, const Pupil& entrance) noexcept;
+
+/// The last surface.
+PETZVAL_API Face last_face(const Lens& lens);
 
 }  // namespace petzval::inline v0::pupil_detail

@@ -7,33 +7,19 @@
 #include <limits>
 #include <numbers>
 
+#include "pupil_region.hpp"
+
 namespace petzval::inline v0 {
-namespace {
 
-/// What passes along one direction, its gaps filled.
-struct Extent {
-  double from = 0, to = 0;
-  bool any = false;
-};
-
-std::vector<Extent> extents(const PupilOutline& outline) {
-  std::vector<Extent> result(outline.directions);
-  for (const PupilSpan& span : outline.spans) {
-    Extent& e = result[span.direction];
-    e.from = e.any ? std::min(e.from, span.from_radius) : span.from_radius;
-    e.to = e.any ? std::max(e.to, span.to_radius) : span.to_radius;
-    e.any = true;
-  }
-  return result;
-}
-
-}  // namespace
-
-PupilSampler::PupilSampler(const PupilOutline& outline)
-    : plane_(outline.plane), wavelength_(outline.wavelength), middle_(outline.middle), half_axes_(outline.half_axes) {
-  if (outline.empty()) return;
-  const auto along = extents(outline);
-  const std::size_t n = outline.directions;
+PupilSampler::PupilSampler(const PupilBoundary& boundary)
+    : plane_(boundary.plane),
+      wavelength_(boundary.wavelength),
+      middle_(boundary.middle),
+      half_axes_(boundary.half_axes) {
+  if (boundary.empty()) return;
+  using pupil_detail::Extent;
+  const std::vector<Extent> along = pupil_detail::extents(boundary);
+  const std::size_t n = boundary.directions;
   // Pieces are so slim that a few terms of a series are their sine and cosine.
   constexpr std::size_t least_pieces = 64;
   const std::size_t parts = (least_pieces + n - 1) / n;
@@ -46,15 +32,15 @@ PupilSampler::PupilSampler(const PupilOutline& outline)
   double sum = 0;
   for (std::size_t k = 0; k < n; ++k) {
     const Extent &a = along[k], &b = along[(k + 1) % n];
-    if (!a.any && !b.any) continue;
+    if (!a.lit && !b.lit) continue;
     double inner_step = 0, outer_step = 0;
     for (std::size_t i = 0; i < 3; ++i) {
       const Extent &p = along[(k + n - 1 + i) % n], &q = along[(k + i) % n];
-      if (!p.any || !q.any) continue;
-      inner_step = std::max(inner_step, std::abs(p.from - q.from));
+      if (!p.lit || !q.lit) continue;
+      inner_step = std::max(inner_step, std::abs(p.from() - q.from()));
       outer_step = std::max(outer_step, std::abs(p.to - q.to));
     }
-    const double least = !a.any ? b.from : !b.any ? a.from : std::min(a.from, b.from);
+    const double least = !a.lit ? b.from() : !b.lit ? a.from() : std::min(a.from(), b.from());
     const double inner = std::max(0.0, least - inner_step / 2 - margin);
     const double outer = std::max(a.to, b.to) + outer_step / 2 + margin;
     const double squares = (outer - inner) * (outer + inner);

@@ -36,7 +36,7 @@ struct Block {
 struct Light {
   petzval::Lens lens;
   petzval::FieldPoint point;
-  petzval::PupilSampler pupil{petzval::pupil_outline(lens, point)};
+  petzval::PupilSampler pupil{petzval::pupil_boundary(lens, point)};
 
   Light(const std::string& id, double field_deg)
       : lens(petzval::compile(petzval::read_prescription(std::string(PETZVAL_BENCH_DATA) + "/lenses/" + id + ".json"))),

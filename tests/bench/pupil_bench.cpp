@@ -12,7 +12,7 @@
 #include "petzval/core/units.hpp"
 #include "petzval/io/prescription_json.hpp"
 #include "petzval/pupil/aim.hpp"
-#include "petzval/pupil/outline.hpp"
+#include "petzval/pupil/pupil_boundary.hpp"
 #include "petzval/pupil/pupil_sampler.hpp"
 #include "petzval/trace/trace.hpp"
 #include "table.hpp"
@@ -46,7 +46,7 @@ Setup setup(const std::string& id, double field_deg, double edge_deg) {
 
 /// Rays all over the pupil of the field, ray by ray; the unit of the others.
 void traced(benchmark::State& state, const Setup& setup) {
-  const petzval::PupilSampler sampler(petzval::pupil_outline(setup.lens, setup.near_field.front()));
+  const petzval::PupilSampler sampler(petzval::pupil_boundary(setup.lens, setup.near_field.front()));
   std::vector<petzval::Ray<double>> rays;
   for (std::uint32_t i = 0; i < 4096; ++i) {
     const auto [u, v] = petzval::owen_sobol(i, 0);
@@ -73,7 +73,7 @@ void chief(benchmark::State& state, const Setup& setup) {
 void outline(benchmark::State& state, const Setup& setup, std::size_t directions) {
   std::size_t i = 0;
   for (auto _ : state) {
-    benchmark::DoNotOptimize(petzval::pupil_outline(setup.lens, setup.near_field[i++ % 64], 0, directions));
+    benchmark::DoNotOptimize(petzval::pupil_boundary(setup.lens, setup.near_field[i++ % 64], 0, directions));
   }
   state.SetItemsProcessed(state.iterations());
 }
@@ -81,7 +81,7 @@ void outline(benchmark::State& state, const Setup& setup, std::size_t directions
 void fields(benchmark::State& state, const Setup& setup) {
   for (auto _ : state) {
     for (const FieldPoint& point : setup.all_fields) {
-      benchmark::DoNotOptimize(petzval::pupil_outline(setup.lens, point));
+      benchmark::DoNotOptimize(petzval::pupil_boundary(setup.lens, point));
     }
   }
   state.SetItemsProcessed(state.iterations());

@@ -297,7 +297,7 @@ TEST(Camera, HasSymplecticDifferentials) {
     const CameraRayDifferential d = camera.sample_differential(s);
     if (!d.sample) continue;
     const PupilSample p = pupils.sample(s.film, s.pupil_u, s.pupil_v);
-    const auto motion = pupils.motion(s.film, s.pupil_u, s.pupil_v);
+    const auto motion = pupils.derivatives(s.film, s.pupil_u, s.pupil_v);
     const Vec3<double> line{p.x - s.film.x, p.y - s.film.y, depth};
     const double length = glm::length(line);
     const auto turned = [&](double x, double y) {

@@ -22,6 +22,7 @@
 #include "petzval/paraxial/pupils.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "petzval/trace/batch.hpp"
+#include "pupil/face.hpp"
 
 namespace petzval {
 namespace {
@@ -138,7 +139,7 @@ TEST_P(Leaning, SamplesReachTheSceneAndMissNothing) {
 
 /// Irradiance of a film point in a scene of radiance 1, by a grid of rays through the last vertex's plane.
 double irradiance(const Lens& lens, const Film& pose, const FilmPoint& point) {
-  const OuterFace face = last_face(lens);
+  const pupil_detail::Face face = pupil_detail::last_face(lens);
   // First all that the last surface could take, then what of it passes.
   std::array<double, 2> low{-1.6 * face.half, -1.6 * face.half}, high{1.6 * face.half, 1.6 * face.half};
   double sum = 0;

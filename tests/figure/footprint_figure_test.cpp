@@ -16,7 +16,7 @@
 #include "petzval/core/units.hpp"
 #include "petzval/paraxial/pupils.hpp"
 #include "petzval/pupil/illumination.hpp"
-#include "petzval/pupil/outline.hpp"
+#include "petzval/pupil/pupil_boundary.hpp"
 #include "svg_parts.hpp"
 
 namespace petzval {
@@ -32,7 +32,7 @@ TEST(FootprintFigure, TellsAreaAndIllumination) {
   const Lens lens = data_lens("double_gauss_100mm_f1.35");
   const std::array fields{0.0, radians(12.95)};
   const std::string svg = footprint_figure(lens, -infinity, fields);
-  const PupilOutline axis = pupil_outline(lens, {0, -infinity}), edge = pupil_outline(lens, {fields[1], -infinity});
+  const PupilBoundary axis = pupil_boundary(lens, {0, -infinity}), edge = pupil_boundary(lens, {fields[1], -infinity});
   EXPECT_NE(svg.find("area 1 of that on the axis"), std::string::npos);
   EXPECT_NE(svg.find("area " + number(edge.area() / axis.area(), 3) + " of"), std::string::npos);
   EXPECT_NE(svg.find("relative illumination " + number(*relative_illumination(lens, {fields[1], -infinity}), 3)),
@@ -44,7 +44,7 @@ TEST(FootprintFigure, NamesEachSurfaceThatLimits) {
   const Lens lens = data_lens("double_gauss_100mm_f1.35");
   const double field = radians(12.95);
   std::set<int> limiting;
-  for (const PupilSpan& span : pupil_outline(lens, {field, -infinity}).spans) limiting.insert(span.to.surface);
+  for (const PupilSpan& span : pupil_boundary(lens, {field, -infinity}).spans) limiting.insert(span.to.surface);
   const std::string svg = footprint_figure(lens, -infinity, std::array{field});
   EXPECT_EQ(paths(svg, edges).size(), limiting.size());
   EXPECT_GE(limiting.size(), 2u);

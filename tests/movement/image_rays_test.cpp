@@ -17,7 +17,7 @@
 #include "petzval/paraxial/pupils.hpp"
 #include "petzval/psf/spot.hpp"
 #include "petzval/pupil/f_number.hpp"
-#include "petzval/pupil/outline.hpp"
+#include "petzval/pupil/pupil_boundary.hpp"
 
 namespace petzval {
 namespace {
@@ -77,7 +77,7 @@ TEST(ImageRays, HaveTheSpotsOfOutlines) {
           SCOPED_TRACE(std::string(id) + ", rays " + std::to_string(rays) + ", degrees " + std::to_string(degrees) +
                        ", mm " + std::to_string(distance));
           const double seen_at = distance == 1e9 ? -infinity : -distance;
-          const PupilSampler pupil(pupil_outline(lens, {degrees * degree, seen_at}, lens.primary_wavelength()));
+          const PupilSampler pupil(pupil_boundary(lens, {degrees * degree, seen_at}, lens.primary_wavelength()));
           const FilmHits hits = trace_bundle(with_film(lens, film_z), pupil, 1 << 16);
           const SpotSize expected = spot_size(hits.x, hits.y);
           const BundleBlur size = blur(bundles, place_at(lens, degrees, -distance), film_at(film_z));

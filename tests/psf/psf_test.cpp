@@ -103,7 +103,7 @@ TEST(PointImage, RowsRunFromTheTop) {
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
   const FieldPoint point{radians(10), -infinity};
   const PointImage image = point_image(lens, point, {.samples = 1 << 14, .pixels = 40, .half_width_mm = 0.05});
-  const FilmHits hits = trace_bundle(lens, PupilSampler(pupil_outline(lens, point)), 1 << 14);
+  const FilmHits hits = trace_bundle(lens, PupilSampler(pupil_boundary(lens, point)), 1 << 14);
   std::uint64_t above = 0, above_left = 0;
   const auto& [cx, cy] = image.psf.centre;
   for (std::size_t i = 0; i < hits.x.size(); ++i) {
@@ -227,7 +227,7 @@ class BinError {
   static Lens defocused(const Lens& lens) { return with_film(lens, lens.film_z() + 2); }
 
   Lens lens_ = defocused(data_lens("double_gauss_100mm_f1.35"));
-  PupilSampler pupil_{pupil_outline(lens_, {radians(14), -infinity})};
+  PupilSampler pupil_{pupil_boundary(lens_, {radians(14), -infinity})};
   SpotSize size_;
   Bins reference_{};
 };

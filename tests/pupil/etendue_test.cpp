@@ -14,7 +14,7 @@
 #include "../data_lenses.hpp"
 #include "petzval/core/sobol.hpp"
 #include "petzval/paraxial/pupils.hpp"
-#include "petzval/pupil/outline.hpp"
+#include "petzval/pupil/pupil_boundary.hpp"
 #include "petzval/trace/trace.hpp"
 
 namespace petzval {
@@ -24,13 +24,13 @@ constexpr double pi = std::numbers::pi;
 constexpr std::uint32_t samples = 1 << 13;
 
 /// Radius about the axis, in the plane z, of the pupils of points at three heights, and a little more.
-template <class OutlineOf>
-double reach(const OutlineOf& outline_of, double height, double z) {
+template <class BoundaryOf>
+double reach(const BoundaryOf& boundary_of, double height, double z) {
   double farthest = 0;
   for (const double h : {0.0, height / 2, height}) {
-    const PupilOutline outline = outline_of(h);
-    for (const PupilSpan& span : outline.spans) {
-      const Ray<double> ray = outline.plane.ray(span.to.x, span.to.y);
+    const PupilBoundary boundary = boundary_of(h);
+    for (const PupilSpan& span : boundary.spans) {
+      const Ray<double> ray = boundary.plane.ray(span.to.x, span.to.y);
       const double t = (z - ray.origin.z) / ray.direction.z;
       farthest = std::max(farthest, std::hypot(ray.origin.x + t * ray.direction.x, ray.origin.y + t * ray.direction.y));
     }
@@ -131,10 +131,10 @@ TEST_P(Etendue, OfAFilmDiscIsTheSameFromBothSides) {
   const auto [id, radius, steepest] = GetParam();
   const Lens lens = testing::data_lens(id);
   const Pupils p = pupils(lens);
-  const double rear = reach([&](double h) { return exit_pupil_outline(lens, {0, h}, 0, 64); }, radius, p.exit.z);
+  const double rear = reach([&](double h) { return exit_pupil_boundary(lens, {0, h}, 0, 64); }, radius, p.exit.z);
   const double front = reach(
       [&](double s) {
-        return pupil_outline(lens, {std::asin(s), -std::numeric_limits<double>::infinity()}, 0, 64);
+        return pupil_boundary(lens, {std::asin(s), -std::numeric_limits<double>::infinity()}, 0, 64);
       },
       steepest, p.entrance.z);
   const double film = from_film(lens, radius, rear, 1), scene = from_scene(lens, radius, steepest, front, 2);

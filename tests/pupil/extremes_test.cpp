@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Aiming and outlines on every lens of data/ and at the ends of what may be asked: laws, and answers to bad questions.
+// Aiming and boundaries on every lens of data/ and at the ends of what may be asked: laws, and answers to bad
+// questions.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,7 +17,7 @@
 #include "petzval/paraxial/pupils.hpp"
 #include "petzval/pupil/aim.hpp"
 #include "petzval/pupil/illumination.hpp"
-#include "petzval/pupil/outline.hpp"
+#include "petzval/pupil/pupil_boundary.hpp"
 #include "petzval/trace/trace.hpp"
 
 namespace petzval {
@@ -29,9 +30,9 @@ constexpr double infinity = std::numeric_limits<double>::infinity(), nan = std::
 
 double edge_deg(const Prescription& p) { return p.half_field_deg.value_or(1); }
 
-RayFate fate(const Lens& lens, const PupilOutline& outline, const PupilSpan& span, double radius) {
-  const auto [x, y] = outline.at(span.direction, radius);
-  return trace(lens, outline.plane.ray(x, y)).fate;
+RayFate fate(const Lens& lens, const PupilBoundary& boundary, const PupilSpan& span, double radius) {
+  const auto [x, y] = boundary.at(span.direction, radius);
+  return trace(lens, boundary.plane.ray(x, y)).fate;
 }
 
 TEST(Extremes, EveryEdgeOfEveryLensPassesAndTheNextRayIsLost) {
@@ -42,13 +43,13 @@ TEST(Extremes, EveryEdgeOfEveryLensPassesAndTheNextRayIsLost) {
       for (const double z : {-infinity, -20 * std::abs(*p.focal_length_mm)}) {
         if (std::isfinite(z) && share * edge_deg(p) > 80) continue;
         SCOPED_TRACE(p.id + " at " + std::to_string(share * edge_deg(p)) + " of z " + std::to_string(z));
-        const PupilOutline outline = pupil_outline(lens, {radians(share * edge_deg(p)), z}, 0, 12);
-        EXPECT_FALSE(outline.empty() && share < 1);
-        for (const PupilSpan& span : outline.spans) {
-          ASSERT_EQ(fate(lens, outline, span, span.to_radius), RayFate::transmitted);
-          ASSERT_EQ(fate(lens, outline, span, span.from_radius), RayFate::transmitted);
-          const auto [x, y] = outline.at(span.direction, span.to_radius + 1e-12);
-          const auto next = trace(lens, outline.plane.ray(x, y));
+        const PupilBoundary boundary = pupil_boundary(lens, {radians(share * edge_deg(p)), z}, 0, 12);
+        EXPECT_FALSE(boundary.empty() && share < 1);
+        for (const PupilSpan& span : boundary.spans) {
+          ASSERT_EQ(fate(lens, boundary, span, span.to_radius), RayFate::transmitted);
+          ASSERT_EQ(fate(lens, boundary, span, span.from_radius), RayFate::transmitted);
+          const auto [x, y] = boundary.at(span.direction, span.to_radius + 1e-12);
+          const auto next = trace(lens, boundary.plane.ray(x, y));
           ASSERT_FALSE(next.transmitted());
           EXPECT_EQ(next.surface, span.to.surface);
           EXPECT_EQ(next.fate, span.to.beyond);
@@ -65,20 +66,20 @@ TEST(Extremes, AreaOfEveryLensIsThatOfAGridOfRays) {
     const Lens lens = compile(p);
     for (const double share : {0.7, 1.0}) {
       SCOPED_TRACE(p.id + " at " + std::to_string(share * edge_deg(p)));
-      const PupilOutline outline = pupil_outline(lens, {radians(share * edge_deg(p)), -infinity}, 0, 128);
-      if (outline.empty()) continue;
-      // Over twice the pupil's box, so that parts that the outline has missed count.
+      const PupilBoundary boundary = pupil_boundary(lens, {radians(share * edge_deg(p)), -infinity}, 0, 128);
+      if (boundary.empty()) continue;
+      // Over twice the pupil's box, so that parts that the boundary has missed count.
       constexpr int nodes = 160;
       int passed = 0;
       for (int j = 0; j < nodes; ++j) {
         for (int i = 0; i < nodes; ++i) {
-          const double x = outline.middle[0] + 2 * outline.half_axes[0] * ((2 * i + 1.0) / nodes - 1);
-          const double y = outline.middle[1] + 2 * outline.half_axes[1] * ((2 * j + 1.0) / nodes - 1);
-          passed += trace(lens, outline.plane.ray(x, y)).transmitted();
+          const double x = boundary.middle[0] + 2 * boundary.half_axes[0] * ((2 * i + 1.0) / nodes - 1);
+          const double y = boundary.middle[1] + 2 * boundary.half_axes[1] * ((2 * j + 1.0) / nodes - 1);
+          passed += trace(lens, boundary.plane.ray(x, y)).transmitted();
         }
       }
-      const double box = 16 * outline.half_axes[0] * outline.half_axes[1];
-      EXPECT_NEAR(outline.area() / (box * passed / (nodes * nodes)), 1, 6e-3);
+      const double box = 16 * boundary.half_axes[0] * boundary.half_axes[1];
+      EXPECT_NEAR(boundary.area() / (box * passed / (nodes * nodes)), 1, 6e-3);
     }
   }
 }
@@ -89,14 +90,14 @@ TEST(Extremes, PupilsTurnWithTheAzimuth) {
     const Lens lens = compile(p);
     if (!lens.rotationally_symmetric()) continue;
     const double field = radians(0.8 * edge_deg(p));
-    const double area = pupil_outline(lens, {field, -infinity}, 0, 96).area();
+    const double area = pupil_boundary(lens, {field, -infinity}, 0, 96).area();
     for (const double azimuth : {0.7, -2.5}) {
       SCOPED_TRACE(p.id + " " + std::to_string(azimuth));
-      const PupilOutline turned = pupil_outline(lens, {field, -infinity, azimuth}, 0, 96);
+      const PupilBoundary turned = pupil_boundary(lens, {field, -infinity, azimuth}, 0, 96);
       EXPECT_NEAR(turned.area(), area, 2e-3 * area);
     }
-    EXPECT_NEAR(pupil_outline(lens, {-field, -infinity}, 0, 96).area(), area, 1e-9 * area) << p.id;
-    EXPECT_NEAR(pupil_outline(lens, {field, -infinity, std::numbers::pi}, 0, 96).area(), area, 1e-9 * area) << p.id;
+    EXPECT_NEAR(pupil_boundary(lens, {-field, -infinity}, 0, 96).area(), area, 1e-9 * area) << p.id;
+    EXPECT_NEAR(pupil_boundary(lens, {field, -infinity, std::numbers::pi}, 0, 96).area(), area, 1e-9 * area) << p.id;
   }
 }
 
@@ -105,14 +106,14 @@ TEST(Extremes, PupilsAreMirrorImages) {
     const Lens lens = compile(p);
     for (const double share : {0.4, 0.9}) {
       SCOPED_TRACE(p.id + " " + std::to_string(share));
-      const PupilOutline outline = pupil_outline(lens, {radians(share * edge_deg(p)), -infinity}, 0, 16);
-      EXPECT_NEAR(outline.middle[0], 0, 1e-8 * outline.half_axes[0]);  // where a search found it
-      for (const PupilSpan& span : outline.spans) {
-        const auto mirror = std::find_if(outline.spans.begin(), outline.spans.end(), [&](const PupilSpan& s) {
-          return s.direction == outline.directions - 1 - span.direction &&
+      const PupilBoundary boundary = pupil_boundary(lens, {radians(share * edge_deg(p)), -infinity}, 0, 16);
+      EXPECT_NEAR(boundary.middle[0], 0, 1e-8 * boundary.half_axes[0]);  // where a search found it
+      for (const PupilSpan& span : boundary.spans) {
+        const auto mirror = std::find_if(boundary.spans.begin(), boundary.spans.end(), [&](const PupilSpan& s) {
+          return s.direction == boundary.directions - 1 - span.direction &&
                  std::abs(s.to_radius - span.to_radius) < 1e-7;
         });
-        ASSERT_NE(mirror, outline.spans.end()) << span.direction;
+        ASSERT_NE(mirror, boundary.spans.end()) << span.direction;
         EXPECT_EQ(mirror->to.surface, span.to.surface);
         EXPECT_NEAR(mirror->from_radius, span.from_radius, 1e-7);
       }
@@ -130,13 +131,13 @@ TEST(Extremes, ALensScaledByAPowerOfTwoScalesToTheBit) {
     EXPECT_EQ(ray.ray.origin * 8.0, big.ray.origin);
     EXPECT_EQ(ray.ray.direction, big.ray.direction);
     EXPECT_EQ(ray.residual, big.residual);
-    const PupilOutline outline = pupil_outline(lens, {field, -infinity}, 0, 12);
-    const PupilOutline wide = pupil_outline(large, {field, -infinity}, 0, 12);
-    ASSERT_EQ(outline.spans.size(), wide.spans.size());
-    EXPECT_EQ(outline.half_axes[1] * 8, wide.half_axes[1]);
-    for (std::size_t i = 0; i < outline.spans.size(); ++i) {
-      EXPECT_EQ(outline.spans[i].to_radius, wide.spans[i].to_radius);
-      EXPECT_EQ(outline.spans[i].to.surface, wide.spans[i].to.surface);
+    const PupilBoundary boundary = pupil_boundary(lens, {field, -infinity}, 0, 12);
+    const PupilBoundary wide = pupil_boundary(large, {field, -infinity}, 0, 12);
+    ASSERT_EQ(boundary.spans.size(), wide.spans.size());
+    EXPECT_EQ(boundary.half_axes[1] * 8, wide.half_axes[1]);
+    for (std::size_t i = 0; i < boundary.spans.size(); ++i) {
+      EXPECT_EQ(boundary.spans[i].to_radius, wide.spans[i].to_radius);
+      EXPECT_EQ(boundary.spans[i].to.surface, wide.spans[i].to.surface);
     }
   }
 }
@@ -154,10 +155,10 @@ TEST(Extremes, FieldsBeyondTheLensAreDark) {
         EXPECT_LE(chief.residual, chief.status == AimStatus::converged ? 1e-12 : 1e-7);
         EXPECT_TRUE(std::isfinite(chief.end.ray.origin.y) && std::isfinite(chief.end.ray.direction.y));
       }
-      const PupilOutline outline = pupil_outline(lens, {radians(field), -infinity}, 0, 16);
-      EXPECT_TRUE(std::isfinite(outline.area()));
+      const PupilBoundary boundary = pupil_boundary(lens, {radians(field), -infinity}, 0, 16);
+      EXPECT_TRUE(std::isfinite(boundary.area()));
       if (chief.status != AimStatus::converged && field > 110) {  // a bulging front takes in a little more than 90
-        EXPECT_TRUE(outline.empty());
+        EXPECT_TRUE(boundary.empty());
       }
       const auto light = relative_illumination(lens, {radians(field), -infinity});
       if (light) {
@@ -180,7 +181,7 @@ TEST(Extremes, WithoutAMarkedStopTheLimitingApertureServes) {
         EXPECT_LE(edge.residual, 1e-12);
       }
       EXPECT_TRUE(chief_ray(lens, point));
-      EXPECT_FALSE(pupil_outline(lens, point, 0, 8).empty());
+      EXPECT_FALSE(pupil_boundary(lens, point, 0, 8).empty());
     }
   }
 }
@@ -196,7 +197,7 @@ TEST(Extremes, AStopOfRadiusZeroHasItsCentreOnly) {
     if (chief) {
       EXPECT_EQ(chief.ray.origin, wide.ray.origin);
     }
-    EXPECT_TRUE(pupil_outline(lens, point, 0, 8).empty());
+    EXPECT_TRUE(pupil_boundary(lens, point, 0, 8).empty());
     EXPECT_FALSE(relative_illumination(lens, point).has_value());
   }
 }
@@ -208,12 +209,12 @@ TEST(Extremes, StopsFromHugeToTinyAreFound) {
     const Lens lens = with_semi_diameter(open, 5, semi_diameter);
     const FieldPoint point{radians(15), -infinity};
     EXPECT_TRUE(chief_ray(lens, point));
-    const PupilOutline outline = pupil_outline(lens, point, 0, 32);
-    ASSERT_FALSE(outline.empty());
+    const PupilBoundary boundary = pupil_boundary(lens, point, 0, 32);
+    ASSERT_FALSE(boundary.empty());
     if (semi_diameter > 1) continue;
     // The pupil of a small stop is its image: an ellipse whose area goes with the square.
-    const double unit = pupil_outline(with_semi_diameter(open, 5, 0.1), point, 0, 32).area() / 0.01;
-    EXPECT_NEAR(outline.area() / (semi_diameter * semi_diameter) / unit, 1, 2e-3);
+    const double unit = pupil_boundary(with_semi_diameter(open, 5, 0.1), point, 0, 32).area() / 0.01;
+    EXPECT_NEAR(boundary.area() / (semi_diameter * semi_diameter) / unit, 1, 2e-3);
   }
 }
 
@@ -233,7 +234,7 @@ TEST(Extremes, PointsThatAreNoneAreRefused) {
   for (const FieldPoint& point : bad) {
     const std::string start = lens.name() + ": scene point: ";
     for (const std::string& said :
-         {message([&] { chief_ray(lens, point); }), message([&] { pupil_outline(lens, point); }), message([&] {
+         {message([&] { chief_ray(lens, point); }), message([&] { pupil_boundary(lens, point); }), message([&] {
             aim(lens, point, {0, 1});
           }),
           message([&] { relative_illumination(lens, point); })}) {
@@ -241,7 +242,7 @@ TEST(Extremes, PointsThatAreNoneAreRefused) {
     }
   }
   for (const FilmPoint& point : {FilmPoint{nan, 0}, FilmPoint{0, -infinity}}) {
-    EXPECT_NE(message([&] { exit_pupil_outline(lens, point); }).find(": film point: "), std::string::npos);
+    EXPECT_NE(message([&] { exit_pupil_boundary(lens, point); }).find(": film point: "), std::string::npos);
     EXPECT_NE(message([&] { film_irradiance(lens, point); }).find(": film point: "), std::string::npos);
   }
 }
@@ -250,8 +251,8 @@ TEST(Extremes, WavelengthsOutsideTheSetAreRefused) {
   const Lens lens = data_lens("double_gauss_100mm_f1.35");
   const std::string wanted = lens.name() + ": wavelength 1 does not exist, wanted one of 1";
   EXPECT_EQ(message([&] { chief_ray(lens, {0, -infinity}, 1); }), wanted);
-  EXPECT_EQ(message([&] { pupil_outline(lens, {0, -infinity}, 1); }), wanted);
-  EXPECT_EQ(message([&] { exit_pupil_outline(lens, {0, 0}, 1); }), wanted);
+  EXPECT_EQ(message([&] { pupil_boundary(lens, {0, -infinity}, 1); }), wanted);
+  EXPECT_EQ(message([&] { exit_pupil_boundary(lens, {0, 0}, 1); }), wanted);
   EXPECT_EQ(message([&] { relative_illumination(lens, {0, -infinity}, 1); }), wanted);
 }
 
@@ -275,7 +276,7 @@ TEST(Extremes, ATelecentricLensIsRefusedFromTheSceneOnly) {
   const Lens lens = compile(p);
   const std::string said = message([&] { chief_ray(lens, {0, -infinity}); });
   EXPECT_NE(said.find("the entrance pupil is at infinity"), std::string::npos) << said;
-  EXPECT_EQ(message([&] { pupil_outline(lens, {0.1, -100}); }), said);
+  EXPECT_EQ(message([&] { pupil_boundary(lens, {0.1, -100}); }), said);
   // The film sees the stop as it sees any other: 3 mm, 40 mm away.
   EXPECT_NEAR(film_irradiance(lens, {0, 0}), std::numbers::pi * 9 / (9 + 1600), 1e-6);
 }

@@ -14,7 +14,7 @@
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/aim.hpp"
 #include "petzval/pupil/f_number.hpp"
-#include "petzval/pupil/outline.hpp"
+#include "petzval/pupil/pupil_boundary.hpp"
 #include "petzval/trace/trace.hpp"
 
 namespace petzval {
@@ -72,7 +72,7 @@ INSTANTIATE_TEST_SUITE_P(Lenses, FilmIrradiance,
 TEST(FilmIrradiance, IsPiSineSquaredOnTheAxis) {
   // Seen from the axial image of a lens without spherical aberration the edge of the pupil is a circle.
   const Lens lens = data_lens("analytic_plano_hyperbolic_100mm");
-  const PupilOutline axis = pupil_outline(lens, {0, -infinity}, 0, 1);
+  const PupilBoundary axis = pupil_boundary(lens, {0, -infinity}, 0, 1);
   const auto [x, y] = axis.at(0, axis.spans.back().to_radius);
   const auto rim = trace(lens, axis.plane.ray(x, y)).ray.direction;
   EXPECT_NEAR(film_irradiance(lens, {}) / (pi * (rim.x * rim.x + rim.y * rim.y)), 1, 1e-6);
@@ -94,8 +94,9 @@ TEST(RelativeIllumination, IsTheLightThatThePupilTakesInAndTheImageSpreads) {
     };
     const double field = radians(field_deg), step = 1e-4;
     const double slope = (height(field + step) - height(field - step)) / (2 * step), axis = height(step) / step;
-    const double mapped = pupil_outline(lens, {field, -infinity}).area() / pupil_outline(lens, {0, -infinity}).area() *
-                          std::cos(field) * std::sin(field) * axis * axis / (height(field) * slope);
+    const double mapped = pupil_boundary(lens, {field, -infinity}).area() /
+                          pupil_boundary(lens, {0, -infinity}).area() * std::cos(field) * std::sin(field) * axis *
+                          axis / (height(field) * slope);
     EXPECT_NEAR(*relative_illumination(lens, {field, -infinity}) / mapped, 1, 1e-3);
   }
 }

@@ -22,10 +22,10 @@ using testing::data_prescriptions;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double pi = std::numbers::pi;
 
-/// Angle (from +y, 0 to 2 pi) and radius of a point in an outline's units.
-std::pair<double, double> polar(const PupilOutline& outline, const std::array<double, 2>& p) {
-  const double x = (p[0] - outline.middle[0]) / outline.half_axes[0];
-  const double y = (p[1] - outline.middle[1]) / outline.half_axes[1];
+/// Angle (from +y, 0 to 2 pi) and radius of a point in an boundary's units.
+std::pair<double, double> polar(const PupilBoundary& boundary, const std::array<double, 2>& p) {
+  const double x = (p[0] - boundary.middle[0]) / boundary.half_axes[0];
+  const double y = (p[1] - boundary.middle[1]) / boundary.half_axes[1];
   const double angle = std::atan2(x, y);
   return {angle < 0 ? angle + 2 * pi : angle, std::hypot(x, y)};
 }
@@ -36,9 +36,9 @@ TEST(PupilSampler, SendsFewRaysInVain) {
     SCOPED_TRACE(p.id);
     const Lens lens = compile(p);
     for (const double part : {0.0, 0.6, 0.9, 1.0}) {
-      const PupilOutline outline = pupil_outline(lens, {radians(part * p.half_field_deg.value_or(10)), -infinity});
-      if (outline.empty()) continue;
-      const PupilSampler sampler(outline);
+      const PupilBoundary boundary = pupil_boundary(lens, {radians(part * p.half_field_deg.value_or(10)), -infinity});
+      if (boundary.empty()) continue;
+      const PupilSampler sampler(boundary);
       constexpr int side = 24;
       int passed = 0;
       for (int i = 0; i < side * side; ++i) {
@@ -46,8 +46,8 @@ TEST(PupilSampler, SendsFewRaysInVain) {
         passed += trace(lens, sampler.plane().ray(x, y)).transmitted();
       }
       EXPECT_GE(passed, 0.96 * side * side) << part;
-      EXPECT_GE(outline.area() / sampler.area(), 0.97) << part;
-      worst = std::min(worst, outline.area() / sampler.area());
+      EXPECT_GE(boundary.area() / sampler.area(), 0.97) << part;
+      worst = std::min(worst, boundary.area() / sampler.area());
     }
   }
   RecordProperty("share", number(worst, 4));
@@ -60,9 +60,9 @@ TEST(PupilSampler, LeavesNothingOut) {
     const Lens lens = compile(p);
     for (const double part : {0.7, 1.0}) {
       const FieldPoint point{radians(part * p.half_field_deg.value_or(10)), -infinity};
-      const PupilOutline outline = pupil_outline(lens, point);
-      if (outline.empty()) continue;
-      const PupilSampler sampler(outline);
+      const PupilBoundary boundary = pupil_boundary(lens, point);
+      if (boundary.empty()) continue;
+      const PupilSampler sampler(boundary);
       struct Bound {
         double angle, inner, outer;
       };
@@ -70,15 +70,15 @@ TEST(PupilSampler, LeavesNothingOut) {
       constexpr int many = 20000;
       for (int i = 0; i < many; ++i) {
         const double u = (i + 0.5) / many;
-        const auto [angle, inner] = polar(outline, sampler(u, 0));
-        const auto [same, outer] = polar(outline, sampler(u, 1 - 1e-16));
+        const auto [angle, inner] = polar(boundary, sampler(u, 0));
+        const auto [same, outer] = polar(boundary, sampler(u, 1 - 1e-16));
         bounds.push_back({outer > inner + 1e-9 ? same : angle, inner, outer});
       }
       std::sort(bounds.begin(), bounds.end(), [](const Bound& a, const Bound& b) { return a.angle < b.angle; });
-      for (const PupilSpan& span : pupil_outline(lens, point, 0, 2048).spans) {
+      for (const PupilSpan& span : pupil_boundary(lens, point, 0, 2048).spans) {
         for (const RimPoint& edge : {span.from, span.to}) {
           if (edge.surface < 0) continue;
-          const auto [angle, radius] = polar(outline, {edge.x, edge.y});
+          const auto [angle, radius] = polar(boundary, {edge.x, edge.y});
           auto bound = std::lower_bound(bounds.begin(), bounds.end(), angle,
                                         [](const Bound& b, double a) { return b.angle < a; });
           if (bound == bounds.end()) --bound;
@@ -93,8 +93,8 @@ TEST(PupilSampler, LeavesNothingOut) {
 TEST(PupilSampler, IsEven) {
   // Equal squares of (u, v) fall on equal areas: the second moment of a disc is a quarter of its squared radius.
   const Lens lens = data_lens("double_gauss_100mm_f1.35");
-  const PupilOutline outline = pupil_outline(lens, {0, -infinity});
-  const PupilSampler sampler(outline);
+  const PupilBoundary boundary = pupil_boundary(lens, {0, -infinity});
+  const PupilSampler sampler(boundary);
   constexpr int side = 512;
   double xx = 0, yy = 0, xy = 0;
   for (int i = 0; i < side * side; ++i) {
@@ -110,7 +110,7 @@ TEST(PupilSampler, IsEven) {
 TEST(PupilSampler, ManyPointsAreThoseOneByOne) {
   const Lens lens = data_lens("double_gauss_100mm_f1.35");
   for (const std::size_t directions : {1u, 3u, 50u, 256u, 300u}) {
-    const PupilSampler sampler(pupil_outline(lens, {0, -1000}, 0, directions));
+    const PupilSampler sampler(pupil_boundary(lens, {0, -1000}, 0, directions));
     for (const std::size_t count : {0u, 1u, 63u, 64u, 65u, 200u}) {
       std::vector<double> u(count), v(count);
       for (std::size_t i = 0; i < count; ++i) {
@@ -130,7 +130,7 @@ TEST(PupilSampler, TurnsWithUAndWidensWithV) {
   // A disc: u runs around it from half a direction after +y, v is the share of the area within the radius.
   const Lens lens = data_lens("double_gauss_100mm_f1.35");
   for (const int directions : {1, 3, 50, 256}) {
-    const PupilSampler sampler(pupil_outline(lens, {0, -infinity}, 0, static_cast<std::size_t>(directions)));
+    const PupilSampler sampler(pupil_boundary(lens, {0, -infinity}, 0, static_cast<std::size_t>(directions)));
     const double radius = std::sqrt(sampler.area() / pi), start = pi / directions;
     for (int i = 0; i < 1000; ++i) {
       const double u = i / 1000.0, v = (i * 37 % 1000) / 1000.0;
@@ -143,7 +143,7 @@ TEST(PupilSampler, TurnsWithUAndWidensWithV) {
 }
 
 TEST(PupilSampler, OfNothingIsEmpty) {
-  const PupilSampler sampler(pupil_outline(data_lens("double_gauss_100mm_f1.35"), {radians(60), -infinity}));
+  const PupilSampler sampler(pupil_boundary(data_lens("double_gauss_100mm_f1.35"), {radians(60), -infinity}));
   EXPECT_TRUE(sampler.empty());
   EXPECT_EQ(sampler.area(), 0);
 }

@@ -25,7 +25,7 @@ class ExactModel {
                const TwoPlaneRays<double>& lines, RayFate* fates) const noexcept;
 
   /// One line with its derivatives, in double.
-  RayDerivatives to_scene(const LineDerivatives& line, std::size_t wavelength) const noexcept;
+  RayDerivatives to_scene(const TwoPlaneRayDerivatives& line, std::size_t wavelength) const noexcept;
 
   const Lens& lens() const noexcept { return lens_; }
 

@@ -50,7 +50,7 @@ class ParaxialModel {
   PETZVAL_API void to_scene(std::size_t count, const TwoPlaneRays<const T>& lines, const RayWavelengths& wavelengths,
                             const RayArrays<T>& rays, RayFate* fates) const noexcept;
   /// One line with its derivatives.
-  PETZVAL_API RayDerivatives to_scene(const LineDerivatives& line, std::size_t wavelength) const noexcept;
+  PETZVAL_API RayDerivatives to_scene(const TwoPlaneRayDerivatives& line, std::size_t wavelength) const noexcept;
   /// The lines that to_scene makes into these rays (a pinhole's: those of the thick lens). missed_surface as there, and
   /// rays that do not run towards the lens.
   PETZVAL_API void to_film(std::size_t count, const RayArrays<const double>& rays, const RayWavelengths& wavelengths,

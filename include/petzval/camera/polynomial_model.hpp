@@ -22,7 +22,7 @@ class PolynomialModel {
     polynomial_.to_scene<T>(count, lines, wavelengths.resolved(pupils_.primary_wavelength()), rays, fates);
   }
   /// One line with its derivatives.
-  RayDerivatives to_scene(const LineDerivatives& line, std::size_t wavelength) const noexcept {
+  RayDerivatives to_scene(const TwoPlaneRayDerivatives& line, std::size_t wavelength) const noexcept {
     return polynomial_.to_scene(line, wavelength);
   }
   void to_film(std::size_t count, const RayArrays<const double>& rays, const RayWavelengths& wavelengths,

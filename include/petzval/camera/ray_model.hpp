@@ -11,9 +11,9 @@
 #include "petzval/core/export.hpp"
 #include "petzval/core/ray.hpp"
 #include "petzval/lens/wavelength.hpp"
-#include "petzval/pupil/film_pupil_table.hpp"
-#include "petzval/pupil/line_derivatives.hpp"
-#include "petzval/pupil/two_plane_rays.hpp"
+#include "petzval/pupil_table/film_pupil_table.hpp"
+#include "petzval/pupil_table/ray_derivatives.hpp"
+#include "petzval/pupil_table/two_plane_rays.hpp"
 #include "petzval/trace/batch.hpp"
 
 namespace petzval::inline v0 {

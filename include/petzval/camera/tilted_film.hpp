@@ -8,9 +8,10 @@
 #include "petzval/core/export.hpp"
 #include "petzval/film/film.hpp"
 #include "petzval/lens/lens.hpp"
-#include "petzval/pupil/film_pupil_table.hpp"
-#include "petzval/pupil/line_derivatives.hpp"
-#include "petzval/pupil/two_plane_rays.hpp"
+#include "petzval/pupil/field_point.hpp"
+#include "petzval/pupil_table/film_pupil_table.hpp"
+#include "petzval/pupil_table/ray_derivatives.hpp"
+#include "petzval/pupil_table/two_plane_rays.hpp"
 
 namespace petzval::inline v0 {
 
@@ -62,7 +63,7 @@ class PETZVAL_API TiltedFilm {
   /// By how much the weight of a film sample differs from that of its upright line; 0: it meets the film's back.
   double weight(const FilmPoint& key, double pupil_x, double pupil_y) const noexcept;
   /// The upright line of a film sample, with its derivatives by film x and y.
-  LineDerivatives line(const FilmPoint& film, double u, double v, std::size_t wavelength) const noexcept;
+  TwoPlaneRayDerivatives line(const FilmPoint& film, double u, double v, std::size_t wavelength) const noexcept;
 
   const camera_detail::TiltedPlane& plane() const noexcept { return plane_; }
 

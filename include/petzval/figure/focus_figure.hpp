@@ -16,7 +16,7 @@ namespace petzval::inline v0 {
 /// RMS is about the centroid, over all compiled wavelengths with equal weight and the vignetted pupil by area. Its
 /// square is a parabola in the film position, exactly, and is known from three. The same lens gives the same bytes.
 ///
-/// subject_z: lens frame, mm, -inf at infinity. Throws Error where pupil_outline does, and for no fields.
+/// subject_z: lens frame, mm, -inf at infinity. Throws Error where pupil_boundary does, and for no fields.
 PETZVAL_API std::string focus_figure(const Lens& lens, double subject_z, std::span<const double> fields_rad);
 
 }  // namespace petzval::inline v0

@@ -16,7 +16,7 @@ namespace petzval::inline v0 {
 /// says how far.
 ///
 /// At the compiled wavelength nearest to the d line. The same lens gives the same bytes.
-/// subject_z: lens frame, mm, -inf at infinity. Throws Error where pupil_outline does, and for no fields.
+/// subject_z: lens frame, mm, -inf at infinity. Throws Error where pupil_boundary does, and for no fields.
 PETZVAL_API std::string footprint_figure(const Lens& lens, double subject_z, std::span<const double> fields_rad);
 
 }  // namespace petzval::inline v0

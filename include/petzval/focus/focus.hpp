@@ -74,10 +74,10 @@ struct FocusSolution {
 /// distance_mm: > 0 or +inf. Where two film positions serve one distance from the film, the one nearer to the rear
 /// focus is given. A lens with cylinders is focused in its main meridian, by the exact criteria over all azimuths.
 /// min_rms takes the position of least RMS radius in closed form from bundles through whatever passes every rim
-/// (pupil_outline), equally by area of the entrance pupil; min_max finds the least largest radius of the same bundles
+/// (pupil_boundary), equally by area of the entrance pupil; min_max finds the least largest radius of the same bundles
 /// and the edges and corners of their pupils to rounding; a largest radius is found within 0.2 %. Both must lie behind
 /// the last vertex. Throws Error for NaN or a distance that is not positive; for fields and weights that are none; and
-/// by the exact criteria where pupil_outline does. Accuracy: paraxial and thin within rounding; of the exact criteria
+/// by the exact criteria where pupil_boundary does. Accuracy: paraxial and thin within rounding; of the exact criteria
 /// the film is that of endlessly many rays within 1e-5 mm on the axis and 2e-4 mm off it (double Gauss 100 mm f/2, 10
 /// degrees).
 PETZVAL_API FocusSolution solve_focus(const Lens& lens, double distance_mm, const FocusOptions& options = {});

@@ -12,9 +12,9 @@
 #include "petzval/core/ray.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/lens/wavelength.hpp"
-#include "petzval/pupil/film_pupil_table.hpp"
-#include "petzval/pupil/line_derivatives.hpp"
-#include "petzval/pupil/two_plane_rays.hpp"
+#include "petzval/pupil_table/film_pupil_table.hpp"
+#include "petzval/pupil_table/ray_derivatives.hpp"
+#include "petzval/pupil_table/two_plane_rays.hpp"
 #include "petzval/trace/batch.hpp"
 
 namespace petzval::inline v0 {
@@ -85,7 +85,7 @@ class PETZVAL_API RayPolynomial {
   void to_scene(std::size_t count, const TwoPlaneRays<const T>& lines, const RayWavelengths& wavelengths,
                 const RayArrays<T>& rays, RayFate* fates) const noexcept;
   /// One line with its derivatives, in double.
-  RayDerivatives to_scene(const LineDerivatives& line, Wavelength wavelength = {}) const noexcept;
+  RayDerivatives to_scene(const TwoPlaneRayDerivatives& line, Wavelength wavelength = {}) const noexcept;
   /// Rays from the scene, anywhere on their lines, as the lines that to_scene makes rays of, within 1e-9 mm, by
   /// Newton's iteration. outside_fit, and the axis, where none in the domain is found.
   void to_film(std::size_t count, const RayArrays<const double>& rays, const RayWavelengths& wavelengths,

@@ -55,7 +55,7 @@ struct PointImage {
 };
 
 /// Traces a point light onto the lens's film at every compiled wavelength; the picture is centred on the centroid.
-/// Where nothing gets through all is 0. Throws Error where pupil_outline does, and for no samples, pixels or threads
+/// Where nothing gets through all is 0. Throws Error where pupil_boundary does, and for no samples, pixels or threads
 /// and a half width that is no length.
 PETZVAL_API PointImage point_image(const Lens& lens, const FieldPoint& point, const PsfOptions& options = {});
 

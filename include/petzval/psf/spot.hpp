@@ -38,7 +38,7 @@ struct Spot {
 };
 
 /// Spots of several fields on the lens's film, at every compiled wavelength: field by field, and by wavelength within.
-/// subject_z: lens frame, mm, -inf at infinity. Throws Error where pupil_outline does.
+/// subject_z: lens frame, mm, -inf at infinity. Throws Error where pupil_boundary does.
 PETZVAL_API std::vector<Spot> spot_diagram(const Lens& lens, double subject_z, std::span<const double> fields_rad,
                                            std::uint32_t samples = 4096);
 

@@ -14,7 +14,7 @@ namespace petzval::inline v0 {
 
 /// Irradiance of the lens's film at a point, in units of the radiance of a scene that is alike in all directions: n'^2
 /// times the projected solid angle in which the point sees the scene through the lens, in sr. Within 5e-4.
-/// Throws Error where pupil_outline does.
+/// Throws Error where pupil_boundary does.
 PETZVAL_API double film_irradiance(const Lens& lens, const FilmPoint& point, Wavelength wavelength = {});
 
 /// film_irradiance where the chief ray of a scene point meets the film, over that on the axis: natural and optical

@@ -7,29 +7,29 @@
 #include <vector>
 
 #include "petzval/core/export.hpp"
-#include "petzval/pupil/outline.hpp"
+#include "petzval/pupil/pupil_boundary.hpp"
 
 namespace petzval::inline v0 {
 
-/// Spreads points evenly over a pupil: over a region little larger than the outline, made of one ring sector between
+/// Spreads points evenly over a pupil: over a region little larger than the boundary, made of one ring sector between
 /// each two neighbouring directions, so that next to all rays sent through them pass and none that would is left out.
 ///
-///     petzval::PupilSampler sampler(petzval::pupil_outline(lens, point));
+///     petzval::PupilSampler sampler(petzval::pupil_boundary(lens, point));
 ///     auto [x, y] = sampler(u, v);                    // u, v in [0, 1)
 ///     petzval::Ray<double> ray = sampler.plane().ray(x, y);
 ///
 /// The map keeps areas, so that stratified u and v stay so.
 class PETZVAL_API PupilSampler {
  public:
-  explicit PupilSampler(const PupilOutline& outline);
+  explicit PupilSampler(const PupilBoundary& boundary);
 
-  /// Nothing to sample: the outline is empty.
+  /// Nothing to sample: the boundary is empty.
   bool empty() const noexcept { return pieces_.empty(); }
 
   const PupilPlane& plane() const noexcept { return plane_; }
   std::size_t wavelength() const noexcept { return wavelength_; }
 
-  /// Of the region, mm^2 in the plane: the outline's and a margin.
+  /// Of the region, mm^2 in the plane: the boundary's and a margin.
   double area() const noexcept { return area_; }
 
   /// The point (x, y) of the plane for u, v in [0, 1). Not for an empty sampler.

@@ -32,7 +32,7 @@ struct TextbookPupil {
 ///   - stopped down, when no rim clips any more, the disc is in the wrong place all the same: it misses a fifth of the
 ///     passing rays in that corner. And what passes on the axis need not reach the axis: a lens with a hole
 ///     in it has no such pupil.
-/// Use pupils() for the image of the stop, aim() for its rays and pupil_outline() for what passes.
+/// Use pupils() for the image of the stop, aim() for its rays and pupil_boundary() for what passes.
 ///
 /// object_z: lens frame, mm; infinite, or anywhere but in the first vertex (a converging beam aims behind it).
 /// Steps 1 to 8 of Wu et al. 2010, section 5.1.2, repaired: the result is the last ray that passed (theirs is a middle

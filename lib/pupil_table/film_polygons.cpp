@@ -9,14 +9,15 @@
 #include <numbers>
 #include <utility>
 
-#include "face.hpp"
 #include "petzval/paraxial/pupils.hpp"
 #include "petzval/trace/batch.hpp"
+#include "pupil/boundary_search.hpp"
+#include "pupil/face.hpp"
 
-namespace petzval::inline v0::pupil_detail {
+namespace petzval::inline v0::pupil_table_detail {
 namespace {
 
-/// The rays of film points on the y axis at some heights, tested by tracing them.
+/// The pupils of some film points, by tracing their rays.
 class FilmSide {
  public:
   FilmSide(const Lens& lens, const TwoPlanes& space, std::vector<FilmPoint> points)
@@ -24,20 +25,22 @@ class FilmSide {
     towards_ = towards_scene(lens, space);
   }
 
-  std::vector<PupilEdges> edges(std::size_t wavelength) {
+  std::vector<PupilRegion> pupils(std::size_t wavelength) {
     const bool symmetric = lens_.rotationally_symmetric();
-    return find_edges(guesses(wavelength), symmetric ? points_.size() : 1, edge_directions, symmetric,
-                      [&](std::size_t count, const std::uint32_t* fields, const double* x, const double* y,
-                          std::uint8_t* passes) { test(wavelength, count, fields, x, y, passes); });
+    return pupil_detail::find_regions(
+        guesses(wavelength), symmetric ? points_.size() : 1, region_directions, symmetric,
+        [&](std::size_t count, const std::uint32_t* fields, const double* x, const double* y, std::uint8_t* passes) {
+          test(wavelength, count, fields, x, y, passes);
+        });
   }
 
  private:
   /// Rays have to get through the last surface; the pupil is no larger than what is seen through it.
-  std::vector<PupilGuess> guesses(std::size_t wavelength) const {
-    const Pupils paraxial = pupils(lens_, wavelength);
+  std::vector<pupil_detail::PupilGuess> guesses(std::size_t wavelength) const {
+    const Pupils paraxial = petzval::pupils(lens_, wavelength);
     const std::size_t last = lens_.surface_count() - 1;
     const double last_z = lens_.surfaces()[last].vertex_z;
-    const Face face = face_of(lens_, last, paraxial.entrance);
+    const pupil_detail::Face face = pupil_detail::face_of(lens_, last, paraxial.entrance);
     const auto seen = [&](double film, double at, double z) {  // in the plane of the pupil
       return film + (at - film) * space_.depth() / (z - space_.film_z);
     };
@@ -49,14 +52,14 @@ class FilmSide {
     const auto surfaces = lens_.surfaces();
     const bool ring =
         std::any_of(surfaces.begin(), surfaces.end(), [](const LensSurface& s) { return s.inner_semi_diameter > 0; });
-    std::vector<PupilGuess> result;
+    std::vector<pupil_detail::PupilGuess> result;
     for (const FilmPoint& p : points_) {
       double low = std::numeric_limits<double>::infinity(), high = -low;
       for (const double z : {face.z_min, face.z_max, last_z}) {
-        // What reaches to the film is met at any angle; what lies beyond counts as near it.
-        const double gap = 0.02 * std::abs(space_.film_z - last_z);
+        // A face that reaches to the film is met at any angle; one beyond the film counts as near it.
+        const double least = 0.02 * std::abs(space_.film_z - last_z);
         const double from_film = z - space_.film_z;
-        const double at = space_.film_z + std::copysign(std::max(std::abs(from_film), gap), last_z - space_.film_z);
+        const double at = space_.film_z + std::copysign(std::max(std::abs(from_film), least), last_z - space_.film_z);
         for (const double edge : {-face.half, face.half}) {
           low = std::min(low, seen(p.y, edge, at));
           high = std::max(high, seen(p.y, edge, at));
@@ -98,22 +101,22 @@ class FilmSide {
 
 }  // namespace
 
-EdgesAt traced_edges(const Lens& lens, const TwoPlanes& space, std::size_t wavelength) {
+PupilsAt traced_pupils(const Lens& lens, const TwoPlanes& space, std::size_t wavelength) {
   return [&lens, space, wavelength](std::span<const double> heights) {
     std::vector<FilmPoint> points;
     for (const double height : heights) points.push_back({0, height});
-    return FilmSide(lens, space, std::move(points)).edges(wavelength);
+    return FilmSide(lens, space, std::move(points)).pupils(wavelength);
   };
 }
 
-double lit_radius(double film_radius, const EdgesAt& edges_at) {
-  // The last of some heights at which a pupil, of any row, has light; none: their number.
+double lit_radius(double film_radius, const PupilsAt& pupils_at) {
+  // The index of the last of some heights at which a pupil, of any row, has light; their number where none has.
   const auto last_lit = [&](const std::vector<double>& heights) {
-    const auto edges = edges_at(heights);
+    const std::vector<PupilRegion> pupils = pupils_at(heights);
     std::size_t last = heights.size();
-    for (std::size_t i = 0; i < edges.size(); ++i) {
+    for (std::size_t i = 0; i < pupils.size(); ++i) {
       const std::size_t at = i % heights.size();
-      if (!edges[i].empty() && (last == heights.size() || at > last)) last = at;
+      if (!pupils[i].empty() && (last == heights.size() || at > last)) last = at;
     }
     return last;
   };
@@ -131,62 +134,62 @@ double lit_radius(double film_radius, const EdgesAt& edges_at) {
   return high;
 }
 
-std::vector<PupilPolygon> film_polygons(double film_radius, bool covering, const EdgesAt& edges_at) {
+std::vector<PupilPolygon> film_polygons(double film_radius, PolygonFit fit, const PupilsAt& pupils_at) {
   // Heights by half film_strips.
   std::vector<double> heights;
   for (std::size_t i = 0; i <= 2 * film_strips; ++i) {
     heights.push_back(film_radius * static_cast<double>(i) / (2 * film_strips));
   }
-  const auto edges = edges_at(heights);
-  const auto first_lit = [&](std::size_t height) -> const PupilEdges* {
-    for (std::size_t i = height; i < edges.size(); i += heights.size()) {
-      if (!edges[i].empty()) return &edges[i];
+  const std::vector<PupilRegion> pupils = pupils_at(heights);
+  const auto first_lit = [&](std::size_t height) -> const PupilRegion* {
+    for (std::size_t i = height; i < pupils.size(); i += heights.size()) {
+      if (!pupils[i].empty()) return &pupils[i];
     }
     return nullptr;
   };
-  std::vector<PupilPolygon> stars(film_strips + 1);
+  std::vector<PupilPolygon> polygons(film_strips + 1);
   for (std::size_t i = 0; i <= film_strips; ++i) {
     const std::size_t at = 2 * i;
-    if (const PupilEdges* lit = first_lit(at)) {
-      stars[i] = polygon_of(*lit, covering);
+    if (const PupilRegion* lit = first_lit(at)) {
+      polygons[i] = polygon_of(*lit, fit);
       continue;
     }
     // The film darkens within a strip: the last pupil goes on to its end, or, as one of no size, is where it ends.
     for (const std::size_t beside : {at - 1, at + 1, at - 2, at + 2}) {
-      const PupilEdges* lit = beside < heights.size() ? first_lit(beside) : nullptr;
+      const PupilRegion* lit = beside < heights.size() ? first_lit(beside) : nullptr;
       if (!lit) continue;
-      stars[i] = polygon_of(*lit, covering);
-      if (!covering) stars[i].corners = {};
+      polygons[i] = polygon_of(*lit, fit);
+      if (fit == PolygonFit::equal_area) polygons[i].corners = {};
       break;
     }
   }
-  if (!covering) return stars;
-  std::vector<InterpolationCheck> between;
-  const auto add = [&](const PupilEdges& e, double place) {
-    const auto i = static_cast<std::size_t>(place);
-    const double t = place - static_cast<double>(i);
-    between.push_back({&e, {i, std::min(i + 1, film_strips), 0, 0}, {1 - t, t, 0, 0}});
+  if (fit == PolygonFit::equal_area) return polygons;
+  std::vector<InterpolationCheck> checks;
+  const auto check = [&](const PupilRegion& pupil, double strip) {
+    const auto i = static_cast<std::size_t>(strip);
+    const double t = strip - static_cast<double>(i);
+    checks.push_back({&pupil, {{i, std::min(i + 1, film_strips), 0, 0}, {1 - t, t, 0, 0}}});
   };
-  for (std::size_t j = 0; j < edges.size(); ++j) add(edges[j], static_cast<double>(j % heights.size()) / 2);
+  for (std::size_t j = 0; j < pupils.size(); ++j) check(pupils[j], static_cast<double>(j % heights.size()) / 2);
   // Where the light ends pupils shrink fast.
-  std::vector<PupilEdges> shrinking;
-  if (edges.back().empty()) {
+  std::vector<PupilRegion> shrinking;
+  if (pupils.back().empty()) {
     constexpr std::size_t parts = 16;
     std::vector<double> last;
     for (std::size_t i = 1; i < parts; ++i) {
       last.push_back(film_radius * (1 - static_cast<double>(i) / (parts * film_strips)));
     }
-    shrinking = edges_at(last);
+    shrinking = pupils_at(last);
     for (std::size_t i = 0; i < shrinking.size(); ++i) {
-      add(shrinking[i], static_cast<double>(film_strips) - static_cast<double>(i % last.size() + 1) / parts);
+      check(shrinking[i], static_cast<double>(film_strips) - static_cast<double>(i % last.size() + 1) / parts);
     }
   }
-  expand_to_cover(stars, between);
-  return stars;
+  expand_to_cover(polygons, checks);
+  return polygons;
 }
 
-PupilPolygon star_for_all(const Lens& lens, const TwoPlanes& space, double film_radius, std::size_t wavelength) {
-  const auto edges_at = [&](double radius, int rings, int spokes) {
+PupilPolygon polygon_for_all(const Lens& lens, const TwoPlanes& space, double film_radius, std::size_t wavelength) {
+  const auto pupils_at = [&](double radius, int rings, int spokes) {
     std::vector<FilmPoint> points{{}};
     for (int ring = 1; ring <= rings; ++ring) {
       for (int spoke = 0; spoke < spokes; ++spoke) {
@@ -194,64 +197,68 @@ PupilPolygon star_for_all(const Lens& lens, const TwoPlanes& space, double film_
         points.push_back({r * std::sin(angle), r * std::cos(angle)});
       }
     }
-    return FilmSide(lens, space, std::move(points)).edges(wavelength);
+    return FilmSide(lens, space, std::move(points)).pupils(wavelength);
   };
-  // What of the film is lit at all, within an eighth of it.
+  const auto lit_one = [](const PupilRegion& pupil) { return !pupil.empty(); };
+  // The part of the film that gets any light, within an eighth of it.
   double lit = film_radius;
   for (int round = 0; round < 8; ++round) {
     constexpr int rings = 8, spokes = 8;
-    const auto edges = edges_at(lit, rings, spokes);
-    const auto last = std::find_if(edges.rbegin(), edges.rend(), [](const PupilEdges& e) { return !e.empty(); });
-    if (last == edges.rend()) return {};
-    const auto ring = (edges.rend() - last - 1 + spokes - 1) / spokes;
+    const std::vector<PupilRegion> pupils = pupils_at(lit, rings, spokes);
+    const auto last = std::find_if(pupils.rbegin(), pupils.rend(), lit_one);
+    if (last == pupils.rend()) return {};
+    const auto ring = (pupils.rend() - last - 1 + spokes - 1) / spokes;
     if (ring >= rings - 1) break;
     lit *= static_cast<double>(ring + 1) / rings;
   }
-  const auto edges = edges_at(lit, 12, 24);
-  const auto seed = std::find_if(edges.begin(), edges.end(), [](const PupilEdges& e) { return !e.empty(); });
-  std::vector<PupilPolygon> stars{polygon_of(*seed, true)};
+  const std::vector<PupilRegion> pupils = pupils_at(lit, 12, 24);
+  PupilPolygon polygon = polygon_of(*std::find_if(pupils.begin(), pupils.end(), lit_one), PolygonFit::enclosing);
   // All pupils together are as symmetric as the lens: about the axis.
-  for (auto& corner : stars[0].corners) corner[0] += stars[0].middle[0];
-  stars[0].middle[0] = 0;
-  std::vector<InterpolationCheck> all;
-  for (const PupilEdges& e : edges) all.push_back({&e, {0, 0, 0, 0}, {1, 0, 0, 0}});
-  expand_to_cover(stars, all);
+  for (auto& corner : polygon.corners) corner[0] += polygon.middle[0];
+  polygon.middle[0] = 0;
+  std::vector<InterpolationCheck> checks;
+  for (const PupilRegion& pupil : pupils) checks.push_back({&pupil, {{0, 0, 0, 0}, {1, 0, 0, 0}}});
+  expand_to_cover({&polygon, 1}, checks);
   constexpr double between_points = 1.02;
-  for (auto& corner : stars[0].corners) corner = {between_points * corner[0], between_points * corner[1]};
-  for (double& gap : stars[0].gap) gap = 0;  // of one point, perhaps
-  return stars.front();
+  for (auto& corner : polygon.corners) corner = {between_points * corner[0], between_points * corner[1]};
+  polygon.obscured.fill(0);  // perhaps that of one point only
+  return polygon;
 }
 
-std::vector<PupilPolygon> disc_stars(std::span<const PupilDisc> discs, double film_radius) {
-  std::vector<PupilGuess> guesses;
-  std::vector<double> heights;
+std::vector<PupilPolygon> disc_polygons(std::span<const PupilDisc> discs, double film_radius) {
+  std::vector<PupilPolygon> polygons;
   for (std::size_t i = 0; i <= film_strips; ++i) {
     const double height = film_radius * static_cast<double>(i) / film_strips;
     // All discs overlap where the one that ends first does.
-    PupilGuess guess{.low = -std::numeric_limits<double>::infinity(), .high = std::numeric_limits<double>::infinity()};
+    double low = -std::numeric_limits<double>::infinity(), high = -low;
     for (const PupilDisc& disc : discs) {
-      guess.low = std::max(guess.low, disc.shift * height - disc.radius);
-      guess.high = std::min(guess.high, disc.shift * height + disc.radius);
+      low = std::max(low, disc.shift * height - disc.radius);
+      high = std::min(high, disc.shift * height + disc.radius);
     }
-    if (!(guess.low < guess.high)) guess.low = guess.high = 0;
-    const double margin = 0.01 * (guess.high - guess.low);
-    guess.low -= margin, guess.high += margin;
-    guess.radius = (guess.high - guess.low) / 2;
-    guesses.push_back(guess);
-    heights.push_back(height);
-  }
-  const auto edges = find_edges(
-      guesses, guesses.size(), edge_directions, true,
-      [&](std::size_t count, const std::uint32_t* fields, const double* x, const double* y, std::uint8_t* passes) {
-        for (std::size_t i = 0; i < count; ++i) {
-          passes[i] = std::all_of(discs.begin(), discs.end(), [&](const PupilDisc& disc) {
-            return std::hypot(x[i], y[i] - disc.shift * heights[fields[i]]) < disc.radius;
-          });
+    PupilRegion overlap{.directions = region_directions};
+    if (low < high) {
+      overlap.middle = {0, (low + high) / 2};
+      // The nearest of the places where a line from the middle leaves a disc.
+      const auto leaves = [&](double x, double y) {
+        double nearest = std::numeric_limits<double>::infinity();
+        for (const PupilDisc& disc : discs) {
+          const double from_centre = overlap.middle[1] - disc.shift * height, square = x * x + y * y;
+          const double b = y * from_centre, c = disc.radius * disc.radius - from_centre * from_centre;
+          nearest = std::min(nearest, (std::sqrt(b * b + square * c) - b) / square);
         }
-      });
-  std::vector<PupilPolygon> stars;
-  for (const PupilEdges& e : edges) stars.push_back(polygon_of(e, false));
-  return stars;
+        return nearest;
+      };
+      overlap.half_axes = {leaves(1, 0), (high - low) / 2};
+      for (std::size_t k = 0; k < overlap.directions; ++k) {
+        const auto [x, y] = overlap.unit(k);
+        const double radius = leaves(overlap.half_axes[0] * x, overlap.half_axes[1] * y);
+        const auto rim = overlap.at(k, radius);
+        overlap.spans.push_back({k, 0, radius, {overlap.middle[0], overlap.middle[1]}, {rim[0], rim[1]}});
+      }
+    }
+    polygons.push_back(polygon_of(overlap, PolygonFit::equal_area));
+  }
+  return polygons;
 }
 
-}  // namespace petzval::inline v0::pupil_detail
+}  // namespace petzval::inline v0::pupil_table_detail

@@ -11,7 +11,7 @@ struct TwoPlaneRay {
 };
 
 /// A line and its derivatives by two parameters.
-struct LineDerivatives {
+struct TwoPlaneRayDerivatives {
   TwoPlaneRay line{}, by_u{}, by_v{};
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/pupil/entrance_pupil_table.hpp"
+#include "pupil_table/entrance_pupil_table.hpp"
 
 #include <gtest/gtest.h>
 
@@ -17,8 +17,8 @@
 #include "petzval/core/sobol.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/paraxial/pupils.hpp"
-#include "petzval/pupil/film_pupil_table.hpp"
-#include "petzval/pupil/outline.hpp"
+#include "petzval/pupil/pupil_boundary.hpp"
+#include "petzval/pupil_table/film_pupil_table.hpp"
 #include "petzval/trace/trace.hpp"
 
 namespace petzval {
@@ -157,12 +157,12 @@ TEST(EntrancePupilTable, EstimatesTheSolidAngleOfThePupil) {
         SCOPED_TRACE(id + std::string(" at ") + std::to_string(degrees) + " degrees, z " + std::to_string(z));
         const double tangent = std::tan(degrees * pi / 180);
         const Vec3<double> point{0, tangent * (pupil_z - z), z};
-        const auto outline = pupil_outline(s.lens, {degrees * pi / 180, z}, 0, 512);
-        // By triangles from the outline's middle: each seen from the point.
+        const auto boundary = pupil_boundary(s.lens, {degrees * pi / 180, z}, 0, 512);
+        // By triangles from the boundary's middle: each seen from the point.
         double wanted = 0;
-        for (std::size_t k = 0; k < outline.spans.size(); ++k) {
-          const auto &a = outline.spans[k].to, &b = outline.spans[(k + 1) % outline.spans.size()].to;
-          const auto [mx, my] = outline.middle;
+        for (std::size_t k = 0; k < boundary.spans.size(); ++k) {
+          const auto &a = boundary.spans[k].to, &b = boundary.spans[(k + 1) % boundary.spans.size()].to;
+          const auto [mx, my] = boundary.middle;
           const double twice = std::abs((a.x - mx) * (b.y - my) - (a.y - my) * (b.x - mx));
           const Vec3<double> to = Vec3<double>{(a.x + b.x + mx) / 3, (a.y + b.y + my) / 3, pupil_z} - point;
           wanted += twice / 2 * to.z / std::pow(glm::length(to), 3);

@@ -1,22 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pupils of a film that leans: of each key, a line from the centre of the pupil's plane, those of the film points that
-// azimuths put at different places along it.
+// The pupils of a tilted film. A virtual film point stands for a line through the centre of the pupil's plane, on which
+// the film point itself has different places for different azimuths; its pupils are those of all these places.
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
 
 #include "film_polygons.hpp"
+#include "pupil/boundary_search.hpp"
 
-namespace petzval::inline v0::pupil_detail {
+namespace petzval::inline v0::pupil_table_detail {
 namespace {
 
-/// A film point on +y by its key, and slope . key there.
+/// A virtual film point on +y, and slope . virtual film point there (see FilmTilt).
 struct Field {
-  double key = 0, lean = 0;
+  double height = 0, nearer = 0;
 };
 
-/// What is known of the pupils before they are looked for, from those of an upright film.
+/// What the pupils of the upright film tell before those of the tilted one are looked for.
 struct Expected {
   double lit = 0, radius = 0;
   bool ring = false;
@@ -39,42 +40,42 @@ Expected expected_of(const FilmPupilTable& upright, std::size_t wavelength) {
 
 }  // namespace
 
-EdgesAt leaning_edges(const FilmPupilTable& upright, const FilmTilt& lean, std::size_t wavelength) {
+PupilsAt tilted_film_pupils(const FilmPupilTable& upright, const FilmTilt& tilt, std::size_t wavelength) {
   const Expected expected = expected_of(upright, wavelength);
-  return [upright, lean, wavelength, expected](std::span<const double> heights) {
-    const double steepest = std::hypot(lean.slope_x, lean.slope_y);
+  return [upright, tilt, wavelength, expected](std::span<const double> heights) {
+    const double steepest = std::hypot(tilt.slope_x, tilt.slope_y);
     std::vector<Field> fields;
     // The middle first, where there is light if anywhere. More between: the pupils of a plane far from the one in which
     // light is limited, a thin lens's, move by more than their size.
     for (const double part : {0.5, 0.0, 0.25, 0.75, 1.0}) {
-      for (const double key : heights) {
-        const auto within = [&](double value) { return std::clamp(value, lean.low, lean.high); };
-        const double low = within(-steepest * key), high = within(steepest * key);
-        fields.push_back({key, low + part * (high - low)});
+      for (const double height : heights) {
+        const auto within = [&](double value) { return std::clamp(value, tilt.low, tilt.high); };
+        const double low = within(-steepest * height), high = within(steepest * height);
+        fields.push_back({height, low + part * (high - low)});
       }
     }
-    std::vector<PupilGuess> guesses;
-    for (const auto& [key, leaning] : fields) {
+    std::vector<pupil_detail::PupilGuess> guesses;
+    for (const auto& [height, nearer] : fields) {
       double y = 0;
       for (int round = 0; round < 2; ++round) {
-        y = upright.middle({0, std::min(key - leaning * y, expected.lit)}, wavelength)[1];
+        y = upright.middle({0, std::min(height - nearer * y, expected.lit)}, wavelength)[1];
       }
       const double near = 3 * expected.radius, far = 12 * expected.radius;
       guesses.push_back({0, y - far, y + far, expected.radius, y, near, expected.ring});
     }
     std::array<std::vector<double>, 2> film;
-    return find_edges(
-        guesses, heights.size(), edge_directions, true,
+    return pupil_detail::find_regions(
+        guesses, heights.size(), region_directions, true,
         [&](std::size_t count, const std::uint32_t* which, const double* x, const double* y, std::uint8_t* passes) {
           for (auto& values : film) values.resize(count);
           for (std::size_t i = 0; i < count; ++i) {
-            const auto& [key, leaning] = fields[which[i]];
-            film[0][i] = -leaning * x[i];
-            film[1][i] = key - leaning * y[i];
+            const auto& [height, nearer] = fields[which[i]];
+            film[0][i] = -nearer * x[i];
+            film[1][i] = height - nearer * y[i];
           }
           upright.contains<double>(count, {film[0].data(), film[1].data(), x, y}, {.all = wavelength}, passes);
         });
   };
 }
 
-}  // namespace petzval::inline v0::pupil_detail
+}  // namespace petzval::inline v0::pupil_table_detail

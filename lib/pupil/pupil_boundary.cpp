@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/pupil/outline.hpp"
+#include "petzval/pupil/pupil_boundary.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -38,11 +38,11 @@ struct Edge {
   pupil_detail::Clearance inside, outside;
 };
 
-/// Looks along the directions of an outline. Radii are in units of its half axes.
+/// Looks along the directions of an boundary. Radii are in units of its half axes.
 class Tracer {
  public:
-  Tracer(const Lens& lens, PupilOutline& outline)
-      : lens_(lens), outline_(outline), middle_(clearance(outline.middle)) {}
+  Tracer(const Lens& lens, PupilBoundary& boundary)
+      : lens_(lens), boundary_(boundary), middle_(clearance(boundary.middle)) {}
 
   bool middle_passes() const noexcept { return middle_.passes(); }
 
@@ -56,7 +56,7 @@ class Tracer {
   /// there.
   bool trace_ring(std::size_t direction, double near_from, double near_to) {
     const double low = 0.95 * near_from, high = 1.05 * near_from;
-    const auto hole = clearance(outline_.at(direction, low)), inside = clearance(outline_.at(direction, high));
+    const auto hole = clearance(boundary_.at(direction, low)), inside = clearance(boundary_.at(direction, high));
     if (hole.passes() || !inside.passes() || !(high < near_to)) return false;
     begin(direction, close_in(direction, {high, inside, hole}, low));
     finish(outer_edge(direction, near_to, high, inside));
@@ -70,7 +70,7 @@ class Tracer {
     if (last.passes()) begin(direction, {0, middle_, {}});
     for (int i = 1; i <= steps; ++i) {
       const double radius = reach * i / steps;
-      const auto now = clearance(outline_.at(direction, radius));
+      const auto now = clearance(boundary_.at(direction, radius));
       if (now.passes() && !last.passes()) begin(direction, close_in(direction, {radius, now, last}, before));
       if (!now.passes() && last.passes()) finish(close_in(direction, {before, last, now}, radius));
       before = radius, last = now;
@@ -81,16 +81,16 @@ class Tracer {
 
  private:
   pupil_detail::Clearance clearance(const Point& p) const noexcept {
-    return pupil_detail::clearance(lens_, outline_.plane, p[0], p[1], outline_.wavelength);
+    return pupil_detail::clearance(lens_, boundary_.plane, p[0], p[1], boundary_.wavelength);
   }
 
   /// About `near`, farther out than a ray that passes.
   Edge outer_edge(std::size_t direction, double near, double passing, const pupil_detail::Clearance& passes) const {
     double low = 0.95 * near, high = 1.05 * near;
-    auto inside = clearance(outline_.at(direction, low)), outside = clearance(outline_.at(direction, high));
+    auto inside = clearance(boundary_.at(direction, low)), outside = clearance(boundary_.at(direction, high));
     while (inside.passes() && outside.passes()) {
       low = high, inside = outside;
-      outside = clearance(outline_.at(direction, high *= 1.25));
+      outside = clearance(boundary_.at(direction, high *= 1.25));
     }
     if (inside.passes()) return close_in(direction, {low, inside, outside}, high);
     return close_in(direction, {passing, passes, inside}, low);
@@ -101,7 +101,7 @@ class Tracer {
     constexpr double tolerance = 4e-14;
     edge.radius = core_detail::last_above(edge.radius, edge.inside.value, outside, edge.outside.value, tolerance,
                                           [&](double radius) {
-                                            const auto now = clearance(outline_.at(direction, radius));
+                                            const auto now = clearance(boundary_.at(direction, radius));
                                             (now.passes() ? edge.inside : edge.outside) = now;
                                             return now.value;
                                           });
@@ -109,20 +109,20 @@ class Tracer {
   }
 
   RimPoint public_edge(std::size_t direction, const Edge& edge) const noexcept {
-    const auto [x, y] = outline_.at(direction, edge.radius);
+    const auto [x, y] = boundary_.at(direction, edge.radius);
     return {x, y, edge.outside.surface, edge.outside.fate};
   }
   void begin(std::size_t direction, const Edge& edge) {
-    outline_.spans.push_back({direction, edge.radius, 0, public_edge(direction, edge), {}});
+    boundary_.spans.push_back({direction, edge.radius, 0, public_edge(direction, edge), {}});
   }
   void finish(const Edge& edge) {
-    PupilSpan& span = outline_.spans.back();
+    PupilSpan& span = boundary_.spans.back();
     span.to_radius = edge.radius;
     span.to = public_edge(span.direction, edge);
   }
 
   const Lens& lens_;
-  PupilOutline& outline_;
+  PupilBoundary& boundary_;
   pupil_detail::Clearance middle_;
 };
 
@@ -194,62 +194,62 @@ enum class Shape { disc, ring, other };
 
 /// Finds middle and half axes of what passes: from a ray that does, then from the middle of what that saw, until it
 /// sees no more.
-Shape measure(const Lens& lens, PupilOutline& outline, const Point& start, const Box& box) {
-  outline.middle = start;
-  outline.half_axes = box.half();
+Shape measure(const Lens& lens, PupilBoundary& boundary, const Point& start, const Box& box) {
+  boundary.middle = start;
+  boundary.half_axes = box.half();
   Shape shape = Shape::disc;
   for (int pass = 0; pass < 6; ++pass) {
     // Horseshoes and crescents, whose tips lie behind their own edges, are looked at more closely.
     const bool simple = shape != Shape::other;
-    outline.directions = simple ? 24 : 96;
+    boundary.directions = simple ? 24 : 96;
     const int steps = simple ? 32 : 128;
-    const double farthest = reach(box, outline.middle, outline.half_axes);
-    outline.spans.clear();
-    Tracer tracer(lens, outline);
+    const double farthest = reach(box, boundary.middle, boundary.half_axes);
+    boundary.spans.clear();
+    Tracer tracer(lens, boundary);
     // What a disc is from one of its points it is from its middle.
     const bool disc = pass > 0 && shape == Shape::disc && tracer.middle_passes();
-    for (std::size_t k = 0; k < outline.directions; ++k) {
+    for (std::size_t k = 0; k < boundary.directions; ++k) {
       if (disc) {
         tracer.trace_disc(k, 1);
       } else {
         tracer.scan_spans(k, farthest, steps);
       }
     }
-    if (outline.spans.empty()) break;
-    const bool one_each = outline.spans.size() == outline.directions;
+    if (boundary.spans.empty()) break;
+    const bool one_each = boundary.spans.size() == boundary.directions;
     shape = !one_each ? Shape::other : tracer.middle_passes() ? Shape::disc : Shape::ring;
     Box seen;
-    for (const PupilSpan& s : outline.spans) seen.take({s.from.x, s.from.y}), seen.take({s.to.x, s.to.y});
-    const Point before = std::exchange(outline.half_axes, seen.half());
-    outline.middle = seen.middle();
+    for (const PupilSpan& s : boundary.spans) seen.take({s.from.x, s.from.y}), seen.take({s.to.x, s.to.y});
+    const Point before = std::exchange(boundary.half_axes, seen.half());
+    boundary.middle = seen.middle();
     const bool settled =
-        std::abs(outline.half_axes[0] / before[0] - 1) < 0.1 && std::abs(outline.half_axes[1] / before[1] - 1) < 0.1;
+        std::abs(boundary.half_axes[0] / before[0] - 1) < 0.1 && std::abs(boundary.half_axes[1] / before[1] - 1) < 0.1;
     if (settled && simple == (shape != Shape::other)) break;
   }
   return shape;
 }
 
-/// The outline from a ray that passes, and the box in which to look.
-void trace_outline(const Lens& lens, PupilOutline& outline, const Point& start, const Box& box,
-                   std::size_t directions) {
+/// The boundary from a ray that passes, and the box in which to look.
+void trace_boundary(const Lens& lens, PupilBoundary& boundary, const Point& start, const Box& box,
+                    std::size_t directions) {
   constexpr int steps = 96;
   if (directions == 1) {  // alike all round
-    outline.directions = 1;
-    outline.half_axes = {std::max(box.half()[0], box.half()[1]), std::max(box.half()[0], box.half()[1])};
-    Tracer(lens, outline).scan_spans(0, 1, steps);
+    boundary.directions = 1;
+    boundary.half_axes = {std::max(box.half()[0], box.half()[1]), std::max(box.half()[0], box.half()[1])};
+    Tracer(lens, boundary).scan_spans(0, 1, steps);
     return;
   }
-  Shape shape = measure(lens, outline, start, box);
-  const double farthest = std::min(reach(box, outline.middle, outline.half_axes), 1.5);
-  outline.directions = directions;
-  outline.spans.clear();
-  Tracer tracer(lens, outline);
+  Shape shape = measure(lens, boundary, start, box);
+  const double farthest = std::min(reach(box, boundary.middle, boundary.half_axes), 1.5);
+  boundary.directions = directions;
+  boundary.spans.clear();
+  Tracer tracer(lens, boundary);
   if (shape == Shape::disc && !tracer.middle_passes()) shape = Shape::other;
   for (std::size_t k = 0; k < directions; ++k) {
     // Edges move little from one direction to the next.
-    const bool first = outline.spans.empty();
-    const double near_from = first ? 0 : outline.spans.back().from_radius;
-    const double near_to = first ? 1 : outline.spans.back().to_radius;
+    const bool first = boundary.spans.empty();
+    const double near_from = first ? 0 : boundary.spans.back().from_radius;
+    const double near_to = first ? 1 : boundary.spans.back().to_radius;
     if (shape == Shape::disc) {
       tracer.trace_disc(k, near_to);
     } else if (shape == Shape::other || first || !tracer.trace_ring(k, near_from, near_to)) {
@@ -258,47 +258,31 @@ void trace_outline(const Lens& lens, PupilOutline& outline, const Point& start, 
   }
 }
 
-PupilOutline outline_of(const Lens& lens, const PupilPlane& plane, Wavelength at, std::size_t directions) {
+PupilBoundary boundary_of(const Lens& lens, const PupilPlane& plane, Wavelength at, std::size_t directions) {
   const std::size_t wavelength = lens.position(at);
   lens.index(0, wavelength);  // throws where there is no such wavelength
   if (directions < 3 && !(directions == 1 && plane.on_axis() && lens.rotationally_symmetric())) {
-    throw Error(lens.name() + ": pupil outline: directions is " + std::to_string(directions) +
+    throw Error(lens.name() + ": pupil boundary: directions is " + std::to_string(directions) +
                 ", wanted 3 or more, or 1 on the axis of a lens of revolution");
   }
-  PupilOutline outline{.plane = plane, .wavelength = wavelength};
+  PupilBoundary boundary(plane, wavelength);
   const auto closed = [](const LensSurface& s) { return s.semi_diameter == 0; };
-  if (std::any_of(lens.surfaces().begin(), lens.surfaces().end(), closed)) return outline;
+  if (std::any_of(lens.surfaces().begin(), lens.surfaces().end(), closed)) return boundary;
   const Box box = shadow(lens, plane);
   const auto start = passing_point(lens, plane, wavelength, box);
-  if (start) trace_outline(lens, outline, *start, box, directions);
-  return outline;
+  if (start) trace_boundary(lens, boundary, *start, box, directions);
+  return boundary;
 }
 
 }  // namespace
 
-std::array<double, 2> PupilOutline::unit(std::size_t direction) const noexcept {
-  const double angle = 2 * std::numbers::pi * (static_cast<double>(direction) + 0.5) / static_cast<double>(directions);
-  return {std::sin(angle), std::cos(angle)};
+PupilBoundary pupil_boundary(const Lens& lens, const FieldPoint& point, Wavelength wavelength, std::size_t directions) {
+  return boundary_of(lens, PupilPlane(lens, point), wavelength, directions);
 }
 
-std::array<double, 2> PupilOutline::at(std::size_t direction, double radius) const noexcept {
-  const auto [x, y] = unit(direction);
-  return {middle[0] + half_axes[0] * radius * x, middle[1] + half_axes[1] * radius * y};
-}
-
-double PupilOutline::area() const noexcept {
-  double sum = 0;
-  for (const PupilSpan& s : spans) sum += (s.to_radius - s.from_radius) * (s.to_radius + s.from_radius);
-  return directions == 0 ? 0 : sum * std::numbers::pi / static_cast<double>(directions) * half_axes[0] * half_axes[1];
-}
-
-PupilOutline pupil_outline(const Lens& lens, const FieldPoint& point, Wavelength wavelength, std::size_t directions) {
-  return outline_of(lens, PupilPlane(lens, point), wavelength, directions);
-}
-
-PupilOutline exit_pupil_outline(const Lens& lens, const FilmPoint& point, Wavelength wavelength,
-                                std::size_t directions) {
-  return outline_of(lens, PupilPlane::of_film(lens, point), wavelength, directions);
+PupilBoundary exit_pupil_boundary(const Lens& lens, const FilmPoint& point, Wavelength wavelength,
+                                  std::size_t directions) {
+  return boundary_of(lens, PupilPlane::of_film(lens, point), wavelength, directions);
 }
 
 }  // namespace petzval::inline v0

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/pupil/film_pupil_table.hpp"
+#include "petzval/pupil_table/film_pupil_table.hpp"
 
 #include <ceres/jet.h>
 
@@ -12,40 +12,33 @@
 #include "film_pupil_table_loops.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/text.hpp"
-#include "petzval/pupil/pupil_polygon.hpp"
 
 namespace petzval::inline v0 {
 namespace {
 
-using pupil_detail::polygon_corners;
-using pupil_detail::PupilPolygon;
-using pupil_detail::StripTable;
-using L = pupil_detail::StripLayout;
+using namespace pupil_table_detail;
+using L = StripLayout;
 
-/// A strip from the stars at its sides.
-std::array<double, L::size> strip_between(const PupilPolygon& a, const PupilPolygon& b) {
+/// A strip from the polygons at its sides.
+std::array<double, L::size> strip_between(const PupilPolygon& p, const PupilPolygon& q) {
   std::array<double, L::size> strip;
-  const auto put = [&](std::size_t at, const std::array<double, 2>& from, const std::array<double, 2>& to) {
-    strip[at] = from[0], strip[at + 1] = from[1];
-    strip[at + 2] = to[0] - from[0], strip[at + 3] = to[1] - from[1];
+  const auto put = [&](std::size_t at, const Point<double>& from, const Point<double>& change) {
+    strip[at] = from.x, strip[at + 1] = from.y, strip[at + 2] = change.x, strip[at + 3] = change.y;
   };
-  strip[L::middle_y] = a.middle[1], strip[L::middle_y + 1] = b.middle[1] - a.middle[1];
+  strip[L::middle_y] = p.middle[1], strip[L::middle_y + 1] = q.middle[1] - p.middle[1];
   std::array<double, 4> before{0, 0, 0, 0};
   for (std::size_t k = 0; k <= polygon_corners; ++k) {
-    const std::size_t at = k % polygon_corners, next = (k + 1) % polygon_corners;
-    put(L::sectors + L::sector * k, a.corners[at], b.corners[at]);
+    const Sector<double> from = p.sector(k % polygon_corners), to = q.sector(k % polygon_corners);
+    const Point<double> a_change = to.a - from.a, b_change = to.b - from.b;
+    put(L::sectors + L::sector * k, from.a, a_change);
     std::copy(before.begin(), before.end(), &strip[L::sectors + L::sector * k + 4]);
     if (k == polygon_corners) break;
-    const double gap[] = {a.gap_from[k], a.gap[k], b.gap_from[k] - a.gap_from[k], b.gap[k] - a.gap[k]};
-    std::copy(std::begin(gap), std::end(gap), &strip[L::gaps + 4 * k]);
-    // Half of (p + t dp) x (q + t dq), times what the gap leaves.
-    const auto turn = [](double px, double py, double qx, double qy) { return qx * py - px * qy; };
-    const auto &p = a.corners[at], &q = a.corners[next];
-    const double dpx = b.corners[at][0] - p[0], dpy = b.corners[at][1] - p[1];
-    const double dqx = b.corners[next][0] - q[0], dqy = b.corners[next][1] - q[1];
-    const double c[3] = {turn(p[0], p[1], q[0], q[1]) / 2,
-                         (turn(p[0], p[1], dqx, dqy) + turn(dpx, dpy, q[0], q[1])) / 2, turn(dpx, dpy, dqx, dqy) / 2};
-    const double left = 1 - a.gap[k], change = a.gap[k] - b.gap[k];
+    put(L::obscured + 4 * k, {from.obscured_from, from.obscured},
+        {to.obscured_from - from.obscured_from, to.obscured - from.obscured});
+    // Half of turn(a + t a', b + t b'), times what is not obscured.
+    const double c[3] = {turn(from.a, from.b) / 2, (turn(from.a, b_change) + turn(a_change, from.b)) / 2,
+                         turn(a_change, b_change) / 2};
+    const double left = 1 - from.obscured, change = from.obscured - to.obscured;
     before[0] += c[0] * left;
     before[1] += c[1] * left + c[0] * change;
     before[2] += c[2] * left + c[1] * change;
@@ -62,37 +55,34 @@ T area_before(const double* strip, std::size_t sector, const T& t) {
   return f[0] + t * (f[1] + t * (f[2] + t * f[3]));
 }
 
-/// Place and change by t, at t.
+/// A pair of numbers at the fraction t.
 template <class T>
-std::array<T, 2> along_strip(const double* from, const T& t) {
+Point<T> along_strip(const double* from, const T& t) {
   return {from[0] + t * from[2], from[1] + t * from[3]};
 }
 
-/// The sector in which the area before a sample lies.
-std::size_t sector_with(const double* strip, double t, double area) {
-  const double whole = area_before(strip, polygon_corners, t);
-  auto k = static_cast<std::size_t>(std::clamp(area / whole, 0.0, 1.0) * polygon_corners);
-  k = std::min(k, polygon_corners - 1);
-  while (k > 0 && area < area_before(strip, k, t)) --k;
-  while (k + 1 < polygon_corners && area >= area_before(strip, k + 1, t)) ++k;
-  return k;
+template <class T>
+Sector<T> sector_at(const double* strip, std::size_t k, const T& t) {
+  const Point<T> obscured = along_strip(strip + L::obscured + 4 * k, t);
+  return {along_strip(strip + L::sectors + L::sector * k, t), along_strip(strip + L::sectors + L::sector * (k + 1), t),
+          obscured.x, obscured.y};
 }
 
-/// The sample's place for film points on +y at the fraction t of a strip, in the sector k.
+/// The sector in which a sample lies. area: before it.
+std::size_t sector_with(const double* strip, double t, double area) {
+  return sector_of_area(area, [&](std::size_t k) { return area_before(strip, k, t); });
+}
+
+/// The place of a sample for film points on +y at the fraction t of a strip, in the sector k.
 template <class T>
-std::array<T, 2> place(const double* strip, std::size_t k, const T& t, const T& u, double v) {
+Point<T> place(const double* strip, std::size_t k, const T& t, const T& u, double v) {
   using std::sqrt;
-  const auto [ax, ay] = along_strip(strip + L::sectors + L::sector * k, t);
-  const auto [bx, by] = along_strip(strip + L::sectors + L::sector * (k + 1), t);
-  const T my = strip[L::middle_y] + t * strip[L::middle_y + 1];
-  const auto [gap_from, gap] = along_strip(strip + L::gaps + 4 * k, t);
-  const T own = 0.5 * (bx * ay - ax * by) * (1.0 - gap);
-  T along = (area_before(strip, polygon_corners, t) * u - area_before(strip, k, t)) / own;
+  const Sector<T> sector = sector_at(strip, k, t);
+  T along = (area_before(strip, polygon_corners, t) * u - area_before(strip, k, t)) / sector.area();
   if (!(along <= 1.0)) along = T(1.0);
-  const T within = (1.0 - gap) * v;
-  const T squared = within < gap_from ? within : T(within + gap);
-  const T out = squared > 0.0 ? T(sqrt(squared)) : T(0.0);  // the middle itself has no derivative
-  return {out * (ax + along * (bx - ax)), my + out * (ay + along * (by - ay))};
+  const T squared = sector.squared_way(T(v));
+  const Point<T> p = sector.at(squared > 0.0 ? T(sqrt(squared)) : T(0.0), along);  // no derivative in the middle
+  return {p.x, strip[L::middle_y] + t * strip[L::middle_y + 1] + p.y};
 }
 
 }  // namespace
@@ -102,21 +92,21 @@ struct FilmPupilTable::Data {
   double film_radius = 0;
   double lit_radius = 0;  // to which the strips reach: beyond it is dark
   std::size_t wavelengths = 0, primary = 0, strips_each = 0;
-  bool turned = true, gapped = false;
+  bool turned = true, obscured = false;
   int corrections = 0;
   std::vector<double> twice;  // strips by StripLayout
   std::vector<float> single;
 
-  /// Adds a wavelength. Without symmetry there is one star.
-  void add(const std::vector<PupilPolygon>& stars) {
+  /// Adds a wavelength. Without symmetry there is one polygon.
+  void add(const std::vector<PupilPolygon>& polygons) {
     ++wavelengths;
-    strips_each = std::max<std::size_t>(stars.size() - 1, 1);
+    strips_each = std::max<std::size_t>(polygons.size() - 1, 1);
     for (std::size_t i = 0; i < strips_each; ++i) {
-      const PupilPolygon &a = stars[i], &b = stars[std::min(i + 1, stars.size() - 1)];
+      const PupilPolygon &a = polygons[i], &b = polygons[std::min(i + 1, polygons.size() - 1)];
       const auto strip = strip_between(a, b);
       twice.insert(twice.end(), strip.begin(), strip.end());
       for (const double value : strip) single.push_back(static_cast<float>(value));
-      for (std::size_t k = 0; k < polygon_corners; ++k) gapped = gapped || a.gap[k] > 0 || b.gap[k] > 0;
+      for (std::size_t k = 0; k < polygon_corners; ++k) obscured = obscured || a.obscured[k] > 0 || b.obscured[k] > 0;
       count_corrections(strip.data());
     }
   }
@@ -149,7 +139,7 @@ struct FilmPupilTable::Data {
     result.lit_radius = static_cast<R>(lit_radius * (1 + 1e-6));
     result.strips_per_mm = static_cast<R>(strips_per_mm());
     result.turned = turned;
-    result.gapped = gapped;
+    result.obscured = obscured;
     result.corrections = corrections;
     return result;
   }
@@ -173,7 +163,7 @@ struct FilmPupilTable::Data {
   /// u, from the film point's own direction.
   double share(const Place& place, double u) const noexcept {
     if (!turned) return u;
-    const double from = u - pupil_detail::turn_of(place.sine, place.cosine);
+    const double from = u - turn_of(place.sine, place.cosine);
     return from < 0 ? from + 1 : from < 1 ? from : from - 1;
   }
 };
@@ -187,7 +177,8 @@ void check_film_radius(const std::string& where, double film_radius) {
 
 }  // namespace
 
-FilmPupilTable FilmPupilTable::traced(const Lens& lens, double film_radius, bool covering) {
+FilmPupilTable FilmPupilTable::traced(const Lens& lens, double film_radius, bool enclosing) {
+  const PolygonFit fit = enclosing ? PolygonFit::enclosing : PolygonFit::equal_area;
   check_film_radius(lens.name(), film_radius);
   auto data = std::make_shared<Data>();
   data->space = two_planes(lens);
@@ -197,15 +188,14 @@ FilmPupilTable FilmPupilTable::traced(const Lens& lens, double film_radius, bool
   const std::size_t wavelengths = lens.wavelengths_nm().size();
   data->lit_radius = data->turned ? 0 : film_radius;
   for (std::size_t w = 0; w < wavelengths && data->lit_radius < film_radius; ++w) {
-    const double lit = pupil_detail::lit_radius(film_radius, pupil_detail::traced_edges(lens, data->space, w));
+    const double lit = lit_radius(film_radius, traced_pupils(lens, data->space, w));
     data->lit_radius = std::max(data->lit_radius, lit);
   }
   for (std::size_t w = 0; w < wavelengths; ++w) {
     if (data->turned) {
-      data->add(
-          pupil_detail::film_polygons(data->lit_radius, covering, pupil_detail::traced_edges(lens, data->space, w)));
+      data->add(film_polygons(data->lit_radius, fit, traced_pupils(lens, data->space, w)));
     } else {
-      data->add({{pupil_detail::star_for_all(lens, data->space, film_radius, w)}});
+      data->add({{polygon_for_all(lens, data->space, film_radius, w)}});
     }
   }
   return FilmPupilTable(std::move(data));
@@ -225,32 +215,32 @@ FilmPupilTable FilmPupilTable::equal_area(const Lens& lens, double film_radius) 
 
 FilmPupilTable FilmPupilTable::of_discs(const TwoPlanes& space, std::span<const std::vector<PupilDisc>> discs,
                                         double film_radius, std::size_t primary_wavelength) {
-  check_film_radius("pupil map", film_radius);
+  check_film_radius("pupil table", film_radius);
   auto data = std::make_shared<Data>();
   data->primary = primary_wavelength;
   data->space = space;
   data->film_radius = data->lit_radius = film_radius;
-  for (const std::vector<PupilDisc>& set : discs) data->add(pupil_detail::disc_stars(set, film_radius));
+  for (const std::vector<PupilDisc>& set : discs) data->add(disc_polygons(set, film_radius));
   return FilmPupilTable(std::move(data));
 }
 
-FilmPupilTable FilmPupilTable::leaning(const FilmTilt& lean) const {
-  check_film_radius("leaning film", lean.radius);
+FilmPupilTable FilmPupilTable::for_tilted_film(const FilmTilt& tilt) const {
+  check_film_radius("tilted film", tilt.radius);
   auto data = std::make_shared<Data>();
   if (!data_->turned) {  // the one pupil holds all lines
     *data = *data_;
-    data->film_radius = data->lit_radius = lean.radius;
+    data->film_radius = data->lit_radius = tilt.radius;
     return FilmPupilTable(std::move(data));
   }
   data->space = data_->space;
   data->primary = data_->primary;
-  data->film_radius = lean.radius;
-  for (std::size_t w = 0; w < wavelengths() && data->lit_radius < lean.radius; ++w) {
-    const double lit = pupil_detail::lit_radius(lean.radius, pupil_detail::leaning_edges(*this, lean, w));
+  data->film_radius = tilt.radius;
+  for (std::size_t w = 0; w < wavelengths() && data->lit_radius < tilt.radius; ++w) {
+    const double lit = lit_radius(tilt.radius, tilted_film_pupils(*this, tilt, w));
     data->lit_radius = std::max(data->lit_radius, lit);
   }
   for (std::size_t w = 0; w < wavelengths(); ++w) {
-    data->add(pupil_detail::film_polygons(data->lit_radius, true, pupil_detail::leaning_edges(*this, lean, w)));
+    data->add(film_polygons(data->lit_radius, PolygonFit::enclosing, tilted_film_pupils(*this, tilt, w)));
   }
   return FilmPupilTable(std::move(data));
 }
@@ -284,7 +274,7 @@ void FilmPupilTable::sample(std::size_t count, const T* film_x, const T* film_y,
     }
     return;
   }
-  const auto& loops = pupil_detail::film_pupil_table();
+  const auto& loops = pupil_table_detail::film_pupil_table();
   if constexpr (sizeof(T) == sizeof(float)) {
     loops.single(data_->table<T>(), count, film_x, film_y, u, v, wavelengths, x, y, areas);
   } else {
@@ -308,20 +298,13 @@ std::array<double, 2> FilmPupilTable::middle(const FilmPoint& film, Wavelength w
 bool FilmPupilTable::contains(const FilmPoint& film, double x, double y, Wavelength wavelength) const noexcept {
   const auto [strip, t, cosine, sine] = data_->find(film, wavelength);
   if (!strip) return false;
-  const double qx = cosine * x - sine * y;
-  const double qy = sine * x + cosine * y - strip[L::middle_y] - t * strip[L::middle_y + 1];
-  for (std::size_t k = 0; k < polygon_corners; ++k) {
-    const auto [ax, ay] = along_strip(strip + L::sectors + L::sector * k, t);
-    const auto [bx, by] = along_strip(strip + L::sectors + L::sector * (k + 1), t);
-    const double behind = qx * ay - ax * qy, before = bx * qy - qx * by;
-    if (!(behind >= 0 && before >= 0)) continue;
-    const double whole = bx * ay - ax * by;
-    if (!(whole > 0)) continue;
-    const auto [gap_from, gap] = along_strip(strip + L::gaps + 4 * k, t);
-    const double reach = (behind + before) / whole, out = reach * reach;
-    return out <= 1 && !(out >= gap_from && out < gap_from + gap);
-  }
-  return false;
+  const Point<double> q{cosine * x - sine * y, sine * x + cosine * y - strip[L::middle_y] - t * strip[L::middle_y + 1]};
+  const auto sectors = [strip = strip, t = t](std::size_t k) { return sector_at(strip, k, t); };
+  const std::size_t k = sector_facing(q, sectors);
+  if (k == polygon_corners) return false;
+  const Sector<double> sector = sectors(k);
+  const double way = sector.way_to(q), squared = way * way;
+  return squared <= 1 && !sector.obscures(squared);
 }
 
 template <class T>
@@ -335,7 +318,7 @@ void FilmPupilTable::contains(std::size_t count, const TwoPlaneRays<const T>& li
     }
     return;
   }
-  const auto& loops = pupil_detail::film_pupil_table();
+  const auto& loops = pupil_table_detail::film_pupil_table();
   if constexpr (sizeof(T) == sizeof(float)) {
     loops.contains_single(data_->table<T>(), count, film_x, film_y, x, y, wavelengths, within);
   } else {
@@ -343,8 +326,8 @@ void FilmPupilTable::contains(std::size_t count, const TwoPlaneRays<const T>& li
   }
 }
 
-FilmPupilTable::Motion FilmPupilTable::motion(const FilmPoint& film, double u, double v,
-                                              Wavelength wavelength) const noexcept {
+FilmPupilTable::Derivatives FilmPupilTable::derivatives(const FilmPoint& film, double u, double v,
+                                                        Wavelength wavelength) const noexcept {
   using Jet = ceres::Jet<double, 2>;
   // On the axis the directions around it meet: beside it is near enough.
   const double beside = 1e-4 * data_->film_radius;
@@ -361,7 +344,7 @@ FilmPupilTable::Motion FilmPupilTable::motion(const FilmPoint& film, double u, d
   t.a = found.t;
   Jet share(u);
   if (turn) {
-    share -= pupil_detail::turn_of(x, y);
+    share -= turn_of(x, y);
     if (share.a < 0) share += 1.0;
     if (share.a >= 1) share -= 1.0;
   }

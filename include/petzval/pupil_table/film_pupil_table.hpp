@@ -13,7 +13,7 @@
 #include "petzval/lens/lens.hpp"
 #include "petzval/lens/wavelength.hpp"
 #include "petzval/pupil/field_point.hpp"
-#include "petzval/pupil/two_plane_rays.hpp"
+#include "petzval/pupil_table/two_plane_rays.hpp"
 
 namespace petzval::inline v0 {
 
@@ -71,7 +71,7 @@ class PETZVAL_API FilmPupilTable {
   /// their area at most 1e-5 is missed (tests/camera/tilted_exposure_test.cpp), but where `covering` misses more: of a
   /// ball lens 10 mm across, tilted by 8 degrees, 2e-3 on a film of 3 x 2 mm, 2e-4 on one of 0.6 x 0.45 mm at f/8.
   /// Throws Error for a radius that is negative or not finite.
-  FilmPupilTable leaning(const FilmTilt& lean) const;
+  FilmPupilTable for_tilted_film(const FilmTilt& tilt) const;
 
   /// The planes that film points and samples lie in.
   const TwoPlanes& space() const noexcept;
@@ -102,10 +102,10 @@ class PETZVAL_API FilmPupilTable {
                 std::uint8_t* within) const noexcept;
 
   /// How the sample moves with the film point, u and v held: derivatives of (x, y) by film x and by film y.
-  struct Motion {
+  struct Derivatives {
     std::array<double, 2> by_film_x{0, 0}, by_film_y{0, 0};
   };
-  Motion motion(const FilmPoint& film, double u, double v, Wavelength wavelength = {}) const noexcept;
+  Derivatives derivatives(const FilmPoint& film, double u, double v, Wavelength wavelength = {}) const noexcept;
 
  private:
   struct Data;

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/pupil/two_plane_rays.hpp"
+#include "petzval/pupil_table/two_plane_rays.hpp"
 
 #include <cmath>
 
-#include "face.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/text.hpp"
 #include "petzval/paraxial/first_order.hpp"
@@ -25,13 +24,6 @@ TwoPlanes two_planes(const Lens& lens) {
   const double depth = std::abs(exit_z - film_z);
   constexpr double nearest = 0.05, farthest = 20;  // focal lengths
   return {film_z, depth > nearest * reach && depth < farthest * reach ? exit_z : last_z};
-}
-
-OuterFace last_face(const Lens& lens) {
-  const std::size_t last = lens.surface_count() - 1;
-  const Pupil entrance = has_pupils(lens) ? pupils(lens, lens.primary_wavelength()).entrance : Pupil{};
-  const pupil_detail::Face face = pupil_detail::face_of(lens, last, entrance);
-  return {face.half, lens.surfaces()[last].vertex_z, face.z_min, face.z_max};
 }
 
 double towards_scene(const Lens& lens, const TwoPlanes& space) {

@@ -6,20 +6,20 @@
 
 #include "core/widest.hpp"
 #include "petzval/lens/wavelength.hpp"
-#include "petzval/pupil/pupil_polygon.hpp"
+#include "pupil_table/sector.hpp"
 
-namespace petzval::inline v0::pupil_detail {
+namespace petzval::inline v0::pupil_table_detail {
 
-/// The stars between two distances from the axis, as polynomials of the fraction t of the way, in one row of numbers
-/// that loops gather from: what is used together lies together. Corners count from the middle; what lies before a
-/// sector is the area of those before it.
+/// The polygons between two distances from the axis, as polynomials of the fraction t of the way, in one row of numbers
+/// that loops gather from: what is used together lies together. Corners are relative to the middle.
 struct StripLayout {
   static constexpr std::size_t middle_y = 0;  ///< y, y by t; x is 0
   static constexpr std::size_t whole = 4;     ///< area by powers of t
-  static constexpr std::size_t sectors = 8;   ///< [65] first corner x, y, x by t, y by t; area before by powers of t
-  static constexpr std::size_t sector = 8;    ///< numbers of one
-  static constexpr std::size_t gaps = sectors + sector * (polygon_corners + 1);  ///< [64] begin, width, these by t
-  static constexpr std::size_t size = gaps + 4 * polygon_corners;
+  static constexpr std::size_t sectors =
+      8;  ///< [65] first corner x, y, x by t, y by t; area of the sectors before by powers of t
+  static constexpr std::size_t sector = 8;                                           ///< numbers of one
+  static constexpr std::size_t obscured = sectors + sector * (polygon_corners + 1);  ///< [64] begin, width, these by t
+  static constexpr std::size_t size = obscured + 4 * polygon_corners;
 };
 
 /// The strips of all wavelengths, borrowed.
@@ -28,9 +28,9 @@ struct StripTable {
   const R* strips = nullptr;  ///< [wavelength * count + strip] StripLayout
   std::size_t count = 0, wavelengths = 0, primary = 0;
   R lit_radius = 0, strips_per_mm = 0;
-  bool turned = true;   ///< the stars are those of film points on +y and turn with the point
-  bool gapped = false;  ///< at least one sector has a gap
-  int corrections = 0;  ///< by how many sectors equal shares may miss the right one; 0: by half a one
+  bool turned = true;     ///< the polygons are those of film points on +y and turn with the point
+  bool obscured = false;  ///< at least one sector has an obscuration
+  int corrections = 0;    ///< by how many sectors equal shares may miss the right one; 0: by half a one
 };
 
 namespace {
@@ -58,7 +58,7 @@ inline T turn_of(const T& x, const T& y) noexcept {
 
 }  // namespace
 
-struct PupilMapLoops {
+struct FilmPupilLoops {
   using Float = void (*)(const StripTable<float>&, std::size_t, const float*, const float*, const float*, const float*,
                          const RayWavelengths&, float*, float*, float*) noexcept;
   using Double = void (*)(const StripTable<double>&, std::size_t, const double*, const double*, const double*,
@@ -72,6 +72,6 @@ struct PupilMapLoops {
   Contains<double> contains_twice;
 };
 
-PETZVAL_WIDEST(PupilMapLoops, film_pupil_table)
+PETZVAL_WIDEST(FilmPupilLoops, film_pupil_table)
 
-}  // namespace petzval::inline v0::pupil_detail
+}  // namespace petzval::inline v0::pupil_table_detail

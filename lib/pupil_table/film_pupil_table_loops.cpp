@@ -3,7 +3,7 @@
 // its lanes. Names are local, and no other library is called, as in lib/trace/lanes.hpp.
 #include "film_pupil_table_loops.hpp"
 
-namespace petzval::inline v0::pupil_detail {
+namespace petzval::inline v0::pupil_table_detail {
 namespace {
 
 constexpr std::size_t block = 64;
@@ -41,12 +41,31 @@ inline Place<R> place_of(const StripTable<R>& table, R film_x, R film_y, std::in
   return {place - static_cast<R>(inner), fy / length, fx / length, fx, fy, known, strip};
 }
 
+inline std::int32_t index(std::size_t place) noexcept { return static_cast<std::int32_t>(place); }
+
+/// A corner of the polygon at the fraction t of a strip.
+template <class R>
+inline Point<R> corner_of(const R* all, std::int32_t strip, std::int32_t k, R t) noexcept {
+  const std::int32_t c = strip + index(StripLayout::sectors) + index(StripLayout::sector) * k;
+  return {all[c] + t * all[c + 2], all[c + 1] + t * all[c + 3]};
+}
+
+template <bool obscured, class R>
+inline Sector<R> sector_of(const R* all, std::int32_t strip, std::int32_t k, R t) noexcept {
+  Sector<R> sector{corner_of(all, strip, k, t), corner_of(all, strip, k + 1, t), R(0), R(0)};
+  if constexpr (obscured) {
+    const std::int32_t o = strip + index(StripLayout::obscured) + 4 * k;
+    sector.obscured_from = all[o] + t * all[o + 2];
+    sector.obscured = all[o + 1] + t * all[o + 3];
+  }
+  return sector;
+}
+
 /// One block, in loops without branches. Slots beyond `count` hold zeros.
-template <bool gapped, class R>
+template <bool obscured, class R>
 void sample_block(const StripTable<R>& table, const R* film_x, const R* film_y, const R* u, const R* v,
                   const std::int32_t* wavelength, R* x, R* y, R* area) noexcept {
   using L = StripLayout;
-  const auto index = [](std::size_t place) { return static_cast<std::int32_t>(place); };
   constexpr auto corners = static_cast<std::int32_t>(polygon_corners);
   const StripTable<R> own_table = table;  // which nothing that is written overlaps
   const R* all = own_table.strips;
@@ -72,7 +91,7 @@ void sample_block(const StripTable<R>& table, const R* film_x, const R* film_y, 
     return strip[i] + index(L::sectors) + index(L::sector) * k;
   };
   const auto area_at = [&](std::size_t i, std::int32_t at) {
-    const R cubic = gapped ? all[at + 3] : R(0);  // triangles are quadratic in t
+    const R cubic = obscured ? all[at + 3] : R(0);  // triangles are quadratic in t
     return all[at] + t[i] * (all[at + 1] + t[i] * (all[at + 2] + t[i] * cubic));
   };
   const auto area_before = [&](std::size_t i, std::int32_t k) { return area_at(i, sector_at(i, k) + 4); };
@@ -101,36 +120,25 @@ void sample_block(const StripTable<R>& table, const R* film_x, const R* film_y, 
   // The results overlap nothing that is read here.
   PETZVAL_INDEPENDENT
   for (std::size_t i = 0; i < block; ++i) {
-    const std::int32_t k = sector[i], a = sector_at(i, k), b = a + index(L::sector), m = strip[i] + index(L::middle_y);
-    const R ax = all[a] + t[i] * all[a + 2], ay = all[a + 1] + t[i] * all[a + 3];
-    const R bx = all[b] + t[i] * all[b + 2], by = all[b + 1] + t[i] * all[b + 3];
-    R gap_from(0), gap(0);
-    if constexpr (gapped) {
-      const std::int32_t g = strip[i] + index(L::gaps) + 4 * k;
-      gap_from = all[g] + t[i] * all[g + 2];
-      gap = all[g + 1] + t[i] * all[g + 3];
-    }
-    const R rest = R(1) - gap;
-    const R own = R(0.5) * (bx * ay - ax * by) * rest;
+    const std::int32_t k = sector[i], m = strip[i] + index(L::middle_y);
+    const Sector<R> own = sector_of<obscured>(all, strip[i], k, t[i]);
+    const R own_area = own.area();
     // From the sector's first corner, or back from its second.
-    const R along = clamped(behind[i] / (own > R(0) ? own : R(1)) + beyond[i]);
-    const R within = rest * outer[i];
-    const R out = root(within < gap_from ? within : within + gap);
-    const R px = out * (ax + along * (bx - ax));
-    const R py = all[m] + t[i] * all[m + 1] + out * (ay + along * (by - ay));
+    const R along = clamped(behind[i] / (own_area > R(0) ? own_area : R(1)) + beyond[i]);
+    const Point<R> p = own.at(root(own.squared_way(outer[i])), along);
+    const R py = all[m] + t[i] * all[m + 1] + p.y;
     const R some = whole[i] > R(0) ? R(1) : R(0);
-    x[i] = some * (cosine[i] * px + sine[i] * py);
-    y[i] = some * (cosine[i] * py - sine[i] * px);
+    x[i] = some * (cosine[i] * p.x + sine[i] * py);
+    y[i] = some * (cosine[i] * py - sine[i] * p.x);
     area[i] = some * whole[i];
   }
 }
 
-/// One block of places, told as pupils: sectors are found by halving.
+/// One block of places, whether their pupils contain them: sectors are found by halving.
 template <class R>
 void contains_block(const StripTable<R>& table, const R* film_x, const R* film_y, const R* x, const R* y,
                     const std::int32_t* wavelength, std::uint8_t* within) noexcept {
   using L = StripLayout;
-  const auto index = [](std::size_t place) { return static_cast<std::int32_t>(place); };
   constexpr auto corners = static_cast<std::int32_t>(polygon_corners);
   const StripTable<R> own_table = table;
   const R* all = own_table.strips;
@@ -144,38 +152,30 @@ void contains_block(const StripTable<R>& table, const R* film_x, const R* film_y
     qx[i] = cosine * x[i] - sine * y[i];
     qy[i] = sine * x[i] + cosine * y[i];
   }
-  const auto sector_at = [&](std::size_t i, std::int32_t k) {
-    return strip[i] + index(L::sectors) + index(L::sector) * k;
-  };
+  const auto corner = [&](std::size_t i, std::int32_t k) { return corner_of(all, strip[i], k, t[i]); };
   // Half turns count from the first corner.
   for (std::size_t i = 0; i < block; ++i) {
-    const std::int32_t m = strip[i] + index(L::middle_y), c = sector_at(i, 0);
+    const std::int32_t m = strip[i] + index(L::middle_y);
     qy[i] -= all[m] + t[i] * all[m + 1];
-    const R cx = all[c] + t[i] * all[c + 2], cy = all[c + 1] + t[i] * all[c + 3];
-    half[i] = qx[i] * cy - cx * qy[i] < R(0);
+    half[i] = turn(corner(i, 0), Point<R>{qx[i], qy[i]}) < R(0);
     sector[i] = 0;
   }
   for (std::int32_t step = corners / 2; step > 0; step /= 2) {
     for (std::size_t i = 0; i < block; ++i) {
-      const std::int32_t c = sector_at(i, sector[i] + step), first = sector_at(i, 0);
-      const R cx = all[c] + t[i] * all[c + 2], cy = all[c + 1] + t[i] * all[c + 3];
-      const R fx = all[first] + t[i] * all[first + 2], fy = all[first + 1] + t[i] * all[first + 3];
-      const std::int32_t corner_half = cx * fy - fx * cy < R(0), behind = qx[i] * cy - cx * qy[i] >= R(0);
+      const Point<R> c = corner(i, sector[i] + step);
+      const std::int32_t corner_half = turn(corner(i, 0), c) < R(0), behind = turn(c, Point<R>{qx[i], qy[i]}) >= R(0);
       sector[i] += (corner_half < half[i]) | ((corner_half == half[i]) & behind) ? step : 0;
     }
   }
   PETZVAL_INDEPENDENT
   for (std::size_t i = 0; i < block; ++i) {
-    const std::int32_t k = sector[i], a = sector_at(i, k), b = a + index(L::sector),
-                       g = strip[i] + index(L::gaps) + 4 * k;
-    const R ax = all[a] + t[i] * all[a + 2], ay = all[a + 1] + t[i] * all[a + 3];
-    const R bx = all[b] + t[i] * all[b + 2], by = all[b + 1] + t[i] * all[b + 3];
-    const R behind = qx[i] * ay - ax * qy[i], before = bx * qy[i] - qx[i] * by, whole = bx * ay - ax * by;
-    const R reach = (behind + before) / (whole > R(0) ? whole : R(1)), out = reach * reach;
-    const R gap_from = all[g] + t[i] * all[g + 2], gap_to = gap_from + all[g + 1] + t[i] * all[g + 3];
-    const std::int32_t inside = known[i] & (behind >= R(0)) & (before >= R(0)) & (whole > R(0)) & (out <= R(1));
-    const std::int32_t in_gap = (out >= gap_from) & (out < gap_to);
-    within[i] = static_cast<std::uint8_t>(inside & (1 - in_gap));
+    const Sector<R> own = sector_of<true>(all, strip[i], sector[i], t[i]);
+    const Point<R> q{qx[i], qy[i]};
+    const R behind = turn(own.a, q), before = turn(q, own.b), whole = turn(own.a, own.b);
+    const R way = (behind + before) / (whole > R(0) ? whole : R(1)), squared = way * way;
+    const std::int32_t inside = known[i] & (behind >= R(0)) & (before >= R(0)) & (whole > R(0)) & (squared <= R(1));
+    const std::int32_t dark = (squared >= own.obscured_from) & (squared < own.obscured_from + own.obscured);
+    within[i] = static_cast<std::uint8_t>(inside & (1 - dark));
   }
 }
 
@@ -216,17 +216,17 @@ void contains(const StripTable<R>& table, std::size_t count, const R* film_x, co
             });
 }
 
-template <bool gapped, class R>
+template <bool obscured, class R>
 void sample_blocks(const StripTable<R>& table, std::size_t count, const R* film_x, const R* film_y, const R* u,
                    const R* v, const RayWavelengths& wavelengths, R* x, R* y, R* areas) noexcept {
   by_blocks(table, count, {film_x, film_y, u, v}, wavelengths,
             [&](std::size_t begin, std::size_t n, const R* const* in, const std::int32_t* w) {
               if (n == block) {
-                sample_block<gapped>(table, in[0], in[1], in[2], in[3], w, x + begin, y + begin, areas + begin);
+                sample_block<obscured>(table, in[0], in[1], in[2], in[3], w, x + begin, y + begin, areas + begin);
                 return;
               }
               R out[3][block];
-              sample_block<gapped>(table, in[0], in[1], in[2], in[3], w, out[0], out[1], out[2]);
+              sample_block<obscured>(table, in[0], in[1], in[2], in[3], w, out[0], out[1], out[2]);
               for (std::size_t i = 0; i < n; ++i) {
                 x[begin + i] = out[0][i], y[begin + i] = out[1][i], areas[begin + i] = out[2][i];
               }
@@ -236,12 +236,12 @@ void sample_blocks(const StripTable<R>& table, std::size_t count, const R* film_
 template <class R>
 void sample(const StripTable<R>& table, std::size_t count, const R* film_x, const R* film_y, const R* u, const R* v,
             const RayWavelengths& wavelengths, R* x, R* y, R* areas) noexcept {
-  const auto blocks = table.gapped ? sample_blocks<true, R> : sample_blocks<false, R>;
+  const auto blocks = table.obscured ? sample_blocks<true, R> : sample_blocks<false, R>;
   blocks(table, count, film_x, film_y, u, v, wavelengths, x, y, areas);
 }
 
 }  // namespace
 
-const PupilMapLoops PETZVAL_LOOPS{sample<float>, sample<double>, contains<float>, contains<double>};
+const FilmPupilLoops PETZVAL_LOOPS{sample<float>, sample<double>, contains<float>, contains<double>};
 
-}  // namespace petzval::inline v0::pupil_detail
+}  // namespace petzval::inline v0::pupil_table_detail

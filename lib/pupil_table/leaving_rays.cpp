@@ -6,7 +6,7 @@
 
 #include "core/low_discrepancy.hpp"
 #include "petzval/core/bisect.hpp"
-#include "petzval/pupil/entrance_pupil_table.hpp"
+#include "pupil_table/entrance_pupil_table.hpp"
 
 namespace petzval::inline v0 {
 namespace {

@@ -23,13 +23,6 @@ struct TwoPlanes {
 /// a film in the plane of the last vertex.
 PETZVAL_API TwoPlanes two_planes(const Lens& lens);
 
-/// The last surface as a box around its clear part: half height (four times that of the widest rim where it has no rim
-/// itself), vertex, lowest and highest z of the lens frame, mm.
-struct OuterFace {
-  double half = 0, vertex_z = 0, z_min = 0, z_max = 0;
-};
-PETZVAL_API OuterFace last_face(const Lens& lens);
-
 /// 1 where lines run towards the scene on their way from the film to the plane of the pupil, -1 where they come from
 /// it.
 PETZVAL_API double towards_scene(const Lens& lens, const TwoPlanes& space);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/pupil/outline.hpp"
+#include "petzval/pupil/pupil_boundary.hpp"
 
 #include <gtest/gtest.h>
 
@@ -32,17 +32,17 @@ struct Case {
 
 std::ostream& operator<<(std::ostream& out, const Case& c) { return out << c.lens << " at " << c.field_deg; }
 
-class Outline : public ::testing::TestWithParam<Case> {};
+class PupilBoundaryTest : public ::testing::TestWithParam<Case> {};
 
-TEST_P(Outline, LiesBetweenPassingAndLostRays) {
+TEST_P(PupilBoundaryTest, LiesBetweenPassingAndLostRays) {
   const Lens lens = data_lens(GetParam().lens);
-  const PupilOutline outline = pupil_outline(lens, {radians(GetParam().field_deg), -infinity}, 0, 64);
-  ASSERT_FALSE(outline.empty());
+  const PupilBoundary boundary = pupil_boundary(lens, {radians(GetParam().field_deg), -infinity}, 0, 64);
+  ASSERT_FALSE(boundary.empty());
   const auto fate = [&](std::size_t direction, double radius) {
-    const auto [x, y] = outline.at(direction, radius);
-    return trace(lens, outline.plane.ray(x, y));
+    const auto [x, y] = boundary.at(direction, radius);
+    return trace(lens, boundary.plane.ray(x, y));
   };
-  for (const PupilSpan& span : outline.spans) {
+  for (const PupilSpan& span : boundary.spans) {
     ASSERT_TRUE(fate(span.direction, span.from_radius).transmitted());
     ASSERT_TRUE(fate(span.direction, span.to_radius).transmitted());
     ASSERT_TRUE(fate(span.direction, (span.from_radius + span.to_radius) / 2).transmitted());
@@ -56,32 +56,32 @@ TEST_P(Outline, LiesBetweenPassingAndLostRays) {
   }
 }
 
-TEST_P(Outline, HasTheAreaOfAGridOfRays) {
+TEST_P(PupilBoundaryTest, HasTheAreaOfAGridOfRays) {
   const Lens lens = data_lens(GetParam().lens);
-  const PupilOutline outline = pupil_outline(lens, {radians(GetParam().field_deg), -infinity});
+  const PupilBoundary boundary = pupil_boundary(lens, {radians(GetParam().field_deg), -infinity});
   constexpr int nodes = 300;
-  const double half_x = 1.25 * outline.half_axes[0], half_y = 1.25 * outline.half_axes[1];
+  const double half_x = 1.25 * boundary.half_axes[0], half_y = 1.25 * boundary.half_axes[1];
   int passed = 0;
   for (int j = 0; j < nodes; ++j) {
     for (int i = 0; i < nodes; ++i) {
-      const double x = outline.middle[0] + half_x * ((2 * i + 1.0) / nodes - 1);
-      const double y = outline.middle[1] + half_y * ((2 * j + 1.0) / nodes - 1);
-      passed += trace(lens, outline.plane.ray(x, y)).transmitted();
+      const double x = boundary.middle[0] + half_x * ((2 * i + 1.0) / nodes - 1);
+      const double y = boundary.middle[1] + half_y * ((2 * j + 1.0) / nodes - 1);
+      passed += trace(lens, boundary.plane.ray(x, y)).transmitted();
     }
   }
-  EXPECT_NEAR(outline.area() / (4 * half_x * half_y / nodes / nodes * passed), 1, 3e-3);
+  EXPECT_NEAR(boundary.area() / (4 * half_x * half_y / nodes / nodes * passed), 1, 3e-3);
 }
 
-TEST_P(Outline, FewDirectionsGiveNearlyTheAreaOfMany) {
+TEST_P(PupilBoundaryTest, FewDirectionsGiveNearlyTheAreaOfMany) {
   const Lens lens = data_lens(GetParam().lens);
   const FieldPoint point{radians(GetParam().field_deg), -infinity};
-  const PupilOutline usual = pupil_outline(lens, point), fine = pupil_outline(lens, point, 0, 2048);
+  const PupilBoundary usual = pupil_boundary(lens, point), fine = pupil_boundary(lens, point, 0, 2048);
   const bool crescent = GetParam().lens == std::string("cylinder_3.9mm");
   EXPECT_NEAR(usual.area() / fine.area(), 1, crescent ? 3e-3 : 5e-4);
 }
 
 INSTANTIATE_TEST_SUITE_P(
-    Lenses, Outline,
+    Lenses, PupilBoundaryTest,
     ::testing::Values(Case{"double_gauss_100mm_f1.35", 0}, Case{"double_gauss_100mm_f1.35", 12},
                       Case{"double_gauss_100mm_f1.35", 21}, Case{"biogon_35mm_f2.8", 31}, Case{"fisheye_10mm_f4", 76},
                       Case{"fisheye_6.3mm_f2.8", 80}, Case{"fisheye_6.3mm_f2.8", 110},
@@ -90,12 +90,12 @@ INSTANTIATE_TEST_SUITE_P(
                       Case{"telephoto_200mm_f1.8", 5}, Case{"analytic_ellipsoid_concentric_150mm", 70},
                       Case{"cylinder_3.9mm", 45}));
 
-TEST(PupilOutline, OfAFrontStopIsTheStop) {
+TEST(PupilBoundary, OfAFrontStopIsTheStop) {
   for (const double field : {0.0, 10.0, 30.0}) {
     for (const double z : {-infinity, -50.0}) {
-      const PupilOutline outline = pupil_outline(front_stop_lens(), {radians(field), z}, 0, 32);
-      EXPECT_NEAR(outline.area(), 4 * pi, 1e-12);
-      for (const PupilSpan& span : outline.spans) {
+      const PupilBoundary boundary = pupil_boundary(front_stop_lens(), {radians(field), z}, 0, 32);
+      EXPECT_NEAR(boundary.area(), 4 * pi, 1e-12);
+      for (const PupilSpan& span : boundary.spans) {
         EXPECT_NEAR(std::hypot(span.to.x, span.to.y), 2, 1e-12);
         EXPECT_EQ(span.to.surface, 0);
         EXPECT_EQ(span.to.beyond, RayFate::vignetted);
@@ -104,51 +104,51 @@ TEST(PupilOutline, OfAFrontStopIsTheStop) {
   }
 }
 
-TEST(PupilOutline, OfAHoleIsARing) {
+TEST(PupilBoundary, OfAHoleIsARing) {
   Prescription p;
   p.name = "ring";
   p.surfaces = {{.thickness = 2, .semi_diameter = 5, .inner_semi_diameter = 2, .stop = true},
                 {.radius = 100, .thickness = 50, .medium = {.nd = 1.5}, .semi_diameter = 30}};
-  const PupilOutline outline = pupil_outline(compile(p), {0, -infinity}, 0, 32);
-  EXPECT_NEAR(outline.area(), 21 * pi, 1e-11);
-  EXPECT_EQ(outline.spans.size(), 32u);
+  const PupilBoundary boundary = pupil_boundary(compile(p), {0, -infinity}, 0, 32);
+  EXPECT_NEAR(boundary.area(), 21 * pi, 1e-11);
+  EXPECT_EQ(boundary.spans.size(), 32u);
 }
 
-TEST(PupilOutline, OneDirectionServesTheAxis) {
+TEST(PupilBoundary, OneDirectionServesTheAxis) {
   for (const char* id : {"double_gauss_100mm_f1.35", "catadioptric_mangin_1000mm_f7.5", "fisheye_6.3mm_f2.8"}) {
     const Lens lens = data_lens(id);
-    const PupilOutline one = pupil_outline(lens, {0, -infinity}, 0, 1), many = pupil_outline(lens, {0, -infinity});
+    const PupilBoundary one = pupil_boundary(lens, {0, -infinity}, 0, 1), many = pupil_boundary(lens, {0, -infinity});
     EXPECT_NEAR(one.area() / many.area(), 1, 1e-13) << id;
   }
 }
 
-TEST(PupilOutline, OfAFastLensIsThatOfTheLimitingRim) {
+TEST(PupilBoundary, OfAFastLensIsThatOfTheLimitingRim) {
   // Wide open on the axis the rim of the stop limits this lens at infinity; for a near subject it is the rear group.
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
-  const auto limiting = [&](double z) { return pupil_outline(lens, {0, z}, 0, 1).spans.front().to.surface; };
+  const auto limiting = [&](double z) { return pupil_boundary(lens, {0, z}, 0, 1).spans.front().to.surface; };
   const auto clips = [&](double z) {
-    const PupilOutline outline = pupil_outline(lens, {0, z}, 0, 1);
-    const auto [x, y] = outline.at(0, outline.spans.front().to_radius * (1 + 1e-9));
-    return trace(lens, outline.plane.ray(x, y)).surface;
+    const PupilBoundary boundary = pupil_boundary(lens, {0, z}, 0, 1);
+    const auto [x, y] = boundary.at(0, boundary.spans.front().to_radius * (1 + 1e-9));
+    return trace(lens, boundary.plane.ray(x, y)).surface;
   };
   for (const double z : {-infinity, -1000.0, -200.0}) EXPECT_EQ(limiting(z), clips(z)) << z;
 }
 
-TEST(PupilOutline, IsEmptyWhereNothingGetsThrough) {
+TEST(PupilBoundary, IsEmptyWhereNothingGetsThrough) {
   const Lens lens = data_lens("double_gauss_100mm_f1.35");
-  const PupilOutline outline = pupil_outline(lens, {radians(60), -infinity});
-  EXPECT_TRUE(outline.empty());
-  EXPECT_EQ(outline.area(), 0);
-  EXPECT_TRUE(pupil_outline(front_stop_lens(0), {0, -infinity}).empty());
+  const PupilBoundary boundary = pupil_boundary(lens, {radians(60), -infinity});
+  EXPECT_TRUE(boundary.empty());
+  EXPECT_EQ(boundary.area(), 0);
+  EXPECT_TRUE(pupil_boundary(front_stop_lens(0), {0, -infinity}).empty());
 }
 
-TEST(PupilOutline, FindsTheStopOfAFarStoppedDownLens) {
+TEST(PupilBoundary, FindsTheStopOfAFarStoppedDownLens) {
   const Lens lens = with_f_number(data_lens("double_gauss_100mm_f1.35"), 128);
-  const PupilOutline outline = pupil_outline(lens, {radians(5), -infinity});
-  EXPECT_NEAR(outline.half_axes[0], 100.437 / 256, 0.01);
+  const PupilBoundary boundary = pupil_boundary(lens, {radians(5), -infinity});
+  EXPECT_NEAR(boundary.half_axes[0], 100.437 / 256, 0.01);
 }
 
-TEST(PupilOutline, FindsThinRegionsThatTheChiefRayMisses) {
+TEST(PupilBoundary, FindsThinRegionsThatTheChiefRayMisses) {
   // Past the field at which the stop's centre is seen last, slivers are left; no grid finer than 1/100 of them is
   // needed.
   const Lens lens = data_lens("double_gauss_100mm_f1.35");
@@ -156,25 +156,25 @@ TEST(PupilOutline, FindsThinRegionsThatTheChiefRayMisses) {
   double last = infinity;
   for (double field = 14; field < 26; field += 0.5) {
     const FieldPoint point{radians(field), -infinity};
-    const PupilOutline outline = pupil_outline(lens, point);
-    EXPECT_LT(outline.area(), last) << field;
-    last = std::max(outline.area(), 1e-9);
-    slivers += !outline.empty() && chief_ray(lens, point).status != AimStatus::converged;
+    const PupilBoundary boundary = pupil_boundary(lens, point);
+    EXPECT_LT(boundary.area(), last) << field;
+    last = std::max(boundary.area(), 1e-9);
+    slivers += !boundary.empty() && chief_ray(lens, point).status != AimStatus::converged;
   }
   EXPECT_GE(slivers, 3);
 }
 
-TEST(PupilOutline, RefusesTooFewDirections) {
+TEST(PupilBoundary, RefusesTooFewDirections) {
   const Lens lens = front_stop_lens();
   const auto said = [&](double field, std::size_t directions, std::size_t wavelength = 0) {
-    return testing::message([&] { pupil_outline(lens, {field, -infinity}, wavelength, directions); });
+    return testing::message([&] { pupil_boundary(lens, {field, -infinity}, wavelength, directions); });
   };
   EXPECT_EQ(said(0, 1), "no error");
   EXPECT_EQ(said(0.1, 3), "no error");
   EXPECT_EQ(said(0.1, 1),
-            "front stop: pupil outline: directions is 1, wanted 3 or more, or 1 on the axis of a lens of "
+            "front stop: pupil boundary: directions is 1, wanted 3 or more, or 1 on the axis of a lens of "
             "revolution");
-  EXPECT_EQ(said(0, 0).rfind("front stop: pupil outline: directions is 0", 0), 0u);
+  EXPECT_EQ(said(0, 0).rfind("front stop: pupil boundary: directions is 0", 0), 0u);
   EXPECT_EQ(said(0, 8, 2), "front stop: wavelength 2 does not exist, wanted one of 1");
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/pupil/film_pupil_table.hpp"
+#include "petzval/pupil_table/film_pupil_table.hpp"
 
 #include <gtest/gtest.h>
 
@@ -335,7 +335,7 @@ TEST(FilmPupilTable, CoversThePupilsOfAFilmThatLeans) {
                         .radius = radius};
     for (const FilmPupilTable& upright :
          {FilmPupilTable::enclosing(lens, 1.5 * radius), FilmPupilTable::equal_area(lens, 1.5 * radius)}) {
-      const FilmPupilTable map = upright.leaning(lean);
+      const FilmPupilTable map = upright.for_tilted_film(lean);
       EXPECT_EQ(map.film_radius(), radius);
       std::mt19937_64 random(2);
       std::uniform_real_distribution<double> unit(0, 1);
@@ -361,8 +361,8 @@ TEST(FilmPupilTable, CoversThePupilsOfAFilmThatLeans) {
     }
   }
   const FilmPupilTable map = FilmPupilTable::enclosing(data_lens("double_gauss_100mm_f2.0"), 20);
-  EXPECT_THROW((void)map.leaning({.radius = -1}), Error);
-  EXPECT_THROW((void)map.leaning({.radius = std::numeric_limits<double>::quiet_NaN()}), Error);
+  EXPECT_THROW((void)map.for_tilted_film({.radius = -1}), Error);
+  EXPECT_THROW((void)map.for_tilted_film({.radius = std::numeric_limits<double>::quiet_NaN()}), Error);
 }
 
 TEST(FilmPupilTable, KnowsHowItsSamplesMove) {
@@ -373,7 +373,7 @@ TEST(FilmPupilTable, KnowsHowItsSamplesMove) {
   for (int i = 0; i < 200; ++i) {
     const FilmPoint film{9 * unit(random) - 4.5, 9 * unit(random) - 4.5};
     const double u = unit(random), v = unit(random), h = 1e-6;
-    const auto motion = map.motion(film, u, v);
+    const auto motion = map.derivatives(film, u, v);
     const auto at = [&](double dx, double dy) { return map.sample({film.x + dx, film.y + dy}, u, v); };
     const PupilSample right = at(h, 0), left = at(-h, 0), above = at(0, h), below = at(0, -h);
     // A corner of the star or a node of the table may lie between.

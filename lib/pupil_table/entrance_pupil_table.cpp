@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/pupil/entrance_pupil_table.hpp"
+#include "pupil_table/entrance_pupil_table.hpp"
 
 #include <algorithm>
 #include <array>
@@ -11,15 +11,16 @@
 #include <utility>
 
 #include "core/meet_plane.hpp"
-#include "face.hpp"
 #include "petzval/lens/sag.hpp"
 #include "petzval/paraxial/pupils.hpp"
-#include "petzval/pupil/pupil_polygon.hpp"
+#include "pupil/boundary_search.hpp"
+#include "pupil/face.hpp"
+#include "pupil_table/pupil_polygon.hpp"
 
 namespace petzval::inline v0 {
 namespace {
 
-using pupil_detail::PupilPolygon;
+using namespace pupil_table_detail;
 
 constexpr double pi = std::numbers::pi;
 /// Nodes of the table less one: in field, from the axis to the last; in reciprocal distance, from infinity to nearest.
@@ -80,56 +81,22 @@ double cone(double radius, double distance) noexcept {
   return 2 * pi * sine2 / (1 + std::sqrt(1 - sine2));  // 1 - cosine, without cancellation
 }
 
-PupilPolygon mean(const PupilPolygon* stars, const std::array<std::size_t, 4>& nodes,
-                  const std::array<double, 4>& weights) noexcept {
-  PupilPolygon result;
-  for (std::size_t j = 0; j < 4; ++j) {
-    const PupilPolygon& star = stars[nodes[j]];
-    const double w = weights[j];
-    for (int i : {0, 1}) result.middle[i] += w * star.middle[i];
-    for (std::size_t k = 0; k < pupil_detail::polygon_corners; ++k) {
-      for (int i : {0, 1}) result.corners[k][i] += w * star.corners[k][i];
-      result.gap_from[k] += w * star.gap_from[k];
-      result.gap[k] += w * star.gap[k];
-    }
-  }
-  return result;
-}
-
-/// Outwards and, where it has a gap, into that.
-void widen(PupilPolygon& star, double by) noexcept {
-  for (auto& corner : star.corners) corner = {by * corner[0], by * corner[1]};
-  for (std::size_t k = 0; k < pupil_detail::polygon_corners; ++k) {
-    const double to = (star.gap_from[k] + star.gap[k]) / (by * by * by * by);
-    star.gap[k] = std::max(to - star.gap_from[k], 0.0);
-  }
-}
-
-/// Instead of a star where nothing passes any more: between it and the last one, which has some before it, the pupil
-/// ends and moves on as it did, faster even.
-PupilPolygon beyond(const PupilPolygon* star, std::size_t before) noexcept {
+/// Instead of a polygon where nothing passes any more: between it and the last one, which has `before` others before
+/// it, the pupil ends and moves on as it did, and faster.
+PupilPolygon beyond(const PupilPolygon* polygon, std::size_t before) noexcept {
   constexpr double room = 1.2;
-  PupilPolygon result = star[-1];
+  PupilPolygon result = polygon[-1];
   if (before > 1) {
-    for (int i : {0, 1}) result.middle[i] += star[-1].middle[i] - star[-2].middle[i];
+    for (int i : {0, 1}) result.middle[i] += polygon[-1].middle[i] - polygon[-2].middle[i];
   }
-  widen(result, room);
+  result.widen(room);
   return result;
 }
 
-/// How far out in a star a place lies: its edge is at 1, gaps count as -1; infinite where no sector has it.
-double reach(const PupilPolygon& star, double x, double y) noexcept {
-  const double qx = x - star.middle[0], qy = y - star.middle[1];
-  for (std::size_t k = 0; k < pupil_detail::polygon_corners; ++k) {
-    const auto &a = star.corners[k], &b = star.corners[(k + 1) % pupil_detail::polygon_corners];
-    const double whole = b[0] * a[1] - a[0] * b[1];
-    const double first = b[0] * qy - qx * b[1], second = qx * a[1] - a[0] * qy;
-    if (!(whole > 0) || first < 0 || second < 0) continue;
-    const double out = (first + second) / whole;
-    const double gap = out * out - star.gap_from[k];
-    return gap >= 0 && gap < star.gap[k] ? -1 : out;
-  }
-  return std::numeric_limits<double>::infinity();
+/// Whether a pupil is a ring about its middle.
+bool is_ring(const PupilPolygon& polygon) noexcept {
+  const auto& [middle, corners, from, width] = polygon;
+  return *std::max_element(from.begin(), from.end()) == 0 && *std::min_element(width.begin(), width.end()) > 0;
 }
 
 }  // namespace
@@ -138,7 +105,7 @@ struct EntrancePupilTable::Data {
   /// One wavelength.
   struct Table {
     std::array<double, distances> widest{};  // field of the last node, rad
-    std::vector<PupilPolygon> stars;         // [distance][field]; none: cones only
+    std::vector<PupilPolygon> polygons;      // [distance][field]; empty: cones only
     double ball = 0;                         // radius about the centre, mm; 0: nothing passes
   };
   Lens lens;
@@ -182,15 +149,10 @@ struct EntrancePupilTable::Data {
   /// The place on the axis that all lines pass most nearly.
   double least_ball(std::span<const std::vector<Ray<double>>> lines, double first, double last) const noexcept;
   void fill(Table& table, const std::vector<Ray<double>>& lines, std::size_t wavelength, const ScenePassing& passing,
-            ClippedBy ends) const;
+            ClippedBy clipped_by) const;
 
-  /// The nodes about a field at a distance, and what each counts for.
-  struct Cell {
-    std::array<std::size_t, 4> nodes{};
-    std::array<double, 4> weights{};
-    bool inside = false;  // the table speaks for this field
-  };
-  Cell cell_of(const Table& table, double field, double reciprocal) const noexcept {
+  /// The nodes about a field at a distance and their weights; nothing for a field beyond the table.
+  std::optional<PolygonWeights> weights_of(const Table& table, double field, double reciprocal) const noexcept {
     const double row = reciprocal / steepest * distance_steps;
     const auto i = std::min(static_cast<std::size_t>(row), distance_steps - 1);
     const double down = row - static_cast<double>(i);
@@ -200,14 +162,13 @@ struct EntrancePupilTable::Data {
     const auto j = std::min(static_cast<std::size_t>(column), field_steps - 1);
     const double right = column - static_cast<double>(j);
     const std::size_t node = i * fields + j;
-    return {{node, node + 1, node + fields, node + fields + 1},
-            {(1 - down) * (1 - right), (1 - down) * right, down * (1 - right), down * right},
-            true};
+    return PolygonWeights{{node, node + 1, node + fields, node + fields + 1},
+                          {(1 - down) * (1 - right), (1 - down) * right, down * (1 - right), down * right}};
   }
-  /// The star of a point: empty where the table does not speak for it.
-  PupilPolygon star_at(const Table& table, double field, double reciprocal) const noexcept {
-    const Cell cell = cell_of(table, field, reciprocal);
-    return cell.inside ? mean(table.stars.data(), cell.nodes, cell.weights) : PupilPolygon{};
+  /// The pupil of a point, empty for a field beyond the table.
+  PupilPolygon polygon_at(const Table& table, double field, double reciprocal) const noexcept {
+    const auto at = weights_of(table, field, reciprocal);
+    return at ? interpolated(table.polygons, *at) : PupilPolygon{};
   }
 
   /// The table to use for a point, its place seen from the centre; none where nothing can be seen.
@@ -217,7 +178,7 @@ struct EntrancePupilTable::Data {
     return in_front(point) ? &tables[wavelength] : nullptr;
   }
   bool covers(const Table& table, double distance) const noexcept {
-    return !table.stars.empty() && steepest * distance >= 1;
+    return !table.polygons.empty() && steepest * distance >= 1;
   }
 };
 
@@ -249,7 +210,7 @@ double EntrancePupilTable::Data::least_ball(std::span<const std::vector<Ray<doub
 }
 
 void EntrancePupilTable::Data::fill(Table& table, const std::vector<Ray<double>>& lines, std::size_t wavelength,
-                                    const ScenePassing& passing, ClippedBy ends) const {
+                                    const ScenePassing& passing, ClippedBy clipped_by) const {
   // The nodes, and places half way between them to look whether means of nodes contain what they should.
   constexpr std::size_t rows = 2 * distance_steps + 1, columns = 2 * field_steps + 1;
   const auto reciprocal_of = [&](std::size_t row) { return steepest * static_cast<double>(row) / (rows - 1); };
@@ -314,59 +275,56 @@ void EntrancePupilTable::Data::fill(Table& table, const std::vector<Ray<double>>
     passing(count, {ray[0].data(), ray[1].data(), ray[2].data(), ray[3].data(), ray[4].data(), ray[5].data()},
             wavelength, through);
   };
-  const auto edges = pupil_detail::find_edges(guesses, columns, directions, true, passes);
+  const auto pupils = pupil_detail::find_regions(guesses, columns, directions, true, passes);
 
   const auto node = [](std::size_t place) { return place / columns / 2 * fields + place % columns / 2; };
-  table.stars.resize(distances * fields);
-  std::vector<pupil_detail::InterpolationCheck> between;
-  for (std::size_t p = 0; p < edges.size(); ++p) {
+  table.polygons.resize(distances * fields);
+  std::vector<InterpolationCheck> checks;
+  for (std::size_t p = 0; p < pupils.size(); ++p) {
     const std::size_t row = p / columns, column = p % columns, at = node(p);
     if (row % 2 == 0 && column % 2 == 0) {
-      table.stars[at] = pupil_detail::polygon_of(edges[p], true);
-      if (edges[p].empty() && at % fields > 0) table.stars[at] = beyond(table.stars.data() + at, at % fields);
+      PupilPolygon& polygon = table.polygons[at];
+      polygon = pupils[p].empty() && at % fields > 0 ? beyond(&polygon, at % fields)
+                                                     : polygon_of(pupils[p], PolygonFit::enclosing);
     } else {
       const std::size_t down = row % 2 * fields, right = column % 2;
-      between.push_back({&edges[p], {at, at + right, at + down, at + down + right}, {0.25, 0.25, 0.25, 0.25}});
+      checks.push_back({&pupils[p], {{at, at + right, at + down, at + down + right}, {0.25, 0.25, 0.25, 0.25}}});
     }
   }
-  pupil_detail::expand_to_cover(table.stars, between);
+  expand_to_cover(table.polygons, checks);
   constexpr double elsewhere = 1.008;  // in cells, away from the places looked at
-  for (PupilPolygon& star : table.stars) widen(star, elsewhere);
-  // A hole is worth leaving out that all pupils have around their middles. Others, and gaps, move and are cut off
-  // sooner than places tell.
-  const auto holed = [](const PupilPolygon& star) {
-    return *std::max_element(star.gap_from.begin(), star.gap_from.end()) == 0 &&
-           *std::min_element(star.gap.begin(), star.gap.end()) > 0;
-  };
-  const bool holes = std::all_of(table.stars.begin(), table.stars.end(), holed);
-  if (!holes) {
-    for (PupilPolygon& star : table.stars) star.gap.fill(0);
+  for (PupilPolygon& polygon : table.polygons) polygon.widen(elsewhere);
+  // An obscuration is worth leaving out that all pupils have around their middles. Others move and are clipped sooner
+  // than a few places show.
+  const bool rings = std::all_of(table.polygons.begin(), table.polygons.end(), is_ring);
+  if (!rings) {
+    for (PupilPolygon& polygon : table.polygons) polygon.obscured.fill(0);
   }
 
-  // Where pupils dwindle, in the last fields, their edges bend more than a few places tell: the lines themselves do,
-  // and do everywhere where nothing else ends a pupil.
-  const bool all = holes || ends == ClippedBy::samples;
-  constexpr double about_lines = 1.08, last_fields = 0.75, in_gaps = 0.8;
+  // Where pupils dwindle, in the last fields, their boundaries bend more than a few places show: the sampled rays
+  // themselves do, and do everywhere where nothing else clips a pupil.
+  const bool all = rings || clipped_by == ClippedBy::samples;
+  constexpr double about_rays = 1.08, last_fields = 0.75, in_obscurations = 0.8;
   for (std::size_t row = 0; row < rows; ++row) {
     const double reciprocal = reciprocal_of(row);
-    for (const Ray<double>& line : lines) {
-      const Bearing bearing = bearing_of(line, reciprocal);
+    for (const Ray<double>& ray_out : lines) {
+      const Bearing bearing = bearing_of(ray_out, reciprocal);
       if (!all && bearing.field < last_fields * widest[row]) continue;
       const View view(bearing.field, bearing.azimuth_x, bearing.azimuth_y, reciprocal);
-      const auto [x, y] = place_in(view, line.origin - centre, line.direction);
-      const Cell cell = cell_of(table, bearing.field, reciprocal);
-      const double out = reach(mean(table.stars.data(), cell.nodes, cell.weights), x, y);
-      if (std::isinf(out)) {  // a pupil of another shape than a star's or ring's
-        table.stars.clear();
+      const auto [x, y] = place_in(view, ray_out.origin - centre, ray_out.direction);
+      const PolygonWeights at = weights_of(table, bearing.field, reciprocal).value_or(PolygonWeights{});
+      const double way = interpolated(table.polygons, at).way_to(x, y);
+      if (std::isinf(way)) {  // a pupil that no polygon about a middle describes
+        table.polygons.clear();
         return;
       }
-      for (std::size_t j = 0; j < 4; ++j) {
-        if (cell.weights[j] == 0) continue;
-        PupilPolygon& star = table.stars[cell.nodes[j]];
-        if (out < 0) {
-          for (double& gap : star.gap) gap *= in_gaps;
-        } else if (about_lines * out > 1) {
-          widen(star, about_lines * out);
+      for (std::size_t j = 0; j < at.polygons.size(); ++j) {
+        if (at.weights[j] == 0) continue;
+        PupilPolygon& polygon = table.polygons[at.polygons[j]];
+        if (way < 0) {
+          for (double& width : polygon.obscured) width *= in_obscurations;
+        } else if (about_rays * way > 1) {
+          polygon.widen(about_rays * way);
         }
       }
     }
@@ -374,7 +332,7 @@ void EntrancePupilTable::Data::fill(Table& table, const std::vector<Ray<double>>
 }
 
 EntrancePupilTable::EntrancePupilTable(const Lens& lens, std::span<const std::vector<Ray<double>>> lines,
-                                       const ScenePassing& passing, ClippedBy ends) {
+                                       const ScenePassing& passing, ClippedBy clipped_by) {
   auto data = std::make_shared<Data>(lens);
   data->primary = lens.primary_wavelength();
   const Pupil entrance = pupils(lens, lens.primary_wavelength()).entrance;
@@ -402,7 +360,7 @@ EntrancePupilTable::EntrancePupilTable(const Lens& lens, std::span<const std::ve
   }
   for (std::size_t w = 0; w < lines.size(); ++w) {
     Data::Table& table = data->tables[w];
-    if (lens.rotationally_symmetric() && table.ball > 0) data->fill(table, lines[w], w, passing, ends);
+    if (lens.rotationally_symmetric() && table.ball > 0) data->fill(table, lines[w], w, passing, clipped_by);
   }
   data_ = std::move(data);
 }
@@ -420,8 +378,8 @@ void EntrancePupilTable::sample(const Vec3<double>& point, std::size_t count, co
   const View view(bearing.field, bearing.azimuth_x, bearing.azimuth_y, 1 / distance);
 
   if (data_->covers(*table, distance)) {
-    const PupilPolygon star = data_->star_at(*table, bearing.field, view.reciprocal);
-    const pupil_detail::PolygonSampler sampler(star);
+    const PupilPolygon polygon = data_->polygon_at(*table, bearing.field, view.reciprocal);
+    const PolygonSampler sampler(polygon);
     if (!(sampler.area() > 0)) return;
     for (std::size_t i = 0; i < count; ++i) {
       if (!std::isfinite(u[i]) || !std::isfinite(v[i])) continue;
@@ -464,12 +422,10 @@ double EntrancePupilTable::pdf(const Vec3<double>& point, const Vec3<double>& di
   if (data_->covers(*table, distance)) {
     if (!(cosine > 0)) return 0;
     const auto [x, y] = Data::place_in(view, from_centre, direction);
-    const PupilPolygon star = data_->star_at(*table, bearing.field, view.reciprocal);
-    const double out = reach(star, x, y);
-    if (!(out >= 0 && out <= 1)) return 0;
-    double area = 0;
-    for (const double part : star.areas()) area += part;
-    return squared(distance) / (area * cosine * squared(cosine));
+    const PupilPolygon polygon = data_->polygon_at(*table, bearing.field, view.reciprocal);
+    const double way = polygon.way_to(x, y);
+    if (!(way >= 0 && way <= 1)) return 0;
+    return squared(distance) / (polygon.area() * cosine * squared(cosine));
   }
   const double solid = cone(table->ball, distance);
   return 1 - cosine <= solid / (2 * pi) * (1 + 1e-12) ? 1 / solid : 0;

@@ -13,8 +13,8 @@
 #include "petzval/core/vec.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/lens/wavelength.hpp"
-#include "petzval/pupil/film_pupil_table.hpp"
-#include "petzval/pupil/two_plane_rays.hpp"
+#include "petzval/pupil_table/film_pupil_table.hpp"
+#include "petzval/pupil_table/two_plane_rays.hpp"
 #include "petzval/trace/batch.hpp"
 
 namespace petzval::inline v0 {

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "petzval/core/export.hpp"
+#include "petzval/core/ray.hpp"
+#include "petzval/lens/lens.hpp"
+#include "petzval/lens/wavelength.hpp"
+#include "petzval/pupil/pupil_plane.hpp"
+
+namespace petzval::inline v0 {
+
+/// A point of a pupil's boundary: the last ray that passes, and what ends the next one.
+struct RimPoint {
+  double x = 0, y = 0;                  ///< in the plane, mm
+  int surface = -1;                     ///< whose rim limits here; -1: unknown, or the middle, which is no rim
+  RayFate beyond = RayFate::vignetted;  ///< fate of a ray just outside
+};
+
+/// An interval that passes along one direction from the middle of a region. Central obscurations and folded pupils
+/// leave several in one direction or none; `from` is the middle itself where rays pass there.
+struct PupilSpan {
+  std::size_t direction = 0;              ///< one of PupilRegion::directions
+  double from_radius = 0, to_radius = 0;  ///< in units of the half axes
+  RimPoint from, to;
+};
+
+/// A region of a plane, described by its boundary along directions from a middle.
+///
+/// Directions are equally spaced angles about `middle`, in coordinates divided by `half_axes`, so that a slim crescent
+/// is as well resolved as a disc. Spans are in the order of directions, and outwards within one.
+struct PETZVAL_API PupilRegion {
+  std::array<double, 2> middle{0, 0};     ///< x, y in the plane, mm
+  std::array<double, 2> half_axes{0, 0};  ///< x, y, mm
+  std::size_t directions = 0;
+  std::vector<PupilSpan> spans{};
+
+  /// Nothing passes.
+  bool empty() const noexcept { return spans.empty(); }
+
+  /// Unit vector (x, y) of a direction, before the half axes: direction k of n at the angle 2 pi (k + 1/2) / n from +y
+  /// towards +x.
+  std::array<double, 2> unit(std::size_t direction) const noexcept;
+  /// A point of the plane by direction and radius.
+  std::array<double, 2> at(std::size_t direction, double radius) const noexcept;
+
+  /// Area in the plane, mm^2.
+  double area() const noexcept;
+};
+
+/// The pupil of one point of the scene or the film: the region of its plane through which its rays pass the lens.
+/// Radii are found within 2e-13 of the half axes and always on the passing side: the ray of every RimPoint was traced
+/// and passes.
+struct PupilBoundary : PupilRegion {
+  PupilPlane plane;
+  std::size_t wavelength = 0;
+
+  PupilBoundary(const PupilPlane& p, std::size_t w) : plane(p), wavelength(w) {}
+};
+
+/// Finds the boundary by tracing. The search starts at the chief ray; where that is lost, it looks for the ray that
+/// comes nearest to passing all rims. Nothing passes a stop of area 0.
+///
+/// directions: 3 or more, or 1, which is enough on the axis of a lens of revolution; 256 give areas within 5e-4 (3e-3
+/// for crescents with tips as fine as needles).
+/// Throws Error where PupilPlane does, for a wavelength that was not compiled, and for other directions.
+PETZVAL_API PupilBoundary pupil_boundary(const Lens& lens, const FieldPoint& point, Wavelength wavelength = {},
+                                         std::size_t directions = 256);
+
+/// The same for a point of the film: through which part of the lens it sees the scene.
+PETZVAL_API PupilBoundary exit_pupil_boundary(const Lens& lens, const FilmPoint& point, Wavelength wavelength = {},
+                                              std::size_t directions = 256);
+
+}  // namespace petzval::inline v0

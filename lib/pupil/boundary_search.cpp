@@ -1,0 +1,382 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "boundary_search.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+namespace petzval::inline v0::pupil_detail {
+namespace {
+
+/// A line in the plane of one point.
+struct Line {
+  std::uint32_t point = 0;
+  double x = 0, y = 0;    // where it begins
+  double dx = 0, dy = 0;  // per unit of the parameter
+};
+
+/// Places to be tested in one batch.
+struct Batch {
+  std::vector<std::uint32_t> points;
+  std::vector<double> x, y;
+  std::vector<std::uint8_t> passes;
+
+  void clear() {
+    points.clear();
+    x.clear();
+    y.clear();
+  }
+  void add(const Line& line, double s) {
+    points.push_back(line.point);
+    x.push_back(line.x + s * line.dx);
+    y.push_back(line.y + s * line.dy);
+  }
+  void test(const PassingPlaces& passing) {
+    passes.resize(x.size());
+    if (!x.empty()) passing(x.size(), points.data(), x.data(), y.data(), passes.data());
+  }
+};
+
+/// What passes along a line: from the first parameter to the last, except for the widest obscuration between.
+struct LineExtent {
+  double from = 0, obscured_from = 0, obscured_to = 0, to = 0;
+  bool any = false;
+};
+
+/// An end of an extent while it is closed in: a parameter that passes, one that does not.
+struct Bracket {
+  std::size_t line = 0;
+  double with = 0, without = 0;
+  double LineExtent::*end = &LineExtent::to;
+};
+
+void close_in(std::vector<Bracket>& brackets, const std::vector<Line>& lines, int rounds,
+              const PassingPlaces& passing) {
+  Batch batch;
+  for (int round = 0; round < rounds; ++round) {
+    batch.clear();
+    for (const Bracket& b : brackets) batch.add(lines[b.line], (b.with + b.without) / 2);
+    batch.test(passing);
+    for (std::size_t i = 0; i < brackets.size(); ++i) {
+      Bracket& b = brackets[i];
+      (batch.passes[i] ? b.with : b.without) = (b.with + b.without) / 2;
+    }
+  }
+}
+
+/// The extents along some lines, looked for at `samples` + 1 parameters from `low` to `high` of each; the ends are
+/// found within 2^-rounds of a step. Where the first sample passes, the extent begins there.
+std::vector<LineExtent> extents_along(const std::vector<Line>& lines, double low, double high, int samples, int rounds,
+                                      const PassingPlaces& passing) {
+  const double step = (high - low) / samples;
+  Batch batch;
+  for (const Line& line : lines) {
+    for (int i = 0; i <= samples; ++i) batch.add(line, low + step * i);
+  }
+  batch.test(passing);
+  std::vector<LineExtent> result(lines.size());
+  std::vector<Bracket> brackets;
+  for (std::size_t l = 0; l < lines.size(); ++l) {
+    const std::uint8_t* passes = batch.passes.data() + l * (static_cast<std::size_t>(samples) + 1);
+    int first = 0, last = samples, dark = 0, light = 0;  // dark, light: the samples beside the widest obscuration
+    while (first <= samples && !passes[first]) ++first;
+    if (first > samples) continue;
+    while (!passes[last]) --last;
+    for (int i = first, before = first; i <= last; ++i) {
+      if (!passes[i]) continue;
+      if (i - before > std::max(1, light - dark)) dark = before, light = i;
+      before = i;
+    }
+    result[l].any = true;
+    const auto close = [&](double LineExtent::*end, int with, int without) {
+      result[l].*end = low + step * with;
+      if (without >= 0 && without <= samples) {
+        brackets.push_back({l, low + step * with, low + step * without, end});
+      }
+    };
+    close(&LineExtent::from, first, first - 1);
+    close(&LineExtent::to, last, last + 1);
+    if (dark == light) continue;
+    close(&LineExtent::obscured_from, dark, dark + 1);
+    close(&LineExtent::obscured_to, light, light - 1);
+  }
+  close_in(brackets, lines, rounds, passing);
+  for (const Bracket& b : brackets) result[b.line].*b.end = b.with;
+  return result;
+}
+
+/// What is known of a region while it is searched: middle, half axes and, by direction, what passes from the middle to
+/// `to`, except for one obscuration. Nothing passes where `to` is 0, and nothing at all without directions.
+struct Found {
+  struct Ends {
+    double obscured_from = 0, obscured_to = 0, to = 0;
+  };
+  std::array<double, 2> middle{0, 0}, half_axes{0, 0};
+  std::vector<Ends> ends;
+
+  bool empty() const noexcept { return ends.empty(); }
+};
+
+constexpr int end_rounds = 10;
+
+class Search {
+ public:
+  Search(std::span<const PupilGuess> points, std::size_t directions, bool mirrored, const PassingPlaces& passing)
+      : points_(points),
+        directions_(directions),
+        traced_(mirrored ? directions / 2 : directions),
+        mirrored_(mirrored),
+        passing_(passing),
+        found_(points.size()) {
+    PupilRegion unit_circle{.half_axes = {1, 1}, .directions = directions};
+    for (std::size_t k = 0; k < directions; ++k) units_.push_back(unit_circle.unit(k));
+  }
+
+  bool lit(std::size_t point) const noexcept { return !found_[point].empty(); }
+
+  std::vector<PupilRegion> regions() const {
+    std::vector<PupilRegion> result;
+    result.reserve(found_.size());
+    for (const Found& found : found_) result.push_back(region_of(found));
+    return result;
+  }
+
+  /// Looks for pupils of which nothing is known.
+  void in_full(std::span<const std::uint32_t> which) {
+    // Where nothing is found the pupil may be far off its place, or a sliver: once more on all of the line, and finer.
+    std::vector<std::uint32_t> seen, rings;
+    auto dark = along_y(which, Reach::near, 128, seen, rings);
+    dark = along_y(dark, Reach::far, 256, seen, rings);
+    along_y(dark, Reach::far, 1024, seen, rings);
+    across(seen);
+    outwards(seen, 32, 1.6, 12);
+    outwards(rings, 320, 1.6, 9);
+    // Pupils of an unusual shape want a farther look.
+    std::vector<std::uint32_t> unusual;
+    for (const std::uint32_t p : seen) {
+      const bool ring = std::find(rings.begin(), rings.end(), p) != rings.end();
+      const auto usual = [&](const Found::Ends& e) {
+        return e.to > 0 && e.to < 1.59 && (ring || e.obscured_from == e.obscured_to);
+      };
+      if (!std::all_of(found_[p].ends.begin(), found_[p].ends.end(), usual)) unusual.push_back(p);
+    }
+    outwards(unusual, 96, 4.8, 12);
+    for (const std::uint32_t p : unusual) {
+      const auto any = [](const Found::Ends& e) { return e.to > 0; };
+      if (std::none_of(found_[p].ends.begin(), found_[p].ends.end(), any)) found_[p] = {};
+    }
+  }
+
+  struct Halfway {
+    std::uint32_t point, before, after;
+  };
+
+  /// Looks for pupils about halfway between two that were found: next to where these have their ends. Those that are
+  /// not there are looked for in full.
+  void between(std::span<const Halfway> which) {
+    constexpr double beside = 0.01;
+    std::vector<Line> lines;
+    std::vector<Bracket> brackets;
+    for (const auto& [point, before, after] : which) {
+      const Found &a = found_[before], &b = found_[after];
+      const auto mean = [](double x, double y) { return (x + y) / 2; };
+      Found& found = found_[point];
+      found.middle = {mean(a.middle[0], b.middle[0]), mean(a.middle[1], b.middle[1])};
+      found.half_axes = {mean(a.half_axes[0], b.half_axes[0]), mean(a.half_axes[1], b.half_axes[1])};
+      found.ends.assign(directions_, {});
+      for (std::size_t k = 0; k < traced_; ++k) {
+        const auto outer = [&](double LineExtent::*end, double s) {
+          brackets.push_back({lines.size(), s * (1 - beside), s * (1 + beside), end});
+        };
+        const Found::Ends &p = a.ends[k], &q = b.ends[k];
+        outer(&LineExtent::to, mean(p.to, q.to));
+        if (const double from = mean(p.obscured_from, q.obscured_from); from > 0) {
+          outer(&LineExtent::obscured_from, from);
+        }
+        if (const double to = mean(p.obscured_to, q.obscured_to); to > 0) {
+          brackets.push_back({lines.size(), to * (1 + beside), to * (1 - beside), &LineExtent::obscured_to});
+        }
+        lines.push_back(outward(point, k));
+      }
+    }
+    Batch batch;
+    for (const Bracket& b : brackets) {
+      batch.add(lines[b.line], b.with);
+      batch.add(lines[b.line], b.without);
+    }
+    batch.test(passing_);
+    std::vector<bool> lost(which.size(), false);
+    for (std::size_t j = 0; j < brackets.size(); ++j) {
+      if (!batch.passes[2 * j] || batch.passes[2 * j + 1]) lost[brackets[j].line / traced_] = true;
+    }
+    close_in(brackets, lines, end_rounds, passing_);
+    for (const Bracket& b : brackets) {
+      Found& found = found_[lines[b.line].point];
+      const std::size_t k = b.line % traced_;
+      const auto set = [&](Found::Ends& ends) {
+        (b.end == &LineExtent::to            ? ends.to
+         : b.end == &LineExtent::obscured_to ? ends.obscured_to
+                                             : ends.obscured_from) = b.with;
+      };
+      set(found.ends[k]);
+      if (mirrored_) set(found.ends[directions_ - 1 - k]);
+    }
+    std::vector<std::uint32_t> again;
+    for (std::size_t i = 0; i < which.size(); ++i) {
+      if (!lost[i]) continue;
+      found_[which[i].point] = {};
+      again.push_back(which[i].point);
+    }
+    in_full(again);
+  }
+
+ private:
+  enum class Reach { near, far };
+
+  /// Extents along y; points of which something is seen are added to `seen`, of these those with an obscuration to
+  /// `rings`. Returns the others, and those that reach beyond what is near.
+  std::vector<std::uint32_t> along_y(std::span<const std::uint32_t> which, Reach reach, int samples,
+                                     std::vector<std::uint32_t>& seen, std::vector<std::uint32_t>& rings) {
+    std::vector<Line> lines;
+    for (const std::uint32_t p : which) {
+      const PupilGuess& g = points_[p];
+      const bool near = reach == Reach::near && g.near > 0;
+      lines.push_back({p, g.x, near ? g.y : (g.low + g.high) / 2, 0, near ? g.near : (g.high - g.low) / 2});
+    }
+    const auto extent = extents_along(lines, -1, 1, samples, end_rounds, passing_);
+    std::vector<std::uint32_t> left;
+    for (std::size_t i = 0; i < which.size(); ++i) {
+      const LineExtent& e = extent[i];
+      if (!e.any || (reach == Reach::near && (e.from == -1 || e.to == 1))) {
+        left.push_back(which[i]);
+        continue;
+      }
+      Found& found = found_[which[i]];
+      const PupilGuess& g = points_[which[i]];
+      const double half = lines[i].dy, low = lines[i].y + half * e.from, high = lines[i].y + half * e.to;
+      found.middle = {lines[i].x, (low + high) / 2};
+      found.half_axes[1] = (high - low) / 2;
+      // What is left of a ring is described about the ring's own middle, though that is dark.
+      if (g.ring && g.y > low - g.radius && g.y < high + g.radius) {
+        found.middle[1] = g.y;
+        found.half_axes[1] = std::max(high - g.y, g.y - low);
+      }
+      seen.push_back(which[i]);
+      if (g.ring || e.obscured_from < e.obscured_to) rings.push_back(which[i]);
+    }
+    return left;
+  }
+
+  /// Extents along x, from the middle of those along y.
+  void across(std::span<const std::uint32_t> which) {
+    std::vector<Line> lines;
+    for (const std::uint32_t p : which) {
+      const PupilGuess& g = points_[p];
+      const double reach = std::max({(g.high - g.low) / 2, 2 * g.radius, 2 * found_[p].half_axes[1]});
+      lines.push_back({p, found_[p].middle[0], found_[p].middle[1], reach, 0});
+    }
+    const auto extent = extents_along(lines, mirrored_ ? 0 : -1, 1, mirrored_ ? 96 : 192, end_rounds, passing_);
+    for (std::size_t i = 0; i < which.size(); ++i) {
+      Found& found = found_[which[i]];
+      const PupilGuess& g = points_[which[i]];
+      found.half_axes[0] = found.half_axes[1];
+      if (!extent[i].any) continue;
+      if (g.ring) {  // the line may miss the ring's widest place
+        found.half_axes[0] = std::max(found.half_axes[1], lines[i].dx * extent[i].to);
+        continue;
+      }
+      const double from = mirrored_ ? -extent[i].to : extent[i].from;
+      found.middle[0] += lines[i].dx * (extent[i].to + from) / 2;
+      found.half_axes[0] = lines[i].dx * (extent[i].to - from) / 2;
+    }
+  }
+
+  /// From the middle in a direction, in coordinates in which the pupil is about a unit disc.
+  Line outward(std::uint32_t point, std::size_t direction) const noexcept {
+    const Found& found = found_[point];
+    const auto& [x, y] = units_[direction];
+    return {point, found.middle[0], found.middle[1], found.half_axes[0] * x, found.half_axes[1] * y};
+  }
+
+  void outwards(std::span<const std::uint32_t> which, int samples, double reach, int rounds) {
+    std::vector<Line> lines;
+    for (const std::uint32_t p : which) {
+      found_[p].ends.assign(directions_, {});
+      for (std::size_t k = 0; k < traced_; ++k) lines.push_back(outward(p, k));
+    }
+    const auto extent = extents_along(lines, 0, reach, samples, rounds, passing_);
+    for (std::size_t i = 0; i < which.size(); ++i) {
+      for (std::size_t k = 0; k < directions_; ++k) {
+        const LineExtent& e = extent[i * traced_ + (k < traced_ ? k : directions_ - 1 - k)];
+        if (!e.any) continue;
+        // A dark middle is the obscuration that counts.
+        const bool dark = e.from > 0;
+        found_[which[i]].ends[k] = {dark ? 0 : e.obscured_from, dark ? e.from : e.obscured_to, e.to};
+      }
+    }
+  }
+
+  PupilRegion region_of(const Found& found) const {
+    PupilRegion region{.middle = found.middle, .half_axes = found.half_axes, .directions = directions_};
+    if (found.empty()) return region;
+    region.spans.reserve(directions_);
+    for (std::size_t k = 0; k < directions_; ++k) {
+      const auto& [obscured_from, obscured_to, to] = found.ends[k];
+      if (!(to > 0)) continue;
+      const auto rim = [&, x = units_[k][0], y = units_[k][1]](double radius) -> RimPoint {
+        return {region.middle[0] + region.half_axes[0] * radius * x,
+                region.middle[1] + region.half_axes[1] * radius * y};
+      };
+      const auto add = [&](double begin, double end) { region.spans.push_back({k, begin, end, rim(begin), rim(end)}); };
+      if (obscured_from > 0) add(0, obscured_from);
+      add(obscured_to, to);
+    }
+    return region;
+  }
+
+  std::span<const PupilGuess> points_;
+  std::size_t directions_, traced_;
+  bool mirrored_;
+  const PassingPlaces& passing_;
+  std::vector<Found> found_;
+  std::vector<std::array<double, 2>> units_;  // of the directions
+};
+
+}  // namespace
+
+std::vector<PupilRegion> find_regions(std::span<const PupilGuess> points, std::size_t row, std::size_t directions,
+                                      bool mirrored, const PassingPlaces& passing) {
+  Search search(points, directions, mirrored, passing);
+  // Some points of each row in full, then those halfway between, and so on.
+  constexpr std::size_t first_step = 16;
+  std::vector<std::uint32_t> full;
+  for (std::size_t begin = 0; begin < points.size(); begin += row) {
+    for (std::size_t i = 0; i < row; ++i) {
+      if (i % first_step == 0 || i + 1 == row) full.push_back(static_cast<std::uint32_t>(begin + i));
+    }
+  }
+  search.in_full(full);
+  for (std::size_t step = first_step; step > 1; step /= 2) {
+    std::vector<Search::Halfway> halfway;
+    full.clear();
+    for (std::size_t begin = 0; begin < points.size(); begin += row) {
+      const auto at = [&](std::size_t place) { return static_cast<std::uint32_t>(begin + place); };
+      for (std::size_t i = step / 2; i + 1 < row; i += step) {
+        const Search::Halfway place{at(i), at(i - step / 2), at(std::min(i + step / 2, row - 1))};
+        // Between two dark points it is dark.
+        const bool before = search.lit(place.before), after = search.lit(place.after);
+        if (before && after) {
+          halfway.push_back(place);
+        } else if (before || after) {
+          full.push_back(place.point);
+        }
+      }
+    }
+    search.between(halfway);
+    search.in_full(full);
+  }
+  return search.regions();
+}
+
+}  // namespace petzval::inline v0::pupil_detail

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "petzval/pupil/pupil_boundary.hpp"
+
+namespace petzval::inline v0::pupil_detail {
+
+/// Where to look for the pupil of a point: first where it is expected, near (x, y), then along a line across the whole
+/// part of the plane that is in question.
+struct PupilGuess {
+  double x = 0, low = -1, high = 1;  ///< the line runs from (x, low) to (x, high)
+  double radius = 1;                 ///< about that of the pupil
+  double y = 0, near = 0;            ///< the search begins between y - near and y + near; 0: nothing is expected
+  bool ring = false;  ///< the lens has a central obscuration: the pupil may be what is left of a ring about (x, y)
+};
+
+/// Which of N places of the plane the rays of their points pass: passes[i] for (x[i], y[i]) and points[i].
+using PassingPlaces = std::function<void(std::size_t count, const std::uint32_t* points, const double* x,
+                                         const double* y, std::uint8_t* passes)>;
+
+/// The regions of many points at once, by bisection in batches, to 2e-5 of the half axes.
+///
+/// pupil_boundary() converges faster along one direction, from how near each ray comes to a rim, and knows the rim;
+/// here models without rims are asked too, and every round of the search is one batch of rays on SIMD lanes. At most
+/// one obscuration is found along a direction, and the surfaces of the RimPoints are unknown.
+///
+/// row: points stand in rows of so many, in which neighbours have similar pupils. mirrored: pupils are alike at x and
+/// -x, and half of the directions are traced. directions: even.
+std::vector<PupilRegion> find_regions(std::span<const PupilGuess> points, std::size_t row, std::size_t directions,
+                                      bool mirrored, const PassingPlaces& passing);
+
+}  // namespace petzval::inline v0::pupil_detail

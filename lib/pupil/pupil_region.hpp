@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "petzval/pupil/pupil_boundary.hpp"
+
+namespace petzval::inline v0::pupil_detail {
+
+/// What passes along one direction of a region, as one interval from the middle with one obscuration: the part around
+/// a dark middle, else the widest between two spans.
+struct Extent {
+  double obscured_from = 0, obscured_to = 0;  ///< radii; equal: nothing is obscured
+  double to = 0;                              ///< radius of the outermost point that passes
+  RimPoint rim;                               ///< that point
+  bool lit = false;                           ///< something passes
+
+  /// Radius at which light begins: 0 where the middle passes.
+  double from() const noexcept { return obscured_from > 0 ? 0 : obscured_to; }
+};
+
+/// Of each direction.
+std::vector<Extent> extents(const PupilRegion& region);
+
+}  // namespace petzval::inline v0::pupil_detail

@@ -1,0 +1,300 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pupil_polygon.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "pupil/pupil_region.hpp"
+
+namespace petzval::inline v0::pupil_table_detail {
+namespace {
+
+using pupil_detail::Extent;
+using Place = Point<double>;  // in the plane, from a middle
+
+Place place_of(const std::array<double, 2>& p) noexcept { return {p[0], p[1]}; }
+
+/// The outer edge of a region as a closed line about its middle, from +y on, and the obscuration on the way to each of
+/// its points as fractions.
+struct Edge {
+  std::vector<Place> points;
+  std::vector<double> obscured_from, obscured_to;
+  double area = 0;  // inside the outer edge
+};
+
+/// Where the prolonged chords before and behind the one from b to c meet: between b and c, the boundary of a convex
+/// region stays within. Else b.
+Place apex(const Place& a, const Place& b, const Place& c, const Place& d) noexcept {
+  const Place u = b - a, v = c - d, w = c - b;
+  const double determinant = turn(u, v);
+  const double size = std::hypot(u.x, u.y) * std::hypot(v.x, v.y);
+  if (!(std::abs(determinant) > 1e-9 * size)) return b;
+  const double s = turn(w, v) / determinant, t = turn(w, u) / determinant;
+  constexpr double farthest = 4;  // chord lengths
+  const bool between = s > 0 && s <= farthest && t > 0 && t <= farthest;
+  return between ? b + s * u : b;
+}
+
+/// Where the chord from a to b crosses the direction +y of the middle.
+Place crossing(const Place& a, const Place& b) noexcept {
+  const double across = b.x - a.x, t = across > 0 ? std::clamp(-a.x / across, 0.0, 1.0) : 0;
+  return a + t * (b - a);
+}
+
+Edge edge_of(const PupilRegion& region, PolygonFit fit) {
+  const bool enclosing = fit == PolygonFit::enclosing;
+  const std::size_t n = region.directions;
+  const std::vector<Extent> found = pupil_detail::extents(region);
+  std::vector<Extent> extents = found;
+  std::vector<Place> p(n);
+  for (std::size_t k = 0; k < n; ++k) {
+    if (found[k].lit) p[k] = {found[k].rim.x - region.middle[0], found[k].rim.y - region.middle[1]};
+  }
+  // A tip that lies between a direction along which something passes and one along which nothing does.
+  for (std::size_t k = 0; enclosing && k < n; ++k) {
+    if (found[k].lit) continue;
+    for (const std::size_t beside : {(k + 1) % n, (k + n - 1) % n}) {
+      if (found[beside].to > extents[k].to) extents[k] = found[beside];
+    }
+    p[k] = place_of(region.at(k, extents[k].to)) - place_of(region.middle);
+  }
+  Edge edge;
+  const auto add = [&](const Place& point, std::size_t k) {
+    const auto& [from, to, outer, rim, lit] = extents[k];
+    edge.points.push_back(point);
+    edge.obscured_from.push_back(outer > 0 ? from / outer : 0);
+    edge.obscured_to.push_back(outer > 0 ? to / outer : 1);
+  };
+  // The first direction is half a step beyond +y.
+  const Place &last = p[n - 1], &first = p[0];
+  add(crossing(last, first), n - 1);
+  for (std::size_t k = 0; k < n; ++k) {
+    const std::size_t next = (k + 1) % n;
+    add(p[k], k);
+    edge.area += turn(p[k], p[next]) / 2;
+    const Place tip = apex(p[(k + n - 1) % n], p[k], p[next], p[(k + 2) % n]);
+    if (tip.x == p[k].x && tip.y == p[k].y) continue;
+    // A smooth arc reaches over the chord by a third of the triangle (chords meet twice as far out as tangents do).
+    edge.area += (turn(p[k], tip) + turn(tip, p[next]) - turn(p[k], p[next])) / 6;
+    if (!(enclosing && turn(p[k], tip) > 0 && turn(tip, p[next]) > 0)) continue;
+    if (next > 0) {
+      add(tip, k);
+    } else {
+      edge.points.front() = tip;
+    }
+  }
+  return edge;
+}
+
+/// By how much the corners must be scaled for a sector to contain a place that it faces.
+double scale_for(const Sector<double>& sector, const Place& q) noexcept {
+  return turn(sector.a, sector.b) > 0 ? sector.way_to(q) : 1;
+}
+
+/// The obscuration that all directions of a sector share: between squared ways outwards.
+struct Obscured {
+  double from = 0, to = 1;
+
+  /// Keeps the obscuration between two points that the sector faces, a little narrower; by as much again as it is
+  /// narrower than `expected`, which comes from neighbours. dark: from the middle on.
+  void keep(const Sector<double>& sector, bool dark, const Place& begin, const Place& end,
+            const Obscured& expected) noexcept {
+    constexpr double margin = 0.002;
+    const auto squared = [&](const Place& p, double room) {
+      const double way = std::max(scale_for(sector, p), 0.0) * room;
+      return way * way;
+    };
+    const double first = dark ? 0 : squared(begin, 1 + margin), last = squared(end, 1 - margin);
+    from = std::max(from, first + std::max(first - expected.from, 0.0));
+    to = std::min(to, last - std::max(expected.to - last, 0.0));
+  }
+  void give(PupilPolygon& polygon, std::size_t k) const noexcept {
+    polygon.obscured_from[k] = from < to ? from : 0;
+    polygon.obscured[k] = from < to ? to - from : 0;
+  }
+};
+
+/// Scales the corners; the obscurations stay where they are.
+void stretch(PupilPolygon& polygon, const std::array<double, polygon_corners>& scale) {
+  for (std::size_t k = 0; k < polygon_corners; ++k) {
+    const double larger = std::max(scale[k], scale[(k + 1) % polygon_corners]);
+    const double smaller = std::min(scale[k], scale[(k + 1) % polygon_corners]);
+    // What is obscured at both sides of a sector that is stretched more at one.
+    const double from = polygon.obscured_from[k] / (smaller * smaller);
+    const double to = (polygon.obscured_from[k] + polygon.obscured[k]) / (larger * larger);
+    polygon.obscured_from[k] = from < to ? from : 0;
+    polygon.obscured[k] = std::max(to - from, 0.0);
+  }
+  for (std::size_t k = 0; k < polygon_corners; ++k) {
+    for (double& coordinate : polygon.corners[k]) coordinate *= scale[k];
+  }
+}
+
+/// Makes outer and obscured areas those of the region: the outer one by the corners, the other by the sectors.
+void match_area(PupilPolygon& polygon, const PupilRegion& region, double outer_area) {
+  double outer = 0, obscured = 0;
+  for (std::size_t k = 0; k < polygon_corners; ++k) outer += turn(polygon.sector(k).a, polygon.sector(k).b);
+  const double larger = outer > 0 ? std::sqrt(2 * outer_area / outer) : 1;
+  for (auto& corner : polygon.corners) corner = {corner[0] * larger, corner[1] * larger};
+  for (std::size_t k = 0; k < polygon_corners; ++k) {
+    const Sector<double> s = polygon.sector(k);
+    obscured += s.obscured * turn(s.a, s.b);
+  }
+  if (!(obscured > 0)) return;
+  const std::vector<Extent> extents = pupil_detail::extents(region);
+  const auto inside = [&](double Extent::*radius) {
+    double sum = 0;
+    const auto at = [&](std::size_t k) { return place_of(region.at(k, extents[k].*radius)) - place_of(region.middle); };
+    for (std::size_t k = 0; k < extents.size(); ++k) sum += turn(at(k), at((k + 1) % extents.size()));
+    return sum;
+  };
+  const double wanted = inside(&Extent::obscured_to) - inside(&Extent::obscured_from);
+  for (double& width : polygon.obscured) width = std::min(width * wanted / obscured, 1.0);
+}
+
+}  // namespace
+
+double PupilPolygon::area() const noexcept { return PolygonSampler(*this).area(); }
+
+void PupilPolygon::widen(double by) noexcept {
+  for (auto& corner : corners) corner = {by * corner[0], by * corner[1]};
+  for (std::size_t k = 0; k < polygon_corners; ++k) {
+    const double to = (obscured_from[k] + obscured[k]) / (by * by * by * by);
+    obscured[k] = std::max(to - obscured_from[k], 0.0);
+  }
+}
+
+double PupilPolygon::way_to(double x, double y) const noexcept {
+  const Place q{x - middle[0], y - middle[1]};
+  const auto at = [this](std::size_t k) { return sector(k); };
+  const std::size_t k = sector_facing(q, at);
+  if (k == polygon_corners) return std::numeric_limits<double>::infinity();
+  const double way = sector(k).way_to(q);
+  return sector(k).obscures(way * way) ? -1 : way;
+}
+
+PolygonSampler::PolygonSampler(const PupilPolygon& polygon) noexcept : polygon_(polygon) {
+  before_[0] = 0;
+  for (std::size_t k = 0; k < polygon_corners; ++k) {
+    before_[k + 1] = before_[k] + std::max(polygon.sector(k).area(), 0.0);
+  }
+}
+
+std::array<double, 2> PolygonSampler::operator()(double u, double v) const noexcept {
+  const double share = std::clamp(u, 0.0, 1.0) * area();
+  const std::size_t k = sector_of_area(share, [this](std::size_t i) { return before_[i]; });
+  const double own = before_[k + 1] - before_[k];
+  const double along = own > 0 ? std::clamp((share - before_[k]) / own, 0.0, 1.0) : 0;
+  const Sector<double> sector = polygon_.sector(k);
+  const Place p = sector.at(std::sqrt(sector.squared_way(std::clamp(v, 0.0, 1.0))), along);
+  return {polygon_.middle[0] + p.x, polygon_.middle[1] + p.y};
+}
+
+PupilPolygon polygon_of(const PupilRegion& region, PolygonFit fit) {
+  PupilPolygon polygon;
+  polygon.middle = region.middle;
+  if (region.empty()) return polygon;
+  const Edge edge = edge_of(region, fit);
+  const std::size_t n = edge.points.size();
+  const auto point = [&](std::size_t i) -> const Place& { return edge.points[i % n]; };
+
+  // Corners at equal steps of the area.
+  std::vector<double> until{0};
+  for (std::size_t i = 0; i < n; ++i) until.push_back(until.back() + std::max(turn(point(i), point(i + 1)), 0.0));
+  std::array<std::size_t, polygon_corners + 1> segment{};
+  for (std::size_t k = 0, i = 0; k < polygon_corners; ++k) {
+    const double wanted = until.back() * static_cast<double>(k) / polygon_corners;
+    while (i + 1 < n && until[i + 1] <= wanted) ++i;
+    segment[k] = i;
+    const double step = until[i + 1] - until[i], t = step > 0 ? (wanted - until[i]) / step : 0;
+    const Place corner = point(i) + t * (point(i + 1) - point(i));
+    polygon.corners[k] = {corner.x, corner.y};
+  }
+  segment[polygon_corners] = n - 1;
+
+  std::array<double, polygon_corners> scale;
+  scale.fill(1);
+  for (std::size_t k = 0; k < polygon_corners; ++k) {
+    const Sector<double> sector = polygon.sector(k);
+    const std::size_t next = (k + 1) % polygon_corners;
+    Obscured obscured;
+    for (std::size_t i = segment[k]; i <= segment[k + 1] + 1; ++i) {
+      if (i > segment[k] && i <= segment[k + 1]) {
+        const double wanted = scale_for(sector, point(i));
+        scale[k] = std::max(scale[k], wanted);
+        scale[next] = std::max(scale[next], wanted);
+      }
+      const double begin = edge.obscured_from[i % n], end = edge.obscured_to[i % n];
+      obscured.keep(sector, begin == 0, begin * point(i), end * point(i), {1, 0});
+    }
+    obscured.give(polygon, k);
+  }
+  if (fit == PolygonFit::enclosing) {
+    stretch(polygon, scale);
+  } else {
+    match_area(polygon, region, edge.area);
+  }
+  return polygon;
+}
+
+PupilPolygon interpolated(std::span<const PupilPolygon> polygons, const PolygonWeights& at) noexcept {
+  PupilPolygon result;
+  for (std::size_t j = 0; j < at.polygons.size(); ++j) {
+    const PupilPolygon& polygon = polygons[at.polygons[j]];
+    const double w = at.weights[j];
+    for (int i : {0, 1}) result.middle[i] += w * polygon.middle[i];
+    for (std::size_t k = 0; k < polygon_corners; ++k) {
+      for (int i : {0, 1}) result.corners[k][i] += w * polygon.corners[k][i];
+      result.obscured_from[k] += w * polygon.obscured_from[k];
+      result.obscured[k] += w * polygon.obscured[k];
+    }
+  }
+  return result;
+}
+
+void expand_to_cover(std::span<PupilPolygon> polygons, std::span<const InterpolationCheck> checks) {
+  // Boundaries between those looked at reach a little farther still.
+  constexpr double beyond = 1.4, always = 2e-4;
+  std::vector<std::array<double, polygon_corners>> scales(polygons.size());
+  std::vector<std::array<Obscured, polygon_corners>> obscured(polygons.size());
+  for (auto& scale : scales) scale.fill(1 + always);
+  for (std::size_t p = 0; p < polygons.size(); ++p) {
+    for (std::size_t k = 0; k < polygon_corners; ++k) {
+      const double from = polygons[p].obscured_from[k];
+      obscured[p][k] = {from, from + polygons[p].obscured[k]};
+    }
+  }
+  for (const auto& [region, at] : checks) {
+    if (!region || region->empty()) continue;
+    const PupilPolygon polygon = interpolated(polygons, at);
+    const auto sectors = [&](std::size_t k) { return polygon.sector(k); };
+    const Edge edge = edge_of(*region, PolygonFit::enclosing);
+    const Place offset = place_of(region->middle) - place_of(polygon.middle);
+    std::size_t k = 0;
+    for (std::size_t i = 0; i < edge.points.size(); ++i) {
+      const auto along = [&](double part) { return part * edge.points[i] + offset; };
+      const Place q = along(1);
+      const std::size_t facing = sector_facing(q, sectors, k);
+      if (facing == polygon_corners) continue;
+      k = facing;
+      const Sector<double> sector = polygon.sector(k);
+      const Obscured expected{sector.obscured_from, sector.obscured_from + sector.obscured};
+      const double way = sector.way_to(q), wanted = way > 1 ? 1 + beyond * (way - 1) + always : 1;
+      for (std::size_t j = 0; j < at.polygons.size(); ++j) {
+        if (at.weights[j] == 0) continue;
+        auto& scale = scales[at.polygons[j]];
+        for (const std::size_t corner : {k, (k + 1) % polygon_corners}) scale[corner] = std::max(scale[corner], wanted);
+        obscured[at.polygons[j]][k].keep(sector, edge.obscured_from[i] == 0, along(edge.obscured_from[i]),
+                                         along(edge.obscured_to[i]), expected);
+      }
+    }
+  }
+  for (std::size_t p = 0; p < polygons.size(); ++p) {
+    for (std::size_t k = 0; k < polygon_corners; ++k) obscured[p][k].give(polygons[p], k);
+    stretch(polygons[p], scales[p]);
+  }
+}
+
+}  // namespace petzval::inline v0::pupil_table_detail

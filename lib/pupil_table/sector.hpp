@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+
+/// The geometry of pupil polygons, for the table of one polygon and for loops over many: float, double, derivatives.
+///
+/// A polygon has a middle and corners around it in order, from +y towards +x; sector k is the triangle between the
+/// middle and the corners k and k + 1. A part of it may be obscured, between two lines parallel to its outer edge.
+/// Samples (u, v) are uniform by area: u picks the sector and the place along its edge, v the squared way outwards.
+namespace petzval::inline v0::pupil_table_detail {
+
+inline constexpr std::size_t polygon_corners = 64;
+
+// Local names: this is compiled for several instruction sets, and the linker must not take one for another.
+namespace {
+
+template <class T>
+struct Point {
+  T x{}, y{};
+
+  friend inline Point operator+(const Point& a, const Point& b) noexcept { return {a.x + b.x, a.y + b.y}; }
+  friend inline Point operator-(const Point& a, const Point& b) noexcept { return {a.x - b.x, a.y - b.y}; }
+  friend inline Point operator*(const T& s, const Point& a) noexcept { return {s * a.x, s * a.y}; }
+};
+
+/// Twice the area of the triangle from the middle to a and b: positive in the order of corners.
+template <class T>
+inline T turn(const Point<T>& a, const Point<T>& b) noexcept {
+  return b.x * a.y - a.x * b.y;
+}
+
+template <class T>
+struct Sector {
+  Point<T> a, b;              ///< its corners, from the middle
+  T obscured_from, obscured;  ///< begin and width, of the squared way from the middle (0) to the outer edge (1)
+
+  T area() const noexcept { return T(0.5) * turn(a, b) * (T(1) - obscured); }
+
+  /// The squared way outwards of a sample.
+  T squared_way(const T& v) const noexcept {
+    const T within = (T(1) - obscured) * v;
+    return within < obscured_from ? within : T(within + obscured);
+  }
+  /// The place at a way outwards and a part of the way along the outer edge, from a (0) to b (1).
+  Point<T> at(const T& way, const T& along) const noexcept {
+    return {way * (a.x + along * (b.x - a.x)), way * (a.y + along * (b.y - a.y))};
+  }
+
+  /// Whether a place lies between the two lines from the middle through the corners.
+  bool faces(const Point<T>& q) const noexcept { return turn(a, q) >= T(0) && turn(q, b) >= T(0) && turn(a, b) > T(0); }
+  /// The way outwards to a place that the sector faces.
+  T way_to(const Point<T>& q) const noexcept { return (turn(a, q) + turn(q, b)) / turn(a, b); }
+  bool obscures(const T& squared_way) const noexcept {
+    return squared_way >= obscured_from && squared_way < obscured_from + obscured;
+  }
+};
+
+/// The sector that holds a sample, of sectors with nearly equal areas. area: of those before the sample; before(k): of
+/// those before sector k, `before(polygon_corners)` the whole.
+template <class AreaBefore>
+inline std::size_t sector_of_area(double area, const AreaBefore& before) noexcept {
+  const double place = area / before(polygon_corners) * static_cast<double>(polygon_corners);
+  auto k = place > 0 ? static_cast<std::size_t>(place) : 0;
+  k = k < polygon_corners ? k : polygon_corners - 1;
+  while (k > 0 && area < before(k)) --k;
+  while (k + 1 < polygon_corners && area >= before(k + 1)) ++k;
+  return k;
+}
+
+/// The sector that faces a place, from sector `first` on, or polygon_corners. sector(k): the sectors.
+template <class Sectors>
+inline std::size_t sector_facing(const Point<double>& q, const Sectors& sector, std::size_t first = 0) noexcept {
+  for (std::size_t i = 0; i < polygon_corners; ++i) {
+    const std::size_t k = (first + i) % polygon_corners;
+    if (sector(k).faces(q)) return k;
+  }
+  return polygon_corners;
+}
+
+}  // namespace
+}  // namespace petzval::inline v0::pupil_table_detail
