@@ -108,7 +108,7 @@ petzval::Autofocus focused(const Options& options, Result& result) {
     p.use = focus.blurs[k].use;
     p.before_mm = focus.blurs[k++].blur_mm;
   }
-  if (focus.status == petzval::Autofocus::Status::no_targets) give_up(options, result.points);
+  if (focus.status == petzval::AutofocusStatus::no_targets) give_up(options, result.points);
   if (!focus) throw petzval::Error(options.points_file + ": no film behind the lens can focus on these points");
   return focus;
 }
@@ -145,14 +145,14 @@ Result solve(const Options& options) {
     p.predicted_mm = result.after.blurs[k++].blur_mm;
   }
   switch (result.after.status) {
-    case TiltFit::Status::no_targets:
+    case TiltFitStatus::no_targets:
       if (result.points.empty()) break;
       give_up(options, result.points);
-    case TiltFit::Status::unreachable:
+    case TiltFitStatus::unreachable:
       throw petzval::Error(options.points_file + ": the film, " + number(result.lens.film.width_mm) + " x " +
                            number(result.lens.film.height_mm) +
                            " mm, would touch the lens, wanted points farther away or a smaller film");
-    case TiltFit::Status::not_converged:
+    case TiltFitStatus::not_converged:
       throw petzval::Error(options.points_file + ": found no film that serves these points");
     default: break;
   }
@@ -169,12 +169,12 @@ Result solve(const Options& options) {
 
 std::string status_in_words(const Result& result, const Options& options) {
   const std::string limit = number(options.max_tilt_deg) + " degrees";
-  if (result.after.status == TiltFit::Status::limited) {
+  if (result.after.status == TiltFitStatus::limited) {
     return "limited: the tilt may be at most " + limit +
            ", less across points that nearly lie on a line; this is the best film within the limit";
   }
-  if (result.after.status == TiltFit::Status::solved) return "solved: the points determine the plane of focus";
-  if (result.after.status == TiltFit::Status::no_targets) return "no targets: without points the film stays upright";
+  if (result.after.status == TiltFitStatus::solved) return "solved: the points determine the plane of focus";
+  if (result.after.status == TiltFitStatus::no_targets) return "no targets: without points the film stays upright";
   if (result.after.rank == petzval::PlaneRank::point) {
     return "least tilt: one place in the picture determines a distance but no slope, so the film stays upright";
   }

@@ -10,8 +10,8 @@
 #include "petzval/film/film.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/movement/focus_target.hpp"
-#include "petzval/movement/ideal_lens.hpp"
 #include "petzval/movement/image_rays.hpp"
+#include "petzval/paraxial/ideal_lens.hpp"
 
 namespace examples {
 

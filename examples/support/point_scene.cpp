@@ -22,12 +22,12 @@ PointScene::PointScene(const petzval::IdealLens& lens, std::span<const petzval::
   if (known_.empty()) throw petzval::Error("the scene: found no point in front of the lens, wanted one");
 }
 
-double PointScene::disparity(double x, double y) const {
+double PointScene::inverse_distance(double x, double y) const {
   // Weights relative to the nearest point do not overflow; at a point only its own counts.
   double nearest = std::numeric_limits<double>::infinity(), least = nearest, most = 0;
   for (const Known& k : known_) {
     nearest = std::min(nearest, std::hypot(k.x - x, k.y - y));
-    least = std::min(least, k.disparity), most = std::max(most, k.disparity);
+    least = std::min(least, k.inverse_distance), most = std::max(most, k.inverse_distance);
   }
   const auto weight = [&](const Known& k) {
     const double away = std::hypot(k.x - x, k.y - y), ratio = away > nearest ? nearest / away : 1;
@@ -36,14 +36,14 @@ double PointScene::disparity(double x, double y) const {
   double weights = 0, mean_x = 0, mean_y = 0, mean = 0;
   for (const Known& k : known_) {
     const double w = weight(k);
-    weights += w, mean_x += w * k.x, mean_y += w * k.y, mean += w * k.disparity;
+    weights += w, mean_x += w * k.x, mean_y += w * k.y, mean += w * k.inverse_distance;
   }
   mean_x /= weights, mean_y /= weights, mean /= weights;
   double xx = 0, xy = 0, yy = 0, xd = 0, yd = 0;
   for (const Known& k : known_) {
     const double w = weight(k), dx = k.x - mean_x, dy = k.y - mean_y;
     xx += w * dx * dx, xy += w * dx * dy, yy += w * dy * dy;
-    xd += w * dx * (k.disparity - mean), yd += w * dy * (k.disparity - mean);
+    xd += w * dx * (k.inverse_distance - mean), yd += w * dy * (k.inverse_distance - mean);
   }
   // A small ridge: planes stay planes, and points on a line have no slope across it.
   const double ridge = 1e-6 * (xx + yy);
@@ -61,12 +61,12 @@ std::optional<petzval::ScenePoint> PointScene::at(const petzval::Film& film, con
   petzval::Vec3<double> towards = conjugate.position;
   if (parallel_) {
     if (conjugate.at_infinity) return {};
-    const double w = disparity(towards.x, towards.y);
+    const double w = inverse_distance(towards.x, towards.y);
     return petzval::ScenePoint{{towards.x, towards.y, from_z_ - 1 / w}, false};
   }
   if (!conjugate.at_infinity) towards.z -= from_z_;
   if (towards.z == 0) return {};
-  const double x = -towards.x / towards.z, y = -towards.y / towards.z, w = disparity(x, y);
+  const double x = -towards.x / towards.z, y = -towards.y / towards.z, w = inverse_distance(x, y);
   if (w == 0) return petzval::ScenePoint{{x, y, -1}, true};
   return petzval::ScenePoint{{x / w, y / w, from_z_ - 1 / w}, false};
 }

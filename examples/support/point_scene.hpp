@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "petzval/film/film.hpp"
-#include "petzval/movement/ideal_lens.hpp"
+#include "petzval/paraxial/ideal_lens.hpp"
 
 namespace examples {
 
@@ -24,9 +24,9 @@ class PointScene {
 
  private:
   struct Known {
-    double x = 0, y = 0, disparity = 0;
+    double x = 0, y = 0, inverse_distance = 0;
   };
-  double disparity(double x, double y) const;
+  double inverse_distance(double x, double y) const;
 
   petzval::IdealLens lens_;
   double from_z_ = 0;      // of distances

@@ -65,7 +65,7 @@ template RayDerivatives ExactModel<double>::to_scene(const TwoPlaneRayDerivative
 RayDerivatives ParaxialModel::to_scene(const TwoPlaneRayDerivatives& line, std::size_t wavelength) const noexcept {
   if (wavelength >= to_scene_.size()) return {RayFate::missed_surface};
   const auto [film_x, film_y, pupil_x, pupil_y] = line_of(line);
-  const camera_detail::PairMap& m = to_scene_[wavelength];
+  const RayMatrix& m = to_scene_[wavelength];
   const Jet slope_x = m.c * film_x + m.d * pupil_x, slope_y = m.c * film_y + m.d * pupil_y;
   const Jet down = -1.0 / sqrt(slope_x * slope_x + slope_y * slope_y + 1.0);
   return derivatives_of({m.a * film_x + m.b * pupil_x, m.a * film_y + m.b * pupil_y, Jet(z_)},

@@ -23,7 +23,7 @@ void fill(std::size_t count, const MapOf& map_of, const Known& known, T z, const
           T* __restrict y, T* __restrict out_z, T* __restrict dx, T* __restrict dy, T* __restrict dz,
           RayFate* __restrict fates) noexcept {
   for (std::size_t i = 0; i < count; ++i) {
-    const PairMap& m = map_of(i);
+    const RayMatrix& m = map_of(i);
     const T a = static_cast<T>(m.a), b = static_cast<T>(m.b), c = static_cast<T>(m.c), d = static_cast<T>(m.d);
     const bool good = in_reach(film_x[i], film_y[i], pupil_x[i], pupil_y[i]);
     // A line that is no good becomes the axis.
@@ -54,11 +54,11 @@ void to_scene(std::size_t count, const ParaxialJob& job, const TwoPlaneRays<cons
   const std::uint16_t* each = job.wavelengths.each;
   if (each) {
     const auto known = [&](std::size_t i) { return each[i] < job.known; };
-    run([&](std::size_t i) -> const PairMap& { return job.maps[known(i) ? each[i] : 0]; }, known);
+    run([&](std::size_t i) -> const RayMatrix& { return job.maps[known(i) ? each[i] : 0]; }, known);
   } else {
     const std::size_t all = job.wavelengths.all.position(job.primary);
     const bool known = all < job.known;
-    run([map = job.maps[known ? all : 0]](std::size_t) -> const PairMap& { return map; },
+    run([map = job.maps[known ? all : 0]](std::size_t) -> const RayMatrix& { return map; },
         [known](std::size_t) { return known; });
   }
 }

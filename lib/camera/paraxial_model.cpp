@@ -25,40 +25,23 @@ PETZVAL_WIDEST(ParaxialLoops, paraxial_loops)
 
 namespace {
 
-using camera_detail::PairMap;
-
-PairMap inverse(const PairMap& m) noexcept {
-  const double determinant = m.a * m.d - m.b * m.c;
-  return {m.d / determinant, -m.b / determinant, -m.c / determinant, m.a / determinant};
-}
-
-PairMap then(const PairMap& m, const PairMap& next) noexcept {
-  return {next.a * m.a + next.b * m.c, next.a * m.b + next.b * m.d, next.c * m.a + next.d * m.c,
-          next.c * m.b + next.d * m.d};
-}
-
 /// Film and pupil point of a line to its height and slope in the plane z behind the lens.
-PairMap line_at(const TwoPlanes& space, double z) noexcept {
+RayMatrix line_at(const TwoPlanes& space, double z) noexcept {
   const double slope = 1 / space.depth(), far = (z - space.film_z) * slope;
   return {1 - far, far, -slope, slope};
 }
 
-/// A ray-transfer matrix on heights and slopes.
-PairMap on_slopes(const RayMatrix& m, double n_in, double n_out) noexcept {
-  return {m.a, m.b * n_in, m.c / n_out, m.d * n_in / n_out};
-}
-
 /// Film and pupil point to place and slope in the plane z of object space.
-PairMap to_scene_map(const Lens& lens, std::size_t wavelength, const TwoPlanes& space, double z) {
+RayMatrix to_scene_map(const Lens& lens, std::size_t wavelength, const TwoPlanes& space, double z) {
   const std::size_t last = lens.surface_count();
-  const PairMap forward = on_slopes(ray_matrix(lens, 0, last, wavelength), signed_index(lens, 0, wavelength),
-                                    signed_index(lens, last, wavelength));
-  const PairMap in_front = then(line_at(space, lens.surfaces().back().vertex_z), inverse(forward));
-  return then(in_front, {1, z - lens.surfaces().front().vertex_z, 0, 1});
+  const RayMatrix forward = ray_matrix(lens, 0, last, wavelength)
+                                .on_slopes(signed_index(lens, 0, wavelength), signed_index(lens, last, wavelength));
+  const RayMatrix in_front = line_at(space, lens.surfaces().back().vertex_z).then(forward.inverse());
+  return in_front.then({1, z - lens.surfaces().front().vertex_z, 0, 1});
 }
 
 /// The disc of the pupil's plane through which lines have a height, of a map's first row, below `radius`.
-PupilDisc disc_of(const Lens& lens, const PairMap& height, double radius, const char* where) {
+PupilDisc disc_of(const Lens& lens, const RayMatrix& height, double radius, const char* where) {
   if (height.b == 0) {
     throw Error(lens.name() + ": the film lies in " + where + ", wanted it elsewhere for a first-order model");
   }
@@ -67,10 +50,11 @@ PupilDisc disc_of(const Lens& lens, const PairMap& height, double radius, const 
 
 PupilDisc thick_disc(const Lens& lens, std::size_t wavelength, const TwoPlanes& space) {
   const std::size_t stop = pupils(lens, wavelength).stop, last = lens.surface_count();
-  const PairMap behind_stop = on_slopes(ray_matrix(lens, stop, last, wavelength), signed_index(lens, stop, wavelength),
-                                        signed_index(lens, last, wavelength));
+  const RayMatrix behind_stop =
+      ray_matrix(lens, stop, last, wavelength)
+          .on_slopes(signed_index(lens, stop, wavelength), signed_index(lens, last, wavelength));
   // Heights in the stop itself: a pupil at infinity is no special case.
-  const PairMap at_stop = then(line_at(space, lens.surfaces().back().vertex_z), inverse(behind_stop));
+  const RayMatrix at_stop = line_at(space, lens.surfaces().back().vertex_z).then(behind_stop.inverse());
   const double radius = lens.surfaces()[stop].semi_diameter;
   if (!std::isfinite(radius)) {
     throw Error(lens.name() + ": surface " + std::to_string(stop) +
@@ -152,8 +136,8 @@ ParaxialModel::ParaxialModel(ModelKind model, const Lens& lens, double film_radi
     : model_(model), pupils_(pupils_of(model, lens, film_radius)), z_(scene_plane(lens)) {
   const TwoPlanes& space = pupils_.space();
   for (std::size_t w = 0; w < lens.wavelengths_nm().size(); ++w) {
-    PairMap map = to_scene_map(lens, w, space, z_);
-    to_film_.push_back(inverse(map));
+    RayMatrix map = to_scene_map(lens, w, space, z_);
+    to_film_.push_back(map.inverse());
     if (model == ModelKind::pinhole) {
       const double middle = thick_disc(lens, w, space).shift;
       pinhole_shifts_.push_back(middle);
@@ -183,7 +167,7 @@ void ParaxialModel::to_film(std::size_t count, const RayArrays<const double>& ra
     const std::size_t wavelength = wavelengths.position(i, pupils_.primary_wavelength());
     const bool good = wavelength < to_film_.size() && rays.dz[i] > 0 &&
                       std::abs(x) + std::abs(y) + std::abs(slope_x) + std::abs(slope_y) <= reach;
-    const PairMap m = good ? to_film_[wavelength] : PairMap{};
+    const RayMatrix m = good ? to_film_[wavelength] : RayMatrix{};
     fates[i] = good ? RayFate::transmitted : RayFate::missed_surface;
     lines.film_x[i] = good ? m.a * x + m.b * slope_x : 0;
     lines.film_y[i] = good ? m.a * y + m.b * slope_y : 0;

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "image.hpp"
 #include "petzval/focus/focus.hpp"
-#include "petzval/focus/image.hpp"
 #include "petzval/lens/lens.hpp"
 
 namespace petzval::inline v0::focus_detail {

@@ -12,32 +12,22 @@ using enum FocusStatus;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double rounding = 8 * std::numeric_limits<double>::epsilon();
 
-/// The larger root of p + product / p = sum: the subject at the far conjugate. In factors, so that no square overflows
-/// and nothing cancels next to the turning point, where sum is twice the root of the product.
-double far_root(double product, double sum) noexcept {
-  const double turning = 2 * std::sqrt(std::abs(product));
-  const double root =
-      product > 0 ? std::sqrt(std::max(0.0, sum - turning)) * std::sqrt(sum + turning) : std::hypot(sum, turning);
-  return (sum + root) / 2;
-}
+/// The p of a subject at the front of the lens.
+double least_p(const Conjugates& c) noexcept { return std::max(0.0, c.lens.front_focal_z); }
 
-/// The subject in front of the lens.
-double least_p(const Conjugates& c) noexcept { return std::max(0.0, c.front_focal_z); }
-
-/// The largest p with a real image: infinite, unless the lens brings a distant subject to focus inside itself.
+/// The largest p with a real image: infinite except where the lens brings a distant subject to focus inside itself.
 double farthest_p(const Conjugates& c) noexcept {
-  const bool real_at_infinity = (c.rear_focal_z - c.last_z) * c.sense >= 0;
-  return real_at_infinity ? infinity : c.product / (c.last_z - c.rear_focal_z);
+  const bool real_at_infinity = (c.lens.rear_focal_z - c.lens.rear_z) * c.direction >= 0;
+  return real_at_infinity ? infinity : c.lens.product() / (c.lens.rear_z - c.lens.rear_focal_z);
 }
 
 double distance_at(const Conjugates& c, double p) noexcept {
-  return c.origin == DistanceOrigin::film ? (c.rear_focal_z - c.front_focal_z) + (p + c.product / p)
+  return c.origin == DistanceOrigin::film ? (c.lens.rear_focal_z - c.lens.front_focal_z) + (p + c.lens.product() / p)
                                           : p + c.focal_distance;
 }
 
 double p_at(const Conjugates& c, double distance) noexcept {
-  return c.origin == DistanceOrigin::film ? far_root(c.product, distance - (c.rear_focal_z - c.front_focal_z))
-                                          : distance - c.focal_distance;
+  return c.origin == DistanceOrigin::film ? c.lens.object_at_separation(distance) : distance - c.focal_distance;
 }
 
 FocusSolution pair(const Conjugates& c, FocusStatus status, double p) noexcept {
@@ -46,39 +36,35 @@ FocusSolution pair(const Conjugates& c, FocusStatus status, double p) noexcept {
 
 }  // namespace
 
-bool Conjugates::real(double film) const noexcept { return std::isfinite(film) && (film - last_z) * sense > 0; }
-
-double Conjugates::nearness_of_film(double film) const noexcept {
-  return 1 / (product / (film - rear_focal_z) + (near_z - front_focal_z));
+bool Conjugates::real(double film) const noexcept {
+  return std::isfinite(film) && (film - lens.rear_z) * direction > 0;
 }
 
-Conjugates conjugates(const Lens& lens, const FirstOrder& data, FocusCriterion criterion, DistanceOrigin origin) {
-  const double f = data.effective_focal_length;
-  const bool thin = criterion == FocusCriterion::thin;
-  const double focal_z = thin ? data.rear_principal_z - data.object_index * f : data.front_focal_z;
-  Conjugates c{.front_focal_z = focal_z,
-               .rear_focal_z = data.rear_focal_z,
-               .product = data.object_index * data.image_index * f * f,
-               .last_z = lens.surfaces().back().vertex_z,
-               .sense = data.image_index > 0 ? 1.0 : -1.0,
-               .origin = origin,
-               .origin_z = 0,
-               .focal_distance = -focal_z,
-               .near_z = std::abs(f) + std::max(0.0, focal_z)};
+double Conjugates::vergence_of_film(double film) const noexcept {
+  return 1 / (lens.product() / (film - lens.rear_focal_z) + (near_z - lens.front_focal_z));
+}
+
+Conjugates::Conjugates(const IdealLens& thick, FocusCriterion criterion, DistanceOrigin from) noexcept
+    : lens(criterion == FocusCriterion::thin ? thin_lens(thick) : thick),
+      direction(lens.product() > 0 ? 1 : -1),
+      origin(from),
+      focal_distance(-lens.front_focal_z),
+      near_z(std::abs(lens.front_focal_length) + std::max(0.0, lens.front_focal_z)) {
   if (origin == DistanceOrigin::front_principal) {
-    c.origin_z = data.front_principal_z;
-    // The thick lens's own is a focal length, whatever is lost in the difference of the two places.
-    c.focal_distance = thin ? c.origin_z - focal_z : data.object_index * f;
+    origin_z = thick.front_principal_z();
+    // Of the thick lens a focal length, without what is lost in the difference of the two positions.
+    focal_distance = criterion == FocusCriterion::thin ? origin_z - lens.front_focal_z : lens.front_focal_length;
   }
-  return c;
 }
 
 double nearest_p(const Conjugates& c) noexcept {
-  const bool turns = c.origin == DistanceOrigin::film && c.product > 0;
-  return turns ? std::max(least_p(c), std::sqrt(c.product)) : least_p(c);
+  const bool turns = c.origin == DistanceOrigin::film && c.lens.product() > 0;
+  return turns ? std::max(least_p(c), std::sqrt(c.lens.product())) : least_p(c);
 }
 
-FocusSolution no_focus(const Conjugates& c) noexcept { return {unreachable, c.sense * infinity, -infinity, infinity}; }
+FocusSolution no_focus(const Conjugates& c) noexcept {
+  return {unreachable, c.direction * infinity, -infinity, infinity};
+}
 
 FocusSolution paraxial_focus(const Conjugates& c, double distance) noexcept {
   const double near = nearest_p(c), far = farthest_p(c);
@@ -95,8 +81,8 @@ FocusSolution paraxial_focus(const Conjugates& c, double distance) noexcept {
 FocusSolution paraxial_subject(const Conjugates& c, double film_z) noexcept {
   const double near = least_p(c), far = farthest_p(c);
   if (!(near < far)) return no_focus(c);
-  const double extension = film_z - c.rear_focal_z;
-  const double p = extension == 0 ? infinity : c.product / extension;
+  const double extension = film_z - c.lens.rear_focal_z;
+  const double p = extension == 0 ? infinity : c.lens.product() / extension;
   if (!(p > 0) || p > far * (1 + rounding)) return pair(c, unreachable, far);
   if (p < near * (1 - rounding)) return pair(c, unreachable, near);
   return {solved, film_z, c.subject_z(p),
@@ -104,8 +90,8 @@ FocusSolution paraxial_subject(const Conjugates& c, double film_z) noexcept {
 }
 
 FocusSolution paraxial_nearest(const Conjugates& c) noexcept {
-  // Behind a mirror film and subject meet.
-  const bool meets = c.origin == DistanceOrigin::film && c.product < 0;
+  // Behind a mirror, film and subject meet.
+  const bool meets = c.origin == DistanceOrigin::film && c.lens.product() < 0;
   const double near = meets ? p_at(c, 0) : nearest_p(c);
   return near < farthest_p(c) ? pair(c, solved, near) : no_focus(c);
 }

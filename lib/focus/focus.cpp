@@ -4,9 +4,9 @@
 #include <cmath>
 #include <string>
 
-#include "model.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/text.hpp"
+#include "solver.hpp"
 
 namespace petzval::inline v0 {
 
@@ -40,25 +40,25 @@ std::string_view name(FocusStatus status) noexcept {
   return "unknown";
 }
 
-FocusSolution solve_focus(const Lens& lens, double distance_mm, const FocusOptions& options) {
-  focus_detail::check_distance(lens, distance_mm);
-  const focus_detail::FocusModel model(lens, options);
-  return model.afocal() ? FocusSolution{.status = FocusStatus::afocal} : model.focus(distance_mm);
+FocusSolution solve_focus(const Lens& lens, double distance, const FocusOptions& options) {
+  focus_detail::check_distance(lens, distance);
+  const focus_detail::FocusSolver solver(lens, options);
+  return solver.afocal() ? FocusSolution{.status = FocusStatus::afocal} : solver.focus(distance);
 }
 
 FocusSolution solve_subject(const Lens& lens, double film_z, const FocusOptions& options) {
   focus_detail::check_film(lens, film_z);
-  const focus_detail::FocusModel model(lens, options);
-  return model.afocal() ? FocusSolution{.status = FocusStatus::afocal} : model.subject(film_z);
+  const focus_detail::FocusSolver solver(lens, options);
+  return solver.afocal() ? FocusSolution{.status = FocusStatus::afocal} : solver.subject(film_z);
 }
 
 FocusSolution nearest_focus(const Lens& lens, const FocusOptions& options) {
-  const focus_detail::FocusModel model(lens, options);
-  return model.afocal() ? FocusSolution{.status = FocusStatus::afocal} : model.nearest();
+  const focus_detail::FocusSolver solver(lens, options);
+  return solver.afocal() ? FocusSolution{.status = FocusStatus::afocal} : solver.nearest();
 }
 
-Lens with_focus(const Lens& lens, double distance_mm, const FocusOptions& options) {
-  const FocusSolution solution = solve_focus(lens, distance_mm, options);
+Lens with_focus(const Lens& lens, double distance, const FocusOptions& options) {
+  const FocusSolution solution = solve_focus(lens, distance, options);
   if (solution) return with_film(lens, solution.film_z);
 
   const auto place = [&] {
@@ -68,7 +68,7 @@ Lens with_focus(const Lens& lens, double distance_mm, const FocusOptions& option
       default: return "front vertex";
     }
   };
-  const std::string subject = lens.name() + ": a subject " + number(distance_mm) + " mm from the " + place() +
+  const std::string subject = lens.name() + ": a subject " + number(distance) + " mm from the " + place() +
                               " cannot be focused (" + std::string(name(options.criterion)) + ")";
   switch (solution.status) {
     case FocusStatus::no_rays: throw Error(subject + ": no ray gets through the lens");
@@ -77,8 +77,7 @@ Lens with_focus(const Lens& lens, double distance_mm, const FocusOptions& option
   }
   const double nearest = solution.distance;
   if (std::isinf(nearest)) throw Error(subject + ": the lens forms no real image at any distance");
-  throw Error(subject + ", wanted " + (distance_mm <= nearest ? "more than " : "at most ") + number(nearest, 9) +
-              " mm");
+  throw Error(subject + ", wanted " + (distance <= nearest ? "more than " : "at most ") + number(nearest, 9) + " mm");
 }
 
 }  // namespace petzval::inline v0

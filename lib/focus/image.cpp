@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/focus/image.hpp"
+#include "image.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -27,8 +27,8 @@ double Image::diameter(double film) const noexcept {
   return 2 * std::sqrt(largest);
 }
 
-/// The mean square radius is a parabola over the film's position, with its vertex at -cov(p, u) / var(u), p the point
-/// in the plane and u the slope.
+/// The mean square radius is a parabola over the position of the film, with its vertex at -cov(p, u) / var(u), p the
+/// point in the plane and u the slope.
 Image least_rms(std::span<const Line> lines, double plane_z) {
   double covariance = 0, variance = 0, least = 0;
   for (const Line& line : lines) {
@@ -39,7 +39,7 @@ Image least_rms(std::span<const Line> lines, double plane_z) {
   for (const Line& line : lines) {
     least += line.weight * (square(line.x + shift * line.slope_x) + square(line.y + shift * line.slope_y));
   }
-  // An even disc has an RMS radius of its diameter over the root of 8.
+  // The RMS radius of a uniform disc is its diameter over the root of 8.
   return {.film_z = plane_z + shift,
           .plane_z = plane_z,
           .least = std::sqrt(8 * least),
@@ -47,8 +47,8 @@ Image least_rms(std::span<const Line> lines, double plane_z) {
           .lines = {}};
 }
 
-/// The largest of the squared radii, each a parabola over the film's position, is convex: it falls where the parabola
-/// that is largest there falls.
+/// The largest of the squared radii, each a parabola over the position of the film, is convex: it falls where the
+/// parabola that is largest there falls.
 Image least_maximum(std::vector<Line> lines, double plane_z) {
   const auto rises = [&](double shift) {
     double largest = -1, slope = 0;

@@ -7,9 +7,9 @@
 
 namespace petzval::inline v0::focus_detail {
 
-/// Where f, of opposite signs at a and b (or 0), crosses zero: within 2 eps of x. Bisection, hastened by inverse
-/// quadratic interpolation where the last three points show f to be nearly straight there. f may jump, and be constant
-/// far from the root, but must be finite.
+/// A zero of f between a and b, where f has opposite signs (or is 0), within 2 eps of x. Bisection, with inverse
+/// quadratic interpolation where the last three points show f to be nearly straight. f must be finite;
+/// it may jump, and be constant far from the root.
 template <class Function>
 double root(const Function& f, double a, double b) {
   double at_a = f(a), at_b = f(b);
@@ -39,8 +39,8 @@ double root(const Function& f, double a, double b) {
   }
 }
 
-/// Where f is highest between two places: golden section. f may be -infinite where it is not defined; where it is so
-/// at both places in question, the place is looked for nearer to `from`.
+/// The maximum of f between two positions by golden section. f may be -infinite where it is not defined; if it is at
+/// both positions compared, the search goes on nearer to `from`.
 template <class Function>
 double highest(const Function& f, double from, double to, double tolerance) {
   constexpr double golden = 0.6180339887498949;

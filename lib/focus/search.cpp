@@ -14,58 +14,58 @@ namespace {
 using enum FocusStatus;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// Of a place found at a flat extremum, where half the digits decide.
+/// Accuracy of a position found at a flat extremum, from half of the digits.
 constexpr double flat = 1e-9;
 
 }  // namespace
 
-Search::Search(const FocusModel& model)
-    : model_(model), c_(model.conjugates()), cap_(4 * c_.nearness_of_infinite_film()) {
-  if (const auto image = model.image(-infinity)) infinite_film_ = image->film_z;
+Search::Search(const FocusSolver& solver)
+    : solver_(solver), c_(solver.conjugates()), cap_(4 * c_.vergence_of_infinite_film()) {
+  if (const auto image = solver.image(-infinity)) infinite_film_ = image->film_z;
 }
 
-double Search::subject_at(double nearness) const noexcept { return nearness > 0 ? c_.subject_at(nearness) : -infinity; }
+double Search::subject_at(double vergence) const noexcept { return vergence > 0 ? c_.subject_at(vergence) : -infinity; }
 
-/// None where there is no image, next to the front of the lens above all.
-std::optional<double> Search::film(double nearness) const {
-  if (!(nearness > 0)) return infinite_film_;
-  const auto image = model_.image_at(nearness);
+/// Nothing if there is no image, as next to the front of the lens.
+std::optional<double> Search::film(double vergence) const {
+  if (!(vergence > 0)) return infinite_film_;
+  const auto image = solver_.image_at(vergence);
   return image ? std::optional(image->film_z) : std::nullopt;
 }
 
-/// The film on the subjects' scale. A virtual image is that of a subject too near, and a real one anywhere else that of
-/// one too far, unless the lens has virtual images of distant subjects too, inside itself; then the place decides.
-double Search::film_nearness(double film_z) const noexcept {
-  const double nearness = c_.nearness_of_film(film_z), infinite = c_.nearness_of_infinite_film();
-  if (!c_.real(*infinite_film_)) return nearness < -infinite / 2 ? cap_ : std::min(nearness, cap_);
+/// The vergence of the subject that the film belongs to. A virtual image belongs to a subject too near, any other real
+/// one to a subject too far, unless the images of distant subjects lie inside the lens; then the position decides.
+double Search::film_vergence(double film_z) const noexcept {
+  const double vergence = c_.vergence_of_film(film_z), infinite = c_.vergence_of_infinite_film();
+  if (!c_.real(*infinite_film_)) return vergence < -infinite / 2 ? cap_ : std::min(vergence, cap_);
   if (!c_.real(film_z)) return cap_;
-  return nearness > infinite ? -cap_ : std::max(nearness, -cap_);
+  return vergence > infinite ? -cap_ : std::max(vergence, -cap_);
 }
 
-/// From film to subject; infinite where there is no real image.
-double Search::separation(double nearness) const {
-  const auto film_z = film(nearness);
-  return film_z && c_.real(*film_z) ? *film_z - subject_at(nearness) : infinity;
+/// From film to subject; infinite if there is no real image.
+double Search::separation(double vergence) const {
+  const auto film_z = film(vergence);
+  return film_z && c_.real(*film_z) ? *film_z - subject_at(vergence) : infinity;
 }
 
-/// The subject with a film farther out than that of infinity; none where the limit comes first.
-std::optional<double> Search::nearness_for(double wanted) const {
-  const auto excess = [&](double nearness) {
-    const auto film_z = film(nearness);
-    return (film_z ? film_nearness(*film_z) : cap_) - wanted;
+/// The subject of a film farther out than that of infinity; nothing beyond the limit.
+std::optional<double> Search::vergence_for(double wanted) const {
+  const auto excess = [&](double vergence) {
+    const auto film_z = film(vergence);
+    return (film_z ? film_vergence(*film_z) : cap_) - wanted;
   };
   const auto root_between = [&](double low, double high) {
-    const double nearness = root(excess, low, high);
-    const bool found = std::abs(excess(nearness)) < flat * cap_;  // and no jump where images end
-    return found ? std::optional(nearness) : std::nullopt;
+    const double vergence = root(excess, low, high);
+    const bool found = std::abs(excess(vergence)) < flat * cap_;  // and no jump where images end
+    return found ? std::optional(vergence) : std::nullopt;
   };
-  // The paraxial subject is near; beside it the film moves as it does there.
-  const double vertex = c_.nearness_of_vertex();
+  // The paraxial subject is near the exact one, and the film moves alike for both.
+  const double vertex = c_.vergence_of_vertex();
   double low = 0, high = std::clamp(wanted, 0.0, vertex / 2);
   for (int i = 0; i < 20; ++i) {
     const double missing = -excess(high);
     if (missing <= 0) {
-      if (const auto nearness = root_between(low, high)) return nearness;
+      if (const auto vergence = root_between(low, high)) return vergence;
       break;
     }
     low = high;
@@ -75,38 +75,38 @@ std::optional<double> Search::nearness_for(double wanted) const {
   return excess(last) >= 0 ? root_between(0, last) : std::nullopt;
 }
 
-FocusSolution Search::at(FocusStatus status, double nearness) const {
-  const double subject_z = subject_at(nearness), film_z = film(nearness).value();
+FocusSolution Search::at(FocusStatus status, double vergence) const {
+  const double subject_z = subject_at(vergence), film_z = film(vergence).value();
   return {status, film_z, subject_z, c_.distance(subject_z, film_z)};
 }
 
-/// Where the film is farthest out.
+/// The vergence at which the film is farthest out.
 double Search::limit() const {
-  const double paraxial = c_.nearness_of_infinite_film();
-  const auto film_out = [&](double nearness) {
-    const auto film_z = film(nearness);
-    return film_z && c_.real(*film_z) ? c_.nearness_of_film(*film_z) : -infinity;
+  const double paraxial = c_.vergence_of_infinite_film();
+  const auto film_out = [&](double vergence) {
+    const auto film_z = film(vergence);
+    return film_z && c_.real(*film_z) ? c_.vergence_of_film(*film_z) : -infinity;
   };
-  const double vertex = c_.nearness_of_vertex();
+  const double vertex = c_.vergence_of_vertex();
   return highest(film_out, 0, std::min(4 * paraxial, vertex), flat * vertex);
 }
 
-/// Where distances from the film turn, near the paraxial turning point.
+/// The vergence at which distances from the film turn, near the paraxial turning point.
 double Search::turning_point() const {
-  const double start = c_.nearness(c_.subject_z(nearest_p(c_)));
-  return highest([&](double nearness) { return -separation(nearness); }, start / 4,
-                 std::min(4 * start, c_.nearness_of_vertex()), flat * start);
+  const double start = c_.vergence(c_.subject_z(nearest_p(c_)));
+  return highest([&](double vergence) { return -separation(vergence); }, start / 4,
+                 std::min(4 * start, c_.vergence_of_vertex()), flat * start);
 }
 
 FocusSolution Search::nearest() const {
   if (!infinite_film_) return {.status = no_rays};
-  const bool turns = c_.origin == DistanceOrigin::film && c_.product > 0;
+  const bool turns = c_.origin == DistanceOrigin::film && c_.lens.product() > 0;
   if (c_.origin == DistanceOrigin::film && !turns) return focus_from_film(0);  // behind a mirror: where they meet
-  const double nearness = turns ? turning_point() : limit();
-  if (std::isinf(separation(nearness))) return no_focus(c_);
-  FocusSolution result = at(solved, nearness);
-  if (!turns && film_nearness(result.film_z) > (1 - 1e-6) * c_.nearness_of_infinite_film()) {
-    result.film_z = c_.sense * infinity;
+  const double vergence = turns ? turning_point() : limit();
+  if (std::isinf(separation(vergence))) return no_focus(c_);
+  FocusSolution result = at(solved, vergence);
+  if (!turns && film_vergence(result.film_z) > (1 - 1e-6) * c_.vergence_of_infinite_film()) {
+    result.film_z = c_.direction * infinity;
     result.distance = c_.distance(result.subject_z, result.film_z);
   }
   return result;
@@ -118,10 +118,10 @@ FocusSolution Search::too_near() const {
   return result;
 }
 
-/// Of a lens that focuses distant subjects inside itself: the one whose image lies on its last vertex.
+/// For a lens that focuses distant subjects inside itself: the subject whose image lies at the last vertex.
 FocusSolution Search::farthest() const {
-  const auto nearness = nearness_for(film_nearness(c_.last_z));
-  return nearness ? at(unreachable, *nearness) : no_focus(c_);
+  const auto vergence = vergence_for(film_vergence(c_.lens.rear_z));
+  return vergence ? at(unreachable, *vergence) : no_focus(c_);
 }
 
 FocusSolution Search::focus(double distance) const {
@@ -129,15 +129,15 @@ FocusSolution Search::focus(double distance) const {
   if (c_.origin == DistanceOrigin::film && std::isfinite(distance)) return focus_from_film(distance);
   const double subject_z = std::isinf(distance) ? -infinity : c_.origin_z - distance;
   if (!(subject_z < 0)) return too_near();
-  const auto image = model_.image(subject_z);
+  const auto image = solver_.image(subject_z);
   if (!image) return {.status = no_rays};
-  const double film_z = image->film_z, nearness = c_.nearness(subject_z);
-  if (!c_.real(film_z)) return film_nearness(film_z) < c_.nearness_of_infinite_film() ? farthest() : too_near();
+  const double film_z = image->film_z, vergence = c_.vergence(subject_z);
+  if (!c_.real(film_z)) return film_vergence(film_z) < c_.vergence_of_infinite_film() ? farthest() : too_near();
 
-  // Next to the limit the film may have turned back already.
-  if (nearness > c_.nearness_of_infinite_film() / 16) {
-    const auto before = film(nearness * (1 - 1e-7));
-    if (before && c_.nearness_of_film(*before) > c_.nearness_of_film(film_z)) return too_near();
+  // Next to the limit the film may already have turned back.
+  if (vergence > c_.vergence_of_infinite_film() / 16) {
+    const auto before = film(vergence * (1 - 1e-7));
+    if (before && c_.vergence_of_film(*before) > c_.vergence_of_film(film_z)) return too_near();
   }
   return {solved, film_z, subject_z, distance};
 }
@@ -147,13 +147,13 @@ FocusSolution Search::focus_from_film(double distance) const {
   if (!c_.real(*infinite_film_)) {
     const FocusSolution far = farthest();
     if (std::isinf(far.subject_z) || distance > far.distance) return far;
-    low = c_.nearness(far.subject_z);
+    low = c_.vergence(far.subject_z);
   }
 
-  // The separation falls from there to its turning point; behind a single mirror it falls without end.
-  double high = c_.nearness_of_infinite_film();
-  if (c_.product > 0) {
-    high = c_.nearness(c_.subject_z(nearest_p(c_)));
+  // The separation falls from there to its turning point; behind a single mirror it has none.
+  double high = c_.vergence_of_infinite_film();
+  if (c_.lens.product() > 0) {
+    high = c_.vergence(c_.subject_z(nearest_p(c_)));
     if (separation(high) > distance) {
       high = turning_point();
       const double least = separation(high);
@@ -161,10 +161,10 @@ FocusSolution Search::focus_from_film(double distance) const {
       if (least > distance) return at(unreachable, high);
     }
   }
-  // A subject is too far where it lies beyond the one at the distance from its film.
-  const auto excess = [&](double nearness) {
-    const auto film_z = film(nearness);
-    return film_z && c_.real(*film_z) ? nearness - c_.nearness(*film_z - distance) : high;
+  // A subject is too far if it lies beyond the one at the wanted distance from its film.
+  const auto excess = [&](double vergence) {
+    const auto film_z = film(vergence);
+    return film_z && c_.real(*film_z) ? vergence - c_.vergence(*film_z - distance) : high;
   };
   const double film_z = film(root(excess, low, high)).value();
   return {solved, film_z, film_z - distance, distance};
@@ -175,12 +175,12 @@ FocusSolution Search::subject(double film_z) const {
   if (*infinite_film_ == film_z && c_.real(film_z)) return {solved, film_z, -infinity, infinity};
   if (!c_.real(*infinite_film_)) {
     if (!c_.real(film_z)) return farthest();
-  } else if (!c_.real(film_z) || c_.nearness_of_film(film_z) < c_.nearness_of_film(*infinite_film_)) {
+  } else if (!c_.real(film_z) || c_.vergence_of_film(film_z) < c_.vergence_of_film(*infinite_film_)) {
     return {unreachable, *infinite_film_, -infinity, infinity};
   }
-  const auto nearness = nearness_for(film_nearness(film_z));
-  if (!nearness) return too_near();
-  const double subject_z = subject_at(*nearness);
+  const auto vergence = vergence_for(film_vergence(film_z));
+  if (!vergence) return too_near();
+  const double subject_z = subject_at(*vergence);
   return {solved, film_z, subject_z, c_.distance(subject_z, film_z)};
 }
 

@@ -3,21 +3,20 @@
 
 #include <optional>
 
-#include "model.hpp"
+#include "solver.hpp"
 
 namespace petzval::inline v0::focus_detail {
 
-/// The solvers for a model whose images can only be traced: the film of a subject is a function to evaluate, and
-/// everything else a search in it, over the nearness of the subject (Conjugates), along which the paraxial film is
-/// nearly the exact one.
+/// The solvers by exact rays. The film of a subject can only be traced; everything else is a search over the vergence
+/// of the subject (Conjugates), along which the paraxial film is nearly the exact one.
 ///
-/// The film moves out as the subject comes nearer, up to a limit: where it gets to infinity or, as rays with
-/// aberrations never all leave parallel, turns back. What lies nearer is out of reach, so that the film and the subject
+/// The film moves out as the subject comes nearer, up to a limit: there it is at infinity or, since rays with
+/// aberrations never all leave parallel, turns back. Nearer subjects are out of reach, so that film and subject
 /// determine each other.
 class Search {
  public:
-  /// Throws Error where nothing can be traced from infinity.
-  explicit Search(const FocusModel& model);
+  /// Throws Error if nothing can be traced from infinity.
+  explicit Search(const FocusSolver& solver);
 
   FocusSolution focus(double distance) const;
   FocusSolution subject(double film_z) const;
@@ -27,20 +26,20 @@ class Search {
   FocusSolution focus_from_film(double distance) const;
   FocusSolution too_near() const;
   FocusSolution farthest() const;
-  FocusSolution at(FocusStatus status, double nearness) const;
+  FocusSolution at(FocusStatus status, double vergence) const;
 
-  double subject_at(double nearness) const noexcept;
-  std::optional<double> film(double nearness) const;
-  double film_nearness(double film_z) const noexcept;
-  double separation(double nearness) const;
-  std::optional<double> nearness_for(double film_nearness) const;
+  double subject_at(double vergence) const noexcept;
+  std::optional<double> film(double vergence) const;
+  double film_vergence(double film_z) const noexcept;
+  double separation(double vergence) const;
+  std::optional<double> vergence_for(double film_vergence) const;
   double limit() const;
   double turning_point() const;
 
-  const FocusModel& model_;
+  const FocusSolver& solver_;
   const Conjugates& c_;
   std::optional<double> infinite_film_;  ///< of a subject at infinity
-  double cap_;                           ///< film nearness beyond that of all films
+  double cap_;                           ///< film vergence beyond that of all films
 };
 
 }  // namespace petzval::inline v0::focus_detail

@@ -4,15 +4,15 @@
 #include <algorithm>
 #include <cmath>
 
-#include "gaps.hpp"
 #include "petzval/core/text.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/f_number.hpp"
+#include "spacing.hpp"
 
 namespace petzval::inline v0 {
 namespace {
 
-using Kind = Finding::Kind;
+using Kind = FindingKind;
 constexpr double tolerance = 0.02;
 
 std::string mm(double value) { return number(value, 6) + " mm"; }
@@ -54,11 +54,11 @@ void check_surfaces(const Lens& lens, Findings& findings) {
           {Kind::semi_diameter, i, 0, domain, at(i) + "semi_diameter is 0 mm; only the axial ray passes"});
     }
     if (i + 1 == count) break;
-    const auto gap = lint_detail::least_gap(lens, position);
-    if (gap && gap->width < -1e-9 * std::max(gap->height, std::abs(surface.thickness))) {
+    const auto spacing = lint_detail::least_spacing(lens, position);
+    if (spacing && spacing->width < -1e-9 * std::max(spacing->height, std::abs(surface.thickness))) {
       findings.push_back(
-          {Kind::overlap, i, gap->width, 0,
-           at(i) + "overlaps the next surface by " + mm(-gap->width) + " at a height of " + mm(gap->height)});
+          {Kind::overlap, i, spacing->width, 0,
+           at(i) + "overlaps the next surface by " + mm(-spacing->width) + " at a height of " + mm(spacing->height)});
     }
   }
 }
@@ -91,17 +91,17 @@ void check_first_order(const Prescription& prescription, const Lens& lens, Findi
     }
   }
   const int last = static_cast<int>(lens.surface_count()) - 1;
-  const double gap = lens.surfaces().back().thickness;
-  if (!data.afocal && std::abs(gap - data.back_focal_distance) > tolerance * std::abs(focal_length)) {
-    findings.push_back(
-        {Kind::image_distance, last, gap, data.back_focal_distance,
-         at(last) + "the film is " + mm(gap) + " behind it and the paraxial focus " + mm(data.back_focal_distance)});
+  const double distance = lens.surfaces().back().thickness;
+  if (!data.afocal && std::abs(distance - data.back_focal_distance) > tolerance * std::abs(focal_length)) {
+    findings.push_back({Kind::image_distance, last, distance, data.back_focal_distance,
+                        at(last) + "the film is " + mm(distance) + " behind it and the paraxial focus " +
+                            mm(data.back_focal_distance)});
   }
 }
 
 }  // namespace
 
-std::string_view name(Finding::Kind kind) noexcept {
+std::string_view name(FindingKind kind) noexcept {
   switch (kind) {
     case Kind::focal_length: return "focal_length";
     case Kind::f_number: return "f_number";

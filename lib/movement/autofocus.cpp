@@ -7,12 +7,12 @@
 #include <string>
 #include <utility>
 
+#include "focus/image.hpp"
 #include "petzval/core/bisect.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/text.hpp"
-#include "petzval/focus/image.hpp"
-#include "rms_error.hpp"
 #include "signed_diameter.hpp"
+#include "targets.hpp"
 
 namespace petzval::inline v0 {
 namespace {
@@ -26,7 +26,7 @@ Film moved(Film film, double z) noexcept {
   return film;
 }
 
-/// The film before it moves. Throws Error for one that cannot be moved along the axis.
+/// The film before it moves. Throws Error if it cannot be moved along the axis.
 Film standing(const Film& film, double unset_z) {
   const double z = film.z_mm.value_or(unset_z);
   if (!std::isfinite(z)) throw Error("autofocus: the film stands at z = " + number(z) + " mm, wanted a finite place");
@@ -37,59 +37,59 @@ Film standing(const Film& film, double unset_z) {
   return moved(film, z);
 }
 
-/// What a target asks for.
-struct Asked {
+/// The film that a target asks for.
+struct Request {
   TargetUse use = TargetUse::used;
-  double film_z = nan;   ///< on which its blur is the wanted one; NaN where it has no image
-  double steepness = 0;  ///< of its blur's diameter, per mm that the film is away
+  double film_z = nan;   ///< where its blur is the wanted one; NaN if it has no image
+  double steepness = 0;  ///< of the diameter of its blur, per mm that the film is away
 };
 
-/// With the use that can be made of it.
-Asked judged(const IdealLens& lens, const FocusTarget& target, Asked asked) {
-  const double farthest = farthest_film * std::abs(lens.rear_focal_length);
-  if (!well_formed(target)) return {TargetUse::not_finite, nan, 0};
-  if (asked.use != TargetUse::used) return asked;
-  if (!(std::abs(asked.film_z - lens.rear_focal_z) < farthest)) return {TargetUse::no_image, nan, 0};
-  if (target.weight == 0 || asked.steepness == 0) asked.use = TargetUse::no_weight;
-  return asked;
+/// The request with its use set, or refused.
+Request checked(const IdealLens& lens, const FocusTarget& target, Request request) {
+  const double farthest = movement_detail::farthest_film * std::abs(lens.rear_focal_length);
+  if (!movement_detail::well_formed(target)) return {TargetUse::not_finite, nan, 0};
+  if (request.use != TargetUse::used) return request;
+  if (!(std::abs(request.film_z - lens.rear_focal_z) < farthest)) return {TargetUse::no_image, nan, 0};
+  if (target.weight == 0 || request.steepness == 0) request.use = TargetUse::no_weight;
+  return request;
 }
 
-double largest_weight(std::span<const FocusTarget> targets, std::span<const Asked> asked) {
+double largest_weight(std::span<const FocusTarget> targets, std::span<const Request> requests) {
   double largest = 0;
   for (std::size_t i = 0; i < targets.size(); ++i) {
-    if (asked[i].use == TargetUse::used) largest = std::max(largest, targets[i].weight);
+    if (requests[i].use == TargetUse::used) largest = std::max(largest, targets[i].weight);
   }
   return largest;
 }
 
-/// Nothing without targets that can be used.
-std::optional<double> least_squares(std::span<const FocusTarget> targets, std::span<const Asked> asked) {
-  const double largest = largest_weight(targets, asked);
+/// Nothing if no target can be used.
+std::optional<double> least_squares(std::span<const FocusTarget> targets, std::span<const Request> requests) {
+  const double largest = largest_weight(targets, requests);
   double weights = 0, sum = 0, from = 0;
   for (std::size_t i = 0; i < targets.size(); ++i) {
-    if (asked[i].use != TargetUse::used) continue;
-    if (weights == 0) from = asked[i].film_z;
-    const double weight = targets[i].weight / largest * square(asked[i].steepness);
+    if (requests[i].use != TargetUse::used) continue;
+    if (weights == 0) from = requests[i].film_z;
+    const double weight = targets[i].weight / largest * square(requests[i].steepness);
     weights += weight;
-    sum += weight * (asked[i].film_z - from);
+    sum += weight * (requests[i].film_z - from);
   }
   if (!(weights > 0)) return {};
   return from + sum / weights;
 }
 
-/// before: the film as it stood; infinity_z: of the film on which infinity is in focus; blur_of: of a target that has
+/// before: the film as it stood; infinity_z: of the film with infinity in focus; blur_of: the blur of a target that has
 /// an image, on a film.
-Autofocus described(const IdealLens& lens, std::span<const FocusTarget> targets, std::span<const Asked> asked,
+Autofocus described(const IdealLens& lens, std::span<const FocusTarget> targets, std::span<const Request> requests,
                     const Film& before, double infinity_z, std::optional<double> found, const auto& blur_of) {
-  using enum Autofocus::Status;
+  using enum AutofocusStatus;
   Autofocus result;
   result.status = !found ? no_targets : std::isfinite(*found) && *found > lens.rear_z ? solved : unreachable;
   result.film = result ? moved(before, *found) : before;
   const double z = result.film.z(), z_before = before.z();
 
   for (std::size_t i = 0; i < targets.size(); ++i) {
-    const double blur = std::isnan(asked[i].film_z) ? nan : blur_of(i, result.film);
-    result.blurs.push_back({asked[i].use, targets[i].blur_mm, blur});
+    const double blur = std::isnan(requests[i].film_z) ? nan : blur_of(i, result.film);
+    result.blurs.push_back({requests[i].use, targets[i].blur_mm, blur});
   }
   result.rms_mm = movement_detail::rms_error(targets, result.blurs);
 
@@ -115,14 +115,14 @@ std::vector<focus_detail::Line> lines_of(const RayBundle& bundle) {
   return lines;
 }
 
-/// The signed diameter on a film, by least RMS or by the largest radius.
+/// The signed diameter on a film, by the criterion of the image.
 double signed_diameter(const focus_detail::Image& image, double film_z) noexcept {
   const double away = film_z - image.film_z, diameter = image.diameter(film_z);
   return image.lines.empty() ? movement_detail::signed_diameter(diameter, image.slope * away)
                              : std::copysign(diameter, away);
 }
 
-/// The film on the side of `wanted` where the diameter is that much; the sharpest where it always is more.
+/// The film on which the signed diameter is the wanted one; the sharpest film if it is larger on all.
 double film_of(const focus_detail::Image& image, double wanted) noexcept {
   if (wanted == 0) return image.film_z;
   if (image.lines.empty()) {
@@ -137,29 +137,29 @@ double film_of(const focus_detail::Image& image, double wanted) noexcept {
 
 }  // namespace
 
-std::string_view name(Autofocus::Status status) noexcept {
+std::string_view name(AutofocusStatus status) noexcept {
   switch (status) {
-    case Autofocus::Status::solved: return "solved";
-    case Autofocus::Status::no_targets: return "no_targets";
-    case Autofocus::Status::unreachable: return "unreachable";
+    case AutofocusStatus::solved: return "solved";
+    case AutofocusStatus::no_targets: return "no_targets";
+    case AutofocusStatus::unreachable: return "unreachable";
   }
   return "unknown";
 }
 
 Autofocus autofocus(const IdealLens& lens, std::span<const FocusTarget> targets, const Film& film) {
   const Film before = standing(film, lens.rear_focal_z);
-  std::vector<Asked> asked;
+  std::vector<Request> requests;
   std::vector<std::optional<ImagePoint>> images;
   for (const FocusTarget& target : targets) {
     const auto image = images.emplace_back(lens.image(target.place));
-    Asked asks{.use = image ? TargetUse::used : TargetUse::no_image};
+    Request request{.use = image ? TargetUse::used : TargetUse::no_image};
     if (image) {
-      asks.film_z = image->position.z + (image->cone > 0 ? target.blur_mm / image->cone : 0);
-      asks.steepness = image->cone;
+      request.film_z = image->position.z + (image->cone > 0 ? target.blur_mm / image->cone : 0);
+      request.steepness = image->cone;
     }
-    asked.push_back(judged(lens, target, asks));
+    requests.push_back(checked(lens, target, request));
   }
-  return described(lens, targets, asked, before, lens.rear_focal_z, least_squares(targets, asked),
+  return described(lens, targets, requests, before, lens.rear_focal_z, least_squares(targets, requests),
                    [&](std::size_t i, const Film& last) { return signed_blur(*images[i], last); });
 }
 
@@ -172,33 +172,33 @@ Autofocus autofocus(const ImageRays& lens, std::span<const FocusTarget> targets,
   const Film before = standing(film, lens.lens().film_z());
   const bool rms = criterion == FocusCriterion::min_rms;
   const double plane_z = lens.lens().surfaces().back().vertex_z;
-  std::vector<Asked> asked;
+  std::vector<Request> requests;
   std::vector<std::vector<focus_detail::Line>> lines;
-  std::vector<focus_detail::Image> images;  // by the criterion, of targets that have one
+  std::vector<focus_detail::Image> images;  // by the criterion, for targets that have one
   for (const FocusTarget& target : targets) {
     lines.push_back(lines_of(lens.bundle(target.place)));
     focus_detail::Image& image = images.emplace_back();
-    Asked asks;
+    Request request;
     if (lines.back().empty()) {
-      asks.use = lens.ideal().image(target.place) ? TargetUse::no_rays : TargetUse::no_image;
+      request.use = lens.ideal().image(target.place) ? TargetUse::no_rays : TargetUse::no_image;
     } else {
       image = focus_detail::least_rms(lines.back(), plane_z);
-      asks.steepness = image.slope;
-      // Else rays run apart behind the lens.
+      request.steepness = image.slope;
+      // In front of that, the rays diverge behind the lens.
       if (image.film_z > lens.ideal().rear_z) {
-        asks.film_z = film_of(image, target.blur_mm);
+        request.film_z = film_of(image, target.blur_mm);
         if (!rms) image = focus_detail::least_maximum(lines.back(), plane_z);
       }
     }
-    asked.push_back(judged(lens.ideal(), target, asks));
+    requests.push_back(checked(lens.ideal(), target, request));
   }
 
-  std::optional<double> found = least_squares(targets, asked);
+  std::optional<double> found = least_squares(targets, requests);
   if (!rms && found) {
-    const double largest = largest_weight(targets, asked);
+    const double largest = largest_weight(targets, requests);
     std::vector<focus_detail::Line> all;
     for (std::size_t i = 0; i < targets.size(); ++i) {
-      if (asked[i].use != TargetUse::used) continue;
+      if (requests[i].use != TargetUse::used) continue;
       const double scale = targets[i].weight / largest;
       const double shift = film_of(images[i], targets[i].blur_mm) - images[i].film_z;
       for (const auto& [x, y, u, v, weight] : lines[i]) {
@@ -211,7 +211,7 @@ Autofocus autofocus(const ImageRays& lens, std::span<const FocusTarget> targets,
   double at_infinity = nan;
   if (!far.empty())
     at_infinity = (rms ? focus_detail::least_rms(far, plane_z) : focus_detail::least_maximum(far, plane_z)).film_z;
-  return described(lens.ideal(), targets, asked, before, at_infinity, found,
+  return described(lens.ideal(), targets, requests, before, at_infinity, found,
                    [&](std::size_t i, const Film& last) { return signed_diameter(images[i], last.z()); });
 }
 

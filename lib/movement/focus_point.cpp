@@ -6,11 +6,11 @@
 #include <string>
 #include <utility>
 
+#include "keyframes.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/text.hpp"
 #include "petzval/film/film.hpp"
-#include "petzval/movement/disparity_fit.hpp"
-#include "petzval/movement/keyframes.hpp"
+#include "plane_fit.hpp"
 
 namespace petzval::inline v0 {
 namespace {
@@ -77,7 +77,7 @@ void check(const FocusMoment& moment) {
   }
 }
 
-/// A number of the keys at a time: `of` for each.
+/// A number interpolated over the keys; of(k): its value at key k.
 double at_time(const FocusPoint& point, double time, const auto& of) {
   if (point.keys.size() == 1) return of(0);
   std::vector<double> times, values;
@@ -85,7 +85,7 @@ double at_time(const FocusPoint& point, double time, const auto& of) {
     times.push_back(point.keys[k].time);
     values.push_back(of(k));
   }
-  return Keyframes(std::move(times), std::move(values)).at(time);
+  return movement_detail::Keyframes(std::move(times), std::move(values)).at(time);
 }
 
 Vec3<double> place_of(const OnTriangle& on, const std::array<double, 3>& parts, const FocusMoment& moment) {
@@ -94,7 +94,7 @@ Vec3<double> place_of(const OnTriangle& on, const std::array<double, 3>& parts, 
   return sum;
 }
 
-/// The triangle that all keys lie on, or none.
+/// The triangle that all keys lie on, or null.
 const OnTriangle* only_triangle(const FocusPoint& point) {
   const auto* first = std::get_if<OnTriangle>(&point.keys.front().anchor);
   const auto same = [&](const FocusKey& key) {
@@ -104,13 +104,13 @@ const OnTriangle* only_triangle(const FocusPoint& point) {
   return first && std::all_of(point.keys.begin(), point.keys.end(), same) ? first : nullptr;
 }
 
-/// As seen from the front principal point, 1 / depth last.
+/// As seen from the front principal point; z is the inverse distance.
 Vec3<double> seen(const ScenePoint& place, double principal_z) {
-  const DisparityPoint point = disparity_point(place, principal_z);
-  return {point.x, point.y, point.disparity};
+  const movement_detail::PicturePoint point = movement_detail::picture_point(place, principal_z);
+  return {point.x, point.y, point.inverse_distance};
 }
 
-/// Nothing where a vertex is nowhere, and on a way from behind the lens to infinity.
+/// Nothing if a vertex is not finite, and on a way from behind the lens to infinity.
 std::optional<ScenePoint> place_at(const IdealLens& lens, const FocusPoint& point, const FocusMoment& moment) {
   if (const OnTriangle* triangle = only_triangle(point)) {
     std::array<double, 3> parts{};
@@ -120,7 +120,7 @@ std::optional<ScenePoint> place_at(const IdealLens& lens, const FocusPoint& poin
                          [&](std::size_t k) { return std::get<OnTriangle>(point.keys[k].anchor).barycentric[i]; });
       sum += parts[i];
     }
-    // Each stays within its keys, their sum does not.
+    // Each stays within the span of its keys, but their sum does not stay 1.
     for (double& part : parts) part /= sum;
     return ScenePoint{place_of(*triangle, parts, moment), false};
   }
@@ -165,7 +165,7 @@ std::vector<FocusTarget> focus_targets(const IdealLens& lens, std::span<const Fo
                                        const FocusMoment& moment) {
   check(moment);
   std::vector<FocusTarget> targets;
-  std::vector<double> nearness;
+  std::vector<double> inverse_distances;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const FocusPoint& point = points[i];
     check(point, moment.vertices.size(), "focus point " + std::to_string(i) + ": ");
@@ -175,11 +175,11 @@ std::vector<FocusTarget> focus_targets(const IdealLens& lens, std::span<const Fo
     if (!image || (moment.film && !within(*moment.film, lens, *image))) continue;
     targets.push_back({*place, at_time(point, moment.time, [&](std::size_t k) { return point.keys[k].blur_mm; }),
                        at_time(point, moment.time, [&](std::size_t k) { return point.keys[k].weight; })});
-    nearness.push_back(seen(*place, lens.front_principal_z()).z);
+    inverse_distances.push_back(seen(*place, lens.front_principal_z()).z);
   }
   if (moment.nearer_weighs_more && !targets.empty()) {
-    const double nearest = *std::max_element(nearness.begin(), nearness.end());
-    for (std::size_t i = 0; i < targets.size() && nearest > 0; ++i) targets[i].weight *= nearness[i] / nearest;
+    const double nearest = *std::max_element(inverse_distances.begin(), inverse_distances.end());
+    for (std::size_t i = 0; i < targets.size() && nearest > 0; ++i) targets[i].weight *= inverse_distances[i] / nearest;
   }
   return targets;
 }

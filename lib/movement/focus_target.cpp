@@ -4,13 +4,9 @@
 #include <cmath>
 #include <limits>
 
-namespace petzval::inline v0 {
+#include "targets.hpp"
 
-bool well_formed(const FocusTarget& target) noexcept {
-  const Vec3<double>& p = target.place.position;
-  const bool place = std::isfinite(p.x) && std::isfinite(p.y) && p.z < std::numeric_limits<double>::infinity();
-  return place && std::isfinite(target.blur_mm) && std::isfinite(target.weight) && target.weight >= 0;
-}
+namespace petzval::inline v0 {
 
 std::string_view name(TargetUse use) noexcept {
   switch (use) {
@@ -22,6 +18,22 @@ std::string_view name(TargetUse use) noexcept {
     case TargetUse::no_rays: return "no_rays";
   }
   return "unknown";
+}
+
+std::string_view name(PlaneRank rank) noexcept {
+  switch (rank) {
+    case PlaneRank::none: return "none";
+    case PlaneRank::point: return "point";
+    case PlaneRank::line: return "line";
+    case PlaneRank::plane: return "plane";
+  }
+  return "unknown";
+}
+
+bool movement_detail::well_formed(const FocusTarget& target) noexcept {
+  const Vec3<double>& p = target.place.position;
+  const bool place = std::isfinite(p.x) && std::isfinite(p.y) && p.z < std::numeric_limits<double>::infinity();
+  return place && std::isfinite(target.blur_mm) && std::isfinite(target.weight) && target.weight >= 0;
 }
 
 }  // namespace petzval::inline v0

@@ -74,7 +74,7 @@ std::optional<BundleBlur> blur_on(const RayBundle& bundle, const Film& film) {
   }
   const double rms = std::sqrt(square * each);
   if (!std::isfinite(rms)) return {};
-  constexpr double diameter = 2 * std::numbers::sqrt2;  // of the even disc, over its RMS radius
+  constexpr double diameter = 2 * std::numbers::sqrt2;  // of the uniform disc, over its RMS radius
   const double defocus = steepness > 0 ? spreads * each / std::sqrt(steepness * each) : 0;
   return BundleBlur{.centroid = {glm::dot(middle, right), glm::dot(middle, up)},
                     .rms_radius = rms,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/movement/keyframes.hpp"
+#include "keyframes.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 #include "petzval/core/error.hpp"
 #include "petzval/core/text.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval::inline v0::movement_detail {
 
 Keyframes::Keyframes(std::vector<double> times, std::vector<double> values)
     : times_(std::move(times)), values_(std::move(values)), slopes_(times_.size()) {
@@ -59,4 +59,4 @@ double Keyframes::at(double time) const noexcept {
   return std::clamp(value, low, high);  // rounding
 }
 
-}  // namespace petzval::inline v0
+}  // namespace petzval::inline v0::movement_detail

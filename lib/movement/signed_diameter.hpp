@@ -3,12 +3,12 @@
 
 namespace petzval::inline v0::movement_detail {
 
-/// A blur's diameter with its sign: negative in front of the plane of focus. defocus: the part of it that defocus
-/// makes, signed. Where that is less than a tenth of it, aberrations are all there is, and few rays would decide by
-/// chance: such a blur counts as positive.
+/// The diameter of a blur with its sign, negative in front of the plane of focus. defocus: the signed part of the
+/// diameter due to defocus. If that is less than a tenth, the blur is made of aberrations, and the sign would depend on
+/// single rays: it is positive then.
 inline double signed_diameter(double diameter, double defocus) noexcept {
-  constexpr double told = 0.1;
-  return defocus < -told * diameter ? -diameter : diameter;
+  constexpr double least = 0.1;
+  return defocus < -least * diameter ? -diameter : diameter;
 }
 
 }  // namespace petzval::inline v0::movement_detail

@@ -9,14 +9,14 @@
 
 #include "petzval/core/error.hpp"
 #include "petzval/core/text.hpp"
-#include "rms_error.hpp"
+#include "targets.hpp"
 #include "tilt_problem.hpp"
 #include "tilt_rays.hpp"
 
 namespace petzval::inline v0 {
 namespace {
 
-/// With the film's place set. Throws Error for what cannot be fitted.
+/// The options with z_mm of the film set. Throws Error for invalid options.
 TiltOptions checked(TiltOptions options, double unset_z) {
   if (!(options.max_tilt_rad >= 0 && options.max_tilt_rad < std::numbers::pi / 2)) {
     throw Error("fit_tilt: the largest tilt is " + number(options.max_tilt_rad) +
@@ -37,7 +37,7 @@ TiltOptions checked(TiltOptions options, double unset_z) {
   return options;
 }
 
-/// Where the line that came to the middle of the picture meets another film.
+/// Where the chief ray to the middle of the picture meets another film.
 std::optional<FilmPoint> carried_centre(const IdealLens& lens, const Film& before, const Film& film) {
   const Vec3<double> middle = before.position({before.shift_x_mm, before.shift_y_mm});
   const double pupil_z = lens.pupils.exit.z;
@@ -49,14 +49,14 @@ std::optional<FilmPoint> carried_centre(const IdealLens& lens, const Film& befor
   return film.point(middle + steps * line);
 }
 
-/// Whether the film stands behind the lens, corners included.
+/// Whether the film, with its corners, lies behind the lens.
 bool clear_of_lens(const IdealLens& lens, const Film& film) {
   const auto corners = film.corners();
   return std::all_of(corners.begin(), corners.end(),
                      [&](const FilmPoint& corner) { return film.position(corner).z > lens.rear_z; });
 }
 
-/// The film that was found, or the one that stays where it stood. blur_of: of a target on a film.
+/// The film that was found, or the film as it stood. blur_of: the blur of a target on a film.
 TiltFit described(const IdealLens& lens, std::span<const FocusTarget> targets, const TiltOptions& options,
                   std::span<const movement_detail::SeenTarget> seen, const movement_detail::TiltProblem& problem,
                   const movement_detail::TiltSolution& solution, const auto& blur_of) {
@@ -64,19 +64,19 @@ TiltFit described(const IdealLens& lens, std::span<const FocusTarget> targets, c
   fit.rank = problem.rank;
   fit.film = options.film;
   if (problem.rank == PlaneRank::none) {
-    fit.status = TiltFit::Status::no_targets;
+    fit.status = TiltFitStatus::no_targets;
   } else if (!solution.converged) {
-    fit.status = TiltFit::Status::not_converged;
+    fit.status = TiltFitStatus::not_converged;
   } else {
     Film film = problem.frame.film(solution.film, options.film);
     const std::optional<FilmPoint> centre = carried_centre(lens, options.film, film);
     if (centre) film.shift_x_mm = centre->x, film.shift_y_mm = centre->y;
     if (!centre || !clear_of_lens(lens, film)) {
-      fit.status = TiltFit::Status::unreachable;
+      fit.status = TiltFitStatus::unreachable;
     } else {
-      fit.status = solution.limited                   ? TiltFit::Status::limited
-                   : problem.rank == PlaneRank::plane ? TiltFit::Status::solved
-                                                      : TiltFit::Status::least_tilt;
+      fit.status = solution.limited                   ? TiltFitStatus::limited
+                   : problem.rank == PlaneRank::plane ? TiltFitStatus::solved
+                                                      : TiltFitStatus::least_tilt;
       fit.film = film;
     }
   }
@@ -88,10 +88,11 @@ TiltFit described(const IdealLens& lens, std::span<const FocusTarget> targets, c
   return fit;
 }
 
-/// The problem of the targets that count, outliers taken out.
-movement_detail::TiltProblem sober_problem(const IdealLens& lens, std::span<movement_detail::SeenTarget> seen,
-                                           const TiltOptions& options) {
-  constexpr std::size_t fewest = 5;  // of which one can be told from the others
+/// The problem without outliers.
+movement_detail::TiltProblem problem_without_outliers(const IdealLens& lens,
+                                                      std::span<movement_detail::SeenTarget> seen,
+                                                      const TiltOptions& options) {
+  constexpr std::size_t fewest = 5;  // targets among which an outlier can be told
   const movement_detail::TiltProblem problem = tilt_problem(lens, seen, options.max_tilt_rad);
   if (!options.robust || problem.used.size() < fewest) return problem;
   const std::vector<double> kept = robust_weights(problem, seen);
@@ -112,14 +113,14 @@ movement_detail::TiltSolution solved(const movement_detail::TiltProblem& problem
 
 }  // namespace
 
-std::string_view name(TiltFit::Status status) noexcept {
+std::string_view name(TiltFitStatus status) noexcept {
   switch (status) {
-    case TiltFit::Status::solved: return "solved";
-    case TiltFit::Status::least_tilt: return "least_tilt";
-    case TiltFit::Status::limited: return "limited";
-    case TiltFit::Status::no_targets: return "no_targets";
-    case TiltFit::Status::unreachable: return "unreachable";
-    case TiltFit::Status::not_converged: return "not_converged";
+    case TiltFitStatus::solved: return "solved";
+    case TiltFitStatus::least_tilt: return "least_tilt";
+    case TiltFitStatus::limited: return "limited";
+    case TiltFitStatus::no_targets: return "no_targets";
+    case TiltFitStatus::unreachable: return "unreachable";
+    case TiltFitStatus::not_converged: return "not_converged";
   }
   return "unknown";
 }
@@ -127,7 +128,7 @@ std::string_view name(TiltFit::Status status) noexcept {
 TiltFit fit_tilt(const IdealLens& lens, std::span<const FocusTarget> targets, const TiltOptions& given) {
   const TiltOptions options = checked(given, lens.rear_focal_z);
   std::vector<movement_detail::SeenTarget> seen = movement_detail::seen_targets(lens, targets);
-  const movement_detail::TiltProblem problem = sober_problem(lens, seen, options);
+  const movement_detail::TiltProblem problem = problem_without_outliers(lens, seen, options);
   return described(lens, targets, options, seen, problem, solved(problem), [&](std::size_t i, const Film& film) {
     return seen[i].image ? signed_blur(*seen[i].image, film) : std::numeric_limits<double>::quiet_NaN();
   });
@@ -146,7 +147,7 @@ TiltFit fit_tilt(const ImageRays& lens, std::span<const FocusTarget> targets, co
       seen[i].weight = 0;
     }
   }
-  const movement_detail::TiltProblem problem = sober_problem(ideal, seen, options);
+  const movement_detail::TiltProblem problem = problem_without_outliers(ideal, seen, options);
   const movement_detail::TiltSolution thick = solved(problem);
   movement_detail::TiltSolution solution = thick;
   if (thick.converged) {
@@ -165,8 +166,8 @@ TiltFit fit_tilt(const ImageRays& lens, std::span<const FocusTarget> targets, co
     const std::optional<BundleBlur> blur = blur_on(bundles[i], film);
     return blur ? blur->signed_diameter : std::numeric_limits<double>::quiet_NaN();
   });
-  // Aberrations move the film away from where cardinal points have it, by as much for all distances, nearly: what is
-  // in focus is what these put into focus on the film that they find for the same targets.
+  // Aberrations move the film by nearly the same amount for all distances: what is in focus is the plane that the
+  // cardinal points put into focus on the film that they find for the same targets.
   if (fit) fit.focus = focus_plane(ideal, problem.frame.film(thick.film, options.film));
   return fit;
 }

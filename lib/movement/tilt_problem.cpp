@@ -8,20 +8,20 @@
 namespace petzval::inline v0::movement_detail {
 namespace {
 
-/// Where the film has to be for a plane of the scene. With v the distance behind the rear principal plane, disparity
-/// is (1 - f' / v) / f and the picture is -f' (X, Y) / (f v), so that disparity = a x + b y + c becomes
-/// v (1 - c f) = f' (1 - a X - b Y).
-FilmSlopes film_of(const DisparityFit& fit, const IdealLens& lens, const TiltFrame& frame) {
+/// The film with a plane of the scene in focus. With v the distance behind the rear principal plane, the inverse
+/// distance is (1 - f' / v) / f and the picture is -f' (X, Y) / (f v), so that a x + b y + c for the inverse distance
+/// becomes v (1 - c f) = f' (1 - a X - b Y).
+FilmSlopes film_of(const PlaneFit& fit, const IdealLens& lens, const TiltFrame& frame) {
   const double at_axis = lens.rear_focal_length / (1 - fit.c * lens.front_focal_length);
   const double p = -fit.a * at_axis, q = -fit.b * at_axis;
   const double z = lens.rear_principal_z() + at_axis + p * frame.origin.x + q * frame.origin.y;
   return {(z - frame.origin.z) / frame.unit, p, q};
 }
 
-/// Main direction and spreads of the images, and how far slopes may go. Limits shrink to 0 where the targets become one
-/// place of the picture, and that across the main direction where they become a line: planes then turn into the plane
-/// of least tilt, and over to the other side, without a jump.
-TiltSpace tilt_space(const DisparityFit& fit, std::span<const IdealBlur> blurs, double max_tilt) {
+/// Main direction and spreads of the images, and the limits of the slopes. The limits fall to 0 as the targets shrink
+/// to one place of the picture, the limit across the main direction as they become a line: planes then turn through the
+/// plane of least tilt to the other side without a jump.
+TiltSpace tilt_space(const PlaneFit& fit, std::span<const IdealBlur> blurs, double max_tilt) {
   TiltSpace space;
   space.parameters = static_cast<int>(fit.rank);
   double xx = 0, xy = 0, yy = 0;
@@ -82,12 +82,12 @@ std::vector<SeenTarget> seen_targets(const IdealLens& lens, std::span<const Focu
     const ImagePoint& image = *seen.image;
     const double move = blur == 0 ? 0 : blur / image.cone;
     seen.wanted = image.position + move * Vec3<double>(image.slope_x, image.slope_y, 1);
-    seen.disparity = disparity_point(blur == 0 ? place : lens.scene_of(seen.wanted), z);
+    seen.picture = picture_point(blur == 0 ? place : lens.scene_of(seen.wanted), z);
     const Vec3<double> from_lens = seen.wanted - Vec3<double>(0, 0, lens.rear_focal_z);
     const double away = std::max({std::abs(from_lens.x), std::abs(from_lens.y), std::abs(from_lens.z)});
-    const DisparityPoint& d = seen.disparity;
-    const bool near = away < farthest && std::isfinite(d.x) && std::isfinite(d.y) && std::isfinite(d.disparity);
-    if (weight == 0 || image.cone == 0) {  // what a pinhole shows is sharp everywhere
+    const PicturePoint& d = seen.picture;
+    const bool near = away < farthest && std::isfinite(d.x) && std::isfinite(d.y) && std::isfinite(d.inverse_distance);
+    if (weight == 0 || image.cone == 0) {  // through a pinhole everything is sharp
       seen.use = TargetUse::no_weight;
     } else if (near) {
       seen.use = TargetUse::used;
@@ -99,25 +99,25 @@ std::vector<SeenTarget> seen_targets(const IdealLens& lens, std::span<const Focu
 
 TiltProblem tilt_problem(const IdealLens& lens, std::span<const SeenTarget> targets, double max_tilt) {
   TiltProblem problem;
-  // Squares of cones and weights stay within the range of numbers as parts of the largest of them.
+  // Cones and weights are divided by the largest, so that their squares do not overflow.
   double largest = 0, largest_cone = 0, weights = 0;
   for (const SeenTarget& target : targets) {
     if (!(target.weight > 0)) continue;
     largest = std::max(largest, target.weight);
     largest_cone = std::max(largest_cone, target.image->cone);
   }
-  std::vector<DisparityPoint> points;
+  std::vector<PicturePoint> points;
   Vec3<double> mean{0, 0, 0};
   for (std::size_t i = 0; i < targets.size(); ++i) {
     if (!(targets[i].weight > 0)) continue;
     problem.used.push_back(i);
-    points.push_back(targets[i].disparity);
+    points.push_back(targets[i].picture);
     points.back().weight = targets[i].weight;
     const double cone = targets[i].image->cone / largest_cone, weight = targets[i].weight / largest * cone * cone;
     weights += weight;
     mean += weight * targets[i].wanted;
   }
-  const DisparityFit fit = fit_disparity(points);
+  const PlaneFit fit = fit_plane(points);
   problem.rank = fit.rank;
   if (problem.used.empty()) return problem;
   problem.frame = {mean / weights, std::abs(lens.rear_focal_length)};
@@ -130,7 +130,7 @@ TiltProblem tilt_problem(const IdealLens& lens, std::span<const SeenTarget> targ
   }
   problem.space = tilt_space(fit, problem.blurs, max_tilt);
 
-  // A plane of focus within the focal length gives no place to start from: then an upright film in the middle is one.
+  // A plane of focus within the focal length has no film: the fit then starts from an upright one in the middle.
   const FilmSlopes film = film_of(fit, lens, problem.frame);
   const TiltSpace& space = problem.space;
   if (1 - fit.c * lens.front_focal_length > 0 && std::isfinite(film.z + film.p + film.q)) {

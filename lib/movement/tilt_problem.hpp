@@ -6,10 +6,11 @@
 #include <span>
 #include <vector>
 
-#include "petzval/movement/disparity_fit.hpp"
+#include "petzval/film/film.hpp"
 #include "petzval/movement/focus_target.hpp"
-#include "petzval/movement/ideal_lens.hpp"
-#include "petzval/movement/tilt_fit.hpp"
+#include "petzval/paraxial/ideal_lens.hpp"
+#include "plane_fit.hpp"
+#include "targets.hpp"
 
 namespace petzval::inline v0::movement_detail {
 
@@ -18,8 +19,8 @@ struct FilmSlopes {
   double z = 0, p = 0, q = 0;
 };
 
-/// Coordinates in which a fit works: focal lengths from the centroid of the images that the film should pass. There a
-/// film's z and its slopes do not depend on each other, and the unit of length is gone.
+/// The coordinates of a fit: in focal lengths, from the centroid of the images that the film should pass. In these the
+/// z and the slopes of a film are independent, and the unit of length cancels.
 struct TiltFrame {
   Vec3<double> origin{0, 0, 0};
   double unit = 1;
@@ -28,7 +29,7 @@ struct TiltFrame {
   Film film(const FilmSlopes& slopes, const Film& like) const;
 };
 
-/// The films that a fit chooses from. A slope across the targets' main direction counts where they spread that way.
+/// The films that a fit chooses from. parameters: 1, 2 or 3, as far as the targets determine them.
 struct TiltSpace {
   int parameters = 1;                                  ///< z; the slope along the main direction; the slope across
   double along_x = 1, along_y = 0;                     ///< unit main direction of the targets' images
@@ -42,62 +43,62 @@ struct TiltSpace {
   double across(const FilmSlopes& film) const noexcept { return film.q * along_x - film.p * along_y; }
 };
 
-/// Rows of errors that a target has at most.
+/// The most rows of errors of a target.
 inline constexpr int most_rows = 4;
 
-/// Errors of one target's blur, as they depend on the film.
+/// The errors of the blur of one target, as functions of the film.
 class BlurErrors {
  public:
   virtual ~BlurErrors() = default;
   virtual int rows() const noexcept = 0;
-  /// errors: rows; derivatives: rows x 3, by z, p and q; or null. False for a film that light does not cross from the
-  /// front.
+  /// errors: rows; derivatives: rows x 3, by z, p and q, or null. False for a film that light does not cross from
+  /// the front.
   virtual bool operator()(const FilmSlopes& film, double* errors, double* derivatives) const = 0;
 };
 
-/// Of an ideal lens: root k (z - V) along the chief ray, V the place where the film should cross that.
+/// The blur of an ideal lens: root k (z - V) along the chief ray, which the film should cross at V.
 class IdealBlur final : public BlurErrors {
  public:
   double x = 0, y = 0, z = 0, slope_x = 0, slope_y = 0;  ///< in the frame
-  double root = 1;                                       ///< of weight times squared cone
+  double root = 1;                                       ///< the root of weight times squared cone
   int rows() const noexcept override { return 1; }
   bool operator()(const FilmSlopes& film, double* errors, double* derivatives) const noexcept override;
 };
 
-/// What a fit may use of a target.
+/// A target with its image, as a fit uses it.
 struct SeenTarget {
   TargetUse use = TargetUse::used;
   double weight = 0;  ///< 0 unless used
   std::optional<ImagePoint> image;
   Vec3<double> wanted{0, 0, 0};  ///< where the chief ray should meet the film
-  DisparityPoint disparity;      ///< of the place that is imaged there
+  PicturePoint picture;          ///< of the scene point that is imaged there
 };
 std::vector<SeenTarget> seen_targets(const IdealLens& lens, std::span<const FocusTarget> targets);
 
-/// Everything about targets of weight that films are fitted by.
+/// Everything about the targets of weight that a fit needs.
 struct TiltProblem {
   PlaneRank rank = PlaneRank::none;
   TiltFrame frame;
   TiltSpace space;
-  FilmSlopes start;               ///< least squares in disparity
+  FilmSlopes start;               ///< least squares in inverse distance
   std::vector<std::size_t> used;  ///< positions of the targets
-  std::vector<IdealBlur> blurs;   ///< of each of them
+  std::vector<IdealBlur> blurs;   ///< one for each of them
 };
 TiltProblem tilt_problem(const IdealLens& lens, std::span<const SeenTarget> targets, double max_tilt);
 
 struct TiltSolution {
   bool converged = false, limited = false;
   FilmSlopes film;
-  double restraint = 0;  ///< what the squared slopes of the limit have to cost, for the limit to hold
+  double restraint = 0;  ///< Lagrange multiplier of the limit: the cost of its squared slopes
 };
-/// The film of least squared errors within the limit. One that converged, for nearly the same errors, is a start that
-/// needs a few steps only.
+/// The film of least squared errors within the limit. A solution that converged for nearly the same errors is a start
+/// from which few steps are needed.
 TiltSolution least_blur(std::span<const BlurErrors* const> errors, const TiltSpace& space, const TiltSolution& start);
-/// The film of least Tukey loss (biweight, errors beyond `reach` have lost their weight) without a limit.
+/// The film of least Tukey loss (biweight; errors beyond `reach` have no weight), without a limit.
 std::optional<FilmSlopes> least_tukey_loss(std::span<const BlurErrors* const> errors, std::span<const double> weights,
                                            const TiltSpace& space, const FilmSlopes& start, double reach);
 
-/// How much of its weight each target keeps, 0 to 1, one for each of problem.used.
+/// The part of its weight that each target of problem.used keeps, 0 to 1.
 std::vector<double> robust_weights(const TiltProblem& problem, std::span<const SeenTarget> targets);
 
 }  // namespace petzval::inline v0::movement_detail

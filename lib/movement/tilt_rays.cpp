@@ -17,7 +17,7 @@ RayBlur::RayBlur(const RayBundle& bundle, const TiltFrame& frame, double root, d
   x_ = (array(bundle.x) + to_frame * slope_x_ - frame.origin.x) / frame.unit;
   y_ = (array(bundle.y) + to_frame * slope_y_ - frame.origin.y) / frame.unit;
   if (wanted == 0) return;
-  // The sharpest upright film has as much blur as there is without defocus, nearly on all films.
+  // The blur on the sharpest upright film is nearly the blur without defocus on any film.
   const Eigen::ArrayXd u = slope_x_ - slope_x_.mean(), v = slope_y_ - slope_y_.mean();
   const double sharpest = -(x_ * u + y_ * v).sum() / (u.square() + v.square()).sum();
   const Eigen::ArrayXd x = x_ + sharpest * slope_x_, y = y_ + sharpest * slope_y_;

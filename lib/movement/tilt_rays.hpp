@@ -8,10 +8,10 @@
 
 namespace petzval::inline v0::movement_detail {
 
-/// The blur of a bundle of exact rays: the distances of all hits from their middle, scaled so that their squares sum to
-/// that of the diameter; smooth where that is least, as the diameter itself is not. A bundle that should be blurred is
-/// one that should be sharp on a film so much nearer to the lens that defocus makes the blur: the diameter's square is
-/// the sum of that of defocus and of what aberrations leave on the sharpest film.
+/// The blur of a bundle of exact rays: the distances of all hits from their centroid, scaled so that the sum of squares
+/// is the squared diameter; unlike the diameter, they are smooth at its minimum. A bundle to be blurred counts as one
+/// to be sharp on a film so much nearer to the lens that defocus makes the blur: the squared diameter is the sum of the
+/// square due to defocus and of the least one, on the sharpest film.
 class RayBlur final : public BlurErrors {
  public:
   /// wanted: signed diameter, in units of the frame.
@@ -21,7 +21,7 @@ class RayBlur final : public BlurErrors {
 
  private:
   Eigen::ArrayXd x_, y_, slope_x_, slope_y_;  // where rays cross z = 0 of the frame
-  double root_, defocus_ = 0;                 // the part of the wanted diameter that defocus has to make
+  double root_, defocus_ = 0;                 // the part of the wanted diameter due to defocus
 };
 
 }  // namespace petzval::inline v0::movement_detail

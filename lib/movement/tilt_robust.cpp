@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Least median of squares (Rousseeuw 1984) over films through as many targets as a film has parameters, then the
-// minimum of Tukey's loss nearby. Blurs are not weighted here: an outlier is one whatever the weight it was given.
+// minimum of Tukey's loss nearby. Blurs are not weighted here: whether a target is an outlier does not depend on its
+// weight.
 #include <Eigen/Core>
 #include <Eigen/LU>
 #include <algorithm>
@@ -15,7 +16,7 @@
 namespace petzval::inline v0::movement_detail {
 namespace {
 
-/// The groups of `size` targets of `count`, each of them once up to `most` groups; more are thinned out evenly.
+/// The groups of `size` among `count` targets: all of them up to `most`, else a uniform subset.
 std::vector<std::array<std::size_t, 3>> groups(std::size_t count, int size, std::size_t most) {
   std::vector<std::array<std::size_t, 3>> result;
   const std::size_t second = size > 1 ? count : 1, third = size > 2 ? count : 1;
@@ -28,8 +29,8 @@ std::vector<std::array<std::size_t, 3>> groups(std::size_t count, int size, std:
         for (std::size_t k = size > 2 ? j + 1 : 0; k < third; ++k) result.push_back({i, j, k});
     return result;
   }
-  // Multiples of powers of the root of x^4 = x + 1 fill the cube evenly (Roberts 2018, "The unreasonable effectiveness
-  // of quasirandom sequences").
+  // Multiples of powers of the root of x^4 = x + 1 fill the cube uniformly (Roberts 2018, "The unreasonable
+  // effectiveness of quasirandom sequences").
   constexpr double step = 0.8191725133961645;
   const auto pick = [&](std::size_t n, double power) {
     const double turn = static_cast<double>(n + 1) * power;
@@ -44,7 +45,7 @@ std::vector<std::array<std::size_t, 3>> groups(std::size_t count, int size, std:
   return result;
 }
 
-/// The film through the places that a group of targets wants; not finite where many such films are.
+/// The film that a group of targets asks for; not finite if it is not unique.
 FilmSlopes film_through(std::span<const IdealBlur> blurs, const std::array<std::size_t, 3>& group,
                         const TiltSpace& space) {
   Eigen::Matrix3d rows = Eigen::Matrix3d::Identity();
@@ -105,7 +106,7 @@ std::vector<double> robust_weights(const TiltProblem& problem, std::span<const S
   const double largest = *std::max_element(weights.begin(), weights.end());
   for (double& weight : weights) weight /= largest;
 
-  // Exact targets have a median of rounding errors, by which nothing should be judged.
+  // The median of exact targets is a rounding error, and no scale for outliers.
   constexpr double rounding = 1e-11;
   const LeastMedian start = least_median(blurs, problem.space);
   const double spare = static_cast<double>(blurs.size()) - problem.space.parameters;

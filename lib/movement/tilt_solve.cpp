@@ -18,7 +18,7 @@
 namespace petzval::inline v0::movement_detail {
 namespace {
 
-/// Films by parameters: z, and slopes times spreads as far as the targets tell them, from a film on.
+/// Films by parameters: z, and slopes times spreads as far as the targets determine them, relative to a film.
 class FilmChart {
  public:
   FilmChart(const TiltSpace& space, const FilmSlopes& origin, int parameters)
@@ -41,7 +41,7 @@ class FilmChart {
   int parameters_;
 };
 
-/// What holds slopes back: its square grows from 0 to `strength` at the limit.
+/// The cost of slopes: its square grows from 0 to `strength` at the limit.
 class Restraint final : public BlurErrors {
  public:
   Restraint(const TiltSpace& space, double strength) : root_(std::sqrt(strength)) {
@@ -65,7 +65,7 @@ class Restraint final : public BlurErrors {
   double root_;
 };
 
-/// In place of errors on a film that light does not cross from the front: no step goes there.
+/// The errors on a film that light does not cross from the front: no step goes there.
 constexpr double hopeless = 1e100;
 
 class ChartedErrors final : public ceres::CostFunction {
@@ -79,7 +79,7 @@ class ChartedErrors final : public ceres::CostFunction {
     const int rows = errors_.rows(), columns = chart_.parameters();
     Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor, most_rows, 3> by_film(rows, 3);
     const bool wanted = jacobians && jacobians[0];
-    // Ceres may be told that an evaluation failed, but it prints then, as it does where numbers are none.
+    // Ceres prints if an evaluation fails and if numbers are not finite.
     const auto finite = [](double x) { return std::isfinite(x); };
     if (!errors_(film, residuals, wanted ? by_film.data() : nullptr) ||
         !std::all_of(residuals, residuals + rows, finite)) {
@@ -96,7 +96,7 @@ class ChartedErrors final : public ceres::CostFunction {
   const FilmChart& chart_;
 };
 
-/// A sum of squares as it looks from a film: the products of the errors' derivatives, and of these with the errors.
+/// The normal equations of a sum of squares at a film.
 struct NormalEquations {
   Eigen::Matrix3d products = Eigen::Matrix3d::Identity();
   Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
@@ -118,8 +118,8 @@ std::optional<NormalEquations> normal_equations(std::span<const BlurErrors* cons
   return result;
 }
 
-/// Steps of Gauss and Newton that nothing judges: where the sum of squares no longer tells films apart, after half of
-/// the digits, its gradient still does.
+/// Gauss-Newton steps without a test of descent: after half of the digits the sum of squares no longer distinguishes
+/// films, but its gradient does.
 FilmSlopes polished(std::span<const BlurErrors* const> errors, const FilmChart& chart) {
   Eigen::Vector3d place = Eigen::Vector3d::Zero();
   for (int i = 0; i < 8; ++i) {
@@ -135,7 +135,7 @@ FilmSlopes polished(std::span<const BlurErrors* const> errors, const FilmChart& 
   return chart(place.data());
 }
 
-/// Moves a film to the least sum of losses, by so many parameters. False where that did not converge: it stays.
+/// Moves a film to the least sum of losses over the first parameters. False if that did not converge: the film stays.
 bool minimise(std::span<const BlurErrors* const> errors, std::span<ceres::LossFunction* const> losses,
               const TiltSpace& space, int parameter_count, FilmSlopes& film) {
   const FilmChart chart(space, film, parameter_count);
@@ -172,15 +172,15 @@ bool faces_light(std::span<const BlurErrors* const> errors, const FilmSlopes& fi
   return std::all_of(errors.begin(), errors.end(), [&](const auto* error) { return (*error)(film, values, nullptr); });
 }
 
-/// Slopes as a part of the limit's.
+/// Slopes relative to the limit.
 double part_of_limit(const TiltSpace& space, const FilmSlopes& film) {
   const double along = space.along(film) / space.largest_slope;
   return space.parameters < 3 ? std::abs(along) : std::hypot(along, space.across(film) / space.largest_slope_across);
 }
 
-/// The least of a sum of squares within the limit, from a film near it: steps of Gauss and Newton to the best film
-/// within the limit, as the sum of squares looks from the last one. Nothing where they do not shrink fast; those that
-/// do end at a minimum, since what they leave out of the second derivatives is then less than what they take.
+/// The minimum of a sum of squares within the limit, from a film near it: Gauss-Newton steps, each to the best film
+/// within the limit by the normal equations at the last one. Nothing if the steps do not shrink fast; if they do they
+/// end at a minimum, since the neglected second derivatives are then smaller than the rest.
 std::optional<TiltSolution> least_nearby(std::span<const BlurErrors* const> errors, const TiltSpace& space,
                                          FilmSlopes film) {
   TiltSolution result;

@@ -118,8 +118,7 @@ double paraxial_image_z(const Lens& lens, double object_z, Wavelength wavelength
   const double q = distant ? 0 : 1;
   const double y = m.a * p + m.b * q;
   const double nu = m.c * p + m.d * q;
-  // Whether an object within rounding of the front focal point lies before or behind it is not known: it is at the
-  // focal point.
+  // An object within rounding of the front focal point counts as at the focal point.
   const double rounding = 4 * std::numeric_limits<double>::epsilon() * (std::abs(m.c * p) + std::abs(m.d * q));
   if (std::abs(nu) <= rounding) return infinity;
   return lens.surfaces().back().vertex_z - data.image_index * y / nu;

@@ -34,9 +34,9 @@ std::size_t limiting_surface(const Lens& lens, Wavelength wavelength) {
   return limiting;
 }
 
-/// The image of the stop where a ray from the middle of it has the height y and the slope u at a vertex. By the
-/// invariant of Lagrange the optical slope n u, 1 at the stop, is the size of the stop over that of its image. An image
-/// more than 1e12 times the stop is at infinity: the rounding of a telecentric design.
+/// The image of the stop from a ray through its centre of optical slope 1, which has height y and optical slope n u at
+/// a vertex. By the Lagrange invariant n u is the size of the stop over that of its image. An image more than 1e12
+/// times as large as the stop counts as at infinity, as in telecentric designs up to rounding.
 Pupil pupil(double vertex_z, double n, double y, double nu, double semi_diameter) {
   if (std::abs(nu) < 1e-12) return {infinity, infinity};
   return {vertex_z - n * y / nu, 2 * semi_diameter / std::abs(nu)};

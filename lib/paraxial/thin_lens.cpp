@@ -23,8 +23,8 @@ double thin_lens_blur_diameter(double focal_length, double diameter, double subj
   require(subject > 0, where, "subject distance", subject, "one above 0");
   require(focused > focal_length, where, "focused distance", focused, "more than the focal length");
 
-  // The differences of the distances as they are given: by way of their reciprocals the digits next to the focus are
-  // lost.
+  // From the difference of the distances as they are given: the difference of their reciprocals would lose the digits
+  // next to the focus.
   if (std::isinf(focused)) return std::isinf(subject) ? 0 : diameter * (focal_length / subject);
   const double magnification = focal_length / (focused - focal_length);
   if (std::isinf(subject)) return diameter * magnification;
@@ -50,7 +50,7 @@ double thin_lens_film_distance(double focal_length, double subject_to_film) {
   require(focal_length > 0 && std::isfinite(focal_length), where, "focal length", focal_length, "a finite one above 0");
   require(subject_to_film >= 4 * focal_length, where, "distance from subject to film", subject_to_film,
           "4 focal lengths or more");
-  // By the ratio to the focal length nothing overflows, and the difference to 4 f is exact next to it.
+  // In ratios nothing overflows, and the difference to 4 f is exact next to it.
   const double root = std::sqrt((subject_to_film - 4 * focal_length) / subject_to_film);
   return std::isinf(subject_to_film) ? focal_length : 2 * focal_length / (1 + root);
 }

@@ -5,13 +5,13 @@
 
 namespace petzval::inline v0::polynomial_detail {
 
-/// A line on the scene's side as two vectors that turn with it about the axis.
+/// A line in object space as two vectors that turn with it about the axis.
 ///
 /// s: its direction towards the scene in stereographic projection, d = (2 s, |s|^2 - 1) / (1 + |s|^2): 0 along the
-/// axis, of length 1 at 90 degrees, infinite for nothing but what comes from behind along the axis. o: from a reference
-/// point on the axis to the foot of its perpendicular on the line, turned back by the shortest turn that takes -z to d.
-/// That turn makes v - (v.h) h / (1 - d_z) of a vector v across the axis, h = d - z: (v, 0) + 2 (s.v) (-s, 1) / (1 +
-/// |s|^2). Back, of a vector w across d, it is w_xy + w_z s.
+/// axis, of length 1 at 90 degrees, infinite only for a line along +z. o: from a reference point on the axis to the
+/// foot of the perpendicular on the line, turned back by the shortest turn that takes -z to d. That turn takes a vector
+/// v across the axis to v - (v.h) h / (1 - d_z), h = d - z: (v, 0) + 2 (s.v) (-s, 1) / (1 + |s|^2). Its inverse takes a
+/// vector w across d to w_xy + w_z s.
 struct SceneLine {
   double sx = 0, sy = 0, ox = 0, oy = 0;
 };

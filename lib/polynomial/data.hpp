@@ -24,7 +24,7 @@ struct RayPolynomial::Data {
 
   Data(int degree, const Domain& domain, std::vector<Fit> fits, std::optional<std::size_t> primary);
 
-  /// Where the loops for the degree stand.
+  /// Position of the degree in the tables of loops.
   std::size_t loop() const noexcept { return static_cast<std::size_t>(degree - 3) / 2; }
 };
 

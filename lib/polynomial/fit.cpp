@@ -19,7 +19,7 @@ using polynomial_detail::MeridianLines;
 
 constexpr std::size_t fitted = 1536, judged = 4096;
 
-/// The samples u, v of pupils as lines, less those of empty pupils.
+/// The samples u, v of pupils as lines, without those of empty pupils.
 MeridianLines lines_of(const FilmPupilTable& pupils, std::size_t wavelength, const std::vector<double>& heights,
                        const std::vector<double>& u, const std::vector<double>& v) {
   const std::size_t count = heights.size();
@@ -38,7 +38,7 @@ MeridianLines lines_of(const FilmPupilTable& pupils, std::size_t wavelength, con
 }
 
 /// Uniform lines over film and pupils, from any `first` on. Uniform by area, or denser towards the edges of film and
-/// pupil, as Chebyshev nodes are: that takes some tenths from the largest errors, and adds one to the RMS.
+/// pupil like Chebyshev nodes: that makes the largest errors some tenths smaller, and the RMS one tenth larger.
 MeridianLines spread(const FilmPupilTable& pupils, std::size_t wavelength, std::size_t first, std::size_t count,
                      bool dense) {
   constexpr double quarter = std::numbers::pi / 2;
@@ -70,7 +70,7 @@ MeridianLines rims(const FilmPupilTable& pupils, std::size_t wavelength) {
 /// The smallest discs, moving with the film point, that hold the rims of all wavelengths.
 void enclose(const std::vector<MeridianLines>& rims, RayPolynomial::Domain& domain) {
   struct Farthest {
-    double square = 0, side = 0;  ///< side: of the disc's middle, > 0 where a larger shift comes nearer to it
+    double square = 0, side = 0;  ///< side: > 0 if a larger shift brings the centre of the disc nearer
   };
   const auto farthest = [&](double shift) {
     Farthest result;
@@ -83,17 +83,18 @@ void enclose(const std::vector<MeridianLines>& rims, RayPolynomial::Domain& doma
     }
     return result;
   };
-  // The radius is convex in the shift: what is farthest says on which side of the best one it is.
+  // The radius is convex in the shift: the farthest point tells on which side of the best shift this one is.
   double high = 2 * std::sqrt(farthest(0).square) / domain.film_radius, low = -high;
   for (int halving = 0; halving < 30; ++halving) {
     const double middle = (low + high) / 2;
     (farthest(middle).side > 0 ? low : high) = middle;
   }
   domain.pupil_shift = (low + high) / 2;
-  domain.pupil_radius = 1.01 * std::sqrt(farthest(domain.pupil_shift).square);  // corners lie between the places seen
+  domain.pupil_radius =
+      1.01 * std::sqrt(farthest(domain.pupil_shift).square);  // corners lie between the directions searched
 }
 
-/// The centre of the entrance pupil, but not far from the lens: rays begin about it.
+/// The centre of the entrance pupil unless it is far from the lens: rays begin near it.
 double reference_of(const Lens& lens) {
   const double longest = 10 * std::abs(lens.film_z() - lens.surfaces().front().vertex_z);
   const double z = has_pupils(lens) ? pupils(lens, lens.primary_wavelength()).entrance.z : 0;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Polynomials in the three invariants as straight-line code: the compiler unrolls no Horner loop over triangles of
-// coefficients by itself, recursion over the degree leaves it no choice. In a namespace without a name, for objects of
-// several instruction sets (lib/README.md).
+// Polynomials in the three invariants as straight-line code: compilers do not unroll Horner loops over triangles of
+// coefficients, but they do unroll a recursion over the degree. In an unnamed namespace, for objects of several
+// instruction sets (lib/README.md).
 #pragma once
 
 #include "core/simd.hpp"

@@ -31,10 +31,11 @@ struct Rays {
   Vec3<double> direction(std::size_t i) const noexcept { return {v[3][i], v[4][i], v[5][i]}; }
 };
 
-/// The lines through the lens, exactly. They start at the last vertex: however far film and pupil are, nothing is lost.
+/// Traces the lines through the lens. Rays start at the last vertex, so that no digits are lost for a distant film or
+/// pupil.
 Rays trace(const Lens& lens, const TwoPlanes& space, const MeridianLines& lines, std::size_t wavelength) {
   const double last_z = lens.surfaces().back().vertex_z;
-  const double part = (last_z - space.film_z) / space.depth();  // of the way from the film to the pupil
+  const double part = (last_z - space.film_z) / space.depth();  // of the distance from the film to the pupil
   const double towards = towards_scene(lens, space);
   Rays rays(lines.size());
   for (std::size_t i = 0; i < lines.size(); ++i) {
@@ -51,7 +52,7 @@ Rays trace(const Lens& lens, const TwoPlanes& space, const MeridianLines& lines,
 
 double square(const Vec3<double>& v) noexcept { return glm::dot(v, v); }
 
-/// Sums of squares and the largest.
+/// Sum of squares, and the largest value.
 struct Errors {
   double sum = 0, largest = 0;
   std::size_t count = 0;
@@ -65,7 +66,7 @@ struct Errors {
   double max() const noexcept { return std::sqrt(largest); }
 };
 
-/// The errors that a fit makes of some lines, direction and offset.
+/// The errors of a fit for some lines, in direction and offset.
 std::array<Errors, 2> errors_of(const Lens& lens, const RayPolynomial& polynomial, std::size_t wavelength,
                                 const MeridianLines& lines) {
   const double reference_z = polynomial.domain().reference_z;
@@ -80,7 +81,7 @@ std::array<Errors, 2> errors_of(const Lens& lens, const RayPolynomial& polynomia
     if (exact.fates[i] != RayFate::transmitted || rays.fates[i] != RayFate::transmitted) continue;
     const Vec3<double> towards = exact.direction(i);
     direction.see(square(rays.direction(i) - towards));
-    const Vec3<double> apart = rays.origin(i) - exact.origin(i);  // of two feet, once the exact ray begins at its own
+    const Vec3<double> apart = rays.origin(i) - exact.origin(i);  // between the feet of the perpendiculars
     const Vec3<double> from_reference = exact.origin(i) - Vec3<double>(0, 0, reference_z);
     offset.see(square(apart + glm::dot(from_reference, towards) * towards));
   }
@@ -102,8 +103,8 @@ RayPolynomial::Fit fit(const Lens& lens, const RayPolynomial::Domain& domain, in
                 std::to_string(2 * count) + " or more");
   }
 
-  // Two equations for each ray, along x and along y, for A (left) and B (right); the direction's numbers and the
-  // offset's are two right-hand sides of the same equations.
+  // Two equations for each ray, along x and along y, for A (left) and B (right). Direction and offset are two
+  // right-hand sides of the same equations.
   Eigen::MatrixXd equations(2 * passed, 2 * count);
   Eigen::MatrixX2d wanted(2 * passed, 2);
   const int n = (degree - 1) / 2;

@@ -9,15 +9,15 @@
 
 namespace petzval::inline v0::polynomial_detail {
 
-/// Lines of film points on the axis +y: what lies elsewhere is the same turned about the axis.
+/// Lines of film points on the axis +y; all others are these, turned about the axis.
 struct MeridianLines {
   std::vector<double> film_y, pupil_x, pupil_y;
 
   std::size_t size() const noexcept { return film_y.size(); }
 };
 
-/// The fit at one wavelength to those of the lines that get through, its errors from those of others and of the pupils'
-/// rims.
+/// The fit at one wavelength to the lines that pass the lens; its errors from other lines and from the rims of the
+/// pupils.
 RayPolynomial::Fit fit(const Lens& lens, const RayPolynomial::Domain& domain, int degree, std::size_t wavelength,
                        const MeridianLines& lines, const MeridianLines& fresh, const MeridianLines& rims);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From lines to rays towards the scene, many at a time: what to_scene.cpp defines for each instruction set.
+// The loops from lines to rays towards the scene, which to_scene.cpp defines for each instruction set.
 #pragma once
 
 #include <array>
@@ -21,7 +21,7 @@ struct Scales {
   R per_film_radius, pupil_shift, per_pupil_radius, reference_z;
 };
 
-/// Of u and w, squares of lengths that are at most 1: lines on the rim of the domain belong to it in float too.
+/// Limit of u and w, squares of lengths of at most 1: lines on the rim of the domain belong to it in float too.
 inline constexpr double within_domain = 1 + 1e-5;
 
 template <class R>

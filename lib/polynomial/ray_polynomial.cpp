@@ -16,7 +16,7 @@
 namespace petzval::inline v0 {
 namespace {
 
-/// Beyond it products leave the range of float; no lens comes near.
+/// Beyond it products overflow in float; no lens comes near it.
 constexpr double largest = 1e12;
 
 void check(const std::string& what, double value, double from, double to) {

@@ -19,7 +19,7 @@ using polynomial_detail::term_count;
 using Place = Eigen::Vector4d;  // f and p, scaled to the domain
 using Jet = ceres::Jet<double, 3>;
 
-/// One of the four sums A f + B p and what moves it: the derivatives of A and B by u, v and w, of these by the place.
+/// One of the sums A f + B p with its derivatives by f and p, by way of those of A and B by u, v and w.
 void add(const Jet& by_film, const Jet& by_pupil, const Place& x, const Eigen::Matrix<double, 3, 4>& invariants,
          int row, Eigen::Matrix4d& slope, Place& value) noexcept {
   const Eigen::RowVector4d film_slope = by_film.v.transpose() * invariants;
@@ -32,7 +32,7 @@ void add(const Jet& by_film, const Jet& by_pupil, const Place& x, const Eigen::M
   }
 }
 
-/// s and o at a place, with their derivatives.
+/// s and o at (f, p), with their derivatives.
 template <int n>
 void evaluate(const double* c, const Place& x, Place& value, Eigen::Matrix4d& slope) noexcept {
   const Jet u(x[0] * x[0] + x[1] * x[1], 0), v(x[0] * x[2] + x[1] * x[3], 1), w(x[2] * x[2] + x[3] * x[3], 2);
@@ -49,8 +49,8 @@ bool within(const Place& x, double square) noexcept {
   return x.head<2>().squaredNorm() <= square && x.tail<2>().squaredNorm() <= square;
 }
 
-/// Newton's iteration; false where its steps do not at least halve, for then it may be on its way to another branch of
-/// the polynomial, and where it leaves the domain's neighbourhood.
+/// Newton's iteration. False if a step is more than half the one before, since it may then go to another branch of the
+/// polynomial, and if it leaves the neighbourhood of the domain.
 template <int n>
 bool correct(const double* c, const Place& wanted, Place& x) noexcept {
   constexpr double far = 2, settled = 1e-12, rounding = 1e-9;
@@ -68,8 +68,7 @@ bool correct(const double* c, const Place& wanted, Place& x) noexcept {
   }
 }
 
-/// The film point from which the line through the pupil's middle leaves in the direction of a line, or the nearest that
-/// there is.
+/// The film point whose line through the centre of the pupil has the direction of a given line, or the nearest one.
 template <int n>
 Place chief(const double* c, const SceneLine& line) noexcept {
   constexpr int halvings = 12;
@@ -83,9 +82,8 @@ Place chief(const double* c, const SceneLine& line) noexcept {
   return {part * line.sx, part * line.sy, 0, 0};
 }
 
-/// The place from which a line comes; false where there is none in the domain. From the place of a line of about the
-/// same direction by way of lines in between, in steps that the iteration can follow: mostly one, several for a
-/// fisheye.
+/// The (f, p) of a line; false if there is none in the domain. Starts at a line of about the same direction and goes on
+/// over lines in between, in steps that the iteration can follow: mostly one, several for a fisheye.
 template <int n>
 bool solve(const double* c, const SceneLine& line, Place& x) noexcept {
   const Place wanted(line.sx, line.sy, line.ox, line.oy);

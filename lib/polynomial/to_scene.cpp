@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compiled once for each instruction set: PETZVAL_LOOPS names the result. A ray's answer depends on nothing but the
-// ray: the rest of a batch goes through the same vectors as all others.
+// Compiled once for each instruction set; PETZVAL_LOOPS names the result. A result depends on its own line alone: the
+// remainder of a batch goes through the same vectors as the rest.
 #include <cstddef>
 #include <cstdint>
 
@@ -28,8 +28,8 @@ PETZVAL_INLINE Sums<R> sums(const R* c, const Values& u, const Values& v, const 
           horner<n>(c + 3 * terms, u, v, w)};
 }
 
-/// The same where each lane has its wavelength: all lanes at each wavelength met, smallest first, and of these the ones
-/// that it is for. known: the lanes whose wavelength has a fit.
+/// The same for a wavelength for each lane: all lanes are evaluated at each wavelength that occurs, smallest first, and
+/// the lanes of that wavelength are kept. known: the lanes whose wavelength has a fit.
 template <int n, class R, class Values>
 PETZVAL_INLINE Sums<R> mixed_sums(const ToSceneJob<R>& job, const std::uint16_t* each, std::size_t count,
                                   const Values& u, const Values& v, const Values& w,

@@ -31,8 +31,8 @@ std::vector<Vec3<double>> scene(const IdealLens& lens, unsigned seed) {
   std::vector<Vec3<double>> points;
   for (std::size_t i = 0; i < point_count; ++i) {
     const double x = 15 / lens.rear_focal_length * unit(random), y = 10 / lens.rear_focal_length * unit(random);
-    const double disparity = 6e-4 + 3e-4 * lens.rear_focal_length / 10 * y;
-    const double depth = (i % 4 == 3 ? 1.5 + 0.2 * unit(random) : 1 + 0.003 * unit(random)) / disparity;
+    const double inverse = 6e-4 + 3e-4 * lens.rear_focal_length / 10 * y;
+    const double depth = (i % 4 == 3 ? 1.5 + 0.2 * unit(random) : 1 + 0.003 * unit(random)) / inverse;
     points.push_back({x * depth, y * depth, lens.front_principal_z() - depth});
   }
   return points;

@@ -16,7 +16,7 @@
 namespace petzval {
 namespace {
 
-using Kind = Finding::Kind;
+using Kind = FindingKind;
 using testing::data_prescription;
 
 /// f = 100 mm, f/5, the film at the paraxial focus: no findings.

@@ -23,7 +23,7 @@ namespace {
 using testing::data_lens;
 using testing::film_at;
 using testing::message;
-using enum Autofocus::Status;
+using enum AutofocusStatus;
 using enum FocusCriterion;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/movement/keyframes.hpp"
+#include "movement/keyframes.hpp"
 
 #include <gtest/gtest.h>
 
@@ -16,6 +16,8 @@
 namespace petzval {
 namespace {
 
+using movement_detail::Keyframes;
+
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
@@ -25,14 +27,14 @@ struct Keys {
 
 /// Steps of time from a thousandth to a hundred, values with plateaus and jumps.
 Keys random_keys(std::mt19937& random) {
-  std::uniform_real_distribution<double> even(0, 1);
+  std::uniform_real_distribution<double> uniform(0, 1);
   Keys keys;
-  double time = 100 * even(random) - 50, value = 0;
+  double time = 100 * uniform(random) - 50, value = 0;
   for (std::size_t count = 1 + random() % 8; keys.times.size() < count;) {
     keys.times.push_back(time);
     keys.values.push_back(value);
-    time += std::pow(10, 5 * even(random) - 3);
-    if (random() % 4 != 0) value += (even(random) - 0.5) * std::pow(10, 4 * even(random));
+    time += std::pow(10, 5 * uniform(random) - 3);
+    if (random() % 4 != 0) value += (uniform(random) - 0.5) * std::pow(10, 4 * uniform(random));
   }
   return keys;
 }

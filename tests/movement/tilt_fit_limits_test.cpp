@@ -25,7 +25,7 @@ namespace {
 using testing::film_at;
 
 using namespace testing;
-using Status = TiltFit::Status;
+using Status = TiltFitStatus;
 using Targets = std::vector<FocusTarget>;
 using Vec = Vec3<double>;
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -418,7 +418,7 @@ TEST(TiltFitInput, IsCheckedAndNamed) {
 }
 
 TEST(TiltFitStatus, HasAName) {
-  using enum TiltFit::Status;
+  using enum TiltFitStatus;
   EXPECT_EQ(name(solved), "solved");
   EXPECT_EQ(name(least_tilt), "least_tilt");
   EXPECT_EQ(name(limited), "limited");

@@ -19,7 +19,7 @@ namespace {
 using testing::film_at;
 
 using namespace testing;
-using Status = TiltFit::Status;
+using Status = TiltFitStatus;
 using Targets = std::vector<FocusTarget>;
 
 const Lens& gauss() {
@@ -31,8 +31,8 @@ const ImageRays& bundles() {
   return result;
 }
 
-/// A leaning plane, over most of the frame.
-Scene leaning(const IdealLens& lens) { return {3e-4, -1.5e-3, 5e-4, lens}; }
+/// A tilted plane, over most of the frame.
+Scene tilted_plane(const IdealLens& lens) { return {3e-4, -1.5e-3, 5e-4, lens}; }
 
 /// The mean square diameter of a bundle on a film, as a parabola over the film's z.
 struct Parabola {
@@ -65,7 +65,7 @@ double rms(const Targets& targets, const Film& film) {
 
 TEST(RayTiltFit, IsTheLeastSumOfSquaredBlurs) {
   for (const double blurred : {0.0, 0.2}) {
-    Targets targets = leaning(bundles().ideal()).targets(9, 0.25, 0.18);
+    Targets targets = tilted_plane(bundles().ideal()).targets(9, 0.25, 0.18);
     for (std::size_t i = 0; i < targets.size(); ++i) {
       targets[i].weight = 1 + static_cast<double>(i % 3);
       if (i % 2) targets[i].blur_mm = blurred;
@@ -115,7 +115,7 @@ double searched(const Targets& targets, Film film) {
 TEST(RayTiltFit, NoSearchFindsBetterBlurs) {
   for (const unsigned seed : {1u, 2u, 3u}) {
     for (const bool contradictory : {false, true}) {
-      Targets targets = leaning(bundles().ideal()).targets(4, 0.25, 0.18, seed);
+      Targets targets = tilted_plane(bundles().ideal()).targets(4, 0.25, 0.18, seed);
       targets[seed].blur_mm = 0.03;
       if (contradictory) {
         targets.push_back(targets[seed]);
@@ -166,7 +166,7 @@ TEST(RayTiltFit, BlursThatAreWantedMakeNoJump) {
 }
 
 TEST(RayTiltFit, UprightIsAutofocus) {
-  Targets targets = leaning(bundles().ideal()).targets(6, 0.25, 0.18);
+  Targets targets = tilted_plane(bundles().ideal()).targets(6, 0.25, 0.18);
   const std::vector<double> wants{0, 0.03, -0.03, 0.2, -0.3, 1e-4};
   for (std::size_t i = 0; i < targets.size(); ++i) {
     targets[i].blur_mm = wants[i];
@@ -202,11 +202,11 @@ TEST(RayTiltFit, OnePointGetsItsSharpestFilm) {
 }
 
 TEST(RayTiltFit, ThreeTargetsGetTheBlursTheyWant) {
-  Targets targets = leaning(bundles().ideal()).targets(3, 0.25, 0.18, 5);
+  Targets targets = tilted_plane(bundles().ideal()).targets(3, 0.25, 0.18, 5);
   targets[0].blur_mm = 0.3, targets[1].blur_mm = -0.2, targets[2].blur_mm = 0.4;
   const TiltFit fit = fit_tilt(bundles(), targets, behind(bundles().ideal()));
   ASSERT_EQ(fit.status, Status::solved);
-  // But for what aberrations make on a film that leans, compared with an upright one.
+  // But for what aberrations make on a tilted film, compared with an upright one.
   for (const TargetBlur& blur : fit.blurs) EXPECT_NEAR(blur.blur_mm, blur.wanted_mm, 2e-5);
 }
 
@@ -214,7 +214,7 @@ TEST(RayTiltFit, TendsToTheThickLensAsApertureAndFieldShrink) {
   double last = 0;
   for (const double size : {1.0, 0.5, 0.25}) {
     const ImageRays narrow(with_f_number(gauss(), 8 / size), 30);
-    const Targets targets = leaning(narrow.ideal()).targets(12, 0.06 * size, 0.04 * size);
+    const Targets targets = tilted_plane(narrow.ideal()).targets(12, 0.06 * size, 0.04 * size);
     const TiltFit rays = fit_tilt(narrow, targets, behind(narrow.ideal()));
     const TiltFit thick = fit_tilt(narrow.ideal(), targets, behind(narrow.ideal()));
     ASSERT_EQ(rays.status, Status::solved);
@@ -228,7 +228,7 @@ TEST(RayTiltFit, TendsToTheThickLensAsApertureAndFieldShrink) {
 }
 
 TEST(RayTiltFit, UnitOfLengthDoesNotMatter) {
-  const Targets targets = leaning(bundles().ideal()).targets(9, 0.25, 0.18);
+  const Targets targets = tilted_plane(bundles().ideal()).targets(9, 0.25, 0.18);
   const TiltFit base = fit_tilt(bundles(), targets, behind(bundles().ideal()));
   for (const double unit : {0x1p-20, 0x1p20}) {  // exact, so that no ray at a rim changes its mind
     const ImageRays scaled(compile(scale(data_prescription("double_gauss_52mm_f1.8"), unit)), 30 * unit);
@@ -244,7 +244,7 @@ TEST(RayTiltFit, UnitOfLengthDoesNotMatter) {
 }
 
 TEST(RayTiltFit, HoldsTheLimitAsBestItCan) {
-  const Targets targets = leaning(bundles().ideal()).targets(9, 0.25, 0.18);
+  const Targets targets = tilted_plane(bundles().ideal()).targets(9, 0.25, 0.18);
   const double limit = radians(1);
   const TiltFit fit = fit_tilt(bundles(), targets, behind(bundles().ideal(), 1));
   ASSERT_EQ(fit.status, Status::limited);
@@ -262,10 +262,10 @@ TEST(RayTiltFit, HoldsTheLimitAsBestItCan) {
 }
 
 TEST(RayTiltFit, LimitIsThatOfItsOwnFilm) {
-  // Curved images lean less or more than ideal ones: the limit then holds one of both fits.
+  // The film for curved images is tilted less or more than for ideal ones: the limit then holds one of both fits.
   bool less = false, more = false;
   for (const unsigned seed : {1u, 2u, 3u, 4u, 5u, 6u}) {
-    const Targets targets = leaning(bundles().ideal()).targets(4, 0.25, 0.18, seed);
+    const Targets targets = tilted_plane(bundles().ideal()).targets(4, 0.25, 0.18, seed);
     const TiltFit rays = fit_tilt(bundles(), targets, behind(bundles().ideal(), 60));
     const TiltFit thick = fit_tilt(bundles().ideal(), targets, behind(bundles().ideal(), 60));
     const double between = degrees(rays.film.angle() + thick.film.angle()) / 2;
@@ -286,7 +286,7 @@ TEST(RayTiltFit, LimitIsThatOfItsOwnFilm) {
 }
 
 TEST(RayTiltFit, FilmThatNoRaysCrossIsNoEnd) {
-  // The film through both ideal images leans so much that rays of both would reach it from behind.
+  // The film through both ideal images is tilted so much that rays of both would reach it from behind.
   const Targets targets{target(0, 10, -1000), target(0, 30, -4000)};
   TiltOptions options = behind(bundles().ideal(), 89.9);
   options.film = {.width_mm = 0, .height_mm = 0};
@@ -298,7 +298,7 @@ TEST(RayTiltFit, FilmThatNoRaysCrossIsNoEnd) {
 }
 
 TEST(RayTiltFit, TakesTheOutliersOfTheThickLens) {
-  Targets targets = leaning(bundles().ideal()).targets(12, 0.25, 0.18);
+  Targets targets = tilted_plane(bundles().ideal()).targets(12, 0.25, 0.18);
   const Targets good(targets.begin() + 2, targets.end());
   targets[0].place.position *= 1.5, targets[1].place.position *= 0.6;
   TiltOptions options = behind(bundles().ideal());
@@ -313,7 +313,7 @@ TEST(RayTiltFit, TakesTheOutliersOfTheThickLens) {
 }
 
 TEST(RayTiltFit, WhatTheLensDoesNotSeeTakesNoPart) {
-  const Targets good = leaning(bundles().ideal()).targets(6, 0.25, 0.18);
+  const Targets good = tilted_plane(bundles().ideal()).targets(6, 0.25, 0.18);
   const Film wanted = fit_tilt(bundles(), good, behind(bundles().ideal())).film;
   Targets targets = good;
   targets.push_back(target(9000, 0, -1000));  // far beside the picture

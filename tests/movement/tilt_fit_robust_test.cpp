@@ -16,7 +16,7 @@ namespace petzval {
 namespace {
 
 using namespace testing;
-using Status = TiltFit::Status;
+using Status = TiltFitStatus;
 using Targets = std::vector<FocusTarget>;
 using Vec = Vec3<double>;
 
@@ -147,8 +147,8 @@ TEST(RobustTiltFit, ServesLinesAndPlacesToo) {
   // Most of the targets on a line of the picture, or in one place of it; others of them are too near.
   Targets line, place;
   for (int i = 0; i < 11; ++i) {
-    const double disparity = 4e-4 + 1e-5 * i, off = i % 4 == 3 ? 1.4 : 1.0;
-    line.push_back(target(0.02 * i / disparity / off, 0, -1 / disparity / off));
+    const double inverse = 4e-4 + 1e-5 * i, off = i % 4 == 3 ? 1.4 : 1.0;
+    line.push_back(target(0.02 * i / inverse / off, 0, -1 / inverse / off));
     place.push_back(target(100, 50, i % 4 == 3 ? -1000 : -2000));
     if (i % 4 == 3) place.back().place.position = Vec(50, 25, -1000);
   }

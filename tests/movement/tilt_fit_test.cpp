@@ -22,7 +22,7 @@ namespace {
 using testing::film_at;
 
 using namespace testing;
-using Status = TiltFit::Status;
+using Status = TiltFitStatus;
 using Targets = std::vector<FocusTarget>;
 using Vec = Vec3<double>;
 constexpr double F = 50;
@@ -90,7 +90,7 @@ Targets points_of(const Plane& plane, double z) {
 
 TEST(TiltFit, GivesTheTiltsThatAreKnown) {
   // Computed with 40 digits, for F = 0.05 and 2 m.
-  const Vec leaning(0, 0.5, -std::sqrt(0.75));
+  const Vec tilted_plane(0, 0.5, -std::sqrt(0.75));
   const IdealLens thin = thin_lens(0.05, 2);
   TiltOptions options = behind(thin);
   options.film = {.width_mm = 0.036, .height_mm = 0.024};

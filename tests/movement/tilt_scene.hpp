@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "../film_at.hpp"
+#include "movement/plane_fit.hpp"
 #include "petzval/core/units.hpp"
 #include "petzval/movement/tilt_fit.hpp"
 
@@ -32,7 +33,7 @@ inline double angle(const Vec3<double>& a, const Vec3<double>& b) {
   return std::asin(std::min(1.0, glm::length(glm::cross(a, b))));
 }
 
-/// The plane of points whose disparity is a x + b y + c.
+/// The plane of points whose inverse distance is a x + b y + c.
 struct Scene {
   double a, b, c;
   IdealLens lens;
@@ -41,7 +42,8 @@ struct Scene {
     return Vec3<double>(x, y, -1) / (a * x + b * y + c) + Vec3<double>(0, 0, lens.front_principal_z());
   }
   Plane plane() const {
-    return plane_of({.rank = PlaneRank::plane, .a = a, .b = b, .c = c}, lens.front_principal_z()).value();
+    return movement_detail::plane_of({.rank = PlaneRank::plane, .a = a, .b = b, .c = c}, lens.front_principal_z())
+        .value();
   }
   /// Spread over the picture.
   std::vector<FocusTarget> targets(int count, double half_x, double half_y, unsigned seed = 1) const {

@@ -62,6 +62,15 @@ TEST(RayMatrix, HasDeterminantOne) {
   }
 }
 
+TEST(RayMatrix, FollowedByItsInverseIsTheIdentity) {
+  const RayMatrix matrix = ray_matrix(data_lens("double_gauss_100mm_f2.0"), 0, 4).on_slopes(1, 1.5);
+  const RayMatrix identity = matrix.then(matrix.inverse());
+  EXPECT_NEAR(identity.a, 1, 1e-14);
+  EXPECT_NEAR(identity.b, 0, 1e-13);
+  EXPECT_NEAR(identity.c, 0, 1e-15);
+  EXPECT_NEAR(identity.d, 1, 1e-14);
+}
+
 TEST(RayMatrix, OfPartsMakesTheMatrixOfTheWhole) {
   const Lens lens = data_lens("double_gauss_100mm_f1.35");
   const RayMatrix whole = ray_matrix(lens, 0, lens.surface_count());

@@ -8,16 +8,10 @@
 #include "petzval/camera/ray_model.hpp"
 #include "petzval/core/export.hpp"
 #include "petzval/lens/lens.hpp"
+#include "petzval/paraxial/ray_matrix.hpp"
 #include "petzval/trace/batch.hpp"
 
 namespace petzval::inline v0 {
-
-namespace camera_detail {
-/// A linear map of pairs, alike for x and y: from film and pupil point to place and slope of a ray, or back.
-struct PairMap {
-  double a = 0, b = 0, c = 0, d = 0;  ///< (p, q) to (a p + b q, c p + d q)
-};
-}  // namespace camera_detail
 
 /// The lens to first order: pinhole, thin, thin_two_disc and thick.
 ///
@@ -59,8 +53,9 @@ class ParaxialModel {
  private:
   ModelKind model_;
   FilmPupilTable pupils_;
-  double z_ = 0;                                            // of the plane of object space that rays are given in
-  std::vector<camera_detail::PairMap> to_scene_, to_film_;  // of each wavelength
+  double z_ = 0;  // of the plane of object space that rays are given in
+  // Of each wavelength: film and pupil point of a line to place and slope of its ray, and back.
+  std::vector<RayMatrix> to_scene_, to_film_;
   std::vector<double> pinhole_shifts_;
 };
 

@@ -9,7 +9,8 @@
 #include "petzval/core/export.hpp"
 #include "petzval/film/film.hpp"
 #include "petzval/lens/lens.hpp"
-#include "petzval/movement/ideal_lens.hpp"
+#include "petzval/movement/focus_plane.hpp"
+#include "petzval/paraxial/ideal_lens.hpp"
 
 namespace petzval::inline v0 {
 

@@ -10,27 +10,27 @@
 
 namespace petzval::inline v0 {
 
-/// What "in focus" means, and how large a blur is (its diameter).
+/// The meaning of "in focus", and of the diameter of a blur.
 enum class FocusCriterion : std::uint8_t {
   thin,      ///< thin lens of the same focal length at the rear principal plane, as wide as the entrance pupil
   paraxial,  ///< thick lens: the cardinal points, and the cone of the paraxial pupil
-  min_rms,   ///< exact rays: least RMS radius; a blur's diameter is that of the even disc with the same RMS radius
-  min_max,   ///< exact rays: least largest radius; a blur's diameter is twice that
+  min_rms,  ///< exact rays: least RMS radius; the diameter of a blur is that of the uniform disc of the same RMS radius
+  min_max,  ///< exact rays: least largest radius; the diameter of a blur is twice the largest radius
 };
 
-/// From where a subject distance is measured, towards the scene (positive, may be infinite).
+/// The origin of subject distances, which count towards the scene (positive, may be infinite).
 enum class DistanceOrigin : std::uint8_t {
   front_vertex,
-  film,             ///< as engraved on barrels; where the film stands in the solution
-  front_principal,  ///< paraxial, of the lens itself also for `thin`
+  film,             ///< as engraved on barrels: the film of the solution
+  front_principal,  ///< paraxial; that of the thick lens also for `thin`
 };
 
 enum class FocusStatus : std::uint8_t {
   solved,
-  unreachable,  ///< no subject in front of the lens goes with a film behind it: too near, or the film too far in
-  no_rays,      ///< exact criteria: of one of the fields nothing gets through
+  unreachable,  ///< no subject in front of the lens and film behind it: the subject too near or the film too far in
+  no_rays,      ///< exact criteria: no ray of one of the fields passes the lens
   afocal,       ///< the lens has no focal length
-  too_blurred,  ///< depth of field, hyperfocal distance: even what is in focus is blurred more than asked for
+  too_blurred,  ///< depth of field, hyperfocal distance: even the sharpest subject is blurred more than allowed
 };
 
 /// "thin", "paraxial", "min_rms" or "min_max"; "front_vertex", ...; "solved", ...
@@ -38,8 +38,8 @@ PETZVAL_API std::string_view name(FocusCriterion criterion) noexcept;
 PETZVAL_API std::string_view name(DistanceOrigin origin) noexcept;
 PETZVAL_API std::string_view name(FocusStatus status) noexcept;
 
-/// A field that has a say in the focus: seen from the entrance pupil, as in FieldPoint. All fields share the plane
-/// perpendicular to the axis in which the subject lies.
+/// A field that counts in the focus, seen from the entrance pupil as in FieldPoint. The subjects of all fields lie in
+/// one plane perpendicular to the axis.
 struct FocusField {
   double field_rad = 0;
   double weight = 1;
@@ -49,17 +49,17 @@ struct FocusOptions {
   FocusCriterion criterion = FocusCriterion::paraxial;
   DistanceOrigin origin = DistanceOrigin::front_vertex;
   /// min_rms: weights of the squared RMS radii, each about the centroid of its field. min_max: the largest weighted
-  /// radius counts. thin and paraxial look at the axis.
+  /// radius counts. thin and paraxial use the axis alone.
   std::vector<FocusField> fields = {FocusField{}};
-  /// One per compiled wavelength, by the light in it; empty: the central wavelength alone. min_max counts every
-  /// wavelength with a weight. thin, paraxial and front_principal look at the one of largest weight, of several the
-  /// central one.
+  /// One per compiled wavelength, by the light in it; empty: the primary wavelength alone. min_max counts every
+  /// wavelength with a weight. thin, paraxial and front_principal use the wavelength of largest weight, among equal ones
+  /// the primary.
   std::vector<double> wavelength_weights = {};
 };
 
-/// A subject and its film. When unreachable, the nearest pair to the one asked for: infinity for a film too far in; the
-/// nearest subject, its film at infinity or at the turning point of a distance from the film, for one too near. All
-/// are infinite where the lens forms no real image of anything.
+/// A subject and its film. If unreachable, the nearest pair to the wanted one: infinity for a film too far in; for a
+/// subject too near, the nearest subject, with its film at infinity or at the turning point of distances from the film.
+/// All values are infinite if the lens forms no real image.
 struct FocusSolution {
   FocusStatus status = FocusStatus::solved;
   double film_z = 0;     ///< lens frame, mm
@@ -80,18 +80,18 @@ struct FocusSolution {
 /// by the exact criteria where pupil_boundary does. Accuracy: paraxial and thin within rounding; of the exact criteria
 /// the film is that of endlessly many rays within 1e-5 mm on the axis and 2e-4 mm off it (double Gauss 100 mm f/2, 10
 /// degrees).
-PETZVAL_API FocusSolution solve_focus(const Lens& lens, double distance_mm, const FocusOptions& options = {});
+PETZVAL_API FocusSolution solve_focus(const Lens& lens, double distance, const FocusOptions& options = {});
 
-/// The inverse: the subject that is in focus on a film. Throws Error for a film_z that is not finite, and where
-/// solve_focus does. The solution's distance, focused at, gives the film back within 4 eps of its place (1e-13 by the
-/// exact criteria), unless it counts from the film and lies nearer than the turning point.
+/// The inverse: the subject that is in focus on a film. Focused at the distance of the solution, the film is the same
+/// within 4 eps of its position (1e-13 by the exact criteria), except if the distance counts from the film and lies
+/// nearer than the turning point. Throws Error for a film_z that is not finite, and where solve_focus does.
 PETZVAL_API FocusSolution solve_subject(const Lens& lens, double film_z, const FocusOptions& options = {});
 
-/// The limit of what solve_focus reaches; its distance itself may not be reached.
+/// The nearest subject that solve_focus reaches, as a limit: its distance itself may be out of reach.
 PETZVAL_API FocusSolution nearest_focus(const Lens& lens, const FocusOptions& options = {});
 
-/// The lens with its film where solve_focus puts it. Throws Error, naming the nearest distance, where there is no
+/// The lens with its film where solve_focus puts it. Throws Error, which names the nearest distance, if there is no
 /// focus.
-PETZVAL_API Lens with_focus(const Lens& lens, double distance_mm, const FocusOptions& options = {});
+PETZVAL_API Lens with_focus(const Lens& lens, double distance, const FocusOptions& options = {});
 
 }  // namespace petzval::inline v0

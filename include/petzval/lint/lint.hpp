@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -11,26 +12,27 @@
 
 namespace petzval::inline v0 {
 
+enum class FindingKind : std::uint8_t {
+  focal_length,   ///< computed differs from declared by more than 2 %
+  f_number,       ///< the same for the f-number of an exact ray
+  overlap,        ///< neighbouring surfaces intersect inside their clear apertures
+  semi_diameter,  ///< beyond the equator of the conic, or 0 on a surface that is not the stop
+  no_stop,
+  several_stops,
+  image_distance,  ///< the film is farther from the paraxial focus than 2 % of the focal length
+};
+
+/// "focal_length", "f_number", "overlap", ...
+PETZVAL_API std::string_view name(FindingKind kind) noexcept;
+
 /// A doubtful entry of a prescription. It is no failure: the lens can be traced as it is.
 struct Finding {
-  enum class Kind {
-    focal_length,   ///< computed differs from declared by more than 2 %
-    f_number,       ///< the same for the f-number of an exact ray
-    overlap,        ///< neighbouring surfaces intersect inside their clear apertures
-    semi_diameter,  ///< beyond the equator of the conic, or 0 on a surface that is not the stop
-    no_stop,
-    several_stops,
-    image_distance,  ///< the film is farther from the paraxial focus than 2 % of the focal length
-  };
-  Kind kind{};
+  FindingKind kind{};
   std::optional<int> surface;  ///< from 0
   double found = 0;
   double wanted = 0;
   std::string message;  ///< one line, with units
 };
-
-/// "focal_length", "f_number", "overlap", ...
-PETZVAL_API std::string_view name(Finding::Kind kind) noexcept;
 
 /// Compares the declared data of a prescription with computed ones, at its reference wavelength. Throws Error only for
 /// an invalid prescription.

@@ -12,17 +12,17 @@
 #include "petzval/core/export.hpp"
 #include "petzval/film/film.hpp"
 #include "petzval/movement/focus_target.hpp"
-#include "petzval/movement/ideal_lens.hpp"
+#include "petzval/paraxial/ideal_lens.hpp"
 
 namespace petzval::inline v0 {
 
-/// A point on a triangle of a mesh that moves: it goes where the vertices go.
+/// A point on a triangle of a mesh; it moves with the vertices.
 struct OnTriangle {
   std::array<std::size_t, 3> vertices{0, 0, 0};  ///< positions in the list of vertices
   std::array<double, 3> barycentric{1, 0, 0};    ///< 0 or more each, sum 1 (within 1e-9)
 };
 
-/// What a focus point asks for at one time.
+/// A keyframe of a focus point.
 struct FocusKey {
   double time = 0;  ///< s
   std::variant<ScenePoint, OnTriangle> anchor = ScenePoint{};
@@ -30,31 +30,34 @@ struct FocusKey {
   double weight = 1;   ///< 0 or more
 };
 
-/// A point that an artist wants sharp, or blurred by so much: keys in time order, valid from the first time of the
-/// interval to the last, both included.
+/// A point that an artist wants sharp, or blurred by so much, over time: keys in the order of time, valid from `from`
+/// to `until`, both included.
 ///
-/// Between keys, blur and weight go as Keyframes do. Keys that all lie on one triangle move over it by their
-/// barycentric coordinates. Other places move as the camera sees them, by x / depth, y / depth and 1 / depth from the
-/// front principal point: a focus pull looks even, two keys are joined by a straight line, and infinity is as good a
-/// place as any. Where one of them does not lie in front of that point, they move by x, y and z.
+/// Between keys, blur and weight follow a piecewise cubic with a continuous derivative that never leaves the span of
+/// the two keys; they are constant before the first key and after the last. If all keys lie on one triangle, the point
+/// moves over it by its barycentric coordinates. Otherwise it moves as the camera sees it, by x / depth, y / depth and
+/// 1 / depth from the front principal point: a focus pull looks uniform, a straight line joins two keys, and keys may
+/// lie at infinity. If a key does not lie in front of that point, the point moves by x, y and z.
 struct FocusPoint {
   std::vector<FocusKey> keys;
   double from = -std::numeric_limits<double>::infinity(), until = std::numeric_limits<double>::infinity();  ///< s
 };
 
-/// When, and what counts then.
+/// A time, and what counts then.
 struct FocusMoment {
   double time = 0;                              ///< s
   std::span<const Vec3<double>> vertices = {};  ///< of the mesh at that time, lens frame, mm
-  /// Points whose chief rays miss it are left out; a place that is not set is the rear focal point.
+  /// Points whose chief rays miss this film are left out. Its z_mm, if unset, is the rear focal point.
   std::optional<Film> film = {};
-  bool nearer_weighs_more = false;  ///< weights over depth: that of the nearest stays
+  bool nearer_weighs_more = false;  ///< divides weights by depth, so that the nearest point keeps its weight
 };
 
-/// The targets at a moment: of the points, in their order, that are valid then, of which the lens forms an image, and
-/// that lie in the picture. Throws Error for a NaN time; a film of negative size or not finite; points
-/// without keys, with times out of order, an interval that ends before it begins, positions, blurs or weights that are
-/// not finite or negative, coordinates that are none of a triangle, and vertices that are not there.
+/// The targets of all points that are valid at a moment, have an image and lie in the picture, in the order of the
+/// points.
+///
+/// Throws Error for a NaN time; a film that is not finite or of negative size; points without keys; times out of order;
+/// an interval that ends before it begins; positions, blurs and weights that are not finite, and negative weights;
+/// invalid barycentric coordinates; and vertices that do not exist.
 PETZVAL_API std::vector<FocusTarget> focus_targets(const IdealLens& lens, std::span<const FocusPoint> points,
                                                    const FocusMoment& moment);
 

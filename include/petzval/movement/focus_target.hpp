@@ -1,45 +1,50 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <string_view>
 
 #include "petzval/core/export.hpp"
-#include "petzval/movement/ideal_lens.hpp"
+#include "petzval/paraxial/ideal_lens.hpp"
 
 namespace petzval::inline v0 {
 
-/// A point of the scene that focus has to serve, at one moment.
+/// A scene point and the blur that it should have on the film, at one moment.
 struct FocusTarget {
   ScenePoint place;
-  double blur_mm = 0;  ///< wanted on the film: 0 sharp; negative: in front of the plane of focus; positive: beyond it
-  double weight = 1;   ///< of the squared error of the blur; 0: looked at, not served
+  double blur_mm = 0;  ///< wanted diameter: 0 sharp; negative: in front of the plane of focus; positive: beyond it
+  double weight = 1;   ///< of the squared error of the blur; 0: the blur is reported, but does not count
 };
 
-/// Whether a target's numbers are those of one: no NaN, nothing infinite but z = -inf, no negative weight.
-PETZVAL_API bool well_formed(const FocusTarget& target) noexcept;
-
-/// Focal lengths from the rear focal point: farther away no film is, and images are of points in the front focal plane
-/// or far beside the lens.
-inline constexpr double farthest_film = 1e9;
-
-/// What became of a target.
-enum class TargetUse : unsigned char {
+/// How a target was used.
+enum class TargetUse : std::uint8_t {
   used,
   no_weight,
-  not_finite,  ///< a coordinate, the blur or the weight is not a number, or the weight is negative
-  no_image,  ///< behind the lens, in it, within the front focal length, or imaged (or as blurred as wanted) too far off
-  outlier,   ///< the robust fit gave it no weight
-  no_rays,   ///< exact rays: nothing of it gets through the lens
+  not_finite,  ///< a coordinate, the blur or the weight is not finite, or the weight is negative
+  no_image,    ///< behind the lens, within the front focal length, or imaged more than 1e9 focal lengths away
+  outlier,     ///< the robust fit gave it no weight
+  no_rays,     ///< exact rays: none from the target passes the lens
 };
 
 /// "used", "no_weight", ...
 PETZVAL_API std::string_view name(TargetUse use) noexcept;
 
-/// A target and the blur that it got.
+/// The blur of a target on a film.
 struct TargetBlur {
   TargetUse use = TargetUse::used;
   double wanted_mm = 0;
-  double blur_mm = 0;  ///< signed; NaN where it has no image
+  double blur_mm = 0;  ///< signed; NaN if the target has no image
 };
+
+/// How far targets determine the plane of focus.
+enum class PlaneRank : std::uint8_t {
+  none,   ///< no targets of weight
+  point,  ///< one, or several in one place of the picture: its depth only
+  line,   ///< two, or several on a line of the picture: its depth and the slope along that line
+  plane,
+};
+
+/// "none", "point", "line", "plane".
+PETZVAL_API std::string_view name(PlaneRank rank) noexcept;
 
 }  // namespace petzval::inline v0

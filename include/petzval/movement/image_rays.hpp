@@ -9,7 +9,7 @@
 #include "petzval/core/export.hpp"
 #include "petzval/film/film.hpp"
 #include "petzval/lens/lens.hpp"
-#include "petzval/movement/ideal_lens.hpp"
+#include "petzval/paraxial/ideal_lens.hpp"
 
 namespace petzval::inline v0 {
 
@@ -27,7 +27,7 @@ struct BundleBlur {
   FilmPoint centroid;
   double rms_radius = 0;      ///< mm, on the film about the centroid
   double largest_radius = 0;  ///< mm, on the film about the centroid
-  /// The diameter of the even disc of the same RMS radius, 2 sqrt(2) rms_radius; negative where the rays meet behind
+  /// The diameter of the uniform disc of the same RMS radius, 2 sqrt(2) rms_radius; negative where the rays meet behind
   /// the film, as signed_blur(), unless defocus makes less than a tenth of it.
   double signed_diameter = 0;
 };

@@ -6,30 +6,18 @@
 #include "petzval/core/export.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/lens/wavelength.hpp"
+#include "petzval/paraxial/ray_matrix.hpp"
 
 namespace petzval::inline v0 {
 
-/// A ray-transfer (ABCD) matrix on (y, n u): height in mm and optical direction, n the signed index (negative while
-/// light runs backwards after a mirror). Its determinant is 1.
-struct RayMatrix {
-  double a = 1, b = 0, c = 0, d = 1;  ///< b in mm, c in 1/mm
-
-  /// The matrix of `*this` followed by `next`.
-  constexpr RayMatrix then(const RayMatrix& next) const noexcept {
-    return {next.a * a + next.b * c, next.a * b + next.b * d, next.c * a + next.d * c, next.c * b + next.d * d};
-  }
-  /// Light power of the section: the negative of c, in 1/mm.
-  constexpr double power() const noexcept { return -c; }
-};
-
-/// The meridian in which to look at a lens with cylinders; the same for both elsewhere.
+/// The meridian in which a lens with cylinders is described; without cylinders both are the same.
 enum class Meridian { y, x };
 
 /// Index of the medium before surface `space`, negative where light runs backwards, after an odd number of mirrors.
 PETZVAL_API double signed_index(const Lens& lens, std::size_t space, Wavelength wavelength = {});
 
 /// From the vertex of surface `first` (before refraction) to that of surface `last - 1` (after it); `last` beyond the
-/// end means the whole rest. Surfaces count by their curvature at the vertex: terms of order 2 add to it, cylinders
+/// end means the whole rest. Surfaces act by their curvature at the vertex: terms of order 2 add to it, cylinders
 /// have none along x or y.
 PETZVAL_API RayMatrix ray_matrix(const Lens& lens, std::size_t first, std::size_t last, Wavelength wavelength = {},
                                  Meridian meridian = Meridian::y);
@@ -41,9 +29,9 @@ PETZVAL_API RayMatrix ray_matrix_to(const Lens& lens, std::size_t surface, Wavel
 /// The first-order data of a lens: all z in the lens frame, lengths and distances signed, all in mm.
 ///
 /// power = sum of h_i phi_i over the surfaces, h_i the height of a ray that enters parallel to the axis at height 1 and
-/// phi_i the power of the surface. Where it cancels to less than 1e-12 of the sum of |h_i phi_i|, the lens is afocal:
-/// power is 0, the focal length infinite, and so are the focal, principal and nodal points, which it has not (front
-/// -inf, rear +inf). Never NaN.
+/// phi_i the power of the surface. If it is less than 1e-12 of the sum of |h_i phi_i|, the lens is afocal: power is 0,
+/// the focal length infinite, and the focal, principal and nodal points are at infinity (front -inf, rear +inf). Never
+/// NaN.
 struct FirstOrder {
   bool afocal = false;
   double power = 0;                   ///< 1/mm, exactly 0 when afocal
@@ -65,15 +53,15 @@ PETZVAL_API FirstOrder first_order(const Lens& lens, Wavelength wavelength = {},
 /// The meridian that focal length, f-number and focus refer to: y, or x where a lens has power in x only.
 PETZVAL_API Meridian main_meridian(const Lens& lens, Wavelength wavelength = {});
 
-/// Where the paraxial image of an axial point lies (lens frame, mm). object_z may be infinite; so may the result (+inf:
-/// an object within a few ulp of the front focal point, or a distant one before an afocal lens). Beyond 1e100 mm counts
-/// as infinite. Never NaN for an object_z that is not.
+/// The paraxial image of an axial point (z in the lens frame, mm). object_z may be infinite; beyond 1e100 mm it counts
+/// as infinite. The result is +inf for an object within a few ulp of the front focal point and for a distant one in
+/// front of an afocal lens. NaN only for NaN.
 PETZVAL_API double paraxial_image_z(const Lens& lens, double object_z, Wavelength wavelength = {},
                                     Meridian meridian = Meridian::y);
 
 /// Focal length of a single lens element of index n in air: 1/f = (n-1) (c1 - c2 + (n-1) t c1 c2 / n), in curvatures,
-/// so that planes and equal radii lose nothing; mm and 1/mm, or any other unit throughout. t = 0 gives the thin lens.
-/// Infinite where the power is 0.
+/// so that planes and equal radii are no special case; in mm and 1/mm, or any other unit. t = 0 gives the thin lens.
+/// Infinite if the power is 0.
 PETZVAL_API double lensmaker_focal_length(double n, double c1, double c2, double thickness = 0) noexcept;
 
 }  // namespace petzval::inline v0

@@ -29,7 +29,7 @@ struct Pupils {
 /// Whether any surface limits the beam. Without one there is no stop, and pupils() throws.
 PETZVAL_API bool has_pupils(const Lens& lens) noexcept;
 
-/// Throws Error where no surface is marked as stop and none limits the beam.
+/// Throws Error if no surface is marked as stop and none limits the beam.
 PETZVAL_API Pupils pupils(const Lens& lens, Wavelength wavelength = {}, Meridian meridian = Meridian::y);
 
 /// |EFL| / entrance pupil diameter, in the main meridian. Infinite for an afocal lens or an empty pupil.

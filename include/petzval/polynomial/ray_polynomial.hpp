@@ -26,11 +26,11 @@ namespace petzval::inline v0 {
 ///     polynomial.to_scene<float>(count, lines, {}, rays, fates);
 ///     petzval::write_ray_polynomial(polynomial, "lens_polynomial.json");
 ///
-/// What has the symmetry of the lens is A f + B p with A and B polynomials of u = f.f, v = f.p, w = p.p. Two such
-/// vectors, s and o, describe a ray on the scene's side for any field below 180 degrees: its direction in stereographic
+/// A vector with the symmetry of the lens is A f + B p with A and B polynomials of u = f.f, v = f.p, w = p.p. Two such
+/// vectors, s and o, describe a ray in object space for any field below 180 degrees: its direction in stereographic
 /// projection from the axis, d = (2 s, s.s - 1) / (1 + s.s), and its offset from the centre of the entrance pupil
-/// across that direction, (o, 0) + 2 (s.o) (-s, 1) / (1 + s.s), where the ray begins (o, turned from -z to d). f and p
-/// are scaled to the domain: |f| <= 1, |p| <= 1 about the pupil's middle line.
+/// across that direction, (o, 0) + 2 (s.o) (-s, 1) / (1 + s.s), where the ray begins (o, turned by the turn that takes
+/// -z to d). f and p are scaled to the domain: |f| <= 1, |p| <= 1 about the centre of the pupil.
 ///
 /// Angle errors times focal length of the double Gauss 100 mm f/2 over 80 mm of film: RMS 30, 6.6, 1.13, 0.16 and
 /// 0.022 um for degrees 3 to 11 (tests/polynomial). Float adds up to 4e-7 rad and 3e-5 mm.
@@ -38,23 +38,21 @@ namespace petzval::inline v0 {
 /// Immutable, cheap to copy, free to share between threads.
 class PETZVAL_API RayPolynomial {
  public:
-  /// The coefficients of one wavelength, and what is needed to use them. Plain data, as files hold it; public so that
-  /// it can be exported to shaders.
+  /// The coefficients of one wavelength. Plain data, as in files; public so that it can be exported to shaders.
   struct Fit {
     double wavelength_nm = 0;
-    std::vector<double> direction_by_film = {},
-                        direction_by_pupil = {};                    ///< of the terms in the order of `terms(degree)`
-    std::vector<double> offset_by_film = {}, offset_by_pupil = {};  ///< mm
-    /// Errors of rays that the fit has not seen, evenly over film and pupils: of their angles, and of where they pass
-    /// the reference point. The largest are also of the pupils' rims; other rays may exceed them by a quarter.
+    std::vector<double> direction_by_film = {}, direction_by_pupil = {};  ///< in the order of `terms(degree)`
+    std::vector<double> offset_by_film = {}, offset_by_pupil = {};        ///< mm
+    /// Errors of rays that were not fitted, uniformly over film and pupils: of their angles, and of their offsets from
+    /// the reference point. The largest include the rims of the pupils; other rays may exceed them by a quarter.
     double rms_rad = 0, max_rad = 0, rms_mm = 0, max_mm = 0;
   };
   struct Domain {
     TwoPlanes space;
     double film_radius = 0;   ///< |f| <= film_radius, mm
-    double pupil_shift = 0;   ///< the middle of the pupil's domain lies at pupil_shift * f
+    double pupil_shift = 0;   ///< the centre of the domain in the pupil lies at pupil_shift * f
     double pupil_radius = 0;  ///< mm
-    double reference_z = 0;   ///< of the centre of the entrance pupil, about which offsets count
+    double reference_z = 0;   ///< of the centre of the entrance pupil, from which offsets count
   };
   struct Term {
     int u, v, w;  ///< exponents
@@ -65,11 +63,11 @@ class PETZVAL_API RayPolynomial {
 
   /// Fits all compiled wavelengths by least squares (QR, in double) to exact rays through the pupils. The domain is
   /// the smallest that holds all of them. Within 20 ms for each wavelength. Throws Error for another degree, a lens
-  /// that is not rotationally symmetric, pupils of other wavelengths, a film of one point, and where fewer rays get
-  /// through than there are coefficients.
+  /// that is not rotationally symmetric, pupils of other wavelengths, a film of one point, and if fewer rays pass the
+  /// lens than there are coefficients.
   static RayPolynomial fit(const Lens& lens, const FilmPupilTable& pupils, int degree);
-  /// From data; throws Error, naming what, where it is not consistent. primary_wavelength: position of the fit that is
-  /// used by default; unset, the one nearest to the d line.
+  /// From data. primary_wavelength: position of the fit that is used by default; if unset, the one nearest to the d
+  /// line. Throws Error, which names the entry, for inconsistent data.
   RayPolynomial(int degree, const Domain& domain, std::vector<Fit> fits,
                 std::optional<std::size_t> primary_wavelength = {});
 
@@ -79,8 +77,9 @@ class PETZVAL_API RayPolynomial {
   /// Position of the fit for the lens's primary wavelength, the default of all calls.
   std::size_t primary_wavelength() const noexcept;
 
-  /// Lines as rays towards the scene. Outside the domain, and of a wavelength without a fit: outside_fit, at the
-  /// reference point along the axis. A ray depends on its own line alone, to the bit.
+  /// Maps lines to rays towards the scene. Outside the domain, and for a wavelength without a fit, the fate is
+  /// outside_fit and the ray runs along the axis from the reference point. A ray depends on its own line alone, to the
+  /// bit.
   template <class T>
   void to_scene(std::size_t count, const TwoPlaneRays<const T>& lines, const RayWavelengths& wavelengths,
                 const RayArrays<T>& rays, RayFate* fates) const noexcept;

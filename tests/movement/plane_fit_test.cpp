@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/movement/disparity_fit.hpp"
+#include "movement/plane_fit.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,16 +9,17 @@
 #include <vector>
 
 #include "petzval/core/units.hpp"
-#include "petzval/movement/ideal_lens.hpp"
+#include "petzval/paraxial/ideal_lens.hpp"
 
 namespace petzval {
 namespace {
 
-using Points = std::vector<DisparityPoint>;
+using namespace movement_detail;
+using Points = std::vector<PicturePoint>;
 using Vec = Vec3<double>;
 
 void expect_fit(const Points& points, PlaneRank rank, double a, double b, double c, double tolerance = 1e-12) {
-  const DisparityFit fit = fit_disparity(points);
+  const PlaneFit fit = fit_plane(points);
   EXPECT_EQ(fit.rank, rank);
   EXPECT_NEAR(fit.a, a, tolerance);
   EXPECT_NEAR(fit.b, b, tolerance);
@@ -26,7 +27,7 @@ void expect_fit(const Points& points, PlaneRank rank, double a, double b, double
 }
 
 // Numbers computed with 40 digits.
-TEST(DisparityFit, GivesTheKnownPlanes) {
+TEST(PlaneFit, GivesTheKnownPlanes) {
   using enum PlaneRank;
   const Points four{{-0.2, 0.05, 1 / 2.0}, {0.15, 0.1, 1 / 3.0}, {0.02, -0.12, 1 / 2.4}, {0.2, -0.1, 1 / 4.0}};
   expect_fit(four, plane, -0.57369057369057369, 0.036660036660036660, 0.4000234000234000);
@@ -41,9 +42,9 @@ TEST(DisparityFit, GivesTheKnownPlanes) {
   expect_fit({{0.1, 0.2, 0.4}}, point, 0, 0, 0.4);
 }
 
-TEST(DisparityFit, IsAPlaneInTheSceneAndOfTheFilm) {
-  const DisparityFit fit =
-      fit_disparity(Points{{-0.2, 0.05, 1 / 2.0}, {0.15, 0.1, 1 / 3.0}, {0.02, -0.12, 1 / 2.4}, {0.2, -0.1, 1 / 4.0}});
+TEST(PlaneFit, IsAPlaneInTheSceneAndOfTheFilm) {
+  const PlaneFit fit =
+      fit_plane(Points{{-0.2, 0.05, 1 / 2.0}, {0.15, 0.1, 1 / 3.0}, {0.02, -0.12, 1 / 2.4}, {0.2, -0.1, 1 / 4.0}});
   // Known for a scene at positive z.
   const Plane plane = plane_of(fit, 0).value();
   const double sign = plane.normal.x < 0 ? 1 : -1;
@@ -61,49 +62,49 @@ TEST(DisparityFit, IsAPlaneInTheSceneAndOfTheFilm) {
   EXPECT_NEAR(degrees(film_in(lens.image_of(steep).value()).angle()), 20, 1e-9);
 }
 
-TEST(DisparityFit, PlaneHoldsThePointsItWasFittedTo) {
+TEST(PlaneFit, PlaneHoldsThePointsItWasFittedTo) {
   // Depths from z = 7, planes through "contains the view direction" (c = 0) and one focused beyond infinity (c < 0).
   for (const double c : {1e-3, 0.0, -1e-4}) {
     Points points;
     std::vector<Vec> places;
     for (const auto& [x, y] : {std::pair{0.3, 0.1}, {0.5, -0.2}, {0.2, 0.4}, {0.7, 0.6}}) {
-      const double disparity = 2e-3 * x - 1e-4 * y + c;
-      points.push_back({x, y, disparity});
-      places.emplace_back(x / disparity, y / disparity, 7 - 1 / disparity);
+      const double inverse = 2e-3 * x - 1e-4 * y + c;
+      points.push_back({x, y, inverse});
+      places.emplace_back(x / inverse, y / inverse, 7 - 1 / inverse);
     }
-    const Plane plane = plane_of(fit_disparity(points), 7).value();
+    const Plane plane = plane_of(fit_plane(points), 7).value();
     for (const Vec& p : places) EXPECT_NEAR(glm::dot(plane.normal, p), plane.offset, 1e-9);
   }
-  EXPECT_FALSE(plane_of(fit_disparity(Points{{0.1, 0.2, 0}}), 0));
+  EXPECT_FALSE(plane_of(fit_plane(Points{{0.1, 0.2, 0}}), 0));
 }
 
-TEST(DisparityFit, TakesWeightsAsRepetitionsAndNoUnits) {
+TEST(PlaneFit, TakesWeightsAsRepetitionsAndNoUnits) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> unit(0, 1);
   Points base, repeated;
   for (int i = 0; i < 9; ++i) {
     const int times = 1 + i % 3;
     base.push_back({unit(random), unit(random), unit(random), static_cast<double>(times)});
-    for (int k = 0; k < times; ++k) repeated.push_back({base.back().x, base.back().y, base.back().disparity});
+    for (int k = 0; k < times; ++k) repeated.push_back({base.back().x, base.back().y, base.back().inverse_distance});
   }
-  const DisparityFit fit = fit_disparity(base);
+  const PlaneFit fit = fit_plane(base);
   expect_fit(repeated, PlaneRank::plane, fit.a, fit.b, fit.c, 1e-14);
   for (const double scale : {1e-6, 1e6, 1e-150, 1e150}) {
     Points scaled = base;
-    for (auto& p : scaled) p.disparity *= scale, p.weight *= scale;
+    for (auto& p : scaled) p.inverse_distance *= scale, p.weight *= scale;
     expect_fit(scaled, PlaneRank::plane, fit.a * scale, fit.b * scale, fit.c * scale, 1e-14 * scale);
   }
 }
 
-TEST(DisparityFit, IsTheLeast) {
+TEST(PlaneFit, IsTheLeast) {
   std::mt19937 random(4);
   std::normal_distribution<double> noise(0, 1);
   Points points;
   for (int i = 0; i < 12; ++i) points.push_back({noise(random), noise(random), noise(random), 1.0 + i % 4});
-  const DisparityFit fit = fit_disparity(points);
+  const PlaneFit fit = fit_plane(points);
   const auto cost = [&](double a, double b, double c) {
     double sum = 0;
-    for (const auto& p : points) sum += p.weight * std::pow(a * p.x + b * p.y + c - p.disparity, 2);
+    for (const auto& p : points) sum += p.weight * std::pow(a * p.x + b * p.y + c - p.inverse_distance, 2);
     return sum;
   };
   const double least = cost(fit.a, fit.b, fit.c);

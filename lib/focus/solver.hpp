@@ -13,32 +13,32 @@
 
 namespace petzval::inline v0::focus_detail {
 
-/// Throw Error: for a subject distance that is NaN or not above 0; for a film_z that is not finite.
-void check_distance(const Lens& lens, double distance_mm);
+/// Throw Error for a subject distance that is NaN or not above 0, and for a film_z that is not finite.
+void check_distance(const Lens& lens, double distance);
 void check_film(const Lens& lens, double film_z);
 
-/// A lens as one criterion sees it: what the functions on focus, depth of field and breathing share.
-class FocusModel {
+/// Focus of one lens by one set of options: the solvers and the images behind focus, depth of field and breathing.
+class FocusSolver {
  public:
-  /// Throws Error for fields and weights that are none. Borrows both.
-  FocusModel(const Lens& lens, const FocusOptions& options);
+  /// Throws Error for invalid fields and weights. Keeps references to both arguments.
+  FocusSolver(const Lens& lens, const FocusOptions& options);
 
-  bool afocal() const noexcept { return data_.afocal; }
+  bool afocal() const noexcept { return afocal_; }
   bool exact() const noexcept;
   std::size_t wavelength() const noexcept { return wavelength_; }  ///< the one of largest weight
   Meridian meridian() const noexcept { return meridian_; }
 
-  // What follows is for lenses that are not afocal.
+  // The rest is for lenses that are not afocal.
   const Conjugates& conjugates() const noexcept { return conjugates_; }
   FocusSolution focus(double distance) const;  ///< distance: > 0 or infinite
   FocusSolution subject(double film_z) const;  ///< film_z: finite
   FocusSolution nearest() const;
-  /// None where a field has no rays. Throws Error for a subject that is not in front of the lens, and where nothing
-  /// limits the beam.
+  /// The image of a subject; nothing if no ray of a field passes. Throws Error for a subject that is not in front of
+  /// the lens, and if nothing limits the beam.
   std::optional<Image> image(double subject_z) const;
-  /// By the subject's nearness (Conjugates). None, too, where image throws: exact rays end before the vertex where the
-  /// first surface is hollow.
-  std::optional<Image> image_at(double nearness) const;
+  /// The image by vergence of the subject (Conjugates). Nothing also where image() throws: exact rays start in front of
+  /// the vertex of a concave first surface.
+  std::optional<Image> image_at(double vergence) const;
 
  private:
   Image cone(double subject_z) const;
@@ -49,8 +49,8 @@ class FocusModel {
   std::vector<WavelengthWeight> wavelengths_;
   std::size_t wavelength_ = 0;
   Meridian meridian_ = Meridian::y;
-  FirstOrder data_;
-  Conjugates conjugates_{};
+  bool afocal_ = false;
+  Conjugates conjugates_;
 };
 
 }  // namespace petzval::inline v0::focus_detail

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/movement/ideal_lens.hpp"
+#include "petzval/paraxial/ideal_lens.hpp"
 
 #include <gtest/gtest.h>
 
@@ -16,6 +16,7 @@
 #include "petzval/focus/depth_of_field.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/lens/tables.hpp"
+#include "petzval/movement/focus_plane.hpp"
 #include "petzval/paraxial/thin_lens.hpp"
 
 namespace petzval {
@@ -280,6 +281,34 @@ TEST(IdealLens, HingeAndScheimpflugLinesStayWhereTheyAre) {
   EXPECT_FALSE(focus_plane(lens, film_at(film.z()))->hinge);
   EXPECT_FALSE(focus_plane(lens, film_at(film.z()))->scheimpflug);
   EXPECT_FALSE(focus_plane(lens, film_at(lens.rear_focal_z)));  // infinity
+}
+
+TEST(IdealLens, FindsTheFartherOfTwoObjectsAtASeparation) {
+  for (const IdealLens& lens : {thin_lens(50, 2), thick_lens(data_lens("double_gauss_100mm_f2_28deg")),
+                                thick_lens(data_lens("eye_gullstrand_le_grand"))}) {
+    const double f = std::sqrt(lens.product()), planes = lens.rear_principal_z() - lens.front_principal_z();
+    const double least = 2 * f + lens.rear_focal_z - lens.front_focal_z;  // in air: 4 f and the planes between
+    if (lens.front_focal_length == lens.rear_focal_length) {
+      EXPECT_NEAR(least, 4 * f + planes, 1e-12 * least);
+    }
+    for (const double p : {f, 1.001 * f, 3 * f, 1e6 * f, 1e150}) {
+      const double separation = (lens.rear_focal_z + lens.product() / p) - (lens.front_focal_z - p);
+      // Next to the turning point half of the digits of the separation are lost.
+      EXPECT_NEAR(lens.object_at_separation(separation) / p, 1, p > 2 * f ? 1e-14 : 2e-7) << p / f;
+    }
+    EXPECT_NEAR(lens.object_at_separation(least / 2), f, 1e-15 * f);
+    EXPECT_EQ(lens.object_at_separation(infinity), infinity);
+  }
+}
+
+TEST(IdealLens, MarginalRaysRunThroughPupilAndImage) {
+  const IdealLens lens = thick_lens(data_lens("double_gauss_100mm_f2_28deg"));
+  for (const double p : {1.0, 50.0, 1e3, 1e9, infinity}) {
+    const MarginalRay ray = lens.marginal_ray(p);
+    const auto height = [&](double z) { return ray.height + ray.slope * (z - lens.rear_focal_z); };
+    EXPECT_NEAR(std::abs(height(lens.pupils.exit.z)), lens.pupils.exit.diameter / 2, 1e-11) << p;
+    EXPECT_NEAR(height(lens.rear_focal_z + lens.product() / p), 0, 1e-11) << p;
+  }
 }
 
 TEST(IdealLens, RefusesWhatIsNoLens) {

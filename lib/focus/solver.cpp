@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "model.hpp"
+#include "solver.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,8 +7,10 @@
 #include <string>
 #include <utility>
 
+#include "paraxial/focal_points.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/text.hpp"
+#include "petzval/paraxial/first_order.hpp"
 #include "petzval/paraxial/pupils.hpp"
 #include "search.hpp"
 
@@ -53,9 +55,9 @@ std::vector<WavelengthWeight> weighted_wavelengths(const Lens& lens, const Focus
 
 }  // namespace
 
-void check_distance(const Lens& lens, double distance_mm) {
-  if (distance_mm > 0) return;
-  throw Error(lens.name() + ": subject distance is " + number(distance_mm) + " mm, wanted one above 0 (or infinity)");
+void check_distance(const Lens& lens, double distance) {
+  if (distance > 0) return;
+  throw Error(lens.name() + ": subject distance is " + number(distance) + " mm, wanted one above 0 (or infinity)");
 }
 
 void check_film(const Lens& lens, double film_z) {
@@ -63,35 +65,38 @@ void check_film(const Lens& lens, double film_z) {
   throw Error(lens.name() + ": film_z is " + number(film_z) + " mm, wanted a finite place");
 }
 
-FocusModel::FocusModel(const Lens& lens, const FocusOptions& options)
+FocusSolver::FocusSolver(const Lens& lens, const FocusOptions& options)
     : lens_(lens),
       options_(options),
       fields_(weighted_fields(lens, options)),
       wavelengths_(weighted_wavelengths(lens, options)) {
-  // The heaviest; of several the one that speaks for the lens.
+  // The wavelength of largest weight; among equal ones the primary.
   wavelength_ = std::ranges::max_element(wavelengths_, {}, [&](const WavelengthWeight& w) {
                   return std::pair(w.weight, w.wavelength == lens.primary_wavelength());
                 })->wavelength;
   meridian_ = main_meridian(lens, wavelength_);
-  data_ = first_order(lens, wavelength_, meridian_);
-  if (!data_.afocal) conjugates_ = focus_detail::conjugates(lens, data_, options.criterion, options.origin);
+  const FirstOrder data = first_order(lens, wavelength_, meridian_);
+  afocal_ = data.afocal;
+  if (!afocal_) {
+    conjugates_ = Conjugates(paraxial_detail::focal_points(lens, data), options.criterion, options.origin);
+  }
 }
 
-bool FocusModel::exact() const noexcept {
+bool FocusSolver::exact() const noexcept {
   return options_.criterion == FocusCriterion::min_rms || options_.criterion == FocusCriterion::min_max;
 }
 
-FocusSolution FocusModel::focus(double distance) const {
+FocusSolution FocusSolver::focus(double distance) const {
   return exact() ? Search(*this).focus(distance) : paraxial_focus(conjugates_, distance);
 }
 
-FocusSolution FocusModel::subject(double film_z) const {
+FocusSolution FocusSolver::subject(double film_z) const {
   return exact() ? Search(*this).subject(film_z) : paraxial_subject(conjugates_, film_z);
 }
 
-FocusSolution FocusModel::nearest() const { return exact() ? Search(*this).nearest() : paraxial_nearest(conjugates_); }
+FocusSolution FocusSolver::nearest() const { return exact() ? Search(*this).nearest() : paraxial_nearest(conjugates_); }
 
-std::optional<Image> FocusModel::image(double subject_z) const {
+std::optional<Image> FocusSolver::image(double subject_z) const {
   if (!(subject_z < 0)) {
     throw Error(lens_.name() + ": subject at z = " + number(subject_z) +
                 " mm, wanted one in front of the lens (z < 0)");
@@ -104,48 +109,40 @@ std::optional<Image> FocusModel::image(double subject_z) const {
   return cone(subject_z);
 }
 
-std::optional<Image> FocusModel::image_at(double nearness) const {
+std::optional<Image> FocusSolver::image_at(double vergence) const {
   try {
-    return image(nearness > 0 ? conjugates_.subject_at(nearness) : -std::numeric_limits<double>::infinity());
+    return image(vergence > 0 ? conjugates_.subject_at(vergence) : -std::numeric_limits<double>::infinity());
   } catch (const Error&) {
     return {};
   }
 }
 
-/// The cone of the paraxial pupil as its one marginal ray, in the rear focal plane: what height a ray has there is a
-/// matter of its slope in front of the lens alone, and its slope there one of its height in the front focal plane.
-Image FocusModel::cone(double subject_z) const {
-  const bool infinite = std::isinf(subject_z);
-  const Pupils stop = pupils(lens_, wavelength_, meridian_);
-  if (std::isinf(lens_.surfaces()[stop.stop].semi_diameter)) {
-    throw Error(lens_.name() + ": the stop (surface " + std::to_string(stop.stop) +
+/// The cone of the paraxial pupil, as its one marginal ray.
+Image FocusSolver::cone(double subject_z) const {
+  IdealLens ideal = conjugates_.lens;
+  ideal.pupils = pupils(lens_, wavelength_, meridian_);
+  const std::size_t stop = ideal.pupils.stop;
+  if (std::isinf(lens_.surfaces()[stop].semi_diameter)) {
+    throw Error(lens_.name() + ": the stop (surface " + std::to_string(stop) +
                 ") has no semi_diameter, wanted one for a blur to have a size");
   }
-  double slope = 0, height = 0;  // in front of the lens; in the front focal plane
-  const double p = conjugates_.front_focal_z - subject_z;
+  const bool at_infinity = std::isinf(ideal.pupils.entrance.z);
   if (options_.criterion == FocusCriterion::thin) {
-    const double radius = stop.entrance.diameter / 2;
-    if (std::isinf(radius)) {
+    if (at_infinity) {
       throw Error(lens_.name() +
                   ": the entrance pupil is at infinity, wanted a finite one for the blur of a thin lens");
     }
-    slope = infinite ? 0 : radius / (data_.rear_principal_z - subject_z);
-    height = infinite ? radius : slope * p;
-  } else {
-    // By the matrix up to the stop, not by the entrance pupil, which may be at infinity.
-    const RayMatrix m = ray_matrix_to(lens_, stop.stop, wavelength_, meridian_);
-    const double radius = lens_.surfaces()[stop.stop].semi_diameter;
-    if (infinite && std::isinf(stop.entrance.z)) {
-      throw Error(lens_.name() +
-                  ": the entrance pupil is at infinity, wanted a subject that is not: the stop limits no "
-                  "beam from there");
-    }
-    slope = infinite ? 0 : radius / (m.b * data_.object_index - m.a * subject_z);
-    height = infinite ? radius / m.a : slope * p;
+    ideal = thin_lens(ideal);
+  } else if (at_infinity && std::isinf(subject_z)) {
+    throw Error(lens_.name() +
+                ": the entrance pupil is at infinity, wanted a subject that is not: the stop limits no "
+                "beam from there");
   }
-  const Line marginal{.y = data_.object_index * slope * data_.effective_focal_length,
-                      .slope_y = -height * data_.power / data_.image_index};
-  return {.film_z = conjugates_.film_z(p), .plane_z = data_.rear_focal_z, .lines = {marginal}};
+  const double p = ideal.front_focal_z - subject_z;
+  const MarginalRay marginal = ideal.marginal_ray(p);
+  return {.film_z = conjugates_.film_z(p),
+          .plane_z = ideal.rear_focal_z,
+          .lines = {Line{.y = marginal.height, .slope_y = marginal.slope}}};
 }
 
 }  // namespace petzval::inline v0::focus_detail

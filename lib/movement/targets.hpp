@@ -5,11 +5,19 @@
 #include <cstddef>
 #include <span>
 
+#include "petzval/core/export.hpp"
 #include "petzval/movement/focus_target.hpp"
 
 namespace petzval::inline v0::movement_detail {
 
-/// The root of the weighted mean square of blur less wanted over the targets used, without overflow; 0 without any.
+/// Whether a target has no NaN, nothing infinite except z = -inf, and no negative weight.
+PETZVAL_API bool well_formed(const FocusTarget& target) noexcept;
+
+/// In focal lengths from the rear focal point: no film is farther away, and images that are belong to points in the
+/// front focal plane or far beside the lens.
+inline constexpr double farthest_film = 1e9;
+
+/// The weighted RMS of the blur minus the wanted blur over the targets used, without overflow; 0 if there are none.
 inline double rms_error(std::span<const FocusTarget> targets, std::span<const TargetBlur> blurs) noexcept {
   const auto error = [&](std::size_t i) {
     return blurs[i].use == TargetUse::used ? blurs[i].blur_mm - blurs[i].wanted_mm : 0;

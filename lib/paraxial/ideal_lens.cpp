@@ -5,12 +5,14 @@
 //
 // which maps planes to planes, the ends included: Z = 0 goes to infinity, infinity to Z' = 0. A point at infinity is
 // its direction with the fourth coordinate 0.
-#include "petzval/movement/ideal_lens.hpp"
+#include "petzval/paraxial/ideal_lens.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
 
+#include "focal_points.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/text.hpp"
 #include "petzval/paraxial/first_order.hpp"
@@ -28,36 +30,47 @@ std::optional<Plane> plane(const Vec3<double>& normal, double offset) {
   return result;
 }
 
-FirstOrder focusing(const Lens& lens, Wavelength wavelength, Meridian meridian) {
-  const FirstOrder data = first_order(lens, wavelength, meridian);
-  if (data.afocal) throw Error(lens.name() + ": ideal lens: it has no focal length, wanted one");
-  if (data.image_index < 0) {
-    throw Error(lens.name() + ": ideal lens: light leaves it towards -z, wanted it towards +z");
-  }
-  return data;
-}
-
 }  // namespace
 
-std::optional<ImagePoint> IdealLens::image(const ScenePoint& place) const noexcept {
-  Vec3<double> p = place.position;
-  double w = place.at_infinity ? 0 : 1;
-  if (p.z == -infinity && std::isfinite(p.x) && std::isfinite(p.y)) p = {0, 0, -1}, w = 0;
-  const double from_focus = p.z - w * front_focal_z, f = front_focal_length, f_rear = rear_focal_length;
-  if (!(from_focus < 0) || !(p.z < w * front_z)) return {};
-  ImagePoint result;
-  result.position = {p.x / from_focus * f, p.y / from_focus * f, rear_focal_z - f * (w / from_focus) * f_rear};
+double IdealLens::object_at_separation(double separation) const noexcept {
+  // The larger root of p + product / p = sum, in factors: no square overflows, and nothing cancels next to the turning
+  // point, where sum is twice the root of the product.
+  const double turning = 2 * std::sqrt(std::abs(product())), sum = separation - (rear_focal_z - front_focal_z);
+  if (product() < 0) return (sum + std::hypot(sum, turning)) / 2;
+  const double reached = std::max(sum, turning);
+  return (reached + std::sqrt(reached - turning) * std::sqrt(reached + turning)) / 2;
+}
+
+MarginalRay IdealLens::marginal_ray(double p) const noexcept {
+  // A ray's height in the rear focal plane depends on its slope in front of the lens alone, and its slope behind the
+  // lens on its height in the front focal plane.
   if (const Pupil& in = pupils.entrance; std::isfinite(in.z)) {
-    const double to_pupil = w * in.z - p.z, angular = (in.z - front_focal_z) / f_rear;
-    result.slope_x = -(p.x / to_pupil) * angular;
-    result.slope_y = -(p.y / to_pupil) * angular;
-    result.cone = std::abs(in.diameter / f_rear * (from_focus / to_pupil));
+    const double slope = in.diameter / 2 / (p + (in.z - front_focal_z));
+    const double height = std::isinf(p) ? in.diameter / 2 : slope * p;
+    return {slope * front_focal_length, -height / rear_focal_length};
+  }
+  const double height = pupils.exit.diameter / 2;
+  return {height, -height * (p / product())};
+}
+
+std::optional<ImagePoint> IdealLens::image(const ScenePoint& point) const noexcept {
+  Vec3<double> at = point.position;
+  double w = point.at_infinity ? 0 : 1;
+  if (at.z == -infinity && std::isfinite(at.x) && std::isfinite(at.y)) at = {0, 0, -1}, w = 0;
+  const double from_focus = at.z - w * front_focal_z, f = front_focal_length, f_rear = rear_focal_length;
+  if (!(from_focus < 0) || !(at.z < w * front_z)) return {};
+  ImagePoint result;
+  result.position = {at.x / from_focus * f, at.y / from_focus * f, rear_focal_z - product() * (w / from_focus)};
+  if (const Pupil& in = pupils.entrance; std::isfinite(in.z)) {
+    const double to_pupil = w * in.z - at.z, angular = (in.z - front_focal_z) / f_rear;
+    result.slope_x = -(at.x / to_pupil) * angular;
+    result.slope_y = -(at.y / to_pupil) * angular;
   } else {
     const double from_pupil = result.position.z - pupils.exit.z;
     result.slope_x = result.position.x / from_pupil;
     result.slope_y = result.position.y / from_pupil;
-    result.cone = std::abs(pupils.exit.diameter / from_pupil);
   }
+  result.cone = 2 * std::abs(marginal_ray(w == 0 ? infinity : -from_focus).slope);
   const Vec3<double>& i = result.position;
   const bool finite = std::isfinite(i.x + i.y + i.z) && std::isfinite(result.slope_x + result.slope_y + result.cone);
   if (!finite) return {};
@@ -80,16 +93,29 @@ double IdealLens::growth(double film_z, double before) const noexcept {
 std::optional<Plane> IdealLens::image_of(const Plane& scene) const noexcept {
   const Vec3<double>& n = scene.normal;
   const double along = scene.offset - n.z * front_focal_z;
-  return plane({rear_focal_length * n.x, rear_focal_length * n.y, along},
-               along * rear_focal_z - n.z * front_focal_length * rear_focal_length);
+  return plane({rear_focal_length * n.x, rear_focal_length * n.y, along}, along * rear_focal_z - n.z * product());
 }
 
 std::optional<Plane> IdealLens::scene_of(const Plane& film) const noexcept {
   const Vec3<double>& m = film.normal;
   const double along = m.z * rear_focal_z - film.offset;
-  return plane({front_focal_length * m.x, front_focal_length * m.y, along},
-               along * front_focal_z + m.z * front_focal_length * rear_focal_length);
+  return plane({front_focal_length * m.x, front_focal_length * m.y, along}, along * front_focal_z + m.z * product());
 }
+
+namespace paraxial_detail {
+
+IdealLens focal_points(const Lens& lens, const FirstOrder& data) noexcept {
+  IdealLens result;
+  result.front_focal_z = data.front_focal_z;
+  result.rear_focal_z = data.rear_focal_z;
+  result.front_focal_length = data.object_index / data.power;
+  result.rear_focal_length = data.image_index / data.power;
+  result.front_z = lens.surfaces().front().vertex_z;
+  result.rear_z = lens.surfaces().back().vertex_z;
+  return result;
+}
+
+}  // namespace paraxial_detail
 
 IdealLens thin_lens(double focal_length, double f_number, double z) {
   if (!std::isfinite(focal_length) || focal_length == 0) {
@@ -101,24 +127,26 @@ IdealLens thin_lens(double focal_length, double f_number, double z) {
   return {z - focal_length, z + focal_length, focal_length, focal_length, {pupil, pupil}, z, z};
 }
 
-IdealLens thin_lens(const Lens& lens, Wavelength wavelength) {
-  const Meridian meridian = main_meridian(lens, wavelength);
-  const FirstOrder data = focusing(lens, wavelength, meridian);
-  const double z = data.rear_principal_z, front = data.object_index / data.power, rear = data.image_index / data.power;
-  const Pupil pupil{z, petzval::pupils(lens, wavelength, meridian).entrance.diameter};
-  return {z - front, z + rear, front, rear, {pupil, pupil}, z, z};
+IdealLens thin_lens(const IdealLens& lens) {
+  const double z = lens.rear_principal_z();
+  IdealLens thin = lens;
+  thin.front_focal_z = z - lens.front_focal_length;
+  thin.pupils.entrance = thin.pupils.exit = {z, lens.pupils.entrance.diameter};
+  return thin;
 }
+
+IdealLens thin_lens(const Lens& lens, Wavelength wavelength) { return thin_lens(thick_lens(lens, wavelength)); }
 
 IdealLens thick_lens(const Lens& lens, Wavelength wavelength) {
   const Meridian meridian = main_meridian(lens, wavelength);
-  const FirstOrder data = focusing(lens, wavelength, meridian);
-  return {data.front_focal_z,
-          data.rear_focal_z,
-          data.object_index / data.power,
-          data.image_index / data.power,
-          petzval::pupils(lens, wavelength, meridian),
-          lens.surfaces().front().vertex_z,
-          lens.surfaces().back().vertex_z};
+  const FirstOrder data = first_order(lens, wavelength, meridian);
+  if (data.afocal) throw Error(lens.name() + ": ideal lens: it has no focal length, wanted one");
+  if (data.image_index < 0) {
+    throw Error(lens.name() + ": ideal lens: light leaves it towards -z, wanted it towards +z");
+  }
+  IdealLens result = paraxial_detail::focal_points(lens, data);
+  result.pupils = pupils(lens, wavelength, meridian);
+  return result;
 }
 
 double signed_blur(const ImagePoint& image, const Film& film) {
@@ -131,12 +159,6 @@ std::optional<FilmPoint> chief_point(const ImagePoint& image, const Film& film) 
   const double by = glm::dot(n, Vec3<double>(0, 0, film.z()) - image.position) / glm::dot(n, along);
   if (!std::isfinite(by)) return {};
   return film.point(image.position + by * along);
-}
-
-std::optional<FocusPlane> focus_plane(const IdealLens& lens, const Film& film) {
-  const std::optional<Plane> plane = lens.scene_of(film.plane());
-  if (!plane) return {};
-  return FocusPlane{*plane, line_at(*plane, lens.front_focal_z), line_at(*plane, lens.front_principal_z())};
 }
 
 }  // namespace petzval::inline v0

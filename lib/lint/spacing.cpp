@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gaps.hpp"
+#include "spacing.hpp"
 
 #include <algorithm>
 #include <array>
@@ -28,7 +28,7 @@ double domain(const LensSurface& surface) {
   return 1 / (std::abs(surface.curvature) * std::sqrt(bend));
 }
 
-std::optional<Gap> least_gap(const Lens& lens, std::size_t surface) {
+std::optional<Spacing> least_spacing(const Lens& lens, std::size_t surface) {
   const LensSurface& front = lens.surfaces()[surface];
   const LensSurface& rear = lens.surfaces()[surface + 1];
   const double from = std::max(front.inner_semi_diameter, rear.inner_semi_diameter);
@@ -36,17 +36,17 @@ std::optional<Gap> least_gap(const Lens& lens, std::size_t surface) {
   if (!std::isfinite(front.semi_diameter) || !std::isfinite(rear.semi_diameter) || to < from) return {};
 
   // Where light runs backwards, behind a mirror, the next surface lies at smaller z.
-  const double sense = lens.light_direction(surface + 1);
-  // Cylinders along x and y differ most along an axis or between them.
+  const double direction = lens.light_direction(surface + 1);
+  // Surfaces with cylinders along x and y differ most along an axis or half way between.
   constexpr std::array<std::array<double, 2>, 3> azimuths{{{0, 1}, {1, 0}, {0.7071067811865476, 0.7071067811865476}}};
   const std::size_t azimuth_count = lens.rotationally_symmetric() ? 1 : azimuths.size();
   constexpr int samples = 200;
-  Gap least{std::numeric_limits<double>::infinity(), 0};
+  Spacing least{std::numeric_limits<double>::infinity(), 0};
   for (std::size_t azimuth = 0; azimuth < azimuth_count; ++azimuth) {
     for (int i = 0; i <= samples; ++i) {
       const double height = from + (to - from) * i / samples;
       const double x = azimuths[azimuth][0] * height, y = azimuths[azimuth][1] * height;
-      const double width = sense * (front.thickness + sag(lens, surface + 1, x, y) - sag(lens, surface, x, y));
+      const double width = direction * (front.thickness + sag(lens, surface + 1, x, y) - sag(lens, surface, x, y));
       if (width < least.width) least = {width, height};
     }
   }

@@ -1,30 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/movement/disparity_fit.hpp"
+#include "plane_fit.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-namespace petzval::inline v0 {
+namespace petzval::inline v0::movement_detail {
 
-DisparityPoint disparity_point(const ScenePoint& place, double z) noexcept {
+PicturePoint picture_point(const ScenePoint& place, double z) noexcept {
   const auto& [p, at_infinity] = place;
   if (std::isinf(p.z)) return {};
   const double depth = (at_infinity ? 0 : z) - p.z;
   return {p.x / depth, p.y / depth, at_infinity ? 0 : 1 / depth};
 }
 
-std::string_view name(PlaneRank rank) noexcept {
-  switch (rank) {
-    case PlaneRank::none: return "none";
-    case PlaneRank::point: return "point";
-    case PlaneRank::line: return "line";
-    case PlaneRank::plane: return "plane";
-  }
-  return "unknown";
-}
-
-DisparityFit fit_disparity(std::span<const DisparityPoint> points) {
-  DisparityFit fit;
+PlaneFit fit_plane(std::span<const PicturePoint> points) {
+  PlaneFit fit;
   double largest = 0;
   for (const auto& p : points) largest = std::max(largest, p.weight);
   if (!(largest > 0)) return fit;
@@ -32,18 +22,18 @@ DisparityFit fit_disparity(std::span<const DisparityPoint> points) {
   for (const auto& p : points) {
     const double w = p.weight / largest;
     total += w;
-    fit.mean_x += w * p.x, fit.mean_y += w * p.y, fit.c += w * p.disparity;
+    fit.mean_x += w * p.x, fit.mean_y += w * p.y, fit.c += w * p.inverse_distance;
   }
   fit.mean_x /= total, fit.mean_y /= total, fit.c /= total;
 
-  // Moments about the centroid: xx, xy, yy of the places, x and y with the disparity.
+  // Moments about the centroid: xx, xy, yy of the positions, x and y with the inverse distance.
   double xx = 0, xy = 0, yy = 0, xd = 0, yd = 0;
   for (const auto& p : points) {
-    const double w = p.weight / largest, x = p.x - fit.mean_x, y = p.y - fit.mean_y, d = p.disparity - fit.c;
+    const double w = p.weight / largest, x = p.x - fit.mean_x, y = p.y - fit.mean_y, d = p.inverse_distance - fit.c;
     xx += w * x * x, xy += w * x * y, yy += w * y * y;
     xd += w * x * d, yd += w * y * d;
   }
-  // The picture's main direction, and how far the points spread along it and across.
+  // The main direction in the picture, and the spread of the points along it and across.
   const double turn = std::atan2(2 * xy, xx - yy) / 2;
   fit.along_x = std::cos(turn), fit.along_y = std::sin(turn);
   const double ax = fit.along_x, ay = fit.along_y;
@@ -61,7 +51,7 @@ DisparityFit fit_disparity(std::span<const DisparityPoint> points) {
     fit.a = slope * ax, fit.b = slope * ay;
   } else {
     fit.rank = PlaneRank::plane;
-    // Both directions by themselves: in those of the spread the moments do not mix.
+    // Each direction by itself: along the main directions the mixed moment is 0.
     const double first = (ax * xd + ay * yd) / along, second = (ax * yd - ay * xd) / across;
     fit.a = first * ax - second * ay, fit.b = first * ay + second * ax;
   }
@@ -69,7 +59,7 @@ DisparityFit fit_disparity(std::span<const DisparityPoint> points) {
   return fit;
 }
 
-std::optional<Plane> plane_of(const DisparityFit& fit, double z) {
+std::optional<Plane> plane_of(const PlaneFit& fit, double z) {
   // a x + b y + c (z - p.z) = 1
   const double length = std::hypot(fit.a, fit.b, fit.c) * (fit.c > 0 ? -1 : 1);
   const Plane plane{{fit.a / length, fit.b / length, -fit.c / length}, (1 - fit.c * z) / length};
@@ -77,4 +67,4 @@ std::optional<Plane> plane_of(const DisparityFit& fit, double z) {
   return plane;
 }
 
-}  // namespace petzval::inline v0
+}  // namespace petzval::inline v0::movement_detail

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <optional>
+
+#include "petzval/lens/lens.hpp"
+
+namespace petzval::inline v0::lint_detail {
+
+/// The height of the equator of a surface's conic; infinite for a paraboloid, a hyperboloid and a plane.
+double domain(const LensSurface& surface);
+
+/// The distance between two neighbouring surfaces where they come closest.
+struct Spacing {
+  double width;   ///< along the direction of light, mm; negative where they overlap
+  double height;  ///< from the axis, mm
+};
+
+/// The least spacing between a surface and the next one, within both clear apertures. Nothing if one of them is
+/// unlimited, or if they have no height in common.
+std::optional<Spacing> least_spacing(const Lens& lens, std::size_t surface);
+
+}  // namespace petzval::inline v0::lint_detail

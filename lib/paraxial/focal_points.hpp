@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "petzval/lens/lens.hpp"
+#include "petzval/paraxial/first_order.hpp"
+#include "petzval/paraxial/ideal_lens.hpp"
+
+namespace petzval::inline v0::paraxial_detail {
+
+/// The ideal lens of a lens that is not afocal, without pupils; light may leave it along -z.
+IdealLens focal_points(const Lens& lens, const FirstOrder& data) noexcept;
+
+}  // namespace petzval::inline v0::paraxial_detail
