@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a camera ray costs, one thread: pupil sample, ray, weight, by every model of a lens, in batches of 4096 samples
-// and one by one, and where the film is tilted; and what a camera takes to set up.
+// Time of a camera ray, one thread: pupil sample, ray and weight by every model of a lens, in batches of 4096 samples,
+// one by one, and on a tilted film; and the set-up time of cameras.
 //
 //   camera_bench [--json FILE] [options of Google Benchmark]
 //
@@ -41,7 +41,7 @@ constexpr std::size_t sample_count = 16384, batch_size = 4096;
 template <class T>
 using Column = std::vector<T, OnCacheLines<T>>;
 
-/// Samples all over the film, and room for what becomes of them.
+/// Samples all over the film, and memory for their rays.
 template <class T>
 struct Samples {
   Column<T> film_x, film_y, pupil_u, pupil_v;
@@ -62,7 +62,7 @@ struct Samples {
   }
 };
 
-/// A way to sample rays of a camera, timed as a round.
+/// One way to sample rays of a camera.
 struct Row {
   std::string lens, call;
   ModelKind model;
@@ -231,7 +231,7 @@ int run(std::vector<char*> arguments) {
   Rounds rounds;
   benchmark::RunSpecifiedBenchmarks(&rounds);
 
-  // Only what ran: the caller may have asked for less.
+  // Only rows that ran: the caller may have filtered.
   const auto ns_of = [&](const std::string& name) {
     const auto line = std::find_if(rounds.lines().begin(), rounds.lines().end(),
                                    [&](const Rounds::Line& l) { return l.name == name; });

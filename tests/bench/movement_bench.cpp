@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What it costs to tilt a film to 24 focus points, one thread: the fit to an ideal lens, thin and thick, robust and
-// not, within the limit of tilt and on it; by exact rays, the bundles included; and the whole loop of a host that
-// follows a mouse: points over time, keyframes and mesh to a film pose.
+// Time of tilting a film to 24 focus points, one thread: fits with an ideal lens, thin and thick, robust and not,
+// within the limit of tilt and at it; with exact rays, bundles included; and the whole loop of a host that follows a
+// mouse: points over time, keyframes and mesh to a film.
 #include <benchmark/benchmark.h>
 
 #include <array>
@@ -24,7 +24,7 @@ using namespace petzval;
 constexpr std::size_t point_count = 24;
 constexpr double film_radius = 21.7;
 
-/// Points about a plane that leans, over the frame, 1 to 4 m away; every fourth is elsewhere.
+/// Points near an inclined plane over the frame, 1 to 4 m away; every fourth lies elsewhere.
 std::vector<Vec3<double>> scene(const IdealLens& lens, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> unit(-1, 1);
@@ -38,7 +38,7 @@ std::vector<Vec3<double>> scene(const IdealLens& lens, unsigned seed) {
   return points;
 }
 
-/// Several draws, so that no branch is learned by heart.
+/// Several draws, so that branch prediction does not learn one.
 constexpr unsigned draws = 8;
 
 template <class Lens>
@@ -55,7 +55,7 @@ void fit(benchmark::State& state, const Lens& lens, const IdealLens& ideal, bool
   state.SetItemsProcessed(state.iterations());
 }
 
-/// Focus points on triangles of a mesh, with keys, whose time goes on.
+/// Focus points on triangles of a mesh, with keys, over time.
 template <class Lens>
 void loop(benchmark::State& state, const Lens& lens, const IdealLens& ideal) {
   const std::vector<Vec3<double>> first = scene(ideal, 0), last = scene(ideal, 1);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a picture of a point light costs, one thread: point_image as a whole, from finding the pupil to the size of the
-// spot, and its three parts by themselves: making rays (points of the sequence, places in the pupil, directions), their
-// trace, and the histogram of 512 x 512 pixels.
+// Time of the image of a point light, one thread: point_image as a whole, from the pupil to the size of the spot, and
+// its three parts: making rays (points of the sequence, places in the pupil, directions), tracing them, and the
+// histogram of 512 x 512 pixels.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -22,7 +22,7 @@ namespace {
 
 constexpr std::uint32_t samples = petzval::PsfOptions{}.samples;
 
-/// Rays that stay in the first cache, as those of a bundle do.
+/// Rays that fit in the first cache, like those of a bundle.
 struct Block {
   static constexpr std::uint32_t size = 512;
   std::array<double, size> x, y, z, dx, dy, dz;
@@ -98,7 +98,7 @@ void histogram(benchmark::State& state, const Light& light) {
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(hits.x.size()));
 }
 
-/// One line for each light: the fastest rounds of the whole and of its parts, and how they compare.
+/// One line per light: the fastest rounds of the whole and of its parts, and their ratios.
 void print(const std::vector<Rounds::Line>& lines) {
   std::printf("%-34s %9s %9s %9s %9s %9s   %s\n", "ns per ray of a PSF (minima)", "picture", "rays", "trace",
               "histogram", "million/s", "histogram / trace");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a pupil costs, one thread, in microseconds and in rays traced through the same lens: a chief ray, an outline of
-// 64 or 256 directions, and the 64 outlines (of 256) from the axis to the edge of the field that set up a camera.
+// Time of pupils, one thread, in microseconds and in rays traced through the same lens: a chief ray, a boundary of
+// 64 or 256 directions, and the 64 boundaries (of 256) from the axis to the edge of the field that set up a camera.
 // Points at infinity.
 #include <benchmark/benchmark.h>
 
@@ -31,7 +31,7 @@ FieldPoint at_infinity(double field_deg) {
   return {.field_rad = petzval::radians(field_deg), .z = -std::numeric_limits<double>::infinity()};
 }
 
-/// edge_deg: half the field that the lens is declared to have.
+/// edge_deg: the declared half field of the lens.
 Setup setup(const std::string& id, double field_deg, double edge_deg) {
   Setup result{
       petzval::compile(petzval::read_prescription(std::string(PETZVAL_BENCH_DATA) + "/lenses/" + id + ".json")),
@@ -44,7 +44,7 @@ Setup setup(const std::string& id, double field_deg, double edge_deg) {
   return result;
 }
 
-/// Rays all over the pupil of the field, ray by ray; the unit of the others.
+/// Rays all over the pupil of the field, ray by ray: the unit of the other times.
 void traced(benchmark::State& state, const Setup& setup) {
   const petzval::PupilSampler sampler(petzval::pupil_boundary(setup.lens, setup.near_field.front()));
   std::vector<petzval::Ray<double>> rays;

@@ -15,8 +15,8 @@
 
 #include "petzval/core/error.hpp"
 
-/// Options of the caller win over the defaults set here: rounds of all benchmarks, interleaved, and the time (s) that
-/// each takes in a round.
+/// Defaults that options of the caller override: the number of interleaved rounds of all benchmarks, and the time (s)
+/// of each in a round.
 inline void initialize(int argc, char** argv, int rounds = 15, double round_time = 0.02) {
   std::vector<std::string> defaults{"--benchmark_repetitions=" + std::to_string(rounds),
                                     "--benchmark_enable_random_interleaving=true",
@@ -29,7 +29,7 @@ inline void initialize(int argc, char** argv, int rounds = 15, double round_time
   if (benchmark::ReportUnrecognizedArguments(count, arguments.data())) std::exit(1);
 }
 
-/// Takes an option of the program itself, and the value behind it, out of the command line; nothing where it is not
+/// Removes an option of the program and its value from the command line. Nothing if it is not
 /// there.
 inline std::optional<std::string> take_option(std::vector<char*>& arguments, const std::string& flag) {
   const auto at = std::find(arguments.begin() + 1, arguments.end(), flag);
@@ -60,7 +60,7 @@ inline std::string digits(double value, int count = 4) {
   return text;
 }
 
-/// Keeps what every round of every benchmark took per item.
+/// Keeps the time per item of every round of every benchmark.
 class Rounds : public benchmark::BenchmarkReporter {
  public:
   struct Line {
@@ -97,10 +97,10 @@ class Rounds : public benchmark::BenchmarkReporter {
   std::vector<Line> lines_;
 };
 
-/// What the last column of a table compares with the first benchmark of the same group.
+/// The comparison with the first benchmark of the same group in the last column of a table.
 enum class Compare {
-  speed,  ///< how often the fastest round fits into the first's; times in nanoseconds
-  cost    ///< how often the first's fits into the fastest round; times in microseconds
+  speed,  ///< the first over the fastest round; times in nanoseconds
+  cost    ///< the fastest round over the first; times in microseconds
 };
 
 /// Prints one line per benchmark, in the order of registration: fastest, median and slowest round, and the comparison

@@ -56,7 +56,7 @@ TextbookTracer::TextbookTracer(const petzval::Lens& lens) {
   rear_z_ = static_cast<float>(surfaces.back().vertex_z);
 }
 
-// Arguments and result by value: the loop below keeps its ray in registers only where no address of it is taken.
+// Arguments and result by value: the loop below keeps its ray in registers only if its address is not taken.
 TextbookTracer::Hit TextbookTracer::intersect_sag(float radius, const Shape& shape, float vertex_z, Ray ray) {
   const glm::vec3 o = ray.origin - glm::vec3(0, 0, vertex_z);
   const float c = radius == 0 ? 0.f : 1 / radius;

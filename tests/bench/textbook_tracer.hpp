@@ -7,9 +7,9 @@
 
 #include "petzval/lens/lens.hpp"
 
-/// The tracer that a textbook leads to, in float, for the library to be measured against: spheres in the frame of their
-/// centre, the quadratic solved without cancellation, conics and aspheres by Newton's method on their sag,
-/// glm::refract, everything normalised, an early way out.
+/// The baseline of the benchmarks: a tracer by the textbook, in float. Spheres in the frame of their centre, the
+/// quadratic solved without cancellation, conics and aspheres by Newton's method on the sag, glm::refract, everything
+/// normalised, returns at the first failure.
 class TextbookTracer {
  public:
   struct Ray {
@@ -19,7 +19,7 @@ class TextbookTracer {
   /// Rotationally symmetric surfaces without odd terms, no mirrors.
   explicit TextbookTracer(const petzval::Lens& lens);
 
-  /// From the film to the scene; false where the ray is lost.
+  /// From the film to the scene; false if the ray is lost.
   bool trace(const Ray& film_ray, Ray& scene_ray) const;
 
  private:

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a ray costs on its way from the film through the lens, and how exact it comes out: the textbook tracer, the
-// library ray by ray, and its batches on every instruction set of the processor.
+// Time and error of rays from the film through the lens: the textbook tracer, the library ray by ray, and its batches
+// on every instruction set of the processor.
 //
 //   trace_bench [--isa baseline|avx2|avx512] [--json FILE] [options of Google Benchmark]
 //
-// All rays of a set every round, rounds of all rows interleaved, threads pinned; ratios are of the fastest rounds, for
-// on a shared machine a slow one measures the neighbours. One thread is timed by its own clock, two by the wall's.
-// Directions are judged by each row's own results.
+// Every round traces all rays of a set; rounds of all rows are interleaved and threads pinned. Ratios are of the
+// fastest rounds: on a shared machine slow rounds measure the neighbours. One thread is timed by its own clock, two by
+// wall time. Errors of directions are those of the row's own results.
 #include <benchmark/benchmark.h>
 #include <pthread.h>
 #include <sched.h>
@@ -37,7 +37,7 @@ using petzval::InstructionSet;
 
 constexpr std::size_t ray_count = 16384;
 
-/// Processors that this program may use; before the first thread is pinned.
+/// Processors that this program may use, before threads are pinned.
 std::vector<int> processors() {
   cpu_set_t allowed;
   std::vector<int> result;
@@ -66,7 +66,7 @@ void measure(benchmark::State& state, const Row& row, const std::vector<int>& co
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(ray_count));
 }
 
-/// Over the rays that get out by this row and in truth.
+/// Over rays that pass in this row and in long double.
 template <class T>
 DirectionError direction_error(const Work& work, const RaySet::Of<T>& set) {
   DirectionError error;
@@ -140,7 +140,7 @@ std::vector<Row> rows_of(const BenchLens& bench, const RaySet& set, const std::s
   return rows;
 }
 
-/// Eleven refracting surfaces of weak menisci, all of one kind, so that nothing but the kind differs.
+/// Eleven refracting surfaces of weak menisci, which differ only in the kind of surface.
 petzval::Prescription eleven(const std::string& kind, double conic, const std::vector<petzval::AsphereTerm>& terms) {
   petzval::Prescription p;
   p.id = "eleven_" + kind;
@@ -220,7 +220,7 @@ int run(std::vector<char*> arguments) {
   Rounds rounds;
   benchmark::RunSpecifiedBenchmarks(&rounds);
 
-  // Only what ran: the caller may have asked for less.
+  // Only rows that ran: the caller may have filtered.
   const auto results_of = [&](const std::vector<Row>& asked) {
     std::vector<Result> results;
     for (const Row& row : asked) {

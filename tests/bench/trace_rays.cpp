@@ -77,7 +77,7 @@ testing_lenses::Tables<long double> exact_tables(const petzval::Lens& lens) {
   return tables;
 }
 
-/// Takes a ray for the line it lies on: the length of a rounded direction is no part of the question.
+/// Uses a ray as a line: the length of a rounded direction does not matter.
 template <class T>
 void add_exact(const petzval::kernel::LensView<long double>& view, RaySet::Of<T>& set) {
   using L = petzval::kernel::Vec<long double>;

@@ -11,17 +11,17 @@
 #include "petzval/lens/lens.hpp"
 #include "textbook_tracer.hpp"
 
-/// Rays in double, and in float as a caller in float has them: rounded, directions too.
+/// Rays in double and, rounded, in float.
 struct RaySet {
   template <class T>
   struct Of {
     std::vector<petzval::Ray<T>> rays;
-    /// Where each leaves for, in long double; none where it is lost.
+    /// The direction of each behind the lens, in long double; nothing if it is lost.
     std::vector<std::optional<petzval::kernel::Vec<long double>>> exact;
   };
   Of<float> in_float;
   Of<double> in_double;
-  double passing = 0;  ///< the part of them that gets out
+  double passing = 0;  ///< the share that passes
 
   template <class T>
   const Of<T>& of() const {
@@ -33,10 +33,10 @@ struct RaySet {
   }
 };
 
-/// A lens and rays from its film towards the scene, as a renderer shoots them.
+/// A lens and rays from its film towards the scene, as in a renderer.
 ///
-/// mix: film points all over a frame of 3:2, towards boxes in the plane of the rear vertex: pbrt's way, who keeps for
-/// each of 64 rings of the film the bounding box of what gets out. pass: those of them that get out.
+/// mix: film points all over a frame of 3:2, towards boxes in the plane of the rear vertex: as in pbrt, the bounding
+/// box of the passing rays for each of 64 rings of the film. pass: those of them that pass.
 struct BenchLens {
   std::string id, name;
   petzval::Lens lens;

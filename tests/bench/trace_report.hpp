@@ -12,7 +12,7 @@
 #include "trace_rays.hpp"
 #include "trace_work.hpp"
 
-/// A line of the tables: what is measured. Codes without lanes are IEEE code compiled for the baseline.
+/// A row of the tables. Codes without lanes are IEEE code compiled for the baseline.
 struct Row {
   const BenchLens* bench;
   const RaySet* set;
@@ -29,17 +29,17 @@ struct Row {
   bool beside(const Row& other) const { return bench == other.bench && rays == other.rays; }
 };
 
-/// Directions against long double, over the rays that get out by the row and in truth; rad.
+/// Errors of directions against long double, over rays that pass in both; rad.
 struct DirectionError {
   double rms = 0, max = 0;
 };
 
-/// A row and what was found out about it.
+/// A row and its results.
 struct Result {
   Row row;
   Rounds::Line times;
   DirectionError error;
-  const Result* textbook = nullptr;  ///< on the same rays, where that was measured too
+  const Result* textbook = nullptr;  ///< on the same rays, if measured
 
   double surfaces() const { return static_cast<double>(row.bench->lens.surface_count()); }
   double ns() const { return 1e9 * times.min(); }
@@ -53,5 +53,5 @@ void print_results(const std::vector<Result>& results);
 /// Lenses of one kind of surface each, the first of them spheres, as a table in Markdown.
 void print_kinds(const std::vector<Result>& results);
 
-/// An array of flat objects; a ratio that was not measured is null.
+/// An array of flat objects; null: a ratio that was not measured.
 std::string json(const std::vector<Result>& results);

@@ -15,16 +15,16 @@
 #include "textbook_tracer.hpp"
 #include "trace_rays.hpp"
 
-/// One way to trace a set of rays to the scene: what a round times, and whose results are judged afterwards. Every
-/// thread makes its own, with its own copy of the rays.
+/// One way to trace a set of rays to the scene: timed in rounds, its results compared afterwards. Every thread has its
+/// own, with its own copy of the rays.
 class Work {
  public:
   virtual ~Work() = default;
 
-  /// All rays once, everything that comes out written to memory.
+  /// Traces all rays once and writes all results to memory.
   virtual void trace() = 0;
 
-  /// Where a ray left for, after trace(); none where it was lost.
+  /// The direction of a ray after trace(); nothing if it was lost.
   virtual std::optional<petzval::Vec3<double>> direction(std::size_t ray) const = 0;
 };
 
@@ -51,7 +51,7 @@ class TextbookWork : public Work {
   std::vector<char> passed_;
 };
 
-/// The trace of one ray, called for each.
+/// The trace of one ray, called for each ray.
 template <class T>
 class SingleWork : public Work {
  public:
@@ -75,7 +75,7 @@ class SingleWork : public Work {
   std::vector<petzval::TracedRay<T>> traced_;
 };
 
-/// The kernel that the others are tested against, called for each.
+/// The reference kernel, called for each ray.
 template <class T>
 class TemplateWork : public SingleWork<T> {
  public:
@@ -94,7 +94,7 @@ class TemplateWork : public SingleWork<T> {
   }
 };
 
-/// Memory from the beginning of a cache line on, as blocks of rays like it.
+/// Memory aligned to cache lines.
 template <class T>
 struct OnCacheLines {
   using value_type = T;
@@ -164,7 +164,7 @@ class ArraysWork : public Work {
   std::vector<int> surfaces_;
 };
 
-/// A batch over structures of arrays, with the derivatives by the place on the film.
+/// A batch over structures of arrays, with derivatives by the film point.
 template <class T>
 class DifferentialsWork : public ArraysWork<T> {
  public:

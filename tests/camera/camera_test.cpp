@@ -162,7 +162,7 @@ TEST(Camera, HasItsEdgesOnTheFilm) {
   }
 }
 
-/// A renderer's own model: a hole of 2 by 2 mm in a plane 50 mm before the film.
+/// A renderer's own model: a square hole of 2 x 2 mm in a plane 50 mm in front of the film.
 class HoleModel {
  public:
   explicit HoleModel(double film_radius)

@@ -32,7 +32,7 @@ const ModelCandidate& rung(const ModelChoice& choice, ModelKind model) {
   return *std::ranges::find(choice.table, model, &ModelCandidate::model);
 }
 
-/// The promise: budgets hold for samples that the choice has not seen, and no faster rung would have been enough.
+/// Budgets hold for samples that the choice has not seen, and no faster model is within them.
 struct Scene {
   const char* id;
   double width, focus, near, far;
@@ -97,7 +97,7 @@ TEST_P(Promise, HoldsOnFreshSamples) {
       if (candidate.model == choices[k].model) {
         EXPECT_TRUE(inside(1)) << "budget " << k;
       }
-      // Of the blur's sharp minima samples may see little: there the bound is only an upper one.
+      // Samples may miss sharp minima of the blur: there the bound is only an upper one.
       if (!budget.max_of_blur && candidate.ns_per_ray < rung(choices[k], choices[k].model).ns_per_ray) {
         EXPECT_FALSE(inside(0.9)) << "budget " << k;
       }
@@ -137,7 +137,7 @@ SceneRequirements usual() { return {.near_mm = 1500}; }
 
 Lens usual_lens() { return focused("double_gauss_52mm_f1.8", 3000); }
 
-/// Budgets of which several tests look at the choices.
+/// Budgets for several tests.
 enum Usual : std::size_t { none, one_px, px_and_shape, zero_px, half_px, tenth_of_blur, either, px_and_no_blur, all };
 const std::vector<ModelChoice>& usual_choices() {
   static const std::vector<ModelChoice> choices = [] {
@@ -184,12 +184,12 @@ TEST(ChooseModel, TakesTheFastestInside) {
   EXPECT_EQ(std::ranges::count_if(usual_choices()[zero_px].table, &ModelCandidate::inside), 1);
 }
 
-/// Either part of the pair is enough for each ray, so no rung that keeps one of them is left out.
+/// Each ray must be within one part of the pair: a model within one of them is accepted.
 TEST(ChooseModel, AllowsPixelsOrAPartOfTheBlur) {
   const auto& choices = usual_choices();
   for (std::size_t k = 0; k < models().size(); ++k) {
     const bool px = choices[half_px].table[k].inside, blur = choices[tenth_of_blur].table[k].inside;
-    // What blur_guard adds may cost a rung that pixels alone would take, by a hair.
+    // The margin of blur_guard may exclude a model that is just within the pixels.
     if (px && choices[half_px].table[k].bound_px * 1.15 > 0.5) continue;
     EXPECT_GE(choices[either].table[k].inside, px || blur) << name(models()[k]);
     EXPECT_EQ(choices[px_and_no_blur].table[k].inside, choices[one_px].table[k].inside) << name(models()[k]);
@@ -231,7 +231,7 @@ TEST(ChooseModel, SaysWhatElseIsNotNeeded) {
   const auto one = choose_model(lens, {.near_mm = 1500, .film = film, .wavelengths_nm = {656.3}}, budgets[0]);
   EXPECT_FALSE(says(one.not_needed, "wavelengths"));
   EXPECT_EQ(one.table[0].error.wavelength.size(), 1u);
-  // Nothing is said of what the budget does not ask for.
+  // Unset limits give no reasons.
   EXPECT_FALSE(says(loose[2].not_needed, "pupil"));
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A camera in a scene of radiance 1 all around: the mean weight of a film point's samples is its irradiance.
+// A camera in a scene of radiance 1: the mean weight of the samples of a film point is its irradiance.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -34,7 +34,7 @@ double mean_weight(const Camera& camera, const FilmPoint& film, std::uint32_t co
   return sum / count;
 }
 
-/// Films within the fields that the lenses were made for.
+/// Films within the declared fields of the lenses.
 struct Case {
   const char* id;
   double half_width;  ///< of the film, mm
@@ -60,7 +60,7 @@ TEST(WhiteFurnace, ExposesAsTheLensDoes) {
   }
 }
 
-// pi sin^2 of the paraxial pupil's rim for first-order models, the lens's own exposure for those that are fitted.
+// pi sin^2 of the rim of the paraxial pupil for first-order models, the exposure of the lens for fitted ones.
 TEST(WhiteFurnace, ExposesOnEveryRungAsThatRungsPupil) {
   const Lens lens = with_focus(with_f_number(testing::data_lens("double_gauss_100mm_f2.0"), 2.8), 3000);
   const Pupils paraxial = pupils(lens);
@@ -78,7 +78,7 @@ TEST(WhiteFurnace, ExposesOnEveryRungAsThatRungsPupil) {
   }
 }
 
-// What is stated is the largest of many film points; other points may find a little more.
+// The stated error is the largest of many film points; other points may exceed it a little.
 TEST(WhiteFurnace, ExposesWithinTheErrorThatIsStatedForARung) {
   const Lens lens = with_focus(testing::data_lens("double_gauss_100mm_f2_28deg"), 3000);
   const std::array points{FilmPoint{1.2, -3.4}, FilmPoint{3.1, 5.7},  FilmPoint{-9.4, 2.2},
@@ -113,8 +113,8 @@ TEST(WhiteFurnace, GivesOneOnTheAxisWhereThatIsAskedFor) {
   }
 }
 
-// Tables have 64 strips from the axis to the corner. Were a picture brighter where two of them meet than within one,
-// the mean over all strips at one place in them would show it.
+// Tables have 64 strips from the axis to the corner. The mean over all strips, at one place within them, would show
+// rings at their borders.
 TEST(WhiteFurnace, ShowsNoRings) {
   constexpr int strips = 64, places = 8, count = 4096;
   for (const auto& [id, half_width] :
@@ -122,7 +122,7 @@ TEST(WhiteFurnace, ShowsNoRings) {
     const Lens lens = testing::data_lens(id);
     const Film film{.width_mm = 2 * half_width, .height_mm = 2 * half_width};
     const Camera camera(lens, film, {.model = ModelKind::exact_float});
-    // The lens's own irradiance at every fourth radius, and evenly in between (within 1e-4).
+    // The irradiance of the lens at every fourth radius, interpolated between (within 1e-4).
     const auto side_of = [&](double i) { return film.radius_mm() / std::numbers::sqrt2 * i / (strips * places); };
     std::vector<double> irradiance;
     for (int i = 0; i <= strips * places; i += 4) irradiance.push_back(film_irradiance(lens, {side_of(i), side_of(i)}));

@@ -26,7 +26,7 @@ const Lens& gauss() {
   return lens;
 }
 
-/// What a host says of its camera: where things lie that are right, above and in front of it, and its unit.
+/// The camera frame of a host: its directions right, up and ahead, and its unit.
 struct Says {
   Host host;
   Vec3<double> right, up, ahead;
@@ -46,7 +46,7 @@ TEST_P(HostFrames, HaveTheirHostsAxesAndUnits) {
   EXPECT_NEAR(
       glm::distance(frame.point_to_host({2000, 3000, -5000}), (right * 2000.0 + up * 3000.0 + ahead * 5000.0) * per_mm),
       0, 1e-12 * 5000 * per_mm);
-  // Looking ahead with up above, a right-handed frame has its right where the cross product points.
+  // In a right-handed frame, right is the cross product of ahead and up.
   const bool right_handed = glm::dot(glm::cross(ahead, up), right) > 0;
   EXPECT_EQ(right_handed, host == Host::mitsuba || host == Host::arnold || host == Host::appleseed);
 }
@@ -71,7 +71,7 @@ TEST(HostFrame, GoesThereAndBack) {
         EXPECT_NEAR(glm::length(there.direction), 1, 1e-15);
         EXPECT_EQ(there.origin, frame.point_to_host(ray.origin));
         EXPECT_EQ(there.direction, frame.direction_to_host(ray.direction));
-        // Lengths scale, whatever the host.
+        // Lengths scale for every host.
         EXPECT_NEAR(glm::distance(there.origin, frame.point_to_host({0, 0, 0})), glm::length(ray.origin) * per_mm,
                     1e-12 * 2000 * per_mm);
       }

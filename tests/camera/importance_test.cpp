@@ -35,7 +35,7 @@ struct Case {
   std::string lens;
   Film film;
   ModelKind model;
-  double near;  ///< how exactly lines come back, mm on the film
+  double near;  ///< accuracy of returning lines, mm on the film
 };
 
 std::ostream& operator<<(std::ostream& out, const Case& c) { return out << c.lens << ' ' << name(c.model); }
@@ -56,7 +56,7 @@ TEST_P(Importances, OfACameraRayAreItsOwnSampleTurnedRound) {
     const Vec3<double> point = r.ray.origin + r.ray.direction * std::pow(10, 9 * x[4]);
     const Importance back = camera.importance({point, -r.ray.direction});
     expect_finite(back);
-    // A line by an edge may lie on its other side when it comes back.
+    // A line near an edge may return on its other side.
     at_edges += !back || back.pdf_pupil == 0;
     if (!back || back.pdf_pupil == 0) continue;
     EXPECT_EQ(back.fate, RayFate::transmitted);
@@ -82,7 +82,7 @@ TEST_P(Importances, OfWhatTheCameraSeesAreConnected) {
     const auto x = random(i);
     const CameraRay r = camera.sample(sample_at(f, x));
     if (!r) continue;
-    // First order begins in the pupil, in the middle of the lens.
+    // First-order rays start in the pupil, inside the lens.
     const double leaves = r.ray.direction.z < 0 ? std::max((r.ray.origin.z + 2) / -r.ray.direction.z, 0.0) : 0;
     const Vec3<double> point = r.ray.origin + r.ray.direction * (leaves + 10 * std::pow(10, 5 * x[4]));
     ++seen;
@@ -93,7 +93,7 @@ TEST_P(Importances, OfWhatTheCameraSeesAreConnected) {
     EXPECT_NEAR(camera.pdf_importance(point, s.direction) / s.pdf, 1, 1e-6);
     EXPECT_NEAR(glm::length(s.direction), 1, 1e-12);
     EXPECT_NEAR(glm::distance(point + s.direction * s.distance, s.on_pupil) / (1 + s.distance), 0, 1e-14);
-    // The connection is what the camera makes of its ray.
+    // The connection equals the importance of its ray.
     const Importance again = camera.importance({point, s.direction});
     EXPECT_EQ(again.fate, s.importance.fate);
     EXPECT_NEAR(again.film.x, s.importance.film.x, near);
@@ -131,7 +131,7 @@ TEST(Importance, OfAPinholeIsThatOfTheThickLensInOnePoint) {
       EXPECT_NEAR(glm::distance(p.on_pupil, Vec3<double>{0, 0, pupils(lens).entrance.z}), 0, 1e-12);
       EXPECT_EQ(pinhole.importance({point, p.direction}).we, 0);
     }
-    // Not the same: the cosines of all those rays are there in the scene, and not here.
+    // The results differ: the scene side has the cosines of those rays.
     EXPECT_NEAR(one / all, 1, 1e-2);
   }
 }
@@ -186,7 +186,7 @@ TEST(Importance, IsConnectedToAFilmThatIsDarkOnTheAxis) {
     missed += !(camera.pdf_importance(r.ray.origin + r.ray.direction * 1000.0, -r.ray.direction) > 0);
   }
   EXPECT_GT(seen, 500);
-  EXPECT_LT(missed, 0.01 * seen);  // the disc ends pupils abruptly within a field
+  EXPECT_LT(missed, 0.01 * seen);  // the disc clips pupils abruptly within a field
 }
 
 TEST(Importance, SaysWhereARayMissesTheFilm) {

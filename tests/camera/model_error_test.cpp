@@ -51,7 +51,7 @@ TEST(ModelError, OfExactDoubleIsNone) {
   }
 }
 
-/// Rays in float land within a hundredth of a micrometre or two of those in double.
+/// Hits of rays in float lie within 0.01 or 0.02 um of those in double.
 TEST(ModelError, OfExactFloatIsRounding) {
   for (const double f_number : {2.0, 4.0}) {
     const Lens lens = focused("double_gauss_52mm_f1.8", 3000, f_number);
@@ -76,7 +76,7 @@ TEST(ModelError, CountsInPixelsToo) {
   EXPECT_LE(fine.p99_mm, fine.max_mm);
 }
 
-/// By hand, straight from the definition: rays around the rim of the corner's pupil through both models.
+/// Directly from the definition: rays at the rim of the corner's pupil through both models.
 TEST(ModelError, IsTheDistanceInThePlaneOverTheMagnification) {
   const Lens lens = focused("double_gauss_52mm_f1.8", 3000, 5.6);
   const ExactModel<double> exact(lens, 22);
@@ -91,7 +91,7 @@ TEST(ModelError, IsTheDistanceInThePlaneOverTheMagnification) {
                                                 0.9 + 0.1 * static_cast<double>(i / 100) / 20);
     px[i] = s.x, py[i] = s.y;
   }
-  // The last three lines run through one point of the pupil, from two neighbours of the corner too.
+  // The last three lines pass through one point of the pupil, from the corner and two neighbours.
   constexpr double step = 0.01;
   const auto [middle_x, middle_y] = exact.pupils().middle({18, 12});
   for (std::size_t i = count - 3; i < count; ++i) px[i] = middle_x, py[i] = middle_y;
@@ -156,7 +156,7 @@ TEST(ModelError, IsTheSameForAnyNumberOfThreads) {
   EXPECT_EQ(one.exposure, three.exposure);
 }
 
-/// Fresh samples agree: the largest errors are found by either set.
+/// Two sets of samples find the same largest errors.
 TEST(ModelError, HardlyDependsOnTheSamples) {
   const Lens lens = focused("double_gauss_52mm_f1.8", 3000);
   for (const ModelKind model : {ModelKind::thick, ModelKind::polynomial_5, ModelKind::polynomial_9}) {
@@ -203,7 +203,7 @@ TEST(ModelError, TellsWavelengthsApart) {
   EXPECT_EQ(all.all.rays, rays);
 }
 
-/// Wide fields, where planes are seen edge-on, and mirrors with a hole: numbers all the same.
+/// Wide fields, which see planes edge-on, and mirrors with a central obscuration have finite errors.
 TEST(ModelError, IsFiniteForEveryKindOfLens) {
   for (const char* id : {"fisheye_6.3mm_f2.8", "catadioptric_mangin_1000mm_f7.5", "anamorphic_60mm_2x",
                          "mirror_newton_200mm_f8", "hologon_15mm_f8"}) {

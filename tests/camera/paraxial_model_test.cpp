@@ -27,7 +27,7 @@ constexpr std::array first_order_models{ModelKind::pinhole, ModelKind::thin, Mod
                                         ModelKind::thick};
 const double film_24x36 = std::hypot(18, 12);
 
-/// A line of the film's space.
+/// A line in image space.
 struct Line {
   double fx, fy, px, py;
 };
@@ -75,7 +75,7 @@ std::array<double, 2> meet(const Ray<double>& ray, double z) {
   return {ray.origin.x + t * ray.direction.x, ray.origin.y + t * ray.direction.y};
 }
 
-/// The exact lens, nothing clipped.
+/// The exact lens without clipping.
 Ray<double> exact(const Lens& lens, const Line& l, std::size_t wavelength = 0) {
   const TwoPlanes space = two_planes(lens);
   Vec3<double> d{l.px - l.fx, l.py - l.fy, space.depth()};
@@ -97,7 +97,7 @@ std::vector<Line> random_lines(int count, double film, double pupil, unsigned se
   return lines;
 }
 
-/// An image-space telecentric lens: the stop stands in the front focal plane.
+/// A lens telecentric in image space: the stop lies in the front focal plane.
 Prescription telecentric() {
   Prescription p;
   p.name = "telecentric";
@@ -108,14 +108,14 @@ Prescription telecentric() {
   return p;
 }
 
-// The models are what the exact lens is near the axis: what they leave out is of third order.
+// The models equal the exact lens near the axis, up to errors of third order.
 TEST(ParaxialModel, DiffersFromTheExactRayByTheCubeOfTheHeight) {
   std::vector<Prescription> prescriptions;
   for (const char* id : {"double_gauss_100mm_f2.0", "fisheye_10mm_f4", "eye_gullstrand_le_grand", "modern_50mm_f1.0",
                          "catadioptric_mangin_1000mm_f7.5", "mirror_newton_200mm_f8", "telephoto_250mm_f5.6"}) {
     prescriptions.push_back(testing::data_prescription(id));
   }
-  // The film of the eye lies in water; the other way round the scene does.
+  // The film of the eye lies in water; of the reversed eye, the scene.
   prescriptions.push_back(reverse(testing::data_prescription("eye_gullstrand_le_grand")));
   prescriptions.back().surfaces.back().thickness = 30;
   for (const Prescription& prescription : prescriptions) {
@@ -165,7 +165,7 @@ TEST(ParaxialModel, GoesBackToTheLineThatItCameFrom) {
       const auto lines = random_lines(20, 5, 3);
       const auto rays = to_scene(model, lines);
       for (std::size_t i = 0; i < lines.size(); ++i) {
-        // Anywhere on the line, running towards the lens.
+        // Anywhere on the line, in the direction of the lens.
         const Ray<double> ray{rays[i].ray.origin + 37.0 * rays[i].ray.direction, -rays[i].ray.direction};
         const Back back = to_film(model, ray);
         EXPECT_EQ(back.fate, RayFate::transmitted);
@@ -200,14 +200,14 @@ TEST(ParaxialModel, IsBlindToThePupilSampleAsAPinhole) {
   const auto chief = to_scene(thick, {{4, -9, middle[0], middle[1]}})[0].ray;
   EXPECT_EQ(rays[0].ray.direction, rays[1].ray.direction);
   EXPECT_NEAR(glm::length(rays[0].ray.direction - chief.direction), 0, 1e-14);
-  // All through one point: the middle of the entrance pupil.
+  // All rays pass through the centre of the entrance pupil.
   EXPECT_NEAR(meet(rays[0].ray, pupils(lens).entrance.z)[0], 0, 1e-11);
   EXPECT_NEAR(meet(rays[0].ray, pupils(lens).entrance.z)[1], 0, 1e-11);
-  // And the pupil is sampled as that of the thick lens: exposure stays the same.
+  // The pupil is sampled like that of the thick lens, with the same exposure.
   EXPECT_EQ(pinhole.pupils().area({4, -9}), thick.pupils().area({4, -9}));
 }
 
-// A film point on the axis sees a disc whose rim lies u' off the axis: pi sin^2 u'.
+// A film point on the axis sees a disc of half angle u': pi sin^2 u'.
 double axial_exposure(const FilmPupilTable& pupils) {
   const double depth = pupils.space().depth(), area = pupils.area({0, 0});
   double sum = 0;
@@ -321,7 +321,7 @@ TEST(ParaxialModel, HasAMapForEveryWavelength) {
     }
     EXPECT_NEAR(model.pupils().area({0, 3}, w), pupils.area({0, 3}), 1e-3 * pupils.area({0, 3}));
   }
-  // The colours part.
+  // Chromatic aberration separates the wavelengths.
   EXPECT_GT(glm::length(to_scene(model, lines, {.all = 0})[0].ray.direction -
                         to_scene(model, lines, {.all = 2})[0].ray.direction),
             1e-6);

@@ -22,7 +22,7 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-/// Where a ray that left the lens meets the film.
+/// The film point of a ray in the scene.
 FilmPoint at_film(const Lens& lens, const Ray<double>& ray) {
   const double t = (lens.film_z() - ray.origin.z) / ray.direction.z;
   return {ray.origin.x + t * ray.direction.x, ray.origin.y + t * ray.direction.y};
@@ -38,7 +38,7 @@ std::ostream& operator<<(std::ostream& out, const Case& c) { return out << c.len
 
 class Projections : public ::testing::TestWithParam<Case> {};
 
-// Chief rays are found from the scene by another way: aimed at the stop.
+// The same chief rays by other code: aimed at the stop from the scene.
 TEST_P(Projections, AreWhereChiefRaysMeetTheFilm) {
   const auto& [id, film, widest] = GetParam();
   const Lens lens = testing::data_lens(id);
@@ -53,7 +53,7 @@ TEST_P(Projections, AreWhereChiefRaysMeetTheFilm) {
       const double field = a * widest * pi / 180, azimuth = 2 * pi * b, distance = 200 * std::pow(10, 7 * c);
       const double z = pupil_z - distance * std::cos(field);
       const double across = distance * std::sin(field);
-      // What lies in front of the front element or, seen past it, beside it.
+      // Points in front of the front element, or beside it.
       if (z > -30 && !(field > pi / 2 && across > 100)) continue;
       const AimedRay chief = chief_ray(lens, {field, z, azimuth});
       if (!chief) continue;
@@ -90,13 +90,13 @@ TEST(Projection, OfACameraRaysPointsAreItsFilmPoint) {
     SCOPED_TRACE(name(model));
     const Camera camera(testing::data_lens("double_gauss_100mm_f2_28deg"), wide, {.model = model});
     for (const FilmPoint film : {FilmPoint{0, 0}, FilmPoint{0, 9}, FilmPoint{-17, 3}, FilmPoint{12, -10}}) {
-      // Any ray of the film point does: from where its chief ray goes the film point is found again.
+      // Projecting a point of the chief ray returns its film point.
       const CameraRay any = camera.sample({.film = film, .pupil_u = 0.1, .pupil_v = 0.001});
       ASSERT_TRUE(any);
       for (const double distance : {150.0, 4000.0, 1e9}) {
         const Projection first = camera.project(any.ray.origin + any.ray.direction * distance);
         ASSERT_TRUE(first);
-        // Near the chief ray, the more so the nearer to focus.
+        // Other rays project near it, the nearer the closer to focus.
         EXPECT_NEAR(std::hypot(first.film.x - film.x, first.film.y - film.y), 0, distance < 1000 ? 4 : 0.5);
         const auto [column, row] = first.raster;
         const FilmPoint again = camera.film().point(column, row);
@@ -138,7 +138,7 @@ TEST(Projection, FindsPointsThroughCylinders) {
   }
 }
 
-// The chief ray of a scene point, found from the scene, meets the film in space where the projection says.
+// The chief ray of a scene point meets the film at the projected point.
 TEST(Projection, IsWhereChiefRaysMeetATiltedFilm) {
   const Lens lens = testing::data_lens("double_gauss_100mm_f2_28deg");
   const Film leaning{

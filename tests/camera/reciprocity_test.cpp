@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The power of a small light is the same, counted by rays from the film that meet it or by connections to the lens.
+// The power of a small light is the same by rays from the film and by connections to the lens.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,7 +21,7 @@ namespace {
 constexpr double pi = std::numbers::pi;
 constexpr std::uint32_t replicates = 16, samples = 1 << 13;
 
-/// A square that shines evenly, facing along the axis.
+/// A uniform square light that faces along the axis.
 struct Light {
   Vec3<double> centre;
   double side;
@@ -43,7 +43,7 @@ Estimate estimate(const Once& once) {
   return {mean, std::sqrt(std::max(squares / replicates - mean * mean, 0.0) / (replicates - 1))};
 }
 
-/// Mean irradiance of the film from places on the light and connections, and the part of the film it reaches.
+/// Mean irradiance of the film by connections from the light, and the part of the film that it reaches.
 struct SceneSide {
   Estimate irradiance;
   double low_x = 1e9, high_x = -1e9, low_y = 1e9, high_y = -1e9;
@@ -69,7 +69,7 @@ SceneSide from_light(const Camera& camera, const Light& light) {
   return result;
 }
 
-/// The same from film samples, all of them where the light's image is.
+/// The same by film samples within the image of the light.
 Estimate from_film(const Camera& camera, const Light& light, const SceneSide& scene) {
   const double margin_x = 0.02 * (scene.high_x - scene.low_x), margin_y = 0.02 * (scene.high_y - scene.low_y);
   const double left = scene.low_x - margin_x, width = scene.high_x + margin_x - left;
@@ -111,7 +111,7 @@ void expect_reciprocity(const Lens& lens, const Film& film, const CameraOptions&
                         double distance, double tolerance = 0, double side = 0.04, double precision = 2e-3) {
   const Camera camera(lens, film, options);
   const double angle = degrees * pi / 180;
-  // Somewhat off the meridian, so that no symmetry helps.
+  // Off the meridian, without symmetry.
   const Light light{{0.3 * distance * std::sin(angle), 0.954 * distance * std::sin(angle), -distance * std::cos(angle)},
                     side * distance};
   const SceneSide scene = from_light(camera, light);
@@ -170,7 +170,8 @@ TEST(Reciprocity, HoldsForModelsWithoutRims) {
   for (const ModelKind model :
        {ModelKind::pinhole, ModelKind::thin, ModelKind::thin_two_disc, ModelKind::thick, ModelKind::polynomial_7}) {
     SCOPED_TRACE(name(model));
-    // Polynomials conserve etendue as well as they fit; stars have the area of a pinhole's disc as well as tables go.
+    // Polynomials conserve etendue within their errors; polygons have the area of a pinhole's disc within those of
+    // tables.
     const bool nearly = model == ModelKind::polynomial_7 || model == ModelKind::pinhole;
     expect_reciprocity(lens, wide, {.model = model}, 6, 2500, nearly ? 1e-3 : 0);
   }
@@ -190,7 +191,7 @@ TEST(Reciprocity, HoldsForTiltedFilms) {
     const bool nearly = model == ModelKind::polynomial_7 || model == ModelKind::pinhole;
     expect_reciprocity(lens, film, {.model = model}, 6, 2500, nearly ? 1e-3 : 0);
   }
-  // Far off the axis, where a pinhole's ray is not the mean of its sample's lines.
+  // Far off the axis the ray of a pinhole is not the mean of the lines of its sample.
   expect_reciprocity(lens, {.width_mm = 30, .height_mm = 30, .shift_y_mm = -14, .tilt_rad = 20 * degree},
                      {.model = ModelKind::pinhole}, 13, 2500, 1e-3);
   expect_reciprocity(testing::data_lens("fisheye_8mm_f2.8"),

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One camera shared by threads that ask everything of it at once. Each must find what a single thread finds; built with
-// -fsanitize=thread, the test also sees races that leave no trace in the numbers.
+// Threads share a camera and use it at the same time. Each must get the results of a single thread. Built with
+// -fsanitize=thread, the test also finds races that do not change the numbers.
 #include <gtest/gtest.h>
 
 #include <barrier>
@@ -13,7 +13,7 @@
 namespace petzval {
 namespace {
 
-/// What the camera says, number by number.
+/// Results of the camera.
 std::vector<double> answers(const Camera& camera) {
   std::vector<double> numbers;
   const auto say = [&](const Ray<double>& ray) {

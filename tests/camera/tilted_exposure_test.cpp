@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Films that lean: pupils and exposures against rays traced from the film's points by other means.
+// Tilted films: pupils and exposures, compared with rays traced from their points by other code.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -41,7 +41,7 @@ struct Case {
   double f_number;  ///< 0: wide open
   Film film;
   double tilt_deg, swing_deg;
-  double useful;  ///< least part of the samples that pass
+  double useful;  ///< least share of the samples that pass
 
   Lens focused() const {
     const Lens open = testing::data_lens(lens);
@@ -54,8 +54,8 @@ std::ostream& operator<<(std::ostream& out, const Case& c) {
   return out << c.lens << " at f/" << c.f_number << ", " << c.tilt_deg << " and " << c.swing_deg << " degrees";
 }
 
-/// Rays from a film point to places in a plane across the axis, traced: which pass, and what each adds to the
-/// irradiance for an area in that plane.
+/// Traced rays from a film point to places in a plane across the axis: which pass, and the irradiance per area of that
+/// plane.
 struct Traced {
   std::vector<bool> passes;
   std::vector<double> per_area;
@@ -69,7 +69,7 @@ Traced traced(const Lens& lens, const Film& pose, const FilmPoint& film, double 
   for (const auto& [x, y] : places) {
     const Vec3<double> along = Vec3<double>{x, y, z} - from;
     const double length = glm::length(along);
-    // Film and lens lie on either side of each other as in the lens: towards the scene.
+    // Towards the scene.
     const double towards = along.z < 0 ? 1 : -1;
     rays.push_back({{x, y, z}, along * (towards / length)});
     result.per_area.push_back(std::abs(along.z) * glm::dot(along, normal) * -towards / std::pow(length, 4));
@@ -140,7 +140,7 @@ TEST_P(Leaning, SamplesReachTheSceneAndMissNothing) {
 /// Irradiance of a film point in a scene of radiance 1, by a grid of rays through the last vertex's plane.
 double irradiance(const Lens& lens, const Film& pose, const FilmPoint& point) {
   const pupil_detail::Face face = pupil_detail::last_face(lens);
-  // First all that the last surface could take, then what of it passes.
+  // First a grid over the last surface, then over the part that passes.
   std::array<double, 2> low{-1.6 * face.half, -1.6 * face.half}, high{1.6 * face.half, 1.6 * face.half};
   double sum = 0;
   for (const int side : {200, 600}) {
@@ -199,13 +199,13 @@ INSTANTIATE_TEST_SUITE_P(
                       Case{"anamorphic_60mm_2x", 0, {.width_mm = 20, .height_mm = 14}, 6, 6, 0.5},
                       Case{"catadioptric_mangin_1000mm_f7.5", 0, {.width_mm = 20, .height_mm = 20}, 8, 0, 0.9}));
 
-// A ball's paraxial exit pupil lies far behind the film, and its rays are elsewhere. Half of the samples pass: means
-// are as exact as they are many.
+// The paraxial exit pupil of a ball lies far behind the film and far from its rays. Half of the samples pass, which
+// limits the accuracy of means.
 TEST(TiltedFilm, ExposesWhereAberrationsMoveThePupil) {
   expect_exposures(testing::data_lens("ball_10mm"), leaning({.width_mm = 0.6, .height_mm = 0.45}, -8, 5), 0.49, 4e-3);
 }
 
-// Where the exit pupil is at infinity, pupils lie in the plane of the last vertex.
+// If the exit pupil is at infinity, pupils lie in the plane of the last vertex.
 TEST(TiltedFilm, ExposesBehindATelecentricLens) {
   Prescription p;
   p.name = "telecentric";
@@ -215,7 +215,7 @@ TEST(TiltedFilm, ExposesBehindATelecentricLens) {
   expect_exposures(compile(p), leaning({.width_mm = 20, .height_mm = 20}, 15, -10));
 }
 
-// Models of one disc expose by what of it a film point sees.
+// Models with one disc have the exposure of the part that a film point sees.
 TEST(TiltedFilm, ExposesAsADiscDoes) {
   for (const char* id : {"double_gauss_100mm_f2.0", "fisheye_16mm_f2.8"}) {
     const Lens lens = testing::data_lens(id);
@@ -247,7 +247,7 @@ TEST(TiltedFilm, ExposesAsADiscDoes) {
   }
 }
 
-// Each rung's exposure against the exact one's changes with a tilt by little more than it is off upright.
+// The exposure error of each model with tilt is little more than without.
 TEST(TiltedFilm, ExposesAlikeOnEveryRung) {
   const Lens lens = with_f_number(testing::data_lens("double_gauss_100mm_f2.0"), 4);
   const Film film = leaning(wide, 10, 5);
@@ -263,7 +263,7 @@ TEST(TiltedFilm, ExposesAlikeOnEveryRung) {
   }
 }
 
-// The pinhole's samples are of its own disc.
+// A pinhole samples its own disc.
 TEST(TiltedFilm, LosesNoSampleOfAPinhole) {
   for (const double tilt : {0.01, 20.0}) {
     const Camera camera(testing::data_lens("double_gauss_100mm_f2.0"), leaning(shifted, tilt, tilt / 2),
@@ -274,7 +274,7 @@ TEST(TiltedFilm, LosesNoSampleOfAPinhole) {
   }
 }
 
-// Units do not matter: with all lengths times a power of two, the same numbers come out.
+// Scaling all lengths by a power of two gives the same numbers.
 TEST(TiltedFilm, WeighsAlikeInEveryUnit) {
   const Prescription phone = scale(testing::data_prescription("phone_5.6mm_f3.5"), 0.03);
   const Film film = leaning({.width_mm = 0.06, .height_mm = 0.04}, 20, 14);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Films that lean: what their samples are, by the places of points in space.
+// Samples of tilted films, compared with positions in space.
 #include "petzval/camera/tilted_film.hpp"
 
 #include <gtest/gtest.h>
@@ -34,7 +34,7 @@ using testing::Samples;
 using testing::shifted;
 using testing::wide;
 
-// A film that leans by next to nothing is upright: the same rays, weights and densities, as near as two tables are.
+// An almost upright film has the rays, weights and densities of an upright one, within the accuracy of two tables.
 TEST(TiltedFilm, IsAnUprightOneWhereItHardlyLeans) {
   const Lens lens = testing::data_lens("double_gauss_100mm_f2.0");
   for (const ModelKind model : models()) {
@@ -56,7 +56,7 @@ TEST(TiltedFilm, IsAnUprightOneWhereItHardlyLeans) {
       EXPECT_NEAR(weights[1] / weights[0], 1, 1e-3) << name(model);
       EXPECT_NEAR(area[1] / area[0], 1, 1e-3) << name(model);
     }
-    // The same line is the same ray, with the same weight but for the density of its sample.
+    // The same line gives the same ray, with the same weight except for the density of its sample.
     const TiltedFilm& film = *tilted.tilted_film();
     for (std::uint32_t i = 0; i < 100; ++i) {
       const auto [x, y] = random(i);
@@ -69,7 +69,7 @@ TEST(TiltedFilm, IsAnUprightOneWhereItHardlyLeans) {
   }
 }
 
-// What key, line and weight are, by the places of points in space.
+// Virtual film point, line and weight, from positions in space.
 TEST(TiltedFilm, TellsLinesAsSpaceDoes) {
   const Lens lens = testing::data_lens("double_gauss_100mm_f2.0");
   const Film film = leaning(shifted, 14, -9);
@@ -97,7 +97,8 @@ TEST(TiltedFilm, TellsLinesAsSpaceDoes) {
   }
 }
 
-/// A pinhole's: what the film point sees, in the plane of the pupil, of the upright model's sample of the exit pupil.
+/// For a pinhole: the sample of the upright model's exit pupil, projected from the film point into the plane of the
+/// pupil.
 PupilSample pinhole_sample(const Lens& lens, const Camera& camera, const CameraSample& s) {
   const Vec3<double> from = pose_of(lens, camera.film()).position(s.film);
   const TwoPlanes& space = camera.pupils().space();
@@ -112,8 +113,8 @@ PupilSample pinhole_sample(const Lens& lens, const Camera& camera, const CameraS
   return {seen.x, seen.y, p.area * larger * larger};
 }
 
-// Densities of samples by the places of film point and pupil sample in space, and those that their rays, met from the
-// scene, are said to have.
+// Densities of samples from the positions of film point and pupil sample, compared with those of their rays from the
+// scene.
 TEST(TiltedFilm, HasTheDensitiesOfItsSamples) {
   const Lens lens = testing::data_lens("double_gauss_100mm_f2.0");
   for (const ModelKind model : models()) {
@@ -136,7 +137,7 @@ TEST(TiltedFilm, HasTheDensitiesOfItsSamples) {
       EXPECT_NEAR(samples.weights[i] * pdf * length / -glm::dot(along, pose.normal()), 1, 1e-9) << name(model);
       if (model == ModelKind::pinhole) continue;
       const Importance met = camera.importance({samples.ray(i).origin, -samples.ray(i).direction});
-      if (!met) continue;  // at a rim, where a float ray does not come back
+      if (!met) continue;  // at a rim a float ray may not return
       ++checked;
       const double eps = model == ModelKind::exact_double || model <= ModelKind::thick ? 1e-9 : 2e-3;
       EXPECT_NEAR(std::hypot(met.film.x - s.film.x, met.film.y - s.film.y), 0, 100 * eps) << name(model);
@@ -147,7 +148,7 @@ TEST(TiltedFilm, HasTheDensitiesOfItsSamples) {
   }
 }
 
-// A line that meets the film from behind is not seen by it.
+// The film does not see a line that meets it from behind.
 TEST(TiltedFilm, HasABack) {
   const Lens lens = testing::data_lens("double_gauss_100mm_f2.0");
   const Film film = leaning({.width_mm = 4, .height_mm = 4}, 80, 0);
@@ -159,7 +160,7 @@ TEST(TiltedFilm, HasABack) {
   EXPECT_FALSE(tilted.key_of({0, 0, 0, 1.01 * -reach}));
 }
 
-// Scheimpflug: the film's plane and the plane of focus of a thin lens meet in the lens's plane. With 1/s + 1/s' = 1/f,
+// Scheimpflug: the plane of the film and the plane of focus of a thin lens meet in the lens. With 1/s + 1/s' = 1/f,
 // film points (y, s' + y tan) are imaged to points of one plane, in which all rays of each meet.
 TEST(TiltedFilm, IsSharpInATiltedPlane) {
   const Lens lens = with_focus(testing::data_lens("double_gauss_100mm_f2.0"), 2000);
@@ -172,7 +173,7 @@ TEST(TiltedFilm, IsSharpInATiltedPlane) {
   std::vector<Vec3<double>> images;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const Vec3<double> place = pose.position({samples.film_x[i], samples.film_y[i]});
-    // Gauss: the image by object and image distance from the principal planes.
+    // The image by object and image distance from the principal planes.
     const double behind = place.z - f.rear_principal_z;
     const double before = 1 / (1 / f.effective_focal_length - 1 / behind);
     const Vec3<double> image{-place.x * before / behind, -place.y * before / behind, f.front_principal_z - before};
@@ -188,7 +189,7 @@ TEST(TiltedFilm, IsSharpInATiltedPlane) {
     }
     EXPECT_GT(passed, rays / 2);
   }
-  // One plane through all of them, that leans.
+  // One inclined plane through all of them.
   const auto side = [&](std::size_t a, std::size_t b, std::size_t c) {
     return glm::normalize(glm::cross(images[b] - images[a], images[c] - images[a]));
   };
@@ -263,7 +264,7 @@ TEST(TiltedFilm, IsRefusedInTheLens) {
                   "the model is one for film points up to"));
 }
 
-// What makes up a camera refuses the same by itself.
+// The parts of a camera refuse the same input.
 TEST(TiltedFilm, IsRefusedWithoutACameraToo) {
   const auto has = [](const std::string& text, const char* part) { return text.find(part) != std::string::npos; };
   const Lens lens = testing::data_lens("tessar_100mm_f2.8");

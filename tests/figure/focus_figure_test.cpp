@@ -26,7 +26,7 @@ using testing::data_lens;
 using testing::paths;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// What a line below the diagram says, mm.
+/// The number in a line below the diagram, mm.
 struct Line {
   double least = 0, shift = 0, on_film = 0;
 };
@@ -96,7 +96,7 @@ TEST(FocusFigure, CurvesStayWithinTheFrame) {
 }
 
 TEST(FocusFigure, SaysWhatHasNoFocus) {
-  // Beyond the field nothing gets through; a window has no focus at all.
+  // No ray passes beyond the field; a window has no focus.
   const Lens lens = data_lens("double_gauss_100mm_f1.35");
   const std::string svg = focus_figure(lens, -infinity, std::array{0.0, radians(60.0)});
   EXPECT_NE(svg.find("field 60\u00b0:  no focus"), std::string::npos);

@@ -20,7 +20,7 @@ using testing::data_lens;
 using testing::paths;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// Of the last point of a curve, as a part of the height of its first, which is 1; the frame's foot is 0.
+/// The height of the last point of a curve, relative to its first; the bottom of the frame is 0.
 double last(const std::string& svg, const std::string& style) {
   constexpr double foot = 70 + 300;
   const auto curve = paths(svg, style).at(0);

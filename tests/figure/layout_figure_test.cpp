@@ -45,7 +45,7 @@ TEST(LayoutFigure, DrawsEveryLensWithinItsPaper) {
       std::smatch size;
       ASSERT_TRUE(std::regex_search(svg, size, std::regex("width=\"([0-9.]+)\" height=\"([0-9.]+)\"")));
       const double width = std::stod(size[1]), height = std::stod(size[2]);
-      // Lines of words above and below stay clear of the drawing.
+      // Lines of text above and below do not overlap the drawing.
       for (const Points& points : paths(svg, "stroke")) {
         for (const auto& [x, y] : points) {
           EXPECT_TRUE(x >= 0 && x <= width && y >= 50 && y <= height - 30) << p.id << ": " << x << ' ' << y;
@@ -107,7 +107,7 @@ TEST(LayoutFigure, LeavesHolesOpen) {
 TEST(LayoutFigure, FillsEachGlassBodyAndNoAir) {
   EXPECT_EQ(count(layout_figure(data_lens("cooke_triplet_50mm_f5"), -infinity, {}), "fill=\"rgb("), 3u);
   EXPECT_EQ(count(layout_figure(data_lens("tessar_100mm_f2.8"), -infinity, {}), "fill=\"rgb("), 4u);
-  // A stop within the ball is no surface of it; the eye is full to its retina.
+  // A stop inside the ball is not a surface of it; the eye is filled to the retina.
   EXPECT_EQ(count(layout_figure(data_lens("ball_10mm"), -infinity, {}), "fill=\"rgb("), 1u);
   EXPECT_EQ(count(layout_figure(data_lens("eye_gullstrand_le_grand"), -infinity, {}), "fill=\"rgb("), 4u);
   EXPECT_EQ(count(layout_figure(data_lens("mirror_newton_200mm_f8"), -infinity, {}), "fill=\"rgb("), 0u);
@@ -119,7 +119,7 @@ TEST(LayoutFigure, JoinsRimsOfDifferentHeightByAFlatRing) {
                 {.radius = 30, .thickness = 60, .semi_diameter = 10}};
   const std::string svg = layout_figure(compile(p), -infinity, {});
   const Points body = paths(svg, "fill=\"rgb(").at(0);
-  // Behind the front's 49 points comes the corner: as high as the front's rim, above the back's.
+  // After the 49 points of the front comes the corner: at the height of the front rim, above the rear rim.
   ASSERT_EQ(body.size(), 2u * 49u + 2u);
   EXPECT_DOUBLE_EQ(body[49].second, body[48].second);
   EXPECT_DOUBLE_EQ(body[49].first, body[50].first);

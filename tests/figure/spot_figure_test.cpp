@@ -19,7 +19,7 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// Wavelengths are made up by the Abbe model: the figure asks only that there be several.
+/// Indices by the n_d/V_d model: the figure only needs several wavelengths.
 Lens lens_of(const std::string& id, std::span<const double> wavelengths, const std::string& name = {}) {
   Prescription p = read_prescription(std::filesystem::path(PETZVAL_TEST_DATA) / "lenses" / (id + ".json"));
   if (!name.empty()) p.name = name;
@@ -66,7 +66,7 @@ TEST(SpotFigure, DrawsWithinItsCells) {
   std::size_t marks = 0;
   for (std::sregex_iterator it(svg.begin(), svg.end(), cell), end; it != end; ++it) {
     const double x = std::stod((*it)[1]), y = std::stod((*it)[2]), side = std::stod((*it)[3]);
-    // The markers of this cell stand between its frame and the line of text below it.
+    // The markers of this cell lie between its frame and the line of text below.
     const auto from = static_cast<std::size_t>(it->position()), to = svg.find("<text", from);
     const std::string content = svg.substr(from, to - from);
     for (std::sregex_iterator m(content.begin(), content.end(), move); m != end; ++m, ++marks) {

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-/// Reading what a figure draws.
+/// Reads the parts of a figure.
 namespace petzval::testing {
 
 using Points = std::vector<std::pair<double, double>>;
@@ -37,7 +37,7 @@ inline std::vector<Points> paths(const std::string& svg, const std::string& styl
   return result;
 }
 
-/// Pixels a millimetre, by the scale bar.
+/// Pixels per millimetre, by the scale bar.
 inline double scale(const std::string& svg) {
   std::smatch bar, words;
   if (!std::regex_search(svg, bar, std::regex("M([0-9.]+) [0-9.]+v6m0-3H([0-9.]+)")) ||

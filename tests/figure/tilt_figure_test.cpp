@@ -25,7 +25,7 @@ constexpr const char* focus_plane_style = "stroke=\"#1a8f3c\" stroke-width=\"2\"
 constexpr const char* principal = "stroke=\"#1f5fc4\" stroke-width=\"1\"";
 constexpr const char* wedge = "fill=\"#dff2e3\"";
 
-/// y = -300 on the axis's foot, rising away from the camera: the Scheimpflug line lies within the drawing.
+/// A plane that rises away from the camera: the Scheimpflug line lies within the drawing.
 const Plane table{{0, std::cos(0.3), std::sin(0.3)}, -300};
 
 std::vector<TiltFigurePoint> points_of(const Plane& plane) {
@@ -47,7 +47,7 @@ TiltView view(const IdealLens& lens, const Plane& plane, const std::vector<TiltF
   return result;
 }
 
-/// Where the lines through two strokes cross.
+/// The intersection of the lines through two strokes.
 std::pair<double, double> crossing(const Points& a, const Points& b) {
   const auto [ax, ay] = a.at(0);
   const auto [bx, by] = b.at(0);
@@ -56,7 +56,7 @@ std::pair<double, double> crossing(const Points& a, const Points& b) {
   return {ax + t * ux, ay + t * uy};
 }
 
-/// Pixels of the numbered points of the upper panel, in their order.
+/// Pixels of the numbered points of the upper panel, in order.
 Points marks(const std::string& svg) {
   Points result;
   const std::regex circle("<circle cx=\"([0-9.]+)\" cy=\"([0-9.]+)\" r=\"4\" fill=\"#(d0331f|fff)\"");
@@ -75,7 +75,7 @@ TEST(TiltFigure, FilmLensAndPlaneOfFocusMeetInOnePoint) {
   EXPECT_NEAR(x1, x2, 0.1);
   EXPECT_NEAR(y1, y2, 0.1);
   EXPECT_NE(svg.find(">Scheimpflug line<"), std::string::npos);
-  // The mark stands there.
+  // The mark is there.
   EXPECT_TRUE(std::regex_search(svg, std::regex("<circle cx=\"" + std::to_string(static_cast<int>(x1)) + "[0-9.]*\"")));
 }
 
@@ -119,7 +119,7 @@ TEST(TiltFigure, TheWedgeEndsWhereTheBlurIsAsLargeAsAskedFor) {
   TiltView shown = view(lens, table, points);
   shown.blur_mm = 0.2;
   const std::string svg = tilt_figure(shown);
-  // Pixels back to millimetres, by two points that are known.
+  // From pixels back to millimetres, by two known points.
   const Points marked = marks(svg);
   const auto& p = points.at(0).place.position;
   const auto& q = points.at(2).place.position;

@@ -28,7 +28,7 @@ double focal_length(const Lens& lens) {
   return std::abs(first_order(lens, lens.primary_wavelength(), main_meridian(lens)).effective_focal_length);
 }
 
-/// From the film to the distance and back to the film, from far away to magnifications of a quarter.
+/// From the film to the distance and back to the film, from far subjects to a magnification of 1/4.
 void expect_round_trips(const Lens& lens, const FocusOptions& options, double tolerance,
                         std::initializer_list<double> focal_lengths) {
   const double f = focal_length(lens);
@@ -36,14 +36,14 @@ void expect_round_trips(const Lens& lens, const FocusOptions& options, double to
   double before = -infinity;
   for (const double multiple : focal_lengths) {
     const FocusSolution there = solve_focus(lens, multiple * f, options);
-    if (!there) continue;  // inside the front focus, or nearer to the film than the lens is long
+    if (!there) continue;  // inside the front focus, or inside the lens
     const FocusSolution back = solve_subject(lens, there.film_z, options);
     ASSERT_TRUE(back) << multiple << ' ' << name(back.status);
     EXPECT_EQ(back.film_z, there.film_z);
     EXPECT_NEAR(solve_focus(lens, back.distance, options).film_z, there.film_z,
                 tolerance * (f + std::abs(there.film_z)))
         << multiple;
-    // Monotone: the film moves away from the lens, along the light, as the subject comes nearer.
+    // Monotone: the film moves away from the lens as the subject comes nearer.
     EXPECT_GE(sense * there.film_z, before) << multiple;
     before = sense * there.film_z;
   }
@@ -64,7 +64,7 @@ TEST(BothWays, ReturnToTheFilmInEveryLens) {
 
 TEST(BothWays, ReturnToTheFilmByExactRaysInEveryLens) {
   for (const Prescription& p : data_prescriptions()) {
-    // A rod lit to its equator: its blur across is as wide as itself on every film, and least inside it.
+    // A rod lens lit to its equator: the blur across has the width of the rod on every film and is least inside.
     if (p.id == "cylinder_3.9mm") continue;
     SCOPED_TRACE(p.id);
     const Lens lens = compile(p);
@@ -114,7 +114,7 @@ TEST(BothWays, OriginsAreThreePlacesForOneSubject) {
       EXPECT_NEAR(back.distance, 1000 + from, 1e-9);
     }
   }
-  // From the principal plane, Newton's and Gauss's forms are the textbooks': 1 / U + 1 / V = 1 / f.
+  // From the principal planes: 1 / U + 1 / V = 1 / f.
   const double v = solve_focus(lens, 400, {paraxial, front_principal}).film_z - data.rear_principal_z;
   EXPECT_NEAR(1 / 400.0 + 1 / v, 1 / data.effective_focal_length, 1e-16);
 }
@@ -136,7 +136,7 @@ TEST(BothWays, AFilmTooFarInSeesNothingBeyondInfinity) {
 TEST(BothWays, AFilmBeyondTheLimitNamesTheNearestSubject) {
   const Lens lens = data_lens("achromat_100mm");
   const FocusSolution nearest = nearest_focus(lens, {min_rms});
-  // Rays with aberrations never all leave parallel: the film turns back 5.6 m behind the lens.
+  // Aberrated rays never all leave parallel: the film has its farthest place 5.6 m behind the lens.
   EXPECT_TRUE(std::isfinite(nearest.film_z));
   const FocusSolution beyond = solve_subject(lens, 2 * nearest.film_z, {min_rms});
   EXPECT_EQ(beyond.status, FocusStatus::unreachable);

@@ -25,7 +25,7 @@ using enum DistanceOrigin;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr auto criteria = {thin, paraxial, min_rms, min_max};
 
-/// A singlet of 50 mm at f/10, as thin as a lens can be and still be traced.
+/// A very thin 50 mm singlet at f/10.
 Lens thin_singlet(double semi_diameter = 2.5) {
   Prescription p;
   p.name = "thin singlet";
@@ -170,8 +170,8 @@ TEST(Hyperfocal, IsTheNearestFocusWithInfinityAtTheLimit) {
       EXPECT_EQ(far(at.distance * 1.001), infinity);
       EXPECT_LT(far(at.distance * 0.999), infinity);
 
-      // Near limit about half of it, the more so the nearer the pupil is to the principal plane and the smaller the
-      // aberrations are beside the blur.
+      // The near limit is about half of it: closer if the pupil is near the principal plane and the aberrations are
+      // small compared with the blur.
       const double near = depth_of_field(set, blur * (1 + 1e-9), options).near_distance;
       EXPECT_NEAR(near / at.distance, 0.5, 0.12);
     }
@@ -207,7 +207,7 @@ TEST(Breathing, FollowsTheChiefRayThroughTheExitPupil) {
     EXPECT_EQ(breathing(lens, infinite).value(), 0);
     const double near = solve_focus(lens, 1000).film_z;
     EXPECT_NEAR(breathing(lens, near).value(), (near - exit_z) / (infinite - exit_z) - 1, 1e-13);
-    // The image grows as the film moves out of a pupil in front of it.
+    // The image grows as the film moves away from the exit pupil.
     EXPECT_GT(breathing(lens, near).value() * (infinite - exit_z), 0);
     EXPECT_GT(std::abs(breathing(lens, solve_focus(lens, 700).film_z).value()),
               std::abs(breathing(lens, near).value()));
@@ -242,7 +242,7 @@ TEST(DepthOfField, SaysWhatIsMissing) {
   EXPECT_EQ(depth_of_field(closed, 0.03, {min_rms}).status, FocusStatus::no_rays);
   EXPECT_EQ(hyperfocal(closed, 0.03, {min_max}).status, FocusStatus::no_rays);
   EXPECT_EQ(blur_diameter(closed, 1000, {min_rms}), std::nullopt);
-  // A pinhole to first order: nothing is blurred.
+  // A pinhole to first order has no blur.
   EXPECT_EQ(blur_diameter(closed, 1000), 0);
   EXPECT_EQ(depth_of_field(closed, 0.03).far_distance, infinity);
   EXPECT_EQ(hyperfocal(closed, 0.03).distance, nearest_focus(lens).distance);

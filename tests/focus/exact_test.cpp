@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The laws of least blur, against rays sent by brute force.
+// Laws of least blur, compared with brute-force rays.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -29,7 +29,7 @@ struct Spread {
   double rms = 0, largest = 0;
 };
 
-/// About the centroid on a film, of a square grid of rays over the pupil's plane.
+/// The blur about the centroid of a square grid of rays over the plane of the pupil.
 Spread spread(const Lens& lens, const FieldPoint& point, double film_z, const std::vector<double>& colours = {1},
               int across = 201) {
   const PupilPlane plane(lens, point);
@@ -77,7 +77,7 @@ TEST(ExactBlur, IsWhatAGridOfRaysHas) {
         const double rms = blur_diameter(set, 2000, {.criterion = min_rms, .fields = fields}).value();
         const double largest = blur_diameter(set, 2000, {.criterion = min_max, .fields = fields}).value();
         EXPECT_NEAR(rms, std::sqrt(8) * found.rms, 0.02 * rms);
-        // A grid stops short of the edges, and the rays of the quadrature beside a zone that is largest within.
+        // A grid ends before the edges, and the rays of the quadrature miss a largest zone inside.
         EXPECT_GE(largest, 2 * found.largest * (1 - 2e-3));
         EXPECT_NEAR(largest, 2 * found.largest, 0.05 * largest);
       }
@@ -105,8 +105,8 @@ TEST(ExactFocus, HasTheLeastBlurOfAllFilms) {
 
 TEST(ExactFocus, OfTheLeastLargestRadiusIsAtThreeQuartersOfTheAberration) {
   // Longitudinal aberration in proportion to h^2 (third order): the film of least largest radius lies three quarters of
-  // the way from the paraxial to the marginal focus, that of least RMS radius two thirds. Known of old; here the limit
-  // of a small aperture.
+  // the way from the paraxial to the marginal focus, that of least RMS radius two thirds. Classical results; here in
+  // the limit of a small aperture.
   Prescription p = data_prescription("singlet_50mm_biconvex");
   for (SurfaceRow& row : p.surfaces) row.semi_diameter = 30;
   p.surfaces[0].semi_diameter = 1;
@@ -128,7 +128,7 @@ TEST(ExactFocus, OfSeveralFieldsLiesBetweenTheirOwn) {
     const double axis = film({{0, 1}}, criterion), edge = film({{radians(18), 1}}, criterion);
     const double both = film({{0, 1}, {radians(18), 1}}, criterion);
     EXPECT_GT(std::abs(edge - axis), 0.01);
-    EXPECT_GE(both, std::min(axis, edge));  // equal where one of them has the largest radius for itself
+    EXPECT_GE(both, std::min(axis, edge));  // equal if one of them alone has the largest radius
     EXPECT_LE(both, std::max(axis, edge));
     EXPECT_NEAR(film({{0, 1}, {radians(18), 1e-9}}, criterion), axis, 1e-6);
     EXPECT_EQ(film({{0, 3}, {radians(18), 0}}, criterion), axis);
@@ -153,7 +153,7 @@ TEST(ExactFocus, OfSeveralColoursWeighsTheirLight) {
   EXPECT_LT(film({1, 0, 1}), red);
   EXPECT_GT(film({1, 0, 2}), film({1, 0, 1}));
 
-  // To first order the heaviest counts, of several the central one.
+  // To first order the wavelength of the largest weight counts, of several the central one.
   const auto first = [&](std::vector<double> weights) {
     return solve_focus(lens, 1000, {.wavelength_weights = std::move(weights)}).film_z;
   };

@@ -69,8 +69,8 @@ TEST(ThinFocus, StandsAtTheRearPrincipalPlane) {
   const FirstOrder data = first_order(lens);
   const double f = data.effective_focal_length, from_plane = 1000 + data.rear_principal_z;
   EXPECT_NEAR(solve_focus(lens, 1000, {thin}).film_z, data.rear_focal_z + thin_lens_extension(f, from_plane), 1e-12);
-  // From the film, lens to film and subject to lens make up the distance: 2 f T / (T + sqrt(T (T - 4 f))) behind the
-  // lens.
+  // From the film, the distance is that of lens to film plus subject to lens: the film lies
+  // 2 f T / (T + sqrt(T (T - 4 f))) behind the lens.
   const double t = 1000;
   EXPECT_NEAR(solve_focus(lens, t, {thin, film}).film_z,
               data.rear_principal_z + 2 * f * t / (t + std::sqrt(t * (t - 4 * f))), 1e-11);
@@ -191,7 +191,7 @@ TEST(Focus, OfOneSurfaceOfConcentricSurfacesAndOfABallIsFound) {
 }
 
 TEST(Focus, InsideTheLensIsNoFocus) {
-  // A ball of index 2.5 brings a distant subject to focus inside itself, a near one behind itself.
+  // A ball of index 2.5 focuses a distant subject inside itself and a near one behind itself.
   const Lens lens = compile(element(2.5, 5, -5, 10));
   for (const FocusCriterion criterion : {paraxial, min_rms}) {
     for (const DistanceOrigin origin : {front_vertex, film}) {

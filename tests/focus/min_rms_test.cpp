@@ -46,7 +46,7 @@ TEST(MinRms, HasTheLeastSpreadOfABundleOverTheWholeAperture) {
     const char* id;
     double distance, tolerance;
   };
-  // As far as the steps of the grid along the rims go.
+  // Within the steps of the grid along the rims.
   for (const auto& [id, distance, tolerance] :
        {Case{"double_gauss_100mm_f2.0", 1000, 1e-4}, Case{"singlet_50mm_biconvex", infinity, 1e-3},
         Case{"catadioptric_maksutov_1280mm_f14.4", 3e4, 5e-4}, Case{"anamorphic_60mm_2x", 2000, 1e-3},
@@ -90,7 +90,7 @@ TEST(MinRms, OfANarrowZoneIsWhereItsRaysCrossTheAxis) {
   EXPECT_GT(film_z, crossing(lens.surfaces()[0].semi_diameter));
 }
 
-// Found by an independent program in Python with another sampling of the pupil: -0.9 mm, 88, 76, -37 and -53 um.
+// An independent Python program with other pupil samples gives -0.9 mm, 88, 76, -37 and -53 um.
 TEST(MinRms, OfTheDoubleGaussLiesWhereAnIndependentTraceFoundIt) {
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
   const auto difference_um = [&](double distance) {
@@ -101,8 +101,8 @@ TEST(MinRms, OfTheDoubleGaussLiesWhereAnIndependentTraceFoundIt) {
   EXPECT_NEAR(difference_um(1000), 76, 2.5);
   EXPECT_NEAR(difference_um(10000), -37, 0.5);
   EXPECT_NEAR(difference_um(infinity), -53, 0.5);
-  // It also saw the image of least RMS become virtual at 55 mm, before the paraxial one at 54.245 mm: there the film
-  // has come back from its farthest place already.
+  // There the image of least RMS becomes virtual at 55 mm, before the paraxial one at 54.245 mm: the film has passed
+  // its farthest place.
   const double nearest = nearest_focus(lens, {min_rms}).distance;
   EXPECT_GT(nearest, 55);
   EXPECT_LT(nearest, 57);
@@ -129,7 +129,7 @@ TEST(MinRms, IsSmoothInTheDistance) {
   const Lens lens = data_lens("double_gauss_100mm_f1.35");
   std::vector<double> films;
   for (int i = 0; i < 40; ++i) films.push_back(solve_focus(lens, 1000 + 0.01 * i, {min_rms}).film_z);
-  // The step is so small that third differences are nothing but noise.
+  // The step is so small that third differences are noise.
   for (std::size_t i = 0; i + 3 < films.size(); ++i) {
     EXPECT_NEAR(films[i + 3] - 3 * films[i + 2] + 3 * films[i + 1] - films[i], 0, 1e-10);
   }
@@ -161,7 +161,7 @@ TEST(MinRms, WithoutAnyRimIsAnError) {
   } catch (const Error& error) {
     EXPECT_STREQ(error.what(), "endless: no surface limits the beam, wanted a semi_diameter for a blur to have a size");
   }
-  // Any rim will do, marked as stop or not.
+  // Any rim limits the beam, marked as stop or not.
   p.surfaces[1].semi_diameter = 5;
   p.surfaces[0].stop = false;
   EXPECT_EQ(solve_focus(compile(p), 1000, {min_rms}).status, Status::solved);

@@ -34,7 +34,7 @@ double catalogue_index(const char* name, const char* catalogue, double nm) {
   return petzval::refractive_index(*glasses().find(name, catalogue), nm);
 }
 
-/// A cemented pair: a glass of the tables whose printed index is rounded, then what each test puts there.
+/// A cemented pair: a glass of the tables with a rounded index, and a medium that each test chooses.
 Prescription doublet(const petzval::Medium& second) {
   Prescription p;
   p.name = "pair";
@@ -97,7 +97,7 @@ TEST(Compile, AGlassNoTableKnowsIsAnErrorThatNamesIt) {
   immersed.object_space = {.glass = "SEA WATER", .nd = 1.34};
   EXPECT_EQ(message([&] { compile(immersed, visible, strict); }),
             "pair: object space: glass \"SEA WATER\" is in no glass table" + tail);
-  // The catalogue alone cannot say what it does not know, at d no more than elsewhere.
+  // Without the glass there is no index from the catalogue, at the d line neither.
   EXPECT_EQ(message([&] {
               compile(doublet(unknown), std::array{d}, {.glasses = &glasses(), .index_policy = IndexPolicy::catalogue});
             }),
@@ -161,7 +161,7 @@ TEST(Compile, AGlassWithoutACatalogueIsTheOneWithTheNearestIndex) {
   EXPECT_NEAR(compile(doublet(medium), std::array{d}, options).index(2, 0), 1.62004, 1e-5);
   medium.nd = 1.613;
   EXPECT_NEAR(compile(doublet(medium), std::array{d}, options).index(2, 0), 1.61293, 1e-5);
-  medium.nd = 1.7;  // some other glass that happens to be called so
+  medium.nd = 1.7;  // another glass with the same name
   EXPECT_NE(message([&] { compile(doublet(medium), std::array{d}, options); }).find("\"F2\" is in no glass table"),
             std::string::npos);
 }
@@ -211,7 +211,7 @@ TEST(Compile, DispersionHasAName) {
   EXPECT_EQ(petzval::name(Dispersion::none), "none");
 }
 
-// Most of the 75 lenses have a medium no table knows, so that the stand-in is the normal way.
+// Most of the 75 lenses have a medium that is in no table: the n_d/V_d model is the normal case.
 TEST(Compile, EveryLensOfTheDataCompilesAsFarAsItsGlassesAreKnown) {
   int by_catalogue = 0, by_abbe = 0, at_d_only = 0;
   for (const Prescription& p : petzval::testing::data_prescriptions()) {

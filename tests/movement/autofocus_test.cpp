@@ -36,7 +36,7 @@ TEST(Autofocus, OfAThinLensFollowsItsFormula) {
   const IdealLens lens = thin_lens(50, 2);
   EXPECT_NEAR(autofocus(lens, std::vector{at(0, 0, -2000)}, film_at(60)).film.z(), 51.282051282051282, 1e-12 * 51);
   EXPECT_NEAR(autofocus(lens, std::vector{at(0, 0, -500)}, film_at(60)).film.z(), 55.555555555555556, 1e-12 * 55);
-  // Badly conditioned: 50.0001 itself is known to 7e-15 of the 1e-4 that count.
+  // Ill-conditioned: rounding of 50.0001 is 7e-15, relative to the 1e-4 that matter.
   EXPECT_NEAR(autofocus(lens, std::vector{at(0, 0, -50.0001)}, film_at(60)).film.z(), 25000050, 25000050 * 1e-10);
   for (const double z : {-50.0, -49.0, 0.0, 10.0}) {
     const Autofocus none = autofocus(lens, std::vector{at(0, 0, z)}, film_at(60));
@@ -97,13 +97,13 @@ TEST(Autofocus, SharesTheBlurBetweenTwoTargets) {
   ASSERT_TRUE(focus);
   EXPECT_LT(focus.blurs[0].blur_mm, 0);  // in front of the plane of focus
   EXPECT_GT(focus.blurs[1].blur_mm, 0);
-  // As large as their cones are steep.
+  // In proportion to the slopes of their cones.
   const double steep = lens.image(targets[0].place)->cone, flat = lens.image(targets[1].place)->cone;
   EXPECT_NEAR(steep * focus.blurs[0].blur_mm, -flat * focus.blurs[1].blur_mm, 1e-13);
   EXPECT_NEAR(focus.rms_mm, std::hypot(focus.blurs[0].blur_mm, focus.blurs[1].blur_mm) / std::numbers::sqrt2, 1e-15);
 }
 
-/// Weighted squares of errors of the blurs of some targets.
+/// The weighted sum of squared blur errors of targets.
 double squares(const Autofocus& focus, const std::vector<FocusTarget>& targets) {
   double sum = 0;
   for (std::size_t i = 0; i < targets.size(); ++i) {
@@ -166,7 +166,7 @@ TEST(Autofocus, BlursOneTargetAsWanted) {
     EXPECT_NEAR(autofocus(bundles, target, {}, min_rms).blurs[0].blur_mm, wanted, 1e-12);
     EXPECT_NEAR(autofocus(bundles, target, {}, min_max).blurs[0].blur_mm, wanted, 1e-12);
   }
-  // Less than it has at best: as sharp as can be.
+  // Less than the least possible blur: as sharp as possible.
   for (const auto criterion : {min_rms, min_max}) {
     EXPECT_EQ(autofocus(bundles, std::vector{at(50, -100, -1500, 1e-4)}, {}, criterion).film.z(),
               autofocus(bundles, std::vector{at(50, -100, -1500)}, {}, criterion).film.z());
@@ -216,7 +216,7 @@ TEST(Autofocus, ReportsBreathingAndTheChangeOfMagnification) {
   const Autofocus ideal = autofocus(thick_lens(lens), std::vector{at(0, 0, -1000)}, focus.film);
   EXPECT_NEAR(ideal.breathing, *breathing(lens, ideal.film.z()), 1e-12);
   EXPECT_NEAR(1 + ideal.magnification_change, (ideal.film.z() - exit_z) / (focus.film.z() - exit_z), 1e-12);
-  // A film that stood in the exit pupil has no magnification.
+  // A film in the exit pupil has no magnification.
   EXPECT_TRUE(std::isnan(autofocus(thin_lens(50, 2), std::vector{at(0, 0, -1000)}, film_at(0)).magnification_change));
   // A stop in the front focal plane: the exit pupil at infinity.
   IdealLens telecentric = thin_lens(50, 2);
@@ -254,7 +254,7 @@ TEST(Autofocus, LeavesTheFilmWhereNothingCanBeDone) {
   EXPECT_EQ(autofocus(bundles, beside).blurs[0].use, TargetUse::no_rays);
   EXPECT_EQ(autofocus(bundles.ideal(), beside, film_at(lens.film_z())).blurs[0].use, TargetUse::used);
 
-  // So much blur in front of the plane of focus that the film would stand in the lens.
+  // With so much blur in front of the plane of focus the film would lie inside the lens.
   const std::vector blurred{at(0, 0, -1000, -70)};
   for (const Autofocus& focus : {autofocus(bundles.ideal(), blurred, film_at(lens.film_z())),
                                  autofocus(bundles, blurred, {}, min_rms), autofocus(bundles, blurred, {}, min_max)}) {

@@ -99,10 +99,10 @@ TEST(FocusPoints, MayPullFocusToInfinity) {
   const FocusTarget end = only(p, moment(2));
   EXPECT_TRUE(end.place.at_infinity);
   expect_near(end.place.position / -end.place.position.z, {0.1, 0.05, -1}, 1e-15);
-  // Images move continuously on the way there.
+  // The images move continuously.
   const auto image_z = [&](double time) { return thin.image(only(p, moment(time)).place)->position.z; };
   EXPECT_NEAR(image_z(2 - 1e-4), image_z(2), 1e-6);
-  // Two directions are as good.
+  // Two directions work as well.
   const FocusPoint pan = point({far_key(0, {-0.5, 0, -1}), far_key(1, {0.5, 0, -1})});
   EXPECT_TRUE(only(pan, moment(0.5)).place.at_infinity);
   EXPECT_NEAR(only(pan, moment(0.5)).place.position.x, 0, 1e-15);
@@ -183,7 +183,7 @@ TEST(FocusPoints, GoFromTriangleToTriangleAndToPlaces) {
   const FocusPoint across =
       point({on_triangle(0, {0, 1, 2}, {third, third, third}), on_triangle(2, {3, 4, 5}, {0, 1, 0})});
   expect_near(only(across, when).place.position, {90, 0, -1800}, 1e-9);
-  // A vertex that is nowhere takes the point out, for as long as it is.
+  // A vertex that is not finite removes the point while it lasts.
   mesh[4].x = nan;
   EXPECT_TRUE(targets({p}, when).empty());
 }
@@ -207,7 +207,7 @@ TEST(FocusPoints, WithoutAnImageAreLeftOut) {
 
 TEST(FocusPoints, OutsideThePictureAreLeftOut) {
   FocusMoment when = moment(0);
-  // Chief rays go straight through a thin lens: from x at depth 1000 to -0.052 x.
+  // Chief rays pass straight through a thin lens: from x at depth 1000 to -0.052 x.
   const auto seen = [&](double x, double y) { return targets({point({key(0, {x, y, -1000})})}, when).size() == 1; };
   EXPECT_TRUE(seen(1e6, 0));
   when.film = Film{.z_mm = 52};
@@ -237,7 +237,7 @@ TEST(FocusPoints, MayWeighMoreWhenNearer) {
   EXPECT_DOUBLE_EQ(weighed[0].weight, 2);
   EXPECT_DOUBLE_EQ(weighed[1].weight, 1);
   EXPECT_EQ(weighed[2].weight, 0);
-  EXPECT_EQ(only(points[2], when).weight, 1);  // with nothing nearer
+  EXPECT_EQ(only(points[2], when).weight, 1);  // without nearer points
 }
 
 TEST(FocusPoints, NeverWeighLessThanNothing) {

@@ -28,7 +28,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double degree = std::numbers::pi / 180;
 
-/// A place as FieldPoint has it: its field as the entrance pupil sees it, azimuth from +y to +x.
+/// A place as a FieldPoint: the field seen from the entrance pupil, azimuth from +y to +x.
 Vec3<double> place_at(const Lens& lens, double field_deg, double z, double azimuth = 0) {
   const double height = (pupils(lens).entrance.z - z) * std::tan(field_deg * degree);
   return {height * std::sin(azimuth), height * std::cos(azimuth), z};
@@ -166,7 +166,7 @@ TEST(ImageRays, AreRefusedWithoutRaysOrFilm) {
   EXPECT_THROW(ImageRays(lens, 22, 15), Error);
   EXPECT_THROW(ImageRays(lens, nan), Error);
   EXPECT_THROW(ImageRays(lens, -1), Error);
-  EXPECT_THROW(ImageRays(data_lens("mirror_newton_200mm_f8"), 10), Error);  // light leaves it towards -z
+  EXPECT_THROW(ImageRays(data_lens("mirror_newton_200mm_f8"), 10), Error);  // light leaves the lens towards -z
 }
 
 TEST(BundleBlur, OnATiltedFilmIsWhereRaysMeetItsPlane) {

@@ -25,7 +25,7 @@ struct Keys {
   std::vector<double> times, values;
 };
 
-/// Steps of time from a thousandth to a hundred, values with plateaus and jumps.
+/// Time steps from 0.001 to 100, values with plateaus and jumps.
 Keys random_keys(std::mt19937& random) {
   std::uniform_real_distribution<double> uniform(0, 1);
   Keys keys;
@@ -51,7 +51,7 @@ TEST(Keyframes, NeverLeaveTheSpanOfTheTwoKeysAbout) {
         const double value = curve.at(std::lerp(keys.times[k], keys.times[k + 1], i / 64.0));
         EXPECT_GE(value, low) << draw;
         EXPECT_LE(value, high) << draw;
-        // Monotone between keys, too.
+        // Also monotone between keys.
         EXPECT_GE((value - last) * (keys.values[k + 1] - keys.values[k]), -1e-9 * (high - low) * (high - low)) << draw;
         last = value;
       }
@@ -85,7 +85,7 @@ TEST(Keyframes, HaveAContinuousDerivative) {
     };
     EXPECT_NEAR(slope(1e-4), slope(-1e-4), 1e-8) << time;
   }
-  // It does not rest at keys that it passes.
+  // The curve does not rest at keys that it passes.
   EXPECT_GT(curve.at(1.25 + 1e-3) - curve.at(1.25 - 1e-3), 2e-3);
 }
 
@@ -99,7 +99,7 @@ TEST(Keyframes, PassKeysAtTheHarmonicMeanOfTheSlopes) {
   const Keyframes curve({0, 1, 2}, {0, 1, 4});
   EXPECT_NEAR(curve.at(0.5), 0.5 - 1.5 / 8, 1e-15);
   EXPECT_NEAR(curve.at(1.5), 2.5 + 1.5 / 8, 1e-15);
-  // Uneven steps of 1 and 3 with slopes 1 and 2: 1 / (7/12 / 1 + 5/12 / 2) = 24/19.
+  // Unequal steps of 1 and 3 with slopes 1 and 2: 1 / (7/12 / 1 + 5/12 / 2) = 24/19.
   const Keyframes uneven({0, 1, 4}, {0, 1, 7});
   EXPECT_NEAR(uneven.at(0.5), 0.5 - 24.0 / 19 / 8, 1e-15);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What targets do not tell, what the limit of tilt does to them, and bad input.
+// Targets that do not determine a plane, the limit of tilt, and invalid input.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -51,7 +51,7 @@ TEST(TiltFitLimit, IsTheBestFilmWithinTheLimit) {
     ASSERT_EQ(fit.status, Status::limited) << seed;
     EXPECT_NEAR(fit.film.angle(), limit, 1e-12);
     EXPECT_GT(fit.rms_mm, free.rms_mm);
-    // Blurs are linear in z: the best film of given slopes is known.
+    // Blurs are linear in z: the best film for given slopes has a closed form.
     const auto best = [&](double p, double q) {
       const double length = std::hypot(p, q, 1.0);
       double weights = 0, by = 0, square = 0;
@@ -90,7 +90,7 @@ TEST(TiltFitLimit, OfZeroIsAnUprightFilm) {
   EXPECT_NEAR(fit.film.z(), sum / weights, 1e-12);
 }
 
-/// The largest change of the film from step to step while something moves from 0 to 1.
+/// The largest change of the film between steps while a parameter goes from 0 to 1.
 double largest_change(const auto& targets_at, int steps, const TiltOptions& options) {
   double largest = 0;
   std::optional<Film> last;
@@ -105,7 +105,7 @@ double largest_change(const auto& targets_at, int steps, const TiltOptions& opti
   return largest;
 }
 
-/// Halved steps halve the changes: no jump.
+/// Half the steps give half the changes: no jumps.
 void expect_continuous(const auto& targets_at, const TiltOptions& options, int steps = 400) {
   const double coarse = largest_change(targets_at, steps, options);
   const double fine = largest_change(targets_at, 8 * steps, options);
@@ -202,7 +202,7 @@ TEST(TiltFitSets, OnePlaceGivesAnUprightFilm) {
 }
 
 TEST(TiltFitSets, TwoPointsAndLinesGiveThePlaneOfLeastTilt) {
-  // Any film through both images; least is the one that rises along the line between them.
+  // Any film through both images; the least tilt rises along the line between them.
   const Vec one(-300, 100, -2000), two(500, -200, -3000);
   const Vec a = normal_lens().image({one})->position, b = normal_lens().image({two})->position;
   const double least = std::abs(b.z - a.z) / std::hypot(b.x - a.x, b.y - a.y);
@@ -303,7 +303,7 @@ TEST(TiltFitSets, WhatCannotBeServedTakesNoPart) {
       }
     }
   }
-  // Of no weight, but with a blur to show.
+  // Without weight, but with a blur to show.
   const TiltFit shown = fit_tilt(normal_lens(), Targets{good[0], target(0, 0, -1000, 0)}, behind(normal_lens()));
   EXPECT_LT(shown.blurs[1].blur_mm, -0.01);
 }
@@ -377,7 +377,7 @@ TEST(TiltFitFrame, ShiftKeepsTheMiddleOfThePicture) {
     EXPECT_LT(glm::length(glm::cross(glm::normalize(before), glm::normalize(now))), 1e-12);
     EXPECT_GT(glm::length(before - now), 0.1);
   }
-  // The axis is its own line, wherever the film stood.
+  // The axis is its own chief ray for every film.
   for (const double start : {0.0, 50.0}) {
     const Scene scene{4e-3, -2e-3, 8e-4, normal_lens()};
     const TiltFit fit = fit_tilt(normal_lens(), scene.targets(9, 0.1, 0.1), {.film = film_at(start)});

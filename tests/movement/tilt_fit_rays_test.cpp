@@ -48,8 +48,8 @@ Parabola parabola(const RayBundle& bundle, const Film& film) {
   return {film.z() + foot, here - by_z * foot * foot, by_z};
 }
 
-/// Weighted RMS: of diameters; of a target that should be blurred, on a film so much nearer that defocus makes what
-/// aberrations leave of the blur wanted.
+/// Weighted RMS of diameters. For a target with a wanted blur the film is nearer, so that defocus adds what aberrations
+/// lack of that blur.
 double rms(const Targets& targets, const Film& film) {
   double sum = 0, weights = 0;
   for (const FocusTarget& t : targets) {
@@ -88,13 +88,13 @@ TEST(RayTiltFit, IsTheLeastSumOfSquaredBlurs) {
     }
     const auto square = [&](const Film& film) { return rms(targets, film) * rms(targets, film); };
     EXPECT_LT(off_least(square, fit.film, 50), 1e-7);
-    // The film of the thick lens is a good start, and no more.
+    // The film of the thick lens is only a good start.
     const TiltFit thick = fit_tilt(bundles().ideal(), targets, behind(bundles().ideal()));
     EXPECT_GT(rms(targets, thick.film), least);
   }
 }
 
-/// The least cost that a search by halved steps finds from a film.
+/// The least cost of a search from a film, with halved steps.
 double searched(const Targets& targets, Film film) {
   double least = rms(targets, film);
   for (double step = 0.02; step > 1e-6;) {
@@ -156,7 +156,7 @@ TEST(RayTiltFit, BlursThatAreWantedMakeNoJump) {
   }
   EXPECT_GT(sharp, 0);
   EXPECT_LT(blurred, 2 * sharp);
-  // Nor does a blur that is wanted more and more.
+  // The same for a growing wanted blur.
   Film last = film_at(900, 0, -1);
   for (double want = 0; want < 0.05; want += 1e-4) {
     const Film film = film_at(900, want, -1);
@@ -180,7 +180,7 @@ TEST(RayTiltFit, UprightIsAutofocus) {
 }
 
 TEST(RayTiltFit, OnePointGetsItsSharpestFilm) {
-  // On an upright film the squared RMS radius is a parabola in z, its foot at -cov(x, s) / var(s).
+  // On an upright film the squared RMS radius is a parabola in z with its vertex at -cov(x, s) / var(s).
   const ScenePoint place{{150, -80, -1500}};
   const RayBundle bundle = bundles().bundle(place);
   const auto count = static_cast<double>(bundle.x.size());
@@ -230,7 +230,7 @@ TEST(RayTiltFit, TendsToTheThickLensAsApertureAndFieldShrink) {
 TEST(RayTiltFit, UnitOfLengthDoesNotMatter) {
   const Targets targets = tilted_plane(bundles().ideal()).targets(9, 0.25, 0.18);
   const TiltFit base = fit_tilt(bundles(), targets, behind(bundles().ideal()));
-  for (const double unit : {0x1p-20, 0x1p20}) {  // exact, so that no ray at a rim changes its mind
+  for (const double unit : {0x1p-20, 0x1p20}) {  // exact, so that no fate at a rim changes
     const ImageRays scaled(compile(scale(data_prescription("double_gauss_52mm_f1.8"), unit)), 30 * unit);
     Targets there = targets;
     for (FocusTarget& t : there) t.place.position *= unit;
@@ -316,9 +316,9 @@ TEST(RayTiltFit, WhatTheLensDoesNotSeeTakesNoPart) {
   const Targets good = tilted_plane(bundles().ideal()).targets(6, 0.25, 0.18);
   const Film wanted = fit_tilt(bundles(), good, behind(bundles().ideal())).film;
   Targets targets = good;
-  targets.push_back(target(9000, 0, -1000));  // far beside the picture
-  targets.push_back(target(0, 0, -1));        // within the focal length
-  targets.push_back(target(0, 0, -1000, 0));  // looked at
+  targets.push_back(target(9000, 0, -1000));  // far outside the picture
+  targets.push_back(target(0, 0, -1));        // inside the focal length
+  targets.push_back(target(0, 0, -1000, 0));  // shown only
   const TiltFit fit = fit_tilt(bundles(), targets, behind(bundles().ideal()));
   EXPECT_EQ(fit.blurs[6].use, TargetUse::no_rays);
   EXPECT_TRUE(std::isnan(fit.blurs[6].blur_mm));

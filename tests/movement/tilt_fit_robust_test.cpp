@@ -27,8 +27,8 @@ TiltOptions robust(const IdealLens& lens) {
 }
 
 TEST(RobustTiltFit, FindsThePlaneAmongGrossOutliers) {
-  // The scene's plane within 1 degree in 200 of 200 draws: 24 points over the frame, 1 to 4 m, noise of 3 mm, 3 and 8
-  // of them anywhere.
+  // The plane of the scene within 1 degree in 200 of 200 draws: 24 points over the frame, 1 to 4 m, noise of 3 mm, 3 or
+  // 8 of them outliers.
   for (const bool thick : {false, true}) {
     const IdealLens lens = thick ? thick_lens(data_lens("double_gauss_52mm_f1.8")) : normal_lens();
     const double half_x = 18 / lens.rear_focal_length, half_y = 12 / lens.rear_focal_length;
@@ -39,7 +39,7 @@ TEST(RobustTiltFit, FindsThePlaneAmongGrossOutliers) {
         std::mt19937_64 random(1000 * static_cast<unsigned>(outliers) + seed);
         std::uniform_real_distribution<double> unit(-1, 1);
         std::normal_distribution<double> noise(0, 3);
-        // Disparity from 1/m to 1/(4 m) over the frame, in a direction of its own.
+        // Inverse distance from 1/m to 1/(4 m) over the frame, in a random direction.
         const double turn = std::numbers::pi * unit(random), cosine = std::cos(turn), sine = std::sin(turn);
         const double reach = std::abs(cosine) * half_x + std::abs(sine) * half_y;
         const double near = 1 / 1000.0, far = 1 / 4000.0, slope = (near - far) / 2 / reach;
@@ -71,7 +71,7 @@ TEST(RobustTiltFit, FindsThePlaneAmongGrossOutliers) {
   }
 }
 
-/// Exact points of a plane; the first so many are moved far away along their lines of sight.
+/// Exact points of a plane; the first ones are moved far away along their lines of sight.
 Targets with_outliers(const Scene& scene, int count, int outliers) {
   Targets targets = scene.targets(count, 0.3, 0.2, 3);
   for (int i = 0; i < outliers; ++i) targets[static_cast<std::size_t>(i)].place.position *= 1.5 + 0.1 * i;
@@ -126,8 +126,8 @@ TEST(RobustTiltFit, TargetsBecomeOutliersByAndBy) {
   std::normal_distribution<double> noise(1, 2e-3);
   for (FocusTarget& t : targets) t.place.position *= noise(random);
   const Vec still = targets[0].place.position;
-  // Steps of 0.05 mm: no film is farther from the last than the noise of the median makes it. A target that kept its
-  // weight up to the border would leave with a jump.
+  // Steps of 0.05 mm: the film changes by no more than the noise of the median. A target that kept its weight up to the
+  // border would leave with a jump.
   constexpr int steps = 2000;
   double last = 0;
   for (int i = 0; i <= steps; ++i) {
@@ -144,7 +144,7 @@ TEST(RobustTiltFit, TargetsBecomeOutliersByAndBy) {
 }
 
 TEST(RobustTiltFit, ServesLinesAndPlacesToo) {
-  // Most of the targets on a line of the picture, or in one place of it; others of them are too near.
+  // Most targets lie on a line of the picture, or in one place of it; the others are too near.
   Targets line, place;
   for (int i = 0; i < 11; ++i) {
     const double inverse = 4e-4 + 1e-5 * i, off = i % 4 == 3 ? 1.4 : 1.0;

@@ -121,7 +121,7 @@ TEST(TiltFit, GivesTheTiltsThatAreKnown) {
 }
 
 TEST(TiltFit, GivesThePlaneOfThreePoints) {
-  // Disparity -.5 x + y + .4.
+  // Inverse distance -.5 x + y + .4.
   const IdealLens lens = thin_lens(0.05, 2);
   TiltOptions options = behind(lens);
   options.film = {.width_mm = 0.036, .height_mm = 0.024};
@@ -146,7 +146,7 @@ TEST(TiltFit, MeetsWhatThreeTargetsWant) {
 }
 
 TEST(TiltFit, IsTheLeastSumOfSquares) {
-  // No film nearby, moved or turned, serves inexact targets with wanted blurs better.
+  // No film nearby, moved or tilted, has a lower cost for inexact targets with wanted blurs.
   std::mt19937_64 random(3);
   std::uniform_real_distribution<double> unit(-1, 1);
   const IdealLens lens = thick_lens(data_lens("double_gauss_100mm_f2.0"));

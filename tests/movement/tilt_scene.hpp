@@ -14,10 +14,10 @@
 
 namespace petzval::testing {
 
-/// A thin lens of 50 mm, f/2.
+/// A thin 50 mm lens, f/2.
 inline IdealLens normal_lens() { return thin_lens(50, 2); }
 
-/// The film at infinity focus; so much tilt.
+/// The film at infinity focus, with a tilt.
 inline TiltOptions behind(const IdealLens& lens, double max_tilt_deg = 20) {
   TiltOptions options{.max_tilt_rad = radians(max_tilt_deg)};
   options.film.z_mm = lens.rear_focal_z;
@@ -28,7 +28,7 @@ inline FocusTarget target(double x, double y, double z, double weight = 1, doubl
   return {.place = {{x, y, z}}, .blur_mm = blur, .weight = weight};
 }
 
-/// Angle between planes, radians; exact where it is small.
+/// Angle between planes, radians; accurate for small angles.
 inline double angle(const Vec3<double>& a, const Vec3<double>& b) {
   return std::asin(std::min(1.0, glm::length(glm::cross(a, b))));
 }
@@ -45,7 +45,7 @@ struct Scene {
     return movement_detail::plane_of({.rank = PlaneRank::plane, .a = a, .b = b, .c = c}, lens.front_principal_z())
         .value();
   }
-  /// Spread over the picture.
+  /// Points all over the picture.
   std::vector<FocusTarget> targets(int count, double half_x, double half_y, unsigned seed = 1) const {
     std::mt19937_64 random(seed);
     std::uniform_real_distribution<double> unit(-1, 1);
@@ -58,7 +58,7 @@ struct Scene {
   }
 };
 
-/// Targets that no film meets, with weights; a third of them should be blurred.
+/// Targets that no film satisfies, with weights; a third of them have a wanted blur.
 inline std::vector<FocusTarget> inexact_targets(int count, unsigned seed) {
   std::mt19937_64 random(seed);
   std::uniform_real_distribution<double> unit(-1, 1);
@@ -71,8 +71,8 @@ inline std::vector<FocusTarget> inexact_targets(int count, unsigned seed) {
   return targets;
 }
 
-/// How far a film is from the least cost nearby: the largest foot of the parabolas through costs 1e-4 to either side,
-/// in its position (in units of `unit`) and its angles.
+/// Distance of a film from the least cost nearby: the largest vertex of the parabolas through costs 1e-4 to both sides,
+/// in position (in units of `unit`) and angles.
 double off_least(const auto& cost, const Film& film, double unit) {
   constexpr double h = 1e-4;
   const double here = cost(film);

@@ -105,7 +105,7 @@ TEST(FirstOrder, StaysWhenTheLensIsTurnedRound) {
       EXPECT_NEAR(std::abs(back.effective_focal_length), f, 1e-12 * f);
       EXPECT_NEAR(std::abs(back.petzval_sum), std::abs(ahead.petzval_sum),
                   1e-13 * (1 / f + std::abs(ahead.petzval_sum)));
-      if (ahead.image_index < 0) continue;  // turned round, light would start backwards
+      if (ahead.image_index < 0) continue;  // reversed, light would start towards -z
       const double size = f + std::abs(ahead.front_focal_distance) + std::abs(ahead.back_focal_distance);
       EXPECT_NEAR(back.back_focal_distance, -ahead.front_focal_distance, 1e-12 * size);
       EXPECT_NEAR(back.front_focal_distance, -ahead.back_focal_distance, 1e-12 * size);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Seidel's third-order sums against the limits of real rays.
+// Seidel sums, compared with limits of real rays.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -20,8 +20,8 @@ namespace {
 
 using L = long double;
 
-/// Where a ray from infinity meets the paraxial image plane, less where it should by first order. x, y: in the plane of
-/// the entrance pupil; slope: tangent of the field, towards +y where the light goes.
+/// The hit of a ray from infinity on the paraxial image plane, minus its first-order hit. x, y: in the plane of the
+/// entrance pupil; slope: tangent of the field, for light that travels towards +y.
 class RealRays {
  public:
   RealRays(const Lens& lens, const testing::SeidelSums& sums, L pupil_z)
@@ -51,7 +51,7 @@ L third_order(const Function& f, L t) {
   return bc + (bc - ab) / 15;
 }
 
-/// Cylinders have no such sums, and terms of odd order are of other orders.
+/// Cylinders have no such sums, and odd aspheric terms belong to other orders.
 bool has_sums(const Lens& lens) {
   return lens.rotationally_symmetric() &&
          std::none_of(lens.surfaces().begin(), lens.surfaces().end(), [](const LensSurface& s) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What fits make of real lenses, against exact rays.
+// Fits of real lenses, compared with exact rays.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -41,7 +41,7 @@ Lens lens_of(const Case& c) {
   return c.f_number > 0 ? with_f_number(lens, c.f_number) : lens;
 }
 
-/// The exact ray of a line; started in the plane of the last vertex.
+/// The exact ray of a line, from the plane of the last vertex.
 TracedRay<double> exact(const Lens& lens, const TwoPlanes& space, const Lines<double>& lines, std::size_t i,
                         std::size_t wavelength = 0) {
   const Vec3<double> film(lines.film_x[i], lines.film_y[i], space.film_z);
@@ -54,10 +54,10 @@ TracedRay<double> exact(const Lens& lens, const TwoPlanes& space, const Lines<do
 
 struct Errors {
   double rms_rad = 0, max_rad = 0, rms_mm = 0, max_mm = 0;
-  double share = 0;  ///< of the lines that get through
+  double share = 0;  ///< of the lines that pass
 };
 
-/// Errors of the direction, and of where the ray passes the reference point.
+/// Errors of the direction and of the offset from the reference point.
 template <class T>
 Errors errors(const Lens& lens, const RayPolynomial& polynomial, const Lines<T>& rays, const Lines<double>& lines,
               std::size_t wavelength = 0) {
@@ -109,7 +109,7 @@ TEST(PolynomialFit, ErrorsFallWithTheDegreeAndAreWhatIsStated) {
 }
 
 TEST(PolynomialFit, DoubleGaussIsAsGoodAsKnown) {
-  // RMS angle times focal length, in micrometres: least squares over an even spread give 28.6, 6.2, 1.03, 0.144 and
+  // RMS angle times focal length, in micrometres: least squares over uniform samples give 28.6, 6.2, 1.03, 0.144 and
   // 0.019 at f/2 and 12.3, 1.28, 0.132, 0.0124 and 0.0011 at f/4.
   const std::array<std::array<double, 5>, 2> limits{{{31, 6.8, 1.2, 0.17, 0.023}, {13.5, 1.4, 0.15, 0.014, 0.0013}}};
   for (std::size_t k = 0; k < limits.size(); ++k) {
@@ -207,7 +207,7 @@ TEST(PolynomialFit, EveryWavelengthHasItsOwn) {
     const Lines<double> lines = lines_through<double>(pupils, 1000, 5, w);
     Lines<double> rays = lines;
     EXPECT_LT(1e3 * focal_length * errors(lens, polynomial, rays.through(polynomial, {w}), lines, w).rms_rad, 0.1);
-    // Another wavelength's is worse by the colour of the lens.
+    // The fit of another wavelength is worse by the chromatic aberration.
     const std::size_t other = (w + 1) % 3;
     EXPECT_GT(1e3 * focal_length * errors(lens, polynomial, rays.through(polynomial, {other}), lines, w).rms_rad, 1);
   }
@@ -231,7 +231,7 @@ TEST(PolynomialFit, SaysWhyThereIsNone) {
   const std::array<double, 2> nm{656.2725, 486.1327};
   const Lens coloured = compile(data_prescription("double_gauss_100mm_f2_28deg"), nm, {.glasses = &glasses});
   EXPECT_EQ(why(coloured, pupils, 5), where + "the pupils are of 1 wavelengths, wanted the lens's 2");
-  // The pupils of the open lens, through one that is all but closed.
+  // The pupils of the open lens, traced through an almost closed one.
   EXPECT_NE(why(with_f_number(lens, 200), pupils, 11).find("rays get through"), std::string::npos);
 }
 

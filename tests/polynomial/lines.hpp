@@ -12,7 +12,7 @@
 
 namespace petzval::testing {
 
-/// Lines and the rays that they become, in arrays of their own.
+/// Lines and their rays, as arrays.
 template <class T>
 struct Lines {
   std::vector<T> film_x, film_y, pupil_x, pupil_y;

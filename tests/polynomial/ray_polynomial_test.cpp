@@ -75,8 +75,8 @@ TEST(RayPolynomial, TermsAreAllOfTheDegree) {
 }
 
 TEST(RayPolynomial, AddsTheTermsInTheirOrder) {
-  // Against the sum written out, the direction by the angle 2 atan |s| from the axis, the offset by its length and
-  // its angle to the plane of axis and direction, which no turn about their normal changes. Fields to 130 degrees.
+  // Compared with the explicit sum: the direction by its angle 2 atan |s| from the axis, the offset by its length and
+  // its angle to the plane of axis and direction, which a rotation about the normal keeps. Fields to 130 degrees.
   const auto d = domain();
   for (int degree = 3; degree <= 11; degree += 2) {
     const auto terms = RayPolynomial::terms(degree);
@@ -140,7 +140,7 @@ TEST(RayPolynomial, ComesBackToItsLines) {
     const RayPolynomial polynomial(degree, domain(), {numbers(degree, -1.6, 0.02)});
     Lines<double> lines = all_over<double>();
     lines.through(polynomial);
-    // From anywhere on the ray, the other way.
+    // From anywhere on the ray, in the opposite direction.
     for (std::size_t i = 0; i < lines.size(); ++i) {
       const double far = i % 3 == 0 ? 0 : i % 3 == 1 ? 1e3 : 1e6;
       for (std::size_t k = 0; k < 3; ++k) {
@@ -212,7 +212,7 @@ TEST(RayPolynomial, GivesNothingOutsideItsDomain) {
     lines.add(20.01, 0, 0, 0);
     lines.add(0, -20.01, 0, 0);
     lines.add(0, 0, 7.1, 7.1);
-    lines.add(20, 0, -5.1, 0);  // the pupil's domain has moved to x = 5
+    lines.add(20, 0, -5.1, 0);  // the domain of the pupil has its middle at x = 5
     for (const double bad : {nan, infinity, -infinity}) {
       lines.add(bad, 0, 0, 0);
       lines.add(0, 0, 0, bad);

@@ -62,7 +62,7 @@ TEST(RgbWeights, FollowTheOrderOfTheSet) {
 }
 
 TEST(RgbWeights, BandsEndHalfWayBetweenWavelengths) {
-  // Sums over the table's 5 nm, by trapezoids, of the bands 420-500, 500-580 and 580-680 nm.
+  // Trapezoidal sums over the 5 nm table for the bands 420-500, 500-580 and 580-680 nm.
   constexpr std::array<double, 4> edges{420, 500, 580, 680};
   std::array<std::array<double, 3>, 3> expected{};
   std::array<double, 3> white{};

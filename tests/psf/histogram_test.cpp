@@ -22,7 +22,7 @@ TEST(CountPoints, RowsRunFromTheTop) {
 }
 
 TEST(CountPoints, HoldsEveryPointOnce) {
-  // Each pixel's count is that of the points between its edges, for any number of points.
+  // The count of a pixel is the number of points between its edges.
   std::mt19937 random(3);
   std::uniform_real_distribution<double> uniform(-1.5, 1.5);
   for (const std::size_t count : {0u, 1u, 255u, 256u, 257u, 5000u}) {
@@ -52,7 +52,7 @@ TEST(CountPoints, LeavesOutWhatLiesBeside) {
 }
 
 TEST(CountPoints, LosesNothingInAFullPixel) {
-  // Where a float stops (2^24), a 32-bit integer overflows and a double stops (2^53).
+  // At the limits of integers in float (2^24), 32 bits and double (2^53).
   for (const std::uint64_t full : {std::uint64_t(1) << 24, std::uint64_t(1) << 32, std::uint64_t(1) << 53}) {
     std::vector<std::uint64_t> counts{full};
     const std::vector<double> places(3, 0.0);

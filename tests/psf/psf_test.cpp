@@ -91,7 +91,7 @@ TEST(PointImage, MirrorsWithTheField) {
   EXPECT_NEAR(up.size.centroid[1] / down.size.centroid[1], -1, 1e-4);
   EXPECT_NEAR(up.throughput / down.throughput, 1, 2e-3);
   EXPECT_LT(up.size.centroid[1], 0);
-  // Left and right of the meridian are alike, too.
+  // The image is symmetric about the meridian.
   const auto side = static_cast<std::size_t>(up.psf.pixels);
   std::uint64_t left = 0;
   for (std::size_t i = 0; i < up.psf.counts.size(); ++i) left += i % side < side / 2 ? up.psf.counts[i] : 0;
@@ -99,7 +99,7 @@ TEST(PointImage, MirrorsWithTheField) {
 }
 
 TEST(PointImage, RowsRunFromTheTop) {
-  // Coma: the light gathers on one side of the spot. Its first moments by the picture and by the hits must agree.
+  // Coma puts the light on one side of the spot. The first moments of picture and hits must agree.
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
   const FieldPoint point{radians(10), -infinity};
   const PointImage image = point_image(lens, point, {.samples = 1 << 14, .pixels = 40, .half_width_mm = 0.05});
@@ -135,7 +135,7 @@ TEST(PointImage, AllLightOfAFrontStopArrives) {
 }
 
 TEST(PointImage, DefocusOfAPerfectLensIsAUniformDisc) {
-  // f/10: the edge of the cone is brighter by a few tenths of a per cent, since tan and sin part there.
+  // f/10: the edge of the cone is brighter by a few tenths of a per cent, the difference of tan and sin.
   constexpr double n = 10, defocus = 3;
   const Lens sharp = with_f_number(data_lens("analytic_plano_hyperbolic_100mm"), n);
   for (const double side : {-1.0, 1.0}) {
@@ -145,7 +145,7 @@ TEST(PointImage, DefocusOfAPerfectLensIsAUniformDisc) {
     EXPECT_NEAR(image.size.max_radius / radius, 1, 3e-3);
     EXPECT_NEAR(image.size.rms_radius / (radius / std::sqrt(2.0)), 1, 3e-3);
     const double flat = image.throughput / (std::numbers::pi * image.size.max_radius * image.size.max_radius);
-    // Rings of few rays and the rim itself apart; the sampling error of a ring of 16,000 rays is below 1 %.
+    // Except rings of few rays and the rim; the sampling error of a ring of 16,000 rays is below 1 %.
     for (std::size_t k = 4; k < 63; ++k) EXPECT_NEAR(image.radial_profile[k] / flat, 1, 0.015) << k;
   }
 }
@@ -166,7 +166,7 @@ TEST(PointImage, NothingGetsThroughAFieldTooWide) {
   for (const double value : image.radial_profile) EXPECT_EQ(value, 0);
 }
 
-/// RMS error, over the 12 x 12 bins of a vignetted bokeh and some seeds, of the light in a bin against many rays' mean.
+/// RMS error of the light in a bin, over 12 x 12 bins of a vignetted bokeh and some seeds, against a mean of many rays.
 class BinError {
  public:
   BinError() {

@@ -37,7 +37,7 @@ TEST(SpotSize, OfNoneAndOne) {
 }
 
 TEST(SpotSize, KeepsSmallSpotsFarFromTheAxis) {
-  // A ring of a nanometre at a height of 40 mm: 1e-8 of it is what the coordinates themselves resolve.
+  // A ring of a nanometre at a height of 40 mm: the coordinates resolve 1e-8 of it.
   std::vector<double> x, y;
   for (int i = 0; i < 100000; ++i) {
     x.push_back(1e-6 * std::cos(radians(i * 0.36)));
@@ -88,7 +88,7 @@ TEST(SpotDiagram, GoesFieldByFieldAndByWavelengthWithin) {
     EXPECT_EQ(spots[i].point.field_rad, fields[i / 3]);
     EXPECT_EQ(spots[i].wavelength, i % 3);
   }
-  // One scene point for all: what differs on the film is the lens's colour error alone.
+  // One scene point for all: the differences on the film are chromatic aberration.
   EXPECT_NE(spots[3].chief_ray_height.value(), spots[5].chief_ray_height.value());
   EXPECT_NEAR(spots[3].chief_ray_height.value(), spots[5].chief_ray_height.value(), 0.1);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One lens and one glass catalogue shared by threads that do everything with them at once. Each must find what a single
-// thread finds; built with -fsanitize=thread, the test also sees races that leave no trace in the numbers.
+// Threads share a lens and a glass catalogue and use them at the same time. Each must get the results of a single
+// thread. Built with -fsanitize=thread, the test also finds races that do not change the numbers.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -30,7 +30,7 @@ struct Shared {
   Lens lens;
 };
 
-/// What the library says of the lens, number by number.
+/// Results of the library for the lens.
 std::vector<double> all_about(const Shared& shared) {
   std::vector<double> numbers;
   const auto say = [&](auto... values) { (numbers.push_back(static_cast<double>(values)), ...); };

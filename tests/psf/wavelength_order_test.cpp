@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every lens of data/ that can be compiled for F, d and C, in all six orders: what works at the primary wavelength, and
-// what is asked for by nanometres, does not depend on the order.
+// Every lens of data/ that can be compiled for F, d and C, in all six orders: results at the primary wavelength and at
+// wavelengths given in nanometres do not depend on the order.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -30,7 +30,7 @@ namespace {
 constexpr std::array<double, 3> lines_nm{486.1327, d_line_nm, 656.2725};
 constexpr double off_axis = radians(4.0);
 
-/// Numbers to be found again to the bit. NaN stands for what the lens does not have.
+/// Numbers that must be equal to the bit. NaN: the lens does not have it.
 using Numbers = std::vector<double>;
 
 std::vector<std::uint64_t> bits(const Numbers& numbers) {
@@ -39,7 +39,7 @@ std::vector<std::uint64_t> bits(const Numbers& numbers) {
   return result;
 }
 
-/// The lens stopped down and focused: the same place of the stop's rim and of the film, whatever the order.
+/// The lens stopped down and focused: the same stop and film for every order.
 Lens set(const Lens& lens) {
   const double f_number = 1.5 * real_f_number(lens);
   if (!std::isfinite(f_number)) return lens;
@@ -64,7 +64,7 @@ Numbers first_order_numbers(const Lens& lens) {
   return found;
 }
 
-/// Rays of a small film at the primary wavelength and then at each line, and what else a camera says by default.
+/// Rays of a small film at the primary wavelength and at each line, and other results of a camera by default.
 std::optional<Numbers> camera_numbers(const Lens& lens) {
   std::optional<Camera> camera;
   try {

@@ -35,7 +35,7 @@ std::vector<StopPoint> places() {
   return result;
 }
 
-/// How far from a place on the stop a ray arrives there, in stop semi-diameters, by a trace of its own.
+/// The distance of a traced ray from its target on the stop, in semi-diameters of the stop.
 double miss(const Lens& lens, const Ray<double>& ray, const StopPoint& target) {
   const std::size_t stop = pupils(lens).stop;
   Vec3<double> hit{infinity, infinity, infinity};

@@ -142,7 +142,7 @@ TEST(Extremes, ALensScaledByAPowerOfTwoScalesToTheBit) {
   }
 }
 
-// A field that no lens sees gives no ray, an empty pupil and no light, and nothing that is not a number.
+// A field that no lens sees has no ray, an empty pupil and no light, and all numbers are finite.
 TEST(Extremes, FieldsBeyondTheLensAreDark) {
   for (const Prescription& p : data_prescriptions()) {
     const Lens lens = compile(p);

@@ -92,7 +92,7 @@ TEST(WithFNumber, RunsFromTheFastestLensesToPinholes) {
   for (const double n : {0.95, 1.0, 1.4, 8.0, 64.0}) EXPECT_NEAR(real_f_number(with_f_number(lens, n)), n, 1e-12 * n);
 }
 
-// Whole stops from f/0.95 to f/64, f/1000: a lens gives it, or says how far it opens.
+// Full stops from f/0.95 to f/64, f/1000: a lens has the f-number, or the message names the widest one.
 TEST(WithFNumber, GivesOrNamesEveryStandardFNumber) {
   int given = 0, refused = 0;
   for (const Prescription& p : data_prescriptions()) {
@@ -105,7 +105,7 @@ TEST(WithFNumber, GivesOrNamesEveryStandardFNumber) {
         EXPECT_NEAR(real_f_number(with_f_number(lens, n)), n, 1e-12 * n);
         ++given;
       } else if (n < fastest * (1 - 1e-8)) {
-        // The number that the message names is one that the lens takes.
+        // The lens accepts the number in the message.
         const std::string found = message([&] { with_f_number(lens, n); });
         const auto wanted = found.find("wanted ");
         ASSERT_NE(wanted, std::string::npos) << found;

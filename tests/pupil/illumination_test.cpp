@@ -28,7 +28,7 @@ double on_film(const Lens& lens, const Ray<double>& ray) {
   return ray.origin.y + (lens.film_z() - ray.origin.z) / ray.direction.z * ray.direction.y;
 }
 
-/// The projected solid angle in which a film point (0, y) sees the scene, by a grid of rays against the light.
+/// The projected solid angle in which a film point (0, y) sees the scene, by a grid of rays to the scene.
 double seen_from_film(const Lens& lens, double y, int nodes) {
   const double back = lens.surfaces().back().vertex_z, gap = lens.film_z() - back;
   const double reach = 1.3 * lens.surfaces().back().semi_diameter;

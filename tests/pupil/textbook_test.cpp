@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The textbook method does what it says, and what it says is not enough: its faults, in numbers.
+// The textbook method, its bounds and its faults in numbers.
 #include "petzval/pupil/textbook.hpp"
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ using testing::data_prescriptions;
 using testing::message;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// The marked stop is surface 5, surface 2 is a little small.
+/// The marked stop is surface 5; surface 2 is a little too small.
 Lens double_gauss() { return data_lens("double_gauss_100mm_f2.0"); }
 
 /// Half the diagonal of the film that goes with a focal length of 100 mm as 24 x 36 mm goes with 50.
@@ -33,7 +33,7 @@ Ray<double> from_film(const Lens& lens, double film_height, double x, double y, 
   return {{x, y, z}, {x / length, dy / length, dz / length}};
 }
 
-/// A disc in the plane of the exit pupil, against the rays from a point of the film that pass the lens.
+/// A disc in the plane of the exit pupil, compared with the rays from a film point that pass the lens.
 struct Cover {
   double of_passing = 0;  ///< share of the passing rays that lie in the disc
   double of_disc = 0;     ///< share of the disc that passes
@@ -65,12 +65,12 @@ Ray<double> outwards(const Ray<double>& ray, double object_z, double by) {
   return {{0, y, ray.origin.z}, {0, y / length, z / length}};
 }
 
-// What is repaired: the ray that comes back was traced and passes, and the next one does not.
+// The repaired method: its ray was traced and passes, and the next one does not.
 TEST(TextbookPupil, ReturnsARayThatPassesAndIsTheLast) {
   for (const Prescription& p : data_prescriptions()) {
     const Lens lens = compile(p);
     if (!trace(lens, Ray<double>{}).transmitted() || main_meridian(lens) != Meridian::y)
-      continue;  // a hole on the axis
+      continue;  // a central obscuration
     const double f = *p.focal_length_mm;
     for (const double object_z : {-infinity, -1e4 * f, -100 * f, -10 * f}) {
       SCOPED_TRACE(p.id + " " + std::to_string(object_z));
@@ -92,7 +92,7 @@ TEST(TextbookPupil, ReturnsARayThatPassesAndIsTheLast) {
   }
 }
 
-// Of a thin beam it is right: there the disc is the paraxial pupil.
+// It is right for a thin beam: there the disc is the paraxial pupil.
 TEST(TextbookPupil, TendsToTheParaxialOneAsTheStopCloses) {
   for (const Prescription& p : data_prescriptions()) {
     SCOPED_TRACE(p.id);
@@ -129,13 +129,13 @@ TEST(TextbookPupil, OfAHoleIsTheHoleFromNearAndFar) {
   for (const double z : {-infinity, -1e6, -7.0, -0.5, 5.0}) {
     EXPECT_NEAR(textbook_entrance_pupil(compile(p), z).diameter, 6, 1e-13) << z;
   }
-  // From the other side: the plate lifts the hole to 2 / 1.5 in front of its back.
+  // From the other side the plate shows the hole 2 / 1.5 in front of its back.
   const TextbookPupil exit = textbook_exit_pupil(compile(p), 1e12);
   EXPECT_NEAR(exit.z, 2 - 2 / 1.5, 1e-15);
   EXPECT_NEAR(exit.diameter, 6, 1e-10);
 }
 
-// Fault one: the ray belongs to the first rim that clips.
+// Fault one: the ray depends on the first rim that clips.
 TEST(TextbookPupil, IsThatOfTheFirstRimNotOfTheStop) {
   const Lens lens = double_gauss();
   const double focal_length = first_order(lens).effective_focal_length;
@@ -152,7 +152,7 @@ TEST(TextbookPupil, IsThatOfTheFirstRimNotOfTheStop) {
   EXPECT_EQ(textbook_entrance_pupil(with_semi_diameter(lens, 5, 17.5), -1000).diameter, near.diameter);
 }
 
-// Fault two: it stays on the axis, where off it rims cut and shift what passes.
+// Fault two: it is axial, but off the axis rims clip and shift the pupil.
 TEST(TextbookPupil, WideOpenIsMostlyBlockedAtTheEdgeOfTheField) {
   const Lens lens = double_gauss();
   const TextbookPupil exit = textbook_exit_pupil(lens, lens.film_z());

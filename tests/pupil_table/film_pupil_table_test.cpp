@@ -55,13 +55,13 @@ double declared_radius(const Prescription& p, const Lens& lens) {
 }
 
 struct Coverage {
-  double mean = 0, worst = 1;  // parts of the samples that pass: over film points, and of the worst of them
-  double missed = 0;           // part of the pupils that is not sampled
+  double mean = 0, worst = 1;  // shares of the samples that pass: mean over film points, worst film point
+  double missed = 0;           // share of the pupils that is not sampled
 };
 
-/// Samples of film points at some radii. What is missed is known by rays of two kinds that were not sampled: in a band
-/// outside the star's edge, of a tenth of its area, where misses by small errors lie, and in a box half as large again
-/// as the star, for lost parts; those of them that pass are missed.
+/// Samples of film points at several radii. Two kinds of other rays measure the missed parts: rays in a band outside
+/// the polygon, of a tenth of its area, for small errors, and rays in a box 1.5 times as large as the polygon, for lost
+/// parts. Those that pass are missed.
 Coverage coverage(const Lens& lens, const FilmPupilTable& map, double radius, int points, int samples) {
   std::mt19937_64 random(points);
   std::uniform_real_distribution<double> unit(0, 1);
@@ -243,7 +243,7 @@ TEST(FilmPupilTable, IsContinuousAroundTheAxis) {
   for (int i = 0; i < 32; ++i) {
     const double azimuth = 2 * std::numbers::pi * i / 32;
     const PupilSample s = map.sample({1e-6 * std::sin(azimuth), 1e-6 * std::cos(azimuth)}, 0.3, 0.8);
-    // A star of 64 corners is round within 1 - cos(pi / 64).
+    // A polygon of 64 corners is round within 1 - cos(pi / 64).
     EXPECT_NEAR(std::hypot(s.x - axis.x, s.y - axis.y), 0, 0.0025 * std::sqrt(axis.area));
   }
 }
@@ -321,8 +321,8 @@ TEST(FilmPupilTable, TellsOfManyPlacesWhatItTellsOfOne) {
   }
 }
 
-// Of a film that leans: every line of the map that meets it, and not many more. The pupil of a key is that of the
-// upright film's points that its lines meet.
+// A tilted film has every line of the table that meets it, and few more. The pupil of a virtual film point is that of
+// the points of the upright film on its lines.
 TEST(FilmPupilTable, CoversThePupilsOfAFilmThatLeans) {
   for (const auto& [id, radius] : {std::pair{"double_gauss_100mm_f2.0", 22.0}, std::pair{"fisheye_8mm_f2.8", 8.0},
                                    std::pair{"catadioptric_mangin_1000mm_f7.5", 20.0}}) {
@@ -376,7 +376,7 @@ TEST(FilmPupilTable, KnowsHowItsSamplesMove) {
     const auto motion = map.derivatives(film, u, v);
     const auto at = [&](double dx, double dy) { return map.sample({film.x + dx, film.y + dy}, u, v); };
     const PupilSample right = at(h, 0), left = at(-h, 0), above = at(0, h), below = at(0, -h);
-    // A corner of the star or a node of the table may lie between.
+    // A corner of the polygon or a node of the table may lie between.
     const double slack = 1e-6 + 0.3 *
                                     (std::hypot(right.x + left.x - 2 * at(0, 0).x, above.x + below.x - 2 * at(0, 0).x,
                                                 right.y + left.y - 2 * at(0, 0).y) +

@@ -35,7 +35,7 @@ SurfaceRow row(double radius, double conic, double semi_diameter, std::vector<As
   return r;
 }
 
-/// From a gentle camera asphere to surfaces of phone lenses that turn back before their rim, and one that waves.
+/// From a gentle camera asphere to gull-wing surfaces of phone lenses and a wavy one.
 std::vector<Named> surfaces() {
   return {
       {"camera", row(40, -0.5, 18, {{4, -2e-6}, {6, 3e-9}, {8, -4e-12}})},
@@ -75,7 +75,7 @@ struct Crossing {
   double t, cos_incidence;
 };
 
-/// The sag of a row by its definition, over long double.
+/// The sag of a row by its definition, in long double.
 struct Sag {
   const SurfaceRow& row;
 
@@ -84,7 +84,7 @@ struct Sag {
     long double z = c * r * r / (1 + std::sqrt(1 - (1 + static_cast<long double>(row.conic)) * c * c * r * r));
     long double power = r;
     int reached = 1;
-    for (const auto& [order, a] : row.aspheric) {  // in rising order
+    for (const auto& [order, a] : row.aspheric) {  // in increasing order
       for (; reached < order; ++reached) power *= r;
       z += a * power;
     }
@@ -95,8 +95,8 @@ struct Sag {
   }
 };
 
-/// Crossings in the sense of travel within the aperture, by a scan in small steps.
-/// None at all where two crossings lie so close that the scan could not tell.
+/// Crossings in the direction of travel within the aperture, by a scan in small steps.
+/// Empty if two crossings are too close for the scan.
 std::optional<std::vector<Crossing>> scan(const SurfaceRow& r, const Vec<double>& p, const Vec<double>& d, int sense) {
   const Sag sag{r};
   const double rim = *r.semi_diameter;
@@ -104,7 +104,7 @@ std::optional<std::vector<Crossing>> scan(const SurfaceRow& r, const Vec<double>
   const double closest = std::hypot(p.x + middle * d.x, p.y + middle * d.y);
   if (closest >= rim) return std::vector<Crossing>{};
   const double half = std::sqrt((rim * rim - closest * closest) / across);
-  // A ray near the axis leaves the aperture far away; a few rims on both sides of the surface are enough.
+  // A ray near the axis leaves the aperture far away; a few semi-diameters on both sides are enough.
   const long double from = std::max(middle - half, -2 * rim), to = std::min(middle + half, 4 * rim);
   constexpr int steps = 300;
   std::vector<Crossing> found;
@@ -184,7 +184,7 @@ TYPED_TEST(AsphereOf, FindsTheFirstCrossingOfSteepRays) {
       const auto& [t, cosine] = crossings->front();
       const double error = std::hypot(point.x - (p.x + t * direction.x), point.y - (p.y + t * direction.y),
                                       point.z - (p.z + t * direction.z));
-      // Anything as far off as this is another crossing.
+      // A larger error means another crossing.
       if (error > 1e-3 * rim) {
         ++wrong;
       } else {

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-/// Numbers of 113 bits, to judge kernels in double by.
+/// Numbers of 113 bits, the reference for kernels in double.
 #if __LDBL_MANT_DIG__ == 113
 using Quad = long double;
 #else

@@ -47,7 +47,7 @@ struct Expected {
   Quad cos_incidence = 0;
 };
 
-/// Both roots in 113 bits, and of them the one on the vertex sheet that is crossed in the sense of travel.
+/// The root in 113 bits on the vertex sheet, crossed in the direction of travel.
 template <class R>
 Expected expected(const Quadric<R>& q, const Vec<R>& start, const Vec<R>& direction, int sense) {
   const QuadVec p = exact(start), d = exact(direction);
@@ -69,7 +69,7 @@ Expected expected(const Quadric<R>& q, const Vec<R>& start, const Vec<R>& direct
   return {};
 }
 
-/// A surface point within `reach` of the axis, any azimuth. False where the surface does not extend so far.
+/// A surface point within `reach` of the axis, any azimuth. False beyond the equator.
 template <class R>
 bool surface_point(const Quadric<R>& q, double reach, double turn, Vec<R>& point) {
   const Quad c = q.curvature;
@@ -91,13 +91,13 @@ Vec<R> unit_direction(double x, double y, double z) {
   return {static_cast<R>(x / l), static_cast<R>(y / l), static_cast<R>(z / l)};
 }
 
-/// Error of a hit over what rounding the ray alone may cost: |dP| cos I / (eps (height + distance slope)).
+/// Error of a hit relative to the effect of rounding the ray: |dP| cos I / (eps (height + distance slope)).
 template <class R>
 double judged(const Quadric<R>& q, const Vec<R>& start, const Vec<R>& d, int sense, double height, double distance,
               const std::string& what) {
   const Expected e = expected(q, start, d, sense);
   const auto [point, hit, slant] = intersect(q, start, d, static_cast<R>(sense));
-  // A ray within rounding of the rim of what can be met may go either way.
+  // A ray within rounding of the equator may hit or miss.
   const bool doubtful = !e.hit || e.cos_incidence < 1e-7;
   EXPECT_TRUE(hit == e.hit || doubtful) << what;
   if (!hit || !e.hit) return 0;
@@ -112,7 +112,7 @@ struct Sweep {
   int rays = 400;
 };
 
-/// Worst judged error of random skew rays towards points within the height, from both sides.
+/// Worst relative error of random skew rays towards points within the height, from both sides.
 template <class R>
 double worst(const Quadric<R>& q, double limit, const Sweep& sweep, const std::string& what) {
   std::mt19937 random(7);
@@ -202,7 +202,7 @@ TYPED_TEST(QuadricOf, HitsWithinFourEpsWhenGrazing) {
       for (int i = 0; i < 200; ++i) {
         Vec<TypeParam> target;
         ASSERT_TRUE(surface_point(q, 30 * std::sqrt(uniform(random)), 6.3 * uniform(random), target));
-        // A direction in the tangent plane, lifted by the grazing angle.
+        // A direction in the tangent plane, raised by the grazing angle.
         const QuadVec n = unit(gradient(q, exact(target)));
         const double turn = 6.3 * uniform(random);
         QuadVec tangent{static_cast<Quad>(std::cos(turn)), static_cast<Quad>(std::sin(turn)), 0};
@@ -261,7 +261,7 @@ TEST(Quadric, HitOrMissIsDecidedWithinABillionthOfTheEdge) {
     EXPECT_TRUE(at(50 * (1 - 1e-9), sense));
     EXPECT_FALSE(at(50 * (1 + 1e-9), sense));
   }
-  // Past the sphere in front of its vertex, on a line inclined so that it touches at 45 degrees of latitude.
+  // Past the sphere in front of its vertex, on a line that touches it at 45 degrees of latitude.
   const double s = std::sqrt(0.5);
   const Vec<double> touching{50 * s, 0, 50 - 50 * s};
   const Vec<double> d{s, 0, s};

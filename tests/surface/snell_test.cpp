@@ -72,10 +72,10 @@ TYPED_TEST(SnellOf, DirectionIsWithinFourEpsOverTheCosine) {
       const auto [t, transmitted] = refract(d, n, interface);
       Quad cos_out = 0;
       const QuadVec wanted = refracted(unit(exact(d)), unit(exact(n)), n_in, n_out, cos_out);
-      if (cos_out < 1e-3) continue;  // near the critical angle the fate itself is a matter of rounding
+      if (cos_out < 1e-3) continue;  // near the critical angle rounding decides the fate
       ASSERT_TRUE(transmitted);
       const QuadVec off{t.x - wanted.x, t.y - wanted.y, t.z - wanted.z};
-      // cos t' = sqrt(1 - (n sin t / n')^2): a rounding of the ray comes out (n/n')^2 / cos t' times as large.
+      // cos t' = sqrt(1 - (n sin t / n')^2): rounding errors of the ray grow by (n/n')^2 / cos t'.
       const double mu = n_in / n_out, condition = static_cast<double>(cos_out) / std::max(1.0, mu * mu);
       most = std::max(most, static_cast<double>(root(inner(off, off))) * condition / eps);
     }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reproducible batches: the same bits on every instruction set, and on every machine and compiler, so that their hashes
-// are constants; and those of rays traced one by one. Where the arithmetic of batches or a lens of the table was
-// changed on purpose, the new table is what the failing test prints:
+// Reproducible batches have the same bits as rays traced one by one, on every instruction set, machine and compiler:
+// their hashes are constants. After an intended change of the arithmetic or of a lens in the table, the failing test
+// prints the new table:
 //
 //   build/tests/trace/trace_batch_bits_test --gtest_filter='*Hash*'
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ namespace {
 
 using namespace testing_batches;
 
-/// FNV-1a over 64-bit words: the rays, fates and surfaces that come out.
+/// FNV-1a over 64-bit words of rays, fates and surfaces.
 template <class T>
 std::uint64_t hash(const Answer<T>& answer) {
   std::uint64_t h = 0xcbf29ce484222325u;
@@ -78,7 +78,7 @@ std::array<std::uint64_t, 4> hashes_of(const testing_lenses::Sample& sample, Bat
   return result;
 }
 
-/// A row as it stands in the table.
+/// A row in the form of the table.
 std::string text(const Row& row) {
   std::ostringstream line;
   line << "    {\"" << row.lens << "\",\n     {" << std::hex << std::setfill('0');

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The iris of a batch, against where each ray crosses the plane of the stop.
+// The iris of a batch, compared with the crossings of the rays with the plane of the stop.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -16,7 +16,7 @@ namespace {
 using namespace testing_batches;
 using petzval::IrisEdge;
 
-/// A regular hexagon, turned so that no edge is along an axis.
+/// A regular hexagon, rotated so that no edge is parallel to an axis.
 std::vector<IrisEdge> hexagon(double distance) {
   std::vector<IrisEdge> edges;
   for (int i = 0; i < 6; ++i) {
@@ -26,7 +26,8 @@ std::vector<IrisEdge> hexagon(double distance) {
   return edges;
 }
 
-/// Distance of a ray's crossing of the stop to the nearest edge, > 0 inside; none where the ray does not come so far.
+/// Distance of a ray's crossing of the stop to the nearest edge, > 0 inside; nothing if the ray does not reach the
+/// stop.
 template <class T>
 std::optional<double> room_at_the_stop(const Lens& lens, const Ray<T>& ray, Travel travel,
                                        const std::vector<IrisEdge>& edges) {
@@ -69,7 +70,7 @@ TYPED_TEST(BatchIris, ClipsWhatCrossesTheStopOutsideAnEdge) {
           const bool reached = open.fates[i] == RayFate::transmitted ||
                                (travel == Travel::to_film ? open.surfaces[i] > stop : open.surfaces[i] < stop);
           const auto room = reached ? room_at_the_stop(lens, rays[i], travel, edges) : std::nullopt;
-          // Where the crossing itself is known no better than the edge is near, either is right.
+          // Either fate is right within the error of the crossing.
           if (room && std::abs(*room) < 1000 * std::numeric_limits<T>::epsilon() * sample.size) continue;
           if (room) {
             const auto one = petzval::trace(lens, rays[i], {.travel = travel, .iris = edges});
@@ -143,7 +144,7 @@ TYPED_TEST(BatchIris, MayLieBeyondTheAxis) {
 
 TYPED_TEST(BatchIris, IsIgnoredWithoutAStopAndWithoutApertures) {
   using T = TypeParam;
-  const std::vector<IrisEdge> edges{{1, 0, -20}};  // lets nothing through
+  const std::vector<IrisEdge> edges{{1, 0, -20}};  // no ray passes
   for (const Travel travel : {Travel::to_film, Travel::to_scene}) {
     for (BatchOptions options : ways(travel)) {
       options.iris = edges;

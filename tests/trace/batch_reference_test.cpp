@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every lens, both ways, against rays in long double: fates, surfaces, places and directions.
+// Every lens in both directions, compared with rays in long double: fates, surfaces, positions and directions.
 #include <gtest/gtest.h>
 
 #include "limits.hpp"

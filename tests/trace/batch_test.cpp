@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a batch promises about its slots: a ray's answer is its own, whatever stands beside it.
+// The slots of a batch: the result of a ray does not depend on its neighbours.
 #include "petzval/trace/batch.hpp"
 
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ int first_met(const Lens& lens, Travel travel) {
   return travel == Travel::to_film ? 0 : static_cast<int>(lens.surface_count()) - 1;
 }
 
-/// A ray that the contract refuses: not finite, or its direction not of unit length.
+/// An invalid ray: not finite, or with a direction not of unit length.
 template <class T>
 bool refused(const Ray<T>& ray) {
   double length = 0;
@@ -35,7 +35,7 @@ bool refused(const Ray<T>& ray) {
   return !finite(ray) || !(length > 0.999 && length < 1.001);
 }
 
-/// Rays that no lens is made for.
+/// Rays beyond any lens.
 template <class T>
 std::vector<Ray<T>> absurd_rays() {
   constexpr auto limits = std::numeric_limits<T>();
@@ -78,7 +78,7 @@ TYPED_TEST(BatchOf, EveryCountAndPlaceGivesARayTheSameBits) {
       for (const BatchOptions& options : ways(travel)) {
         const Answer<T> whole = traced(sample.lens, rays, options);
         for (std::size_t count = 0; count < 130; ++count) {
-          // Another place in the batch for each count, and memory that is aligned to one element at best.
+          // Each count puts the rays at another place of the batch, in memory aligned to one element only.
           const std::size_t start = count * 37 % (rays.size() - count), shift = count % 4;
           const std::vector<Ray<T>> part(rays.begin() + static_cast<std::ptrdiff_t>(start),
                                          rays.begin() + static_cast<std::ptrdiff_t>(start + count));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A wavelength for each ray of a batch.
+// Batches with a wavelength for each ray.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -15,7 +15,7 @@ using namespace testing_batches;
 
 const std::vector<double> wavelengths_nm{587.5618, 435.8343, 656.2725, 486.1327, 546.0740};
 
-/// A telling lens at several wavelengths; at one alone where its media are not known well enough.
+/// A lens at several wavelengths; at one if its dispersion is unknown.
 testing_lenses::Sample colourful(const testing_lenses::Sample& sample) {
   static const auto glasses = petzval::GlassCatalogue::load(std::filesystem::path(PETZVAL_TEST_DATA) / "glass");
   auto result = sample;

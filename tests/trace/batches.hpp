@@ -13,7 +13,7 @@
 #include "lenses.hpp"
 #include "petzval/trace/batch.hpp"
 
-/// Batches of rays, and what the tests of batches ask of them.
+/// Batches of rays for tests.
 namespace testing_batches {
 
 using petzval::Arithmetic;
@@ -40,8 +40,8 @@ inline std::string text(const BatchOptions& o) {
          (o.travel == Travel::to_film ? " to_film" : " to_scene");
 }
 
-/// Lenses that between them have everything: spheres, planes, conics, cylinders, aspheres, one or two mirrors, holes,
-/// many surfaces, steep ones, water behind the last.
+/// Lenses that together have spheres, planes, conics, cylinders, aspheres, one or two mirrors, central obscurations,
+/// many surfaces, steep ones, and water behind the last.
 inline const std::vector<testing_lenses::Sample>& telling() {
   static const std::vector<testing_lenses::Sample> samples = [] {
     std::vector<testing_lenses::Sample> result;
@@ -57,7 +57,7 @@ inline const std::vector<testing_lenses::Sample>& telling() {
   return samples;
 }
 
-/// Random numbers from integers and multiplication alone, the same on every machine (splitmix64).
+/// Random numbers from integer operations, the same on every machine (splitmix64).
 class Numbers {
  public:
   explicit Numbers(std::uint64_t seed) : state_(seed) {}
@@ -85,8 +85,8 @@ Ray<T> through(const petzval::Vec3<double>& target, const petzval::Vec3<double>&
           {static_cast<T>(d.x), static_cast<T>(d.y), static_cast<T>(d.z)}};
 }
 
-/// Rays towards a lens, on film or scene, of which a good part passes, some end at every kind of edge, and one in eight
-/// is steep or runs against the light. The same on every machine.
+/// Rays from film or scene towards a lens. Many pass, some end at every kind of edge, and one in eight is steep or runs
+/// against the light. The same on every machine.
 template <class T>
 std::vector<Ray<T>> rays_for(const testing_lenses::Sample& sample, Travel travel, std::size_t count,
                              std::uint64_t seed = 1) {
@@ -114,7 +114,7 @@ std::vector<Ray<T>> rays_for(const testing_lenses::Sample& sample, Travel travel
   return rays;
 }
 
-/// Rays as arrays, `shift` elements into their memory and with room around them that nobody may touch.
+/// Rays as arrays, `shift` elements into their memory, with guard elements around them.
 template <class T>
 class Arrays {
  public:
@@ -158,7 +158,7 @@ class Arrays {
   std::array<std::vector<T>, 6> columns_;
 };
 
-/// The answer of a batch.
+/// The result of a batch.
 template <class T>
 struct Answer {
   Arrays<T> rays;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Astigmatism along real rays: Coddington's equations, surface by surface, against exact derivatives of the traced ray.
+// Astigmatism along real rays: Coddington equations, surface by surface, compared with exact derivatives of the ray.
 #include <gtest/gtest.h>
 
 #pragma GCC diagnostic push
@@ -90,7 +90,7 @@ Vergences by_coddington(const Lens& lens, const Ray<double>& ray, double z) {
   return v;
 }
 
-/// The same from the neighbours of the ray, which leave its point beside it.
+/// The same from neighbours of the ray, from the same object point.
 Vergences by_derivatives(const Lens& lens, const Ray<double>& ray, double z) {
   Vergences v;
   for (const bool sagittal : {true, false}) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The kernel run on numbers that carry derivatives (ceres::Jet).
+// The kernel with numbers that have derivatives (ceres::Jet).
 #include <gtest/gtest.h>
 
 #pragma GCC diagnostic push
@@ -27,13 +27,13 @@ using testing_lenses::Sample;
 
 using Jet = ceres::Jet<double, 4>;
 
-/// Where and how a ray leaves: place on a plane of constant z and the direction's transverse components.
+/// A ray behind the lens: position in a plane of constant z and transverse components of the direction.
 template <class T>
 struct State {
   std::array<T, 4> v;  ///< x, y, L, M
 };
 
-/// From the plane z_in to the plane z_out. sign: of the ray's z component in front of the lens.
+/// From the plane z_in to the plane z_out. sign: of the z component of the direction in front of the lens.
 template <class T>
 State<T> through(const LensView<petzval::kernel::Storage<T>>& lens, const State<T>& in,
                  petzval::kernel::Storage<T> z_in, petzval::kernel::Storage<T> z_out, bool& transmitted,
@@ -99,7 +99,7 @@ TEST(Derivative, AgreesWithCentralDifferences) {
         const auto a = at(h), b = at(-h), c = at(2 * h), d = at(-2 * h);
         for (std::size_t i = 0; i < 4; ++i) {
           const long double difference = (8 * (a.v[i] - b.v[i]) - (c.v[i] - d.v[i])) / (12 * h);
-          // In units of the lens, so that places and directions compare.
+          // In units of the lens, to compare positions and directions.
           const long double per = (i < 2 ? s.size : 1) / unit;
           const double error = static_cast<double>(std::abs(difference - with.v[i].v[j]) / per);
           const double magnitude = std::max(1.0, static_cast<double>(std::abs(difference) / per));

@@ -11,7 +11,7 @@
 #include "batches.hpp"
 #include "petzval/trace/differentials.hpp"
 
-/// Batches of rays with derivatives. A tangent is kept as a ray is: how origin and direction change.
+/// Batches of rays with derivatives. A tangent is stored like a ray: the changes of origin and direction.
 namespace testing_differentials {
 
 using namespace testing_batches;
@@ -22,7 +22,7 @@ using testing_batches::same_bits;
 template <class T>
 using Tangents = std::vector<Ray<T>>;
 
-/// Random changes of rays: of places as large as the lens, of directions as large as one, perpendicular to them.
+/// Random changes of rays: of positions up to the size of the lens, of directions up to 1, perpendicular to them.
 template <class T>
 Tangents<T> tangents_for(const std::vector<Ray<T>>& rays, double size, std::uint64_t seed) {
   Numbers random(seed);
@@ -47,7 +47,7 @@ struct Beam {
       : rays(std::move(with)), u(tangents_for(rays, size, seed)), v(tangents_for(rays, size, seed + 1)) {}
 };
 
-/// The answer of a batch with derivatives.
+/// The result of a batch with derivatives.
 template <class T>
 struct Followed {
   Answer<T> end;
@@ -80,7 +80,7 @@ bool is_zero(const Ray<T>& tangent) {
   return tangent.origin == none && tangent.direction == none;
 }
 
-/// A lens of one surface, of a kind that the data lack.
+/// A lens of one surface of a kind that the data do not have.
 inline testing_lenses::Sample one_surface(const std::string& id, petzval::SurfaceRow row, double rim) {
   row.semi_diameter = rim;
   row.thickness = row.mirror ? -3 * rim : 3 * rim;
@@ -91,7 +91,7 @@ inline testing_lenses::Sample one_surface(const std::string& id, petzval::Surfac
   return {id, p, petzval::compile(p), rim};
 }
 
-/// Kinds of surfaces that the data lack.
+/// Kinds of surfaces that the data do not have.
 inline const std::vector<testing_lenses::Sample>& made() {
   using petzval::Section;
   static const std::vector<testing_lenses::Sample> samples{

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Derivatives of batches against those of the kernel run on numbers that carry them (ceres::Jet over long double).
+// Derivatives of batches compared with those of the kernel with dual numbers (ceres::Jet over long double).
 #include <gtest/gtest.h>
 
 #pragma GCC diagnostic push
@@ -25,12 +25,12 @@ using Jet = ceres::Jet<L, 6>;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 using petzval::kernel::Vec;
 
-/// Where a ray ends and how its six numbers change with the six that it came in with.
+/// The end of a ray and the derivatives of its six numbers by the six in front of the lens.
 struct Exactly {
   RayFate fate;
   std::array<Jet, 6> v;
 
-  /// Change k of the ray that a tangent makes.
+  /// Number k of the change of the ray by a tangent.
   L along(std::size_t k, const std::array<L, 6>& tangent) const {
     L sum = 0;
     for (int i = 0; i < 6; ++i) sum += v[k].v[i] * tangent[static_cast<std::size_t>(i)];
@@ -71,12 +71,12 @@ L distance(const std::array<L, 6>& a, const std::array<L, 6>& b, std::size_t fir
   return std::sqrt(sum);
 }
 
-/// What an eps in each number of the ray, or of its tangent in front of any one surface, does to the derivatives.
+/// The change of the derivatives for one eps in each number of the ray, or of its tangent in front of any surface.
 struct Unit {
   L place = 0, turn = 0;
 };
 
-/// A ray in truth: its end, the ends of rays an eps away, and what is left of its way behind each surface.
+/// An exact ray: its end, the ends of rays one eps away, and the remaining map behind each surface.
 class Truth {
  public:
   Truth(const testing_lenses::Tables<L>& tables, const std::array<L, 6>& ray, Travel travel, L eps, L size)
@@ -97,7 +97,7 @@ class Truth {
     }
   }
 
-  /// Whether it passes the surfaces, and rays an eps away do.
+  /// Whether it and the rays one eps away pass the surfaces.
   bool steady() const { return steady_; }
 
   std::array<L, 6> end(const std::array<L, 6>& tangent) const { return change(before_.back(), tangent); }

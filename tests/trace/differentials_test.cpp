@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Derivatives of batches: what must hold for every ray, and what a batch promises about its slots.
+// Derivatives of batches: laws for every ray, and the slots of a batch.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -32,7 +32,7 @@ Ray<double> in_double(const Ray<T>& r) {
   return {Vec3<double>(r.origin), Vec3<double>(r.direction)};
 }
 
-/// The worst of either arithmetic, eps.
+/// The worst errors of both arithmetics, eps.
 template <class T>
 class Most {
  public:
@@ -56,7 +56,7 @@ class Most {
   std::string where_[2];
 };
 
-/// Every ray of every lens, both ways, every arithmetic: take(sample, options, beam, answer, ray).
+/// Every ray of every lens in both directions and arithmetics: take(sample, options, beam, answer, ray).
 template <class T, class Take>
 void on_every_ray(std::size_t rays, const Take& take) {
   for (const auto* samples : {&testing_lenses::all(), &made()}) {
@@ -71,7 +71,7 @@ void on_every_ray(std::size_t rays, const Take& take) {
 
 // ---- Laws
 
-// n (x_u d_v - x_v d_u) is the same in front of a lens as behind it: J^T Omega J = Omega, seen by two changes.
+// n (x_u d_v - x_v d_u) is the same in front of a lens and behind it: J^T Omega J = Omega for two changes.
 TYPED_TEST(DifferentialsOf, TheInvariantOfLagrangeIsKept) {
   using T = TypeParam;
   Most<T> most;
@@ -110,7 +110,7 @@ TYPED_TEST(DifferentialsOf, DirectionsKeepTheirLength) {
   most.close("differentials: unit length of directions", 32);
 }
 
-// Doubled derivatives double to the bit; those of a sum are the sum.
+// Doubled changes give doubled derivatives to the bit; a sum of changes gives the sum.
 TYPED_TEST(DifferentialsOf, AreLinear) {
   using T = TypeParam;
   Most<T> most;
@@ -135,7 +135,7 @@ TYPED_TEST(DifferentialsOf, AreLinear) {
   most.close("differentials: linearity", 64);
 }
 
-// Turned round behind the lens, a ray and its neighbours come back along their own lines.
+// A ray and its neighbours, reversed behind the lens, return along their own lines.
 TYPED_TEST(DifferentialsOf, TurnedRoundComeBack) {
   using T = TypeParam;
   Most<T> most;
@@ -249,7 +249,8 @@ TYPED_TEST(DifferentialsOf, ResultsMayReplaceWhatCameIn) {
   }
 }
 
-// A ray that is none, and a tangent that is none, leave their neighbours alone, and the tangent its ray and its twin.
+// Invalid rays and tangents do not change their neighbours; an invalid tangent changes neither its ray nor the other
+// one.
 TYPED_TEST(DifferentialsOf, NoNumbersStayInTheirLane) {
   using T = TypeParam;
   const T nan = std::numeric_limits<T>::quiet_NaN(), infinity = std::numeric_limits<T>::infinity();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Fates a little on either side of every edge, and on the edge itself: one ray a call, and batches of either arithmetic
-// on every instruction set.
+// Fates on both sides of every edge and on the edge itself: one ray a call, and batches of both arithmetics on every
+// instruction set.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -19,7 +19,7 @@ using testing_lenses::one_surface;
 template <class T>
 class EdgesOf : public testing::Test {
  public:
-  /// How near to an edge rays must be told apart, relative.
+  /// The relative distance from an edge at which fates must be right.
   static constexpr double near = sizeof(T) == 4 ? 1e-5 : 1e-9;
 };
 using Plain = testing::Types<float, double>;
@@ -82,7 +82,7 @@ TYPED_TEST(EdgesOf, TheCriticalAngle) {
     expect_fate(flat, ray_of<TypeParam>(-3, 1, -2, sine, 0, cosine), Travel::to_film, fate, what);
     expect_fate(behind, ray_of<TypeParam>(3, 1, 2, 0.6 * sine, 0.8 * sine, -cosine), Travel::to_scene, fate, what);
   }
-  // The same at a height of a sphere: along the axis, the sine of incidence is the height over the radius.
+  // The same on a sphere: for rays along the axis the sine of incidence is height over radius.
   const Lens round = one_surface(surface(-30, 0, 1), 1.5);
   for (const double off : {-this->near, this->near}) {
     expect_fate(round, ray_of<TypeParam>(20 * (1 + off), 0, -30, 0, 0, 1), Travel::to_film,
@@ -101,7 +101,7 @@ std::vector<SurfaceRow> kinds() {
   return rows;
 }
 
-// In binary all these squares are exact: nothing but the comparison decides.
+// All these squares are exact in binary: only the comparison decides.
 TYPED_TEST(EdgesOf, RimAndHoleThemselvesBelongToTheClearAperture) {
   struct Place {
     double x, y;
@@ -147,7 +147,7 @@ TYPED_TEST(EdgesOf, TheFarSideOfASphereIsMissed) {
     expect_fate(sphere, ray_of<TypeParam>(-90, 3, 40, 1, 0, 0), travel, passes, "before the equator");
     expect_fate(bowl, ray_of<TypeParam>(-90, 3, -40, 1, 0, 0), travel, passes, "before the equator");
   }
-  // A line that crosses the sphere twice, once on either half: each way of travel has its own crossing.
+  // A line that crosses both halves of the sphere: each direction of travel has its own crossing.
   expect_fate(sphere, ray_of<TypeParam>(0, 40, -5, 0, 0, 1), Travel::to_film, passes, "front");
   expect_fate(sphere, ray_of<TypeParam>(-60, 0, 45, 0.8, 0, 0.6), Travel::to_scene, misses, "leaves by the far half");
 }

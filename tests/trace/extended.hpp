@@ -22,7 +22,7 @@ struct Tables {
   }
 };
 
-/// The tables of a lens over long double, to judge rays in double and float by.
+/// The tables of a lens in long double, the reference for rays in double and float.
 inline Tables<long double> extended(const petzval::kernel::LensView<double>& view) {
   using L = long double;
   Tables<L> t;

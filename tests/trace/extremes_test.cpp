@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// One surface at a time at the ends of what can be built and sent through it: one ray a call, and batches of either
-// arithmetic on every instruction set, against rays in long double.
+// One surface at a time, at the limits of surfaces and rays: one ray a call, and batches of both arithmetics on every
+// instruction set, compared with rays in long double.
 //
-// Errors count in what one eps in each number of the ray does to the exact ray, plus one eps of the height or of a
-// unit direction: on a single surface |dP| cos(incidence) over eps (height + distance slope), near enough.
+// The unit of errors is the change of the exact ray for a change of one eps in each of its numbers, plus one eps of the
+// height or of a unit direction: on a single surface about |dP| cos(incidence) / (eps (height + distance slope)).
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -45,7 +45,7 @@ double sag_at(const SurfaceRow& row, double x, double y) {
   return c * r2 / (1 + std::sqrt(1 - (1 + row.conic) * c * c * r2));
 }
 
-/// Height of a conic's equator.
+/// The height of the equator of a conic.
 double equator(const SurfaceRow& row) {
   return row.radius == 0 || row.conic <= -1 ? std::numeric_limits<double>::infinity()
                                             : std::abs(row.radius) / std::sqrt(1 + row.conic);
@@ -56,7 +56,7 @@ struct Sweep {
   std::size_t rays = 200;
 };
 
-/// Skew rays to points within the height, from a distance of up to 1.5 of that asked for. side: the sign of their z.
+/// Skew rays to points within the height, from 0.5 to 1.5 of the distance. side: the sign of z of their directions.
 template <class T>
 std::vector<Ray<T>> skew_rays(const SurfaceRow& row, const Sweep& sweep, double side) {
   Numbers random(7);
@@ -157,7 +157,7 @@ TYPED_TEST(ExtremesOf, GrazingRays) {
       std::vector<Ray<TypeParam>> rays;
       for (int i = 0; i < 200; ++i) {
         const double x = random(-21, 21), y = random(-21, 21), z = sag_at(row, x, y);
-        // A direction in the tangent plane, lifted by the grazing angle.
+        // A direction in the tangent plane, raised by the grazing angle.
         const double turn = random(0, 2 * std::numbers::pi), c = 1 / row.radius;
         const double nx = -c * x, ny = -c * y, nz = 1 - c * (1 + k) * z, n = std::sqrt(nx * nx + ny * ny + nz * nz);
         Vec3<double> along{std::cos(turn), std::sin(turn), 0};
@@ -271,13 +271,13 @@ TYPED_TEST(ExtremesOf, EqualMediaLeaveDirectionsWithinOneEps) {
                       "1 eps");
 }
 
-// From one surface straight to the next, which may lie in front of where the ray is: sags overlap on paper.
+// From one surface to the next, which may lie in front of the start: sags of prescriptions overlap.
 TYPED_TEST(ExtremesOf, FromSurfaceToSurface) {
   Judge<TypeParam> judge;
   for (const double first : {20.0, -20.0, 60.0, 0.0}) {
     for (const double second : {20.0, -20.0, 21.0, -60.0, 1e3, 0.0}) {
       for (const double gap : {0.0, 0.5, 15.0, 19.0, 40.0}) {
-        for (const double n : {1.0, 1.8}) {  // behind the first; without refraction rays stay as steep as they come
+        for (const double n : {1.0, 1.8}) {  // behind the first surface; without refraction rays stay steep
           SurfaceRow front = glass(first, 0, n);
           front.thickness = gap;
           Prescription p;
@@ -298,7 +298,7 @@ TYPED_TEST(ExtremesOf, FromSurfaceToSurface) {
   judge.close("from surface to surface, overlapping and steep", 16, 0.1);
 }
 
-/// So many weak lenses of 400 mm focal length, 4 mm apart: a guide that keeps rays near the axis.
+/// Weak lenses of 400 mm focal length, 4 mm apart, which keep rays near the axis.
 Lens guide(int surfaces) {
   Prescription p;
   p.name = "guide";
@@ -330,7 +330,7 @@ TYPED_TEST(ExtremesOf, AThousandSurfaces) {
 TYPED_TEST(ExtremesOf, BackwardRaysIntoAFisheye) {
   using T = TypeParam;
   const auto sample = testing_lenses::load("fisheye_6.3mm_f2.8");
-  // Found from the stop outwards, as a pupil is: of the whole front, hardly a ray that runs towards -z gets so far.
+  // Rays from the stop outwards: of rays to the whole front, few with direction -z pass.
   const auto view = sample.lens.view<double>();
   const std::size_t stop = sample.lens.stop().value();
   Numbers random(12);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What must hold for every ray through every lens, whatever the numbers of the lens.
+// Laws that hold for every ray through every lens.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -34,7 +34,7 @@ double distance(const Vec3<T>& a, const Vec3<T>& b) {
   return length(Vec3<double>(a) - Vec3<double>(b));
 }
 
-/// First hit of a ray that passes.
+/// The first hit of a ray that passes.
 template <class T>
 Vec3<T> first_hit(const petzval::Lens& lens, const Ray<T>& ray) {
   Vec3<T> first{0, 0, 0};
@@ -67,7 +67,7 @@ class LawsOf : public testing::Test {};
 using Plain = testing::Types<float, double>;
 TYPED_TEST_SUITE(LawsOf, Plain);
 
-// Mirror lenses, cylinders, aspheres and the eye (which ends in water) among them.
+// The lenses include mirrors, cylinders, aspheres and the eye, with water behind it.
 TYPED_TEST(LawsOf, ATurnedRayComesBack) {
   using T = TypeParam;
   const double eps = std::numeric_limits<T>::epsilon();
@@ -201,14 +201,14 @@ TYPED_TEST(LawsOf, EqualMediaLeaveARayAsItIs) {
   const petzval::Lens lens = petzval::compile(p);
   std::mt19937 random(4);
   std::uniform_real_distribution<T> uniform(T(-0.3), T(0.3));
-  for (int i = 0; i < 200; ++i) {  // among them directions that are not of unit length in their last bit
+  for (int i = 0; i < 200; ++i) {  // some directions are off unit length by rounding
     const T x = uniform(random), y = uniform(random);
     const Ray<T> ray{{1, 2, -4}, {x, y, std::sqrt(1 - x * x - y * y)}};
     for (const Travel travel : {Travel::to_film, Travel::to_scene}) {
       const Ray<T> start = travel == Travel::to_film ? ray : Ray<T>{ray.origin + ray.direction * T(20), -ray.direction};
       const auto out = petzval::trace(lens, start, {.travel = travel});
       ASSERT_TRUE(out.transmitted());
-      for (int k = 0; k < 3; ++k) {  // only its length is put right
+      for (int k = 0; k < 3; ++k) {  // only the length changes
         EXPECT_NEAR(out.ray.direction[k], start.direction[k], std::numeric_limits<T>::epsilon());
       }
     }

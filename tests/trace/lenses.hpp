@@ -63,8 +63,8 @@ inline petzval::Lens one_surface(const petzval::SurfaceRow& row, double n_in = 1
   return petzval::compile(p);
 }
 
-/// Rays in object space that pass the lens to the film: found from points of the stop (or of the first surface)
-/// outwards. Deterministic. Fewer than `count` where a lens lets hardly any through.
+/// Rays in object space that pass the lens to the film, found from points of the stop (or of the first surface)
+/// outwards. Deterministic. Fewer than `count` if few rays pass the lens.
 inline std::vector<petzval::Ray<double>> passing_rays(const petzval::Lens& lens, std::size_t count, unsigned seed = 1) {
   using petzval::Travel;
   const auto view = lens.view<double>();

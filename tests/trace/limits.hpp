@@ -14,7 +14,7 @@
 #include "extended.hpp"
 #include "petzval/core/text.hpp"
 
-/// Tracers held against exact rays: one ray a call, and batches of either arithmetic on every instruction set.
+/// Compares tracers with exact rays: one ray a call, and batches of both arithmetics on every instruction set.
 namespace testing_limits {
 
 using petzval::Arithmetic;
@@ -26,7 +26,7 @@ using petzval::Travel;
 using L = long double;
 using Exactly = petzval::kernel::TraceState<L>;
 
-/// How many eps of its own numbers a ray may lie beside one whose fate it is given.
+/// A fate must be that of an exact ray whose numbers differ by at most this many eps.
 inline constexpr int eps_beside = 64;
 
 /// The scale of one eps: a coordinate moves by eps x max(|it|, place), a component of the direction by eps x max(|it|,
@@ -46,7 +46,7 @@ class Exact {
     return traced(tables_, exact(ray.origin), exact(ray.direction), travel);
   }
 
-  /// Whether a ray within some eps of this one, past rims as much wider or narrower, ends so.
+  /// Whether a ray within some eps of this one, with rims changed by as much, has this end.
   template <class T>
   bool ends_so_nearby(const Ray<T>& ray, Travel travel, const Floors& floors, RayFate fate, int surface) {
     const L eps = std::numeric_limits<T>::epsilon() * L(eps_beside);
@@ -71,10 +71,10 @@ class Exact {
     return false;
   }
 
-  /// What moving each number of the ray by an eps of T does to its end, and eps x floors: the unit of errors.
+  /// The unit of errors: the change of the end for changes of one eps of T in each number of the ray, and eps x floors.
   struct Unit {
     double place = 0, turn = 0;
-    bool steady = true;  ///< whether it passes all the same
+    bool steady = true;  ///< whether the changed rays pass too
   };
   template <class T>
   Unit unit(const Ray<T>& ray, Travel travel, const Floors& floors, const Exactly& end) const {
@@ -112,7 +112,7 @@ class Exact {
   testing_lenses::Tables<L> tables_, wider_, narrower_;
 };
 
-/// The worst that the tracers did in one case, in units of what an eps in the numbers of the ray itself does to it.
+/// The worst errors of the tracers in one case, in the unit above.
 template <class T>
 class Judge {
  public:
@@ -132,7 +132,7 @@ class Judge {
       ++judged_;
       if (fate != ends[i].fate || surface != ends[i].surface) {
         ++beside_;
-        // Where an asphere is not met within its aperture, the iteration may or may not find it outside.
+        // If a ray misses the aperture of an asphere, the iteration may or may not find a hit outside.
         const bool lost_outside = surface == ends[i].surface && fate != RayFate::transmitted &&
                                   fate != RayFate::totally_reflected && aspheric(lens, surface);
         if (!lost_outside && !exact.ends_so_nearby(rays[i], travel, floors, fate, surface) && ++wrong_ <= 10) {
@@ -162,7 +162,7 @@ class Judge {
     }
   }
 
-  /// Holds what was met against the bound, eps, and puts it into the report.
+  /// Compares the worst errors with the bound, eps, and reports them.
   void close(const std::string& row, double bound, double least_measured = 0.2) const {
     EXPECT_EQ(wrong_, 0u) << row << ": fates that no ray within " << eps_beside << " eps has";
     EXPECT_GE(static_cast<double>(measured_), least_measured * static_cast<double>(judged_)) << row;

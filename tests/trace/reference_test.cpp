@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rays computed with 60 digits by tests/reference/make_rays.py, which shares no formula with the library.
+// Rays computed with 60 digits by tests/reference/make_rays.py, with formulas independent of the library.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -64,15 +64,15 @@ class ReferenceRays : public testing::Test {
 using Plain = testing::Types<float, double>;
 TYPED_TEST_SUITE(ReferenceRays, Plain);
 
-/// Holds the end of a ray against its row, and raises the worst error met.
+/// Compares the end of a ray with its row and updates the worst error.
 template <class T>
 void judge(const TracedRay<T>& end, const Row& row, double size, double bound, double& worst, const std::string& how) {
   ASSERT_EQ(name(end.fate), row.fate) << "rays.csv:" << row.line << " " << how;
   ASSERT_EQ(end.surface, row.surface) << "rays.csv:" << row.line << " " << how;
   const std::array<T, 6> out{end.ray.origin.x,    end.ray.origin.y,    end.ray.origin.z,
                              end.ray.direction.x, end.ray.direction.y, end.ray.direction.z};
-  // Places over the size of the lens (a ray lost far outside: over its distance from the axis), directions as they
-  // are.
+  // Positions relative to the size of the lens (of a ray lost far outside: to its distance from the axis), directions
+  // absolute.
   const double scale = std::max(size, std::hypot(row.out[0], row.out[1]));
   for (std::size_t i = 0; i < 6; ++i) {
     const double error = std::abs(static_cast<double>(out[i]) - row.out[i]) / (i < 3 ? scale : 1);
@@ -99,7 +99,7 @@ TYPED_TEST(ReferenceRays, AgreeInPlaceDirectionFateAndSurface) {
       TracedRay<T> end;
       petzval::trace<T>(sample.lens, std::span(&ray, 1), &end, options);
       ASSERT_EQ(name(end.fate), row.fate) << "rays.csv:" << row.line << " " << testing_batches::text(options);
-      if (!end.transmitted()) continue;  // comes back as it went in
+      if (!end.transmitted()) continue;  // returned unchanged
       judge(end, row, sample.size, this->bound, options.arithmetic == petzval::Arithmetic::fast ? fast : reproducible,
             testing_batches::text(options));
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whatever goes in: every slot of the answer is written and finite.
+// Every slot of a result is written and finite, for every input.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -27,7 +27,7 @@ double uniform(Random& random, double low, double high) {
   return std::uniform_real_distribution<double>(low, high)(random);
 }
 
-/// A lens nobody would build: 1 to 40 surfaces of all kinds, of any size.
+/// A random lens: 1 to 40 surfaces of all kinds and sizes.
 petzval::Lens random_lens(Random& random) {
   const double scale = std::pow(10.0, uniform(random, -6, 6));
   petzval::Prescription p;
@@ -57,7 +57,7 @@ petzval::Lens random_lens(Random& random) {
   return petzval::compile(p);
 }
 
-/// Mostly rays that do something; some absurd in place or direction.
+/// Random rays, some with absurd positions or directions.
 template <class T>
 Ray<T> random_ray(Random& random, double scale) {
   constexpr auto limits = std::numeric_limits<T>();
@@ -105,7 +105,7 @@ TYPED_TEST(Robust, NothingButFiniteNumbersComesOutOfAnyLens) {
       ++fates[static_cast<std::size_t>(end.fate)];
     }
   }
-  // Every fate but the last, which should be rare, came up.
+  // Every fate except the last, which should be rare, occurred.
   for (std::size_t i = 0; i < 4; ++i) EXPECT_GT(fates[i], 1000) << petzval::name(static_cast<RayFate>(i));
   EXPECT_LT(fates[4], 50);
   this->RecordProperty("no_convergence", fates[4]);
@@ -154,7 +154,7 @@ TEST(Robust, AWavelengthThatWasNotCompiledLosesEveryRay) {
   }
 }
 
-// Reproducible batches agree on every instruction set here too, where every lane may go its own way.
+// Reproducible batches agree on every instruction set, also when the fates of lanes differ.
 TYPED_TEST(Robust, NothingButFiniteNumbersComesOutOfAnyBatch) {
   using T = TypeParam;
   Random random(2025);
@@ -168,7 +168,7 @@ TYPED_TEST(Robust, NothingButFiniteNumbersComesOutOfAnyBatch) {
     const bool apertures = random() % 2 == 0;
     const Travel travel = random() % 2 ? Travel::to_film : Travel::to_scene;
     std::optional<testing_batches::Answer<T>> first;
-    for (auto options : testing_batches::ways(travel)) {  // the fast ones first
+    for (auto options : testing_batches::ways(travel)) {  // fast options first
       options.apertures = apertures;
       const auto answer = testing_batches::traced(lens, rays, options);
       for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -186,7 +186,7 @@ TYPED_TEST(Robust, NothingButFiniteNumbersComesOutOfAnyBatch) {
       if (options.arithmetic == petzval::Arithmetic::reproducible && !first) first = answer;
     }
   }
-  // One ray in eight starts at the end of the numbers, where rounding alone decides.
+  // One ray in eight starts at the limits of the type, where only rounding decides.
   EXPECT_LT(otherwise, rays_met / 100);
   this->RecordProperty("otherwise", static_cast<int>(otherwise));
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Single surfaces that image one point sharply at any aperture: every ray has to go through the image.
+// Single surfaces that image one point sharply at any aperture: every ray passes through the image.
 #include <gtest/gtest.h>
 
 #include <cmath>
