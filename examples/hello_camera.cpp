@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The camera of README.md in a renderer of one page: three lamps, which would be of one size in the picture, at 0.7 m,
-// 1 m and 5 m, through a lens that is focused at 1 m.
+// The camera of README.md in a renderer of one page: three round lamps of equal angular size at 0.7 m, 1 m and 5 m,
+// seen through a lens that is focused at 1 m.
 //
 //   hello_camera
 #include <algorithm>
@@ -15,7 +15,7 @@ using namespace petzval;
 
 constexpr int samples = 256;
 
-/// Four numbers in [0, 1), spread evenly: a Kronecker sequence.
+/// Four numbers in [0, 1): a point of a Kronecker sequence, uniform in four dimensions.
 std::array<double, 4> next_sample() {
   static std::array<double, 4> sample{};
   constexpr std::array<double, 4> steps{0.8566748838545029, 0.7338918566271259, 0.6287067210378087, 0.5385972572236101};
@@ -23,7 +23,7 @@ std::array<double, 4> next_sample() {
   return sample;
 }
 
-/// What a renderer would trace: white discs in the dark.
+/// The scene of the renderer: white discs in the dark.
 double radiance(const Ray<double>& ray) {
   for (const auto& [x, z] : {std::array{-50.0, -552.0}, {0.0, -852.0}, {450.0, -4852.0}}) {
     const Vec3<double> hit = ray.origin + (z - ray.origin.z) / ray.direction.z * ray.direction;

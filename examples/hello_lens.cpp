@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The program of README.md: loads a lens, asks it a few things, traces a ray and focuses at 1 m.
+// The program of README.md: loads a lens, prints its focal length and f-number, traces a ray and focuses at 1 m.
 //
 //   hello_lens
 #include <iostream>
