@@ -8,7 +8,7 @@
 cmake_minimum_required(VERSION 3.25)
 
 set(layer_0 core)
-set(layer_1 media surface prescription film)
+set(layer_1 media surface prescription film iris)
 set(layer_2 lens)
 set(layer_3 paraxial trace)
 set(layer_4 pupil)

@@ -98,7 +98,7 @@ void surface_table(std::ostream& html, const Report& r) {
     }
     if (row.conic != 0) remark("conic " + number(row.conic, 6));
     if (!row.aspheric.empty()) remark("asphere of order " + std::to_string(row.aspheric.back().order));
-    if (row.inner_semi_diameter) remark("central obscuration " + number(*row.inner_semi_diameter, 5));
+    if (row.obscuration_semi_diameter) remark("central obscuration " + number(*row.obscuration_semi_diameter, 5));
     html << "<tr>" << cell(std::to_string(i)) << cell(row.radius == 0 ? "plane" : number(row.radius, 8))
          << cell(number(row.thickness, 7)) << cell(row.medium.nd == 1 ? "" : number(row.medium.nd, 7))
          << cell(row.medium.vd ? number(*row.medium.vd, 5) : "") << "<td>"

@@ -16,6 +16,10 @@ namespace {
 
 /// A model that somebody else built has to be one of this lens and film, as far as can be told.
 void check_model(const Lens& lens, const Film& film, ModelKind kind, const FilmPupilTable& pupils) {
+  if (!lens.iris().round() && kind < ModelKind::exact_float) {
+    throw Error(lens.name() + ": camera: " + std::string(name(kind)) +
+                " does not see the edges of the iris, wanted an exact model");
+  }
   const std::size_t wavelengths = lens.wavelengths_nm().size();
   if (pupils.wavelengths() != wavelengths) {
     throw Error(lens.name() + ": camera: the model is one for " + std::to_string(pupils.wavelengths()) +

@@ -10,8 +10,8 @@
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/paraxial/pupils.hpp"
 #include "petzval/pupil_table/two_plane_rays.hpp"
-#include "petzval/trace/sequential.hpp"
 #include "petzval/trace/trace.hpp"
+#include "trace/sequential.hpp"
 
 namespace petzval::inline v0::camera_detail {
 namespace {
@@ -48,7 +48,7 @@ class FromStop {
     const double sense = signed_index(lens_, stop_ + 1, wavelength_) > 0 ? 1 : -1;
     const Vec3<double> direction = section_.vector(slope, sense * std::sqrt(1 - slope * slope));
     const auto end = kernel::trace(
-        lens_.view<double>(), kernel::to_kernel(Vec3<double>{0, 0, lens_.surfaces()[stop_].vertex_z}),
+        kernel::view<double>(lens_), kernel::to_kernel(Vec3<double>{0, 0, lens_.surfaces()[stop_].vertex_z}),
         kernel::to_kernel(direction), {.wavelength = wavelength_, .apertures = false, .first = stop_ + 1});
     if (end.fate != RayFate::transmitted || end.direction.z == 0) return {};
     const Ray<double> ray{kernel::to_public(end.origin), kernel::to_public(end.direction)};

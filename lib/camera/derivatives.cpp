@@ -4,10 +4,10 @@
 
 #include <cmath>
 
+#include "core/kernel_vec.hpp"
 #include "petzval/camera/exact_model.hpp"
 #include "petzval/camera/paraxial_model.hpp"
-#include "petzval/core/kernel_vec.hpp"
-#include "petzval/trace/sequential.hpp"
+#include "trace/sequential.hpp"
 
 namespace petzval::inline v0 {
 namespace {
@@ -53,7 +53,7 @@ RayDerivatives ExactModel<R>::to_scene(const TwoPlaneRayDerivatives& line, std::
   start.by_u = start.by_v = {{0, 0, 0}, {0, 0, 0}};
   start.fate = RayFate::missed_surface;
   if (wavelength >= lens_.wavelengths_nm().size()) return start;
-  const auto end = kernel::trace(lens_.template view<double>(), origin, direction,
+  const auto end = kernel::trace(kernel::view<double>(lens_), origin, direction,
                                  {.travel = Travel::to_scene, .wavelength = wavelength});
   start.fate = end.fate;
   return end.fate == RayFate::transmitted ? derivatives_of(end.origin, end.direction) : start;

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/bisect.hpp"
 #include "core/low_discrepancy.hpp"
-#include "petzval/core/bisect.hpp"
 
 namespace petzval::inline v0::camera_detail {
 namespace {

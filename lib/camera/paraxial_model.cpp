@@ -98,7 +98,8 @@ FilmPupilTable pupils_of(ModelKind model, const Lens& lens, double film_radius) 
     throw Error(lens.name() + ": found " + std::string(name(model)) + ", wanted a first-order model");
   }
   if (!lens.rotationally_symmetric()) {
-    throw Error(lens.name() + ": found cylinders, wanted a lens that is alike in all sections for a first-order model");
+    throw Error(lens.name() +
+                ": found cylinders or an iris with edges, wanted a lens of revolution for a first-order model");
   }
   const std::size_t wavelengths = lens.wavelengths_nm().size();
   for (std::size_t w = 0; w < wavelengths; ++w) {

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "petzval/pupil/aim.hpp"
-#include "petzval/trace/sequential.hpp"
+#include "trace/sequential.hpp"
 
 namespace petzval::inline v0::figure_detail {
 namespace {
@@ -79,7 +79,7 @@ std::vector<RayPath> ray_paths(const Lens& lens, double subject_z, std::span<con
       const AimedRay aimed = fan.at(height);
       if (!aimed) continue;
       RayPath path{field, height, {}, seen(aimed.ray.direction), {}, RayFate::transmitted};
-      const auto end = kernel::trace(lens.view<double>(), kernel::to_kernel(aimed.ray.origin),
+      const auto end = kernel::trace(kernel::view<double>(lens), kernel::to_kernel(aimed.ray.origin),
                                      kernel::to_kernel(aimed.ray.direction), {.wavelength = wavelength},
                                      [&](int, const kernel::Vec<double>& hit) { path.hits.push_back(seen(hit)); });
       path.behind = seen(end.direction);

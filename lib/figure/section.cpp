@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "petzval/core/bisect.hpp"
+#include "core/bisect.hpp"
 #include "petzval/lens/sag.hpp"
 
 namespace petzval::inline v0::figure_detail {
@@ -69,7 +69,7 @@ SectionLine LensSection::line(std::size_t surface, double from, double to) const
 }
 
 std::vector<SectionLine> LensSection::surface(std::size_t i) const {
-  const double hole = lens_.surfaces()[i].inner_semi_diameter, rim = drawn_[i];
+  const double hole = lens_.surfaces()[i].obscuration_semi_diameter, rim = drawn_[i];
   if (hole > 0) return {line(i, hole, rim), line(i, -rim, -hole)};
   return {line(i, -rim, rim)};
 }
@@ -129,7 +129,7 @@ GlassBody LensSection::body(std::size_t first, std::size_t second, double index)
   if (meet < common && gap(front, back, 0) >= 0) edges = {meet, meet};
 
   const SectionLine rim = edge(front, back, edges);
-  const double hole = std::min(surfaces[front].inner_semi_diameter, surfaces[back].inner_semi_diameter);
+  const double hole = std::min(surfaces[front].obscuration_semi_diameter, surfaces[back].obscuration_semi_diameter);
   const auto mirrored = [](SectionLine points) {
     for (SectionPoint& p : points) p.height = -p.height;
     std::ranges::reverse(points);

@@ -22,8 +22,9 @@ std::string focal_length_text(const Lens& lens, std::size_t wavelength) {
     const FirstOrder data = first_order(lens, wavelength, meridian);
     return data.afocal ? std::string("infinite") : length_text(data.effective_focal_length);
   };
-  return lens.rotationally_symmetric() ? "EFL " + in(Meridian::y)
-                                       : "EFL " + in(Meridian::y) + " in y, " + in(Meridian::x) + " in x";
+  return with_iris(lens, {}).rotationally_symmetric()
+             ? "EFL " + in(Meridian::y)
+             : "EFL " + in(Meridian::y) + " in y, " + in(Meridian::x) + " in x";
 }
 
 }  // namespace

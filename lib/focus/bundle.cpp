@@ -6,9 +6,9 @@
 #include <cmath>
 #include <utility>
 
+#include "core/bisect.hpp"
 #include "core/meet_plane.hpp"
-#include "petzval/core/bisect.hpp"
-#include "petzval/core/quadrature.hpp"
+#include "core/quadrature.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/pupil_boundary.hpp"
 #include "petzval/pupil/pupil_plane.hpp"

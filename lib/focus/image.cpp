@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-#include "petzval/core/bisect.hpp"
+#include "core/bisect.hpp"
 
 namespace petzval::inline v0::focus_detail {
 namespace {

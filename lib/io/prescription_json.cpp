@@ -110,7 +110,7 @@ std::span<const Reader::Key> Reader::keys(Place place) {
       {"radius", [](R& r, V& v) { r.row().radius = r.number_of(v); }, {}, true},
       {"thickness", [](R& r, V& v) { r.row().thickness = r.number_of(v); }, {}, true},
       {"semi_diameter", [](R& r, V& v) { r.row().semi_diameter = r.maybe_number(v); }},
-      {"inner_semi_diameter", [](R& r, V& v) { r.row().inner_semi_diameter = r.maybe_number(v); }},
+      {"inner_semi_diameter", [](R& r, V& v) { r.row().obscuration_semi_diameter = r.maybe_number(v); }},
       {"conic", [](R& r, V& v) { r.row().conic = r.number_of(v); }},
       {"aspheric", nullptr, Place::aspheric},
       {"stop", [](R& r, V& v) { r.row().stop = r.flag_of(v); }},

@@ -48,7 +48,7 @@ std::string surface(const SurfaceRow& row) {
   const bool limited = row.semi_diameter && std::isfinite(*row.semi_diameter);
   std::string text = "{" + member("radius", row.radius) + ", " + member("thickness", row.thickness) + ", " +
                      medium(row.medium) + ", " + member("semi_diameter", limited ? row.semi_diameter : std::nullopt);
-  if (row.inner_semi_diameter) text += ", " + member("inner_semi_diameter", row.inner_semi_diameter);
+  if (row.obscuration_semi_diameter) text += ", " + member("inner_semi_diameter", row.obscuration_semi_diameter);
   text += ", " + member("conic", row.conic) + ", \"aspheric\": [";
   for (std::size_t i = 0; i < row.aspheric.size(); ++i) text += (i > 0 ? ", " : "") + json(row.aspheric[i]);
   text += "], " + member("stop", row.stop);

@@ -8,12 +8,13 @@
 namespace petzval::inline v0::lens_detail {
 namespace {
 
-/// The gap, in radii of curvature, beyond which a ray is brought near the vertex before it is intersected: from afar
-/// the direct form loses digits with the square of the distance.
+/// Distance between vertices, in radii of curvature, beyond which a ray is moved near the vertex before it is
+/// intersected: the direct form loses digits with the square of the distance.
 constexpr double far_gap = 1;
 
-/// When the length of directions is put right: after so many surfaces, and before rims so steep that an error in it
-/// weighs double. Oftener would only add roundings. (Measured on the fisheye of the benchmark: 3.1e-7 rad rms without.)
+/// When directions are normalised: after so many surfaces, and before rims so steep that an error of the length counts
+/// twice. More often would only add rounding errors. (Measured on the fisheye of the benchmark: 3.1e-7 rad rms
+/// without.)
 constexpr std::size_t surfaces_per_refresh = 16;
 constexpr double steep_rim = 0.75;
 
@@ -33,7 +34,7 @@ SurfaceSequenceTables<R> build_sequence(std::span<const LensSurface> surfaces, s
   for (const LensSurface& s : surfaces) aspheres.push_back(s.aspheric.empty() ? -1 : seen++);
 
   SurfaceSequenceTables<R> tables;
-  tables.course.first_sense = static_cast<R>(sense);
+  tables.sequence.first_sense = static_cast<R>(sense);
   for (std::size_t j = 0; j < count; ++j) {
     const std::size_t i = to_film ? j : count - 1 - j;
     const LensSurface& s = surfaces[i];
@@ -58,13 +59,13 @@ SurfaceSequenceTables<R> build_sequence(std::span<const LensSurface> surfaces, s
     step.ay = quadric.ay;
     step.sense = static_cast<R>(sense);
     step.rim2 = static_cast<R>(std::min(s.semi_diameter * s.semi_diameter, double{std::numeric_limits<R>::max()}));
-    step.hole2 = static_cast<R>(s.inner_semi_diameter * s.inner_semi_diameter);
+    step.obscuration2 = static_cast<R>(s.obscuration_semi_diameter * s.obscuration_semi_diameter);
     tables.steps.push_back(step);
     if (s.mirror) sense = -sense;
   }
-  tables.course.first_z = static_cast<R>((to_film ? surfaces.front() : surfaces.back()).vertex_z);
-  tables.course.last_z = static_cast<R>((to_film ? surfaces.back() : surfaces.front()).vertex_z);
-  tables.course.last_sense = static_cast<R>(sense);
+  tables.sequence.first_z = static_cast<R>((to_film ? surfaces.front() : surfaces.back()).vertex_z);
+  tables.sequence.last_z = static_cast<R>((to_film ? surfaces.back() : surfaces.front()).vertex_z);
+  tables.sequence.last_sense = static_cast<R>(sense);
 
   for (std::size_t w = 0; w < wavelengths; ++w) {
     const double* n = indices.data() + w * (count + 1);

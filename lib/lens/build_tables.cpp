@@ -12,16 +12,15 @@ kernel::Quadric<double> quadric(const LensSurface& s) {
   return kernel::make_quadric<double>(s.curvature, s.conic, s.curved_in != Section::y, s.curved_in != Section::x);
 }
 
-/// x^n by multiplication: a lens made twice as large gets the same constants times powers of two, which pow() need not
-/// give.
+/// x^n by multiplication, so that a lens scaled by 2 gets the same constants times powers of two (pow() may round).
 double power(double x, int n) {
   double result = 1;
   for (int i = 0; i < n; ++i) result *= x;
   return result;
 }
 
-/// The height up to which an asphere is described: its clear aperture, within the domain of the base conic. Where the
-/// aperture is unlimited, that domain, or the height at which the strongest term alone reaches a slope of one.
+/// The height up to which an asphere is described: its clear aperture, within the domain of the base conic. For an
+/// unlimited aperture, that domain or the height at which the strongest term alone has a slope of one.
 double height(const LensSurface& s) {
   const double curvature = std::abs(s.curvature) * std::sqrt(std::max(0.0, 1 + s.conic));
   const double domain = curvature > 0 ? 1 / curvature : std::numeric_limits<double>::infinity();
@@ -94,12 +93,16 @@ kernel::Asphere<R> rounded(const kernel::Asphere<double>& a) {
 }  // namespace
 
 template <class R>
-Tables<R> build_tables(std::span<const LensSurface> surfaces, std::optional<std::size_t> stop,
+Tables<R> build_tables(std::span<const LensSurface> surfaces, std::optional<std::size_t> stop, const Iris& iris,
                        std::span<const double> indices, std::size_t wavelengths) {
   const std::size_t count = surfaces.size();
   Tables<R> tables;
   tables.wavelengths = wavelengths;
   if (stop) tables.stop = static_cast<std::int32_t>(*stop);
+  for (const IrisEdge& edge : iris.edges) {
+    tables.iris.push_back({static_cast<R>(edge.nx), static_cast<R>(edge.ny),
+                           static_cast<R>(edge.distance * surfaces[*stop].semi_diameter)});
+  }
   R sense = 1;
   for (std::size_t i = 0; i < count; ++i) {
     const LensSurface& s = surfaces[i];
@@ -107,7 +110,7 @@ Tables<R> build_tables(std::span<const LensSurface> surfaces, std::optional<std:
     row.quadric = rounded<R>(quadric(s));
     row.gap = i + 1 < count ? static_cast<R>(s.thickness) : R(0);
     row.semi_diameter_squared = static_cast<R>(s.semi_diameter * s.semi_diameter);
-    row.inner_squared = static_cast<R>(s.inner_semi_diameter * s.inner_semi_diameter);
+    row.obscuration_squared = static_cast<R>(s.obscuration_semi_diameter * s.obscuration_semi_diameter);
     row.mirror = s.mirror;
     row.sense = sense;
     if (s.mirror) sense = -sense;
@@ -130,9 +133,9 @@ Tables<R> build_tables(std::span<const LensSurface> surfaces, std::optional<std:
   return tables;
 }
 
-template Tables<float> build_tables(std::span<const LensSurface>, std::optional<std::size_t>, std::span<const double>,
-                                    std::size_t);
-template Tables<double> build_tables(std::span<const LensSurface>, std::optional<std::size_t>, std::span<const double>,
-                                     std::size_t);
+template Tables<float> build_tables(std::span<const LensSurface>, std::optional<std::size_t>, const Iris&,
+                                    std::span<const double>, std::size_t);
+template Tables<double> build_tables(std::span<const LensSurface>, std::optional<std::size_t>, const Iris&,
+                                     std::span<const double>, std::size_t);
 
 }  // namespace petzval::inline v0::lens_detail

@@ -6,20 +6,22 @@
 #include <span>
 #include <vector>
 
+#include "lens/lens_view.hpp"
+#include "petzval/core/ray.hpp"
 #include "petzval/lens/lens.hpp"
 
 namespace petzval::inline v0::lens_detail {
 
-/// The way of a batch, with what it points to.
+/// A SurfaceSequence and its arrays.
 template <class R>
 struct SurfaceSequenceTables {
   std::vector<kernel::Step<R>> steps;
   std::vector<kernel::RefractionConstants<R>> bends;
   std::vector<R> n_first, per_n_last;
-  kernel::SurfaceSequence<R> course;  ///< its pointers are set by view()
+  kernel::SurfaceSequence<R> sequence;  ///< its pointers are set by view()
 
   kernel::SurfaceSequence<R> view() const noexcept {
-    auto seen = course;
+    auto seen = sequence;
     seen.steps = steps.data();
     seen.bends = bends.data();
     seen.n_first = n_first.data();
@@ -35,6 +37,7 @@ struct Tables {
   std::vector<kernel::Asphere<R>> aspheres;
   std::vector<kernel::Interface<R>> to_film, to_scene;
   std::vector<R> vertex_z;
+  std::vector<kernel::StopEdge<R>> iris;
   SurfaceSequenceTables<R> sequence_to_film, sequence_to_scene;
   std::size_t wavelengths = 0, primary = 0;
   std::int32_t stop = -1;
@@ -49,17 +52,18 @@ struct Tables {
             .wavelengths = wavelengths,
             .primary = primary,
             .stop = stop,
+            .iris = iris,
             .sequence_to_film = sequence_to_film.view(),
             .sequence_to_scene = sequence_to_scene.view()};
   }
 };
 
-/// stop: position of the surface that is it. indices: [wavelength][space], one space more than surfaces.
+/// stop: position of the stop. indices: [wavelength][space], one space more than surfaces.
 template <class R>
-Tables<R> build_tables(std::span<const LensSurface> surfaces, std::optional<std::size_t> stop,
+Tables<R> build_tables(std::span<const LensSurface> surfaces, std::optional<std::size_t> stop, const Iris& iris,
                        std::span<const double> indices, std::size_t wavelengths);
 
-/// The way of a batch: the surfaces in the order of travel.
+/// The surfaces in the order of travel.
 template <class R>
 SurfaceSequenceTables<R> build_sequence(std::span<const LensSurface> surfaces, std::optional<std::size_t> stop,
                                         std::span<const double> indices, std::size_t wavelengths, Travel travel);

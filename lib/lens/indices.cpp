@@ -5,18 +5,19 @@
 
 #include "petzval/core/error.hpp"
 #include "petzval/core/text.hpp"
+#include "petzval/media/catalogue.hpp"
 #include "petzval/media/dispersion.hpp"
 
 namespace petzval::inline v0::lens_detail {
 namespace {
 
-/// The medium before the first surface, or behind surface space - 1; where that one is a mirror, light stays in what
-/// the row names.
+/// The medium in front of the first surface or behind surface space - 1 (at a mirror, the medium light stays in).
 const Medium& medium(const Prescription& p, std::size_t space) {
   return space == 0 ? p.object_space : p.surfaces[space - 1].medium;
 }
 
-/// Lines are often written with one decimal, the d line as 587.6 nm: over half a unit of it no glass changes by 1e-5.
+/// Lines are often written with one decimal, the d line as 587.6 nm. Within half a unit of that no index changes by
+/// 1e-5.
 constexpr double rounded_line_nm = 0.05;
 
 bool is_air(const Medium& m) { return !m.glass && m.nd == 1.0; }
@@ -53,13 +54,23 @@ Indices indices(const Prescription& prescription, std::span<const double> wavele
       if (!glass) result.missing_glasses.push_back(here + ": " + describe(m) + " is in no glass table");
     }
 
+    // Errors of media/ name no surface.
+    const auto ask = [&](const auto& question) {
+      try {
+        return question();
+      } catch (const Error& error) {
+        throw Error(here + ": " + error.what());
+      }
+    };
+    const auto by_glass = [&](double nm) { return ask([&] { return refractive_index(*glass, nm); }); };
+    const auto by_abbe = [&](double nm) { return ask([&] { return abbe_index(m.nd, *m.vd, nm); }); };
     const auto index_at = [&](double nm) -> double {
       const bool at_reference = std::abs(nm - reference) <= 1e-6;
       if (is_air(m)) return 1.0;
       if (at_reference && options.index_policy == IndexPolicy::printed) return m.nd;
       if (glass) {
-        if (options.index_policy == IndexPolicy::catalogue) return refractive_index(*glass, nm);
-        return m.nd + (refractive_index(*glass, nm) - refractive_index(*glass, reference));
+        if (options.index_policy == IndexPolicy::catalogue) return by_glass(nm);
+        return m.nd + (by_glass(nm) - by_glass(reference));
       }
       const std::string missing = here + ": " + describe(m) + " is in no glass table";
       if (options.missing_glass == MissingGlass::error) {
@@ -71,16 +82,10 @@ Indices indices(const Prescription& prescription, std::span<const double> wavele
         throw Error(missing + " and has no V_d, wanted one of them for its index at " + number(nm) + " nm (only " +
                     number(reference) + " nm can be used)");
       }
-      return m.nd + (abbe_index(m.nd, *m.vd, nm) - abbe_index(m.nd, *m.vd, reference));
+      return m.nd + (by_abbe(nm) - by_abbe(reference));
     };
     for (std::size_t w = 0; w < wavelengths_nm.size(); ++w) {
-      double n = 0;
-      try {
-        n = index_at(wavelengths_nm[w]);
-      } catch (const Error& error) {
-        const std::string message = error.what();
-        throw Error(message.starts_with(here) ? message : here + ": " + message);
-      }
+      const double n = index_at(wavelengths_nm[w]);
       if (!(n > 0 && n <= 5))
         throw Error(here + ": index at " + number(wavelengths_nm[w]) + " nm is " + number(n) + ", wanted 0 < n <= 5");
       result.values[w * spaces + space] = n;

@@ -9,7 +9,7 @@
 
 namespace petzval::inline v0::lens_detail {
 
-/// Indices of every medium at every wavelength, and how far the media are known.
+/// Indices of every medium at every wavelength, and how well dispersion is known.
 struct Indices {
   std::vector<double> values;  ///< [wavelength * (surfaces + 1) + space], space 0 before the first surface
   Dispersion dispersion = Dispersion::none;

@@ -7,30 +7,11 @@
 #include <limits>
 #include <utility>
 
-#include "build_tables.hpp"
-#include "indices.hpp"
+#include "data.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/text.hpp"
 
 namespace petzval::inline v0 {
-
-struct Lens::Data {
-  std::string name;
-  std::vector<LensSurface> surfaces;
-  std::optional<std::size_t> stop;
-  double film_z = 0;
-  std::vector<double> wavelengths_nm;
-  std::size_t primary = 0;
-  lens_detail::Indices indices;
-  lens_detail::Tables<float> single;
-  lens_detail::Tables<double> twice;
-
-  void build() {
-    single = lens_detail::build_tables<float>(surfaces, stop, indices.values, wavelengths_nm.size());
-    twice = lens_detail::build_tables<double>(surfaces, stop, indices.values, wavelengths_nm.size());
-    single.primary = twice.primary = primary;
-  }
-};
 
 namespace {
 
@@ -66,6 +47,7 @@ std::string_view name(Dispersion dispersion) noexcept {
 const std::string& Lens::name() const noexcept { return data_->name; }
 std::span<const LensSurface> Lens::surfaces() const noexcept { return data_->surfaces; }
 std::optional<std::size_t> Lens::stop() const noexcept { return data_->stop; }
+const Iris& Lens::iris() const noexcept { return data_->iris; }
 double Lens::film_z() const noexcept { return data_->film_z; }
 std::span<const double> Lens::wavelengths_nm() const noexcept { return data_->wavelengths_nm; }
 Dispersion Lens::dispersion() const noexcept { return data_->indices.dispersion; }
@@ -83,7 +65,7 @@ double Lens::index(std::size_t space, Wavelength wavelength) const {
 double Lens::light_direction(std::size_t space) const {
   demand(*this, "space", space, surface_count() + 1);
   if (space == 0) return 1;
-  const kernel::SurfaceTable<double>& before = data_->twice.surfaces[space - 1];
+  const kernel::SurfaceTable<double>& before = data_->in_double.surfaces[space - 1];
   return before.mirror ? -before.sense : before.sense;
 }
 
@@ -100,17 +82,17 @@ std::size_t Lens::nearest_wavelength(double nm) const {
 }
 
 bool Lens::rotationally_symmetric() const noexcept {
-  return std::all_of(data_->surfaces.begin(), data_->surfaces.end(),
-                     [](const LensSurface& s) { return s.curved_in == Section::both; });
+  return data_->iris.round() && std::all_of(data_->surfaces.begin(), data_->surfaces.end(),
+                                            [](const LensSurface& s) { return s.curved_in == Section::both; });
 }
 
 template <>
-kernel::LensView<float> Lens::view<float>() const noexcept {
-  return data_->single.view();
+kernel::LensView<float> kernel::view(const Lens& lens) noexcept {
+  return lens.data().in_float.view();
 }
 template <>
-kernel::LensView<double> Lens::view<double>() const noexcept {
-  return data_->twice.view();
+kernel::LensView<double> kernel::view(const Lens& lens) noexcept {
+  return lens.data().in_double.view();
 }
 
 Lens compile(const Prescription& prescription, std::span<const double> wavelengths_nm, const CompileOptions& options) {
@@ -133,7 +115,7 @@ Lens compile(const Prescription& prescription, std::span<const double> wavelengt
     s.curved_in = row.curved_in;
     s.aspheric = row.aspheric;
     s.semi_diameter = row.semi_diameter.value_or(std::numeric_limits<double>::infinity());
-    s.inner_semi_diameter = row.inner_semi_diameter.value_or(0);
+    s.obscuration_semi_diameter = row.obscuration_semi_diameter.value_or(0);
     s.mirror = row.mirror;
     if (row.stop && !data->stop) data->stop = data->surfaces.size();
     data->surfaces.push_back(std::move(s));
@@ -155,6 +137,10 @@ Lens with_semi_diameter(const Lens& lens, std::size_t surface, double semi_diame
     throw Error(lens.name() + ": surface " + std::to_string(surface) + ": semi_diameter is " + number(semi_diameter) +
                 " mm, wanted 0 or more");
   }
+  if (!lens.iris().round() && lens.stop() == surface && std::isinf(semi_diameter)) {
+    throw Error(lens.name() + ": surface " + std::to_string(surface) +
+                ": semi_diameter is inf mm, wanted a finite one for the iris of the stop");
+  }
   auto data = std::make_shared<Lens::Data>(*lens.data_);
   data->surfaces[surface].semi_diameter = semi_diameter;
   data->build();
@@ -165,6 +151,31 @@ Lens with_film(const Lens& lens, double film_z) {
   if (!std::isfinite(film_z)) throw Error(lens.name() + ": film_z is " + number(film_z) + " mm, wanted a finite place");
   auto data = std::make_shared<Lens::Data>(*lens.data_);
   data->film_z = film_z;
+  return Lens(std::move(data));
+}
+
+Lens with_iris(const Lens& lens, const Iris& iris) {
+  if (iris.round() && lens.iris().round()) return lens;
+  const std::string where = lens.name() + ": iris";
+  if (!iris.round()) {
+    if (!lens.stop()) throw Error(where + ": no surface is marked as the stop, wanted one that the iris stands at");
+    if (std::isinf(lens.surfaces()[*lens.stop()].semi_diameter)) {
+      throw Error(where + ": surface " + std::to_string(*lens.stop()) +
+                  ", the stop, is unlimited, wanted a semi_diameter");
+    }
+  }
+  for (std::size_t i = 0; i < iris.edges.size(); ++i) {
+    const auto& [nx, ny, distance] = iris.edges[i];
+    const std::string here = where + ": edge " + std::to_string(i) + ": ";
+    constexpr double rounding = 1e-9;
+    if (!(std::abs(nx * nx + ny * ny - 1) <= rounding)) {
+      throw Error(here + "its normal is (" + number(nx) + ", " + number(ny) + "), wanted a unit vector");
+    }
+    if (!std::isfinite(distance)) throw Error(here + "distance is " + number(distance) + ", wanted a finite number");
+  }
+  auto data = std::make_shared<Lens::Data>(*lens.data_);
+  data->iris = iris;
+  data->build();
   return Lens(std::move(data));
 }
 

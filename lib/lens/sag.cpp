@@ -4,12 +4,13 @@
 #include <cmath>
 #include <limits>
 
-#include "petzval/surface/asphere.hpp"
+#include "lens/lens_view.hpp"
+#include "surface/asphere.hpp"
 
 namespace petzval::inline v0 {
 
 double sag(const Lens& lens, std::size_t surface, double x, double y) noexcept {
-  const auto view = lens.view<double>();
+  const auto view = kernel::view<double>(lens);
   const auto& row = view.surfaces[surface];
   kernel::Asphere<double> shape;
   shape.base = row.quadric;

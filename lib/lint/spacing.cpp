@@ -6,13 +6,14 @@
 #include <cmath>
 #include <limits>
 
+#include "lens/lens_view.hpp"
 #include "petzval/paraxial/first_order.hpp"
 
 namespace petzval::inline v0::lint_detail {
 namespace {
 
 double sag(const Lens& lens, std::size_t surface, double x, double y) {
-  const kernel::LensView<double> view = lens.view<double>();
+  const kernel::LensView<double> view = kernel::view<double>(lens);
   const kernel::SurfaceTable<double>& table = view.surfaces[surface];
   const kernel::Quadric<double>& q = table.quadric;
   const double r2 = q.ax * x * x + q.ay * y * y;
@@ -31,7 +32,7 @@ double domain(const LensSurface& surface) {
 std::optional<Spacing> least_spacing(const Lens& lens, std::size_t surface) {
   const LensSurface& front = lens.surfaces()[surface];
   const LensSurface& rear = lens.surfaces()[surface + 1];
-  const double from = std::max(front.inner_semi_diameter, rear.inner_semi_diameter);
+  const double from = std::max(front.obscuration_semi_diameter, rear.obscuration_semi_diameter);
   const double to = std::min({front.semi_diameter, rear.semi_diameter, domain(front), domain(rear)});
   if (!std::isfinite(front.semi_diameter) || !std::isfinite(rear.semi_diameter) || to < from) return {};
 

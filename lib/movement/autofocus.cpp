@@ -7,8 +7,8 @@
 #include <string>
 #include <utility>
 
+#include "core/bisect.hpp"
 #include "focus/image.hpp"
-#include "petzval/core/bisect.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/text.hpp"
 #include "signed_diameter.hpp"

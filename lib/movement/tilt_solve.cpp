@@ -12,7 +12,7 @@
 #include <memory>
 #include <optional>
 
-#include "petzval/core/bisect.hpp"
+#include "core/bisect.hpp"
 #include "tilt_problem.hpp"
 
 namespace petzval::inline v0::movement_detail {

@@ -105,6 +105,7 @@ double reference_of(const Lens& lens) {
 
 RayPolynomial RayPolynomial::fit(const Lens& lens, const FilmPupilTable& pupils, int degree) {
   const std::string where = lens.name() + ": polynomial: ";
+  if (!lens.iris().round()) throw Error(where + "the iris has edges, wanted a round stop");
   if (!lens.rotationally_symmetric()) {
     throw Error(where + "the lens has surfaces that are curved in one section only, wanted a lens of revolution");
   }

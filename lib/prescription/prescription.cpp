@@ -42,7 +42,7 @@ Prescription scale(const Prescription& prescription, double factor) {
     row.radius = times(row.radius, factor, here);
     row.thickness = times(row.thickness, factor, here);
     enlarge(row.semi_diameter);
-    enlarge(row.inner_semi_diameter);
+    enlarge(row.obscuration_semi_diameter);
     for (auto& [order, coefficient] : row.aspheric) coefficient = times(coefficient, std::pow(factor, 1 - order), here);
   }
   return p;

@@ -47,8 +47,8 @@ void check_surface(const std::string& where, const SurfaceRow& row, const Medium
 
   if (row.semi_diameter && !(*row.semi_diameter >= 0))
     refuse(where, "semi_diameter", *row.semi_diameter, "0 mm or more");
-  if (row.inner_semi_diameter) {
-    const double inner = *row.inner_semi_diameter;
+  if (row.obscuration_semi_diameter) {
+    const double inner = *row.obscuration_semi_diameter;
     if (!(inner >= 0 && std::isfinite(inner)))
       refuse(where, "inner_semi_diameter", inner, "a finite length of 0 mm or more");
     if (inner > 0 && row.semi_diameter && inner >= *row.semi_diameter) {

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "core/meet_plane.hpp"
-#include "petzval/core/scalar.hpp"
+#include "core/scalar.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/trace/batch.hpp"
 

@@ -11,13 +11,13 @@
 #include <optional>
 #include <string>
 
+#include "core/bisect.hpp"
 #include "face.hpp"
-#include "petzval/core/bisect.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/lens/sag.hpp"
 #include "petzval/paraxial/pupils.hpp"
-#include "petzval/trace/sequential.hpp"
 #include "petzval/trace/trace.hpp"
+#include "trace/sequential.hpp"
 
 namespace petzval::inline v0 {
 namespace {
@@ -94,7 +94,7 @@ class Aimer {
     const T squared = T(1) - x * x - y * y;
     const double z = lens_.surfaces()[stop_].vertex_z + sag(lens_, stop_, from.x, from.y);
     if (!(squared > 0.0) || !std::isfinite(z)) return {};
-    const auto end = kernel::trace(lens_.view<double>(), Vec<T>{T(from.x), T(from.y), T(z)},
+    const auto end = kernel::trace(kernel::view<double>(lens_), Vec<T>{T(from.x), T(from.y), T(z)},
                                    Vec<T>{x, y, T(sqrt(squared) * from_stop_)}, departure_);
     if (end.fate != RayFate::transmitted) return {};
 
@@ -209,7 +209,7 @@ class Aimer {
     AimedRay result;
     result.ray = {start, plane_.direction_at(start)};
 
-    const auto hit = kernel::trace(lens_.view<double>(), kernel::to_kernel(result.ray.origin),
+    const auto hit = kernel::trace(kernel::view<double>(lens_), kernel::to_kernel(result.ray.origin),
                                    kernel::to_kernel(result.ray.direction), arrival_);
     const bool met = hit.surface == static_cast<int>(stop_) &&
                      (hit.fate == RayFate::transmitted || hit.fate == RayFate::totally_reflected);

@@ -5,12 +5,13 @@
 #include <cmath>
 #include <limits>
 
+#include "lens/lens_view.hpp"
 #include "petzval/trace/trace.hpp"
 
 namespace petzval::inline v0::pupil_detail {
 
 Clearance clearance(const Lens& lens, const PupilPlane& plane, double x, double y, std::size_t wavelength) noexcept {
-  const auto view = lens.view<double>();
+  const auto view = kernel::view<double>(lens);
   Clearance result{.value = std::numeric_limits<double>::infinity()};
   const auto take = [&](double value, int surface) {
     if (value < result.value) result.value = value, result.surface = surface;
@@ -22,7 +23,11 @@ Clearance clearance(const Lens& lens, const PupilPlane& plane, double x, double 
     if (std::isinf(row.semi_diameter_squared)) return;
     const double scale = row.semi_diameter_squared > 0 ? row.semi_diameter_squared : 1;
     take((row.semi_diameter_squared - r2) / scale, surface);
-    if (row.inner_squared > 0) take((r2 - row.inner_squared) / scale, surface);
+    if (row.obscuration_squared > 0) take((r2 - row.obscuration_squared) / scale, surface);
+    if (surface != view.stop) return;
+    for (const auto& [nx, ny, distance] : view.iris) {
+      take((distance - (point.x * nx + point.y * ny)) / std::sqrt(scale), surface);
+    }
   };
   const auto end = trace<double>(lens, plane.ray(x, y),
                                  {.travel = plane.travel(), .wavelength = wavelength, .apertures = false}, watch);

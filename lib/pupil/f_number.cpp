@@ -6,11 +6,11 @@
 #include <limits>
 #include <optional>
 
-#include "petzval/core/bisect.hpp"
+#include "core/bisect.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/text.hpp"
 #include "petzval/paraxial/pupils.hpp"
-#include "petzval/trace/sequential.hpp"
+#include "trace/sequential.hpp"
 
 namespace petzval::inline v0 {
 namespace {
@@ -31,7 +31,7 @@ class StopHeight {
   /// it at the stop's own surface does not matter.
   std::optional<double> operator()(double y) const noexcept {
     const kernel::Vec<double> start{along_y_ ? 0 : y, along_y_ ? y : 0, lens_.surfaces().front().vertex_z};
-    const auto end = kernel::trace(lens_.view<double>(), start, kernel::Vec<double>{0, 0, 1}, path_);
+    const auto end = kernel::trace(kernel::view<double>(lens_), start, kernel::Vec<double>{0, 0, 1}, path_);
     const bool met = end.surface == static_cast<int>(stop_) &&
                      (end.fate == RayFate::transmitted || end.fate == RayFate::totally_reflected);
     if (!met) return {};
@@ -108,7 +108,7 @@ Lens with_f_number(const Lens& lens, double f_number, Wavelength wavelength) {
     throw Error(lens.name() + ": f-number is " + number(f_number) + ", wanted " + number(length / (2 * largest), 10) +
                 " (the fastest the lens can give) or more");
   }
-  if (const double hole = lens.surfaces()[p.stop].inner_semi_diameter; hole > 0 && *height <= hole) {
+  if (const double hole = lens.surfaces()[p.stop].obscuration_semi_diameter; hole > 0 && *height <= hole) {
     const double smallest = entering_height(stop_height, hole, p.entrance.diameter / 2);
     throw Error(lens.name() + ": f-number is " + number(f_number) + ", wanted less than " +
                 number(length / (2 * smallest), 10) + ": the stop has a hole of that size");

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "core/meet_plane.hpp"
-#include "petzval/core/quadrature.hpp"
+#include "core/quadrature.hpp"
 #include "petzval/pupil/aim.hpp"
 #include "petzval/pupil/pupil_boundary.hpp"
 

@@ -11,8 +11,8 @@
 
 #include "aim.hpp"
 #include "clearance.hpp"
+#include "core/bisect.hpp"
 #include "face.hpp"
-#include "petzval/core/bisect.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/paraxial/pupils.hpp"
 

@@ -6,8 +6,8 @@
 #include <limits>
 #include <string>
 
+#include "core/bisect.hpp"
 #include "core/meet_plane.hpp"
-#include "petzval/core/bisect.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/text.hpp"
 #include "petzval/lens/sag.hpp"

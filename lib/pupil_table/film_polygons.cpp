@@ -50,8 +50,8 @@ class FilmSide {
     const bool somewhere = radius > 0;
     if (!somewhere) radius = std::abs(seen(0, face.half, last_z)) / 8;
     const auto surfaces = lens_.surfaces();
-    const bool ring =
-        std::any_of(surfaces.begin(), surfaces.end(), [](const LensSurface& s) { return s.inner_semi_diameter > 0; });
+    const bool ring = std::any_of(surfaces.begin(), surfaces.end(),
+                                  [](const LensSurface& s) { return s.obscuration_semi_diameter > 0; });
     std::vector<pupil_detail::PupilGuess> result;
     for (const FilmPoint& p : points_) {
       double low = std::numeric_limits<double>::infinity(), high = -low;

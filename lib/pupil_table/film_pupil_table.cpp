@@ -202,13 +202,16 @@ FilmPupilTable FilmPupilTable::traced(const Lens& lens, double film_radius, bool
 }
 
 FilmPupilTable FilmPupilTable::enclosing(const Lens& lens, double film_radius) {
-  return traced(lens, film_radius, true);
+  // Whatever its shape, the iris lies within the round stop: the pupils of that enclose its own.
+  return traced(with_iris(lens, {}), film_radius, true);
 }
 
 FilmPupilTable FilmPupilTable::equal_area(const Lens& lens, double film_radius) {
   if (!lens.rotationally_symmetric()) {
-    throw Error(lens.name() +
-                ": pupils: the lens has cylinders, wanted one of revolution for pupils by distance alone");
+    throw Error(
+        lens.name() +
+        ": pupils: the lens has cylinders or an iris with edges, wanted one of revolution for pupils by distance "
+        "alone");
   }
   return traced(lens, film_radius, false);
 }

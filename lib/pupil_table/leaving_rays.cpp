@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/bisect.hpp"
 #include "core/low_discrepancy.hpp"
-#include "petzval/core/bisect.hpp"
 #include "pupil_table/entrance_pupil_table.hpp"
 
 namespace petzval::inline v0 {

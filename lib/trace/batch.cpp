@@ -7,6 +7,7 @@
 
 #include "block.hpp"
 #include "job.hpp"
+#include "lens/lens_view.hpp"
 #include "petzval/trace/differentials.hpp"
 
 namespace petzval::inline v0 {
@@ -42,15 +43,14 @@ trace_detail::TraceBlocks<R> loops(const trace_detail::BlockTracer& tracer) noex
 /// Where each ray has its own wavelength, that of the batch is ignored.
 template <class R>
 BlockJob<R> job_for(const Lens& lens, const BatchOptions& options) noexcept {
-  const auto view = lens.view<R>();
+  const auto view = kernel::view<R>(lens);
   const auto& [all, each] = options.wavelengths;
   auto job = trace_detail::job_for<R>(view, options, each ? 0 : all.position(view.primary));
   job.wavelengths = each;
   return job;
 }
 
-/// A block of rays, and of their derivatives, in memory of its own: for the rest of a batch, and for rays that come as
-/// structures.
+/// Memory for a block of rays and their derivatives: for the rest of a batch, and for arrays of structures.
 template <class R>
 struct Block {
   alignas(64) std::array<std::array<R, block>, 18> v{};
@@ -74,7 +74,7 @@ std::array<T*, 6> pointers(const RayArrays<T>& a) noexcept {
   return {a.x, a.y, a.z, a.dx, a.dy, a.dz};
 }
 
-/// `count` rays from one place to another.
+/// Copies `count` rays.
 template <class T, class R>
 void copy(std::size_t count, const RayArrays<T>& from, std::size_t begin, const RayArrays<R>& to,
           std::size_t to_begin) noexcept {

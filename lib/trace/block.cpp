@@ -26,7 +26,7 @@ void report(const BlockJob<R>& job, const Bundle<R>& b, const std::uint8_t* unse
   __builtin_memcpy(tally, b.tally, sizeof tally);
   // Surfaces rise or fall from step to step.
   const auto steps = static_cast<std::int32_t>(job.steps);
-  const std::int32_t first = job.course.steps[0].surface;
+  const std::int32_t first = job.sequence.steps[0].surface;
   const std::int32_t by = first == 0 ? 1 : -1;
   if (job.surfaces) {
     for (int l = 0; l < rays; ++l) {
@@ -74,13 +74,13 @@ void trace_bundle(const BlockJob<R>& job, std::size_t o, const R* index, const R
 template <class R>
 void trace_blocks(const BlockJob<R>& job) noexcept {
   constexpr std::size_t rays = Bundle<R>::rays;
-  const auto& course = job.course;
+  const auto& sequence = job.sequence;
   R index[rays], per_index[rays];
   if (!job.wavelengths) {
-    const kernel::RefractionConstants<R>* bends = course.bends + job.wavelength * job.steps;
+    const kernel::RefractionConstants<R>* bends = sequence.bends + job.wavelength * job.steps;
     for (std::size_t l = 0; l < rays; ++l) {
-      index[l] = course.n_first[job.wavelength];
-      per_index[l] = course.per_n_last[job.wavelength];
+      index[l] = sequence.n_first[job.wavelength];
+      per_index[l] = sequence.per_n_last[job.wavelength];
     }
     for (std::size_t o = 0; o < job.blocks * block_rays; o += rays) {
       trace_bundle(job, o, index, per_index, [&](std::size_t j) { return SharedMedia<R>{bends + j}; });
@@ -93,11 +93,11 @@ void trace_blocks(const BlockJob<R>& job) noexcept {
       // A wavelength that was not compiled loses the ray: there is no index.
       const bool known = job.wavelengths[o + l] < job.compiled_wavelengths;
       wavelengths[l] = known ? job.wavelengths[o + l] : std::uint16_t{0};
-      index[l] = known ? course.n_first[wavelengths[l]] : std::numeric_limits<R>::quiet_NaN();
-      per_index[l] = course.per_n_last[wavelengths[l]];
+      index[l] = known ? sequence.n_first[wavelengths[l]] : std::numeric_limits<R>::quiet_NaN();
+      per_index[l] = sequence.per_n_last[wavelengths[l]];
     }
     trace_bundle(job, o, index, per_index, [&](std::size_t j) {
-      return MediaByRay<R>{course.bends + j, job.steps, wavelengths};
+      return MediaByRay<R>{sequence.bends + j, job.steps, wavelengths};
     });
   }
 }

@@ -3,13 +3,14 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
+#include "lens/lens_view.hpp"
 #include "petzval/trace/differentials.hpp"
-#include "petzval/trace/iris.hpp"
 
 namespace petzval::inline v0::trace_detail {
 
-/// Rays in a block: so many that the latency of a root is hidden behind the others.
+/// Rays in a block: enough to hide the latency of square roots.
 inline constexpr int block_rays = 64;
 
 /// A ray before an asphere: vertex frame of the lens, direction of unit length.
@@ -20,21 +21,21 @@ struct BeforeAsphere {
 
 enum class Found : std::uint8_t { hit, miss, beside, no_convergence };
 
-/// Looks for the hit where the iteration over lanes is not sure of it; puts the point in the place of the ray's.
+/// Searches for the hit of one ray if the iteration over lanes is uncertain; replaces the ray's point by it.
 template <class R>
 using AsphereSearch = Found (*)(const kernel::Asphere<R>& asphere, R sense, BeforeAsphere<R>& ray);
 
-/// What the loops over blocks are to do: plain data. Every array holds `blocks` times block_rays values.
+/// Input and output of the loops over blocks. Every array holds `blocks` times block_rays values.
 template <class R>
 struct BlockJob {
-  kernel::SurfaceSequence<R> course;
+  kernel::SurfaceSequence<R> sequence;
   std::size_t steps = 0;
   const kernel::Asphere<R>* aspheres = nullptr;
   AsphereSearch<R> search = nullptr;
   std::size_t wavelength = 0, compiled_wavelengths = 1;
   const std::uint16_t* wavelengths = nullptr;  ///< of each ray, or null
   bool apertures = true;
-  Iris iris;
+  std::span<const kernel::StopEdge<R>> iris{};
   std::size_t blocks = 0;
   RayArrays<const R> in;
   RayArrays<R> out;

@@ -21,8 +21,8 @@
 namespace petzval::inline v0::trace_detail {
 namespace {
 
-/// Rays in front of the step to come: points from its vertex, directions p of length n (the index), in the turned frame
-/// of kernel::Step. Rays that have ended go on and their numbers mean nothing; `alive` and `tally` tell.
+/// Rays in front of the next step: points from its vertex, directions p of length n (the index), in the turned frame of
+/// kernel::Step. The numbers of lost rays are meaningless; `alive` and `tally` tell which they are.
 template <class R>
 struct Bundle {
   using V = Lanes<R>;
@@ -39,8 +39,8 @@ struct Bundle {
   typename Native<R>::Bits tally[vectors];
 };
 
-/// What ended a ray, from what its tally has beyond the surfaces passed, as a number that loops can run on lanes;
-/// unsettled: the search for a hit gave up.
+/// The fate of a lost ray, from the excess of its tally over the surfaces passed, as a number, so that loops run on
+/// lanes. unsettled: the search for a hit did not converge.
 PETZVAL_INLINE std::int32_t lost_by(std::int32_t beyond, bool unsettled) noexcept {
   std::int32_t fate = beyond == 0 ? static_cast<std::int32_t>(RayFate::missed_surface)
                                   : static_cast<std::int32_t>(RayFate::totally_reflected);

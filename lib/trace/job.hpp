@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "block.hpp"
+#include "lens/lens_view.hpp"
 
 namespace petzval::inline v0::trace_detail {
 
@@ -19,22 +20,22 @@ Found search_asphere(const kernel::Asphere<R>& asphere, R sense, BeforeAsphere<R
   return beside ? Found::beside : converged ? Found::miss : Found::no_convergence;
 }
 
-/// What a lens and some options say of a job, but for the rays. Options: of one ray or of a batch, at one wavelength.
+/// A job without its rays. Options: of one ray or of a batch; wavelength: position of the one wavelength.
 template <class R, class Options>
 BlockJob<R> job_for(const kernel::LensView<R>& view, const Options& options, std::size_t wavelength) noexcept {
   BlockJob<R> job;
-  job.course = options.travel == Travel::to_film ? view.sequence_to_film : view.sequence_to_scene;
+  job.sequence = options.travel == Travel::to_film ? view.sequence_to_film : view.sequence_to_scene;
   job.steps = view.count;
   job.aspheres = view.aspheres;
   job.search = search_asphere<R>;
   job.compiled_wavelengths = view.wavelengths;
   job.apertures = options.apertures;
-  job.iris = options.iris;
+  job.iris = view.iris;
   if (wavelength < view.wavelengths) {
     job.wavelength = wavelength;
   } else {
     static constexpr R no_index = std::numeric_limits<R>::quiet_NaN();
-    job.course.n_first = &no_index;  // which loses every ray
+    job.sequence.n_first = &no_index;  // which loses every ray
   }
   return job;
 }

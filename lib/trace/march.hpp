@@ -18,7 +18,7 @@ namespace {
 template <class R>
 void enter(const BlockJob<R>& job, const RayArrays<const R>& in, const R* index, Bundle<R>& b) noexcept {
   using V = Lanes<R>;
-  const V sense(job.course.first_sense);
+  const V sense(job.sequence.first_sense);
   for (int i = 0; i < Bundle<R>::vectors; ++i) {
     const int o = i * V::width;
     const V x = load(in.x + o), y = load(in.y + o), z = load(in.z + o);
@@ -27,7 +27,7 @@ void enter(const BlockJob<R>& job, const RayArrays<const R>& in, const R* index,
     const V scale = load(index + o) * (V(R(1.5)) - V(R(0.5)) * length);
     b.x[i] = x;
     b.y[i] = y;
-    b.z[i] = sense * (z - V(job.course.first_z));
+    b.z[i] = sense * (z - V(job.sequence.first_z));
     b.px[i] = scale * dx;
     b.py[i] = scale * dy;
     b.pz[i] = sense * (scale * dz);
@@ -41,7 +41,7 @@ void enter(const BlockJob<R>& job, const RayArrays<const R>& in, const R* index,
 template <class R>
 void enter(const BlockJob<R>& job, const RayArrays<const R>& in, const R* index, Tangent<R>& d) noexcept {
   using V = Lanes<R>;
-  const V sense(job.course.first_sense);
+  const V sense(job.sequence.first_sense);
   for (int i = 0; i < Bundle<R>::vectors; ++i) {
     const int o = i * V::width;
     const V n = load(index + o);
@@ -54,7 +54,7 @@ void enter(const BlockJob<R>& job, const RayArrays<const R>& in, const R* index,
   }
 }
 
-/// Puts the lengths of directions right.
+/// Normalises directions.
 template <class R, class Media>
 void refresh(const Media& media, Bundle<R>& b) noexcept {
   using V = Lanes<R>;
@@ -67,25 +67,25 @@ void refresh(const Media& media, Bundle<R>& b) noexcept {
   }
 }
 
-/// Back to the lens frame and to unit directions. A lost ray leaves as it came in.
+/// Stores rays in the lens frame with unit directions. A lost ray is stored as it was given.
 template <class R>
 void leave(const BlockJob<R>& job, const RayArrays<const R>& in, const R* per_index, Bundle<R>& b,
            const RayArrays<R>& out) noexcept {
   using V = Lanes<R>;
-  const V sense(job.course.last_sense);
+  const V sense(job.sequence.last_sense);
   for (int i = 0; i < Bundle<R>::vectors; ++i) {
     const int o = i * V::width;
     const V per_n = load(per_index + o);
     const V dx = per_n * b.px[i], dy = per_n * b.py[i], dz = per_n * b.pz[i];
     const V length = dx * dx + dy * dy + dz * dz;
     const V scale = V(R(1.5)) - V(R(0.5)) * length;
-    // Rays beyond all reason, whose numbers have overflowed, count as lost at the last surface.
+    // Rays whose numbers have overflowed are lost at the last surface.
     const Mask<R> sound = b.alive[i] & (length + b.z[i] * V(R(0)) < V(R(1.1)));
     count<1>(b.tally[i], sound);
     const auto put = [&](R* to, V value, const R* before) { store(to + o, select(sound, value, load(before + o))); };
     put(out.x, b.x[i], in.x);
     put(out.y, b.y[i], in.y);
-    put(out.z, sense * b.z[i] + V(job.course.last_z), in.z);
+    put(out.z, sense * b.z[i] + V(job.sequence.last_z), in.z);
     put(out.dx, dx * scale, in.dx);
     put(out.dy, dy * scale, in.dy);
     put(out.dz, sense * (dz * scale), in.dz);
@@ -97,7 +97,7 @@ template <class R>
 void leave(const BlockJob<R>& job, const R* per_index, const Bundle<R>& b, const Tangent<R>& d,
            const RayArrays<R>& out) noexcept {
   using V = Lanes<R>;
-  const V sense(job.course.last_sense), none(R(0));
+  const V sense(job.sequence.last_sense), none(R(0));
   for (int i = 0; i < Bundle<R>::vectors; ++i) {
     const int o = i * V::width;
     const V per_n = load(per_index + o);
@@ -121,7 +121,7 @@ void put_on_axis(const BlockJob<R>& job, const RayArrays<R>& out) noexcept {
       continue;
     }
     out.x[l] = out.y[l] = out.z[l] = out.dx[l] = out.dy[l] = 0;
-    out.dz[l] = job.course.first_sense;
+    out.dz[l] = job.sequence.first_sense;
   }
 }
 
@@ -129,7 +129,7 @@ void put_on_axis(const BlockJob<R>& job, const RayArrays<R>& out) noexcept {
 template <class R, class Media, class Follow>
 void pass(const BlockJob<R>& job, std::size_t j, const Media& media, std::uint8_t* unsettled, Bundle<R>& b,
           Follow& follow) noexcept {
-  const kernel::Step<R>& s = job.course.steps[j];
+  const kernel::Step<R>& s = job.sequence.steps[j];
   const Lanes<R> rim2(job.apertures ? s.rim2 : std::numeric_limits<R>::max());
   if (s.refresh) refresh(media, b);
   switch (s.kind) {
@@ -140,8 +140,8 @@ void pass(const BlockJob<R>& job, std::size_t j, const Media& media, std::uint8_
     case kernel::StepKind::quadric: quadric(s, rim2, media, b, follow); break;
     case kernel::StepKind::asphere: asphere(s, rim2, job, unsettled, media, b, follow); break;
   }
-  const Iris iris = s.stop ? job.iris : Iris{};
-  if (job.apertures && (s.hole2 > 0 || !iris.empty())) clip(s, iris, j, b);
+  const auto iris = s.stop ? job.iris : std::span<const kernel::StopEdge<R>>{};
+  if (job.apertures && (s.obscuration2 > 0 || !iris.empty())) clip(s, iris, j, b);
 }
 
 }  // namespace

@@ -10,7 +10,7 @@
 #include <limits>
 
 #include "bundle.hpp"
-#include "petzval/trace/sequential.hpp"
+#include "trace/sequential.hpp"
 
 namespace petzval::inline v0::trace_detail {
 namespace {
@@ -65,7 +65,7 @@ struct NoTangents {
   static constexpr bool wanted = false;
 };
 
-/// Books what became of vector i of a bundle.
+/// Updates the tally of vector i of a bundle.
 template <class R>
 PETZVAL_INLINE void book(Bundle<R>& b, int i, Mask<R> found, Mask<R> inside, Mask<R> refracted) noexcept {
   const Mask<R> hit = b.alive[i] & found;
@@ -76,13 +76,13 @@ PETZVAL_INLINE void book(Bundle<R>& b, int i, Mask<R> found, Mask<R> inside, Mas
   count<2>(b.tally[i], b.alive[i]);
 }
 
-/// Clips by what few surfaces have, a hole or an iris, after the fact. j: the step.
+/// Clips by a central obscuration and the iris, which few surfaces have. j: the step.
 template <class R>
-void clip(const kernel::Step<R>& s, const Iris& iris, std::size_t j, Bundle<R>& b) noexcept {
+void clip(const kernel::Step<R>& s, std::span<const kernel::StopEdge<R>> iris, std::size_t j, Bundle<R>& b) noexcept {
   using V = Lanes<R>;
   using Bits = typename Native<R>::Bits;
   for (int i = 0; i < Bundle<R>::vectors; ++i) {
-    const Mask<R> open = (b.r2[i] >= V(s.hole2)) & kernel::within(iris, b.x[i], b.y[i]);
+    const Mask<R> open = (b.r2[i] >= V(s.obscuration2)) & kernel::within(iris, b.x[i], b.y[i]);
     b.alive[i] = b.alive[i] & open;
     const auto rim = static_cast<typename Native<R>::Bit>(4 * j + 1);  // the tally of a ray that hit and was clipped
     Bits clipped = Bits{} + rim;
@@ -114,8 +114,8 @@ void plane(const kernel::Step<R>& s, const Lanes<R>& rim2, const Media& media, B
   }
 }
 
-/// Brings rays from afar near the vertex, into its plane or where they slant too much or run back to the nearest point,
-/// so that the quadratic loses no digits.
+/// Moves rays near the vertex, so that the quadratic loses no digits: into its plane, or to the nearest point if they
+/// are steep or run backwards.
 template <class R, class Media, class Follow>
 PETZVAL_INLINE void approach(const kernel::Step<R>& s, const Media& media, Bundle<R>& b, int i,
                              Follow& follow) noexcept {
@@ -215,7 +215,7 @@ PETZVAL_INLINE Quadratic<R> quadratic(const kernel::Step<R>& s, const Bundle<R>&
           c * (ax * x * x + ay * y * y + e * z * z) - (z + z)};
 }
 
-/// Conics and cylinders, and whatever is a mirror.
+/// Conics, cylinders and all mirrors.
 template <class R, class Media, class Follow>
 void quadric(const kernel::Step<R>& s, const Lanes<R>& rim2, const Media& media, Bundle<R>& b,
              Follow& follow) noexcept {

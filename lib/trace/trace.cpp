@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One ray: the batch of a single lane, which leaves where the ray ends and tells where that was.
+// One ray: a batch of a single lane, which returns as soon as the ray is lost and reports where.
 #define PETZVAL_ONE_LANE
 #define PETZVAL_FAST 0
 
@@ -10,13 +10,14 @@
 #include <type_traits>
 
 #include "job.hpp"
+#include "lens/lens_view.hpp"
 #include "march.hpp"
 
 namespace petzval::inline v0 {
 namespace trace_detail {
 namespace {
 
-/// Where and whither, in the lens frame.
+/// Position and direction in the lens frame.
 template <class R>
 Ray<R> in_lens_frame(const Bundle<R>& b, R z, R pz, const kernel::Step<R>& s, R vertex_z, R per_n) noexcept {
   const Vec3<R> d{per_n * b.px[0].v, per_n * b.py[0].v, s.sense * (per_n * pz)};
@@ -30,7 +31,7 @@ R z_before_turning(const kernel::Step<R>& s, const Bundle<R>& behind) noexcept {
   return s.mirror ? -behind.z[0].v : behind.z[0].v;
 }
 
-/// Beyond all reason numbers overflow.
+/// Takes a ray unless its numbers have overflowed.
 template <class R>
 void keep_finite(const Ray<R>& found, Ray<R>& ray) noexcept {
   using kernel::finite;
@@ -38,17 +39,17 @@ void keep_finite(const Ray<R>& found, Ray<R>& ray) noexcept {
   if (finite(o.x) && finite(o.y) && finite(o.z) && finite(d.x) && finite(d.y) && finite(d.z)) ray = found;
 }
 
-/// A ray that ended at step j: before, in front of that step; after, behind it.
+/// A ray lost at step j. before, after: the state in front of that step and behind it.
 template <class R>
 TracedRay<R> ended(const BlockJob<R>& job, const R* vertex_z, std::size_t j, bool unsettled, const Ray<R>& ray,
                    const Bundle<R>& before, const Bundle<R>& after) noexcept {
-  const kernel::Step<R>& s = job.course.steps[j];
+  const kernel::Step<R>& s = job.sequence.steps[j];
   const auto tally = after.tally[0] - static_cast<std::int32_t>(4 * j);
   TracedRay<R> end{ray, static_cast<RayFate>(lost_by(tally, unsettled)), s.surface};
-  const kernel::RefractionConstants<R>& bend = job.course.bends[job.wavelength * job.steps + j];
+  const kernel::RefractionConstants<R>& bend = job.sequence.bends[job.wavelength * job.steps + j];
   const R per_n = std::sqrt(bend.per_n2);
   if (j > 0) {
-    const auto last = job.course.steps[j - 1].surface;
+    const auto last = job.sequence.steps[j - 1].surface;
     keep_finite(in_lens_frame(before, before.z[0].v, before.pz[0].v, s, vertex_z[last], per_n), end.ray);
   }
   if (tally > 0) {
@@ -62,36 +63,36 @@ TracedRay<R> ended(const BlockJob<R>& job, const R* vertex_z, std::size_t j, boo
 
 template <class R, class Seen>
 TracedRay<R> trace_one(const Lens& lens, const Ray<R>& ray, const TraceOptions& options, const Seen& seen) {
-  const auto view = lens.view<R>();
+  const auto view = kernel::view<R>(lens);
   const auto job = job_for<R>(view, options, options.wavelength.position(view.primary));
-  const auto& course = job.course;
-  TracedRay<R> end{ray, RayFate::missed_surface, course.steps[0].surface};
+  const auto& sequence = job.sequence;
+  TracedRay<R> end{ray, RayFate::missed_surface, sequence.steps[0].surface};
   auto& [origin, direction] = end.ray;
   const RayArrays<R> own{&origin.x, &origin.y, &origin.z, &direction.x, &direction.y, &direction.z};
   const RayArrays<const R> in{&ray.origin.x,    &ray.origin.y,    &ray.origin.z,
                               &ray.direction.x, &ray.direction.y, &ray.direction.z};
   Bundle<R> b;
-  enter(job, in, course.n_first + job.wavelength, b);
+  enter(job, in, sequence.n_first + job.wavelength, b);
   if (!any(b.alive[0])) {
     put_on_axis(job, own);
     return end;
   }
-  const kernel::RefractionConstants<R>* bends = course.bends + job.wavelength * job.steps;
+  const kernel::RefractionConstants<R>* bends = sequence.bends + job.wavelength * job.steps;
   std::uint8_t unsettled = 0;
   NoTangents none;
   for (std::size_t j = 0; j < job.steps; ++j) {
     const Bundle<R> before = b;
     pass(job, j, SharedMedia<R>{bends + j}, &unsettled, b, none);
     if constexpr (!std::is_null_pointer_v<Seen>) {
-      const kernel::Step<R>& s = course.steps[j];
+      const kernel::Step<R>& s = sequence.steps[j];
       const Vec3<R> point{b.x[0].v, b.y[0].v, s.sense * z_before_turning(s, b) + view.vertex_z[s.surface]};
       const bool hit = b.tally[0] > static_cast<std::int32_t>(4 * j);
       if (hit && kernel::finite(point.x) && kernel::finite(point.y) && kernel::finite(point.z)) seen(s.surface, point);
     }
     if (!any(b.alive[0])) return ended(job, view.vertex_z, j, unsettled != 0, ray, before, b);
   }
-  leave(job, in, course.per_n_last + job.wavelength, b, own);
-  end.surface = course.steps[job.steps - 1].surface;
+  leave(job, in, sequence.per_n_last + job.wavelength, b, own);
+  end.surface = sequence.steps[job.steps - 1].surface;
   if (any(b.alive[0])) end.fate = RayFate::transmitted;
   return end;
 }

@@ -8,8 +8,8 @@
 
 #include "../trace/extended.hpp"
 #include "petzval/trace/batch.hpp"
-#include "petzval/trace/sequential.hpp"
 #include "petzval/trace/trace.hpp"
+#include "trace/sequential.hpp"
 
 namespace {
 
@@ -69,7 +69,7 @@ Box box_of_ring(const petzval::Lens& lens, double inner, double outer, std::mt19
 /// indices, since no code under test shares their rounding. Curvatures and coefficients stay the doubles that every
 /// code gets.
 testing_lenses::Tables<long double> exact_tables(const petzval::Lens& lens) {
-  auto tables = testing_lenses::extended(lens.view<double>());
+  auto tables = testing_lenses::extended(petzval::kernel::view<double>(lens));
   for (std::size_t i = 0; i < lens.surface_count(); ++i) {
     const long double n0 = lens.index(i, 0), n1 = lens.index(i + 1, 0);
     tables.to_scene[i] = {n1 / n0, (n0 - n1) * (n0 + n1) / (n0 * n0)};

@@ -6,7 +6,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "petzval/core/kernel_vec.hpp"
+#include "core/kernel_vec.hpp"
 #include "petzval/core/ray.hpp"
 #include "petzval/lens/lens.hpp"
 #include "textbook_tracer.hpp"

@@ -10,9 +10,9 @@
 
 #include "petzval/trace/batch.hpp"
 #include "petzval/trace/differentials.hpp"
-#include "petzval/trace/sequential.hpp"
 #include "petzval/trace/trace.hpp"
 #include "textbook_tracer.hpp"
+#include "trace/sequential.hpp"
 #include "trace_rays.hpp"
 
 /// One way to trace a set of rays to the scene: timed in rounds, its results compared afterwards. Every thread has its
@@ -82,7 +82,7 @@ class TemplateWork : public SingleWork<T> {
   using SingleWork<T>::SingleWork;
 
   void trace() override {
-    const auto view = this->lens_.template view<T>();
+    const auto view = petzval::kernel::view<T>(this->lens_);
     for (std::size_t i = 0; i < this->rays_.size(); ++i) {
       const auto& [origin, direction] = this->rays_[i];
       const auto end =

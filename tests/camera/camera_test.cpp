@@ -22,6 +22,7 @@
 #include "petzval/camera/sample_rays.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/focus/focus.hpp"
+#include "petzval/media/catalogue.hpp"
 #include "petzval/paraxial/pupils.hpp"
 
 namespace petzval {

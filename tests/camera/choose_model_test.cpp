@@ -15,6 +15,7 @@
 #include "petzval/camera/camera.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/focus/focus.hpp"
+#include "petzval/media/catalogue.hpp"
 #include "petzval/pupil/f_number.hpp"
 
 namespace petzval {

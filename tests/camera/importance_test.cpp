@@ -174,7 +174,7 @@ TEST(Importance, IsConnectedToAFilmThatIsDarkOnTheAxis) {
   singlet.name = "singlet";
   singlet.surfaces = {{.radius = 50, .thickness = 5, .medium = {.nd = 1.5168}, .semi_diameter = 12, .stop = true},
                       {.radius = -50, .thickness = 47, .semi_diameter = 12},
-                      {.thickness = 1, .semi_diameter = 40, .inner_semi_diameter = 12}};
+                      {.thickness = 1, .semi_diameter = 40, .obscuration_semi_diameter = 12}};
   const Camera camera(compile(singlet), film, {.model = ModelKind::exact_double});
   EXPECT_EQ(camera.pupils().area({}), 0);
   const core_detail::Kronecker<5> random(5);

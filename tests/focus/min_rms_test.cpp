@@ -79,14 +79,14 @@ TEST(MinRms, HasTheLeastSpreadOfABundleOverTheWholeAperture) {
 
 TEST(MinRms, OfANarrowZoneIsWhereItsRaysCrossTheAxis) {
   Prescription p = data_prescription("singlet_50mm_biconvex");
-  p.surfaces[0].inner_semi_diameter = 0.93 * p.surfaces[0].semi_diameter.value();
+  p.surfaces[0].obscuration_semi_diameter = 0.93 * p.surfaces[0].semi_diameter.value();
   const Lens lens = compile(p);
   const auto crossing = [&](double height) {
     const auto [ray, fate, surface] = trace(lens, Ray<double>{{0, height, 0}, {0, 0, 1}}, {.apertures = false});
     return ray.origin.z - ray.origin.y * ray.direction.z / ray.direction.y;
   };
   const double film_z = solve_focus(lens, infinity, {min_rms}).film_z;
-  EXPECT_LT(film_z, crossing(lens.surfaces()[0].inner_semi_diameter));
+  EXPECT_LT(film_z, crossing(lens.surfaces()[0].obscuration_semi_diameter));
   EXPECT_GT(film_z, crossing(lens.surfaces()[0].semi_diameter));
 }
 

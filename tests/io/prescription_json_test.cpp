@@ -70,7 +70,7 @@ TEST(PrescriptionJson, SaysWhatTheFileSays) {
   EXPECT_FALSE(lens.image_diagonal_mm);
   EXPECT_EQ(lens.glass_names, "source (nearest modern glasses)");
   ASSERT_EQ(lens.surfaces.size(), 24u);
-  EXPECT_EQ(lens.surfaces[1].inner_semi_diameter, 25);
+  EXPECT_EQ(lens.surfaces[1].obscuration_semi_diameter, 25);
   EXPECT_EQ(lens.surfaces[3].thickness, -15);
   EXPECT_TRUE(lens.surfaces[3].mirror && lens.surfaces[3].stop);
   EXPECT_EQ(lens.surfaces[8].medium.catalogue, "hikari");
@@ -129,7 +129,7 @@ Prescription random_prescription(std::mt19937_64& random) {
     s.mirror = random() % 4 == 0;
     s.medium = !s.mirror ? medium() : p.surfaces.empty() ? p.object_space : p.surfaces.back().medium;
     s.semi_diameter = maybe();
-    if (s.semi_diameter && often()) s.inner_semi_diameter = *s.semi_diameter / 3;
+    if (s.semi_diameter && often()) s.obscuration_semi_diameter = *s.semi_diameter / 3;
     s.conic = often() ? 0 : length();
     for (int order = 2; order <= 40 && often(); ++order)
       s.aspheric.push_back({order, random_number(random, 1e-300, 1e300)});

@@ -11,6 +11,7 @@
 #include "../message.hpp"
 #include "petzval/core/text.hpp"
 #include "petzval/lens/lens.hpp"
+#include "petzval/media/catalogue.hpp"
 
 namespace {
 

@@ -80,9 +80,9 @@ TEST(Lint, LooksForOverlapsOutsideCentralObscurationsOnly) {
   p.surfaces[1].thickness = first_order(compile(p)).back_focal_distance;
   p.surfaces[0].semi_diameter = p.surfaces[1].semi_diameter = 15;
   EXPECT_EQ(lint(p).at(0).kind, Kind::overlap);
-  p.surfaces[1].inner_semi_diameter = 11;
+  p.surfaces[1].obscuration_semi_diameter = 11;
   EXPECT_TRUE(lint(p).empty());
-  p.surfaces[1].inner_semi_diameter = 9;
+  p.surfaces[1].obscuration_semi_diameter = 9;
   EXPECT_EQ(lint(p).at(0).kind, Kind::overlap);
 }
 

@@ -6,7 +6,7 @@
 
 #include "../data_lenses.hpp"
 #include "petzval/paraxial/first_order.hpp"
-#include "petzval/trace/sequential.hpp"
+#include "trace/sequential.hpp"
 
 namespace petzval {
 namespace {
@@ -26,7 +26,7 @@ TEST(RayMatrix, IsTheDerivativeOfTheExactRayAlongTheAxis) {
       const bool y = meridian == Meridian::y;
       const kernel::Vec<Jet> origin{y ? zero : height, y ? height : zero, zero};
       const kernel::Vec<Jet> direction{y ? zero : slope, y ? slope : zero, Jet(1.0)};
-      const auto end = kernel::trace(lens.view<double>(), origin, direction, {.apertures = false});
+      const auto end = kernel::trace(petzval::kernel::view<double>(lens), origin, direction, {.apertures = false});
       ASSERT_EQ(end.fate, RayFate::transmitted);
       const Jet at_last = y ? end.origin.y : end.origin.x;
       const Jet slope_behind = (y ? end.direction.y : end.direction.x) / end.direction.z;

@@ -12,10 +12,10 @@
 #include "../data_lenses.hpp"
 #include "../film_at.hpp"
 #include "../message.hpp"
+#include "lens/lens_view.hpp"
 #include "petzval/core/units.hpp"
 #include "petzval/focus/depth_of_field.hpp"
 #include "petzval/focus/focus.hpp"
-#include "petzval/lens/tables.hpp"
 #include "petzval/movement/focus_plane.hpp"
 #include "petzval/paraxial/thin_lens.hpp"
 

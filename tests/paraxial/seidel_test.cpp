@@ -13,7 +13,7 @@
 #include "../trace/extended.hpp"
 #include "petzval/core/units.hpp"
 #include "petzval/paraxial/pupils.hpp"
-#include "petzval/trace/sequential.hpp"
+#include "trace/sequential.hpp"
 
 namespace petzval {
 namespace {
@@ -25,7 +25,7 @@ using L = long double;
 class RealRays {
  public:
   RealRays(const Lens& lens, const testing::SeidelSums& sums, L pupil_z)
-      : tables_(testing_lenses::extended(lens.view<double>())), sums_(sums), pupil_z_(pupil_z) {}
+      : tables_(testing_lenses::extended(petzval::kernel::view<double>(lens))), sums_(sums), pupil_z_(pupil_z) {}
 
   std::array<L, 2> operator()(L x, L y, L slope) const {
     const L length = std::sqrt(1 + slope * slope);

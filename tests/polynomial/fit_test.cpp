@@ -14,6 +14,7 @@
 #include "../message.hpp"
 #include "lines.hpp"
 #include "petzval/core/text.hpp"
+#include "petzval/media/catalogue.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "petzval/trace/trace.hpp"

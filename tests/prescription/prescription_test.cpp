@@ -55,7 +55,7 @@ TEST(Validate, NumbersThatNoSurfaceHasAreRefusedByNameAndSurface) {
               "s: surface 0: nd" + is + ", wanted an index above 0 and up to 5");
     EXPECT_EQ(refusal([&](auto& p) { p.surfaces[0].medium.vd = value; }),
               "s: surface 0: vd" + is + ", wanted a finite number above 0");
-    EXPECT_EQ(refusal([&](auto& p) { p.surfaces[0].inner_semi_diameter = value; }),
+    EXPECT_EQ(refusal([&](auto& p) { p.surfaces[0].obscuration_semi_diameter = value; }),
               "s: surface 0: inner_semi_diameter" + is + ", wanted a finite length of 0 mm or more");
     EXPECT_EQ(refusal([&](auto& p) {
                 p.surfaces[0].aspheric = {{6, 0.0}, {4, value}};
@@ -90,7 +90,7 @@ TEST(Validate, NumbersThatNoSurfaceHasAreRefusedByNameAndSurface) {
 TEST(Validate, FieldsThatContradictEachOtherAreRefused) {
   EXPECT_EQ(refusal([](auto& p) { p.surfaces.clear(); }), "s: no surfaces, wanted at least one");
   EXPECT_EQ(refusal([](auto& p) { p.surfaces.resize(10'001); }), "s: 10001 surfaces, wanted at most 10000");
-  EXPECT_EQ(refusal([](auto& p) { p.surfaces[0].inner_semi_diameter = 12; }),
+  EXPECT_EQ(refusal([](auto& p) { p.surfaces[0].obscuration_semi_diameter = 12; }),
             "s: surface 0: inner_semi_diameter is 12, wanted less than the semi_diameter of 12 mm");
   EXPECT_EQ(refusal([](auto& p) { p.surfaces[1].mirror = true; }),
             "s: surface 1: the medium of the mirror (nd 1) is not the one in front of it (nd 1.5168), wanted the "

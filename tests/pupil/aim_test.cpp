@@ -18,8 +18,8 @@
 #include "petzval/core/units.hpp"
 #include "petzval/paraxial/pupils.hpp"
 #include "petzval/pupil/f_number.hpp"
-#include "petzval/trace/sequential.hpp"
 #include "petzval/trace/trace.hpp"
+#include "trace/sequential.hpp"
 
 namespace petzval {
 namespace {
@@ -39,7 +39,7 @@ std::vector<StopPoint> places() {
 double miss(const Lens& lens, const Ray<double>& ray, const StopPoint& target) {
   const std::size_t stop = pupils(lens).stop;
   Vec3<double> hit{infinity, infinity, infinity};
-  kernel::trace(lens.view<double>(), kernel::to_kernel(ray.origin), kernel::to_kernel(ray.direction),
+  kernel::trace(petzval::kernel::view<double>(lens), kernel::to_kernel(ray.origin), kernel::to_kernel(ray.direction),
                 {.apertures = false}, [&](int surface, const kernel::Vec<double>& point) {
                   if (surface == static_cast<int>(stop)) hit = kernel::to_public(point);
                 });

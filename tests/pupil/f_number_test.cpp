@@ -11,7 +11,7 @@
 #include "petzval/core/error.hpp"
 #include "petzval/paraxial/pupils.hpp"
 #include "petzval/pupil/f_number.hpp"
-#include "petzval/trace/sequential.hpp"
+#include "trace/sequential.hpp"
 
 namespace petzval {
 namespace {
@@ -43,8 +43,8 @@ TEST(RealFNumber, BelongsToTheRayThatMeetsTheRimOfTheStop) {
     const Lens lens = compile(p);
     const std::size_t stop = lens.stop().value();
     const double y = focal_length(lens) / (2 * real_f_number(lens));
-    const auto end = kernel::trace(lens.view<double>(), kernel::Vec<double>{0, y, 0}, kernel::Vec<double>{0, 0, 1},
-                                   {.apertures = false, .last = stop + 1});
+    const auto end = kernel::trace(petzval::kernel::view<double>(lens), kernel::Vec<double>{0, y, 0},
+                                   kernel::Vec<double>{0, 0, 1}, {.apertures = false, .last = stop + 1});
     ASSERT_EQ(end.surface, static_cast<int>(stop));
     EXPECT_NEAR(std::abs(end.origin.y), lens.surfaces()[stop].semi_diameter, 1e-12 * y);
   }
@@ -79,7 +79,7 @@ TEST(WithFNumber, IsWhatRealFNumberFinds) {
     EXPECT_LE(with_f_number(lens, fastest * (1 - 1e-10)).surfaces()[stop].semi_diameter,
               lens.surfaces()[stop].semi_diameter);
     EXPECT_THROW(with_f_number(lens, fastest * (1 - 1e-8)), Error);
-    const double hole = lens.surfaces()[stop].inner_semi_diameter / lens.surfaces()[stop].semi_diameter;
+    const double hole = lens.surfaces()[stop].obscuration_semi_diameter / lens.surfaces()[stop].semi_diameter;
     for (const double n : {fastest, fastest * 1.0001, fastest * 1.4, 5.6 * fastest, 64 * fastest, 1000 * fastest}) {
       if (n * hole > 0.99 * fastest) continue;
       EXPECT_NEAR(real_f_number(with_f_number(lens, n)), n, 1e-12 * n);
@@ -98,7 +98,7 @@ TEST(WithFNumber, GivesOrNamesEveryStandardFNumber) {
   for (const Prescription& p : data_prescriptions()) {
     const Lens lens = compile(p);
     const double fastest = real_f_number(lens);
-    if (lens.surfaces()[lens.stop().value()].inner_semi_diameter > 0) continue;
+    if (lens.surfaces()[lens.stop().value()].obscuration_semi_diameter > 0) continue;
     for (const double n : {0.95, 1.0, 1.4, 2.0, 2.8, 4.0, 5.6, 8.0, 11.0, 16.0, 22.0, 32.0, 45.0, 64.0, 1000.0}) {
       SCOPED_TRACE(p.id + " f/" + std::to_string(n));
       if (n >= fastest) {
@@ -139,7 +139,8 @@ TEST(WithFNumber, OfAStopInFrontIsFocalLengthOverDiameter) {
 TEST(WithFNumber, OfAnAnnularStopEndsAtItsHole) {
   const Lens lens = data_lens("catadioptric_maksutov_1280mm_f14.4");
   EXPECT_NEAR(real_f_number(with_f_number(lens, 22)), 22, 22e-12);
-  EXPECT_EQ(with_f_number(lens, 22).surfaces()[2].inner_semi_diameter, lens.surfaces()[2].inner_semi_diameter);
+  EXPECT_EQ(with_f_number(lens, 22).surfaces()[2].obscuration_semi_diameter,
+            lens.surfaces()[2].obscuration_semi_diameter);
   const std::string found = message([&] { with_f_number(lens, 100); });
   const std::string start = lens.name() + ": f-number is 100, wanted less than ";
   ASSERT_EQ(found.substr(0, start.size()), start);
@@ -155,7 +156,7 @@ TEST(WithFNumber, LeavesAnInferredStopTheStop) {
     for (SurfaceRow& row : p.surfaces) row.stop = false;
     const Lens lens = compile(p);
     const Pupils before = pupils(lens, 0, main_meridian(lens));
-    if (lens.surfaces()[before.stop].inner_semi_diameter > 0) continue;
+    if (lens.surfaces()[before.stop].obscuration_semi_diameter > 0) continue;
     const double n = 1.5 * real_f_number(lens);
     const Lens stopped = with_f_number(lens, n);
     EXPECT_EQ(pupils(stopped).stop, before.stop);

@@ -107,7 +107,7 @@ TEST(PupilBoundary, OfAFrontStopIsTheStop) {
 TEST(PupilBoundary, OfAHoleIsARing) {
   Prescription p;
   p.name = "ring";
-  p.surfaces = {{.thickness = 2, .semi_diameter = 5, .inner_semi_diameter = 2, .stop = true},
+  p.surfaces = {{.thickness = 2, .semi_diameter = 5, .obscuration_semi_diameter = 2, .stop = true},
                 {.radius = 100, .thickness = 50, .medium = {.nd = 1.5}, .semi_diameter = 30}};
   const PupilBoundary boundary = pupil_boundary(compile(p), {0, -infinity}, 0, 32);
   EXPECT_NEAR(boundary.area(), 21 * pi, 1e-11);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/surface/asphere.hpp"
+#include "surface/asphere.hpp"
+#include "lens/lens_view.hpp"
 
 #include <gtest/gtest.h>
 
@@ -143,7 +144,7 @@ TYPED_TEST(AsphereOf, FindsTheFirstCrossingOfSteepRays) {
   int several = 0;
   for (const auto& [name, r] : surfaces()) {
     const petzval::Lens lens = compiled(r);
-    const auto view = lens.view<TypeParam>();
+    const auto view = petzval::kernel::view<TypeParam>(lens);
     const Asphere<TypeParam>& asphere = view.aspheres[0];
     const double rim = *r.semi_diameter;
     std::mt19937 random(5);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/surface/quadric.hpp"
+#include "surface/quadric.hpp"
 
 #include <gtest/gtest.h>
 

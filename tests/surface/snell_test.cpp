@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/surface/snell.hpp"
+#include "surface/snell.hpp"
 
 #include <gtest/gtest.h>
 

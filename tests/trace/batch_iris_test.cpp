@@ -14,33 +14,30 @@
 namespace {
 
 using namespace testing_batches;
-using petzval::IrisEdge;
+using petzval::Iris;
 
 /// A regular hexagon, rotated so that no edge is parallel to an axis.
-std::vector<IrisEdge> hexagon(double distance) {
-  std::vector<IrisEdge> edges;
-  for (int i = 0; i < 6; ++i) {
-    const double angle = 0.3 + i * std::numbers::pi / 3;
-    edges.push_back({std::cos(angle), std::sin(angle), distance});
-  }
-  return edges;
+Iris hexagon(double distance) {
+  Iris iris = petzval::regular_iris(6, 0.3);
+  for (auto& edge : iris.edges) edge.distance = distance;
+  return iris;
 }
 
 /// Distance of a ray's crossing of the stop to the nearest edge, > 0 inside; nothing if the ray does not reach the
 /// stop.
 template <class T>
-std::optional<double> room_at_the_stop(const Lens& lens, const Ray<T>& ray, Travel travel,
-                                       const std::vector<IrisEdge>& edges) {
+std::optional<double> room_at_the_stop(const Lens& lens, const Ray<T>& ray, Travel travel) {
   std::optional<double> room;
   const auto stop = static_cast<int>(*lens.stop());
+  const double radius = lens.surfaces()[*lens.stop()].semi_diameter;
   const Ray<double> exact{petzval::Vec3<double>(ray.origin), petzval::Vec3<double>(ray.direction)};
-  petzval::kernel::trace(lens.view<double>(), petzval::kernel::to_kernel(exact.origin),
+  petzval::kernel::trace(petzval::kernel::view<double>(lens), petzval::kernel::to_kernel(exact.origin),
                          petzval::kernel::to_kernel(exact.direction), {.travel = travel, .apertures = false},
                          [&](int surface, const petzval::kernel::Vec<double>& p) {
                            if (surface != stop) return;
                            room = std::numeric_limits<double>::infinity();
-                           for (const auto& e : edges) {
-                             room = std::min(*room, e.distance - (p.x * e.nx + p.y * e.ny));
+                           for (const auto& e : lens.iris().edges) {
+                             room = std::min(*room, e.distance * radius - (p.x * e.nx + p.y * e.ny));
                            }
                          });
   return room;
@@ -56,24 +53,23 @@ TYPED_TEST(BatchIris, ClipsWhatCrossesTheStopOutsideAnEdge) {
   for (const char* id : {"double_gauss_100mm_f2.0", "fisheye_10mm_f4", "modern_58mm_f0.95", "anamorphic_60mm_2x"}) {
     const auto sample = testing_lenses::load(id);
     const Lens& lens = sample.lens;
-    const auto edges = hexagon(0.5 * lens.surfaces()[lens.stop().value()].semi_diameter);
+    const Lens bladed = petzval::with_iris(lens, hexagon(0.5));
     const int stop = static_cast<int>(lens.stop().value());
     for (const Travel travel : {Travel::to_film, Travel::to_scene}) {
       const auto rays = rays_for<T>(sample, travel, 600);
       for (BatchOptions options : ways(travel)) {
         const auto open = traced(lens, rays, options);
-        options.iris = edges;
-        const auto clipped = traced(lens, rays, options);
+        const auto clipped = traced(bladed, rays, options);
         int inside = 0, outside = 0;
         for (std::size_t i = 0; i < rays.size(); ++i) {
           const std::string what = sample.id + " " + text(options) + " ray " + std::to_string(i);
           const bool reached = open.fates[i] == RayFate::transmitted ||
                                (travel == Travel::to_film ? open.surfaces[i] > stop : open.surfaces[i] < stop);
-          const auto room = reached ? room_at_the_stop(lens, rays[i], travel, edges) : std::nullopt;
+          const auto room = reached ? room_at_the_stop(bladed, rays[i], travel) : std::nullopt;
           // Either fate is right within the error of the crossing.
           if (room && std::abs(*room) < 1000 * std::numeric_limits<T>::epsilon() * sample.size) continue;
           if (room) {
-            const auto one = petzval::trace(lens, rays[i], {.travel = travel, .iris = edges});
+            const auto one = petzval::trace(bladed, rays[i], {.travel = travel});
             ASSERT_EQ(one.fate == RayFate::vignetted && one.surface == stop, *room < 0) << what;
           }
           if (room && *room < 0) {
@@ -94,10 +90,10 @@ TYPED_TEST(BatchIris, ClipsWhatCrossesTheStopOutsideAnEdge) {
 }
 
 /// A plane stop of 10 mm between two more planes, in air.
-petzval::Prescription window(bool with_stop) {
+petzval::Prescription window() {
   petzval::Prescription p;
   p.name = "window";
-  p.surfaces = {{.thickness = 2}, {.thickness = 3, .semi_diameter = 10, .stop = with_stop}, {.thickness = 1}};
+  p.surfaces = {{.thickness = 2}, {.thickness = 3, .semi_diameter = 10, .stop = true}, {.thickness = 1}};
   return p;
 }
 
@@ -114,16 +110,23 @@ std::vector<RayFate> fates_at(const Lens& lens, const std::vector<std::array<T, 
 
 TYPED_TEST(BatchIris, CountsItsEdgesAsInside) {
   using T = TypeParam;
-  const Lens lens = petzval::compile(window(true));
-  const std::vector<IrisEdge> edges{{1, 0, 3}, {0, -1, 2}, {0.75, 0.5, 3}};
+  const Lens lens = petzval::with_iris(petzval::compile(window()), {{{1, 0, 0.3}, {0, -1, 0.2}, {0.6, 0.8, 0.36}}});
   const T above = std::nextafter(T(3), T(4)), below = std::nextafter(T(-2), T(-3));
   constexpr auto in = RayFate::transmitted, out = RayFate::vignetted;
   for (const Travel travel : {Travel::to_film, Travel::to_scene}) {
     for (BatchOptions options : ways(travel)) {
-      options.iris = edges;
-      const auto fates = fates_at<T>(
-          lens, {{3, 0}, {above, 0}, {0, -2}, {0, below}, {3, -2}, {2, 3}, {2, T(3.00001)}, {-10, 0}, {-8, 6}, {-8, 7}},
-          options);
+      const auto fates = fates_at<T>(lens,
+                                     {{3, 0},
+                                      {above, 0},
+                                      {0, -2},
+                                      {0, below},
+                                      {3, -2},
+                                      {2, T(2.9999)},
+                                      {2, T(3.00001)},
+                                      {-10, 0},
+                                      {-8, 6},
+                                      {-8, 7}},
+                                     options);
       EXPECT_EQ(fates, (std::vector<RayFate>{in, out, in, out, in, in, out, in, in, out})) << text(options);
     }
   }
@@ -131,10 +134,8 @@ TYPED_TEST(BatchIris, CountsItsEdgesAsInside) {
 
 TYPED_TEST(BatchIris, MayLieBeyondTheAxis) {
   using T = TypeParam;
-  const Lens lens = petzval::compile(window(true));
-  const std::vector<IrisEdge> edges{{-1, 0, -2}};  // x >= 2
-  for (BatchOptions options : ways()) {
-    options.iris = edges;
+  const Lens lens = petzval::with_iris(petzval::compile(window()), {{{-1, 0, -0.2}}});  // x >= 2
+  for (const BatchOptions& options : ways()) {
     EXPECT_EQ(
         fates_at<T>(lens, {{0, 0}, {2, 0}, {5, 5}, {-3, 0}}, options),
         (std::vector<RayFate>{RayFate::vignetted, RayFate::transmitted, RayFate::transmitted, RayFate::vignetted}))
@@ -142,17 +143,14 @@ TYPED_TEST(BatchIris, MayLieBeyondTheAxis) {
   }
 }
 
-TYPED_TEST(BatchIris, IsIgnoredWithoutAStopAndWithoutApertures) {
+TYPED_TEST(BatchIris, IsIgnoredWithoutApertures) {
   using T = TypeParam;
-  const std::vector<IrisEdge> edges{{1, 0, -20}};  // no ray passes
+  const Lens lens = petzval::with_iris(petzval::compile(window()), {{{1, 0, -2}}});  // no ray passes
   for (const Travel travel : {Travel::to_film, Travel::to_scene}) {
     for (BatchOptions options : ways(travel)) {
-      options.iris = edges;
-      EXPECT_EQ(fates_at<T>(petzval::compile(window(false)), {{0, 0}, {11, 0}}, options),
-                (std::vector<RayFate>{RayFate::transmitted, RayFate::vignetted}));
-      EXPECT_EQ(fates_at<T>(petzval::compile(window(true)), {{0, 0}}, options), std::vector{RayFate::vignetted});
+      EXPECT_EQ(fates_at<T>(lens, {{0, 0}}, options), std::vector{RayFate::vignetted});
       options.apertures = false;
-      EXPECT_EQ(fates_at<T>(petzval::compile(window(true)), {{0, 0}, {11, 0}}, options),
+      EXPECT_EQ(fates_at<T>(lens, {{0, 0}, {11, 0}}, options),
                 (std::vector<RayFate>{RayFate::transmitted, RayFate::transmitted}));
     }
   }
@@ -165,7 +163,7 @@ TYPED_TEST(BatchIris, WithoutAperturesEveryRimIsOpen) {
     if (std::any_of(wide.surfaces.begin(), wide.surfaces.end(), [](const auto& s) { return !s.aspheric.empty(); })) {
       continue;  // their description depends on the aperture
     }
-    for (auto& s : wide.surfaces) s.semi_diameter = s.inner_semi_diameter = std::nullopt;
+    for (auto& s : wide.surfaces) s.semi_diameter = s.obscuration_semi_diameter = std::nullopt;
     const Lens open = petzval::compile(wide);
     for (const Travel travel : {Travel::to_film, Travel::to_scene}) {
       const auto rays = rays_for<T>(sample, travel, 200);

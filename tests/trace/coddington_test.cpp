@@ -16,7 +16,7 @@
 #include "../data_lenses.hpp"
 #include "petzval/core/units.hpp"
 #include "petzval/pupil/aim.hpp"
-#include "petzval/trace/sequential.hpp"
+#include "trace/sequential.hpp"
 
 namespace petzval {
 namespace {
@@ -50,7 +50,7 @@ Curvatures curvatures(const LensSurface& s, double r) {
 /// n'/s' = n/s + (n' cos I' - n cos I) c_s, and with cos^2 at both ends and c_t in the meridian.
 Vergences by_coddington(const Lens& lens, const Ray<double>& ray, double z) {
   std::vector<Vec<double>> hits;
-  kernel::trace(lens.view<double>(), kernel::to_kernel(ray.origin), kernel::to_kernel(ray.direction),
+  kernel::trace(petzval::kernel::view<double>(lens), kernel::to_kernel(ray.origin), kernel::to_kernel(ray.direction),
                 {.apertures = false}, [&](int, const Vec<double>& hit) { hits.push_back(hit); });
   Vergences v;
   double dy = ray.direction.y, dz = ray.direction.z;
@@ -105,7 +105,7 @@ Vergences by_derivatives(const Lens& lens, const Ray<double>& ray, double z) {
       direction.y.v[0] = ((sagittal ? 0 : 1) - part * ray.direction.y) / distance;
       direction.z.v[0] = -part * ray.direction.z / distance;
     }
-    const auto end = kernel::trace(lens.view<double>(), origin, direction, {.apertures = false});
+    const auto end = kernel::trace(petzval::kernel::view<double>(lens), origin, direction, {.apertures = false});
     const Vec<Jet>&o = end.origin, &d = end.direction;
     if (sagittal) {
       v.sagittal = -d.x.v[0] / o.x.v[0];

@@ -59,7 +59,7 @@ double sign(double x) { return x < 0 ? -1 : 1; }
 
 TEST(Derivative, ValueIsThatOfThePlainRayToTheBit) {
   for (const Sample& s : all()) {
-    const auto view = s.lens.view<double>();
+    const auto view = petzval::kernel::view<double>(s.lens);
     for (const auto& ray : passing_rays(s.lens, 8)) {
       const double z = ray.origin.z, out = s.lens.film_z(), towards = sign(ray.direction.z);
       bool passed = false, passed_too = false;
@@ -81,7 +81,7 @@ TEST(Derivative, ValueIsThatOfThePlainRayToTheBit) {
 TEST(Derivative, AgreesWithCentralDifferences) {
   double most = 0;
   for (const Sample& s : all()) {
-    const auto view = s.lens.view<double>();
+    const auto view = petzval::kernel::view<double>(s.lens);
     const auto tables = testing_lenses::extended(view);
     for (const auto& ray : passing_rays(s.lens, 6)) {
       const double z = ray.origin.z, out = s.lens.film_z(), towards = sign(ray.direction.z);
@@ -116,7 +116,7 @@ TEST(Derivative, AgreesWithCentralDifferences) {
 TEST(Derivative, RaysMoveSymplectically) {
   double most = 0;
   for (const Sample& s : all()) {
-    const auto view = s.lens.view<double>();
+    const auto view = petzval::kernel::view<double>(s.lens);
     const double n_in = s.lens.index(0, 0), n_out = s.lens.index(view.count, 0);
     for (const auto& ray : passing_rays(s.lens, 8)) {
       bool passed = false;

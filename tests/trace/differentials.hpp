@@ -100,7 +100,7 @@ inline const std::vector<testing_lenses::Sample>& made() {
                   20),
       one_surface("mirror, cylindrical", {.radius = 50, .mirror = true, .curved_in = Section::y}, 20),
       one_surface("mirror, plane", {.mirror = true}, 20),
-      one_surface("annular hyperboloid", {.radius = 30, .inner_semi_diameter = 5, .conic = -3}, 20),
+      one_surface("annular hyperboloid", {.radius = 30, .obscuration_semi_diameter = 5, .conic = -3}, 20),
       one_surface("conic cylinder", {.radius = 30, .conic = -2, .curved_in = Section::x}, 15),
       one_surface("aspheric cylinder",
                   {.radius = 40, .conic = 0.5, .aspheric = {{4, -4e-6}, {6, 1e-9}}, .curved_in = Section::y}, 15),

@@ -138,7 +138,7 @@ struct Worst {
 template <class T>
 void judge(const testing_lenses::Sample& sample, std::array<Worst, 2>& worst, int& judged) {
   const L eps = std::numeric_limits<T>::epsilon();
-  const auto tables = testing_lenses::extended(sample.lens.view<double>());
+  const auto tables = testing_lenses::extended(petzval::kernel::view<double>(sample.lens));
   for (const Travel travel : {Travel::to_film, Travel::to_scene}) {
     const Beam<T> beam(rays_for<T>(sample, travel, 48), sample.size);
     const auto all = ways(travel);

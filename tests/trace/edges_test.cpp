@@ -116,7 +116,7 @@ TYPED_TEST(EdgesOf, RimAndHoleThemselvesBelongToTheClearAperture) {
   int kind = 0;
   for (SurfaceRow row : kinds()) {
     row.semi_diameter = 12.5;
-    row.inner_semi_diameter = 3.25;
+    row.obscuration_semi_diameter = 3.25;
     const Lens lens = one_surface(row);
     for (const auto& [x, y, fate] : places) {
       const std::string what = "surface " + std::to_string(kind) + " at " + std::to_string(x) + " " + std::to_string(y);

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "petzval/lens/tables.hpp"
+#include "lens/lens_view.hpp"
 
 namespace testing_lenses {
 
@@ -32,7 +32,7 @@ inline Tables<long double> extended(const petzval::kernel::LensView<double>& vie
   for (std::size_t i = 0; i < view.count; ++i) {
     const auto& s = view.surfaces[i];
     t.surfaces.push_back(
-        {quadric(s.quadric), s.gap, s.semi_diameter_squared, s.inner_squared, s.asphere, s.mirror, s.sense});
+        {quadric(s.quadric), s.gap, s.semi_diameter_squared, s.obscuration_squared, s.asphere, s.mirror, s.sense});
     t.vertex_z.push_back(view.vertex_z[i]);
     t.to_film.push_back({view.to_film[i].mu, view.to_film[i].k});
     t.to_scene.push_back({view.to_scene[i].mu, view.to_scene[i].k});

@@ -331,7 +331,7 @@ TYPED_TEST(ExtremesOf, BackwardRaysIntoAFisheye) {
   using T = TypeParam;
   const auto sample = testing_lenses::load("fisheye_6.3mm_f2.8");
   // Rays from the stop outwards: of rays to the whole front, few with direction -z pass.
-  const auto view = sample.lens.view<double>();
+  const auto view = petzval::kernel::view<double>(sample.lens);
   const std::size_t stop = sample.lens.stop().value();
   Numbers random(12);
   std::vector<Ray<T>> rays;

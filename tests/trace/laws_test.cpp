@@ -39,7 +39,7 @@ template <class T>
 Vec3<T> first_hit(const petzval::Lens& lens, const Ray<T>& ray) {
   Vec3<T> first{0, 0, 0};
   bool seen = false;
-  petzval::kernel::trace(lens.view<T>(), petzval::kernel::to_kernel(ray.origin),
+  petzval::kernel::trace(petzval::kernel::view<T>(lens), petzval::kernel::to_kernel(ray.origin),
                          petzval::kernel::to_kernel(ray.direction), {}, [&](int, const petzval::kernel::Vec<T>& p) {
                            if (!seen) first = petzval::kernel::to_public(p);
                            seen = true;
@@ -218,7 +218,7 @@ TYPED_TEST(LawsOf, EqualMediaLeaveARayAsItIs) {
 TEST(Laws, RimAndHoleBelongToTheClearAperture) {
   petzval::Prescription p;
   p.name = "ring";
-  p.surfaces = {{.radius = 0, .thickness = 1, .semi_diameter = 12.7, .inner_semi_diameter = 3.3}};
+  p.surfaces = {{.radius = 0, .thickness = 1, .semi_diameter = 12.7, .obscuration_semi_diameter = 3.3}};
   const petzval::Lens lens = petzval::compile(p);
   const auto fate = [&](double x) { return petzval::trace(lens, Ray<double>{{x, 0, -1}, {0, 0, 1}}).fate; };
   EXPECT_EQ(fate(12.7), RayFate::transmitted);

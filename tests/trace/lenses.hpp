@@ -12,8 +12,8 @@
 
 #include "petzval/io/prescription_json.hpp"
 #include "petzval/lens/lens.hpp"
-#include "petzval/trace/sequential.hpp"
 #include "petzval/trace/trace.hpp"
+#include "trace/sequential.hpp"
 
 /// The lenses of data/lenses and rays that pass them.
 namespace testing_lenses {
@@ -67,7 +67,7 @@ inline petzval::Lens one_surface(const petzval::SurfaceRow& row, double n_in = 1
 /// outwards. Deterministic. Fewer than `count` if few rays pass the lens.
 inline std::vector<petzval::Ray<double>> passing_rays(const petzval::Lens& lens, std::size_t count, unsigned seed = 1) {
   using petzval::Travel;
-  const auto view = lens.view<double>();
+  const auto view = petzval::kernel::view<double>(lens);
   const std::size_t stop = lens.stop().value_or(0);
   const auto& at = lens.surfaces()[stop];
   const bool mirrors =

@@ -39,7 +39,7 @@ struct Floors {
 class Exact {
  public:
   explicit Exact(const Lens& lens)
-      : tables_(testing_lenses::extended(lens.view<double>())), wider_(tables_), narrower_(tables_) {}
+      : tables_(testing_lenses::extended(petzval::kernel::view<double>(lens))), wider_(tables_), narrower_(tables_) {}
 
   template <class T>
   Exactly operator()(const Ray<T>& ray, Travel travel) const {
@@ -53,9 +53,9 @@ class Exact {
     for (std::size_t i = 0; i < tables_.surfaces.size(); ++i) {
       const auto& s = tables_.surfaces[i];
       wider_.surfaces[i].semi_diameter_squared = s.semi_diameter_squared * (1 + 2 * eps);
-      wider_.surfaces[i].inner_squared = s.inner_squared * (1 - 2 * eps);
+      wider_.surfaces[i].obscuration_squared = s.obscuration_squared * (1 - 2 * eps);
       narrower_.surfaces[i].semi_diameter_squared = s.semi_diameter_squared * (1 - 2 * eps);
-      narrower_.surfaces[i].inner_squared = s.inner_squared * (1 + 2 * eps);
+      narrower_.surfaces[i].obscuration_squared = s.obscuration_squared * (1 + 2 * eps);
     }
     testing_batches::Numbers random(1);
     for (int i = 0; i < 300; ++i) {

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "petzval/lens/lens.hpp"
-#include "petzval/trace/sequential.hpp"
+#include "trace/sequential.hpp"
 
 namespace {
 
@@ -46,7 +46,7 @@ TEST(Stigmatic, TheAplanaticSphereLetsAllRaysMeet) {
           const Vec<double> place{height * std::sin(turn), height * std::cos(turn), z};
           const Vec<double> to = Vec<double>{0, 0, object} - place;
           const Vec<double> d = to * (std::copysign(1, to.z) / std::sqrt(dot(to, to)));
-          const auto end = trace(lens.view<double>(), place - d * std::abs(r), d, {});
+          const auto end = trace(petzval::kernel::view<double>(lens), place - d * std::abs(r), d, {});
           ASSERT_EQ(end.fate, petzval::RayFate::transmitted) << r << " " << n_in << " " << n_out << " " << k;
           worst = std::max(worst, miss(end, image) / std::abs(r));
           const double sine = std::hypot(d.x, d.y), sine_out = std::hypot(end.direction.x, end.direction.y);
@@ -68,7 +68,7 @@ TEST(Stigmatic, DescartesConicsFocusParallelLight) {
     for (int k = 1; k <= 29; ++k) {
       const Vec<double> start{k * std::sin(0.7 * k), k * std::cos(0.7 * k), -50}, d{0, 0, 1};
       for (const auto& [lens, focus] : {std::pair{&into, 30 * n / (n - 1)}, {&out_of, 30 / (n - 1)}}) {
-        const auto end = trace(lens->view<double>(), start, d, {});
+        const auto end = trace(petzval::kernel::view<double>(*lens), start, d, {});
         ASSERT_EQ(end.fate, petzval::RayFate::transmitted) << n << " " << k;
         worst = std::max(worst, miss(end, focus) / focus);
       }

@@ -8,10 +8,10 @@
 
 namespace petzval::inline v0 {
 
-/// Thrown when a thing cannot be built or read. The message says where, what was found and what was wanted:
+/// Thrown when an object cannot be built or read. The message says where, what was found and what was wanted:
 /// `data/lenses/x.json: surface 4: thickness is nan, wanted a finite length in mm`.
-/// Nothing is half-built when it leaves a function. what() is one line of at most 1,000 bytes, whatever a file had in
-/// it: control characters become spaces, and what is longer loses its middle.
+/// Functions that throw leave nothing half-built. what() is one line of at most 1,000 bytes, whatever a file contains:
+/// control characters become spaces, and longer messages lose their middle.
 class PETZVAL_API Error : public std::runtime_error {
  public:
   explicit Error(std::string message);

@@ -14,10 +14,10 @@ PETZVAL_API int processor_threads() noexcept;
 /// Does `work(begin, end)` for the blocks [0, block), [block, 2 block), ... of `count` things, the last one shorter, on
 /// `threads` threads (the calling one among them), and returns when all are done.
 ///
-/// Blocks do not depend on the number of threads; whoever gives each block its own place for results gets results that
-/// do not either. An exception of the work ends the blocks that have not begun, and leaves here (that of the first
-/// block, where several threw: the same for any number of threads). Where the system has fewer threads to give, these
-/// do the work. Throws Error for a block of 0 or less than one thread.
+/// Blocks do not depend on the number of threads, and neither do results that each block writes to a place of its own.
+/// If `work` throws, no further block begins and the exception of the first block that threw is rethrown: the same one
+/// for any number of threads. If the system cannot start all threads, those that run do the work. Throws Error for a
+/// block of 0 and for fewer than 1 thread.
 PETZVAL_API void parallel_for(std::size_t count, std::size_t block, int threads,
                               const std::function<void(std::size_t begin, std::size_t end)>& work);
 

@@ -28,30 +28,30 @@ struct RayArrays {
   T* dz = nullptr;
 };
 
-/// Which way a ray goes through the lens. It decides the order of surfaces and indices and the root of each
-/// intersection; the sign of the ray's own z component does not (a fisheye takes rays that run towards -z).
+/// Direction of travel through the lens. It decides the order of surfaces and indices and the root of each
+/// intersection; the sign of the ray's z component does not (a fisheye accepts rays that run towards -z).
 enum class Travel : std::uint8_t { to_film, to_scene };
 
-/// What became of a ray. Everything but `transmitted` is an end, at the surface reported with it.
+/// The result of tracing a ray. Every fate except `transmitted` is a loss, at the surface reported with it.
 enum class RayFate : std::uint8_t {
-  transmitted,        ///< left the last surface asked for
+  transmitted,        ///< passed the last surface asked for
   missed_surface,     ///< has no point in common with the surface (or only on its far sheet)
   totally_reflected,  ///< beyond the critical angle
-  vignetted,  ///< outside the clear aperture (or what is described of an asphere), or in the hole of an annular one
-  no_convergence,  ///< the iteration for an asphere found no answer
-  outside_fit,     ///< outside the domain of a fitted model of the lens
-  outside_film,    ///< starts, or ends, beside the film of a camera
+  vignetted,          ///< outside the clear aperture (of an asphere: of its description) or in the central obscuration
+  no_convergence,     ///< the iteration for an asphere did not converge
+  outside_fit,        ///< outside the domain of a fitted model of the lens
+  outside_film,       ///< starts or ends outside the film of a camera
 };
 
-/// The fate in words, as the programs print it: "transmitted", "missed_surface", ...
+/// The fate as the programs print it: "transmitted", "missed_surface", ...
 PETZVAL_API std::string_view name(RayFate fate) noexcept;
 
-/// A traced ray: where and how it went on, or where it ended.
+/// A traced ray.
 ///
-/// origin is the hit on the last surface reached, direction the direction after it (before it, where the ray ended
-/// there). A ray that ended as missed_surface or no_convergence did not reach the surface that ended it: its origin is
-/// the hit on the surface met before that one, and its own old origin where there is none. Always finite. surface
-/// counts from 0: the last surface passed when transmitted, else the one that ended it.
+/// origin is the hit on the last surface reached, direction the direction behind it (in front of it if the ray was lost
+/// there). A ray lost as missed_surface or no_convergence did not reach the surface that lost it: its origin is the hit
+/// on the surface before, or the origin given if there is none. Always finite. surface counts from 0: the last surface
+/// passed if transmitted, else the one that lost the ray.
 template <class T>
 struct TracedRay {
   Ray<T> ray;

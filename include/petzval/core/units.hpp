@@ -5,7 +5,7 @@
 
 namespace petzval::inline v0 {
 
-/// The helium d line, at which tables print their indices (nm).
+/// The helium d line, the usual reference of printed indices (nm).
 inline constexpr double d_line_nm = 587.5618;
 
 constexpr double radians(double degrees) noexcept { return degrees * (std::numbers::pi / 180.0); }

@@ -10,36 +10,35 @@
 #include <vector>
 
 #include "petzval/core/export.hpp"
-#include "petzval/core/ray.hpp"
-#include "petzval/lens/tables.hpp"
+#include "petzval/iris/iris.hpp"
 #include "petzval/lens/wavelength.hpp"
-#include "petzval/media/catalogue.hpp"
 #include "petzval/prescription/prescription.hpp"
 
 namespace petzval::inline v0 {
 
-/// Where indices come from away from the reference wavelength.
+class GlassCatalogue;
+
+/// Source of indices away from the reference wavelength.
 enum class IndexPolicy {
-  printed,    ///< the printed n_d, plus the catalogue glass's n(lambda) - n(d): the table stays what it was at d
+  printed,    ///< the printed n_d plus n(lambda) - n(d) of the catalogue glass: at d the printed index
   catalogue,  ///< the catalogue glass alone
 };
 
-/// What to do where a medium has no glass that the catalogue knows and an index away from the reference wavelength is
-/// asked for.
+/// What to do if a medium has no catalogue glass and the wavelength is not the reference.
 enum class MissingGlass {
   error,  ///< throw Error naming the surface and the glass
-  abbe,   ///< the n_d/V_d model; without V_d the printed index, within 0.05 nm of its line, else still an Error
+  abbe,   ///< the n_d/V_d model; without V_d the printed index within 0.05 nm of its line, else Error
 };
 
-/// How far the media of a lens are known: every one by a catalogue glass; at least one by n_d and V_d only; at least
-/// one by n_d only, so that the lens can be used at the reference wavelength alone, or nothing that disperses at all.
+/// How well the dispersion of a lens is known: every medium has a catalogue glass; at least one has n_d and V_d only;
+/// at least one has n_d only (the lens can be used at the reference wavelength alone), or no medium disperses.
 enum class Dispersion { catalogue, abbe, none };
 
 /// "catalogue", "abbe" or "none".
 PETZVAL_API std::string_view name(Dispersion dispersion) noexcept;
 
 struct CompileOptions {
-  const GlassCatalogue* glasses = nullptr;  ///< not needed at the reference wavelength under IndexPolicy::printed
+  const GlassCatalogue* glasses = nullptr;  ///< not needed for printed indices at the reference wavelength
   IndexPolicy index_policy = IndexPolicy::printed;
   MissingGlass missing_glass = MissingGlass::error;
 };
@@ -52,28 +51,35 @@ struct LensSurface {
   double conic = 0;
   Section curved_in = Section::both;
   std::vector<AsphereTerm> aspheric;
-  double semi_diameter = 0;        ///< infinite: unlimited
-  double inner_semi_diameter = 0;  ///< 0: no hole
+  double semi_diameter = 0;              ///< infinite: unlimited
+  double obscuration_semi_diameter = 0;  ///< of the central obscuration; 0: none
   bool mirror = false;
 };
 
-/// A lens ready to trace: always valid, immutable, cheap to copy (one shared pointer), free to share between threads.
+/// A compiled lens: always valid, immutable, cheap to copy (one shared pointer), free to share between threads.
 ///
 ///     petzval::Lens lens = petzval::compile(petzval::read_prescription("data/lenses/double_gauss_100mm_f1.35.json"));
 ///     auto exit = petzval::trace(lens, petzval::Ray<double>{{0, 10, -50}, {0, 0, 1}});
 ///
-/// A change makes a new lens: `with_semi_diameter`, `with_film`, and in pupil/ `with_f_number`.
+/// A change makes a new lens: `with_semi_diameter`, `with_film`, `with_iris`, `with_f_number`, `with_focus`.
 class PETZVAL_API Lens {
  public:
+  /// Copies. Moves copy too, so that no Lens is ever empty.
+  Lens(const Lens&) = default;
+  Lens& operator=(const Lens&) = default;
+
   const std::string& name() const noexcept;
 
   std::span<const LensSurface> surfaces() const noexcept;
   std::size_t surface_count() const noexcept { return surfaces().size(); }
 
-  /// The surface marked as aperture stop (the first, where a file marks two).
+  /// The surface marked as aperture stop (the first one if two are marked).
   std::optional<std::size_t> stop() const noexcept;
 
-  /// The film, where the table puts it or `with_film` did.
+  /// The shape of the stop.
+  const Iris& iris() const noexcept;
+
+  /// Place of the film (lens frame, mm): the prescription's or that of `with_film`.
   double film_z() const noexcept;
 
   /// Wavelengths the lens was compiled for.
@@ -97,25 +103,24 @@ class PETZVAL_API Lens {
   double light_direction(std::size_t space) const;
 
   Dispersion dispersion() const noexcept;
-  /// Surfaces whose medium has no catalogue glass, in the words of a message each; empty where dispersion() is
-  /// catalogue.
+  /// One message for each surface whose medium has no catalogue glass.
   std::span<const std::string> missing_glasses() const noexcept;
 
-  /// True where every surface is the same in both sections.
+  /// True where every surface is the same in both sections and the stop is round.
   bool rotationally_symmetric() const noexcept;
 
-  /// The constants of the kernels, rounded once from double. R: float or double.
-  template <class R>
-  kernel::LensView<R> view() const noexcept;
+  /// The tables of the kernels, for the library's own modules.
+  struct Data;
+  const Data& data() const noexcept { return *data_; }
 
  private:
-  struct Data;
   explicit Lens(std::shared_ptr<const Data> data) noexcept : data_(std::move(data)) {}
   std::shared_ptr<const Data> data_;
 
   friend PETZVAL_API Lens compile(const Prescription&, std::span<const double>, const CompileOptions&);
   friend PETZVAL_API Lens with_semi_diameter(const Lens&, std::size_t, double);
   friend PETZVAL_API Lens with_film(const Lens&, double);
+  friend PETZVAL_API Lens with_iris(const Lens&, const Iris&);
 };
 
 /// Compiles a prescription for some wavelengths (nm). Throws Error, naming lens and surface, for an invalid
@@ -124,18 +129,20 @@ class PETZVAL_API Lens {
 PETZVAL_API Lens compile(const Prescription& prescription, std::span<const double> wavelengths_nm,
                          const CompileOptions& options = {});
 
-/// At the prescription's reference wavelength alone.
+/// Compiles for the reference wavelength of the prescription alone.
 PETZVAL_API Lens compile(const Prescription& prescription, const CompileOptions& options = {});
 
-/// The lens with another clear aperture at one surface (mm, >= 0; nothing passes one no larger than its hole).
+/// The lens with another clear aperture at one surface (mm, >= 0; nothing passes one no larger than its central
+/// obscuration).
 PETZVAL_API Lens with_semi_diameter(const Lens& lens, std::size_t surface, double semi_diameter);
 
 /// The lens with its film at another place (lens frame, mm).
 PETZVAL_API Lens with_film(const Lens& lens, double film_z);
 
-template <>
-PETZVAL_API kernel::LensView<float> Lens::view<float>() const noexcept;
-template <>
-PETZVAL_API kernel::LensView<double> Lens::view<double>() const noexcept;
+/// The lens with another shape of its stop; an empty Iris makes it round again. Every ray that is traced with apertures
+/// passes the iris, and so do boundaries of pupils, film irradiance, spots, PSFs and the rays of exact cameras.
+/// Paraxial pupils and f-numbers are those of the round stop. Throws Error for a lens without a stop, a stop without a
+/// finite semi-diameter, and an edge that is not finite or whose normal is not a unit vector.
+PETZVAL_API Lens with_iris(const Lens& lens, const Iris& iris);
 
 }  // namespace petzval::inline v0

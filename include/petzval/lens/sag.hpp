@@ -8,8 +8,8 @@
 
 namespace petzval::inline v0 {
 
-/// Height of a surface over the plane of its vertex, along z, at (x, y) from the axis, mm; NaN where the surface has no
-/// point there: beyond the equator of a sphere or conic. Clear apertures are not looked at.
+/// Sag of a surface at (x, y), mm: the height along z over the plane of its vertex; NaN beyond the equator of a sphere
+/// or conic. Clear apertures are ignored.
 PETZVAL_API double sag(const Lens& lens, std::size_t surface, double x, double y) noexcept;
 
 }  // namespace petzval::inline v0

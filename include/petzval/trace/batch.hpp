@@ -11,14 +11,13 @@
 #include "petzval/core/ray.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/lens/wavelength.hpp"
-#include "petzval/trace/iris.hpp"
 
 namespace petzval::inline v0 {
 
-/// How a batch computes. Either way a ray's answer depends on that ray alone, not on its neighbours, the size of the
-/// batch or the number of threads.
+/// Arithmetic of a batch. Either way the result of a ray depends on that ray alone, not on its neighbours, the size of
+/// the batch or the number of threads.
 enum class Arithmetic : std::uint8_t {
-  fast,          ///< fused operations and approximate roots with Newton steps, where the processor has them
+  fast,          ///< fused operations and approximate roots with Newton steps, if the processor has them
   reproducible,  ///< IEEE operations only: the same bits from every instruction set and compiler
 };
 
@@ -30,27 +29,26 @@ struct BatchOptions {
   Travel travel = Travel::to_film;
   RayWavelengths wavelengths = {};
   bool apertures = true;  ///< whether clear apertures and the iris clip
-  Iris iris = {};         ///< blades in the plane of the stop
   Arithmetic arithmetic = Arithmetic::fast;
-  InstructionSet instruction_set = InstructionSet::avx512;  ///< at most: the widest up to it that the processor has
+  InstructionSet instruction_set = InstructionSet::avx512;  ///< the widest to use, if the processor has it
 };
 
 /// Traces N rays (double or float) through the whole lens, in blocks of 64 on the lanes of the processor.
 ///
-/// in, out: N each, same order, any alignment (of 64 bytes is fastest); out may be in (the same arrays, not shifted
-/// ones). fates and surfaces: N each, or null where not wanted; the surface as in TracedRay. Rays count as whole lines,
-/// as for the trace of one ray, and the same rays are refused. A ray that is lost comes back as it went in (at the
-/// origin along the axis where it was not finite): every slot of the results is written and finite. A transmitted ray
-/// has its point on the last surface met and its new direction.
+/// in, out: N each, same order, any alignment (64 bytes is fastest); out may be in (the same arrays, not shifted ones).
+/// fates and surfaces: N each, or null; the surface as in TracedRay. Rays are whole lines, and invalid rays are lost,
+/// as in the trace of one ray. A lost ray is returned as it was given (one that is not finite: at the origin along the
+/// axis), so that every result is written and finite. A transmitted ray has its point on the last surface met and its
+/// new direction.
 ///
-/// Reproducible batches are rays traced one by one, to the bit; fast ones agree with them within 8 eps of what an eps
-/// in the ray itself does (tests/trace), fates except as close to an edge. Direction errors by lens: README. No
-/// allocation, no threads: give parts of the arrays to parallel_for.
+/// Reproducible batches equal rays traced one by one, to the bit. Fast ones differ by at most 8 times the effect of a
+/// relative error eps in the ray itself (tests/trace), and in fates only as close to an edge. No allocation and no
+/// threads: give parts of the arrays to parallel_for.
 template <class T>
 PETZVAL_API void trace(const Lens& lens, std::size_t count, const RayArrays<const T>& in, const RayArrays<T>& out,
                        RayFate* fates, int* surfaces, const BatchOptions& options = {}) noexcept;
 
-/// The same for rays as an array of structures: they are transposed block by block. rays, traced: N each.
+/// The same for an array of structures, which is transposed block by block. rays, traced: N each.
 template <class T>
 PETZVAL_API void trace(const Lens& lens, std::span<const Ray<T>> rays, TracedRay<T>* traced,
                        const BatchOptions& options = {}) noexcept;

@@ -6,7 +6,7 @@
 
 namespace petzval::inline v0::core_detail {
 
-/// The last parameter with a property, between one that has it and one that has not: bisection down to neighbouring
+/// The last parameter with a property, between one that has it and one that does not, by bisection down to neighbouring
 /// doubles.
 template <class Property>
 double last_with(double with, double without, const Property& property) {
@@ -17,8 +17,8 @@ double last_with(double with, double without, const Property& property) {
   }
 }
 
-/// The last parameter, within `tolerance`, at which a function is not negative, between one of which that is known
-/// (where it has the value at_above) and one at which it is negative. Superlinear where the function is smooth, never
+/// The last parameter, within `tolerance`, at which a function is not negative. above, at_above: a parameter and its
+/// value >= 0; below, at_below: one with a negative value. Superlinear where the function is smooth, never
 /// more than one evaluation beyond bisection where it jumps. Source: Oliveira and Takahashi 2020, "An enhancement of
 /// the bisection method average performance preserving minmax optimality" (ITP, kappa1 = 0.2 / interval, kappa2 = 2, n0
 /// = 1).

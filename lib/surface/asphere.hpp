@@ -5,7 +5,7 @@
 #include <array>
 #include <limits>
 
-#include "petzval/surface/quadric.hpp"
+#include "surface/quadric.hpp"
 
 namespace petzval::inline v0::kernel {
 

@@ -4,11 +4,11 @@
 #include <cmath>
 #include <limits>
 
-/// The seam between the kernels and the numbers they run on.
+/// The interface between the kernels and their scalars.
 ///
 /// A kernel is written once over a scalar `T`: float, double or an automatic-differentiation number such as
-/// `ceres::Jet` (SIMD lanes fit the same seam). It asks `T` for arithmetic, comparison, `sqrt` by argument-dependent
-/// look-up, and the names below. Ray data steers no branch but through `select`, `any` and `all_of`.
+/// `ceres::Jet` (SIMD lanes have the same interface). It asks `T` for arithmetic, comparison, `sqrt` by
+/// argument-dependent look-up, and the names below. Ray data steers no branch but through `select`, `any` and `all_of`.
 namespace petzval::inline v0::kernel {
 
 namespace detail {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "petzval/core/kernel_vec.hpp"
-#include "petzval/core/scalar.hpp"
+#include "core/kernel_vec.hpp"
+#include "core/scalar.hpp"
 
 namespace petzval::inline v0::kernel {
 
 /// Plane, sphere, conic and cylinder in one: c (ax x^2 + ay y^2 + e z^2) = 2 z in the vertex frame, e = 1 + k.
-/// Curvature and not radius, so that a plane is nothing special and R = 1e12 loses nothing.
+/// Curvature instead of radius: a plane is no special case, and R = 1e12 loses no digits.
 template <class R>
 struct Quadric {
   R curvature = 0;
@@ -27,14 +27,14 @@ Quadric<R> make_quadric(double curvature, double conic, bool curved_x = true, bo
       conic > 10 || conic < -10};
 }
 
-/// The quadric's own product of two vectors; that of all space on a sphere.
+/// The scalar product in the metric of the quadric (ax, ay, e); on a sphere the usual one.
 template <class T>
 T product(const Quadric<Storage<T>>& q, const Vec<T>& u, const Vec<T>& v) noexcept {
   if (q.sphere) return dot(u, v);
   return q.ax * u.x * v.x + q.ay * u.y * v.y + q.e * u.z * v.z;
 }
 
-/// A meeting of ray and surface: the point in the vertex frame, and whether there is one.
+/// Intersection of ray and surface: the point in the vertex frame, and whether there is one.
 template <class T>
 struct Hit {
   Vec<T> point;

@@ -3,47 +3,59 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
-#include "petzval/surface/asphere.hpp"
-#include "petzval/surface/quadric.hpp"
-#include "petzval/surface/snell.hpp"
+#include "petzval/core/export.hpp"
+#include "surface/asphere.hpp"
+#include "surface/quadric.hpp"
+#include "surface/snell.hpp"
+
+namespace petzval::inline v0 {
+class Lens;
+}
 
 namespace petzval::inline v0::kernel {
 
-/// One surface as the kernels read it.
+/// One surface in the tables of the kernels.
 template <class R>
 struct SurfaceTable {
   Quadric<R> quadric;
   R gap = 0;                    ///< thickness to the next vertex; 0 behind the last surface
   R semi_diameter_squared = 0;  ///< the rim itself is inside
-  R inner_squared = 0;
+  R obscuration_squared = 0;
   std::int32_t asphere = -1;  ///< position among the aspheres, or -1
   bool mirror = false;
-  R sense = 1;  ///< along z of light towards the film in front of the surface: -1 behind an odd number of mirrors
+  R sense = 1;  ///< direction along z of light in front of the surface: -1 behind an odd number of mirrors
+};
+
+/// An edge of the iris: light passes where x nx + y ny <= distance, mm.
+template <class R>
+struct StopEdge {
+  R nx = 1, ny = 0, distance = 0;
 };
 
 /// Which intersection a surface needs in a batch.
 enum class StepKind : std::uint8_t { plane, sphere, quadric, asphere };
 
-/// One surface as a batch meets it: in the order of travel, and in a frame that is turned round at every mirror and for
-/// rays towards the scene, so that light always runs towards +z.
+/// One surface in the order of travel, in a frame that is turned at every mirror and for rays towards the scene, so
+/// that rays always run towards +z.
 template <class R>
 struct Step {
   StepKind kind = StepKind::plane;
-  bool far = false;          ///< begins so far off that the ray must be brought near the vertex first
+  bool far = false;          ///< so far from the surface before that rays are first moved near the vertex
   bool bends = false;        ///< the media on its sides differ, at one wavelength at least
-  bool mirror = false;       ///< after which the frame turns round
-  bool stop = false;         ///< where the iris stands
-  bool refresh = false;      ///< directions have gathered the rounding of many surfaces: put their length right
+  bool mirror = false;       ///< the frame is turned behind it
+  bool stop = false;         ///< the iris clips here
+  bool refresh = false;      ///< normalise directions here
   std::int32_t surface = 0;  ///< its position in the lens
   std::int32_t asphere = -1;
   R gap = 0;                               ///< along z, from the vertex before
   R curvature = 0, e = 1, ax = 1, ay = 1;  ///< as in Quadric, in the turned frame
   R sense = 1;                             ///< -1 where the frame is turned
-  R rim2 = 0, hole2 = 0;                   ///< squared semi-diameters; unlimited: the largest finite number
+  R rim2 = 0, obscuration2 = 0;            ///< squared semi-diameters; unlimited: the largest finite number
 };
 
-/// What refraction at a step needs in the algebra of directions scaled by the index, |p| = n.
+/// Constants of refraction at a step, for directions scaled by the index, |p| = n.
 template <class R>
 struct RefractionConstants {
   R cn2 = 0;     ///< curvature n^2, in front
@@ -51,7 +63,7 @@ struct RefractionConstants {
   R per_n2 = 1;  ///< 1 / n^2, in front
 };
 
-/// The way of a batch through the lens.
+/// The surfaces of a lens in the order of travel.
 template <class R>
 struct SurfaceSequence {
   const Step<R>* steps = nullptr;
@@ -62,7 +74,7 @@ struct SurfaceSequence {
   R first_sense = 1, last_sense = 1;              ///< -1 where the frame in front and behind is turned
 };
 
-/// The compiled lens seen by the kernels: flat arrays, borrowed from the Lens.
+/// The tables of a compiled lens: flat arrays, borrowed from the Lens.
 template <class R>
 struct LensView {
   const SurfaceTable<R>* surfaces = nullptr;
@@ -73,8 +85,17 @@ struct LensView {
   const R* vertex_z = nullptr;
   std::size_t wavelengths = 0;
   std::size_t primary = 0;  ///< position of the primary wavelength
-  std::int32_t stop = -1;   ///< where the iris stands, or -1
+  std::int32_t stop = -1;   ///< position of the stop, or -1
+  std::span<const StopEdge<R>> iris{};
   SurfaceSequence<R> sequence_to_film{}, sequence_to_scene{};
 };
+
+/// The tables of a lens, rounded once from double. R: float or double.
+template <class R>
+LensView<R> view(const Lens& lens) noexcept;
+template <>
+PETZVAL_API LensView<float> view(const Lens& lens) noexcept;
+template <>
+PETZVAL_API LensView<double> view(const Lens& lens) noexcept;
 
 }  // namespace petzval::inline v0::kernel

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "petzval/core/kernel_vec.hpp"
-#include "petzval/core/scalar.hpp"
+#include "core/kernel_vec.hpp"
+#include "core/scalar.hpp"
 
 namespace petzval::inline v0::kernel {
 
-/// What refraction needs to know of the two media, computed once in double: mu = n/n', k = (n'-n)(n'+n)/n'^2.
+/// Constants of refraction between two media, computed once in double: mu = n/n', k = (n'-n)(n'+n)/n'^2.
 /// The product keeps k exact to an ulp where the indices nearly agree.
 template <class R>
 struct Interface {
@@ -25,7 +25,7 @@ struct Refracted {
   Mask<T> transmitted;
 };
 
-/// Brings a direction that is nearly of unit length closer to it: one Newton step for 1/|d|.
+/// Normalises a direction that is nearly of unit length by one Newton step for 1/|d|.
 template <class T>
 T length_correction(const Vec<T>& d) noexcept {
   using R = Storage<T>;
@@ -60,7 +60,7 @@ Refracted<T> refract(const Vec<T>& direction, const Vec<T>& normal, const T& cos
   return {direction * mu + normal * gamma, s >= R(0)};
 }
 
-/// The same for a unit normal on either side, and with a result of unit length.
+/// The same for a unit normal on either side; the result has unit length.
 template <class T>
 Refracted<T> refract(const Vec<T>& direction, const Vec<T>& normal, const Interface<Storage<T>>& interface) noexcept {
   using R = Storage<T>;

@@ -4,21 +4,20 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <span>
 
+#include "lens/lens_view.hpp"
 #include "petzval/core/ray.hpp"
-#include "petzval/lens/tables.hpp"
-#include "petzval/trace/iris.hpp"
 
 namespace petzval::inline v0::kernel {
 
-/// A part of the lens and how to look at it: surfaces [first, last) in table order, whichever way the ray goes.
+/// A part of the lens to trace through: surfaces [first, last) in table order, for either direction of travel.
 struct SurfaceRange {
   Travel travel = Travel::to_film;
   std::size_t wavelength = 0;
   bool apertures = true;
   std::size_t first = 0;
   std::size_t last = static_cast<std::size_t>(-1);  ///< beyond the end: all surfaces
-  Iris iris = {};
 };
 
 /// A ray on its way, lens frame, any scalar.
@@ -31,12 +30,9 @@ struct TraceState {
 
 /// Whether a point of the stop's plane lies within the iris; its edges count as inside.
 template <class T>
-Mask<T> within(const Iris& iris, const T& x, const T& y) noexcept {
-  using R = Storage<T>;
-  Mask<T> inside = x <= std::numeric_limits<R>::max();
-  for (const IrisEdge& edge : iris) {
-    inside = all_of(inside, x * static_cast<R>(edge.nx) + y * static_cast<R>(edge.ny) <= static_cast<R>(edge.distance));
-  }
+Mask<T> within(std::span<const StopEdge<Storage<T>>> iris, const T& x, const T& y) noexcept {
+  Mask<T> inside = x <= std::numeric_limits<Storage<T>>::max();
+  for (const auto& [nx, ny, distance] : iris) inside = all_of(inside, x * nx + y * ny <= distance);
   return inside;
 }
 
@@ -45,11 +41,11 @@ struct NoObserver {
   void operator()(int, const Vec<T>&) const noexcept {}
 };
 
-/// Traces one ray through a part of the lens, surface by surface, and leaves early when it ends.
+/// Traces one ray through a part of the lens, surface by surface, and returns as soon as it is lost.
 ///
-/// direction: unit length (within a few ulp); so is the result where the ray was transmitted. observer(surface, point)
-/// sees each hit within the lens, lens frame. The one loop for both ways of travel and every scalar: derivatives, parts
-/// of the lens and drawings run on it, and the faster recurrence of `trace` and of batches is tested against it.
+/// direction: unit length (within a few ulp); so is the result of a transmitted ray. Calls observer(surface, point) for
+/// each hit, lens frame. One loop for both directions of travel and every scalar: derivatives, parts of the lens and
+/// drawings use it, and the faster recurrence of `trace` and of batches is tested against it.
 template <class T, class Observer = NoObserver>
 TraceState<T> trace(const LensView<Storage<T>>& lens, const Vec<T>& origin, const Vec<T>& direction,
                     const SurfaceRange& path, Observer&& observer = {}) noexcept {
@@ -66,7 +62,7 @@ TraceState<T> trace(const LensView<Storage<T>>& lens, const Vec<T>& origin, cons
   Vec<T> p{origin.x, origin.y, T(origin.z - lens.vertex_z[i])};
   for (;;) {
     const SurfaceTable<R>& surface = lens.surfaces[i];
-    // To the scene everything is the other way round, and light comes to a mirror from where it went to.
+    // Towards the scene, the sense is reversed; at a mirror, the space in front and behind is the same.
     const R sense = to_film || surface.mirror ? surface.sense : -surface.sense;
     const auto end = [&](RayFate fate) {
       ray.fate = fate;
@@ -101,10 +97,10 @@ TraceState<T> trace(const LensView<Storage<T>>& lens, const Vec<T>& origin, cons
     observer(static_cast<int>(i), ray.origin);
 
     const T r2 = p.x * p.x + p.y * p.y;
-    if (path.apertures && !(r2 <= surface.semi_diameter_squared && r2 >= surface.inner_squared)) {
+    if (path.apertures && !(r2 <= surface.semi_diameter_squared && r2 >= surface.obscuration_squared)) {
       return end(RayFate::vignetted);
     }
-    if (path.apertures && static_cast<std::int32_t>(i) == lens.stop && !within(path.iris, p.x, p.y)) {
+    if (path.apertures && static_cast<std::int32_t>(i) == lens.stop && !within(lens.iris, p.x, p.y)) {
       return end(RayFate::vignetted);
     }
     if (surface.mirror) {

@@ -5,7 +5,7 @@
 
 namespace petzval::inline v0::kernel {
 
-/// Three components of any scalar. GLM stays at the public face: its vectors cannot hold derivatives or lanes.
+/// Three components of any scalar. GLM vectors cannot hold derivatives or lanes.
 template <class T>
 struct Vec {
   T x, y, z;

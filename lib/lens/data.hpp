@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "build_tables.hpp"
+#include "indices.hpp"
+#include "petzval/lens/lens.hpp"
+
+namespace petzval::inline v0 {
+
+/// What a Lens shares with its copies.
+struct Lens::Data {
+  std::string name;
+  std::vector<LensSurface> surfaces;
+  std::optional<std::size_t> stop;
+  Iris iris;
+  double film_z = 0;
+  std::vector<double> wavelengths_nm;
+  std::size_t primary = 0;
+  lens_detail::Indices indices;
+  lens_detail::Tables<float> in_float;
+  lens_detail::Tables<double> in_double;
+
+  /// Builds the tables from the rest.
+  void build() {
+    in_float = lens_detail::build_tables<float>(surfaces, stop, iris, indices.values, wavelengths_nm.size());
+    in_double = lens_detail::build_tables<double>(surfaces, stop, iris, indices.values, wavelengths_nm.size());
+    in_float.primary = in_double.primary = primary;
+  }
+};
+
+}  // namespace petzval::inline v0
