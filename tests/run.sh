@@ -10,13 +10,16 @@ set -eu
 root=$(CDPATH= cd -- "$(dirname -- "$0")/.." && pwd)
 . "$root/cmake/build.sh"
 
-# table PROGRAM...: what they put into the report (tests/report.hpp), a row for each name in the order of appearance.
+# table MODULE/CASES...: what these cases report (tests/report.hpp), a row for each name in the order of appearance.
 table() {
   files=
-  for program; do
-    file=$work/$(basename "$program").xml
+  for cases; do
+    module=${cases%%/*}
+    file=$work/$#.xml
     files="$files $file"
-    "$BUILD_DIR/tests/$program" "--gtest_output=xml:$file" >"$work/log" || { cat "$work/log" >&2; exit 1; }
+    "$BUILD_DIR/tests/$module/${module}_tests" "--gtest_filter=${cases#*/}" "--gtest_output=xml:$file" >"$work/log" ||
+      { cat "$work/log" >&2; exit 1; }
+    shift
   done
   awk -F '"' '
     BEGIN {
@@ -45,11 +48,11 @@ if [ "${1-}" = --report ]; then
   work=$(mktemp -d)
   trap 'rm -rf "$work"' EXIT
   printf '\nAccuracy'
-  table surface/surface_quadric_test surface/surface_asphere_test surface/surface_snell_test trace/trace_reference_test \
-    trace/trace_batch_reference_test trace/trace_laws_test trace/trace_derivative_test \
-    trace/trace_differentials_reference_test trace/trace_differentials_test pupil/pupil_aim_test
+  table 'surface/Quadric*' 'surface/Asphere*' 'surface/Snell*' 'trace/ReferenceRays*' 'trace/BatchReference*' \
+    'trace/Laws*' 'trace/Derivative*' 'trace/DifferentialsOf*AreThoseOfExactRays' \
+    'trace/DifferentialsOf*-*AreThoseOfExactRays' 'pupil/Aim*'
   printf '\nLimits'
-  table trace/trace_extremes_test
+  table 'trace/Extremes*'
   exit
 fi
 echo "== Testing"

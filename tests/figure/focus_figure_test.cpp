@@ -7,7 +7,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <regex>
 #include <string>
 #include <vector>
 
@@ -32,16 +31,17 @@ struct Line {
 };
 
 Line line_of(const std::string& svg, const std::string& name) {
-  std::smatch m;
-  const std::regex words(
+  const auto found = testing::matches(
+      svg,
       ">" + name +
-      ":  least RMS ([0-9.]+) (\u00b5m|mm) at (\\+|\u2212)([0-9.e-]+) mm,  ([0-9.]+) (\u00b5m|mm) on the film<");
-  if (!std::regex_search(svg, m, words)) {
+          ":  least RMS ([0-9.]+) (\u00b5m|mm) at (\\+|\u2212)([0-9.e-]+) mm,  ([0-9.]+) (\u00b5m|mm) on the film<");
+  if (found.empty()) {
     ADD_FAILURE() << name << " not found";
     return {};
   }
+  const testing::Match& m = found[0];
   const auto unit = [](const std::string& s) { return s == "mm" ? 1 : 1e-3; };
-  return {std::stod(m[1]) * unit(m[2]), std::stod(m[4]) * (m[3] == "+" ? 1 : -1), std::stod(m[5]) * unit(m[6])};
+  return {m.number(1) * unit(m[2]), m.number(4) * (m[3] == "+" ? 1 : -1), m.number(5) * unit(m[6])};
 }
 
 double rms(const Lens& lens, double field, double film_z) {

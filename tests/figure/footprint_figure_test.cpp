@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <regex>
 #include <set>
 #include <string>
 
@@ -56,11 +55,11 @@ TEST(FootprintFigure, NamesEachSurfaceThatLimits) {
 TEST(FootprintFigure, DrawsTheEdgeToScale) {
   const Lens lens = data_lens("achromat_100mm");  // its stop is its front rim
   const std::string svg = footprint_figure(lens, -infinity, std::array{0.0});
-  std::smatch paraxial;
-  ASSERT_TRUE(std::regex_search(
-      svg, paraxial, std::regex("<ellipse cx=\"([0-9.]+)\" cy=\"([0-9.]+)\" rx=\"([0-9.]+)\" ry=\"([0-9.]+)\"")));
-  const double cx = std::stod(paraxial[1]), cy = std::stod(paraxial[2]);
-  EXPECT_NEAR(std::stod(paraxial[3]), pupils(lens).entrance.diameter / 2 * testing::scale(svg), 0.02);
+  const auto paraxial =
+      testing::matches(svg, "<ellipse cx=\"([0-9.]+)\" cy=\"([0-9.]+)\" rx=\"([0-9.]+)\" ry=\"([0-9.]+)\"");
+  ASSERT_FALSE(paraxial.empty());
+  const double cx = paraxial[0].number(1), cy = paraxial[0].number(2);
+  EXPECT_NEAR(paraxial[0].number(3), pupils(lens).entrance.diameter / 2 * testing::scale(svg), 0.02);
   const auto edge = paths(svg, edges);
   ASSERT_EQ(edge.size(), 1u);
   EXPECT_EQ(edge[0].size(), 2u * 256u);

@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <regex>
 #include <string>
 #include <vector>
 
@@ -42,9 +41,9 @@ TEST(LayoutFigure, DrawsEveryLensWithinItsPaper) {
       EXPECT_EQ(svg.find("inf\""), std::string::npos) << p.id;
       EXPECT_GE(paths(svg, first_field).size(), 3u) << p.id;
 
-      std::smatch size;
-      ASSERT_TRUE(std::regex_search(svg, size, std::regex("width=\"([0-9.]+)\" height=\"([0-9.]+)\"")));
-      const double width = std::stod(size[1]), height = std::stod(size[2]);
+      const auto size = testing::matches(svg, "width=\"([0-9.]+)\" height=\"([0-9.]+)\"");
+      ASSERT_FALSE(size.empty());
+      const double width = size[0].number(1), height = size[0].number(2);
       // Lines of text above and below do not overlap the drawing.
       for (const Points& points : paths(svg, "stroke")) {
         for (const auto& [x, y] : points) {

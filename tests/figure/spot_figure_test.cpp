@@ -6,13 +6,13 @@
 #include <array>
 #include <filesystem>
 #include <limits>
-#include <regex>
 #include <string>
 
 #include "petzval/core/error.hpp"
 #include "petzval/core/text.hpp"
 #include "petzval/core/units.hpp"
 #include "petzval/io/prescription_json.hpp"
+#include "svg_parts.hpp"
 
 namespace petzval {
 namespace {
@@ -30,11 +30,7 @@ Lens lens_of(const std::string& id, std::span<const double> wavelengths, const s
   return compile(p, wavelengths, {.missing_glass = MissingGlass::abbe});
 }
 
-std::size_t count(const std::string& text, const std::string& part) {
-  std::size_t found = 0;
-  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++found;
-  return found;
-}
+using testing::count;
 
 TEST(SpotFigure, HasACellForEachFieldAndWavelength) {
   const std::array wavelengths{486.1, 587.6, 656.3};
@@ -61,19 +57,18 @@ TEST(SpotFigure, DrawsWithinItsCells) {
   const Lens lens = lens_of("double_gauss_100mm_f1.35", wavelengths);
   const std::array fields{0.0, radians(15.0)};
   const std::string svg = spot_figure(lens, spot_diagram(lens, -1500, fields, 2000));
-  const std::regex cell("<rect x=\"([0-9.]+)\" y=\"([0-9.]+)\" width=\"([0-9.]+)\" height=\"[0-9.]+\" fill=\"none\"");
-  const std::regex move("M([-0-9.]+) ([-0-9.]+)h4");
   std::size_t marks = 0;
-  for (std::sregex_iterator it(svg.begin(), svg.end(), cell), end; it != end; ++it) {
-    const double x = std::stod((*it)[1]), y = std::stod((*it)[2]), side = std::stod((*it)[3]);
+  for (const testing::Match& cell : testing::matches(
+           svg, "<rect x=\"([0-9.]+)\" y=\"([0-9.]+)\" width=\"([0-9.]+)\" height=\"[0-9.]+\" fill=\"none\"")) {
+    const double x = cell.number(1), y = cell.number(2), side = cell.number(3);
     // The markers of this cell lie between its frame and the line of text below.
-    const auto from = static_cast<std::size_t>(it->position()), to = svg.find("<text", from);
-    const std::string content = svg.substr(from, to - from);
-    for (std::sregex_iterator m(content.begin(), content.end(), move); m != end; ++m, ++marks) {
-      EXPECT_GE(std::stod((*m)[1]) + 2, x);
-      EXPECT_LE(std::stod((*m)[1]) + 2, x + side);
-      EXPECT_GE(std::stod((*m)[2]), y);
-      EXPECT_LE(std::stod((*m)[2]), y + side);
+    const std::string content = svg.substr(cell.position, svg.find("<text", cell.position) - cell.position);
+    for (const testing::Match& mark : testing::matches(content, "M([-0-9.]+) ([-0-9.]+)h4")) {
+      EXPECT_GE(mark.number(1) + 2, x);
+      EXPECT_LE(mark.number(1) + 2, x + side);
+      EXPECT_GE(mark.number(2), y);
+      EXPECT_LE(mark.number(2), y + side);
+      ++marks;
     }
   }
   EXPECT_EQ(marks, 2u * 600u);

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstddef>
-#include <regex>
 #include <string>
 #include <utility>
 #include <vector>
@@ -12,39 +11,25 @@ namespace petzval::testing {
 
 using Points = std::vector<std::pair<double, double>>;
 
-inline std::size_t count(const std::string& text, const std::string& part) {
-  std::size_t found = 0;
-  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++found;
-  return found;
-}
+/// A match of a regular expression: where it begins in the text, and its groups; group 0 is all of it.
+struct Match {
+  std::size_t position = 0;
+  std::vector<std::string> groups;
+
+  const std::string& operator[](std::size_t group) const { return groups.at(group); }
+  double number(std::size_t group) const { return std::stod(groups.at(group)); }
+};
+
+/// All matches of a regular expression, in the order of the text.
+std::vector<Match> matches(const std::string& text, const std::string& expression);
+
+/// How often a part occurs in a text.
+std::size_t count(const std::string& text, const std::string& part);
 
 /// The corners of each path whose attributes contain `style`, px.
-inline std::vector<Points> paths(const std::string& svg, const std::string& style) {
-  std::vector<Points> result;
-  const std::string begin = "<path d=\"";
-  const std::regex corner("[ML](-?[0-9.]+) (-?[0-9.]+)");
-  for (std::size_t at = svg.find(begin); at != std::string::npos; at = svg.find(begin, at)) {
-    at += begin.size();
-    const std::size_t quote = svg.find('"', at), end = svg.find("/>", quote);
-    if (svg.substr(quote, end - quote).find(style) == std::string::npos) continue;
-    const std::string d = svg.substr(at, quote - at);
-    Points points;
-    for (std::sregex_iterator c(d.begin(), d.end(), corner), none; c != none; ++c) {
-      points.push_back({std::stod((*c)[1]), std::stod((*c)[2])});
-    }
-    result.push_back(points);
-  }
-  return result;
-}
+std::vector<Points> paths(const std::string& svg, const std::string& style);
 
-/// Pixels per millimetre, by the scale bar.
-inline double scale(const std::string& svg) {
-  std::smatch bar, words;
-  if (!std::regex_search(svg, bar, std::regex("M([0-9.]+) [0-9.]+v6m0-3H([0-9.]+)")) ||
-      !std::regex_search(svg, words, std::regex(">([0-9.]+) mm[<,]"))) {
-    return 0;
-  }
-  return (std::stod(bar[2]) - std::stod(bar[1])) / std::stod(words[1]);
-}
+/// Pixels per millimetre, from the scale bar; 0 without one.
+double scale(const std::string& svg);
 
 }  // namespace petzval::testing

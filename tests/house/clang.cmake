@@ -1,28 +1,41 @@
 # SPDX-License-Identifier: Apache-2.0
-# cmake -DCLANG=clang++-14 -DCOMPILER=/usr/bin/c++ -DBUILD=... -DFOLDER=... -P clang.cmake: every source below a folder passes
-# another compiler too, under the flags with which COMPILER built it.
+# cmake -DCLANG=clang++-14 -DCOMPILER=/usr/bin/c++ -DBUILD=... -DWORK=... [-DOBJECTS=regex] -P clang.cmake: another compiler
+# accepts the sources of the objects that match, with the flags with which COMPILER built them. Without OBJECTS it precompiles
+# the headers of the build into WORK; the other calls need them.
 cmake_minimum_required(VERSION 3.25)
 
-file(READ ${BUILD}/compile_commands.json commands)
-string(JSON count LENGTH "${commands}")
-math(EXPR last "${count} - 1")
+file(STRINGS ${BUILD}/compile_commands.json lines REGEX "^ *\"command\": ")
 set(faults "")
 set(checked 0)
-foreach(i RANGE ${last})
-  string(JSON file GET "${commands}" ${i} file)
-  string(FIND "${file}" "${FOLDER}/" position)
-  if(NOT position EQUAL 0)
+foreach(line IN LISTS lines)
+  if(line MATCHES " -x c\\+\\+-header ")
+    set(header TRUE)
+  else()
+    set(header FALSE)
+  endif()
+  if(DEFINED OBJECTS AND (header OR NOT line MATCHES " -o ${OBJECTS}") OR NOT DEFINED OBJECTS AND NOT header)
     continue()
   endif()
-  string(JSON command GET "${commands}" ${i} command)
+  string(REGEX REPLACE ",$" "" line "${line}")
+  string(JSON command GET "{${line}}" command)
+  string(REGEX REPLACE " -Winvalid-pch| -o [^ ]+" "" command "${command}")
+  if(command MATCHES " -include ([^ ]*/cmake_pch\\.hxx)")
+    set(include "${CMAKE_MATCH_1}")
+    string(MD5 name "${include}")
+    if(header)  # a copy: clang would look for a precompiled header beside the original, and find that of the compiler
+      configure_file(${include} ${WORK}/${name}.hxx COPYONLY)
+      string(REPLACE "${include} " "${WORK}/${name}.hxx -o ${WORK}/${name}.pch " command "${command}")
+    else()
+      string(REPLACE " -include ${include}" " -include-pch ${WORK}/${name}.pch -fsyntax-only" command "${command}")
+    endif()
+  else()
+    string(APPEND command " -fsyntax-only")
+  endif()
   separate_arguments(arguments UNIX_COMMAND "${command}")
   list(FIND arguments ${COMPILER} position)  # a launcher such as ccache may stand before it
   math(EXPR position "${position} + 1")
   list(SUBLIST arguments ${position} -1 arguments)
-  list(FIND arguments -o position)
-  list(REMOVE_AT arguments ${position})
-  list(REMOVE_AT arguments ${position})
-  execute_process(COMMAND ${CLANG} -fsyntax-only ${arguments} -Werror -Wno-unknown-warning-option WORKING_DIRECTORY ${BUILD}
+  execute_process(COMMAND ${CLANG} ${arguments} -Werror -Wno-unknown-warning-option WORKING_DIRECTORY ${BUILD}
     RESULT_VARIABLE failed ERROR_VARIABLE messages)
   if(failed)
     string(APPEND faults "\n${messages}")
@@ -32,5 +45,5 @@ endforeach()
 if(faults)
   message(FATAL_ERROR "${CLANG} objects:${faults}")
 elseif(checked EQUAL 0)
-  message(FATAL_ERROR "no source below ${FOLDER} in ${BUILD}/compile_commands.json")
+  message(FATAL_ERROR "no object matches \"${OBJECTS}\" in ${BUILD}/compile_commands.json")
 endif()

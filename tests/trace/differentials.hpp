@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <glm/geometric.hpp>
 
 #include <array>
@@ -18,6 +20,9 @@ using namespace testing_batches;
 using petzval::RayTangents;
 using petzval::Vec3;
 using testing_batches::same_bits;
+
+template <class T>
+class DifferentialsOf : public testing::Test {};
 
 template <class T>
 using Tangents = std::vector<Ray<T>>;

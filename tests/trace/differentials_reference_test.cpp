@@ -169,8 +169,6 @@ void judge(const testing_lenses::Sample& sample, std::array<Worst, 2>& worst, in
   }
 }
 
-template <class T>
-class DifferentialsOf : public testing::Test {};
 using Plain = testing::Types<float, double>;
 TYPED_TEST_SUITE(DifferentialsOf, Plain);
 

@@ -18,8 +18,6 @@ using namespace testing_differentials;
 using petzval::Arithmetic;
 using petzval::InstructionSet;
 
-template <class T>
-class DifferentialsOf : public testing::Test {};
 using Plain = testing::Types<float, double>;
 TYPED_TEST_SUITE(DifferentialsOf, Plain);
 

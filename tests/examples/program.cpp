@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "program.hpp"
+
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+
+namespace {
+
+std::string quoted(const std::string& text) { return '\'' + text + '\''; }
+
+}  // namespace
+
+void Programs::SetUp() {
+  const auto* test = testing::UnitTest::GetInstance()->current_test_info();
+  folder = std::filesystem::path(testing::TempDir()) /
+           ("petzval_" + std::string(test->test_suite_name()) + '_' + test->name());
+  std::filesystem::remove_all(folder);
+  std::filesystem::create_directories(folder);
+}
+
+void Programs::TearDown() { std::filesystem::remove_all(folder); }
+
+Programs::Outcome Programs::run(const std::string& program, const std::vector<std::string>& arguments) const {
+  std::string command = quoted(std::string(PETZVAL_TEST_PROGRAMS) + '/' + program);
+  for (const std::string& argument : arguments) command += ' ' + quoted(argument);
+  command += " > " + quoted(path("stdout")) + " 2> " + quoted(path("stderr"));
+  const int status = std::system(command.c_str());
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read(path("stdout")), read(path("stderr"))};
+}
+
+void Programs::expect_failure(const std::string& program, const std::vector<std::string>& arguments,
+                              const std::string& reason) const {
+  const Outcome outcome = run(program, arguments);
+  EXPECT_EQ(outcome.status, 1) << outcome.err;
+  EXPECT_EQ(outcome.out, "");
+  EXPECT_NE(outcome.err.find(reason), std::string::npos) << "wanted " << reason << ", found " << outcome.err;
+  EXPECT_EQ(outcome.err.find('\n'), outcome.err.size() - 1) << outcome.err;
+}
+
+std::string Programs::read(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  EXPECT_TRUE(in) << file;
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+nlohmann::json Programs::read_json(const std::filesystem::path& file) { return nlohmann::json::parse(read(file)); }
+
+std::vector<std::string> Programs::lines(const std::string& text) {
+  std::istringstream in(text);
+  std::vector<std::string> result;
+  for (std::string line; std::getline(in, line);) result.push_back(line);
+  return result;
+}
+
+void Programs::write(const std::string& name, const std::string& text) const {
+  std::ofstream(folder / name, std::ios::binary) << text;
+}

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "svg_parts.hpp"
+
+#include <regex>
+
+namespace petzval::testing {
+
+std::vector<Match> matches(const std::string& text, const std::string& expression) {
+  const std::regex pattern(expression);
+  std::vector<Match> result;
+  for (std::sregex_iterator m(text.begin(), text.end(), pattern), end; m != end; ++m) {
+    result.push_back({static_cast<std::size_t>(m->position()), {m->begin(), m->end()}});
+  }
+  return result;
+}
+
+std::size_t count(const std::string& text, const std::string& part) {
+  std::size_t found = 0;
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++found;
+  return found;
+}
+
+std::vector<Points> paths(const std::string& svg, const std::string& style) {
+  std::vector<Points> result;
+  const std::string begin = "<path d=\"";
+  for (std::size_t at = svg.find(begin); at != std::string::npos; at = svg.find(begin, at)) {
+    at += begin.size();
+    const std::size_t quote = svg.find('"', at), end = svg.find("/>", quote);
+    if (svg.substr(quote, end - quote).find(style) == std::string::npos) continue;
+    Points points;
+    for (const Match& corner : matches(svg.substr(at, quote - at), "[ML](-?[0-9.]+) (-?[0-9.]+)")) {
+      points.push_back({corner.number(1), corner.number(2)});
+    }
+    result.push_back(points);
+  }
+  return result;
+}
+
+double scale(const std::string& svg) {
+  const auto bar = matches(svg, "M([0-9.]+) [0-9.]+v6m0-3H([0-9.]+)"), words = matches(svg, ">([0-9.]+) mm[<,]");
+  if (bar.empty() || words.empty()) return 0;
+  return (bar[0].number(2) - bar[0].number(1)) / words[0].number(1);
+}
+
+}  // namespace petzval::testing
