@@ -14,8 +14,9 @@ using petzval::RayFate;
 
 TEST(Ray, EveryFateHasItsOwnName) {
   std::set<std::string_view> names;
-  for (const RayFate fate : {RayFate::transmitted, RayFate::missed_surface, RayFate::totally_reflected,
-                             RayFate::vignetted, RayFate::no_convergence, RayFate::outside_fit, RayFate::outside_film}) {
+  for (const RayFate fate :
+       {RayFate::transmitted, RayFate::missed_surface, RayFate::totally_reflected, RayFate::vignetted,
+        RayFate::no_convergence, RayFate::outside_fit, RayFate::outside_film}) {
     names.insert(name(fate));
   }
   EXPECT_EQ(names, (std::set<std::string_view>{"transmitted", "missed_surface", "totally_reflected", "vignetted",
