@@ -6,6 +6,7 @@ include(CMakePackageConfigHelpers)
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/petzval)
 set(pkgconfig_dir ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 file(RELATIVE_PATH pc_libdir ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAKE_INSTALL_FULL_LIBDIR})
+file(RELATIVE_PATH pc_datadir ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAKE_INSTALL_FULL_DATADIR}/petzval)
 file(RELATIVE_PATH pc_includedir ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAKE_INSTALL_FULL_INCLUDEDIR})
 
 # petzval_install(image DESCRIPTION "..." REQUIRES petzval-core STATIC_REQUIRES OpenEXR): one component, where it was built.
@@ -37,11 +38,11 @@ endfunction()
 petzval_install(core DESCRIPTION "Real lenses for renderers: prescriptions, ray tracing, pupils, focus, point spread functions"
   REQUIRES glm STATIC_LIBS -ldl)
 petzval_install(fit DESCRIPTION "Least-squares fits for lens optics" REQUIRES petzval-core)
-petzval_install(image DESCRIPTION "EXR and PNG images and SVG figures of lenses" REQUIRES petzval-core
-  STATIC_REQUIRES "OpenEXR libpng")
+petzval_install(figure DESCRIPTION "SVG figures of lenses" REQUIRES petzval-core)
+petzval_install(image DESCRIPTION "EXR and PNG images" REQUIRES petzval-core STATIC_REQUIRES "OpenEXR libpng")
 
 configure_package_config_file(cmake/petzvalConfig.cmake.in petzvalConfig.cmake INSTALL_DESTINATION ${package_dir}
-  NO_SET_AND_CHECK_MACRO)
+  PATH_VARS CMAKE_INSTALL_DATADIR NO_SET_AND_CHECK_MACRO)
 write_basic_package_version_file(petzvalConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/petzvalConfig.cmake ${PROJECT_BINARY_DIR}/petzvalConfigVersion.cmake
   DESTINATION ${package_dir})

@@ -1,5 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
 
+# petzval_look_for(PETZVAL_WITH_CERES Ceres CONFIG): find_package for an option that is ON, OFF or AUTO.
+macro(petzval_look_for option)
+  if(${option} STREQUAL "AUTO")
+    find_package(${ARGN} QUIET)
+  elseif(${option})
+    find_package(${ARGN} REQUIRED)
+  endif()
+endmacro()
+
 # petzval_library(core): one of the libraries, with what all of them share.
 function(petzval_library name)
   add_library(petzval-${name})
@@ -13,12 +22,15 @@ function(petzval_library name)
     POSITION_INDEPENDENT_CODE ON
     LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/lib
     ARCHIVE_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/lib
-    INSTALL_RPATH $ORIGIN)
+    WINDOWS_EXPORT_ALL_SYMBOLS ON
+    INSTALL_RPATH $<IF:$<PLATFORM_ID:Darwin>,@loader_path,$ORIGIN>)
   target_compile_features(petzval-${name} PUBLIC cxx_std_20)
   # No contraction into fused operations: the same bits from every compiler and processor.
   target_compile_options(petzval-${name} PRIVATE -ffp-contract=off -fno-math-errno -fno-trapping-math)
-  target_link_options(petzval-${name} PRIVATE LINKER:--version-script=${PROJECT_SOURCE_DIR}/cmake/exports.map)
-  set_property(TARGET petzval-${name} PROPERTY LINK_DEPENDS ${PROJECT_SOURCE_DIR}/cmake/exports.map)
+  if(UNIX AND NOT APPLE)  # ELF
+    target_link_options(petzval-${name} PRIVATE LINKER:--version-script=${PROJECT_SOURCE_DIR}/cmake/exports.map)
+    set_property(TARGET petzval-${name} PROPERTY LINK_DEPENDS ${PROJECT_SOURCE_DIR}/cmake/exports.map)
+  endif()
   target_include_directories(petzval-${name} PRIVATE ${PROJECT_SOURCE_DIR}/lib)  # "module/header.hpp": the inside
   target_sources(petzval-${name} PUBLIC FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR}/include FILES ${ARGN})
   set_target_properties(petzval-${name} PROPERTIES VERIFY_INTERFACE_HEADER_SETS ON)

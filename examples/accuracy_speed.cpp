@@ -12,14 +12,12 @@
 #include <vector>
 
 #include "petzval/core/parallel.hpp"
+#include "petzval/figure/pareto_figure.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "support/cli.hpp"
 #include "support/files.hpp"
 #include "support/model_rows.hpp"
 #include "support/text.hpp"
-#ifdef EXAMPLES_WITH_FIGURES
-#include "petzval/figure/pareto_figure.hpp"
-#endif
 
 namespace {
 
@@ -38,7 +36,6 @@ double nearest_mm(const petzval::Lens& lens, const Options& options) {
   return half > front ? half : (front + std::min(options.setup.focus_mm, far)) / 2;
 }
 
-#ifdef EXAMPLES_WITH_FIGURES
 std::string figure(const std::vector<examples::ModelRow>& rows, const petzval::Lens& lens, const Options& options) {
   std::vector<petzval::ParetoPoint> points;
   for (const examples::ModelRow& row : rows) {
@@ -46,7 +43,6 @@ std::string figure(const std::vector<examples::ModelRow>& rows, const petzval::L
   }
   return petzval::pareto_figure(lens.name(), examples::conditions(lens, options), points);
 }
-#endif
 
 }  // namespace
 
@@ -87,9 +83,7 @@ int main(int argc, char** argv) {
         (options.json ? std::cerr : std::cout) << file.string() << '\n';
       };
       write("csv", examples::to_csv(rows));
-#ifdef EXAMPLES_WITH_FIGURES
       write("svg", figure(rows, lens, options));
-#endif
     }
     if (options.json) {
       std::cout << examples::to_json(rows).dump(1) << '\n';

@@ -17,11 +17,9 @@
 #include "petzval/pupil/f_number.hpp"
 #include "support/cli.hpp"
 #include "support/files.hpp"
+#include "support/lens_page.hpp"
 #include "support/lens_report.hpp"
 #include "support/load_lens.hpp"
-#ifdef EXAMPLES_WITH_FIGURES
-#include "support/lens_page.hpp"
-#endif
 
 namespace {
 
@@ -31,10 +29,8 @@ struct Options {
   bool json = false;
   double f_number = 0;    // 0: wide open
   double subject_mm = 0;  // 0: at infinity, with the film of the prescription
-#ifdef EXAMPLES_WITH_FIGURES
   std::string out_folder;
   std::vector<double> field_deg;
-#endif
 };
 
 /// The lens, stopped down and focused.
@@ -49,7 +45,6 @@ examples::LoadedLens load(const Options& options) {
   return loaded;
 }
 
-#ifdef EXAMPLES_WITH_FIGURES
 /// F, d and C if the dispersion is known and no wavelength is given.
 std::vector<double> figure_wavelengths(const Options& options, const petzval::Lens& lens) {
   if (options.wavelength_nm != petzval::d_line_nm || lens.dispersion() == petzval::Dispersion::none) {
@@ -74,7 +69,6 @@ void write_page(const examples::Report& report, const Options& options) {
   for (const examples::LensFigure& figure : figures) write('_' + figure.name + ".svg", figure.svg);
   write(".html", examples::lens_page(report, figures));
 }
-#endif
 
 }  // namespace
 
@@ -99,20 +93,16 @@ int main(int argc, char** argv) {
       "put the film at the paraxial image of a subject at this distance from the front vertex (mm), or "
       "inf")
       ->default_str("infinity, with the film of the prescription");
-#ifdef EXAMPLES_WITH_FIGURES
   auto* out = app.add_option("--out", options.out_folder, "draw figures and a page in this folder")->type_name("DIR");
   examples::add_numbers(app, "--field-deg", options.field_deg, examples::finite_number,
                         "fields of the figures (degrees)")
       ->default_str("the axis, 0.7 and 1 of the declared half field")
       ->needs(out);
   out->excludes("--json");
-#endif
 
   return examples::run(app, argc, argv, [&] {
     const examples::Report report = examples::report(load(options));
-#ifdef EXAMPLES_WITH_FIGURES
     if (out->count() > 0) return write_page(report, options);
-#endif
     std::cout << (options.json ? examples::to_json(report).dump(2) + '\n' : examples::to_text(report));
   });
 }

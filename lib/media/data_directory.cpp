@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+#if __has_include(<dlfcn.h>)
 #include <dlfcn.h>
+#endif
 
 #include <system_error>
 
@@ -11,10 +13,12 @@ namespace {
 
 /// The file this code was loaded from: the shared library, or the program it was linked into.
 std::filesystem::path own_module() {
+  std::string name;
+#if __has_include(<dlfcn.h>)
   static const char anchor = 0;
   Dl_info info{};
-  std::string name;
   if (dladdr(&anchor, &info) != 0 && info.dli_fname != nullptr) name = info.dli_fname;
+#endif
   // A bare name was looked up in PATH; the kernel knows the result.
   if (name.find('/') == std::string::npos) name = "/proc/self/exe";
   std::error_code failed;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A program of a user of petzval: one lens from code, one from the data of the library.
 //
-//     consumer DATA_DIRECTORY      the data directory that the library is expected to find
+//     consumer DATA_DIRECTORY      the data directory that the library is expected to find, and CMake or pkg-config to
+//                                  have named (CONSUMER_DATA)
 #include <cmath>
 #include <filesystem>
 #include <iostream>
@@ -52,7 +53,7 @@ int main(int argc, char** argv) {
 
   const auto data = petzval::data_directory();
   std::cout << "data found in " << data << '\n';
-  good = std::filesystem::equivalent(data, argv[1]) && good;
+  good = std::filesystem::equivalent(data, argv[1]) && std::filesystem::equivalent(data, CONSUMER_DATA) && good;
   const auto lens = petzval::read_prescription(data / "lenses" / "analytic_plano_hyperbolic_100mm.json");
   good = near("lens from data", focus_behind(petzval::compile(lens)), 100) && good;
 

@@ -6,6 +6,6 @@ compiler=$1 libdir=$2 source=$3 work=$4
 shift 4
 export PKG_CONFIG_PATH="$libdir/pkgconfig"
 mkdir -p "$work"
-"$compiler" -std=c++20 $("$PKG_CONFIG" --cflags petzval-core) "$source" -o "$work/consumer" \
+"$compiler" -std=c++20 "-DCONSUMER_DATA=\"$("$PKG_CONFIG" --variable=datadir petzval-core)\"" $("$PKG_CONFIG" --cflags petzval-core) "$source" -o "$work/consumer" \
   $("$PKG_CONFIG" --libs petzval-core) "-Wl,-rpath,$libdir"
 exec "$work/consumer" "$@"

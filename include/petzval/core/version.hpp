@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#if __cplusplus < 202002L && !(defined(_MSVC_LANG) && _MSVC_LANG >= 202002L)
+#error "petzval needs a C++20 compiler: compile with -std=c++20 (/std:c++20)"
+#endif
+
+/// The version of these headers: as numbers for #if, and as a string. The build reads it here. The inline namespace
+/// petzval::v0 carries the major version.
+#define PETZVAL_VERSION_MAJOR 0
+#define PETZVAL_VERSION_MINOR 1
+#define PETZVAL_VERSION_PATCH 0
+#define PETZVAL_VERSION "0.1.0"
