@@ -9,12 +9,13 @@
 
 namespace petzval::inline v0::pupil_detail {
 
-/// How near a ray comes to being lost.
+/// How near a ray comes to a rim.
 struct Clearance {
-  /// The least of 1 - r^2 / R^2 over the rims (R their semi-diameters; of r^2 / R^2 - i^2 / R^2 at holes): continuous,
-  /// 0 at an edge, negative for rays that a rim or hole stops, and lower the sooner a surface loses them otherwise.
+  /// The least of 1 - r^2 / R^2 over the rims (R their semi-diameters; of r^2 / R^2 - i^2 / R^2 at central obscurations
+  /// of radius i): continuous, 0 at a rim, negative for rays that a rim or obscuration stops, and lower the earlier a
+  /// surface loses them otherwise.
   double value = -1;
-  int surface = -1;  ///< of the least; where the ray is lost otherwise, there
+  int surface = -1;  ///< with the least value, or the one that loses the ray otherwise
   RayFate fate = RayFate::transmitted;
 
   bool passes() const noexcept { return value >= 0; }

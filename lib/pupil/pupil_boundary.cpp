@@ -32,7 +32,7 @@ struct Box {
   Point half() const noexcept { return {(high[0] - low[0]) / 2, (high[1] - low[1]) / 2}; }
 };
 
-/// An edge on the way: the last radius that passes, how near it is to being lost, and what ends the next ray.
+/// An end of a span: the last radius that passes, with the clearance of its ray and of the next one outside.
 struct Edge {
   double radius;
   pupil_detail::Clearance inside, outside;
@@ -46,24 +46,23 @@ class Tracer {
 
   bool middle_passes() const noexcept { return middle_.passes(); }
 
-  /// One span from the middle, which passes; its edge is looked for about `near`.
+  /// One span from the middle, which passes; it is expected to end about `near`.
   void trace_disc(std::size_t direction, double near) {
     begin(direction, {0, middle_, {}});
     finish(outer_edge(direction, near, 0, middle_));
   }
 
-  /// One span of a ring, whose edges are looked for about those of the direction before. False where they are not
-  /// there.
+  /// One span of a ring, expected to end about where that of the direction before does. False where it does not.
   bool trace_ring(std::size_t direction, double near_from, double near_to) {
     const double low = 0.95 * near_from, high = 1.05 * near_from;
-    const auto hole = clearance(boundary_.at(direction, low)), inside = clearance(boundary_.at(direction, high));
-    if (hole.passes() || !inside.passes() || !(high < near_to)) return false;
-    begin(direction, close_in(direction, {high, inside, hole}, low));
+    const auto dark = clearance(boundary_.at(direction, low)), inside = clearance(boundary_.at(direction, high));
+    if (dark.passes() || !inside.passes() || !(high < near_to)) return false;
+    begin(direction, close_in(direction, {high, inside, dark}, low));
     finish(outer_edge(direction, near_to, high, inside));
     return true;
   }
 
-  /// All spans between the middle and `reach`, found by looking at `steps` places.
+  /// All spans between the middle and `reach` that `steps` samples show.
   void scan_spans(std::size_t direction, double reach, int steps) {
     double before = 0;
     auto last = middle_;
@@ -75,7 +74,7 @@ class Tracer {
       if (!now.passes() && last.passes()) finish(close_in(direction, {before, last, now}, radius));
       before = radius, last = now;
     }
-    // Beyond all that the first surface lets in; what still passes touches the rim there.
+    // No ray beyond `reach` enters the first surface: one that passes there touches its rim.
     if (last.passes()) finish({reach, last, last});
   }
 
@@ -84,7 +83,7 @@ class Tracer {
     return pupil_detail::clearance(lens_, boundary_.plane, p[0], p[1], boundary_.wavelength);
   }
 
-  /// About `near`, farther out than a ray that passes.
+  /// The end about `near`, farther out than a ray that passes.
   Edge outer_edge(std::size_t direction, double near, double passing, const pupil_detail::Clearance& passes) const {
     double low = 0.95 * near, high = 1.05 * near;
     auto inside = clearance(boundary_.at(direction, low)), outside = clearance(boundary_.at(direction, high));
@@ -96,7 +95,7 @@ class Tracer {
     return close_in(direction, {passing, passes, inside}, low);
   }
 
-  /// From a ray inside and the radius of one outside.
+  /// The end between a ray that passes and the radius of one that does not.
   Edge close_in(std::size_t direction, Edge edge, double outside) const {
     constexpr double tolerance = 4e-14;
     edge.radius = core_detail::last_above(edge.radius, edge.inside.value, outside, edge.outside.value, tolerance,
@@ -126,7 +125,8 @@ class Tracer {
   pupil_detail::Clearance middle_;
 };
 
-/// What of the plane the rays cross that meet the surface through which they enter: the shadow of a box around it.
+/// The part of the plane that rays cross on their way to the surface through which they enter: the shadow of a box
+/// around that surface.
 Box shadow(const Lens& lens, const PupilPlane& plane) {
   const std::size_t entered = plane.travel() == Travel::to_film ? 0 : lens.surface_count() - 1;
   const pupil_detail::Face face =
@@ -143,8 +143,8 @@ Box shadow(const Lens& lens, const PupilPlane& plane) {
   return box;
 }
 
-/// A ray that passes, or none, looked for about a middle. Seen as a function over the plane, the least clearance of all
-/// rims has one summit where rays get through the lens at all: the grid closes in on it.
+/// Searches for a ray that passes about a middle. As a function over the plane, the least clearance of all rims has one
+/// maximum where rays pass the lens at all: the grid closes in on it.
 std::optional<Point> summit_near(const Lens& lens, const PupilPlane& plane, std::size_t wavelength, Point middle,
                                  Point half) {
   int steps = 16;  // a side, from the middle
@@ -166,7 +166,7 @@ std::optional<Point> summit_near(const Lens& lens, const PupilPlane& plane, std:
   return {};
 }
 
-/// A ray that passes, or none: the chief ray, or one that is found about it or anywhere.
+/// A ray that passes, if there is one: the chief ray, or one that is found about it or anywhere.
 std::optional<Point> passing_point(const Lens& lens, const PupilPlane& plane, std::size_t wavelength, const Box& box) {
   const AimedRay chief = pupil_detail::aim(lens, plane, {}, wavelength);
   if (chief.status == AimStatus::converged) return plane.meet(chief.ray);
@@ -189,24 +189,24 @@ double reach(const Box& box, const Point& middle, const Point& half_axes) noexce
   return farthest;
 }
 
-/// What a region looks like from its middle: one span from it in each direction, one around it, or anything else.
+/// The shape of a region: from its middle one span in each direction, a ring around the middle, or anything else.
 enum class Shape { disc, ring, other };
 
-/// Finds middle and half axes of what passes: from a ray that does, then from the middle of what that saw, until it
-/// sees no more.
+/// Finds middle and half axes of the region: first as seen from a ray that passes, then from the middle found last,
+/// until they settle.
 Shape measure(const Lens& lens, PupilBoundary& boundary, const Point& start, const Box& box) {
   boundary.middle = start;
   boundary.half_axes = box.half();
   Shape shape = Shape::disc;
   for (int pass = 0; pass < 6; ++pass) {
-    // Horseshoes and crescents, whose tips lie behind their own edges, are looked at more closely.
+    // Horseshoes and crescents, whose tips lie behind their own edges, need more directions and steps.
     const bool simple = shape != Shape::other;
     boundary.directions = simple ? 24 : 96;
     const int steps = simple ? 32 : 128;
     const double farthest = reach(box, boundary.middle, boundary.half_axes);
     boundary.spans.clear();
     Tracer tracer(lens, boundary);
-    // What a disc is from one of its points it is from its middle.
+    // A region with one span in each direction from one of its points has one from its middle.
     const bool disc = pass > 0 && shape == Shape::disc && tracer.middle_passes();
     for (std::size_t k = 0; k < boundary.directions; ++k) {
       if (disc) {
@@ -229,7 +229,7 @@ Shape measure(const Lens& lens, PupilBoundary& boundary, const Point& start, con
   return shape;
 }
 
-/// The boundary from a ray that passes, and the box in which to look.
+/// The boundary, from a ray that passes, within a box.
 void trace_boundary(const Lens& lens, PupilBoundary& boundary, const Point& start, const Box& box,
                     std::size_t directions) {
   constexpr int steps = 96;
@@ -246,7 +246,7 @@ void trace_boundary(const Lens& lens, PupilBoundary& boundary, const Point& star
   Tracer tracer(lens, boundary);
   if (shape == Shape::disc && !tracer.middle_passes()) shape = Shape::other;
   for (std::size_t k = 0; k < directions; ++k) {
-    // Edges move little from one direction to the next.
+    // Spans change little from one direction to the next.
     const bool first = boundary.spans.empty();
     const double near_from = first ? 0 : boundary.spans.back().from_radius;
     const double near_to = first ? 1 : boundary.spans.back().to_radius;

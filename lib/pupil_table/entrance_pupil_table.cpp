@@ -23,11 +23,11 @@ namespace {
 using namespace pupil_table_detail;
 
 constexpr double pi = std::numbers::pi;
-/// Nodes of the table less one: in field, from the axis to the last; in reciprocal distance, from infinity to nearest.
+/// Cells of the table: in field, from the axis to the last; in reciprocal distance, from infinity to the nearest.
 constexpr std::size_t field_steps = 12, distance_steps = 2;
 constexpr std::size_t fields = field_steps + 1, distances = distance_steps + 1;
 
-/// The plane through the pupil's centre across the line to a point, and the lines of that point.
+/// The plane through the pupil's centre perpendicular to the line to a point, and the rays of that point.
 struct View {
   Vec3<double> towards{0, 0, -1};  // unit, from the centre to the point
   Vec3<double> x_axis{1, 0, 0}, y_axis{0, 1, 0};
@@ -59,7 +59,7 @@ struct Bearing {
   }
 };
 
-/// What the lines of one node and its neighbours take of its plane.
+/// Bounds of the places where the rays of one node and its neighbours cross its plane.
 struct Bounds {
   double low = 0, high = 0, across = 0;
   bool any = false;
@@ -125,30 +125,30 @@ struct EntrancePupilTable::Data {
     return r > front_half || point.z < sag(lens, 0, point.x, point.y);
   }
 
-  /// Where a line leaves the sphere of a radius about the centre.
-  Bearing bearing_of(const Ray<double>& line, double reciprocal_radius) const noexcept {
-    const Vec3<double> from = line.origin - centre;
-    const double b = glm::dot(from, line.direction), beside2 = glm::dot(from, from) - b * b;
+  /// Where a ray leaves the sphere of a radius about the centre.
+  Bearing bearing_of(const Ray<double>& ray, double reciprocal_radius) const noexcept {
+    const Vec3<double> from = ray.origin - centre;
+    const double b = glm::dot(from, ray.direction), beside2 = glm::dot(from, from) - b * b;
     const double along = std::sqrt(std::max(1 - beside2 * squared(reciprocal_radius), 0.0)) - b * reciprocal_radius;
-    return Bearing(from * reciprocal_radius + line.direction * along);
+    return Bearing(from * reciprocal_radius + ray.direction * along);
   }
-  /// Where its line passes the plane across the line to that place.
+  /// Where a ray crosses the plane of a view.
   static std::array<double, 2> place_in(const View& view, const Vec3<double>& from_centre,
                                         const Vec3<double>& direction) noexcept {
     const Vec3<double> place = core_detail::meet_plane({from_centre, direction}, {0, 0, 0}, view.towards);
     return {glm::dot(place, view.x_axis), glm::dot(place, view.y_axis)};
   }
-  double widest_of(const std::vector<Ray<double>>& lines, double reciprocal_radius) const noexcept {
+  double widest_of(const std::vector<Ray<double>>& rays, double reciprocal_radius) const noexcept {
     double widest = 0;
-    for (const Ray<double>& line : lines) widest = std::max(widest, bearing_of(line, reciprocal_radius).field);
+    for (const Ray<double>& ray : rays) widest = std::max(widest, bearing_of(ray, reciprocal_radius).field);
     return widest;
   }
 
-  /// From a place on the axis to the farthest of some lines.
-  double farthest(const std::vector<Ray<double>>& lines, double z) const noexcept;
-  /// The place on the axis that all lines pass most nearly.
-  double least_ball(std::span<const std::vector<Ray<double>>> lines, double first, double last) const noexcept;
-  void fill(Table& table, const std::vector<Ray<double>>& lines, std::size_t wavelength, const ScenePassing& passing,
+  /// From a place on the axis to the farthest of some rays.
+  double farthest(const std::vector<Ray<double>>& rays, double z) const noexcept;
+  /// The place on the axis with the least ball that all rays meet.
+  double least_ball(std::span<const std::vector<Ray<double>>> rays, double first, double last) const noexcept;
+  void fill(Table& table, const std::vector<Ray<double>>& rays, std::size_t wavelength, const ScenePassing& passing,
             ClippedBy clipped_by) const;
 
   /// The nodes about a field at a distance and their weights; nothing for a field beyond the table.
@@ -182,19 +182,19 @@ struct EntrancePupilTable::Data {
   }
 };
 
-double EntrancePupilTable::Data::farthest(const std::vector<Ray<double>>& lines, double z) const noexcept {
+double EntrancePupilTable::Data::farthest(const std::vector<Ray<double>>& rays, double z) const noexcept {
   double farthest = 0;
-  for (const Ray<double>& line : lines) {
-    farthest = std::max(farthest, glm::length(glm::cross(line.origin - Vec3<double>{0, 0, z}, line.direction)));
+  for (const Ray<double>& ray : rays) {
+    farthest = std::max(farthest, glm::length(glm::cross(ray.origin - Vec3<double>{0, 0, z}, ray.direction)));
   }
   return farthest;
 }
 
-double EntrancePupilTable::Data::least_ball(std::span<const std::vector<Ray<double>>> lines, double first,
+double EntrancePupilTable::Data::least_ball(std::span<const std::vector<Ray<double>>> rays, double first,
                                             double last) const noexcept {
   const auto radius = [&](double z) {
     double largest = 0;
-    for (const auto& own : lines) largest = std::max(largest, farthest(own, z));
+    for (const auto& own : rays) largest = std::max(largest, farthest(own, z));
     return largest;
   };
   // The distance from a line is convex along the axis, and so is the largest of them.
@@ -209,17 +209,17 @@ double EntrancePupilTable::Data::least_ball(std::span<const std::vector<Ray<doub
   return (first + last) / 2;
 }
 
-void EntrancePupilTable::Data::fill(Table& table, const std::vector<Ray<double>>& lines, std::size_t wavelength,
+void EntrancePupilTable::Data::fill(Table& table, const std::vector<Ray<double>>& rays, std::size_t wavelength,
                                     const ScenePassing& passing, ClippedBy clipped_by) const {
   // The nodes, and places half way between them to look whether means of nodes contain what they should.
   constexpr std::size_t rows = 2 * distance_steps + 1, columns = 2 * field_steps + 1;
   const auto reciprocal_of = [&](std::size_t row) { return steepest * static_cast<double>(row) / (rows - 1); };
 
-  // How far fields reach at each distance, where the lines it is known from leave room between them.
-  constexpr double between_lines = 1.05, on_axis = 1e-6;
+  // How far fields reach at each distance; the rays leave room between them.
+  constexpr double between_rays = 1.05, on_axis = 1e-6;
   std::array<double, rows> widest{};
   for (std::size_t row = 0; row < rows; ++row) {
-    widest[row] = std::min(between_lines * widest_of(lines, reciprocal_of(row)) + on_axis, pi);
+    widest[row] = std::min(between_rays * widest_of(rays, reciprocal_of(row)) + on_axis, pi);
   }
   for (std::size_t row = 1; row < rows; row += 2) {
     const double lacking = widest[row] - (widest[row - 1] + widest[row + 1]) / 2;
@@ -228,14 +228,14 @@ void EntrancePupilTable::Data::fill(Table& table, const std::vector<Ray<double>>
   for (std::size_t row = 1; row < rows; row += 2) widest[row] = (widest[row - 1] + widest[row + 1]) / 2;
   for (std::size_t i = 0; i < distances; ++i) table.widest[i] = widest[2 * i];
 
-  // Where to look for the pupil of a field: about what the lines take of its plane at the distance at which those of a
+  // Where to look for the pupil of a field: about what the rays take of its plane at the distance at which those of a
   // film point are most nearly of one field.
   const auto sharpest = static_cast<std::size_t>(std::min_element(widest.begin(), widest.end()) - widest.begin());
   std::vector<Bounds> bounds(columns);
-  for (const Ray<double>& line : lines) {
-    const Bearing bearing = bearing_of(line, reciprocal_of(sharpest));
+  for (const Ray<double>& ray : rays) {
+    const Bearing bearing = bearing_of(ray, reciprocal_of(sharpest));
     const View view(bearing.field, bearing.azimuth_x, bearing.azimuth_y, 0);
-    const auto [x, y] = place_in(view, line.origin - centre, line.direction);
+    const auto [x, y] = place_in(view, ray.origin - centre, ray.direction);
     const auto nearest = static_cast<std::size_t>(std::lround(bearing.field / widest[sharpest] * (columns - 1)));
     for (std::size_t j = nearest - std::min<std::size_t>(nearest, 2); j <= std::min(nearest + 2, columns - 1); ++j) {
       bounds[j].take(x, y);
@@ -263,16 +263,18 @@ void EntrancePupilTable::Data::fill(Table& table, const std::vector<Ray<double>>
   }
 
   constexpr std::size_t directions = 32;
-  std::array<std::vector<double>, 6> ray;
+  std::array<std::vector<double>, 6> components;
   const auto passes = [&](std::size_t count, const std::uint32_t* which, const double* x, const double* y,
                           std::uint8_t* through) {
-    for (auto& component : ray) component.resize(count);
+    for (auto& component : components) component.resize(count);
     for (std::size_t r = 0; r < count; ++r) {
       const View& view = views[which[r]];
       const Vec3<double> place = view.place(x[r], y[r]), direction = view.direction(place);
-      for (int i : {0, 1, 2}) ray[i][r] = centre[i] + place[i], ray[3 + i][r] = direction[i];
+      for (int i : {0, 1, 2}) components[i][r] = centre[i] + place[i], components[3 + i][r] = direction[i];
     }
-    passing(count, {ray[0].data(), ray[1].data(), ray[2].data(), ray[3].data(), ray[4].data(), ray[5].data()},
+    passing(count,
+            {components[0].data(), components[1].data(), components[2].data(), components[3].data(),
+             components[4].data(), components[5].data()},
             wavelength, through);
   };
   const auto pupils = pupil_detail::find_regions(guesses, columns, directions, true, passes);
@@ -307,11 +309,11 @@ void EntrancePupilTable::Data::fill(Table& table, const std::vector<Ray<double>>
   constexpr double about_rays = 1.08, last_fields = 0.75, in_obscurations = 0.8;
   for (std::size_t row = 0; row < rows; ++row) {
     const double reciprocal = reciprocal_of(row);
-    for (const Ray<double>& ray_out : lines) {
-      const Bearing bearing = bearing_of(ray_out, reciprocal);
+    for (const Ray<double>& ray : rays) {
+      const Bearing bearing = bearing_of(ray, reciprocal);
       if (!all && bearing.field < last_fields * widest[row]) continue;
       const View view(bearing.field, bearing.azimuth_x, bearing.azimuth_y, reciprocal);
-      const auto [x, y] = place_in(view, ray_out.origin - centre, ray_out.direction);
+      const auto [x, y] = place_in(view, ray.origin - centre, ray.direction);
       const PolygonWeights at = weights_of(table, bearing.field, reciprocal).value_or(PolygonWeights{});
       const double way = interpolated(table.polygons, at).way_to(x, y);
       if (std::isinf(way)) {  // a pupil that no polygon about a middle describes
@@ -331,7 +333,7 @@ void EntrancePupilTable::Data::fill(Table& table, const std::vector<Ray<double>>
   }
 }
 
-EntrancePupilTable::EntrancePupilTable(const Lens& lens, std::span<const std::vector<Ray<double>>> lines,
+EntrancePupilTable::EntrancePupilTable(const Lens& lens, std::span<const std::vector<Ray<double>>> rays,
                                        const ScenePassing& passing, ClippedBy clipped_by) {
   auto data = std::make_shared<Data>(lens);
   data->primary = lens.primary_wavelength();
@@ -343,24 +345,24 @@ EntrancePupilTable::EntrancePupilTable(const Lens& lens, std::span<const std::ve
   const double length = std::abs(lens.surfaces().back().vertex_z) + face.half;
   const double first = face.z_min, last = face.z_max + 4 * length;
   data->centre.z = std::clamp(entrance.z, first, last);
-  if (!lens.rotationally_symmetric()) data->centre.z = data->least_ball(lines, first, last);
+  if (!lens.rotationally_symmetric()) data->centre.z = data->least_ball(rays, first, last);
   double reach = std::hypot(face.half, data->centre.z - face.z_min);
-  for (const auto& own : lines) {
+  for (const auto& own : rays) {
     data->tables.emplace_back();
-    const double between_lines = lens.rotationally_symmetric() ? 1.15 : 1.2;
-    data->tables.back().ball = between_lines * data->farthest(own, data->centre.z);
+    const double between_rays = lens.rotationally_symmetric() ? 1.15 : 1.2;
+    data->tables.back().ball = between_rays * data->farthest(own, data->centre.z);
     reach = std::max(reach, data->tables.back().ball);
   }
   data->steepest = 0.8 / reach;
   // Where the film sees a point through a small part of the pupil only, fields lose their meaning.
-  for (const auto& own : lines) {
+  for (const auto& own : rays) {
     constexpr double no_field = 1e-6;
     const double farthest = data->widest_of(own, 0) + no_field;
     while (data->widest_of(own, data->steepest) > 1.5 * farthest) data->steepest *= 0.7;
   }
-  for (std::size_t w = 0; w < lines.size(); ++w) {
+  for (std::size_t w = 0; w < rays.size(); ++w) {
     Data::Table& table = data->tables[w];
-    if (lens.rotationally_symmetric() && table.ball > 0) data->fill(table, lines[w], w, passing, clipped_by);
+    if (lens.rotationally_symmetric() && table.ball > 0) data->fill(table, rays[w], w, passing, clipped_by);
   }
   data_ = std::move(data);
 }

@@ -19,56 +19,55 @@
 
 namespace petzval::inline v0 {
 
-/// A line from a scene point into the lens.
+/// A ray from a scene point into the lens.
 struct EntranceSample {
-  Vec3<double> place{0, 0, 0};      ///< lens frame, mm: where the line passes the pupil
+  Vec3<double> place{0, 0, 0};      ///< lens frame, mm: where the ray crosses the plane of the pupil
   Vec3<double> direction{0, 0, 1};  ///< unit, from the point to the place
   double distance = 0;              ///< between them, mm
   double pdf = 0;                   ///< of the direction at the point, 1/sr; 0: the point does not see the pupil
 };
 
-/// Lines of the film's space as rays that leave the lens towards the scene: N of each.
+/// Image-space rays as rays that leave the lens towards the scene: N of each.
 using TwoPlaneRaysToScene = std::function<void(std::size_t count, const TwoPlaneRays<const double>& lines,
                                                std::size_t wavelength, const RayArrays<double>& rays, RayFate* fates)>;
 
-/// What leaves the lens, for each wavelength, of lines that are spread over a film and its pupils, edges included:
-/// those to build an EntrancePupilTable from. All azimuths of the film, or +y alone where they are alike.
+/// Rays that leave the lens, for each wavelength: those of samples of the pupils of a film, boundaries included, to
+/// build an EntrancePupilTable from. azimuths_alike: film points on +y stand for all.
 PETZVAL_API std::vector<std::vector<Ray<double>>> leaving_rays(const FilmPupilTable& pupils, bool azimuths_alike,
                                                                const TwoPlaneRaysToScene& to_scene);
 
-/// What decides where a pupil ends.
+/// What clips a pupil.
 enum class ClippedBy : std::uint8_t {
-  apertures,  ///< what rays do: lines tell of it only from within
-  samples     ///< the lines, as in models of a lens that have no rims
+  apertures,  ///< Apertures clip the pupil; sampled rays only bound it from inside.
+  samples     ///< The sampled rays do, as in models of a lens that have no rims.
 };
 
-/// Which of N rays of the scene get through: passes[i] for each, at a wavelength.
+/// Which of N rays from the scene pass the lens, at a wavelength: passes[i].
 using ScenePassing = std::function<void(std::size_t count, const RayArrays<const double>& rays, std::size_t wavelength,
                                         std::uint8_t* passes)>;
 
-/// What the points of a scene see of a lens's pupil, as a table over field and reciprocal distance, one for each
-/// wavelength.
+/// The pupils of all scene points, as a table over field and reciprocal distance, one for each wavelength.
 ///
-/// A point is told by its distance from the pupil's centre and the angle (its field) between the line there and the
-/// axis; the pupil it sees lies in the plane across that line, so that 90 degrees and more are like any other field.
-/// Pupils are stars of 64 corners, interpolated; they contain all that passes and a little more. Points nearer to the
-/// lens than the table goes, and all points of lenses without symmetry of revolution, get a cone about a ball that all
-/// lines meet. Either way every ray that passes can be drawn: estimates have no bias.
+/// A point is identified by its distance from the pupil's centre and by its field, the angle between the axis and the
+/// line to that centre. Its pupil lies in the plane perpendicular to that line, so that fields of 90 degrees and more
+/// are like any other. Pupils are interpolated polygons of 64 corners that contain every ray that passes and few
+/// others. Points nearer to the lens than the table reaches, and all points of lenses without symmetry of revolution,
+/// get a cone about a ball that all rays meet. Every ray that passes can be sampled: estimates have no bias.
 ///
 /// Immutable, cheap to copy, free to share between threads.
 class PETZVAL_API EntrancePupilTable {
  public:
-  /// lines: leaving_rays(). They say how far fields reach and where to look.
-  EntrancePupilTable(const Lens& lens, std::span<const std::vector<Ray<double>>> lines, const ScenePassing& passing,
-                     ClippedBy ends = ClippedBy::apertures);
+  /// rays: leaving_rays(). They show how far fields reach and where pupils are.
+  EntrancePupilTable(const Lens& lens, std::span<const std::vector<Ray<double>>> rays, const ScenePassing& passing,
+                     ClippedBy clipped_by = ClippedBy::apertures);
 
   /// Whether a point lies where the lens may see it, finite and not behind its first surface.
   bool in_front(const Vec3<double>& point) const noexcept;
 
-  /// A line from a point (lens frame, mm) for u and v in [0, 1]. Nothing (pdf 0) for a point that is not in front of
-  /// the lens or beyond all fields, numbers that are not finite, and wavelengths that are not in the map.
+  /// A ray from a point (lens frame, mm) for u and v in [0, 1]. pdf 0 for a point that is not in front of the lens or
+  /// beyond all fields, numbers that are not finite, and wavelengths that are not in the table.
   EntranceSample sample(const Vec3<double>& point, double u, double v, Wavelength wavelength = {}) const noexcept;
-  /// The same for many of one point, sooner than one by one. u, v, samples: N each.
+  /// The same for many rays of one point, faster than one by one. u, v, samples: N each.
   void sample(const Vec3<double>& point, std::size_t count, const double* u, const double* v, Wavelength wavelength,
               EntranceSample* samples) const noexcept;
 
@@ -80,10 +79,10 @@ class PETZVAL_API EntrancePupilTable {
   std::shared_ptr<const Data> data_;
 };
 
-/// Whether exact rays get through a lens, which has to outlive this.
+/// Whether exact rays pass a lens, which has to outlive the result.
 PETZVAL_API ScenePassing traced_passing(const Lens& lens);
 
-/// What the scene sees of a lens by exact rays. pupils: of its film, covering.
+/// The table of a lens by exact rays. pupils: FilmPupilTable::enclosing() of its film.
 PETZVAL_API EntrancePupilTable traced_entrances(const Lens& lens, const FilmPupilTable& pupils);
 
 }  // namespace petzval::inline v0

@@ -35,9 +35,9 @@ struct StripTable {
 
 namespace {
 
-/// The angle of (x, y) from +y to +x, as a part of the whole turn (|turn| <= 1/2), within 5e-8: a sample's u counts
-/// from +y of the film's frame, not from the film point's own direction, so that near the axis the samples of
-/// neighbours are neighbours. A polynomial, so that all numbers, derivatives among them, take the same one. Not both 0.
+/// The angle of (x, y) from +y to +x, as a part of the whole turn (|turn| <= 1/2), within 5e-8: u counts from +y of the
+/// film's frame, not from the direction of the film point, so that near the axis the samples of neighbours are
+/// neighbours. One polynomial for all scalars, derivatives included. x and y must not both be 0.
 template <class T>
 inline T turn_of(const T& x, const T& y) noexcept {
   const T across = x < T(0) ? T(-x) : x, along = y < T(0) ? T(-y) : y;

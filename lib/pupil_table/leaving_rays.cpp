@@ -11,11 +11,12 @@
 namespace petzval::inline v0 {
 namespace {
 
-struct SpreadLines {
+/// Samples of the pupils of a film.
+struct FilmSamples {
   std::vector<double> film_x, film_y, pupil_x, pupil_y;
 };
 
-SpreadLines spread_lines(const FilmPupilTable& pupils, bool azimuths_alike, std::size_t wavelength) {
+FilmSamples film_samples(const FilmPupilTable& pupils, bool azimuths_alike, std::size_t wavelength) {
   constexpr int radii = 32, around = 16;
   const auto seen = [&](double radius) { return pupils.area({0, radius}, wavelength) > 0; };
   double last = pupils.film_radius();
@@ -25,13 +26,13 @@ SpreadLines spread_lines(const FilmPupilTable& pupils, bool azimuths_alike, std:
     for (int i = 1; i <= radii && seen(dark * i / radii); ++i) last = dark * i / radii;
     last = core_detail::last_with(last, std::min(last + dark / radii, dark), seen);
   }
-  SpreadLines lines;
+  FilmSamples samples;
   const auto add = [&](double radius, double turn, double u, double v) {
     const FilmPoint film{radius * std::sin(turn), radius * std::cos(turn)};
     const PupilSample s = pupils.sample(film, u, v, wavelength);
     if (!(s.area > 0)) return;
-    lines.film_x.push_back(film.x), lines.film_y.push_back(film.y);
-    lines.pupil_x.push_back(s.x), lines.pupil_y.push_back(s.y);
+    samples.film_x.push_back(film.x), samples.film_y.push_back(film.y);
+    samples.pupil_x.push_back(s.x), samples.pupil_y.push_back(s.y);
   };
   const core_detail::Kronecker<3> points;
   std::size_t index = 0;
@@ -39,7 +40,7 @@ SpreadLines spread_lines(const FilmPupilTable& pupils, bool azimuths_alike, std:
     // Closer where the light ends.
     const double radius = last * (1 - std::pow(1 - static_cast<double>(i) / radii, 1.5));
     if (azimuths_alike) {
-      for (int k = 0; k <= around / 2; ++k) {  // half of a pupil is as the other
+      for (int k = 0; k <= around / 2; ++k) {  // the halves of a pupil are alike
         for (const double v : {0.0, 0.85, 0.95, 1.0}) add(radius, 0, static_cast<double>(k) / around, v);
       }
       continue;
@@ -50,7 +51,7 @@ SpreadLines spread_lines(const FilmPupilTable& pupils, bool azimuths_alike, std:
       add(radius, 2 * std::numbers::pi * turn, u, v);
     }
   }
-  return lines;
+  return samples;
 }
 
 }  // namespace
@@ -59,7 +60,7 @@ std::vector<std::vector<Ray<double>>> leaving_rays(const FilmPupilTable& pupils,
                                                    const TwoPlaneRaysToScene& to_scene) {
   std::vector<std::vector<Ray<double>>> result(pupils.wavelengths());
   for (std::size_t w = 0; w < result.size(); ++w) {
-    const auto [film_x, film_y, pupil_x, pupil_y] = spread_lines(pupils, azimuths_alike, w);
+    const auto [film_x, film_y, pupil_x, pupil_y] = film_samples(pupils, azimuths_alike, w);
     const std::size_t count = film_x.size();
     std::array<std::vector<double>, 6> ray;
     for (auto& values : ray) values.resize(count);

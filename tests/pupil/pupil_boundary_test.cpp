@@ -104,7 +104,7 @@ TEST(PupilBoundary, OfAFrontStopIsTheStop) {
   }
 }
 
-TEST(PupilBoundary, OfAHoleIsARing) {
+TEST(PupilBoundary, OfACentralObscurationIsARing) {
   Prescription p;
   p.name = "ring";
   p.surfaces = {{.thickness = 2, .semi_diameter = 5, .obscuration_semi_diameter = 2, .stop = true},

@@ -90,7 +90,7 @@ TEST(PupilSampler, LeavesNothingOut) {
   }
 }
 
-TEST(PupilSampler, IsEven) {
+TEST(PupilSampler, IsUniform) {
   // Equal squares of (u, v) fall on equal areas: the second moment of a disc is a quarter of its squared radius.
   const Lens lens = data_lens("double_gauss_100mm_f1.35");
   const PupilBoundary boundary = pupil_boundary(lens, {0, -infinity});

@@ -26,18 +26,18 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-/// A lens with its map, for a film of some radius.
+/// A lens with its table, for a film of some radius.
 struct Seen {
   Lens lens;
   double radius;
   FilmPupilTable pupils;
-  EntrancePupilTable map;
+  EntrancePupilTable table;
 
   Seen(const Lens& l, double film_radius)
       : lens(l),
         radius(film_radius),
         pupils(FilmPupilTable::enclosing(l, film_radius)),
-        map(traced_entrances(l, pupils)) {}
+        table(traced_entrances(l, pupils)) {}
 
   /// What leaves the lens of a line behind it.
   TracedRay<double> leaving(const FilmPoint& film, double pupil_x, double pupil_y) const {
@@ -61,7 +61,7 @@ Seen seen(const std::string& id) {
 }
 
 /// Of lines from the whole film through all of its pupils, seen from places 10 mm to 1 km before the lens: how many
-/// pass, and how many of these the map cannot draw.
+/// pass, and how many of these the table cannot draw.
 struct Count {
   std::uint32_t passed = 0, missed = 0;
 };
@@ -79,21 +79,21 @@ Count count_missed(const Seen& s, std::uint32_t lines) {
     if (!end.transmitted()) continue;
     const Vec3<double> point = end.ray.origin + end.ray.direction * std::pow(10, 1 + 5 * e);
     ++count.passed;
-    count.missed += !(s.map.pdf(point, -end.ray.direction) > 0);
+    count.missed += !(s.table.pdf(point, -end.ray.direction) > 0);
   }
   return count;
 }
 
-class EntranceMaps : public ::testing::TestWithParam<const char*> {};
+class EntranceTables : public ::testing::TestWithParam<const char*> {};
 
 // Were more than 1e-5 of the lines missed, none of 3e5 would be with a probability below 5 %.
-TEST_P(EntranceMaps, MissNoneOf300000LinesFromTheFilm) {
+TEST_P(EntranceTables, MissNoneOf300000LinesFromTheFilm) {
   const Count count = count_missed(seen(GetParam()), 300000);
   EXPECT_GT(count.passed, 250000U);
   EXPECT_EQ(count.missed, 0U);
 }
 
-INSTANTIATE_TEST_SUITE_P(Lenses, EntranceMaps,
+INSTANTIATE_TEST_SUITE_P(Lenses, EntranceTables,
                          ::testing::Values("double_gauss_100mm_f2_28deg", "biogon_35mm_f2.8", "fisheye_6.3mm_f2.8",
                                            "petzval_100mm_f1.25"));
 
@@ -118,13 +118,13 @@ TEST(EntrancePupilTable, HasTheDensityItSays) {
       // The mean of 1 / pdf is the solid angle that is drawn from.
       constexpr std::uint32_t draws = 1 << 12;
       double solid = 0, widest = 0;
-      const Vec3<double> axis = s.map.sample(point, 0.5, 0).direction;
+      const Vec3<double> axis = s.table.sample(point, 0.5, 0).direction;
       for (std::uint32_t i = 0; i < draws; ++i) {
         const auto [u, v] = owen_sobol(i, 4);
-        const EntranceSample sample = s.map.sample(point, u, v);
+        const EntranceSample sample = s.table.sample(point, u, v);
         ASSERT_GT(sample.pdf, 0);
         EXPECT_NEAR(glm::length(sample.direction), 1, 1e-12);
-        EXPECT_NEAR(s.map.pdf(point, sample.direction) / sample.pdf, 1, 1e-7);
+        EXPECT_NEAR(s.table.pdf(point, sample.direction) / sample.pdf, 1, 1e-7);
         EXPECT_NEAR(glm::distance(point + sample.direction * sample.distance, sample.place), 0, 1e-9);
         solid += 1 / sample.pdf / draws;
         widest = std::max(widest, 1 - glm::dot(axis, sample.direction));
@@ -138,7 +138,7 @@ TEST(EntrancePupilTable, HasTheDensityItSays) {
         const double sine = std::sqrt(cone * v * (2 - cone * v));
         const Vec3<double> d =
             axis * (1 - cone * v) + x * (sine * std::cos(2 * pi * u)) + y * (sine * std::sin(2 * pi * u));
-        const double pdf = s.map.pdf(point, d);
+        const double pdf = s.table.pdf(point, d);
         met += (pdf > 0 ? 1.0 : 0.0) * 2 * pi * cone / (4 * draws);
         whole += pdf * 2 * pi * cone / (4 * draws);
       }
@@ -171,7 +171,7 @@ TEST(EntrancePupilTable, EstimatesTheSolidAngleOfThePupil) {
         double found = 0;
         for (std::uint32_t i = 0; i < draws; ++i) {
           const auto [u, v] = owen_sobol(i, 6);
-          const EntranceSample sample = s.map.sample(point, u, v);
+          const EntranceSample sample = s.table.sample(point, u, v);
           ASSERT_GT(sample.pdf, 0);
           if (trace(s.lens, Ray<double>{sample.place, sample.direction}).transmitted()) found += 1 / sample.pdf / draws;
         }
@@ -187,9 +187,9 @@ TEST(EntrancePupilTable, SamplesManyAsOneByOne) {
   // By the table, by the cone of a point that is too near for it, beyond all fields.
   for (const Vec3<double> point : {Vec3<double>{30, 50, -800}, Vec3<double>{0, 1, -3}, Vec3<double>{0, 9000, -1000}}) {
     std::vector<EntranceSample> samples(u.size(), EntranceSample{.distance = 7, .pdf = 7});
-    s.map.sample(point, u.size(), u.data(), v.data(), 0, samples.data());
+    s.table.sample(point, u.size(), u.data(), v.data(), 0, samples.data());
     for (std::size_t i = 0; i < u.size(); ++i) {
-      const EntranceSample one = s.map.sample(point, u[i], v[i]);
+      const EntranceSample one = s.table.sample(point, u[i], v[i]);
       EXPECT_EQ(samples[i].place, one.place);
       EXPECT_EQ(samples[i].direction, one.direction);
       EXPECT_EQ(samples[i].distance, one.distance);
@@ -206,16 +206,16 @@ TEST(EntrancePupilTable, HasNothingForWhatIsNotInFrontOfTheLens) {
   for (const Vec3<double> point : {Vec3<double>{0, 0, 20}, Vec3<double>{0, 0, 1}, Vec3<double>{5, 5, 500},
                                    Vec3<double>{0, 5000, 300}, Vec3<double>{nan, 0, -100}, Vec3<double>{0, inf, -100},
                                    Vec3<double>{0, 0, -inf}, Vec3<double>{0, 9000, -1000}}) {
-    const EntranceSample sample = s.map.sample(point, 0.4, 0.6);
+    const EntranceSample sample = s.table.sample(point, 0.4, 0.6);
     EXPECT_EQ(sample.pdf, 0) << point.x << ' ' << point.y << ' ' << point.z;
     EXPECT_TRUE(std::isfinite(sample.place.x + sample.direction.x + sample.distance));
-    EXPECT_EQ(s.map.pdf(point, {0, 0, 1}), 0);
+    EXPECT_EQ(s.table.pdf(point, {0, 0, 1}), 0);
   }
-  EXPECT_EQ(s.map.sample({0, 0, -1000}, 0.4, 0.6, 1).pdf, 0);
-  EXPECT_EQ(s.map.sample({0, 0, -1000}, nan, 0.6).pdf, 0);
-  EXPECT_EQ(s.map.pdf({0, 0, -1000}, {nan, 0, 1}), 0);
-  EXPECT_EQ(s.map.pdf({0, 0, -1000}, {0, 0, -1}), 0);
-  EXPECT_GT(s.map.sample({0, 0, -1000}, 0, 1).pdf, 0);
+  EXPECT_EQ(s.table.sample({0, 0, -1000}, 0.4, 0.6, 1).pdf, 0);
+  EXPECT_EQ(s.table.sample({0, 0, -1000}, nan, 0.6).pdf, 0);
+  EXPECT_EQ(s.table.pdf({0, 0, -1000}, {nan, 0, 1}), 0);
+  EXPECT_EQ(s.table.pdf({0, 0, -1000}, {0, 0, -1}), 0);
+  EXPECT_GT(s.table.sample({0, 0, -1000}, 0, 1).pdf, 0);
 }
 
 }  // namespace

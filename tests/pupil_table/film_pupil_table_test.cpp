@@ -25,9 +25,9 @@ using petzval::testing::data_lens;
 using petzval::testing::data_prescriptions;
 
 /// Which of some places in the plane of the pupil a film point sees the scene through, by tracing.
-std::vector<bool> passing(const Lens& lens, const FilmPupilTable& map, const FilmPoint& film,
+std::vector<bool> passing(const Lens& lens, const FilmPupilTable& table, const FilmPoint& film,
                           const std::vector<std::array<double, 2>>& places) {
-  const TwoPlanes& space = map.space();
+  const TwoPlanes& space = table.space();
   const double sense = signed_index(lens, lens.surface_count()) > 0 ? -1 : 1;
   std::vector<Ray<double>> rays;
   for (const auto& [x, y] : places) {
@@ -62,7 +62,7 @@ struct Coverage {
 /// Samples of film points at several radii. Two kinds of other rays measure the missed parts: rays in a band outside
 /// the polygon, of a tenth of its area, for small errors, and rays in a box 1.5 times as large as the polygon, for lost
 /// parts. Those that pass are missed.
-Coverage coverage(const Lens& lens, const FilmPupilTable& map, double radius, int points, int samples) {
+Coverage coverage(const Lens& lens, const FilmPupilTable& table, double radius, int points, int samples) {
   std::mt19937_64 random(points);
   std::uniform_real_distribution<double> unit(0, 1);
   Coverage result;
@@ -71,14 +71,14 @@ Coverage coverage(const Lens& lens, const FilmPupilTable& map, double radius, in
   for (int i = 0; i < points; ++i) {
     const double r = radius * (i + unit(random)) / points, azimuth = 2 * std::numbers::pi * unit(random);
     const FilmPoint film{r * std::sin(azimuth), r * std::cos(azimuth)};
-    if (map.area(film) == 0) continue;
+    if (table.area(film) == 0) continue;
     ++lit;
     std::vector<std::array<double, 2>> inside, band, box;
-    const auto [mx, my] = map.middle(film);
+    const auto [mx, my] = table.middle(film);
     double reach = 0;
     for (int k = 0; k < samples; ++k) {
-      const PupilSample s = map.sample(film, unit(random), unit(random));
-      const PupilSample edge = map.sample(film, unit(random), 1);
+      const PupilSample s = table.sample(film, unit(random), unit(random));
+      const PupilSample edge = table.sample(film, unit(random), 1);
       const double out = std::sqrt(1 + 0.1 * unit(random));
       inside.push_back({s.x, s.y});
       band.push_back({mx + out * (edge.x - mx), my + out * (edge.y - my)});
@@ -87,13 +87,13 @@ Coverage coverage(const Lens& lens, const FilmPupilTable& map, double radius, in
     for (int k = 0; k < samples; ++k) {
       box.push_back({mx + 1.5 * reach * (2 * unit(random) - 1), my + 1.5 * reach * (2 * unit(random) - 1)});
     }
-    const auto in = passing(lens, map, film, inside), beside = passing(lens, map, film, band),
-               all = passing(lens, map, film, box);
+    const auto in = passing(lens, table, film, inside), beside = passing(lens, table, film, band),
+               all = passing(lens, table, film, box);
     const double part = static_cast<double>(std::count(in.begin(), in.end(), true)) / samples;
     result.mean += part;
     result.worst = std::min(result.worst, part);
     for (int k = 0; k < samples; ++k) {
-      const auto outside = [&](const std::array<double, 2>& p) { return !map.contains(film, p[0], p[1]); };
+      const auto outside = [&](const std::array<double, 2>& p) { return !table.contains(film, p[0], p[1]); };
       if (beside[k] && outside(band[k])) band_missed += 0.1 / samples;
       if (all[k]) box_passed += 1, box_missed += outside(box[k]);
     }
@@ -147,8 +147,8 @@ TEST(FilmPupilTable, SeesThroughAGlassCloseToTheFilm) {
   p.surfaces.push_back({.thickness = 2, .medium = {.nd = 1.5}, .semi_diameter = 40});
   p.surfaces.push_back({.thickness = 0.1, .semi_diameter = 40});
   for (const double f_number : {2.8, 16.0}) {
-    const FilmPupilTable map = FilmPupilTable::enclosing(with_f_number(compile(p), f_number), 21);
-    for (int i = 0; i <= 100; ++i) EXPECT_GT(map.area({0, 0.21 * i}), 0) << f_number << " at " << 0.21 * i;
+    const FilmPupilTable table = FilmPupilTable::enclosing(with_f_number(compile(p), f_number), 21);
+    for (int i = 0; i <= 100; ++i) EXPECT_GT(table.area({0, 0.21 * i}), 0) << f_number << " at " << 0.21 * i;
   }
 }
 
@@ -156,7 +156,7 @@ TEST(FilmPupilTable, MatchesTheShapeOfPupils) {
   for (const char* id : {"double_gauss_100mm_f1.35", "fisheye_8mm_f2.8", "catadioptric_mangin_1000mm_f7.5"}) {
     const Lens lens = data_lens(id);
     const double radius = 7.5;
-    const FilmPupilTable map = FilmPupilTable::equal_area(lens, radius),
+    const FilmPupilTable table = FilmPupilTable::equal_area(lens, radius),
                          cover = FilmPupilTable::enclosing(lens, radius);
     std::mt19937_64 random(7);
     std::uniform_real_distribution<double> unit(0, 1);
@@ -167,21 +167,21 @@ TEST(FilmPupilTable, MatchesTheShapeOfPupils) {
         const PupilSample s = cover.sample(film, unit(random), unit(random));
         places.push_back({s.x, s.y});
       }
-      const auto in = passing(lens, map, film, places);
+      const auto in = passing(lens, table, film, places);
       double differ = 0, passes = 0;
       for (std::size_t i = 0; i < places.size(); ++i) {
-        differ += map.contains(film, places[i][0], places[i][1]) != in[i];
+        differ += table.contains(film, places[i][0], places[i][1]) != in[i];
         passes += in[i];
       }
       EXPECT_LT(differ / passes, 0.005) << id << ", film point at " << r;
-      EXPECT_NEAR(map.area(film) / cover.area(film), passes / static_cast<double>(places.size()), 0.004) << id;
+      EXPECT_NEAR(table.area(film) / cover.area(film), passes / static_cast<double>(places.size()), 0.004) << id;
     }
   }
 }
 
-TEST(FilmPupilTable, SpreadsSamplesEvenly) {
+TEST(FilmPupilTable, SpreadsSamplesUniformly) {
   const Lens lens = data_lens("double_gauss_100mm_f1.35");
-  const FilmPupilTable map = FilmPupilTable::enclosing(lens, 22);
+  const FilmPupilTable table = FilmPupilTable::enclosing(lens, 22);
   const FilmPoint film{-9, 17};
   // Means of the samples and of places that belong to the pupil.
   std::mt19937_64 random(3);
@@ -191,33 +191,33 @@ TEST(FilmPupilTable, SpreadsSamplesEvenly) {
   constexpr int side = 512;
   for (int i = 0; i < side; ++i) {
     for (int j = 0; j < side; ++j) {
-      const PupilSample s = map.sample(film, (i + 0.5) / side, (j + 0.5) / side);
+      const PupilSample s = table.sample(film, (i + 0.5) / side, (j + 0.5) / side);
       const auto m = moments(s.x, s.y);
       for (std::size_t k = 0; k < 5; ++k) sampled[k] += m[k] / (side * side);
     }
   }
-  const auto [mx, my] = map.middle(film);
+  const auto [mx, my] = table.middle(film);
   constexpr double half = 50;
   int count = 0;
   for (int i = 0; i < 1024; ++i) {
     for (int j = 0; j < 1024; ++j) {
       const double x = mx + half * ((i + 0.5) / 512 - 1), y = my + half * ((j + 0.5) / 512 - 1);
-      if (!map.contains(film, x, y)) continue;
+      if (!table.contains(film, x, y)) continue;
       const auto m = moments(x, y);
       for (std::size_t k = 0; k < 5; ++k) inside[k] += m[k];
       ++count;
     }
   }
   for (std::size_t k = 0; k < 5; ++k) EXPECT_NEAR(sampled[k], inside[k] / count, k < 2 ? 0.02 : 0.3) << k;
-  EXPECT_NEAR(map.area(film), count * std::pow(2 * half / 1024, 2), 1e-3 * map.area(film));
+  EXPECT_NEAR(table.area(film), count * std::pow(2 * half / 1024, 2), 1e-3 * table.area(film));
 }
 
 TEST(FilmPupilTable, MovesWithoutJumpsAcrossTheTable) {
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
   constexpr double radius = 40;
-  const FilmPupilTable map = FilmPupilTable::enclosing(lens, radius);
+  const FilmPupilTable table = FilmPupilTable::enclosing(lens, radius);
   for (const auto& [u, v] : {std::array{0.1, 0.9}, std::array{0.43, 0.5}, std::array{0.86, 0.99}}) {
-    const auto at = [&, u = u, v = v](double r) { return map.sample({0.28 * r, -0.96 * r}, u, v); };
+    const auto at = [&, u = u, v = v](double r) { return table.sample({0.28 * r, -0.96 * r}, u, v); };
     // Steps across the nodes of the table against those within its strips.
     constexpr int steps = 64 * 16;
     double across = 0, within = 0;
@@ -238,11 +238,11 @@ TEST(FilmPupilTable, MovesWithoutJumpsAcrossTheTable) {
 
 TEST(FilmPupilTable, IsContinuousAroundTheAxis) {
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
-  const FilmPupilTable map = FilmPupilTable::enclosing(lens, 40);
-  const PupilSample axis = map.sample({0, 0}, 0.3, 0.8);
+  const FilmPupilTable table = FilmPupilTable::enclosing(lens, 40);
+  const PupilSample axis = table.sample({0, 0}, 0.3, 0.8);
   for (int i = 0; i < 32; ++i) {
     const double azimuth = 2 * std::numbers::pi * i / 32;
-    const PupilSample s = map.sample({1e-6 * std::sin(azimuth), 1e-6 * std::cos(azimuth)}, 0.3, 0.8);
+    const PupilSample s = table.sample({1e-6 * std::sin(azimuth), 1e-6 * std::cos(azimuth)}, 0.3, 0.8);
     // A polygon of 64 corners is round within 1 - cos(pi / 64).
     EXPECT_NEAR(std::hypot(s.x - axis.x, s.y - axis.y), 0, 0.0025 * std::sqrt(axis.area));
   }
@@ -250,7 +250,7 @@ TEST(FilmPupilTable, IsContinuousAroundTheAxis) {
 
 TEST(FilmPupilTable, SamplesBatchesLikeSinglePoints) {
   const Lens lens = data_lens("catadioptric_mangin_1000mm_f7.5");
-  const FilmPupilTable map = FilmPupilTable::enclosing(lens, 20);
+  const FilmPupilTable table = FilmPupilTable::enclosing(lens, 20);
   std::mt19937_64 random(5);
   std::uniform_real_distribution<double> unit(0, 1);
   for (const std::size_t count : {1u, 7u, 8u, 63u, 64u, 129u}) {
@@ -258,13 +258,13 @@ TEST(FilmPupilTable, SamplesBatchesLikeSinglePoints) {
     for (std::size_t i = 0; i < count; ++i) {
       x[i] = 26 * unit(random) - 13, y[i] = 26 * unit(random) - 13, u[i] = unit(random), v[i] = unit(random);
     }
-    map.sample<double>(count, x.data(), y.data(), u.data(), v.data(), {}, px.data(), py.data(), areas.data());
+    table.sample<double>(count, x.data(), y.data(), u.data(), v.data(), {}, px.data(), py.data(), areas.data());
     const std::vector<float> fx(x.begin(), x.end()), fy(y.begin(), y.end()), fu(u.begin(), u.end()),
         fv(v.begin(), v.end());
     std::vector<float> fpx(count), fpy(count), fareas(count);
-    map.sample<float>(count, fx.data(), fy.data(), fu.data(), fv.data(), {}, fpx.data(), fpy.data(), fareas.data());
+    table.sample<float>(count, fx.data(), fy.data(), fu.data(), fv.data(), {}, fpx.data(), fpy.data(), fareas.data());
     for (std::size_t i = 0; i < count; ++i) {
-      const PupilSample s = map.sample({x[i], y[i]}, u[i], v[i]);
+      const PupilSample s = table.sample({x[i], y[i]}, u[i], v[i]);
       const double size = std::sqrt(s.area);
       EXPECT_NEAR(px[i], s.x, 1e-12 * size);
       EXPECT_NEAR(py[i], s.y, 1e-12 * size);
@@ -274,23 +274,23 @@ TEST(FilmPupilTable, SamplesBatchesLikeSinglePoints) {
       EXPECT_NEAR(fareas[i], s.area, 1e-5 * s.area);
     }
     // In place, and the same.
-    map.sample<double>(count, x.data(), y.data(), u.data(), v.data(), {}, u.data(), v.data(), areas.data());
+    table.sample<double>(count, x.data(), y.data(), u.data(), v.data(), {}, u.data(), v.data(), areas.data());
     EXPECT_EQ(u, px);
     EXPECT_EQ(v, py);
   }
 }
 
-TEST(FilmPupilTable, TellsOfManyPlacesWhatItTellsOfOne) {
+TEST(FilmPupilTable, ContainsManyPlacesAsItContainsOne) {
   const std::vector<double> nm{450, 650};
   const auto with = [&](const char* id) {
     return compile(petzval::testing::data_prescription(id), nm, {.missing_glass = MissingGlass::abbe});
   };
-  for (const FilmPupilTable& map : {FilmPupilTable::enclosing(with("double_gauss_100mm_f1.35"), 22),
-                                    FilmPupilTable::equal_area(with("fisheye_8mm_f2.8"), 9),
-                                    FilmPupilTable::enclosing(with("catadioptric_mangin_1000mm_f7.5"), 22),
-                                    FilmPupilTable::enclosing(with("anamorphic_60mm_2x"), 22),
-                                    FilmPupilTable::enclosing(with("biogon_35mm_f2.8"), 30)}) {
-    const double radius = map.film_radius(), size = std::sqrt(map.area({0, 0}));
+  for (const FilmPupilTable& table : {FilmPupilTable::enclosing(with("double_gauss_100mm_f1.35"), 22),
+                                      FilmPupilTable::equal_area(with("fisheye_8mm_f2.8"), 9),
+                                      FilmPupilTable::enclosing(with("catadioptric_mangin_1000mm_f7.5"), 22),
+                                      FilmPupilTable::enclosing(with("anamorphic_60mm_2x"), 22),
+                                      FilmPupilTable::enclosing(with("biogon_35mm_f2.8"), 30)}) {
+    const double radius = table.film_radius(), size = std::sqrt(table.area({0, 0}));
     std::mt19937_64 random(5);
     std::uniform_real_distribution<double> unit(-1.1, 1.1);
     constexpr std::size_t count = 5000;
@@ -298,21 +298,21 @@ TEST(FilmPupilTable, TellsOfManyPlacesWhatItTellsOfOne) {
     std::vector<std::uint16_t> wavelengths(count);
     for (std::size_t i = 0; i < count; ++i) {
       fx[i] = 0.8 * radius * unit(random), fy[i] = 0.8 * radius * unit(random);
-      const auto [mx, my] = map.middle({fx[i], fy[i]});
+      const auto [mx, my] = table.middle({fx[i], fy[i]});
       x[i] = mx + size * unit(random), y[i] = my + size * unit(random);
       wavelengths[i] = static_cast<std::uint16_t>(i % 3);
     }
     fx[0] = std::numeric_limits<double>::quiet_NaN(), x[1] = std::numeric_limits<double>::quiet_NaN();
     std::vector<std::uint8_t> within(count), within_float(count);
-    map.contains<double>(count, {fx.data(), fy.data(), x.data(), y.data()}, {.each = wavelengths.data()},
-                         within.data());
+    table.contains<double>(count, {fx.data(), fy.data(), x.data(), y.data()}, {.each = wavelengths.data()},
+                           within.data());
     const std::vector<float> ffx(fx.begin(), fx.end()), ffy(fy.begin(), fy.end()), px(x.begin(), x.end()),
         py(y.begin(), y.end());
-    map.contains<float>(count, {ffx.data(), ffy.data(), px.data(), py.data()}, {.each = wavelengths.data()},
-                        within_float.data());
+    table.contains<float>(count, {ffx.data(), ffy.data(), px.data(), py.data()}, {.each = wavelengths.data()},
+                          within_float.data());
     int inside = 0, other_float = 0;
     for (std::size_t i = 0; i < count; ++i) {
-      EXPECT_EQ(within[i] == 1, map.contains({fx[i], fy[i]}, x[i], y[i], wavelengths[i])) << i;
+      EXPECT_EQ(within[i] == 1, table.contains({fx[i], fy[i]}, x[i], y[i], wavelengths[i])) << i;
       other_float += within_float[i] != within[i];
       inside += within[i];
     }
@@ -323,58 +323,59 @@ TEST(FilmPupilTable, TellsOfManyPlacesWhatItTellsOfOne) {
 
 // A tilted film has every line of the table that meets it, and few more. The pupil of a virtual film point is that of
 // the points of the upright film on its lines.
-TEST(FilmPupilTable, CoversThePupilsOfAFilmThatLeans) {
+TEST(FilmPupilTable, CoversThePupilsOfATiltedFilm) {
   for (const auto& [id, radius] : {std::pair{"double_gauss_100mm_f2.0", 22.0}, std::pair{"fisheye_8mm_f2.8", 8.0},
                                    std::pair{"catadioptric_mangin_1000mm_f7.5", 20.0}}) {
     const Lens lens = data_lens(id);
     const double steep = std::tan(radians(10)) / -two_planes(lens).depth();
-    const FilmTilt lean{.slope_x = 0.8 * steep,
+    const FilmTilt tilt{.slope_x = 0.8 * steep,
                         .slope_y = -0.6 * steep,
                         .low = -0.7 * radius * std::abs(steep),
                         .high = 0.7 * radius * std::abs(steep),
                         .radius = radius};
     for (const FilmPupilTable& upright :
          {FilmPupilTable::enclosing(lens, 1.5 * radius), FilmPupilTable::equal_area(lens, 1.5 * radius)}) {
-      const FilmPupilTable map = upright.for_tilted_film(lean);
-      EXPECT_EQ(map.film_radius(), radius);
+      const FilmPupilTable table = upright.for_tilted_film(tilt);
+      EXPECT_EQ(table.film_radius(), radius);
       std::mt19937_64 random(2);
       std::uniform_real_distribution<double> unit(0, 1);
       double inside = 0, sampled = 0;
       for (int i = 0; i < 2000; ++i) {
         const double r = radius * std::sqrt(unit(random)), azimuth = 2 * std::numbers::pi * unit(random);
-        const FilmPoint key{r * std::sin(azimuth), r * std::cos(azimuth)};
-        const double leaning = lean.slope_x * key.x + lean.slope_y * key.y;
-        if (leaning < lean.low || leaning > lean.high || map.area(key) == 0) continue;
+        const FilmPoint virtual_point{r * std::sin(azimuth), r * std::cos(azimuth)};
+        const double nearer = tilt.slope_x * virtual_point.x + tilt.slope_y * virtual_point.y;
+        if (nearer < tilt.low || nearer > tilt.high || table.area(virtual_point) == 0) continue;
         const auto passes = [&](double x, double y) {
-          return upright.contains({key.x - leaning * x, key.y - leaning * y}, x, y);
+          return upright.contains({virtual_point.x - nearer * x, virtual_point.y - nearer * y}, x, y);
         };
         for (int k = 0; k < 20; ++k) {
-          const PupilSample s = map.sample(key, unit(random), unit(random)), edge = map.sample(key, unit(random), 1);
+          const PupilSample s = table.sample(virtual_point, unit(random), unit(random)),
+                            edge = table.sample(virtual_point, unit(random), 1);
           sampled += 1;
           inside += passes(s.x, s.y);
-          const auto [mx, my] = map.middle(key);
+          const auto [mx, my] = table.middle(virtual_point);
           const double out = 1 + 0.1 * unit(random) + 1e-9;
-          EXPECT_FALSE(passes(mx + out * (edge.x - mx), my + out * (edge.y - my))) << id << " at " << key.x;
+          EXPECT_FALSE(passes(mx + out * (edge.x - mx), my + out * (edge.y - my))) << id << " at " << virtual_point.x;
         }
       }
       EXPECT_GT(inside / sampled, 0.95) << id;
     }
   }
-  const FilmPupilTable map = FilmPupilTable::enclosing(data_lens("double_gauss_100mm_f2.0"), 20);
-  EXPECT_THROW((void)map.for_tilted_film({.radius = -1}), Error);
-  EXPECT_THROW((void)map.for_tilted_film({.radius = std::numeric_limits<double>::quiet_NaN()}), Error);
+  const FilmPupilTable table = FilmPupilTable::enclosing(data_lens("double_gauss_100mm_f2.0"), 20);
+  EXPECT_THROW((void)table.for_tilted_film({.radius = -1}), Error);
+  EXPECT_THROW((void)table.for_tilted_film({.radius = std::numeric_limits<double>::quiet_NaN()}), Error);
 }
 
 TEST(FilmPupilTable, KnowsHowItsSamplesMove) {
   const Lens lens = data_lens("fisheye_8mm_f2.8");
-  const FilmPupilTable map = FilmPupilTable::enclosing(lens, 7);
+  const FilmPupilTable table = FilmPupilTable::enclosing(lens, 7);
   std::mt19937_64 random(11);
   std::uniform_real_distribution<double> unit(0, 1);
   for (int i = 0; i < 200; ++i) {
     const FilmPoint film{9 * unit(random) - 4.5, 9 * unit(random) - 4.5};
     const double u = unit(random), v = unit(random), h = 1e-6;
-    const auto motion = map.derivatives(film, u, v);
-    const auto at = [&](double dx, double dy) { return map.sample({film.x + dx, film.y + dy}, u, v); };
+    const auto motion = table.derivatives(film, u, v);
+    const auto at = [&](double dx, double dy) { return table.sample({film.x + dx, film.y + dy}, u, v); };
     const PupilSample right = at(h, 0), left = at(-h, 0), above = at(0, h), below = at(0, -h);
     // A corner of the polygon or a node of the table may lie between.
     const double slack = 1e-6 + 0.3 *
@@ -391,7 +392,7 @@ TEST(FilmPupilTable, KnowsHowItsSamplesMove) {
 
 TEST(FilmPupilTable, HoldsWhatLiesInAllOfSomeDiscs) {
   const std::vector<std::vector<PupilDisc>> discs{{{0.2, 10}, {-0.5, 9}}};
-  const FilmPupilTable map = FilmPupilTable::of_discs({50, 0}, discs, 12);
+  const FilmPupilTable table = FilmPupilTable::of_discs({50, 0}, discs, 12);
   for (const double r : {0.0, 3.0, 8.0, 12.0}) {
     const double distance = 0.7 * r, a = 10, b = 9;
     double area = std::numbers::pi * b * b;
@@ -399,30 +400,30 @@ TEST(FilmPupilTable, HoldsWhatLiesInAllOfSomeDiscs) {
       const double x = (distance * distance + a * a - b * b) / (2 * distance), y = std::sqrt(a * a - x * x);
       area = a * a * std::atan2(y, x) + b * b * std::atan2(y, distance - x) - distance * y;
     }
-    EXPECT_NEAR(map.area({0, r}), area, 1e-4 * area) << r;
-    EXPECT_TRUE(map.contains({r, 0}, -0.15 * r, 0));
-    EXPECT_FALSE(map.contains({r, 0}, 0.2 * r - 10.1, 0));
+    EXPECT_NEAR(table.area({0, r}), area, 1e-4 * area) << r;
+    EXPECT_TRUE(table.contains({r, 0}, -0.15 * r, 0));
+    EXPECT_FALSE(table.contains({r, 0}, 0.2 * r - 10.1, 0));
   }
 }
 
 TEST(FilmPupilTable, HasNothingOutsideItsFilm) {
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
-  const FilmPupilTable map = FilmPupilTable::enclosing(lens, 20);
+  const FilmPupilTable table = FilmPupilTable::enclosing(lens, 20);
   constexpr double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
   std::vector<double> x{0, 21, nan, 0, 0, infinity, 3, 3, 0, 0}, y(10, 0), u{0.5, 0.5, 0.5, nan, 0.5, 0.5, -1, 2, 1, 0},
       v{0.5, 0.5, 0.5, 0.5, infinity, 0.5, -1, 2, 1, 0}, px(10), py(10), areas(10);
-  map.sample<double>(10, x.data(), y.data(), u.data(), v.data(), {}, px.data(), py.data(), areas.data());
+  table.sample<double>(10, x.data(), y.data(), u.data(), v.data(), {}, px.data(), py.data(), areas.data());
   for (std::size_t i = 0; i < 10; ++i) {
-    const PupilSample s = map.sample({x[i], y[i]}, u[i], v[i]);
+    const PupilSample s = table.sample({x[i], y[i]}, u[i], v[i]);
     const bool sound = i == 0 || i > 5;
     EXPECT_EQ(s.area > 0, sound) << i;
     EXPECT_EQ(areas[i] > 0, sound) << i;
     EXPECT_TRUE(std::isfinite(px[i]) && std::isfinite(py[i]) && std::isfinite(s.x) && std::isfinite(s.y));
     EXPECT_TRUE(sound || px[i] == 0);
   }
-  EXPECT_EQ(map.sample({0, 0}, 0.5, 0.5, 1).area, 0);
-  EXPECT_EQ(map.area({0, 21}), 0);
-  EXPECT_FALSE(map.contains({0, 21}, 0, 0));
+  EXPECT_EQ(table.sample({0, 0}, 0.5, 0.5, 1).area, 0);
+  EXPECT_EQ(table.area({0, 21}), 0);
+  EXPECT_FALSE(table.contains({0, 21}, 0, 0));
   EXPECT_THROW((void)FilmPupilTable::enclosing(lens, nan), Error);
   EXPECT_THROW((void)FilmPupilTable::enclosing(lens, -1), Error);
   EXPECT_THROW((void)FilmPupilTable::enclosing(with_film(lens, lens.surfaces().back().vertex_z), 10), Error);
@@ -431,13 +432,13 @@ TEST(FilmPupilTable, HasNothingOutsideItsFilm) {
   EXPECT_EQ(dark.sample({1, 2}, 0.5, 0.5).area, 0);
 }
 
-TEST(FilmPupilTable, HasNothingInTheMiddleOfAHole) {
-  for (const FilmPupilTable& map : {FilmPupilTable::enclosing(data_lens("catadioptric_mangin_1000mm_f7.5"), 20),
-                                    FilmPupilTable::equal_area(data_lens("catadioptric_mangin_1000mm_f7.5"), 20)}) {
+TEST(FilmPupilTable, HasNothingInTheMiddleOfAnObscuration) {
+  for (const FilmPupilTable& table : {FilmPupilTable::enclosing(data_lens("catadioptric_mangin_1000mm_f7.5"), 20),
+                                      FilmPupilTable::equal_area(data_lens("catadioptric_mangin_1000mm_f7.5"), 20)}) {
     for (const FilmPoint& film : {FilmPoint{0, 0}, FilmPoint{3, 7}}) {
-      const auto [x, y] = map.middle(film);
-      EXPECT_FALSE(map.contains(film, x, y));
-      EXPECT_FALSE(map.contains(film, x + 0.1, y));
+      const auto [x, y] = table.middle(film);
+      EXPECT_FALSE(table.contains(film, x, y));
+      EXPECT_FALSE(table.contains(film, x + 0.1, y));
     }
   }
 }
@@ -446,19 +447,19 @@ TEST(FilmPupilTable, HasOneTableForEachWavelength) {
   const Prescription p = petzval::testing::data_prescription("double_gauss_100mm_f2.0");
   const std::vector<double> nm{450, 650};
   const Lens lens = compile(p, nm, {.glasses = nullptr, .missing_glass = MissingGlass::abbe});
-  const FilmPupilTable map = FilmPupilTable::enclosing(lens, 20);
-  ASSERT_EQ(map.wavelengths(), 2u);
+  const FilmPupilTable table = FilmPupilTable::enclosing(lens, 20);
+  ASSERT_EQ(table.wavelengths(), 2u);
   const std::vector<std::uint16_t> each{1, 0, 2, 1, 0, 1, 0, 1};
   std::vector<double> x(8, 7), y(8, -11), u(8, 0.37), v(8, 0.81), px(8), py(8), areas(8);
-  map.sample<double>(8, x.data(), y.data(), u.data(), v.data(), {.each = each.data()}, px.data(), py.data(),
-                     areas.data());
+  table.sample<double>(8, x.data(), y.data(), u.data(), v.data(), {.each = each.data()}, px.data(), py.data(),
+                       areas.data());
   for (std::size_t i = 0; i < 8; ++i) {
-    const PupilSample s = map.sample({7, -11}, 0.37, 0.81, each[i]);
+    const PupilSample s = table.sample({7, -11}, 0.37, 0.81, each[i]);
     EXPECT_NEAR(px[i], s.x, 1e-12);
     EXPECT_NEAR(py[i], s.y, 1e-12);
     EXPECT_EQ(areas[i] == 0, each[i] == 2);
   }
-  EXPECT_NE(map.area({7, -11}, 0), map.area({7, -11}, 1));
+  EXPECT_NE(table.area({7, -11}, 0), table.area({7, -11}, 1));
 }
 
 }  // namespace

@@ -17,8 +17,8 @@ namespace petzval::inline v0 {
 /// How the search for a ray ended.
 enum class AimStatus : std::uint8_t {
   converged,  ///< the ray goes through the point of the stop aimed at, and through the whole lens
-  vignetted,  ///< it goes through that point of the stop, but ends at a surface of the lens
-  no_ray,     ///< no ray from the scene point gets to that point of the stop
+  vignetted,  ///< the ray goes through that point of the stop, but ends at a surface of the lens
+  no_ray,     ///< no ray from the scene point reaches that point of the stop
 };
 
 /// "converged", "vignetted" or "no_ray".
@@ -29,13 +29,12 @@ struct StopPoint {
   double x = 0, y = 0;
 };
 
-/// A ray from a scene point through a given place on the stop. Every ray that is not no_ray was traced through the lens
-/// before it was returned.
+/// A ray from a scene point through a given place on the stop. Every ray except no_ray was traced through the lens.
 struct AimedRay {
   AimStatus status = AimStatus::no_ray;
   int surface = -1;         ///< vignetted: the surface that ends the ray
-  Ray<double> ray{};        ///< in object space; started where it is nearest to the centre of the PupilPlane
-  TracedRay<double> end{};  ///< behind the lens, clear apertures ignored; where even so it ends, that fate
+  Ray<double> ray{};        ///< in object space, from its point nearest to the centre of the PupilPlane
+  TracedRay<double> end{};  ///< behind the lens, clear apertures ignored; its fate where it is lost all the same
   /// Distance of the traced ray from the place aimed at on the stop, in stop semi-diameters.
   double residual = std::numeric_limits<double>::infinity();
 
@@ -44,11 +43,11 @@ struct AimedRay {
 
 /// Aims a ray of a scene point at a place on the stop.
 ///
-/// It is solved backwards, from the stop to the scene, where wide lenses behave: the direction at the stop is bracketed
-/// in the meridian of the field (a ray that misses a surface on its way counts as too steep) and finished by Newton's
-/// iteration on exact derivatives; rays away from the centre start from the chief ray's direction. Clear apertures are
-/// looked at last. Without a marked stop the surface that limits the axial beam serves (pupils().stop says which).
-/// A stop of radius 0 has only its centre.
+/// The search runs backwards, from the stop to the scene, which wide lenses need: the direction at the stop is
+/// bracketed in the meridian of the field (a ray that misses a surface on its way counts as too steep) and refined by
+/// Newton's iteration on exact derivatives; rays away from the centre start from the direction of the chief ray. Clear
+/// apertures are tested last. Without a marked stop the surface that limits the axial beam takes its place
+/// (pupils().stop). A stop of radius 0 has only its centre.
 ///
 /// Accuracy: residual <= 1e-12 (tests/pupil/aim_test.cpp: every lens of data/ to its declared edge, 110 degrees, near
 /// and far objects, f/22; at f/64, where the front of a fisheye is 300 times as large as its stop, 3e-12); 1e-7 of rays

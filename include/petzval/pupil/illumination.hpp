@@ -12,14 +12,14 @@
 
 namespace petzval::inline v0 {
 
-/// Irradiance of the lens's film at a point, in units of the radiance of a scene that is alike in all directions: n'^2
-/// times the projected solid angle in which the point sees the scene through the lens, in sr. Within 5e-4.
+/// Irradiance of the film of a lens at a point, in units of the radiance of a scene that is uniform in all directions:
+/// n'^2 times the projected solid angle in which the point sees the scene through the lens, in sr. Within 5e-4.
 /// Throws Error where pupil_boundary does.
 PETZVAL_API double film_irradiance(const Lens& lens, const FilmPoint& point, Wavelength wavelength = {});
 
-/// film_irradiance where the chief ray of a scene point meets the film, over that on the axis: natural and optical
-/// vignetting, and what distortion and the pupil's own aberrations do to them. Nothing where the axis is dark or no
-/// chief ray reaches the film. Throws Error where PupilPlane does, for scene points and for the film.
+/// film_irradiance where the chief ray of a scene point meets the film, relative to that on the axis: natural and
+/// optical vignetting, with the effects of distortion and pupil aberration. No value where the axis is dark or no chief
+/// ray reaches the film. Throws Error where PupilPlane does, for scene points and for the film.
 PETZVAL_API std::optional<double> relative_illumination(const Lens& lens, const FieldPoint& point,
                                                         Wavelength wavelength = {});
 

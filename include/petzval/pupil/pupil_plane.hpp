@@ -13,46 +13,46 @@
 
 namespace petzval::inline v0 {
 
-/// The plane in which the rays of a point are told apart, those of a scene point in front of the lens, those of a film
-/// point (which run against the light) behind it.
+/// The plane that parametrises the rays of a point: (x, y) is where a ray crosses it. Rays of a scene point enter the
+/// lens from the front, those of a film point run backwards, from behind.
 ///
-/// For a scene point it is the plane of the paraxial entrance pupil, x and y those of the lens frame, for fields below
-/// 89 degrees; from there on, where that plane is seen edge-on, it is perpendicular to the line from the pupil's centre
-/// to the point, its y axis the pupil's turned by the field. For a film point it is the plane of the last vertex.
+/// For a scene point at a field below 89 degrees it is the plane of the paraxial entrance pupil, x and y those of the
+/// lens frame. At larger fields, which see that plane edge-on, it is perpendicular to the line from the pupil's centre
+/// to the point, its y axis turned by the field. For a film point it is the plane of the last vertex.
 class PETZVAL_API PupilPlane {
  public:
   /// Throws Error for a field beyond 180 degrees or not finite, an entrance pupil at infinity (object-space
-  /// telecentric: a field angle has no meaning there), and a point that is not in front of the lens: in the pupil's
-  /// plane, in or behind the first surface, or at a plane that the field's line does not meet.
+  /// telecentric: a field angle has no meaning there), and a point that is not in front of the lens: in the plane of
+  /// the pupil, in or behind the first surface, or at a plane that the line of the field does not meet.
   PupilPlane(const Lens& lens, const FieldPoint& point);
 
   /// Throws Error for a point that is not finite and a film in the plane of the last vertex.
   static PupilPlane of_film(const Lens& lens, const FilmPoint& point);
 
-  /// Which way the rays go through the lens.
+  /// Direction of travel of the rays.
   Travel travel() const noexcept { return travel_; }
   /// The point lies on the axis.
   bool on_axis() const noexcept { return towards_.x == 0 && towards_.y == 0; }
   /// Turned to face the point.
   bool turned() const noexcept { return turned_; }
 
-  /// The plane's centre and unit normal. The point lies at centre() + towards() / reciprocal_distance(): towards() has
+  /// Centre and unit normal of the plane. The point lies at centre() + towards() / reciprocal_distance(): towards() has
   /// unit length, and the reciprocal is 0 at infinity and negative where the pupil lies in front of the point.
   const Vec3<double>& centre() const noexcept { return centre_; }
   const Vec3<double>& normal() const noexcept { return normal_; }
   const Vec3<double>& towards() const noexcept { return towards_; }
   double reciprocal_distance() const noexcept { return reciprocal_distance_; }
 
-  /// The ray of the point through (x, y), started in the plane and never at the point: nothing is lost however far that
-  /// is.
+  /// The ray of the point through (x, y). It starts in the plane, so that precision does not depend on the distance of
+  /// the point.
   Ray<double> ray(double x, double y) const noexcept;
-  /// The same for many. x, y, and rays: N each, apart in memory.
+  /// The same for many. x, y, and rays: N each. Outputs must not alias inputs.
   void rays(std::span<const double> x, std::span<const double> y, const RayArrays<double>& rays) const noexcept;
 
-  /// Where the line of a ray meets the plane.
+  /// Where a ray, prolonged both ways, meets the plane.
   std::array<double, 2> meet(const Ray<double>& ray) const noexcept;
 
-  /// The unit direction in which the ray of the point that passes a place (lens frame, mm) runs towards the lens.
+  /// Unit direction of the ray of the point through a place (lens frame, mm).
   Vec3<double> direction_at(const Vec3<double>& place) const noexcept;
 
  private:

@@ -11,14 +11,15 @@
 
 namespace petzval::inline v0 {
 
-/// Spreads points evenly over a pupil: over a region little larger than the boundary, made of one ring sector between
-/// each two neighbouring directions, so that next to all rays sent through them pass and none that would is left out.
+/// Spreads points uniformly over a pupil: over a region little larger than the boundary, made of one ring sector
+/// between each two neighbouring directions, so that nearly all sampled rays pass and no ray that passes is left out.
 ///
 ///     petzval::PupilSampler sampler(petzval::pupil_boundary(lens, point));
 ///     auto [x, y] = sampler(u, v);                    // u, v in [0, 1)
 ///     petzval::Ray<double> ray = sampler.plane().ray(x, y);
 ///
-/// The map keeps areas, so that stratified u and v stay so.
+/// The map preserves area: stratified u and v give stratified points. u runs around the middle, from +y towards +x, v
+/// outwards.
 class PETZVAL_API PupilSampler {
  public:
   explicit PupilSampler(const PupilBoundary& boundary);
@@ -29,10 +30,10 @@ class PETZVAL_API PupilSampler {
   const PupilPlane& plane() const noexcept { return plane_; }
   std::size_t wavelength() const noexcept { return wavelength_; }
 
-  /// Of the region, mm^2 in the plane: the boundary's and a margin.
+  /// Area of the region, mm^2 in the plane: that of the boundary and a margin.
   double area() const noexcept { return area_; }
 
-  /// The point (x, y) of the plane for u, v in [0, 1). Not for an empty sampler.
+  /// The point (x, y) of the plane for u, v in [0, 1). The sampler must not be empty.
   std::array<double, 2> operator()(double u, double v) const noexcept;
   /// The same for many. u, v, x, y: N each; x and y may be u and v.
   void operator()(std::span<const double> u, std::span<const double> v, std::span<double> x,

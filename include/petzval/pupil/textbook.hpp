@@ -24,14 +24,13 @@ struct TextbookPupil {
 /// The entrance pupil by the textbook method: the outermost ray that the lens passes from a point of the axis, found by
 /// bisection between the axis and the rim of the first surface, in the plane of the paraxial image of the stop.
 ///
-/// It is here as the baseline that the literature samples lenses by, and to show what is wrong with it (the numbers:
-/// tests/pupil/textbook_test.cpp, a double Gauss f/2):
+/// It is the baseline by which the literature samples lenses; its errors (tests/pupil/textbook_test.cpp, a double Gauss
+/// f/2) are:
 ///   - its ray belongs to the first rim that clips, which need not be the stop: f/2.018 where the stop gives f/2.004;
 ///   - it is a disc on the axis: 10 degrees or more off, rims and the aberrations of the pupil cut and shift what
 ///     passes. In the corner of the film a fifth of the disc passes;
-///   - stopped down, when no rim clips any more, the disc is in the wrong place all the same: it misses a fifth of the
-///     passing rays in that corner. And what passes on the axis need not reach the axis: a lens with a hole
-///     in it has no such pupil.
+///   - stopped down, where no rim clips, the disc is still in the wrong place: it misses a fifth of the passing rays in
+///     that corner. A lens with a central obscuration has no such pupil at all.
 /// Use pupils() for the image of the stop, aim() for its rays and pupil_boundary() for what passes.
 ///
 /// object_z: lens frame, mm; infinite, or anywhere but in the first vertex (a converging beam aims behind it).
