@@ -55,12 +55,13 @@ void check(const Lens& lens, const FieldPoint& point, const Pupil& entrance) {
   }
 }
 
-/// The direction at a place, from the plane's centre. (place - point) / distance has no large numbers in it, and at
-/// infinity the first term is 0.
+/// The direction at a place of the plane, from its centre. (place - point) / distance has no large numbers in it, and
+/// at infinity the first term is 0. A negative distance, of a point that the rays of the plane have before them, turns
+/// place - point around.
 Vec3<double> direction_from(const Vec3<double>& place, const Vec3<double>& towards,
                             double reciprocal_distance) noexcept {
   const Vec3<double> d = place * reciprocal_distance - towards;
-  return d * ((reciprocal_distance < 0 ? -1 : 1) / glm::length(d));
+  return d * (1 / glm::length(d));
 }
 
 }  // namespace
@@ -104,7 +105,8 @@ PupilPlane PupilPlane::of_film(const Lens& lens, const FilmPoint& point) {
 }
 
 Vec3<double> PupilPlane::direction_at(const Vec3<double>& place) const noexcept {
-  return direction_from(place - centre_, towards_, reciprocal_distance_);
+  const Vec3<double> d = direction_from(place - centre_, towards_, reciprocal_distance_);
+  return glm::dot(d, towards_) > 0 ? -d : d;  // the point may lie between the plane and the place
 }
 
 Ray<double> PupilPlane::ray(double x, double y) const noexcept {

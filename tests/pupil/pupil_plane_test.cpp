@@ -12,6 +12,9 @@
 #include "../message.hpp"
 #include "petzval/core/units.hpp"
 #include "petzval/paraxial/pupils.hpp"
+#include "petzval/pupil/aim.hpp"
+#include "petzval/pupil/illumination.hpp"
+#include "petzval/pupil/pupil_boundary.hpp"
 #include "petzval/trace/trace.hpp"
 
 namespace petzval {
@@ -104,6 +107,42 @@ TEST(PupilPlane, SeesPlanesBesideTheLensBeyond90Degrees) {
   EXPECT_GT(point.y, 0);
   EXPECT_LT(glm::length(glm::cross(point - ray.origin, ray.direction)), 1e-12);
   EXPECT_LT(glm::dot(point - ray.origin, ray.direction), 0);
+}
+
+TEST(PupilPlane, RaysOfAPointBehindTheEntrancePupilRunIntoTheLens) {
+  // Behind the rear focal point the stop has its image before the lens, and before the point.
+  Prescription p;
+  p.name = "rear stop";
+  p.surfaces = {{.radius = 100, .thickness = 4, .medium = {.nd = 1.5}, .semi_diameter = 40},
+                {.radius = -100, .thickness = 112, .semi_diameter = 40},
+                {.thickness = 50, .semi_diameter = 2, .stop = true}};
+  const Lens lens = compile(p);
+  const FieldPoint point{0.01, -500};
+  const PupilPlane plane(lens, point);
+  ASSERT_LT(plane.reciprocal_distance(), 0);
+  const Vec3<double> place = plane.centre() + plane.towards() / plane.reciprocal_distance();
+  const Ray<double> ray = plane.ray(0.3, -0.2);
+  EXPECT_GT(ray.direction.z, 0);
+  EXPECT_LT(glm::length(glm::cross(place - ray.origin, ray.direction)), 1e-10);
+  EXPECT_LT(glm::length(plane.direction_at({2, 3, 0}) - glm::normalize(Vec3<double>{2, 3, 0} - place)), 1e-14);
+  const AimedRay chief = chief_ray(lens, point);
+  ASSERT_EQ(chief.status, AimStatus::converged);
+  EXPECT_LT(glm::length(glm::cross(place - chief.ray.origin, chief.ray.direction)), 1e-10);
+  EXPECT_TRUE(trace(lens, chief.ray).transmitted());
+  EXPECT_FALSE(pupil_boundary(lens, point).empty());
+}
+
+TEST(PupilPlane, OfAVirtualFilmSendsRaysIntoTheLens) {
+  Prescription p;
+  p.name = "diverging";
+  p.surfaces = {{.radius = -100, .thickness = 2, .medium = {.nd = 1.5}, .semi_diameter = 10, .stop = true},
+                {.radius = 100, .thickness = -90, .semi_diameter = 12}};
+  const Lens lens = compile(p);
+  const Ray<double> ray = PupilPlane::of_film(lens, {0, 1}).ray(0.5, 0);
+  EXPECT_LT(ray.direction.z, 0);
+  EXPECT_LT(glm::length(glm::cross(Vec3<double>{0, 1, lens.film_z()} - ray.origin, ray.direction)), 1e-12);
+  EXPECT_TRUE(trace(lens, ray, {.travel = Travel::to_scene}).transmitted());
+  EXPECT_GT(film_irradiance(lens, {}), 0);
 }
 
 TEST(PupilPlane, OfAFilmPointSendsRaysAgainstTheLight) {
