@@ -12,7 +12,7 @@ set(layer_1 media surface prescription film iris)
 set(layer_2 lens)
 set(layer_3 paraxial trace)
 set(layer_4 pupil)
-set(layer_5 pupil_table lint)  # lint compares what a prescription declares with what the modules below compute
+set(layer_5 pupil_table rays lint)  # lint compares what a prescription declares with what the modules below compute
 set(layer_6 focus polynomial)
 set(layer_7 movement)
 set(layer_8 camera)

@@ -95,18 +95,19 @@ Json to_json(const std::vector<Picture>& pictures, const examples::LoadedLens& l
             {"results", Json::array()}};
   const auto sum = [](const auto& rays) { return std::accumulate(rays.begin(), rays.end(), std::uint64_t(0)); };
   for (const Picture& p : pictures) {
+    const auto pair = [](const petzval::Vec2<double>& v) { return std::array{v.x, v.y}; };
     const auto if_any = [&](const auto& size) { return p.image.throughput > 0 ? Json(size) : Json(); };
     json["results"].push_back({{"focus_mm", finite_or_null(p.focus_mm)},
                                {"film_z_mm", p.scene.lens.film_z()},
                                {"criterion", options.criterion},
                                {"throughput", p.image.throughput},
-                               {"centroid_mm", if_any(p.image.size.centroid)},
+                               {"centroid_mm", if_any(pair(p.image.size.centroid))},
                                {"rms_radius_mm", if_any(p.image.size.rms_radius)},
                                {"radius_mm", if_any(p.image.size.max_radius)},
                                {"rays_sent", sum(p.image.psf.sent)},
                                {"rays_transmitted", sum(p.image.psf.transmitted)},
                                {"radial_profile", p.image.radial_profile},
-                               {"picture_centre_mm", p.image.psf.centre},
+                               {"picture_centre_mm", pair(p.image.psf.centre)},
                                {"picture_pixel_mm", p.image.psf.pixel_mm}});
   }
   return json;

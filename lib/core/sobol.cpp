@@ -9,8 +9,8 @@ namespace {
 
 using core_detail::mixed;
 
-/// The bits of x in the opposite order. Nibbles are turned between pairs of bytes and pairs of those: side by side the
-/// last two are taken for one instruction that lanes of a baseline processor do not have.
+/// The bits of x in reverse order. The swap of nibbles stands between those of bytes and half words: next to each other
+/// compilers take the last two for one instruction that the vectors of the baseline do not have.
 constexpr std::uint32_t reversed(std::uint32_t x) noexcept {
   x = ((x >> 1) & 0x55555555u) | ((x & 0x55555555u) << 1);
   x = ((x >> 2) & 0x33333333u) | ((x & 0x33333333u) << 2);
@@ -62,12 +62,12 @@ class Scrambling {
   Round first_, second_, third_;
 };
 
-/// By way of a signed number, which vectors of a baseline processor convert; every step is exact.
+/// Digits in reverse order as a number in [0, 1), exactly; by a signed integer, which baseline vectors can convert.
 constexpr double unit(std::uint32_t digits) noexcept {
   return static_cast<std::int32_t>(reversed(digits) ^ 0x80000000u) * 0x1p-32 + 0.5;
 }
 
-/// Written so that lanes run it as it is: see owen_sobol for many.
+/// Plain loops that the compiler puts on lanes.
 [[gnu::always_inline]] inline void fill(std::uint32_t first, std::uint32_t seed, std::span<double> u,
                                         std::span<double> v) noexcept {
   const std::uint64_t key = std::uint64_t(seed) << 1;
@@ -77,7 +77,7 @@ constexpr double unit(std::uint32_t digits) noexcept {
 }
 
 #if defined(__x86_64__) && defined(__GNUC__)
-// The products of the scrambling are what lanes of the baseline lack. All is exact: the same points from each.
+// Baseline vectors lack the products of the scrambling. All steps are exact: every set gives the same points.
 [[gnu::target("avx2")]] void fill_avx2(std::uint32_t first, std::uint32_t seed, std::span<double> u,
                                        std::span<double> v) noexcept {
   fill(first, seed, u, v);
@@ -91,9 +91,9 @@ constexpr double unit(std::uint32_t digits) noexcept {
 
 }  // namespace
 
-std::array<double, 2> owen_sobol(std::uint32_t index, std::uint32_t seed) noexcept {
-  std::array<double, 2> point;
-  fill(index, seed, std::span(&point[0], 1), std::span(&point[1], 1));
+Vec2<double> owen_sobol(std::uint32_t index, std::uint32_t seed) noexcept {
+  Vec2<double> point;
+  fill(index, seed, std::span(&point.x, 1), std::span(&point.y, 1));
   return point;
 }
 

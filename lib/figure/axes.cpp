@@ -58,7 +58,7 @@ Axes::Axes(Svg& svg, double x, double y, double width, double height, Axis horiz
             "text-anchor=\"middle\" transform=\"rotate(-90 " + svg_number(x_ - 48) + " " + svg_number(middle) + ")\"");
 }
 
-/// Liang and Barsky's way: each border of the frame takes its share of 0 to 1.
+/// Liang and Barsky's algorithm: each border of the frame shortens the range 0 to 1.
 Axes::Part Axes::within(const Point& a, const Point& b) const {
   Part part;
   const auto keep = [&part](double start, double change, const Axis& axis) {

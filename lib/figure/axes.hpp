@@ -11,11 +11,11 @@
 
 namespace petzval::inline v0::figure_detail {
 
-/// One axis of a diagram: what it spans, and its title with the unit.
+/// One axis of a diagram: its range, and its title with the unit.
 struct Axis {
   double from = 0, to = 1;
   std::string title;
-  bool powers_of_ten = false;  ///< of which values are the logarithms; ticks say the numbers
+  bool powers_of_ten = false;  ///< values are decimal logarithms; ticks show the numbers
 };
 
 /// A diagram: a frame with ticks at round values, and curves cut off at the frame.
@@ -30,7 +30,7 @@ class Axes {
   double x(double value) const { return x_ + (value - across_.from) / (across_.to - across_.from) * width_; }
   double y(double value) const { return y_ + height_ - (value - up_.from) / (up_.to - up_.from) * height_; }
 
-  /// A line through points, as far as it lies within the frame. Points that are not finite interrupt it.
+  /// A line through points, clipped to the frame. Points that are not finite interrupt it.
   void curve(std::span<const Point> points, std::string_view attributes);
 
   /// Vertical lines through the whole frame, with names above it: a row of 15 px for each, the leftmost on top, so that
@@ -42,7 +42,7 @@ class Axes {
   void marks(std::vector<Mark> marks);
 
  private:
-  /// Of the stretch from a to b, 0 to 1, what lies within the frame; nothing where from > to.
+  /// The part of the segment from a to b, 0 to 1, within the frame; empty where from > to.
   struct Part {
     double from = 0, to = 1;
   };

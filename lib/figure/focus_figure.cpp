@@ -31,7 +31,8 @@ struct Parabola {
   double least_rms() const { return std::sqrt(std::max(0.0, least)); }
 };
 
-/// Through the values at z - step, z and z + step. Nothing where it has no bottom: rays parallel, or none.
+/// The parabola through the values at z - step, z and z + step. Nothing where it has no minimum: no rays, or parallel
+/// ones.
 std::optional<Parabola> parabola(const std::array<double, 3>& values, double z, double step) {
   const double bend = (values[0] - 2 * values[1] + values[2]) / 2, slope = (values[2] - values[0]) / 2;
   if (!(bend > 0)) return std::nullopt;
@@ -50,7 +51,7 @@ std::vector<std::optional<Parabola>> parabolas(const Lens& lens, double subject_
     }
     std::array<double, 3> squares{};
     for (std::size_t k = 0; k < 3; ++k) {
-      std::vector<FilmHits> hits;
+      std::vector<RayBundle> hits;
       for (const PupilSampler& sampler : samplers) hits.push_back(trace_bundle(shifted[k], sampler, rays));
       const double rms = spot_size(hits).rms_radius;
       squares[k] = rms * rms;
@@ -60,7 +61,7 @@ std::vector<std::optional<Parabola>> parabolas(const Lens& lens, double subject_
   return result;
 }
 
-/// Of several, each with the same weight.
+/// The mean of the parabolas of several fields, each with the same weight.
 std::optional<Parabola> mean(const std::vector<std::optional<Parabola>>& fields) {
   double count = 0, steepness = 0, moment = 0;
   for (const auto& f : fields) {
@@ -157,7 +158,7 @@ class Figure {
     return (mm >= 0 ? "+" : "\u2212") + number(std::abs(mm) < 5e-7 ? 0.0 : std::abs(mm), 3) + " mm";
   }
 
-  /// All that is marked, and some of the curves' flanks around it.
+  /// The range of the horizontal axis: all marks, and a part of the curves on both sides.
   void measure() {
     from_ = to_ = lens_.film_z();
     const auto take = [&](double z) { from_ = std::min(from_, z), to_ = std::max(to_, z); };

@@ -19,7 +19,7 @@ namespace {
 
 using Frames = std::span<const FocusPullFrame>;
 
-/// What one curve shows of a frame.
+/// The value of one curve in a frame.
 struct Curve {
   std::function<double(const FocusPullFrame&)> value;
   std::string_view colour, name;
@@ -49,7 +49,7 @@ void check(Frames frames) {
   }
 }
 
-/// All values with some room, and a span that is none widened.
+/// The range of all values with some margin; an empty range is widened.
 figure_detail::Axis spanning(Frames frames, const Diagram& diagram) {
   double low = std::numeric_limits<double>::infinity(), high = -low;
   for (const Curve& curve : diagram.curves) {
@@ -97,7 +97,7 @@ std::string focus_pull_figure(std::string_view title, std::string_view remark, F
     }
     double key_x = left + 10;
     for (const Curve& curve : diagram.curves) {
-      // The whole in grey, then what was served on top of it.
+      // The whole curve in grey, then the parts with focus points on top.
       std::vector<figure_detail::Axes::Point> all, served;
       for (const FocusPullFrame& f : frames) {
         const double value = curve.value(f);

@@ -25,7 +25,7 @@ using figure_detail::svg_number;
 constexpr double cell = 220, gap = 14, top = 70, under = 68;
 constexpr std::size_t most_columns = 4;
 
-/// What ends the rays outside an edge.
+/// The surface and fate that end rays outside the boundary.
 struct Limit {
   int surface = -1;
   RayFate fate = RayFate::vignetted;
@@ -82,7 +82,7 @@ class Figure {
     // The stop first: it is black in every lens.
     const int stop = static_cast<int>(pupils(lens, wavelength_).stop);
     std::ranges::sort(limits_, {}, [&](const Limit& a) { return std::tuple(a.surface != stop, a.surface, a.fate); });
-    half_ = half_ > 0 ? 1.1 * half_ : 1;  // nothing to see where the stop is shut
+    half_ = half_ > 0 ? 1.1 * half_ : 1;  // the stop is closed
   }
 
   std::string draw() const {
@@ -152,7 +152,7 @@ class Figure {
     const auto at = [&](const RimPoint& e) { return svg_number(x(e.x)) + " " + svg_number(y(e.y)); };
     svg.rect(left, upper, cell, cell, "fill=\"none\" stroke=\"#bbb\"");
 
-    // Each direction's span is joined with its neighbour's of the same rank, where both directions have as many.
+    // A span is joined to the span of the same rank in the next direction, where both have as many spans.
     const auto& spans = c.outline.spans;
     std::vector<std::pair<std::size_t, std::size_t>> of(c.outline.directions, {0, 0});  // first span and their number
     for (std::size_t i = 0; i < spans.size(); ++i) {

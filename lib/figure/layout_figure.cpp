@@ -26,7 +26,7 @@ using figure_detail::svg_number;
 
 constexpr double width = 960, side = 22, top = 64, bottom = 86, tallest = 520;
 
-/// What must be on the paper.
+/// The part of the section that the drawing shows.
 struct Box {
   double z_min = 0, z_max = 0, low = 0, high = 0;
 
@@ -101,13 +101,13 @@ class Figure {
     return {lens_.film_z(), last.height + ray.behind.height / ray.behind.z * (lens_.film_z() - last.z)};
   }
 
-  /// Where a ray that runs away from the film is let go: its image is virtual.
+  /// The end of a ray that runs away from the film: its image is virtual.
   SectionPoint past_lens(const RayPath& ray) const {
     const SectionPoint last = ray.hits.back();
     return {last.z + tail_ * ray.behind.z, last.height + tail_ * ray.behind.height};
   }
 
-  /// The lens and its film first; then how long rays in front of it are, which takes some more paper.
+  /// Lens and film first, then the rays in front of the lens, whose length depends on the size of both.
   void measure() {
     for (std::size_t i = 0; i < lens_.surface_count(); ++i) {
       for (const SectionLine& line : section_.surface(i)) {
@@ -120,7 +120,7 @@ class Figure {
     body_half_ = box_.high;
     box_.take({lens_.film_z(), 0});
     for (std::size_t field = 0; field < fields_.size(); ++field) {
-      // The ray nearest to the chief ray tells how high the film is: one at the edge may leave almost along the film.
+      // The ray nearest to the chief ray gives the height of the film: a marginal ray may run almost along it.
       const RayPath* nearest = nullptr;
       for (const RayPath& ray : rays_) {
         if (ray.field != field || !arrives(ray)) continue;
@@ -175,7 +175,7 @@ class Figure {
     }
   }
 
-  /// In which the light of a field comes.
+  /// Direction of the light of a field.
   SectionPoint direction(std::size_t field) const { return {std::cos(fields_[field]), -std::sin(fields_[field])}; }
 
   void draw_glass(Svg& svg) const {
@@ -197,8 +197,8 @@ class Figure {
     }
   }
 
-  /// The end of the last stretch of a ray, no higher than the limit: a surface goes on beside its rim on paper only,
-  /// and a ray along the film meets it far away.
+  /// The end of the last segment of a ray, cut at a height: a surface has no point outside its rim, and a ray along the
+  /// film meets it far away.
   static SectionPoint cut(const SectionPoint& from, const SectionPoint& to, double limit) {
     if (std::abs(to.height) <= limit || std::abs(from.height) >= limit) return to;
     const double t = (std::copysign(limit, to.height) - from.height) / (to.height - from.height);

@@ -31,7 +31,7 @@ void check(std::span<const ParetoPoint> points) {
   }
 }
 
-/// Logarithms from a decade (or a part of it) below the least value that is one to one above the largest.
+/// The range of an axis in logarithms, rounded outwards to decades or parts of one.
 figure_detail::Axis decades(const std::vector<double>& values, double margin, std::string title) {
   double least = infinity, most = -infinity;
   for (const double value : values) {

@@ -11,19 +11,19 @@
 namespace petzval::inline v0::figure_detail {
 namespace {
 
-/// Rays of one field, told apart by the height at which they pass the stop: -1 to 1 in the section.
+/// The rays of one field, by their height in the stop: -1 to 1 in the section.
 class Fan {
  public:
   Fan(const Lens& lens, const FieldPoint& point, Meridian meridian, std::size_t wavelength)
       : lens_(lens), point_(point), in_y_(meridian == Meridian::y), wavelength_(wavelength) {}
 
   AimedRay at(double height) const {
-    const double inside = height * (1 - 1e-9);  // a rim's own ray is not to end at it by rounding
+    const double inside = height * (1 - 1e-9);  // rounding must not vignette the ray through the rim
     return aim(lens_, point_, in_y_ ? StopPoint{0, inside} : StopPoint{inside, 0}, wavelength_);
   }
   bool passes(double height) const { return at(height).status == AimStatus::converged; }
 
-  /// Between a height that passes and one that does not: the last that does.
+  /// The last height that passes, between one that does and one that does not.
   double edge(double passing, double lost) const {
     for (int i = 0; i < 20; ++i) {
       const double middle = (passing + lost) / 2;
@@ -47,7 +47,7 @@ class Fan {
     for (std::size_t k = 0; k < count; ++k) {
       result.push_back(from + (to - from) * static_cast<double>(k) / static_cast<double>(count - 1));
     }
-    // The chief ray takes the place of the one in between that is nearest to it; the rest is what the rims take.
+    // The chief ray replaces its nearest neighbour between the edges; rays through the rim of the stop come last.
     if (from < 0 && to > 0) {
       *std::min_element(result.begin() + 1, result.end() - 1,
                         [](double a, double b) { return std::abs(a) < std::abs(b); }) = 0;

@@ -12,18 +12,18 @@
 
 namespace petzval::inline v0::figure_detail {
 
-/// The way of one ray through a lens, seen in a section.
+/// The path of one ray through a lens in a section. (A RayBundle knows rays behind the lens only.)
 struct RayPath {
   std::size_t field = 0;        ///< its place in the list
-  double stop_height = 0;       ///< where it passes the stop: 0 the centre, 1 the rim
-  SectionLine hits;             ///< on the surfaces, in their order, to the one that ends it
-  SectionPoint before, behind;  ///< direction in object space, and where it was last
+  double stop_height = 0;       ///< in the stop: 0 the centre, 1 the rim
+  SectionLine hits;             ///< on the surfaces, in the order of travel, up to the one that ends it
+  SectionPoint before, behind;  ///< directions in object space and after the last hit
   RayFate fate = RayFate::transmitted;
 };
 
-/// Rays of each field in a section: `count` (3 or more) spread over what passes, from its one edge to the other and
-/// with the chief ray among them, equally spaced on the stop. Where rims take a part of the stop, the rays through its
-/// own rim, or centre, come last and end there. Rays that do not exist, or pass beside the first surface, are left out.
+/// Rays of each field in a section: `count` (3 or more) that pass, equally spaced in the stop from edge to edge, with
+/// the chief ray among them. Vignetted rays through the rim or the centre of the stop come last and end at a surface.
+/// Rays that do not exist or miss the first surface are left out.
 std::vector<RayPath> ray_paths(const Lens& lens, double subject_z, std::span<const double> fields_rad,
                                Meridian meridian, std::size_t count, std::size_t wavelength);
 

@@ -12,7 +12,7 @@
 
 namespace petzval::inline v0::figure_detail {
 
-/// What must be on the paper: a part of a section, mm.
+/// The part of a section that a panel shows, mm.
 struct SectionBox {
   double z_min = 0, z_max = 0, low = 0, high = 0;
 
@@ -35,10 +35,10 @@ struct SectionTrace {
   double side(const SectionPoint& p) const { return along * p.z + across * p.height - offset; }
 };
 
-/// The part of a convex outline on the side of a line, where the line's normal points.
+/// The part of a convex outline on the side of a line to which its normal points.
 SectionLine cut_off(const SectionLine& outline, const SectionTrace& line);
 
-/// The place of a diagram with the same scale along and across: the box grown to the shape of its frame.
+/// The layout of a diagram with the same scale on both axes: the box, enlarged to the shape of its frame.
 struct SceneFrame {
   static constexpr double left = 78, width = 858;  ///< px
 
@@ -60,15 +60,15 @@ class ScenePanel {
   const SectionBox& box() const { return frame_.box; }
 
   void stroke(const SectionPoint& a, const SectionPoint& b, std::string_view attributes);
-  /// The whole of a line.
+  /// A line across the whole frame.
   void line(const SectionTrace& line, std::string_view attributes);
   /// A convex outline within the frame, or any that does not leave it.
   void fill(const SectionLine& outline, std::string_view attributes);
-  /// Where lines meet, and its name, with the baseline so much lower.
+  /// The intersection of lines with its name; `lower`: px from its usual baseline.
   void dot(const SectionPoint& p, std::string_view name, double lower_px);
-  /// A point of the scene or its image, and its number; hollow where it takes no part.
+  /// A point of the scene or its image with its number; hollow where it was not used.
   void mark(const SectionPoint& p, std::size_t number, bool used, double radius);
-  /// Words beside a point, within the frame.
+  /// Text beside a point, within the frame.
   void words(const SectionPoint& p, std::string_view words, double lower_px);
 
  private:

@@ -45,7 +45,7 @@ bool LensSection::bends(std::size_t i) const {
   return lens_.surfaces()[i].mirror || lens_.index(i, wavelength_) != lens_.index(i + 1, wavelength_);
 }
 
-/// Gases bend light too; nobody draws them.
+/// Whether a surface separates media that a drawing shows: gases are left out.
 bool LensSection::glass_behind(std::size_t i) const { return lens_.index(i + 1, wavelength_) > 1.01; }
 
 double LensSection::farthest_defined(std::size_t surface, double height) const {
@@ -60,7 +60,7 @@ SectionLine LensSection::line(std::size_t surface, double from, double to) const
   constexpr int steps = 48;
   SectionLine result;
   for (int k = 0; k <= steps; ++k) {
-    // Closer together towards the ends, where a deep surface is steep.
+    // Denser towards the ends, where a deep surface is steep.
     const double t = std::sin(std::numbers::pi * (static_cast<double>(k) / steps - 0.5)) / 2 + 0.5;
     const double height = k == steps ? to : from + t * (to - from);
     result.push_back({z(surface, height), height});
@@ -83,8 +83,8 @@ std::vector<SectionLine> LensSection::mirrors() const {
   return result;
 }
 
-/// The parts of a cemented group have one diameter; tables often state what light needs of it. A polynomial is not
-/// followed beyond its rim.
+/// The elements of a cemented group have one diameter, though tables often give the clear height of each surface. A
+/// polynomial is not extrapolated beyond its rim.
 void LensSection::extend_cemented(const std::vector<std::size_t>& bending) {
   for (std::size_t k = 1; k + 1 < bending.size(); ++k) {
     const std::size_t before = bending[k - 1], i = bending[k], after = bending[k + 1];
@@ -97,7 +97,7 @@ void LensSection::extend_cemented(const std::vector<std::size_t>& bending) {
       return !std::isnan(sag_at(lens_, i, meridian_, h)) && (h > rims_[before] || sense * gap(before, i, h) > 0) &&
              (h > rims_[after] || sense * gap(i, after, h) > 0);
     });
-    // Only where it gets all the way: half an extension would be neither the table nor the glass.
+    // All the way or not at all: a part would be neither the table nor the glass.
     if (reach == wanted) drawn_[i] = reach;
   }
 }
@@ -123,7 +123,7 @@ GlassBody LensSection::body(std::size_t first, std::size_t second, double index)
   const std::size_t front = forwards ? first : second, back = forwards ? second : first;
   Edge edges{drawn_[front], drawn_[back]};
 
-  // Rims of a table may lie beyond the line where the surfaces meet: the glass ends there.
+  // Rims may lie beyond the circle where both surfaces meet: the glass ends there.
   const double common = std::min(edges.front, edges.back);
   const double meet = last_where(0, common, [&](double h) { return gap(front, back, h) >= 0; });
   if (meet < common && gap(front, back, 0) >= 0) edges = {meet, meet};

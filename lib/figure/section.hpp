@@ -17,26 +17,26 @@ struct SectionPoint {
 };
 using SectionLine = std::vector<SectionPoint>;
 
-/// One glass body of a lens, from edge to edge: closed lines, one, or two where a hole goes through it.
+/// A glass element of a lens: one closed outline, or two where it has a central hole.
 struct GlassBody {
   double index = 1;
   std::vector<SectionLine> outlines;
 };
 
-/// The cut of a lens by the plane y-z (or x-z) as an optician draws it.
+/// The section of a lens by the plane y-z (or x-z).
 class LensSection {
  public:
-  /// needed: for each surface the largest height at which rays come to it, for those without a rim.
+  /// needed: for each surface the largest height of the rays on it, the rim of surfaces without one.
   LensSection(const Lens& lens, Meridian meridian, std::span<const double> needed, std::size_t wavelength);
 
-  /// What lies between two surfaces at which the index changes. Rims of different height are joined as lenses are
-  /// made: a flat ring out from the lower rim, then the cylinder of the higher one; where the ring would cut the other
-  /// surface, a straight edge. Cemented surfaces reach as far as their neighbours.
+  /// The glass between surfaces at which the index changes. Rims of different height are joined by a flat ring at the
+  /// lower rim and the cylinder of the higher one, or by a straight edge where the ring would cut the other surface.
+  /// Cemented surfaces reach as far as their neighbours.
   std::vector<GlassBody> bodies() const;
 
   std::vector<SectionLine> mirrors() const;
 
-  /// The surface itself from its lower rim to its upper; two pieces where it has a hole.
+  /// A surface from its lower rim to its upper one; two pieces where it has a hole.
   std::vector<SectionLine> surface(std::size_t i) const;
 
   double z(std::size_t surface, double height) const;

@@ -14,7 +14,7 @@
 namespace petzval::inline v0::figure_detail {
 namespace {
 
-/// Width of small text, near enough to place what follows it.
+/// Width of small text, close enough to place text after it.
 double width_of(std::string_view text) { return 6.4 * static_cast<double>(text.size()); }
 
 std::string focal_length_text(const Lens& lens, std::size_t wavelength) {

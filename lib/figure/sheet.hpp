@@ -8,7 +8,7 @@
 #include "petzval/lens/lens.hpp"
 #include "svg.hpp"
 
-/// What the figures share: head line, colours of fields, scale bar, lengths in words.
+/// What the figures share: head line, colours of fields, scale bar, lengths as text.
 namespace petzval::inline v0::figure_detail {
 
 inline constexpr double sheet_margin = 14;  ///< px, left of all text
@@ -27,18 +27,18 @@ std::string field_text(double field_rad);
 /// Colour of a field, by its place in the list; the same in every figure of a lens.
 std::string_view field_colour(std::size_t field);
 
-/// Of glass in a section: from pale to deep as the index goes from 1.4 to 1.95.
+/// Colour of glass in a section: from pale to deep as the index goes from 1.4 to 1.95.
 std::string glass_colour(double index);
 
-/// Name of the lens, and a line that begins with the kind of figure and tells focal length, f-number, subject, film
-/// and wavelength. Takes the top 56 px.
+/// The name of the lens, and a line with the kind of figure, focal length, f-number, subject, film and wavelength.
+/// Takes the top 56 px.
 void draw_head(Svg& svg, const Lens& lens, std::string_view kind, double subject_z, std::size_t wavelength);
 
-/// A bar of round length, at most `longest` px, its left end at (x, y), and its length in words to the right of it.
-/// Returns where the words end, roughly.
+/// A bar of round length, at most `longest` px, with its left end at (x, y) and its length as text to the right.
+/// Returns about where the text ends.
 double draw_scale_bar(Svg& svg, double x, double y, double px_per_mm, double longest, std::string_view remark = {});
 
-/// A coloured stroke and what it stands for, from (x, y). Returns where the words end, roughly.
+/// A coloured stroke and its meaning, from (x, y). Returns about where the text ends.
 double draw_key(Svg& svg, double x, double y, std::string_view colour, std::string_view words);
 
 }  // namespace petzval::inline v0::figure_detail

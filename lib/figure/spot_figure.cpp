@@ -28,8 +28,8 @@ constexpr double cell = 190, gap = 14, under = 22;  // a cell, between cells, fo
 constexpr double left = 118, top = 112, bottom = 76;
 constexpr std::size_t drawn_rays = 600;
 
-/// How a wavelength looks: from violet to brown by its rank, up to three blue, green and red, the custom for F, d and
-/// C.
+/// Colour and marker of a wavelength: blue, green and red for up to three, as usual for F, d and C; else from violet to
+/// brown by rank.
 struct Look {
   std::string_view colour;
   std::size_t marker;
@@ -62,7 +62,7 @@ std::string marker(std::size_t kind, double x, double y) {
   }
 }
 
-/// Of the cone of light that the lens throws on its film.
+/// The f-number of the cone of light on the film.
 double film_side_f_number(const Lens& lens) {
   const Pupil exit = pupils(lens, lens.primary_wavelength()).exit;
   return std::isfinite(exit.z) ? std::abs((lens.film_z() - exit.z) / exit.diameter) : paraxial_f_number(lens);
@@ -87,7 +87,7 @@ class Figure {
                      [&](auto a, auto b) { return nm[a] < nm[b]; });
     middle_ = order[wavelengths_ / 2];
     for (std::size_t row = 0; row < rows_; ++row) {
-      std::vector<FilmHits> hits;
+      std::vector<RayBundle> hits;
       for (const Spot& spot : of(row)) hits.push_back(spot.hits);
       sizes_.push_back(spot_size(hits));
     }
@@ -116,8 +116,8 @@ class Figure {
     double farthest = 0;
     for (std::size_t row = 0; row < rows_; ++row) {
       for (const Spot& spot : of(row)) {
-        for (const double x : spot.hits.x) farthest = std::max(farthest, std::abs(x - sizes_[row].centroid[0]));
-        for (const double y : spot.hits.y) farthest = std::max(farthest, std::abs(y - sizes_[row].centroid[1]));
+        for (const double x : spot.hits.x) farthest = std::max(farthest, std::abs(x - sizes_[row].centroid.x));
+        for (const double y : spot.hits.y) farthest = std::max(farthest, std::abs(y - sizes_[row].centroid.y));
       }
     }
     return farthest;
@@ -154,14 +154,14 @@ class Figure {
   void draw_cell(std::size_t row, std::size_t column) {
     const double x = cell_x(column), y = cell_y(row);
     const double cx = x + cell / 2, cy = y + cell / 2, scale = cell / 2 / limit_;
-    const auto [origin_x, origin_y] = sizes_[row].centroid;
+    const double origin_x = sizes_[row].centroid.x, origin_y = sizes_[row].centroid.y;
     svg_.rect(x, y, cell, cell, "fill=\"none\" stroke=\"#999\"");
     svg_.path("M" + svg_number(x) + " " + svg_number(cy) + "h" + svg_number(cell) + "M" + svg_number(cx) + " " +
                   svg_number(y) + "v" + svg_number(cell),
               "stroke=\"#e4e4e4\"");
     const std::size_t first = column == 0 ? 0 : column - 1, last = column == 0 ? wavelengths_ : column;
     for (std::size_t w = first; w < last; ++w) {
-      const FilmHits& hits = of(row)[w].hits;
+      const RayBundle& hits = of(row)[w].hits;
       std::string d;
       for (std::size_t i = 0; i < std::min(drawn_rays, hits.x.size()); ++i) {
         d += marker(looks_[w].marker, cx + (hits.x[i] - origin_x) * scale, cy - (hits.y[i] - origin_y) * scale);
@@ -191,7 +191,7 @@ class Figure {
         "Origin: centroid of all rays of the field. RMS and max: radii about the centroid of the rays in the cell. "
         "Wavelengths have equal weight. Chief ray: through the stop's centre.",
         small_text);
-    // Of a shut stop there is no circle.
+    // A closed stop has no Airy circle.
     const std::string circle = !std::isfinite(f_number_)
                                    ? std::string()
                                    : "Dashed: Airy circle, 1.22 wavelength N, N = " + number(f_number_, 3) +
@@ -206,7 +206,7 @@ class Figure {
   const Lens& lens_;
   std::span<const Spot> spots_;
   std::size_t wavelengths_, rows_, columns_;
-  std::size_t middle_ = 0;  // the wavelength in the middle of the set, for what has one wavelength
+  std::size_t middle_ = 0;  // the median wavelength, for what has one wavelength
   std::vector<Look> looks_;
   double f_number_;
   Svg svg_;

@@ -9,7 +9,7 @@ namespace petzval::inline v0::figure_detail {
 /// A length in an SVG file, to 1/100 of a pixel, whatever the locale.
 std::string svg_number(double value);
 
-/// Text of an SVG file in the making. Coordinates in pixels, y down.
+/// The text of an SVG file under construction. Coordinates in pixels, y down.
 class Svg {
  public:
   Svg(double width, double height);

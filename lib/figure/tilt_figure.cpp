@@ -52,7 +52,7 @@ void check(const TiltView& view) {
   if (!(view.blur_mm > 0)) throw Error("tilt_figure: blur is " + number(view.blur_mm) + " mm, wanted more than 0");
 }
 
-/// Rounding left out, and never "-0".
+/// Without rounding errors, and never "-0".
 std::string degrees_text(double angle_rad) {
   return number(std::round(1e6 * degrees(angle_rad)) / 1e6 + 0.0, 4) + "\u00b0";
 }
@@ -138,7 +138,7 @@ class Figure {
     return std::abs(l.front_principal_z() - l.rear_principal_z()) <= 1e-9 * std::abs(l.front_focal_length);
   }
 
-  /// Ends of the exposed part of a film, in the section.
+  /// The ends of the exposed part of a film in the section.
   std::pair<SectionPoint, SectionPoint> film_ends(const Film& film) const {
     const Vec3<double> n = film.normal();
     Vec3<double> along = up_ - glm::dot(up_, n) * n;
@@ -172,7 +172,7 @@ class Figure {
         if (line && std::abs(section(line->point).height) < 0.6 * reach) box.take(section(line->point));
       }
     }
-    // Those that take no part where they are not far off.
+    // Unused points where they are near.
     for (const TiltFigurePoint& p : view_.points) {
       if (p.used || p.place.at_infinity) continue;
       const SectionPoint at = section(p.place.position);
@@ -222,7 +222,7 @@ class Figure {
     if (!focus_ || !(view_.blur_mm < 0.5 * exit.diameter)) return {};
     SectionLine region{{b.z_min, b.low}, {b.z_max, b.low}, {b.z_max, b.high}, {b.z_min, b.high}};
     region = cut_off(region, {-1, 0, -view_.lens.front_focal_z});
-    // A place of the plane of focus in front of the front focal plane tells on which side of the limits to stay.
+    // A point of the plane of focus in front of the front focal plane shows the sharp side of the limits.
     const SectionTrace plane = trace(focus_->plane);
     const double squared = plane.along * plane.along + plane.across * plane.across;
     SectionPoint inside{plane.offset * plane.along / squared, plane.offset * plane.across / squared};

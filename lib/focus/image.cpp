@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <utility>
 
@@ -15,60 +16,76 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 double square(double x) { return x * x; }
 
+/// The squared radius of a ray in the plane `shift` behind that of the bundle.
+double square_radius(const RayBundle& rays, std::size_t i, double shift) noexcept {
+  return square(rays.x[i] + shift * rays.slope_x[i]) + square(rays.y[i] + shift * rays.slope_y[i]);
+}
+
 }  // namespace
 
 double Image::diameter(double film) const noexcept {
-  if (lines.empty()) return std::hypot(least, slope * (film - film_z));
+  if (rays.empty()) return std::hypot(least, slope * (film - film_z));
   double largest = 0;
-  for (const Line& line : lines) {
-    const double shift = film - plane_z;
-    largest = std::max(largest, square(line.x + shift * line.slope_x) + square(line.y + shift * line.slope_y));
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    largest = std::max(largest, square_radius(rays, i, film - rays.plane_z));
   }
   return 2 * std::sqrt(largest);
 }
 
-/// The mean square radius is a parabola over the position of the film, with its vertex at -cov(p, u) / var(u), p the
-/// point in the plane and u the slope.
-Image least_rms(std::span<const Line> lines, double plane_z) {
-  double covariance = 0, variance = 0, least = 0;
-  for (const Line& line : lines) {
-    covariance += line.weight * (line.x * line.slope_x + line.y * line.slope_y);
-    variance += line.weight * (square(line.slope_x) + square(line.slope_y));
+bool centre(RayBundle& bundle, bool centroid_on_axis) {
+  const std::size_t count = bundle.size();
+  if (bundle.weights.empty()) bundle.weights.assign(count, 1);
+  double total = 0;
+  for (const double weight : bundle.weights) total += weight;
+  if (!(total > 0)) return false;
+  for (double& weight : bundle.weights) weight /= total;
+  if (centroid_on_axis) return true;
+  for (auto* values : {&bundle.x, &bundle.y, &bundle.slope_x, &bundle.slope_y}) {
+    double mean = 0;
+    for (std::size_t i = 0; i < count; ++i) mean += bundle.weights[i] * (*values)[i];
+    for (double& value : *values) value -= mean;
   }
-  const double shift = variance == 0 ? infinity : -covariance / variance;
-  for (const Line& line : lines) {
-    least += line.weight * (square(line.x + shift * line.slope_x) + square(line.y + shift * line.slope_y));
-  }
-  // The RMS radius of a uniform disc is its diameter over the root of 8.
-  return {.film_z = plane_z + shift,
-          .plane_z = plane_z,
-          .least = std::sqrt(8 * least),
-          .slope = std::sqrt(8 * variance),
-          .lines = {}};
+  return true;
 }
 
-/// The largest of the squared radii, each a parabola over the position of the film, is convex: it falls where the
-/// parabola that is largest there falls.
-Image least_maximum(std::vector<Line> lines, double plane_z) {
+/// The mean square radius is a parabola over the film's position, with its vertex at -cov(p, u) / var(u), p the point
+/// in the plane and u the slope.
+Image least_rms(const RayBundle& rays) {
+  double covariance = 0, variance = 0, least = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const double x = rays.x[i], y = rays.y[i], u = rays.slope_x[i], v = rays.slope_y[i];
+    covariance += rays.weights[i] * (x * u + y * v);
+    variance += rays.weights[i] * (square(u) + square(v));
+  }
+  const double shift = variance == 0 ? infinity : -covariance / variance;
+  for (std::size_t i = 0; i < rays.size(); ++i) least += rays.weights[i] * square_radius(rays, i, shift);
+  // A uniform disc has an RMS radius of its diameter over the root of 8.
+  return {.film_z = rays.plane_z + shift, .least = std::sqrt(8 * least), .slope = std::sqrt(8 * variance)};
+}
+
+/// The largest of the squared radii, each a parabola over the film's position, is convex: it falls where the parabola
+/// that is largest there falls.
+Image least_maximum(RayBundle rays) {
   const auto rises = [&](double shift) {
     double largest = -1, slope = 0;
-    for (const Line& line : lines) {
-      const double x = line.x + shift * line.slope_x, y = line.y + shift * line.slope_y;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      const double u = rays.slope_x[i], v = rays.slope_y[i];
+      const double x = rays.x[i] + shift * u, y = rays.y[i] + shift * v;
       const double radius2 = square(x) + square(y);
-      if (radius2 > largest) largest = radius2, slope = x * line.slope_x + y * line.slope_y;
+      if (radius2 > largest) largest = radius2, slope = x * u + y * v;
     }
     return slope > 0;
   };
   double low = infinity, high = -infinity;
-  for (const Line& line : lines) {
-    const double steepness = square(line.slope_x) + square(line.slope_y);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const double u = rays.slope_x[i], v = rays.slope_y[i], steepness = square(u) + square(v);
     if (steepness == 0) continue;
-    const double vertex = -(line.x * line.slope_x + line.y * line.slope_y) / steepness;
+    const double vertex = -(rays.x[i] * u + rays.y[i] * v) / steepness;
     low = std::min(low, vertex), high = std::max(high, vertex);
   }
   double shift = low;
   if (low < high) shift = rises(low) ? low : core_detail::last_with(low, high, [&](double z) { return !rises(z); });
-  return {.film_z = plane_z + shift, .plane_z = plane_z, .lines = std::move(lines)};
+  return {.film_z = rays.plane_z + shift, .rays = std::move(rays)};
 }
 
 }  // namespace petzval::inline v0::focus_detail

@@ -1,34 +1,32 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <span>
-#include <vector>
+#include "petzval/core/export.hpp"
+#include "petzval/rays/ray_bundle.hpp"
 
-/// The blur of rays as a function of the position of an upright film.
+/// How the blur of rays depends on where an upright film stands.
 namespace petzval::inline v0::focus_detail {
 
-/// A ray behind the lens: where it meets a plane across the axis, and its slopes per mm of z.
-struct Line {
-  double x = 0, y = 0, slope_x = 0, slope_y = 0;
-  double weight = 0;
-};
-
-/// The image of one subject by a criterion: the film on which it is sharpest, and its blur on any other.
-struct Image {
-  double film_z = 0;  ///< infinite if the rays leave parallel
-  double plane_z = 0;
-  /// min_rms: the diameter is a hyperbola over the position of the film; its least value and its asymptotic slope.
+/// The image of one subject by a criterion: the film where it is sharpest, and the blur's diameter on any other.
+struct PETZVAL_API Image {
+  double film_z = 0;  ///< infinite where the rays leave parallel
+  /// min_rms: the diameter is a hyperbola over the film's position. Its least value, and its slope far off.
   double least = 0, slope = 0;
-  /// The other criteria: twice the largest radius of these, relative to the centroids of their fields in plane_z.
-  std::vector<Line> lines;
+  /// The other criteria: the diameter is twice the largest radius of these rays, which are relative to the centroids of
+  /// their fields.
+  RayBundle rays{};
 
   double diameter(double film_z) const noexcept;
 };
 
-/// The image by RMS radius. lines: rays in plane_z, relative to the centroids of their fields; weights sum to 1.
-/// film_z is infinite for parallel rays.
-Image least_rms(std::span<const Line> lines, double plane_z);
-/// The image by the largest radius; weights do not count.
-Image least_maximum(std::vector<Line> lines, double plane_z);
+/// Scales the weights of a bundle with slopes to a sum of 1 (equal ones where it has none) and makes its points and
+/// slopes relative to their centroid, or leaves them where that is known to be the axis. False where no ray has weight.
+PETZVAL_API bool centre(RayBundle& bundle, bool centroid_on_axis = false);
+
+/// By the RMS radius, of a bundle that is centred, or several whose weights sum to 1. Infinite film_z for parallel
+/// rays.
+PETZVAL_API Image least_rms(const RayBundle& rays);
+/// By the largest radius; weights do not count.
+PETZVAL_API Image least_maximum(RayBundle rays);
 
 }  // namespace petzval::inline v0::focus_detail

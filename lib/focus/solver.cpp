@@ -140,9 +140,9 @@ Image FocusSolver::cone(double subject_z) const {
   }
   const double p = ideal.front_focal_z - subject_z;
   const MarginalRay marginal = ideal.marginal_ray(p);
-  return {.film_z = conjugates_.film_z(p),
-          .plane_z = ideal.rear_focal_z,
-          .lines = {Line{.y = marginal.height, .slope_y = marginal.slope}}};
+  RayBundle ray{
+      .plane_z = ideal.rear_focal_z, .x = {0}, .y = {marginal.height}, .slope_x = {0}, .slope_y = {marginal.slope}};
+  return {.film_z = conjugates_.film_z(p), .rays = std::move(ray)};
 }
 
 }  // namespace petzval::inline v0::focus_detail

@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include "bundle.hpp"
 #include "conjugates.hpp"
+#include "exact_image.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/paraxial/first_order.hpp"

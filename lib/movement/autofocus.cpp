@@ -11,6 +11,7 @@
 #include "focus/image.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/text.hpp"
+#include "rays/trace_rays.hpp"
 #include "signed_diameter.hpp"
 #include "targets.hpp"
 
@@ -98,34 +99,24 @@ Autofocus described(const IdealLens& lens, std::span<const FocusTarget> targets,
   return result;
 }
 
-/// The rays of a bundle about their centroid.
-std::vector<focus_detail::Line> lines_of(const RayBundle& bundle) {
-  const std::size_t count = bundle.x.size();
-  const double each = 1 / static_cast<double>(count);
-  focus_detail::Line mean;
-  for (std::size_t i = 0; i < count; ++i) {
-    mean.x += each * bundle.x[i], mean.y += each * bundle.y[i];
-    mean.slope_x += each * bundle.slope_x[i], mean.slope_y += each * bundle.slope_y[i];
-  }
-  std::vector<focus_detail::Line> lines;
-  for (std::size_t i = 0; i < count; ++i) {
-    lines.push_back({bundle.x[i] - mean.x, bundle.y[i] - mean.y, bundle.slope_x[i] - mean.slope_x,
-                     bundle.slope_y[i] - mean.slope_y, each});
-  }
-  return lines;
+/// A place's bundle about its centroid, with weights that sum to 1; empty where the lens does not see it.
+RayBundle centred_bundle(const ImageRays& lens, const ScenePoint& place) {
+  RayBundle bundle = lens.bundle(place);
+  focus_detail::centre(bundle);
+  return bundle;
 }
 
 /// The signed diameter on a film, by the criterion of the image.
 double signed_diameter(const focus_detail::Image& image, double film_z) noexcept {
   const double away = film_z - image.film_z, diameter = image.diameter(film_z);
-  return image.lines.empty() ? movement_detail::signed_diameter(diameter, image.slope * away)
-                             : std::copysign(diameter, away);
+  return image.rays.empty() ? movement_detail::signed_diameter(diameter, image.slope * away)
+                            : std::copysign(diameter, away);
 }
 
 /// The film on which the signed diameter is the wanted one; the sharpest film if it is larger on all.
 double film_of(const focus_detail::Image& image, double wanted) noexcept {
   if (wanted == 0) return image.film_z;
-  if (image.lines.empty()) {
+  if (image.rays.empty()) {
     if (!(std::abs(wanted) > image.least)) return image.film_z;
     return image.film_z + std::copysign(std::sqrt(square(wanted) - square(image.least)) / image.slope, wanted);
   }
@@ -171,23 +162,22 @@ Autofocus autofocus(const ImageRays& lens, std::span<const FocusTarget> targets,
   }
   const Film before = standing(film, lens.lens().film_z());
   const bool rms = criterion == FocusCriterion::min_rms;
-  const double plane_z = lens.lens().surfaces().back().vertex_z;
   std::vector<Request> requests;
-  std::vector<std::vector<focus_detail::Line>> lines;
+  std::vector<RayBundle> bundles;
   std::vector<focus_detail::Image> images;  // by the criterion, for targets that have one
   for (const FocusTarget& target : targets) {
-    lines.push_back(lines_of(lens.bundle(target.place)));
+    const RayBundle& rays = bundles.emplace_back(centred_bundle(lens, target.place));
     focus_detail::Image& image = images.emplace_back();
     Request request;
-    if (lines.back().empty()) {
+    if (rays.empty()) {
       request.use = lens.ideal().image(target.place) ? TargetUse::no_rays : TargetUse::no_image;
     } else {
-      image = focus_detail::least_rms(lines.back(), plane_z);
+      image = focus_detail::least_rms(rays);
       request.steepness = image.slope;
       // In front of that, the rays diverge behind the lens.
       if (image.film_z > lens.ideal().rear_z) {
         request.film_z = film_of(image, target.blur_mm);
-        if (!rms) image = focus_detail::least_maximum(lines.back(), plane_z);
+        if (!rms) image = focus_detail::least_maximum(rays);
       }
     }
     requests.push_back(checked(lens.ideal(), target, request));
@@ -196,21 +186,25 @@ Autofocus autofocus(const ImageRays& lens, std::span<const FocusTarget> targets,
   std::optional<double> found = least_squares(targets, requests);
   if (!rms && found) {
     const double largest = largest_weight(targets, requests);
-    std::vector<focus_detail::Line> all;
+    RayBundle all;
     for (std::size_t i = 0; i < targets.size(); ++i) {
       if (requests[i].use != TargetUse::used) continue;
       const double scale = targets[i].weight / largest;
       const double shift = film_of(images[i], targets[i].blur_mm) - images[i].film_z;
-      for (const auto& [x, y, u, v, weight] : lines[i]) {
-        all.push_back({scale * (x - shift * u), scale * (y - shift * v), scale * u, scale * v, weight});
+      RayBundle& rays = bundles[i];
+      for (std::size_t k = 0; k < rays.size(); ++k) {
+        rays.x[k] = scale * (rays.x[k] - shift * rays.slope_x[k]);
+        rays.y[k] = scale * (rays.y[k] - shift * rays.slope_y[k]);
+        rays.slope_x[k] *= scale, rays.slope_y[k] *= scale;
       }
+      all.plane_z = rays.plane_z;
+      rays_detail::append(all, rays);
     }
-    found = focus_detail::least_maximum(std::move(all), plane_z).film_z;
+    found = focus_detail::least_maximum(std::move(all)).film_z;
   }
-  const std::vector<focus_detail::Line> far = lines_of(lens.bundle({{0, 0, -1}, true}));
+  const RayBundle far = centred_bundle(lens, {{0, 0, -1}, true});
   double at_infinity = nan;
-  if (!far.empty())
-    at_infinity = (rms ? focus_detail::least_rms(far, plane_z) : focus_detail::least_maximum(far, plane_z)).film_z;
+  if (!far.empty()) at_infinity = (rms ? focus_detail::least_rms(far) : focus_detail::least_maximum(far)).film_z;
   return described(lens.ideal(), targets, requests, before, at_infinity, found,
                    [&](std::size_t i, const Film& last) { return signed_diameter(images[i], last.z()); });
 }

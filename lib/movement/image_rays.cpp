@@ -2,6 +2,7 @@
 #include "petzval/movement/image_rays.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
@@ -12,8 +13,8 @@
 #include "core/meet_plane.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/pupil_table/film_pupil_table.hpp"
-#include "petzval/trace/batch.hpp"
 #include "pupil_table/entrance_pupil_table.hpp"
+#include "rays/trace_rays.hpp"
 #include "signed_diameter.hpp"
 
 namespace petzval::inline v0 {
@@ -92,39 +93,27 @@ struct ImageRays::Data {
 };
 
 RayBundle ImageRays::Data::send(const Vec3<double>& point, std::size_t count) const {
-  std::vector<double> u(count), v(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    const auto [around, outwards] = core_detail::fibonacci_point(i, count);
-    u[i] = around, v[i] = outwards;
-  }
   const std::size_t wavelength = lens.primary_wavelength();
-  std::vector<EntranceSample> samples(count);
-  entrances.sample(point, count, u.data(), v.data(), wavelength, samples.data());
-
-  std::vector<double> memory(6 * count);
-  std::vector<RayFate> fates(count);
-  const auto part = [&](std::size_t k) { return memory.data() + k * count; };
-  const RayArrays<double> rays{part(0), part(1), part(2), part(3), part(4), part(5)};
-  std::size_t sent = 0;
-  for (const auto& [at, along, distance, pdf] : samples) {
-    if (!(pdf > 0)) continue;
-    rays.x[sent] = at.x, rays.y[sent] = at.y, rays.z[sent] = at.z;
-    rays.dx[sent] = along.x, rays.dy[sent] = along.y, rays.dz[sent] = along.z;
-    ++sent;
-  }
-  trace<double>(lens, sent, {rays.x, rays.y, rays.z, rays.dx, rays.dy, rays.dz}, rays, fates.data(), nullptr,
-                {.wavelengths = {wavelength}});
-
-  RayBundle result;
-  result.plane_z = lens.surfaces().back().vertex_z;
-  for (auto* values : {&result.x, &result.y, &result.slope_x, &result.slope_y}) values->reserve(sent);
-  for (std::size_t i = 0; i < sent; ++i) {
-    if (fates[i] != RayFate::transmitted || !(rays.dz[i] > 0)) continue;
-    const auto [x, y, slope_x, slope_y] = core_detail::slope_ray(core_detail::ray_at(rays, i), result.plane_z);
-    result.x.push_back(x), result.y.push_back(y);
-    result.slope_x.push_back(slope_x), result.slope_y.push_back(slope_y);
-  }
-  return result;
+  const auto start = [&](std::size_t begin, std::size_t end, const RayArrays<double>& rays) {
+    std::array<double, rays_detail::block_rays> u, v;
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto [around, outwards] = core_detail::fibonacci_point(i, count);
+      u[i - begin] = around, v[i - begin] = outwards;
+    }
+    std::array<EntranceSample, rays_detail::block_rays> samples;
+    entrances.sample(point, end - begin, u.data(), v.data(), wavelength, samples.data());
+    std::size_t started = 0;
+    for (std::size_t i = 0; i < end - begin; ++i) {
+      const auto& [at, along, distance, pdf] = samples[i];
+      if (!(pdf > 0)) continue;
+      rays.x[started] = at.x, rays.y[started] = at.y, rays.z[started] = at.z;
+      rays.dx[started] = along.x, rays.dy[started] = along.y, rays.dz[started] = along.z;
+      ++started;
+    }
+    return started;
+  };
+  return rays_detail::trace_rays(lens, lens.surfaces().back().vertex_z, count,
+                                 {.wavelength = wavelength, .arithmetic = Arithmetic::fast}, start);
 }
 
 ImageRays::ImageRays(const Lens& lens, double film_radius, std::size_t rays) {

@@ -18,7 +18,7 @@ namespace {
 using Triple = std::array<double, 3>;
 constexpr double shortest_nm = 420, longest_nm = 680;
 
-/// One line of four numbers; anything else is an Error.
+/// A line of four numbers. Throws Error for anything else.
 std::array<double, 4> parse_line(std::string_view line, const std::string& where) {
   std::array<double, 4> values{};
   const char* at = line.data();
@@ -34,7 +34,7 @@ std::array<double, 4> parse_line(std::string_view line, const std::string& where
   return values;
 }
 
-/// The functions at a wavelength, straight lines between the samples.
+/// The matching functions at a wavelength, linear between the samples.
 Triple at(const ColourMatching& table, double nm) {
   const auto& list = table.wavelengths_nm;
   const auto upper = std::clamp(std::upper_bound(list.begin(), list.end(), nm), list.begin() + 1, list.end() - 1);
@@ -45,7 +45,7 @@ Triple at(const ColourMatching& table, double nm) {
   return xyz;
 }
 
-/// Integral of the functions over a band, exact for the straight lines they are made of.
+/// The integral of the linear functions over a band, exactly.
 Triple integral(const ColourMatching& table, double from, double to) {
   std::vector<double> nodes{from};
   for (const double nm : table.wavelengths_nm) {

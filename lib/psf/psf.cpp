@@ -7,7 +7,7 @@
 #include <span>
 #include <string>
 
-#include "lanes.hpp"
+#include "partial_sums.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/text.hpp"
 #include "petzval/paraxial/pupils.hpp"
@@ -28,16 +28,16 @@ void validate(const PsfOptions& options) {
 }
 
 /// Half the side of a square about the centroid that holds all hits.
-double fitting_half_width(const std::vector<FilmHits>& sets, const SpotSize& size) {
-  const auto [cx, cy] = size.centroid;
-  psf_detail::Lanes extent{};
-  psf_detail::for_each(sets, [&, cx = cx, cy = cy](std::size_t lane, double x, double y) {
-    extent[lane] = std::max(extent[lane], std::max(std::abs(x - cx), std::abs(y - cy)));
+double fitting_half_width(const std::vector<RayBundle>& sets, const SpotSize& size) {
+  const double cx = size.centroid.x, cy = size.centroid.y;
+  psf_detail::PartialSums extent{};
+  psf_detail::for_each(sets, [&](std::size_t part, double x, double y) {
+    extent[part] = std::max(extent[part], std::max(std::abs(x - cx), std::abs(y - cy)));
   });
   return std::max(1.05 * psf_detail::largest(extent), 1e-4);
 }
 
-void fill_counts(Psf& psf, const std::vector<FilmHits>& sets) {
+void fill_counts(Psf& psf, const std::vector<RayBundle>& sets) {
   const PixelGrid grid{psf.centre, psf.pixel_mm, psf.pixels};
   const std::size_t plane = static_cast<std::size_t>(psf.pixels) * static_cast<std::size_t>(psf.pixels);
   psf.counts.assign(sets.size() * plane, 0);
@@ -48,13 +48,12 @@ void fill_counts(Psf& psf, const std::vector<FilmHits>& sets) {
 
 constexpr std::size_t rings = std::tuple_size_v<decltype(PointImage::radial_profile)>;
 
-/// How many hits fall into each ring of a width about a centre; into the last one also those beyond, by rounding.
-std::array<std::uint64_t, rings> count_by_ring(const FilmHits& hits, const std::array<double, 2>& centre,
-                                               double width) {
+/// The number of hits in each ring of a width about a centre; the last ring has those that rounding puts beyond it.
+std::array<std::uint64_t, rings> count_by_ring(const RayBundle& hits, const Vec2<double>& centre, double width) {
   constexpr std::size_t block = 256;
   std::array<std::int32_t, block> ring;
   std::array<std::uint64_t, rings> counts{};
-  const auto [cx, cy] = centre;
+  const double cx = centre.x, cy = centre.y;
   const double scale = 1 / width;
   for (std::size_t begin = 0; begin < hits.x.size(); begin += block) {
     const std::size_t count = std::min(block, hits.x.size() - begin);
@@ -68,7 +67,7 @@ std::array<std::uint64_t, rings> count_by_ring(const FilmHits& hits, const std::
   return counts;
 }
 
-void fill_profile(PointImage& image, const std::vector<FilmHits>& sets) {
+void fill_profile(PointImage& image, const std::vector<RayBundle>& sets) {
   const double width = image.size.max_radius / rings;
   if (width == 0) return;
   for (std::size_t w = 0; w < sets.size(); ++w) {
@@ -100,7 +99,7 @@ PointImage point_image(const Lens& lens, const FieldPoint& point, const PsfOptio
   psf.entrance_pupil_area = std::numbers::pi / 4 *
                             pupils(lens, lens.primary_wavelength(), Meridian::x).entrance.diameter *
                             pupils(lens, lens.primary_wavelength(), Meridian::y).entrance.diameter;
-  std::vector<FilmHits> sets;
+  std::vector<RayBundle> sets;
   for (std::size_t w = 0; w < psf.wavelengths_nm.size(); ++w) {
     const PupilSampler pupil(pupil_boundary(lens, point, w));
     sets.push_back(trace_bundle(lens, pupil, options.samples, options.seed, options.threads));

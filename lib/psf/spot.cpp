@@ -5,10 +5,10 @@
 #include <array>
 #include <cmath>
 
-#include "film.hpp"
-#include "lanes.hpp"
+#include "partial_sums.hpp"
 #include "petzval/pupil/aim.hpp"
 #include "petzval/pupil/illumination.hpp"
+#include "rays/trace_rays.hpp"
 
 namespace petzval::inline v0 {
 namespace {
@@ -17,7 +17,7 @@ struct Points {
   std::span<const double> x, y;
 };
 
-/// Sets: of what has points x and y, N each.
+/// Sets: a range of values that have x and y, N each.
 template <class Sets>
 SpotSize size_of(const Sets& sets) noexcept {
   SpotSize size;
@@ -28,19 +28,18 @@ SpotSize size_of(const Sets& sets) noexcept {
   }
   if (count == 0) return size;
 
-  // From one of the points: rounding then grows with the spot and not with how far off the axis it lies.
+  // Relative to one of the points: rounding errors then scale with the spot and not with its height.
   const auto n = static_cast<double>(count);
-  const auto [x0, y0] = size.centroid;
-  psf_detail::Lanes dx{}, dy{};
-  psf_detail::for_each(
-      sets, [&, x0 = x0, y0 = y0](std::size_t lane, double x, double y) { dx[lane] += x - x0, dy[lane] += y - y0; });
+  const double x0 = size.centroid.x, y0 = size.centroid.y;
+  psf_detail::PartialSums dx{}, dy{};
+  psf_detail::for_each(sets, [&](std::size_t part, double x, double y) { dx[part] += x - x0, dy[part] += y - y0; });
   const double cx = x0 + psf_detail::sum(dx) / n, cy = y0 + psf_detail::sum(dy) / n;
 
-  psf_detail::Lanes squares{}, farthest{};
-  psf_detail::for_each(sets, [&](std::size_t lane, double x, double y) {
+  psf_detail::PartialSums squares{}, farthest{};
+  psf_detail::for_each(sets, [&](std::size_t part, double x, double y) {
     const double squared = (x - cx) * (x - cx) + (y - cy) * (y - cy);
-    squares[lane] += squared;
-    farthest[lane] = std::max(farthest[lane], squared);
+    squares[part] += squared;
+    farthest[part] = std::max(farthest[part], squared);
   });
   size.centroid = {cx, cy};
   size.rms_radius = std::sqrt(psf_detail::sum(squares) / n);
@@ -54,11 +53,10 @@ SpotSize spot_size(std::span<const double> x, std::span<const double> y) noexcep
   return size_of(std::array{Points{x, y}});
 }
 
-SpotSize spot_size(std::span<const FilmHits> sets) noexcept { return size_of(sets); }
+SpotSize spot_size(std::span<const RayBundle> sets) noexcept { return size_of(sets); }
 
 std::vector<Spot> spot_diagram(const Lens& lens, double subject_z, std::span<const double> fields_rad,
                                std::uint32_t samples) {
-  const psf_detail::Film film(lens);
   std::vector<Spot> spots;
   for (const double field : fields_rad) {
     const FieldPoint point{field, subject_z};
@@ -70,8 +68,8 @@ std::vector<Spot> spot_diagram(const Lens& lens, double subject_z, std::span<con
       spot.size = spot_size(spot.hits.x, spot.hits.y);
       spot.relative_illumination = relative_illumination(lens, point, w);
       const AimedRay chief = chief_ray(lens, point, w);
-      const auto hit = chief && chief.end.transmitted() ? film.meet(chief.end.ray) : std::nullopt;
-      if (hit) spot.chief_ray_height = (*hit)[1];
+      const auto hit = chief && chief.end.transmitted() ? rays_detail::meet_film(lens, chief.end.ray) : std::nullopt;
+      if (hit) spot.chief_ray_height = hit->y;
       spots.push_back(std::move(spot));
     }
   }

@@ -86,7 +86,7 @@ void trace(benchmark::State& state, const Light& light) {
 }
 
 void histogram(benchmark::State& state, const Light& light) {
-  const petzval::FilmHits hits = petzval::trace_bundle(light.lens, light.pupil, samples);
+  const petzval::RayBundle hits = petzval::trace_bundle(light.lens, light.pupil, samples);
   const petzval::SpotSize spot = petzval::spot_size(hits.x, hits.y);
   const petzval::PixelGrid grid{spot.centroid, 2.1 * spot.max_radius / 512, 512};
   std::vector<std::uint64_t> counts(512 * 512, 0);

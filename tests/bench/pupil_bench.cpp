@@ -49,7 +49,8 @@ void traced(benchmark::State& state, const Setup& setup) {
   const petzval::PupilSampler sampler(petzval::pupil_boundary(setup.lens, setup.near_field.front()));
   std::vector<petzval::Ray<double>> rays;
   for (std::uint32_t i = 0; i < 4096; ++i) {
-    const auto [u, v] = petzval::owen_sobol(i, 0);
+    const auto uv = petzval::owen_sobol(i, 0);
+    const double u = uv.x, v = uv.y;
     const auto [x, y] = sampler(u, v);
     rays.push_back(sampler.plane().ray(x, y));
   }

@@ -25,7 +25,8 @@ namespace {
 double mean_weight(const Camera& camera, const FilmPoint& film, std::uint32_t count = 4096, std::uint32_t seed = 3) {
   testing::Samples<double> samples;
   for (std::uint32_t i = 0; i < count; ++i) {
-    const auto [u, v] = owen_sobol(i, seed);
+    const auto uv = owen_sobol(i, seed);
+    const double u = uv.x, v = uv.y;
     samples.add(film.x, film.y, u, v);
   }
   samples.run(camera);

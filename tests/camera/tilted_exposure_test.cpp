@@ -168,7 +168,8 @@ double mean_weight(const Camera& camera, const FilmPoint& film) {
   Samples<double> samples;
   constexpr std::uint32_t count = 8192;
   for (std::uint32_t i = 0; i < count; ++i) {
-    const auto [u, v] = owen_sobol(i, 5);
+    const auto uv = owen_sobol(i, 5);
+    const double u = uv.x, v = uv.y;
     samples.add(film.x, film.y, u, v);
   }
   samples.run(camera);

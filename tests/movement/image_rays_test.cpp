@@ -78,12 +78,12 @@ TEST(ImageRays, HaveTheSpotsOfOutlines) {
                        ", mm " + std::to_string(distance));
           const double seen_at = distance == 1e9 ? -infinity : -distance;
           const PupilSampler pupil(pupil_boundary(lens, {degrees * degree, seen_at}, lens.primary_wavelength()));
-          const FilmHits hits = trace_bundle(with_film(lens, film_z), pupil, 1 << 16);
+          const RayBundle hits = trace_bundle(with_film(lens, film_z), pupil, 1 << 16);
           const SpotSize expected = spot_size(hits.x, hits.y);
           const BundleBlur size = blur(bundles, place_at(lens, degrees, -distance), film_at(film_z));
           EXPECT_NEAR(size.rms_radius, expected.rms_radius, relative * expected.rms_radius);
           EXPECT_NEAR(size.centroid.x, 0, 0.02 * expected.rms_radius);
-          EXPECT_NEAR(size.centroid.y, expected.centroid[1], 0.02 * expected.rms_radius);
+          EXPECT_NEAR(size.centroid.y, expected.centroid.y, 0.02 * expected.rms_radius);
           EXPECT_LT(size.largest_radius, 1.01 * expected.max_radius);
           EXPECT_GT(size.largest_radius, 0.6 * expected.max_radius);
         }
@@ -185,8 +185,8 @@ TEST(BundleBlur, OnATiltedFilmIsWhereRaysMeetItsPlane) {
     const SpotSize expected = spot_size(x, y);
     const auto size = blur_on(bundle, film);
     ASSERT_TRUE(size);
-    EXPECT_NEAR(size->centroid.x, expected.centroid[0], 1e-12);
-    EXPECT_NEAR(size->centroid.y, expected.centroid[1], 1e-12);
+    EXPECT_NEAR(size->centroid.x, expected.centroid.x, 1e-12);
+    EXPECT_NEAR(size->centroid.y, expected.centroid.y, 1e-12);
     EXPECT_NEAR(size->rms_radius, expected.rms_radius, 1e-12);
     EXPECT_NEAR(size->largest_radius, expected.max_radius, 1e-12);
     EXPECT_NEAR(std::abs(size->signed_diameter), std::sqrt(8) * expected.rms_radius, 1e-12);

@@ -88,9 +88,9 @@ TEST(PointImage, MirrorsWithTheField) {
   const Lens lens = data_lens("double_gauss_100mm_f1.35");
   const PointImage up = point_image(lens, {radians(12), -1300}, {.samples = 1 << 15});
   const PointImage down = point_image(lens, {radians(-12), -1300}, {.samples = 1 << 15});
-  EXPECT_NEAR(up.size.centroid[1] / down.size.centroid[1], -1, 1e-4);
+  EXPECT_NEAR(up.size.centroid.y / down.size.centroid.y, -1, 1e-4);
   EXPECT_NEAR(up.throughput / down.throughput, 1, 2e-3);
-  EXPECT_LT(up.size.centroid[1], 0);
+  EXPECT_LT(up.size.centroid.y, 0);
   // The image is symmetric about the meridian.
   const auto side = static_cast<std::size_t>(up.psf.pixels);
   std::uint64_t left = 0;
@@ -103,9 +103,9 @@ TEST(PointImage, RowsRunFromTheTop) {
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
   const FieldPoint point{radians(10), -infinity};
   const PointImage image = point_image(lens, point, {.samples = 1 << 14, .pixels = 40, .half_width_mm = 0.05});
-  const FilmHits hits = trace_bundle(lens, PupilSampler(pupil_boundary(lens, point)), 1 << 14);
+  const RayBundle hits = trace_bundle(lens, PupilSampler(pupil_boundary(lens, point)), 1 << 14);
   std::uint64_t above = 0, above_left = 0;
-  const auto& [cx, cy] = image.psf.centre;
+  const double cx = image.psf.centre.x, cy = image.psf.centre.y;
   for (std::size_t i = 0; i < hits.x.size(); ++i) {
     if (std::abs(hits.x[i] - cx) >= 0.05 || std::abs(hits.y[i] - cy) >= 0.05 || hits.y[i] <= cy + 0.02) continue;
     ++above;
@@ -170,14 +170,14 @@ TEST(PointImage, NothingGetsThroughAFieldTooWide) {
 class BinError {
  public:
   BinError() {
-    const FilmHits many = trace_bundle(lens_, pupil_, 1 << 19, 1000);
+    const RayBundle many = trace_bundle(lens_, pupil_, 1 << 19, 1000);
     size_ = spot_size(many.x, many.y);
     reference_ = bins(many.x, many.y, 1 << 19);
   }
 
   double sobol(std::uint32_t count) const {
     return error([&](std::uint32_t seed) {
-      const FilmHits hits = trace_bundle(lens_, pupil_, count, seed);
+      const RayBundle hits = trace_bundle(lens_, pupil_, count, seed);
       return bins(hits.x, hits.y, count);
     });
   }
@@ -206,7 +206,7 @@ class BinError {
   Bins bins(const std::vector<double>& x, const std::vector<double>& y, std::uint32_t count) const {
     Bins result{};
     for (std::size_t i = 0; i < x.size(); ++i) {
-      const double u = (x[i] - size_.centroid[0]) / size_.max_radius, v = (y[i] - size_.centroid[1]) / size_.max_radius;
+      const double u = (x[i] - size_.centroid.x) / size_.max_radius, v = (y[i] - size_.centroid.y) / size_.max_radius;
       if (std::abs(u) >= 1 || std::abs(v) >= 1) continue;
       result[static_cast<std::size_t>(6 * (u + 1)) * 12 + static_cast<std::size_t>(6 * (v + 1))] += 1.0 / count;
     }

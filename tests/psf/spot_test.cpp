@@ -24,15 +24,15 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 TEST(SpotSize, OfACross) {
   const std::vector<double> x{1, 3, 2, 2}, y{5, 5, 4, 6};
   const SpotSize size = spot_size(x, y);
-  EXPECT_DOUBLE_EQ(size.centroid[0], 2);
-  EXPECT_DOUBLE_EQ(size.centroid[1], 5);
+  EXPECT_DOUBLE_EQ(size.centroid.x, 2);
+  EXPECT_DOUBLE_EQ(size.centroid.y, 5);
   EXPECT_DOUBLE_EQ(size.rms_radius, 1);
   EXPECT_DOUBLE_EQ(size.max_radius, 1);
 }
 
 TEST(SpotSize, OfNoneAndOne) {
   EXPECT_EQ(spot_size({}, {}).max_radius, 0);
-  EXPECT_EQ(spot_size(std::array{4.0}, std::array{-7.0}).centroid, (std::array{4.0, -7.0}));
+  EXPECT_EQ(spot_size(std::array{4.0}, std::array{-7.0}).centroid, Vec2<double>(4, -7));
   EXPECT_EQ(spot_size(std::array{4.0}, std::array{-7.0}).rms_radius, 0);
 }
 
@@ -49,9 +49,9 @@ TEST(SpotSize, KeepsSmallSpotsFarFromTheAxis) {
 }
 
 TEST(SpotSize, SetsCountAsOne) {
-  const std::vector<FilmHits> sets{{.x = {1, 3}, .y = {5, 5}}, {.x = {}, .y = {}}, {.x = {2, 2}, .y = {4, 6}}};
+  const std::vector<RayBundle> sets{{.x = {1, 3}, .y = {5, 5}}, {.x = {}, .y = {}}, {.x = {2, 2}, .y = {4, 6}}};
   EXPECT_DOUBLE_EQ(spot_size(sets).rms_radius, 1);
-  EXPECT_DOUBLE_EQ(spot_size(sets).centroid[1], 5);
+  EXPECT_DOUBLE_EQ(spot_size(sets).centroid.y, 5);
 }
 
 TEST(SpotDiagram, ImagesTheFieldUpsideDown) {
@@ -65,8 +65,8 @@ TEST(SpotDiagram, ImagesTheFieldUpsideDown) {
     const double ideal = -f * std::tan(fields[i]);
     EXPECT_EQ(spots[i].point.field_rad, fields[i]);
     EXPECT_NEAR(spots[i].chief_ray_height.value() / ideal, 1, 0.02);  // distortion
-    EXPECT_NEAR(spots[i].size.centroid[1] / ideal, 1, 0.03);
-    EXPECT_NEAR(spots[i].size.centroid[0], 0, 2e-3);
+    EXPECT_NEAR(spots[i].size.centroid.y / ideal, 1, 0.03);
+    EXPECT_NEAR(spots[i].size.centroid.x, 0, 2e-3);
     EXPECT_LE(spots[i].size.rms_radius, spots[i].size.max_radius);
     EXPECT_EQ(spots[i].hits.sent, 2048u);
   }
@@ -114,7 +114,7 @@ TEST(SpotDiagram, ReachesTheEdgeOfA220DegreeFisheye) {
   double height = 1, light = 1.1;
   for (const Spot& spot : spots) {
     EXPECT_GE(spot.hits.x.size(), 0.95 * spot.hits.sent);
-    EXPECT_NEAR(spot.chief_ray_height.value(), spot.size.centroid[1], 0.02);
+    EXPECT_NEAR(spot.chief_ray_height.value(), spot.size.centroid.y, 0.02);
     EXPECT_LT(spot.chief_ray_height.value(), height);
     EXPECT_LT(spot.relative_illumination.value(), light);
     height = *spot.chief_ray_height;

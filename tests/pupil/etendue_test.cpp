@@ -71,7 +71,8 @@ template <class Inner>
 double sum(double disc_radius, std::uint32_t seed, const Inner& inner) {
   double total = 0;
   for (std::uint32_t i = 0; i < samples; ++i) {
-    const auto [u, v] = owen_sobol(i, seed);
+    const auto uv = owen_sobol(i, seed);
+    const double u = uv.x, v = uv.y;
     total += inner(disc_radius * std::sqrt(u), std::sin(pi * v), std::cos(pi * v));
   }
   return total * pi * disc_radius * disc_radius * 2 * pi / samples;

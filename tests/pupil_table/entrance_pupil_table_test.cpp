@@ -120,7 +120,8 @@ TEST(EntrancePupilTable, HasTheDensityItSays) {
       double solid = 0, widest = 0;
       const Vec3<double> axis = s.table.sample(point, 0.5, 0).direction;
       for (std::uint32_t i = 0; i < draws; ++i) {
-        const auto [u, v] = owen_sobol(i, 4);
+        const auto uv = owen_sobol(i, 4);
+        const double u = uv.x, v = uv.y;
         const EntranceSample sample = s.table.sample(point, u, v);
         ASSERT_GT(sample.pdf, 0);
         EXPECT_NEAR(glm::length(sample.direction), 1, 1e-12);
@@ -134,7 +135,8 @@ TEST(EntrancePupilTable, HasTheDensityItSays) {
       const Vec3<double> x = glm::normalize(glm::cross(axis, Vec3<double>{0.3, 1, 0.2})), y = glm::cross(axis, x);
       double met = 0, whole = 0;
       for (std::uint32_t i = 0; i < 4 * draws; ++i) {
-        const auto [u, v] = owen_sobol(i, 5);
+        const auto uv = owen_sobol(i, 5);
+        const double u = uv.x, v = uv.y;
         const double sine = std::sqrt(cone * v * (2 - cone * v));
         const Vec3<double> d =
             axis * (1 - cone * v) + x * (sine * std::cos(2 * pi * u)) + y * (sine * std::sin(2 * pi * u));
@@ -170,7 +172,8 @@ TEST(EntrancePupilTable, EstimatesTheSolidAngleOfThePupil) {
         constexpr std::uint32_t draws = 1 << 14;
         double found = 0;
         for (std::uint32_t i = 0; i < draws; ++i) {
-          const auto [u, v] = owen_sobol(i, 6);
+          const auto uv = owen_sobol(i, 6);
+          const double u = uv.x, v = uv.y;
           const EntranceSample sample = s.table.sample(point, u, v);
           ASSERT_GT(sample.pdf, 0);
           if (trace(s.lens, Ray<double>{sample.place, sample.direction}).transmitted()) found += 1 / sample.pdf / draws;

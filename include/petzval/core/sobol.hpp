@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <span>
 
 #include "petzval/core/export.hpp"
+#include "petzval/core/vec.hpp"
 
 namespace petzval::inline v0 {
 
@@ -16,9 +16,9 @@ namespace petzval::inline v0 {
 /// 2^(i-k). Sources: Sobol 1967 for the sequence; Owen 1995, "Randomly permuted (t,m,s)-nets and (t,s)-sequences", for
 /// the scrambling; Laine and Karras 2011, "Stratified sampling for stochastic transparency", and Burley 2020,
 /// "Practical hash-based Owen scrambling", for doing it by a hash in which no bit depends on a lower one.
-PETZVAL_API std::array<double, 2> owen_sobol(std::uint32_t index, std::uint32_t seed) noexcept;
+PETZVAL_API Vec2<double> owen_sobol(std::uint32_t index, std::uint32_t seed) noexcept;
 
-/// The points from `first` on, the same and sooner than one by one. u, v: N each.
+/// The points from `first` on, the same as one by one, faster. u, v: N each.
 PETZVAL_API void owen_sobol(std::uint32_t first, std::uint32_t seed, std::span<double> u, std::span<double> v) noexcept;
 
 }  // namespace petzval::inline v0

@@ -8,8 +8,8 @@
 
 namespace petzval::inline v0 {
 
-/// Relative illumination of the film against the field angle, from the axis to a field, as SVG text; cos^4 of the angle
-/// stands beside it. At the compiled wavelength nearest to the d line.
+/// Relative illumination of the film against the field angle, from the axis to a field, as SVG text, with cos^4 of the
+/// angle for comparison. At the primary wavelength.
 ///
 /// subject_z: lens frame, mm, -inf at infinity. Throws Error where relative_illumination does, and for a field that is
 /// not above 0.

@@ -12,18 +12,17 @@
 namespace petzval::inline v0 {
 
 struct LayoutOptions {
-  std::size_t rays = 5;            ///< that pass, a field: 3 to 7
-  Meridian section = Meridian::y;  ///< the plane of the drawing, in which the fields lie too
+  std::size_t rays = 5;            ///< per field, of those that pass: 3 to 7
+  Meridian section = Meridian::y;  ///< the plane of the drawing and of the fields
 };
 
-/// A lens cut open, as SVG text: the section through the axis to scale, light from left to right, +y up.
+/// The section of a lens through the axis, to scale, as SVG text: light from left to right, +y up.
 ///
-/// Glass is filled, darker for a higher index; mirrors are thick lines, central holes stay open; the stop is two ticks
-/// at its rim (dashed: no surface is marked, the one that limits the axial beam is meant); a line shows the film. Rays
-/// of each field, in its colour, fill what passes of its pupil in the section, from edge to edge and with the chief
-/// ray; rays through the stop's rim or centre that the lens does not let pass are thin, up to the surface where they
-/// end. Surfaces without a rim are drawn as far as rays need them. All at the compiled wavelength nearest to the d
-/// line. The same lens gives the same bytes.
+/// Glass is filled, darker for a higher index; mirrors are thick lines; central holes stay open. Two ticks mark the rim
+/// of the stop (dashed where no surface is marked and the one that limits the axial beam stands in). A line shows the
+/// film. The rays of a field have its colour and cross its vignetted pupil from edge to edge, with the chief ray among
+/// them. Vignetted rays through the rim or the centre of the stop are thin and end at the surface that stops them.
+/// Surfaces without a rim are drawn as far as rays reach. The same lens gives the same bytes.
 ///
 /// subject_z: lens frame, mm, -inf at infinity. fields_rad: may be empty (no rays), and 90 degrees or more.
 /// Throws Error where aim does, and for a number of rays outside 3 to 7.

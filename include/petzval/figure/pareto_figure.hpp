@@ -17,12 +17,12 @@ struct ParetoPoint {
   bool on_front = false;
 };
 
-/// What accuracy costs, as SVG text: largest and RMS error on the film against ns per ray, both axes logarithmic. The
-/// front, beside which nothing is both faster and more accurate, is filled and joined by a line. Errors of 0 stand at
-/// the foot.
+/// Accuracy against cost, as SVG text: largest and RMS error on the film over ns per ray, both axes logarithmic. Models
+/// of the Pareto front, for which no other model is both faster and more accurate, are filled and joined by a line.
+/// Errors of 0 are drawn at the foot.
 ///
-/// title: the lens's name; remark: a line about the conditions, of which the figure knows nothing. Throws Error for no
-/// points, times that are not positive and finite, errors that are negative or not finite.
+/// title: the lens's name; remark: a line about the conditions. Throws Error for no points, times that are not positive
+/// and finite, and errors that are negative or not finite.
 PETZVAL_API std::string pareto_figure(std::string_view title, std::string_view remark,
                                       std::span<const ParetoPoint> points);
 

@@ -10,12 +10,12 @@
 
 namespace petzval::inline v0 {
 
-/// The picture of a PSF: irradiance on the film, per mm^2 and in units of the light that falls onto the paraxial
-/// entrance pupil, so that pictures of one light through different lenses and apertures compare, and the pixels' sum
-/// times their area is the throughput (less what the crop lost). Rows from the top.
+/// The picture of a PSF: irradiance on the film as a share of the light on the paraxial entrance pupil, per mm^2.
+/// Pictures of one light through different lenses and apertures have the same scale; the sum of all pixels times the
+/// area of one is the throughput, less the rays outside the picture. Rows from the top.
 ///
-/// weights: one linear RGB triple a wavelength, as rgb_weights gives them; the light of all wavelengths is then white.
-/// Throws Error where their number is not that of the wavelengths.
+/// weights: a linear RGB triple for each wavelength, as rgb_weights gives them; the light of all wavelengths is then
+/// white. Throws Error for another number of weights.
 PETZVAL_API RgbImage render(const Psf& psf, std::span<const std::array<double, 3>> weights);
 
 }  // namespace petzval::inline v0

@@ -10,15 +10,15 @@
 
 namespace petzval::inline v0 {
 
-/// A spot diagram as SVG text: a row for each field; first a column with all wavelengths, then one for each.
+/// A spot diagram as SVG text: a row for each field, with a column for all wavelengths and one for each of them.
 ///
-/// All cells have one scale, named by a bar, and the origin of a row is the centroid of all its rays, so that lateral
-/// colour shows between its cells; +y is up. Under each cell stand RMS and largest radius about the centroid of what it
-/// holds. Dashed is the Airy circle, 1.22 wavelength N, N the paraxial f-number on the film's side. Only the first 600
-/// rays of a spot are drawn. No date, no fonts beyond sans-serif: the same spots give the same bytes.
+/// All cells have the same scale, shown by a bar; +y is up. The origin of a row is the centroid of all its rays, so
+/// that its cells show lateral colour. RMS and largest radius about the centroid of a cell's rays are printed below it.
+/// The dashed Airy circle has the radius 1.22 wavelength N, with the paraxial image-side f-number N. The first 600 rays
+/// of a spot are drawn. The same spots give the same bytes.
 ///
-/// spots: as spot_diagram gives them for this lens.
-/// Throws Error for no spots, or some that do not fill fields by the lens's wavelengths.
+/// spots: as spot_diagram gives them for this lens. Throws Error for no spots, and for a number of spots that is no
+/// multiple of the number of wavelengths.
 PETZVAL_API std::string spot_figure(const Lens& lens, std::span<const Spot> spots);
 
 }  // namespace petzval::inline v0

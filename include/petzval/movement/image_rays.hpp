@@ -10,17 +10,9 @@
 #include "petzval/film/film.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/paraxial/ideal_lens.hpp"
+#include "petzval/rays/ray_bundle.hpp"
 
 namespace petzval::inline v0 {
-
-/// The rays of one scene point behind the lens, spread evenly over what the lens passes: where they meet the plane
-/// z = plane_z, and their slopes per mm of z.
-struct RayBundle {
-  double plane_z = 0;
-  std::vector<double> x, y, slope_x, slope_y;
-
-  bool empty() const noexcept { return x.empty(); }
-};
 
 /// A blur of exact rays on a film.
 struct BundleBlur {

@@ -19,11 +19,12 @@ struct ColourMatching {
   PETZVAL_API static ColourMatching load(const std::filesystem::path& file);
 };
 
-/// Linear RGB weight of each wavelength of a set, in its order: the functions integrated from 420 to 680 nm over the
-/// band of wavelengths nearest to it, turned to sRGB primaries and balanced so that the weights of the whole set sum to
-/// white (1, 1, 1). One wavelength alone is white, then, wherever it lies. A weight may be negative: a colour purer
-/// than the primaries. Throws Error for an empty set, duplicates, and several wavelengths of which one lies outside 420
-/// to 680 nm.
+/// Linear RGB weights of a set of wavelengths, in its order.
+///
+/// The weight of a wavelength is the integral of the matching functions over the band of wavelengths nearest to it,
+/// within 420 to 680 nm, in sRGB primaries. Weights are balanced so that they sum to white (1, 1, 1); a single
+/// wavelength is white. A weight is negative where the colour is purer than the primaries. Throws Error for an empty
+/// set, duplicates, and several wavelengths of which one lies outside 420 to 680 nm.
 PETZVAL_API std::vector<std::array<double, 3>> rgb_weights(std::span<const double> wavelengths_nm,
                                                            const ColourMatching& table);
 

@@ -1,23 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <span>
 
 #include "petzval/core/export.hpp"
+#include "petzval/core/vec.hpp"
 
 namespace petzval::inline v0 {
 
-/// Square pixels on the film in a square: `pixels` a side, 1 to 32768, rows from the top (largest y first).
+/// A square of square pixels on the film: `pixels` a side, 1 to 32768, rows from the top (largest y first).
 struct PixelGrid {
-  std::array<double, 2> centre{0, 0};  ///< mm
+  Vec2<double> centre{0, 0};  ///< mm
   double pixel_mm = 1;
   int pixels = 1;
 };
 
-/// Adds 1 to the pixel of each point. Points beside the grid count nowhere. x, y: N each, film, mm. counts: pixels
-/// squared, [row][column]; integers, so that none is lost in however full a pixel.
+/// Adds 1 to the pixel of each point; points outside the grid are not counted. x, y: N each, film, mm. counts: pixels
+/// squared, [row][column]; integers, which count exactly however full a pixel is.
 PETZVAL_API void count_points(const PixelGrid& grid, std::span<const double> x, std::span<const double> y,
                               std::span<std::uint64_t> counts) noexcept;
 

@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <optional>
 #include <span>
-#include <vector>
 
 #include "image.hpp"
 #include "petzval/focus/focus.hpp"
@@ -17,10 +16,9 @@ struct WavelengthWeight {
   double weight;
 };
 
-/// By exact rays through whatever passes every rim, in bundles of all fields and wavelengths from the plane
-/// subject_z. Rays lie at the nodes of a quadrature within the spans of pupil_boundary, so that the result is a smooth
-/// function of the subject and can be solved for. None where a field has no rays. criterion: min_rms or min_max.
-/// Weights: above 0. Throws Error where pupil_boundary does.
+/// The image of the plane subject_z by exact rays of all fields and wavelengths. Rays lie at the nodes of a quadrature
+/// of each pupil, so that the result is a smooth function of the subject and can be solved for. Nothing where a field
+/// has no rays. criterion: min_rms or min_max. Weights: above 0. Throws Error where pupil_boundary does.
 std::optional<Image> exact_image(const Lens& lens, double subject_z, std::span<const FocusField> fields,
                                  std::span<const WavelengthWeight> wavelengths, FocusCriterion criterion);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/psf/bundle.hpp"
+#include "petzval/rays/ray_bundle.hpp"
 
 #include <gtest/gtest.h>
 
@@ -27,16 +27,16 @@ TEST(TraceBundle, SendsFewRaysInVain) {
                                       {"fisheye_6.3mm_f2.8", 110.0},
                                       {"catadioptric_mangin_1000mm_f7.5", 1.0}}) {
     const Lens lens = data_lens(id);
-    const PupilBoundary outline = pupil_boundary(lens, {radians(field_deg), -infinity});
-    const FilmHits hits = trace_bundle(lens, PupilSampler(outline), 1 << 16);
+    const PupilBoundary boundary = pupil_boundary(lens, {radians(field_deg), -infinity});
+    const RayBundle hits = trace_bundle(lens, PupilSampler(boundary), 1 << 16);
     EXPECT_GE(hits.x.size(), 0.96 * hits.sent) << id;
-    EXPECT_NEAR(hits.transmitted_area() / outline.area(), 1, 1e-3) << id;
+    EXPECT_NEAR(hits.transmitted_area() / boundary.area(), 1, 1e-3) << id;
   }
 }
 
 TEST(TraceBundle, OfNothingIsNothing) {
   const Lens lens = data_lens("double_gauss_100mm_f1.35");
-  const FilmHits hits = trace_bundle(lens, PupilSampler(pupil_boundary(lens, {radians(60), -infinity})), 1000);
+  const RayBundle hits = trace_bundle(lens, PupilSampler(pupil_boundary(lens, {radians(60), -infinity})), 1000);
   EXPECT_EQ(hits.sent, 1000u);
   EXPECT_TRUE(hits.x.empty());
   EXPECT_EQ(hits.transmitted_area(), 0);
@@ -45,10 +45,10 @@ TEST(TraceBundle, OfNothingIsNothing) {
 TEST(TraceBundle, IsTheSameForAnyNumberOfThreads) {
   const Lens lens = data_lens("double_gauss_100mm_f1.35");
   const PupilSampler pupil(pupil_boundary(lens, {radians(10), -1500}));
-  const FilmHits one = trace_bundle(lens, pupil, 50000, 3, 1);
+  const RayBundle one = trace_bundle(lens, pupil, 50000, 3, 1);
   EXPECT_GT(one.x.size(), 20000u);
   for (const int threads : {2, 3, 7, 64}) {
-    const FilmHits many = trace_bundle(lens, pupil, 50000, 3, threads);
+    const RayBundle many = trace_bundle(lens, pupil, 50000, 3, threads);
     EXPECT_EQ(many.x, one.x) << threads;
     EXPECT_EQ(many.y, one.y) << threads;
   }
@@ -59,7 +59,7 @@ TEST(TraceBundle, IsTheSameForAnyNumberOfThreads) {
 TEST(TraceBundle, BeginsWithTheHitsOfFewerSamples) {
   const Lens lens = data_lens("double_gauss_100mm_f1.35");
   const PupilSampler pupil(pupil_boundary(lens, {0, -1500}));
-  const FilmHits few = trace_bundle(lens, pupil, 5000), many = trace_bundle(lens, pupil, 9000);
+  const RayBundle few = trace_bundle(lens, pupil, 5000), many = trace_bundle(lens, pupil, 9000);
   ASSERT_LT(few.x.size(), many.x.size());
   EXPECT_TRUE(std::equal(few.x.begin(), few.x.end(), many.x.begin()));
 }
@@ -67,10 +67,11 @@ TEST(TraceBundle, BeginsWithTheHitsOfFewerSamples) {
 TEST(TraceBundle, HitsAreThoseOfSingleRays) {
   const Lens lens = data_lens("catadioptric_mangin_1000mm_f7.5");
   const PupilSampler pupil(pupil_boundary(lens, {radians(0.5), -infinity}));
-  const FilmHits hits = trace_bundle(lens, pupil, 500, 8);
+  const RayBundle hits = trace_bundle(lens, pupil, 500, 8);
   std::size_t next = 0;
   for (std::uint32_t i = 0; i < 500; ++i) {
-    const auto [u, v] = owen_sobol(i, 8);
+    const auto uv = owen_sobol(i, 8);
+    const double u = uv.x, v = uv.y;
     const auto [x, y] = pupil(u, v);
     const auto end = trace(lens, pupil.plane().ray(x, y));
     if (!end.transmitted()) continue;

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <numeric>
+#include <span>
+
+namespace petzval::inline v0::psf_detail {
+
+/// Sums, or maxima, of every eighth point: the compiler may run a loop over points on lanes, and the result does not
+/// depend on whether it does.
+using PartialSums = std::array<double, 8>;
+
+inline double sum(const PartialSums& parts) noexcept { return std::accumulate(parts.begin(), parts.end(), 0.0); }
+
+inline double largest(const PartialSums& parts) noexcept { return *std::max_element(parts.begin(), parts.end()); }
+
+/// Calls see(part, x, y) for all points of sets with coordinates x and y; the points of a set take the parts by turns.
+template <class Sets, class See>
+void for_each(const Sets& sets, See&& see) noexcept {
+  constexpr std::size_t parts = std::tuple_size_v<PartialSums>;
+  for (const auto& points : sets) {
+    const std::span<const double> xs = points.x, ys = points.y;
+    const std::size_t whole = xs.size() - xs.size() % parts;
+    for (std::size_t i = 0; i < whole; i += parts) {
+      for (std::size_t part = 0; part < parts; ++part) see(part, xs[i + part], ys[i + part]);
+    }
+    for (std::size_t i = whole; i < xs.size(); ++i) see(i - whole, xs[i], ys[i]);
+  }
+}
+
+}  // namespace petzval::inline v0::psf_detail
