@@ -56,7 +56,8 @@ void draw_points(petzval::Rgb8Image& page, Font& font, const petzval::Film& film
   for (std::size_t i = 0; i < sheet.points.size(); ++i) {
     const MarkedPoint& point = sheet.points[i];
     if (!point.where) continue;
-    const auto [x, y] = film.raster(*point.where);
+    const petzval::Vec2<double> at = film.raster(*point.where);
+    const double x = at.x, y = at.y;
     if (!(x >= 0 && x < map.width && y >= 0 && y < map.height)) continue;
     const std::string number = std::to_string(i + 1);
     const std::string words = std::isnan(point.blur_mm) ? "" : micrometres(point.blur_mm);

@@ -7,7 +7,7 @@
 
 #include "camera_setup.hpp"
 #include "files.hpp"
-#include "petzval/camera/choose_model.hpp"
+#include "petzval/accuracy/choose_model.hpp"
 #include "petzval/film/film.hpp"
 
 namespace examples {

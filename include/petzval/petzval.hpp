@@ -35,11 +35,10 @@
 /// figures (petzval::image), petzval/io/image.hpp images (petzval::image), petzval/movement/tilt_fit.hpp the tilted
 /// film (petzval::fit).
 
+#include "petzval/accuracy/choose_model.hpp"
 #include "petzval/camera/camera.hpp"
-#include "petzval/camera/choose_model.hpp"
 #include "petzval/camera/host_frame.hpp"
 #include "petzval/camera/ray_model.hpp"
-#include "petzval/camera/sample_rays.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/parallel.hpp"
 #include "petzval/core/ray.hpp"

@@ -2,11 +2,13 @@
 #include "petzval/camera/camera.hpp"
 
 #include <array>
+#include <cmath>
+#include <string>
 
 #include "camera_data.hpp"
 #include "check_film.hpp"
 #include "core/low_discrepancy.hpp"
-#include "petzval/camera/sample_rays.hpp"
+#include "make_model.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/text.hpp"
 #include "tilted_pinhole.hpp"
@@ -14,12 +16,19 @@
 namespace petzval::inline v0 {
 namespace {
 
-/// A model that somebody else built has to be one of this lens and film, as far as can be told.
-void check_model(const Lens& lens, const Film& film, ModelKind kind, const FilmPupilTable& pupils) {
-  if (!lens.iris().round() && kind < ModelKind::exact_float) {
-    throw Error(lens.name() + ": camera: " + std::string(name(kind)) +
-                " does not see the edges of the iris, wanted an exact model");
-  }
+using camera_detail::FilmView;
+using camera_detail::LensFacts;
+using camera_detail::TiltedFilm;
+
+/// Throws Error for a model that cannot show the iris of the lens.
+void check_iris(const Lens& lens, ModelKind kind) {
+  if (lens.iris().round() || !(camera_detail::is_first_order(kind) || camera_detail::is_polynomial(kind))) return;
+  throw Error(lens.name() + ": camera: " + std::string(name(kind)) +
+              " does not see the edges of the iris, wanted an exact model");
+}
+
+/// Throws Error for a model that was built for another lens or film, as far as can be told.
+void check_model(const Lens& lens, const FilmPupilTable& pupils, double radius) {
   const std::size_t wavelengths = lens.wavelengths_nm().size();
   if (pupils.wavelengths() != wavelengths) {
     throw Error(lens.name() + ": camera: the model is one for " + std::to_string(pupils.wavelengths()) +
@@ -31,29 +40,16 @@ void check_model(const Lens& lens, const Film& film, ModelKind kind, const FilmP
                 " mm, wanted the lens's, " + number(lens.film_z()) + " mm");
   }
   constexpr double rounding = 1e-9;
-  const double radius = upright_radius(lens, film, kind);
   if (!(radius <= pupils.film_radius() * (1 + rounding))) {
     throw Error(lens.name() + ": camera: the model is one for film points up to " + number(pupils.film_radius()) +
                 " mm from the axis, wanted " + number(radius) + " mm or more");
   }
 }
 
-/// One sample by the batch call, of an upright or a tilted film.
-CameraRay one(const auto& model, const auto& film, const double* scale, const CameraSample& s) noexcept {
-  CameraRay out;
-  auto& [o, d] = out.ray;
-  const auto wavelength = RayWavelengths{.all = s.wavelength};
-  sample_rays<std::decay_t<decltype(model)>, double>(
-      model, film, scale, 1, {&s.film.x, &s.film.y, &s.pupil_u, &s.pupil_v, wavelength},
-      {{&o.x, &o.y, &o.z, &d.x, &d.y, &d.z}, &out.weight, &out.fate, &out.pdf_pupil, &out.pdf_direction});
-  return out;
-}
-
-/// Mean weight on the axis, by samples each of which has a v of its own: a grid has so few that the pupil's edge, which
-/// passes between two of them all around, would decide by steps.
-double on_axis(const auto& model, const auto& film, std::size_t wavelength) {
+/// Mean weight on the axis. Each sample has a v of its own: a grid has few of them, and the pupil's edge, which passes
+/// between two of them all around, would change the mean in steps.
+double on_axis(const FilmView& view, std::size_t wavelength) {
   constexpr std::size_t count = 4096;
-  const std::vector<double> unit(wavelength + 1, 1);
   const std::vector<double> zero(count, 0);
   std::vector<double> u, v;
   for (std::size_t i = 0; i < count; ++i) {
@@ -63,15 +59,14 @@ double on_axis(const auto& model, const auto& film, std::size_t wavelength) {
   std::array<std::vector<double>, 7> out;
   for (auto& values : out) values.resize(count);
   const auto at = [&](std::size_t k) { return out[k].data(); };
-  sample_rays<std::decay_t<decltype(model)>, double>(
-      model, film, unit.data(), count, {zero.data(), zero.data(), u.data(), v.data(), {.all = wavelength}},
-      {{at(0), at(1), at(2), at(3), at(4), at(5)}, at(6)});
+  camera_detail::sample_rays<double>(view, count, {zero.data(), zero.data(), u.data(), v.data(), {.all = wavelength}},
+                                     {{at(0), at(1), at(2), at(3), at(4), at(5)}, at(6)});
   double sum = 0;
   for (const double weight : out[6]) sum += weight;
   return sum / count;
 }
 
-std::vector<double> scales(const Lens& lens, const Film& film, const AnyModel& model, Normalisation normalisation) {
+std::vector<double> scales(const Lens& lens, const Film& film, const AnyRayModel& model, Normalisation normalisation) {
   std::vector<double> result;
   const std::size_t wavelengths = lens.wavelengths_nm().size();
   if (normalisation == Normalisation::irradiance) {
@@ -81,17 +76,17 @@ std::vector<double> scales(const Lens& lens, const Film& film, const AnyModel& m
     }
     return result;
   }
-  // A film of its own, for shifted ones are beside the axis: small, for no more than its middle matters.
+  // A small film about the axis, where a shifted one may not be.
   constexpr double part = 1. / 1024;
-  const Film about{.width_mm = part * film.width_mm,
-                   .height_mm = part * film.height_mm,
-                   .tilt_rad = film.tilt_rad,
-                   .swing_rad = film.swing_rad};
+  Film about = film;
+  about.width_mm *= part, about.height_mm *= part;
+  about.shift_x_mm = about.shift_y_mm = 0;
   std::optional<TiltedFilm> tilted;
-  if (film.tilted()) tilted.emplace(about, film_pupil_table_of(model));
+  if (film.tilted()) tilted.emplace(about, model.pupils());
+  const std::vector<double> unit(wavelengths, 1);
+  const FilmView view{model, about, tilted ? &*tilted : nullptr, unit};
   for (std::size_t w = 0; w < wavelengths; ++w) {
-    const double axis =
-        std::visit([&](const auto& m) { return tilted ? on_axis(m, *tilted, w) : on_axis(m, about, w); }, model);
+    const double axis = on_axis(view, w);
     if (!(axis > 0)) {
       throw Error(lens.name() + ": camera: the axis is dark, wanted light there for weights that are unity on it");
     }
@@ -102,75 +97,68 @@ std::vector<double> scales(const Lens& lens, const Film& film, const AnyModel& m
 
 }  // namespace
 
-Camera::Camera(const Lens& given_lens, const Film& given_film, const CameraOptions& options) {
-  const auto [lens, film] = camera_detail::placed(given_lens, given_film);
-  camera_detail::check_film(lens, film);
-  AnyModel model = make_model(options.model, lens, upright_radius(lens, film, options.model));
-  *this = Camera(lens, film, std::move(model), options.normalisation);
+Camera::Data::Data(const LensFacts& facts, const Film& placed, const AnyRayModel& any, double radius,
+                   Normalisation normalisation)
+    : lens(facts.lens()),
+      film(placed),
+      model(any),
+      tilted(placed.tilted() ? std::optional(TiltedFilm(placed, any.pupils())) : std::nullopt),
+      scale(scales(lens, film, model, normalisation)),
+      scene(facts, film, tilted, model, radius, scale) {}
+
+Camera::Camera(const Lens& lens, const Film& film, const CameraOptions& options) {
+  const auto [placed_lens, placed_film] = camera_detail::placed(lens, film);
+  camera_detail::check_film(placed_lens, placed_film);
+  check_iris(placed_lens, options.model);
+  const LensFacts facts(placed_lens);
+  const double radius = camera_detail::upright_radius(facts, placed_film, options.model);
+  const AnyRayModel model = camera_detail::make_model(options.model, facts, radius);
+  data_ = std::make_shared<const Data>(facts, placed_film, model, radius, options.normalisation);
 }
 
-Camera::Camera(const Lens& given_lens, const Film& given_film, AnyModel model, Normalisation normalisation) {
-  const auto [lens, film] = camera_detail::placed(given_lens, given_film);
-  camera_detail::check_film(lens, film);
-  const FilmPupilTable& pupils = film_pupil_table_of(model);
-  check_model(lens, film, kind_of(model), pupils);
-  std::optional<TiltedFilm> tilted;
-  if (film.tilted()) tilted.emplace(film, pupils);
-  std::vector<double> scale = scales(lens, film, model, normalisation);
-  camera_detail::SceneSide scene(lens, film, std::move(tilted), model, scale);
-  data_ = std::make_shared<const Data>(Data{lens, film, std::move(model), std::move(scale), std::move(scene)});
+Camera::Camera(const Lens& lens, const Film& film, const AnyRayModel& model, Normalisation normalisation) {
+  const auto [placed_lens, placed_film] = camera_detail::placed(lens, film);
+  camera_detail::check_film(placed_lens, placed_film);
+  check_iris(placed_lens, model.kind());
+  const LensFacts facts(placed_lens);
+  const double radius = camera_detail::upright_radius(facts, placed_film, model.kind());
+  check_model(placed_lens, model.pupils(), radius);
+  data_ = std::make_shared<const Data>(facts, placed_film, model, radius, normalisation);
 }
 
 const Lens& Camera::lens() const noexcept { return data_->lens; }
 const Film& Camera::film() const noexcept { return data_->film; }
-ModelKind Camera::model() const noexcept { return kind_of(data_->model); }
-const FilmPupilTable& Camera::pupils() const noexcept { return film_pupil_table_of(data_->model); }
+ModelKind Camera::model() const noexcept { return data_->model.kind(); }
 
-const TiltedFilm* Camera::tilted_film() const noexcept { return data_->scene.tilted(); }
-
-CameraRay Camera::sample(const CameraSample& sample) const noexcept {
+CameraRay Camera::sample(const CameraSample& s) const noexcept {
   const Data& data = *data_;
-  CameraRay ray = std::visit(
-      [&](const auto& m) {
-        const TiltedFilm* tilted = data.scene.tilted();
-        return tilted ? one(m, *tilted, data.scale.data(), sample) : one(m, data.film, data.scale.data(), sample);
-      },
-      data.model);
-  ray.pdf_film = data.film.contains(sample.film) ? 1 / data.film.area_mm2() : 0;
+  CameraRay ray =
+      camera_detail::sample_ray(data.view(), s.film, s.pupil_u, s.pupil_v, data.lens.position(s.wavelength));
+  ray.pdf_film = ray.fate != RayFate::outside_film ? data.scene.pdf_film() : 0;
   return ray;
 }
 
 template <class T>
 void Camera::sample(std::size_t count, const CameraSamples<T>& samples, const CameraRays<T>& rays) const noexcept {
-  const Data& data = *data_;
-  std::visit(
-      [&](const auto& m) {
-        if (const TiltedFilm* tilted = data.scene.tilted()) {
-          sample_rays(m, *tilted, data.scale.data(), count, samples, rays);
-        } else {
-          sample_rays(m, data.film, data.scale.data(), count, samples, rays);
-        }
-      },
-      data.model);
+  camera_detail::sample_rays(data_->view(), count, samples, rays);
 }
 
 CameraRayDifferential Camera::sample_differential(const CameraSample& s) const noexcept {
   CameraRayDifferential result{sample(s)};
   if (!result.sample) return result;
-  const std::size_t wavelength = lens().position(s.wavelength);
+  const Data& data = *data_;
+  const std::size_t wavelength = data.lens.position(s.wavelength);
   const auto upright = [&]() -> TwoPlaneRayDerivatives {
-    const PupilSample at = pupils().sample(s.film, s.pupil_u, s.pupil_v, wavelength);
-    const auto [by_x, by_y] = pupils().derivatives(s.film, s.pupil_u, s.pupil_v, wavelength);
+    const FilmPupilTable& pupils = data.model.pupils();
+    const PupilSample at = pupils.sample(s.film, s.pupil_u, s.pupil_v, wavelength);
+    const auto [by_x, by_y] = pupils.derivatives(s.film, s.pupil_u, s.pupil_v, wavelength);
     return {{s.film.x, s.film.y, at.x, at.y}, {1, 0, by_x[0], by_x[1]}, {0, 1, by_y[0], by_y[1]}};
   };
-  const auto* first_order = std::get_if<ParaxialModel>(&data_->model);
-  const bool pinhole = first_order && !first_order->pinhole_shifts().empty();
-  const TiltedFilm* tilted = data_->scene.tilted();
-  const TwoPlaneRayDerivatives line =
-      !tilted   ? upright()
-      : pinhole ? camera_detail::pinhole_line(*tilted, s.film, first_order->pinhole_shifts()[wavelength])
-                : tilted->line(s.film, s.pupil_u, s.pupil_v, wavelength);
-  const auto moved = std::visit([&](const auto& m) { return m.to_scene(line, wavelength); }, data_->model);
+  const TwoPlaneRayDerivatives line = !data.tilted ? upright()
+                                      : data.model.pinhole()
+                                          ? pinhole_line(*data.tilted, s.film, data.model.pinhole_shifts()[wavelength])
+                                          : data.tilted->line(s.film, s.pupil_u, s.pupil_v, wavelength);
+  const RayDerivatives moved = data.model.to_scene(line, wavelength);
   result.by_film_x = moved.by_u;
   result.by_film_y = moved.by_v;
   return result;

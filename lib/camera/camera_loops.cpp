@@ -91,38 +91,38 @@ void weigh(const FilmBounds<T>& film, T depth, std::size_t count, const T* film_
 }
 
 template <class T>
-void to_keys(const TiltedBounds<T>& tilted, std::size_t count, const T* film_x, const T* film_y, T* key_x,
-             T* key_y) noexcept {
+void to_virtual(const TiltedBounds<T>& tilted, std::size_t count, const T* film_x, const T* film_y, T* virtual_x,
+                T* virtual_y) noexcept {
   const TiltedBounds<T> b = tilted;
   PETZVAL_INDEPENDENT
   for (std::size_t i = 0; i < count; ++i) {
     const T x = film_x[i], y = film_y[i];
     const T per_distance = T(1) / (T(1) + (b.depth_by_x * x + b.depth_by_y * y));
-    key_x[i] = (b.x_by_x * x + b.x_by_y * y) * per_distance;
-    key_y[i] = b.y_by_y * y * per_distance;
+    virtual_x[i] = (b.x_by_x * x + b.x_by_y * y) * per_distance;
+    virtual_y[i] = b.y_by_y * y * per_distance;
   }
 }
 
 template <class T>
-void to_upright(const TiltedBounds<T>& tilted, std::size_t count, const T* key_x, const T* key_y, const T* pupil_x,
-                const T* pupil_y, T* film_x, T* film_y) noexcept {
+void to_upright(const TiltedBounds<T>& tilted, std::size_t count, const T* virtual_x, const T* virtual_y,
+                const T* pupil_x, const T* pupil_y, T* film_x, T* film_y) noexcept {
   const TiltedBounds<T> b = tilted;
   PETZVAL_INDEPENDENT
   for (std::size_t i = 0; i < count; ++i) {
-    const T lean = b.slope_x * key_x[i] + b.slope_y * key_y[i];
-    film_x[i] = key_x[i] - lean * pupil_x[i];
-    film_y[i] = key_y[i] - lean * pupil_y[i];
+    const T tilt = b.slope_x * virtual_x[i] + b.slope_y * virtual_y[i];
+    film_x[i] = virtual_x[i] - tilt * pupil_x[i];
+    film_y[i] = virtual_y[i] - tilt * pupil_y[i];
   }
 }
 
 template <class T>
-void lean(const TiltedBounds<T>& tilted, std::size_t count, const T* key_x, const T* key_y, const T* pupil_x,
-          const T* pupil_y, RayFate* fates, const CameraRays<T>& rays) noexcept {
+void weigh_tilted(const TiltedBounds<T>& tilted, std::size_t count, const T* virtual_x, const T* virtual_y,
+                  const T* pupil_x, const T* pupil_y, RayFate* fates, const CameraRays<T>& rays) noexcept {
   const TiltedBounds<T> b = tilted;
   T* const weights = rays.weights;
   PETZVAL_INDEPENDENT
   for (std::size_t i = 0; i < count; ++i) {
-    const T near = T(1) + (b.slope_x * key_x[i] + b.slope_y * key_y[i]);
+    const T near = T(1) + (b.slope_x * virtual_x[i] + b.slope_y * virtual_y[i]);
     const T front = T(1) - (b.slope_x * pupil_x[i] + b.slope_y * pupil_y[i]);
     const bool in_front = front > T(0);
     weights[i] = in_front ? weights[i] * (b.cosine * front * near * near * near) : T(0);
@@ -132,14 +132,14 @@ void lean(const TiltedBounds<T>& tilted, std::size_t count, const T* key_x, cons
   if (T* const pdf = rays.pdf_direction) {
     PETZVAL_INDEPENDENT
     for (std::size_t i = 0; i < count; ++i) {
-      const T near = T(1) + (b.slope_x * key_x[i] + b.slope_y * key_y[i]);
+      const T near = T(1) + (b.slope_x * virtual_x[i] + b.slope_y * virtual_y[i]);
       pdf[i] /= near * near;
     }
   }
 }
 
 template <class T>
-constexpr CameraLoopsOf<T> loops{keep_on_film<T>, start<T>, weigh<T>, to_keys<T>, to_upright<T>, lean<T>};
+constexpr CameraLoopsOf<T> loops{keep_on_film<T>, start<T>, weigh<T>, to_virtual<T>, to_upright<T>, weigh_tilted<T>};
 
 }  // namespace
 

@@ -29,13 +29,14 @@ struct CameraLoopsOf {
   /// scale: by ray, 0 for those without a wavelength.
   void (*weigh)(const FilmBounds<T>&, T depth, std::size_t, const T* film_x, const T* film_y,
                 const TwoPlaneRays<const T>&, const T* areas, const T* scale, RayFate*, const CameraRays<T>&) noexcept;
-  /// Of a tilted film: the keys of film points, the upright film points of lines through the pupil, and the weights of
-  /// such lines made those of the film's.
-  void (*to_keys)(const TiltedBounds<T>&, std::size_t, const T* film_x, const T* film_y, T* key_x, T* key_y) noexcept;
-  void (*to_upright)(const TiltedBounds<T>&, std::size_t, const T* key_x, const T* key_y, const T* pupil_x,
+  /// Of a tilted film: the virtual points of film points, the upright film points of lines through the pupil, and the
+  /// weights of such lines made those of the film's.
+  void (*to_virtual)(const TiltedBounds<T>&, std::size_t, const T* film_x, const T* film_y, T* virtual_x,
+                     T* virtual_y) noexcept;
+  void (*to_upright)(const TiltedBounds<T>&, std::size_t, const T* virtual_x, const T* virtual_y, const T* pupil_x,
                      const T* pupil_y, T* film_x, T* film_y) noexcept;
-  void (*lean)(const TiltedBounds<T>&, std::size_t, const T* key_x, const T* key_y, const T* pupil_x, const T* pupil_y,
-               RayFate*, const CameraRays<T>&) noexcept;
+  void (*weigh_tilted)(const TiltedBounds<T>&, std::size_t, const T* virtual_x, const T* virtual_y, const T* pupil_x,
+                       const T* pupil_y, RayFate*, const CameraRays<T>&) noexcept;
 };
 struct CameraLoops {
   CameraLoopsOf<float> single;

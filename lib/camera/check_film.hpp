@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "petzval/core/export.hpp"
 #include "petzval/film/film.hpp"
 #include "petzval/lens/lens.hpp"
 
@@ -21,6 +22,6 @@ struct FilmBehindLens {
   Film film;  ///< z_mm is set, to the lens's film_z()
 };
 /// Throws Error where with_film() does.
-FilmBehindLens placed(const Lens& lens, const Film& film);
+PETZVAL_API FilmBehindLens placed(const Lens& lens, const Film& film);
 
 }  // namespace petzval::inline v0::camera_detail

@@ -5,11 +5,11 @@
 #include <cmath>
 
 #include "core/kernel_vec.hpp"
-#include "petzval/camera/exact_model.hpp"
-#include "petzval/camera/paraxial_model.hpp"
+#include "exact_model.hpp"
+#include "paraxial_model.hpp"
 #include "trace/sequential.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval::inline v0::camera_detail {
 namespace {
 
 using Jet = ceres::Jet<double, 2>;
@@ -72,4 +72,4 @@ RayDerivatives ParaxialModel::to_scene(const TwoPlaneRayDerivatives& line, std::
                         {slope_x * down, slope_y * down, down});
 }
 
-}  // namespace petzval::inline v0
+}  // namespace petzval::inline v0::camera_detail

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/camera/exact_model.hpp"
+#include "exact_model.hpp"
 
 #include <algorithm>
 #include <array>
@@ -11,7 +11,7 @@
 #include "petzval/trace/batch.hpp"
 #include "petzval/trace/trace.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval::inline v0::camera_detail {
 namespace {
 
 constexpr std::size_t block = 256;
@@ -55,7 +55,7 @@ template <class T>
 void ExactModel<R>::to_scene(std::size_t count, const TwoPlaneRays<const T>& lines, const RayWavelengths& wavelengths,
                              const RayArrays<T>& rays, RayFate* fates) const noexcept {
   const R towards = static_cast<R>(towards_);
-  const auto& loops = camera_detail::camera_loops().of<R>();
+  const auto& loops = camera_loops().of<R>();
   if constexpr (std::is_same_v<R, T>) {
     loops.start(pupils_.space(), towards, count, lines, rays);
     trace_in_place<R>(lens_, Travel::to_scene, count, rays, wavelengths, fates);
@@ -77,6 +77,20 @@ void ExactModel<R>::to_scene(std::size_t count, const TwoPlaneRays<const T>& lin
       }
     }
   }
+}
+
+template <class R>
+RayFate ExactModel<R>::to_scene(const TwoPlaneRay& line, std::size_t wavelength, Ray<double>& ray) const noexcept {
+  const R film_x = static_cast<R>(line.film_x), film_y = static_cast<R>(line.film_y);
+  const R pupil_x = static_cast<R>(line.pupil_x), pupil_y = static_cast<R>(line.pupil_y);
+  const R depth = static_cast<R>(pupils_.space().depth()), x = pupil_x - film_x, y = pupil_y - film_y;
+  const R per_length = static_cast<R>(towards_) / std::sqrt(x * x + y * y + depth * depth);
+  const Ray<R> start{{pupil_x, pupil_y, static_cast<R>(pupils_.space().pupil_z)},
+                     {x * per_length, y * per_length, depth * per_length}};
+  const auto end = trace<R>(lens_, start, {.travel = Travel::to_scene, .wavelength = wavelength});
+  const Ray<R>& last = end.transmitted() ? end.ray : start;
+  ray = {Vec3<double>(last.origin), Vec3<double>(last.direction)};
+  return end.fate;
 }
 
 template <class R>
@@ -124,4 +138,4 @@ PETZVAL_EXACT(double, float)
 PETZVAL_EXACT(double, double)
 #undef PETZVAL_EXACT
 
-}  // namespace petzval::inline v0
+}  // namespace petzval::inline v0::camera_detail

@@ -23,11 +23,12 @@
 #include <numbers>
 
 #include "camera_data.hpp"
-#include "petzval/paraxial/pupils.hpp"
+#include "make_model.hpp"
 #include "scene_side.hpp"
 #include "tilted_pinhole.hpp"
 
 namespace petzval::inline v0 {
+namespace camera_detail {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -36,74 +37,72 @@ double squared(double x) noexcept { return x * x; }
 
 bool finite(const Vec3<double>& v) noexcept { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
-/// What of the model's lines leaves for the scene.
-std::vector<std::vector<Ray<double>>> lines_of(const Lens& lens, const auto& model) {
+/// The rays that leave a model for the scene.
+std::vector<std::vector<Ray<double>>> leaving_rays_of(const Lens& lens, const AnyRayModel& model) {
   return leaving_rays(model.pupils(), lens.rotationally_symmetric(),
                       [&](std::size_t count, const TwoPlaneRays<const double>& lines, std::size_t wavelength,
-                          const RayArrays<double>& rays, RayFate* fates) {
-                        model.template to_scene<double>(count, lines, {.all = wavelength}, rays, fates);
-                      });
+                          const RayArrays<double>& rays,
+                          RayFate* fates) { model.to_scene(count, lines, {.all = wavelength}, rays, fates); });
 }
 
-/// The scene's pupils of a model. Whether rays meet the film is left out: pupils would end abruptly with the film.
-EntrancePupilTable entrance_of(const Lens& lens, const AnyModel& any) {
-  return std::visit(
-      [&](const auto& model) {
-        using M = std::decay_t<decltype(model)>;
+/// Whether a model passes rays of the scene, wherever they meet the film's plane.
+ScenePassing passing(const AnyRayModel& model) {
+  return
+      [&model](std::size_t count, const RayArrays<const double>& rays, std::size_t wavelength, std::uint8_t* passes) {
         const FilmPupilTable& pupils = model.pupils();
-        if constexpr (std::is_same_v<M, ParaxialModel>) {
-          // A pinhole needs no more than to know what lies in front.
-          if (model.model() == ModelKind::pinhole) {
-            return EntrancePupilTable(lens, std::vector<std::vector<Ray<double>>>(pupils.wavelengths()), {});
-          }
-          const auto within = [&](std::size_t count, const RayArrays<const double>& rays, std::size_t wavelength,
-                                  std::uint8_t* passes) {
-            std::array<std::vector<double>, 4> line;
-            for (auto& values : line) values.resize(count);
-            std::vector<RayFate> fates(count);
-            model.to_film(count, rays, {.all = wavelength},
-                          {line[0].data(), line[1].data(), line[2].data(), line[3].data()}, fates.data());
-            for (std::size_t i = 0; i < count; ++i) {
-              // Points beside the film see the pupil of its edge.
-              const double radius = std::hypot(line[0][i], line[1][i]);
-              const double part = radius > pupils.film_radius() ? pupils.film_radius() / radius : 1;
-              passes[i] = fates[i] == RayFate::transmitted &&
-                          pupils.contains({part * line[0][i], part * line[1][i]}, line[2][i], line[3][i], wavelength);
-            }
-          };
-          return EntrancePupilTable(lens, lines_of(lens, model), within, ClippedBy::samples);
-        } else if constexpr (std::is_same_v<M, PolynomialModel>) {
-          return EntrancePupilTable(lens, lines_of(lens, model), traced_passing(lens), ClippedBy::samples);
-        } else {
-          return traced_entrances(lens, pupils);
+        std::array<std::vector<double>, 4> line;
+        for (auto& values : line) values.resize(count);
+        std::vector<RayFate> fates(count);
+        model.to_film(count, rays, {.all = wavelength},
+                      {line[0].data(), line[1].data(), line[2].data(), line[3].data()}, fates.data());
+        for (std::size_t i = 0; i < count; ++i) {
+          // Points beside the film see the pupil of its edge.
+          const double radius = std::hypot(line[0][i], line[1][i]);
+          const double part = radius > pupils.film_radius() ? pupils.film_radius() / radius : 1;
+          passes[i] = fates[i] == RayFate::transmitted &&
+                      (model.clips_at_apertures() ||
+                       pupils.contains({part * line[0][i], part * line[1][i]}, line[2][i], line[3][i], wavelength));
         }
-      },
-      any);
+      };
+}
+
+/// The pupils that points of the scene see. Rays count wherever they meet the film's plane: pupils would end abruptly
+/// with the film.
+EntrancePupilTable entrance_of(const Lens& lens, const AnyRayModel& model) {
+  const bool exact = model.kind() == ModelKind::exact_float || model.kind() == ModelKind::exact_double;
+  if (exact) return traced_entrances(lens, model.pupils());
+  // A pinhole only needs to know what lies in front of the lens.
+  if (model.pinhole()) {
+    return EntrancePupilTable(lens, std::vector<std::vector<Ray<double>>>(model.pupils().wavelengths()), {});
+  }
+  return EntrancePupilTable(lens, leaving_rays_of(lens, model),
+                            is_polynomial(model.kind()) ? traced_passing(lens) : passing(model),
+                            model.clips_at_apertures() ? ClippedBy::apertures : ClippedBy::samples);
 }
 
 }  // namespace
 
-namespace camera_detail {
-
-SceneSide::SceneSide(const Lens& lens, const Film& film, std::optional<TiltedFilm> tilted, const AnyModel& model,
-                     std::span<const double> scale)
+SceneSide::SceneSide(const LensFacts& facts, const Film& film, std::optional<TiltedFilm> tilted,
+                     const AnyRayModel& model, double radius, std::span<const double> scale)
     : film_(film),
       tilted_(std::move(tilted)),
-      upright_radius_(upright_radius(lens, film, kind_of(model))),
-      space_(film_pupil_table_of(model).space()),
-      entrance_(entrance_of(lens, model)) {
+      upright_radius_(radius),
+      pdf_film_(1 / film.area_mm2()),
+      space_(model.pupils().space()),
+      entrance_(entrance_of(facts.lens(), model)) {
+  const Lens& lens = facts.lens();
   for (std::size_t w = 0; w < scale.size(); ++w) {
     const double n = lens.index(0, w), n_film = lens.index(lens.surface_count(), w), etendue = squared(n / n_film);
-    const Pupil entrance = pupils(lens, w).entrance;
+    const Pupil entrance = facts.pupils(w).entrance;
     wavelengths_.push_back({.we = etendue * scale[w] / film.area_mm2(),
                             .density = etendue / film.area_mm2() / squared(space_.depth()),
                             .entrance_z = entrance.z,
                             .entrance_area = pi / 4 * squared(entrance.diameter),
-                            .chiefs = ChiefLines(lens, model, upright_radius_, w)});
+                            .chiefs = ChiefRayTable(facts, model, upright_radius_, w)});
   }
 }
 
-SceneSide::Arrival SceneSide::arrive(const AnyModel& any, const Ray<double>& ray,
+SceneSide::Arrival SceneSide::arrive(const AnyRayModel& model, const Ray<double>& ray,
                                      std::size_t wavelength) const noexcept {
   Arrival result;
   // As the tracers take rays.
@@ -112,19 +111,15 @@ SceneSide::Arrival SceneSide::arrive(const AnyModel& any, const Ray<double>& ray
   // Nothing is lost on the way from a far point where the line begins near the lens.
   const Vec3<double>&d = ray.direction, o = ray.origin - d * glm::dot(ray.origin, d);
   const TwoPlaneRays<double> line{&result.upright.x, &result.upright.y, &result.pupil.x, &result.pupil.y};
-  std::visit(
-      [&](const auto& m) {
-        m.to_film(1, {&o.x, &o.y, &o.z, &d.x, &d.y, &d.z}, {.all = wavelength}, line, &result.fate);
-      },
-      any);
+  model.to_film(1, {&o.x, &o.y, &o.z, &d.x, &d.y, &d.z}, {.all = wavelength}, line, &result.fate);
   return result;
 }
 
 std::optional<SceneSide::OnFilm> SceneSide::on_film(const FilmPoint& upright, const FilmPoint& pupil) const noexcept {
   if (!tilted_) return OnFilm{upright, upright};
-  const auto key = tilted_->key_of({upright.x, upright.y, pupil.x, pupil.y});
-  if (!key) return {};
-  return OnFilm{tilted_->point(*key), *key};
+  const auto point = tilted_->virtual_point_of({upright.x, upright.y, pupil.x, pupil.y});
+  if (!point) return {};
+  return OnFilm{tilted_->point(*point), *point};
 }
 
 Importance SceneSide::met_by(const Arrival& arrival, const std::optional<OnFilm>& met) const noexcept {
@@ -138,50 +133,51 @@ Importance SceneSide::met_by(const Arrival& arrival, const std::optional<OnFilm>
   return result;
 }
 
-void SceneSide::weigh(Importance& result, const AnyModel& any, const Arrival& arrival, const FilmPoint& key,
+void SceneSide::weigh(Importance& result, const AnyRayModel& model, const Arrival& arrival, const FilmPoint& point,
                       double cosine, double area, std::size_t wavelength) const noexcept {
   const auto& [fate, upright, pupil] = arrival;
   const Wavelength& at = wavelengths_[wavelength];
   const double depth2 = squared(space_.depth());
   const double length2 = squared(pupil.x - upright.x) + squared(pupil.y - upright.y) + depth2;
-  const double lean = tilted_ ? tilted_->weight(key, pupil.x, pupil.y) : 1;
-  const double slopes = std::holds_alternative<ParaxialModel>(any) ? squared(depth2 / (length2 * squared(cosine))) : 1;
+  const double facing = tilted_ ? tilted_->weight(point, pupil.x, pupil.y) : 1;
+  const double slopes = model.linear_in_slopes() ? squared(depth2 / (length2 * squared(cosine))) : 1;
   result.we = at.we * slopes;
-  result.pdf_film = 1 / film_.area_mm2();
+  result.pdf_film = pdf_film_;
   result.pdf_pupil = area > 0 ? 1 / area : 0;
   // A pupil at infinity has no place; all of the density is the direction's.
   result.pdf_position = std::isfinite(at.entrance_area) ? 1 / at.entrance_area : 1;
-  result.pdf_direction = at.density * squared(length2) / lean * slopes * result.pdf_pupil / result.pdf_position;
+  result.pdf_direction = at.density * squared(length2) / facing * slopes * result.pdf_pupil / result.pdf_position;
 }
 
-Importance SceneSide::importance(const AnyModel& any, const Ray<double>& ray, std::size_t wavelength) const noexcept {
+Importance SceneSide::importance(const AnyRayModel& model, const Ray<double>& ray,
+                                 std::size_t wavelength) const noexcept {
   // No ray meets a point but one that was aimed at it.
-  if (kind_of(any) == ModelKind::pinhole) return {};
-  const Arrival arrival = arrive(any, ray, wavelength);
+  if (model.pinhole()) return {};
+  const Arrival arrival = arrive(model, ray, wavelength);
   const auto& [fate, upright, pupil] = arrival;
   const auto met = on_film(upright, pupil);
   Importance result = met_by(arrival, met);
   if (result.fate != RayFate::transmitted) return result;
-  const FilmPupilTable &passing = film_pupil_table_of(any), &sampled = tilted_ ? tilted_->pupils() : passing;
-  const bool no_rims = std::holds_alternative<ParaxialModel>(any) || std::holds_alternative<PolynomialModel>(any);
-  if (no_rims && !passing.contains(upright, pupil.x, pupil.y, wavelength)) {
+  const FilmPupilTable &passing = model.pupils(), &sampled = tilted_ ? tilted_->pupils() : passing;
+  if (!model.clips_at_apertures() && !passing.contains(upright, pupil.x, pupil.y, wavelength)) {
     result.fate = RayFate::vignetted;
     return result;
   }
-  const bool within = sampled.contains(met->key, pupil.x, pupil.y, wavelength);
-  weigh(result, any, arrival, met->key, ray.direction.z, within ? sampled.area(met->key, wavelength) : 0, wavelength);
+  const bool within = sampled.contains(met->virtual_point, pupil.x, pupil.y, wavelength);
+  weigh(result, model, arrival, met->virtual_point, ray.direction.z,
+        within ? sampled.area(met->virtual_point, wavelength) : 0, wavelength);
   return result;
 }
 
-ImportanceSample SceneSide::sample_importance(const AnyModel& model, const Vec3<double>& point, double u, double v,
+ImportanceSample SceneSide::sample_importance(const AnyRayModel& model, const Vec3<double>& point, double u, double v,
                                               std::size_t wavelength) const noexcept {
-  if (kind_of(model) == ModelKind::pinhole) return through_pinhole(model, point, u, v, wavelength);
+  if (model.pinhole()) return through_pinhole(model, point, u, v, wavelength);
   const EntranceSample s = entrance_.sample(point, u, v, wavelength);
   if (!(s.pdf > 0)) return {};
   return {s.direction, s.distance, s.place, s.pdf, importance(model, {s.place, s.direction}, wavelength)};
 }
 
-ImportanceSample SceneSide::through_pinhole(const AnyModel& model, const Vec3<double>& point, double u, double v,
+ImportanceSample SceneSide::through_pinhole(const AnyRayModel& model, const Vec3<double>& point, double u, double v,
                                             std::size_t wavelength) const noexcept {
   ImportanceSample result;
   if (wavelength >= wavelengths_.size() || !entrance_.in_front(point)) return result;
@@ -196,7 +192,7 @@ ImportanceSample SceneSide::through_pinhole(const AnyModel& model, const Vec3<do
   const auto met = on_film(arrival.upright, arrival.pupil);
   Importance& seen = result.importance = met_by(arrival, met);
   if (seen.fate != RayFate::transmitted) return result;
-  const PupilSample s = film_pupil_table_of(model).sample(arrival.upright, u, v, wavelength);
+  const PupilSample s = model.pupils().sample(arrival.upright, u, v, wavelength);
   FilmPoint place{s.x, s.y};
   double area = s.area, spread = 1;
   if (tilted_) {
@@ -207,7 +203,7 @@ ImportanceSample SceneSide::through_pinhole(const AnyModel& model, const Vec3<do
     area *= squared(part);
     // Lines through the place spread over the film otherwise than those of the pinhole do.
     spread = part_of_place(plane, place) / part;
-    const TwoPlaneRay line = tilted_->upright(met->key, place.x, place.y);
+    const TwoPlaneRay line = tilted_->upright(met->virtual_point, place.x, place.y);
     arrival.upright = {line.film_x, line.film_y};
   }
   arrival.pupil = place;
@@ -215,14 +211,14 @@ ImportanceSample SceneSide::through_pinhole(const AnyModel& model, const Vec3<do
     seen.fate = RayFate::vignetted;
     return result;
   }
-  weigh(seen, model, arrival, met->key, result.direction.z, area, wavelength);
+  weigh(seen, model, arrival, met->virtual_point, result.direction.z, area, wavelength);
   seen.we *= spread, seen.pdf_direction *= spread;
   return result;
 }
 
-double SceneSide::pdf(const AnyModel& model, const Vec3<double>& point, const Vec3<double>& direction,
+double SceneSide::pdf(const AnyRayModel& model, const Vec3<double>& point, const Vec3<double>& direction,
                       std::size_t wavelength) const noexcept {
-  return kind_of(model) == ModelKind::pinhole ? 0 : entrance_.pdf(point, direction, wavelength);
+  return model.pinhole() ? 0 : entrance_.pdf(point, direction, wavelength);
 }
 
 }  // namespace camera_detail

@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-#include "petzval/camera/paraxial_model.hpp"
+#include "paraxial_model.hpp"
 
 namespace petzval::inline v0::camera_detail {
 

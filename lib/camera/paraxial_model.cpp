@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/camera/paraxial_model.hpp"
+#include "paraxial_model.hpp"
 
 #include <array>
 #include <cmath>
@@ -9,21 +9,21 @@
 
 #include "core/meet_plane.hpp"
 #include "core/widest.hpp"
+#include "make_model.hpp"
 #include "paraxial_loops.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/text.hpp"
-#include "petzval/paraxial/first_order.hpp"
-#include "petzval/paraxial/pupils.hpp"
 #include "petzval/pupil_table/film_pupil_table.hpp"
 #include "pupil_table/sector.hpp"
 #include "two_disc_fit.hpp"
 
-namespace petzval::inline v0 {
-namespace camera_detail {
+namespace petzval::inline v0::camera_detail {
+
 PETZVAL_WIDEST(ParaxialLoops, paraxial_loops)
-}  // namespace camera_detail
 
 namespace {
+
+constexpr double reach = 1e12;  // mm: numbers up to here give finite rays, in float too
 
 /// Film and pupil point of a line to its height and slope in the plane z behind the lens.
 RayMatrix line_at(const TwoPlanes& space, double z) noexcept {
@@ -48,8 +48,9 @@ PupilDisc disc_of(const Lens& lens, const RayMatrix& height, double radius, cons
   return {-height.a / height.b, radius / std::abs(height.b)};
 }
 
-PupilDisc thick_disc(const Lens& lens, std::size_t wavelength, const TwoPlanes& space) {
-  const std::size_t stop = pupils(lens, wavelength).stop, last = lens.surface_count();
+PupilDisc thick_disc(const LensFacts& facts, std::size_t wavelength, const TwoPlanes& space) {
+  const Lens& lens = facts.lens();
+  const std::size_t stop = facts.pupils(wavelength).stop, last = lens.surface_count();
   const RayMatrix behind_stop =
       ray_matrix(lens, stop, last, wavelength)
           .on_slopes(signed_index(lens, stop, wavelength), signed_index(lens, last, wavelength));
@@ -63,22 +64,23 @@ PupilDisc thick_disc(const Lens& lens, std::size_t wavelength, const TwoPlanes& 
   return disc_of(lens, at_stop, radius, "the image of the stop");
 }
 
-PupilDisc thin_disc(const Lens& lens, std::size_t wavelength, const TwoPlanes& space) {
-  const double diameter = pupils(lens, wavelength).entrance.diameter;
+PupilDisc thin_disc(const LensFacts& facts, std::size_t wavelength, const TwoPlanes& space) {
+  const Lens& lens = facts.lens();
+  const double diameter = facts.pupils(wavelength).entrance.diameter;
   if (!std::isfinite(diameter)) {
     throw Error(lens.name() + ": found the entrance pupil at infinity, wanted a finite one for a thin lens");
   }
-  const double z = first_order(lens, wavelength).rear_principal_z;
+  const double z = facts.first_order(wavelength).rear_principal_z;
   return disc_of(lens, line_at(space, z), diameter / 2, "the rear principal plane");
 }
 
 /// Edges of the real pupils of some film points, at equal steps of film area; none where hardly any light comes.
-std::vector<camera_detail::EdgePoint> real_edges(const FilmPupilTable& real, std::size_t wavelength) {
+std::vector<EdgePoint> real_edges(const FilmPupilTable& real, std::size_t wavelength) {
   constexpr int fields = 16, directions = pupil_table_detail::polygon_corners / 2;
   // The stars stand for pupils of the same area; this part of the way between their corners they cross a round one.
   constexpr double crossing = 0.21, step = 2.0 / pupil_table_detail::polygon_corners;
   constexpr double darkest = 0.01;  // of the pupil's area on the axis
-  std::vector<camera_detail::EdgePoint> edges;
+  std::vector<EdgePoint> edges;
   for (int j = 0; j <= fields; ++j) {
     const FilmPoint film{0, real.film_radius() * std::sqrt(static_cast<double>(j) / fields)};
     std::array<PupilSample, directions> points;
@@ -93,8 +95,9 @@ std::vector<camera_detail::EdgePoint> real_edges(const FilmPupilTable& real, std
   return edges;
 }
 
-FilmPupilTable pupils_of(ModelKind model, const Lens& lens, double film_radius) {
-  if (model > ModelKind::thick) {
+FilmPupilTable pupils_of(ModelKind model, const LensFacts& facts, double film_radius) {
+  const Lens& lens = facts.lens();
+  if (!is_first_order(model)) {
     throw Error(lens.name() + ": found " + std::string(name(model)) + ", wanted a first-order model");
   }
   if (!lens.rotationally_symmetric()) {
@@ -103,7 +106,7 @@ FilmPupilTable pupils_of(ModelKind model, const Lens& lens, double film_radius) 
   }
   const std::size_t wavelengths = lens.wavelengths_nm().size();
   for (std::size_t w = 0; w < wavelengths; ++w) {
-    if (first_order(lens, w).afocal) {
+    if (facts.first_order(w).afocal) {
       throw Error(lens.name() + ": found an afocal lens, wanted a focal length for a first-order model");
     }
   }
@@ -111,36 +114,37 @@ FilmPupilTable pupils_of(ModelKind model, const Lens& lens, double film_radius) 
   if (model == ModelKind::thin_two_disc) {
     const FilmPupilTable real = FilmPupilTable::equal_area(lens, film_radius);
     for (std::size_t w = 0; w < wavelengths; ++w) {
-      const auto fitted = camera_detail::fit_two_discs(real_edges(real, w));
+      const auto fitted = fit_two_discs(real_edges(real, w));
       discs[w].assign(fitted.begin(), fitted.end());
     }
     return FilmPupilTable::of_discs(real.space(), discs, film_radius, lens.primary_wavelength());
   }
   const TwoPlanes space = two_planes(lens);
   for (std::size_t w = 0; w < wavelengths; ++w) {
-    discs[w] = {model == ModelKind::thin ? thin_disc(lens, w, space) : thick_disc(lens, w, space)};
+    discs[w] = {model == ModelKind::thin ? thin_disc(facts, w, space) : thick_disc(facts, w, space)};
   }
   return FilmPupilTable::of_discs(space, discs, film_radius, lens.primary_wavelength());
 }
 
-/// Where rays are given: the entrance pupil, unless it is so far that digits of the place would be lost.
-double scene_plane(const Lens& lens) {
-  const std::size_t wavelength = lens.primary_wavelength();
-  const double z = pupils(lens, wavelength).entrance.z, first_z = lens.surfaces().front().vertex_z;
-  const double reach = std::abs(first_order(lens, wavelength).effective_focal_length);
-  return std::abs(z - first_z) < 20 * reach ? z : first_z;
+/// Where rays start: in the entrance pupil, unless it is so far that digits of the position would be lost.
+double scene_plane(const LensFacts& facts) {
+  const std::size_t wavelength = facts.lens().primary_wavelength();
+  const double z = facts.pupils(wavelength).entrance.z, first_z = facts.lens().surfaces().front().vertex_z;
+  const double focal_length = std::abs(facts.first_order(wavelength).effective_focal_length);
+  return std::abs(z - first_z) < 20 * focal_length ? z : first_z;
 }
 
 }  // namespace
 
-ParaxialModel::ParaxialModel(ModelKind model, const Lens& lens, double film_radius)
-    : model_(model), pupils_(pupils_of(model, lens, film_radius)), z_(scene_plane(lens)) {
+ParaxialModel::ParaxialModel(ModelKind model, const LensFacts& facts, double film_radius)
+    : kind_(model), pupils_(pupils_of(model, facts, film_radius)), z_(scene_plane(facts)) {
+  const Lens& lens = facts.lens();
   const TwoPlanes& space = pupils_.space();
   for (std::size_t w = 0; w < lens.wavelengths_nm().size(); ++w) {
     RayMatrix map = to_scene_map(lens, w, space, z_);
     to_film_.push_back(map.inverse());
     if (model == ModelKind::pinhole) {
-      const double middle = thick_disc(lens, w, space).shift;
+      const double middle = thick_disc(facts, w, space).shift;
       pinhole_shifts_.push_back(middle);
       map = {map.a + map.b * middle, 0, map.c + map.d * middle, 0};
     }
@@ -151,18 +155,31 @@ ParaxialModel::ParaxialModel(ModelKind model, const Lens& lens, double film_radi
 template <class T>
 void ParaxialModel::to_scene(std::size_t count, const TwoPlaneRays<const T>& lines, const RayWavelengths& wavelengths,
                              const RayArrays<T>& rays, RayFate* fates) const noexcept {
-  const camera_detail::ParaxialJob job{to_scene_.data(), to_scene_.size(), pupils_.primary_wavelength(), z_,
-                                       wavelengths};
+  const ParaxialJob job{to_scene_.data(), to_scene_.size(), pupils_.primary_wavelength(), z_, wavelengths};
   if constexpr (std::is_same_v<T, float>) {
-    camera_detail::paraxial_loops().of_float(count, job, lines, rays, fates);
+    paraxial_loops().of_float(count, job, lines, rays, fates);
   } else {
-    camera_detail::paraxial_loops().of_double(count, job, lines, rays, fates);
+    paraxial_loops().of_double(count, job, lines, rays, fates);
   }
+}
+
+RayFate ParaxialModel::to_scene(const TwoPlaneRay& line, std::size_t wavelength, Ray<double>& ray) const noexcept {
+  const auto& [film_x, film_y, pupil_x, pupil_y] = line;
+  const bool known = wavelength < to_scene_.size();
+  const bool good = std::abs(film_x) + std::abs(film_y) + std::abs(pupil_x) + std::abs(pupil_y) <= reach;
+  if (!good) {
+    ray = {{0, 0, z_}, {0, 0, -1}};
+    return RayFate::missed_surface;
+  }
+  const RayMatrix& m = to_scene_[known ? wavelength : 0];
+  const double slope_x = m.c * film_x + m.d * pupil_x, slope_y = m.c * film_y + m.d * pupil_y;
+  const double down = -1 / std::sqrt(1 + slope_x * slope_x + slope_y * slope_y);
+  ray = {{m.a * film_x + m.b * pupil_x, m.a * film_y + m.b * pupil_y, z_}, {slope_x * down, slope_y * down, down}};
+  return known ? RayFate::transmitted : RayFate::missed_surface;
 }
 
 void ParaxialModel::to_film(std::size_t count, const RayArrays<const double>& rays, const RayWavelengths& wavelengths,
                             const TwoPlaneRays<double>& lines, RayFate* fates) const noexcept {
-  constexpr double reach = 1e12;
   for (std::size_t i = 0; i < count; ++i) {
     const auto [x, y, slope_x, slope_y] = core_detail::slope_ray(core_detail::ray_at(rays, i), z_);
     const std::size_t wavelength = wavelengths.position(i, pupils_.primary_wavelength());
@@ -182,4 +199,4 @@ template PETZVAL_API void ParaxialModel::to_scene(std::size_t, const TwoPlaneRay
 template PETZVAL_API void ParaxialModel::to_scene(std::size_t, const TwoPlaneRays<const double>&, const RayWavelengths&,
                                                   const RayArrays<double>&, RayFate*) const noexcept;
 
-}  // namespace petzval::inline v0
+}  // namespace petzval::inline v0::camera_detail

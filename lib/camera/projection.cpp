@@ -31,10 +31,11 @@ struct Misses {
 
 }  // namespace
 
-Projection SceneSide::project(const AnyModel& any, const Vec3<double>& point, std::size_t wavelength) const noexcept {
+Projection SceneSide::project(const AnyRayModel& model, const Vec3<double>& point,
+                              std::size_t wavelength) const noexcept {
   Projection result;
   if (wavelength >= wavelengths_.size() || !entrance_.in_front(point)) return result;
-  const ChiefLines& chiefs = wavelengths_[wavelength].chiefs;
+  const ChiefRayTable& chiefs = wavelengths_[wavelength].chiefs;
   const auto start = chiefs.about(point);
   if (!start) return result;
 
@@ -49,13 +50,9 @@ Projection SceneSide::project(const AnyModel& any, const Vec3<double>& point, st
       const auto [x, y] = chiefs.pupil_point(f);
       line[0][i] = f.x, line[1][i] = f.y, line[2][i] = x, line[3][i] = y;
     }
-    std::visit(
-        [&](const auto& m) {
-          m.template to_scene<double>(
-              3, {line[0].data(), line[1].data(), line[2].data(), line[3].data()}, {.all = wavelength},
-              {ray[0].data(), ray[1].data(), ray[2].data(), ray[3].data(), ray[4].data(), ray[5].data()}, fates.data());
-        },
-        any);
+    model.to_scene<double>(3, {line[0].data(), line[1].data(), line[2].data(), line[3].data()}, {.all = wavelength},
+                           {ray[0].data(), ray[1].data(), ray[2].data(), ray[3].data(), ray[4].data(), ray[5].data()},
+                           fates.data());
     Misses found;
     Vec3<double> across{1, 0, 0}, up{0, 1, 0};
     for (int i : {0, 1, 2}) {
@@ -103,10 +100,8 @@ Projection SceneSide::project(const AnyModel& any, const Vec3<double>& point, st
     last = step;
     if (step < settled) break;
   }
-  const bool rims = !std::holds_alternative<ParaxialModel>(any) && !std::holds_alternative<PolynomialModel>(any);
   const auto [x, y] = chiefs.pupil_point(film);
-  const FilmPupilTable& pupils = film_pupil_table_of(any);
-  const bool within = rims || pupils.contains(film, x, y, wavelength);
+  const bool within = model.clips_at_apertures() || model.pupils().contains(film, x, y, wavelength);
   return done(within ? ProjectionStatus::converged : ProjectionStatus::vignetted);
 }
 

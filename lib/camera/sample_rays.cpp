@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/camera/sample_rays.hpp"
+#include "sample_rays.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstdint>
 
 #include "camera_loops.hpp"
 #include "tilted_pinhole.hpp"
@@ -9,12 +12,10 @@
 namespace petzval::inline v0::camera_detail {
 namespace {
 
-/// Nothing lies on a tilted film that is taken for an upright one.
+constexpr std::size_t block = 256;
+
 template <class T>
-FilmBounds<T> bounds_of(const Film& film) noexcept {
-  if (film.tilted()) return {T(0), T(0), T(-1), T(-1)};
-  return film_detail::bounds_of<T>(film);
-}
+using Values = std::array<T, block>;
 
 template <class T>
 TiltedBounds<T> bounds_of(const TiltedFilm& film) noexcept {
@@ -24,32 +25,33 @@ TiltedBounds<T> bounds_of(const TiltedFilm& film) noexcept {
           number(p.depth_by_y), number(p.slope_x), number(p.slope_y), number(p.cosine)};
 }
 
-}  // namespace
-
+/// The scale of each ray; 0 for a wavelength that the model does not have.
 template <class T>
-void to_keys(std::size_t count, const TiltedFilm& film, const T* film_x, const T* film_y, T* key_x, T* key_y) noexcept {
-  camera_loops().of<T>().to_keys(bounds_of<T>(film), count, film_x, film_y, key_x, key_y);
+void fill_scales(std::size_t count, std::span<const double> scale, const RayWavelengths& wavelengths, T* scales) {
+  const auto scale_of = [&](std::size_t w) { return w < scale.size() ? static_cast<T>(scale[w]) : T(0); };
+  if (!wavelengths.each) {
+    std::fill_n(scales, count, scale_of(wavelengths.all.position(0)));
+    return;
+  }
+  for (std::size_t i = 0; i < count; ++i) scales[i] = scale_of(wavelengths.each[i]);
 }
 
+/// The upright film points of a pinhole's rays, places of the pupil, and its areas.
 template <class T>
-void to_upright(std::size_t count, const TiltedFilm& film, const T* key_x, const T* key_y, const T* pupil_x,
-                const T* pupil_y, T* film_x, T* film_y) noexcept {
-  camera_loops().of<T>().to_upright(bounds_of<T>(film), count, key_x, key_y, pupil_x, pupil_y, film_x, film_y);
-}
-
-template <class T>
-void sample_pinhole(std::size_t count, const TiltedFilm& film, const FilmPupilTable& pupils,
-                    std::span<const double> shifts, const CameraSamples<T>& samples, const T* key_x, const T* key_y,
-                    T* film_x, T* film_y, T* x, T* y, T* areas) noexcept {
+void sample_pinhole(std::size_t count, const FilmView& view, const CameraSamples<T>& samples, const T* virtual_x,
+                    const T* virtual_y, T* film_x, T* film_y, T* x, T* y, T* areas) noexcept {
+  const std::span<const double> shifts = view.model.pinhole_shifts();
   const auto shift = [&](std::size_t i) {
-    const std::size_t w = samples.wavelengths.position(i, pupils.primary_wavelength());
+    const std::size_t w = samples.wavelengths.position(i, 0);
     return w < shifts.size() ? shifts[w] : 0;
   };
-  const auto part = [&](std::size_t i) { return part_of_key(film.plane(), {key_x[i], key_y[i]}, shift(i)); };
+  const auto part = [&](std::size_t i) {
+    return part_of_virtual(view.tilted->plane(), {virtual_x[i], virtual_y[i]}, shift(i));
+  };
   for (std::size_t i = 0; i < count; ++i) {
-    film_x[i] = static_cast<T>(key_x[i] * part(i)), film_y[i] = static_cast<T>(key_y[i] * part(i));
+    film_x[i] = static_cast<T>(virtual_x[i] * part(i)), film_y[i] = static_cast<T>(virtual_y[i] * part(i));
   }
-  pupils.sample(count, film_x, film_y, samples.pupil_u, samples.pupil_v, samples.wavelengths, x, y, areas);
+  view.model.pupils().sample(count, film_x, film_y, samples.pupil_u, samples.pupil_v, samples.wavelengths, x, y, areas);
   for (std::size_t i = 0; i < count; ++i) {
     const double p = part(i), chief_x = shift(i) * film_x[i], chief_y = shift(i) * film_y[i];
     x[i] = static_cast<T>(chief_x + p * (x[i] - chief_x)), y[i] = static_cast<T>(chief_y + p * (y[i] - chief_y));
@@ -57,66 +59,135 @@ void sample_pinhole(std::size_t count, const TiltedFilm& film, const FilmPupilTa
   }
 }
 
+/// Rays beside a model's pupils become vignetted.
 template <class T>
 void keep_within(std::size_t count, const FilmPupilTable& pupils, const TwoPlaneRays<const T>& lines,
                  const RayWavelengths& wavelengths, RayFate* fates) noexcept {
-  constexpr std::size_t block = 256;
   std::array<std::uint8_t, block> within;
+  pupils.contains(count, lines, wavelengths, within.data());
+  for (std::size_t i = 0; i < count; ++i) fates[i] = within[i] ? fates[i] : RayFate::vignetted;
+}
+
+}  // namespace
+
+template <class T>
+void sample_rays(const FilmView& view, std::size_t count, const CameraSamples<T>& given,
+                 const CameraRays<T>& out) noexcept {
+  const auto& loops = camera_loops().of<T>();
+  const FilmPupilTable& pupils = view.model.pupils();
+  const FilmBounds<T> bounds = film_detail::bounds_of<T>(view.film);
+  const T depth = static_cast<T>(pupils.space().depth());
+  const TiltedFilm* const tilted = view.tilted;
+  const TiltedBounds<T> tilted_bounds = tilted ? bounds_of<T>(*tilted) : TiltedBounds<T>{};
+  const bool pinhole = tilted && view.model.pinhole(), clips = view.model.clips_at_apertures();
+  CameraSamples<T> samples = given;
+  samples.wavelengths = given.wavelengths.resolved(pupils.primary_wavelength());
+
+  alignas(64) Values<T> virtual_x, virtual_y, film_x, film_y, x, y, areas, scales;
+  std::array<RayFate, block> local_fates;
+  if (!samples.wavelengths.each) fill_scales(std::min(block, count), view.scale, samples.wavelengths, scales.data());
   for (std::size_t begin = 0; begin < count; begin += block) {
     const std::size_t n = std::min(block, count - begin);
-    pupils.contains(n, lines.from(begin), wavelengths.from(begin), within.data());
-    for (std::size_t i = 0; i < n; ++i) fates[begin + i] = within[i] ? fates[begin + i] : RayFate::vignetted;
-  }
-}
+    const CameraSamples<T> some = samples.from(begin);
+    const CameraRays<T> rays = out.from(begin);
+    RayFate* const fates = rays.fates ? rays.fates : local_fates.data();
+    const TwoPlaneRays<const T> lines{film_x.data(), film_y.data(), x.data(), y.data()};
+    if (samples.wavelengths.each) fill_scales(n, view.scale, some.wavelengths, scales.data());
 
-template <class T>
-void lean(std::size_t count, const TiltedFilm& film, const T* key_x, const T* key_y, const T* pupil_x, const T* pupil_y,
-          RayFate* fates, const CameraRays<T>& rays) noexcept {
-  camera_loops().of<T>().lean(bounds_of<T>(film), count, key_x, key_y, pupil_x, pupil_y, fates, rays);
-}
-
-template <class T>
-void keep_on_film(std::size_t count, const Film& film, const T* film_x, const T* film_y, T* kept_x,
-                  T* kept_y) noexcept {
-  camera_loops().of<T>().keep_on_film(bounds_of<T>(film), count, film_x, film_y, kept_x, kept_y);
-}
-
-template <class T>
-void weigh(std::size_t count, const Film& film, const FilmPupilTable& pupils, const CameraSamples<T>& samples,
-           const TwoPlaneRays<const T>& lines, const T* areas, const double* scale, RayFate* fates,
-           const CameraRays<T>& rays) noexcept {
-  constexpr std::size_t block = 64;
-  std::array<T, block> scales;
-  const auto scale_of = [&](std::size_t w) { return w < pupils.wavelengths() ? static_cast<T>(scale[w]) : T(0); };
-  if (!samples.wavelengths.each) scales.fill(scale_of(samples.wavelengths.all.position(pupils.primary_wavelength())));
-  for (std::size_t begin = 0; begin < count; begin += block) {
-    const std::size_t n = std::min(block, count - begin);
-    if (samples.wavelengths.each) {
-      for (std::size_t i = 0; i < n; ++i) scales[i] = scale_of(samples.wavelengths.each[begin + i]);
+    loops.keep_on_film(bounds, n, some.film_x, some.film_y, film_x.data(), film_y.data());
+    const auto to_upright = [&] {
+      loops.to_upright(tilted_bounds, n, virtual_x.data(), virtual_y.data(), x.data(), y.data(), film_x.data(),
+                       film_y.data());
+    };
+    if (tilted) {
+      loops.to_virtual(tilted_bounds, n, film_x.data(), film_y.data(), virtual_x.data(), virtual_y.data());
     }
-    camera_loops().of<T>().weigh(bounds_of<T>(film), static_cast<T>(pupils.space().depth()), n, samples.film_x + begin,
-                                 samples.film_y + begin, lines.from(begin), areas + begin, scales.data(), fates + begin,
-                                 rays.from(begin));
+    if (pinhole) {
+      sample_pinhole(n, view, some, virtual_x.data(), virtual_y.data(), film_x.data(), film_y.data(), x.data(),
+                     y.data(), areas.data());
+    } else if (tilted) {
+      tilted->pupils().sample(n, virtual_x.data(), virtual_y.data(), some.pupil_u, some.pupil_v, some.wavelengths,
+                              x.data(), y.data(), areas.data());
+      to_upright();
+    } else {
+      pupils.sample(n, film_x.data(), film_y.data(), some.pupil_u, some.pupil_v, some.wavelengths, x.data(), y.data(),
+                    areas.data());
+    }
+    view.model.to_scene(n, lines, some.wavelengths, rays.rays, fates);
+    if (pinhole) {
+      to_upright();  // of the lines that the weights are for
+    } else if (tilted && !clips) {
+      keep_within(n, pupils, lines, some.wavelengths, fates);
+    }
+    loops.weigh(bounds, depth, n, some.film_x, some.film_y, lines, areas.data(), scales.data(), fates, rays);
+    if (tilted) {
+      loops.weigh_tilted(tilted_bounds, n, virtual_x.data(), virtual_y.data(), x.data(), y.data(), fates, rays);
+    }
   }
 }
 
-#define PETZVAL_SAMPLES(T)                                                                                           \
-  template PETZVAL_API void keep_on_film(std::size_t, const Film&, const T*, const T*, T*, T*) noexcept;             \
-  template PETZVAL_API void weigh(std::size_t, const Film&, const FilmPupilTable&, const CameraSamples<T>&,          \
-                                  const TwoPlaneRays<const T>&, const T*, const double*, RayFate*,                   \
-                                  const CameraRays<T>&) noexcept;                                                    \
-  template PETZVAL_API void to_keys(std::size_t, const TiltedFilm&, const T*, const T*, T*, T*) noexcept;            \
-  template PETZVAL_API void to_upright(std::size_t, const TiltedFilm&, const T*, const T*, const T*, const T*, T*,   \
-                                       T*) noexcept;                                                                 \
-  template PETZVAL_API void sample_pinhole(std::size_t, const TiltedFilm&, const FilmPupilTable&,                    \
-                                           std::span<const double>, const CameraSamples<T>&, const T*, const T*, T*, \
-                                           T*, T*, T*, T*) noexcept;                                                 \
-  template PETZVAL_API void keep_within(std::size_t, const FilmPupilTable&, const TwoPlaneRays<const T>&,            \
-                                        const RayWavelengths&, RayFate*) noexcept;                                   \
-  template PETZVAL_API void lean(std::size_t, const TiltedFilm&, const T*, const T*, const T*, const T*, RayFate*,   \
-                                 const CameraRays<T>&) noexcept;
-PETZVAL_SAMPLES(float)
-PETZVAL_SAMPLES(double)
-#undef PETZVAL_SAMPLES
+template PETZVAL_API void sample_rays(const FilmView&, std::size_t, const CameraSamples<float>&,
+                                      const CameraRays<float>&) noexcept;
+template PETZVAL_API void sample_rays(const FilmView&, std::size_t, const CameraSamples<double>&,
+                                      const CameraRays<double>&) noexcept;
+
+CameraRay sample_ray(const FilmView& view, const FilmPoint& film, double u, double v, std::size_t wavelength) noexcept {
+  const FilmPupilTable& pupils = view.model.pupils();
+  const TiltedFilm* const tilted = view.tilted;
+  const bool kept = view.film.contains(film), known = wavelength < view.scale.size();
+  const FilmPoint point = kept ? film : FilmPoint{view.film.shift_x_mm, view.film.shift_y_mm};
+  CameraRay out;
+
+  // The line for the weight, and that of the ray.
+  FilmPoint virtual_point;
+  TwoPlaneRay line;
+  double area = 0;
+  if (!tilted) {
+    const PupilSample at = pupils.sample(point, u, v, wavelength);
+    line = {point.x, point.y, at.x, at.y};
+    area = at.area;
+    out.fate = view.model.to_scene(line, wavelength, out.ray);
+  } else {
+    virtual_point = tilted->virtual_point(point);
+    if (view.model.pinhole()) {
+      const std::span<const double> shifts = view.model.pinhole_shifts();
+      const double shift = known ? shifts[wavelength] : 0;
+      const double part = part_of_virtual(tilted->plane(), virtual_point, shift);
+      const FilmPoint chief{virtual_point.x * part, virtual_point.y * part};
+      const PupilSample at = pupils.sample(chief, u, v, wavelength);
+      const double x = shift * chief.x, y = shift * chief.y;
+      out.fate = view.model.to_scene(TwoPlaneRay{chief.x, chief.y, at.x, at.y}, wavelength, out.ray);
+      line = tilted->upright(virtual_point, x + part * (at.x - x), y + part * (at.y - y));
+      area = part * part * at.area;
+    } else {
+      const PupilSample at = tilted->pupils().sample(virtual_point, u, v, wavelength);
+      line = tilted->upright(virtual_point, at.x, at.y);
+      area = at.area;
+      out.fate = view.model.to_scene(line, wavelength, out.ray);
+      const bool within = view.model.clips_at_apertures() ||
+                          pupils.contains({line.film_x, line.film_y}, line.pupil_x, line.pupil_y, wavelength);
+      if (!within) out.fate = RayFate::vignetted;
+    }
+  }
+
+  if (!(area > 0)) out.fate = RayFate::vignetted;
+  if (!(known && view.scale[wavelength] > 0)) out.fate = RayFate::missed_surface;
+  if (!kept) out.fate = RayFate::outside_film;
+  if (kept && area > 0) {
+    const double x = line.pupil_x - line.film_x, y = line.pupil_y - line.film_y, depth = pupils.space().depth();
+    const double depth2 = depth * depth, length2 = x * x + y * y + depth2, part = depth2 / length2;
+    out.pdf_pupil = 1 / area;
+    out.pdf_direction = length2 * std::sqrt(length2) / (std::abs(depth) * area);
+    if (out.fate == RayFate::transmitted) out.weight = view.scale[wavelength] * area * part * part / depth2;
+  }
+  if (tilted) {
+    const double near = tilted->nearness(virtual_point);
+    const double facing = tilted->weight(virtual_point, line.pupil_x, line.pupil_y);
+    out.weight *= facing;
+    out.pdf_direction /= near * near;
+    if (!(facing > 0) && out.fate == RayFate::transmitted) out.fate = RayFate::vignetted;
+  }
+  return out;
+}
 
 }  // namespace petzval::inline v0::camera_detail

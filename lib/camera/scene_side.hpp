@@ -6,63 +6,62 @@
 #include <span>
 #include <vector>
 
-#include "chief_lines.hpp"
-#include "petzval/camera/any_model.hpp"
+#include "chief_ray_table.hpp"
+#include "lens_facts.hpp"
 #include "petzval/camera/importance.hpp"
-#include "petzval/camera/tilted_film.hpp"
+#include "petzval/camera/ray_model.hpp"
 #include "petzval/film/film.hpp"
-#include "petzval/lens/lens.hpp"
 #include "pupil_table/entrance_pupil_table.hpp"
+#include "tilted_film.hpp"
 
 namespace petzval::inline v0::camera_detail {
 
-/// What a camera knows of the scene's side, beside its model: importance.cpp and projection.cpp.
+/// What a camera knows of the scene's side beside its model: importance.cpp and projection.cpp.
 class SceneSide {
  public:
-  /// scale: of weights, one for each wavelength, as for sample_rays().
-  SceneSide(const Lens& lens, const Film& film, std::optional<TiltedFilm> tilted, const AnyModel& model,
-            std::span<const double> scale);
+  /// radius: upright_radius() of the film; scale: of weights, one for each wavelength, as in FilmView.
+  SceneSide(const LensFacts& facts, const Film& film, std::optional<TiltedFilm> tilted, const AnyRayModel& model,
+            double radius, std::span<const double> scale);
 
-  /// Null for an upright film.
-  const TiltedFilm* tilted() const noexcept { return tilted_ ? &*tilted_ : nullptr; }
-
-  Importance importance(const AnyModel& model, const Ray<double>& ray, std::size_t wavelength) const noexcept;
-  ImportanceSample sample_importance(const AnyModel& model, const Vec3<double>& point, double u, double v,
+  /// Of film points spread uniformly over the film, 1/mm^2.
+  double pdf_film() const noexcept { return pdf_film_; }
+  Importance importance(const AnyRayModel& model, const Ray<double>& ray, std::size_t wavelength) const noexcept;
+  ImportanceSample sample_importance(const AnyRayModel& model, const Vec3<double>& point, double u, double v,
                                      std::size_t wavelength) const noexcept;
-  double pdf(const AnyModel& model, const Vec3<double>& point, const Vec3<double>& direction,
+  double pdf(const AnyRayModel& model, const Vec3<double>& point, const Vec3<double>& direction,
              std::size_t wavelength) const noexcept;
-  Projection project(const AnyModel& model, const Vec3<double>& point, std::size_t wavelength) const noexcept;
+  Projection project(const AnyRayModel& model, const Vec3<double>& point, std::size_t wavelength) const noexcept;
 
  private:
   struct Wavelength {
     double we = 0;       // 1/mm^2
     double density = 0;  // of film samples in the scene, less what depends on the ray
     double entrance_z = 0, entrance_area = 0;
-    ChiefLines chiefs;
+    ChiefRayTable chiefs;
   };
-  /// A ray's line behind the lens, by its point of the upright film.
+  /// The image-space ray that a scene ray becomes.
   struct Arrival {
     RayFate fate = RayFate::missed_surface;
     FilmPoint upright, pupil;
   };
-  /// Where a line meets the film, and by which point the film's pupils are told: its key, or the point itself.
+  /// Where an image-space ray meets the film, and the virtual point of that; of an upright film, the point itself.
   struct OnFilm {
-    FilmPoint point, key;
+    FilmPoint point, virtual_point;
   };
   std::optional<OnFilm> on_film(const FilmPoint& upright, const FilmPoint& pupil) const noexcept;
-  Arrival arrive(const AnyModel& model, const Ray<double>& ray, std::size_t wavelength) const noexcept;
-  /// Where a ray that arrives meets the film, and whether it does.
+  Arrival arrive(const AnyRayModel& model, const Ray<double>& ray, std::size_t wavelength) const noexcept;
+  /// Film point, raster and fate of a ray that arrives.
   Importance met_by(const Arrival& arrival, const std::optional<OnFilm>& met) const noexcept;
-  /// Weight and densities of a ray that does. cosine: of its angle with the axis, in the scene; area: of the pupil that
-  /// samples of its film point have, 0 where none of them is the ray.
-  void weigh(Importance& result, const AnyModel& model, const Arrival& arrival, const FilmPoint& key, double cosine,
-             double area, std::size_t wavelength) const noexcept;
-  ImportanceSample through_pinhole(const AnyModel& model, const Vec3<double>& point, double u, double v,
+  /// Weight and densities of a ray that meets the film. cosine: of its angle with the axis in the scene; area: of the
+  /// pupil that its film point samples, 0 where no sample is this ray.
+  void weigh(Importance& result, const AnyRayModel& model, const Arrival& arrival, const FilmPoint& point,
+             double cosine, double area, std::size_t wavelength) const noexcept;
+  ImportanceSample through_pinhole(const AnyRayModel& model, const Vec3<double>& point, double u, double v,
                                    std::size_t wavelength) const noexcept;
 
   Film film_;
   std::optional<TiltedFilm> tilted_;
-  double upright_radius_ = 0;
+  double upright_radius_ = 0, pdf_film_ = 0;
   TwoPlanes space_;
   std::vector<Wavelength> wavelengths_;
   EntrancePupilTable entrance_;

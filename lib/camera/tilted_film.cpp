@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// With D the distance of the upright film from the plane of the pupil, both film points and their lines are told from
-// the middle of that plane. A film point P stands lambda D from it, at its key K times lambda. Its line through q meets
-// the upright film in X = q + (P - q) / lambda = K - (1 / lambda - 1) q, and 1 / lambda - 1 is linear in K: for the
-// film's normal n it is g . K with g = (n_x, n_y) / (n_z D).
+// Let D be the distance of the upright film from the plane of the pupil, whose centre is the origin. A film point P
+// lies lambda D from that plane, at its virtual point V times lambda. Its ray through q meets the upright film in X = q
+// + (P - q) / lambda = V - (1 / lambda - 1) q, and 1 / lambda - 1 is linear in V: for the film's normal n it is g . V
+// with g = (n_x, n_y) / (n_z D).
 //
-// The weight of a film sample is area cos_pupil cos_film / length^2. The line is lambda times as long as the upright
+// The weight of a film sample is area cos_pupil cos_film / length^2. The ray is lambda times as long as the upright
 // one, at the same angle with the axis, cos_pupil = lambda |D| / length, and at the film n . (q - P) = n_z |D| (1 - g .
 // q) for all its points. So it is the upright weight times n_z (1 - g . q) / lambda^3.
-#include "petzval/camera/tilted_film.hpp"
+#include "tilted_film.hpp"
 
 #include <ceres/jet.h>
 
@@ -19,18 +19,17 @@
 #include <vector>
 
 #include "check_film.hpp"
+#include "make_model.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/text.hpp"
-#include "petzval/film/film.hpp"
-#include "petzval/paraxial/first_order.hpp"
-#include "petzval/paraxial/pupils.hpp"
 #include "pupil/face.hpp"
 #include "tilted_pinhole.hpp"
 
 namespace petzval::inline v0 {
+namespace camera_detail {
 namespace {
 
-camera_detail::TiltedPlane plane_of(const Film& film, const TwoPlanes& space) {
+TiltedPlane plane_of(const Film& film, const TwoPlanes& space) {
   const Vec3<double> right = film.right(), up = film.up(), normal = film.normal();
   const double distance = -space.depth();
   return {.x_by_x = right.x,
@@ -44,24 +43,24 @@ camera_detail::TiltedPlane plane_of(const Film& film, const TwoPlanes& space) {
 }
 
 /// Distance from the plane of the pupil, in that of the upright film.
-double distance_at(const camera_detail::TiltedPlane& plane, const FilmPoint& film) noexcept {
+double distance_at(const TiltedPlane& plane, const FilmPoint& film) noexcept {
   return 1 + plane.depth_by_x * film.x + plane.depth_by_y * film.y;
 }
 
 using Jet = ceres::Jet<double, 2>;
 
-/// A film point's key, by the film point.
-struct Key {
-  Jet x, y, lean;
+/// The virtual point of a film point, by the film point.
+struct VirtualPoint {
+  Jet x, y, slope;
 
   FilmPoint point() const noexcept { return {x.a, y.a}; }
 };
 
-Key differentiated_key(const camera_detail::TiltedPlane& plane, const FilmPoint& film) noexcept {
+VirtualPoint differentiated(const TiltedPlane& plane, const FilmPoint& film) noexcept {
   const Jet x(film.x, 0), y(film.y, 1);
   const Jet distance = 1.0 + plane.depth_by_x * x + plane.depth_by_y * y;
-  const Jet key_x = (plane.x_by_x * x + plane.x_by_y * y) / distance, key_y = plane.y_by_y * y / distance;
-  return {key_x, key_y, plane.slope_x * key_x + plane.slope_y * key_y};
+  const Jet virtual_x = (plane.x_by_x * x + plane.x_by_y * y) / distance, virtual_y = plane.y_by_y * y / distance;
+  return {virtual_x, virtual_y, plane.slope_x * virtual_x + plane.slope_y * virtual_y};
 }
 
 TwoPlaneRayDerivatives derivatives_of(const Jet& film_x, const Jet& film_y, const Jet& pupil_x,
@@ -70,7 +69,7 @@ TwoPlaneRayDerivatives derivatives_of(const Jet& film_x, const Jet& film_y, cons
   return {{film_x.a, film_y.a, pupil_x.a, pupil_y.a}, part(0), part(1)};
 }
 
-/// Throws Error for a corner of the film that comes near to the plane that its lines are told by.
+/// Throws Error for a corner of the film that comes near to the plane of the pupil.
 void check_distance(const std::string& where, const FilmPoint& corner, double z, double film_z, double plane_z) {
   constexpr double nearest = 0.1;
   if ((z - plane_z) / (film_z - plane_z) >= nearest) return;
@@ -79,51 +78,50 @@ void check_distance(const std::string& where, const FilmPoint& corner, double z,
               " mm");
 }
 
-/// A disc across the axis, by which lines are bounded.
+/// A disc across the axis that bounds rays.
 struct Rim {
   double half = 0, z = 0;
 };
 
-/// Where the pupils of a model lie, at every wavelength, twice as wide as to first order: aberrations move and widen
-/// them, and the film's own pupils are looked for among points beside the film too. Those without a place are left out.
-std::vector<Rim> pupils_of(const Lens& lens, ModelKind model) {
+/// The pupils of a model at every wavelength, twice as wide as to first order: aberrations move and widen them, and the
+/// film's own pupils are sought among points beside the film too. Pupils at infinity are left out.
+std::vector<Rim> pupils_of(const LensFacts& facts, ModelKind model) {
   std::vector<Rim> rims;
-  for (std::size_t w = 0; w < lens.wavelengths_nm().size() && has_pupils(lens); ++w) {
-    const Pupils paraxial = pupils(lens, w);
-    const Rim rim = model == ModelKind::thin ? Rim{paraxial.entrance.diameter, first_order(lens, w).rear_principal_z}
+  for (std::size_t w = 0; w < facts.wavelengths() && facts.has_pupils(); ++w) {
+    const Pupils paraxial = facts.pupils(w);
+    const Rim rim = model == ModelKind::thin ? Rim{paraxial.entrance.diameter, facts.first_order(w).rear_principal_z}
                                              : Rim{paraxial.exit.diameter, paraxial.exit.z};
     if (std::isfinite(rim.z) && std::isfinite(rim.half)) rims.push_back(rim);
   }
   return rims;
 }
 
-/// Of the film: a projection maps rectangles to what their corners go around.
-FilmTilt lean_of(const TiltedFilm& tilted) {
-  FilmTilt lean{.slope_x = tilted.plane().slope_x,
+/// A projection maps a rectangle to what its corners enclose.
+FilmTilt tilt_of(const TiltedFilm& tilted) {
+  FilmTilt tilt{.slope_x = tilted.plane().slope_x,
                 .slope_y = tilted.plane().slope_y,
                 .low = std::numeric_limits<double>::infinity(),
                 .high = -std::numeric_limits<double>::infinity()};
   for (const FilmPoint& corner : tilted.film().corners()) {
-    const FilmPoint key = tilted.key(corner);
-    const double value = tilted.plane().slope_along(key);
-    lean.low = std::min(lean.low, value);
-    lean.high = std::max(lean.high, value);
-    lean.radius = std::max(lean.radius, std::hypot(key.x, key.y));
+    const FilmPoint point = tilted.virtual_point(corner);
+    const double value = tilted.plane().slope_along(point);
+    tilt.low = std::min(tilt.low, value);
+    tilt.high = std::max(tilt.high, value);
+    tilt.radius = std::max(tilt.radius, std::hypot(point.x, point.y));
   }
-  return lean;
+  return tilt;
 }
 
 }  // namespace
 
-double upright_radius(const Lens& given_lens, const Film& given_film, ModelKind model) {
-  camera_detail::check_rectangle(given_lens.name() + ": film", given_film);
-  if (!given_film.tilted()) return given_film.radius_mm();
-  const auto [lens, film] = camera_detail::placed(given_lens, given_film);
+double upright_radius(const LensFacts& facts, const Film& film, ModelKind model) {
+  if (!film.tilted()) return film.radius_mm();
+  const Lens& lens = facts.lens();
   const double film_z = film.z();
   const double pupil_z = two_planes(lens).pupil_z;
-  const std::vector<Rim> pupils = pupils_of(lens, model);
+  const std::vector<Rim> pupils = pupils_of(facts, model);
   const pupil_detail::Face face = pupil_detail::last_face(lens);
-  const bool discs = model <= ModelKind::thick && model != ModelKind::thin_two_disc;
+  const bool discs = is_first_order(model) && model != ModelKind::thin_two_disc;
   // Aberrations move a pupil that lies behind the film by more than its size.
   const bool in_lens = !pupils.empty() && std::all_of(pupils.begin(), pupils.end(), [&](const Rim& rim) {
     return (rim.z - film_z) * (face.vertex_z - film_z) > 0;
@@ -136,7 +134,7 @@ double upright_radius(const Lens& given_lens, const Film& given_film, ModelKind 
       return height + (height + rim.half) * std::abs((film_z - place.z) / (rim.z - place.z));
     };
     check_distance(lens.name(), corner, place.z, film_z, pupil_z);
-    radius = std::max(radius, farthest({0, pupil_z}));  // of keys
+    radius = std::max(radius, farthest({0, pupil_z}));  // of virtual points
     double through_pupil = 0;
     for (const Rim& rim : pupils) {
       if (discs) check_distance(lens.name(), corner, place.z, film_z, rim.z);
@@ -153,63 +151,71 @@ double upright_radius(const Lens& given_lens, const Film& given_film, ModelKind 
 TiltedFilm::TiltedFilm(const Film& film, const FilmPupilTable& pupils)
     : film_(film), plane_(plane_of(film, pupils.space())), pupils_(pupils) {
   const std::string where = "tilted film";
-  camera_detail::check_rectangle(where, film);
+  check_rectangle(where, film);
   film_.z_mm = pupils.space().film_z;
   for (const FilmPoint& corner : film.corners()) {
     check_distance(where, corner, film_.position(corner).z, film_.z(), pupils.space().pupil_z);
   }
-  const FilmTilt lean = lean_of(*this);
+  const FilmTilt tilt = tilt_of(*this);
   constexpr double rounding = 1e-9;
-  if (!(lean.radius <= pupils.film_radius() * (1 + rounding))) {
+  if (!(tilt.radius <= pupils.film_radius() * (1 + rounding))) {
     throw Error(where + ": the pupils are those of film points up to " + number(pupils.film_radius()) +
-                " mm from the axis, wanted " + number(lean.radius) + " mm or more");
+                " mm from the axis, wanted " + number(tilt.radius) + " mm or more");
   }
-  pupils_ = pupils.for_tilted_film(lean);
+  pupils_ = pupils.for_tilted_film(tilt);
 }
 
-FilmPoint TiltedFilm::key(const FilmPoint& film) const noexcept {
+FilmPoint TiltedFilm::virtual_point(const FilmPoint& film) const noexcept {
   const double per_distance = 1 / distance_at(plane_, film);
   return {(plane_.x_by_x * film.x + plane_.x_by_y * film.y) * per_distance, plane_.y_by_y * film.y * per_distance};
 }
 
-TwoPlaneRay TiltedFilm::upright(const FilmPoint& key, double pupil_x, double pupil_y) const noexcept {
-  const double lean = plane_.slope_along(key);
-  return {key.x - lean * pupil_x, key.y - lean * pupil_y, pupil_x, pupil_y};
+TwoPlaneRay TiltedFilm::upright(const FilmPoint& point, double pupil_x, double pupil_y) const noexcept {
+  const double slope = plane_.slope_along(point);
+  return {point.x - slope * pupil_x, point.y - slope * pupil_y, pupil_x, pupil_y};
 }
 
-std::optional<FilmPoint> TiltedFilm::key_of(const TwoPlaneRay& line) const noexcept {
-  const double front = 1 - plane_.slope_along({line.pupil_x, line.pupil_y});
-  const double lean = plane_.slope_along({line.film_x, line.film_y}) / front;
-  if (!(front > 0 && 1 + lean > 0)) return {};
-  return FilmPoint{line.film_x + lean * line.pupil_x, line.film_y + lean * line.pupil_y};
+std::optional<FilmPoint> TiltedFilm::virtual_point_of(const TwoPlaneRay& ray) const noexcept {
+  const double front = 1 - plane_.slope_along({ray.pupil_x, ray.pupil_y});
+  const double slope = plane_.slope_along({ray.film_x, ray.film_y}) / front;
+  if (!(front > 0 && 1 + slope > 0)) return {};
+  return FilmPoint{ray.film_x + slope * ray.pupil_x, ray.film_y + slope * ray.pupil_y};
 }
 
-FilmPoint TiltedFilm::point(const FilmPoint& key) const noexcept {
-  const double distance = 1 / (1 + plane_.slope_along(key)), y = key.y * distance / plane_.y_by_y;
-  return {(key.x * distance - plane_.x_by_y * y) / plane_.x_by_x, y};
+FilmPoint TiltedFilm::point(const FilmPoint& point) const noexcept {
+  const double distance = 1 / (1 + plane_.slope_along(point)), y = point.y * distance / plane_.y_by_y;
+  return {(point.x * distance - plane_.x_by_y * y) / plane_.x_by_x, y};
 }
 
-double TiltedFilm::weight(const FilmPoint& key, double pupil_x, double pupil_y) const noexcept {
-  const double near = 1 + plane_.slope_along(key), front = 1 - plane_.slope_along({pupil_x, pupil_y});
+double TiltedFilm::weight(const FilmPoint& point, double pupil_x, double pupil_y) const noexcept {
+  const double near = nearness(point), front = 1 - plane_.slope_along({pupil_x, pupil_y});
   return std::max(plane_.cosine * front * near * near * near, 0.0);
 }
 
 TwoPlaneRayDerivatives TiltedFilm::line(const FilmPoint& film, double u, double v,
                                         std::size_t wavelength) const noexcept {
-  const Key key = differentiated_key(plane_, film);
-  const PupilSample at = pupils_.sample(key.point(), u, v, wavelength);
-  const auto [by_x, by_y] = pupils_.derivatives(key.point(), u, v, wavelength);
+  const VirtualPoint from = differentiated(plane_, film);
+  const PupilSample at = pupils_.sample(from.point(), u, v, wavelength);
+  const auto [by_x, by_y] = pupils_.derivatives(from.point(), u, v, wavelength);
   Jet pupil_x(at.x), pupil_y(at.y);
-  pupil_x.v = by_x[0] * key.x.v + by_y[0] * key.y.v;
-  pupil_y.v = by_x[1] * key.x.v + by_y[1] * key.y.v;
-  return derivatives_of(key.x - key.lean * pupil_x, key.y - key.lean * pupil_y, pupil_x, pupil_y);
+  pupil_x.v = by_x[0] * from.x.v + by_y[0] * from.y.v;
+  pupil_y.v = by_x[1] * from.x.v + by_y[1] * from.y.v;
+  return derivatives_of(from.x - from.slope * pupil_x, from.y - from.slope * pupil_y, pupil_x, pupil_y);
 }
 
-TwoPlaneRayDerivatives camera_detail::pinhole_line(const TiltedFilm& tilted, const FilmPoint& film,
-                                                   double shift) noexcept {
-  const Key key = differentiated_key(tilted.plane(), film);
-  const Jet x = key.x / (1.0 + key.lean * shift), y = key.y / (1.0 + key.lean * shift);
+TwoPlaneRayDerivatives pinhole_line(const TiltedFilm& tilted, const FilmPoint& film, double shift) noexcept {
+  const VirtualPoint from = differentiated(tilted.plane(), film);
+  const Jet x = from.x / (1.0 + from.slope * shift), y = from.y / (1.0 + from.slope * shift);
   return derivatives_of(x, y, shift * x, shift * y);
+}
+
+}  // namespace camera_detail
+
+double upright_radius(const Lens& lens, const Film& film, ModelKind model) {
+  camera_detail::check_rectangle(lens.name() + ": film", film);
+  if (!film.tilted()) return film.radius_mm();
+  const auto [placed_lens, placed_film] = camera_detail::placed(lens, film);
+  return camera_detail::upright_radius(placed_lens, placed_film, model);
 }
 
 }  // namespace petzval::inline v0

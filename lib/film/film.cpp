@@ -31,7 +31,7 @@ FilmPoint Film::point(double column, double row) const noexcept {
   return {shift_x_mm + (0.5 - column / columns) * width_mm, shift_y_mm + (row / rows - 0.5) * height_mm};
 }
 
-std::array<double, 2> Film::raster(const FilmPoint& point) const noexcept {
+Vec2<double> Film::raster(const FilmPoint& point) const noexcept {
   return {(0.5 - (point.x - shift_x_mm) / width_mm) * columns, (0.5 + (point.y - shift_y_mm) / height_mm) * rows};
 }
 

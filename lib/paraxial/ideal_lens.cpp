@@ -12,6 +12,7 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
+#include "core/meet_plane.hpp"
 #include "focal_points.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/text.hpp"
@@ -155,10 +156,10 @@ double signed_blur(const ImagePoint& image, const Film& film) {
 }
 
 std::optional<FilmPoint> chief_point(const ImagePoint& image, const Film& film) {
-  const Vec3<double> n = film.normal(), along{image.slope_x, image.slope_y, 1};
-  const double by = glm::dot(n, Vec3<double>(0, 0, film.z()) - image.position) / glm::dot(n, along);
-  if (!std::isfinite(by)) return {};
-  return film.point(image.position + by * along);
+  const Ray<double> chief{image.position, {image.slope_x, image.slope_y, 1}};
+  const Vec3<double> hit = core_detail::meet_plane(chief, {0, 0, film.z()}, film.normal());
+  if (!std::isfinite(hit.x + hit.y + hit.z)) return {};
+  return film.point(hit);
 }
 
 }  // namespace petzval::inline v0

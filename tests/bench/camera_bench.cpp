@@ -21,6 +21,7 @@
 #include <string_view>
 #include <vector>
 
+#include "camera/make_model.hpp"
 #include "petzval/camera/camera.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/units.hpp"
@@ -184,7 +185,8 @@ void print_setup(const Bench& bench) {
   print("Camera, exact_float", [&] { Camera(lens, bench.film); });
   print("the same, tilted", [&] { Camera(lens, bench.tilted); });
   for (const ModelKind model : petzval::models()) {
-    print(std::string(petzval::name(model)), [&] { petzval::make_model(model, lens, bench.half_diagonal); });
+    print(std::string(petzval::name(model)),
+          [&] { petzval::camera_detail::make_model(model, lens, bench.half_diagonal); });
   }
 }
 

@@ -16,10 +16,11 @@
 
 #include "../data_lenses.hpp"
 #include "../message.hpp"
+#include "camera_parts.hpp"
 #include "camera_samples.hpp"
 #include "core/low_discrepancy.hpp"
 #include "leaning_films.hpp"
-#include "petzval/camera/sample_rays.hpp"
+#include "petzval/camera/ray_model.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/media/catalogue.hpp"
@@ -163,76 +164,6 @@ TEST(Camera, HasItsEdgesOnTheFilm) {
   }
 }
 
-/// A renderer's own model: a square hole of 2 x 2 mm in a plane 50 mm in front of the film.
-class HoleModel {
- public:
-  explicit HoleModel(double film_radius)
-      : pupils_(FilmPupilTable::of_discs({.film_z = 50, .pupil_z = 0}, std::array{std::vector<PupilDisc>{{0, 2}}},
-                                         film_radius)) {}
-  const FilmPupilTable& pupils() const noexcept { return pupils_; }
-  template <class T>
-  void to_scene(std::size_t count, const TwoPlaneRays<const T>& lines, const RayWavelengths&, const RayArrays<T>& rays,
-                RayFate* fates) const noexcept {
-    for (std::size_t i = 0; i < count; ++i) {
-      const bool passes = std::abs(lines.pupil_x[i]) <= 1 && std::abs(lines.pupil_y[i]) <= 1;
-      const T dx = lines.pupil_x[i] - lines.film_x[i], dy = lines.pupil_y[i] - lines.film_y[i];
-      const T length = std::sqrt(dx * dx + dy * dy + T(2500));
-      rays.x[i] = lines.pupil_x[i], rays.y[i] = lines.pupil_y[i], rays.z[i] = T(0);
-      rays.dx[i] = dx / length, rays.dy[i] = dy / length, rays.dz[i] = T(-50) / length;
-      fates[i] = passes ? RayFate::transmitted : RayFate::vignetted;
-    }
-  }
-  void to_film(std::size_t count, const RayArrays<const double>&, const RayWavelengths&,
-               const TwoPlaneRays<double>& lines, RayFate* fates) const noexcept {
-    for (std::size_t i = 0; i < count; ++i) {
-      lines.film_x[i] = lines.film_y[i] = lines.pupil_x[i] = lines.pupil_y[i] = 0;
-      fates[i] = RayFate::vignetted;
-    }
-  }
-
- private:
-  FilmPupilTable pupils_;
-};
-static_assert(RayModel<HoleModel>);
-static_assert(RayModel<ParaxialModel> && RayModel<PolynomialModel>);
-static_assert(RayModel<ExactModel<float>> && RayModel<ExactModel<double>>);
-
-/// The mean weight at the film point (6, -8), of an upright or a tilted film.
-double mean_weight(const HoleModel& model, const auto& film) {
-  Samples<double> samples;
-  constexpr int count = 20000;
-  for (int i = 0; i < count; ++i) samples.add(6, -8, std::fmod(i * std::numbers::phi, 1.0), (i + 0.5) / count);
-  std::array<std::vector<double>, 7> out;
-  for (auto& column : out) column.resize(count);
-  const auto at = [&](std::size_t k) { return out[k].data(); };
-  const double scale = 1;
-  sample_rays<HoleModel, double>(
-      model, film, &scale, count,
-      {samples.film_x.data(), samples.film_y.data(), samples.pupil_u.data(), samples.pupil_v.data()},
-      {{at(0), at(1), at(2), at(3), at(4), at(5)}, at(6)});
-  return std::accumulate(out[6].begin(), out[6].end(), 0.0) / count;
-}
-
-TEST(SampleRays, TakesAModelOfTheCallersOwn) {
-  const Film film{.width_mm = 20, .height_mm = 20};
-  const double mean = mean_weight(HoleModel(film.radius_mm()), film);
-  // A small hole of 4 mm^2 under cos^4 / 50^2.
-  const double square = 2500.0 / (2500 + 100);
-  EXPECT_NEAR(mean / (4 * square * square / 2500), 1, 3e-3);
-}
-
-TEST(SampleRays, TakesATiltedFilmBehindIt) {
-  const double tilt = 0.3;
-  const Film film{.width_mm = 20, .height_mm = 20, .tilt_rad = tilt};
-  const HoleModel model(30);
-  const TiltedFilm tilted(film, model.pupils());
-  const double mean = mean_weight(model, tilted);
-  // The small hole from a point at (6, -8 cos, 50 - 8 sin), whose normal is (0, -sin, cos).
-  const double y = -8 * std::cos(tilt), z = 50 - 8 * std::sin(tilt), length2 = 36 + y * y + z * z;
-  const double at_film = y * -std::sin(tilt) + z * std::cos(tilt);
-  EXPECT_NEAR(mean / (4 * z * at_film / (length2 * length2)), 1, 3e-3);
-}
-
 // A sample (film x, y, u, v) and the ray in the phase space of the scene (place and direction cosines across the axis)
 // are two coordinates of the same light. Etendue being conserved, the Jacobian between them is the weight: n'^2 cos /
 // pdf.
@@ -288,8 +219,9 @@ TEST(Camera, ConservesEtendue) {
 // The symplectic form of two neighbours of a ray, n (dr1 dp2 - dr2 dp1), is the same on both sides of the lens.
 TEST(Camera, HasSymplecticDifferentials) {
   const Lens lens = focused("double_gauss_100mm_f2.0");
-  const Camera camera(lens, {}, {.model = ModelKind::exact_double});
-  const FilmPupilTable& pupils = camera.pupils();
+  const testing::CameraParts parts(lens, {}, ModelKind::exact_double);
+  const Camera camera(lens, {}, parts.model);
+  const FilmPupilTable& pupils = parts.pupils();
   const double depth = pupils.space().depth();
   const auto samples = random_samples(camera.film(), 50);
   double largest = 0;
@@ -463,21 +395,23 @@ TEST(Camera, RefusesFilmsThatAreNone) {
 }
 
 TEST(Camera, RefusesModelsOfAnotherLensOrFilm) {
-  const auto refusal = [](const Lens& lens, const AnyModel& model) {
+  const auto refusal = [](const Lens& lens, const AnyRayModel& model) {
     return testing::message([&] { Camera(lens, {}, model); });
   };
   const auto has = [](const std::string& text, const char* part) { return text.find(part) != std::string::npos; };
   const Lens lens = focused("tessar_100mm_f2.8");
-  EXPECT_EQ(refusal(lens, make_model(ModelKind::thick, lens, Film{}.radius_mm())), "no error");
-  EXPECT_TRUE(has(refusal(lens, make_model(ModelKind::thick, lens, 5)), "up to 5 mm"));
+  EXPECT_EQ(refusal(lens, camera_detail::make_model(ModelKind::thick, lens, Film{}.radius_mm())), "no error");
+  EXPECT_TRUE(has(refusal(lens, camera_detail::make_model(ModelKind::thick, lens, 5)), "up to 5 mm"));
   EXPECT_TRUE(
-      has(refusal(lens, make_model(ModelKind::thick, testing::data_lens("tessar_100mm_f2.8"), 22)), "film at z"));
+      has(refusal(lens, camera_detail::make_model(ModelKind::thick, testing::data_lens("tessar_100mm_f2.8"), 22)),
+          "film at z"));
   Prescription singlet;
   singlet.surfaces = {
       {.radius = 50, .thickness = 5, .medium = {.nd = 1.5, .vd = 60}, .semi_diameter = 12, .stop = true},
       {.radius = -50, .thickness = 48, .semi_diameter = 12}};
   const Lens two = compile(singlet, std::array{486.0, 587.5618}, {.missing_glass = MissingGlass::abbe});
-  EXPECT_TRUE(has(refusal(compile(singlet), make_model(ModelKind::thick, two, 22)), "for 2 wavelengths"));
+  EXPECT_TRUE(
+      has(refusal(compile(singlet), camera_detail::make_model(ModelKind::thick, two, 22)), "for 2 wavelengths"));
 }
 
 }  // namespace

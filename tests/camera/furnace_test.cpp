@@ -12,7 +12,7 @@
 
 #include "../data_lenses.hpp"
 #include "camera_samples.hpp"
-#include "petzval/camera/model_error.hpp"
+#include "petzval/accuracy/model_error.hpp"
 #include "petzval/core/sobol.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/paraxial/pupils.hpp"

@@ -12,6 +12,7 @@
 #include <string>
 
 #include "../data_lenses.hpp"
+#include "camera_parts.hpp"
 #include "core/low_discrepancy.hpp"
 #include "petzval/camera/camera.hpp"
 #include "petzval/paraxial/pupils.hpp"
@@ -175,8 +176,9 @@ TEST(Importance, IsConnectedToAFilmThatIsDarkOnTheAxis) {
   singlet.surfaces = {{.radius = 50, .thickness = 5, .medium = {.nd = 1.5168}, .semi_diameter = 12, .stop = true},
                       {.radius = -50, .thickness = 47, .semi_diameter = 12},
                       {.thickness = 1, .semi_diameter = 40, .obscuration_semi_diameter = 12}};
-  const Camera camera(compile(singlet), film, {.model = ModelKind::exact_double});
-  EXPECT_EQ(camera.pupils().area({}), 0);
+  const testing::CameraParts parts(compile(singlet), film, ModelKind::exact_double);
+  const Camera camera(compile(singlet), film, parts.model);
+  EXPECT_EQ(parts.pupils().area({}), 0);
   const core_detail::Kronecker<5> random(5);
   int seen = 0, missed = 0;
   for (std::uint32_t i = 0; i < 2000; ++i) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/camera/paraxial_model.hpp"
+#include "camera/paraxial_model.hpp"
 
 #include <gtest/gtest.h>
 
@@ -23,6 +23,8 @@
 
 namespace petzval {
 namespace {
+
+using camera_detail::ParaxialModel;
 
 constexpr std::array first_order_models{ModelKind::pinhole, ModelKind::thin, ModelKind::thin_two_disc,
                                         ModelKind::thick};
@@ -180,7 +182,7 @@ TEST(ParaxialModel, GoesBackToTheLineThatItCameFrom) {
   }
 }
 
-TEST(ParaxialModel, SendsALineTheSameWayOnEveryRungButThePinhole) {
+TEST(ParaxialModel, SendsALineTheSameWayInEveryModelButThePinhole) {
   const Lens lens = testing::data_lens("retrofocus_100mm_f2");
   const auto lines = random_lines(10, 20, 10);
   const auto thick = to_scene(ParaxialModel(ModelKind::thick, lens, film_24x36), lines);

@@ -98,7 +98,7 @@ TEST(Projection, OfACameraRaysPointsAreItsFilmPoint) {
         ASSERT_TRUE(first);
         // Other rays project near it, the nearer the closer to focus.
         EXPECT_NEAR(std::hypot(first.film.x - film.x, first.film.y - film.y), 0, distance < 1000 ? 4 : 0.5);
-        const auto [column, row] = first.raster;
+        const double column = first.raster.x, row = first.raster.y;
         const FilmPoint again = camera.film().point(column, row);
         EXPECT_NEAR(std::hypot(again.x - first.film.x, again.y - first.film.y), 0, 1e-9);
       }

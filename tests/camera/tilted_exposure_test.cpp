@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "../data_lenses.hpp"
+#include "camera_parts.hpp"
 #include "camera_samples.hpp"
 #include "leaning_films.hpp"
 #include "petzval/camera/camera.hpp"
@@ -86,10 +87,11 @@ class Leaning : public ::testing::TestWithParam<Case> {};
 
 TEST_P(Leaning, SamplesReachTheSceneAndMissNothing) {
   const Lens lens = GetParam().focused();
-  const Camera camera(lens, GetParam().leaning_film(), {.model = ModelKind::exact_double});
-  const TiltedFilm& tilted = *camera.tilted_film();
+  const testing::CameraParts parts(lens, GetParam().leaning_film(), ModelKind::exact_double);
+  const Camera camera(lens, GetParam().leaning_film(), parts.model);
+  const camera_detail::TiltedFilm& tilted = *parts.tilted;
   const Film pose = pose_of(lens, camera.film());
-  const double z = camera.pupils().space().pupil_z;
+  const double z = parts.pupils().space().pupil_z;
   std::mt19937_64 random(5);
   std::uniform_real_distribution<double> unit;
   double useful = 0, worst = 1, missed = 0;
@@ -99,7 +101,7 @@ TEST_P(Leaning, SamplesReachTheSceneAndMissNothing) {
   for (int i = 0; i < points; ++i) {
     const FilmPoint corner = camera.film().point(i % 2 * camera.film().columns, i / 2 * camera.film().rows);
     const FilmPoint film = i < 4 ? corner : FilmPoint{film_points.film_x[i], film_points.film_y[i]};
-    const FilmPoint key = tilted.key(film);
+    const FilmPoint key = tilted.virtual_point(film);
     if (tilted.pupils().area(key) == 0) continue;
     std::vector<std::array<double, 2>> inside, beside, box;
     const auto [mx, my] = tilted.pupils().middle(key);
@@ -249,7 +251,7 @@ TEST(TiltedFilm, ExposesAsADiscDoes) {
 }
 
 // The exposure error of each model with tilt is little more than without.
-TEST(TiltedFilm, ExposesAlikeOnEveryRung) {
+TEST(TiltedFilm, ExposesAlikeWithEveryModel) {
   const Lens lens = with_f_number(testing::data_lens("double_gauss_100mm_f2.0"), 4);
   const Film film = leaning(wide, 10, 5);
   const Camera exact(lens, film, {.model = ModelKind::exact_double}),

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Samples of tilted films, compared with positions in space.
-#include "petzval/camera/tilted_film.hpp"
+#include "camera/tilted_film.hpp"
 
 #include <gtest/gtest.h>
 
@@ -13,11 +13,11 @@
 
 #include "../data_lenses.hpp"
 #include "../message.hpp"
+#include "camera_parts.hpp"
 #include "camera_samples.hpp"
 #include "core/low_discrepancy.hpp"
 #include "leaning_films.hpp"
 #include "petzval/camera/camera.hpp"
-#include "petzval/camera/sample_rays.hpp"
 #include "petzval/core/units.hpp"
 #include "petzval/film/film.hpp"
 #include "petzval/focus/focus.hpp"
@@ -26,6 +26,9 @@
 
 namespace petzval {
 namespace {
+
+using camera_detail::TiltedFilm;
+using testing::CameraParts;
 
 using testing::leaning;
 using testing::pose_of;
@@ -57,10 +60,11 @@ TEST(TiltedFilm, IsAnUprightOneWhereItHardlyLeans) {
       EXPECT_NEAR(area[1] / area[0], 1, 1e-3) << name(model);
     }
     // The same line gives the same ray, with the same weight except for the density of its sample.
-    const TiltedFilm& film = *tilted.tilted_film();
+    const TiltedFilm film(tilted.film(), CameraParts(lens, tilted.film(), model).pupils());
     for (std::uint32_t i = 0; i < 100; ++i) {
       const auto [x, y] = random(i);
-      const FilmPoint point = upright.film().point(x * shifted.columns, y * shifted.rows), key = film.key(point);
+      const FilmPoint point = upright.film().point(x * shifted.columns, y * shifted.rows),
+                      key = film.virtual_point(point);
       EXPECT_NEAR(std::hypot(key.x - point.x, key.y - point.y), 0, 1e-8);
       EXPECT_NEAR(film.weight(key, 10 * x, -10 * y), 1, 1e-8);
       const TwoPlaneRay line = film.upright(key, 10 * x, -10 * y);
@@ -79,7 +83,7 @@ TEST(TiltedFilm, TellsLinesAsSpaceDoes) {
   const core_detail::Kronecker<4> random(8);
   for (std::uint32_t i = 0; i < 200; ++i) {
     const auto [a, b, c, d] = random(i);
-    const FilmPoint point = film.point(a * film.columns, b * film.rows), key = tilted.key(point);
+    const FilmPoint point = film.point(a * film.columns, b * film.rows), key = tilted.virtual_point(point);
     const Vec3<double> place = pose.position(point), q{60 * (c - 0.5), 60 * (d - 0.5), pupils.space().pupil_z};
     const TwoPlaneRay line = tilted.upright(key, q.x, q.y);
     const Vec3<double> upright{line.film_x, line.film_y, pupils.space().film_z};
@@ -89,7 +93,7 @@ TEST(TiltedFilm, TellsLinesAsSpaceDoes) {
     const double weight = along.z * glm::dot(along, normal) / (length2 * length2);
     const double wanted = straight.z * straight.z / (straight2 * straight2);
     EXPECT_NEAR(tilted.weight(key, q.x, q.y) * wanted / weight, 1, 1e-12);
-    const auto met = tilted.key_of(line);
+    const auto met = tilted.virtual_point_of(line);
     ASSERT_TRUE(met);
     EXPECT_NEAR(std::hypot(met->x - key.x, met->y - key.y), 0, 1e-12);
     const FilmPoint again = tilted.point(*met);
@@ -99,15 +103,16 @@ TEST(TiltedFilm, TellsLinesAsSpaceDoes) {
 
 /// For a pinhole: the sample of the upright model's exit pupil, projected from the film point into the plane of the
 /// pupil.
-PupilSample pinhole_sample(const Lens& lens, const Camera& camera, const CameraSample& s) {
-  const Vec3<double> from = pose_of(lens, camera.film()).position(s.film);
-  const TwoPlanes& space = camera.pupils().space();
+PupilSample pinhole_sample(const Lens& lens, const Film& film, const FilmPupilTable& pupil_table,
+                           const CameraSample& s) {
+  const Vec3<double> from = pose_of(lens, film).position(s.film);
+  const TwoPlanes& space = pupil_table.space();
   const double exit_z = pupils(lens, s.wavelength).exit.z;
   const auto along = [](const Vec3<double>& a, const Vec3<double>& b, double z) {
     return a + (b - a) * ((z - a.z) / (b.z - a.z));
   };
   const Vec3<double> chief = along(from, {0, 0, exit_z}, space.film_z);
-  const PupilSample p = camera.pupils().sample({chief.x, chief.y}, s.pupil_u, s.pupil_v, s.wavelength);
+  const PupilSample p = pupil_table.sample({chief.x, chief.y}, s.pupil_u, s.pupil_v, s.wavelength);
   const Vec3<double> exit = along(chief, {p.x, p.y, space.pupil_z}, exit_z), seen = along(from, exit, space.pupil_z);
   const double larger = (space.pupil_z - from.z) / (exit_z - from.z) * (exit_z - chief.z) / (space.pupil_z - chief.z);
   return {seen.x, seen.y, p.area * larger * larger};
@@ -118,8 +123,9 @@ PupilSample pinhole_sample(const Lens& lens, const Camera& camera, const CameraS
 TEST(TiltedFilm, HasTheDensitiesOfItsSamples) {
   const Lens lens = testing::data_lens("double_gauss_100mm_f2.0");
   for (const ModelKind model : models()) {
-    const Camera camera(lens, leaning(shifted, 14, -9), {.model = model});
-    const TiltedFilm& tilted = *camera.tilted_film();
+    const CameraParts parts(lens, leaning(shifted, 14, -9), model);
+    const Camera camera(lens, leaning(shifted, 14, -9), parts.model);
+    const TiltedFilm& tilted = *parts.tilted;
     const Film pose = pose_of(lens, camera.film());
     auto samples = random_samples(camera.film(), 60);
     samples.run(camera);
@@ -127,9 +133,9 @@ TEST(TiltedFilm, HasTheDensitiesOfItsSamples) {
     for (std::size_t i = 0; i < samples.size(); ++i) {
       const CameraSample s = samples.one(i);
       const PupilSample p = model == ModelKind::pinhole
-                                ? pinhole_sample(lens, camera, s)
-                                : tilted.pupils().sample(tilted.key(s.film), s.pupil_u, s.pupil_v);
-      const Vec3<double> along = Vec3<double>{p.x, p.y, camera.pupils().space().pupil_z} - pose.position(s.film);
+                                ? pinhole_sample(lens, camera.film(), parts.pupils(), s)
+                                : tilted.pupils().sample(tilted.virtual_point(s.film), s.pupil_u, s.pupil_v);
+      const Vec3<double> along = Vec3<double>{p.x, p.y, parts.pupils().space().pupil_z} - pose.position(s.film);
       const double length = glm::length(along), pdf = std::pow(length, 3) / (p.area * std::abs(along.z));
       EXPECT_NEAR(samples.pdf_pupil[i] * p.area, 1, 1e-9);
       EXPECT_NEAR(samples.pdf_direction[i] / pdf, 1, 1e-9) << name(model);
@@ -155,9 +161,9 @@ TEST(TiltedFilm, HasABack) {
   const TiltedFilm tilted(film, FilmPupilTable::enclosing(lens, upright_radius(lens, film, ModelKind::exact_double)));
   const double reach = pose_of(lens, film).normal().z * -tilted.pupils().space().depth() / std::sin(radians(80.0));
   EXPECT_GT(tilted.weight({0, 0}, 0, 0.99 * -reach), 0);
-  EXPECT_TRUE(tilted.key_of({0, 0, 0, 0.99 * -reach}));
+  EXPECT_TRUE(tilted.virtual_point_of({0, 0, 0, 0.99 * -reach}));
   EXPECT_EQ(tilted.weight({0, 0}, 0, 1.01 * -reach), 0);
-  EXPECT_FALSE(tilted.key_of({0, 0, 0, 1.01 * -reach}));
+  EXPECT_FALSE(tilted.virtual_point_of({0, 0, 0, 1.01 * -reach}));
 }
 
 // Scheimpflug: the plane of the film and the plane of focus of a thin lens meet in the lens. With 1/s + 1/s' = 1/f,
@@ -227,23 +233,6 @@ TEST(TiltedFilm, GivesTheSameRaysSinglyAndInABatch) {
   }
 }
 
-TEST(TiltedFilm, IsNotTakenForAnUprightOne) {
-  const Lens lens = testing::data_lens("tessar_100mm_f2.8");
-  const Film film = leaning(wide, 8, 0);
-  const ParaxialModel model(ModelKind::thick, lens, upright_radius(lens, film, ModelKind::thick));
-  const double scale = 1, x = 1, y = 2, u = 0.3, v = 0.4;
-  std::array<double, 7> out{};
-  RayFate fate = RayFate::transmitted;
-  const CameraSamples<double> sample{&x, &y, &u, &v};
-  const CameraRays<double> ray{{&out[0], &out[1], &out[2], &out[3], &out[4], &out[5]}, &out[6], &fate};
-  sample_rays(model, film, &scale, 1, sample, ray);
-  EXPECT_EQ(fate, RayFate::outside_film);
-  EXPECT_EQ(out[6], 0);
-  sample_rays(model, TiltedFilm(film, model.pupils()), &scale, 1, sample, ray);
-  EXPECT_EQ(fate, RayFate::transmitted);
-  EXPECT_GT(out[6], 0);
-}
-
 TEST(TiltedFilm, IsRefusedInTheLens) {
   const auto refusal = [](const char* id, const Film& film) {
     return testing::message([&] { Camera(testing::data_lens(id), film, {.model = ModelKind::exact_float}); });
@@ -260,7 +249,8 @@ TEST(TiltedFilm, IsRefusedInTheLens) {
   EXPECT_TRUE(has(thin, "at least a tenth of the film's distance from the pupil")) << thin;
   const Lens lens = testing::data_lens("tessar_100mm_f2.8");
   const Film film = leaning(wide, 20, 0);
-  EXPECT_TRUE(has(testing::message([&] { Camera(lens, film, make_model(ModelKind::thick, lens, film.radius_mm())); }),
+  EXPECT_TRUE(has(testing::message(
+                      [&] { Camera(lens, film, camera_detail::make_model(ModelKind::thick, lens, film.radius_mm())); }),
                   "the model is one for film points up to"));
 }
 

@@ -101,9 +101,9 @@ TEST(Film, TurnsItsImageTheRightWayUp) {
   EXPECT_EQ(middle.y, -3);
   for (const FilmPoint& corner : film.corners()) EXPECT_TRUE(film.contains(corner));
   EXPECT_FALSE(film.contains({5 + 18.001, -3}));
-  const auto [column, row] = film.raster(film.point(12.25, 200.5));
-  EXPECT_NEAR(column, 12.25, 1e-12);
-  EXPECT_NEAR(row, 200.5, 1e-12);
+  const Vec2<double> raster = film.raster(film.point(12.25, 200.5));
+  EXPECT_NEAR(raster.x, 12.25, 1e-12);
+  EXPECT_NEAR(raster.y, 200.5, 1e-12);
 }
 
 TEST(Film, WithoutAPlaceHasAxesAndNoPositions) {

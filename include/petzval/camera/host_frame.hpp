@@ -5,24 +5,25 @@
 
 #include "petzval/core/export.hpp"
 #include "petzval/core/ray.hpp"
-#include "petzval/lens/lens.hpp"
 
 namespace petzval::inline v0 {
 
-/// Renderers whose camera frames are known here.
+class Lens;
+
+/// Renderers with a known camera frame.
 enum class Host : std::uint8_t { pbrt, mitsuba, cycles, arnold, appleseed };
 
-/// What lies at the origin of a host's camera.
+/// The origin of a host's camera frame.
 enum class FrameOrigin : std::uint8_t { film, front_vertex, entrance_pupil };
 
-/// A host's camera frame and unit of length, beside the lens frame in mm.
+/// Converts between the lens frame in mm and a host's camera frame in its unit of length.
 ///
-/// pbrt, Cycles: left-handed, +x right, +y up, looking along +z: (x, y, -z), a mirror image. Mitsuba: right-handed, +x
-/// left, +y up, looking along +z: (-x, y, -z). Arnold, appleseed: looking along -z: as the lens frame. Units per mm:
-/// 0.001 for metres (pbrt, Mitsuba, Cycles, appleseed), 0.1 for centimetres (Arnold), unless given.
+/// pbrt and Cycles are left-handed, +x right, +y up, looking along +z: (x, y, -z), a mirror image. Mitsuba is
+/// right-handed, +x left, +y up, looking along +z: (-x, y, -z). Arnold and appleseed look along -z, as the lens frame.
+/// Default units per mm: 0.001 for metres (pbrt, Mitsuba, Cycles, appleseed), 0.1 for centimetres (Arnold).
 class PETZVAL_API HostFrame {
  public:
-  /// Throws Error for an entrance pupil at infinity as the origin and a unit that is not positive and finite.
+  /// Throws Error for an origin in an entrance pupil at infinity, and for a unit that is not positive and finite.
   HostFrame(Host host, const Lens& lens, FrameOrigin origin);
   HostFrame(Host host, const Lens& lens, FrameOrigin origin, double units_per_mm);
 

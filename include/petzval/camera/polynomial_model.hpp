@@ -8,12 +8,16 @@
 
 namespace petzval::inline v0 {
 
-/// Fitted polynomials within pupils that have the real ones' shape.
+/// A RayModel of fitted polynomials, such as those read from a file, within pupils of the same area as the real ones.
+///
+///     const Camera camera(lens, film, AnyRayModel(PolynomialModel(
+///         read_ray_polynomial(path), FilmPupilTable::equal_area(lens, upright_radius(lens, film)))));
 class PolynomialModel {
  public:
   PolynomialModel(RayPolynomial polynomial, FilmPupilTable equal_area)
       : polynomial_(std::move(polynomial)), pupils_(std::move(equal_area)) {}
 
+  PETZVAL_API ModelKind kind() const noexcept;
   const FilmPupilTable& pupils() const noexcept { return pupils_; }
   const RayPolynomial& polynomial() const noexcept { return polynomial_; }
   template <class T>
@@ -21,7 +25,7 @@ class PolynomialModel {
                 const RayArrays<T>& rays, RayFate* fates) const noexcept {
     polynomial_.to_scene<T>(count, lines, wavelengths.resolved(pupils_.primary_wavelength()), rays, fates);
   }
-  /// One line with its derivatives.
+  /// One ray with its derivatives.
   RayDerivatives to_scene(const TwoPlaneRayDerivatives& line, std::size_t wavelength) const noexcept {
     return polynomial_.to_scene(line, wavelength);
   }

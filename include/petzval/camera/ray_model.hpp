@@ -3,69 +3,177 @@
 
 #include <concepts>
 #include <cstddef>
-#include <cstdint>
-#include <optional>
+#include <memory>
 #include <span>
-#include <string_view>
+#include <type_traits>
+#include <utility>
 
+#include "petzval/camera/model_kind.hpp"
 #include "petzval/core/export.hpp"
 #include "petzval/core/ray.hpp"
+#include "petzval/film/film.hpp"
 #include "petzval/lens/wavelength.hpp"
 #include "petzval/pupil_table/film_pupil_table.hpp"
 #include "petzval/pupil_table/ray_derivatives.hpp"
 #include "petzval/pupil_table/two_plane_rays.hpp"
-#include "petzval/trace/batch.hpp"
 
 namespace petzval::inline v0 {
 
-/// The rungs of the ladder from the cheapest model of a lens to the most accurate one.
-enum class ModelKind : std::uint8_t {
-  pinhole,  ///< first order, all of it through the middle of the pupil
-  thin,     ///< first order, with the iris in the lens: a disc as wide as the entrance pupil in the principal plane
-  thin_two_disc,  ///< first order, with a pupil of two discs that move apart with the field, fitted to the real one's
-  thick,          ///< first order: cardinal points and the paraxial pupils
-  polynomial_3,   ///< rays as polynomials of film and pupil point; the number is the degree
-  polynomial_5,
-  polynomial_7,
-  polynomial_9,
-  polynomial_11,
-  exact_float,  ///< every surface
-  exact_double,
-};
-
-/// "pinhole", "thin", "thin_two_disc", "thick", "polynomial_3", ..., "exact_float", "exact_double".
-PETZVAL_API std::string_view name(ModelKind model) noexcept;
-/// The model of a name; nothing where no model has it.
-PETZVAL_API std::optional<ModelKind> model_named(std::string_view name) noexcept;
-/// All of them, in the order above.
-PETZVAL_API std::span<const ModelKind> models() noexcept;
-
-/// What a Camera needs to know of a lens: its pupils, and where lines of the film's space go on the scene's side and
-/// back. A renderer's own model needs these three and can be given to sample_rays(). Two more are read where the film
-/// is tilted: `ends_at_rims`, and pinhole_shifts() of a model that has it, as ParaxialModel's.
+/// What a Camera needs of a lens: the pupils to sample, and the map between image-space rays and rays of the scene.
 ///
-/// All calls are const, may come from many threads, never allocate, and write every slot of their results with finite
-/// numbers; what a ray became says its fate.
+/// An image-space ray is given by its points on two planes: the film, and the plane of the pupils (TwoPlanes). Every
+/// call is const and noexcept, may come from several threads, allocates nothing, and writes every slot of its results
+/// with finite numbers; fates say which rays are lost. Wavelengths are positions; those that the model does not have
+/// give missed_surface.
+///
+/// Required:
+///
+///     pupils()      the pupils of the film points, up to upright_radius()
+///     to_scene()    N image-space rays, float and double, to rays that leave the lens towards the scene
+///     to_film()     N rays of the scene, anywhere on their lines, to image-space rays
+///
+/// Optional members, and what their absence means:
+///
+///     static constexpr bool clips_at_apertures       false: a ray passes where it lies in pupils(). true: fates alone
+///                                                    decide, and pupils() contain what passes
+///     static constexpr bool linear_in_slopes         false: the model conserves etendue. true: it is linear in heights
+///                                                    and slopes and conserves their area, as ideal lenses do
+///     std::span<const double> pinhole_shifts()       empty. Of a pinhole, one for each wavelength: its rays pass the
+///                                                    plane of the pupils at so many times the film point
+///     RayFate to_scene(TwoPlaneRay, wavelength,      a batch of one
+///                      Ray<double>&)
+///     RayDerivatives to_scene(TwoPlaneRayDerivatives,       central differences of to_scene()
+///                             wavelength)
+///     ModelKind kind()                               custom
 template <class M>
 concept RayModel = requires(const M& model, std::size_t count, const RayWavelengths& wavelengths, RayFate* fates,
-                            const TwoPlaneRays<const float>& lines, const RayArrays<float>& rays,
-                            const TwoPlaneRays<const double>& exact_lines, const RayArrays<double>& exact_rays,
-                            const RayArrays<const double>& from_scene, const TwoPlaneRays<double>& to_lines) {
-  /// The pupils that are sampled. A model without rims passes what lies within them, and no more.
+                            const TwoPlaneRays<const float>& film_rays, const RayArrays<float>& rays,
+                            const TwoPlaneRays<const double>& exact_film_rays, const RayArrays<double>& exact_rays,
+                            const RayArrays<const double>& scene_rays, const TwoPlaneRays<double>& to_film) {
   { model.pupils() }
   noexcept->std::convertible_to<const FilmPupilTable&>;
-  /// Lines from the film as rays that leave the lens towards the scene; fates: N, never null.
-  { model.to_scene(count, lines, wavelengths, rays, fates) }
+  { model.to_scene(count, film_rays, wavelengths, rays, fates) }
   noexcept;
-  { model.to_scene(count, exact_lines, wavelengths, exact_rays, fates) }
+  { model.to_scene(count, exact_film_rays, wavelengths, exact_rays, fates) }
   noexcept;
-  /// Rays from the scene (anywhere on their lines) as lines that meet the film.
-  { model.to_film(count, from_scene, wavelengths, to_lines, fates) }
+  { model.to_film(count, scene_rays, wavelengths, to_film, fates) }
   noexcept;
 };
 
-/// Whether rays of a model end at rims: to_scene() alone says which of its lines pass, in its pupils or beside them.
-template <class M>
-inline constexpr bool ends_at_rims = false;
+/// The radius that the pupils of a model must reach, mm: how far from the axis the rays of a film's points meet the
+/// plane of the upright film. For an upright film, its own radius. Throws Error for a film that is no rectangle or
+/// tilted by a quarter turn or more, and for a tilted one that comes near to the plane of the pupils or to the pupil of
+/// a first-order model (of a thin lens, its rear principal plane).
+PETZVAL_API double upright_radius(const Lens& lens, const Film& film, ModelKind model = ModelKind::custom);
+
+/// Any RayModel, as a Camera holds it.
+///
+///     struct MyModel { ... };
+///     const Camera camera(lens, film, AnyRayModel(MyModel(lens, upright_radius(lens, film))));
+///
+/// Immutable, cheap to copy (copies share the model), shared freely between threads. Its calls are those of the model,
+/// virtual once a batch.
+class AnyRayModel {
+ public:
+  template <class M>
+    requires(!std::same_as<M, AnyRayModel> && RayModel<M>)
+  AnyRayModel(M model) : model_(std::make_shared<const Held<M>>(std::move(model))) {}
+
+  ModelKind kind() const noexcept { return model_->kind; }
+  bool clips_at_apertures() const noexcept { return model_->clips_at_apertures; }
+  bool linear_in_slopes() const noexcept { return model_->linear_in_slopes; }
+  std::span<const double> pinhole_shifts() const noexcept { return model_->pinhole_shifts(); }
+  bool pinhole() const noexcept { return !pinhole_shifts().empty(); }
+
+  const FilmPupilTable& pupils() const noexcept { return model_->pupils(); }
+  template <class T>
+  void to_scene(std::size_t count, const TwoPlaneRays<const T>& film_rays, const RayWavelengths& wavelengths,
+                const RayArrays<T>& rays, RayFate* fates) const noexcept {
+    model_->to_scene(count, film_rays, wavelengths, rays, fates);
+  }
+  RayFate to_scene(const TwoPlaneRay& film_ray, std::size_t wavelength, Ray<double>& ray) const noexcept {
+    return model_->to_scene(film_ray, wavelength, ray);
+  }
+  RayDerivatives to_scene(const TwoPlaneRayDerivatives& film_ray, std::size_t wavelength) const noexcept {
+    return model_->to_scene(film_ray, wavelength);
+  }
+  void to_film(std::size_t count, const RayArrays<const double>& rays, const RayWavelengths& wavelengths,
+               const TwoPlaneRays<double>& film_rays, RayFate* fates) const noexcept {
+    model_->to_film(count, rays, wavelengths, film_rays, fates);
+  }
+
+ private:
+  struct Interface {
+    ModelKind kind = ModelKind::custom;
+    bool clips_at_apertures = false, linear_in_slopes = false;
+
+    virtual ~Interface() = default;
+    virtual const FilmPupilTable& pupils() const noexcept = 0;
+    virtual std::span<const double> pinhole_shifts() const noexcept = 0;
+    virtual void to_scene(std::size_t, const TwoPlaneRays<const float>&, const RayWavelengths&, const RayArrays<float>&,
+                          RayFate*) const noexcept = 0;
+    virtual void to_scene(std::size_t, const TwoPlaneRays<const double>&, const RayWavelengths&,
+                          const RayArrays<double>&, RayFate*) const noexcept = 0;
+    virtual void to_film(std::size_t, const RayArrays<const double>&, const RayWavelengths&,
+                         const TwoPlaneRays<double>&, RayFate*) const noexcept = 0;
+    virtual RayFate to_scene(const TwoPlaneRay&, std::size_t wavelength, Ray<double>&) const noexcept = 0;
+    virtual RayDerivatives to_scene(const TwoPlaneRayDerivatives&, std::size_t wavelength) const noexcept = 0;
+
+    /// What models without the optional members get.
+    PETZVAL_API RayFate batch_of_one(const TwoPlaneRay&, std::size_t wavelength, Ray<double>&) const noexcept;
+    PETZVAL_API RayDerivatives differences(const TwoPlaneRayDerivatives&, std::size_t wavelength) const noexcept;
+  };
+
+  template <class M>
+  struct Held final : Interface {
+    M model;
+
+    explicit Held(M held) : model(std::move(held)) {
+      if constexpr (requires { model.kind(); }) this->kind = model.kind();
+      if constexpr (requires { M::clips_at_apertures; }) this->clips_at_apertures = M::clips_at_apertures;
+      if constexpr (requires { M::linear_in_slopes; }) this->linear_in_slopes = M::linear_in_slopes;
+    }
+    const FilmPupilTable& pupils() const noexcept override { return model.pupils(); }
+    std::span<const double> pinhole_shifts() const noexcept override {
+      if constexpr (requires { model.pinhole_shifts(); }) {
+        return model.pinhole_shifts();
+      } else {
+        return {};
+      }
+    }
+    void to_scene(std::size_t count, const TwoPlaneRays<const float>& film_rays, const RayWavelengths& wavelengths,
+                  const RayArrays<float>& rays, RayFate* fates) const noexcept override {
+      model.to_scene(count, film_rays, wavelengths, rays, fates);
+    }
+    void to_scene(std::size_t count, const TwoPlaneRays<const double>& film_rays, const RayWavelengths& wavelengths,
+                  const RayArrays<double>& rays, RayFate* fates) const noexcept override {
+      model.to_scene(count, film_rays, wavelengths, rays, fates);
+    }
+    void to_film(std::size_t count, const RayArrays<const double>& rays, const RayWavelengths& wavelengths,
+                 const TwoPlaneRays<double>& film_rays, RayFate* fates) const noexcept override {
+      model.to_film(count, rays, wavelengths, film_rays, fates);
+    }
+    RayFate to_scene(const TwoPlaneRay& film_ray, std::size_t wavelength, Ray<double>& ray) const noexcept override {
+      if constexpr (requires {
+                      { model.to_scene(film_ray, wavelength, ray) } -> std::same_as<RayFate>;
+                    }) {
+        return model.to_scene(film_ray, wavelength, ray);
+      } else {
+        return this->batch_of_one(film_ray, wavelength, ray);
+      }
+    }
+    RayDerivatives to_scene(const TwoPlaneRayDerivatives& film_ray, std::size_t wavelength) const noexcept override {
+      if constexpr (requires {
+                      { model.to_scene(film_ray, wavelength) } -> std::same_as<RayDerivatives>;
+                    }) {
+        return model.to_scene(film_ray, wavelength);
+      } else {
+        return this->differences(film_ray, wavelength);
+      }
+    }
+  };
+
+  std::shared_ptr<const Interface> model_;
+};
 
 }  // namespace petzval::inline v0

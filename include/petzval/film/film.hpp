@@ -47,7 +47,7 @@ struct PETZVAL_API Film {
   /// scene (+x) meets the film on its -x side and the picture on the right; what lies above (+y) meets the film below
   /// and the picture at the top. Nothing else in petzval turns an image.
   FilmPoint point(double column, double row) const noexcept;
-  std::array<double, 2> raster(const FilmPoint& point) const noexcept;
+  Vec2<double> raster(const FilmPoint& point) const noexcept;
 
   /// The film's axes in the lens frame: what +x, +y and +z become.
   Vec3<double> right() const noexcept;

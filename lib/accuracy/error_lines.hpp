@@ -7,12 +7,13 @@
 #include <functional>
 #include <vector>
 
-#include "petzval/camera/any_model.hpp"
+#include "camera/exact_model.hpp"
+#include "petzval/camera/ray_model.hpp"
 #include "petzval/film/film.hpp"
 #include "petzval/pupil_table/two_plane_rays.hpp"
 
 /// The lines along which models are compared with the lens.
-namespace petzval::inline v0::camera_detail {
+namespace petzval::inline v0::accuracy_detail {
 
 /// Lines through each film point: the first half evenly over its pupil, by which means count, the others along the
 /// pupil's rims, where errors are largest and even samples rarely come.
@@ -27,7 +28,7 @@ inline constexpr double darkest = 0.01;
 
 /// How far from the axis the film is lit, mm: to where it is `darkest`, or all of it. Of a lens without symmetry of
 /// revolution: all of it.
-double lit_radius(const ExactModel<double>& exact, const Film& film, std::size_t wavelength);
+double lit_radius(const camera_detail::ExactModel<double>& exact, const Film& film, std::size_t wavelength);
 
 /// Film points: every second one of an even spread over the film, the others by turns in a corner, on a side, and
 /// anywhere but rather near the sides. Those that the light does not reach are moved towards the axis, the farthest of
@@ -62,7 +63,7 @@ struct PointLines {
 };
 
 /// The lines of a film point through the lens's pupil, as described above. The film point must have one.
-PointLines error_lines(const FilmPoint& film, const ExactModel<double>& exact, std::size_t wavelength,
+PointLines error_lines(const FilmPoint& film, const camera_detail::ExactModel<double>& exact, std::size_t wavelength,
                        std::uint64_t seed) noexcept;
 
 /// What a model makes of such lines.
@@ -73,10 +74,10 @@ struct PointRays {
 };
 using Tracing = std::function<void(const PointLines& lines, std::size_t wavelength, PointRays& rays)>;
 
-/// A rung as a renderer runs it: in float, but exact_double. Rungs without rims pass what lies within their pupils; the
-/// one ray of a pinhole stands for every line. The model must outlive the result.
-Tracing tracing(const AnyModel& model);
-/// The same for lines that are known to lie within the model's own pupils.
-Tracing tracing_within(const AnyModel& model);
+/// A model as a renderer runs it: in float, except exact_double. Models that do not clip at apertures pass what lies
+/// within their pupils; the one ray of a pinhole stands for every line. The model must outlive the result.
+Tracing tracing(const AnyRayModel& model);
+/// The same for lines that lie within the model's own pupils.
+Tracing tracing_within(const AnyRayModel& model);
 
-}  // namespace petzval::inline v0::camera_detail
+}  // namespace petzval::inline v0::accuracy_detail

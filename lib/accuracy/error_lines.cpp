@@ -7,7 +7,7 @@
 #include "core/bisect.hpp"
 #include "core/low_discrepancy.hpp"
 
-namespace petzval::inline v0::camera_detail {
+namespace petzval::inline v0::accuracy_detail {
 namespace {
 
 using core_detail::Kronecker;
@@ -26,7 +26,7 @@ double towards_zero(double x) noexcept {
 
 }  // namespace
 
-double lit_radius(const ExactModel<double>& exact, const Film& film, std::size_t wavelength) {
+double lit_radius(const camera_detail::ExactModel<double>& exact, const Film& film, std::size_t wavelength) {
   const double farthest = film.radius_mm();
   if (!exact.lens().rotationally_symmetric()) return farthest;
   const FilmPupilTable& pupils = exact.pupils();
@@ -104,7 +104,7 @@ void PointLines::put(std::size_t line, double x, double y) noexcept {
   pupil_y[line] = pupil_y_float[line] = static_cast<float>(y);
 }
 
-PointLines error_lines(const FilmPoint& film, const ExactModel<double>& exact, std::size_t wavelength,
+PointLines error_lines(const FilmPoint& film, const camera_detail::ExactModel<double>& exact, std::size_t wavelength,
                        std::uint64_t seed) noexcept {
   constexpr std::size_t count = lines_per_point - even_lines;
   static_assert(count == even_lines);
@@ -153,8 +153,8 @@ PointLines error_lines(const FilmPoint& film, const ExactModel<double>& exact, s
 
 namespace {
 
-template <class T, class M>
-void trace_lines(const M& model, bool own_pupil, const TwoPlaneRays<const T>& lines, const FilmPoint& film,
+template <class T>
+void trace_lines(const AnyRayModel& model, bool own_pupil, const TwoPlaneRays<const T>& lines, const FilmPoint& film,
                  std::size_t wavelength, PointRays& out) {
   constexpr std::size_t count = lines_per_point;
   alignas(64) std::array<T, 6 * count> room;
@@ -170,29 +170,21 @@ void trace_lines(const M& model, bool own_pupil, const TwoPlaneRays<const T>& li
   }
 }
 
-Tracing tracing(const AnyModel& model, bool own_pupil) {
-  const bool in_double = kind_of(model) == ModelKind::exact_double;
+Tracing tracing(const AnyRayModel& model, bool own_pupil) {
+  const bool in_double = model.kind() == ModelKind::exact_double;
   return [&model, in_double, own_pupil](const PointLines& lines, std::size_t wavelength, PointRays& out) {
-    std::visit(
-        [&](const auto& m) {
-          if (in_double) {
-            trace_lines<double>(m, own_pupil, lines.lines(), lines.film, wavelength, out);
-          } else {
-            trace_lines<float>(m, own_pupil, lines.float_lines(), lines.film, wavelength, out);
-          }
-        },
-        model);
+    if (in_double) {
+      trace_lines<double>(model, own_pupil, lines.lines(), lines.film, wavelength, out);
+    } else {
+      trace_lines<float>(model, own_pupil, lines.float_lines(), lines.film, wavelength, out);
+    }
   };
 }
 
 }  // namespace
 
-Tracing tracing(const AnyModel& model) {
-  const ModelKind kind = kind_of(model);
-  return tracing(model,
-                 kind != ModelKind::exact_float && kind != ModelKind::exact_double && kind != ModelKind::pinhole);
-}
+Tracing tracing(const AnyRayModel& model) { return tracing(model, !model.clips_at_apertures() && !model.pinhole()); }
 
-Tracing tracing_within(const AnyModel& model) { return tracing(model, false); }
+Tracing tracing_within(const AnyRayModel& model) { return tracing(model, false); }
 
-}  // namespace petzval::inline v0::camera_detail
+}  // namespace petzval::inline v0::accuracy_detail

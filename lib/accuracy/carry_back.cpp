@@ -14,7 +14,7 @@
 #include "petzval/paraxial/pupils.hpp"
 #include "petzval/trace/differentials.hpp"
 
-namespace petzval::inline v0::camera_detail {
+namespace petzval::inline v0::accuracy_detail {
 namespace {
 
 double angle(const Vec3<double>& a, const Vec3<double>& b) noexcept {
@@ -132,4 +132,4 @@ ChiefRay ChiefRays::through(const FilmPoint& film, const std::array<double, 2>& 
   return {pupil, fate == RayFate::transmitted, focal_length_, ray.ray(), ray.ray(6), ray.ray(12)};
 }
 
-}  // namespace petzval::inline v0::camera_detail
+}  // namespace petzval::inline v0::accuracy_detail

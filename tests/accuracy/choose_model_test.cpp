@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/camera/choose_model.hpp"
+#include "petzval/accuracy/choose_model.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,6 +12,7 @@
 
 #include "../data_lenses.hpp"
 #include "../message.hpp"
+#include "camera/make_model.hpp"
 #include "petzval/camera/camera.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/focus/focus.hpp"
@@ -29,7 +30,7 @@ Lens focused(const std::string& id, double distance) {
   return with_focus(data_lens(id), distance, {.origin = DistanceOrigin::film});
 }
 
-const ModelCandidate& rung(const ModelChoice& choice, ModelKind model) {
+const ModelCandidate& candidate_of(const ModelChoice& choice, ModelKind model) {
   return *std::ranges::find(choice.table, model, &ModelCandidate::model);
 }
 
@@ -69,9 +70,9 @@ TEST_P(Promise, HoldsOnFreshSamples) {
                            .film_points = 256,
                            .seed = static_cast<std::uint32_t>(random())};
   const Lens stopped = scene.f_number > 0 ? with_f_number(lens, scene.f_number) : lens;
-  std::vector<AnyModel> built;
+  std::vector<AnyRayModel> built;
   for (const ModelCandidate& c : choices[0].table) {
-    if (c.available) built.push_back(make_model(c.model, stopped, film.radius_mm()));
+    if (c.available) built.push_back(camera_detail::make_model(c.model, stopped, film.radius_mm()));
   }
   const std::vector<ModelError> errors = model_errors(stopped, film, built, fresh);
   auto next = errors.begin();
@@ -99,7 +100,7 @@ TEST_P(Promise, HoldsOnFreshSamples) {
         EXPECT_TRUE(inside(1)) << "budget " << k;
       }
       // Samples may miss sharp minima of the blur: there the bound is only an upper one.
-      if (!budget.max_of_blur && candidate.ns_per_ray < rung(choices[k], choices[k].model).ns_per_ray) {
+      if (!budget.max_of_blur && candidate.ns_per_ray < candidate_of(choices[k], choices[k].model).ns_per_ray) {
         EXPECT_FALSE(inside(0.9)) << "budget " << k;
       }
     }
@@ -168,16 +169,16 @@ TEST(ChooseModel, MeasuresEveryRungInOrder) {
     EXPECT_GE(c.bound_px, c.error.all.max_px);
     EXPECT_EQ(c.inside, c.bound_px <= 1) << name(c.model);
   }
-  EXPECT_EQ(rung(choice, ModelKind::exact_double).bound_px, 0);
-  EXPECT_EQ(rung(choice, ModelKind::exact_double).bound_pupil_shape, 0);
-  EXPECT_TRUE(rung(choice, choice.model).inside);
+  EXPECT_EQ(candidate_of(choice, ModelKind::exact_double).bound_px, 0);
+  EXPECT_EQ(candidate_of(choice, ModelKind::exact_double).bound_pupil_shape, 0);
+  EXPECT_TRUE(candidate_of(choice, choice.model).inside);
 }
 
 TEST(ChooseModel, TakesTheFastestInside) {
   for (const ModelChoice& choice : usual_choices()) {
     for (const ModelCandidate& c : choice.table) {
       if (!c.inside) continue;
-      EXPECT_GE(c.ns_per_ray, rung(choice, choice.model).ns_per_ray) << name(c.model);
+      EXPECT_GE(c.ns_per_ray, candidate_of(choice, choice.model).ns_per_ray) << name(c.model);
     }
   }
   EXPECT_TRUE(std::ranges::all_of(usual_choices()[none].table, &ModelCandidate::inside));
@@ -204,7 +205,7 @@ TEST(ChooseModel, GivesReasonsWithNumbers) {
   EXPECT_NE(choice.reasons[0].find("(budget 0.25 px)"), std::string::npos) << choice.reasons[0];
   EXPECT_NE(choice.reasons[0].find("(budget 1 %)"), std::string::npos) << choice.reasons[0];
   for (const ModelCandidate& c : choice.table) {
-    const bool faster = c.ns_per_ray < rung(choice, choice.model).ns_per_ray;
+    const bool faster = c.ns_per_ray < candidate_of(choice, choice.model).ns_per_ray;
     const bool named = std::ranges::any_of(choice.reasons, [&](const std::string& r) {
       return r.starts_with(std::string(name(c.model)) + " (") && r.find("will not do") != std::string::npos;
     });
@@ -241,16 +242,16 @@ TEST(ChooseModel, LeavesOutWhatCannotBeBuilt) {
   const ModelChoice choice =
       choose_model(lens, {.near_mm = 3000, .film = {.width_mm = 20, .height_mm = 13}}, {.max_px = 4});
   EXPECT_EQ(choice.model, ModelKind::exact_float);
-  EXPECT_FALSE(rung(choice, ModelKind::thick).available);
-  EXPECT_FALSE(rung(choice, ModelKind::thick).inside);
-  EXPECT_FALSE(rung(choice, ModelKind::thick).remark.empty());
+  EXPECT_FALSE(candidate_of(choice, ModelKind::thick).available);
+  EXPECT_FALSE(candidate_of(choice, ModelKind::thick).inside);
+  EXPECT_FALSE(candidate_of(choice, ModelKind::thick).remark.empty());
   EXPECT_TRUE(says(choice.reasons, "thick cannot be built: "));
 }
 
 TEST(ChooseModel, StopsTheLensDown) {
-  const double open = rung(usual_choices()[none], ModelKind::polynomial_5).bound_px;
+  const double open = candidate_of(usual_choices()[none], ModelKind::polynomial_5).bound_px;
   const double stopped =
-      rung(choose_model(usual_lens(), {.near_mm = 1500, .f_number = 8}, {}), ModelKind::polynomial_5).bound_px;
+      candidate_of(choose_model(usual_lens(), {.near_mm = 1500, .f_number = 8}, {}), ModelKind::polynomial_5).bound_px;
   EXPECT_LT(stopped, 0.5 * open);
 }
 

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <iterator>
 
-#include "petzval/camera/ray_model.hpp"
+#include "petzval/camera/model_kind.hpp"
 
 namespace petzval::inline v0 {
 namespace {
@@ -19,7 +19,9 @@ constexpr std::array<std::string_view, all.size()> names{
 
 }  // namespace
 
-std::string_view name(ModelKind model) noexcept { return names[static_cast<std::size_t>(model)]; }
+std::string_view name(ModelKind model) noexcept {
+  return model == ModelKind::custom ? "custom" : names[static_cast<std::size_t>(model)];
+}
 
 std::optional<ModelKind> model_named(std::string_view name) noexcept {
   const auto found = std::find(names.begin(), names.end(), name);

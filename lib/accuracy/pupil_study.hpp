@@ -5,13 +5,13 @@
 #include <optional>
 #include <vector>
 
+#include "camera/exact_model.hpp"
 #include "error_lines.hpp"
-#include "petzval/camera/exact_model.hpp"
-#include "petzval/camera/model_error.hpp"
+#include "petzval/accuracy/model_error.hpp"
 #include "petzval/film/film.hpp"
 #include "petzval/pupil_table/film_pupil_table.hpp"
 
-namespace petzval::inline v0::camera_detail {
+namespace petzval::inline v0::accuracy_detail {
 
 /// The pupils of a model: where its samples lie, which of these pass, and which lines in general.
 struct ModelPupils {
@@ -21,14 +21,15 @@ struct ModelPupils {
   std::optional<FilmPoint> of;  ///< the samples are those of this film point, for all
 };
 /// The model must outlive the result.
-ModelPupils pupils_of(const AnyModel& model);
+ModelPupils pupils_of(const AnyRayModel& model);
 
 /// Errors of pupils and of exposures, held against a lens whose pupils are traced once. All areas and integrals are
 /// means over even samples of a pupil times its area: nothing depends on how large a pupil is.
 class PupilStudy {
  public:
   /// film_points are its own; the exact model must outlive the study.
-  PupilStudy(const ExactModel<double>& exact, const Film& film, std::size_t film_points, const ErrorSamples& samples);
+  PupilStudy(const camera_detail::ExactModel<double>& exact, const Film& film, std::size_t film_points,
+             const ErrorSamples& samples);
 
   /// Largest over film points and wavelengths. Bounds are what other samples stay below: those of a fraction p scatter
   /// by no more than sqrt(p / samples), and film points between these differ little.
@@ -52,11 +53,11 @@ class PupilStudy {
   double weight(const PointLines& lines, std::size_t line) const noexcept;
 
   const ErrorSamples samples_;
-  const AnyModel any_;
+  const AnyRayModel any_;
   const ModelPupils exact_;
   const double depth_;
   std::vector<std::size_t> wavelengths_;
   std::vector<std::vector<Point>> points_;  // [wavelength of the samples], those with light
 };
 
-}  // namespace petzval::inline v0::camera_detail
+}  // namespace petzval::inline v0::accuracy_detail

@@ -5,14 +5,14 @@
 #include <span>
 #include <vector>
 
+#include "camera/exact_model.hpp"
 #include "carry_back.hpp"
 #include "error_lines.hpp"
-#include "petzval/camera/exact_model.hpp"
-#include "petzval/camera/model_error.hpp"
+#include "petzval/accuracy/model_error.hpp"
 #include "petzval/film/film.hpp"
 
 /// Models held against a lens whose rays are traced once for all of them.
-namespace petzval::inline v0::camera_detail {
+namespace petzval::inline v0::accuracy_detail {
 
 /// What an error may be at a film point and depth: a length, or a fraction of the local blur where that is larger.
 struct Tolerance {
@@ -23,7 +23,7 @@ struct Tolerance {
 class RayStudy {
  public:
   /// Throws Error as model_error does; the exact model must outlive the study.
-  RayStudy(const ExactModel<double>& exact, const Film& film, const ErrorSamples& samples,
+  RayStudy(const camera_detail::ExactModel<double>& exact, const Film& film, const ErrorSamples& samples,
            std::span<const Tolerance> tolerances = {});
 
   struct Found {
@@ -60,7 +60,7 @@ class RayStudy {
   Errors errors_of(const Point& point, const Tracing& model, std::size_t wavelength) const;
   std::uint64_t seed_of(const Point& point, std::uint64_t look) const noexcept;
 
-  const ExactModel<double>* exact_;
+  const camera_detail::ExactModel<double>* exact_;
   Film film_;
   ErrorSamples samples_;
   std::vector<Tolerance> tolerances_;
@@ -71,4 +71,4 @@ class RayStudy {
 /// Wavelengths that samples name, checked.
 std::vector<std::size_t> wavelengths_of(const Lens& lens, const ErrorSamples& samples);
 
-}  // namespace petzval::inline v0::camera_detail
+}  // namespace petzval::inline v0::accuracy_detail

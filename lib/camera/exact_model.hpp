@@ -6,17 +6,20 @@
 #include "petzval/camera/ray_model.hpp"
 #include "petzval/lens/lens.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval::inline v0::camera_detail {
 
-/// The lens itself: rays traced through every surface, in float or double whatever numbers come and go.
+/// The lens itself: rays traced through every surface in R, float or double, whatever the type of samples and rays.
 template <class R>
 class ExactModel {
  public:
+  static constexpr bool clips_at_apertures = true;
+
   /// Throws Error where FilmPupilTable::enclosing does.
   ExactModel(const Lens& lens, double film_radius) : ExactModel(lens, FilmPupilTable::enclosing(lens, film_radius)) {}
   ExactModel(const Lens& lens, FilmPupilTable enclosing)
       : lens_(lens), pupils_(std::move(enclosing)), towards_(towards_scene(lens_, pupils_.space())) {}
 
+  ModelKind kind() const noexcept { return sizeof(R) == 4 ? ModelKind::exact_float : ModelKind::exact_double; }
   const FilmPupilTable& pupils() const noexcept { return pupils_; }
   template <class T>
   void to_scene(std::size_t count, const TwoPlaneRays<const T>& lines, const RayWavelengths& wavelengths,
@@ -24,7 +27,9 @@ class ExactModel {
   void to_film(std::size_t count, const RayArrays<const double>& rays, const RayWavelengths& wavelengths,
                const TwoPlaneRays<double>& lines, RayFate* fates) const noexcept;
 
-  /// One line with its derivatives, in double.
+  /// One ray.
+  RayFate to_scene(const TwoPlaneRay& line, std::size_t wavelength, Ray<double>& ray) const noexcept;
+  /// One ray with its derivatives, in double.
   RayDerivatives to_scene(const TwoPlaneRayDerivatives& line, std::size_t wavelength) const noexcept;
 
   const Lens& lens() const noexcept { return lens_; }
@@ -35,7 +40,4 @@ class ExactModel {
   double towards_;
 };
 
-template <class R>
-inline constexpr bool ends_at_rims<ExactModel<R>> = true;
-
-}  // namespace petzval::inline v0
+}  // namespace petzval::inline v0::camera_detail

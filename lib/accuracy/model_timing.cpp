@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "rung_timing.hpp"
+#include "model_timing.hpp"
 
 #include <algorithm>
 #include <chrono>
 #include <limits>
 
+#include "camera/sample_rays.hpp"
 #include "core/low_discrepancy.hpp"
 #include "error_lines.hpp"
-#include "petzval/camera/sample_rays.hpp"
 
-namespace petzval::inline v0::camera_detail {
+namespace petzval::inline v0::accuracy_detail {
 namespace {
 
 constexpr std::size_t rays = 8192;  // of float: 0.5 MB, which the second cache holds
@@ -29,12 +29,12 @@ class Work {
     }
   }
 
-  double ns_per_ray(const AnyModel& model) {
+  double ns_per_ray(const AnyRayModel& model) {
     const auto at = [this](std::size_t k) { return &values_[k * rays]; };
     const CameraSamples<T> in{at(0), at(1), at(2), at(3)};
     const CameraRays<T> out{{at(4), at(5), at(6), at(7), at(8), at(9)}, at(10), fates_.data()};
     const auto start = std::chrono::steady_clock::now();
-    std::visit([&](const auto& m) { sample_rays(m, film_, scale_.data(), rays, in, out); }, model);
+    camera_detail::sample_rays<T>({model, film_, nullptr, scale_}, rays, in, out);
     const std::chrono::duration<double, std::nano> time = std::chrono::steady_clock::now() - start;
     return time.count() / static_cast<double>(rays);
   }
@@ -48,19 +48,19 @@ class Work {
 
 }  // namespace
 
-std::vector<double> time_rays(std::span<const AnyModel> models, const Film& film) {
+std::vector<double> time_rays(std::span<const AnyRayModel> models, const Film& film) {
   std::vector<double> best(models.size(), std::numeric_limits<double>::infinity());
   if (models.empty()) return best;
-  const std::size_t wavelengths = film_pupil_table_of(models[0]).wavelengths();
+  const std::size_t wavelengths = models[0].pupils().wavelengths();
   Work<float> in_float(film, wavelengths);
   Work<double> in_double(film, wavelengths);
   for (int round = 0; round < rounds; ++round) {
     for (std::size_t k = 0; k < models.size(); ++k) {
-      const bool exact = kind_of(models[k]) == ModelKind::exact_double;
+      const bool exact = models[k].kind() == ModelKind::exact_double;
       best[k] = std::min(best[k], exact ? in_double.ns_per_ray(models[k]) : in_float.ns_per_ray(models[k]));
     }
   }
   return best;
 }
 
-}  // namespace petzval::inline v0::camera_detail
+}  // namespace petzval::inline v0::accuracy_detail

@@ -13,7 +13,7 @@
 #include "petzval/core/parallel.hpp"
 #include "petzval/core/text.hpp"
 
-namespace petzval::inline v0::camera_detail {
+namespace petzval::inline v0::accuracy_detail {
 namespace {
 
 constexpr std::size_t block = 8;  // film points that a thread takes at once
@@ -87,7 +87,7 @@ struct RayStudy::Errors {
   std::vector<double> of_tolerance, even;
 };
 
-RayStudy::RayStudy(const ExactModel<double>& exact, const Film& film, const ErrorSamples& samples,
+RayStudy::RayStudy(const camera_detail::ExactModel<double>& exact, const Film& film, const ErrorSamples& samples,
                    std::span<const Tolerance> tolerances)
     : exact_(&exact),
       film_(film),
@@ -106,7 +106,7 @@ RayStudy::RayStudy(const ExactModel<double>& exact, const Film& film, const Erro
                 " and " + number(range->at(1)) + " mm, wanted both in front of the lens, below 0");
   }
   const ChiefRays chief_rays(lens, exact.pupils().space());
-  const AnyModel any = exact;
+  const AnyRayModel any = exact;
   const Tracing trace = tracing(any);
   for (const std::size_t wavelength : wavelengths_) {
     std::vector<Point>& points = points_.emplace_back();
@@ -153,7 +153,7 @@ RayStudy::Largest RayStudy::largest(const Found& found, const Tracing& model) co
   look_at_worst(found.of_blur);
   for (const auto& maxima : found.of_tolerance) result.of_tolerance.push_back(look_at_worst(maxima));
 
-  const AnyModel any = *exact_;
+  const AnyRayModel any = *exact_;
   const Tracing trace = tracing(any);
   for (std::size_t w = 0; w < points_.size(); ++w) {
     std::vector<const Point*> points;
@@ -285,4 +285,4 @@ RayStudy::Found RayStudy::measure(const Tracing& model) const {
   return found;
 }
 
-}  // namespace petzval::inline v0::camera_detail
+}  // namespace petzval::inline v0::accuracy_detail

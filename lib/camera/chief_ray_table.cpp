@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "chief_lines.hpp"
+#include "chief_ray_table.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,8 +7,7 @@
 #include <utility>
 
 #include "core/meet_plane.hpp"
-#include "petzval/paraxial/first_order.hpp"
-#include "petzval/paraxial/pupils.hpp"
+#include "make_model.hpp"
 #include "petzval/pupil_table/two_plane_rays.hpp"
 #include "petzval/trace/trace.hpp"
 #include "trace/sequential.hpp"
@@ -32,6 +31,9 @@ struct Section {
   double of(const V& v) const noexcept {
     return along_x ? v.x : v.y;
   }
+  std::array<double, 2> pair(double height) const noexcept {
+    return along_x ? std::array{height, 0.0} : std::array{0.0, height};
+  }
   Vec3<double> vector(double height, double z) const noexcept {
     return along_x ? Vec3<double>{height, 0, z} : Vec3<double>{0, height, z};
   }
@@ -40,8 +42,12 @@ struct Section {
 /// Film and pupil height of the exact ray that leaves the centre of the stop for the film with a slope (a sine).
 class FromStop {
  public:
-  FromStop(const Lens& lens, const TwoPlanes& space, std::size_t wavelength, Section section)
-      : lens_(lens), space_(space), wavelength_(wavelength), section_(section), stop_(pupils(lens, wavelength).stop) {}
+  FromStop(const LensFacts& facts, const TwoPlanes& space, std::size_t wavelength, Section section)
+      : lens_(facts.lens()),
+        space_(space),
+        wavelength_(wavelength),
+        section_(section),
+        stop_(facts.pupils(wavelength).stop) {}
 
   std::optional<Heights> operator()(double slope) const noexcept {
     if (!(slope < 1)) return {};
@@ -76,43 +82,49 @@ std::optional<Ray<double>> to_scene(const Lens& lens, const TwoPlanes& space, st
   return end.transmitted() ? std::optional(end.ray) : std::nullopt;
 }
 
-std::optional<Ray<double>> to_scene(const ParaxialModel& model, std::size_t wavelength, const Heights& h) noexcept {
-  const double zero = 0;
+std::optional<Ray<double>> to_scene(const AnyRayModel& model, std::size_t wavelength, Section section,
+                                    const Heights& h) noexcept {
+  const auto [x, y] = section.pair(h.film);
+  const auto [pupil_x, pupil_y] = section.pair(h.pupil);
   Ray<double> ray;
-  auto& [o, d] = ray;
-  RayFate fate = RayFate::missed_surface;
-  model.to_scene<double>(1, {&zero, &h.film, &zero, &h.pupil}, {.all = wavelength},
-                         {&o.x, &o.y, &o.z, &d.x, &d.y, &d.z}, &fate);
+  const RayFate fate = model.to_scene(TwoPlaneRay{x, y, pupil_x, pupil_y}, wavelength, ray);
   return fate == RayFate::transmitted ? std::optional(ray) : std::nullopt;
 }
 
 }  // namespace
 
-ChiefLines::ChiefLines(const Lens& lens, const AnyModel& model, double film_radius, std::size_t wavelength) {
-  const auto* first_order = std::get_if<ParaxialModel>(&model);
-  const TwoPlanes space = film_pupil_table_of(model).space();
-  // Adds a chief ray; false where it does not get to the scene.
+ChiefRayTable::ChiefRayTable(const LensFacts& facts, const AnyRayModel& model, double film_radius,
+                             std::size_t wavelength) {
+  const Lens& lens = facts.lens();
+  const TwoPlanes space = model.pupils().space();
+  const bool traced =
+      is_polynomial(model.kind()) || model.kind() == ModelKind::exact_float || model.kind() == ModelKind::exact_double;
+  // Adds a chief ray; false where it does not reach the scene.
   const auto add = [&](Meridian& nodes, Section section, const Heights& h, double ratio) {
-    const auto ray =
-        first_order ? to_scene(*first_order, wavelength, h) : to_scene(lens, space, wavelength, section, h);
+    const auto ray = traced ? to_scene(lens, space, wavelength, section, h) : to_scene(model, wavelength, section, h);
     if (!ray) return false;
     nodes.push_back(
         {h.film, ratio, section.of(ray->origin), ray->origin.z, section.of(ray->direction), ray->direction.z});
     return true;
   };
-  if (first_order) {
-    const FilmPupilTable& pupils = first_order->pupils();
-    for (int i = 0; i <= steps; ++i) {
-      const double film = film_radius * beyond_film * i / steps,
-                   near = std::clamp(film, 1e-3 * film_radius, film_radius);
-      const double ratio = pupils.middle({0, near}, wavelength)[1] / near;
-      add(y_, {}, {film, ratio * film}, ratio);
-    }
+  if (!traced) {
+    const auto fill = [&](Meridian& nodes, Section section) {
+      for (int i = 0; i <= steps; ++i) {
+        const double film = film_radius * beyond_film * i / steps,
+                     near = std::clamp(film, 1e-3 * film_radius, film_radius);
+        const auto [x, y] = section.pair(near);
+        const auto middle = model.pupils().middle({x, y}, wavelength);
+        const double ratio = middle[section.along_x ? 0 : 1] / near;
+        add(nodes, section, {film, ratio * film}, ratio);
+      }
+    };
+    fill(y_, {});
+    if (!lens.rotationally_symmetric()) fill(x_, {.along_x = true});
     return;
   }
 
   const auto fill = [&](Meridian& nodes, Section section) {
-    const FromStop from_stop(lens, space, wavelength, section);
+    const FromStop from_stop(facts, space, wavelength, section);
     constexpr double small = 1e-5;
     const auto first = from_stop(small);
     if (!first || !(first->film > 0)) return;
@@ -137,7 +149,7 @@ ChiefLines::ChiefLines(const Lens& lens, const AnyModel& model, double film_radi
   if (!lens.rotationally_symmetric()) fill(x_, {.along_x = true});
 }
 
-double ChiefLines::ratio(const Meridian& nodes, double film) noexcept {
+double ChiefRayTable::ratio(const Meridian& nodes, double film) noexcept {
   if (nodes.size() < 4) return nodes.empty() ? 0 : nodes.front().ratio;
   const auto above =
       std::upper_bound(nodes.begin(), nodes.end(), film, [](double f, const Node& node) { return f < node.film; });
@@ -157,13 +169,13 @@ double ChiefLines::ratio(const Meridian& nodes, double film) noexcept {
   return sum;
 }
 
-std::array<double, 2> ChiefLines::pupil_point(const FilmPoint& film) const noexcept {
+std::array<double, 2> ChiefRayTable::pupil_point(const FilmPoint& film) const noexcept {
   const double height = std::hypot(film.x, film.y);
   const double y = ratio(y_, height);
   return {film.x * (x_.empty() ? y : ratio(x_, height)), film.y * y};
 }
 
-std::optional<double> ChiefLines::find(const Meridian& nodes, double height, double z) noexcept {
+std::optional<double> ChiefRayTable::find(const Meridian& nodes, double height, double z) noexcept {
   // How much the line of a node, of positive or negative film height, passes the point by on one side: the sine.
   const auto passes_by = [&](const Node& node, double sign) -> std::optional<double> {
     const double h = height - sign * node.height, along = z - node.z;
@@ -187,7 +199,7 @@ std::optional<double> ChiefLines::find(const Meridian& nodes, double height, dou
   return {};
 }
 
-std::optional<FilmPoint> ChiefLines::about(const Vec3<double>& point) const noexcept {
+std::optional<FilmPoint> ChiefRayTable::about(const Vec3<double>& point) const noexcept {
   if (!x_.empty()) {
     const auto x = find(x_, point.x, point.z), y = find(y_, point.y, point.z);
     if (!x || !y) return {};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "rung_table.hpp"
+#include "model_table.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -7,16 +7,17 @@
 #include <limits>
 #include <utility>
 
-#include "check_film.hpp"
+#include "camera/check_film.hpp"
+#include "camera/make_model.hpp"
+#include "model_timing.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/text.hpp"
 #include "petzval/core/units.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/f_number.hpp"
-#include "rung_timing.hpp"
 
-namespace petzval::inline v0::camera_detail {
+namespace petzval::inline v0::accuracy_detail {
 namespace {
 
 constexpr std::size_t ray_film_points = 384, pupil_film_points = 40;
@@ -62,7 +63,7 @@ struct Setting {
   Lens lens;
   Film film;
   ErrorSamples samples;
-  ExactModel<double> exact;
+  camera_detail::ExactModel<double> exact;
   std::optional<RayStudy> rays;
   std::optional<PupilStudy> pupils;
 };
@@ -96,68 +97,68 @@ std::size_t central_of(const Lens& lens, const std::vector<std::size_t>& wavelen
                                    [&](std::size_t w) { return std::abs(lens.wavelengths_nm()[w] - d_line_nm); });
 }
 
-/// What rungs cost, from times with some noise in them: first-order models run the same loops, and of polynomials those
-/// of more terms do all that the others do.
-std::vector<double> costs(std::span<const AnyModel> models, std::vector<double> times) {
+/// What models cost, from times with some noise in them: first-order models run the same loops, and of polynomials
+/// those of more terms do all that the others do.
+std::vector<double> costs(std::span<const AnyRayModel> models, std::vector<double> times) {
   double first_order = std::numeric_limits<double>::infinity(), fewer_terms = 0;
   for (std::size_t k = 0; k < models.size(); ++k) {
-    if (std::holds_alternative<ParaxialModel>(models[k])) first_order = std::min(first_order, times[k]);
+    if (camera_detail::is_first_order(models[k].kind())) first_order = std::min(first_order, times[k]);
   }
   for (std::size_t k = 0; k < models.size(); ++k) {
-    if (std::holds_alternative<ParaxialModel>(models[k])) fewer_terms = times[k] = first_order;
-    if (std::holds_alternative<PolynomialModel>(models[k])) fewer_terms = times[k] = std::max(times[k], fewer_terms);
+    if (camera_detail::is_first_order(models[k].kind())) fewer_terms = times[k] = first_order;
+    if (camera_detail::is_polynomial(models[k].kind())) fewer_terms = times[k] = std::max(times[k], fewer_terms);
   }
   return times;
 }
 
 }  // namespace
 
-RungTable rung_table(const Lens& given, const SceneRequirements& scene, std::span<const Tolerance> tolerances,
-                     int threads) {
-  const Lens whole = placed(given, scene.film).lens;
-  check_upright_film(whole, scene.film);
+ModelTable model_table(const Lens& given, const SceneRequirements& scene, std::span<const Tolerance> tolerances,
+                       int threads) {
+  const Lens whole = camera_detail::placed(given, scene.film).lens;
+  camera_detail::check_upright_film(whole, scene.film);
   const Setting setting(whole, scene, tolerances, threads);
   const Film& film = setting.film;
   const double rounding = std::numeric_limits<float>::epsilon() * focal_length(setting.lens);
-  RungTable table;
-  std::vector<AnyModel> all;
+  ModelTable table;
+  std::vector<AnyRayModel> all;
   for (const ModelKind model : models()) {
-    ModelCandidate& rung = table.rungs.emplace_back();
-    rung.model = model;
+    ModelCandidate& candidate = table.models.emplace_back();
+    candidate.model = model;
     std::vector<double>& of_tolerance = table.of_tolerance.emplace_back();
-    std::optional<AnyModel> built;
+    std::optional<AnyRayModel> built;
     const auto start = std::chrono::steady_clock::now();
     try {
-      built = make_model(model, setting.lens, film.radius_mm());
+      built = camera_detail::make_model(model, setting.lens, film.radius_mm());
     } catch (const Error& error) {
-      rung.available = false;
-      rung.remark = error.what();
+      candidate.available = false;
+      candidate.remark = error.what();
       continue;
     }
-    rung.setup_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    candidate.setup_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 
     const Tracing traced = tracing(*built);
     const auto found = setting.rays->measure(traced);
     const auto rays = guarded(setting.rays->largest(found, traced), tolerances,
                               model == ModelKind::exact_float ? noise_guard : smooth_guard);
     const auto pupils = setting.pupils->measure(pupils_of(*built));
-    rung.error = {found.all, found.wavelength, pupils.shape, pupils.exposure};
+    candidate.error = {found.all, found.wavelength, pupils.shape, pupils.exposure};
     // In float, rounding adds noise to what is smooth.
-    rung.bound_px = (rays.mm + (model == ModelKind::exact_double ? 0 : rounding)) / film.pixel_mm();
-    rung.bound_of_blur = rays.of_blur;
+    candidate.bound_px = (rays.mm + (model == ModelKind::exact_double ? 0 : rounding)) / film.pixel_mm();
+    candidate.bound_of_blur = rays.of_blur;
     // The reference itself has no errors: nothing to be unsure of.
-    rung.bound_exposure = model == ModelKind::exact_double ? 0 : pupils.exposure_bound;
-    rung.bound_pupil_shape = model == ModelKind::exact_double ? 0 : pupils.shape_bound;
+    candidate.bound_exposure = model == ModelKind::exact_double ? 0 : pupils.exposure_bound;
+    candidate.bound_pupil_shape = model == ModelKind::exact_double ? 0 : pupils.shape_bound;
     of_tolerance = rays.of_tolerance;
     all.push_back(*built);
     if (model == ModelKind::thick) table.no_distortion = chief_ray_errors(*setting.rays, tolerances, traced);
   }
   const std::vector<double> times = costs(all, time_rays(all, film));
-  for (std::size_t k = 0, next = 0; k < table.rungs.size(); ++k) {
-    if (table.rungs[k].available) table.rungs[k].ns_per_ray = times[next++];
+  for (std::size_t k = 0, next = 0; k < table.models.size(); ++k) {
+    if (table.models[k].available) table.models[k].ns_per_ray = times[next++];
   }
 
-  const AnyModel exact = setting.exact;
+  const AnyRayModel exact = setting.exact;
   const ModelPupils pupils = pupils_of(exact);
   const std::vector<std::size_t>& wavelengths = setting.samples.wavelengths;
   const std::size_t central = central_of(setting.lens, wavelengths);
@@ -182,4 +183,4 @@ RungTable rung_table(const Lens& given, const SceneRequirements& scene, std::spa
   return table;
 }
 
-}  // namespace petzval::inline v0::camera_detail
+}  // namespace petzval::inline v0::accuracy_detail

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/camera/choose_model.hpp"
+#include "petzval/accuracy/choose_model.hpp"
 
 #include <algorithm>
 
+#include "model_table.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/text.hpp"
-#include "rung_table.hpp"
 
 namespace petzval::inline v0 {
 namespace {
 
-using camera_detail::RungTable;
-using camera_detail::Tolerance;
+using accuracy_detail::ModelTable;
+using accuracy_detail::Tolerance;
 
 void check(const ErrorBudget& budget) {
   const auto refuse = [](const char* what, const std::optional<double>& part) {
@@ -49,12 +49,12 @@ std::optional<Part> fraction_part(double value, const std::optional<double>& all
   return Part{value <= *allowed, percent(value), percent(*allowed)};
 }
 
-/// What of a budget a rung keeps to, or does not.
+/// Which parts of a budget a model keeps, and which it does not.
 struct Judgement {
   bool inside = true;
   std::string kept, missed;  ///< in words
 };
-Judgement judge(const ModelCandidate& rung, double of_tolerance, const ErrorBudget& budget) {
+Judgement judge(const ModelCandidate& candidate, double of_tolerance, const ErrorBudget& budget) {
   Judgement result;
   const auto count = [&](const char* what, const std::optional<Part>& part) {
     if (!part) return;
@@ -62,15 +62,15 @@ Judgement judge(const ModelCandidate& rung, double of_tolerance, const ErrorBudg
     words += (words.empty() ? "" : "; ") + (what + (' ' + part->needs)) + " (budget " + part->budget + ")";
     result.inside = result.inside && part->inside;
   };
-  count("rays are off by up to", ray_part(rung.bound_px, rung.bound_of_blur, of_tolerance, budget));
-  count("exposure by up to", fraction_part(rung.bound_exposure, budget.exposure));
-  count("pupil shape by up to", fraction_part(rung.bound_pupil_shape, budget.pupil_shape));
+  count("rays are off by up to", ray_part(candidate.bound_px, candidate.bound_of_blur, of_tolerance, budget));
+  count("exposure by up to", fraction_part(candidate.bound_exposure, budget.exposure));
+  count("pupil shape by up to", fraction_part(candidate.bound_pupil_shape, budget.pupil_shape));
   return result;
 }
 
-std::vector<std::string> not_needed(const RungTable& table, std::size_t budget_number, const ErrorBudget& budget) {
+std::vector<std::string> not_needed(const ModelTable& table, std::size_t budget_number, const ErrorBudget& budget) {
   std::vector<std::string> result;
-  const auto rays = [&](const std::optional<camera_detail::RayStudy::Largest>& largest) -> std::optional<Part> {
+  const auto rays = [&](const std::optional<accuracy_detail::RayStudy::Largest>& largest) -> std::optional<Part> {
     if (!largest) return {};
     return ray_part(largest->mm / table.pixel_mm, largest->of_blur, largest->of_tolerance[budget_number], budget);
   };
@@ -90,31 +90,31 @@ std::vector<std::string> not_needed(const RungTable& table, std::size_t budget_n
   return result;
 }
 
-ModelChoice choose(const RungTable& table, std::size_t budget_number, const ErrorBudget& budget) {
+ModelChoice choose(const ModelTable& table, std::size_t budget_number, const ErrorBudget& budget) {
   ModelChoice choice;
-  choice.table = table.rungs;
+  choice.table = table.models;
   std::vector<Judgement> judgements;
   const ModelCandidate* chosen = nullptr;
   for (std::size_t k = 0; k < choice.table.size(); ++k) {
-    ModelCandidate& rung = choice.table[k];
+    ModelCandidate& candidate = choice.table[k];
     Judgement& judgement = judgements.emplace_back();
-    if (!rung.available) continue;
-    judgement = judge(rung, table.of_tolerance[k][budget_number], budget);
-    rung.inside = judgement.inside;
-    if (rung.inside && (!chosen || rung.ns_per_ray < chosen->ns_per_ray)) chosen = &rung;
+    if (!candidate.available) continue;
+    judgement = judge(candidate, table.of_tolerance[k][budget_number], budget);
+    candidate.inside = judgement.inside;
+    if (candidate.inside && (!chosen || candidate.ns_per_ray < chosen->ns_per_ray)) chosen = &candidate;
   }
   choice.model = chosen->model;
-  const auto called = [](const ModelCandidate& rung) {
-    return std::string(name(rung.model)) + " (" + number(rung.ns_per_ray, 3) + " ns per ray)";
+  const auto called = [](const ModelCandidate& candidate) {
+    return std::string(name(candidate.model)) + " (" + number(candidate.ns_per_ray, 3) + " ns per ray)";
   };
   const std::string& kept = judgements[static_cast<std::size_t>(chosen - choice.table.data())].kept;
   choice.reasons.push_back(called(*chosen) + " is the fastest inside the budget" + (kept.empty() ? "" : ": " + kept));
   for (std::size_t k = 0; k < choice.table.size(); ++k) {
-    const ModelCandidate& rung = choice.table[k];
-    if (!rung.available) {
-      choice.reasons.push_back(std::string(name(rung.model)) + " cannot be built: " + rung.remark);
-    } else if (!rung.inside && rung.ns_per_ray < chosen->ns_per_ray) {
-      choice.reasons.push_back(called(rung) + " will not do: " + judgements[k].missed);
+    const ModelCandidate& candidate = choice.table[k];
+    if (!candidate.available) {
+      choice.reasons.push_back(std::string(name(candidate.model)) + " cannot be built: " + candidate.remark);
+    } else if (!candidate.inside && candidate.ns_per_ray < chosen->ns_per_ray) {
+      choice.reasons.push_back(called(candidate) + " will not do: " + judgements[k].missed);
     }
   }
   choice.not_needed = not_needed(table, budget_number, budget);
@@ -134,7 +134,7 @@ std::vector<ModelChoice> choose_models(const Lens& lens, const SceneRequirements
     check(budget);
     tolerances.push_back({budget.max_px.value_or(0) * scene.film.pixel_mm(), budget.max_of_blur.value_or(0)});
   }
-  const RungTable table = camera_detail::rung_table(lens, scene, tolerances, threads);
+  const ModelTable table = accuracy_detail::model_table(lens, scene, tolerances, threads);
   std::vector<ModelChoice> choices;
   for (std::size_t k = 0; k < budgets.size(); ++k) choices.push_back(choose(table, k, budgets[k]));
   return choices;

@@ -8,7 +8,7 @@
 #include "error_study.hpp"
 #include "petzval/core/parallel.hpp"
 
-namespace petzval::inline v0::camera_detail {
+namespace petzval::inline v0::accuracy_detail {
 namespace {
 
 constexpr std::size_t blocks = 64;  // of lines for each pupil
@@ -42,8 +42,8 @@ core_detail::Kronecker<2> even_points(const ErrorSamples& samples, std::size_t p
 
 }  // namespace
 
-ModelPupils pupils_of(const AnyModel& model) {
-  return {film_pupil_table_of(model), tracing_within(model), tracing(model), kind_of(model) == ModelKind::pinhole, {}};
+ModelPupils pupils_of(const AnyRayModel& model) {
+  return {model.pupils(), tracing_within(model), tracing(model), model.pinhole(), {}};
 }
 
 /// What a line adds to the irradiance of its film point, per area of the pupil: cos^4 / depth^2.
@@ -53,7 +53,7 @@ double PupilStudy::weight(const PointLines& lines, std::size_t line) const noexc
   return depth_ * depth_ / (squared * squared);
 }
 
-PupilStudy::PupilStudy(const ExactModel<double>& exact, const Film& film, std::size_t film_points,
+PupilStudy::PupilStudy(const camera_detail::ExactModel<double>& exact, const Film& film, std::size_t film_points,
                        const ErrorSamples& samples)
     : samples_(samples),
       any_(exact),
@@ -129,4 +129,4 @@ PupilStudy::Found PupilStudy::measure(const ModelPupils& model) const {
   return found;
 }
 
-}  // namespace petzval::inline v0::camera_detail
+}  // namespace petzval::inline v0::accuracy_detail

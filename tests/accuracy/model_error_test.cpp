@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/camera/model_error.hpp"
+#include "petzval/accuracy/model_error.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,6 +11,8 @@
 
 #include "../data_lenses.hpp"
 #include "../message.hpp"
+#include "camera/exact_model.hpp"
+#include "camera/paraxial_model.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/lens/lens.hpp"
@@ -80,9 +82,9 @@ TEST(ModelError, CountsInPixelsToo) {
 /// Directly from the definition: rays at the rim of the corner's pupil through both models.
 TEST(ModelError, IsTheDistanceInThePlaneOverTheMagnification) {
   const Lens lens = focused("double_gauss_52mm_f1.8", 3000, 5.6);
-  const ExactModel<double> exact(lens, 22);
-  const AnyModel thick = make_model(ModelKind::thick, lens, 22);
-  const FilmPupilTable& thick_pupils = std::get<ParaxialModel>(thick).pupils();
+  const camera_detail::ExactModel<double> exact(lens, 22);
+  const camera_detail::ParaxialModel thick(ModelKind::thick, lens, 22);
+  const FilmPupilTable& thick_pupils = thick.pupils();
   const double z = lens.film_z() - 3000;
 
   constexpr std::size_t count = 2000;
@@ -111,7 +113,7 @@ TEST(ModelError, IsTheDistanceInThePlaneOverTheMagnification) {
     return places;
   };
   std::vector<RayFate> fates(count), thick_fates(count);
-  const auto a = hits(exact, fates), b = hits(std::get<ParaxialModel>(thick), thick_fates);
+  const auto a = hits(exact, fates), b = hits(thick, thick_fates);
   const auto apart = [](const auto& p, const auto& q) { return std::hypot(p[0] - q[0], p[1] - q[1]); };
   const double magnification = (apart(a[count - 3], a[count - 2]) + apart(a[count - 3], a[count - 1])) / (2 * step);
   double largest = 0;

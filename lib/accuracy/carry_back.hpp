@@ -11,7 +11,7 @@
 #include "petzval/pupil_table/two_plane_rays.hpp"
 
 /// Errors in the scene as lengths on the film.
-namespace petzval::inline v0::camera_detail {
+namespace petzval::inline v0::accuracy_detail {
 
 /// What a film point sees of one plane of the scene, measured on the film.
 ///
@@ -68,4 +68,4 @@ class ChiefRays {
   double sense_ = 1;                     // of z in which light runs behind the lens
 };
 
-}  // namespace petzval::inline v0::camera_detail
+}  // namespace petzval::inline v0::accuracy_detail

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "petzval/core/export.hpp"
+
+namespace petzval::inline v0 {
+
+/// The ray models of a lens, from the cheapest to the most accurate one.
+enum class ModelKind : std::uint8_t {
+  pinhole,        ///< first order, every ray through the centre of the pupil
+  thin,           ///< first order, a thin lens: a disc as wide as the entrance pupil in the principal plane
+  thin_two_disc,  ///< first order, a pupil of two discs that move apart with the field, fitted to the real pupils
+  thick,          ///< first order: cardinal points and the paraxial pupils
+  polynomial_3,   ///< rays as polynomials of film and pupil point; the number is the degree
+  polynomial_5,
+  polynomial_7,
+  polynomial_9,
+  polynomial_11,
+  exact_float,  ///< every surface, traced in float
+  exact_double,
+  custom,  ///< a renderer's own model: ray_model.hpp
+};
+
+/// "pinhole", "thin", "thin_two_disc", "thick", "polynomial_3", ..., "exact_float", "exact_double"; "custom".
+PETZVAL_API std::string_view name(ModelKind model) noexcept;
+/// The built-in model of a name. Nothing for other names.
+PETZVAL_API std::optional<ModelKind> model_named(std::string_view name) noexcept;
+/// The built-in models, in the order above.
+PETZVAL_API std::span<const ModelKind> models() noexcept;
+
+}  // namespace petzval::inline v0

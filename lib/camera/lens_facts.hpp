@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "petzval/lens/lens.hpp"
+#include "petzval/paraxial/first_order.hpp"
+#include "petzval/paraxial/pupils.hpp"
+
+namespace petzval::inline v0::camera_detail {
+
+/// The first-order data of a lens at each wavelength, which the parts of a camera share.
+class LensFacts {
+ public:
+  LensFacts(const Lens& lens) : lens_(lens) {
+    for (std::size_t w = 0; w < wavelengths(); ++w) {
+      first_order_.push_back(petzval::first_order(lens, w));
+      pupils_.push_back(petzval::has_pupils(lens) ? std::optional(petzval::pupils(lens, w)) : std::nullopt);
+    }
+  }
+
+  const Lens& lens() const noexcept { return lens_; }
+  std::size_t wavelengths() const noexcept { return lens_.wavelengths_nm().size(); }
+  const FirstOrder& first_order(std::size_t wavelength) const { return first_order_[wavelength]; }
+  /// Throws Error where petzval::pupils() does.
+  Pupils pupils(std::size_t wavelength) const {
+    return pupils_[wavelength] ? *pupils_[wavelength] : petzval::pupils(lens_, wavelength);
+  }
+  bool has_pupils() const noexcept { return petzval::has_pupils(lens_); }
+
+ private:
+  Lens lens_;
+  std::vector<FirstOrder> first_order_;
+  std::vector<std::optional<Pupils>> pupils_;
+};
+
+}  // namespace petzval::inline v0::camera_detail

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "make_model.hpp"
+
+#include <string>
+
+#include "exact_model.hpp"
+#include "paraxial_model.hpp"
+#include "petzval/camera/polynomial_model.hpp"
+#include "petzval/core/error.hpp"
+
+namespace petzval::inline v0 {
+namespace {
+
+constexpr int least_degree = 3, degree_step = 2;
+
+}  // namespace
+
+namespace camera_detail {
+
+bool is_first_order(ModelKind model) noexcept {
+  using enum ModelKind;
+  return model == pinhole || model == thin || model == thin_two_disc || model == thick;
+}
+
+bool is_polynomial(ModelKind model) noexcept {
+  return model >= ModelKind::polynomial_3 && model <= ModelKind::polynomial_11;
+}
+
+AnyRayModel make_model(ModelKind model, const LensFacts& facts, double film_radius) {
+  if (is_first_order(model)) return ParaxialModel(model, facts, film_radius);
+  if (is_polynomial(model)) {
+    const int steps = static_cast<int>(model) - static_cast<int>(ModelKind::polynomial_3);
+    FilmPupilTable pupils = FilmPupilTable::equal_area(facts.lens(), film_radius);
+    return PolynomialModel(RayPolynomial::fit(facts.lens(), pupils, least_degree + degree_step * steps), pupils);
+  }
+  if (model == ModelKind::exact_float) return ExactModel<float>(facts.lens(), film_radius);
+  if (model == ModelKind::exact_double) return ExactModel<double>(facts.lens(), film_radius);
+  throw Error(facts.lens().name() + ": camera: model is " + std::string(name(model)) +
+              ", wanted one of models(), or an AnyRayModel");
+}
+
+}  // namespace camera_detail
+
+ModelKind PolynomialModel::kind() const noexcept {
+  const int steps = (polynomial_.degree() - least_degree) / degree_step;
+  return static_cast<ModelKind>(static_cast<int>(ModelKind::polynomial_3) + steps);
+}
+
+}  // namespace petzval::inline v0

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "lens_facts.hpp"
+#include "petzval/camera/model_kind.hpp"
+#include "petzval/camera/ray_model.hpp"
+#include "petzval/core/export.hpp"
+
+namespace petzval::inline v0::camera_detail {
+
+/// Builds a model for film points up to film_radius (mm) from the axis. Throws Error where the model's own constructor
+/// does, and for ModelKind::custom.
+PETZVAL_API AnyRayModel make_model(ModelKind model, const LensFacts& facts, double film_radius);
+
+/// Whether a model is a ParaxialModel, or a PolynomialModel.
+bool is_first_order(ModelKind model) noexcept;
+PETZVAL_API bool is_polynomial(ModelKind model) noexcept;
+
+}  // namespace petzval::inline v0::camera_detail

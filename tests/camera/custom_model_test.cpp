@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: Apache-2.0
+// Cameras with a renderer's own model.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <numbers>
+#include <vector>
+
+#include "../data_lenses.hpp"
+#include "camera/exact_model.hpp"
+#include "camera/make_model.hpp"
+#include "camera/paraxial_model.hpp"
+#include "camera_samples.hpp"
+#include "petzval/camera/camera.hpp"
+#include "petzval/camera/polynomial_model.hpp"
+#include "petzval/camera/ray_model.hpp"
+#include "petzval/focus/focus.hpp"
+#include "petzval/paraxial/first_order.hpp"
+#include "petzval/paraxial/pupils.hpp"
+
+namespace petzval {
+namespace {
+
+using testing::random_samples;
+
+/// A thin lens in air as a renderer would write it: a disc as wide as the entrance pupil in the rear principal plane,
+/// from which rays go on at the front principal plane.
+class OwnThinLens {
+ public:
+  static constexpr bool linear_in_slopes = true;
+
+  OwnThinLens(const Lens& lens, double film_radius)
+      : OwnThinLens(lens, film_radius, two_planes(lens), first_order(lens), petzval::pupils(lens).entrance.diameter) {}
+
+  const FilmPupilTable& pupils() const noexcept { return pupils_; }
+
+  template <class T>
+  void to_scene(std::size_t count, const TwoPlaneRays<const T>& lines, const RayWavelengths&, const RayArrays<T>& rays,
+                RayFate* fates) const noexcept {
+    for (std::size_t i = 0; i < count; ++i) {
+      const double slope_x = (lines.pupil_x[i] - lines.film_x[i]) / depth_;
+      const double slope_y = (lines.pupil_y[i] - lines.film_y[i]) / depth_;
+      const double x = lines.film_x[i] + slope_x * to_lens_, y = lines.film_y[i] + slope_y * to_lens_;
+      const Vec3<double> d = -glm::normalize(Vec3<double>(slope_x + x / focal_length_, slope_y + y / focal_length_, 1));
+      rays.x[i] = static_cast<T>(x), rays.y[i] = static_cast<T>(y), rays.z[i] = static_cast<T>(front_z_);
+      rays.dx[i] = static_cast<T>(d.x), rays.dy[i] = static_cast<T>(d.y), rays.dz[i] = static_cast<T>(d.z);
+      fates[i] = RayFate::transmitted;
+    }
+  }
+  void to_film(std::size_t count, const RayArrays<const double>& rays, const RayWavelengths&,
+               const TwoPlaneRays<double>& lines, RayFate* fates) const noexcept {
+    for (std::size_t i = 0; i < count; ++i) {
+      const bool arrives = rays.dz[i] > 0;
+      const double slope_x = rays.dx[i] / rays.dz[i], slope_y = rays.dy[i] / rays.dz[i], way = front_z_ - rays.z[i];
+      const double x = rays.x[i] + slope_x * way, y = rays.y[i] + slope_y * way;
+      const double behind_x = slope_x - x / focal_length_, behind_y = slope_y - y / focal_length_;
+      lines.film_x[i] = arrives ? x - behind_x * to_lens_ : 0;
+      lines.film_y[i] = arrives ? y - behind_y * to_lens_ : 0;
+      lines.pupil_x[i] = arrives ? lines.film_x[i] + behind_x * depth_ : 0;
+      lines.pupil_y[i] = arrives ? lines.film_y[i] + behind_y * depth_ : 0;
+      fates[i] = arrives ? RayFate::transmitted : RayFate::missed_surface;
+    }
+  }
+
+ private:
+  OwnThinLens(const Lens& lens, double film_radius, const TwoPlanes& planes, const FirstOrder& data, double diameter)
+      : front_z_(data.front_principal_z),
+        focal_length_(data.effective_focal_length),
+        depth_(planes.depth()),
+        to_lens_(data.rear_principal_z - planes.film_z),
+        pupils_(disc(planes, to_lens_ / planes.depth(), diameter / 2, film_radius, lens.primary_wavelength())) {}
+
+  /// The disc seen in the plane of the pupils: part: of the way to there, at which it stands.
+  static FilmPupilTable disc(const TwoPlanes& planes, double part, double radius, double film_radius,
+                             std::size_t primary_wavelength) {
+    const std::vector<PupilDisc> discs{{.shift = (part - 1) / part, .radius = radius / std::abs(part)}};
+    return FilmPupilTable::of_discs(planes, std::array{discs}, film_radius, primary_wavelength);
+  }
+
+  double front_z_, focal_length_, depth_, to_lens_;
+  FilmPupilTable pupils_;
+};
+
+/// A square hole of 2 by 2 mm in a screen 50 mm in front of the film, and no lens: it clips by itself.
+class Hole {
+ public:
+  static constexpr bool clips_at_apertures = true;
+
+  Hole(double film_z, double film_radius)
+      : pupils_(FilmPupilTable::of_discs({.film_z = film_z, .pupil_z = film_z - 50},
+                                         std::array{std::vector<PupilDisc>{{0, 2}}}, film_radius)) {}
+  const FilmPupilTable& pupils() const noexcept { return pupils_; }
+
+  template <class T>
+  void to_scene(std::size_t count, const TwoPlaneRays<const T>& lines, const RayWavelengths&, const RayArrays<T>& rays,
+                RayFate* fates) const noexcept {
+    for (std::size_t i = 0; i < count; ++i) {
+      const T dx = lines.pupil_x[i] - lines.film_x[i], dy = lines.pupil_y[i] - lines.film_y[i];
+      const T length = std::sqrt(dx * dx + dy * dy + T(2500));
+      rays.x[i] = lines.pupil_x[i], rays.y[i] = lines.pupil_y[i], rays.z[i] = static_cast<T>(pupils_.space().pupil_z);
+      rays.dx[i] = dx / length, rays.dy[i] = dy / length, rays.dz[i] = T(-50) / length;
+      fates[i] = passes(lines.pupil_x[i], lines.pupil_y[i]) ? RayFate::transmitted : RayFate::vignetted;
+    }
+  }
+  void to_film(std::size_t count, const RayArrays<const double>& rays, const RayWavelengths&,
+               const TwoPlaneRays<double>& lines, RayFate* fates) const noexcept {
+    const auto& [film_z, hole_z] = pupils_.space();
+    for (std::size_t i = 0; i < count; ++i) {
+      const double slope_x = rays.dx[i] / rays.dz[i], slope_y = rays.dy[i] / rays.dz[i];
+      lines.film_x[i] = rays.x[i] + slope_x * (film_z - rays.z[i]);
+      lines.film_y[i] = rays.y[i] + slope_y * (film_z - rays.z[i]);
+      lines.pupil_x[i] = rays.x[i] + slope_x * (hole_z - rays.z[i]);
+      lines.pupil_y[i] = rays.y[i] + slope_y * (hole_z - rays.z[i]);
+      fates[i] = passes(lines.pupil_x[i], lines.pupil_y[i]) ? RayFate::transmitted : RayFate::vignetted;
+    }
+  }
+
+ private:
+  static bool passes(double x, double y) noexcept { return std::abs(x) <= 1 && std::abs(y) <= 1; }
+
+  FilmPupilTable pupils_;
+};
+
+static_assert(RayModel<OwnThinLens> && RayModel<Hole> && RayModel<AnyRayModel> && RayModel<PolynomialModel>);
+static_assert(RayModel<camera_detail::ParaxialModel>);
+static_assert(RayModel<camera_detail::ExactModel<float>> && RayModel<camera_detail::ExactModel<double>>);
+
+void expect_same_line(const Ray<double>& a, const Ray<double>& b, double tolerance) {
+  EXPECT_NEAR(glm::length(a.direction - b.direction), 0, tolerance);
+  EXPECT_NEAR(glm::length(glm::cross(a.origin - b.origin, b.direction)), 0, 100 * tolerance);
+}
+
+class CustomModel : public ::testing::TestWithParam<Film> {
+ protected:
+  const Lens lens_ = with_focus(testing::data_lens("double_gauss_100mm_f2.0"), 2000);
+  const double radius_ =
+      std::max(upright_radius(lens_, GetParam()), upright_radius(lens_, GetParam(), ModelKind::thin));
+  const Camera built_in_{lens_, GetParam(), camera_detail::make_model(ModelKind::thin, lens_, radius_)};
+  const Camera own_{lens_, GetParam(), AnyRayModel(OwnThinLens(lens_, radius_))};
+};
+
+TEST_P(CustomModel, SamplesAsTheBuiltInModelDoes) {
+  EXPECT_EQ(own_.model(), ModelKind::custom);
+  auto samples = random_samples(GetParam(), 200), same = samples;
+  samples.run(own_);
+  same.run(built_in_);
+  int passed = 0;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const CameraRay one = own_.sample(samples.one(i)), wanted = built_in_.sample(samples.one(i));
+    ASSERT_EQ(one.fate, wanted.fate);
+    EXPECT_EQ(samples.fates[i], same.fates[i]);
+    EXPECT_NEAR(one.weight, wanted.weight, 1e-9 * wanted.weight);
+    EXPECT_NEAR(samples.weights[i], same.weights[i], 1e-9 * same.weights[i]);
+    EXPECT_NEAR(one.pdf_direction, wanted.pdf_direction, 1e-9 * wanted.pdf_direction);
+    expect_same_line(one.ray, wanted.ray, 1e-12);
+    expect_same_line(samples.ray(i), same.ray(i), 1e-12);
+    passed += one.weight > 0;
+  }
+  EXPECT_GT(passed, 150);
+}
+
+TEST_P(CustomModel, HasDifferentials) {
+  const auto samples = random_samples(GetParam(), 50);
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const CameraRayDifferential own = own_.sample_differential(samples.one(i));
+    const CameraRayDifferential wanted = built_in_.sample_differential(samples.one(i));
+    EXPECT_NEAR(glm::length(own.by_film_x.direction - wanted.by_film_x.direction), 0, 1e-9);
+    EXPECT_NEAR(glm::length(own.by_film_y.direction - wanted.by_film_y.direction), 0, 1e-9);
+  }
+}
+
+TEST_P(CustomModel, IsSeenFromTheSceneAsTheBuiltInModelIs) {
+  int seen = 0, projected = 0;
+  for (int i = 0; i < 200; ++i) {
+    const double u = std::fmod(i * std::numbers::phi, 1.0), v = (i + 0.5) / 200, turn = 2 * std::numbers::pi * u;
+    const Vec3<double> point{400 * v * std::cos(turn), 400 * v * std::sin(turn), -500 - 4000 * u};
+    const ImportanceSample own = own_.sample_importance(point, v, u), wanted = built_in_.sample_importance(point, v, u);
+    EXPECT_NEAR(own.pdf, wanted.pdf, 1e-6 * wanted.pdf);
+    EXPECT_NEAR(glm::length(own.direction - wanted.direction), 0, 1e-9);
+    EXPECT_NEAR(own_.pdf_importance(point, wanted.direction), wanted.pdf, 1e-6 * wanted.pdf);
+    const Importance a = own_.importance({own.on_pupil, own.direction}), b = wanted.importance;
+    if (a.fate != b.fate) continue;  // at an edge
+    EXPECT_NEAR(a.we, b.we, 1e-9 * b.we);
+    EXPECT_NEAR(a.pdf_direction, b.pdf_direction, 1e-6 * b.pdf_direction);
+    EXPECT_NEAR(std::hypot(a.film.x - b.film.x, a.film.y - b.film.y), 0, 1e-6);
+    seen += a.we > 0;
+
+    const Projection p = own_.project(point), q = built_in_.project(point);
+    EXPECT_EQ(p.status, q.status);
+    EXPECT_NEAR(std::hypot(p.film.x - q.film.x, p.film.y - q.film.y), 0, 1e-6);
+    projected += p.status == ProjectionStatus::converged;
+  }
+  EXPECT_GT(seen, 50);
+  EXPECT_GT(projected, 50);
+}
+
+INSTANTIATE_TEST_SUITE_P(Films, CustomModel,
+                         ::testing::Values(Film{}, Film{.shift_y_mm = 4, .tilt_rad = 0.2, .swing_rad = -0.1}),
+                         [](const auto& test) { return test.param.tilted() ? "tilted" : "upright"; });
+
+/// The mean weight at the film point (6, -8).
+double mean_weight(const Camera& camera) {
+  testing::Samples<double> samples;
+  constexpr int count = 20000;
+  for (int i = 0; i < count; ++i) samples.add(6, -8, std::fmod(i * std::numbers::phi, 1.0), (i + 0.5) / count);
+  samples.run(camera);
+  double sum = 0;
+  for (const double weight : samples.weights) sum += weight;
+  return sum / count;
+}
+
+TEST(OwnModel, ClipsByItself) {
+  const Lens lens = testing::data_lens("tessar_100mm_f2.8");
+  const Film film{.width_mm = 20, .height_mm = 20};
+  const Camera camera(lens, film, AnyRayModel(Hole(lens.film_z(), film.radius_mm())));
+  // A small hole of 4 mm^2 under cos^4 / 50^2.
+  const double square = 2500.0 / (2500 + 100);
+  EXPECT_NEAR(mean_weight(camera) / (4 * square * square / 2500), 1, 3e-3);
+  const Vec3<double> point{30, 20, -400};
+  for (int i = 0; i < 100; ++i) {
+    const ImportanceSample s = camera.sample_importance(point, (i + 0.5) / 100, std::fmod(i * std::numbers::phi, 1.0));
+    const Vec3<double> hole = point + s.direction * ((lens.film_z() - 50 - point.z) / s.direction.z);
+    const bool passes = std::abs(hole.x) <= 1 && std::abs(hole.y) <= 1;
+    EXPECT_EQ(bool(s), passes);
+  }
+}
+
+TEST(OwnModel, TakesATiltedFilm) {
+  const double tilt = 0.3;
+  const Lens lens = testing::data_lens("tessar_100mm_f2.8");
+  const Film film{.width_mm = 20, .height_mm = 20, .tilt_rad = tilt};
+  const Camera camera(lens, film, AnyRayModel(Hole(lens.film_z(), 30)));
+  // The small hole from a point at (6, -8 cos, 50 - 8 sin), whose normal is (0, -sin, cos).
+  const double y = -8 * std::cos(tilt), z = 50 - 8 * std::sin(tilt), length2 = 36 + y * y + z * z;
+  const double at_film = y * -std::sin(tilt) + z * std::cos(tilt);
+  EXPECT_NEAR(mean_weight(camera) / (4 * z * at_film / (length2 * length2)), 1, 3e-3);
+}
+
+}  // namespace
+}  // namespace petzval
