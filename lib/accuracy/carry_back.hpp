@@ -13,23 +13,23 @@
 /// Errors in the scene as lengths on the film.
 namespace petzval::inline v0::accuracy_detail {
 
-/// What a film point sees of one plane of the scene, measured on the film.
+/// One plane of the scene as a film point sees it, measured on the film.
 ///
-/// Hits on a plane z are carried back by the exact magnification of the chief ray: by the inverse of the derivative of
-/// its hit by the film point, so that lengths along and across the radius each have their own. From 80 degrees on,
-/// where planes z are seen edge-on, a plane across the chief ray stands in, as far along the ray as the plane z lies at
-/// 80 degrees. At infinity, and for rays that do not run towards the plane, it is the angle times the focal length.
+/// Hits on a plane z are carried back by the exact magnification of the chief ray, the inverse of the derivative of its
+/// hit by the film point: lengths along and across the radius have different ones. From 80 degrees on, where planes z
+/// are seen edge-on, a plane across the chief ray replaces them, as far along the ray as the plane z lies at 80
+/// degrees. At infinity, and for rays that do not run towards the plane, it is the angle times the focal length.
 class SceneView {
  public:
-  /// Angles alone.
+  /// Measures angles only.
   explicit SceneView(double focal_length, const Vec3<double>& chief = {0, 0, -1});
   /// The plane `z`: chief, by_film_x and by_film_y: the chief ray and its derivatives by the film point.
   SceneView(double focal_length, double z, const Ray<double>& chief, const Ray<double>& by_film_x,
             const Ray<double>& by_film_y);
 
-  /// Where a ray passes, mm on the film, from where the chief ray does.
+  /// The hit of a ray, from that of the chief ray, mm on the film.
   std::array<double, 2> place(const Ray<double>& ray) const noexcept;
-  /// How far apart two rays of the film point are, mm on the film.
+  /// The distance between two rays of the film point, mm on the film.
   double distance(const Ray<double>& a, const Ray<double>& b) const noexcept;
 
  private:
@@ -42,11 +42,11 @@ class SceneView {
   std::array<double, 4> to_film_{1, 0, 0, 1};  // rows: film x and y by x and y in the plane
 };
 
-/// What a film point sees, by its chief ray: that through the middle of the pupil, rims left aside. As the film point
-/// moves, it turns about its place in the plane of the paraxial exit pupil.
+/// The chief ray of a film point: the ray through the middle of the pupil, not clipped by apertures. As the film point
+/// moves, the ray turns about its point in the plane of the paraxial exit pupil.
 struct ChiefRay {
   std::array<double, 2> pupil{0, 0};
-  bool found = false;  ///< else angles are measured in all planes
+  bool found = false;  ///< else angles are measured for all planes
   double focal_length = 0;
   Ray<double> ray{}, by_film_x{}, by_film_y{};
 

@@ -48,8 +48,8 @@ double lit_radius(const camera_detail::ExactModel<double>& exact, const Film& fi
 
 FilmPoint error_film_point(const Film& film, std::size_t index, std::uint32_t seed, double lit_radius) noexcept {
   const std::size_t kind = index % 8, turn = index / 8;
-  auto [x, y] = Kronecker<2>(2ull * seed + (is_even(index) ? 0 : 1))(index / 2);
-  if (is_even(index)) {
+  auto [x, y] = Kronecker<2>(2ull * seed + (is_uniform(index) ? 0 : 1))(index / 2);
+  if (is_uniform(index)) {
     x = 2 * x - 1, y = 2 * y - 1;
   } else if (kind == 1) {
     x = turn % 2 == 0 ? -1 : 1, y = turn / 2 % 2 == 0 ? -1 : 1;
@@ -106,8 +106,8 @@ void PointLines::put(std::size_t line, double x, double y) noexcept {
 
 PointLines error_lines(const FilmPoint& film, const camera_detail::ExactModel<double>& exact, std::size_t wavelength,
                        std::uint64_t seed) noexcept {
-  constexpr std::size_t count = lines_per_point - even_lines;
-  static_assert(count == even_lines);
+  constexpr std::size_t count = lines_per_point - uniform_lines;
+  static_assert(count == uniform_lines);
   PointLines lines(film);
   std::array<double, count> u, v, x, y, areas;
   const auto put = [&](std::size_t first) {
@@ -123,7 +123,7 @@ PointLines error_lines(const FilmPoint& film, const camera_detail::ExactModel<do
   put(0);
 
   // The map's pupils are a little larger than the lens's: bisection finds where these end, between the middle of the
-  // map's and its rims; every fourth line looks for the rim of a hole.
+  // map's and its rims; every fourth line searches the rim of a central obscuration.
   std::array<double, count> passing, beyond, chance;
   passing.fill(0.5);
   for (std::size_t i = 0; i < count; ++i) {
@@ -136,8 +136,8 @@ PointLines error_lines(const FilmPoint& film, const camera_detail::ExactModel<do
                                &room[3 * count], &room[4 * count], &room[5 * count]};
   std::array<RayFate, count> fates;
   for (int step = 0; step < 10; ++step) {
-    put(even_lines);
-    exact.to_scene(count, lines.lines().from(even_lines), {.all = wavelength}, rays, fates.data());
+    put(uniform_lines);
+    exact.to_scene(count, lines.lines().from(uniform_lines), {.all = wavelength}, rays, fates.data());
     for (std::size_t i = 0; i < count; ++i) {
       (fates[i] == RayFate::transmitted ? passing : beyond)[i] = v[i];
       v[i] = (passing[i] + beyond[i]) / 2;
@@ -147,7 +147,7 @@ PointLines error_lines(const FilmPoint& film, const camera_detail::ExactModel<do
   for (std::size_t i = 0; i < count; ++i) {
     v[i] = passing[i] + 0.05 * chance[i] * chance[i] * chance[i] * (0.5 - passing[i]);
   }
-  put(even_lines);
+  put(uniform_lines);
   return lines;
 }
 

@@ -15,42 +15,41 @@
 /// The lines along which models are compared with the lens.
 namespace petzval::inline v0::accuracy_detail {
 
-/// Lines through each film point: the first half evenly over its pupil, by which means count, the others along the
-/// pupil's rims, where errors are largest and even samples rarely come.
-inline constexpr std::size_t lines_per_point = 128, even_lines = 64;
+/// Lines through each film point: the first half are uniform samples of its pupil, and means are theirs; the others lie
+/// along the pupil's rims, where errors are largest and uniform samples are rare.
+inline constexpr std::size_t lines_per_point = 128, uniform_lines = 64;
 
-/// What the largest error found is multiplied with to bound that of all lines there are: where models are smooth; for
-/// rays traced in float, whose errors are noise; against the blur, which has sharp minima over the film.
+/// Factors of the largest error found that bound the error of every line: for smooth models; for rays traced in float,
+/// whose errors are noise; against the blur, which has sharp minima over the film.
 inline constexpr double smooth_guard = 1.04, noise_guard = 1.5, blur_guard = 1.15;
 
-/// Film points darker than this part of the brightest have no errors worth the name.
+/// Film points darker than this part of the brightest one are left out.
 inline constexpr double darkest = 0.01;
 
-/// How far from the axis the film is lit, mm: to where it is `darkest`, or all of it. Of a lens without symmetry of
-/// revolution: all of it.
+/// The radius up to which the film is lit, mm: where it is `darkest`, or the film's. For a lens without rotational
+/// symmetry, the film's.
 double lit_radius(const camera_detail::ExactModel<double>& exact, const Film& film, std::size_t wavelength);
 
-/// Film points: every second one of an even spread over the film, the others by turns in a corner, on a side, and
-/// anywhere but rather near the sides. Those that the light does not reach are moved towards the axis, the farthest of
-/// them to the edge of the light.
+/// Film points: every second one is a uniform sample of the film, the others lie by turns in a corner, on a side, and
+/// mostly near the sides. Unlit ones are moved towards the axis, the farthest of them to the edge of the light.
 FilmPoint error_film_point(const Film& film, std::size_t index, std::uint32_t seed, double lit_radius) noexcept;
-/// Whether it is one of the even spread.
-inline bool is_even(std::size_t film_point) noexcept { return film_point % 2 == 0; }
+/// Whether it is one of the uniform samples.
+inline bool is_uniform(std::size_t film_point) noexcept { return film_point % 2 == 0; }
 
-/// Film points for pupils, where most depends on the distance from the axis: of a lens of revolution at equal steps of
-/// it (within which the seed chooses), gathered towards the edge of the light, the nearest and the farthest point that
-/// is lit among them; of others as above.
+/// Film points for pupils, which depend on the distance from the axis most. For a rotationally symmetric lens they lie
+/// at equal steps of it (the seed chooses within each), closer towards the edge of the light, and include the nearest
+/// and the farthest lit point. For other lenses, as above.
 std::vector<FilmPoint> pupil_film_points(const Lens& lens, const Film& film, std::size_t count, std::uint32_t seed,
                                          double lit_radius);
 
-/// Lines of one film point. All their numbers are such that float can hold, so that a model in float and the lens in
-/// double trace the same lines.
+/// Lines of one film point. Float holds all their numbers exactly, so a model in float and the lens in double trace the
+/// same lines.
 struct PointLines {
   FilmPoint film;
   alignas(64) std::array<double, lines_per_point> film_x, film_y, pupil_x, pupil_y;
   alignas(64) std::array<float, lines_per_point> film_x_float, film_y_float, pupil_x_float, pupil_y_float;
 
-  /// The film point of all lines, its coordinates numbers of float.
+  /// The film point of all lines; float holds its coordinates.
   explicit PointLines(const FilmPoint& point) noexcept;
   void put(std::size_t line, double x, double y) noexcept;
 
@@ -62,11 +61,11 @@ struct PointLines {
   }
 };
 
-/// The lines of a film point through the lens's pupil, as described above. The film point must have one.
+/// The lines of a film point through the lens's pupil, as above. The film point must have a pupil.
 PointLines error_lines(const FilmPoint& film, const camera_detail::ExactModel<double>& exact, std::size_t wavelength,
                        std::uint64_t seed) noexcept;
 
-/// What a model makes of such lines.
+/// The rays that a model makes of such lines.
 struct PointRays {
   std::array<Ray<double>, lines_per_point> rays;
   std::array<bool, lines_per_point> reaches;  ///< the model has a ray for the line

@@ -236,7 +236,7 @@ RayStudy::Errors RayStudy::errors_of(const Point& point, const Tracing& model, s
     ++found.rays;
     for (std::size_t d = 0; d < point.blur.size(); ++d) {
       const double error = point.views[d].distance(point.exact.rays[i], rays.rays[i]);
-      if (d < samples_.depths_z.size() && i < even_lines && is_even(point.place)) found.even.push_back(error);
+      if (d < samples_.depths_z.size() && i < uniform_lines && is_uniform(point.place)) found.even.push_back(error);
       if (error == 0) continue;  // also where there is no blur
       found.mm = std::max(found.mm, error);
       found.of_blur = std::max(found.of_blur, error / point.blur[d]);
@@ -253,7 +253,7 @@ RayStudy::Found RayStudy::measure(const Tracing& model) const {
   const std::size_t film_points = samples_.film_points;
   Found found{{}, {}, std::vector<double>(film_points), std::vector<double>(film_points), {}};
   found.of_tolerance.assign(tolerances_.size(), std::vector<double>(film_points));
-  std::vector<double> all_even;
+  std::vector<double> all_uniform;
   for (std::size_t w = 0; w < points_.size(); ++w) {
     const std::vector<Point>& points = points_[w];
     std::vector<Errors> errors(points.size());
@@ -276,12 +276,12 @@ RayStudy::Found RayStudy::measure(const Tracing& model) const {
       even.insert(even.end(), errors[k].even.begin(), errors[k].even.end());
     }
     summarise(even, film_.pixel_mm(), here);
-    all_even.insert(all_even.end(), even.begin(), even.end());
+    all_uniform.insert(all_uniform.end(), even.begin(), even.end());
     found.all.max_mm = std::max(found.all.max_mm, here.max_mm);
     found.all.max_of_blur = std::max(found.all.max_of_blur, here.max_of_blur);
     found.all.rays += here.rays;
   }
-  summarise(all_even, film_.pixel_mm(), found.all);
+  summarise(all_uniform, film_.pixel_mm(), found.all);
   return found;
 }
 

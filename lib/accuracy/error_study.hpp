@@ -11,10 +11,10 @@
 #include "petzval/accuracy/model_error.hpp"
 #include "petzval/film/film.hpp"
 
-/// Models held against a lens whose rays are traced once for all of them.
+/// Models compared with a lens whose rays are traced once for all of them.
 namespace petzval::inline v0::accuracy_detail {
 
-/// What an error may be at a film point and depth: a length, or a fraction of the local blur where that is larger.
+/// The largest error allowed at a film point and depth: a length, or a fraction of the local blur where that is larger.
 struct Tolerance {
   double mm = 0, of_blur = 0;
 };

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t blocks = 64;  // of lines for each pupil
 
-/// Calls use(block, lines) for blocks of lines spread evenly over a pupil, and gives its area.
+/// Calls use(block, lines) for blocks of lines distributed uniformly over a pupil; returns its area.
 template <class Use>
 double for_lines(const ModelPupils& pupils, const FilmPoint& film, std::size_t wavelength,
                  const core_detail::Kronecker<2>& even, Use use) {
@@ -36,7 +36,7 @@ double for_lines(const ModelPupils& pupils, const FilmPoint& film, std::size_t w
 
 constexpr double total = blocks * lines_per_point;
 
-core_detail::Kronecker<2> even_points(const ErrorSamples& samples, std::size_t place) noexcept {
+core_detail::Kronecker<2> uniform_points(const ErrorSamples& samples, std::size_t place) noexcept {
   return core_detail::Kronecker<2>((std::uint64_t{samples.seed} << 32 | place) + 0x5bd1e995);
 }
 
@@ -69,7 +69,7 @@ PupilStudy::PupilStudy(const camera_detail::ExactModel<double>& exact, const Fil
     parallel_for(points.size(), 1, samples.threads, [&](std::size_t begin, std::size_t) {
       Point& point = points[begin];
       PointRays rays;
-      const auto even = even_points(samples_, point.place);
+      const auto even = uniform_points(samples_, point.place);
       const double whole = for_lines(exact_, point.film, wavelength, even, [&](std::size_t, const PointLines& lines) {
         exact_.tracing(lines, wavelength, rays);
         point.passes.push_back(rays.passes);
@@ -88,7 +88,7 @@ PupilStudy::PupilStudy(const camera_detail::ExactModel<double>& exact, const Fil
 }
 
 PupilStudy::Errors PupilStudy::errors_of(const Point& point, const ModelPupils& model, std::size_t wavelength) const {
-  const core_detail::Kronecker<2> even = even_points(samples_, point.place);
+  const core_detail::Kronecker<2> even = uniform_points(samples_, point.place);
   PointRays exact, rays;
   double exact_alone = 0, model_alone = 0, irradiance = 0;
   const double exact_area =

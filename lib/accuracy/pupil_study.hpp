@@ -17,22 +17,22 @@ namespace petzval::inline v0::accuracy_detail {
 struct ModelPupils {
   FilmPupilTable map;
   Tracing within, tracing;
-  bool point = false;           ///< a pinhole: no area at all
+  bool point = false;           ///< a pinhole has no area
   std::optional<FilmPoint> of;  ///< the samples are those of this film point, for all
 };
 /// The model must outlive the result.
 ModelPupils pupils_of(const AnyRayModel& model);
 
-/// Errors of pupils and of exposures, held against a lens whose pupils are traced once. All areas and integrals are
-/// means over even samples of a pupil times its area: nothing depends on how large a pupil is.
+/// Errors of pupils and exposures, compared with a lens whose pupils are traced once. All areas and integrals are means
+/// over uniform samples of a pupil times its area, so nothing depends on how large a pupil is.
 class PupilStudy {
  public:
   /// film_points are its own; the exact model must outlive the study.
   PupilStudy(const camera_detail::ExactModel<double>& exact, const Film& film, std::size_t film_points,
              const ErrorSamples& samples);
 
-  /// Largest over film points and wavelengths. Bounds are what other samples stay below: those of a fraction p scatter
-  /// by no more than sqrt(p / samples), and film points between these differ little.
+  /// Largest over film points and wavelengths. Other samples stay below the bounds: samples of a fraction p scatter by
+  /// no more than sqrt(p / samples), and film points in between differ little.
   struct Found {
     double shape = 0, exposure = 0, shape_bound = 0, exposure_bound = 0;
   };

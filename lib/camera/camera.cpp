@@ -27,7 +27,7 @@ void check_iris(const Lens& lens, ModelKind kind) {
               " does not see the edges of the iris, wanted an exact model");
 }
 
-/// Throws Error for a model that was built for another lens or film, as far as can be told.
+/// Throws Error for a model of another lens or film, as far as its pupils show.
 void check_model(const Lens& lens, const FilmPupilTable& pupils, double radius) {
   const std::size_t wavelengths = lens.wavelengths_nm().size();
   if (pupils.wavelengths() != wavelengths) {

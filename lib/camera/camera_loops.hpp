@@ -13,7 +13,7 @@ namespace petzval::inline v0::camera_detail {
 
 using film_detail::FilmBounds;
 
-/// A tilted film as loops want it: see camera_detail::TiltedPlane.
+/// A tilted film in numbers of type T: see TiltedPlane.
 template <class T>
 struct TiltedBounds {
   T x_by_x, x_by_y, y_by_y, depth_by_x, depth_by_y, slope_x, slope_y, cosine;
@@ -26,11 +26,11 @@ struct CameraLoopsOf {
                        T* kept_y) noexcept;
   /// Lines as rays that start in the plane of the pupil. towards: as towards_scene().
   void (*start)(const TwoPlanes&, T towards, std::size_t, const TwoPlaneRays<const T>&, const RayArrays<T>&) noexcept;
-  /// scale: by ray, 0 for those without a wavelength.
+  /// scale: one for each ray, 0 for a ray without a wavelength.
   void (*weigh)(const FilmBounds<T>&, T depth, std::size_t, const T* film_x, const T* film_y,
                 const TwoPlaneRays<const T>&, const T* areas, const T* scale, RayFate*, const CameraRays<T>&) noexcept;
-  /// Of a tilted film: the virtual points of film points, the upright film points of lines through the pupil, and the
-  /// weights of such lines made those of the film's.
+  /// For a tilted film: the virtual points of film points, the upright film points of lines through the pupil, and the
+  /// tilted film's weights from those of such lines.
   void (*to_virtual)(const TiltedBounds<T>&, std::size_t, const T* film_x, const T* film_y, T* virtual_x,
                      T* virtual_y) noexcept;
   void (*to_upright)(const TiltedBounds<T>&, std::size_t, const T* virtual_x, const T* virtual_y, const T* pupil_x,

@@ -9,17 +9,17 @@
 
 namespace petzval::inline v0::camera_detail {
 
-/// Throws Error for a film without area, pixels or place, and for one that is tilted by a quarter turn or more.
+/// Throws Error for a film without area or pixels, with an infinite shift, or tilted by a quarter turn or more.
 void check_rectangle(const std::string& where, const Film& film);
-/// And, naming the lens, for one that is tilted into it.
+/// The same, and for a film that is tilted into the lens.
 void check_film(const Lens& lens, const Film& film);
-/// Or for a tilted one.
+/// The same, and for any tilted film.
 void check_upright_film(const Lens& lens, const Film& film);
 
-/// A lens and a film in one place: the film's where that is set, else the lens's.
+/// A lens whose film lies where a Film says, and that film with its place set.
 struct FilmBehindLens {
   Lens lens;
-  Film film;  ///< z_mm is set, to the lens's film_z()
+  Film film;
 };
 /// Throws Error where with_film() does.
 PETZVAL_API FilmBehindLens placed(const Lens& lens, const Film& film);

@@ -15,7 +15,7 @@
 namespace petzval::inline v0::camera_detail {
 namespace {
 
-/// How far tables go, in film radii: points beside the film are told from those that no ray sees.
+/// The radius of the table, in film radii: a point imaged beside the film differs from one that no ray sees.
 constexpr double beyond_film = 1.5;
 constexpr int steps = 24;  // of the table over the film
 

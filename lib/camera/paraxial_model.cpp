@@ -77,7 +77,7 @@ PupilDisc thin_disc(const LensFacts& facts, std::size_t wavelength, const TwoPla
 /// Edges of the real pupils of some film points, at equal steps of film area; none where hardly any light comes.
 std::vector<EdgePoint> real_edges(const FilmPupilTable& real, std::size_t wavelength) {
   constexpr int fields = 16, directions = pupil_table_detail::polygon_corners / 2;
-  // The stars stand for pupils of the same area; this part of the way between their corners they cross a round one.
+  // Polygons have the area of the pupils; they cross a round one at this part of the way between their corners.
   constexpr double crossing = 0.21, step = 2.0 / pupil_table_detail::polygon_corners;
   constexpr double darkest = 0.01;  // of the pupil's area on the axis
   std::vector<EdgePoint> edges;

@@ -16,7 +16,7 @@
 
 namespace petzval::inline v0::camera_detail {
 
-/// What a camera knows of the scene's side beside its model: importance.cpp and projection.cpp.
+/// The scene's side of a camera: importance.cpp and projection.cpp.
 class SceneSide {
  public:
   /// radius: upright_radius() of the film; scale: of weights, one for each wavelength, as in FilmView.

@@ -11,15 +11,15 @@ namespace petzval::inline v0::camera_detail {
 /// A point of a pupil's edge, in the plane of the pupil, of a film point at (0, field), mm.
 struct EdgePoint {
   double field = 0, x = 0, y = 0;
-  double share = 0;  ///< length of the edge that it stands for, mm, over the pupil's area, mm^2
+  double share = 0;  ///< length of the edge that it represents, mm, over the pupil's area, mm^2
 };
 
-/// How far the edges of what lies in both discs are from some pupils': the sum of the strips in between over the areas
-/// of the pupils.
+/// The error of the intersection of two discs: the area between its edge and those of some pupils, over the areas of
+/// the pupils.
 double two_disc_error(std::span<const EdgePoint> edges, const std::array<PupilDisc, 2>& discs) noexcept;
 
-/// The two discs whose common part comes nearest to pupils that are mirrored in x. Of the edges of one film point
-/// (wanted: some of the axis' and of others) the points stand together.
+/// The two discs whose intersection is nearest to pupils that are mirrored in x. The points of one film point's edge
+/// are consecutive; the axis and other film points are needed.
 std::array<PupilDisc, 2> fit_two_discs(std::span<const EdgePoint> edges);
 
 }  // namespace petzval::inline v0::camera_detail

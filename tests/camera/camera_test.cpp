@@ -19,19 +19,19 @@
 #include "camera_parts.hpp"
 #include "camera_samples.hpp"
 #include "core/low_discrepancy.hpp"
-#include "leaning_films.hpp"
 #include "petzval/camera/ray_model.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/media/catalogue.hpp"
 #include "petzval/paraxial/pupils.hpp"
+#include "tilted_films.hpp"
 
 namespace petzval {
 namespace {
 
-using testing::leaning;
 using testing::random_samples;
 using testing::Samples;
+using testing::tilted_by;
 
 Lens focused(const char* id) { return with_focus(testing::data_lens(id), 3000, {.origin = DistanceOrigin::film}); }
 
@@ -288,7 +288,7 @@ void expect_differences(const Film& film) {
 
 TEST(Camera, DifferentiatesAsDifferencesDo) {
   expect_differences({});
-  expect_differences(leaning(testing::shifted, 10, -6));
+  expect_differences(tilted_by(testing::shifted, 10, -6));
 }
 
 void expect_lost(const Camera& camera, const CameraSample& sample, RayFate fate) {

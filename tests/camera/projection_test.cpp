@@ -141,9 +141,9 @@ TEST(Projection, FindsPointsThroughCylinders) {
 // The chief ray of a scene point meets the film at the projected point.
 TEST(Projection, IsWhereChiefRaysMeetATiltedFilm) {
   const Lens lens = testing::data_lens("double_gauss_100mm_f2_28deg");
-  const Film leaning{
+  const Film tilted{
       .width_mm = 36, .height_mm = 24, .shift_y_mm = 3, .z_mm = lens.film_z(), .tilt_rad = 0.2, .swing_rad = -0.12};
-  const Camera camera(lens, leaning, {.model = ModelKind::exact_double});
+  const Camera camera(lens, tilted, {.model = ModelKind::exact_double});
   const double pupil_z = pupils(lens).entrance.z;
   const core_detail::Kronecker<3> random(6);
   int converged = 0;
@@ -154,10 +154,10 @@ TEST(Projection, IsWhereChiefRaysMeetATiltedFilm) {
     const AimedRay chief = chief_ray(lens, {field, z, azimuth});
     if (!chief) continue;
     const auto& [origin, direction] = chief.end.ray;
-    const double t = glm::dot(leaning.position({}) - origin, leaning.normal()) / glm::dot(direction, leaning.normal());
-    const FilmPoint wanted = leaning.point(origin + t * direction);
+    const double t = glm::dot(tilted.position({}) - origin, tilted.normal()) / glm::dot(direction, tilted.normal());
+    const FilmPoint wanted = tilted.point(origin + t * direction);
     const Projection p = camera.project({across * std::sin(azimuth), across * std::cos(azimuth), z});
-    if (!leaning.contains(wanted)) {
+    if (!tilted.contains(wanted)) {
       EXPECT_EQ(p.status, ProjectionStatus::outside_film);
       continue;
     }
@@ -165,7 +165,7 @@ TEST(Projection, IsWhereChiefRaysMeetATiltedFilm) {
     if (!p) continue;
     ++converged;
     EXPECT_NEAR(std::hypot(p.film.x - wanted.x, p.film.y - wanted.y), 0, 5e-4);
-    EXPECT_EQ(p.raster, leaning.raster(p.film));
+    EXPECT_EQ(p.raster, tilted.raster(p.film));
     const Importance chief_importance = camera.importance(chief.ray);
     ASSERT_TRUE(chief_importance);
     EXPECT_NEAR(std::hypot(chief_importance.film.x - wanted.x, chief_importance.film.y - wanted.y), 0, 1e-9);

@@ -16,7 +16,6 @@
 #include "../data_lenses.hpp"
 #include "camera_parts.hpp"
 #include "camera_samples.hpp"
-#include "leaning_films.hpp"
 #include "petzval/camera/camera.hpp"
 #include "petzval/core/sobol.hpp"
 #include "petzval/paraxial/first_order.hpp"
@@ -24,15 +23,16 @@
 #include "petzval/pupil/f_number.hpp"
 #include "petzval/trace/batch.hpp"
 #include "pupil/face.hpp"
+#include "tilted_films.hpp"
 
 namespace petzval {
 namespace {
 
-using testing::leaning;
 using testing::pose_of;
 using testing::random_samples;
 using testing::Samples;
 using testing::shifted;
+using testing::tilted_by;
 using testing::wide;
 
 const Film square{.width_mm = 16, .height_mm = 16};
@@ -48,7 +48,7 @@ struct Case {
     const Lens open = testing::data_lens(lens);
     return f_number > 0 ? with_f_number(open, f_number) : open;
   }
-  Film leaning_film() const { return leaning(film, tilt_deg, swing_deg); }
+  Film tilted_film() const { return tilted_by(film, tilt_deg, swing_deg); }
 };
 
 std::ostream& operator<<(std::ostream& out, const Case& c) {
@@ -83,12 +83,12 @@ Traced traced(const Lens& lens, const Film& pose, const FilmPoint& film, double 
   return result;
 }
 
-class Leaning : public ::testing::TestWithParam<Case> {};
+class TiltedFilms : public ::testing::TestWithParam<Case> {};
 
-TEST_P(Leaning, SamplesReachTheSceneAndMissNothing) {
+TEST_P(TiltedFilms, SamplesReachTheSceneAndMissNothing) {
   const Lens lens = GetParam().focused();
-  const testing::CameraParts parts(lens, GetParam().leaning_film(), ModelKind::exact_double);
-  const Camera camera(lens, GetParam().leaning_film(), parts.model);
+  const testing::CameraParts parts(lens, GetParam().tilted_film(), ModelKind::exact_double);
+  const Camera camera(lens, GetParam().tilted_film(), parts.model);
   const camera_detail::TiltedFilm& tilted = *parts.tilted;
   const Film pose = pose_of(lens, camera.film());
   const double z = parts.pupils().space().pupil_z;
@@ -189,10 +189,10 @@ void expect_exposures(const Lens& lens, const Film& film, double corner = 0.45, 
   }
 }
 
-TEST_P(Leaning, ExposesAsRaysOfItsPointsDo) { expect_exposures(GetParam().focused(), GetParam().leaning_film()); }
+TEST_P(TiltedFilms, ExposesAsRaysOfItsPointsDo) { expect_exposures(GetParam().focused(), GetParam().tilted_film()); }
 
 INSTANTIATE_TEST_SUITE_P(
-    Films, Leaning,
+    Films, TiltedFilms,
     ::testing::Values(Case{"double_gauss_100mm_f2.0", 0, wide, 8, 0, 0.95},
                       Case{"double_gauss_100mm_f2.0", 0, wide, 20, 0, 0.90},
                       Case{"double_gauss_100mm_f2.0", 4, wide, 0, -8, 0.95},
@@ -205,7 +205,7 @@ INSTANTIATE_TEST_SUITE_P(
 // The paraxial exit pupil of a ball lies far behind the film and far from its rays. Half of the samples pass, which
 // limits the accuracy of means.
 TEST(TiltedFilm, ExposesWhereAberrationsMoveThePupil) {
-  expect_exposures(testing::data_lens("ball_10mm"), leaning({.width_mm = 0.6, .height_mm = 0.45}, -8, 5), 0.49, 4e-3);
+  expect_exposures(testing::data_lens("ball_10mm"), tilted_by({.width_mm = 0.6, .height_mm = 0.45}, -8, 5), 0.49, 4e-3);
 }
 
 // If the exit pupil is at infinity, pupils lie in the plane of the last vertex.
@@ -215,7 +215,7 @@ TEST(TiltedFilm, ExposesBehindATelecentricLens) {
   p.surfaces = {{.thickness = 98.6, .semi_diameter = 8, .stop = true},
                 {.radius = 102.16, .thickness = 4, .medium = {.nd = 1.5168}, .semi_diameter = 30},
                 {.radius = -102.16, .thickness = 98.6, .semi_diameter = 30}};
-  expect_exposures(compile(p), leaning({.width_mm = 20, .height_mm = 20}, 15, -10));
+  expect_exposures(compile(p), tilted_by({.width_mm = 20, .height_mm = 20}, 15, -10));
 }
 
 // Models with one disc have the exposure of the part that a film point sees.
@@ -223,7 +223,7 @@ TEST(TiltedFilm, ExposesAsADiscDoes) {
   for (const char* id : {"double_gauss_100mm_f2.0", "fisheye_16mm_f2.8"}) {
     const Lens lens = testing::data_lens(id);
     const Pupils paraxial = pupils(lens);
-    const Film film = leaning(id[0] == 'f' ? square : shifted, -12, 16);
+    const Film film = tilted_by(id[0] == 'f' ? square : shifted, -12, 16);
     const Film pose = pose_of(lens, film);
     struct Disc {
       double z, radius;
@@ -253,7 +253,7 @@ TEST(TiltedFilm, ExposesAsADiscDoes) {
 // The exposure error of each model with tilt is little more than without.
 TEST(TiltedFilm, ExposesAlikeWithEveryModel) {
   const Lens lens = with_f_number(testing::data_lens("double_gauss_100mm_f2.0"), 4);
-  const Film film = leaning(wide, 10, 5);
+  const Film film = tilted_by(wide, 10, 5);
   const Camera exact(lens, film, {.model = ModelKind::exact_double}),
       upright(lens, wide, {.model = ModelKind::exact_double});
   for (const ModelKind model : models()) {
@@ -269,7 +269,7 @@ TEST(TiltedFilm, ExposesAlikeWithEveryModel) {
 // A pinhole samples its own disc.
 TEST(TiltedFilm, LosesNoSampleOfAPinhole) {
   for (const double tilt : {0.01, 20.0}) {
-    const Camera camera(testing::data_lens("double_gauss_100mm_f2.0"), leaning(shifted, tilt, tilt / 2),
+    const Camera camera(testing::data_lens("double_gauss_100mm_f2.0"), tilted_by(shifted, tilt, tilt / 2),
                         {.model = ModelKind::pinhole});
     auto samples = random_samples(camera.film(), 20000);
     samples.run(camera);
@@ -280,7 +280,7 @@ TEST(TiltedFilm, LosesNoSampleOfAPinhole) {
 // Scaling all lengths by a power of two gives the same numbers.
 TEST(TiltedFilm, WeighsAlikeInEveryUnit) {
   const Prescription phone = scale(testing::data_prescription("phone_5.6mm_f3.5"), 0.03);
-  const Film film = leaning({.width_mm = 0.06, .height_mm = 0.04}, 20, 14);
+  const Film film = tilted_by({.width_mm = 0.06, .height_mm = 0.04}, 20, 14);
   for (const ModelKind model : {ModelKind::pinhole, ModelKind::thick, ModelKind::exact_double}) {
     for (const auto normalisation : {Normalisation::irradiance, Normalisation::unity_on_axis}) {
       std::vector<std::vector<double>> weights;
@@ -303,7 +303,7 @@ TEST(TiltedFilm, GivesOneOnTheAxisWhereThatIsAskedFor) {
   const Lens lens = testing::data_lens("tessar_100mm_f2.8");
   for (const ModelKind model : {ModelKind::pinhole, ModelKind::thick, ModelKind::exact_float}) {
     const CameraOptions options{.model = model, .normalisation = Normalisation::unity_on_axis};
-    EXPECT_NEAR(mean_weight(Camera(lens, leaning(wide, 15, 0), options), {}), 1, 1e-3) << name(model);
+    EXPECT_NEAR(mean_weight(Camera(lens, tilted_by(wide, 15, 0), options), {}), 1, 1e-3) << name(model);
   }
 }
 

@@ -16,13 +16,13 @@
 #include "camera_parts.hpp"
 #include "camera_samples.hpp"
 #include "core/low_discrepancy.hpp"
-#include "leaning_films.hpp"
 #include "petzval/camera/camera.hpp"
 #include "petzval/core/units.hpp"
 #include "petzval/film/film.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/paraxial/pupils.hpp"
+#include "tilted_films.hpp"
 
 namespace petzval {
 namespace {
@@ -30,19 +30,19 @@ namespace {
 using camera_detail::TiltedFilm;
 using testing::CameraParts;
 
-using testing::leaning;
 using testing::pose_of;
 using testing::random_samples;
 using testing::Samples;
 using testing::shifted;
+using testing::tilted_by;
 using testing::wide;
 
-// An almost upright film has the rays, weights and densities of an upright one, within the accuracy of two tables.
-TEST(TiltedFilm, IsAnUprightOneWhereItHardlyLeans) {
+// A film with hardly any tilt is upright: the same rays, weights and densities, as near as two tables are.
+TEST(TiltedFilm, IsAnUprightOneWithHardlyAnyTilt) {
   const Lens lens = testing::data_lens("double_gauss_100mm_f2.0");
   for (const ModelKind model : models()) {
     const Camera upright(lens, shifted, {.model = model});
-    const Camera tilted(lens, leaning(shifted, 1e-9, -1e-9), {.model = model});
+    const Camera tilted(lens, tilted_by(shifted, 1e-9, -1e-9), {.model = model});
     const core_detail::Kronecker<2> random(3);
     for (const FilmPoint& film : {FilmPoint{0, 0}, FilmPoint{-20.5, 17.5}, FilmPoint{14, -5}}) {
       double weights[2] = {0, 0}, area[2] = {0, 0};
@@ -76,7 +76,7 @@ TEST(TiltedFilm, IsAnUprightOneWhereItHardlyLeans) {
 // Virtual film point, line and weight, from positions in space.
 TEST(TiltedFilm, TellsLinesAsSpaceDoes) {
   const Lens lens = testing::data_lens("double_gauss_100mm_f2.0");
-  const Film film = leaning(shifted, 14, -9);
+  const Film film = tilted_by(shifted, 14, -9);
   const FilmPupilTable pupils = FilmPupilTable::enclosing(lens, upright_radius(lens, film, ModelKind::exact_double));
   const TiltedFilm tilted(film, pupils);
   const Film pose = pose_of(lens, film);
@@ -123,8 +123,8 @@ PupilSample pinhole_sample(const Lens& lens, const Film& film, const FilmPupilTa
 TEST(TiltedFilm, HasTheDensitiesOfItsSamples) {
   const Lens lens = testing::data_lens("double_gauss_100mm_f2.0");
   for (const ModelKind model : models()) {
-    const CameraParts parts(lens, leaning(shifted, 14, -9), model);
-    const Camera camera(lens, leaning(shifted, 14, -9), parts.model);
+    const CameraParts parts(lens, tilted_by(shifted, 14, -9), model);
+    const Camera camera(lens, tilted_by(shifted, 14, -9), parts.model);
     const TiltedFilm& tilted = *parts.tilted;
     const Film pose = pose_of(lens, camera.film());
     auto samples = random_samples(camera.film(), 60);
@@ -157,7 +157,7 @@ TEST(TiltedFilm, HasTheDensitiesOfItsSamples) {
 // The film does not see a line that meets it from behind.
 TEST(TiltedFilm, HasABack) {
   const Lens lens = testing::data_lens("double_gauss_100mm_f2.0");
-  const Film film = leaning({.width_mm = 4, .height_mm = 4}, 80, 0);
+  const Film film = tilted_by({.width_mm = 4, .height_mm = 4}, 80, 0);
   const TiltedFilm tilted(film, FilmPupilTable::enclosing(lens, upright_radius(lens, film, ModelKind::exact_double)));
   const double reach = pose_of(lens, film).normal().z * -tilted.pupils().space().depth() / std::sin(radians(80.0));
   EXPECT_GT(tilted.weight({0, 0}, 0, 0.99 * -reach), 0);
@@ -170,7 +170,7 @@ TEST(TiltedFilm, HasABack) {
 // film points (y, s' + y tan) are imaged to points of one plane, in which all rays of each meet.
 TEST(TiltedFilm, IsSharpInATiltedPlane) {
   const Lens lens = with_focus(testing::data_lens("double_gauss_100mm_f2.0"), 2000);
-  const Film film = leaning(wide, 7, -4);
+  const Film film = tilted_by(wide, 7, -4);
   const Camera camera(lens, film, {.model = ModelKind::thin});
   const FirstOrder f = first_order(lens);
   const Film pose = pose_of(lens, film);
@@ -195,7 +195,7 @@ TEST(TiltedFilm, IsSharpInATiltedPlane) {
     }
     EXPECT_GT(passed, rays / 2);
   }
-  // One inclined plane through all of them.
+  // One tilted plane through all of them.
   const auto side = [&](std::size_t a, std::size_t b, std::size_t c) {
     return glm::normalize(glm::cross(images[b] - images[a], images[c] - images[a]));
   };
@@ -207,7 +207,7 @@ TEST(TiltedFilm, IsSharpInATiltedPlane) {
 TEST(TiltedFilm, GivesTheSameRaysSinglyAndInABatch) {
   const Lens lens = testing::data_lens("double_gauss_100mm_f2.0");
   for (const ModelKind model : models()) {
-    const Camera camera(lens, leaning(shifted, 8, 5), {.model = model});
+    const Camera camera(lens, tilted_by(shifted, 8, 5), {.model = model});
     auto samples = random_samples(camera.film(), 600);
     auto in_float = random_samples<float>(camera.film(), 600);
     samples.film_x[7] = in_float.film_x[7] = 40;
@@ -238,17 +238,17 @@ TEST(TiltedFilm, IsRefusedInTheLens) {
     return testing::message([&] { Camera(testing::data_lens(id), film, {.model = ModelKind::exact_float}); });
   };
   const auto has = [](const std::string& text, const char* part) { return text.find(part) != std::string::npos; };
-  EXPECT_EQ(refusal("double_gauss_100mm_f2.0", leaning(wide, 30, 0)), "no error");
-  const std::string steep = refusal("double_gauss_100mm_f2.0", leaning({.width_mm = 36, .height_mm = 240}, 40, 0));
+  EXPECT_EQ(refusal("double_gauss_100mm_f2.0", tilted_by(wide, 30, 0)), "no error");
+  const std::string steep = refusal("double_gauss_100mm_f2.0", tilted_by({.width_mm = 36, .height_mm = 240}, 40, 0));
   EXPECT_TRUE(has(steep, "corner (-18, -120) mm at z = ") && has(steep, "where the last surface ends")) << steep;
-  EXPECT_TRUE(has(refusal("double_gauss_100mm_f2.0", leaning(wide, 90, 0)), "less than a quarter turn"));
-  EXPECT_TRUE(has(refusal("tessar_100mm_f2.8", leaning(wide, std::nan(""), 0)), "less than a quarter turn"));
-  const Film steep_square = leaning({.width_mm = 20, .height_mm = 20}, 45, 0);
+  EXPECT_TRUE(has(refusal("double_gauss_100mm_f2.0", tilted_by(wide, 90, 0)), "less than a quarter turn"));
+  EXPECT_TRUE(has(refusal("tessar_100mm_f2.8", tilted_by(wide, std::nan(""), 0)), "less than a quarter turn"));
+  const Film steep_square = tilted_by({.width_mm = 20, .height_mm = 20}, 45, 0);
   const Lens fisheye = testing::data_lens("fisheye_6.3mm_f2.8");
   const auto thin = testing::message([&] { Camera(fisheye, steep_square, {.model = ModelKind::thin}); });
   EXPECT_TRUE(has(thin, "at least a tenth of the film's distance from the pupil")) << thin;
   const Lens lens = testing::data_lens("tessar_100mm_f2.8");
-  const Film film = leaning(wide, 20, 0);
+  const Film film = tilted_by(wide, 20, 0);
   EXPECT_TRUE(has(testing::message(
                       [&] { Camera(lens, film, camera_detail::make_model(ModelKind::thick, lens, film.radius_mm())); }),
                   "the model is one for film points up to"));
@@ -258,10 +258,10 @@ TEST(TiltedFilm, IsRefusedInTheLens) {
 TEST(TiltedFilm, IsRefusedWithoutACameraToo) {
   const auto has = [](const std::string& text, const char* part) { return text.find(part) != std::string::npos; };
   const Lens lens = testing::data_lens("tessar_100mm_f2.8");
-  const Film film = leaning(wide, 20, 0), beyond = leaning(wide, 91, 0);
-  const Film flipped = leaning({.width_mm = -36, .height_mm = 24}, 20, 0);
-  const Film unknown = leaning({.width_mm = std::nan(""), .height_mm = 24}, 0, 0);
-  const Film close = leaning({.width_mm = 36, .height_mm = 300}, 60, 0);
+  const Film film = tilted_by(wide, 20, 0), beyond = tilted_by(wide, 91, 0);
+  const Film flipped = tilted_by({.width_mm = -36, .height_mm = 24}, 20, 0);
+  const Film unknown = tilted_by({.width_mm = std::nan(""), .height_mm = 24}, 0, 0);
+  const Film close = tilted_by({.width_mm = 36, .height_mm = 300}, 60, 0);
   const FilmPupilTable pupils = FilmPupilTable::enclosing(lens, upright_radius(lens, film, ModelKind::exact_double));
   const auto radius = [&](const Film& f) {
     return testing::message([&] { upright_radius(lens, f, ModelKind::exact_double); });
@@ -274,7 +274,7 @@ TEST(TiltedFilm, IsRefusedWithoutACameraToo) {
     EXPECT_TRUE(has(tilted(wrong), wanted)) << tilted(wrong);
   }
   EXPECT_EQ(tilted(film), "no error");
-  const std::string larger = tilted(leaning({.width_mm = 50, .height_mm = 24}, 20, 0));
+  const std::string larger = tilted(tilted_by({.width_mm = 50, .height_mm = 24}, 20, 0));
   EXPECT_TRUE(has(larger, "the pupils are those of film points up to")) << larger;
 }
 

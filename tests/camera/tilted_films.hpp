@@ -10,7 +10,7 @@ namespace petzval::testing {
 inline const Film wide{.width_mm = 36, .height_mm = 24};
 inline const Film shifted{.width_mm = 36, .height_mm = 24, .shift_x_mm = -3, .shift_y_mm = 6};
 
-inline Film leaning(Film film, double tilt_deg, double swing_deg) {
+inline Film tilted_by(Film film, double tilt_deg, double swing_deg) {
   film.tilt_rad = radians(tilt_deg);
   film.swing_rad = radians(swing_deg);
   return film;
