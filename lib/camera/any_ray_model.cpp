@@ -20,7 +20,7 @@ RayDerivatives AnyRayModel::Interface::differences(const TwoPlaneRayDerivatives&
                                                    std::size_t wavelength) const noexcept {
   // A step of this part of the distance between the planes is off by its square, and by eps over it.
   constexpr double part = 1e-5;
-  const double h = part * std::abs(pupils().space().depth());
+  const double h = part * std::abs(pupils->space().depth());
   const auto moved = [&](const TwoPlaneRay& by, double step) -> TwoPlaneRay {
     const TwoPlaneRay& l = film_ray.line;
     return {l.film_x + step * by.film_x, l.film_y + step * by.film_y, l.pupil_x + step * by.pupil_x,

@@ -134,8 +134,11 @@ template PETZVAL_API void sample_rays(const FilmView&, std::size_t, const Camera
 CameraRay sample_ray(const FilmView& view, const FilmPoint& film, double u, double v, std::size_t wavelength) noexcept {
   const FilmPupilTable& pupils = view.model.pupils();
   const TiltedFilm* const tilted = view.tilted;
-  const bool kept = view.film.contains(film), known = wavelength < view.scale.size();
-  const FilmPoint point = kept ? film : FilmPoint{view.film.shift_x_mm, view.film.shift_y_mm};
+  const auto bounds = film_detail::bounds_of<double>(view.film);
+  const bool kept = std::abs(film.x - bounds.centre_x) <= bounds.half_width &&
+                    std::abs(film.y - bounds.centre_y) <= bounds.half_height;
+  const bool known = wavelength < view.scale.size();
+  const FilmPoint point = kept ? film : FilmPoint{bounds.centre_x, bounds.centre_y};
   CameraRay out;
 
   // The line for the weight, and that of the ray.
@@ -175,10 +178,12 @@ CameraRay sample_ray(const FilmView& view, const FilmPoint& film, double u, doub
   if (!kept) out.fate = RayFate::outside_film;
   if (kept && area > 0) {
     const double x = line.pupil_x - line.film_x, y = line.pupil_y - line.film_y, depth = pupils.space().depth();
-    const double depth2 = depth * depth, length2 = x * x + y * y + depth2, part = depth2 / length2;
+    const double depth2 = depth * depth, length2 = x * x + y * y + depth2, per_length2 = 1 / length2;
     out.pdf_pupil = 1 / area;
     out.pdf_direction = length2 * std::sqrt(length2) / (std::abs(depth) * area);
-    if (out.fate == RayFate::transmitted) out.weight = view.scale[wavelength] * area * part * part / depth2;
+    if (out.fate == RayFate::transmitted) {
+      out.weight = view.scale[wavelength] * area * depth2 * per_length2 * per_length2;
+    }
   }
   if (tilted) {
     const double near = tilted->nearness(virtual_point);

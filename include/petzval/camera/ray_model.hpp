@@ -51,7 +51,7 @@ concept RayModel = requires(const M& model, std::size_t count, const RayWaveleng
                             const TwoPlaneRays<const double>& exact_film_rays, const RayArrays<double>& exact_rays,
                             const RayArrays<const double>& scene_rays, const TwoPlaneRays<double>& to_film) {
   { model.pupils() }
-  noexcept->std::convertible_to<const FilmPupilTable&>;
+  noexcept->std::same_as<const FilmPupilTable&>;
   { model.to_scene(count, film_rays, wavelengths, rays, fates) }
   noexcept;
   { model.to_scene(count, exact_film_rays, wavelengths, exact_rays, fates) }
@@ -82,10 +82,10 @@ class AnyRayModel {
   ModelKind kind() const noexcept { return model_->kind; }
   bool clips_at_apertures() const noexcept { return model_->clips_at_apertures; }
   bool linear_in_slopes() const noexcept { return model_->linear_in_slopes; }
-  std::span<const double> pinhole_shifts() const noexcept { return model_->pinhole_shifts(); }
+  std::span<const double> pinhole_shifts() const noexcept { return model_->pinhole_shifts; }
   bool pinhole() const noexcept { return !pinhole_shifts().empty(); }
 
-  const FilmPupilTable& pupils() const noexcept { return model_->pupils(); }
+  const FilmPupilTable& pupils() const noexcept { return *model_->pupils; }
   template <class T>
   void to_scene(std::size_t count, const TwoPlaneRays<const T>& film_rays, const RayWavelengths& wavelengths,
                 const RayArrays<T>& rays, RayFate* fates) const noexcept {
@@ -106,10 +106,10 @@ class AnyRayModel {
   struct Interface {
     ModelKind kind = ModelKind::custom;
     bool clips_at_apertures = false, linear_in_slopes = false;
+    const FilmPupilTable* pupils = nullptr;  ///< the model's
+    std::span<const double> pinhole_shifts;
 
     virtual ~Interface() = default;
-    virtual const FilmPupilTable& pupils() const noexcept = 0;
-    virtual std::span<const double> pinhole_shifts() const noexcept = 0;
     virtual void to_scene(std::size_t, const TwoPlaneRays<const float>&, const RayWavelengths&, const RayArrays<float>&,
                           RayFate*) const noexcept = 0;
     virtual void to_scene(std::size_t, const TwoPlaneRays<const double>&, const RayWavelengths&,
@@ -129,17 +129,11 @@ class AnyRayModel {
     M model;
 
     explicit Held(M held) : model(std::move(held)) {
+      this->pupils = &std::as_const(model).pupils();
       if constexpr (requires { model.kind(); }) this->kind = model.kind();
+      if constexpr (requires { model.pinhole_shifts(); }) this->pinhole_shifts = model.pinhole_shifts();
       if constexpr (requires { M::clips_at_apertures; }) this->clips_at_apertures = M::clips_at_apertures;
       if constexpr (requires { M::linear_in_slopes; }) this->linear_in_slopes = M::linear_in_slopes;
-    }
-    const FilmPupilTable& pupils() const noexcept override { return model.pupils(); }
-    std::span<const double> pinhole_shifts() const noexcept override {
-      if constexpr (requires { model.pinhole_shifts(); }) {
-        return model.pinhole_shifts();
-      } else {
-        return {};
-      }
     }
     void to_scene(std::size_t count, const TwoPlaneRays<const float>& film_rays, const RayWavelengths& wavelengths,
                   const RayArrays<float>& rays, RayFate* fates) const noexcept override {
