@@ -60,7 +60,8 @@ TEST_F(Readme, HasAtMost150Lines) { EXPECT_LE(lines(read(root() / "README.md")).
 TEST_F(Readme, PathsOfAllPagesExist) {
   const std::regex path("(`|\\]\\()((cmake|data|examples|include|lib|tests)/[A-Za-z0-9_./-]*)[`)]");
   std::size_t found = 0;
-  for (const char* page : {"README.md", "data/README.md", "tests/README.md", "tests/bench/README.md"}) {
+  for (const char* page :
+       {"README.md", "data/README.md", "lib/README.md", "tests/README.md", "tests/bench/README.md"}) {
     const std::string text = read(root() / page);
     for (std::sregex_iterator match(text.begin(), text.end(), path), end; match != end; ++match, ++found) {
       const std::string name = (*match)[2];
