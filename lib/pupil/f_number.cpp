@@ -108,10 +108,10 @@ Lens with_f_number(const Lens& lens, double f_number, Wavelength wavelength) {
     throw Error(lens.name() + ": f-number is " + number(f_number) + ", wanted " + number(length / (2 * largest), 10) +
                 " (the fastest the lens can give) or more");
   }
-  if (const double hole = lens.surfaces()[p.stop].obscuration_semi_diameter; hole > 0 && *height <= hole) {
-    const double smallest = entering_height(stop_height, hole, p.entrance.diameter / 2);
+  if (const double obscured = lens.surfaces()[p.stop].obscuration_semi_diameter; obscured > 0 && *height <= obscured) {
+    const double smallest = entering_height(stop_height, obscured, p.entrance.diameter / 2);
     throw Error(lens.name() + ": f-number is " + number(f_number) + ", wanted less than " +
-                number(length / (2 * smallest), 10) + ": the stop has a hole of that size");
+                number(length / (2 * smallest), 10) + ": the stop has a central obscuration of that size");
   }
   return with_semi_diameter(lens, p.stop, std::min(*height, lens.surfaces()[p.stop].semi_diameter));
 }

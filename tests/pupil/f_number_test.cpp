@@ -79,9 +79,9 @@ TEST(WithFNumber, IsWhatRealFNumberFinds) {
     EXPECT_LE(with_f_number(lens, fastest * (1 - 1e-10)).surfaces()[stop].semi_diameter,
               lens.surfaces()[stop].semi_diameter);
     EXPECT_THROW(with_f_number(lens, fastest * (1 - 1e-8)), Error);
-    const double hole = lens.surfaces()[stop].obscuration_semi_diameter / lens.surfaces()[stop].semi_diameter;
+    const double obscured = lens.surfaces()[stop].obscuration_semi_diameter / lens.surfaces()[stop].semi_diameter;
     for (const double n : {fastest, fastest * 1.0001, fastest * 1.4, 5.6 * fastest, 64 * fastest, 1000 * fastest}) {
-      if (n * hole > 0.99 * fastest) continue;
+      if (n * obscured > 0.99 * fastest) continue;
       EXPECT_NEAR(real_f_number(with_f_number(lens, n)), n, 1e-12 * n);
     }
   }
@@ -144,10 +144,10 @@ TEST(WithFNumber, OfAnAnnularStopEndsAtItsHole) {
   const std::string found = message([&] { with_f_number(lens, 100); });
   const std::string start = lens.name() + ": f-number is 100, wanted less than ";
   ASSERT_EQ(found.substr(0, start.size()), start);
-  EXPECT_NE(found.find(": the stop has a hole of that size"), std::string::npos) << found;
-  const double hole = std::stod(found.substr(start.size()));
-  EXPECT_NO_THROW(with_f_number(lens, hole * (1 - 1e-8)));
-  EXPECT_THROW(with_f_number(lens, hole * (1 + 1e-8)), Error);
+  EXPECT_NE(found.find(": the stop has a central obscuration of that size"), std::string::npos) << found;
+  const double obscured = std::stod(found.substr(start.size()));
+  EXPECT_NO_THROW(with_f_number(lens, obscured * (1 - 1e-8)));
+  EXPECT_THROW(with_f_number(lens, obscured * (1 + 1e-8)), Error);
 }
 
 TEST(WithFNumber, LeavesAnInferredStopTheStop) {

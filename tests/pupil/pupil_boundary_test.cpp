@@ -114,6 +114,22 @@ TEST(PupilBoundary, OfACentralObscurationIsARing) {
   EXPECT_EQ(boundary.spans.size(), 32u);
 }
 
+TEST(PupilBoundary, OfAnIrisIsItsPolygon) {
+  const Lens lens = with_iris(front_stop_lens(), regular_iris(6, 0.1));
+  for (const double field : {0.0, 10.0}) {
+    const PupilBoundary boundary = pupil_boundary(lens, {radians(field), -infinity});
+    EXPECT_NEAR(boundary.area() / (6 * std::sqrt(3.0)), 1, 5e-4);
+    for (const PupilSpan& span : boundary.spans) {
+      EXPECT_EQ(span.to.surface, 0);
+      double farthest = 0;  // beyond the six edges
+      for (const auto& [nx, ny, distance] : lens.iris().edges) {
+        farthest = std::max(farthest, span.to.x * nx + span.to.y * ny);
+      }
+      EXPECT_NEAR(farthest, std::sqrt(3.0), 1e-12);
+    }
+  }
+}
+
 TEST(PupilBoundary, OneDirectionServesTheAxis) {
   for (const char* id : {"double_gauss_100mm_f1.35", "catadioptric_mangin_1000mm_f7.5", "fisheye_6.3mm_f2.8"}) {
     const Lens lens = data_lens(id);
