@@ -52,8 +52,8 @@ struct FocusOptions {
   /// radius counts. thin and paraxial use the axis alone.
   std::vector<FocusField> fields = {FocusField{}};
   /// One per compiled wavelength, by the light in it; empty: the primary wavelength alone. min_max counts every
-  /// wavelength with a weight. thin, paraxial and front_principal use the wavelength of largest weight, among equal ones
-  /// the primary.
+  /// wavelength with a weight. thin, paraxial and front_principal use the wavelength of largest weight, among equal
+  /// ones the primary.
   std::vector<double> wavelength_weights = {};
 };
 
@@ -71,15 +71,14 @@ struct FocusSolution {
 
 /// Film position that brings a subject into focus (the lens stays, the film moves).
 ///
-/// distance_mm: > 0 or +inf. Where two film positions serve one distance from the film, the one nearer to the rear
-/// focus is given. A lens with cylinders is focused in its main meridian, by the exact criteria over all azimuths.
-/// min_rms takes the position of least RMS radius in closed form from bundles through whatever passes every rim
-/// (pupil_boundary), equally by area of the entrance pupil; min_max finds the least largest radius of the same bundles
-/// and the edges and corners of their pupils to rounding; a largest radius is found within 0.2 %. Both must lie behind
-/// the last vertex. Throws Error for NaN or a distance that is not positive; for fields and weights that are none; and
-/// by the exact criteria where pupil_boundary does. Accuracy: paraxial and thin within rounding; of the exact criteria
-/// the film is that of endlessly many rays within 1e-5 mm on the axis and 2e-4 mm off it (double Gauss 100 mm f/2, 10
-/// degrees).
+/// distance: > 0 or +inf. If two film positions serve one distance from the film, the one nearer to the rear focus. A
+/// lens with cylinders is focused in its main meridian, by the exact criteria over all azimuths. min_rms: the position
+/// of least RMS radius in closed form, from bundles through everything that passes all rims, uniform in the area of the
+/// entrance pupil. min_max: the position of the least largest radius of the same bundles and the edges and corners of
+/// their pupils, to rounding; a largest radius is found within 0.2 %. Both lie behind the last vertex. Throws Error for
+/// a distance that is NaN or not positive; for invalid fields and weights; and, by the exact criteria, where
+/// pupil_boundary does. Accuracy: paraxial and thin within rounding; by the exact criteria the film
+/// is that of infinitely many rays within 1e-5 mm on the axis and 2e-4 mm off it (double Gauss 100 mm f/2, 10 degrees).
 PETZVAL_API FocusSolution solve_focus(const Lens& lens, double distance, const FocusOptions& options = {});
 
 /// The inverse: the subject that is in focus on a film. Focused at the distance of the solution, the film is the same

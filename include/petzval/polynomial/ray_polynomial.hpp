@@ -83,10 +83,10 @@ class PETZVAL_API RayPolynomial {
   template <class T>
   void to_scene(std::size_t count, const TwoPlaneRays<const T>& lines, const RayWavelengths& wavelengths,
                 const RayArrays<T>& rays, RayFate* fates) const noexcept;
-  /// One line with its derivatives, in double.
+  /// The same for one line with its derivatives, in double.
   RayDerivatives to_scene(const TwoPlaneRayDerivatives& line, Wavelength wavelength = {}) const noexcept;
-  /// Rays from the scene, anywhere on their lines, as the lines that to_scene makes rays of, within 1e-9 mm, by
-  /// Newton's iteration. outside_fit, and the axis, where none in the domain is found.
+  /// The inverse: maps rays from the scene, at any point on them, to the lines that to_scene maps to them, within 1e-9
+  /// mm, by Newton's iteration. If no line in the domain is found, the fate is outside_fit and the line is the axis.
   void to_film(std::size_t count, const RayArrays<const double>& rays, const RayWavelengths& wavelengths,
                const TwoPlaneRays<double>& lines, RayFate* fates) const noexcept;
 
