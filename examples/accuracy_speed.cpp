@@ -48,7 +48,7 @@ std::string figure(const std::vector<examples::ModelRow>& rows, const petzval::L
 
 int main(int argc, char** argv) {
   Options options;
-  CLI::App app(
+  examples::App app(
       "Compares every model of a lens with exact rays in double. Prints the errors on the film (RMS, 99 %, largest; "
       "for "
       "planes from half the focus distance to infinity, and for the plane in focus; at infinity angle times focal "

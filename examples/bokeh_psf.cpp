@@ -136,7 +136,7 @@ void write_all(const std::vector<Picture>& pictures, const examples::LoadedLens&
 
 int main(int argc, char** argv) {
   Options options;
-  CLI::App app(
+  examples::App app(
       "Renders the geometric point spread function of a lens for a point light, focused at several distances.\n"
       "Writes to DIR, and prints the paths: LENS_focus_<D>mm.exr (float, linear: share of the light in the paraxial "
       "entrance pupil, per mm^2 of film), LENS_focus_<D>mm.png (each with its own exposure), LENS_bokeh.png (all at "
@@ -152,12 +152,12 @@ int main(int argc, char** argv) {
   examples::add_numbers(app, "--focus-mm", options.focus_mm, examples::positive_length, "focus distances (mm), or inf")
       ->required();
   app.add_option("--distance-from", options.origin, "origin of the distances of light and focus")
-      ->check(CLI::IsMember({"front_vertex", "film"}))
+      ->one_of({"front_vertex", "film"})
       ->capture_default_str();
   app.add_option("--criterion", options.criterion,
                  "criterion of focus, on axis: cardinal points (of a thin or the thick lens), least RMS blur or least "
                  "largest blur")
-      ->check(CLI::IsMember(examples::names(examples::focus_criteria)))
+      ->one_of(examples::names(examples::focus_criteria))
       ->capture_default_str();
   examples::add_numbers(
       app, "--wavelengths-nm", options.wavelengths_nm, examples::positive_number,

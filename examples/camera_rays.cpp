@@ -108,7 +108,7 @@ int main(int argc, char** argv) {
   std::string lens_file, samples_file, out_file, model;
   examples::CameraSetup setup;
   double tilt_deg = 0, swing_deg = 0;
-  CLI::App app(
+  examples::App app(
       "Samples camera rays from points of the film through the lens into the scene. Lengths in mm, in the lens frame: "
       "origin at the first vertex, light travels towards +z, and these rays the other way. The image on the film is "
       "upside down.",
@@ -127,7 +127,7 @@ int main(int argc, char** argv) {
       ->type_name("CSV");
   std::vector<std::string> model_names;
   for (const petzval::ModelKind m : petzval::models()) model_names.emplace_back(petzval::name(m));
-  app.add_option("--model", model, "model of the lens")->required()->check(CLI::IsMember(model_names));
+  app.add_option("--model", model, "model of the lens")->required()->one_of(model_names);
   examples::add_camera(app, setup);
   examples::add_number(
       app, "--tilt-deg", tilt_deg, below_quarter_turn,

@@ -45,7 +45,7 @@ double verified_max_px(const petzval::Lens& lens, const Options& options, petzva
 
 int main(int argc, char** argv) {
   Options options;
-  CLI::App app(
+  examples::App app(
       "Chooses the fastest model of a lens for a scene. The error of its rays must be within a budget for all points "
       "of "
       "the film and the pupil and all depths of the scene, its exposure within 1 %, and the shape of its pupil within "

@@ -223,7 +223,7 @@ std::string to_text(const std::vector<Frame>& all, double frames_per_s) {
 
 int main(int argc, char** argv) {
   Options options;
-  CLI::App app(
+  examples::App app(
       "Moves the film for points of the scene that have keyframes, frame by frame.\n"
       "keys.json: [{\"from_s\": 0, \"until_s\": 10, \"keys\": [{\"time_s\": 0, \"position_mm\": [x, y, z], \"weight\": "
       "1, \"blur_mm\": 0, \"at_infinity\": false}, ...]}, ...] in the lens frame, the scene at negative z; a point is "
@@ -238,7 +238,7 @@ int main(int argc, char** argv) {
   app.add_option("--keys", options.keys_file, "points and their keys")->type_name("FILE")->required();
   app.add_option("--out", options.out_folder, "folder for the table and the plot")->type_name("DIR")->required();
   app.add_option("--criterion", options.criterion, "criterion of the real model without --tilt: min_rms, min_max")
-      ->check(CLI::IsMember({"min_rms", "min_max"}))
+      ->one_of({"min_rms", "min_max"})
       ->capture_default_str();
   examples::add_number(app, "--frames-per-s", options.frames_per_s, examples::positive_number, "frames a second");
   app.add_flag("--tilt", options.tilt, "also tilt and swing the film");

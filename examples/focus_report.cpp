@@ -220,7 +220,7 @@ std::string to_text(const Report& report, const Options& options) {
 
 int main(int argc, char** argv) {
   Options options;
-  CLI::App app(
+  examples::App app(
       "Reports, for subject distances and criteria of focus: the film position, the blur of the subject there, the "
       "depth "
       "of field, the hyperfocal distance, the nearest distance, and breathing (growth of the image compared with focus "
@@ -241,10 +241,10 @@ int main(int argc, char** argv) {
       ->default_str("10, 20, 50, 100 focal lengths, rounded, and inf");
   app.add_option("--criterion", options.criteria, "criteria of focus")
       ->delimiter(',')
-      ->check(CLI::IsMember(examples::names(examples::focus_criteria)))
+      ->one_of(examples::names(examples::focus_criteria))
       ->capture_default_str();
   app.add_option("--distance-from", options.origin, "origin of distances")
-      ->check(CLI::IsMember(examples::names(examples::distance_origins)))
+      ->one_of(examples::names(examples::distance_origins))
       ->capture_default_str();
   examples::add_number(app, "--blur-mm", options.blur_mm, examples::positive_number,
                        "largest blur in the depth of field, a diameter on the film (mm); 0.03 is usual for 24 x 36 mm");

@@ -74,7 +74,7 @@ void write_page(const examples::Report& report, const Options& options) {
 
 int main(int argc, char** argv) {
   Options options;
-  CLI::App app(
+  examples::App app(
       "Reports the first-order data, pupils, f-numbers and lint findings of a lens, for a lens with cylinders in both "
       "sections. Lengths in mm; z from the first vertex, towards the film. Findings are not failures.\n"
       "With --out: writes LENS_layout.svg (and LENS_layout_x.svg of a lens with cylinders), LENS_spots.svg, "
@@ -102,7 +102,7 @@ int main(int argc, char** argv) {
 
   return examples::run(app, argc, argv, [&] {
     const examples::Report report = examples::report(load(options));
-    if (out->count() > 0) return write_page(report, options);
+    if (out->given()) return write_page(report, options);
     std::cout << (options.json ? examples::to_json(report).dump(2) + '\n' : examples::to_text(report));
   });
 }

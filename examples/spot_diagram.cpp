@@ -80,7 +80,7 @@ Json to_json(const std::vector<petzval::Spot>& all, const petzval::Lens& lens, c
 
 int main(int argc, char** argv) {
   Options options;
-  CLI::App app(
+  examples::App app(
       "Draws spot diagrams. The film stands at the paraxial image of the subject at the primary wavelength (the "
       "one nearest to the d line, 587.5618 nm), plus --defocus-mm.\n"
       "Writes to DIR, and prints the paths: LENS_spots.svg, LENS_spots.csv (the hits: "

@@ -329,7 +329,7 @@ std::vector<petzval::Rgb8Image> blur_pictures(const Result& result) {
 
 int main(int argc, char** argv) {
   Options options;
-  CLI::App app(
+  examples::App app(
       "Tilts and swings the film so that points of the scene are sharp (or have a given blur), by least squares of "
       "their "
       "blurs.\n"

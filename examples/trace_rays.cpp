@@ -82,7 +82,7 @@ int main(int argc, char** argv) {
   double wavelength_nm = petzval::d_line_nm;
   bool ignore_apertures = false;
 
-  CLI::App app(
+  examples::App app(
       "Traces rays through a lens, surface by surface. Lengths in mm, in the lens frame: origin at the first vertex, "
       "light travels towards +z.",
       "trace_rays");
@@ -98,10 +98,10 @@ int main(int argc, char** argv) {
       ->required()
       ->type_name("CSV");
   app.add_option("--precision", precision, "arithmetic of the trace")
-      ->check(CLI::IsMember({"float", "double"}))
+      ->one_of({"float", "double"})
       ->capture_default_str();
   app.add_option("--travel", travel, "direction of travel through the lens")
-      ->check(CLI::IsMember({"to_film", "to_scene"}))
+      ->one_of({"to_film", "to_scene"})
       ->capture_default_str();
   examples::add_number(app, "--wavelength-nm", wavelength_nm, examples::positive_number, "wavelength (nm)");
   app.add_flag("--ignore-apertures", ignore_apertures, "rays pass outside the clear diameters too");

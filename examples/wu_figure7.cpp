@@ -50,12 +50,12 @@ examples::SheetRow sheet_row(const examples::WuRow& wu, const examples::BokehSet
 int main(int argc, char** argv) {
   std::string out_file, criterion = "min_rms";
   std::uint32_t samples = 1u << 21;
-  CLI::App app(
+  examples::App app(
       "Repeats figure 7 of Wu et al. 2010: a point light at 1000 mm from the front vertex, on axis, at the d line, "
       "through four double Gauss lenses focused at 800 to 1200 mm. One PNG.",
       "wu_figure7");
   app.add_option("--criterion", criterion, "criterion of focus: least RMS blur on axis, or cardinal points")
-      ->check(CLI::IsMember({"min_rms", "paraxial"}))
+      ->one_of({"min_rms", "paraxial"})
       ->capture_default_str();
   examples::add_samples(app, samples);
   app.add_option("--out", out_file, "picture to write")->required()->type_name("PNG");

@@ -159,7 +159,7 @@ std::string to_html(const std::vector<Verdict>& all) {
 int main(int argc, char** argv) {
   std::string html_file;
   std::uint32_t samples = 1u << 18;
-  CLI::App app(
+  examples::App app(
       "Compares the statements of Wu et al. 2010 about their figure 7 with radial profiles, and prints a table.\n"
       "Irradiances are relative to the mean of the disc: of the core (within 0.2 of the radius), of the brightest of "
       "ten "

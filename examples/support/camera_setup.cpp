@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "camera_setup.hpp"
 
+#include "cli.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/pupil/f_number.hpp"
@@ -9,7 +10,7 @@ namespace examples {
 
 std::array<double, 2> CameraSetup::film_size() const { return parse_size("--film-mm", film_mm, positive_number); }
 
-void add_camera(CLI::App& app, CameraSetup& setup) {
+void add_camera(App& app, CameraSetup& setup) {
   add_number(app, "--f-number", setup.f_number, positive_number, "stop the lens down (by exact rays)")
       ->default_str("wide open");
   add_number(app, "--focus-mm", setup.focus_mm, positive_length,

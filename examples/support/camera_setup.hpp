@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <array>
 #include <string>
 #include <string_view>
@@ -23,7 +22,7 @@ struct CameraSetup {
 };
 
 /// Options --f-number, --focus-mm and --film-mm.
-void add_camera(CLI::App& app, CameraSetup& setup);
+void add_camera(App& app, CameraSetup& setup);
 
 /// "36x24". Throws petzval::Error beginning with `where`.
 std::array<double, 2> parse_size(const std::string& where, std::string_view text, const Range& range);

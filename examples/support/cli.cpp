@@ -3,6 +3,7 @@
 
 #include <unistd.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <charconv>
 #include <iostream>
@@ -26,6 +27,40 @@ std::string one_line(std::string text) {
 }
 
 }  // namespace
+
+Option* Option::required() { return option_->required(), this; }
+Option* Option::type_name(const std::string& name) { return option_->type_name(name), this; }
+Option* Option::default_str(const std::string& text) { return option_->default_str(text), this; }
+Option* Option::capture_default_str() { return option_->capture_default_str(), this; }
+Option* Option::delimiter(char between) { return option_->delimiter(between), this; }
+Option* Option::one_of(const std::vector<std::string>& values) { return option_->check(CLI::IsMember(values)), this; }
+Option* Option::needs(Option* other) { return option_->needs(other->option_), this; }
+Option* Option::excludes(const std::string& other) { return option_->excludes(other), this; }
+bool Option::given() const { return option_->count() > 0; }
+
+App::App(const std::string& description, const std::string& name)
+    : app_(std::make_unique<CLI::App>(description, name)) {}
+App::~App() = default;
+
+Option* App::add_option(const std::string& name, std::string& value, const std::string& help) {
+  return kept(app_->add_option(name, value, help));
+}
+Option* App::add_option(const std::string& name, std::vector<std::string>& values, const std::string& help) {
+  return kept(app_->add_option(name, values, help));
+}
+Option* App::add_option(const std::string& name, const std::function<void(const std::string&)>& set,
+                        const std::string& help) {
+  return kept(app_->add_option_function<std::string>(name, set, help));
+}
+Option* App::add_flag(const std::string& name, bool& value, const std::string& help) {
+  return kept(app_->add_flag(name, value, help));
+}
+Option* App::get_option(const std::string& name) { return kept(app_->get_option(name)); }
+
+Option* App::kept(CLI::Option* option) {
+  options_.push_back(Option(option));
+  return &options_.back();
+}
 
 double parse_number(const std::string& where, std::string_view text, const Range& range) {
   double value = 0;
@@ -53,27 +88,26 @@ std::vector<double> parse_numbers(const std::string& where, std::string_view tex
   return values;
 }
 
-CLI::Option* add_number(CLI::App& app, const std::string& flag, double& value, const Range& range,
-                        const std::string& help) {
+Option* add_number(App& app, const std::string& flag, double& value, const Range& range, const std::string& help) {
   return app
-      .add_option_function<std::string>(
+      .add_option(
           flag, [&value, flag, range](const std::string& text) { value = parse_number(flag, text, range); }, help)
       ->type_name("NUMBER")
       ->default_str(number(value));
 }
 
-CLI::Option* add_numbers(CLI::App& app, const std::string& flag, std::vector<double>& values, const Range& range,
-                         const std::string& help) {
+Option* add_numbers(App& app, const std::string& flag, std::vector<double>& values, const Range& range,
+                    const std::string& help) {
   return app
-      .add_option_function<std::string>(
+      .add_option(
           flag, [&values, flag, range](const std::string& text) { values = parse_numbers(flag, text, range); }, help)
       ->type_name("NUMBER,...")
       ->default_str(joined(values));
 }
 
-CLI::Option* add_samples(CLI::App& app, std::uint32_t& samples) {
+Option* add_samples(App& app, std::uint32_t& samples) {
   return app
-      .add_option_function<std::string>(
+      .add_option(
           "--samples",
           [&samples](const std::string& text) {
             constexpr Range range{1, 1u << 26, "a whole number from 1 to 67108864"};
@@ -86,18 +120,18 @@ CLI::Option* add_samples(CLI::App& app, std::uint32_t& samples) {
       ->default_str(std::to_string(samples));
 }
 
-int run(CLI::App& app, int argc, char** argv, const std::function<void()>& body) {
+int run(App& app, int argc, char** argv, const std::function<void()>& body) {
   const auto fail = [&app](const char* what) {
-    std::cerr << app.get_name() << ": " << one_line(what) << '\n';
+    std::cerr << app.app_->get_name() << ": " << one_line(what) << '\n';
     return 1;
   };
   try {
-    app.parse(argc, argv);
+    app.app_->parse(argc, argv);
     body();
     std::cout.flush();
     return std::cout ? 0 : fail("cannot write to standard output");
   } catch (const CLI::Success& help) {
-    return app.exit(help);
+    return app.app_->exit(help);
   } catch (const std::exception& error) {
     return fail(error.what());
   }

@@ -1,16 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
+#include <deque>
 #include <functional>
 #include <limits>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "petzval/focus/focus.hpp"
+
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
 
 /// Shared code of the example programs, not a part of the library.
 namespace examples {
@@ -33,11 +39,52 @@ double parse_number(const std::string& where, std::string_view text, const Range
 /// "10" or "0,10,20"; refuses repeated numbers. Throws petzval::Error beginning with `where`.
 std::vector<double> parse_numbers(const std::string& where, std::string_view text, const Range& range);
 
+/// An option of a command line; its functions return it. CLI11 stays in cli.cpp: it takes seconds to compile.
+class Option {
+ public:
+  Option* required();
+  Option* type_name(const std::string& name);
+  Option* default_str(const std::string& text);
+  Option* capture_default_str();
+  Option* delimiter(char between);
+  Option* one_of(const std::vector<std::string>& values);
+  Option* needs(Option* other);
+  Option* excludes(const std::string& other);
+  bool given() const;
+
+ private:
+  friend class App;
+  explicit Option(CLI::Option* option) : option_(option) {}
+  CLI::Option* option_;
+};
+
+/// The command line of a program: what --help says and what each option sets.
+class App {
+ public:
+  App(const std::string& description, const std::string& name);
+  ~App();
+  App(const App&) = delete;
+  App& operator=(const App&) = delete;
+
+  Option* add_option(const std::string& name, std::string& value, const std::string& help);
+  Option* add_option(const std::string& name, std::vector<std::string>& values, const std::string& help);
+  Option* add_option(const std::string& name, const std::function<void(const std::string&)>& set,
+                     const std::string& help);
+  Option* add_flag(const std::string& name, bool& value, const std::string& help);
+  Option* get_option(const std::string& name);
+
+ private:
+  friend int run(App& app, int argc, char** argv, const std::function<void()>& body);
+  Option* kept(CLI::Option* option);
+
+  std::unique_ptr<CLI::App> app_;
+  std::deque<Option> options_;
+};
+
 /// Options read by the functions above. --help shows the value of the variable as the default.
-CLI::Option* add_number(CLI::App& app, const std::string& flag, double& value, const Range& range,
-                        const std::string& help);
-CLI::Option* add_numbers(CLI::App& app, const std::string& flag, std::vector<double>& values, const Range& range,
-                         const std::string& help);
+Option* add_number(App& app, const std::string& flag, double& value, const Range& range, const std::string& help);
+Option* add_numbers(App& app, const std::string& flag, std::vector<double>& values, const Range& range,
+                    const std::string& help);
 
 /// The criteria of focus and the origins of distances.
 inline constexpr std::array focus_criteria{petzval::FocusCriterion::thin, petzval::FocusCriterion::paraxial,
@@ -59,11 +106,11 @@ Enum named(const std::string& text, const std::array<Enum, count>& all) {
 }
 
 /// Rays per wavelength, 1 to 2^26.
-CLI::Option* add_samples(CLI::App& app, std::uint32_t& samples);
+Option* add_samples(App& app, std::uint32_t& samples);
 
 /// Reads the command line, runs the body and returns the exit status: 0, or 1 after one line with the reason on
 /// standard error.
-int run(CLI::App& app, int argc, char** argv, const std::function<void()>& body);
+int run(App& app, int argc, char** argv, const std::function<void()>& body);
 
 /// Shows the progress of a long job in one line if standard error is a terminal.
 class Progress {

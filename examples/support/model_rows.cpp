@@ -45,7 +45,7 @@ petzval::Film ModelOptions::film() const {
   return {width, height, static_cast<int>(columns), static_cast<int>(rows)};
 }
 
-void add_model_options(CLI::App& app, ModelOptions& options) {
+void add_model_options(App& app, ModelOptions& options) {
   app.add_option("LENS.json", options.lens_file, "lens prescription (JSON as in data/lenses)")->required();
   add_camera(app, options.setup);
   app.add_option("--resolution", options.resolution, "pixels across and up")->type_name("WxH")->capture_default_str();

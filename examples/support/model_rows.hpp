@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "camera_setup.hpp"
+#include "cli.hpp"
 #include "files.hpp"
 #include "petzval/accuracy/choose_model.hpp"
 #include "petzval/film/film.hpp"
@@ -22,7 +23,7 @@ struct ModelOptions {
   /// Throws petzval::Error.
   petzval::Film film() const;
 };
-void add_model_options(CLI::App& app, ModelOptions& options);
+void add_model_options(App& app, ModelOptions& options);
 
 /// The lens of the options at the d line, stopped down and focused.
 petzval::Lens focused_lens(const ModelOptions& options);

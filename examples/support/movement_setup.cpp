@@ -14,18 +14,18 @@
 
 namespace examples {
 
-void add_movement_options(CLI::App& app, MovementOptions& options) {
+void add_movement_options(App& app, MovementOptions& options) {
   app.add_option("LENS.json", options.lens_file, "lens prescription; may be left out for a thin lens");
   app.add_option("--model", options.model,
                  "model of the lens: thin (one plane), thick (cardinal points and pupils), real (exact rays)")
-      ->check(CLI::IsMember({"thin", "thick", "real"}))
+      ->one_of({"thin", "thick", "real"})
       ->capture_default_str();
   add_number(app, "--thin-focal-length-mm", options.focal_length_mm, positive_number,
              "focal length of a thin lens at the origin, in place of LENS.json; needs --model thin and --f-number")
       ->default_str("none");
   add_number(app, "--f-number", options.f_number, positive_number, "stop the lens down (by exact rays)")
       ->default_str("wide open");
-  app.add_option_function<std::string>(
+  app.add_option(
          "--film-mm",
          [&options](const std::string& text) {
            options.film_mm = text;

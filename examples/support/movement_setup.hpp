@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "cli.hpp"
 #include "petzval/film/film.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/movement/focus_target.hpp"
@@ -21,7 +21,7 @@ struct MovementOptions {
   double f_number = 0, focal_length_mm = 0;  // 0: not given
   bool film_given = false;
 };
-void add_movement_options(CLI::App& app, MovementOptions& options);
+void add_movement_options(App& app, MovementOptions& options);
 
 /// The lens of the options with the chosen model.
 struct MovingLens {
