@@ -4,6 +4,11 @@
 #include <cmath>
 #include <limits>
 
+// Lost rays are found by comparisons with NaN and infinity, which these options let the compiler drop.
+#if defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__) || defined(_M_FP_FAST)
+#error "petzval needs IEEE comparisons: compile without -ffast-math and -ffinite-math-only (/fp:fast)"
+#endif
+
 /// The interface between the kernels and their scalars.
 ///
 /// A kernel is written once over a scalar `T`: float, double or an automatic-differentiation number such as
@@ -32,7 +37,7 @@ template <class T>
 using Mask = decltype(T() < T());
 
 static_assert(std::numeric_limits<float>::is_iec559 && std::numeric_limits<double>::is_iec559,
-              "the masks of the kernels need IEEE comparisons: do not build with -ffast-math");
+              "the kernels need IEEE numbers");
 
 /// mask ? a : b, lane by lane. Both sides are computed, so both must be harmless.
 template <class T>

@@ -3,6 +3,8 @@
 
 #include <numbers>
 
+#include "petzval/core/version.hpp"
+
 namespace petzval::inline v0 {
 
 /// The helium d line, the usual reference of printed indices (nm).

@@ -4,6 +4,8 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
+#include "petzval/core/version.hpp"
+
 namespace petzval::inline v0 {
 
 /// Two components, of a point in a plane across the axis unless said otherwise.

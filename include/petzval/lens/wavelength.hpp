@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "petzval/core/version.hpp"
+
 namespace petzval::inline v0 {
 
 /// One of the wavelengths that a lens was compiled for: a position in Lens::wavelengths_nm(), or by default the primary

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "petzval/core/version.hpp"
+
 namespace petzval::inline v0 {
 
 /// A ray-transfer (ABCD) matrix on (y, n u): height in mm and optical direction, n the signed index (negative while

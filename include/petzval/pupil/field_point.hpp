@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "petzval/core/version.hpp"
+
 namespace petzval::inline v0 {
 
 /// A point of the scene, seen from the centre of the paraxial entrance pupil: `field_rad` away from the axis, in the
