@@ -145,14 +145,14 @@ Result solve(const Options& options) {
     p.predicted_mm = result.after.blurs[k++].blur_mm;
   }
   switch (result.after.status) {
-    case TiltFitStatus::no_targets:
+    case petzval::TiltFitStatus::no_targets:
       if (result.points.empty()) break;
       give_up(options, result.points);
-    case TiltFitStatus::unreachable:
+    case petzval::TiltFitStatus::unreachable:
       throw petzval::Error(options.points_file + ": the film, " + number(result.lens.film.width_mm) + " x " +
                            number(result.lens.film.height_mm) +
                            " mm, would touch the lens, wanted points farther away or a smaller film");
-    case TiltFitStatus::not_converged:
+    case petzval::TiltFitStatus::not_converged:
       throw petzval::Error(options.points_file + ": found no film that serves these points");
     default: break;
   }
