@@ -169,12 +169,13 @@ Result solve(const Options& options) {
 
 std::string status_in_words(const Result& result, const Options& options) {
   const std::string limit = number(options.max_tilt_deg) + " degrees";
-  if (result.after.status == TiltFitStatus::limited) {
+  if (result.after.status == petzval::TiltFitStatus::limited) {
     return "limited: the tilt may be at most " + limit +
            ", less across points that nearly lie on a line; this is the best film within the limit";
   }
-  if (result.after.status == TiltFitStatus::solved) return "solved: the points determine the plane of focus";
-  if (result.after.status == TiltFitStatus::no_targets) return "no targets: without points the film stays upright";
+  if (result.after.status == petzval::TiltFitStatus::solved) return "solved: the points determine the plane of focus";
+  if (result.after.status == petzval::TiltFitStatus::no_targets)
+    return "no targets: without points the film stays upright";
   if (result.after.rank == petzval::PlaneRank::point) {
     return "least tilt: one place in the picture determines a distance but no slope, so the film stays upright";
   }
