@@ -35,6 +35,7 @@ using examples::Json;
 using examples::number;
 using petzval::TargetUse;
 using petzval::TiltFit;
+using petzval::TiltFitStatus;
 using Vector = petzval::Vec3<double>;
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
