@@ -32,8 +32,8 @@
 ///     PointImage bokeh = point_image(lens, {.field_rad = 0, .z = -1500});
 ///
 /// This header declares the core: a program links petzval::core, which brings GLM and nothing else. petzval/figure/ has
-/// SVG figures (petzval::figure), petzval/io/image.hpp images (petzval::image), petzval/movement/tilt_fit.hpp the tilted
-/// film (petzval::fit).
+/// SVG figures (petzval::figure), petzval/io/image.hpp images (petzval::image), petzval/movement/tilt_fit.hpp the
+/// tilted film (petzval::fit).
 
 #include "petzval/accuracy/choose_model.hpp"
 #include "petzval/camera/camera.hpp"
