@@ -93,10 +93,10 @@ TEST(BlurMap, IsTheRightWayUpAndSigned) {
   EXPECT_LT(far[1], 120);
   const auto map = examples::blur_map(film, PointScene(lens, places), lens, nullptr, 1);
   for (std::size_t i = 0; i < 2; ++i) {
-    const auto& [x, y] = i == 0 ? near : far;
+    const auto& place = i == 0 ? near : far;
     const double blur = petzval::signed_blur(*lens.image(places[i]), film);
     EXPECT_EQ(blur < 0, i == 0);
-    EXPECT_NEAR(at(map, x, y), blur, 0.02 * std::abs(blur));
+    EXPECT_NEAR(at(map, place.x, place.y), blur, 0.02 * std::abs(blur));
   }
 }
 

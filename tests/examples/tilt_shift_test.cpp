@@ -140,7 +140,7 @@ TEST_F(TiltShift, SaysWhatTheLibraryFinds) {
   for (const std::string model : {"thin", "thick"}) {
     SCOPED_TRACE(model);
     const petzval::IdealLens ideal = model == "thin" ? petzval::thin_lens(lens) : petzval::thick_lens(lens);
-    const auto before = petzval::autofocus(ideal, targets, ideal.rear_focal_z);
+    const auto before = petzval::autofocus(ideal, targets);
     const auto after = petzval::fit_tilt(ideal, targets, {.film = before.film});
     const json found = gauss(table, {"--model", model});
     EXPECT_EQ(found["before"]["film_z_mm"], before.film.z());

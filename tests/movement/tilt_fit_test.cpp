@@ -90,17 +90,17 @@ Targets points_of(const Plane& plane, double z) {
 
 TEST(TiltFit, GivesTheTiltsThatAreKnown) {
   // Computed with 40 digits, for F = 0.05 and 2 m.
-  const Vec tilted_plane(0, 0.5, -std::sqrt(0.75));
+  const Vec normal(0, 0.5, -std::sqrt(0.75));
   const IdealLens thin = thin_lens(0.05, 2);
   TiltOptions options = behind(thin);
   options.film = {.width_mm = 0.036, .height_mm = 0.024};
-  const TiltFit tilted = fit_tilt(thin, points_of({leaning, std::sqrt(3)}, 0), options);
+  const TiltFit tilted = fit_tilt(thin, points_of({normal, std::sqrt(3)}, 0), options);
   ASSERT_EQ(tilted.status, Status::solved);
   EXPECT_NEAR(tilted.film.z(), 0.051282051282051282, 1e-9 * 0.05);
   EXPECT_NEAR(degrees(tilted.film.angle()), 0.848136346759917, 1e-9);
   EXPECT_NEAR(tilted.focus->hinge->point.y, 3.3774990747593107, 4e-9);
   EXPECT_NEAR(tilted.focus->scheimpflug->point.y, 3.4641016151377546, 4e-9);
-  EXPECT_LT(angle(tilted.focus->plane.normal, leaning), 1e-9);
+  EXPECT_LT(angle(tilted.focus->plane.normal, normal), 1e-9);
 
   const Targets low{target(-0.2, -1.5, -3), target(0.4, -1.5, -4), target(0.1, -1.5, -9)};
   const TiltFit ground = fit_tilt(thin, low, options);
@@ -113,7 +113,7 @@ TEST(TiltFit, GivesTheTiltsThatAreKnown) {
   p.surfaces = {{.radius = 100, .thickness = 20, .medium = {.nd = 1.5168}, .semi_diameter = 5, .stop = true},
                 {.radius = -100, .thickness = 100}};
   const IdealLens thick = thick_lens(compile(p));
-  const Plane scene{leaning, 1990 * std::sqrt(0.75)};
+  const Plane scene{normal, 1990 * std::sqrt(0.75)};
   const TiltFit through = fit_tilt(thick, points_of(scene, thick.front_principal_z()), behind(thick));
   ASSERT_EQ(through.status, Status::solved);
   EXPECT_NEAR(through.film.z() - 10, 108.62604046571582, 1e-9 * 100);

@@ -91,7 +91,7 @@ std::optional<Numbers> camera_numbers(const Lens& lens) {
   const Projection seen = camera->project(point);
   const ImportanceSample towards = camera->sample_importance(point, 0.3, 0.6);
   found.insert(found.end(), {seen.film.x, seen.film.y, towards.importance.we, towards.direction.x,
-                             camera->pdf_importance(point, towards.direction), camera->pupils().area({0.5, 0.5})});
+                             camera->pdf_importance(point, towards.direction)});
   return found;
 }
 
