@@ -134,11 +134,14 @@ Result solve(const Options& options) {
     leave_out_what_is_beside(petzval::Film(result.before.film), result);
     result.before = focused(options, result);
   }
-  const petzval::TiltOptions tilt{
+  petzval::TiltOptions tilt{
       .max_tilt_rad = petzval::radians(options.max_tilt_deg), .robust = options.robust, .film = result.before.film};
+  if (!options.film_given) tilt.film.width_mm = tilt.film.height_mm = 0;  // its middle has to stay behind the lens
   const auto served = targets(result.points);
   result.after = result.bundles ? petzval::fit_tilt(*result.bundles, served, tilt)
                                 : petzval::fit_tilt(result.lens.ideal, served, tilt);
+  result.after.film.width_mm = result.before.film.width_mm;
+  result.after.film.height_mm = result.before.film.height_mm;
   std::size_t k = 0;
   for (Point& p : result.points) {
     if (!p.in_picture) continue;

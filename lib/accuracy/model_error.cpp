@@ -11,15 +11,15 @@
 namespace petzval::inline v0 {
 
 ModelError model_error(const Lens& lens, const Film& film, ModelKind model, const ErrorSamples& samples) {
-  const Lens placed = camera_detail::placed(lens, film).lens;
-  camera_detail::check_upright_film(placed, film);
-  const AnyRayModel built = camera_detail::make_model(model, placed, film.radius_mm());
-  return model_errors(placed, film, std::span(&built, 1), samples).front();
+  const auto [placed_lens, placed_film] = camera_detail::placed(lens, film);
+  camera_detail::check_upright_film(placed_lens, placed_film);
+  const AnyRayModel built = camera_detail::make_model(model, placed_lens, film.radius_mm());
+  return model_errors(placed_lens, placed_film, std::span(&built, 1), samples).front();
 }
 
-std::vector<ModelError> model_errors(const Lens& given, const Film& film, std::span<const AnyRayModel> models,
+std::vector<ModelError> model_errors(const Lens& given, const Film& given_film, std::span<const AnyRayModel> models,
                                      const ErrorSamples& samples) {
-  const Lens lens = camera_detail::placed(given, film).lens;
+  const auto [lens, film] = camera_detail::placed(given, given_film);
   camera_detail::check_upright_film(lens, film);
   const camera_detail::ExactModel<double> exact(lens, film.radius_mm());
   const accuracy_detail::RayStudy rays(exact, film, samples);

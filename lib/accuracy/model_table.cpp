@@ -115,8 +115,8 @@ std::vector<double> costs(std::span<const AnyRayModel> models, std::vector<doubl
 
 ModelTable model_table(const Lens& given, const SceneRequirements& scene, std::span<const Tolerance> tolerances,
                        int threads) {
-  const Lens whole = camera_detail::placed(given, scene.film).lens;
-  camera_detail::check_upright_film(whole, scene.film);
+  const auto [whole, placed_film] = camera_detail::placed(given, scene.film);
+  camera_detail::check_upright_film(whole, placed_film);
   const Setting setting(whole, scene, tolerances, threads);
   const Film& film = setting.film;
   const double rounding = std::numeric_limits<float>::epsilon() * focal_length(setting.lens);
