@@ -178,10 +178,11 @@ TEST_P(CustomModel, IsSeenFromTheSceneAsTheBuiltInModelIs) {
     const double u = std::fmod(i * std::numbers::phi, 1.0), v = (i + 0.5) / 200, turn = 2 * std::numbers::pi * u;
     const Vec3<double> point{400 * v * std::cos(turn), 400 * v * std::sin(turn), -500 - 4000 * u};
     const ImportanceSample own = own_.sample_importance(point, v, u), wanted = built_in_.sample_importance(point, v, u);
-    // Tables of entrance pupils are searched to 2e-5: rays that differ by rounding end their bisection elsewhere.
-    EXPECT_NEAR(own.pdf, wanted.pdf, 2e-5 * wanted.pdf);
+    // Entrance pupils are searched to 2e-5 and enlarged by what the search leaves open: with the rounding of rays their
+    // area changes by up to 2e-4. Any area that encloses the pupil gives the same light.
+    EXPECT_NEAR(own.pdf, wanted.pdf, 5e-4 * wanted.pdf);
     EXPECT_NEAR(glm::length(own.direction - wanted.direction), 0, 2e-6);
-    EXPECT_NEAR(own_.pdf_importance(point, wanted.direction), wanted.pdf, 2e-5 * wanted.pdf);
+    EXPECT_NEAR(own_.pdf_importance(point, wanted.direction), wanted.pdf, 5e-4 * wanted.pdf);
     const Importance a = own_.importance({wanted.on_pupil, wanted.direction}), b = wanted.importance;
     if (a.fate != b.fate) continue;  // at an edge
     EXPECT_NEAR(a.we, b.we, 1e-9 * b.we);

@@ -19,7 +19,7 @@ namespace petzval {
 namespace {
 
 constexpr double pi = std::numbers::pi;
-constexpr std::uint32_t replicates = 16, samples = 10000;
+constexpr std::uint32_t replicates = 16, samples = 1 << 14;
 
 /// A uniform square light that faces along the axis.
 struct Light {
