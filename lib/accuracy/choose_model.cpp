@@ -3,9 +3,9 @@
 
 #include <algorithm>
 
+#include "core/text.hpp"
 #include "model_table.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/core/text.hpp"
 
 namespace petzval::inline v0 {
 namespace {
@@ -16,7 +16,7 @@ using accuracy_detail::Tolerance;
 void check(const ErrorBudget& budget) {
   const auto refuse = [](const char* what, const std::optional<double>& part) {
     if (!part || *part >= 0) return;
-    throw Error(std::string("choose_model: budget: ") + what + " is " + number(*part) + ", wanted 0 or more");
+    throw Error(std::string("choose_model: budget: ") + what + " is " + to_text(*part) + ", wanted 0 or more");
   };
   refuse("max_px", budget.max_px);
   refuse("max_of_blur", budget.max_of_blur);
@@ -24,7 +24,7 @@ void check(const ErrorBudget& budget) {
   refuse("pupil_shape", budget.pupil_shape);
 }
 
-std::string percent(double fraction) { return number(100 * fraction, 3) + " %"; }
+std::string percent(double fraction) { return to_text(100 * fraction, 3) + " %"; }
 
 /// One part of a budget and what a model needs of it.
 struct Part {
@@ -35,10 +35,10 @@ struct Part {
 /// Errors of rays against a budget; nothing where it does not ask for them. of_tolerance: of this budget.
 std::optional<Part> ray_part(double px, double of_blur, double of_tolerance, const ErrorBudget& budget) {
   if (budget.max_px && budget.max_of_blur) {
-    return Part{of_tolerance <= 1, number(px, 3) + " px (" + percent(of_tolerance) + " of what is allowed)",
-                number(*budget.max_px) + " px, or " + percent(*budget.max_of_blur) + " of the local blur"};
+    return Part{of_tolerance <= 1, to_text(px, 3) + " px (" + percent(of_tolerance) + " of what is allowed)",
+                to_text(*budget.max_px) + " px, or " + percent(*budget.max_of_blur) + " of the local blur"};
   }
-  if (budget.max_px) return Part{px <= *budget.max_px, number(px, 3) + " px", number(*budget.max_px) + " px"};
+  if (budget.max_px) return Part{px <= *budget.max_px, to_text(px, 3) + " px", to_text(*budget.max_px) + " px"};
   if (!budget.max_of_blur) return {};
   return Part{of_blur <= *budget.max_of_blur, percent(of_blur) + " of the local blur",
               percent(*budget.max_of_blur) + " of it"};
@@ -75,7 +75,7 @@ std::vector<std::string> not_needed(const ModelTable& table, std::size_t budget_
     return ray_part(largest->mm / table.pixel_mm, largest->of_blur, largest->of_tolerance[budget_number], budget);
   };
   if (const auto part = rays(table.one_wavelength); part && part->inside) {
-    result.push_back(std::to_string(table.wavelengths) + " wavelengths: " + number(table.central_nm, 6) +
+    result.push_back(std::to_string(table.wavelengths) + " wavelengths: " + to_text(table.central_nm, 6) +
                      " nm can stand for all, whose rays are off by up to " + part->needs + " (budget " + part->budget +
                      ")");
   }
@@ -105,7 +105,7 @@ ModelChoice choose(const ModelTable& table, std::size_t budget_number, const Err
   }
   choice.model = chosen->model;
   const auto called = [](const ModelCandidate& candidate) {
-    return std::string(name(candidate.model)) + " (" + number(candidate.ns_per_ray, 3) + " ns per ray)";
+    return std::string(name(candidate.model)) + " (" + to_text(candidate.ns_per_ray, 3) + " ns per ray)";
   };
   const std::string& kept = judgements[static_cast<std::size_t>(chosen - choice.table.data())].kept;
   choice.reasons.push_back(called(*chosen) + " is the fastest inside the budget" + (kept.empty() ? "" : ": " + kept));

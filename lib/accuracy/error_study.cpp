@@ -9,9 +9,9 @@
 #include <numeric>
 #include <string>
 
+#include "core/text.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/parallel.hpp"
-#include "petzval/core/text.hpp"
 
 namespace petzval::inline v0::accuracy_detail {
 namespace {
@@ -98,12 +98,12 @@ RayStudy::RayStudy(const camera_detail::ExactModel<double>& exact, const Film& f
   if (samples.depths_z.empty()) throw Error(lens.name() + ": model error: no depths, wanted one or more");
   for (const double z : samples.depths_z) {
     if (z < 0) continue;
-    throw Error(lens.name() + ": model error: depth z is " + number(z) +
+    throw Error(lens.name() + ": model error: depth z is " + to_text(z) +
                 " mm, wanted it in front of the lens, below 0");
   }
   if (const auto& range = samples.sharpest_between_z; range && !(range->at(0) < 0 && range->at(1) < 0)) {
-    throw Error(lens.name() + ": model error: the sharpest depth is to be found between z = " + number(range->at(0)) +
-                " and " + number(range->at(1)) + " mm, wanted both in front of the lens, below 0");
+    throw Error(lens.name() + ": model error: the sharpest depth is to be found between z = " + to_text(range->at(0)) +
+                " and " + to_text(range->at(1)) + " mm, wanted both in front of the lens, below 0");
   }
   const ChiefRays chief_rays(lens, exact.pupils().space());
   const AnyRayModel any = exact;

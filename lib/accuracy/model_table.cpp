@@ -9,9 +9,9 @@
 
 #include "camera/check_film.hpp"
 #include "camera/make_model.hpp"
+#include "core/text.hpp"
 #include "model_timing.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/core/text.hpp"
 #include "petzval/core/units.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/paraxial/first_order.hpp"
@@ -26,8 +26,8 @@ constexpr std::size_t ray_film_points = 384, pupil_film_points = 40;
 std::vector<double> depths_of(const Lens& lens, const SceneRequirements& scene) {
   const double nearest = scene.near_mm, farthest = scene.far_mm, film_z = lens.film_z();
   if (!(nearest <= farthest) || !(film_z - nearest < 0)) {
-    throw Error(lens.name() + ": choose_model: the scene is from " + number(nearest, 6) + " to " + number(farthest, 6) +
-                " mm from the film, wanted from more than " + number(film_z, 6) +
+    throw Error(lens.name() + ": choose_model: the scene is from " + to_text(nearest, 6) + " to " +
+                to_text(farthest, 6) + " mm from the film, wanted from more than " + to_text(film_z, 6) +
                 " mm, in front of the lens, to as far or farther");
   }
   // The plane of finite distance that measures as those near infinity do: there it is angles that count.

@@ -8,9 +8,9 @@
 #include "camera_data.hpp"
 #include "check_film.hpp"
 #include "core/low_discrepancy.hpp"
+#include "core/text.hpp"
 #include "make_model.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/core/text.hpp"
 #include "tilted_pinhole.hpp"
 
 namespace petzval::inline v0 {
@@ -36,13 +36,13 @@ void check_model(const Lens& lens, const FilmPupilTable& pupils, double radius) 
   }
   constexpr double near = 1e-6;  // mm
   if (!(std::abs(pupils.space().film_z - lens.film_z()) <= near)) {
-    throw Error(lens.name() + ": camera: the model has its film at z = " + number(pupils.space().film_z) +
-                " mm, wanted the lens's, " + number(lens.film_z()) + " mm");
+    throw Error(lens.name() + ": camera: the model has its film at z = " + to_text(pupils.space().film_z) +
+                " mm, wanted the lens's, " + to_text(lens.film_z()) + " mm");
   }
   constexpr double rounding = 1e-9;
   if (!(radius <= pupils.film_radius() * (1 + rounding))) {
-    throw Error(lens.name() + ": camera: the model is one for film points up to " + number(pupils.film_radius()) +
-                " mm from the axis, wanted " + number(radius) + " mm or more");
+    throw Error(lens.name() + ": camera: the model is one for film points up to " + to_text(pupils.film_radius()) +
+                " mm from the axis, wanted " + to_text(radius) + " mm or more");
   }
 }
 

@@ -5,8 +5,8 @@
 #include <numbers>
 #include <string>
 
+#include "core/text.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/core/text.hpp"
 #include "petzval/film/film.hpp"
 #include "petzval/pupil_table/two_plane_rays.hpp"
 #include "pupil/face.hpp"
@@ -16,18 +16,18 @@ namespace petzval::inline v0::camera_detail {
 void check_rectangle(const std::string& where, const Film& film) {
   const auto refuse = [&](const std::string& found_and_wanted) { throw Error(where + ": " + found_and_wanted); };
   if (!(film.width_mm > 0 && film.height_mm > 0 && std::isnormal(film.area_mm2()))) {
-    refuse("it is " + number(film.width_mm) + " by " + number(film.height_mm) +
+    refuse("it is " + to_text(film.width_mm) + " by " + to_text(film.height_mm) +
            " mm, wanted positive lengths and an area that is a number");
   }
   if (film.columns <= 0 || film.rows <= 0) {
     refuse("it has " + std::to_string(film.columns) + " by " + std::to_string(film.rows) + " pixels, wanted some");
   }
   if (!(std::isfinite(film.shift_x_mm) && std::isfinite(film.shift_y_mm))) {
-    refuse("its centre is (" + number(film.shift_x_mm) + ", " + number(film.shift_y_mm) + ") mm, wanted a place");
+    refuse("its centre is (" + to_text(film.shift_x_mm) + ", " + to_text(film.shift_y_mm) + ") mm, wanted a place");
   }
   constexpr double quarter_turn = std::numbers::pi / 2;
   if (!(std::abs(film.tilt_rad) < quarter_turn && std::abs(film.swing_rad) < quarter_turn)) {
-    refuse("it is tilted by " + number(film.tilt_rad) + " and " + number(film.swing_rad) +
+    refuse("it is tilted by " + to_text(film.tilt_rad) + " and " + to_text(film.swing_rad) +
            " rad, wanted less than a quarter turn");
   }
 }
@@ -49,9 +49,9 @@ void check_film(const Lens& lens, const Film& film) {
   for (const FilmPoint& corner : film.corners()) {
     const double z = film.position(corner).z;
     if ((z - end) * side > 0) continue;
-    throw Error(lens.name() + ": film: tilted by " + number(film.tilt_rad) + " and " + number(film.swing_rad) +
-                " rad it has its corner (" + number(corner.x) + ", " + number(corner.y) + ") mm at z = " + number(z) +
-                " mm, wanted it " + (side > 0 ? "beyond " : "before ") + number(end) +
+    throw Error(lens.name() + ": film: tilted by " + to_text(film.tilt_rad) + " and " + to_text(film.swing_rad) +
+                " rad it has its corner (" + to_text(corner.x) + ", " + to_text(corner.y) +
+                ") mm at z = " + to_text(z) + " mm, wanted it " + (side > 0 ? "beyond " : "before ") + to_text(end) +
                 " mm, where the last surface ends");
   }
 }
@@ -59,7 +59,7 @@ void check_film(const Lens& lens, const Film& film) {
 void check_upright_film(const Lens& lens, const Film& film) {
   check_film(lens, film);
   if (!film.tilted()) return;
-  throw Error(lens.name() + ": film: it is tilted by " + number(film.tilt_rad) + " and " + number(film.swing_rad) +
+  throw Error(lens.name() + ": film: it is tilted by " + to_text(film.tilt_rad) + " and " + to_text(film.swing_rad) +
               " rad, wanted one perpendicular to the axis");
 }
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <string>
 
+#include "core/text.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/core/text.hpp"
 #include "petzval/paraxial/pupils.hpp"
 
 namespace petzval::inline v0 {
@@ -41,7 +41,7 @@ HostFrame::HostFrame(Host host, const Lens& lens, FrameOrigin origin)
 HostFrame::HostFrame(Host host, const Lens& lens, FrameOrigin origin, double units_per_mm)
     : signs_(signs_of(host)), origin_z_(z_of(lens, origin)), units_per_mm_(units_per_mm) {
   if (!(units_per_mm > 0) || !std::isfinite(units_per_mm)) {
-    throw Error(lens.name() + ": host frame: units per mm is " + number(units_per_mm) +
+    throw Error(lens.name() + ": host frame: units per mm is " + to_text(units_per_mm) +
                 ", wanted a positive and finite number");
   }
 }

@@ -8,11 +8,11 @@
 #include <vector>
 
 #include "core/meet_plane.hpp"
+#include "core/text.hpp"
 #include "core/widest.hpp"
 #include "make_model.hpp"
 #include "paraxial_loops.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/core/text.hpp"
 #include "petzval/pupil_table/film_pupil_table.hpp"
 #include "pupil_table/sector.hpp"
 #include "two_disc_fit.hpp"

@@ -19,9 +19,9 @@
 #include <vector>
 
 #include "check_film.hpp"
+#include "core/text.hpp"
 #include "make_model.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/core/text.hpp"
 #include "pupil/face.hpp"
 #include "tilted_pinhole.hpp"
 
@@ -73,8 +73,8 @@ TwoPlaneRayDerivatives derivatives_of(const Jet& film_x, const Jet& film_y, cons
 void check_distance(const std::string& where, const FilmPoint& corner, double z, double film_z, double plane_z) {
   constexpr double nearest = 0.1;
   if ((z - plane_z) / (film_z - plane_z) >= nearest) return;
-  throw Error(where + ": the corner (" + number(corner.x) + ", " + number(corner.y) + ") mm is at z = " + number(z) +
-              " mm, wanted it at least a tenth of the film's distance from the pupil, " + "z = " + number(plane_z) +
+  throw Error(where + ": the corner (" + to_text(corner.x) + ", " + to_text(corner.y) + ") mm is at z = " + to_text(z) +
+              " mm, wanted it at least a tenth of the film's distance from the pupil, " + "z = " + to_text(plane_z) +
               " mm");
 }
 
@@ -159,8 +159,8 @@ TiltedFilm::TiltedFilm(const Film& film, const FilmPupilTable& pupils)
   const FilmTilt tilt = tilt_of(*this);
   constexpr double rounding = 1e-9;
   if (!(tilt.radius <= pupils.film_radius() * (1 + rounding))) {
-    throw Error(where + ": the pupils are those of film points up to " + number(pupils.film_radius()) +
-                " mm from the axis, wanted " + number(tilt.radius) + " mm or more");
+    throw Error(where + ": the pupils are those of film points up to " + to_text(pupils.film_radius()) +
+                " mm from the axis, wanted " + to_text(tilt.radius) + " mm or more");
   }
   pupils_ = pupils.for_tilted_film(tilt);
 }

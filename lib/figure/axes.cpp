@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "petzval/core/text.hpp"
+#include "core/text.hpp"
 #include "sheet.hpp"
 
 namespace petzval::inline v0::figure_detail {
@@ -19,7 +19,7 @@ void for_ticks(const Axis& axis, int most, Draw draw) {
       for (const double digit : {1, 2, 5}) {
         const double value = k + std::log10(digit);
         if (digit != 1 && 3 * span > most) continue;
-        if (value >= axis.from && value <= axis.to) draw(value, number(digit * std::pow(10, k), 6));
+        if (value >= axis.from && value <= axis.to) draw(value, to_text(digit * std::pow(10, k), 6));
       }
     }
     return;
@@ -27,7 +27,7 @@ void for_ticks(const Axis& axis, int most, Draw draw) {
   double step = round_length(span / most);
   while (span / step > most) step = round_length(2.5 * step);
   for (double k = std::ceil(axis.from / step - 1e-9); k * step <= axis.to + 1e-9 * step; ++k) {
-    draw(k * step, number(k == 0 ? 0.0 : k * step, 6));  // no "-0"
+    draw(k * step, to_text(k == 0 ? 0.0 : k * step, 6));  // no "-0"
   }
 }
 

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "axes.hpp"
+#include "core/text.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/core/text.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/psf/spot.hpp"
 #include "sheet.hpp"
@@ -155,7 +155,7 @@ class Figure {
   }
 
   static std::string signed_mm(double mm) {
-    return (mm >= 0 ? "+" : "\u2212") + number(std::abs(mm) < 5e-7 ? 0.0 : std::abs(mm), 3) + " mm";
+    return (mm >= 0 ? "+" : "\u2212") + to_text(std::abs(mm) < 5e-7 ? 0.0 : std::abs(mm), 3) + " mm";
   }
 
   /// The range of the horizontal axis: all marks, and a part of the curves on both sides.

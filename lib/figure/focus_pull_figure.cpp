@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "axes.hpp"
+#include "core/text.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/core/text.hpp"
 #include "petzval/core/units.hpp"
 #include "sheet.hpp"
 
@@ -40,11 +40,11 @@ void check(Frames frames) {
       throw Error(where + "time, film or tilt is not a finite number, wanted such");
     }
     if (!(f.subject_distance > 0)) {
-      throw Error(where + "the distance in focus is " + number(f.subject_distance) + " mm, wanted more than 0");
+      throw Error(where + "the distance in focus is " + to_text(f.subject_distance) + " mm, wanted more than 0");
     }
     if (std::isinf(f.rms_mm)) throw Error(where + "the blur is infinite, wanted a number, or none");
     if (i > 0 && !(f.time > frames[i - 1].time)) {
-      throw Error(where + "at " + number(f.time) + " s, wanted it after the one before");
+      throw Error(where + "at " + to_text(f.time) + " s, wanted it after the one before");
     }
   }
 }

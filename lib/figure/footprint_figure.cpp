@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/text.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/core/text.hpp"
 #include "petzval/paraxial/pupils.hpp"
 #include "petzval/pupil/illumination.hpp"
 #include "petzval/pupil/pupil_boundary.hpp"
@@ -192,11 +192,11 @@ class Figure {
       return;
     }
     if (axial_area_ > 0) {
-      svg.text(left, upper + cell + 33, "area " + number(c.outline.area() / axial_area_, 3) + " of that on the axis",
+      svg.text(left, upper + cell + 33, "area " + to_text(c.outline.area() / axial_area_, 3) + " of that on the axis",
                figure_detail::small_text);
     }
     if (c.illumination) {
-      svg.text(left, upper + cell + 48, "relative illumination " + number(*c.illumination, 3),
+      svg.text(left, upper + cell + 48, "relative illumination " + to_text(*c.illumination, 3),
                figure_detail::small_text);
     }
     if (c.away) {

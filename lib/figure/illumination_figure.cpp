@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "axes.hpp"
+#include "core/text.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/core/text.hpp"
 #include "petzval/core/units.hpp"
 #include "petzval/pupil/illumination.hpp"
 #include "sheet.hpp"
@@ -18,7 +18,7 @@ namespace petzval::inline v0 {
 
 std::string illumination_figure(const Lens& lens, double subject_z, double field_rad) {
   if (!(field_rad > 0)) {
-    throw Error("illumination_figure: field is " + number(degrees(field_rad), 6) + " degrees, wanted more than 0");
+    throw Error("illumination_figure: field is " + to_text(degrees(field_rad), 6) + " degrees, wanted more than 0");
   }
   constexpr int steps = 30;
   constexpr double width = 960, left = 78, top = 70, height = 300;

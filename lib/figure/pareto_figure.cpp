@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "axes.hpp"
+#include "core/text.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/core/text.hpp"
 #include "sheet.hpp"
 
 namespace petzval::inline v0 {
@@ -22,11 +22,11 @@ void check(std::span<const ParetoPoint> points) {
   for (const ParetoPoint& p : points) {
     const std::string where = "pareto_figure: " + std::string(p.name) + ": ";
     if (!(p.ns_per_ray > 0 && p.ns_per_ray < infinity)) {
-      throw Error(where + "takes " + number(p.ns_per_ray) + " ns, wanted a finite number above 0");
+      throw Error(where + "takes " + to_text(p.ns_per_ray) + " ns, wanted a finite number above 0");
     }
     for (const double error : {p.max_um, p.rms_um}) {
       if (error >= 0 && error < infinity) continue;
-      throw Error(where + "an error is " + number(error) + " um, wanted a finite one, 0 or more");
+      throw Error(where + "an error is " + to_text(error) + " um, wanted a finite one, 0 or more");
     }
   }
 }

@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "petzval/core/text.hpp"
+#include "core/text.hpp"
 #include "petzval/core/units.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/paraxial/pupils.hpp"
@@ -36,12 +36,12 @@ double round_length(double x) {
 
 std::string length_text(double mm) {
   const double size = std::abs(mm);
-  if (size >= 9999.5) return number(mm * 1e-3, 4) + " m";  // telescopes
-  if (size >= 0.9995 || size == 0) return number(mm, 4) + " mm";
-  return number(std::round(mm * 1e6) * 1e-3, 3) + " \u00b5m";  // rounding, below a nanometre
+  if (size >= 9999.5) return to_text(mm * 1e-3, 4) + " m";  // telescopes
+  if (size >= 0.9995 || size == 0) return to_text(mm, 4) + " mm";
+  return to_text(std::round(mm * 1e6) * 1e-3, 3) + " \u00b5m";  // rounding, below a nanometre
 }
 
-std::string field_text(double field_rad) { return number(degrees(field_rad), 4) + "\u00b0"; }
+std::string field_text(double field_rad) { return to_text(degrees(field_rad), 4) + "\u00b0"; }
 
 std::string_view field_colour(std::size_t field) {
   constexpr std::array<std::string_view, 7> palette{"#1f5fc4", "#1a8f3c", "#d0331f", "#b97a00",
@@ -60,16 +60,16 @@ void draw_head(Svg& svg, const Lens& lens, std::string_view kind, double subject
   const double f_number = has_pupils(lens) ? real_f_number(lens, wavelength) : 0;
   svg.text(sheet_margin, 46,
            std::string(kind) + ".  " + focal_length_text(lens, wavelength) +
-               (f_number > 0 && std::isfinite(f_number) ? ",  f/" + number(f_number, 3) : "") + ",  subject at " +
-               (std::isinf(subject_z) ? "infinity" : "z = " + number(subject_z, 6) + " mm") + ",  film at z = " +
-               number(lens.film_z(), 6) + " mm,  " + number(lens.wavelengths_nm()[wavelength], 6) + " nm");
+               (f_number > 0 && std::isfinite(f_number) ? ",  f/" + to_text(f_number, 3) : "") + ",  subject at " +
+               (std::isinf(subject_z) ? "infinity" : "z = " + to_text(subject_z, 6) + " mm") + ",  film at z = " +
+               to_text(lens.film_z(), 6) + " mm,  " + to_text(lens.wavelengths_nm()[wavelength], 6) + " nm");
 }
 
 double draw_scale_bar(Svg& svg, double x, double y, double px_per_mm, double longest, std::string_view remark) {
   const double length = round_length(longest / px_per_mm), right = x + length * px_per_mm;
   svg.path("M" + svg_number(x) + " " + svg_number(y - 3) + "v6m0-3H" + svg_number(right) + "m0-3v6",
            "fill=\"none\" stroke=\"#222\" stroke-width=\"1.2\"");
-  const std::string words = (length < 1000 ? length_text(length) : number(length * 1e-3) + " m") + std::string(remark);
+  const std::string words = (length < 1000 ? length_text(length) : to_text(length * 1e-3) + " m") + std::string(remark);
   svg.text(right + 8, y + 4, words);
   return right + 8 + width_of(words);
 }

@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/text.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/core/text.hpp"
 #include "petzval/core/units.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/paraxial/pupils.hpp"
@@ -128,13 +128,14 @@ class Figure {
     double x = gap;
     for (std::size_t w = 0; w < wavelengths_; ++w) {
       svg_.path(marker(looks_[w].marker, x + 4, 65), stroke(w));
-      const std::string name = number(lens_.wavelengths_nm()[w], 6) + " nm";
+      const std::string name = to_text(lens_.wavelengths_nm()[w], 6) + " nm";
       svg_.text(x + 12, 69, name);
       x += 90;
     }
     for (std::size_t column = 0; columns_ > 1 && column < columns_; ++column) {
       svg_.text(cell_x(column) + cell / 2, top - 10,
-                column == 0 ? "all wavelengths" : number(lens_.wavelengths_nm()[column - 1], 6) + " nm", small_centred);
+                column == 0 ? "all wavelengths" : to_text(lens_.wavelengths_nm()[column - 1], 6) + " nm",
+                small_centred);
     }
   }
 
@@ -144,11 +145,11 @@ class Figure {
 
   void label(std::size_t row) {
     const double y = cell_y(row) + cell / 2;
-    svg_.text(gap, y - 6, "field " + number(degrees(of(row).front().point.field_rad), 4) + "\u00b0",
+    svg_.text(gap, y - 6, "field " + to_text(degrees(of(row).front().point.field_rad), 4) + "\u00b0",
               "font-weight=\"bold\"");
     const auto& chief = of(row)[middle_].chief_ray_height;
     svg_.text(gap, y + 12, "chief ray at", small_text);
-    svg_.text(gap, y + 27, chief ? "y = " + number(*chief, 4) + " mm" : "none", small_text);
+    svg_.text(gap, y + 27, chief ? "y = " + to_text(*chief, 4) + " mm" : "none", small_text);
   }
 
   void draw_cell(std::size_t row, std::size_t column) {
@@ -194,9 +195,9 @@ class Figure {
     // A closed stop has no Airy circle.
     const std::string circle = !std::isfinite(f_number_)
                                    ? std::string()
-                                   : "Dashed: Airy circle, 1.22 wavelength N, N = " + number(f_number_, 3) +
+                                   : "Dashed: Airy circle, 1.22 wavelength N, N = " + to_text(f_number_, 3) +
                                          " on the film's side; " + figure_detail::length_text(airy(middle_)) + " at " +
-                                         number(lens_.wavelengths_nm()[middle_], 6) + " nm. ";
+                                         to_text(lens_.wavelengths_nm()[middle_], 6) + " nm. ";
     svg_.text(gap, y + 40,
               circle + std::to_string(spots_.front().hits.sent) + " rays sent a spot, " + std::to_string(drawn_rays) +
                   " drawn at most.",

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "petzval/core/text.hpp"
+#include "core/text.hpp"
 
 namespace petzval::inline v0::figure_detail {
 namespace {
@@ -13,11 +13,25 @@ std::string attribute(std::string_view name, double value) {
   return " " + std::string(name) + "=\"" + svg_number(value) + "\"";
 }
 
+/// Words as the content of an element of XML: & < > by their names.
+std::string escaped_xml(std::string_view words) {
+  std::string result;
+  for (const char c : words) {
+    switch (c) {
+      case '&': result += "&amp;"; break;
+      case '<': result += "&lt;"; break;
+      case '>': result += "&gt;"; break;
+      default: result += c;
+    }
+  }
+  return result;
+}
+
 }  // namespace
 
 std::string svg_number(double value) {
   const double rounded = std::round(value * 100) / 100;
-  return number(rounded == 0 ? 0.0 : rounded);  // no "-0"
+  return to_text(rounded == 0 ? 0.0 : rounded);  // no "-0"
 }
 
 Svg::Svg(double width, double height) {

@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/text.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/core/text.hpp"
 #include "petzval/core/units.hpp"
 #include "scene_panel.hpp"
 #include "sheet.hpp"
@@ -42,19 +42,19 @@ constexpr std::string_view wedge_style = "fill=\"#dff2e3\"";
 void check(const TiltView& view) {
   for (const Film* film : {&view.before, &view.after}) {
     if (!(film->width_mm > 0 && film->height_mm > 0)) {
-      throw Error("tilt_figure: the film is " + number(film->width_mm) + " x " + number(film->height_mm) +
+      throw Error("tilt_figure: the film is " + to_text(film->width_mm) + " x " + to_text(film->height_mm) +
                   " mm, wanted both above 0");
     }
     if (std::isfinite(film->z() + film->tilt_rad + film->swing_rad)) continue;
-    throw Error("tilt_figure: a film stands at z = " + number(film->z()) + " mm, tilt " + number(film->tilt_rad) +
-                ", swing " + number(film->swing_rad) + ", wanted finite numbers");
+    throw Error("tilt_figure: a film stands at z = " + to_text(film->z()) + " mm, tilt " + to_text(film->tilt_rad) +
+                ", swing " + to_text(film->swing_rad) + ", wanted finite numbers");
   }
-  if (!(view.blur_mm > 0)) throw Error("tilt_figure: blur is " + number(view.blur_mm) + " mm, wanted more than 0");
+  if (!(view.blur_mm > 0)) throw Error("tilt_figure: blur is " + to_text(view.blur_mm) + " mm, wanted more than 0");
 }
 
 /// Without rounding errors, and never "-0".
 std::string degrees_text(double angle_rad) {
-  return number(std::round(1e6 * degrees(angle_rad)) / 1e6 + 0.0, 4) + "\u00b0";
+  return to_text(std::round(1e6 * degrees(angle_rad)) / 1e6 + 0.0, 4) + "\u00b0";
 }
 
 class Figure {
@@ -108,12 +108,12 @@ class Figure {
     constexpr double hardly = 0.01;
     if (std::abs(turn) < hardly) return "y";
     if (std::abs(turn - radians(90)) < hardly) return "x";
-    return "y turned by " + number(degrees(turn), 3) + "\u00b0 towards +x";
+    return "y turned by " + to_text(degrees(turn), 3) + "\u00b0 towards +x";
   }
 
   std::string film_in_words() const {
     const Film& film = view_.after;
-    std::string words = "Film at z = " + number(film.z(), 7) + " mm (before: " + number(view_.before.z(), 7) + " mm)";
+    std::string words = "Film at z = " + to_text(film.z(), 7) + " mm (before: " + to_text(view_.before.z(), 7) + " mm)";
     if (!film.tilted()) return words + ", upright.";
     return words + ", leaning by " + degrees_text(film.angle()) + " (tilt " + degrees_text(film.tilt_rad) + ", swing " +
            degrees_text(film.swing_rad) + ").";

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "core/text.hpp"
 #include "film_bounds.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/core/text.hpp"
 
 namespace petzval::inline v0 {
 
@@ -75,8 +75,8 @@ Film film_in(const Plane& plane, const Film& film) {
   const double z = plane.offset / plane.normal.z;
   const Vec3<double> n = plane.normal.z < 0 ? -plane.normal : plane.normal;
   if (!std::isfinite(z) || !std::isfinite(n.x) || !std::isfinite(n.y)) {
-    throw Error("film_in: the plane has the normal (" + number(plane.normal.x) + ", " + number(plane.normal.y) + ", " +
-                number(plane.normal.z) + ") and the offset " + number(plane.offset) +
+    throw Error("film_in: the plane has the normal (" + to_text(plane.normal.x) + ", " + to_text(plane.normal.y) +
+                ", " + to_text(plane.normal.z) + ") and the offset " + to_text(plane.offset) +
                 " mm, wanted finite numbers and a plane that crosses the axis");
   }
   Film laid = film;

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/text.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/core/text.hpp"
 #include "petzval/paraxial/pupils.hpp"
 #include "root.hpp"
 #include "solver.hpp"
@@ -19,7 +19,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 void check_blur(const Lens& lens, double blur_mm) {
   if (!(blur_mm > 0 && std::isfinite(blur_mm))) {
-    throw Error(lens.name() + ": blur is " + number(blur_mm) + " mm, wanted a finite diameter above 0");
+    throw Error(lens.name() + ": blur is " + to_text(blur_mm) + " mm, wanted a finite diameter above 0");
   }
 }
 

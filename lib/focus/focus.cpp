@@ -4,8 +4,8 @@
 #include <cmath>
 #include <string>
 
+#include "core/text.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/core/text.hpp"
 #include "solver.hpp"
 
 namespace petzval::inline v0 {
@@ -68,7 +68,7 @@ Lens with_focus(const Lens& lens, double distance, const FocusOptions& options) 
       default: return "front vertex";
     }
   };
-  const std::string subject = lens.name() + ": a subject " + number(distance) + " mm from the " + place() +
+  const std::string subject = lens.name() + ": a subject " + to_text(distance) + " mm from the " + place() +
                               " cannot be focused (" + std::string(name(options.criterion)) + ")";
   switch (solution.status) {
     case FocusStatus::no_rays: throw Error(subject + ": no ray gets through the lens");
@@ -77,7 +77,7 @@ Lens with_focus(const Lens& lens, double distance, const FocusOptions& options) 
   }
   const double nearest = solution.distance;
   if (std::isinf(nearest)) throw Error(subject + ": the lens forms no real image at any distance");
-  throw Error(subject + ", wanted " + (distance <= nearest ? "more than " : "at most ") + number(nearest, 9) + " mm");
+  throw Error(subject + ", wanted " + (distance <= nearest ? "more than " : "at most ") + to_text(nearest, 9) + " mm");
 }
 
 }  // namespace petzval::inline v0

@@ -7,9 +7,9 @@
 #include <string>
 #include <utility>
 
+#include "core/text.hpp"
 #include "paraxial/focal_points.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/core/text.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/paraxial/pupils.hpp"
 #include "search.hpp"
@@ -19,7 +19,7 @@ namespace {
 
 void check_weight(const Lens& lens, const char* what, double weight) {
   if (weight >= 0 && std::isfinite(weight)) return;
-  throw Error(lens.name() + ": focus: weight of a " + what + " is " + number(weight) +
+  throw Error(lens.name() + ": focus: weight of a " + what + " is " + to_text(weight) +
               ", wanted a finite one, 0 or more");
 }
 
@@ -28,7 +28,7 @@ std::vector<FocusField> weighted_fields(const Lens& lens, const FocusOptions& op
   for (const FocusField& field : options.fields) {
     check_weight(lens, "field", field.weight);
     if (!std::isfinite(field.field_rad)) {
-      throw Error(lens.name() + ": focus: field is " + number(field.field_rad) + " rad, wanted a finite angle");
+      throw Error(lens.name() + ": focus: field is " + to_text(field.field_rad) + " rad, wanted a finite angle");
     }
     if (field.weight > 0) fields.push_back(field);
   }
@@ -57,12 +57,12 @@ std::vector<WavelengthWeight> weighted_wavelengths(const Lens& lens, const Focus
 
 void check_distance(const Lens& lens, double distance) {
   if (distance > 0) return;
-  throw Error(lens.name() + ": subject distance is " + number(distance) + " mm, wanted one above 0 (or infinity)");
+  throw Error(lens.name() + ": subject distance is " + to_text(distance) + " mm, wanted one above 0 (or infinity)");
 }
 
 void check_film(const Lens& lens, double film_z) {
   if (std::isfinite(film_z)) return;
-  throw Error(lens.name() + ": film_z is " + number(film_z) + " mm, wanted a finite place");
+  throw Error(lens.name() + ": film_z is " + to_text(film_z) + " mm, wanted a finite place");
 }
 
 FocusSolver::FocusSolver(const Lens& lens, const FocusOptions& options)
@@ -98,7 +98,7 @@ FocusSolution FocusSolver::nearest() const { return exact() ? Search(*this).near
 
 std::optional<Image> FocusSolver::image(double subject_z) const {
   if (!(subject_z < 0)) {
-    throw Error(lens_.name() + ": subject at z = " + number(subject_z) +
+    throw Error(lens_.name() + ": subject at z = " + to_text(subject_z) +
                 " mm, wanted one in front of the lens (z < 0)");
   }
   const auto unlimited = [](const LensSurface& s) { return std::isinf(s.semi_diameter); };

@@ -11,8 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/text.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/core/text.hpp"
 
 namespace petzval::inline v0::io_detail {
 namespace {
@@ -87,7 +87,7 @@ std::string in_quotes(std::string_view text) { return '"' + shortened(text) + '"
 std::string describe(const JsonValue& value) {
   if (std::holds_alternative<std::nullptr_t>(value)) return "null";
   if (const bool* flag = std::get_if<bool>(&value)) return *flag ? "true" : "false";
-  if (const double* n = std::get_if<double>(&value)) return number(*n);
+  if (const double* n = std::get_if<double>(&value)) return to_text(*n);
   return in_quotes(std::get<std::string>(value));
 }
 

@@ -5,14 +5,14 @@
 #include <numbers>
 #include <string>
 
+#include "core/text.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/core/text.hpp"
 
 namespace petzval::inline v0 {
 
 Iris regular_iris(int blades, double turn_rad) {
   if (blades < 3) throw Error("iris: blades is " + std::to_string(blades) + ", wanted 3 or more");
-  if (!std::isfinite(turn_rad)) throw Error("iris: turn_rad is " + number(turn_rad) + ", wanted a finite angle");
+  if (!std::isfinite(turn_rad)) throw Error("iris: turn_rad is " + to_text(turn_rad) + ", wanted a finite angle");
   Iris iris;
   for (int i = 0; i < blades; ++i) {
     const double angle = turn_rad + 2 * std::numbers::pi * i / blades;

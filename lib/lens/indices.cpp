@@ -3,8 +3,8 @@
 
 #include <cmath>
 
+#include "core/text.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/core/text.hpp"
 #include "petzval/media/catalogue.hpp"
 #include "petzval/media/dispersion.hpp"
 
@@ -28,7 +28,7 @@ const Glass* find(const GlassCatalogue* glasses, const Medium& m) {
 }
 
 std::string describe(const Medium& m) {
-  if (!m.glass) return "a medium of index " + number(m.nd) + " without a glass name";
+  if (!m.glass) return "a medium of index " + to_text(m.nd) + " without a glass name";
   return "glass \"" + *m.glass + "\"" + (m.catalogue ? " of catalogue \"" + *m.catalogue + "\"" : "");
 }
 
@@ -37,7 +37,7 @@ std::string describe(const Medium& m) {
 Indices indices(const Prescription& prescription, std::span<const double> wavelengths_nm, const CompileOptions& options,
                 const std::string& where) {
   for (const double nm : wavelengths_nm) {
-    if (!(nm >= 10 && nm <= 1e5)) throw Error(where + ": wavelength is " + number(nm) + " nm, wanted 10 to 100000 nm");
+    if (!(nm >= 10 && nm <= 1e5)) throw Error(where + ": wavelength is " + to_text(nm) + " nm, wanted 10 to 100000 nm");
   }
   const double reference = prescription.reference_wavelength_nm;
   const std::size_t spaces = prescription.surfaces.size() + 1;
@@ -74,20 +74,21 @@ Indices indices(const Prescription& prescription, std::span<const double> wavele
       }
       const std::string missing = here + ": " + describe(m) + " is in no glass table";
       if (options.missing_glass == MissingGlass::error) {
-        throw Error(missing + ", wanted one for its index at " + number(nm) + " nm (or the n_d/V_d model, on request)");
+        throw Error(missing + ", wanted one for its index at " + to_text(nm) +
+                    " nm (or the n_d/V_d model, on request)");
       }
       if (at_reference) return m.nd;
       if (!m.vd) {
         if (std::abs(nm - reference) <= rounded_line_nm) return m.nd;
-        throw Error(missing + " and has no V_d, wanted one of them for its index at " + number(nm) + " nm (only " +
-                    number(reference) + " nm can be used)");
+        throw Error(missing + " and has no V_d, wanted one of them for its index at " + to_text(nm) + " nm (only " +
+                    to_text(reference) + " nm can be used)");
       }
       return m.nd + (by_abbe(nm) - by_abbe(reference));
     };
     for (std::size_t w = 0; w < wavelengths_nm.size(); ++w) {
       const double n = index_at(wavelengths_nm[w]);
       if (!(n > 0 && n <= 5))
-        throw Error(here + ": index at " + number(wavelengths_nm[w]) + " nm is " + number(n) + ", wanted 0 < n <= 5");
+        throw Error(here + ": index at " + to_text(wavelengths_nm[w]) + " nm is " + to_text(n) + ", wanted 0 < n <= 5");
       result.values[w * spaces + space] = n;
     }
   }

@@ -7,9 +7,9 @@
 #include <limits>
 #include <utility>
 
+#include "core/text.hpp"
 #include "data.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/core/text.hpp"
 
 namespace petzval::inline v0 {
 
@@ -72,12 +72,12 @@ double Lens::light_direction(std::size_t space) const {
 std::size_t Lens::wavelength(double nm) const {
   if (const auto found = compiled(data_->wavelengths_nm, nm)) return *found;
   std::string list;
-  for (const double w : data_->wavelengths_nm) list += (list.empty() ? "" : ", ") + number(w);
-  throw Error(name() + ": wavelength is " + number(nm) + " nm, wanted one the lens was compiled for: " + list);
+  for (const double w : data_->wavelengths_nm) list += (list.empty() ? "" : ", ") + to_text(w);
+  throw Error(name() + ": wavelength is " + to_text(nm) + " nm, wanted one the lens was compiled for: " + list);
 }
 
 std::size_t Lens::nearest_wavelength(double nm) const {
-  if (!std::isfinite(nm)) throw Error(name() + ": wavelength is " + number(nm) + " nm, wanted a finite one");
+  if (!std::isfinite(nm)) throw Error(name() + ": wavelength is " + to_text(nm) + " nm, wanted a finite one");
   return nearest(data_->wavelengths_nm, nm);
 }
 
@@ -134,7 +134,7 @@ Lens compile(const Prescription& prescription, const CompileOptions& options) {
 Lens with_semi_diameter(const Lens& lens, std::size_t surface, double semi_diameter) {
   demand(lens, "surface", surface, lens.surface_count());
   if (!(semi_diameter >= 0)) {
-    throw Error(lens.name() + ": surface " + std::to_string(surface) + ": semi_diameter is " + number(semi_diameter) +
+    throw Error(lens.name() + ": surface " + std::to_string(surface) + ": semi_diameter is " + to_text(semi_diameter) +
                 " mm, wanted 0 or more");
   }
   if (!lens.iris().round() && lens.stop() == surface && std::isinf(semi_diameter)) {
@@ -148,7 +148,8 @@ Lens with_semi_diameter(const Lens& lens, std::size_t surface, double semi_diame
 }
 
 Lens with_film(const Lens& lens, double film_z) {
-  if (!std::isfinite(film_z)) throw Error(lens.name() + ": film_z is " + number(film_z) + " mm, wanted a finite place");
+  if (!std::isfinite(film_z))
+    throw Error(lens.name() + ": film_z is " + to_text(film_z) + " mm, wanted a finite place");
   auto data = std::make_shared<Lens::Data>(*lens.data_);
   data->film_z = film_z;
   return Lens(std::move(data));
@@ -169,9 +170,9 @@ Lens with_iris(const Lens& lens, const Iris& iris) {
     const std::string here = where + ": edge " + std::to_string(i) + ": ";
     constexpr double rounding = 1e-9;
     if (!(std::abs(nx * nx + ny * ny - 1) <= rounding)) {
-      throw Error(here + "its normal is (" + number(nx) + ", " + number(ny) + "), wanted a unit vector");
+      throw Error(here + "its normal is (" + to_text(nx) + ", " + to_text(ny) + "), wanted a unit vector");
     }
-    if (!std::isfinite(distance)) throw Error(here + "distance is " + number(distance) + ", wanted a finite number");
+    if (!std::isfinite(distance)) throw Error(here + "distance is " + to_text(distance) + ", wanted a finite number");
   }
   auto data = std::make_shared<Lens::Data>(*lens.data_);
   data->iris = iris;

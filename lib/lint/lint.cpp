@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "petzval/core/text.hpp"
+#include "core/text.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "spacing.hpp"
@@ -15,7 +15,7 @@ namespace {
 using Kind = FindingKind;
 constexpr double tolerance = 0.02;
 
-std::string mm(double value) { return number(value, 6) + " mm"; }
+std::string mm(double value) { return to_text(value, 6) + " mm"; }
 
 std::string at(int surface) { return "surface " + std::to_string(surface) + ": "; }
 
@@ -87,7 +87,7 @@ void check_first_order(const Prescription& prescription, const Lens& lens, Findi
                           {},
                           f_number,
                           *prescription.f_number,
-                          "f-number is " + number(f_number, 6) + ", declared " + number(*prescription.f_number, 6)});
+                          "f-number is " + to_text(f_number, 6) + ", declared " + to_text(*prescription.f_number, 6)});
     }
   }
   const int last = static_cast<int>(lens.surface_count()) - 1;

@@ -7,8 +7,8 @@
 #include <span>
 #include <utility>
 
+#include "core/text.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/core/text.hpp"
 #include "petzval/core/units.hpp"
 
 namespace petzval::inline v0 {
@@ -36,8 +36,8 @@ constexpr std::array<std::pair<std::string_view, double>, 14> lines = {{
 
 void check_wavelength(const std::string& where, double nm, double shortest, double longest) {
   if (nm >= shortest - edge_nm && nm <= longest + edge_nm) return;
-  throw Error(where + ": wavelength is " + number(nm) + " nm, wanted " + number(shortest, 7) + " to " +
-              number(longest, 7) + " nm");
+  throw Error(where + ": wavelength is " + to_text(nm) + " nm, wanted " + to_text(shortest, 7) + " to " +
+              to_text(longest, 7) + " nm");
 }
 
 /// first + the sum over pairs of the first number times `shape` of the second.
@@ -81,18 +81,18 @@ double refractive_index(const Glass& glass, double wavelength_nm) {
   }
   // Near a pole the formula gives no physical index.
   if (!(n2 > 1e-6 && std::isfinite(n2))) {
-    throw Error(where + ": square of the index at " + number(wavelength_nm) + " nm is " + number(n2) +
+    throw Error(where + ": square of the index at " + to_text(wavelength_nm) + " nm is " + to_text(n2) +
                 ", wanted above 1e-6");
   }
   return n > 0 ? n : std::sqrt(n2);
 }
 
 double abbe_index(double nd, double vd, double wavelength_nm) {
-  const std::string where = "n_d " + number(nd) + ", V_d " + number(vd);
+  const std::string where = "n_d " + to_text(nd) + ", V_d " + to_text(vd);
   if (!(nd > 0 && std::isfinite(nd)))
-    throw Error(where + ": n_d is " + number(nd) + ", wanted a finite number above 0");
+    throw Error(where + ": n_d is " + to_text(nd) + ", wanted a finite number above 0");
   if (!(vd > 0 && std::isfinite(vd)))
-    throw Error(where + ": V_d is " + number(vd) + ", wanted a finite number above 0");
+    throw Error(where + ": V_d is " + to_text(vd) + ", wanted a finite number above 0");
   check_wavelength(where, wavelength_nm, 365, 1014);
   const auto inverse_square = [](double nm) { return 1 / (nm * nm); };
   const double f_minus_c = inverse_square(spectral_line_nm("F")) - inverse_square(spectral_line_nm("C"));

@@ -8,9 +8,9 @@
 #include <utility>
 
 #include "core/bisect.hpp"
+#include "core/text.hpp"
 #include "focus/image.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/core/text.hpp"
 #include "rays/trace_rays.hpp"
 #include "signed_diameter.hpp"
 #include "targets.hpp"
@@ -30,9 +30,9 @@ Film moved(Film film, double z) noexcept {
 /// The film before it moves. Throws Error if it cannot be moved along the axis.
 Film standing(const Film& film, double unset_z) {
   const double z = film.z_mm.value_or(unset_z);
-  if (!std::isfinite(z)) throw Error("autofocus: the film stands at z = " + number(z) + " mm, wanted a finite place");
+  if (!std::isfinite(z)) throw Error("autofocus: the film stands at z = " + to_text(z) + " mm, wanted a finite place");
   if (film.tilted()) {
-    throw Error("autofocus: the film is tilted by " + number(film.tilt_rad) + " and " + number(film.swing_rad) +
+    throw Error("autofocus: the film is tilted by " + to_text(film.tilt_rad) + " and " + to_text(film.swing_rad) +
                 " rad, wanted an upright one");
   }
   return moved(film, z);

@@ -6,9 +6,9 @@
 #include <string>
 #include <utility>
 
+#include "core/text.hpp"
 #include "keyframes.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/core/text.hpp"
 #include "petzval/film/film.hpp"
 #include "plane_fit.hpp"
 
@@ -21,7 +21,7 @@ void check(const ScenePoint& place, const std::string& where) {
   const auto& [p, at_infinity] = place;
   const bool nowhere = at_infinity && p.x == 0 && p.y == 0 && p.z == 0;
   if (finite(p) && !nowhere) return;
-  throw Error(where + "the place is (" + number(p.x) + ", " + number(p.y) + ", " + number(p.z) + "), wanted " +
+  throw Error(where + "the place is (" + to_text(p.x) + ", " + to_text(p.y) + ", " + to_text(p.z) + "), wanted " +
               (at_infinity ? "a direction" : "finite coordinates"));
 }
 
@@ -30,7 +30,7 @@ void check(const OnTriangle& place, std::size_t vertices, const std::string& whe
   constexpr double tolerance = 1e-9;
   // NaN fails either comparison.
   if (!(std::min({a, b, c}) >= -tolerance) || !(std::abs(a + b + c - 1) <= tolerance)) {
-    throw Error(where + "barycentric coordinates are (" + number(a) + ", " + number(b) + ", " + number(c) +
+    throw Error(where + "barycentric coordinates are (" + to_text(a) + ", " + to_text(b) + ", " + to_text(c) +
                 "), wanted 0 or more and a sum of 1");
   }
   for (const std::size_t vertex : place.vertices) {
@@ -43,19 +43,20 @@ void check(const OnTriangle& place, std::size_t vertices, const std::string& whe
 void check(const FocusPoint& point, std::size_t vertices, const std::string& where) {
   if (point.keys.empty()) throw Error(where + "no keys, wanted one at least");
   if (!(point.from <= point.until)) {
-    throw Error(where + "valid from " + number(point.from) + " s until " + number(point.until) +
+    throw Error(where + "valid from " + to_text(point.from) + " s until " + to_text(point.until) +
                 " s, wanted an interval");
   }
   for (std::size_t k = 0; k < point.keys.size(); ++k) {
     const FocusKey& key = point.keys[k];
     const std::string at = where + "key " + std::to_string(k) + ": ";
-    if (!std::isfinite(key.time)) throw Error(at + "time is " + number(key.time) + " s, wanted a finite one");
+    if (!std::isfinite(key.time)) throw Error(at + "time is " + to_text(key.time) + " s, wanted a finite one");
     if (k > 0 && !(key.time > point.keys[k - 1].time)) {
-      throw Error(at + "time is " + number(key.time) + " s, wanted one after " + number(point.keys[k - 1].time) + " s");
+      throw Error(at + "time is " + to_text(key.time) + " s, wanted one after " + to_text(point.keys[k - 1].time) +
+                  " s");
     }
-    if (!std::isfinite(key.blur_mm)) throw Error(at + "blur is " + number(key.blur_mm) + " mm, wanted a finite one");
+    if (!std::isfinite(key.blur_mm)) throw Error(at + "blur is " + to_text(key.blur_mm) + " mm, wanted a finite one");
     if (!std::isfinite(key.weight) || key.weight < 0) {
-      throw Error(at + "weight is " + number(key.weight) + ", wanted a finite one of 0 or more");
+      throw Error(at + "weight is " + to_text(key.weight) + ", wanted a finite one of 0 or more");
     }
     if (const auto* place = std::get_if<ScenePoint>(&key.anchor)) {
       check(*place, at);
@@ -72,8 +73,8 @@ void check(const FocusMoment& moment) {
   const double width = film.width_mm, height = film.height_mm, x = film.shift_x_mm, y = film.shift_y_mm;
   const double z = film.z_mm.value_or(0), turns = film.tilt_rad + film.swing_rad;
   if (!(width >= 0 && height >= 0) || !std::isfinite(width + height + x + y + z + turns)) {
-    throw Error("focus_targets: the film is " + number(width) + " x " + number(height) + " mm about (" + number(x) +
-                ", " + number(y) + ") at z = " + number(z) + " mm, wanted finite numbers and no negative size");
+    throw Error("focus_targets: the film is " + to_text(width) + " x " + to_text(height) + " mm about (" + to_text(x) +
+                ", " + to_text(y) + ") at z = " + to_text(z) + " mm, wanted finite numbers and no negative size");
   }
 }
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <utility>
 
+#include "core/text.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/core/text.hpp"
 
 namespace petzval::inline v0::movement_detail {
 
@@ -22,17 +22,17 @@ Keyframes::Keyframes(std::vector<double> times, std::vector<double> values)
   for (std::size_t k = 0; k < count; ++k) {
     const std::string where = "keyframes: key " + std::to_string(k) + ": ";
     if (!std::isfinite(times_[k]) || !std::isfinite(values_[k])) {
-      throw Error(where + "value " + number(values_[k]) + " at " + number(times_[k]) + " s, wanted finite numbers");
+      throw Error(where + "value " + to_text(values_[k]) + " at " + to_text(times_[k]) + " s, wanted finite numbers");
     }
     if (k == 0) continue;
     if (!(times_[k] > times_[k - 1])) {
-      throw Error(where + "time is " + number(times_[k]) + " s, wanted one after " + number(times_[k - 1]) + " s");
+      throw Error(where + "time is " + to_text(times_[k]) + " s, wanted one after " + to_text(times_[k - 1]) + " s");
     }
     between[k - 1] = (values_[k] - values_[k - 1]) / (times_[k] - times_[k - 1]);
     if (!std::isfinite(between[k - 1]) || !std::isfinite(times_[k] - times_[k - 1]) ||
         !std::isfinite(4 * (values_[k] - values_[k - 1]))) {
-      throw Error(where + "value " + number(values_[k]) + " at " + number(times_[k]) + " s, after " +
-                  number(values_[k - 1]) + " at " + number(times_[k - 1]) + " s, wanted differences that are finite");
+      throw Error(where + "value " + to_text(values_[k]) + " at " + to_text(times_[k]) + " s, after " +
+                  to_text(values_[k - 1]) + " at " + to_text(times_[k - 1]) + " s, wanted differences that are finite");
     }
   }
   for (std::size_t k = 1; k + 1 < count; ++k) {

@@ -7,8 +7,8 @@
 #include <limits>
 #include <numbers>
 
+#include "core/text.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/core/text.hpp"
 #include "targets.hpp"
 #include "tilt_problem.hpp"
 #include "tilt_rays.hpp"
@@ -19,19 +19,19 @@ namespace {
 /// The options with z_mm of the film set. Throws Error for invalid options.
 TiltOptions checked(TiltOptions options, double unset_z) {
   if (!(options.max_tilt_rad >= 0 && options.max_tilt_rad < std::numbers::pi / 2)) {
-    throw Error("fit_tilt: the largest tilt is " + number(options.max_tilt_rad) +
+    throw Error("fit_tilt: the largest tilt is " + to_text(options.max_tilt_rad) +
                 " rad, wanted one from 0 to less than a quarter turn");
   }
   Film& film = options.film;
   film.z_mm = film.z_mm.value_or(unset_z);
   if (!std::isfinite(film.z()) || !std::isfinite(film.tilt_rad) || !std::isfinite(film.swing_rad)) {
-    throw Error("fit_tilt: the film stands at " + number(film.z()) + " mm, " + number(film.tilt_rad) + " and " +
-                number(film.swing_rad) + " rad, wanted finite numbers");
+    throw Error("fit_tilt: the film stands at " + to_text(film.z()) + " mm, " + to_text(film.tilt_rad) + " and " +
+                to_text(film.swing_rad) + " rad, wanted finite numbers");
   }
   const double sum = film.width_mm + film.height_mm + film.shift_x_mm + film.shift_y_mm;
   if (!(film.width_mm >= 0 && film.height_mm >= 0) || !std::isfinite(sum)) {
-    throw Error("fit_tilt: the film is " + number(film.width_mm) + " x " + number(film.height_mm) + " mm about (" +
-                number(film.shift_x_mm) + ", " + number(film.shift_y_mm) +
+    throw Error("fit_tilt: the film is " + to_text(film.width_mm) + " x " + to_text(film.height_mm) + " mm about (" +
+                to_text(film.shift_x_mm) + ", " + to_text(film.shift_y_mm) +
                 "), wanted finite numbers and no negative size");
   }
   return options;

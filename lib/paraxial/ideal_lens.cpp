@@ -13,9 +13,9 @@
 #include <limits>
 
 #include "core/meet_plane.hpp"
+#include "core/text.hpp"
 #include "focal_points.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/core/text.hpp"
 #include "petzval/paraxial/first_order.hpp"
 
 namespace petzval::inline v0 {
@@ -120,10 +120,10 @@ IdealLens focal_points(const Lens& lens, const FirstOrder& data) noexcept {
 
 IdealLens thin_lens(double focal_length, double f_number, double z) {
   if (!std::isfinite(focal_length) || focal_length == 0) {
-    throw Error("thin_lens: focal length is " + number(focal_length) + " mm, wanted a finite one other than 0");
+    throw Error("thin_lens: focal length is " + to_text(focal_length) + " mm, wanted a finite one other than 0");
   }
-  if (!(f_number > 0)) throw Error("thin_lens: f-number is " + number(f_number) + ", wanted one above 0");
-  if (!std::isfinite(z)) throw Error("thin_lens: z is " + number(z) + " mm, wanted a finite place");
+  if (!(f_number > 0)) throw Error("thin_lens: f-number is " + to_text(f_number) + ", wanted one above 0");
+  if (!std::isfinite(z)) throw Error("thin_lens: z is " + to_text(z) + " mm, wanted a finite place");
   const Pupil pupil{z, std::abs(focal_length) / f_number};
   return {z - focal_length, z + focal_length, focal_length, focal_length, {pupil, pupil}, z, z};
 }

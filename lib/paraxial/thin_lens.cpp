@@ -4,14 +4,14 @@
 #include <cmath>
 #include <string>
 
+#include "core/text.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/core/text.hpp"
 
 namespace petzval::inline v0 {
 namespace {
 
 void require(bool holds, const char* where, const char* what, double found, const char* wanted) {
-  if (!holds) throw Error(std::string(where) + ": " + what + " is " + number(found) + " mm, wanted " + wanted);
+  if (!holds) throw Error(std::string(where) + ": " + what + " is " + to_text(found) + " mm, wanted " + wanted);
 }
 
 }  // namespace

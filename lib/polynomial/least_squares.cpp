@@ -9,8 +9,8 @@
 #include <string>
 
 #include "chart.hpp"
+#include "core/text.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/core/text.hpp"
 #include "petzval/trace/batch.hpp"
 
 namespace petzval::inline v0::polynomial_detail {
@@ -99,7 +99,7 @@ RayPolynomial::Fit fit(const Lens& lens, const RayPolynomial::Domain& domain, in
   const double nm = lens.wavelengths_nm()[wavelength];
   if (passed < 2 * count) {
     throw Error(lens.name() + ": polynomial of degree " + std::to_string(degree) + ": " + std::to_string(passed) +
-                " of " + std::to_string(lines.size()) + " rays get through at " + number(nm) + " nm, wanted " +
+                " of " + std::to_string(lines.size()) + " rays get through at " + to_text(nm) + " nm, wanted " +
                 std::to_string(2 * count) + " or more");
   }
 

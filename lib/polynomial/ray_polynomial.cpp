@@ -7,10 +7,10 @@
 #include <string>
 #include <utility>
 
+#include "core/text.hpp"
 #include "data.hpp"
 #include "horner.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/core/text.hpp"
 #include "petzval/core/units.hpp"
 
 namespace petzval::inline v0 {
@@ -21,7 +21,7 @@ constexpr double largest = 1e12;
 
 void check(const std::string& what, double value, double from, double to) {
   if (value >= from && value <= to) return;
-  throw Error(what + " is " + number(value) + ", wanted a number from " + number(from) + " to " + number(to));
+  throw Error(what + " is " + to_text(value) + ", wanted a number from " + to_text(from) + " to " + to_text(to));
 }
 
 void check(int degree, const RayPolynomial::Domain& domain, const std::vector<RayPolynomial::Fit>& fits) {
@@ -32,7 +32,7 @@ void check(int degree, const RayPolynomial::Domain& domain, const std::vector<Ra
   check(where + "film_z", domain.space.film_z, -largest, largest);
   check(where + "pupil_z", domain.space.pupil_z, -largest, largest);
   if (domain.space.depth() == 0) {
-    throw Error(where + "pupil_z is that of the film, " + number(domain.space.film_z) + " mm, wanted another");
+    throw Error(where + "pupil_z is that of the film, " + to_text(domain.space.film_z) + " mm, wanted another");
   }
   check(where + "film_radius", domain.film_radius, 1 / largest, largest);
   check(where + "pupil_shift", domain.pupil_shift, -largest, largest);

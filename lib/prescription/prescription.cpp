@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/text.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/core/text.hpp"
 
 namespace petzval::inline v0 {
 namespace {
@@ -16,7 +16,7 @@ std::string name_of(const Prescription& p) { return p.name.empty() ? std::string
 double times(double value, double factor, const std::string& where) {
   const double product = value * factor;
   if (value == 0 || !std::isfinite(value) || std::isnormal(product)) return product;
-  throw Error(where + ": " + number(value) + " scaled by " + number(factor) + " is " + number(product) +
+  throw Error(where + ": " + to_text(value) + " scaled by " + to_text(factor) + " is " + to_text(product) +
               ", wanted a number in the normal range of double");
 }
 
@@ -26,7 +26,7 @@ Prescription scale(const Prescription& prescription, double factor) {
   Prescription p = prescription;
   const std::string where = name_of(p);
   if (!(factor > 0 && std::isfinite(factor))) {
-    throw Error(where + ": scale factor is " + number(factor) + ", wanted a finite number above 0");
+    throw Error(where + ": scale factor is " + to_text(factor) + ", wanted a finite number above 0");
   }
   const auto enlarge = [&](std::optional<double>& length) {
     if (length) length = times(*length, factor, where);

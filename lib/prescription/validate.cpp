@@ -2,8 +2,8 @@
 #include <cmath>
 #include <set>
 
+#include "core/text.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/core/text.hpp"
 #include "petzval/prescription/prescription.hpp"
 
 namespace petzval::inline v0 {
@@ -16,7 +16,7 @@ constexpr double longest_thickness = 1e10;
 constexpr std::size_t most_surfaces = 10'000;
 
 [[noreturn]] void refuse(const std::string& where, const std::string& what, double found, const std::string& wanted) {
-  throw Error(where + ": " + what + " is " + number(found) + ", wanted " + wanted);
+  throw Error(where + ": " + what + " is " + to_text(found) + ", wanted " + wanted);
 }
 
 void check_finite(const std::string& where, const char* what, double value, const std::string& wanted) {
@@ -41,8 +41,8 @@ void check_surface(const std::string& where, const SurfaceRow& row, const Medium
     refuse(where, "thickness", row.thickness, "a finite length below 1e10 mm");
   check_medium(where, row.medium);
   if (row.mirror && row.medium != before) {
-    throw Error(where + ": the medium of the mirror (nd " + number(row.medium.nd) +
-                ") is not the one in front of it (nd " + number(before.nd) + "), wanted the same medium");
+    throw Error(where + ": the medium of the mirror (nd " + to_text(row.medium.nd) +
+                ") is not the one in front of it (nd " + to_text(before.nd) + "), wanted the same medium");
   }
 
   if (row.semi_diameter && !(*row.semi_diameter >= 0))
@@ -53,7 +53,7 @@ void check_surface(const std::string& where, const SurfaceRow& row, const Medium
       refuse(where, "inner_semi_diameter", inner, "a finite length of 0 mm or more");
     if (inner > 0 && row.semi_diameter && inner >= *row.semi_diameter) {
       refuse(where, "inner_semi_diameter", inner,
-             "less than the semi_diameter of " + number(*row.semi_diameter) + " mm");
+             "less than the semi_diameter of " + to_text(*row.semi_diameter) + " mm");
     }
   }
 

@@ -9,8 +9,8 @@
 #include <string>
 #include <string_view>
 
+#include "core/text.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/core/text.hpp"
 
 namespace petzval::inline v0 {
 namespace {
@@ -84,16 +84,16 @@ ColourMatching ColourMatching::load(const std::filesystem::path& file) {
     }
     const auto [nm, x, y, z] = parse_line(line, where);
     if (!table.wavelengths_nm.empty() && !(nm > table.wavelengths_nm.back())) {
-      throw Error(where + ": wavelength is " + number(nm) + " nm, wanted more than the " +
-                  number(table.wavelengths_nm.back()) + " of the line before");
+      throw Error(where + ": wavelength is " + to_text(nm) + " nm, wanted more than the " +
+                  to_text(table.wavelengths_nm.back()) + " of the line before");
     }
     table.wavelengths_nm.push_back(nm);
     table.xyz.push_back({x, y, z});
   }
   if (table.wavelengths_nm.empty() || table.wavelengths_nm.front() > shortest_nm ||
       table.wavelengths_nm.back() < longest_nm) {
-    throw Error(file.string() + ": the table ends early, wanted one from " + number(shortest_nm) + " nm or less to " +
-                number(longest_nm) + " or more");
+    throw Error(file.string() + ": the table ends early, wanted one from " + to_text(shortest_nm) + " nm or less to " +
+                to_text(longest_nm) + " or more");
   }
   return table;
 }
@@ -105,8 +105,8 @@ std::vector<Triple> rgb_weights(std::span<const double> wavelengths_nm, const Co
 
   for (const double nm : wavelengths_nm) {
     if (nm >= shortest_nm && nm <= longest_nm) continue;
-    throw Error("rgb_weights: wavelength is " + number(nm) + " nm, wanted " + number(shortest_nm) + " to " +
-                number(longest_nm));
+    throw Error("rgb_weights: wavelength is " + to_text(nm) + " nm, wanted " + to_text(shortest_nm) + " to " +
+                to_text(longest_nm));
   }
   std::vector<std::size_t> order(count);
   std::iota(order.begin(), order.end(), std::size_t(0));
@@ -117,7 +117,7 @@ std::vector<Triple> rgb_weights(std::span<const double> wavelengths_nm, const Co
   for (std::size_t i = 0; i < count; ++i) {
     const double nm = wavelengths_nm[order[i]];
     if (i > 0 && nm == wavelengths_nm[order[i - 1]]) {
-      throw Error("rgb_weights: wavelength " + number(nm) + " nm stands twice, wanted once");
+      throw Error("rgb_weights: wavelength " + to_text(nm) + " nm stands twice, wanted once");
     }
     const double from = i == 0 ? shortest_nm : (wavelengths_nm[order[i - 1]] + nm) / 2;
     const double to = i + 1 == count ? longest_nm : (nm + wavelengths_nm[order[i + 1]]) / 2;

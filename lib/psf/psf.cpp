@@ -7,9 +7,9 @@
 #include <span>
 #include <string>
 
+#include "core/text.hpp"
 #include "partial_sums.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/core/text.hpp"
 #include "petzval/paraxial/pupils.hpp"
 #include "petzval/psf/histogram.hpp"
 
@@ -23,7 +23,7 @@ void validate(const PsfOptions& options) {
     throw Error("point_image: pixels is " + std::to_string(options.pixels) + ", wanted 1 to " + std::to_string(most));
   }
   if (!std::isfinite(options.half_width_mm) || options.half_width_mm < 0) {
-    throw Error("point_image: half_width_mm is " + number(options.half_width_mm) + ", wanted a length, or 0 to fit");
+    throw Error("point_image: half_width_mm is " + to_text(options.half_width_mm) + ", wanted a length, or 0 to fit");
   }
 }
 

@@ -7,8 +7,8 @@
 #include <optional>
 
 #include "core/bisect.hpp"
+#include "core/text.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/core/text.hpp"
 #include "petzval/paraxial/pupils.hpp"
 #include "trace/sequential.hpp"
 
@@ -92,7 +92,7 @@ double real_f_number(const Lens& lens, Wavelength wavelength) {
 
 Lens with_f_number(const Lens& lens, double f_number, Wavelength wavelength) {
   if (!(f_number > 0 && std::isfinite(f_number))) {
-    throw Error(lens.name() + ": f-number is " + number(f_number) + ", wanted a finite one above 0");
+    throw Error(lens.name() + ": f-number is " + to_text(f_number) + ", wanted a finite one above 0");
   }
   const double length = focal_length(lens, wavelength);
   if (std::isinf(length))
@@ -105,13 +105,13 @@ Lens with_f_number(const Lens& lens, double f_number, Wavelength wavelength) {
   const auto height = stop_height(y);
   // One part in 1e9 of tolerance takes back the f-number that real_f_number printed.
   if (!height || y > largest * (1 + 1e-9)) {
-    throw Error(lens.name() + ": f-number is " + number(f_number) + ", wanted " + number(length / (2 * largest), 10) +
+    throw Error(lens.name() + ": f-number is " + to_text(f_number) + ", wanted " + to_text(length / (2 * largest), 10) +
                 " (the fastest the lens can give) or more");
   }
   if (const double obscured = lens.surfaces()[p.stop].obscuration_semi_diameter; obscured > 0 && *height <= obscured) {
     const double smallest = entering_height(stop_height, obscured, p.entrance.diameter / 2);
-    throw Error(lens.name() + ": f-number is " + number(f_number) + ", wanted less than " +
-                number(length / (2 * smallest), 10) + ": the stop has a central obscuration of that size");
+    throw Error(lens.name() + ": f-number is " + to_text(f_number) + ", wanted less than " +
+                to_text(length / (2 * smallest), 10) + ": the stop has a central obscuration of that size");
   }
   return with_semi_diameter(lens, p.stop, std::min(*height, lens.surfaces()[p.stop].semi_diameter));
 }

@@ -8,9 +8,9 @@
 #include <string>
 
 #include "core/meet_plane.hpp"
+#include "core/text.hpp"
 #include "face.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/core/text.hpp"
 #include "petzval/core/units.hpp"
 #include "petzval/paraxial/pupils.hpp"
 
@@ -24,17 +24,17 @@ void check(const Lens& lens, const FieldPoint& point, const Pupil& entrance) {
     throw Error(lens.name() + ": scene point: " + found_and_wanted);
   };
   if (!(std::abs(point.field_rad) <= std::numbers::pi)) {
-    refuse("field is " + number(degrees(point.field_rad), 6) + " degrees, wanted -180 to 180");
+    refuse("field is " + to_text(degrees(point.field_rad), 6) + " degrees, wanted -180 to 180");
   }
   if (!std::isfinite(point.azimuth_rad)) {
-    refuse("azimuth is " + number(point.azimuth_rad) + " rad, wanted a finite angle");
+    refuse("azimuth is " + to_text(point.azimuth_rad) + " rad, wanted a finite angle");
   }
   if (!std::isfinite(entrance.z)) {
     refuse("the entrance pupil is at infinity, wanted one at a finite place: fields are seen from it");
   }
-  if (!(point.z < infinity)) refuse("z is " + number(point.z) + " mm, wanted a finite one or -inf");
+  if (!(point.z < infinity)) refuse("z is " + to_text(point.z) + " mm, wanted a finite one or -inf");
   if (point.z == entrance.z) {
-    refuse("z is " + number(point.z) + " mm, that of the entrance pupil, wanted another");
+    refuse("z is " + to_text(point.z) + " mm, that of the entrance pupil, wanted another");
   }
   if (std::isinf(point.z)) return;
 
@@ -42,14 +42,14 @@ void check(const Lens& lens, const FieldPoint& point, const Pupil& entrance) {
   if (std::abs(point.field_rad) < std::numbers::pi / 2) {
     const double front = pupil_detail::face_of(lens, 0, entrance).z_min;
     if (!(point.z < front)) {
-      refuse("z is " + number(point.z) + " mm, wanted less than where the first surface begins, " + number(front) +
+      refuse("z is " + to_text(point.z) + " mm, wanted less than where the first surface begins, " + to_text(front) +
              " mm");
     }
   } else {
     const double side = std::abs(std::tan(point.field_rad) * (entrance.z - point.z));
     if (!(point.z > entrance.z && side > pupil_detail::half_height(lens, 0, entrance))) {
-      refuse("z is " + number(point.z) + " mm at a field of " + number(degrees(point.field_rad), 6) +
-             " degrees, wanted -inf, or a plane behind the entrance pupil (" + number(entrance.z) +
+      refuse("z is " + to_text(point.z) + " mm at a field of " + to_text(degrees(point.field_rad), 6) +
+             " degrees, wanted -inf, or a plane behind the entrance pupil (" + to_text(entrance.z) +
              " mm) that this field meets outside the lens");
     }
   }
@@ -86,11 +86,11 @@ PupilPlane PupilPlane::of_film(const Lens& lens, const FilmPoint& point) {
   const std::string where = lens.name() + ": film point: ";
   for (const double coordinate : {point.x, point.y}) {
     if (std::isfinite(coordinate)) continue;
-    throw Error(where + "a coordinate is " + number(coordinate) + " mm, wanted a finite place");
+    throw Error(where + "a coordinate is " + to_text(coordinate) + " mm, wanted a finite place");
   }
   const double last_z = lens.surfaces().back().vertex_z;
   if (lens.film_z() == last_z) {
-    throw Error(where + "the film is at z = " + number(last_z) + " mm, that of the last vertex, wanted it elsewhere");
+    throw Error(where + "the film is at z = " + to_text(last_z) + " mm, that of the last vertex, wanted it elsewhere");
   }
   const Vec3<double> to_point{point.x, point.y, lens.film_z() - last_z};
   // Of a film in front of the last vertex the lens sends a virtual image: its rays run as if it lay behind.

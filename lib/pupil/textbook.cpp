@@ -8,8 +8,8 @@
 
 #include "core/bisect.hpp"
 #include "core/meet_plane.hpp"
+#include "core/text.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/core/text.hpp"
 #include "petzval/lens/sag.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/paraxial/pupils.hpp"
@@ -93,7 +93,7 @@ TextbookPupil textbook_pupil(const Lens& lens, Travel travel, double point_z, Wa
   const Pupils paraxial = pupils(lens, wavelength, main_meridian(lens, wavelength));
   const AxialFan fan(lens, travel, point_z, wavelength);
   if (std::isnan(point_z) || fan.at_vertex()) {
-    throw Error(where + (entrance ? "object_z" : "film_z") + " is " + number(point_z) +
+    throw Error(where + (entrance ? "object_z" : "film_z") + " is " + to_text(point_z) +
                 " mm, wanted infinity or a place off the vertex of the lens");
   }
   const auto passes = [&](double p) { return fan.trace(p).transmitted(); };
@@ -109,7 +109,7 @@ TextbookPupil textbook_pupil(const Lens& lens, Travel travel, double point_z, Wa
   if (!passes(outermost)) {
     outermost = core_detail::last_with(0.0, outermost, passes);
   } else if (!limited) {
-    throw Error(where + "no surface ends a ray from z = " + number(point_z) + " mm, wanted a rim");
+    throw Error(where + "no surface ends a ray from z = " + to_text(point_z) + " mm, wanted a rim");
   }
 
   // Steps 6 to 8.

@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
+#include "core/text.hpp"
 #include "film_polygons.hpp"
 #include "film_pupil_table_loops.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/core/text.hpp"
 
 namespace petzval::inline v0 {
 namespace {
@@ -172,7 +172,7 @@ namespace {
 
 void check_film_radius(const std::string& where, double film_radius) {
   if (film_radius >= 0 && std::isfinite(film_radius)) return;
-  throw Error(where + ": film: its radius is " + number(film_radius) + " mm, wanted a finite one, 0 or more");
+  throw Error(where + ": film: its radius is " + to_text(film_radius) + " mm, wanted a finite one, 0 or more");
 }
 
 }  // namespace

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
+#include "core/text.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/core/text.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/paraxial/pupils.hpp"
 
@@ -13,7 +13,7 @@ namespace petzval::inline v0 {
 TwoPlanes two_planes(const Lens& lens) {
   const double film_z = lens.film_z(), last_z = lens.surfaces().back().vertex_z;
   if (film_z == last_z) {
-    throw Error(lens.name() + ": film: it is at z = " + number(last_z) +
+    throw Error(lens.name() + ": film: it is at z = " + to_text(last_z) +
                 " mm, that of the last vertex, wanted it elsewhere");
   }
   if (!has_pupils(lens)) return {film_z, last_z};

@@ -181,7 +181,7 @@ TEST_P(CustomModel, IsSeenFromTheSceneAsTheBuiltInModelIs) {
     // Entrance pupils are searched to 2e-5 and enlarged by what the search leaves open: with the rounding of rays their
     // area changes by up to 2e-4. Any area that encloses the pupil gives the same light.
     EXPECT_NEAR(own.pdf, wanted.pdf, 5e-4 * wanted.pdf);
-    EXPECT_NEAR(glm::length(own.direction - wanted.direction), 0, 2e-6);
+    EXPECT_NEAR(glm::length(own.direction - wanted.direction), 0, 1e-5);
     EXPECT_NEAR(own_.pdf_importance(point, wanted.direction), wanted.pdf, 5e-4 * wanted.pdf);
     const Importance a = own_.importance({wanted.on_pupil, wanted.direction}), b = wanted.importance;
     if (a.fate != b.fate) continue;  // at an edge

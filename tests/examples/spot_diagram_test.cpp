@@ -3,7 +3,7 @@
 #include <cmath>
 #include <map>
 
-#include "petzval/core/text.hpp"
+#include "core/text.hpp"
 #include "petzval/core/units.hpp"
 #include "petzval/io/prescription_json.hpp"
 #include "petzval/paraxial/first_order.hpp"
@@ -38,7 +38,7 @@ TEST_F(SpotDiagram, ItsNumbersAreThoseOfItsHits) {
   }
   ASSERT_EQ(spots.size(), 6u);
   for (const auto& row : json) {
-    const auto key = petzval::number(row["field_deg"]) + ',' + petzval::number(row["wavelength_nm"]);
+    const auto key = petzval::to_text(row["field_deg"]) + ',' + petzval::to_text(row["wavelength_nm"]);
     const auto& hits = spots.at(key);
     ASSERT_EQ(hits.size(), row["rays_transmitted"].get<std::size_t>()) << key;
     double cx = 0, cy = 0, squares = 0, largest = 0;

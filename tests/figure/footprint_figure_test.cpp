@@ -10,8 +10,8 @@
 #include <string>
 
 #include "../data_lenses.hpp"
+#include "core/text.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/core/text.hpp"
 #include "petzval/core/units.hpp"
 #include "petzval/paraxial/pupils.hpp"
 #include "petzval/pupil/illumination.hpp"
@@ -33,8 +33,8 @@ TEST(FootprintFigure, TellsAreaAndIllumination) {
   const std::string svg = footprint_figure(lens, -infinity, fields);
   const PupilBoundary axis = pupil_boundary(lens, {0, -infinity}), edge = pupil_boundary(lens, {fields[1], -infinity});
   EXPECT_NE(svg.find("area 1 of that on the axis"), std::string::npos);
-  EXPECT_NE(svg.find("area " + number(edge.area() / axis.area(), 3) + " of"), std::string::npos);
-  EXPECT_NE(svg.find("relative illumination " + number(*relative_illumination(lens, {fields[1], -infinity}), 3)),
+  EXPECT_NE(svg.find("area " + to_text(edge.area() / axis.area(), 3) + " of"), std::string::npos);
+  EXPECT_NE(svg.find("relative illumination " + to_text(*relative_illumination(lens, {fields[1], -infinity}), 3)),
             std::string::npos);
   EXPECT_EQ(svg, footprint_figure(lens, -infinity, fields));
 }

@@ -8,8 +8,8 @@
 #include <limits>
 #include <string>
 
+#include "core/text.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/core/text.hpp"
 #include "petzval/core/units.hpp"
 #include "petzval/io/prescription_json.hpp"
 #include "svg_parts.hpp"
@@ -45,8 +45,8 @@ TEST(SpotFigure, HasACellForEachFieldAndWavelength) {
   EXPECT_NE(svg.find("subject at infinity"), std::string::npos);
   for (const char* name : {"486.1 nm", "587.6 nm", "656.3 nm"}) EXPECT_EQ(count(svg, ">" + std::string(name)), 2u);
   for (const Spot& spot : spots) {
-    EXPECT_NE(svg.find("RMS " + number(1e3 * spot.size.rms_radius, 3) + " \u00b5m,  max " +
-                       number(1e3 * spot.size.max_radius, 3) + " \u00b5m"),
+    EXPECT_NE(svg.find("RMS " + to_text(1e3 * spot.size.rms_radius, 3) + " \u00b5m,  max " +
+                       to_text(1e3 * spot.size.max_radius, 3) + " \u00b5m"),
               std::string::npos);
   }
   EXPECT_EQ(svg, spot_figure(lens, spots));

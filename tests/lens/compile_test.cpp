@@ -9,7 +9,7 @@
 
 #include "../data_lenses.hpp"
 #include "../message.hpp"
-#include "petzval/core/text.hpp"
+#include "core/text.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/media/catalogue.hpp"
 
@@ -186,7 +186,7 @@ TEST(Compile, WavelengthsThatAreNoneAreRefusedForMirrorsToo) {
   mirror.surfaces = {{.radius = -400, .thickness = -200, .mirror = true}};
   for (const double nm : {std::nan(""), std::numeric_limits<double>::infinity(), 0.0, -d, 0.5876, 587561.8}) {
     EXPECT_EQ(message([&] { compile(mirror, std::array{nm}); }),
-              "lens: wavelength is " + petzval::number(nm) + " nm, wanted 10 to 100000 nm");
+              "lens: wavelength is " + petzval::to_text(nm) + " nm, wanted 10 to 100000 nm");
   }
   EXPECT_EQ(message([&] { compile(mirror, std::span<const double>{}); }),
             "lens: no wavelength to compile for, wanted one at least");

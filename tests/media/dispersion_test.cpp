@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "../message.hpp"
-#include "petzval/core/text.hpp"
+#include "core/text.hpp"
 #include "petzval/core/units.hpp"
 #include "petzval/media/catalogue.hpp"
 
@@ -120,7 +120,7 @@ TEST(Dispersion, WavelengthsOutsideTheRangeAreRefusedWithTheRange) {
   const Glass& glass = *glasses().find("N-BK7", "schott");
   for (const double nm : {nan, infinity, -infinity, 0.0, -587.5618, 0.5875618, 299.9, 2500.1, 150000.0}) {
     EXPECT_EQ(message([&] { refractive_index(glass, nm); }),
-              "schott N-BK7: wavelength is " + petzval::number(nm) + " nm, wanted 300 to 2500 nm");
+              "schott N-BK7: wavelength is " + petzval::to_text(nm) + " nm, wanted 300 to 2500 nm");
   }
 }
 

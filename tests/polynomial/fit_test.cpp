@@ -12,8 +12,8 @@
 
 #include "../data_lenses.hpp"
 #include "../message.hpp"
+#include "core/text.hpp"
 #include "lines.hpp"
-#include "petzval/core/text.hpp"
 #include "petzval/media/catalogue.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/f_number.hpp"

@@ -12,7 +12,7 @@
 
 #include "../data_lenses.hpp"
 #include "../message.hpp"
-#include "petzval/core/text.hpp"
+#include "core/text.hpp"
 
 namespace {
 
@@ -45,7 +45,7 @@ TEST(Validate, NumbersThatNoSurfaceHasAreRefusedByNameAndSurface) {
   const std::string finite_radius = ", wanted a finite length of at least 1e-12 mm, or 0 for a plane";
   const std::string finite_thickness = ", wanted a finite length below 1e10 mm";
   for (const double value : {nan, infinity, -infinity}) {
-    const std::string is = " is " + petzval::number(value);
+    const std::string is = " is " + petzval::to_text(value);
     EXPECT_EQ(refusal([&](auto& p) { p.surfaces[1].radius = value; }), "s: surface 1: radius" + is + finite_radius);
     EXPECT_EQ(refusal([&](auto& p) { p.surfaces[0].thickness = value; }),
               "s: surface 0: thickness" + is + finite_thickness);
@@ -180,7 +180,7 @@ TEST(Scale, LengthsFollowAndRatiosStay) {
 TEST(Scale, RefusesFactorsThatMakeNoLens) {
   for (const double factor : {0.0, -1.0, nan, infinity}) {
     EXPECT_EQ(message([&] { petzval::scale(singlet(), factor); }),
-              "singlet: scale factor is " + petzval::number(factor) + ", wanted a finite number above 0");
+              "singlet: scale factor is " + petzval::to_text(factor) + ", wanted a finite number above 0");
   }
   EXPECT_EQ(
       message([] { petzval::scale(singlet(), 0x1p-1060); }),

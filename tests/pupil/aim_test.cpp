@@ -14,7 +14,7 @@
 #include "../data_lenses.hpp"
 #include "../message.hpp"
 #include "../report.hpp"
-#include "petzval/core/text.hpp"
+#include "core/text.hpp"
 #include "petzval/core/units.hpp"
 #include "petzval/paraxial/pupils.hpp"
 #include "petzval/pupil/f_number.hpp"

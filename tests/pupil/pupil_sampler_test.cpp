@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "../data_lenses.hpp"
-#include "petzval/core/text.hpp"
+#include "core/text.hpp"
 #include "petzval/core/units.hpp"
 #include "petzval/trace/trace.hpp"
 
@@ -50,7 +50,7 @@ TEST(PupilSampler, SendsFewRaysInVain) {
       worst = std::min(worst, boundary.area() / sampler.area());
     }
   }
-  RecordProperty("share", number(worst, 4));
+  RecordProperty("share", to_text(worst, 4));
 }
 
 TEST(PupilSampler, LeavesNothingOut) {

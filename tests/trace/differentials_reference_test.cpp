@@ -14,6 +14,7 @@
 #include <string>
 
 #include "../report.hpp"
+#include "core/text.hpp"
 #include "differentials.hpp"
 #include "extended.hpp"
 
@@ -182,8 +183,8 @@ void judge_all(const std::vector<testing_lenses::Sample>& samples, const std::st
   }
   for (const Worst& w : worst) EXPECT_LE(w.error, bound) << w.where;
   testing_report::put(row, testing_report::batch<T>,
-                      petzval::number(worst[0].error, 2) + " / " + petzval::number(worst[1].error, 2),
-                      petzval::number(bound) + " eps");
+                      petzval::to_text(worst[0].error, 2) + " / " + petzval::to_text(worst[1].error, 2),
+                      petzval::to_text(bound) + " eps");
 }
 
 TYPED_TEST(DifferentialsOf, EveryLensAreThoseOfExactRays) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "../report.hpp"
+#include "core/text.hpp"
 #include "differentials.hpp"
 
 namespace {
@@ -45,8 +46,8 @@ class Most {
   void close(const std::string& row, double bound) const {
     for (const bool r : {false, true}) EXPECT_LE(error_[r], bound) << row << ": " << where_[r];
     testing_report::put(row, testing_report::batch<T>,
-                        petzval::number(error_[0], 2) + " / " + petzval::number(error_[1], 2),
-                        petzval::number(bound) + " eps");
+                        petzval::to_text(error_[0], 2) + " / " + petzval::to_text(error_[1], 2),
+                        petzval::to_text(bound) + " eps");
   }
 
  private:

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "core/text.hpp"
 #include "limits.hpp"
 
 namespace {
@@ -89,7 +90,7 @@ TYPED_TEST(ExtremesOf, EveryRadius) {
   Judge<TypeParam> judge;
   for (const double radius : {1e-9, 1e-6, 1e-3, 1.0, 50.0, 1e3, 1e5, 1e7, 1e12, 1e300, 0.0}) {
     for (const double sign : {1.0, -1.0}) {
-      both_ways(judge, glass(sign * radius), {}, "radius " + petzval::number(sign * radius));
+      both_ways(judge, glass(sign * radius), {}, "radius " + petzval::to_text(sign * radius));
     }
   }
   judge.close("radius 1e-9 to 1e12 mm and plane", 4);
@@ -103,7 +104,7 @@ TYPED_TEST(ExtremesOf, EveryConic) {
     for (const double radius : {50.0, -50.0, 200.0}) {
       for (const double distance : {5.0, 100.0}) {
         both_ways(judge, glass(radius, k), {.distance = distance},
-                  "k " + petzval::number(k) + " radius " + petzval::number(radius));
+                  "k " + petzval::to_text(k) + " radius " + petzval::to_text(radius));
       }
     }
   }
@@ -115,7 +116,7 @@ TYPED_TEST(ExtremesOf, CylindersAndMirrors) {
   for (const double radius : {2.5, -50.0, 1e7}) {
     for (const double k : {-1.5, 0.0, 1.0}) {
       SurfaceRow row = glass(radius, k);
-      const std::string what = "radius " + petzval::number(radius) + " k " + petzval::number(k);
+      const std::string what = "radius " + petzval::to_text(radius) + " k " + petzval::to_text(k);
       row.curved_in = Section::x;
       both_ways(judge, row, {}, "cylinder in x, " + what);
       row.curved_in = Section::y;
@@ -142,7 +143,7 @@ TYPED_TEST(ExtremesOf, Aspheres) {
         asphere(2.2, -1, 2.8, {{4, -0.085}, {6, 0.0075}, {8, -0.0002}}), asphere(1000, 0, 300, {{16, 1e-41}}),
         asphere(0, 0, 3, {{2, 0.5}, {4, -0.15}, {6, 0.0105}})}) {
     const double rim = *row.semi_diameter;
-    both_ways(judge, row, {.height = rim, .slope = 0.8, .distance = rim}, "asphere, rim " + petzval::number(rim));
+    both_ways(judge, row, {.height = rim, .slope = 0.8, .distance = rim}, "asphere, rim " + petzval::to_text(rim));
   }
   judge.close("aspheres, gull wings among them, steep rays", 8);
 }
@@ -167,7 +168,7 @@ TYPED_TEST(ExtremesOf, GrazingRays) {
         rays.push_back(through<TypeParam>({x, y, z}, along, 5));
       }
       judge(lens, rays, Travel::to_film, {.place = 30},
-            "k " + petzval::number(k) + " grazing " + petzval::number(grazing));
+            "k " + petzval::to_text(k) + " grazing " + petzval::to_text(grazing));
     }
   }
   judge.close("grazing to 1e-5 rad", 4);
@@ -191,7 +192,7 @@ TYPED_TEST(ExtremesOf, RaysAcrossAndAgainstTheAxis) {
               {std::sin(angle) * std::cos(turn), std::sin(angle) * std::sin(turn), side * std::cos(angle)}, 7));
         }
         judge(lens, rays, side > 0 ? Travel::to_film : Travel::to_scene, {.place = 48},
-              petzval::number(degrees) + " degrees, radius " + petzval::number(radius));
+              petzval::to_text(degrees) + " degrees, radius " + petzval::to_text(radius));
       }
     }
   }
@@ -204,7 +205,7 @@ TYPED_TEST(ExtremesOf, FarStarts) {
     for (const double distance : {1e2, 1e3, 1e4, 1e6, 1e9}) {
       for (const double slope : {0.3, 20 / distance, 0.0}) {
         both_ways(judge, glass(50, k), {.slope = slope, .distance = distance},
-                  "k " + petzval::number(k) + " from " + petzval::number(distance));
+                  "k " + petzval::to_text(k) + " from " + petzval::to_text(distance));
       }
     }
   }
@@ -234,14 +235,14 @@ TEST(Extremes, HitsFromAKilometreAwayLieOnTheSurface) {
     }
   }
   testing_report::put("off the surface, start 1 km away", testing_report::batch<double>,
-                      petzval::number(most, 2) + " mm", "2e-14 mm");
+                      petzval::to_text(most, 2) + " mm", "2e-14 mm");
 }
 
 TYPED_TEST(ExtremesOf, IndicesThatNearlyAgree) {
   Judge<TypeParam> judge;
   for (const double difference : {1e-9, -1e-9, 1e-6, -1e-6, 1e-3, -1e-3, 0.0}) {
     for (const double radius : {50.0, -30.0, 0.0}) {
-      both_ways(judge, glass(radius, 0, 1.5 * (1 + difference)), {}, "indices " + petzval::number(difference), 1.5);
+      both_ways(judge, glass(radius, 0, 1.5 * (1 + difference)), {}, "indices " + petzval::to_text(difference), 1.5);
     }
   }
   judge.close("index ratio to 1 +- 1e-9", 4);
@@ -267,7 +268,7 @@ TYPED_TEST(ExtremesOf, EqualMediaLeaveDirectionsWithinOneEps) {
     }
   }
   EXPECT_LE(most, 1);
-  testing_report::put("equal indices, change of direction", testing_report::batch<T>, petzval::number(most, 2),
+  testing_report::put("equal indices, change of direction", testing_report::batch<T>, petzval::to_text(most, 2),
                       "1 eps");
 }
 
@@ -285,8 +286,8 @@ TYPED_TEST(ExtremesOf, FromSurfaceToSurface) {
           p.surfaces = {front, glass(second, 0, 1.5)};
           const Lens lens = petzval::compile(p);
           const Sweep sweep{.height = 18, .slope = 8, .rays = 60};
-          const std::string what = "radii " + petzval::number(first) + " " + petzval::number(second) + " gap " +
-                                   petzval::number(gap) + " n " + petzval::number(n);
+          const std::string what = "radii " + petzval::to_text(first) + " " + petzval::to_text(second) + " gap " +
+                                   petzval::to_text(gap) + " n " + petzval::to_text(n);
           judge(lens, skew_rays<TypeParam>(front, sweep, 1), Travel::to_film, {.place = 20}, what + " to film");
           auto back = skew_rays<TypeParam>(p.surfaces[1], sweep, -1);
           for (auto& ray : back) ray.origin.z += static_cast<TypeParam>(gap);

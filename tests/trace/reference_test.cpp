@@ -13,7 +13,7 @@
 
 #include "../report.hpp"
 #include "batches.hpp"
-#include "petzval/core/text.hpp"
+#include "core/text.hpp"
 
 namespace {
 
@@ -105,10 +105,10 @@ TYPED_TEST(ReferenceRays, AgreeInPlaceDirectionFateAndSurface) {
     }
   }
   const std::string what = "rays of 14 lenses against 60-digit references, relative";
-  const std::string limit = petzval::number(this->bound);
+  const std::string limit = petzval::to_text(this->bound);
   testing_report::put(what, testing_report::one_ray<T>, one, limit);
   testing_report::put(what, testing_report::batch<T>,
-                      petzval::number(fast, 2) + " / " + petzval::number(reproducible, 2), limit);
+                      petzval::to_text(fast, 2) + " / " + petzval::to_text(reproducible, 2), limit);
 }
 
 }  // namespace
