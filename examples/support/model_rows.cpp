@@ -70,13 +70,14 @@ std::vector<ModelRow> model_rows(std::span<const petzval::ModelCandidate> table,
                                  bool guarded) {
   const double um_per_px = 1e3 * film.pixel_mm();
   std::vector<ModelRow> rows;
-  for (const petzval::ModelCandidate& rung : table) {
-    if (!rung.available) continue;
-    const petzval::RayErrors& rays = rung.error.all;
-    const double max_px = guarded ? rung.bound_px : rays.max_px;
-    rows.push_back({rung.model, 1e3 * rays.rms_mm, 1e3 * rays.p99_mm, max_px * um_per_px, rays.rms_px, max_px,
-                    guarded ? rung.bound_pupil_shape : rung.error.pupil_shape,
-                    guarded ? rung.bound_exposure : rung.error.exposure, rung.ns_per_ray, rung.setup_ms});
+  for (const petzval::ModelCandidate& candidate : table) {
+    if (!candidate.available) continue;
+    const petzval::RayErrors& rays = candidate.error.all;
+    const double max_px = guarded ? candidate.bound_px : rays.max_px;
+    rows.push_back({candidate.model, 1e3 * rays.rms_mm, 1e3 * rays.p99_mm, max_px * um_per_px, rays.rms_px, max_px,
+                    guarded ? candidate.bound_pupil_shape : candidate.error.pupil_shape,
+                    guarded ? candidate.bound_exposure : candidate.error.exposure, candidate.ns_per_ray,
+                    candidate.setup_ms});
   }
   for (ModelRow& row : rows) {
     row.on_front = std::ranges::none_of(rows, [&](const ModelRow& other) {
@@ -134,8 +135,9 @@ std::string bullets(std::span<const std::string> lines) {
 }
 
 void say_what_is_missing(std::span<const petzval::ModelCandidate> table) {
-  for (const petzval::ModelCandidate& rung : table) {
-    if (!rung.available) std::cerr << "note: no " << petzval::name(rung.model) << ": " << rung.remark << '\n';
+  for (const petzval::ModelCandidate& candidate : table) {
+    if (!candidate.available)
+      std::cerr << "note: no " << petzval::name(candidate.model) << ": " << candidate.remark << '\n';
   }
 }
 

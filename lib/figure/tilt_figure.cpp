@@ -115,7 +115,7 @@ class Figure {
     const Film& film = view_.after;
     std::string words = "Film at z = " + to_text(film.z(), 7) + " mm (before: " + to_text(view_.before.z(), 7) + " mm)";
     if (!film.tilted()) return words + ", upright.";
-    return words + ", leaning by " + degrees_text(film.angle()) + " (tilt " + degrees_text(film.tilt_rad) + ", swing " +
+    return words + ", tilted by " + degrees_text(film.angle()) + " (tilt " + degrees_text(film.tilt_rad) + ", swing " +
            degrees_text(film.swing_rad) + ").";
   }
 
