@@ -10,17 +10,11 @@
 
 namespace petzval::inline v0 {
 
-ModelError model_error(const Lens& lens, const Film& film, ModelKind model, const ErrorSamples& samples) {
-  const auto [placed_lens, placed_film] = camera_detail::placed(lens, film);
-  camera_detail::check_upright_film(placed_lens, placed_film);
-  const AnyRayModel built = camera_detail::make_model(model, placed_lens, film.radius_mm());
-  return model_errors(placed_lens, placed_film, std::span(&built, 1), samples).front();
-}
+namespace {
 
-std::vector<ModelError> model_errors(const Lens& given, const Film& given_film, std::span<const AnyRayModel> models,
-                                     const ErrorSamples& samples) {
-  const auto [lens, film] = camera_detail::placed(given, given_film);
-  camera_detail::check_upright_film(lens, film);
+/// film: placed behind the lens, upright.
+std::vector<ModelError> measured(const Lens& lens, const Film& film, std::span<const AnyRayModel> models,
+                                 const ErrorSamples& samples) {
   const camera_detail::ExactModel<double> exact(lens, film.radius_mm());
   const accuracy_detail::RayStudy rays(exact, film, samples);
   const accuracy_detail::PupilStudy pupils(exact, film, std::max<std::size_t>(16, samples.film_points / 8), samples);
@@ -31,6 +25,22 @@ std::vector<ModelError> model_errors(const Lens& given, const Film& given_film, 
     errors.push_back({of_rays.all, of_rays.wavelength, of_pupils.shape, of_pupils.exposure});
   }
   return errors;
+}
+
+}  // namespace
+
+ModelError model_error(const Lens& lens, const Film& film, ModelKind model, const ErrorSamples& samples) {
+  const auto [placed_lens, placed_film] = camera_detail::placed(lens, film);
+  camera_detail::check_upright_film(placed_lens, placed_film);
+  const AnyRayModel built = camera_detail::make_model(model, placed_lens, film.radius_mm());
+  return measured(placed_lens, placed_film, std::span(&built, 1), samples).front();
+}
+
+std::vector<ModelError> model_errors(const Lens& lens, const Film& film, std::span<const AnyRayModel> models,
+                                     const ErrorSamples& samples) {
+  const auto [placed_lens, placed_film] = camera_detail::placed(lens, film);
+  camera_detail::check_upright_film(placed_lens, placed_film);
+  return measured(placed_lens, placed_film, models, samples);
 }
 
 }  // namespace petzval::inline v0
