@@ -11,10 +11,13 @@
 
 namespace petzval::inline v0::core_detail {
 
+/// From one state of splitmix64 to the next; mixed() of the states are its numbers.
+inline constexpr std::uint64_t splitmix_step = 0x9e3779b97f4a7c15u;
+
 /// A hash of all bits to all bits: the finaliser of splitmix64. Source: Steele, Lea and Flood 2014, "Fast splittable
 /// pseudorandom number generators".
 constexpr std::uint64_t mixed(std::uint64_t x) noexcept {
-  x += 0x9e3779b97f4a7c15u;
+  x += splitmix_step;
   x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
   x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
   return x ^ (x >> 31);

@@ -8,8 +8,10 @@
 #include <cstdint>
 #include <string>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
+#include "core/low_discrepancy.hpp"
 #include "lenses.hpp"
 #include "petzval/trace/batch.hpp"
 
@@ -63,10 +65,8 @@ class Numbers {
   explicit Numbers(std::uint64_t seed) : state_(seed) {}
 
   std::uint64_t operator()() {
-    std::uint64_t x = state_ += 0x9e3779b97f4a7c15u;
-    x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
-    x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
-    return x ^ (x >> 31);
+    using namespace petzval::core_detail;
+    return mixed(std::exchange(state_, state_ + splitmix_step));
   }
   double operator()(double low, double high) {
     return low + (high - low) * static_cast<double>((*this)() >> 11) * 0x1p-53;
