@@ -14,8 +14,7 @@
 
 #include "petzval/core/error.hpp"
 #include "petzval/core/units.hpp"
-#include "petzval/figure/focus_pull_figure.hpp"
-#include "petzval/focus/depth_of_field.hpp"
+#include "petzval/figure/focus_figures.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/movement/autofocus.hpp"
 #include "petzval/movement/focus_point.hpp"

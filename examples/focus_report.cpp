@@ -16,7 +16,6 @@
 
 #include "petzval/core/error.hpp"
 #include "petzval/core/units.hpp"
-#include "petzval/focus/depth_of_field.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/f_number.hpp"

@@ -15,7 +15,7 @@
 #include "petzval/core/error.hpp"
 #include "petzval/core/parallel.hpp"
 #include "petzval/core/units.hpp"
-#include "petzval/figure/tilt_figure.hpp"
+#include "petzval/figure/focus_figures.hpp"
 #include "petzval/io/image.hpp"
 #include "petzval/movement/autofocus.hpp"
 #include "petzval/movement/focus_point.hpp"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "petzval/io/prescription_json.hpp"
+#include "petzval/io/lens_json.hpp"
 #include "petzval/lens/lens.hpp"
 
 namespace petzval::testing {

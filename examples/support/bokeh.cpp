@@ -7,7 +7,7 @@
 
 #include "petzval/core/error.hpp"
 #include "petzval/figure/psf_image.hpp"
-#include "petzval/media/catalogue.hpp"
+#include "petzval/media/glass.hpp"
 #include "petzval/psf/colour.hpp"
 #include "text.hpp"
 

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "petzval/movement/focus_point.hpp"
-#include "petzval/movement/focus_target.hpp"
 
 namespace examples {
 

@@ -8,10 +8,8 @@
 #include <utility>
 
 #include "petzval/core/units.hpp"
-#include "petzval/figure/focus_figure.hpp"
-#include "petzval/figure/footprint_figure.hpp"
-#include "petzval/figure/illumination_figure.hpp"
-#include "petzval/figure/layout_figure.hpp"
+#include "petzval/figure/focus_figures.hpp"
+#include "petzval/figure/lens_figures.hpp"
 #include "petzval/figure/spot_figure.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/psf/spot.hpp"

@@ -9,7 +9,6 @@
 #include "load_lens.hpp"
 #include "petzval/lint/lint.hpp"
 #include "petzval/paraxial/first_order.hpp"
-#include "petzval/paraxial/pupils.hpp"
 
 namespace examples {
 

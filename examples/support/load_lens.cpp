@@ -4,8 +4,8 @@
 #include <iostream>
 #include <utility>
 
-#include "petzval/io/prescription_json.hpp"
-#include "petzval/paraxial/pupils.hpp"
+#include "petzval/io/lens_json.hpp"
+#include "petzval/paraxial/first_order.hpp"
 #include "text.hpp"
 
 namespace examples {

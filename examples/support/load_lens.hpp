@@ -6,7 +6,7 @@
 #include <string>
 
 #include "petzval/lens/lens.hpp"
-#include "petzval/media/catalogue.hpp"
+#include "petzval/media/glass.hpp"
 #include "petzval/prescription/prescription.hpp"
 
 namespace examples {

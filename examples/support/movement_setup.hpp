@@ -9,7 +9,7 @@
 #include "cli.hpp"
 #include "petzval/film/film.hpp"
 #include "petzval/lens/lens.hpp"
-#include "petzval/movement/focus_target.hpp"
+#include "petzval/movement/focus_point.hpp"
 #include "petzval/movement/image_rays.hpp"
 #include "petzval/paraxial/ideal_lens.hpp"
 

@@ -11,8 +11,7 @@
 #include "petzval/core/error.hpp"
 #include "petzval/core/units.hpp"
 #include "petzval/paraxial/first_order.hpp"
-#include "petzval/paraxial/pupils.hpp"
-#include "petzval/trace/differentials.hpp"
+#include "petzval/trace/trace.hpp"
 
 namespace petzval::inline v0::accuracy_detail {
 namespace {

@@ -7,7 +7,7 @@
 #include "petzval/core/ray.hpp"
 #include "petzval/film/film.hpp"
 #include "petzval/lens/lens.hpp"
-#include "petzval/pupil/field_point.hpp"
+#include "petzval/pupil/pupil_plane.hpp"
 #include "petzval/pupil_table/two_plane_rays.hpp"
 
 /// Errors in the scene as lengths on the film.

@@ -8,7 +8,7 @@
 
 #include "lens_facts.hpp"
 #include "petzval/camera/ray_model.hpp"
-#include "petzval/core/vec.hpp"
+#include "petzval/core/geometry.hpp"
 #include "petzval/film/film.hpp"
 
 namespace petzval::inline v0::camera_detail {

@@ -8,7 +8,6 @@
 
 #include "camera_loops.hpp"
 #include "core/meet_plane.hpp"
-#include "petzval/trace/batch.hpp"
 #include "petzval/trace/trace.hpp"
 
 namespace petzval::inline v0::camera_detail {

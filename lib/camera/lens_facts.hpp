@@ -7,7 +7,6 @@
 
 #include "petzval/lens/lens.hpp"
 #include "petzval/paraxial/first_order.hpp"
-#include "petzval/paraxial/pupils.hpp"
 
 namespace petzval::inline v0::camera_detail {
 

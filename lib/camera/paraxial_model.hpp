@@ -8,8 +8,8 @@
 #include "lens_facts.hpp"
 #include "petzval/camera/ray_model.hpp"
 #include "petzval/core/export.hpp"
-#include "petzval/paraxial/ray_matrix.hpp"
-#include "petzval/trace/batch.hpp"
+#include "petzval/paraxial/first_order.hpp"
+#include "petzval/trace/trace.hpp"
 
 namespace petzval::inline v0::camera_detail {
 

@@ -5,7 +5,7 @@
 #include <glm/geometric.hpp>
 #include <optional>
 
-#include "petzval/camera/importance.hpp"
+#include "petzval/camera/camera_ray.hpp"
 #include "scene_side.hpp"
 
 namespace petzval::inline v0 {

@@ -8,7 +8,7 @@
 
 #include "chief_ray_table.hpp"
 #include "lens_facts.hpp"
-#include "petzval/camera/importance.hpp"
+#include "petzval/camera/camera_ray.hpp"
 #include "petzval/camera/ray_model.hpp"
 #include "petzval/film/film.hpp"
 #include "pupil_table/entrance_pupil_table.hpp"

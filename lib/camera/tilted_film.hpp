@@ -9,7 +9,6 @@
 #include "petzval/core/export.hpp"
 #include "petzval/film/film.hpp"
 #include "petzval/pupil_table/film_pupil_table.hpp"
-#include "petzval/pupil_table/ray_derivatives.hpp"
 #include "petzval/pupil_table/two_plane_rays.hpp"
 
 namespace petzval::inline v0::camera_detail {

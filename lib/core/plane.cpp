@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/core/plane.hpp"
+#include "petzval/core/geometry.hpp"
 
 #include <cmath>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/figure/layout_figure.hpp"
+#include "petzval/figure/lens_figures.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "petzval/core/error.hpp"
-#include "petzval/paraxial/pupils.hpp"
+#include "petzval/paraxial/first_order.hpp"
 #include "ray_paths.hpp"
 #include "section.hpp"
 #include "sheet.hpp"

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "core/bisect.hpp"
-#include "petzval/lens/sag.hpp"
+#include "petzval/lens/lens.hpp"
 
 namespace petzval::inline v0::figure_detail {
 namespace {

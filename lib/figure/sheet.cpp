@@ -8,7 +8,6 @@
 #include "core/text.hpp"
 #include "petzval/core/units.hpp"
 #include "petzval/paraxial/first_order.hpp"
-#include "petzval/paraxial/pupils.hpp"
 #include "petzval/pupil/f_number.hpp"
 
 namespace petzval::inline v0::figure_detail {

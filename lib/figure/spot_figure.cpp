@@ -13,7 +13,6 @@
 #include "petzval/core/error.hpp"
 #include "petzval/core/units.hpp"
 #include "petzval/paraxial/first_order.hpp"
-#include "petzval/paraxial/pupils.hpp"
 #include "sheet.hpp"
 
 namespace petzval::inline v0 {

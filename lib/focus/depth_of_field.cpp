@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/focus/depth_of_field.hpp"
+#include "petzval/focus/focus.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 
 #include "core/text.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/paraxial/pupils.hpp"
+#include "petzval/paraxial/first_order.hpp"
 #include "root.hpp"
 #include "solver.hpp"
 

@@ -11,7 +11,6 @@
 #include "paraxial/focal_points.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/paraxial/first_order.hpp"
-#include "petzval/paraxial/pupils.hpp"
 #include "search.hpp"
 
 namespace petzval::inline v0::focus_detail {

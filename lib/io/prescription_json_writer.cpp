@@ -4,7 +4,7 @@
 
 #include "json.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/io/prescription_json.hpp"
+#include "petzval/io/lens_json.hpp"
 #include "petzval/io/write_file.hpp"
 
 namespace petzval::inline v0 {

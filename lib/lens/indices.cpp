@@ -5,8 +5,7 @@
 
 #include "core/text.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/media/catalogue.hpp"
-#include "petzval/media/dispersion.hpp"
+#include "petzval/media/glass.hpp"
 
 namespace petzval::inline v0::lens_detail {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/lens/sag.hpp"
+#include "petzval/lens/lens.hpp"
 
 #include <cmath>
 #include <limits>

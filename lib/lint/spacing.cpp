@@ -6,22 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "lens/lens_view.hpp"
-#include "petzval/paraxial/first_order.hpp"
-
 namespace petzval::inline v0::lint_detail {
-namespace {
-
-double sag(const Lens& lens, std::size_t surface, double x, double y) {
-  const kernel::LensView<double> view = kernel::view<double>(lens);
-  const kernel::SurfaceTable<double>& table = view.surfaces[surface];
-  const kernel::Quadric<double>& q = table.quadric;
-  const double r2 = q.ax * x * x + q.ay * y * y;
-  if (table.asphere >= 0) return kernel::sag(view.aspheres[table.asphere], r2).z;
-  return q.curvature * r2 / (1 + std::sqrt(std::max(0.0, 1 - q.e * q.curvature * q.curvature * r2)));
-}
-
-}  // namespace
 
 double domain(const LensSurface& surface) {
   const double bend = 1 + surface.conic;
@@ -33,7 +18,9 @@ std::optional<Spacing> least_spacing(const Lens& lens, std::size_t surface) {
   const LensSurface& front = lens.surfaces()[surface];
   const LensSurface& rear = lens.surfaces()[surface + 1];
   const double from = std::max(front.obscuration_semi_diameter, rear.obscuration_semi_diameter);
-  const double to = std::min({front.semi_diameter, rear.semi_diameter, domain(front), domain(rear)});
+  // Heights on an equator round to beyond it, where a sag has no value.
+  const double equator = std::min(domain(front), domain(rear)) * (1 - 1e-15);
+  const double to = std::min({front.semi_diameter, rear.semi_diameter, equator});
   if (!std::isfinite(front.semi_diameter) || !std::isfinite(rear.semi_diameter) || to < from) return {};
 
   // Where light runs backwards, behind a mirror, the next surface lies at smaller z.

@@ -6,7 +6,7 @@
 #include <system_error>
 
 #include "petzval/core/error.hpp"
-#include "petzval/media/catalogue.hpp"
+#include "petzval/media/glass.hpp"
 
 namespace petzval::inline v0 {
 namespace {

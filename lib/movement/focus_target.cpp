@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/movement/focus_target.hpp"
+#include "petzval/movement/focus_point.hpp"
 
 #include <cmath>
 #include <limits>

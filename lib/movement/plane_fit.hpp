@@ -5,8 +5,8 @@
 #include <span>
 
 #include "petzval/core/export.hpp"
-#include "petzval/core/plane.hpp"
-#include "petzval/movement/focus_target.hpp"
+#include "petzval/core/geometry.hpp"
+#include "petzval/movement/focus_point.hpp"
 #include "petzval/paraxial/ideal_lens.hpp"
 
 namespace petzval::inline v0::movement_detail {

@@ -6,7 +6,7 @@
 #include <span>
 
 #include "petzval/core/export.hpp"
-#include "petzval/movement/focus_target.hpp"
+#include "petzval/movement/focus_point.hpp"
 
 namespace petzval::inline v0::movement_detail {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "petzval/film/film.hpp"
-#include "petzval/movement/focus_target.hpp"
+#include "petzval/movement/focus_point.hpp"
 #include "petzval/paraxial/ideal_lens.hpp"
 #include "plane_fit.hpp"
 #include "targets.hpp"

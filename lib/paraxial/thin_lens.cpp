@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/paraxial/thin_lens.hpp"
+#include "petzval/paraxial/ideal_lens.hpp"
 
 #include <cmath>
 #include <string>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "petzval/core/vec.hpp"
+#include "petzval/core/geometry.hpp"
 
 namespace petzval::inline v0::polynomial_detail {
 

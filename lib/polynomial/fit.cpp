@@ -9,7 +9,7 @@
 #include "core/low_discrepancy.hpp"
 #include "least_squares.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/paraxial/pupils.hpp"
+#include "petzval/paraxial/first_order.hpp"
 #include "petzval/polynomial/ray_polynomial.hpp"
 
 namespace petzval::inline v0 {

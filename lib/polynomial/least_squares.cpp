@@ -11,7 +11,7 @@
 #include "chart.hpp"
 #include "core/text.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/trace/batch.hpp"
+#include "petzval/trace/trace.hpp"
 
 namespace petzval::inline v0::polynomial_detail {
 namespace {

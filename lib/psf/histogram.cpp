@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/psf/histogram.hpp"
+#include "psf/histogram.hpp"
 
 #include <algorithm>
 #include <cstddef>
 
-namespace petzval::inline v0 {
+namespace petzval::inline v0::psf_detail {
 
 void count_points(const PixelGrid& grid, std::span<const double> x, std::span<const double> y,
                   std::span<std::uint64_t> counts) noexcept {
@@ -33,4 +33,4 @@ void count_points(const PixelGrid& grid, std::span<const double> x, std::span<co
   }
 }
 
-}  // namespace petzval::inline v0
+}  // namespace petzval::inline v0::psf_detail

@@ -10,8 +10,8 @@
 #include "core/text.hpp"
 #include "partial_sums.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/paraxial/pupils.hpp"
-#include "petzval/psf/histogram.hpp"
+#include "petzval/paraxial/first_order.hpp"
+#include "psf/histogram.hpp"
 
 namespace petzval::inline v0 {
 namespace {
@@ -38,11 +38,11 @@ double fitting_half_width(const std::vector<RayBundle>& sets, const SpotSize& si
 }
 
 void fill_counts(Psf& psf, const std::vector<RayBundle>& sets) {
-  const PixelGrid grid{psf.centre, psf.pixel_mm, psf.pixels};
+  const psf_detail::PixelGrid grid{psf.centre, psf.pixel_mm, psf.pixels};
   const std::size_t plane = static_cast<std::size_t>(psf.pixels) * static_cast<std::size_t>(psf.pixels);
   psf.counts.assign(sets.size() * plane, 0);
   for (std::size_t w = 0; w < sets.size(); ++w) {
-    count_points(grid, sets[w].x, sets[w].y, std::span(psf.counts).subspan(w * plane, plane));
+    psf_detail::count_points(grid, sets[w].x, sets[w].y, std::span(psf.counts).subspan(w * plane, plane));
   }
 }
 

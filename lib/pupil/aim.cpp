@@ -14,8 +14,8 @@
 #include "core/bisect.hpp"
 #include "face.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/lens/sag.hpp"
-#include "petzval/paraxial/pupils.hpp"
+#include "petzval/lens/lens.hpp"
+#include "petzval/paraxial/first_order.hpp"
 #include "petzval/trace/trace.hpp"
 #include "trace/sequential.hpp"
 

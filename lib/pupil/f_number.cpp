@@ -9,7 +9,7 @@
 #include "core/bisect.hpp"
 #include "core/text.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/paraxial/pupils.hpp"
+#include "petzval/paraxial/first_order.hpp"
 #include "trace/sequential.hpp"
 
 namespace petzval::inline v0 {

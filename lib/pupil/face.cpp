@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "petzval/lens/sag.hpp"
+#include "petzval/lens/lens.hpp"
 
 namespace petzval::inline v0::pupil_detail {
 

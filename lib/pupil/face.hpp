@@ -5,7 +5,7 @@
 
 #include "petzval/core/export.hpp"
 #include "petzval/lens/lens.hpp"
-#include "petzval/paraxial/pupils.hpp"
+#include "petzval/paraxial/first_order.hpp"
 
 namespace petzval::inline v0::pupil_detail {
 

@@ -14,7 +14,7 @@
 #include "core/bisect.hpp"
 #include "face.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/paraxial/pupils.hpp"
+#include "petzval/paraxial/first_order.hpp"
 
 namespace petzval::inline v0 {
 namespace {

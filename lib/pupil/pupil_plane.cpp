@@ -12,7 +12,7 @@
 #include "face.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/units.hpp"
-#include "petzval/paraxial/pupils.hpp"
+#include "petzval/paraxial/first_order.hpp"
 
 namespace petzval::inline v0 {
 namespace {

@@ -10,9 +10,8 @@
 #include "core/meet_plane.hpp"
 #include "core/text.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/lens/sag.hpp"
+#include "petzval/lens/lens.hpp"
 #include "petzval/paraxial/first_order.hpp"
-#include "petzval/paraxial/pupils.hpp"
 #include "petzval/trace/trace.hpp"
 
 namespace petzval::inline v0 {

@@ -11,8 +11,8 @@
 #include <utility>
 
 #include "core/meet_plane.hpp"
-#include "petzval/lens/sag.hpp"
-#include "petzval/paraxial/pupils.hpp"
+#include "petzval/lens/lens.hpp"
+#include "petzval/paraxial/first_order.hpp"
 #include "pupil/boundary_search.hpp"
 #include "pupil/face.hpp"
 #include "pupil_table/pupil_polygon.hpp"

@@ -9,13 +9,13 @@
 #include <vector>
 
 #include "petzval/core/export.hpp"
+#include "petzval/core/geometry.hpp"
 #include "petzval/core/ray.hpp"
-#include "petzval/core/vec.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/lens/wavelength.hpp"
 #include "petzval/pupil_table/film_pupil_table.hpp"
 #include "petzval/pupil_table/two_plane_rays.hpp"
-#include "petzval/trace/batch.hpp"
+#include "petzval/trace/trace.hpp"
 
 namespace petzval::inline v0 {
 

@@ -9,8 +9,8 @@
 #include <numbers>
 #include <utility>
 
-#include "petzval/paraxial/pupils.hpp"
-#include "petzval/trace/batch.hpp"
+#include "petzval/paraxial/first_order.hpp"
+#include "petzval/trace/trace.hpp"
 #include "pupil/boundary_search.hpp"
 #include "pupil/face.hpp"
 

@@ -6,7 +6,6 @@
 #include "core/text.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/paraxial/first_order.hpp"
-#include "petzval/paraxial/pupils.hpp"
 
 namespace petzval::inline v0 {
 

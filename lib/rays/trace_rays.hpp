@@ -9,11 +9,11 @@
 #include <span>
 
 #include "petzval/core/export.hpp"
+#include "petzval/core/geometry.hpp"
 #include "petzval/core/ray.hpp"
-#include "petzval/core/vec.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/rays/ray_bundle.hpp"
-#include "petzval/trace/batch.hpp"
+#include "petzval/trace/trace.hpp"
 
 namespace petzval::inline v0::rays_detail {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/trace/batch.hpp"
+#include "petzval/trace/trace.hpp"
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,6 @@
 #include "block.hpp"
 #include "job.hpp"
 #include "lens/lens_view.hpp"
-#include "petzval/trace/differentials.hpp"
 
 namespace petzval::inline v0 {
 namespace {

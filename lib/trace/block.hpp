@@ -6,7 +6,7 @@
 #include <span>
 
 #include "lens/lens_view.hpp"
-#include "petzval/trace/differentials.hpp"
+#include "petzval/trace/trace.hpp"
 
 namespace petzval::inline v0::trace_detail {
 

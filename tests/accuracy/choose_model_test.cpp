@@ -16,7 +16,7 @@
 #include "petzval/camera/camera.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/focus/focus.hpp"
-#include "petzval/media/catalogue.hpp"
+#include "petzval/media/glass.hpp"
 #include "petzval/pupil/f_number.hpp"
 
 namespace petzval {

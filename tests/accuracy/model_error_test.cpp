@@ -16,9 +16,8 @@
 #include "petzval/core/error.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/lens/lens.hpp"
-#include "petzval/media/catalogue.hpp"
+#include "petzval/media/glass.hpp"
 #include "petzval/paraxial/first_order.hpp"
-#include "petzval/paraxial/pupils.hpp"
 #include "petzval/pupil/f_number.hpp"
 
 namespace petzval {

@@ -25,7 +25,7 @@
 #include "petzval/camera/camera.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/units.hpp"
-#include "petzval/io/prescription_json.hpp"
+#include "petzval/io/lens_json.hpp"
 #include "petzval/io/write_file.hpp"
 #include "table.hpp"
 #include "trace_rays.hpp"

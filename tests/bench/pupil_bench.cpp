@@ -10,10 +10,9 @@
 
 #include "petzval/core/sobol.hpp"
 #include "petzval/core/units.hpp"
-#include "petzval/io/prescription_json.hpp"
+#include "petzval/io/lens_json.hpp"
 #include "petzval/pupil/aim.hpp"
 #include "petzval/pupil/pupil_boundary.hpp"
-#include "petzval/pupil/pupil_sampler.hpp"
 #include "petzval/trace/trace.hpp"
 #include "table.hpp"
 

@@ -7,7 +7,6 @@
 #include <random>
 
 #include "../trace/extended.hpp"
-#include "petzval/trace/batch.hpp"
 #include "petzval/trace/trace.hpp"
 #include "trace/sequential.hpp"
 

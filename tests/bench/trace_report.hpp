@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "petzval/trace/batch.hpp"
+#include "petzval/trace/trace.hpp"
 #include "table.hpp"
 #include "trace_rays.hpp"
 #include "trace_work.hpp"

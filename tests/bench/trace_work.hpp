@@ -8,8 +8,6 @@
 #include <optional>
 #include <vector>
 
-#include "petzval/trace/batch.hpp"
-#include "petzval/trace/differentials.hpp"
 #include "petzval/trace/trace.hpp"
 #include "textbook_tracer.hpp"
 #include "trace/sequential.hpp"

@@ -22,8 +22,8 @@
 #include "petzval/camera/ray_model.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/focus/focus.hpp"
-#include "petzval/media/catalogue.hpp"
-#include "petzval/paraxial/pupils.hpp"
+#include "petzval/media/glass.hpp"
+#include "petzval/paraxial/first_order.hpp"
 #include "tilted_films.hpp"
 
 namespace petzval {

@@ -19,7 +19,6 @@
 #include "petzval/camera/ray_model.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/paraxial/first_order.hpp"
-#include "petzval/paraxial/pupils.hpp"
 
 namespace petzval {
 namespace {

@@ -15,7 +15,7 @@
 #include "petzval/accuracy/model_error.hpp"
 #include "petzval/core/sobol.hpp"
 #include "petzval/focus/focus.hpp"
-#include "petzval/paraxial/pupils.hpp"
+#include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "petzval/pupil/illumination.hpp"
 

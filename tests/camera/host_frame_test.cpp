@@ -13,7 +13,6 @@
 #include "../message.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/paraxial/first_order.hpp"
-#include "petzval/paraxial/pupils.hpp"
 
 namespace petzval {
 namespace {

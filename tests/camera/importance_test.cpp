@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/camera/importance.hpp"
+#include "petzval/camera/camera_ray.hpp"
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@
 #include "camera_parts.hpp"
 #include "core/low_discrepancy.hpp"
 #include "petzval/camera/camera.hpp"
-#include "petzval/paraxial/pupils.hpp"
+#include "petzval/paraxial/first_order.hpp"
 
 namespace petzval {
 namespace {

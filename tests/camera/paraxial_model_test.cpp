@@ -16,9 +16,8 @@
 #include "../message.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/focus/focus.hpp"
-#include "petzval/media/catalogue.hpp"
+#include "petzval/media/glass.hpp"
 #include "petzval/paraxial/first_order.hpp"
-#include "petzval/paraxial/pupils.hpp"
 #include "petzval/trace/trace.hpp"
 
 namespace petzval {

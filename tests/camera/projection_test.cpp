@@ -13,7 +13,7 @@
 #include "core/low_discrepancy.hpp"
 #include "petzval/camera/camera.hpp"
 #include "petzval/film/film.hpp"
-#include "petzval/paraxial/pupils.hpp"
+#include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/aim.hpp"
 #include "petzval/trace/trace.hpp"
 

@@ -19,9 +19,8 @@
 #include "petzval/camera/camera.hpp"
 #include "petzval/core/sobol.hpp"
 #include "petzval/paraxial/first_order.hpp"
-#include "petzval/paraxial/pupils.hpp"
 #include "petzval/pupil/f_number.hpp"
-#include "petzval/trace/batch.hpp"
+#include "petzval/trace/trace.hpp"
 #include "pupil/face.hpp"
 #include "tilted_films.hpp"
 

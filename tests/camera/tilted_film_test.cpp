@@ -21,7 +21,6 @@
 #include "petzval/film/film.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/paraxial/first_order.hpp"
-#include "petzval/paraxial/pupils.hpp"
 #include "tilted_films.hpp"
 
 namespace petzval {

@@ -8,9 +8,9 @@
 #include <iostream>
 
 #include "petzval/core/error.hpp"
-#include "petzval/io/prescription_json.hpp"
+#include "petzval/io/lens_json.hpp"
 #include "petzval/lens/lens.hpp"
-#include "petzval/media/catalogue.hpp"
+#include "petzval/media/glass.hpp"
 #include "petzval/trace/trace.hpp"
 
 namespace {

@@ -5,8 +5,8 @@
 
 #include "petzval/focus/focus.hpp"
 #include "petzval/io/image.hpp"
-#include "petzval/io/prescription_json.hpp"
-#include "petzval/paraxial/thin_lens.hpp"
+#include "petzval/io/lens_json.hpp"
+#include "petzval/paraxial/ideal_lens.hpp"
 #include "program.hpp"
 
 namespace {

@@ -2,8 +2,8 @@
 #include <cmath>
 #include <set>
 
-#include "petzval/focus/depth_of_field.hpp"
-#include "petzval/io/prescription_json.hpp"
+#include "petzval/focus/focus.hpp"
+#include "petzval/io/lens_json.hpp"
 #include "petzval/movement/autofocus.hpp"
 #include "petzval/movement/focus_point.hpp"
 #include "petzval/pupil/f_number.hpp"

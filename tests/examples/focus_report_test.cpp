@@ -4,9 +4,8 @@
 #include <set>
 
 #include "petzval/core/units.hpp"
-#include "petzval/focus/depth_of_field.hpp"
 #include "petzval/focus/focus.hpp"
-#include "petzval/io/prescription_json.hpp"
+#include "petzval/io/lens_json.hpp"
 #include "program.hpp"
 
 namespace {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/io/prescription_json.hpp"
+#include "petzval/io/lens_json.hpp"
 #include "petzval/paraxial/first_order.hpp"
-#include "petzval/paraxial/pupils.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "program.hpp"
 

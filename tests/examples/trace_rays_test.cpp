@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "petzval/io/prescription_json.hpp"
+#include "petzval/io/lens_json.hpp"
 #include "program.hpp"
 
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/figure/footprint_figure.hpp"
+#include "petzval/figure/lens_figures.hpp"
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@
 #include "core/text.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/units.hpp"
-#include "petzval/paraxial/pupils.hpp"
+#include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/illumination.hpp"
 #include "petzval/pupil/pupil_boundary.hpp"
 #include "svg_parts.hpp"

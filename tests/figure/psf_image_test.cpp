@@ -11,7 +11,7 @@
 
 #include "petzval/core/error.hpp"
 #include "petzval/core/units.hpp"
-#include "petzval/io/prescription_json.hpp"
+#include "petzval/io/lens_json.hpp"
 #include "petzval/pupil/f_number.hpp"
 
 namespace petzval {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/focus/depth_of_field.hpp"
+#include "petzval/focus/focus.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,8 +11,7 @@
 #include "../data_lenses.hpp"
 #include "../message.hpp"
 #include "petzval/paraxial/first_order.hpp"
-#include "petzval/paraxial/pupils.hpp"
-#include "petzval/paraxial/thin_lens.hpp"
+#include "petzval/paraxial/ideal_lens.hpp"
 
 namespace petzval {
 namespace {

@@ -11,9 +11,8 @@
 
 #include "../data_lenses.hpp"
 #include "petzval/core/units.hpp"
-#include "petzval/focus/depth_of_field.hpp"
 #include "petzval/focus/focus.hpp"
-#include "petzval/media/catalogue.hpp"
+#include "petzval/media/glass.hpp"
 #include "petzval/pupil/pupil_plane.hpp"
 #include "petzval/trace/trace.hpp"
 

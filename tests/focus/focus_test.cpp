@@ -10,7 +10,7 @@
 #include "../data_lenses.hpp"
 #include "../message.hpp"
 #include "petzval/paraxial/first_order.hpp"
-#include "petzval/paraxial/thin_lens.hpp"
+#include "petzval/paraxial/ideal_lens.hpp"
 
 namespace petzval {
 namespace {

@@ -11,7 +11,7 @@
 #include "../message.hpp"
 #include "core/text.hpp"
 #include "petzval/lens/lens.hpp"
-#include "petzval/media/catalogue.hpp"
+#include "petzval/media/glass.hpp"
 
 namespace {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/media/catalogue.hpp"
+#include "petzval/media/glass.hpp"
 
 #include <gtest/gtest.h>
 

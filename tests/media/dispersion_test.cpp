@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/media/dispersion.hpp"
+#include "petzval/media/glass.hpp"
 
 #include <gtest/gtest.h>
 
@@ -14,7 +14,6 @@
 #include "../message.hpp"
 #include "core/text.hpp"
 #include "petzval/core/units.hpp"
-#include "petzval/media/catalogue.hpp"
 
 namespace {
 

@@ -14,8 +14,8 @@
 #include "../film_at.hpp"
 #include "../message.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/focus/depth_of_field.hpp"
-#include "petzval/paraxial/pupils.hpp"
+#include "petzval/focus/focus.hpp"
+#include "petzval/paraxial/first_order.hpp"
 
 namespace petzval {
 namespace {

@@ -14,7 +14,7 @@
 #include "petzval/core/error.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/movement/autofocus.hpp"
-#include "petzval/paraxial/pupils.hpp"
+#include "petzval/paraxial/first_order.hpp"
 #include "petzval/psf/spot.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "petzval/pupil/pupil_boundary.hpp"

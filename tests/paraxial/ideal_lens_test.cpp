@@ -14,10 +14,8 @@
 #include "../message.hpp"
 #include "lens/lens_view.hpp"
 #include "petzval/core/units.hpp"
-#include "petzval/focus/depth_of_field.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/movement/focus_plane.hpp"
-#include "petzval/paraxial/thin_lens.hpp"
 
 namespace petzval {
 namespace {

@@ -12,7 +12,7 @@
 #include "../seidel.hpp"
 #include "../trace/extended.hpp"
 #include "petzval/core/units.hpp"
-#include "petzval/paraxial/pupils.hpp"
+#include "petzval/paraxial/first_order.hpp"
 #include "trace/sequential.hpp"
 
 namespace petzval {

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "../message.hpp"
-#include "petzval/paraxial/thin_lens.hpp"
+#include "petzval/paraxial/ideal_lens.hpp"
 
 namespace petzval {
 namespace {

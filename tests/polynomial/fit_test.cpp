@@ -14,7 +14,7 @@
 #include "../message.hpp"
 #include "core/text.hpp"
 #include "lines.hpp"
-#include "petzval/media/catalogue.hpp"
+#include "petzval/media/glass.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "petzval/trace/trace.hpp"

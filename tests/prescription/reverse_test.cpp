@@ -9,7 +9,6 @@
 #include "../data_lenses.hpp"
 #include "../message.hpp"
 #include "petzval/paraxial/first_order.hpp"
-#include "petzval/paraxial/pupils.hpp"
 #include "petzval/prescription/prescription.hpp"
 #include "petzval/pupil/aim.hpp"
 #include "petzval/trace/trace.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/psf/histogram.hpp"
+#include "psf/histogram.hpp"
 
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 TEST(CountPoints, RowsRunFromTheTop) {
   std::vector<std::uint64_t> counts(9, 0);
   const std::vector<double> x{9.2, 10.8, 10.1, 10.1}, y{20.9, 20.7, 19.2, 19.3};
-  count_points({{10, 20}, 0.7, 3}, x, y, counts);
+  psf_detail::count_points({{10, 20}, 0.7, 3}, x, y, counts);
   EXPECT_EQ(counts, (std::vector<std::uint64_t>{1, 0, 1, 0, 0, 0, 0, 2, 0}));
 }
 
@@ -30,7 +30,7 @@ TEST(CountPoints, HoldsEveryPointOnce) {
     for (double& value : x) value = uniform(random);
     for (double& value : y) value = uniform(random);
     std::vector<std::uint64_t> counts(64, 0);
-    count_points({{0, 0}, 0.25, 8}, x, y, counts);
+    psf_detail::count_points({{0, 0}, 0.25, 8}, x, y, counts);
     for (std::size_t k = 0; k < 64; ++k) {
       const double left = -1 + 0.25 * static_cast<double>(k % 8), top = 1 - 0.25 * static_cast<double>(k / 8);
       std::uint64_t within = 0;
@@ -47,7 +47,7 @@ TEST(CountPoints, LeavesOutWhatLiesBeside) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const std::vector<double> x{-2.001, 2, 0, 0, infinity, -infinity, 1e300, nan, 0};
   const std::vector<double> y{0, 0, 2.001, -2, 0, 0, -1e300, 0, nan};
-  count_points({{0, 0}, 1, 4}, x, y, counts);
+  psf_detail::count_points({{0, 0}, 1, 4}, x, y, counts);
   EXPECT_EQ(std::accumulate(counts.begin(), counts.end(), std::uint64_t(0)), 0u);
 }
 
@@ -56,7 +56,7 @@ TEST(CountPoints, LosesNothingInAFullPixel) {
   for (const std::uint64_t full : {std::uint64_t(1) << 24, std::uint64_t(1) << 32, std::uint64_t(1) << 53}) {
     std::vector<std::uint64_t> counts{full};
     const std::vector<double> places(3, 0.0);
-    count_points({{0, 0}, 1, 1}, places, places, counts);
+    psf_detail::count_points({{0, 0}, 1, 1}, places, places, counts);
     EXPECT_EQ(counts[0], full + 3);
   }
 }

@@ -16,7 +16,7 @@
 #include "../report.hpp"
 #include "core/text.hpp"
 #include "petzval/core/units.hpp"
-#include "petzval/paraxial/pupils.hpp"
+#include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "petzval/trace/trace.hpp"
 #include "trace/sequential.hpp"

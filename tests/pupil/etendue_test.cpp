@@ -13,7 +13,7 @@
 
 #include "../data_lenses.hpp"
 #include "petzval/core/sobol.hpp"
-#include "petzval/paraxial/pupils.hpp"
+#include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/pupil_boundary.hpp"
 #include "petzval/trace/trace.hpp"
 

@@ -14,7 +14,7 @@
 #include "../data_lenses.hpp"
 #include "../message.hpp"
 #include "petzval/core/units.hpp"
-#include "petzval/paraxial/pupils.hpp"
+#include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/aim.hpp"
 #include "petzval/pupil/illumination.hpp"
 #include "petzval/pupil/pupil_boundary.hpp"

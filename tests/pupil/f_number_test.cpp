@@ -9,7 +9,7 @@
 #include "../data_lenses.hpp"
 #include "../message.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/paraxial/pupils.hpp"
+#include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "trace/sequential.hpp"
 

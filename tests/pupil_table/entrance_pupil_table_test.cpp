@@ -16,7 +16,6 @@
 #include "core/low_discrepancy.hpp"
 #include "petzval/core/sobol.hpp"
 #include "petzval/paraxial/first_order.hpp"
-#include "petzval/paraxial/pupils.hpp"
 #include "petzval/pupil/pupil_boundary.hpp"
 #include "petzval/pupil_table/film_pupil_table.hpp"
 #include "petzval/trace/trace.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The slots of a batch: the result of a ray does not depend on its neighbours.
-#include "petzval/trace/batch.hpp"
+#include "petzval/trace/trace.hpp"
 
 #include <gtest/gtest.h>
 

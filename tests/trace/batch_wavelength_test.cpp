@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "batches.hpp"
-#include "petzval/media/catalogue.hpp"
+#include "petzval/media/glass.hpp"
 
 namespace {
 

@@ -13,7 +13,7 @@
 
 #include "core/low_discrepancy.hpp"
 #include "lenses.hpp"
-#include "petzval/trace/batch.hpp"
+#include "petzval/trace/trace.hpp"
 
 /// Batches of rays for tests.
 namespace testing_batches {

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "batches.hpp"
-#include "petzval/trace/differentials.hpp"
+#include "petzval/trace/trace.hpp"
 
 /// Batches of rays with derivatives. A tangent is stored like a ray: the changes of origin and direction.
 namespace testing_differentials {

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "petzval/io/prescription_json.hpp"
+#include "petzval/io/lens_json.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/trace/trace.hpp"
 #include "trace/sequential.hpp"

@@ -6,7 +6,6 @@
 #include <memory>
 
 #include "petzval/camera/camera_ray.hpp"
-#include "petzval/camera/importance.hpp"
 #include "petzval/camera/model_kind.hpp"
 #include "petzval/core/export.hpp"
 #include "petzval/film/film.hpp"

@@ -2,7 +2,11 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <string_view>
 
+#include "petzval/core/export.hpp"
+#include "petzval/core/geometry.hpp"
 #include "petzval/core/ray.hpp"
 #include "petzval/film/film.hpp"
 #include "petzval/lens/wavelength.hpp"
@@ -69,6 +73,60 @@ struct CameraRays {
 struct CameraRayDifferential {
   CameraRay sample{};
   Ray<double> by_film_x{{0, 0, 0}, {0, 0, 0}}, by_film_y{{0, 0, 0}, {0, 0, 0}};
+};
+
+/// The importance of a ray from the scene, for light tracing and bidirectional methods.
+///
+/// The film's mean irradiance is the integral of We x radiance over the rays of the scene, in the measure cos dA dw of
+/// any surface in front of the lens. For Normalisation::irradiance, We is the square of the index in front of the lens
+/// over the film's area for every ray that arrives; there is no cosine in it. unity_on_axis divides We as it divides
+/// weights. The index of the film's medium changes the weights of film samples by its square, and not We: derivation in
+/// lib/camera/importance.cpp.
+struct Importance {
+  double we = 0;  ///< 1/mm^2; 0 for a ray that is lost or misses the film
+  RayFate fate = RayFate::vignetted;
+  FilmPoint film{};  ///< where the ray meets the plane of the film
+  Vec2<double> raster{0, 0};
+  double pdf_film = 0;   ///< 1/mm^2
+  double pdf_pupil = 0;  ///< of the film sample with this ray, 1/mm^2
+  /// The density of this ray among film samples, in the measure cos dA dw of the scene, as a product: of its position
+  /// on the entrance pupil (1 / the pupil's paraxial area, 1/mm^2, in a plane across the ray) and of its direction
+  /// there (1/sr). We over the product is the weight of the film sample with this ray. The product times the cosine at
+  /// a scene point compares with the pdf of sample_importance() for points distributed by area.
+  double pdf_position = 0, pdf_direction = 0;
+
+  explicit operator bool() const noexcept { return we > 0; }
+};
+
+/// A connection from a scene point to the camera.
+struct ImportanceSample {
+  Vec3<double> direction{0, 0, 1};  ///< unit, from the point to the lens
+  double distance = 0;              ///< from the point to `on_pupil`, mm
+  Vec3<double> on_pupil{0, 0, 0};   ///< where the line meets the pupil, usually inside the lens; shadow rays end there
+  double pdf = 0;                   ///< of the direction at the point, 1/sr; 0 without a connection
+  Importance importance{};
+
+  explicit operator bool() const noexcept { return importance.we > 0; }
+};
+
+/// How the search for a film point ended.
+enum class ProjectionStatus : std::uint8_t {
+  converged,     ///< the point's chief ray meets the film
+  outside_film,  ///< it meets the film plane outside the film
+  vignetted,     ///< the lens clips it; other rays of the point may pass
+  not_visible,   ///< the point has no chief ray, or one that meets the film plane far outside the film
+};
+/// "converged", "outside_film", "vignetted" or "not_visible".
+PETZVAL_API std::string_view name(ProjectionStatus status) noexcept;
+
+/// film and raster are set except for not_visible. For vignetted and outside_film they may have the error of a table of
+/// exact chief rays.
+struct Projection {
+  ProjectionStatus status = ProjectionStatus::not_visible;
+  FilmPoint film{};
+  Vec2<double> raster{0, 0};
+
+  explicit operator bool() const noexcept { return status == ProjectionStatus::converged; }
 };
 
 }  // namespace petzval::inline v0

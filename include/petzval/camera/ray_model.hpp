@@ -14,7 +14,6 @@
 #include "petzval/film/film.hpp"
 #include "petzval/lens/wavelength.hpp"
 #include "petzval/pupil_table/film_pupil_table.hpp"
-#include "petzval/pupil_table/ray_derivatives.hpp"
 #include "petzval/pupil_table/two_plane_rays.hpp"
 
 namespace petzval::inline v0 {

@@ -5,7 +5,7 @@
 #include <span>
 
 #include "petzval/core/export.hpp"
-#include "petzval/core/vec.hpp"
+#include "petzval/core/geometry.hpp"
 
 namespace petzval::inline v0 {
 

@@ -5,8 +5,7 @@
 #include <optional>
 
 #include "petzval/core/export.hpp"
-#include "petzval/core/plane.hpp"
-#include "petzval/core/vec.hpp"
+#include "petzval/core/geometry.hpp"
 
 namespace petzval::inline v0 {
 

@@ -145,4 +145,8 @@ PETZVAL_API Lens with_film(const Lens& lens, double film_z);
 /// finite semi-diameter, and an edge that is not finite or whose normal is not a unit vector.
 PETZVAL_API Lens with_iris(const Lens& lens, const Iris& iris);
 
+/// Sag of a surface at (x, y), mm: the height along z over the plane of its vertex; NaN beyond the equator of a sphere
+/// or conic. Clear apertures are ignored.
+PETZVAL_API double sag(const Lens& lens, std::size_t surface, double x, double y) noexcept;
+
 }  // namespace petzval::inline v0

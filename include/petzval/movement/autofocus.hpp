@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "petzval/core/export.hpp"
-#include "petzval/core/vec.hpp"
+#include "petzval/core/geometry.hpp"
 #include "petzval/film/film.hpp"
 #include "petzval/focus/focus.hpp"
-#include "petzval/movement/focus_target.hpp"
+#include "petzval/movement/focus_point.hpp"
 #include "petzval/movement/image_rays.hpp"
 
 namespace petzval::inline v0 {

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "petzval/core/export.hpp"
-#include "petzval/core/plane.hpp"
+#include "petzval/core/geometry.hpp"
 #include "petzval/film/film.hpp"
 #include "petzval/paraxial/ideal_lens.hpp"
 

@@ -10,7 +10,7 @@
 #include "petzval/core/export.hpp"
 #include "petzval/film/film.hpp"
 #include "petzval/movement/focus_plane.hpp"
-#include "petzval/movement/focus_target.hpp"
+#include "petzval/movement/focus_point.hpp"
 #include "petzval/movement/image_rays.hpp"
 #include "petzval/paraxial/ideal_lens.hpp"
 

@@ -4,11 +4,35 @@
 #include <cstddef>
 
 #include "petzval/core/export.hpp"
+#include "petzval/core/version.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/lens/wavelength.hpp"
-#include "petzval/paraxial/ray_matrix.hpp"
 
 namespace petzval::inline v0 {
+
+/// A ray-transfer (ABCD) matrix on (y, n u): height in mm and optical direction, n the signed index (negative while
+/// light runs backwards after a mirror). Its determinant is 1.
+///
+/// Maps between other pairs that describe a ray have the same form, with any determinant: height and slope, or the
+/// points where a ray meets two planes.
+struct RayMatrix {
+  double a = 1, b = 0, c = 0, d = 1;  ///< b in mm, c in 1/mm
+
+  /// The matrix of `*this` followed by `next`.
+  constexpr RayMatrix then(const RayMatrix& next) const noexcept {
+    return {next.a * a + next.b * c, next.a * b + next.b * d, next.c * a + next.d * c, next.c * b + next.d * d};
+  }
+  constexpr RayMatrix inverse() const noexcept {
+    const double determinant = a * d - b * c;
+    return {d / determinant, -b / determinant, -c / determinant, a / determinant};
+  }
+  /// The same section on height and slope, between media of index n_in and n_out (signed).
+  constexpr RayMatrix on_slopes(double n_in, double n_out) const noexcept {
+    return {a, b * n_in, c / n_out, d * n_in / n_out};
+  }
+  /// Light power of the section: the negative of c, in 1/mm.
+  constexpr double power() const noexcept { return -c; }
+};
 
 /// The meridian in which a lens with cylinders is described; without cylinders both are the same.
 enum class Meridian { y, x };
@@ -63,5 +87,30 @@ PETZVAL_API double paraxial_image_z(const Lens& lens, double object_z, Wavelengt
 /// so that planes and equal radii are no special case; in mm and 1/mm, or any other unit. t = 0 gives the thin lens.
 /// Infinite if the power is 0.
 PETZVAL_API double lensmaker_focal_length(double n, double c1, double c2, double thickness = 0) noexcept;
+
+/// A paraxial pupil: the image of the aperture stop. z and diameter are infinite where the lens is telecentric on that
+/// side.
+struct Pupil {
+  double z = 0;         ///< lens frame, mm
+  double diameter = 0;  ///< mm
+};
+
+/// Entrance and exit pupil of a lens, and the surface that limits it.
+struct Pupils {
+  Pupil entrance;
+  Pupil exit;
+  std::size_t stop = 0;
+  /// No surface is marked as stop: `stop` is the first that clips the axial beam from infinity (paraxially).
+  bool stop_inferred = false;
+};
+
+/// Whether any surface limits the beam. Without one there is no stop, and pupils() throws.
+PETZVAL_API bool has_pupils(const Lens& lens) noexcept;
+
+/// Throws Error if no surface is marked as stop and none limits the beam.
+PETZVAL_API Pupils pupils(const Lens& lens, Wavelength wavelength = {}, Meridian meridian = Meridian::y);
+
+/// |EFL| / entrance pupil diameter, in the main meridian. Infinite for an afocal lens or an empty pupil.
+PETZVAL_API double paraxial_f_number(const Lens& lens, Wavelength wavelength = {});
 
 }  // namespace petzval::inline v0

@@ -13,9 +13,8 @@
 #include "petzval/lens/lens.hpp"
 #include "petzval/lens/wavelength.hpp"
 #include "petzval/pupil_table/film_pupil_table.hpp"
-#include "petzval/pupil_table/ray_derivatives.hpp"
 #include "petzval/pupil_table/two_plane_rays.hpp"
-#include "petzval/trace/batch.hpp"
+#include "petzval/trace/trace.hpp"
 
 namespace petzval::inline v0 {
 

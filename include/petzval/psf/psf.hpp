@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "petzval/core/export.hpp"
-#include "petzval/core/vec.hpp"
+#include "petzval/core/geometry.hpp"
 #include "petzval/psf/spot.hpp"
 #include "petzval/rays/ray_bundle.hpp"
 

@@ -10,7 +10,7 @@
 #include "petzval/core/ray.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/lens/wavelength.hpp"
-#include "petzval/pupil/field_point.hpp"
+#include "petzval/pupil/pupil_plane.hpp"
 
 namespace petzval::inline v0 {
 

@@ -8,7 +8,7 @@
 #include "petzval/film/film.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/lens/wavelength.hpp"
-#include "petzval/pupil/field_point.hpp"
+#include "petzval/pupil/pupil_plane.hpp"
 
 namespace petzval::inline v0 {
 

@@ -12,7 +12,7 @@
 #include "petzval/film/film.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/lens/wavelength.hpp"
-#include "petzval/pupil/field_point.hpp"
+#include "petzval/pupil/pupil_plane.hpp"
 #include "petzval/pupil_table/two_plane_rays.hpp"
 
 namespace petzval::inline v0 {

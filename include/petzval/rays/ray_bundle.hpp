@@ -7,7 +7,7 @@
 
 #include "petzval/core/export.hpp"
 #include "petzval/lens/lens.hpp"
-#include "petzval/pupil/pupil_sampler.hpp"
+#include "petzval/pupil/pupil_boundary.hpp"
 
 namespace petzval::inline v0 {
 

@@ -5,9 +5,9 @@
 #include <span>
 
 #include "petzval/core/export.hpp"
-#include "petzval/core/vec.hpp"
+#include "petzval/core/geometry.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval::inline v0::psf_detail {
 
 /// A square of square pixels on the film: `pixels` a side, 1 to 32768, rows from the top (largest y first).
 struct PixelGrid {
@@ -21,4 +21,4 @@ struct PixelGrid {
 PETZVAL_API void count_points(const PixelGrid& grid, std::span<const double> x, std::span<const double> y,
                               std::span<std::uint64_t> counts) noexcept;
 
-}  // namespace petzval::inline v0
+}  // namespace petzval::inline v0::psf_detail

@@ -14,6 +14,33 @@
 
 namespace petzval::inline v0 {
 
+/// Sharpness against film position, as SVG text: the RMS spot radius of each field and of all fields together, over the
+/// distance of the film from the paraxial focus. Lines mark the paraxial focus, the film, and the minima of the axial
+/// spot and of all fields; the numbers are printed below.
+///
+/// RMS radii are about the centroid, over all compiled wavelengths with equal weight and the vignetted pupil by area.
+/// Their square is a parabola in the film position, found from three positions. The same lens gives the same bytes.
+///
+/// subject_z: lens frame, mm, -inf at infinity. Throws Error where pupil_boundary does, and for no fields.
+PETZVAL_API std::string focus_figure(const Lens& lens, double subject_z, std::span<const double> fields_rad);
+
+/// A film and the subject in focus at one time.
+struct FocusPullFrame {
+  double time = 0;              ///< s
+  Film film;                    ///< z_mm is set
+  double subject_distance = 0;  ///< on the axis, from the film, mm, > 0; may be infinite
+  double rms_mm = 0;            ///< blur of the focus points; NaN where none was used and the film stayed
+};
+
+/// Focus over time, as SVG text: the subject distance (on a scale of 1/distance, which shows infinity), the film
+/// position, the RMS blur of the focus points, and tilt and swing where the film has any. Vertical lines mark the keys;
+/// curves are grey where the film stayed.
+///
+/// title: the lens's name; remark: a line about the conditions. Frames are in the order of time. Throws Error for no
+/// frames and for invalid numbers.
+PETZVAL_API std::string focus_pull_figure(std::string_view title, std::string_view remark,
+                                          std::span<const FocusPullFrame> frames, std::span<const double> key_times);
+
 /// A focus point in the figure; a point that the fit did not use is drawn hollow.
 struct TiltFigurePoint {
   ScenePoint place;

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "petzval/core/export.hpp"
+#include "petzval/polynomial/ray_polynomial.hpp"
 #include "petzval/prescription/prescription.hpp"
 
 namespace petzval::inline v0 {
@@ -26,5 +27,21 @@ PETZVAL_API std::string format_prescription(const Prescription& prescription);
 
 /// Writes that text as write_file does. Throws Error that names the file.
 PETZVAL_API void write_prescription(const Prescription& prescription, const std::filesystem::path& file);
+
+/// Reads ray polynomials from a JSON file (format "petzval-ray-polynomial 1"). Throws Error that names the file, the
+/// fit (from 0), the key, what was found and what was wanted, or the byte at which the text is not JSON. Every key must
+/// occur once, and no other. It refuses numbers out of range of double, lists longer than those of a polynomial of
+/// degree 11, more than 10,000 fits, and all that the constructor of RayPolynomial refuses.
+PETZVAL_API RayPolynomial read_ray_polynomial(const std::filesystem::path& file);
+
+/// The same from memory. `where` is the name of the source in messages.
+PETZVAL_API RayPolynomial parse_ray_polynomial(std::string_view json, const std::string& where);
+
+/// The polynomial as JSON. Numbers are the shortest decimals that read back exactly: a polynomial that was written and
+/// read gives rays with the same bits, and the same text again.
+PETZVAL_API std::string format_ray_polynomial(const RayPolynomial& polynomial);
+
+/// Writes that text as write_file does. Throws Error that names the file.
+PETZVAL_API void write_ray_polynomial(const RayPolynomial& polynomial, const std::filesystem::path& file);
 
 }  // namespace petzval::inline v0
