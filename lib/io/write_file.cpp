@@ -1,10 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "petzval/io/write_file.hpp"
 
-#include <fstream>
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
 #include <optional>
 #include <string>
 #include <system_error>
+#include <utility>
 
 #include "petzval/core/error.hpp"
 
@@ -13,44 +19,109 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The path that a new file may replace; nothing for a pipe, a device or a dangling link.
-std::optional<fs::path> place(const fs::path& file) {
-  std::error_code error;
-  const auto entry = fs::symlink_status(file, error).type();
-  if (entry == fs::file_type::not_found) return file;
-  if (entry == fs::file_type::symlink) {
-    const fs::path target = fs::canonical(file, error);
-    return error ? std::nullopt : place(target);
-  }
-  const bool ordinary = entry == fs::file_type::regular || entry == fs::file_type::directory;
-  return ordinary ? std::optional(file) : std::nullopt;
+void check(bool done) {
+  if (!done) throw std::system_error(errno, std::generic_category());
 }
 
-bool write(std::string_view bytes, const fs::path& file) {
-  std::ofstream out(file, std::ios::binary);
-  out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  out.close();
-  return bool(out);
+/// An open file.
+class OpenFile {
+ public:
+  explicit OpenFile(int descriptor) noexcept : descriptor_(descriptor) {}
+  OpenFile(const OpenFile&) = delete;
+  OpenFile& operator=(const OpenFile&) = delete;
+  ~OpenFile() {
+    if (descriptor_ >= 0) ::close(descriptor_);
+  }
+
+  int descriptor() const noexcept { return descriptor_; }
+
+  void write(std::string_view bytes) const {
+    constexpr std::size_t most = std::size_t{1} << 30;  // some systems refuse more in one call
+    while (!bytes.empty()) {
+      const auto count = ::write(descriptor_, bytes.data(), std::min(bytes.size(), most));
+      check(count >= 0 || errno == EINTR);
+      if (count > 0) bytes.remove_prefix(static_cast<std::size_t>(count));
+    }
+  }
+
+  /// Network file systems report some errors only here.
+  void close() { check(::close(std::exchange(descriptor_, -1)) == 0); }
+
+ private:
+  int descriptor_;
+};
+
+/// A new file in the folder of another, whose place it may take. Its name is its own: O_EXCL creates no file where
+/// there is one, and follows no link.
+class NewFile {
+ public:
+  /// Has the mode of the file to replace, or that of any new file.
+  explicit NewFile(const fs::path& old) : file_(created(old)) {}
+  NewFile(const NewFile&) = delete;
+  NewFile& operator=(const NewFile&) = delete;
+  ~NewFile() {
+    if (!name_.empty()) ::unlink(name_.c_str());
+  }
+
+  void write(std::string_view bytes) {
+    file_.write(bytes);
+    check(::fsync(file_.descriptor()) == 0 || errno == EINVAL);  // not every file system can
+    file_.close();
+  }
+
+  void replace(const fs::path& old) {
+    fs::rename(name_, old);
+    name_.clear();
+  }
+
+ private:
+  int created(const fs::path& old) {
+    struct stat status {};
+    const bool known = ::stat(old.c_str(), &status) == 0;
+    const mode_t mode = known ? status.st_mode & 0777 : 0666;
+    const std::string prefix = ".petzval-" + std::to_string(::getpid()) + '-';
+    for (int i = 0;; ++i) {
+      name_ = old.parent_path() / (prefix + std::to_string(i));
+      const int descriptor = ::open(name_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
+      if (descriptor < 0 && errno == EEXIST) continue;
+      check(descriptor >= 0);
+      if (known) ::fchmod(descriptor, mode);  // the mask took bits from it
+      return descriptor;
+    }
+  }
+
+  fs::path name_;
+  OpenFile file_;
+};
+
+/// The path that a new file may replace, at the end of links; nothing for a pipe or a device.
+std::optional<fs::path> place(fs::path file) {
+  const auto type = fs::status(file).type();
+  const bool whole =
+      type == fs::file_type::regular || type == fs::file_type::directory || type == fs::file_type::not_found;
+  if (!whole) return {};
+  while (fs::is_symlink(fs::symlink_status(file))) file = file.parent_path() / fs::read_symlink(file);
+  return file;
 }
 
 }  // namespace
 
 void write_file(std::string_view bytes, const fs::path& file) {
-  std::error_code error;
-  if (const auto target = place(file)) {
-    fs::path part = *target;
-    part += ".part";
-    if (write(bytes, part)) {
-      fs::rename(part, *target, error);
-      if (!error) return;
+  try {
+    if (const auto target = place(file)) {
+      NewFile replacement(*target);
+      replacement.write(bytes);
+      replacement.replace(*target);
+    } else {
+      OpenFile out(::open(file.c_str(), O_WRONLY | O_CLOEXEC));
+      check(out.descriptor() >= 0);
+      out.write(bytes);
+      out.close();
     }
-    std::error_code ignored;
-    if (fs::is_regular_file(part, ignored)) fs::remove(part, ignored);
-  } else if (write(bytes, file)) {
-    return;
+  } catch (const std::system_error& error) {
+    throw Error(file.string() + ": cannot be written (" + error.code().message() +
+                "), wanted an existing, writable folder with space");
   }
-  throw Error(file.string() + ": cannot be written" + (error ? " (" + error.message() + ")" : std::string()) +
-              ", wanted an existing, writable folder with space");
 }
 
 }  // namespace petzval::inline v0

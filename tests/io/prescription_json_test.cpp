@@ -203,7 +203,7 @@ TEST(PrescriptionJson, FilesThatCannotBeOpenedAreNamed) {
   EXPECT_EQ(message([&] { petzval::read_prescription(folder); }), folder.string() + ": cannot be read to its end");
   const Prescription p = parse_prescription(file("\"surfaces\": [" + row + "]"), "x.json");
   EXPECT_EQ(message([&] { petzval::write_prescription(p, absent); }),
-            absent + ": cannot be written, wanted an existing, writable folder with space");
+            absent + ": cannot be written (No such file or directory), wanted an existing, writable folder with space");
   const fs::path written = folder / "petzval_written.json";
   petzval::write_prescription(p, written);
   EXPECT_EQ(petzval::read_prescription(written), p);

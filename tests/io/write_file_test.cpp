@@ -3,13 +3,21 @@
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
+#include <cerrno>
+#include <csignal>
 #include <fstream>
+#include <functional>
 #include <iterator>
 #include <string>
+#include <system_error>
+#include <thread>
+#include <vector>
 
 #include "../message.hpp"
 
@@ -55,17 +63,151 @@ TEST_F(WriteFile, WhoReadsTheOldFileReadsItToItsEnd) {
   EXPECT_EQ(text(file_), "new!");
 }
 
-TEST_F(WriteFile, AFailureLeavesTheOldFile) {
+/// The message of a write in a process of its own, for limits and rights that would stay with this one; empty: it
+/// wrote.
+std::string message_in_process(const std::function<void()>& prepare, const fs::path& file, const std::string& bytes) {
+  std::array<int, 2> ends{};
+  EXPECT_EQ(pipe(ends.data()), 0);
+  const pid_t child = fork();
+  if (child == 0) {
+    prepare();
+    std::string text;
+    try {
+      write_file(bytes, file);
+    } catch (const Error& error) {
+      text = error.what();
+    }
+    const auto sent = write(ends[1], text.data(), text.size());
+    _exit(sent == static_cast<ssize_t>(text.size()) ? 0 : 1);
+  }
+  close(ends[1]);
+  std::string result;
+  std::array<char, 256> some{};
+  for (ssize_t count; (count = read(ends[0], some.data(), some.size())) > 0;) {
+    result.append(some.data(), static_cast<std::size_t>(count));
+  }
+  close(ends[0]);
+  int status = -1;
+  EXPECT_EQ(waitpid(child, &status, 0), child);
+  EXPECT_EQ(status, 0);
+  return result;
+}
+
+std::string refusal(const fs::path& file, int reason) {
+  return file.string() + ": cannot be written (" + std::generic_category().message(reason) +
+         "), wanted an existing, writable folder with space";
+}
+
+TEST_F(WriteFile, AFailureSaysTheSystemsReasonAndLeavesTheOldFile) {
   write_file("old", file_);
-  fs::create_directory(folder_ / "a.txt.part");  // the new one cannot be written
-  EXPECT_EQ(message([&] { write_file("new", file_); }),
-            file_.string() + ": cannot be written, wanted an existing, writable folder with space");
+  // No room: the process may write files of a thousand bytes.
+  const auto limited = [] {
+    signal(SIGXFSZ, SIG_IGN);
+    const rlimit limit{1000, 1000};
+    setrlimit(RLIMIT_FSIZE, &limit);
+  };
+  EXPECT_EQ(message_in_process(limited, file_, std::string(4000, 'x')), refusal(file_, EFBIG));
   EXPECT_EQ(text(file_), "old");
-  EXPECT_TRUE(fs::is_directory(folder_ / "a.txt.part"));
-  fs::create_directories(folder_ / "taken" / "inside");
-  EXPECT_NE(message([&] { write_file("new", folder_ / "taken"); }).find("taken: cannot be written ("),
-            std::string::npos);
-  EXPECT_FALSE(fs::exists(folder_ / "taken.part"));
+  // No right: a folder that belongs to another user, or without the right to write.
+  fs::permissions(folder_,
+                  fs::perms::owner_read | fs::perms::owner_exec | fs::perms::others_read | fs::perms::others_exec);
+  const auto nobody = [] {
+    if (getuid() == 0 && setuid(65534) != 0) _exit(2);
+  };
+  EXPECT_EQ(message_in_process(nobody, file_, "new"), refusal(file_, EACCES));
+  fs::permissions(folder_, fs::perms::owner_all);
+  EXPECT_EQ(text(file_), "old");
+
+  EXPECT_EQ(message([&] { write_file("new", folder_ / "none" / "a"); }), refusal(folder_ / "none" / "a", ENOENT));
+  EXPECT_EQ(message([&] { write_file("new", ""); }), refusal("", ENOENT));
+  const fs::path inside = file_ / "a", taken = folder_ / "taken", long_name = folder_ / std::string(300, 'a');
+  EXPECT_EQ(message([&] { write_file("new", inside); }), refusal(inside, ENOTDIR));
+  EXPECT_EQ(message([&] { write_file("new", long_name); }), refusal(long_name, ENAMETOOLONG));
+  fs::create_directory(taken);
+  EXPECT_EQ(message([&] { write_file("new", taken); }), refusal(taken, EISDIR));
+  const fs::path circle = folder_ / "circle";
+  fs::create_symlink("circle", circle);
+  EXPECT_EQ(message([&] { write_file("new", circle); }), refusal(circle, ELOOP));
+  EXPECT_EQ(files(), 3u);  // a.txt, taken and circle
+#if defined(__linux__)
+  EXPECT_EQ(message([&] { write_file("new", "/dev/full"); }), refusal("/dev/full", ENOSPC));
+#endif
+}
+
+TEST_F(WriteFile, KeepsTheMode) {
+  const auto mode = [&] { return static_cast<int>(fs::status(file_).permissions()); };
+  const mode_t mask = umask(027);
+  write_file("new", file_);
+  EXPECT_EQ(mode(), 0640);
+  for (const int kept : {0600, 0444, 0666, 0751}) {
+    fs::permissions(file_, fs::perms(kept));
+    write_file("newer", file_);
+    EXPECT_EQ(mode(), kept);
+  }
+  umask(mask);
+}
+
+TEST_F(WriteFile, LeavesOtherFilesAlone) {
+  const fs::path part = folder_ / "a.txt.part", other = folder_ / "other";
+  write_file("a user's own", part);
+  write_file("new", file_);
+  EXPECT_EQ(text(part), "a user's own");
+  write_file("untouched", other);
+  fs::remove(part);
+  fs::create_symlink("other", part);
+  // Links under the names that the new file gets first.
+  const std::string first = ".petzval-" + std::to_string(getpid()) + '-';
+  for (const char* i : {"0", "1"}) fs::create_symlink("other", folder_ / (first + i));
+  write_file("newer", file_);
+  EXPECT_EQ(text(file_), "newer");
+  EXPECT_EQ(text(other), "untouched");
+  EXPECT_TRUE(fs::is_symlink(part) && fs::is_symlink(folder_ / (first + "0")));
+  EXPECT_EQ(files(), 5u);
+}
+
+/// Writers of one file, each with texts of one letter and one length of its own.
+std::string own_text(int writer) {
+  return std::string(100'000 + 37'000 * static_cast<std::size_t>(writer), 'a' + char(writer));
+}
+constexpr int writers = 4, rounds = 12;
+
+bool whole(const std::string& text) { return !text.empty() && text == own_text(text[0] - 'a'); }
+
+TEST_F(WriteFile, WritersInThreadsNeverTearAFile) {
+  write_file(own_text(0), file_);
+  std::vector<std::string> failures(writers);
+  std::vector<std::thread> threads;
+  for (int k = 0; k < writers; ++k) {
+    threads.emplace_back([&, k] {
+      for (int i = 0; i < rounds; ++i) {
+        const std::string said = message([&] { write_file(own_text(k), file_); });
+        if (said != "no error") failures[static_cast<std::size_t>(k)] += said;
+        if (!whole(text(file_))) failures[static_cast<std::size_t>(k)] += "torn";
+      }
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  for (const std::string& failure : failures) EXPECT_EQ(failure, "");
+  EXPECT_EQ(files(), 1u);
+}
+
+TEST_F(WriteFile, WritersInProcessesNeverTearAFile) {
+  write_file(own_text(0), file_);
+  std::vector<pid_t> children;
+  for (int k = 0; k < writers; ++k) {
+    children.push_back(fork());
+    if (children.back() != 0) continue;
+    for (int i = 0; i < rounds; ++i) {
+      if (message([&] { write_file(own_text(k), file_); }) != "no error" || !whole(text(file_))) _exit(1);
+    }
+    _exit(0);
+  }
+  for (const pid_t child : children) {
+    int status = -1;
+    EXPECT_EQ(waitpid(child, &status, 0), child);
+    EXPECT_EQ(status, 0);
+  }
+  EXPECT_EQ(files(), 1u);
 }
 
 TEST_F(WriteFile, FollowsLinks) {

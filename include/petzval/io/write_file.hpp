@@ -8,8 +8,10 @@
 
 namespace petzval::inline v0 {
 
-/// Writes a whole file or none: first to FILE.part, which then replaces FILE. A failure keeps the old file and leaves
-/// no partial one. Links are followed. Pipes and devices are written to directly. Throws Error that names the file.
+/// Writes a whole file or none: first to a new file in the same folder, flushed to the disk, which then replaces FILE
+/// and keeps its mode. A failure keeps the old file and leaves no partial one; of several writers at once one wins. A
+/// process that is killed may leave its new file, .petzval-PID-N. Links are followed. Pipes and devices are written to
+/// directly. Throws Error that names the file and the system's reason.
 PETZVAL_API void write_file(std::string_view bytes, const std::filesystem::path& file);
 
 }  // namespace petzval::inline v0
