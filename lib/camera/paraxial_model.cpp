@@ -7,6 +7,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "best_focus.hpp"
 #include "core/meet_plane.hpp"
 #include "core/text.hpp"
 #include "core/widest.hpp"
@@ -25,19 +26,12 @@ namespace {
 
 constexpr double reach = 1e12;  // mm: numbers up to here give finite rays, in float too
 
-/// Film and pupil point of a line to its height and slope in the plane z behind the lens.
-RayMatrix line_at(const TwoPlanes& space, double z) noexcept {
-  const double slope = 1 / space.depth(), far = (z - space.film_z) * slope;
-  return {1 - far, far, -slope, slope};
-}
-
-/// Film and pupil point to place and slope in the plane z of object space.
-RayMatrix to_scene_map(const Lens& lens, std::size_t wavelength, const TwoPlanes& space, double z) {
-  const std::size_t last = lens.surface_count();
-  const RayMatrix forward = ray_matrix(lens, 0, last, wavelength)
-                                .on_slopes(signed_index(lens, 0, wavelength), signed_index(lens, last, wavelength));
-  const RayMatrix in_front = line_at(space, lens.surfaces().back().vertex_z).then(forward.inverse());
-  return in_front.then({1, z - lens.surfaces().front().vertex_z, 0, 1});
+/// Film and pupil point to place and slope in the plane z of object space, with the focus of exact rays.
+RayMatrix to_scene_map(const LensFacts& facts, std::size_t wavelength, const TwoPlanes& space, double z) {
+  const StopMaps maps = stop_maps(facts, wavelength, space);
+  const RayMatrix focus{1, 0, best_focus_power(facts, wavelength, maps), 1};
+  const double front_z = facts.lens().surfaces().front().vertex_z;
+  return maps.from_film.then(focus).then(maps.to_front).then({1, z - front_z, 0, 1});
 }
 
 /// The disc of the pupil's plane through which lines have a height, of a map's first row, below `radius`.
@@ -50,18 +44,13 @@ PupilDisc disc_of(const Lens& lens, const RayMatrix& height, double radius, cons
 
 PupilDisc thick_disc(const LensFacts& facts, std::size_t wavelength, const TwoPlanes& space) {
   const Lens& lens = facts.lens();
-  const std::size_t stop = facts.pupils(wavelength).stop, last = lens.surface_count();
-  const RayMatrix behind_stop =
-      ray_matrix(lens, stop, last, wavelength)
-          .on_slopes(signed_index(lens, stop, wavelength), signed_index(lens, last, wavelength));
-  // Heights in the stop itself: a pupil at infinity is no special case.
-  const RayMatrix at_stop = line_at(space, lens.surfaces().back().vertex_z).then(behind_stop.inverse());
+  const std::size_t stop = facts.pupils(wavelength).stop;
   const double radius = lens.surfaces()[stop].semi_diameter;
   if (!std::isfinite(radius)) {
     throw Error(lens.name() + ": surface " + std::to_string(stop) +
                 ": found a stop without limits, wanted a semi_diameter for a first-order model");
   }
-  return disc_of(lens, at_stop, radius, "the image of the stop");
+  return disc_of(lens, stop_maps(facts, wavelength, space).from_film, radius, "the image of the stop");
 }
 
 PupilDisc thin_disc(const LensFacts& facts, std::size_t wavelength, const TwoPlanes& space) {
@@ -141,7 +130,7 @@ ParaxialModel::ParaxialModel(ModelKind model, const LensFacts& facts, double fil
   const Lens& lens = facts.lens();
   const TwoPlanes& space = pupils_.space();
   for (std::size_t w = 0; w < lens.wavelengths_nm().size(); ++w) {
-    RayMatrix map = to_scene_map(lens, w, space, z_);
+    RayMatrix map = to_scene_map(facts, w, space, z_);
     to_film_.push_back(map.inverse());
     if (model == ModelKind::pinhole) {
       const double middle = thick_disc(facts, w, space).shift;

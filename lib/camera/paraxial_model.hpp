@@ -16,7 +16,9 @@ namespace petzval::inline v0::camera_detail {
 /// The lens to first order: pinhole, thin, thin_two_disc and thick.
 ///
 /// All four map an image-space ray to the same ray of the scene, by the cardinal points (the thin lens stands in both
-/// principal planes at once: the distance between them is left out). They differ in the pupil:
+/// principal planes at once: the distance between them is left out) and by a weak thin lens in the stop, which moves the
+/// focus to where exact rays of the film's centre are sharpest (best_focus.hpp): a picture is sharp at the same distance
+/// in every model. They differ in the pupil:
 ///
 ///     thick           the image of the stop, where it lies
 ///     thin            a disc as wide as the entrance pupil, in the rear principal plane

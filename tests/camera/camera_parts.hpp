@@ -23,4 +23,24 @@ struct CameraParts {
   const FilmPupilTable& pupils() const { return model.pupils(); }
 };
 
+/// A first-order model in air, which has the focus of exact rays and so is not quite the paraxial lens.
+struct CardinalPoints {
+  double front_principal_z, rear_principal_z, focal_length;
+};
+
+/// From rays that run along the axis on either side, 1 mm off it: extended, each meets itself in a principal plane.
+inline CardinalPoints cardinal_points(const AnyRayModel& model) {
+  const TwoPlanes& space = model.pupils().space();
+  Ray<double> ray;
+  model.to_scene(TwoPlaneRay{0, 1, 0, 1}, 0, ray);
+  const double slope = ray.direction.y / ray.direction.z;
+  TwoPlaneRay line;
+  RayFate fate{};
+  const double zero = 0, one = 1;
+  model.to_film(1, {&zero, &one, &zero, &zero, &zero, &one}, {},
+                {&line.film_x, &line.film_y, &line.pupil_x, &line.pupil_y}, &fate);
+  const double slope_behind = (line.pupil_y - line.film_y) / space.depth();
+  return {ray.origin.z + (1 - ray.origin.y) / slope, space.film_z + (1 - line.film_y) / slope_behind, 1 / slope};
+}
+
 }  // namespace petzval::testing

@@ -13,6 +13,7 @@
 #include "camera/exact_model.hpp"
 #include "camera/make_model.hpp"
 #include "camera/paraxial_model.hpp"
+#include "camera_parts.hpp"
 #include "camera_samples.hpp"
 #include "petzval/camera/camera.hpp"
 #include "petzval/camera/polynomial_model.hpp"
@@ -25,14 +26,18 @@ namespace {
 
 using testing::random_samples;
 
-/// A thin lens in air as a renderer would write it: a disc as wide as the entrance pupil in the rear principal plane,
-/// from which rays go on at the front principal plane.
+/// A thin lens in air as a renderer would write it: rays meet a lens in its rear principal plane and go on at the front
+/// one. The pupil is a disc as wide as the entrance pupil.
 class OwnThinLens {
  public:
   static constexpr bool linear_in_slopes = true;
 
-  OwnThinLens(const Lens& lens, double film_radius)
-      : OwnThinLens(lens, film_radius, two_planes(lens), first_order(lens), petzval::pupils(lens).entrance.diameter) {}
+  OwnThinLens(const Lens& lens, const testing::CardinalPoints& points, double film_radius)
+      : front_z_(points.front_principal_z),
+        focal_length_(points.focal_length),
+        depth_(two_planes(lens).depth()),
+        to_lens_(points.rear_principal_z - lens.film_z()),
+        pupils_(disc(lens, film_radius)) {}
 
   const FilmPupilTable& pupils() const noexcept { return pupils_; }
 
@@ -65,18 +70,13 @@ class OwnThinLens {
   }
 
  private:
-  OwnThinLens(const Lens& lens, double film_radius, const TwoPlanes& planes, const FirstOrder& data, double diameter)
-      : front_z_(data.front_principal_z),
-        focal_length_(data.effective_focal_length),
-        depth_(planes.depth()),
-        to_lens_(data.rear_principal_z - planes.film_z),
-        pupils_(disc(planes, to_lens_ / planes.depth(), diameter / 2, film_radius, lens.primary_wavelength())) {}
-
-  /// The disc seen in the plane of the pupils: part: of the way to there, at which it stands.
-  static FilmPupilTable disc(const TwoPlanes& planes, double part, double radius, double film_radius,
-                             std::size_t primary_wavelength) {
+  /// In the rear principal plane of the paraxial lens, seen in the plane of the pupils; part: of the way to there.
+  static FilmPupilTable disc(const Lens& lens, double film_radius) {
+    const TwoPlanes planes = two_planes(lens);
+    const double part = (first_order(lens).rear_principal_z - planes.film_z) / planes.depth();
+    const double radius = petzval::pupils(lens).entrance.diameter / 2;
     const std::vector<PupilDisc> discs{{.shift = (part - 1) / part, .radius = radius / std::abs(part)}};
-    return FilmPupilTable::of_discs(planes, std::array{discs}, film_radius, primary_wavelength);
+    return FilmPupilTable::of_discs(planes, std::array{discs}, film_radius, lens.primary_wavelength());
   }
 
   double front_z_, focal_length_, depth_, to_lens_;
@@ -137,8 +137,9 @@ class CustomModel : public ::testing::TestWithParam<Film> {
   const Lens lens_ = with_focus(testing::data_lens("double_gauss_100mm_f2.0"), 2000);
   const double radius_ =
       std::max(upright_radius(lens_, GetParam()), upright_radius(lens_, GetParam(), ModelKind::thin));
-  const Camera built_in_{lens_, GetParam(), camera_detail::make_model(ModelKind::thin, lens_, radius_)};
-  const Camera own_{lens_, GetParam(), AnyRayModel(OwnThinLens(lens_, radius_))};
+  const AnyRayModel thin_ = camera_detail::make_model(ModelKind::thin, lens_, radius_);
+  const Camera built_in_{lens_, GetParam(), thin_};
+  const Camera own_{lens_, GetParam(), AnyRayModel(OwnThinLens(lens_, testing::cardinal_points(thin_), radius_))};
 };
 
 TEST_P(CustomModel, SamplesAsTheBuiltInModelDoes) {

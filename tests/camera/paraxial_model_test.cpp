@@ -14,6 +14,7 @@
 
 #include "../data_lenses.hpp"
 #include "../message.hpp"
+#include "camera_parts.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/media/glass.hpp"
@@ -110,7 +111,8 @@ Prescription telecentric() {
   return p;
 }
 
-// The models equal the exact lens near the axis, up to errors of third order.
+// The models equal the exact lens near the axis, up to errors of third order: with the stop, the focus of exact rays
+// tends to the paraxial one.
 TEST(ParaxialModel, DiffersFromTheExactRayByTheCubeOfTheHeight) {
   std::vector<Prescription> prescriptions;
   for (const char* id : {"double_gauss_100mm_f2.0", "fisheye_10mm_f4", "eye_gullstrand_le_grand", "modern_50mm_f1.0",
@@ -122,11 +124,13 @@ TEST(ParaxialModel, DiffersFromTheExactRayByTheCubeOfTheHeight) {
   prescriptions.back().surfaces.back().thickness = 30;
   for (const Prescription& prescription : prescriptions) {
     SCOPED_TRACE(prescription.name);
-    const Lens lens = compile(prescription);
-    const double focal = std::abs(first_order(lens).effective_focal_length);
-    const ParaxialModel model(ModelKind::thick, lens, 0.1 * focal);
-    const double depth = model.pupils().space().depth();
+    const Lens open = compile(prescription);
+    const std::size_t stop = pupils(open).stop;
+    const double focal = std::abs(first_order(open).effective_focal_length);
     const auto difference = [&](double h) {
+      const Lens lens = with_semi_diameter(open, stop, h * open.surfaces()[stop].semi_diameter);
+      const ParaxialModel model(ModelKind::thick, lens, 0.1 * focal);
+      const double depth = model.pupils().space().depth();
       const Line line{0.3 * h * focal, 0.5 * h * focal, -0.4 * h * depth, 0.7 * h * depth};
       const Ray<double> ray = to_scene(model, {line})[0].ray, real = exact(lens, line);
       const auto a = meet(ray, -focal), b = meet(real, -focal);
@@ -140,21 +144,24 @@ TEST(ParaxialModel, DiffersFromTheExactRayByTheCubeOfTheHeight) {
 }
 
 TEST(ParaxialModel, MakesPointsOfThePointsInFocus) {
-  const Lens lens = with_focus(testing::data_lens("double_gauss_100mm_f2.0"), 700);
+  const Lens lens = with_focus(testing::data_lens("double_gauss_100mm_f2.0"), 700, {FocusCriterion::min_rms});
+  const auto data = testing::cardinal_points(ParaxialModel(ModelKind::thick, lens, film_24x36));
+  const double behind = lens.film_z() - data.rear_principal_z;
+  const double z = data.front_principal_z - 1 / (1 / data.focal_length - 1 / behind);
+  EXPECT_NEAR(z, -700, 1);
   for (const ModelKind model : first_order_models) {
     const ParaxialModel thick(model, lens, film_24x36);
     const auto rays = to_scene(thick, {{10, -5, 0, 0}, {10, -5, 12, 3}, {10, -5, -20, 8}});
-    const auto point = meet(rays[0].ray, -700);
+    const auto point = meet(rays[0].ray, z);
     for (const auto& [ray, fate] : rays) {
       EXPECT_EQ(fate, RayFate::transmitted);
-      EXPECT_NEAR(meet(ray, -700)[0], point[0], 1e-9);
-      EXPECT_NEAR(meet(ray, -700)[1], point[1], 1e-9);
+      EXPECT_NEAR(meet(ray, z)[0], point[0], 1e-9);
+      EXPECT_NEAR(meet(ray, z)[1], point[1], 1e-9);
       EXPECT_LT(ray.direction.z, 0);
       EXPECT_NEAR(glm::length(ray.direction), 1, 1e-15);
     }
     // The image is upside down, and smaller by the distances from the principal points.
-    const FirstOrder data = first_order(lens);
-    const double magnification = (lens.film_z() - data.rear_principal_z) / (-700 - data.front_principal_z);
+    const double magnification = behind / (z - data.front_principal_z);
     EXPECT_NEAR(point[0], 10 / magnification, 1e-9);
   }
 }

@@ -171,7 +171,7 @@ TEST(TiltedFilm, IsSharpInATiltedPlane) {
   const Lens lens = with_focus(testing::data_lens("double_gauss_100mm_f2.0"), 2000);
   const Film film = tilted_by(wide, 7, -4);
   const Camera camera(lens, film, {.model = ModelKind::thin});
-  const FirstOrder f = first_order(lens);
+  const auto f = testing::cardinal_points(testing::CameraParts(lens, film, ModelKind::thin).model);
   const Film pose = pose_of(lens, film);
   auto samples = random_samples(film, 400);
   constexpr int rays = 16;
@@ -180,7 +180,7 @@ TEST(TiltedFilm, IsSharpInATiltedPlane) {
     const Vec3<double> place = pose.position({samples.film_x[i], samples.film_y[i]});
     // The image by object and image distance from the principal planes.
     const double behind = place.z - f.rear_principal_z;
-    const double before = 1 / (1 / f.effective_focal_length - 1 / behind);
+    const double before = 1 / (1 / f.focal_length - 1 / behind);
     const Vec3<double> image{-place.x * before / behind, -place.y * before / behind, f.front_principal_z - before};
     images.push_back(image);
     int passed = 0;

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "best_focus.hpp"
+
+#include <array>
+#include <cmath>
+
+#include "core/meet_plane.hpp"
+#include "core/quadrature.hpp"
+#include "petzval/pupil/pupil_boundary.hpp"
+#include "petzval/trace/trace.hpp"
+
+namespace petzval::inline v0::camera_detail {
+
+StopMaps stop_maps(const LensFacts& facts, std::size_t wavelength, const TwoPlanes& space) {
+  const Lens& lens = facts.lens();
+  const std::size_t stop = facts.pupils(wavelength).stop, last = lens.surface_count();
+  const double n_front = signed_index(lens, 0, wavelength), n_behind = signed_index(lens, last, wavelength);
+  const RayMatrix lens_map = ray_matrix(lens, 0, last, wavelength).on_slopes(n_front, n_behind);
+  const RayMatrix from_stop =
+      ray_matrix(lens, stop, last, wavelength).on_slopes(signed_index(lens, stop, wavelength), n_behind);
+  // Heights in the stop itself: a pupil at infinity is no special case.
+  const RayMatrix behind_lens = line_at(space, lens.surfaces().back().vertex_z);
+  return {behind_lens.then(from_stop.inverse()), from_stop.then(lens_map.inverse())};
+}
+
+/// A plane of the scene is a slope per height in the stop, v, of the first-order rays from its axial point. Exact rays,
+/// continued to the stop by first order, have heights y and slopes u there: seen from the entrance pupil they miss the
+/// point by u - v y, but for a constant. The sum of squares is least for v = sum(u y) / sum(y y).
+double best_focus_power(const LensFacts& facts, std::size_t wavelength, const StopMaps& maps) {
+  static const auto nodes = core_detail::gauss_legendre<32>();
+  const Lens& lens = facts.lens();
+  const PupilBoundary boundary = exit_pupil_boundary(lens, {}, wavelength, 1);  // one meridian stands for all
+  const RayMatrix to_stop = maps.to_front.inverse();
+  const double front_z = lens.surfaces().front().vertex_z;
+  double uy = 0, yy = 0;
+  for (const PupilSpan& span : boundary.spans) {
+    // The nodes lie in the squared radius, of which equal steps are equal areas.
+    const double from = span.from_radius * span.from_radius, to = span.to_radius * span.to_radius;
+    for (const auto& [node, weight] : nodes) {
+      const auto [x, y] = boundary.at(span.direction, std::sqrt(from + node * (to - from)));
+      const Ray<double> start = boundary.plane.ray(x, y);
+      const auto end = trace(lens, start, {.travel = Travel::to_scene, .wavelength = wavelength});
+      if (!end.transmitted()) continue;
+      const auto line = core_detail::slope_ray(end.ray, front_z);
+      const double light = (to - from) * weight * std::pow(start.direction.z, 4);
+      for (const auto& [height, slope] : {std::array{line.x, line.slope_x}, std::array{line.y, line.slope_y}}) {
+        const double in_stop = to_stop.a * height + to_stop.b * slope;
+        uy += light * in_stop * (to_stop.c * height + to_stop.d * slope);
+        yy += light * in_stop * in_stop;
+      }
+    }
+  }
+  const double power = uy / yy - maps.from_film.d / maps.from_film.b;
+  return std::isfinite(power) ? power : 0;
+}
+
+}  // namespace petzval::inline v0::camera_detail
