@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -37,6 +38,28 @@ inline std::vector<Prescription> data_prescriptions() {
   std::vector<Prescription> result;
   for (const auto& file : files) result.push_back(read_prescription(file));
   return result;
+}
+
+/// A lens whose stop has no rim, with the stop marked and without the mark: they are the same.
+struct OpenLens {
+  Lens marked, unmarked;
+};
+inline OpenLens without_the_rim_of_its_stop(Prescription p) {
+  for (SurfaceRow& row : p.surfaces) {
+    if (row.stop) row.semi_diameter.reset();
+  }
+  const Lens marked = compile(p);
+  for (SurfaceRow& row : p.surfaces) row.stop = false;
+  return {marked, compile(p)};
+}
+
+/// A biconvex 50 mm lens, stopped at its front: without any rim, or with one at its rear.
+inline Prescription open_singlet(std::optional<double> rear_semi_diameter = {}) {
+  Prescription p;
+  p.name = "open";
+  p.surfaces = {{.radius = 50, .thickness = 5, .medium = {.nd = 1.5}, .stop = true},
+                {.radius = -50, .thickness = 48, .semi_diameter = rear_semi_diameter}};
+  return p;
 }
 
 }  // namespace petzval::testing

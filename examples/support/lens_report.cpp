@@ -104,7 +104,8 @@ const char* section_name(petzval::Meridian meridian) { return meridian == petzva
 
 std::string stop_in_words(const std::optional<petzval::Pupils>& pupils) {
   if (!pupils) return "none: nothing limits the beam";
-  return "surface " + std::to_string(pupils->stop) + (pupils->stop_inferred ? " (inferred: none is marked)" : "");
+  return "surface " + std::to_string(pupils->stop) +
+         (pupils->stop_inferred ? " (inferred: none with a rim is marked)" : "");
 }
 
 std::string in_words(double value) {

@@ -32,9 +32,11 @@ void say_what_is_known(const LoadedLens& loaded) {
 }
 
 void say_what_limits(const LoadedLens& loaded) {
-  if (loaded.lens.stop() || !petzval::has_pupils(loaded.lens)) return;
-  std::cerr << "note: " << loaded.id << ": no stop is marked; surface " << petzval::pupils(loaded.lens).stop
-            << ", which limits the axial beam, serves as one\n";
+  if (!petzval::has_pupils(loaded.lens)) return;
+  const petzval::Pupils pupils = petzval::pupils(loaded.lens);
+  if (!pupils.stop_inferred) return;
+  std::cerr << "note: " << loaded.id << (loaded.lens.stop() ? ": the stop has no rim" : ": no stop is marked")
+            << "; surface " << pupils.stop << ", which limits the axial beam, serves as one\n";
 }
 
 }  // namespace

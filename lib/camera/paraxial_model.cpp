@@ -44,12 +44,7 @@ PupilDisc disc_of(const Lens& lens, const RayMatrix& height, double radius, cons
 
 PupilDisc thick_disc(const LensFacts& facts, std::size_t wavelength, const TwoPlanes& space) {
   const Lens& lens = facts.lens();
-  const std::size_t stop = facts.pupils(wavelength).stop;
-  const double radius = lens.surfaces()[stop].semi_diameter;
-  if (!std::isfinite(radius)) {
-    throw Error(lens.name() + ": surface " + std::to_string(stop) +
-                ": found a stop without limits, wanted a semi_diameter for a first-order model");
-  }
+  const double radius = lens.surfaces()[facts.pupils(wavelength).stop].semi_diameter;
   return disc_of(lens, stop_maps(facts, wavelength, space).from_film, radius, "the image of the stop");
 }
 

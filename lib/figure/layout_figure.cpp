@@ -249,8 +249,9 @@ class Figure {
   std::string stop_in_words() const {
     if (!stop_) return "No stop: nothing limits the beam.";
     const std::string surface = "surface " + std::to_string(stop_->stop) + ".";
-    return stop_->stop_inferred ? "Dashed ticks: none is marked as stop, the beam is limited by " + surface
-                                : "Ticks: stop, " + surface;
+    if (!stop_->stop_inferred) return "Ticks: stop, " + surface;
+    const std::string why = lens_.stop() ? "the stop has no rim" : "none is marked as stop";
+    return "Dashed ticks: " + why + ", the beam is limited by " + surface;
   }
 
   const Lens& lens_;

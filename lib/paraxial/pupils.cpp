@@ -28,8 +28,8 @@ std::size_t limiting_surface(const Lens& lens, Wavelength wavelength) {
     }
   }
   if (limiting == lens.surface_count()) {
-    throw Error(lens.name() +
-                ": no stop is marked and no surface limits the axial beam, wanted a stop or a semi_diameter");
+    throw Error(lens.name() + (lens.stop() ? ": the stop has no rim" : ": no stop is marked") +
+                " and no surface limits the axial beam, wanted a semi_diameter");
   }
   return limiting;
 }
@@ -51,8 +51,9 @@ bool has_pupils(const Lens& lens) noexcept {
 
 Pupils pupils(const Lens& lens, Wavelength wavelength, Meridian meridian) {
   Pupils result;
-  result.stop_inferred = !lens.stop();
-  result.stop = lens.stop() ? *lens.stop() : limiting_surface(lens, wavelength);
+  // A marked stop without a rim stops no ray.
+  result.stop_inferred = !lens.stop() || std::isinf(lens.surfaces()[*lens.stop()].semi_diameter);
+  result.stop = result.stop_inferred ? limiting_surface(lens, wavelength) : *lens.stop();
 
   // The ray (0, 1) at the vertex of the stop: (-b, a) of the front part before, by the inverse matrix, and (b, d) of
   // the rear after.

@@ -66,12 +66,21 @@ double entering_height(const StopHeight& stop_height, double rim, double expecte
   return core_detail::last_with(low, high, inside);
 }
 
-/// The same for the stop of a lens as it is.
-double beam_height(const Lens& lens, const Pupils& p, double focal_length, Wavelength wavelength) {
-  const double rim = lens.surfaces()[p.stop].semi_diameter;
-  if (rim == 0) return 0;
-  const double expected = std::min(p.entrance.diameter / 2, focal_length);
-  return entering_height(StopHeight(lens, p.stop, wavelength), rim, expected);
+/// The stop of a lens and the height at which its axial beam enters, to first order.
+struct Beam {
+  std::size_t stop = 0;
+  double height = 0;
+};
+
+Beam beam_of(const Lens& lens, double focal_length, Wavelength wavelength) {
+  const Pupils p = pupils(lens, wavelength, main_meridian(lens, wavelength));
+  return {p.stop, std::min(p.entrance.diameter / 2, focal_length)};
+}
+
+/// The height at which the beam enters, by rays, for the stop as it is.
+double beam_height(const Lens& lens, const Beam& beam, Wavelength wavelength) {
+  const double rim = lens.surfaces()[beam.stop].semi_diameter;
+  return rim == 0 ? 0 : entering_height(StopHeight(lens, beam.stop, wavelength), rim, beam.height);
 }
 
 double focal_length(const Lens& lens, Wavelength wavelength) {
@@ -85,9 +94,9 @@ double f_number(double focal_length, double beam_height) {
 }  // namespace
 
 double real_f_number(const Lens& lens, Wavelength wavelength) {
-  const Pupils p = pupils(lens, wavelength, main_meridian(lens, wavelength));
   const double length = focal_length(lens, wavelength);
-  return std::isinf(length) ? infinity : f_number(length, beam_height(lens, p, length, wavelength));
+  const Beam beam = beam_of(lens, length, wavelength);
+  return std::isinf(length) ? infinity : f_number(length, beam_height(lens, beam, wavelength));
 }
 
 Lens with_f_number(const Lens& lens, double f_number, Wavelength wavelength) {
@@ -98,22 +107,25 @@ Lens with_f_number(const Lens& lens, double f_number, Wavelength wavelength) {
   if (std::isinf(length))
     throw Error(lens.name() + ": the lens is afocal, wanted a focal length to set an f-number by");
 
-  const Pupils p = pupils(lens, wavelength, main_meridian(lens, wavelength));
+  // A marked stop without a rim gets one.
+  const bool open = lens.stop() && std::isinf(lens.surfaces()[*lens.stop()].semi_diameter);
+  const Beam beam = open ? Beam{*lens.stop(), length} : beam_of(lens, length, wavelength);
+  const LensSurface& stop = lens.surfaces()[beam.stop];
   const double y = length / (2 * f_number);
-  const double largest = beam_height(lens, p, length, wavelength);
-  const StopHeight stop_height(lens, p.stop, wavelength);
+  const double largest = beam_height(lens, beam, wavelength);
+  const StopHeight stop_height(lens, beam.stop, wavelength);
   const auto height = stop_height(y);
   // One part in 1e9 of tolerance takes back the f-number that real_f_number printed.
   if (!height || y > largest * (1 + 1e-9)) {
     throw Error(lens.name() + ": f-number is " + to_text(f_number) + ", wanted " + to_text(length / (2 * largest), 10) +
                 " (the fastest the lens can give) or more");
   }
-  if (const double obscured = lens.surfaces()[p.stop].obscuration_semi_diameter; obscured > 0 && *height <= obscured) {
-    const double smallest = entering_height(stop_height, obscured, p.entrance.diameter / 2);
+  if (const double obscured = stop.obscuration_semi_diameter; obscured > 0 && *height <= obscured) {
+    const double smallest = entering_height(stop_height, obscured, beam.height);
     throw Error(lens.name() + ": f-number is " + to_text(f_number) + ", wanted less than " +
                 to_text(length / (2 * smallest), 10) + ": the stop has a central obscuration of that size");
   }
-  return with_semi_diameter(lens, p.stop, std::min(*height, lens.surfaces()[p.stop].semi_diameter));
+  return with_semi_diameter(lens, beam.stop, std::min(*height, stop.semi_diameter));
 }
 
 }  // namespace petzval::inline v0

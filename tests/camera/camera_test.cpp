@@ -414,5 +414,21 @@ TEST(Camera, RefusesModelsOfAnotherLensOrFilm) {
       has(refusal(compile(singlet), camera_detail::make_model(ModelKind::thick, two, 22)), "for 2 wavelengths"));
 }
 
+TEST(Camera, OfAStopWithoutARimHasTheLightThatRimsLetThrough) {
+  const auto [marked, unmarked] = testing::without_the_rim_of_its_stop(testing::open_singlet(10));
+  const Lens endless = compile(testing::open_singlet());
+  const Film film{.width_mm = 12, .height_mm = 8};
+  for (const ModelKind model : models()) {
+    SCOPED_TRACE(name(model));
+    const Camera camera(marked, film, {.model = model}), same(unmarked, film, {.model = model});
+    auto samples = random_samples(film, 64), wanted = samples;
+    samples.run(camera), wanted.run(same);
+    EXPECT_EQ(samples.weights, wanted.weights);
+    EXPECT_GT(std::accumulate(samples.weights.begin(), samples.weights.end(), 0.0), 64 * 0.1);
+    EXPECT_EQ(testing::message([&] { Camera(endless, film, {.model = model}); }),
+              testing::message([&] { pupils(endless); }));
+  }
+}
+
 }  // namespace
 }  // namespace petzval

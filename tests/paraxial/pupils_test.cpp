@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "../data_lenses.hpp"
+#include "../message.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/pupil/f_number.hpp"
 
@@ -15,6 +16,7 @@ namespace {
 
 using testing::data_lens;
 using testing::data_prescriptions;
+using testing::message;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 RayMatrix transfer(double distance, double n) { return {1, distance / n, 0, 1}; }
@@ -111,16 +113,30 @@ TEST(Pupils, WithoutAnyRimAreAnError) {
   Prescription p;
   p.name = "endless";
   p.surfaces = {{.radius = 50, .medium = {.nd = 1.5}}};
-  try {
-    pupils(compile(p));
-    FAIL() << "no error";
-  } catch (const Error& error) {
-    EXPECT_STREQ(error.what(),
-                 "endless: no stop is marked and no surface limits the axial beam, wanted a stop or a semi_diameter");
-  }
+  EXPECT_EQ(message([&] { pupils(compile(p)); }),
+            "endless: no stop is marked and no surface limits the axial beam, wanted a semi_diameter");
   p.surfaces[0].stop = true;
-  EXPECT_EQ(pupils(compile(p)).entrance.diameter, infinity);
-  EXPECT_EQ(pupils(compile(p)).entrance.z, 0);
+  EXPECT_EQ(message([&] { pupils(compile(p)); }),
+            "endless: the stop has no rim and no surface limits the axial beam, wanted a semi_diameter");
+  EXPECT_EQ(message([&] { paraxial_f_number(compile(p)); }), message([&] { pupils(compile(p)); }));
+}
+
+TEST(Pupils, OfAStopWithoutARimAreThoseOfALensWithoutAStop) {
+  for (Prescription p : data_prescriptions()) {
+    SCOPED_TRACE(p.id);
+    const auto [marked, unmarked] = testing::without_the_rim_of_its_stop(p);
+    if (!has_pupils(unmarked)) {
+      EXPECT_FALSE(has_pupils(marked));
+      continue;
+    }
+    const Pupils found = pupils(marked), wanted = pupils(unmarked);
+    EXPECT_TRUE(found.stop_inferred);
+    EXPECT_EQ(found.stop, wanted.stop);
+    EXPECT_EQ(found.entrance.z, wanted.entrance.z);
+    EXPECT_EQ(found.entrance.diameter, wanted.entrance.diameter);
+    EXPECT_EQ(found.exit.diameter, wanted.exit.diameter);
+    EXPECT_TRUE(std::isfinite(marked.surfaces()[found.stop].semi_diameter));
+  }
 }
 
 TEST(Pupils, OfAClosedStopAreEmpty) {

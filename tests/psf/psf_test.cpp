@@ -13,8 +13,10 @@
 #include <vector>
 
 #include "../data_lenses.hpp"
+#include "../message.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/units.hpp"
+#include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "petzval/trace/trace.hpp"
 
@@ -255,6 +257,19 @@ TEST(PointImage, RefusesOptionsWithoutAMeaning) {
   EXPECT_EQ(message({.pixels = 0}), "point_image: pixels is 0, wanted 1 to 32768");
   EXPECT_EQ(message({.half_width_mm = -1}), "point_image: half_width_mm is -1, wanted a length, or 0 to fit");
   EXPECT_EQ(message({.threads = 0}), "trace_bundle: threads is 0, wanted 1 or more");
+}
+
+TEST(PointImage, OfAStopWithoutARimHasTheLightThatRimsLetThrough) {
+  const auto [marked, unmarked] = testing::without_the_rim_of_its_stop(testing::open_singlet(10));
+  const FieldPoint point{0, -1000};
+  const PsfOptions options{.samples = 1 << 12, .pixels = 21};
+  const PointImage found = point_image(marked, point, options), wanted = point_image(unmarked, point, options);
+  EXPECT_NEAR(found.throughput, 1, 0.05);
+  EXPECT_EQ(found.throughput, wanted.throughput);
+  EXPECT_EQ(found.psf.ray_weight(0), wanted.psf.ray_weight(0));
+  const Lens endless = compile(testing::open_singlet());
+  EXPECT_EQ(testing::message([&] { point_image(endless, point, options); }),
+            testing::message([&] { pupils(endless); }));
 }
 
 }  // namespace

@@ -201,10 +201,31 @@ TEST(WithFNumber, RefusesAnAfocalLens) {
             "telescope: the lens is afocal, wanted a focal length to set an f-number by");
 }
 
-TEST(RealFNumber, OfAnUnlimitedStopInAMirrorIsZero) {
+TEST(RealFNumber, OfARimThatNoRayReachesIsZero) {
   Prescription p = testing::data_prescription("mirror_newton_200mm_f8");
-  p.surfaces[0].semi_diameter.reset();
+  p.surfaces[0].semi_diameter = 1e200;
   EXPECT_EQ(real_f_number(compile(p)), 0);
+}
+
+TEST(WithFNumber, GivesAMarkedStopItsRim) {
+  for (const Prescription& p : data_prescriptions()) {
+    if (!p.f_number) continue;
+    SCOPED_TRACE(p.id);
+    const Lens lens = compile(p), open = testing::without_the_rim_of_its_stop(p).marked;
+    const double slower = 1.5 * real_f_number(lens);
+    const Lens stopped = with_f_number(open, slower);
+    EXPECT_FALSE(pupils(stopped).stop_inferred);
+    EXPECT_EQ(stopped.surfaces()[*lens.stop()].semi_diameter,
+              with_f_number(lens, slower).surfaces()[*lens.stop()].semi_diameter);
+  }
+}
+
+TEST(RealFNumber, OfAStopWithoutARimIsThatOfTheSurfaceThatLimits) {
+  const auto [marked, unmarked] = testing::without_the_rim_of_its_stop(testing::open_singlet(10));
+  EXPECT_EQ(real_f_number(marked), real_f_number(unmarked));
+  EXPECT_NEAR(real_f_number(marked), 2.49, 0.01);
+  const Lens endless = compile(testing::open_singlet());
+  EXPECT_EQ(message([&] { real_f_number(endless); }), message([&] { pupils(endless); }));
 }
 
 }  // namespace

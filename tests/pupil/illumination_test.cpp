@@ -10,6 +10,7 @@
 #include <string>
 
 #include "../data_lenses.hpp"
+#include "../message.hpp"
 #include "petzval/core/units.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/aim.hpp"
@@ -123,6 +124,16 @@ TEST(RelativeIllumination, ReachesBeyond90Degrees) {
     EXPECT_GT(*now, 0.1) << field;
     last = *now;
   }
+}
+
+TEST(FilmIrradiance, OfAStopWithoutARimIsThatOfTheRimsThatLimit) {
+  const auto [marked, unmarked] = testing::without_the_rim_of_its_stop(testing::open_singlet(10));
+  EXPECT_EQ(film_irradiance(marked, {}), film_irradiance(unmarked, {}));
+  EXPECT_EQ(film_irradiance(marked, {3, 5}), film_irradiance(unmarked, {3, 5}));
+  EXPECT_NEAR(film_irradiance(marked, {}), 0.1256, 1e-4);
+  EXPECT_GT(relative_illumination(marked, {0.1, -infinity}).value_or(0), 0.9);
+  const Lens endless = compile(testing::open_singlet());
+  EXPECT_EQ(testing::message([&] { film_irradiance(endless, {}); }), testing::message([&] { pupils(endless); }));
 }
 
 }  // namespace

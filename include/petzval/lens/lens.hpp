@@ -73,7 +73,8 @@ class PETZVAL_API Lens {
   std::span<const LensSurface> surfaces() const noexcept;
   std::size_t surface_count() const noexcept { return surfaces().size(); }
 
-  /// The surface marked as aperture stop (the first one if two are marked).
+  /// The surface marked as aperture stop (the first one if two are marked). It may lack a rim, and stops no ray then:
+  /// pupils().stop is the surface that limits the beam.
   std::optional<std::size_t> stop() const noexcept;
 
   /// The shape of the stop.

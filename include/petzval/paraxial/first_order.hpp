@@ -100,14 +100,15 @@ struct Pupils {
   Pupil entrance;
   Pupil exit;
   std::size_t stop = 0;
-  /// No surface is marked as stop: `stop` is the first that clips the axial beam from infinity (paraxially).
+  /// No surface is marked as stop, or the one that is has no rim, so that it stops no ray: `stop` is the first that
+  /// clips the axial beam from infinity (paraxially).
   bool stop_inferred = false;
 };
 
 /// Whether any surface limits the beam. Without one there is no stop, and pupils() throws.
 PETZVAL_API bool has_pupils(const Lens& lens) noexcept;
 
-/// Throws Error if no surface is marked as stop and none limits the beam.
+/// Throws Error if no surface limits the axial beam.
 PETZVAL_API Pupils pupils(const Lens& lens, Wavelength wavelength = {}, Meridian meridian = Meridian::y);
 
 /// |EFL| / entrance pupil diameter, in the main meridian. Infinite for an afocal lens or an empty pupil.
