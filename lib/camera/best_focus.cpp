@@ -29,7 +29,9 @@ StopMaps stop_maps(const LensFacts& facts, std::size_t wavelength, const TwoPlan
 double best_focus_power(const LensFacts& facts, std::size_t wavelength, const StopMaps& maps) {
   static const auto nodes = core_detail::gauss_legendre<32>();
   const Lens& lens = facts.lens();
-  const PupilBoundary boundary = exit_pupil_boundary(lens, {}, wavelength, 1);  // one meridian stands for all
+  // Of a lens of revolution one meridian stands for all.
+  const PupilBoundary boundary = lens.rotationally_symmetric() ? exit_pupil_boundary(lens, {}, wavelength, 1)
+                                                               : exit_pupil_boundary(lens, {}, wavelength);
   const RayMatrix to_stop = maps.to_front.inverse();
   const double front_z = lens.surfaces().front().vertex_z;
   double uy = 0, yy = 0;

@@ -20,11 +20,13 @@ using camera_detail::FilmView;
 using camera_detail::LensFacts;
 using camera_detail::TiltedFilm;
 
-/// Throws Error for a model that cannot show the iris of the lens.
+/// Throws Error for a model whose pupils are fitted to those of a round stop.
 void check_iris(const Lens& lens, ModelKind kind) {
-  if (lens.iris().round() || !(camera_detail::is_first_order(kind) || camera_detail::is_polynomial(kind))) return;
-  throw Error(lens.name() + ": camera: " + std::string(name(kind)) +
-              " does not see the edges of the iris, wanted an exact model");
+  const bool fitted = kind == ModelKind::thin_two_disc || camera_detail::is_polynomial(kind);
+  if (lens.iris().round() || !fitted) return;
+  throw Error(
+      lens.name() + ": camera: " + std::string(name(kind)) +
+      " has the pupils of a round stop, wanted an exact model, or pinhole, thin or thick, for an iris with edges");
 }
 
 /// Throws Error for a model of another lens or film, as far as its pupils show.

@@ -71,6 +71,10 @@ ScenePassing passing(const AnyRayModel& model) {
 EntrancePupilTable entrance_of(const Lens& lens, const AnyRayModel& model) {
   const bool exact = model.kind() == ModelKind::exact_float || model.kind() == ModelKind::exact_double;
   if (exact) return traced_entrances(lens, model.pupils());
+  if (is_first_order(model.kind()) && !lens.iris().round()) {  // whose pupils the round stop's enclose
+    const Lens round = with_iris(lens, {});
+    return entrance_of(round, make_model(model.kind(), round, model.pupils().film_radius()));
+  }
   // A pinhole only needs to know what lies in front of the lens.
   if (model.pinhole()) {
     return EntrancePupilTable(lens, std::vector<std::vector<Ray<double>>>(model.pupils().wavelengths()), {});
@@ -78,6 +82,24 @@ EntrancePupilTable entrance_of(const Lens& lens, const AnyRayModel& model) {
   return EntrancePupilTable(lens, leaving_rays_of(lens, model),
                             is_polynomial(model.kind()) ? traced_passing(lens) : passing(model),
                             model.clips_at_apertures() ? ClippedBy::apertures : ClippedBy::samples);
+}
+
+/// The area of the entrance pupil that a pinhole's pupil on the axis is the image of, mm^2. Film and pupil points are
+/// linear in height and slope of a ray at the entrance pupil; of a film point on the axis, so is the height in the
+/// pupil point.
+double pinhole_entrance_area(const AnyRayModel& model, double entrance_z, std::size_t wavelength) noexcept {
+  const auto image = [&](double height, double slope) {
+    const double z = 1 / std::hypot(slope, 1.0), direction = slope * z, zero = 0;
+    double film_x = 0, film_y = 0, pupil_x = 0, pupil_y = 0;
+    RayFate fate = RayFate::missed_surface;
+    model.to_film(1, {&height, &zero, &entrance_z, &direction, &zero, &z}, {.all = wavelength},
+                  {&film_x, &film_y, &pupil_x, &pupil_y}, &fate);
+    return std::array{film_x, pupil_x};
+  };
+  const auto [film_by_height, pupil_by_height] = image(1, 0);
+  const auto [film_by_slope, pupil_by_slope] = image(0, 1);
+  const double height_by_pupil = film_by_slope / (pupil_by_height * film_by_slope - pupil_by_slope * film_by_height);
+  return model.pupils().area({}, wavelength) * squared(height_by_pupil);
 }
 
 }  // namespace
@@ -97,7 +119,8 @@ SceneSide::SceneSide(const LensFacts& facts, const Film& film, std::optional<Til
     wavelengths_.push_back({.we = etendue * scale[w] / film.area_mm2(),
                             .density = etendue / film.area_mm2() / squared(space_.depth()),
                             .entrance_z = entrance.z,
-                            .entrance_area = pi / 4 * squared(entrance.diameter),
+                            .entrance_area = model.pinhole() ? pinhole_entrance_area(model, entrance.z, w)
+                                                             : pi / 4 * squared(entrance.diameter),
                             .chiefs = ChiefRayTable(facts, model, upright_radius_, w)});
   }
 }
@@ -192,26 +215,26 @@ ImportanceSample SceneSide::through_pinhole(const AnyRayModel& model, const Vec3
   const auto met = on_film(arrival.upright, arrival.pupil);
   Importance& seen = result.importance = met_by(arrival, met);
   if (seen.fate != RayFate::transmitted) return result;
-  const PupilSample s = model.pupils().sample(arrival.upright, u, v, wavelength);
-  FilmPoint place{s.x, s.y};
-  double area = s.area, spread = 1;
+  const FilmPupilTable& pupils = tilted_ ? tilted_->pupils() : model.pupils();
+  const PupilSample s = pupils.sample(met->virtual_point, u, v, wavelength);
+  const FilmPoint place{s.x, s.y};
+  double spread = 1;
+  bool passes = s.area > 0;
   if (tilted_) {
-    const TiltedPlane& plane = tilted_->plane();
-    const FilmPoint chief = arrival.pupil;
-    const double part = part_of_place(plane, chief);
-    place = {chief.x + part * (s.x - chief.x), chief.y + part * (s.y - chief.y)};
-    area *= squared(part);
     // Lines through the place spread over the film otherwise than those of the pinhole do.
-    spread = part_of_place(plane, place) / part;
+    const TiltedPlane& plane = tilted_->plane();
+    spread = part_of_place(plane, place) / part_of_place(plane, arrival.pupil);
     const TwoPlaneRay line = tilted_->upright(met->virtual_point, place.x, place.y);
     arrival.upright = {line.film_x, line.film_y};
+    passes = passes && spread > 0 &&
+             (model.clips_at_apertures() || model.pupils().contains(arrival.upright, place.x, place.y, wavelength));
   }
   arrival.pupil = place;
-  if (!(area > 0 && spread > 0)) {
+  if (!passes) {
     seen.fate = RayFate::vignetted;
     return result;
   }
-  weigh(seen, model, arrival, met->virtual_point, result.direction.z, area, wavelength);
+  weigh(seen, model, arrival, met->virtual_point, result.direction.z, s.area, wavelength);
   seen.we *= spread, seen.pdf_direction *= spread;
   return result;
 }

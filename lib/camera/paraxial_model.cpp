@@ -11,6 +11,7 @@
 #include "core/meet_plane.hpp"
 #include "core/text.hpp"
 #include "core/widest.hpp"
+#include "iris/iris_shape.hpp"
 #include "make_model.hpp"
 #include "paraxial_loops.hpp"
 #include "petzval/core/error.hpp"
@@ -34,12 +35,13 @@ RayMatrix to_scene_map(const LensFacts& facts, std::size_t wavelength, const Two
   return maps.from_film.then(focus).then(maps.to_front).then({1, z - front_z, 0, 1});
 }
 
-/// The disc of the pupil's plane through which lines have a height, of a map's first row, below `radius`.
+/// The disc of the pupil's plane through which lines have a height, of a map's first row, below `radius`; of negative
+/// radius where it shows the iris upside down.
 PupilDisc disc_of(const Lens& lens, const RayMatrix& height, double radius, const char* where) {
   if (height.b == 0) {
     throw Error(lens.name() + ": the film lies in " + where + ", wanted it elsewhere for a first-order model");
   }
-  return {-height.a / height.b, radius / std::abs(height.b)};
+  return {-height.a / height.b, radius / height.b};
 }
 
 PupilDisc thick_disc(const LensFacts& facts, std::size_t wavelength, const TwoPlanes& space) {
@@ -50,12 +52,14 @@ PupilDisc thick_disc(const LensFacts& facts, std::size_t wavelength, const TwoPl
 
 PupilDisc thin_disc(const LensFacts& facts, std::size_t wavelength, const TwoPlanes& space) {
   const Lens& lens = facts.lens();
-  const double diameter = facts.pupils(wavelength).entrance.diameter;
-  if (!std::isfinite(diameter)) {
+  const Pupils pupils = facts.pupils(wavelength);
+  if (!std::isfinite(pupils.entrance.diameter)) {
     throw Error(lens.name() + ": found the entrance pupil at infinity, wanted a finite one for a thin lens");
   }
   const double z = facts.first_order(wavelength).rear_principal_z;
-  return disc_of(lens, line_at(space, z), diameter / 2, "the rear principal plane");
+  const double upright = ray_matrix_to(lens, pupils.stop, wavelength).a;  // the stop over its image in front
+  return disc_of(lens, line_at(space, z), std::copysign(pupils.entrance.diameter / 2, upright),
+                 "the rear principal plane");
 }
 
 /// Edges of the real pupils of some film points, at equal steps of film area; none where hardly any light comes.
@@ -79,35 +83,48 @@ std::vector<EdgePoint> real_edges(const FilmPupilTable& real, std::size_t wavele
   return edges;
 }
 
-FilmPupilTable pupils_of(ModelKind model, const LensFacts& facts, double film_radius) {
+/// Throws Error for a lens that has no model of a kind.
+void check(ModelKind model, const LensFacts& facts) {
   const Lens& lens = facts.lens();
   if (!is_first_order(model)) {
     throw Error(lens.name() + ": found " + std::string(name(model)) + ", wanted a first-order model");
   }
-  if (!lens.rotationally_symmetric()) {
-    throw Error(lens.name() +
-                ": found cylinders or an iris with edges, wanted a lens of revolution for a first-order model");
+  if (!with_iris(lens, {}).rotationally_symmetric()) {
+    throw Error(lens.name() + ": found cylinders, wanted a lens of revolution for a first-order model");
   }
-  const std::size_t wavelengths = lens.wavelengths_nm().size();
-  for (std::size_t w = 0; w < wavelengths; ++w) {
+  if (model == ModelKind::thin_two_disc && !lens.iris().round()) {
+    throw Error(lens.name() + ": found an iris with edges, wanted a round one for thin_two_disc, or another model");
+  }
+  for (std::size_t w = 0; w < facts.wavelengths(); ++w) {
     if (facts.first_order(w).afocal) {
       throw Error(lens.name() + ": found an afocal lens, wanted a focal length for a first-order model");
     }
   }
-  std::vector<std::vector<PupilDisc>> discs(wavelengths);
-  if (model == ModelKind::thin_two_disc) {
-    const FilmPupilTable real = FilmPupilTable::equal_area(lens, film_radius);
-    for (std::size_t w = 0; w < wavelengths; ++w) {
-      const auto fitted = fit_two_discs(real_edges(real, w));
-      discs[w].assign(fitted.begin(), fitted.end());
-    }
-    return FilmPupilTable::of_discs(real.space(), discs, film_radius, lens.primary_wavelength());
+}
+
+FilmPupilTable two_disc_pupils(const Lens& lens, double film_radius) {
+  const FilmPupilTable real = FilmPupilTable::equal_area(lens, film_radius);
+  std::vector<std::vector<PupilDisc>> discs;
+  for (std::size_t w = 0; w < real.wavelengths(); ++w) {
+    const auto fitted = fit_two_discs(real_edges(real, w));
+    discs.emplace_back(fitted.begin(), fitted.end());
   }
+  return FilmPupilTable::of_discs(real.space(), discs, film_radius, lens.primary_wavelength());
+}
+
+FilmPupilTable pupils_of(ModelKind model, const LensFacts& facts, double film_radius) {
+  check(model, facts);
+  const Lens& lens = facts.lens();
+  if (model == ModelKind::thin_two_disc) return two_disc_pupils(lens, film_radius);
   const TwoPlanes space = two_planes(lens);
-  for (std::size_t w = 0; w < wavelengths; ++w) {
-    discs[w] = {model == ModelKind::thin ? thin_disc(facts, w, space) : thick_disc(facts, w, space)};
+  std::vector<PupilDisc> discs;
+  for (std::size_t w = 0; w < facts.wavelengths(); ++w) {
+    discs.push_back(model == ModelKind::thin ? thin_disc(facts, w, space) : thick_disc(facts, w, space));
   }
-  return FilmPupilTable::of_discs(space, discs, film_radius, lens.primary_wavelength());
+  const bool upside_down = discs[lens.primary_wavelength()].radius < 0;
+  for (PupilDisc& disc : discs) disc.radius = std::abs(disc.radius);
+  return FilmPupilTable::of_iris(space, upside_down ? iris_detail::upside_down(lens.iris()) : lens.iris(), discs,
+                                 film_radius, lens.primary_wavelength());
 }
 
 /// Where rays start: in the entrance pupil, unless it is so far that digits of the position would be lost.

@@ -16,9 +16,9 @@ namespace petzval::inline v0::camera_detail {
 /// The lens to first order: pinhole, thin, thin_two_disc and thick.
 ///
 /// All four map an image-space ray to the same ray of the scene, by the cardinal points (the thin lens stands in both
-/// principal planes at once: the distance between them is left out) and by a weak thin lens in the stop, which moves the
-/// focus to where exact rays of the film's centre are sharpest (best_focus.hpp): a picture is sharp at the same distance
-/// in every model. They differ in the pupil:
+/// principal planes at once: the distance between them is left out) and by a weak thin lens in the stop, which moves
+/// the focus to where exact rays of the film's centre are sharpest (best_focus.hpp): a picture is sharp at the same
+/// distance in every model. They differ in the pupil:
 ///
 ///     thick           the image of the stop, where it lies
 ///     thin            a disc as wide as the entrance pupil, in the rear principal plane
@@ -27,16 +27,16 @@ namespace petzval::inline v0::camera_detail {
 ///                     of f/1.35, 1.6 % for a Tessar, 2.1 % for a fisheye of 156 degrees)
 ///     pinhole         the centre of the thick lens's pupil, for every pupil sample
 ///
-/// The pinhole has the weights of the thick lens: a picture keeps its exposure when it is stopped down to a point.
-/// Central obscurations are ignored. Rays start in the plane of the entrance pupil, or of the first vertex where the
-/// pupil is out of reach.
+/// An iris with edges is seen as its image, by all but thin_two_disc. The pinhole has the weights of the thick lens: a
+/// picture keeps its exposure when it is stopped down to a point. Central obscurations are ignored. Rays start in the
+/// plane of the entrance pupil, or of the first vertex where the pupil is out of reach.
 class ParaxialModel {
  public:
   static constexpr bool linear_in_slopes = true;
 
   /// film_radius: of the farthest film point, mm. Throws Error for another model, for a lens that is afocal, has no
-  /// pupils or no finite one that the model needs, or is not rotationally symmetric, and for a film in the image of the
-  /// stop or, for thin lenses, in the rear principal plane.
+  /// pupils or no finite one that the model needs, or has cylinders, for an iris with edges where IrisShape or the
+  /// model refuses it, and for a film in the image of the stop or, for thin lenses, in the rear principal plane.
   PETZVAL_API ParaxialModel(ModelKind model, const LensFacts& facts, double film_radius);
 
   ModelKind kind() const noexcept { return kind_; }

@@ -36,26 +36,17 @@ void fill_scales(std::size_t count, std::span<const double> scale, const RayWave
   for (std::size_t i = 0; i < count; ++i) scales[i] = scale_of(wavelengths.each[i]);
 }
 
-/// The upright film points of a pinhole's rays, places of the pupil, and its areas.
+/// The points of the upright film whose rays through the middles of their pupils are those of a pinhole in front of a
+/// tilted film.
 template <class T>
-void sample_pinhole(std::size_t count, const FilmView& view, const CameraSamples<T>& samples, const T* virtual_x,
-                    const T* virtual_y, T* film_x, T* film_y, T* x, T* y, T* areas) noexcept {
+void find_chiefs(std::size_t count, const FilmView& view, const RayWavelengths& wavelengths, const T* virtual_x,
+                 const T* virtual_y, T* film_x, T* film_y) noexcept {
   const std::span<const double> shifts = view.model.pinhole_shifts();
-  const auto shift = [&](std::size_t i) {
-    const std::size_t w = samples.wavelengths.position(i, 0);
-    return w < shifts.size() ? shifts[w] : 0;
-  };
-  const auto part = [&](std::size_t i) {
-    return part_of_virtual(view.tilted->plane(), {virtual_x[i], virtual_y[i]}, shift(i));
-  };
   for (std::size_t i = 0; i < count; ++i) {
-    film_x[i] = static_cast<T>(virtual_x[i] * part(i)), film_y[i] = static_cast<T>(virtual_y[i] * part(i));
-  }
-  view.model.pupils().sample(count, film_x, film_y, samples.pupil_u, samples.pupil_v, samples.wavelengths, x, y, areas);
-  for (std::size_t i = 0; i < count; ++i) {
-    const double p = part(i), chief_x = shift(i) * film_x[i], chief_y = shift(i) * film_y[i];
-    x[i] = static_cast<T>(chief_x + p * (x[i] - chief_x)), y[i] = static_cast<T>(chief_y + p * (y[i] - chief_y));
-    areas[i] = static_cast<T>(p * p * areas[i]);
+    const std::size_t w = wavelengths.position(i, 0);
+    const double shift = w < shifts.size() ? shifts[w] : 0;
+    const double part = part_of_virtual(view.tilted->plane(), {virtual_x[i], virtual_y[i]}, shift);
+    film_x[i] = static_cast<T>(virtual_x[i] * part), film_y[i] = static_cast<T>(virtual_y[i] * part);
   }
 }
 
@@ -95,29 +86,22 @@ void sample_rays(const FilmView& view, std::size_t count, const CameraSamples<T>
     if (samples.wavelengths.each) fill_scales(n, view.scale, some.wavelengths, scales.data());
 
     loops.keep_on_film(bounds, n, some.film_x, some.film_y, film_x.data(), film_y.data());
-    const auto to_upright = [&] {
-      loops.to_upright(tilted_bounds, n, virtual_x.data(), virtual_y.data(), x.data(), y.data(), film_x.data(),
-                       film_y.data());
-    };
-    if (tilted) {
-      loops.to_virtual(tilted_bounds, n, film_x.data(), film_y.data(), virtual_x.data(), virtual_y.data());
-    }
-    if (pinhole) {
-      sample_pinhole(n, view, some, virtual_x.data(), virtual_y.data(), film_x.data(), film_y.data(), x.data(),
-                     y.data(), areas.data());
-    } else if (tilted) {
-      tilted->pupils().sample(n, virtual_x.data(), virtual_y.data(), some.pupil_u, some.pupil_v, some.wavelengths,
-                              x.data(), y.data(), areas.data());
-      to_upright();
-    } else {
+    if (!tilted) {
       pupils.sample(n, film_x.data(), film_y.data(), some.pupil_u, some.pupil_v, some.wavelengths, x.data(), y.data(),
                     areas.data());
-    }
-    view.model.to_scene(n, lines, some.wavelengths, rays.rays, fates);
-    if (pinhole) {
-      to_upright();  // of the lines that the weights are for
-    } else if (tilted && !clips) {
-      keep_within(n, pupils, lines, some.wavelengths, fates);
+      view.model.to_scene(n, lines, some.wavelengths, rays.rays, fates);
+    } else {
+      loops.to_virtual(tilted_bounds, n, film_x.data(), film_y.data(), virtual_x.data(), virtual_y.data());
+      tilted->pupils().sample(n, virtual_x.data(), virtual_y.data(), some.pupil_u, some.pupil_v, some.wavelengths,
+                              x.data(), y.data(), areas.data());
+      if (pinhole) {
+        find_chiefs(n, view, some.wavelengths, virtual_x.data(), virtual_y.data(), film_x.data(), film_y.data());
+        view.model.to_scene(n, lines, some.wavelengths, rays.rays, fates);
+      }
+      loops.to_upright(tilted_bounds, n, virtual_x.data(), virtual_y.data(), x.data(), y.data(), film_x.data(),
+                       film_y.data());
+      if (!pinhole) view.model.to_scene(n, lines, some.wavelengths, rays.rays, fates);
+      if (!clips) keep_within(n, pupils, lines, some.wavelengths, fates);
     }
     loops.weigh(bounds, depth, n, some.film_x, some.film_y, lines, areas.data(), scales.data(), fates, rays);
     if (tilted) {
@@ -152,25 +136,19 @@ CameraRay sample_ray(const FilmView& view, const FilmPoint& film, double u, doub
     out.fate = view.model.to_scene(line, wavelength, out.ray);
   } else {
     virtual_point = tilted->virtual_point(point);
+    const PupilSample at = tilted->pupils().sample(virtual_point, u, v, wavelength);
+    line = tilted->upright(virtual_point, at.x, at.y);
+    area = at.area;
+    TwoPlaneRay leaving = line;
     if (view.model.pinhole()) {
-      const std::span<const double> shifts = view.model.pinhole_shifts();
-      const double shift = known ? shifts[wavelength] : 0;
+      const double shift = known ? view.model.pinhole_shifts()[wavelength] : 0;
       const double part = part_of_virtual(tilted->plane(), virtual_point, shift);
-      const FilmPoint chief{virtual_point.x * part, virtual_point.y * part};
-      const PupilSample at = pupils.sample(chief, u, v, wavelength);
-      const double x = shift * chief.x, y = shift * chief.y;
-      out.fate = view.model.to_scene(TwoPlaneRay{chief.x, chief.y, at.x, at.y}, wavelength, out.ray);
-      line = tilted->upright(virtual_point, x + part * (at.x - x), y + part * (at.y - y));
-      area = part * part * at.area;
-    } else {
-      const PupilSample at = tilted->pupils().sample(virtual_point, u, v, wavelength);
-      line = tilted->upright(virtual_point, at.x, at.y);
-      area = at.area;
-      out.fate = view.model.to_scene(line, wavelength, out.ray);
-      const bool within = view.model.clips_at_apertures() ||
-                          pupils.contains({line.film_x, line.film_y}, line.pupil_x, line.pupil_y, wavelength);
-      if (!within) out.fate = RayFate::vignetted;
+      leaving.film_x = virtual_point.x * part, leaving.film_y = virtual_point.y * part;
     }
+    out.fate = view.model.to_scene(leaving, wavelength, out.ray);
+    const bool within = view.model.clips_at_apertures() ||
+                        pupils.contains({line.film_x, line.film_y}, line.pupil_x, line.pupil_y, wavelength);
+    if (!within) out.fate = RayFate::vignetted;
   }
 
   if (!(area > 0)) out.fate = RayFate::vignetted;

@@ -4,10 +4,9 @@
 #include "tilted_film.hpp"
 
 /// A pinhole in front of a tilted film: each film point has one ray, that of the upright film's point `chief` through
-/// the centre of the thick lens's exit pupil, and the weights of the whole pupil. The pupil does not lie in the plane
-/// of samples, so a tilted point sees it there in another size than its chief does: scaled about the ray's own place by
+/// the centre of the thick lens's exit pupil, and the weights of the whole pupil. The chief is the virtual point times
 /// `part`, which is 1 / (1 + slope . virtual_point shift), with shift as ParaxialModel::pinhole_shifts(), or 1 - slope
-/// . place.
+/// . place, place where the ray passes the plane of the pupils.
 namespace petzval::inline v0::camera_detail {
 
 inline double part_of_virtual(const TiltedPlane& plane, const FilmPoint& virtual_point, double shift) noexcept {

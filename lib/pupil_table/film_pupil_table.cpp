@@ -5,12 +5,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/text.hpp"
 #include "film_polygons.hpp"
 #include "film_pupil_table_loops.hpp"
+#include "iris_images.hpp"
 #include "petzval/core/error.hpp"
 
 namespace petzval::inline v0 {
@@ -90,8 +92,10 @@ Point<T> place(const double* strip, std::size_t k, const T& t, const T& u, doubl
 struct FilmPupilTable::Data {
   TwoPlanes space;
   double film_radius = 0;
-  double lit_radius = 0;  // to which the strips reach: beyond it is dark
-  std::size_t wavelengths = 0, primary = 0, strips_each = 0;
+  std::size_t wavelengths = 0, primary = 0;
+  std::optional<IrisImages> images;  // instead of strips
+  double lit_radius = 0;             // to which the strips reach: beyond it is dark
+  std::size_t strips_each = 0;
   bool turned = true, obscured = false;
   int corrections = 0;
   std::vector<double> twice;  // strips by StripLayout
@@ -227,9 +231,27 @@ FilmPupilTable FilmPupilTable::of_discs(const TwoPlanes& space, std::span<const 
   return FilmPupilTable(std::move(data));
 }
 
+FilmPupilTable FilmPupilTable::of_iris(const TwoPlanes& space, const Iris& iris, std::span<const PupilDisc> images,
+                                       double film_radius, std::size_t primary_wavelength) {
+  check_film_radius("pupil table", film_radius);
+  auto data = std::make_shared<Data>();
+  data->space = space;
+  data->film_radius = film_radius;
+  data->wavelengths = images.size();
+  data->primary = primary_wavelength;
+  data->images.emplace(iris, images, film_radius, primary_wavelength);
+  return FilmPupilTable(std::move(data));
+}
+
 FilmPupilTable FilmPupilTable::for_tilted_film(const FilmTilt& tilt) const {
   check_film_radius("tilted film", tilt.radius);
   auto data = std::make_shared<Data>();
+  if (data_->images) {
+    *data = *data_;
+    data->film_radius = tilt.radius;
+    data->images = data_->images->tilted(tilt);
+    return FilmPupilTable(std::move(data));
+  }
   if (!data_->turned) {  // the one pupil holds all lines
     *data = *data_;
     data->film_radius = data->lit_radius = tilt.radius;
@@ -254,6 +276,7 @@ std::size_t FilmPupilTable::wavelengths() const noexcept { return data_->wavelen
 std::size_t FilmPupilTable::primary_wavelength() const noexcept { return data_->primary; }
 
 PupilSample FilmPupilTable::sample(const FilmPoint& film, double u, double v, Wavelength wavelength) const noexcept {
+  if (const auto& images = data_->images) return images->sample(film, u, v, wavelength.position(data_->primary));
   const auto found = data_->find(film, wavelength);
   if (!found.strip || !(u - u == 0 && v - v == 0)) return {};
   const double whole = area_before(found.strip, polygon_corners, found.t);
@@ -267,6 +290,10 @@ PupilSample FilmPupilTable::sample(const FilmPoint& film, double u, double v, Wa
 template <class T>
 void FilmPupilTable::sample(std::size_t count, const T* film_x, const T* film_y, const T* u, const T* v,
                             const RayWavelengths& wavelengths, T* x, T* y, T* areas) const noexcept {
+  if (data_->images) {
+    data_->images->sample(count, film_x, film_y, u, v, wavelengths, x, y, areas);
+    return;
+  }
   // A few are done before a block has begun.
   constexpr std::size_t few = 8;
   if (count < few) {
@@ -286,12 +313,14 @@ void FilmPupilTable::sample(std::size_t count, const T* film_x, const T* film_y,
 }
 
 double FilmPupilTable::area(const FilmPoint& film, Wavelength wavelength) const noexcept {
+  if (const auto& images = data_->images) return images->area(film, wavelength.position(data_->primary));
   const auto [strip, t, cosine, sine] = data_->find(film, wavelength);
   if (!strip) return 0;
   return std::max(area_before(strip, polygon_corners, t), 0.0);
 }
 
 std::array<double, 2> FilmPupilTable::middle(const FilmPoint& film, Wavelength wavelength) const noexcept {
+  if (const auto& images = data_->images) return images->middle(film, wavelength.position(data_->primary));
   const auto [strip, t, cosine, sine] = data_->find(film, wavelength);
   if (!strip) return {0, 0};
   const double y = strip[L::middle_y] + t * strip[L::middle_y + 1];
@@ -299,6 +328,7 @@ std::array<double, 2> FilmPupilTable::middle(const FilmPoint& film, Wavelength w
 }
 
 bool FilmPupilTable::contains(const FilmPoint& film, double x, double y, Wavelength wavelength) const noexcept {
+  if (const auto& images = data_->images) return images->contains(film, x, y, wavelength.position(data_->primary));
   const auto [strip, t, cosine, sine] = data_->find(film, wavelength);
   if (!strip) return false;
   const Point<double> q{cosine * x - sine * y, sine * x + cosine * y - strip[L::middle_y] - t * strip[L::middle_y + 1]};
@@ -313,6 +343,10 @@ bool FilmPupilTable::contains(const FilmPoint& film, double x, double y, Wavelen
 template <class T>
 void FilmPupilTable::contains(std::size_t count, const TwoPlaneRays<const T>& lines, const RayWavelengths& wavelengths,
                               std::uint8_t* within) const noexcept {
+  if (data_->images) {
+    data_->images->contains(count, lines, wavelengths, within);
+    return;
+  }
   const auto& [film_x, film_y, x, y] = lines;
   constexpr std::size_t few = 4;
   if (count < few) {
@@ -331,6 +365,7 @@ void FilmPupilTable::contains(std::size_t count, const TwoPlaneRays<const T>& li
 
 FilmPupilTable::Derivatives FilmPupilTable::derivatives(const FilmPoint& film, double u, double v,
                                                         Wavelength wavelength) const noexcept {
+  if (const auto& images = data_->images) return images->derivatives(film, u, v, wavelength.position(data_->primary));
   using Jet = ceres::Jet<double, 2>;
   // On the axis the directions around it meet: beside it is near enough.
   const double beside = 1e-4 * data_->film_radius;

@@ -75,8 +75,8 @@ class OwnThinLens {
     const TwoPlanes planes = two_planes(lens);
     const double part = (first_order(lens).rear_principal_z - planes.film_z) / planes.depth();
     const double radius = petzval::pupils(lens).entrance.diameter / 2;
-    const std::vector<PupilDisc> discs{{.shift = (part - 1) / part, .radius = radius / std::abs(part)}};
-    return FilmPupilTable::of_discs(planes, std::array{discs}, film_radius, lens.primary_wavelength());
+    const PupilDisc disc{.shift = (part - 1) / part, .radius = radius / std::abs(part)};
+    return FilmPupilTable::of_iris(planes, {}, {&disc, 1}, film_radius, lens.primary_wavelength());
   }
 
   double front_z_, focal_length_, depth_, to_lens_;

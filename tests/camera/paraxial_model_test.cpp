@@ -384,6 +384,38 @@ TEST(ParaxialModel, HasNoPupilBehindAShutStop) {
   }
 }
 
+// A triangle shows which way round it is. Stopped down, real pupils are images of the stop to first order.
+TEST(ParaxialModel, SeesTheIrisTheSameWayRoundAsTheExactLens) {
+  std::mt19937 random(8);
+  std::uniform_real_distribution<double> one(-1, 1);
+  int checked = 0;
+  for (const Prescription& prescription : testing::data_prescriptions()) {
+    const Lens open = compile(prescription);
+    if (!open.stop() || !open.rotationally_symmetric() || first_order(open).afocal) continue;
+    SCOPED_TRACE(prescription.name);
+    const Lens stopped = with_semi_diameter(open, *open.stop(), open.surfaces()[*open.stop()].semi_diameter / 8);
+    const Lens lens = with_iris(stopped, regular_iris(3, 0.4));
+    for (const ModelKind kind : {ModelKind::thin, ModelKind::thick}) {
+      const FilmPupilTable pupils = ParaxialModel(kind, lens, 1).pupils();
+      const double radius = std::sqrt(ParaxialModel(kind, stopped, 1).pupils().area({}) / std::numbers::pi);
+      int agree = 0, passed = 0;
+      constexpr int count = 1000;
+      for (int i = 0; i < count; ++i) {
+        const double x = radius * one(random), y = radius * one(random), depth = pupils.space().depth();
+        const double towards = towards_scene(lens, pupils.space());
+        const Ray<double> ray{{x, y, pupils.space().pupil_z}, glm::normalize(Vec3<double>{x, y, depth}) * towards};
+        const bool passes = trace(lens, ray, {.travel = Travel::to_scene}).transmitted();
+        agree += passes == pupils.contains({}, x, y);
+        passed += passes;
+      }
+      if (passed == 0) continue;  // behind a central obscuration
+      ++checked;
+      EXPECT_GT(agree, (kind == ModelKind::thick ? 0.98 : 0.9) * count) << name(kind);
+    }
+  }
+  EXPECT_GT(checked, 120);
+}
+
 TEST(ParaxialModel, RefusesWhatItCannotBe) {
   const Lens lens = testing::data_lens("double_gauss_100mm_f2.0");
   const auto refusal = [](ModelKind model, const Lens& of) {
@@ -392,6 +424,9 @@ TEST(ParaxialModel, RefusesWhatItCannotBe) {
   EXPECT_NE(refusal(ModelKind::exact_float, lens).find("exact_float"), std::string::npos);
   EXPECT_NE(refusal(ModelKind::thick, testing::data_lens("anamorphic_60mm_2x")).find("cylinders"), std::string::npos);
   EXPECT_THROW(ParaxialModel(ModelKind::thick, lens, -1), Error);
+  const Lens bladed = with_iris(lens, regular_iris(6));
+  EXPECT_NE(refusal(ModelKind::thin_two_disc, bladed).find("an iris with edges"), std::string::npos);
+  EXPECT_NE(refusal(ModelKind::thick, with_iris(lens, {{{1, 0, 0.5}}})).find("polygon"), std::string::npos);
 
   Prescription window;
   window.name = "window";

@@ -123,12 +123,13 @@ TEST(LensWithIris, AnExactCameraConnectsTheSceneThroughIt) {
   EXPECT_NEAR(passed / static_cast<double>(passed + stopped), hexagon_over_disc, 0.04);
 }
 
-TEST(LensWithIris, ModelsWithoutEdgesRefuseIt) {
+TEST(LensWithIris, ModelsFittedToARoundStopRefuseIt) {
   const Lens lens = double_gauss(4).bladed;
   const Film film{.width_mm = 30, .height_mm = 20, .columns = 30, .rows = 20};
-  EXPECT_NE(testing::message([&] { Camera(lens, film, {.model = ModelKind::thick}); }).find("iris"), std::string::npos);
-  EXPECT_NE(testing::message([&] { Camera(lens, film, {.model = ModelKind::polynomial_5}); }).find("iris"),
-            std::string::npos);
+  for (const ModelKind model : {ModelKind::thin_two_disc, ModelKind::polynomial_5}) {
+    const std::string refusal = testing::message([&] { Camera(lens, film, {.model = model}); });
+    EXPECT_NE(refusal.find("has the pupils of a round stop"), std::string::npos) << refusal;
+  }
 }
 
 TEST(LensWithIris, FocusOfExactRaysMovesWithItAndParaxialFocusDoesNot) {

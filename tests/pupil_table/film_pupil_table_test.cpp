@@ -406,6 +406,102 @@ TEST(FilmPupilTable, HoldsWhatLiesInAllOfSomeDiscs) {
   }
 }
 
+/// Two wavelengths; the film of the second sees its pupil far away.
+FilmPupilTable hexagons(const Iris& iris) {
+  const std::array images{PupilDisc{-0.3, 9}, PupilDisc{0.95, 4}};
+  return FilmPupilTable::of_iris({50, 0}, iris, images, 12);
+}
+
+TEST(FilmPupilTable, HoldsImagesOfAnIris) {
+  for (const Iris& iris : {Iris{}, regular_iris(6, 0.2)}) {
+    const FilmPupilTable table = hexagons(iris);
+    const double share = iris.round() ? std::numbers::pi : 3 * std::sin(std::numbers::pi / 3);
+    for (const std::size_t w : {0, 1}) {
+      const double shift = w == 0 ? -0.3 : 0.95, radius = w == 0 ? 9 : 4;
+      const FilmPoint film{7, -5};
+      EXPECT_NEAR(table.area(film, w), share * radius * radius, 1e-12 * radius * radius);
+      EXPECT_EQ(table.middle(film, w), (std::array{shift * 7, shift * -5}));
+      const double corner = 0.2 + std::numbers::pi / 6, inwards = 0.999;
+      const auto at = [&](double part) {
+        return table.contains(film, shift * 7 + part * radius * std::cos(corner),
+                              shift * -5 + part * radius * std::sin(corner), w);
+      };
+      EXPECT_TRUE(at(inwards));
+      EXPECT_FALSE(at(1 / inwards));
+      EXPECT_EQ(
+          table.contains(film, shift * 7 + 0.9 * radius * std::cos(0.2), shift * -5 + 0.9 * radius * std::sin(0.2), w),
+          iris.round());
+    }
+  }
+}
+
+template <class T>
+void expect_batch_as_single_samples(const FilmPupilTable& table, double eps) {
+  constexpr std::size_t count = 301;
+  std::array<std::vector<T>, 7> v;
+  for (auto& values : v) values.resize(count);
+  std::vector<std::uint16_t> each(count);
+  std::vector<std::uint8_t> within(count);
+  const T nan = std::numeric_limits<T>::quiet_NaN();
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> unit;
+  for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t k : {0, 1}) v[k][i] = static_cast<T>(20 * unit(random) - 10);
+    for (std::size_t k : {2, 3}) v[k][i] = static_cast<T>(unit(random));
+    each[i] = static_cast<std::uint16_t>(i % 3);
+  }
+  v[0][6] = nan, v[2][9] = nan, v[3][12] = nan, v[0][15] = 13, v[2][18] = v[3][18] = 1, v[2][21] = v[3][21] = 0;
+  table.sample<T>(count, v[0].data(), v[1].data(), v[2].data(), v[3].data(), {.each = each.data()}, v[4].data(),
+                  v[5].data(), v[6].data());
+  table.contains<T>(count, {v[0].data(), v[1].data(), v[4].data(), v[5].data()}, {.each = each.data()}, within.data());
+  for (std::size_t i = 0; i < count; ++i) {
+    const PupilSample s = table.sample({v[0][i], v[1][i]}, v[2][i], v[3][i], each[i]);
+    EXPECT_NEAR(v[4][i], s.x, 20 * eps) << i;
+    EXPECT_NEAR(v[5][i], s.y, 20 * eps) << i;
+    EXPECT_NEAR(v[6][i], s.area, 2 * s.area * eps) << i;
+    if (v[3][i] < T(0.999)) {
+      EXPECT_EQ(within[i] == 1, table.area({v[0][i], v[1][i]}, each[i]) > 0) << i;
+    }
+  }
+  EXPECT_EQ(v[6][15] + v[6][6] + v[6][9] + v[6][12], T(0));
+}
+
+TEST(FilmPupilTable, SamplesImagesOfAnIrisInBatchesAsSingly) {
+  for (const Iris& iris : {Iris{}, regular_iris(6, 0.2), regular_iris(3)}) {
+    for (const FilmPupilTable& table :
+         {hexagons(iris), hexagons(iris).for_tilted_film({.slope_x = 0.01, .slope_y = -0.02, .radius = 11})}) {
+      expect_batch_as_single_samples<double>(table, 1e-15);
+      expect_batch_as_single_samples<float>(table, 5e-7);
+    }
+  }
+}
+
+// The ray of a virtual film point V through q meets the upright film in V - (slope . V) q.
+TEST(FilmPupilTable, KnowsTheImagesOfATiltedFilmExactly) {
+  const FilmTilt tilt{.slope_x = 0.012, .slope_y = -0.02, .radius = 8};
+  for (const Iris& iris : {Iris{}, regular_iris(5, 0.1)}) {
+    const FilmPupilTable upright = hexagons(iris), tilted = upright.for_tilted_film(tilt);
+    std::mt19937 random(6);
+    std::uniform_real_distribution<double> unit(-1, 1);
+    int inside = 0;
+    for (int i = 0; i < 4000; ++i) {
+      const FilmPoint film{5 * unit(random), 5 * unit(random)};
+      const double x = 12 * unit(random), y = 12 * unit(random), slope = tilt.slope_x * film.x + tilt.slope_y * film.y;
+      const bool seen = tilted.contains(film, x, y, i % 2);
+      EXPECT_EQ(seen, upright.contains({film.x - slope * x, film.y - slope * y}, x, y, i % 2));
+      inside += seen;
+      const double u = (unit(random) + 1) / 2, v = (unit(random) + 1) / 2, h = 1e-5;
+      const auto moves = tilted.derivatives(film, u, v, i % 2);
+      const auto at = [&](double dx, double dy) { return tilted.sample({film.x + dx, film.y + dy}, u, v, i % 2); };
+      EXPECT_NEAR(moves.by_film_x[0], (at(h, 0).x - at(-h, 0).x) / (2 * h), 1e-8);
+      EXPECT_NEAR(moves.by_film_x[1], (at(h, 0).y - at(-h, 0).y) / (2 * h), 1e-8);
+      EXPECT_NEAR(moves.by_film_y[0], (at(0, h).x - at(0, -h).x) / (2 * h), 1e-8);
+      EXPECT_NEAR(moves.by_film_y[1], (at(0, h).y - at(0, -h).y) / (2 * h), 1e-8);
+    }
+    EXPECT_GT(inside, 400);
+  }
+}
+
 TEST(FilmPupilTable, HasNothingOutsideItsFilm) {
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
   const FilmPupilTable table = FilmPupilTable::enclosing(lens, 20);
@@ -428,6 +524,8 @@ TEST(FilmPupilTable, HasNothingOutsideItsFilm) {
   EXPECT_THROW((void)FilmPupilTable::enclosing(lens, -1), Error);
   EXPECT_THROW((void)FilmPupilTable::enclosing(with_film(lens, lens.surfaces().back().vertex_z), 10), Error);
   EXPECT_THROW((void)FilmPupilTable::equal_area(data_lens("anamorphic_60mm_2x"), 10), Error);
+  EXPECT_THROW((void)FilmPupilTable::of_iris({50, 0}, {}, {}, nan), Error);
+  EXPECT_THROW((void)hexagons({{{1, 0, 0.5}}}), Error);
   const FilmPupilTable dark = FilmPupilTable::enclosing(with_semi_diameter(lens, *lens.stop(), 0), 20);
   EXPECT_EQ(dark.sample({1, 2}, 0.5, 0.5).area, 0);
 }

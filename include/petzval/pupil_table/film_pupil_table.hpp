@@ -10,6 +10,7 @@
 
 #include "petzval/core/export.hpp"
 #include "petzval/film/film.hpp"
+#include "petzval/iris/iris.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/lens/wavelength.hpp"
 #include "petzval/pupil/pupil_plane.hpp"
@@ -17,7 +18,8 @@
 
 namespace petzval::inline v0 {
 
-/// A disc in the plane of the pupil whose centre moves with the film point: it lies at shift times that point.
+/// A disc in the plane of the pupil, or the image of an iris about as large, whose centre moves with the film point: it
+/// lies at shift times that point.
 struct PupilDisc {
   double shift = 0;
   double radius = 0;  ///< mm
@@ -40,12 +42,12 @@ struct PupilSample {
 };
 
 /// The pupils of every point of a film: the parts of the plane behind the lens through which the points see the scene,
-/// as a table over the distance from the axis, one for each compiled wavelength.
+/// as a table over the distance from the axis, one for each compiled wavelength, or in closed form.
 ///
-/// A pupil is a polygon of 64 corners about a middle, less a central obscuration where the lens has one. Corners and
-/// middles are interpolated between 65 distances, so that the pupil, and with it the sample for a given u and v, moves
-/// continuously with the film point and images show no rings. Areas are exact for the interpolated polygon.
-/// Lenses without symmetry of revolution have one pupil for all points, which contains the pupils of all.
+/// A pupil of a table is a polygon of 64 corners about a middle, less a central obscuration where the lens has one.
+/// Corners and middles are interpolated between 65 distances, so that the pupil, and with it the sample for a given u
+/// and v, moves continuously with the film point and images show no rings. Areas are exact for the interpolated
+/// polygon. Lenses without symmetry of revolution have one pupil for all points, which contains the pupils of all.
 ///
 /// Immutable, cheap to copy, free to share between threads.
 class PETZVAL_API FilmPupilTable {
@@ -63,16 +65,22 @@ class PETZVAL_API FilmPupilTable {
   /// enclosing() does, and for a lens without symmetry of revolution.
   static FilmPupilTable equal_area(const Lens& lens, double film_radius);
 
-  /// The same for the overlap of some discs, one list for each wavelength.
+  /// The same for the overlap of some discs, one list for each wavelength. One disc alone has a closed form: of_iris().
   static FilmPupilTable of_discs(const TwoPlanes& space, std::span<const std::vector<PupilDisc>> discs,
                                  double film_radius, std::size_t primary_wavelength = 0);
 
-  /// The pupils of a tilted film, by virtual film points. They contain every ray of this table that meets the film, and
-  /// few others: one pupil for each distance of the virtual film point from the axis holds the pupils of all points at
-  /// that distance. At most 1e-5 of their area is missed (tests/camera/tilted_exposure_test.cpp), except where
-  /// enclosing() misses more: of a ball lens 10 mm across, tilted by 8 degrees, 2e-3 on a film of 3 x 2 mm, 2e-4 on one
-  /// of 0.6 x 0.45 mm at f/8. This table's film_radius must reach to all points where its rays meet the upright film.
-  /// Throws Error for a radius that is negative or not finite.
+  /// Pupils in closed form: images of an iris, one for each wavelength, each as large as the disc in which the rim of
+  /// the stop appears. iris: as the plane of the pupil shows it. Throws Error for a film_radius that is negative or not
+  /// finite, and for an iris with edges that do not form a polygon about the axis with its corners within the rim.
+  static FilmPupilTable of_iris(const TwoPlanes& space, const Iris& iris, std::span<const PupilDisc> images,
+                                double film_radius, std::size_t primary_wavelength = 0);
+
+  /// The pupils of a tilted film, by virtual film points; those of of_iris() are exact. They contain every ray of this
+  /// table that meets the film, and few others: one pupil for each distance of the virtual film point from the axis
+  /// holds the pupils of all points at that distance. At most 1e-5 of their area is missed
+  /// (tests/camera/tilted_exposure_test.cpp), except where enclosing() misses more: of a ball lens 10 mm across, tilted
+  /// by 8 degrees, 2e-3 on a film of 3 x 2 mm, 2e-4 on one of 0.6 x 0.45 mm at f/8. This table's film_radius must reach
+  /// to all points where its rays meet the upright film. Throws Error for a radius that is negative or not finite.
   FilmPupilTable for_tilted_film(const FilmTilt& tilt) const;
 
   /// The planes that film points and samples lie in.

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+// Samples of many images of an iris, compiled once for each instruction set: plain loops, which the compiler runs on
+// its lanes. Names are local, and no other library is called, as in lib/trace/lanes.hpp.
+#include "iris_images_loops.hpp"
+
+namespace petzval::inline v0::pupil_table_detail {
+namespace {
+
+template <class R>
+inline R clamped(R x) noexcept {
+  x = x > R(0) ? x : R(0);
+  return x < R(1) ? x : R(1);
+}
+
+/// An image, its centre over the film point that sees it; area 0: none.
+template <class R>
+struct Image {
+  R shift = 0, radius = 0, area = 0;
+
+  Image(const IrisImageTable<R>& table, std::size_t wavelength) noexcept {
+    if (wavelength >= table.wavelengths) return;
+    shift = table.shift[wavelength], radius = table.radius[wavelength], area = table.area[wavelength];
+  }
+};
+
+/// Calls body(image_of) with the images of all rays, by ray.
+template <class R, class Body>
+inline void with_images(const IrisImageTable<R>& table, const RayWavelengths& wavelengths, const Body& body) noexcept {
+  if (const std::uint16_t* each = wavelengths.each) {
+    body([&table, each](std::size_t i) { return Image<R>(table, each[i]); });
+  } else {
+    body([image = Image<R>(table, wavelengths.all.position(table.primary))](std::size_t) { return image; });
+  }
+}
+
+/// A film point and the image that it sees. Nothing of it is infinite.
+template <class R>
+struct Seen {
+  R film_x, film_y, shift, radius, area;
+};
+
+template <class R>
+inline Seen<R> seen(const IrisImageTable<R>& table, const Image<R>& image, R film_x, R film_y, bool sound) noexcept {
+  const bool known = sound & (film_x * film_x + film_y * film_y <= table.film_radius * table.film_radius);
+  const R fx = known ? film_x : R(0), fy = known ? film_y : R(0), area = known ? image.area : R(0);
+  const R part = R(1) / (R(1) + image.shift * (table.slope_x * fx + table.slope_y * fy));
+  return {fx, fy, part * image.shift, part * image.radius, part * part * area};
+}
+
+/// sample_at(i, u, v): a uniform point of the iris.
+template <class R, class ImageOf, class SampleAt>
+inline void fill(const IrisImageTable<R>& given, const ImageOf& image_of, const SampleAt& sample_at, std::size_t begin,
+                 std::size_t end, const R* film_x, const R* film_y, const R* u, const R* v, R* x, R* y,
+                 R* areas) noexcept {
+  const IrisImageTable<R> table = given;  // which nothing that is written overlaps
+  PETZVAL_INDEPENDENT
+  for (std::size_t i = begin; i < end; ++i) {
+    // Comparisons with what is not a number are false.
+    const bool sound = (film_x[i] + film_y[i] + u[i] + v[i]) * R(0) >= R(0);
+    const auto [fx, fy, shift, radius, area] = seen(table, image_of(i), film_x[i], film_y[i], sound);
+    const auto [px, py] = sample_at(i, clamped(u[i]), clamped(v[i]));
+    const R size = area > R(0) ? radius : R(0);
+    x[i] = shift * fx + size * px;
+    y[i] = shift * fy + size * py;
+    areas[i] = area;
+  }
+}
+
+template <class R>
+void sample(const IrisImageTable<R>& table, std::size_t count, const R* film_x, const R* film_y, const R* u, const R* v,
+            const RayWavelengths& wavelengths, R* x, R* y, R* areas) noexcept {
+  const iris_detail::IrisTriangles<R> iris = table.iris;
+  with_images(table, wavelengths, [&](const auto& image_of) {
+    if (iris.count == 0) {
+      const auto on_disc = [](std::size_t, R a, R b) { return iris_detail::disc_point(a, b); };
+      fill(table, image_of, on_disc, 0, count, film_x, film_y, u, v, x, y, areas);
+      return;
+    }
+    constexpr std::size_t block = 64;
+    std::int32_t triangle[block];
+    for (std::size_t begin = 0; begin < count; begin += block) {
+      const std::size_t n = count - begin < block ? count - begin : block;
+      for (std::size_t i = 0; i < n; ++i) triangle[i] = 0;
+      for (std::size_t k = 1; k < iris.count; ++k) {
+        const R before = iris.before[k];
+        for (std::size_t i = 0; i < n; ++i) triangle[i] += u[begin + i] >= before;
+      }
+      const auto in_triangle = [&](std::size_t i, R a, R b) {
+        return iris_detail::triangle_point(iris, static_cast<std::size_t>(triangle[i - begin]), a, b);
+      };
+      fill(table, image_of, in_triangle, begin, begin + n, film_x, film_y, u, v, x, y, areas);
+    }
+  });
+}
+
+template <class R>
+void contains(const IrisImageTable<R>& given, std::size_t count, const TwoPlaneRays<const R>& lines,
+              const RayWavelengths& wavelengths, std::uint8_t* within) noexcept {
+  const IrisImageTable<R> table = given;
+  const auto [film_x, film_y, pupil_x, pupil_y] = lines;
+  constexpr std::size_t block = 64;
+  R x[block], y[block];
+  std::int32_t inside[block];
+  with_images(table, wavelengths, [&](const auto& image_of) {
+    for (std::size_t begin = 0; begin < count; begin += block) {
+      const std::size_t n = count - begin < block ? count - begin : block;
+      for (std::size_t i = 0; i < n; ++i) {
+        const std::size_t o = begin + i;
+        const auto [fx, fy, shift, radius, area] = seen(table, image_of(o), film_x[o], film_y[o], true);
+        x[i] = (pupil_x[o] - shift * fx) / radius;
+        y[i] = (pupil_y[o] - shift * fy) / radius;
+        const bool in_disc = table.iris.count > 0 || x[i] * x[i] + y[i] * y[i] <= R(1);
+        inside[i] = (area > R(0)) & in_disc;
+      }
+      for (std::size_t k = 0; k < table.iris.count; ++k) {
+        for (std::size_t i = 0; i < n; ++i) inside[i] &= iris_detail::within_edge(table.iris, k, x[i], y[i]);
+      }
+      for (std::size_t i = 0; i < n; ++i) within[begin + i] = static_cast<std::uint8_t>(inside[i]);
+    }
+  });
+}
+
+}  // namespace
+
+const IrisImageLoops PETZVAL_LOOPS{{sample<float>, contains<float>}, {sample<double>, contains<double>}};
+
+}  // namespace petzval::inline v0::pupil_table_detail
