@@ -54,6 +54,17 @@ MeridianLines spread(const FilmPupilTable& pupils, std::size_t wavelength, std::
   return lines_of(pupils, wavelength, heights, u, v);
 }
 
+/// The film's centre, uniformly over its pupil.
+MeridianLines axial(const FilmPupilTable& pupils, std::size_t wavelength) {
+  constexpr std::size_t count = 512;
+  std::vector<double> u, v;
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto [at_u, at_v] = core_detail::fibonacci_point(i, count);
+    u.push_back(at_u), v.push_back(at_v);
+  }
+  return lines_of(pupils, wavelength, std::vector<double>(count, 0.0), u, v);
+}
+
 /// The rims of the pupils.
 MeridianLines rims(const FilmPupilTable& pupils, std::size_t wavelength) {
   constexpr int steps = 64, around = 128;
@@ -130,8 +141,11 @@ RayPolynomial RayPolynomial::fit(const Lens& lens, const FilmPupilTable& pupils,
   enclose(edges, domain);
   std::vector<Fit> fits;
   for (std::size_t wavelength = 0; wavelength < pupils.wavelengths(); ++wavelength) {
-    fits.push_back(polynomial_detail::fit(lens, domain, degree, wavelength, spread(pupils, wavelength, 0, fitted, true),
-                                          spread(pupils, wavelength, fitted, judged, false), edges[wavelength]));
+    fits.push_back(polynomial_detail::fit(lens, domain, degree, wavelength,
+                                          {.fitted = spread(pupils, wavelength, 0, fitted, true),
+                                           .axial = axial(pupils, wavelength),
+                                           .fresh = spread(pupils, wavelength, fitted, judged, false),
+                                           .rims = edges[wavelength]}));
   }
   return RayPolynomial(degree, domain, std::move(fits), lens.primary_wavelength());
 }

@@ -91,31 +91,27 @@ std::array<Errors, 2> errors_of(const Lens& lens, const RayPolynomial& polynomia
 }  // namespace
 
 RayPolynomial::Fit fit(const Lens& lens, const RayPolynomial::Domain& domain, int degree, std::size_t wavelength,
-                       const MeridianLines& lines, const MeridianLines& fresh, const MeridianLines& rims) {
+                       const FitLines& lines) {
   const std::vector<RayPolynomial::Term> terms = RayPolynomial::terms(degree);
   const auto count = static_cast<Eigen::Index>(terms.size());
-  const Rays rays = trace(lens, domain.space, lines, wavelength);
+  const Rays rays = trace(lens, domain.space, lines.fitted, wavelength);
   const auto passed = std::count(rays.fates.begin(), rays.fates.end(), RayFate::transmitted);
   const double nm = lens.wavelengths_nm()[wavelength];
   if (passed < 2 * count) {
     throw Error(lens.name() + ": polynomial of degree " + std::to_string(degree) + ": " + std::to_string(passed) +
-                " of " + std::to_string(lines.size()) + " rays get through at " + to_text(nm) + " nm, wanted " +
+                " of " + std::to_string(lines.fitted.size()) + " rays get through at " + to_text(nm) + " nm, wanted " +
                 std::to_string(2 * count) + " or more");
   }
 
   // Two equations for each ray, along x and along y, for A (left) and B (right). Direction and offset are two
   // right-hand sides of the same equations.
-  Eigen::MatrixXd equations(2 * passed, 2 * count);
-  Eigen::MatrixX2d wanted(2 * passed, 2);
   const int n = (degree - 1) / 2;
-  std::array<std::array<double, 6>, 3> powers;
-  Eigen::Index row = 0;
-  for (std::size_t i = 0; i < lines.size(); ++i) {
-    if (rays.fates[i] != RayFate::transmitted) continue;
-    const double fy = lines.film_y[i] / domain.film_radius;
-    const double px = lines.pupil_x[i] / domain.pupil_radius;
-    const double py = (lines.pupil_y[i] - domain.pupil_shift * lines.film_y[i]) / domain.pupil_radius;
+  const auto equate = [&](const MeridianLines& of, const Rays& traced, std::size_t i, auto&& equations, auto&& wanted) {
+    const double fy = of.film_y[i] / domain.film_radius;
+    const double px = of.pupil_x[i] / domain.pupil_radius;
+    const double py = (of.pupil_y[i] - domain.pupil_shift * of.film_y[i]) / domain.pupil_radius;
     const std::array<double, 3> invariants{fy * fy, fy * py, px * px + py * py};
+    std::array<std::array<double, 6>, 3> powers;
     for (std::size_t k = 0; k < 3; ++k) {
       powers[k][0] = 1;
       for (std::size_t e = 0; e < static_cast<std::size_t>(n); ++e) powers[k][e + 1] = powers[k][e] * invariants[k];
@@ -124,14 +120,40 @@ RayPolynomial::Fit fit(const Lens& lens, const RayPolynomial::Domain& domain, in
       const auto [u, v, w] = terms[static_cast<std::size_t>(k)];
       const double term = powers[0][static_cast<std::size_t>(u)] * powers[1][static_cast<std::size_t>(v)] *
                           powers[2][static_cast<std::size_t>(w)];
-      equations(row, k) = 0;
-      equations(row, count + k) = term * px;
-      equations(row + 1, k) = term * fy;
-      equations(row + 1, count + k) = term * py;
+      equations(0, k) = 0;
+      equations(0, count + k) = term * px;
+      equations(1, k) = term * fy;
+      equations(1, count + k) = term * py;
     }
-    const SceneLine line = scene_line(rays.direction(i), rays.origin(i) - Vec3<double>(0, 0, domain.reference_z));
-    wanted.row(row) << line.sx, line.ox;
-    wanted.row(row + 1) << line.sy, line.oy;
+    const SceneLine line = scene_line(traced.direction(i), traced.origin(i) - Vec3<double>(0, 0, domain.reference_z));
+    wanted.row(0) << line.sx, line.ox;
+    wanted.row(1) << line.sy, line.oy;
+  };
+  Eigen::MatrixXd equations(1 + 2 * passed, 2 * count);
+  Eigen::MatrixX2d wanted(1 + 2 * passed, 2);
+
+  // The focus of the film's centre: the first moments of direction and offset over its pupil are those of the lens, so
+  // that rays meet the axis in the same plane on average. A row as heavy as this one holds nearly exactly; heavy rows
+  // come first for the sake of QR.
+  equations.row(0).setZero(), wanted.row(0).setZero();
+  const Rays axial = trace(lens, domain.space, lines.axial, wavelength);
+  Eigen::MatrixXd two_equations(2, 2 * count);
+  Eigen::Matrix2d two_wanted;
+  const double heavy = 1e4 / static_cast<double>(std::max<std::size_t>(1, axial.size()));
+  for (std::size_t i = 0; i < axial.size(); ++i) {
+    if (axial.fates[i] != RayFate::transmitted) continue;
+    equate(lines.axial, axial, i, two_equations, two_wanted);
+    const double x = lines.axial.pupil_x[i], y = lines.axial.pupil_y[i], depth = domain.space.depth();
+    const double cosine_squared = depth * depth / (x * x + y * y + depth * depth);
+    const double light = heavy * cosine_squared * cosine_squared / domain.pupil_radius;
+    equations.row(0) += light * (x * two_equations.row(0) + y * two_equations.row(1));
+    wanted.row(0) += light * (x * two_wanted.row(0) + y * two_wanted.row(1));
+  }
+
+  Eigen::Index row = 1;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    if (rays.fates[i] != RayFate::transmitted) continue;
+    equate(lines.fitted, rays, i, equations.middleRows<2>(row), wanted.middleRows<2>(row));
     row += 2;
   }
   const Eigen::MatrixX2d solution = equations.householderQr().solve(wanted);
@@ -148,8 +170,8 @@ RayPolynomial::Fit fit(const Lens& lens, const RayPolynomial::Domain& domain, in
   fit.offset_by_pupil = part(1, count);
 
   const RayPolynomial polynomial(degree, domain, {fit});
-  const auto [direction, offset] = errors_of(lens, polynomial, wavelength, fresh);
-  const auto [direction_at_rims, offset_at_rims] = errors_of(lens, polynomial, wavelength, rims);
+  const auto [direction, offset] = errors_of(lens, polynomial, wavelength, lines.fresh);
+  const auto [direction_at_rims, offset_at_rims] = errors_of(lens, polynomial, wavelength, lines.rims);
   fit.rms_rad = direction.rms();
   fit.max_rad = std::max(direction.max(), direction_at_rims.max());
   fit.rms_mm = offset.rms();

@@ -16,9 +16,16 @@ struct MeridianLines {
   std::size_t size() const noexcept { return film_y.size(); }
 };
 
-/// The fit at one wavelength to the lines that pass the lens; its errors from other lines and from the rims of the
-/// pupils.
+struct FitLines {
+  MeridianLines fitted;
+  MeridianLines axial;  ///< of the film's centre, uniform over its pupil
+  MeridianLines fresh;  ///< to find errors with, and
+  MeridianLines rims;   ///< those along the rims of the pupils
+};
+
+/// The fit at one wavelength to the lines that pass the lens. The film's centre is in focus where exact rays are
+/// sharpest.
 RayPolynomial::Fit fit(const Lens& lens, const RayPolynomial::Domain& domain, int degree, std::size_t wavelength,
-                       const MeridianLines& lines, const MeridianLines& fresh, const MeridianLines& rims);
+                       const FitLines& lines);
 
 }  // namespace petzval::inline v0::polynomial_detail

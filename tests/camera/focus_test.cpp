@@ -11,7 +11,6 @@
 #include <string>
 
 #include "../data_lenses.hpp"
-#include "camera/make_model.hpp"
 #include "petzval/camera/camera.hpp"
 #include "petzval/media/glass.hpp"
 #include "petzval/paraxial/first_order.hpp"
@@ -75,7 +74,6 @@ TEST(CameraFocus, IsWhereTheLensWasFocusedInEveryModel) {
       }
       for (const ModelKind model : models()) {
         const Blur b = blur(Camera(lens, {}, {.model = model}));
-        if (camera_detail::is_polynomial(model)) continue;
         if (model == ModelKind::pinhole) {
           EXPECT_LT(b.pp, 1e-20);  // sharp everywhere
           continue;
