@@ -114,12 +114,15 @@ Lens with_f_number(const Lens& lens, double f_number, Wavelength wavelength) {
   const double y = length / (2 * f_number);
   const double largest = beam_height(lens, beam, wavelength);
   const StopHeight stop_height(lens, beam.stop, wavelength);
-  const auto height = stop_height(y);
-  // One part in 1e9 of tolerance takes back the f-number that real_f_number printed.
-  if (!height || y > largest * (1 + 1e-9)) {
+  const auto height = stop_height(std::min(y, largest));
+  // Declared f-numbers are rounded, of the paraxial pupil, or of another glass. Without a rim, the one that was
+  // printed.
+  const double tolerance = open ? 1e-9 : 0.005;
+  if (!height || y > largest * (1 + tolerance)) {
     throw Error(lens.name() + ": f-number is " + to_text(f_number) + ", wanted " + to_text(length / (2 * largest), 10) +
                 " (the fastest the lens can give) or more");
   }
+  if (!open && y > largest) return lens;
   if (const double obscured = stop.obscuration_semi_diameter; obscured > 0 && *height <= obscured) {
     const double smallest = entering_height(stop_height, obscured, beam.height);
     throw Error(lens.name() + ": f-number is " + to_text(f_number) + ", wanted less than " +

@@ -17,9 +17,12 @@ PETZVAL_API double real_f_number(const Lens& lens, Wavelength wavelength = {});
 
 /// The lens stopped down to an f-number (real_f_number, by exact rays): the stop gets the semi-diameter at which the
 /// axis-parallel ray of height |EFL| / (2 N) passes it, so that real_f_number gives N back within 1e-12. A marked stop
-/// without a rim gets one. Throws Error for N <= 0 or not finite, an afocal lens, N faster (by more than 1e-9) than the
-/// lens can give, naming the fastest possible, and N so slow that the central obscuration of an annular stop leaves
-/// nothing, naming the f-number of the obscuration.
+/// without a rim gets one.
+///
+/// For N faster than wide open by up to 0.5 % the lens stays wide open, as it is: declared f-numbers are rounded, and
+/// real_f_number tells the true one. Throws Error for N faster than that, naming the fastest possible, for N <= 0 or
+/// not finite, an afocal lens, and N so slow that the central obscuration of an annular stop leaves nothing, naming the
+/// f-number of the obscuration.
 PETZVAL_API Lens with_f_number(const Lens& lens, double f_number, Wavelength wavelength = {});
 
 }  // namespace petzval::inline v0
