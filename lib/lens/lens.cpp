@@ -102,7 +102,13 @@ Lens compile(const Prescription& prescription, std::span<const double> wavelengt
 
   auto data = std::make_shared<Lens::Data>();
   data->name = where;
-  data->wavelengths_nm.assign(wavelengths_nm.begin(), wavelengths_nm.end());
+  for (const double nm : wavelengths_nm) {
+    if (const auto same = compiled(data->wavelengths_nm, nm)) {
+      throw Error(where + ": wavelength " + std::to_string(data->wavelengths_nm.size()) + " is " + to_text(nm) +
+                  " nm, that of wavelength " + std::to_string(*same) + ", wanted each once");
+    }
+    data->wavelengths_nm.push_back(nm);
+  }
   data->primary = compiled(data->wavelengths_nm, prescription.reference_wavelength_nm)
                       .value_or(nearest(data->wavelengths_nm, d_line_nm));
   double z = 0;

@@ -125,8 +125,8 @@ class PETZVAL_API Lens {
 };
 
 /// Compiles a prescription for some wavelengths (nm). Throws Error, naming lens and surface, for an invalid
-/// prescription, a wavelength outside the range of a glass, a missing glass (see MissingGlass) and an index outside
-/// 0..5.
+/// prescription, a wavelength given twice (within 1e-6 nm) or outside the range of a glass, a missing glass (see
+/// MissingGlass) and an index outside 0..5.
 PETZVAL_API Lens compile(const Prescription& prescription, std::span<const double> wavelengths_nm,
                          const CompileOptions& options = {});
 
