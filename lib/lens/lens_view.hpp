@@ -52,7 +52,8 @@ struct Step {
   R gap = 0;                               ///< along z, from the vertex before
   R curvature = 0, e = 1, ax = 1, ay = 1;  ///< as in Quadric, in the turned frame
   R sense = 1;                             ///< -1 where the frame is turned
-  R rim2 = 0, obscuration2 = 0;            ///< squared semi-diameters; unlimited: the largest finite number
+  R rim2 = 0, obscuration2 = 0;            ///< squared semi-diameters; rim2 is at most reach2
+  R reach2 = 0;                            ///< squared height beyond which rays are lost, apertures or none
 };
 
 /// Constants of refraction at a step, for directions scaled by the index, |p| = n.

@@ -4,7 +4,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 
 #include "aspheres.hpp"
 #include "steps.hpp"
@@ -130,7 +129,7 @@ template <class R, class Media, class Follow>
 void pass(const BlockJob<R>& job, std::size_t j, const Media& media, std::uint8_t* unsettled, Bundle<R>& b,
           Follow& follow) noexcept {
   const kernel::Step<R>& s = job.sequence.steps[j];
-  const Lanes<R> rim2(job.apertures ? s.rim2 : std::numeric_limits<R>::max());
+  const Lanes<R> rim2(job.apertures ? s.rim2 : s.reach2);
   if (s.refresh) refresh(media, b);
   switch (s.kind) {
     case kernel::StepKind::plane: plane(s, rim2, media, b, follow); break;

@@ -8,6 +8,7 @@
 #include <optional>
 #include <random>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "batches.hpp"
@@ -189,6 +190,70 @@ TYPED_TEST(Robust, NothingButFiniteNumbersComesOutOfAnyBatch) {
   // One ray in eight starts at the limits of the type, where only rounding decides.
   EXPECT_LT(otherwise, rays_met / 100);
   this->RecordProperty("otherwise", static_cast<int>(otherwise));
+}
+
+/// Whether the point behind the lens lies on its last surface, a sphere, and the direction is one.
+template <class T>
+void expect_right(const petzval::Lens& lens, const Ray<T>& end, const std::string& what) {
+  // What half of the digits leave, twice over.
+  const double near = 8 * std::sqrt(double{std::numeric_limits<T>::epsilon()});
+  const petzval::Vec3<double> o(end.origin), d(end.direction);
+  const auto& last = lens.surfaces().back();
+  const double z = o.z - last.vertex_z - 1 / last.curvature;
+  EXPECT_NEAR(std::hypot(d.x, d.y, d.z), 1, near) << what;
+  EXPECT_NEAR(std::hypot(o.x, o.y, z) * std::abs(last.curvature), 1, near) << what;
+}
+
+// A grazing ray meets a plane far out. From there the next sphere is a point, and the digits of its hit may be lost.
+TYPED_TEST(Robust, ARayThatMeetsAPlaneFarOutIsLostOrRight) {
+  using T = TypeParam;
+  std::vector<petzval::Lens> lenses{testing_lenses::load("ball_10mm").lens};
+  // The plane refracts, and the radius of the sphere after next is large.
+  petzval::Prescription p;
+  p.name = "window and ball";
+  p.surfaces = {{.radius = 0, .thickness = 5, .medium = {.nd = 1.0000001}},
+                {.radius = 1e9, .thickness = 1, .medium = {.nd = 1}},
+                {.radius = 7, .thickness = 14, .medium = {.nd = 1.5}},
+                {.radius = -7, .thickness = 2, .medium = {.nd = 1}}};
+  lenses.push_back(petzval::compile(p));
+  int passed = 0, lost = 0;
+  for (const petzval::Lens& lens : lenses) {
+    std::vector<Ray<T>> rays;
+    const double middle = lens.surfaces().back().vertex_z + 1 / lens.surfaces().back().curvature;
+    for (int k = 0; k <= 70; ++k) {
+      for (const double away : {-1.3, -0.95, -0.5, -0.1}) {
+        const double slope = std::pow(10.0, -0.2 * k);
+        rays.push_back({{T(6.2), T(0), static_cast<T>(middle + away)},
+                        {static_cast<T>(std::sqrt(1 - slope * slope)), T(0), static_cast<T>(slope)}});
+      }
+    }
+    for (auto options : testing_batches::ways()) {
+      options.apertures = false;
+      const auto answer = testing_batches::traced(lens, rays, options);
+      for (std::size_t i = 0; i < rays.size(); ++i) {
+        const std::string what = lens.name() + ", ray " + std::to_string(i) + ", " + testing_batches::text(options);
+        const bool transmitted = answer.fates[i] == RayFate::transmitted;
+        if (transmitted) expect_right(lens, answer.rays[i], what);
+        ++(transmitted ? passed : lost);
+      }
+    }
+    for (const Ray<T>& ray : rays) {
+      const auto end = petzval::trace(lens, ray, {.apertures = false});
+      if (end.transmitted()) expect_right(lens, end.ray, lens.name() + ", one ray");
+    }
+  }
+  EXPECT_GT(passed, 10);
+  EXPECT_GT(lost, 10);
+  // The ray of the report: every tracer loses it at the plane.
+  if constexpr (std::is_same_v<T, double>) {
+    const Ray<double> ray{{6.2, 0, 9.05}, {std::sqrt(1 - 1e-24), 0, 1e-12}};
+    for (auto options : testing_batches::ways()) {
+      options.apertures = false;
+      const auto answer = testing_batches::traced(lenses[0], std::vector<Ray<double>>(3, ray), options);
+      EXPECT_EQ(answer.fates[1], RayFate::vignetted) << testing_batches::text(options);
+      EXPECT_EQ(answer.surfaces[1], 0);
+    }
+  }
 }
 
 }  // namespace
