@@ -29,7 +29,7 @@ using examples::Json;
 constexpr int picture_pixels = 512, tile_pixels = 320;
 
 struct Options {
-  std::string lens_file, out_folder, origin = "front_vertex", criterion = "paraxial";
+  std::string lens_file, out_folder, origin = "front_vertex", criterion = "min_rms";
   std::vector<double> focus_mm, wavelengths_nm{petzval::d_line_nm};
   double subject_mm = 0, f_number = 0, field_deg = 0;  // f_number 0: wide open
   std::uint32_t samples = 1u << 21;
@@ -154,11 +154,7 @@ int main(int argc, char** argv) {
   app.add_option("--distance-from", options.origin, "origin of the distances of light and focus")
       ->one_of({"front_vertex", "film"})
       ->capture_default_str();
-  app.add_option("--criterion", options.criterion,
-                 "criterion of focus, on axis: cardinal points (of a thin or the thick lens), least RMS blur or least "
-                 "largest blur")
-      ->one_of(examples::names(examples::focus_criteria))
-      ->capture_default_str();
+  examples::add_criterion(app, options.criterion);
   examples::add_numbers(
       app, "--wavelengths-nm", options.wavelengths_nm, examples::positive_number,
       "wavelengths of the light (nm); several, from 420 to 680, are weighted to RGB by the CIE 1931 functions");

@@ -25,7 +25,7 @@ echo "$out/wu_statements.txt"
 
 echo "== Bokeh off axis, in colour (3/8)"
 "$programs/bokeh_psf" "$lenses/double_gauss_100mm_f1.35.json" --subject-distance-mm 1000 \
-  --focus-mm 800,900,1000,1100,1200 --field-deg 8 --wavelengths-nm "$(seq -s , 430 10 670)" --samples 262144 \
+  --focus-mm 800,900,1000,1100,1200 --criterion paraxial --field-deg 8 --wavelengths-nm "$(seq -s , 430 10 670)" --samples 262144 \
   --out "$out/bokeh"
 
 echo "== Spot diagrams of five lenses (4/8)"

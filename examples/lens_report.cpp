@@ -36,7 +36,9 @@ struct Options {
 /// The lens, stopped down and focused.
 petzval::Lens set(petzval::Lens lens, const Options& options) {
   if (options.f_number > 0) lens = petzval::with_f_number(lens, options.f_number);
-  return options.subject_mm > 0 ? petzval::with_focus(lens, options.subject_mm) : lens;
+  return options.subject_mm > 0
+             ? petzval::with_focus(lens, options.subject_mm, {.criterion = petzval::FocusCriterion::paraxial})
+             : lens;
 }
 
 examples::LoadedLens load(const Options& options) {

@@ -104,7 +104,8 @@ int main(int argc, char** argv) {
 
   return examples::run(app, argc, argv, [&] {
     const auto loaded = examples::load_lens(options.lens_file, options.wavelengths_nm);
-    const double image_z = petzval::with_focus(loaded.lens, options.subject_mm).film_z();
+    const double image_z =
+        petzval::with_focus(loaded.lens, options.subject_mm, {.criterion = petzval::FocusCriterion::paraxial}).film_z();
     const petzval::Lens lens = petzval::with_film(loaded.lens, image_z + options.defocus_mm);
     const auto all = spots(lens, options);
 

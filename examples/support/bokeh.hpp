@@ -17,7 +17,7 @@ namespace examples {
 struct BokehSetup {
   double light_mm = 1000;  ///< distance of the light from `origin`, may be infinite
   petzval::DistanceOrigin origin = petzval::DistanceOrigin::front_vertex;
-  petzval::FocusCriterion criterion = petzval::FocusCriterion::paraxial;
+  petzval::FocusCriterion criterion = petzval::FocusCriterion::min_rms;
   double field_rad = 0;
 };
 

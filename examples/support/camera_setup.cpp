@@ -14,7 +14,8 @@ void add_camera(App& app, CameraSetup& setup) {
   add_number(app, "--f-number", setup.f_number, positive_number, "stop the lens down (by exact rays)")
       ->default_str("wide open");
   add_number(app, "--focus-mm", setup.focus_mm, positive_length,
-             "distance of the subject in focus (paraxially, at the primary wavelength) from the film (mm), or inf");
+             "distance of the subject in focus (at the primary wavelength) from the film (mm), or inf");
+  add_criterion(app, setup.criterion);
   app.add_option("--film-mm", setup.film_mm, "width and height of the film (mm)")
       ->type_name("WxH")
       ->capture_default_str();
@@ -30,7 +31,9 @@ std::array<double, 2> parse_size(const std::string& where, std::string_view text
 
 petzval::Lens focused(const LoadedLens& loaded, const CameraSetup& setup) {
   const petzval::Lens lens = setup.f_number > 0 ? petzval::with_f_number(loaded.lens, setup.f_number) : loaded.lens;
-  return petzval::with_focus(lens, setup.focus_mm, {.origin = petzval::DistanceOrigin::film});
+  return petzval::with_focus(
+      lens, setup.focus_mm,
+      {.criterion = named(setup.criterion, focus_criteria), .origin = petzval::DistanceOrigin::film});
 }
 
 }  // namespace examples

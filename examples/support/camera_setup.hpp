@@ -15,19 +15,20 @@ namespace examples {
 struct CameraSetup {
   double f_number = 0;     ///< 0: wide open
   double focus_mm = 3000;  ///< of the subject from the film
+  std::string criterion = "min_rms";
   std::string film_mm = "36x24";
 
   /// Width and height of the film. Throws petzval::Error.
   std::array<double, 2> film_size() const;
 };
 
-/// Options --f-number, --focus-mm and --film-mm.
+/// Options --f-number, --focus-mm, --criterion and --film-mm.
 void add_camera(App& app, CameraSetup& setup);
 
 /// "36x24". Throws petzval::Error beginning with `where`.
 std::array<double, 2> parse_size(const std::string& where, std::string_view text, const Range& range);
 
-/// The loaded lens, stopped down and focused paraxially at its primary wavelength.
+/// The loaded lens, stopped down and focused at its primary wavelength.
 petzval::Lens focused(const LoadedLens& loaded, const CameraSetup& setup);
 
 }  // namespace examples

@@ -105,6 +105,15 @@ Option* add_numbers(App& app, const std::string& flag, std::vector<double>& valu
       ->default_str(joined(values));
 }
 
+Option* add_criterion(App& app, std::string& criterion) {
+  return app
+      .add_option("--criterion", criterion,
+                  "criterion of focus, on axis: cardinal points (of a thin or the thick lens), least RMS blur or least "
+                  "largest blur")
+      ->one_of(names(focus_criteria))
+      ->capture_default_str();
+}
+
 Option* add_samples(App& app, std::uint32_t& samples) {
   return app
       .add_option(

@@ -105,6 +105,9 @@ Enum named(const std::string& text, const std::array<Enum, count>& all) {
   return *std::find_if(all.begin(), all.end(), [&](Enum e) { return petzval::name(e) == text; });
 }
 
+/// --criterion: what "in focus" means, by name. --help shows the value of the variable as the default.
+Option* add_criterion(App& app, std::string& criterion);
+
 /// Rays per wavelength, 1 to 2^26.
 Option* add_samples(App& app, std::uint32_t& samples);
 

@@ -61,8 +61,8 @@ std::string conditions(const petzval::Lens& lens, const ModelOptions& options) {
   const petzval::Film film = options.film();
   const double focus = options.setup.focus_mm;
   return "f/" + number(petzval::real_f_number(lens), 3) + ", focused at " +
-         (std::isinf(focus) ? "infinity" : number(focus) + " mm from the film") + ", film " +
-         size(film.width_mm, film.height_mm) + " mm, " + size(film.columns, film.rows) + " pixels of " +
+         (std::isinf(focus) ? "infinity" : number(focus) + " mm from the film") + " (" + options.setup.criterion +
+         "), film " + size(film.width_mm, film.height_mm) + " mm, " + size(film.columns, film.rows) + " pixels of " +
          number(1e3 * film.pixel_mm(), 3) + " um, " + number(petzval::d_line_nm, 6) + " nm";
 }
 

@@ -59,8 +59,8 @@ TEST(CameraFocus, IsWhereTheLensWasFocusedInEveryModel) {
                          "tessar_100mm_f2.8", "soft_85mm_f2.8", "retrofocus_100mm_f2"}) {
     for (const double f_number : {0.0, 4.0}) {
       const Lens whole = testing::data_lens(id);
-      const Lens lens = with_focus(f_number > 0 ? with_f_number(whole, f_number) : whole, distance,
-                                   {.criterion = FocusCriterion::min_rms, .origin = DistanceOrigin::film});
+      const Lens lens =
+          with_focus(f_number > 0 ? with_f_number(whole, f_number) : whole, distance, {.origin = DistanceOrigin::film});
       const double film_z = lens.film_z();
       const auto in_focus = [&](const Blur& b) { return film_z - (b.pupil_z + b.sharpest()); };
       const Blur exact = blur(Camera(lens, {}, {.model = ModelKind::exact_double}));

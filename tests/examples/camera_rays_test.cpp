@@ -70,6 +70,19 @@ TEST_F(CameraRays, GivesTheLibrarysNumbers) {
   EXPECT_EQ(rows[0][9], "transmitted");
 }
 
+TEST_F(CameraRays, FocusesByTheCriterionAsked) {
+  const petzval::Lens whole = petzval::compile(petzval::read_prescription(lens("double_gauss_100mm_f2_28deg")));
+  for (const auto criterion : {petzval::FocusCriterion::paraxial, petzval::FocusCriterion::min_rms}) {
+    const petzval::Camera camera(
+        petzval::with_focus(whole, 3000, {.criterion = criterion, .origin = petzval::DistanceOrigin::film}), {},
+        {.model = petzval::ModelKind::exact_double});
+    const auto rows = rays("double_gauss_100mm_f2_28deg", std::string(header) + "0,0,0.125,0.75,587.5618\n",
+                           "exact_double", {"--criterion", std::string(petzval::name(criterion))});
+    const auto r = camera.sample({.film = {}, .pupil_u = 0.125, .pupil_v = 0.75});
+    EXPECT_NEAR(std::stod(rows.at(0)[4]), r.ray.direction.y, 1e-12) << petzval::name(criterion);
+  }
+}
+
 // The image on the film is upside down: the lower half of the film sees the upper half of the scene.
 TEST_F(CameraRays, TurnsTheImageUpsideDownOnEveryRung) {
   for (const petzval::ModelKind model : petzval::models()) {

@@ -88,7 +88,7 @@ TEST(BothWays, ParaxialSubjectIsTheOneImagedThere) {
     const FirstOrder data = first_order(lens);
     for (const double extension : {1e-9, 1e-3, 1.0, 20.0}) {
       const double film_z = data.rear_focal_z + (data.image_index > 0 ? extension : -extension);
-      const FocusSolution solution = solve_subject(lens, film_z);
+      const FocusSolution solution = solve_subject(lens, film_z, {paraxial});
       ASSERT_TRUE(solution);
       EXPECT_NEAR(paraxial_image_z(lens, solution.subject_z), film_z, 1e-12 * (100 + std::abs(film_z)));
       EXPECT_NEAR(solution.distance, -solution.subject_z, 4 * eps * solution.distance);
@@ -142,7 +142,7 @@ TEST(BothWays, AFilmBeyondTheLimitNamesTheNearestSubject) {
   EXPECT_EQ(beyond.status, FocusStatus::unreachable);
   EXPECT_NEAR(beyond.distance, nearest.distance, 1e-7 * nearest.distance);
   EXPECT_EQ(solve_focus(lens, 0.99 * nearest.distance, {min_rms}).status, FocusStatus::unreachable);
-  EXPECT_EQ(nearest_focus(lens).film_z, infinity);
+  EXPECT_EQ(nearest_focus(lens, {paraxial}).film_z, infinity);
 }
 
 TEST(BothWays, RefuseWhatIsNoFieldAndNoWeight) {

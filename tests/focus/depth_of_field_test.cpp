@@ -60,7 +60,7 @@ TEST(BlurDiameter, OfTheParaxialCriterionIsTheConeOfTheExitPupil) {
       const double image_z = paraxial_image_z(lens, -subject, 0, meridian);
       for (const double shift : {-0.3, 0.0, 0.2}) {
         const double cone = std::abs(exit.diameter * shift / (image_z - exit.z));
-        EXPECT_NEAR(blur_diameter(with_film(lens, image_z + shift), subject).value(), cone,
+        EXPECT_NEAR(blur_diameter(with_film(lens, image_z + shift), subject, {paraxial}).value(), cone,
                     1e-12 * (1 + exit.diameter));
       }
     }
@@ -83,7 +83,7 @@ TEST(BlurDiameter, OfAllCriteriaIsThatOfTheThinLensWhereTheLensIsOne) {
 TEST(BlurDiameter, GrowsInProportionToTheStopFarFromFocus) {
   for (const FocusCriterion criterion : criteria) {
     const auto blur = [&](double semi_diameter) {
-      return blur_diameter(with_focus(thin_singlet(semi_diameter), 500), infinity, {criterion}).value();
+      return blur_diameter(with_focus(thin_singlet(semi_diameter), 500, {paraxial}), infinity, {criterion}).value();
     };
     EXPECT_NEAR(blur(0.5) / blur(0.25), 2, criterion == thin || criterion == paraxial ? 1e-12 : 3e-3);
   }
@@ -129,21 +129,22 @@ TEST(DepthOfField, IsNoneWhereEvenTheFocusIsBlurred) {
   const double sharpest = blur_diameter(lens, 2000, {min_rms}).value();
   EXPECT_EQ(depth_of_field(lens, 0.99 * sharpest, {min_rms}).status, FocusStatus::too_blurred);
   EXPECT_TRUE(depth_of_field(lens, 1.01 * sharpest, {min_rms}));
-  EXPECT_TRUE(depth_of_field(with_focus(lens, 2000), 1e-6));
+  EXPECT_TRUE(depth_of_field(with_focus(lens, 2000, {paraxial}), 1e-6, {paraxial}));
   EXPECT_EQ(hyperfocal(lens, 1e-3, {min_rms}).status, FocusStatus::too_blurred);
 }
 
 TEST(DepthOfField, OfAFilmTooFarInIsAboutInfinity) {
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
   const Lens inside = with_film(lens, first_order(lens).rear_focal_z - 0.01);
-  const DepthOfField depth = depth_of_field(inside, 0.03);
+  const DepthOfField depth = depth_of_field(inside, 0.03, {paraxial});
   EXPECT_TRUE(depth);
   EXPECT_EQ(depth.far_distance, infinity);
-  EXPECT_GT(depth.near_distance, depth_of_field(with_film(lens, first_order(lens).rear_focal_z), 0.03).near_distance);
+  EXPECT_GT(depth.near_distance,
+            depth_of_field(with_film(lens, first_order(lens).rear_focal_z), 0.03, {paraxial}).near_distance);
 }
 
 TEST(DepthOfField, ReachesTheLensWhereNothingIsBlurredEnough) {
-  const DepthOfField depth = depth_of_field(with_focus(data_lens("double_gauss_100mm_f2.0"), 1000), 1e4);
+  const DepthOfField depth = depth_of_field(with_focus(data_lens("double_gauss_100mm_f2.0"), 1000), 1e4, {paraxial});
   ASSERT_TRUE(depth);
   EXPECT_NEAR(depth.near_distance, 0, 1e-9);
   EXPECT_EQ(depth.far_distance, infinity);
@@ -203,13 +204,13 @@ TEST(Breathing, FollowsTheChiefRayThroughTheExitPupil) {
     SCOPED_TRACE(id);
     const Lens lens = data_lens(id);
     const double infinite = first_order(lens).rear_focal_z, exit_z = pupils(lens).exit.z;
-    EXPECT_EQ(breathing(lens, infinite).value(), 0);
+    EXPECT_EQ(breathing(lens, infinite, {paraxial}).value(), 0);
     const double near = solve_focus(lens, 1000).film_z;
-    EXPECT_NEAR(breathing(lens, near).value(), (near - exit_z) / (infinite - exit_z) - 1, 1e-13);
+    EXPECT_NEAR(breathing(lens, near, {paraxial}).value(), (near - exit_z) / (infinite - exit_z) - 1, 1e-13);
     // The image grows as the film moves away from the exit pupil.
-    EXPECT_GT(breathing(lens, near).value() * (infinite - exit_z), 0);
-    EXPECT_GT(std::abs(breathing(lens, solve_focus(lens, 700).film_z).value()),
-              std::abs(breathing(lens, near).value()));
+    EXPECT_GT(breathing(lens, near, {paraxial}).value() * (infinite - exit_z), 0);
+    EXPECT_GT(std::abs(breathing(lens, solve_focus(lens, 700, {paraxial}).film_z, {paraxial}).value()),
+              std::abs(breathing(lens, near, {paraxial}).value()));
   }
 }
 
@@ -242,9 +243,9 @@ TEST(DepthOfField, SaysWhatIsMissing) {
   EXPECT_EQ(hyperfocal(closed, 0.03, {min_max}).status, FocusStatus::no_rays);
   EXPECT_EQ(blur_diameter(closed, 1000, {min_rms}), std::nullopt);
   // A pinhole to first order has no blur.
-  EXPECT_EQ(blur_diameter(closed, 1000), 0);
-  EXPECT_EQ(depth_of_field(closed, 0.03).far_distance, infinity);
-  EXPECT_EQ(hyperfocal(closed, 0.03).distance, nearest_focus(lens).distance);
+  EXPECT_EQ(blur_diameter(closed, 1000, {paraxial}), 0);
+  EXPECT_EQ(depth_of_field(closed, 0.03, {paraxial}).far_distance, infinity);
+  EXPECT_EQ(hyperfocal(closed, 0.03, {paraxial}).distance, nearest_focus(lens, {paraxial}).distance);
 
   Prescription window = data_prescription("singlet_50mm_biconvex");
   for (SurfaceRow& row : window.surfaces) row.radius = 0;

@@ -37,7 +37,7 @@ TEST(ParaxialFocus, IsTheParaxialImageOfTheSubject) {
     const Lens lens = compile(p);
     const double f = std::abs(first_order(lens).effective_focal_length);
     for (const double distance : {12 * f, 1e3 * f, 1e9 * f, infinity}) {
-      const FocusSolution solution = solve_focus(lens, distance);
+      const FocusSolution solution = solve_focus(lens, distance, {paraxial});
       ASSERT_EQ(solution.status, Status::solved);
       EXPECT_EQ(solution.subject_z, -distance);
       EXPECT_NEAR(solution.film_z, paraxial_image_z(lens, -distance), 1e-11 * (f + std::abs(solution.film_z)));
@@ -131,7 +131,7 @@ TEST(Focus, NamesTheNearestDistanceThatCanBeReached) {
 TEST(ParaxialFocus, EndsAtTheFrontFocusAndAtFourFocalLengthsAndThePlanesBetween) {
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
   const FirstOrder data = first_order(lens);
-  const FocusSolution at_focus = solve_focus(lens, -data.front_focal_z);
+  const FocusSolution at_focus = solve_focus(lens, -data.front_focal_z, {paraxial});
   EXPECT_EQ(at_focus.status, Status::unreachable);
   EXPECT_EQ(at_focus.distance, -data.front_focal_z);
   EXPECT_EQ(at_focus.film_z, infinity);
@@ -167,7 +167,7 @@ TEST(Focus, OfADivergingLensIsNowhere) {
     }
   }
   EXPECT_EQ(message([&] { with_focus(lens, 1000); }),
-            "element: a subject 1000 mm from the front vertex cannot be focused (paraxial): the lens forms no real "
+            "element: a subject 1000 mm from the front vertex cannot be focused (min_rms): the lens forms no real "
             "image at any distance");
 }
 
@@ -177,17 +177,18 @@ TEST(Focus, OfAnAfocalLensIsReportedAsSuch) {
     EXPECT_EQ(solve_focus(compile(element(1.0, 50, -50, 3)), 1000, {criterion, film}).status, Status::afocal);
   }
   EXPECT_EQ(message([] { with_focus(compile(element(1.5, 0, 0, 3)), 1000); }),
-            "element: a subject 1000 mm from the front vertex cannot be focused (paraxial): the lens is afocal");
+            "element: a subject 1000 mm from the front vertex cannot be focused (min_rms): the lens is afocal");
 }
 
 TEST(Focus, OfOneSurfaceOfConcentricSurfacesAndOfABallIsFound) {
   Prescription single;
   single.name = "single";
   single.surfaces = {{.radius = 50, .medium = {.nd = 1.5}, .semi_diameter = 1}};
-  EXPECT_EQ(solve_focus(compile(single), infinity).film_z, 150);  // n R / (n - 1), inside the glass
+  EXPECT_EQ(solve_focus(compile(single), infinity, {paraxial}).film_z, 150);  // n R / (n - 1), inside the glass
   EXPECT_NEAR(solve_focus(compile(single), infinity, {min_rms}).film_z, 150, 0.1);
-  EXPECT_EQ(solve_focus(compile(element(1.5, 50, 40, 10)), 1000).status, Status::unreachable);  // diverges
-  EXPECT_NEAR(solve_focus(compile(element(1.5168, 5, -5, 10)), infinity).film_z, 5 + 1.5168 * 10 / (4 * 0.5168), 1e-13);
+  EXPECT_EQ(solve_focus(compile(element(1.5, 50, 40, 10)), 1000, {paraxial}).status, Status::unreachable);  // diverges
+  EXPECT_NEAR(solve_focus(compile(element(1.5168, 5, -5, 10)), infinity, {paraxial}).film_z,
+              5 + 1.5168 * 10 / (4 * 0.5168), 1e-13);
 }
 
 TEST(Focus, InsideTheLensIsNoFocus) {
@@ -218,7 +219,7 @@ TEST(Focus, RefusesWhatIsNoDistance) {
 TEST(WithFocus, MovesTheFilmOrSaysHowNearItCan) {
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
   EXPECT_EQ(with_focus(lens, 1000).film_z(), solve_focus(lens, 1000).film_z);
-  EXPECT_EQ(message([&] { with_focus(lens, 40); }),
+  EXPECT_EQ(message([&] { with_focus(lens, 40, {paraxial}); }),
             lens.name() +
                 ": a subject 40 mm from the front vertex cannot be focused (paraxial), wanted more than 54.2448912 mm");
   const std::string from_film = message([&] { with_focus(lens, 40, {paraxial, film}); });

@@ -135,9 +135,9 @@ TEST(LensWithIris, ModelsFittedToARoundStopRefuseIt) {
 TEST(LensWithIris, FocusOfExactRaysMovesWithItAndParaxialFocusDoesNot) {
   const Lens lens = testing::data_lens("double_gauss_100mm_f2.0");
   const Lens bladed = with_iris(lens, hexagon);
-  EXPECT_EQ(with_focus(bladed, 3000).film_z(), with_focus(lens, 3000).film_z());
-  const FocusOptions sharpest{.criterion = FocusCriterion::min_rms};
-  EXPECT_NE(with_focus(bladed, 3000, sharpest).film_z(), with_focus(lens, 3000, sharpest).film_z());
+  const FocusOptions paraxial{.criterion = FocusCriterion::paraxial};
+  EXPECT_EQ(with_focus(bladed, 3000, paraxial).film_z(), with_focus(lens, 3000, paraxial).film_z());
+  EXPECT_NE(with_focus(bladed, 3000).film_z(), with_focus(lens, 3000).film_z());
 }
 
 }  // namespace

@@ -34,6 +34,9 @@ struct CameraOptions {
 ///     CameraRay r = camera.sample({.film = camera.film().point(column, row), .pupil_u = u, .pupil_v = v});
 ///     if (r) pixel += r.weight * radiance(r.ray);
 ///
+/// The picture is sharpest 3 m from the film, whatever the model: first-order models are focused where exact rays of
+/// the film's centre are sharpest.
+///
 /// Immutable, cheap to copy, shared freely between threads. Calls neither allocate nor draw random numbers nor loop
 /// until a ray passes: a lost sample has weight 0 and a fate. Lens frame, mm; host_frame.hpp has the frames of hosts.
 class PETZVAL_API Camera {

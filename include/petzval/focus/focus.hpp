@@ -47,7 +47,8 @@ struct FocusField {
 };
 
 struct FocusOptions {
-  FocusCriterion criterion = FocusCriterion::paraxial;
+  /// What a camera shows: every ray model of a lens is sharpest at one distance, that of min_rms.
+  FocusCriterion criterion = FocusCriterion::min_rms;
   DistanceOrigin origin = DistanceOrigin::front_vertex;
   /// min_rms: weights of the squared RMS radii, each about the centroid of its field. min_max: the largest weighted
   /// radius counts. thin and paraxial use the axis alone.
@@ -90,8 +91,9 @@ PETZVAL_API FocusSolution solve_subject(const Lens& lens, double film_z, const F
 /// The nearest subject that solve_focus reaches, as a limit: its distance itself may be out of reach.
 PETZVAL_API FocusSolution nearest_focus(const Lens& lens, const FocusOptions& options = {});
 
-/// The lens with its film where solve_focus puts it. Throws Error, which names the nearest distance, if there is no
-/// focus.
+/// The lens with its film where solve_focus puts it: by default, where a subject on the axis is sharpest. A camera of
+/// it, by whatever ray model, is sharpest there too, within the depth over which the RMS blur grows by 5 %
+/// (tests/camera/focus_test.cpp). Throws Error, which names the nearest distance, if there is no focus.
 PETZVAL_API Lens with_focus(const Lens& lens, double distance, const FocusOptions& options = {});
 
 /// Diameter of the blur (circle of confusion) of a subject on the film of the lens, as the criterion measures it. For
