@@ -59,11 +59,14 @@ int main(int argc, char** argv) {
       "--out writes DIR/LENS_accuracy_speed.csv and .svg and prints their paths (with --json on standard error).",
       "accuracy_speed");
   examples::add_model_options(app, options);
-  app.add_option("--out", options.out_folder, "folder for the table and the figure")->type_name("DIR");
+  const auto* out =
+      app.add_option("--out", options.out_folder, "folder for the table and the figure")->type_name("DIR");
 
   return examples::run(app, argc, argv, [&] {
     const petzval::Film film = options.film();
     const petzval::Lens lens = examples::focused_lens(options);
+    const std::filesystem::path folder = options.out_folder;
+    if (out->given()) examples::make_folder(folder);  // measuring takes seconds
     std::vector<petzval::ErrorBudget> budgets;
     for (const double px : budgets_px) budgets.push_back({.max_px = px});
     const double nearest = nearest_mm(lens, options);
@@ -73,9 +76,7 @@ int main(int argc, char** argv) {
     examples::say_what_is_missing(table);
     const auto rows = examples::model_rows(table, film, false);
 
-    if (!options.out_folder.empty()) {
-      const std::filesystem::path folder = options.out_folder;
-      examples::make_folder(folder);
+    if (out->given()) {
       const auto write = [&](const char* kind, const std::string& text) {
         const auto file =
             folder / (std::filesystem::path(options.lens_file).stem().string() + "_accuracy_speed." + kind);

@@ -23,11 +23,17 @@ constexpr Range weight_range{0, std::numeric_limits<double>::max(), "a finite nu
   throw petzval::Error(where + ": found " + text + ", wanted " + wanted);
 }
 
-/// The document. Refuses a repeated key, which would hide a value.
+/// The document. Refuses a repeated key, which would hide a value, and more levels than any format here has: printing
+/// and comparing values takes a call for each.
 Json parse(const std::filesystem::path& file) {
+  constexpr int deepest = 8;
   const std::string text = read_text(file);
   std::vector<std::set<std::string>> open;
-  const auto look = [&](int, Json::parse_event_t event, Json& value) {
+  const auto look = [&](int depth, Json::parse_event_t event, Json& value) {
+    if (depth > deepest) {
+      throw petzval::Error(file.string() + ": found lists or objects nested more than " + std::to_string(deepest) +
+                           " deep, wanted a list of points");
+    }
     if (event == Json::parse_event_t::object_start) open.emplace_back();
     if (event == Json::parse_event_t::object_end) open.pop_back();
     if (event == Json::parse_event_t::key && !open.back().insert(value.get<std::string>()).second) {

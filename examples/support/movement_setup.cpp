@@ -78,7 +78,9 @@ petzval::ImageRays MovingLens::bundles(std::span<const petzval::ScenePoint> plac
     const auto image = ideal.image(place);
     if (image) farthest = std::max(farthest, 1.1 * std::hypot(image->position.x, image->position.y));
   }
-  return {*lens, std::min(farthest, 3 * corner), rays};
+  constexpr std::size_t most_rays = std::size_t{1} << 22, fewest = 64;
+  const std::size_t share = std::max(most_rays / std::max<std::size_t>(places.size(), 1), fewest);
+  return {*lens, std::min(farthest, 3 * corner), std::min(rays, share)};
 }
 
 const char* in_words(petzval::TargetUse use) {

@@ -32,7 +32,8 @@ struct MovingLens {
   bool exact = false;                 ///< the model is real: exact rays
   petzval::Film film;                 ///< its size
 
-  /// Exact rays to the film and to the images of these places beside it. Needs a lens.
+  /// Exact rays to the film and to the images of these places beside it: so many of each, fewer of many places (2^22 of
+  /// all). Needs a lens.
   petzval::ImageRays bundles(std::span<const petzval::ScenePoint> places, std::size_t rays) const;
 };
 MovingLens moving_lens(const MovementOptions& options);

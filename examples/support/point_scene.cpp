@@ -24,14 +24,15 @@ PointScene::PointScene(const petzval::IdealLens& lens, std::span<const petzval::
 
 double PointScene::inverse_distance(double x, double y) const {
   // Weights relative to the nearest point do not overflow; at a point only its own counts.
-  double nearest = std::numeric_limits<double>::infinity(), least = nearest, most = 0;
+  const auto squared_away = [&](const Known& k) { return (k.x - x) * (k.x - x) + (k.y - y) * (k.y - y); };
+  double nearest2 = std::numeric_limits<double>::infinity(), least = nearest2, most = 0;
   for (const Known& k : known_) {
-    nearest = std::min(nearest, std::hypot(k.x - x, k.y - y));
+    nearest2 = std::min(nearest2, squared_away(k));
     least = std::min(least, k.inverse_distance), most = std::max(most, k.inverse_distance);
   }
   const auto weight = [&](const Known& k) {
-    const double away = std::hypot(k.x - x, k.y - y), ratio = away > nearest ? nearest / away : 1;
-    return ratio * ratio * ratio * ratio;
+    const double away2 = squared_away(k), ratio2 = away2 > nearest2 ? nearest2 / away2 : 1;
+    return ratio2 * ratio2;
   };
   double weights = 0, mean_x = 0, mean_y = 0, mean = 0;
   for (const Known& k : known_) {

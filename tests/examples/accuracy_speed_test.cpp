@@ -96,6 +96,7 @@ TEST_F(AccuracySpeed, ExplainsItselfAndRefusesABadCommandLine) {
   expect_failure("accuracy_speed", {file, "--resolution", "0x20"}, "--resolution");
   expect_failure("accuracy_speed", {file, "--focus-mm", "-1"}, "--focus-mm");
   expect_failure("accuracy_speed", {file, "--f-number", "0.5"}, "fast");
+  expect_failure("accuracy_speed", {file, "--out", ""}, "cannot be created as a folder");
 }
 
 }  // namespace

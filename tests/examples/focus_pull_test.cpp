@@ -178,6 +178,9 @@ TEST_F(FocusPull, RefusesKeysThatAreNone) {
   refuses(R"([{"keys": [{"time_s": 0, "position_mm": [0, 0, 900]}]}])", "found no point to focus on in any frame");
   refuses(R"([{"keys": [{"time_s": 0, "position_mm": [0, 0, -900]}, {"time_s": 1e9, "position_mm": [0, 0, -900]}]}])",
           "wanted at most 100000");
+  std::string deep;
+  for (int i = 0; i < 100'000; ++i) deep += R"([{"keys":)";
+  refuses(deep, "keys.json: found lists or objects nested more than 8 deep");
 }
 
 TEST_F(FocusPull, ExplainsItselfAndRefusesABadCommandLine) {

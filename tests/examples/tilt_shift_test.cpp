@@ -316,6 +316,9 @@ TEST_F(TiltShift, RefusesPointsThatAreNone) {
   refuses(R"([{"position_mm": [0, 0, -1000], "at_infinity": 1}])", "at_infinity: found 1, wanted true or false");
   refuses(R"([{"position_mm": [0, 0, -1000], "wieght": 2}])", "found the key \"wieght\", wanted position_mm, weight");
   refuses(R"([{"position_mm": [0, 0, -1000], "position_mm": [0, 0, -1]}])", "found the key \"position_mm\" twice");
+  const std::string deep = std::string(100'000, '[') + std::string(100'000, ']');
+  refuses(deep, "points.json: found lists or objects nested more than 8 deep");
+  refuses(R"([{"position_mm": )" + deep + "}]", "nested more than 8 deep");
 }
 
 TEST_F(TiltShift, RefusesPointsThatCannotBeInFocus) {
