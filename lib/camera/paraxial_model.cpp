@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -15,6 +16,7 @@
 #include "make_model.hpp"
 #include "paraxial_loops.hpp"
 #include "petzval/core/error.hpp"
+#include "petzval/pupil/illumination.hpp"
 #include "petzval/pupil_table/film_pupil_table.hpp"
 #include "pupil_table/sector.hpp"
 #include "two_disc_fit.hpp"
@@ -35,31 +37,30 @@ RayMatrix to_scene_map(const LensFacts& facts, std::size_t wavelength, const Two
   return maps.from_film.then(focus).then(maps.to_front).then({1, z - front_z, 0, 1});
 }
 
-/// The disc of the pupil's plane through which lines have a height, of a map's first row, below `radius`; of negative
-/// radius where it shows the iris upside down.
-PupilDisc disc_of(const Lens& lens, const RayMatrix& height, double radius, const char* where) {
+/// Where a film point sees the stop in the plane of the pupil: its centre at shift times the film point.
+struct StopImage {
+  double shift = 0;
+  bool upside_down = false;
+};
+
+/// height: the first row of a map, the height at which a line meets the stop or, times `scale`, an image of it.
+StopImage image_of(const Lens& lens, const RayMatrix& height, double scale, const char* where) {
   if (height.b == 0) {
     throw Error(lens.name() + ": the film lies in " + where + ", wanted it elsewhere for a first-order model");
   }
-  return {-height.a / height.b, radius / height.b};
+  return {-height.a / height.b, height.b * scale < 0};
 }
 
-PupilDisc thick_disc(const LensFacts& facts, std::size_t wavelength, const TwoPlanes& space) {
-  const Lens& lens = facts.lens();
-  const double radius = lens.surfaces()[facts.pupils(wavelength).stop].semi_diameter;
-  return disc_of(lens, stop_maps(facts, wavelength, space).from_film, radius, "the image of the stop");
+StopImage thick_image(const LensFacts& facts, std::size_t wavelength, const TwoPlanes& space) {
+  return image_of(facts.lens(), stop_maps(facts, wavelength, space).from_film, 1, "the image of the stop");
 }
 
-PupilDisc thin_disc(const LensFacts& facts, std::size_t wavelength, const TwoPlanes& space) {
+/// The entrance pupil, in the rear principal plane.
+StopImage thin_image(const LensFacts& facts, std::size_t wavelength, const TwoPlanes& space) {
   const Lens& lens = facts.lens();
-  const Pupils pupils = facts.pupils(wavelength);
-  if (!std::isfinite(pupils.entrance.diameter)) {
-    throw Error(lens.name() + ": found the entrance pupil at infinity, wanted a finite one for a thin lens");
-  }
   const double z = facts.first_order(wavelength).rear_principal_z;
-  const double upright = ray_matrix_to(lens, pupils.stop, wavelength).a;  // the stop over its image in front
-  return disc_of(lens, line_at(space, z), std::copysign(pupils.entrance.diameter / 2, upright),
-                 "the rear principal plane");
+  const double stop_over_image = ray_matrix_to(lens, facts.pupils(wavelength).stop, wavelength).a;
+  return image_of(lens, line_at(space, z), stop_over_image, "the rear principal plane");
 }
 
 /// Edges of the real pupils of some film points, at equal steps of film area; none where hardly any light comes.
@@ -109,7 +110,20 @@ FilmPupilTable two_disc_pupils(const Lens& lens, double film_radius) {
     const auto fitted = fit_two_discs(real_edges(real, w));
     discs.emplace_back(fitted.begin(), fitted.end());
   }
-  return FilmPupilTable::of_discs(real.space(), discs, film_radius, lens.primary_wavelength());
+  return real.reshaped(discs);
+}
+
+/// The size of the iris's image through which the film's centre gets the light of the exact lens.
+double axial_radius(const Lens& lens, std::size_t wavelength, const TwoPlanes& space, const Iris& iris) {
+  const double n = lens.index(lens.surface_count(), wavelength);
+  const double wanted = film_irradiance(lens, {}, wavelength) / (n * n);
+  // From that of a disc, pi sin^2: the solid angle grows with the square of the radius, nearly.
+  double radius = std::abs(space.depth()) * std::sqrt(wanted / (std::numbers::pi - wanted));
+  for (int round = 0; round < 6 && radius > 0; ++round) {
+    const PupilDisc image{0, radius};
+    radius *= std::sqrt(wanted / FilmPupilTable::of_iris(space, iris, {&image, 1}, 0).projected_solid_angle({}));
+  }
+  return radius;
 }
 
 FilmPupilTable pupils_of(ModelKind model, const LensFacts& facts, double film_radius) {
@@ -117,14 +131,17 @@ FilmPupilTable pupils_of(ModelKind model, const LensFacts& facts, double film_ra
   const Lens& lens = facts.lens();
   if (model == ModelKind::thin_two_disc) return two_disc_pupils(lens, film_radius);
   const TwoPlanes space = two_planes(lens);
+  std::vector<StopImage> images;
+  for (std::size_t w = 0; w < facts.wavelengths(); ++w) {
+    images.push_back(model == ModelKind::thin ? thin_image(facts, w, space) : thick_image(facts, w, space));
+  }
+  const bool upside_down = images[lens.primary_wavelength()].upside_down;
+  const Iris iris = upside_down ? iris_detail::upside_down(lens.iris()) : lens.iris();
   std::vector<PupilDisc> discs;
   for (std::size_t w = 0; w < facts.wavelengths(); ++w) {
-    discs.push_back(model == ModelKind::thin ? thin_disc(facts, w, space) : thick_disc(facts, w, space));
+    discs.push_back({images[w].shift, axial_radius(lens, w, space, iris)});
   }
-  const bool upside_down = discs[lens.primary_wavelength()].radius < 0;
-  for (PupilDisc& disc : discs) disc.radius = std::abs(disc.radius);
-  return FilmPupilTable::of_iris(space, upside_down ? iris_detail::upside_down(lens.iris()) : lens.iris(), discs,
-                                 film_radius, lens.primary_wavelength());
+  return FilmPupilTable::of_iris(space, iris, discs, film_radius, lens.primary_wavelength());
 }
 
 /// Where rays start: in the entrance pupil, unless it is so far that digits of the position would be lost.
@@ -145,7 +162,7 @@ ParaxialModel::ParaxialModel(ModelKind model, const LensFacts& facts, double fil
     RayMatrix map = to_scene_map(facts, w, space, z_);
     to_film_.push_back(map.inverse());
     if (model == ModelKind::pinhole) {
-      const double middle = thick_disc(facts, w, space).shift;
+      const double middle = thick_image(facts, w, space).shift;
       pinhole_shifts_.push_back(middle);
       map = {map.a + map.b * middle, 0, map.c + map.d * middle, 0};
     }

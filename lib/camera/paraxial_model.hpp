@@ -20,12 +20,15 @@ namespace petzval::inline v0::camera_detail {
 /// the focus to where exact rays of the film's centre are sharpest (best_focus.hpp): a picture is sharp at the same
 /// distance in every model. They differ in the pupil:
 ///
-///     thick           the image of the stop, where it lies
-///     thin            a disc as wide as the entrance pupil, in the rear principal plane
+///     thick           where the image of the stop lies
+///     thin            where the entrance pupil lies if it stands in the rear principal plane
 ///     thin_two_disc   the intersection of two discs that move with the film point, fitted to the real pupils
 ///                     (symmetric difference over area, mean over a film: 0.8 % for a double Gauss f/2, 1.9 % for one
 ///                     of f/1.35, 1.6 % for a Tessar, 2.1 % for a fisheye of 156 degrees)
 ///     pinhole         the centre of the thick lens's pupil, for every pupil sample
+///
+/// Pupils are as large as lets the film's centre have the light of the exact lens; two discs let every film point have
+/// it. A lens that is dark on the axis is dark everywhere to the others.
 ///
 /// An iris with edges is seen as its image, by all but thin_two_disc. The pinhole has the weights of the thick lens: a
 /// picture keeps its exposure when it is stopped down to a point. Central obscurations are ignored. Rays start in the

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "core/quadrature.hpp"
 #include "core/text.hpp"
 #include "film_polygons.hpp"
 #include "film_pupil_table_loops.hpp"
@@ -174,6 +175,23 @@ struct FilmPupilTable::Data {
 
 namespace {
 
+/// The projected solid angle of a pupil from uniform samples of it: place_at(u, v).
+template <class PlaceAt>
+double solid_angle(const TwoPlanes& space, const FilmPoint& film, double area, const PlaceAt& place_at) noexcept {
+  constexpr int around = 16;
+  static const auto outwards = core_detail::gauss_legendre<4>();
+  const double depth2 = space.depth() * space.depth();
+  double sum = 0;
+  for (int k = 0; k < around; ++k) {
+    for (const auto& [v, weight] : outwards) {
+      const auto [x, y] = place_at((k + 0.5) / around, v);
+      const double dx = x - film.x, dy = y - film.y, length2 = dx * dx + dy * dy + depth2;
+      sum += weight / (length2 * length2);
+    }
+  }
+  return area * depth2 * sum / around;
+}
+
 void check_film_radius(const std::string& where, double film_radius) {
   if (film_radius >= 0 && std::isfinite(film_radius)) return;
   throw Error(where + ": film: its radius is " + to_text(film_radius) + " mm, wanted a finite one, 0 or more");
@@ -228,6 +246,29 @@ FilmPupilTable FilmPupilTable::of_discs(const TwoPlanes& space, std::span<const 
   data->space = space;
   data->film_radius = data->lit_radius = film_radius;
   for (const std::vector<PupilDisc>& set : discs) data->add(disc_polygons(set, film_radius));
+  return FilmPupilTable(std::move(data));
+}
+
+FilmPupilTable FilmPupilTable::reshaped(std::span<const std::vector<PupilDisc>> discs) const {
+  auto data = std::make_shared<Data>();
+  data->space = data_->space;
+  data->film_radius = data->lit_radius = film_radius();
+  data->primary = primary_wavelength();
+  for (std::size_t w = 0; w < discs.size(); ++w) {
+    std::vector<PupilPolygon> polygons = disc_polygons(discs[w], film_radius());
+    for (std::size_t i = 0; i < polygons.size(); ++i) {
+      const FilmPoint film{0, film_radius() * static_cast<double>(i) / film_strips};
+      const double wanted = projected_solid_angle(film, w);
+      // The solid angle grows with the square of the scale, nearly.
+      for (int round = 0; round < 3; ++round) {
+        const PolygonSampler sampler(polygons[i]);
+        const double own = solid_angle(space(), film, sampler.area(), sampler);
+        const double scale = own > 0 ? std::sqrt(wanted / own) : 0;
+        for (auto& corner : polygons[i].corners) corner = {scale * corner[0], scale * corner[1]};
+      }
+    }
+    data->add(polygons);
+  }
   return FilmPupilTable(std::move(data));
 }
 
@@ -317,6 +358,13 @@ double FilmPupilTable::area(const FilmPoint& film, Wavelength wavelength) const 
   const auto [strip, t, cosine, sine] = data_->find(film, wavelength);
   if (!strip) return 0;
   return std::max(area_before(strip, polygon_corners, t), 0.0);
+}
+
+double FilmPupilTable::projected_solid_angle(const FilmPoint& film, Wavelength wavelength) const noexcept {
+  return solid_angle(space(), film, area(film, wavelength), [&](double u, double v) {
+    const PupilSample s = sample(film, u, v, wavelength);
+    return std::array{s.x, s.y};
+  });
 }
 
 std::array<double, 2> FilmPupilTable::middle(const FilmPoint& film, Wavelength wavelength) const noexcept {

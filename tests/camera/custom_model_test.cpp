@@ -20,6 +20,7 @@
 #include "petzval/camera/ray_model.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/paraxial/first_order.hpp"
+#include "petzval/pupil/illumination.hpp"
 
 namespace petzval {
 namespace {
@@ -27,7 +28,7 @@ namespace {
 using testing::random_samples;
 
 /// A thin lens in air as a renderer would write it: rays meet a lens in its rear principal plane and go on at the front
-/// one. The pupil is a disc as wide as the entrance pupil.
+/// one. The pupil is a disc that gives the film's centre the light of the exact lens.
 class OwnThinLens {
  public:
   static constexpr bool linear_in_slopes = true;
@@ -74,8 +75,9 @@ class OwnThinLens {
   static FilmPupilTable disc(const Lens& lens, double film_radius) {
     const TwoPlanes planes = two_planes(lens);
     const double part = (first_order(lens).rear_principal_z - planes.film_z) / planes.depth();
-    const double radius = petzval::pupils(lens).entrance.diameter / 2;
-    const PupilDisc disc{.shift = (part - 1) / part, .radius = radius / std::abs(part)};
+    const double sine2 = film_irradiance(lens, {}) / std::numbers::pi;
+    const PupilDisc disc{.shift = (part - 1) / part,
+                         .radius = std::abs(planes.depth()) * std::sqrt(sine2 / (1 - sine2))};
     return FilmPupilTable::of_iris(planes, {}, {&disc, 1}, film_radius, lens.primary_wavelength());
   }
 

@@ -216,37 +216,6 @@ TEST(ParaxialModel, IsBlindToThePupilSampleAsAPinhole) {
   EXPECT_EQ(pinhole.pupils().area({4, -9}), thick.pupils().area({4, -9}));
 }
 
-// A film point on the axis sees a disc of half angle u': pi sin^2 u'.
-double axial_exposure(const FilmPupilTable& pupils) {
-  const double depth = pupils.space().depth(), area = pupils.area({0, 0});
-  double sum = 0;
-  const int count = 4096;
-  for (int i = 0; i < count; ++i) {
-    const PupilSample s = pupils.sample({0, 0}, std::fmod(i * std::numbers::phi, 1.0), (i + 0.5) / count);
-    const double square = s.x * s.x + s.y * s.y + depth * depth;
-    sum += depth * depth / (square * square);
-  }
-  return sum * area / count;
-}
-
-TEST(ParaxialModel, ExposesTheAxisAsItsPupilSays) {
-  for (const char* id : {"double_gauss_100mm_f2.0", "fisheye_10mm_f4", "cooke_triplet_50mm_f5", "zoom_70-210mm_f4_tele",
-                         "phone_5.6mm_f3.5"}) {
-    SCOPED_TRACE(id);
-    const Lens lens = testing::data_lens(id);
-    const Pupils paraxial = pupils(lens);
-    const double tangent = paraxial.exit.diameter / 2 / (paraxial.exit.z - lens.film_z());
-    const double sine_squared = tangent * tangent / (1 + tangent * tangent);
-    EXPECT_NEAR(axial_exposure(ParaxialModel(ModelKind::thick, lens, 10).pupils()) / (std::numbers::pi * sine_squared),
-                1, 1e-3);
-    // The thin lens: as wide as the entrance pupil, at the rear principal plane.
-    const double thin = paraxial.entrance.diameter / 2 / (first_order(lens).rear_principal_z - lens.film_z());
-    EXPECT_NEAR(axial_exposure(ParaxialModel(ModelKind::thin, lens, 10).pupils()) /
-                    (std::numbers::pi * thin * thin / (1 + thin * thin)),
-                1, 1e-3);
-  }
-}
-
 // With the exit pupil at infinity every film point sees the same disc straight ahead.
 TEST(ParaxialModel, KnowsPupilsAtInfinity) {
   const Lens lens = compile(telecentric());

@@ -227,8 +227,12 @@ TEST(TiltedFilm, ExposesAsADiscDoes) {
     struct Disc {
       double z, radius;
     };
-    const Disc exit{paraxial.exit.z, paraxial.exit.diameter / 2};
-    const Disc folded{first_order(lens).rear_principal_z, paraxial.entrance.diameter / 2};
+    // As wide as gives the film's centre the light of the exact lens.
+    const auto disc_at = [&](double z) -> Disc {
+      const double sine2 = film_irradiance(lens, {}) / std::numbers::pi;
+      return {z, std::abs(z - lens.film_z()) * std::sqrt(sine2 / (1 - sine2))};
+    };
+    const Disc exit = disc_at(paraxial.exit.z), folded = disc_at(first_order(lens).rear_principal_z);
     for (const auto& [model, disc] :
          {std::pair{ModelKind::pinhole, exit}, std::pair{ModelKind::thick, exit}, std::pair{ModelKind::thin, folded}}) {
       const Camera camera(lens, film, {.model = model});

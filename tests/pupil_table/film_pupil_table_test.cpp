@@ -11,6 +11,7 @@
 #include <tuple>
 
 #include "../data_lenses.hpp"
+#include "../declared_radius.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/units.hpp"
 #include "petzval/paraxial/first_order.hpp"
@@ -23,6 +24,7 @@ namespace {
 using namespace petzval;
 using petzval::testing::data_lens;
 using petzval::testing::data_prescriptions;
+using petzval::testing::declared_radius;
 
 /// Which of some places in the plane of the pupil a film point sees the scene through, by tracing.
 std::vector<bool> passing(const Lens& lens, const FilmPupilTable& table, const FilmPoint& film,
@@ -40,18 +42,6 @@ std::vector<bool> passing(const Lens& lens, const FilmPupilTable& table, const F
   std::vector<bool> result;
   for (const auto& ray : traced) result.push_back(ray.transmitted());
   return result;
-}
-
-/// Where the declared field, or 60 degrees, meets the film.
-double declared_radius(const Prescription& p, const Lens& lens) {
-  const double field = radians(std::min(p.half_field_deg.value_or(10.0), 60.0));
-  try {
-    const auto& [origin, direction] = chief_ray(lens, {field, -std::numeric_limits<double>::infinity()}).end.ray;
-    const double t = (lens.film_z() - origin.z) / direction.z;
-    return std::hypot(origin.x + t * direction.x, origin.y + t * direction.y);
-  } catch (const Error&) {
-    return std::abs(first_order(lens).effective_focal_length) * std::tan(std::min(field, 0.5));
-  }
 }
 
 struct Coverage {

@@ -82,6 +82,10 @@ struct CameraRayDifferential {
 /// over the film's area for every ray that arrives; there is no cosine in it. unity_on_axis divides We as it divides
 /// weights. The index of the film's medium changes the weights of film samples by its square, and not We: derivation in
 /// lib/camera/importance.cpp.
+///
+/// First-order models are linear in slopes and do not conserve etendue, as no lens can that images planes sharply.
+/// There We has the factor (cos t / cos t')^4, t and t' the angles of the ray with the axis behind and before the lens,
+/// so that film and scene hold the same light in every model.
 struct Importance {
   double we = 0;  ///< 1/mm^2; 0 for a ray that is lost or misses the film
   RayFate fate = RayFate::vignetted;

@@ -69,6 +69,10 @@ class PETZVAL_API FilmPupilTable {
   static FilmPupilTable of_discs(const TwoPlanes& space, std::span<const std::vector<PupilDisc>> discs,
                                  double film_radius, std::size_t primary_wavelength = 0);
 
+  /// The same film and planes, and pupils that have the shape of an overlap of discs, one list for each wavelength, and
+  /// let through as much light as these do: about their middles they are scaled to the same projected_solid_angle().
+  FilmPupilTable reshaped(std::span<const std::vector<PupilDisc>> discs) const;
+
   /// Pupils in closed form: images of an iris, one for each wavelength, each as large as the disc in which the rim of
   /// the stop appears. iris: as the plane of the pupil shows it. Throws Error for a film_radius that is negative or not
   /// finite, and for an iris with edges that do not form a polygon about the axis with its corners within the rim.
@@ -101,6 +105,9 @@ class PETZVAL_API FilmPupilTable {
 
   /// Area of the pupil of a film point, mm^2; 0 as in `sample`.
   double area(const FilmPoint& film, Wavelength wavelength = {}) const noexcept;
+  /// The projected solid angle in which a film point sees its pupil, sr, within 1e-4 of it. Times the square of the
+  /// index behind the lens it is the irradiance of the film for a scene of radiance 1.
+  double projected_solid_angle(const FilmPoint& film, Wavelength wavelength = {}) const noexcept;
   /// The middle of its polygon; the centre of the central obscuration where there is one.
   std::array<double, 2> middle(const FilmPoint& film, Wavelength wavelength = {}) const noexcept;
   /// Whether a place in the plane of the pupil belongs to the pupil of a film point.
