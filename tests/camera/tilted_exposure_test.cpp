@@ -20,6 +20,7 @@
 #include "petzval/core/sobol.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/f_number.hpp"
+#include "petzval/pupil/illumination.hpp"
 #include "petzval/trace/trace.hpp"
 #include "pupil/face.hpp"
 #include "tilted_films.hpp"
