@@ -74,13 +74,13 @@ bool SceneView::meets(const Ray<double>& ray) const noexcept {
   return plane_ && glm::dot(ray.direction, normal_) > 1e-3;
 }
 
-std::array<double, 2> SceneView::hit(const Ray<double>& ray) const noexcept {
+Vec2<double> SceneView::hit(const Ray<double>& ray) const noexcept {
   const Vec3<double> place = core_detail::meet_plane(ray, centre_, normal_) - centre_;
   const double x = glm::dot(place, x_axis_), y = glm::dot(place, y_axis_);
   return {to_film_[0] * x + to_film_[1] * y, to_film_[2] * x + to_film_[3] * y};
 }
 
-std::array<double, 2> SceneView::place(const Ray<double>& ray) const noexcept {
+Vec2<double> SceneView::place(const Ray<double>& ray) const noexcept {
   if (meets(ray)) return hit(ray);
   return {focal_length_ * glm::dot(ray.direction, x_axis_), focal_length_ * glm::dot(ray.direction, y_axis_)};
 }
@@ -110,7 +110,7 @@ ChiefRays::ChiefRays(const Lens& lens, const TwoPlanes& space) : lens_(lens), sp
   if (pivot_ == 0) pivot_ = space.depth();
 }
 
-ChiefRay ChiefRays::through(const FilmPoint& film, const std::array<double, 2>& pupil, std::size_t wavelength) const {
+ChiefRay ChiefRays::through(const FilmPoint& film, const Vec2<double>& pupil, std::size_t wavelength) const {
   // The line's direction, away from the film; with the film point its slope changes by -1 / pivot, and with it the
   // direction across itself.
   const Vec3<double> line{(pupil[0] - film.x) / space_.depth(), (pupil[1] - film.y) / space_.depth(), 1};

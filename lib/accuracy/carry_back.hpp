@@ -28,12 +28,12 @@ class SceneView {
             const Ray<double>& by_film_y);
 
   /// The hit of a ray, from that of the chief ray, mm on the film.
-  std::array<double, 2> place(const Ray<double>& ray) const noexcept;
+  Vec2<double> place(const Ray<double>& ray) const noexcept;
   /// The distance between two rays of the film point, mm on the film.
   double distance(const Ray<double>& a, const Ray<double>& b) const noexcept;
 
  private:
-  std::array<double, 2> hit(const Ray<double>& ray) const noexcept;
+  Vec2<double> hit(const Ray<double>& ray) const noexcept;
   bool meets(const Ray<double>& ray) const noexcept;
 
   bool plane_ = false;
@@ -45,7 +45,7 @@ class SceneView {
 /// The chief ray of a film point: the ray through the middle of the pupil, not clipped by apertures. As the film point
 /// moves, the ray turns about its point in the plane of the paraxial exit pupil.
 struct ChiefRay {
-  std::array<double, 2> pupil{0, 0};
+  Vec2<double> pupil{0, 0};
   bool found = false;  ///< else angles are measured for all planes
   double focal_length = 0;
   Ray<double> ray{}, by_film_x{}, by_film_y{};
@@ -59,7 +59,7 @@ class ChiefRays {
  public:
   /// Throws Error for a lens without focal length, which measures angles.
   ChiefRays(const Lens& lens, const TwoPlanes& space);
-  ChiefRay through(const FilmPoint& film, const std::array<double, 2>& pupil, std::size_t wavelength) const;
+  ChiefRay through(const FilmPoint& film, const Vec2<double>& pupil, std::size_t wavelength) const;
 
  private:
   Lens lens_;

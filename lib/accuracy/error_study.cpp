@@ -34,9 +34,9 @@ double diameter(const PointRays& rays, const SceneView& view) {
   most.fill(-std::numeric_limits<double>::infinity());
   for (std::size_t i = 0; i < lines_per_point; ++i) {
     if (!rays.passes[i]) continue;
-    const auto [x, y] = view.place(rays.rays[i]);
+    const Vec2<double> place = view.place(rays.rays[i]);
     for (int k = 0; k < directions; ++k) {
-      const double along = x * units[k][0] + y * units[k][1];
+      const double along = place.x * units[k][0] + place.y * units[k][1];
       least[k] = along < least[k] ? along : least[k];
       most[k] = along > most[k] ? along : most[k];
     }

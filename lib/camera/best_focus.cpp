@@ -39,8 +39,8 @@ double best_focus_power(const LensFacts& facts, std::size_t wavelength, const St
     // The nodes lie in the squared radius, of which equal steps are equal areas.
     const double from = span.from_radius * span.from_radius, to = span.to_radius * span.to_radius;
     for (const auto& [node, weight] : nodes) {
-      const auto [x, y] = boundary.at(span.direction, std::sqrt(from + node * (to - from)));
-      const Ray<double> start = boundary.plane.ray(x, y);
+      const Vec2<double> p = boundary.at(span.direction, std::sqrt(from + node * (to - from)));
+      const Ray<double> start = boundary.plane.ray(p.x, p.y);
       const auto end = trace(lens, start, {.travel = Travel::to_scene, .wavelength = wavelength});
       if (!end.transmitted()) continue;
       const auto line = core_detail::slope_ray(end.ray, front_z);

@@ -9,8 +9,7 @@
 namespace petzval::inline v0 {
 namespace {
 
-// The curvature of a smaller radius has a square beyond float. A longer thickness is the "infinity" of some file
-// format.
+// The squared curvature of a smaller radius overflows float. File formats write infinity as longer thicknesses.
 constexpr double smallest_radius = 1e-12;
 constexpr double longest_thickness = 1e10;
 constexpr std::size_t most_surfaces = 10'000;

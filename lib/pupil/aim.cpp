@@ -33,22 +33,22 @@ struct Slope {
   Slope operator*(double s) const noexcept { return {x * s, y * s}; }
 };
 
-/// A ray that left the stop and the lens, and how it misses the point: components of the sine of the angle between its
-/// direction and the point's, in the meridian of the point and across it.
+/// A ray that left the stop and the lens, and its error: the components, in the meridian of the point and across it, of
+/// the sine of the angle between its direction and that to the point.
 template <class T>
 struct Departure {
   Vec<T> origin, direction, wanted;
   T along, across;
 };
 
-/// Solves for rays of one point, of the scene or the film, and wavelength. Lengths at the stop in mm here.
+/// Solves for the rays of one point, of the scene or the film, at one wavelength. Lengths at the stop are in mm here.
 class Aimer {
  public:
   Aimer(const Lens& lens, const PupilPlane& plane, std::size_t wavelength)
       : lens_(lens), plane_(plane), wavelength_(wavelength) {
     const Pupils p = pupils(lens, wavelength);
     stop_ = p.stop;
-    // Light leaves the stop for the film as it runs there, and for the scene the other way.
+    // Rays to the film leave the stop in the direction of light, rays to the scene against it.
     departure_ = {.wavelength = wavelength, .apertures = false};
     arrival_ = {.travel = plane.travel(), .wavelength = wavelength, .apertures = false};
     if (plane.travel() == Travel::to_film) {
@@ -70,12 +70,12 @@ class Aimer {
     outwards_ = across > 0 ? Slope{towards.x / across, towards.y / across} : Slope{0, 1};
     lateral_ = {outwards_.y, -outwards_.x, 0};
     meridian_ = glm::cross(lateral_, towards);
-    // A stop closed to a pinhole is still hit as well as numbers allow.
+    // A stop of radius 0 is hit within rounding.
     acceptance_ = 1e-6 * std::max(unit(), 1e-3 * pupil_detail::half_height(lens, 0, p.entrance));
     if (const auto axis = differentiated({}, {})) mirrored_ = mirrored(*axis);
   }
 
-  /// What a StopPoint counts in.
+  /// The unit of a StopPoint, mm: the semi-diameter of the stop, 1 where it has none.
   double unit() const noexcept {
     const double semi_diameter = lens_.surfaces()[stop_].semi_diameter;
     return semi_diameter > 0 && std::isfinite(semi_diameter) ? semi_diameter : 1;
@@ -110,7 +110,7 @@ class Aimer {
 
   std::optional<Slope> solve(const StopPoint& target) const noexcept {
     const StopPoint centre{};
-    // From the axis a few steps lead to fields of which the lens makes a picture without bending it much.
+    // For fields within 45 degrees of the axis Newton's iteration converges from the axial ray.
     const bool narrow = plane_.towards().z * at_point_ > std::numbers::sqrt2 / 2;
     auto chief = narrow ? newton(centre, Slope{}) : std::nullopt;
     if (!chief) {
@@ -134,7 +134,7 @@ class Aimer {
     return leave(from, Jet(s.x, 0), Jet(s.y, 1));
   }
 
-  /// Which way round directions in object space turn when those at the stop turn.
+  /// Whether directions in object space turn the other way round when those at the stop turn.
   static bool mirrored(const Departure<Jet>& ray) noexcept {
     const Vec<Jet> e = ray.direction - ray.wanted;
     const auto part = [&](int i) { return Vec<double>{e.x.v[i], e.y.v[i], e.z.v[i]}; };
@@ -143,8 +143,8 @@ class Aimer {
     return dot(Vec<double>{a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}, d) < 0;
   }
 
-  /// Damped, so that a step never ends outside the lens or farther from the point. Far beyond their rims surfaces bend
-  /// rays back, and the same angle is met once more, on a sheet turned over: such an answer is none.
+  /// Newton's iteration, damped: no step ends outside the lens or farther from the point. Far beyond their rims
+  /// surfaces bend rays back, and a second, mirrored ray has the same angle; it does not count.
   std::optional<Slope> newton(const StopPoint& from, Slope slope) const noexcept {
     constexpr double rounding = 1e-15, good = 1e-9;
     const auto at = [&](const Slope& s) { return differentiated(from, s); };
@@ -170,27 +170,28 @@ class Aimer {
     return miss(*now) < good && mirrored(*now) == mirrored_ ? std::optional(slope) : std::nullopt;
   }
 
-  /// The last slope in the meridian of the field at which rays from a place on the stop leave the lens flatter than the
-  /// point is seen: their angle grows with the slope, until they miss a surface, which counts as too steep.
+  /// The largest slope in the meridian of the field at which the ray from a place on the stop leaves the lens at a
+  /// smaller angle to the axis than the point has. The angle grows with the slope until the ray misses a surface, which
+  /// counts as too large an angle.
   std::optional<Slope> bracket(const StopPoint& from) const noexcept {
-    // How much flatter than the point is seen, in rad.
-    const auto flatness = [&](double slope) {
+    // The angle of the point less that of the ray, rad.
+    const auto missing_angle = [&](double slope) {
       const auto d = leave(from, outwards_.x * slope, outwards_.y * slope);
       const auto angle = [&](const Vec<double>& v) {
         return std::atan2(v.x * outwards_.x + v.y * outwards_.y, v.z * at_point_);
       };
       return d ? angle(d->wanted) - angle(d->direction) : -1;
     };
-    const double middle = flatness(0), beside = flatness(1e-4);
+    const double middle = missing_angle(0), beside = missing_angle(1e-4);
     if (!(middle > 0)) return {};
     const double sign = beside < middle ? 1 : -1;
     constexpr int steps = 32;
     constexpr double tolerance = 1e-9;  // Newton's iteration takes over
     double low = 0, at_low = middle;
     for (int i = 1; i <= steps; ++i) {
-      const double high = sign * i / steps, at_high = flatness(high);
+      const double high = sign * i / steps, at_high = missing_angle(high);
       if (at_high < 0) {
-        const double slope = core_detail::last_above(low, at_low, high, at_high, tolerance, flatness);
+        const double slope = core_detail::last_above(low, at_low, high, at_high, tolerance, missing_angle);
         return Slope{outwards_.x * slope, outwards_.y * slope};
       }
       low = high, at_low = at_high;
@@ -198,12 +199,12 @@ class Aimer {
     return {};
   }
 
-  /// The ray turned round and traced forwards.
+  /// The ray turned round and traced in its own direction of travel.
   AimedRay tested(const StopPoint& target, const Slope& slope) const noexcept {
     const auto out = leave(target, slope.x, slope.y);
     if (!out) return {};
-    // From where it is nearest to the pupil's centre: a steep field meets the pupil's plane far off, and what is
-    // rounded there is large beside a small stop.
+    // It starts at its point nearest to the centre of the pupil: a steep field meets the plane of the pupil far off,
+    // where rounding is large beside a small stop.
     const Vec3<double> exit = kernel::to_public(out->origin), backwards = kernel::to_public(out->direction);
     const Vec3<double> start = exit + backwards * glm::dot(plane_.centre() - exit, backwards);
     AimedRay result;
@@ -236,7 +237,7 @@ class Aimer {
   Slope outwards_;                            // unit vector across the axis, towards the point
   Vec3<double> lateral_, meridian_;  // unit vectors across the line to the point: across the meridian, and within it
   double acceptance_;                // how far from its place on the stop a ray may arrive, mm
-  bool mirrored_ = false;            // as near the axis
+  bool mirrored_ = false;            // near the axis
 };
 
 }  // namespace

@@ -112,7 +112,7 @@ struct Found {
   struct Ends {
     double obscured_from = 0, obscured_to = 0, to = 0;
   };
-  std::array<double, 2> middle{0, 0}, half_axes{0, 0};
+  Vec2<double> middle{0, 0}, half_axes{0, 0};
   std::vector<Ends> ends;
 
   bool empty() const noexcept { return ends.empty(); }
@@ -295,8 +295,8 @@ class Search {
   /// From the middle in a direction, in coordinates in which the pupil is about a unit disc.
   Line outward(std::uint32_t point, std::size_t direction) const noexcept {
     const Found& found = found_[point];
-    const auto& [x, y] = units_[direction];
-    return {point, found.middle[0], found.middle[1], found.half_axes[0] * x, found.half_axes[1] * y};
+    const Vec2<double> half = found.half_axes * units_[direction];
+    return {point, found.middle.x, found.middle.y, half.x, half.y};
   }
 
   void outwards(std::span<const std::uint32_t> which, int samples, double reach, int rounds) {
@@ -340,7 +340,7 @@ class Search {
   bool mirrored_;
   const PassingPlaces& passing_;
   std::vector<Found> found_;
-  std::vector<std::array<double, 2>> units_;  // of the directions
+  std::vector<Vec2<double>> units_;  // of the directions
 };
 
 }  // namespace

@@ -27,8 +27,8 @@ class StopHeight {
     path_.last = stop + 1;
   }
 
-  /// Height at which the ray that enters at height y meets the stop; none where it does not get there. What happens to
-  /// it at the stop's own surface does not matter.
+  /// Height at which the ray that enters at height y meets the stop; none where it does not reach the stop. Its fate at
+  /// the surface of the stop does not matter.
   std::optional<double> operator()(double y) const noexcept {
     const kernel::Vec<double> start{along_y_ ? 0 : y, along_y_ ? y : 0, lens_.surfaces().front().vertex_z};
     const auto end = kernel::trace(kernel::view<double>(lens_), start, kernel::Vec<double>{0, 0, 1}, path_);
@@ -45,16 +45,16 @@ class StopHeight {
   kernel::SurfaceRange path_;
 };
 
-/// Largest entering height of the beam within the rim of the stop: where the ray meets the rim, or, where rays end
-/// before they get so high, the last one that gets to the stop. `expected`: first-order estimate, for the size of the
-/// steps.
+/// Largest entering height of the beam within the rim of the stop: that of the ray that meets the rim, or, where rays
+/// are lost before they get so high, of the last one that reaches the stop. `expected`: first-order estimate, for the
+/// size of the steps.
 double entering_height(const StopHeight& stop_height, double rim, double expected) {
   const auto inside = [&](double y) {
     const auto height = stop_height(y);
     return height && *height <= rim;
   };
-  // Steps small beside the beam find the first crossing where spherical aberration turns the heights round further out;
-  // they grow where the estimate turns out to be far too small.
+  // Spherical aberration may bring the heights back below the rim further out: steps small beside the beam find the
+  // first crossing. They grow where the estimate is far too small.
   double step = expected / 16;
   double low = 0, high = step;
   while (inside(high)) {

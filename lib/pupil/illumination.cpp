@@ -24,8 +24,8 @@ double film_irradiance(const Lens& lens, const FilmPoint& point, Wavelength wave
   for (const PupilSpan& span : boundary.spans) {
     const double from = span.from_radius * span.from_radius, to = span.to_radius * span.to_radius;
     for (const auto& [node, weight] : nodes) {
-      const auto [x, y] = boundary.at(span.direction, std::sqrt(from + node * (to - from)));
-      const double cosine = plane.ray(x, y).direction.z;
+      const Vec2<double> p = boundary.at(span.direction, std::sqrt(from + node * (to - from)));
+      const double cosine = plane.ray(p.x, p.y).direction.z;
       sum += weight * (to - from) * std::pow(cosine, 4);
     }
   }

@@ -19,7 +19,7 @@
 namespace petzval::inline v0 {
 namespace {
 
-using Point = std::array<double, 2>;
+using Point = Vec2<double>;
 
 struct Box {
   Point low{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
@@ -108,8 +108,8 @@ class Tracer {
   }
 
   RimPoint public_edge(std::size_t direction, const Edge& edge) const noexcept {
-    const auto [x, y] = boundary_.at(direction, edge.radius);
-    return {x, y, edge.outside.surface, edge.outside.fate};
+    const Vec2<double> p = boundary_.at(direction, edge.radius);
+    return {p.x, p.y, edge.outside.surface, edge.outside.fate};
   }
   void begin(std::size_t direction, const Edge& edge) {
     boundary_.spans.push_back({direction, edge.radius, 0, public_edge(direction, edge), {}});

@@ -131,7 +131,7 @@ void PupilPlane::rays(std::span<const double> x, std::span<const double> y,
   fill(x.data(), y.data(), rays.x, rays.y, rays.z, rays.dx, rays.dy, rays.dz);
 }
 
-std::array<double, 2> PupilPlane::meet(const Ray<double>& ray) const noexcept {
+Vec2<double> PupilPlane::meet(const Ray<double>& ray) const noexcept {
   const Vec3<double> place = core_detail::meet_plane(ray, centre_, normal_) - centre_;
   return {glm::dot(place, x_axis_), glm::dot(place, y_axis_)};
 }

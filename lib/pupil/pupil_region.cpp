@@ -6,14 +6,14 @@
 
 namespace petzval::inline v0 {
 
-std::array<double, 2> PupilRegion::unit(std::size_t direction) const noexcept {
+Vec2<double> PupilRegion::unit(std::size_t direction) const noexcept {
   const double angle = 2 * std::numbers::pi * (static_cast<double>(direction) + 0.5) / static_cast<double>(directions);
   return {std::sin(angle), std::cos(angle)};
 }
 
-std::array<double, 2> PupilRegion::at(std::size_t direction, double radius) const noexcept {
-  const auto [x, y] = unit(direction);
-  return {middle[0] + half_axes[0] * radius * x, middle[1] + half_axes[1] * radius * y};
+Vec2<double> PupilRegion::at(std::size_t direction, double radius) const noexcept {
+  const Vec2<double> p = unit(direction);
+  return {middle.x + half_axes.x * radius * p.x, middle.y + half_axes.y * radius * p.y};
 }
 
 double PupilRegion::area() const noexcept {

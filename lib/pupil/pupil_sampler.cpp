@@ -64,8 +64,8 @@ PupilSampler::PupilSampler(const PupilBoundary& boundary)
   }
 }
 
-std::array<double, 2> PupilSampler::operator()(double u, double v) const noexcept {
-  std::array<double, 2> point{u, v};
+Vec2<double> PupilSampler::operator()(double u, double v) const noexcept {
+  Vec2<double> point{u, v};
   const std::span x(&point[0], 1), y(&point[1], 1);
   (*this)(x, y, x, y);
   return point;

@@ -19,8 +19,8 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// The rays of one point of the axis in the main meridian, told apart by their signed distance from the vertex of the
-/// surface they meet first: sine of the angle = distance from the vertex / distance of the point, for any point.
+/// The rays of one point of the axis in the main meridian, by their signed distance from the vertex of the surface that
+/// they meet first: the sine of the angle is that distance over the distance of the point, infinite or not.
 class AxialFan {
  public:
   AxialFan(const Lens& lens, Travel travel, double point_z, Wavelength wavelength)
@@ -33,8 +33,8 @@ class AxialFan {
     distance_ = std::isinf(point_z) ? infinity : forward_ * (lens.surfaces()[first_].vertex_z - point_z);
   }
 
-  /// The ray at a distance p from the vertex, started at its point nearest to that: the rounding of a far object's
-  /// direction is not carried to the lens.
+  /// The ray at a distance p from the vertex. It starts at its point nearest to the vertex, so that the rounding of its
+  /// direction does not grow with the distance of the object.
   Ray<double> ray(double p) const noexcept {
     const double sine = p / distance_, cosine = std::sqrt((1 - sine) * (1 + sine));
     return {placed(p * cosine, lens_.surfaces()[first_].vertex_z - forward_ * p * sine),
@@ -61,7 +61,7 @@ class AxialFan {
 
   bool at_vertex() const noexcept { return distance_ == 0; }
 
-  /// Half height to begin with: the rim of the first surface, or the widest rim where it has none.
+  /// The height to begin with: the rim of the first surface, or the widest rim where it has none.
   double rim() const noexcept {
     const double own = lens_.surfaces()[first_].semi_diameter;
     if (std::isfinite(own)) return own;

@@ -385,9 +385,9 @@ void EntrancePupilTable::sample(const Vec3<double>& point, std::size_t count, co
     if (!(sampler.area() > 0)) return;
     for (std::size_t i = 0; i < count; ++i) {
       if (!std::isfinite(u[i]) || !std::isfinite(v[i])) continue;
-      const auto [x, y] = sampler(u[i], v[i]);
-      const Vec3<double> place = view.place(x, y);
-      const double far = std::sqrt(squared(distance) + squared(x) + squared(y));
+      const Vec2<double> p = sampler(u[i], v[i]);
+      const Vec3<double> place = view.place(p.x, p.y);
+      const double far = std::sqrt(squared(distance) + squared(p.x) + squared(p.y));
       samples[i] = {data_->centre + place, view.direction(place), far,
                     squared(far) * (far / distance) / sampler.area()};
     }

@@ -35,7 +35,7 @@ class FilmSide {
   }
 
  private:
-  /// Rays have to get through the last surface; the pupil is no larger than what is seen through it.
+  /// Rays pass the last surface: the pupil is no larger than what is seen through it.
   std::vector<pupil_detail::PupilGuess> guesses(std::size_t wavelength) const {
     const Pupils paraxial = petzval::pupils(lens_, wavelength);
     const std::size_t last = lens_.surface_count() - 1;
@@ -154,7 +154,7 @@ std::vector<PupilPolygon> film_polygons(double film_radius, PolygonFit fit, cons
       polygons[i] = polygon_of(*lit, fit);
       continue;
     }
-    // The film darkens within a strip: the last pupil goes on to its end, or, as one of no size, is where it ends.
+    // The light ends within a strip: an enclosing pupil continues to its end, one of equal area shrinks to a point.
     for (const std::size_t beside : {at - 1, at + 1, at - 2, at + 2}) {
       const PupilRegion* lit = beside < heights.size() ? first_lit(beside) : nullptr;
       if (!lit) continue;
@@ -250,8 +250,8 @@ std::vector<PupilPolygon> disc_polygons(std::span<const PupilDisc> discs, double
       };
       overlap.half_axes = {leaves(1, 0), (high - low) / 2};
       for (std::size_t k = 0; k < overlap.directions; ++k) {
-        const auto [x, y] = overlap.unit(k);
-        const double radius = leaves(overlap.half_axes[0] * x, overlap.half_axes[1] * y);
+        const Vec2<double> p = overlap.unit(k);
+        const double radius = leaves(overlap.half_axes[0] * p.x, overlap.half_axes[1] * p.y);
         const auto rim = overlap.at(k, radius);
         overlap.spans.push_back({k, 0, radius, {overlap.middle[0], overlap.middle[1]}, {rim[0], rim[1]}});
       }

@@ -367,7 +367,7 @@ double FilmPupilTable::projected_solid_angle(const FilmPoint& film, Wavelength w
   });
 }
 
-std::array<double, 2> FilmPupilTable::middle(const FilmPoint& film, Wavelength wavelength) const noexcept {
+Vec2<double> FilmPupilTable::middle(const FilmPoint& film, Wavelength wavelength) const noexcept {
   if (const auto& images = data_->images) return images->middle(film, wavelength.position(data_->primary));
   const auto [strip, t, cosine, sine] = data_->find(film, wavelength);
   if (!strip) return {0, 0};

@@ -64,7 +64,7 @@ double IrisImages::area(const FilmPoint& film, std::size_t wavelength) const noe
   return image(film, wavelength).area;
 }
 
-std::array<double, 2> IrisImages::middle(const FilmPoint& film, std::size_t wavelength) const noexcept {
+Vec2<double> IrisImages::middle(const FilmPoint& film, std::size_t wavelength) const noexcept {
   const double shift = image(film, wavelength).shift;
   return {shift * film.x, shift * film.y};
 }

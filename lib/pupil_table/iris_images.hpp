@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -27,7 +26,7 @@ class IrisImages {
 
   PupilSample sample(const FilmPoint& film, double u, double v, std::size_t wavelength) const noexcept;
   double area(const FilmPoint& film, std::size_t wavelength) const noexcept;
-  std::array<double, 2> middle(const FilmPoint& film, std::size_t wavelength) const noexcept;
+  Vec2<double> middle(const FilmPoint& film, std::size_t wavelength) const noexcept;
   bool contains(const FilmPoint& film, double x, double y, std::size_t wavelength) const noexcept;
   FilmPupilTable::Derivatives derivatives(const FilmPoint& film, double u, double v,
                                           std::size_t wavelength) const noexcept;

@@ -14,7 +14,7 @@ namespace {
 using pupil_detail::Extent;
 using Place = Point<double>;  // in the plane, from a middle
 
-Place place_of(const std::array<double, 2>& p) noexcept { return {p[0], p[1]}; }
+Place place_of(const Vec2<double>& p) noexcept { return {p[0], p[1]}; }
 
 /// The outer edge of a region as a closed line about its middle, from +y on, and the obscuration on the way to each of
 /// its points as fractions.
@@ -127,9 +127,7 @@ void stretch(PupilPolygon& polygon, const std::array<double, polygon_corners>& s
     polygon.obscured_from[k] = from < to ? from : 0;
     polygon.obscured[k] = std::max(to - from, 0.0);
   }
-  for (std::size_t k = 0; k < polygon_corners; ++k) {
-    for (double& coordinate : polygon.corners[k]) coordinate *= scale[k];
-  }
+  for (std::size_t k = 0; k < polygon_corners; ++k) polygon.corners[k] *= scale[k];
 }
 
 /// Makes outer and obscured areas those of the region: the outer one by the corners, the other by the sectors.
@@ -182,7 +180,7 @@ PolygonSampler::PolygonSampler(const PupilPolygon& polygon) noexcept : polygon_(
   }
 }
 
-std::array<double, 2> PolygonSampler::operator()(double u, double v) const noexcept {
+Vec2<double> PolygonSampler::operator()(double u, double v) const noexcept {
   const double share = std::clamp(u, 0.0, 1.0) * area();
   const std::size_t k = sector_of_area(share, [this](std::size_t i) { return before_[i]; });
   const double own = before_[k + 1] - before_[k];

@@ -12,8 +12,8 @@ namespace petzval::inline v0::pupil_table_detail {
 
 /// A pupil as tables hold it: a middle and 64 corners around it, with an obscuration in each sector (sector.hpp).
 struct PupilPolygon {
-  std::array<double, 2> middle{0, 0};
-  std::array<std::array<double, 2>, polygon_corners> corners{};     ///< from the middle
+  Vec2<double> middle{0, 0};
+  std::array<Vec2<double>, polygon_corners> corners{};              ///< from the middle
   std::array<double, polygon_corners> obscured_from{}, obscured{};  ///< by sector
 
   Sector<double> sector(std::size_t k) const noexcept {
@@ -41,7 +41,7 @@ class PolygonSampler {
   /// mm^2; 0: nothing to sample.
   double area() const noexcept { return before_[polygon_corners]; }
   /// For u and v in [0, 1] (clamped).
-  std::array<double, 2> operator()(double u, double v) const noexcept;
+  Vec2<double> operator()(double u, double v) const noexcept;
 
  private:
   const PupilPolygon& polygon_;

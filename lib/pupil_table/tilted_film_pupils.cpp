@@ -30,10 +30,10 @@ Expected expected_of(const FilmPupilTable& upright, std::size_t wavelength) {
     const FilmPoint film{0, upright.film_radius() * i / heights};
     const double area = upright.area(film, wavelength);
     if (!(area > 0)) continue;
-    const auto [x, y] = upright.middle(film, wavelength);
+    const Vec2<double> middle = upright.middle(film, wavelength);
     result.lit = film.y;
     result.radius = std::max(result.radius, std::sqrt(area / std::numbers::pi));
-    result.ring = result.ring || !upright.contains(film, x, y, wavelength);
+    result.ring = result.ring || !upright.contains(film, middle.x, middle.y, wavelength);
   }
   return result;
 }

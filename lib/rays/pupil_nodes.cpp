@@ -19,7 +19,7 @@ namespace {
 struct PupilPoints {
   std::vector<double> x, y, weights;
 
-  void add(const std::array<double, 2>& point, double weight) {
+  void add(const Vec2<double>& point, double weight) {
     x.push_back(point[0]), y.push_back(point[1]);
     weights.push_back(weight);
   }
@@ -39,7 +39,7 @@ RayBundle trace_points(const Lens& lens, const PupilBoundary& boundary, double p
 /// The corners of a pupil, where one rim takes over from another: they lie between the last direction that one limits
 /// and the first that the other does.
 void add_corners(const Lens& lens, const PupilBoundary& boundary, PupilPoints& points) {
-  using Place = std::array<double, 2>;
+  using Place = Vec2<double>;
   const std::size_t count = boundary.spans.size();
   if (count != boundary.directions || count < 3) return;
   const auto traced = [&](const Place& place) {

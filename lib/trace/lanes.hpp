@@ -20,7 +20,7 @@ using core_detail::Native;
 template <class R>
 inline constexpr int rays_in_bundle = 256 / static_cast<int>(sizeof(R));
 
-/// Which lanes: a comparison's answer.
+/// The lanes for which a comparison holds.
 template <class R>
 struct Mask {
 #if defined(__AVX512F__)

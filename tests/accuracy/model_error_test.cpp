@@ -95,8 +95,8 @@ TEST(ModelError, IsTheDistanceInThePlaneOverTheMagnification) {
   }
   // The last three lines pass through one point of the pupil, from the corner and two neighbours.
   constexpr double step = 0.01;
-  const auto [middle_x, middle_y] = exact.pupils().middle({18, 12});
-  for (std::size_t i = count - 3; i < count; ++i) px[i] = middle_x, py[i] = middle_y;
+  const Vec2<double> middle = exact.pupils().middle({18, 12});
+  for (std::size_t i = count - 3; i < count; ++i) px[i] = middle.x, py[i] = middle.y;
   fx[count - 2] -= step, fy[count - 1] -= step;
 
   const TwoPlaneRays<const double> lines{fx.data(), fy.data(), px.data(), py.data()};

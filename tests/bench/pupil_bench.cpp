@@ -50,8 +50,8 @@ void traced(benchmark::State& state, const Setup& setup) {
   for (std::uint32_t i = 0; i < 4096; ++i) {
     const auto uv = petzval::owen_sobol(i, 0);
     const double u = uv.x, v = uv.y;
-    const auto [x, y] = sampler(u, v);
-    rays.push_back(sampler.plane().ray(x, y));
+    const petzval::Vec2<double> p = sampler(u, v);
+    rays.push_back(sampler.plane().ray(p.x, p.y));
   }
   for (auto _ : state) {
     for (const auto& ray : rays) {

@@ -104,18 +104,18 @@ TEST_P(TiltedFilms, SamplesReachTheSceneAndMissNothing) {
     const FilmPoint key = tilted.virtual_point(film);
     if (tilted.pupils().area(key) == 0) continue;
     std::vector<std::array<double, 2>> inside, beside, box;
-    const auto [mx, my] = tilted.pupils().middle(key);
+    const Vec2<double> middle = tilted.pupils().middle(key);
     double reach = 0;
     for (int k = 0; k < samples; ++k) {
       const PupilSample s = tilted.pupils().sample(key, unit(random), unit(random));
       const PupilSample edge = tilted.pupils().sample(key, unit(random), 1);
       const double out = std::sqrt(1 + 0.1 * unit(random));
       inside.push_back({s.x, s.y});
-      beside.push_back({mx + out * (edge.x - mx), my + out * (edge.y - my)});
-      reach = std::max(reach, std::hypot(edge.x - mx, edge.y - my));
+      beside.push_back({middle.x + out * (edge.x - middle.x), middle.y + out * (edge.y - middle.y)});
+      reach = std::max(reach, std::hypot(edge.x - middle.x, edge.y - middle.y));
     }
     for (int k = 0; k < samples; ++k) {
-      box.push_back({mx + 1.5 * reach * (2 * unit(random) - 1), my + 1.5 * reach * (2 * unit(random) - 1)});
+      box.push_back({middle.x + 1.5 * reach * (2 * unit(random) - 1), middle.y + 1.5 * reach * (2 * unit(random) - 1)});
     }
     const auto part = [&](const std::vector<bool>& passes) {
       return static_cast<double>(std::count(passes.begin(), passes.end(), true)) / samples;

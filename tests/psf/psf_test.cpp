@@ -191,8 +191,8 @@ class BinError {
       std::vector<double> hit_x, hit_y;
       for (std::uint32_t i = 0; i < count; ++i) {
         const double u = uniform(generator), v = uniform(generator);
-        const auto [x, y] = pupil_(u, v);
-        const auto end = trace(lens_, pupil_.plane().ray(x, y));
+        const Vec2<double> p = pupil_(u, v);
+        const auto end = trace(lens_, pupil_.plane().ray(p.x, p.y));
         if (!end.transmitted()) continue;
         const double t = (lens_.film_z() - end.ray.origin.z) / end.ray.direction.z;
         hit_x.push_back(end.ray.origin.x + t * end.ray.direction.x);

@@ -31,8 +31,8 @@ constexpr double infinity = std::numeric_limits<double>::infinity(), nan = std::
 double edge_deg(const Prescription& p) { return p.half_field_deg.value_or(1); }
 
 RayFate fate(const Lens& lens, const PupilBoundary& boundary, const PupilSpan& span, double radius) {
-  const auto [x, y] = boundary.at(span.direction, radius);
-  return trace(lens, boundary.plane.ray(x, y)).fate;
+  const Vec2<double> p = boundary.at(span.direction, radius);
+  return trace(lens, boundary.plane.ray(p.x, p.y)).fate;
 }
 
 TEST(Extremes, EveryEdgeOfEveryLensPassesAndTheNextRayIsLost) {
@@ -48,8 +48,8 @@ TEST(Extremes, EveryEdgeOfEveryLensPassesAndTheNextRayIsLost) {
         for (const PupilSpan& span : boundary.spans) {
           ASSERT_EQ(fate(lens, boundary, span, span.to_radius), RayFate::transmitted);
           ASSERT_EQ(fate(lens, boundary, span, span.from_radius), RayFate::transmitted);
-          const auto [x, y] = boundary.at(span.direction, span.to_radius + 1e-12);
-          const auto next = trace(lens, boundary.plane.ray(x, y));
+          const Vec2<double> beyond = boundary.at(span.direction, span.to_radius + 1e-12);
+          const auto next = trace(lens, boundary.plane.ray(beyond.x, beyond.y));
           ASSERT_FALSE(next.transmitted());
           EXPECT_EQ(next.surface, span.to.surface);
           EXPECT_EQ(next.fate, span.to.beyond);

@@ -74,8 +74,8 @@ TEST(FilmIrradiance, IsPiSineSquaredOnTheAxis) {
   // Seen from the axial image of a lens without spherical aberration the edge of the pupil is a circle.
   const Lens lens = data_lens("analytic_plano_hyperbolic_100mm");
   const PupilBoundary axis = pupil_boundary(lens, {0, -infinity}, 0, 1);
-  const auto [x, y] = axis.at(0, axis.spans.back().to_radius);
-  const auto rim = trace(lens, axis.plane.ray(x, y)).ray.direction;
+  const Vec2<double> p = axis.at(0, axis.spans.back().to_radius);
+  const auto rim = trace(lens, axis.plane.ray(p.x, p.y)).ray.direction;
   EXPECT_NEAR(film_irradiance(lens, {}) / (pi * (rim.x * rim.x + rim.y * rim.y)), 1, 1e-6);
 }
 

@@ -39,8 +39,8 @@ TEST_P(PupilBoundaryTest, LiesBetweenPassingAndLostRays) {
   const PupilBoundary boundary = pupil_boundary(lens, {radians(GetParam().field_deg), -infinity}, 0, 64);
   ASSERT_FALSE(boundary.empty());
   const auto fate = [&](std::size_t direction, double radius) {
-    const auto [x, y] = boundary.at(direction, radius);
-    return trace(lens, boundary.plane.ray(x, y));
+    const Vec2<double> p = boundary.at(direction, radius);
+    return trace(lens, boundary.plane.ray(p.x, p.y));
   };
   for (const PupilSpan& span : boundary.spans) {
     ASSERT_TRUE(fate(span.direction, span.from_radius).transmitted());
@@ -144,8 +144,8 @@ TEST(PupilBoundary, OfAFastLensIsThatOfTheLimitingRim) {
   const auto limiting = [&](double z) { return pupil_boundary(lens, {0, z}, 0, 1).spans.front().to.surface; };
   const auto clips = [&](double z) {
     const PupilBoundary boundary = pupil_boundary(lens, {0, z}, 0, 1);
-    const auto [x, y] = boundary.at(0, boundary.spans.front().to_radius * (1 + 1e-9));
-    return trace(lens, boundary.plane.ray(x, y)).surface;
+    const Vec2<double> p = boundary.at(0, boundary.spans.front().to_radius * (1 + 1e-9));
+    return trace(lens, boundary.plane.ray(p.x, p.y)).surface;
   };
   for (const double z : {-infinity, -1000.0, -200.0}) EXPECT_EQ(limiting(z), clips(z)) << z;
 }

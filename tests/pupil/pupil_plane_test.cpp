@@ -92,9 +92,9 @@ TEST(PupilPlane, MeetsItsOwnRays) {
       const PupilPlane plane(lens, {radians(field), -infinity, azimuth});
       Ray<double> ray = plane.ray(0.7, -1.1);
       ray.origin = ray.origin + ray.direction * 25.0;
-      const auto [x, y] = plane.meet(ray);
-      EXPECT_NEAR(x, 0.7, 1e-12) << field;
-      EXPECT_NEAR(y, -1.1, 1e-12) << field;
+      const Vec2<double> p = plane.meet(ray);
+      EXPECT_NEAR(p.x, 0.7, 1e-12) << field;
+      EXPECT_NEAR(p.y, -1.1, 1e-12) << field;
     }
   }
 }

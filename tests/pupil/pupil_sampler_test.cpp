@@ -23,7 +23,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double pi = std::numbers::pi;
 
 /// Angle (from +y, 0 to 2 pi) and radius of a point in an boundary's units.
-std::pair<double, double> polar(const PupilBoundary& boundary, const std::array<double, 2>& p) {
+std::pair<double, double> polar(const PupilBoundary& boundary, const Vec2<double>& p) {
   const double x = (p[0] - boundary.middle[0]) / boundary.half_axes[0];
   const double y = (p[1] - boundary.middle[1]) / boundary.half_axes[1];
   const double angle = std::atan2(x, y);
@@ -42,8 +42,8 @@ TEST(PupilSampler, SendsFewRaysInVain) {
       constexpr int side = 24;
       int passed = 0;
       for (int i = 0; i < side * side; ++i) {
-        const auto [x, y] = sampler((i % side + 0.5) / side, (i / side + 0.5) / side);
-        passed += trace(lens, sampler.plane().ray(x, y)).transmitted();
+        const Vec2<double> at = sampler((i % side + 0.5) / side, (i / side + 0.5) / side);
+        passed += trace(lens, sampler.plane().ray(at.x, at.y)).transmitted();
       }
       EXPECT_GE(passed, 0.96 * side * side) << part;
       EXPECT_GE(boundary.area() / sampler.area(), 0.97) << part;
@@ -98,8 +98,8 @@ TEST(PupilSampler, IsUniform) {
   constexpr int side = 512;
   double xx = 0, yy = 0, xy = 0;
   for (int i = 0; i < side * side; ++i) {
-    const auto [x, y] = sampler((i % side + 0.5) / side, (i / side + 0.5) / side);
-    xx += x * x, yy += y * y, xy += x * y;
+    const Vec2<double> p = sampler((i % side + 0.5) / side, (i / side + 0.5) / side);
+    xx += p.x * p.x, yy += p.y * p.y, xy += p.x * p.y;
   }
   const double radius_squared = sampler.area() / pi;
   EXPECT_NEAR(xx / side / side / radius_squared, 0.25, 1e-5);
@@ -118,7 +118,7 @@ TEST(PupilSampler, ManyPointsAreThoseOneByOne) {
       }
       std::vector<double> x(count), y(count);
       sampler(u, v, x, y);
-      for (std::size_t i = 0; i < count; ++i) EXPECT_EQ((std::array{x[i], y[i]}), sampler(u[i], v[i]));
+      for (std::size_t i = 0; i < count; ++i) EXPECT_EQ((Vec2<double>(x[i], y[i])), sampler(u[i], v[i]));
       sampler(u, v, u, v);
       EXPECT_EQ(u, x);
       EXPECT_EQ(v, y);
@@ -134,10 +134,10 @@ TEST(PupilSampler, TurnsWithUAndWidensWithV) {
     const double radius = std::sqrt(sampler.area() / pi), start = pi / directions;
     for (int i = 0; i < 1000; ++i) {
       const double u = i / 1000.0, v = (i * 37 % 1000) / 1000.0;
-      const auto [x, y] = sampler(u, v);
+      const Vec2<double> p = sampler(u, v);
       // The edge that was traced is round to 2e-13 of the half axes.
-      EXPECT_NEAR(x, radius * std::sqrt(v) * std::sin(2 * pi * u + start), 2e-12 * radius) << directions;
-      EXPECT_NEAR(y, radius * std::sqrt(v) * std::cos(2 * pi * u + start), 2e-12 * radius) << directions;
+      EXPECT_NEAR(p.x, radius * std::sqrt(v) * std::sin(2 * pi * u + start), 2e-12 * radius) << directions;
+      EXPECT_NEAR(p.y, radius * std::sqrt(v) * std::cos(2 * pi * u + start), 2e-12 * radius) << directions;
     }
   }
 }

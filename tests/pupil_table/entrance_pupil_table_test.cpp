@@ -163,9 +163,9 @@ TEST(EntrancePupilTable, EstimatesTheSolidAngleOfThePupil) {
         double wanted = 0;
         for (std::size_t k = 0; k < boundary.spans.size(); ++k) {
           const auto &a = boundary.spans[k].to, &b = boundary.spans[(k + 1) % boundary.spans.size()].to;
-          const auto [mx, my] = boundary.middle;
-          const double twice = std::abs((a.x - mx) * (b.y - my) - (a.y - my) * (b.x - mx));
-          const Vec3<double> to = Vec3<double>{(a.x + b.x + mx) / 3, (a.y + b.y + my) / 3, pupil_z} - point;
+          const Vec2<double> middle = boundary.middle;
+          const double twice = std::abs((a.x - middle.x) * (b.y - middle.y) - (a.y - middle.y) * (b.x - middle.x));
+          const Vec3<double> to = Vec3<double>{(a.x + b.x + middle.x) / 3, (a.y + b.y + middle.y) / 3, pupil_z} - point;
           wanted += twice / 2 * to.z / std::pow(glm::length(to), 3);
         }
         constexpr std::uint32_t draws = 1 << 14;

@@ -64,18 +64,18 @@ Coverage coverage(const Lens& lens, const FilmPupilTable& table, double radius, 
     if (table.area(film) == 0) continue;
     ++lit;
     std::vector<std::array<double, 2>> inside, band, box;
-    const auto [mx, my] = table.middle(film);
+    const Vec2<double> middle = table.middle(film);
     double reach = 0;
     for (int k = 0; k < samples; ++k) {
       const PupilSample s = table.sample(film, unit(random), unit(random));
       const PupilSample edge = table.sample(film, unit(random), 1);
       const double out = std::sqrt(1 + 0.1 * unit(random));
       inside.push_back({s.x, s.y});
-      band.push_back({mx + out * (edge.x - mx), my + out * (edge.y - my)});
-      reach = std::max(reach, std::hypot(edge.x - mx, edge.y - my));
+      band.push_back({middle.x + out * (edge.x - middle.x), middle.y + out * (edge.y - middle.y)});
+      reach = std::max(reach, std::hypot(edge.x - middle.x, edge.y - middle.y));
     }
     for (int k = 0; k < samples; ++k) {
-      box.push_back({mx + 1.5 * reach * (2 * unit(random) - 1), my + 1.5 * reach * (2 * unit(random) - 1)});
+      box.push_back({middle.x + 1.5 * reach * (2 * unit(random) - 1), middle.y + 1.5 * reach * (2 * unit(random) - 1)});
     }
     const auto in = passing(lens, table, film, inside), beside = passing(lens, table, film, band),
                all = passing(lens, table, film, box);
@@ -186,12 +186,12 @@ TEST(FilmPupilTable, SpreadsSamplesUniformly) {
       for (std::size_t k = 0; k < 5; ++k) sampled[k] += m[k] / (side * side);
     }
   }
-  const auto [mx, my] = table.middle(film);
+  const Vec2<double> middle = table.middle(film);
   constexpr double half = 50;
   int count = 0;
   for (int i = 0; i < 1024; ++i) {
     for (int j = 0; j < 1024; ++j) {
-      const double x = mx + half * ((i + 0.5) / 512 - 1), y = my + half * ((j + 0.5) / 512 - 1);
+      const double x = middle.x + half * ((i + 0.5) / 512 - 1), y = middle.y + half * ((j + 0.5) / 512 - 1);
       if (!table.contains(film, x, y)) continue;
       const auto m = moments(x, y);
       for (std::size_t k = 0; k < 5; ++k) inside[k] += m[k];
@@ -288,8 +288,8 @@ TEST(FilmPupilTable, ContainsManyPlacesAsItContainsOne) {
     std::vector<std::uint16_t> wavelengths(count);
     for (std::size_t i = 0; i < count; ++i) {
       fx[i] = 0.8 * radius * unit(random), fy[i] = 0.8 * radius * unit(random);
-      const auto [mx, my] = table.middle({fx[i], fy[i]});
-      x[i] = mx + size * unit(random), y[i] = my + size * unit(random);
+      const Vec2<double> middle = table.middle({fx[i], fy[i]});
+      x[i] = middle.x + size * unit(random), y[i] = middle.y + size * unit(random);
       wavelengths[i] = static_cast<std::uint16_t>(i % 3);
     }
     fx[0] = std::numeric_limits<double>::quiet_NaN(), x[1] = std::numeric_limits<double>::quiet_NaN();
@@ -343,9 +343,10 @@ TEST(FilmPupilTable, CoversThePupilsOfATiltedFilm) {
                             edge = table.sample(virtual_point, unit(random), 1);
           sampled += 1;
           inside += passes(s.x, s.y);
-          const auto [mx, my] = table.middle(virtual_point);
+          const Vec2<double> middle = table.middle(virtual_point);
           const double out = 1 + 0.1 * unit(random) + 1e-9;
-          EXPECT_FALSE(passes(mx + out * (edge.x - mx), my + out * (edge.y - my))) << id << " at " << virtual_point.x;
+          EXPECT_FALSE(passes(middle.x + out * (edge.x - middle.x), middle.y + out * (edge.y - middle.y)))
+              << id << " at " << virtual_point.x;
         }
       }
       EXPECT_GT(inside / sampled, 0.95) << id;
@@ -410,7 +411,7 @@ TEST(FilmPupilTable, HoldsImagesOfAnIris) {
       const double shift = w == 0 ? -0.3 : 0.95, radius = w == 0 ? 9 : 4;
       const FilmPoint film{7, -5};
       EXPECT_NEAR(table.area(film, w), share * radius * radius, 1e-12 * radius * radius);
-      EXPECT_EQ(table.middle(film, w), (std::array{shift * 7, shift * -5}));
+      EXPECT_EQ(table.middle(film, w), (Vec2<double>(shift * 7, shift * -5)));
       const double corner = 0.2 + std::numbers::pi / 6, inwards = 0.999;
       const auto at = [&](double part) {
         return table.contains(film, shift * 7 + part * radius * std::cos(corner),
@@ -524,9 +525,9 @@ TEST(FilmPupilTable, HasNothingInTheMiddleOfAnObscuration) {
   for (const FilmPupilTable& table : {FilmPupilTable::enclosing(data_lens("catadioptric_mangin_1000mm_f7.5"), 20),
                                       FilmPupilTable::equal_area(data_lens("catadioptric_mangin_1000mm_f7.5"), 20)}) {
     for (const FilmPoint& film : {FilmPoint{0, 0}, FilmPoint{3, 7}}) {
-      const auto [x, y] = table.middle(film);
-      EXPECT_FALSE(table.contains(film, x, y));
-      EXPECT_FALSE(table.contains(film, x + 0.1, y));
+      const Vec2<double> p = table.middle(film);
+      EXPECT_FALSE(table.contains(film, p.x, p.y));
+      EXPECT_FALSE(table.contains(film, p.x + 0.1, p.y));
     }
   }
 }

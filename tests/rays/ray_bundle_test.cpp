@@ -72,8 +72,8 @@ TEST(TraceBundle, HitsAreThoseOfSingleRays) {
   for (std::uint32_t i = 0; i < 500; ++i) {
     const auto uv = owen_sobol(i, 8);
     const double u = uv.x, v = uv.y;
-    const auto [x, y] = pupil(u, v);
-    const auto end = trace(lens, pupil.plane().ray(x, y));
+    const Vec2<double> p = pupil(u, v);
+    const auto end = trace(lens, pupil.plane().ray(p.x, p.y));
     if (!end.transmitted()) continue;
     const double t = (lens.film_z() - end.ray.origin.z) / end.ray.direction.z;
     ASSERT_LT(next, hits.x.size());

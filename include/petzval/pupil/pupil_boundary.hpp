@@ -35,8 +35,8 @@ struct PupilSpan {
 /// Directions are equally spaced angles about `middle`, in coordinates divided by `half_axes`, so that a slim crescent
 /// is as well resolved as a disc. Spans are in the order of directions, and outwards within one.
 struct PETZVAL_API PupilRegion {
-  std::array<double, 2> middle{0, 0};     ///< x, y in the plane, mm
-  std::array<double, 2> half_axes{0, 0};  ///< x, y, mm
+  Vec2<double> middle{0, 0};     ///< x, y in the plane, mm
+  Vec2<double> half_axes{0, 0};  ///< x, y, mm
   std::size_t directions = 0;
   std::vector<PupilSpan> spans{};
 
@@ -45,9 +45,9 @@ struct PETZVAL_API PupilRegion {
 
   /// Unit vector (x, y) of a direction, before the half axes: direction k of n at the angle 2 pi (k + 1/2) / n from +y
   /// towards +x.
-  std::array<double, 2> unit(std::size_t direction) const noexcept;
+  Vec2<double> unit(std::size_t direction) const noexcept;
   /// A point of the plane by direction and radius.
-  std::array<double, 2> at(std::size_t direction, double radius) const noexcept;
+  Vec2<double> at(std::size_t direction, double radius) const noexcept;
 
   /// Area in the plane, mm^2.
   double area() const noexcept;
@@ -80,8 +80,8 @@ PETZVAL_API PupilBoundary exit_pupil_boundary(const Lens& lens, const FilmPoint&
 /// between each two neighbouring directions, so that nearly all sampled rays pass and no ray that passes is left out.
 ///
 ///     petzval::PupilSampler sampler(petzval::pupil_boundary(lens, point));
-///     auto [x, y] = sampler(u, v);                    // u, v in [0, 1)
-///     petzval::Ray<double> ray = sampler.plane().ray(x, y);
+///     petzval::Vec2<double> p = sampler(u, v);        // u, v in [0, 1)
+///     petzval::Ray<double> ray = sampler.plane().ray(p.x, p.y);
 ///
 /// The map preserves area: stratified u and v give stratified points. u runs around the middle, from +y towards +x, v
 /// outwards.
@@ -99,7 +99,7 @@ class PETZVAL_API PupilSampler {
   double area() const noexcept { return area_; }
 
   /// The point (x, y) of the plane for u, v in [0, 1). The sampler must not be empty.
-  std::array<double, 2> operator()(double u, double v) const noexcept;
+  Vec2<double> operator()(double u, double v) const noexcept;
   /// The same for many. u, v, x, y: N each; x and y may be u and v.
   void operator()(std::span<const double> u, std::span<const double> v, std::span<double> x,
                   std::span<double> y) const noexcept;
@@ -115,7 +115,7 @@ class PETZVAL_API PupilSampler {
 
   PupilPlane plane_;
   std::size_t wavelength_;
-  std::array<double, 2> middle_, half_axes_;
+  Vec2<double> middle_, half_axes_;
   double half_turn_ = 0, area_ = 0;
   std::vector<Piece> pieces_;
   std::vector<double> until_;         ///< share of the area up to the end of each piece

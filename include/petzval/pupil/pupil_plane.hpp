@@ -62,7 +62,7 @@ class PETZVAL_API PupilPlane {
   void rays(std::span<const double> x, std::span<const double> y, const RayArrays<double>& rays) const noexcept;
 
   /// Where a ray, prolonged both ways, meets the plane.
-  std::array<double, 2> meet(const Ray<double>& ray) const noexcept;
+  Vec2<double> meet(const Ray<double>& ray) const noexcept;
 
   /// Unit direction of the ray of the point through a place (lens frame, mm).
   Vec3<double> direction_at(const Vec3<double>& place) const noexcept;

@@ -109,7 +109,7 @@ class PETZVAL_API FilmPupilTable {
   /// index behind the lens it is the irradiance of the film for a scene of radiance 1.
   double projected_solid_angle(const FilmPoint& film, Wavelength wavelength = {}) const noexcept;
   /// The middle of its polygon; the centre of the central obscuration where there is one.
-  std::array<double, 2> middle(const FilmPoint& film, Wavelength wavelength = {}) const noexcept;
+  Vec2<double> middle(const FilmPoint& film, Wavelength wavelength = {}) const noexcept;
   /// Whether a place in the plane of the pupil belongs to the pupil of a film point.
   bool contains(const FilmPoint& film, double x, double y, Wavelength wavelength = {}) const noexcept;
 
@@ -120,7 +120,7 @@ class PETZVAL_API FilmPupilTable {
 
   /// Derivatives of a sample's (x, y) by film x and by film y, at constant u and v.
   struct Derivatives {
-    std::array<double, 2> by_film_x{0, 0}, by_film_y{0, 0};
+    Vec2<double> by_film_x{0, 0}, by_film_y{0, 0};
   };
   Derivatives derivatives(const FilmPoint& film, double u, double v, Wavelength wavelength = {}) const noexcept;
 
