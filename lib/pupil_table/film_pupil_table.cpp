@@ -184,8 +184,8 @@ double solid_angle(const TwoPlanes& space, const FilmPoint& film, double area, c
   double sum = 0;
   for (int k = 0; k < around; ++k) {
     for (const auto& [v, weight] : outwards) {
-      const auto [x, y] = place_at((k + 0.5) / around, v);
-      const double dx = x - film.x, dy = y - film.y, length2 = dx * dx + dy * dy + depth2;
+      const Vec2<double> place = place_at((k + 0.5) / around, v);
+      const double dx = place.x - film.x, dy = place.y - film.y, length2 = dx * dx + dy * dy + depth2;
       sum += weight / (length2 * length2);
     }
   }
@@ -363,7 +363,7 @@ double FilmPupilTable::area(const FilmPoint& film, Wavelength wavelength) const 
 double FilmPupilTable::projected_solid_angle(const FilmPoint& film, Wavelength wavelength) const noexcept {
   return solid_angle(space(), film, area(film, wavelength), [&](double u, double v) {
     const PupilSample s = sample(film, u, v, wavelength);
-    return std::array{s.x, s.y};
+    return Vec2<double>{s.x, s.y};
   });
 }
 
