@@ -67,6 +67,7 @@ int main(int argc, char** argv) {
     const petzval::Lens lens = examples::focused_lens(options);
     const std::filesystem::path folder = options.out_folder;
     if (out->given()) examples::make_folder(folder);  // measuring takes seconds
+    examples::say_what_does_not_fit(lens, film);
     std::vector<petzval::ErrorBudget> budgets;
     for (const double px : budgets_px) budgets.push_back({.max_px = px});
     const double nearest = nearest_mm(lens, options);

@@ -144,7 +144,9 @@ int main(int argc, char** argv) {
                              .height_mm = height,
                              .tilt_rad = petzval::radians(tilt_deg),
                              .swing_rad = petzval::radians(swing_deg)};
-    const petzval::Camera camera(examples::focused(loaded, setup), film, {.model = *petzval::model_named(model)});
+    const petzval::Lens lens = examples::focused(loaded, setup);
+    examples::say_what_does_not_fit(lens, film);
+    const petzval::Camera camera(lens, film, {.model = *petzval::model_named(model)});
     examples::write_text(out_file, rays_csv(camera, samples));
   });
 }

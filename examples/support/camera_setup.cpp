@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "camera_setup.hpp"
 
+#include <iostream>
+
 #include "cli.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/focus/focus.hpp"
+#include "petzval/lint/lint.hpp"
 #include "petzval/pupil/f_number.hpp"
 
 namespace examples {
@@ -34,6 +37,10 @@ petzval::Lens focused(const LoadedLens& loaded, const CameraSetup& setup) {
   return petzval::with_focus(
       lens, setup.focus_mm,
       {.criterion = named(setup.criterion, focus_criteria), .origin = petzval::DistanceOrigin::film});
+}
+
+void say_what_does_not_fit(const petzval::Lens& lens, const petzval::Film& film) {
+  for (const petzval::Finding& finding : petzval::lint(lens, film)) std::cerr << "note: " << finding.message << '\n';
 }
 
 }  // namespace examples

@@ -7,6 +7,7 @@
 
 #include "cli.hpp"
 #include "load_lens.hpp"
+#include "petzval/film/film.hpp"
 #include "petzval/lens/lens.hpp"
 
 namespace examples {
@@ -30,5 +31,8 @@ std::array<double, 2> parse_size(const std::string& where, std::string_view text
 
 /// The loaded lens, stopped down and focused at its primary wavelength.
 petzval::Lens focused(const LoadedLens& loaded, const CameraSetup& setup);
+
+/// Notes on standard error a film that does not fit the image circle of its lens.
+void say_what_does_not_fit(const petzval::Lens& lens, const petzval::Film& film);
 
 }  // namespace examples

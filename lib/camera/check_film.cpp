@@ -33,7 +33,8 @@ void check_rectangle(const std::string& where, const Film& film) {
 }
 
 FilmBehindLens placed(const Lens& lens, const Film& film) {
-  FilmBehindLens result{film.z_mm ? with_film(lens, *film.z_mm) : lens, film};
+  // A prescription may have its film anywhere, at a virtual image too.
+  FilmBehindLens result{with_film(lens, film.z_mm.value_or(lens.film_z())), film};
   result.film.z_mm = result.lens.film_z();
   return result;
 }

@@ -21,7 +21,7 @@ struct FilmBehindLens {
   Lens lens;
   Film film;
 };
-/// Throws Error where with_film() does.
+/// Throws Error where with_film() does, also for the lens's own film.
 PETZVAL_API FilmBehindLens placed(const Lens& lens, const Film& film);
 
 }  // namespace petzval::inline v0::camera_detail

@@ -156,6 +156,11 @@ Lens with_semi_diameter(const Lens& lens, std::size_t surface, double semi_diame
 Lens with_film(const Lens& lens, double film_z) {
   if (!std::isfinite(film_z))
     throw Error(lens.name() + ": film_z is " + to_text(film_z) + " mm, wanted a finite place");
+  const double last_z = lens.surfaces().back().vertex_z, direction = lens.light_direction(lens.surface_count());
+  if (!((film_z - last_z) * direction > 0)) {
+    throw Error(lens.name() + ": film_z is " + to_text(film_z) + " mm, wanted it behind the lens, " +
+                (direction > 0 ? "above " : "below ") + to_text(last_z) + " mm, where the last vertex is");
+  }
   auto data = std::make_shared<Lens::Data>(*lens.data_);
   data->film_z = film_z;
   return Lens(std::move(data));

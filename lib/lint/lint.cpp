@@ -7,6 +7,7 @@
 #include "core/text.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/f_number.hpp"
+#include "petzval/pupil/illumination.hpp"
 #include "spacing.hpp"
 
 namespace petzval::inline v0 {
@@ -110,6 +111,7 @@ std::string_view name(FindingKind kind) noexcept {
     case Kind::no_stop: return "no_stop";
     case Kind::several_stops: return "several_stops";
     case Kind::image_distance: return "image_distance";
+    case Kind::film_size: return "film_size";
   }
   return "unknown";
 }
@@ -121,6 +123,24 @@ std::vector<Finding> lint(const Prescription& prescription) {
   check_surfaces(lens, findings);
   check_first_order(prescription, lens, findings);
   return findings;
+}
+
+std::vector<Finding> lint(const Lens& lens, const Film& film) {
+  constexpr double too_large = 3, too_small = 0.02;
+  const double circle = image_circle_mm(with_film(lens, film.z_mm.value_or(lens.film_z())));
+  const double diameter = 2 * film.radius_mm();
+  const auto finding = [&](const std::string& wanted) {
+    return std::vector<Finding>{{Kind::film_size,
+                                 {},
+                                 diameter,
+                                 circle,
+                                 "the film is " + to_text(film.width_mm, 6) + " by " + mm(film.height_mm) +
+                                     " and needs an image circle of " + mm(diameter) + "; the lens has one of " +
+                                     to_text(circle, 4) + " mm, wanted a " + wanted + " film"}};
+  };
+  if (diameter > too_large * circle) return finding("smaller");
+  if (diameter < too_small * circle && std::isfinite(circle)) return finding("larger");
+  return {};
 }
 
 }  // namespace petzval::inline v0

@@ -2,10 +2,14 @@
 #include "petzval/pupil/illumination.hpp"
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "core/meet_plane.hpp"
 #include "core/quadrature.hpp"
+#include "core/text.hpp"
+#include "petzval/core/error.hpp"
+#include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/aim.hpp"
 #include "petzval/pupil/pupil_boundary.hpp"
 
@@ -33,6 +37,39 @@ double film_irradiance(const Lens& lens, const FilmPoint& point, Wavelength wave
   const double n = lens.index(lens.surface_count(), wavelength);
   return n * n * sum * std::numbers::pi / static_cast<double>(boundary.directions) * boundary.half_axes[0] *
          boundary.half_axes[1] / (gap * gap);
+}
+
+double image_circle_mm(const Lens& lens, double least_part, Wavelength wavelength) {
+  if (!(least_part >= 0 && least_part <= 1)) {
+    throw Error(lens.name() + ": image circle: the least part of the light on the axis is " + to_text(least_part) +
+                ", wanted 0 to 1");
+  }
+  const double wanted = least_part * film_irradiance(lens, {}, wavelength);
+  const std::size_t directions = lens.rotationally_symmetric() ? 1 : 8;
+  const auto lit = [&](double radius) {
+    for (std::size_t k = 0; k < directions; ++k) {
+      const double angle = 2 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(directions);
+      const FilmPoint point{radius * std::sin(angle), radius * std::cos(angle)};
+      const double found = film_irradiance(lens, point, wavelength);
+      if (!(found > 0 && found >= wanted)) return false;
+    }
+    return true;
+  };
+  if (!lit(0)) return 0;
+  const FirstOrder data = first_order(lens, wavelength, main_meridian(lens, wavelength));
+  const double last_z = lens.surfaces().back().vertex_z;
+  const double scale = data.afocal ? std::abs(lens.film_z() - last_z) : std::abs(data.effective_focal_length);
+  double low = 0, step = scale / 10;
+  while (lit(low + step)) {
+    low += step;
+    if (low > scale) step *= 2;
+    if (low > 500 * scale) return std::numeric_limits<double>::infinity();
+  }
+  for (double high = low + step; high - low > 1e-4 / 2 * scale;) {
+    const double middle = (low + high) / 2;
+    (lit(middle) ? low : high) = middle;
+  }
+  return 2 * low;
 }
 
 std::optional<double> relative_illumination(const Lens& lens, const FieldPoint& point, Wavelength wavelength) {

@@ -19,6 +19,7 @@
 #include "camera_parts.hpp"
 #include "camera_samples.hpp"
 #include "core/low_discrepancy.hpp"
+#include "core/text.hpp"
 #include "petzval/camera/ray_model.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/focus/focus.hpp"
@@ -390,7 +391,21 @@ TEST(Camera, RefusesFilmsThatAreNone) {
                            Film{.rows = -1}, Film{.shift_x_mm = nan}, Film{.tilt_rad = nan}, Film{.swing_rad = -1.6}}) {
     EXPECT_THROW(Camera(lens, film), Error);
   }
-  EXPECT_THROW(Camera(with_film(lens, lens.surfaces().back().vertex_z), {}), Error);
+  // Inside the glass or in front of it, upright or tilted, by the film or by the prescription.
+  const double last_z = lens.surfaces().back().vertex_z;
+  const std::string place = "wanted it behind the lens, above " + to_text(last_z) + " mm, where the last vertex is";
+  for (const double z : {last_z, last_z - 5, -20.0}) {
+    for (const Film& film : {Film{.z_mm = z}, Film{.z_mm = z, .tilt_rad = 0.1}}) {
+      EXPECT_NE(testing::message([&] { Camera(lens, film); }).find(place), std::string::npos) << z;
+    }
+    Prescription prescription = testing::data_prescription("tessar_100mm_f2.8");
+    prescription.surfaces.back().thickness = z - last_z;
+    EXPECT_NE(testing::message([&] { Camera(compile(prescription), {}); }).find(place), std::string::npos) << z;
+  }
+  // In front of a mirror is behind it.
+  const Lens mirror = testing::data_lens("mirror_newton_200mm_f8");
+  EXPECT_NO_THROW(Camera(mirror, {.width_mm = 2, .height_mm = 2, .z_mm = -190}));
+  EXPECT_THROW(Camera(mirror, {.width_mm = 2, .height_mm = 2, .z_mm = 190}), Error);
   EXPECT_THROW(Camera(testing::data_lens("anamorphic_60mm_2x"), {}, {.model = ModelKind::thick}), Error);
 }
 

@@ -8,6 +8,8 @@
 #include <limits>
 #include <string>
 
+#include "../data_lenses.hpp"
+#include "core/text.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/trace/trace.hpp"
 
@@ -116,6 +118,19 @@ TEST(Lens, RefusesAChangeThatMakesNoLens) {
             "singlet: surface 1: semi_diameter is -3 mm, wanted 0 or more");
   EXPECT_EQ(message([&] { petzval::with_semi_diameter(lens, 1, std::nan("")); }),
             "singlet: surface 1: semi_diameter is nan mm, wanted 0 or more");
+  const double last_z = lens.surfaces().back().vertex_z;
+  for (const double inside : {last_z, last_z - 1, -10.0}) {
+    EXPECT_NE(message([&] {
+                petzval::with_film(lens, inside);
+              }).find("mm, wanted it behind the lens, above " + petzval::to_text(last_z) + " mm, where the last"),
+              std::string::npos)
+        << inside;
+  }
+  // Behind one mirror is in front of it.
+  const petzval::Lens mirror = petzval::testing::data_lens("mirror_newton_200mm_f8");
+  EXPECT_EQ(petzval::with_film(mirror, -100).film_z(), -100);
+  EXPECT_NE(message([&] { petzval::with_film(mirror, 100); }).find("wanted it behind the lens, below "),
+            std::string::npos);
   EXPECT_EQ(message([&] { petzval::with_film(lens, std::numeric_limits<double>::infinity()); }),
             "singlet: film_z is inf mm, wanted a finite place");
 }

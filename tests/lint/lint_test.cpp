@@ -12,6 +12,7 @@
 #include "../data_lenses.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/paraxial/first_order.hpp"
+#include "petzval/pupil/illumination.hpp"
 
 namespace petzval {
 namespace {
@@ -28,6 +29,27 @@ Prescription singlet() {
   p.surfaces = {{.radius = 0, .thickness = 4, .medium = {.nd = 1.5}, .semi_diameter = 10, .stop = true},
                 {.radius = -50, .thickness = 100, .semi_diameter = 12}};
   return p;
+}
+
+// In metres, or in inches of a hundredth: the film that a host has its units wrong for.
+TEST(Lint, FindsAFilmFarFromTheImageCircle) {
+  const Lens lens = testing::data_lens("double_gauss_100mm_f2_28deg");
+  const double circle = image_circle_mm(lens);
+  for (const double width : {0.036, 0.36, 360.0, 36000.0}) {
+    const std::vector<Finding> findings = lint(lens, {.width_mm = width, .height_mm = width / 1.5});
+    ASSERT_EQ(findings.size(), 1u) << width;
+    EXPECT_EQ(findings[0].kind, Kind::film_size);
+    EXPECT_NEAR(findings[0].found, width * std::hypot(1, 1 / 1.5), 1e-9 * width);
+    EXPECT_EQ(findings[0].wanted, circle);
+    EXPECT_NE(findings[0].message.find(width > 36 ? "wanted a smaller film" : "wanted a larger film"),
+              std::string::npos)
+        << findings[0].message;
+  }
+  for (const double width : {1.8, 6.4, 36.0, 60.0, 110.0}) {
+    EXPECT_TRUE(lint(lens, {.width_mm = width, .height_mm = width / 1.5}).empty()) << width;
+  }
+  // One that is shifted out of the circle.
+  EXPECT_EQ(lint(lens, {.shift_x_mm = 200}).size(), 1u);
 }
 
 void expect_one(const Prescription& p, Kind kind, std::optional<int> surface, const std::string& message) {

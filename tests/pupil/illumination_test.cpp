@@ -126,6 +126,65 @@ TEST(RelativeIllumination, ReachesBeyond90Degrees) {
   }
 }
 
+TEST(ImageCircle, EndsWhereTheLightDoes) {
+  for (const char* id : {"double_gauss_100mm_f2_28deg", "biogon_35mm_f2.8", "fisheye_10mm_f4", "telephoto_200mm_f1.8",
+                         "catadioptric_mangin_1000mm_f7.5", "phone_5.6mm_f3.5"}) {
+    SCOPED_TRACE(id);
+    const Lens lens = data_lens(id);
+    const double axis = film_irradiance(lens, {}), f = std::abs(first_order(lens).effective_focal_length);
+    double last = infinity;
+    for (const double part : {0.0, 0.1, 0.5, 0.9}) {
+      const double radius = image_circle_mm(lens, part) / 2;
+      EXPECT_GT(radius, 0);
+      EXPECT_LE(radius, last) << part;
+      last = radius;
+      EXPECT_GE(film_irradiance(lens, {0, radius}), part * axis);
+      // By a grid of rays, too.
+      EXPECT_NEAR(seen_from_film(lens, radius, 600) / axis, part, 0.02) << part;
+      const double beyond = film_irradiance(lens, {0, radius + 1.1e-4 * f});
+      EXPECT_TRUE(part > 0 ? beyond < part * axis : beyond == 0) << beyond;
+    }
+  }
+}
+
+TEST(ImageCircle, HoldsThePictureThatTheLensWasMadeFor) {
+  int declared = 0;
+  for (const Prescription& p : testing::data_prescriptions()) {
+    if (!p.image_diagonal_mm) continue;
+    EXPECT_GE(image_circle_mm(compile(p)), *p.image_diagonal_mm) << p.id;
+    ++declared;
+  }
+  EXPECT_GT(declared, 20);
+}
+
+TEST(ImageCircle, OfAScaledLensIsScaled) {
+  const Prescription p = testing::data_prescription("tessar_100mm_f2.8");
+  const double circle = image_circle_mm(compile(p), 0.3);
+  EXPECT_NEAR(image_circle_mm(compile(scale(p, 0.1)), 0.3), 0.1 * circle, 1e-9);
+}
+
+TEST(ImageCircle, OfALensWithCylindersHoldsAllRound) {
+  const Lens lens = data_lens("anamorphic_60mm_2x");
+  const double radius = image_circle_mm(lens, 0.5) / 2, axis = film_irradiance(lens, {});
+  for (int k = 0; k < 8; ++k) {
+    const double angle = pi / 4 * k;
+    EXPECT_GE(film_irradiance(lens, {radius * std::sin(angle), radius * std::cos(angle)}), 0.5 * axis);
+  }
+}
+
+TEST(ImageCircle, IsNoneOfADarkLensAndInfiniteOfAnOpenOne) {
+  const Lens lens = data_lens("tessar_100mm_f2.8");
+  EXPECT_EQ(image_circle_mm(with_semi_diameter(lens, *lens.stop(), 0)), 0);
+  Prescription p;
+  p.name = "open";
+  p.surfaces = {{.radius = 50, .thickness = 2, .medium = {.nd = 1.5}, .semi_diameter = 5, .stop = true},
+                {.thickness = 100}};
+  EXPECT_GT(image_circle_mm(compile(p)), 100);
+  for (const double part : {-0.1, 1.1, std::nan("")}) {
+    EXPECT_NE(testing::message([&] { image_circle_mm(lens, part); }).find("wanted 0 to 1"), std::string::npos);
+  }
+}
+
 TEST(FilmIrradiance, OfAStopWithoutARimIsThatOfTheRimsThatLimit) {
   const auto [marked, unmarked] = testing::without_the_rim_of_its_stop(testing::open_singlet(10));
   EXPECT_EQ(film_irradiance(marked, {}), film_irradiance(unmarked, {}));

@@ -37,15 +37,17 @@ struct CameraOptions {
 /// The picture is sharpest 3 m from the film, whatever the model: first-order models are focused where exact rays of
 /// the film's centre are sharpest.
 ///
+/// Any size of film is taken; lint(lens, film) finds one that the image circle of the lens does not fit.
+///
 /// Immutable, cheap to copy, shared freely between threads. Calls neither allocate nor draw random numbers nor loop
 /// until a ray passes: a lost sample has weight 0 and a fate. Lens frame, mm; host_frame.hpp has the frames of hosts.
 class PETZVAL_API Camera {
  public:
   /// The lens has its film where film.z_mm says, as with_film() would. A tilted film takes two to six times as long to
   /// set up (34 ms rather than 10 for a double Gauss); fits of tilts need no camera. Throws Error for a film without
-  /// area or pixels, one that is tilted into the lens or comes near to the plane of the pupil, and where the model
-  /// cannot be built: a lens without a pupil, a film in the plane of the last vertex, a first-order or polynomial model
-  /// of a lens with cylinders.
+  /// area or pixels, one that is not behind the last vertex, is tilted into the lens or comes near to the plane of the
+  /// pupil, and where the model cannot be built: a lens without a pupil, a first-order or polynomial model of a lens
+  /// with cylinders.
   Camera(const Lens& lens, const Film& film, const CameraOptions& options = {});
   /// With a model that was built before: a renderer's own, or polynomials read from a file (ray_model.hpp). Throws
   /// Error also for a model with another number of wavelengths, another place of the film, or a film smaller than

@@ -137,7 +137,8 @@ PETZVAL_API Lens compile(const Prescription& prescription, const CompileOptions&
 /// obscuration).
 PETZVAL_API Lens with_semi_diameter(const Lens& lens, std::size_t surface, double semi_diameter);
 
-/// The lens with its film at another place (lens frame, mm).
+/// The lens with its film at another place (lens frame, mm). Throws Error for one that is not behind the last vertex,
+/// on the side that light runs to.
 PETZVAL_API Lens with_film(const Lens& lens, double film_z);
 
 /// The lens with another shape of its stop; an empty Iris makes it round again. Every ray that is traced with apertures

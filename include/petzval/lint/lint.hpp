@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "petzval/core/export.hpp"
+#include "petzval/film/film.hpp"
+#include "petzval/lens/lens.hpp"
 #include "petzval/prescription/prescription.hpp"
 
 namespace petzval::inline v0 {
@@ -20,6 +22,7 @@ enum class FindingKind : std::uint8_t {
   no_stop,
   several_stops,
   image_distance,  ///< the film is farther from the paraxial focus than 2 % of the focal length
+  film_size,       ///< a film several times as large as the image circle, or smaller than a fiftieth of it
 };
 
 /// "focal_length", "f_number", "overlap", ...
@@ -37,5 +40,10 @@ struct Finding {
 /// Compares the declared data of a prescription with computed ones, at its reference wavelength. Throws Error only for
 /// an invalid prescription.
 PETZVAL_API std::vector<Finding> lint(const Prescription& prescription);
+
+/// The film of a camera compared with the image circle of its lens (image_circle_mm, of any light): found is the
+/// diameter of the circle about the axis that holds the film, wanted that of the image. A film is as large as one likes
+/// up to three times the image circle. Throws Error where with_film() and image_circle_mm() do.
+PETZVAL_API std::vector<Finding> lint(const Lens& lens, const Film& film);
 
 }  // namespace petzval::inline v0
