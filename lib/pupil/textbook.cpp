@@ -105,11 +105,7 @@ TextbookPupil textbook_pupil(const Lens& lens, Travel travel, double point_z, Wa
   double height = fan.rim(), outermost = fan.towards(height);
   const bool limited = std::isfinite(lens.surfaces()[entrance ? 0 : lens.surface_count() - 1].semi_diameter);
   while (!limited && passes(outermost) && height < 1e100) outermost = fan.towards(height *= 2);
-  if (!passes(outermost)) {
-    outermost = core_detail::last_with(0.0, outermost, passes);
-  } else if (!limited) {
-    throw Error(where + "no surface ends a ray from z = " + to_text(point_z) + " mm, wanted a rim");
-  }
+  if (!passes(outermost)) outermost = core_detail::last_with(0.0, outermost, passes);
 
   // Steps 6 to 8.
   const Pupil& image = entrance ? paraxial.entrance : paraxial.exit;

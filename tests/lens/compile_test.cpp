@@ -197,7 +197,9 @@ TEST(Compile, AWavelengthIsCompiledOnce) {
   Prescription mirror;
   mirror.surfaces = {{.radius = -400, .thickness = -200, .mirror = true}};
   for (const double twice : {d, d + 1e-7}) {
-    EXPECT_EQ(message([&] { compile(mirror, std::array{f, d, c, twice}); }),
+    EXPECT_EQ(message([&] {
+                compile(mirror, std::array{f, d, c, twice});
+              }),
               "lens: wavelength 3 is " + petzval::to_text(twice) + " nm, that of wavelength 1, wanted each once");
   }
   EXPECT_EQ(compile(mirror, std::array{d, d + 1e-5}).wavelengths_nm().size(), 2u);

@@ -190,14 +190,12 @@ TEST(TextbookPupil, RefusesWhatIsNoPointAndNoWavelength) {
             name + ": wavelength 3 does not exist, wanted one of 1");
 }
 
-TEST(TextbookPupil, OfABeamThatNothingEndsIsAnError) {
+TEST(TextbookPupil, NeedsARim) {
   Prescription p;
   p.name = "endless";
   p.surfaces = {{.thickness = 10, .medium = {.nd = 1.5}, .stop = true}, {.thickness = 10}};
   EXPECT_EQ(message([&] { textbook_entrance_pupil(compile(p), -infinity); }),
-            "endless: textbook entrance pupil: no surface ends a ray from z = -inf mm, wanted a rim");
-  // From a point its plane faces let all pass up to a right angle.
-  EXPECT_EQ(textbook_entrance_pupil(compile(p), -5).beyond, RayFate::missed_surface);
+            "endless: the stop has no rim and no surface limits the axial beam, wanted a semi_diameter");
   p.surfaces[1].semi_diameter = 4;
   EXPECT_NEAR(textbook_entrance_pupil(compile(p), -infinity).marginal.origin.y, 4, 1e-14);
   EXPECT_EQ(textbook_entrance_pupil(compile(p), -infinity).limiting, 1u);

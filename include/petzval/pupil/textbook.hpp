@@ -37,7 +37,7 @@ struct TextbookPupil {
 /// Steps 1 to 8 of Wu et al. 2010, section 5.1.2, repaired: the result is the last ray that passed (theirs is a middle
 /// of the bracket that nobody traced); rays count by their distance from the vertex, which an infinite conjugate has
 /// too; steps 6 to 8 are their limit, the paraxial matrices. Throws Error where pupils() does, for a wavelength that
-/// was not compiled, an object_z in the vertex or NaN, where the ray along the axis is lost, and where no ray is.
+/// was not compiled, an object_z in the vertex or NaN, and where the ray along the axis is lost.
 PETZVAL_API TextbookPupil textbook_entrance_pupil(const Lens& lens, double object_z, Wavelength wavelength = {});
 
 /// The exit pupil by the same method from the other side: rays from the axial point of a film, traced to the scene.
