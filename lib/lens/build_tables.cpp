@@ -19,23 +19,36 @@ double power(double x, int n) {
   return result;
 }
 
-/// The height up to which an asphere is described: its clear aperture, within the domain of the base conic. For an
-/// unlimited aperture, that domain or the height at which the strongest term alone has a slope of one.
-double height(const LensSurface& s) {
-  const double curvature = std::abs(s.curvature) * std::sqrt(std::max(0.0, 1 + s.conic));
-  const double domain = curvature > 0 ? 1 / curvature : std::numeric_limits<double>::infinity();
-  double limit = s.semi_diameter > 0 ? std::min(s.semi_diameter, domain) : domain;
-  if (std::isfinite(limit) && limit > 0) return limit;
+/// Steeper parts of an asphere are not described: out there a polynomial of high order runs away, and with bounds of
+/// sag and slope that held there every ray would have to be searched for. Rays meet them where Newton's iteration finds
+/// them. (The steepest asphere of data/lenses has a slope of 3.)
+constexpr double steepest = 16;
+
+/// The height at which the strongest term alone has a slope.
+double term_height(const LensSurface& s, double slope) {
+  double least = std::numeric_limits<double>::infinity();
   for (const auto& [order, coefficient] : s.aspheric) {
-    if (coefficient != 0) limit = std::min(limit, std::pow(order * std::abs(coefficient), -1.0 / (order - 1)));
+    if (coefficient == 0) continue;
+    least = std::min(least, std::pow(order * std::abs(coefficient) / slope, -1.0 / (order - 1)));
   }
+  return least;
+}
+
+/// The height up to which an asphere may be described: its clear aperture, within the domain of the base conic. An
+/// unlimited one ends where the strongest term alone has a slope of one.
+double height(const LensSurface& s) {
+  constexpr double runs_away = 1e6;  // whatever the other terms are
+  const double curvature = std::abs(s.curvature) * std::sqrt(std::max(0.0, 1 + s.conic));
+  double limit = curvature > 0 ? 1 / curvature : std::numeric_limits<double>::infinity();
+  if (s.semi_diameter > 0) limit = std::min(limit, s.semi_diameter);
+  limit = std::min(limit, term_height(s, std::isfinite(s.semi_diameter) ? runs_away : 1));
   return std::isfinite(limit) && limit > 0 ? limit : 1.0;
 }
 
-kernel::Asphere<double> asphere(const LensSurface& s) {
+kernel::Asphere<double> asphere_up_to(double height, const LensSurface& s) {
   kernel::Asphere<double> a;
   a.base = quadric(s);
-  a.height = height(s);
+  a.height = height;
   for (const auto& [order, coefficient] : s.aspheric) {
     const double scaled = coefficient * power(a.height, order);
     if (order % 2 == 0) {
@@ -46,13 +59,23 @@ kernel::Asphere<double> asphere(const LensSurface& s) {
       a.odd_count = std::max(a.odd_count, (order - 1) / 2);
     }
   }
+  return a;
+}
+
+kernel::Asphere<double> asphere(const LensSurface& s) {
   // Bounds of sag and slope from samples, widened by more than what can lie between two of them on a surface of 40th
   // order.
   constexpr int samples = 256;
+  kernel::Asphere<double> a = asphere_up_to(height(s), s);
   for (int i = 0; i <= samples; ++i) {
     const double r = a.height * i / samples;
     const auto [z, slope, defined] = kernel::sag(a, r * r);
     if (!defined) continue;
+    if (!(std::abs(slope) * r <= steepest)) {
+      a = asphere_up_to(a.height * std::max(i - 1, 1) / samples, s);
+      i = -1;
+      continue;
+    }
     a.lowest = std::min(a.lowest, z);
     a.highest = std::max(a.highest, z);
     a.steepest = std::max(a.steepest, std::abs(slope) * r);

@@ -103,6 +103,14 @@ TEST(Validate, FieldsThatContradictEachOtherAreRefused) {
               p.surfaces[0].aspheric = {{41, 0.5}};
             }),
             "s: surface 0: aspheric order is 41, wanted 2 to 40");
+  for (const petzval::AsphereTerm term : {petzval::AsphereTerm{2, -1e307}, {2, 6e11}, {3, 1e24}}) {
+    EXPECT_NE(refusal([&](auto& p) { p.surfaces[0].aspheric = {term}; }).find(", wanted one whose slope is below 1 up"),
+              std::string::npos)
+        << term.order;
+  }
+  for (const petzval::AsphereTerm term : {petzval::AsphereTerm{2, -4e11}, {3, 1e23}, {40, 1e300}}) {
+    EXPECT_EQ(refusal([&](auto& p) { p.surfaces[0].aspheric = {term}; }), "no error") << term.order;
+  }
   EXPECT_EQ(refusal([](auto& p) {
               p.surfaces[0].aspheric = {{4, 0.5}, {4, 0.5}};
             }),

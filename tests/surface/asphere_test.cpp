@@ -203,4 +203,44 @@ TYPED_TEST(AsphereOf, FindsTheFirstCrossingOfSteepRays) {
                       testing_report::one_ray<TypeParam>, most, "4 eps");
 }
 
+/// The asphere of a lens of one surface.
+Asphere<double> described(const SurfaceRow& row) {
+  petzval::Prescription p;
+  p.name = "asphere";
+  p.surfaces = {row};
+  const petzval::Lens lens = petzval::compile(p);
+  return petzval::kernel::view<double>(lens).aspheres[0];
+}
+
+// With bounds of 1e50 for sag and slope every ray of these surfaces was searched for: 9 s for a camera.
+TEST(Asphere, IsDescribedAsFarAsItIsNotSteep) {
+  SurfaceRow runaway =
+      row(-600, 0.8, 0, {{12, std::pow(20., -11)}, {14, -std::pow(11., -13)}, {37, std::pow(15., -36)}});
+  runaway.semi_diameter.reset();
+  const Asphere<double> unlimited = described(runaway);
+  EXPECT_GT(unlimited.height, 5);
+  EXPECT_LT(unlimited.height, 15);
+  EXPECT_LT(unlimited.steepest, 3);
+  for (const double rim : {446., 1e6, 1e30, 1e200}) {
+    runaway.semi_diameter = rim;
+    const Asphere<double> limited = described(runaway);
+    EXPECT_GT(limited.height, 10) << rim;
+    EXPECT_LT(limited.height, 20) << rim;
+    EXPECT_LT(limited.steepest, 17) << rim;
+    EXPECT_GT(limited.highest - limited.lowest, 0) << rim;
+    EXPECT_LT(limited.highest - limited.lowest, 34 * limited.height) << rim;
+  }
+  for (const auto& [order, coefficient] : {AsphereTerm{2, -4e11}, {40, 1e300}, {3, 1e-300}}) {
+    SurfaceRow extreme = row(50, 0, 20, {{order, coefficient}});
+    const Asphere<double> a = described(extreme);
+    EXPECT_TRUE(a.height > 0 && a.steepest < 17 && std::isfinite(a.highest - a.lowest)) << order;
+  }
+  for (const Named& named : surfaces()) {
+    const double e = 1 + named.row.conic;
+    const bool ends = named.row.radius != 0 && e > 0;
+    const double domain = ends ? std::abs(named.row.radius) / std::sqrt(e) : std::numeric_limits<double>::infinity();
+    EXPECT_EQ(described(named.row).height, std::min(*named.row.semi_diameter, domain)) << named.name;
+  }
+}
+
 }  // namespace
