@@ -82,7 +82,7 @@ std::vector<double> scales(const Lens& lens, const Film& film, const AnyRayModel
   constexpr double part = 1. / 1024;
   Film about = film;
   about.width_mm *= part, about.height_mm *= part;
-  about.shift_x_mm = about.shift_y_mm = 0;
+  about.shift_x_mm = about.shift_y_mm = about.margin_mm = 0;
   std::optional<TiltedFilm> tilted;
   if (film.tilted()) tilted.emplace(about, model.pupils());
   const std::vector<double> unit(wavelengths, 1);
@@ -166,6 +166,42 @@ CameraRayDifferential Camera::sample_differential(const CameraSample& s) const n
   return result;
 }
 
+template <class T>
+void Camera::sample_differentials(std::size_t count, const CameraSamples<T>& samples, const CameraRays<T>& rays,
+                                  const RayArrays<T>& by_raster_x, const RayArrays<T>& by_raster_y) const noexcept {
+  const auto put = [](const Ray<double>& ray, const RayArrays<T>& to, std::size_t i) {
+    to.x[i] = static_cast<T>(ray.origin.x), to.dx[i] = static_cast<T>(ray.direction.x);
+    to.y[i] = static_cast<T>(ray.origin.y), to.dy[i] = static_cast<T>(ray.direction.y);
+    to.z[i] = static_cast<T>(ray.origin.z), to.dz[i] = static_cast<T>(ray.direction.z);
+  };
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto one =
+        sample_differential({.film = {samples.film_x[i], samples.film_y[i]},
+                             .pupil_u = samples.pupil_u[i],
+                             .pupil_v = samples.pupil_v[i],
+                             .wavelength = samples.wavelengths.position(i, data_->lens.primary_wavelength())});
+    put(one.sample.ray, rays.rays, i);
+    rays.weights[i] = static_cast<T>(one.sample.weight);
+    if (rays.fates) rays.fates[i] = one.sample.fate;
+    if (rays.pdf_pupil) rays.pdf_pupil[i] = static_cast<T>(one.sample.pdf_pupil);
+    if (rays.pdf_direction) rays.pdf_direction[i] = static_cast<T>(one.sample.pdf_direction);
+    const RasterDifferential by = by_raster(one, film());
+    put(by.by_x, by_raster_x, i);
+    put(by.by_y, by_raster_y, i);
+  }
+}
+
+RasterDifferential by_raster(const CameraRayDifferential& ray, const Film& film) noexcept {
+  const auto times = [](const Ray<double>& by, double mm) { return Ray<double>{by.origin * mm, by.direction * mm}; };
+  return {times(ray.by_film_x, -film.width_mm / film.columns), times(ray.by_film_y, film.height_mm / film.rows)};
+}
+
+template PETZVAL_API void Camera::sample_differentials(std::size_t, const CameraSamples<float>&,
+                                                       const CameraRays<float>&, const RayArrays<float>&,
+                                                       const RayArrays<float>&) const noexcept;
+template PETZVAL_API void Camera::sample_differentials(std::size_t, const CameraSamples<double>&,
+                                                       const CameraRays<double>&, const RayArrays<double>&,
+                                                       const RayArrays<double>&) const noexcept;
 template PETZVAL_API void Camera::sample(std::size_t, const CameraSamples<float>&,
                                          const CameraRays<float>&) const noexcept;
 template PETZVAL_API void Camera::sample(std::size_t, const CameraSamples<double>&,

@@ -22,6 +22,9 @@ void check_rectangle(const std::string& where, const Film& film) {
   if (film.columns <= 0 || film.rows <= 0) {
     refuse("it has " + std::to_string(film.columns) + " by " + std::to_string(film.rows) + " pixels, wanted some");
   }
+  if (!(film.margin_mm >= 0 && std::isfinite(film.margin_mm))) {
+    refuse("its margin is " + to_text(film.margin_mm) + " mm, wanted a finite one, 0 or more");
+  }
   if (!(std::isfinite(film.shift_x_mm) && std::isfinite(film.shift_y_mm))) {
     refuse("its centre is (" + to_text(film.shift_x_mm) + ", " + to_text(film.shift_y_mm) + ") mm, wanted a place");
   }

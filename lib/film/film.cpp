@@ -13,12 +13,13 @@ namespace petzval::inline v0 {
 double Film::pixel_mm() const noexcept { return std::sqrt(area_mm2() / (static_cast<double>(columns) * rows)); }
 
 double Film::radius_mm() const noexcept {
-  return std::hypot(std::abs(shift_x_mm) + width_mm / 2, std::abs(shift_y_mm) + height_mm / 2);
+  return std::hypot(std::abs(shift_x_mm) + width_mm / 2 + margin_mm, std::abs(shift_y_mm) + height_mm / 2 + margin_mm);
 }
 
 std::array<FilmPoint, 4> Film::corners() const noexcept {
-  const double left = shift_x_mm - width_mm / 2, right = shift_x_mm + width_mm / 2;
-  const double low = shift_y_mm - height_mm / 2, high = shift_y_mm + height_mm / 2;
+  const double across = width_mm / 2 + margin_mm, along = height_mm / 2 + margin_mm;
+  const double left = shift_x_mm - across, right = shift_x_mm + across;
+  const double low = shift_y_mm - along, high = shift_y_mm + along;
   return {FilmPoint{left, low}, FilmPoint{right, low}, FilmPoint{left, high}, FilmPoint{right, high}};
 }
 
@@ -34,6 +35,16 @@ FilmPoint Film::point(double column, double row) const noexcept {
 Vec2<double> Film::raster(const FilmPoint& point) const noexcept {
   return {(0.5 - (point.x - shift_x_mm) / width_mm) * columns, (0.5 + (point.y - shift_y_mm) / height_mm) * rows};
 }
+
+template <class T>
+void Film::points(std::size_t count, const T* raster_x, const T* raster_y, T* film_x, T* film_y) const noexcept {
+  for (std::size_t i = 0; i < count; ++i) {
+    const FilmPoint p = point(raster_x[i], raster_y[i]);
+    film_x[i] = static_cast<T>(p.x), film_y[i] = static_cast<T>(p.y);
+  }
+}
+template PETZVAL_API void Film::points(std::size_t, const float*, const float*, float*, float*) const noexcept;
+template PETZVAL_API void Film::points(std::size_t, const double*, const double*, double*, double*) const noexcept;
 
 Vec3<double> Film::right() const noexcept { return {std::cos(swing_rad), 0, -std::sin(swing_rad)}; }
 

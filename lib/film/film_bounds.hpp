@@ -8,7 +8,8 @@
 
 namespace petzval::inline v0::film_detail {
 
-/// The rectangle of a film in numbers of type T. The half sides leave room for edge points that were rounded to T.
+/// The rectangle of a film with its margin in numbers of type T. The half sides leave room for edge points that were
+/// rounded to T.
 template <class T>
 struct FilmBounds {
   T centre_x, centre_y, half_width, half_height;
@@ -17,7 +18,10 @@ struct FilmBounds {
 template <class T>
 FilmBounds<T> bounds_of(const Film& film) noexcept {
   constexpr double rounding = 2 * std::numeric_limits<T>::epsilon();
-  const auto half = [](double length, double shift) { return length / 2 + rounding * (std::abs(shift) + length); };
+  const auto half = [&](double length, double shift) {
+    const double whole = length + 2 * film.margin_mm;
+    return whole / 2 + rounding * (std::abs(shift) + whole);
+  };
   return {static_cast<T>(film.shift_x_mm), static_cast<T>(film.shift_y_mm),
           static_cast<T>(half(film.width_mm, film.shift_x_mm)), static_cast<T>(half(film.height_mm, film.shift_y_mm))};
 }

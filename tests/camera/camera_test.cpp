@@ -144,6 +144,59 @@ TEST(Camera, HasItsFilmWhereThatSays) {
   EXPECT_EQ(camera.sample(sample).ray.direction, same.sample(sample).ray.direction);
 }
 
+TEST(Camera, SeesTheSceneFromTheMarginOfItsFilm) {
+  const Lens lens = focused("double_gauss_100mm_f2.0");
+  for (const ModelKind model : {ModelKind::thick, ModelKind::polynomial_5, ModelKind::exact_double}) {
+    Film film{.width_mm = 24, .height_mm = 16, .columns = 240, .rows = 160};
+    const CameraSample beside{.film = film.point(-2, 80), .pupil_u = 0.3, .pupil_v = 0.4};
+    EXPECT_EQ(Camera(lens, film, {.model = model}).sample(beside).fate, RayFate::outside_film);
+    film.margin_mm = 0.3;
+    const Camera camera(lens, film, {.model = model});
+    const CameraRay ray = camera.sample(beside);
+    ASSERT_TRUE(ray) << name(model);
+    EXPECT_EQ(ray.pdf_film, 1 / (24. * 16));
+    // The scene side sees the margin as the film side does: We over the densities is the weight there too.
+    const Importance back = camera.importance({ray.ray.origin, -ray.ray.direction});
+    ASSERT_TRUE(back) << name(model);
+    EXPECT_NEAR(back.raster.x, -2, 1e-3);
+    EXPECT_NEAR(back.we / (back.pdf_position * back.pdf_direction), ray.weight, 2e-3 * ray.weight) << name(model);
+    EXPECT_EQ(camera.sample({.film = film.point(-3.1, 80)}).fate, RayFate::outside_film);
+  }
+}
+
+TEST(Camera, DifferentiatesByRasterInBatches) {
+  const Lens lens = focused("double_gauss_100mm_f2.0");
+  const Camera camera(lens, {.columns = 360, .rows = 240}, {.model = ModelKind::exact_double});
+  constexpr std::size_t count = 3;
+  const double raster_x[]{100, 190, 300}, raster_y[]{60, 130, 200}, u[]{0.13, 0.52, 0.87}, v[]{0.2, 0.6, 0.3};
+  double film_x[count], film_y[count];
+  camera.film().points(count, raster_x, raster_y, film_x, film_y);
+  std::array<std::vector<double>, 19> memory;
+  for (auto& values : memory) values.resize(count);
+  const auto arrays = [&](std::size_t k) {
+    return RayArrays<double>{memory[k].data(),     memory[k + 1].data(), memory[k + 2].data(),
+                             memory[k + 3].data(), memory[k + 4].data(), memory[k + 5].data()};
+  };
+  const RayArrays<double> by_x = arrays(6), by_y = arrays(12);
+  camera.sample_differentials<double>(count, {film_x, film_y, u, v}, {arrays(0), memory[18].data()}, by_x, by_y);
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto at = [&](double column, double row) {
+      return camera.sample({.film = camera.film().point(column, row), .pupil_u = u[i], .pupil_v = v[i]}).ray;
+    };
+    ASSERT_GT(memory[18][i], 0);
+    const double h = 1e-3;
+    const Vec3<double> across =
+        (at(raster_x[i] + h, raster_y[i]).direction - at(raster_x[i] - h, raster_y[i]).direction) / (2 * h);
+    const Vec3<double> down =
+        (at(raster_x[i], raster_y[i] + h).direction - at(raster_x[i], raster_y[i] - h).direction) / (2 * h);
+    EXPECT_NEAR(by_x.dx[i], across.x, 1e-5 * glm::length(across));
+    EXPECT_NEAR(by_y.dy[i], down.y, 1e-5 * glm::length(down));
+    // The picture is upright: a step to the right turns the ray to the right, a step down turns it down.
+    EXPECT_GT(by_x.dx[i], 0);
+    EXPECT_LT(by_y.dy[i], 0);
+  }
+}
+
 TEST(Camera, HasItsEdgesOnTheFilm) {
   const Lens lens = focused("double_gauss_100mm_f2.0");
   const core_detail::Kronecker<4> random(1);

@@ -106,6 +106,32 @@ TEST(Film, TurnsItsImageTheRightWayUp) {
   EXPECT_NEAR(raster.y, 200.5, 1e-12);
 }
 
+TEST(Film, HasAMarginBesideItsRaster) {
+  Film film{.width_mm = 36, .height_mm = 24, .columns = 360, .rows = 240, .shift_x_mm = 5};
+  const double radius = film.radius_mm();
+  const FilmPoint beside = film.point(-1.5, 120), corner = film.point(361.5, -1.5);
+  EXPECT_FALSE(film.contains(beside));
+  film.margin_mm = 0.15;
+  EXPECT_TRUE(film.contains(beside));
+  EXPECT_TRUE(film.contains(corner));
+  EXPECT_FALSE(film.contains(film.point(-1.51, 120)));
+  EXPECT_EQ(film.point(-1.5, 120).x, beside.x);
+  EXPECT_EQ(film.area_mm2(), 36 * 24);
+  EXPECT_GT(film.radius_mm(), radius);
+  EXPECT_NEAR(film.raster(film.corners()[0]).x, 361.5, 1e-12);
+}
+
+TEST(Film, PlacesManyPointsAsOne) {
+  const Film film{.width_mm = 36, .height_mm = 24, .columns = 360, .rows = 240, .shift_y_mm = -3};
+  const float raster_x[]{0, 12.5f, 360}, raster_y[]{240, 7, -1};
+  float x[3], y[3];
+  film.points(3, raster_x, raster_y, x, y);
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_EQ(x[i], static_cast<float>(film.point(raster_x[i], raster_y[i]).x));
+    EXPECT_EQ(y[i], static_cast<float>(film.point(raster_x[i], raster_y[i]).y));
+  }
+}
+
 TEST(Film, WithoutAPlaceHasAxesAndNoPositions) {
   const Film film{.tilt_rad = 0.1};
   EXPECT_NEAR(film.angle(), 0.1, 1e-15);

@@ -70,6 +70,10 @@ class PETZVAL_API Camera {
 
   /// One ray with its exact derivatives.
   CameraRayDifferential sample_differential(const CameraSample& sample) const noexcept;
+  /// N rays with their derivatives by raster position, 0 for a lost ray: the values of single calls, which it makes.
+  template <class T>
+  void sample_differentials(std::size_t count, const CameraSamples<T>& samples, const CameraRays<T>& rays,
+                            const RayArrays<T>& by_raster_x, const RayArrays<T>& by_raster_y) const noexcept;
 
   /// The importance of a ray from the scene, given anywhere on its line, in its direction towards the lens.
   Importance importance(const Ray<double>& ray, Wavelength wavelength = {}) const noexcept;

@@ -28,9 +28,9 @@ struct CameraSample {
 struct CameraRay {
   Ray<double> ray{};
   RayFate fate = RayFate::vignetted;
-  double weight = 0;         ///< sr (irradiance), or without unit (unity_on_axis)
-  double pdf_film = 0;       ///< of film points distributed uniformly over the film, 1/mm^2
-  double pdf_pupil = 0;      ///< in the plane of the pupil, 1/mm^2
+  double weight = 0;     ///< sr (irradiance), or without unit (unity_on_axis)
+  double pdf_film = 0;   ///< of film points distributed uniformly over the film, and as densely over its margin, 1/mm^2
+  double pdf_pupil = 0;  ///< in the plane of the pupil, 1/mm^2
   double pdf_direction = 0;  ///< of the direction at the film point, in solid angle, 1/sr
 
   explicit operator bool() const noexcept { return weight > 0; }
@@ -74,6 +74,13 @@ struct CameraRayDifferential {
   CameraRay sample{};
   Ray<double> by_film_x{{0, 0, 0}, {0, 0, 0}}, by_film_y{{0, 0, 0}, {0, 0, 0}};
 };
+
+/// The derivatives by raster position, per pixel: those that a host's texture filters take. The raster's x runs against
+/// the film's.
+struct RasterDifferential {
+  Ray<double> by_x{{0, 0, 0}, {0, 0, 0}}, by_y{{0, 0, 0}, {0, 0, 0}};
+};
+PETZVAL_API RasterDifferential by_raster(const CameraRayDifferential& ray, const Film& film) noexcept;
 
 /// The importance of a ray from the scene, for light tracing and bidirectional methods.
 ///

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <optional>
 
 #include "petzval/core/export.hpp"
@@ -28,17 +29,22 @@ struct PETZVAL_API Film {
   double width_mm = 36, height_mm = 24;
   int columns = 3840, rows = 2560;
   double shift_x_mm = 0, shift_y_mm = 0;  ///< film point in the middle of the rectangle
-  std::optional<double> z_mm = {};        ///< lens frame; unset: the lens's own film_z()
+  /// Around the rectangle on all sides. Film points there see the scene too, for pixel filters that reach over the edge
+  /// and for overscan: a filter of radius r pixels wants r * width_mm / columns. Size, area and raster are those of the
+  /// rectangle.
+  double margin_mm = 0;
+  std::optional<double> z_mm = {};  ///< lens frame; unset: the lens's own film_z()
   double tilt_rad = 0, swing_rad = 0;
 
   bool tilted() const noexcept { return tilt_rad != 0 || swing_rad != 0; }
   double area_mm2() const noexcept { return width_mm * height_mm; }
   /// The side of a square of the area of a pixel.
   double pixel_mm() const noexcept;
-  /// From the axis to the farthest corner.
+  /// From the axis to the farthest corner of the margin.
   double radius_mm() const noexcept;
+  /// Of the margin.
   std::array<FilmPoint, 4> corners() const noexcept;
-  /// Edges belong to the film, as point() rounds them.
+  /// Within the margin. Edges belong to it, as point() rounds them.
   bool contains(const FilmPoint& point) const noexcept;
 
   /// The film point of a place in the picture, and back. Raster: (0, 0) is the upper left corner of the upright
@@ -47,6 +53,10 @@ struct PETZVAL_API Film {
   /// and the picture at the top. Nothing else in petzval turns an image.
   FilmPoint point(double column, double row) const noexcept;
   Vec2<double> raster(const FilmPoint& point) const noexcept;
+  /// The film points of many places, float or double. raster_x, raster_y, film_x, film_y: N each; outputs may be
+  /// inputs.
+  template <class T>
+  void points(std::size_t count, const T* raster_x, const T* raster_y, T* film_x, T* film_y) const noexcept;
 
   /// The film's axes in the lens frame: what +x, +y and +z become.
   Vec3<double> right() const noexcept;
