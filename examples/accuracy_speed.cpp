@@ -54,7 +54,7 @@ int main(int argc, char** argv) {
       "planes from half the focus distance to infinity, and for the plane in focus; at infinity angle times focal "
       "length), of the pupil's shape (symmetric difference over area) and of the exposure (largest over the film), ns "
       "per ray in batches on one thread, and set-up time. Then chooses the fastest model whose rays are within 4, 1, "
-      "0.25 and 0.05 pixels. With --json prints the rows only.\n"
+      "0.25 and 0.05 pixels and whose pupils have the lens's shape within 10 %. With --json prints the rows only.\n"
       "front: no other model is both faster and more accurate (max_um). At the d line (587.5618 nm).\n"
       "--out writes DIR/LENS_accuracy_speed.csv and .svg and prints their paths (with --json on standard error).",
       "accuracy_speed");

@@ -143,14 +143,14 @@ Lens usual_lens() { return focused("double_gauss_52mm_f1.8", 3000); }
 enum Usual : std::size_t { none, one_px, px_and_shape, zero_px, half_px, tenth_of_blur, either, px_and_no_blur, all };
 const std::vector<ModelChoice>& usual_choices() {
   static const std::vector<ModelChoice> choices = [] {
-    std::vector<ErrorBudget> budgets(all + 1);
-    budgets[one_px] = {.max_px = 1};
+    std::vector<ErrorBudget> budgets(all + 1, ErrorBudget{.pupil_shape = {}});
+    budgets[one_px].max_px = 1;
     budgets[px_and_shape] = {.max_px = 1, .pupil_shape = 0.02};
-    budgets[zero_px] = {.max_px = 0};
-    budgets[half_px] = {.max_px = 0.5};
-    budgets[tenth_of_blur] = {.max_of_blur = 0.1};
-    budgets[either] = {.max_px = 0.5, .max_of_blur = 0.1};
-    budgets[px_and_no_blur] = {.max_px = 1, .max_of_blur = 0};
+    budgets[zero_px].max_px = 0;
+    budgets[half_px].max_px = 0.5;
+    budgets[tenth_of_blur].max_of_blur = 0.1;
+    budgets[either].max_px = 0.5, budgets[either].max_of_blur = 0.1;
+    budgets[px_and_no_blur].max_px = 1, budgets[px_and_no_blur].max_of_blur = 0;
     budgets[all] = {.max_px = 0.25, .exposure = 0.01, .pupil_shape = 0.02};
     return choose_models(usual_lens(), usual(), budgets);
   }();
@@ -217,6 +217,23 @@ bool says(const std::vector<std::string>& lines, const std::string& part) {
   return std::ranges::any_of(lines, [&](const std::string& l) { return l.find(part) != std::string::npos; });
 }
 
+// A ray that only one of model and lens passes counts in pupil_shape alone: pixels do not see that a thin lens is round
+// where the lens has cat's eyes.
+TEST(ChooseModel, WantsThePupilsOfTheLensUnlessToldOtherwise) {
+  const Lens lens = focused("modern_41mm_f1.45", 3000);
+  const std::vector<ErrorBudget> budgets{{.max_px = 40}, {.max_px = 40, .pupil_shape = {}}, {}};
+  const auto choices = choose_models(lens, {.near_mm = 1500}, budgets);
+  for (const std::size_t by_default : {0, 2}) {
+    const ModelChoice& choice = choices[by_default];
+    EXPECT_LE(candidate_of(choice, choice.model).bound_pupil_shape, 0.1) << name(choice.model);
+    EXPECT_FALSE(candidate_of(choice, ModelKind::thin).inside);
+    EXPECT_FALSE(candidate_of(choice, ModelKind::pinhole).inside);
+  }
+  EXPECT_TRUE(candidate_of(choices[1], ModelKind::thin).inside);
+  EXPECT_GT(candidate_of(choices[1], choices[1].model).bound_pupil_shape, 0.5) << name(choices[1].model);
+  EXPECT_TRUE(says(choices[0].reasons, "pupil shape by up to"));
+}
+
 TEST(ChooseModel, SaysWhatElseIsNotNeeded) {
   const auto glasses = GlassCatalogue::load(std::filesystem::path(PETZVAL_TEST_DATA) / "glass");
   const Lens lens = with_focus(compile(data_prescription("cooke_triplet_50mm_f5"), std::array{486.1, 587.6, 656.3},
@@ -224,7 +241,7 @@ TEST(ChooseModel, SaysWhatElseIsNotNeeded) {
                                3000, {.origin = DistanceOrigin::film});
   const Film film{.width_mm = 6, .height_mm = 4, .columns = 600, .rows = 400};
   const std::vector<ErrorBudget> budgets{
-      {.max_px = 20, .pupil_shape = 0.2}, {.max_px = 1e-3, .pupil_shape = 1e-3}, {.max_px = 20}};
+      {.max_px = 20, .pupil_shape = 0.2}, {.max_px = 1e-3, .pupil_shape = 1e-3}, {.max_px = 20, .pupil_shape = {}}};
   const auto loose = choose_models(lens, {.near_mm = 1500, .film = film, .f_number = 16}, budgets);
   for (const char* part : {"3 wavelengths: 587.6 nm", "a pupil for each field", "distortion"}) {
     EXPECT_TRUE(says(loose[0].not_needed, part)) << part;

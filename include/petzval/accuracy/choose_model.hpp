@@ -24,12 +24,17 @@ struct SceneRequirements {
   std::vector<double> wavelengths_nm = {};  ///< compiled ones; empty: all of them
 };
 
-/// The largest errors that a model may have. Unset limits are not checked; an empty budget accepts every model.
+/// The largest errors that a model may have. Unset limits are not checked.
+///
+/// max_px and max_of_blur see where a ray goes that passes both the model and the lens. Neither sees rays that only one
+/// of the two passes: these draw blurs of another shape, and go where the picture has no light. pupil_shape sees them,
+/// and is the only limit that is set by default: without it a thin lens, round at every field, passes for a lens whose
+/// pupils are cat's eyes. exposure sees how bright film points are, and not why.
 struct ErrorBudget {
-  std::optional<double> max_px = {};       ///< of a ray, pixels
-  std::optional<double> max_of_blur = {};  ///< of a ray, as a fraction of the local blur; the larger limit counts
-  std::optional<double> exposure = {};     ///< as a fraction
-  std::optional<double> pupil_shape = {};  ///< as a fraction of the pupil's area
+  std::optional<double> max_px = {};        ///< of a ray, pixels
+  std::optional<double> max_of_blur = {};   ///< of a ray, as a fraction of the local blur; the larger limit counts
+  std::optional<double> exposure = {};      ///< as a fraction
+  std::optional<double> pupil_shape = 0.1;  ///< as a fraction of the pupil's area; unset it with std::nullopt
 };
 
 /// A model as measured for a scene.
