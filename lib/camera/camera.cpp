@@ -69,15 +69,14 @@ double on_axis(const FilmView& view, std::size_t wavelength) {
 }
 
 std::vector<double> scales(const Lens& lens, const Film& film, const AnyRayModel& model, Normalisation normalisation) {
-  std::vector<double> result;
   const std::size_t wavelengths = lens.wavelengths_nm().size();
-  if (normalisation == Normalisation::irradiance) {
-    for (std::size_t w = 0; w < wavelengths; ++w) {
-      const double index = lens.index(lens.surface_count(), w);
-      result.push_back(index * index);
-    }
-    return result;
+  std::vector<double> result;
+  for (std::size_t w = 0; w < wavelengths; ++w) {
+    const double index = lens.index(lens.surface_count(), w);
+    result.push_back(index * index);
   }
+  if (normalisation == Normalisation::irradiance) return result;
+
   // A small film about the axis, where a shifted one may not be.
   constexpr double part = 1. / 1024;
   Film about = film;
@@ -85,16 +84,20 @@ std::vector<double> scales(const Lens& lens, const Film& film, const AnyRayModel
   about.shift_x_mm = about.shift_y_mm = about.margin_mm = 0;
   std::optional<TiltedFilm> tilted;
   if (film.tilted()) tilted.emplace(about, model.pupils());
-  const std::vector<double> unit(wavelengths, 1);
-  const FilmView view{model, about, tilted ? &*tilted : nullptr, unit};
-  for (std::size_t w = 0; w < wavelengths; ++w) {
-    const double axis = on_axis(view, w);
-    if (!(axis > 0)) {
-      throw Error(lens.name() + ": camera: the axis is dark, wanted light there for weights that are unity on it");
-    }
-    result.push_back(1 / axis);
+  const FilmView view{model, about, tilted ? &*tilted : nullptr, result};
+  const auto light = [&](std::size_t wavelength) {
+    const double axis = on_axis(view, wavelength);
+    if (axis > 0) return axis;
+    throw Error(lens.name() + ": camera: the axis is dark, wanted light there for weights that are unity on it");
+  };
+  if (normalisation == Normalisation::unity_on_axis) {
+    const double axis = light(lens.primary_wavelength());
+    for (double& scale : result) scale /= axis;
+    return result;
   }
-  return result;
+  std::vector<double> each;
+  for (std::size_t w = 0; w < wavelengths; ++w) each.push_back(result[w] / light(w));
+  return each;
 }
 
 }  // namespace

@@ -66,7 +66,7 @@ void weigh(const FilmBounds<T>& film, T depth, std::size_t count, const T* film_
     const bool kept = on_film(bounds, film_x[i], film_y[i]), wanted = scale[i] > T(0), seen = areas[i] > T(0);
     RayFate fate = fates[i];
     fate = seen ? fate : RayFate::vignetted;
-    fate = wanted ? fate : RayFate::missed_surface;
+    fate = wanted ? fate : RayFate::invalid;
     fate = kept ? fate : RayFate::outside_film;
     fates[i] = fate;
     // cos / pdf_direction, pdf_direction = pdf_pupil length^3 / depth.

@@ -125,12 +125,16 @@ SceneSide::SceneSide(const LensFacts& facts, const Film& film, std::optional<Til
   }
 }
 
+bool SceneSide::valid(const Ray<double>& ray, std::size_t wavelength) const noexcept {
+  // As the tracers take rays.
+  const bool unit = std::abs(glm::dot(ray.direction, ray.direction) - 1) < 1e-3;
+  return wavelength < wavelengths_.size() && finite(ray.origin) && unit;
+}
+
 SceneSide::Arrival SceneSide::arrive(const AnyRayModel& model, const Ray<double>& ray,
                                      std::size_t wavelength) const noexcept {
   Arrival result;
-  // As the tracers take rays.
-  const bool unit = std::abs(glm::dot(ray.direction, ray.direction) - 1) < 1e-3;
-  if (wavelength >= wavelengths_.size() || !finite(ray.origin) || !unit) return result;
+  if (!valid(ray, wavelength)) return result;
   // Nothing is lost on the way from a far point where the line begins near the lens.
   const Vec3<double>&d = ray.direction, o = ray.origin - d * glm::dot(ray.origin, d);
   const TwoPlaneRays<double> line{&result.upright.x, &result.upright.y, &result.pupil.x, &result.pupil.y};
@@ -175,7 +179,7 @@ void SceneSide::weigh(Importance& result, const AnyRayModel& model, const Arriva
 Importance SceneSide::importance(const AnyRayModel& model, const Ray<double>& ray,
                                  std::size_t wavelength) const noexcept {
   // No ray meets a point but one that was aimed at it.
-  if (model.pinhole()) return {};
+  if (model.pinhole()) return {.fate = valid(ray, wavelength) ? RayFate::vignetted : RayFate::invalid};
   const Arrival arrival = arrive(model, ray, wavelength);
   const auto& [fate, upright, pupil] = arrival;
   const auto met = on_film(upright, pupil);
@@ -194,6 +198,7 @@ Importance SceneSide::importance(const AnyRayModel& model, const Ray<double>& ra
 
 ImportanceSample SceneSide::sample_importance(const AnyRayModel& model, const Vec3<double>& point, double u, double v,
                                               std::size_t wavelength) const noexcept {
+  if (wavelength >= wavelengths_.size() || !finite(point)) return {.importance = {.fate = RayFate::invalid}};
   if (model.pinhole()) return through_pinhole(model, point, u, v, wavelength);
   const EntranceSample s = entrance_.sample(point, u, v, wavelength);
   if (!(s.pdf > 0)) return {};

@@ -152,7 +152,7 @@ CameraRay sample_ray(const FilmView& view, const FilmPoint& film, double u, doub
   }
 
   if (!(area > 0)) out.fate = RayFate::vignetted;
-  if (!(known && view.scale[wavelength] > 0)) out.fate = RayFate::missed_surface;
+  if (!(known && view.scale[wavelength] > 0)) out.fate = RayFate::invalid;
   if (!kept) out.fate = RayFate::outside_film;
   if (kept && area > 0) {
     const double x = line.pupil_x - line.film_x, y = line.pupil_y - line.film_y, depth = pupils.space().depth();

@@ -41,7 +41,7 @@ class SceneSide {
   };
   /// The image-space ray that a scene ray becomes.
   struct Arrival {
-    RayFate fate = RayFate::missed_surface;
+    RayFate fate = RayFate::invalid;
     FilmPoint upright, pupil;
   };
   /// Where an image-space ray meets the film, and the virtual point of that; of an upright film, the point itself.
@@ -49,6 +49,8 @@ class SceneSide {
     FilmPoint point, virtual_point;
   };
   std::optional<OnFilm> on_film(const FilmPoint& upright, const FilmPoint& pupil) const noexcept;
+  /// A direction of unit length, numbers that are finite, and a wavelength that exists.
+  bool valid(const Ray<double>& ray, std::size_t wavelength) const noexcept;
   Arrival arrive(const AnyRayModel& model, const Ray<double>& ray, std::size_t wavelength) const noexcept;
   /// Film point, raster and fate of a ray that arrives.
   Importance met_by(const Arrival& arrival, const std::optional<OnFilm>& met) const noexcept;

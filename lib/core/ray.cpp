@@ -12,6 +12,7 @@ std::string_view name(RayFate fate) noexcept {
     case RayFate::no_convergence: return "no_convergence";
     case RayFate::outside_fit: return "outside_fit";
     case RayFate::outside_film: return "outside_film";
+    case RayFate::invalid: return "invalid";
   }
   return "unknown";
 }

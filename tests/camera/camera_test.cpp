@@ -370,13 +370,13 @@ TEST(Camera, GivesAFateToBadSamples) {
     expect_lost(camera, {{1, 2}, nan, 0.5}, RayFate::vignetted);
     expect_lost(camera, {{1, 2}, 0.5, nan}, RayFate::vignetted);
     expect_lost(camera, {{1, 2}, inf, 0.5}, RayFate::vignetted);
-    expect_lost(camera, {{1, 2}, 0.5, 0.5, 1}, RayFate::missed_surface);
-    expect_lost(camera, {{1, 2}, 0.5, 0.5, 1u << 20}, RayFate::missed_surface);
+    expect_lost(camera, {{1, 2}, 0.5, 0.5, 1}, RayFate::invalid);
+    expect_lost(camera, {{1, 2}, 0.5, 0.5, 1u << 20}, RayFate::invalid);
     // The corners of film and pupil square belong to them.
     for (const double u : {0.0, 1.0}) {
       const CameraRay corner = camera.sample({{18, -12}, u, 1 - u});
       EXPECT_NE(corner.fate, RayFate::outside_film);
-      EXPECT_NE(corner.fate, RayFate::missed_surface);
+      EXPECT_NE(corner.fate, RayFate::invalid);
     }
   };
   for (const ModelKind model : models()) {
@@ -398,7 +398,7 @@ TEST(Camera, GivesAFateToBadSamplesInBatches) {
     EXPECT_EQ(samples.fates[3], RayFate::outside_film) << name(model);
     EXPECT_EQ(samples.fates[40], RayFate::outside_film) << name(model);
     EXPECT_EQ(samples.fates[50], RayFate::vignetted) << name(model);
-    EXPECT_EQ(samples.fates[60], RayFate::missed_surface) << name(model);
+    EXPECT_EQ(samples.fates[60], RayFate::invalid) << name(model);
     EXPECT_EQ(samples.fates[99], RayFate::outside_film) << name(model);
     for (std::size_t i = 0; i < samples.size(); ++i) {
       const auto& [origin, direction] = samples.ray(i);
@@ -435,6 +435,11 @@ TEST(Camera, SeesBehindItselfWithAFisheye) {
     beyond += samples.fates[i] == RayFate::transmitted && direction.z > 0;
   }
   EXPECT_GT(beyond, 100);  // rays run towards -z; beyond 90 degrees they run towards +z
+}
+
+TEST(Camera, TakesNoOptionsForTheDefaultOnes) {
+  const Lens lens = testing::data_lens("tessar_100mm_f2.8");
+  EXPECT_EQ(Camera(lens, {}, {}).model(), Camera(lens, {}).model());
 }
 
 TEST(Camera, RefusesFilmsThatAreNone) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <numbers>
 #include <random>
 #include <string>
@@ -15,6 +16,7 @@
 #include "petzval/accuracy/model_error.hpp"
 #include "petzval/core/sobol.hpp"
 #include "petzval/focus/focus.hpp"
+#include "petzval/media/glass.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "petzval/pupil/illumination.hpp"
@@ -22,8 +24,10 @@
 namespace petzval {
 namespace {
 
-double mean_weight(const Camera& camera, const FilmPoint& film, std::uint32_t count = 4096, std::uint32_t seed = 3) {
+double mean_weight(const Camera& camera, const FilmPoint& film, std::uint32_t count = 4096, std::uint32_t seed = 3,
+                   std::uint16_t wavelength = 0) {
   testing::Samples<double> samples;
+  samples.wavelengths.assign(count, wavelength);
   for (std::uint32_t i = 0; i < count; ++i) {
     const auto uv = owen_sobol(i, seed);
     const double u = uv.x, v = uv.y;
@@ -101,6 +105,31 @@ TEST(WhiteFurnace, GivesOneOnTheAxisWhereThatIsAskedFor) {
     if (model < ModelKind::exact_float) continue;
     const double scale = mean_weight(camera, {10, 10}) / mean_weight(absolute, {10, 10});
     EXPECT_NEAR(scale * film_irradiance(lens, {}), 1, 6e-4) << name(model);
+  }
+}
+
+// The lens is brighter on the axis at some wavelengths than at others: its tint.
+TEST(WhiteFurnace, KeepsTheTintOfTheLensUnlessToldOtherwise) {
+  const auto glasses = GlassCatalogue::load(std::filesystem::path(PETZVAL_TEST_DATA) / "glass");
+  const Lens lens = compile(testing::data_prescription("ball_10mm"), std::array{440.0, 587.5618, 650.0},
+                            {.glasses = &glasses, .missing_glass = MissingGlass::abbe});
+  const Film film{.width_mm = 1, .height_mm = 1};
+  const auto light = [&](const Camera& camera, std::uint16_t w) { return mean_weight(camera, {}, 4096, 3, w); };
+  for (const ModelKind model : {ModelKind::thin, ModelKind::exact_double}) {
+    const Camera absolute(lens, film, {.model = model});
+    const Camera tinted(lens, film, {.model = model, .normalisation = Normalisation::unity_on_axis});
+    const Camera white(lens, film, {.model = model, .normalisation = Normalisation::unity_at_each_wavelength});
+    EXPECT_GT(std::abs(light(absolute, 0) / light(absolute, 1) - 1), 2e-3) << name(model);
+    EXPECT_NEAR(light(tinted, 1), 1, 2e-3) << name(model);
+    for (const std::uint16_t w : {0, 1, 2}) {
+      EXPECT_NEAR(light(tinted, w) / light(tinted, 1), light(absolute, w) / light(absolute, 1), 1e-9) << name(model);
+      EXPECT_NEAR(light(white, w), 1, 2e-3) << name(model);
+      // The other side of the camera has the same unit.
+      const Ray<double> ray{{0.01, 0, -1000}, {0, 0, 1}};
+      const double we = absolute.importance(ray, w).we / light(absolute, w);
+      EXPECT_NEAR(tinted.importance(ray, w).we / light(tinted, w), we, 1e-9 * we) << name(model);
+      EXPECT_NEAR(white.importance(ray, w).we / light(white, w), we, 1e-9 * we) << name(model);
+    }
   }
 }
 

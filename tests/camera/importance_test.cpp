@@ -159,10 +159,13 @@ TEST(Importance, IsNothingForWhatMakesNoRay) {
       const Importance i = camera.importance(ray);
       EXPECT_EQ(i.we, 0);
       EXPECT_NE(i.fate, RayFate::transmitted);
+      // All but the last are no rays.
+      EXPECT_EQ(i.fate == RayFate::invalid, ray.origin.y != 500) << name(i.fate);
       expect_finite(i);
     }
-    EXPECT_FALSE(camera.sample_importance({0, 0, -1000}, 0.4, 0.6, 1));
-    EXPECT_FALSE(camera.importance({{0, 0, -1000}, {0, 0, 1}}, 1));
+    EXPECT_EQ(camera.sample_importance({0, 0, -1000}, 0.4, 0.6, 1).importance.fate, RayFate::invalid);
+    EXPECT_EQ(camera.importance({{0, 0, -1000}, {0, 0, 1}}, 1).fate, RayFate::invalid);
+    EXPECT_EQ(camera.importance({{0, 0, -1000}, {0, 0, 0.9}}).fate, RayFate::invalid);
     EXPECT_FALSE(camera.project({0, 0, -1000}, 1));
     if (model != ModelKind::pinhole) {
       EXPECT_FALSE(camera.sample_importance({0, 0, -1000}, nan, 0.6));

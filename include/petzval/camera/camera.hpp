@@ -18,8 +18,13 @@ class Lens;
 
 /// The unit of a camera's weights.
 enum class Normalisation : std::uint8_t {
-  irradiance,     ///< irradiance of the film for a scene of radiance 1, with natural darkening and f-number
-  unity_on_axis,  ///< irradiance over that on the axis: a uniform scene of radiance 1 gives 1 there
+  irradiance,  ///< irradiance of the film for a scene of radiance 1, with natural darkening and f-number
+  /// Irradiance over that on the axis at the primary wavelength, where a uniform scene of radiance 1 gives 1. The other
+  /// wavelengths have the same scale: what the lens makes brighter at one than at another, its tint, stays.
+  unity_on_axis,
+  /// Each wavelength over its own irradiance on the axis: a white scene is white there, and the tint of the lens is
+  /// lost.
+  unity_at_each_wavelength,
 };
 
 struct CameraOptions {
@@ -61,7 +66,7 @@ class PETZVAL_API Camera {
   ModelKind model() const noexcept;
 
   /// One ray; it agrees with that of a batch within rounding. Fates of invalid samples: outside_film for a film point
-  /// that is outside the film or not finite, missed_surface for a wavelength that was not compiled, vignetted for a
+  /// that is outside the film or not finite, invalid for a wavelength that was not compiled, vignetted for a
   /// pupil without area and pupil samples that are not finite.
   CameraRay sample(const CameraSample& sample) const noexcept;
   /// N rays, float or double, in the precision of the model.

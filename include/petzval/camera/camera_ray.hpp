@@ -28,7 +28,7 @@ struct CameraSample {
 struct CameraRay {
   Ray<double> ray{};
   RayFate fate = RayFate::vignetted;
-  double weight = 0;     ///< sr (irradiance), or without unit (unity_on_axis)
+  double weight = 0;     ///< sr (irradiance), or without unit
   double pdf_film = 0;   ///< of film points distributed uniformly over the film, and as densely over its margin, 1/mm^2
   double pdf_pupil = 0;  ///< in the plane of the pupil, 1/mm^2
   double pdf_direction = 0;  ///< of the direction at the film point, in solid angle, 1/sr
@@ -86,15 +86,16 @@ PETZVAL_API RasterDifferential by_raster(const CameraRayDifferential& ray, const
 ///
 /// The film's mean irradiance is the integral of We x radiance over the rays of the scene, in the measure cos dA dw of
 /// any surface in front of the lens. For Normalisation::irradiance, We is the square of the index in front of the lens
-/// over the film's area for every ray that arrives; there is no cosine in it. unity_on_axis divides We as it divides
-/// weights. The index of the film's medium changes the weights of film samples by its square, and not We: derivation in
-/// lib/camera/importance.cpp.
+/// over the film's area for every ray that arrives; there is no cosine in it. The other normalisations divide We as
+/// they divide weights. The index of the film's medium changes the weights of film samples by its square, and not We:
+/// derivation in lib/camera/importance.cpp.
 ///
 /// First-order models are linear in slopes and do not conserve etendue, as no lens can that images planes sharply.
 /// There We has the factor (cos t / cos t')^4, t and t' the angles of the ray with the axis behind and before the lens,
 /// so that film and scene hold the same light in every model.
 struct Importance {
   double we = 0;  ///< 1/mm^2; 0 for a ray that is lost or misses the film
+  /// invalid: a direction that is not of unit length, numbers that are not finite, a wavelength that was not compiled.
   RayFate fate = RayFate::vignetted;
   FilmPoint film{};  ///< where the ray meets the plane of the film
   Vec2<double> raster{0, 0};
