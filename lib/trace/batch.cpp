@@ -52,10 +52,16 @@ BlockJob<R> job_for(const Lens& lens, const BatchOptions& options) noexcept {
 /// Memory for a block of rays and their derivatives: for the rest of a batch, and for arrays of structures.
 template <class R>
 struct Block {
-  alignas(64) std::array<std::array<R, block>, 18> v{};
+  alignas(64) std::array<std::array<R, block>, 18> v;
   std::array<RayFate, block> fates;
   std::array<int, block> surfaces;
   std::array<std::uint16_t, block> wavelengths{};
+
+  /// On the axis, where no ray has been put.
+  explicit Block(bool with_tangents = false) noexcept {
+    for (std::size_t k = 0; k < (with_tangents ? 18 : 6); ++k) v[k].fill(R(0));
+    v[5].fill(R(1));
+  }
 
   template <class T = R>
   RayArrays<T> arrays(std::size_t first = 0) noexcept {
@@ -80,10 +86,10 @@ void copy(std::size_t count, const RayArrays<T>& from, std::size_t begin, const 
   for (std::size_t k = 0; k < 6; ++k) std::copy_n(pointers(from)[k] + begin, count, pointers(to)[k] + to_begin);
 }
 
-/// Points a job at a block.
+/// Points a job at the first `count` rays of a block.
 template <class R>
-void use(Block<R>& rays, BlockJob<R>& job) noexcept {
-  job.blocks = 1;
+void use(Block<R>& rays, std::size_t count, BlockJob<R>& job) noexcept {
+  job.rays = count;
   job.in = rays.template arrays<const R>();
   job.out = rays.arrays();
   job.fates = rays.fates.data();
@@ -97,7 +103,7 @@ void trace_all(const Lens& lens, std::size_t count, const RayArrays<const R>& in
                RayFate* fates, int* surfaces, const BatchOptions& options) noexcept {
   const auto trace_blocks = loops<R>(tracer(options.instruction_set, options.arithmetic));
   auto job = job_for<R>(lens, options);
-  job.blocks = count / block;
+  job.rays = count - count % block;
   job.in = in;
   job.out = out;
   job.fates = fates;
@@ -106,13 +112,12 @@ void trace_all(const Lens& lens, std::size_t count, const RayArrays<const R>& in
   job.tangents_out = tangents_out;
   trace_blocks(job);
 
-  const std::size_t done = job.blocks * block, rest = count - done;
+  const std::size_t done = job.rays, rest = count - done;
   if (rest == 0) return;
-  Block<R> last;
-  std::fill(last.v[5].begin(), last.v[5].end(), R(1));
+  Block<R> last(tangents_in != nullptr);
   copy(rest, in, done, last.arrays(), 0);
   if (job.wavelengths) std::copy_n(options.wavelengths.each + done, rest, last.wavelengths.begin());
-  use(last, job);
+  use(last, rest, job);
   const auto tangents = last.template tangents<const R>();
   if (tangents_in) {
     copy(rest, tangents_in->u, done, last.arrays(6), 0);
@@ -155,7 +160,7 @@ void trace(const Lens& lens, std::span<const Ray<T>> rays, TracedRay<T>* traced,
   const auto trace_blocks = loops<T>(tracer(options.instruction_set, options.arithmetic));
   auto job = job_for<T>(lens, options);
   Block<T> some;
-  use(some, job);
+  use(some, block, job);
   const auto& [x, y, z, dx, dy, dz] = some.arrays();
   for (std::size_t begin = 0; begin < rays.size(); begin += block) {
     const std::size_t count = std::min(block, rays.size() - begin);
@@ -165,6 +170,7 @@ void trace(const Lens& lens, std::span<const Ray<T>> rays, TracedRay<T>* traced,
       dx[i] = direction.x, dy[i] = direction.y, dz[i] = direction.z;
     }
     if (options.wavelengths.each) std::copy_n(options.wavelengths.each + begin, count, some.wavelengths.begin());
+    job.rays = count;
     trace_blocks(job);
     for (std::size_t i = 0; i < count; ++i) {
       traced[begin + i] = {{{x[i], y[i], z[i]}, {dx[i], dy[i], dz[i]}}, some.fates[i], some.surfaces[i]};

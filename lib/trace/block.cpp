@@ -82,12 +82,12 @@ void trace_blocks(const BlockJob<R>& job) noexcept {
       index[l] = sequence.n_first[job.wavelength];
       per_index[l] = sequence.per_n_last[job.wavelength];
     }
-    for (std::size_t o = 0; o < job.blocks * block_rays; o += rays) {
+    for (std::size_t o = 0; o < job.rays; o += rays) {
       trace_bundle(job, o, index, per_index, [&](std::size_t j) { return SharedMedia<R>{bends + j}; });
     }
     return;
   }
-  for (std::size_t o = 0; o < job.blocks * block_rays; o += rays) {
+  for (std::size_t o = 0; o < job.rays; o += rays) {
     std::uint16_t wavelengths[rays];
     for (std::size_t l = 0; l < rays; ++l) {
       // A wavelength that was not compiled loses the ray: there is no index.

@@ -25,7 +25,7 @@ enum class Found : std::uint8_t { hit, miss, beside, no_convergence };
 template <class R>
 using AsphereSearch = Found (*)(const kernel::Asphere<R>& asphere, R sense, BeforeAsphere<R>& ray);
 
-/// Input and output of the loops over blocks. Every array holds `blocks` times block_rays values.
+/// Input and output of the loops over blocks. Every array holds `rays` values, rounded up to whole blocks.
 template <class R>
 struct BlockJob {
   kernel::SurfaceSequence<R> sequence;
@@ -36,7 +36,7 @@ struct BlockJob {
   const std::uint16_t* wavelengths = nullptr;  ///< of each ray, or null
   bool apertures = true;
   std::span<const kernel::StopEdge<R>> iris{};
-  std::size_t blocks = 0;
+  std::size_t rays = 0;
   RayArrays<const R> in;
   RayArrays<R> out;
   RayFate* fates = nullptr;                           ///< or null
