@@ -335,16 +335,6 @@ void FilmPupilTable::sample(std::size_t count, const T* film_x, const T* film_y,
     data_->images->sample(count, film_x, film_y, u, v, wavelengths, x, y, areas);
     return;
   }
-  // A few are done before a block has begun.
-  constexpr std::size_t few = 8;
-  if (count < few) {
-    for (std::size_t i = 0; i < count; ++i) {
-      const PupilSample s =
-          sample(FilmPoint{film_x[i], film_y[i]}, u[i], v[i], wavelengths.position(i, data_->primary));
-      x[i] = static_cast<T>(s.x), y[i] = static_cast<T>(s.y), areas[i] = static_cast<T>(s.area);
-    }
-    return;
-  }
   const auto& loops = pupil_table_detail::film_pupil_table();
   if constexpr (sizeof(T) == sizeof(float)) {
     loops.single(data_->table<T>(), count, film_x, film_y, u, v, wavelengths, x, y, areas);
@@ -428,9 +418,10 @@ FilmPupilTable::Derivatives FilmPupilTable::derivatives(const FilmPoint& film, d
   const Jet r = sqrt(x * x + y * y);
   Jet t = r * data_->strips_per_mm();
   t.a = found.t;
+  const Jet cosine = turn ? y / r : Jet(1), sine = turn ? x / r : Jet(0);
   Jet share(u);
   if (turn) {
-    share -= turn_of(x, y);
+    share -= turn_of(sine, cosine);
     if (share.a < 0) share += 1.0;
     if (share.a >= 1) share -= 1.0;
   }
@@ -438,7 +429,6 @@ FilmPupilTable::Derivatives FilmPupilTable::derivatives(const FilmPoint& film, d
   if (!(whole > 0)) return {};
   const std::size_t k = sector_with(found.strip, t.a, share.a * whole);
   const auto [px, py] = place(found.strip, k, t, share, v);
-  const Jet cosine = turn ? y / r : Jet(1), sine = turn ? x / r : Jet(0);
   const Jet qx = cosine * px + sine * py, qy = cosine * py - sine * px;
   return {{qx.v[0], qy.v[0]}, {qx.v[1], qy.v[1]}};
 }

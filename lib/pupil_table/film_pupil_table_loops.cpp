@@ -3,10 +3,10 @@
 // its lanes. Names are local, and no other library is called, as in lib/trace/lanes.hpp.
 #include "film_pupil_table_loops.hpp"
 
+#include <type_traits>
+
 namespace petzval::inline v0::pupil_table_detail {
 namespace {
-
-constexpr std::size_t block = 64;
 
 inline float root(float x) noexcept { return __builtin_sqrtf(x); }
 inline double root(double x) noexcept { return __builtin_sqrt(x); }
@@ -20,7 +20,7 @@ inline R clamped(R x) noexcept {
 /// Where a film point stands in the table, and which way it lies; nowhere: at the table's beginning.
 template <class R>
 struct Place {
-  R t, cosine, sine, film_x, film_y;  ///< the film point again, or (0, 1) where it has no direction
+  R t, cosine, sine;
   std::int32_t known, strip;
 };
 
@@ -32,13 +32,14 @@ inline Place<R> place_of(const StripTable<R>& table, R film_x, R film_y, std::in
   const R r = root(r2);
   const std::int32_t known = (r <= table.lit_radius) & (wavelength >= 0) & sound;
   const std::int32_t turn = (table.turned ? 1 : 0) & known & (r2 > R(0));
-  const R fx = turn ? film_x : R(0), fy = turn ? film_y : R(1), length = turn ? r : R(1);
+  const R per_length = R(1) / (turn ? r : R(1));
   const R place = known ? r * table.strips_per_mm : R(0);
   const auto at = static_cast<std::int32_t>(place);
   const std::int32_t inner = at < last ? at : last;
   const std::int32_t strip =
       known ? (inner + wavelength * (last + 1)) * static_cast<std::int32_t>(StripLayout::size) : 0;
-  return {place - static_cast<R>(inner), fy / length, fx / length, fx, fy, known, strip};
+  return {place - static_cast<R>(inner), turn ? film_y * per_length : R(1), turn ? film_x * per_length : R(0), known,
+          strip};
 }
 
 inline std::int32_t index(std::size_t place) noexcept { return static_cast<std::int32_t>(place); }
@@ -62,7 +63,7 @@ inline Sector<R> sector_of(const R* all, std::int32_t strip, std::int32_t k, R t
 }
 
 /// One block, in loops without branches. Slots beyond `count` hold zeros.
-template <bool obscured, class R>
+template <std::size_t block, bool obscured, class R>
 void sample_block(const StripTable<R>& table, const R* film_x, const R* film_y, const R* u, const R* v,
                   const std::int32_t* wavelength, R* x, R* y, R* area) noexcept {
   using L = StripLayout;
@@ -75,13 +76,12 @@ void sample_block(const StripTable<R>& table, const R* film_x, const R* film_y, 
   for (std::size_t i = 0; i < block; ++i) {
     // Comparisons with what is not a number are false.
     const R sound = (film_x[i] + film_y[i] + u[i] + v[i]) * R(0);
-    const auto [part, cos, sin, fx, fy, known, at] =
-        place_of(own_table, film_x[i], film_y[i], sound >= R(0), wavelength[i]);
+    const auto [part, cos, sin, known, at] = place_of(own_table, film_x[i], film_y[i], sound >= R(0), wavelength[i]);
     t[i] = part;
     cosine[i] = cos;
     sine[i] = sin;
     strip[i] = at;
-    const R from = clamped(known ? u[i] : R(0)) - turn_of(fx, fy);
+    const R from = clamped(known ? u[i] : R(0)) - turn_of(sin, cos);
     const R fraction = from < R(0) ? from + R(1) : from;
     target[i] = fraction < R(1) ? fraction : fraction - R(1);
     whole[i] = known ? R(1) : R(0);
@@ -135,7 +135,7 @@ void sample_block(const StripTable<R>& table, const R* film_x, const R* film_y, 
 }
 
 /// One block of places, whether their pupils contain them: sectors are found by halving.
-template <class R>
+template <std::size_t block, class R>
 void contains_block(const StripTable<R>& table, const R* film_x, const R* film_y, const R* x, const R* y,
                     const std::int32_t* wavelength, std::uint8_t* within) noexcept {
   using L = StripLayout;
@@ -145,7 +145,7 @@ void contains_block(const StripTable<R>& table, const R* film_x, const R* film_y
   R t[block], qx[block], qy[block];
   std::int32_t strip[block], sector[block], half[block], known[block];
   for (std::size_t i = 0; i < block; ++i) {
-    const auto [part, cosine, sine, fx, fy, lit, at] = place_of(own_table, film_x[i], film_y[i], 1, wavelength[i]);
+    const auto [part, cosine, sine, lit, at] = place_of(own_table, film_x[i], film_y[i], 1, wavelength[i]);
     t[i] = part;
     strip[i] = at;
     known[i] = lit;
@@ -179,40 +179,52 @@ void contains_block(const StripTable<R>& table, const R* film_x, const R* film_y
   }
 }
 
-/// Calls body(begin, n, four arrays of inputs, wavelengths) for each block of n; slots beyond n hold zeros.
+/// A block, and what a few rays are put in: they fill the widest registers.
+constexpr std::size_t whole_block = 64, small_block = 16;
+
+template <std::size_t rays>
+using Block = std::integral_constant<std::size_t, rays>;
+
+/// Calls body(block, begin, n, four arrays of inputs, wavelengths) for each block of n; slots beyond n hold zeros.
 template <class R, class Body>
 inline void by_blocks(const StripTable<R>& table, std::size_t count, const R* const (&in)[4],
                       const RayWavelengths& wavelengths, const Body& body) noexcept {
   const auto known = [&](std::size_t w) { return w < table.wavelengths ? static_cast<std::int32_t>(w) : -1; };
-  std::int32_t w[block];
-  for (std::size_t i = 0; i < block; ++i) w[i] = known(wavelengths.all.position(table.primary));
-  for (std::size_t begin = 0; begin < count; begin += block) {
-    const std::size_t n = count - begin < block ? count - begin : block;
-    if (wavelengths.each) {
-      for (std::size_t i = 0; i < n; ++i) w[i] = known(wavelengths.each[begin + i]);
+  std::int32_t w[whole_block];
+  for (std::size_t i = 0; i < whole_block; ++i) w[i] = known(wavelengths.all.position(table.primary));
+  const auto find_wavelengths = [&](std::size_t begin, std::size_t n) {
+    for (std::size_t i = 0; wavelengths.each && i < n; ++i) w[i] = known(wavelengths.each[begin + i]);
+  };
+  std::size_t begin = 0;
+  const auto whole = [&](auto block) {
+    for (; begin + block <= count; begin += block) {
+      find_wavelengths(begin, block);
+      const R* const here[4] = {in[0] + begin, in[1] + begin, in[2] + begin, in[3] + begin};
+      body(block, begin, block, here, w);
     }
-    if (n == block) {
-      const R* const whole[4] = {in[0] + begin, in[1] + begin, in[2] + begin, in[3] + begin};
-      body(begin, n, whole, w);
-      continue;
-    }
-    R filled[4][block] = {};
-    for (std::size_t k = 0; k < 4; ++k) {
-      for (std::size_t i = 0; i < n; ++i) filled[k][i] = in[k][begin + i];
-    }
-    const R* const part[4] = {filled[0], filled[1], filled[2], filled[3]};
-    body(begin, n, part, w);
+  };
+  whole(Block<whole_block>());
+  whole(Block<small_block>());
+  const std::size_t n = count - begin;
+  if (n == 0) return;
+  find_wavelengths(begin, n);
+  R filled[4][small_block] = {};
+  for (std::size_t k = 0; k < 4; ++k) {
+    for (std::size_t i = 0; i < n; ++i) filled[k][i] = in[k][begin + i];
   }
+  const R* const part[4] = {filled[0], filled[1], filled[2], filled[3]};
+  body(Block<small_block>(), begin, n, part, w);
 }
 
 template <class R>
 void contains(const StripTable<R>& table, std::size_t count, const R* film_x, const R* film_y, const R* x, const R* y,
               const RayWavelengths& wavelengths, std::uint8_t* within) noexcept {
   by_blocks(table, count, {film_x, film_y, x, y}, wavelengths,
-            [&](std::size_t begin, std::size_t n, const R* const* in, const std::int32_t* w) {
-              std::uint8_t out[block];
-              contains_block(table, in[0], in[1], in[2], in[3], w, n == block ? within + begin : out);
-              for (std::size_t i = 0; n < block && i < n; ++i) within[begin + i] = out[i];
+            [&](auto block, std::size_t begin, std::size_t n, const R* const* in, const std::int32_t* w) {
+              constexpr std::size_t rays = decltype(block)::value;
+              std::uint8_t out[rays];
+              contains_block<rays>(table, in[0], in[1], in[2], in[3], w, n == rays ? within + begin : out);
+              for (std::size_t i = 0; n < rays && i < n; ++i) within[begin + i] = out[i];
             });
 }
 
@@ -220,13 +232,14 @@ template <bool obscured, class R>
 void sample_blocks(const StripTable<R>& table, std::size_t count, const R* film_x, const R* film_y, const R* u,
                    const R* v, const RayWavelengths& wavelengths, R* x, R* y, R* areas) noexcept {
   by_blocks(table, count, {film_x, film_y, u, v}, wavelengths,
-            [&](std::size_t begin, std::size_t n, const R* const* in, const std::int32_t* w) {
-              if (n == block) {
-                sample_block<obscured>(table, in[0], in[1], in[2], in[3], w, x + begin, y + begin, areas + begin);
+            [&](auto block, std::size_t begin, std::size_t n, const R* const* in, const std::int32_t* w) {
+              constexpr std::size_t rays = decltype(block)::value;
+              if (n == rays) {
+                sample_block<rays, obscured>(table, in[0], in[1], in[2], in[3], w, x + begin, y + begin, areas + begin);
                 return;
               }
-              R out[3][block];
-              sample_block<obscured>(table, in[0], in[1], in[2], in[3], w, out[0], out[1], out[2]);
+              R out[3][rays];
+              sample_block<rays, obscured>(table, in[0], in[1], in[2], in[3], w, out[0], out[1], out[2]);
               for (std::size_t i = 0; i < n; ++i) {
                 x[begin + i] = out[0][i], y[begin + i] = out[1][i], areas[begin + i] = out[2][i];
               }

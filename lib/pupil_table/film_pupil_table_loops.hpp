@@ -35,25 +35,24 @@ struct StripTable {
 
 namespace {
 
-/// The angle of (x, y) from +y to +x, as a part of the whole turn (|turn| <= 1/2), within 5e-8: u counts from +y of the
-/// film's frame, not from the direction of the film point, so that near the axis the samples of neighbours are
-/// neighbours. One polynomial for all scalars, derivatives included. x and y must not both be 0.
+/// The angle of a direction from +y to +x, of its sine and cosine, as a part of the whole turn (|turn| <= 1/2), within
+/// 1e-8: u counts from +y of the film's frame, not from the direction of the film point, so that near the axis the
+/// samples of neighbours are neighbours. One polynomial for all scalars, derivatives included.
 template <class T>
-inline T turn_of(const T& x, const T& y) noexcept {
-  const T across = x < T(0) ? T(-x) : x, along = y < T(0) ? T(-y) : y;
+inline T turn_of(const T& sine, const T& cosine) noexcept {
+  const T across = sine < T(0) ? T(-sine) : sine, along = cosine < T(0) ? T(-cosine) : cosine;
   const bool steep = across > along;
-  const T a = steep ? T(along / across) : T(across / along);
+  const T a = steep ? along : across;
   const T s = a * a;
-  // atan(a) / 2 pi by least squares of the largest error, 1/8 at 1.
-  T turn =
-      a *
-      (T(0.1591542876) +
-       s * (T(-0.05302502705) +
-            s * (T(0.03151395312) +
-                 s * (T(-0.02101824254) + s * (T(0.01259214695) + s * (T(-0.005277491396) + s * T(0.001060373263)))))));
+  // asin(a) / 2 pi within an eighth of a turn, by least squares of the largest error, 1/8 at its end.
+  T turn = a * (T(0.15915510171728092) +
+                s * (T(0.0265148758893) +
+                     s * (T(0.0121538534331) +
+                          s * (T(0.00523167303706) +
+                               s * (T(0.0128977787878) + s * (T(-0.0139493593231) + s * T(0.0192985248901)))))));
   turn = steep ? T(T(0.25) - turn) : turn;
-  turn = y < T(0) ? T(T(0.5) - turn) : turn;
-  return x < T(0) ? T(-turn) : turn;
+  turn = cosine < T(0) ? T(T(0.5) - turn) : turn;
+  return sine < T(0) ? T(-turn) : turn;
 }
 
 }  // namespace
