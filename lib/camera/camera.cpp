@@ -163,9 +163,10 @@ CameraRayDifferential Camera::sample_differential(const CameraSample& s) const n
                                       : data.model.pinhole()
                                           ? pinhole_line(*data.tilted, s.film, data.model.pinhole_shifts()[wavelength])
                                           : data.tilted->line(s.film, s.pupil_u, s.pupil_v, wavelength);
-  const RayDerivatives moved = data.model.to_scene(line, wavelength);
-  result.by_film_x = moved.by_u;
-  result.by_film_y = moved.by_v;
+  RayDerivatives ray = data.model.to_scene(line, wavelength);
+  if (data.view().moves_rays()) ray = at_front(data.scene.front(), ray);
+  result.by_film_x = ray.by_u;
+  result.by_film_y = ray.by_v;
   return result;
 }
 

@@ -26,7 +26,9 @@ struct Camera::Data {
   std::vector<double> scale;  ///< of weights and importance, by wavelength
   camera_detail::SceneSide scene;
 
-  camera_detail::FilmView view() const noexcept { return {model, film, tilted ? &*tilted : nullptr, scale}; }
+  camera_detail::FilmView view() const noexcept {
+    return {model, film, tilted ? &*tilted : nullptr, scale, scene.front()};
+  }
 };
 
 }  // namespace petzval::inline v0

@@ -3,18 +3,11 @@
 // set. Names are local, and no other library is called, as in lib/trace/lanes.hpp.
 #include "camera_loops.hpp"
 
+#include "camera_steps.hpp"
+#include "way_to_front.hpp"
+
 namespace petzval::inline v0::camera_detail {
 namespace {
-
-inline float root(float x) noexcept { return __builtin_sqrtf(x); }
-inline double root(double x) noexcept { return __builtin_sqrt(x); }
-
-/// False for what is not a number.
-template <class T>
-inline bool on_film(const FilmBounds<T>& film, T x, T y) noexcept {
-  const T dx = x - film.centre_x, dy = y - film.centre_y;
-  return (dx <= film.half_width) & (-dx <= film.half_width) & (dy <= film.half_height) & (-dy <= film.half_height);
-}
 
 template <class T>
 void keep_on_film(const FilmBounds<T>& film, std::size_t count, const T* film_x, const T* film_y, T* kept_x,
@@ -49,29 +42,33 @@ void start(const TwoPlanes& space, T towards, std::size_t count, const TwoPlaneR
 }
 
 template <class T>
+void move_to_front(T vertex_z, T curvature, std::size_t count, const RayArrays<T>& rays) noexcept {
+  const auto [ox, oy, oz, dx, dy, dz] = rays;
+  PETZVAL_INDEPENDENT
+  for (std::size_t i = 0; i < count; ++i) {
+    const T way = way_to_front(curvature, ox[i], oy[i], oz[i] - vertex_z, dx[i], dy[i], dz[i]);
+    ox[i] += way * dx[i];
+    oy[i] += way * dy[i];
+    oz[i] += way * dz[i];
+  }
+}
+
+template <class T>
 void weigh(const FilmBounds<T>& film, T depth, std::size_t count, const T* film_x, const T* film_y,
            const TwoPlaneRays<const T>& lines, const T* areas, const T* scale, RayFate* fates,
            const CameraRays<T>& rays) noexcept {
   const FilmBounds<T> bounds = film;
-  const T depth2 = depth * depth, along = depth < T(0) ? -depth : depth;
+  const PupilWeight<T> of(depth);
   const T *const kept_x = lines.film_x, *const kept_y = lines.film_y;
   const T *const pupil_x = lines.pupil_x, *const pupil_y = lines.pupil_y;
   T* const weights = rays.weights;
-  const auto solid = [&](std::size_t i) {
-    const T x = pupil_x[i] - kept_x[i], y = pupil_y[i] - kept_y[i];
-    return x * x + y * y + depth2;
-  };
   PETZVAL_INDEPENDENT
   for (std::size_t i = 0; i < count; ++i) {
-    const bool kept = on_film(bounds, film_x[i], film_y[i]), wanted = scale[i] > T(0), seen = areas[i] > T(0);
-    RayFate fate = fates[i];
-    fate = seen ? fate : RayFate::vignetted;
-    fate = wanted ? fate : RayFate::invalid;
-    fate = kept ? fate : RayFate::outside_film;
+    const bool kept = on_film(bounds, film_x[i], film_y[i]);
+    const RayFate fate = fate_of(fates[i], kept, scale[i] > T(0), areas[i] > T(0));
     fates[i] = fate;
-    // cos / pdf_direction, pdf_direction = pdf_pupil length^3 / depth.
-    const T length2 = solid(i), part = depth2 / length2;
-    weights[i] = fate == RayFate::transmitted ? scale[i] * areas[i] * part * part / depth2 : T(0);
+    const T weight = scale[i] * of.weight(of.length2(kept_x[i], kept_y[i], pupil_x[i], pupil_y[i]), areas[i]);
+    weights[i] = fate == RayFate::transmitted ? weight : T(0);
   }
   if (T* const pdf = rays.pdf_pupil) {
     PETZVAL_INDEPENDENT
@@ -83,9 +80,9 @@ void weigh(const FilmBounds<T>& film, T depth, std::size_t count, const T* film_
   if (T* const pdf = rays.pdf_direction) {
     PETZVAL_INDEPENDENT
     for (std::size_t i = 0; i < count; ++i) {
-      const T length2 = solid(i);
       const bool sampled = on_film(bounds, film_x[i], film_y[i]) & (areas[i] > T(0));
-      pdf[i] = sampled ? length2 * root(length2) / (along * areas[i]) : T(0);
+      const T length2 = of.length2(kept_x[i], kept_y[i], pupil_x[i], pupil_y[i]);
+      pdf[i] = sampled ? of.pdf_direction(length2, areas[i]) : T(0);
     }
   }
 }
@@ -93,53 +90,50 @@ void weigh(const FilmBounds<T>& film, T depth, std::size_t count, const T* film_
 template <class T>
 void to_virtual(const TiltedBounds<T>& tilted, std::size_t count, const T* film_x, const T* film_y, T* virtual_x,
                 T* virtual_y) noexcept {
-  const TiltedBounds<T> b = tilted;
+  const TiltedBounds<T> plane = tilted;
   PETZVAL_INDEPENDENT
   for (std::size_t i = 0; i < count; ++i) {
-    const T x = film_x[i], y = film_y[i];
-    const T per_distance = T(1) / (T(1) + (b.depth_by_x * x + b.depth_by_y * y));
-    virtual_x[i] = (b.x_by_x * x + b.x_by_y * y) * per_distance;
-    virtual_y[i] = b.y_by_y * y * per_distance;
+    const auto [x, y] = virtual_of(plane, film_x[i], film_y[i]);
+    virtual_x[i] = x, virtual_y[i] = y;
   }
 }
 
 template <class T>
 void to_upright(const TiltedBounds<T>& tilted, std::size_t count, const T* virtual_x, const T* virtual_y,
                 const T* pupil_x, const T* pupil_y, T* film_x, T* film_y) noexcept {
-  const TiltedBounds<T> b = tilted;
+  const TiltedBounds<T> plane = tilted;
   PETZVAL_INDEPENDENT
   for (std::size_t i = 0; i < count; ++i) {
-    const T tilt = b.slope_x * virtual_x[i] + b.slope_y * virtual_y[i];
-    film_x[i] = virtual_x[i] - tilt * pupil_x[i];
-    film_y[i] = virtual_y[i] - tilt * pupil_y[i];
+    const auto [x, y] = upright_of(plane, virtual_x[i], virtual_y[i], pupil_x[i], pupil_y[i]);
+    film_x[i] = x, film_y[i] = y;
   }
 }
 
 template <class T>
 void weigh_tilted(const TiltedBounds<T>& tilted, std::size_t count, const T* virtual_x, const T* virtual_y,
                   const T* pupil_x, const T* pupil_y, RayFate* fates, const CameraRays<T>& rays) noexcept {
-  const TiltedBounds<T> b = tilted;
+  const TiltedBounds<T> plane = tilted;
   T* const weights = rays.weights;
   PETZVAL_INDEPENDENT
   for (std::size_t i = 0; i < count; ++i) {
-    const T near = T(1) + (b.slope_x * virtual_x[i] + b.slope_y * virtual_y[i]);
-    const T front = T(1) - (b.slope_x * pupil_x[i] + b.slope_y * pupil_y[i]);
-    const bool in_front = front > T(0);
-    weights[i] = in_front ? weights[i] * (b.cosine * front * near * near * near) : T(0);
+    const T facing = facing_of(plane, virtual_x[i], virtual_y[i], pupil_x[i], pupil_y[i]);
+    const bool in_front = facing > T(0);
+    weights[i] = in_front ? weights[i] * facing : T(0);
     const bool behind = !in_front & (fates[i] == RayFate::transmitted);
     fates[i] = behind ? RayFate::vignetted : fates[i];
   }
   if (T* const pdf = rays.pdf_direction) {
     PETZVAL_INDEPENDENT
     for (std::size_t i = 0; i < count; ++i) {
-      const T near = T(1) + (b.slope_x * virtual_x[i] + b.slope_y * virtual_y[i]);
+      const T near = nearness_of(plane, virtual_x[i], virtual_y[i]);
       pdf[i] /= near * near;
     }
   }
 }
 
 template <class T>
-constexpr CameraLoopsOf<T> loops{keep_on_film<T>, start<T>, weigh<T>, to_virtual<T>, to_upright<T>, weigh_tilted<T>};
+constexpr CameraLoopsOf<T> loops{keep_on_film<T>, start<T>,      move_to_front<T>, weigh<T>,
+                                 to_virtual<T>,   to_upright<T>, weigh_tilted<T>};
 
 }  // namespace
 

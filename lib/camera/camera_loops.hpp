@@ -4,14 +4,12 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "camera_steps.hpp"
 #include "core/widest.hpp"
-#include "film/film_bounds.hpp"
 #include "petzval/camera/camera_ray.hpp"
 #include "petzval/pupil_table/two_plane_rays.hpp"
 
 namespace petzval::inline v0::camera_detail {
-
-using film_detail::FilmBounds;
 
 /// A tilted film in numbers of type T: see TiltedPlane.
 template <class T>
@@ -26,6 +24,8 @@ struct CameraLoopsOf {
                        T* kept_y) noexcept;
   /// Lines as rays that start in the plane of the pupil. towards: as towards_scene().
   void (*start)(const TwoPlanes&, T towards, std::size_t, const TwoPlaneRays<const T>&, const RayArrays<T>&) noexcept;
+  /// Moves the origins of rays to a lens's front, along them.
+  void (*move_to_front)(T vertex_z, T curvature, std::size_t, const RayArrays<T>&) noexcept;
   /// scale: one for each ray, 0 for a ray without a wavelength.
   void (*weigh)(const FilmBounds<T>&, T depth, std::size_t, const T* film_x, const T* film_y,
                 const TwoPlaneRays<const T>&, const T* areas, const T* scale, RayFate*, const CameraRays<T>&) noexcept;

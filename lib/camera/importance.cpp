@@ -16,6 +16,7 @@
 // Models of first order are linear in slopes and conserve the area of heights and slopes instead; in cos dA dw they
 // lack (cos t / cos t')^4, t' the angle of the ray in the scene. It belongs to both, for theirs to be the weights that
 // their film samples have.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -111,6 +112,7 @@ SceneSide::SceneSide(const LensFacts& facts, const Film& film, std::optional<Til
       upright_radius_(radius),
       pdf_film_(1 / film.area_mm2()),
       space_(model.pupils().space()),
+      front_(front_of(facts.lens())),
       entrance_(entrance_of(facts.lens(), model)) {
   const Lens& lens = facts.lens();
   for (std::size_t w = 0; w < scale.size(); ++w) {
@@ -202,7 +204,16 @@ ImportanceSample SceneSide::sample_importance(const AnyRayModel& model, const Ve
   if (model.pinhole()) return through_pinhole(model, point, u, v, wavelength);
   const EntranceSample s = entrance_.sample(point, u, v, wavelength);
   if (!(s.pdf > 0)) return {};
-  return {s.direction, s.distance, s.place, s.pdf, importance(model, {s.place, s.direction}, wavelength)};
+  ImportanceSample result = connection(point, s.direction, s.distance, s.pdf);
+  result.importance = importance(model, {s.place, s.direction}, wavelength);
+  return result;
+}
+
+ImportanceSample SceneSide::connection(const Vec3<double>& point, const Vec3<double>& direction, double distance,
+                                       double pdf) const noexcept {
+  const double way = way_to_front(front_, {point + direction * distance, -direction});
+  const double to_front = std::max(distance - way, 0.0);
+  return {direction, to_front, point + direction * to_front, pdf, {}};
 }
 
 ImportanceSample SceneSide::through_pinhole(const AnyRayModel& model, const Vec3<double>& point, double u, double v,
@@ -213,9 +224,9 @@ ImportanceSample SceneSide::through_pinhole(const AnyRayModel& model, const Vec3
   const Vec3<double> pupil{0, 0, at.entrance_z}, to = pupil - point;
   const double distance = glm::length(to);
   if (!std::isfinite(distance) || !std::isfinite(at.entrance_area) || !(to.z > 0)) return result;
-  result = {.direction = to / distance, .distance = distance, .on_pupil = pupil};
   // The weights are those of all the thick lens's pupil, and so are the places in it that the film sees it through.
-  result.pdf = squared(distance) / (at.entrance_area * result.direction.z);
+  const Vec3<double> direction = to / distance;
+  result = connection(point, direction, distance, squared(distance) / (at.entrance_area * direction.z));
   Arrival arrival = arrive(model, {pupil, result.direction}, wavelength);
   const auto met = on_film(arrival.upright, arrival.pupil);
   Importance& seen = result.importance = met_by(arrival, met);

@@ -29,12 +29,11 @@ namespace {
 
 constexpr double reach = 1e12;  // mm: numbers up to here give finite rays, in float too
 
-/// Film and pupil point to place and slope in the plane z of object space, with the focus of exact rays.
-RayMatrix to_scene_map(const LensFacts& facts, std::size_t wavelength, const TwoPlanes& space, double z) {
+/// Film and pupil point to place and slope in the plane of the first vertex, before the lens, with the focus of exact
+/// rays.
+RayMatrix to_scene_map(const LensFacts& facts, std::size_t wavelength, const TwoPlanes& space) {
   const StopMaps maps = stop_maps(facts, wavelength, space);
-  const RayMatrix focus{1, 0, best_focus_power(facts, wavelength, maps), 1};
-  const double front_z = facts.lens().surfaces().front().vertex_z;
-  return maps.from_film.then(focus).then(maps.to_front).then({1, z - front_z, 0, 1});
+  return maps.from_film.then({1, 0, best_focus_power(facts, wavelength, maps), 1}).then(maps.to_front);
 }
 
 /// Where a film point sees the stop in the plane of the pupil: its centre at shift times the film point.
@@ -144,22 +143,14 @@ FilmPupilTable pupils_of(ModelKind model, const LensFacts& facts, double film_ra
   return FilmPupilTable::of_iris(space, iris, discs, film_radius, lens.primary_wavelength());
 }
 
-/// Where rays start: in the entrance pupil, unless it is so far that digits of the position would be lost.
-double scene_plane(const LensFacts& facts) {
-  const std::size_t wavelength = facts.lens().primary_wavelength();
-  const double z = facts.pupils(wavelength).entrance.z, first_z = facts.lens().surfaces().front().vertex_z;
-  const double focal_length = std::abs(facts.first_order(wavelength).effective_focal_length);
-  return std::abs(z - first_z) < 20 * focal_length ? z : first_z;
-}
-
 }  // namespace
 
 ParaxialModel::ParaxialModel(ModelKind model, const LensFacts& facts, double film_radius)
-    : kind_(model), pupils_(pupils_of(model, facts, film_radius)), z_(scene_plane(facts)) {
+    : kind_(model), pupils_(pupils_of(model, facts, film_radius)), z_(facts.lens().surfaces().front().vertex_z) {
   const Lens& lens = facts.lens();
   const TwoPlanes& space = pupils_.space();
   for (std::size_t w = 0; w < lens.wavelengths_nm().size(); ++w) {
-    RayMatrix map = to_scene_map(facts, w, space, z_);
+    RayMatrix map = to_scene_map(facts, w, space);
     to_film_.push_back(map.inverse());
     if (model == ModelKind::pinhole) {
       const double middle = thick_image(facts, w, space).shift;

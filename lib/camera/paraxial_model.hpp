@@ -31,8 +31,8 @@ namespace petzval::inline v0::camera_detail {
 /// it. A lens that is dark on the axis is dark everywhere to the others.
 ///
 /// An iris with edges is seen as its image, by all but thin_two_disc. The pinhole has the weights of the thick lens: a
-/// picture keeps its exposure when it is stopped down to a point. Central obscurations are ignored. Rays start in the
-/// plane of the entrance pupil, or of the first vertex where the pupil is out of reach.
+/// picture keeps its exposure when it is stopped down to a point. Central obscurations are ignored. Rays are given
+/// in the plane of the first vertex.
 class ParaxialModel {
  public:
   static constexpr bool linear_in_slopes = true;
@@ -62,7 +62,7 @@ class ParaxialModel {
  private:
   ModelKind kind_;
   FilmPupilTable pupils_;
-  double z_ = 0;                               // of the plane of object space that rays are given in
+  double z_ = 0;                               // of the first vertex, where rays are given
   std::vector<RayMatrix> to_scene_, to_film_;  // of each wavelength
   std::vector<double> pinhole_shifts_;
 };

@@ -13,6 +13,9 @@ namespace petzval::inline v0::camera_detail {
 namespace {
 
 constexpr std::size_t block = 256;
+/// In the widest registers.
+template <class T>
+constexpr std::size_t lanes = 64 / sizeof(T);
 
 template <class T>
 using Values = std::array<T, block>;
@@ -59,55 +62,100 @@ void keep_within(std::size_t count, const FilmPupilTable& pupils, const TwoPlane
   for (std::size_t i = 0; i < count; ++i) fates[i] = within[i] ? fates[i] : RayFate::vignetted;
 }
 
+/// One block, of a number of rays that fills lanes: each has the same bits wherever it stands.
+template <class T>
+void sample_block(const FilmView& view, std::size_t n, const CameraSamples<T>& samples,
+                  const CameraRays<T>& rays) noexcept {
+  const auto& loops = camera_loops().of<T>();
+  const FilmPupilTable& pupils = view.model.pupils();
+  const FilmBounds<T> bounds = film_detail::bounds_of<T>(view.film);
+  const TiltedFilm* const tilted = view.tilted;
+  const RayWavelengths& wavelengths = samples.wavelengths;
+
+  alignas(64) Values<T> film_x, film_y, x, y, areas, scales;
+  std::array<RayFate, block> local_fates;
+  RayFate* const fates = rays.fates ? rays.fates : local_fates.data();
+  const TwoPlaneRays<const T> lines{film_x.data(), film_y.data(), x.data(), y.data()};
+  fill_scales(n, view.scale, wavelengths, scales.data());
+  loops.keep_on_film(bounds, n, samples.film_x, samples.film_y, film_x.data(), film_y.data());
+  const auto trace = [&] {
+    view.model.to_scene(n, lines, wavelengths, rays.rays, fates);
+    if (view.moves_rays()) {
+      loops.move_to_front(static_cast<T>(view.front.vertex_z), static_cast<T>(view.front.curvature), n, rays.rays);
+    }
+  };
+  const auto weigh = [&] {
+    loops.weigh(bounds, static_cast<T>(pupils.space().depth()), n, samples.film_x, samples.film_y, lines, areas.data(),
+                scales.data(), fates, rays);
+  };
+  if (!tilted) {
+    pupils.sample(n, film_x.data(), film_y.data(), samples.pupil_u, samples.pupil_v, wavelengths, x.data(), y.data(),
+                  areas.data());
+    trace();
+    weigh();
+    return;
+  }
+  const TiltedBounds<T> plane = bounds_of<T>(*tilted);
+  alignas(64) Values<T> virtual_x, virtual_y;
+  loops.to_virtual(plane, n, film_x.data(), film_y.data(), virtual_x.data(), virtual_y.data());
+  tilted->pupils().sample(n, virtual_x.data(), virtual_y.data(), samples.pupil_u, samples.pupil_v, wavelengths,
+                          x.data(), y.data(), areas.data());
+  if (view.model.pinhole()) {
+    find_chiefs(n, view, wavelengths, virtual_x.data(), virtual_y.data(), film_x.data(), film_y.data());
+    trace();
+  }
+  loops.to_upright(plane, n, virtual_x.data(), virtual_y.data(), x.data(), y.data(), film_x.data(), film_y.data());
+  if (!view.model.pinhole()) trace();
+  if (!view.model.clips_at_apertures()) keep_within(n, pupils, lines, wavelengths, fates);
+  weigh();
+  loops.weigh_tilted(plane, n, virtual_x.data(), virtual_y.data(), x.data(), y.data(), fates, rays);
+}
+
+/// Less than fills the lanes: in a block of their own, filled up with the last one.
+template <class T>
+void sample_rest(const FilmView& view, std::size_t count, const CameraSamples<T>& samples,
+                 const CameraRays<T>& rays) noexcept {
+  alignas(64) std::array<std::array<T, lanes<T>>, 4> in;
+  alignas(64) std::array<std::array<T, lanes<T>>, 9> out;
+  std::array<std::uint16_t, lanes<T>> each;
+  std::array<RayFate, lanes<T>> fates;
+  const auto padded = [&](const auto* from, auto& to) {
+    for (std::size_t i = 0; i < to.size(); ++i) to[i] = from[std::min(i, count - 1)];
+  };
+  padded(samples.film_x, in[0]), padded(samples.film_y, in[1]);
+  padded(samples.pupil_u, in[2]), padded(samples.pupil_v, in[3]);
+  RayWavelengths wavelengths = samples.wavelengths;
+  if (wavelengths.each) {
+    padded(wavelengths.each, each);
+    wavelengths.each = each.data();
+  }
+  const auto at = [&](std::size_t k) { return out[k].data(); };
+  sample_block<T>(view, lanes<T>, {in[0].data(), in[1].data(), in[2].data(), in[3].data(), wavelengths},
+                  {{at(0), at(1), at(2), at(3), at(4), at(5)},
+                   at(6),
+                   fates.data(),
+                   rays.pdf_pupil ? at(7) : nullptr,
+                   rays.pdf_direction ? at(8) : nullptr});
+  T* const to[] = {rays.rays.x,  rays.rays.y,  rays.rays.z,    rays.rays.dx,      rays.rays.dy,
+                   rays.rays.dz, rays.weights, rays.pdf_pupil, rays.pdf_direction};
+  for (std::size_t k = 0; k < out.size(); ++k) {
+    if (to[k]) std::copy_n(out[k].begin(), count, to[k]);
+  }
+  if (rays.fates) std::copy_n(fates.begin(), count, rays.fates);
+}
+
 }  // namespace
 
 template <class T>
 void sample_rays(const FilmView& view, std::size_t count, const CameraSamples<T>& given,
-                 const CameraRays<T>& out) noexcept {
-  const auto& loops = camera_loops().of<T>();
-  const FilmPupilTable& pupils = view.model.pupils();
-  const FilmBounds<T> bounds = film_detail::bounds_of<T>(view.film);
-  const T depth = static_cast<T>(pupils.space().depth());
-  const TiltedFilm* const tilted = view.tilted;
-  const TiltedBounds<T> tilted_bounds = tilted ? bounds_of<T>(*tilted) : TiltedBounds<T>{};
-  const bool pinhole = tilted && view.model.pinhole(), clips = view.model.clips_at_apertures();
+                 const CameraRays<T>& rays) noexcept {
   CameraSamples<T> samples = given;
-  samples.wavelengths = given.wavelengths.resolved(pupils.primary_wavelength());
-
-  alignas(64) Values<T> virtual_x, virtual_y, film_x, film_y, x, y, areas, scales;
-  std::array<RayFate, block> local_fates;
-  if (!samples.wavelengths.each) fill_scales(std::min(block, count), view.scale, samples.wavelengths, scales.data());
-  for (std::size_t begin = 0; begin < count; begin += block) {
-    const std::size_t n = std::min(block, count - begin);
-    const CameraSamples<T> some = samples.from(begin);
-    const CameraRays<T> rays = out.from(begin);
-    RayFate* const fates = rays.fates ? rays.fates : local_fates.data();
-    const TwoPlaneRays<const T> lines{film_x.data(), film_y.data(), x.data(), y.data()};
-    if (samples.wavelengths.each) fill_scales(n, view.scale, some.wavelengths, scales.data());
-
-    loops.keep_on_film(bounds, n, some.film_x, some.film_y, film_x.data(), film_y.data());
-    if (!tilted) {
-      pupils.sample(n, film_x.data(), film_y.data(), some.pupil_u, some.pupil_v, some.wavelengths, x.data(), y.data(),
-                    areas.data());
-      view.model.to_scene(n, lines, some.wavelengths, rays.rays, fates);
-    } else {
-      loops.to_virtual(tilted_bounds, n, film_x.data(), film_y.data(), virtual_x.data(), virtual_y.data());
-      tilted->pupils().sample(n, virtual_x.data(), virtual_y.data(), some.pupil_u, some.pupil_v, some.wavelengths,
-                              x.data(), y.data(), areas.data());
-      if (pinhole) {
-        find_chiefs(n, view, some.wavelengths, virtual_x.data(), virtual_y.data(), film_x.data(), film_y.data());
-        view.model.to_scene(n, lines, some.wavelengths, rays.rays, fates);
-      }
-      loops.to_upright(tilted_bounds, n, virtual_x.data(), virtual_y.data(), x.data(), y.data(), film_x.data(),
-                       film_y.data());
-      if (!pinhole) view.model.to_scene(n, lines, some.wavelengths, rays.rays, fates);
-      if (!clips) keep_within(n, pupils, lines, some.wavelengths, fates);
-    }
-    loops.weigh(bounds, depth, n, some.film_x, some.film_y, lines, areas.data(), scales.data(), fates, rays);
-    if (tilted) {
-      loops.weigh_tilted(tilted_bounds, n, virtual_x.data(), virtual_y.data(), x.data(), y.data(), fates, rays);
-    }
+  samples.wavelengths = given.wavelengths.resolved(view.model.pupils().primary_wavelength());
+  const std::size_t whole = count - count % lanes<T>;
+  for (std::size_t begin = 0; begin < whole; begin += block) {
+    sample_block(view, std::min(block, whole - begin), samples.from(begin), rays.from(begin));
   }
+  if (whole < count) sample_rest(view, count - whole, samples.from(whole), rays.from(whole));
 }
 
 template PETZVAL_API void sample_rays(const FilmView&, std::size_t, const CameraSamples<float>&,
@@ -119,9 +167,7 @@ CameraRay sample_ray(const FilmView& view, const FilmPoint& film, double u, doub
   const FilmPupilTable& pupils = view.model.pupils();
   const TiltedFilm* const tilted = view.tilted;
   const auto bounds = film_detail::bounds_of<double>(view.film);
-  const bool kept = std::abs(film.x - bounds.centre_x) <= bounds.half_width &&
-                    std::abs(film.y - bounds.centre_y) <= bounds.half_height;
-  const bool known = wavelength < view.scale.size();
+  const bool kept = on_film(bounds, film.x, film.y), known = wavelength < view.scale.size();
   const FilmPoint point = kept ? film : FilmPoint{bounds.centre_x, bounds.centre_y};
   CameraRay out;
 
@@ -151,17 +197,15 @@ CameraRay sample_ray(const FilmView& view, const FilmPoint& film, double u, doub
     if (!within) out.fate = RayFate::vignetted;
   }
 
-  if (!(area > 0)) out.fate = RayFate::vignetted;
-  if (!(known && view.scale[wavelength] > 0)) out.fate = RayFate::invalid;
-  if (!kept) out.fate = RayFate::outside_film;
+  if (view.moves_rays()) out.ray.origin += way_to_front(view.front, out.ray) * out.ray.direction;
+  const double scale = known ? view.scale[wavelength] : 0;
+  out.fate = fate_of(out.fate, kept, scale > 0, area > 0);
   if (kept && area > 0) {
-    const double x = line.pupil_x - line.film_x, y = line.pupil_y - line.film_y, depth = pupils.space().depth();
-    const double depth2 = depth * depth, length2 = x * x + y * y + depth2, per_length2 = 1 / length2;
+    const PupilWeight<double> of(pupils.space().depth());
+    const double length2 = of.length2(line.film_x, line.film_y, line.pupil_x, line.pupil_y);
     out.pdf_pupil = 1 / area;
-    out.pdf_direction = length2 * std::sqrt(length2) / (std::abs(depth) * area);
-    if (out.fate == RayFate::transmitted) {
-      out.weight = view.scale[wavelength] * area * depth2 * per_length2 * per_length2;
-    }
+    out.pdf_direction = of.pdf_direction(length2, area);
+    if (out.fate == RayFate::transmitted) out.weight = scale * of.weight(length2, area);
   }
   if (tilted) {
     const double near = tilted->nearness(virtual_point);

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <span>
 
+#include "front.hpp"
 #include "petzval/camera/camera_ray.hpp"
 #include "petzval/camera/ray_model.hpp"
 #include "petzval/core/export.hpp"
@@ -19,6 +20,13 @@ struct FilmView {
   const TiltedFilm* tilted = nullptr;  ///< of the same film, with the model's pupils; null for an upright one
   /// What weights are multiplied with, one for each wavelength: the square of the index behind the lens for irradiance.
   std::span<const double> scale;
+  Front front = {};  ///< of the lens
+
+  /// Rays of the model start elsewhere.
+  bool moves_rays() const noexcept {
+    const bool exact = model.kind() == ModelKind::exact_float || model.kind() == ModelKind::exact_double;
+    return !(exact && front.first_surface);
+  }
 };
 
 /// Samples N camera rays, block by block: pupil, ray, weight.

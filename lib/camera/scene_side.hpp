@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "chief_ray_table.hpp"
+#include "front.hpp"
 #include "lens_facts.hpp"
 #include "petzval/camera/camera_ray.hpp"
 #include "petzval/camera/ray_model.hpp"
@@ -25,6 +26,7 @@ class SceneSide {
 
   /// Of film points spread uniformly over the film, 1/mm^2.
   double pdf_film() const noexcept { return pdf_film_; }
+  const Front& front() const noexcept { return front_; }
   Importance importance(const AnyRayModel& model, const Ray<double>& ray, std::size_t wavelength) const noexcept;
   ImportanceSample sample_importance(const AnyRayModel& model, const Vec3<double>& point, double u, double v,
                                      std::size_t wavelength) const noexcept;
@@ -58,6 +60,9 @@ class SceneSide {
   /// pupil that its film point samples, 0 where no sample is this ray.
   void weigh(Importance& result, const AnyRayModel& model, const Arrival& arrival, const FilmPoint& point,
              double cosine, double area, std::size_t wavelength) const noexcept;
+  /// A connection from a point to a place in the lens, whose shadow ray ends at the front.
+  ImportanceSample connection(const Vec3<double>& point, const Vec3<double>& direction, double distance,
+                              double pdf) const noexcept;
   ImportanceSample through_pinhole(const AnyRayModel& model, const Vec3<double>& point, double u, double v,
                                    std::size_t wavelength) const noexcept;
 
@@ -65,6 +70,7 @@ class SceneSide {
   std::optional<TiltedFilm> tilted_;
   double upright_radius_ = 0, pdf_film_ = 0;
   TwoPlanes space_;
+  Front front_;
   std::vector<Wavelength> wavelengths_;
   EntrancePupilTable entrance_;
 };

@@ -18,6 +18,7 @@
 #include <string>
 #include <vector>
 
+#include "camera_steps.hpp"
 #include "check_film.hpp"
 #include "core/text.hpp"
 #include "make_model.hpp"
@@ -42,11 +43,6 @@ TiltedPlane plane_of(const Film& film, const TwoPlanes& space) {
           .cosine = normal.z};
 }
 
-/// Distance from the plane of the pupil, in that of the upright film.
-double distance_at(const TiltedPlane& plane, const FilmPoint& film) noexcept {
-  return 1 + plane.depth_by_x * film.x + plane.depth_by_y * film.y;
-}
-
 using Jet = ceres::Jet<double, 2>;
 
 /// The virtual point of a film point, by the film point.
@@ -57,10 +53,8 @@ struct VirtualPoint {
 };
 
 VirtualPoint differentiated(const TiltedPlane& plane, const FilmPoint& film) noexcept {
-  const Jet x(film.x, 0), y(film.y, 1);
-  const Jet distance = 1.0 + plane.depth_by_x * x + plane.depth_by_y * y;
-  const Jet virtual_x = (plane.x_by_x * x + plane.x_by_y * y) / distance, virtual_y = plane.y_by_y * y / distance;
-  return {virtual_x, virtual_y, plane.slope_x * virtual_x + plane.slope_y * virtual_y};
+  const auto [x, y] = virtual_of(plane, Jet(film.x, 0), Jet(film.y, 1));
+  return {x, y, plane.slope_x * x + plane.slope_y * y};
 }
 
 TwoPlaneRayDerivatives derivatives_of(const Jet& film_x, const Jet& film_y, const Jet& pupil_x,
@@ -166,13 +160,13 @@ TiltedFilm::TiltedFilm(const Film& film, const FilmPupilTable& pupils)
 }
 
 FilmPoint TiltedFilm::virtual_point(const FilmPoint& film) const noexcept {
-  const double per_distance = 1 / distance_at(plane_, film);
-  return {(plane_.x_by_x * film.x + plane_.x_by_y * film.y) * per_distance, plane_.y_by_y * film.y * per_distance};
+  const auto [x, y] = virtual_of(plane_, film.x, film.y);
+  return {x, y};
 }
 
 TwoPlaneRay TiltedFilm::upright(const FilmPoint& point, double pupil_x, double pupil_y) const noexcept {
-  const double slope = plane_.slope_along(point);
-  return {point.x - slope * pupil_x, point.y - slope * pupil_y, pupil_x, pupil_y};
+  const auto [x, y] = upright_of(plane_, point.x, point.y, pupil_x, pupil_y);
+  return {x, y, pupil_x, pupil_y};
 }
 
 std::optional<FilmPoint> TiltedFilm::virtual_point_of(const TwoPlaneRay& ray) const noexcept {
@@ -188,8 +182,7 @@ FilmPoint TiltedFilm::point(const FilmPoint& point) const noexcept {
 }
 
 double TiltedFilm::weight(const FilmPoint& point, double pupil_x, double pupil_y) const noexcept {
-  const double near = nearness(point), front = 1 - plane_.slope_along({pupil_x, pupil_y});
-  return std::max(plane_.cosine * front * near * near * near, 0.0);
+  return std::max(facing_of(plane_, point.x, point.y, pupil_x, pupil_y), 0.0);
 }
 
 TwoPlaneRayDerivatives TiltedFilm::line(const FilmPoint& film, double u, double v,

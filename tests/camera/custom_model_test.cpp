@@ -185,7 +185,7 @@ TEST_P(CustomModel, IsSeenFromTheSceneAsTheBuiltInModelIs) {
     EXPECT_NEAR(own.pdf, wanted.pdf, 5e-4 * wanted.pdf);
     EXPECT_NEAR(glm::length(own.direction - wanted.direction), 0, 1e-5);
     EXPECT_NEAR(own_.pdf_importance(point, wanted.direction), wanted.pdf, 5e-4 * wanted.pdf);
-    const Importance a = own_.importance({wanted.on_pupil, wanted.direction}), b = wanted.importance;
+    const Importance a = own_.importance({wanted.on_front, wanted.direction}), b = wanted.importance;
     if (a.fate != b.fate) continue;  // at an edge
     EXPECT_NEAR(a.we, b.we, 1e-9 * b.we);
     EXPECT_NEAR(a.pdf_direction, b.pdf_direction, 1e-6 * b.pdf_direction);

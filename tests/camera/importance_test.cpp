@@ -93,7 +93,7 @@ TEST_P(Importances, OfWhatTheCameraSeesAreConnected) {
     if (!(s.pdf > 0)) continue;
     EXPECT_NEAR(camera.pdf_importance(point, s.direction) / s.pdf, 1, 1e-6);
     EXPECT_NEAR(glm::length(s.direction), 1, 1e-12);
-    EXPECT_NEAR(glm::distance(point + s.direction * s.distance, s.on_pupil) / (1 + s.distance), 0, 1e-14);
+    EXPECT_NEAR(glm::distance(point + s.direction * s.distance, s.on_front) / (1 + s.distance), 0, 1e-14);
     // The connection equals the importance of its ray.
     const Importance again = camera.importance({point, s.direction});
     EXPECT_EQ(again.fate, s.importance.fate);
@@ -129,7 +129,8 @@ TEST(Importance, OfAPinholeIsThatOfTheThickLensInOnePoint) {
       const ImportanceSample s = thick.sample_importance(point, u, v), p = pinhole.sample_importance(point, u, v);
       if (s) all += s.importance.we / s.pdf / draws;
       one += p.importance.we / p.pdf / draws;
-      EXPECT_NEAR(glm::distance(p.on_pupil, Vec3<double>{0, 0, pupils(lens).entrance.z}), 0, 1e-12);
+      const Vec3<double> to_pupil = Vec3<double>{0, 0, pupils(lens).entrance.z} - p.on_front;
+      EXPECT_NEAR(glm::length(glm::cross(to_pupil, p.direction)), 0, 1e-10);
       EXPECT_EQ(pinhole.importance({point, p.direction}).we, 0);
     }
     // The results differ: the scene side has the cosines of those rays.
@@ -148,7 +149,7 @@ TEST(Importance, IsNothingForWhatMakesNoRay) {
       const ImportanceSample s = camera.sample_importance(point, 0.4, 0.6);
       EXPECT_FALSE(s);
       EXPECT_EQ(s.importance.we, 0);
-      EXPECT_TRUE(std::isfinite(s.direction.x + s.distance + s.on_pupil.z + s.pdf));
+      EXPECT_TRUE(std::isfinite(s.direction.x + s.distance + s.on_front.z + s.pdf));
       expect_finite(s.importance);
       EXPECT_EQ(camera.project(point).status, ProjectionStatus::not_visible) << point.z;
     }

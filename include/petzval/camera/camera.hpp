@@ -44,6 +44,11 @@ struct CameraOptions {
 ///
 /// Any size of film is taken; lint(lens, film) finds one that the image circle of the lens does not fit.
 ///
+/// Rays of every model start on the front of the lens, and shadow rays of connections end there: on the sphere through
+/// the vertex and the rim of the first surface, which is that surface where it is spherical or plane. Where other
+/// surfaces stand before the first one, as with some mirrors, or it is a cylinder, the front is the plane across the
+/// axis before all of them. A line that passes the sphere by starts in the plane that touches it at the vertex.
+///
 /// Immutable, cheap to copy, shared freely between threads. Calls neither allocate nor draw random numbers nor loop
 /// until a ray passes: a lost sample has weight 0 and a fate. Lens frame, mm; host_frame.hpp has the frames of hosts.
 class PETZVAL_API Camera {

@@ -20,7 +20,7 @@ struct CameraSample {
   Wavelength wavelength = {};
 };
 
-/// A ray that leaves the lens towards the scene.
+/// A ray that leaves the lens towards the scene, from the front of the lens (see Camera).
 ///
 /// The mean of weight x radiance over pupil samples is the irradiance of the film point (for unity_on_axis, relative to
 /// that of the axis for the same radiance). A lost ray has weight 0 and its fate. Densities are those of the sample,
@@ -113,8 +113,8 @@ struct Importance {
 /// A connection from a scene point to the camera.
 struct ImportanceSample {
   Vec3<double> direction{0, 0, 1};  ///< unit, from the point to the lens
-  double distance = 0;              ///< from the point to `on_pupil`, mm
-  Vec3<double> on_pupil{0, 0, 0};   ///< where the line meets the pupil, usually inside the lens; shadow rays end there
+  double distance = 0;              ///< from the point to `on_front`, mm
+  Vec3<double> on_front{0, 0, 0};   ///< where the line meets the front of the lens (see Camera): shadow rays end there
   double pdf = 0;                   ///< of the direction at the point, 1/sr; 0 without a connection
   Importance importance{};
 

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "film/film_bounds.hpp"
+#include "petzval/core/ray.hpp"
+
+/// What a camera does to one sample before and after its ray is found, for loops over many and for a single one.
+namespace petzval::inline v0::camera_detail {
+
+using film_detail::FilmBounds;
+
+// Local names: this is compiled for several instruction sets, and the linker must not take one for another.
+namespace {
+
+inline float root(float x) noexcept { return __builtin_sqrtf(x); }
+inline double root(double x) noexcept { return __builtin_sqrt(x); }
+
+/// False for what is not a number.
+template <class T>
+inline bool on_film(const FilmBounds<T>& film, T x, T y) noexcept {
+  const T dx = x - film.centre_x, dy = y - film.centre_y;
+  return (dx <= film.half_width) & (-dx <= film.half_width) & (dy <= film.half_height) & (-dy <= film.half_height);
+}
+
+/// The weight of a sample of a pupil, and its density in solid angle at the film point.
+template <class T>
+struct PupilWeight {
+  T depth2, along;  ///< square of the distance between the planes, and the distance
+
+  explicit PupilWeight(T depth) noexcept : depth2(depth * depth), along(depth < T(0) ? -depth : depth) {}
+  /// Square of the distance between the film point and the place in the pupil.
+  T length2(T film_x, T film_y, T pupil_x, T pupil_y) const noexcept {
+    const T x = pupil_x - film_x, y = pupil_y - film_y;
+    return x * x + y * y + depth2;
+  }
+  /// cos / pdf_direction, pdf_direction = pdf_pupil length^3 / depth.
+  T weight(T length2, T area) const noexcept {
+    const T part = depth2 / length2;
+    return area * part * part / depth2;
+  }
+  T pdf_direction(T length2, T area) const noexcept { return length2 * root(length2) / (along * area); }
+};
+
+/// The fate of a sample: of its ray, unless it has none.
+inline RayFate fate_of(RayFate fate, bool kept, bool wanted, bool seen) noexcept {
+  fate = seen ? fate : RayFate::vignetted;
+  fate = wanted ? fate : RayFate::invalid;
+  return kept ? fate : RayFate::outside_film;
+}
+
+template <class T>
+struct PlanePoint {
+  T x, y;
+};
+
+/// The virtual point of a film point, on a film tilted as `plane`, a TiltedPlane or its numbers in T.
+template <class T, class Plane>
+inline PlanePoint<T> virtual_of(const Plane& plane, T x, T y) noexcept {
+  const T per_distance = T(1) / (T(1) + (plane.depth_by_x * x + plane.depth_by_y * y));
+  return {(plane.x_by_x * x + plane.x_by_y * y) * per_distance, plane.y_by_y * y * per_distance};
+}
+
+/// Where the ray of a virtual point through a place in the pupil meets the upright film.
+template <class T, class Plane>
+inline PlanePoint<T> upright_of(const Plane& plane, T virtual_x, T virtual_y, T pupil_x, T pupil_y) noexcept {
+  const T tilt = plane.slope_x * virtual_x + plane.slope_y * virtual_y;
+  return {virtual_x - tilt * pupil_x, virtual_y - tilt * pupil_y};
+}
+
+/// The upright film's distance from the pupil's plane over that of the film point.
+template <class T, class Plane>
+inline T nearness_of(const Plane& plane, T virtual_x, T virtual_y) noexcept {
+  return T(1) + (plane.slope_x * virtual_x + plane.slope_y * virtual_y);
+}
+
+/// The weight of a tilted film's sample over that of the upright film's sample with the same ray; not positive: it
+/// meets the film's back.
+template <class T, class Plane>
+inline T facing_of(const Plane& plane, T virtual_x, T virtual_y, T pupil_x, T pupil_y) noexcept {
+  const T near = nearness_of(plane, virtual_x, virtual_y);
+  const T front = T(1) - (plane.slope_x * pupil_x + plane.slope_y * pupil_y);
+  return plane.cosine * front * near * near * near;
+}
+
+}  // namespace
+}  // namespace petzval::inline v0::camera_detail
