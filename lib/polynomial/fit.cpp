@@ -78,6 +78,28 @@ MeridianLines rims(const FilmPupilTable& pupils, std::size_t wavelength) {
   return lines_of(pupils, wavelength, heights, u, std::vector<double>(u.size(), 1.0));
 }
 
+/// Where errors are largest: just within the rims of all pupils, where the last rays pass, and from the film's farthest
+/// point, on its rim and through the rest of its pupil.
+MeridianLines edges(const FilmPupilTable& pupils, std::size_t wavelength) {
+  constexpr std::size_t near_rims = 8192, on_rim = 1024, within = 3072;
+  constexpr double margin = 0.02;  // of the pupil's area
+  const core_detail::Kronecker<3> points;
+  std::vector<double> heights, u, v;
+  const auto add = [&](double height, double around, double outwards) {
+    heights.push_back(pupils.film_radius() * height), u.push_back(around), v.push_back(outwards);
+  };
+  for (std::size_t i = 0; i < near_rims; ++i) {
+    const auto [height, around, inwards] = points(i);
+    add(height, around, 1 - margin * inwards * inwards);
+  }
+  for (std::size_t i = 0; i < on_rim; ++i) add(1, static_cast<double>(i) / on_rim, 1);
+  for (std::size_t i = 0; i < within; ++i) {
+    const auto [around, outwards] = core_detail::fibonacci_point(i, within);
+    add(1, around, outwards);
+  }
+  return lines_of(pupils, wavelength, heights, u, v);
+}
+
 /// The smallest discs, moving with the film point, that hold the rims of all wavelengths.
 void enclose(const std::vector<MeridianLines>& rims, RayPolynomial::Domain& domain) {
   struct Farthest {
@@ -128,24 +150,25 @@ RayPolynomial RayPolynomial::fit(const Lens& lens, const FilmPupilTable& pupils,
                 " wavelengths, wanted the lens's " + std::to_string(lens.wavelengths_nm().size()));
   }
   if (!(pupils.film_radius() > 0)) throw Error(where + "the film's radius is 0, wanted more than one point");
-  std::vector<MeridianLines> edges;
+  std::vector<MeridianLines> all_rims;
   for (std::size_t wavelength = 0; wavelength < pupils.wavelengths(); ++wavelength) {
-    edges.push_back(rims(pupils, wavelength));
-    if (edges.back().size() == 0) throw Error(where + "the pupils are empty, wanted rays");
+    all_rims.push_back(rims(pupils, wavelength));
+    if (all_rims.back().size() == 0) throw Error(where + "the pupils are empty, wanted rays");
   }
 
   Domain domain;
   domain.space = pupils.space();
   domain.film_radius = pupils.film_radius();
   domain.reference_z = reference_of(lens);
-  enclose(edges, domain);
+  enclose(all_rims, domain);
   std::vector<Fit> fits;
   for (std::size_t wavelength = 0; wavelength < pupils.wavelengths(); ++wavelength) {
     fits.push_back(polynomial_detail::fit(lens, domain, degree, wavelength,
                                           {.fitted = spread(pupils, wavelength, 0, fitted, true),
                                            .axial = axial(pupils, wavelength),
                                            .fresh = spread(pupils, wavelength, fitted, judged, false),
-                                           .rims = edges[wavelength]}));
+                                           .rims = all_rims[wavelength],
+                                           .edges = edges(pupils, wavelength)}));
   }
   return RayPolynomial(degree, domain, std::move(fits), lens.primary_wavelength());
 }

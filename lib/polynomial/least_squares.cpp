@@ -171,11 +171,19 @@ RayPolynomial::Fit fit(const Lens& lens, const RayPolynomial::Domain& domain, in
 
   const RayPolynomial polynomial(degree, domain, {fit});
   const auto [direction, offset] = errors_of(lens, polynomial, wavelength, lines.fresh);
-  const auto [direction_at_rims, offset_at_rims] = errors_of(lens, polynomial, wavelength, lines.rims);
   fit.rms_rad = direction.rms();
-  fit.max_rad = std::max(direction.max(), direction_at_rims.max());
   fit.rms_mm = offset.rms();
-  fit.max_mm = std::max(offset.max(), offset_at_rims.max());
+  fit.max_rad = direction.max();
+  fit.max_mm = offset.max();
+  for (const MeridianLines* edge : {&lines.rims, &lines.edges}) {
+    const auto [direction_there, offset_there] = errors_of(lens, polynomial, wavelength, *edge);
+    fit.max_rad = std::max(fit.max_rad, direction_there.max());
+    fit.max_mm = std::max(fit.max_mm, offset_there.max());
+  }
+  // For rays between those that were looked at.
+  constexpr double to_spare = 1.1;
+  fit.max_rad *= to_spare;
+  fit.max_mm *= to_spare;
   return fit;
 }
 

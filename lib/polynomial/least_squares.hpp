@@ -19,8 +19,9 @@ struct MeridianLines {
 struct FitLines {
   MeridianLines fitted;
   MeridianLines axial;  ///< of the film's centre, uniform over its pupil
-  MeridianLines fresh;  ///< to find errors with, and
-  MeridianLines rims;   ///< those along the rims of the pupils
+  MeridianLines fresh;  ///< to find errors with, and for the largest ones
+  MeridianLines rims;   ///< those along the rims of the pupils and
+  MeridianLines edges;  ///< those near them and of the film's farthest point
 };
 
 /// The fit at one wavelength to the lines that pass the lens. The film's centre is in focus where exact rays are
