@@ -109,7 +109,10 @@ Camera::Data::Data(const LensFacts& facts, const Film& placed, const AnyRayModel
       model(any),
       tilted(placed.tilted() ? std::optional(TiltedFilm(placed, any.pupils())) : std::nullopt),
       scale(scales(lens, film, model, normalisation)),
-      scene(facts, film, tilted, model, radius, scale) {}
+      front(camera_detail::front_of(lens)),
+      pdf_film(1 / film.area_mm2()),
+      facts_(facts),
+      radius_(radius) {}
 
 Camera::Camera(const Lens& lens, const Film& film, const CameraOptions& options) {
   const auto [placed_lens, placed_film] = camera_detail::placed(lens, film);
@@ -139,7 +142,7 @@ CameraRay Camera::sample(const CameraSample& s) const noexcept {
   const Data& data = *data_;
   CameraRay ray =
       camera_detail::sample_ray(data.view(), s.film, s.pupil_u, s.pupil_v, data.lens.position(s.wavelength));
-  ray.pdf_film = ray.fate != RayFate::outside_film ? data.scene.pdf_film() : 0;
+  ray.pdf_film = ray.fate != RayFate::outside_film ? data.pdf_film : 0;
   return ray;
 }
 
@@ -164,7 +167,7 @@ CameraRayDifferential Camera::sample_differential(const CameraSample& s) const n
                                           ? pinhole_line(*data.tilted, s.film, data.model.pinhole_shifts()[wavelength])
                                           : data.tilted->line(s.film, s.pupil_u, s.pupil_v, wavelength);
   RayDerivatives ray = data.model.to_scene(line, wavelength);
-  if (data.view().moves_rays()) ray = at_front(data.scene.front(), ray);
+  if (data.view().moves_rays()) ray = at_front(data.front, ray);
   result.by_film_x = ray.by_u;
   result.by_film_y = ray.by_v;
   return result;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <mutex>
 #include <optional>
 #include <vector>
 
@@ -13,7 +14,7 @@
 
 namespace petzval::inline v0 {
 
-/// Everything that a camera works out once.
+/// Everything that a camera works out once: the film's side when it is made, the scene's when it is first asked for.
 struct Camera::Data {
   /// radius: upright_radius() of the film.
   Data(const camera_detail::LensFacts& facts, const Film& placed, const AnyRayModel& model, double radius,
@@ -24,11 +25,21 @@ struct Camera::Data {
   AnyRayModel model;
   std::optional<camera_detail::TiltedFilm> tilted;
   std::vector<double> scale;  ///< of weights and importance, by wavelength
-  camera_detail::SceneSide scene;
+  camera_detail::Front front;
+  double pdf_film;  ///< of film points spread uniformly over the film, 1/mm^2
 
-  camera_detail::FilmView view() const noexcept {
-    return {model, film, tilted ? &*tilted : nullptr, scale, scene.front()};
+  camera_detail::FilmView view() const noexcept { return {model, film, tilted ? &*tilted : nullptr, scale, front}; }
+  /// Renderers that trace paths from the film alone never ask for it.
+  const camera_detail::SceneSide& scene() const {
+    std::call_once(scene_once_, [&] { scene_.emplace(facts_, film, tilted, front, model, radius_, scale); });
+    return *scene_;
   }
+
+ private:
+  camera_detail::LensFacts facts_;
+  double radius_;
+  mutable std::once_flag scene_once_;
+  mutable std::optional<camera_detail::SceneSide> scene_;
 };
 
 }  // namespace petzval::inline v0

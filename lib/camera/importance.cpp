@@ -21,6 +21,7 @@
 #include <cmath>
 #include <cstdint>
 #include <glm/geometric.hpp>
+#include <limits>
 #include <numbers>
 
 #include "camera_data.hpp"
@@ -34,7 +35,12 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
 double squared(double x) noexcept { return x * x; }
+
+/// As the tracers take directions.
+bool unit_length(const Vec3<double>& direction) noexcept { return std::abs(glm::dot(direction, direction) - 1) < 1e-3; }
 
 bool finite(const Vec3<double>& v) noexcept { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
@@ -105,14 +111,14 @@ double pinhole_entrance_area(const AnyRayModel& model, double entrance_z, std::s
 
 }  // namespace
 
-SceneSide::SceneSide(const LensFacts& facts, const Film& film, std::optional<TiltedFilm> tilted,
+SceneSide::SceneSide(const LensFacts& facts, const Film& film, std::optional<TiltedFilm> tilted, const Front& front,
                      const AnyRayModel& model, double radius, std::span<const double> scale)
     : film_(film),
       tilted_(std::move(tilted)),
       upright_radius_(radius),
       pdf_film_(1 / film.area_mm2()),
       space_(model.pupils().space()),
-      front_(front_of(facts.lens())),
+      front_(front),
       entrance_(entrance_of(facts.lens(), model)) {
   const Lens& lens = facts.lens();
   for (std::size_t w = 0; w < scale.size(); ++w) {
@@ -128,9 +134,7 @@ SceneSide::SceneSide(const LensFacts& facts, const Film& film, std::optional<Til
 }
 
 bool SceneSide::valid(const Ray<double>& ray, std::size_t wavelength) const noexcept {
-  // As the tracers take rays.
-  const bool unit = std::abs(glm::dot(ray.direction, ray.direction) - 1) < 1e-3;
-  return wavelength < wavelengths_.size() && finite(ray.origin) && unit;
+  return wavelength < wavelengths_.size() && finite(ray.origin) && unit_length(ray.direction);
 }
 
 SceneSide::Arrival SceneSide::arrive(const AnyRayModel& model, const Ray<double>& ray,
@@ -204,16 +208,35 @@ ImportanceSample SceneSide::sample_importance(const AnyRayModel& model, const Ve
   if (model.pinhole()) return through_pinhole(model, point, u, v, wavelength);
   const EntranceSample s = entrance_.sample(point, u, v, wavelength);
   if (!(s.pdf > 0)) return {};
-  ImportanceSample result = connection(point, s.direction, s.distance, s.pdf);
+  ImportanceSample result = connection(s.place, s.direction, s.distance, s.pdf);
   result.importance = importance(model, {s.place, s.direction}, wavelength);
   return result;
 }
 
-ImportanceSample SceneSide::connection(const Vec3<double>& point, const Vec3<double>& direction, double distance,
+ImportanceSample SceneSide::sample_distant(const AnyRayModel& model, const Vec3<double>& direction, double u, double v,
+                                           std::size_t wavelength) const noexcept {
+  ImportanceSample result{.importance = {.fate = RayFate::invalid}};
+  if (wavelength >= wavelengths_.size() || !unit_length(direction)) return result;
+  // The pupil that a point so far away sees is that of infinity within rounding.
+  constexpr double far = 1e12;  // mm
+  const Vec3<double> point = direction * -far;
+  if (model.pinhole()) {
+    const ImportanceSample s = through_pinhole(model, point, u, v, wavelength);
+    result = connection({0, 0, wavelengths_[wavelength].entrance_z}, direction, infinity, s.pdf / squared(far));
+    result.importance = s.importance;
+    return result;
+  }
+  const EntranceSample s = entrance_.sample(point, u, v, wavelength);
+  if (!(s.pdf > 0)) return result;
+  result = connection(s.place, direction, infinity, s.pdf / squared(far));
+  result.importance = importance(model, {s.place, direction}, wavelength);
+  return result;
+}
+
+ImportanceSample SceneSide::connection(const Vec3<double>& place, const Vec3<double>& direction, double distance,
                                        double pdf) const noexcept {
-  const double way = way_to_front(front_, {point + direction * distance, -direction});
-  const double to_front = std::max(distance - way, 0.0);
-  return {direction, to_front, point + direction * to_front, pdf, {}};
+  const double way = std::min(way_to_front(front_, {place, -direction}), distance);
+  return {direction, distance - way, place - direction * way, pdf, {}};
 }
 
 ImportanceSample SceneSide::through_pinhole(const AnyRayModel& model, const Vec3<double>& point, double u, double v,
@@ -226,7 +249,7 @@ ImportanceSample SceneSide::through_pinhole(const AnyRayModel& model, const Vec3
   if (!std::isfinite(distance) || !std::isfinite(at.entrance_area) || !(to.z > 0)) return result;
   // The weights are those of all the thick lens's pupil, and so are the places in it that the film sees it through.
   const Vec3<double> direction = to / distance;
-  result = connection(point, direction, distance, squared(distance) / (at.entrance_area * direction.z));
+  result = connection(pupil, direction, distance, squared(distance) / (at.entrance_area * direction.z));
   Arrival arrival = arrive(model, {pupil, result.direction}, wavelength);
   const auto met = on_film(arrival.upright, arrival.pupil);
   Importance& seen = result.importance = met_by(arrival, met);
@@ -263,21 +286,26 @@ double SceneSide::pdf(const AnyRayModel& model, const Vec3<double>& point, const
 }  // namespace camera_detail
 
 Importance Camera::importance(const Ray<double>& ray, Wavelength wavelength) const noexcept {
-  return data_->scene.importance(data_->model, ray, data_->lens.position(wavelength));
+  return data_->scene().importance(data_->model, ray, data_->lens.position(wavelength));
 }
 
 ImportanceSample Camera::sample_importance(const Vec3<double>& point, double u, double v,
                                            Wavelength wavelength) const noexcept {
-  return data_->scene.sample_importance(data_->model, point, u, v, data_->lens.position(wavelength));
+  return data_->scene().sample_importance(data_->model, point, u, v, data_->lens.position(wavelength));
+}
+
+ImportanceSample Camera::sample_distant_importance(const Vec3<double>& direction, double u, double v,
+                                                   Wavelength wavelength) const noexcept {
+  return data_->scene().sample_distant(data_->model, direction, u, v, data_->lens.position(wavelength));
 }
 
 double Camera::pdf_importance(const Vec3<double>& point, const Vec3<double>& direction,
                               Wavelength wavelength) const noexcept {
-  return data_->scene.pdf(data_->model, point, direction, data_->lens.position(wavelength));
+  return data_->scene().pdf(data_->model, point, direction, data_->lens.position(wavelength));
 }
 
 Projection Camera::project(const Vec3<double>& point, Wavelength wavelength) const noexcept {
-  return data_->scene.project(data_->model, point, data_->lens.position(wavelength));
+  return data_->scene().project(data_->model, point, data_->lens.position(wavelength));
 }
 
 }  // namespace petzval::inline v0

@@ -21,15 +21,14 @@ namespace petzval::inline v0::camera_detail {
 class SceneSide {
  public:
   /// radius: upright_radius() of the film; scale: of weights, one for each wavelength, as in FilmView.
-  SceneSide(const LensFacts& facts, const Film& film, std::optional<TiltedFilm> tilted, const AnyRayModel& model,
-            double radius, std::span<const double> scale);
+  SceneSide(const LensFacts& facts, const Film& film, std::optional<TiltedFilm> tilted, const Front& front,
+            const AnyRayModel& model, double radius, std::span<const double> scale);
 
-  /// Of film points spread uniformly over the film, 1/mm^2.
-  double pdf_film() const noexcept { return pdf_film_; }
-  const Front& front() const noexcept { return front_; }
   Importance importance(const AnyRayModel& model, const Ray<double>& ray, std::size_t wavelength) const noexcept;
   ImportanceSample sample_importance(const AnyRayModel& model, const Vec3<double>& point, double u, double v,
                                      std::size_t wavelength) const noexcept;
+  ImportanceSample sample_distant(const AnyRayModel& model, const Vec3<double>& direction, double u, double v,
+                                  std::size_t wavelength) const noexcept;
   double pdf(const AnyRayModel& model, const Vec3<double>& point, const Vec3<double>& direction,
              std::size_t wavelength) const noexcept;
   Projection project(const AnyRayModel& model, const Vec3<double>& point, std::size_t wavelength) const noexcept;
@@ -60,8 +59,8 @@ class SceneSide {
   /// pupil that its film point samples, 0 where no sample is this ray.
   void weigh(Importance& result, const AnyRayModel& model, const Arrival& arrival, const FilmPoint& point,
              double cosine, double area, std::size_t wavelength) const noexcept;
-  /// A connection from a point to a place in the lens, whose shadow ray ends at the front.
-  ImportanceSample connection(const Vec3<double>& point, const Vec3<double>& direction, double distance,
+  /// A connection to a place in the lens from a point at a distance from it. The shadow ray ends at the front.
+  ImportanceSample connection(const Vec3<double>& place, const Vec3<double>& direction, double distance,
                               double pdf) const noexcept;
   ImportanceSample through_pinhole(const AnyRayModel& model, const Vec3<double>& point, double u, double v,
                                    std::size_t wavelength) const noexcept;

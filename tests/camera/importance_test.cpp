@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <glm/geometric.hpp>
 #include <limits>
+#include <numbers>
 #include <ostream>
 #include <string>
 
@@ -15,7 +16,9 @@
 #include "camera_parts.hpp"
 #include "core/low_discrepancy.hpp"
 #include "petzval/camera/camera.hpp"
+#include "petzval/core/parallel.hpp"
 #include "petzval/paraxial/first_order.hpp"
+#include "petzval/pupil/pupil_boundary.hpp"
 
 namespace petzval {
 namespace {
@@ -193,6 +196,58 @@ TEST(Importance, IsConnectedToAFilmThatIsDarkOnTheAxis) {
   }
   EXPECT_GT(seen, 500);
   EXPECT_LT(missed, 0.01 * seen);  // the disc clips pupils abruptly within a field
+}
+
+TEST(Importance, OfASunIsTheAreaThroughWhichItShines) {
+  // A sun on the axis of a lens with a large film: every ray through the entrance pupil arrives, with We = n^2 / A.
+  const Lens lens = testing::data_lens("double_gauss_100mm_f2.0");
+  for (const ModelKind model : {ModelKind::thin, ModelKind::thick, ModelKind::polynomial_7, ModelKind::exact_double}) {
+    const Camera camera(lens, film, {.model = model});
+    for (const double field : {0.0, 0.1}) {
+      const Vec3<double> direction{0, -std::sin(field), std::cos(field)};
+      constexpr int count = 4096;
+      double mean = 0, far_mean = 0;
+      const double far = 1e7;
+      for (int i = 0; i < count; ++i) {
+        const auto [u, v] = core_detail::Kronecker<2>()(static_cast<std::size_t>(i));
+        const ImportanceSample s = camera.sample_distant_importance(direction, u, v);
+        if (s) {
+          mean += s.importance.we / s.pdf / count;
+          EXPECT_TRUE(std::isinf(s.distance));
+          EXPECT_EQ(s.direction, direction);
+          EXPECT_LT(s.on_front.z, lens.surfaces()[0].vertex_z + 40);
+          EXPECT_NEAR(camera.importance({s.on_front, direction}).we, s.importance.we, 1e-9 * s.importance.we);
+        }
+        const ImportanceSample near = camera.sample_importance(-far * direction, u, v);
+        if (near) far_mean += near.importance.we / near.pdf / count;
+      }
+      EXPECT_NEAR(mean / (far * far * far_mean), 1, 2e-3) << name(model) << " at " << field;
+      if (model != ModelKind::exact_double) continue;
+      const double seen = pupil_boundary(lens, {.field_rad = field, .z = -infinity}).area() * std::cos(field);
+      EXPECT_NEAR(mean * film.area_mm2() / seen, 1, 3e-3) << field;
+    }
+  }
+  const Camera camera(lens, film, {.model = ModelKind::pinhole});
+  const Vec3<double> direction{0, 0, 1};
+  const ImportanceSample s = camera.sample_distant_importance(direction, 0.3, 0.4);
+  ASSERT_TRUE(s);
+  EXPECT_NEAR(s.importance.we / s.pdf * film.area_mm2(),
+              std::numbers::pi / 4 * std::pow(pupils(lens).entrance.diameter, 2),
+              0.1 * s.importance.we / s.pdf * film.area_mm2());
+  EXPECT_EQ(camera.sample_distant_importance({0, 0, 2}, 0.3, 0.4).importance.fate, RayFate::invalid);
+  EXPECT_EQ(camera.sample_distant_importance(direction, 0.3, 0.4, 7).importance.fate, RayFate::invalid);
+  EXPECT_FALSE(camera.sample_distant_importance({0, 0, -1}, 0.3, 0.4));
+}
+
+TEST(Importance, IsTheSameWhicheverThreadAsksFirst) {
+  const Lens lens = testing::data_lens("double_gauss_100mm_f2.0");
+  const Vec3<double> point{10, 20, -3000};
+  const double wanted = Camera(lens, film).sample_importance(point, 0.3, 0.4).importance.we;
+  const Camera camera(lens, film);
+  std::array<double, 8> found{};
+  parallel_for(found.size(), 1, 8,
+               [&](std::size_t i, std::size_t) { found[i] = camera.sample_importance(point, 0.3, 0.4).importance.we; });
+  for (const double we : found) EXPECT_EQ(we, wanted);
 }
 
 TEST(Importance, SaysWhereARayMissesTheFilm) {

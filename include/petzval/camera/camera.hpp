@@ -50,7 +50,9 @@ struct CameraOptions {
 /// axis before all of them. A line that passes the sphere by starts in the plane that touches it at the vertex.
 ///
 /// Immutable, cheap to copy, shared freely between threads. Calls neither allocate nor draw random numbers nor loop
-/// until a ray passes: a lost sample has weight 0 and a fate. Lens frame, mm; host_frame.hpp has the frames of hosts.
+/// until a ray passes: a lost sample has weight 0 and a fate. Only the first call that concerns rays from the scene
+/// (importance and projection) makes the tables for those, while other threads that want them wait. Lens frame, mm;
+/// host_frame.hpp has the frames of hosts.
 class PETZVAL_API Camera {
  public:
   /// The lens has its film where film.z_mm says, as with_film() would. A tilted film takes two to six times as long to
@@ -90,6 +92,11 @@ class PETZVAL_API Camera {
   /// Samples a connection from a scene point (lens frame, mm) to the part of the entrance pupil that it sees.
   ImportanceSample sample_importance(const Vec3<double>& point, double u, double v,
                                      Wavelength wavelength = {}) const noexcept;
+  /// The same for light from infinity, of a sun or an environment, in a direction of travel (unit, towards the lens):
+  /// the pdf is that of the ray's place in a plane across it, 1/mm^2, and the distance is infinite. The mean of E We /
+  /// pdf is the film's mean irradiance by light of the irradiance E across that direction.
+  ImportanceSample sample_distant_importance(const Vec3<double>& direction, double u, double v,
+                                             Wavelength wavelength = {}) const noexcept;
   /// The density with which sample_importance() gives a direction at a point, 1/sr.
   double pdf_importance(const Vec3<double>& point, const Vec3<double>& direction,
                         Wavelength wavelength = {}) const noexcept;
