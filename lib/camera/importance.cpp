@@ -124,11 +124,13 @@ SceneSide::SceneSide(const LensFacts& facts, const Film& film, std::optional<Til
   for (std::size_t w = 0; w < scale.size(); ++w) {
     const double n = lens.index(0, w), n_film = lens.index(lens.surface_count(), w), etendue = squared(n / n_film);
     const Pupil entrance = facts.pupils(w).entrance;
+    const double area =
+        model.pinhole() ? pinhole_entrance_area(model, entrance.z, w) : pi / 4 * squared(entrance.diameter);
     wavelengths_.push_back({.we = etendue * scale[w] / film.area_mm2(),
                             .density = etendue / film.area_mm2() / squared(space_.depth()),
                             .entrance_z = entrance.z,
-                            .entrance_area = model.pinhole() ? pinhole_entrance_area(model, entrance.z, w)
-                                                             : pi / 4 * squared(entrance.diameter),
+                            // Nothing passes a pupil whose density has no number.
+                            .entrance_area = area >= std::numeric_limits<double>::min() ? area : 0,
                             .chiefs = ChiefRayTable(facts, model, upright_radius_, w)});
   }
 }
@@ -192,7 +194,8 @@ Importance SceneSide::importance(const AnyRayModel& model, const Ray<double>& ra
   Importance result = met_by(arrival, met);
   if (result.fate != RayFate::transmitted) return result;
   const FilmPupilTable &passing = model.pupils(), &sampled = tilted_ ? tilted_->pupils() : passing;
-  if (!model.clips_at_apertures() && !passing.contains(upright, pupil.x, pupil.y, wavelength)) {
+  if (wavelengths_[wavelength].entrance_area == 0 ||
+      (!model.clips_at_apertures() && !passing.contains(upright, pupil.x, pupil.y, wavelength))) {
     result.fate = RayFate::vignetted;
     return result;
   }
@@ -246,7 +249,8 @@ ImportanceSample SceneSide::through_pinhole(const AnyRayModel& model, const Vec3
   const Wavelength& at = wavelengths_[wavelength];
   const Vec3<double> pupil{0, 0, at.entrance_z}, to = pupil - point;
   const double distance = glm::length(to);
-  if (!std::isfinite(distance) || !std::isfinite(at.entrance_area) || !(to.z > 0)) return result;
+  if (!std::isfinite(distance) || !std::isfinite(at.entrance_area) || !(at.entrance_area > 0 && to.z > 0))
+    return result;
   // The weights are those of all the thick lens's pupil, and so are the places in it that the film sees it through.
   const Vec3<double> direction = to / distance;
   result = connection(pupil, direction, distance, squared(distance) / (at.entrance_area * direction.z));

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "petzval/media/glass.hpp"
 
+#include <dirent.h>
+
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <fstream>
+#include <memory>
 #include <system_error>
 #include <utility>
 
@@ -90,6 +94,27 @@ Glass parse_glass(std::string_view line, const std::string& where) {
   return glass;
 }
 
+struct CloseFolder {
+  void operator()(DIR* folder) const noexcept { ::closedir(folder); }
+};
+
+/// Of the files in a folder. std::filesystem::directory_iterator would end the program where memory ends (libstdc++).
+std::vector<std::string> names_in(const std::filesystem::path& directory) {
+  const std::unique_ptr<DIR, CloseFolder> folder(::opendir(directory.c_str()));
+  std::vector<std::string> names;
+  while (folder) {
+    errno = 0;
+    const dirent* entry = ::readdir(folder.get());
+    if (!entry) break;
+    names.emplace_back(entry->d_name);
+  }
+  if (errno != 0) {
+    throw Error(directory.string() + ": " + std::generic_category().message(errno) +
+                ", wanted a folder of glass tables");
+  }
+  return names;
+}
+
 void read_table(const std::filesystem::path& file, std::vector<Glass>& glasses) {
   std::ifstream stream(file, std::ios::binary);
   if (!stream) throw Error(file.string() + ": cannot be opened, wanted a glass table");
@@ -114,14 +139,10 @@ GlassCatalogue::GlassCatalogue(std::vector<Glass> glasses) : glasses_(std::move(
 }
 
 GlassCatalogue GlassCatalogue::load(const std::filesystem::path& directory) {
-  std::error_code failed;
   std::vector<std::filesystem::path> files;
-  for (std::filesystem::directory_iterator entry(directory, failed), end; !failed && entry != end;
-       entry.increment(failed)) {
-    const std::string name = entry->path().filename().string();
-    if (name.starts_with("glass_") && name.ends_with(".csv")) files.push_back(entry->path());
+  for (const std::string& name : names_in(directory)) {
+    if (name.starts_with("glass_") && name.ends_with(".csv")) files.push_back(directory / name);
   }
-  if (failed) throw Error(directory.string() + ": " + failed.message() + ", wanted a folder of glass tables");
   if (files.empty()) throw Error(directory.string() + ": no file glass_*.csv, wanted at least one");
   std::sort(files.begin(), files.end());
   std::vector<Glass> glasses;

@@ -25,10 +25,12 @@ double thin_lens_blur_diameter(double focal_length, double diameter, double subj
 
   // From the difference of the distances as they are given: the difference of their reciprocals would lose the digits
   // next to the focus.
+  if (diameter == 0) return 0;
   if (std::isinf(focused)) return std::isinf(subject) ? 0 : diameter * (focal_length / subject);
-  const double magnification = focal_length / (focused - focal_length);
-  if (std::isinf(subject)) return diameter * magnification;
-  return diameter * (magnification * (std::abs(subject - focused) / subject));
+  if (std::isinf(subject)) return diameter * (focal_length / (focused - focal_length));
+  // Whichever is nearer is not divided by: no product of 0 and infinity.
+  if (subject > focused) return diameter * (focal_length / (focused - focal_length) * ((subject - focused) / subject));
+  return diameter * (focal_length / subject * ((focused - subject) / (focused - focal_length)));
 }
 
 double thin_lens_extension(double focal_length, double subject) {

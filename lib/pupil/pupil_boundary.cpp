@@ -229,7 +229,8 @@ Shape measure(const Lens& lens, PupilBoundary& boundary, const Point& start, con
   return shape;
 }
 
-/// The boundary, from a ray that passes, within a box.
+/// The boundary, from a ray that passes, within a box. It stays empty where the pupil is smaller than what rays
+/// resolve.
 void trace_boundary(const Lens& lens, PupilBoundary& boundary, const Point& start, const Box& box,
                     std::size_t directions) {
   constexpr int steps = 96;
@@ -240,6 +241,10 @@ void trace_boundary(const Lens& lens, PupilBoundary& boundary, const Point& star
     return;
   }
   Shape shape = measure(lens, boundary, start, box);
+  if (!(boundary.half_axes[0] > 0 && boundary.half_axes[1] > 0)) {
+    boundary = PupilBoundary(boundary.plane, boundary.wavelength);
+    return;
+  }
   const double farthest = std::min(reach(box, boundary.middle, boundary.half_axes), 1.5);
   boundary.directions = directions;
   boundary.spans.clear();

@@ -127,7 +127,11 @@ struct FilmPupilTable::Data {
     }
   }
 
-  double strips_per_mm() const noexcept { return lit_radius > 0 ? static_cast<double>(strips_each) / lit_radius : 0; }
+  /// 0 for a film of the axis alone; a smaller one than 1e-30 mm counts as that, so that this is finite in float too.
+  double strips_per_mm() const noexcept {
+    constexpr double smallest = 1e-30;
+    return lit_radius > smallest ? static_cast<double>(strips_each) / lit_radius : 0;
+  }
 
   template <class R>
   StripTable<R> table() const noexcept {
@@ -405,6 +409,7 @@ FilmPupilTable::Derivatives FilmPupilTable::derivatives(const FilmPoint& film, d
                                                         Wavelength wavelength) const noexcept {
   if (const auto& images = data_->images) return images->derivatives(film, u, v, wavelength.position(data_->primary));
   using Jet = ceres::Jet<double, 2>;
+  if (data_->strips_per_mm() == 0) return {};
   // On the axis the directions around it meet: beside it is near enough.
   const double beside = 1e-4 * data_->film_radius;
   const bool on_axis = std::hypot(film.x, film.y) < beside;
@@ -414,7 +419,7 @@ FilmPupilTable::Derivatives FilmPupilTable::derivatives(const FilmPoint& film, d
   u = std::clamp(u, 0.0, 1.0);
   v = std::clamp(v, 0.0, 1.0);
   const Jet x(at.x, 0), y(at.y, 1);
-  const bool turn = data_->turned && data_->film_radius > 0;
+  const bool turn = data_->turned;
   const Jet r = sqrt(x * x + y * y);
   Jet t = r * data_->strips_per_mm();
   t.a = found.t;

@@ -259,5 +259,72 @@ TEST(Importance, SaysWhereARayMissesTheFilm) {
   EXPECT_LT(i.film.y, -12);
 }
 
+TEST(Importance, OfAStopThatIsClosedIsThatOfAVignettedRay) {
+  const Lens open = testing::data_lens("double_gauss_100mm_f2_28deg");
+  for (const double radius : {0., 1e-300, 1e-160}) {
+    const Lens closed = with_semi_diameter(open, *open.stop(), radius);
+    for (const ModelKind model : models()) {
+      if (camera_detail::is_polynomial(model)) continue;  // there is nothing to fit
+      SCOPED_TRACE(std::string(name(model)) + ' ' + std::to_string(radius));
+      const Camera camera(closed, film, {.model = model});
+      const Importance axis = camera.importance({{0, 0, -10}, {0, 0, 1}});
+      const ImportanceSample sample = camera.sample_importance({0, 0, -3000}, 0.5, 0.5);
+      for (const Importance& i : {axis, sample.importance}) {
+        EXPECT_EQ(i.fate, RayFate::vignetted);
+        EXPECT_EQ(i.we, 0);
+        expect_finite(i);
+      }
+      EXPECT_EQ(sample.pdf, 0);
+    }
+  }
+}
+
+TEST(Importance, OfALostRaySaysNothingOfTheFilm) {
+  const Film beside{.width_mm = 6, .height_mm = 6, .shift_x_mm = 10};  // the axis does not meet it
+  for (const char* id : {"double_gauss_100mm_f2_28deg", "fisheye_10mm_f4"}) {
+    for (const ModelKind model : {ModelKind::exact_float, ModelKind::exact_double, ModelKind::polynomial_3}) {
+      const Camera camera(testing::data_lens(id), beside, {.model = model});
+      for (const double x : {70., 500.}) {
+        const Importance lost = camera.importance({{x, 0, -10}, {0, 0, 1}});
+        const std::string what = std::string(id) + ' ' + std::string(name(model)) + ' ' + std::to_string(x);
+        EXPECT_NE(lost.fate, RayFate::transmitted) << what;
+        EXPECT_NE(lost.fate, RayFate::outside_film) << what;
+        EXPECT_TRUE(lost.film.x == 0 && lost.film.y == 0) << what;
+        EXPECT_EQ(lost.raster, Importance{}.raster) << what;
+      }
+    }
+  }
+}
+
+TEST(Importance, OfARayFromAsFarAsNumbersGoIsThatOfItsLine) {
+  const Lens lens = testing::data_lens("double_gauss_100mm_f2_28deg");
+  for (const ModelKind model : models()) {
+    if (model == ModelKind::pinhole) continue;
+    const Camera camera(lens, film, {.model = model});
+    const Importance near = camera.importance({{2, 1, -10}, {0, 0, 1}});
+    const Importance far = camera.importance({{2, 1, -1.5e308}, {0, 0, 1}});
+    EXPECT_EQ(near.fate, RayFate::transmitted) << name(model);
+    EXPECT_EQ(far.fate, near.fate) << name(model);
+    EXPECT_NEAR(far.film.x, near.film.x, 1e-5) << name(model);
+    EXPECT_NEAR(far.we, near.we, 1e-6 * near.we) << name(model);
+  }
+}
+
+TEST(Importance, OfATiltedPinholeIsThatOfAnUprightOneWithHardlyAnyTilt) {
+  const Lens lens = testing::data_lens("double_gauss_100mm_f2_28deg");
+  Film tilted = film;
+  tilted.tilt_rad = 1e-8, tilted.swing_rad = -2e-8;
+  const Camera one(lens, film, {.model = ModelKind::pinhole}), other(lens, tilted, {.model = ModelKind::pinhole});
+  const core_detail::Kronecker<4> random(7);
+  for (std::uint32_t i = 0; i < 200; ++i) {
+    const auto x = random(i);
+    const Vec3<double> point{800 * (x[0] - 0.5), 500 * (x[1] - 0.5), -3000};
+    const ImportanceSample a = one.sample_importance(point, x[2], x[3]), b = other.sample_importance(point, x[2], x[3]);
+    ASSERT_EQ(a.importance.fate, b.importance.fate);
+    EXPECT_NEAR(a.importance.we, b.importance.we, 1e-6 * a.importance.we);
+    EXPECT_NEAR(a.importance.pdf_direction, b.importance.pdf_direction, 1e-6 * a.importance.pdf_direction);
+  }
+}
+
 }  // namespace
 }  // namespace petzval

@@ -100,5 +100,28 @@ TEST(ThinLens, RefusesWhatHasNoImage) {
             "thin_lens_film_distance: distance from subject to film is 199 mm, wanted 4 focal lengths or more");
 }
 
+TEST(ThinLensBlurDiameter, RefusesNumbersThatNoLensHas) {
+  for (const double bad : {infinity, -infinity, std::nan("")}) {
+    EXPECT_NE(message([&] { thin_lens_blur_diameter(50, bad, 1000, 400); }).find("diameter is "), std::string::npos);
+    EXPECT_NE(message([&] { thin_lens_blur_diameter(bad, 25, 1000, 400); }).find("focal length is "),
+              std::string::npos);
+  }
+  EXPECT_EQ(thin_lens_blur_diameter(50, 0, 1000, 400), 0);
+}
+
+TEST(ThinLensBlurDiameter, IsANumberAtTheEndsOfTheRange) {
+  EXPECT_EQ(thin_lens_blur_diameter(1e300, 0, 1e-10, infinity), 0);
+  EXPECT_NEAR(thin_lens_blur_diameter(1e-300, 1, 1e-10, 1e300), 1e-290, 1e-305);
+  for (const double f : {1e-300, 1e-20, 1., 1e300}) {
+    for (const double away : {1 + eps, 2., 1e8, infinity}) {
+      for (const double subject : {1e-308, 1e-10, 1., 1e300, infinity}) {
+        for (const double diameter : {0., 1e-300, 1e300}) {
+          EXPECT_GE(thin_lens_blur_diameter(f, diameter, subject, f * away), 0) << f << ' ' << away << ' ' << subject;
+        }
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace petzval

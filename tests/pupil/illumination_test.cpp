@@ -195,5 +195,20 @@ TEST(FilmIrradiance, OfAStopWithoutARimIsThatOfTheRimsThatLimit) {
   EXPECT_EQ(testing::message([&] { film_irradiance(endless, {}); }), testing::message([&] { pupils(endless); }));
 }
 
+TEST(FilmIrradiance, OfAStopAsSmallAsAPointIsANumber) {
+  const Lens open = data_lens("double_gauss_100mm_f2_28deg");
+  const auto irradiance = [&](double radius, const FilmPoint& point) {
+    return film_irradiance(with_semi_diameter(open, *open.stop(), radius), point);
+  };
+  for (const FilmPoint point : {FilmPoint{0, 0}, FilmPoint{0, 10}, FilmPoint{-7, 12}}) {
+    for (const double radius : {0., 1e-300, 1e-100, 1e-30, 1e-17, 1e-16, 1e-15, 1e-14, 1e-13, 1e-12, 1e-11, 1e-10}) {
+      const double light = irradiance(radius, point);
+      EXPECT_TRUE(light >= 0 && light < 1e-15) << radius << ": " << light;
+    }
+    const double per_area = irradiance(0.01, point) / 1e-4;
+    EXPECT_NEAR(irradiance(1e-6, point) / 1e-12, per_area, 5e-4 * per_area);
+  }
+}
+
 }  // namespace
 }  // namespace petzval

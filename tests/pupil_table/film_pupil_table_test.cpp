@@ -551,4 +551,31 @@ TEST(FilmPupilTable, HasOneTableForEachWavelength) {
   EXPECT_NE(table.area({7, -11}, 0), table.area({7, -11}, 1));
 }
 
+TEST(FilmPupilTable, OfAFilmWithoutSizeIsThatOfTheAxis) {
+  const std::vector<std::vector<PupilDisc>> discs{{{0.1, 10}}};
+  const PupilSample wanted = FilmPupilTable::of_discs({50, 0}, discs, 1).sample({0, 0}, 0.3, 0.7);
+  ASSERT_GT(wanted.area, 300);
+  for (const double radius : {0., 5e-324, 1e-310, 1e-307, 1e-305, 1e-155, 1e-40, 1e-37, 1e-31, 1e-29, 1e-9}) {
+    SCOPED_TRACE(radius);
+    const FilmPupilTable table = FilmPupilTable::of_discs({50, 0}, discs, radius);
+    const FilmPoint edge{0, radius};
+    const PupilSample s = table.sample(edge, 0.3, 0.7);
+    EXPECT_NEAR(s.x, wanted.x, 1e-8);
+    EXPECT_NEAR(s.y, wanted.y, 1e-8);
+    EXPECT_NEAR(table.area(edge), wanted.area, 1e-6);
+    EXPECT_TRUE(table.contains(edge, s.x, s.y));
+    const auto [by_x, by_y] = table.derivatives(edge, 0.3, 0.7);
+    EXPECT_TRUE(std::isfinite(by_x.x + by_x.y + by_y.x + by_y.y));
+    const auto batch = [&]<class T>(T near) {
+      std::vector<T> x(9, 0), y(9, static_cast<T>(radius)), u(9, T(0.3)), v(9, T(0.7)), px(9), py(9), areas(9);
+      table.sample<T>(9, x.data(), y.data(), u.data(), v.data(), {}, px.data(), py.data(), areas.data());
+      EXPECT_NEAR(px[8], wanted.x, near);
+      EXPECT_NEAR(py[8], wanted.y, near);
+      EXPECT_NEAR(areas[8], wanted.area, 100 * near);
+    };
+    batch(1e-8);
+    batch(1e-4F);
+  }
+}
+
 }  // namespace
