@@ -257,5 +257,15 @@ TEST(DepthOfField, SaysWhatIsMissing) {
   EXPECT_EQ(solve_subject(afocal, 100).status, FocusStatus::afocal);
 }
 
+TEST(Breathing, IsNothingWhereNoRayComesFromInfinity) {
+  const Lens open = data_lens("double_gauss_100mm_f2.0");
+  const Lens closed = with_semi_diameter(open, *open.stop(), 0);
+  for (const FocusCriterion criterion : {min_rms, min_max}) {
+    EXPECT_EQ(solve_focus(closed, infinity, {criterion}).status, FocusStatus::no_rays);
+    EXPECT_EQ(breathing(closed, closed.film_z(), {criterion}), std::nullopt);
+    EXPECT_NE(breathing(open, closed.film_z(), {criterion}), std::nullopt);
+  }
+}
+
 }  // namespace
 }  // namespace petzval

@@ -138,5 +138,30 @@ TEST(MeetFilm, IsNothingForARayThatRunsAway) {
   EXPECT_FALSE(meet_film(lens, {{0, 1, 0}, {0, 1, 0}}));
 }
 
+TEST(TraceRim, HasItsCornersWhereRimsMeet) {
+  const Lens lens = data_lens("double_gauss_100mm_f1.35");
+  const FieldPoint point{radians(15), -infinity};
+  const double plane_z = lens.film_z() + 1000;
+  const auto limited_by = [](const PupilBoundary& boundary, std::size_t k) {
+    return boundary.spans[k % boundary.spans.size()].to.surface;
+  };
+  const PupilBoundary boundary = pupil_boundary(lens, point, 0, 32), fine = pupil_boundary(lens, point, 0, 2048);
+  std::size_t corners = 0;
+  for (std::size_t k = 0; k < 32; ++k) corners += limited_by(boundary, k) != limited_by(boundary, k + 1);
+  ASSERT_GE(corners, 2u);
+  const RayBundle rim = trace_rim(lens, boundary, plane_z), near = trace_rim(lens, fine, plane_z);
+  ASSERT_EQ(rim.size(), 2 * boundary.spans.size() + corners);
+  // Each corner lies next to two of the many directions, of which one rim limits one and another the other.
+  for (std::size_t i = rim.size() - corners; i < rim.size(); ++i) {
+    std::size_t nearest = 0;
+    double least = infinity;
+    for (std::size_t k = 0; k < fine.spans.size(); ++k) {
+      const double away = std::hypot(near.x[2 * k + 1] - rim.x[i], near.y[2 * k + 1] - rim.y[i]);
+      if (away < least) least = away, nearest = k + fine.spans.size();
+    }
+    EXPECT_NE(limited_by(fine, nearest - 1), limited_by(fine, nearest + 1)) << i;
+  }
+}
+
 }  // namespace
 }  // namespace petzval::rays_detail

@@ -203,14 +203,7 @@ TYPED_TEST(AsphereOf, FindsTheFirstCrossingOfSteepRays) {
                       testing_report::one_ray<TypeParam>, most, "4 eps");
 }
 
-/// The asphere of a lens of one surface.
-Asphere<double> described(const SurfaceRow& row) {
-  petzval::Prescription p;
-  p.name = "asphere";
-  p.surfaces = {row};
-  const petzval::Lens lens = petzval::compile(p);
-  return petzval::kernel::view<double>(lens).aspheres[0];
-}
+Asphere<double> described(const SurfaceRow& row) { return petzval::kernel::view<double>(compiled(row)).aspheres[0]; }
 
 // With bounds of 1e50 for sag and slope every ray of these surfaces was searched for: 9 s for a camera.
 TEST(Asphere, IsDescribedAsFarAsItIsNotSteep) {
@@ -241,6 +234,81 @@ TEST(Asphere, IsDescribedAsFarAsItIsNotSteep) {
     const double domain = ends ? std::abs(named.row.radius) / std::sqrt(e) : std::numeric_limits<double>::infinity();
     EXPECT_EQ(described(named.row).height, std::min(*named.row.semi_diameter, domain)) << named.name;
   }
+}
+
+/// Whether a ray stays clear of a surface's aperture: outside its cylinder, or within that above or below its sag.
+bool clearly_beside(const SurfaceRow& r, const Vec<double>& p, const Vec<double>& d) {
+  const double rim = *r.semi_diameter, across = d.x * d.x + d.y * d.y, middle = -(p.x * d.x + p.y * d.y) / across;
+  const double closest = std::hypot(p.x + middle * d.x, p.y + middle * d.y);
+  if (closest > 1.001 * rim) return true;
+  if (closest > 0.999 * rim) return false;
+  double low = 0, high = 0;
+  for (int i = 0; i <= 200; ++i) {
+    const auto z = static_cast<double>(Sag{r}.value(rim * i / 200));
+    low = std::min(low, z), high = std::max(high, z);
+  }
+  const double margin = 0.05 * (high - low) + 1e-3 * rim, half = std::sqrt((rim * rim - closest * closest) / across);
+  const double one = p.z + (middle - half) * d.z, other = p.z + (middle + half) * d.z;
+  return std::min(one, other) > high + margin || std::max(one, other) < low - margin;
+}
+
+TEST(Asphere, ARayPassesBesideWhereItCrossesNothing) {
+  int beside = 0, misses = 0;
+  for (const auto& [name, r] : surfaces()) {
+    const Asphere<double> asphere = described(r);
+    const double rim = *r.semi_diameter;
+    std::mt19937 random(11);
+    std::uniform_real_distribution<double> uniform(0, 1);
+    for (int i = 0; i < 4000; ++i) {
+      const double reach = 2 * rim * uniform(random), turn = 6.3 * uniform(random), heading = 6.3 * uniform(random);
+      const double slope = std::sqrt(uniform(random)) * 0.999;
+      const int sense = i % 2 ? 1 : -1;
+      const Vec<double> d{slope * std::cos(heading), slope * std::sin(heading), sense * std::sqrt(1 - slope * slope)};
+      const Vec<double> p{reach * std::cos(turn), reach * std::sin(turn), rim * (uniform(random) - 0.5)};
+      const auto found = intersect(asphere, p, d, static_cast<double>(sense));
+      if (found.hit) continue;
+      beside += found.beside;
+      misses += !found.beside;
+      if (found.beside) {
+        const auto crossings = scan(r, p, d, sense);
+        EXPECT_TRUE(!crossings || crossings->empty()) << name << " ray " << i;
+      } else {
+        EXPECT_FALSE(clearly_beside(r, p, d)) << name << " ray " << i;
+      }
+    }
+  }
+  EXPECT_GT(beside, 1000);
+  EXPECT_GT(misses, 100);
+}
+
+// Newton's iteration finds them from where they meet the vertex plane.
+TEST(Asphere, RaysThatMissItsBaseMeetItFartherOut) {
+  std::mt19937 random(5);
+  const auto uniform = [&](double low, double high) {
+    return low + (high - low) * std::uniform_real_distribution<double>(0, 1)(random);
+  };
+  int aimed = 0, met = 0;
+  for (int surface = 0; surface < 1000; ++surface) {
+    // Flattened out to nearly a plane, as far as the equator of the base.
+    const double radius = (surface % 2 ? 1 : -1) * uniform(5, 20);
+    const SurfaceRow r = row(radius, 0, uniform(1, 3),
+                             {{2, -uniform(0.85, 1.15) / (2 * radius)}, {4, uniform(-1, 1) / (30. * 30 * 30)}});
+    const Asphere<double> asphere = described(r);
+    for (int i = 0; i < 20; ++i) {
+      const double reach = *r.semi_diameter * uniform(1.1, 3), turn = uniform(0, 6.3), heading = uniform(0, 6.3);
+      const double z = uniform(0.12, 0.6), slope = std::sqrt(1 - z * z), back = uniform(5, 50);
+      if (reach > 0.95 * std::abs(radius)) continue;
+      const Vec<double> target{reach * std::cos(turn), reach * std::sin(turn),
+                               static_cast<double>(Sag{r}.value(reach))};
+      const Vec<double> d{slope * std::cos(heading), slope * std::sin(heading), z}, start = target - d * back;
+      if (intersect(asphere.base, start, d, 1.0).hit || dot(normal(asphere, target), d) < 0.05) continue;
+      const auto found = intersect(asphere, start, d, 1.0);
+      ++aimed;
+      met += found.hit && dot(found.point - target, found.point - target) < 1e-18;
+    }
+  }
+  EXPECT_GT(aimed, 5000);
+  EXPECT_GT(met, 0.98 * aimed);
 }
 
 }  // namespace
