@@ -9,7 +9,7 @@
 ///
 ///     Prescription --compile--> Lens --> first_order, pupils, real_f_number   cardinal points, pupils, f-numbers
 ///                                    --> chief_ray, aim, pupil_boundary       rays through the stop, vignetted pupils
-///                                    --> relative_illumination                light on the film
+///                                    --> film_irradiance, image_circle_mm     light on the film
 ///                                    --> solve_focus, depth_of_field          film positions for subjects
 ///                                    --> autofocus, fit_tilt                  upright and tilted films for points
 ///                                    --> trace, trace_differentials           rays to film or scene, float or double,

@@ -84,6 +84,23 @@ TEST(CameraFocus, IsWhereTheLensWasFocusedInEveryModel) {
   }
 }
 
+// The same for every lens of data/, by rays and to first order.
+TEST(CameraFocus, IsWhereEveryLensWasFocused) {
+  for (const Prescription& prescription : testing::data_prescriptions()) {
+    const Lens whole = compile(prescription);
+    if (!whole.rotationally_symmetric()) continue;
+    SCOPED_TRACE(prescription.id);
+    const double f = std::abs(first_order(whole).effective_focal_length), distance = std::max(3000.0, 15 * f);
+    const Lens lens = with_focus(whole, distance, {.origin = DistanceOrigin::film});
+    const Film film{.width_mm = 0.02 * f, .height_mm = 0.02 * f};
+    const Blur exact = blur(Camera(lens, film, {.model = ModelKind::exact_double}));
+    const Blur thick = blur(Camera(lens, film, {.model = ModelKind::thick}));
+    const double wanted = 1 / (lens.film_z() - distance - exact.pupil_z);
+    EXPECT_NEAR(1 / exact.sharpest(), wanted, exact.half_depth());
+    EXPECT_NEAR(1 / thick.sharpest(), wanted, exact.half_depth());
+  }
+}
+
 // Whatever put the film where it is: first-order models are sharp in the plane in which exact rays are sharpest, at
 // each wavelength.
 TEST(CameraFocus, OfFirstOrderModelsIsThatOfExactRays) {
