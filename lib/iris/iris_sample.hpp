@@ -40,9 +40,10 @@ inline IrisPoint<R> circle_point(R u) noexcept {
   for (int k = sine_terms - 1; k > 0; --k) sine = R(1) - square * R(1. / (2 * k * (2 * k + 1))) * sine;
   for (int k = cosine_terms - 1; k > 0; --k) cosine = R(1) - square * R(1. / (2 * k * (2 * k - 1))) * cosine;
   sine *= angle;
-  const bool swapped = quarter & 1;
-  const R x = swapped ? cosine : sine, y = swapped ? sine : cosine;
-  return {quarter & 2 ? -x : x, (quarter + 1) & 2 ? -y : y};
+  // Without branches, which nobody could predict.
+  const R swapped = static_cast<R>(quarter & 1), change = swapped * (cosine - sine);
+  return {static_cast<R>(1 - (quarter & 2)) * (sine + change),
+          static_cast<R>(1 - ((quarter + 1) & 2)) * (cosine - change)};
 }
 
 /// A uniform point of the unit disc.

@@ -91,11 +91,11 @@ IrisShape::IrisShape(const Iris& iris) {
 }
 
 Vec2<double> IrisShape::sample(double u, double v) const noexcept {
-  const IrisTriangles<double> t = triangles<double>();
-  if (t.count == 0) {
+  if (twice_.x.empty()) {
     const auto [x, y] = disc_point(u, v);
     return {x, y};
   }
+  const IrisTriangles<double> t = triangles<double>();
   std::size_t k = 0;
   while (k + 1 < t.count && u >= t.before[k + 1]) ++k;
   const auto [x, y] = triangle_point(t, k, u, v);

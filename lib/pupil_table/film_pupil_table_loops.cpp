@@ -81,11 +81,11 @@ void sample_block(const StripTable<R>& table, const R* film_x, const R* film_y, 
     cosine[i] = cos;
     sine[i] = sin;
     strip[i] = at;
-    const R from = clamped(known ? u[i] : R(0)) - turn_of(sin, cos);
+    const R from = clamped(u[i]) - turn_of(sin, cos);
     const R fraction = from < R(0) ? from + R(1) : from;
     target[i] = fraction < R(1) ? fraction : fraction - R(1);
     whole[i] = known ? R(1) : R(0);
-    outer[i] = clamped(known ? v[i] : R(0));
+    outer[i] = clamped(v[i]);
   }
   const auto sector_at = [&](std::size_t i, std::int32_t k) {
     return strip[i] + index(L::sectors) + index(L::sector) * k;

@@ -36,7 +36,7 @@ struct StripTable {
 namespace {
 
 /// The angle of a direction from +y to +x, of its sine and cosine, as a part of the whole turn (|turn| <= 1/2), within
-/// 1e-8: u counts from +y of the film's frame, not from the direction of the film point, so that near the axis the
+/// 6e-8: u counts from +y of the film's frame, not from the direction of the film point, so that near the axis the
 /// samples of neighbours are neighbours. One polynomial for all scalars, derivatives included.
 template <class T>
 inline T turn_of(const T& sine, const T& cosine) noexcept {
@@ -45,11 +45,11 @@ inline T turn_of(const T& sine, const T& cosine) noexcept {
   const T a = steep ? along : across;
   const T s = a * a;
   // asin(a) / 2 pi within an eighth of a turn, by least squares of the largest error, 1/8 at its end.
-  T turn = a * (T(0.15915510171728092) +
-                s * (T(0.0265148758893) +
-                     s * (T(0.0121538534331) +
-                          s * (T(0.00523167303706) +
-                               s * (T(0.0128977787878) + s * (T(-0.0139493593231) + s * T(0.0192985248901)))))));
+  T turn =
+      a *
+      (T(0.15915393812486814) +
+       s * (T(0.0265771964583) +
+            s * (T(0.0111934983367) + s * (T(0.0116048821993) + s * (T(-0.0077339762488) + s * T(0.0181935231706))))));
   turn = steep ? T(T(0.25) - turn) : turn;
   turn = cosine < T(0) ? T(T(0.5) - turn) : turn;
   return sine < T(0) ? T(-turn) : turn;

@@ -5,6 +5,11 @@
 #include <cmath>
 
 namespace petzval::inline v0::pupil_table_detail {
+namespace {
+
+constexpr double rounded_up = 1 + 1e-6;  // the corner itself, rounded, still belongs to the film
+
+}  // namespace
 
 IrisImages::IrisImages(const Iris& iris, std::span<const PupilDisc> images, double film_radius, std::size_t primary)
     : shape_(iris), film_radius_(film_radius), primary_(primary) {
@@ -27,14 +32,13 @@ template <class R>
 IrisImageTable<R> IrisImages::table() const noexcept {
   const auto number = [](double x) { return static_cast<R>(x); };
   const auto of = [&](const auto& columns) -> IrisImageTable<R> {
-    // The corner itself, rounded, still belongs to the film.
     return {shape_.triangles<R>(),
             columns.shift.data(),
             columns.radius.data(),
             columns.area.data(),
             columns.shift.size(),
             primary_,
-            number(film_radius_ * (1 + 1e-6)),
+            number(film_radius_ * rounded_up),
             number(slope_x_),
             number(slope_y_)};
   };
@@ -46,11 +50,10 @@ IrisImageTable<R> IrisImages::table() const noexcept {
 }
 
 IrisImages::Image IrisImages::image(const FilmPoint& film, std::size_t wavelength) const noexcept {
-  const IrisImageTable<double> t = table<double>();
-  const double r = std::sqrt(film.x * film.x + film.y * film.y);
-  if (!(r <= t.film_radius) || wavelength >= t.wavelengths) return {};
-  const double shift = t.shift[wavelength], part = 1 / (1 + shift * (t.slope_x * film.x + t.slope_y * film.y));
-  return {part * shift, part * t.radius[wavelength], part * part * t.area[wavelength]};
+  const double reach = film_radius_ * rounded_up, square = film.x * film.x + film.y * film.y;
+  if (!(square <= reach * reach) || wavelength >= twice_.shift.size()) return {};
+  const double shift = twice_.shift[wavelength], part = 1 / (1 + shift * (slope_x_ * film.x + slope_y_ * film.y));
+  return {part * shift, part * twice_.radius[wavelength], part * part * twice_.area[wavelength]};
 }
 
 PupilSample IrisImages::sample(const FilmPoint& film, double u, double v, std::size_t wavelength) const noexcept {
