@@ -145,7 +145,13 @@ TEST(TraceRim, HasItsCornersWhereRimsMeet) {
   const auto limited_by = [](const PupilBoundary& boundary, std::size_t k) {
     return boundary.spans[k % boundary.spans.size()].to.surface;
   };
-  const PupilBoundary boundary = pupil_boundary(lens, point, 0, 32), fine = pupil_boundary(lens, point, 0, 2048);
+  const PupilBoundary fine = pupil_boundary(lens, point, 0, 2048);
+  PupilBoundary boundary = pupil_boundary(lens, point, 0, 32);
+  // Whoever reads beyond the last span finds one of another rim there, and one corner more.
+  PupilSpan beyond;
+  beyond.to.surface = 1000;
+  boundary.spans.push_back(beyond);
+  boundary.spans.pop_back();
   std::size_t corners = 0;
   for (std::size_t k = 0; k < 32; ++k) corners += limited_by(boundary, k) != limited_by(boundary, k + 1);
   ASSERT_GE(corners, 2u);
