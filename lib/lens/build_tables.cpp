@@ -22,7 +22,7 @@ double power(double x, int n) {
 /// Steeper parts of an asphere are not described: out there a polynomial of high order runs away, and with bounds of
 /// sag and slope that held there every ray would have to be searched for. Rays meet them where Newton's iteration finds
 /// them. (The steepest asphere of data/lenses has a slope of 3.)
-constexpr double steepest = 16;
+constexpr double steepest = 4;
 
 /// The height at which the strongest term alone has a slope.
 double term_height(const LensSurface& s, double slope) {

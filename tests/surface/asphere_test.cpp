@@ -217,16 +217,16 @@ TEST(Asphere, IsDescribedAsFarAsItIsNotSteep) {
   for (const double rim : {446., 1e6, 1e30, 1e200}) {
     runaway.semi_diameter = rim;
     const Asphere<double> limited = described(runaway);
-    EXPECT_GT(limited.height, 10) << rim;
-    EXPECT_LT(limited.height, 20) << rim;
-    EXPECT_LT(limited.steepest, 17) << rim;
+    EXPECT_GT(limited.height, 9) << rim;
+    EXPECT_LT(limited.height, 18) << rim;
+    EXPECT_LT(limited.steepest, 5) << rim;
     EXPECT_GT(limited.highest - limited.lowest, 0) << rim;
-    EXPECT_LT(limited.highest - limited.lowest, 34 * limited.height) << rim;
+    EXPECT_LT(limited.highest - limited.lowest, 10 * limited.height) << rim;
   }
   for (const auto& [order, coefficient] : {AsphereTerm{2, -4e11}, {40, 1e300}, {3, 1e-300}}) {
     SurfaceRow extreme = row(50, 0, 20, {{order, coefficient}});
     const Asphere<double> a = described(extreme);
-    EXPECT_TRUE(a.height > 0 && a.steepest < 17 && std::isfinite(a.highest - a.lowest)) << order;
+    EXPECT_TRUE(a.height > 0 && a.steepest < 5 && std::isfinite(a.highest - a.lowest)) << order;
   }
   for (const Named& named : surfaces()) {
     const double e = 1 + named.row.conic;
