@@ -132,10 +132,11 @@ Prescription random_prescription(std::mt19937_64& random) {
     s.semi_diameter = maybe();
     if (s.semi_diameter && often()) s.obscuration_semi_diameter = *s.semi_diameter / 3;
     s.conic = often() ? 0 : length();
-    for (int order = 2; order <= 40 && often(); ++order)
+    for (int order = 2; order <= 40 && often(); ++order) {
       // A slope of 1 within 1e-12 mm is refused.
       const double largest = std::min(1e300, std::pow(1e11, order - 1) / order);
-    s.aspheric.push_back({order, random_number(random, 1e-300, largest)});
+      s.aspheric.push_back({order, random_number(random, 1e-300, largest)});
+    }
     s.stop = often();
     s.curved_in = often() ? petzval::Section::both : often() ? petzval::Section::x : petzval::Section::y;
     p.surfaces.push_back(s);
