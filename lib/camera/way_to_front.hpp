@@ -9,21 +9,22 @@ namespace petzval::inline v0::camera_detail {
 namespace {
 
 /// How far a ray in the direction of the scene is from the front, along it, given from the front's vertex. A sphere of
-/// curvature c is c |p|^2 = 2 p_z; the ray leaves it at the larger root for a convex one and at the smaller for a
-/// hollow one, both as one fraction that holds for planes too. A line that passes the sphere by leaves the plane that
-/// touches it; one that leaves neither stays where it is nearest to the vertex.
+/// curvature c is c |p|^2 = 2 p_z, and s = (b + sqrt(b^2 - c e)) / c = e / (b - sqrt(b^2 - c e)) with b = d_z - c p.d
+/// and e = c |p|^2 - 2 p_z is where the ray leaves a convex one and meets a hollow one; the latter form holds for
+/// planes too. A line that passes the sphere by leaves the plane that touches it; one that leaves neither stays where
+/// it is nearest to the vertex.
 template <class T>
 inline T way_to_front(const T& curvature, const T& x, const T& y, const T& z, const T& dx, const T& dy,
                       const T& dz) noexcept {
   using std::sqrt;
   const T along = x * dx + y * dy + z * dz;
-  const T qx = x - along * dx, qy = y - along * dy, qz = z - along * dz;
-  const T plane = T(-2) * qz, sphere = plane + curvature * (qx * qx + qy * qy + qz * qz);
-  const T square = dz * dz - curvature * sphere;
-  const bool meets = square > T(0);
-  const T across = meets ? T(dz - sqrt(meets ? square : T(1))) : (dz < T(0) ? T(T(2) * dz) : T(0));
-  const T numerator = meets ? sphere : plane;
-  return (across < T(0) ? T(numerator / across) : T(0)) - along;
+  const T e = curvature * (x * x + y * y + z * z) - T(2) * z, b = dz - curvature * along,
+          square = b * b - curvature * e;
+  const bool outward = b < T(0), meets = (square > T(0)) & (outward | (curvature != T(0)));
+  const T root = sqrt(meets ? square : T(1));
+  const T over = meets ? (outward ? e : T(b + root)) : T(-z);
+  const T under = meets ? (outward ? T(b - root) : curvature) : dz;
+  return meets | (dz < T(0)) ? T(over / under) : T(-along);
 }
 
 }  // namespace
