@@ -62,9 +62,10 @@ void keep_within(std::size_t count, const FilmPupilTable& pupils, const TwoPlane
   for (std::size_t i = 0; i < count; ++i) fates[i] = within[i] ? fates[i] : RayFate::vignetted;
 }
 
-/// One block, of a number of rays that fills lanes: each has the same bits wherever it stands.
+/// One block, of a number of rays that fills lanes: each has the same bits wherever it stands. The first `wanted` of
+/// them get weights.
 template <class T>
-void sample_block(const FilmView& view, std::size_t n, const CameraSamples<T>& samples,
+void sample_block(const FilmView& view, std::size_t n, std::size_t wanted, const CameraSamples<T>& samples,
                   const CameraRays<T>& rays) noexcept {
   const auto& loops = camera_loops().of<T>();
   const FilmPupilTable& pupils = view.model.pupils();
@@ -85,8 +86,8 @@ void sample_block(const FilmView& view, std::size_t n, const CameraSamples<T>& s
     }
   };
   const auto weigh = [&] {
-    loops.weigh(bounds, static_cast<T>(pupils.space().depth()), n, samples.film_x, samples.film_y, lines, areas.data(),
-                scales.data(), fates, rays);
+    loops.weigh(bounds, static_cast<T>(pupils.space().depth()), wanted, samples.film_x, samples.film_y, lines,
+                areas.data(), scales.data(), fates, rays);
   };
   if (!tilted) {
     pupils.sample(n, film_x.data(), film_y.data(), samples.pupil_u, samples.pupil_v, wavelengths, x.data(), y.data(),
@@ -108,7 +109,7 @@ void sample_block(const FilmView& view, std::size_t n, const CameraSamples<T>& s
   if (!view.model.pinhole()) trace();
   if (!view.model.clips_at_apertures()) keep_within(n, pupils, lines, wavelengths, fates);
   weigh();
-  loops.weigh_tilted(plane, n, virtual_x.data(), virtual_y.data(), x.data(), y.data(), fates, rays);
+  loops.weigh_tilted(plane, wanted, virtual_x.data(), virtual_y.data(), x.data(), y.data(), fates, rays);
 }
 
 /// Less than fills the lanes: in a block of their own, filled up with the last one.
@@ -130,7 +131,7 @@ void sample_rest(const FilmView& view, std::size_t count, const CameraSamples<T>
     wavelengths.each = each.data();
   }
   const auto at = [&](std::size_t k) { return out[k].data(); };
-  sample_block<T>(view, lanes<T>, {in[0].data(), in[1].data(), in[2].data(), in[3].data(), wavelengths},
+  sample_block<T>(view, lanes<T>, count, {in[0].data(), in[1].data(), in[2].data(), in[3].data(), wavelengths},
                   {{at(0), at(1), at(2), at(3), at(4), at(5)},
                    at(6),
                    fates.data(),
@@ -153,7 +154,8 @@ void sample_rays(const FilmView& view, std::size_t count, const CameraSamples<T>
   samples.wavelengths = given.wavelengths.resolved(view.model.pupils().primary_wavelength());
   const std::size_t whole = count - count % lanes<T>;
   for (std::size_t begin = 0; begin < whole; begin += block) {
-    sample_block(view, std::min(block, whole - begin), samples.from(begin), rays.from(begin));
+    const std::size_t n = std::min(block, whole - begin);
+    sample_block(view, n, n, samples.from(begin), rays.from(begin));
   }
   if (whole < count) sample_rest(view, count - whole, samples.from(whole), rays.from(whole));
 }
