@@ -60,7 +60,8 @@ TEST(IrisShape, MapsEqualAreasToEqualAreas) {
     const core_detail::Kronecker<2> random(2);
     int checked = 0;
     for (std::uint32_t i = 0; i < 500; ++i) {
-      const auto [u, v] = random(i);
+      const auto at = random(i);
+      const double u = at[0], v = at[1];
       constexpr double h = 1e-6;
       if (u < h || u > 1 - h || v < 1e-3 || v > 1 - h) continue;
       const auto by = [&](double du, double dv) {
