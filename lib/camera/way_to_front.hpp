@@ -18,13 +18,17 @@ inline T way_to_front(const T& curvature, const T& x, const T& y, const T& z, co
                       const T& dz) noexcept {
   using std::sqrt;
   const T along = x * dx + y * dy + z * dz;
-  const T e = curvature * (x * x + y * y + z * z) - T(2) * z, b = dz - curvature * along,
-          square = b * b - curvature * e;
-  const bool outward = b < T(0), meets = (square > T(0)) & (outward | (curvature != T(0)));
+  const T e = curvature * (x * x + y * y + z * z) - T(2) * z;
+  const T b = dz - curvature * along;
+  const T square = b * b - curvature * e;
+  const bool outward = b < T(0);
+  const bool curved = curvature != T(0);
+  const bool reaches = square > T(0);
+  const bool meets = reaches & (outward | curved);
   const T root = sqrt(meets ? square : T(1));
   const T over = meets ? (outward ? e : T(b + root)) : T(-z);
   const T under = meets ? (outward ? T(b - root) : curvature) : dz;
-  return meets | (dz < T(0)) ? T(over / under) : T(-along);
+  return (meets | (dz < T(0))) ? T(over / under) : T(-along);
 }
 
 }  // namespace

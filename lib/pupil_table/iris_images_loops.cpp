@@ -97,7 +97,7 @@ template <class R>
 void contains(const IrisImageTable<R>& given, std::size_t count, const TwoPlaneRays<const R>& lines,
               const RayWavelengths& wavelengths, std::uint8_t* within) noexcept {
   const IrisImageTable<R> table = given;
-  const auto [film_x, film_y, pupil_x, pupil_y] = lines;
+  const TwoPlaneRays<const R> own = lines;
   constexpr std::size_t block = 64;
   R x[block], y[block];
   std::int32_t inside[block];
@@ -106,9 +106,9 @@ void contains(const IrisImageTable<R>& given, std::size_t count, const TwoPlaneR
       const std::size_t n = count - begin < block ? count - begin : block;
       for (std::size_t i = 0; i < n; ++i) {
         const std::size_t o = begin + i;
-        const auto [fx, fy, shift, radius, area] = seen(table, image_of(o), film_x[o], film_y[o], true);
-        x[i] = (pupil_x[o] - shift * fx) / radius;
-        y[i] = (pupil_y[o] - shift * fy) / radius;
+        const auto [fx, fy, shift, radius, area] = seen(table, image_of(o), own.film_x[o], own.film_y[o], true);
+        x[i] = (own.pupil_x[o] - shift * fx) / radius;
+        y[i] = (own.pupil_y[o] - shift * fy) / radius;
         const bool in_disc = table.iris.count > 0 || x[i] * x[i] + y[i] * y[i] <= R(1);
         inside[i] = (area > R(0)) & in_disc;
       }
