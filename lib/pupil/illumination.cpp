@@ -44,18 +44,20 @@ double image_circle_mm(const Lens& lens, double least_part, Wavelength wavelengt
     throw Error(lens.name() + ": image circle: the least part of the light on the axis is " + to_text(least_part) +
                 ", wanted 0 to 1");
   }
-  const double wanted = least_part * film_irradiance(lens, {}, wavelength);
+  const double axis = film_irradiance(lens, {}, wavelength), wanted = least_part * axis;
+  if (axis == 0) return 0;
   const std::size_t directions = lens.rotationally_symmetric() ? 1 : 8;
   const auto lit = [&](double radius) {
     for (std::size_t k = 0; k < directions; ++k) {
       const double angle = 2 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(directions);
       const FilmPoint point{radius * std::sin(angle), radius * std::cos(angle)};
-      const double found = film_irradiance(lens, point, wavelength);
-      if (!(found > 0 && found >= wanted)) return false;
+      // A coarse boundary tells whether there is one.
+      const bool enough = least_part > 0 ? film_irradiance(lens, point, wavelength) >= wanted
+                                         : !exit_pupil_boundary(lens, point, wavelength, 16).empty();
+      if (!enough) return false;
     }
     return true;
   };
-  if (!lit(0)) return 0;
   const FirstOrder data = first_order(lens, wavelength, main_meridian(lens, wavelength));
   const double last_z = lens.surfaces().back().vertex_z;
   const double scale = data.afocal ? std::abs(lens.film_z() - last_z) : std::abs(data.effective_focal_length);
