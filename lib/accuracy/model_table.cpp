@@ -38,7 +38,10 @@ std::vector<double> depths_of(const Lens& lens, const SceneRequirements& scene) 
     distances.push_back(k == 0 ? nearest : k == steps ? last : steps / ((steps - k) / nearest + k / farthest));
   }
   if (std::isinf(farthest)) distances.push_back(farthest);
-  const FocusSolution focus = solve_subject(lens, film_z, {.origin = DistanceOrigin::film});
+  const bool telecentric = std::isinf(pupils(lens, lens.primary_wavelength()).entrance.z);
+  const FocusSolution focus = solve_subject(
+      lens, film_z,
+      {.criterion = telecentric ? FocusCriterion::paraxial : FocusCriterion::min_rms, .origin = DistanceOrigin::film});
   if (focus && focus.distance > nearest && focus.distance < farthest) distances.push_back(focus.distance);
   std::vector<double> depths;
   for (const double distance : distances) depths.push_back(film_z - distance);

@@ -78,6 +78,10 @@ FocusSolver::FocusSolver(const Lens& lens, const FocusOptions& options)
   afocal_ = data.afocal;
   if (!afocal_) {
     conjugates_ = Conjugates(paraxial_detail::focal_points(lens, data), options.criterion, options.origin);
+    if (exact() && has_pupils(lens) && std::isinf(pupils(lens, lens.primary_wavelength()).entrance.z)) {
+      throw Error(lens.name() + ": focus: the entrance pupil is at infinity, from where no field is seen; wanted the " +
+                  "criterion paraxial or thin, found " + std::string(name(options.criterion)));
+    }
   }
 }
 

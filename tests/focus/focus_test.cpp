@@ -180,6 +180,19 @@ TEST(Focus, OfAnAfocalLensIsReportedAsSuch) {
             "element: a subject 1000 mm from the front vertex cannot be focused (min_rms): the lens is afocal");
 }
 
+TEST(Focus, OfALensThatIsTelecentricInTheSceneIsParaxial) {
+  Prescription p = element(1.5168, 100, -100, 4);
+  for (SurfaceRow& row : p.surfaces) row.semi_diameter = 30, row.stop = false;
+  p.surfaces.push_back({.thickness = 50, .semi_diameter = 5, .stop = true});
+  p.surfaces[1].thickness = first_order(compile(p)).rear_focal_z - 4;
+  const Lens lens = compile(p);
+  ASSERT_TRUE(std::isinf(pupils(lens).entrance.z));
+  EXPECT_TRUE(solve_focus(lens, 300, {paraxial}));
+  EXPECT_EQ(message([&] { with_focus(lens, 300); }),
+            "element: focus: the entrance pupil is at infinity, from where no field is seen; wanted the criterion "
+            "paraxial or thin, found min_rms");
+}
+
 TEST(Focus, OfOneSurfaceOfConcentricSurfacesAndOfABallIsFound) {
   Prescription single;
   single.name = "single";

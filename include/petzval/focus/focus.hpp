@@ -47,7 +47,8 @@ struct FocusField {
 };
 
 struct FocusOptions {
-  /// What a camera shows: every ray model of a lens is sharpest at one distance, that of min_rms.
+  /// What a camera shows: every ray model of a lens is sharpest at one distance, that of min_rms. Lenses whose entrance
+  /// pupil is at infinity have the paraxial criteria alone.
   FocusCriterion criterion = FocusCriterion::min_rms;
   DistanceOrigin origin = DistanceOrigin::front_vertex;
   /// min_rms: weights of the squared RMS radii, each about the centroid of its field. min_max: the largest weighted
@@ -79,8 +80,9 @@ struct FocusSolution {
 /// entrance pupil. min_max: the position of the least largest radius of the same bundles and the edges and corners of
 /// their pupils, to rounding; a largest radius is found within 0.2 %. Both lie behind the last vertex. Throws Error for
 /// a distance that is NaN or not positive; for invalid fields and weights; and, by the exact criteria, where
-/// pupil_boundary does. Accuracy: paraxial and thin within rounding; by the exact criteria the film
-/// is that of infinitely many rays within 1e-5 mm on the axis and 2e-4 mm off it (double Gauss 100 mm f/2, 10 degrees).
+/// pupil_boundary does and for an entrance pupil at infinity. Accuracy: paraxial and thin within rounding; by the exact
+/// criteria the film is that of infinitely many rays within 1e-5 mm on the axis and 2e-4 mm off it (double Gauss 100 mm
+/// f/2, 10 degrees).
 PETZVAL_API FocusSolution solve_focus(const Lens& lens, double distance, const FocusOptions& options = {});
 
 /// The inverse: the subject that is in focus on a film. Focused at the distance of the solution, the film is the same
