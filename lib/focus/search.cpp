@@ -76,8 +76,10 @@ std::optional<double> Search::vergence_for(double wanted) const {
 }
 
 FocusSolution Search::at(FocusStatus status, double vergence) const {
-  const double subject_z = subject_at(vergence), film_z = film(vergence).value();
-  return {status, film_z, subject_z, c_.distance(subject_z, film_z)};
+  const double subject_z = subject_at(vergence);
+  const auto film_z = film(vergence);
+  if (!film_z) return no_focus(c_);
+  return {status, *film_z, subject_z, c_.distance(subject_z, *film_z)};
 }
 
 /// The vergence at which the film is farthest out.
@@ -166,8 +168,9 @@ FocusSolution Search::focus_from_film(double distance) const {
     const auto film_z = film(vergence);
     return film_z && c_.real(*film_z) ? vergence - c_.vergence(*film_z - distance) : high;
   };
-  const double film_z = film(root(excess, low, high)).value();
-  return {solved, film_z, film_z - distance, distance};
+  const auto film_z = film(root(excess, low, high));
+  if (!film_z) return no_focus(c_);
+  return {solved, *film_z, *film_z - distance, distance};
 }
 
 FocusSolution Search::subject(double film_z) const {

@@ -267,5 +267,26 @@ TEST(Breathing, IsNothingWhereNoRayComesFromInfinity) {
   }
 }
 
+// A mirror of 3 um radius in front of which images of near subjects end before a film comes so far out.
+TEST(SolveSubject, SaysWhereImagesEnd) {
+  Prescription p;
+  p.name = "images that end";
+  p.surfaces = {{.radius = -2.338e7, .thickness = 3.8507},
+                {.thickness = -1.52739, .conic = -7.65522, .aspheric = {{3, -5.3819e-06}, {4, -0.000540155}}},
+                {.radius = 2.03036e9, .thickness = 0.221654, .semi_diameter = 19.3602},
+                {.radius = -0.00291459,
+                 .thickness = 144.906,
+                 .conic = -11.9661,
+                 .aspheric = {{4, 4.60954e-06}, {7, 8.76873e-10}},
+                 .mirror = true}};
+  const Lens lens = compile(p);
+  for (const FocusCriterion criterion : {min_rms, min_max}) {
+    const FocusSolution found = solve_subject(lens, lens.film_z(), {criterion});
+    EXPECT_EQ(found.status, FocusStatus::unreachable);
+    EXPECT_FALSE(std::isnan(found.subject_z) || std::isnan(found.distance));
+    depth_of_field(lens, 0.03, {criterion});
+  }
+}
+
 }  // namespace
 }  // namespace petzval
