@@ -69,17 +69,25 @@ Vec3<double> direction_from(const Vec3<double>& place, const Vec3<double>& towar
 PupilPlane::PupilPlane(const Lens& lens, const FieldPoint& point) {
   const Pupil entrance = pupils(lens, lens.primary_wavelength()).entrance;
   check(lens, point, entrance);
-  const double sine = std::sin(point.field_rad), cosine = std::cos(point.field_rad);
-  const Vec3<double> across{std::sin(point.azimuth_rad), std::cos(point.azimuth_rad), 0};
-  centre_ = {0, 0, entrance.z};
-  towards_ = {across.x * sine, across.y * sine, -cosine};
-  reciprocal_distance_ = std::isinf(point.z) ? 0 : cosine / (entrance.z - point.z);
-  turned_ = cosine < std::cos(radians(89.0));
-  if (turned_) {
-    x_axis_ = {across.y, -across.x, 0};
-    y_axis_ = {across.x * cosine, across.y * cosine, sine};
-    normal_ = towards_;
-  }
+  const double cosine = std::cos(point.field_rad);
+  *this = facing({0, 0, entrance.z}, point.field_rad, {std::sin(point.azimuth_rad), std::cos(point.azimuth_rad)},
+                 std::isinf(point.z) ? 0 : cosine / (entrance.z - point.z));
+  if (cosine < std::cos(radians(89.0))) return;
+  turned_ = false;
+  x_axis_ = {1, 0, 0}, y_axis_ = {0, 1, 0}, normal_ = {0, 0, 1};
+}
+
+PupilPlane PupilPlane::facing(const Vec3<double>& centre, double field_rad, const Vec2<double>& azimuth,
+                              double reciprocal_distance) noexcept {
+  const double sine = std::sin(field_rad), cosine = std::cos(field_rad);
+  PupilPlane plane;
+  plane.turned_ = true;
+  plane.centre_ = centre;
+  plane.towards_ = plane.normal_ = {azimuth.x * sine, azimuth.y * sine, -cosine};
+  plane.x_axis_ = {azimuth.y, -azimuth.x, 0};
+  plane.y_axis_ = {azimuth.x * cosine, azimuth.y * cosine, sine};
+  plane.reciprocal_distance_ = reciprocal_distance;
+  return plane;
 }
 
 PupilPlane PupilPlane::of_film(const Lens& lens, const FilmPoint& point) {

@@ -10,9 +10,9 @@
 #include <optional>
 #include <utility>
 
-#include "core/meet_plane.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/paraxial/first_order.hpp"
+#include "petzval/pupil/pupil_plane.hpp"
 #include "pupil/boundary_search.hpp"
 #include "pupil/face.hpp"
 #include "pupil_table/pupil_polygon.hpp"
@@ -27,35 +27,15 @@ constexpr double pi = std::numbers::pi;
 constexpr std::size_t field_steps = 12, distance_steps = 2;
 constexpr std::size_t fields = field_steps + 1, distances = distance_steps + 1;
 
-/// The plane through the pupil's centre perpendicular to the line to a point, and the rays of that point.
-struct View {
-  Vec3<double> towards{0, 0, -1};  // unit, from the centre to the point
-  Vec3<double> x_axis{1, 0, 0}, y_axis{0, 1, 0};
-  double reciprocal = 0;  // 1 / distance from the centre, 1/mm
-
-  View(double field, double azimuth_x, double azimuth_y, double reciprocal_distance) noexcept
-      : reciprocal(reciprocal_distance) {
-    const double sine = std::sin(field), cosine = std::cos(field);
-    towards = {azimuth_x * sine, azimuth_y * sine, -cosine};
-    x_axis = {azimuth_y, -azimuth_x, 0};
-    y_axis = {azimuth_x * cosine, azimuth_y * cosine, sine};
-  }
-
-  /// From the centre.
-  Vec3<double> place(double x, double y) const noexcept { return x_axis * x + y_axis * y; }
-  Vec3<double> direction(const Vec3<double>& place) const noexcept {
-    return glm::normalize(place * reciprocal - towards);
-  }
-};
-
 /// Where a direction from the centre lies.
 struct Bearing {
-  double field = 0, azimuth_x = 0, azimuth_y = 1;
+  double field = 0;
+  Vec2<double> azimuth{0, 1};
 
   explicit Bearing(const Vec3<double>& unit) noexcept {
     const double across = std::hypot(unit.x, unit.y);
     field = std::atan2(across, -unit.z);
-    if (across > 0) azimuth_x = unit.x / across, azimuth_y = unit.y / across;
+    if (across > 0) azimuth = {unit.x / across, unit.y / across};
   }
 };
 
@@ -132,11 +112,9 @@ struct EntrancePupilTable::Data {
     const double along = std::sqrt(std::max(1 - beside2 * squared(reciprocal_radius), 0.0)) - b * reciprocal_radius;
     return Bearing(from * reciprocal_radius + ray.direction * along);
   }
-  /// Where a ray crosses the plane of a view.
-  static std::array<double, 2> place_in(const View& view, const Vec3<double>& from_centre,
-                                        const Vec3<double>& direction) noexcept {
-    const Vec3<double> place = core_detail::meet_plane({from_centre, direction}, {0, 0, 0}, view.towards);
-    return {glm::dot(place, view.x_axis), glm::dot(place, view.y_axis)};
+  /// The plane of the pupil that a point sees.
+  PupilPlane plane_facing(const Bearing& bearing, double reciprocal_distance) const noexcept {
+    return PupilPlane::facing(centre, bearing.field, bearing.azimuth, reciprocal_distance);
   }
   double widest_of(const std::vector<Ray<double>>& rays, double reciprocal_radius) const noexcept {
     double widest = 0;
@@ -234,11 +212,10 @@ void EntrancePupilTable::Data::fill(Table& table, const std::vector<Ray<double>>
   std::vector<Bounds> bounds(columns);
   for (const Ray<double>& ray : rays) {
     const Bearing bearing = bearing_of(ray, reciprocal_of(sharpest));
-    const View view(bearing.field, bearing.azimuth_x, bearing.azimuth_y, 0);
-    const auto [x, y] = place_in(view, ray.origin - centre, ray.direction);
+    const Vec2<double> place = plane_facing(bearing, 0).meet(ray);
     const auto nearest = static_cast<std::size_t>(std::lround(bearing.field / widest[sharpest] * (columns - 1)));
     for (std::size_t j = nearest - std::min<std::size_t>(nearest, 2); j <= std::min(nearest + 2, columns - 1); ++j) {
-      bounds[j].take(x, y);
+      bounds[j].take(place.x, place.y);
     }
   }
   // The axis may be dark.
@@ -251,14 +228,14 @@ void EntrancePupilTable::Data::fill(Table& table, const std::vector<Ray<double>>
     across = std::max(across, bounds[j].across);
   }
   std::vector<pupil_detail::PupilGuess> guesses;  // rows x columns
-  std::vector<View> views;
+  std::vector<PupilPlane> planes;
   for (std::size_t row = 0; row < rows; ++row) {
     for (std::size_t j = 0; j < columns; ++j) {
       const double field = widest[row] * static_cast<double>(j) / (columns - 1);
       const double known = std::min(field / widest[sharpest], 1.0) * (columns - 1);
       const Bounds& b = bounds[static_cast<std::size_t>(std::lround(known))];
       guesses.push_back({0, b.low - room, b.high + room, std::max(across, room)});
-      views.emplace_back(field, 0, 1, reciprocal_of(row));
+      planes.push_back(PupilPlane::facing(centre, field, {0, 1}, reciprocal_of(row)));
     }
   }
 
@@ -268,9 +245,8 @@ void EntrancePupilTable::Data::fill(Table& table, const std::vector<Ray<double>>
                           std::uint8_t* through) {
     for (auto& component : components) component.resize(count);
     for (std::size_t r = 0; r < count; ++r) {
-      const View& view = views[which[r]];
-      const Vec3<double> place = view.place(x[r], y[r]), direction = view.direction(place);
-      for (int i : {0, 1, 2}) components[i][r] = centre[i] + place[i], components[3 + i][r] = direction[i];
+      const Ray<double> ray = planes[which[r]].ray(x[r], y[r]);
+      for (int i : {0, 1, 2}) components[i][r] = ray.origin[i], components[3 + i][r] = ray.direction[i];
     }
     passing(count,
             {components[0].data(), components[1].data(), components[2].data(), components[3].data(),
@@ -312,10 +288,9 @@ void EntrancePupilTable::Data::fill(Table& table, const std::vector<Ray<double>>
     for (const Ray<double>& ray : rays) {
       const Bearing bearing = bearing_of(ray, reciprocal);
       if (!all && bearing.field < last_fields * widest[row]) continue;
-      const View view(bearing.field, bearing.azimuth_x, bearing.azimuth_y, reciprocal);
-      const auto [x, y] = place_in(view, ray.origin - centre, ray.direction);
+      const Vec2<double> place = plane_facing(bearing, reciprocal).meet(ray);
       const PolygonWeights at = weights_of(table, bearing.field, reciprocal).value_or(PolygonWeights{});
-      const double way = interpolated(table.polygons, at).way_to(x, y);
+      const double way = interpolated(table.polygons, at).way_to(place.x, place.y);
       if (std::isinf(way)) {  // a pupil that no polygon about a middle describes
         table.polygons.clear();
         return;
@@ -377,19 +352,18 @@ void EntrancePupilTable::sample(const Vec3<double>& point, std::size_t count, co
   const Vec3<double> from_centre = point - data_->centre;
   const double distance = glm::length(from_centre);
   const Bearing bearing(from_centre / distance);
-  const View view(bearing.field, bearing.azimuth_x, bearing.azimuth_y, 1 / distance);
+  const PupilPlane plane = data_->plane_facing(bearing, 1 / distance);
 
   if (data_->covers(*table, distance)) {
-    const PupilPolygon polygon = data_->polygon_at(*table, bearing.field, view.reciprocal);
+    const PupilPolygon polygon = data_->polygon_at(*table, bearing.field, 1 / distance);
     const PolygonSampler sampler(polygon);
     if (!(sampler.area() > 0)) return;
     for (std::size_t i = 0; i < count; ++i) {
       if (!std::isfinite(u[i]) || !std::isfinite(v[i])) continue;
       const Vec2<double> p = sampler(u[i], v[i]);
-      const Vec3<double> place = view.place(p.x, p.y);
+      const Ray<double> ray = plane.ray(p.x, p.y);
       const double far = std::sqrt(squared(distance) + squared(p.x) + squared(p.y));
-      samples[i] = {data_->centre + place, view.direction(place), far,
-                    squared(far) * (far / distance) / sampler.area()};
+      samples[i] = {ray.origin, ray.direction, far, squared(far) * (far / distance) / sampler.area()};
     }
     return;
   }
@@ -398,8 +372,8 @@ void EntrancePupilTable::sample(const Vec3<double>& point, std::size_t count, co
     if (!std::isfinite(u[i]) || !std::isfinite(v[i])) continue;
     const double less = std::clamp(v[i], 0.0, 1.0) * solid / (2 * pi);
     const double sine = std::sqrt(less * (2 - less)), angle = 2 * pi * u[i];
-    const Vec3<double> direction =
-        view.towards * (less - 1) + view.x_axis * (sine * std::cos(angle)) + view.y_axis * (sine * std::sin(angle));
+    const Vec3<double> across = plane.at(sine * std::cos(angle), sine * std::sin(angle)) - plane.centre();
+    const Vec3<double> direction = plane.towards() * (less - 1) + across;
     const double far = std::max(distance * (1 - less), 0.0);
     samples[i] = {point + direction * far, direction, far, 1 / solid};
   }
@@ -419,13 +393,13 @@ double EntrancePupilTable::pdf(const Vec3<double>& point, const Vec3<double>& di
   const Vec3<double> from_centre = point - data_->centre;
   const double distance = glm::length(from_centre);
   const Bearing bearing(from_centre / distance);
-  const View view(bearing.field, bearing.azimuth_x, bearing.azimuth_y, 1 / distance);
-  const double cosine = -glm::dot(direction, view.towards);
+  const PupilPlane plane = data_->plane_facing(bearing, 1 / distance);
+  const double cosine = -glm::dot(direction, plane.towards());
   if (data_->covers(*table, distance)) {
     if (!(cosine > 0)) return 0;
-    const auto [x, y] = Data::place_in(view, from_centre, direction);
-    const PupilPolygon polygon = data_->polygon_at(*table, bearing.field, view.reciprocal);
-    const double way = polygon.way_to(x, y);
+    const Vec2<double> place = plane.meet({point, direction});
+    const PupilPolygon polygon = data_->polygon_at(*table, bearing.field, 1 / distance);
+    const double way = polygon.way_to(place.x, place.y);
     if (!(way >= 0 && way <= 1)) return 0;
     return squared(distance) / (polygon.area() * cosine * squared(cosine));
   }

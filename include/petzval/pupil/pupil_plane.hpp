@@ -41,6 +41,11 @@ class PETZVAL_API PupilPlane {
   /// Throws Error for a point that is not finite and a film in the plane of the last vertex.
   static PupilPlane of_film(const Lens& lens, const FilmPoint& point);
 
+  /// The plane through any centre that faces a point in front of it: in a field (rad) and the azimuth of a unit vector
+  /// across the axis, at a reciprocal distance from the centre (1/mm; 0: at infinity).
+  static PupilPlane facing(const Vec3<double>& centre, double field_rad, const Vec2<double>& azimuth,
+                           double reciprocal_distance) noexcept;
+
   /// Direction of travel of the rays.
   Travel travel() const noexcept { return travel_; }
   /// The point lies on the axis.
@@ -55,6 +60,8 @@ class PETZVAL_API PupilPlane {
   const Vec3<double>& towards() const noexcept { return towards_; }
   double reciprocal_distance() const noexcept { return reciprocal_distance_; }
 
+  /// The place (x, y) in the lens frame, mm.
+  Vec3<double> at(double x, double y) const noexcept { return centre_ + x_axis_ * x + y_axis_ * y; }
   /// The ray of the point through (x, y). It starts in the plane, so that precision does not depend on the distance of
   /// the point.
   Ray<double> ray(double x, double y) const noexcept;
