@@ -17,6 +17,7 @@
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/aim.hpp"
 #include "petzval/pupil/f_number.hpp"
+#include "petzval/pupil/illumination.hpp"
 #include "petzval/trace/trace.hpp"
 
 namespace {
@@ -464,6 +465,28 @@ TEST(FilmPupilTable, SamplesImagesOfAnIrisInBatchesAsSingly) {
       expect_batch_as_single_samples<double>(table, 1e-15);
       expect_batch_as_single_samples<float>(table, 5e-7);
     }
+  }
+}
+
+TEST(FilmPupilTable, KnowsTheSolidAngleOfAPupil) {
+  // A disc straight ahead has pi sin^2 of its half angle.
+  for (const double radius : {1.0, 9.0, 40.0}) {
+    const PupilDisc disc{1, radius};
+    const FilmPupilTable table = FilmPupilTable::of_iris({50, 0}, {}, {&disc, 1}, 12);
+    for (const FilmPoint& film : {FilmPoint{0, 0}, FilmPoint{-7, 5}}) {
+      EXPECT_NEAR(table.projected_solid_angle(film) * (radius * radius + 2500) / (radius * radius), std::numbers::pi,
+                  3e-4);
+    }
+  }
+  const Lens lens = data_lens("double_gauss_100mm_f2.0");
+  const FilmPupilTable table = FilmPupilTable::equal_area(lens, 20);
+  // Another shape at another place, and as much light.
+  const std::vector<std::vector<PupilDisc>> discs{{{0.3, 30}, {-0.2, 20}}};
+  const FilmPupilTable other = table.reshaped(discs);
+  for (const FilmPoint& film : {FilmPoint{0, 0}, FilmPoint{3, -9}, FilmPoint{14, 14}}) {
+    EXPECT_NEAR(table.projected_solid_angle(film) / film_irradiance(lens, film), 1, 2e-3);
+    EXPECT_NEAR(other.projected_solid_angle(film) / table.projected_solid_angle(film), 1, 1e-3);
+    EXPECT_GE(std::abs(other.middle(film).y - table.middle(film).y), 1e-3 * std::abs(film.y));
   }
 }
 
