@@ -134,7 +134,7 @@ int main(int argc, char** argv) {
       "tilt of the film about +x (degrees); its normal is Ry(swing) Rx(tilt) e_z, and film points are in its own "
       "axes");
   examples::add_number(app, "--swing-deg", swing_deg, below_quarter_turn, "swing of the film about +y (degrees)");
-  app.get_option("--focus-mm")->required();
+  app.get_option("--focus-mm")->required()->default_str("");
 
   return examples::run(app, argc, argv, [&] {
     const auto [width, height] = setup.film_size();

@@ -24,9 +24,10 @@ class MitsubaSensor {
         frame_(petzval::Host::mitsuba, camera_.lens(), petzval::FrameOrigin::film),
         to_world_(std::move(to_world)) {}
 
-  /// position_sample: the place in the picture, (0, 0) in the upper left corner, (1, 1) in the lower right one. The
-  /// weight is 0 for a ray that is lost.
-  std::pair<Ray3f, Float> sample_ray(Float time, const Point2f& position_sample, const Point2f& aperture_sample) const {
+  /// At the lens's primary wavelength. position_sample: the place in the picture, (0, 0) in the upper left corner, (1,
+  /// 1) in the lower right one. The weight is 0 for a ray that is lost.
+  std::pair<Ray3f, Float> sample_ray(Float time, Float /* wavelength_sample */, const Point2f& position_sample,
+                                     const Point2f& aperture_sample) const {
     const petzval::Film& film = camera_.film();
     const petzval::CameraRay r =
         camera_.sample({.film = film.point(position_sample.x() * film.columns, position_sample.y() * film.rows),

@@ -16,8 +16,10 @@ std::array<double, 2> CameraSetup::film_size() const { return parse_size("--film
 void add_camera(App& app, CameraSetup& setup) {
   add_number(app, "--f-number", setup.f_number, positive_number, "stop the lens down (by exact rays)")
       ->default_str("wide open");
-  add_number(app, "--focus-mm", setup.focus_mm, positive_length,
-             "distance of the subject in focus (at the primary wavelength) from the film (mm), or inf");
+  add_number(
+      app, "--focus-mm", setup.focus_mm, positive_length,
+      "distance of the subject in focus from the film (mm), or inf; at the primary of the wavelengths in use: the one "
+      "nearest to the d line, unless the lens states its reference");
   add_criterion(app, setup.criterion);
   app.add_option("--film-mm", setup.film_mm, "width and height of the film (mm)")
       ->type_name("WxH")

@@ -20,7 +20,8 @@ constexpr std::array<std::string_view, all.size()> names{
 }  // namespace
 
 std::string_view name(ModelKind model) noexcept {
-  return model == ModelKind::custom ? "custom" : names[static_cast<std::size_t>(model)];
+  const auto at = static_cast<std::size_t>(model);
+  return at < names.size() ? names[at] : model == ModelKind::custom ? "custom" : "unknown";
 }
 
 std::optional<ModelKind> model_named(std::string_view name) noexcept {

@@ -446,6 +446,16 @@ TEST(Camera, TakesNoOptionsForTheDefaultOnes) {
   EXPECT_EQ(Camera(lens, {}, {}).model(), Camera(lens, {}).model());
 }
 
+TEST(Camera, RefusesModelsThatAreNone) {
+  const Lens lens = focused("double_gauss_100mm_f2.0");
+  for (const int number : {11, 12, 77}) {
+    const auto kind = static_cast<ModelKind>(number);
+    const std::string called = kind == ModelKind::custom ? "custom" : "unknown";
+    EXPECT_EQ(testing::message([&] { Camera(lens, {}, {.model = kind}); }),
+              lens.name() + ": camera: model is " + called + ", wanted one of models(), or an AnyRayModel");
+  }
+}
+
 TEST(Camera, RefusesFilmsThatAreNone) {
   const Lens lens = testing::data_lens("tessar_100mm_f2.8");
   const double nan = std::numeric_limits<double>::quiet_NaN();

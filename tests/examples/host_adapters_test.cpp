@@ -174,7 +174,7 @@ TEST(HostAdapters, OfMitsubaHaveRedOnTheRightAndGreenAbove) {
   const auto vector = [](const Mitsuba::Vector3f& v) { return Vec3<double>(v.at[0], v.at[1], v.at[2]); };
   expect_lamps_in_place(-1, [&](double x, double y, double u, double v) {
     const auto number = [](double value) { return static_cast<float>(value); };
-    const auto [ray, weight] = sensor.sample_ray(0, {number(x / columns), number(y / rows)}, {number(u), number(v)});
+    const auto [ray, weight] = sensor.sample_ray(0, 0, {number(x / columns), number(y / rows)}, {number(u), number(v)});
     return HostRay{vector(ray.o), vector(ray.d), weight};
   });
 }

@@ -72,9 +72,10 @@ class PETZVAL_API Camera {
   const Film& film() const noexcept;
   ModelKind model() const noexcept;
 
-  /// One ray; it agrees with that of a batch within rounding. Fates of invalid samples: outside_film for a film point
-  /// that is outside the film or not finite, invalid for a wavelength that was not compiled, vignetted for a
-  /// pupil without area and pupil samples that are not finite.
+  /// One ray; it agrees with that of a batch within rounding. The densities of a pinhole's rays are those of the thick
+  /// lens's pupil. Fates of invalid samples: outside_film for a film point that is outside the film or not finite,
+  /// invalid for a wavelength that was not compiled, vignetted for a pupil without area and pupil samples that are not
+  /// finite. Pupil samples outside the unit square count as its edge.
   CameraRay sample(const CameraSample& sample) const noexcept;
   /// N rays, float or double, in the precision of the model.
   template <class T>
@@ -87,7 +88,8 @@ class PETZVAL_API Camera {
   void sample_differentials(std::size_t count, const CameraSamples<T>& samples, const CameraRays<T>& rays,
                             const RayArrays<T>& by_raster_x, const RayArrays<T>& by_raster_y) const noexcept;
 
-  /// The importance of a ray from the scene, given anywhere on its line, in its direction towards the lens.
+  /// The importance of a ray from the scene, given anywhere on its line, in its direction towards the lens. 0 for a
+  /// pinhole, which no ray meets by chance; so is pdf_importance(). Only connections meet it.
   Importance importance(const Ray<double>& ray, Wavelength wavelength = {}) const noexcept;
   /// Samples a connection from a scene point (lens frame, mm) to the part of the entrance pupil that it sees.
   ImportanceSample sample_importance(const Vec3<double>& point, double u, double v,

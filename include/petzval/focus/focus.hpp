@@ -95,7 +95,8 @@ PETZVAL_API FocusSolution nearest_focus(const Lens& lens, const FocusOptions& op
 
 /// The lens with its film where solve_focus puts it: by default, where a subject on the axis is sharpest. A camera of
 /// it, by whatever ray model, is sharpest there too, within the depth over which the RMS blur grows by 5 %
-/// (tests/camera/focus_test.cpp). Throws Error, which names the nearest distance, if there is no focus.
+/// (tests/camera/focus_test.cpp). A stop moves the sharpest film of a lens with spherical aberration: set the f-number
+/// first. Throws Error, which names the nearest distance, if there is no focus.
 PETZVAL_API Lens with_focus(const Lens& lens, double distance, const FocusOptions& options = {});
 
 /// Diameter of the blur (circle of confusion) of a subject on the film of the lens, as the criterion measures it. For
