@@ -100,16 +100,22 @@ std::size_t central_of(const Lens& lens, const std::vector<std::size_t>& wavelen
                                    [&](std::size_t w) { return std::abs(lens.wavelengths_nm()[w] - d_line_nm); });
 }
 
-/// What models cost, from times with some noise in them: first-order models run the same loops, and of polynomials
-/// those of more terms do all that the others do.
+/// What models cost, from times with some noise in them: pinhole, thin and thick run the same loops, two discs add the
+/// look-up of a table, and polynomials, the more the more terms they have, a sum of terms.
 std::vector<double> costs(std::span<const AnyRayModel> models, std::vector<double> times) {
-  double first_order = std::numeric_limits<double>::infinity(), fewer_terms = 0;
+  double discs = std::numeric_limits<double>::infinity(), simpler = 0;
+  const auto one_disc = [](ModelKind kind) {
+    return camera_detail::is_first_order(kind) && kind != ModelKind::thin_two_disc;
+  };
   for (std::size_t k = 0; k < models.size(); ++k) {
-    if (camera_detail::is_first_order(models[k].kind())) first_order = std::min(first_order, times[k]);
+    if (one_disc(models[k].kind())) discs = std::min(discs, times[k]);
   }
   for (std::size_t k = 0; k < models.size(); ++k) {
-    if (camera_detail::is_first_order(models[k].kind())) fewer_terms = times[k] = first_order;
-    if (camera_detail::is_polynomial(models[k].kind())) fewer_terms = times[k] = std::max(times[k], fewer_terms);
+    const ModelKind kind = models[k].kind();
+    if (one_disc(kind)) times[k] = discs;
+    if (kind == ModelKind::thin_two_disc || camera_detail::is_polynomial(kind)) {
+      simpler = times[k] = std::max(times[k], simpler);
+    }
   }
   return times;
 }

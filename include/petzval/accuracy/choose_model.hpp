@@ -67,7 +67,7 @@ struct ModelChoice {
 ///
 /// The lens must be focused; with_f_number() stops it down. Errors are compared at the nearest and the farthest depth,
 /// at three between them (equally spaced in 1/distance) and at the focus, the same for all models (min_rms). Among
-/// equally fast models the first of models() is chosen; all first-order models count as equally fast.
+/// equally fast models the first of models() is chosen; pinhole, thin and thick count as equally fast.
 ///
 ///     const ModelChoice choice = choose_model(lens, {.near_mm = 1000, .film = film}, {.max_px = 0.25});
 ///     const Camera camera(lens, film, {.model = choice.model});
