@@ -112,10 +112,9 @@ std::vector<double> costs(std::span<const AnyRayModel> models, std::vector<doubl
   }
   for (std::size_t k = 0; k < models.size(); ++k) {
     const ModelKind kind = models[k].kind();
-    if (one_disc(kind)) times[k] = discs;
-    if (kind == ModelKind::thin_two_disc || camera_detail::is_polynomial(kind)) {
-      simpler = times[k] = std::max(times[k], simpler);
-    }
+    if (!camera_detail::is_first_order(kind) && !camera_detail::is_polynomial(kind)) continue;
+    times[k] = one_disc(kind) ? discs : std::max(times[k], simpler);
+    simpler = std::max(simpler, times[k]);
   }
   return times;
 }

@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "core/meet_plane.hpp"
-#include "core/quadrature.hpp"
 #include "petzval/pupil/pupil_boundary.hpp"
 #include "petzval/trace/trace.hpp"
+#include "pupil/boundary_nodes.hpp"
 
 namespace petzval::inline v0::camera_detail {
 
@@ -27,7 +27,6 @@ StopMaps stop_maps(const LensFacts& facts, std::size_t wavelength, const TwoPlan
 /// continued to the stop by first order, have heights y and slopes u there: seen from the entrance pupil they miss the
 /// point by u - v y, but for a constant. The sum of squares is least for v = sum(u y) / sum(y y).
 double best_focus_power(const LensFacts& facts, std::size_t wavelength, const StopMaps& maps) {
-  static const auto nodes = core_detail::gauss_legendre<32>();
   const Lens& lens = facts.lens();
   // Of a lens of revolution one meridian stands for all.
   const PupilBoundary boundary = lens.rotationally_symmetric() ? exit_pupil_boundary(lens, {}, wavelength, 1)
@@ -35,23 +34,18 @@ double best_focus_power(const LensFacts& facts, std::size_t wavelength, const St
   const RayMatrix to_stop = maps.to_front.inverse();
   const double front_z = lens.surfaces().front().vertex_z;
   double uy = 0, yy = 0;
-  for (const PupilSpan& span : boundary.spans) {
-    // The nodes lie in the squared radius, of which equal steps are equal areas.
-    const double from = span.from_radius * span.from_radius, to = span.to_radius * span.to_radius;
-    for (const auto& [node, weight] : nodes) {
-      const Vec2<double> p = boundary.at(span.direction, std::sqrt(from + node * (to - from)));
-      const Ray<double> start = boundary.plane.ray(p.x, p.y);
-      const auto end = trace(lens, start, {.travel = Travel::to_scene, .wavelength = wavelength});
-      if (!end.transmitted()) continue;
-      const auto line = core_detail::slope_ray(end.ray, front_z);
-      const double light = (to - from) * weight * std::pow(start.direction.z, 4);
-      for (const auto& [height, slope] : {std::array{line.x, line.slope_x}, std::array{line.y, line.slope_y}}) {
-        const double in_stop = to_stop.a * height + to_stop.b * slope;
-        uy += light * in_stop * (to_stop.c * height + to_stop.d * slope);
-        yy += light * in_stop * in_stop;
-      }
+  pupil_detail::for_each_node<32>(boundary, [&](const Vec2<double>& p, double area, double weight) {
+    const Ray<double> start = boundary.plane.ray(p.x, p.y);
+    const auto end = trace(lens, start, {.travel = Travel::to_scene, .wavelength = wavelength});
+    if (!end.transmitted()) return;
+    const auto line = core_detail::slope_ray(end.ray, front_z);
+    const double light = area * weight * std::pow(start.direction.z, 4);
+    for (const auto& [height, slope] : {std::array{line.x, line.slope_x}, std::array{line.y, line.slope_y}}) {
+      const double in_stop = to_stop.a * height + to_stop.b * slope;
+      uy += light * in_stop * (to_stop.c * height + to_stop.d * slope);
+      yy += light * in_stop * in_stop;
     }
-  }
+  });
   const double power = uy / yy - maps.from_film.d / maps.from_film.b;
   return std::isfinite(power) ? power : 0;
 }

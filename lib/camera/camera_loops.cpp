@@ -4,6 +4,7 @@
 #include "camera_loops.hpp"
 
 #include "camera_steps.hpp"
+#include "core/loop_math.hpp"
 #include "way_to_front.hpp"
 
 namespace petzval::inline v0::camera_detail {
@@ -31,7 +32,7 @@ void start(const TwoPlanes& space, T towards, std::size_t count, const TwoPlaneR
   PETZVAL_INDEPENDENT
   for (std::size_t i = 0; i < count; ++i) {
     const T x = pupil_x[i] - film_x[i], y = pupil_y[i] - film_y[i];
-    const T per_length = towards / root(x * x + y * y + depth2);
+    const T per_length = towards / core_detail::square_root(x * x + y * y + depth2);
     ox[i] = pupil_x[i];
     oy[i] = pupil_y[i];
     oz[i] = z;

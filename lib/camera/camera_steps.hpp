@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "core/loop_math.hpp"
 #include "film/film_bounds.hpp"
 #include "petzval/core/ray.hpp"
 
@@ -11,9 +12,6 @@ using film_detail::FilmBounds;
 
 // Local names: this is compiled for several instruction sets, and the linker must not take one for another.
 namespace {
-
-inline float root(float x) noexcept { return __builtin_sqrtf(x); }
-inline double root(double x) noexcept { return __builtin_sqrt(x); }
 
 /// False for what is not a number.
 template <class T>
@@ -38,7 +36,9 @@ struct PupilWeight {
     const T part = depth2 / length2;
     return area * part * part / depth2;
   }
-  T pdf_direction(T length2, T area) const noexcept { return length2 * root(length2) / (along * area); }
+  T pdf_direction(T length2, T area) const noexcept {
+    return length2 * core_detail::square_root(length2) / (along * area);
+  }
 };
 
 /// The fate of a sample: of its ray, unless it has none.

@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <numbers>
 
+#include "core/loop_math.hpp"
+
 /// Uniform points of an iris, one at a time, for loops over many and for IrisShape.
 namespace petzval::inline v0::iris_detail {
 
@@ -23,9 +25,6 @@ template <class R>
 struct IrisPoint {
   R x, y;
 };
-
-inline float square_root(float x) noexcept { return __builtin_sqrtf(x); }
-inline double square_root(double x) noexcept { return __builtin_sqrt(x); }
 
 /// The point of the unit circle after a part u of the turn from +y towards +x, for u in [0, 1]. Within 2e-7 and 1e-15.
 template <class R>
@@ -50,14 +49,14 @@ inline IrisPoint<R> circle_point(R u) noexcept {
 template <class R>
 inline IrisPoint<R> disc_point(R u, R v) noexcept {
   const auto [x, y] = circle_point(u);
-  const R way = square_root(v);
+  const R way = core_detail::square_root(v);
   return {way * x, way * y};
 }
 
 /// A uniform point of a polygon whose triangle k holds the part u of the area.
 template <class R>
 inline IrisPoint<R> triangle_point(const IrisTriangles<R>& t, std::size_t k, R u, R v) noexcept {
-  const R along = (u - t.before[k]) / (t.before[k + 1] - t.before[k]), way = square_root(v);
+  const R along = (u - t.before[k]) / (t.before[k + 1] - t.before[k]), way = core_detail::square_root(v);
   return {way * (t.x[k] + along * (t.x[k + 1] - t.x[k])), way * (t.y[k] + along * (t.y[k + 1] - t.y[k]))};
 }
 

@@ -5,8 +5,8 @@
 #include <limits>
 #include <numbers>
 
+#include "boundary_nodes.hpp"
 #include "core/meet_plane.hpp"
-#include "core/quadrature.hpp"
 #include "core/text.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/paraxial/first_order.hpp"
@@ -20,19 +20,12 @@ double film_irradiance(const Lens& lens, const FilmPoint& point, Wavelength wave
   const bool alike_all_round = plane.on_axis() && lens.rotationally_symmetric();
   const PupilBoundary boundary =
       alike_all_round ? exit_pupil_boundary(lens, point, wavelength, 1) : exit_pupil_boundary(lens, point, wavelength);
-  // Part dA of the plane, gap away from the film, is seen in the projected solid angle cos^4 dA / gap^2. The
-  // nodes lie in the squared radius, of which equal steps are equal areas.
+  // Part dA of the plane, gap away from the film, is seen in the projected solid angle cos^4 dA / gap^2.
   const double gap = plane.towards().z / plane.reciprocal_distance();
-  const auto nodes = core_detail::gauss_legendre<3>();
   double sum = 0;
-  for (const PupilSpan& span : boundary.spans) {
-    const double from = span.from_radius * span.from_radius, to = span.to_radius * span.to_radius;
-    for (const auto& [node, weight] : nodes) {
-      const Vec2<double> p = boundary.at(span.direction, std::sqrt(from + node * (to - from)));
-      const double cosine = plane.ray(p.x, p.y).direction.z;
-      sum += weight * (to - from) * std::pow(cosine, 4);
-    }
-  }
+  pupil_detail::for_each_node<3>(boundary, [&](const Vec2<double>& p, double area, double weight) {
+    sum += weight * area * std::pow(plane.ray(p.x, p.y).direction.z, 4);
+  });
   if (sum == 0) return 0;
   const double n = lens.index(lens.surface_count(), wavelength);
   return n * n * sum * std::numbers::pi / static_cast<double>(boundary.directions) * boundary.half_axes[0] *

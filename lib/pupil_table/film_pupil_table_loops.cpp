@@ -5,17 +5,10 @@
 
 #include <type_traits>
 
+#include "core/loop_math.hpp"
+
 namespace petzval::inline v0::pupil_table_detail {
 namespace {
-
-inline float root(float x) noexcept { return __builtin_sqrtf(x); }
-inline double root(double x) noexcept { return __builtin_sqrt(x); }
-
-template <class R>
-inline R clamped(R x) noexcept {
-  x = x > R(0) ? x : R(0);
-  return x < R(1) ? x : R(1);
-}
 
 /// Where a film point stands in the table, and which way it lies; nowhere: at the table's beginning.
 template <class R>
@@ -29,7 +22,7 @@ inline Place<R> place_of(const StripTable<R>& table, R film_x, R film_y, std::in
                          std::int32_t wavelength) noexcept {
   const auto last = static_cast<std::int32_t>(table.count) - 1;
   const R r2 = film_x * film_x + film_y * film_y;
-  const R r = root(r2);
+  const R r = core_detail::square_root(r2);
   const std::int32_t known = (r <= table.lit_radius) & (wavelength >= 0) & sound;
   const std::int32_t turn = (table.turned ? 1 : 0) & known & (r2 > R(0));
   const R per_length = R(1) / (turn ? r : R(1));
@@ -81,11 +74,11 @@ void sample_block(const StripTable<R>& table, const R* film_x, const R* film_y, 
     cosine[i] = cos;
     sine[i] = sin;
     strip[i] = at;
-    const R from = clamped(u[i]) - turn_of(sin, cos);
+    const R from = core_detail::clamped(u[i]) - turn_of(sin, cos);
     const R fraction = from < R(0) ? from + R(1) : from;
     target[i] = fraction < R(1) ? fraction : fraction - R(1);
     whole[i] = known ? R(1) : R(0);
-    outer[i] = clamped(v[i]);
+    outer[i] = core_detail::clamped(v[i]);
   }
   const auto sector_at = [&](std::size_t i, std::int32_t k) {
     return strip[i] + index(L::sectors) + index(L::sector) * k;
@@ -124,8 +117,8 @@ void sample_block(const StripTable<R>& table, const R* film_x, const R* film_y, 
     const Sector<R> own = sector_of<obscured>(all, strip[i], k, t[i]);
     const R own_area = own.area();
     // From the sector's first corner, or back from its second.
-    const R along = clamped(behind[i] / (own_area > R(0) ? own_area : R(1)) + beyond[i]);
-    const Point<R> p = own.at(root(own.squared_way(outer[i])), along);
+    const R along = core_detail::clamped(behind[i] / (own_area > R(0) ? own_area : R(1)) + beyond[i]);
+    const Point<R> p = own.at(core_detail::square_root(own.squared_way(outer[i])), along);
     const R py = all[m] + t[i] * all[m + 1] + p.y;
     const R some = whole[i] > R(0) ? R(1) : R(0);
     x[i] = some * (cosine[i] * p.x + sine[i] * py);

@@ -3,14 +3,10 @@
 // its lanes. Names are local, and no other library is called, as in lib/trace/lanes.hpp.
 #include "iris_images_loops.hpp"
 
+#include "core/loop_math.hpp"
+
 namespace petzval::inline v0::pupil_table_detail {
 namespace {
-
-template <class R>
-inline R clamped(R x) noexcept {
-  x = x > R(0) ? x : R(0);
-  return x < R(1) ? x : R(1);
-}
 
 /// An image, its centre over the film point that sees it; area 0: none.
 template <class R>
@@ -58,7 +54,7 @@ inline void fill(const IrisImageTable<R>& given, const ImageOf& image_of, const 
     // Comparisons with what is not a number are false.
     const bool sound = (film_x[i] + film_y[i] + u[i] + v[i]) * R(0) >= R(0);
     const auto [fx, fy, shift, radius, area] = seen(table, image_of(i), film_x[i], film_y[i], sound);
-    const auto [px, py] = sample_at(i, clamped(u[i]), clamped(v[i]));
+    const auto [px, py] = sample_at(i, core_detail::clamped(u[i]), core_detail::clamped(v[i]));
     const R size = area > R(0) ? radius : R(0);
     x[i] = shift * fx + size * px;
     y[i] = shift * fy + size * py;

@@ -2,14 +2,13 @@
 #include "pupil_nodes.hpp"
 
 #include <array>
-#include <cmath>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include "core/bisect.hpp"
-#include "core/quadrature.hpp"
 #include "petzval/trace/trace.hpp"
+#include "pupil/boundary_nodes.hpp"
 #include "trace_rays.hpp"
 
 namespace petzval::inline v0::rays_detail {
@@ -71,17 +70,11 @@ void add_corners(const Lens& lens, const PupilBoundary& boundary, PupilPoints& p
 }  // namespace
 
 RayBundle trace_nodes(const Lens& lens, const PupilBoundary& boundary, double plane_z) {
-  static const auto nodes = core_detail::gauss_legendre<32>();
   const double cell = boundary.half_axes[0] * boundary.half_axes[1];
   PupilPoints points;
-  for (const PupilSpan& span : boundary.spans) {
-    // The nodes lie in the squared radius: equal steps of it are equal areas.
-    const double inner = span.from_radius * span.from_radius;
-    const double area = (span.to_radius - span.from_radius) * (span.to_radius + span.from_radius);
-    for (const auto& [node, weight] : nodes) {
-      points.add(boundary.at(span.direction, std::sqrt(inner + area * node)), cell * area * weight);
-    }
-  }
+  pupil_detail::for_each_node<32>(boundary, [&](const Vec2<double>& place, double area, double weight) {
+    points.add(place, cell * area * weight);
+  });
   return trace_points(lens, boundary, plane_z, points);
 }
 

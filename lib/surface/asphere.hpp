@@ -177,10 +177,6 @@ AsphereHit<T> refine(const Asphere<Storage<T>>& s, const Vec<T>& p, const Vec<T>
   return {p, false, false};
 }
 
-}  // namespace surface_detail
-
-namespace surface_detail {
-
 /// Newton from the hit on the base conic. usable: it ended where the surface is crossed in the sense of travel.
 template <class T>
 struct Candidate {

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// What loops on lanes call for one number.
+namespace petzval::inline v0::core_detail {
+
+// Local names: this is compiled for several instruction sets, and the linker must not take one for another.
+namespace {
+
+inline float square_root(float x) noexcept { return __builtin_sqrtf(x); }
+inline double square_root(double x) noexcept { return __builtin_sqrt(x); }
+
+/// Into [0, 1]; 0 for what is not a number.
+template <class R>
+inline R clamped(R x) noexcept {
+  x = x > R(0) ? x : R(0);
+  return x < R(1) ? x : R(1);
+}
+
+}  // namespace
+}  // namespace petzval::inline v0::core_detail

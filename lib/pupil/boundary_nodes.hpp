@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cmath>
+
+#include "core/quadrature.hpp"
+#include "petzval/pupil/pupil_boundary.hpp"
+
+namespace petzval::inline v0::pupil_detail {
+
+/// Calls visit(place, area, weight) at N Gauss-Legendre nodes between the edges of a pupil in each direction. They lie
+/// in the squared radius, of which equal steps are equal areas; area * weight is their share of the pupil, in squared
+/// radii.
+template <int N, class Visit>
+void for_each_node(const PupilRegion& region, const Visit& visit) {
+  static const auto nodes = core_detail::gauss_legendre<N>();
+  for (const PupilSpan& span : region.spans) {
+    const double inner = span.from_radius * span.from_radius;
+    const double area = (span.to_radius - span.from_radius) * (span.to_radius + span.from_radius);
+    for (const auto& [node, weight] : nodes) {
+      visit(region.at(span.direction, std::sqrt(inner + area * node)), area, weight);
+    }
+  }
+}
+
+}  // namespace petzval::inline v0::pupil_detail
