@@ -95,6 +95,10 @@ std::vector<double> scales(const Lens& lens, const Film& film, const AnyRayModel
     for (double& scale : result) scale /= axis;
     return result;
   }
+  if (normalisation != Normalisation::unity_at_each_wavelength) {
+    throw Error(lens.name() + ": camera: found the normalisation " + std::to_string(static_cast<int>(normalisation)) +
+                ", wanted irradiance, unity_on_axis or unity_at_each_wavelength");
+  }
   std::vector<double> each;
   for (std::size_t w = 0; w < wavelengths; ++w) each.push_back(result[w] / light(w));
   return each;

@@ -2,6 +2,7 @@
 #include "check_film.hpp"
 
 #include <cmath>
+#include <cstddef>
 #include <numbers>
 #include <string>
 
@@ -35,6 +36,40 @@ void check_rectangle(const std::string& where, const Film& film) {
   }
 }
 
+namespace {
+
+/// Throws Error for a film that reaches into the last surface: points of its edge, and those before which the surface's
+/// rim stands.
+void check_outside_surface(const Lens& lens, const Film& film) {
+  const pupil_detail::Face face = pupil_detail::last_face(lens);
+  const std::size_t last = lens.surface_count() - 1;
+  const double side = film.z() > face.vertex_z ? 1 : -1;
+  const auto check = [&](const FilmPoint& point) {
+    const Vec3<double> place = film.position(point);
+    if (!(std::hypot(place.x, place.y) <= face.half)) return;
+    const double surface_z = face.vertex_z + sag(lens, last, place.x, place.y);
+    if (!((place.z - surface_z) * side <= 0)) return;
+    throw Error(lens.name() + ": film: its point (" + to_text(point.x) + ", " + to_text(point.y) +
+                ") mm is at z = " + to_text(place.z) + " mm, wanted it " + (side > 0 ? "beyond " : "before ") +
+                to_text(surface_z) + " mm, where the last surface is");
+  };
+  constexpr int steps = 32;
+  const auto corners = film.corners();
+  for (std::size_t k = 0; k < corners.size(); ++k) {
+    const FilmPoint &from = corners[k], &to = corners[(k + 1) % corners.size()];
+    for (int i = 0; i < steps; ++i) {
+      const double part = static_cast<double>(i) / steps;
+      const FilmPoint edge{from.x + part * (to.x - from.x), from.y + part * (to.y - from.y)};
+      check(edge);
+      const double beyond = std::hypot(edge.x, edge.y) / (face.half * (1 - 1e-9));
+      const FilmPoint under_rim{edge.x / beyond, edge.y / beyond};
+      if (beyond > 1 && film.contains(under_rim)) check(under_rim);
+    }
+  }
+}
+
+}  // namespace
+
 FilmBehindLens placed(const Lens& lens, const Film& film) {
   // A prescription may have its film anywhere, at a virtual image too.
   FilmBehindLens result{with_film(lens, film.z_mm.value_or(lens.film_z())), film};
@@ -44,6 +79,7 @@ FilmBehindLens placed(const Lens& lens, const Film& film) {
 
 void check_film(const Lens& lens, const Film& film) {
   check_rectangle(lens.name() + ": film", film);
+  check_outside_surface(lens, film);
   if (!film.tilted()) return;
   const pupil_detail::Face face = pupil_detail::last_face(lens);
   const double film_z = film.z();

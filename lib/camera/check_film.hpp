@@ -11,7 +11,7 @@ namespace petzval::inline v0::camera_detail {
 
 /// Throws Error for a film without area or pixels, with an infinite shift, or tilted by a quarter turn or more.
 void check_rectangle(const std::string& where, const Film& film);
-/// The same, and for a film that is tilted into the lens.
+/// The same, and for a film that reaches into the last surface or is tilted into the lens.
 void check_film(const Lens& lens, const Film& film);
 /// The same, and for any tilted film.
 void check_upright_film(const Lens& lens, const Film& film);

@@ -99,8 +99,8 @@ RayPolynomial::Fit fit(const Lens& lens, const RayPolynomial::Domain& domain, in
   const double nm = lens.wavelengths_nm()[wavelength];
   if (passed < 2 * count) {
     throw Error(lens.name() + ": polynomial of degree " + std::to_string(degree) + ": " + std::to_string(passed) +
-                " of " + std::to_string(lines.fitted.size()) + " rays get through at " + to_text(nm) + " nm, wanted " +
-                std::to_string(2 * count) + " or more");
+                " rays from a film of radius " + to_text(domain.film_radius) + " mm get through at " + to_text(nm) +
+                " nm, wanted " + std::to_string(2 * count) + " or more: a film within the image circle");
   }
 
   // Two equations for each ray, along x and along y, for A (left) and B (right). Direction and offset are two

@@ -17,22 +17,23 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// Axis-parallel rays in the main meridian, on their way from object space to the stop.
-class StopHeight {
+/// Axis-parallel rays in the main meridian, on their way from object space to a surface: the stop, or one with a
+/// central obscuration.
+class HeightAt {
  public:
-  StopHeight(const Lens& lens, std::size_t stop, Wavelength wavelength)
-      : lens_(lens), stop_(stop), along_y_(main_meridian(lens, wavelength) == Meridian::y) {
+  HeightAt(const Lens& lens, std::size_t surface, Wavelength wavelength)
+      : lens_(lens), surface_(surface), along_y_(main_meridian(lens, wavelength) == Meridian::y) {
     path_.wavelength = lens.position(wavelength);
     path_.apertures = false;
-    path_.last = stop + 1;
+    path_.last = surface + 1;
   }
 
-  /// Height at which the ray that enters at height y meets the stop; none where it does not reach the stop. Its fate at
-  /// the surface of the stop does not matter.
+  /// Height at which the ray that enters at height y meets the surface; none where it does not reach it. Its fate there
+  /// does not matter.
   std::optional<double> operator()(double y) const noexcept {
     const kernel::Vec<double> start{along_y_ ? 0 : y, along_y_ ? y : 0, lens_.surfaces().front().vertex_z};
     const auto end = kernel::trace(kernel::view<double>(lens_), start, kernel::Vec<double>{0, 0, 1}, path_);
-    const bool met = end.surface == static_cast<int>(stop_) &&
+    const bool met = end.surface == static_cast<int>(surface_) &&
                      (end.fate == RayFate::transmitted || end.fate == RayFate::totally_reflected);
     if (!met) return {};
     return std::hypot(end.origin.x, end.origin.y);
@@ -40,7 +41,7 @@ class StopHeight {
 
  private:
   const Lens& lens_;
-  std::size_t stop_;
+  std::size_t surface_;
   bool along_y_;
   kernel::SurfaceRange path_;
 };
@@ -48,9 +49,9 @@ class StopHeight {
 /// Largest entering height of the beam within the rim of the stop: that of the ray that meets the rim, or, where rays
 /// are lost before they get so high, of the last one that reaches the stop. `expected`: first-order estimate, for the
 /// size of the steps.
-double entering_height(const StopHeight& stop_height, double rim, double expected) {
+double entering_height(const HeightAt& height_at, double rim, double expected) {
   const auto inside = [&](double y) {
-    const auto height = stop_height(y);
+    const auto height = height_at(y);
     return height && *height <= rim;
   };
   // Spherical aberration may bring the heights back below the rim further out: steps small beside the beam find the
@@ -80,7 +81,26 @@ Beam beam_of(const Lens& lens, double focal_length, Wavelength wavelength) {
 /// The height at which the beam enters, by rays, for the stop as it is.
 double beam_height(const Lens& lens, const Beam& beam, Wavelength wavelength) {
   const double rim = lens.surfaces()[beam.stop].semi_diameter;
-  return rim == 0 ? 0 : entering_height(StopHeight(lens, beam.stop, wavelength), rim, beam.height);
+  return rim == 0 ? 0 : entering_height(HeightAt(lens, beam.stop, wavelength), rim, beam.height);
+}
+
+/// A central obscuration and the height at which the rays that meet its edge enter; 0: none.
+struct Obscuration {
+  std::size_t surface = 0;
+  double height = 0;
+};
+
+/// Of those that stop the ray that enters at height y, the one that reaches farthest.
+Obscuration widest_obscuration(const Lens& lens, const Beam& beam, Wavelength wavelength, double y) {
+  Obscuration widest;
+  for (std::size_t i = 0; i < lens.surface_count(); ++i) {
+    const double edge = lens.surfaces()[i].obscuration_semi_diameter;
+    const HeightAt height_at(lens, i, wavelength);
+    if (const auto height = edge > 0 ? height_at(y) : std::nullopt; !height || *height > edge) continue;
+    const double entering = entering_height(height_at, edge, beam.height);
+    if (entering > widest.height) widest = {i, entering};
+  }
+  return widest;
 }
 
 double focal_length(const Lens& lens, Wavelength wavelength) {
@@ -113,7 +133,7 @@ Lens with_f_number(const Lens& lens, double f_number, Wavelength wavelength) {
   const LensSurface& stop = lens.surfaces()[beam.stop];
   const double y = length / (2 * f_number);
   const double largest = beam_height(lens, beam, wavelength);
-  const StopHeight stop_height(lens, beam.stop, wavelength);
+  const HeightAt stop_height(lens, beam.stop, wavelength);
   const auto height = stop_height(std::min(y, largest));
   // Declared f-numbers are rounded, of the paraxial pupil, or of another glass. Without a rim, the one that was
   // printed.
@@ -123,10 +143,11 @@ Lens with_f_number(const Lens& lens, double f_number, Wavelength wavelength) {
                 " (the fastest the lens can give) or more");
   }
   if (!open && y > largest) return lens;
-  if (const double obscured = stop.obscuration_semi_diameter; obscured > 0 && *height <= obscured) {
-    const double smallest = entering_height(stop_height, obscured, beam.height);
+  const Obscuration obscuration = widest_obscuration(lens, beam, wavelength, y);
+  if (obscuration.height > 0) {
     throw Error(lens.name() + ": f-number is " + to_text(f_number) + ", wanted less than " +
-                to_text(length / (2 * smallest), 10) + ": the stop has a central obscuration of that size");
+                to_text(length / (2 * obscuration.height), 10) + ": the central obscuration of surface " +
+                std::to_string(obscuration.surface) + " is that large");
   }
   return with_semi_diameter(lens, beam.stop, std::min(*height, stop.semi_diameter));
 }

@@ -456,6 +456,15 @@ TEST(Camera, RefusesModelsThatAreNone) {
   }
 }
 
+TEST(Camera, RefusesANormalisationThatIsNone) {
+  const Lens lens = focused("double_gauss_100mm_f2.0");
+  const CameraOptions options{.model = ModelKind::thin, .normalisation = static_cast<Normalisation>(9)};
+  EXPECT_EQ(testing::message([&] { Camera(lens, {}, options); }),
+            lens.name() +
+                ": camera: found the normalisation 9, wanted irradiance, unity_on_axis or "
+                "unity_at_each_wavelength");
+}
+
 TEST(Camera, RefusesFilmsThatAreNone) {
   const Lens lens = testing::data_lens("tessar_100mm_f2.8");
   const double nan = std::numeric_limits<double>::quiet_NaN();
@@ -474,6 +483,13 @@ TEST(Camera, RefusesFilmsThatAreNone) {
     prescription.surfaces.back().thickness = z - last_z;
     EXPECT_NE(testing::message([&] { Camera(compile(prescription), {}); }).find(place), std::string::npos) << z;
   }
+  // In the hollow of the last surface, behind its vertex: a film that fits in, and one that does not.
+  const Lens hollow = testing::data_lens("petzval_100mm_f1.25");
+  const double hollow_z = hollow.surfaces().back().vertex_z + 0.5;
+  const Film small{.width_mm = 2, .height_mm = 2, .z_mm = hollow_z}, large{.width_mm = 46.9, .z_mm = hollow_z};
+  EXPECT_NO_THROW(Camera(hollow, small, {.model = ModelKind::thin}));
+  const std::string refusal = testing::message([&] { Camera(hollow, large, {.model = ModelKind::thin}); });
+  EXPECT_NE(refusal.find("where the last surface is"), std::string::npos) << refusal;
   // In front of a mirror is behind it.
   const Lens mirror = testing::data_lens("mirror_newton_200mm_f8");
   EXPECT_NO_THROW(Camera(mirror, {.width_mm = 2, .height_mm = 2, .z_mm = -190}));

@@ -270,7 +270,7 @@ TEST(PolynomialFit, SaysWhyThereIsNone) {
   const Lens coloured = compile(data_prescription("double_gauss_100mm_f2_28deg"), nm, {.glasses = &glasses});
   EXPECT_EQ(why(coloured, pupils, 5), where + "the pupils are of 1 wavelengths, wanted the lens's 2");
   // The pupils of the open lens, traced through an almost closed one.
-  EXPECT_NE(why(with_f_number(lens, 200), pupils, 11).find("rays get through"), std::string::npos);
+  EXPECT_NE(why(with_f_number(lens, 200), pupils, 11).find("get through"), std::string::npos);
 }
 
 }  // namespace

@@ -57,7 +57,7 @@ class PETZVAL_API Camera {
  public:
   /// The lens has its film where film.z_mm says, as with_film() would. A tilted film takes two to six times as long to
   /// set up (34 ms rather than 10 for a double Gauss); fits of tilts need no camera. Throws Error for a film without
-  /// area or pixels, one that is not behind the last vertex, is tilted into the lens or comes near to the plane of the
+  /// area or pixels, one that is not behind the last surface, is tilted into the lens or comes near to the plane of the
   /// pupil, and where the model cannot be built: a lens without a pupil, a first-order or polynomial model of a lens
   /// with cylinders.
   Camera(const Lens& lens, const Film& film, const CameraOptions& options = {});
