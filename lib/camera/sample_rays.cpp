@@ -32,8 +32,8 @@ TiltedBounds<T> bounds_of(const TiltedFilm& film) noexcept {
 template <class T>
 void fill_scales(std::size_t count, std::span<const double> scale, const RayWavelengths& wavelengths, T* scales) {
   const auto scale_of = [&](std::size_t w) { return w < scale.size() ? static_cast<T>(scale[w]) : T(0); };
-  if (!wavelengths.each) {
-    std::fill_n(scales, count, scale_of(wavelengths.all.position(0)));
+  if (!wavelengths.each || wavelengths.each_nm) {
+    std::fill_n(scales, count, wavelengths.in_nm() ? T(0) : scale_of(wavelengths.all.position(0)));
     return;
   }
   for (std::size_t i = 0; i < count; ++i) scales[i] = scale_of(wavelengths.each[i]);

@@ -30,7 +30,8 @@ constexpr double steep_rim = 0.75;
 
 template <class R>
 SurfaceSequenceTables<R> build_sequence(std::span<const LensSurface> surfaces, std::optional<std::size_t> stop,
-                                        std::span<const double> indices, std::size_t wavelengths, Travel travel) {
+                                        std::span<const double> indices, std::size_t wavelengths,
+                                        const Spectrum& spectrum, Travel travel) {
   using kernel::StepKind;
   const std::size_t count = surfaces.size();
   const bool to_film = travel == Travel::to_film;
@@ -98,12 +99,22 @@ SurfaceSequenceTables<R> build_sequence(std::span<const LensSurface> surfaces, s
     tables.n_first.push_back(static_cast<R>(n[to_film ? 0 : count]));
     tables.per_n_last.push_back(static_cast<R>(1 / n[to_film ? count : 0]));
   }
+  const auto& place = spectrum.place();
+  tables.sequence.place = {static_cast<R>(place.shortest), static_cast<R>(place.longest), static_cast<R>(place.scale),
+                           static_cast<R>(place.offset)};
+  for (std::size_t j = 0; j <= count; ++j) {
+    const kernel::SquaredIndex<double>& medium = spectrum.medium(to_film ? j : count - j);
+    kernel::SquaredIndex<R>& rounded = tables.media.emplace_back();
+    std::transform(medium.by_power.begin(), medium.by_power.end(), rounded.by_power.begin(),
+                   [](double c) { return static_cast<R>(c); });
+    rounded.constant = medium.constant;
+  }
   return tables;
 }
 
 template SurfaceSequenceTables<float> build_sequence(std::span<const LensSurface>, std::optional<std::size_t>,
-                                                     std::span<const double>, std::size_t, Travel);
+                                                     std::span<const double>, std::size_t, const Spectrum&, Travel);
 template SurfaceSequenceTables<double> build_sequence(std::span<const LensSurface>, std::optional<std::size_t>,
-                                                      std::span<const double>, std::size_t, Travel);
+                                                      std::span<const double>, std::size_t, const Spectrum&, Travel);
 
 }  // namespace petzval::inline v0::lens_detail

@@ -117,7 +117,7 @@ kernel::Asphere<R> rounded(const kernel::Asphere<double>& a) {
 
 template <class R>
 Tables<R> build_tables(std::span<const LensSurface> surfaces, std::optional<std::size_t> stop, const Iris& iris,
-                       std::span<const double> indices, std::size_t wavelengths) {
+                       std::span<const double> indices, std::size_t wavelengths, const Spectrum& spectrum) {
   const std::size_t count = surfaces.size();
   Tables<R> tables;
   tables.wavelengths = wavelengths;
@@ -151,14 +151,14 @@ Tables<R> build_tables(std::span<const LensSurface> surfaces, std::optional<std:
       tables.to_scene.push_back(kernel::make_interface<R>(n[i + 1], n[i]));
     }
   }
-  tables.sequence_to_film = build_sequence<R>(surfaces, stop, indices, wavelengths, Travel::to_film);
-  tables.sequence_to_scene = build_sequence<R>(surfaces, stop, indices, wavelengths, Travel::to_scene);
+  tables.sequence_to_film = build_sequence<R>(surfaces, stop, indices, wavelengths, spectrum, Travel::to_film);
+  tables.sequence_to_scene = build_sequence<R>(surfaces, stop, indices, wavelengths, spectrum, Travel::to_scene);
   return tables;
 }
 
 template Tables<float> build_tables(std::span<const LensSurface>, std::optional<std::size_t>, const Iris&,
-                                    std::span<const double>, std::size_t);
+                                    std::span<const double>, std::size_t, const Spectrum&);
 template Tables<double> build_tables(std::span<const LensSurface>, std::optional<std::size_t>, const Iris&,
-                                     std::span<const double>, std::size_t);
+                                     std::span<const double>, std::size_t, const Spectrum&);
 
 }  // namespace petzval::inline v0::lens_detail

@@ -9,6 +9,7 @@
 #include "lens/lens_view.hpp"
 #include "petzval/core/ray.hpp"
 #include "petzval/lens/lens.hpp"
+#include "spectrum.hpp"
 
 namespace petzval::inline v0::lens_detail {
 
@@ -18,6 +19,7 @@ struct SurfaceSequenceTables {
   std::vector<kernel::Step<R>> steps;
   std::vector<kernel::RefractionConstants<R>> bends;
   std::vector<R> n_first, per_n_last;
+  std::vector<kernel::SquaredIndex<R>> media;
   kernel::SurfaceSequence<R> sequence;  ///< its pointers are set by view()
 
   kernel::SurfaceSequence<R> view() const noexcept {
@@ -26,6 +28,7 @@ struct SurfaceSequenceTables {
     seen.bends = bends.data();
     seen.n_first = n_first.data();
     seen.per_n_last = per_n_last.data();
+    seen.media = media.data();
     return seen;
   }
 };
@@ -61,11 +64,12 @@ struct Tables {
 /// stop: position of the stop. indices: [wavelength][space], one space more than surfaces.
 template <class R>
 Tables<R> build_tables(std::span<const LensSurface> surfaces, std::optional<std::size_t> stop, const Iris& iris,
-                       std::span<const double> indices, std::size_t wavelengths);
+                       std::span<const double> indices, std::size_t wavelengths, const Spectrum& spectrum);
 
 /// The surfaces in the order of travel.
 template <class R>
 SurfaceSequenceTables<R> build_sequence(std::span<const LensSurface> surfaces, std::optional<std::size_t> stop,
-                                        std::span<const double> indices, std::size_t wavelengths, Travel travel);
+                                        std::span<const double> indices, std::size_t wavelengths,
+                                        const Spectrum& spectrum, Travel travel);
 
 }  // namespace petzval::inline v0::lens_detail

@@ -27,8 +27,9 @@ struct Lens::Data {
 
   /// Builds the tables from the rest.
   void build() {
-    in_float = lens_detail::build_tables<float>(surfaces, stop, iris, indices.values, wavelengths_nm.size());
-    in_double = lens_detail::build_tables<double>(surfaces, stop, iris, indices.values, wavelengths_nm.size());
+    const std::size_t count = wavelengths_nm.size();
+    in_float = lens_detail::build_tables<float>(surfaces, stop, iris, indices.values, count, indices.spectrum);
+    in_double = lens_detail::build_tables<double>(surfaces, stop, iris, indices.values, count, indices.spectrum);
     in_float.primary = in_double.primary = primary;
   }
 };

@@ -41,6 +41,7 @@ Indices indices(const Prescription& prescription, std::span<const double> wavele
   const double reference = prescription.reference_wavelength_nm;
   const std::size_t spaces = prescription.surfaces.size() + 1;
   Indices result;
+  result.spectrum = Spectrum(wavelengths_nm);
   result.values.resize(spaces * wavelengths_nm.size());
   bool dispersive = false, known_by_abbe = false, known_by_index = false;
 
@@ -84,12 +85,16 @@ Indices indices(const Prescription& prescription, std::span<const double> wavele
       }
       return m.nd + (by_abbe(nm) - by_abbe(reference));
     };
-    for (std::size_t w = 0; w < wavelengths_nm.size(); ++w) {
-      const double n = index_at(wavelengths_nm[w]);
+    const auto sound_index_at = [&](double nm) {
+      const double n = index_at(nm);
       if (!(n > 0 && n <= 5))
-        throw Error(here + ": index at " + to_text(wavelengths_nm[w]) + " nm is " + to_text(n) + ", wanted 0 < n <= 5");
-      result.values[w * spaces + space] = n;
+        throw Error(here + ": index at " + to_text(nm) + " nm is " + to_text(n) + ", wanted 0 < n <= 5");
+      return n;
+    };
+    for (std::size_t w = 0; w < wavelengths_nm.size(); ++w) {
+      result.values[w * spaces + space] = sound_index_at(wavelengths_nm[w]);
     }
+    result.spectrum.add(sound_index_at);
   }
   result.dispersion = known_by_index  ? Dispersion::none
                       : known_by_abbe ? Dispersion::abbe

@@ -6,12 +6,14 @@
 #include <vector>
 
 #include "petzval/lens/lens.hpp"
+#include "spectrum.hpp"
 
 namespace petzval::inline v0::lens_detail {
 
 /// Indices of every medium at every wavelength, and how well dispersion is known.
 struct Indices {
   std::vector<double> values;  ///< [wavelength * (surfaces + 1) + space], space 0 before the first surface
+  Spectrum spectrum;           ///< the same media at wavelengths between
   Dispersion dispersion = Dispersion::none;
   std::vector<std::string> missing_glasses;
 };

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <tuple>
 #include <utility>
 
 #include "core/text.hpp"
@@ -55,12 +56,39 @@ std::span<const std::string> Lens::missing_glasses() const noexcept { return dat
 
 std::size_t Lens::primary_wavelength() const noexcept { return data_->primary; }
 
-double Lens::index(std::size_t space, Wavelength wavelength) const {
-  const std::size_t w = position(wavelength);
-  demand(*this, "wavelength", w, data_->wavelengths_nm.size());
-  demand(*this, "space", space, surface_count() + 1);
-  return data_->indices.values[w * (surface_count() + 1) + space];
+std::size_t Lens::position(Wavelength at) const noexcept {
+  if (const auto nm = at.in_nm()) return compiled(data_->wavelengths_nm, *nm).value_or(at.position(0));
+  return at.position(primary_wavelength());
 }
+
+std::size_t Lens::compiled_position(Wavelength at) const {
+  if (const auto nm = at.in_nm()) return wavelength(*nm);
+  demand(*this, "wavelength", position(at), data_->wavelengths_nm.size());
+  return position(at);
+}
+
+bool Lens::covers(Wavelength at) const noexcept {
+  if (const auto nm = at.in_nm()) return data_->indices.spectrum.covers(*nm);
+  return position(at) < data_->wavelengths_nm.size();
+}
+
+double Lens::index(std::size_t space, Wavelength at) const {
+  const auto& [list, spectrum] = std::tie(data_->wavelengths_nm, data_->indices.spectrum);
+  const std::size_t w = position(at);
+  const auto nm = at.in_nm();
+  const bool between = nm && w >= list.size();
+  if (between && !covers(at)) {
+    const auto [shortest, longest] = std::minmax_element(list.begin(), list.end());
+    throw Error(name() + ": wavelength is " + to_text(*nm) + " nm, wanted " +
+                (std::isfinite(index_error()) ? to_text(*shortest) + " to " + to_text(*longest) + " nm"
+                                              : "a compiled one: a medium has no index between them"));
+  }
+  if (!between) demand(*this, "wavelength", w, list.size());
+  demand(*this, "space", space, surface_count() + 1);
+  return between ? spectrum.index(space, *nm) : data_->indices.values[w * (surface_count() + 1) + space];
+}
+
+double Lens::index_error() const noexcept { return data_->indices.spectrum.error(); }
 
 double Lens::light_direction(std::size_t space) const {
   demand(*this, "space", space, surface_count() + 1);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -64,6 +65,33 @@ struct RefractionConstants {
   R per_n2 = 1;  ///< 1 / n^2, in front
 };
 
+/// Where any wavelength lies in the range of the compiled ones: at t from -1 to 1, linear in 1 / nm: there the poles of
+/// dispersion formulas in the ultraviolet and the infrared are about as far away.
+template <class R>
+struct SpectralPlace {
+  R shortest = 1, longest = 0;  ///< the range, nm; empty where indices between compiled wavelengths are unknown
+  R scale = 0, offset = 0;      ///< t = scale / nm - offset, clamped; both 0 for one wavelength
+
+  bool covers(double nm) const noexcept { return nm >= double{shortest} && nm <= double{longest}; }
+};
+
+/// The square of a medium's index at any wavelength: a polynomial of t. The square, because refraction needs it, and
+/// because it is what dispersion formulas give.
+template <class R>
+struct SquaredIndex {
+  static constexpr std::size_t terms = 8;
+  std::array<R, terms> by_power{1};
+  bool constant = true;  ///< the first coefficient is all
+
+  /// By Horner's rule; T: R or lanes of it.
+  template <class T>
+  T at(const T& t) const noexcept {
+    T sum(by_power[terms - 1]);
+    for (std::size_t k = terms - 1; k > 0; --k) sum = sum * t + T(by_power[k - 1]);
+    return sum;
+  }
+};
+
 /// The surfaces of a lens in the order of travel.
 template <class R>
 struct SurfaceSequence {
@@ -71,6 +99,8 @@ struct SurfaceSequence {
   const RefractionConstants<R>* bends = nullptr;  ///< [wavelength * count + step]
   const R* n_first = nullptr;                     ///< [wavelength], in front of the lens
   const R* per_n_last = nullptr;                  ///< [wavelength], behind it
+  SpectralPlace<R> place{};                       ///< of any wavelength
+  const SquaredIndex<R>* media = nullptr;         ///< [step] in front of it; the last one behind the lens
   R first_z = 0, last_z = 0;                      ///< vertices of the first and the last step, lens frame
   R first_sense = 1, last_sense = 1;              ///< -1 where the frame in front and behind is turned
 };

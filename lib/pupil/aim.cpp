@@ -252,8 +252,7 @@ std::string_view name(AimStatus status) noexcept {
 }
 
 AimedRay pupil_detail::aim(const Lens& lens, const PupilPlane& plane, const StopPoint& target, Wavelength wavelength) {
-  lens.index(0, wavelength);  // throws where there is no such wavelength
-  return Aimer(lens, plane, lens.position(wavelength))(target);
+  return Aimer(lens, plane, lens.compiled_position(wavelength))(target);
 }
 
 AimedRay aim(const Lens& lens, const FieldPoint& point, const StopPoint& target, Wavelength wavelength) {

@@ -264,8 +264,7 @@ void trace_boundary(const Lens& lens, PupilBoundary& boundary, const Point& star
 }
 
 PupilBoundary boundary_of(const Lens& lens, const PupilPlane& plane, Wavelength at, std::size_t directions) {
-  const std::size_t wavelength = lens.position(at);
-  lens.index(0, wavelength);  // throws where there is no such wavelength
+  const std::size_t wavelength = lens.compiled_position(at);
   if (directions < 3 && !(directions == 1 && plane.on_axis() && lens.rotationally_symmetric())) {
     throw Error(lens.name() + ": pupil boundary: directions is " + std::to_string(directions) +
                 ", wanted 3 or more, or 1 on the axis of a lens of revolution");

@@ -43,9 +43,11 @@ trace_detail::TraceBlocks<R> loops(const trace_detail::BlockTracer& tracer) noex
 template <class R>
 BlockJob<R> job_for(const Lens& lens, const BatchOptions& options) noexcept {
   const auto view = kernel::view<R>(lens);
-  const auto& [all, each] = options.wavelengths;
-  auto job = trace_detail::job_for<R>(view, options, each ? 0 : all.position(view.primary));
+  const auto& [all, each, each_nm] = options.wavelengths;
+  auto job = trace_detail::job_for<R>(view, options, each || each_nm ? Wavelength(0) : all);
   job.wavelengths = each;
+  job.each_nm = each_nm;
+  job.spectral = options.wavelengths.in_nm();
   return job;
 }
 
@@ -56,6 +58,7 @@ struct Block {
   std::array<RayFate, block> fates;
   std::array<int, block> surfaces;
   std::array<std::uint16_t, block> wavelengths{};
+  std::array<float, block> nm{};
 
   /// On the axis, where no ray has been put.
   explicit Block(bool with_tangents = false) noexcept {
@@ -95,6 +98,14 @@ void use(Block<R>& rays, std::size_t count, BlockJob<R>& job) noexcept {
   job.fates = rays.fates.data();
   job.surfaces = rays.surfaces.data();
   if (job.wavelengths) job.wavelengths = rays.wavelengths.data();
+  if (job.each_nm) job.each_nm = rays.nm.data();
+}
+
+/// Copies the wavelengths of `count` rays.
+template <class R>
+void copy_wavelengths(std::size_t count, const RayWavelengths& from, std::size_t begin, Block<R>& to) noexcept {
+  if (from.each) std::copy_n(from.each + begin, count, to.wavelengths.begin());
+  if (from.each_nm) std::copy_n(from.each_nm + begin, count, to.nm.begin());
 }
 
 template <class R>
@@ -116,7 +127,7 @@ void trace_all(const Lens& lens, std::size_t count, const RayArrays<const R>& in
   if (rest == 0) return;
   Block<R> last(tangents_in != nullptr);
   copy(rest, in, done, last.arrays(), 0);
-  if (job.wavelengths) std::copy_n(options.wavelengths.each + done, rest, last.wavelengths.begin());
+  copy_wavelengths(rest, options.wavelengths, done, last);
   use(last, rest, job);
   const auto tangents = last.template tangents<const R>();
   if (tangents_in) {
@@ -169,7 +180,7 @@ void trace(const Lens& lens, std::span<const Ray<T>> rays, TracedRay<T>* traced,
       x[i] = origin.x, y[i] = origin.y, z[i] = origin.z;
       dx[i] = direction.x, dy[i] = direction.y, dz[i] = direction.z;
     }
-    if (options.wavelengths.each) std::copy_n(options.wavelengths.each + begin, count, some.wavelengths.begin());
+    copy_wavelengths(count, options.wavelengths, begin, some);
     job.rays = count;
     trace_blocks(job);
     for (std::size_t i = 0; i < count; ++i) {

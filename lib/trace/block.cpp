@@ -46,7 +46,7 @@ void report(const BlockJob<R>& job, const Bundle<R>& b, const std::uint8_t* unse
 
 /// One bundle of a job: the rays from o on. index, per_index: in front of the lens and one over that behind it, by ray.
 template <class R, class MediaAt>
-void trace_bundle(const BlockJob<R>& job, std::size_t o, const R* index, const R* per_index, const MediaAt& media_at) {
+void trace_bundle(const BlockJob<R>& job, std::size_t o, const R* index, const R* per_index, MediaAt&& media_at) {
   const auto in = from<R>(job.in, o);
   const auto out = from<R>(job.out, o);
   std::uint8_t unsettled[Bundle<R>::rays] = {};
@@ -76,6 +76,16 @@ void trace_blocks(const BlockJob<R>& job) noexcept {
   constexpr std::size_t rays = Bundle<R>::rays;
   const auto& sequence = job.sequence;
   R index[rays], per_index[rays];
+  if (job.spectral) {
+    for (std::size_t o = 0; o < job.rays; o += rays) {
+      R nm[rays];
+      for (std::size_t l = 0; l < rays; ++l) nm[l] = job.each_nm ? static_cast<R>(job.each_nm[o + l]) : job.nm;
+      SpectralMedia<R> media(sequence, nm);
+      media.indices(job.steps, index, per_index);
+      trace_bundle(job, o, index, per_index, [&](std::size_t j) { return media.at(j); });
+    }
+    return;
+  }
   if (!job.wavelengths) {
     const kernel::RefractionConstants<R>* bends = sequence.bends + job.wavelength * job.steps;
     for (std::size_t l = 0; l < rays; ++l) {

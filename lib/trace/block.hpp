@@ -34,6 +34,9 @@ struct BlockJob {
   AsphereSearch<R> search = nullptr;
   std::size_t wavelength = 0, compiled_wavelengths = 1;
   const std::uint16_t* wavelengths = nullptr;  ///< of each ray, or null
+  bool spectral = false;                       ///< wavelengths in nm instead
+  R nm = 0;                                    ///< of all rays
+  const float* each_nm = nullptr;              ///< or of each ray
   bool apertures = true;
   std::span<const kernel::StopEdge<R>> iris{};
   std::size_t rays = 0;

@@ -20,9 +20,9 @@ Found search_asphere(const kernel::Asphere<R>& asphere, R sense, BeforeAsphere<R
   return beside ? Found::beside : converged ? Found::miss : Found::no_convergence;
 }
 
-/// A job without its rays. Options: of one ray or of a batch; wavelength: position of the one wavelength.
+/// A job without its rays. Options: of one ray or of a batch; all: their one wavelength.
 template <class R, class Options>
-BlockJob<R> job_for(const kernel::LensView<R>& view, const Options& options, std::size_t wavelength) noexcept {
+BlockJob<R> job_for(const kernel::LensView<R>& view, const Options& options, Wavelength all) noexcept {
   BlockJob<R> job;
   job.sequence = options.travel == Travel::to_film ? view.sequence_to_film : view.sequence_to_scene;
   job.steps = view.count;
@@ -31,7 +31,10 @@ BlockJob<R> job_for(const kernel::LensView<R>& view, const Options& options, std
   job.compiled_wavelengths = view.wavelengths;
   job.apertures = options.apertures;
   job.iris = view.iris;
-  if (wavelength < view.wavelengths) {
+  if (const auto nm = all.in_nm()) {
+    job.spectral = true;
+    job.nm = static_cast<R>(*nm);
+  } else if (const std::size_t wavelength = all.position(view.primary); wavelength < view.wavelengths) {
     job.wavelength = wavelength;
   } else {
     static constexpr R no_index = std::numeric_limits<R>::quiet_NaN();

@@ -10,38 +10,11 @@
 #include <limits>
 
 #include "bundle.hpp"
+#include "media.hpp"
 #include "trace/sequential.hpp"
 
 namespace petzval::inline v0::trace_detail {
 namespace {
-
-/// The media at a step, for a batch of one wavelength.
-template <class R>
-struct SharedMedia {
-  const kernel::RefractionConstants<R>* bend;
-
-  PETZVAL_INLINE Lanes<R> cn2(int) const noexcept { return bend->cn2; }
-  PETZVAL_INLINE Lanes<R> k(int) const noexcept { return bend->k; }
-  PETZVAL_INLINE Lanes<R> per_n2(int) const noexcept { return bend->per_n2; }
-};
-
-/// The media at a step, where each ray has its wavelength.
-template <class R>
-struct MediaByRay {
-  const kernel::RefractionConstants<R>* bends;  ///< of the step, at the first wavelength
-  std::size_t stride;                           ///< from one wavelength to the next
-  const std::uint16_t* wavelengths;
-
-  template <R kernel::RefractionConstants<R>::*member>
-  PETZVAL_INLINE Lanes<R> gather(int i) const noexcept {
-    R values[Lanes<R>::width];
-    for (int l = 0; l < Lanes<R>::width; ++l) values[l] = bends[wavelengths[i * Lanes<R>::width + l] * stride].*member;
-    return load(values);
-  }
-  PETZVAL_INLINE Lanes<R> cn2(int i) const noexcept { return gather<&kernel::RefractionConstants<R>::cn2>(i); }
-  PETZVAL_INLINE Lanes<R> k(int i) const noexcept { return gather<&kernel::RefractionConstants<R>::k>(i); }
-  PETZVAL_INLINE Lanes<R> per_n2(int i) const noexcept { return gather<&kernel::RefractionConstants<R>::per_n2>(i); }
-};
 
 /// Where rays met a surface and how they went on; what derivatives need beside the bundle.
 template <class R>

@@ -93,12 +93,24 @@ class PETZVAL_API Lens {
   std::size_t wavelength(double nm) const;
   /// Position of the compiled wavelength nearest to one in nm; throws Error if that is not finite.
   std::size_t nearest_wavelength(double nm) const;
-  /// Position that a Wavelength stands for. A given position is not checked.
-  std::size_t position(Wavelength wavelength) const noexcept { return wavelength.position(primary_wavelength()); }
+  /// Position that a Wavelength stands for. A given position is not checked; nm that were not compiled (within 1e-6 nm)
+  /// have one that no lens has.
+  std::size_t position(Wavelength wavelength) const noexcept;
+  /// The same; throws Error for a wavelength that was not compiled.
+  std::size_t compiled_position(Wavelength wavelength) const;
+  /// Whether rays have a wavelength: a compiled position, or nm from the smallest to the largest compiled one (floats
+  /// beside them by their rounding count as these).
+  bool covers(Wavelength wavelength) const noexcept;
 
   /// Index of the medium before surface `space` (space 0 is object space, surface_count() is image space).
   /// Throws Error for a space or a wavelength that the lens does not have.
   double index(std::size_t space, Wavelength wavelength = {}) const;
+  /// How far the index of any medium at a wavelength in nm may be from its dispersion formula: the largest error of the
+  /// polynomials of degree 7 in 1 / nm that stand for it, at their extremes and the compiled wavelengths, and 10 % to
+  /// spare. Neither number nor spacing of the compiled wavelengths matters, but their range. From 400 to 700 nm it is
+  /// below 5e-8 for every lens of data/lenses and 7e-7 for every glass of data/glass (tests/lens). Rays in float add
+  /// 2e-7. Infinite where a formula gives no index between compiled wavelengths: the lens has these alone.
+  double index_error() const noexcept;
   /// Direction along z of light from the scene in a space: +1, or -1 behind an odd number of mirrors. Throws Error for
   /// a space that the lens does not have.
   double light_direction(std::size_t space) const;

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "spectrum.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "petzval/core/error.hpp"
+
+namespace petzval::inline v0::lens_detail {
+namespace {
+
+using kernel::SquaredIndex;
+
+constexpr std::size_t terms = SquaredIndex<double>::terms;
+
+/// The polynomial through values at the zeros of the Chebyshev polynomial T_8: their sum with T_0 to T_7, by powers.
+SquaredIndex<double> through(const std::array<double, terms>& values) {
+  SquaredIndex<double> result{.by_power = {0}, .constant = false};
+  std::array<double, terms> before{}, own{1};  // T_{k-1}, T_k
+  for (std::size_t k = 0; k < terms; ++k) {
+    double part = 0;
+    for (std::size_t j = 0; j < terms; ++j) {
+      const double angle = std::numbers::pi * (static_cast<double>(j) + 0.5) / terms;
+      part += values[j] * std::cos(static_cast<double>(k) * angle) * (k == 0 ? 1.0 : 2.0) / terms;
+    }
+    for (std::size_t i = 0; i < terms; ++i) result.by_power[i] += part * own[i];
+    std::array<double, terms> next{};
+    for (std::size_t i = 0; i < terms; ++i) {
+      next[i] = (i > 0 ? own[i - 1] * (k == 0 ? 1 : 2) : 0) - (k == 0 ? 0 : before[i]);
+    }
+    before = own;
+    own = next;
+  }
+  return result;
+}
+
+}  // namespace
+
+Spectrum::Spectrum(std::span<const double> wavelengths_nm)
+    : compiled_nm_(wavelengths_nm.begin(), wavelengths_nm.end()) {
+  constexpr double rounding = 1.2e-7;  // of floats
+  const auto [shortest, longest] = std::minmax_element(compiled_nm_.begin(), compiled_nm_.end());
+  place_.shortest = *shortest * (1 - rounding);
+  place_.longest = *longest * (1 + rounding);
+  if (*shortest == *longest) return;
+  const double from = 1 / *longest, to = 1 / *shortest;
+  place_.scale = 2 / (to - from);
+  place_.offset = (to + from) / (to - from);
+}
+
+void Spectrum::add(const std::function<double(double)>& index_at) {
+  media_.emplace_back();
+  SquaredIndex<double>& medium = media_.back();
+  // By numerators over `terms`: the zeros of T_8 at odd halves, its extremes at whole ones.
+  const auto nm_at = [&](double part) {
+    const double t = std::cos(std::numbers::pi * part / terms);
+    const double nm = place_.scale / (t + place_.offset);
+    return std::clamp(nm, *std::min_element(compiled_nm_.begin(), compiled_nm_.end()),
+                      *std::max_element(compiled_nm_.begin(), compiled_nm_.end()));
+  };
+  try {
+    if (place_.scale == 0) {
+      const double n = index_at(compiled_nm_.front());
+      medium.by_power[0] = n * n;
+      return;
+    }
+    std::array<double, terms> values;
+    for (std::size_t j = 0; j < terms; ++j) {
+      const double n = index_at(nm_at(static_cast<double>(j) + 0.5));
+      values[j] = n * n;
+    }
+    const auto [least, most] = std::minmax_element(values.begin(), values.end());
+    medium.by_power[0] = values[0];
+    medium.constant = *least == *most;
+    if (medium.constant) return;
+    medium = through(values);
+    constexpr double spare = 1.1;  // between the places looked at
+    const auto check = [&](double nm) {
+      error_ = std::max(error_, spare * std::abs(index(media_.size() - 1, nm) - index_at(nm)));
+    };
+    for (std::size_t k = 0; k <= terms; ++k) check(nm_at(static_cast<double>(k)));
+    for (const double nm : compiled_nm_) check(nm);
+  } catch (const Error&) {
+    error_ = std::numeric_limits<double>::infinity();
+  }
+  if (std::isfinite(error_)) return;
+  // Nothing lies between them.
+  place_.shortest = 1, place_.longest = 0;
+}
+
+double Spectrum::index(std::size_t space, double nm) const noexcept {
+  const double t = std::clamp(place_.scale / nm - place_.offset, -1.0, 1.0);
+  return std::sqrt(media_[space].at(t));
+}
+
+}  // namespace petzval::inline v0::lens_detail

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+// The media at a step for a bundle of rays: of one compiled wavelength, of a compiled one for each ray, and of any.
+// Included like lanes.hpp.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+
+#include "bundle.hpp"
+
+namespace petzval::inline v0::trace_detail {
+namespace {
+
+/// The media at a step, for a batch of one wavelength.
+template <class R>
+struct SharedMedia {
+  const kernel::RefractionConstants<R>* bend;
+
+  PETZVAL_INLINE Lanes<R> cn2(int) const noexcept { return bend->cn2; }
+  PETZVAL_INLINE Lanes<R> k(int) const noexcept { return bend->k; }
+  PETZVAL_INLINE Lanes<R> per_n2(int) const noexcept { return bend->per_n2; }
+};
+
+/// The media at a step, where each ray has its wavelength.
+template <class R>
+struct MediaByRay {
+  const kernel::RefractionConstants<R>* bends;  ///< of the step, at the first wavelength
+  std::size_t stride;                           ///< from one wavelength to the next
+  const std::uint16_t* wavelengths;
+
+  template <R kernel::RefractionConstants<R>::*member>
+  PETZVAL_INLINE Lanes<R> gather(int i) const noexcept {
+    R values[Lanes<R>::width];
+    for (int l = 0; l < Lanes<R>::width; ++l) values[l] = bends[wavelengths[i * Lanes<R>::width + l] * stride].*member;
+    return load(values);
+  }
+  PETZVAL_INLINE Lanes<R> cn2(int i) const noexcept { return gather<&kernel::RefractionConstants<R>::cn2>(i); }
+  PETZVAL_INLINE Lanes<R> k(int i) const noexcept { return gather<&kernel::RefractionConstants<R>::k>(i); }
+  PETZVAL_INLINE Lanes<R> per_n2(int i) const noexcept { return gather<&kernel::RefractionConstants<R>::per_n2>(i); }
+};
+
+/// The media of rays of any wavelengths, step by step: squares of indices by their polynomials.
+template <class R>
+class SpectralMedia {
+  using V = Lanes<R>;
+
+ public:
+  /// The media at a step.
+  struct Step {
+    R curvature;
+    const V *front, *behind;
+
+    PETZVAL_INLINE V cn2(int i) const noexcept { return V(curvature) * front[i]; }
+    PETZVAL_INLINE V k(int i) const noexcept { return behind[i] - front[i]; }
+    PETZVAL_INLINE V per_n2(int i) const noexcept { return V(R(1)) / front[i]; }
+  };
+
+  /// nm: of each ray.
+  PETZVAL_INLINE SpectralMedia(const kernel::SurfaceSequence<R>& sequence, const R* nm) noexcept : sequence_(sequence) {
+    const auto& place = sequence.place;
+    for (int i = 0; i < vectors; ++i) {
+      const V own = load(nm + i * V::width);
+      const V t = V(place.scale) / own - V(place.offset);
+      at_[i] = select(t < V(R(1)), select(t > V(R(-1)), t, V(R(-1))), V(R(1)));
+      covered_[i] = (own >= V(place.shortest)) & (own <= V(place.longest));
+    }
+    fill(0);
+  }
+
+  /// The indices in front of the first step, and one over those behind the last one. Not a number, which loses the ray,
+  /// for a wavelength that the lens does not cover.
+  PETZVAL_INLINE void indices(std::size_t steps, R* first, R* per_last) const noexcept {
+    for (int i = 0; i < vectors; ++i) {
+      const auto index = [&](std::size_t medium) { return sqrt(square(sequence_.media[medium], i)); };
+      store(first + i * V::width, select(covered_[i], index(0), V(std::numeric_limits<R>::quiet_NaN())));
+      store(per_last + i * V::width, V(R(1)) / index(steps));
+    }
+  }
+
+  /// To be called for each step in turn.
+  PETZVAL_INLINE Step at(std::size_t j) noexcept {
+    fill(j + 1);
+    return {sequence_.steps[j].curvature, squares_[j % 2], squares_[(j + 1) % 2]};
+  }
+
+ private:
+  static constexpr int vectors = Bundle<R>::vectors;
+
+  PETZVAL_INLINE V square(const kernel::SquaredIndex<R>& medium, int i) const noexcept {
+    return medium.constant ? V(medium.by_power[0]) : medium.at(at_[i]);
+  }
+  PETZVAL_INLINE void fill(std::size_t medium) noexcept {
+    PETZVAL_UNROLL
+    for (int i = 0; i < vectors; ++i) squares_[medium % 2][i] = square(sequence_.media[medium], i);
+  }
+
+  const kernel::SurfaceSequence<R>& sequence_;
+  V at_[vectors];
+  Mask<R> covered_[vectors];
+  V squares_[2][vectors];  // in front of a step and behind it, by turns
+};
+
+}  // namespace
+}  // namespace petzval::inline v0::trace_detail

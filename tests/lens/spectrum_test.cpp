@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: Apache-2.0
+// Indices between compiled wavelengths.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "../message.hpp"
+#include "petzval/io/lens_json.hpp"
+#include "petzval/lens/lens.hpp"
+#include "petzval/media/glass.hpp"
+#include "petzval/paraxial/first_order.hpp"
+
+namespace {
+
+using petzval::compile;
+using petzval::CompileOptions;
+using petzval::Glass;
+using petzval::GlassCatalogue;
+using petzval::Lens;
+using petzval::Prescription;
+using petzval::RayWavelengths;
+using petzval::Wavelength;
+using petzval::testing::message;
+
+const std::filesystem::path data = PETZVAL_TEST_DATA;
+
+const CompileOptions& by_catalogue() {
+  static const auto glasses = GlassCatalogue::load(data / "glass");
+  static const CompileOptions options{.glasses = &glasses, .missing_glass = petzval::MissingGlass::abbe};
+  return options;
+}
+
+/// Equal steps from one wavelength to another.
+std::vector<double> steps(double from, double to, std::size_t count) {
+  std::vector<double> result;
+  for (std::size_t i = 0; i < count; ++i) {
+    result.push_back(from +
+                     (to - from) * static_cast<double>(i) / static_cast<double>(std::max<std::size_t>(count, 2) - 1));
+  }
+  return result;
+}
+
+/// A prescription with one glass.
+Prescription window(const Glass& glass) {
+  Prescription p;
+  p.name = "window of " + glass.name;
+  p.surfaces = {{.thickness = 5, .medium = {.glass = glass.name, .catalogue = glass.catalogue, .nd = glass.nd}},
+                {.thickness = 50}};
+  return p;
+}
+
+/// The largest difference, over a fine comb, of indices in nm from those of a lens compiled for the wavelength.
+double largest_error(const Lens& lens, const Prescription& prescription, const CompileOptions& options) {
+  const auto [from, to] = std::minmax_element(lens.wavelengths_nm().begin(), lens.wavelengths_nm().end());
+  double largest = 0;
+  for (const double nm : steps(*from, *to, 61)) {
+    const Lens own = compile(prescription, std::vector{nm}, options);
+    for (std::size_t space = 0; space <= lens.surface_count(); ++space) {
+      largest = std::max(largest, std::abs(lens.index(space, Wavelength::nm(nm)) - own.index(space)));
+    }
+  }
+  return largest;
+}
+
+TEST(Spectrum, IndicesOfAllLensesOfTheDataAreRightFromEightWavelengths) {
+  double worst = 0;
+  std::size_t lenses = 0;
+  for (const auto& file : std::filesystem::directory_iterator(data / "lenses")) {
+    if (file.path().extension() != ".json") continue;
+    const Prescription prescription = petzval::read_prescription(file.path());
+    try {
+      compile(prescription, steps(400, 700, 8), by_catalogue());
+    } catch (const petzval::Error&) {
+      continue;  // of unknown dispersion
+    }
+    const Lens lens = compile(prescription, steps(400, 700, 8), by_catalogue());
+    const double found = largest_error(lens, prescription, by_catalogue());
+    EXPECT_LE(found, lens.index_error() + 1e-15) << file.path();
+    EXPECT_LT(found, 5e-8) << file.path();
+    worst = std::max(worst, found);
+    ++lenses;
+  }
+  EXPECT_GT(lenses, 50u);
+  EXPECT_GT(worst, 1e-9) << "the comparison shows nothing";
+}
+
+TEST(Spectrum, TheStatedErrorOfEveryGlassHolds) {
+  for (const auto& [from, to, limit] :
+       {std::tuple(400., 700., 7e-7), std::tuple(380., 780., 6e-6), std::tuple(400., 1000., 4e-6)}) {
+    double worst = 0;
+    for (const Glass& glass : by_catalogue().glasses->glasses()) {
+      if (glass.shortest_nm > from || glass.longest_nm < to) continue;
+      const CompileOptions options{.glasses = by_catalogue().glasses, .index_policy = petzval::IndexPolicy::catalogue};
+      const Prescription prescription = window(glass);
+      const Lens lens = compile(prescription, std::vector{from, to}, options);
+      const double found = largest_error(lens, prescription, options);
+      ASSERT_LE(found, lens.index_error() + 1e-15) << glass.name << " of " << glass.catalogue;
+      worst = std::max(worst, lens.index_error());
+    }
+    EXPECT_LT(worst, limit) << from << " to " << to;
+    EXPECT_GT(worst, limit / 100) << from << " to " << to;
+  }
+}
+
+TEST(Spectrum, TheErrorDoesNotDependOnNumberOrSpacingOfWavelengths) {
+  const Prescription prescription = petzval::read_prescription(data / "lenses/double_gauss_100mm_f2.0.json");
+  std::vector<double> cluster = steps(550, 550.001, 40);
+  cluster.push_back(400), cluster.push_back(700);
+  for (const auto& wavelengths :
+       {std::vector{700., 400.}, steps(400, 700, 40), cluster, std::vector{587.5618, 400., 700.}}) {
+    const Lens lens = compile(prescription, wavelengths, by_catalogue());
+    EXPECT_LT(lens.index_error(), 2e-8);
+    EXPECT_LT(largest_error(lens, prescription, by_catalogue()), 2e-8);
+  }
+  for (const auto& wavelengths : {steps(550, 550.001, 40), std::vector{550., 550.000002}}) {
+    const Lens lens = compile(prescription, wavelengths, by_catalogue());
+    EXPECT_LT(lens.index_error(), 1e-13);
+    EXPECT_LT(largest_error(lens, prescription, by_catalogue()), 3e-10);  // within 1e-6 nm compiled ones are meant
+  }
+  const Lens one = compile(prescription, std::vector{550.}, by_catalogue());
+  EXPECT_EQ(one.index_error(), 0);
+  EXPECT_TRUE(one.covers(Wavelength::nm(550)));
+  EXPECT_FALSE(one.covers(Wavelength::nm(550.01)));
+}
+
+TEST(Spectrum, CompiledWavelengthsInNmHaveTheirOwnIndices) {
+  const Prescription prescription = petzval::read_prescription(data / "lenses/double_gauss_100mm_f2.0.json");
+  const Lens lens = compile(prescription, steps(400, 700, 8), by_catalogue());
+  for (std::size_t w = 0; w < 8; ++w) {
+    const Wavelength own = Wavelength::nm(lens.wavelengths_nm()[w] + 5e-7);
+    EXPECT_EQ(lens.position(own), w);
+    EXPECT_EQ(lens.compiled_position(own), w);
+    for (std::size_t space = 0; space <= lens.surface_count(); ++space) {
+      EXPECT_EQ(lens.index(space, own), lens.index(space, w));
+    }
+  }
+}
+
+TEST(Spectrum, FirstOrderTakesAnyWavelength) {
+  const Prescription prescription = petzval::read_prescription(data / "lenses/double_gauss_100mm_f2.0.json");
+  const Lens lens = compile(prescription, std::vector{400., 700.}, by_catalogue());
+  const Lens own = compile(prescription, std::vector{546.1}, by_catalogue());
+  const auto found = first_order(lens, Wavelength::nm(546.1)), wanted = first_order(own);
+  EXPECT_NEAR(found.effective_focal_length, wanted.effective_focal_length, 1e-5);
+  EXPECT_NEAR(pupils(lens, Wavelength::nm(546.1)).entrance.z, pupils(own).entrance.z, 1e-5);
+}
+
+TEST(Spectrum, OtherWavelengthsAreRefused) {
+  const Prescription prescription = petzval::read_prescription(data / "lenses/double_gauss_100mm_f2.0.json");
+  const Lens lens = compile(prescription, std::vector{400., 550., 700.}, by_catalogue());
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
+  for (const double nm : {nan, infinity, -infinity, 0., -550., 399.9, 700.1}) {
+    const Wavelength bad = Wavelength::nm(nm);
+    EXPECT_FALSE(lens.covers(bad)) << nm;
+    EXPECT_GE(lens.position(bad), 3u) << nm;
+    EXPECT_THROW(lens.index(0, bad), petzval::Error) << nm;
+    EXPECT_THROW(lens.compiled_position(bad), petzval::Error) << nm;
+  }
+  EXPECT_TRUE(lens.covers(Wavelength::nm(double{400.f * (1 - 0x1p-24f)})));
+  EXPECT_EQ(message([&] { lens.index(1, Wavelength::nm(710)); }),
+            lens.name() + ": wavelength is 710 nm, wanted 400 to 700 nm");
+  EXPECT_EQ(message([&] { lens.compiled_position(Wavelength::nm(510)); }),
+            lens.name() + ": wavelength is 510 nm, wanted one the lens was compiled for: 400, 550, 700");
+  EXPECT_FALSE(lens.covers(3));
+  EXPECT_TRUE(lens.covers(2));
+}
+
+TEST(Spectrum, AMediumWithoutIndicesBetweenCompiledWavelengthsLeavesThese) {
+  // A formula with a pole at 500 nm.
+  const Glass odd{.catalogue = "test",
+                  .name = "POLE",
+                  .nd = 1.5,
+                  .vd = 30,
+                  .formula = petzval::DispersionFormula::sellmeier,
+                  .shortest_nm = 300,
+                  .longest_nm = 2000,
+                  .coefficients = {0, 0.3, 0.25, 1, 0.01}};
+  const GlassCatalogue glasses({odd});
+  const CompileOptions options{.glasses = &glasses, .index_policy = petzval::IndexPolicy::catalogue};
+  const Lens lens = compile(window(odd), std::vector{400., 700.}, options);
+  EXPECT_TRUE(std::isinf(lens.index_error()));
+  EXPECT_FALSE(lens.covers(Wavelength::nm(550)));
+  EXPECT_EQ(lens.index(1, Wavelength::nm(700)), lens.index(1, 1));
+  EXPECT_EQ(message([&] { lens.index(1, Wavelength::nm(550)); }),
+            "window of POLE: wavelength is 550 nm, wanted a compiled one: a medium has no index between them");
+}
+
+TEST(Spectrum, WavelengthsOfRaysAreTheirOwn) {
+  constexpr float nm[] = {450, 550.5f, 650};
+  constexpr std::uint16_t positions[] = {2, 0, 1};
+  const RayWavelengths any{.each_nm = nm}, each{.each = positions}, all{.all = Wavelength::nm(500)}, primary{};
+  EXPECT_TRUE(any.in_nm());
+  EXPECT_TRUE(all.in_nm());
+  EXPECT_FALSE(each.in_nm());
+  EXPECT_FALSE(primary.in_nm());
+  EXPECT_EQ(any.at(1).in_nm(), 550.5);
+  EXPECT_EQ(any.from(2).at(0).in_nm(), 650);
+  EXPECT_EQ(all.at(7).in_nm(), 500);
+  EXPECT_EQ(all.resolved(4).at(7).in_nm(), 500);
+  EXPECT_EQ(any.resolved(4).at(1).in_nm(), 550.5);
+  EXPECT_EQ(each.position(0, 4), 2u);
+  EXPECT_EQ(primary.position(0, 4), 4u);
+  EXPECT_GT(any.position(0, 4), 70000u);
+}
+
+}  // namespace
