@@ -81,9 +81,9 @@ std::vector<double> scales(const Lens& lens, const Film& film, const AnyRayModel
   constexpr double part = 1. / 1024;
   Film about = film;
   about.width_mm *= part, about.height_mm *= part;
-  about.shift_x_mm = about.shift_y_mm = about.margin_mm = 0;
+  about.shift_x_mm = about.shift_y_mm = about.margin_mm = about.travel_mm = 0;
   std::optional<TiltedFilm> tilted;
-  if (film.tilted()) tilted.emplace(about, model.pupils());
+  if (film.tilted()) tilted.emplace(about, model.pupils());  // as the shutter opens
   const FilmView view{model, about, tilted ? &*tilted : nullptr, result};
   const auto light = [&](std::size_t wavelength) {
     const double axis = on_axis(view, wavelength);
@@ -111,7 +111,7 @@ Camera::Data::Data(const LensFacts& facts, const Film& placed, const AnyRayModel
     : lens(facts.lens()),
       film(placed),
       model(any),
-      tilted(placed.tilted() ? std::optional(TiltedFilm(placed, any.pupils())) : std::nullopt),
+      tilted(camera_detail::tilted_or_moving(placed) ? std::optional(TiltedFilm(placed, any.pupils())) : std::nullopt),
       scale(scales(lens, film, model, normalisation)),
       front(camera_detail::front_of(lens)),
       pdf_film(1 / film.area_mm2()),
@@ -145,7 +145,7 @@ ModelKind Camera::model() const noexcept { return data_->model.kind(); }
 CameraRay Camera::sample(const CameraSample& s) const noexcept {
   const Data& data = *data_;
   CameraRay ray =
-      camera_detail::sample_ray(data.view(), s.film, s.pupil_u, s.pupil_v, data.lens.position(s.wavelength));
+      camera_detail::sample_ray(data.view(), s.film, s.pupil_u, s.pupil_v, data.lens.position(s.wavelength), s.time);
   ray.pdf_film = ray.fate != RayFate::outside_film ? data.pdf_film : 0;
   return ray;
 }
@@ -166,10 +166,10 @@ CameraRayDifferential Camera::sample_differential(const CameraSample& s) const n
     const auto [by_x, by_y] = pupils.derivatives(s.film, s.pupil_u, s.pupil_v, wavelength);
     return {{s.film.x, s.film.y, at.x, at.y}, {1, 0, by_x[0], by_x[1]}, {0, 1, by_y[0], by_y[1]}};
   };
-  const TwoPlaneRayDerivatives line = !data.tilted ? upright()
-                                      : data.model.pinhole()
-                                          ? pinhole_line(*data.tilted, s.film, data.model.pinhole_shifts()[wavelength])
-                                          : data.tilted->line(s.film, s.pupil_u, s.pupil_v, wavelength);
+  const TwoPlaneRayDerivatives line =
+      !data.tilted           ? upright()
+      : data.model.pinhole() ? pinhole_line(data.tilted->plane(s.time), s.film, data.model.pinhole_shifts()[wavelength])
+                             : data.tilted->line(s.film, s.pupil_u, s.pupil_v, wavelength, s.time);
   RayDerivatives ray = data.model.to_scene(line, wavelength);
   if (data.view().moves_rays()) ray = at_front(data.front, ray);
   result.by_film_x = ray.by_u;
@@ -190,7 +190,8 @@ void Camera::sample_differentials(std::size_t count, const CameraSamples<T>& sam
         sample_differential({.film = {samples.film_x[i], samples.film_y[i]},
                              .pupil_u = samples.pupil_u[i],
                              .pupil_v = samples.pupil_v[i],
-                             .wavelength = samples.wavelengths.position(i, data_->lens.primary_wavelength())});
+                             .wavelength = samples.wavelengths.position(i, data_->lens.primary_wavelength()),
+                             .time = samples.times ? samples.times[i] : 0});
     put(one.sample.ray, rays.rays, i);
     rays.weights[i] = static_cast<T>(one.sample.weight);
     if (rays.fates) rays.fates[i] = one.sample.fate;

@@ -88,48 +88,74 @@ void weigh(const FilmBounds<T>& film, T depth, std::size_t count, const T* film_
   }
 }
 
+/// A film that stays where it is, and one where it is at a moment.
+template <class T>
+struct StillPlane : TiltedBounds<T> {
+  static constexpr T travel = 0;
+};
+template <class T>
+struct MovingPlane : TiltedBounds<T> {
+  T travel;
+};
+
+/// Calls body(plane_of), which says where the film is for a sample.
+template <class T, class Body>
+inline void with_planes(const TiltedBounds<T>& tilted, const Body& body) noexcept {
+  if (const T* const times = tilted.times) {
+    const auto limited = [](T t) { return core_detail::clamped(t); };
+    body([bounds = tilted, times, limited](std::size_t i) {
+      return MovingPlane<T>{bounds, bounds.whole_travel * limited(times[i])};
+    });
+  } else {
+    body([plane = StillPlane<T>{tilted}](std::size_t) { return plane; });
+  }
+}
+
 template <class T>
 void to_virtual(const TiltedBounds<T>& tilted, std::size_t count, const T* film_x, const T* film_y, T* virtual_x,
                 T* virtual_y) noexcept {
-  const TiltedBounds<T> plane = tilted;
-  PETZVAL_INDEPENDENT
-  for (std::size_t i = 0; i < count; ++i) {
-    const auto [x, y] = virtual_of(plane, film_x[i], film_y[i]);
-    virtual_x[i] = x, virtual_y[i] = y;
-  }
+  with_planes(tilted, [&](const auto& plane_of) {
+    PETZVAL_INDEPENDENT
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto [x, y] = virtual_of(plane_of(i), film_x[i], film_y[i]);
+      virtual_x[i] = x, virtual_y[i] = y;
+    }
+  });
 }
 
 template <class T>
 void to_upright(const TiltedBounds<T>& tilted, std::size_t count, const T* virtual_x, const T* virtual_y,
                 const T* pupil_x, const T* pupil_y, T* film_x, T* film_y) noexcept {
-  const TiltedBounds<T> plane = tilted;
-  PETZVAL_INDEPENDENT
-  for (std::size_t i = 0; i < count; ++i) {
-    const auto [x, y] = upright_of(plane, virtual_x[i], virtual_y[i], pupil_x[i], pupil_y[i]);
-    film_x[i] = x, film_y[i] = y;
-  }
+  with_planes(tilted, [&](const auto& plane_of) {
+    PETZVAL_INDEPENDENT
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto [x, y] = upright_of(plane_of(i), virtual_x[i], virtual_y[i], pupil_x[i], pupil_y[i]);
+      film_x[i] = x, film_y[i] = y;
+    }
+  });
 }
 
 template <class T>
 void weigh_tilted(const TiltedBounds<T>& tilted, std::size_t count, const T* virtual_x, const T* virtual_y,
                   const T* pupil_x, const T* pupil_y, RayFate* fates, const CameraRays<T>& rays) noexcept {
-  const TiltedBounds<T> plane = tilted;
   T* const weights = rays.weights;
-  PETZVAL_INDEPENDENT
-  for (std::size_t i = 0; i < count; ++i) {
-    const T facing = facing_of(plane, virtual_x[i], virtual_y[i], pupil_x[i], pupil_y[i]);
-    const bool in_front = facing > T(0);
-    weights[i] = in_front ? weights[i] * facing : T(0);
-    const bool behind = !in_front & (fates[i] == RayFate::transmitted);
-    fates[i] = behind ? RayFate::vignetted : fates[i];
-  }
-  if (T* const pdf = rays.pdf_direction) {
+  with_planes(tilted, [&](const auto& plane_of) {
     PETZVAL_INDEPENDENT
     for (std::size_t i = 0; i < count; ++i) {
-      const T near = nearness_of(plane, virtual_x[i], virtual_y[i]);
-      pdf[i] /= near * near;
+      const T facing = facing_of(plane_of(i), virtual_x[i], virtual_y[i], pupil_x[i], pupil_y[i]);
+      const bool in_front = facing > T(0);
+      weights[i] = in_front ? weights[i] * facing : T(0);
+      const bool behind = !in_front & (fates[i] == RayFate::transmitted);
+      fates[i] = behind ? RayFate::vignetted : fates[i];
     }
-  }
+    if (T* const pdf = rays.pdf_direction) {
+      PETZVAL_INDEPENDENT
+      for (std::size_t i = 0; i < count; ++i) {
+        const T near = T(1) + nearer_by(plane_of(i), virtual_x[i], virtual_y[i]);
+        pdf[i] /= near * near;
+      }
+    }
+  });
 }
 
 template <class T>

@@ -11,10 +11,12 @@
 
 namespace petzval::inline v0::camera_detail {
 
-/// A tilted film in numbers of type T: see TiltedPlane.
+/// A tilted film in numbers of type T: see TiltedPlane. It stays where it is unless it has times.
 template <class T>
 struct TiltedBounds {
   T x_by_x, x_by_y, y_by_y, depth_by_x, depth_by_y, slope_x, slope_y, cosine;
+  T whole_travel;            ///< until the shutter closes
+  const T* times = nullptr;  ///< of the samples
 };
 
 /// Loops over samples, for float or double.

@@ -53,32 +53,33 @@ struct PlanePoint {
   T x, y;
 };
 
-/// The virtual point of a film point, on a film tilted as `plane`, a TiltedPlane or its numbers in T.
+/// The virtual point of a film point, on a film that lies as `plane`, a TiltedPlane or its numbers in T.
 template <class T, class Plane>
 inline PlanePoint<T> virtual_of(const Plane& plane, T x, T y) noexcept {
-  const T per_distance = T(1) / (T(1) + (plane.depth_by_x * x + plane.depth_by_y * y));
+  const T per_distance = T(1) / ((T(1) + plane.travel) + (plane.depth_by_x * x + plane.depth_by_y * y));
   return {(plane.x_by_x * x + plane.x_by_y * y) * per_distance, plane.y_by_y * y * per_distance};
+}
+
+/// By how much the upright film's distance from the pupil's plane is larger than that of the film point, in parts of
+/// the latter.
+template <class T, class Plane>
+inline T nearer_by(const Plane& plane, T virtual_x, T virtual_y) noexcept {
+  return ((plane.slope_x * virtual_x + plane.slope_y * virtual_y) - plane.travel) / (T(1) + plane.travel);
 }
 
 /// Where the ray of a virtual point through a place in the pupil meets the upright film.
 template <class T, class Plane>
 inline PlanePoint<T> upright_of(const Plane& plane, T virtual_x, T virtual_y, T pupil_x, T pupil_y) noexcept {
-  const T tilt = plane.slope_x * virtual_x + plane.slope_y * virtual_y;
-  return {virtual_x - tilt * pupil_x, virtual_y - tilt * pupil_y};
+  const T nearer = nearer_by(plane, virtual_x, virtual_y);
+  return {virtual_x - nearer * pupil_x, virtual_y - nearer * pupil_y};
 }
 
-/// The upright film's distance from the pupil's plane over that of the film point.
-template <class T, class Plane>
-inline T nearness_of(const Plane& plane, T virtual_x, T virtual_y) noexcept {
-  return T(1) + (plane.slope_x * virtual_x + plane.slope_y * virtual_y);
-}
-
-/// The weight of a tilted film's sample over that of the upright film's sample with the same ray; not positive: it
-/// meets the film's back.
+/// The weight of the film's sample over that of the upright film's sample with the same ray; not positive: it meets the
+/// film's back.
 template <class T, class Plane>
 inline T facing_of(const Plane& plane, T virtual_x, T virtual_y, T pupil_x, T pupil_y) noexcept {
-  const T near = nearness_of(plane, virtual_x, virtual_y);
-  const T front = T(1) - (plane.slope_x * pupil_x + plane.slope_y * pupil_y);
+  const T near = T(1) + nearer_by(plane, virtual_x, virtual_y);
+  const T front = (T(1) + plane.travel) - (plane.slope_x * pupil_x + plane.slope_y * pupil_y);
   return plane.cosine * front * near * near * near;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "check_film.hpp"
 
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <numbers>
@@ -26,6 +27,7 @@ void check_rectangle(const std::string& where, const Film& film) {
   if (!(film.margin_mm >= 0 && std::isfinite(film.margin_mm))) {
     refuse("its margin is " + to_text(film.margin_mm) + " mm, wanted a finite one, 0 or more");
   }
+  if (!std::isfinite(film.travel_mm)) refuse("it travels " + to_text(film.travel_mm) + " mm, wanted a finite way");
   if (!(std::isfinite(film.shift_x_mm) && std::isfinite(film.shift_y_mm))) {
     refuse("its centre is (" + to_text(film.shift_x_mm) + ", " + to_text(film.shift_y_mm) + ") mm, wanted a place");
   }
@@ -54,9 +56,10 @@ void check_outside_surface(const Lens& lens, const Film& film) {
                 to_text(surface_z) + " mm, where the last surface is");
   };
   constexpr int steps = 32;
-  const auto corners = film.corners();
-  for (std::size_t k = 0; k < corners.size(); ++k) {
-    const FilmPoint &from = corners[k], &to = corners[(k + 1) % corners.size()];
+  const auto [lower_left, lower_right, upper_left, upper_right] = film.corners();
+  const std::array around{lower_left, lower_right, upper_right, upper_left};
+  for (std::size_t k = 0; k < around.size(); ++k) {
+    const FilmPoint &from = around[k], &to = around[(k + 1) % around.size()];
     for (int i = 0; i < steps; ++i) {
       const double part = static_cast<double>(i) / steps;
       const FilmPoint edge{from.x + part * (to.x - from.x), from.y + part * (to.y - from.y)};
@@ -68,19 +71,8 @@ void check_outside_surface(const Lens& lens, const Film& film) {
   }
 }
 
-}  // namespace
-
-FilmBehindLens placed(const Lens& lens, const Film& film) {
-  // A prescription may have its film anywhere, at a virtual image too.
-  FilmBehindLens result{with_film(lens, film.z_mm.value_or(lens.film_z())), film};
-  result.film.z_mm = result.lens.film_z();
-  return result;
-}
-
-void check_film(const Lens& lens, const Film& film) {
-  check_rectangle(lens.name() + ": film", film);
-  check_outside_surface(lens, film);
-  if (!film.tilted()) return;
+/// Throws Error for a corner of a tilted film that is not behind the end of the last surface.
+void check_tilted(const Lens& lens, const Film& film) {
   const pupil_detail::Face face = pupil_detail::last_face(lens);
   const double film_z = film.z();
   // Where the last surface ends on the film's side; its vertex, where it reaches around the upright film.
@@ -96,8 +88,30 @@ void check_film(const Lens& lens, const Film& film) {
   }
 }
 
+}  // namespace
+
+FilmBehindLens placed(const Lens& lens, const Film& film) {
+  // A prescription may have its film anywhere, at a virtual image too.
+  FilmBehindLens result{with_film(lens, film.z_mm.value_or(lens.film_z())), film};
+  result.film.z_mm = result.lens.film_z();
+  return result;
+}
+
+void check_film(const Lens& lens, const Film& film) {
+  check_rectangle(lens.name() + ": film", film);
+  for (const double time : {0.0, 1.0}) {
+    const Film still = film.at(time);
+    with_film(lens, still.z());
+    check_outside_surface(lens, still);
+    if (still.tilted()) check_tilted(lens, still);
+  }
+}
+
 void check_upright_film(const Lens& lens, const Film& film) {
   check_film(lens, film);
+  if (film.travel_mm != 0) {
+    throw Error(lens.name() + ": film: it travels " + to_text(film.travel_mm) + " mm, wanted one that stays");
+  }
   if (!film.tilted()) return;
   throw Error(lens.name() + ": film: it is tilted by " + to_text(film.tilt_rad) + " and " + to_text(film.swing_rad) +
               " rad, wanted one perpendicular to the axis");

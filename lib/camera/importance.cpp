@@ -11,7 +11,8 @@
 // p_film p_pupil len^4 / depth^2 in cos dA dw at the film, and n^2 / n'^2 times that in cos' dA' dw' of the scene. We
 // divided by it is the weight of the film sample: reciprocity.
 //
-// Where the film is tilted, its sample's density is that of the upright line over TiltedFilm::weight().
+// Where the film is tilted or has travelled, its sample's density is that of the upright line over
+// TiltedPlane::weight().
 //
 // Models of first order are linear in slopes and conserve the area of heights and slopes instead; in cos dA dw they
 // lack (cos t / cos t')^4, t' the angle of the ray in the scene. It belongs to both, for theirs to be the weights that
@@ -150,11 +151,17 @@ SceneSide::Arrival SceneSide::arrive(const AnyRayModel& model, const Ray<double>
   return result;
 }
 
-std::optional<SceneSide::OnFilm> SceneSide::on_film(const FilmPoint& upright, const FilmPoint& pupil) const noexcept {
-  if (!tilted_) return OnFilm{upright, upright};
-  const auto point = tilted_->virtual_point_of({upright.x, upright.y, pupil.x, pupil.y});
+std::optional<TiltedPlane> SceneSide::plane(double time) const noexcept {
+  if (!tilted_) return {};
+  return tilted_->plane(time);
+}
+
+std::optional<SceneSide::OnFilm> SceneSide::on_film(const FilmPoint& upright, const FilmPoint& pupil,
+                                                    const std::optional<TiltedPlane>& plane) const noexcept {
+  if (!plane) return OnFilm{upright, upright};
+  const auto point = plane->virtual_point_of({upright.x, upright.y, pupil.x, pupil.y});
   if (!point) return {};
-  return OnFilm{tilted_->point(*point), *point};
+  return OnFilm{plane->point(*point), *point};
 }
 
 Importance SceneSide::met_by(const Arrival& arrival, const std::optional<OnFilm>& met) const noexcept {
@@ -168,13 +175,12 @@ Importance SceneSide::met_by(const Arrival& arrival, const std::optional<OnFilm>
   return result;
 }
 
-void SceneSide::weigh(Importance& result, const AnyRayModel& model, const Arrival& arrival, const FilmPoint& point,
+void SceneSide::weigh(Importance& result, const AnyRayModel& model, const Arrival& arrival, double facing,
                       double cosine, double area, std::size_t wavelength) const noexcept {
   const auto& [fate, upright, pupil] = arrival;
   const Wavelength& at = wavelengths_[wavelength];
   const double depth2 = squared(space_.depth());
   const double length2 = squared(pupil.x - upright.x) + squared(pupil.y - upright.y) + depth2;
-  const double facing = tilted_ ? tilted_->weight(point, pupil.x, pupil.y) : 1;
   const double slopes = model.linear_in_slopes() ? squared(depth2 / (length2 * squared(cosine))) : 1;
   result.we = at.we * slopes;
   result.pdf_film = pdf_film_;
@@ -184,13 +190,14 @@ void SceneSide::weigh(Importance& result, const AnyRayModel& model, const Arriva
   result.pdf_direction = at.density * squared(length2) / facing * slopes * result.pdf_pupil / result.pdf_position;
 }
 
-Importance SceneSide::importance(const AnyRayModel& model, const Ray<double>& ray,
-                                 std::size_t wavelength) const noexcept {
+Importance SceneSide::importance(const AnyRayModel& model, const Ray<double>& ray, std::size_t wavelength,
+                                 double time) const noexcept {
   // No ray meets a point but one that was aimed at it.
   if (model.pinhole()) return {.fate = valid(ray, wavelength) ? RayFate::vignetted : RayFate::invalid};
   const Arrival arrival = arrive(model, ray, wavelength);
   const auto& [fate, upright, pupil] = arrival;
-  const auto met = on_film(upright, pupil);
+  const auto placed = plane(time);
+  const auto met = on_film(upright, pupil, placed);
   Importance result = met_by(arrival, met);
   if (result.fate != RayFate::transmitted) return result;
   const FilmPupilTable &passing = model.pupils(), &sampled = tilted_ ? tilted_->pupils() : passing;
@@ -200,31 +207,31 @@ Importance SceneSide::importance(const AnyRayModel& model, const Ray<double>& ra
     return result;
   }
   const bool within = sampled.contains(met->virtual_point, pupil.x, pupil.y, wavelength);
-  weigh(result, model, arrival, met->virtual_point, ray.direction.z,
+  weigh(result, model, arrival, placed ? placed->weight(met->virtual_point, pupil) : 1, ray.direction.z,
         within ? sampled.area(met->virtual_point, wavelength) : 0, wavelength);
   return result;
 }
 
 ImportanceSample SceneSide::sample_importance(const AnyRayModel& model, const Vec3<double>& point, double u, double v,
-                                              std::size_t wavelength) const noexcept {
+                                              std::size_t wavelength, double time) const noexcept {
   if (wavelength >= wavelengths_.size() || !finite(point)) return {.importance = {.fate = RayFate::invalid}};
-  if (model.pinhole()) return through_pinhole(model, point, u, v, wavelength);
+  if (model.pinhole()) return through_pinhole(model, point, u, v, wavelength, time);
   const EntranceSample s = entrance_.sample(point, u, v, wavelength);
   if (!(s.pdf > 0)) return {};
   ImportanceSample result = connection(s.place, s.direction, s.distance, s.pdf);
-  result.importance = importance(model, {s.place, s.direction}, wavelength);
+  result.importance = importance(model, {s.place, s.direction}, wavelength, time);
   return result;
 }
 
 ImportanceSample SceneSide::sample_distant(const AnyRayModel& model, const Vec3<double>& direction, double u, double v,
-                                           std::size_t wavelength) const noexcept {
+                                           std::size_t wavelength, double time) const noexcept {
   ImportanceSample result{.importance = {.fate = RayFate::invalid}};
   if (wavelength >= wavelengths_.size() || !unit_length(direction)) return result;
   // The pupil that a point so far away sees is that of infinity within rounding.
   constexpr double far = 1e12;  // mm
   const Vec3<double> point = direction * -far;
   if (model.pinhole()) {
-    const ImportanceSample s = through_pinhole(model, point, u, v, wavelength);
+    const ImportanceSample s = through_pinhole(model, point, u, v, wavelength, time);
     result = connection({0, 0, wavelengths_[wavelength].entrance_z}, direction, infinity, s.pdf / squared(far));
     result.importance = s.importance;
     return result;
@@ -232,7 +239,7 @@ ImportanceSample SceneSide::sample_distant(const AnyRayModel& model, const Vec3<
   const EntranceSample s = entrance_.sample(point, u, v, wavelength);
   if (!(s.pdf > 0)) return result;
   result = connection(s.place, direction, infinity, s.pdf / squared(far));
-  result.importance = importance(model, {s.place, direction}, wavelength);
+  result.importance = importance(model, {s.place, direction}, wavelength, time);
   return result;
 }
 
@@ -243,7 +250,7 @@ ImportanceSample SceneSide::connection(const Vec3<double>& place, const Vec3<dou
 }
 
 ImportanceSample SceneSide::through_pinhole(const AnyRayModel& model, const Vec3<double>& point, double u, double v,
-                                            std::size_t wavelength) const noexcept {
+                                            std::size_t wavelength, double time) const noexcept {
   ImportanceSample result;
   if (wavelength >= wavelengths_.size() || !entrance_.in_front(point)) return result;
   const Wavelength& at = wavelengths_[wavelength];
@@ -255,19 +262,20 @@ ImportanceSample SceneSide::through_pinhole(const AnyRayModel& model, const Vec3
   const Vec3<double> direction = to / distance;
   result = connection(pupil, direction, distance, squared(distance) / (at.entrance_area * direction.z));
   Arrival arrival = arrive(model, {pupil, result.direction}, wavelength);
-  const auto met = on_film(arrival.upright, arrival.pupil);
+  const auto placed = plane(time);
+  const auto met = on_film(arrival.upright, arrival.pupil, placed);
   Importance& seen = result.importance = met_by(arrival, met);
   if (seen.fate != RayFate::transmitted) return result;
   const FilmPupilTable& pupils = tilted_ ? tilted_->pupils() : model.pupils();
   const PupilSample s = pupils.sample(met->virtual_point, u, v, wavelength);
   const FilmPoint place{s.x, s.y};
-  double spread = 1;
+  double spread = 1, facing = 1;
   bool passes = s.area > 0;
-  if (tilted_) {
+  if (placed) {
     // Lines through the place spread over the film otherwise than those of the pinhole do.
-    const TiltedPlane& plane = tilted_->plane();
-    spread = part_of_place(plane, place) / part_of_place(plane, arrival.pupil);
-    const TwoPlaneRay line = tilted_->upright(met->virtual_point, place.x, place.y);
+    spread = part_by_place(*placed, place) / part_by_place(*placed, arrival.pupil);
+    facing = placed->weight(met->virtual_point, place);
+    const TwoPlaneRay line = placed->upright(met->virtual_point, place);
     arrival.upright = {line.film_x, line.film_y};
     passes = passes && spread > 0 &&
              (model.clips_at_apertures() || model.pupils().contains(arrival.upright, place.x, place.y, wavelength));
@@ -277,7 +285,7 @@ ImportanceSample SceneSide::through_pinhole(const AnyRayModel& model, const Vec3
     seen.fate = RayFate::vignetted;
     return result;
   }
-  weigh(seen, model, arrival, met->virtual_point, result.direction.z, s.area, wavelength);
+  weigh(seen, model, arrival, facing, result.direction.z, s.area, wavelength);
   seen.we *= spread, seen.pdf_direction *= spread;
   return result;
 }
@@ -289,18 +297,18 @@ double SceneSide::pdf(const AnyRayModel& model, const Vec3<double>& point, const
 
 }  // namespace camera_detail
 
-Importance Camera::importance(const Ray<double>& ray, Wavelength wavelength) const noexcept {
-  return data_->scene().importance(data_->model, ray, data_->lens.position(wavelength));
+Importance Camera::importance(const Ray<double>& ray, Wavelength wavelength, double time) const noexcept {
+  return data_->scene().importance(data_->model, ray, data_->lens.position(wavelength), time);
 }
 
-ImportanceSample Camera::sample_importance(const Vec3<double>& point, double u, double v,
-                                           Wavelength wavelength) const noexcept {
-  return data_->scene().sample_importance(data_->model, point, u, v, data_->lens.position(wavelength));
+ImportanceSample Camera::sample_importance(const Vec3<double>& point, double u, double v, Wavelength wavelength,
+                                           double time) const noexcept {
+  return data_->scene().sample_importance(data_->model, point, u, v, data_->lens.position(wavelength), time);
 }
 
 ImportanceSample Camera::sample_distant_importance(const Vec3<double>& direction, double u, double v,
-                                                   Wavelength wavelength) const noexcept {
-  return data_->scene().sample_distant(data_->model, direction, u, v, data_->lens.position(wavelength));
+                                                   Wavelength wavelength, double time) const noexcept {
+  return data_->scene().sample_distant(data_->model, direction, u, v, data_->lens.position(wavelength), time);
 }
 
 double Camera::pdf_importance(const Vec3<double>& point, const Vec3<double>& direction,
@@ -308,8 +316,8 @@ double Camera::pdf_importance(const Vec3<double>& point, const Vec3<double>& dir
   return data_->scene().pdf(data_->model, point, direction, data_->lens.position(wavelength));
 }
 
-Projection Camera::project(const Vec3<double>& point, Wavelength wavelength) const noexcept {
-  return data_->scene().project(data_->model, point, data_->lens.position(wavelength));
+Projection Camera::project(const Vec3<double>& point, Wavelength wavelength, double time) const noexcept {
+  return data_->scene().project(data_->model, point, data_->lens.position(wavelength), time);
 }
 
 }  // namespace petzval::inline v0

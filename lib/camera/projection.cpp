@@ -31,8 +31,8 @@ struct Misses {
 
 }  // namespace
 
-Projection SceneSide::project(const AnyRayModel& model, const Vec3<double>& point,
-                              std::size_t wavelength) const noexcept {
+Projection SceneSide::project(const AnyRayModel& model, const Vec3<double>& point, std::size_t wavelength,
+                              double time) const noexcept {
   Projection result;
   if (wavelength >= wavelengths_.size() || !entrance_.in_front(point)) return result;
   const ChiefRayTable& chiefs = wavelengths_[wavelength].chiefs;
@@ -73,7 +73,7 @@ Projection SceneSide::project(const AnyRayModel& model, const Vec3<double>& poin
   FilmPoint film = *start;
   const auto done = [&](ProjectionStatus status) {
     const auto [x, y] = chiefs.pupil_point(film);
-    const auto met = on_film(film, {x, y});
+    const auto met = on_film(film, {x, y}, plane(time));
     if (!met) return result;
     const FilmPoint& at = met->point;
     result = {film_.contains(at) ? status : ProjectionStatus::outside_film, at, film_.raster(at)};

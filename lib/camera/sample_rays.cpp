@@ -21,11 +21,12 @@ template <class T>
 using Values = std::array<T, block>;
 
 template <class T>
-TiltedBounds<T> bounds_of(const TiltedFilm& film) noexcept {
-  const TiltedPlane& p = film.plane();
+TiltedBounds<T> bounds_of(const TiltedFilm& film, const T* times) noexcept {
+  const TiltedPlane p = film.plane(0);
+  const double travel = film.plane(1).travel;
   const auto number = [](double x) { return static_cast<T>(x); };
-  return {number(p.x_by_x),     number(p.x_by_y),  number(p.y_by_y),  number(p.depth_by_x),
-          number(p.depth_by_y), number(p.slope_x), number(p.slope_y), number(p.cosine)};
+  return {number(p.x_by_x),  number(p.x_by_y),  number(p.y_by_y), number(p.depth_by_x), number(p.depth_by_y),
+          number(p.slope_x), number(p.slope_y), number(p.cosine), number(travel),       travel != 0 ? times : nullptr};
 }
 
 /// The scale of each ray; 0 for a wavelength that the model does not have.
@@ -42,13 +43,14 @@ void fill_scales(std::size_t count, std::span<const double> scale, const RayWave
 /// The points of the upright film whose rays through the middles of their pupils are those of a pinhole in front of a
 /// tilted film.
 template <class T>
-void find_chiefs(std::size_t count, const FilmView& view, const RayWavelengths& wavelengths, const T* virtual_x,
-                 const T* virtual_y, T* film_x, T* film_y) noexcept {
+void find_chiefs(std::size_t count, const FilmView& view, const RayWavelengths& wavelengths, const T* times,
+                 const T* virtual_x, const T* virtual_y, T* film_x, T* film_y) noexcept {
   const std::span<const double> shifts = view.model.pinhole_shifts();
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t w = wavelengths.position(i, 0);
     const double shift = w < shifts.size() ? shifts[w] : 0;
-    const double part = part_of_virtual(view.tilted->plane(), {virtual_x[i], virtual_y[i]}, shift);
+    const TiltedPlane plane = view.tilted->plane(times ? times[i] : 0);
+    const double part = part_of_virtual(plane, {virtual_x[i], virtual_y[i]}, shift);
     film_x[i] = static_cast<T>(virtual_x[i] * part), film_y[i] = static_cast<T>(virtual_y[i] * part);
   }
 }
@@ -96,13 +98,13 @@ void sample_block(const FilmView& view, std::size_t n, std::size_t wanted, const
     weigh();
     return;
   }
-  const TiltedBounds<T> plane = bounds_of<T>(*tilted);
+  const TiltedBounds<T> plane = bounds_of(*tilted, samples.times);
   alignas(64) Values<T> virtual_x, virtual_y;
   loops.to_virtual(plane, n, film_x.data(), film_y.data(), virtual_x.data(), virtual_y.data());
   tilted->pupils().sample(n, virtual_x.data(), virtual_y.data(), samples.pupil_u, samples.pupil_v, wavelengths,
                           x.data(), y.data(), areas.data());
   if (view.model.pinhole()) {
-    find_chiefs(n, view, wavelengths, virtual_x.data(), virtual_y.data(), film_x.data(), film_y.data());
+    find_chiefs(n, view, wavelengths, samples.times, virtual_x.data(), virtual_y.data(), film_x.data(), film_y.data());
     trace();
   }
   loops.to_upright(plane, n, virtual_x.data(), virtual_y.data(), x.data(), y.data(), film_x.data(), film_y.data());
@@ -116,7 +118,7 @@ void sample_block(const FilmView& view, std::size_t n, std::size_t wanted, const
 template <class T>
 void sample_rest(const FilmView& view, std::size_t count, const CameraSamples<T>& samples,
                  const CameraRays<T>& rays) noexcept {
-  alignas(64) std::array<std::array<T, lanes<T>>, 4> in;
+  alignas(64) std::array<std::array<T, lanes<T>>, 5> in;
   alignas(64) std::array<std::array<T, lanes<T>>, 9> out;
   std::array<std::uint16_t, lanes<T>> each;
   std::array<RayFate, lanes<T>> fates;
@@ -125,18 +127,21 @@ void sample_rest(const FilmView& view, std::size_t count, const CameraSamples<T>
   };
   padded(samples.film_x, in[0]), padded(samples.film_y, in[1]);
   padded(samples.pupil_u, in[2]), padded(samples.pupil_v, in[3]);
+  if (samples.times) padded(samples.times, in[4]);
   RayWavelengths wavelengths = samples.wavelengths;
   if (wavelengths.each) {
     padded(wavelengths.each, each);
     wavelengths.each = each.data();
   }
   const auto at = [&](std::size_t k) { return out[k].data(); };
-  sample_block<T>(view, lanes<T>, count, {in[0].data(), in[1].data(), in[2].data(), in[3].data(), wavelengths},
-                  {{at(0), at(1), at(2), at(3), at(4), at(5)},
-                   at(6),
-                   fates.data(),
-                   rays.pdf_pupil ? at(7) : nullptr,
-                   rays.pdf_direction ? at(8) : nullptr});
+  sample_block<T>(
+      view, lanes<T>, count,
+      {in[0].data(), in[1].data(), in[2].data(), in[3].data(), wavelengths, samples.times ? in[4].data() : nullptr},
+      {{at(0), at(1), at(2), at(3), at(4), at(5)},
+       at(6),
+       fates.data(),
+       rays.pdf_pupil ? at(7) : nullptr,
+       rays.pdf_direction ? at(8) : nullptr});
   T* const to[] = {rays.rays.x,  rays.rays.y,  rays.rays.z,    rays.rays.dx,      rays.rays.dy,
                    rays.rays.dz, rays.weights, rays.pdf_pupil, rays.pdf_direction};
   for (std::size_t k = 0; k < out.size(); ++k) {
@@ -165,9 +170,11 @@ template PETZVAL_API void sample_rays(const FilmView&, std::size_t, const Camera
 template PETZVAL_API void sample_rays(const FilmView&, std::size_t, const CameraSamples<double>&,
                                       const CameraRays<double>&) noexcept;
 
-CameraRay sample_ray(const FilmView& view, const FilmPoint& film, double u, double v, std::size_t wavelength) noexcept {
+CameraRay sample_ray(const FilmView& view, const FilmPoint& film, double u, double v, std::size_t wavelength,
+                     double time) noexcept {
   const FilmPupilTable& pupils = view.model.pupils();
   const TiltedFilm* const tilted = view.tilted;
+  const TiltedPlane plane = tilted ? tilted->plane(time) : TiltedPlane{};
   const auto bounds = film_detail::bounds_of<double>(view.film);
   const bool kept = on_film(bounds, film.x, film.y), known = wavelength < view.scale.size();
   const FilmPoint point = kept ? film : FilmPoint{bounds.centre_x, bounds.centre_y};
@@ -183,14 +190,14 @@ CameraRay sample_ray(const FilmView& view, const FilmPoint& film, double u, doub
     area = at.area;
     out.fate = view.model.to_scene(line, wavelength, out.ray);
   } else {
-    virtual_point = tilted->virtual_point(point);
+    virtual_point = plane.virtual_point(point);
     const PupilSample at = tilted->pupils().sample(virtual_point, u, v, wavelength);
-    line = tilted->upright(virtual_point, at.x, at.y);
+    line = plane.upright(virtual_point, {at.x, at.y});
     area = at.area;
     TwoPlaneRay leaving = line;
     if (view.model.pinhole()) {
       const double shift = known ? view.model.pinhole_shifts()[wavelength] : 0;
-      const double part = part_of_virtual(tilted->plane(), virtual_point, shift);
+      const double part = part_of_virtual(plane, virtual_point, shift);
       leaving.film_x = virtual_point.x * part, leaving.film_y = virtual_point.y * part;
     }
     out.fate = view.model.to_scene(leaving, wavelength, out.ray);
@@ -210,8 +217,8 @@ CameraRay sample_ray(const FilmView& view, const FilmPoint& film, double u, doub
     if (out.fate == RayFate::transmitted) out.weight = scale * of.weight(length2, area);
   }
   if (tilted) {
-    const double near = tilted->nearness(virtual_point);
-    const double facing = tilted->weight(virtual_point, line.pupil_x, line.pupil_y);
+    const double near = 1 + plane.nearer_by(virtual_point);
+    const double facing = plane.weight(virtual_point, {line.pupil_x, line.pupil_y});
     out.weight *= facing;
     out.pdf_direction /= near * near;
     if (!(facing > 0) && out.fate == RayFate::transmitted) out.fate = RayFate::vignetted;

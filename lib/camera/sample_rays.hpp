@@ -17,7 +17,8 @@ namespace petzval::inline v0::camera_detail {
 struct FilmView {
   const AnyRayModel& model;
   const Film& film;
-  const TiltedFilm* tilted = nullptr;  ///< of the same film, with the model's pupils; null for an upright one
+  const TiltedFilm* tilted =
+      nullptr;  ///< of the same film, with the model's pupils; null for an upright one that stays
   /// What weights are multiplied with, one for each wavelength: the square of the index behind the lens for irradiance.
   std::span<const double> scale;
   Front front = {};  ///< of the lens
@@ -34,6 +35,7 @@ template <class T>
 PETZVAL_API void sample_rays(const FilmView& view, std::size_t count, const CameraSamples<T>& samples,
                              const CameraRays<T>& rays) noexcept;
 /// One ray, within rounding that of a batch. The wavelength is a position. pdf_film is left out.
-CameraRay sample_ray(const FilmView& view, const FilmPoint& film, double u, double v, std::size_t wavelength) noexcept;
+CameraRay sample_ray(const FilmView& view, const FilmPoint& film, double u, double v, std::size_t wavelength,
+                     double time) noexcept;
 
 }  // namespace petzval::inline v0::camera_detail

@@ -24,14 +24,16 @@ class SceneSide {
   SceneSide(const LensFacts& facts, const Film& film, std::optional<TiltedFilm> tilted, const Front& front,
             const AnyRayModel& model, double radius, std::span<const double> scale);
 
-  Importance importance(const AnyRayModel& model, const Ray<double>& ray, std::size_t wavelength) const noexcept;
+  Importance importance(const AnyRayModel& model, const Ray<double>& ray, std::size_t wavelength,
+                        double time) const noexcept;
   ImportanceSample sample_importance(const AnyRayModel& model, const Vec3<double>& point, double u, double v,
-                                     std::size_t wavelength) const noexcept;
+                                     std::size_t wavelength, double time) const noexcept;
   ImportanceSample sample_distant(const AnyRayModel& model, const Vec3<double>& direction, double u, double v,
-                                  std::size_t wavelength) const noexcept;
+                                  std::size_t wavelength, double time) const noexcept;
   double pdf(const AnyRayModel& model, const Vec3<double>& point, const Vec3<double>& direction,
              std::size_t wavelength) const noexcept;
-  Projection project(const AnyRayModel& model, const Vec3<double>& point, std::size_t wavelength) const noexcept;
+  Projection project(const AnyRayModel& model, const Vec3<double>& point, std::size_t wavelength,
+                     double time) const noexcept;
 
  private:
   struct Wavelength {
@@ -49,21 +51,24 @@ class SceneSide {
   struct OnFilm {
     FilmPoint point, virtual_point;
   };
-  std::optional<OnFilm> on_film(const FilmPoint& upright, const FilmPoint& pupil) const noexcept;
+  /// Where a tilted film, or one that travels, is at a time; nothing for another one.
+  std::optional<TiltedPlane> plane(double time) const noexcept;
+  std::optional<OnFilm> on_film(const FilmPoint& upright, const FilmPoint& pupil,
+                                const std::optional<TiltedPlane>& plane) const noexcept;
   /// A direction of unit length, numbers that are finite, and a wavelength that exists.
   bool valid(const Ray<double>& ray, std::size_t wavelength) const noexcept;
   Arrival arrive(const AnyRayModel& model, const Ray<double>& ray, std::size_t wavelength) const noexcept;
   /// Film point, raster and fate of a ray that arrives.
   Importance met_by(const Arrival& arrival, const std::optional<OnFilm>& met) const noexcept;
-  /// Weight and densities of a ray that meets the film. cosine: of its angle with the axis in the scene; area: of the
-  /// pupil that its film point samples, 0 where no sample is this ray.
-  void weigh(Importance& result, const AnyRayModel& model, const Arrival& arrival, const FilmPoint& point,
-             double cosine, double area, std::size_t wavelength) const noexcept;
+  /// Weight and densities of a ray that meets the film. facing: TiltedPlane::weight(); cosine: of its angle with the
+  /// axis in the scene; area: of the pupil that its film point samples, 0 where no sample is this ray.
+  void weigh(Importance& result, const AnyRayModel& model, const Arrival& arrival, double facing, double cosine,
+             double area, std::size_t wavelength) const noexcept;
   /// A connection to a place in the lens from a point at a distance from it. The shadow ray ends at the front.
   ImportanceSample connection(const Vec3<double>& place, const Vec3<double>& direction, double distance,
                               double pdf) const noexcept;
   ImportanceSample through_pinhole(const AnyRayModel& model, const Vec3<double>& point, double u, double v,
-                                   std::size_t wavelength) const noexcept;
+                                   std::size_t wavelength, double time) const noexcept;
 
   Film film_;
   std::optional<TiltedFilm> tilted_;

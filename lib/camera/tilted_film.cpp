@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Let D be the distance of the upright film from the plane of the pupil, whose centre is the origin. A film point P
 // lies lambda D from that plane, at its virtual point V times lambda. Its ray through q meets the upright film in X = q
-// + (P - q) / lambda = V - (1 / lambda - 1) q, and 1 / lambda - 1 is linear in V: for the film's normal n it is g . V
-// with g = (n_x, n_y) / (n_z D).
+// + (P - q) / lambda = V - (1 / lambda - 1) q, and 1 / lambda is linear in V: where the film crosses the axis at (1 +
+// travel) D, its normal n, it is (1 + g . V) / (1 + travel) with g = (n_x, n_y) / (n_z D).
 //
 // The weight of a film sample is area cos_pupil cos_film / length^2. The ray is lambda times as long as the upright
-// one, at the same angle with the axis, cos_pupil = lambda |D| / length, and at the film n . (q - P) = n_z |D| (1 - g .
-// q) for all its points. So it is the upright weight times n_z (1 - g . q) / lambda^3.
+// one, at the same angle with the axis, cos_pupil = lambda |D| / length, and at the film n . (q - P) = n_z |D| (1 +
+// travel - g . q) for all its points. So it is the upright weight times n_z (1 + travel - g . q) / lambda^3.
 #include "tilted_film.hpp"
 
 #include <ceres/jet.h>
@@ -47,14 +47,14 @@ using Jet = ceres::Jet<double, 2>;
 
 /// The virtual point of a film point, by the film point.
 struct VirtualPoint {
-  Jet x, y, slope;
+  Jet x, y, nearer;
 
   FilmPoint point() const noexcept { return {x.a, y.a}; }
 };
 
 VirtualPoint differentiated(const TiltedPlane& plane, const FilmPoint& film) noexcept {
   const auto [x, y] = virtual_of(plane, Jet(film.x, 0), Jet(film.y, 1));
-  return {x, y, plane.slope_x * x + plane.slope_y * y};
+  return {x, y, nearer_by(plane, x, y)};
 }
 
 TwoPlaneRayDerivatives derivatives_of(const Jet& film_x, const Jet& film_y, const Jet& pupil_x,
@@ -90,18 +90,22 @@ std::vector<Rim> pupils_of(const LensFacts& facts, ModelKind model) {
   return rims;
 }
 
-/// A projection maps a rectangle to what its corners enclose.
+/// A projection maps a rectangle to what its corners enclose; while the film travels, virtual points keep their lines.
 FilmTilt tilt_of(const TiltedFilm& tilted) {
-  FilmTilt tilt{.slope_x = tilted.plane().slope_x,
-                .slope_y = tilted.plane().slope_y,
+  const TiltedPlane first = tilted.plane(0), last = tilted.plane(1);
+  FilmTilt tilt{.slope_x = first.slope_x,
+                .slope_y = first.slope_y,
                 .low = std::numeric_limits<double>::infinity(),
-                .high = -std::numeric_limits<double>::infinity()};
-  for (const FilmPoint& corner : tilted.film().corners()) {
-    const FilmPoint point = tilted.virtual_point(corner);
-    const double value = tilted.plane().slope_along(point);
-    tilt.low = std::min(tilt.low, value);
-    tilt.high = std::max(tilt.high, value);
-    tilt.radius = std::max(tilt.radius, std::hypot(point.x, point.y));
+                .high = -std::numeric_limits<double>::infinity(),
+                .travel = last.travel};
+  for (const TiltedPlane& plane : {first, last}) {
+    for (const FilmPoint& corner : tilted.film().corners()) {
+      const FilmPoint point = plane.virtual_point(corner);
+      const double nearer = plane.nearer_by(point);
+      tilt.low = std::min(tilt.low, nearer);
+      tilt.high = std::max(tilt.high, nearer);
+      tilt.radius = std::max(tilt.radius, std::hypot(point.x, point.y));
+    }
   }
   return tilt;
 }
@@ -109,7 +113,7 @@ FilmTilt tilt_of(const TiltedFilm& tilted) {
 }  // namespace
 
 double upright_radius(const LensFacts& facts, const Film& film, ModelKind model) {
-  if (!film.tilted()) return film.radius_mm();
+  if (!tilted_or_moving(film)) return film.radius_mm();
   const Lens& lens = facts.lens();
   const double film_z = film.z();
   const double pupil_z = two_planes(lens).pupil_z;
@@ -121,8 +125,7 @@ double upright_radius(const LensFacts& facts, const Film& film, ModelKind model)
     return (rim.z - film_z) * (face.vertex_z - film_z) > 0;
   });
   double radius = 0;
-  for (const FilmPoint& corner : film.corners()) {
-    const Vec3<double> place = film.position(corner);
+  const auto reach = [&](const FilmPoint& corner, const Vec3<double>& place) {
     const double height = std::hypot(place.x, place.y);
     const auto farthest = [&](const Rim& rim) {
       return height + (height + rim.half) * std::abs((film_z - place.z) / (rim.z - place.z));
@@ -138,17 +141,27 @@ double upright_radius(const LensFacts& facts, const Film& film, ModelKind model)
     const double through_last = std::max(farthest({face.half, face.z_min}), farthest({face.half, face.z_max}));
     const double reached = discs ? through_pupil : in_lens ? std::min(through_last, through_pupil) : through_last;
     radius = std::max(radius, reached);
+  };
+  for (const double time : {0.0, 1.0}) {
+    const Film still = film.at(time);
+    for (const FilmPoint& corner : still.corners()) reach(corner, still.position(corner));
   }
   return radius;
 }
 
 TiltedFilm::TiltedFilm(const Film& film, const FilmPupilTable& pupils)
-    : film_(film), plane_(plane_of(film, pupils.space())), pupils_(pupils) {
+    : film_(film),
+      first_(plane_of(film, pupils.space())),
+      travel_(-film.travel_mm / pupils.space().depth()),
+      pupils_(pupils) {
   const std::string where = "tilted film";
   check_rectangle(where, film);
   film_.z_mm = pupils.space().film_z;
-  for (const FilmPoint& corner : film.corners()) {
-    check_distance(where, corner, film_.position(corner).z, film_.z(), pupils.space().pupil_z);
+  for (const double time : {0.0, 1.0}) {
+    const Film still = film_.at(time);
+    for (const FilmPoint& corner : still.corners()) {
+      check_distance(where, corner, still.position(corner).z, film_.z(), pupils.space().pupil_z);
+    }
   }
   const FilmTilt tilt = tilt_of(*this);
   constexpr double rounding = 1e-9;
@@ -159,46 +172,56 @@ TiltedFilm::TiltedFilm(const Film& film, const FilmPupilTable& pupils)
   pupils_ = pupils.for_tilted_film(tilt);
 }
 
-FilmPoint TiltedFilm::virtual_point(const FilmPoint& film) const noexcept {
-  const auto [x, y] = virtual_of(plane_, film.x, film.y);
+FilmPoint TiltedPlane::virtual_point(const FilmPoint& film) const noexcept {
+  const auto [x, y] = virtual_of(*this, film.x, film.y);
   return {x, y};
 }
 
-TwoPlaneRay TiltedFilm::upright(const FilmPoint& point, double pupil_x, double pupil_y) const noexcept {
-  const auto [x, y] = upright_of(plane_, point.x, point.y, pupil_x, pupil_y);
-  return {x, y, pupil_x, pupil_y};
+FilmPoint TiltedPlane::point(const FilmPoint& point) const noexcept {
+  const double distance = 1 / (1 + nearer_by(point)), y = point.y * distance / y_by_y;
+  return {(point.x * distance - x_by_y * y) / x_by_x, y};
 }
 
-std::optional<FilmPoint> TiltedFilm::virtual_point_of(const TwoPlaneRay& ray) const noexcept {
-  const double front = 1 - plane_.slope_along({ray.pupil_x, ray.pupil_y});
-  const double slope = plane_.slope_along({ray.film_x, ray.film_y}) / front;
-  if (!(front > 0 && 1 + slope > 0)) return {};
-  return FilmPoint{ray.film_x + slope * ray.pupil_x, ray.film_y + slope * ray.pupil_y};
+double TiltedPlane::nearer_by(const FilmPoint& point) const noexcept {
+  return camera_detail::nearer_by(*this, point.x, point.y);
 }
 
-FilmPoint TiltedFilm::point(const FilmPoint& point) const noexcept {
-  const double distance = 1 / (1 + plane_.slope_along(point)), y = point.y * distance / plane_.y_by_y;
-  return {(point.x * distance - plane_.x_by_y * y) / plane_.x_by_x, y};
+TwoPlaneRay TiltedPlane::upright(const FilmPoint& point, const FilmPoint& place) const noexcept {
+  const auto [x, y] = upright_of(*this, point.x, point.y, place.x, place.y);
+  return {x, y, place.x, place.y};
 }
 
-double TiltedFilm::weight(const FilmPoint& point, double pupil_x, double pupil_y) const noexcept {
-  return std::max(facing_of(plane_, point.x, point.y, pupil_x, pupil_y), 0.0);
+std::optional<FilmPoint> TiltedPlane::virtual_point_of(const TwoPlaneRay& ray) const noexcept {
+  const double front = 1 + travel - (slope_x * ray.pupil_x + slope_y * ray.pupil_y);
+  const double nearer = (slope_x * ray.film_x + slope_y * ray.film_y - travel) / front;
+  if (!(front > 0 && 1 + nearer > 0)) return {};
+  return FilmPoint{ray.film_x + nearer * ray.pupil_x, ray.film_y + nearer * ray.pupil_y};
 }
 
-TwoPlaneRayDerivatives TiltedFilm::line(const FilmPoint& film, double u, double v,
-                                        std::size_t wavelength) const noexcept {
-  const VirtualPoint from = differentiated(plane_, film);
+double TiltedPlane::weight(const FilmPoint& point, const FilmPoint& place) const noexcept {
+  return std::max(facing_of(*this, point.x, point.y, place.x, place.y), 0.0);
+}
+
+TiltedPlane TiltedFilm::plane(double time) const noexcept {
+  TiltedPlane result = first_;
+  if (time > 0) result.travel = travel_ * std::min(time, 1.0);
+  return result;
+}
+
+TwoPlaneRayDerivatives TiltedFilm::line(const FilmPoint& film, double u, double v, std::size_t wavelength,
+                                        double time) const noexcept {
+  const VirtualPoint from = differentiated(plane(time), film);
   const PupilSample at = pupils_.sample(from.point(), u, v, wavelength);
   const auto [by_x, by_y] = pupils_.derivatives(from.point(), u, v, wavelength);
   Jet pupil_x(at.x), pupil_y(at.y);
   pupil_x.v = by_x[0] * from.x.v + by_y[0] * from.y.v;
   pupil_y.v = by_x[1] * from.x.v + by_y[1] * from.y.v;
-  return derivatives_of(from.x - from.slope * pupil_x, from.y - from.slope * pupil_y, pupil_x, pupil_y);
+  return derivatives_of(from.x - from.nearer * pupil_x, from.y - from.nearer * pupil_y, pupil_x, pupil_y);
 }
 
-TwoPlaneRayDerivatives pinhole_line(const TiltedFilm& tilted, const FilmPoint& film, double shift) noexcept {
-  const VirtualPoint from = differentiated(tilted.plane(), film);
-  const Jet x = from.x / (1.0 + from.slope * shift), y = from.y / (1.0 + from.slope * shift);
+TwoPlaneRayDerivatives pinhole_line(const TiltedPlane& plane, const FilmPoint& film, double shift) noexcept {
+  const VirtualPoint from = differentiated(plane, film);
+  const Jet x = from.x / (1.0 + from.nearer * shift), y = from.y / (1.0 + from.nearer * shift);
   return derivatives_of(x, y, shift * x, shift * y);
 }
 
@@ -206,7 +229,7 @@ TwoPlaneRayDerivatives pinhole_line(const TiltedFilm& tilted, const FilmPoint& f
 
 double upright_radius(const Lens& lens, const Film& film, ModelKind model) {
   camera_detail::check_rectangle(lens.name() + ": film", film);
-  if (!film.tilted()) return film.radius_mm();
+  if (!camera_detail::tilted_or_moving(film)) return film.radius_mm();
   const auto [placed_lens, placed_film] = camera_detail::placed(lens, film);
   return camera_detail::upright_radius(placed_lens, placed_film, model);
 }

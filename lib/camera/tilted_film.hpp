@@ -13,33 +13,46 @@
 
 namespace petzval::inline v0::camera_detail {
 
-/// A tilted film as loops read it, in the film's own coordinates.
-struct TiltedPlane {
+/// A film at a moment, in its own coordinates: its points, their virtual points, and the rays that meet it.
+struct PETZVAL_API TiltedPlane {
   double x_by_x = 1, x_by_y = 0, y_by_y = 1;    ///< position across the axis; y does not change with x
   double depth_by_x = 0, depth_by_y = 0;        ///< distance from the pupil's plane over that of the upright film
   double slope_x = 0, slope_y = 0, cosine = 1;  ///< as in FilmTilt; between the film's normal and the axis
+  double travel = 0;                            ///< along the axis, over the upright film's distance from the pupil
 
-  double slope_along(const FilmPoint& p) const noexcept { return slope_x * p.x + slope_y * p.y; }
+  FilmPoint virtual_point(const FilmPoint& film) const noexcept;
+  /// The film point of a virtual point.
+  FilmPoint point(const FilmPoint& virtual_point) const noexcept;
+  /// By how much the upright film's distance from the pupil's plane is larger than that of the film point, in parts of
+  /// the latter.
+  double nearer_by(const FilmPoint& virtual_point) const noexcept;
+  /// The image-space ray that runs from the film point of a virtual point through a place in the pupil's plane.
+  TwoPlaneRay upright(const FilmPoint& virtual_point, const FilmPoint& place) const noexcept;
+  /// The virtual point of the film point that a ray meets. Nothing for a ray that meets the back of the film or is
+  /// parallel to it.
+  std::optional<FilmPoint> virtual_point_of(const TwoPlaneRay& ray) const noexcept;
+  /// The weight of a film sample over that of the upright film's sample with the same ray; 0: it meets the film's back.
+  double weight(const FilmPoint& virtual_point, const FilmPoint& place) const noexcept;
 };
 
 /// petzval::upright_radius(), for a film whose place is the lens's.
 double upright_radius(const LensFacts& facts, const Film& film, ModelKind model);
 
-/// A tilted film in front of a model.
+/// A film that is tilted, or moves along the axis while the shutter is open, in front of a model.
 ///
 /// A model maps image-space rays, which are given by their points on the planes of the upright film and of the pupil;
 /// whether a ray passes does not depend on the film. A tilted film samples other rays. Each of its points is identified
 /// by its virtual point: its projection, through the centre of the pupil's plane, onto the upright film. The pupils of
 /// the tilted film are a second table, over virtual points: one pupil for each distance from the axis, which contains
-/// the model's rays to all points at that distance. It is larger than theirs where light is limited far from the plane
-/// of the pupil: behind a telecentric lens of f/50, half of the corners' samples of a film of 20 x 20 mm tilted by 18
-/// degrees reach the scene, and two thirds for 8 degrees.
+/// the model's rays to all points at that distance, at all times. It is larger than theirs where light is limited far
+/// from the plane of the pupil: behind a telecentric lens of f/50, half of the corners' samples of a film of 20 x 20 mm
+/// tilted by 18 degrees reach the scene, and two thirds for 8 degrees.
 ///
 /// Immutable, cheap to copy, shared freely between threads.
 class PETZVAL_API TiltedFilm {
  public:
   /// pupils: those of the model, for a film of upright_radius(). Throws Error for a film that is no rectangle, tilted
-  /// by a quarter turn or more, or near to the plane of the pupil, and for pupils of a smaller film.
+  /// by a quarter turn or more, or near to the plane of the pupil at any time, and for pupils of a smaller film.
   TiltedFilm(const Film& film, const FilmPupilTable& pupils);
 
   /// With its place.
@@ -47,26 +60,16 @@ class PETZVAL_API TiltedFilm {
   /// The film's own pupils, over virtual points.
   const FilmPupilTable& pupils() const noexcept { return pupils_; }
 
-  FilmPoint virtual_point(const FilmPoint& film) const noexcept;
-  /// The image-space ray that runs from the film point of a virtual point through a point of the pupil's plane.
-  TwoPlaneRay upright(const FilmPoint& virtual_point, double pupil_x, double pupil_y) const noexcept;
-  /// The virtual point of the film point that a ray meets. Nothing for a ray that meets the back of the film or is
-  /// parallel to it.
-  std::optional<FilmPoint> virtual_point_of(const TwoPlaneRay& ray) const noexcept;
-  /// The film point of a virtual point.
-  FilmPoint point(const FilmPoint& virtual_point) const noexcept;
-  /// The upright film's distance from the pupil's plane over that of the film point.
-  double nearness(const FilmPoint& virtual_point) const noexcept { return 1 + plane_.slope_along(virtual_point); }
-  /// The weight of a film sample over that of the upright film's sample with the same ray; 0: it meets the film's back.
-  double weight(const FilmPoint& virtual_point, double pupil_x, double pupil_y) const noexcept;
+  /// Where the film is at a part of the time that the shutter is open (0 to 1, clamped).
+  TiltedPlane plane(double time) const noexcept;
   /// The image-space ray of a film sample, with its derivatives by film x and y.
-  TwoPlaneRayDerivatives line(const FilmPoint& film, double u, double v, std::size_t wavelength) const noexcept;
-
-  const TiltedPlane& plane() const noexcept { return plane_; }
+  TwoPlaneRayDerivatives line(const FilmPoint& film, double u, double v, std::size_t wavelength,
+                              double time) const noexcept;
 
  private:
   Film film_;
-  TiltedPlane plane_;
+  TiltedPlane first_;  // when the shutter opens
+  double travel_ = 0;  // until it closes, as TiltedPlane::travel
   FilmPupilTable pupils_;
 };
 

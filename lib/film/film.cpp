@@ -10,6 +10,13 @@
 
 namespace petzval::inline v0 {
 
+Film Film::at(double time) const {
+  Film result = *this;
+  result.z_mm = z() + time * travel_mm;
+  result.travel_mm = 0;
+  return result;
+}
+
 double Film::pixel_mm() const noexcept { return std::sqrt(area_mm2() / (static_cast<double>(columns) * rows)); }
 
 double Film::radius_mm() const noexcept {

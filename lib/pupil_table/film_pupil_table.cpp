@@ -291,7 +291,7 @@ FilmPupilTable FilmPupilTable::of_iris(const TwoPlanes& space, const Iris& iris,
 FilmPupilTable FilmPupilTable::for_tilted_film(const FilmTilt& tilt) const {
   check_film_radius("tilted film", tilt.radius);
   auto data = std::make_shared<Data>();
-  if (data_->images) {
+  if (data_->images && tilt.travel == 0) {
     *data = *data_;
     data->film_radius = tilt.radius;
     data->images = data_->images->tilted(tilt);

@@ -12,7 +12,7 @@
 namespace petzval::inline v0::pupil_table_detail {
 namespace {
 
-/// A virtual film point on +y, and slope . virtual film point there (see FilmTilt).
+/// A virtual film point on +y, and how much nearer a film point of it is (see FilmTilt).
 struct Field {
   double height = 0, nearer = 0;
 };
@@ -50,7 +50,10 @@ PupilsAt tilted_film_pupils(const FilmPupilTable& upright, const FilmTilt& tilt,
     for (const double part : {0.5, 0.0, 0.25, 0.75, 1.0}) {
       for (const double height : heights) {
         const auto within = [&](double value) { return std::clamp(value, tilt.low, tilt.high); };
-        const double low = within(-steepest * height), high = within(steepest * height);
+        const auto nearer = [&](double along) { return std::array{along, (along - tilt.travel) / (1 + tilt.travel)}; };
+        const auto [first_low, last_low] = nearer(-steepest * height);
+        const auto [first_high, last_high] = nearer(steepest * height);
+        const double low = within(std::min(first_low, last_low)), high = within(std::max(first_high, last_high));
         fields.push_back({height, low + part * (high - low)});
       }
     }

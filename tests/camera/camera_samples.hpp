@@ -15,6 +15,7 @@ template <class T>
 struct Samples {
   std::vector<T> film_x, film_y, pupil_u, pupil_v;
   std::vector<std::uint16_t> wavelengths;  ///< empty: the first for all
+  std::vector<T> times;                    ///< empty: 0
   std::vector<T> x, y, z, dx, dy, dz, weights, pdf_pupil, pdf_direction;
   std::vector<RayFate> fates;
 
@@ -28,7 +29,11 @@ struct Samples {
   }
 
   CameraSample one(std::size_t i) const {
-    return {{film_x[i], film_y[i]}, pupil_u[i], pupil_v[i], wavelengths.empty() ? std::size_t{0} : wavelengths[i]};
+    return {{film_x[i], film_y[i]},
+            pupil_u[i],
+            pupil_v[i],
+            wavelengths.empty() ? std::size_t{0} : wavelengths[i],
+            times.empty() ? 0 : times[i]};
   }
 
   /// Samples `count` of them from `first` on.
@@ -39,7 +44,8 @@ struct Samples {
                                    film_y.data() + first,
                                    pupil_u.data() + first,
                                    pupil_v.data() + first,
-                                   {.each = wavelengths.empty() ? nullptr : wavelengths.data() + first}};
+                                   {.each = wavelengths.empty() ? nullptr : wavelengths.data() + first},
+                                   times.empty() ? nullptr : times.data() + first};
     const CameraRays<T> rays{{x.data(), y.data(), z.data(), dx.data(), dy.data(), dz.data()},
                              weights.data(),
                              fates.data(),

@@ -101,7 +101,7 @@ TEST_P(TiltedFilms, SamplesReachTheSceneAndMissNothing) {
   for (int i = 0; i < points; ++i) {
     const FilmPoint corner = camera.film().point(i % 2 * camera.film().columns, i / 2 * camera.film().rows);
     const FilmPoint film = i < 4 ? corner : FilmPoint{film_points.film_x[i], film_points.film_y[i]};
-    const FilmPoint key = tilted.virtual_point(film);
+    const FilmPoint key = tilted.plane(0).virtual_point(film);
     if (tilted.pupils().area(key) == 0) continue;
     std::vector<std::array<double, 2>> inside, beside, box;
     const Vec2<double> middle = tilted.pupils().middle(key);

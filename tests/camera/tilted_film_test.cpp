@@ -63,10 +63,10 @@ TEST(TiltedFilm, IsAnUprightOneWithHardlyAnyTilt) {
     for (std::uint32_t i = 0; i < 100; ++i) {
       const auto [x, y] = random(i);
       const FilmPoint point = upright.film().point(x * shifted.columns, y * shifted.rows),
-                      key = film.virtual_point(point);
+                      key = film.plane(0).virtual_point(point);
       EXPECT_NEAR(std::hypot(key.x - point.x, key.y - point.y), 0, 1e-8);
-      EXPECT_NEAR(film.weight(key, 10 * x, -10 * y), 1, 1e-8);
-      const TwoPlaneRay line = film.upright(key, 10 * x, -10 * y);
+      EXPECT_NEAR(film.plane(0).weight(key, {10 * x, -10 * y}), 1, 1e-8);
+      const TwoPlaneRay line = film.plane(0).upright(key, {10 * x, -10 * y});
       EXPECT_NEAR(std::hypot(line.film_x - point.x, line.film_y - point.y), 0, 1e-8);
     }
   }
@@ -75,27 +75,30 @@ TEST(TiltedFilm, IsAnUprightOneWithHardlyAnyTilt) {
 // Virtual film point, line and weight, from positions in space.
 TEST(TiltedFilm, TellsLinesAsSpaceDoes) {
   const Lens lens = testing::data_lens("double_gauss_100mm_f2.0");
-  const Film film = tilted_by(shifted, 14, -9);
+  Film film = tilted_by(shifted, 14, -9);
+  film.travel_mm = -2.5;
   const FilmPupilTable pupils = FilmPupilTable::enclosing(lens, upright_radius(lens, film, ModelKind::exact_double));
   const TiltedFilm tilted(film, pupils);
-  const Film pose = pose_of(lens, film);
-  const core_detail::Kronecker<4> random(8);
+  const core_detail::Kronecker<5> random(8);
   for (std::uint32_t i = 0; i < 200; ++i) {
-    const auto [a, b, c, d] = random(i);
-    const FilmPoint point = film.point(a * film.columns, b * film.rows), key = tilted.virtual_point(point);
+    const auto [a, b, c, d, time] = random(i);
+    const camera_detail::TiltedPlane plane = tilted.plane(time);
+    const Film pose = pose_of(lens, film).at(time);
+    const FilmPoint point = film.point(a * film.columns, b * film.rows), key = plane.virtual_point(point);
     const Vec3<double> place = pose.position(point), q{60 * (c - 0.5), 60 * (d - 0.5), pupils.space().pupil_z};
-    const TwoPlaneRay line = tilted.upright(key, q.x, q.y);
+    const TwoPlaneRay line = plane.upright(key, {q.x, q.y});
     const Vec3<double> upright{line.film_x, line.film_y, pupils.space().film_z};
     const Vec3<double> along = q - place, straight = q - upright, normal = pose.normal();
     EXPECT_NEAR(glm::length(glm::cross(glm::normalize(along), glm::normalize(straight))), 0, 1e-14);
     const double length2 = glm::dot(along, along), straight2 = glm::dot(straight, straight);
     const double weight = along.z * glm::dot(along, normal) / (length2 * length2);
     const double wanted = straight.z * straight.z / (straight2 * straight2);
-    EXPECT_NEAR(tilted.weight(key, q.x, q.y) * wanted / weight, 1, 1e-12);
-    const auto met = tilted.virtual_point_of(line);
+    EXPECT_NEAR(plane.weight(key, {q.x, q.y}) * wanted / weight, 1, 1e-12);
+    EXPECT_NEAR((1 + plane.nearer_by(key)) * (q.z - place.z) / (q.z - upright.z), 1, 1e-12);
+    const auto met = plane.virtual_point_of(line);
     ASSERT_TRUE(met);
     EXPECT_NEAR(std::hypot(met->x - key.x, met->y - key.y), 0, 1e-12);
-    const FilmPoint again = tilted.point(*met);
+    const FilmPoint again = plane.point(*met);
     EXPECT_NEAR(std::hypot(again.x - point.x, again.y - point.y), 0, 1e-12);
   }
 }
@@ -133,7 +136,7 @@ TEST(TiltedFilm, HasTheDensitiesOfItsSamples) {
       const CameraSample s = samples.one(i);
       const PupilSample p = model == ModelKind::pinhole
                                 ? pinhole_sample(lens, camera.film(), parts.pupils(), s)
-                                : tilted.pupils().sample(tilted.virtual_point(s.film), s.pupil_u, s.pupil_v);
+                                : tilted.pupils().sample(tilted.plane(0).virtual_point(s.film), s.pupil_u, s.pupil_v);
       const Vec3<double> along = Vec3<double>{p.x, p.y, parts.pupils().space().pupil_z} - pose.position(s.film);
       const double length = glm::length(along), pdf = std::pow(length, 3) / (p.area * std::abs(along.z));
       EXPECT_NEAR(samples.pdf_pupil[i] * p.area, 1, 1e-9);
@@ -159,10 +162,10 @@ TEST(TiltedFilm, HasABack) {
   const Film film = tilted_by({.width_mm = 4, .height_mm = 4}, 80, 0);
   const TiltedFilm tilted(film, FilmPupilTable::enclosing(lens, upright_radius(lens, film, ModelKind::exact_double)));
   const double reach = pose_of(lens, film).normal().z * -tilted.pupils().space().depth() / std::sin(radians(80.0));
-  EXPECT_GT(tilted.weight({0, 0}, 0, 0.99 * -reach), 0);
-  EXPECT_TRUE(tilted.virtual_point_of({0, 0, 0, 0.99 * -reach}));
-  EXPECT_EQ(tilted.weight({0, 0}, 0, 1.01 * -reach), 0);
-  EXPECT_FALSE(tilted.virtual_point_of({0, 0, 0, 1.01 * -reach}));
+  EXPECT_GT(tilted.plane(0).weight({0, 0}, {0, 0.99 * -reach}), 0);
+  EXPECT_TRUE(tilted.plane(0).virtual_point_of({0, 0, 0, 0.99 * -reach}));
+  EXPECT_EQ(tilted.plane(0).weight({0, 0}, {0, 1.01 * -reach}), 0);
+  EXPECT_FALSE(tilted.plane(0).virtual_point_of({0, 0, 0, 1.01 * -reach}));
 }
 
 // Scheimpflug: the plane of the film and the plane of focus of a thin lens meet in the lens. With 1/s + 1/s' = 1/f,

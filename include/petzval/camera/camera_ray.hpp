@@ -18,6 +18,7 @@ struct CameraSample {
   FilmPoint film;
   double pupil_u = 0, pupil_v = 0;  ///< in the unit square; mapped uniformly to the pupil of this film point
   Wavelength wavelength = {};
+  double time = 0;  ///< part of the time that the shutter is open, 0 to 1 (clamped): where a film that travels is
 };
 
 /// A ray that leaves the lens towards the scene, from the front of the lens (see Camera).
@@ -44,10 +45,12 @@ struct CameraSamples {
   const T* pupil_u = nullptr;
   const T* pupil_v = nullptr;
   RayWavelengths wavelengths{};
+  const T* times = nullptr;  ///< null: 0, when the shutter opens
 
   /// The samples from a position on.
   CameraSamples from(std::size_t sample) const noexcept {
-    return {film_x + sample, film_y + sample, pupil_u + sample, pupil_v + sample, wavelengths.from(sample)};
+    return {film_x + sample,  film_y + sample,          pupil_u + sample,
+            pupil_v + sample, wavelengths.from(sample), times ? times + sample : nullptr};
   }
 };
 template <class T>

@@ -19,7 +19,8 @@ struct FilmPoint {
 /// The rectangle that is exposed: its size, its pixels, and its place behind the lens.
 ///
 /// The film crosses the axis at z_mm, or unset where the lens has its film plane, and turns about that point: its
-/// normal is Ry(swing) Rx(tilt) e_z (tilt about +x first). A shift moves the rectangle within that plane.
+/// normal is Ry(swing) Rx(tilt) e_z (tilt about +x first). A shift moves the rectangle within that plane. Where the
+/// film travels, its place is that when the shutter opens.
 ///
 ///     const Film film{.width_mm = 36, .height_mm = 24, .columns = 1920, .rows = 1280};
 ///     const Camera camera(lens, film);
@@ -35,6 +36,11 @@ struct PETZVAL_API Film {
   double margin_mm = 0;
   std::optional<double> z_mm = {};  ///< lens frame; unset: the lens's own film_z()
   double tilt_rad = 0, swing_rad = 0;
+  double travel_mm = 0;  ///< along z while the shutter is open: a pull of focus
+
+  /// The film at a part of the time that the shutter is open (0: it opens; 1: it closes), without travel. Throws Error
+  /// where z_mm is not set.
+  Film at(double time) const;
 
   bool tilted() const noexcept { return tilt_rad != 0 || swing_rad != 0; }
   double area_mm2() const noexcept { return width_mm * height_mm; }

@@ -25,14 +25,16 @@ struct PupilDisc {
   double radius = 0;  ///< mm
 };
 
-/// A tilted film in pupil coordinates. Each point is identified by its virtual film point: its projection, through the
-/// centre of the pupil's plane, onto the upright film. The ray from the point through q in the plane of the pupil meets
-/// the upright film in v - (slope . v) q, v the virtual film point; 1 + slope . v is the ratio of the upright film's
-/// distance from the pupil's plane to the point's.
+/// A tilted film in pupil coordinates. Each point is identified by its virtual film point v: its projection, through
+/// the centre of the pupil's plane, onto the upright film. The ray from the point through q in the plane of the pupil
+/// meets the upright film in v - nearer q; 1 + nearer is the ratio of the upright film's distance from the pupil's
+/// plane to the point's. nearer is slope . v, or where the film has travelled along the axis, by travel times the
+/// upright film's distance, (slope . v - travel) / (1 + travel).
 struct FilmTilt {
   double slope_x = 0, slope_y = 0;  ///< 1/mm
-  double low = 0, high = 0;         ///< range of slope . v on the film
+  double low = 0, high = 0;         ///< range of nearer on the film, at all times
   double radius = 0;                ///< of the farthest virtual film point, mm
+  double travel = 0;                ///< in all; the film is everywhere on the way
 };
 
 /// A sample of a pupil: its place in the plane of the pupil and the pupil's whole area, mm and mm^2. Samples are
@@ -79,7 +81,8 @@ class PETZVAL_API FilmPupilTable {
   static FilmPupilTable of_iris(const TwoPlanes& space, const Iris& iris, std::span<const PupilDisc> images,
                                 double film_radius, std::size_t primary_wavelength = 0);
 
-  /// The pupils of a tilted film, by virtual film points; those of of_iris() are exact. They contain every ray of this
+  /// The pupils of a tilted film, by virtual film points; those of of_iris() are exact for one that does not travel.
+  /// They contain every ray of this
   /// table that meets the film, and few others: one pupil for each distance of the virtual film point from the axis
   /// holds the pupils of all points at that distance. At most 1e-5 of their area is missed
   /// (tests/camera/tilted_exposure_test.cpp), except where enclosing() misses more: of a ball lens 10 mm across, tilted

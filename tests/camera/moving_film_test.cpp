@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: Apache-2.0
+// Films that travel while the shutter is open: pulls of focus.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstddef>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "../data_lenses.hpp"
+#include "../message.hpp"
+#include "camera_samples.hpp"
+#include "core/low_discrepancy.hpp"
+#include "petzval/camera/camera.hpp"
+#include "petzval/core/error.hpp"
+#include "petzval/focus/focus.hpp"
+#include "tilted_films.hpp"
+
+namespace petzval {
+namespace {
+
+using testing::shifted;
+using testing::tilted_by;
+
+struct Case {
+  const char* id;
+  Film film;
+};
+
+/// From 3 m to infinity, and the other way on a tilted film.
+std::vector<Case> cases() {
+  std::vector<Case> result{{"double_gauss_100mm_f2.0", shifted},
+                           {"double_gauss_100mm_f2.0", tilted_by(shifted, 6, -4)},
+                           {"fisheye_8mm_f2.8", {.width_mm = 10, .height_mm = 8}}};
+  for (auto& [id, film] : result) {
+    const Lens lens = testing::data_lens(id);
+    const double near_z = with_focus(lens, 3000).film_z(), far_z = with_focus(lens, 1e9).film_z();
+    film.z_mm = film.tilted() ? far_z : near_z;
+    film.travel_mm = film.tilted() ? near_z - far_z : far_z - near_z;
+  }
+  return result;
+}
+
+double mean_weight(const Camera& camera, const FilmPoint& point, double time) {
+  constexpr std::size_t count = 8192;
+  const core_detail::Kronecker<2> random(5);
+  double sum = 0;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const auto [u, v] = random(i);
+    sum += camera.sample({.film = point, .pupil_u = u, .pupil_v = v, .time = time}).weight / count;
+  }
+  return sum;
+}
+
+// At each moment it gets the light of a film that stays where it is then. First-order models are fitted to the light as
+// the shutter opens: through the thick lens it changes otherwise than through the real one.
+TEST(MovingFilm, ExposesAsAFilmThatStaysThere) {
+  for (const auto& [id, film] : cases()) {
+    const Lens lens = testing::data_lens(id);
+    for (const ModelKind model :
+         {ModelKind::thin, ModelKind::thin_two_disc, ModelKind::polynomial_5, ModelKind::exact_double}) {
+      SCOPED_TRACE(std::string(id) + " " + std::string(name(model)));
+      const double tolerance = model == ModelKind::thin ? 1.5e-2 : model == ModelKind::exact_double ? 2e-3 : 5e-3;
+      const Camera moving(lens, film, {.model = model});
+      for (const double time : {0.0, 0.4, 1.0}) {
+        const Camera still(lens, film.at(time), {.model = model});
+        for (const auto& [column, row] : {std::array{0.5, 0.5}, std::array{0.1, 0.3}, std::array{0.99, 0.99}}) {
+          const FilmPoint point = film.point(column * film.columns, row * film.rows);
+          EXPECT_NEAR(mean_weight(moving, point, time) / mean_weight(still, point, 0), 1, tolerance);
+        }
+      }
+    }
+  }
+}
+
+// Its rays are those of the film that stays: that sees them come from the same film point, with the same importance.
+TEST(MovingFilm, SamplesTheRaysOfAFilmThatStaysThere) {
+  for (const auto& [id, film] : cases()) {
+    const Lens lens = testing::data_lens(id);
+    const Camera moving(lens, film, {.model = ModelKind::exact_double});
+    std::vector<Camera> stills;
+    for (const double time : {0.0, 0.5, 1.0}) {
+      stills.emplace_back(lens, film.at(time), CameraOptions{ModelKind::exact_double});
+    }
+    const core_detail::Kronecker<5> random(2);
+    int passed = 0;
+    for (std::uint32_t i = 0; i < 400; ++i) {
+      const auto [a, b, u, v, part] = random(i);
+      const double time = static_cast<int>(part * 3) / 2.0;
+      const FilmPoint point = film.point(a * film.columns, b * film.rows);
+      const CameraRay ray = moving.sample({.film = point, .pupil_u = u, .pupil_v = v, .time = time});
+      if (!ray) continue;
+      ++passed;
+      const Camera& still = stills[static_cast<std::size_t>(2 * time)];
+      const Ray<double> from_scene{ray.ray.origin, -ray.ray.direction};
+      const Importance seen = still.importance(from_scene), own = moving.importance(from_scene, {}, time);
+      for (const Importance& importance : {seen, own}) {
+        ASSERT_TRUE(importance);
+        EXPECT_NEAR(std::hypot(importance.film.x - point.x, importance.film.y - point.y), 0, 1e-9);
+        EXPECT_NEAR(importance.we / seen.we, 1, 1e-12);
+      }
+      EXPECT_NEAR(own.we / (own.pdf_position * own.pdf_direction) / ray.weight, 1, 1e-9);
+      EXPECT_NEAR(own.pdf_pupil / ray.pdf_pupil, 1, 1e-9);
+    }
+    EXPECT_GT(passed, 300) << id;
+  }
+}
+
+// Every model's samples are the conjugates of its importance, at their time.
+TEST(MovingFilm, WeighsRaysAlikeFromBothSides) {
+  const auto [id, film] = cases()[0];
+  const Lens lens = testing::data_lens(id);
+  for (const ModelKind model : models()) {
+    if (model == ModelKind::pinhole) continue;
+    SCOPED_TRACE(name(model));
+    const Camera camera(lens, film, {.model = model});
+    auto samples = testing::random_samples(film, 100);
+    const double precision = model == ModelKind::exact_float ? 1e-4 : 1e-7;
+    int passed = 0;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      CameraSample sample = samples.one(i);
+      sample.time = static_cast<double>(i) / 99;
+      const CameraRay ray = camera.sample(sample);
+      if (!ray) continue;
+      const Importance own = camera.importance({ray.ray.origin, -ray.ray.direction}, {}, sample.time);
+      if (!own) continue;  // on the rim
+      ++passed;
+      EXPECT_NEAR(std::hypot(own.film.x - sample.film.x, own.film.y - sample.film.y), 0, 100 * precision);
+      EXPECT_NEAR(own.we / (own.pdf_position * own.pdf_direction) / ray.weight, 1, precision);
+    }
+    EXPECT_GT(passed, 80);
+  }
+}
+
+TEST(MovingFilm, SamplesBatchesAsSingleRays) {
+  for (const auto& [id, film] : cases()) {
+    const Lens lens = testing::data_lens(id);
+    for (const ModelKind model :
+         {ModelKind::pinhole, ModelKind::thick, ModelKind::polynomial_5, ModelKind::exact_double}) {
+      const Camera camera(lens, film, {.model = model});
+      auto samples = testing::random_samples(film, 300);
+      for (std::size_t i = 0; i < samples.size(); ++i) samples.times.push_back(static_cast<double>(i % 100) / 80 - 0.1);
+      samples.run(camera);
+      for (std::size_t i = 0; i < samples.size(); ++i) {
+        const CameraRay one = camera.sample(samples.one(i));
+        ASSERT_EQ(one.fate, samples.fates[i]) << name(model);
+        EXPECT_NEAR(samples.weights[i], one.weight, 1e-12);
+        EXPECT_NEAR(glm::length(samples.ray(i).direction - one.ray.direction), 0, 1e-12);
+      }
+    }
+  }
+}
+
+TEST(MovingFilm, DerivativesAreThoseOfItsTime) {
+  const auto [id, film] = cases()[1];
+  const Camera camera(testing::data_lens(id), film, {.model = ModelKind::exact_double});
+  const auto samples = testing::random_samples(film, 50);
+  constexpr double step = 1e-4;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    CameraSample s = samples.one(i), left = s, right = s;
+    s.time = left.time = right.time = 0.8;
+    left.film.x -= step, right.film.x += step;
+    const auto by = camera.sample_differential(s);
+    const CameraRay a = camera.sample(left), b = camera.sample(right);
+    if (!by.sample || !a || !b) continue;
+    EXPECT_NEAR(glm::length((b.ray.direction - a.ray.direction) / (2 * step) - by.by_film_x.direction), 0, 1e-5);
+  }
+}
+
+TEST(MovingFilm, IsRefusedWhereItWouldTravelIntoTheLens) {
+  const Lens lens = testing::data_lens("double_gauss_100mm_f2.0");
+  const double last_z = lens.surfaces().back().vertex_z;
+  const auto refusal = [&](double travel) {
+    return testing::message([&] { Camera(lens, {.travel_mm = travel}, {.model = ModelKind::thin}); });
+  };
+  EXPECT_EQ(refusal(0.5), "no error");
+  EXPECT_NE(refusal(last_z - 1 - lens.film_z()).find("wanted it behind the lens"), std::string::npos);
+  EXPECT_NE(refusal(std::numeric_limits<double>::quiet_NaN()).find("it travels nan mm"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace petzval
