@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 namespace petzval::inline v0::pupil_detail {
@@ -168,16 +170,10 @@ class Search {
     }
   }
 
-  struct Halfway {
-    std::uint32_t point, before, after;
-  };
-
   /// Looks for pupils about halfway between two that were found: next to where these have their ends. Those that are
   /// not there are looked for in full.
-  void between(std::span<const Halfway> which) {
-    constexpr double beside = 0.01;
-    std::vector<Line> lines;
-    std::vector<Bracket> brackets;
+  void between(std::span<const Halfway> which, int widenings) {
+    std::vector<std::uint32_t> points;
     for (const auto& [point, before, after] : which) {
       const Found &a = found_[before], &b = found_[after];
       const auto mean = [](double x, double y) { return (x + y) / 2; };
@@ -185,32 +181,50 @@ class Search {
       found.middle = {mean(a.middle[0], b.middle[0]), mean(a.middle[1], b.middle[1])};
       found.half_axes = {mean(a.half_axes[0], b.half_axes[0]), mean(a.half_axes[1], b.half_axes[1])};
       found.ends.assign(directions_, {});
+      for (std::size_t k = 0; k < directions_; ++k) {
+        const Found::Ends &p = a.ends[k], &q = b.ends[k];
+        found.ends[k] = {mean(p.obscured_from, q.obscured_from), mean(p.obscured_to, q.obscured_to), mean(p.to, q.to)};
+      }
+      points.push_back(point);
+    }
+    std::vector<std::uint32_t> lost = settle(points, widenings), moved;
+    for (const std::uint32_t point : points) {
+      if (recentre(found_[point])) moved.push_back(point);
+    }
+    for (const std::uint32_t point : settle(moved, widenings)) lost.push_back(point);
+    for (const std::uint32_t point : lost) found_[point] = {};
+    in_full(lost);
+  }
+
+ private:
+  enum class Reach { near, far };
+
+  /// Finds the ends of some pupils next to where they are expected. Returns those that have none there.
+  std::vector<std::uint32_t> settle(std::span<const std::uint32_t> which, int widenings) {
+    constexpr double beside = 0.01;
+    std::vector<Line> lines;
+    std::vector<Bracket> brackets;
+    for (const std::uint32_t point : which) {
       for (std::size_t k = 0; k < traced_; ++k) {
         const auto outer = [&](double LineExtent::*end, double s) {
           brackets.push_back({lines.size(), s * (1 - beside), s * (1 + beside), end});
         };
-        const Found::Ends &p = a.ends[k], &q = b.ends[k];
-        outer(&LineExtent::to, mean(p.to, q.to));
-        if (const double from = mean(p.obscured_from, q.obscured_from); from > 0) {
-          outer(&LineExtent::obscured_from, from);
-        }
-        if (const double to = mean(p.obscured_to, q.obscured_to); to > 0) {
-          brackets.push_back({lines.size(), to * (1 + beside), to * (1 - beside), &LineExtent::obscured_to});
-        }
+        const auto& [from, to, end] = found_[point].ends[k];
+        outer(&LineExtent::to, end);
+        if (from > 0) outer(&LineExtent::obscured_from, from);
+        if (to > 0) brackets.push_back({lines.size(), to * (1 + beside), to * (1 - beside), &LineExtent::obscured_to});
         lines.push_back(outward(point, k));
       }
     }
-    Batch batch;
-    for (const Bracket& b : brackets) {
-      batch.add(lines[b.line], b.with);
-      batch.add(lines[b.line], b.without);
-    }
-    batch.test(passing_);
-    std::vector<bool> lost(which.size(), false);
-    for (std::size_t j = 0; j < brackets.size(); ++j) {
-      if (!batch.passes[2 * j] || batch.passes[2 * j + 1]) lost[brackets[j].line / traced_] = true;
-    }
+    std::vector<bool> nowhere(which.size(), false);
+    for (const Bracket& b : widened(brackets, lines, widenings)) nowhere[b.line / traced_] = true;
     close_in(brackets, lines, end_rounds, passing_);
+    std::vector<Bracket> wide;
+    for (const Bracket& b : brackets) {
+      if (std::abs(b.with - b.without) > 4 * beside * b.with * std::ldexp(1.0, -end_rounds)) wide.push_back(b);
+    }
+    close_in(wide, lines, 3, passing_);
+    brackets.insert(brackets.end(), wide.begin(), wide.end());
     for (const Bracket& b : brackets) {
       Found& found = found_[lines[b.line].point];
       const std::size_t k = b.line % traced_;
@@ -222,17 +236,74 @@ class Search {
       set(found.ends[k]);
       if (mirrored_) set(found.ends[directions_ - 1 - k]);
     }
-    std::vector<std::uint32_t> again;
+    std::vector<std::uint32_t> lost;
     for (std::size_t i = 0; i < which.size(); ++i) {
-      if (!lost[i]) continue;
-      found_[which[i].point] = {};
-      again.push_back(which[i].point);
+      if (!nowhere[i]) continue;
+      found_[which[i]] = {};
+      lost.push_back(which[i]);
     }
-    in_full(again);
+    return lost;
   }
 
- private:
-  enum class Reach { near, far };
+  /// Describes a pupil about its own middle where it was found far beside it. False: it was not, or has an obscuration.
+  bool recentre(Found& found) const {
+    if (found.empty()) return false;
+    std::vector<Vec2<double>> rim;  // in units of the half axes
+    Vec2<double> low{0, 0}, high{0, 0};
+    for (std::size_t k = 0; k < directions_; ++k) {
+      const auto& [obscured_from, obscured_to, to] = found.ends[k];
+      if (obscured_to > 0 || !(to > 0)) return false;
+      rim.push_back(to * units_[k]);
+      for (int i : {0, 1}) low[i] = std::min(low[i], rim[k][i]), high[i] = std::max(high[i], rim[k][i]);
+    }
+    constexpr double far = 0.05;
+    const Vec2<double> middle = (low + high) / 2.0, half = (high - low) / 2.0;
+    if (std::abs(middle.x) < far * half.x && std::abs(middle.y) < far * half.y) return false;
+    Found result{found.middle + found.half_axes * middle, found.half_axes * half, {}};
+    for (auto& p : rim) p = (p - middle) / half;
+    const auto turn = [](const Vec2<double>& a, const Vec2<double>& b) { return a.y * b.x - a.x * b.y; };
+    for (const Vec2<double>& unit : units_) {
+      for (std::size_t k = 0; k < directions_; ++k) {
+        const Vec2<double>&a = rim[k], &b = rim[(k + 1) % directions_];
+        if (!(turn(a, unit) >= 0 && turn(unit, b) > 0)) continue;
+        result.ends.push_back({0, 0, turn(a, b) / (turn(a, unit) + turn(unit, b))});
+        break;
+      }
+    }
+    if (result.ends.size() != directions_) return false;
+    found = result;
+    return true;
+  }
+
+  /// Moves the sides of brackets outwards where the end does not lie between them, each time twice as far. Returns
+  /// those for which this does not help.
+  std::vector<Bracket> widened(std::vector<Bracket>& brackets, const std::vector<Line>& lines, int widenings) {
+    std::vector<std::size_t> open(brackets.size());
+    std::iota(open.begin(), open.end(), std::size_t{0});
+    Batch batch;
+    for (int round = 0; round <= widenings && !open.empty(); ++round) {
+      batch.clear();
+      for (const std::size_t j : open) {
+        batch.add(lines[brackets[j].line], brackets[j].with);
+        batch.add(lines[brackets[j].line], brackets[j].without);
+      }
+      batch.test(passing_);
+      std::size_t left = 0;
+      for (std::size_t i = 0; i < open.size(); ++i) {
+        Bracket& b = brackets[open[i]];
+        const bool with = batch.passes[2 * i], without = batch.passes[2 * i + 1];
+        if (with && !without) continue;
+        const double way = (b.with - b.without) * 2;
+        if (!with) b.without = std::exchange(b.with, std::max(b.with + way, 0.0));
+        if (with) b.with = std::exchange(b.without, std::max(b.without - way, 0.0));
+        open[left++] = open[i];
+      }
+      open.resize(left);
+    }
+    std::vector<Bracket> lost;
+    for (const std::size_t j : open) lost.push_back(brackets[j]);
+    return lost;
+  }
 
   /// Extents along y; points of which something is seen are added to `seen`, of these those with an obscuration to
   /// `rings`. Returns the others, and those that reach beyond what is near.
@@ -345,35 +416,59 @@ class Search {
 
 }  // namespace
 
-std::vector<PupilRegion> find_regions(std::span<const PupilGuess> points, std::size_t row, std::size_t directions,
-                                      bool mirrored, const PassingPlaces& passing) {
-  Search search(points, directions, mirrored, passing);
-  // Some points of each row in full, then those halfway between, and so on.
+SearchOrder SearchOrder::rows(std::size_t points, std::size_t row) {
+  SearchOrder order;
   constexpr std::size_t first_step = 16;
-  std::vector<std::uint32_t> full;
-  for (std::size_t begin = 0; begin < points.size(); begin += row) {
+  for (std::size_t begin = 0; begin < points; begin += row) {
+    const Line line{begin, 1, row};
     for (std::size_t i = 0; i < row; ++i) {
-      if (i % first_step == 0 || i + 1 == row) full.push_back(static_cast<std::uint32_t>(begin + i));
+      if (i % first_step == 0 || i + 1 == row) order.full.push_back(line.at(i));
+    }
+    order.halve(line, first_step, 0);
+  }
+  return order;
+}
+
+SearchOrder SearchOrder::grid(std::size_t rows, std::size_t row) {
+  SearchOrder order;
+  order.widenings = 4;
+  for (const std::size_t column : {std::size_t{0}, row - 1}) {
+    const Line line{column, row, rows};
+    order.full.insert(order.full.end(), {line.at(0), line.at(rows - 1)});
+    order.halve(line, std::bit_ceil(rows - 1), 0);
+  }
+  const std::size_t columns_done = order.rounds.size();
+  for (std::size_t i = 0; i < rows; ++i) order.halve({i * row, 1, row}, std::bit_ceil(row - 1), columns_done);
+  return order;
+}
+
+void SearchOrder::halve(const Line& line, std::size_t first_step, std::size_t first_round) {
+  std::size_t round = first_round;
+  for (std::size_t step = first_step; step > 1; step /= 2, ++round) {
+    if (rounds.size() <= round) rounds.resize(round + 1);
+    for (std::size_t i = step / 2; i + 1 < line.count; i += step) {
+      rounds[round].push_back({line.at(i), line.at(i - step / 2), line.at(std::min(i + step / 2, line.count - 1))});
     }
   }
-  search.in_full(full);
-  for (std::size_t step = first_step; step > 1; step /= 2) {
-    std::vector<Search::Halfway> halfway;
-    full.clear();
-    for (std::size_t begin = 0; begin < points.size(); begin += row) {
-      const auto at = [&](std::size_t place) { return static_cast<std::uint32_t>(begin + place); };
-      for (std::size_t i = step / 2; i + 1 < row; i += step) {
-        const Search::Halfway place{at(i), at(i - step / 2), at(std::min(i + step / 2, row - 1))};
-        // Between two dark points it is dark.
-        const bool before = search.lit(place.before), after = search.lit(place.after);
-        if (before && after) {
-          halfway.push_back(place);
-        } else if (before || after) {
-          full.push_back(place.point);
-        }
+}
+
+std::vector<PupilRegion> find_regions(std::span<const PupilGuess> points, const SearchOrder& order,
+                                      std::size_t directions, bool mirrored, const PassingPlaces& passing) {
+  Search search(points, directions, mirrored, passing);
+  search.in_full(order.full);
+  for (const auto& round : order.rounds) {
+    std::vector<Halfway> halfway;
+    std::vector<std::uint32_t> full;
+    for (const Halfway& place : round) {
+      // Between two dark points it is dark.
+      const bool before = search.lit(place.before), after = search.lit(place.after);
+      if (before && after) {
+        halfway.push_back(place);
+      } else if (before || after) {
+        full.push_back(place.point);
       }
     }
-    search.between(halfway);
+    search.between(halfway, order.widenings);
     search.in_full(full);
   }
   return search.regions();

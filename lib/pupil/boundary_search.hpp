@@ -24,15 +24,39 @@ struct PupilGuess {
 using PassingPlaces = std::function<void(std::size_t count, const std::uint32_t* points, const double* x,
                                          const double* y, std::uint8_t* passes)>;
 
+/// A point about halfway between two others, where its pupil is looked for next to theirs.
+struct Halfway {
+  std::uint32_t point, before, after;
+};
+
+/// In which order pupils are looked for: some points in full, then those halfway between, round after round.
+struct SearchOrder {
+  std::vector<std::uint32_t> full;
+  std::vector<std::vector<Halfway>> rounds;
+  int widenings = 0;  ///< how often one looks farther away halfway, before a pupil is looked for in full
+
+  /// Points stand in rows of so many, in which neighbours have similar pupils.
+  static SearchOrder rows(std::size_t points, std::size_t row);
+  /// In neighbouring rows too: two columns of the grid are found first, and the rows from there.
+  static SearchOrder grid(std::size_t rows, std::size_t row);
+
+ private:
+  struct Line {
+    std::size_t begin, stride, count;
+
+    std::uint32_t at(std::size_t place) const noexcept { return static_cast<std::uint32_t>(begin + stride * place); }
+  };
+  void halve(const Line& line, std::size_t first_step, std::size_t first_round);
+};
+
 /// The regions of many points at once, by bisection in batches, to 2e-5 of the half axes.
 ///
 /// pupil_boundary() converges faster along one direction, from how near each ray comes to a rim, and knows the rim;
 /// here models without rims are asked too, and every round of the search is one batch of rays on SIMD lanes. At most
 /// one obscuration is found along a direction, and the surfaces of the RimPoints are unknown.
 ///
-/// row: points stand in rows of so many, in which neighbours have similar pupils. mirrored: pupils are alike at x and
-/// -x, and half of the directions are traced. directions: even.
-std::vector<PupilRegion> find_regions(std::span<const PupilGuess> points, std::size_t row, std::size_t directions,
-                                      bool mirrored, const PassingPlaces& passing);
+/// mirrored: pupils are alike at x and -x, and half of the directions are traced. directions: even.
+std::vector<PupilRegion> find_regions(std::span<const PupilGuess> points, const SearchOrder& order,
+                                      std::size_t directions, bool mirrored, const PassingPlaces& passing);
 
 }  // namespace petzval::inline v0::pupil_detail

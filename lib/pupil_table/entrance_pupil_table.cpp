@@ -253,7 +253,8 @@ void EntrancePupilTable::Data::fill(Table& table, const std::vector<Ray<double>>
              components[4].data(), components[5].data()},
             wavelength, through);
   };
-  const auto pupils = pupil_detail::find_regions(guesses, columns, directions, true, passes);
+  const auto pupils = pupil_detail::find_regions(guesses, pupil_detail::SearchOrder::rows(guesses.size(), columns),
+                                                 directions, true, passes);
 
   const auto node = [](std::size_t place) { return place / columns / 2 * fields + place % columns / 2; };
   table.polygons.resize(distances * fields);
@@ -404,7 +405,8 @@ double EntrancePupilTable::pdf(const Vec3<double>& point, const Vec3<double>& di
     return squared(distance) / (polygon.area() * cosine * squared(cosine));
   }
   const double solid = cone(table->ball, distance);
-  return 1 - cosine <= solid / (2 * pi) * (1 + 1e-12) ? 1 / solid : 0;
+  constexpr double rounding = 1e-15;  // of the cosine
+  return 1 - cosine <= solid / (2 * pi) * (1 + 1e-12) + rounding ? 1 / solid : 0;
 }
 
 }  // namespace petzval::inline v0

@@ -4,108 +4,21 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
 #include <limits>
-#include <numbers>
 #include <utility>
 
-#include "petzval/paraxial/first_order.hpp"
-#include "petzval/trace/trace.hpp"
-#include "pupil/boundary_search.hpp"
-#include "pupil/face.hpp"
+#include "film_lines.hpp"
 
 namespace petzval::inline v0::pupil_table_detail {
-namespace {
-
-/// The pupils of some film points, by tracing their rays.
-class FilmSide {
- public:
-  FilmSide(const Lens& lens, const TwoPlanes& space, std::vector<FilmPoint> points)
-      : lens_(lens), space_(space), points_(std::move(points)) {
-    towards_ = towards_scene(lens, space);
-  }
-
-  std::vector<PupilRegion> pupils(std::size_t wavelength) {
-    const bool symmetric = lens_.rotationally_symmetric();
-    return pupil_detail::find_regions(
-        guesses(wavelength), symmetric ? points_.size() : 1, region_directions, symmetric,
-        [&](std::size_t count, const std::uint32_t* fields, const double* x, const double* y, std::uint8_t* passes) {
-          test(wavelength, count, fields, x, y, passes);
-        });
-  }
-
- private:
-  /// Rays pass the last surface: the pupil is no larger than what is seen through it.
-  std::vector<pupil_detail::PupilGuess> guesses(std::size_t wavelength) const {
-    const Pupils paraxial = petzval::pupils(lens_, wavelength);
-    const std::size_t last = lens_.surface_count() - 1;
-    const double last_z = lens_.surfaces()[last].vertex_z;
-    const pupil_detail::Face face = pupil_detail::face_of(lens_, last, paraxial.entrance);
-    const auto seen = [&](double film, double at, double z) {  // in the plane of the pupil
-      return film + (at - film) * space_.depth() / (z - space_.film_z);
-    };
-    double radius = std::isfinite(paraxial.exit.z) && paraxial.exit.z != space_.film_z
-                        ? std::abs(seen(0, paraxial.exit.diameter / 2, paraxial.exit.z))
-                        : 0;
-    const bool somewhere = radius > 0;
-    if (!somewhere) radius = std::abs(seen(0, face.half, last_z)) / 8;
-    const auto surfaces = lens_.surfaces();
-    const bool ring = std::any_of(surfaces.begin(), surfaces.end(),
-                                  [](const LensSurface& s) { return s.obscuration_semi_diameter > 0; });
-    std::vector<pupil_detail::PupilGuess> result;
-    for (const FilmPoint& p : points_) {
-      double low = std::numeric_limits<double>::infinity(), high = -low;
-      for (const double z : {face.z_min, face.z_max, last_z}) {
-        // A face that reaches to the film is met at any angle; one beyond the film counts as near it.
-        const double least = 0.02 * std::abs(space_.film_z - last_z);
-        const double from_film = z - space_.film_z;
-        const double at = space_.film_z + std::copysign(std::max(std::abs(from_film), least), last_z - space_.film_z);
-        for (const double edge : {-face.half, face.half}) {
-          low = std::min(low, seen(p.y, edge, at));
-          high = std::max(high, seen(p.y, edge, at));
-        }
-      }
-      const double across = lens_.rotationally_symmetric() ? 0 : seen(p.x, 0, last_z), margin = 0.05 * (high - low);
-      const double y = seen(p.y, 0, somewhere ? paraxial.exit.z : last_z);
-      constexpr double radii = 16;
-      result.push_back({across, low - margin, high + margin, radius, y, radii * radius, ring});
-    }
-    return result;
-  }
-
-  void test(std::size_t wavelength, std::size_t count, const std::uint32_t* fields, const double* x, const double* y,
-            std::uint8_t* passes) {
-    for (auto& a : memory_) a.resize(count);
-    fates_.resize(count);
-    const double depth = space_.depth();
-    for (std::size_t i = 0; i < count; ++i) {
-      const FilmPoint& film = points_[fields[i]];
-      const double dx = x[i] - film.x, dy = y[i] - film.y;
-      const double per_length = towards_ / std::sqrt(dx * dx + dy * dy + depth * depth);
-      memory_[0][i] = x[i], memory_[1][i] = y[i], memory_[2][i] = space_.pupil_z;
-      memory_[3][i] = dx * per_length, memory_[4][i] = dy * per_length, memory_[5][i] = depth * per_length;
-    }
-    const auto at = [&](std::size_t k) { return memory_[k].data(); };
-    trace<double>(lens_, count, {at(0), at(1), at(2), at(3), at(4), at(5)}, {at(0), at(1), at(2), at(3), at(4), at(5)},
-                  fates_.data(), nullptr, {.travel = Travel::to_scene, .wavelengths = {wavelength}});
-    for (std::size_t i = 0; i < count; ++i) passes[i] = fates_[i] == RayFate::transmitted;
-  }
-
-  const Lens& lens_;
-  TwoPlanes space_;
-  std::vector<FilmPoint> points_;
-  double towards_;
-  std::array<std::vector<double>, 6> memory_;
-  std::vector<RayFate> fates_;
-};
-
-}  // namespace
 
 PupilsAt traced_pupils(const Lens& lens, const TwoPlanes& space, std::size_t wavelength) {
   return [&lens, space, wavelength](std::span<const double> heights) {
     std::vector<FilmPoint> points;
     for (const double height : heights) points.push_back({0, height});
-    return FilmSide(lens, space, std::move(points)).pupils(wavelength);
+    const std::vector<pupil_detail::PupilGuess> guesses = first_order_guesses(lens, space, points, wavelength);
+    return pupil_detail::find_regions(guesses, pupil_detail::SearchOrder::rows(guesses.size(), guesses.size()),
+                                      region_directions, true,
+                                      traced_lines(lens, space, std::move(points), wavelength));
   };
 }
 
@@ -186,43 +99,6 @@ std::vector<PupilPolygon> film_polygons(double film_radius, PolygonFit fit, cons
   }
   expand_to_cover(polygons, checks);
   return polygons;
-}
-
-PupilPolygon polygon_for_all(const Lens& lens, const TwoPlanes& space, double film_radius, std::size_t wavelength) {
-  const auto pupils_at = [&](double radius, int rings, int spokes) {
-    std::vector<FilmPoint> points{{}};
-    for (int ring = 1; ring <= rings; ++ring) {
-      for (int spoke = 0; spoke < spokes; ++spoke) {
-        const double angle = 2 * std::numbers::pi * spoke / spokes, r = radius * ring / rings;
-        points.push_back({r * std::sin(angle), r * std::cos(angle)});
-      }
-    }
-    return FilmSide(lens, space, std::move(points)).pupils(wavelength);
-  };
-  const auto lit_one = [](const PupilRegion& pupil) { return !pupil.empty(); };
-  // The part of the film that gets any light, within an eighth of it.
-  double lit = film_radius;
-  for (int round = 0; round < 8; ++round) {
-    constexpr int rings = 8, spokes = 8;
-    const std::vector<PupilRegion> pupils = pupils_at(lit, rings, spokes);
-    const auto last = std::find_if(pupils.rbegin(), pupils.rend(), lit_one);
-    if (last == pupils.rend()) return {};
-    const auto ring = (pupils.rend() - last - 1 + spokes - 1) / spokes;
-    if (ring >= rings - 1) break;
-    lit *= static_cast<double>(ring + 1) / rings;
-  }
-  const std::vector<PupilRegion> pupils = pupils_at(lit, 12, 24);
-  PupilPolygon polygon = polygon_of(*std::find_if(pupils.begin(), pupils.end(), lit_one), PolygonFit::enclosing);
-  // All pupils together are as symmetric as the lens: about the axis.
-  for (auto& corner : polygon.corners) corner[0] += polygon.middle[0];
-  polygon.middle[0] = 0;
-  std::vector<InterpolationCheck> checks;
-  for (const PupilRegion& pupil : pupils) checks.push_back({&pupil, {{0, 0, 0, 0}, {1, 0, 0, 0}}});
-  expand_to_cover({&polygon, 1}, checks);
-  constexpr double between_points = 1.02;
-  for (auto& corner : polygon.corners) corner = {between_points * corner[0], between_points * corner[1]};
-  polygon.obscured.fill(0);  // perhaps that of one point only
-  return polygon;
 }
 
 std::vector<PupilPolygon> disc_polygons(std::span<const PupilDisc> discs, double film_radius) {

@@ -33,9 +33,6 @@ double lit_radius(double film_radius, const PupilsAt& pupils_at);
 /// contained in the interpolated ones.
 std::vector<PupilPolygon> film_polygons(double film_radius, PolygonFit fit, const PupilsAt& pupils_at);
 
-/// One polygon that contains the pupils of all film points, for a lens without symmetry of revolution.
-PupilPolygon polygon_for_all(const Lens& lens, const TwoPlanes& space, double film_radius, std::size_t wavelength);
-
 /// The overlap of some discs, for film points on +y at 65 heights.
 std::vector<PupilPolygon> disc_polygons(std::span<const PupilDisc> discs, double film_radius);
 

@@ -11,10 +11,13 @@
 
 #include "core/quadrature.hpp"
 #include "core/text.hpp"
+#include "film_cells.hpp"
+#include "film_grid.hpp"
 #include "film_polygons.hpp"
 #include "film_pupil_table_loops.hpp"
 #include "iris_images.hpp"
 #include "petzval/core/error.hpp"
+#include "polygon_place.hpp"
 
 namespace petzval::inline v0 {
 namespace {
@@ -51,43 +54,6 @@ std::array<double, L::size> strip_between(const PupilPolygon& p, const PupilPoly
   return strip;
 }
 
-/// Area before a sector at the fraction t of a strip; `polygon_corners`: the whole.
-template <class T>
-T area_before(const double* strip, std::size_t sector, const T& t) {
-  const double* f = strip + L::sectors + L::sector * sector + 4;
-  return f[0] + t * (f[1] + t * (f[2] + t * f[3]));
-}
-
-/// A pair of numbers at the fraction t.
-template <class T>
-Point<T> along_strip(const double* from, const T& t) {
-  return {from[0] + t * from[2], from[1] + t * from[3]};
-}
-
-template <class T>
-Sector<T> sector_at(const double* strip, std::size_t k, const T& t) {
-  const Point<T> obscured = along_strip(strip + L::obscured + 4 * k, t);
-  return {along_strip(strip + L::sectors + L::sector * k, t), along_strip(strip + L::sectors + L::sector * (k + 1), t),
-          obscured.x, obscured.y};
-}
-
-/// The sector in which a sample lies. area: before it.
-std::size_t sector_with(const double* strip, double t, double area) {
-  return sector_of_area(area, [&](std::size_t k) { return area_before(strip, k, t); });
-}
-
-/// The place of a sample for film points on +y at the fraction t of a strip, in the sector k.
-template <class T>
-Point<T> place(const double* strip, std::size_t k, const T& t, const T& u, double v) {
-  using std::sqrt;
-  const Sector<T> sector = sector_at(strip, k, t);
-  T along = (area_before(strip, polygon_corners, t) * u - area_before(strip, k, t)) / sector.area();
-  if (!(along <= 1.0)) along = T(1.0);
-  const T squared = sector.squared_way(T(v));
-  const Point<T> p = sector.at(squared > 0.0 ? T(sqrt(squared)) : T(0.0), along);  // no derivative in the middle
-  return {p.x, strip[L::middle_y] + t * strip[L::middle_y + 1] + p.y};
-}
-
 }  // namespace
 
 struct FilmPupilTable::Data {
@@ -95,34 +61,26 @@ struct FilmPupilTable::Data {
   double film_radius = 0;
   std::size_t wavelengths = 0, primary = 0;
   std::optional<IrisImages> images;  // instead of strips
+  std::optional<FilmCells> cells;    // instead of strips
   double lit_radius = 0;             // to which the strips reach: beyond it is dark
   std::size_t strips_each = 0;
-  bool turned = true, obscured = false;
+  bool obscured = false;
   int corrections = 0;
   std::vector<double> twice;  // strips by StripLayout
   std::vector<float> single;
 
-  /// Adds a wavelength. Without symmetry there is one polygon.
+  /// Adds a wavelength.
   void add(const std::vector<PupilPolygon>& polygons) {
     ++wavelengths;
-    strips_each = std::max<std::size_t>(polygons.size() - 1, 1);
+    strips_each = polygons.size() - 1;
     for (std::size_t i = 0; i < strips_each; ++i) {
-      const PupilPolygon &a = polygons[i], &b = polygons[std::min(i + 1, polygons.size() - 1)];
+      const PupilPolygon &a = polygons[i], &b = polygons[i + 1];
       const auto strip = strip_between(a, b);
       twice.insert(twice.end(), strip.begin(), strip.end());
       for (const double value : strip) single.push_back(static_cast<float>(value));
       for (std::size_t k = 0; k < polygon_corners; ++k) obscured = obscured || a.obscured[k] > 0 || b.obscured[k] > 0;
-      count_corrections(strip.data());
-    }
-  }
-
-  void count_corrections(const double* strip) {
-    for (int step = 0; step <= 8; ++step) {
-      const double t = step / 8.0, whole = area_before(strip, polygon_corners, t);
-      if (!(whole > 0)) continue;
-      for (std::size_t k = 0; k < polygon_corners; ++k) {
-        const double off = std::abs(area_before(strip, k, t) / whole * polygon_corners - static_cast<double>(k));
-        if (off > 0.49) corrections = std::max(corrections, std::min(static_cast<int>(std::ceil(off)), 64));
+      for (int step = 0; step <= 8; ++step) {
+        corrections = std::max(corrections, corrections_of(InStrip<double>{strip.data(), step / 8.0}));
       }
     }
   }
@@ -147,7 +105,6 @@ struct FilmPupilTable::Data {
     // The corner itself, rounded, still belongs to the film.
     result.lit_radius = static_cast<R>(lit_radius * (1 + 1e-6));
     result.strips_per_mm = static_cast<R>(strips_per_mm());
-    result.turned = turned;
     result.obscured = obscured;
     result.corrections = corrections;
     return result;
@@ -157,6 +114,8 @@ struct FilmPupilTable::Data {
   struct Place {
     const double* strip = nullptr;  // null: nowhere
     double t = 0, cosine = 1, sine = 0;
+
+    InStrip<double> polygon() const noexcept { return {strip, t}; }
   };
   Place find(const FilmPoint& film, Wavelength at_wavelength) const noexcept {
     const std::size_t wavelength = at_wavelength.position(primary);
@@ -164,14 +123,13 @@ struct FilmPupilTable::Data {
     if (!(r <= lit_radius * (1 + 1e-6)) || wavelength >= wavelengths) return {};
     const double at = r * strips_per_mm();
     const std::size_t strip = std::min(static_cast<std::size_t>(at), strips_each - 1);
-    const bool turn = turned && r > 0;
+    const bool turn = r > 0;
     return {&twice[(wavelength * strips_each + strip) * L::size], at - static_cast<double>(strip),
             turn ? film.y / r : 1, turn ? film.x / r : 0};
   }
 
   /// u, from the film point's own direction.
   double share(const Place& place, double u) const noexcept {
-    if (!turned) return u;
     const double from = u - turn_of(place.sine, place.cosine);
     return from < 0 ? from + 1 : from < 1 ? from : from - 1;
   }
@@ -210,19 +168,22 @@ FilmPupilTable FilmPupilTable::traced(const Lens& lens, double film_radius, bool
   data->space = two_planes(lens);
   data->film_radius = film_radius;
   data->primary = lens.primary_wavelength();
-  data->turned = lens.rotationally_symmetric();
   const std::size_t wavelengths = lens.wavelengths_nm().size();
-  data->lit_radius = data->turned ? 0 : film_radius;
+  if (!lens.rotationally_symmetric()) {
+    data->wavelengths = wavelengths;
+    const FilmGrid grid = film_grid(lens, data->space, film_radius);
+    data->cells.emplace(grid, film_radius, data->primary);
+    for (std::size_t w = 0; w < wavelengths; ++w) {
+      data->cells->add(grid_polygons(lens, data->space, grid, fit, w));
+    }
+    return FilmPupilTable(std::move(data));
+  }
   for (std::size_t w = 0; w < wavelengths && data->lit_radius < film_radius; ++w) {
     const double lit = lit_radius(film_radius, traced_pupils(lens, data->space, w));
     data->lit_radius = std::max(data->lit_radius, lit);
   }
   for (std::size_t w = 0; w < wavelengths; ++w) {
-    if (data->turned) {
-      data->add(film_polygons(data->lit_radius, fit, traced_pupils(lens, data->space, w)));
-    } else {
-      data->add({{polygon_for_all(lens, data->space, film_radius, w)}});
-    }
+    data->add(film_polygons(data->lit_radius, fit, traced_pupils(lens, data->space, w)));
   }
   return FilmPupilTable(std::move(data));
 }
@@ -233,11 +194,8 @@ FilmPupilTable FilmPupilTable::enclosing(const Lens& lens, double film_radius) {
 }
 
 FilmPupilTable FilmPupilTable::equal_area(const Lens& lens, double film_radius) {
-  if (!lens.rotationally_symmetric()) {
-    throw Error(
-        lens.name() +
-        ": pupils: the lens has cylinders or an iris with edges, wanted one of revolution for pupils by distance "
-        "alone");
+  if (!lens.iris().round()) {
+    throw Error(lens.name() + ": pupils: the iris has edges, wanted a round one");
   }
   return traced(lens, film_radius, false);
 }
@@ -297,9 +255,13 @@ FilmPupilTable FilmPupilTable::for_tilted_film(const FilmTilt& tilt) const {
     data->images = data_->images->tilted(tilt);
     return FilmPupilTable(std::move(data));
   }
-  if (!data_->turned) {  // the one pupil holds all lines
-    *data = *data_;
-    data->film_radius = data->lit_radius = tilt.radius;
+  if (data_->cells) {  // one pupil that holds all lines
+    data->space = space();
+    data->primary = data_->primary;
+    data->film_radius = tilt.radius;
+    data->wavelengths = wavelengths();
+    data->cells.emplace(tilt.radius, data->primary);
+    for (std::size_t w = 0; w < wavelengths(); ++w) data->cells->add({data_->cells->hull(w)});
     return FilmPupilTable(std::move(data));
   }
   data->space = data_->space;
@@ -322,13 +284,15 @@ std::size_t FilmPupilTable::primary_wavelength() const noexcept { return data_->
 
 PupilSample FilmPupilTable::sample(const FilmPoint& film, double u, double v, Wavelength wavelength) const noexcept {
   if (const auto& images = data_->images) return images->sample(film, u, v, wavelength.position(data_->primary));
+  if (const auto& cells = data_->cells) return cells->sample(film, u, v, wavelength.position(data_->primary));
   const auto found = data_->find(film, wavelength);
   if (!found.strip || !(u - u == 0 && v - v == 0)) return {};
-  const double whole = area_before(found.strip, polygon_corners, found.t);
+  const InStrip<double> polygon = found.polygon();
+  const double whole = polygon.area_before(polygon_corners);
   if (!(whole > 0)) return {};
   const double share = data_->share(found, std::clamp(u, 0.0, 1.0));
-  const std::size_t k = sector_with(found.strip, found.t, share * whole);
-  const auto [x, y] = place(found.strip, k, found.t, share, std::clamp(v, 0.0, 1.0));
+  const std::size_t k = sector_with(polygon, share * whole);
+  const auto [x, y] = sample_place(polygon, k, share, std::clamp(v, 0.0, 1.0));
   return {found.cosine * x + found.sine * y, found.cosine * y - found.sine * x, whole};
 }
 
@@ -339,19 +303,26 @@ void FilmPupilTable::sample(std::size_t count, const T* film_x, const T* film_y,
     data_->images->sample(count, film_x, film_y, u, v, wavelengths, x, y, areas);
     return;
   }
-  const auto& loops = pupil_table_detail::film_pupil_table();
-  if constexpr (sizeof(T) == sizeof(float)) {
-    loops.single(data_->table<T>(), count, film_x, film_y, u, v, wavelengths, x, y, areas);
+  const auto& [strips, cells] = pupil_table_detail::film_pupil_table();
+  const auto run = [&](const auto& loops, const auto& table) {
+    if constexpr (sizeof(T) == sizeof(float)) {
+      loops.single(table, count, film_x, film_y, u, v, wavelengths, x, y, areas);
+    } else {
+      loops.twice(table, count, film_x, film_y, u, v, wavelengths, x, y, areas);
+    }
+  };
+  if (data_->cells) {
+    run(cells, data_->cells->table<T>());
   } else {
-    loops.twice(data_->table<T>(), count, film_x, film_y, u, v, wavelengths, x, y, areas);
+    run(strips, data_->table<T>());
   }
 }
 
 double FilmPupilTable::area(const FilmPoint& film, Wavelength wavelength) const noexcept {
   if (const auto& images = data_->images) return images->area(film, wavelength.position(data_->primary));
-  const auto [strip, t, cosine, sine] = data_->find(film, wavelength);
-  if (!strip) return 0;
-  return std::max(area_before(strip, polygon_corners, t), 0.0);
+  if (const auto& cells = data_->cells) return cells->area(film, wavelength.position(data_->primary));
+  const auto found = data_->find(film, wavelength);
+  return found.strip ? std::max(found.polygon().area_before(polygon_corners), 0.0) : 0;
 }
 
 double FilmPupilTable::projected_solid_angle(const FilmPoint& film, Wavelength wavelength) const noexcept {
@@ -363,6 +334,7 @@ double FilmPupilTable::projected_solid_angle(const FilmPoint& film, Wavelength w
 
 Vec2<double> FilmPupilTable::middle(const FilmPoint& film, Wavelength wavelength) const noexcept {
   if (const auto& images = data_->images) return images->middle(film, wavelength.position(data_->primary));
+  if (const auto& cells = data_->cells) return cells->middle(film, wavelength.position(data_->primary));
   const auto [strip, t, cosine, sine] = data_->find(film, wavelength);
   if (!strip) return {0, 0};
   const double y = strip[L::middle_y] + t * strip[L::middle_y + 1];
@@ -371,15 +343,10 @@ Vec2<double> FilmPupilTable::middle(const FilmPoint& film, Wavelength wavelength
 
 bool FilmPupilTable::contains(const FilmPoint& film, double x, double y, Wavelength wavelength) const noexcept {
   if (const auto& images = data_->images) return images->contains(film, x, y, wavelength.position(data_->primary));
+  if (const auto& cells = data_->cells) return cells->contains(film, x, y, wavelength.position(data_->primary));
   const auto [strip, t, cosine, sine] = data_->find(film, wavelength);
   if (!strip) return false;
-  const Point<double> q{cosine * x - sine * y, sine * x + cosine * y - strip[L::middle_y] - t * strip[L::middle_y + 1]};
-  const auto sectors = [strip = strip, t = t](std::size_t k) { return sector_at(strip, k, t); };
-  const std::size_t k = sector_facing(q, sectors);
-  if (k == polygon_corners) return false;
-  const Sector<double> sector = sectors(k);
-  const double way = sector.way_to(q), squared = way * way;
-  return squared <= 1 && !sector.obscures(squared);
+  return contains_place(InStrip<double>{strip, t}, {cosine * x - sine * y, sine * x + cosine * y});
 }
 
 template <class T>
@@ -397,17 +364,25 @@ void FilmPupilTable::contains(std::size_t count, const TwoPlaneRays<const T>& li
     }
     return;
   }
-  const auto& loops = pupil_table_detail::film_pupil_table();
-  if constexpr (sizeof(T) == sizeof(float)) {
-    loops.contains_single(data_->table<T>(), count, film_x, film_y, x, y, wavelengths, within);
+  const auto& [strips, cells] = pupil_table_detail::film_pupil_table();
+  const auto run = [&, film_x = film_x, film_y = film_y, x = x, y = y](const auto& loops, const auto& table) {
+    if constexpr (sizeof(T) == sizeof(float)) {
+      loops.contains_single(table, count, film_x, film_y, x, y, wavelengths, within);
+    } else {
+      loops.contains_twice(table, count, film_x, film_y, x, y, wavelengths, within);
+    }
+  };
+  if (data_->cells) {
+    run(cells, data_->cells->table<T>());
   } else {
-    loops.contains_twice(data_->table<T>(), count, film_x, film_y, x, y, wavelengths, within);
+    run(strips, data_->table<T>());
   }
 }
 
 FilmPupilTable::Derivatives FilmPupilTable::derivatives(const FilmPoint& film, double u, double v,
                                                         Wavelength wavelength) const noexcept {
   if (const auto& images = data_->images) return images->derivatives(film, u, v, wavelength.position(data_->primary));
+  if (const auto& cells = data_->cells) return cells->derivatives(film, u, v, wavelength.position(data_->primary));
   using Jet = ceres::Jet<double, 2>;
   if (data_->strips_per_mm() == 0) return {};
   // On the axis the directions around it meet: beside it is near enough.
@@ -419,21 +394,18 @@ FilmPupilTable::Derivatives FilmPupilTable::derivatives(const FilmPoint& film, d
   u = std::clamp(u, 0.0, 1.0);
   v = std::clamp(v, 0.0, 1.0);
   const Jet x(at.x, 0), y(at.y, 1);
-  const bool turn = data_->turned;
   const Jet r = sqrt(x * x + y * y);
   Jet t = r * data_->strips_per_mm();
   t.a = found.t;
-  const Jet cosine = turn ? y / r : Jet(1), sine = turn ? x / r : Jet(0);
+  const Jet cosine = y / r, sine = x / r;
   Jet share(u);
-  if (turn) {
-    share -= turn_of(sine, cosine);
-    if (share.a < 0) share += 1.0;
-    if (share.a >= 1) share -= 1.0;
-  }
-  const double whole = area_before(found.strip, polygon_corners, t.a);
+  share -= turn_of(sine, cosine);
+  if (share.a < 0) share += 1.0;
+  if (share.a >= 1) share -= 1.0;
+  const double whole = found.polygon().area_before(polygon_corners);
   if (!(whole > 0)) return {};
-  const std::size_t k = sector_with(found.strip, t.a, share.a * whole);
-  const auto [px, py] = place(found.strip, k, t, share, v);
+  const std::size_t k = sector_with(found.polygon(), share.a * whole);
+  const auto [px, py] = sample_place(InStrip<Jet>{found.strip, t}, k, share, v);
   const Jet qx = cosine * px + sine * py, qy = cosine * py - sine * px;
   return {{qx.v[0], qy.v[0]}, {qx.v[1], qy.v[1]}};
 }

@@ -10,11 +10,12 @@
 namespace petzval::inline v0::pupil_table_detail {
 namespace {
 
-/// Where a film point stands in the table, and which way it lies; nowhere: at the table's beginning.
+/// Where a film point stands in the table; nowhere: at the table's beginning.
 template <class R>
 struct Place {
-  R t, cosine, sine;
-  std::int32_t known, strip;
+  R t, s;          // s: of a cell
+  R cosine, sine;  // which way the point lies; of a cell: the signs of its y and x
+  std::int32_t known, begin;
 };
 
 template <class R>
@@ -24,31 +25,155 @@ inline Place<R> place_of(const StripTable<R>& table, R film_x, R film_y, std::in
   const R r2 = film_x * film_x + film_y * film_y;
   const R r = core_detail::square_root(r2);
   const std::int32_t known = (r <= table.lit_radius) & (wavelength >= 0) & sound;
-  const std::int32_t turn = (table.turned ? 1 : 0) & known & (r2 > R(0));
+  const std::int32_t turn = known & (r2 > R(0));
   const R per_length = R(1) / (turn ? r : R(1));
   const R place = known ? r * table.strips_per_mm : R(0);
   const auto at = static_cast<std::int32_t>(place);
   const std::int32_t inner = at < last ? at : last;
   const std::int32_t strip =
       known ? (inner + wavelength * (last + 1)) * static_cast<std::int32_t>(StripLayout::size) : 0;
-  return {place - static_cast<R>(inner), turn ? film_y * per_length : R(1), turn ? film_x * per_length : R(0), known,
-          strip};
+  return {place - static_cast<R>(inner),     R(0),  turn ? film_y * per_length : R(1),
+          turn ? film_x * per_length : R(0), known, strip};
+}
+
+template <class R>
+inline Place<R> place_of(const CellTable<R>& table, R film_x, R film_y, std::int32_t sound,
+                         std::int32_t wavelength) noexcept {
+  const auto rows = static_cast<std::int32_t>(table.rows), columns = static_cast<std::int32_t>(table.columns);
+  const R x = film_x < R(0) ? -film_x : film_x, y = film_y < R(0) ? -film_y : film_y;
+  constexpr R end = R(1) + R(1e-6);  // the edge itself, rounded, still belongs to the film
+  const R row = y * table.rows_per_mm;
+  const std::int32_t in_rows =
+      (x * x + y * y <= table.film_radius * table.film_radius) & (row <= end * static_cast<R>(rows)) & sound;
+  const auto above = static_cast<std::int32_t>(in_rows ? row : R(0));
+  const std::int32_t i = above < rows - 1 ? above : rows - 1;
+  const R s = (in_rows ? row : R(0)) - static_cast<R>(i);
+  const R width = table.half_widths[i] + s * (table.half_widths[i + 1] - table.half_widths[i]);
+  const std::int32_t known = in_rows & (x <= end * width) & (wavelength >= 0);
+  const R column = known ? x / (width > R(0) ? width : R(1)) * static_cast<R>(columns) : R(0);
+  const auto right = static_cast<std::int32_t>(column);
+  const std::int32_t j = right < columns - 1 ? right : columns - 1;
+  const std::int32_t cell =
+      known ? ((wavelength * rows + i) * columns + j) * static_cast<std::int32_t>(CellLayout::size) : 0;
+  return {column - static_cast<R>(j), s, film_y < R(0) ? R(-1) : R(1), film_x < R(0) ? R(-1) : R(1), known, cell};
+}
+
+/// A place in the plane, given as the table has it: from the middle.
+template <class R>
+inline Point<R> turned(StripLayout, const Point<R>& middle, R cosine, R sine, const Point<R>& p) noexcept {
+  const R y = middle.y + p.y;
+  return {cosine * p.x + sine * y, cosine * y - sine * p.x};
+}
+template <class R>
+inline Point<R> turned(CellLayout, const Point<R>& middle, R sign_y, R sign_x, const Point<R>& p) noexcept {
+  return {sign_x * (middle.x + p.x), sign_y * (middle.y + p.y)};
+}
+/// A place of the plane as the table has it.
+template <class R>
+inline Point<R> turned_back(StripLayout, R cosine, R sine, const Point<R>& p) noexcept {
+  return {cosine * p.x - sine * p.y, sine * p.x + cosine * p.y};
+}
+template <class R>
+inline Point<R> turned_back(CellLayout, R sign_y, R sign_x, const Point<R>& p) noexcept {
+  return {sign_x * p.x, sign_y * p.y};
 }
 
 inline std::int32_t index(std::size_t place) noexcept { return static_cast<std::int32_t>(place); }
 
-/// A corner of the polygon at the fraction t of a strip.
+/// The numbers of a table. They are read by places that are 32 bits wide: lanes gather by those.
 template <class R>
-inline Point<R> corner_of(const R* all, std::int32_t strip, std::int32_t k, R t) noexcept {
-  const std::int32_t c = strip + index(StripLayout::sectors) + index(StripLayout::sector) * k;
+inline const R* numbers(const StripTable<R>& table) noexcept {
+  return table.strips;
+}
+template <class R>
+inline const R* numbers(const CellTable<R>& table) noexcept {
+  return table.cells;
+}
+
+/// A number of a cell.
+template <class R>
+inline R in_cell(const R* all, std::int32_t at, R t, R s) noexcept {
+  return all[at] + t * all[at + 1] + s * (all[at + 2] + t * all[at + 3]);
+}
+
+/// A corner of the polygon, from its middle.
+template <class R>
+inline Point<R> corner_of(StripLayout, const R* all, std::int32_t begin, std::int32_t k, R t, R) noexcept {
+  const std::int32_t c = begin + index(StripLayout::sectors) + index(StripLayout::sector) * k;
   return {all[c] + t * all[c + 2], all[c + 1] + t * all[c + 3]};
+}
+template <class R>
+inline Point<R> corner_of(CellLayout, const R* all, std::int32_t begin, std::int32_t k, R t, R s) noexcept {
+  const std::int32_t c = begin + index(CellLayout::sectors) + index(CellLayout::sector) * k;
+  return {in_cell(all, c, t, s), in_cell(all, c + 4, t, s)};
+}
+
+template <class R>
+inline Point<R> middle_of(StripLayout, const R* all, std::int32_t begin, R t, R) noexcept {
+  const std::int32_t m = begin + index(StripLayout::middle_y);
+  return {R(0), all[m] + t * all[m + 1]};
+}
+template <class R>
+inline Point<R> middle_of(CellLayout, const R* all, std::int32_t begin, R t, R s) noexcept {
+  return {in_cell(all, begin + index(CellLayout::middle_x), t, s),
+          in_cell(all, begin + index(CellLayout::middle_y), t, s)};
 }
 
 template <bool obscured, class R>
-inline Sector<R> sector_of(const R* all, std::int32_t strip, std::int32_t k, R t) noexcept {
-  Sector<R> sector{corner_of(all, strip, k, t), corner_of(all, strip, k + 1, t), R(0), R(0)};
+inline R area_at(StripLayout, const R* all, std::int32_t at, R t, R) noexcept {
+  const R cubic = obscured ? all[at + 3] : R(0);  // triangles are quadratic in t
+  return all[at] + t * (all[at + 1] + t * (all[at + 2] + t * cubic));
+}
+template <bool obscured, class R>
+inline R area_at(CellLayout, const R* all, std::int32_t at, R t, R s) noexcept {
+  const R one = all[at] + t * (all[at + 1] + t * all[at + 2]);
+  const R by_s = all[at + 3] + t * (all[at + 4] + t * all[at + 5]);
+  const R by_s2 = all[at + 6] + t * (all[at + 7] + t * all[at + 8]);
+  return one + s * (by_s + s * by_s2);
+}
+/// Area of the sectors before one.
+template <bool obscured, class Layout, class R>
+inline R area_before(Layout layout, const R* all, std::int32_t begin, std::int32_t k, R t, R s) noexcept {
+  return area_at<obscured>(layout, all,
+                           begin + index(Layout::sectors) + index(Layout::sector) * k + index(Layout::area), t, s);
+}
+
+/// The share of the half at +x, of a polygon with a whole area.
+template <class R>
+inline R right_share(const R* all, std::int32_t begin, R t, R s, R whole) noexcept {
+  return area_before<false>(CellLayout{}, all, begin, index(polygon_corners / 2), t, s) / (whole > R(0) ? whole : R(1));
+}
+
+/// u from where the polygon of the table begins, in the direction of its corners.
+template <class R>
+inline R share_of(StripLayout, const R*, std::int32_t, R, R, R, R cosine, R sine, R u) noexcept {
+  const R from = u - turn_of(sine, cosine);
+  const R fraction = from < R(0) ? from + R(1) : from;
+  return fraction < R(1) ? fraction : fraction - R(1);
+}
+template <class R>
+inline R share_of(CellLayout, const R* all, std::int32_t begin, R t, R s, R whole, R sign_y, R sign_x, R u) noexcept {
+  const R across = (R(1) - sign_x) / R(2) + sign_x * u;
+  const R from = (R(1) - sign_y) / R(2) * right_share(all, begin, t, s, whole) + sign_y * across;
+  const R fraction = from < R(0) ? from + R(1) : from;
+  return fraction < R(1) ? fraction : fraction - R(1);
+}
+
+/// In sectors, where a share of the area is expected to end.
+template <class R>
+inline R expected_sector(StripLayout, const R*, std::int32_t, R, R, R, R share) noexcept {
+  return share * R(polygon_corners);
+}
+template <class R>
+inline R expected_sector(CellLayout, const R* all, std::int32_t begin, R t, R s, R whole, R share) noexcept {
+  return sectors_in_halves(share, right_share(all, begin, t, s, whole));
+}
+
+template <bool obscured, class Layout, class R>
+inline Sector<R> sector_of(Layout layout, const R* all, std::int32_t begin, std::int32_t k, R t, R s) noexcept {
+  Sector<R> sector{corner_of(layout, all, begin, k, t, s), corner_of(layout, all, begin, k + 1, t, s), R(0), R(0)};
   if constexpr (obscured) {
-    const std::int32_t o = strip + index(StripLayout::obscured) + 4 * k;
+    const std::int32_t o = begin + index(Layout::obscured) + 4 * k;
     sector.obscured_from = all[o] + t * all[o + 2];
     sector.obscured = all[o + 1] + t * all[o + 3];
   }
@@ -56,42 +181,41 @@ inline Sector<R> sector_of(const R* all, std::int32_t strip, std::int32_t k, R t
 }
 
 /// One block, in loops without branches. Slots beyond `count` hold zeros.
-template <std::size_t block, bool obscured, class R>
-void sample_block(const StripTable<R>& table, const R* film_x, const R* film_y, const R* u, const R* v,
+template <std::size_t block, bool obscured, class Table, class R>
+void sample_block(const Table& table, const R* film_x, const R* film_y, const R* u, const R* v,
                   const std::int32_t* wavelength, R* x, R* y, R* area) noexcept {
-  using L = StripLayout;
+  using L = typename Table::Layout;
   constexpr auto corners = static_cast<std::int32_t>(polygon_corners);
-  const StripTable<R> own_table = table;  // which nothing that is written overlaps
-  const R* all = own_table.strips;
-  R t[block], cosine[block], sine[block], target[block], whole[block], outer[block], behind[block], beyond[block];
-  std::int32_t strip[block], sector[block];
+  const Table own_table = table;  // which nothing that is written overlaps
+  const R* all = numbers(own_table);
+  constexpr L layout;
+  R t[block], s[block], cosine[block], sine[block], target[block], whole[block], outer[block], behind[block],
+      beyond[block];
+  std::int32_t begin[block], sector[block];
 
   for (std::size_t i = 0; i < block; ++i) {
     // Comparisons with what is not a number are false.
     const R sound = (film_x[i] + film_y[i] + u[i] + v[i]) * R(0);
-    const auto [part, cos, sin, known, at] = place_of(own_table, film_x[i], film_y[i], sound >= R(0), wavelength[i]);
-    t[i] = part;
+    const auto [along, across, cos, sin, known, at] =
+        place_of(own_table, film_x[i], film_y[i], sound >= R(0), wavelength[i]);
+    t[i] = along;
+    s[i] = across;
     cosine[i] = cos;
     sine[i] = sin;
-    strip[i] = at;
-    const R from = core_detail::clamped(u[i]) - turn_of(sin, cos);
-    const R fraction = from < R(0) ? from + R(1) : from;
-    target[i] = fraction < R(1) ? fraction : fraction - R(1);
+    begin[i] = at;
+    target[i] = core_detail::clamped(u[i]);
     whole[i] = known ? R(1) : R(0);
     outer[i] = core_detail::clamped(v[i]);
   }
-  const auto sector_at = [&](std::size_t i, std::int32_t k) {
-    return strip[i] + index(L::sectors) + index(L::sector) * k;
+  const auto before = [&](std::size_t i, std::int32_t k) {
+    return area_before<obscured>(layout, all, begin[i], k, t[i], s[i]);
   };
-  const auto area_at = [&](std::size_t i, std::int32_t at) {
-    const R cubic = obscured ? all[at + 3] : R(0);  // triangles are quadratic in t
-    return all[at] + t[i] * (all[at + 1] + t[i] * (all[at + 2] + t[i] * cubic));
-  };
-  const auto area_before = [&](std::size_t i, std::int32_t k) { return area_at(i, sector_at(i, k) + 4); };
   const R early = table.corrections > 0 ? R(0) : R(0.5);
   for (std::size_t i = 0; i < block; ++i) {
-    whole[i] = whole[i] * area_at(i, strip[i] + index(L::whole));
-    const auto k = static_cast<std::int32_t>(target[i] * R(polygon_corners) - early);
+    whole[i] = whole[i] * area_at<obscured>(layout, all, begin[i] + index(L::whole), t[i], s[i]);
+    target[i] = share_of(layout, all, begin[i], t[i], s[i], whole[i], cosine[i], sine[i], target[i]);
+    const R expected = expected_sector(layout, all, begin[i], t[i], s[i], whole[i], target[i]);
+    const auto k = static_cast<std::int32_t>(expected - early);
     sector[i] = k < corners ? k : corners - 1;
     target[i] = target[i] * whole[i];
   }
@@ -99,57 +223,60 @@ void sample_block(const StripTable<R>& table, const R* film_x, const R* film_y, 
   for (int step = 0; step < table.corrections; ++step) {
     for (std::size_t i = 0; i < block; ++i) {
       const std::int32_t k = sector[i];
-      const std::int32_t back = (target[i] < area_before(i, k)) & (k > 0);
-      const std::int32_t on = (target[i] > area_before(i, k + 1)) & (k < corners - 1);
+      const std::int32_t back = (target[i] < before(i, k)) & (k > 0);
+      const std::int32_t on = (target[i] > before(i, k + 1)) & (k < corners - 1);
       sector[i] = k + on - back;
     }
   }
   for (std::size_t i = 0; i < block; ++i) {
     const std::int32_t k = sector[i];
-    behind[i] = target[i] - area_before(i, k + 1);
+    behind[i] = target[i] - before(i, k + 1);
     sector[i] = k + ((behind[i] >= R(0)) & (k < corners - 1));
     beyond[i] = sector[i] == k ? R(1) : R(0);
   }
   // The results overlap nothing that is read here.
   PETZVAL_INDEPENDENT
   for (std::size_t i = 0; i < block; ++i) {
-    const std::int32_t k = sector[i], m = strip[i] + index(L::middle_y);
-    const Sector<R> own = sector_of<obscured>(all, strip[i], k, t[i]);
+    const Sector<R> own = sector_of<obscured>(layout, all, begin[i], sector[i], t[i], s[i]);
     const R own_area = own.area();
     // From the sector's first corner, or back from its second.
     const R along = core_detail::clamped(behind[i] / (own_area > R(0) ? own_area : R(1)) + beyond[i]);
     const Point<R> p = own.at(core_detail::square_root(own.squared_way(outer[i])), along);
-    const R py = all[m] + t[i] * all[m + 1] + p.y;
+    const Point<R> middle = middle_of(layout, all, begin[i], t[i], s[i]);
+    const Point<R> place = turned(layout, middle, cosine[i], sine[i], p);
     const R some = whole[i] > R(0) ? R(1) : R(0);
-    x[i] = some * (cosine[i] * p.x + sine[i] * py);
-    y[i] = some * (cosine[i] * py - sine[i] * p.x);
+    x[i] = some * place.x;
+    y[i] = some * place.y;
     area[i] = some * whole[i];
   }
 }
 
 /// One block of places, whether their pupils contain them: sectors are found by halving.
-template <std::size_t block, class R>
-void contains_block(const StripTable<R>& table, const R* film_x, const R* film_y, const R* x, const R* y,
+template <std::size_t block, bool obscured, class Table, class R>
+void contains_block(const Table& table, const R* film_x, const R* film_y, const R* x, const R* y,
                     const std::int32_t* wavelength, std::uint8_t* within) noexcept {
-  using L = StripLayout;
   constexpr auto corners = static_cast<std::int32_t>(polygon_corners);
-  const StripTable<R> own_table = table;
-  const R* all = own_table.strips;
-  R t[block], qx[block], qy[block];
-  std::int32_t strip[block], sector[block], half[block], known[block];
+  const Table own_table = table;
+  const R* all = numbers(own_table);
+  constexpr typename Table::Layout layout;
+  R t[block], s[block], qx[block], qy[block];
+  std::int32_t begin[block], sector[block], half[block], known[block];
   for (std::size_t i = 0; i < block; ++i) {
-    const auto [part, cosine, sine, lit, at] = place_of(own_table, film_x[i], film_y[i], 1, wavelength[i]);
-    t[i] = part;
-    strip[i] = at;
+    const auto [along, across, cosine, sine, lit, at] = place_of(own_table, film_x[i], film_y[i], 1, wavelength[i]);
+    t[i] = along;
+    s[i] = across;
+    begin[i] = at;
     known[i] = lit;
-    qx[i] = cosine * x[i] - sine * y[i];
-    qy[i] = sine * x[i] + cosine * y[i];
+    const Point<R> q = turned_back(layout, cosine, sine, Point<R>{x[i], y[i]});
+    qx[i] = q.x;
+    qy[i] = q.y;
   }
-  const auto corner = [&](std::size_t i, std::int32_t k) { return corner_of(all, strip[i], k, t[i]); };
+  const auto corner = [&](std::size_t i, std::int32_t k) { return corner_of(layout, all, begin[i], k, t[i], s[i]); };
   // Half turns count from the first corner.
   for (std::size_t i = 0; i < block; ++i) {
-    const std::int32_t m = strip[i] + index(L::middle_y);
-    qy[i] -= all[m] + t[i] * all[m + 1];
+    const Point<R> middle = middle_of(layout, all, begin[i], t[i], s[i]);
+    qx[i] -= middle.x;
+    qy[i] -= middle.y;
     half[i] = turn(corner(i, 0), Point<R>{qx[i], qy[i]}) < R(0);
     sector[i] = 0;
   }
@@ -162,7 +289,7 @@ void contains_block(const StripTable<R>& table, const R* film_x, const R* film_y
   }
   PETZVAL_INDEPENDENT
   for (std::size_t i = 0; i < block; ++i) {
-    const Sector<R> own = sector_of<true>(all, strip[i], sector[i], t[i]);
+    const Sector<R> own = sector_of<obscured>(layout, all, begin[i], sector[i], t[i], s[i]);
     const Point<R> q{qx[i], qy[i]};
     const R behind = turn(own.a, q), before = turn(q, own.b), whole = turn(own.a, own.b);
     const R way = (behind + before) / (whole > R(0) ? whole : R(1)), squared = way * way;
@@ -179,9 +306,9 @@ template <std::size_t rays>
 using Block = std::integral_constant<std::size_t, rays>;
 
 /// Calls body(block, begin, n, four arrays of inputs, wavelengths) for each block of n; slots beyond n hold zeros.
-template <class R, class Body>
-inline void by_blocks(const StripTable<R>& table, std::size_t count, const R* const (&in)[4],
-                      const RayWavelengths& wavelengths, const Body& body) noexcept {
+template <class Table, class R, class Body>
+inline void by_blocks(const Table& table, std::size_t count, const R* const (&in)[4], const RayWavelengths& wavelengths,
+                      const Body& body) noexcept {
   const auto known = [&](std::size_t w) { return w < table.wavelengths ? static_cast<std::int32_t>(w) : -1; };
   std::int32_t w[whole_block];
   for (std::size_t i = 0; i < whole_block; ++i) w[i] = known(wavelengths.all.position(table.primary));
@@ -209,30 +336,32 @@ inline void by_blocks(const StripTable<R>& table, std::size_t count, const R* co
   body(Block<small_block>(), begin, n, part, w);
 }
 
-template <class R>
-void contains(const StripTable<R>& table, std::size_t count, const R* film_x, const R* film_y, const R* x, const R* y,
+template <bool obscured, class Table, class R>
+void contains(const Table& table, std::size_t count, const R* film_x, const R* film_y, const R* x, const R* y,
               const RayWavelengths& wavelengths, std::uint8_t* within) noexcept {
-  by_blocks(table, count, {film_x, film_y, x, y}, wavelengths,
-            [&](auto block, std::size_t begin, std::size_t n, const R* const* in, const std::int32_t* w) {
+  const R* const in[4] = {film_x, film_y, x, y};
+  by_blocks(table, count, in, wavelengths,
+            [&](auto block, std::size_t begin, std::size_t n, const R* const* of, const std::int32_t* w) {
               constexpr std::size_t rays = decltype(block)::value;
               std::uint8_t out[rays];
-              contains_block<rays>(table, in[0], in[1], in[2], in[3], w, n == rays ? within + begin : out);
+              contains_block<rays, obscured>(table, of[0], of[1], of[2], of[3], w, n == rays ? within + begin : out);
               for (std::size_t i = 0; n < rays && i < n; ++i) within[begin + i] = out[i];
             });
 }
 
-template <bool obscured, class R>
-void sample_blocks(const StripTable<R>& table, std::size_t count, const R* film_x, const R* film_y, const R* u,
-                   const R* v, const RayWavelengths& wavelengths, R* x, R* y, R* areas) noexcept {
-  by_blocks(table, count, {film_x, film_y, u, v}, wavelengths,
-            [&](auto block, std::size_t begin, std::size_t n, const R* const* in, const std::int32_t* w) {
+template <bool obscured, class Table, class R>
+void sample_blocks(const Table& table, std::size_t count, const R* film_x, const R* film_y, const R* u, const R* v,
+                   const RayWavelengths& wavelengths, R* x, R* y, R* areas) noexcept {
+  const R* const in[4] = {film_x, film_y, u, v};
+  by_blocks(table, count, in, wavelengths,
+            [&](auto block, std::size_t begin, std::size_t n, const R* const* of, const std::int32_t* w) {
               constexpr std::size_t rays = decltype(block)::value;
               if (n == rays) {
-                sample_block<rays, obscured>(table, in[0], in[1], in[2], in[3], w, x + begin, y + begin, areas + begin);
+                sample_block<rays, obscured>(table, of[0], of[1], of[2], of[3], w, x + begin, y + begin, areas + begin);
                 return;
               }
               R out[3][rays];
-              sample_block<rays, obscured>(table, in[0], in[1], in[2], in[3], w, out[0], out[1], out[2]);
+              sample_block<rays, obscured>(table, of[0], of[1], of[2], of[3], w, out[0], out[1], out[2]);
               for (std::size_t i = 0; i < n; ++i) {
                 x[begin + i] = out[0][i], y[begin + i] = out[1][i], areas[begin + i] = out[2][i];
               }
@@ -240,14 +369,23 @@ void sample_blocks(const StripTable<R>& table, std::size_t count, const R* film_
 }
 
 template <class R>
-void sample(const StripTable<R>& table, std::size_t count, const R* film_x, const R* film_y, const R* u, const R* v,
-            const RayWavelengths& wavelengths, R* x, R* y, R* areas) noexcept {
-  const auto blocks = table.obscured ? sample_blocks<true, R> : sample_blocks<false, R>;
+void sample_strips(const StripTable<R>& table, std::size_t count, const R* film_x, const R* film_y, const R* u,
+                   const R* v, const RayWavelengths& wavelengths, R* x, R* y, R* areas) noexcept {
+  const auto blocks = table.obscured ? sample_blocks<true, StripTable<R>, R> : sample_blocks<false, StripTable<R>, R>;
   blocks(table, count, film_x, film_y, u, v, wavelengths, x, y, areas);
 }
 
+template <class R>
+constexpr auto contains_strips = contains<true, StripTable<R>, R>;
+template <class R>
+constexpr auto sample_cells = sample_blocks<false, CellTable<R>, R>;
+template <class R>
+constexpr auto contains_cells = contains<false, CellTable<R>, R>;
+
 }  // namespace
 
-const FilmPupilLoops PETZVAL_LOOPS{sample<float>, sample<double>, contains<float>, contains<double>};
+const FilmPupilLoops PETZVAL_LOOPS{
+    .strips = {sample_strips<float>, sample_strips<double>, contains_strips<float>, contains_strips<double>},
+    .cells = {sample_cells<float>, sample_cells<double>, contains_cells<float>, contains_cells<double>}};
 
 }  // namespace petzval::inline v0::pupil_table_detail

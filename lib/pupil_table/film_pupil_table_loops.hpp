@@ -17,20 +17,43 @@ struct StripLayout {
   static constexpr std::size_t whole = 4;     ///< area by powers of t
   static constexpr std::size_t sectors =
       8;  ///< [65] first corner x, y, x by t, y by t; area of the sectors before by powers of t
-  static constexpr std::size_t sector = 8;                                           ///< numbers of one
+  static constexpr std::size_t sector = 8, area = 4;                                 ///< numbers of one
   static constexpr std::size_t obscured = sectors + sector * (polygon_corners + 1);  ///< [64] begin, width, these by t
   static constexpr std::size_t size = obscured + 4 * polygon_corners;
 };
 
-/// The strips of all wavelengths, borrowed.
+/// The strips of all wavelengths, borrowed. Their polygons are those of film points on +y and turn with the point.
 template <class R>
 struct StripTable {
+  using Layout = StripLayout;
   const R* strips = nullptr;  ///< [wavelength * count + strip] StripLayout
   std::size_t count = 0, wavelengths = 0, primary = 0;
   R lit_radius = 0, strips_per_mm = 0;
-  bool turned = true;     ///< the polygons are those of film points on +y and turn with the point
   bool obscured = false;  ///< at least one sector has an obscuration
   int corrections = 0;    ///< by how many sectors equal shares may miss the right one; 0: by half a one
+};
+
+/// The polygons within a cell of a grid over the film, bilinear in the fractions s of the way from its first row to
+/// its second and t along a row: numbers by 1, t, s and st. Areas are products of two such, by 1, t, t^2, s, st, st^2,
+/// s^2, s^2 t and s^2 t^2. Without obscurations.
+struct CellLayout {
+  static constexpr std::size_t middle_x = 0, middle_y = 4;
+  static constexpr std::size_t whole = 8;     ///< area
+  static constexpr std::size_t sectors = 17;  ///< [65] first corner x, y, relative to the middle; area before
+  static constexpr std::size_t sector = 17, area = 8;
+  static constexpr std::size_t size = sectors + sector * (polygon_corners + 1);
+};
+
+/// The cells of all wavelengths, borrowed. They cover the quadrant x, y >= 0 of the film; the pupils of the others are
+/// its mirror images. Corner 0 lies towards +y of the middle, corner 32 towards -y.
+template <class R>
+struct CellTable {
+  using Layout = CellLayout;
+  const R* cells = nullptr;        ///< [(wavelength * rows + row) * columns + column] CellLayout
+  const R* half_widths = nullptr;  ///< [rows + 1] x at which rows end, mm
+  std::size_t rows = 0, columns = 0, wavelengths = 0, primary = 0;
+  R film_radius = 0, rows_per_mm = 0;
+  int corrections = 0;  ///< as in StripTable
 };
 
 namespace {
@@ -55,20 +78,35 @@ inline T turn_of(const T& sine, const T& cosine) noexcept {
   return sine < T(0) ? T(-turn) : turn;
 }
 
+/// Where a share of the area is expected to end, in sectors that have equal areas in each of two halves. right: the
+/// share of the first half.
+template <class T>
+inline T sectors_in_halves(T share, T right) noexcept {
+  // Without branches: within the half in which the share ends, and after the other.
+  const T in_left = share < right ? T(0) : T(1);
+  const T begin = in_left * right, own = right + in_left * (T(1) - T(2) * right);
+  return T(polygon_corners) / T(2) * (in_left + (share - begin) / (own > T(0) ? own : T(1)));
+}
+
 }  // namespace
 
 struct FilmPupilLoops {
-  using Float = void (*)(const StripTable<float>&, std::size_t, const float*, const float*, const float*, const float*,
-                         const RayWavelengths&, float*, float*, float*) noexcept;
-  using Double = void (*)(const StripTable<double>&, std::size_t, const double*, const double*, const double*,
-                          const double*, const RayWavelengths&, double*, double*, double*) noexcept;
-  template <class R>
-  using Contains = void (*)(const StripTable<R>&, std::size_t, const R* film_x, const R* film_y, const R* x, const R* y,
+  template <class Table, class R>
+  using Sample = void (*)(const Table&, std::size_t, const R* film_x, const R* film_y, const R* u, const R* v,
+                          const RayWavelengths&, R* x, R* y, R* areas) noexcept;
+  template <class Table, class R>
+  using Contains = void (*)(const Table&, std::size_t, const R* film_x, const R* film_y, const R* x, const R* y,
                             const RayWavelengths&, std::uint8_t* within) noexcept;
-  Float single;
-  Double twice;
-  Contains<float> contains_single;
-  Contains<double> contains_twice;
+  /// Of one kind of table.
+  template <template <class> class Table>
+  struct Of {
+    Sample<Table<float>, float> single;
+    Sample<Table<double>, double> twice;
+    Contains<Table<float>, float> contains_single;
+    Contains<Table<double>, double> contains_twice;
+  };
+  Of<StripTable> strips;
+  Of<CellTable> cells;
 };
 
 PETZVAL_WIDEST(FilmPupilLoops, film_pupil_table)

@@ -18,7 +18,15 @@ struct FilmSamples {
 
 FilmSamples film_samples(const FilmPupilTable& pupils, bool azimuths_alike, std::size_t wavelength) {
   constexpr int radii = 32, around = 16;
-  const auto seen = [&](double radius) { return pupils.area({0, radius}, wavelength) > 0; };
+  const int azimuths = azimuths_alike ? 1 : around;
+  const auto seen = [&](double radius) {
+    bool any = false;
+    for (int k = 0; k < azimuths && !any; ++k) {
+      const double turn = 2 * std::numbers::pi * k / azimuths;
+      any = pupils.area({radius * std::sin(turn), radius * std::cos(turn)}, wavelength) > 0;
+    }
+    return any;
+  };
   double last = pupils.film_radius();
   if (!seen(last)) {
     const double dark = last;
@@ -45,7 +53,7 @@ FilmSamples film_samples(const FilmPupilTable& pupils, bool azimuths_alike, std:
       }
       continue;
     }
-    // The pupil is that of all points, and much of it passes nothing: uniform samples of all of it.
+    // The pupil may be that of all points, of which much passes nothing: uniform samples of all of it.
     for (int k = 0; k < 16 * around; ++k, ++index) {
       const auto [turn, u, v] = points(index);
       add(radius, 2 * std::numbers::pi * turn, u, v);

@@ -190,7 +190,7 @@ Vec2<double> PolygonSampler::operator()(double u, double v) const noexcept {
   return {polygon_.middle[0] + p.x, polygon_.middle[1] + p.y};
 }
 
-PupilPolygon polygon_of(const PupilRegion& region, PolygonFit fit) {
+PupilPolygon polygon_of(const PupilRegion& region, PolygonFit fit, CornerSteps steps) {
   PupilPolygon polygon;
   polygon.middle = region.middle;
   if (region.empty()) return polygon;
@@ -201,9 +201,22 @@ PupilPolygon polygon_of(const PupilRegion& region, PolygonFit fit) {
   // Corners at equal steps of the area.
   std::vector<double> until{0};
   for (std::size_t i = 0; i < n; ++i) until.push_back(until.back() + std::max(turn(point(i), point(i + 1)), 0.0));
+  double right = until.back() / 2;  // of the half at +x
+  for (std::size_t i = 0; i < n; ++i) {
+    const Place &a = point(i), &b = point(i + 1);
+    if (steps == CornerSteps::even || !(a.x >= 0 && b.x < 0)) continue;
+    right = until[i] + turn(a, a + a.x / (a.x - b.x) * (b - a));
+    break;
+  }
+  const auto area_before = [&](std::size_t k) {
+    if (steps == CornerSteps::even) return until.back() * static_cast<double>(k) / polygon_corners;
+    constexpr std::size_t half = polygon_corners / 2;
+    const double part = static_cast<double>(k % half) / half;
+    return k < half ? part * right : right + part * (until.back() - right);
+  };
   std::array<std::size_t, polygon_corners + 1> segment{};
   for (std::size_t k = 0, i = 0; k < polygon_corners; ++k) {
-    const double wanted = until.back() * static_cast<double>(k) / polygon_corners;
+    const double wanted = area_before(k);
     while (i + 1 < n && until[i + 1] <= wanted) ++i;
     segment[k] = i;
     const double step = until[i + 1] - until[i], t = step > 0 ? (wanted - until[i]) / step : 0;

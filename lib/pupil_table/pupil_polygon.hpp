@@ -53,8 +53,13 @@ enum class PolygonFit {
   equal_area,  ///< has its area
 };
 
+enum class CornerSteps {
+  even,           ///< equal steps of the area
+  even_in_halves  ///< in each of the halves at +x and -x of the middle: corner 32 lies towards -y
+};
+
 /// The polygon of a region, corners at equal steps of its area.
-PupilPolygon polygon_of(const PupilRegion& region, PolygonFit fit);
+PupilPolygon polygon_of(const PupilRegion& region, PolygonFit fit, CornerSteps steps = CornerSteps::even);
 
 /// Four polygons of a table and their weights in an interpolated one.
 struct PolygonWeights {

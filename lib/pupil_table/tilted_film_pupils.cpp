@@ -68,7 +68,7 @@ PupilsAt tilted_film_pupils(const FilmPupilTable& upright, const FilmTilt& tilt,
     }
     std::array<std::vector<double>, 2> film;
     return pupil_detail::find_regions(
-        guesses, heights.size(), region_directions, true,
+        guesses, pupil_detail::SearchOrder::rows(guesses.size(), heights.size()), region_directions, true,
         [&](std::size_t count, const std::uint32_t* which, const double* x, const double* y, std::uint8_t* passes) {
           for (auto& values : film) values.resize(count);
           for (std::size_t i = 0; i < count; ++i) {

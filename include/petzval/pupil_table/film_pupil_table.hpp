@@ -44,27 +44,29 @@ struct PupilSample {
 };
 
 /// The pupils of every point of a film: the parts of the plane behind the lens through which the points see the scene,
-/// as a table over the distance from the axis, one for each compiled wavelength, or in closed form.
+/// as a table over the film, one for each compiled wavelength, or in closed form.
 ///
 /// A pupil of a table is a polygon of 64 corners about a middle, less a central obscuration where the lens has one.
-/// Corners and middles are interpolated between 65 distances, so that the pupil, and with it the sample for a given u
-/// and v, moves continuously with the film point and images show no rings. Areas are exact for the interpolated
-/// polygon. Lenses without symmetry of revolution have one pupil for all points, which contains the pupils of all.
+/// Corners and middles are interpolated between 65 distances from the axis, or, of a lens with cylinders, bilinearly
+/// between 9 x 9 film points in a quadrant, so that the pupil, and with it the sample for a given u and v, moves
+/// continuously with the film point and images show no rings and seams. Areas are exact for the interpolated polygon.
+/// The tables of lenses with cylinders leave out no obscuration.
 ///
 /// Immutable, cheap to copy, free to share between threads.
 class PETZVAL_API FilmPupilTable {
  public:
   /// Polygons that contain every ray that the lens passes and few others; rays still have to be traced. At most 1e-5 of
   /// the pupils' area is missed (tests/pupil_table/film_pupil_table_test.cpp: every lens of data/ wide open over its
-  /// declared field, some of them stopped down), except where a pupil has more than two parts along a line: a ball lens
-  /// stopped down or far off the axis, catadioptrics beyond their field.
+  /// declared field, some of them stopped down; film_cells_test.cpp: a lens with cylinders from wide open to f/64),
+  /// except where a pupil has more than two parts along a line: a ball lens stopped down or far off the axis,
+  /// catadioptrics beyond their field. The pupils of a round iris contain those of any other.
   ///
   /// film_radius: of the farthest film point, mm, >= 0. The film is that of the lens. Throws Error for a film in the
   /// plane of the last vertex and for a film_radius that is negative or not finite.
   static FilmPupilTable enclosing(const Lens& lens, double film_radius);
 
   /// Polygons that have the area of the pupils and nearly their shape, for models without rims. Throws Error as
-  /// enclosing() does, and for a lens without symmetry of revolution.
+  /// enclosing() does, and for an iris with edges.
   static FilmPupilTable equal_area(const Lens& lens, double film_radius);
 
   /// The same for the overlap of some discs, one list for each wavelength. One disc alone has a closed form: of_iris().
@@ -86,7 +88,8 @@ class PETZVAL_API FilmPupilTable {
   /// table that meets the film, and few others: one pupil for each distance of the virtual film point from the axis
   /// holds the pupils of all points at that distance. At most 1e-5 of their area is missed
   /// (tests/camera/tilted_exposure_test.cpp), except where enclosing() misses more: of a ball lens 10 mm across, tilted
-  /// by 8 degrees, 2e-3 on a film of 3 x 2 mm, 2e-4 on one of 0.6 x 0.45 mm at f/8. This table's film_radius must reach
+  /// by 8 degrees, 2e-3 on a film of 3 x 2 mm, 2e-4 on one of 0.6 x 0.45 mm at f/8. Of a lens with cylinders one pupil
+  /// for all points holds all of them, and more samples are lost. This table's film_radius must reach
   /// to all points where its rays meet the upright film. Throws Error for a radius that is negative or not finite.
   FilmPupilTable for_tilted_film(const FilmTilt& tilt) const;
 

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "film_lines.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <utility>
+
+#include "petzval/paraxial/first_order.hpp"
+#include "petzval/trace/trace.hpp"
+#include "pupil/face.hpp"
+
+namespace petzval::inline v0::pupil_table_detail {
+
+pupil_detail::PassingPlaces traced_lines(const Lens& lens, const TwoPlanes& space, std::vector<FilmPoint> points,
+                                         std::size_t wavelength) {
+  const double towards = towards_scene(lens, space);
+  return [&lens, space, towards, wavelength, points = std::move(points), memory = std::array<std::vector<double>, 6>{},
+          fates = std::vector<RayFate>{}](std::size_t count, const std::uint32_t* which, const double* x,
+                                          const double* y, std::uint8_t* passes) mutable {
+    for (auto& a : memory) a.resize(count);
+    fates.resize(count);
+    const double depth = space.depth();
+    for (std::size_t i = 0; i < count; ++i) {
+      const FilmPoint& film = points[which[i]];
+      const double dx = x[i] - film.x, dy = y[i] - film.y;
+      const double per_length = towards / std::sqrt(dx * dx + dy * dy + depth * depth);
+      memory[0][i] = x[i], memory[1][i] = y[i], memory[2][i] = space.pupil_z;
+      memory[3][i] = dx * per_length, memory[4][i] = dy * per_length, memory[5][i] = depth * per_length;
+    }
+    const auto at = [&](std::size_t k) { return memory[k].data(); };
+    trace<double>(lens, count, {at(0), at(1), at(2), at(3), at(4), at(5)}, {at(0), at(1), at(2), at(3), at(4), at(5)},
+                  fates.data(), nullptr, {.travel = Travel::to_scene, .wavelengths = {wavelength}});
+    for (std::size_t i = 0; i < count; ++i) passes[i] = fates[i] == RayFate::transmitted;
+  };
+}
+
+std::vector<pupil_detail::PupilGuess> first_order_guesses(const Lens& lens, const TwoPlanes& space,
+                                                          std::span<const FilmPoint> points, std::size_t wavelength) {
+  const Pupils paraxial = petzval::pupils(lens, wavelength);
+  const std::size_t last = lens.surface_count() - 1;
+  const double last_z = lens.surfaces()[last].vertex_z;
+  const pupil_detail::Face face = pupil_detail::face_of(lens, last, paraxial.entrance);
+  const auto seen = [&](double film, double at, double z) {  // in the plane of the pupil
+    return film + (at - film) * space.depth() / (z - space.film_z);
+  };
+  double radius = std::isfinite(paraxial.exit.z) && paraxial.exit.z != space.film_z
+                      ? std::abs(seen(0, paraxial.exit.diameter / 2, paraxial.exit.z))
+                      : 0;
+  const bool somewhere = radius > 0;
+  if (!somewhere) radius = std::abs(seen(0, face.half, last_z)) / 8;
+  const auto surfaces = lens.surfaces();
+  const bool ring = std::any_of(surfaces.begin(), surfaces.end(),
+                                [](const LensSurface& s) { return s.obscuration_semi_diameter > 0; });
+  std::vector<pupil_detail::PupilGuess> result;
+  for (const FilmPoint& p : points) {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const double z : {face.z_min, face.z_max, last_z}) {
+      // A face that reaches to the film is met at any angle; one beyond the film counts as near it.
+      const double least = 0.02 * std::abs(space.film_z - last_z);
+      const double from_film = z - space.film_z;
+      const double at = space.film_z + std::copysign(std::max(std::abs(from_film), least), last_z - space.film_z);
+      for (const double edge : {-face.half, face.half}) {
+        low = std::min(low, seen(p.y, edge, at));
+        high = std::max(high, seen(p.y, edge, at));
+      }
+    }
+    const double across = lens.rotationally_symmetric() ? 0 : seen(p.x, 0, last_z), margin = 0.05 * (high - low);
+    const double y = seen(p.y, 0, somewhere ? paraxial.exit.z : last_z);
+    constexpr double radii = 16;
+    result.push_back({across, low - margin, high + margin, radius, y, radii * radius, ring});
+  }
+  return result;
+}
+
+}  // namespace petzval::inline v0::pupil_table_detail

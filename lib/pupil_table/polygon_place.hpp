@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "film_pupil_table_loops.hpp"
+#include "petzval/core/geometry.hpp"
+#include "pupil_table/sector.hpp"
+
+/// Polygons of tables for one film point, as loops have them for many: double or derivatives.
+namespace petzval::inline v0::pupil_table_detail {
+
+/// The polygon at the fraction t of a strip (StripLayout).
+template <class T>
+struct InStrip {
+  const double* strip = nullptr;
+  T t{};
+
+  static Point<T> along(const double* from, const T& t) { return {from[0] + t * from[2], from[1] + t * from[3]}; }
+  Point<T> corner(std::size_t k) const { return along(strip + StripLayout::sectors + StripLayout::sector * k, t); }
+  Point<T> middle() const { return {T(0.0), strip[StripLayout::middle_y] + t * strip[StripLayout::middle_y + 1]}; }
+  /// Begin and width.
+  Point<T> obscured(std::size_t k) const { return along(strip + StripLayout::obscured + 4 * k, t); }
+  /// Area before a sector; `polygon_corners`: the whole.
+  T area_before(std::size_t k) const {
+    const double* f = strip + StripLayout::sectors + StripLayout::sector * k + StripLayout::area;
+    return f[0] + t * (f[1] + t * (f[2] + t * f[3]));
+  }
+  /// In sectors, where a share of the area is expected to end.
+  double expected(double share) const { return share * polygon_corners; }
+};
+
+/// The polygon at fractions of a cell (CellLayout).
+template <class T>
+struct InCell {
+  const double* cell = nullptr;
+  T t{}, s{};
+
+  T bilinear(const double* f) const { return f[0] + t * f[1] + s * (f[2] + t * f[3]); }
+  Point<T> corner(std::size_t k) const {
+    const double* f = cell + CellLayout::sectors + CellLayout::sector * k;
+    return {bilinear(f), bilinear(f + 4)};
+  }
+  Point<T> middle() const { return {bilinear(cell + CellLayout::middle_x), bilinear(cell + CellLayout::middle_y)}; }
+  Point<T> obscured(std::size_t) const { return {T(0.0), T(0.0)}; }
+  T area_before(std::size_t k) const {
+    const double* f = cell + CellLayout::sectors + CellLayout::sector * k + CellLayout::area;
+    const auto quadratic = [this](const double* g) { return g[0] + t * (g[1] + t * g[2]); };
+    return quadratic(f) + s * (quadratic(f + 3) + s * quadratic(f + 6));
+  }
+  /// Of the half at +x.
+  T right_share() const { return area_before(polygon_corners / 2) / area_before(polygon_corners); }
+  double expected(double share) const { return sectors_in_halves(share, right_share()); }
+};
+
+template <template <class> class In, class T>
+Sector<T> sector_at(const In<T>& polygon, std::size_t k) {
+  const Point<T> obscured = polygon.obscured(k);
+  return {polygon.corner(k), polygon.corner(k + 1), obscured.x, obscured.y};
+}
+
+/// The sector in which a sample lies. area: before it.
+template <template <class> class In>
+std::size_t sector_with(const In<double>& polygon, double area) {
+  return sector_of_area(area, [&](std::size_t k) { return polygon.area_before(k); });
+}
+
+/// The place of a sample in the sector k.
+template <template <class> class In, class T>
+Point<T> sample_place(const In<T>& polygon, std::size_t k, const T& u, double v) {
+  using std::sqrt;
+  const Sector<T> sector = sector_at(polygon, k);
+  T along = (polygon.area_before(polygon_corners) * u - polygon.area_before(k)) / sector.area();
+  if (!(along <= 1.0)) along = T(1.0);
+  const T squared = sector.squared_way(T(v));
+  const Point<T> p = sector.at(squared > 0.0 ? T(sqrt(squared)) : T(0.0), along);  // no derivative in the middle
+  return polygon.middle() + p;
+}
+
+template <template <class> class In>
+bool contains_place(const In<double>& polygon, const Point<double>& place) {
+  const Point<double> q = place - polygon.middle();
+  const auto sectors = [&](std::size_t k) { return sector_at(polygon, k); };
+  const std::size_t k = sector_facing(q, sectors);
+  if (k == polygon_corners) return false;
+  const Sector<double> sector = sectors(k);
+  const double way = sector.way_to(q), squared = way * way;
+  return squared <= 1 && !sector.obscures(squared);
+}
+
+/// By how many sectors equal shares of the area miss the right one, at most: as tables have it (StripTable).
+template <template <class> class In>
+int corrections_of(const In<double>& polygon) {
+  int corrections = 0;
+  const double whole = polygon.area_before(polygon_corners);
+  for (std::size_t k = 0; whole > 0 && k < polygon_corners; ++k) {
+    const double off = std::abs(polygon.expected(polygon.area_before(k) / whole) - static_cast<double>(k));
+    constexpr int most = 64;
+    if (off > 0.49) corrections = std::max(corrections, std::min(static_cast<int>(std::ceil(off)), most));
+  }
+  return corrections;
+}
+
+}  // namespace petzval::inline v0::pupil_table_detail
