@@ -11,13 +11,13 @@
 
 namespace petzval::inline v0::camera_detail {
 
-StopMaps stop_maps(const LensFacts& facts, std::size_t wavelength, const TwoPlanes& space) {
+StopMaps stop_maps(const LensFacts& facts, std::size_t wavelength, const TwoPlanes& space, Meridian section) {
   const Lens& lens = facts.lens();
   const std::size_t stop = facts.pupils(wavelength).stop, last = lens.surface_count();
   const double n_front = signed_index(lens, 0, wavelength), n_behind = signed_index(lens, last, wavelength);
-  const RayMatrix lens_map = ray_matrix(lens, 0, last, wavelength).on_slopes(n_front, n_behind);
+  const RayMatrix lens_map = ray_matrix(lens, 0, last, wavelength, section).on_slopes(n_front, n_behind);
   const RayMatrix from_stop =
-      ray_matrix(lens, stop, last, wavelength).on_slopes(signed_index(lens, stop, wavelength), n_behind);
+      ray_matrix(lens, stop, last, wavelength, section).on_slopes(signed_index(lens, stop, wavelength), n_behind);
   // Heights in the stop itself: a pupil at infinity is no special case.
   const RayMatrix behind_lens = line_at(space, lens.surfaces().back().vertex_z);
   return {behind_lens.then(from_stop.inverse()), from_stop.then(lens_map.inverse())};
@@ -26,8 +26,9 @@ StopMaps stop_maps(const LensFacts& facts, std::size_t wavelength, const TwoPlan
 /// A plane of the scene is a slope per height in the stop, v, of the first-order rays from its axial point. Exact rays,
 /// continued to the stop by first order, have heights y and slopes u there: seen from the entrance pupil they miss the
 /// point by u - v y, but for a constant. The sum of squares is least for v = sum(u y) / sum(y y).
-double best_focus_power(const LensFacts& facts, std::size_t wavelength, const StopMaps& maps) {
+double best_focus_power(const LensFacts& facts, std::size_t wavelength, const StopMaps& maps, Meridian section) {
   const Lens& lens = facts.lens();
+  const bool cylinders = has_cylinders(lens);
   // Of a lens of revolution one meridian stands for all.
   const PupilBoundary boundary = lens.rotationally_symmetric() ? exit_pupil_boundary(lens, {}, wavelength, 1)
                                                                : exit_pupil_boundary(lens, {}, wavelength);
@@ -40,7 +41,10 @@ double best_focus_power(const LensFacts& facts, std::size_t wavelength, const St
     if (!end.transmitted()) return;
     const auto line = core_detail::slope_ray(end.ray, front_z);
     const double light = area * weight * std::pow(start.direction.z, 4);
-    for (const auto& [height, slope] : {std::array{line.x, line.slope_x}, std::array{line.y, line.slope_y}}) {
+    for (const Meridian along : {Meridian::x, Meridian::y}) {
+      if (cylinders && along != section) continue;
+      const auto [height, slope] =
+          along == Meridian::x ? std::array{line.x, line.slope_x} : std::array{line.y, line.slope_y};
       const double in_stop = to_stop.a * height + to_stop.b * slope;
       uy += light * in_stop * (to_stop.c * height + to_stop.d * slope);
       yy += light * in_stop * in_stop;

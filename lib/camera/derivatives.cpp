@@ -65,10 +65,10 @@ template RayDerivatives ExactModel<double>::to_scene(const TwoPlaneRayDerivative
 RayDerivatives ParaxialModel::to_scene(const TwoPlaneRayDerivatives& line, std::size_t wavelength) const noexcept {
   if (wavelength >= to_scene_.size()) return {RayFate::missed_surface};
   const auto [film_x, film_y, pupil_x, pupil_y] = line_of(line);
-  const RayMatrix& m = to_scene_[wavelength];
-  const Jet slope_x = m.c * film_x + m.d * pupil_x, slope_y = m.c * film_y + m.d * pupil_y;
+  const auto& [mx, my] = to_scene_[wavelength];
+  const Jet slope_x = mx.c * film_x + mx.d * pupil_x, slope_y = my.c * film_y + my.d * pupil_y;
   const Jet down = -1.0 / sqrt(slope_x * slope_x + slope_y * slope_y + 1.0);
-  return derivatives_of({m.a * film_x + m.b * pupil_x, m.a * film_y + m.b * pupil_y, Jet(z_)},
+  return derivatives_of({mx.a * film_x + mx.b * pupil_x, my.a * film_y + my.b * pupil_y, Jet(z_)},
                         {slope_x * down, slope_y * down, down});
 }
 

@@ -125,8 +125,9 @@ SceneSide::SceneSide(const LensFacts& facts, const Film& film, std::optional<Til
   for (std::size_t w = 0; w < scale.size(); ++w) {
     const double n = lens.index(0, w), n_film = lens.index(lens.surface_count(), w), etendue = squared(n / n_film);
     const Pupil entrance = facts.pupils(w).entrance;
+    const double across = has_cylinders(lens) ? pupils(lens, w, Meridian::x).entrance.diameter : entrance.diameter;
     const double area =
-        model.pinhole() ? pinhole_entrance_area(model, entrance.z, w) : pi / 4 * squared(entrance.diameter);
+        model.pinhole() ? pinhole_entrance_area(model, entrance.z, w) : pi / 4 * across * entrance.diameter;
     wavelengths_.push_back({.we = etendue * scale[w] / film.area_mm2(),
                             .density = etendue / film.area_mm2() / squared(space_.depth()),
                             .entrance_z = entrance.z,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <optional>
 #include <vector>
@@ -9,6 +10,13 @@
 #include "petzval/paraxial/first_order.hpp"
 
 namespace petzval::inline v0::camera_detail {
+
+/// Whether the two sections of a lens differ.
+inline bool has_cylinders(const Lens& lens) noexcept {
+  const auto surfaces = lens.surfaces();
+  return std::any_of(surfaces.begin(), surfaces.end(),
+                     [](const LensSurface& s) { return s.curved_in != Section::both; });
+}
 
 /// The first-order data of a lens at each wavelength, which the parts of a camera share.
 class LensFacts {
@@ -22,8 +30,9 @@ class LensFacts {
 
   const Lens& lens() const noexcept { return lens_; }
   std::size_t wavelengths() const noexcept { return lens_.wavelengths_nm().size(); }
+  /// In the section along y.
   const FirstOrder& first_order(std::size_t wavelength) const { return first_order_[wavelength]; }
-  /// Throws Error where petzval::pupils() does.
+  /// In the section along y. Throws Error where petzval::pupils() does.
   Pupils pupils(std::size_t wavelength) const {
     return pupils_[wavelength] ? *pupils_[wavelength] : petzval::pupils(lens_, wavelength);
   }

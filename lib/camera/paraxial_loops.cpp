@@ -23,16 +23,16 @@ void fill(std::size_t count, const MapOf& map_of, const Known& known, T z, const
           T* __restrict y, T* __restrict out_z, T* __restrict dx, T* __restrict dy, T* __restrict dz,
           RayFate* __restrict fates) noexcept {
   for (std::size_t i = 0; i < count; ++i) {
-    const RayMatrix& m = map_of(i);
-    const T a = static_cast<T>(m.a), b = static_cast<T>(m.b), c = static_cast<T>(m.c), d = static_cast<T>(m.d);
+    const auto& [along_x, along_y] = map_of(i);
+    const auto number = [](double value) { return static_cast<T>(value); };
     const bool good = in_reach(film_x[i], film_y[i], pupil_x[i], pupil_y[i]);
     // A line that is no good becomes the axis.
     const T fx = good ? film_x[i] : T(0), fy = good ? film_y[i] : T(0);
     const T px = good ? pupil_x[i] : T(0), py = good ? pupil_y[i] : T(0);
-    const T ux = c * fx + d * px, uy = c * fy + d * py;
+    const T ux = number(along_x.c) * fx + number(along_x.d) * px, uy = number(along_y.c) * fy + number(along_y.d) * py;
     const T down = T(-1) / std::sqrt(T(1) + ux * ux + uy * uy);
-    x[i] = a * fx + b * px;
-    y[i] = a * fy + b * py;
+    x[i] = number(along_x.a) * fx + number(along_x.b) * px;
+    y[i] = number(along_y.a) * fy + number(along_y.b) * py;
     out_z[i] = z;
     dx[i] = ux * down;
     dy[i] = uy * down;
@@ -54,11 +54,11 @@ void to_scene(std::size_t count, const ParaxialJob& job, const TwoPlaneRays<cons
   const std::uint16_t* each = job.wavelengths.each;
   if (each) {
     const auto known = [&](std::size_t i) { return each[i] < job.known; };
-    run([&](std::size_t i) -> const RayMatrix& { return job.maps[known(i) ? each[i] : 0]; }, known);
+    run([&](std::size_t i) -> const SectionMaps& { return job.maps[known(i) ? each[i] : 0]; }, known);
   } else {
     const std::size_t all = job.wavelengths.all.position(job.primary);
     const bool known = all < job.known;
-    run([map = job.maps[known ? all : 0]](std::size_t) -> const RayMatrix& { return map; },
+    run([map = job.maps[known ? all : 0]](std::size_t) -> const SectionMaps& { return map; },
         [known](std::size_t) { return known; });
   }
 }

@@ -9,7 +9,7 @@ namespace petzval::inline v0::camera_detail {
 
 /// Film lines as rays in the plane z, for first-order models. maps: one for each wavelength, `known` of them.
 struct ParaxialJob {
-  const RayMatrix* maps = nullptr;
+  const SectionMaps* maps = nullptr;
   std::size_t known = 0, primary = 0;
   double z = 0;
   RayWavelengths wavelengths;

@@ -31,15 +31,15 @@ constexpr double reach = 1e12;  // mm: numbers up to here give finite rays, in f
 
 /// Film and pupil point to place and slope in the plane of the first vertex, before the lens, with the focus of exact
 /// rays.
-RayMatrix to_scene_map(const LensFacts& facts, std::size_t wavelength, const TwoPlanes& space) {
-  const StopMaps maps = stop_maps(facts, wavelength, space);
-  return maps.from_film.then({1, 0, best_focus_power(facts, wavelength, maps), 1}).then(maps.to_front);
+RayMatrix to_scene_map(const LensFacts& facts, std::size_t wavelength, const TwoPlanes& space, Meridian section) {
+  const StopMaps maps = stop_maps(facts, wavelength, space, section);
+  return maps.from_film.then({1, 0, best_focus_power(facts, wavelength, maps, section), 1}).then(maps.to_front);
 }
 
 /// Where a film point sees the stop in the plane of the pupil: its centre at shift times the film point.
 struct StopImage {
   double shift = 0;
-  bool upside_down = false;
+  double size = 0;  ///< over that of the stop; negative: upside down
 };
 
 /// height: the first row of a map, the height at which a line meets the stop or, times `scale`, an image of it.
@@ -47,18 +47,18 @@ StopImage image_of(const Lens& lens, const RayMatrix& height, double scale, cons
   if (height.b == 0) {
     throw Error(lens.name() + ": the film lies in " + where + ", wanted it elsewhere for a first-order model");
   }
-  return {-height.a / height.b, height.b * scale < 0};
+  return {-height.a / height.b, 1 / (height.b * scale)};
 }
 
-StopImage thick_image(const LensFacts& facts, std::size_t wavelength, const TwoPlanes& space) {
-  return image_of(facts.lens(), stop_maps(facts, wavelength, space).from_film, 1, "the image of the stop");
+StopImage thick_image(const LensFacts& facts, std::size_t wavelength, const TwoPlanes& space, Meridian section) {
+  return image_of(facts.lens(), stop_maps(facts, wavelength, space, section).from_film, 1, "the image of the stop");
 }
 
 /// The entrance pupil, in the rear principal plane.
-StopImage thin_image(const LensFacts& facts, std::size_t wavelength, const TwoPlanes& space) {
+StopImage thin_image(const LensFacts& facts, std::size_t wavelength, const TwoPlanes& space, Meridian section) {
   const Lens& lens = facts.lens();
-  const double z = facts.first_order(wavelength).rear_principal_z;
-  const double stop_over_image = ray_matrix_to(lens, facts.pupils(wavelength).stop, wavelength).a;
+  const double z = first_order(lens, wavelength, section).rear_principal_z;
+  const double stop_over_image = ray_matrix_to(lens, facts.pupils(wavelength).stop, wavelength, section).a;
   return image_of(lens, line_at(space, z), stop_over_image, "the rear principal plane");
 }
 
@@ -89,14 +89,16 @@ void check(ModelKind model, const LensFacts& facts) {
   if (!is_first_order(model)) {
     throw Error(lens.name() + ": found " + std::string(name(model)) + ", wanted a first-order model");
   }
-  if (!with_iris(lens, {}).rotationally_symmetric()) {
-    throw Error(lens.name() + ": found cylinders, wanted a lens of revolution for a first-order model");
+  const bool cylinders = has_cylinders(lens);
+  if (cylinders && (model == ModelKind::pinhole || model == ModelKind::thin_two_disc)) {
+    throw Error(lens.name() + ": found cylinders, wanted a lens of revolution for " + std::string(name(model)) +
+                ", or another model");
   }
   if (model == ModelKind::thin_two_disc && !lens.iris().round()) {
     throw Error(lens.name() + ": found an iris with edges, wanted a round one for thin_two_disc, or another model");
   }
   for (std::size_t w = 0; w < facts.wavelengths(); ++w) {
-    if (facts.first_order(w).afocal) {
+    if (facts.first_order(w).afocal || (cylinders && first_order(lens, w, Meridian::x).afocal)) {
       throw Error(lens.name() + ": found an afocal lens, wanted a focal length for a first-order model");
     }
   }
@@ -112,14 +114,16 @@ FilmPupilTable two_disc_pupils(const Lens& lens, double film_radius) {
   return real.reshaped(discs);
 }
 
-/// The size of the iris's image through which the film's centre gets the light of the exact lens.
-double axial_radius(const Lens& lens, std::size_t wavelength, const TwoPlanes& space, const Iris& iris) {
+/// The size of the iris's image through which the film's centre gets the light of the exact lens: of its semi-axis
+/// along y. along_x: the other one over that.
+double axial_radius(const Lens& lens, std::size_t wavelength, const TwoPlanes& space, const Iris& iris,
+                    double along_x) {
   const double n = lens.index(lens.surface_count(), wavelength);
   const double wanted = film_irradiance(lens, {}, wavelength) / (n * n);
   // From that of a disc, pi sin^2: the solid angle grows with the square of the radius, nearly.
-  double radius = std::abs(space.depth()) * std::sqrt(wanted / (std::numbers::pi - wanted));
+  double radius = std::abs(space.depth()) * std::sqrt(wanted / (std::numbers::pi - wanted) / along_x);
   for (int round = 0; round < 6 && radius > 0; ++round) {
-    const PupilDisc image{0, radius};
+    const PupilImage image{{0, 0}, {along_x * radius, radius}};
     radius *= std::sqrt(wanted / FilmPupilTable::of_iris(space, iris, {&image, 1}, 0).projected_solid_angle({}));
   }
   return radius;
@@ -130,17 +134,20 @@ FilmPupilTable pupils_of(ModelKind model, const LensFacts& facts, double film_ra
   const Lens& lens = facts.lens();
   if (model == ModelKind::thin_two_disc) return two_disc_pupils(lens, film_radius);
   const TwoPlanes space = two_planes(lens);
-  std::vector<StopImage> images;
+  const auto image_at = [&](std::size_t w, Meridian section) {
+    return model == ModelKind::thin ? thin_image(facts, w, space, section) : thick_image(facts, w, space, section);
+  };
+  const std::size_t primary = lens.primary_wavelength();
+  const Iris iris = iris_detail::upside_down(lens.iris(), image_at(primary, Meridian::x).size < 0,
+                                             image_at(primary, Meridian::y).size < 0);
+  std::vector<PupilImage> images;
   for (std::size_t w = 0; w < facts.wavelengths(); ++w) {
-    images.push_back(model == ModelKind::thin ? thin_image(facts, w, space) : thick_image(facts, w, space));
+    const StopImage x = image_at(w, Meridian::x), y = image_at(w, Meridian::y);
+    const double along_x = has_cylinders(lens) ? std::abs(x.size / y.size) : 1;
+    const double radius = axial_radius(lens, w, space, iris, along_x);
+    images.push_back({{x.shift, y.shift}, {along_x * radius, radius}});
   }
-  const bool upside_down = images[lens.primary_wavelength()].upside_down;
-  const Iris iris = upside_down ? iris_detail::upside_down(lens.iris()) : lens.iris();
-  std::vector<PupilDisc> discs;
-  for (std::size_t w = 0; w < facts.wavelengths(); ++w) {
-    discs.push_back({images[w].shift, axial_radius(lens, w, space, iris)});
-  }
-  return FilmPupilTable::of_iris(space, iris, discs, film_radius, lens.primary_wavelength());
+  return FilmPupilTable::of_iris(space, iris, images, film_radius, primary);
 }
 
 }  // namespace
@@ -150,14 +157,17 @@ ParaxialModel::ParaxialModel(ModelKind model, const LensFacts& facts, double fil
   const Lens& lens = facts.lens();
   const TwoPlanes& space = pupils_.space();
   for (std::size_t w = 0; w < lens.wavelengths_nm().size(); ++w) {
-    RayMatrix map = to_scene_map(facts, w, space);
-    to_film_.push_back(map.inverse());
+    RayMatrix map = to_scene_map(facts, w, space, Meridian::y);
+    const RayMatrix along_x = has_cylinders(lens) ? to_scene_map(facts, w, space, Meridian::x) : map;
+    to_film_.push_back({along_x.inverse(), map.inverse()});
     if (model == ModelKind::pinhole) {
-      const double middle = thick_image(facts, w, space).shift;
+      const double middle = thick_image(facts, w, space, Meridian::y).shift;
       pinhole_shifts_.push_back(middle);
       map = {map.a + map.b * middle, 0, map.c + map.d * middle, 0};
+      to_scene_.push_back({map, map});
+    } else {
+      to_scene_.push_back({along_x, map});
     }
-    to_scene_.push_back(map);
   }
 }
 
@@ -180,10 +190,10 @@ RayFate ParaxialModel::to_scene(const TwoPlaneRay& line, std::size_t wavelength,
     ray = {{0, 0, z_}, {0, 0, -1}};
     return RayFate::missed_surface;
   }
-  const RayMatrix& m = to_scene_[known ? wavelength : 0];
-  const double slope_x = m.c * film_x + m.d * pupil_x, slope_y = m.c * film_y + m.d * pupil_y;
+  const auto& [mx, my] = to_scene_[known ? wavelength : 0];
+  const double slope_x = mx.c * film_x + mx.d * pupil_x, slope_y = my.c * film_y + my.d * pupil_y;
   const double down = -1 / std::sqrt(1 + slope_x * slope_x + slope_y * slope_y);
-  ray = {{m.a * film_x + m.b * pupil_x, m.a * film_y + m.b * pupil_y, z_}, {slope_x * down, slope_y * down, down}};
+  ray = {{mx.a * film_x + mx.b * pupil_x, my.a * film_y + my.b * pupil_y, z_}, {slope_x * down, slope_y * down, down}};
   return known ? RayFate::transmitted : RayFate::missed_surface;
 }
 
@@ -194,12 +204,12 @@ void ParaxialModel::to_film(std::size_t count, const RayArrays<const double>& ra
     const std::size_t wavelength = wavelengths.position(i, pupils_.primary_wavelength());
     const bool good = wavelength < to_film_.size() && rays.dz[i] > 0 &&
                       std::abs(x) + std::abs(y) + std::abs(slope_x) + std::abs(slope_y) <= reach;
-    const RayMatrix m = good ? to_film_[wavelength] : RayMatrix{};
+    const auto [mx, my] = good ? to_film_[wavelength] : SectionMaps{};
     fates[i] = good ? RayFate::transmitted : RayFate::missed_surface;
-    lines.film_x[i] = good ? m.a * x + m.b * slope_x : 0;
-    lines.film_y[i] = good ? m.a * y + m.b * slope_y : 0;
-    lines.pupil_x[i] = good ? m.c * x + m.d * slope_x : 0;
-    lines.pupil_y[i] = good ? m.c * y + m.d * slope_y : 0;
+    lines.film_x[i] = good ? mx.a * x + mx.b * slope_x : 0;
+    lines.film_y[i] = good ? my.a * y + my.b * slope_y : 0;
+    lines.pupil_x[i] = good ? mx.c * x + mx.d * slope_x : 0;
+    lines.pupil_y[i] = good ? my.c * y + my.d * slope_y : 0;
   }
 }
 

@@ -13,6 +13,12 @@
 
 namespace petzval::inline v0::camera_detail {
 
+/// Film and pupil point to place and slope in a plane, or back, in the sections along x and y. Of a lens of revolution
+/// both are alike.
+struct SectionMaps {
+  RayMatrix x, y;
+};
+
 /// The lens to first order: pinhole, thin, thin_two_disc and thick.
 ///
 /// All four map an image-space ray to the same ray of the scene, by the cardinal points (the thin lens stands in both
@@ -30,6 +36,9 @@ namespace petzval::inline v0::camera_detail {
 /// Pupils are as large as lets the film's centre have the light of the exact lens; two discs let every film point have
 /// it. A lens that is dark on the axis is dark everywhere to the others.
 ///
+/// A lens with cylinders has cardinal points, focus and image of the stop of its own in each section; it has no centre
+/// of projection, and so neither pinhole nor two discs.
+///
 /// An iris with edges is seen as its image, by all but thin_two_disc. The pinhole has the weights of the thick lens: a
 /// picture keeps its exposure when it is stopped down to a point. Central obscurations are ignored. Rays are given
 /// in the plane of the first vertex.
@@ -38,8 +47,9 @@ class ParaxialModel {
   static constexpr bool linear_in_slopes = true;
 
   /// film_radius: of the farthest film point, mm. Throws Error for another model, for a lens that is afocal, has no
-  /// pupils or no finite one that the model needs, or has cylinders, for an iris with edges where IrisShape or the
-  /// model refuses it, and for a film in the image of the stop or, for thin lenses, in the rear principal plane.
+  /// pupils or no finite one that the model needs, for a pinhole or two discs of one with cylinders, for an iris with
+  /// edges where IrisShape or the model refuses it, and for a film in the image of the stop or, for thin lenses, in the
+  /// rear principal plane.
   PETZVAL_API ParaxialModel(ModelKind model, const LensFacts& facts, double film_radius);
 
   ModelKind kind() const noexcept { return kind_; }
@@ -62,8 +72,8 @@ class ParaxialModel {
  private:
   ModelKind kind_;
   FilmPupilTable pupils_;
-  double z_ = 0;                               // of the first vertex, where rays are given
-  std::vector<RayMatrix> to_scene_, to_film_;  // of each wavelength
+  double z_ = 0;                                 // of the first vertex, where rays are given
+  std::vector<SectionMaps> to_scene_, to_film_;  // of each wavelength
   std::vector<double> pinhole_shifts_;
 };
 

@@ -81,11 +81,16 @@ struct Rim {
 /// film's own pupils are sought among points beside the film too. Pupils at infinity are left out.
 std::vector<Rim> pupils_of(const LensFacts& facts, ModelKind model) {
   std::vector<Rim> rims;
-  for (std::size_t w = 0; w < facts.wavelengths() && facts.has_pupils(); ++w) {
-    const Pupils paraxial = facts.pupils(w);
-    const Rim rim = model == ModelKind::thin ? Rim{paraxial.entrance.diameter, facts.first_order(w).rear_principal_z}
-                                             : Rim{paraxial.exit.diameter, paraxial.exit.z};
-    if (std::isfinite(rim.z) && std::isfinite(rim.half)) rims.push_back(rim);
+  const Lens& lens = facts.lens();
+  for (const Meridian section : {Meridian::y, Meridian::x}) {
+    if (section == Meridian::x && !has_cylinders(lens)) continue;
+    for (std::size_t w = 0; w < facts.wavelengths() && facts.has_pupils(); ++w) {
+      const Pupils paraxial = pupils(lens, w, section);
+      const Rim rim = model == ModelKind::thin
+                          ? Rim{paraxial.entrance.diameter, first_order(lens, w, section).rear_principal_z}
+                          : Rim{paraxial.exit.diameter, paraxial.exit.z};
+      if (std::isfinite(rim.z) && std::isfinite(rim.half)) rims.push_back(rim);
+    }
   }
   return rims;
 }

@@ -10,10 +10,12 @@
 #include <ImfStdIO.h>
 #include <png.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <string_view>
 
+#include "core/text.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/io/write_file.hpp"
 
@@ -103,6 +105,37 @@ void write_png(const Rgb8Image& image, const std::filesystem::path& file) {
     throw Error(file.string() + ": " + png.message);
   }
   write_file({bytes.data(), size}, file);
+}
+
+RgbImage desqueezed(const RgbImage& image, double squeeze) {
+  const double wide = std::max(squeeze, 1.0), high = 1 / std::min(squeeze, 1.0);
+  const double width = std::round(image.width * wide), height = std::round(image.height * high);
+  if (!(squeeze > 0 && width * height <= 1 << 30)) {
+    throw Error("image: the squeeze is " + to_text(squeeze) + " of " + std::to_string(image.width) + " x " +
+                std::to_string(image.height) + " pixels, wanted a positive one, and at most 2^30 pixels");
+  }
+  RgbImage out(static_cast<int>(width), static_cast<int>(height));
+  // A pixel's place between the middles of two pixels of the image, in a row or a column of `count`.
+  struct Between {
+    int low, high;
+    float part;
+  };
+  const auto between = [](int i, int count, int out_count) -> Between {
+    const double at = std::clamp((i + 0.5) * count / out_count - 0.5, 0.0, count - 1.0);
+    const int low = static_cast<int>(at);
+    return {low, std::min(low + 1, count - 1), static_cast<float>(at - low)};
+  };
+  for (int y = 0; y < out.height; ++y) {
+    const auto [y0, y1, down] = between(y, image.height, out.height);
+    for (int x = 0; x < out.width; ++x) {
+      const auto [x0, x1, right] = between(x, image.width, out.width);
+      for (int c = 0; c < 3; ++c) {
+        const auto row = [&](int at) { return (1 - right) * image.pixel(x0, at)[c] + right * image.pixel(x1, at)[c]; };
+        out.pixel(x, y)[c] = (1 - down) * row(y0) + down * row(y1);
+      }
+    }
+  }
+  return out;
 }
 
 Rgb8Image to_srgb8(const RgbImage& image, float exposure) {

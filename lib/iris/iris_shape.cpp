@@ -45,8 +45,11 @@ double angle_of(const Vec2<double>& p) noexcept {
 
 }  // namespace
 
-Iris upside_down(Iris iris) {
-  for (IrisEdge& edge : iris.edges) edge.nx = -edge.nx, edge.ny = -edge.ny;
+Iris upside_down(Iris iris, bool along_x, bool along_y) {
+  for (IrisEdge& edge : iris.edges) {
+    if (along_x) edge.nx = -edge.nx;
+    if (along_y) edge.ny = -edge.ny;
+  }
   return iris;
 }
 

@@ -10,8 +10,8 @@
 
 namespace petzval::inline v0::iris_detail {
 
-/// The iris as an image shows it that is upside down: turned by half a turn.
-PETZVAL_API Iris upside_down(Iris iris);
+/// The iris as an image shows it that is upside down along an axis, or along both: turned by half a turn.
+PETZVAL_API Iris upside_down(Iris iris, bool along_x = true, bool along_y = true);
 
 /// An iris in units of the stop's semi-diameter, to be sampled: the unit disc, or a polygon within it.
 class PETZVAL_API IrisShape {

@@ -100,6 +100,11 @@ FirstOrder first_order(const Lens& lens, Wavelength wavelength, Meridian meridia
   return result;
 }
 
+double squeeze(const Lens& lens, Wavelength wavelength) {
+  return std::abs(first_order(lens, wavelength, Meridian::y).effective_focal_length /
+                  first_order(lens, wavelength, Meridian::x).effective_focal_length);
+}
+
 Meridian main_meridian(const Lens& lens, Wavelength wavelength) {
   const bool only_x = !lens.rotationally_symmetric() && first_order(lens, wavelength, Meridian::y).afocal &&
                       !first_order(lens, wavelength, Meridian::x).afocal;

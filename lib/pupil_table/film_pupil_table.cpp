@@ -234,7 +234,7 @@ FilmPupilTable FilmPupilTable::reshaped(std::span<const std::vector<PupilDisc>> 
   return FilmPupilTable(std::move(data));
 }
 
-FilmPupilTable FilmPupilTable::of_iris(const TwoPlanes& space, const Iris& iris, std::span<const PupilDisc> images,
+FilmPupilTable FilmPupilTable::of_iris(const TwoPlanes& space, const Iris& iris, std::span<const PupilImage> images,
                                        double film_radius, std::size_t primary_wavelength) {
   check_film_radius("pupil table", film_radius);
   auto data = std::make_shared<Data>();

@@ -11,12 +11,14 @@ constexpr double rounded_up = 1 + 1e-6;  // the corner itself, rounded, still be
 
 }  // namespace
 
-IrisImages::IrisImages(const Iris& iris, std::span<const PupilDisc> images, double film_radius, std::size_t primary)
+IrisImages::IrisImages(const Iris& iris, std::span<const PupilImage> images, double film_radius, std::size_t primary)
     : shape_(iris), film_radius_(film_radius), primary_(primary) {
-  for (const PupilDisc& image : images) {
-    const double area = shape_.area() * image.radius * image.radius;
-    put(single_, image, area);
-    put(twice_, image, area);
+  for (const auto& [shift, radius] : images) {
+    twice_.push_back({shift.x, shift.y, radius.x, radius.y, shape_.area() * radius.x * radius.y});
+    const auto number = [](double x) { return static_cast<float>(x); };
+    const Image& image = twice_.back();
+    single_.push_back({number(image.shift_x), number(image.shift_y), number(image.radius_x), number(image.radius_y),
+                       number(image.area)});
   }
 }
 
@@ -31,16 +33,9 @@ IrisImages IrisImages::tilted(const FilmTilt& tilt) const {
 template <class R>
 IrisImageTable<R> IrisImages::table() const noexcept {
   const auto number = [](double x) { return static_cast<R>(x); };
-  const auto of = [&](const auto& columns) -> IrisImageTable<R> {
-    return {shape_.triangles<R>(),
-            columns.shift.data(),
-            columns.radius.data(),
-            columns.area.data(),
-            columns.shift.size(),
-            primary_,
-            number(film_radius_ * rounded_up),
-            number(slope_x_),
-            number(slope_y_)};
+  const auto of = [&](const auto& images) -> IrisImageTable<R> {
+    return {shape_.triangles<R>(), images.data(),   images.size(), primary_, number(film_radius_ * rounded_up),
+            number(slope_x_),      number(slope_y_)};
   };
   if constexpr (sizeof(R) == sizeof(float)) {
     return of(single_);
@@ -51,16 +46,15 @@ IrisImageTable<R> IrisImages::table() const noexcept {
 
 IrisImages::Image IrisImages::image(const FilmPoint& film, std::size_t wavelength) const noexcept {
   const double reach = film_radius_ * rounded_up, square = film.x * film.x + film.y * film.y;
-  if (!(square <= reach * reach) || wavelength >= twice_.shift.size()) return {};
-  const double shift = twice_.shift[wavelength], part = 1 / (1 + shift * (slope_x_ * film.x + slope_y_ * film.y));
-  return {part * shift, part * twice_.radius[wavelength], part * part * twice_.area[wavelength]};
+  if (!(square <= reach * reach) || wavelength >= twice_.size()) return {};
+  return on_tilted(twice_[wavelength], slope_x_ * film.x + slope_y_ * film.y);
 }
 
 PupilSample IrisImages::sample(const FilmPoint& film, double u, double v, std::size_t wavelength) const noexcept {
-  const auto [shift, radius, area] = image(film, wavelength);
-  if (!(area > 0 && u - u == 0 && v - v == 0)) return {};
+  const Image seen = image(film, wavelength);
+  if (!(seen.area > 0 && u - u == 0 && v - v == 0)) return {};
   const Vec2<double> place = shape_.sample(std::clamp(u, 0.0, 1.0), std::clamp(v, 0.0, 1.0));
-  return {shift * film.x + radius * place.x, shift * film.y + radius * place.y, area};
+  return {seen.shift_x * film.x + seen.radius_x * place.x, seen.shift_y * film.y + seen.radius_y * place.y, seen.area};
 }
 
 double IrisImages::area(const FilmPoint& film, std::size_t wavelength) const noexcept {
@@ -68,13 +62,14 @@ double IrisImages::area(const FilmPoint& film, std::size_t wavelength) const noe
 }
 
 Vec2<double> IrisImages::middle(const FilmPoint& film, std::size_t wavelength) const noexcept {
-  const double shift = image(film, wavelength).shift;
-  return {shift * film.x, shift * film.y};
+  const Image seen = image(film, wavelength);
+  return {seen.shift_x * film.x, seen.shift_y * film.y};
 }
 
 bool IrisImages::contains(const FilmPoint& film, double x, double y, std::size_t wavelength) const noexcept {
-  const auto [shift, radius, area] = image(film, wavelength);
-  return area > 0 && shape_.contains((x - shift * film.x) / radius, (y - shift * film.y) / radius);
+  const Image seen = image(film, wavelength);
+  return seen.area > 0 &&
+         shape_.contains((x - seen.shift_x * film.x) / seen.radius_x, (y - seen.shift_y * film.y) / seen.radius_y);
 }
 
 FilmPupilTable::Derivatives IrisImages::derivatives(const FilmPoint& film, double u, double v,
@@ -82,8 +77,9 @@ FilmPupilTable::Derivatives IrisImages::derivatives(const FilmPoint& film, doubl
   // Of part (shift film + radius place), by way of part's own: - part^2 shift slope.
   const auto [x, y, area] = sample(film, u, v, wavelength);
   if (!(area > 0)) return {};
-  const double shift = image(film, wavelength).shift, by_x = shift * slope_x_, by_y = shift * slope_y_;
-  return {{shift - by_x * x, -by_x * y}, {-by_y * x, shift - by_y * y}};
+  const Image seen = image(film, wavelength);
+  return {{seen.shift_x - seen.shift_x * slope_x_ * x, -seen.shift_y * slope_x_ * y},
+          {-seen.shift_x * slope_y_ * x, seen.shift_y - seen.shift_y * slope_y_ * y}};
 }
 
 template <class T>

@@ -16,10 +16,10 @@ namespace petzval::inline v0::pupil_table_detail {
 ///
 /// On a tilted film the ray of a virtual film point V (FilmTilt) through q meets the upright film in V - (slope . V) q,
 /// which sees q in the image with its centre at shift times that. Solved for q, that is the upright film's image of V
-/// scaled about the origin by part = 1 / (1 + shift slope . V).
+/// scaled about the origin, in each section by part = 1 / (1 + shift slope . V).
 class IrisImages {
  public:
-  IrisImages(const Iris& iris, std::span<const PupilDisc> images, double film_radius, std::size_t primary);
+  IrisImages(const Iris& iris, std::span<const PupilImage> images, double film_radius, std::size_t primary);
 
   /// Those of a tilted film, by virtual film points; for images of an upright one.
   IrisImages tilted(const FilmTilt& tilt) const;
@@ -39,20 +39,8 @@ class IrisImages {
                 std::uint8_t* within) const noexcept;
 
  private:
-  template <class R>
-  struct Columns {
-    std::vector<R> shift, radius, area;  // by wavelength
-  };
-  template <class R>
-  static void put(Columns<R>& columns, const PupilDisc& image, double area) {
-    columns.shift.push_back(static_cast<R>(image.shift));
-    columns.radius.push_back(static_cast<R>(image.radius));
-    columns.area.push_back(static_cast<R>(area));
-  }
+  using Image = ImageSections<double>;
   /// The image that a film point sees; area 0: none.
-  struct Image {
-    double shift = 0, radius = 0, area = 0;
-  };
   Image image(const FilmPoint& film, std::size_t wavelength) const noexcept;
   template <class R>
   IrisImageTable<R> table() const noexcept;
@@ -60,8 +48,8 @@ class IrisImages {
   iris_detail::IrisShape shape_;
   double film_radius_ = 0, slope_x_ = 0, slope_y_ = 0;
   std::size_t primary_ = 0;
-  Columns<float> single_;
-  Columns<double> twice_;
+  std::vector<ImageSections<float>> single_;  // by wavelength
+  std::vector<Image> twice_;
 };
 
 }  // namespace petzval::inline v0::pupil_table_detail

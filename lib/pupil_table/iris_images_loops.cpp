@@ -8,39 +8,36 @@
 namespace petzval::inline v0::pupil_table_detail {
 namespace {
 
-/// An image, its centre over the film point that sees it; area 0: none.
 template <class R>
-struct Image {
-  R shift = 0, radius = 0, area = 0;
-
-  Image(const IrisImageTable<R>& table, std::size_t wavelength) noexcept {
-    if (wavelength >= table.wavelengths) return;
-    shift = table.shift[wavelength], radius = table.radius[wavelength], area = table.area[wavelength];
-  }
-};
+inline ImageSections<R> image_at(const IrisImageTable<R>& table, std::size_t wavelength) noexcept {
+  return wavelength < table.wavelengths ? table.images[wavelength] : ImageSections<R>{};
+}
 
 /// Calls body(image_of) with the images of all rays, by ray.
 template <class R, class Body>
 inline void with_images(const IrisImageTable<R>& table, const RayWavelengths& wavelengths, const Body& body) noexcept {
   if (const std::uint16_t* each = wavelengths.each) {
-    body([&table, each](std::size_t i) { return Image<R>(table, each[i]); });
+    body([&table, each](std::size_t i) { return image_at(table, each[i]); });
   } else {
-    body([image = Image<R>(table, wavelengths.all.position(table.primary))](std::size_t) { return image; });
+    body([image = image_at(table, wavelengths.all.position(table.primary))](std::size_t) { return image; });
   }
 }
 
 /// A film point and the image that it sees. Nothing of it is infinite.
 template <class R>
 struct Seen {
-  R film_x, film_y, shift, radius, area;
+  R film_x, film_y;
+  ImageSections<R> image;
 };
 
 template <class R>
-inline Seen<R> seen(const IrisImageTable<R>& table, const Image<R>& image, R film_x, R film_y, bool sound) noexcept {
+inline Seen<R> seen(const IrisImageTable<R>& table, const ImageSections<R>& image, R film_x, R film_y,
+                    bool sound) noexcept {
   const bool known = sound & (film_x * film_x + film_y * film_y <= table.film_radius * table.film_radius);
-  const R fx = known ? film_x : R(0), fy = known ? film_y : R(0), area = known ? image.area : R(0);
-  const R part = R(1) / (R(1) + image.shift * (table.slope_x * fx + table.slope_y * fy));
-  return {fx, fy, part * image.shift, part * image.radius, part * part * area};
+  const R fx = known ? film_x : R(0), fy = known ? film_y : R(0);
+  ImageSections<R> own = image;
+  own.area = known ? image.area : R(0);
+  return {fx, fy, on_tilted(own, table.slope_x * fx + table.slope_y * fy)};
 }
 
 /// sample_at(i, u, v): a uniform point of the iris.
@@ -53,12 +50,12 @@ inline void fill(const IrisImageTable<R>& given, const ImageOf& image_of, const 
   for (std::size_t i = begin; i < end; ++i) {
     // Comparisons with what is not a number are false.
     const bool sound = (film_x[i] + film_y[i] + u[i] + v[i]) * R(0) >= R(0);
-    const auto [fx, fy, shift, radius, area] = seen(table, image_of(i), film_x[i], film_y[i], sound);
+    const auto [fx, fy, image] = seen(table, image_of(i), film_x[i], film_y[i], sound);
     const auto [px, py] = sample_at(i, core_detail::clamped(u[i]), core_detail::clamped(v[i]));
-    const R size = area > R(0) ? radius : R(0);
-    x[i] = shift * fx + size * px;
-    y[i] = shift * fy + size * py;
-    areas[i] = area;
+    const bool lit = image.area > R(0);
+    x[i] = image.shift_x * fx + (lit ? image.radius_x : R(0)) * px;
+    y[i] = image.shift_y * fy + (lit ? image.radius_y : R(0)) * py;
+    areas[i] = image.area;
   }
 }
 
@@ -102,11 +99,11 @@ void contains(const IrisImageTable<R>& given, std::size_t count, const TwoPlaneR
       const std::size_t n = count - begin < block ? count - begin : block;
       for (std::size_t i = 0; i < n; ++i) {
         const std::size_t o = begin + i;
-        const auto [fx, fy, shift, radius, area] = seen(table, image_of(o), own.film_x[o], own.film_y[o], true);
-        x[i] = (own.pupil_x[o] - shift * fx) / radius;
-        y[i] = (own.pupil_y[o] - shift * fy) / radius;
+        const auto [fx, fy, image] = seen(table, image_of(o), own.film_x[o], own.film_y[o], true);
+        x[i] = (own.pupil_x[o] - image.shift_x * fx) / image.radius_x;
+        y[i] = (own.pupil_y[o] - image.shift_y * fy) / image.radius_y;
         const bool in_disc = table.iris.count > 0 || x[i] * x[i] + y[i] * y[i] <= R(1);
-        inside[i] = (area > R(0)) & in_disc;
+        inside[i] = (image.area > R(0)) & in_disc;
       }
       for (std::size_t k = 0; k < table.iris.count; ++k) {
         for (std::size_t i = 0; i < n; ++i) inside[i] &= iris_detail::within_edge(table.iris, k, x[i], y[i]);

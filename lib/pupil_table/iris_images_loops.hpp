@@ -11,11 +11,29 @@
 
 namespace petzval::inline v0::pupil_table_detail {
 
+/// A PupilImage in numbers of type R; area 0: none.
+template <class R>
+struct ImageSections {
+  R shift_x = 0, shift_y = 0, radius_x = 0, radius_y = 0, area = 0;
+};
+
+// Local names: this is compiled for several instruction sets, and the linker must not take one for another.
+namespace {
+
+/// The image that a virtual point of a tilted film sees, nearer: slope . virtual point.
+template <class R>
+inline ImageSections<R> on_tilted(const ImageSections<R>& image, R nearer) noexcept {
+  const R x = R(1) / (R(1) + image.shift_x * nearer), y = R(1) / (R(1) + image.shift_y * nearer);
+  return {x * image.shift_x, y * image.shift_y, x * image.radius_x, y * image.radius_y, x * y * image.area};
+}
+
+}  // namespace
+
 /// IrisImages in numbers of type R, borrowed.
 template <class R>
 struct IrisImageTable {
   iris_detail::IrisTriangles<R> iris;
-  const R *shift = nullptr, *radius = nullptr, *area = nullptr;  ///< by wavelength
+  const ImageSections<R>* images = nullptr;  ///< by wavelength
   std::size_t wavelengths = 0, primary = 0;
   R film_radius = 0, slope_x = 0, slope_y = 0;
 };

@@ -259,10 +259,11 @@ TEST(ChooseModel, LeavesOutWhatCannotBeBuilt) {
   const ModelChoice choice =
       choose_model(lens, {.near_mm = 3000, .film = {.width_mm = 20, .height_mm = 13}}, {.max_px = 4});
   EXPECT_EQ(choice.model, ModelKind::exact_float);
-  EXPECT_FALSE(candidate_of(choice, ModelKind::thick).available);
-  EXPECT_FALSE(candidate_of(choice, ModelKind::thick).inside);
-  EXPECT_FALSE(candidate_of(choice, ModelKind::thick).remark.empty());
-  EXPECT_TRUE(says(choice.reasons, "thick cannot be built: "));
+  EXPECT_TRUE(candidate_of(choice, ModelKind::thick).available);
+  EXPECT_FALSE(candidate_of(choice, ModelKind::thin_two_disc).available);
+  EXPECT_FALSE(candidate_of(choice, ModelKind::thin_two_disc).inside);
+  EXPECT_FALSE(candidate_of(choice, ModelKind::thin_two_disc).remark.empty());
+  EXPECT_TRUE(says(choice.reasons, "thin_two_disc cannot be built: "));
 }
 
 TEST(ChooseModel, StopsTheLensDown) {

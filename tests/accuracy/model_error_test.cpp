@@ -239,7 +239,7 @@ TEST(ModelError, RefusesWhatItCannotMeasure) {
             std::string::npos);
   EXPECT_NE(refusal({.tilt_rad = 0.1}, ModelKind::thick, {.depths_z = {-1000}}).find("tilted"), std::string::npos);
   const Lens cylinders = focused("anamorphic_60mm_2x", 3000);
-  EXPECT_THROW(model_error(cylinders, {}, ModelKind::thick, at(cylinders, {3000})), Error);
+  EXPECT_THROW(model_error(cylinders, {}, ModelKind::pinhole, at(cylinders, {3000})), Error);
 }
 
 }  // namespace

@@ -494,7 +494,7 @@ TEST(Camera, RefusesFilmsThatAreNone) {
   const Lens mirror = testing::data_lens("mirror_newton_200mm_f8");
   EXPECT_NO_THROW(Camera(mirror, {.width_mm = 2, .height_mm = 2, .z_mm = -190}));
   EXPECT_THROW(Camera(mirror, {.width_mm = 2, .height_mm = 2, .z_mm = 190}), Error);
-  EXPECT_THROW(Camera(testing::data_lens("anamorphic_60mm_2x"), {}, {.model = ModelKind::thick}), Error);
+  EXPECT_THROW(Camera(testing::data_lens("anamorphic_60mm_2x"), {}, {.model = ModelKind::pinhole}), Error);
 }
 
 TEST(Camera, RefusesModelsOfAnotherLensOrFilm) {

@@ -76,8 +76,8 @@ class OwnThinLens {
     const TwoPlanes planes = two_planes(lens);
     const double part = (first_order(lens).rear_principal_z - planes.film_z) / planes.depth();
     const double sine2 = film_irradiance(lens, {}) / std::numbers::pi;
-    const PupilDisc disc{.shift = (part - 1) / part,
-                         .radius = std::abs(planes.depth()) * std::sqrt(sine2 / (1 - sine2))};
+    const double shift = (part - 1) / part, radius = std::abs(planes.depth()) * std::sqrt(sine2 / (1 - sine2));
+    const PupilImage disc{{shift, shift}, {radius, radius}};
     return FilmPupilTable::of_iris(planes, {}, {&disc, 1}, film_radius, lens.primary_wavelength());
   }
 

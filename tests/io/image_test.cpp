@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <png.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <fstream>
@@ -126,6 +127,31 @@ TEST_F(ImageFiles, ReadingSaysWhichFileIsBad) {
   for (const auto kept : {size / 2, std::uintmax_t(100), std::uintmax_t(4), std::uintmax_t(0)}) {
     std::filesystem::resize_file(file, kept);
     EXPECT_NE(message([&] { read_exr(file); }).find(file.string()), std::string::npos) << kept;
+  }
+}
+
+TEST(Image, IsDesqueezed) {
+  RgbImage image(20, 10);
+  for (int y = 0; y < 10; ++y) {
+    for (int x = 0; x < 20; ++x) {
+      image.pixel(x, y)[0] = 1, image.pixel(x, y)[1] = x + 0.5f, image.pixel(x, y)[2] = y + 0.5f;
+    }
+  }
+  for (const double squeeze : {1.0, 1.92, 0.5}) {
+    const RgbImage out = desqueezed(image, squeeze);
+    EXPECT_EQ(out.width, squeeze > 1 ? 38 : 20);
+    EXPECT_EQ(out.height, squeeze < 1 ? 20 : 10);
+    for (int y = 0; y < out.height; ++y) {
+      for (int x = 0; x < out.width; ++x) {
+        EXPECT_FLOAT_EQ(out.pixel(x, y)[0], 1);
+        // Places scale, but for the outer halves of the pixels at the edge.
+        EXPECT_NEAR(out.pixel(x, y)[1], std::clamp((x + 0.5) * 20 / out.width, 0.5, 19.5), 1e-5);
+        EXPECT_NEAR(out.pixel(x, y)[2], std::clamp((y + 0.5) * 10 / out.height, 0.5, 9.5), 1e-5);
+      }
+    }
+  }
+  for (const double bad : {0.0, -2.0, std::nan(""), std::numeric_limits<double>::infinity()}) {
+    EXPECT_NE(message([&] { desqueezed(image, bad); }).find("squeeze"), std::string::npos) << bad;
   }
 }
 

@@ -350,7 +350,7 @@ TEST(FilmPupilTable, HoldsWhatLiesInAllOfSomeDiscs) {
 
 /// Two wavelengths; the film of the second sees its pupil far away.
 FilmPupilTable hexagons(const Iris& iris) {
-  const std::array images{PupilDisc{-0.3, 9}, PupilDisc{0.95, 4}};
+  const std::array images{PupilImage{{-0.3, -0.3}, {9, 9}}, PupilImage{{0.95, 0.95}, {4, 4}}};
   return FilmPupilTable::of_iris({50, 0}, iris, images, 12);
 }
 
@@ -421,7 +421,7 @@ TEST(FilmPupilTable, SamplesImagesOfAnIrisInBatchesAsSingly) {
 TEST(FilmPupilTable, KnowsTheSolidAngleOfAPupil) {
   // A disc straight ahead has pi sin^2 of its half angle.
   for (const double radius : {1.0, 9.0, 40.0}) {
-    const PupilDisc disc{1, radius};
+    const PupilImage disc{{1, 1}, {radius, radius}};
     const FilmPupilTable table = FilmPupilTable::of_iris({50, 0}, {}, {&disc, 1}, 12);
     for (const FilmPoint& film : {FilmPoint{0, 0}, FilmPoint{-7, 5}}) {
       EXPECT_NEAR(table.projected_solid_angle(film) * (radius * radius + 2500) / (radius * radius), std::numbers::pi,

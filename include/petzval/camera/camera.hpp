@@ -52,8 +52,8 @@ struct CameraOptions {
 ///
 /// A pull of focus while the shutter is open is a film that travels (Film::travel_mm): each sample has its time, and
 /// the ray is that of the film's place then, without interpolation. First-order models keep the focus and the size of
-/// the pupil that they are given as the shutter opens: after a pull from 3 m to infinity of a 100 mm lens their exposure
-/// is 1.5 % off. Such a film costs what a tilted one does.
+/// the pupil that they are given as the shutter opens: after a pull from 3 m to infinity of a 100 mm lens their
+/// exposure is 1.5 % off. Such a film costs what a tilted one does.
 ///
 /// Immutable, cheap to copy, shared freely between threads. Calls neither allocate nor draw random numbers nor loop
 /// until a ray passes: a lost sample has weight 0 and a fate. Only the first call that concerns rays from the scene
@@ -64,7 +64,7 @@ class PETZVAL_API Camera {
   /// The lens has its film where film.z_mm says, as with_film() would. A tilted film takes two to six times as long to
   /// set up (34 ms rather than 10 for a double Gauss); fits of tilts need no camera. Throws Error for a film without
   /// area or pixels, one that is not behind the last surface, is tilted into the lens or comes near to the plane of the
-  /// pupil, and where the model cannot be built: a lens without a pupil, a first-order or polynomial model of a lens
+  /// pupil, and where the model cannot be built: a lens without a pupil, a pinhole, two discs or a polynomial of a lens
   /// with cylinders.
   Camera(const Lens& lens, const Film& film, const CameraOptions& options = {});
   /// With a model that was built before: a renderer's own, or polynomials read from a file (ray_model.hpp). Throws

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "petzval/core/export.hpp"
+#include "petzval/core/geometry.hpp"
 #include "petzval/film/film.hpp"
 #include "petzval/iris/iris.hpp"
 #include "petzval/lens/lens.hpp"
@@ -18,11 +19,17 @@
 
 namespace petzval::inline v0 {
 
-/// A disc in the plane of the pupil, or the image of an iris about as large, whose centre moves with the film point: it
-/// lies at shift times that point.
+/// A disc in the plane of the pupil whose centre moves with the film point: it lies at shift times that point.
 struct PupilDisc {
   double shift = 0;
   double radius = 0;  ///< mm
+};
+
+/// The image of an iris in the plane of the pupil, in the sections along x and y: its centre lies at shift times the
+/// film point, and the rim of the stop appears with these semi-axes. Of a lens of revolution both sections are alike.
+struct PupilImage {
+  Vec2<double> shift{0, 0};
+  Vec2<double> radius{0, 0};  ///< mm
 };
 
 /// A tilted film in pupil coordinates. Each point is identified by its virtual film point v: its projection, through
@@ -77,10 +84,10 @@ class PETZVAL_API FilmPupilTable {
   /// let through as much light as these do: about their middles they are scaled to the same projected_solid_angle().
   FilmPupilTable reshaped(std::span<const std::vector<PupilDisc>> discs) const;
 
-  /// Pupils in closed form: images of an iris, one for each wavelength, each as large as the disc in which the rim of
-  /// the stop appears. iris: as the plane of the pupil shows it. Throws Error for a film_radius that is negative or not
-  /// finite, and for an iris with edges that do not form a polygon about the axis with its corners within the rim.
-  static FilmPupilTable of_iris(const TwoPlanes& space, const Iris& iris, std::span<const PupilDisc> images,
+  /// Pupils in closed form: images of an iris, one for each wavelength. iris: as the plane of the pupil shows it.
+  /// Throws Error for a film_radius that is negative or not finite, and for an iris with edges that do not form a
+  /// polygon about the axis with its corners within the rim.
+  static FilmPupilTable of_iris(const TwoPlanes& space, const Iris& iris, std::span<const PupilImage> images,
                                 double film_radius, std::size_t primary_wavelength = 0);
 
   /// The pupils of a tilted film, by virtual film points; those of of_iris() are exact for one that does not travel.
