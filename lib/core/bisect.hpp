@@ -17,35 +17,66 @@ double last_with(double with, double without, const Property& property) {
   }
 }
 
-/// The last parameter, within `tolerance`, at which a function is not negative. above, at_above: a parameter and its
-/// value >= 0; below, at_below: one with a negative value. Superlinear where the function is smooth, never
-/// more than one evaluation beyond bisection where it jumps. Source: Oliveira and Takahashi 2020, "An enhancement of
-/// the bisection method average performance preserving minmax optimality" (ITP, kappa1 = 0.2 / interval, kappa2 = 2, n0
-/// = 1).
+/// The search for the last parameter, within `tolerance`, at which a function is not negative: evaluate it at next()
+/// and take() the value, until done(). Many searches go on side by side. Superlinear where the function is smooth,
+/// never more than one evaluation beyond bisection where it jumps. Source: Oliveira and Takahashi 2020, "An
+/// enhancement of the bisection method average performance preserving minmax optimality" (ITP, kappa1 = 0.2 /
+/// interval, kappa2 = 2, n0 = 1).
+class LastAbove {
+ public:
+  /// above, at_above: a parameter and its value >= 0; below, at_below: one with a negative value.
+  LastAbove(double above, double at_above, double below, double at_below, double tolerance) noexcept
+      : above_(above),
+        at_above_(at_above),
+        below_(below),
+        at_below_(at_below),
+        tolerance_(tolerance),
+        first_(std::abs(below - above)) {
+    reach_ = tolerance * std::exp2(std::ceil(std::log2(std::max(first_ / tolerance, 1.0))) + 1) / 2;
+    choose();
+  }
+
+  bool done() const noexcept { return done_; }
+  double next() const noexcept { return next_; }
+  void take(double value) noexcept {
+    if (value >= 0) {
+      above_ = next_, at_above_ = value;
+    } else {
+      below_ = next_, at_below_ = value;
+    }
+    reach_ /= 2;
+    choose();
+  }
+
+  /// The ends of the interval that is left.
+  double above() const noexcept { return above_; }
+  double below() const noexcept { return below_; }
+
+ private:
+  void choose() noexcept {
+    const double width = std::abs(below_ - above_);
+    const double middle = above_ + (below_ - above_) / 2;
+    const double radius = reach_ - width / 2;
+    const double falsi = above_ + (below_ - above_) * (at_above_ / (at_above_ - at_below_));
+    const double towards = falsi < middle ? 1 : -1;  // from the secant to the middle
+    const double truncation = 0.2 * (below_ - above_) * (below_ - above_) / first_;
+    const double truncated = std::abs(middle - falsi) > truncation ? falsi + towards * truncation : middle;
+    next_ = std::abs(truncated - middle) <= radius ? truncated : middle - towards * radius;
+    if (!(next_ > std::min(above_, below_) && next_ < std::max(above_, below_))) next_ = middle;
+    done_ = width <= tolerance_ || next_ == above_ || next_ == below_;
+  }
+
+  double above_, at_above_, below_, at_below_, tolerance_, first_, reach_, next_ = 0;
+  bool done_ = false;
+};
+
+/// That search for one function: the parameter itself.
 template <class Function>
 double last_above(double above, double at_above, double below, double at_below, double tolerance,
                   const Function& function) {
-  const double first = std::abs(below - above);
-  double reach = tolerance * std::exp2(std::ceil(std::log2(std::max(first / tolerance, 1.0))) + 1) / 2;
-  while (std::abs(below - above) > tolerance) {
-    const double middle = above + (below - above) / 2;
-    const double radius = reach - std::abs(below - above) / 2;
-    const double falsi = above + (below - above) * (at_above / (at_above - at_below));
-    const double towards = falsi < middle ? 1 : -1;  // from the secant to the middle
-    const double truncation = 0.2 * (below - above) * (below - above) / first;
-    const double truncated = std::abs(middle - falsi) > truncation ? falsi + towards * truncation : middle;
-    double x = std::abs(truncated - middle) <= radius ? truncated : middle - towards * radius;
-    if (!(x > std::min(above, below) && x < std::max(above, below))) x = middle;
-    if (x == above || x == below) break;
-    const double value = function(x);
-    if (value >= 0) {
-      above = x, at_above = value;
-    } else {
-      below = x, at_below = value;
-    }
-    reach /= 2;
-  }
-  return above;
+  LastAbove search(above, at_above, below, at_below, tolerance);
+  while (!search.done()) search.take(function(search.next()));
+  return search.above();
 }
 
 }  // namespace petzval::inline v0::core_detail

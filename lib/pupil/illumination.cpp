@@ -18,8 +18,11 @@ namespace petzval::inline v0 {
 double film_irradiance(const Lens& lens, const FilmPoint& point, Wavelength wavelength) {
   const PupilPlane plane = PupilPlane::of_film(lens, point);
   const bool alike_all_round = plane.on_axis() && lens.rotationally_symmetric();
-  const PupilBoundary boundary =
+  PupilBoundary boundary =
       alike_all_round ? exit_pupil_boundary(lens, point, wavelength, 1) : exit_pupil_boundary(lens, point, wavelength);
+  // Parts beside the middle are seen along few directions.
+  const bool parts = !boundary.empty() && boundary.spans.size() != boundary.directions;
+  if (parts && !alike_all_round) boundary = exit_pupil_boundary(lens, point, wavelength, 1024);
   // Part dA of the plane, gap away from the film, is seen in the projected solid angle cos^4 dA / gap^2.
   const double gap = plane.towards().z / plane.reciprocal_distance();
   double sum = 0;

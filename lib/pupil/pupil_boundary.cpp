@@ -2,24 +2,22 @@
 #include "petzval/pupil/pupil_boundary.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
-#include <optional>
 #include <string>
 #include <utility>
 
-#include "aim.hpp"
-#include "clearance.hpp"
 #include "core/bisect.hpp"
-#include "face.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/paraxial/first_order.hpp"
+#include "sight.hpp"
 
 namespace petzval::inline v0 {
 namespace {
 
 using Point = Vec2<double>;
+using pupil_detail::PassingPlace;
+using pupil_detail::Sight;
 
 struct Box {
   Point low{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
@@ -32,234 +30,293 @@ struct Box {
   Point half() const noexcept { return {(high[0] - low[0]) / 2, (high[1] - low[1]) / 2}; }
 };
 
-/// An end of a span: the last radius that passes, with the clearance of its ray and of the next one outside.
-struct Edge {
-  double radius;
-  pupil_detail::Clearance inside, outside;
-};
-
-/// Looks along the directions of an boundary. Radii are in units of its half axes.
-class Tracer {
- public:
-  Tracer(const Lens& lens, PupilBoundary& boundary)
-      : lens_(lens), boundary_(boundary), middle_(clearance(boundary.middle)) {}
-
-  bool middle_passes() const noexcept { return middle_.passes(); }
-
-  /// One span from the middle, which passes; it is expected to end about `near`.
-  void trace_disc(std::size_t direction, double near) {
-    begin(direction, {0, middle_, {}});
-    finish(outer_edge(direction, near, 0, middle_));
-  }
-
-  /// One span of a ring, expected to end about where that of the direction before does. False where it does not.
-  bool trace_ring(std::size_t direction, double near_from, double near_to) {
-    const double low = 0.95 * near_from, high = 1.05 * near_from;
-    const auto dark = clearance(boundary_.at(direction, low)), inside = clearance(boundary_.at(direction, high));
-    if (dark.passes() || !inside.passes() || !(high < near_to)) return false;
-    begin(direction, close_in(direction, {high, inside, dark}, low));
-    finish(outer_edge(direction, near_to, high, inside));
-    return true;
-  }
-
-  /// All spans between the middle and `reach` that `steps` samples show.
-  void scan_spans(std::size_t direction, double reach, int steps) {
-    double before = 0;
-    auto last = middle_;
-    if (last.passes()) begin(direction, {0, middle_, {}});
-    for (int i = 1; i <= steps; ++i) {
-      const double radius = reach * i / steps;
-      const auto now = clearance(boundary_.at(direction, radius));
-      if (now.passes() && !last.passes()) begin(direction, close_in(direction, {radius, now, last}, before));
-      if (!now.passes() && last.passes()) finish(close_in(direction, {before, last, now}, radius));
-      before = radius, last = now;
-    }
-    // No ray beyond `reach` enters the first surface: one that passes there touches its rim.
-    if (last.passes()) finish({reach, last, last});
-  }
-
- private:
-  pupil_detail::Clearance clearance(const Point& p) const noexcept {
-    return pupil_detail::clearance(lens_, boundary_.plane, p[0], p[1], boundary_.wavelength);
-  }
-
-  /// The end about `near`, farther out than a ray that passes.
-  Edge outer_edge(std::size_t direction, double near, double passing, const pupil_detail::Clearance& passes) const {
-    double low = 0.95 * near, high = 1.05 * near;
-    auto inside = clearance(boundary_.at(direction, low)), outside = clearance(boundary_.at(direction, high));
-    while (inside.passes() && outside.passes()) {
-      low = high, inside = outside;
-      outside = clearance(boundary_.at(direction, high *= 1.25));
-    }
-    if (inside.passes()) return close_in(direction, {low, inside, outside}, high);
-    return close_in(direction, {passing, passes, inside}, low);
-  }
-
-  /// The end between a ray that passes and the radius of one that does not.
-  Edge close_in(std::size_t direction, Edge edge, double outside) const {
-    constexpr double tolerance = 4e-14;
-    edge.radius = core_detail::last_above(edge.radius, edge.inside.value, outside, edge.outside.value, tolerance,
-                                          [&](double radius) {
-                                            const auto now = clearance(boundary_.at(direction, radius));
-                                            (now.passes() ? edge.inside : edge.outside) = now;
-                                            return now.value;
-                                          });
-    return edge;
-  }
-
-  RimPoint public_edge(std::size_t direction, const Edge& edge) const noexcept {
-    const Vec2<double> p = boundary_.at(direction, edge.radius);
-    return {p.x, p.y, edge.outside.surface, edge.outside.fate};
-  }
-  void begin(std::size_t direction, const Edge& edge) {
-    boundary_.spans.push_back({direction, edge.radius, 0, public_edge(direction, edge), {}});
-  }
-  void finish(const Edge& edge) {
-    PupilSpan& span = boundary_.spans.back();
-    span.to_radius = edge.radius;
-    span.to = public_edge(span.direction, edge);
-  }
-
-  const Lens& lens_;
-  PupilBoundary& boundary_;
-  pupil_detail::Clearance middle_;
-};
-
-/// The part of the plane that rays cross on their way to the surface through which they enter: the shadow of a box
-/// around that surface.
-Box shadow(const Lens& lens, const PupilPlane& plane) {
-  const std::size_t entered = plane.travel() == Travel::to_film ? 0 : lens.surface_count() - 1;
-  const pupil_detail::Face face =
-      pupil_detail::face_of(lens, entered, pupils(lens, lens.primary_wavelength()).entrance);
+/// The box about the ends of all spans.
+Box box_of(const PupilRegion& region) noexcept {
   Box box;
-  for (const double z : {face.z_min, face.z_max}) {
-    for (const double y : {-face.half, face.half}) {
-      for (const double x : {-face.half, face.half}) {
-        const Vec3<double> corner{x, y, z};
-        box.take(plane.meet({corner, plane.direction_at(corner)}));
-      }
-    }
-  }
+  for (const PupilSpan& s : region.spans) box.take({s.from.x, s.from.y}), box.take({s.to.x, s.to.y});
   return box;
 }
 
-/// Searches for a ray that passes about a middle. As a function over the plane, the least clearance of all rims has one
-/// maximum where rays pass the lens at all: the grid closes in on it.
-std::optional<Point> summit_near(const Lens& lens, const PupilPlane& plane, std::size_t wavelength, Point middle,
-                                 Point half) {
-  int steps = 16;  // a side, from the middle
-  for (int pass = 0; pass < 24; ++pass) {
-    double highest = -std::numeric_limits<double>::infinity();
-    Point summit = middle;
-    for (int j = -steps; j <= steps; ++j) {
-      for (int i = -steps; i <= steps; ++i) {
-        const Point p{middle[0] + half[0] * i / steps, middle[1] + half[1] * j / steps};
-        const auto here = pupil_detail::clearance(lens, plane, p[0], p[1], wavelength);
-        if (here.passes()) return p;
-        if (here.value > highest) highest = here.value, summit = p;
+/// A box within the pupil's and one about it, from some rays that pass: grids close in on those that do.
+std::pair<Box, Box> boxes_about(Sight& sight, const std::vector<PassingPlace>& passing) {
+  Box seen, box;
+  for (const auto& [at, beside] : passing) {
+    seen.take(at);
+    box.take(at - beside), box.take(at + beside);
+  }
+  std::vector<double> x, y;
+  for (int pass = 0; pass < 32; ++pass) {
+    const int steps = pass == 0 || seen.half().x > 0 ? 24 : 12;
+    const Point low = box.low, step = box.half() * (2.0 / steps);
+    x.clear(), y.clear();
+    for (int j = 0; j <= steps; ++j) {
+      for (int i = 0; i <= steps; ++i) x.push_back(low.x + i * step.x), y.push_back(low.y + j * step.y);
+    }
+    const auto clearance = sight.clearances(x, y);
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      if (clearance[i] >= 0) seen.take({x[i], y[i]});
+    }
+    // Parts at the edge of the box may reach beyond it.
+    const Point before = std::exchange(box, {seen.low - step, seen.high + step}).half();
+    if (box.half().x > before.x / 2 && box.half().y > before.y / 2 && seen.half().x > 2 * step.x &&
+        seen.half().y > 2 * step.y) {
+      break;
+    }
+  }
+  return {seen, box};
+}
+
+/// Looks along the directions of a boundary, all at once. Radii are in units of its half axes.
+class Tracer {
+ public:
+  Tracer(Sight& sight, PupilBoundary& boundary) : sight_(sight), boundary_(boundary) {}
+
+  struct Seen {
+    bool disc = true;   ///< one span in each direction, from the middle
+    bool whole = true;  ///< no span reaches to the end of its direction
+  };
+  /// All spans between the middle and `reach` that `steps` samples of each of `directions` show, and those between two
+  /// samples to which the clearance points.
+  Seen scan(std::size_t directions, double reach, int steps, double tolerance) {
+    begin(directions);
+    sample(steps + 1, [&](std::size_t, int i) { return reach * i / steps; });
+    const double step = reach / steps;
+    const std::vector<Sliver> slivers = find_slivers(step, steps);
+    Seen seen;
+    auto sliver = slivers.begin();
+    for (std::size_t k = 0; k < directions; ++k) {
+      const double* value = values_.data() + k * (static_cast<std::size_t>(steps) + 1);
+      int spans = 0;
+      for (int i = 0; i <= steps; ++i) {
+        const bool passes = value[i] >= 0, before = i > 0 && value[i - 1] >= 0;
+        if (passes && !before) {
+          ++spans;
+          if (i == 0) {
+            ends_.push_back({k, {0, 0, 0, 0, 1}});
+          } else {
+            ends_.push_back({k, {step * i, value[i], step * (i - 1), value[i - 1], tolerance}});
+          }
+        }
+        if (!passes && before) {
+          ends_.push_back({k, {step * (i - 1), value[i - 1], step * i, value[i], tolerance}});
+        }
+        if (sliver != slivers.end() && sliver->direction == k && sliver->sample == i) {
+          ++spans;
+          const auto& [low, middle, high] = sliver->radii;
+          const auto& [at_low, at_middle, at_high] = sliver->values;
+          ends_.push_back({k, {middle, at_middle, low, at_low, tolerance}});
+          ends_.push_back({k, {middle, at_middle, high, at_high, tolerance}});
+          ++sliver;
+        }
+      }
+      // No ray beyond `reach` enters the first surface: one that passes there touches its rim.
+      if (value[steps] >= 0) ends_.push_back({k, {reach, 0, reach, 0, 1}}), seen.whole = false;
+      seen.disc = seen.disc && spans == 1 && value[0] >= 0;
+    }
+    finish();
+    return seen;
+  }
+
+  /// One span in each direction, from the middle; those of `few` directions, which divide the others, tell about where
+  /// they end. False where one does not end there.
+  bool disc(std::size_t directions, const PupilBoundary& few) {
+    begin(directions);
+    const auto near = [&](std::size_t k) {
+      const auto n = static_cast<double>(few.directions);
+      const double at = (static_cast<double>(k) + 0.5) / static_cast<double>(directions) * n - 0.5 + n;
+      const auto i = static_cast<std::size_t>(at);
+      const double t = at - static_cast<double>(i);
+      const auto radius = [&](std::size_t j) { return few.spans[j % few.directions].to_radius; };
+      return (1 - t) * radius(i) + t * radius(i + 1);
+    };
+    constexpr std::array<double, 4> beside{0, 0.98, 1.02, 1.3};
+    constexpr int count = beside.size();
+    sample(count, [&](std::size_t k, int i) { return beside[i] * near(k); });
+    for (std::size_t k = 0; k < directions; ++k) {
+      const double* value = values_.data() + k * count;
+      int last = 0;
+      while (last < count && value[last] >= 0) ++last;
+      if (last == 0 || last == count) return false;
+      ends_.push_back({k, {0, 0, 0, 0, 1}});
+      ends_.push_back({k, {beside[last - 1] * near(k), value[last - 1], beside[last] * near(k), value[last], finest}});
+    }
+    finish();
+    return true;
+  }
+
+  static constexpr double finest = 4e-14;
+
+ private:
+  /// An end of a span while it is searched; in pairs, the inner one first.
+  struct End {
+    std::size_t direction;
+    core_detail::LastAbove radius;
+  };
+
+  /// A part of a direction between two samples that do not pass, about a third at which the clearance has a maximum.
+  struct Sliver {
+    std::size_t direction;
+    int sample;
+    std::array<double, 3> radii, values;
+  };
+
+  /// The slivers that pass, in the order of directions and samples.
+  std::vector<Sliver> find_slivers(double step, int steps) {
+    std::vector<Sliver> result, open;
+    const auto lost = [](double value) { return value <= -1; };  // otherwise than by a rim
+    for (std::size_t k = 0; k < boundary_.directions; ++k) {
+      const double* value = values_.data() + k * (static_cast<std::size_t>(steps) + 1);
+      for (int i = 1; i < steps; ++i) {
+        const double before = value[i - 1], here = value[i], next = value[i + 1];
+        if (!(here < 0) || !(before < here) || !(next <= here) || lost(here) || (lost(before) && lost(next))) continue;
+        open.push_back({k, i, {step * (i - 1), step * i, step * (i + 1)}, {before, here, next}});
       }
     }
-    middle = summit;
-    half = {2 * half[0] / steps, 2 * half[1] / steps};
-    steps = 4;
-  }
-  return {};
-}
-
-/// A ray that passes, if there is one: the chief ray, or one that is found about it or anywhere.
-std::optional<Point> passing_point(const Lens& lens, const PupilPlane& plane, std::size_t wavelength, const Box& box) {
-  const AimedRay chief = pupil_detail::aim(lens, plane, {}, wavelength);
-  if (chief.status == AimStatus::converged) return plane.meet(chief.ray);
-  const Point half = box.half();
-  if (chief) {
-    const auto near = summit_near(lens, plane, wavelength, plane.meet(chief.ray), {half[0] / 2, half[1] / 2});
-    if (near) return near;
-  }
-  return summit_near(lens, plane, wavelength, box.middle(), half);
-}
-
-/// The largest radius, in units of half axes, at which the box has a point.
-double reach(const Box& box, const Point& middle, const Point& half_axes) noexcept {
-  double farthest = 0;
-  for (const double x : {box.low[0], box.high[0]}) {
-    for (const double y : {box.low[1], box.high[1]}) {
-      farthest = std::max(farthest, std::hypot((x - middle[0]) / half_axes[0], (y - middle[1]) / half_axes[1]));
-    }
-  }
-  return farthest;
-}
-
-/// The shape of a region: from its middle one span in each direction, a ring around the middle, or anything else.
-enum class Shape { disc, ring, other };
-
-/// Finds middle and half axes of the region: first as seen from a ray that passes, then from the middle found last,
-/// until they settle.
-Shape measure(const Lens& lens, PupilBoundary& boundary, const Point& start, const Box& box) {
-  boundary.middle = start;
-  boundary.half_axes = box.half();
-  Shape shape = Shape::disc;
-  for (int pass = 0; pass < 6; ++pass) {
-    // Horseshoes and crescents, whose tips lie behind their own edges, need more directions and steps.
-    const bool simple = shape != Shape::other;
-    boundary.directions = simple ? 24 : 96;
-    const int steps = simple ? 32 : 128;
-    const double farthest = reach(box, boundary.middle, boundary.half_axes);
-    boundary.spans.clear();
-    Tracer tracer(lens, boundary);
-    // A region with one span in each direction from one of its points has one from its middle.
-    const bool disc = pass > 0 && shape == Shape::disc && tracer.middle_passes();
-    for (std::size_t k = 0; k < boundary.directions; ++k) {
-      if (disc) {
-        tracer.trace_disc(k, 1);
-      } else {
-        tracer.scan_spans(k, farthest, steps);
+    constexpr int rounds = 8;
+    for (int round = 0; round < rounds && !open.empty(); ++round) {
+      x_.clear(), y_.clear();
+      for (const Sliver& s : open) {
+        const Point unit = boundary_.unit(s.direction);
+        add(unit, (s.radii[0] + s.radii[1]) / 2), add(unit, (s.radii[1] + s.radii[2]) / 2);
       }
+      const auto values = sight_.clearances(x_, y_);
+      std::size_t left = 0;
+      for (std::size_t j = 0; j < open.size(); ++j) {
+        const auto& [direction, sample, r, v] = open[j];
+        const std::array<double, 5> radii{r[0], (r[0] + r[1]) / 2, r[1], (r[1] + r[2]) / 2, r[2]};
+        const std::array<double, 5> all{v[0], values[2 * j], v[1], values[2 * j + 1], v[2]};
+        const auto highest = std::clamp<std::ptrdiff_t>(std::max_element(all.begin(), all.end()) - all.begin(), 1, 3);
+        const auto part = [&](const std::array<double, 5>& of) {
+          return std::array<double, 3>{of[highest - 1], of[highest], of[highest + 1]};
+        };
+        const Sliver closer{direction, sample, part(radii), part(all)};
+        if (all[highest] >= 0) {
+          result.push_back({direction, sample, {r[0], radii[highest], r[2]}, {v[0], all[highest], v[2]}});
+        } else {
+          open[left++] = closer;
+        }
+      }
+      open.resize(left);
     }
-    if (boundary.spans.empty()) break;
-    const bool one_each = boundary.spans.size() == boundary.directions;
-    shape = !one_each ? Shape::other : tracer.middle_passes() ? Shape::disc : Shape::ring;
-    Box seen;
-    for (const PupilSpan& s : boundary.spans) seen.take({s.from.x, s.from.y}), seen.take({s.to.x, s.to.y});
-    const Point before = std::exchange(boundary.half_axes, seen.half());
-    boundary.middle = seen.middle();
-    const bool settled =
-        std::abs(boundary.half_axes[0] / before[0] - 1) < 0.1 && std::abs(boundary.half_axes[1] / before[1] - 1) < 0.1;
-    if (settled && simple == (shape != Shape::other)) break;
+    std::sort(result.begin(), result.end(), [](const Sliver& a, const Sliver& b) {
+      return std::pair(a.direction, a.sample) < std::pair(b.direction, b.sample);
+    });
+    return result;
   }
-  return shape;
-}
 
-/// The boundary, from a ray that passes, within a box. It stays empty where the pupil is smaller than what rays
-/// resolve.
-void trace_boundary(const Lens& lens, PupilBoundary& boundary, const Point& start, const Box& box,
+  void begin(std::size_t directions) {
+    boundary_.directions = directions;
+    boundary_.spans.clear();
+    ends_.clear();
+  }
+
+  template <class Radius>
+  void sample(int count, const Radius& radius) {
+    x_.clear(), y_.clear();
+    for (std::size_t k = 0; k < boundary_.directions; ++k) {
+      const Point unit = boundary_.unit(k);
+      for (int i = 0; i < count; ++i) add(unit, radius(k, i));
+    }
+    const auto values = sight_.clearances(x_, y_);
+    values_.assign(values.begin(), values.end());
+  }
+  /// As PupilRegion::at, to the bit.
+  void add(const Point& unit, double radius) {
+    x_.push_back(boundary_.middle.x + boundary_.half_axes.x * radius * unit.x);
+    y_.push_back(boundary_.middle.y + boundary_.half_axes.y * radius * unit.y);
+  }
+
+  /// Closes in on all ends and makes spans of them.
+  void finish() {
+    std::vector<Point> units;
+    for (std::size_t k = 0; k < boundary_.directions; ++k) units.push_back(boundary_.unit(k));
+    std::vector<std::size_t> open;
+    for (std::size_t i = 0; i < ends_.size(); ++i) {
+      if (!ends_[i].radius.done()) open.push_back(i);
+    }
+    while (!open.empty()) {
+      x_.clear(), y_.clear();
+      for (const std::size_t i : open) add(units[ends_[i].direction], ends_[i].radius.next());
+      const auto values = sight_.clearances(x_, y_);
+      std::size_t left = 0;
+      for (std::size_t j = 0; j < open.size(); ++j) {
+        core_detail::LastAbove& radius = ends_[open[j]].radius;
+        radius.take(values[j]);
+        if (!radius.done()) open[left++] = open[j];
+      }
+      open.resize(left);
+    }
+    // The rays just beyond tell what ends the others.
+    x_.clear(), y_.clear();
+    for (const End& end : ends_) add(units[end.direction], end.radius.below());
+    const auto [fates, surfaces] = sight_.ends(x_, y_);
+    const auto rim = [&](std::size_t i) -> RimPoint {
+      const double radius = ends_[i].radius.above();
+      const Point p = boundary_.at(ends_[i].direction, radius);
+      const bool is_rim = radius > 0;
+      return {p.x, p.y, is_rim ? surfaces[i] : -1, is_rim ? fates[i] : RayFate::vignetted};
+    };
+    for (std::size_t i = 0; i < ends_.size(); i += 2) {
+      boundary_.spans.push_back(
+          {ends_[i].direction, ends_[i].radius.above(), ends_[i + 1].radius.above(), rim(i), rim(i + 1)});
+    }
+  }
+
+  Sight& sight_;
+  PupilBoundary& boundary_;
+  std::vector<double> x_, y_, values_;
+  std::vector<End> ends_;
+};
+
+/// Farther than the corners of the box about the pupil.
+constexpr double farthest = 1.6;
+
+/// The boundary, from some rays that pass. It stays empty where the pupil is smaller than what rays resolve.
+void trace_boundary(Sight& sight, PupilBoundary& boundary, const std::vector<PassingPlace>& passing,
                     std::size_t directions) {
-  constexpr int steps = 96;
+  const auto [inner, box] = boxes_about(sight, passing);
+  boundary.middle = box.middle(), boundary.half_axes = box.half();
+  Tracer tracer(sight, boundary);
   if (directions == 1) {  // alike all round
-    boundary.directions = 1;
-    boundary.half_axes = {std::max(box.half()[0], box.half()[1]), std::max(box.half()[0], box.half()[1])};
-    Tracer(lens, boundary).scan_spans(0, 1, steps);
+    const double reach =
+        std::max({std::abs(box.low.x), std::abs(box.high.x), std::abs(box.low.y), std::abs(box.high.y)});
+    boundary.middle = {0, 0}, boundary.half_axes = {reach, reach};
+    tracer.scan(1, farthest, 512, Tracer::finest);
     return;
   }
-  Shape shape = measure(lens, boundary, start, box);
-  if (!(boundary.half_axes[0] > 0 && boundary.half_axes[1] > 0)) {
+  // Middle and half axes by the ends along some directions, until they settle.
+  Tracer::Seen shape;
+  for (int pass = 0; pass < 6; ++pass) {
+    if (!(boundary.half_axes.x > 0 && boundary.half_axes.y > 0)) break;
+    // Horseshoes and crescents, whose tips lie behind their own edges, need more directions and steps.
+    const int samples = shape.disc ? 32 : 96;
+    const bool simple = shape.disc;
+    shape = tracer.scan(samples, farthest, samples, 1e-10);
+    if (boundary.spans.empty()) break;
+    Box seen = box_of(boundary);
+    seen.take(inner.low), seen.take(inner.high);
+    const Point before = std::exchange(boundary.half_axes, seen.half());
+    boundary.middle = seen.middle();
+    const Point now = boundary.half_axes;
+    const bool settled = std::abs(now.x / before.x - 1) < 0.1 && std::abs(now.y / before.y - 1) < 0.1;
+    if (settled && shape.whole && simple == shape.disc) break;
+  }
+  if (!(boundary.half_axes.x > 0 && boundary.half_axes.y > 0) || boundary.spans.empty()) {
     boundary = PupilBoundary(boundary.plane, boundary.wavelength);
     return;
   }
-  const double farthest = std::min(reach(box, boundary.middle, boundary.half_axes), 1.5);
-  boundary.directions = directions;
-  boundary.spans.clear();
-  Tracer tracer(lens, boundary);
-  if (shape == Shape::disc && !tracer.middle_passes()) shape = Shape::other;
-  for (std::size_t k = 0; k < directions; ++k) {
-    // Spans change little from one direction to the next.
-    const bool first = boundary.spans.empty();
-    const double near_from = first ? 0 : boundary.spans.back().from_radius;
-    const double near_to = first ? 1 : boundary.spans.back().to_radius;
-    if (shape == Shape::disc) {
-      tracer.trace_disc(k, near_to);
-    } else if (shape == Shape::other || first || !tracer.trace_ring(k, near_from, near_to)) {
-      tracer.scan_spans(k, farthest, steps);
+  // More directions may show more of it.
+  for (int pass = 0; pass < 4; ++pass) {
+    bool found = false;
+    if (shape.disc && directions > 32 && tracer.scan(32, farthest, 32, 1e-6).disc) {
+      const PupilBoundary few = boundary;
+      found = tracer.disc(directions, few);
     }
+    shape.whole = found || tracer.scan(directions, farthest, 96, Tracer::finest).whole;
+    const Box seen = box_of(boundary);
+    const Point now = seen.half(), before = boundary.half_axes;
+    if (shape.whole && now.x < 1.1 * before.x && now.y < 1.1 * before.y) break;
+    if (pass + 1 < 4) boundary.middle = seen.middle(), boundary.half_axes = now;
   }
 }
 
@@ -272,9 +329,9 @@ PupilBoundary boundary_of(const Lens& lens, const PupilPlane& plane, Wavelength 
   PupilBoundary boundary(plane, wavelength);
   const auto closed = [](const LensSurface& s) { return s.semi_diameter == 0; };
   if (std::any_of(lens.surfaces().begin(), lens.surfaces().end(), closed)) return boundary;
-  const Box box = shadow(lens, plane);
-  const auto start = passing_point(lens, plane, wavelength, box);
-  if (start) trace_boundary(lens, boundary, *start, box, directions);
+  Sight sight(lens, plane, wavelength);
+  const std::vector<PassingPlace> passing = sight.passing_places();
+  if (!passing.empty()) trace_boundary(sight, boundary, passing, directions);
   return boundary;
 }
 

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "block.hpp"
+#include "clearances.hpp"
 #include "job.hpp"
 #include "lens/lens_view.hpp"
 
@@ -55,6 +56,7 @@ BlockJob<R> job_for(const Lens& lens, const BatchOptions& options) noexcept {
 template <class R>
 struct Block {
   alignas(64) std::array<std::array<R, block>, 18> v;
+  std::array<R, block> clearances;
   std::array<RayFate, block> fates;
   std::array<int, block> surfaces;
   std::array<std::uint16_t, block> wavelengths{};
@@ -111,7 +113,7 @@ void copy_wavelengths(std::size_t count, const RayWavelengths& from, std::size_t
 template <class R>
 void trace_all(const Lens& lens, std::size_t count, const RayArrays<const R>& in,
                const RayTangents<const R>* tangents_in, const RayArrays<R>& out, const RayTangents<R>& tangents_out,
-               RayFate* fates, int* surfaces, const BatchOptions& options) noexcept {
+               RayFate* fates, int* surfaces, const BatchOptions& options, R* clearances = nullptr) noexcept {
   const auto trace_blocks = loops<R>(tracer(options.instruction_set, options.arithmetic));
   auto job = job_for<R>(lens, options);
   job.rays = count - count % block;
@@ -121,6 +123,7 @@ void trace_all(const Lens& lens, std::size_t count, const RayArrays<const R>& in
   job.surfaces = surfaces;
   job.tangents_in = tangents_in;
   job.tangents_out = tangents_out;
+  job.clearances = clearances;
   trace_blocks(job);
 
   const std::size_t done = job.rays, rest = count - done;
@@ -136,17 +139,26 @@ void trace_all(const Lens& lens, std::size_t count, const RayArrays<const R>& in
     job.tangents_in = &tangents;
     job.tangents_out = last.tangents();
   }
+  if (clearances) job.clearances = last.clearances.data();
   trace_blocks(job);
   copy(rest, last.arrays(), 0, out, done);
   if (tangents_in) {
     copy(rest, last.arrays(6), 0, tangents_out.u, done);
     copy(rest, last.arrays(12), 0, tangents_out.v, done);
   }
+  if (clearances) std::copy_n(last.clearances.begin(), rest, clearances + done);
   if (fates) std::copy_n(last.fates.begin(), rest, fates + done);
   if (surfaces) std::copy_n(last.surfaces.begin(), rest, surfaces + done);
 }
 
 }  // namespace
+
+template <class T>
+void trace_detail::clearances(const Lens& lens, std::size_t count, const RayArrays<T>& rays, T* clearances,
+                              const BatchOptions& options) noexcept {
+  const RayArrays<const T> in{rays.x, rays.y, rays.z, rays.dx, rays.dy, rays.dz};
+  trace_all<T>(lens, count, in, nullptr, rays, {}, nullptr, nullptr, options, clearances);
+}
 
 std::string_view name(Arithmetic arithmetic) noexcept {
   return arithmetic == Arithmetic::fast ? "fast" : "reproducible";
@@ -193,6 +205,8 @@ template PETZVAL_API void trace(const Lens&, std::size_t, const RayArrays<const 
                                 RayFate*, int*, const BatchOptions&) noexcept;
 template PETZVAL_API void trace(const Lens&, std::size_t, const RayArrays<const double>&, const RayArrays<double>&,
                                 RayFate*, int*, const BatchOptions&) noexcept;
+template PETZVAL_API void trace_detail::clearances(const Lens&, std::size_t, const RayArrays<double>&, double*,
+                                                   const BatchOptions&) noexcept;
 template PETZVAL_API void trace_differentials(const Lens&, std::size_t, const RayArrays<const float>&,
                                               const RayTangents<const float>&, const RayArrays<float>&,
                                               const RayTangents<float>&, RayFate*, int*, const BatchOptions&) noexcept;

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <limits>
 
+#include "least_clearance.hpp"
 #include "march.hpp"
 
 namespace petzval::inline v0::trace_detail {
@@ -62,6 +63,11 @@ void trace_bundle(const BlockJob<R>& job, std::size_t o, const R* index, const R
     leave(job, in, per_index, b, out);
     leave(job, per_index, b, tangents.u, from<R>(job.tangents_out.u, o));
     leave(job, per_index, b, tangents.v, from<R>(job.tangents_out.v, o));
+  } else if (job.clearances) {
+    LeastClearance<R> clearance(b);
+    for (std::size_t j = 0; j < job.steps; ++j) pass(job, j, media_at(j), unsettled, b, clearance);
+    leave(job, in, per_index, b, out);
+    clearance.leave(b, job.clearances + o);
   } else {
     NoTangents none;
     for (std::size_t j = 0; j < job.steps; ++j) pass(job, j, media_at(j), unsettled, b, none);

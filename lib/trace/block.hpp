@@ -46,6 +46,7 @@ struct BlockJob {
   int* surfaces = nullptr;                            ///< or null
   const RayTangents<const R>* tangents_in = nullptr;  ///< null: no derivatives
   RayTangents<R> tangents_out;
+  R* clearances = nullptr;  ///< or null; without derivatives
 };
 
 template <class R>

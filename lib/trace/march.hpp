@@ -141,6 +141,7 @@ void pass(const BlockJob<R>& job, std::size_t j, const Media& media, std::uint8_
   }
   const auto iris = s.stop ? job.iris : std::span<const kernel::StopEdge<R>>{};
   if (job.apertures && (s.obscuration2 > 0 || !iris.empty())) clip(s, iris, j, b);
+  follow.watch(job, j, b);
 }
 
 }  // namespace

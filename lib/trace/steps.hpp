@@ -35,6 +35,8 @@ struct NoTangents {
   PETZVAL_INLINE void shift(int, Lanes<R>) noexcept {}
   template <class R>
   PETZVAL_INLINE void pass(const kernel::Step<R>&, const Bundle<R>&, int, const Contact<R>&) noexcept {}
+  template <class R>
+  PETZVAL_INLINE void watch(const BlockJob<R>&, std::size_t, const Bundle<R>&) noexcept {}
   static constexpr bool wanted = false;
 };
 

@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sight.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <numbers>
+
+#include "aim.hpp"
+#include "face.hpp"
+#include "petzval/paraxial/first_order.hpp"
+#include "petzval/trace/trace.hpp"
+#include "trace/clearances.hpp"
+
+namespace petzval::inline v0::pupil_detail {
+namespace {
+
+using Place = Vec2<double>;
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+struct Box {
+  Place low{infinity, infinity}, high{-infinity, -infinity};
+
+  void take(const Place& p) noexcept {
+    for (int i : {0, 1}) low[i] = std::min(low[i], p[i]), high[i] = std::max(high[i], p[i]);
+  }
+};
+
+/// Places of a plane by the sines under which its point sees them, times its distance: a surface close to the point
+/// has a bounded image. Of a point at infinity they are the places themselves.
+class Sines {
+ public:
+  explicit Sines(const PupilPlane& plane) noexcept {
+    const double cosine = glm::dot(plane.towards(), plane.normal());
+    per_distance_ = std::abs(plane.reciprocal_distance() / cosine);
+    if (per_distance_ == 0) return;
+    const Vec3<double> place = plane.towards() / plane.reciprocal_distance();
+    foot_ = plane.meet({plane.centre() + place, plane.normal()});
+  }
+
+  Place of(const Place& p) const noexcept {
+    const Place d = p - foot_;
+    return d / std::hypot(1.0, d.x * per_distance_, d.y * per_distance_);
+  }
+  /// Not finite for directions along the plane and beyond.
+  Place place(const Place& sines) const noexcept {
+    const Place s = sines * per_distance_;
+    return foot_ + sines / std::sqrt(1 - s.x * s.x - s.y * s.y);
+  }
+  /// All that can be seen.
+  Box hemisphere() const noexcept {
+    return {{-1 / per_distance_, -1 / per_distance_}, {1 / per_distance_, 1 / per_distance_}};
+  }
+
+ private:
+  Place foot_{0, 0};
+  double per_distance_ = 0;
+};
+
+/// What the point of a plane sees of the surface through which its rays enter, in sines.
+Box seen_face(const Lens& lens, const PupilPlane& plane, const Sines& sines) {
+  const std::size_t entered = plane.travel() == Travel::to_film ? 0 : lens.surface_count() - 1;
+  const double vertex_z = lens.surfaces()[entered].vertex_z;
+  const double half = half_height(lens, entered, pupils(lens, lens.primary_wavelength()).entrance);
+  constexpr int radii = 12, around = 24;
+  Box box;
+  double facing = 0;
+  for (int i = 0; i <= radii; ++i) {
+    for (int k = 0; k < around; ++k) {
+      const double r = half * i / radii, angle = 2 * std::numbers::pi * k / around;
+      const double x = r * std::sin(angle), y = r * std::cos(angle), z = sag(lens, entered, x, y);
+      if (std::isnan(z)) continue;
+      const Vec3<double> place{x, y, vertex_z + z};
+      // A surface that bends around the point is seen at any angle.
+      const double before =
+          glm::dot(plane.towards() - (place - plane.centre()) * plane.reciprocal_distance(), plane.normal());
+      if (facing == 0) facing = before;
+      if (!(before / facing > 0.01)) return sines.hemisphere();
+      box.take(sines.of(plane.meet({place, plane.direction_at(place)})));
+    }
+  }
+  const Place margin = (box.high - box.low) * 0.05;
+  return {box.low - margin, box.high + margin};
+}
+
+/// Places in even steps over a box of sines, row by row.
+struct Grid {
+  int steps, side;
+  std::vector<double> x, y;
+
+  Grid(const Sines& sines, const Box& box, int n) : steps(n), side(n + 1) {
+    for (int j = 0; j < side; ++j) {
+      for (int i = 0; i < side; ++i) {
+        const Place part{static_cast<double>(i) / steps, static_cast<double>(j) / steps};
+        const Place p = sines.place(box.low + part * (box.high - box.low));
+        x.push_back(p.x), y.push_back(p.y);
+      }
+    }
+  }
+
+  /// A place and how far it is to its neighbours.
+  PassingPlace place(int at) const noexcept {
+    const int i = at % side, j = at / side;
+    PassingPlace result{{x[at], y[at]}};
+    for (const int n :
+         {i > 0 ? at - 1 : at, i < steps ? at + 1 : at, j > 0 ? at - side : at, j < steps ? at + side : at}) {
+      const Place d{std::abs(x[n] - x[at]), std::abs(y[n] - y[at])};
+      if (!std::isfinite(d.x) || !std::isfinite(d.y)) continue;
+      result.beside = {std::max(result.beside.x, d.x), std::max(result.beside.y, d.y)};
+    }
+    return result;
+  }
+
+  /// The places within the grid whose values are negative and that no neighbour exceeds.
+  std::vector<int> summits(std::span<const double> values) const {
+    std::vector<int> result;
+    for (int j = 1; j < steps; ++j) {
+      for (int i = 1; i < steps; ++i) {
+        const int at = j * side + i;
+        bool summit = values[at] < 0;
+        for (const int row : {at - side, at, at + side}) {
+          for (int n = row - 1; n <= row + 1; ++n) summit = summit && !(values[n] > values[at]);
+        }
+        if (summit) result.push_back(at);
+      }
+    }
+    return result;
+  }
+};
+
+}  // namespace
+
+Sight::Sight(const Lens& lens, const PupilPlane& plane, std::size_t wavelength)
+    : lens_(lens), plane_(plane), wavelength_(wavelength) {}
+
+RayArrays<double> Sight::rays(std::span<const double> x, std::span<const double> y) {
+  for (auto& values : rays_) values.resize(x.size());
+  const RayArrays<double> rays{rays_[0].data(), rays_[1].data(), rays_[2].data(),
+                               rays_[3].data(), rays_[4].data(), rays_[5].data()};
+  plane_.rays(x, y, rays);
+  return rays;
+}
+
+std::span<const double> Sight::clearances(std::span<const double> x, std::span<const double> y, bool apertures) {
+  values_.resize(x.size());
+  // Blocks that stay in the cache.
+  constexpr std::size_t block = 1024;
+  for (std::size_t begin = 0; begin < x.size(); begin += block) {
+    const std::size_t count = std::min(block, x.size() - begin);
+    trace_detail::clearances<double>(lens_, count, rays(x.subspan(begin, count), y.subspan(begin, count)),
+                                     values_.data() + begin,
+                                     {.travel = plane_.travel(),
+                                      .wavelengths = {wavelength_},
+                                      .apertures = apertures,
+                                      .arithmetic = Arithmetic::reproducible});
+  }
+  return values_;
+}
+
+Sight::Ends Sight::ends(std::span<const double> x, std::span<const double> y) {
+  const std::size_t count = x.size();
+  fates_.resize(count);
+  surfaces_.resize(count);
+  const auto [ox, oy, oz, dx, dy, dz] = rays(x, y);
+  trace<double>(lens_, count, {ox, oy, oz, dx, dy, dz}, {ox, oy, oz, dx, dy, dz}, fates_.data(), surfaces_.data(),
+                {.travel = plane_.travel(), .wavelengths = {wavelength_}, .arithmetic = Arithmetic::reproducible});
+  return {fates_, surfaces_};
+}
+
+std::vector<PassingPlace> Sight::passing_places() {
+  std::vector<PassingPlace> result;
+  const Sines sines(plane_);
+  const Box box = seen_face(lens_, plane_, sines);
+  const Grid grid(sines, box, 48);
+  const auto take_passing = [&](const Grid& on, std::span<const double> values) {
+    for (int at = 0; at < on.side * on.side; ++at) {
+      if (values[at] >= 0) result.push_back(on.place(at));
+    }
+  };
+  const auto values = clearances(grid.x, grid.y);
+  take_passing(grid, values);
+  constexpr std::size_t enough = 32;
+  if (result.size() >= enough) return result;
+
+  // Parts that slip between the places: about the rays that come nearest to passing. Without apertures the clearance
+  // is continuous, and has a maximum in each part. Beyond their apertures, though, aspheres may be of any shape, and
+  // their hits take long to find.
+  const auto surfaces = lens_.surfaces();
+  const bool aspheric =
+      std::any_of(surfaces.begin(), surfaces.end(), [](const LensSurface& s) { return !s.aspheric.empty(); });
+  std::vector<std::pair<double, PassingPlace>> summits;
+  const auto take_summits = [&](const Grid& on, std::span<const double> heights) {
+    const double lost = result.empty() ? -infinity : -1;  // otherwise than by a rim
+    for (const int at : on.summits(heights)) {
+      if (heights[at] > lost) summits.push_back({heights[at], on.place(at)});
+    }
+  };
+  if (aspheric) {
+    take_summits(grid, values);
+  } else {
+    const Grid finer(sines, box, 96);
+    const auto heights = clearances(finer.x, finer.y, false);
+    take_passing(finer, heights);
+    take_summits(finer, heights);
+  }
+  std::stable_sort(summits.begin(), summits.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+  const std::size_t most = aspheric ? 8 : 64;
+  if (summits.size() > most) summits.resize(most);
+  const AimedRay chief = aim(lens_, plane_, {}, wavelength_);
+  if (chief) {
+    const Place p = plane_.meet(chief.ray);
+    const Place half = result.empty() ? (box.high - box.low) / 4.0 : result.front().beside;
+    if (chief.status == AimStatus::converged) result.push_back({p, half});
+    summits.push_back({0, {p, half}});
+  }
+  std::vector<double> x, y;
+  for (const auto& [height, summit] : summits) {
+    constexpr int half_side = 4;
+    auto [middle, half] = summit;
+    std::array<double, 2> before{-infinity, -infinity};  // the values two passes ago and one
+    // Deep enough for the smallest of stops where nothing else is found.
+    for (int pass = 0, passes = result.empty() ? 24 : 8; pass < passes; ++pass) {
+      x.clear(), y.clear();
+      for (int j = -half_side; j <= half_side; ++j) {
+        for (int i = -half_side; i <= half_side; ++i) {
+          x.push_back(middle.x + half.x * i / half_side), y.push_back(middle.y + half.y * j / half_side);
+        }
+      }
+      const auto closer = clearances(x, y, aspheric);
+      const auto highest = static_cast<std::size_t>(std::max_element(closer.begin(), closer.end()) - closer.begin());
+      middle = {x[highest], y[highest]};
+      if (closer[highest] >= 0) {
+        result.push_back({middle, half / static_cast<double>(half_side)});
+        break;
+      }
+      // At a ridge the value grows by half as much in each pass, roughly.
+      if (!result.empty() && 4 * (closer[highest] - before[0]) < -closer[highest]) break;
+      before = {before[1], closer[highest]};
+      half = half * (2.0 / half_side);
+    }
+  }
+  return result;
+}
+
+}  // namespace petzval::inline v0::pupil_detail

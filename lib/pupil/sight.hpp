@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "petzval/core/ray.hpp"
+#include "petzval/lens/lens.hpp"
+#include "petzval/pupil/pupil_plane.hpp"
+
+namespace petzval::inline v0::pupil_detail {
+
+/// A place of a plane through which a ray passes the lens, and about how far it is to places beside it that were tried.
+struct PassingPlace {
+  Vec2<double> at{0, 0}, beside{0, 0};
+};
+
+/// The rays of one point, many at a time. Keeps the memory for them.
+class Sight {
+ public:
+  Sight(const Lens& lens, const PupilPlane& plane, std::size_t wavelength);
+
+  const Lens& lens() const noexcept { return lens_; }
+  const PupilPlane& plane() const noexcept { return plane_; }
+
+  /// Of the rays through some places: trace/clearances.hpp, reproducible. x, y: N each. Returns N values, valid until
+  /// the next call. apertures: as in BatchOptions.
+  std::span<const double> clearances(std::span<const double> x, std::span<const double> y, bool apertures = true);
+
+  /// Where the rays through some places end: fates and surfaces of N each, valid until the next call.
+  struct Ends {
+    std::span<const RayFate> fates;
+    std::span<const int> surfaces;
+  };
+  Ends ends(std::span<const double> x, std::span<const double> y);
+
+  /// Looks for rays that pass, over all that can be seen of the surface through which they enter: at 48 x 48 places
+  /// and, where few of them pass, about those of 96 x 96 at which the clearance has a maximum.
+  std::vector<PassingPlace> passing_places();
+
+ private:
+  RayArrays<double> rays(std::span<const double> x, std::span<const double> y);
+
+  const Lens& lens_;
+  PupilPlane plane_;
+  std::size_t wavelength_;
+  std::array<std::vector<double>, 6> rays_;
+  std::vector<double> values_;
+  std::vector<RayFate> fates_;
+  std::vector<int> surfaces_;
+};
+
+}  // namespace petzval::inline v0::pupil_detail

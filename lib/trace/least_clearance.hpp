@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+// How near a bundle of rays comes to the rims. Included like lanes.hpp.
+#pragma once
+
+#include <limits>
+
+#include "steps.hpp"
+
+namespace petzval::inline v0::trace_detail {
+namespace {
+
+/// Follows a bundle and keeps the least clearance of each ray (trace/clearances.hpp).
+template <class R>
+class LeastClearance : public NoTangents {
+  using V = Lanes<R>;
+
+ public:
+  explicit LeastClearance(const Bundle<R>& b) noexcept {
+    for (int i = 0; i < Bundle<R>::vectors; ++i) {
+      least_[i] = V(std::numeric_limits<R>::infinity());
+      lost_[i] = select(b.alive[i], V(R(0)), V(R(-2)));
+      alive_[i] = b.alive[i];
+    }
+  }
+
+  /// Behind a step.
+  void watch(const BlockJob<R>& job, std::size_t j, const Bundle<R>& b) noexcept {
+    const kernel::Step<R>& s = job.sequence.steps[j];
+    // A difference of squares has the sign of the trace's own comparison with the rim; products by these keep it.
+    const R scale = s.rim2 > 4 * std::numeric_limits<R>::min() ? 1 / s.rim2 : R(1);
+    const auto iris = s.stop ? job.iris : std::span<const kernel::StopEdge<R>>{};
+    const V left(R(-1) - static_cast<R>(job.steps - j) / static_cast<R>(job.steps)), none(R(0));
+    for (int i = 0; i < Bundle<R>::vectors; ++i) {
+      V own = (V(s.rim2) - b.r2[i]) * V(scale);
+      if (s.obscuration2 > 0) own = smaller((b.r2[i] - V(s.obscuration2)) * V(scale), own);
+      for (const auto& [nx, ny, distance] : iris) {
+        own = smaller((V(distance) - (b.x[i] * V(nx) + b.y[i] * V(ny))) * sqrt(V(scale)), own);
+      }
+      // Without apertures rims lose nothing.
+      const Mask<R> lost = without(alive_[i], b.alive[i]);
+      const Mask<R> otherwise = job.apertures ? without(lost, own < none) : lost;
+      lost_[i] = select(otherwise, left, lost_[i]);
+      least_[i] = select(without(alive_[i], otherwise), smaller(own, least_[i]), least_[i]);
+      alive_[i] = b.alive[i];
+    }
+  }
+
+  /// to: one value for each ray. Of a bundle that has left the lens.
+  void leave(const Bundle<R>& b, R* to) const noexcept {
+    const V none(R(0)), one(R(1));
+    for (int i = 0; i < Bundle<R>::vectors; ++i) {
+      const V value = select(least_[i] < none, least_[i] / (one - least_[i]), least_[i]);
+      const V lost = select(without(alive_[i], b.alive[i]), -one, lost_[i]);
+      store(to + i * V::width, select(lost < none, smaller(value, none) + lost, value));
+    }
+  }
+
+ private:
+  static PETZVAL_INLINE V smaller(V a, V b) noexcept { return select(a < b, a, b); }
+
+  V least_[Bundle<R>::vectors];  ///< over the rims so far
+  V lost_[Bundle<R>::vectors];   ///< below 0 for rays that something else than a rim has lost
+  Mask<R> alive_[Bundle<R>::vectors];
+};
+
+}  // namespace
+}  // namespace petzval::inline v0::trace_detail
