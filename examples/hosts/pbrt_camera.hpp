@@ -48,7 +48,8 @@ class PbrtCamera {
   petzval::CameraSample of(const pbrt::CameraSample& sample) const {
     return {.film = camera_.film().point(sample.pFilm.x, sample.pFilm.y),
             .pupil_u = sample.pLens.x,
-            .pupil_v = sample.pLens.y};
+            .pupil_v = sample.pLens.y,
+            .time = sample.time};
   }
 
   pbrt::Ray to_pbrt(const petzval::Ray<double>& lens_ray, const pbrt::CameraSample& sample) const {

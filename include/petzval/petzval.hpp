@@ -37,6 +37,7 @@
 
 #include "petzval/accuracy/choose_model.hpp"
 #include "petzval/camera/camera.hpp"
+#include "petzval/camera/camera_tables.hpp"
 #include "petzval/camera/host_frame.hpp"
 #include "petzval/camera/polynomial_model.hpp"
 #include "petzval/camera/ray_model.hpp"
@@ -49,6 +50,7 @@
 #include "petzval/film/film.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/io/lens_json.hpp"
+#include "petzval/io/write_file.hpp"
 #include "petzval/iris/iris.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/lint/lint.hpp"

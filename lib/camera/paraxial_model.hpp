@@ -54,6 +54,9 @@ class ParaxialModel {
 
   ModelKind kind() const noexcept { return kind_; }
   const FilmPupilTable& pupils() const noexcept { return pupils_; }
+  /// From film and pupil points to place and slope in the plane z(), one for each wavelength.
+  std::span<const SectionMaps> maps() const noexcept { return to_scene_; }
+  double z() const noexcept { return z_; }
   /// As in RayModel; empty unless this is the pinhole.
   std::span<const double> pinhole_shifts() const noexcept { return pinhole_shifts_; }
   /// missed_surface: numbers that are not finite (or beyond 1e12 mm) and wavelengths that were not compiled.

@@ -6,12 +6,15 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <bit>
 #include <cerrno>
+#include <cstring>
 #include <optional>
 #include <string>
 #include <system_error>
 #include <utility>
 
+#include "json.hpp"
 #include "petzval/core/error.hpp"
 
 namespace petzval::inline v0 {
@@ -122,6 +125,21 @@ void write_file(std::string_view bytes, const fs::path& file) {
     throw Error(file.string() + ": cannot be written (" + error.code().message() +
                 "), wanted an existing, writable folder with space");
   }
+}
+
+void write_floats(std::span<const float> numbers, const std::filesystem::path& file) {
+  static_assert(std::endian::native == std::endian::little);
+  write_file({reinterpret_cast<const char*>(numbers.data()), numbers.size_bytes()}, file);
+}
+
+std::vector<float> read_floats(const std::filesystem::path& file) {
+  const std::string bytes = io_detail::read_text(file, "a file of floats");
+  if (bytes.size() % sizeof(float) != 0) {
+    throw Error(file.string() + ": found " + std::to_string(bytes.size()) + " bytes, wanted whole floats of 4");
+  }
+  std::vector<float> numbers(bytes.size() / sizeof(float));
+  std::memcpy(numbers.data(), bytes.data(), bytes.size());
+  return numbers;
 }
 
 }  // namespace petzval::inline v0

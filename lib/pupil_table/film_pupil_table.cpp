@@ -27,7 +27,7 @@ using L = StripLayout;
 
 /// A strip from the polygons at its sides.
 std::array<double, L::size> strip_between(const PupilPolygon& p, const PupilPolygon& q) {
-  std::array<double, L::size> strip;
+  std::array<double, L::size> strip{};  // some are not used
   const auto put = [&](std::size_t at, const Point<double>& from, const Point<double>& change) {
     strip[at] = from.x, strip[at + 1] = from.y, strip[at + 2] = change.x, strip[at + 3] = change.y;
   };
@@ -281,6 +281,22 @@ const TwoPlanes& FilmPupilTable::space() const noexcept { return data_->space; }
 double FilmPupilTable::film_radius() const noexcept { return data_->film_radius; }
 std::size_t FilmPupilTable::wavelengths() const noexcept { return data_->wavelengths; }
 std::size_t FilmPupilTable::primary_wavelength() const noexcept { return data_->primary; }
+
+FilmPupilArrays FilmPupilTable::arrays() const {
+  static_assert(L::size == FilmPupilArrays::strip_size && L::obscured == 528 && L::sectors == 8);
+  if (data_->cells) {
+    throw Error("pupil table: found pupils over both axes of the film, wanted those of a lens of revolution");
+  }
+  FilmPupilArrays result;
+  result.film_radius = data_->images ? film_radius() : data_->lit_radius;
+  if (const auto& images = data_->images) {
+    images->put(result);
+  } else {
+    result.pupils = data_->single;
+    result.strips = data_->strips_each;
+  }
+  return result;
+}
 
 PupilSample FilmPupilTable::sample(const FilmPoint& film, double u, double v, Wavelength wavelength) const noexcept {
   if (const auto& images = data_->images) return images->sample(film, u, v, wavelength.position(data_->primary));

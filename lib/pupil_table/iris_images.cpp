@@ -30,6 +30,17 @@ IrisImages IrisImages::tilted(const FilmTilt& tilt) const {
   return result;
 }
 
+void IrisImages::put(FilmPupilArrays& arrays) const {
+  arrays.images = true;
+  for (const auto& [shift_x, shift_y, radius_x, radius_y, area] : single_) {
+    arrays.pupils.insert(arrays.pupils.end(), {shift_x, shift_y, radius_x, radius_y, area});
+  }
+  const auto iris = shape_.triangles<float>();
+  for (std::size_t k = 0; iris.count > 0 && k <= iris.count; ++k) {
+    arrays.iris.insert(arrays.iris.end(), {iris.before[k], iris.x[k], iris.y[k]});
+  }
+}
+
 template <class R>
 IrisImageTable<R> IrisImages::table() const noexcept {
   const auto number = [](double x) { return static_cast<R>(x); };

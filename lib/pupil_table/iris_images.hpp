@@ -24,6 +24,9 @@ class IrisImages {
   /// Those of a tilted film, by virtual film points; for images of an upright one.
   IrisImages tilted(const FilmTilt& tilt) const;
 
+  /// As plain numbers. For images of an upright film.
+  void put(FilmPupilArrays& arrays) const;
+
   PupilSample sample(const FilmPoint& film, double u, double v, std::size_t wavelength) const noexcept;
   double area(const FilmPoint& film, std::size_t wavelength) const noexcept;
   Vec2<double> middle(const FilmPoint& film, std::size_t wavelength) const noexcept;

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <vector>
 
 #include "petzval/camera/camera_ray.hpp"
 #include "petzval/camera/model_kind.hpp"
@@ -109,6 +110,11 @@ class PETZVAL_API Camera {
   /// The density with which sample_importance() gives a direction at a point, 1/sr.
   double pdf_importance(const Vec3<double>& point, const Vec3<double>& direction,
                         Wavelength wavelength = {}) const noexcept;
+
+  /// The camera's film side as plain numbers, for hosts that sample on another processor: CameraTables
+  /// (camera_tables.hpp) has the layout. Throws Error for a film that is tilted or travels, a renderer's own model, and
+  /// exact or fitted models of a lens with cylinders.
+  std::vector<float> tables() const;
 
   /// Where the camera sees a scene point: the film point and raster position of its chief ray.
   Projection project(const Vec3<double>& point, Wavelength wavelength = {}, double time = 0) const noexcept;

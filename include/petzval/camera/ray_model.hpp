@@ -78,6 +78,13 @@ class AnyRayModel {
     requires(!std::same_as<M, AnyRayModel> && RayModel<M>)
   AnyRayModel(M model) : model_(std::make_shared<const Held<M>>(std::move(model))) {}
 
+  /// The model, if it is an M; else null.
+  template <class M>
+  const M* as() const noexcept {
+    const auto* const held = dynamic_cast<const Held<M>*>(model_.get());
+    return held ? &held->model : nullptr;
+  }
+
   ModelKind kind() const noexcept { return model_->kind; }
   bool clips_at_apertures() const noexcept { return model_->clips_at_apertures; }
   bool linear_in_slopes() const noexcept { return model_->linear_in_slopes; }

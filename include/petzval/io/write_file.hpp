@@ -2,7 +2,9 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <string_view>
+#include <vector>
 
 #include "petzval/core/export.hpp"
 
@@ -13,5 +15,10 @@ namespace petzval::inline v0 {
 /// process that is killed may leave its new file, .petzval-PID-N. Links are followed. Pipes and devices are written to
 /// directly. Throws Error that names the file and the system's reason.
 PETZVAL_API void write_file(std::string_view bytes, const std::filesystem::path& file);
+
+/// Writes numbers as they are, little-endian floats of 32 bits, as write_file() does: Camera::tables().
+PETZVAL_API void write_floats(std::span<const float> numbers, const std::filesystem::path& file);
+/// Reads them, bit for bit. Throws Error that names the file, also where its bytes are no whole number of floats.
+PETZVAL_API std::vector<float> read_floats(const std::filesystem::path& file);
 
 }  // namespace petzval::inline v0

@@ -50,6 +50,27 @@ struct PupilSample {
   double x = 0, y = 0, area = 0;
 };
 
+/// A FilmPupilTable as plain numbers, for another processor.
+struct FilmPupilArrays {
+  /// Images of an iris, or of a lens of revolution: polygons by distance from the axis.
+  bool images = false;
+  double film_radius = 0;  ///< mm; film points beyond see nothing
+  /// [wavelength] shift x, shift y, radius x, radius y, area (see PupilImage). Or [wavelength][strip] the polygons of
+  /// film points on +y between film_radius strip / strips and the next, by the fraction t of the way:
+  ///
+  ///     0       y of the middle, that by t, 0, 0 (x is 0)
+  ///     4       area by 1, t, t^2, t^3, mm^2
+  ///     8 + 8k  corner k from the middle: x, y, x by t, y by t; area before it by 1, t, t^2, t^3 (k = 0 ... 64)
+  ///     528 + 4k  the obscured part of sector k: begin and width, these by t, in squared ways from the middle (0) to
+  ///               the outer edge (1)
+  std::vector<float> pupils;
+  std::size_t strips = 0;
+  /// [corner] share of the area before it, x, y, in radii, the first one once more at the end. Empty: a disc.
+  std::vector<float> iris;
+
+  static constexpr std::size_t image_size = 5, strip_size = 784, corners = 64;
+};
+
 /// The pupils of every point of a film: the parts of the plane behind the lens through which the points see the scene,
 /// as a table over the film, one for each compiled wavelength, or in closed form.
 ///
@@ -130,6 +151,9 @@ class PETZVAL_API FilmPupilTable {
   template <class T>
   void contains(std::size_t count, const TwoPlaneRays<const T>& lines, const RayWavelengths& wavelengths,
                 std::uint8_t* within) const noexcept;
+
+  /// Throws Error for a table over both axes of the film, of a lens with cylinders.
+  FilmPupilArrays arrays() const;
 
   /// Derivatives of a sample's (x, y) by film x and by film y, at constant u and v.
   struct Derivatives {

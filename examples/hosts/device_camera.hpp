@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: Apache-2.0
+// A camera sampled from Camera::tables() alone, with nothing but floats and loops: to be copied into a kernel of a GPU.
+// PETZVAL_DEVICE: what the functions of the kernel are marked with (__device__, for instance).
+#pragma once
+
+#include <cmath>
+
+#include "petzval/camera/camera_tables.hpp"
+
+#ifndef PETZVAL_DEVICE
+#define PETZVAL_DEVICE
+#endif
+
+namespace hosts {
+
+using Table = petzval::CameraTables;
+
+struct DeviceRay {
+  float origin[3] = {0, 0, 0}, direction[3] = {0, 0, -1};  // lens frame, mm, from the front of the lens to the scene
+  float weight = 0;                                        // 0: lost
+};
+
+struct DevicePlace {
+  float x = 0, y = 0, area = 0;  // in the plane of the pupil; area 0: nothing to sample
+};
+
+PETZVAL_DEVICE inline int whole_number(const float* t, Table::Position at) { return static_cast<int>(t[at]); }
+PETZVAL_DEVICE inline const float* list(const float* t, Table::Position at) { return t + whole_number(t, at); }
+
+/// Turns count from +y towards +x.
+PETZVAL_DEVICE inline DevicePlace sample_image(const float* t, float film_x, float film_y, float u, float v, int w) {
+  const float* image = list(t, Table::pupils) + 5 * w;
+  const float way = std::sqrt(v);
+  const int corners = whole_number(t, Table::iris_corners);
+  float x, y;
+  if (corners == 0) {
+    const float turn = 6.28318531f * u;
+    x = way * std::sin(turn), y = way * std::cos(turn);
+  } else {
+    const float* corner = list(t, Table::iris);
+    for (int k = 1; k < corners && u >= corner[3]; ++k) corner += 3;
+    const float along = (u - corner[0]) / (corner[3] - corner[0]);
+    x = way * (corner[1] + along * (corner[4] - corner[1])), y = way * (corner[2] + along * (corner[5] - corner[2]));
+  }
+  return {image[0] * film_x + image[2] * x, image[1] * film_y + image[3] * y, image[4]};
+}
+
+PETZVAL_DEVICE inline DevicePlace sample_polygon(const float* t, float film_x, float film_y, float u, float v, int w) {
+  const int strips = whole_number(t, Table::strips);
+  const float height = std::sqrt(film_x * film_x + film_y * film_y);
+  const float at = t[Table::pupil_radius] > 0 ? height * static_cast<float>(strips) / t[Table::pupil_radius] : 0;
+  const int strip = static_cast<int>(at) < strips ? static_cast<int>(at) : strips - 1;
+  const float part = at - static_cast<float>(strip);
+  const float* row = list(t, Table::pupils) + (w * strips + strip) * 784;
+  const auto before = [row, part](int k) {
+    const float* a = row + (k == 64 ? 4 : 12 + 8 * k);
+    return a[0] + part * (a[1] + part * (a[2] + part * a[3]));
+  };
+  // The polygon is that of a film point on +y; it turns with the point, and u does not.
+  const float sine = height > 0 ? film_x / height : 0, cosine = height > 0 ? film_y / height : 1;
+  float share = u - std::atan2(sine, cosine) / 6.28318531f;
+  share -= std::floor(share);
+  const float wanted = share * before(64);
+  int k = 0;
+  for (int step = 32; step > 0; step /= 2) k += before(k + step) <= wanted ? step : 0;
+  const float own = before(k + 1) - before(k), along = own > 0 ? (wanted - before(k)) / own : 0;
+  const float *a = row + 8 + 8 * k, *b = a + 8, *o = row + 528 + 4 * k;
+  const float ax = a[0] + part * a[2], ay = a[1] + part * a[3], bx = b[0] + part * b[2], by = b[1] + part * b[3];
+  const float begin = o[0] + part * o[2], width = o[1] + part * o[3];
+  const float squared = (1 - width) * v, way = std::sqrt(squared < begin ? squared : squared + width);
+  const float x = way * (ax + along * (bx - ax)), y = row[0] + part * row[1] + way * (ay + along * (by - ay));
+  return {cosine * x + sine * y, cosine * y - sine * x, before(64)};
+}
+
+PETZVAL_DEVICE inline bool by_first_order(const float* t, const float film[2], const float pupil[2], int w,
+                                          DeviceRay& ray) {
+  float slope[2];
+  for (int k = 0; k < 2; ++k) {
+    const float* m = list(t, Table::rays) + 8 * w + 4 * k;
+    ray.origin[k] = m[0] * film[k] + m[1] * pupil[k];
+    slope[k] = m[2] * film[k] + m[3] * pupil[k];
+  }
+  const float down = -1 / std::sqrt(1 + slope[0] * slope[0] + slope[1] * slope[1]);
+  ray.origin[2] = t[Table::reference_z];
+  ray.direction[0] = slope[0] * down, ray.direction[1] = slope[1] * down, ray.direction[2] = down;
+  return true;
+}
+
+/// See RayPolynomial for the chart of rays.
+PETZVAL_DEVICE inline bool by_polynomial(const float* t, const float film[2], const float pupil[2], int w,
+                                         DeviceRay& ray) {
+  float f[2], p[2];
+  for (int k = 0; k < 2; ++k) {
+    f[k] = film[k] / t[Table::domain_film_radius];
+    p[k] = (pupil[k] - t[Table::domain_pupil_shift] * film[k]) / t[Table::domain_pupil_radius];
+  }
+  const float u = f[0] * f[0] + f[1] * f[1], v = f[0] * p[0] + f[1] * p[1], r = p[0] * p[0] + p[1] * p[1];
+  if (!(u <= 1.00001f && r <= 1.00001f)) return false;
+  const int n = (whole_number(t, Table::degree) - 1) / 2, terms = (n + 1) * (n + 2) * (n + 3) / 6;
+  const float* c = list(t, Table::rays) + 4 * terms * w;
+  float sums[4] = {0, 0, 0, 0}, by_r = 1;
+  for (int k = 0; k <= n; ++k, by_r *= r) {
+    float by_v = by_r;
+    for (int j = 0; j <= n - k; ++j, by_v *= v) {
+      float term = by_v;
+      for (int i = 0; i <= n - k - j; ++i, term *= u, ++c) {
+        for (int list = 0; list < 4; ++list) sums[list] += c[list * terms] * term;
+      }
+    }
+  }
+  float s[2], o[2];
+  for (int k = 0; k < 2; ++k) s[k] = sums[0] * f[k] + sums[1] * p[k], o[k] = sums[2] * f[k] + sums[3] * p[k];
+  const float square = s[0] * s[0] + s[1] * s[1], twice = 2 / (square + 1), along = twice * (s[0] * o[0] + s[1] * o[1]);
+  for (int k = 0; k < 2; ++k) ray.origin[k] = o[k] - s[k] * along, ray.direction[k] = twice * s[k];
+  ray.origin[2] = along + t[Table::reference_z], ray.direction[2] = twice * (square - 1) / 2;
+  return true;
+}
+
+/// Sag of a surface and its slope over r: z = sag, dz/dx = slope x.
+PETZVAL_DEVICE inline bool sag_of(const float* surface, float r2, float& z, float& slope) {
+  const float c = surface[1], inside = 1 - (1 + surface[2]) * c * c * r2;
+  if (!(inside > 0)) return false;
+  const float root = std::sqrt(inside), height = surface[7], rho = std::sqrt(r2) / height;
+  float sum = 0, derivative = 0;  // of the aspheric terms by rho, over rho^2 and rho
+  for (int order = 40; order >= 2; --order) {
+    const float a = surface[8 + order - 2];
+    sum = sum * rho + a;
+    derivative = derivative * rho + static_cast<float>(order) * a;
+  }
+  z = c * r2 / (1 + root) + sum * rho * rho;
+  slope = c / root + derivative / (height * height);
+  return true;
+}
+
+/// From the plane of the pupil to the scene, surface by surface from the last.
+PETZVAL_DEVICE inline bool by_surfaces(const float* t, int w, DeviceRay& ray) {
+  const int count = whole_number(t, Table::surface_count), edges = whole_number(t, Table::edge_count);
+  const float* index = list(t, Table::indices) + w * (count + 1);
+  float *o = ray.origin, *d = ray.direction;
+  for (int i = count - 1; i >= 0; --i) {
+    const float* surface = list(t, Table::rays) + 47 * i;
+    const float c = surface[1], e = 1 + surface[2], sense = d[2] > 0 ? 1.0f : -1.0f;
+    // In the plane of the vertex the quadratic loses no digits.
+    const float start = (surface[0] - o[2]) / d[2];
+    const float x = o[0] + start * d[0], y = o[1] + start * d[1];
+    const float quadratic = c * (d[0] * d[0] + d[1] * d[1] + e * d[2] * d[2]), free = c * (x * x + y * y);
+    const float linear = d[2] - c * (x * d[0] + y * d[1]), square = linear * linear - quadratic * free;
+    if (!(square >= 0)) return false;
+    float way = free / (linear + sense * std::sqrt(square)), slope = 0;
+    for (int step = 0; step < 12; ++step) {  // Newton, for the aspheric terms
+      const float px = x + way * d[0], py = y + way * d[1];
+      float z = 0;
+      if (!sag_of(surface, px * px + py * py, z, slope)) return false;
+      const float above = way * d[2] - z, rate = d[2] - slope * (px * d[0] + py * d[1]);
+      way -= above / rate;
+      if (std::fabs(above) <= 1e-7f * surface[7]) break;
+    }
+    o[0] = x + way * d[0], o[1] = y + way * d[1], o[2] = surface[0] + way * d[2];
+    const float r2 = o[0] * o[0] + o[1] * o[1];
+    if (!(r2 <= surface[3] * surface[3] && r2 >= surface[4] * surface[4])) return false;
+    for (int k = 0; k < edges && surface[6] != 0; ++k) {
+      const float* edge = list(t, Table::edges) + 3 * k;
+      if (o[0] * edge[0] + o[1] * edge[1] > edge[2]) return false;
+    }
+    // The normal, against the ray.
+    float normal[3] = {slope * o[0] * sense, slope * o[1] * sense, -sense};
+    const float per_length = 1 / std::sqrt(normal[0] * normal[0] + normal[1] * normal[1] + 1);
+    float cosine = 0;
+    for (int k = 0; k < 3; ++k) normal[k] *= per_length, cosine -= normal[k] * d[k];
+    float along = 2 * cosine, ratio = 1;
+    if (surface[5] == 0) {
+      ratio = index[i + 1] / index[i];
+      const float left = 1 - ratio * ratio * (1 - cosine * cosine);
+      if (!(left >= 0)) return false;
+      along = ratio * cosine - std::sqrt(left);
+    }
+    for (int k = 0; k < 3; ++k) d[k] = ratio * d[k] + along * normal[k];
+  }
+  return true;
+}
+
+/// Along the ray to the front of the lens, where rays of every model start.
+PETZVAL_DEVICE inline void move_to_front(const float* t, DeviceRay& ray) {
+  float *o = ray.origin, *d = ray.direction;
+  const float c = t[Table::front_curvature], z = o[2] - t[Table::front_z];
+  const float e = c * (o[0] * o[0] + o[1] * o[1] + z * z) - 2 * z, along = o[0] * d[0] + o[1] * d[1] + z * d[2];
+  const float b = d[2] - c * along, square = b * b - c * e;
+  float way = d[2] < 0 ? -z / d[2] : -along;
+  if (square > 0 && (b < 0 || c != 0)) {
+    const float root = std::sqrt(square);
+    way = b < 0 ? e / (b - root) : (b + root) / c;
+  }
+  for (int k = 0; k < 3; ++k) o[k] += way * d[k];
+}
+
+/// A film point and a sample of its pupil, as CameraSample; w: position of the wavelength.
+PETZVAL_DEVICE inline DeviceRay sample(const float* t, float film_x, float film_y, float u, float v, int w) {
+  DeviceRay ray;
+  const bool on_film = std::fabs(film_x - t[Table::film_x]) <= t[Table::half_width] &&
+                       std::fabs(film_y - t[Table::film_y]) <= t[Table::half_height];
+  const float r2 = film_x * film_x + film_y * film_y, reach = t[Table::pupil_radius] * 1.000001f;
+  if (!on_film || !(r2 <= reach * reach)) return ray;
+  const DevicePlace place = t[Table::pupils_are_images] != 0 ? sample_image(t, film_x, film_y, u, v, w)
+                                                             : sample_polygon(t, film_x, film_y, u, v, w);
+  if (!(place.area > 0)) return ray;
+  const float film[2] = {film_x, film_y}, pupil[2] = {place.x, place.y};
+  const float depth = t[Table::pupil_z] - t[Table::film_z], x = place.x - film_x, y = place.y - film_y;
+  const float length2 = x * x + y * y + depth * depth;
+  bool passes = false;
+  switch (whole_number(t, Table::rays_kind)) {
+    case 0: passes = by_first_order(t, film, pupil, w, ray); break;
+    case 1: passes = by_polynomial(t, film, pupil, w, ray); break;
+    default: {
+      // Light runs towards +z into the lens, and back after an odd number of mirrors.
+      float towards = -1;
+      const int count = whole_number(t, Table::surface_count);
+      for (int i = 0; i < count; ++i) towards = list(t, Table::rays)[47 * i + 5] != 0 ? -towards : towards;
+      const float scale = (depth * towards > 0 ? 1 : -1) / std::sqrt(length2);
+      ray.origin[0] = place.x, ray.origin[1] = place.y, ray.origin[2] = t[Table::pupil_z];
+      ray.direction[0] = x * scale, ray.direction[1] = y * scale, ray.direction[2] = depth * scale;
+      passes = by_surfaces(t, w, ray);
+    }
+  }
+  if (!passes) return ray;
+  move_to_front(t, ray);
+  ray.weight = list(t, Table::scales)[w] * place.area * depth * depth / (length2 * length2);
+  return ray;
+}
+
+}  // namespace hosts

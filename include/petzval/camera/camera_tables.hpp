@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+
+#include "petzval/core/export.hpp"
+
+namespace petzval::inline v0 {
+
+/// The layout of Camera::tables(): one array of floats, to be copied to a GPU as it is. Counts, kinds and positions in
+/// the array are whole numbers. Lens frame, mm. examples/hosts/device_camera.hpp samples a camera from it and has
+/// nothing else of petzval.
+///
+///     position               what stands there
+///     format ... surface_count   the numbers below
+///     wavelengths            [wavelength] nm
+///     scales                 [wavelength] of weights: weight = scale area depth^2 / length^4, for a line of that
+///     length
+///                            from the film point to a place in the pupil; depth: from film_z to pupil_z
+///     pupils, iris           as in FilmPupilArrays
+///     rays, first order      [wavelength] a, b, c, d along x, then along y: place = a f + b p, slope = c f + d p, of
+///     film
+///                            and pupil point, in the plane reference_z; rays run towards -z
+///     rays, polynomial       [wavelength] the terms of direction_by_film, direction_by_pupil, offset_by_film and
+///                            offset_by_pupil (see RayPolynomial; degree, domain: below)
+///     rays, surfaces         [surface] in the order of the file, surface_size numbers each: vertex_z, curvature, conic
+///                            constant, semi-diameter (infinite: 3e38), that of the central obscuration, 1 for a
+///                            mirror, 1 for the stop, height h of the aspheric terms; a[2] ... a[40]: z gains a[i] (r /
+///                            h)^i
+///     indices                [wavelength][space] of the media, before each surface and behind the last one
+///     edges                  [edge] of the stop: x nx + y ny <= distance: nx, ny, distance
+struct CameraTables {
+  enum Position : std::size_t {
+    format,  ///< 1
+    model,   ///< a ModelKind
+    wavelength_count,
+    primary_wavelength,
+    film_z,
+    pupil_z,
+    film_x,  ///< of the middle of the film
+    film_y,
+    half_width,  ///< with the margin
+    half_height,
+    front_z,          ///< vertex of the front of the lens (see Camera)
+    front_curvature,  ///< 0: a plane
+    wavelengths,      ///< where the lists begin
+    scales,
+    pupils,
+    pupils_are_images,  ///< 1 or 0
+    pupil_radius,       ///< film points farther from the axis see nothing
+    strips,
+    iris,
+    iris_corners,  ///< 0: a disc
+    rays,
+    rays_kind,  ///< 0 first order, 1 polynomial, 2 surfaces
+    reference_z,
+    degree,
+    domain_film_radius,
+    domain_pupil_shift,
+    domain_pupil_radius,
+    surface_count,
+    indices,
+    edges,
+    edge_count,
+    head_size = 32
+  };
+  static constexpr std::size_t surface_size = 8 + 39;
+
+  /// For tables that were read from a file (read_floats() in io/write_file.hpp). Throws Error, which begins with
+  /// `where`, for another format and for lists that are not as long as they must be.
+  PETZVAL_API static void check(std::span<const float> tables, const std::string& where);
+};
+
+}  // namespace petzval::inline v0

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "petzval/camera/camera_tables.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+
+#include "camera_data.hpp"
+#include "make_model.hpp"
+#include "paraxial_model.hpp"
+#include "petzval/camera/polynomial_model.hpp"
+#include "petzval/core/error.hpp"
+
+namespace petzval::inline v0 {
+namespace {
+
+using Table = CameraTables;
+constexpr float unlimited = 3e38f;
+
+/// The array while it grows.
+class Numbers {
+ public:
+  std::vector<float> list = std::vector<float>(Table::head_size, 0.0f);
+
+  template <class T>
+  void set(Table::Position at, T value) {
+    list[at] = static_cast<float>(value);
+  }
+  /// What is added next belongs to `at`.
+  void begin(Table::Position at) { set(at, list.size()); }
+  void add(double value) { list.push_back(static_cast<float>(value)); }
+  void add(std::span<const double> values) {
+    for (const double value : values) add(value);
+  }
+};
+
+void put_maps(Numbers& to, const camera_detail::ParaxialModel& model) {
+  to.set(Table::rays_kind, 0);
+  to.set(Table::reference_z, model.z());
+  for (const auto& [x, y] : model.maps()) to.add(std::array{x.a, x.b, x.c, x.d, y.a, y.b, y.c, y.d});
+}
+
+void put_polynomial(Numbers& to, const RayPolynomial& polynomial) {
+  const RayPolynomial::Domain& domain = polynomial.domain();
+  to.set(Table::rays_kind, 1);
+  to.set(Table::reference_z, domain.reference_z);
+  to.set(Table::degree, polynomial.degree());
+  to.set(Table::domain_film_radius, domain.film_radius);
+  to.set(Table::domain_pupil_shift, domain.pupil_shift);
+  to.set(Table::domain_pupil_radius, domain.pupil_radius);
+  for (const RayPolynomial::Fit& fit : polynomial.fits()) {
+    to.add(fit.direction_by_film), to.add(fit.direction_by_pupil);
+    to.add(fit.offset_by_film), to.add(fit.offset_by_pupil);
+  }
+}
+
+void put_surfaces(Numbers& to, const Lens& lens) {
+  to.set(Table::rays_kind, 2);
+  to.set(Table::surface_count, lens.surface_count());
+  for (std::size_t i = 0; i < lens.surface_count(); ++i) {
+    const LensSurface& s = lens.surfaces()[i];
+    const bool limited = std::isfinite(s.semi_diameter) && s.semi_diameter > 0;
+    const double height = limited ? s.semi_diameter : 1;
+    to.add(std::array{s.vertex_z, s.curvature, s.conic});
+    to.add(std::isfinite(s.semi_diameter) ? s.semi_diameter : double{unlimited});
+    to.add(std::array{s.obscuration_semi_diameter, s.mirror ? 1.0 : 0.0, lens.stop() == i ? 1.0 : 0.0, height});
+    std::array<double, Table::surface_size - 8> terms{};
+    for (const auto& [order, coefficient] : s.aspheric) {
+      terms[static_cast<std::size_t>(order) - 2] += coefficient * std::pow(height, order);
+    }
+    to.add(terms);
+  }
+  to.begin(Table::indices);
+  for (std::size_t w = 0; w < lens.wavelengths_nm().size(); ++w) {
+    for (std::size_t space = 0; space <= lens.surface_count(); ++space) to.add(lens.index(space, w));
+  }
+  to.begin(Table::edges);
+  to.set(Table::edge_count, lens.iris().edges.size());
+  for (const IrisEdge& edge : lens.iris().edges) {
+    to.add(std::array{edge.nx, edge.ny, edge.distance * lens.surfaces()[*lens.stop()].semi_diameter});
+  }
+}
+
+}  // namespace
+
+void CameraTables::check(std::span<const float> tables, const std::string& where) {
+  const auto refuse = [&](const std::string& found) { throw Error(where + ": found " + found); };
+  if (tables.size() < head_size || tables[format] != 1) refuse("no camera tables of format 1, wanted them");
+  const auto number = [&](Position at) {
+    const float value = tables[at];
+    if (!(value >= 0 && value <= 1 << 24 && value == std::floor(value))) {
+      refuse(std::to_string(value) + " at position " + std::to_string(at) + ", wanted a whole number");
+    }
+    return static_cast<std::size_t>(value);
+  };
+  const auto check_list = [&](Position at, std::size_t size) {
+    if (number(at) + size <= tables.size()) return;
+    refuse(std::to_string(tables.size()) + " numbers, wanted " + std::to_string(number(at) + size) + " or more");
+  };
+  const std::size_t w = number(wavelength_count), spaces = number(surface_count) + 1;
+  check_list(wavelengths, w), check_list(scales, w);
+  check_list(pupils, w * (number(pupils_are_images) ? FilmPupilArrays::image_size
+                                                    : number(strips) * FilmPupilArrays::strip_size));
+  if (number(iris_corners) > 0) check_list(iris, 3 * (number(iris_corners) + 1));
+  switch (number(rays_kind)) {
+    case 0: check_list(rays, 8 * w); break;
+    case 1:
+      check_list(rays,
+                 4 * w * RayPolynomial::terms(static_cast<int>(std::min<std::size_t>(number(degree), 11))).size());
+      break;
+    case 2:
+      check_list(rays, number(surface_count) * surface_size), check_list(indices, w * spaces);
+      check_list(edges, 3 * number(edge_count));
+      break;
+    default: refuse("rays of kind " + std::to_string(number(rays_kind)) + ", wanted 0, 1 or 2");
+  }
+}
+
+std::vector<float> Camera::tables() const {
+  const Data& data = *data_;
+  const std::string where = data.lens.name() + ": tables: ";
+  if (data.tilted) throw Error(where + "the film is tilted or travels, wanted an upright one that stays");
+  Numbers to;
+  to.set(Table::format, 1);
+  to.set(Table::model, static_cast<int>(data.model.kind()));
+  to.set(Table::wavelength_count, data.lens.wavelengths_nm().size());
+  to.set(Table::primary_wavelength, data.lens.primary_wavelength());
+  const TwoPlanes& space = data.model.pupils().space();
+  to.set(Table::film_z, space.film_z), to.set(Table::pupil_z, space.pupil_z);
+  to.set(Table::film_x, data.film.shift_x_mm), to.set(Table::film_y, data.film.shift_y_mm);
+  to.set(Table::half_width, data.film.width_mm / 2 + data.film.margin_mm);
+  to.set(Table::half_height, data.film.height_mm / 2 + data.film.margin_mm);
+  to.set(Table::front_z, data.front.vertex_z), to.set(Table::front_curvature, data.front.curvature);
+  to.begin(Table::wavelengths), to.add(data.lens.wavelengths_nm());
+  to.begin(Table::scales), to.add(data.scale);
+
+  const FilmPupilArrays pupils = data.model.pupils().arrays();
+  to.begin(Table::pupils), to.list.insert(to.list.end(), pupils.pupils.begin(), pupils.pupils.end());
+  to.set(Table::pupils_are_images, pupils.images ? 1 : 0);
+  to.set(Table::pupil_radius, pupils.film_radius);
+  to.set(Table::strips, pupils.strips);
+  to.begin(Table::iris), to.list.insert(to.list.end(), pupils.iris.begin(), pupils.iris.end());
+  to.set(Table::iris_corners, std::max<std::size_t>(pupils.iris.size() / 3, 1) - 1);
+
+  to.begin(Table::rays);
+  if (const auto* paraxial = data.model.as<camera_detail::ParaxialModel>()) {
+    put_maps(to, *paraxial);
+  } else if (const auto* polynomial = data.model.as<PolynomialModel>()) {
+    put_polynomial(to, polynomial->polynomial());
+  } else if (data.model.kind() != ModelKind::custom) {
+    put_surfaces(to, data.lens);
+  } else {
+    throw Error(where + "the model is a renderer's own, wanted one of models()");
+  }
+  return std::move(to.list);
+}
+
+}  // namespace petzval::inline v0
