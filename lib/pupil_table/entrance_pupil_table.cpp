@@ -10,6 +10,7 @@
 #include <optional>
 #include <utility>
 
+#include "entrance_grid.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/pupil_plane.hpp"
@@ -26,18 +27,6 @@ constexpr double pi = std::numbers::pi;
 /// Cells of the table: in field, from the axis to the last; in reciprocal distance, from infinity to the nearest.
 constexpr std::size_t field_steps = 12, distance_steps = 2;
 constexpr std::size_t fields = field_steps + 1, distances = distance_steps + 1;
-
-/// Where a direction from the centre lies.
-struct Bearing {
-  double field = 0;
-  Vec2<double> azimuth{0, 1};
-
-  explicit Bearing(const Vec3<double>& unit) noexcept {
-    const double across = std::hypot(unit.x, unit.y);
-    field = std::atan2(across, -unit.z);
-    if (across > 0) azimuth = {unit.x / across, unit.y / across};
-  }
-};
 
 /// Bounds of the places where the rays of one node and its neighbours cross its plane.
 struct Bounds {
@@ -86,6 +75,7 @@ struct EntrancePupilTable::Data {
   struct Table {
     std::array<double, distances> widest{};  // field of the last node, rad
     std::vector<PupilPolygon> polygons;      // [distance][field]; empty: cones only
+    std::optional<EntranceGrid> grid;        // instead of polygons, of a lens with cylinders
     double ball = 0;                         // radius about the centre, mm; 0: nothing passes
   };
   Lens lens;
@@ -105,12 +95,8 @@ struct EntrancePupilTable::Data {
     return r > front_half || point.z < sag(lens, 0, point.x, point.y);
   }
 
-  /// Where a ray leaves the sphere of a radius about the centre.
   Bearing bearing_of(const Ray<double>& ray, double reciprocal_radius) const noexcept {
-    const Vec3<double> from = ray.origin - centre;
-    const double b = glm::dot(from, ray.direction), beside2 = glm::dot(from, from) - b * b;
-    const double along = std::sqrt(std::max(1 - beside2 * squared(reciprocal_radius), 0.0)) - b * reciprocal_radius;
-    return Bearing(from * reciprocal_radius + ray.direction * along);
+    return Bearing(centre, ray, reciprocal_radius);
   }
   /// The plane of the pupil that a point sees.
   PupilPlane plane_facing(const Bearing& bearing, double reciprocal_distance) const noexcept {
@@ -144,8 +130,9 @@ struct EntrancePupilTable::Data {
                           {(1 - down) * (1 - right), (1 - down) * right, down * (1 - right), down * right}};
   }
   /// The pupil of a point, empty for a field beyond the table.
-  PupilPolygon polygon_at(const Table& table, double field, double reciprocal) const noexcept {
-    const auto at = weights_of(table, field, reciprocal);
+  PupilPolygon polygon_at(const Table& table, const Bearing& bearing, double reciprocal) const noexcept {
+    if (table.grid) return table.grid->polygon(bearing, reciprocal);
+    const auto at = weights_of(table, bearing.field, reciprocal);
     return at ? interpolated(table.polygons, *at) : PupilPolygon{};
   }
 
@@ -156,7 +143,7 @@ struct EntrancePupilTable::Data {
     return in_front(point) ? &tables[wavelength] : nullptr;
   }
   bool covers(const Table& table, double distance) const noexcept {
-    return !table.polygons.empty() && steepest * distance >= 1;
+    return (!table.polygons.empty() || table.grid) && steepest * distance >= 1;
   }
 };
 
@@ -329,7 +316,8 @@ EntrancePupilTable::EntrancePupilTable(const Lens& lens, std::span<const std::ve
     data->tables.back().ball = between_rays * data->farthest(own, data->centre.z);
     reach = std::max(reach, data->tables.back().ball);
   }
-  data->steepest = 0.8 / reach;
+  // With cylinders the pupils of near points move too fast for few nodes.
+  data->steepest = (lens.rotationally_symmetric() ? 0.8 : 0.25) / reach;
   // Where the film sees a point through a small part of the pupil only, fields lose their meaning.
   for (const auto& own : rays) {
     constexpr double no_field = 1e-6;
@@ -338,7 +326,13 @@ EntrancePupilTable::EntrancePupilTable(const Lens& lens, std::span<const std::ve
   }
   for (std::size_t w = 0; w < rays.size(); ++w) {
     Data::Table& table = data->tables[w];
-    if (lens.rotationally_symmetric() && table.ball > 0) data->fill(table, rays[w], w, passing, clipped_by);
+    if (!(table.ball > 0)) continue;
+    if (lens.rotationally_symmetric()) {
+      data->fill(table, rays[w], w, passing, clipped_by);
+    } else {
+      table.grid.emplace(data->centre, data->steepest, rays[w], w, passing);
+      if (table.grid->empty()) table.grid.reset();
+    }
   }
   data_ = std::move(data);
 }
@@ -356,12 +350,12 @@ void EntrancePupilTable::sample(const Vec3<double>& point, std::size_t count, co
   const PupilPlane plane = data_->plane_facing(bearing, 1 / distance);
 
   if (data_->covers(*table, distance)) {
-    const PupilPolygon polygon = data_->polygon_at(*table, bearing.field, 1 / distance);
+    const PupilPolygon polygon = data_->polygon_at(*table, bearing, 1 / distance);
     const PolygonSampler sampler(polygon);
     if (!(sampler.area() > 0)) return;
     for (std::size_t i = 0; i < count; ++i) {
       if (!std::isfinite(u[i]) || !std::isfinite(v[i])) continue;
-      const Vec2<double> p = sampler(u[i], v[i]);
+      const Vec2<double> place = sampler(u[i], v[i]), p = table->grid ? bearing.from_quadrant(place) : place;
       const Ray<double> ray = plane.ray(p.x, p.y);
       const double far = std::sqrt(squared(distance) + squared(p.x) + squared(p.y));
       samples[i] = {ray.origin, ray.direction, far, squared(far) * (far / distance) / sampler.area()};
@@ -398,8 +392,8 @@ double EntrancePupilTable::pdf(const Vec3<double>& point, const Vec3<double>& di
   const double cosine = -glm::dot(direction, plane.towards());
   if (data_->covers(*table, distance)) {
     if (!(cosine > 0)) return 0;
-    const Vec2<double> place = plane.meet({point, direction});
-    const PupilPolygon polygon = data_->polygon_at(*table, bearing.field, 1 / distance);
+    const Vec2<double> met = plane.meet({point, direction}), place = table->grid ? bearing.in_quadrant(met) : met;
+    const PupilPolygon polygon = data_->polygon_at(*table, bearing, 1 / distance);
     const double way = polygon.way_to(place.x, place.y);
     if (!(way >= 0 && way <= 1)) return 0;
     return squared(distance) / (polygon.area() * cosine * squared(cosine));

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 
+#include "grid_pupils.hpp"
 #include "polygon_place.hpp"
 
 namespace petzval::inline v0::pupil_table_detail {

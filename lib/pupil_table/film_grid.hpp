@@ -31,7 +31,4 @@ FilmGrid film_grid(const Lens& lens, const TwoPlanes& space, double film_radius)
 std::vector<PupilPolygon> grid_polygons(const Lens& lens, const TwoPlanes& space, const FilmGrid& grid, PolygonFit fit,
                                         std::size_t wavelength);
 
-/// The one polygon that contains all of some others.
-PupilPolygon hull(const std::vector<PupilPolygon>& polygons);
-
 }  // namespace petzval::inline v0::pupil_table_detail

@@ -17,23 +17,20 @@ struct FilmSamples {
 };
 
 FilmSamples film_samples(const FilmPupilTable& pupils, bool azimuths_alike, std::size_t wavelength) {
-  constexpr int radii = 32, around = 16;
-  const int azimuths = azimuths_alike ? 1 : around;
-  const auto seen = [&](double radius) {
-    bool any = false;
-    for (int k = 0; k < azimuths && !any; ++k) {
-      const double turn = 2 * std::numbers::pi * k / azimuths;
-      any = pupils.area({radius * std::sin(turn), radius * std::cos(turn)}, wavelength) > 0;
-    }
-    return any;
-  };
-  double last = pupils.film_radius();
-  if (!seen(last)) {
-    const double dark = last;
-    last = 0;
+  constexpr int radii = 32, around = 16, azimuths = 64;
+  // How far the film gets light, by azimuth.
+  const auto lit_at = [&](double turn) {
+    const auto seen = [&](double radius) {
+      return pupils.area({radius * std::sin(turn), radius * std::cos(turn)}, wavelength) > 0;
+    };
+    const double dark = pupils.film_radius();
+    if (seen(dark)) return dark;
+    double last = 0;
     for (int i = 1; i <= radii && seen(dark * i / radii); ++i) last = dark * i / radii;
-    last = core_detail::last_with(last, std::min(last + dark / radii, dark), seen);
-  }
+    return core_detail::last_with(last, std::min(last + dark / radii, dark), seen);
+  };
+  std::vector<double> lit{lit_at(0)};
+  for (int k = 1; k <= azimuths && !azimuths_alike; ++k) lit.push_back(lit_at(2 * std::numbers::pi * k / azimuths));
   FilmSamples samples;
   const auto add = [&](double radius, double turn, double u, double v) {
     const FilmPoint film{radius * std::sin(turn), radius * std::cos(turn)};
@@ -46,17 +43,21 @@ FilmSamples film_samples(const FilmPupilTable& pupils, bool azimuths_alike, std:
   std::size_t index = 0;
   for (int i = 0; i <= radii; ++i) {
     // Closer where the light ends.
-    const double radius = last * (1 - std::pow(1 - static_cast<double>(i) / radii, 1.5));
+    const double part = 1 - std::pow(1 - static_cast<double>(i) / radii, 1.5);
     if (azimuths_alike) {
       for (int k = 0; k <= around / 2; ++k) {  // the halves of a pupil are alike
-        for (const double v : {0.0, 0.85, 0.95, 1.0}) add(radius, 0, static_cast<double>(k) / around, v);
+        for (const double v : {0.0, 0.85, 0.95, 1.0}) add(part * lit[0], 0, static_cast<double>(k) / around, v);
       }
       continue;
     }
-    // The pupil may be that of all points, of which much passes nothing: uniform samples of all of it.
+    // The pupil may be that of all points, of which much passes nothing: uniform samples of all of it, and more near
+    // its edge.
     for (int k = 0; k < 16 * around; ++k, ++index) {
       const auto [turn, u, v] = points(index);
-      add(radius, 2 * std::numbers::pi * turn, u, v);
+      const double azimuth = turn * azimuths;
+      const auto before = static_cast<std::size_t>(azimuth);
+      const double radius = lit[before] + (azimuth - static_cast<double>(before)) * (lit[before + 1] - lit[before]);
+      add(part * radius, 2 * std::numbers::pi * turn, u, k % 2 ? v : 1 - 0.1 * v);
     }
   }
   return samples;

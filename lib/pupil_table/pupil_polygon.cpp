@@ -253,8 +253,9 @@ PupilPolygon polygon_of(const PupilRegion& region, PolygonFit fit, CornerSteps s
 PupilPolygon interpolated(std::span<const PupilPolygon> polygons, const PolygonWeights& at) noexcept {
   PupilPolygon result;
   for (std::size_t j = 0; j < at.polygons.size(); ++j) {
-    const PupilPolygon& polygon = polygons[at.polygons[j]];
     const double w = at.weights[j];
+    if (w == 0) continue;
+    const PupilPolygon& polygon = polygons[at.polygons[j]];
     for (int i : {0, 1}) result.middle[i] += w * polygon.middle[i];
     for (std::size_t k = 0; k < polygon_corners; ++k) {
       for (int i : {0, 1}) result.corners[k][i] += w * polygon.corners[k][i];

@@ -61,10 +61,10 @@ enum class CornerSteps {
 /// The polygon of a region, corners at equal steps of its area.
 PupilPolygon polygon_of(const PupilRegion& region, PolygonFit fit, CornerSteps steps = CornerSteps::even);
 
-/// Four polygons of a table and their weights in an interpolated one.
+/// Some polygons of a table and their weights in an interpolated one.
 struct PolygonWeights {
-  std::array<std::size_t, 4> polygons{0, 0, 0, 0};
-  std::array<double, 4> weights{0, 0, 0, 0};
+  std::array<std::size_t, 8> polygons{};
+  std::array<double, 8> weights{};
 };
 PupilPolygon interpolated(std::span<const PupilPolygon> polygons, const PolygonWeights& at) noexcept;
 

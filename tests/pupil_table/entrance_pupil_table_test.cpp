@@ -16,6 +16,7 @@
 #include "core/low_discrepancy.hpp"
 #include "petzval/core/sobol.hpp"
 #include "petzval/paraxial/first_order.hpp"
+#include "petzval/pupil/f_number.hpp"
 #include "petzval/pupil/pupil_boundary.hpp"
 #include "petzval/pupil_table/film_pupil_table.hpp"
 #include "petzval/trace/trace.hpp"
@@ -94,7 +95,29 @@ TEST_P(EntranceTables, MissNoneOf300000LinesFromTheFilm) {
 
 INSTANTIATE_TEST_SUITE_P(Lenses, EntranceTables,
                          ::testing::Values("double_gauss_100mm_f2_28deg", "biogon_35mm_f2.8", "fisheye_6.3mm_f2.8",
-                                           "petzval_100mm_f1.25"));
+                                           "petzval_100mm_f1.25", "anamorphic_60mm_2x"));
+
+TEST(EntrancePupilTable, SendsMostRaysThroughCylinders) {
+  for (const double f_number : {3.0, 8.0, 32.0}) {
+    const Seen s(with_f_number(testing::data_lens("anamorphic_60mm_2x"), f_number), 14.4);
+    const core_detail::Kronecker<5> random(3);
+    int passed = 0, all = 0;
+    for (std::uint32_t i = 0; i < 4000; ++i) {
+      const auto [x, y, u, v, e] = random(i);
+      const FilmPoint film{21.95 * (x - 0.5), 18.6 * (y - 0.5)};
+      const PupilSample at = s.pupils.sample(film, u, v);
+      const auto end = s.leaving(film, at.x, at.y);
+      if (!end.transmitted()) continue;
+      const Vec3<double> point = end.ray.origin + end.ray.direction * (300 * std::pow(10, 3 * e));
+      const EntranceSample sample = s.table.sample(point, v, u);
+      EXPECT_NEAR(s.table.pdf(point, sample.direction) / sample.pdf, 1, 1e-6);
+      ++all;
+      passed += trace(s.lens, Ray<double>{sample.place, sample.direction}).transmitted();
+    }
+    EXPECT_GT(all, 3800);
+    EXPECT_GT(passed, 0.8 * all) << f_number;
+  }
+}
 
 TEST(EntrancePupilTable, MissesNextToNothingOfAnyLens) {
   for (const Prescription& p : testing::data_prescriptions()) {

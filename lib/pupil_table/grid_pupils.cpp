@@ -1,0 +1,321 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "grid_pupils.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include "core/low_discrepancy.hpp"
+
+namespace petzval::inline v0::pupil_table_detail {
+namespace {
+
+using pupil_detail::PupilGuess;
+using pupil_detail::SearchOrder;
+
+/// Finds the pupils of points that stand in rows.
+class PupilFinder {
+ public:
+  PupilFinder(const GridOfPoints& grid, std::size_t directions, const pupil_detail::PassingPlaces& passing)
+      : guesses_(grid.guesses), row_(grid.row), directions_(directions), passing_(passing) {}
+
+  std::vector<PupilRegion> operator()() {
+    const auto order =
+        row_ == 1 ? SearchOrder::rows(guesses_.size(), 1) : SearchOrder::grid(guesses_.size() / row_, row_);
+    std::vector<PupilRegion> pupils = pupil_detail::find_regions(guesses_, order, directions_, false, passing_);
+    // Where the chief ray is lost, light may pass beside it: as beside the pupil of a neighbour, else anywhere.
+    if (std::all_of(pupils.begin(), pupils.end(), [](const PupilRegion& p) { return p.empty(); })) {
+      std::vector<std::uint32_t> ends;
+      for (std::size_t i = 0; i < guesses_.size(); ++i) {
+        if (i % row_ == 0 || i % row_ == row_ - 1) ends.push_back(static_cast<std::uint32_t>(i));
+      }
+      std::vector<Box> boxes;
+      for (const std::uint32_t i : ends) {
+        const PupilGuess& g = guesses_[i];
+        const double half = (g.high - g.low) / 2;
+        boxes.push_back({g.x, g.low + half, half, half});
+      }
+      look_again(pupils, ends, boxes, 64);
+    }
+    std::vector<bool> looked(guesses_.size(), false);
+    for (bool found = true; found;) {
+      std::vector<std::uint32_t> dark;
+      std::vector<Box> boxes;
+      for (std::size_t i = 0; i < guesses_.size(); ++i) {
+        if (looked[i] || !pupils[i].empty()) continue;
+        const auto beside = lit_neighbour(pupils, i);
+        if (!beside) continue;
+        looked[i] = true;
+        dark.push_back(static_cast<std::uint32_t>(i));
+        boxes.push_back(*beside);
+      }
+      found = look_again(pupils, dark, boxes, 24);
+    }
+    return pupils;
+  }
+
+ private:
+  struct Box {
+    double x, y, half_x, half_y;
+  };
+
+  /// Where to look beside the pupil of a neighbour: where that moves to, and as far as it reaches.
+  std::optional<Box> lit_neighbour(const std::vector<PupilRegion>& pupils, std::size_t i) const {
+    const std::size_t column = i % row_;
+    const auto lit = [&](std::size_t at) { return at < pupils.size() && !pupils[at].empty(); };
+    const auto beside = [&](std::size_t near, std::size_t far, bool has_far) {
+      const PupilRegion& p = pupils[near];
+      Vec2<double> middle = p.middle;
+      if (has_far && lit(far)) middle = middle + (p.middle - pupils[far].middle);
+      constexpr double room = 1.6;
+      return Box{middle.x, middle.y, room * p.half_axes.x, room * p.half_axes.y};
+    };
+    if (column > 0 && lit(i - 1)) return beside(i - 1, i - 2, column > 1);
+    if (i >= row_ && lit(i - row_)) return beside(i - row_, i - 2 * row_, i >= 2 * row_);
+    if (column + 1 < row_ && lit(i + 1)) return beside(i + 1, i + 2, column + 2 < row_);
+    if (lit(i + row_)) return beside(i + row_, i + 2 * row_, true);
+    return {};
+  }
+
+  /// Tests places all over the boxes of some points and finds the pupils of those where anything passes.
+  bool look_again(std::vector<PupilRegion>& pupils, const std::vector<std::uint32_t>& which,
+                  const std::vector<Box>& boxes, int side) {
+    std::vector<std::uint32_t> points;
+    std::vector<double> x, y;
+    for (std::size_t j = 0; j < which.size(); ++j) {
+      for (int row = 0; row < side; ++row) {
+        for (int column = 0; column < side; ++column) {
+          points.push_back(which[j]);
+          x.push_back(boxes[j].x + boxes[j].half_x * ((2 * column + 1.0) / side - 1));
+          y.push_back(boxes[j].y + boxes[j].half_y * ((2 * row + 1.0) / side - 1));
+        }
+      }
+    }
+    std::vector<std::uint8_t> passes(x.size());
+    if (!x.empty()) passing_(x.size(), points.data(), x.data(), y.data(), passes.data());
+    std::vector<std::uint32_t> lit;
+    std::vector<PupilGuess> guesses;
+    for (std::size_t j = 0; j < which.size(); ++j) {
+      const std::size_t begin = j * static_cast<std::size_t>(side * side), end = begin + side * side;
+      double sum_x = 0, sum_y = 0;
+      int count = 0;
+      for (std::size_t i = begin; i < end; ++i) {
+        if (passes[i]) sum_x += x[i], sum_y += y[i], ++count;
+      }
+      if (count == 0) continue;
+      // The place that passes and lies nearest to the middle of all of them.
+      std::size_t best = end;
+      const auto away = [&](std::size_t i) { return std::hypot(x[i] - sum_x / count, y[i] - sum_y / count); };
+      for (std::size_t i = begin; i < end; ++i) {
+        if (passes[i] && (best == end || away(i) < away(best))) best = i;
+      }
+      PupilGuess guess = guesses_[which[j]];
+      guess.x = x[best], guess.y = y[best];
+      guess.radius = std::max(boxes[j].half_x, boxes[j].half_y);
+      guess.near = 2 * boxes[j].half_y;
+      lit.push_back(which[j]);
+      guesses.push_back(guess);
+    }
+    if (lit.empty()) return false;
+    const pupil_detail::PassingPlaces of_lit = [&](std::size_t count, const std::uint32_t* index, const double* px,
+                                                   const double* py, std::uint8_t* through) {
+      points.resize(count);
+      for (std::size_t i = 0; i < count; ++i) points[i] = lit[index[i]];
+      passing_(count, points.data(), px, py, through);
+    };
+    const auto found =
+        pupil_detail::find_regions(guesses, SearchOrder::rows(guesses.size(), 1), directions_, false, of_lit);
+    for (std::size_t i = 0; i < lit.size(); ++i) pupils[lit[i]] = found[i];
+    return true;
+  }
+
+  std::span<const PupilGuess> guesses_;
+  std::size_t row_, directions_;
+  const pupil_detail::PassingPlaces& passing_;
+};
+
+/// Corner k at -x.
+std::size_t across_x(std::size_t k) noexcept { return (polygon_corners - k) % polygon_corners; }
+/// Corner k at -y.
+std::size_t across_y(std::size_t k) noexcept { return (polygon_corners / 2 + polygon_corners - k) % polygon_corners; }
+
+}  // namespace
+
+std::vector<PupilRegion> grid_pupils(const GridOfPoints& grid, std::size_t directions,
+                                     const pupil_detail::PassingPlaces& passing) {
+  return PupilFinder(grid, directions, passing)();
+}
+
+std::vector<PupilPolygon> node_polygons(std::span<const PupilRegion> pupils, std::size_t columns, PolygonFit fit) {
+  const std::size_t rows = pupils.size() / columns, nodes = columns / 2 + 1;
+  std::vector<PupilPolygon> polygons((rows / 2 + 1) * nodes);
+  std::vector<std::size_t> known, unknown;
+  const auto node = [&](std::size_t i, std::size_t j) { return i * nodes + j; };
+  for (std::size_t i = 0; i < rows; i += 2) {
+    for (std::size_t j = 0; j < columns; j += 2) {
+      // Where the light ends beside a node, a pupil of the points between continues to it.
+      const PupilRegion* lit = nullptr;
+      for (const auto& [up, right] :
+           {std::pair{0, 0}, {0, -1}, {-1, 0}, {-1, -1}, {0, 1}, {1, 0}, {-1, 1}, {1, -1}, {1, 1}}) {
+        const std::size_t row = i + static_cast<std::size_t>(up), column = j + static_cast<std::size_t>(right);
+        if (row >= rows || column >= columns || pupils[row * columns + column].empty()) continue;
+        lit = &pupils[row * columns + column];
+        break;
+      }
+      (lit ? known : unknown).push_back(node(i / 2, j / 2));
+      if (!lit) continue;
+      PupilPolygon& polygon = polygons[node(i / 2, j / 2)];
+      polygon = polygon_of(*lit, fit, CornerSteps::even_in_halves);
+      const double area = polygon.area();
+      polygon.obscured.fill(0), polygon.obscured_from.fill(0);
+      if (fit == PolygonFit::enclosing) continue;
+      const double scale = lit == &pupils[i * columns + j] && area > 0 ? std::sqrt(area / polygon.area()) : 0;
+      for (auto& corner : polygon.corners) corner *= scale;
+    }
+  }
+  // Farther out a polygon stays where the light is.
+  for (const std::size_t dark : unknown) {
+    const auto away = [&](std::size_t k) {
+      const auto step = [](std::size_t a, std::size_t b) { return a < b ? b - a : a - b; };
+      const std::size_t i = step(k / nodes, dark / nodes), j = step(k % nodes, dark % nodes);
+      return i * i + j * j;
+    };
+    const auto nearest =
+        std::min_element(known.begin(), known.end(), [&](auto a, auto b) { return away(a) < away(b); });
+    if (nearest == known.end()) break;
+    polygons[dark] = polygons[*nearest];
+    if (fit == PolygonFit::equal_area) polygons[dark].corners = {};
+  }
+  return polygons;
+}
+
+void mirror(PupilPolygon& polygon, bool x) noexcept {
+  polygon.middle[x ? 0 : 1] = 0;
+  const PupilPolygon own = polygon;
+  for (std::size_t k = 0; k < polygon_corners; ++k) {
+    const Vec2<double>&here = own.corners[k], &there = own.corners[x ? across_x(k) : across_y(k)];
+    const Vec2<double> mirrored{x ? -there.x : there.x, x ? there.y : -there.y};
+    const double in = here.x * here.x + here.y * here.y, out = mirrored.x * mirrored.x + mirrored.y * mirrored.y;
+    if (out > in) polygon.corners[k] = mirrored;
+  }
+}
+
+PupilPolygon hull(const std::vector<PupilPolygon>& polygons) {
+  std::vector<Point<double>> places;
+  for (const PupilPolygon& polygon : polygons) {
+    if (!(polygon.area() > 0)) continue;
+    for (const auto& corner : polygon.corners) {
+      places.push_back({polygon.middle.x + corner.x, polygon.middle.y + corner.y});
+    }
+  }
+  if (places.empty()) return {};
+  // Their convex hull, from the lowest x on: on the way there above, on the way back below.
+  std::sort(places.begin(), places.end(), [](const auto& a, const auto& b) { return a.x < b.x; });
+  std::vector<Point<double>> edge;
+  const auto go = [&](auto begin, auto end) {
+    const std::size_t first = edge.size();
+    for (auto p = begin; p != end; ++p) {
+      while (edge.size() > first + 1 && turn(edge.back() - edge[edge.size() - 2], *p - edge.back()) <= 0)
+        edge.pop_back();
+      edge.push_back(*p);
+    }
+    edge.pop_back();
+  };
+  go(places.begin(), places.end());
+  go(places.rbegin(), places.rend());
+  PupilRegion region{.directions = 128};
+  const auto [left, right] = std::minmax_element(edge.begin(), edge.end(), [](auto& a, auto& b) { return a.x < b.x; });
+  const auto [low, high] = std::minmax_element(edge.begin(), edge.end(), [](auto& a, auto& b) { return a.y < b.y; });
+  region.middle = {(left->x + right->x) / 2, (low->y + high->y) / 2};
+  region.half_axes = {(right->x - left->x) / 2, (high->y - low->y) / 2};
+  const Point<double> middle{region.middle.x, region.middle.y};
+  for (std::size_t k = 0; k < region.directions; ++k) {
+    const Vec2<double> unit = region.unit(k) * region.half_axes;
+    const Point<double> ray{unit.x, unit.y};
+    for (std::size_t i = 0; i < edge.size(); ++i) {
+      const Point<double> a = edge[i] - middle, b = edge[(i + 1) % edge.size()] - middle;
+      if (!(turn(a, ray) >= 0 && turn(ray, b) > 0)) continue;
+      const double radius = turn(a, b) / (turn(a, ray) + turn(ray, b));
+      const Vec2<double> rim = region.at(k, radius);
+      region.spans.push_back({k, 0, radius, {region.middle.x, region.middle.y}, {rim.x, rim.y}});
+      break;
+    }
+  }
+  PupilPolygon polygon = polygon_of(region, PolygonFit::enclosing, CornerSteps::even_in_halves);
+  // Corners of the hull between two directions.
+  double way = 1;
+  for (const auto& p : edge) way = std::max(way, polygon.way_to(p.x, p.y));
+  polygon.widen(way);
+  return polygon;
+}
+
+void expand_to_probes(std::span<PupilPolygon> polygons, std::size_t probes, const ProbeWeights& weights,
+                      const ProbePassing& passing) {
+  constexpr int rounds = 4;
+  const core_detail::Kronecker<4> uniform;
+  std::vector<double> x, y;
+  std::vector<std::uint8_t> passes;
+  std::vector<std::uint32_t> sectors(probes);
+  std::vector<PolygonWeights> at(probes);
+  std::vector<std::array<double, 4>> places(probes);
+  std::vector<Point<double>> middles(probes), edges(probes);  // edges: from the middle
+  for (int round = 0; round < rounds; ++round) {
+    for (std::size_t p = 0; p < probes; ++p) {
+      places[p] = uniform(static_cast<std::size_t>(round) * probes + p);
+      at[p] = weights(places[p]);
+      const double along = places[p][3] * polygon_corners;
+      const std::size_t k = std::min(static_cast<std::size_t>(along), polygon_corners - 1);
+      sectors[p] = static_cast<std::uint32_t>(k);
+      middles[p] = edges[p] = {};
+      for (std::size_t j = 0; j < at[p].polygons.size(); ++j) {
+        if (at[p].weights[j] == 0) continue;
+        const PupilPolygon& polygon = polygons[at[p].polygons[j]];
+        middles[p] = middles[p] + at[p].weights[j] * Point<double>{polygon.middle.x, polygon.middle.y};
+        edges[p] = edges[p] + at[p].weights[j] * polygon.sector(k).at(1, along - static_cast<double>(k));
+      }
+    }
+    // Steps outwards, of those that still pass.
+    std::vector<double> scales(probes, 1);
+    std::vector<std::uint32_t> open(probes);
+    std::iota(open.begin(), open.end(), 0u);
+    for (const double way : {1.00001, 1.002, 1.006, 1.015, 1.04, 1.1, 1.25, 1.6}) {
+      if (open.empty()) break;
+      x.clear(), y.clear();
+      for (const std::uint32_t p : open) {
+        x.push_back(middles[p].x + way * edges[p].x);
+        y.push_back(middles[p].y + way * edges[p].y);
+      }
+      passes.resize(open.size());
+      passing(places, open, x.data(), y.data(), passes.data());
+      std::size_t left = 0;
+      for (std::size_t i = 0; i < open.size(); ++i) {
+        if (!passes[i]) continue;
+        constexpr double beyond = 1.5, always = 0.002;
+        scales[open[i]] = 1 + beyond * (way - 1) + always;
+        open[left++] = open[i];
+      }
+      open.resize(left);
+    }
+    std::vector<std::array<double, polygon_corners>> larger(polygons.size());
+    for (auto& scale : larger) scale.fill(1);
+    bool any = false;
+    for (std::size_t p = 0; p < probes; ++p) {
+      if (scales[p] == 1) continue;
+      any = true;
+      for (std::size_t j = 0; j < at[p].polygons.size(); ++j) {
+        if (at[p].weights[j] == 0) continue;
+        for (const std::size_t corner : {std::size_t{sectors[p]}, (sectors[p] + 1) % polygon_corners}) {
+          double& scale = larger[at[p].polygons[j]][corner];
+          scale = std::max(scale, scales[p]);
+        }
+      }
+    }
+    if (!any) return;
+    for (std::size_t p = 0; p < polygons.size(); ++p) {
+      for (std::size_t k = 0; k < polygon_corners; ++k) polygons[p].corners[k] *= larger[p][k];
+    }
+  }
+}
+
+}  // namespace petzval::inline v0::pupil_table_detail
