@@ -13,7 +13,7 @@
 ///
 /// A kernel is written once over a scalar `T`: float, double or an automatic-differentiation number such as
 /// `ceres::Jet` (SIMD lanes have the same interface). It asks `T` for arithmetic, comparison, `sqrt` by
-/// argument-dependent look-up, and the names below. Ray data steers no branch but through `select`, `any` and `all_of`.
+/// argument-dependent look-up, and the names below. Ray data steers no branch but through `select`, `any` and masks.
 namespace petzval::inline v0::kernel {
 
 namespace detail {
@@ -52,6 +52,12 @@ template <class... Masks>
 constexpr bool all_of(bool first, Masks... rest) noexcept {
   return (first && ... && rest);
 }
+
+/// The lanes for which either condition holds.
+constexpr bool any_of(bool a, bool b) noexcept { return a || b; }
+
+/// The lanes for which the first condition holds and the second does not.
+constexpr bool without(bool a, bool b) noexcept { return a && !b; }
 
 /// |x|, without the branch on a derivative at zero that a library function may have.
 template <class T>

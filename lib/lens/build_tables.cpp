@@ -2,90 +2,12 @@
 #include "build_tables.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
+
+#include "describe_asphere.hpp"
 
 namespace petzval::inline v0::lens_detail {
 namespace {
-
-kernel::Quadric<double> quadric(const LensSurface& s) {
-  return kernel::make_quadric<double>(s.curvature, s.conic, s.curved_in != Section::y, s.curved_in != Section::x);
-}
-
-/// x^n by multiplication, so that a lens scaled by 2 gets the same constants times powers of two (pow() may round).
-double power(double x, int n) {
-  double result = 1;
-  for (int i = 0; i < n; ++i) result *= x;
-  return result;
-}
-
-/// Steeper parts of an asphere are not described: out there a polynomial of high order runs away, and with bounds of
-/// sag and slope that held there every ray would have to be searched for. Rays meet them where Newton's iteration finds
-/// them. (The steepest asphere of data/lenses has a slope of 3.)
-constexpr double steepest = 4;
-
-/// The height at which the strongest term alone has a slope.
-double term_height(const LensSurface& s, double slope) {
-  double least = std::numeric_limits<double>::infinity();
-  for (const auto& [order, coefficient] : s.aspheric) {
-    if (coefficient == 0) continue;
-    least = std::min(least, std::pow(order * std::abs(coefficient) / slope, -1.0 / (order - 1)));
-  }
-  return least;
-}
-
-/// The height up to which an asphere may be described: its clear aperture, within the domain of the base conic. An
-/// unlimited one ends where the strongest term alone has a slope of one.
-double height(const LensSurface& s) {
-  constexpr double runs_away = 1e6;  // whatever the other terms are
-  const double curvature = std::abs(s.curvature) * std::sqrt(std::max(0.0, 1 + s.conic));
-  double limit = curvature > 0 ? 1 / curvature : std::numeric_limits<double>::infinity();
-  if (s.semi_diameter > 0) limit = std::min(limit, s.semi_diameter);
-  limit = std::min(limit, term_height(s, std::isfinite(s.semi_diameter) ? runs_away : 1));
-  return std::isfinite(limit) && limit > 0 ? limit : 1.0;
-}
-
-kernel::Asphere<double> asphere_up_to(double height, const LensSurface& s) {
-  kernel::Asphere<double> a;
-  a.base = quadric(s);
-  a.height = height;
-  for (const auto& [order, coefficient] : s.aspheric) {
-    const double scaled = coefficient * power(a.height, order);
-    if (order % 2 == 0) {
-      a.even[static_cast<std::size_t>(order / 2 - 1)] += scaled;
-      a.even_count = std::max(a.even_count, order / 2);
-    } else {
-      a.odd[static_cast<std::size_t>((order - 3) / 2)] += scaled;
-      a.odd_count = std::max(a.odd_count, (order - 1) / 2);
-    }
-  }
-  return a;
-}
-
-kernel::Asphere<double> asphere(const LensSurface& s) {
-  // Bounds of sag and slope from samples, widened by more than what can lie between two of them on a surface of 40th
-  // order.
-  constexpr int samples = 256;
-  kernel::Asphere<double> a = asphere_up_to(height(s), s);
-  for (int i = 0; i <= samples; ++i) {
-    const double r = a.height * i / samples;
-    const auto [z, slope, defined] = kernel::sag(a, r * r);
-    if (!defined) continue;
-    if (!(std::abs(slope) * r <= steepest)) {
-      a = asphere_up_to(a.height * std::max(i - 1, 1) / samples, s);
-      i = -1;
-      continue;
-    }
-    a.lowest = std::min(a.lowest, z);
-    a.highest = std::max(a.highest, z);
-    a.steepest = std::max(a.steepest, std::abs(slope) * r);
-  }
-  const double margin = 0.02 * (a.highest - a.lowest) + 1e-6 * a.height;
-  a.lowest -= margin;
-  a.highest += margin;
-  a.steepest = 1.02 * a.steepest + 1e-6;
-  return a;
-}
 
 template <class R>
 kernel::Quadric<R> rounded(const kernel::Quadric<double>& q) {
@@ -110,6 +32,13 @@ kernel::Asphere<R> rounded(const kernel::Asphere<double>& a) {
   r.lowest = static_cast<R>(a.lowest);
   r.highest = static_cast<R>(a.highest);
   r.steepest = static_cast<R>(a.steepest);
+  r.edge = static_cast<R>(a.edge);
+  std::transform(a.rings.begin(), a.rings.end(), r.rings.begin(), [](const kernel::AsphereRing<double>& ring) {
+    const auto narrow = [](double v) { return static_cast<R>(std::min(v, double{std::numeric_limits<R>::max()})); };
+    return kernel::AsphereRing<R>{narrow(ring.inner2),   narrow(ring.outer2),  narrow(ring.outer),
+                                  narrow(ring.lowest),   narrow(ring.highest), narrow(ring.least_bend),
+                                  narrow(ring.most_bend)};
+  });
   return r;
 }
 
@@ -130,7 +59,7 @@ Tables<R> build_tables(std::span<const LensSurface> surfaces, std::optional<std:
   for (std::size_t i = 0; i < count; ++i) {
     const LensSurface& s = surfaces[i];
     kernel::SurfaceTable<R> row;
-    row.quadric = rounded<R>(quadric(s));
+    row.quadric = rounded<R>(describe_quadric(s));
     row.gap = i + 1 < count ? static_cast<R>(s.thickness) : R(0);
     row.semi_diameter_squared = static_cast<R>(s.semi_diameter * s.semi_diameter);
     row.obscuration_squared = static_cast<R>(s.obscuration_semi_diameter * s.obscuration_semi_diameter);
@@ -139,7 +68,7 @@ Tables<R> build_tables(std::span<const LensSurface> surfaces, std::optional<std:
     if (s.mirror) sense = -sense;
     if (!s.aspheric.empty()) {
       row.asphere = static_cast<std::int32_t>(tables.aspheres.size());
-      tables.aspheres.push_back(rounded<R>(asphere(s)));
+      tables.aspheres.push_back(rounded<R>(describe_asphere(s)));
     }
     tables.surfaces.push_back(row);
     tables.vertex_z.push_back(static_cast<R>(s.vertex_z));

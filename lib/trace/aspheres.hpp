@@ -3,6 +3,7 @@
 #pragma once
 
 #include "steps.hpp"
+#include "surface/asphere_hit.hpp"
 
 namespace petzval::inline v0::trace_detail {
 namespace {
@@ -55,136 +56,267 @@ PETZVAL_INLINE Height<R> height(const kernel::Step<R>& s, const kernel::Asphere<
   return {z - V(s.sense) * sag.z, pz - slope * (ux * px + uy * py), slope, sag.defined};
 }
 
-/// Asks the search of one ray for the hits of some lanes of a vector; true where it found one.
+/// What a search says about a ray. stands: Newton's answer is the first crossing.
+enum class Outcome : std::uint8_t { open, stands, crosses, beside, lost };
+
+/// Rays whose crossings are searched for, packed from the lanes of a bundle, in the lens frame; and the answers.
 template <class R>
-Mask<R> search(const kernel::Step<R>& s, const BlockJob<R>& job, std::uint8_t* unsettled, Bundle<R>& b, int i,
-               Mask<R> lanes, Lanes<R> x, Lanes<R> y, Lanes<R> z) noexcept {
+struct Search {
   using V = Lanes<R>;
-  constexpr int width = V::width;
-  R values[6][width], found[width], wanted[width];
-  const V p2 = b.px[i] * b.px[i] + b.py[i] * b.py[i] + b.pz[i] * b.pz[i];
-  const V scale = V(R(1)) / sqrt(p2), sense(s.sense);
-  store(values[0], x);
-  store(values[1], y);
-  store(values[2], sense * z);
-  store(values[3], scale * b.px[i]);
-  store(values[4], scale * b.py[i]);
-  store(values[5], sense * scale * b.pz[i]);
-  store(wanted, select(lanes, V(R(1)), V(R(0))));
-  for (int l = 0; l < width; ++l) {
-    found[l] = 0;
-    if (wanted[l] == 0) continue;
-    BeforeAsphere<R> ray{values[0][l], values[1][l], values[2][l], values[3][l], values[4][l], values[5][l]};
-    const Found answer = job.search(job.aspheres[s.asphere], s.sense, ray);
-    if (answer == Found::no_convergence) unsettled[i * width + l] = 1;
-    if (answer == Found::beside) found[l] = 1, values[0][l] = std::numeric_limits<R>::quiet_NaN();
-    if (answer != Found::hit) continue;
-    found[l] = 1;
-    values[0][l] = ray.x, values[1][l] = ray.y, values[2][l] = s.sense * ray.z;
+  using Vector = kernel::Vec<V>;
+  static constexpr int width = V::width, rays = Bundle<R>::rays, room = rays + width;
+  /// Of a ray: point, direction, Newton's answer, whether it lies inside the aperture, the part of the ray.
+  enum Value { x, y, z, dx, dy, dz, answer, inside, from, to, values };
+  R v[values][room];
+  int lane[room];
+  int count = 0;
+  R t[rays];
+  R outcome[rays] = {};  ///< of the lanes of the bundle
+
+  /// Takes some lanes of vector i.
+  void take(int i, Mask<R> lanes, const Vector& p, const Vector& d, V newton, Mask<R> newton_inside) noexcept {
+    const V one(R(1)), none(R(0));
+    R wanted[width], ray[from][width];
+    store(wanted, select(lanes, one, none));
+    int k = 0;
+    for (const V& numbers : {p.x, p.y, p.z, d.x, d.y, d.z, newton, select(newton_inside, one, none)}) {
+      store(ray[k++], numbers);
+    }
+    for (int l = 0; l < width; ++l) {
+      if (wanted[l] == 0) continue;
+      for (k = 0; k < from; ++k) v[k][count] = ray[k][l];
+      lane[count++] = i * width + l;
+    }
   }
-  const Mask<R> hit = load(found) > V(R(0));
-  b.x[i] = select(hit, load(values[0]), b.x[i]);
-  b.y[i] = select(hit, load(values[1]), b.y[i]);
-  b.z[i] = select(hit, load(values[2]), b.z[i]);
-  return hit;
-}
 
-/// Whether rays cross nothing within the clear aperture: they stay outside its cylinder, or within that above or below
-/// the sag; of rays too upright to cross the surface twice it is enough to see both ends on one side of the edge. (x,
-/// y, z): a point of the ray.
+  void run(const kernel::Asphere<R>& surface, R sense, std::uint8_t* unsettled) noexcept {
+    judge(surface, sense);
+    find(surface, sense, unsettled);
+  }
+
+  /// The lanes of vector i with an outcome.
+  Mask<R> with(Outcome what, int i) const noexcept {
+    const V said = load(outcome + i * width), number(static_cast<R>(what));
+    return (said >= number) & (said <= number);
+  }
+
+ private:
+  static V code(Outcome what) noexcept { return V(static_cast<R>(what)); }
+  V at(Value value, int o) const noexcept { return load(v[value] + o); }
+
+  /// Fills the last vector: its other lanes do as its last ray does.
+  void fill() noexcept {
+    for (int l = count; l % width != 0; ++l) {
+      for (auto& numbers : v) numbers[l] = numbers[count - 1];
+    }
+  }
+
+  /// Settles what bounds settle, and keeps the other rays.
+  void judge(const kernel::Asphere<R>& surface, R sense) noexcept {
+    fill();
+    const int all = count;
+    count = 0;
+    for (int o = 0; o < all; o += width) {
+      const Vector p{at(x, o), at(y, o), at(z, o)}, d{at(dx, o), at(dy, o), at(dz, o)};
+      const auto ray = kernel::surface_detail::passage(surface, p, d);
+      const auto [part, empty, rising] = kernel::surface_detail::prospect(surface, ray, p, d, sense);
+      const Mask<R> stands = rising & (at(inside, o) > V(R(0)));
+      const V none = select(empty, code(Outcome::beside), code(Outcome::open));
+      R said[width], one[width], from_here[width], to_there[width];
+      store(said, select(stands, code(Outcome::stands), none));
+      store(one, select(rising, V(R(1)), V(R(0))));
+      store(from_here, part.from);
+      store(to_there, part.to);
+      for (int l = 0; l < width && o + l < all; ++l) {
+        const int bundled = lane[o + l];
+        outcome[bundled] = said[l];
+        if (said[l] != static_cast<R>(Outcome::open)) continue;
+        // Without a crossing, the ray passes beside the aperture if it had no more than one.
+        if (one[l] != 0) outcome[bundled] = static_cast<R>(Outcome::beside);
+        for (auto& numbers : v) numbers[count] = numbers[o + l];
+        v[from][count] = from_here[l];
+        v[to][count] = to_there[l];
+        lane[count++] = bundled;
+      }
+    }
+  }
+
+  void find(const kernel::Asphere<R>& surface, R sense, std::uint8_t* unsettled) noexcept {
+    fill();
+    for (int o = 0; o < count; o += width) {
+      const Vector p{at(x, o), at(y, o), at(z, o)}, d{at(dx, o), at(dy, o), at(dz, o)};
+      const auto ray = kernel::surface_detail::passage(surface, p, d);
+      const auto crossing =
+          kernel::surface_detail::first_crossing(surface, ray, p, d, sense, {at(from, o), at(to, o)}, at(answer, o));
+      R place[width], said[width];
+      store(place, crossing.t);
+      const V some = select(crossing.converged, code(Outcome::crosses), code(Outcome::lost));
+      store(said, select(crossing.found, some, code(Outcome::open)));
+      for (int l = 0; l < width && o + l < count; ++l) {
+        if (said[l] == static_cast<R>(Outcome::open)) continue;
+        t[lane[o + l]] = place[l];
+        outcome[lane[o + l]] = said[l];
+        if (said[l] == static_cast<R>(Outcome::lost)) unsettled[lane[o + l]] = 1;
+      }
+    }
+  }
+};
+
+/// Whether rays too upright to cross the surface twice see both ends of the aperture's cylinder on one side of its
+/// edge.
 template <class R>
-Mask<R> beside(const kernel::Step<R>& s, const kernel::Asphere<R>& asphere, const Bundle<R>& b, int i, Mask<R> upright,
-               Lanes<R> across, Lanes<R> x, Lanes<R> y, Lanes<R> z) noexcept {
+PETZVAL_INLINE Mask<R> beside_edge(const kernel::Asphere<R>& surface,
+                                   const kernel::surface_detail::Passage<Lanes<R>>& ray, Lanes<R> z,
+                                   Lanes<R> dz) noexcept {
   using V = Lanes<R>;
-  const V ax(s.ax), ay(s.ay), none(R(0)), edge2(asphere.height * asphere.height);
-  const V px = b.px[i], py = b.py[i], pz = b.pz[i];
-  const V middle = select(across > none, -(ax * x * px + ay * y * py) / across, none);
-  const V nx = x + middle * px, ny = y + middle * py;
-  const V within2 = edge2 - (ax * nx * nx + ay * ny * ny);
-  const V half = sqrt(within2 / across);
-  const V one = z + (middle - half) * pz, other = z + (middle + half) * pz;
-  const V edge = V(s.sense) * kernel::sag(asphere, edge2).z;
-  const V lowest = select(upright, edge, V(s.sense > 0 ? asphere.lowest : -asphere.highest));
-  const V highest = select(upright, edge, V(s.sense > 0 ? asphere.highest : -asphere.lowest));
-  const V unsure(R(64) * std::numeric_limits<R>::epsilon() * asphere.height);  // left to the search
-  return (within2 < -unsure * V(asphere.height)) | ((one > highest + unsure) & (other > highest + unsure)) |
-         ((one < lowest - unsure) & (other < lowest - unsure));
+  const R unsure = R(64) * std::numeric_limits<R>::epsilon() * surface.height;
+  const V within2 = V(surface.height * surface.height) - ray.nearest2, half = sqrt(quotient(within2, ray.across2));
+  const V one = z + (ray.middle - half) * dz, other = z + (ray.middle + half) * dz;
+  const V over(surface.edge + unsure), under(surface.edge - unsure);
+  return (within2 < V(-unsure * surface.height)) | ((one > over) & (other > over)) | ((one < under) & (other < under));
 }
 
-/// As many steps as the iteration of one ray has. From the hit on the base conic four do; after them, rays that pass
-/// beside the aperture need not wander on.
-inline constexpr int newton_steps = 10, usual_steps = 4;
+/// Steps of Newton's iteration from the hit on the base conic: of all rays; of those that are closing in, by steps
+/// shorter than 1/16 of the height; and of rays whose search shows no crossing inside the aperture.
+template <class R>
+inline constexpr int usual_steps = sizeof(R) == sizeof(float) ? 4 : 6;
+inline constexpr int first_steps = 3, newton_steps = 10;
 
-/// Newton lane by lane: a lane that has arrived stays, so that its answer is its own. Where the answer might not be the
-/// first crossing within the aperture, or there is none, the search of one ray decides.
+/// Where the rays of a bundle meet an asphere: points b + q p.
+template <class R>
+struct Meeting {
+  using V = Lanes<R>;
+  static constexpr int vectors = Bundle<R>::vectors;
+  V q[vectors], rate[vectors], slope[vectors];
+  Mask<R> found[vectors];
+  Mask<R> beside[vectors];  ///< nothing within the aperture: vignetted, wherever the ray may cross the surface
+};
+
+/// Newton lane by lane: a lane that has arrived stays, so that its answer is its own. An answer counts if it lies
+/// inside the aperture and the ray rises over the surface all along the part that can lie on it. For the crossings of
+/// other rays intervals are searched, as kernel::intersect does. q: in, where to start; per_n2: of the media.
+template <class R>
+[[gnu::noinline]] void meet(const kernel::Step<R>& s, const BlockJob<R>& job, std::uint8_t* unsettled,
+                            const Bundle<R>& b, const Lanes<R>* per_n2, Meeting<R>& at) noexcept {
+  using V = Lanes<R>;
+  constexpr int vectors = Bundle<R>::vectors, width = V::width;
+  constexpr R eps = std::numeric_limits<R>::epsilon();
+  const kernel::Asphere<R>& surface = job.aspheres[s.asphere];
+  const V ax(s.ax), ay(s.ay), none(R(0)), size(surface.height), sense(s.sense);
+  V offset[vectors];
+  Mask<R> moving[vectors], waiting[vectors];
+  for (int i = 0; i < vectors; ++i) {
+    offset[i] = kernel::absolute(b.x[i]) + kernel::absolute(b.y[i]) + kernel::absolute(b.z[i]);
+    at.rate[i] = at.slope[i] = none;
+    moving[i] = b.alive[i];
+    waiting[i] = at.found[i] = at.beside[i] = without(moving[i], moving[i]);
+  }
+  const auto height_at = [&](int i, V q) {
+    return height(s, surface, V(b.x[i] + q * b.px[i]), V(b.y[i] + q * b.py[i]), V(b.z[i] + q * b.pz[i]), b.px[i],
+                  b.py[i], b.pz[i]);
+  };
+  const auto iterate = [&](int from, int to) {
+    bool more = true;
+    for (int step = from; step < to && more; ++step) {
+      more = false;
+      for (int i = 0; i < vectors; ++i) {
+        if (!any(moving[i])) continue;
+        const auto h = height_at(i, at.q[i]);
+        const V by = quotient(h.value, h.rate), by2 = by * by;
+        const V scale = size + offset[i] + kernel::absolute(at.q[i]);
+        const Mask<R> now = moving[i] & h.defined & (kernel::absolute(h.value) <= V(R(2) * eps) * scale) &
+                            (by2 <= V(eps) * scale * scale * per_n2[i]);
+        at.q[i] = select(moving[i], at.q[i] - by, at.q[i]);
+        at.rate[i] = select(moving[i], h.rate, at.rate[i]);
+        at.slope[i] = select(moving[i], h.slope, at.slope[i]);
+        at.found[i] = at.found[i] | (now & (h.rate > none));
+        moving[i] = without(moving[i], now);
+        if (step >= first_steps && step < usual_steps<R>) {
+          const Mask<R> hopeless = without(moving[i], by2 <= V(R(1.0 / 256)) * size * size * per_n2[i]);
+          waiting[i] = waiting[i] | hopeless;
+          moving[i] = without(moving[i], hopeless);
+        }
+        more = more || any(moving[i]);
+      }
+    }
+  };
+  iterate(0, usual_steps<R>);
+
+  // Of upright rays the answer needs no search.
+  Mask<R> inside[vectors], doubtful[vectors];
+  bool doubts = false;
+  const V steepest2(surface.steepest * surface.steepest);
+  for (int i = 0; i < vectors; ++i) {
+    const V x = b.x[i] + at.q[i] * b.px[i], y = b.y[i] + at.q[i] * b.py[i];
+    inside[i] = at.found[i] & (ax * x * x + ay * y * y <= size * size);
+    const Mask<R> upright = b.pz[i] * b.pz[i] > steepest2 * (ax * b.px[i] * b.px[i] + ay * b.py[i] * b.py[i]);
+    doubtful[i] = without(b.alive[i], inside[i] & upright);
+    doubts = doubts || any(doubtful[i]);
+  }
+  if (!doubts) return;
+
+  Search<R> search;
+  for (int i = 0; i < vectors; ++i) {
+    if (!any(doubtful[i])) continue;
+    const kernel::Vec<V> p{b.x[i], b.y[i], sense * b.z[i]}, d{b.px[i], b.py[i], sense * b.pz[i]};
+    const auto ray = kernel::surface_detail::passage(surface, p, d);
+    const Mask<R> upright = d.z * d.z > steepest2 * ray.across2;
+    at.beside[i] = doubtful[i] & upright & beside_edge(surface, ray, p.z, d.z);
+    const Mask<R> rest = without(doubtful[i], at.beside[i]);
+    if (any(rest)) search.take(i, rest, p, d, at.q[i], inside[i]);
+  }
+  if (search.count > 0) search.run(surface, s.sense, unsettled);
+  for (int i = 0; i < vectors; ++i) {
+    const Mask<R> crosses = search.with(Outcome::crosses, i), lost = search.with(Outcome::lost, i);
+    at.beside[i] = at.beside[i] | search.with(Outcome::beside, i);
+    at.found[i] = without(at.found[i] | crosses, lost);
+    // Where a ray meets the surface outside the aperture is of no interest if it is clipped there.
+    const Mask<R> settled = crosses | lost | (job.apertures ? at.beside[i] : lost);
+    moving[i] = without(moving[i] | waiting[i], settled);
+    if (!any(crosses)) continue;
+    at.q[i] = select(crosses, load(search.t + i * width), at.q[i]);
+    const auto h = height_at(i, at.q[i]);
+    at.rate[i] = select(crosses, h.rate, at.rate[i]);
+    at.slope[i] = select(crosses, h.slope, at.slope[i]);
+  }
+  iterate(usual_steps<R>, newton_steps);
+}
+
 template <class R, class Media, class Follow>
 void asphere(const kernel::Step<R>& s, const Lanes<R>& rim2, const BlockJob<R>& job, std::uint8_t* unsettled,
              const Media& media, Bundle<R>& b, Follow& follow) noexcept {
   using V = Lanes<R>;
-  const kernel::Asphere<R>& surface = job.aspheres[s.asphere];
-  const V ax(s.ax), ay(s.ay), none(R(0)), size(surface.height);
-  constexpr R eps = std::numeric_limits<R>::epsilon();
-  for (int i = 0; i < Bundle<R>::vectors; ++i) {
+  constexpr int vectors = Bundle<R>::vectors;
+  const V ax(s.ax), ay(s.ay), none(R(0));
+  Meeting<R> at;
+  V per_n2[vectors];
+  for (int i = 0; i < vectors; ++i) {
     approach(s, media, b, i, follow);
-    const V px = b.px[i], py = b.py[i], pz = b.pz[i], per_n2 = media.per_n2(i);
-    const V x = b.x[i], y = b.y[i], z = b.z[i];
-
     // The hit on the base conic; where there is none, the place that approach() found.
     const auto [a, slant, f] = quadratic(s, b, i);
     const V disc = slant * slant - a * f;
     const Mask<R> on_base = (disc > none) & (slant > none);
-    V q = select(on_base, f / (slant + root(disc)), none);
-
-    const V offset = kernel::absolute(x) + kernel::absolute(y) + kernel::absolute(z);
-    const V across = ax * px * px + ay * py * py;
-    const Mask<R> upright = pz * pz > V(surface.steepest) * V(surface.steepest) * across;
-    Mask<R> moving = b.alive[i], found = without(moving, moving);
-    V rate = none, slope = none;
-    for (int step = 1; step <= newton_steps; ++step) {
-      const auto h = height(s, surface, V(x + q * px), V(y + q * py), V(z + q * pz), px, py, pz);
-      const V by = h.value / h.rate;
-      const V scale = size + offset + kernel::absolute(q);
-      const Mask<R> now = moving & h.defined & (kernel::absolute(h.value) <= V(R(2) * eps) * scale) &
-                          (by * by <= V(eps) * scale * scale * per_n2);
-      q = select(moving, q - by, q);
-      rate = select(moving, h.rate, rate);
-      slope = select(moving, h.slope, slope);
-      found = found | (now & (h.rate > none));
-      moving = without(moving, now);
-      if (step == usual_steps && job.apertures && any(moving)) {
-        moving = without(moving, beside(s, surface, b, i, upright, across, x, y, z));
-      }
-      if (!any(moving)) break;
-    }
-    b.x[i] = x + q * px;
+    at.q[i] = select(on_base, quotient(f, V(slant + root(disc))), none);
+    per_n2[i] = media.per_n2(i);
+  }
+  meet(s, job, unsettled, b, per_n2, at);
+  for (int i = 0; i < vectors; ++i) {
+    const V x = b.x[i], y = b.y[i], z = b.z[i], px = b.px[i], py = b.py[i], pz = b.pz[i], q = at.q[i];
+    const Mask<R> found = at.found[i] | at.beside[i];
+    b.x[i] = select(without(at.beside[i], at.found[i]), V(std::numeric_limits<R>::quiet_NaN()), x + q * px);
     b.y[i] = y + q * py;
     b.z[i] = z + q * pz;
-
-    const V r2 = ax * b.x[i] * b.x[i] + ay * b.y[i] * b.y[i];
-    if (Mask<R> doubtful = without(b.alive[i], found & upright & (r2 <= size * size)); any(doubtful)) {
-      // What passes beside the aperture is vignetted, wherever it may cross the surface.
-      const Mask<R> outside = doubtful & beside(s, surface, b, i, upright, across, x, y, z);
-      b.x[i] = select(without(outside, found), V(std::numeric_limits<R>::quiet_NaN()), b.x[i]);
-      found = found | outside;
-      doubtful = without(doubtful, outside);
-      if (any(doubtful)) {
-        found = without(found, doubtful) | search(s, job, unsettled, b, i, doubtful, x, y, z);
-        const auto h = height(s, surface, b.x[i], b.y[i], b.z[i], px, py, pz);
-        rate = select(doubtful, h.rate, rate);
-        slope = select(doubtful, h.slope, slope);
-      }
-    }
-
-    const V gx = slope * ax * b.x[i], gy = slope * ay * b.y[i];
-    V twist = none;
+    const V gx = at.slope[i] * ax * b.x[i], gy = at.slope[i] * ay * b.y[i];
+    V way = q, twist = none;
     if constexpr (Follow::wanted) {
-      q = ((b.x[i] - x) * px + (b.y[i] - y) * py + (b.z[i] - z) * pz) * per_n2;
+      way = ((b.x[i] - x) * px + (b.y[i] - y) * py + (b.z[i] - z) * pz) * per_n2[i];
       const V u = ax * b.x[i] * b.x[i] + ay * b.y[i] * b.y[i];
+      const kernel::Asphere<R>& surface = job.aspheres[s.asphere];
       twist = V(s.sense + s.sense) * kernel::sag(surface, Rate<R>(u, V(R(1)))).slope.d;
     }
     bend(s, rim2, media, b, i, found,
-         {q, px, py, pz, gx, gy, V(R(1)), none, rate, none, none, none, slope * ax, slope * ay, none, twist * ax,
-          twist * ay},
+         {way, px, py, pz, gx, gy, V(R(1)), none, at.rate[i], none, none, none, at.slope[i] * ax, at.slope[i] * ay,
+          none, twist * ax, twist * ay},
          follow);
   }
 }

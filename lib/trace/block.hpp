@@ -13,25 +13,12 @@ namespace petzval::inline v0::trace_detail {
 /// Rays in a block: enough to hide the latency of square roots.
 inline constexpr int block_rays = 64;
 
-/// A ray before an asphere: vertex frame of the lens, direction of unit length.
-template <class R>
-struct BeforeAsphere {
-  R x, y, z, dx, dy, dz;
-};
-
-enum class Found : std::uint8_t { hit, miss, beside, no_convergence };
-
-/// Searches for the hit of one ray if the iteration over lanes is uncertain; replaces the ray's point by it.
-template <class R>
-using AsphereSearch = Found (*)(const kernel::Asphere<R>& asphere, R sense, BeforeAsphere<R>& ray);
-
 /// Input and output of the loops over blocks. Every array holds `rays` values, rounded up to whole blocks.
 template <class R>
 struct BlockJob {
   kernel::SurfaceSequence<R> sequence;
   std::size_t steps = 0;
   const kernel::Asphere<R>* aspheres = nullptr;
-  AsphereSearch<R> search = nullptr;
   std::size_t wavelength = 0, compiled_wavelengths = 1;
   const std::uint16_t* wavelengths = nullptr;  ///< of each ray, or null
   bool spectral = false;                       ///< wavelengths in nm instead

@@ -8,18 +8,6 @@
 
 namespace petzval::inline v0::trace_detail {
 
-/// The search over an asphere by the kernel of one ray.
-template <class R>
-Found search_asphere(const kernel::Asphere<R>& asphere, R sense, BeforeAsphere<R>& ray) {
-  const auto [point, hit, converged, beside] =
-      kernel::intersect(asphere, kernel::Vec<R>{ray.x, ray.y, ray.z}, kernel::Vec<R>{ray.dx, ray.dy, ray.dz}, sense);
-  ray.x = point.x;
-  ray.y = point.y;
-  ray.z = point.z;
-  if (hit) return Found::hit;
-  return beside ? Found::beside : converged ? Found::miss : Found::no_convergence;
-}
-
 /// A job without its rays. Options: of one ray or of a batch; all: their one wavelength.
 template <class R, class Options>
 BlockJob<R> job_for(const kernel::LensView<R>& view, const Options& options, Wavelength all) noexcept {
@@ -27,7 +15,6 @@ BlockJob<R> job_for(const kernel::LensView<R>& view, const Options& options, Wav
   job.sequence = options.travel == Travel::to_film ? view.sequence_to_film : view.sequence_to_scene;
   job.steps = view.count;
   job.aspheres = view.aspheres;
-  job.search = search_asphere<R>;
   job.compiled_wavelengths = view.wavelengths;
   job.apertures = options.apertures;
   job.iris = view.iris;

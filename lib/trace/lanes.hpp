@@ -111,6 +111,10 @@ template <class R>
 PETZVAL_INLINE Mask<R> all_of(Mask<R> a, Mask<R> b, Mask<R> c) noexcept {
   return a & b & c;
 }
+template <class R>
+PETZVAL_INLINE Mask<R> any_of(Mask<R> a, Mask<R> b) noexcept {
+  return a | b;
+}
 
 /// The square root, as IEEE has it.
 template <class R>
@@ -174,6 +178,34 @@ PETZVAL_INLINE Lanes<R> root(Lanes<R> x) noexcept {
   }
 #else
   return sqrt(x);
+#endif
+}
+
+/// kernel::safe_sqrt at that speed.
+template <class R>
+PETZVAL_INLINE Lanes<R> safe_sqrt(Lanes<R> x) noexcept {
+  const Lanes<R> none(R(0));
+  const Mask<R> positive = x > none;
+  return select(positive, root(select(positive, x, Lanes<R>(R(1)))), none);
+}
+
+/// a / b at that speed. Not a number where b or its reciprocal is 0.
+template <class R>
+PETZVAL_INLINE Lanes<R> quotient(Lanes<R> a, Lanes<R> b) noexcept {
+#if PETZVAL_FAST && defined(__AVX512F__)
+  const Lanes<R> one(R(1));
+  Lanes<R> y;
+  if constexpr (sizeof(R) == 4) {
+    y = Lanes<R>(_mm512_maskz_rcp14_ps(0xffff, b.v));
+  } else {
+    y = Lanes<R>(_mm512_maskz_rcp14_pd(0xff, b.v));
+    y = y + y * (one - b * y);
+  }
+  y = y + y * (one - b * y);
+  const Lanes<R> q = a * y;
+  return q + y * (a - b * q);
+#else
+  return a / b;
 #endif
 }
 

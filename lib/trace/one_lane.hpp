@@ -66,6 +66,10 @@ template <class R, class... More>
 Mask<R> all_of(Mask<R> a, More... more) noexcept {
   return {(a.bits && ... && more.bits)};
 }
+template <class R>
+Mask<R> any_of(Mask<R> a, Mask<R> b) noexcept {
+  return a | b;
+}
 
 template <class R>
 Lanes<R> sqrt(Lanes<R> x) noexcept {
@@ -78,6 +82,10 @@ Lanes<R> root(Lanes<R> x) noexcept {
 template <class R>
 Lanes<R> second_root(Lanes<R> x) noexcept {
   return sqrt(x);
+}
+template <class R>
+Lanes<R> quotient(Lanes<R> a, Lanes<R> b) noexcept {
+  return a / b;
 }
 template <class R>
 Mask<R> has_root(Lanes<R> x) noexcept {

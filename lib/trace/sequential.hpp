@@ -8,6 +8,7 @@
 
 #include "lens/lens_view.hpp"
 #include "petzval/core/ray.hpp"
+#include "surface/asphere_hit.hpp"
 
 namespace petzval::inline v0::kernel {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "surface/asphere.hpp"
 #include "lens/lens_view.hpp"
+#include "surface/asphere_hit.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "../asphere_scan.hpp"
 #include "../report.hpp"
 #include "petzval/lens/lens.hpp"
 
@@ -21,6 +22,8 @@ using petzval::AsphereTerm;
 using petzval::SurfaceRow;
 using petzval::kernel::Asphere;
 using petzval::kernel::Vec;
+using testing_aspheres::Sag;
+using testing_aspheres::scan;
 
 struct Named {
   std::string name;
@@ -72,67 +75,6 @@ petzval::Lens compiled(const SurfaceRow& r) {
   return petzval::compile(p);
 }
 
-struct Crossing {
-  double t, cos_incidence;
-};
-
-/// The sag of a row by its definition, in long double.
-struct Sag {
-  const SurfaceRow& row;
-
-  long double value(long double r) const {
-    const long double c = row.radius == 0 ? 0 : 1 / static_cast<long double>(row.radius);
-    long double z = c * r * r / (1 + std::sqrt(1 - (1 + static_cast<long double>(row.conic)) * c * c * r * r));
-    long double power = r;
-    int reached = 1;
-    for (const auto& [order, a] : row.aspheric) {  // in increasing order
-      for (; reached < order; ++reached) power *= r;
-      z += a * power;
-    }
-    return z;
-  }
-  long double clearance(const Vec<double>& p, const Vec<double>& d, long double t) const {
-    return p.z + t * d.z - value(std::hypot(p.x + t * d.x, p.y + t * d.y));
-  }
-};
-
-/// Crossings in the direction of travel within the aperture, by a scan in small steps.
-/// Empty if two crossings are too close for the scan.
-std::optional<std::vector<Crossing>> scan(const SurfaceRow& r, const Vec<double>& p, const Vec<double>& d, int sense) {
-  const Sag sag{r};
-  const double rim = *r.semi_diameter;
-  const double across = d.x * d.x + d.y * d.y, middle = -(p.x * d.x + p.y * d.y) / across;
-  const double closest = std::hypot(p.x + middle * d.x, p.y + middle * d.y);
-  if (closest >= rim) return std::vector<Crossing>{};
-  const double half = std::sqrt((rim * rim - closest * closest) / across);
-  // A ray near the axis leaves the aperture far away; a few semi-diameters on both sides are enough.
-  const long double from = std::max(middle - half, -2 * rim), to = std::min(middle + half, 4 * rim);
-  constexpr int steps = 300;
-  std::vector<Crossing> found;
-  long double low = from, below = sag.clearance(p, d, low);
-  for (int i = 1; i <= steps; ++i) {
-    const long double high = from + (to - from) * i / steps, above = sag.clearance(p, d, high);
-    const long double little = 0.1L * (high - low);
-    if (std::abs(below) < little && std::abs(above - below) < little) return std::nullopt;
-    if (below * sense <= 0 && above * sense > 0) {
-      long double a = low, b = high;
-      for (int k = 0; k < 70; ++k) {
-        const long double m = (a + b) / 2;
-        (sag.clearance(p, d, m) * sense <= 0 ? a : b) = m;
-      }
-      const long double h = 1e-7L * rim, rate = (sag.clearance(p, d, a + h) - sag.clearance(p, d, a - h)) / (2 * h);
-      const long double radius = std::hypot(p.x + a * d.x, p.y + a * d.y);
-      const long double slope = (sag.value(radius + h) - sag.value(radius - h)) / (2 * h);
-      const double cosine = static_cast<double>(std::abs(rate) / std::sqrt(1 + slope * slope));
-      if (cosine < 0.02) return std::nullopt;
-      found.push_back({static_cast<double>(a), cosine});
-    }
-    low = high;
-    below = above;
-  }
-  return found;
-}
-
 template <class T>
 class AsphereOf : public testing::Test {};
 using Plain = testing::Types<float, double>;
@@ -163,7 +105,7 @@ TYPED_TEST(AsphereOf, FindsTheFirstCrossingOfSteepRays) {
                                   static_cast<TypeParam>(Sag{r}.value(reach))};
       const Vec<TypeParam> start = target - d * static_cast<TypeParam>(rim);
       const Vec<double> p{start.x, start.y, start.z}, direction{d.x, d.y, d.z};
-      const auto crossings = scan(r, p, direction, sense);
+      const auto crossings = scan(r, rim, p, direction, sense);
       if (!crossings) {
         ++doubtful;
         continue;
@@ -236,6 +178,55 @@ TEST(Asphere, IsDescribedAsFarAsItIsNotSteep) {
   }
 }
 
+/// Compares the bounds of all rings with samples; says how much wider than the samples they are at worst, as a share of
+/// those of the whole surface.
+double expect_bounds(const SurfaceRow& row, const std::string& what) {
+  constexpr int samples = 200;
+  const Asphere<double> a = described(row);
+  const Sag sag{row};
+  double slack = 0;
+  for (const auto& ring : a.rings) {
+    const double inner = std::sqrt(std::max(ring.inner2, 0.)),
+                 outer = std::sqrt(std::min(ring.outer2, a.height * a.height));
+    EXPECT_LT(inner, outer) << what;
+    EXPECT_GE(ring.outer, outer) << what;
+    double low = 1e300, high = -1e300, least = 1e300, most = -1e300;
+    for (int i = 0; i <= samples; ++i) {
+      const double r = inner + (outer - inner) * i / samples, h = 1e-6 * a.height;
+      const auto z = static_cast<double>(sag.value(r));
+      low = std::min(low, z), high = std::max(high, z);
+      if (r < 2 * h || r > a.height - h) continue;
+      const auto bend = static_cast<double>((sag.value(r + h) - sag.value(r - h)) / (2 * h)) / r;
+      least = std::min(least, bend), most = std::max(most, bend);
+      EXPECT_LE(std::abs(bend) * r, a.steepest) << what << " r " << r;
+    }
+    const double little = 1e-7 * a.steepest / a.height;  // of the difference quotient
+    EXPECT_LE(ring.lowest, low) << what << " r " << outer;
+    EXPECT_GE(ring.highest, high) << what << " r " << outer;
+    EXPECT_LE(ring.least_bend, least + little) << what << " r " << outer;
+    EXPECT_GE(ring.most_bend, most - little) << what << " r " << outer;
+    EXPECT_TRUE(a.lowest <= ring.lowest && ring.highest <= a.highest) << what;
+    slack =
+        std::max({slack, (low - ring.lowest) / (a.highest - a.lowest), (ring.highest - high) / (a.highest - a.lowest),
+                  (least - ring.least_bend) * outer / a.steepest, (ring.most_bend - most) * outer / a.steepest});
+  }
+  return slack;
+}
+
+TEST(Asphere, IsWithinTheBoundsOfItsRings) {
+  for (const Named& named : surfaces()) EXPECT_LT(expect_bounds(named.row, named.name), 0.03) << named.name;
+  std::mt19937 random(3);
+  double worst = 0, sum = 0;
+  constexpr int count = 300;
+  for (int i = 0; i < count; ++i) {
+    const double slack = expect_bounds(testing_aspheres::wild(random), "wild " + std::to_string(i));
+    worst = std::max(worst, slack);
+    sum += slack;
+  }
+  EXPECT_LT(worst, 0.5);
+  EXPECT_LT(sum / count, 0.05);
+}
+
 /// Whether a ray stays clear of a surface's aperture: outside its cylinder, or within that above or below its sag.
 bool clearly_beside(const SurfaceRow& r, const Vec<double>& p, const Vec<double>& d) {
   const double rim = *r.semi_diameter, across = d.x * d.x + d.y * d.y, middle = -(p.x * d.x + p.y * d.y) / across;
@@ -270,7 +261,7 @@ TEST(Asphere, ARayPassesBesideWhereItCrossesNothing) {
       beside += found.beside;
       misses += !found.beside;
       if (found.beside) {
-        const auto crossings = scan(r, p, d, sense);
+        const auto crossings = scan(r, rim, p, d, sense);
         EXPECT_TRUE(!crossings || crossings->empty()) << name << " ray " << i;
       } else {
         EXPECT_FALSE(clearly_beside(r, p, d)) << name << " ray " << i;

@@ -48,6 +48,11 @@ inline Tables<long double> extended(const petzval::kernel::LensView<double>& vie
     b.lowest = a.lowest;
     b.highest = a.highest;
     b.steepest = a.steepest;
+    b.edge = a.edge;
+    std::transform(a.rings.begin(), a.rings.end(), b.rings.begin(), [](const auto& ring) {
+      return petzval::kernel::AsphereRing<L>{ring.inner2,  ring.outer2,     ring.outer,    ring.lowest,
+                                             ring.highest, ring.least_bend, ring.most_bend};
+    });
     t.aspheres.push_back(b);
   }
   return t;

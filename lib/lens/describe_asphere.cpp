@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "describe_asphere.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace petzval::inline v0::lens_detail {
+namespace {
+
+/// x^n by multiplication, so that a lens scaled by 2 gets the same constants times powers of two (pow() may round).
+double power(double x, int n) {
+  double result = 1;
+  for (int i = 0; i < n; ++i) result *= x;
+  return result;
+}
+
+/// Steeper parts of an asphere are not described: out there a polynomial of high order runs away, and with bounds of
+/// sag and slope that held there every ray would have to be searched for. Rays meet them where Newton's iteration finds
+/// them. (The steepest asphere of data/lenses has a slope of 3.)
+constexpr double steepest = 4;
+
+/// The height at which the strongest term alone has a slope.
+double term_height(const LensSurface& s, double slope) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const auto& [order, coefficient] : s.aspheric) {
+    if (coefficient == 0) continue;
+    least = std::min(least, std::pow(order * std::abs(coefficient) / slope, -1.0 / (order - 1)));
+  }
+  return least;
+}
+
+/// The height up to which an asphere may be described: its clear aperture, within the domain of the base conic. An
+/// unlimited one ends where the strongest term alone has a slope of one.
+double height(const LensSurface& s) {
+  constexpr double runs_away = 1e6;  // whatever the other terms are
+  const double curvature = std::abs(s.curvature) * std::sqrt(std::max(0.0, 1 + s.conic));
+  double limit = curvature > 0 ? 1 / curvature : std::numeric_limits<double>::infinity();
+  if (s.semi_diameter > 0) limit = std::min(limit, s.semi_diameter);
+  limit = std::min(limit, term_height(s, std::isfinite(s.semi_diameter) ? runs_away : 1));
+  return std::isfinite(limit) && limit > 0 ? limit : 1.0;
+}
+
+kernel::Asphere<double> asphere_up_to(double height, const LensSurface& s) {
+  kernel::Asphere<double> a;
+  a.base = describe_quadric(s);
+  a.height = height;
+  for (const auto& [order, coefficient] : s.aspheric) {
+    const double scaled = coefficient * power(a.height, order);
+    if (order % 2 == 0) {
+      a.even[static_cast<std::size_t>(order / 2 - 1)] += scaled;
+      a.even_count = std::max(a.even_count, order / 2);
+    } else {
+      a.odd[static_cast<std::size_t>((order - 3) / 2)] += scaled;
+      a.odd_count = std::max(a.odd_count, (order - 1) / 2);
+    }
+  }
+  return a;
+}
+
+/// The polynomial of an asphere over rho = r / height, and bounds of it over intervals of rho by expansions of second
+/// order.
+class Polynomial {
+ public:
+  Polynomial(const LensSurface& s, double height) {
+    for (const auto& [order, coefficient] : s.aspheric) {
+      if (coefficient != 0) terms_.push_back({order, coefficient * power(height, order)});
+    }
+  }
+
+  /// Of its value, and of its slope over rho.
+  struct Bounds {
+    double lowest, highest, least_bend, most_bend;
+  };
+  Bounds over(double from, double to) const {
+    const double middle = 0.5 * (from + to), half = 0.5 * (to - from);
+    const auto at = powers(middle), end = powers(to);
+    double value = 0, slope = 0, bend = 0, bend_slope = 0;        // in the middle
+    double size = 0, bend_size = 0, curved = 0, bend_curved = 0;  // at most, of the terms by themselves
+    for (const auto& [order, a] : terms_) {
+      const auto n = static_cast<std::size_t>(order);
+      const double i = order, amount = std::abs(a);
+      value += a * at[n];
+      slope += i * a * at[n - 1];
+      bend += i * a * at[n - 2];
+      size += amount * end[n];
+      bend_size += i * amount * end[n - 2];
+      curved += i * (i - 1) * amount * end[n - 2];
+      if (order == 2) continue;
+      bend_slope += i * (i - 2) * a * at[n - 3];
+      if (order > 3) bend_curved += i * (i - 2) * (i - 3) * amount * end[n - 4];
+    }
+    // Coefficients and sums of float have errors of their own.
+    const double off = half * (std::abs(slope) + 0.5 * half * curved) + rounding * size;
+    const double bend_off = half * (std::abs(bend_slope) + 0.5 * half * bend_curved) + rounding * bend_size;
+    return {value - off, value + off, bend - bend_off, bend + bend_off};
+  }
+
+ private:
+  static constexpr double rounding = 4e-6;
+  using Powers = std::array<double, kernel::max_asphere_order + 1>;
+
+  static Powers powers(double x) {
+    Powers p{1};
+    for (std::size_t i = 1; i < p.size(); ++i) p[i] = p[i - 1] * x;
+    return p;
+  }
+
+  std::vector<AsphereTerm> terms_;
+};
+
+/// Bounds over the rings, and with them those of the whole surface. On each of some intervals of a ring the base, whose
+/// sag and slope over r are monotone, is between its ends.
+void bound(const LensSurface& s, kernel::Asphere<double>& a) {
+  constexpr int intervals = 8;
+  constexpr double wider = 1e-5;  // radii of points have errors in float
+  constexpr double huge = std::numeric_limits<double>::max();
+  kernel::Asphere<double> base;
+  base.base = a.base;
+  base.height = a.height;
+  const Polynomial polynomial(s, a.height);
+  const double per_height2 = 1 / (a.height * a.height);
+  const auto radius = [&](int ring) { return std::sqrt(ring / double{kernel::asphere_rings}); };
+  for (int k = 0; k < kernel::asphere_rings; ++k) {
+    const double inner = std::max(0., radius(k) - wider), outer = radius(k + 1) + wider;
+    kernel::AsphereRing<double> ring{
+        k == 0 ? -huge : a.height * a.height * k / kernel::asphere_rings,
+        k + 1 == kernel::asphere_rings ? huge : a.height * a.height * (k + 1) / kernel::asphere_rings,
+        a.height * outer,
+        huge,
+        -huge,
+        huge,
+        -huge};
+    double from = inner;
+    auto below = kernel::sag(base, a.height * a.height * from * from);
+    for (int i = 1; i <= intervals; ++i) {
+      const double to = inner + (outer - inner) * i / intervals;
+      const auto above = kernel::sag(base, a.height * a.height * to * to);
+      const auto terms = polynomial.over(from, to);
+      const double rounding = 4e-6 * std::abs(above.slope);
+      const double least = std::min(below.slope, above.slope) + per_height2 * terms.least_bend - rounding;
+      const double most = std::max(below.slope, above.slope) + per_height2 * terms.most_bend + rounding;
+      ring.lowest = std::min(ring.lowest, std::min(below.z, above.z) + terms.lowest);
+      ring.highest = std::max(ring.highest, std::max(below.z, above.z) + terms.highest);
+      ring.least_bend = std::min(ring.least_bend, least);
+      ring.most_bend = std::max(ring.most_bend, most);
+      a.steepest = std::max(a.steepest, a.height * to * std::max(-least, most));
+      from = to;
+      below = above;
+    }
+    const double margin = 1e-6 * (a.height + std::max(std::abs(ring.lowest), std::abs(ring.highest)));
+    ring.lowest -= margin;
+    ring.highest += margin;
+    a.lowest = std::min(a.lowest, ring.lowest);
+    a.highest = std::max(a.highest, ring.highest);
+    a.rings[static_cast<std::size_t>(k)] = ring;
+  }
+}
+
+}  // namespace
+
+kernel::Quadric<double> describe_quadric(const LensSurface& s) {
+  return kernel::make_quadric<double>(s.curvature, s.conic, s.curved_in != Section::y, s.curved_in != Section::x);
+}
+
+kernel::Asphere<double> describe_asphere(const LensSurface& s) {
+  constexpr int samples = 256;
+  kernel::Asphere<double> a = asphere_up_to(height(s), s);
+  for (int i = 0; i <= samples; ++i) {
+    const double r = a.height * i / samples;
+    const auto [z, slope, defined] = kernel::sag(a, r * r);
+    if (defined && std::abs(slope) * r <= steepest) continue;
+    a = asphere_up_to(a.height * std::max(i - 1, 1) / samples, s);
+    i = -1;
+  }
+  bound(s, a);
+  a.edge = kernel::sag(a, a.height * a.height).z;
+  return a;
+}
+
+}  // namespace petzval::inline v0::lens_detail

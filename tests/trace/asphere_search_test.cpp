@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+// The hits of batches on surfaces that steep rays cross several times, compared with a scan in long double.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "../asphere_scan.hpp"
+#include "batches.hpp"
+
+namespace {
+
+using petzval::Ray;
+using petzval::RayFate;
+using petzval::Travel;
+using testing_aspheres::scan;
+using testing_batches::traced;
+using Vec = petzval::kernel::Vec<double>;
+
+/// Through points of the surface and some beside it, most of them far from upright.
+template <class T>
+std::vector<Ray<T>> steep_rays(const petzval::SurfaceRow& row, std::mt19937& random, double height, std::size_t count,
+                               double sense) {
+  const auto uniform = [&](double low, double high) {
+    return low + (high - low) * std::uniform_real_distribution<double>(0, 1)(random);
+  };
+  std::vector<Ray<T>> rays;
+  while (rays.size() < count) {
+    const double reach = height * std::sqrt(uniform(0, 1.2)), turn = uniform(0, 6.3), heading = uniform(0, 6.3);
+    const double cosine = sense * std::pow(uniform(0.15, 1), 2), slope = std::sqrt(1 - cosine * cosine);
+    const auto z = static_cast<double>(testing_aspheres::Sag{row}.value(std::min(reach, height)));
+    const double d[3] = {slope * std::cos(heading), slope * std::sin(heading), cosine};
+    const double at[3] = {reach * std::cos(turn), reach * std::sin(turn), z}, back = height * uniform(0.5, 2);
+    Ray<T> ray;
+    for (int k = 0; k < 3; ++k) {
+      ray.origin[k] = static_cast<T>(at[k] - back * d[k]);
+      ray.direction[k] = static_cast<T>(d[k]);
+    }
+    rays.push_back(ray);
+  }
+  return rays;
+}
+
+struct Count {
+  int rays = 0, several = 0, doubtful = 0, wrong = 0;
+};
+
+/// Between equal media: the ray is as it was, and starts from its hit.
+template <class T>
+void judge(const petzval::SurfaceRow& row, std::mt19937& random, const std::string& what, Count& count) {
+  const petzval::Lens lens = testing_lenses::one_surface(row);
+  const double height = petzval::kernel::view<double>(lens).aspheres[0].height;
+  for (const Travel travel : {Travel::to_film, Travel::to_scene}) {
+    const int sense = travel == Travel::to_film ? 1 : -1;
+    const auto rays = steep_rays<T>(row, random, height, 64, sense);
+    std::vector<std::optional<std::vector<testing_aspheres::Crossing>>> crossings;
+    for (const Ray<T>& ray : rays) {
+      const auto &o = ray.origin, &d = ray.direction;
+      crossings.push_back(scan(row, height, Vec{o.x, o.y, o.z}, Vec{d.x, d.y, d.z}, sense));
+      ++count.rays;
+      count.doubtful += !crossings.back();
+      count.several += crossings.back() && crossings.back()->size() > 1;
+    }
+    for (const auto& options : testing_batches::ways(travel)) {
+      const auto answer = traced(lens, rays, options);
+      for (std::size_t i = 0; i < rays.size(); ++i) {
+        if (!crossings[i]) continue;
+        const petzval::Vec3<double> o(rays[i].origin), d(rays[i].direction), hit(answer.rays[i].origin);
+        const bool transmitted = answer.fates[i] == RayFate::transmitted;
+        const bool inside = transmitted && std::hypot(hit.x, hit.y) < height * (1 - 1e-5);
+        bool right = !inside;
+        if (!crossings[i]->empty()) {
+          const auto& [t, cosine] = crossings[i]->front();
+          const petzval::Vec3<double> point = o + d * t;
+          if (std::hypot(point.x, point.y) > height * (1 - 1e-5)) continue;
+          const petzval::Vec3<double> off = hit - point;
+          right = transmitted && std::hypot(off.x, off.y, off.z) < 1e-3 * height;
+        }
+        if (!right && ++count.wrong <= 10) {
+          ADD_FAILURE() << what << ", " << testing_batches::text(options) << ", ray " << i << ": "
+                        << petzval::name(answer.fates[i]) << " at " << hit.x << " " << hit.y << " " << hit.z;
+        }
+      }
+    }
+  }
+}
+
+template <class T>
+class AsphereSearch : public testing::Test {};
+using Plain = testing::Types<float, double>;
+TYPED_TEST_SUITE(AsphereSearch, Plain);
+
+TYPED_TEST(AsphereSearch, FindsTheFirstCrossingOfEveryLane) {
+  std::mt19937 random(17);
+  Count count;
+  for (int i = 0; i < 100; ++i) {
+    judge<TypeParam>(testing_aspheres::wild(random), random, "wild " + std::to_string(i), count);
+  }
+  EXPECT_EQ(count.wrong, 0);
+  EXPECT_GT(count.several, count.rays / 300) << "the rays are too easy";
+  EXPECT_LT(count.doubtful, count.rays / 5);
+}
+
+}  // namespace
