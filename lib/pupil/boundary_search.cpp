@@ -5,6 +5,8 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <limits>
+#include <numbers>
 #include <numeric>
 #include <utility>
 
@@ -21,8 +23,7 @@ struct Line {
 /// Places to be tested in one batch.
 struct Batch {
   std::vector<std::uint32_t> points;
-  std::vector<double> x, y;
-  std::vector<std::uint8_t> passes;
+  std::vector<double> x, y, clearances;
 
   void clear() {
     points.clear();
@@ -34,67 +35,117 @@ struct Batch {
     x.push_back(line.x + s * line.dx);
     y.push_back(line.y + s * line.dy);
   }
-  void test(const PassingPlaces& passing) {
-    passes.resize(x.size());
-    if (!x.empty()) passing(x.size(), points.data(), x.data(), y.data(), passes.data());
+  void test(const PlaceClearances& at_places) {
+    clearances.resize(x.size());
+    if (!x.empty()) at_places(x.size(), points.data(), x.data(), y.data(), clearances.data());
+  }
+  bool passes(std::size_t i) const noexcept { return clearances[i] >= 0; }
+};
+
+/// An interval of a line in which nothing passes.
+struct Gap {
+  double from = 0, to = 0;
+};
+
+/// What passes along a line: from the first parameter to the last, except for the widest obscuration between, and for
+/// other gaps, which are as wide as the samples show.
+struct LineExtent {
+  double from = 0, obscured_from = 0, obscured_to = 0, to = 0;
+  double slope = 0;  // of the clearance at `to`, where it is known
+  bool any = false;
+  std::vector<Gap> gaps;
+};
+
+/// An end of an extent while it is closed in: a parameter that passes, one that does not, and their clearances.
+struct Bracket {
+  std::size_t line = 0;
+  double with = 0, without = 0, at_with = 1, at_without = -1;
+  double LineExtent::*end = &LineExtent::to;
+  double found = 0;
+
+  double secant() const noexcept { return with + (without - with) * (at_with / (at_with - at_without)); }
+  /// Of the clearance; 0 where only its sign is known.
+  double slope() const noexcept {
+    const bool known = at_with < 1 && at_without > -1;
+    return known && with != without ? (at_without - at_with) / (without - with) : 0;
   }
 };
 
-/// What passes along a line: from the first parameter to the last, except for the widest obscuration between.
-struct LineExtent {
-  double from = 0, obscured_from = 0, obscured_to = 0, to = 0;
-  bool any = false;
-};
-
-/// An end of an extent while it is closed in: a parameter that passes, one that does not.
-struct Bracket {
-  std::size_t line = 0;
-  double with = 0, without = 0;
-  double LineExtent::*end = &LineExtent::to;
-};
-
-void close_in(std::vector<Bracket>& brackets, const std::vector<Line>& lines, int rounds,
-              const PassingPlaces& passing) {
+/// Finds the ends within a tolerance: by secants where the clearance is smooth, by bisection where only its sign is
+/// known.
+void close_in(std::vector<Bracket>& brackets, const std::vector<Line>& lines, double tolerance,
+              const PlaceClearances& clearances) {
+  constexpr int secants = 6, rounds = 40;
+  std::vector<std::uint32_t> open(brackets.size());
+  for (std::uint32_t i = 0; i < open.size(); ++i) open[i] = i;
+  std::vector<double> tried;
   Batch batch;
-  for (int round = 0; round < rounds; ++round) {
+  for (int round = 0; round < rounds && !open.empty(); ++round) {
     batch.clear();
-    for (const Bracket& b : brackets) batch.add(lines[b.line], (b.with + b.without) / 2);
-    batch.test(passing);
-    for (std::size_t i = 0; i < brackets.size(); ++i) {
+    tried.clear();
+    for (const std::uint32_t i : open) {
       Bracket& b = brackets[i];
-      (batch.passes[i] ? b.with : b.without) = (b.with + b.without) / 2;
+      const double secant = b.secant(), middle = (b.with + b.without) / 2;
+      tried.push_back(std::isfinite(secant) && (round < secants || round % 2 == 0) ? secant : middle);
+      batch.add(lines[b.line], tried.back());
     }
+    batch.test(clearances);
+    std::size_t left = 0;
+    for (std::size_t j = 0; j < open.size(); ++j) {
+      Bracket& b = brackets[open[j]];
+      const double x = tried[j];
+      (batch.passes(j) ? b.with : b.without) = x;
+      (batch.passes(j) ? b.at_with : b.at_without) = batch.clearances[j];
+      b.found = b.secant();
+      if (!std::isfinite(b.found)) b.found = b.with;
+      const bool close = std::abs(b.found - x) < tolerance / 4 || std::abs(b.without - b.with) < tolerance;
+      if (!close) open[left++] = open[j];
+    }
+    open.resize(left);
   }
 }
 
 /// The extents along some lines, looked for at `samples` + 1 parameters from `low` to `high` of each; the ends are
-/// found within 2^-rounds of a step. Where the first sample passes, the extent begins there.
-std::vector<LineExtent> extents_along(const std::vector<Line>& lines, double low, double high, int samples, int rounds,
-                                      const PassingPlaces& passing) {
+/// found within a tolerance. Where the first sample passes, the extent begins there.
+std::vector<LineExtent> extents_along(const std::vector<Line>& lines, double low, double high, int samples,
+                                      double tolerance, const PlaceClearances& clearances) {
   const double step = (high - low) / samples;
   Batch batch;
-  for (const Line& line : lines) {
-    for (int i = 0; i <= samples; ++i) batch.add(line, low + step * i);
-  }
-  batch.test(passing);
   std::vector<LineExtent> result(lines.size());
   std::vector<Bracket> brackets;
+  // Some lines at a time, so that memory is used again.
+  const std::size_t a_line = static_cast<std::size_t>(samples) + 1, some = 1 + 2048 / a_line;
   for (std::size_t l = 0; l < lines.size(); ++l) {
-    const std::uint8_t* passes = batch.passes.data() + l * (static_cast<std::size_t>(samples) + 1);
+    if (l % some == 0) {
+      batch.clear();
+      for (std::size_t j = l; j < std::min(l + some, lines.size()); ++j) {
+        for (int i = 0; i <= samples; ++i) batch.add(lines[j], low + step * i);
+      }
+      batch.test(clearances);
+    }
+    const double* values = batch.clearances.data() + l % some * a_line;
+    const auto passes = [&](int i) { return values[i] >= 0; };
     int first = 0, last = samples, dark = 0, light = 0;  // dark, light: the samples beside the widest obscuration
-    while (first <= samples && !passes[first]) ++first;
+    while (first <= samples && !passes(first)) ++first;
     if (first > samples) continue;
-    while (!passes[last]) --last;
+    while (!passes(last)) --last;
+    const auto parameter = [&](int i) { return low + step * i; };
     for (int i = first, before = first; i <= last; ++i) {
-      if (!passes[i]) continue;
-      if (i - before > std::max(1, light - dark)) dark = before, light = i;
+      if (!passes(i)) continue;
+      if (i - before > 1) {
+        const bool widest = i - before > std::max(1, light - dark);
+        const Gap other = widest ? Gap{parameter(dark) + step / 2, parameter(light) - step / 2}
+                                 : Gap{parameter(before) + step / 2, parameter(i) - step / 2};
+        if (other.from < other.to && (!widest || light > dark)) result[l].gaps.push_back(other);
+        if (widest) dark = before, light = i;
+      }
       before = i;
     }
     result[l].any = true;
     const auto close = [&](double LineExtent::*end, int with, int without) {
-      result[l].*end = low + step * with;
+      result[l].*end = parameter(with);
       if (without >= 0 && without <= samples) {
-        brackets.push_back({l, low + step * with, low + step * without, end});
+        brackets.push_back({l, parameter(with), parameter(without), values[with], values[without], end});
       }
     };
     close(&LineExtent::from, first, first - 1);
@@ -103,33 +154,42 @@ std::vector<LineExtent> extents_along(const std::vector<Line>& lines, double low
     close(&LineExtent::obscured_from, dark, dark + 1);
     close(&LineExtent::obscured_to, light, light - 1);
   }
-  close_in(brackets, lines, rounds, passing);
-  for (const Bracket& b : brackets) result[b.line].*b.end = b.with;
+  close_in(brackets, lines, tolerance, clearances);
+  for (const Bracket& b : brackets) {
+    result[b.line].*b.end = b.found;
+    if (b.end == &LineExtent::to) result[b.line].slope = b.slope();
+  }
   return result;
 }
 
 /// What is known of a region while it is searched: middle, half axes and, by direction, what passes from the middle to
-/// `to`, except for one obscuration. Nothing passes where `to` is 0, and nothing at all without directions.
+/// `to`, except for one obscuration and other gaps. Nothing passes where `to` is 0, and nothing at all without
+/// directions.
 struct Found {
   struct Ends {
     double obscured_from = 0, obscured_to = 0, to = 0;
+    double slope = 0;  // of the clearance at `to`, where it is known
   };
   Vec2<double> middle{0, 0}, half_axes{0, 0};
   std::vector<Ends> ends;
+  std::vector<std::vector<Gap>> gaps;  // of each direction; empty: there are none
 
   bool empty() const noexcept { return ends.empty(); }
 };
 
-constexpr int end_rounds = 10;
+/// Of ends, in half axes.
+constexpr double tolerance = 2e-5;
 
 class Search {
  public:
-  Search(std::span<const PupilGuess> points, std::size_t directions, bool mirrored, const PassingPlaces& passing)
+  Search(std::span<const PupilGuess> points, std::size_t directions, bool mirrored, const PlaceClearances& clearances,
+         const PlacesSeen& places_seen)
       : points_(points),
         directions_(directions),
         traced_(mirrored ? directions / 2 : directions),
         mirrored_(mirrored),
-        passing_(passing),
+        clearances_(clearances),
+        places_seen_(places_seen),
         found_(points.size()) {
     PupilRegion unit_circle{.half_axes = {1, 1}, .directions = directions};
     for (std::size_t k = 0; k < directions; ++k) units_.push_back(unit_circle.unit(k));
@@ -152,8 +212,8 @@ class Search {
     dark = along_y(dark, Reach::far, 256, seen, rings);
     along_y(dark, Reach::far, 1024, seen, rings);
     across(seen);
-    outwards(seen, 32, 1.6, 12);
-    outwards(rings, 320, 1.6, 9);
+    outwards(seen, 24, 1.6);
+    outwards(rings, 320, 1.6);
     // Pupils of an unusual shape want a farther look.
     std::vector<std::uint32_t> unusual;
     for (const std::uint32_t p : seen) {
@@ -163,19 +223,24 @@ class Search {
       };
       if (!std::all_of(found_[p].ends.begin(), found_[p].ends.end(), usual)) unusual.push_back(p);
     }
-    outwards(unusual, 96, 4.8, 12);
+    outwards(unusual, 96, 4.8);
     for (const std::uint32_t p : unusual) {
       const auto any = [](const Found::Ends& e) { return e.to > 0; };
       if (std::none_of(found_[p].ends.begin(), found_[p].ends.end(), any)) found_[p] = {};
     }
+    if (places_seen_) elsewhere(which);
   }
 
   /// Looks for pupils about halfway between two that were found: next to where these have their ends. Those that are
   /// not there are looked for in full.
   void between(std::span<const Halfway> which, int widenings) {
-    std::vector<std::uint32_t> points;
+    std::vector<std::uint32_t> points, in_parts;
     for (const auto& [point, before, after] : which) {
       const Found &a = found_[before], &b = found_[after];
+      if (!a.gaps.empty() || !b.gaps.empty()) {
+        in_parts.push_back(point);
+        continue;
+      }
       const auto mean = [](double x, double y) { return (x + y) / 2; };
       Found& found = found_[point];
       found.middle = {mean(a.middle[0], b.middle[0]), mean(a.middle[1], b.middle[1])};
@@ -183,55 +248,112 @@ class Search {
       found.ends.assign(directions_, {});
       for (std::size_t k = 0; k < directions_; ++k) {
         const Found::Ends &p = a.ends[k], &q = b.ends[k];
-        found.ends[k] = {mean(p.obscured_from, q.obscured_from), mean(p.obscured_to, q.obscured_to), mean(p.to, q.to)};
+        found.ends[k] = {mean(p.obscured_from, q.obscured_from), mean(p.obscured_to, q.obscured_to), mean(p.to, q.to),
+                         p.slope < 0 && q.slope < 0 ? mean(p.slope, q.slope) : 0};
       }
       points.push_back(point);
     }
-    std::vector<std::uint32_t> lost = settle(points, widenings), moved;
-    for (const std::uint32_t point : points) {
-      if (recentre(found_[point])) moved.push_back(point);
+    // Some at a time, so that memory is used again.
+    constexpr std::size_t some = 8;
+    std::vector<std::uint32_t> lost;
+    for (std::size_t begin = 0; begin < points.size(); begin += some) {
+      const auto part = std::span(points).subspan(begin, std::min(some, points.size() - begin));
+      std::vector<std::uint32_t> moved;
+      for (const std::uint32_t point : settle(part, widenings)) lost.push_back(point);
+      for (const std::uint32_t point : part) {
+        if (recentre(found_[point])) moved.push_back(point);
+      }
+      for (const std::uint32_t point : settle(moved, widenings)) lost.push_back(point);
     }
-    for (const std::uint32_t point : settle(moved, widenings)) lost.push_back(point);
     for (const std::uint32_t point : lost) found_[point] = {};
+    lost.insert(lost.end(), in_parts.begin(), in_parts.end());
     in_full(lost);
   }
 
  private:
   enum class Reach { near, far };
 
+  /// Finds outer ends of which the slope of the clearance is expected by one Newton step and one secant; by_slope_
+  /// tells for which of them this served.
+  void step_to_ends(std::span<const std::uint32_t> which, double beside) {
+    struct Step {
+      double from, to = 0, at_from = 0;
+    };
+    std::vector<Step> steps;
+    Batch batch;
+    const auto each = [&](const auto& visit) {
+      std::size_t i = 0;
+      for (const std::uint32_t point : which) {
+        for (std::size_t k = 0; k < traced_; ++k) {
+          Found::Ends& ends = found_[point].ends[k];
+          if (ends.slope < 0) visit(i++, point, k, ends);
+        }
+      }
+    };
+    each([&](std::size_t, std::uint32_t point, std::size_t k, const Found::Ends& ends) {
+      steps.push_back({ends.to});
+      batch.add(outward(point, k), ends.to);
+    });
+    by_slope_.assign(steps.size(), false);
+    if (steps.empty()) return;
+    batch.test(clearances_);
+    const std::vector<double> first = batch.clearances;
+    batch.clear();
+    each([&](std::size_t i, std::uint32_t point, std::size_t k, const Found::Ends& ends) {
+      Step& step = steps[i];
+      step.at_from = first[i];
+      step.to = step.from - std::clamp(first[i] / ends.slope, -beside * step.from, beside * step.from);
+      batch.add(outward(point, k), step.to);
+    });
+    batch.test(clearances_);
+    each([&](std::size_t i, std::uint32_t point, std::size_t k, Found::Ends& ends) {
+      const auto& [from, to, at_from] = steps[i];
+      const double at_to = batch.clearances[i];
+      const double slope = std::abs(to - from) > 1e-6 * from ? (at_to - at_from) / (to - from) : ends.slope;
+      const double end = to - at_to / slope;
+      constexpr double like = 2, close = 5 * tolerance;
+      const bool found = at_from > -1 && at_to > -1 && slope < ends.slope / like && slope > ends.slope * like &&
+                         std::abs(end - to) < close;
+      if (!found) return;
+      by_slope_[i] = true;
+      ends.to = end, ends.slope = slope;
+      if (mirrored_) found_[point].ends[directions_ - 1 - k].to = end;
+    });
+  }
+
   /// Finds the ends of some pupils next to where they are expected. Returns those that have none there.
   std::vector<std::uint32_t> settle(std::span<const std::uint32_t> which, int widenings) {
     constexpr double beside = 0.01;
+    step_to_ends(which, beside);
     std::vector<Line> lines;
     std::vector<Bracket> brackets;
+    std::size_t at = 0;
     for (const std::uint32_t point : which) {
       for (std::size_t k = 0; k < traced_; ++k) {
         const auto outer = [&](double LineExtent::*end, double s) {
-          brackets.push_back({lines.size(), s * (1 - beside), s * (1 + beside), end});
+          brackets.push_back({lines.size(), s * (1 - beside), s * (1 + beside), 1, -1, end});
         };
-        const auto& [from, to, end] = found_[point].ends[k];
-        outer(&LineExtent::to, end);
+        const auto& [from, to, end, slope] = found_[point].ends[k];
+        const bool settled = slope < 0 && by_slope_[at++];
+        if (!settled) outer(&LineExtent::to, end);
         if (from > 0) outer(&LineExtent::obscured_from, from);
-        if (to > 0) brackets.push_back({lines.size(), to * (1 + beside), to * (1 - beside), &LineExtent::obscured_to});
+        if (to > 0)
+          brackets.push_back({lines.size(), to * (1 + beside), to * (1 - beside), 1, -1, &LineExtent::obscured_to});
         lines.push_back(outward(point, k));
       }
     }
     std::vector<bool> nowhere(which.size(), false);
     for (const Bracket& b : widened(brackets, lines, widenings)) nowhere[b.line / traced_] = true;
-    close_in(brackets, lines, end_rounds, passing_);
-    std::vector<Bracket> wide;
-    for (const Bracket& b : brackets) {
-      if (std::abs(b.with - b.without) > 4 * beside * b.with * std::ldexp(1.0, -end_rounds)) wide.push_back(b);
-    }
-    close_in(wide, lines, 3, passing_);
-    brackets.insert(brackets.end(), wide.begin(), wide.end());
+    std::erase_if(brackets, [&](const Bracket& b) { return nowhere[b.line / traced_]; });
+    close_in(brackets, lines, tolerance, clearances_);
     for (const Bracket& b : brackets) {
       Found& found = found_[lines[b.line].point];
       const std::size_t k = b.line % traced_;
       const auto set = [&](Found::Ends& ends) {
+        if (b.end == &LineExtent::to) ends.slope = b.slope();
         (b.end == &LineExtent::to            ? ends.to
          : b.end == &LineExtent::obscured_to ? ends.obscured_to
-                                             : ends.obscured_from) = b.with;
+                                             : ends.obscured_from) = b.found;
       };
       set(found.ends[k]);
       if (mirrored_) set(found.ends[directions_ - 1 - k]);
@@ -251,7 +373,7 @@ class Search {
     std::vector<Vec2<double>> rim;  // in units of the half axes
     Vec2<double> low{0, 0}, high{0, 0};
     for (std::size_t k = 0; k < directions_; ++k) {
-      const auto& [obscured_from, obscured_to, to] = found.ends[k];
+      const auto& [obscured_from, obscured_to, to, slope] = found.ends[k];
       if (obscured_to > 0 || !(to > 0)) return false;
       rim.push_back(to * units_[k]);
       for (int i : {0, 1}) low[i] = std::min(low[i], rim[k][i]), high[i] = std::max(high[i], rim[k][i]);
@@ -259,14 +381,14 @@ class Search {
     constexpr double far = 0.05;
     const Vec2<double> middle = (low + high) / 2.0, half = (high - low) / 2.0;
     if (std::abs(middle.x) < far * half.x && std::abs(middle.y) < far * half.y) return false;
-    Found result{found.middle + found.half_axes * middle, found.half_axes * half, {}};
+    Found result{found.middle + found.half_axes * middle, found.half_axes * half, {}, {}};
     for (auto& p : rim) p = (p - middle) / half;
     const auto turn = [](const Vec2<double>& a, const Vec2<double>& b) { return a.y * b.x - a.x * b.y; };
     for (const Vec2<double>& unit : units_) {
       for (std::size_t k = 0; k < directions_; ++k) {
         const Vec2<double>&a = rim[k], &b = rim[(k + 1) % directions_];
         if (!(turn(a, unit) >= 0 && turn(unit, b) > 0)) continue;
-        result.ends.push_back({0, 0, turn(a, b) / (turn(a, unit) + turn(unit, b))});
+        result.ends.push_back({0, 0, turn(a, b) / (turn(a, unit) + turn(unit, b)), 0});
         break;
       }
     }
@@ -287,11 +409,12 @@ class Search {
         batch.add(lines[brackets[j].line], brackets[j].with);
         batch.add(lines[brackets[j].line], brackets[j].without);
       }
-      batch.test(passing_);
+      batch.test(clearances_);
       std::size_t left = 0;
       for (std::size_t i = 0; i < open.size(); ++i) {
         Bracket& b = brackets[open[i]];
-        const bool with = batch.passes[2 * i], without = batch.passes[2 * i + 1];
+        const bool with = batch.passes(2 * i), without = batch.passes(2 * i + 1);
+        b.at_with = batch.clearances[2 * i], b.at_without = batch.clearances[2 * i + 1];
         if (with && !without) continue;
         const double way = (b.with - b.without) * 2;
         if (!with) b.without = std::exchange(b.with, std::max(b.with + way, 0.0));
@@ -315,7 +438,7 @@ class Search {
       const bool near = reach == Reach::near && g.near > 0;
       lines.push_back({p, g.x, near ? g.y : (g.low + g.high) / 2, 0, near ? g.near : (g.high - g.low) / 2});
     }
-    const auto extent = extents_along(lines, -1, 1, samples, end_rounds, passing_);
+    const auto extent = extents_along(lines, -1, 1, samples, tolerance, clearances_);
     std::vector<std::uint32_t> left;
     for (std::size_t i = 0; i < which.size(); ++i) {
       const LineExtent& e = extent[i];
@@ -347,7 +470,7 @@ class Search {
       const double reach = std::max({(g.high - g.low) / 2, 2 * g.radius, 2 * found_[p].half_axes[1]});
       lines.push_back({p, found_[p].middle[0], found_[p].middle[1], reach, 0});
     }
-    const auto extent = extents_along(lines, mirrored_ ? 0 : -1, 1, mirrored_ ? 96 : 192, end_rounds, passing_);
+    const auto extent = extents_along(lines, mirrored_ ? 0 : -1, 1, mirrored_ ? 96 : 192, tolerance, clearances_);
     for (std::size_t i = 0; i < which.size(); ++i) {
       Found& found = found_[which[i]];
       const PupilGuess& g = points_[which[i]];
@@ -370,22 +493,83 @@ class Search {
     return {point, found.middle.x, found.middle.y, half.x, half.y};
   }
 
-  void outwards(std::span<const std::uint32_t> which, int samples, double reach, int rounds) {
+  void outwards(std::span<const std::uint32_t> which, int samples, double reach) {
     std::vector<Line> lines;
     for (const std::uint32_t p : which) {
       found_[p].ends.assign(directions_, {});
+      found_[p].gaps.clear();
       for (std::size_t k = 0; k < traced_; ++k) lines.push_back(outward(p, k));
     }
-    const auto extent = extents_along(lines, 0, reach, samples, rounds, passing_);
+    const auto extent = extents_along(lines, 0, reach, samples, tolerance, clearances_);
     for (std::size_t i = 0; i < which.size(); ++i) {
       for (std::size_t k = 0; k < directions_; ++k) {
         const LineExtent& e = extent[i * traced_ + (k < traced_ ? k : directions_ - 1 - k)];
         if (!e.any) continue;
         // A dark middle is the obscuration that counts.
         const bool dark = e.from > 0;
-        found_[which[i]].ends[k] = {dark ? 0 : e.obscured_from, dark ? e.from : e.obscured_to, e.to};
+        Found& found = found_[which[i]];
+        found.ends[k] = {dark ? 0 : e.obscured_from, dark ? e.from : e.obscured_to, e.to, e.slope};
+        const bool both = dark && e.obscured_from < e.obscured_to;
+        if (e.gaps.empty() && !both) continue;
+        found.gaps.resize(directions_);
+        found.gaps[k] = e.gaps;
+        if (both) found.gaps[k].push_back({e.obscured_from, e.obscured_to});
       }
     }
+  }
+
+  /// Looks for parts of pupils outside the regions that were found, and makes the regions larger to hold them.
+  void elsewhere(std::span<const std::uint32_t> which) {
+    Batch batch;
+    std::vector<SeenPlace> places;
+    std::vector<std::size_t> until;
+    for (const std::uint32_t p : which) {
+      for (const SeenPlace& place : places_seen_(p)) {
+        if (!std::isfinite(place.at.x) || !std::isfinite(place.at.y)) continue;
+        places.push_back(place);
+        batch.add({p, place.at.x, place.at.y}, 0);
+      }
+      until.push_back(places.size());
+    }
+    batch.test(clearances_);
+    std::vector<std::uint32_t> larger;
+    for (std::size_t i = 0, at = 0; i < which.size(); ++i) {
+      Found& found = found_[which[i]];
+      Vec2<double> low{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()}, high = -low;
+      const auto take = [&](const Vec2<double>& p) {
+        for (int axis : {0, 1}) low[axis] = std::min(low[axis], p[axis]), high[axis] = std::max(high[axis], p[axis]);
+      };
+      for (; at < until[i]; ++at) {
+        const auto& [place, beside] = places[at];
+        if (!batch.passes(at) || holds(found, place)) continue;
+        take(place - beside), take(place + beside);
+      }
+      if (!(low.y < high.y)) continue;
+      for (std::size_t k = 0; k < found.ends.size(); ++k) {
+        if (found.ends[k].to > 0) take(found.middle + found.half_axes * units_[k] * found.ends[k].to);
+      }
+      if (mirrored_) {
+        const double x = points_[which[i]].x, half = std::max(x - low.x, high.x - x);
+        low.x = x - half, high.x = x + half;
+      }
+      found.middle = (low + high) / 2.0;
+      found.half_axes = (high - low) / 2.0;
+      larger.push_back(which[i]);
+    }
+    outwards(larger, 480, 1.6);
+  }
+
+  /// Whether a place lies within the outer ends, or little outside.
+  bool holds(const Found& found, const Vec2<double>& place) const noexcept {
+    if (found.empty()) return false;
+    const Vec2<double> p = (place - found.middle) / found.half_axes;
+    const double turn = std::atan2(p.x, p.y) / (2 * std::numbers::pi), radius = std::hypot(p.x, p.y);
+    const auto k = static_cast<std::size_t>((turn - std::floor(turn)) * static_cast<double>(directions_)) % directions_;
+    double to = 0;
+    for (const std::size_t beside : {k, (k + 1) % directions_, (k + directions_ - 1) % directions_}) {
+      to = std::max(to, found.ends[beside].to);
+    }
+    return radius <= 1.02 * to;
   }
 
   PupilRegion region_of(const Found& found) const {
@@ -393,15 +577,22 @@ class Search {
     if (found.empty()) return region;
     region.spans.reserve(directions_);
     for (std::size_t k = 0; k < directions_; ++k) {
-      const auto& [obscured_from, obscured_to, to] = found.ends[k];
+      const auto& [obscured_from, obscured_to, to, slope] = found.ends[k];
       if (!(to > 0)) continue;
       const auto rim = [&, x = units_[k][0], y = units_[k][1]](double radius) -> RimPoint {
         return {region.middle[0] + region.half_axes[0] * radius * x,
                 region.middle[1] + region.half_axes[1] * radius * y};
       };
       const auto add = [&](double begin, double end) { region.spans.push_back({k, begin, end, rim(begin), rim(end)}); };
-      if (obscured_from > 0) add(0, obscured_from);
-      add(obscured_to, to);
+      std::vector<Gap> gaps = found.gaps.empty() ? std::vector<Gap>{} : found.gaps[k];
+      if (obscured_from < obscured_to) gaps.push_back({obscured_from, obscured_to});
+      std::sort(gaps.begin(), gaps.end(), [](const Gap& a, const Gap& b) { return a.from < b.from; });
+      double begin = 0;
+      for (const Gap& gap : gaps) {
+        if (gap.from > begin) add(begin, gap.from);
+        begin = gap.to;
+      }
+      add(begin, to);
     }
     return region;
   }
@@ -409,9 +600,11 @@ class Search {
   std::span<const PupilGuess> points_;
   std::size_t directions_, traced_;
   bool mirrored_;
-  const PassingPlaces& passing_;
+  const PlaceClearances& clearances_;
+  const PlacesSeen& places_seen_;
   std::vector<Found> found_;
   std::vector<Vec2<double>> units_;  // of the directions
+  std::vector<bool> by_slope_;
 };
 
 }  // namespace
@@ -453,8 +646,9 @@ void SearchOrder::halve(const Line& line, std::size_t first_step, std::size_t fi
 }
 
 std::vector<PupilRegion> find_regions(std::span<const PupilGuess> points, const SearchOrder& order,
-                                      std::size_t directions, bool mirrored, const PassingPlaces& passing) {
-  Search search(points, directions, mirrored, passing);
+                                      std::size_t directions, bool mirrored, const PlaceClearances& clearances,
+                                      const PlacesSeen& places_seen) {
+  Search search(points, directions, mirrored, clearances, places_seen);
   search.in_full(order.full);
   for (const auto& round : order.rounds) {
     std::vector<Halfway> halfway;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "petzval/pupil/pupil_boundary.hpp"
+#include "sight.hpp"
 
 namespace petzval::inline v0::pupil_detail {
 
@@ -20,9 +21,16 @@ struct PupilGuess {
   bool ring = false;  ///< the lens has a central obscuration: the pupil may be what is left of a ring about (x, y)
 };
 
-/// Which of N places of the plane the rays of their points pass: passes[i] for (x[i], y[i]) and points[i].
-using PassingPlaces = std::function<void(std::size_t count, const std::uint32_t* points, const double* x,
-                                         const double* y, std::uint8_t* passes)>;
+/// How near the rays through N places come to the edge of what passes, at (x[i], y[i]) of the plane of points[i]: not
+/// negative where they pass, as trace/clearances.hpp; 1 and -1 where no more is known.
+using PlaceClearances = std::function<void(std::size_t count, const std::uint32_t* points, const double* x,
+                                           const double* y, double* clearances)>;
+
+/// The clearance where no more is known than whether rays pass.
+inline double clearance_of(bool passes) noexcept { return passes ? 1 : -1; }
+
+/// Places all over what a point sees, for parts of its pupil that lie elsewhere than the guess has them.
+using PlacesSeen = std::function<std::vector<SeenPlace>(std::uint32_t point)>;
 
 /// A point about halfway between two others, where its pupil is looked for next to theirs.
 struct Halfway {
@@ -49,14 +57,16 @@ struct SearchOrder {
   void halve(const Line& line, std::size_t first_step, std::size_t first_round);
 };
 
-/// The regions of many points at once, by bisection in batches, to 2e-5 of the half axes.
+/// The regions of many points at once, in batches, to 2e-5 of the half axes.
 ///
-/// pupil_boundary() converges faster along one direction, from how near each ray comes to a rim, and knows the rim;
-/// here models without rims are asked too, and every round of the search is one batch of rays on SIMD lanes. At most
-/// one obscuration is found along a direction, and the surfaces of the RimPoints are unknown.
+/// pupil_boundary() is exact to 2e-13 and knows the rims; here models without rims are asked too, and neighbours tell
+/// where to look. Of a direction with several obscurations the widest is known well, the others roughly; the surfaces
+/// of the RimPoints are unknown.
 ///
-/// mirrored: pupils are alike at x and -x, and half of the directions are traced. directions: even.
+/// mirrored: pupils are alike at x and -x, and half of the directions are traced. directions: even. places_seen may be
+/// empty.
 std::vector<PupilRegion> find_regions(std::span<const PupilGuess> points, const SearchOrder& order,
-                                      std::size_t directions, bool mirrored, const PassingPlaces& passing);
+                                      std::size_t directions, bool mirrored, const PlaceClearances& clearances,
+                                      const PlacesSeen& places_seen = {});
 
 }  // namespace petzval::inline v0::pupil_detail

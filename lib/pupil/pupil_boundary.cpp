@@ -16,7 +16,7 @@ namespace petzval::inline v0 {
 namespace {
 
 using Point = Vec2<double>;
-using pupil_detail::PassingPlace;
+using pupil_detail::SeenPlace;
 using pupil_detail::Sight;
 
 struct Box {
@@ -38,7 +38,7 @@ Box box_of(const PupilRegion& region) noexcept {
 }
 
 /// A box within the pupil's and one about it, from some rays that pass: grids close in on those that do.
-std::pair<Box, Box> boxes_about(Sight& sight, const std::vector<PassingPlace>& passing) {
+std::pair<Box, Box> boxes_about(Sight& sight, const std::vector<SeenPlace>& passing) {
   Box seen, box;
   for (const auto& [at, beside] : passing) {
     seen.take(at);
@@ -272,7 +272,7 @@ class Tracer {
 constexpr double farthest = 1.6;
 
 /// The boundary, from some rays that pass. It stays empty where the pupil is smaller than what rays resolve.
-void trace_boundary(Sight& sight, PupilBoundary& boundary, const std::vector<PassingPlace>& passing,
+void trace_boundary(Sight& sight, PupilBoundary& boundary, const std::vector<SeenPlace>& passing,
                     std::size_t directions) {
   const auto [inner, box] = boxes_about(sight, passing);
   boundary.middle = box.middle(), boundary.half_axes = box.half();
@@ -330,7 +330,7 @@ PupilBoundary boundary_of(const Lens& lens, const PupilPlane& plane, Wavelength 
   const auto closed = [](const LensSurface& s) { return s.semi_diameter == 0; };
   if (std::any_of(lens.surfaces().begin(), lens.surfaces().end(), closed)) return boundary;
   Sight sight(lens, plane, wavelength);
-  const std::vector<PassingPlace> passing = sight.passing_places();
+  const std::vector<SeenPlace> passing = sight.passing_places();
   if (!passing.empty()) trace_boundary(sight, boundary, passing, directions);
   return boundary;
 }

@@ -42,12 +42,19 @@ class Sines {
 
   Place of(const Place& p) const noexcept {
     const Place d = p - foot_;
-    return d / std::hypot(1.0, d.x * per_distance_, d.y * per_distance_);
+    const Place s = d * per_distance_;
+    return d / std::sqrt(1 + s.x * s.x + s.y * s.y);
   }
   /// Not finite for directions along the plane and beyond.
   Place place(const Place& sines) const noexcept {
     const Place s = sines * per_distance_;
     return foot_ + sines / std::sqrt(1 - s.x * s.x - s.y * s.y);
+  }
+  /// By how much a step of sines is longer at a place, at most.
+  double stretch(const Place& p) const noexcept {
+    const Place s = (p - foot_) * per_distance_;
+    const double square = 1 + s.x * s.x + s.y * s.y;
+    return square * std::sqrt(square);
   }
   /// All that can be seen.
   Box hemisphere() const noexcept {
@@ -87,30 +94,24 @@ Box seen_face(const Lens& lens, const PupilPlane& plane, const Sines& sines) {
 
 /// Places in even steps over a box of sines, row by row.
 struct Grid {
+  const Sines& sines;
   int steps, side;
+  Place cell;
   std::vector<double> x, y;
 
-  Grid(const Sines& sines, const Box& box, int n) : steps(n), side(n + 1) {
+  Grid(const Sines& of, const Box& box, int n)
+      : sines(of), steps(n), side(n + 1), cell((box.high - box.low) / static_cast<double>(n)) {
     for (int j = 0; j < side; ++j) {
       for (int i = 0; i < side; ++i) {
-        const Place part{static_cast<double>(i) / steps, static_cast<double>(j) / steps};
-        const Place p = sines.place(box.low + part * (box.high - box.low));
+        const Place p = sines.place(box.low + Place{static_cast<double>(i), static_cast<double>(j)} * cell);
         x.push_back(p.x), y.push_back(p.y);
       }
     }
   }
 
-  /// A place and how far it is to its neighbours.
-  PassingPlace place(int at) const noexcept {
-    const int i = at % side, j = at / side;
-    PassingPlace result{{x[at], y[at]}};
-    for (const int n :
-         {i > 0 ? at - 1 : at, i < steps ? at + 1 : at, j > 0 ? at - side : at, j < steps ? at + side : at}) {
-      const Place d{std::abs(x[n] - x[at]), std::abs(y[n] - y[at])};
-      if (!std::isfinite(d.x) || !std::isfinite(d.y)) continue;
-      result.beside = {std::max(result.beside.x, d.x), std::max(result.beside.y, d.y)};
-    }
-    return result;
+  SeenPlace place(int at) const noexcept {
+    const Place p{x[at], y[at]};
+    return {p, cell * sines.stretch(p)};
   }
 
   /// The places within the grid whose values are negative and that no neighbour exceeds.
@@ -131,6 +132,14 @@ struct Grid {
 };
 
 }  // namespace
+
+std::vector<SeenPlace> places_seen(const Lens& lens, const PupilPlane& plane, int steps) {
+  const Sines sines(plane);
+  const Grid grid(sines, seen_face(lens, plane, sines), steps);
+  std::vector<SeenPlace> result;
+  for (int at = 0; at < grid.side * grid.side; ++at) result.push_back(grid.place(at));
+  return result;
+}
 
 Sight::Sight(const Lens& lens, const PupilPlane& plane, std::size_t wavelength)
     : lens_(lens), plane_(plane), wavelength_(wavelength) {}
@@ -169,8 +178,8 @@ Sight::Ends Sight::ends(std::span<const double> x, std::span<const double> y) {
   return {fates_, surfaces_};
 }
 
-std::vector<PassingPlace> Sight::passing_places() {
-  std::vector<PassingPlace> result;
+std::vector<SeenPlace> Sight::passing_places() {
+  std::vector<SeenPlace> result;
   const Sines sines(plane_);
   const Box box = seen_face(lens_, plane_, sines);
   const Grid grid(sines, box, 48);
@@ -190,7 +199,7 @@ std::vector<PassingPlace> Sight::passing_places() {
   const auto surfaces = lens_.surfaces();
   const bool aspheric =
       std::any_of(surfaces.begin(), surfaces.end(), [](const LensSurface& s) { return !s.aspheric.empty(); });
-  std::vector<std::pair<double, PassingPlace>> summits;
+  std::vector<std::pair<double, SeenPlace>> summits;
   const auto take_summits = [&](const Grid& on, std::span<const double> heights) {
     const double lost = result.empty() ? -infinity : -1;  // otherwise than by a rim
     for (const int at : on.summits(heights)) {

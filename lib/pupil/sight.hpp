@@ -12,10 +12,14 @@
 
 namespace petzval::inline v0::pupil_detail {
 
-/// A place of a plane through which a ray passes the lens, and about how far it is to places beside it that were tried.
-struct PassingPlace {
+/// A place of a plane and about how far it is to the places beside it that are tried.
+struct SeenPlace {
   Vec2<double> at{0, 0}, beside{0, 0};
 };
+
+/// Places all over what the point of a plane sees of the surface through which its rays enter: steps + 1 a side, row by
+/// row, even in the sines of their directions. Some are not finite: directions along the plane.
+std::vector<SeenPlace> places_seen(const Lens& lens, const PupilPlane& plane, int steps);
 
 /// The rays of one point, many at a time. Keeps the memory for them.
 class Sight {
@@ -38,7 +42,7 @@ class Sight {
 
   /// Looks for rays that pass, over all that can be seen of the surface through which they enter: at 48 x 48 places
   /// and, where few of them pass, about those of 96 x 96 at which the clearance has a maximum.
-  std::vector<PassingPlace> passing_places();
+  std::vector<SeenPlace> passing_places();
 
  private:
   RayArrays<double> rays(std::span<const double> x, std::span<const double> y);

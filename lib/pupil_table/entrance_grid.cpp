@@ -132,7 +132,9 @@ EntranceGrid::EntranceGrid(const Vec3<double>& centre, double steepest, const st
     return Place{bearing, PupilPlane::facing(centre, bearing.field, bearing.azimuth, steepest_ * distance)};
   };
   std::array<std::vector<double>, 6> components;
-  const auto test = [&](std::size_t count, const auto& place, const double* x, const double* y, std::uint8_t* through) {
+  std::vector<std::uint8_t> through;
+  const auto test = [&](std::size_t count, const auto& place, const double* x, const double* y, double* clearances) {
+    through.resize(count);
     for (auto& component : components) component.resize(count);
     for (std::size_t r = 0; r < count; ++r) {
       const auto& [bearing, plane] = place(r);
@@ -143,7 +145,8 @@ EntranceGrid::EntranceGrid(const Vec3<double>& centre, double steepest, const st
     passing(count,
             {components[0].data(), components[1].data(), components[2].data(), components[3].data(),
              components[4].data(), components[5].data()},
-            wavelength, through);
+            wavelength, through.data());
+    std::transform(through.begin(), through.end(), clearances, pupil_detail::clearance_of);
   };
 
   constexpr std::size_t directions = 32;
@@ -154,12 +157,12 @@ EntranceGrid::EntranceGrid(const Vec3<double>& centre, double steepest, const st
       places.push_back(place_at(part(i, rows), part(p / columns, columns), part(p % columns, columns)));
     }
     const auto guesses = guesses_from(rays, centre, steepest * part(i, rows), widest(part(i, rows)), columns);
-    const pupil_detail::PassingPlaces passes = [&](std::size_t count, const std::uint32_t* which, const double* x,
-                                                   const double* y, std::uint8_t* through) {
+    const pupil_detail::PlaceClearances clearances = [&](std::size_t count, const std::uint32_t* which, const double* x,
+                                                         const double* y, double* values) {
       test(
-          count, [&](std::size_t r) -> const Place& { return places[which[r]]; }, x, y, through);
+          count, [&](std::size_t r) -> const Place& { return places[which[r]]; }, x, y, values);
     };
-    auto found = grid_pupils({guesses, columns}, directions, passes);
+    auto found = grid_pupils({guesses, columns}, directions, clearances);
     std::move(found.begin(), found.end(), std::back_inserter(pupils));
   }
 
@@ -197,9 +200,9 @@ EntranceGrid::EntranceGrid(const Vec3<double>& centre, double steepest, const st
   expand_to_probes(
       polygons_, probes, [](const std::array<double, 4>& at) { return weights_at(at[0], at[1], at[2]); },
       [&](std::span<const std::array<double, 4>> at, std::span<const std::uint32_t> which, const double* x,
-          const double* y, std::uint8_t* through) {
+          const double* y, double* clearances) {
         const auto place = [&](std::size_t r) { return place_at(at[which[r]][0], at[which[r]][1], at[which[r]][2]); };
-        test(which.size(), place, x, y, through);
+        test(which.size(), place, x, y, clearances);
       });
 
   // Where pupils dwindle, in the last fields, their boundaries bend more than places between nodes show: the sampled

@@ -140,8 +140,8 @@ void expand_to_traced_probes(std::span<PupilPolygon> polygons, const Lens& lens,
     const std::size_t node = i * (grid.columns + 1) + j, above = node + grid.columns + 1;
     return {{node, node + 1, above, above + 1}, {(1 - s) * (1 - t), (1 - s) * t, s * (1 - t), s * t}};
   };
-  const auto passing = [&](std::span<const std::array<double, 4>> places, std::span<const std::uint32_t> which,
-                           const double* x, const double* y, std::uint8_t* passes) {
+  const auto at_probes = [&](std::span<const std::array<double, 4>> places, std::span<const std::uint32_t> which,
+                             const double* x, const double* y, double* clearances) {
     std::vector<FilmPoint> points;
     std::vector<std::uint32_t> index(which.size());
     std::iota(index.begin(), index.end(), 0u);
@@ -150,10 +150,10 @@ void expand_to_traced_probes(std::span<PupilPolygon> polygons, const Lens& lens,
       const double width = (1 - s) * grid.half_widths[i] + s * grid.half_widths[i + 1];
       points.push_back({width * places[p][1], grid.height * places[p][0]});
     }
-    traced_lines(lens, space, std::move(points), wavelength)(which.size(), index.data(), x, y, passes);
+    traced_lines(lens, space, std::move(points), wavelength)(which.size(), index.data(), x, y, clearances);
   };
   constexpr std::size_t probes = 16384;
-  expand_to_probes(polygons, probes, weights, passing);
+  expand_to_probes(polygons, probes, weights, at_probes);
 }
 
 }  // namespace

@@ -9,32 +9,49 @@
 #include <utility>
 
 #include "petzval/paraxial/first_order.hpp"
-#include "petzval/trace/trace.hpp"
+#include "petzval/pupil/pupil_plane.hpp"
 #include "pupil/face.hpp"
+#include "trace/clearances.hpp"
 
 namespace petzval::inline v0::pupil_table_detail {
 
-pupil_detail::PassingPlaces traced_lines(const Lens& lens, const TwoPlanes& space, std::vector<FilmPoint> points,
-                                         std::size_t wavelength) {
+pupil_detail::PlaceClearances traced_lines(const Lens& lens, const TwoPlanes& space, std::vector<FilmPoint> points,
+                                           std::size_t wavelength) {
   const double towards = towards_scene(lens, space);
-  return [&lens, space, towards, wavelength, points = std::move(points), memory = std::array<std::vector<double>, 6>{},
-          fates = std::vector<RayFate>{}](std::size_t count, const std::uint32_t* which, const double* x,
-                                          const double* y, std::uint8_t* passes) mutable {
-    for (auto& a : memory) a.resize(count);
-    fates.resize(count);
-    const double depth = space.depth();
-    for (std::size_t i = 0; i < count; ++i) {
-      const FilmPoint& film = points[which[i]];
-      const double dx = x[i] - film.x, dy = y[i] - film.y;
-      const double per_length = towards / std::sqrt(dx * dx + dy * dy + depth * depth);
-      memory[0][i] = x[i], memory[1][i] = y[i], memory[2][i] = space.pupil_z;
-      memory[3][i] = dx * per_length, memory[4][i] = dy * per_length, memory[5][i] = depth * per_length;
-    }
-    const auto at = [&](std::size_t k) { return memory[k].data(); };
-    trace<double>(lens, count, {at(0), at(1), at(2), at(3), at(4), at(5)}, {at(0), at(1), at(2), at(3), at(4), at(5)},
-                  fates.data(), nullptr, {.travel = Travel::to_scene, .wavelengths = {wavelength}});
-    for (std::size_t i = 0; i < count; ++i) passes[i] = fates[i] == RayFate::transmitted;
-  };
+  return
+      [&lens, space, towards, wavelength, points = std::move(points), memory = std::array<std::vector<double>, 6>{}](
+          std::size_t count, const std::uint32_t* which, const double* x, const double* y, double* clearances) mutable {
+        // Blocks that stay in the cache.
+        constexpr std::size_t block = 1024;
+        for (auto& a : memory) a.resize(std::min(count, block));
+        const auto at = [&](std::size_t k) { return memory[k].data(); };
+        const double depth = space.depth();
+        for (std::size_t begin = 0; begin < count; begin += block) {
+          const std::size_t size = std::min(block, count - begin);
+          for (std::size_t i = 0; i < size; ++i) {
+            const FilmPoint& film = points[which[begin + i]];
+            const double px = x[begin + i], py = y[begin + i], dx = px - film.x, dy = py - film.y;
+            const double per_length = towards / std::sqrt(dx * dx + dy * dy + depth * depth);
+            memory[0][i] = px, memory[1][i] = py, memory[2][i] = space.pupil_z;
+            memory[3][i] = dx * per_length, memory[4][i] = dy * per_length, memory[5][i] = depth * per_length;
+          }
+          trace_detail::clearances<double>(lens, size, {at(0), at(1), at(2), at(3), at(4), at(5)}, clearances + begin,
+                                           {.travel = Travel::to_scene, .wavelengths = {wavelength}});
+        }
+      };
+}
+
+std::vector<pupil_detail::SeenPlace> places_seen(const Lens& lens, const TwoPlanes& space, const FilmPoint& film) {
+  constexpr int steps = 48;
+  std::vector<pupil_detail::SeenPlace> places = pupil_detail::places_seen(lens, PupilPlane::of_film(lens, film), steps);
+  const double scale = space.depth() / (lens.surfaces().back().vertex_z - space.film_z);
+  const Vec2<double> from{film.x, film.y};
+  // Half of the pupil of a point on +y is like the other.
+  if (lens.rotationally_symmetric() && film.x == 0) {
+    std::erase_if(places, [](const auto& place) { return place.at.x < -place.beside.x / 2; });
+  }
+  for (auto& [at, beside] : places) at = from + (at - from) * scale, beside = beside * std::abs(scale);
+  return places;
 }
 
 std::vector<pupil_detail::PupilGuess> first_order_guesses(const Lens& lens, const TwoPlanes& space,

@@ -12,10 +12,14 @@
 
 namespace petzval::inline v0::pupil_table_detail {
 
-/// Which rays of some film points pass a lens, which has to outlive the result, by tracing. Places lie in the plane of
-/// the pupil.
-pupil_detail::PassingPlaces traced_lines(const Lens& lens, const TwoPlanes& space, std::vector<FilmPoint> points,
-                                         std::size_t wavelength);
+/// The clearances of the rays of some film points through a lens, which has to outlive the result. Places lie in the
+/// plane of the pupil.
+pupil_detail::PlaceClearances traced_lines(const Lens& lens, const TwoPlanes& space, std::vector<FilmPoint> points,
+                                           std::size_t wavelength);
+
+/// Places of the plane of the pupil all over what a film point sees of the last surface; of a point on +y of a lens of
+/// revolution, over half of it.
+std::vector<pupil_detail::SeenPlace> places_seen(const Lens& lens, const TwoPlanes& space, const FilmPoint& film);
 
 /// Where the pupils of film points are expected to first order. Rays pass the last surface: a pupil is no larger than
 /// what is seen through it.

@@ -17,8 +17,8 @@ PupilsAt traced_pupils(const Lens& lens, const TwoPlanes& space, std::size_t wav
     for (const double height : heights) points.push_back({0, height});
     const std::vector<pupil_detail::PupilGuess> guesses = first_order_guesses(lens, space, points, wavelength);
     return pupil_detail::find_regions(guesses, pupil_detail::SearchOrder::rows(guesses.size(), guesses.size()),
-                                      region_directions, true,
-                                      traced_lines(lens, space, std::move(points), wavelength));
+                                      region_directions, true, traced_lines(lens, space, points, wavelength),
+                                      [&](std::uint32_t i) { return places_seen(lens, space, points[i]); });
   };
 }
 
@@ -48,10 +48,11 @@ double lit_radius(double film_radius, const PupilsAt& pupils_at) {
 }
 
 std::vector<PupilPolygon> film_polygons(double film_radius, PolygonFit fit, const PupilsAt& pupils_at) {
-  // Heights by half film_strips.
+  // Heights by film_strips, and between them where interpolated polygons are to enclose pupils.
+  const std::size_t parts = fit == PolygonFit::enclosing ? 2 : 1;
   std::vector<double> heights;
-  for (std::size_t i = 0; i <= 2 * film_strips; ++i) {
-    heights.push_back(film_radius * static_cast<double>(i) / (2 * film_strips));
+  for (std::size_t i = 0; i <= parts * film_strips; ++i) {
+    heights.push_back(film_radius * static_cast<double>(i) / static_cast<double>(parts * film_strips));
   }
   const std::vector<PupilRegion> pupils = pupils_at(heights);
   const auto first_lit = [&](std::size_t height) -> const PupilRegion* {
@@ -62,7 +63,7 @@ std::vector<PupilPolygon> film_polygons(double film_radius, PolygonFit fit, cons
   };
   std::vector<PupilPolygon> polygons(film_strips + 1);
   for (std::size_t i = 0; i <= film_strips; ++i) {
-    const std::size_t at = 2 * i;
+    const std::size_t at = parts * i;
     if (const PupilRegion* lit = first_lit(at)) {
       polygons[i] = polygon_of(*lit, fit);
       continue;
@@ -87,14 +88,14 @@ std::vector<PupilPolygon> film_polygons(double film_radius, PolygonFit fit, cons
   // Where the light ends pupils shrink fast.
   std::vector<PupilRegion> shrinking;
   if (pupils.back().empty()) {
-    constexpr std::size_t parts = 16;
+    constexpr std::size_t steps = 16;
     std::vector<double> last;
-    for (std::size_t i = 1; i < parts; ++i) {
-      last.push_back(film_radius * (1 - static_cast<double>(i) / (parts * film_strips)));
+    for (std::size_t i = 1; i < steps; ++i) {
+      last.push_back(film_radius * (1 - static_cast<double>(i) / (steps * film_strips)));
     }
     shrinking = pupils_at(last);
     for (std::size_t i = 0; i < shrinking.size(); ++i) {
-      check(shrinking[i], static_cast<double>(film_strips) - static_cast<double>(i % last.size() + 1) / parts);
+      check(shrinking[i], static_cast<double>(film_strips) - static_cast<double>(i % last.size() + 1) / steps);
     }
   }
   expand_to_cover(polygons, checks);

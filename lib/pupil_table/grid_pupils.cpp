@@ -17,13 +17,13 @@ using pupil_detail::SearchOrder;
 /// Finds the pupils of points that stand in rows.
 class PupilFinder {
  public:
-  PupilFinder(const GridOfPoints& grid, std::size_t directions, const pupil_detail::PassingPlaces& passing)
-      : guesses_(grid.guesses), row_(grid.row), directions_(directions), passing_(passing) {}
+  PupilFinder(const GridOfPoints& grid, std::size_t directions, const pupil_detail::PlaceClearances& clearances)
+      : guesses_(grid.guesses), row_(grid.row), directions_(directions), clearances_(clearances) {}
 
   std::vector<PupilRegion> operator()() {
     const auto order =
         row_ == 1 ? SearchOrder::rows(guesses_.size(), 1) : SearchOrder::grid(guesses_.size() / row_, row_);
-    std::vector<PupilRegion> pupils = pupil_detail::find_regions(guesses_, order, directions_, false, passing_);
+    std::vector<PupilRegion> pupils = pupil_detail::find_regions(guesses_, order, directions_, false, clearances_);
     // Where the chief ray is lost, light may pass beside it: as beside the pupil of a neighbour, else anywhere.
     if (std::all_of(pupils.begin(), pupils.end(), [](const PupilRegion& p) { return p.empty(); })) {
       std::vector<std::uint32_t> ends;
@@ -92,8 +92,8 @@ class PupilFinder {
         }
       }
     }
-    std::vector<std::uint8_t> passes(x.size());
-    if (!x.empty()) passing_(x.size(), points.data(), x.data(), y.data(), passes.data());
+    std::vector<double> values(x.size());
+    if (!x.empty()) clearances_(x.size(), points.data(), x.data(), y.data(), values.data());
     std::vector<std::uint32_t> lit;
     std::vector<PupilGuess> guesses;
     for (std::size_t j = 0; j < which.size(); ++j) {
@@ -101,14 +101,14 @@ class PupilFinder {
       double sum_x = 0, sum_y = 0;
       int count = 0;
       for (std::size_t i = begin; i < end; ++i) {
-        if (passes[i]) sum_x += x[i], sum_y += y[i], ++count;
+        if (values[i] >= 0) sum_x += x[i], sum_y += y[i], ++count;
       }
       if (count == 0) continue;
       // The place that passes and lies nearest to the middle of all of them.
       std::size_t best = end;
       const auto away = [&](std::size_t i) { return std::hypot(x[i] - sum_x / count, y[i] - sum_y / count); };
       for (std::size_t i = begin; i < end; ++i) {
-        if (passes[i] && (best == end || away(i) < away(best))) best = i;
+        if (values[i] >= 0 && (best == end || away(i) < away(best))) best = i;
       }
       PupilGuess guess = guesses_[which[j]];
       guess.x = x[best], guess.y = y[best];
@@ -118,11 +118,11 @@ class PupilFinder {
       guesses.push_back(guess);
     }
     if (lit.empty()) return false;
-    const pupil_detail::PassingPlaces of_lit = [&](std::size_t count, const std::uint32_t* index, const double* px,
-                                                   const double* py, std::uint8_t* through) {
+    const pupil_detail::PlaceClearances of_lit = [&](std::size_t count, const std::uint32_t* index, const double* px,
+                                                     const double* py, double* at_places) {
       points.resize(count);
       for (std::size_t i = 0; i < count; ++i) points[i] = lit[index[i]];
-      passing_(count, points.data(), px, py, through);
+      clearances_(count, points.data(), px, py, at_places);
     };
     const auto found =
         pupil_detail::find_regions(guesses, SearchOrder::rows(guesses.size(), 1), directions_, false, of_lit);
@@ -132,7 +132,7 @@ class PupilFinder {
 
   std::span<const PupilGuess> guesses_;
   std::size_t row_, directions_;
-  const pupil_detail::PassingPlaces& passing_;
+  const pupil_detail::PlaceClearances& clearances_;
 };
 
 /// Corner k at -x.
@@ -143,8 +143,8 @@ std::size_t across_y(std::size_t k) noexcept { return (polygon_corners / 2 + pol
 }  // namespace
 
 std::vector<PupilRegion> grid_pupils(const GridOfPoints& grid, std::size_t directions,
-                                     const pupil_detail::PassingPlaces& passing) {
-  return PupilFinder(grid, directions, passing)();
+                                     const pupil_detail::PlaceClearances& clearances) {
+  return PupilFinder(grid, directions, clearances)();
 }
 
 std::vector<PupilPolygon> node_polygons(std::span<const PupilRegion> pupils, std::size_t columns, PolygonFit fit) {
@@ -251,11 +251,11 @@ PupilPolygon hull(const std::vector<PupilPolygon>& polygons) {
 }
 
 void expand_to_probes(std::span<PupilPolygon> polygons, std::size_t probes, const ProbeWeights& weights,
-                      const ProbePassing& passing) {
+                      const ProbeClearances& clearances) {
   constexpr int rounds = 4;
   const core_detail::Kronecker<4> uniform;
   std::vector<double> x, y;
-  std::vector<std::uint8_t> passes;
+  std::vector<double> values;
   std::vector<std::uint32_t> sectors(probes);
   std::vector<PolygonWeights> at(probes);
   std::vector<std::array<double, 4>> places(probes);
@@ -286,11 +286,11 @@ void expand_to_probes(std::span<PupilPolygon> polygons, std::size_t probes, cons
         x.push_back(middles[p].x + way * edges[p].x);
         y.push_back(middles[p].y + way * edges[p].y);
       }
-      passes.resize(open.size());
-      passing(places, open, x.data(), y.data(), passes.data());
+      values.resize(open.size());
+      clearances(places, open, x.data(), y.data(), values.data());
       std::size_t left = 0;
       for (std::size_t i = 0; i < open.size(); ++i) {
-        if (!passes[i]) continue;
+        if (!(values[i] >= 0)) continue;
         constexpr double beyond = 1.5, always = 0.002;
         scales[open[i]] = 1 + beyond * (way - 1) + always;
         open[left++] = open[i];

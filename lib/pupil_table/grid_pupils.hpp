@@ -24,7 +24,7 @@ struct GridOfPoints {
 /// Finds pupils next to those of neighbours, and looks for those that are lost beside these too, and all over their
 /// plane where nothing else is found. directions: of the regions, even.
 std::vector<PupilRegion> grid_pupils(const GridOfPoints& grid, std::size_t directions,
-                                     const pupil_detail::PassingPlaces& passing);
+                                     const pupil_detail::PlaceClearances& clearances);
 
 /// The polygon at each second point of a grid in both directions: of its pupil or, where the light ends beside it, that
 /// of the next point with light. Without obscurations. Of equal area: shrunk to nothing there.
@@ -38,14 +38,14 @@ PupilPolygon hull(const std::vector<PupilPolygon>& polygons);
 
 /// Where a probe stands among the nodes, by three or four numbers in [0, 1].
 using ProbeWeights = std::function<PolygonWeights(const std::array<double, 4>& place)>;
-/// Which of N places of the planes of probes are passed, as PassingPlaces, with the numbers of each probe.
-using ProbePassing =
+/// At N places of the planes of probes, as PlaceClearances, with the numbers of each probe.
+using ProbeClearances =
     std::function<void(std::span<const std::array<double, 4>> places, std::span<const std::uint32_t> which,
-                       const double* x, const double* y, std::uint8_t* passes)>;
+                       const double* x, const double* y, double* clearances)>;
 
 /// Tests places just outside the interpolated polygons of points all over a table, and expands polygons where one
 /// passes. probes: in each of up to four rounds.
 void expand_to_probes(std::span<PupilPolygon> polygons, std::size_t probes, const ProbeWeights& weights,
-                      const ProbePassing& passing);
+                      const ProbeClearances& clearances);
 
 }  // namespace petzval::inline v0::pupil_table_detail

@@ -29,7 +29,7 @@ struct Edge {
 Place apex(const Place& a, const Place& b, const Place& c, const Place& d) noexcept {
   const Place u = b - a, v = c - d, w = c - b;
   const double determinant = turn(u, v);
-  const double size = std::hypot(u.x, u.y) * std::hypot(v.x, v.y);
+  const double size = std::sqrt((u.x * u.x + u.y * u.y) * (v.x * v.x + v.y * v.y));
   if (!(std::abs(determinant) > 1e-9 * size)) return b;
   const double s = turn(w, v) / determinant, t = turn(w, u) / determinant;
   constexpr double farthest = 4;  // chord lengths
@@ -246,6 +246,11 @@ PupilPolygon polygon_of(const PupilRegion& region, PolygonFit fit, CornerSteps s
     stretch(polygon, scale);
   } else {
     match_area(polygon, region, edge.area);
+    // A pupil in parts is more than one outline and one obscuration can tell: its light is kept, not its shape.
+    const double lit = region.area(), area = polygon.area();
+    if (constexpr double rounding = 1.01; area > rounding * lit) {
+      for (auto& corner : polygon.corners) corner *= std::sqrt(lit / area);
+    }
   }
   return polygon;
 }

@@ -67,16 +67,19 @@ PupilsAt tilted_film_pupils(const FilmPupilTable& upright, const FilmTilt& tilt,
       guesses.push_back({0, y - far, y + far, expected.radius, y, near, expected.ring});
     }
     std::array<std::vector<double>, 2> film;
+    std::vector<std::uint8_t> within;
     return pupil_detail::find_regions(
         guesses, pupil_detail::SearchOrder::rows(guesses.size(), heights.size()), region_directions, true,
-        [&](std::size_t count, const std::uint32_t* which, const double* x, const double* y, std::uint8_t* passes) {
+        [&](std::size_t count, const std::uint32_t* which, const double* x, const double* y, double* clearances) {
           for (auto& values : film) values.resize(count);
+          within.resize(count);
           for (std::size_t i = 0; i < count; ++i) {
             const auto& [height, nearer] = fields[which[i]];
             film[0][i] = -nearer * x[i];
             film[1][i] = height - nearer * y[i];
           }
-          upright.contains<double>(count, {film[0].data(), film[1].data(), x, y}, {.all = wavelength}, passes);
+          upright.contains<double>(count, {film[0].data(), film[1].data(), x, y}, {.all = wavelength}, within.data());
+          std::transform(within.begin(), within.end(), clearances, pupil_detail::clearance_of);
         });
   };
 }

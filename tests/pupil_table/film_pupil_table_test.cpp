@@ -65,6 +65,44 @@ TEST(FilmPupilTable, CoversSmallPupilsToo) {
   }
 }
 
+/// The share of the rays that pass, of rays all over what the film point sees of the last surface, outside its pupil.
+double missed_anywhere(const Lens& lens, const FilmPupilTable& table, const FilmPoint& film, double widths) {
+  const LensSurface& last = lens.surfaces().back();
+  const double gap = lens.film_z() - last.vertex_z, reach = widths * last.semi_diameter;
+  const double scale = table.space().depth() / -gap;
+  constexpr int side = 700;
+  std::vector<std::array<double, 2>> places;
+  for (int j = 0; j < side; ++j) {
+    for (int i = 0; i < side; ++i) {
+      const double x = reach * ((2 * i + 1.0) / side - 1), y = reach * ((2 * j + 1.0) / side - 1);
+      places.push_back({film.x + scale * (x - film.x), film.y + scale * (y - film.y)});
+    }
+  }
+  const std::vector<bool> passes = passing(lens, table, film, places);
+  double all = 0, missed = 0;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    if (!passes[i]) continue;
+    all += 1, missed += !table.contains(film, places[i][0], places[i][1]);
+  }
+  EXPECT_GT(all, 50);
+  return missed / all;
+}
+
+TEST(FilmPupilTable, CoversPupilsInParts) {
+  // Of the primoplan a sliver begins to show that is smaller than a 48th of the last surface.
+  for (const auto& [id, f_number, radius, widths, most] :
+       {std::tuple{"ball_10mm", 8.0, 0.38, 3.0, 5e-3}, std::tuple{"ball_10mm", 16.0, 0.38, 3.0, 5e-3},
+        std::tuple{"catadioptric_mangin_1000mm_f7.5", 16.0, 21.6, 1.2, 1e-3},
+        std::tuple{"primoplan_100mm_f1.9", 45.0, 39.5, 1.2, 0.05}}) {
+    const Lens lens = with_f_number(data_lens(id), f_number);
+    const FilmPupilTable table = FilmPupilTable::enclosing(lens, radius);
+    for (const double share : {0.05, 0.3, 0.45, 0.7, 0.98}) {
+      EXPECT_LE(missed_anywhere(lens, table, {0.6 * share * radius, 0.8 * share * radius}, widths), most)
+          << id << " f/" << f_number << " at " << share;
+    }
+  }
+}
+
 TEST(FilmPupilTable, SeesThroughAGlassCloseToTheFilm) {
   Prescription p = petzval::testing::data_prescription("double_gauss_100mm_f2.0");
   // A plate of 2 mm, 0.1 mm before the film, which moves back by what the plate shifts the image.

@@ -86,15 +86,19 @@ class PETZVAL_API FilmPupilTable {
   /// Polygons that contain every ray that the lens passes and few others; rays still have to be traced. At most 1e-5 of
   /// the pupils' area is missed (tests/pupil_table/film_pupil_table_test.cpp: every lens of data/ wide open over its
   /// declared field, some of them stopped down; film_cells_test.cpp: a lens with cylinders from wide open to f/64),
-  /// except where a pupil has more than two parts along a line: a ball lens stopped down or far off the axis,
-  /// catadioptrics beyond their field. The pupils of a round iris contain those of any other.
+  /// except where a pupil comes in parts that lie apart: up to 5e-3 of the light of a ball lens at f/8 and f/16, and
+  /// parts that show at none of 48 x 48 places over all that the film point sees of the last surface, such as the
+  /// slivers beside the disc of a ball lens at f/45. The pupils of a round iris contain those of any other.
   ///
   /// film_radius: of the farthest film point, mm, >= 0. The film is that of the lens. Throws Error for a film in the
   /// plane of the last vertex and for a film_radius that is negative or not finite.
   static FilmPupilTable enclosing(const Lens& lens, double film_radius);
 
-  /// Polygons that have the area of the pupils and nearly their shape, for models without rims. Throws Error as
-  /// enclosing() does, and for an iris with edges.
+  /// Polygons that have the area of the pupils and nearly their shape, for models without rims: an outline with one
+  /// obscuration. That is not enough for pupils in several parts (a ball lens, catadioptrics beyond their field): they
+  /// are described as one part of about that area, and a ball lens at f/8 gets up to 2.5 times its light. So do the
+  /// models that use these pupils, polynomials and two discs; exact ones do not. Throws Error as enclosing() does, and
+  /// for an iris with edges.
   static FilmPupilTable equal_area(const Lens& lens, double film_radius);
 
   /// The same for the overlap of some discs, one list for each wavelength. One disc alone has a closed form: of_iris().
