@@ -59,106 +59,87 @@ PETZVAL_INLINE Height<R> height(const kernel::Step<R>& s, const kernel::Asphere<
 /// What a search says about a ray. stands: Newton's answer is the first crossing.
 enum class Outcome : std::uint8_t { open, stands, crosses, beside, lost };
 
-/// Rays whose crossings are searched for, packed from the lanes of a bundle, in the lens frame; and the answers.
+template <class R>
+PETZVAL_INLINE Lanes<R> code(Outcome what) noexcept {
+  return Lanes<R>(static_cast<R>(what));
+}
+template <class R>
+PETZVAL_INLINE Mask<R> are(Lanes<R> outcomes, Outcome what) noexcept {
+  return (outcomes >= code<R>(what)) & (outcomes <= code<R>(what));
+}
+
+/// Rays of a bundle whose crossings are searched for, packed, in the lens frame; and the answers, in their order.
 template <class R>
 struct Search {
   using V = Lanes<R>;
   using Vector = kernel::Vec<V>;
-  static constexpr int width = V::width, rays = Bundle<R>::rays, room = rays + width;
-  /// Of a ray: point, direction, Newton's answer, whether it lies inside the aperture, the part of the ray.
-  enum Value { x, y, z, dx, dy, dz, answer, inside, from, to, values };
+  static constexpr int width = V::width, room = Bundle<R>::rays + width;
+  /// Of a ray: point, direction, Newton's answer, whether it lies inside the aperture.
+  enum Value { x, y, z, dx, dy, dz, answer, inside, values };
   R v[values][room];
-  int lane[room];
   int count = 0;
-  R t[rays];
-  R outcome[rays] = {};  ///< of the lanes of the bundle
+  R t[room], outcome[room];
 
-  /// Takes some lanes of vector i.
-  void take(int i, Mask<R> lanes, const Vector& p, const Vector& d, V newton, Mask<R> newton_inside) noexcept {
-    const V one(R(1)), none(R(0));
-    R wanted[width], ray[from][width];
-    store(wanted, select(lanes, one, none));
+  void take(Mask<R> lanes, const Vector& p, const Vector& d, V newton, Mask<R> newton_inside) noexcept {
+    const V flag = select(newton_inside, V(R(1)), V(R(0)));
     int k = 0;
-    for (const V& numbers : {p.x, p.y, p.z, d.x, d.y, d.z, newton, select(newton_inside, one, none)}) {
-      store(ray[k++], numbers);
-    }
-    for (int l = 0; l < width; ++l) {
-      if (wanted[l] == 0) continue;
-      for (k = 0; k < from; ++k) v[k][count] = ray[k][l];
-      lane[count++] = i * width + l;
-    }
+    for (const V& numbers : {p.x, p.y, p.z, d.x, d.y, d.z, newton, flag}) pack(v[k++] + count, lanes, numbers);
+    count += lanes_in(lanes);
   }
 
-  void run(const kernel::Asphere<R>& surface, R sense, std::uint8_t* unsettled) noexcept {
-    judge(surface, sense);
-    find(surface, sense, unsettled);
-  }
-
-  /// The lanes of vector i with an outcome.
-  Mask<R> with(Outcome what, int i) const noexcept {
-    const V said = load(outcome + i * width), number(static_cast<R>(what));
-    return (said >= number) & (said <= number);
-  }
-
- private:
-  static V code(Outcome what) noexcept { return V(static_cast<R>(what)); }
-  V at(Value value, int o) const noexcept { return load(v[value] + o); }
-
-  /// Fills the last vector: its other lanes do as its last ray does.
-  void fill() noexcept {
-    for (int l = count; l % width != 0; ++l) {
-      for (auto& numbers : v) numbers[l] = numbers[count - 1];
-    }
-  }
-
-  /// Settles what bounds settle, and keeps the other rays.
-  void judge(const kernel::Asphere<R>& surface, R sense) noexcept {
-    fill();
-    const int all = count;
-    count = 0;
-    for (int o = 0; o < all; o += width) {
+  /// Settles what bounds settle; other rays, packed again, are searched.
+  void run(const kernel::Asphere<R>& surface, R sense) noexcept {
+    R from[room], to[room];
+    Mask<R> left[Bundle<R>::vectors];
+    int kept = 0;
+    fill(v, count);
+    for (int o = 0; o < count; o += width) {
       const Vector p{at(x, o), at(y, o), at(z, o)}, d{at(dx, o), at(dy, o), at(dz, o)};
+      const V newton = at(answer, o);
       const auto ray = kernel::surface_detail::passage(surface, p, d);
       const auto [part, empty, rising] = kernel::surface_detail::prospect(surface, ray, p, d, sense);
       const Mask<R> stands = rising & (at(inside, o) > V(R(0)));
-      const V none = select(empty, code(Outcome::beside), code(Outcome::open));
-      R said[width], one[width], from_here[width], to_there[width];
-      store(said, select(stands, code(Outcome::stands), none));
-      store(one, select(rising, V(R(1)), V(R(0))));
-      store(from_here, part.from);
-      store(to_there, part.to);
-      for (int l = 0; l < width && o + l < all; ++l) {
-        const int bundled = lane[o + l];
-        outcome[bundled] = said[l];
-        if (said[l] != static_cast<R>(Outcome::open)) continue;
-        // Without a crossing, the ray passes beside the aperture if it had no more than one.
-        if (one[l] != 0) outcome[bundled] = static_cast<R>(Outcome::beside);
-        for (auto& numbers : v) numbers[count] = numbers[o + l];
-        v[from][count] = from_here[l];
-        v[to][count] = to_there[l];
-        lane[count++] = bundled;
-      }
+      // Without a crossing, the ray passes beside the aperture if it can have one at most.
+      const V nothing = select(empty | rising, code<R>(Outcome::beside), code<R>(Outcome::open));
+      store(outcome + o, select(stands, code<R>(Outcome::stands), nothing));
+      left[o / width] = without(part.from <= part.to, stands);
+      int k = 0;
+      for (const V& numbers : {p.x, p.y, p.z, d.x, d.y, d.z, newton}) pack(v[k++] + kept, left[o / width], numbers);
+      pack(from + kept, left[o / width], part.from);
+      pack(to + kept, left[o / width], part.to);
+      kept += lanes_in(left[o / width]);
+    }
+    if (kept == 0) return;
+    fill(v, kept);
+    for (R* numbers : {from, to}) fill(numbers, kept);
+    R found_t[room], found[room];
+    for (int o = 0; o < kept; o += width) {
+      const Vector p{at(x, o), at(y, o), at(z, o)}, d{at(dx, o), at(dy, o), at(dz, o)};
+      const auto ray = kernel::surface_detail::passage(surface, p, d);
+      const auto crossing = kernel::surface_detail::first_crossing(surface, ray, p, d, sense,
+                                                                   {load(from + o), load(to + o)}, at(answer, o));
+      const V some = select(crossing.converged, code<R>(Outcome::crosses), code<R>(Outcome::lost));
+      store(found_t + o, crossing.t);
+      store(found + o, select(crossing.found, some, code<R>(Outcome::open)));
+    }
+    for (int o = 0, taken = 0; o < count; o += width) {
+      const V said = load(outcome + o);
+      const V more = unpack(found + taken, left[o / width], code<R>(Outcome::open));
+      store(outcome + o, select(are(more, Outcome::open), said, more));
+      store(t + o, unpack(found_t + taken, left[o / width], V(R(0))));
+      taken += lanes_in(left[o / width]);
     }
   }
 
-  void find(const kernel::Asphere<R>& surface, R sense, std::uint8_t* unsettled) noexcept {
-    fill();
-    for (int o = 0; o < count; o += width) {
-      const Vector p{at(x, o), at(y, o), at(z, o)}, d{at(dx, o), at(dy, o), at(dz, o)};
-      const auto ray = kernel::surface_detail::passage(surface, p, d);
-      const auto crossing =
-          kernel::surface_detail::first_crossing(surface, ray, p, d, sense, {at(from, o), at(to, o)}, at(answer, o));
-      R place[width], said[width];
-      store(place, crossing.t);
-      const V some = select(crossing.converged, code(Outcome::crosses), code(Outcome::lost));
-      store(said, select(crossing.found, some, code(Outcome::open)));
-      for (int l = 0; l < width && o + l < count; ++l) {
-        if (said[l] == static_cast<R>(Outcome::open)) continue;
-        t[lane[o + l]] = place[l];
-        outcome[lane[o + l]] = said[l];
-        if (said[l] == static_cast<R>(Outcome::lost)) unsettled[lane[o + l]] = 1;
-      }
-    }
+ private:
+  V at(Value value, int o) const noexcept { return load(v[value] + o); }
+
+  /// Fills the last vector: its other lanes do as its last ray does.
+  static void fill(R* numbers, int count) noexcept {
+    for (int l = count; l % width != 0; ++l) numbers[l] = numbers[count - 1];
+  }
+  static void fill(R (&numbers)[values][room], int count) noexcept {
+    for (auto& row : numbers) fill(row, count);
   }
 };
 
@@ -256,25 +237,33 @@ template <class R>
   if (!doubts) return;
 
   Search<R> search;
+  Mask<R> taken[vectors];
   for (int i = 0; i < vectors; ++i) {
+    taken[i] = without(doubtful[i], doubtful[i]);
     if (!any(doubtful[i])) continue;
     const kernel::Vec<V> p{b.x[i], b.y[i], sense * b.z[i]}, d{b.px[i], b.py[i], sense * b.pz[i]};
     const auto ray = kernel::surface_detail::passage(surface, p, d);
     const Mask<R> upright = d.z * d.z > steepest2 * ray.across2;
     at.beside[i] = doubtful[i] & upright & beside_edge(surface, ray, p.z, d.z);
-    const Mask<R> rest = without(doubtful[i], at.beside[i]);
-    if (any(rest)) search.take(i, rest, p, d, at.q[i], inside[i]);
+    taken[i] = without(doubtful[i], at.beside[i]);
+    if (any(taken[i])) search.take(taken[i], p, d, at.q[i], inside[i]);
   }
-  if (search.count > 0) search.run(surface, s.sense, unsettled);
-  for (int i = 0; i < vectors; ++i) {
-    const Mask<R> crosses = search.with(Outcome::crosses, i), lost = search.with(Outcome::lost, i);
-    at.beside[i] = at.beside[i] | search.with(Outcome::beside, i);
+  if (search.count > 0) search.run(surface, s.sense);
+  for (int i = 0, o = 0; i < vectors; o += lanes_in(taken[i++])) {
+    const V outcome = any(taken[i]) ? unpack(search.outcome + o, taken[i], code<R>(Outcome::open)) : none;
+    const Mask<R> crosses = taken[i] & are(outcome, Outcome::crosses), lost = taken[i] & are(outcome, Outcome::lost);
+    at.beside[i] = at.beside[i] | (taken[i] & are(outcome, Outcome::beside));
     at.found[i] = without(at.found[i] | crosses, lost);
     // Where a ray meets the surface outside the aperture is of no interest if it is clipped there.
     const Mask<R> settled = crosses | lost | (job.apertures ? at.beside[i] : lost);
     moving[i] = without(moving[i] | waiting[i], settled);
+    if (any(lost)) {
+      R said[width];
+      store(said, outcome);
+      for (int l = 0; l < width; ++l) unsettled[i * width + l] |= said[l] == static_cast<R>(Outcome::lost) ? 1 : 0;
+    }
     if (!any(crosses)) continue;
-    at.q[i] = select(crosses, load(search.t + i * width), at.q[i]);
+    at.q[i] = select(crosses, unpack(search.t + o, taken[i], at.q[i]), at.q[i]);
     const auto h = height_at(i, at.q[i]);
     at.rate[i] = select(crosses, h.rate, at.rate[i]);
     at.slope[i] = select(crosses, h.slope, at.slope[i]);

@@ -283,5 +283,51 @@ PETZVAL_INLINE void store(R* to, Lanes<R> x) noexcept {
   __builtin_memcpy(to, &x.v, sizeof x.v);
 }
 
+/// How many lanes a mask has.
+template <class R>
+PETZVAL_INLINE int lanes_in(Mask<R> mask) noexcept {
+#if defined(__AVX512F__)
+  return __builtin_popcount(mask.bits);
+#else
+  int count = 0;
+  for (int l = 0; l < Lanes<R>::width; ++l) count -= static_cast<int>(mask.bits[l]);
+  return count;
+#endif
+}
+
+/// Stores the lanes of a mask side by side. It may write a whole vector.
+template <class R>
+PETZVAL_INLINE void pack(R* to, Mask<R> mask, Lanes<R> x) noexcept {
+#if defined(__AVX512F__)
+  if constexpr (sizeof(R) == 4) {
+    store(to, Lanes<R>(_mm512_maskz_compress_ps(mask.bits, x.v)));
+  } else {
+    store(to, Lanes<R>(_mm512_maskz_compress_pd(static_cast<__mmask8>(mask.bits), x.v)));
+  }
+#else
+  for (int l = 0, n = 0; l < Lanes<R>::width; ++l) {
+    to[n] = x.v[l];
+    n -= static_cast<int>(mask.bits[l]);
+  }
+#endif
+}
+
+/// Takes lanes from where pack() has put them; the others are given.
+template <class R>
+PETZVAL_INLINE Lanes<R> unpack(const R* from, Mask<R> mask, Lanes<R> others) noexcept {
+#if defined(__AVX512F__)
+  if constexpr (sizeof(R) == 4) {
+    return Lanes<R>(_mm512_mask_expand_ps(others.v, mask.bits, load(from).v));
+  } else {
+    return Lanes<R>(_mm512_mask_expand_pd(others.v, static_cast<__mmask8>(mask.bits), load(from).v));
+  }
+#else
+  for (int l = 0, n = 0; l < Lanes<R>::width; ++l) {
+    if (mask.bits[l]) others.v[l] = from[n++];
+  }
+  return others;
+#endif
+}
+
 }  // namespace
 }  // namespace petzval::inline v0::trace_detail

@@ -110,5 +110,18 @@ void store(R* to, Lanes<R> x) noexcept {
   *to = x.v;
 }
 
+template <class R>
+int lanes_in(Mask<R> mask) noexcept {
+  return mask.bits ? 1 : 0;
+}
+template <class R>
+void pack(R* to, Mask<R>, Lanes<R> x) noexcept {
+  *to = x.v;
+}
+template <class R>
+Lanes<R> unpack(const R* from, Mask<R> mask, Lanes<R> others) noexcept {
+  return mask.bits ? Lanes<R>(*from) : others;
+}
+
 }  // namespace
 }  // namespace petzval::inline v0::trace_detail
