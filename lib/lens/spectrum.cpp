@@ -93,7 +93,7 @@ void Spectrum::add(const std::function<double(double)>& index_at) {
 
 double Spectrum::index(std::size_t space, double nm) const noexcept {
   const double t = std::clamp(place_.scale / nm - place_.offset, -1.0, 1.0);
-  return std::sqrt(media_[space].at(t));
+  return std::sqrt(media_[space].at(t, t * t, t * t * (t * t)));
 }
 
 }  // namespace petzval::inline v0::lens_detail

@@ -63,6 +63,8 @@ class SpectralMedia {
       const V own = load(nm + i * V::width);
       const V t = V(place.scale) / own - V(place.offset);
       at_[i] = select(t < V(R(1)), select(t > V(R(-1)), t, V(R(-1))), V(R(1)));
+      at2_[i] = at_[i] * at_[i];
+      at4_[i] = at2_[i] * at2_[i];
       covered_[i] = (own >= V(place.shortest)) & (own <= V(place.longest));
     }
     fill(0);
@@ -88,7 +90,7 @@ class SpectralMedia {
   static constexpr int vectors = Bundle<R>::vectors;
 
   PETZVAL_INLINE V square(const kernel::SquaredIndex<R>& medium, int i) const noexcept {
-    return medium.constant ? V(medium.by_power[0]) : medium.at(at_[i]);
+    return medium.constant ? V(medium.by_power[0]) : medium.at(at_[i], at2_[i], at4_[i]);
   }
   PETZVAL_INLINE void fill(std::size_t medium) noexcept {
     PETZVAL_UNROLL
@@ -96,7 +98,7 @@ class SpectralMedia {
   }
 
   const kernel::SurfaceSequence<R>& sequence_;
-  V at_[vectors];
+  V at_[vectors], at2_[vectors], at4_[vectors];  // powers of the place
   Mask<R> covered_[vectors];
   V squares_[2][vectors];  // in front of a step and behind it, by turns
 };
