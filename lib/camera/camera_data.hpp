@@ -3,7 +3,6 @@
 
 #include <mutex>
 #include <optional>
-#include <vector>
 
 #include "petzval/camera/camera.hpp"
 #include "petzval/camera/ray_model.hpp"
@@ -24,14 +23,20 @@ struct Camera::Data {
   Film film;
   AnyRayModel model;
   std::optional<camera_detail::TiltedFilm> tilted;
-  std::vector<double> scale;  ///< of weights and importance, by wavelength
+  camera_detail::WavelengthFacts wavelengths;  ///< scales of weights and importance
   camera_detail::Front front;
   double pdf_film;  ///< of film points spread uniformly over the film, 1/mm^2
 
-  camera_detail::FilmView view() const noexcept { return {model, film, tilted ? &*tilted : nullptr, scale, front}; }
+  camera_detail::FilmView view() const noexcept {
+    return {model, film, tilted ? &*tilted : nullptr, wavelengths, front};
+  }
+  /// A wavelength as the model takes it: a position, or nm where it takes any.
+  Wavelength resolved(Wavelength given) const noexcept {
+    return given.in_nm() && model.any_wavelength() ? given : Wavelength(lens.position(given));
+  }
   /// Renderers that trace paths from the film alone never ask for it.
   const camera_detail::SceneSide& scene() const {
-    std::call_once(scene_once_, [&] { scene_.emplace(facts_, film, tilted, front, model, radius_, scale); });
+    std::call_once(scene_once_, [&] { scene_.emplace(facts_, film, tilted, front, model, radius_, wavelengths); });
     return *scene_;
   }
 

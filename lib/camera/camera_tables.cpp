@@ -133,7 +133,7 @@ std::vector<float> Camera::tables() const {
   to.set(Table::half_height, data.film.height_mm / 2 + data.film.margin_mm);
   to.set(Table::front_z, data.front.vertex_z), to.set(Table::front_curvature, data.front.curvature);
   to.begin(Table::wavelengths), to.add(data.lens.wavelengths_nm());
-  to.begin(Table::scales), to.add(data.scale);
+  to.begin(Table::scales), to.add(data.wavelengths.scales());
 
   const FilmPupilArrays pupils = data.model.pupils().arrays();
   to.begin(Table::pupils), to.list.insert(to.list.end(), pupils.pupils.begin(), pupils.pupils.end());

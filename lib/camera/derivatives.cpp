@@ -3,10 +3,12 @@
 #include <ceres/jet.h>
 
 #include <cmath>
+#include <optional>
 
 #include "core/kernel_vec.hpp"
 #include "exact_model.hpp"
 #include "paraxial_model.hpp"
+#include "petzval/trace/trace.hpp"
 #include "trace/sequential.hpp"
 
 namespace petzval::inline v0::camera_detail {
@@ -38,10 +40,30 @@ RayDerivatives derivatives_of(const Vec& origin, const Vec& direction) noexcept 
           {part(origin, 1), part(direction, 1)}};
 }
 
+RayArrays<double> arrays_of(Ray<double>& ray) noexcept {
+  auto& [o, d] = ray;
+  return {&o.x, &o.y, &o.z, &d.x, &d.y, &d.z};
+}
+RayArrays<const double> arrays_of(const Ray<double>& ray) noexcept {
+  const auto& [o, d] = ray;
+  return {&o.x, &o.y, &o.z, &d.x, &d.y, &d.z};
+}
+
+/// A ray and its derivatives behind the lens, at any wavelength; nothing for a lost one.
+std::optional<RayDerivatives> traced(const Lens& lens, const RayDerivatives& start, Wavelength wavelength) noexcept {
+  RayDerivatives end;
+  const auto& [fate, ray, by_u, by_v] = start;
+  trace_differentials<double>(lens, 1, arrays_of(ray), {arrays_of(by_u), arrays_of(by_v)}, arrays_of(end.ray),
+                              {arrays_of(end.by_u), arrays_of(end.by_v)}, &end.fate, nullptr,
+                              {.travel = Travel::to_scene, .wavelengths = {wavelength}});
+  if (end.fate != RayFate::transmitted) return {};
+  return end;
+}
+
 }  // namespace
 
 template <class R>
-RayDerivatives ExactModel<R>::to_scene(const TwoPlaneRayDerivatives& line, std::size_t wavelength) const noexcept {
+RayDerivatives ExactModel<R>::to_scene(const TwoPlaneRayDerivatives& line, Wavelength wavelength) const noexcept {
   const TwoPlanes& space = pupils_.space();
   const auto [film_x, film_y, pupil_x, pupil_y] = line_of(line);
   const double depth = space.depth();
@@ -52,20 +74,24 @@ RayDerivatives ExactModel<R>::to_scene(const TwoPlaneRayDerivatives& line, std::
   RayDerivatives start = derivatives_of(origin, direction);
   start.by_u = start.by_v = {{0, 0, 0}, {0, 0, 0}};
   start.fate = RayFate::missed_surface;
-  if (wavelength >= lens_.wavelengths_nm().size()) return start;
+  if (wavelength.in_nm()) return traced(lens_, derivatives_of(origin, direction), wavelength).value_or(start);
+  const std::size_t position = lens_.position(wavelength);
+  if (position >= lens_.wavelengths_nm().size()) return start;
   const auto end = kernel::trace(kernel::view<double>(lens_), origin, direction,
-                                 {.travel = Travel::to_scene, .wavelength = wavelength});
+                                 {.travel = Travel::to_scene, .wavelength = position});
   start.fate = end.fate;
   return end.fate == RayFate::transmitted ? derivatives_of(end.origin, end.direction) : start;
 }
 
-template RayDerivatives ExactModel<float>::to_scene(const TwoPlaneRayDerivatives&, std::size_t) const noexcept;
-template RayDerivatives ExactModel<double>::to_scene(const TwoPlaneRayDerivatives&, std::size_t) const noexcept;
+template RayDerivatives ExactModel<float>::to_scene(const TwoPlaneRayDerivatives&, Wavelength) const noexcept;
+template RayDerivatives ExactModel<double>::to_scene(const TwoPlaneRayDerivatives&, Wavelength) const noexcept;
 
-RayDerivatives ParaxialModel::to_scene(const TwoPlaneRayDerivatives& line, std::size_t wavelength) const noexcept {
-  if (wavelength >= to_scene_.size()) return {RayFate::missed_surface};
+RayDerivatives ParaxialModel::to_scene(const TwoPlaneRayDerivatives& line, Wavelength wavelength) const noexcept {
+  SectionMaps own;
+  const SectionMaps* const map = map_at(wavelength, own);
+  if (!map) return {RayFate::missed_surface};
   const auto [film_x, film_y, pupil_x, pupil_y] = line_of(line);
-  const auto& [mx, my] = to_scene_[wavelength];
+  const auto& [mx, my] = *map;
   const Jet slope_x = mx.c * film_x + mx.d * pupil_x, slope_y = my.c * film_y + my.d * pupil_y;
   const Jet down = -1.0 / sqrt(slope_x * slope_x + slope_y * slope_y + 1.0);
   return derivatives_of({mx.a * film_x + mx.b * pupil_x, my.a * film_y + my.b * pupil_y, Jet(z_)},

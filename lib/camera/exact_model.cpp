@@ -35,10 +35,9 @@ void trace_in_place(const Lens& lens, Travel travel, std::size_t count, const Ra
              {.travel = travel, .wavelengths = wavelengths});
     return;
   }
-  const std::size_t primary = lens.primary_wavelength();
   for (std::size_t i = 0; i < count; ++i) {
     const Ray<R> ray{{rays.x[i], rays.y[i], rays.z[i]}, {rays.dx[i], rays.dy[i], rays.dz[i]}};
-    const auto end = trace<R>(lens, ray, {.travel = travel, .wavelength = wavelengths.position(i, primary)});
+    const auto end = trace<R>(lens, ray, {.travel = travel, .wavelength = wavelengths.at(i)});
     fates[i] = end.fate;
     if (!end.transmitted()) continue;
     const auto& [o, d] = end.ray;
@@ -79,7 +78,7 @@ void ExactModel<R>::to_scene(std::size_t count, const TwoPlaneRays<const T>& lin
 }
 
 template <class R>
-RayFate ExactModel<R>::to_scene(const TwoPlaneRay& line, std::size_t wavelength, Ray<double>& ray) const noexcept {
+RayFate ExactModel<R>::to_scene(const TwoPlaneRay& line, Wavelength wavelength, Ray<double>& ray) const noexcept {
   const R film_x = static_cast<R>(line.film_x), film_y = static_cast<R>(line.film_y);
   const R pupil_x = static_cast<R>(line.pupil_x), pupil_y = static_cast<R>(line.pupil_y);
   const R depth = static_cast<R>(pupils_.space().depth()), x = pupil_x - film_x, y = pupil_y - film_y;

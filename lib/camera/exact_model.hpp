@@ -13,6 +13,7 @@ template <class R>
 class ExactModel {
  public:
   static constexpr bool clips_at_apertures = true;
+  static constexpr bool any_wavelength = true;
 
   /// Throws Error where FilmPupilTable::enclosing does.
   ExactModel(const Lens& lens, double film_radius) : ExactModel(lens, FilmPupilTable::enclosing(lens, film_radius)) {}
@@ -28,9 +29,9 @@ class ExactModel {
                const TwoPlaneRays<double>& lines, RayFate* fates) const noexcept;
 
   /// One ray.
-  RayFate to_scene(const TwoPlaneRay& line, std::size_t wavelength, Ray<double>& ray) const noexcept;
+  RayFate to_scene(const TwoPlaneRay& line, Wavelength wavelength, Ray<double>& ray) const noexcept;
   /// One ray with its derivatives, in double.
-  RayDerivatives to_scene(const TwoPlaneRayDerivatives& line, std::size_t wavelength) const noexcept;
+  RayDerivatives to_scene(const TwoPlaneRayDerivatives& line, Wavelength wavelength) const noexcept;
 
   const Lens& lens() const noexcept { return lens_; }
 

@@ -113,36 +113,61 @@ double pinhole_entrance_area(const AnyRayModel& model, double entrance_z, std::s
 }  // namespace
 
 SceneSide::SceneSide(const LensFacts& facts, const Film& film, std::optional<TiltedFilm> tilted, const Front& front,
-                     const AnyRayModel& model, double radius, std::span<const double> scale)
+                     const AnyRayModel& model, double radius, const WavelengthFacts& wavelengths)
     : film_(film),
       tilted_(std::move(tilted)),
       upright_radius_(radius),
       pdf_film_(1 / film.area_mm2()),
       space_(model.pupils().space()),
       front_(front),
+      wavelengths_(wavelengths),
+      in_nm_(facts.lens().wavelengths_nm()),
+      primary_(model.pupils().primary_wavelength()),
       entrance_(entrance_of(facts.lens(), model)) {
   const Lens& lens = facts.lens();
-  for (std::size_t w = 0; w < scale.size(); ++w) {
+  std::vector<std::array<double, 3>> values;
+  for (std::size_t w = 0; w < wavelengths.count(); ++w) {
     const double n = lens.index(0, w), n_film = lens.index(lens.surface_count(), w), etendue = squared(n / n_film);
     const Pupil entrance = facts.pupils(w).entrance;
     const double across = has_cylinders(lens) ? pupils(lens, w, Meridian::x).entrance.diameter : entrance.diameter;
-    const double area =
+    const double found =
         model.pinhole() ? pinhole_entrance_area(model, entrance.z, w) : pi / 4 * across * entrance.diameter;
-    wavelengths_.push_back({.we = etendue * scale[w] / film.area_mm2(),
-                            .density = etendue / film.area_mm2() / squared(space_.depth()),
-                            .entrance_z = entrance.z,
-                            // Nothing passes a pupil whose density has no number.
-                            .entrance_area = area >= std::numeric_limits<double>::min() ? area : 0,
-                            .chiefs = ChiefRayTable(facts, model, upright_radius_, w)});
+    // Nothing passes a pupil whose density has no number.
+    const double area = found >= std::numeric_limits<double>::min() ? found : 0;
+    compiled_.push_back({{.we = etendue * wavelengths.scale(w) / film.area_mm2(),
+                          .density = etendue / film.area_mm2() / squared(space_.depth()),
+                          .entrance_z = entrance.z,
+                          .entrance_area = area},
+                         ChiefRayTable(facts, model, upright_radius_, w)});
+    values.push_back({etendue, entrance.z, area});
   }
+  between_ = {in_nm_, values};
 }
 
-bool SceneSide::valid(const Ray<double>& ray, std::size_t wavelength) const noexcept {
-  return wavelength < wavelengths_.size() && finite(ray.origin) && unit_length(ray.direction);
+const SceneSide::Compiled& SceneSide::nearest(Wavelength wavelength) const noexcept {
+  const auto nm = wavelength.in_nm();
+  return compiled_[nm ? in_nm_.nearest(*nm) : wavelength.position(primary_)];
+}
+
+SceneSide::Facts SceneSide::facts_at(Wavelength wavelength) const noexcept {
+  const Compiled& beside = nearest(wavelength);
+  const auto nm = wavelength.in_nm();
+  if (!nm) return beside;
+  const auto [etendue, entrance_z, area] = between_(*nm);
+  // A pupil at infinity has no place between others.
+  const bool placed = std::isfinite(entrance_z) && std::isfinite(area) && beside.entrance_area > 0;
+  return {.we = etendue * wavelengths_.scale(wavelength) / film_.area_mm2(),
+          .density = etendue / film_.area_mm2() / squared(space_.depth()),
+          .entrance_z = placed ? entrance_z : beside.entrance_z,
+          .entrance_area = placed ? area : beside.entrance_area};
+}
+
+bool SceneSide::valid(const Ray<double>& ray, Wavelength wavelength) const noexcept {
+  return wavelengths_.covers(wavelength) && finite(ray.origin) && unit_length(ray.direction);
 }
 
 SceneSide::Arrival SceneSide::arrive(const AnyRayModel& model, const Ray<double>& ray,
-                                     std::size_t wavelength) const noexcept {
+                                     Wavelength wavelength) const noexcept {
   Arrival result;
   if (!valid(ray, wavelength)) return result;
   // Nothing is lost on the way from a far point where the line begins near the lens.
@@ -177,9 +202,9 @@ Importance SceneSide::met_by(const Arrival& arrival, const std::optional<OnFilm>
 }
 
 void SceneSide::weigh(Importance& result, const AnyRayModel& model, const Arrival& arrival, double facing,
-                      double cosine, double area, std::size_t wavelength) const noexcept {
+                      double cosine, double area, Wavelength wavelength) const noexcept {
   const auto& [fate, upright, pupil] = arrival;
-  const Wavelength& at = wavelengths_[wavelength];
+  const Facts at = facts_at(wavelength);
   const double depth2 = squared(space_.depth());
   const double length2 = squared(pupil.x - upright.x) + squared(pupil.y - upright.y) + depth2;
   const double slopes = model.linear_in_slopes() ? squared(depth2 / (length2 * squared(cosine))) : 1;
@@ -191,7 +216,7 @@ void SceneSide::weigh(Importance& result, const AnyRayModel& model, const Arriva
   result.pdf_direction = at.density * squared(length2) / facing * slopes * result.pdf_pupil / result.pdf_position;
 }
 
-Importance SceneSide::importance(const AnyRayModel& model, const Ray<double>& ray, std::size_t wavelength,
+Importance SceneSide::importance(const AnyRayModel& model, const Ray<double>& ray, Wavelength wavelength,
                                  double time) const noexcept {
   // No ray meets a point but one that was aimed at it.
   if (model.pinhole()) return {.fate = valid(ray, wavelength) ? RayFate::vignetted : RayFate::invalid};
@@ -202,7 +227,7 @@ Importance SceneSide::importance(const AnyRayModel& model, const Ray<double>& ra
   Importance result = met_by(arrival, met);
   if (result.fate != RayFate::transmitted) return result;
   const FilmPupilTable &passing = model.pupils(), &sampled = tilted_ ? tilted_->pupils() : passing;
-  if (wavelengths_[wavelength].entrance_area == 0 ||
+  if (facts_at(wavelength).entrance_area == 0 ||
       (!model.clips_at_apertures() && !passing.contains(upright, pupil.x, pupil.y, wavelength))) {
     result.fate = RayFate::vignetted;
     return result;
@@ -214,8 +239,8 @@ Importance SceneSide::importance(const AnyRayModel& model, const Ray<double>& ra
 }
 
 ImportanceSample SceneSide::sample_importance(const AnyRayModel& model, const Vec3<double>& point, double u, double v,
-                                              std::size_t wavelength, double time) const noexcept {
-  if (wavelength >= wavelengths_.size() || !finite(point)) return {.importance = {.fate = RayFate::invalid}};
+                                              Wavelength wavelength, double time) const noexcept {
+  if (!wavelengths_.covers(wavelength) || !finite(point)) return {.importance = {.fate = RayFate::invalid}};
   if (model.pinhole()) return through_pinhole(model, point, u, v, wavelength, time);
   const EntranceSample s = entrance_.sample(point, u, v, wavelength);
   if (!(s.pdf > 0)) return {};
@@ -225,15 +250,15 @@ ImportanceSample SceneSide::sample_importance(const AnyRayModel& model, const Ve
 }
 
 ImportanceSample SceneSide::sample_distant(const AnyRayModel& model, const Vec3<double>& direction, double u, double v,
-                                           std::size_t wavelength, double time) const noexcept {
+                                           Wavelength wavelength, double time) const noexcept {
   ImportanceSample result{.importance = {.fate = RayFate::invalid}};
-  if (wavelength >= wavelengths_.size() || !unit_length(direction)) return result;
+  if (!wavelengths_.covers(wavelength) || !unit_length(direction)) return result;
   // The pupil that a point so far away sees is that of infinity within rounding.
   constexpr double far = 1e12;  // mm
   const Vec3<double> point = direction * -far;
   if (model.pinhole()) {
     const ImportanceSample s = through_pinhole(model, point, u, v, wavelength, time);
-    result = connection({0, 0, wavelengths_[wavelength].entrance_z}, direction, infinity, s.pdf / squared(far));
+    result = connection({0, 0, facts_at(wavelength).entrance_z}, direction, infinity, s.pdf / squared(far));
     result.importance = s.importance;
     return result;
   }
@@ -251,10 +276,10 @@ ImportanceSample SceneSide::connection(const Vec3<double>& place, const Vec3<dou
 }
 
 ImportanceSample SceneSide::through_pinhole(const AnyRayModel& model, const Vec3<double>& point, double u, double v,
-                                            std::size_t wavelength, double time) const noexcept {
+                                            Wavelength wavelength, double time) const noexcept {
   ImportanceSample result;
-  if (wavelength >= wavelengths_.size() || !entrance_.in_front(point)) return result;
-  const Wavelength& at = wavelengths_[wavelength];
+  if (!wavelengths_.covers(wavelength) || !entrance_.in_front(point)) return result;
+  const Facts at = facts_at(wavelength);
   const Vec3<double> pupil{0, 0, at.entrance_z}, to = pupil - point;
   const double distance = glm::length(to);
   if (!std::isfinite(distance) || !std::isfinite(at.entrance_area) || !(at.entrance_area > 0 && to.z > 0))
@@ -292,33 +317,33 @@ ImportanceSample SceneSide::through_pinhole(const AnyRayModel& model, const Vec3
 }
 
 double SceneSide::pdf(const AnyRayModel& model, const Vec3<double>& point, const Vec3<double>& direction,
-                      std::size_t wavelength) const noexcept {
+                      Wavelength wavelength) const noexcept {
   return model.pinhole() ? 0 : entrance_.pdf(point, direction, wavelength);
 }
 
 }  // namespace camera_detail
 
 Importance Camera::importance(const Ray<double>& ray, Wavelength wavelength, double time) const noexcept {
-  return data_->scene().importance(data_->model, ray, data_->lens.position(wavelength), time);
+  return data_->scene().importance(data_->model, ray, data_->resolved(wavelength), time);
 }
 
 ImportanceSample Camera::sample_importance(const Vec3<double>& point, double u, double v, Wavelength wavelength,
                                            double time) const noexcept {
-  return data_->scene().sample_importance(data_->model, point, u, v, data_->lens.position(wavelength), time);
+  return data_->scene().sample_importance(data_->model, point, u, v, data_->resolved(wavelength), time);
 }
 
 ImportanceSample Camera::sample_distant_importance(const Vec3<double>& direction, double u, double v,
                                                    Wavelength wavelength, double time) const noexcept {
-  return data_->scene().sample_distant(data_->model, direction, u, v, data_->lens.position(wavelength), time);
+  return data_->scene().sample_distant(data_->model, direction, u, v, data_->resolved(wavelength), time);
 }
 
 double Camera::pdf_importance(const Vec3<double>& point, const Vec3<double>& direction,
                               Wavelength wavelength) const noexcept {
-  return data_->scene().pdf(data_->model, point, direction, data_->lens.position(wavelength));
+  return data_->scene().pdf(data_->model, point, direction, data_->resolved(wavelength));
 }
 
 Projection Camera::project(const Vec3<double>& point, Wavelength wavelength, double time) const noexcept {
-  return data_->scene().project(data_->model, point, data_->lens.position(wavelength), time);
+  return data_->scene().project(data_->model, point, data_->resolved(wavelength), time);
 }
 
 }  // namespace petzval::inline v0

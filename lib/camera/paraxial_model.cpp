@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "paraxial_model.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 #include <string>
 #include <type_traits>
@@ -34,6 +36,15 @@ constexpr double reach = 1e12;  // mm: numbers up to here give finite rays, in f
 RayMatrix to_scene_map(const LensFacts& facts, std::size_t wavelength, const TwoPlanes& space, Meridian section) {
   const StopMaps maps = stop_maps(facts, wavelength, space, section);
   return maps.from_film.then({1, 0, best_focus_power(facts, wavelength, maps, section), 1}).then(maps.to_front);
+}
+
+/// The maps of a model: a pinhole's rays pass the middle of the pupil.
+SectionMaps seen_by(ModelKind model, const SectionMaps& maps, double middle) noexcept {
+  if (model != ModelKind::pinhole) return maps;
+  const auto through = [middle](const RayMatrix& map) -> RayMatrix {
+    return {map.a + map.b * middle, 0, map.c + map.d * middle, 0};
+  };
+  return {through(maps.x), through(maps.y)};
 }
 
 /// Where a film point sees the stop in the plane of the pupil: its centre at shift times the film point.
@@ -147,7 +158,7 @@ FilmPupilTable pupils_of(ModelKind model, const LensFacts& facts, double film_ra
     const double radius = axial_radius(lens, w, space, iris, along_x);
     images.push_back({{x.shift, y.shift}, {along_x * radius, radius}});
   }
-  return FilmPupilTable::of_iris(space, iris, images, film_radius, primary);
+  return FilmPupilTable::of_iris(space, iris, images, film_radius, primary, lens.wavelengths_nm());
 }
 
 }  // namespace
@@ -156,41 +167,91 @@ ParaxialModel::ParaxialModel(ModelKind model, const LensFacts& facts, double fil
     : kind_(model), pupils_(pupils_of(model, facts, film_radius)), z_(facts.lens().surfaces().front().vertex_z) {
   const Lens& lens = facts.lens();
   const TwoPlanes& space = pupils_.space();
+  std::vector<std::array<double, 9>> values;
   for (std::size_t w = 0; w < lens.wavelengths_nm().size(); ++w) {
-    RayMatrix map = to_scene_map(facts, w, space, Meridian::y);
-    const RayMatrix along_x = has_cylinders(lens) ? to_scene_map(facts, w, space, Meridian::x) : map;
-    to_film_.push_back({along_x.inverse(), map.inverse()});
-    if (model == ModelKind::pinhole) {
-      const double middle = thick_image(facts, w, space, Meridian::y).shift;
-      pinhole_shifts_.push_back(middle);
-      map = {map.a + map.b * middle, 0, map.c + map.d * middle, 0};
-      to_scene_.push_back({map, map});
-    } else {
-      to_scene_.push_back({along_x, map});
-    }
+    const RayMatrix y = to_scene_map(facts, w, space, Meridian::y);
+    const RayMatrix x = has_cylinders(lens) ? to_scene_map(facts, w, space, Meridian::x) : y;
+    to_film_.push_back({x.inverse(), y.inverse()});
+    const double middle = model == ModelKind::pinhole ? thick_image(facts, w, space, Meridian::y).shift : 0;
+    if (model == ModelKind::pinhole) pinhole_shifts_.push_back(middle);
+    to_scene_.push_back(seen_by(model, {x, y}, middle));
+    values.push_back({x.a, x.b, x.c, x.d, y.a, y.b, y.c, y.d, middle});
   }
+  between_ = {lens_detail::CompiledWavelengths(lens.wavelengths_nm()), values};
+}
+
+const SectionMaps* ParaxialModel::map_at(Wavelength at, SectionMaps& own) const noexcept {
+  if (const auto nm = at.in_nm()) {
+    if (!between_.covers(*nm)) return nullptr;
+    const auto [xa, xb, xc, xd, ya, yb, yc, yd, middle] = between_(*nm);
+    own = seen_by(kind_, {{xa, xb, xc, xd}, {ya, yb, yc, yd}}, middle);
+    return &own;
+  }
+  const std::size_t position = at.position(pupils_.primary_wavelength());
+  return position < to_scene_.size() ? &to_scene_[position] : nullptr;
+}
+
+const SectionMaps* ParaxialModel::inverse_at(Wavelength at, SectionMaps& own) const noexcept {
+  if (const auto nm = at.in_nm()) {
+    if (!between_.covers(*nm)) return nullptr;
+    const auto [xa, xb, xc, xd, ya, yb, yc, yd, middle] = between_(*nm);
+    own = {RayMatrix{xa, xb, xc, xd}.inverse(), RayMatrix{ya, yb, yc, yd}.inverse()};
+    return &own;
+  }
+  const std::size_t position = at.position(pupils_.primary_wavelength());
+  return position < to_film_.size() ? &to_film_[position] : nullptr;
 }
 
 template <class T>
 void ParaxialModel::to_scene(std::size_t count, const TwoPlaneRays<const T>& lines, const RayWavelengths& wavelengths,
                              const RayArrays<T>& rays, RayFate* fates) const noexcept {
-  const ParaxialJob job{to_scene_.data(), to_scene_.size(), pupils_.primary_wavelength(), z_, wavelengths};
-  if constexpr (std::is_same_v<T, float>) {
-    paraxial_loops().of_float(count, job, lines, rays, fates);
-  } else {
-    paraxial_loops().of_double(count, job, lines, rays, fates);
+  const auto run = [&](const ParaxialJob& job, std::size_t o, std::size_t n) {
+    const RayArrays<T> to{rays.x + o, rays.y + o, rays.z + o, rays.dx + o, rays.dy + o, rays.dz + o};
+    if constexpr (std::is_same_v<T, float>) {
+      paraxial_loops().of_float(n, job, lines.from(o), to, fates + o);
+    } else {
+      paraxial_loops().of_double(n, job, lines.from(o), to, fates + o);
+    }
+  };
+  if (!wavelengths.in_nm()) {
+    run({to_scene_.data(), to_scene_.size(), pupils_.primary_wavelength(), z_, wavelengths}, 0, count);
+    return;
+  }
+  if (!wavelengths.each_nm) {
+    SectionMaps own;
+    const SectionMaps* const map = map_at(wavelengths.all, own);
+    run({map ? map : to_scene_.data(), map ? std::size_t{1} : 0, 0, z_, {0}}, 0, count);
+    return;
+  }
+  // A map for each ray; some map for one that is lost.
+  constexpr std::size_t block = 256;
+  std::array<SectionMaps, block> maps;
+  std::array<std::uint16_t, block> each;
+  std::array<bool, block> known;
+  for (std::size_t begin = 0; begin < count; begin += block) {
+    const std::size_t n = std::min(block, count - begin);
+    for (std::size_t i = 0; i < n; ++i) {
+      known[i] = map_at(wavelengths.at(begin + i), maps[i]) != nullptr;
+      if (!known[i]) maps[i] = to_scene_[0];
+      each[i] = static_cast<std::uint16_t>(i);
+    }
+    run({maps.data(), n, 0, z_, {.each = each.data()}}, begin, n);
+    for (std::size_t i = 0; i < n; ++i) {
+      if (!known[i]) fates[begin + i] = RayFate::missed_surface;
+    }
   }
 }
 
-RayFate ParaxialModel::to_scene(const TwoPlaneRay& line, std::size_t wavelength, Ray<double>& ray) const noexcept {
+RayFate ParaxialModel::to_scene(const TwoPlaneRay& line, Wavelength wavelength, Ray<double>& ray) const noexcept {
   const auto& [film_x, film_y, pupil_x, pupil_y] = line;
-  const bool known = wavelength < to_scene_.size();
   const bool good = std::abs(film_x) + std::abs(film_y) + std::abs(pupil_x) + std::abs(pupil_y) <= reach;
   if (!good) {
     ray = {{0, 0, z_}, {0, 0, -1}};
     return RayFate::missed_surface;
   }
-  const auto& [mx, my] = to_scene_[known ? wavelength : 0];
+  SectionMaps own;
+  const SectionMaps* const known = map_at(wavelength, own);
+  const auto& [mx, my] = known ? *known : to_scene_[0];
   const double slope_x = mx.c * film_x + mx.d * pupil_x, slope_y = my.c * film_y + my.d * pupil_y;
   const double down = -1 / std::sqrt(1 + slope_x * slope_x + slope_y * slope_y);
   ray = {{mx.a * film_x + mx.b * pupil_x, my.a * film_y + my.b * pupil_y, z_}, {slope_x * down, slope_y * down, down}};
@@ -199,12 +260,15 @@ RayFate ParaxialModel::to_scene(const TwoPlaneRay& line, std::size_t wavelength,
 
 void ParaxialModel::to_film(std::size_t count, const RayArrays<const double>& rays, const RayWavelengths& wavelengths,
                             const TwoPlaneRays<double>& lines, RayFate* fates) const noexcept {
+  const bool shared = !wavelengths.each && !wavelengths.each_nm;
+  SectionMaps own;
+  const SectionMaps* map = shared ? inverse_at(wavelengths.all, own) : nullptr;
   for (std::size_t i = 0; i < count; ++i) {
     const auto [x, y, slope_x, slope_y] = core_detail::slope_ray(core_detail::ray_at(rays, i), z_);
-    const std::size_t wavelength = wavelengths.position(i, pupils_.primary_wavelength());
-    const bool good = wavelength < to_film_.size() && rays.dz[i] > 0 &&
-                      std::abs(x) + std::abs(y) + std::abs(slope_x) + std::abs(slope_y) <= reach;
-    const auto [mx, my] = good ? to_film_[wavelength] : SectionMaps{};
+    if (!shared) map = inverse_at(wavelengths.at(i), own);
+    const bool good =
+        map && rays.dz[i] > 0 && std::abs(x) + std::abs(y) + std::abs(slope_x) + std::abs(slope_y) <= reach;
+    const auto [mx, my] = good ? *map : SectionMaps{};
     fates[i] = good ? RayFate::transmitted : RayFate::missed_surface;
     lines.film_x[i] = good ? mx.a * x + mx.b * slope_x : 0;
     lines.film_y[i] = good ? my.a * y + my.b * slope_y : 0;

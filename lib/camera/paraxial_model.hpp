@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "lens/between_wavelengths.hpp"
 #include "lens_facts.hpp"
 #include "petzval/camera/ray_model.hpp"
 #include "petzval/core/export.hpp"
@@ -45,6 +46,7 @@ struct SectionMaps {
 class ParaxialModel {
  public:
   static constexpr bool linear_in_slopes = true;
+  static constexpr bool any_wavelength = true;
 
   /// film_radius: of the farthest film point, mm. Throws Error for another model, for a lens that is afocal, has no
   /// pupils or no finite one that the model needs, for a pinhole or two discs of one with cylinders, for an iris with
@@ -59,25 +61,31 @@ class ParaxialModel {
   double z() const noexcept { return z_; }
   /// As in RayModel; empty unless this is the pinhole.
   std::span<const double> pinhole_shifts() const noexcept { return pinhole_shifts_; }
-  /// missed_surface: numbers that are not finite (or beyond 1e12 mm) and wavelengths that were not compiled.
+  /// missed_surface: numbers that are not finite (or beyond 1e12 mm) and wavelengths that the lens does not cover.
   template <class T>
   PETZVAL_API void to_scene(std::size_t count, const TwoPlaneRays<const T>& lines, const RayWavelengths& wavelengths,
                             const RayArrays<T>& rays, RayFate* fates) const noexcept;
   /// One ray.
-  PETZVAL_API RayFate to_scene(const TwoPlaneRay& line, std::size_t wavelength, Ray<double>& ray) const noexcept;
+  PETZVAL_API RayFate to_scene(const TwoPlaneRay& line, Wavelength wavelength, Ray<double>& ray) const noexcept;
   /// One ray with its derivatives.
-  PETZVAL_API RayDerivatives to_scene(const TwoPlaneRayDerivatives& line, std::size_t wavelength) const noexcept;
+  PETZVAL_API RayDerivatives to_scene(const TwoPlaneRayDerivatives& line, Wavelength wavelength) const noexcept;
   /// The inverse of to_scene(); for the pinhole, that of the thick lens. missed_surface also for rays that do not run
   /// towards the lens.
   PETZVAL_API void to_film(std::size_t count, const RayArrays<const double>& rays, const RayWavelengths& wavelengths,
                            const TwoPlaneRays<double>& lines, RayFate* fates) const noexcept;
 
  private:
+  /// The maps to the scene and to the film, which is that of the thick lens for a pinhole; null for a wavelength that
+  /// is not covered. own: room for those of a wavelength in nm.
+  const SectionMaps* map_at(Wavelength wavelength, SectionMaps& own) const noexcept;
+  const SectionMaps* inverse_at(Wavelength wavelength, SectionMaps& own) const noexcept;
+
   ModelKind kind_;
   FilmPupilTable pupils_;
   double z_ = 0;                                 // of the first vertex, where rays are given
   std::vector<SectionMaps> to_scene_, to_film_;  // of each wavelength
   std::vector<double> pinhole_shifts_;
+  lens_detail::BetweenWavelengths<9> between_;  // the maps to the scene, and the pinhole's shift
 };
 
 }  // namespace petzval::inline v0::camera_detail

@@ -31,11 +31,11 @@ struct Misses {
 
 }  // namespace
 
-Projection SceneSide::project(const AnyRayModel& model, const Vec3<double>& point, std::size_t wavelength,
+Projection SceneSide::project(const AnyRayModel& model, const Vec3<double>& point, Wavelength wavelength,
                               double time) const noexcept {
   Projection result;
-  if (wavelength >= wavelengths_.size() || !entrance_.in_front(point)) return result;
-  const ChiefRayTable& chiefs = wavelengths_[wavelength].chiefs;
+  if (!wavelengths_.covers(wavelength) || !entrance_.in_front(point)) return result;
+  const ChiefRayTable& chiefs = nearest(wavelength).chiefs;
   const auto start = chiefs.about(point);
   if (!start) return result;
 

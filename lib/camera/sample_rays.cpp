@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <utility>
 
 #include "camera_loops.hpp"
 #include "tilted_pinhole.hpp"
@@ -29,15 +30,23 @@ TiltedBounds<T> bounds_of(const TiltedFilm& film, const T* times) noexcept {
           number(p.slope_x), number(p.slope_y), number(p.cosine), number(travel),       travel != 0 ? times : nullptr};
 }
 
-/// The scale of each ray; 0 for a wavelength that the model does not have.
+/// The scale of each ray; 0 for a wavelength that is not covered.
 template <class T>
-void fill_scales(std::size_t count, std::span<const double> scale, const RayWavelengths& wavelengths, T* scales) {
-  const auto scale_of = [&](std::size_t w) { return w < scale.size() ? static_cast<T>(scale[w]) : T(0); };
-  if (!wavelengths.each || wavelengths.each_nm) {
-    std::fill_n(scales, count, wavelengths.in_nm() ? T(0) : scale_of(wavelengths.all.position(0)));
+void fill_scales(std::size_t count, const WavelengthFacts& facts, const RayWavelengths& wavelengths, T* scales) {
+  if (!wavelengths.each && !wavelengths.each_nm) {
+    std::fill_n(scales, count, static_cast<T>(facts.scale(wavelengths.all)));
     return;
   }
-  for (std::size_t i = 0; i < count; ++i) scales[i] = scale_of(wavelengths.each[i]);
+  if (const auto alike = facts.same_scale(); wavelengths.each_nm && alike) {
+    const auto [shortest, longest, scale] = *alike;
+    const T own = static_cast<T>(scale);
+    for (std::size_t i = 0; i < count; ++i) {
+      const bool covered = wavelengths.each_nm[i] >= shortest && wavelengths.each_nm[i] <= longest;
+      scales[i] = covered ? own : T(0);
+    }
+    return;
+  }
+  for (std::size_t i = 0; i < count; ++i) scales[i] = static_cast<T>(facts.scale(wavelengths.at(i)));
 }
 
 /// The points of the upright film whose rays through the middles of their pupils are those of a pinhole in front of a
@@ -45,10 +54,8 @@ void fill_scales(std::size_t count, std::span<const double> scale, const RayWave
 template <class T>
 void find_chiefs(std::size_t count, const FilmView& view, const RayWavelengths& wavelengths, const T* times,
                  const T* virtual_x, const T* virtual_y, T* film_x, T* film_y) noexcept {
-  const std::span<const double> shifts = view.model.pinhole_shifts();
   for (std::size_t i = 0; i < count; ++i) {
-    const std::size_t w = wavelengths.position(i, 0);
-    const double shift = w < shifts.size() ? shifts[w] : 0;
+    const double shift = view.wavelengths.pinhole_shift(wavelengths.at(i));
     const TiltedPlane plane = view.tilted->plane(times ? times[i] : 0);
     const double part = part_of_virtual(plane, {virtual_x[i], virtual_y[i]}, shift);
     film_x[i] = static_cast<T>(virtual_x[i] * part), film_y[i] = static_cast<T>(virtual_y[i] * part);
@@ -79,7 +86,7 @@ void sample_block(const FilmView& view, std::size_t n, std::size_t wanted, const
   std::array<RayFate, block> local_fates;
   RayFate* const fates = rays.fates ? rays.fates : local_fates.data();
   const TwoPlaneRays<const T> lines{film_x.data(), film_y.data(), x.data(), y.data()};
-  fill_scales(n, view.scale, wavelengths, scales.data());
+  fill_scales(n, view.wavelengths, wavelengths, scales.data());
   loops.keep_on_film(bounds, n, samples.film_x, samples.film_y, film_x.data(), film_y.data());
   const auto trace = [&] {
     view.model.to_scene(n, lines, wavelengths, rays.rays, fates);
@@ -121,6 +128,7 @@ void sample_rest(const FilmView& view, std::size_t count, const CameraSamples<T>
   alignas(64) std::array<std::array<T, lanes<T>>, 5> in;
   alignas(64) std::array<std::array<T, lanes<T>>, 9> out;
   std::array<std::uint16_t, lanes<T>> each;
+  std::array<float, lanes<T>> each_nm;
   std::array<RayFate, lanes<T>> fates;
   const auto padded = [&](const auto* from, auto& to) {
     for (std::size_t i = 0; i < to.size(); ++i) to[i] = from[std::min(i, count - 1)];
@@ -132,6 +140,10 @@ void sample_rest(const FilmView& view, std::size_t count, const CameraSamples<T>
   if (wavelengths.each) {
     padded(wavelengths.each, each);
     wavelengths.each = each.data();
+  }
+  if (wavelengths.each_nm) {
+    padded(wavelengths.each_nm, each_nm);
+    wavelengths.each_nm = each_nm.data();
   }
   const auto at = [&](std::size_t k) { return out[k].data(); };
   sample_block<T>(
@@ -152,11 +164,44 @@ void sample_rest(const FilmView& view, std::size_t count, const CameraSamples<T>
 
 }  // namespace
 
+WavelengthFacts::WavelengthFacts(const AnyRayModel& model, std::vector<double> scale, std::span<const double> nm)
+    : primary_(model.pupils().primary_wavelength()),
+      scale_(std::move(scale)),
+      shifts_(model.pinhole_shifts().begin(), model.pinhole_shifts().end()) {
+  shifts_.resize(scale_.size());
+  if (nm.empty()) return;
+  std::vector<std::array<double, 2>> values;
+  for (std::size_t w = 0; w < scale_.size(); ++w) values.push_back({scale_[w], shifts_[w]});
+  const lens_detail::CompiledWavelengths compiled(nm);
+  between_ = {compiled, values};
+  if (std::ranges::all_of(scale_, [&](double s) { return s == scale_[0]; })) {
+    same_scale_ = {static_cast<float>(compiled.shortest()), static_cast<float>(compiled.longest()), scale_[0]};
+  }
+}
+
+bool WavelengthFacts::covers(Wavelength wavelength) const noexcept {
+  const auto nm = wavelength.in_nm();
+  return nm ? between_.covers(*nm) : wavelength.position(primary_) < count();
+}
+
+double WavelengthFacts::scale(Wavelength wavelength) const noexcept {
+  if (!covers(wavelength)) return 0;
+  const auto nm = wavelength.in_nm();
+  return nm ? between_(*nm)[0] : scale_[wavelength.position(primary_)];
+}
+
+double WavelengthFacts::pinhole_shift(Wavelength wavelength) const noexcept {
+  if (!covers(wavelength)) return 0;
+  const auto nm = wavelength.in_nm();
+  return nm ? between_(*nm)[1] : shifts_[wavelength.position(primary_)];
+}
+
 template <class T>
 void sample_rays(const FilmView& view, std::size_t count, const CameraSamples<T>& given,
                  const CameraRays<T>& rays) noexcept {
   CameraSamples<T> samples = given;
   samples.wavelengths = given.wavelengths.resolved(view.model.pupils().primary_wavelength());
+  if (samples.wavelengths.in_nm() && !view.model.any_wavelength()) samples.wavelengths = {view.wavelengths.count()};
   const std::size_t whole = count - count % lanes<T>;
   for (std::size_t begin = 0; begin < whole; begin += block) {
     const std::size_t n = std::min(block, whole - begin);
@@ -170,13 +215,13 @@ template PETZVAL_API void sample_rays(const FilmView&, std::size_t, const Camera
 template PETZVAL_API void sample_rays(const FilmView&, std::size_t, const CameraSamples<double>&,
                                       const CameraRays<double>&) noexcept;
 
-CameraRay sample_ray(const FilmView& view, const FilmPoint& film, double u, double v, std::size_t wavelength,
+CameraRay sample_ray(const FilmView& view, const FilmPoint& film, double u, double v, Wavelength wavelength,
                      double time) noexcept {
   const FilmPupilTable& pupils = view.model.pupils();
   const TiltedFilm* const tilted = view.tilted;
   const TiltedPlane plane = tilted ? tilted->plane(time) : TiltedPlane{};
   const auto bounds = film_detail::bounds_of<double>(view.film);
-  const bool kept = on_film(bounds, film.x, film.y), known = wavelength < view.scale.size();
+  const bool kept = on_film(bounds, film.x, film.y);
   const FilmPoint point = kept ? film : FilmPoint{bounds.centre_x, bounds.centre_y};
   CameraRay out;
 
@@ -196,7 +241,7 @@ CameraRay sample_ray(const FilmView& view, const FilmPoint& film, double u, doub
     area = at.area;
     TwoPlaneRay leaving = line;
     if (view.model.pinhole()) {
-      const double shift = known ? view.model.pinhole_shifts()[wavelength] : 0;
+      const double shift = view.wavelengths.pinhole_shift(wavelength);
       const double part = part_of_virtual(plane, virtual_point, shift);
       leaving.film_x = virtual_point.x * part, leaving.film_y = virtual_point.y * part;
     }
@@ -207,7 +252,7 @@ CameraRay sample_ray(const FilmView& view, const FilmPoint& film, double u, doub
   }
 
   if (view.moves_rays()) out.ray.origin += way_to_front(view.front, out.ray) * out.ray.direction;
-  const double scale = known ? view.scale[wavelength] : 0;
+  const double scale = view.wavelengths.scale(wavelength);
   out.fate = fate_of(out.fate, kept, scale > 0, area > 0);
   if (kept && area > 0) {
     const PupilWeight<double> of(pupils.space().depth());

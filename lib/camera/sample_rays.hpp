@@ -2,9 +2,12 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
+#include <vector>
 
 #include "front.hpp"
+#include "lens/between_wavelengths.hpp"
 #include "petzval/camera/camera_ray.hpp"
 #include "petzval/camera/ray_model.hpp"
 #include "petzval/core/export.hpp"
@@ -13,14 +16,43 @@
 
 namespace petzval::inline v0::camera_detail {
 
+/// What a camera knows of each wavelength beside its model: the scale of weights, and of a pinhole its shift.
+class WavelengthFacts {
+ public:
+  /// scale: one for each wavelength. nm: the wavelengths; none where there are no samples between them.
+  WavelengthFacts(const AnyRayModel& model, std::vector<double> scale, std::span<const double> nm = {});
+
+  std::size_t count() const noexcept { return scale_.size(); }
+  /// Of the compiled wavelengths.
+  std::span<const double> scales() const noexcept { return scale_; }
+  /// Whether there are samples at a wavelength, a position or nm.
+  bool covers(Wavelength wavelength) const noexcept;
+  /// What weights are multiplied with: the square of the index behind the lens for irradiance; 0 for a wavelength that
+  /// is not covered.
+  double scale(Wavelength wavelength) const noexcept;
+  /// Where all wavelengths in nm have the same scale, of air behind the lens: it and the range, nm.
+  struct SameScale {
+    float shortest, longest;
+    double scale;
+  };
+  const std::optional<SameScale>& same_scale() const noexcept { return same_scale_; }
+  /// AnyRayModel::pinhole_shifts(); 0 for other models.
+  double pinhole_shift(Wavelength wavelength) const noexcept;
+
+ private:
+  std::size_t primary_;
+  std::vector<double> scale_, shifts_;
+  std::optional<SameScale> same_scale_;
+  lens_detail::BetweenWavelengths<2> between_;  // covers nothing where there are no samples in nm
+};
+
 /// What samples of a film are drawn from.
 struct FilmView {
   const AnyRayModel& model;
   const Film& film;
   const TiltedFilm* tilted =
       nullptr;  ///< of the same film, with the model's pupils; null for an upright one that stays
-  /// What weights are multiplied with, one for each wavelength: the square of the index behind the lens for irradiance.
-  std::span<const double> scale;
+  const WavelengthFacts& wavelengths;
   Front front = {};  ///< of the lens
 
   /// Rays of the model start elsewhere.
@@ -34,8 +66,8 @@ struct FilmView {
 template <class T>
 PETZVAL_API void sample_rays(const FilmView& view, std::size_t count, const CameraSamples<T>& samples,
                              const CameraRays<T>& rays) noexcept;
-/// One ray, within rounding that of a batch. The wavelength is a position. pdf_film is left out.
-CameraRay sample_ray(const FilmView& view, const FilmPoint& film, double u, double v, std::size_t wavelength,
+/// One ray, within rounding that of a batch. pdf_film is left out.
+CameraRay sample_ray(const FilmView& view, const FilmPoint& film, double u, double v, Wavelength wavelength,
                      double time) noexcept;
 
 }  // namespace petzval::inline v0::camera_detail

@@ -3,16 +3,17 @@
 
 #include <cstddef>
 #include <optional>
-#include <span>
 #include <vector>
 
 #include "chief_ray_table.hpp"
 #include "front.hpp"
+#include "lens/between_wavelengths.hpp"
 #include "lens_facts.hpp"
 #include "petzval/camera/camera_ray.hpp"
 #include "petzval/camera/ray_model.hpp"
 #include "petzval/film/film.hpp"
 #include "pupil_table/entrance_pupil_table.hpp"
+#include "sample_rays.hpp"
 #include "tilted_film.hpp"
 
 namespace petzval::inline v0::camera_detail {
@@ -20,28 +21,36 @@ namespace petzval::inline v0::camera_detail {
 /// The scene's side of a camera: importance.cpp and projection.cpp.
 class SceneSide {
  public:
-  /// radius: upright_radius() of the film; scale: of weights, one for each wavelength, as in FilmView.
+  /// radius: upright_radius() of the film; wavelengths: as in FilmView.
   SceneSide(const LensFacts& facts, const Film& film, std::optional<TiltedFilm> tilted, const Front& front,
-            const AnyRayModel& model, double radius, std::span<const double> scale);
+            const AnyRayModel& model, double radius, const WavelengthFacts& wavelengths);
 
-  Importance importance(const AnyRayModel& model, const Ray<double>& ray, std::size_t wavelength,
+  Importance importance(const AnyRayModel& model, const Ray<double>& ray, Wavelength wavelength,
                         double time) const noexcept;
   ImportanceSample sample_importance(const AnyRayModel& model, const Vec3<double>& point, double u, double v,
-                                     std::size_t wavelength, double time) const noexcept;
+                                     Wavelength wavelength, double time) const noexcept;
   ImportanceSample sample_distant(const AnyRayModel& model, const Vec3<double>& direction, double u, double v,
-                                  std::size_t wavelength, double time) const noexcept;
+                                  Wavelength wavelength, double time) const noexcept;
   double pdf(const AnyRayModel& model, const Vec3<double>& point, const Vec3<double>& direction,
-             std::size_t wavelength) const noexcept;
-  Projection project(const AnyRayModel& model, const Vec3<double>& point, std::size_t wavelength,
+             Wavelength wavelength) const noexcept;
+  Projection project(const AnyRayModel& model, const Vec3<double>& point, Wavelength wavelength,
                      double time) const noexcept;
 
  private:
-  struct Wavelength {
+  /// What differs with the wavelength.
+  struct Facts {
     double we = 0;       // 1/mm^2
     double density = 0;  // of film samples in the scene, less what depends on the ray
     double entrance_z = 0, entrance_area = 0;
+  };
+  /// Those of a compiled one.
+  struct Compiled : Facts {
     ChiefRayTable chiefs;
   };
+  /// Of a wavelength that is covered.
+  Facts facts_at(Wavelength wavelength) const noexcept;
+  const Compiled& nearest(Wavelength wavelength) const noexcept;
+
   /// The image-space ray that a scene ray becomes.
   struct Arrival {
     RayFate fate = RayFate::invalid;
@@ -55,27 +64,31 @@ class SceneSide {
   std::optional<TiltedPlane> plane(double time) const noexcept;
   std::optional<OnFilm> on_film(const FilmPoint& upright, const FilmPoint& pupil,
                                 const std::optional<TiltedPlane>& plane) const noexcept;
-  /// A direction of unit length, numbers that are finite, and a wavelength that exists.
-  bool valid(const Ray<double>& ray, std::size_t wavelength) const noexcept;
-  Arrival arrive(const AnyRayModel& model, const Ray<double>& ray, std::size_t wavelength) const noexcept;
+  /// A direction of unit length, numbers that are finite, and a wavelength that is covered.
+  bool valid(const Ray<double>& ray, Wavelength wavelength) const noexcept;
+  Arrival arrive(const AnyRayModel& model, const Ray<double>& ray, Wavelength wavelength) const noexcept;
   /// Film point, raster and fate of a ray that arrives.
   Importance met_by(const Arrival& arrival, const std::optional<OnFilm>& met) const noexcept;
   /// Weight and densities of a ray that meets the film. facing: TiltedPlane::weight(); cosine: of its angle with the
   /// axis in the scene; area: of the pupil that its film point samples, 0 where no sample is this ray.
   void weigh(Importance& result, const AnyRayModel& model, const Arrival& arrival, double facing, double cosine,
-             double area, std::size_t wavelength) const noexcept;
+             double area, Wavelength wavelength) const noexcept;
   /// A connection to a place in the lens from a point at a distance from it. The shadow ray ends at the front.
   ImportanceSample connection(const Vec3<double>& place, const Vec3<double>& direction, double distance,
                               double pdf) const noexcept;
   ImportanceSample through_pinhole(const AnyRayModel& model, const Vec3<double>& point, double u, double v,
-                                   std::size_t wavelength, double time) const noexcept;
+                                   Wavelength wavelength, double time) const noexcept;
 
   Film film_;
   std::optional<TiltedFilm> tilted_;
   double upright_radius_ = 0, pdf_film_ = 0;
   TwoPlanes space_;
   Front front_;
-  std::vector<Wavelength> wavelengths_;
+  WavelengthFacts wavelengths_;
+  lens_detail::CompiledWavelengths in_nm_;
+  lens_detail::BetweenWavelengths<3> between_;  // etendue, place and area of the entrance pupil
+  std::size_t primary_ = 0;
+  std::vector<Compiled> compiled_;
   EntrancePupilTable entrance_;
 };
 

@@ -213,7 +213,7 @@ TiltedPlane TiltedFilm::plane(double time) const noexcept {
   return result;
 }
 
-TwoPlaneRayDerivatives TiltedFilm::line(const FilmPoint& film, double u, double v, std::size_t wavelength,
+TwoPlaneRayDerivatives TiltedFilm::line(const FilmPoint& film, double u, double v, Wavelength wavelength,
                                         double time) const noexcept {
   const VirtualPoint from = differentiated(plane(time), film);
   const PupilSample at = pupils_.sample(from.point(), u, v, wavelength);

@@ -73,6 +73,10 @@ struct SpectralPlace {
   R scale = 0, offset = 0;      ///< t = scale / nm - offset, clamped; both 0 for one wavelength
 
   bool covers(double nm) const noexcept { return nm >= double{shortest} && nm <= double{longest}; }
+  R at(R nm) const noexcept {
+    const R t = scale / nm - offset;
+    return t < R(1) ? (t > R(-1) ? t : R(-1)) : R(1);
+  }
 };
 
 /// The square of a medium's index at any wavelength: a polynomial of t. The square, because refraction needs it, and

@@ -39,17 +39,22 @@ SquaredIndex<double> through(const std::array<double, terms>& values) {
 
 }  // namespace
 
-Spectrum::Spectrum(std::span<const double> wavelengths_nm)
-    : compiled_nm_(wavelengths_nm.begin(), wavelengths_nm.end()) {
+kernel::SpectralPlace<double> spectral_place(std::span<const double> wavelengths_nm) {
   constexpr double rounding = 1.2e-7;  // of floats
-  const auto [shortest, longest] = std::minmax_element(compiled_nm_.begin(), compiled_nm_.end());
-  place_.shortest = *shortest * (1 - rounding);
-  place_.longest = *longest * (1 + rounding);
-  if (*shortest == *longest) return;
+  kernel::SpectralPlace<double> result;
+  if (wavelengths_nm.empty()) return result;
+  const auto [shortest, longest] = std::minmax_element(wavelengths_nm.begin(), wavelengths_nm.end());
+  result.shortest = *shortest * (1 - rounding);
+  result.longest = *longest * (1 + rounding);
+  if (*shortest == *longest) return result;
   const double from = 1 / *longest, to = 1 / *shortest;
-  place_.scale = 2 / (to - from);
-  place_.offset = (to + from) / (to - from);
+  result.scale = 2 / (to - from);
+  result.offset = (to + from) / (to - from);
+  return result;
 }
+
+Spectrum::Spectrum(std::span<const double> wavelengths_nm)
+    : compiled_nm_(wavelengths_nm.begin(), wavelengths_nm.end()), place_(spectral_place(wavelengths_nm)) {}
 
 void Spectrum::add(const std::function<double(double)>& index_at) {
   media_.emplace_back();
@@ -92,7 +97,7 @@ void Spectrum::add(const std::function<double(double)>& index_at) {
 }
 
 double Spectrum::index(std::size_t space, double nm) const noexcept {
-  const double t = std::clamp(place_.scale / nm - place_.offset, -1.0, 1.0);
+  const double t = place_.at(nm);
   return std::sqrt(media_[space].at(t, t * t, t * t * (t * t)));
 }
 

@@ -10,6 +10,9 @@
 
 namespace petzval::inline v0::lens_detail {
 
+/// The range of some wavelengths, by the rounding of a float wider.
+kernel::SpectralPlace<double> spectral_place(std::span<const double> wavelengths_nm);
+
 /// The media of a lens at every wavelength from the smallest to the largest compiled one. Polynomials are fitted to the
 /// dispersion formulas themselves, at Chebyshev nodes of the range, so that neither number nor spacing of the compiled
 /// wavelengths matters.

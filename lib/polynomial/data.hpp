@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <vector>
 
+#include "lens/between_wavelengths.hpp"
 #include "loops.hpp"
 #include "petzval/polynomial/ray_polynomial.hpp"
 
@@ -19,10 +22,20 @@ struct RayPolynomial::Data {
   Domain domain;
   std::vector<Fit> fits;
   std::size_t primary;  ///< position of the primary wavelength
+  lens_detail::CompiledWavelengths wavelengths;
+  std::vector<std::uint16_t> positions;  ///< of fits, by rank
   In<float> in_float{};
   In<double> in_double{};
 
   Data(int degree, const Domain& domain, std::vector<Fit> fits, std::optional<std::size_t> primary);
+
+  /// The coefficients at a wavelength, null where there are none. nm: memory for those of a wavelength in nm.
+  template <class R>
+  struct Room {
+    std::array<R, 4 * polynomial_detail::most_terms> coefficients;
+  };
+  template <class R>
+  const R* coefficients(Wavelength wavelength, Room<R>& nm) const noexcept;
 
   /// Position of the degree in the tables of loops.
   std::size_t loop() const noexcept { return static_cast<std::size_t>(degree - 3) / 2; }
@@ -49,4 +62,26 @@ const ToSceneLoops<R>& to_scene_loops() noexcept {
 }
 
 }  // namespace polynomial_detail
+
+template <class R>
+const R* RayPolynomial::Data::coefficients(Wavelength wavelength, Room<R>& room) const noexcept {
+  const std::vector<R>& all = polynomial_detail::in<R>(*this).coefficients;
+  const std::size_t each = all.size() / fits.size();
+  const auto nm = wavelength.in_nm();
+  if (!nm) {
+    const std::size_t position = wavelength.position(primary);
+    return position < fits.size() ? all.data() + position * each : nullptr;
+  }
+  if (!wavelengths.covers(*nm)) return nullptr;
+  const auto [first, weights] = wavelengths.about(*nm);
+  room.coefficients.fill(R(0));
+  for (std::size_t k = 0; k < weights.size(); ++k) {
+    if (weights[k] == 0) continue;
+    const R* own = all.data() + wavelengths.position(first + k) * each;
+    const R weight = static_cast<R>(weights[k]);
+    for (std::size_t i = 0; i < each; ++i) room.coefficients[i] += weight * own[i];
+  }
+  return room.coefficients.data();
+}
+
 }  // namespace petzval::inline v0

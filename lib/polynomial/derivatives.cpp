@@ -37,10 +37,11 @@ constexpr std::array<Evaluate, polynomial_detail::degree_count> evaluators{evalu
 }  // namespace
 
 RayDerivatives RayPolynomial::to_scene(const TwoPlaneRayDerivatives& line, Wavelength at) const noexcept {
-  const std::size_t wavelength = at.position(data_->primary);
+  Data::Room<double> room;
+  const double* coefficients = data_->coefficients(at, room);
   const Domain& domain = data_->domain;
   RayDerivatives result{RayFate::outside_fit, {{0, 0, domain.reference_z}, {0, 0, -1}}};
-  if (wavelength >= data_->fits.size()) return result;
+  if (!coefficients) return result;
   const auto jet = [&](double TwoPlaneRay::*part, double scale) {
     Jet x(line.line.*part * scale);
     x.v[0] = line.by_u.*part * scale;
@@ -54,9 +55,7 @@ RayDerivatives RayPolynomial::to_scene(const TwoPlaneRayDerivatives& line, Wavel
   if (!(dot(f, f).a <= polynomial_detail::within_domain && dot(p, p).a <= polynomial_detail::within_domain))
     return result;
 
-  const auto& in = data_->in_double;
-  const std::size_t per_fit = in.coefficients.size() / data_->fits.size();
-  const auto [s, o] = evaluators[data_->loop()](in.coefficients.data() + wavelength * per_fit, f, p);
+  const auto [s, o] = evaluators[data_->loop()](coefficients, f, p);
   const Jet square = dot(s, s), twice = 2.0 / (square + 1.0), along = twice * dot(s, o);
   const Jet x = o.x - s.x * along, y = o.y - s.y * along, z = along + domain.reference_z;
   const Jet dx = twice * s.x, dy = twice * s.y, dz = twice * (square - 1.0) / 2.0;

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 
 #include "core/widest.hpp"
 #include "petzval/core/ray.hpp"
@@ -14,6 +15,8 @@ namespace petzval::inline v0::polynomial_detail {
 
 /// Degrees 3, 5, 7, 9, 11.
 inline constexpr std::size_t degree_count = 5;
+/// Coefficients of one sum of degree 11.
+inline constexpr std::size_t most_terms = 56;
 
 /// The constants of a domain, rounded once from double.
 template <class R>
@@ -23,6 +26,14 @@ struct Scales {
 
 /// Limit of u and w, squares of lengths of at most 1: lines on the rim of the domain belong to it in float too.
 inline constexpr double within_domain = 1 + 1e-5;
+
+/// Fits that are mixed for each ray: `weights` of those at the ranks from `first` on, by ray and then by rank.
+template <class R>
+struct MixedFits {
+  const std::uint16_t* positions = nullptr;  ///< of the fits, by rank
+  const std::int32_t* first = nullptr;       ///< of each ray; null: rays have fits of their own; negative: no fit
+  const R* weights = nullptr;                ///< four of each ray
+};
 
 template <class R>
 struct ToSceneJob {
@@ -34,6 +45,7 @@ struct ToSceneJob {
   RayWavelengths wavelengths;
   RayArrays<R> rays;
   RayFate* fates;
+  MixedFits<R> mixed{};  ///< instead of wavelengths
 };
 
 template <class R>

@@ -2,7 +2,9 @@
 #include "petzval/polynomial/ray_polynomial.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <iterator>
 #include <string>
 #include <utility>
@@ -94,6 +96,12 @@ RayPolynomial::Data::Data(int of_degree, const Domain& of_domain, std::vector<Fi
     throw Error("polynomial: primary_wavelength is " + std::to_string(primary) + ", wanted one of " +
                 std::to_string(fits.size()));
   }
+  std::vector<double> nm;
+  for (const Fit& fit : fits) nm.push_back(fit.wavelength_nm);
+  wavelengths = lens_detail::CompiledWavelengths(nm);
+  for (std::size_t rank = 0; rank < fits.size(); ++rank) {
+    positions.push_back(static_cast<std::uint16_t>(wavelengths.position(rank)));
+  }
   round_to<float>(in_float, domain, fits);
   round_to<double>(in_double, domain, fits);
 }
@@ -121,9 +129,41 @@ std::size_t RayPolynomial::primary_wavelength() const noexcept { return data_->p
 template <class T>
 void RayPolynomial::to_scene(std::size_t count, const TwoPlaneRays<const T>& lines, const RayWavelengths& wavelengths,
                              const RayArrays<T>& rays, RayFate* fates) const noexcept {
-  const auto& in = polynomial_detail::in<T>(*data_);
-  polynomial_detail::to_scene_loops<T>()[data_->loop()](
-      {in.coefficients.data(), data_->fits.size(), data_->primary, in.scales, count, lines, wavelengths, rays, fates});
+  const Data& data = *data_;
+  const auto& in = polynomial_detail::in<T>(data);
+  const auto to_scene = polynomial_detail::to_scene_loops<T>()[data.loop()];
+  if (!wavelengths.each_nm) {
+    Data::Room<T> room;
+    const bool blended = wavelengths.in_nm();
+    const T* own = blended ? data.coefficients(wavelengths.all, room) : nullptr;
+    to_scene({own ? own : in.coefficients.data(), data.fits.size(), data.primary, in.scales, count, lines,
+              own ? RayWavelengths{0} : wavelengths, rays, fates});
+    return;
+  }
+  // Fits and their weights, block by block.
+  constexpr std::size_t block = 64;
+  std::array<std::int32_t, block> first;
+  std::array<T, 4 * block> weights;
+  for (std::size_t begin = 0; begin < count; begin += block) {
+    const std::size_t n = std::min(block, count - begin);
+    for (std::size_t i = 0; i < n; ++i) {
+      const double nm{wavelengths.each_nm[begin + i]};
+      const bool covered = data.wavelengths.covers(nm);
+      const auto about = covered ? data.wavelengths.about(nm) : lens_detail::CompiledWavelengths::Neighbours{};
+      first[i] = covered ? static_cast<std::int32_t>(about.first) : -1;
+      for (std::size_t k = 0; k < 4; ++k) weights[4 * i + k] = static_cast<T>(about.weights[k]);
+    }
+    to_scene({in.coefficients.data(),
+              data.fits.size(),
+              data.primary,
+              in.scales,
+              n,
+              lines.from(begin),
+              {},
+              {rays.x + begin, rays.y + begin, rays.z + begin, rays.dx + begin, rays.dy + begin, rays.dz + begin},
+              fates + begin,
+              {data.positions.data(), first.data(), weights.data()}});
+  }
 }
 
 template PETZVAL_API void RayPolynomial::to_scene<float>(std::size_t, const TwoPlaneRays<const float>&,

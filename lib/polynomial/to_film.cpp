@@ -113,19 +113,17 @@ constexpr std::array<Solve, polynomial_detail::degree_count> solvers{solve<1>, s
 
 void RayPolynomial::to_film(std::size_t count, const RayArrays<const double>& rays, const RayWavelengths& wavelengths,
                             const TwoPlaneRays<double>& lines, RayFate* fates) const noexcept {
-  const auto& in = data_->in_double;
   const Solve solve = solvers[data_->loop()];
-  const std::size_t per_fit = in.coefficients.size() / data_->fits.size();
   const Domain& domain = data_->domain;
   for (std::size_t i = 0; i < count; ++i) {
     const Vec3<double> direction(-rays.dx[i], -rays.dy[i], -rays.dz[i]);
     const Vec3<double> point(rays.x[i], rays.y[i], rays.z[i] - domain.reference_z);
     const SceneLine line = polynomial_detail::scene_line(direction, point);
     Place x;
-    const std::size_t wavelength = wavelengths.position(i, data_->primary);
+    Data::Room<double> room;
+    const double* coefficients = data_->coefficients(wavelengths.at(i), room);
     const double length = direction.x * direction.x + direction.y * direction.y + direction.z * direction.z;
-    const bool found = std::abs(length - 1) < 1e-3 && wavelength < data_->fits.size() &&
-                       solve(in.coefficients.data() + wavelength * per_fit, line, x);
+    const bool found = std::abs(length - 1) < 1e-3 && coefficients && solve(coefficients, line, x);
     if (!found) x.setZero();
     lines.film_x[i] = x[0] * domain.film_radius;
     lines.film_y[i] = x[1] * domain.film_radius;

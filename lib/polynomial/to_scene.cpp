@@ -60,6 +60,45 @@ PETZVAL_INLINE Sums<R> mixed_sums(const ToSceneJob<R>& job, const std::uint16_t*
   return result;
 }
 
+/// The same for lanes between the wavelengths of fits: every fit that has a weight in a lane is evaluated for all.
+template <int n, class R, class Values>
+PETZVAL_INLINE Sums<R> blended_sums(const ToSceneJob<R>& job, std::size_t o, std::size_t count, const Values& u,
+                                    const Values& v, const Values& w, typename Native<R>::Bits& known) noexcept {
+  using Bit = typename Native<R>::Bit;
+  constexpr std::size_t lanes = lane_count<R>;
+  constexpr Bit each = 4;
+  const MixedFits<R>& mixed = job.mixed;
+  Bit first[lanes], lowest = static_cast<Bit>(job.fits), highest = -1;
+  for (std::size_t l = 0; l < lanes; ++l) {
+    first[l] = l < count ? mixed.first[o + l] : -1;
+    lowest = first[l] >= 0 && first[l] < lowest ? first[l] : lowest;
+    highest = first[l] > highest ? first[l] : highest;
+  }
+  typename Native<R>::Bits from;
+  __builtin_memcpy(&from, first, sizeof from);
+  known = from >= 0;
+  Sums<R> result;
+  for (Bit rank = lowest; rank < highest + each && rank < static_cast<Bit>(job.fits); ++rank) {
+    R weights[lanes];
+    bool any = false;
+    for (std::size_t l = 0; l < lanes; ++l) {
+      const Bit k = rank - first[l];
+      const bool has = first[l] >= 0 && k >= 0 && k < each;
+      weights[l] = has ? mixed.weights[each * static_cast<Bit>(o + l) + k] : R(0);
+      any |= weights[l] != R(0);
+    }
+    if (!any) continue;
+    Values weight;
+    __builtin_memcpy(&weight, weights, sizeof weight);
+    const Sums<R> found = sums<n, R>(job.coefficients + 4 * term_count(n) * mixed.positions[rank], u, v, w);
+    result.a += weight * found.a;
+    result.b += weight * found.b;
+    result.by_film += weight * found.by_film;
+    result.by_pupil += weight * found.by_pupil;
+  }
+  return result;
+}
+
 /// `count` rays, at most as many as there are lanes.
 template <int n, class R>
 PETZVAL_INLINE void map_lanes(const ToSceneJob<R>& job, std::size_t o, std::size_t count) noexcept {
@@ -78,7 +117,11 @@ PETZVAL_INLINE void map_lanes(const ToSceneJob<R>& job, std::size_t o, std::size
   typename Native<R>::Bits inside = (u <= static_cast<R>(within_domain)) & (w <= static_cast<R>(within_domain));
 
   Sums<R> polynomials;
-  if (job.wavelengths.each) {
+  if (job.mixed.first) {
+    typename Native<R>::Bits known;
+    polynomials = blended_sums<n, R>(job, o, count, u, v, w, known);
+    inside &= known;
+  } else if (job.wavelengths.each) {
     typename Native<R>::Bits known;
     polynomials = mixed_sums<n, R>(job, job.wavelengths.each + o, count, u, v, w, known);
     inside &= known;

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "entrance_grid.hpp"
+#include "lens/between_wavelengths.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/pupil_plane.hpp"
@@ -83,6 +84,7 @@ struct EntrancePupilTable::Data {
   double front_half = 0, steepest = 0;  // steepest: largest reciprocal distance of the table, 1/mm
   std::vector<Table> tables;
   std::size_t primary = 0;
+  lens_detail::CompiledWavelengths compiled;
 
   explicit Data(const Lens& l) : lens(l) {}
 
@@ -112,6 +114,8 @@ struct EntrancePupilTable::Data {
   double farthest(const std::vector<Ray<double>>& rays, double z) const noexcept;
   /// The place on the axis with the least ball that all rays meet.
   double least_ball(std::span<const std::vector<Ray<double>>> rays, double first, double last) const noexcept;
+  /// Makes the pupils of each wavelength contain those of wavelengths up to the middles between it and its neighbours.
+  void expand_to_neighbours();
   void fill(Table& table, const std::vector<Ray<double>>& rays, std::size_t wavelength, const ScenePassing& passing,
             ClippedBy clipped_by) const;
 
@@ -130,15 +134,30 @@ struct EntrancePupilTable::Data {
                           {(1 - down) * (1 - right), (1 - down) * right, down * (1 - right), down * right}};
   }
   /// The pupil of a point, empty for a field beyond the table.
-  PupilPolygon polygon_at(const Table& table, const Bearing& bearing, double reciprocal) const noexcept {
-    if (table.grid) return table.grid->polygon(bearing, reciprocal);
-    const auto at = weights_of(table, bearing.field, reciprocal);
+  PupilPolygon polygon_at(const Table& table, double field, double reciprocal) const noexcept {
+    const auto at = weights_of(table, field, reciprocal);
     return at ? interpolated(table.polygons, *at) : PupilPolygon{};
+  }
+  PupilPolygon polygon_at(const Table& table, const Bearing& bearing, double reciprocal,
+                          Wavelength wavelength) const noexcept {
+    if (!table.grid) return polygon_at(table, bearing.field, reciprocal);
+    PupilPolygon polygon = table.grid->polygon(bearing, reciprocal);
+    if (!wavelength.in_nm()) return polygon;
+    // Polygons of grids are no larger than those of their own wavelengths.
+    for (std::size_t r = 0; r < compiled.count(); ++r) {
+      if (&tables[compiled.position(r)] != &table) continue;
+      for (const std::size_t beside : {r - 1, r + 1}) {
+        const Table* const other = beside < compiled.count() ? &tables[compiled.position(beside)] : nullptr;
+        if (other && other->grid) expand_towards(polygon, other->grid->polygon(bearing, reciprocal));
+      }
+    }
+    return polygon;
   }
 
   /// The table to use for a point, its place seen from the centre; none where nothing can be seen.
   const Table* table_for(const Vec3<double>& point, Wavelength at) const noexcept {
-    const std::size_t wavelength = at.position(primary);
+    const auto nm = at.in_nm();
+    const std::size_t wavelength = nm ? compiled.nearest(*nm) : at.position(primary);
     if (!(wavelength < tables.size()) || !(tables[wavelength].ball > 0)) return nullptr;
     return in_front(point) ? &tables[wavelength] : nullptr;
   }
@@ -172,6 +191,27 @@ double EntrancePupilTable::Data::least_ball(std::span<const std::vector<Ray<doub
     }
   }
   return (first + last) / 2;
+}
+
+void EntrancePupilTable::Data::expand_to_neighbours() {
+  const std::vector<Table> own = tables;
+  const auto expand = [&](std::size_t w, const Table& other) {
+    Table& table = tables[w];
+    if (table.polygons.empty() || other.polygons.empty()) return;
+    for (std::size_t i = 0; i < distances; ++i) {
+      for (std::size_t j = 0; j < fields; ++j) {
+        // Of the same field, or the other's last.
+        const double field = std::min(table.widest[i] * static_cast<double>(j) / field_steps, other.widest[i]);
+        const double reciprocal = steepest * static_cast<double>(i) / distance_steps;
+        expand_towards(table.polygons[i * fields + j], polygon_at(other, field, reciprocal));
+      }
+    }
+  };
+  for (std::size_t r = 0; r + 1 < compiled.count(); ++r) {
+    const std::size_t w = compiled.position(r), next = compiled.position(r + 1);
+    expand(w, own[next]);
+    expand(next, own[w]);
+  }
 }
 
 void EntrancePupilTable::Data::fill(Table& table, const std::vector<Ray<double>>& rays, std::size_t wavelength,
@@ -303,6 +343,7 @@ EntrancePupilTable::EntrancePupilTable(const Lens& lens, std::span<const std::ve
                                        const ScenePassing& passing, ClippedBy clipped_by) {
   auto data = std::make_shared<Data>(lens);
   data->primary = lens.primary_wavelength();
+  data->compiled = lens_detail::CompiledWavelengths(lens.wavelengths_nm());
   const Pupil entrance = pupils(lens, lens.primary_wavelength()).entrance;
   const pupil_detail::Face face = pupil_detail::face_of(lens, 0, entrance);
   data->front_half = face.half;
@@ -337,6 +378,7 @@ EntrancePupilTable::EntrancePupilTable(const Lens& lens, std::span<const std::ve
       if (table.grid->empty()) table.grid.reset();
     }
   }
+  if (data->compiled.count() == data->tables.size()) data->expand_to_neighbours();
   data_ = std::move(data);
 }
 
@@ -353,7 +395,7 @@ void EntrancePupilTable::sample(const Vec3<double>& point, std::size_t count, co
   const PupilPlane plane = data_->plane_facing(bearing, 1 / distance);
 
   if (data_->covers(*table, distance)) {
-    const PupilPolygon polygon = data_->polygon_at(*table, bearing, 1 / distance);
+    const PupilPolygon polygon = data_->polygon_at(*table, bearing, 1 / distance, wavelength);
     const PolygonSampler sampler(polygon);
     if (!(sampler.area() > 0)) return;
     for (std::size_t i = 0; i < count; ++i) {
@@ -396,7 +438,7 @@ double EntrancePupilTable::pdf(const Vec3<double>& point, const Vec3<double>& di
   if (data_->covers(*table, distance)) {
     if (!(cosine > 0)) return 0;
     const Vec2<double> met = plane.meet({point, direction}), place = table->grid ? bearing.in_quadrant(met) : met;
-    const PupilPolygon polygon = data_->polygon_at(*table, bearing, 1 / distance);
+    const PupilPolygon polygon = data_->polygon_at(*table, bearing, 1 / distance, wavelength);
     const double way = polygon.way_to(place.x, place.y);
     if (!(way >= 0 && way <= 1)) return 0;
     return squared(distance) / (polygon.area() * cosine * squared(cosine));

@@ -16,6 +16,7 @@
 #include "film_polygons.hpp"
 #include "film_pupil_table_loops.hpp"
 #include "iris_images.hpp"
+#include "lens/between_wavelengths.hpp"
 #include "petzval/core/error.hpp"
 #include "polygon_place.hpp"
 
@@ -60,9 +61,10 @@ struct FilmPupilTable::Data {
   TwoPlanes space;
   double film_radius = 0;
   std::size_t wavelengths = 0, primary = 0;
-  std::optional<IrisImages> images;  // instead of strips
-  std::optional<FilmCells> cells;    // instead of strips
-  double lit_radius = 0;             // to which the strips reach: beyond it is dark
+  lens_detail::CompiledWavelengths compiled;  // for samples by nm
+  std::optional<IrisImages> images;           // instead of strips
+  std::optional<FilmCells> cells;             // instead of strips
+  double lit_radius = 0;                      // to which the strips reach: beyond it is dark
   std::size_t strips_each = 0;
   bool obscured = false;
   int corrections = 0;
@@ -117,8 +119,28 @@ struct FilmPupilTable::Data {
 
     InStrip<double> polygon() const noexcept { return {strip, t}; }
   };
+  /// That of the table to use; none has it for a wavelength that is not covered.
+  std::size_t position(Wavelength at) const noexcept {
+    const auto nm = at.in_nm();
+    return !nm ? at.position(primary) : compiled.covers(*nm) ? compiled.nearest(*nm) : wavelengths;
+  }
+  /// Calls body(begin, count, positions) for parts of N rays whose wavelengths are in nm.
+  template <class Body>
+  void by_nearest(std::size_t count, const RayWavelengths& by_nm, const Body& body) const noexcept {
+    if (!by_nm.each_nm) {
+      body(0, count, RayWavelengths{position(by_nm.all)});
+      return;
+    }
+    constexpr std::size_t block = 256;
+    std::array<std::uint16_t, block> positions;
+    for (std::size_t begin = 0; begin < count; begin += block) {
+      const std::size_t n = std::min(block, count - begin);
+      compiled.nearest(n, by_nm.each_nm + begin, positions.data());
+      body(begin, n, RayWavelengths{.each = positions.data()});
+    }
+  }
   Place find(const FilmPoint& film, Wavelength at_wavelength) const noexcept {
-    const std::size_t wavelength = at_wavelength.position(primary);
+    const std::size_t wavelength = position(at_wavelength);
     const double r = std::sqrt(film.x * film.x + film.y * film.y);
     if (!(r <= lit_radius * (1 + 1e-6)) || wavelength >= wavelengths) return {};
     const double at = r * strips_per_mm();
@@ -154,6 +176,19 @@ double solid_angle(const TwoPlanes& space, const FilmPoint& film, double area, c
   return area * depth2 * sum / around;
 }
 
+/// Makes the pupils of each wavelength contain those up to the middles between it and its neighbours.
+void expand_to_neighbours(const lens_detail::CompiledWavelengths& compiled,
+                          std::vector<std::vector<PupilPolygon>>& polygons) {
+  const std::vector<std::vector<PupilPolygon>> own = polygons;
+  for (std::size_t r = 0; r + 1 < compiled.count(); ++r) {
+    const std::size_t w = compiled.position(r), next = compiled.position(r + 1);
+    for (std::size_t i = 0; i < own[w].size(); ++i) {
+      expand_towards(polygons[w][i], own[next][i]);
+      expand_towards(polygons[next][i], own[w][i]);
+    }
+  }
+}
+
 void check_film_radius(const std::string& where, double film_radius) {
   if (film_radius >= 0 && std::isfinite(film_radius)) return;
   throw Error(where + ": film: its radius is " + to_text(film_radius) + " mm, wanted a finite one, 0 or more");
@@ -168,23 +203,30 @@ FilmPupilTable FilmPupilTable::traced(const Lens& lens, double film_radius, bool
   data->space = two_planes(lens);
   data->film_radius = film_radius;
   data->primary = lens.primary_wavelength();
+  data->compiled = lens_detail::CompiledWavelengths(lens.wavelengths_nm());
   const std::size_t wavelengths = lens.wavelengths_nm().size();
   if (!lens.rotationally_symmetric()) {
     data->wavelengths = wavelengths;
     const FilmGrid grid = film_grid(lens, data->space, film_radius);
     data->cells.emplace(grid, film_radius, data->primary);
+    std::vector<std::vector<PupilPolygon>> polygons;
     for (std::size_t w = 0; w < wavelengths; ++w) {
-      data->cells->add(grid_polygons(lens, data->space, grid, fit, w));
+      polygons.push_back(grid_polygons(lens, data->space, grid, fit, w));
     }
+    if (enclosing) expand_to_neighbours(data->compiled, polygons);
+    for (const auto& own : polygons) data->cells->add(own);
     return FilmPupilTable(std::move(data));
   }
   for (std::size_t w = 0; w < wavelengths && data->lit_radius < film_radius; ++w) {
     const double lit = lit_radius(film_radius, traced_pupils(lens, data->space, w));
     data->lit_radius = std::max(data->lit_radius, lit);
   }
+  std::vector<std::vector<PupilPolygon>> polygons;
   for (std::size_t w = 0; w < wavelengths; ++w) {
-    data->add(film_polygons(data->lit_radius, fit, traced_pupils(lens, data->space, w)));
+    polygons.push_back(film_polygons(data->lit_radius, fit, traced_pupils(lens, data->space, w)));
   }
+  if (enclosing) expand_to_neighbours(data->compiled, polygons);
+  for (const auto& own : polygons) data->add(own);
   return FilmPupilTable(std::move(data));
 }
 
@@ -201,10 +243,12 @@ FilmPupilTable FilmPupilTable::equal_area(const Lens& lens, double film_radius) 
 }
 
 FilmPupilTable FilmPupilTable::of_discs(const TwoPlanes& space, std::span<const std::vector<PupilDisc>> discs,
-                                        double film_radius, std::size_t primary_wavelength) {
+                                        double film_radius, std::size_t primary_wavelength,
+                                        std::span<const double> wavelengths_nm) {
   check_film_radius("pupil table", film_radius);
   auto data = std::make_shared<Data>();
   data->primary = primary_wavelength;
+  data->compiled = lens_detail::CompiledWavelengths(wavelengths_nm);
   data->space = space;
   data->film_radius = data->lit_radius = film_radius;
   for (const std::vector<PupilDisc>& set : discs) data->add(disc_polygons(set, film_radius));
@@ -216,6 +260,7 @@ FilmPupilTable FilmPupilTable::reshaped(std::span<const std::vector<PupilDisc>> 
   data->space = data_->space;
   data->film_radius = data->lit_radius = film_radius();
   data->primary = primary_wavelength();
+  data->compiled = data_->compiled;
   for (std::size_t w = 0; w < discs.size(); ++w) {
     std::vector<PupilPolygon> polygons = disc_polygons(discs[w], film_radius());
     for (std::size_t i = 0; i < polygons.size(); ++i) {
@@ -235,14 +280,16 @@ FilmPupilTable FilmPupilTable::reshaped(std::span<const std::vector<PupilDisc>> 
 }
 
 FilmPupilTable FilmPupilTable::of_iris(const TwoPlanes& space, const Iris& iris, std::span<const PupilImage> images,
-                                       double film_radius, std::size_t primary_wavelength) {
+                                       double film_radius, std::size_t primary_wavelength,
+                                       std::span<const double> wavelengths_nm) {
   check_film_radius("pupil table", film_radius);
   auto data = std::make_shared<Data>();
   data->space = space;
   data->film_radius = film_radius;
   data->wavelengths = images.size();
   data->primary = primary_wavelength;
-  data->images.emplace(iris, images, film_radius, primary_wavelength);
+  data->compiled = lens_detail::CompiledWavelengths(wavelengths_nm);
+  data->images.emplace(iris, images, film_radius, primary_wavelength, data->compiled);
   return FilmPupilTable(std::move(data));
 }
 
@@ -258,6 +305,7 @@ FilmPupilTable FilmPupilTable::for_tilted_film(const FilmTilt& tilt) const {
   if (data_->cells) {  // one pupil that holds all lines
     data->space = space();
     data->primary = data_->primary;
+    data->compiled = data_->compiled;
     data->film_radius = tilt.radius;
     data->wavelengths = wavelengths();
     data->cells.emplace(tilt.radius, data->primary);
@@ -266,6 +314,7 @@ FilmPupilTable FilmPupilTable::for_tilted_film(const FilmTilt& tilt) const {
   }
   data->space = data_->space;
   data->primary = data_->primary;
+  data->compiled = data_->compiled;
   data->film_radius = tilt.radius;
   for (std::size_t w = 0; w < wavelengths() && data->lit_radius < tilt.radius; ++w) {
     const double lit = lit_radius(tilt.radius, tilted_film_pupils(*this, tilt, w));
@@ -281,6 +330,9 @@ const TwoPlanes& FilmPupilTable::space() const noexcept { return data_->space; }
 double FilmPupilTable::film_radius() const noexcept { return data_->film_radius; }
 std::size_t FilmPupilTable::wavelengths() const noexcept { return data_->wavelengths; }
 std::size_t FilmPupilTable::primary_wavelength() const noexcept { return data_->primary; }
+bool FilmPupilTable::covers(Wavelength wavelength) const noexcept {
+  return data_->position(wavelength) < data_->wavelengths;
+}
 
 FilmPupilArrays FilmPupilTable::arrays() const {
   static_assert(L::size == FilmPupilArrays::strip_size && L::obscured == 528 && L::sectors == 8);
@@ -299,8 +351,8 @@ FilmPupilArrays FilmPupilTable::arrays() const {
 }
 
 PupilSample FilmPupilTable::sample(const FilmPoint& film, double u, double v, Wavelength wavelength) const noexcept {
-  if (const auto& images = data_->images) return images->sample(film, u, v, wavelength.position(data_->primary));
-  if (const auto& cells = data_->cells) return cells->sample(film, u, v, wavelength.position(data_->primary));
+  if (const auto& images = data_->images) return images->sample(film, u, v, wavelength);
+  if (const auto& cells = data_->cells) return cells->sample(film, u, v, data_->position(wavelength));
   const auto found = data_->find(film, wavelength);
   if (!found.strip || !(u - u == 0 && v - v == 0)) return {};
   const InStrip<double> polygon = found.polygon();
@@ -315,6 +367,12 @@ PupilSample FilmPupilTable::sample(const FilmPoint& film, double u, double v, Wa
 template <class T>
 void FilmPupilTable::sample(std::size_t count, const T* film_x, const T* film_y, const T* u, const T* v,
                             const RayWavelengths& wavelengths, T* x, T* y, T* areas) const noexcept {
+  if (wavelengths.in_nm() && !data_->images) {
+    data_->by_nearest(count, wavelengths, [&](std::size_t o, std::size_t n, const RayWavelengths& nearest) {
+      sample(n, film_x + o, film_y + o, u + o, v + o, nearest, x + o, y + o, areas + o);
+    });
+    return;
+  }
   if (data_->images) {
     data_->images->sample(count, film_x, film_y, u, v, wavelengths, x, y, areas);
     return;
@@ -335,8 +393,8 @@ void FilmPupilTable::sample(std::size_t count, const T* film_x, const T* film_y,
 }
 
 double FilmPupilTable::area(const FilmPoint& film, Wavelength wavelength) const noexcept {
-  if (const auto& images = data_->images) return images->area(film, wavelength.position(data_->primary));
-  if (const auto& cells = data_->cells) return cells->area(film, wavelength.position(data_->primary));
+  if (const auto& images = data_->images) return images->area(film, wavelength);
+  if (const auto& cells = data_->cells) return cells->area(film, data_->position(wavelength));
   const auto found = data_->find(film, wavelength);
   return found.strip ? std::max(found.polygon().area_before(polygon_corners), 0.0) : 0;
 }
@@ -349,8 +407,8 @@ double FilmPupilTable::projected_solid_angle(const FilmPoint& film, Wavelength w
 }
 
 Vec2<double> FilmPupilTable::middle(const FilmPoint& film, Wavelength wavelength) const noexcept {
-  if (const auto& images = data_->images) return images->middle(film, wavelength.position(data_->primary));
-  if (const auto& cells = data_->cells) return cells->middle(film, wavelength.position(data_->primary));
+  if (const auto& images = data_->images) return images->middle(film, wavelength);
+  if (const auto& cells = data_->cells) return cells->middle(film, data_->position(wavelength));
   const auto [strip, t, cosine, sine] = data_->find(film, wavelength);
   if (!strip) return {0, 0};
   const double y = strip[L::middle_y] + t * strip[L::middle_y + 1];
@@ -358,8 +416,8 @@ Vec2<double> FilmPupilTable::middle(const FilmPoint& film, Wavelength wavelength
 }
 
 bool FilmPupilTable::contains(const FilmPoint& film, double x, double y, Wavelength wavelength) const noexcept {
-  if (const auto& images = data_->images) return images->contains(film, x, y, wavelength.position(data_->primary));
-  if (const auto& cells = data_->cells) return cells->contains(film, x, y, wavelength.position(data_->primary));
+  if (const auto& images = data_->images) return images->contains(film, x, y, wavelength);
+  if (const auto& cells = data_->cells) return cells->contains(film, x, y, data_->position(wavelength));
   const auto [strip, t, cosine, sine] = data_->find(film, wavelength);
   if (!strip) return false;
   return contains_place(InStrip<double>{strip, t}, {cosine * x - sine * y, sine * x + cosine * y});
@@ -368,6 +426,12 @@ bool FilmPupilTable::contains(const FilmPoint& film, double x, double y, Wavelen
 template <class T>
 void FilmPupilTable::contains(std::size_t count, const TwoPlaneRays<const T>& lines, const RayWavelengths& wavelengths,
                               std::uint8_t* within) const noexcept {
+  if (wavelengths.in_nm() && !data_->images) {
+    data_->by_nearest(count, wavelengths, [&](std::size_t o, std::size_t n, const RayWavelengths& nearest) {
+      contains(n, lines.from(o), nearest, within + o);
+    });
+    return;
+  }
   if (data_->images) {
     data_->images->contains(count, lines, wavelengths, within);
     return;
@@ -397,8 +461,8 @@ void FilmPupilTable::contains(std::size_t count, const TwoPlaneRays<const T>& li
 
 FilmPupilTable::Derivatives FilmPupilTable::derivatives(const FilmPoint& film, double u, double v,
                                                         Wavelength wavelength) const noexcept {
-  if (const auto& images = data_->images) return images->derivatives(film, u, v, wavelength.position(data_->primary));
-  if (const auto& cells = data_->cells) return cells->derivatives(film, u, v, wavelength.position(data_->primary));
+  if (const auto& images = data_->images) return images->derivatives(film, u, v, wavelength);
+  if (const auto& cells = data_->cells) return cells->derivatives(film, u, v, data_->position(wavelength));
   using Jet = ceres::Jet<double, 2>;
   if (data_->strips_per_mm() == 0) return {};
   // On the axis the directions around it meet: beside it is near enough.

@@ -2,7 +2,10 @@
 #include "iris_images.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
+#include <vector>
 
 namespace petzval::inline v0::pupil_table_detail {
 namespace {
@@ -11,8 +14,14 @@ constexpr double rounded_up = 1 + 1e-6;  // the corner itself, rounded, still be
 
 }  // namespace
 
-IrisImages::IrisImages(const Iris& iris, std::span<const PupilImage> images, double film_radius, std::size_t primary)
+IrisImages::IrisImages(const Iris& iris, std::span<const PupilImage> images, double film_radius, std::size_t primary,
+                       const lens_detail::CompiledWavelengths& wavelengths)
     : shape_(iris), film_radius_(film_radius), primary_(primary) {
+  if (wavelengths.count() == images.size()) {
+    std::vector<std::array<double, 4>> values;
+    for (const auto& [shift, radius] : images) values.push_back({shift.x, shift.y, radius.x, radius.y});
+    between_ = {wavelengths, values};
+  }
   for (const auto& [shift, radius] : images) {
     twice_.push_back({shift.x, shift.y, radius.x, radius.y, shape_.area() * radius.x * radius.y});
     const auto number = [](double x) { return static_cast<float>(x); };
@@ -55,36 +64,46 @@ IrisImageTable<R> IrisImages::table() const noexcept {
   }
 }
 
-IrisImages::Image IrisImages::image(const FilmPoint& film, std::size_t wavelength) const noexcept {
-  const double reach = film_radius_ * rounded_up, square = film.x * film.x + film.y * film.y;
-  if (!(square <= reach * reach) || wavelength >= twice_.size()) return {};
-  return on_tilted(twice_[wavelength], slope_x_ * film.x + slope_y_ * film.y);
+IrisImages::Image IrisImages::image(Wavelength at) const noexcept {
+  if (const auto nm = at.in_nm()) {
+    if (!between_.covers(*nm)) return {};
+    const auto [shift_x, shift_y, radius_x, radius_y] = between_(*nm);
+    return {shift_x, shift_y, radius_x, radius_y, shape_.area() * radius_x * radius_y};
+  }
+  const std::size_t w = at.position(primary_);
+  return w < twice_.size() ? twice_[w] : Image{};
 }
 
-PupilSample IrisImages::sample(const FilmPoint& film, double u, double v, std::size_t wavelength) const noexcept {
+IrisImages::Image IrisImages::image(const FilmPoint& film, Wavelength wavelength) const noexcept {
+  const double reach = film_radius_ * rounded_up, square = film.x * film.x + film.y * film.y;
+  if (!(square <= reach * reach)) return {};
+  return on_tilted(image(wavelength), slope_x_ * film.x + slope_y_ * film.y);
+}
+
+PupilSample IrisImages::sample(const FilmPoint& film, double u, double v, Wavelength wavelength) const noexcept {
   const Image seen = image(film, wavelength);
   if (!(seen.area > 0 && u - u == 0 && v - v == 0)) return {};
   const Vec2<double> place = shape_.sample(std::clamp(u, 0.0, 1.0), std::clamp(v, 0.0, 1.0));
   return {seen.shift_x * film.x + seen.radius_x * place.x, seen.shift_y * film.y + seen.radius_y * place.y, seen.area};
 }
 
-double IrisImages::area(const FilmPoint& film, std::size_t wavelength) const noexcept {
+double IrisImages::area(const FilmPoint& film, Wavelength wavelength) const noexcept {
   return image(film, wavelength).area;
 }
 
-Vec2<double> IrisImages::middle(const FilmPoint& film, std::size_t wavelength) const noexcept {
+Vec2<double> IrisImages::middle(const FilmPoint& film, Wavelength wavelength) const noexcept {
   const Image seen = image(film, wavelength);
   return {seen.shift_x * film.x, seen.shift_y * film.y};
 }
 
-bool IrisImages::contains(const FilmPoint& film, double x, double y, std::size_t wavelength) const noexcept {
+bool IrisImages::contains(const FilmPoint& film, double x, double y, Wavelength wavelength) const noexcept {
   const Image seen = image(film, wavelength);
   return seen.area > 0 &&
          shape_.contains((x - seen.shift_x * film.x) / seen.radius_x, (y - seen.shift_y * film.y) / seen.radius_y);
 }
 
 FilmPupilTable::Derivatives IrisImages::derivatives(const FilmPoint& film, double u, double v,
-                                                    std::size_t wavelength) const noexcept {
+                                                    Wavelength wavelength) const noexcept {
   // Of part (shift film + radius place), by way of part's own: - part^2 shift slope.
   const auto [x, y, area] = sample(film, u, v, wavelength);
   if (!(area > 0)) return {};
@@ -93,16 +112,49 @@ FilmPupilTable::Derivatives IrisImages::derivatives(const FilmPoint& film, doubl
           {-seen.shift_x * slope_y_ * x, seen.shift_y - seen.shift_y * slope_y_ * y}};
 }
 
-template <class T>
-void IrisImages::sample(std::size_t count, const T* film_x, const T* film_y, const T* u, const T* v,
-                        const RayWavelengths& wavelengths, T* x, T* y, T* areas) const noexcept {
-  iris_images().of<T>().sample(table<T>(), count, film_x, film_y, u, v, wavelengths, x, y, areas);
+template <class R, class Body>
+void IrisImages::by_position(std::size_t count, const RayWavelengths& wavelengths, const Body& body) const noexcept {
+  IrisImageTable<R> own = table<R>();
+  if (!wavelengths.in_nm()) {
+    body(0, count, own, wavelengths);
+    return;
+  }
+  // A table of the images of each ray.
+  constexpr std::size_t block = 256;
+  std::array<ImageSections<R>, block> images;
+  std::array<std::uint16_t, block> each;
+  own.images = images.data();
+  const std::size_t step = wavelengths.each_nm ? block : count;
+  for (std::size_t begin = 0; begin < count; begin += step) {
+    const std::size_t n = std::min(step, count - begin);
+    own.wavelengths = wavelengths.each_nm ? n : 1;
+    for (std::size_t i = 0; i < own.wavelengths; ++i) {
+      const auto number = [](double x) { return static_cast<R>(x); };
+      const Image at = image(wavelengths.at(begin + i));
+      images[i] = {number(at.shift_x), number(at.shift_y), number(at.radius_x), number(at.radius_y), number(at.area)};
+      each[i] = static_cast<std::uint16_t>(i);
+    }
+    body(begin, n, own, wavelengths.each_nm ? RayWavelengths{.each = each.data()} : RayWavelengths{0});
+  }
 }
 
 template <class T>
-void IrisImages::contains(std::size_t count, const TwoPlaneRays<const T>& lines, const RayWavelengths& wavelengths,
+void IrisImages::sample(std::size_t count, const T* film_x, const T* film_y, const T* u, const T* v,
+                        const RayWavelengths& given, T* x, T* y, T* areas) const noexcept {
+  by_position<T>(count, given,
+                 [&](std::size_t o, std::size_t n, const auto& images, const RayWavelengths& wavelengths) {
+                   iris_images().of<T>().sample(images, n, film_x + o, film_y + o, u + o, v + o, wavelengths, x + o,
+                                                y + o, areas + o);
+                 });
+}
+
+template <class T>
+void IrisImages::contains(std::size_t count, const TwoPlaneRays<const T>& lines, const RayWavelengths& given,
                           std::uint8_t* within) const noexcept {
-  iris_images().of<T>().contains(table<T>(), count, lines, wavelengths, within);
+  by_position<T>(count, given,
+                 [&](std::size_t o, std::size_t n, const auto& images, const RayWavelengths& wavelengths) {
+                   iris_images().of<T>().contains(images, n, lines.from(o), wavelengths, within + o);
+                 });
 }
 
 #define PETZVAL_IRIS_IMAGES(T)                                                                                         \

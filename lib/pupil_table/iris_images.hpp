@@ -8,6 +8,7 @@
 
 #include "iris/iris_shape.hpp"
 #include "iris_images_loops.hpp"
+#include "lens/between_wavelengths.hpp"
 #include "petzval/pupil_table/film_pupil_table.hpp"
 
 namespace petzval::inline v0::pupil_table_detail {
@@ -19,7 +20,8 @@ namespace petzval::inline v0::pupil_table_detail {
 /// scaled about the origin, in each section by part = 1 / (1 + shift slope . V).
 class IrisImages {
  public:
-  IrisImages(const Iris& iris, std::span<const PupilImage> images, double film_radius, std::size_t primary);
+  IrisImages(const Iris& iris, std::span<const PupilImage> images, double film_radius, std::size_t primary,
+             const lens_detail::CompiledWavelengths& wavelengths);
 
   /// Those of a tilted film, by virtual film points; for images of an upright one.
   IrisImages tilted(const FilmTilt& tilt) const;
@@ -27,12 +29,12 @@ class IrisImages {
   /// As plain numbers. For images of an upright film.
   void put(FilmPupilArrays& arrays) const;
 
-  PupilSample sample(const FilmPoint& film, double u, double v, std::size_t wavelength) const noexcept;
-  double area(const FilmPoint& film, std::size_t wavelength) const noexcept;
-  Vec2<double> middle(const FilmPoint& film, std::size_t wavelength) const noexcept;
-  bool contains(const FilmPoint& film, double x, double y, std::size_t wavelength) const noexcept;
+  PupilSample sample(const FilmPoint& film, double u, double v, Wavelength wavelength) const noexcept;
+  double area(const FilmPoint& film, Wavelength wavelength) const noexcept;
+  Vec2<double> middle(const FilmPoint& film, Wavelength wavelength) const noexcept;
+  bool contains(const FilmPoint& film, double x, double y, Wavelength wavelength) const noexcept;
   FilmPupilTable::Derivatives derivatives(const FilmPoint& film, double u, double v,
-                                          std::size_t wavelength) const noexcept;
+                                          Wavelength wavelength) const noexcept;
 
   template <class T>
   void sample(std::size_t count, const T* film_x, const T* film_y, const T* u, const T* v,
@@ -44,15 +46,22 @@ class IrisImages {
  private:
   using Image = ImageSections<double>;
   /// The image that a film point sees; area 0: none.
-  Image image(const FilmPoint& film, std::size_t wavelength) const noexcept;
+  Image image(const FilmPoint& film, Wavelength wavelength) const noexcept;
+  /// The image at a wavelength, seen from the axis.
+  Image image(Wavelength wavelength) const noexcept;
   template <class R>
   IrisImageTable<R> table() const noexcept;
+  /// Calls body(begin, count, table, wavelengths) for parts of N rays, with a table in which all wavelengths are
+  /// positions.
+  template <class R, class Body>
+  void by_position(std::size_t count, const RayWavelengths& wavelengths, const Body& body) const noexcept;
 
   iris_detail::IrisShape shape_;
   double film_radius_ = 0, slope_x_ = 0, slope_y_ = 0;
   std::size_t primary_ = 0;
   std::vector<ImageSections<float>> single_;  // by wavelength
   std::vector<Image> twice_;
+  lens_detail::BetweenWavelengths<4> between_;  // shifts and radii
 };
 
 }  // namespace petzval::inline v0::pupil_table_detail

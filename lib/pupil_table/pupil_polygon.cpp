@@ -314,4 +314,46 @@ void expand_to_cover(std::span<PupilPolygon> polygons, std::span<const Interpola
   }
 }
 
+void expand_towards(PupilPolygon& polygon, const PupilPolygon& other) noexcept {
+  if (!(polygon.area() > 0)) {
+    if (other.area() > 0) polygon = other;
+    return;
+  }
+  constexpr double middle = 0.6;  // of the way, with room for edges that move unevenly
+  const PupilPolygon both[2] = {polygon, other};
+  const PupilPolygon between = interpolated(both, {{0, 1, 0, 0}, {1 - middle, middle, 0, 0}});
+  const Place offset = place_of(between.middle) - place_of(polygon.middle);
+  const auto sectors = [&](std::size_t k) { return polygon.sector(k); };
+  std::array<double, polygon_corners> scale;
+  scale.fill(1);
+  std::array<Obscured, polygon_corners> obscured;
+  for (std::size_t k = 0; k < polygon_corners; ++k) {
+    obscured[k] = {polygon.obscured_from[k], polygon.obscured_from[k] + polygon.obscured[k]};
+  }
+  const bool ring = std::any_of(polygon.obscured.begin(), polygon.obscured.end(), [](double w) { return w > 0; });
+  std::size_t facing = 0;
+  for (std::size_t k = 0; k < polygon_corners; ++k) {
+    const Sector<double> edge = between.sector(k);
+    for (const double along : {0.0, 0.5}) {
+      const Place corner = edge.at(1, along), q = corner + offset;
+      const std::size_t found = sector_facing(q, sectors, facing);
+      if (found == polygon_corners) continue;
+      facing = found;
+      const Sector<double> sector = polygon.sector(facing);
+      for (const std::size_t j : {facing, (facing + 1) % polygon_corners}) {
+        scale[j] = std::max(scale[j], scale_for(sector, q));
+      }
+      if (!ring) continue;
+      const double from = edge.obscured_from, to = from + edge.obscured;
+      const Obscured expected{sector.obscured_from, sector.obscured_from + sector.obscured};
+      for (const std::size_t j : {facing, (facing + polygon_corners - 1) % polygon_corners}) {
+        obscured[j].keep(polygon.sector(j), from == 0, std::sqrt(from) * corner + offset,
+                         std::sqrt(to) * corner + offset, expected);
+      }
+    }
+  }
+  for (std::size_t k = 0; k < polygon_corners; ++k) obscured[k].give(polygon, k);
+  stretch(polygon, scale);
+}
+
 }  // namespace petzval::inline v0::pupil_table_detail

@@ -76,4 +76,8 @@ struct InterpolationCheck {
 /// Expands polygons until every check holds.
 void expand_to_cover(std::span<PupilPolygon> polygons, std::span<const InterpolationCheck> checks);
 
+/// Expands the polygon of one wavelength until it contains those of the wavelengths up to the middle between it and a
+/// neighbour, whose pupil at the same place is `other`: edges move evenly with the wavelength, nearly.
+void expand_towards(PupilPolygon& polygon, const PupilPolygon& other) noexcept;
+
 }  // namespace petzval::inline v0::pupil_table_detail

@@ -14,6 +14,8 @@ namespace petzval::inline v0 {
 ///         read_ray_polynomial(path), FilmPupilTable::equal_area(lens, upright_radius(lens, film)))));
 class PolynomialModel {
  public:
+  static constexpr bool any_wavelength = true;
+
   PolynomialModel(RayPolynomial polynomial, FilmPupilTable equal_area)
       : polynomial_(std::move(polynomial)), pupils_(std::move(equal_area)) {}
 
@@ -26,7 +28,7 @@ class PolynomialModel {
     polynomial_.to_scene<T>(count, lines, wavelengths.resolved(pupils_.primary_wavelength()), rays, fates);
   }
   /// One ray with its derivatives.
-  RayDerivatives to_scene(const TwoPlaneRayDerivatives& line, std::size_t wavelength) const noexcept {
+  RayDerivatives to_scene(const TwoPlaneRayDerivatives& line, Wavelength wavelength) const noexcept {
     return polynomial_.to_scene(line, wavelength);
   }
   void to_film(std::size_t count, const RayArrays<const double>& rays, const RayWavelengths& wavelengths,

@@ -22,8 +22,8 @@ namespace petzval::inline v0 {
 ///
 /// An image-space ray is given by its points on two planes: the film, and the plane of the pupils (TwoPlanes). Every
 /// call is const and noexcept, may come from several threads, allocates nothing, and writes every slot of its results
-/// with finite numbers; fates say which rays are lost. Wavelengths are positions; those that the model does not have
-/// give missed_surface.
+/// with finite numbers; fates say which rays are lost. Wavelengths are positions, or for models of any_wavelength also
+/// nm; those that the model does not have give missed_surface.
 ///
 /// Required:
 ///
@@ -37,12 +37,16 @@ namespace petzval::inline v0 {
 ///                                                    decide, and pupils() contain what passes
 ///     static constexpr bool linear_in_slopes         false: the model conserves etendue. true: it is linear in heights
 ///                                                    and slopes and conserves their area, as ideal lenses do
+///     static constexpr bool any_wavelength           false: a camera calls samples at a wavelength in nm invalid.
+///     true:
+///                                                    the model takes it, and so does its table of pupils
 ///     std::span<const double> pinhole_shifts()       empty. Of a pinhole, one for each wavelength: its rays pass the
 ///                                                    plane of the pupils at so many times the film point
 ///     RayFate to_scene(TwoPlaneRay, wavelength,      a batch of one
 ///                      Ray<double>&)
 ///     RayDerivatives to_scene(TwoPlaneRayDerivatives,       central differences of to_scene()
 ///                             wavelength)
+///                                                    wavelength: a position, or a Wavelength for any_wavelength
 ///     ModelKind kind()                               custom
 template <class M>
 concept RayModel = requires(const M& model, std::size_t count, const RayWavelengths& wavelengths, RayFate* fates,
@@ -88,6 +92,7 @@ class AnyRayModel {
   ModelKind kind() const noexcept { return model_->kind; }
   bool clips_at_apertures() const noexcept { return model_->clips_at_apertures; }
   bool linear_in_slopes() const noexcept { return model_->linear_in_slopes; }
+  bool any_wavelength() const noexcept { return model_->any_wavelength; }
   std::span<const double> pinhole_shifts() const noexcept { return model_->pinhole_shifts; }
   bool pinhole() const noexcept { return !pinhole_shifts().empty(); }
 
@@ -97,10 +102,10 @@ class AnyRayModel {
                 const RayArrays<T>& rays, RayFate* fates) const noexcept {
     model_->to_scene(count, film_rays, wavelengths, rays, fates);
   }
-  RayFate to_scene(const TwoPlaneRay& film_ray, std::size_t wavelength, Ray<double>& ray) const noexcept {
+  RayFate to_scene(const TwoPlaneRay& film_ray, Wavelength wavelength, Ray<double>& ray) const noexcept {
     return model_->to_scene(film_ray, wavelength, ray);
   }
-  RayDerivatives to_scene(const TwoPlaneRayDerivatives& film_ray, std::size_t wavelength) const noexcept {
+  RayDerivatives to_scene(const TwoPlaneRayDerivatives& film_ray, Wavelength wavelength) const noexcept {
     return model_->to_scene(film_ray, wavelength);
   }
   void to_film(std::size_t count, const RayArrays<const double>& rays, const RayWavelengths& wavelengths,
@@ -111,7 +116,7 @@ class AnyRayModel {
  private:
   struct Interface {
     ModelKind kind = ModelKind::custom;
-    bool clips_at_apertures = false, linear_in_slopes = false;
+    bool clips_at_apertures = false, linear_in_slopes = false, any_wavelength = false;
     const FilmPupilTable* pupils = nullptr;  ///< the model's
     std::span<const double> pinhole_shifts;
 
@@ -122,12 +127,15 @@ class AnyRayModel {
                           const RayArrays<double>&, RayFate*) const noexcept = 0;
     virtual void to_film(std::size_t, const RayArrays<const double>&, const RayWavelengths&,
                          const TwoPlaneRays<double>&, RayFate*) const noexcept = 0;
-    virtual RayFate to_scene(const TwoPlaneRay&, std::size_t wavelength, Ray<double>&) const noexcept = 0;
-    virtual RayDerivatives to_scene(const TwoPlaneRayDerivatives&, std::size_t wavelength) const noexcept = 0;
+    virtual RayFate to_scene(const TwoPlaneRay&, Wavelength, Ray<double>&) const noexcept = 0;
+    virtual RayDerivatives to_scene(const TwoPlaneRayDerivatives&, Wavelength) const noexcept = 0;
 
+    std::size_t position(Wavelength wavelength) const noexcept {
+      return wavelength.position(pupils->primary_wavelength());
+    }
     /// What models without the optional members get.
-    PETZVAL_API RayFate batch_of_one(const TwoPlaneRay&, std::size_t wavelength, Ray<double>&) const noexcept;
-    PETZVAL_API RayDerivatives differences(const TwoPlaneRayDerivatives&, std::size_t wavelength) const noexcept;
+    PETZVAL_API RayFate batch_of_one(const TwoPlaneRay&, Wavelength, Ray<double>&) const noexcept;
+    PETZVAL_API RayDerivatives differences(const TwoPlaneRayDerivatives&, Wavelength) const noexcept;
   };
 
   template <class M>
@@ -140,6 +148,7 @@ class AnyRayModel {
       if constexpr (requires { model.pinhole_shifts(); }) this->pinhole_shifts = model.pinhole_shifts();
       if constexpr (requires { M::clips_at_apertures; }) this->clips_at_apertures = M::clips_at_apertures;
       if constexpr (requires { M::linear_in_slopes; }) this->linear_in_slopes = M::linear_in_slopes;
+      if constexpr (requires { M::any_wavelength; }) this->any_wavelength = M::any_wavelength;
     }
     void to_scene(std::size_t count, const TwoPlaneRays<const float>& film_rays, const RayWavelengths& wavelengths,
                   const RayArrays<float>& rays, RayFate* fates) const noexcept override {
@@ -153,20 +162,30 @@ class AnyRayModel {
                  const TwoPlaneRays<double>& film_rays, RayFate* fates) const noexcept override {
       model.to_film(count, rays, wavelengths, film_rays, fates);
     }
-    RayFate to_scene(const TwoPlaneRay& film_ray, std::size_t wavelength, Ray<double>& ray) const noexcept override {
+    RayFate to_scene(const TwoPlaneRay& film_ray, Wavelength wavelength, Ray<double>& ray) const noexcept override {
+      const std::size_t position = this->position(wavelength);
       if constexpr (requires {
                       { model.to_scene(film_ray, wavelength, ray) } -> std::same_as<RayFate>;
                     }) {
         return model.to_scene(film_ray, wavelength, ray);
+      } else if constexpr (requires {
+                             { model.to_scene(film_ray, position, ray) } -> std::same_as<RayFate>;
+                           }) {
+        return model.to_scene(film_ray, position, ray);
       } else {
         return this->batch_of_one(film_ray, wavelength, ray);
       }
     }
-    RayDerivatives to_scene(const TwoPlaneRayDerivatives& film_ray, std::size_t wavelength) const noexcept override {
+    RayDerivatives to_scene(const TwoPlaneRayDerivatives& film_ray, Wavelength wavelength) const noexcept override {
+      const std::size_t position = this->position(wavelength);
       if constexpr (requires {
                       { model.to_scene(film_ray, wavelength) } -> std::same_as<RayDerivatives>;
                     }) {
         return model.to_scene(film_ray, wavelength);
+      } else if constexpr (requires {
+                             { model.to_scene(film_ray, position) } -> std::same_as<RayDerivatives>;
+                           }) {
+        return model.to_scene(film_ray, position);
       } else {
         return this->differences(film_ray, wavelength);
       }

@@ -24,25 +24,29 @@ namespace petzval::inline v0 {
 class Wavelength {
  public:
   constexpr Wavelength() noexcept = default;
-  constexpr Wavelength(std::size_t position) noexcept : position_(position < primary ? position : primary - 1) {}
-  static constexpr Wavelength nm(double nm) noexcept { return Wavelength(nm, true); }
+  constexpr Wavelength(std::size_t position) noexcept : position_(position < by_nm ? position : none) {}
+  static constexpr Wavelength nm(double nm) noexcept {
+    Wavelength result;
+    result.position_ = by_nm;
+    result.nm_ = nm;
+    return result;
+  }
 
   /// The position, for a lens whose primary wavelength stands at `of_primary`. Positions are not checked. Of one in nm,
-  /// the largest, which no lens has: Lens::position() looks it up.
+  /// a position that no lens has: Lens::position() looks it up.
   constexpr std::size_t position(std::size_t of_primary) const noexcept {
-    return position_ == primary ? of_primary : position_;
+    return position_ == primary ? of_primary : position_ == by_nm ? none : position_;
   }
   /// What was given in nm.
-  constexpr std::optional<double> in_nm() const noexcept { return by_nm_ ? std::optional(nm_) : std::nullopt; }
+  constexpr std::optional<double> in_nm() const noexcept {
+    return position_ == by_nm ? std::optional(nm_) : std::nullopt;
+  }
 
  private:
-  static constexpr std::size_t primary = static_cast<std::size_t>(-1);
-
-  constexpr Wavelength(double nm, bool by_nm) noexcept : position_(primary - 1), nm_(nm), by_nm_(by_nm) {}
+  static constexpr std::size_t primary = static_cast<std::size_t>(-1), none = primary - 1, by_nm = primary - 2;
 
   std::size_t position_ = primary;
   double nm_ = 0;
-  bool by_nm_ = false;
 };
 
 /// The wavelengths of N rays: one for all, or one each.

@@ -34,6 +34,8 @@ namespace petzval::inline v0 {
 /// Angle errors times focal length of the double Gauss 100 mm f/2 over 80 mm of film: RMS 32, 7.1, 1.17, 0.16 and
 /// 0.022 um for degrees 3 to 11 (tests/polynomial). Float adds up to 4e-7 rad and 3e-5 mm.
 ///
+/// Wavelengths in nm between those of fits get the combination of up to four neighbouring fits: a cubic, in 1 / nm.
+///
 /// Immutable, cheap to copy, free to share between threads.
 class PETZVAL_API RayPolynomial {
  public:

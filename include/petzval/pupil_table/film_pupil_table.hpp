@@ -80,6 +80,12 @@ struct FilmPupilArrays {
 /// continuously with the film point and images show no rings and seams. Areas are exact for the interpolated polygon.
 /// The tables of lenses with cylinders leave out no obscuration.
 ///
+/// A wavelength in nm has the pupils of the nearest compiled one. Those of enclosing() contain the rays of wavelengths
+/// up to the middles between compiled ones, for 0.1 to 1.5 % more samples that are lost where these are 150 nm apart
+/// (tests/pupil_table/any_wavelength_test.cpp). Those of equal_area() step in the middles: with eight wavelengths of
+/// 400 to 700 nm their light is off by up to 0.3 % there, of a fisheye 0.6 % (tests/camera/any_wavelength_test.cpp).
+/// Pupils in closed form are interpolated, within 1e-4.
+///
 /// Immutable, cheap to copy, free to share between threads.
 class PETZVAL_API FilmPupilTable {
  public:
@@ -102,8 +108,10 @@ class PETZVAL_API FilmPupilTable {
   static FilmPupilTable equal_area(const Lens& lens, double film_radius);
 
   /// The same for the overlap of some discs, one list for each wavelength. One disc alone has a closed form: of_iris().
+  /// wavelengths_nm: the wavelengths; without them there are no samples by nm.
   static FilmPupilTable of_discs(const TwoPlanes& space, std::span<const std::vector<PupilDisc>> discs,
-                                 double film_radius, std::size_t primary_wavelength = 0);
+                                 double film_radius, std::size_t primary_wavelength = 0,
+                                 std::span<const double> wavelengths_nm = {});
 
   /// The same film and planes, and pupils that have the shape of an overlap of discs, one list for each wavelength, and
   /// let through as much light as these do: about their middles they are scaled to the same projected_solid_angle().
@@ -113,7 +121,8 @@ class PETZVAL_API FilmPupilTable {
   /// Throws Error for a film_radius that is negative or not finite, and for an iris with edges that do not form a
   /// polygon about the axis with its corners within the rim.
   static FilmPupilTable of_iris(const TwoPlanes& space, const Iris& iris, std::span<const PupilImage> images,
-                                double film_radius, std::size_t primary_wavelength = 0);
+                                double film_radius, std::size_t primary_wavelength = 0,
+                                std::span<const double> wavelengths_nm = {});
 
   /// The pupils of a tilted film, by virtual film points; those of of_iris() are exact for one that does not travel.
   /// They contain every ray of this
@@ -129,12 +138,14 @@ class PETZVAL_API FilmPupilTable {
   const TwoPlanes& space() const noexcept;
   double film_radius() const noexcept;
   std::size_t wavelengths() const noexcept;
+  /// Whether there are samples at a wavelength: by a position, or by nm within the range of the wavelengths.
+  bool covers(Wavelength wavelength) const noexcept;
   /// Position of the lens's primary wavelength, the default of all calls.
   std::size_t primary_wavelength() const noexcept;
 
   /// A uniform sample of the pupil of a film point, for u and v in [0, 1] (clamped). u runs around the middle, from the
   /// lens's +y, so that samples of neighbouring points are neighbours; v runs outwards. Area 0 for points outside the
-  /// film's radius, numbers that are not finite and wavelengths that are not in the table.
+  /// film's radius, numbers that are not finite and wavelengths that the table does not cover.
   PupilSample sample(const FilmPoint& film, double u, double v, Wavelength wavelength = {}) const noexcept;
   /// The same for many: film_x, film_y, u, v, x, y and areas: N each; x and y may be u and v. Float or double.
   template <class T>

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "between_wavelengths.hpp"
+
+#include <cmath>
+
+#include "spectrum.hpp"
+
+namespace petzval::inline v0::lens_detail {
+namespace {
+
+constexpr std::size_t most_nodes = 4;
+
+}  // namespace
+
+CompiledWavelengths::CompiledWavelengths(std::span<const double> wavelengths_nm)
+    : place_(spectral_place(wavelengths_nm)) {
+  for (std::size_t w = 0; w < wavelengths_nm.size(); ++w) {
+    ranked_.push_back({wavelengths_nm[w], place(wavelengths_nm[w]), w});
+  }
+  std::sort(ranked_.begin(), ranked_.end(), [](const Ranked& a, const Ranked& b) { return a.nm < b.nm; });
+  for (std::size_t r = 0; r + 1 < count(); ++r) {
+    middles_.push_back(static_cast<float>((ranked_[r].nm + ranked_[r + 1].nm) / 2));
+    const std::size_t nodes = std::min(most_nodes, count()), before = nodes / 2 - 1;
+    const Interval cubic = interval(r, std::min(r - std::min(r, before), count() - nodes), nodes);
+    // How much larger the nodes' errors may be between them: 1.6 times at the ends of an even row.
+    constexpr double much_larger = 2;
+    double sum = 0;
+    for (const double w : about(cubic, (ranked_[r].place + ranked_[r + 1].place) / 2).weights) sum += std::abs(w);
+    const bool apart = ranked_[r].place < ranked_[r + 1].place;
+    intervals_.push_back(sum <= much_larger ? cubic : interval(r, r, apart ? 2 : 1));
+  }
+  if (count() == 1) intervals_.push_back(interval(0, 0, 1));
+}
+
+CompiledWavelengths::Interval CompiledWavelengths::interval(std::size_t rank, std::size_t first,
+                                                            std::size_t nodes) const noexcept {
+  Interval result{.first = first, .from = ranked_[rank].place};
+  for (std::size_t i = 0; i < nodes; ++i) {
+    std::array<double, 4> product{1};
+    for (std::size_t j = 0; j < nodes; ++j) {
+      if (j == i) continue;
+      // Times (t - other) / (own - other).
+      const double other = ranked_[first + j].place - result.from;
+      const double per_step = 1 / (ranked_[first + i].place - ranked_[first + j].place);
+      for (std::size_t k = 3; k > 0; --k) product[k] = (product[k - 1] - other * product[k]) * per_step;
+      product[0] *= -other * per_step;
+    }
+    for (std::size_t k = 0; k < 4; ++k) result.by_power[k][i] = product[k];
+  }
+  return result;
+}
+
+double CompiledWavelengths::nm_at(double place) const noexcept {
+  if (place_.scale == 0) return ranked_.front().nm;
+  return std::clamp(place_.scale / (place + place_.offset), ranked_.front().nm, ranked_.back().nm);
+}
+
+std::size_t CompiledWavelengths::nearest(double nm) const noexcept {
+  const auto narrow = static_cast<float>(nm);
+  if (!covers(nm)) return count();
+  return ranked_[static_cast<std::size_t>(
+                     std::count_if(middles_.begin(), middles_.end(), [&](float middle) { return narrow > middle; }))]
+      .position;
+}
+
+void CompiledWavelengths::nearest(std::size_t count, const float* nm, std::uint16_t* positions) const noexcept {
+  constexpr std::size_t block = 64;
+  const auto shortest = static_cast<float>(place_.shortest), longest = static_cast<float>(place_.longest);
+  for (std::size_t begin = 0; begin < count; begin += block) {
+    const std::size_t n = std::min(block, count - begin);
+    std::array<std::int32_t, block> ranks{};
+    for (const float middle : middles_) {
+      for (std::size_t i = 0; i < n; ++i) ranks[i] += nm[begin + i] > middle;
+    }
+    for (std::size_t i = 0; i < n; ++i) {
+      const bool known = nm[begin + i] >= shortest && nm[begin + i] <= longest;
+      const std::size_t found = position(static_cast<std::size_t>(ranks[i]));
+      positions[begin + i] = known ? static_cast<std::uint16_t>(found) : std::uint16_t{65535};
+    }
+  }
+}
+
+}  // namespace petzval::inline v0::lens_detail

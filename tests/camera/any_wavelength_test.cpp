@@ -1,0 +1,336 @@
+// SPDX-License-Identifier: Apache-2.0
+// Cameras at wavelengths between the compiled ones.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "../data_lenses.hpp"
+#include "../declared_radius.hpp"
+#include "petzval/camera/camera.hpp"
+#include "petzval/camera/polynomial_model.hpp"
+#include "petzval/camera/ray_model.hpp"
+#include "petzval/focus/focus.hpp"
+#include "petzval/media/glass.hpp"
+#include "petzval/pupil/f_number.hpp"
+
+namespace petzval {
+namespace {
+
+Lens compiled(const Prescription& prescription, const std::vector<double>& wavelengths_nm) {
+  static const auto glasses = GlassCatalogue::load(std::filesystem::path(PETZVAL_TEST_DATA) / "glass");
+  return compile(prescription, wavelengths_nm, {.glasses = &glasses, .missing_glass = MissingGlass::abbe});
+}
+
+/// Eight of 400 to 700 nm, in no order.
+const std::vector<double>& eight() {
+  static const std::vector<double> wavelengths = [] {
+    std::vector<double> result;
+    for (const int i : {3, 0, 7, 1, 6, 2, 5, 4}) result.push_back(400 + 300. * i / 7);
+    return result;
+  }();
+  return wavelengths;
+}
+
+constexpr std::array ids{"double_gauss_100mm_f2.0", "fisheye_6.3mm_f2.8", "tessar_100mm_f2.8", "telephoto_200mm_f1.8",
+                         "catadioptric_mangin_1000mm_f7.5"};
+
+/// A film within the declared field, at most 36 mm wide.
+Film film_for(const Prescription& prescription, const Lens& lens) {
+  const double width = std::min(36.0, 2 * petzval::testing::declared_radius(prescription, lens) / 1.21);
+  return {.width_mm = width, .height_mm = width * 2 / 3, .columns = 1920, .rows = 1280};
+}
+
+/// A film's points and pupil samples.
+class Samples {
+ public:
+  explicit Samples(const Film& film, std::uint64_t seed = 1) : film_(film), random_(seed) {}
+  CameraSample operator()(Wavelength wavelength) {
+    return {.film = film_.point(film_.columns * unit_(random_), film_.rows * unit_(random_)),
+            .pupil_u = unit_(random_),
+            .pupil_v = unit_(random_),
+            .wavelength = wavelength};
+  }
+  double nm() { return 400 + 300 * unit_(random_); }
+
+ private:
+  Film film_;
+  std::mt19937_64 random_;
+  std::uniform_real_distribution<double> unit_{0, 1};
+};
+
+Ray<double> reversed(const Ray<double>& ray) { return {ray.origin, -ray.direction}; }
+
+class AnyWavelength : public ::testing::TestWithParam<const char*> {
+ protected:
+  const Prescription prescription_ = petzval::testing::data_prescription(GetParam());
+  const Lens lens_ = compiled(prescription_, eight());
+  const Film film_ = film_for(prescription_, lens_);
+};
+
+TEST_P(AnyWavelength, GivesTheRaysOfACameraMadeForIt) {
+  // In pixels of a film of 36 mm with 1920 columns.
+  const double per_mm = 1920 / 36.0;
+  for (const auto& [model, limit] : {std::pair(ModelKind::exact_double, 1e-3), std::pair(ModelKind::polynomial_7, 0.05),
+                                     std::pair(ModelKind::thick, 0.05), std::pair(ModelKind::pinhole, 0.05)}) {
+    const Camera camera(lens_, film_, {.model = model});
+    double worst = 0;
+    std::size_t compared = 0;
+    for (const double nm : {407.3, 421.4, 464.3, 512.9, 613.2, 677.7}) {
+      const Lens own_lens = with_film(compiled(prescription_, {nm}), lens_.film_z());
+      const Camera own(own_lens, film_, {.model = model == ModelKind::pinhole ? ModelKind::thick : model});
+      Samples samples(film_);
+      for (int i = 0; i < 100; ++i) {
+        const CameraSample sample = samples(Wavelength::nm(nm));
+        const CameraRay ray = camera.sample(sample);
+        if (!ray) continue;
+        const Importance back = own.importance(reversed(ray.ray));
+        if (back.fate == RayFate::outside_fit) continue;
+        ++compared;
+        worst = std::max(worst, per_mm * std::hypot(back.film.x - sample.film.x, back.film.y - sample.film.y));
+      }
+    }
+    RecordProperty(std::string(name(model)), std::to_string(worst));
+    EXPECT_LT(worst, limit) << name(model);
+    EXPECT_GT(compared, 300u) << name(model);
+  }
+}
+
+TEST_P(AnyWavelength, KeepsFilmAndSceneTheSame) {
+  for (const ModelKind model :
+       {ModelKind::exact_double, ModelKind::polynomial_5, ModelKind::thick, ModelKind::thin_two_disc}) {
+    const bool each = model != ModelKind::exact_double;
+    const Camera camera(lens_, film_,
+                        {model, each ? Normalisation::unity_at_each_wavelength : Normalisation::irradiance});
+    Samples samples(film_, 5);
+    int rays = 0, lost = 0;
+    for (int i = 0; i < 300; ++i) {
+      const Wavelength nm = Wavelength::nm(samples.nm());
+      const CameraSample sample = samples(nm);
+      const CameraRay ray = camera.sample(sample);
+      if (!ray) continue;
+      ++rays;
+      const Importance back = camera.importance(reversed(ray.ray), nm);
+      if (!back || !(back.pdf_direction > 0)) {
+        ++lost;  // at the edge of the film or the pupil
+        continue;
+      }
+      ASSERT_NEAR(back.we / (back.pdf_position * back.pdf_direction), ray.weight, 1e-6 * ray.weight) << name(model);
+      ASSERT_NEAR(std::hypot(back.film.x - sample.film.x, back.film.y - sample.film.y), 0, 1e-7) << name(model);
+      ASSERT_NEAR(back.pdf_pupil, ray.pdf_pupil, 1e-6 * ray.pdf_pupil) << name(model);
+    }
+    EXPECT_GT(rays, 150) << name(model);
+    EXPECT_LE(lost, rays / 50) << name(model);
+  }
+}
+
+TEST_P(AnyWavelength, ConnectsEveryRayOfItsSamples) {
+  for (const ModelKind model : {ModelKind::exact_double, ModelKind::polynomial_5, ModelKind::thick}) {
+    const Camera camera(lens_, film_, {.model = model});
+    Samples samples(film_, 9);
+    int rays = 0;
+    for (int i = 0; i < 400; ++i) {
+      const Wavelength nm = Wavelength::nm(samples.nm());
+      const CameraRay ray = camera.sample(samples(nm));
+      if (!ray) continue;
+      ++rays;
+      const Vec3<double> point = ray.ray.origin + 1e5 * ray.ray.direction;
+      ASSERT_GT(camera.pdf_importance(point, -ray.ray.direction, nm), 0) << name(model);
+      const ImportanceSample connection = camera.sample_importance(point, 0.3, 0.4, nm);
+      ASSERT_GT(connection.pdf, 0) << name(model);
+      ASSERT_NEAR(camera.pdf_importance(point, connection.direction, nm), connection.pdf, 1e-9 * connection.pdf)
+          << name(model);
+    }
+    EXPECT_GT(rays, 200) << name(model);
+  }
+}
+
+TEST_P(AnyWavelength, IsTheSameInBatchesAndAlone) {
+  for (const ModelKind model : {ModelKind::exact_double, ModelKind::polynomial_5, ModelKind::thin_two_disc,
+                                ModelKind::thick, ModelKind::pinhole}) {
+    const Camera camera(lens_, film_, {.model = model});
+    constexpr std::size_t count = 301;
+    Samples samples(film_, 3);
+    std::array<std::vector<double>, 4> in;
+    std::array<std::vector<double>, 7> out, part;
+    for (auto& values : out) values.resize(count);
+    for (auto& values : part) values.resize(count);
+    std::vector<float> nm;
+    std::vector<RayFate> fates(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      const CameraSample s = samples({});
+      in[0].push_back(s.film.x), in[1].push_back(s.film.y), in[2].push_back(s.pupil_u), in[3].push_back(s.pupil_v);
+      nm.push_back(static_cast<float>(samples.nm()));
+    }
+    nm[7] = std::numeric_limits<float>::quiet_NaN(), nm[8] = 399, nm[9] = 701, nm[10] = 0;
+    nm[11] = std::numeric_limits<float>::infinity(), nm[12] = -550;
+    const CameraSamples<double> all{in[0].data(), in[1].data(), in[2].data(), in[3].data(), {.each_nm = nm.data()}};
+    const auto rays_of = [](auto& to) {
+      const auto at = [&](std::size_t k) { return to[k].data(); };
+      return CameraRays<double>{{at(0), at(1), at(2), at(3), at(4), at(5)}, at(6)};
+    };
+    CameraRays<double> rays = rays_of(out);
+    rays.fates = fates.data();
+    camera.sample(count, all, rays);
+    for (const std::size_t step : {1, 7, 64}) {
+      for (std::size_t begin = 0; begin < count; begin += step) {
+        camera.sample(std::min(step, count - begin), all.from(begin), rays_of(part).from(begin));
+      }
+      for (std::size_t k = 0; k < out.size(); ++k) ASSERT_EQ(part[k], out[k]) << name(model) << " by " << step;
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      const CameraSample sample{{in[0][i], in[1][i]}, in[2][i], in[3][i], all.wavelengths.at(i)};
+      const CameraRay one = camera.sample(sample);
+      if (i >= 7 && i <= 12) {
+        ASSERT_EQ(fates[i], RayFate::invalid) << name(model) << " " << nm[i];
+        ASSERT_EQ(one.fate, RayFate::invalid) << name(model) << " " << nm[i];
+        ASSERT_EQ(out[6][i], 0);
+        for (std::size_t k = 0; k < 6; ++k) ASSERT_TRUE(std::isfinite(out[k][i]));
+        continue;
+      }
+      ASSERT_EQ(fates[i], one.fate) << name(model);
+      ASSERT_NEAR(out[6][i], one.weight, 1e-6 * one.weight) << name(model);
+      if (!one) continue;
+      ASSERT_NEAR(out[0][i], one.ray.origin.x, 1e-5) << name(model);
+      ASSERT_NEAR(out[3][i], one.ray.direction.x, 1e-7) << name(model);
+      ASSERT_NEAR(out[4][i], one.ray.direction.y, 1e-7) << name(model);
+      const CameraRayDifferential moved = camera.sample_differential(sample);
+      CameraSample beside = sample;
+      beside.film.x += 1e-4;
+      const CameraRay after = camera.sample(beside);
+      if (!after) continue;
+      const double slope = (after.ray.direction.x - one.ray.direction.x) / 1e-4;
+      ASSERT_NEAR(moved.by_film_x.direction.x, slope, 2e-3 * std::abs(slope) + 1e-6) << name(model);
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Camera, AnyWavelength, ::testing::ValuesIn(ids),
+                         [](const auto& parameter) { return std::to_string(parameter.index); });
+
+/// Mean weight of a film point.
+double exposure(const Camera& camera, const FilmPoint& film, Wavelength wavelength) {
+  constexpr int side = 48;
+  double sum = 0;
+  for (int i = 0; i < side * side; ++i) {
+    sum += camera.sample({film, (i % side + 0.5) / side, (i / side + 0.5) / side, wavelength}).weight;
+  }
+  return sum / (side * side);
+}
+
+/// Of exact rays as far as so many samples tell.
+TEST(AnyWavelengthOf, ExposureIsThatOfACameraMadeForIt) {
+  for (const char* id : ids) {
+    const Prescription prescription = petzval::testing::data_prescription(id);
+    const Lens lens = compiled(prescription, eight());
+    const Film film = film_for(prescription, lens);
+    for (const auto& [model, limit] :
+         {std::pair(ModelKind::exact_float, 8e-3), std::pair(ModelKind::polynomial_5, 6e-3),
+          std::pair(ModelKind::thin_two_disc, 6e-3), std::pair(ModelKind::thick, 1e-4)}) {
+      const Camera camera(lens, film, {.model = model});
+      const FilmPoint point = film.point(0.7 * film.columns, 0.7 * film.rows);
+      double largest = 0;
+      for (const double nm : {421.2, 421.6, 443., 550., 635.}) {  // near a middle between two, and not
+        const Camera own(with_film(compiled(prescription, {nm}), lens.film_z()), film, {.model = model});
+        const double found = exposure(camera, point, Wavelength::nm(nm)), wanted = exposure(own, point, {});
+        largest = std::max(largest, std::abs(found / wanted - 1));
+      }
+      RecordProperty(std::string(id) + " " + std::string(name(model)), std::to_string(largest));
+      EXPECT_LT(largest, limit) << id << " " << name(model);
+    }
+  }
+}
+
+TEST(AnyWavelengthOf, PositionsInNmAreNearlyThosePositions) {
+  const Prescription prescription = petzval::testing::data_prescription("double_gauss_100mm_f2.0");
+  const Lens lens = compiled(prescription, eight());
+  const Film film = film_for(prescription, lens);
+  for (const ModelKind model : {ModelKind::exact_double, ModelKind::polynomial_5, ModelKind::thick, ModelKind::thin}) {
+    const Camera camera(lens, film, {.model = model});
+    Samples samples(film);
+    for (int i = 0; i < 80; ++i) {
+      CameraSample sample = samples(static_cast<std::size_t>(i) % 8);
+      const CameraRay wanted = camera.sample(sample);
+      sample.wavelength = Wavelength::nm(lens.wavelengths_nm()[static_cast<std::size_t>(i) % 8]);
+      const CameraRay found = camera.sample(sample);
+      ASSERT_EQ(found.fate, wanted.fate);
+      ASSERT_NEAR(found.weight, wanted.weight, 1e-5 * wanted.weight);
+      ASSERT_NEAR(found.ray.direction.x, wanted.ray.direction.x, 1e-7);
+    }
+  }
+}
+
+TEST(AnyWavelengthOf, OthersAreInvalidOnBothSides) {
+  const Prescription prescription = petzval::testing::data_prescription("double_gauss_100mm_f2.0");
+  const Lens lens = compiled(prescription, eight());
+  const Film film = film_for(prescription, lens);
+  for (const ModelKind model :
+       {ModelKind::exact_float, ModelKind::polynomial_5, ModelKind::thick, ModelKind::pinhole}) {
+    const Camera camera(lens, film, {.model = model});
+    for (const double nm : {std::numeric_limits<double>::quiet_NaN(), 399.0, 701.0, 0.0, -1.0}) {
+      const Wavelength bad = Wavelength::nm(nm);
+      EXPECT_EQ(camera.sample({.film = {}, .wavelength = bad}).fate, RayFate::invalid);
+      EXPECT_EQ(camera.sample_differential({.film = {}, .wavelength = bad}).sample.fate, RayFate::invalid);
+      EXPECT_EQ(camera.importance({{0, 0, -1000}, {0, 0, 1}}, bad).fate, RayFate::invalid);
+      EXPECT_EQ(camera.sample_importance({0, 0, -1000}, 0.5, 0.5, bad).importance.fate, RayFate::invalid);
+      EXPECT_EQ(camera.sample_distant_importance({0, 0, 1}, 0.5, 0.5, bad).importance.fate, RayFate::invalid);
+      EXPECT_EQ(camera.pdf_importance({0, 0, -1000}, {0, 0, 1}, bad), 0);
+      EXPECT_EQ(camera.project({0, 0, -1000}, bad).status, ProjectionStatus::not_visible);
+    }
+    EXPECT_EQ(camera.project({0, 0, -3000}, Wavelength::nm(511)).status, ProjectionStatus::converged);
+  }
+}
+
+/// A polynomial model that knows positions only.
+class ByPosition {
+ public:
+  explicit ByPosition(PolynomialModel model) : model_(std::move(model)) {}
+
+  const FilmPupilTable& pupils() const noexcept { return model_.pupils(); }
+  template <class T>
+  void to_scene(std::size_t count, const TwoPlaneRays<const T>& lines, const RayWavelengths& wavelengths,
+                const RayArrays<T>& rays, RayFate* fates) const noexcept {
+    model_.to_scene<T>(count, lines, wavelengths, rays, fates);
+  }
+  void to_film(std::size_t count, const RayArrays<const double>& rays, const RayWavelengths& wavelengths,
+               const TwoPlaneRays<double>& lines, RayFate* fates) const noexcept {
+    model_.to_film(count, rays, wavelengths, lines, fates);
+  }
+
+ private:
+  PolynomialModel model_;
+};
+
+TEST(AnyWavelengthOf, ModelsThatDoNotTakeItAreCompiledOnes) {
+  const Prescription prescription = petzval::testing::data_prescription("double_gauss_100mm_f2.0");
+  const Lens lens = compiled(prescription, eight());
+  const Film film = film_for(prescription, lens);
+  const FilmPupilTable pupils = FilmPupilTable::equal_area(lens, upright_radius(lens, film));
+  const PolynomialModel model(RayPolynomial::fit(lens, pupils, 5), pupils);
+  static_assert(RayModel<ByPosition>);
+  const Camera any(lens, film, AnyRayModel(model)), own(lens, film, AnyRayModel(ByPosition(model)));
+  EXPECT_TRUE(any.sample({.film = {}, .pupil_u = 0.5, .wavelength = Wavelength::nm(511)}));
+  EXPECT_EQ(own.sample({.film = {}, .pupil_u = 0.5, .wavelength = Wavelength::nm(511)}).fate, RayFate::invalid);
+  EXPECT_EQ(own.importance({{0, 0, -1000}, {0, 0, 1}}, Wavelength::nm(511)).fate, RayFate::invalid);
+  EXPECT_EQ(own.sample({.film = {}, .pupil_u = 0.5, .wavelength = Wavelength::nm(400)}).weight,
+            own.sample({.film = {}, .pupil_u = 0.5, .wavelength = lens.wavelength(400)}).weight);
+  EXPECT_TRUE(own.importance({{0, 0, -1000}, {0, 0, 1}}, Wavelength::nm(700)));
+  const std::array<double, 2> zero{0, 0}, half{0.5, 0.5};
+  const std::array<float, 2> nm{511, 400};
+  std::array<std::array<double, 2>, 7> out{};
+  std::array<RayFate, 2> fates{};
+  const auto at = [&](std::size_t k) { return out[k].data(); };
+  own.sample<double>(2, {zero.data(), zero.data(), half.data(), half.data(), {.each_nm = nm.data()}},
+                     {{at(0), at(1), at(2), at(3), at(4), at(5)}, at(6), fates.data()});
+  EXPECT_EQ(fates[0], RayFate::invalid);
+  EXPECT_EQ(fates[1], RayFate::invalid);
+}
+
+}  // namespace
+}  // namespace petzval
