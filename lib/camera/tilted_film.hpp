@@ -43,10 +43,11 @@ double upright_radius(const LensFacts& facts, const Film& film, ModelKind model)
 /// A model maps image-space rays, which are given by their points on the planes of the upright film and of the pupil;
 /// whether a ray passes does not depend on the film. A tilted film samples other rays. Each of its points is identified
 /// by its virtual point: its projection, through the centre of the pupil's plane, onto the upright film. The pupils of
-/// the tilted film are a second table, over virtual points: one pupil for each distance from the axis, which contains
-/// the model's rays to all points at that distance, at all times. It is larger than theirs where light is limited far
-/// from the plane of the pupil: behind a telecentric lens of f/50, half of the corners' samples of a film of 20 x 20 mm
-/// tilted by 18 degrees reach the scene, and two thirds for 8 degrees.
+/// the tilted film are a second table, over virtual points: one pupil for each distance from the axis, or with
+/// cylinders for each point and its mirror images, which contains the model's rays to all points there, at all times.
+/// It is larger than theirs where light is limited far from the plane of the pupil: behind a telecentric lens of f/50,
+/// half of the corners' samples of a film of 20 x 20 mm tilted by 18 degrees reach the scene, and two thirds for 8
+/// degrees.
 ///
 /// Immutable, cheap to copy, shared freely between threads.
 class PETZVAL_API TiltedFilm {

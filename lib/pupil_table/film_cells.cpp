@@ -7,7 +7,6 @@
 #include <array>
 #include <cmath>
 
-#include "grid_pupils.hpp"
 #include "polygon_place.hpp"
 
 namespace petzval::inline v0::pupil_table_detail {
@@ -82,16 +81,12 @@ FilmCells::FilmCells(const FilmGrid& grid, double film_radius, std::size_t prima
   for (const double width : grid.half_widths) half_widths_single_.push_back(static_cast<float>(width));
 }
 
-FilmCells::FilmCells(double film_radius, std::size_t primary)
-    : FilmCells({.columns = 1, .height = film_radius, .half_widths = {film_radius, film_radius}}, film_radius,
-                primary) {}
-
 void FilmCells::add(const std::vector<PupilPolygon>& polygons) {
   ++wavelengths_;
   for (std::size_t i = 0; i < grid_.rows(); ++i) {
     for (std::size_t j = 0; j < grid_.columns; ++j) {
       const auto node = [&](std::size_t row, std::size_t column) {
-        return &polygons[(row * (grid_.columns + 1) + column) % polygons.size()];
+        return &polygons[row * (grid_.columns + 1) + column];
       };
       const auto cell = cell_between({node(i, j), node(i, j + 1), node(i + 1, j), node(i + 1, j + 1)});
       twice_.insert(twice_.end(), cell.begin(), cell.end());
@@ -103,26 +98,6 @@ void FilmCells::add(const std::vector<PupilPolygon>& polygons) {
       }
     }
   }
-}
-
-PupilPolygon FilmCells::hull(std::size_t wavelength) const {
-  std::vector<PupilPolygon> polygons;
-  const std::size_t cells = grid_.rows() * grid_.columns;
-  for (std::size_t i = wavelength * cells; i < (wavelength + 1) * cells; ++i) {
-    for (int corner = 0; corner < 4; ++corner) {
-      const InCell<double> at{&twice_[i * L::size], double(corner % 2), double(corner / 2)};
-      PupilPolygon polygon;
-      polygon.middle = {at.middle().x, at.middle().y};
-      for (std::size_t k = 0; k < polygon_corners; ++k) polygon.corners[k] = {at.corner(k).x, at.corner(k).y};
-      // And those of the other quadrants.
-      for (const Vec2<double> sign : {Vec2<double>{1, 1}, {1, -1}, {-1, 1}, {-1, -1}}) {
-        polygons.push_back(polygon);
-        polygons.back().middle = sign * polygon.middle;
-        for (auto& place : polygons.back().corners) place = sign * place;
-      }
-    }
-  }
-  return pupil_table_detail::hull(polygons);
 }
 
 FilmCells::Place FilmCells::find(const FilmPoint& film, std::size_t wavelength) const noexcept {

@@ -20,13 +20,9 @@ namespace petzval::inline v0::pupil_table_detail {
 class FilmCells {
  public:
   FilmCells(const FilmGrid& grid, double film_radius, std::size_t primary);
-  /// The same polygon for every film point.
-  FilmCells(double film_radius, std::size_t primary);
 
   /// Adds a wavelength: the polygons of the nodes.
   void add(const std::vector<PupilPolygon>& polygons);
-  /// A polygon that contains those of all film points.
-  PupilPolygon hull(std::size_t wavelength) const;
 
   PupilSample sample(const FilmPoint& film, double u, double v, std::size_t wavelength) const noexcept;
   double area(const FilmPoint& film, std::size_t wavelength) const noexcept;

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <numbers>
 #include <numeric>
 #include <optional>
 #include <span>
@@ -20,7 +21,8 @@ namespace {
 
 using pupil_detail::PupilGuess;
 
-constexpr std::size_t grid_steps = 8;        // between the nodes of an axis
+constexpr std::size_t grid_steps = 8;  // between the nodes of an axis
+constexpr std::size_t probes = 16384;
 constexpr std::size_t grid_directions = 64;  // of the regions that polygons are made of
 
 /// Where the rays to the centre and the rim of the stop cross the plane. Aiming takes longer than rays: from some
@@ -116,61 +118,23 @@ std::vector<double> lit_lengths(const Lens& lens, const TwoPlanes& space, const 
   return result;
 }
 
-void mirror_at_axes(std::span<PupilPolygon> polygons, const FilmGrid& grid) noexcept {
-  for (std::size_t j = 0; j <= grid.columns; ++j) mirror(polygons[j], false);
-  for (std::size_t i = 0; i <= grid.rows(); ++i) mirror(polygons[i * (grid.columns + 1)], true);
+constexpr std::size_t half_steps = 2 * grid_steps;
+
+/// Half the lengths of the chords of a disc at half the steps of rows up to a height.
+std::vector<double> half_chords(double radius, double height) {
+  std::vector<double> widths;
+  for (std::size_t i = 0; i <= half_steps; ++i) {
+    const double y = height * static_cast<double>(i) / half_steps;
+    widths.push_back(std::sqrt(std::max(radius * radius - y * y, 0.0)));
+  }
+  return widths;
 }
 
-/// Probes film points all over a grid by traced rays.
-void expand_to_traced_probes(std::span<PupilPolygon> polygons, const Lens& lens, const TwoPlanes& space,
-                             const FilmGrid& grid, std::size_t wavelength) {
-  struct Cell {
-    std::size_t i, j;
-    double s, t;
-  };
-  const auto cell_of = [&](const std::array<double, 4>& place) {
-    const double row = place[0] * static_cast<double>(grid.rows()),
-                 column = place[1] * static_cast<double>(grid.columns);
-    const auto i = std::min(static_cast<std::size_t>(row), grid.rows() - 1);
-    const auto j = std::min(static_cast<std::size_t>(column), grid.columns - 1);
-    return Cell{i, j, row - static_cast<double>(i), column - static_cast<double>(j)};
-  };
-  const auto weights = [&](const std::array<double, 4>& place) -> PolygonWeights {
-    const auto [i, j, s, t] = cell_of(place);
-    const std::size_t node = i * (grid.columns + 1) + j, above = node + grid.columns + 1;
-    return {{node, node + 1, above, above + 1}, {(1 - s) * (1 - t), (1 - s) * t, s * (1 - t), s * t}};
-  };
-  const auto at_probes = [&](std::span<const std::array<double, 4>> places, std::span<const std::uint32_t> which,
-                             const double* x, const double* y, double* clearances) {
-    std::vector<FilmPoint> points;
-    std::vector<std::uint32_t> index(which.size());
-    std::iota(index.begin(), index.end(), 0u);
-    for (const std::uint32_t p : which) {
-      const auto [i, j, s, t] = cell_of(places[p]);
-      const double width = (1 - s) * grid.half_widths[i] + s * grid.half_widths[i + 1];
-      points.push_back({width * places[p][1], grid.height * places[p][0]});
-    }
-    traced_lines(lens, space, std::move(points), wavelength)(which.size(), index.data(), x, y, clearances);
-  };
-  constexpr std::size_t probes = 16384;
-  expand_to_probes(polygons, probes, weights, at_probes);
-}
-
-}  // namespace
-
-FilmGrid film_grid(const Lens& lens, const TwoPlanes& space, double film_radius) {
+/// The grid with straight lines between the ends of rows that enclose a convex area. widths: of it, at half the steps.
+FilmGrid grid_within(double height, const std::vector<double>& widths) {
   FilmGrid grid;
   grid.columns = grid_steps;
-  grid.height = lit_lengths(lens, space, {0}, {film_radius}, false)[0];
-  // Rows at half steps: the straight lines between the ends of whole ones enclose those too.
-  constexpr std::size_t half_steps = 2 * grid_steps;
-  std::vector<double> heights, widths;
-  for (std::size_t i = 0; i <= half_steps; ++i) {
-    const double y = grid.height * static_cast<double>(i) / half_steps;
-    heights.push_back(y);
-    widths.push_back(std::sqrt(std::max(film_radius * film_radius - y * y, 0.0)));
-  }
-  widths = lit_lengths(lens, space, heights, widths, true);
+  grid.height = height;
   for (std::size_t i = 0; i <= half_steps; i += 2) grid.half_widths.push_back(widths[i]);
   for (int round = 0; round < 2; ++round) {
     for (std::size_t i = 0; i < grid.rows(); ++i) {
@@ -183,9 +147,8 @@ FilmGrid film_grid(const Lens& lens, const TwoPlanes& space, double film_radius)
   return grid;
 }
 
-std::vector<PupilPolygon> grid_polygons(const Lens& lens, const TwoPlanes& space, const FilmGrid& grid, PolygonFit fit,
-                                        std::size_t wavelength) {
-  // The nodes and the points halfway between.
+/// The nodes of a grid and the points halfway between, in rows of 2 columns + 1.
+std::vector<FilmPoint> points_of(const FilmGrid& grid) {
   const std::size_t columns = 2 * grid.columns + 1, rows = 2 * grid.rows() + 1;
   std::vector<FilmPoint> points;
   for (std::size_t i = 0; i < rows; ++i) {
@@ -195,21 +158,160 @@ std::vector<PupilPolygon> grid_polygons(const Lens& lens, const TwoPlanes& space
                         grid.height * static_cast<double>(i) / static_cast<double>(rows - 1)});
     }
   }
+  return points;
+}
+
+/// Of those points.
+PolygonWeights weights_of_point(const FilmGrid& grid, std::size_t point) noexcept {
+  const std::size_t i = point / (2 * grid.columns + 1), j = point % (2 * grid.columns + 1), right = j % 2;
+  const std::size_t low = i / 2 * (grid.columns + 1) + j / 2, up = (i + 1) / 2 * (grid.columns + 1) + j / 2;
+  return {{low, low + right, up, up + right}, {0.25, 0.25, 0.25, 0.25}};
+}
+
+/// A place in a grid, for probes: by parts of the way along y and along x.
+struct ProbedPoint {
+  FilmPoint film;
+  PolygonWeights weights;
+
+  ProbedPoint(const FilmGrid& grid, double down, double across) noexcept {
+    const double row = down * static_cast<double>(grid.rows()), column = across * static_cast<double>(grid.columns);
+    const auto i = std::min(static_cast<std::size_t>(row), grid.rows() - 1);
+    const auto j = std::min(static_cast<std::size_t>(column), grid.columns - 1);
+    const double s = row - static_cast<double>(i), t = column - static_cast<double>(j);
+    film = {((1 - s) * grid.half_widths[i] + s * grid.half_widths[i + 1]) * across, grid.height * down};
+    const std::size_t node = i * (grid.columns + 1) + j, above = node + grid.columns + 1;
+    weights = {{node, node + 1, above, above + 1}, {(1 - s) * (1 - t), (1 - s) * t, s * (1 - t), s * t}};
+  }
+};
+
+void mirror_at_axes(std::span<PupilPolygon> polygons, const FilmGrid& grid) noexcept {
+  for (std::size_t j = 0; j <= grid.columns; ++j) mirror(polygons[j], false);
+  for (std::size_t i = 0; i <= grid.rows(); ++i) mirror(polygons[i * (grid.columns + 1)], true);
+}
+
+/// Probes film points all over a grid by traced rays.
+void expand_to_traced_probes(std::span<PupilPolygon> polygons, const Lens& lens, const TwoPlanes& space,
+                             const FilmGrid& grid, std::size_t wavelength) {
+  const auto weights = [&](const std::array<double, 4>& at) { return ProbedPoint(grid, at[0], at[1]).weights; };
+  const auto at_probes = [&](std::span<const std::array<double, 4>> places, std::span<const std::uint32_t> which,
+                             const double* x, const double* y, double* clearances) {
+    std::vector<FilmPoint> points;
+    std::vector<std::uint32_t> index(which.size());
+    std::iota(index.begin(), index.end(), 0u);
+    for (const std::uint32_t p : which) points.push_back(ProbedPoint(grid, places[p][0], places[p][1]).film);
+    traced_lines(lens, space, std::move(points), wavelength)(which.size(), index.data(), x, y, clearances);
+  };
+  expand_to_probes(polygons, probes, weights, at_probes);
+}
+
+/// The places of the film points that belong to a virtual film point or to its mirror images, from the lowest to the
+/// highest (FilmTilt).
+struct Nearer {
+  double low, high;
+
+  Nearer(const FilmTilt& tilt, const FilmPoint& film) noexcept {
+    const double along = std::abs(tilt.slope_x) * film.x + std::abs(tilt.slope_y) * film.y;
+    const auto at_end = [&](double value) { return (value - tilt.travel) / (1 + tilt.travel); };
+    low = std::clamp(std::min(-along, at_end(-along)), tilt.low, tilt.high);
+    high = std::clamp(std::max(along, at_end(along)), tilt.low, tilt.high);
+  }
+  double at(double part) const noexcept { return low + part * (high - low); }
+};
+
+}  // namespace
+
+FilmGrid disc_grid(double film_radius) { return grid_within(film_radius, half_chords(film_radius, film_radius)); }
+
+FilmGrid film_grid(const Lens& lens, const TwoPlanes& space, double film_radius) {
+  const double height = lit_lengths(lens, space, {0}, {film_radius}, false)[0];
+  std::vector<double> heights;
+  for (std::size_t i = 0; i <= half_steps; ++i) heights.push_back(height * static_cast<double>(i) / half_steps);
+  return grid_within(height, lit_lengths(lens, space, heights, half_chords(film_radius, height), true));
+}
+
+std::vector<PupilPolygon> grid_polygons(const Lens& lens, const TwoPlanes& space, const FilmGrid& grid, PolygonFit fit,
+                                        std::size_t wavelength) {
+  const std::size_t columns = 2 * grid.columns + 1;
+  const std::vector<FilmPoint> points = points_of(grid);
   const std::vector<PupilRegion> pupils = film_pupils(lens, space, points, columns, grid_directions, wavelength);
   std::vector<PupilPolygon> polygons = node_polygons(pupils, columns, fit);
   mirror_at_axes(polygons, grid);
   if (fit == PolygonFit::equal_area) return polygons;
-  const auto node = [&](std::size_t i, std::size_t j) { return i * (grid.columns + 1) + j; };
   std::vector<InterpolationCheck> checks;
-  for (std::size_t i = 0; i < rows; ++i) {
-    for (std::size_t j = 0; j < columns; ++j) {
-      const std::size_t low = node(i / 2, j / 2), up = node((i + 1) / 2, j / 2);
-      const std::size_t right = j % 2;
-      checks.push_back({&pupils[i * columns + j], {{low, low + right, up, up + right}, {0.25, 0.25, 0.25, 0.25}}});
-    }
-  }
+  for (std::size_t p = 0; p < pupils.size(); ++p) checks.push_back({&pupils[p], weights_of_point(grid, p)});
   expand_to_cover(polygons, checks);
   expand_to_traced_probes(polygons, lens, space, grid, wavelength);
+  mirror_at_axes(polygons, grid);
+  return polygons;
+}
+
+std::vector<PupilPolygon> tilted_grid_polygons(const FilmPupilTable& upright, const FilmTilt& tilt,
+                                               const FilmGrid& grid, std::size_t wavelength) {
+  struct Seen {
+    FilmPoint film;
+    double nearer;
+  };
+  std::array<std::vector<double>, 2> film;
+  std::vector<std::uint8_t> within;
+  const auto test = [&](std::size_t count, const auto& seen_by, const double* x, const double* y, double* clearances) {
+    for (auto& values : film) values.resize(count);
+    within.resize(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      const Seen& seen = seen_by(i);
+      film[0][i] = seen.film.x - seen.nearer * x[i];
+      film[1][i] = seen.film.y - seen.nearer * y[i];
+    }
+    upright.contains<double>(count, {film[0].data(), film[1].data(), x, y}, {.all = wavelength}, within.data());
+    std::transform(within.begin(), within.end(), clearances, pupil_detail::clearance_of);
+  };
+
+  // The pupils of some places of each point: of the middle one first, where there is light if anywhere.
+  const std::size_t columns = 2 * grid.columns + 1;
+  const std::vector<FilmPoint> points = points_of(grid);
+  constexpr std::array parts{0.5, 0.0, 0.25, 0.75, 1.0};
+  std::vector<std::vector<PupilRegion>> pupils;
+  for (const double part : parts) {
+    std::vector<Seen> seen;
+    std::vector<PupilGuess> guesses;
+    for (const FilmPoint& point : points) {
+      const double nearer = Nearer(tilt, point).at(part);
+      seen.push_back({point, nearer});
+      // Where the upright film has the pupil, or the last one on the way to it.
+      Vec2<double> place{0, 0};
+      double area = 0;
+      for (int round = 0; round < 4; ++round) {
+        FilmPoint at{point.x - nearer * place.x, point.y - nearer * place.y};
+        for (int step = 0; step < 32 && !(area = upright.area(at, wavelength)); ++step) at = {0.95 * at.x, 0.95 * at.y};
+        place = upright.middle(at, wavelength);
+      }
+      const double radius = std::sqrt(area / std::numbers::pi), near = 3 * radius, far = 12 * radius;
+      guesses.push_back({place.x, place.y - far, place.y + far, radius, place.y, near});
+    }
+    pupils.push_back(grid_pupils(
+        {guesses, columns}, grid_directions,
+        [&](std::size_t count, const std::uint32_t* which, const double* x, const double* y, double* clearances) {
+          test(
+              count, [&](std::size_t i) { return seen[which[i]]; }, x, y, clearances);
+        }));
+  }
+  std::vector<PupilPolygon> polygons = node_polygons(pupils.front(), columns, PolygonFit::enclosing);
+  std::vector<InterpolationCheck> checks;
+  for (const auto& own : pupils) {
+    for (std::size_t p = 0; p < own.size(); ++p) checks.push_back({&own[p], weights_of_point(grid, p)});
+  }
+  mirror_at_axes(polygons, grid);
+  expand_to_cover(polygons, checks);
+  expand_to_probes(
+      polygons, probes, [&](const std::array<double, 4>& at) { return ProbedPoint(grid, at[0], at[1]).weights; },
+      [&](std::span<const std::array<double, 4>> at, std::span<const std::uint32_t> which, const double* x,
+          const double* y, double* clearances) {
+        const auto seen = [&](std::size_t i) {
+          const std::array<double, 4>& place = at[which[i]];
+          const FilmPoint point = ProbedPoint(grid, place[0], place[1]).film;
+          return Seen{point, Nearer(tilt, point).at(place[2])};
+        };
+        test(which.size(), seen, x, y, clearances);
+      });
   mirror_at_axes(polygons, grid);
   return polygons;
 }

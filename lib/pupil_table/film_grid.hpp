@@ -23,6 +23,8 @@ struct FilmGrid {
   std::size_t nodes() const noexcept { return half_widths.size() * (columns + 1); }
 };
 
+/// The grid over a disc about the axis.
+FilmGrid disc_grid(double film_radius);
 /// The grid over the part of a film that gets any light, at any wavelength.
 FilmGrid film_grid(const Lens& lens, const TwoPlanes& space, double film_radius);
 
@@ -30,5 +32,10 @@ FilmGrid film_grid(const Lens& lens, const TwoPlanes& space, double film_radius)
 /// contained in the interpolated ones.
 std::vector<PupilPolygon> grid_polygons(const Lens& lens, const TwoPlanes& space, const FilmGrid& grid, PolygonFit fit,
                                         std::size_t wavelength);
+
+/// Those of a tilted film, by virtual film points: each contains the pupils of all places that a film point of it, or
+/// of its mirror images, may have. upright: the table of a lens of this kind.
+std::vector<PupilPolygon> tilted_grid_polygons(const FilmPupilTable& upright, const FilmTilt& tilt,
+                                               const FilmGrid& grid, std::size_t wavelength);
 
 }  // namespace petzval::inline v0::pupil_table_detail

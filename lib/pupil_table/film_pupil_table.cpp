@@ -302,14 +302,17 @@ FilmPupilTable FilmPupilTable::for_tilted_film(const FilmTilt& tilt) const {
     data->images = data_->images->tilted(tilt);
     return FilmPupilTable(std::move(data));
   }
-  if (data_->cells) {  // one pupil that holds all lines
+  if (data_->cells) {
     data->space = space();
     data->primary = data_->primary;
     data->compiled = data_->compiled;
     data->film_radius = tilt.radius;
     data->wavelengths = wavelengths();
-    data->cells.emplace(tilt.radius, data->primary);
-    for (std::size_t w = 0; w < wavelengths(); ++w) data->cells->add({data_->cells->hull(w)});
+    const FilmGrid grid = disc_grid(tilt.radius);
+    data->cells.emplace(grid, tilt.radius, data->primary);
+    for (std::size_t w = 0; w < wavelengths(); ++w) {
+      data->cells->add(tilted_grid_polygons(*this, tilt, grid, w));
+    }
     return FilmPupilTable(std::move(data));
   }
   data->space = data_->space;

@@ -199,7 +199,8 @@ INSTANTIATE_TEST_SUITE_P(
                       Case{"double_gauss_100mm_f2.0", 22, shifted, 12, 15, 0.95},
                       Case{"double_gauss_100mm_f2.0", 2.8, shifted, -20, 10, 0.90},
                       Case{"tessar_100mm_f2.8", 0, shifted, 8, 8, 0.95}, Case{"fisheye_10mm_f4", 0, square, 8, 4, 0.90},
-                      Case{"anamorphic_60mm_2x", 0, {.width_mm = 20, .height_mm = 14}, 6, 6, 0.5},
+                      Case{"anamorphic_60mm_2x", 0, {.width_mm = 20, .height_mm = 14}, 6, 6, 0.95},
+                      Case{"anamorphic_60mm_2x", 32, {.width_mm = 20, .height_mm = 14}, -5, 6, 0.95},
                       Case{"catadioptric_mangin_1000mm_f7.5", 0, {.width_mm = 20, .height_mm = 20}, 8, 0, 0.9}));
 
 // The paraxial exit pupil of a ball lies far behind the film and far from its rays. Half of the samples pass, which

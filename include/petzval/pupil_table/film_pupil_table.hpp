@@ -125,13 +125,12 @@ class PETZVAL_API FilmPupilTable {
                                 std::span<const double> wavelengths_nm = {});
 
   /// The pupils of a tilted film, by virtual film points; those of of_iris() are exact for one that does not travel.
-  /// They contain every ray of this
-  /// table that meets the film, and few others: one pupil for each distance of the virtual film point from the axis
-  /// holds the pupils of all points at that distance. At most 1e-5 of their area is missed
-  /// (tests/camera/tilted_exposure_test.cpp), except where enclosing() misses more: of a ball lens 10 mm across, tilted
-  /// by 8 degrees, 2e-3 on a film of 3 x 2 mm, 2e-4 on one of 0.6 x 0.45 mm at f/8. Of a lens with cylinders one pupil
-  /// for all points holds all of them, and more samples are lost. This table's film_radius must reach
-  /// to all points where its rays meet the upright film. Throws Error for a radius that is negative or not finite.
+  /// They contain every ray of this table that meets the film, and few others: one pupil for each distance of the
+  /// virtual film point from the axis, or with cylinders for each point and its mirror images, holds the pupils of all
+  /// points there. At most 1e-5 of their area is missed (tests/camera/tilted_exposure_test.cpp), except where
+  /// enclosing() misses more: of a ball lens 10 mm across, tilted by 8 degrees, 2e-3 on a film of 3 x 2 mm, 2e-4 on one
+  /// of 0.6 x 0.45 mm at f/8. This table's film_radius must reach to all points where its rays meet the upright film.
+  /// Throws Error for a radius that is negative or not finite.
   FilmPupilTable for_tilted_film(const FilmTilt& tilt) const;
 
   /// The planes that film points and samples lie in.
