@@ -34,7 +34,8 @@ kernel::Asphere<R> rounded(const kernel::Asphere<double>& a) {
   r.steepest = static_cast<R>(a.steepest);
   r.edge = static_cast<R>(a.edge);
   std::transform(a.rings.begin(), a.rings.end(), r.rings.begin(), [](const kernel::AsphereRing<double>& ring) {
-    const auto narrow = [](double v) { return static_cast<R>(std::min(v, double{std::numeric_limits<R>::max()})); };
+    const double huge = std::numeric_limits<R>::max();
+    const auto narrow = [huge](double v) { return static_cast<R>(std::clamp(v, -huge, huge)); };
     return kernel::AsphereRing<R>{narrow(ring.inner2),   narrow(ring.outer2),  narrow(ring.outer),
                                   narrow(ring.lowest),   narrow(ring.highest), narrow(ring.least_bend),
                                   narrow(ring.most_bend)};
@@ -45,8 +46,9 @@ kernel::Asphere<R> rounded(const kernel::Asphere<double>& a) {
 }  // namespace
 
 template <class R>
-Tables<R> build_tables(std::span<const LensSurface> surfaces, std::optional<std::size_t> stop, const Iris& iris,
-                       std::span<const double> indices, std::size_t wavelengths, const Spectrum& spectrum) {
+Tables<R> build_tables(std::span<const LensSurface> surfaces, std::span<const kernel::Asphere<double>> aspheres,
+                       std::optional<std::size_t> stop, const Iris& iris, std::span<const double> indices,
+                       std::size_t wavelengths, const Spectrum& spectrum) {
   const std::size_t count = surfaces.size();
   Tables<R> tables;
   tables.wavelengths = wavelengths;
@@ -68,7 +70,7 @@ Tables<R> build_tables(std::span<const LensSurface> surfaces, std::optional<std:
     if (s.mirror) sense = -sense;
     if (!s.aspheric.empty()) {
       row.asphere = static_cast<std::int32_t>(tables.aspheres.size());
-      tables.aspheres.push_back(rounded<R>(describe_asphere(s)));
+      tables.aspheres.push_back(rounded<R>(aspheres[tables.aspheres.size()]));
     }
     tables.surfaces.push_back(row);
     tables.vertex_z.push_back(static_cast<R>(s.vertex_z));
@@ -85,9 +87,11 @@ Tables<R> build_tables(std::span<const LensSurface> surfaces, std::optional<std:
   return tables;
 }
 
-template Tables<float> build_tables(std::span<const LensSurface>, std::optional<std::size_t>, const Iris&,
-                                    std::span<const double>, std::size_t, const Spectrum&);
-template Tables<double> build_tables(std::span<const LensSurface>, std::optional<std::size_t>, const Iris&,
-                                     std::span<const double>, std::size_t, const Spectrum&);
+template Tables<float> build_tables(std::span<const LensSurface>, std::span<const kernel::Asphere<double>>,
+                                    std::optional<std::size_t>, const Iris&, std::span<const double>, std::size_t,
+                                    const Spectrum&);
+template Tables<double> build_tables(std::span<const LensSurface>, std::span<const kernel::Asphere<double>>,
+                                     std::optional<std::size_t>, const Iris&, std::span<const double>, std::size_t,
+                                     const Spectrum&);
 
 }  // namespace petzval::inline v0::lens_detail

@@ -61,10 +61,12 @@ struct Tables {
   }
 };
 
-/// stop: position of the stop. indices: [wavelength][space], one space more than surfaces.
+/// aspheres: the surfaces that are (describe_aspheres). stop: position of the stop. indices: [wavelength][space], one
+/// space more than surfaces.
 template <class R>
-Tables<R> build_tables(std::span<const LensSurface> surfaces, std::optional<std::size_t> stop, const Iris& iris,
-                       std::span<const double> indices, std::size_t wavelengths, const Spectrum& spectrum);
+Tables<R> build_tables(std::span<const LensSurface> surfaces, std::span<const kernel::Asphere<double>> aspheres,
+                       std::optional<std::size_t> stop, const Iris& iris, std::span<const double> indices,
+                       std::size_t wavelengths, const Spectrum& spectrum);
 
 /// The surfaces in the order of travel.
 template <class R>

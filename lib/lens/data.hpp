@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "build_tables.hpp"
+#include "describe_asphere.hpp"
 #include "indices.hpp"
 #include "petzval/lens/lens.hpp"
 
@@ -27,9 +28,11 @@ struct Lens::Data {
 
   /// Builds the tables from the rest.
   void build() {
+    using lens_detail::build_tables;
     const std::size_t count = wavelengths_nm.size();
-    in_float = lens_detail::build_tables<float>(surfaces, stop, iris, indices.values, count, indices.spectrum);
-    in_double = lens_detail::build_tables<double>(surfaces, stop, iris, indices.values, count, indices.spectrum);
+    const auto aspheres = lens_detail::describe_aspheres(surfaces);
+    in_float = build_tables<float>(surfaces, aspheres, stop, iris, indices.values, count, indices.spectrum);
+    in_double = build_tables<double>(surfaces, aspheres, stop, iris, indices.values, count, indices.spectrum);
     in_float.primary = in_double.primary = primary;
   }
 };

@@ -159,13 +159,7 @@ void bound(const LensSurface& s, kernel::Asphere<double>& a) {
   }
 }
 
-}  // namespace
-
-kernel::Quadric<double> describe_quadric(const LensSurface& s) {
-  return kernel::make_quadric<double>(s.curvature, s.conic, s.curved_in != Section::y, s.curved_in != Section::x);
-}
-
-kernel::Asphere<double> describe_asphere(const LensSurface& s) {
+kernel::Asphere<double> described(const LensSurface& s) {
   constexpr int samples = 256;
   kernel::Asphere<double> a = asphere_up_to(height(s), s);
   for (int i = 0; i <= samples; ++i) {
@@ -178,6 +172,20 @@ kernel::Asphere<double> describe_asphere(const LensSurface& s) {
   bound(s, a);
   a.edge = kernel::sag(a, a.height * a.height).z;
   return a;
+}
+
+}  // namespace
+
+kernel::Quadric<double> describe_quadric(const LensSurface& s) {
+  return kernel::make_quadric<double>(s.curvature, s.conic, s.curved_in != Section::y, s.curved_in != Section::x);
+}
+
+std::vector<kernel::Asphere<double>> describe_aspheres(std::span<const LensSurface> surfaces) {
+  std::vector<kernel::Asphere<double>> aspheres;
+  for (const LensSurface& s : surfaces) {
+    if (!s.aspheric.empty()) aspheres.push_back(described(s));
+  }
+  return aspheres;
 }
 
 }  // namespace petzval::inline v0::lens_detail

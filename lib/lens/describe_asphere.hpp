@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <span>
+#include <vector>
+
 #include "petzval/lens/lens.hpp"
 #include "surface/asphere.hpp"
 
@@ -8,7 +11,7 @@ namespace petzval::inline v0::lens_detail {
 
 kernel::Quadric<double> describe_quadric(const LensSurface& surface);
 
-/// The shape of a surface with aspheric terms, with bounds of its rings.
-kernel::Asphere<double> describe_asphere(const LensSurface& surface);
+/// The shapes of the surfaces with aspheric terms, with bounds of their rings.
+std::vector<kernel::Asphere<double>> describe_aspheres(std::span<const LensSurface> surfaces);
 
 }  // namespace petzval::inline v0::lens_detail
