@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Time of a camera ray, one thread: pupil sample, ray and weight by every model of a lens, in batches of 4096 samples,
-// one by one, and on a tilted film; and the set-up time of cameras.
+// one by one, and on a tilted film; and the set-up time of cameras, of all lenses too.
 //
 //   camera_bench [--json FILE] [options of Google Benchmark]
 //
@@ -13,6 +13,7 @@
 #include <cmath>
 #include <cstdio>
 #include <deque>
+#include <filesystem>
 #include <functional>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -21,6 +22,7 @@
 #include <string_view>
 #include <vector>
 
+#include "../declared_radius.hpp"
 #include "camera/make_model.hpp"
 #include "petzval/camera/camera.hpp"
 #include "petzval/core/error.hpp"
@@ -190,6 +192,29 @@ void print_setup(const Bench& bench) {
   }
 }
 
+/// Every lens of data/ on a film as large as its declared field, the slowest first.
+void print_all_setups() {
+  struct Setup {
+    std::string id;
+    std::size_t surfaces;
+    double ms;
+  };
+  std::vector<Setup> setups;
+  for (const auto& file : std::filesystem::directory_iterator(std::string(PETZVAL_BENCH_DATA) + "/lenses")) {
+    if (file.path().extension() != ".json") continue;
+    const petzval::Prescription p = petzval::read_prescription(file.path());
+    const petzval::Lens lens = petzval::compile(p);
+    const double half = petzval::testing::declared_radius(p, lens);
+    const Film film{.width_mm = 6 / std::sqrt(13.) * half, .height_mm = 4 / std::sqrt(13.) * half};
+    setups.push_back({p.id, lens.surface_count(), setup_ms([&] { Camera(lens, film); })});
+  }
+  std::sort(setups.begin(), setups.end(), [](const Setup& a, const Setup& b) { return a.ms > b.ms; });
+  std::printf("\nset-up of exact cameras of all lenses\n\n| lens | surfaces | ms |\n|------|---------:|---:|\n");
+  for (const auto& [id, surfaces, ms] : setups) {
+    std::printf("| %s | %zu | %s |\n", id.c_str(), surfaces, digits(ms, 3).c_str());
+  }
+}
+
 std::string json(const std::vector<Row>& rows) {
   using Json = nlohmann::ordered_json;
   Json array = Json::array();
@@ -249,6 +274,7 @@ int run(std::vector<char*> arguments) {
   }
   for (const Bench& bench : benches) print_rows(bench, results);
   for (const Bench& bench : benches) print_setup(bench);
+  print_all_setups();
   if (json_file) petzval::write_file(json(results), *json_file);
   return 0;
 }
