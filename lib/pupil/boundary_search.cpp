@@ -611,7 +611,7 @@ class Search {
 
 SearchOrder SearchOrder::rows(std::size_t points, std::size_t row) {
   SearchOrder order;
-  constexpr std::size_t first_step = 16;
+  constexpr std::size_t first_step = 32;
   for (std::size_t begin = 0; begin < points; begin += row) {
     const Line line{begin, 1, row};
     for (std::size_t i = 0; i < row; ++i) {

@@ -71,7 +71,7 @@ Box seen_face(const Lens& lens, const PupilPlane& plane, const Sines& sines) {
   const std::size_t entered = plane.travel() == Travel::to_film ? 0 : lens.surface_count() - 1;
   const double vertex_z = lens.surfaces()[entered].vertex_z;
   const double half = half_height(lens, entered, pupils(lens, lens.primary_wavelength()).entrance);
-  constexpr int radii = 12, around = 24;
+  constexpr int radii = 10, around = 16;
   Box box;
   double facing = 0;
   for (int i = 0; i <= radii; ++i) {

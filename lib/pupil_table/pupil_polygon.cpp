@@ -61,6 +61,8 @@ Edge edge_of(const PupilRegion& region, PolygonFit fit) {
     p[k] = place_of(region.at(k, extents[k].to)) - place_of(region.middle);
   }
   Edge edge;
+  for (auto* values : {&edge.obscured_from, &edge.obscured_to}) values->reserve(2 * n + 1);
+  edge.points.reserve(2 * n + 1);
   const auto add = [&](const Place& point, std::size_t k) {
     const auto& [from, to, outer, rim, lit] = extents[k];
     edge.points.push_back(point);
