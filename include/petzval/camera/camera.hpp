@@ -56,6 +56,14 @@ struct CameraOptions {
 /// the pupil that they are given as the shutter opens: after a pull from 3 m to infinity of a 100 mm lens their
 /// exposure is 1.5 % off. Such a film costs what a tilted one does.
 ///
+/// A sample has a wavelength of its own: a position among the compiled ones, or any between them in nm
+/// (Wavelength::nm(), RayWavelengths::each_nm), so that hero wavelengths need no camera per bin. Set-up grows with the
+/// compiled ones only. From eight of them over 400 to 700 nm, a ray meets the film of 36 mm where that of a camera
+/// compiled for its wavelength does, in pixels of 1920: within 1e-4 for exact models, 0.03 for polynomials of degree 7
+/// and first-order ones (tests/camera/any_wavelength_test.cpp). The light of polynomials and two discs steps in the
+/// middles between compiled wavelengths, by 1 % or less (FilmPupilTable). Film and scene hold the same light at every
+/// wavelength. A renderer's own models take nm where they say so (RayModel).
+///
 /// Immutable, cheap to copy, shared freely between threads. Calls neither allocate nor draw random numbers nor loop
 /// until a ray passes: a lost sample has weight 0 and a fate. Only the first call that concerns rays from the scene
 /// (importance and projection) makes the tables for those, while other threads that want them wait. Lens frame, mm;
@@ -81,8 +89,8 @@ class PETZVAL_API Camera {
 
   /// One ray; it agrees with that of a batch within rounding. The densities of a pinhole's rays are those of the thick
   /// lens's pupil. Fates of invalid samples: outside_film for a film point that is outside the film or not finite,
-  /// invalid for a wavelength that was not compiled, vignetted for a pupil without area and pupil samples that are not
-  /// finite. Pupil samples outside the unit square count as its edge.
+  /// invalid for a wavelength that the lens does not cover, vignetted for a pupil without area and pupil samples that
+  /// are not finite. Pupil samples outside the unit square count as its edge.
   CameraRay sample(const CameraSample& sample) const noexcept;
   /// N rays, float or double, in the precision of the model.
   template <class T>

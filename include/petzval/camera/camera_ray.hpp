@@ -98,7 +98,8 @@ PETZVAL_API RasterDifferential by_raster(const CameraRayDifferential& ray, const
 /// so that film and scene hold the same light in every model.
 struct Importance {
   double we = 0;  ///< 1/mm^2; 0 for a ray that is lost or misses the film
-  /// invalid: a direction that is not of unit length, numbers that are not finite, a wavelength that was not compiled.
+  /// invalid: a direction that is not of unit length, numbers that are not finite, a wavelength that the lens does not
+  /// cover.
   RayFate fate = RayFate::vignetted;
   FilmPoint film{};  ///< where the ray meets the plane of the film
   Vec2<double> raster{0, 0};
