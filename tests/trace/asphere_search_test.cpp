@@ -46,7 +46,7 @@ std::vector<Ray<T>> steep_rays(const petzval::SurfaceRow& row, std::mt19937& ran
 }
 
 struct Count {
-  int rays = 0, several = 0, doubtful = 0, wrong = 0;
+  int rays = 0, several = 0, doubtful = 0, wrong = 0, unsettled = 0;
 };
 
 /// Between equal media: the ray is as it was, and starts from its hit.
@@ -68,6 +68,7 @@ void judge(const petzval::SurfaceRow& row, std::mt19937& random, const std::stri
     for (const auto& options : testing_batches::ways(travel)) {
       const auto answer = traced(lens, rays, options);
       for (std::size_t i = 0; i < rays.size(); ++i) {
+        count.unsettled += answer.fates[i] == RayFate::no_convergence;
         if (!crossings[i]) continue;
         const petzval::Vec3<double> o(rays[i].origin), d(rays[i].direction), hit(answer.rays[i].origin);
         const bool transmitted = answer.fates[i] == RayFate::transmitted;
@@ -101,6 +102,7 @@ TYPED_TEST(AsphereSearch, FindsTheFirstCrossingOfEveryLane) {
     judge<TypeParam>(testing_aspheres::wild(random), random, "wild " + std::to_string(i), count);
   }
   EXPECT_EQ(count.wrong, 0);
+  EXPECT_EQ(count.unsettled, 0);
   EXPECT_GT(count.several, count.rays / 300) << "the rays are too easy";
   EXPECT_LT(count.doubtful, count.rays / 5);
 }
