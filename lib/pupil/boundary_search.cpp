@@ -521,27 +521,21 @@ class Search {
   /// Looks for parts of pupils outside the regions that were found, and makes the regions larger to hold them.
   void elsewhere(std::span<const std::uint32_t> which) {
     Batch batch;
-    std::vector<SeenPlace> places;
-    std::vector<std::size_t> until;
-    for (const std::uint32_t p : which) {
-      for (const SeenPlace& place : places_seen_(p)) {
-        if (!std::isfinite(place.at.x) || !std::isfinite(place.at.y)) continue;
-        places.push_back(place);
-        batch.add({p, place.at.x, place.at.y}, 0);
-      }
-      until.push_back(places.size());
-    }
-    batch.test(clearances_);
     std::vector<std::uint32_t> larger;
-    for (std::size_t i = 0, at = 0; i < which.size(); ++i) {
-      Found& found = found_[which[i]];
+    for (const std::uint32_t p : which) {
+      Found& found = found_[p];
+      std::vector<SeenPlace> places = places_seen_(p);
+      std::erase_if(places, [](const SeenPlace& s) { return !std::isfinite(s.at.x) || !std::isfinite(s.at.y); });
+      batch.clear();
+      for (const SeenPlace& place : places) batch.add({p, place.at.x, place.at.y}, 0);
+      batch.test(clearances_);
       Vec2<double> low{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()}, high = -low;
-      const auto take = [&](const Vec2<double>& p) {
-        for (int axis : {0, 1}) low[axis] = std::min(low[axis], p[axis]), high[axis] = std::max(high[axis], p[axis]);
+      const auto take = [&](const Vec2<double>& at) {
+        for (int axis : {0, 1}) low[axis] = std::min(low[axis], at[axis]), high[axis] = std::max(high[axis], at[axis]);
       };
-      for (; at < until[i]; ++at) {
-        const auto& [place, beside] = places[at];
-        if (!batch.passes(at) || holds(found, place)) continue;
+      for (std::size_t i = 0; i < places.size(); ++i) {
+        const auto& [place, beside] = places[i];
+        if (!batch.passes(i) || holds(found, place)) continue;
         take(place - beside), take(place + beside);
       }
       if (!(low.y < high.y)) continue;
@@ -549,12 +543,12 @@ class Search {
         if (found.ends[k].to > 0) take(found.middle + found.half_axes * units_[k] * found.ends[k].to);
       }
       if (mirrored_) {
-        const double x = points_[which[i]].x, half = std::max(x - low.x, high.x - x);
+        const double x = points_[p].x, half = std::max(x - low.x, high.x - x);
         low.x = x - half, high.x = x + half;
       }
       found.middle = (low + high) / 2.0;
       found.half_axes = (high - low) / 2.0;
-      larger.push_back(which[i]);
+      larger.push_back(p);
     }
     outwards(larger, 480, 1.6);
   }

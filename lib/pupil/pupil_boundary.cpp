@@ -330,6 +330,13 @@ PupilBoundary boundary_of(const Lens& lens, const PupilPlane& plane, Wavelength 
   const auto closed = [](const LensSurface& s) { return s.semi_diameter == 0; };
   if (std::any_of(lens.surfaces().begin(), lens.surfaces().end(), closed)) return boundary;
   Sight sight(lens, plane, wavelength);
+  if (directions == 1) {  // one line shows it, unless all of it lies between two samples
+    const double reach = sight.reach();
+    boundary.half_axes = {reach, reach};
+    if (reach > 0) Tracer(sight, boundary).scan(1, 1, 512, Tracer::finest);
+    if (!boundary.empty()) return boundary;
+    boundary = PupilBoundary(plane, wavelength);
+  }
   const std::vector<SeenPlace> passing = sight.passing_places();
   if (!passing.empty()) trace_boundary(sight, boundary, passing, directions);
   return boundary;

@@ -178,6 +178,19 @@ Sight::Ends Sight::ends(std::span<const double> x, std::span<const double> y) {
   return {fates_, surfaces_};
 }
 
+double Sight::reach() const {
+  const Sines sines(plane_);
+  const Box box = seen_face(lens_, plane_, sines);
+  double farthest = 0;
+  for (const double x : {box.low.x, box.high.x, 0.0}) {
+    for (const double y : {box.low.y, box.high.y, 0.0}) {
+      const Place p = sines.place({x, y});
+      if (std::isfinite(p.x) && std::isfinite(p.y)) farthest = std::max({farthest, std::abs(p.x), std::abs(p.y)});
+    }
+  }
+  return farthest;
+}
+
 std::vector<SeenPlace> Sight::passing_places() {
   std::vector<SeenPlace> result;
   const Sines sines(plane_);

@@ -40,6 +40,9 @@ class Sight {
   };
   Ends ends(std::span<const double> x, std::span<const double> y);
 
+  /// How far from the centre of the plane places lie that see the surface through which rays enter, mm.
+  double reach() const;
+
   /// Looks for rays that pass, over all that can be seen of the surface through which they enter: at 48 x 48 places
   /// and, where few of them pass, about those of 96 x 96 at which the clearance has a maximum.
   std::vector<SeenPlace> passing_places();
