@@ -11,7 +11,9 @@
 namespace petzval::inline v0 {
 
 /// The ray models of a lens, from the cheapest to the most accurate one. All have the exact lens's exposure on the axis
-/// within 0.5 %; thin_two_disc and polynomials have it within 2 % over the field (tests/camera/exposure_test.cpp).
+/// within 0.5 %; thin_two_disc and polynomials have it within 2 % over the field (tests/camera/exposure_test.cpp). Not
+/// where pupils come in several parts, as those of a ball lens, or of catadioptrics beyond their field: their light may
+/// be wrong by a factor (FilmPupilTable::equal_area). Exact models hold all parts, within FilmPupilTable::enclosing.
 enum class ModelKind : std::uint8_t {
   pinhole,        ///< first order, every ray through the centre of the pupil
   thin,           ///< first order, a thin lens: a disc in the principal plane
