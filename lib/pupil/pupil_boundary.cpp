@@ -250,11 +250,11 @@ class Tracer {
     x_.clear(), y_.clear();
     for (const End& end : ends_) add(units[end.direction], end.radius.below());
     const auto [fates, surfaces] = sight_.ends(x_, y_);
-    const auto rim = [&](std::size_t i) -> RimPoint {
+    const auto rim = [&, &lost_by = fates, &lost_at = surfaces](std::size_t i) -> RimPoint {
       const double radius = ends_[i].radius.above();
       const Point p = boundary_.at(ends_[i].direction, radius);
       const bool is_rim = radius > 0;
-      return {p.x, p.y, is_rim ? surfaces[i] : -1, is_rim ? fates[i] : RayFate::vignetted};
+      return {p.x, p.y, is_rim ? lost_at[i] : -1, is_rim ? lost_by[i] : RayFate::vignetted};
     };
     for (std::size_t i = 0; i < ends_.size(); i += 2) {
       boundary_.spans.push_back(

@@ -114,7 +114,7 @@ TEST(WhiteFurnace, KeepsTheTintOfTheLensUnlessToldOtherwise) {
   const Lens lens = compile(testing::data_prescription("ball_10mm"), std::array{440.0, 587.5618, 650.0},
                             {.glasses = &glasses, .missing_glass = MissingGlass::abbe});
   const Film film{.width_mm = 1, .height_mm = 1};
-  const auto light = [&](const Camera& camera, std::uint16_t w) { return mean_weight(camera, {}, 4096, 3, w); };
+  const auto light = [&](const Camera& camera, std::uint16_t w) { return mean_weight(camera, {}, 16384, 3, w); };
   for (const ModelKind model : {ModelKind::thin, ModelKind::exact_double}) {
     const Camera absolute(lens, film, {.model = model});
     const Camera tinted(lens, film, {.model = model, .normalisation = Normalisation::unity_on_axis});

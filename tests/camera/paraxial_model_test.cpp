@@ -362,6 +362,8 @@ TEST(ParaxialModel, SeesTheIrisTheSameWayRoundAsTheExactLens) {
   for (const Prescription& prescription : testing::data_prescriptions()) {
     const Lens open = compile(prescription);
     if (!open.stop() || !open.rotationally_symmetric() || first_order(open).afocal) continue;
+    // Its pupil comes in rings, and the models' have the light of all of them.
+    if (prescription.name.starts_with("Ball lens")) continue;
     SCOPED_TRACE(prescription.name);
     const Lens stopped = with_semi_diameter(open, *open.stop(), open.surfaces()[*open.stop()].semi_diameter / 8);
     const Lens lens = with_iris(stopped, regular_iris(3, 0.4));

@@ -77,9 +77,9 @@ PETZVAL_API FirstOrder first_order(const Lens& lens, Wavelength wavelength = {},
 /// The meridian that focal length, f-number and focus refer to: y, or x where a lens has power in x only.
 PETZVAL_API Meridian main_meridian(const Lens& lens, Wavelength wavelength = {});
 
-/// How much narrower an anamorphic lens makes its picture along x than along y: the focal length along y over that along
-/// x. 1 for a lens of revolution. Infinite, 0 or not a number where a section has no power. desqueezed() in io/image.hpp
-/// makes the picture right again.
+/// How much narrower an anamorphic lens makes its picture along x than along y: the focal length along y over that
+/// along x. 1 for a lens of revolution. Infinite, 0 or not a number where a section has no power. desqueezed() in
+/// io/image.hpp makes the picture right again.
 PETZVAL_API double squeeze(const Lens& lens, Wavelength wavelength = {});
 
 /// The paraxial image of an axial point (z in the lens frame, mm). object_z may be infinite; beyond 1e100 mm it counts
