@@ -130,8 +130,9 @@ RgbImage desqueezed(const RgbImage& image, double squeeze) {
     for (int x = 0; x < out.width; ++x) {
       const auto [x0, x1, right] = between(x, image.width, out.width);
       for (int c = 0; c < 3; ++c) {
-        const auto row = [&](int at) { return (1 - right) * image.pixel(x0, at)[c] + right * image.pixel(x1, at)[c]; };
-        out.pixel(x, y)[c] = (1 - down) * row(y0) + down * row(y1);
+        const float above = (1 - right) * image.pixel(x0, y0)[c] + right * image.pixel(x1, y0)[c];
+        const float below = (1 - right) * image.pixel(x0, y1)[c] + right * image.pixel(x1, y1)[c];
+        out.pixel(x, y)[c] = (1 - down) * above + down * below;
       }
     }
   }

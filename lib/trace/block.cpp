@@ -52,9 +52,11 @@ void trace_bundle(const BlockJob<R>& job, std::size_t o, const R* index, const R
   const auto out = from<R>(job.out, o);
   std::uint8_t unsettled[Bundle<R>::rays] = {};
   Bundle<R> b;
+  const std::size_t left = job.rays - o;
+  if (left < Bundle<R>::rays) b.used = (static_cast<int>(left) + Lanes<R>::width - 1) / Lanes<R>::width;
   enter(job, in, index, b);
   Mask<R> taken = b.alive[0];
-  for (int i = 1; i < Bundle<R>::vectors; ++i) taken = taken & b.alive[i];
+  for (int i = 1; i < b.used; ++i) taken = taken & b.alive[i];
   if (job.tangents_in) {
     TwoTangents<R> tangents;
     enter(job, from<R>(job.tangents_in->u, o), index, tangents.u);
@@ -73,7 +75,7 @@ void trace_bundle(const BlockJob<R>& job, std::size_t o, const R* index, const R
     for (std::size_t j = 0; j < job.steps; ++j) pass(job, j, media_at(j), unsettled, b, none);
     leave(job, in, per_index, b, out);
   }
-  if (!every(taken)) put_on_axis(job, out);
+  if (!every(taken)) put_on_axis(job, b.used * Lanes<R>::width, out);
   report(job, b, unsettled, o);
 }
 

@@ -28,6 +28,11 @@ struct Bundle {
   using V = Lanes<R>;
   static constexpr int rays = rays_in_bundle<R>;
   static constexpr int vectors = rays / V::width;
+#if defined(PETZVAL_ONE_LANE)
+  static constexpr int used = 1;
+#else
+  int used = vectors;  ///< the first ones hold rays, the others none: a few rays need not cost what a whole bundle does
+#endif
   static_assert(block_rays % rays == 0);
 
   V x[vectors], y[vectors], z[vectors];

@@ -18,7 +18,7 @@ template <class R>
 void enter(const BlockJob<R>& job, const RayArrays<const R>& in, const R* index, Bundle<R>& b) noexcept {
   using V = Lanes<R>;
   const V sense(job.sequence.first_sense);
-  for (int i = 0; i < Bundle<R>::vectors; ++i) {
+  for (int i = 0; i < b.used; ++i) {
     const int o = i * V::width;
     const V x = load(in.x + o), y = load(in.y + o), z = load(in.z + o);
     const V dx = load(in.dx + o), dy = load(in.dy + o), dz = load(in.dz + o);
@@ -33,6 +33,12 @@ void enter(const BlockJob<R>& job, const RayArrays<const R>& in, const R* index,
     b.r2[i] = x * x + y * y;
     const V zero = (x + y + z) * V(R(0));  // unless one of them is not finite
     b.alive[i] = (length > V(R(0.999))) & (length < V(R(1.001))) & (zero >= V(R(0)));
+    b.tally[i] = typename Native<R>::Bits{};
+  }
+  for (int i = b.used; i < Bundle<R>::vectors; ++i) {
+    b.x[i] = b.y[i] = b.z[i] = b.px[i] = b.py[i] = b.r2[i] = V(R(0));
+    b.pz[i] = V(R(1));
+    b.alive[i] = b.x[i] > b.x[i];
     b.tally[i] = typename Native<R>::Bits{};
   }
 }
@@ -57,7 +63,7 @@ void enter(const BlockJob<R>& job, const RayArrays<const R>& in, const R* index,
 template <class R, class Media>
 void refresh(const Media& media, Bundle<R>& b) noexcept {
   using V = Lanes<R>;
-  for (int i = 0; i < Bundle<R>::vectors; ++i) {
+  for (int i = 0; i < b.used; ++i) {
     const V length = (b.px[i] * b.px[i] + b.py[i] * b.py[i] + b.pz[i] * b.pz[i]) * media.per_n2(i);
     const V scale = V(R(1.5)) - V(R(0.5)) * length;
     b.px[i] = b.px[i] * scale;
@@ -72,7 +78,7 @@ void leave(const BlockJob<R>& job, const RayArrays<const R>& in, const R* per_in
            const RayArrays<R>& out) noexcept {
   using V = Lanes<R>;
   const V sense(job.sequence.last_sense);
-  for (int i = 0; i < Bundle<R>::vectors; ++i) {
+  for (int i = 0; i < b.used; ++i) {
     const int o = i * V::width;
     const V per_n = load(per_index + o);
     const V dx = per_n * b.px[i], dy = per_n * b.py[i], dz = per_n * b.pz[i];
@@ -97,7 +103,7 @@ void leave(const BlockJob<R>& job, const R* per_index, const Bundle<R>& b, const
            const RayArrays<R>& out) noexcept {
   using V = Lanes<R>;
   const V sense(job.sequence.last_sense), none(R(0));
-  for (int i = 0; i < Bundle<R>::vectors; ++i) {
+  for (int i = 0; i < b.used; ++i) {
     const int o = i * V::width;
     const V per_n = load(per_index + o);
     const auto put = [&](R* to, V value) { store(to + o, select(b.alive[i], value, none)); };
@@ -112,9 +118,9 @@ void leave(const BlockJob<R>& job, const R* per_index, const Bundle<R>& b, const
 
 /// Puts rays that came in without finite numbers on the axis, in the sense of travel.
 template <class R>
-void put_on_axis(const BlockJob<R>& job, const RayArrays<R>& out) noexcept {
+void put_on_axis(const BlockJob<R>& job, int rays, const RayArrays<R>& out) noexcept {
   const auto finite = [](R value) { return value - value == 0; };
-  for (int l = 0; l < Bundle<R>::rays; ++l) {
+  for (int l = 0; l < rays; ++l) {
     if (finite(out.x[l]) && finite(out.y[l]) && finite(out.z[l]) && finite(out.dx[l]) && finite(out.dy[l]) &&
         finite(out.dz[l])) {
       continue;

@@ -56,7 +56,7 @@ template <class R>
 void clip(const kernel::Step<R>& s, std::span<const kernel::StopEdge<R>> iris, std::size_t j, Bundle<R>& b) noexcept {
   using V = Lanes<R>;
   using Bits = typename Native<R>::Bits;
-  for (int i = 0; i < Bundle<R>::vectors; ++i) {
+  for (int i = 0; i < b.used; ++i) {
     const Mask<R> open = (b.r2[i] >= V(s.obscuration2)) & kernel::within(iris, b.x[i], b.y[i]);
     b.alive[i] = b.alive[i] & open;
     const auto rim = static_cast<typename Native<R>::Bit>(4 * j + 1);  // the tally of a ray that hit and was clipped
@@ -70,7 +70,7 @@ template <class R, class Media, class Follow>
 void plane(const kernel::Step<R>& s, const Lanes<R>& rim2, const Media& media, Bundle<R>& b, Follow& follow) noexcept {
   using V = Lanes<R>;
   PETZVAL_UNROLL
-  for (int i = 0; i < Bundle<R>::vectors; ++i) {
+  for (int i = 0; i < b.used; ++i) {
     const V pz = b.pz[i];
     const V q = (V(s.gap) - b.z[i]) / pz;
     b.x[i] = b.x[i] + q * b.px[i];
@@ -113,7 +113,7 @@ void sphere(const kernel::Step<R>& s, const Lanes<R>& rim2, const Media& media, 
   using V = Lanes<R>;
   const V c(s.curvature);
   PETZVAL_UNROLL
-  for (int i = 0; i < Bundle<R>::vectors; ++i) {
+  for (int i = 0; i < b.used; ++i) {
     if constexpr (far) approach(s, media, b, i, follow);
     const V px = b.px[i], py = b.py[i], pz = b.pz[i];
     const V z = far ? b.z[i] : b.z[i] - V(s.gap);
@@ -196,7 +196,7 @@ void quadric(const kernel::Step<R>& s, const Lanes<R>& rim2, const Media& media,
              Follow& follow) noexcept {
   using V = Lanes<R>;
   const V c(s.curvature), ax(s.ax), ay(s.ay), e(s.e);
-  for (int i = 0; i < Bundle<R>::vectors; ++i) {
+  for (int i = 0; i < b.used; ++i) {
     approach(s, media, b, i, follow);
     const V px = b.px[i], py = b.py[i], pz = b.pz[i];
     const auto [a, slant, f] = quadratic(s, b, i);

@@ -73,7 +73,7 @@ TracedRay<R> trace_one(const BlockJob<R>& job, const R* vertex_z, const Ray<R>& 
   Bundle<R> b;
   enter(job, in, &index, b);
   if (!any(b.alive[0])) {
-    put_on_axis(job, own);
+    put_on_axis(job, 1, own);
     return end;
   }
   std::uint8_t unsettled = 0;

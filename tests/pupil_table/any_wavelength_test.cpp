@@ -47,7 +47,6 @@ Shares shares(const Lens& lens, const FilmPupilTable& table, double radius, Wave
   const double towards = towards_scene(lens, space);
   std::mt19937_64 random(7);
   std::uniform_real_distribution<double> unit(0, 1);
-  Shares result;
   int lit = 0, in = 0, missed = 0;
   for (int i = 0; i < points; ++i) {
     const double r = radius * (i + unit(random)) / points, azimuth = 2 * std::numbers::pi * unit(random);

@@ -75,14 +75,15 @@ TEST(FilmCells, GiveTheLightOfAllRaysThroughTheLastSurface) {
     const Lens open = data_lens(id), lens = f_number > 0 ? with_f_number(open, f_number) : open;
     const FilmPupilTable table =
         FilmPupilTable::enclosing(lens, format * (id == std::string("cylinder_3.9mm") ? 0.07 : 1));
-    const double sampled = irradiance(lens, table, film, [&](double u, double v) { return table.sample(film, u, v); });
+    const double sampled =
+        irradiance(lens, table, film, [&, &at = film](double u, double v) { return table.sample(at, u, v); });
     EXPECT_NEAR(sampled / film_irradiance(lens, film), 1, 2e-3);
     // The square around the last surface, seen from the film point in the plane of the pupil.
     const LensSurface& last = lens.surfaces().back();
     const double to_pupil = table.space().depth() / (last.vertex_z - lens.film_z());
     const double half = 1.5 * last.semi_diameter * std::abs(to_pupil);
-    const double brute = irradiance(lens, table, film, [&](double u, double v) {
-      return PupilSample{film.x * (1 - to_pupil) + half * (2 * u - 1), film.y * (1 - to_pupil) + half * (2 * v - 1),
+    const double brute = irradiance(lens, table, film, [&, &at = film](double u, double v) {
+      return PupilSample{at.x * (1 - to_pupil) + half * (2 * u - 1), at.y * (1 - to_pupil) + half * (2 * v - 1),
                          4 * half * half};
     });
     EXPECT_NEAR(sampled / brute, 1, 1.5 / std::sqrt(65536 * table.area(film) / (4 * half * half)));
