@@ -81,7 +81,7 @@ std::vector<EdgePoint> real_edges(const FilmPupilTable& real, std::size_t wavele
   constexpr double darkest = 0.01;  // of the pupil's area on the axis
   std::vector<EdgePoint> edges;
   for (int j = 0; j <= fields; ++j) {
-    const FilmPoint film{0, real.film_radius() * std::sqrt(static_cast<double>(j) / fields)};
+    const FilmPoint film{0, real.lit_radius() * std::sqrt(static_cast<double>(j) / fields)};
     std::array<PupilSample, directions> points;
     for (int k = 0; k < directions; ++k) points[k] = real.sample(film, (k + crossing / 2) * step, 1, wavelength);
     if (!(points[0].area > darkest * real.area({}, wavelength))) continue;

@@ -218,7 +218,7 @@ FilmPupilTable FilmPupilTable::traced(const Lens& lens, double film_radius, bool
     return FilmPupilTable(std::move(data));
   }
   for (std::size_t w = 0; w < wavelengths && data->lit_radius < film_radius; ++w) {
-    const double lit = lit_radius(film_radius, traced_pupils(lens, data->space, w));
+    const double lit = pupil_table_detail::lit_radius(film_radius, traced_pupils(lens, data->space, w));
     data->lit_radius = std::max(data->lit_radius, lit);
   }
   std::vector<std::vector<PupilPolygon>> polygons;
@@ -258,13 +258,14 @@ FilmPupilTable FilmPupilTable::of_discs(const TwoPlanes& space, std::span<const 
 FilmPupilTable FilmPupilTable::reshaped(std::span<const std::vector<PupilDisc>> discs) const {
   auto data = std::make_shared<Data>();
   data->space = data_->space;
-  data->film_radius = data->lit_radius = film_radius();
+  data->film_radius = film_radius();
+  data->lit_radius = lit_radius();
   data->primary = primary_wavelength();
   data->compiled = data_->compiled;
   for (std::size_t w = 0; w < discs.size(); ++w) {
-    std::vector<PupilPolygon> polygons = disc_polygons(discs[w], film_radius());
+    std::vector<PupilPolygon> polygons = disc_polygons(discs[w], lit_radius());
     for (std::size_t i = 0; i < polygons.size(); ++i) {
-      const FilmPoint film{0, film_radius() * static_cast<double>(i) / film_strips};
+      const FilmPoint film{0, lit_radius() * static_cast<double>(i) / film_strips};
       const double wanted = projected_solid_angle(film, w);
       // The solid angle grows with the square of the scale, nearly.
       for (int round = 0; round < 3; ++round) {
@@ -320,7 +321,7 @@ FilmPupilTable FilmPupilTable::for_tilted_film(const FilmTilt& tilt) const {
   data->compiled = data_->compiled;
   data->film_radius = tilt.radius;
   for (std::size_t w = 0; w < wavelengths() && data->lit_radius < tilt.radius; ++w) {
-    const double lit = lit_radius(tilt.radius, tilted_film_pupils(*this, tilt, w));
+    const double lit = pupil_table_detail::lit_radius(tilt.radius, tilted_film_pupils(*this, tilt, w));
     data->lit_radius = std::max(data->lit_radius, lit);
   }
   for (std::size_t w = 0; w < wavelengths(); ++w) {
@@ -331,6 +332,9 @@ FilmPupilTable FilmPupilTable::for_tilted_film(const FilmTilt& tilt) const {
 
 const TwoPlanes& FilmPupilTable::space() const noexcept { return data_->space; }
 double FilmPupilTable::film_radius() const noexcept { return data_->film_radius; }
+double FilmPupilTable::lit_radius() const noexcept {
+  return data_->images || data_->cells ? film_radius() : data_->lit_radius;
+}
 std::size_t FilmPupilTable::wavelengths() const noexcept { return data_->wavelengths; }
 std::size_t FilmPupilTable::primary_wavelength() const noexcept { return data_->primary; }
 bool FilmPupilTable::covers(Wavelength wavelength) const noexcept {
@@ -343,7 +347,7 @@ FilmPupilArrays FilmPupilTable::arrays() const {
     throw Error("pupil table: found pupils over both axes of the film, wanted those of a lens of revolution");
   }
   FilmPupilArrays result;
-  result.film_radius = data_->images ? film_radius() : data_->lit_radius;
+  result.film_radius = lit_radius();
   if (const auto& images = data_->images) {
     images->put(result);
   } else {

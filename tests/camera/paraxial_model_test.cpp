@@ -420,6 +420,22 @@ TEST(ParaxialModel, HasTwoSectionsOfALensWithCylinders) {
   EXPECT_GT(std::abs(middle.x - middle.y), 0.1);
 }
 
+// A film far larger than the image circle keeps the two discs that fit the light.
+TEST(ParaxialModel, HasTheSameTwoDiscsOnAHugeFilm) {
+  const Lens lens = testing::data_lens("double_gauss_100mm_f2.0");
+  const FilmPupilTable huge = ParaxialModel(ModelKind::thin_two_disc, lens, 1e4).pupils();
+  const FilmPupilTable exact = FilmPupilTable::equal_area(lens, 1e4);
+  ASSERT_LT(huge.lit_radius(), 100);
+  for (const double y : {0.0, 15.0, 30.0}) {
+    EXPECT_NEAR(huge.area({0, y}) / exact.area({0, y}), 1, 0.02) << y;
+    const PupilSample right = huge.sample({0, y}, 0.25, 1), below = huge.sample({0, y}, 0.5, 1);
+    const PupilSample exact_right = exact.sample({0, y}, 0.25, 1), exact_below = exact.sample({0, y}, 0.5, 1);
+    EXPECT_NEAR(right.x, exact_right.x, 1.5) << y;  // of 20 mm
+    EXPECT_NEAR(below.y, exact_below.y, 1.5) << y;
+  }
+  EXPECT_EQ(huge.area({0, 1000}), 0);
+}
+
 TEST(ParaxialModel, RefusesWhatItCannotBe) {
   const Lens lens = testing::data_lens("double_gauss_100mm_f2.0");
   const auto refusal = [](ModelKind model, const Lens& of) {

@@ -136,6 +136,8 @@ class PETZVAL_API FilmPupilTable {
   /// The planes that film points and samples lie in.
   const TwoPlanes& space() const noexcept;
   double film_radius() const noexcept;
+  /// Film points farther from the axis get no light, as far as is known: film_radius() or less.
+  double lit_radius() const noexcept;
   std::size_t wavelengths() const noexcept;
   /// Whether there are samples at a wavelength: by a position, or by nm within the range of the wavelengths.
   bool covers(Wavelength wavelength) const noexcept;
