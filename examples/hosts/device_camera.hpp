@@ -14,6 +14,7 @@
 namespace hosts {
 
 using Table = petzval::CameraTables;
+constexpr int surface_size = static_cast<int>(Table::surface_size);
 
 struct DeviceRay {
   float origin[3] = {0, 0, 0}, direction[3] = {0, 0, -1};  // lens frame, mm, from the front of the lens to the scene
@@ -138,7 +139,7 @@ PETZVAL_DEVICE inline bool by_surfaces(const float* t, int w, DeviceRay& ray) {
   const float* index = list(t, Table::indices) + w * (count + 1);
   float *o = ray.origin, *d = ray.direction;
   for (int i = count - 1; i >= 0; --i) {
-    const float* surface = list(t, Table::rays) + 47 * i;
+    const float* surface = list(t, Table::rays) + surface_size * i;
     const float c = surface[1], e = 1 + surface[2], sense = d[2] > 0 ? 1.0f : -1.0f;
     // In the plane of the vertex the quadratic loses no digits.
     const float start = (surface[0] - o[2]) / d[2];
@@ -214,7 +215,7 @@ PETZVAL_DEVICE inline DeviceRay sample(const float* t, float film_x, float film_
       // Light runs towards +z into the lens, and back after an odd number of mirrors.
       float towards = -1;
       const int count = whole_number(t, Table::surface_count);
-      for (int i = 0; i < count; ++i) towards = list(t, Table::rays)[47 * i + 5] != 0 ? -towards : towards;
+      for (int i = 0; i < count; ++i) towards = list(t, Table::rays)[surface_size * i + 5] != 0 ? -towards : towards;
       const float scale = (depth * towards > 0 ? 1 : -1) / std::sqrt(length2);
       ray.origin[0] = place.x, ray.origin[1] = place.y, ray.origin[2] = t[Table::pupil_z];
       ray.direction[0] = x * scale, ray.direction[1] = y * scale, ray.direction[2] = depth * scale;

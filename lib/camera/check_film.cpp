@@ -99,12 +99,9 @@ FilmBehindLens placed(const Lens& lens, const Film& film) {
 
 void check_film(const Lens& lens, const Film& film) {
   check_rectangle(lens.name() + ": film", film);
-  for (const double time : {0.0, 1.0}) {
-    const Film still = film.at(time);
-    with_film(lens, still.z());
-    check_outside_surface(lens, still);
-    if (still.tilted()) check_tilted(lens, still);
-  }
+  check_outside_surface(lens, film);
+  if (film.tilted()) check_tilted(lens, film);
+  if (film.travel_mm != 0) check_film(lens, placed(lens, film.at(1)).film);
 }
 
 void check_upright_film(const Lens& lens, const Film& film) {

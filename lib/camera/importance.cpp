@@ -202,9 +202,8 @@ Importance SceneSide::met_by(const Arrival& arrival, const std::optional<OnFilm>
 }
 
 void SceneSide::weigh(Importance& result, const AnyRayModel& model, const Arrival& arrival, double facing,
-                      double cosine, double area, Wavelength wavelength) const noexcept {
+                      double cosine, double area, const Facts& at) const noexcept {
   const auto& [fate, upright, pupil] = arrival;
-  const Facts at = facts_at(wavelength);
   const double depth2 = squared(space_.depth());
   const double length2 = squared(pupil.x - upright.x) + squared(pupil.y - upright.y) + depth2;
   const double slopes = model.linear_in_slopes() ? squared(depth2 / (length2 * squared(cosine))) : 1;
@@ -227,14 +226,15 @@ Importance SceneSide::importance(const AnyRayModel& model, const Ray<double>& ra
   Importance result = met_by(arrival, met);
   if (result.fate != RayFate::transmitted) return result;
   const FilmPupilTable &passing = model.pupils(), &sampled = tilted_ ? tilted_->pupils() : passing;
-  if (facts_at(wavelength).entrance_area == 0 ||
+  const Facts at = facts_at(wavelength);
+  if (at.entrance_area == 0 ||
       (!model.clips_at_apertures() && !passing.contains(upright, pupil.x, pupil.y, wavelength))) {
     result.fate = RayFate::vignetted;
     return result;
   }
   const bool within = sampled.contains(met->virtual_point, pupil.x, pupil.y, wavelength);
   weigh(result, model, arrival, placed ? placed->weight(met->virtual_point, pupil) : 1, ray.direction.z,
-        within ? sampled.area(met->virtual_point, wavelength) : 0, wavelength);
+        within ? sampled.area(met->virtual_point, wavelength) : 0, at);
   return result;
 }
 
@@ -311,7 +311,7 @@ ImportanceSample SceneSide::through_pinhole(const AnyRayModel& model, const Vec3
     seen.fate = RayFate::vignetted;
     return result;
   }
-  weigh(seen, model, arrival, facing, result.direction.z, s.area, wavelength);
+  weigh(seen, model, arrival, facing, result.direction.z, s.area, at);
   seen.we *= spread, seen.pdf_direction *= spread;
   return result;
 }

@@ -148,13 +148,20 @@ FilmPupilTable pupils_of(ModelKind model, const LensFacts& facts, double film_ra
   const auto image_at = [&](std::size_t w, Meridian section) {
     return model == ModelKind::thin ? thin_image(facts, w, space, section) : thick_image(facts, w, space, section);
   };
+  struct Sections {
+    StopImage x, y;
+  };
+  std::vector<Sections> seen;
+  for (std::size_t w = 0; w < facts.wavelengths(); ++w) {
+    const StopImage y = image_at(w, Meridian::y);
+    seen.push_back({has_cylinders(lens) ? image_at(w, Meridian::x) : y, y});
+  }
   const std::size_t primary = lens.primary_wavelength();
-  const Iris iris = iris_detail::upside_down(lens.iris(), image_at(primary, Meridian::x).size < 0,
-                                             image_at(primary, Meridian::y).size < 0);
+  const Iris iris = iris_detail::upside_down(lens.iris(), seen[primary].x.size < 0, seen[primary].y.size < 0);
   std::vector<PupilImage> images;
   for (std::size_t w = 0; w < facts.wavelengths(); ++w) {
-    const StopImage x = image_at(w, Meridian::x), y = image_at(w, Meridian::y);
-    const double along_x = has_cylinders(lens) ? std::abs(x.size / y.size) : 1;
+    const auto& [x, y] = seen[w];
+    const double along_x = has_cylinders(lens) ? std::abs(x.size / y.size) : 1;  // sizes may be infinite
     const double radius = axial_radius(lens, w, space, iris, along_x);
     images.push_back({{x.shift, y.shift}, {along_x * radius, radius}});
   }
@@ -180,26 +187,28 @@ ParaxialModel::ParaxialModel(ModelKind model, const LensFacts& facts, double fil
   between_ = {lens_detail::CompiledWavelengths(lens.wavelengths_nm()), values};
 }
 
-const SectionMaps* ParaxialModel::map_at(Wavelength at, SectionMaps& own) const noexcept {
+template <class OfMaps>
+const SectionMaps* ParaxialModel::either_at(Wavelength at, const std::vector<SectionMaps>& compiled, SectionMaps& own,
+                                            const OfMaps& of_maps) const noexcept {
   if (const auto nm = at.in_nm()) {
     if (!between_.covers(*nm)) return nullptr;
     const auto [xa, xb, xc, xd, ya, yb, yc, yd, middle] = between_(*nm);
-    own = seen_by(kind_, {{xa, xb, xc, xd}, {ya, yb, yc, yd}}, middle);
+    own = of_maps(SectionMaps{{xa, xb, xc, xd}, {ya, yb, yc, yd}}, middle);
     return &own;
   }
   const std::size_t position = at.position(pupils_.primary_wavelength());
-  return position < to_scene_.size() ? &to_scene_[position] : nullptr;
+  return position < compiled.size() ? &compiled[position] : nullptr;
+}
+
+const SectionMaps* ParaxialModel::map_at(Wavelength at, SectionMaps& own) const noexcept {
+  return either_at(at, to_scene_, own,
+                   [this](const SectionMaps& maps, double middle) { return seen_by(kind_, maps, middle); });
 }
 
 const SectionMaps* ParaxialModel::inverse_at(Wavelength at, SectionMaps& own) const noexcept {
-  if (const auto nm = at.in_nm()) {
-    if (!between_.covers(*nm)) return nullptr;
-    const auto [xa, xb, xc, xd, ya, yb, yc, yd, middle] = between_(*nm);
-    own = {RayMatrix{xa, xb, xc, xd}.inverse(), RayMatrix{ya, yb, yc, yd}.inverse()};
-    return &own;
-  }
-  const std::size_t position = at.position(pupils_.primary_wavelength());
-  return position < to_film_.size() ? &to_film_[position] : nullptr;
+  return either_at(at, to_film_, own, [](const SectionMaps& maps, double) {
+    return SectionMaps{maps.x.inverse(), maps.y.inverse()};
+  });
 }
 
 template <class T>

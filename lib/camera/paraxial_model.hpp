@@ -79,6 +79,10 @@ class ParaxialModel {
   /// is not covered. own: room for those of a wavelength in nm.
   const SectionMaps* map_at(Wavelength wavelength, SectionMaps& own) const noexcept;
   const SectionMaps* inverse_at(Wavelength wavelength, SectionMaps& own) const noexcept;
+  /// of_maps(maps, shift): makes one of them from the thick lens's maps and a pinhole's shift.
+  template <class OfMaps>
+  const SectionMaps* either_at(Wavelength wavelength, const std::vector<SectionMaps>& compiled, SectionMaps& own,
+                               const OfMaps& of_maps) const noexcept;
 
   ModelKind kind_;
   FilmPupilTable pupils_;

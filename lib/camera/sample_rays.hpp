@@ -50,8 +50,8 @@ class WavelengthFacts {
 struct FilmView {
   const AnyRayModel& model;
   const Film& film;
-  const TiltedFilm* tilted =
-      nullptr;  ///< of the same film, with the model's pupils; null for an upright one that stays
+  /// Of the same film, with the model's pupils; null for an upright one that stays.
+  const TiltedFilm* tilted = nullptr;
   const WavelengthFacts& wavelengths;
   Front front = {};  ///< of the lens
 

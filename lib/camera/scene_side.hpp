@@ -72,7 +72,7 @@ class SceneSide {
   /// Weight and densities of a ray that meets the film. facing: TiltedPlane::weight(); cosine: of its angle with the
   /// axis in the scene; area: of the pupil that its film point samples, 0 where no sample is this ray.
   void weigh(Importance& result, const AnyRayModel& model, const Arrival& arrival, double facing, double cosine,
-             double area, Wavelength wavelength) const noexcept;
+             double area, const Facts& at) const noexcept;
   /// A connection to a place in the lens from a point at a distance from it. The shadow ray ends at the front.
   ImportanceSample connection(const Vec3<double>& place, const Vec3<double>& direction, double distance,
                               double pdf) const noexcept;

@@ -21,8 +21,8 @@ class Lens;
 enum class Normalisation : std::uint8_t {
   irradiance,  ///< irradiance of the film for a scene of radiance 1, with natural darkening and f-number
   /// Irradiance over that on the axis at the primary wavelength, where a uniform scene of radiance 1 gives 1 (as the
-  /// shutter opens). The other
-  /// wavelengths have the same scale: what the lens makes brighter at one than at another, its tint, stays.
+  /// shutter opens). The other wavelengths have the same scale: what the lens makes brighter at one than at another,
+  /// its tint, stays.
   unity_on_axis,
   /// Each wavelength over its own irradiance on the axis: a white scene is white there, and the tint of the lens is
   /// lost.
@@ -70,11 +70,11 @@ struct CameraOptions {
 /// host_frame.hpp has the frames of hosts.
 class PETZVAL_API Camera {
  public:
-  /// The lens has its film where film.z_mm says, as with_film() would. A tilted film takes two to six times as long to
-  /// set up (34 ms rather than 10 for a double Gauss); fits of tilts need no camera. Throws Error for a film without
-  /// area or pixels, one that is not behind the last surface, is tilted into the lens or comes near to the plane of the
-  /// pupil, and where the model cannot be built: a lens without a pupil, a pinhole, two discs or a polynomial of a lens
-  /// with cylinders.
+  /// The lens has its film where film.z_mm says, as with_film() would. A film that is tilted or travels takes six to
+  /// eight times as long to set up (23 ms rather than 3.4 for a double Gauss); fits of tilts need no camera. Throws
+  /// Error for a film without area or pixels, one that is not behind the last surface, is tilted into the lens or comes
+  /// near to the plane of the pupil, and where the model cannot be built: a lens without a pupil, a pinhole, two discs
+  /// or a polynomial of a lens with cylinders.
   Camera(const Lens& lens, const Film& film, const CameraOptions& options = {});
   /// With a model that was built before: a renderer's own, or polynomials read from a file (ray_model.hpp). Throws
   /// Error also for a model with another number of wavelengths, another place of the film, or a film smaller than

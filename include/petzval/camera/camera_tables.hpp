@@ -13,24 +13,20 @@ namespace petzval::inline v0 {
 /// the array are whole numbers. Lens frame, mm. examples/hosts/device_camera.hpp samples a camera from it and has
 /// nothing else of petzval.
 ///
-///     position               what stands there
-///     format ... surface_count   the numbers below
+///     format ... edge_count  the positions below
 ///     wavelengths            [wavelength] nm
-///     scales                 [wavelength] of weights: weight = scale area depth^2 / length^4, for a line of that
-///     length
-///                            from the film point to a place in the pupil; depth: from film_z to pupil_z
+///     scales                 [wavelength] of weights: weight = scale area depth^2 / length^4, length that of the line
+///                            from the film point to the place in the pupil, depth from film_z to pupil_z
 ///     pupils, iris           as in FilmPupilArrays
-///     rays, first order      [wavelength] a, b, c, d along x, then along y: place = a f + b p, slope = c f + d p, of
-///     film
-///                            and pupil point, in the plane reference_z; rays run towards -z
+///     rays, first order      [wavelength] a, b, c, d along x, then along y: place = a f + b p and slope = c f + d p of
+///                            film and pupil point, in the plane reference_z; rays run towards -z
 ///     rays, polynomial       [wavelength] the terms of direction_by_film, direction_by_pupil, offset_by_film and
-///                            offset_by_pupil (see RayPolynomial; degree, domain: below)
-///     rays, surfaces         [surface] in the order of the file, surface_size numbers each: vertex_z, curvature, conic
-///                            constant, semi-diameter (infinite: 3e38), that of the central obscuration, 1 for a
-///                            mirror, 1 for the stop, height h of the aspheric terms; a[2] ... a[40]: z gains a[i] (r /
-///                            h)^i
+///                            offset_by_pupil (see RayPolynomial; degree and domain: below)
+///     rays, surfaces         [surface] surface_size numbers each: vertex_z, curvature, conic constant, semi-diameter
+///                            (infinite: 3e38), that of the central obscuration, 1 for a mirror, 1 for the stop,
+///                            height h of the aspheric terms, and a[2] ... a[40]: z gains a[i] (r / h)^i
 ///     indices                [wavelength][space] of the media, before each surface and behind the last one
-///     edges                  [edge] of the stop: x nx + y ny <= distance: nx, ny, distance
+///     edges                  [edge] nx, ny, distance: light passes the stop where x nx + y ny <= distance
 struct CameraTables {
   enum Position : std::size_t {
     format,  ///< 1
