@@ -76,6 +76,13 @@ std::vector<pupil_detail::PupilGuess> guesses_from(const std::vector<Ray<double>
 
 }  // namespace
 
+void RayClearances::test(std::size_t count, double* clearances) {
+  through_.resize(count);
+  const auto at = [this](std::size_t k) { return components_[k].data(); };
+  passing_(count, {at(0), at(1), at(2), at(3), at(4), at(5)}, wavelength_, through_.data());
+  std::transform(through_.begin(), through_.end(), clearances, pupil_detail::clearance_of);
+}
+
 Bearing::Bearing(const Vec3<double>& unit) noexcept {
   const double across = std::hypot(unit.x, unit.y);
   field = std::atan2(across, -unit.z);
@@ -131,22 +138,14 @@ EntranceGrid::EntranceGrid(const Vec3<double>& centre, double steepest, const st
     const Bearing bearing = towards(widest(distance) * Vec2<double>{across, down});
     return Place{bearing, PupilPlane::facing(centre, bearing.field, bearing.azimuth, steepest_ * distance)};
   };
-  std::array<std::vector<double>, 6> components;
-  std::vector<std::uint8_t> through;
+  RayClearances clearances_of(passing, wavelength);
   const auto test = [&](std::size_t count, const auto& place, const double* x, const double* y, double* clearances) {
-    through.resize(count);
-    for (auto& component : components) component.resize(count);
-    for (std::size_t r = 0; r < count; ++r) {
+    const auto ray_at = [&](std::size_t r) {
       const auto& [bearing, plane] = place(r);
       const Vec2<double> p = bearing.from_quadrant({x[r], y[r]});
-      const Ray<double> ray = plane.ray(p.x, p.y);
-      for (int i : {0, 1, 2}) components[i][r] = ray.origin[i], components[3 + i][r] = ray.direction[i];
-    }
-    passing(count,
-            {components[0].data(), components[1].data(), components[2].data(), components[3].data(),
-             components[4].data(), components[5].data()},
-            wavelength, through.data());
-    std::transform(through.begin(), through.end(), clearances, pupil_detail::clearance_of);
+      return plane.ray(p.x, p.y);
+    };
+    clearances_of(count, ray_at, clearances);
   };
 
   constexpr std::size_t directions = 32;

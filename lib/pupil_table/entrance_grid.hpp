@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
@@ -14,6 +15,31 @@
 #include "pupil_table/pupil_polygon.hpp"
 
 namespace petzval::inline v0::pupil_table_detail {
+
+/// What clearances tell of places in planes, by the rays that meet them there.
+class RayClearances {
+ public:
+  /// passing has to outlive this.
+  RayClearances(const ScenePassing& passing, std::size_t wavelength) : passing_(passing), wavelength_(wavelength) {}
+  /// ray_at(i): one of `count` rays. clearances: as PlaceClearances, where no more is known than whether rays pass.
+  template <class RayAt>
+  void operator()(std::size_t count, const RayAt& ray_at, double* clearances) {
+    for (auto& component : components_) component.resize(count);
+    for (std::size_t r = 0; r < count; ++r) {
+      const Ray<double> ray = ray_at(r);
+      for (int i : {0, 1, 2}) components_[i][r] = ray.origin[i], components_[3 + i][r] = ray.direction[i];
+    }
+    test(count, clearances);
+  }
+
+ private:
+  void test(std::size_t count, double* clearances);
+
+  const ScenePassing& passing_;
+  std::size_t wavelength_;
+  std::array<std::vector<double>, 6> components_;
+  std::vector<std::uint8_t> through_;
+};
 
 /// Where a direction from the centre of a table of entrance pupils lies.
 struct Bearing {

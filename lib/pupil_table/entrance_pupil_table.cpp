@@ -267,21 +267,11 @@ void EntrancePupilTable::Data::fill(Table& table, const std::vector<Ray<double>>
   }
 
   constexpr std::size_t directions = 32;
-  std::array<std::vector<double>, 6> components;
-  std::vector<std::uint8_t> through;
+  RayClearances clearances_of(passing, wavelength);
   const auto passes = [&](std::size_t count, const std::uint32_t* which, const double* x, const double* y,
                           double* clearances) {
-    for (auto& component : components) component.resize(count);
-    through.resize(count);
-    for (std::size_t r = 0; r < count; ++r) {
-      const Ray<double> ray = planes[which[r]].ray(x[r], y[r]);
-      for (int i : {0, 1, 2}) components[i][r] = ray.origin[i], components[3 + i][r] = ray.direction[i];
-    }
-    passing(count,
-            {components[0].data(), components[1].data(), components[2].data(), components[3].data(),
-             components[4].data(), components[5].data()},
-            wavelength, through.data());
-    std::transform(through.begin(), through.end(), clearances, pupil_detail::clearance_of);
+    clearances_of(
+        count, [&](std::size_t r) { return planes[which[r]].ray(x[r], y[r]); }, clearances);
   };
   const auto pupils = pupil_detail::find_regions(guesses, pupil_detail::SearchOrder::rows(guesses.size(), columns),
                                                  directions, true, passes);
