@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "line_extents.hpp"
 #include "petzval/pupil/pupil_boundary.hpp"
 #include "sight.hpp"
 
@@ -20,14 +21,6 @@ struct PupilGuess {
   double y = 0, near = 0;            ///< the search begins between y - near and y + near; 0: nothing is expected
   bool ring = false;  ///< the lens has a central obscuration: the pupil may be what is left of a ring about (x, y)
 };
-
-/// How near the rays through N places come to the edge of what passes, at (x[i], y[i]) of the plane of points[i]: not
-/// negative where they pass, as trace/clearances.hpp; 1 and -1 where no more is known.
-using PlaceClearances = std::function<void(std::size_t count, const std::uint32_t* points, const double* x,
-                                           const double* y, double* clearances)>;
-
-/// The clearance where no more is known than whether rays pass.
-inline double clearance_of(bool passes) noexcept { return passes ? 1 : -1; }
 
 /// Places all over what a point sees, for parts of its pupil that lie elsewhere than the guess has them.
 using PlacesSeen = std::function<std::vector<SeenPlace>(std::uint32_t point)>;
