@@ -57,11 +57,8 @@ class Search {
 
   /// Looks for pupils of which nothing is known.
   void in_full(std::span<const std::uint32_t> which) {
-    // Where nothing is found the pupil may be far off its place, or a sliver: once more on all of the line, and finer.
     std::vector<std::uint32_t> seen, rings;
-    auto dark = along_y(which, Reach::near, 128, seen, rings);
-    dark = along_y(dark, Reach::far, 256, seen, rings);
-    along_y(dark, Reach::far, 1024, seen, rings);
+    look_along_y(which, seen, rings);
     across(seen);
     outwards(seen, 24, 1.6);
     outwards(rings, 320, 1.6);
@@ -82,9 +79,26 @@ class Search {
     if (places_seen_) elsewhere(which);
   }
 
+  /// Of which points anything passes.
+  std::vector<bool> lit_points() {
+    std::vector<std::uint32_t> all(points_.size()), seen, rings;
+    std::iota(all.begin(), all.end(), 0u);
+    std::vector<bool> lit(points_.size(), true);
+    Batch batch;
+    for (const std::uint32_t p : look_along_y(all, seen, rings)) {
+      batch.clear();
+      if (places_seen_) {
+        for (const SeenPlace& place : places_seen_(p)) batch.add({p, place.at.x, place.at.y}, 0);
+      }
+      batch.test(clearances_);
+      lit[p] = std::any_of(batch.clearances.begin(), batch.clearances.end(), [](double c) { return c >= 0; });
+    }
+    return lit;
+  }
+
   /// Looks for pupils about halfway between two that were found: next to where these have their ends. Those that are
   /// not there are looked for in full.
-  void between(std::span<const Halfway> which, int widenings) {
+  void between(std::span<const Halfway> which) {
     std::vector<std::uint32_t> points, in_parts;
     for (const auto& [point, before, after] : which) {
       const Found &a = found_[before], &b = found_[after];
@@ -110,11 +124,11 @@ class Search {
     for (std::size_t begin = 0; begin < points.size(); begin += some) {
       const auto part = std::span(points).subspan(begin, std::min(some, points.size() - begin));
       std::vector<std::uint32_t> moved;
-      for (const std::uint32_t point : settle(part, widenings)) lost.push_back(point);
+      for (const std::uint32_t point : settle(part)) lost.push_back(point);
       for (const std::uint32_t point : part) {
         if (recentre(found_[point])) moved.push_back(point);
       }
-      for (const std::uint32_t point : settle(moved, widenings)) lost.push_back(point);
+      for (const std::uint32_t point : settle(moved)) lost.push_back(point);
     }
     for (const std::uint32_t point : lost) found_[point] = {};
     lost.insert(lost.end(), in_parts.begin(), in_parts.end());
@@ -173,7 +187,7 @@ class Search {
   }
 
   /// Finds the ends of some pupils next to where they are expected. Returns those that have none there.
-  std::vector<std::uint32_t> settle(std::span<const std::uint32_t> which, int widenings) {
+  std::vector<std::uint32_t> settle(std::span<const std::uint32_t> which) {
     constexpr double beside = 0.01;
     step_to_ends(which, beside);
     std::vector<Line> lines;
@@ -194,7 +208,7 @@ class Search {
       }
     }
     std::vector<bool> nowhere(which.size(), false);
-    for (const Bracket& b : widened(brackets, lines, widenings)) nowhere[b.line / traced_] = true;
+    for (const Bracket& b : widened(brackets, lines)) nowhere[b.line / traced_] = true;
     std::erase_if(brackets, [&](const Bracket& b) { return nowhere[b.line / traced_]; });
     close_in(brackets, lines, tolerance, clearances_);
     for (const Bracket& b : brackets) {
@@ -250,10 +264,11 @@ class Search {
 
   /// Moves the sides of brackets outwards where the end does not lie between them, each time twice as far. Returns
   /// those for which this does not help.
-  std::vector<Bracket> widened(std::vector<Bracket>& brackets, const std::vector<Line>& lines, int widenings) {
+  std::vector<Bracket> widened(std::vector<Bracket>& brackets, const std::vector<Line>& lines) {
     std::vector<std::size_t> open(brackets.size());
     std::iota(open.begin(), open.end(), std::size_t{0});
     Batch batch;
+    constexpr int widenings = 4;
     for (int round = 0; round <= widenings && !open.empty(); ++round) {
       batch.clear();
       for (const std::size_t j : open) {
@@ -277,6 +292,15 @@ class Search {
     std::vector<Bracket> lost;
     for (const std::size_t j : open) lost.push_back(brackets[j]);
     return lost;
+  }
+
+  /// Extents along y, as along_y(). Returns the points of which nothing is seen.
+  std::vector<std::uint32_t> look_along_y(std::span<const std::uint32_t> which, std::vector<std::uint32_t>& seen,
+                                          std::vector<std::uint32_t>& rings) {
+    // Where nothing is found the pupil may be far off its place, or a sliver: once more on all of the line, and finer.
+    auto dark = along_y(which, Reach::near, 128, seen, rings);
+    dark = along_y(dark, Reach::far, 256, seen, rings);
+    return along_y(dark, Reach::far, 1024, seen, rings);
   }
 
   /// Extents along y; points of which something is seen are added to `seen`, of these those with an obscuration to
@@ -375,8 +399,7 @@ class Search {
     std::vector<std::uint32_t> larger;
     for (const std::uint32_t p : which) {
       Found& found = found_[p];
-      std::vector<SeenPlace> places = places_seen_(p);
-      std::erase_if(places, [](const SeenPlace& s) { return !std::isfinite(s.at.x) || !std::isfinite(s.at.y); });
+      const std::vector<SeenPlace> places = places_seen_(p);
       batch.clear();
       for (const SeenPlace& place : places) batch.add({p, place.at.x, place.at.y}, 0);
       batch.test(clearances_);
@@ -469,7 +492,7 @@ SearchOrder SearchOrder::rows(std::size_t points, std::size_t row) {
 
 SearchOrder SearchOrder::grid(std::size_t rows, std::size_t row) {
   SearchOrder order;
-  order.widenings = 4;
+
   for (const std::size_t column : {std::size_t{0}, row - 1}) {
     const Line line{column, row, rows};
     order.full.insert(order.full.end(), {line.at(0), line.at(rows - 1)});
@@ -507,10 +530,16 @@ std::vector<PupilRegion> find_regions(std::span<const PupilGuess> points, const 
         full.push_back(place.point);
       }
     }
-    search.between(halfway, order.widenings);
+    search.between(halfway);
     search.in_full(full);
   }
   return search.regions();
+}
+
+std::vector<bool> lit_points(std::span<const PupilGuess> points, const PlaceClearances& clearances,
+                             const PlacesSeen& places_seen) {
+  constexpr std::size_t any_directions = 2;
+  return Search(points, any_directions, false, clearances, places_seen).lit_points();
 }
 
 }  // namespace petzval::inline v0::pupil_detail

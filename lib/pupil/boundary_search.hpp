@@ -34,7 +34,6 @@ struct Halfway {
 struct SearchOrder {
   std::vector<std::uint32_t> full;
   std::vector<std::vector<Halfway>> rounds;
-  int widenings = 0;  ///< how often one looks farther away halfway, before a pupil is looked for in full
 
   /// Points stand in rows of so many, in which neighbours have similar pupils.
   static SearchOrder rows(std::size_t points, std::size_t row);
@@ -61,5 +60,9 @@ struct SearchOrder {
 std::vector<PupilRegion> find_regions(std::span<const PupilGuess> points, const SearchOrder& order,
                                       std::size_t directions, bool mirrored, const PlaceClearances& clearances,
                                       const PlacesSeen& places_seen = {});
+
+/// Of which points anything passes, as far as find_regions() would see it.
+std::vector<bool> lit_points(std::span<const PupilGuess> points, const PlaceClearances& clearances,
+                             const PlacesSeen& places_seen = {});
 
 }  // namespace petzval::inline v0::pupil_detail

@@ -133,11 +133,18 @@ struct Grid {
 
 }  // namespace
 
-std::vector<SeenPlace> places_seen(const Lens& lens, const PupilPlane& plane, int steps) {
+std::vector<SeenPlace> places_seen(const Lens& lens, const PupilPlane& plane, int steps, bool half) {
   const Sines sines(plane);
-  const Grid grid(sines, seen_face(lens, plane, sines), steps);
+  const Box box = seen_face(lens, plane, sines);
+  const Place cell = (box.high - box.low) / static_cast<double>(steps);
   std::vector<SeenPlace> result;
-  for (int at = 0; at < grid.side * grid.side; ++at) result.push_back(grid.place(at));
+  result.reserve(static_cast<std::size_t>((steps + 1) * (steps + 1)));
+  for (int j = 0; j <= steps; ++j) {
+    for (int i = half ? steps / 2 : 0; i <= steps; ++i) {
+      const Place p = sines.place(box.low + Place{static_cast<double>(i), static_cast<double>(j)} * cell);
+      if (std::isfinite(p.x + p.y)) result.push_back({p, cell * sines.stretch(p)});
+    }
+  }
   return result;
 }
 

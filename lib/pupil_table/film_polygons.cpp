@@ -11,58 +11,61 @@
 
 namespace petzval::inline v0::pupil_table_detail {
 
-PupilsAt traced_pupils(const Lens& lens, const TwoPlanes& space, std::size_t wavelength) {
-  return [&lens, space, wavelength](std::span<const double> heights) {
+FilmPupils traced_pupils(const Lens& lens, const TwoPlanes& space, std::size_t wavelength) {
+  // Calls find(guesses, clearances, places seen) for the points at some heights.
+  const auto search = [&lens, space, wavelength](std::span<const double> heights, const auto& find) {
     std::vector<FilmPoint> points;
     for (const double height : heights) points.push_back({0, height});
-    const std::vector<pupil_detail::PupilGuess> guesses = first_order_guesses(lens, space, points, wavelength);
-    return pupil_detail::find_regions(guesses, pupil_detail::SearchOrder::rows(guesses.size(), guesses.size()),
-                                      region_directions, true, traced_lines(lens, space, points, wavelength),
-                                      [&](std::uint32_t i) { return places_seen(lens, space, points[i]); });
+    return find(first_order_guesses(lens, space, points, wavelength), traced_lines(lens, space, points, wavelength),
+                [&](std::uint32_t i) { return places_seen(lens, space, points[i]); });
   };
+  const auto regions = [](const auto& guesses, const auto& clearances, const auto& seen) {
+    const auto order = pupil_detail::SearchOrder::rows(guesses.size(), guesses.size());
+    return pupil_detail::find_regions(guesses, order, region_directions, true, clearances, seen);
+  };
+  return {[=](std::span<const double> heights) { return search(heights, regions); },
+          [=](std::span<const double> heights) {
+            return search(heights, [](const auto&... found) { return pupil_detail::lit_points(found...); });
+          }};
 }
 
-double lit_radius(double film_radius, const PupilsAt& pupils_at) {
-  // The index of the last of some heights at which a pupil, of any row, has light; their number where none has.
-  const auto last_lit = [&](const std::vector<double>& heights) {
-    const std::vector<PupilRegion> pupils = pupils_at(heights);
-    std::size_t last = heights.size();
-    for (std::size_t i = 0; i < pupils.size(); ++i) {
-      const std::size_t at = i % heights.size();
-      if (!pupils[i].empty() && (last == heights.size() || at > last)) last = at;
+namespace {
+
+/// The height up to which a film gets light at a wavelength, at most film_radius; 0: none.
+double lit_radius(double film_radius, const FilmPupils& pupils) {
+  const auto lit_at = [&](double height) { return bool{pupils.lit(std::array{height})[0]}; };
+  if (lit_at(film_radius)) return film_radius;
+  // From the edge inwards: of a ring of light the outer end counts.
+  constexpr int parts = 16;
+  for (int i = parts; --i >= 0;) {
+    double low = film_radius * i / parts, high = film_radius * (i + 1) / parts;
+    if (!lit_at(low)) continue;
+    for (constexpr double close = 1e-4; high - low > close * high;) {
+      const double middle = (low + high) / 2;
+      (lit_at(middle) ? low : high) = middle;
     }
-    return last;
-  };
-  if (last_lit({film_radius}) == 0) return film_radius;
-  double low = 0, high = film_radius;
-  for (int round = 0; round < 4; ++round) {
-    constexpr int parts = 16;
-    std::vector<double> heights;
-    for (int i = 0; i < parts; ++i) heights.push_back(low + (high - low) * i / parts);
-    const std::size_t at = last_lit(heights);
-    if (at == heights.size()) return film_radius;
-    low = heights[at];
-    if (at + 1 < heights.size()) high = heights[at + 1];
+    return high;
   }
-  return high;
+  return 0;
 }
 
-std::vector<PupilPolygon> film_polygons(double film_radius, PolygonFit fit, const PupilsAt& pupils_at) {
-  // Heights by film_strips, and between them where interpolated polygons are to enclose pupils.
-  const std::size_t parts = fit == PolygonFit::enclosing ? 2 : 1;
+/// The polygons of a wavelength.
+std::vector<PupilPolygon> polygons_of(double lit_radius, PolygonFit fit, const FilmPupils& film) {
+  // Heights by strips, and between them where interpolated polygons are to enclose pupils.
+  const std::size_t strips = film_strips(fit), parts = fit == PolygonFit::enclosing ? 2 : 1;
   std::vector<double> heights;
-  for (std::size_t i = 0; i <= parts * film_strips; ++i) {
-    heights.push_back(film_radius * static_cast<double>(i) / static_cast<double>(parts * film_strips));
+  for (std::size_t i = 0; i <= parts * strips; ++i) {
+    heights.push_back(lit_radius * static_cast<double>(i) / static_cast<double>(parts * strips));
   }
-  const std::vector<PupilRegion> pupils = pupils_at(heights);
+  const std::vector<PupilRegion> pupils = film.at(heights);
   const auto first_lit = [&](std::size_t height) -> const PupilRegion* {
     for (std::size_t i = height; i < pupils.size(); i += heights.size()) {
       if (!pupils[i].empty()) return &pupils[i];
     }
     return nullptr;
   };
-  std::vector<PupilPolygon> polygons(film_strips + 1);
-  for (std::size_t i = 0; i <= film_strips; ++i) {
+  std::vector<PupilPolygon> polygons(strips + 1);
+  for (std::size_t i = 0; i <= strips; ++i) {
     const std::size_t at = parts * i;
     if (const PupilRegion* lit = first_lit(at)) {
       polygons[i] = polygon_of(*lit, fit);
@@ -82,7 +85,7 @@ std::vector<PupilPolygon> film_polygons(double film_radius, PolygonFit fit, cons
   const auto check = [&](const PupilRegion& pupil, double strip) {
     const auto i = static_cast<std::size_t>(strip);
     const double t = strip - static_cast<double>(i);
-    checks.push_back({&pupil, {{i, std::min(i + 1, film_strips), 0, 0}, {1 - t, t, 0, 0}}});
+    checks.push_back({&pupil, {{i, std::min(i + 1, strips), 0, 0}, {1 - t, t, 0, 0}}});
   };
   for (std::size_t j = 0; j < pupils.size(); ++j) check(pupils[j], static_cast<double>(j % heights.size()) / 2);
   // Where the light ends pupils shrink fast.
@@ -91,21 +94,34 @@ std::vector<PupilPolygon> film_polygons(double film_radius, PolygonFit fit, cons
     constexpr std::size_t steps = 16;
     std::vector<double> last;
     for (std::size_t i = 1; i < steps; ++i) {
-      last.push_back(film_radius * (1 - static_cast<double>(i) / (steps * film_strips)));
+      last.push_back(lit_radius * (1 - static_cast<double>(i) / (steps * strips)));
     }
-    shrinking = pupils_at(last);
+    shrinking = film.at(last);
     for (std::size_t i = 0; i < shrinking.size(); ++i) {
-      check(shrinking[i], static_cast<double>(film_strips) - static_cast<double>(i % last.size() + 1) / steps);
+      check(shrinking[i], static_cast<double>(strips) - static_cast<double>(i % last.size() + 1) / steps);
     }
   }
   expand_to_cover(polygons, checks);
   return polygons;
 }
 
+}  // namespace
+
+FilmPolygons film_polygons(double film_radius, PolygonFit fit, std::span<const FilmPupils> pupils) {
+  double lit = 0;
+  for (std::size_t w = 0; w < pupils.size() && lit < film_radius; ++w) {
+    lit = std::max(lit, lit_radius(film_radius, pupils[w]));
+  }
+  FilmPolygons result{lit > 0 ? lit : film_radius, {}};
+  for (const FilmPupils& own : pupils) result.by_wavelength.push_back(polygons_of(result.lit_radius, fit, own));
+  return result;
+}
+
 std::vector<PupilPolygon> disc_polygons(std::span<const PupilDisc> discs, double film_radius) {
+  constexpr std::size_t strips = film_strips(PolygonFit::equal_area);
   std::vector<PupilPolygon> polygons;
-  for (std::size_t i = 0; i <= film_strips; ++i) {
-    const double height = film_radius * static_cast<double>(i) / film_strips;
+  for (std::size_t i = 0; i <= strips; ++i) {
+    const double height = film_radius * static_cast<double>(i) / strips;
     // All discs overlap where the one that ends first does.
     double low = -std::numeric_limits<double>::infinity(), high = -low;
     for (const PupilDisc& disc : discs) {

@@ -217,15 +217,11 @@ FilmPupilTable FilmPupilTable::traced(const Lens& lens, double film_radius, bool
     for (const auto& own : polygons) data->cells->add(own);
     return FilmPupilTable(std::move(data));
   }
-  for (std::size_t w = 0; w < wavelengths && data->lit_radius < film_radius; ++w) {
-    const double lit = pupil_table_detail::lit_radius(film_radius, traced_pupils(lens, data->space, w));
-    data->lit_radius = std::max(data->lit_radius, lit);
-  }
-  std::vector<std::vector<PupilPolygon>> polygons;
-  for (std::size_t w = 0; w < wavelengths; ++w) {
-    polygons.push_back(film_polygons(data->lit_radius, fit, traced_pupils(lens, data->space, w)));
-  }
+  std::vector<FilmPupils> pupils;
+  for (std::size_t w = 0; w < wavelengths; ++w) pupils.push_back(traced_pupils(lens, data->space, w));
+  auto [lit_radius, polygons] = film_polygons(film_radius, fit, pupils);
   if (enclosing) expand_to_neighbours(data->compiled, polygons);
+  data->lit_radius = lit_radius;
   for (const auto& own : polygons) data->add(own);
   return FilmPupilTable(std::move(data));
 }
@@ -265,7 +261,7 @@ FilmPupilTable FilmPupilTable::reshaped(std::span<const std::vector<PupilDisc>> 
   for (std::size_t w = 0; w < discs.size(); ++w) {
     std::vector<PupilPolygon> polygons = disc_polygons(discs[w], lit_radius());
     for (std::size_t i = 0; i < polygons.size(); ++i) {
-      const FilmPoint film{0, lit_radius() * static_cast<double>(i) / film_strips};
+      const FilmPoint film{0, lit_radius() * static_cast<double>(i) / film_strips(PolygonFit::equal_area)};
       const double wanted = projected_solid_angle(film, w);
       // The solid angle grows with the square of the scale, nearly.
       for (int round = 0; round < 3; ++round) {
@@ -320,13 +316,11 @@ FilmPupilTable FilmPupilTable::for_tilted_film(const FilmTilt& tilt) const {
   data->primary = data_->primary;
   data->compiled = data_->compiled;
   data->film_radius = tilt.radius;
-  for (std::size_t w = 0; w < wavelengths() && data->lit_radius < tilt.radius; ++w) {
-    const double lit = pupil_table_detail::lit_radius(tilt.radius, tilted_film_pupils(*this, tilt, w));
-    data->lit_radius = std::max(data->lit_radius, lit);
-  }
-  for (std::size_t w = 0; w < wavelengths(); ++w) {
-    data->add(film_polygons(data->lit_radius, PolygonFit::enclosing, tilted_film_pupils(*this, tilt, w)));
-  }
+  std::vector<FilmPupils> pupils;
+  for (std::size_t w = 0; w < wavelengths(); ++w) pupils.push_back(tilted_film_pupils(*this, tilt, w));
+  const auto [lit_radius, polygons] = film_polygons(tilt.radius, PolygonFit::enclosing, pupils);
+  data->lit_radius = lit_radius;
+  for (const auto& own : polygons) data->add(own);
   return FilmPupilTable(std::move(data));
 }
 

@@ -40,9 +40,10 @@ Expected expected_of(const FilmPupilTable& upright, std::size_t wavelength) {
 
 }  // namespace
 
-PupilsAt tilted_film_pupils(const FilmPupilTable& upright, const FilmTilt& tilt, std::size_t wavelength) {
+FilmPupils tilted_film_pupils(const FilmPupilTable& upright, const FilmTilt& tilt, std::size_t wavelength) {
   const Expected expected = expected_of(upright, wavelength);
-  return [upright, tilt, wavelength, expected](std::span<const double> heights) {
+  // Calls find(guesses, clearances) for the points at some heights, row by row.
+  const auto search = [upright, tilt, wavelength, expected](std::span<const double> heights, const auto& find) {
     const double steepest = std::hypot(tilt.slope_x, tilt.slope_y);
     std::vector<Field> fields;
     // The middle first, where there is light if anywhere. More between: the pupils of a plane far from the one in which
@@ -68,20 +69,34 @@ PupilsAt tilted_film_pupils(const FilmPupilTable& upright, const FilmTilt& tilt,
     }
     std::array<std::vector<double>, 2> film;
     std::vector<std::uint8_t> within;
-    return pupil_detail::find_regions(
-        guesses, pupil_detail::SearchOrder::rows(guesses.size(), heights.size()), region_directions, true,
-        [&](std::size_t count, const std::uint32_t* which, const double* x, const double* y, double* clearances) {
-          for (auto& values : film) values.resize(count);
-          within.resize(count);
-          for (std::size_t i = 0; i < count; ++i) {
-            const auto& [height, nearer] = fields[which[i]];
-            film[0][i] = -nearer * x[i];
-            film[1][i] = height - nearer * y[i];
-          }
-          upright.contains<double>(count, {film[0].data(), film[1].data(), x, y}, {.all = wavelength}, within.data());
-          std::transform(within.begin(), within.end(), clearances, pupil_detail::clearance_of);
-        });
+    return find(guesses, [&](std::size_t count, const std::uint32_t* which, const double* x, const double* y,
+                             double* clearances) {
+      for (auto& values : film) values.resize(count);
+      within.resize(count);
+      for (std::size_t i = 0; i < count; ++i) {
+        const auto& [height, nearer] = fields[which[i]];
+        film[0][i] = -nearer * x[i];
+        film[1][i] = height - nearer * y[i];
+      }
+      upright.contains<double>(count, {film[0].data(), film[1].data(), x, y}, {.all = wavelength}, within.data());
+      std::transform(within.begin(), within.end(), clearances, pupil_detail::clearance_of);
+    });
   };
+  return {[=](std::span<const double> heights) {
+            return search(heights, [&](const auto& guesses, const auto& clearances) {
+              const auto order = pupil_detail::SearchOrder::rows(guesses.size(), heights.size());
+              return pupil_detail::find_regions(guesses, order, region_directions, true, clearances);
+            });
+          },
+          [=](std::span<const double> heights) {
+            const std::vector<bool> points = search(heights, [](const auto& guesses, const auto& clearances) {
+              return pupil_detail::lit_points(guesses, clearances);
+            });
+            std::vector<bool> lit(heights.size(), false);
+            for (std::size_t i = 0; i < points.size(); ++i)
+              lit[i % heights.size()] = lit[i % heights.size()] || points[i];
+            return lit;
+          }};
 }
 
 }  // namespace petzval::inline v0::pupil_table_detail

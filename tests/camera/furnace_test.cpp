@@ -133,10 +133,10 @@ TEST(WhiteFurnace, KeepsTheTintOfTheLensUnlessToldOtherwise) {
   }
 }
 
-// Tables have 64 strips from the axis to the corner. The mean over all strips, at one place within them, would show
+// Tables have 32 strips from the axis to the corner. The mean over all strips, at one place within them, would show
 // rings at their borders.
 TEST(WhiteFurnace, ShowsNoRings) {
-  constexpr int strips = 64, places = 8, count = 4096;
+  constexpr int strips = 32, places = 16, count = 4096;
   for (const auto& [id, half_width] :
        {Case{"double_gauss_100mm_f2.0", 28}, Case{"catadioptric_mangin_1000mm_f7.5", 15}}) {
     const Lens lens = testing::data_lens(id);

@@ -168,7 +168,7 @@ double irradiance(const Lens& lens, const Film& pose, const FilmPoint& point) {
 
 double mean_weight(const Camera& camera, const FilmPoint& film) {
   Samples<double> samples;
-  constexpr std::uint32_t count = 8192;
+  constexpr std::uint32_t count = 32768;
   for (std::uint32_t i = 0; i < count; ++i) {
     const auto uv = owen_sobol(i, 5);
     const double u = uv.x, v = uv.y;

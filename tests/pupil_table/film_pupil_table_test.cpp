@@ -189,16 +189,16 @@ TEST(FilmPupilTable, MovesWithoutJumpsAcrossTheTable) {
   for (const auto& [u, v] : {std::array{0.1, 0.9}, std::array{0.43, 0.5}, std::array{0.86, 0.99}}) {
     const auto at = [&, u = u, v = v](double r) { return table.sample({0.28 * r, -0.96 * r}, u, v); };
     // Steps across the nodes of the table against those within its strips.
-    constexpr int steps = 64 * 16;
+    constexpr int strips = 32, places = 32, steps = strips * places;
     double across = 0, within = 0;
     for (int i = 1; i < steps; ++i) {
       const PupilSample a = at(radius * (i - 0.5) / steps), b = at(radius * (i + 0.5) / steps);
-      double& largest = i % 16 == 0 ? across : within;
+      double& largest = i % places == 0 ? across : within;
       largest = std::max(largest, std::hypot(a.x - b.x, a.y - b.y));
     }
     EXPECT_LT(across, 1.5 * within);
-    for (int i = 1; i < 64; ++i) {
-      const double node = radius * i / 64, next = std::nextafter(node, radius), before = std::nextafter(node, 0);
+    for (int i = 1; i < strips; ++i) {
+      const double node = radius * i / strips, next = std::nextafter(node, radius), before = std::nextafter(node, 0);
       EXPECT_NEAR(at(before).x, at(next).x, 1e-10);
       EXPECT_NEAR(at(before).y, at(next).y, 1e-10);
       EXPECT_NEAR(at(before).area, at(next).area, 1e-9);

@@ -75,7 +75,7 @@ struct FilmPupilArrays {
 /// as a table over the film, one for each compiled wavelength, or in closed form.
 ///
 /// A pupil of a table is a polygon of 64 corners about a middle, less a central obscuration where the lens has one.
-/// Corners and middles are interpolated between 65 distances from the axis, or, of a lens with cylinders, bilinearly
+/// Corners and middles are interpolated between 33 distances from the axis (65, where areas are the light), or, of a lens with cylinders, bilinearly
 /// between 9 x 9 film points in a quadrant, so that the pupil, and with it the sample for a given u and v, moves
 /// continuously with the film point and images show no rings and seams. Areas are exact for the interpolated polygon.
 /// The tables of lenses with cylinders leave out no obscuration.
