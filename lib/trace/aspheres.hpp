@@ -177,12 +177,12 @@ struct Meeting {
 /// inside the aperture and the ray rises over the surface all along the part that can lie on it. For the crossings of
 /// other rays intervals are searched, as kernel::intersect does. q: in, where to start; per_n2: of the media.
 template <class R>
-[[gnu::noinline]] void meet(const kernel::Step<R>& s, const BlockJob<R>& job, std::uint8_t* unsettled,
+[[gnu::noinline]] void meet(const kernel::Step<R>& s, const Route<R>& route, std::uint8_t* unsettled,
                             const Bundle<R>& b, const Lanes<R>* per_n2, Meeting<R>& at) noexcept {
   using V = Lanes<R>;
   constexpr int vectors = Bundle<R>::vectors, width = V::width;
   constexpr R eps = std::numeric_limits<R>::epsilon();
-  const kernel::Asphere<R>& surface = job.aspheres[s.asphere];
+  const kernel::Asphere<R>& surface = route.aspheres[s.asphere];
   const V ax(s.ax), ay(s.ay), none(R(0)), size(surface.height), sense(s.sense);
   V offset[vectors];
   Mask<R> moving[vectors], waiting[vectors];
@@ -255,7 +255,7 @@ template <class R>
     at.beside[i] = at.beside[i] | (taken[i] & are(outcome, Outcome::beside));
     at.found[i] = without(at.found[i] | crosses, lost);
     // Where a ray meets the surface outside the aperture is of no interest if it is clipped there.
-    const Mask<R> settled = crosses | lost | (job.apertures ? at.beside[i] : lost);
+    const Mask<R> settled = crosses | lost | (route.apertures ? at.beside[i] : lost);
     moving[i] = without(moving[i] | waiting[i], settled);
     if (any(lost)) {
       R said[width];
@@ -272,7 +272,7 @@ template <class R>
 }
 
 template <class R, class Media, class Follow>
-void asphere(const kernel::Step<R>& s, const Lanes<R>& rim2, const BlockJob<R>& job, std::uint8_t* unsettled,
+void asphere(const kernel::Step<R>& s, const Lanes<R>& rim2, const Route<R>& route, std::uint8_t* unsettled,
              const Media& media, Bundle<R>& b, Follow& follow) noexcept {
   using V = Lanes<R>;
   constexpr int vectors = Bundle<R>::vectors;
@@ -288,7 +288,7 @@ void asphere(const kernel::Step<R>& s, const Lanes<R>& rim2, const BlockJob<R>& 
     at.q[i] = select(on_base, quotient(f, V(slant + root(disc))), none);
     per_n2[i] = media.per_n2(i);
   }
-  meet(s, job, unsettled, b, per_n2, at);
+  meet(s, route, unsettled, b, per_n2, at);
   for (int i = 0; i < vectors; ++i) {
     const V x = b.x[i], y = b.y[i], z = b.z[i], px = b.px[i], py = b.py[i], pz = b.pz[i], q = at.q[i];
     const Mask<R> found = at.found[i] | at.beside[i];
@@ -300,7 +300,7 @@ void asphere(const kernel::Step<R>& s, const Lanes<R>& rim2, const BlockJob<R>& 
     if constexpr (Follow::wanted) {
       way = ((b.x[i] - x) * px + (b.y[i] - y) * py + (b.z[i] - z) * pz) * per_n2[i];
       const V u = ax * b.x[i] * b.x[i] + ay * b.y[i] * b.y[i];
-      const kernel::Asphere<R>& surface = job.aspheres[s.asphere];
+      const kernel::Asphere<R>& surface = route.aspheres[s.asphere];
       twist = V(s.sense + s.sense) * kernel::sag(surface, Rate<R>(u, V(R(1)))).slope.d;
     }
     bend(s, rim2, media, b, i, found,

@@ -7,8 +7,8 @@
 
 #include "block.hpp"
 #include "clearances.hpp"
-#include "job.hpp"
 #include "lens/lens_view.hpp"
+#include "route.hpp"
 
 namespace petzval::inline v0 {
 namespace {
@@ -45,7 +45,10 @@ template <class R>
 BlockJob<R> job_for(const Lens& lens, const BatchOptions& options) noexcept {
   const auto view = kernel::view<R>(lens);
   const auto& [all, each, each_nm] = options.wavelengths;
-  auto job = trace_detail::job_for<R>(view, options, each || each_nm ? Wavelength(0) : all);
+  BlockJob<R> job;
+  static_cast<trace_detail::Route<R>&>(job) =
+      trace_detail::route_of<R>(view, options, each || each_nm ? Wavelength(0) : all);
+  job.compiled_wavelengths = view.wavelengths;
   job.wavelengths = each;
   job.each_nm = each_nm;
   job.spectral = options.wavelengths.in_nm();

@@ -13,19 +13,25 @@ namespace petzval::inline v0::trace_detail {
 /// Rays in a block: enough to hide the latency of square roots.
 inline constexpr int block_rays = 64;
 
-/// Input and output of the loops over blocks. Every array holds `rays` values, rounded up to whole blocks.
+/// A way through a lens, for one ray or many.
 template <class R>
-struct BlockJob {
+struct Route {
   kernel::SurfaceSequence<R> sequence;
   std::size_t steps = 0;
   const kernel::Asphere<R>* aspheres = nullptr;
-  std::size_t wavelength = 0, compiled_wavelengths = 1;
-  const std::uint16_t* wavelengths = nullptr;  ///< of each ray, or null
-  bool spectral = false;                       ///< wavelengths in nm instead
-  R nm = 0;                                    ///< of all rays
-  const float* each_nm = nullptr;              ///< or of each ray
+  std::size_t wavelength = 0;
+  bool spectral = false;  ///< a wavelength in nm instead
+  R nm = 0;
   bool apertures = true;
   std::span<const kernel::StopEdge<R>> iris{};
+};
+
+/// Input and output of the loops over blocks. Every array holds `rays` values, rounded up to whole blocks.
+template <class R>
+struct BlockJob : Route<R> {
+  std::size_t compiled_wavelengths = 1;
+  const std::uint16_t* wavelengths = nullptr;  ///< of each ray, or null
+  const float* each_nm = nullptr;              ///< of each ray, or null
   std::size_t rays = 0;
   RayArrays<const R> in;
   RayArrays<R> out;

@@ -11,6 +11,13 @@
 #include "lanes.hpp"
 #endif
 
+/// For what a single ray passes in registers.
+#if defined(PETZVAL_ONE_LANE)
+#define PETZVAL_ONE_LANE_INLINE PETZVAL_INLINE
+#else
+#define PETZVAL_ONE_LANE_INLINE
+#endif
+
 /// Where there are registers for four vectors of rays, the loop over them is laid out.
 #if defined(__AVX512F__)
 #define PETZVAL_UNROLL _Pragma("GCC unroll 4")

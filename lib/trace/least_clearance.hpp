@@ -24,12 +24,12 @@ class LeastClearance : public NoTangents {
   }
 
   /// Behind a step.
-  void watch(const BlockJob<R>& job, std::size_t j, const Bundle<R>& b) noexcept {
-    const kernel::Step<R>& s = job.sequence.steps[j];
+  void watch(const Route<R>& route, std::size_t j, const Bundle<R>& b) noexcept {
+    const kernel::Step<R>& s = route.sequence.steps[j];
     // A difference of squares has the sign of the trace's own comparison with the rim; products by these keep it.
     const R scale = s.rim2 > 4 * std::numeric_limits<R>::min() ? 1 / s.rim2 : R(1);
-    const auto iris = s.stop ? job.iris : std::span<const kernel::StopEdge<R>>{};
-    const V left(R(-1) - static_cast<R>(job.steps - j) / static_cast<R>(job.steps)), none(R(0));
+    const auto iris = s.stop ? route.iris : std::span<const kernel::StopEdge<R>>{};
+    const V left(R(-1) - static_cast<R>(route.steps - j) / static_cast<R>(route.steps)), none(R(0));
     for (int i = 0; i < Bundle<R>::vectors; ++i) {
       V own = (V(s.rim2) - b.r2[i]) * V(scale);
       if (s.obscuration2 > 0) own = smaller((b.r2[i] - V(s.obscuration2)) * V(scale), own);
@@ -38,7 +38,7 @@ class LeastClearance : public NoTangents {
       }
       // Without apertures rims lose nothing.
       const Mask<R> lost = without(alive_[i], b.alive[i]);
-      const Mask<R> otherwise = job.apertures ? without(lost, own < none) : lost;
+      const Mask<R> otherwise = route.apertures ? without(lost, own < none) : lost;
       lost_[i] = select(otherwise, left, lost_[i]);
       least_[i] = select(without(alive_[i], otherwise), smaller(own, least_[i]), least_[i]);
       alive_[i] = b.alive[i];

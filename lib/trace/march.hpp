@@ -15,9 +15,10 @@ namespace {
 /// Loads rays and turns them into the frame of the first step. Rays that are not finite or not of unit length are not
 /// alive.
 template <class R>
-void enter(const BlockJob<R>& job, const RayArrays<const R>& in, const R* index, Bundle<R>& b) noexcept {
+PETZVAL_ONE_LANE_INLINE void enter(const Route<R>& route, const RayArrays<const R>& in, const R* index,
+                                   Bundle<R>& b) noexcept {
   using V = Lanes<R>;
-  const V sense(job.sequence.first_sense);
+  const V sense(route.sequence.first_sense);
   for (int i = 0; i < b.used; ++i) {
     const int o = i * V::width;
     const V x = load(in.x + o), y = load(in.y + o), z = load(in.z + o);
@@ -26,7 +27,7 @@ void enter(const BlockJob<R>& job, const RayArrays<const R>& in, const R* index,
     const V scale = load(index + o) * (V(R(1.5)) - V(R(0.5)) * length);
     b.x[i] = x;
     b.y[i] = y;
-    b.z[i] = sense * (z - V(job.sequence.first_z));
+    b.z[i] = sense * (z - V(route.sequence.first_z));
     b.px[i] = scale * dx;
     b.py[i] = scale * dy;
     b.pz[i] = sense * (scale * dz);
@@ -44,9 +45,9 @@ void enter(const BlockJob<R>& job, const RayArrays<const R>& in, const R* index,
 }
 
 template <class R>
-void enter(const BlockJob<R>& job, const RayArrays<const R>& in, const R* index, Tangent<R>& d) noexcept {
+void enter(const Route<R>& route, const RayArrays<const R>& in, const R* index, Tangent<R>& d) noexcept {
   using V = Lanes<R>;
-  const V sense(job.sequence.first_sense);
+  const V sense(route.sequence.first_sense);
   for (int i = 0; i < Bundle<R>::vectors; ++i) {
     const int o = i * V::width;
     const V n = load(index + o);
@@ -61,7 +62,7 @@ void enter(const BlockJob<R>& job, const RayArrays<const R>& in, const R* index,
 
 /// Normalises directions.
 template <class R, class Media>
-void refresh(const Media& media, Bundle<R>& b) noexcept {
+PETZVAL_ONE_LANE_INLINE void refresh(const Media& media, Bundle<R>& b) noexcept {
   using V = Lanes<R>;
   for (int i = 0; i < b.used; ++i) {
     const V length = (b.px[i] * b.px[i] + b.py[i] * b.py[i] + b.pz[i] * b.pz[i]) * media.per_n2(i);
@@ -74,10 +75,10 @@ void refresh(const Media& media, Bundle<R>& b) noexcept {
 
 /// Stores rays in the lens frame with unit directions. A lost ray is stored as it was given.
 template <class R>
-void leave(const BlockJob<R>& job, const RayArrays<const R>& in, const R* per_index, Bundle<R>& b,
-           const RayArrays<R>& out) noexcept {
+PETZVAL_ONE_LANE_INLINE void leave(const Route<R>& route, const RayArrays<const R>& in, const R* per_index,
+                                   Bundle<R>& b, const RayArrays<R>& out) noexcept {
   using V = Lanes<R>;
-  const V sense(job.sequence.last_sense);
+  const V sense(route.sequence.last_sense);
   for (int i = 0; i < b.used; ++i) {
     const int o = i * V::width;
     const V per_n = load(per_index + o);
@@ -90,7 +91,7 @@ void leave(const BlockJob<R>& job, const RayArrays<const R>& in, const R* per_in
     const auto put = [&](R* to, V value, const R* before) { store(to + o, select(sound, value, load(before + o))); };
     put(out.x, b.x[i], in.x);
     put(out.y, b.y[i], in.y);
-    put(out.z, sense * b.z[i] + V(job.sequence.last_z), in.z);
+    put(out.z, sense * b.z[i] + V(route.sequence.last_z), in.z);
     put(out.dx, dx * scale, in.dx);
     put(out.dy, dy * scale, in.dy);
     put(out.dz, sense * (dz * scale), in.dz);
@@ -99,10 +100,10 @@ void leave(const BlockJob<R>& job, const RayArrays<const R>& in, const R* per_in
 }
 
 template <class R>
-void leave(const BlockJob<R>& job, const R* per_index, const Bundle<R>& b, const Tangent<R>& d,
+void leave(const Route<R>& route, const R* per_index, const Bundle<R>& b, const Tangent<R>& d,
            const RayArrays<R>& out) noexcept {
   using V = Lanes<R>;
-  const V sense(job.sequence.last_sense), none(R(0));
+  const V sense(route.sequence.last_sense), none(R(0));
   for (int i = 0; i < b.used; ++i) {
     const int o = i * V::width;
     const V per_n = load(per_index + o);
@@ -118,7 +119,7 @@ void leave(const BlockJob<R>& job, const R* per_index, const Bundle<R>& b, const
 
 /// Puts rays that came in without finite numbers on the axis, in the sense of travel.
 template <class R>
-void put_on_axis(const BlockJob<R>& job, int rays, const RayArrays<R>& out) noexcept {
+void put_on_axis(const Route<R>& route, int rays, const RayArrays<R>& out) noexcept {
   const auto finite = [](R value) { return value - value == 0; };
   for (int l = 0; l < rays; ++l) {
     if (finite(out.x[l]) && finite(out.y[l]) && finite(out.z[l]) && finite(out.dx[l]) && finite(out.dy[l]) &&
@@ -126,28 +127,44 @@ void put_on_axis(const BlockJob<R>& job, int rays, const RayArrays<R>& out) noex
       continue;
     }
     out.x[l] = out.y[l] = out.z[l] = out.dx[l] = out.dy[l] = 0;
-    out.dz[l] = job.sequence.first_sense;
+    out.dz[l] = route.sequence.first_sense;
+  }
+}
+
+/// Calls body with the bundle for what is seldom needed: one ray goes there in a copy, so that it stays in registers.
+template <class R, class Body>
+PETZVAL_INLINE void in_memory(Bundle<R>& b, const Body& body) noexcept {
+  if constexpr (Bundle<R>::rays == 1) {
+    Bundle<R> own = b;
+    body(own);
+    b = own;
+  } else {
+    body(b);
   }
 }
 
 /// One surface.
 template <class R, class Media, class Follow>
-void pass(const BlockJob<R>& job, std::size_t j, const Media& media, std::uint8_t* unsettled, Bundle<R>& b,
-          Follow& follow) noexcept {
-  const kernel::Step<R>& s = job.sequence.steps[j];
-  const Lanes<R> rim2(job.apertures ? s.rim2 : s.reach2);
+PETZVAL_ONE_LANE_INLINE void pass(const Route<R>& route, std::size_t j, const Media& media, std::uint8_t* unsettled,
+                                  Bundle<R>& b, Follow& follow) noexcept {
+  const kernel::Step<R>& s = route.sequence.steps[j];
+  const Lanes<R> rim2(route.apertures ? s.rim2 : s.reach2);
   if (s.refresh) refresh(media, b);
   switch (s.kind) {
     case kernel::StepKind::plane: plane(s, rim2, media, b, follow); break;
     case kernel::StepKind::sphere:
       s.far ? sphere<true>(s, rim2, media, b, follow) : sphere<false>(s, rim2, media, b, follow);
       break;
-    case kernel::StepKind::quadric: quadric(s, rim2, media, b, follow); break;
-    case kernel::StepKind::asphere: asphere(s, rim2, job, unsettled, media, b, follow); break;
+    case kernel::StepKind::quadric: in_memory(b, [&](Bundle<R>& own) { quadric(s, rim2, media, own, follow); }); break;
+    case kernel::StepKind::asphere:
+      in_memory(b, [&](Bundle<R>& own) { asphere(s, rim2, route, unsettled, media, own, follow); });
+      break;
   }
-  const auto iris = s.stop ? job.iris : std::span<const kernel::StopEdge<R>>{};
-  if (job.apertures && (s.obscuration2 > 0 || !iris.empty())) clip(s, iris, j, b);
-  follow.watch(job, j, b);
+  const auto iris = s.stop ? route.iris : std::span<const kernel::StopEdge<R>>{};
+  if (route.apertures && (s.obscuration2 > 0 || !iris.empty())) {
+    in_memory(b, [&](Bundle<R>& own) { clip(s, iris, j, own); });
+  }
+  follow.watch(route, j, b);
 }
 
 }  // namespace

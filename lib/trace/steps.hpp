@@ -36,7 +36,7 @@ struct NoTangents {
   template <class R>
   PETZVAL_INLINE void pass(const kernel::Step<R>&, const Bundle<R>&, int, const Contact<R>&) noexcept {}
   template <class R>
-  PETZVAL_INLINE void watch(const BlockJob<R>&, std::size_t, const Bundle<R>&) noexcept {}
+  PETZVAL_INLINE void watch(const Route<R>&, std::size_t, const Bundle<R>&) noexcept {}
   static constexpr bool wanted = false;
 };
 
@@ -67,7 +67,8 @@ void clip(const kernel::Step<R>& s, std::span<const kernel::StopEdge<R>> iris, s
 }
 
 template <class R, class Media, class Follow>
-void plane(const kernel::Step<R>& s, const Lanes<R>& rim2, const Media& media, Bundle<R>& b, Follow& follow) noexcept {
+PETZVAL_ONE_LANE_INLINE void plane(const kernel::Step<R>& s, const Lanes<R>& rim2, const Media& media, Bundle<R>& b,
+                                   Follow& follow) noexcept {
   using V = Lanes<R>;
   PETZVAL_UNROLL
   for (int i = 0; i < b.used; ++i) {
@@ -109,7 +110,8 @@ PETZVAL_INLINE void approach(const kernel::Step<R>& s, const Media& media, Bundl
 
 /// A refracting sphere.
 template <bool far, class R, class Media, class Follow>
-void sphere(const kernel::Step<R>& s, const Lanes<R>& rim2, const Media& media, Bundle<R>& b, Follow& follow) noexcept {
+PETZVAL_ONE_LANE_INLINE void sphere(const kernel::Step<R>& s, const Lanes<R>& rim2, const Media& media, Bundle<R>& b,
+                                    Follow& follow) noexcept {
   using V = Lanes<R>;
   const V c(s.curvature);
   PETZVAL_UNROLL

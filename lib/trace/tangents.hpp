@@ -27,7 +27,7 @@ struct TwoTangents {
     pass(v, s, b, i, at, rates);
   }
 
-  PETZVAL_INLINE void watch(const BlockJob<R>&, std::size_t, const Bundle<R>&) noexcept {}
+  PETZVAL_INLINE void watch(const Route<R>&, std::size_t, const Bundle<R>&) noexcept {}
 
  private:
   /// What both derivatives share: 1 / xi, and how gamma grows with xi and nn.

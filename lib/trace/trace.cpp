@@ -9,9 +9,9 @@
 #include <cstdint>
 #include <type_traits>
 
-#include "job.hpp"
 #include "lens/lens_view.hpp"
 #include "march.hpp"
+#include "route.hpp"
 
 namespace petzval::inline v0 {
 namespace trace_detail {
@@ -39,59 +39,63 @@ void keep_finite(const Ray<R>& found, Ray<R>& ray) noexcept {
   if (finite(o.x) && finite(o.y) && finite(o.z) && finite(d.x) && finite(d.y) && finite(d.z)) ray = found;
 }
 
-/// A ray lost at step j. per_n2: one over the squared index in front of it; before, after: the state there and behind.
+/// Puts a ray where it was lost, at step j. per_n2: one over the squared index in front of it; before, after: the state
+/// there and behind, copies of what is kept in registers.
 template <class R>
-TracedRay<R> ended(const BlockJob<R>& job, const R* vertex_z, std::size_t j, R per_n2, bool unsettled,
-                   const Ray<R>& ray, const Bundle<R>& before, const Bundle<R>& after) noexcept {
-  const kernel::Step<R>& s = job.sequence.steps[j];
+void put_at_end(const Route<R>& route, const R* vertex_z, std::size_t j, R per_n2, bool unsettled, Bundle<R> before,
+                Bundle<R> after, TracedRay<R>& end) noexcept {
+  const kernel::Step<R>& s = route.sequence.steps[j];
   const auto tally = after.tally[0] - static_cast<std::int32_t>(4 * j);
-  TracedRay<R> end{ray, static_cast<RayFate>(lost_by(tally, unsettled)), s.surface};
+  end.fate = static_cast<RayFate>(lost_by(tally, unsettled));
+  end.surface = s.surface;
   const R per_n = std::sqrt(per_n2);
   if (j > 0) {
-    const auto last = job.sequence.steps[j - 1].surface;
+    const auto last = route.sequence.steps[j - 1].surface;
     keep_finite(in_lens_frame(before, before.z[0].v, before.pz[0].v, s, vertex_z[last], per_n), end.ray);
   }
   if (tally > 0) {
-    Bundle<R> hit = before;
-    hit.x[0] = after.x[0];
-    hit.y[0] = after.y[0];
-    keep_finite(in_lens_frame(hit, z_before_turning(s, after), before.pz[0].v, s, vertex_z[s.surface], per_n), end.ray);
+    const R z = z_before_turning(s, after);
+    before.x[0] = after.x[0];
+    before.y[0] = after.y[0];
+    keep_finite(in_lens_frame(before, z, before.pz[0].v, s, vertex_z[s.surface], per_n), end.ray);
   }
-  return end;
 }
 
 /// index, per_index: in front of the lens and one over that behind it; media_at: at each step in turn.
 template <class R, class Seen, class MediaAt>
-TracedRay<R> trace_one(const BlockJob<R>& job, const R* vertex_z, const Ray<R>& ray, const Seen& seen, R index,
+TracedRay<R> trace_one(const Route<R>& route, const R* vertex_z, const Ray<R>& ray, const Seen& seen, R index,
                        R per_index, MediaAt&& media_at) {
-  const auto& sequence = job.sequence;
+  const auto& sequence = route.sequence;
   TracedRay<R> end{ray, RayFate::missed_surface, sequence.steps[0].surface};
   auto& [origin, direction] = end.ray;
   const RayArrays<R> own{&origin.x, &origin.y, &origin.z, &direction.x, &direction.y, &direction.z};
   const RayArrays<const R> in{&ray.origin.x,    &ray.origin.y,    &ray.origin.z,
                               &ray.direction.x, &ray.direction.y, &ray.direction.z};
   Bundle<R> b;
-  enter(job, in, &index, b);
+  enter(route, in, &index, b);
   if (!any(b.alive[0])) {
-    put_on_axis(job, 1, own);
+    put_on_axis(route, 1, own);
     return end;
   }
   std::uint8_t unsettled = 0;
   NoTangents none;
-  for (std::size_t j = 0; j < job.steps; ++j) {
+  for (std::size_t j = 0; j < route.steps; ++j) {
     const Bundle<R> before = b;
     const auto media = media_at(j);
-    pass(job, j, media, &unsettled, b, none);
+    pass(route, j, media, &unsettled, b, none);
     if constexpr (!std::is_null_pointer_v<Seen>) {
       const kernel::Step<R>& s = sequence.steps[j];
       const Vec3<R> point{b.x[0].v, b.y[0].v, s.sense * z_before_turning(s, b) + vertex_z[s.surface]};
       const bool hit = b.tally[0] > static_cast<std::int32_t>(4 * j);
       if (hit && kernel::finite(point.x) && kernel::finite(point.y) && kernel::finite(point.z)) seen(s.surface, point);
     }
-    if (!any(b.alive[0])) return ended(job, vertex_z, j, media.per_n2(0).v, unsettled != 0, ray, before, b);
+    if (!any(b.alive[0])) {
+      put_at_end(route, vertex_z, j, media.per_n2(0).v, unsettled != 0, before, b, end);
+      return end;
+    }
   }
-  leave(job, in, &per_index, b, own);
-  end.surface = sequence.steps[job.steps - 1].surface;
+  leave(route, in, &per_index, b, own);
+  end.surface = sequence.steps[route.steps - 1].surface;
   if (any(b.alive[0])) end.fate = RayFate::transmitted;
   return end;
 }
@@ -99,17 +103,17 @@ TracedRay<R> trace_one(const BlockJob<R>& job, const R* vertex_z, const Ray<R>& 
 template <class R, class Seen>
 TracedRay<R> trace_one(const Lens& lens, const Ray<R>& ray, const TraceOptions& options, const Seen& seen) {
   const auto view = kernel::view<R>(lens);
-  const auto job = job_for<R>(view, options, options.wavelength);
-  const auto& sequence = job.sequence;
-  if (job.spectral) {
-    SpectralMedia<R> media(sequence, &job.nm);
+  const auto route = route_of<R>(view, options, options.wavelength);
+  const auto& sequence = route.sequence;
+  if (route.spectral) {
+    SpectralMedia<R> media(sequence, &route.nm);
     R index, per_index;
-    media.indices(job.steps, &index, &per_index);
-    return trace_one(job, view.vertex_z, ray, seen, index, per_index, [&](std::size_t j) { return media.at(j); });
+    media.indices(route.steps, &index, &per_index);
+    return trace_one(route, view.vertex_z, ray, seen, index, per_index, [&](std::size_t j) { return media.at(j); });
   }
-  const kernel::RefractionConstants<R>* bends = sequence.bends + job.wavelength * job.steps;
-  return trace_one(job, view.vertex_z, ray, seen, sequence.n_first[job.wavelength], sequence.per_n_last[job.wavelength],
-                   [&](std::size_t j) { return SharedMedia<R>{bends + j}; });
+  const kernel::RefractionConstants<R>* bends = sequence.bends + route.wavelength * route.steps;
+  return trace_one(route, view.vertex_z, ray, seen, sequence.n_first[route.wavelength],
+                   sequence.per_n_last[route.wavelength], [&](std::size_t j) { return SharedMedia<R>{bends + j}; });
 }
 
 }  // namespace

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <limits>
+
+#include "block.hpp"
+#include "lens/lens_view.hpp"
+
+namespace petzval::inline v0::trace_detail {
+
+/// The way of rays through a lens. Options: of one ray or of a batch; all: their one wavelength.
+template <class R, class Options>
+Route<R> route_of(const kernel::LensView<R>& view, const Options& options, Wavelength all) noexcept {
+  Route<R> route;
+  route.sequence = options.travel == Travel::to_film ? view.sequence_to_film : view.sequence_to_scene;
+  route.steps = view.count;
+  route.aspheres = view.aspheres;
+  route.apertures = options.apertures;
+  route.iris = view.iris;
+  if (const auto nm = all.in_nm()) {
+    route.spectral = true;
+    route.nm = static_cast<R>(*nm);
+  } else if (const std::size_t wavelength = all.position(view.primary); wavelength < view.wavelengths) {
+    route.wavelength = wavelength;
+  } else {
+    static constexpr R no_index = std::numeric_limits<R>::quiet_NaN();
+    route.sequence.n_first = &no_index;  // which loses every ray
+  }
+  return route;
+}
+
+}  // namespace petzval::inline v0::trace_detail
