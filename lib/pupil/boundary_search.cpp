@@ -28,6 +28,42 @@ struct Found {
   bool empty() const noexcept { return ends.empty(); }
 };
 
+/// Values halfway between two pupils that were found, by those and the next beyond them, if these were found too.
+class Interpolation {
+ public:
+  Interpolation(const Found& far_before, const Found& before, const Found& after, const Found& far_after) noexcept
+      : found_{usable(far_before), &before, &after, usable(far_after)} {
+    const bool left = found_[0], right = found_[3];  // Lagrange's weights
+    weights_ = left && right ? std::array{-1. / 16, 9. / 16, 9. / 16, -1. / 16}
+               : left        ? std::array{-1. / 8, 6. / 8, 3. / 8, 0.}
+               : right       ? std::array{0., 3. / 8, 6. / 8, -1. / 8}
+                             : std::array{0., 1. / 2, 1. / 2, 0.};
+  }
+
+  template <class Value>
+  double operator()(const Value& value) const noexcept {
+    double sum = 0;
+    for (std::size_t i = 0; i < 4; ++i) {
+      if (found_[i]) sum += weights_[i] * value(*found_[i]);
+    }
+    return sum;
+  }
+  /// Of a value that is not negative; the mean of both neighbours where one is 0 or values change too fast.
+  template <class Value>
+  double positive(const Value& value) const noexcept {
+    const double sum = (*this)(value), a = value(*found_[1]), b = value(*found_[2]);
+    return sum > std::min(a, b) / 2 && sum < 2 * std::max(a, b) ? sum : (a + b) / 2;
+  }
+
+ private:
+  static const Found* usable(const Found& found) noexcept {
+    return found.empty() || !found.gaps.empty() ? nullptr : &found;
+  }
+
+  std::array<const Found*, 4> found_;
+  std::array<double, 4> weights_;
+};
+
 /// Of ends, in half axes.
 constexpr double tolerance = 2e-5;
 
@@ -60,16 +96,19 @@ class Search {
     std::vector<std::uint32_t> seen, rings;
     look_along_y(which, seen, rings);
     across(seen);
-    outwards(seen, 24, 1.6);
-    outwards(rings, 320, 1.6);
+    std::vector<std::uint32_t> discs;
+    for (const std::uint32_t p : seen) {
+      if (std::find(rings.begin(), rings.end(), p) == rings.end()) discs.push_back(p);
+    }
+    outwards_near(discs, 24, false);
+    outwards_near(rings, 320, true);
     // Pupils of an unusual shape want a farther look.
     std::vector<std::uint32_t> unusual;
-    for (const std::uint32_t p : seen) {
-      const bool ring = std::find(rings.begin(), rings.end(), p) != rings.end();
-      const auto usual = [&](const Found::Ends& e) {
-        return e.to > 0 && e.to < 1.59 && (ring || e.obscured_from == e.obscured_to);
-      };
-      if (!std::all_of(found_[p].ends.begin(), found_[p].ends.end(), usual)) unusual.push_back(p);
+    for (const auto* points : {&discs, &rings}) {
+      for (const std::uint32_t p : *points) {
+        const auto usual = [&](const Found::Ends& e) { return is_usual(e, points == &rings); };
+        if (!std::all_of(found_[p].ends.begin(), found_[p].ends.end(), usual)) unusual.push_back(p);
+      }
     }
     outwards(unusual, 96, 4.8);
     for (const std::uint32_t p : unusual) {
@@ -100,23 +139,27 @@ class Search {
   /// not there are looked for in full.
   void between(std::span<const Halfway> which) {
     std::vector<std::uint32_t> points, in_parts;
-    for (const auto& [point, before, after] : which) {
-      const Found &a = found_[before], &b = found_[after];
+    for (const Halfway& place : which) {
+      const Found &a = found_[place.before], &b = found_[place.after];
       if (!a.gaps.empty() || !b.gaps.empty()) {
-        in_parts.push_back(point);
+        in_parts.push_back(place.point);
         continue;
       }
-      const auto mean = [](double x, double y) { return (x + y) / 2; };
-      Found& found = found_[point];
-      found.middle = {mean(a.middle[0], b.middle[0]), mean(a.middle[1], b.middle[1])};
-      found.half_axes = {mean(a.half_axes[0], b.half_axes[0]), mean(a.half_axes[1], b.half_axes[1])};
+      const Interpolation at(found_[place.far_before], a, b, found_[place.far_after]);
+      Found& found = found_[place.point];
+      for (int i : {0, 1}) {
+        found.middle[i] = at([i](const Found& f) { return f.middle[i]; });
+        found.half_axes[i] = at.positive([i](const Found& f) { return f.half_axes[i]; });
+      }
       found.ends.assign(directions_, {});
       for (std::size_t k = 0; k < directions_; ++k) {
         const Found::Ends &p = a.ends[k], &q = b.ends[k];
-        found.ends[k] = {mean(p.obscured_from, q.obscured_from), mean(p.obscured_to, q.obscured_to), mean(p.to, q.to),
+        const auto mean = [](double x, double y) { return (x + y) / 2; };
+        found.ends[k] = {mean(p.obscured_from, q.obscured_from), mean(p.obscured_to, q.obscured_to),
+                         at.positive([k](const Found& f) { return f.ends[k].to; }),
                          p.slope < 0 && q.slope < 0 ? mean(p.slope, q.slope) : 0};
       }
-      points.push_back(point);
+      points.push_back(place.point);
     }
     // Some at a time, so that memory is used again.
     constexpr std::size_t some = 8;
@@ -138,52 +181,59 @@ class Search {
  private:
   enum class Reach { near, far };
 
-  /// Finds outer ends of which the slope of the clearance is expected by one Newton step and one secant; by_slope_
-  /// tells for which of them this served.
+  /// Finds outer ends of which the slope of the clearance is expected: where they are, nearly, by that slope, else by
+  /// one Newton step and one secant. by_slope_ tells for which of them this served.
   void step_to_ends(std::span<const std::uint32_t> which, double beside) {
     struct Step {
-      double from, to = 0, at_from = 0;
+      std::uint32_t point;
+      std::size_t direction;
+      double from, at_from = 0, to = 0;
     };
     std::vector<Step> steps;
     Batch batch;
-    const auto each = [&](const auto& visit) {
-      std::size_t i = 0;
-      for (const std::uint32_t point : which) {
-        for (std::size_t k = 0; k < traced_; ++k) {
-          Found::Ends& ends = found_[point].ends[k];
-          if (ends.slope < 0) visit(i++, point, k, ends);
-        }
+    for (const std::uint32_t point : which) {
+      for (std::size_t k = 0; k < traced_; ++k) {
+        const Found::Ends& ends = found_[point].ends[k];
+        if (!(ends.slope < 0)) continue;
+        steps.push_back({point, k, ends.to});
+        batch.add(outward(point, k), ends.to);
       }
-    };
-    each([&](std::size_t, std::uint32_t point, std::size_t k, const Found::Ends& ends) {
-      steps.push_back({ends.to});
-      batch.add(outward(point, k), ends.to);
-    });
+    }
     by_slope_.assign(steps.size(), false);
-    if (steps.empty()) return;
     batch.test(clearances_);
-    const std::vector<double> first = batch.clearances;
-    batch.clear();
-    each([&](std::size_t i, std::uint32_t point, std::size_t k, const Found::Ends& ends) {
+    const auto put = [&](std::size_t i, double end, double slope) {
+      const auto& [point, k, from, at_from, to] = steps[i];
+      by_slope_[i] = true;
+      Found& found = found_[point];
+      found.ends[k].to = end, found.ends[k].slope = slope;
+      if (mirrored_) found.ends[directions_ - 1 - k].to = end;
+    };
+    std::vector<std::size_t> open;
+    for (std::size_t i = 0; i < steps.size(); ++i) {
       Step& step = steps[i];
-      step.at_from = first[i];
-      step.to = step.from - std::clamp(first[i] / ends.slope, -beside * step.from, beside * step.from);
-      batch.add(outward(point, k), step.to);
-    });
+      const double slope = found_[step.point].ends[step.direction].slope;
+      step.at_from = batch.clearances[i];
+      const double by = step.at_from / slope;
+      step.to = step.from - std::clamp(by, -beside * step.from, beside * step.from);
+      if (step.at_from > -1 && std::abs(by) < tolerance / 2) {
+        put(i, step.to, slope);
+      } else {
+        open.push_back(i);
+      }
+    }
+    batch.clear();
+    for (const std::size_t i : open) batch.add(outward(steps[i].point, steps[i].direction), steps[i].to);
     batch.test(clearances_);
-    each([&](std::size_t i, std::uint32_t point, std::size_t k, Found::Ends& ends) {
-      const auto& [from, to, at_from] = steps[i];
-      const double at_to = batch.clearances[i];
-      const double slope = std::abs(to - from) > 1e-6 * from ? (at_to - at_from) / (to - from) : ends.slope;
+    for (std::size_t j = 0; j < open.size(); ++j) {
+      const auto& [point, k, from, at_from, to] = steps[open[j]];
+      const double expected = found_[point].ends[k].slope, at_to = batch.clearances[j];
+      const double slope = std::abs(to - from) > 1e-6 * from ? (at_to - at_from) / (to - from) : expected;
       const double end = to - at_to / slope;
       constexpr double like = 2, close = 5 * tolerance;
-      const bool found = at_from > -1 && at_to > -1 && slope < ends.slope / like && slope > ends.slope * like &&
+      const bool found = at_from > -1 && at_to > -1 && slope < expected / like && slope > expected * like &&
                          std::abs(end - to) < close;
-      if (!found) return;
-      by_slope_[i] = true;
-      ends.to = end, ends.slope = slope;
-      if (mirrored_) found_[point].ends[directions_ - 1 - k].to = end;
-    });
+      if (found) put(open[j], end, slope);
+    }
   }
 
   /// Finds the ends of some pupils next to where they are expected. Returns those that have none there.
@@ -226,7 +276,7 @@ class Search {
     std::vector<std::uint32_t> lost;
     for (std::size_t i = 0; i < which.size(); ++i) {
       if (!nowhere[i]) continue;
-      found_[which[i]] = {};
+      found_[which[i]].ends.clear();
       lost.push_back(which[i]);
     }
     return lost;
@@ -368,29 +418,76 @@ class Search {
     return {point, found.middle.x, found.middle.y, half.x, half.y};
   }
 
-  void outwards(std::span<const std::uint32_t> which, int samples, double reach) {
+  /// All ends along some of the directions: each `apart`-th of those traced, and the last.
+  void outwards(std::span<const std::uint32_t> which, int samples, double reach, std::size_t apart = 1) {
+    std::vector<std::size_t> looked;
+    for (std::size_t k = 0; k < traced_; ++k) {
+      if (k % apart == 0 || k + 1 == traced_) looked.push_back(k);
+    }
     std::vector<Line> lines;
     for (const std::uint32_t p : which) {
       found_[p].ends.assign(directions_, {});
       found_[p].gaps.clear();
-      for (std::size_t k = 0; k < traced_; ++k) lines.push_back(outward(p, k));
+      for (const std::size_t k : looked) lines.push_back(outward(p, k));
     }
     const auto extent = extents_along(lines, 0, reach, samples, tolerance, clearances_);
-    for (std::size_t i = 0; i < which.size(); ++i) {
-      for (std::size_t k = 0; k < directions_; ++k) {
-        const LineExtent& e = extent[i * traced_ + (k < traced_ ? k : directions_ - 1 - k)];
-        if (!e.any) continue;
-        // A dark middle is the obscuration that counts.
-        const bool dark = e.from > 0;
-        Found& found = found_[which[i]];
+    for (std::size_t i = 0; i < extent.size(); ++i) {
+      const LineExtent& e = extent[i];
+      if (!e.any) continue;
+      Found& found = found_[lines[i].point];
+      const std::size_t direction = looked[i % looked.size()];
+      // A dark middle is the obscuration that counts.
+      const bool dark = e.from > 0, both = dark && e.obscured_from < e.obscured_to;
+      for (const std::size_t k : {direction, directions_ - 1 - direction}) {
+        if (k != direction && !mirrored_) break;
         found.ends[k] = {dark ? 0 : e.obscured_from, dark ? e.from : e.obscured_to, e.to, e.slope};
-        const bool both = dark && e.obscured_from < e.obscured_to;
         if (e.gaps.empty() && !both) continue;
         found.gaps.resize(directions_);
         found.gaps[k] = e.gaps;
         if (both) found.gaps[k].push_back({e.obscured_from, e.obscured_to});
       }
     }
+  }
+
+  static constexpr double near_reach = 1.6;  // of outward lines, in half axes
+
+  /// Whether ends in a direction are those of a disc, or of a ring.
+  static bool is_usual(const Found::Ends& e, bool ring) noexcept {
+    return e.to > 0 && e.to < near_reach - 0.01 && (ring || e.obscured_from == e.obscured_to);
+  }
+
+  /// The ends in every direction, not far beyond the half axes: first along a few directions and, where they show a
+  /// disc or a ring, along the others next to where those have them.
+  void outwards_near(std::span<const std::uint32_t> which, int samples, bool rings) {
+    constexpr std::size_t apart = 4, worth_it = 16;
+    if (traced_ < worth_it) {
+      outwards(which, samples, near_reach);
+      return;
+    }
+    outwards(which, samples, near_reach, apart);
+    std::vector<std::uint32_t> simple, others;
+    for (const std::uint32_t p : which) (fill_between(found_[p], apart, rings) ? simple : others).push_back(p);
+    for (const std::uint32_t p : settle(simple)) others.push_back(p);
+    outwards(others, samples, near_reach);
+  }
+
+  /// Expects ends between those of some directions. False: they are not alike.
+  bool fill_between(Found& found, std::size_t apart, bool ring) const {
+    if (!found.gaps.empty()) return false;
+    for (std::size_t k = 0; k + 1 < traced_; k += apart) {
+      const std::size_t next = std::min(k + apart, traced_ - 1);
+      const Found::Ends a = found.ends[k], b = found.ends[next];
+      if (!is_usual(a, ring) || !is_usual(b, ring)) return false;
+      if ((a.obscured_from > 0) != (b.obscured_from > 0) || (a.obscured_to > 0) != (b.obscured_to > 0)) return false;
+      for (std::size_t i = k + 1; i < next; ++i) {
+        const double t = static_cast<double>(i - k) / static_cast<double>(next - k);
+        const auto at = [t](double x, double y) { return x + t * (y - x); };
+        found.ends[i] = {at(a.obscured_from, b.obscured_from), at(a.obscured_to, b.obscured_to), at(a.to, b.to),
+                         a.slope < 0 && b.slope < 0 ? at(a.slope, b.slope) : 0};
+        if (mirrored_) found.ends[directions_ - 1 - i] = found.ends[i];
+      }
+    }
+    return true;
   }
 
   /// Looks for parts of pupils outside the regions that were found, and makes the regions larger to hold them.
@@ -508,7 +605,11 @@ void SearchOrder::halve(const Line& line, std::size_t first_step, std::size_t fi
   for (std::size_t step = first_step; step > 1; step /= 2, ++round) {
     if (rounds.size() <= round) rounds.resize(round + 1);
     for (std::size_t i = step / 2; i + 1 < line.count; i += step) {
-      rounds[round].push_back({line.at(i), line.at(i - step / 2), line.at(std::min(i + step / 2, line.count - 1))});
+      const std::size_t half = step / 2, after = std::min(i + half, line.count - 1);
+      const bool even = after == i + half;
+      rounds[round].push_back({line.at(i), line.at(i - half), line.at(after),
+                               line.at(even && i >= 3 * half ? i - 3 * half : i),
+                               line.at(even && i + 3 * half < line.count ? i + 3 * half : i)});
     }
   }
 }

@@ -25,9 +25,10 @@ struct PupilGuess {
 /// Places all over what a point sees, for parts of its pupil that lie elsewhere than the guess has them.
 using PlacesSeen = std::function<std::vector<SeenPlace>(std::uint32_t point)>;
 
-/// A point about halfway between two others, where its pupil is looked for next to theirs.
+/// A point about halfway between two others, where its pupil is looked for next to theirs. The farther two are as far
+/// again from these on both sides; the point itself: there is none.
 struct Halfway {
-  std::uint32_t point, before, after;
+  std::uint32_t point, before, after, far_before, far_after;
 };
 
 /// In which order pupils are looked for: some points in full, then those halfway between, round after round.

@@ -65,10 +65,12 @@ std::vector<PupilPolygon> polygons_of(double lit_radius, PolygonFit fit, const F
     return nullptr;
   };
   std::vector<PupilPolygon> polygons(strips + 1);
+  std::vector<const PupilRegion*> shown(strips + 1);  // the pupils that they were made of
   for (std::size_t i = 0; i <= strips; ++i) {
     const std::size_t at = parts * i;
-    if (const PupilRegion* lit = first_lit(at)) {
-      polygons[i] = polygon_of(*lit, fit);
+    shown[i] = first_lit(at);
+    if (shown[i]) {
+      polygons[i] = polygon_of(*shown[i], fit);
       continue;
     }
     // The light ends within a strip: an enclosing pupil continues to its end, one of equal area shrinks to a point.
@@ -87,7 +89,10 @@ std::vector<PupilPolygon> polygons_of(double lit_radius, PolygonFit fit, const F
     const double t = strip - static_cast<double>(i);
     checks.push_back({&pupil, {{i, std::min(i + 1, strips), 0, 0}, {1 - t, t, 0, 0}}});
   };
-  for (std::size_t j = 0; j < pupils.size(); ++j) check(pupils[j], static_cast<double>(j % heights.size()) / 2);
+  for (std::size_t j = 0; j < pupils.size(); ++j) {
+    const std::size_t at = j % heights.size();
+    if (at % 2 == 1 || &pupils[j] != shown[at / 2]) check(pupils[j], static_cast<double>(at) / 2);
+  }
   // Where the light ends pupils shrink fast.
   std::vector<PupilRegion> shrinking;
   if (pupils.back().empty()) {

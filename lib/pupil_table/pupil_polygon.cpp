@@ -103,6 +103,7 @@ struct Obscured {
   /// narrower than `expected`, which comes from neighbours. dark: from the middle on.
   void keep(const Sector<double>& sector, bool dark, const Place& begin, const Place& end,
             const Obscured& expected) noexcept {
+    if (!(from < to)) return;  // nothing is left to keep
     constexpr double margin = 0.002;
     const auto squared = [&](const Place& p, double room) {
       const double way = std::max(scale_for(sector, p), 0.0) * room;
