@@ -26,20 +26,29 @@ constexpr std::string_view format_name = "petzval-ray-polynomial 1";
 constexpr std::size_t most_fits = 10'000;
 constexpr int highest_degree = 11;
 
+Domain::Section& along_x(Domain& domain) {
+  if (!domain.along_x) domain.along_x.emplace();
+  return *domain.along_x;
+}
+
 /// A key and the member that holds its number.
 template <class Part>
 struct Number {
   std::string_view name;
   double& (*of)(Part&);
 };
-constexpr std::array<Number<Domain>, 6> domain_numbers{{
+constexpr std::array<Number<Domain>, 8> domain_numbers{{
     {"film_z_mm", [](Domain& d) -> double& { return d.space.film_z; }},
     {"pupil_z_mm", [](Domain& d) -> double& { return d.space.pupil_z; }},
     {"film_radius_mm", [](Domain& d) -> double& { return d.film_radius; }},
     {"pupil_shift", [](Domain& d) -> double& { return d.pupil_shift; }},
     {"pupil_radius_mm", [](Domain& d) -> double& { return d.pupil_radius; }},
     {"reference_z_mm", [](Domain& d) -> double& { return d.reference_z; }},
+    {"pupil_shift_x", [](Domain& d) -> double& { return along_x(d).pupil_shift; }},
+    {"pupil_radius_x_mm", [](Domain& d) -> double& { return along_x(d).pupil_radius; }},
 }};
+/// The last ones, of polynomials with mirror symmetry: a file has both or neither.
+constexpr std::size_t mirror_numbers = 2;
 constexpr std::array<Number<Fit>, 5> fit_numbers{{
     {"wavelength_nm", [](Fit& f) -> double& { return f.wavelength_nm; }},
     {"rms_rad", [](Fit& f) -> double& { return f.rms_rad; }},
@@ -59,15 +68,19 @@ constexpr std::array<List, 4> fit_lists{{
 }};
 
 /// The keys of a file and of a fit, in the order in which they are written.
-constexpr std::array<std::string_view, 9> file_keys{"format",
-                                                    domain_numbers[0].name,
-                                                    domain_numbers[1].name,
-                                                    domain_numbers[2].name,
-                                                    domain_numbers[3].name,
-                                                    domain_numbers[4].name,
-                                                    domain_numbers[5].name,
-                                                    "degree",
-                                                    "fits"};
+constexpr std::array<std::string_view, 11> file_keys{"format",
+                                                     domain_numbers[0].name,
+                                                     domain_numbers[1].name,
+                                                     domain_numbers[2].name,
+                                                     domain_numbers[3].name,
+                                                     domain_numbers[4].name,
+                                                     domain_numbers[5].name,
+                                                     domain_numbers[6].name,
+                                                     domain_numbers[7].name,
+                                                     "degree",
+                                                     "fits"};
+/// Those of mirror symmetry, as bits of file_keys.
+constexpr std::uint32_t mirror_keys = 0b11 << (1 + domain_numbers.size() - mirror_numbers);
 constexpr std::array<std::string_view, 9> fit_keys{fit_numbers[0].name, fit_numbers[1].name, fit_numbers[2].name,
                                                    fit_numbers[3].name, fit_numbers[4].name, fit_lists[0].name,
                                                    fit_lists[1].name,   fit_lists[2].name,   fit_lists[3].name};
@@ -88,7 +101,8 @@ class Reader : public io_detail::JsonReader {
   };
 
   static std::span<const std::string_view> keys(Place place) {
-    return place == Place::file ? std::span(file_keys) : std::span(fit_keys);
+    if (place == Place::file) return file_keys;
+    return fit_keys;
   }
   /// The list or object that must come next; nothing for a plain value.
   std::optional<Place> wanted() const;
@@ -151,7 +165,7 @@ void Reader::assign(JsonValue value) {
   if (in.place == Place::list) {
     const std::size_t key = open_[open_.size() - 2].key - fit_numbers.size();
     std::vector<double>& list = fits_.back().*fit_lists[key].of;
-    static const std::size_t longest = RayPolynomial::terms(highest_degree).size();
+    static const std::size_t longest = 2 * RayPolynomial::mirror_terms(highest_degree).size();
     if (list.size() == longest) {
       throw Error(here() + " has more than " + std::to_string(longest) + " numbers, wanted a polynomial of degree " +
                   std::to_string(highest_degree) + " or less");
@@ -192,8 +206,10 @@ void Reader::close() {
   if (closed.place == Place::file || closed.place == Place::fit) {
     const auto known = keys(closed.place);
     const std::uint32_t seen = std::exchange(closed.seen, 0);
+    const std::uint32_t optional = closed.place == Place::file && !(seen & mirror_keys) ? mirror_keys : 0;
     for (std::size_t i = 0; i < known.size(); ++i) {
-      if (!(seen & (std::uint32_t{1} << i))) throw Error(here() + ": key " + in_quotes(known[i]) + " is missing");
+      if (!((seen | optional) & (std::uint32_t{1} << i)))
+        throw Error(here() + ": key " + in_quotes(known[i]) + " is missing");
     }
   }
   open_.pop_back();
@@ -221,7 +237,10 @@ std::string format_ray_polynomial(const RayPolynomial& polynomial) {
   using io_detail::json_number;
   std::string text = "{\n  " + line("format", in_quotes(format_name));
   Domain domain = polynomial.domain();
-  for (const auto& entry : domain_numbers) text += ",\n  " + line(entry.name, json_number(entry.of(domain)));
+  const std::size_t numbers = domain_numbers.size() - (domain.along_x ? 0 : mirror_numbers);
+  for (std::size_t i = 0; i < numbers; ++i) {
+    text += ",\n  " + line(domain_numbers[i].name, json_number(domain_numbers[i].of(domain)));
+  }
   text += ",\n  " + line("degree", std::to_string(polynomial.degree())) + ",\n  \"fits\": [";
   const char* separator = "\n    {";
   for (Fit fit : polynomial.fits()) {
@@ -231,9 +250,9 @@ std::string format_ray_polynomial(const RayPolynomial& polynomial) {
       text += std::exchange(before, ",\n      ") + line(entry.name, json_number(entry.of(fit)));
     }
     for (const List& entry : fit_lists) {
-      std::string numbers;
-      for (const double c : fit.*entry.of) numbers += (numbers.empty() ? "" : ", ") + json_number(c);
-      text += before + line(entry.name, "[" + numbers + "]");
+      std::string list;
+      for (const double c : fit.*entry.of) list += (list.empty() ? "" : ", ") + json_number(c);
+      text += before + line(entry.name, "[" + list + "]");
     }
     text += "\n    }";
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -32,16 +33,24 @@ struct RayPolynomial::Data {
   /// The coefficients at a wavelength, null where there are none. nm: memory for those of a wavelength in nm.
   template <class R>
   struct Room {
-    std::array<R, 4 * polynomial_detail::most_terms> coefficients;
+    std::array<R, polynomial_detail::most_coefficients> coefficients;
   };
   template <class R>
   const R* coefficients(Wavelength wavelength, Room<R>& nm) const noexcept;
 
-  /// Position of the degree in the tables of loops.
-  std::size_t loop() const noexcept { return static_cast<std::size_t>(degree - 3) / 2; }
+  /// Position of symmetry and degree in the tables of loops.
+  std::size_t loop() const noexcept {
+    return static_cast<std::size_t>(degree - 3) / 2 + (domain.along_x ? polynomial_detail::degree_count : 0);
+  }
 };
 
 namespace polynomial_detail {
+
+/// Shift and radius of the pupil along x and y.
+inline std::array<RayPolynomial::Domain::Section, 2> sections(const RayPolynomial::Domain& domain) noexcept {
+  const RayPolynomial::Domain::Section along_y{domain.pupil_shift, domain.pupil_radius};
+  return {domain.along_x.value_or(along_y), along_y};
+}
 
 template <class R>
 const auto& in(const auto& data) noexcept {
@@ -74,7 +83,7 @@ const R* RayPolynomial::Data::coefficients(Wavelength wavelength, Room<R>& room)
   }
   if (!wavelengths.covers(*nm)) return nullptr;
   const auto [first, weights] = wavelengths.about(*nm);
-  room.coefficients.fill(R(0));
+  std::fill_n(room.coefficients.begin(), each, R(0));
   for (std::size_t k = 0; k < weights.size(); ++k) {
     if (weights[k] == 0) continue;
     const R* own = all.data() + wavelengths.position(first + k) * each;

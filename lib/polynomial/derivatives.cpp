@@ -1,38 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <ceres/jet.h>
 
-#include <array>
-
 #include "data.hpp"
-#include "horner.hpp"
+#include "sums.hpp"
 
 namespace petzval::inline v0 {
 namespace {
 
 using Jet = ceres::Jet<double, 2>;
 
-struct Pair {
-  Jet x, y;
+using polynomial_detail::ChartLine;
+using Place = polynomial_detail::FilmAndPupil<Jet>;
 
-  friend Pair operator*(const Jet& s, const Pair& p) { return {s * p.x, s * p.y}; }
-  friend Pair operator+(const Pair& a, const Pair& b) { return {a.x + b.x, a.y + b.y}; }
-  friend Jet dot(const Pair& a, const Pair& b) { return a.x * b.x + a.y * b.y; }
-};
-
-/// s and o of the line (chart.hpp).
-template <int n>
-std::array<Pair, 2> evaluate(const double* c, const Pair& f, const Pair& p) noexcept {
-  const Jet u = dot(f, f), v = dot(f, p), w = dot(p, p);
-  constexpr int terms = polynomial_detail::term_count(n);
-  const auto sum = [&](const double* at) {
-    return polynomial_detail::horner<n>(at, u, v, w) * f + polynomial_detail::horner<n>(at + terms, u, v, w) * p;
-  };
-  return {sum(c), sum(c + 2 * terms)};
-}
-
-using Evaluate = std::array<Pair, 2> (*)(const double*, const Pair&, const Pair&) noexcept;
-constexpr std::array<Evaluate, polynomial_detail::degree_count> evaluators{evaluate<1>, evaluate<2>, evaluate<3>,
-                                                                           evaluate<4>, evaluate<5>};
+using Evaluate = ChartLine<Jet> (*)(const double*, const Place&);
+constexpr auto evaluators = polynomial_detail::by_symmetry_and_degree([]<class Symmetry>(Symmetry) -> Evaluate {
+  return [](const double* c, const Place& at) { return Symmetry::line(Symmetry::sums(c, at), at); };
+});
 
 }  // namespace
 
@@ -48,17 +31,22 @@ RayDerivatives RayPolynomial::to_scene(const TwoPlaneRayDerivatives& line, Wavel
     x.v[1] = line.by_v.*part * scale;
     return x;
   };
-  const double per_film = 1 / domain.film_radius, per_pupil = 1 / domain.pupil_radius;
-  const Pair f{jet(&TwoPlaneRay::film_x, per_film), jet(&TwoPlaneRay::film_y, per_film)};
-  const Jet shift(-domain.pupil_shift * domain.film_radius * per_pupil);
-  const Pair p = Pair{jet(&TwoPlaneRay::pupil_x, per_pupil), jet(&TwoPlaneRay::pupil_y, per_pupil)} + shift * f;
-  if (!(dot(f, f).a <= polynomial_detail::within_domain && dot(p, p).a <= polynomial_detail::within_domain))
+  const auto pupil = [&](double TwoPlaneRay::*part, const Jet& film, const Domain::Section& section) {
+    const double per_pupil = 1 / section.pupil_radius;
+    return jet(part, per_pupil) + Jet(-section.pupil_shift * domain.film_radius * per_pupil) * film;
+  };
+  const auto [along_x, along_y] = polynomial_detail::sections(domain);
+  const double per_film = 1 / domain.film_radius;
+  const Jet fx = jet(&TwoPlaneRay::film_x, per_film), fy = jet(&TwoPlaneRay::film_y, per_film);
+  const Place place{fx, fy, pupil(&TwoPlaneRay::pupil_x, fx, along_x), pupil(&TwoPlaneRay::pupil_y, fy, along_y)};
+  if (!(fx.a * fx.a + fy.a * fy.a <= polynomial_detail::within_domain &&
+        place.px.a * place.px.a + place.py.a * place.py.a <= polynomial_detail::within_domain))
     return result;
 
-  const auto [s, o] = evaluators[data_->loop()](coefficients, f, p);
-  const Jet square = dot(s, s), twice = 2.0 / (square + 1.0), along = twice * dot(s, o);
-  const Jet x = o.x - s.x * along, y = o.y - s.y * along, z = along + domain.reference_z;
-  const Jet dx = twice * s.x, dy = twice * s.y, dz = twice * (square - 1.0) / 2.0;
+  const auto [sx, sy, ox, oy] = evaluators[data_->loop()](coefficients, place);
+  const Jet square = sx * sx + sy * sy, twice = 2.0 / (square + 1.0), along = twice * (sx * ox + sy * oy);
+  const Jet x = ox - sx * along, y = oy - sy * along, z = along + domain.reference_z;
+  const Jet dx = twice * sx, dy = twice * sy, dz = twice * (square - 1.0) / 2.0;
   const auto part = [&](int k) -> Ray<double> { return {{x.v[k], y.v[k], z.v[k]}, {dx.v[k], dy.v[k], dz.v[k]}}; };
   return {RayFate::transmitted, {{x.a, y.a, z.a}, {dx.a, dy.a, dz.a}}, part(0), part(1)};
 }

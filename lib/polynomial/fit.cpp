@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <numbers>
@@ -15,116 +17,159 @@
 namespace petzval::inline v0 {
 namespace {
 
-using polynomial_detail::MeridianLines;
+using polynomial_detail::Lines;
 
-constexpr std::size_t fitted = 1536, judged = 4096;
+/// Samples of the pupils of film points, in the part of the film from which all others follow by the symmetry.
+class Samples {
+ public:
+  Samples(const FilmPupilTable& pupils, bool mirrors) : pupils_(pupils), mirrors_(mirrors) {}
 
-/// The samples u, v of pupils as lines, without those of empty pupils.
-MeridianLines lines_of(const FilmPupilTable& pupils, std::size_t wavelength, const std::vector<double>& heights,
-                       const std::vector<double>& u, const std::vector<double>& v) {
-  const std::size_t count = heights.size();
-  const std::vector<double> film_x(count, 0.0);
-  std::vector<double> x(count), y(count), areas(count);
-  pupils.sample<double>(count, film_x.data(), heights.data(), u.data(), v.data(), {wavelength}, x.data(), y.data(),
-                        areas.data());
-  MeridianLines lines;
-  for (std::size_t i = 0; i < count; ++i) {
-    if (!(areas[i] > 0)) continue;
-    lines.film_y.push_back(heights[i]);
-    lines.pupil_x.push_back(x[i]);
-    lines.pupil_y.push_back(y[i]);
+  /// A film point by parts of the film's radius and, with mirror symmetry, of a right angle from +y to +x.
+  void add(double height, double turn, double u, double v) {
+    constexpr double right_angle = std::numbers::pi / 2;
+    const double angle = mirrors_ ? right_angle * turn : 0, radius = pupils_.film_radius() * height;
+    film_x_.push_back(radius * std::sin(angle)), film_y_.push_back(radius * std::cos(angle));
+    u_.push_back(u), v_.push_back(v);
   }
-  return lines;
-}
+
+  /// Uniform numbers for height, azimuth in the pupil, way outwards, turn.
+  std::array<double, 4> uniform(std::size_t index) const {
+    static constexpr core_detail::Kronecker<3> three;
+    static constexpr core_detail::Kronecker<4> four;
+    if (mirrors_) return four(index);
+    const auto [height, around, outwards] = three(index);
+    return {height, around, outwards, 0};
+  }
+
+  /// As lines, without those of empty pupils.
+  Lines lines(std::size_t wavelength) const {
+    const std::size_t count = u_.size();
+    std::vector<double> x(count), y(count), areas(count);
+    pupils_.sample<double>(count, film_x_.data(), film_y_.data(), u_.data(), v_.data(), {wavelength}, x.data(),
+                           y.data(), areas.data());
+    Lines lines;
+    for (std::size_t i = 0; i < count; ++i) {
+      if (!(areas[i] > 0)) continue;
+      lines.film_x.push_back(film_x_[i]);
+      lines.film_y.push_back(film_y_[i]);
+      lines.pupil_x.push_back(x[i]);
+      lines.pupil_y.push_back(y[i]);
+    }
+    return lines;
+  }
+
+ private:
+  const FilmPupilTable& pupils_;
+  bool mirrors_;
+  std::vector<double> film_x_, film_y_, u_, v_;
+};
 
 /// Uniform lines over film and pupils, from any `first` on. Uniform by area, or denser towards the edges of film and
 /// pupil like Chebyshev nodes: that makes the largest errors some tenths smaller, and the RMS one tenth larger.
-MeridianLines spread(const FilmPupilTable& pupils, std::size_t wavelength, std::size_t first, std::size_t count,
-                     bool dense) {
+Samples spread(Samples samples, std::size_t first, std::size_t count, bool dense) {
   constexpr double quarter = std::numbers::pi / 2;
-  const core_detail::Kronecker<3> points;
-  std::vector<double> heights(count), u(count), v(count);
   for (std::size_t i = 0; i < count; ++i) {
-    const auto [a, around, b] = points(first + i);
-    const double edge = std::sin(quarter * b);
-    heights[i] = pupils.film_radius() * (dense ? std::sin(quarter * a) : std::sqrt(a));
-    u[i] = around;
-    v[i] = dense ? edge * edge : b;
+    const auto [height, around, outwards, turn] = samples.uniform(first + i);
+    const double edge = std::sin(quarter * outwards);
+    samples.add(dense ? std::sin(quarter * height) : std::sqrt(height), turn, around, dense ? edge * edge : outwards);
   }
-  return lines_of(pupils, wavelength, heights, u, v);
+  return samples;
 }
 
 /// The film's centre, uniformly over its pupil.
-MeridianLines axial(const FilmPupilTable& pupils, std::size_t wavelength) {
+Samples axial(Samples samples) {
   constexpr std::size_t count = 512;
-  std::vector<double> u, v;
   for (std::size_t i = 0; i < count; ++i) {
-    const auto [at_u, at_v] = core_detail::fibonacci_point(i, count);
-    u.push_back(at_u), v.push_back(at_v);
+    const auto [u, v] = core_detail::fibonacci_point(i, count);
+    samples.add(0, 0, u, v);
   }
-  return lines_of(pupils, wavelength, std::vector<double>(count, 0.0), u, v);
+  return samples;
 }
 
-/// The rims of the pupils.
-MeridianLines rims(const FilmPupilTable& pupils, std::size_t wavelength) {
-  constexpr int steps = 64, around = 128;
-  std::vector<double> heights, u;
+/// Evenly from 0 to 1; of one alone 0.
+double part(int k, int count) noexcept { return count > 1 ? static_cast<double>(k) / (count - 1) : 0; }
+
+/// The rims of the pupils. turns: of film points of one height.
+Samples rims(Samples samples, int steps, int turns) {
+  constexpr int around = 128;
   for (int i = 0; i <= steps; ++i) {
-    for (int k = 0; k < around; ++k) {
-      heights.push_back(pupils.film_radius() * i / steps);
-      u.push_back(static_cast<double>(k) / around);
+    for (int turn = 0; turn < turns; ++turn) {
+      for (int k = 0; k < around; ++k) {
+        samples.add(static_cast<double>(i) / steps, part(turn, turns), static_cast<double>(k) / around, 1);
+      }
     }
   }
-  return lines_of(pupils, wavelength, heights, u, std::vector<double>(u.size(), 1.0));
+  return samples;
 }
 
 /// Where errors are largest: just within the rims of all pupils, where the last rays pass, and from the film's farthest
-/// point, on its rim and through the rest of its pupil.
-MeridianLines edges(const FilmPupilTable& pupils, std::size_t wavelength) {
+/// points, on their rims and through the rest of their pupils. turns: of these points.
+Samples edges(Samples samples, int turns) {
   constexpr std::size_t near_rims = 8192, on_rim = 1024, within = 3072;
   constexpr double margin = 0.02;  // of the pupil's area
-  const core_detail::Kronecker<3> points;
-  std::vector<double> heights, u, v;
-  const auto add = [&](double height, double around, double outwards) {
-    heights.push_back(pupils.film_radius() * height), u.push_back(around), v.push_back(outwards);
-  };
-  for (std::size_t i = 0; i < near_rims; ++i) {
-    const auto [height, around, inwards] = points(i);
-    add(height, around, 1 - margin * inwards * inwards);
+  for (std::size_t i = 0; i < near_rims * static_cast<std::size_t>(turns); ++i) {
+    const auto [height, around, inwards, turn] = samples.uniform(i);
+    samples.add(height, turn, around, 1 - margin * inwards * inwards);
   }
-  for (std::size_t i = 0; i < on_rim; ++i) add(1, static_cast<double>(i) / on_rim, 1);
-  for (std::size_t i = 0; i < within; ++i) {
-    const auto [around, outwards] = core_detail::fibonacci_point(i, within);
-    add(1, around, outwards);
+  for (int k = 0; k < turns; ++k) {
+    const double turn = part(k, turns);
+    for (std::size_t i = 0; i < on_rim; ++i) samples.add(1, turn, static_cast<double>(i) / on_rim, 1);
+    for (std::size_t i = 0; i < within; ++i) {
+      const auto [around, outwards] = core_detail::fibonacci_point(i, within);
+      samples.add(1, turn, around, outwards);
+    }
   }
-  return lines_of(pupils, wavelength, heights, u, v);
+  return samples;
 }
 
-/// The smallest discs, moving with the film point, that hold the rims of all wavelengths.
-void enclose(const std::vector<MeridianLines>& rims, RayPolynomial::Domain& domain) {
+/// The smallest disc, moving with the film point, that holds the rims of all wavelengths: its shift and radius. Or the
+/// smallest stretch, where only one of the axes x and y counts.
+RayPolynomial::Domain::Section smallest(const std::vector<Lines>& rims, double film_radius, bool x_counts,
+                                        bool y_counts) {
   struct Farthest {
     double square = 0, side = 0;  ///< side: > 0 if a larger shift brings the centre of the disc nearer
   };
   const auto farthest = [&](double shift) {
     Farthest result;
-    for (const MeridianLines& lines : rims) {
+    for (const Lines& lines : rims) {
       for (std::size_t i = 0; i < lines.size(); ++i) {
-        const double y = lines.pupil_y[i] - shift * lines.film_y[i];
-        const double square = lines.pupil_x[i] * lines.pupil_x[i] + y * y;
-        if (square > result.square) result = {square, y * lines.film_y[i]};
+        const double x = x_counts ? lines.pupil_x[i] - shift * lines.film_x[i] : 0;
+        const double y = y_counts ? lines.pupil_y[i] - shift * lines.film_y[i] : 0;
+        const double square = x * x + y * y;
+        if (square > result.square) result = {square, x * lines.film_x[i] + y * lines.film_y[i]};
       }
     }
     return result;
   };
   // The radius is convex in the shift: the farthest point tells on which side of the best shift this one is.
-  double high = 2 * std::sqrt(farthest(0).square) / domain.film_radius, low = -high;
+  double high = 2 * std::sqrt(farthest(0).square) / film_radius, low = -high;
   for (int halving = 0; halving < 30; ++halving) {
     const double middle = (low + high) / 2;
     (farthest(middle).side > 0 ? low : high) = middle;
   }
-  domain.pupil_shift = (low + high) / 2;
-  domain.pupil_radius =
-      1.01 * std::sqrt(farthest(domain.pupil_shift).square);  // corners lie between the directions searched
+  const double shift = (low + high) / 2;
+  return {shift, std::sqrt(farthest(shift).square)};
+}
+
+/// The smallest disc, or with mirror symmetry an ellipse about the smallest rectangle, that holds the rims.
+void enclose(const std::vector<Lines>& rims, bool mirrors, RayPolynomial::Domain& domain) {
+  constexpr double between = 1.01;  // corners lie between the directions searched
+  auto along_y = smallest(rims, domain.film_radius, !mirrors, true);
+  if (mirrors) {
+    auto along_x = smallest(rims, domain.film_radius, true, false);
+    double farthest = 0;
+    for (const Lines& lines : rims) {
+      for (std::size_t i = 0; i < lines.size(); ++i) {
+        const double x = (lines.pupil_x[i] - along_x.pupil_shift * lines.film_x[i]) / along_x.pupil_radius;
+        const double y = (lines.pupil_y[i] - along_y.pupil_shift * lines.film_y[i]) / along_y.pupil_radius;
+        farthest = std::max(farthest, std::hypot(x, y));
+      }
+    }
+    along_x.pupil_radius *= between * farthest, along_y.pupil_radius *= farthest;
+    domain.along_x = along_x;
+  }
+  domain.pupil_shift = along_y.pupil_shift;
+  domain.pupil_radius = between * along_y.pupil_radius;
 }
 
 /// The centre of the entrance pupil unless it is far from the lens: rays begin near it.
@@ -139,9 +184,6 @@ double reference_of(const Lens& lens) {
 RayPolynomial RayPolynomial::fit(const Lens& lens, const FilmPupilTable& pupils, int degree) {
   const std::string where = lens.name() + ": polynomial: ";
   if (!lens.iris().round()) throw Error(where + "the iris has edges, wanted a round stop");
-  if (!lens.rotationally_symmetric()) {
-    throw Error(where + "the lens has surfaces that are curved in one section only, wanted a lens of revolution");
-  }
   if (!(degree >= 3 && degree <= 11 && degree % 2 == 1)) {
     throw Error(where + "degree is " + std::to_string(degree) + ", wanted 3, 5, 7, 9 or 11");
   }
@@ -150,9 +192,12 @@ RayPolynomial RayPolynomial::fit(const Lens& lens, const FilmPupilTable& pupils,
                 " wavelengths, wanted the lens's " + std::to_string(lens.wavelengths_nm().size()));
   }
   if (!(pupils.film_radius() > 0)) throw Error(where + "the film's radius is 0, wanted more than one point");
-  std::vector<MeridianLines> all_rims;
+  const bool mirrors = !lens.rotationally_symmetric();
+  const Samples none(pupils, mirrors);
+  const Samples on_rims = mirrors ? rims(none, 32, 17) : rims(none, 64, 1);
+  std::vector<Lines> all_rims;
   for (std::size_t wavelength = 0; wavelength < pupils.wavelengths(); ++wavelength) {
-    all_rims.push_back(rims(pupils, wavelength));
+    all_rims.push_back(on_rims.lines(wavelength));
     if (all_rims.back().size() == 0) throw Error(where + "the pupils are empty, wanted rays");
   }
 
@@ -160,15 +205,18 @@ RayPolynomial RayPolynomial::fit(const Lens& lens, const FilmPupilTable& pupils,
   domain.space = pupils.space();
   domain.film_radius = pupils.film_radius();
   domain.reference_z = reference_of(lens);
-  enclose(all_rims, domain);
+  enclose(all_rims, mirrors, domain);
+  // One more dimension takes more lines, of which there are enough for 12 equations for each coefficient.
+  const std::size_t fitted = mirrors ? std::max<std::size_t>(3072, 24 * mirror_terms(degree).size()) : 1536;
+  constexpr std::size_t judged = 4096;
   std::vector<Fit> fits;
   for (std::size_t wavelength = 0; wavelength < pupils.wavelengths(); ++wavelength) {
     fits.push_back(polynomial_detail::fit(lens, domain, degree, wavelength,
-                                          {.fitted = spread(pupils, wavelength, 0, fitted, true),
-                                           .axial = axial(pupils, wavelength),
-                                           .fresh = spread(pupils, wavelength, fitted, judged, false),
+                                          {.fitted = spread(none, 0, fitted, true).lines(wavelength),
+                                           .axial = axial(none).lines(wavelength),
+                                           .fresh = spread(none, fitted, judged, false).lines(wavelength),
                                            .rims = all_rims[wavelength],
-                                           .edges = edges(pupils, wavelength)}));
+                                           .edges = edges(none, mirrors ? 9 : 1).lines(wavelength)}));
   }
   return RayPolynomial(degree, domain, std::move(fits), lens.primary_wavelength());
 }

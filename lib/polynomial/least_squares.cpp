@@ -7,9 +7,11 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <string>
+#include <utility>
 
 #include "chart.hpp"
 #include "core/text.hpp"
+#include "data.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/trace/trace.hpp"
 
@@ -33,16 +35,20 @@ struct Rays {
 
 /// Traces the lines through the lens. Rays start at the last vertex, so that no digits are lost for a distant film or
 /// pupil.
-Rays trace(const Lens& lens, const TwoPlanes& space, const MeridianLines& lines, std::size_t wavelength) {
+Rays trace(const Lens& lens, const TwoPlanes& space, const Lines& lines, std::size_t wavelength) {
   const double last_z = lens.surfaces().back().vertex_z;
   const double part = (last_z - space.film_z) / space.depth();  // of the distance from the film to the pupil
   const double towards = towards_scene(lens, space);
   Rays rays(lines.size());
   for (std::size_t i = 0; i < lines.size(); ++i) {
-    const double dx = lines.pupil_x[i], dy = lines.pupil_y[i] - lines.film_y[i], dz = space.depth();
+    const double dx = lines.pupil_x[i] - lines.film_x[i], dy = lines.pupil_y[i] - lines.film_y[i], dz = space.depth();
     const double per_length = towards / std::sqrt(dx * dx + dy * dy + dz * dz);
-    const std::array<double, 6> ray{
-        part * dx, lines.film_y[i] + part * dy, last_z, dx * per_length, dy * per_length, dz * per_length};
+    const std::array<double, 6> ray{lines.film_x[i] + part * dx,
+                                    lines.film_y[i] + part * dy,
+                                    last_z,
+                                    dx * per_length,
+                                    dy * per_length,
+                                    dz * per_length};
     for (std::size_t k = 0; k < ray.size(); ++k) rays.v[k][i] = ray[k];
   }
   petzval::trace(lens, rays.size(), rays.arrays<const double>(), rays.arrays<double>(), rays.fates.data(), nullptr,
@@ -68,14 +74,13 @@ struct Errors {
 
 /// The errors of a fit for some lines, in direction and offset.
 std::array<Errors, 2> errors_of(const Lens& lens, const RayPolynomial& polynomial, std::size_t wavelength,
-                                const MeridianLines& lines) {
+                                const Lines& lines) {
   const double reference_z = polynomial.domain().reference_z;
   const Rays exact = trace(lens, polynomial.domain().space, lines, wavelength);
   Rays rays(lines.size());
-  const std::vector<double> film_x(lines.size(), 0.0);
   polynomial.to_scene<double>(lines.size(),
-                              {film_x.data(), lines.film_y.data(), lines.pupil_x.data(), lines.pupil_y.data()}, {},
-                              rays.arrays<double>(), rays.fates.data());
+                              {lines.film_x.data(), lines.film_y.data(), lines.pupil_x.data(), lines.pupil_y.data()},
+                              {}, rays.arrays<double>(), rays.fates.data());
   Errors direction, offset;
   for (std::size_t i = 0; i < lines.size(); ++i) {
     if (exact.fates[i] != RayFate::transmitted || rays.fates[i] != RayFate::transmitted) continue;
@@ -88,86 +93,157 @@ std::array<Errors, 2> errors_of(const Lens& lens, const RayPolynomial& polynomia
   return {direction, offset};
 }
 
+/// Powers 0 to 10 of some numbers.
+template <std::size_t N>
+class Powers {
+ public:
+  explicit Powers(const std::array<double, N>& numbers) {
+    for (std::size_t k = 0; k < N; ++k) {
+      double power = 1;
+      for (double& each : powers_[k]) each = std::exchange(power, power * numbers[k]);
+    }
+  }
+  double operator()(std::size_t number, int exponent) const {
+    return powers_[number][static_cast<std::size_t>(exponent)];
+  }
+
+ private:
+  std::array<std::array<double, 11>, N> powers_;
+};
+
+/// The equations of lines for the coefficients by film, and behind them those by pupil. Both axes share these in a lens
+/// of revolution, and with mirror symmetry have their own. Direction and offset are two right-hand sides.
+class Equations {
+ public:
+  struct Row {
+    Eigen::RowVectorXd left;
+    Eigen::RowVector2d right;
+  };
+
+  Equations(int degree, const RayPolynomial::Domain& domain) : domain_(domain) {
+    if (domain.along_x) {
+      mirror_terms_ = RayPolynomial::mirror_terms(degree);
+    } else {
+      terms_ = RayPolynomial::terms(degree);
+    }
+    for (Row& row : rows_) row.left.resize(2 * count());
+  }
+
+  /// Coefficients by film.
+  Eigen::Index count() const noexcept { return static_cast<Eigen::Index>(terms_.size() + mirror_terms_.size()); }
+  /// Whose coefficients an axis has.
+  std::size_t system(std::size_t axis) const noexcept { return domain_.along_x ? axis : 0; }
+  std::size_t systems() const noexcept { return domain_.along_x ? 2 : 1; }
+
+  /// Those of one line, along x and y, until the next one.
+  const std::array<Row, 2>& of(const Lines& lines, const Rays& traced, std::size_t i) {
+    const auto [along_x, along_y] = sections(domain_);
+    const double fx = lines.film_x[i] / domain_.film_radius, fy = lines.film_y[i] / domain_.film_radius;
+    const double px = (lines.pupil_x[i] - along_x.pupil_shift * lines.film_x[i]) / along_x.pupil_radius;
+    const double py = (lines.pupil_y[i] - along_y.pupil_shift * lines.film_y[i]) / along_y.pupil_radius;
+    const SceneLine line = scene_line(traced.direction(i), traced.origin(i) - Vec3<double>(0, 0, domain_.reference_z));
+    rows_[0].right << line.sx, line.ox;
+    rows_[1].right << line.sy, line.oy;
+    const auto fill = [this](Row& row, Eigen::Index k, double term, double film, double pupil) {
+      row.left[k] = term * film;
+      row.left[count() + k] = term * pupil;
+    };
+    if (domain_.along_x) {
+      const Powers<4> powers({fx, px, fy, py});
+      for (Eigen::Index k = 0; k < count(); ++k) {
+        const auto [film, pupil, other_film, other_pupil] = mirror_terms_[static_cast<std::size_t>(k)];
+        fill(rows_[0], k, powers(0, film) * powers(1, pupil) * powers(2, other_film) * powers(3, other_pupil), fx, px);
+        fill(rows_[1], k, powers(2, film) * powers(3, pupil) * powers(0, other_film) * powers(1, other_pupil), fy, py);
+      }
+    } else {
+      const Powers<3> powers({fx * fx + fy * fy, fx * px + fy * py, px * px + py * py});
+      for (Eigen::Index k = 0; k < count(); ++k) {
+        const auto [u, v, w] = terms_[static_cast<std::size_t>(k)];
+        const double term = powers(0, u) * powers(1, v) * powers(2, w);
+        fill(rows_[0], k, term, fx, px);
+        fill(rows_[1], k, term, fy, py);
+      }
+    }
+    return rows_;
+  }
+
+ private:
+  const RayPolynomial::Domain& domain_;
+  std::vector<RayPolynomial::Term> terms_;
+  std::vector<RayPolynomial::MirrorTerm> mirror_terms_;
+  std::array<Row, 2> rows_;
+};
+
 }  // namespace
 
 RayPolynomial::Fit fit(const Lens& lens, const RayPolynomial::Domain& domain, int degree, std::size_t wavelength,
                        const FitLines& lines) {
-  const std::vector<RayPolynomial::Term> terms = RayPolynomial::terms(degree);
-  const auto count = static_cast<Eigen::Index>(terms.size());
+  Equations equations(degree, domain);
   const Rays rays = trace(lens, domain.space, lines.fitted, wavelength);
   const auto passed = std::count(rays.fates.begin(), rays.fates.end(), RayFate::transmitted);
+  const Eigen::Index count = equations.count(), systems = static_cast<Eigen::Index>(equations.systems());
   const double nm = lens.wavelengths_nm()[wavelength];
-  if (passed < 2 * count) {
+  if (passed < 2 * systems * count) {
     throw Error(lens.name() + ": polynomial of degree " + std::to_string(degree) + ": " + std::to_string(passed) +
                 " rays from a film of radius " + to_text(domain.film_radius) + " mm get through at " + to_text(nm) +
-                " nm, wanted " + std::to_string(2 * count) + " or more: a film within the image circle");
+                " nm, wanted " + std::to_string(2 * systems * count) + " or more: a film within the image circle");
   }
-
-  // Two equations for each ray, along x and along y, for A (left) and B (right). Direction and offset are two
-  // right-hand sides of the same equations.
-  const int n = (degree - 1) / 2;
-  const auto equate = [&](const MeridianLines& of, const Rays& traced, std::size_t i, auto&& equations, auto&& wanted) {
-    const double fy = of.film_y[i] / domain.film_radius;
-    const double px = of.pupil_x[i] / domain.pupil_radius;
-    const double py = (of.pupil_y[i] - domain.pupil_shift * of.film_y[i]) / domain.pupil_radius;
-    const std::array<double, 3> invariants{fy * fy, fy * py, px * px + py * py};
-    std::array<std::array<double, 6>, 3> powers;
-    for (std::size_t k = 0; k < 3; ++k) {
-      powers[k][0] = 1;
-      for (std::size_t e = 0; e < static_cast<std::size_t>(n); ++e) powers[k][e + 1] = powers[k][e] * invariants[k];
-    }
-    for (Eigen::Index k = 0; k < count; ++k) {
-      const auto [u, v, w] = terms[static_cast<std::size_t>(k)];
-      const double term = powers[0][static_cast<std::size_t>(u)] * powers[1][static_cast<std::size_t>(v)] *
-                          powers[2][static_cast<std::size_t>(w)];
-      equations(0, k) = 0;
-      equations(0, count + k) = term * px;
-      equations(1, k) = term * fy;
-      equations(1, count + k) = term * py;
-    }
-    const SceneLine line = scene_line(traced.direction(i), traced.origin(i) - Vec3<double>(0, 0, domain.reference_z));
-    wanted.row(0) << line.sx, line.ox;
-    wanted.row(1) << line.sy, line.oy;
+  struct System {
+    Eigen::MatrixXd left;
+    Eigen::MatrixX2d right;
+    Eigen::Index rows = 1;
   };
-  Eigen::MatrixXd equations(1 + 2 * passed, 2 * count);
-  Eigen::MatrixX2d wanted(1 + 2 * passed, 2);
+  std::vector<System> all(equations.systems());
+  for (System& system : all) {
+    system.left.setZero(1 + 2 * passed / systems, 2 * count);
+    system.right.setZero(system.left.rows(), 2);
+  }
 
   // The focus of the film's centre: the first moments of direction and offset over its pupil are those of the lens, so
   // that rays meet the axis in the same plane on average. A row as heavy as this one holds nearly exactly; heavy rows
   // come first for the sake of QR.
-  equations.row(0).setZero(), wanted.row(0).setZero();
   const Rays axial = trace(lens, domain.space, lines.axial, wavelength);
-  Eigen::MatrixXd two_equations(2, 2 * count);
-  Eigen::Matrix2d two_wanted;
   const double heavy = 1e4 / static_cast<double>(std::max<std::size_t>(1, axial.size()));
   for (std::size_t i = 0; i < axial.size(); ++i) {
     if (axial.fates[i] != RayFate::transmitted) continue;
-    equate(lines.axial, axial, i, two_equations, two_wanted);
+    const auto& along = equations.of(lines.axial, axial, i);
     const double x = lines.axial.pupil_x[i], y = lines.axial.pupil_y[i], depth = domain.space.depth();
     const double cosine_squared = depth * depth / (x * x + y * y + depth * depth);
     const double light = heavy * cosine_squared * cosine_squared / domain.pupil_radius;
-    equations.row(0) += light * (x * two_equations.row(0) + y * two_equations.row(1));
-    wanted.row(0) += light * (x * two_wanted.row(0) + y * two_wanted.row(1));
+    if (systems == 1) {
+      all[0].left.row(0) += light * (x * along[0].left + y * along[1].left);
+      all[0].right.row(0) += light * (x * along[0].right + y * along[1].right);
+    } else {
+      for (const std::size_t axis : {0u, 1u}) {
+        all[axis].left.row(0) += light * (axis == 0 ? x : y) * along[axis].left;
+        all[axis].right.row(0) += light * (axis == 0 ? x : y) * along[axis].right;
+      }
+    }
   }
 
-  Eigen::Index row = 1;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     if (rays.fates[i] != RayFate::transmitted) continue;
-    equate(lines.fitted, rays, i, equations.middleRows<2>(row), wanted.middleRows<2>(row));
-    row += 2;
+    const auto& along = equations.of(lines.fitted, rays, i);
+    for (const std::size_t axis : {0u, 1u}) {
+      System& system = all[equations.system(axis)];
+      system.left.row(system.rows) = along[axis].left;
+      system.right.row(system.rows++) = along[axis].right;
+    }
   }
-  const Eigen::MatrixX2d solution = equations.householderQr().solve(wanted);
 
-  const auto part = [&](Eigen::Index column, Eigen::Index from) {
-    const auto numbers = solution.col(column).segment(from, count);
-    return std::vector<double>(numbers.begin(), numbers.end());
-  };
   RayPolynomial::Fit fit;
   fit.wavelength_nm = nm;
-  fit.direction_by_film = part(0, 0);
-  fit.direction_by_pupil = part(0, count);
-  fit.offset_by_film = part(1, 0);
-  fit.offset_by_pupil = part(1, count);
+  for (const System& system : all) {
+    const Eigen::MatrixX2d solution = system.left.householderQr().solve(system.right);
+    const auto append = [&](std::vector<double>& to, Eigen::Index column, Eigen::Index from) {
+      const auto numbers = solution.col(column).segment(from, count);
+      to.insert(to.end(), numbers.begin(), numbers.end());
+    };
+    append(fit.direction_by_film, 0, 0);
+    append(fit.direction_by_pupil, 0, count);
+    append(fit.offset_by_film, 1, 0);
+    append(fit.offset_by_pupil, 1, count);
+  }
 
   const RayPolynomial polynomial(degree, domain, {fit});
   const auto [direction, offset] = errors_of(lens, polynomial, wavelength, lines.fresh);
@@ -175,7 +251,7 @@ RayPolynomial::Fit fit(const Lens& lens, const RayPolynomial::Domain& domain, in
   fit.rms_mm = offset.rms();
   fit.max_rad = direction.max();
   fit.max_mm = offset.max();
-  for (const MeridianLines* edge : {&lines.rims, &lines.edges}) {
+  for (const Lines* edge : {&lines.rims, &lines.edges}) {
     const auto [direction_there, offset_there] = errors_of(lens, polynomial, wavelength, *edge);
     fit.max_rad = std::max(fit.max_rad, direction_there.max());
     fit.max_mm = std::max(fit.max_mm, offset_there.max());

@@ -9,23 +9,25 @@
 
 namespace petzval::inline v0::polynomial_detail {
 
-/// Lines of film points on the axis +y; all others are these, turned about the axis.
-struct MeridianLines {
-  std::vector<double> film_y, pupil_x, pupil_y;
+/// Lines of the film points from which all others follow by the symmetry: those on the axis +y of a lens of revolution,
+/// those in the quadrant x, y >= 0 of one with mirror symmetry.
+struct Lines {
+  std::vector<double> film_x, film_y, pupil_x, pupil_y;
 
   std::size_t size() const noexcept { return film_y.size(); }
 };
 
 struct FitLines {
-  MeridianLines fitted;
-  MeridianLines axial;  ///< of the film's centre, uniform over its pupil
-  MeridianLines fresh;  ///< to find errors with, and for the largest ones
-  MeridianLines rims;   ///< those along the rims of the pupils and
-  MeridianLines edges;  ///< those near them and of the film's farthest point
+  Lines fitted;
+  Lines axial;  ///< of the film's centre, uniform over its pupil
+  Lines fresh;  ///< to find errors with, and for the largest ones
+  Lines rims;   ///< those along the rims of the pupils and
+  Lines edges;  ///< those near them and of the film's farthest points
 };
 
 /// The fit at one wavelength to the lines that pass the lens. The film's centre is in focus where exact rays are
-/// sharpest.
+/// sharpest, in both sections of a
+/// lens with mirror symmetry.
 RayPolynomial::Fit fit(const Lens& lens, const RayPolynomial::Domain& domain, int degree, std::size_t wavelength,
                        const FitLines& lines);
 

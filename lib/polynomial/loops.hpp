@@ -15,16 +15,20 @@ namespace petzval::inline v0::polynomial_detail {
 
 /// Degrees 3, 5, 7, 9, 11.
 inline constexpr std::size_t degree_count = 5;
-/// Coefficients of one sum of degree 11.
-inline constexpr std::size_t most_terms = 56;
+/// Coefficients of degree 11 and two mirror symmetries, the most at a wavelength.
+inline constexpr std::size_t most_coefficients = 1568;
 
 /// The constants of a domain, rounded once from double.
 template <class R>
 struct Scales {
-  R per_film_radius, pupil_shift, per_pupil_radius, reference_z;
+  struct Section {
+    R pupil_shift, per_pupil_radius;
+  };
+  R per_film_radius, reference_z;
+  Section along_x, along_y;
 };
 
-/// Limit of u and w, squares of lengths of at most 1: lines on the rim of the domain belong to it in float too.
+/// Limit of |f|^2 and |p|^2, at most 1: lines on the rim of the domain belong to it in float too.
 inline constexpr double within_domain = 1 + 1e-5;
 
 /// Fits that are mixed for each ray: `weights` of those at the ranks from `first` on, by ray and then by rank.
@@ -37,7 +41,7 @@ struct MixedFits {
 
 template <class R>
 struct ToSceneJob {
-  const R* coefficients;  ///< by wavelength: A, B, C, D: direction by film and by pupil, offset by film and by pupil
+  const R* coefficients;  ///< by wavelength: direction by film and by pupil, offset by film and by pupil
   std::size_t fits, primary;
   Scales<R> scales;
   std::size_t count;
@@ -49,9 +53,9 @@ struct ToSceneJob {
 };
 
 template <class R>
-using ToSceneLoops = std::array<void (*)(const ToSceneJob<R>&) noexcept, degree_count>;
+using ToSceneLoops = std::array<void (*)(const ToSceneJob<R>&) noexcept, 2 * degree_count>;
 
-/// By (degree - 3) / 2.
+/// By Data::loop().
 struct PolynomialLoops {
   ToSceneLoops<float> in_float;
   ToSceneLoops<double> in_double;

@@ -11,7 +11,6 @@
 
 #include "core/text.hpp"
 #include "data.hpp"
-#include "horner.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/units.hpp"
 
@@ -39,16 +38,22 @@ void check(int degree, const RayPolynomial::Domain& domain, const std::vector<Ra
   check(where + "film_radius", domain.film_radius, 1 / largest, largest);
   check(where + "pupil_shift", domain.pupil_shift, -largest, largest);
   check(where + "pupil_radius", domain.pupil_radius, 1 / largest, largest);
+  if (domain.along_x) {
+    check(where + "pupil_shift along x", domain.along_x->pupil_shift, -largest, largest);
+    check(where + "pupil_radius along x", domain.along_x->pupil_radius, 1 / largest, largest);
+  }
   check(where + "reference_z", domain.reference_z, -largest, largest);
   if (fits.empty()) throw Error(where + "there are no fits, wanted one for each wavelength");
-  const auto terms = static_cast<std::size_t>(polynomial_detail::term_count((degree - 1) / 2));
+  const std::size_t terms = domain.along_x ? 2 * RayPolynomial::mirror_terms(degree).size()  // along x and y
+                                           : RayPolynomial::terms(degree).size();
   for (std::size_t i = 0; i < fits.size(); ++i) {
     const RayPolynomial::Fit& fit = fits[i];
     const std::string here = where + "fit " + std::to_string(i) + ": ";
     const auto check_all = [&](const char* name, const std::vector<double>& coefficients) {
       if (coefficients.size() != terms) {
         throw Error(here + name + " has " + std::to_string(coefficients.size()) + " numbers, wanted " +
-                    std::to_string(terms) + " for degree " + std::to_string(degree));
+                    std::to_string(terms) + " for degree " + std::to_string(degree) +
+                    (domain.along_x ? " and mirror symmetry" : ""));
       }
       for (std::size_t k = 0; k < terms; ++k) {
         check(here + name + ": number " + std::to_string(k), coefficients[k], -largest, largest);
@@ -75,8 +80,13 @@ std::size_t nearest_to_d(const std::vector<RayPolynomial::Fit>& fits) {
 
 template <class R, class In>
 void round_to(In& in, const RayPolynomial::Domain& domain, const std::vector<RayPolynomial::Fit>& fits) {
-  in.scales = {static_cast<R>(1 / domain.film_radius), static_cast<R>(domain.pupil_shift),
-               static_cast<R>(1 / domain.pupil_radius), static_cast<R>(domain.reference_z)};
+  const auto scales = [](const RayPolynomial::Domain::Section& section) {
+    return typename polynomial_detail::Scales<R>::Section{static_cast<R>(section.pupil_shift),
+                                                          static_cast<R>(1 / section.pupil_radius)};
+  };
+  const auto [along_x, along_y] = polynomial_detail::sections(domain);
+  in.scales = {static_cast<R>(1 / domain.film_radius), static_cast<R>(domain.reference_z), scales(along_x),
+               scales(along_y)};
   for (const RayPolynomial::Fit& fit : fits) {
     for (const auto* c : {&fit.direction_by_film, &fit.direction_by_pupil, &fit.offset_by_film, &fit.offset_by_pupil}) {
       std::transform(c->begin(), c->end(), std::back_inserter(in.coefficients),
@@ -112,6 +122,21 @@ std::vector<RayPolynomial::Term> RayPolynomial::terms(int degree) {
   for (int w = 0; w <= n; ++w) {
     for (int v = 0; v <= n - w; ++v) {
       for (int u = 0; u <= n - w - v; ++u) result.push_back({u, v, w});
+    }
+  }
+  return result;
+}
+
+std::vector<RayPolynomial::MirrorTerm> RayPolynomial::mirror_terms(int degree) {
+  std::vector<MirrorTerm> result;
+  for (const int odd : {0, 1}) {
+    const int n = (degree - 1) / 2 - odd;
+    for (int l = 0; l <= n; ++l) {
+      for (int k = 0; k <= n - l; ++k) {
+        for (int j = 0; j <= n - l - k; ++j) {
+          for (int i = 0; i <= n - l - k - j; ++i) result.push_back({2 * i, 2 * j, 2 * k + odd, 2 * l + odd});
+        }
+      }
     }
   }
   return result;

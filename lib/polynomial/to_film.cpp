@@ -9,19 +9,20 @@
 
 #include "chart.hpp"
 #include "data.hpp"
-#include "horner.hpp"
+#include "sums.hpp"
 
 namespace petzval::inline v0 {
 namespace {
 
+using polynomial_detail::horner;
+using polynomial_detail::OfMirrors;
+using polynomial_detail::OfRevolution;
 using polynomial_detail::SceneLine;
-using polynomial_detail::term_count;
 using Place = Eigen::Vector4d;  // f and p, scaled to the domain
-using Jet = ceres::Jet<double, 3>;
 
 /// One of the sums A f + B p with its derivatives by f and p, by way of those of A and B by u, v and w.
-void add(const Jet& by_film, const Jet& by_pupil, const Place& x, const Eigen::Matrix<double, 3, 4>& invariants,
-         int row, Eigen::Matrix4d& slope, Place& value) noexcept {
+void add(const ceres::Jet<double, 3>& by_film, const ceres::Jet<double, 3>& by_pupil, const Place& x,
+         const Eigen::Matrix<double, 3, 4>& invariants, int row, Eigen::Matrix4d& slope, Place& value) noexcept {
   const Eigen::RowVector4d film_slope = by_film.v.transpose() * invariants;
   const Eigen::RowVector4d pupil_slope = by_pupil.v.transpose() * invariants;
   for (int axis = 0; axis < 2; ++axis) {
@@ -34,15 +35,25 @@ void add(const Jet& by_film, const Jet& by_pupil, const Place& x, const Eigen::M
 
 /// s and o at (f, p), with their derivatives.
 template <int n>
-void evaluate(const double* c, const Place& x, Place& value, Eigen::Matrix4d& slope) noexcept {
+[[gnu::flatten]] void evaluate(OfRevolution<n>, const double* c, const Place& x, Place& value,
+                               Eigen::Matrix4d& slope) noexcept {
+  using Jet = ceres::Jet<double, 3>;
   const Jet u(x[0] * x[0] + x[1] * x[1], 0), v(x[0] * x[2] + x[1] * x[3], 1), w(x[2] * x[2] + x[3] * x[3], 2);
   Eigen::Matrix<double, 3, 4> invariants;
   invariants << 2 * x[0], 2 * x[1], 0, 0, x[2], x[3], x[0], x[1], 0, 0, 2 * x[2], 2 * x[3];
-  constexpr int terms = term_count(n);
-  add(polynomial_detail::horner<n>(c, u, v, w), polynomial_detail::horner<n>(c + terms, u, v, w), x, invariants, 0,
-      slope, value);
-  add(polynomial_detail::horner<n>(c + 2 * terms, u, v, w), polynomial_detail::horner<n>(c + 3 * terms, u, v, w), x,
-      invariants, 2, slope, value);
+  constexpr int terms = OfRevolution<n>::terms;
+  add(horner<n>(c, w, v, u), horner<n>(c + terms, w, v, u), x, invariants, 0, slope, value);
+  add(horner<n>(c + 2 * terms, w, v, u), horner<n>(c + 3 * terms, w, v, u), x, invariants, 2, slope, value);
+}
+
+template <int n>
+[[gnu::flatten]] void evaluate(OfMirrors<n>, const double* c, const Place& x, Place& value,
+                               Eigen::Matrix4d& slope) noexcept {
+  using Jet = ceres::Jet<double, 4>;
+  const polynomial_detail::FilmAndPupil<Jet> at{Jet(x[0], 0), Jet(x[1], 1), Jet(x[2], 2), Jet(x[3], 3)};
+  const auto [sx, sy, ox, oy] = OfMirrors<n>::sums(c, at);
+  value << sx.a, sy.a, ox.a, oy.a;
+  slope << sx.v.transpose(), sy.v.transpose(), ox.v.transpose(), oy.v.transpose();
 }
 
 bool within(const Place& x, double square) noexcept {
@@ -51,13 +62,13 @@ bool within(const Place& x, double square) noexcept {
 
 /// Newton's iteration. False if a step is more than half the one before, since it may then go to another branch of the
 /// polynomial, and if it leaves the neighbourhood of the domain.
-template <int n>
+template <class Symmetry>
 bool correct(const double* c, const Place& wanted, Place& x) noexcept {
   constexpr double far = 2, settled = 1e-12, rounding = 1e-9;
   Place value;
   Eigen::Matrix4d slope;
   for (double last = std::numeric_limits<double>::infinity();;) {
-    evaluate<n>(c, x, value, slope);
+    evaluate(Symmetry{}, c, x, value, slope);
     const Place move = slope.partialPivLu().solve(wanted - value);
     const double length = move.norm();
     x += move;
@@ -68,34 +79,52 @@ bool correct(const double* c, const Place& wanted, Place& x) noexcept {
   }
 }
 
-/// The film point whose line through the centre of the pupil has the direction of a given line, or the nearest one.
-template <int n>
-Place chief(const double* c, const SceneLine& line) noexcept {
+/// The height on the film, along one axis, whose line through the centre of the pupil has a slope `s` (of the chart),
+/// or the nearest one. slope: by height, over that height.
+template <class Slope>
+double chief_height(double s, const Slope& slope) noexcept {
   constexpr int halvings = 12;
-  const double length = std::hypot(line.sx, line.sy), sign = c[0] < 0 ? -1 : 1;
+  const double length = std::abs(s), sign = slope(0) < 0 ? -1 : 1;
   double low = 0, high = 1;
   for (int i = 0; i < halvings; ++i) {
     const double middle = (low + high) / 2;
-    (sign * middle * polynomial_detail::along_u<n>(c, middle * middle) < length ? low : high) = middle;
+    (sign * middle * slope(middle) < length ? low : high) = middle;
   }
-  const double part = length > 0 ? sign * high / length : 0;
+  return std::copysign(high, sign * s);
+}
+
+/// The film point whose line through the centre of the pupil has about the direction of a given line.
+template <int n>
+Place chief(OfRevolution<n>, const double* c, const SceneLine& line) noexcept {
+  const double length = std::hypot(line.sx, line.sy);
+  if (!(length > 0)) return Place::Zero();
+  const double part = chief_height(length, [c](double h) { return horner<n>(c, h * h); }) / length;
   return {part * line.sx, part * line.sy, 0, 0};
+}
+
+template <int n>
+Place chief(OfMirrors<n>, const double* c, const SceneLine& line) noexcept {
+  // As if each section were alone; together they may lie beyond the film.
+  const double x = chief_height(line.sx, [c](double h) { return horner<n>(c, h * h); });
+  const double y = chief_height(line.sy, [c](double h) { return horner<n>(c + OfMirrors<n>::terms, h * h); });
+  const double within = std::max(std::hypot(x, y), 1.0);
+  return {x / within, y / within, 0, 0};
 }
 
 /// The (f, p) of a line; false if there is none in the domain. Starts at a line of about the same direction and goes on
 /// over lines in between, in steps that the iteration can follow: mostly one, several for a fisheye.
-template <int n>
+template <class Symmetry>
 bool solve(const double* c, const SceneLine& line, Place& x) noexcept {
   const Place wanted(line.sx, line.sy, line.ox, line.oy);
-  x = chief<n>(c, line);
+  x = chief(Symmetry{}, c, line);
   Place first;
   Eigen::Matrix4d slope;
-  evaluate<n>(c, x, first, slope);
+  evaluate(Symmetry{}, c, x, first, slope);
   double left = 1, step = 1;
   while (left > 0) {
     const double next = std::max(left - step, 0.0);
     Place there = x;
-    if (correct<n>(c, wanted + next * (first - wanted), there)) {
+    if (correct<Symmetry>(c, wanted + next * (first - wanted), there)) {
       x = there;
       left = next;
       step *= 2;
@@ -107,7 +136,8 @@ bool solve(const double* c, const SceneLine& line, Place& x) noexcept {
 }
 
 using Solve = bool (*)(const double*, const SceneLine&, Place&) noexcept;
-constexpr std::array<Solve, polynomial_detail::degree_count> solvers{solve<1>, solve<2>, solve<3>, solve<4>, solve<5>};
+constexpr auto solvers =
+    polynomial_detail::by_symmetry_and_degree([]<class Symmetry>(Symmetry) -> Solve { return solve<Symmetry>; });
 
 }  // namespace
 
@@ -115,6 +145,7 @@ void RayPolynomial::to_film(std::size_t count, const RayArrays<const double>& ra
                             const TwoPlaneRays<double>& lines, RayFate* fates) const noexcept {
   const Solve solve = solvers[data_->loop()];
   const Domain& domain = data_->domain;
+  const auto [along_x, along_y] = polynomial_detail::sections(domain);
   for (std::size_t i = 0; i < count; ++i) {
     const Vec3<double> direction(-rays.dx[i], -rays.dy[i], -rays.dz[i]);
     const Vec3<double> point(rays.x[i], rays.y[i], rays.z[i] - domain.reference_z);
@@ -127,8 +158,8 @@ void RayPolynomial::to_film(std::size_t count, const RayArrays<const double>& ra
     if (!found) x.setZero();
     lines.film_x[i] = x[0] * domain.film_radius;
     lines.film_y[i] = x[1] * domain.film_radius;
-    lines.pupil_x[i] = x[2] * domain.pupil_radius + domain.pupil_shift * lines.film_x[i];
-    lines.pupil_y[i] = x[3] * domain.pupil_radius + domain.pupil_shift * lines.film_y[i];
+    lines.pupil_x[i] = x[2] * along_x.pupil_radius + along_x.pupil_shift * lines.film_x[i];
+    lines.pupil_y[i] = x[3] * along_y.pupil_radius + along_y.pupil_shift * lines.film_y[i];
     fates[i] = found ? RayFate::transmitted : RayFate::outside_fit;
   }
 }

@@ -5,8 +5,8 @@
 #include <cstdint>
 
 #include "core/simd.hpp"
-#include "horner.hpp"
 #include "loops.hpp"
+#include "sums.hpp"
 
 namespace petzval::inline v0::polynomial_detail {
 namespace {
@@ -14,26 +14,18 @@ namespace {
 using core_detail::lane_count;
 using core_detail::Native;
 
-/// A, B, C and D of some lanes.
 template <class R>
-struct Sums {
-  typename Native<R>::Values a{}, b{}, by_film{}, by_pupil{};
-};
+using Place = FilmAndPupil<typename Native<R>::Values>;
+template <class R>
+using Sums = FourSums<typename Native<R>::Values>;
 
-/// The sums at one wavelength.
-template <int n, class R, class Values>
-PETZVAL_INLINE Sums<R> sums(const R* c, const Values& u, const Values& v, const Values& w) noexcept {
-  constexpr int terms = term_count(n);
-  return {horner<n>(c, u, v, w), horner<n>(c + terms, u, v, w), horner<n>(c + 2 * terms, u, v, w),
-          horner<n>(c + 3 * terms, u, v, w)};
-}
+static_assert(OfMirrors<degree_count>::coefficients == most_coefficients);
 
-/// The same for a wavelength for each lane: all lanes are evaluated at each wavelength that occurs, smallest first, and
+/// The sums for a wavelength for each lane: all lanes are evaluated at each wavelength that occurs, smallest first, and
 /// the lanes of that wavelength are kept. known: the lanes whose wavelength has a fit.
-template <int n, class R, class Values>
+template <class Symmetry, class R>
 PETZVAL_INLINE Sums<R> mixed_sums(const ToSceneJob<R>& job, const std::uint16_t* each, std::size_t count,
-                                  const Values& u, const Values& v, const Values& w,
-                                  typename Native<R>::Bits& known) noexcept {
+                                  const Place<R>& place, typename Native<R>::Bits& known) noexcept {
   using Bit = typename Native<R>::Bit;
   constexpr std::size_t lanes = lane_count<R>;
   constexpr Bit none = 1 << 16;
@@ -48,22 +40,22 @@ PETZVAL_INLINE Sums<R> mixed_sums(const ToSceneJob<R>& job, const std::uint16_t*
   typename Native<R>::Bits owns;
   __builtin_memcpy(&owns, own, sizeof owns);
   known = owns < fits;
-  Sums<R> result;
+  Sums<R> result{};
   for (Bit at = next(-1); at < fits; at = next(at)) {
     const auto theirs = owns == at;
-    const Sums<R> found = sums<n, R>(job.coefficients + 4 * term_count(n) * at, u, v, w);
-    result.a = theirs ? found.a : result.a;
-    result.b = theirs ? found.b : result.b;
-    result.by_film = theirs ? found.by_film : result.by_film;
-    result.by_pupil = theirs ? found.by_pupil : result.by_pupil;
+    const Sums<R> found = Symmetry::sums(job.coefficients + Symmetry::coefficients * at, place);
+    result.first = theirs ? found.first : result.first;
+    result.second = theirs ? found.second : result.second;
+    result.third = theirs ? found.third : result.third;
+    result.fourth = theirs ? found.fourth : result.fourth;
   }
   return result;
 }
 
 /// The same for lanes between the wavelengths of fits: every fit that has a weight in a lane is evaluated for all.
-template <int n, class R, class Values>
-PETZVAL_INLINE Sums<R> blended_sums(const ToSceneJob<R>& job, std::size_t o, std::size_t count, const Values& u,
-                                    const Values& v, const Values& w, typename Native<R>::Bits& known) noexcept {
+template <class Symmetry, class R>
+PETZVAL_INLINE Sums<R> blended_sums(const ToSceneJob<R>& job, std::size_t o, std::size_t count, const Place<R>& place,
+                                    typename Native<R>::Bits& known) noexcept {
   using Bit = typename Native<R>::Bit;
   constexpr std::size_t lanes = lane_count<R>;
   constexpr Bit each = 4;
@@ -77,7 +69,7 @@ PETZVAL_INLINE Sums<R> blended_sums(const ToSceneJob<R>& job, std::size_t o, std
   typename Native<R>::Bits from;
   __builtin_memcpy(&from, first, sizeof from);
   known = from >= 0;
-  Sums<R> result;
+  Sums<R> result{};
   for (Bit rank = lowest; rank < highest + each && rank < static_cast<Bit>(job.fits); ++rank) {
     R weights[lanes];
     bool any = false;
@@ -88,19 +80,19 @@ PETZVAL_INLINE Sums<R> blended_sums(const ToSceneJob<R>& job, std::size_t o, std
       any |= weights[l] != R(0);
     }
     if (!any) continue;
-    Values weight;
+    typename Native<R>::Values weight;
     __builtin_memcpy(&weight, weights, sizeof weight);
-    const Sums<R> found = sums<n, R>(job.coefficients + 4 * term_count(n) * mixed.positions[rank], u, v, w);
-    result.a += weight * found.a;
-    result.b += weight * found.b;
-    result.by_film += weight * found.by_film;
-    result.by_pupil += weight * found.by_pupil;
+    const Sums<R> found = Symmetry::sums(job.coefficients + Symmetry::coefficients * mixed.positions[rank], place);
+    result.first += weight * found.first;
+    result.second += weight * found.second;
+    result.third += weight * found.third;
+    result.fourth += weight * found.fourth;
   }
   return result;
 }
 
 /// `count` rays, at most as many as there are lanes.
-template <int n, class R>
+template <class Symmetry, class R>
 PETZVAL_INLINE void map_lanes(const ToSceneJob<R>& job, std::size_t o, std::size_t count) noexcept {
   using Values = typename Native<R>::Values;
   const auto load = [&](const R* from) {
@@ -111,29 +103,27 @@ PETZVAL_INLINE void map_lanes(const ToSceneJob<R>& job, std::size_t o, std::size
   const Scales<R>& scales = job.scales;
   const Values film_x = load(job.lines.film_x), film_y = load(job.lines.film_y);
   const Values fx = film_x * scales.per_film_radius, fy = film_y * scales.per_film_radius;
-  const Values px = (load(job.lines.pupil_x) - scales.pupil_shift * film_x) * scales.per_pupil_radius;
-  const Values py = (load(job.lines.pupil_y) - scales.pupil_shift * film_y) * scales.per_pupil_radius;
-  const Values u = fx * fx + fy * fy, v = fx * px + fy * py, w = px * px + py * py;
-  typename Native<R>::Bits inside = (u <= static_cast<R>(within_domain)) & (w <= static_cast<R>(within_domain));
+  const Values px = (load(job.lines.pupil_x) - scales.along_x.pupil_shift * film_x) * scales.along_x.per_pupil_radius;
+  const Values py = (load(job.lines.pupil_y) - scales.along_y.pupil_shift * film_y) * scales.along_y.per_pupil_radius;
+  const Place<R> place{fx, fy, px, py};
+  typename Native<R>::Bits inside =
+      (fx * fx + fy * fy <= static_cast<R>(within_domain)) & (px * px + py * py <= static_cast<R>(within_domain));
 
-  Sums<R> polynomials;
+  Sums<R> sums{};
   if (job.mixed.first) {
     typename Native<R>::Bits known;
-    polynomials = blended_sums<n, R>(job, o, count, u, v, w, known);
+    sums = blended_sums<Symmetry, R>(job, o, count, place, known);
     inside &= known;
   } else if (job.wavelengths.each) {
     typename Native<R>::Bits known;
-    polynomials = mixed_sums<n, R>(job, job.wavelengths.each + o, count, u, v, w, known);
+    sums = mixed_sums<Symmetry, R>(job, job.wavelengths.each + o, count, place, known);
     inside &= known;
   } else if (const std::size_t all = job.wavelengths.all.position(job.primary); all < job.fits) {
-    const auto skipped = static_cast<std::ptrdiff_t>(all) * 4 * term_count(n);
-    polynomials = sums<n, R>(job.coefficients + skipped, u, v, w);
+    sums = Symmetry::sums(job.coefficients + static_cast<std::ptrdiff_t>(all) * Symmetry::coefficients, place);
   } else {
     inside = inside != inside;
   }
-  const auto& [a, b, by_film, by_pupil] = polynomials;
-  const Values sx = a * fx + b * px, sy = a * fy + b * py;
-  const Values ox = by_film * fx + by_pupil * px, oy = by_film * fy + by_pupil * py;
+  const auto [sx, sy, ox, oy] = Symmetry::line(sums, place);
 
   // Out of the chart (chart.hpp).
   const Values square = sx * sx + sy * sy;
@@ -156,16 +146,18 @@ PETZVAL_INLINE void map_lanes(const ToSceneJob<R>& job, std::size_t o, std::size
   __builtin_memcpy(job.fates + o, &fates, count);
 }
 
-template <int n, class R>
+template <class Symmetry, class R>
 void to_scene(const ToSceneJob<R>& job) noexcept {
   constexpr std::size_t lanes = lane_count<R>;
   std::size_t o = 0;
-  for (; o + lanes <= job.count; o += lanes) map_lanes<n>(job, o, lanes);
-  if (o < job.count) map_lanes<n>(job, o, job.count - o);
+  for (; o + lanes <= job.count; o += lanes) map_lanes<Symmetry>(job, o, lanes);
+  if (o < job.count) map_lanes<Symmetry>(job, o, job.count - o);
 }
 
 template <class R>
-constexpr ToSceneLoops<R> loops{to_scene<1, R>, to_scene<2, R>, to_scene<3, R>, to_scene<4, R>, to_scene<5, R>};
+constexpr ToSceneLoops<R> loops = by_symmetry_and_degree([]<class Symmetry>(Symmetry) {
+  return to_scene<Symmetry, R>;
+});
 
 }  // namespace
 

@@ -258,7 +258,7 @@ TEST(ChooseModel, LeavesOutWhatCannotBeBuilt) {
   const Lens lens = focused("anamorphic_60mm_2x", 5000);
   const ModelChoice choice =
       choose_model(lens, {.near_mm = 3000, .film = {.width_mm = 20, .height_mm = 13}}, {.max_px = 4});
-  EXPECT_EQ(choice.model, ModelKind::exact_float);
+  EXPECT_EQ(choice.model, ModelKind::polynomial_7);
   EXPECT_TRUE(candidate_of(choice, ModelKind::thick).available);
   EXPECT_FALSE(candidate_of(choice, ModelKind::thin_two_disc).available);
   EXPECT_FALSE(candidate_of(choice, ModelKind::thin_two_disc).inside);

@@ -117,6 +117,7 @@ INSTANTIATE_TEST_SUITE_P(
                       Case{"double_gauss_100mm_f2_28deg", film, ModelKind::polynomial_9, 1e-5},
                       Case{"fisheye_10mm_f4", {.width_mm = 24, .height_mm = 16}, ModelKind::exact_double, 1e-5},
                       Case{"eye_gullstrand_le_grand", small, ModelKind::exact_double, 1e-5},
+                      Case{"anamorphic_60mm_2x", film, ModelKind::polynomial_5, 2e-5},
                       Case{"anamorphic_60mm_2x", film, ModelKind::exact_double, 1e-5}));
 
 TEST(Importance, OfAPinholeIsThatOfTheThickLensInOnePoint) {

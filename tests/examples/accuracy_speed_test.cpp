@@ -80,9 +80,10 @@ TEST_F(AccuracySpeed, SkipsWhatCylindersDoNotHave) {
   const auto outcome = run("accuracy_speed", {lens("anamorphic_60mm_2x"), "--film-mm", "20x13", "--json"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const auto rows = nlohmann::json::parse(outcome.out);
-  ASSERT_EQ(rows.size(), 4u);
+  ASSERT_EQ(rows.size(), 9u);
   EXPECT_EQ(rows[1]["model"], "thick");
-  EXPECT_EQ(rows[2]["model"], "exact_float");
+  EXPECT_EQ(rows[2]["model"], "polynomial_3");
+  EXPECT_EQ(rows[7]["model"], "exact_float");
   EXPECT_NE(outcome.err.find("note: no thin_two_disc: "), std::string::npos) << outcome.err;
 }
 

@@ -16,18 +16,21 @@ namespace {
 
 using testing::message;
 
-RayPolynomial polynomial(int degree, std::size_t wavelengths) {
-  const RayPolynomial::Domain domain{.space = {.film_z = 100.1, .pupil_z = -20.25},
-                                     .film_radius = 21.6,
-                                     .pupil_shift = -0.1,
-                                     .pupil_radius = 1.0 / 3,
-                                     .reference_z = 1e-5};
+RayPolynomial polynomial(int degree, std::size_t wavelengths, bool mirrors = false) {
+  RayPolynomial::Domain domain{.space = {.film_z = 100.1, .pupil_z = -20.25},
+                               .film_radius = 21.6,
+                               .pupil_shift = -0.1,
+                               .pupil_radius = 1.0 / 3,
+                               .reference_z = 1e-5};
+  if (mirrors) domain.along_x = {0.3, 1.0 / 7};
+  const std::size_t terms =
+      mirrors ? 2 * RayPolynomial::mirror_terms(degree).size() : RayPolynomial::terms(degree).size();
   std::vector<RayPolynomial::Fit> fits(wavelengths);
   double x = 0.1;
   for (RayPolynomial::Fit& fit : fits) {
     fit = {.wavelength_nm = 400 + x, .rms_rad = 1e-7 * x, .max_rad = 3e-7 * x, .rms_mm = 1e-5, .max_mm = 0};
     for (auto* list : {&fit.direction_by_film, &fit.direction_by_pupil, &fit.offset_by_film, &fit.offset_by_pupil}) {
-      for (std::size_t k = 0; k < RayPolynomial::terms(degree).size(); ++k) {
+      for (std::size_t k = 0; k < terms; ++k) {
         x = std::fmod(3.7 * x * (1 - x) + 1e-3, 1);
         list->push_back(std::pow(x - 0.5, 7) * (k % 5 == 0 ? 1e9 : 1));
       }
@@ -55,8 +58,9 @@ std::string why(const std::string& text) {
 
 TEST(RayPolynomialJson, ReadsBackTheSameNumbersAndWritesTheSameBytes) {
   const auto file = std::filesystem::path(::testing::TempDir()) / "ray_polynomial_json_test.json";
-  for (int degree = 3; degree <= 11; degree += 2) {
-    const RayPolynomial written = polynomial(degree, 3);
+  for (const int n : {3, 5, 7, 9, 11, -3, -7, -11}) {  // negative: with mirror symmetry
+    const int degree = std::abs(n);
+    const RayPolynomial written = polynomial(degree, 3, n < 0);
     write_ray_polynomial(written, file);
     const std::string text = bytes(file);
     const RayPolynomial read = read_ray_polynomial(file);
@@ -71,6 +75,11 @@ TEST(RayPolynomialJson, ReadsBackTheSameNumbersAndWritesTheSameBytes) {
     EXPECT_EQ(a.pupil_shift, b.pupil_shift);
     EXPECT_EQ(a.pupil_radius, b.pupil_radius);
     EXPECT_EQ(a.reference_z, b.reference_z);
+    ASSERT_EQ(a.along_x.has_value(), n < 0);
+    if (n < 0) {
+      EXPECT_EQ(a.along_x->pupil_shift, b.along_x->pupil_shift);
+      EXPECT_EQ(a.along_x->pupil_radius, b.along_x->pupil_radius);
+    }
     ASSERT_EQ(read.fits().size(), 3u);
     for (std::size_t i = 0; i < 3; ++i) {
       const auto &c = read.fits()[i], &d = written.fits()[i];
@@ -100,7 +109,11 @@ TEST(RayPolynomialJson, SaysWhatIsWrongAndWhere) {
             "x.json: polynomial: fit 0: direction_by_film has 4 numbers, wanted 10 for degree 5");
   EXPECT_EQ(why(with("\"degree\": 3", "\"power\": 3")),
             "x.json: key \"power\" is unknown, wanted one of format, film_z_mm, pupil_z_mm, film_radius_mm, "
-            "pupil_shift, pupil_radius_mm, reference_z_mm, degree, fits");
+            "pupil_shift, pupil_radius_mm, reference_z_mm, pupil_shift_x, pupil_radius_x_mm, degree, fits");
+  EXPECT_EQ(why(with("\"degree\": 3", "\"pupil_shift_x\": 0.0, \"degree\": 3")),
+            "x.json: key \"pupil_radius_x_mm\" is missing");
+  EXPECT_EQ(why(with("\"degree\": 3", "\"pupil_shift_x\": 0.0, \"pupil_radius_x_mm\": 2.0, \"degree\": 3")),
+            "x.json: polynomial: fit 0: direction_by_film has 4 numbers, wanted 12 for degree 3 and mirror symmetry");
   EXPECT_EQ(why(with("\"degree\": 3", "\"degree\": 3, \"degree\": 3")),
             "x.json: key \"degree\" is given twice, wanted once");
   EXPECT_EQ(why(with("\"degree\": 3", "\"degree\": [3]")), "x.json: degree is a list, wanted a plain value");
@@ -135,9 +148,9 @@ TEST(RayPolynomialJson, SaysWhatIsWrongAndWhere) {
 
 TEST(RayPolynomialJson, EndsWhereFilesAreTooLarge) {
   std::string numbers;
-  for (int i = 0; i < 100; ++i) numbers += "1.0, ";
+  for (int i = 0; i < 400; ++i) numbers += "1.0, ";
   EXPECT_EQ(why(with("\"offset_by_film\": [", "\"offset_by_film\": [" + numbers)),
-            "x.json: fit 1: offset_by_film has more than 56 numbers, wanted a polynomial of degree 11 or less");
+            "x.json: fit 1: offset_by_film has more than 392 numbers, wanted a polynomial of degree 11 or less");
   EXPECT_NE(why(std::string(1'000'000, '[')).find("wanted an object"), std::string::npos);
   std::string one = format_ray_polynomial(polynomial(3, 1));
   const auto from = one.rfind("    {"), to = one.rfind("\n  ]");

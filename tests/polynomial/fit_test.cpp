@@ -7,6 +7,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
+#include <numbers>
 #include <random>
 #include <string>
 #include <vector>
@@ -33,11 +34,13 @@ struct Case {
   std::string id;
   double f_number, film_radius;  ///< 0: wide open
 };
-const std::array<Case, 5> cases{{{"double_gauss_100mm_f2.0", 0, 40},
+const std::array<Case, 7> cases{{{"double_gauss_100mm_f2.0", 0, 40},
                                  {"double_gauss_100mm_f2.0", 4, 40},
                                  {"fisheye_6.3mm_f2.8", 0, 11.7},
                                  {"compact_31mm_f2.1", 0, 13.6},
-                                 {"catadioptric_maksutov_1280mm_f14.4", 0, 5.6}}};
+                                 {"catadioptric_maksutov_1280mm_f14.4", 0, 5.6},
+                                 {"anamorphic_60mm_2x", 0, 14.4},
+                                 {"anamorphic_60mm_2x", 8, 14.4}}};
 
 Lens lens_of(const Case& c) {
   const Lens lens = data_lens(c.id);
@@ -104,7 +107,10 @@ TEST(PolynomialFit, ErrorsFallWithTheDegreeAndAreWhatIsStated) {
       EXPECT_NEAR(found.rms_mm, fit.rms_mm, 0.1 * fit.rms_mm);
       EXPECT_LT(found.max_rad, fit.max_rad);
       EXPECT_LT(found.max_mm, fit.max_mm);
-      EXPECT_GT(found.max_rad, 0.6 * fit.max_rad);
+      // With cylinders the worst points of the film are few: TheLargestErrorsHoldToTheCornerOfTheFilm.
+      if (lens.rotationally_symmetric()) {
+        EXPECT_GT(found.max_rad, 0.6 * fit.max_rad);
+      }
       EXPECT_LT(found.rms_rad, last / 2.5);
       last = found.rms_rad;
     }
@@ -123,7 +129,9 @@ TEST(PolynomialFit, TheLargestErrorsHoldToTheCornerOfTheFilm) {
         Focused{"fisheye_6.3mm_f2.8", 0, 3000, 11.7}, Focused{"biogon_35mm_f2.8", 0, 3000, 21.63},
         Focused{"tessar_100mm_f2.8", 4, 1000, 21.63}, Focused{"modern_41mm_f1.45", 0, 3000, 21.63},
         Focused{"zoom_14-30mm_f4_wide", 0, 1000, 21.63}, Focused{"compact_31mm_f2.1", 0, 3000, 13.6},
-        Focused{"phone_5.6mm_f3.5", 0, 1000, 3.5}}) {
+        Focused{"phone_5.6mm_f3.5", 0, 1000, 3.5}, Focused{"anamorphic_60mm_2x", 0, 3000, 14.4},
+        Focused{"anamorphic_60mm_2x", 4, 3000, 14.4}, Focused{"anamorphic_60mm_2x", 16, 700, 10},
+        Focused{"cylinder_3.9mm", 0, 300, 1}, Focused{"cylinder_3.9mm", 4, 300, 1}}) {
     const Lens whole = data_lens(id);
     const Lens lens = with_focus(f_number > 0 ? with_f_number(whole, f_number) : whole, distance);
     const FilmPupilTable pupils = FilmPupilTable::equal_area(lens, film_radius);
@@ -131,8 +139,10 @@ TEST(PolynomialFit, TheLargestErrorsHoldToTheCornerOfTheFilm) {
     std::mt19937 random(6);
     std::uniform_real_distribution<double> one(0, 1);
     for (int i = 0; i < 10000; ++i) {
-      const PupilSample at = pupils.sample({0, film_radius}, one(random), i % 2 == 0 ? 1 : one(random));
-      lines.add(0, film_radius, at.x, at.y);
+      const double turn = lens.rotationally_symmetric() ? 0 : 2 * std::numbers::pi * one(random);
+      const FilmPoint corner{film_radius * std::sin(turn), film_radius * std::cos(turn)};
+      const PupilSample at = pupils.sample(corner, one(random), i % 2 == 0 ? 1 : one(random));
+      if (at.area > 0) lines.add(corner.x, corner.y, at.x, at.y);
     }
     for (int degree = 3; degree <= 11; degree += 2) {
       SCOPED_TRACE(std::string(id) + " by degree " + std::to_string(degree));
@@ -141,7 +151,27 @@ TEST(PolynomialFit, TheLargestErrorsHoldToTheCornerOfTheFilm) {
       const Errors found = errors(lens, polynomial, rays.through(polynomial), lines);
       EXPECT_LT(found.max_rad, polynomial.fits()[0].max_rad);
       EXPECT_LT(found.max_mm, polynomial.fits()[0].max_mm);
+      EXPECT_GT(found.max_rad, 0.6 * polynomial.fits()[0].max_rad);
     }
+  }
+}
+
+// A cylinder so weak that its sections do not differ.
+TEST(PolynomialFit, OfALensOfRevolutionIsAsGoodWithMirrorSymmetry) {
+  Prescription prescription = data_prescription("double_gauss_100mm_f2.0");
+  const Lens lens = compile(prescription);
+  SurfaceRow weak = {.radius = 1e12, .thickness = 0.01, .curved_in = Section::x};
+  weak.semi_diameter = 1.1 * *prescription.surfaces[0].semi_diameter;
+  prescription.surfaces.insert(prescription.surfaces.begin(), weak);
+  const Lens mirrors = compile(prescription);
+  ASSERT_FALSE(mirrors.rotationally_symmetric());
+  const FilmPupilTable pupils = FilmPupilTable::equal_area(lens, 40), own = FilmPupilTable::equal_area(mirrors, 40);
+  for (int degree = 3; degree <= 11; degree += 2) {
+    const RayPolynomial wanted = RayPolynomial::fit(lens, pupils, degree),
+                        found = RayPolynomial::fit(mirrors, own, degree);
+    ASSERT_TRUE(found.domain().along_x.has_value());
+    EXPECT_NEAR(found.fits()[0].rms_rad, wanted.fits()[0].rms_rad, 0.1 * wanted.fits()[0].rms_rad) << degree;
+    EXPECT_LT(found.fits()[0].max_rad, 1.4 * wanted.fits()[0].max_rad) << degree;
   }
 }
 
@@ -157,6 +187,19 @@ TEST(PolynomialFit, DoubleGaussIsAsGoodAsKnown) {
     for (int degree = 3; degree <= 11; degree += 2) {
       const RayPolynomial polynomial = RayPolynomial::fit(lens, pupils, degree);
       EXPECT_LT(1e3 * focal_length * polynomial.fits()[0].rms_rad, limits[k][static_cast<std::size_t>(degree - 3) / 2]);
+    }
+  }
+}
+
+TEST(PolynomialFit, AnamorphicIsAsGoodAsStated) {
+  const std::array<std::array<double, 5>, 2> limits{{{42, 7.5, 1.6, 0.33, 0.071}, {34, 3.1, 0.32, 0.034, 0.004}}};
+  for (std::size_t k = 0; k < limits.size(); ++k) {
+    const Case& c = cases[5 + k];
+    const Lens lens = lens_of(c);
+    const FilmPupilTable pupils = FilmPupilTable::equal_area(lens, c.film_radius);
+    for (int degree = 3; degree <= 11; degree += 2) {
+      const RayPolynomial polynomial = RayPolynomial::fit(lens, pupils, degree);
+      EXPECT_LT(1e3 * 60.55 * polynomial.fits()[0].rms_rad, limits[k][static_cast<std::size_t>(degree - 3) / 2]);
     }
   }
 }
@@ -261,10 +304,6 @@ TEST(PolynomialFit, SaysWhyThereIsNone) {
   EXPECT_EQ(why(lens, pupils, 6), where + "degree is 6, wanted 3, 5, 7, 9 or 11");
   EXPECT_EQ(why(lens, FilmPupilTable::equal_area(lens, 0), 5),
             where + "the film's radius is 0, wanted more than one point");
-  const Lens cylinder = data_lens("anamorphic_60mm_2x");
-  EXPECT_EQ(why(cylinder, pupils, 5), cylinder.name() +
-                                          ": polynomial: the lens has surfaces that are curved in one section only, "
-                                          "wanted a lens of revolution");
   const GlassCatalogue glasses = GlassCatalogue::load(std::filesystem::path(PETZVAL_TEST_DATA) / "glass");
   const std::array<double, 2> nm{656.2725, 486.1327};
   const Lens coloured = compile(data_prescription("double_gauss_100mm_f2_28deg"), nm, {.glasses = &glasses});

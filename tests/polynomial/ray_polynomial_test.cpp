@@ -3,12 +3,16 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <cstdlib>
 #include <functional>
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 #include <limits>
 #include <numbers>
+#include <optional>
+#include <set>
 #include <string>
 
 #include "../message.hpp"
@@ -20,17 +24,23 @@ namespace {
 using testing::Lines;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-RayPolynomial::Domain domain() {
+using Section = RayPolynomial::Domain::Section;
+
+RayPolynomial::Domain domain(bool mirrors = false) {
   return {.space = {.film_z = 100, .pupil_z = 20},
           .film_radius = 20,
           .pupil_shift = 0.25,
           .pupil_radius = 10,
-          .reference_z = 30};
+          .reference_z = 30,
+          .along_x = mirrors ? std::optional(Section{-0.1, 14}) : std::nullopt};
 }
 
-/// s = slope f + 0.05 p, o = 0.5 f + 8 p, and some higher terms.
-RayPolynomial::Fit numbers(int degree, double slope, double higher = 0, double nm = 587.5618) {
-  const std::size_t count = RayPolynomial::terms(degree).size();
+Section along_x(const RayPolynomial::Domain& d) { return d.along_x.value_or(Section{d.pupil_shift, d.pupil_radius}); }
+
+/// s = slope f + 0.05 p, o = 0.5 f + 8 p, and some higher terms; with mirror symmetry the slope along x is 0.8 of it.
+RayPolynomial::Fit numbers(int degree, double slope, double higher = 0, double nm = 587.5618, bool mirrors = false) {
+  const std::size_t each = mirrors ? RayPolynomial::mirror_terms(degree).size() : 0;
+  const std::size_t count = mirrors ? 2 * each : RayPolynomial::terms(degree).size();
   RayPolynomial::Fit fit;
   fit.wavelength_nm = nm;
   for (auto* list : {&fit.direction_by_film, &fit.direction_by_pupil, &fit.offset_by_film, &fit.offset_by_pupil}) {
@@ -40,19 +50,25 @@ RayPolynomial::Fit numbers(int degree, double slope, double higher = 0, double n
   }
   fit.direction_by_film[0] = slope, fit.direction_by_pupil[0] = 0.05;
   fit.offset_by_film[0] = 0.5, fit.offset_by_pupil[0] = 8;
+  if (mirrors) {
+    fit.direction_by_film[0] *= 0.8;
+    fit.direction_by_film[each] = slope, fit.direction_by_pupil[each] = 0.05;
+    fit.offset_by_film[each] = 0.5, fit.offset_by_pupil[each] = 8;
+  }
   return fit;
 }
 
 /// Lines all over the domain, edges and middle among them.
 template <class T>
-Lines<T> all_over() {
+Lines<T> all_over(bool mirrors = false) {
   Lines<T> lines;
-  const auto d = domain();
+  const auto d = domain(mirrors);
+  const auto [shift_x, radius_x] = along_x(d);
   for (const double r : {0.0, 0.3, 0.7, 1.0}) {
     for (const double q : {0.0, 0.5, 1.0}) {
       for (int k = 0; k < 12; ++k) {
         const double x = r * d.film_radius * std::sin(k * 0.7), y = r * d.film_radius * std::cos(k * 0.7);
-        lines.add(x, y, d.pupil_shift * x + q * d.pupil_radius * std::sin(k * 1.9),
+        lines.add(x, y, shift_x * x + q * radius_x * std::sin(k * 1.9),
                   d.pupil_shift * y + q * d.pupil_radius * std::cos(k * 1.9));
       }
     }
@@ -74,27 +90,69 @@ TEST(RayPolynomial, TermsAreAllOfTheDegree) {
   }
 }
 
+// Half of the monomials in fx, px, fy and py that are odd in the first two together and even in the others: those with
+// fx or with px split off.
+TEST(RayPolynomial, MirrorTermsAreAllOfTheDegree) {
+  for (int degree = 3; degree <= 11; degree += 2) {
+    const auto terms = RayPolynomial::mirror_terms(degree);
+    std::set<std::array<int, 4>> monomials;
+    for (const auto& t : terms) {
+      EXPECT_LE(t.film + t.pupil + t.other_film + t.other_pupil, degree - 1);
+      monomials.insert({t.film + 1, t.pupil, t.other_film, t.other_pupil});
+      monomials.insert({t.film, t.pupil + 1, t.other_film, t.other_pupil});
+    }
+    std::size_t all = 0;
+    for (int a = 0; a <= degree; ++a) {
+      for (int b = 0; a + b <= degree; ++b) {
+        for (int c = 0; a + b + c <= degree; ++c) {
+          for (int d = 0; a + b + c + d <= degree; ++d) {
+            if ((a + b) % 2 == 0 || (c + d) % 2 == 1) continue;
+            ++all;
+            EXPECT_TRUE(monomials.contains({a, b, c, d})) << a << b << c << d;
+          }
+        }
+      }
+    }
+    EXPECT_EQ(monomials.size(), all);
+    EXPECT_EQ(2 * terms.size(), all);
+  }
+}
+
 TEST(RayPolynomial, AddsTheTermsInTheirOrder) {
   // Compared with the explicit sum: the direction by its angle 2 atan |s| from the axis, the offset by its length and
   // its angle to the plane of axis and direction, which a rotation about the normal keeps. Fields to 130 degrees.
-  const auto d = domain();
-  for (int degree = 3; degree <= 11; degree += 2) {
+  const auto check = [](int degree, bool mirrors) {
+    const auto d = domain(mirrors);
     const auto terms = RayPolynomial::terms(degree);
-    const RayPolynomial::Fit fit = numbers(degree, -1.6, 0.02);
+    const auto mirror_terms = RayPolynomial::mirror_terms(degree);
+    const RayPolynomial::Fit fit = numbers(degree, -1.6, 0.02, 587.5618, mirrors);
     const RayPolynomial polynomial(degree, d, {fit});
-    Lines<double> lines = all_over<double>();
+    Lines<double> lines = all_over<double>(mirrors);
     lines.through(polynomial);
     double widest = 0;
     for (std::size_t i = 0; i < lines.size(); ++i) {
       ASSERT_EQ(lines.fates[i], RayFate::transmitted);
       const glm::dvec2 film(lines.film_x[i], lines.film_y[i]), pupil(lines.pupil_x[i], lines.pupil_y[i]);
-      const glm::dvec2 f = film / d.film_radius, p = (pupil - d.pupil_shift * film) / d.pupil_radius;
+      const auto [shift_x, radius_x] = along_x(d);
+      const glm::dvec2 f = film / d.film_radius, shift(shift_x, d.pupil_shift), radius(radius_x, d.pupil_radius);
+      const glm::dvec2 p = (pupil - shift * film) / radius;
       glm::dvec2 s(0), o(0);
-      for (std::size_t k = 0; k < terms.size(); ++k) {
-        const double term = std::pow(glm::dot(f, f), terms[k].u) * std::pow(glm::dot(f, p), terms[k].v) *
-                            std::pow(glm::dot(p, p), terms[k].w);
-        s += term * (fit.direction_by_film[k] * f + fit.direction_by_pupil[k] * p);
-        o += term * (fit.offset_by_film[k] * f + fit.offset_by_pupil[k] * p);
+      for (int axis = 0; axis < 2; ++axis) {
+        const int other = 1 - axis;
+        const auto add = [&](std::size_t k, double term) {
+          s[axis] += term * (fit.direction_by_film[k] * f[axis] + fit.direction_by_pupil[k] * p[axis]);
+          o[axis] += term * (fit.offset_by_film[k] * f[axis] + fit.offset_by_pupil[k] * p[axis]);
+        };
+        for (std::size_t k = 0; !mirrors && k < terms.size(); ++k) {
+          add(k, std::pow(glm::dot(f, f), terms[k].u) * std::pow(glm::dot(f, p), terms[k].v) *
+                     std::pow(glm::dot(p, p), terms[k].w));
+        }
+        for (std::size_t k = 0; mirrors && k < mirror_terms.size(); ++k) {
+          const auto& t = mirror_terms[k];
+          add(k + (axis == 1 ? mirror_terms.size() : 0), std::pow(f[axis], t.film) * std::pow(p[axis], t.pupil) *
+                                                             std::pow(f[other], t.other_film) *
+                                                             std::pow(p[other], t.other_pupil));
+        }
       }
       const Vec3<double> direction = lines.direction(i), offset = lines.origin(i) - Vec3<double>(0, 0, d.reference_z);
       EXPECT_NEAR(glm::length(direction), 1, 1e-15);
@@ -110,6 +168,25 @@ TEST(RayPolynomial, AddsTheTermsInTheirOrder) {
       }
     }
     EXPECT_GT(widest, 1.9);
+  };
+  for (int degree = 3; degree <= 11; degree += 2) check(degree, false), check(degree, true);
+}
+
+TEST(RayPolynomial, MirrorsWithItsLines) {
+  for (int degree = 3; degree <= 11; degree += 2) {
+    const RayPolynomial polynomial(degree, domain(true), {numbers(degree, -0.6, 0.02, 587.5618, true)});
+    Lines<float> lines = all_over<float>(true), in_x, in_y;
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      in_x.add(-lines.film_x[i], lines.film_y[i], -lines.pupil_x[i], lines.pupil_y[i]);
+      in_y.add(lines.film_x[i], -lines.film_y[i], lines.pupil_x[i], -lines.pupil_y[i]);
+    }
+    lines.through(polynomial), in_x.through(polynomial), in_y.through(polynomial);
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      for (std::size_t k = 0; k < 6; ++k) {  // to the bit
+        EXPECT_EQ(in_x.ray[k][i], k % 3 == 0 ? -lines.ray[k][i] : lines.ray[k][i]);
+        EXPECT_EQ(in_y.ray[k][i], k % 3 == 1 ? -lines.ray[k][i] : lines.ray[k][i]);
+      }
+    }
   }
 }
 
@@ -136,9 +213,12 @@ TEST(RayPolynomial, TurnsAndMirrorsWithItsLines) {
 }
 
 TEST(RayPolynomial, ComesBackToItsLines) {
-  for (int degree = 3; degree <= 11; degree += 2) {
-    const RayPolynomial polynomial(degree, domain(), {numbers(degree, -1.6, 0.02)});
-    Lines<double> lines = all_over<double>();
+  for (const int n : {3, 5, 7, 9, 11, -3, -5, -7, -9, -11}) {  // negative: with mirror symmetry
+    const int degree = std::abs(n);
+    const double slope = n < 0 ? -0.9 : -1.6;
+    const RayPolynomial polynomial(degree, domain(n < 0),
+                                   {numbers(degree, slope, n < 0 ? 0.005 : 0.02, 587.5618, n < 0)});
+    Lines<double> lines = all_over<double>(n < 0);
     lines.through(polynomial);
     // From anywhere on the ray, in the opposite direction.
     for (std::size_t i = 0; i < lines.size(); ++i) {
@@ -165,14 +245,16 @@ TEST(RayPolynomial, ComesBackToItsLines) {
 
 TEST(RayPolynomial, DerivativesAreDifferences) {
   // Film and pupil point of all lines move by two parameters; central differences of 1e-4 are right to 1e-7.
-  for (const int degree : {3, 7, 11}) {
-    const RayPolynomial polynomial(degree, domain(), {numbers(degree, -0.9, 0.02)});
+  for (const int n : {3, 7, 11, -3, -7, -11}) {  // negative: with mirror symmetry
+    const int degree = std::abs(n);
+    const RayPolynomial polynomial(degree, domain(n < 0),
+                                   {numbers(degree, -0.9, n < 0 ? 0.005 : 0.02, 587.5618, n < 0)});
     const TwoPlaneRay by_u{1, -2, 0.5, 0.25}, by_v{0.5, 1, -2, 1};
     const auto moved = [](const TwoPlaneRay& line, const TwoPlaneRay& by, double step) {
       return TwoPlaneRay{0.9 * line.film_x + step * by.film_x, 0.9 * line.film_y + step * by.film_y,
                          0.9 * line.pupil_x + step * by.pupil_x, 0.9 * line.pupil_y + step * by.pupil_y};
     };
-    const Lines<double> lines = all_over<double>();
+    const Lines<double> lines = all_over<double>(n < 0);
     for (std::size_t i = 0; i < lines.size(); ++i) {
       const TwoPlaneRay at{lines.film_x[i], lines.film_y[i], lines.pupil_x[i], lines.pupil_y[i]};
       constexpr double step = 1e-4;
@@ -229,6 +311,17 @@ TEST(RayPolynomial, GivesNothingOutsideItsDomain) {
     const std::uint16_t each[] = {3};
     edge.through(polynomial, {0, each});
     expect_nothing(edge, 0);
+
+    // An ellipse.
+    const RayPolynomial of_mirrors(5, domain(true), {numbers(5, -0.6, 0.02, 587.5618, true)});
+    Lines<T> ends;
+    ends.add(20, 0, -2 + 13.9, 0), ends.add(0, -20, 0, -5 - 9.9);
+    ends.through(of_mirrors);
+    for (const RayFate fate : ends.fates) EXPECT_EQ(fate, RayFate::transmitted);
+    Lines<T> beyond;
+    beyond.add(20, 0, -2 + 14.1, 0), beyond.add(0, -20, 0, -5 - 10.1), beyond.add(0, 0, 10, 7.1);
+    beyond.through(of_mirrors);
+    for (std::size_t i = 0; i < beyond.size(); ++i) expect_nothing(beyond, i);
   };
   check(float()), check(double());
 }
@@ -264,11 +357,12 @@ TEST(RayPolynomial, FindsNoLinesForRaysFromElsewhere) {
 }
 
 TEST(RayPolynomial, RaysDoNotDependOnTheirNeighbours) {
-  const auto check = [&]<class T>(T) {
-    const RayPolynomial polynomial(9, domain(), {numbers(9, -0.6, 0.02), numbers(9, -0.5, 0.03), numbers(9, -0.4)});
-    Lines<T> all = all_over<T>();
+  const auto check = [&]<class T>(T, bool mirrors) {
+    const auto fit = [&](double slope, double higher) { return numbers(9, slope, higher, 587.5618, mirrors); };
+    const RayPolynomial polynomial(9, domain(mirrors), {fit(-0.6, 0.02), fit(-0.5, 0.03), fit(-0.4, 0)});
+    Lines<T> all = all_over<T>(mirrors);
     for (int k = 0; k < 3; ++k) {  // more than a block of mixed wavelengths
-      const Lines<T> more = all_over<T>();
+      const Lines<T> more = all_over<T>(mirrors);
       for (std::size_t i = 0; i < more.size(); ++i) {
         all.add(more.film_x[i], more.film_y[i], more.pupil_x[i], more.pupil_y[i]);
       }
@@ -285,7 +379,7 @@ TEST(RayPolynomial, RaysDoNotDependOnTheirNeighbours) {
       for (std::size_t k = 0; k < 6; ++k) EXPECT_EQ(one.ray[k][0], all.ray[k][i]) << i;
     }
   };
-  check(float()), check(double());
+  for (const bool mirrors : {false, true}) check(float(), mirrors), check(double(), mirrors);
 }
 
 TEST(RayPolynomial, RefusesWhatIsNotConsistent) {
@@ -310,6 +404,16 @@ TEST(RayPolynomial, RefusesWhatIsNotConsistent) {
        "polynomial: pupil_radius is inf, wanted a number from 1e-12 to 1e+12"},
       {5, [](Domain& d, Fits&) { d.reference_z = std::nan(""); },
        "polynomial: reference_z is nan, wanted a number from -1e+12 to 1e+12"},
+      {5,
+       [](Domain& d, Fits&) {
+         d.along_x = {0, 3};
+       },
+       "polynomial: fit 0: direction_by_film has 10 numbers, wanted 40 for degree 5 and mirror symmetry"},
+      {5,
+       [](Domain& d, Fits&) {
+         d.along_x = {0, -3};
+       },
+       "polynomial: pupil_radius along x is -3, wanted a number from 1e-12 to 1e+12"},
       {5, [](Domain&, Fits& f) { f.push_back(f[0]), f[1].offset_by_pupil[3] = infinity; },
        "polynomial: fit 1: offset_by_pupil: number 3 is inf, wanted a number from -1e+12 to 1e+12"},
       {5, [](Domain&, Fits& f) { f[0].max_rad = -1; },

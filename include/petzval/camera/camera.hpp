@@ -73,8 +73,8 @@ class PETZVAL_API Camera {
   /// The lens has its film where film.z_mm says, as with_film() would. A film that is tilted or travels takes six to
   /// eight times as long to set up (23 ms rather than 3.4 for a double Gauss); fits of tilts need no camera. Throws
   /// Error for a film without area or pixels, one that is not behind the last surface, is tilted into the lens or comes
-  /// near to the plane of the pupil, and where the model cannot be built: a lens without a pupil, a pinhole, two discs
-  /// or a polynomial of a lens with cylinders.
+  /// near to the plane of the pupil, and where the model cannot be built: a lens without a pupil, a pinhole or two
+  /// discs of a lens with cylinders.
   Camera(const Lens& lens, const Film& film, const CameraOptions& options = {});
   /// With a model that was built before: a renderer's own, or polynomials read from a file (ray_model.hpp). Throws
   /// Error also for a model with another number of wavelengths, another place of the film, or a film smaller than

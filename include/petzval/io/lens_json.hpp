@@ -30,8 +30,9 @@ PETZVAL_API void write_prescription(const Prescription& prescription, const std:
 
 /// Reads ray polynomials from a JSON file (format "petzval-ray-polynomial 1"). Throws Error that names the file, the
 /// fit (from 0), the key, what was found and what was wanted, or the byte at which the text is not JSON. Every key must
-/// occur once, and no other. It refuses numbers out of range of double, lists longer than those of a polynomial of
-/// degree 11, more than 10,000 fits, and all that the constructor of RayPolynomial refuses.
+/// occur once, pupil_shift_x and pupil_radius_x_mm with mirror symmetry only, and no other. It refuses numbers out of
+/// range of double, lists longer than those of a polynomial of degree 11, more than 10,000 fits, and all that the
+/// constructor of RayPolynomial refuses.
 PETZVAL_API RayPolynomial read_ray_polynomial(const std::filesystem::path& file);
 
 /// The same from memory. `where` is the name of the source in messages.

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+// s and o of a line (chart.hpp) as sums of terms, for each symmetry of a lens; n: factors of a term, (degree - 1) / 2.
+// In an unnamed namespace, for objects of several instruction sets (lib/README.md).
+#pragma once
+
+#include <array>
+
+#include "horner.hpp"
+
+namespace petzval::inline v0::polynomial_detail {
+namespace {
+
+/// Film and pupil point, scaled to the domain.
+template <class T>
+struct FilmAndPupil {
+  T fx, fy, px, py;
+};
+
+template <class T>
+struct FourSums {
+  T first, second, third, fourth;
+};
+
+template <class T>
+struct ChartLine {
+  T sx, sy, ox, oy;
+};
+
+/// s = A f + B p and o = C f + D p, with A to D polynomials of f.f, f.p and p.p.
+template <int n>
+struct OfRevolution {
+  static constexpr int terms = term_count(n, 3), coefficients = 4 * terms;
+
+  /// A, B, C and D.
+  template <class R, class T>
+  static PETZVAL_INLINE FourSums<T> sums(const R* c, const FilmAndPupil<T>& at) noexcept {
+    const auto& [fx, fy, px, py] = at;
+    const T u = fx * fx + fy * fy, v = fx * px + fy * py, w = px * px + py * py;
+    return {horner<n>(c, w, v, u), horner<n>(c + terms, w, v, u), horner<n>(c + 2 * terms, w, v, u),
+            horner<n>(c + 3 * terms, w, v, u)};
+  }
+
+  template <class T>
+  static PETZVAL_INLINE ChartLine<T> line(const FourSums<T>& sums, const FilmAndPupil<T>& at) noexcept {
+    const auto& [a, b, by_film, by_pupil] = sums;
+    return {a * at.fx + b * at.px, a * at.fy + b * at.py, by_film * at.fx + by_pupil * at.px,
+            by_film * at.fy + by_pupil * at.py};
+  }
+};
+
+/// Of a lens that is alike at x and -x and at y and -y. Components along x are odd in fx and px together and even in fy
+/// and py together: fx or px, times a polynomial of the four squares, plus fy py times one with a factor less. Those
+/// along y are the same with x and y exchanged.
+template <int n>
+struct OfMirrors {
+  static constexpr int even = term_count(n, 4), terms = even + term_count(n - 1, 4), coefficients = 8 * terms;
+
+  /// The components themselves. Not inlined: there is one of each degree, with the same bits for every caller.
+  template <class R, class T>
+  static __attribute__((noinline)) FourSums<T> sums(const R* c, const FilmAndPupil<T>& at) noexcept {
+    const auto& [fx, fy, px, py] = at;
+    const T fx2 = fx * fx, fy2 = fy * fy, px2 = px * px, py2 = py * py, across_x = fx * px, across_y = fy * py;
+    const auto x = [&](const R* of) { return even_sum(of, across_y, py2, fy2, px2, fx2); };
+    const auto y = [&](const R* of) { return even_sum(of, across_x, px2, fx2, py2, fy2); };
+    const R* o = c + 4 * terms;
+    return {fx * x(c) + px * x(c + 2 * terms), fy * y(c + terms) + py * y(c + 3 * terms),
+            fx * x(o) + px * x(o + 2 * terms), fy * y(o + terms) + py * y(o + 3 * terms)};
+  }
+
+  template <class T>
+  static PETZVAL_INLINE ChartLine<T> line(const FourSums<T>& sums, const FilmAndPupil<T>&) noexcept {
+    return {sums.first, sums.second, sums.third, sums.fourth};
+  }
+
+ private:
+  /// across: the product of film and pupil point along the other axis.
+  template <class R, class T>
+  static PETZVAL_INLINE T even_sum(const R* c, const T& across, const T& other_pupil2, const T& other_film2,
+                                   const T& pupil2, const T& film2) noexcept {
+    return across * horner<n - 1>(c + even, other_pupil2, other_film2, pupil2, film2) +
+           horner<n>(c, other_pupil2, other_film2, pupil2, film2);
+  }
+};
+
+/// What a function makes of each symmetry, for the degrees 3, 5, 7, 9 and 11: Data::loop() is the position.
+template <class Of>
+constexpr auto by_symmetry_and_degree(Of of) {
+  return std::array{of(OfRevolution<1>{}), of(OfRevolution<2>{}), of(OfRevolution<3>{}), of(OfRevolution<4>{}),
+                    of(OfRevolution<5>{}), of(OfMirrors<1>{}),    of(OfMirrors<2>{}),    of(OfMirrors<3>{}),
+                    of(OfMirrors<4>{}),    of(OfMirrors<5>{})};
+}
+
+}  // namespace
+}  // namespace petzval::inline v0::polynomial_detail
