@@ -7,18 +7,23 @@
 
 namespace petzval::inline v0::camera_detail {
 
-/// Film lines as rays in the plane z, for first-order models. maps: one for each wavelength, `known` of them.
+/// The numbers of two SectionMaps, as rows by wavelength.
+template <class T>
+using MapRows = lens_detail::WavelengthRows<T, 8>;
+
+/// Film lines as rays in the plane z, for first-order models.
+template <class T>
 struct ParaxialJob {
-  const SectionMaps* maps = nullptr;
-  std::size_t known = 0, primary = 0;
-  double z = 0;
+  MapRows<T> maps;
+  const SectionMaps* shared = nullptr;  ///< at the wavelength of all rays; null: it does not exist
+  T z = 0;
   RayWavelengths wavelengths;
 };
 
 struct ParaxialLoops {
-  void (*of_float)(std::size_t count, const ParaxialJob& job, const TwoPlaneRays<const float>& lines,
+  void (*of_float)(std::size_t count, const ParaxialJob<float>& job, const TwoPlaneRays<const float>& lines,
                    const RayArrays<float>& rays, RayFate* fates) noexcept;
-  void (*of_double)(std::size_t count, const ParaxialJob& job, const TwoPlaneRays<const double>& lines,
+  void (*of_double)(std::size_t count, const ParaxialJob<double>& job, const TwoPlaneRays<const double>& lines,
                     const RayArrays<double>& rays, RayFate* fates) noexcept;
 };
 

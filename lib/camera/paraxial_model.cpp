@@ -47,6 +47,11 @@ SectionMaps seen_by(ModelKind model, const SectionMaps& maps, double middle) noe
   return {through(maps.x), through(maps.y)};
 }
 
+SectionMaps maps_of(const std::array<double, 8>& numbers) noexcept {
+  const auto& [xa, xb, xc, xd, ya, yb, yc, yd] = numbers;
+  return {{xa, xb, xc, xd}, {ya, yb, yc, yd}};
+}
+
 /// Where a film point sees the stop in the plane of the pupil: its centre at shift times the film point.
 struct StopImage {
   double shift = 0;
@@ -174,80 +179,56 @@ ParaxialModel::ParaxialModel(ModelKind model, const LensFacts& facts, double fil
     : kind_(model), pupils_(pupils_of(model, facts, film_radius)), z_(facts.lens().surfaces().front().vertex_z) {
   const Lens& lens = facts.lens();
   const TwoPlanes& space = pupils_.space();
-  std::vector<std::array<double, 9>> values;
+  std::vector<SectionMaps> thick;
   for (std::size_t w = 0; w < lens.wavelengths_nm().size(); ++w) {
     const RayMatrix y = to_scene_map(facts, w, space, Meridian::y);
     const RayMatrix x = has_cylinders(lens) ? to_scene_map(facts, w, space, Meridian::x) : y;
+    thick.push_back({x, y});
     to_film_.push_back({x.inverse(), y.inverse()});
     const double middle = model == ModelKind::pinhole ? thick_image(facts, w, space, Meridian::y).shift : 0;
     if (model == ModelKind::pinhole) pinhole_shifts_.push_back(middle);
     to_scene_.push_back(seen_by(model, {x, y}, middle));
-    values.push_back({x.a, x.b, x.c, x.d, y.a, y.b, y.c, y.d, middle});
   }
-  between_ = {lens_detail::CompiledWavelengths(lens.wavelengths_nm()), values};
-}
-
-template <class OfMaps>
-const SectionMaps* ParaxialModel::either_at(Wavelength at, const std::vector<SectionMaps>& compiled, SectionMaps& own,
-                                            const OfMaps& of_maps) const noexcept {
-  if (const auto nm = at.in_nm()) {
-    if (!between_.covers(*nm)) return nullptr;
-    const auto [xa, xb, xc, xd, ya, yb, yc, yd, middle] = between_(*nm);
-    own = of_maps(SectionMaps{{xa, xb, xc, xd}, {ya, yb, yc, yd}}, middle);
-    return &own;
-  }
-  const std::size_t position = at.position(pupils_.primary_wavelength());
-  return position < compiled.size() ? &compiled[position] : nullptr;
+  const lens_detail::CompiledWavelengths wavelengths(lens.wavelengths_nm());
+  const auto between = [&](const std::vector<SectionMaps>& maps) -> lens_detail::BetweenWavelengths<8> {
+    std::vector<std::array<double, 8>> values;
+    for (const auto& [x, y] : maps) values.push_back({x.a, x.b, x.c, x.d, y.a, y.b, y.c, y.d});
+    return {wavelengths, values};
+  };
+  between_ = between(to_scene_);
+  of_thick_lens_ = between(thick);
 }
 
 const SectionMaps* ParaxialModel::map_at(Wavelength at, SectionMaps& own) const noexcept {
-  return either_at(at, to_scene_, own,
-                   [this](const SectionMaps& maps, double middle) { return seen_by(kind_, maps, middle); });
+  if (const auto nm = at.in_nm()) {
+    if (!between_.covers(*nm)) return nullptr;
+    own = maps_of(between_(*nm));
+    return &own;
+  }
+  const std::size_t position = at.position(pupils_.primary_wavelength());
+  return position < to_scene_.size() ? &to_scene_[position] : nullptr;
 }
 
 const SectionMaps* ParaxialModel::inverse_at(Wavelength at, SectionMaps& own) const noexcept {
-  return either_at(at, to_film_, own, [](const SectionMaps& maps, double) {
-    return SectionMaps{maps.x.inverse(), maps.y.inverse()};
-  });
+  if (const auto nm = at.in_nm()) {
+    if (!of_thick_lens_.covers(*nm)) return nullptr;
+    const auto [x, y] = maps_of(of_thick_lens_(*nm));
+    own = {x.inverse(), y.inverse()};
+    return &own;
+  }
+  const std::size_t position = at.position(pupils_.primary_wavelength());
+  return position < to_film_.size() ? &to_film_[position] : nullptr;
 }
 
 template <class T>
 void ParaxialModel::to_scene(std::size_t count, const TwoPlaneRays<const T>& lines, const RayWavelengths& wavelengths,
                              const RayArrays<T>& rays, RayFate* fates) const noexcept {
-  const auto run = [&](const ParaxialJob& job, std::size_t o, std::size_t n) {
-    const RayArrays<T> to{rays.x + o, rays.y + o, rays.z + o, rays.dx + o, rays.dy + o, rays.dz + o};
-    if constexpr (std::is_same_v<T, float>) {
-      paraxial_loops().of_float(n, job, lines.from(o), to, fates + o);
-    } else {
-      paraxial_loops().of_double(n, job, lines.from(o), to, fates + o);
-    }
-  };
-  if (!wavelengths.in_nm()) {
-    run({to_scene_.data(), to_scene_.size(), pupils_.primary_wavelength(), z_, wavelengths}, 0, count);
-    return;
-  }
-  if (!wavelengths.each_nm) {
-    SectionMaps own;
-    const SectionMaps* const map = map_at(wavelengths.all, own);
-    run({map ? map : to_scene_.data(), map ? std::size_t{1} : 0, 0, z_, {0}}, 0, count);
-    return;
-  }
-  // A map for each ray; some map for one that is lost.
-  constexpr std::size_t block = 256;
-  std::array<SectionMaps, block> maps;
-  std::array<std::uint16_t, block> each;
-  std::array<bool, block> known;
-  for (std::size_t begin = 0; begin < count; begin += block) {
-    const std::size_t n = std::min(block, count - begin);
-    for (std::size_t i = 0; i < n; ++i) {
-      known[i] = map_at(wavelengths.at(begin + i), maps[i]) != nullptr;
-      if (!known[i]) maps[i] = to_scene_[0];
-      each[i] = static_cast<std::uint16_t>(i);
-    }
-    run({maps.data(), n, 0, z_, {.each = each.data()}}, begin, n);
-    for (std::size_t i = 0; i < n; ++i) {
-      if (!known[i]) fates[begin + i] = RayFate::missed_surface;
-    }
+  SectionMaps own;
+  const ParaxialJob<T> job{between_.rows<T>(), map_at(wavelengths.all, own), static_cast<T>(z_), wavelengths};
+  if constexpr (std::is_same_v<T, float>) {
+    paraxial_loops().of_float(count, job, lines, rays, fates);
+  } else {
+    paraxial_loops().of_double(count, job, lines, rays, fates);
   }
 }
 

@@ -79,17 +79,13 @@ class ParaxialModel {
   /// is not covered. own: room for those of a wavelength in nm.
   const SectionMaps* map_at(Wavelength wavelength, SectionMaps& own) const noexcept;
   const SectionMaps* inverse_at(Wavelength wavelength, SectionMaps& own) const noexcept;
-  /// of_maps(maps, shift): makes one of them from the thick lens's maps and a pinhole's shift.
-  template <class OfMaps>
-  const SectionMaps* either_at(Wavelength wavelength, const std::vector<SectionMaps>& compiled, SectionMaps& own,
-                               const OfMaps& of_maps) const noexcept;
 
   ModelKind kind_;
   FilmPupilTable pupils_;
-  double z_ = 0;                                 // of the first vertex, where rays are given
-  std::vector<SectionMaps> to_scene_, to_film_;  // of each wavelength
+  double z_ = 0;                                                // of the first vertex, where rays are given
+  std::vector<SectionMaps> to_scene_, to_film_;                 // of each wavelength
+  lens_detail::BetweenWavelengths<8> between_, of_thick_lens_;  // to the scene, of this model and of the thick lens
   std::vector<double> pinhole_shifts_;
-  lens_detail::BetweenWavelengths<9> between_;  // the maps to the scene, and the pinhole's shift
 };
 
 }  // namespace petzval::inline v0::camera_detail

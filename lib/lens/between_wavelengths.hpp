@@ -10,6 +10,7 @@
 
 #include "lens_view.hpp"
 #include "petzval/core/export.hpp"
+#include "wavelength_rows.hpp"
 
 namespace petzval::inline v0::lens_detail {
 
@@ -28,6 +29,7 @@ class PETZVAL_API CompiledWavelengths {
   double longest() const noexcept { return place_.longest; }
   /// Whether a wavelength lies among them, or beside them by the rounding of a float.
   bool covers(double nm) const noexcept { return place_.covers(nm); }
+  const kernel::SpectralPlace<double>& range() const noexcept { return place_; }
   /// The place in the range, from -1 to 1.
   double place(double nm) const noexcept { return place_.at(nm); }
   /// The wavelength at a place.
@@ -84,17 +86,24 @@ class BetweenWavelengths {
  public:
   using Values = std::array<double, numbers>;
 
-  BetweenWavelengths() = default;
-  /// values: by position.
+  /// Of no wavelength.
+  BetweenWavelengths() : BetweenWavelengths({}, {}) {}
+  /// values: by position. wavelengths: theirs, or none where there is nothing between them.
   BetweenWavelengths(const CompiledWavelengths& wavelengths, std::span<const Values> values)
-      : wavelengths_(wavelengths), rows_(cells + 1) {
-    for (std::size_t i = 0; i <= cells; ++i) {
+      : wavelengths_(wavelengths), compiled_(values.size()) {
+    std::vector<Values> rows(values.begin(), values.end());
+    for (std::size_t i = 0; i <= cells && wavelengths.count() > 0; ++i) {
       const auto [first, weights] = wavelengths.about(wavelengths.nm_at(2 * static_cast<double>(i) / cells - 1));
-      rows_[i].fill(0);
+      Values& row = rows.emplace_back(Values{});
       for (std::size_t k = 0; k < weights.size() && first + k < wavelengths.count(); ++k) {
         const Values& own = values[wavelengths.position(first + k)];
-        for (std::size_t j = 0; j < numbers; ++j) rows_[i][j] += weights[k] * own[j];
+        for (std::size_t j = 0; j < numbers; ++j) row[j] += weights[k] * own[j];
       }
+    }
+    rows.resize(rows.size() + 2, Values{});
+    for (const Values& row : rows) {
+      twice_.insert(twice_.end(), row.begin(), row.end());
+      for (const double value : row) single_.push_back(static_cast<float>(value));
     }
   }
 
@@ -104,18 +113,37 @@ class BetweenWavelengths {
     const double at = (wavelengths_.place(nm) + 1) / 2 * cells;
     const auto cell = std::min(static_cast<std::size_t>(at), cells - 1);
     const double part = at - static_cast<double>(cell);
+    const double* const row = twice_.data() + (compiled_ + cell) * numbers;
     Values result;
-    for (std::size_t j = 0; j < numbers; ++j) {
-      result[j] = rows_[cell][j] + part * (rows_[cell + 1][j] - rows_[cell][j]);
-    }
+    for (std::size_t j = 0; j < numbers; ++j) result[j] = row[j] + part * (row[j + numbers] - row[j]);
     return result;
   }
 
+  /// For loops over rays.
+  template <class R>
+  WavelengthRows<R, numbers> rows() const noexcept {
+    const auto of = [this](const std::vector<R>& rows) -> WavelengthRows<R, numbers> {
+      const auto& [shortest, longest, scale, offset] = wavelengths_.range();
+      const auto number = [](double x) { return static_cast<R>(x); };
+      return {rows.data(),
+              static_cast<std::int32_t>(compiled_),
+              static_cast<std::int32_t>(rows.size() / numbers - 2),
+              {number(shortest), number(longest), number(scale), number(offset)}};
+    };
+    if constexpr (sizeof(R) == sizeof(float)) {
+      return of(single_);
+    } else {
+      return of(twice_);
+    }
+  }
+
  private:
-  static constexpr std::size_t cells = 128;
+  static constexpr std::size_t cells = WavelengthRows<double, numbers>::cells;
 
   CompiledWavelengths wavelengths_;
-  std::vector<Values> rows_;
+  std::size_t compiled_ = 0;
+  std::vector<float> single_;  // WavelengthRows::rows
+  std::vector<double> twice_;
 };
 
 }  // namespace petzval::inline v0::lens_detail

@@ -17,18 +17,13 @@ constexpr double rounded_up = 1 + 1e-6;  // the corner itself, rounded, still be
 IrisImages::IrisImages(const Iris& iris, std::span<const PupilImage> images, double film_radius, std::size_t primary,
                        const lens_detail::CompiledWavelengths& wavelengths)
     : shape_(iris), film_radius_(film_radius), primary_(primary) {
-  if (wavelengths.count() == images.size()) {
-    std::vector<std::array<double, 4>> values;
-    for (const auto& [shift, radius] : images) values.push_back({shift.x, shift.y, radius.x, radius.y});
-    between_ = {wavelengths, values};
-  }
+  std::vector<std::array<double, 4>> values;
   for (const auto& [shift, radius] : images) {
-    twice_.push_back({shift.x, shift.y, radius.x, radius.y, shape_.area() * radius.x * radius.y});
-    const auto number = [](double x) { return static_cast<float>(x); };
-    const Image& image = twice_.back();
-    single_.push_back({number(image.shift_x), number(image.shift_y), number(image.radius_x), number(image.radius_y),
-                       number(image.area)});
+    values.push_back({shift.x, shift.y, radius.x, radius.y});
+    images_.push_back({shift.x, shift.y, radius.x, radius.y, shape_.area() * radius.x * radius.y});
   }
+  const bool known = wavelengths.count() == images.size();
+  between_ = {known ? wavelengths : lens_detail::CompiledWavelengths(), values};
 }
 
 IrisImages IrisImages::tilted(const FilmTilt& tilt) const {
@@ -41,8 +36,10 @@ IrisImages IrisImages::tilted(const FilmTilt& tilt) const {
 
 void IrisImages::put(FilmPupilArrays& arrays) const {
   arrays.images = true;
-  for (const auto& [shift_x, shift_y, radius_x, radius_y, area] : single_) {
-    arrays.pupils.insert(arrays.pupils.end(), {shift_x, shift_y, radius_x, radius_y, area});
+  const auto number = [](double x) { return static_cast<float>(x); };
+  for (const Image& image : images_) {
+    arrays.pupils.insert(arrays.pupils.end(), {number(image.shift_x), number(image.shift_y), number(image.radius_x),
+                                               number(image.radius_y), number(image.area)});
   }
   const auto iris = shape_.triangles<float>();
   for (std::size_t k = 0; iris.count > 0 && k <= iris.count; ++k) {
@@ -51,17 +48,17 @@ void IrisImages::put(FilmPupilArrays& arrays) const {
 }
 
 template <class R>
-IrisImageTable<R> IrisImages::table() const noexcept {
+IrisImageTable<R> IrisImages::table(Wavelength all) const noexcept {
   const auto number = [](double x) { return static_cast<R>(x); };
-  const auto of = [&](const auto& images) -> IrisImageTable<R> {
-    return {shape_.triangles<R>(), images.data(),   images.size(), primary_, number(film_radius_ * rounded_up),
-            number(slope_x_),      number(slope_y_)};
-  };
-  if constexpr (sizeof(R) == sizeof(float)) {
-    return of(single_);
-  } else {
-    return of(twice_);
-  }
+  const Image shared = image(all);
+  return {shape_.triangles<R>(),
+          between_.rows<R>(),
+          {number(shared.shift_x), number(shared.shift_y), number(shared.radius_x), number(shared.radius_y),
+           number(shared.area)},
+          number(shape_.area()),
+          number(film_radius_ * rounded_up),
+          number(slope_x_),
+          number(slope_y_)};
 }
 
 IrisImages::Image IrisImages::image(Wavelength at) const noexcept {
@@ -71,7 +68,7 @@ IrisImages::Image IrisImages::image(Wavelength at) const noexcept {
     return {shift_x, shift_y, radius_x, radius_y, shape_.area() * radius_x * radius_y};
   }
   const std::size_t w = at.position(primary_);
-  return w < twice_.size() ? twice_[w] : Image{};
+  return w < images_.size() ? images_[w] : Image{};
 }
 
 IrisImages::Image IrisImages::image(const FilmPoint& film, Wavelength wavelength) const noexcept {
@@ -112,49 +109,16 @@ FilmPupilTable::Derivatives IrisImages::derivatives(const FilmPoint& film, doubl
           {-seen.shift_x * slope_y_ * x, seen.shift_y - seen.shift_y * slope_y_ * y}};
 }
 
-template <class R, class Body>
-void IrisImages::by_position(std::size_t count, const RayWavelengths& wavelengths, const Body& body) const noexcept {
-  IrisImageTable<R> own = table<R>();
-  if (!wavelengths.in_nm()) {
-    body(0, count, own, wavelengths);
-    return;
-  }
-  // A table of the images of each ray.
-  constexpr std::size_t block = 256;
-  std::array<ImageSections<R>, block> images;
-  std::array<std::uint16_t, block> each;
-  own.images = images.data();
-  const std::size_t step = wavelengths.each_nm ? block : count;
-  for (std::size_t begin = 0; begin < count; begin += step) {
-    const std::size_t n = std::min(step, count - begin);
-    own.wavelengths = wavelengths.each_nm ? n : 1;
-    for (std::size_t i = 0; i < own.wavelengths; ++i) {
-      const auto number = [](double x) { return static_cast<R>(x); };
-      const Image at = image(wavelengths.at(begin + i));
-      images[i] = {number(at.shift_x), number(at.shift_y), number(at.radius_x), number(at.radius_y), number(at.area)};
-      each[i] = static_cast<std::uint16_t>(i);
-    }
-    body(begin, n, own, wavelengths.each_nm ? RayWavelengths{.each = each.data()} : RayWavelengths{0});
-  }
-}
-
 template <class T>
 void IrisImages::sample(std::size_t count, const T* film_x, const T* film_y, const T* u, const T* v,
-                        const RayWavelengths& given, T* x, T* y, T* areas) const noexcept {
-  by_position<T>(count, given,
-                 [&](std::size_t o, std::size_t n, const auto& images, const RayWavelengths& wavelengths) {
-                   iris_images().of<T>().sample(images, n, film_x + o, film_y + o, u + o, v + o, wavelengths, x + o,
-                                                y + o, areas + o);
-                 });
+                        const RayWavelengths& wavelengths, T* x, T* y, T* areas) const noexcept {
+  iris_images().of<T>().sample(table<T>(wavelengths.all), count, film_x, film_y, u, v, wavelengths, x, y, areas);
 }
 
 template <class T>
-void IrisImages::contains(std::size_t count, const TwoPlaneRays<const T>& lines, const RayWavelengths& given,
+void IrisImages::contains(std::size_t count, const TwoPlaneRays<const T>& lines, const RayWavelengths& wavelengths,
                           std::uint8_t* within) const noexcept {
-  by_position<T>(count, given,
-                 [&](std::size_t o, std::size_t n, const auto& images, const RayWavelengths& wavelengths) {
-                   iris_images().of<T>().contains(images, n, lines.from(o), wavelengths, within + o);
-                 });
+  iris_images().of<T>().contains(table<T>(wavelengths.all), count, lines, wavelengths, within);
 }
 
 #define PETZVAL_IRIS_IMAGES(T)                                                                                         \

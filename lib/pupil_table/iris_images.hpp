@@ -49,18 +49,14 @@ class IrisImages {
   Image image(const FilmPoint& film, Wavelength wavelength) const noexcept;
   /// The image at a wavelength, seen from the axis.
   Image image(Wavelength wavelength) const noexcept;
+  /// all: the wavelength that rays share.
   template <class R>
-  IrisImageTable<R> table() const noexcept;
-  /// Calls body(begin, count, table, wavelengths) for parts of N rays, with a table in which all wavelengths are
-  /// positions.
-  template <class R, class Body>
-  void by_position(std::size_t count, const RayWavelengths& wavelengths, const Body& body) const noexcept;
+  IrisImageTable<R> table(Wavelength all) const noexcept;
 
   iris_detail::IrisShape shape_;
   double film_radius_ = 0, slope_x_ = 0, slope_y_ = 0;
   std::size_t primary_ = 0;
-  std::vector<ImageSections<float>> single_;  // by wavelength
-  std::vector<Image> twice_;
+  std::vector<Image> images_;                   // by wavelength
   lens_detail::BetweenWavelengths<4> between_;  // shifts and radii
 };
 

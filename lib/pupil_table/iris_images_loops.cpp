@@ -8,18 +8,23 @@
 namespace petzval::inline v0::pupil_table_detail {
 namespace {
 
-template <class R>
-inline ImageSections<R> image_at(const IrisImageTable<R>& table, std::size_t wavelength) noexcept {
-  return wavelength < table.wavelengths ? table.images[wavelength] : ImageSections<R>{};
-}
-
-/// Calls body(image_of) with the images of all rays, by ray.
+/// Calls body(begin, end, image_of) with the images of all rays, by ray.
 template <class R, class Body>
-inline void with_images(const IrisImageTable<R>& table, const RayWavelengths& wavelengths, const Body& body) noexcept {
-  if (const std::uint16_t* each = wavelengths.each) {
-    body([&table, each](std::size_t i) { return image_at(table, each[i]); });
-  } else {
-    body([image = image_at(table, wavelengths.all.position(table.primary))](std::size_t) { return image; });
+inline void with_images(const IrisImageTable<R>& table, std::size_t count, const RayWavelengths& wavelengths,
+                        const Body& body) noexcept {
+  if (!wavelengths.each && !wavelengths.each_nm) {
+    body(0, count, [image = table.image](std::size_t) { return image; });
+    return;
+  }
+  constexpr std::size_t block = lens_detail::look_up_block;
+  for (std::size_t begin = 0; begin < count; begin += block) {
+    const std::size_t n = count - begin < block ? count - begin : block;
+    R seen[4][block];
+    lens_detail::look_up(table.images, wavelengths, begin, n, seen);
+    body(begin, begin + n, [&seen, begin, area = table.area](std::size_t i) -> ImageSections<R> {
+      const std::size_t k = i - begin;
+      return {seen[0][k], seen[1][k], seen[2][k], seen[3][k], area * (seen[2][k] * seen[3][k])};
+    });
   }
 }
 
@@ -63,16 +68,16 @@ template <class R>
 void sample(const IrisImageTable<R>& table, std::size_t count, const R* film_x, const R* film_y, const R* u, const R* v,
             const RayWavelengths& wavelengths, R* x, R* y, R* areas) noexcept {
   const iris_detail::IrisTriangles<R> iris = table.iris;
-  with_images(table, wavelengths, [&](const auto& image_of) {
+  with_images(table, count, wavelengths, [&](std::size_t first, std::size_t last, const auto& image_of) {
     if (iris.count == 0) {
       const auto on_disc = [](std::size_t, R a, R b) { return iris_detail::disc_point(a, b); };
-      fill(table, image_of, on_disc, 0, count, film_x, film_y, u, v, x, y, areas);
+      fill(table, image_of, on_disc, first, last, film_x, film_y, u, v, x, y, areas);
       return;
     }
     constexpr std::size_t block = 64;
     std::int32_t triangle[block];
-    for (std::size_t begin = 0; begin < count; begin += block) {
-      const std::size_t n = count - begin < block ? count - begin : block;
+    for (std::size_t begin = first; begin < last; begin += block) {
+      const std::size_t n = last - begin < block ? last - begin : block;
       for (std::size_t i = 0; i < n; ++i) triangle[i] = 0;
       for (std::size_t k = 1; k < iris.count; ++k) {
         const R before = iris.before[k];
@@ -94,9 +99,9 @@ void contains(const IrisImageTable<R>& given, std::size_t count, const TwoPlaneR
   constexpr std::size_t block = 64;
   R x[block], y[block];
   std::int32_t inside[block];
-  with_images(table, wavelengths, [&](const auto& image_of) {
-    for (std::size_t begin = 0; begin < count; begin += block) {
-      const std::size_t n = count - begin < block ? count - begin : block;
+  with_images(table, count, wavelengths, [&](std::size_t first, std::size_t last, const auto& image_of) {
+    for (std::size_t begin = first; begin < last; begin += block) {
+      const std::size_t n = last - begin < block ? last - begin : block;
       for (std::size_t i = 0; i < n; ++i) {
         const std::size_t o = begin + i;
         const auto [fx, fy, image] = seen(table, image_of(o), own.film_x[o], own.film_y[o], true);

@@ -6,6 +6,7 @@
 
 #include "core/widest.hpp"
 #include "iris/iris_sample.hpp"
+#include "lens/wavelength_rows.hpp"
 #include "petzval/lens/wavelength.hpp"
 #include "petzval/pupil_table/two_plane_rays.hpp"
 
@@ -33,8 +34,9 @@ inline ImageSections<R> on_tilted(const ImageSections<R>& image, R nearer) noexc
 template <class R>
 struct IrisImageTable {
   iris_detail::IrisTriangles<R> iris;
-  const ImageSections<R>* images = nullptr;  ///< by wavelength
-  std::size_t wavelengths = 0, primary = 0;
+  lens_detail::WavelengthRows<R, 4> images{};  ///< shifts and radii
+  ImageSections<R> image{};                    ///< that of a wavelength that rays share
+  R area = 0;                                  ///< of the iris
   R film_radius = 0, slope_x = 0, slope_y = 0;
 };
 
