@@ -132,7 +132,7 @@ Camera::Camera(const Lens& lens, const Film& film, const CameraOptions& options)
   check_iris(placed_lens, options.model);
   const LensFacts facts(placed_lens);
   const double radius = camera_detail::upright_radius(facts, placed_film, options.model);
-  const AnyRayModel model = camera_detail::make_model(options.model, facts, radius);
+  const AnyRayModel model = camera_detail::make_model(options.model, facts, radius, options.threads);
   data_ = std::make_shared<const Data>(facts, placed_film, model, radius, options.normalisation);
 }
 

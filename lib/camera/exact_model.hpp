@@ -16,7 +16,8 @@ class ExactModel {
   static constexpr bool any_wavelength = true;
 
   /// Throws Error where FilmPupilTable::enclosing does.
-  ExactModel(const Lens& lens, double film_radius) : ExactModel(lens, FilmPupilTable::enclosing(lens, film_radius)) {}
+  ExactModel(const Lens& lens, double film_radius, int threads = 1)
+      : ExactModel(lens, FilmPupilTable::enclosing(lens, film_radius, threads)) {}
   ExactModel(const Lens& lens, FilmPupilTable enclosing)
       : lens_(lens), pupils_(std::move(enclosing)), towards_(towards_scene(lens_, pupils_.space())) {}
 

@@ -26,15 +26,15 @@ bool is_polynomial(ModelKind model) noexcept {
   return model >= ModelKind::polynomial_3 && model <= ModelKind::polynomial_11;
 }
 
-AnyRayModel make_model(ModelKind model, const LensFacts& facts, double film_radius) {
+AnyRayModel make_model(ModelKind model, const LensFacts& facts, double film_radius, int threads) {
   if (is_first_order(model)) return ParaxialModel(model, facts, film_radius);
   if (is_polynomial(model)) {
     const int steps = static_cast<int>(model) - static_cast<int>(ModelKind::polynomial_3);
-    FilmPupilTable pupils = FilmPupilTable::equal_area(facts.lens(), film_radius);
+    FilmPupilTable pupils = FilmPupilTable::equal_area(facts.lens(), film_radius, threads);
     return PolynomialModel(RayPolynomial::fit(facts.lens(), pupils, least_degree + degree_step * steps), pupils);
   }
-  if (model == ModelKind::exact_float) return ExactModel<float>(facts.lens(), film_radius);
-  if (model == ModelKind::exact_double) return ExactModel<double>(facts.lens(), film_radius);
+  if (model == ModelKind::exact_float) return ExactModel<float>(facts.lens(), film_radius, threads);
+  if (model == ModelKind::exact_double) return ExactModel<double>(facts.lens(), film_radius, threads);
   throw Error(facts.lens().name() + ": camera: model is " + std::string(name(model)) +
               ", wanted one of models(), or an AnyRayModel");
 }

@@ -10,7 +10,7 @@ namespace petzval::inline v0::camera_detail {
 
 /// Builds a model for film points up to film_radius (mm) from the axis. Throws Error where the model's own constructor
 /// does, and for ModelKind::custom.
-PETZVAL_API AnyRayModel make_model(ModelKind model, const LensFacts& facts, double film_radius);
+PETZVAL_API AnyRayModel make_model(ModelKind model, const LensFacts& facts, double film_radius, int threads = 1);
 
 /// Whether a model is a ParaxialModel, or a PolynomialModel.
 bool is_first_order(ModelKind model) noexcept;

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "film_lines.hpp"
+#include "petzval/core/parallel.hpp"
 
 namespace petzval::inline v0::pupil_table_detail {
 
@@ -112,13 +113,15 @@ std::vector<PupilPolygon> polygons_of(double lit_radius, PolygonFit fit, const F
 
 }  // namespace
 
-FilmPolygons film_polygons(double film_radius, PolygonFit fit, std::span<const FilmPupils> pupils) {
+FilmPolygons film_polygons(double film_radius, PolygonFit fit, std::span<const FilmPupils> pupils, int threads) {
   double lit = 0;
   for (std::size_t w = 0; w < pupils.size() && lit < film_radius; ++w) {
     lit = std::max(lit, lit_radius(film_radius, pupils[w]));
   }
-  FilmPolygons result{lit > 0 ? lit : film_radius, {}};
-  for (const FilmPupils& own : pupils) result.by_wavelength.push_back(polygons_of(result.lit_radius, fit, own));
+  FilmPolygons result{lit > 0 ? lit : film_radius, std::vector<std::vector<PupilPolygon>>(pupils.size())};
+  parallel_for(pupils.size(), 1, threads, [&](std::size_t w, std::size_t) {
+    result.by_wavelength[w] = polygons_of(result.lit_radius, fit, pupils[w]);
+  });
   return result;
 }
 

@@ -39,8 +39,8 @@ struct FilmPolygons {
 };
 
 /// Those of a film, from its pupils at each wavelength. enclosing: those of the points between are contained in the
-/// interpolated ones.
-FilmPolygons film_polygons(double film_radius, PolygonFit fit, std::span<const FilmPupils> pupils);
+/// interpolated ones. threads: they share the wavelengths.
+FilmPolygons film_polygons(double film_radius, PolygonFit fit, std::span<const FilmPupils> pupils, int threads);
 
 /// The overlap of some discs, as a pupil of equal area.
 std::vector<PupilPolygon> disc_polygons(std::span<const PupilDisc> discs, double film_radius);

@@ -18,6 +18,7 @@
 #include "iris_images.hpp"
 #include "lens/between_wavelengths.hpp"
 #include "petzval/core/error.hpp"
+#include "petzval/core/parallel.hpp"
 #include "polygon_place.hpp"
 
 namespace petzval::inline v0 {
@@ -196,7 +197,7 @@ void check_film_radius(const std::string& where, double film_radius) {
 
 }  // namespace
 
-FilmPupilTable FilmPupilTable::traced(const Lens& lens, double film_radius, bool enclosing) {
+FilmPupilTable FilmPupilTable::traced(const Lens& lens, double film_radius, bool enclosing, int threads) {
   const PolygonFit fit = enclosing ? PolygonFit::enclosing : PolygonFit::equal_area;
   check_film_radius(lens.name(), film_radius);
   auto data = std::make_shared<Data>();
@@ -209,33 +210,32 @@ FilmPupilTable FilmPupilTable::traced(const Lens& lens, double film_radius, bool
     data->wavelengths = wavelengths;
     const FilmGrid grid = film_grid(lens, data->space, film_radius);
     data->cells.emplace(grid, film_radius, data->primary);
-    std::vector<std::vector<PupilPolygon>> polygons;
-    for (std::size_t w = 0; w < wavelengths; ++w) {
-      polygons.push_back(grid_polygons(lens, data->space, grid, fit, w));
-    }
+    std::vector<std::vector<PupilPolygon>> polygons(wavelengths);
+    parallel_for(wavelengths, 1, threads,
+                 [&](std::size_t w, std::size_t) { polygons[w] = grid_polygons(lens, data->space, grid, fit, w); });
     if (enclosing) expand_to_neighbours(data->compiled, polygons);
     for (const auto& own : polygons) data->cells->add(own);
     return FilmPupilTable(std::move(data));
   }
   std::vector<FilmPupils> pupils;
   for (std::size_t w = 0; w < wavelengths; ++w) pupils.push_back(traced_pupils(lens, data->space, w));
-  auto [lit_radius, polygons] = film_polygons(film_radius, fit, pupils);
+  auto [lit_radius, polygons] = film_polygons(film_radius, fit, pupils, threads);
   if (enclosing) expand_to_neighbours(data->compiled, polygons);
   data->lit_radius = lit_radius;
   for (const auto& own : polygons) data->add(own);
   return FilmPupilTable(std::move(data));
 }
 
-FilmPupilTable FilmPupilTable::enclosing(const Lens& lens, double film_radius) {
+FilmPupilTable FilmPupilTable::enclosing(const Lens& lens, double film_radius, int threads) {
   // Whatever its shape, the iris lies within the round stop: the pupils of that enclose its own.
-  return traced(with_iris(lens, {}), film_radius, true);
+  return traced(with_iris(lens, {}), film_radius, true, threads);
 }
 
-FilmPupilTable FilmPupilTable::equal_area(const Lens& lens, double film_radius) {
+FilmPupilTable FilmPupilTable::equal_area(const Lens& lens, double film_radius, int threads) {
   if (!lens.iris().round()) {
     throw Error(lens.name() + ": pupils: the iris has edges, wanted a round one");
   }
-  return traced(lens, film_radius, false);
+  return traced(lens, film_radius, false, threads);
 }
 
 FilmPupilTable FilmPupilTable::of_discs(const TwoPlanes& space, std::span<const std::vector<PupilDisc>> discs,
@@ -318,7 +318,7 @@ FilmPupilTable FilmPupilTable::for_tilted_film(const FilmTilt& tilt) const {
   data->film_radius = tilt.radius;
   std::vector<FilmPupils> pupils;
   for (std::size_t w = 0; w < wavelengths(); ++w) pupils.push_back(tilted_film_pupils(*this, tilt, w));
-  const auto [lit_radius, polygons] = film_polygons(tilt.radius, PolygonFit::enclosing, pupils);
+  const auto [lit_radius, polygons] = film_polygons(tilt.radius, PolygonFit::enclosing, pupils, 1);
   data->lit_radius = lit_radius;
   for (const auto& own : polygons) data->add(own);
   return FilmPupilTable(std::move(data));

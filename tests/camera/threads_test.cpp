@@ -9,6 +9,7 @@
 
 #include "../data_lenses.hpp"
 #include "camera_samples.hpp"
+#include "petzval/core/error.hpp"
 
 namespace petzval {
 namespace {
@@ -64,6 +65,23 @@ TEST(Camera, IsSharedByThreads) {
   const Lens lens = testing::data_lens("double_gauss_100mm_f2.0");
   expect_shared(lens, {});
   expect_shared(lens, {.tilt_rad = 0.1, .swing_rad = 0.05});
+}
+
+// Threads that set a camera up share its wavelengths.
+TEST(Camera, SetUpDoesNotDependOnThreads) {
+  for (const auto& [id, film] : {std::pair{"double_gauss_100mm_f2_28deg", Film{}},
+                                 {"anamorphic_60mm_2x", Film{.width_mm = 20, .height_mm = 14}}}) {
+    Prescription p = testing::data_prescription(id);
+    const Lens lens = compile(p, std::vector<double>{480, 540, 620}, {.missing_glass = MissingGlass::abbe});
+    for (const ModelKind model : {ModelKind::polynomial_3, ModelKind::exact_float}) {
+      if (model == ModelKind::polynomial_3 && !lens.rotationally_symmetric()) continue;
+      const std::vector<double> alone = answers({lens, film, {.model = model}});
+      for (const int threads : {2, 8}) {
+        EXPECT_EQ(answers({lens, film, {.model = model, .threads = threads}}), alone) << id << ' ' << name(model);
+      }
+      EXPECT_THROW(Camera(lens, film, {.model = model, .threads = 0}), Error);
+    }
+  }
 }
 
 }  // namespace

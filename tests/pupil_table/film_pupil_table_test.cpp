@@ -18,6 +18,7 @@
 #include "petzval/pupil/aim.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "petzval/pupil/illumination.hpp"
+#include "petzval/pupil/pupil_boundary.hpp"
 #include "pupil_coverage.hpp"
 
 namespace {
@@ -99,6 +100,26 @@ TEST(FilmPupilTable, CoversPupilsInParts) {
     for (const double share : {0.05, 0.3, 0.45, 0.7, 0.98}) {
       EXPECT_LE(missed_anywhere(lens, table, {0.6 * share * radius, 0.8 * share * radius}, widths), most)
           << id << " f/" << f_number << " at " << share;
+    }
+  }
+}
+
+// However far the film reaches beyond the image circle, the table has the circle's edge.
+TEST(FilmPupilTable, FindsWhereTheLightEnds) {
+  for (const auto& [id, radius] : {std::pair{"fisheye_8mm_f2.8", 13.0},
+                                   {"phone_5.6mm_f3.5", 5.0},
+                                   {"zoom_57-143mm_f2.8_wide", 60.0},
+                                   {"catadioptric_mangin_1000mm_f7.5", 80.0}}) {
+    const Lens lens = data_lens(id);
+    const auto lit = [&](double height) { return !exit_pupil_boundary(lens, {0, height}).empty(); };
+    for (const double beyond : {1.0, 7.3, 300.0}) {
+      const FilmPupilTable table = FilmPupilTable::enclosing(lens, beyond * radius);
+      const double edge = table.lit_radius();
+      ASSERT_LT(edge, radius) << id;
+      EXPECT_TRUE(lit(0.999 * edge)) << id << ", " << beyond << " times as far: " << edge;
+      EXPECT_FALSE(lit(1.001 * edge)) << id << ", " << beyond << " times as far: " << edge;
+      EXPECT_GT(table.area({0, 0.9999 * edge}), 0) << id;
+      EXPECT_EQ(table.area({0, 1.0001 * edge}), 0) << id;
     }
   }
 }

@@ -32,6 +32,9 @@ enum class Normalisation : std::uint8_t {
 struct CameraOptions {
   ModelKind model = ModelKind::exact_float;
   Normalisation normalisation = Normalisation::irradiance;
+  /// Of the set-up, 1 or more: they share the compiled wavelengths of exact models and polynomials. The camera does not
+  /// depend on them.
+  int threads = 1;
 };
 
 /// A film behind a focused lens, seen through a ray model: what a renderer holds.
@@ -70,8 +73,8 @@ struct CameraOptions {
 /// host_frame.hpp has the frames of hosts.
 class PETZVAL_API Camera {
  public:
-  /// The lens has its film where film.z_mm says, as with_film() would. A film that is tilted or travels takes six to
-  /// eight times as long to set up (23 ms rather than 3.4 for a double Gauss); fits of tilts need no camera. Throws
+  /// The lens has its film where film.z_mm says, as with_film() would. A film that is tilted or travels takes five to
+  /// nine times as long to set up (11 ms rather than 1.3 for a double Gauss); fits of tilts need no camera. Throws
   /// Error for a film without area or pixels, one that is not behind the last surface, is tilted into the lens or comes
   /// near to the plane of the pupil, and where the model cannot be built: a lens without a pupil, a pinhole or two
   /// discs of a lens with cylinders.

@@ -75,10 +75,10 @@ struct FilmPupilArrays {
 /// as a table over the film, one for each compiled wavelength, or in closed form.
 ///
 /// A pupil of a table is a polygon of 64 corners about a middle, less a central obscuration where the lens has one.
-/// Corners and middles are interpolated between 33 distances from the axis (65, where areas are the light), or, of a lens with cylinders, bilinearly
-/// between 9 x 9 film points in a quadrant, so that the pupil, and with it the sample for a given u and v, moves
-/// continuously with the film point and images show no rings and seams. Areas are exact for the interpolated polygon.
-/// The tables of lenses with cylinders leave out no obscuration.
+/// Corners and middles are interpolated between 33 distances from the axis (65, where areas are the light), or, of a
+/// lens with cylinders, bilinearly between 9 x 9 film points in a quadrant, so that the pupil, and with it the sample
+/// for a given u and v, moves continuously with the film point and images show no rings and seams. Areas are exact for
+/// the interpolated polygon. The tables of lenses with cylinders leave out no obscuration.
 ///
 /// A wavelength in nm has the pupils of the nearest compiled one. Those of enclosing() contain the rays of wavelengths
 /// up to the middles between compiled ones, for 0.1 to 1.5 % more samples that are lost where these are 150 nm apart
@@ -97,15 +97,16 @@ class PETZVAL_API FilmPupilTable {
   /// slivers beside the disc of a ball lens at f/45. The pupils of a round iris contain those of any other.
   ///
   /// film_radius: of the farthest film point, mm, >= 0. The film is that of the lens. Throws Error for a film in the
-  /// plane of the last vertex and for a film_radius that is negative or not finite.
-  static FilmPupilTable enclosing(const Lens& lens, double film_radius);
+  /// plane of the last vertex, for a film_radius that is negative or not finite, and for less than one thread.
+  /// threads: they share the wavelengths; the table does not depend on them.
+  static FilmPupilTable enclosing(const Lens& lens, double film_radius, int threads = 1);
 
   /// Polygons that have the area of the pupils and nearly their shape, for models without rims: an outline with one
   /// obscuration. That is not enough for pupils in several parts (a ball lens, catadioptrics beyond their field): they
   /// are described as one part of about that area, and a ball lens at f/8 gets up to 2.5 times its light. So do the
   /// models that use these pupils, polynomials and two discs; exact ones do not. Throws Error as enclosing() does, and
   /// for an iris with edges.
-  static FilmPupilTable equal_area(const Lens& lens, double film_radius);
+  static FilmPupilTable equal_area(const Lens& lens, double film_radius, int threads = 1);
 
   /// The same for the overlap of some discs, one list for each wavelength. One disc alone has a closed form: of_iris().
   /// wavelengths_nm: the wavelengths; without them there are no samples by nm.
@@ -179,7 +180,7 @@ class PETZVAL_API FilmPupilTable {
 
  private:
   struct Data;
-  static FilmPupilTable traced(const Lens& lens, double film_radius, bool enclosing);
+  static FilmPupilTable traced(const Lens& lens, double film_radius, bool enclosing, int threads);
   explicit FilmPupilTable(std::shared_ptr<const Data> data) noexcept : data_(std::move(data)) {}
   std::shared_ptr<const Data> data_;
 };
