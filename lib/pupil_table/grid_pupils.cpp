@@ -254,60 +254,66 @@ void expand_to_probes(std::span<PupilPolygon> polygons, std::size_t probes, cons
                       const ProbeClearances& clearances) {
   constexpr int rounds = 4;
   const core_detail::Kronecker<4> uniform;
-  std::vector<double> x, y;
-  std::vector<double> values;
-  std::vector<std::uint32_t> sectors(probes);
-  std::vector<PolygonWeights> at(probes);
-  std::vector<std::array<double, 4>> places(probes);
-  std::vector<Point<double>> middles(probes), edges(probes);  // edges: from the middle
+  // Some at a time, so that memory is used again.
+  constexpr std::size_t some = 1024;
+  std::vector<double> x, y, values;
+  std::vector<std::uint32_t> open;
+  std::vector<std::uint32_t> sectors(some);
+  std::vector<PolygonWeights> at(some);
+  std::vector<std::array<double, 4>> places(some);
+  std::vector<Point<double>> middles(some), edges(some);  // edges: from the middle
+  std::vector<double> scales(some);
   for (int round = 0; round < rounds; ++round) {
-    for (std::size_t p = 0; p < probes; ++p) {
-      places[p] = uniform(static_cast<std::size_t>(round) * probes + p);
-      at[p] = weights(places[p]);
-      const double along = places[p][3] * polygon_corners;
-      const std::size_t k = std::min(static_cast<std::size_t>(along), polygon_corners - 1);
-      sectors[p] = static_cast<std::uint32_t>(k);
-      middles[p] = edges[p] = {};
-      for (std::size_t j = 0; j < at[p].polygons.size(); ++j) {
-        if (at[p].weights[j] == 0) continue;
-        const PupilPolygon& polygon = polygons[at[p].polygons[j]];
-        middles[p] = middles[p] + at[p].weights[j] * Point<double>{polygon.middle.x, polygon.middle.y};
-        edges[p] = edges[p] + at[p].weights[j] * polygon.sector(k).at(1, along - static_cast<double>(k));
-      }
-    }
-    // Steps outwards, of those that still pass.
-    std::vector<double> scales(probes, 1);
-    std::vector<std::uint32_t> open(probes);
-    std::iota(open.begin(), open.end(), 0u);
-    for (const double way : {1.00001, 1.002, 1.006, 1.015, 1.04, 1.1, 1.25, 1.6}) {
-      if (open.empty()) break;
-      x.clear(), y.clear();
-      for (const std::uint32_t p : open) {
-        x.push_back(middles[p].x + way * edges[p].x);
-        y.push_back(middles[p].y + way * edges[p].y);
-      }
-      values.resize(open.size());
-      clearances(places, open, x.data(), y.data(), values.data());
-      std::size_t left = 0;
-      for (std::size_t i = 0; i < open.size(); ++i) {
-        if (!(values[i] >= 0)) continue;
-        constexpr double beyond = 1.5, always = 0.002;
-        scales[open[i]] = 1 + beyond * (way - 1) + always;
-        open[left++] = open[i];
-      }
-      open.resize(left);
-    }
     std::vector<std::array<double, polygon_corners>> larger(polygons.size());
     for (auto& scale : larger) scale.fill(1);
     bool any = false;
-    for (std::size_t p = 0; p < probes; ++p) {
-      if (scales[p] == 1) continue;
-      any = true;
-      for (std::size_t j = 0; j < at[p].polygons.size(); ++j) {
-        if (at[p].weights[j] == 0) continue;
-        for (const std::size_t corner : {std::size_t{sectors[p]}, (sectors[p] + 1) % polygon_corners}) {
-          double& scale = larger[at[p].polygons[j]][corner];
-          scale = std::max(scale, scales[p]);
+    for (std::size_t begin = 0; begin < probes; begin += some) {
+      const std::size_t count = std::min(some, probes - begin);
+      for (std::size_t p = 0; p < count; ++p) {
+        places[p] = uniform(static_cast<std::size_t>(round) * probes + begin + p);
+        at[p] = weights(places[p]);
+        const double along = places[p][3] * polygon_corners;
+        const std::size_t k = std::min(static_cast<std::size_t>(along), polygon_corners - 1);
+        sectors[p] = static_cast<std::uint32_t>(k);
+        middles[p] = edges[p] = {};
+        for (std::size_t j = 0; j < at[p].polygons.size(); ++j) {
+          if (at[p].weights[j] == 0) continue;
+          const PupilPolygon& polygon = polygons[at[p].polygons[j]];
+          middles[p] = middles[p] + at[p].weights[j] * Point<double>{polygon.middle.x, polygon.middle.y};
+          edges[p] = edges[p] + at[p].weights[j] * polygon.sector(k).at(1, along - static_cast<double>(k));
+        }
+      }
+      // Steps outwards, of those that still pass.
+      std::fill(scales.begin(), scales.end(), 1);
+      open.resize(count);
+      std::iota(open.begin(), open.end(), 0u);
+      for (const double way : {1.00001, 1.002, 1.006, 1.015, 1.04, 1.1, 1.25, 1.6}) {
+        if (open.empty()) break;
+        x.clear(), y.clear();
+        for (const std::uint32_t p : open) {
+          x.push_back(middles[p].x + way * edges[p].x);
+          y.push_back(middles[p].y + way * edges[p].y);
+        }
+        values.resize(open.size());
+        clearances(places, open, x.data(), y.data(), values.data());
+        std::size_t left = 0;
+        for (std::size_t i = 0; i < open.size(); ++i) {
+          if (!(values[i] >= 0)) continue;
+          constexpr double beyond = 1.5, always = 0.002;
+          scales[open[i]] = 1 + beyond * (way - 1) + always;
+          open[left++] = open[i];
+        }
+        open.resize(left);
+      }
+      for (std::size_t p = 0; p < count; ++p) {
+        if (scales[p] == 1) continue;
+        any = true;
+        for (std::size_t j = 0; j < at[p].polygons.size(); ++j) {
+          if (at[p].weights[j] == 0) continue;
+          for (const std::size_t corner : {std::size_t{sectors[p]}, (sectors[p] + 1) % polygon_corners}) {
+            double& scale = larger[at[p].polygons[j]][corner];
+            scale = std::max(scale, scales[p]);
+          }
         }
       }
     }
