@@ -172,6 +172,11 @@ bool FilmCells::contains(const FilmPoint& film, double x, double y, std::size_t 
   return at.cell && contains_place(at.polygon(), {at.sign_x * x, at.sign_y * y});
 }
 
+double FilmCells::clearance(const FilmPoint& film, double x, double y, std::size_t wavelength) const noexcept {
+  const Place at = find(film, wavelength);
+  return at.cell ? clearance_of_place(at.polygon(), {at.sign_x * x, at.sign_y * y}) : -1;
+}
+
 FilmPupilTable::Derivatives FilmCells::derivatives(const FilmPoint& film, double u, double v,
                                                    std::size_t wavelength) const noexcept {
   using Jet = ceres::Jet<double, 2>;

@@ -251,18 +251,12 @@ std::vector<PupilPolygon> tilted_grid_polygons(const FilmPupilTable& upright, co
     FilmPoint film;
     double nearer;
   };
-  std::array<std::vector<double>, 2> film;
-  std::vector<std::uint8_t> within;
   const auto test = [&](std::size_t count, const auto& seen_by, const double* x, const double* y, double* clearances) {
-    for (auto& values : film) values.resize(count);
-    within.resize(count);
     for (std::size_t i = 0; i < count; ++i) {
-      const Seen& seen = seen_by(i);
-      film[0][i] = seen.film.x - seen.nearer * x[i];
-      film[1][i] = seen.film.y - seen.nearer * y[i];
+      const auto& [film, nearer] = seen_by(i);
+      const FilmPoint at{film.x - nearer * x[i], film.y - nearer * y[i]};
+      clearances[i] = upright.clearance(at, x[i], y[i], wavelength);
     }
-    upright.contains<double>(count, {film[0].data(), film[1].data(), x, y}, {.all = wavelength}, within.data());
-    std::transform(within.begin(), within.end(), clearances, pupil_detail::clearance_of);
   };
 
   // The pupils of some places of each point: of the middle one first, where there is light if anywhere.

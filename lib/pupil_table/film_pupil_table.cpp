@@ -20,6 +20,7 @@
 #include "petzval/core/error.hpp"
 #include "petzval/core/parallel.hpp"
 #include "polygon_place.hpp"
+#include "pupil/line_extents.hpp"
 
 namespace petzval::inline v0 {
 namespace {
@@ -422,6 +423,14 @@ bool FilmPupilTable::contains(const FilmPoint& film, double x, double y, Wavelen
   const auto [strip, t, cosine, sine] = data_->find(film, wavelength);
   if (!strip) return false;
   return contains_place(InStrip<double>{strip, t}, {cosine * x - sine * y, sine * x + cosine * y});
+}
+
+double FilmPupilTable::clearance(const FilmPoint& film, double x, double y, Wavelength wavelength) const noexcept {
+  if (data_->images) return pupil_detail::clearance_of(contains(film, x, y, wavelength));
+  if (const auto& cells = data_->cells) return cells->clearance(film, x, y, data_->position(wavelength));
+  const auto [strip, t, cosine, sine] = data_->find(film, wavelength);
+  if (!strip) return -1;
+  return clearance_of_place(InStrip<double>{strip, t}, {cosine * x - sine * y, sine * x + cosine * y});
 }
 
 template <class T>

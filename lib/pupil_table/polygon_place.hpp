@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <optional>
+#include <utility>
 
 #include "film_pupil_table_loops.hpp"
 #include "petzval/core/geometry.hpp"
@@ -79,15 +81,51 @@ Point<T> sample_place(const In<T>& polygon, std::size_t k, const T& u, double v)
   return polygon.middle() + p;
 }
 
+/// The last corner before a place, seen from the middle, of corners in order.
 template <template <class> class In>
-bool contains_place(const In<double>& polygon, const Point<double>& place) {
+std::size_t corner_before(const In<double>& polygon, const Point<double>& q) {
+  const Point<double> first = polygon.corner(0);
+  const bool first_half = turn(first, q) >= 0;
+  std::size_t low = 0, high = polygon_corners;
+  while (high - low > 1) {
+    const std::size_t k = (low + high) / 2;
+    const Point<double> corner = polygon.corner(k);
+    const bool own_half = turn(first, corner) >= 0;
+    (own_half == first_half ? turn(corner, q) >= 0 : own_half) ? low = k : high = k;
+  }
+  return low;
+}
+
+/// The squared way outwards to a place and the sector that faces it; none: no sector does.
+template <template <class> class In>
+std::optional<std::pair<double, Sector<double>>> way_to_place(const In<double>& polygon, const Point<double>& place) {
   const Point<double> q = place - polygon.middle();
   const auto sectors = [&](std::size_t k) { return sector_at(polygon, k); };
-  const std::size_t k = sector_facing(q, sectors);
-  if (k == polygon_corners) return false;
+  const std::size_t k = sector_facing(q, sectors, corner_before(polygon, q));
+  if (k == polygon_corners) return {};
   const Sector<double> sector = sectors(k);
-  const double way = sector.way_to(q), squared = way * way;
-  return squared <= 1 && !sector.obscures(squared);
+  const double way = sector.way_to(q);
+  return std::pair{way * way, sector};
+}
+
+template <template <class> class In>
+bool contains_place(const In<double>& polygon, const Point<double>& place) {
+  const auto found = way_to_place(polygon, place);
+  return found && found->first <= 1 && !found->second.obscures(found->first);
+}
+
+/// As FilmPupilTable::clearance().
+template <template <class> class In>
+double clearance_of_place(const In<double>& polygon, const Point<double>& place) {
+  const auto found = way_to_place(polygon, place);
+  if (!found) return -1;
+  const auto& [squared, sector] = *found;
+  double least = 1 - squared;
+  if (sector.obscured > 0) {
+    const double inner = sector.obscured_from - squared, outer = squared - sector.obscured_from - sector.obscured;
+    least = std::min(least, std::max(inner, outer));
+  }
+  return least < 0 ? least / (1 - least) : least;
 }
 
 /// By how many sectors equal shares of the area miss the right one, at most: as tables have it (StripTable).

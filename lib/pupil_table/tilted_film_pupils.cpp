@@ -67,19 +67,12 @@ FilmPupils tilted_film_pupils(const FilmPupilTable& upright, const FilmTilt& til
       const double near = 3 * expected.radius, far = 12 * expected.radius;
       guesses.push_back({0, y - far, y + far, expected.radius, y, near, expected.ring});
     }
-    std::array<std::vector<double>, 2> film;
-    std::vector<std::uint8_t> within;
     return find(guesses, [&](std::size_t count, const std::uint32_t* which, const double* x, const double* y,
                              double* clearances) {
-      for (auto& values : film) values.resize(count);
-      within.resize(count);
       for (std::size_t i = 0; i < count; ++i) {
         const auto& [height, nearer] = fields[which[i]];
-        film[0][i] = -nearer * x[i];
-        film[1][i] = height - nearer * y[i];
+        clearances[i] = upright.clearance({-nearer * x[i], height - nearer * y[i]}, x[i], y[i], wavelength);
       }
-      upright.contains<double>(count, {film[0].data(), film[1].data(), x, y}, {.all = wavelength}, within.data());
-      std::transform(within.begin(), within.end(), clearances, pupil_detail::clearance_of);
     });
   };
   return {[=](std::span<const double> heights) {

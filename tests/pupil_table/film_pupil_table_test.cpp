@@ -165,6 +165,29 @@ TEST(FilmPupilTable, MatchesTheShapeOfPupils) {
   }
 }
 
+TEST(FilmPupilTable, KnowsHowFarWithinAPupilAPlaceLies) {
+  for (const char* id : {"double_gauss_100mm_f1.35", "catadioptric_mangin_1000mm_f7.5", "anamorphic_60mm_2x"}) {
+    constexpr double radius = 18;
+    const FilmPupilTable table = FilmPupilTable::enclosing(data_lens(id), radius);
+    const double reach = 1.5 * std::sqrt(table.area({0, 0}));
+    std::mt19937_64 random(5);
+    std::uniform_real_distribution<double> unit(-1, 1);
+    for (int i = 0; i < 4000; ++i) {
+      const FilmPoint film{0.6 * radius * unit(random), 0.6 * radius * unit(random)};
+      const Vec2<double> middle = table.middle(film);
+      const double x = middle.x + reach * unit(random), y = middle.y + reach * unit(random);
+      const double here = table.clearance(film, x, y);
+      EXPECT_EQ(here >= 0, table.contains(film, x, y)) << id << ' ' << here;
+      EXPECT_GT(here, -1) << id;
+      constexpr double step = 1e-7;
+      EXPECT_NEAR(table.clearance(film, x + step * reach, y), here, 20 * step) << id;
+      EXPECT_NEAR(table.clearance({film.x, film.y + step * radius}, x, y), here, 20 * step) << id;
+      EXPECT_NEAR(table.clearance(film, x, y) - table.clearance({-film.x, -film.y}, -x, -y), 0, 1e-9) << id;
+    }
+    EXPECT_EQ(table.clearance({0, 2 * radius}, 0, 0), -1) << id;
+  }
+}
+
 class UniformSamples : public ::testing::TestWithParam<std::pair<const char*, FilmPoint>> {};
 
 TEST_P(UniformSamples, HaveTheDensityOfTheArea) {

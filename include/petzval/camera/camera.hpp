@@ -73,8 +73,8 @@ struct CameraOptions {
 /// host_frame.hpp has the frames of hosts.
 class PETZVAL_API Camera {
  public:
-  /// The lens has its film where film.z_mm says, as with_film() would. A film that is tilted or travels takes five to
-  /// nine times as long to set up (11 ms rather than 1.3 for a double Gauss); fits of tilts need no camera. Throws
+  /// The lens has its film where film.z_mm says, as with_film() would. A film that is tilted or travels takes four to
+  /// six times as long to set up (7 ms rather than 1.3 for a double Gauss); fits of tilts need no camera. Throws
   /// Error for a film without area or pixels, one that is not behind the last surface, is tilted into the lens or comes
   /// near to the plane of the pupil, and where the model cannot be built: a lens without a pupil, a pinhole or two
   /// discs of a lens with cylinders.

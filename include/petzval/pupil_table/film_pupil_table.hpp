@@ -164,7 +164,11 @@ class PETZVAL_API FilmPupilTable {
   /// Whether a place in the plane of the pupil belongs to the pupil of a film point.
   bool contains(const FilmPoint& film, double x, double y, Wavelength wavelength = {}) const noexcept;
 
-  /// The same for many rays. within: N, 0 or 1. Float or double.
+  /// How far within that pupil the place lies: from 1 in the middle to 0 at the edge, and on to -1 outside and in the
+  /// obscuration. Continuous over film points and places that the pupil faces; of pupils in closed form 1 or -1.
+  double clearance(const FilmPoint& film, double x, double y, Wavelength wavelength = {}) const noexcept;
+
+  /// contains() for many rays. within: N, 0 or 1. Float or double.
   template <class T>
   void contains(std::size_t count, const TwoPlaneRays<const T>& lines, const RayWavelengths& wavelengths,
                 std::uint8_t* within) const noexcept;
