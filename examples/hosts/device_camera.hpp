@@ -73,6 +73,44 @@ PETZVAL_DEVICE inline DevicePlace sample_polygon(const float* t, float film_x, f
   return {cosine * x + sine * y, cosine * y - sine * x, before(64)};
 }
 
+/// Of a lens with cylinders: in the quadrant x, y >= 0 of the film; the pupils of the others are mirror images.
+PETZVAL_DEVICE inline DevicePlace sample_cell(const float* t, float film_x, float film_y, float u, float v, int w) {
+  const int rows = whole_number(t, Table::rows), columns = whole_number(t, Table::columns);
+  const float row = t[Table::height] > 0 ? std::fabs(film_y) * static_cast<float>(rows) / t[Table::height] : 0;
+  if (!(row <= 1.000001f * static_cast<float>(rows))) return {};
+  const int i = static_cast<int>(row) < rows ? static_cast<int>(row) : rows - 1;
+  const float part_y = row - static_cast<float>(i), *half = list(t, Table::half_widths) + i;
+  const float width = half[0] + part_y * (half[1] - half[0]);
+  if (!(std::fabs(film_x) <= 1.000001f * width)) return {};
+  const float column = width > 0 ? std::fabs(film_x) / width * static_cast<float>(columns) : 0;
+  const int j = static_cast<int>(column) < columns ? static_cast<int>(column) : columns - 1;
+  const float part_x = column - static_cast<float>(j);
+  const float* cell = list(t, Table::pupils) + ((w * rows + i) * columns + j) * 1122;
+  const auto bilinear = [part_x, part_y](const float* a) {
+    return a[0] + part_x * a[1] + part_y * (a[2] + part_x * a[3]);
+  };
+  const auto before = [cell, part_x, part_y](int k) {
+    const float* a = cell + (k == 64 ? 8 : 25 + 17 * k);
+    const float one = a[0] + part_x * (a[1] + part_x * a[2]), by_y = a[3] + part_x * (a[4] + part_x * a[5]);
+    return one + part_y * (by_y + part_y * (a[6] + part_x * (a[7] + part_x * a[8])));
+  };
+  const float whole = before(64);
+  if (!(whole > 0)) return {};
+  // u runs on where quadrants meet.
+  float share = film_x < 0 ? 1 - u : u;
+  if (film_y < 0) share = before(32) / whole - share;
+  share -= std::floor(share);
+  const float wanted = share * whole;
+  int k = 0;
+  for (int step = 32; step > 0; step /= 2) k += before(k + step) <= wanted ? step : 0;
+  const float own = before(k + 1) - before(k), along = own > 0 ? (wanted - before(k)) / own : 0, way = std::sqrt(v);
+  const float *a = cell + 17 + 17 * k, *b = a + 17;
+  const float ax = bilinear(a), ay = bilinear(a + 4), bx = bilinear(b), by = bilinear(b + 4);
+  const float x = bilinear(cell) + way * (ax + along * (bx - ax));
+  const float y = bilinear(cell + 4) + way * (ay + along * (by - ay));
+  return {film_x < 0 ? -x : x, film_y < 0 ? -y : y, whole};
+}
+
 PETZVAL_DEVICE inline bool by_first_order(const float* t, const float film[2], const float pupil[2], int w,
                                           DeviceRay& ray) {
   float slope[2];
@@ -87,16 +125,10 @@ PETZVAL_DEVICE inline bool by_first_order(const float* t, const float film[2], c
   return true;
 }
 
-/// See RayPolynomial for the chart of rays.
-PETZVAL_DEVICE inline bool by_polynomial(const float* t, const float film[2], const float pupil[2], int w,
-                                         DeviceRay& ray) {
-  float f[2], p[2];
-  for (int k = 0; k < 2; ++k) {
-    f[k] = film[k] / t[Table::domain_film_radius];
-    p[k] = (pupil[k] - t[Table::domain_pupil_shift] * film[k]) / t[Table::domain_pupil_radius];
-  }
+/// s and o of a lens of revolution, from film and pupil point of the domain.
+PETZVAL_DEVICE inline void turning_sums(const float* t, const float f[2], const float p[2], int w, float s[2],
+                                        float o[2]) {
   const float u = f[0] * f[0] + f[1] * f[1], v = f[0] * p[0] + f[1] * p[1], r = p[0] * p[0] + p[1] * p[1];
-  if (!(u <= 1.00001f && r <= 1.00001f)) return false;
   const int n = (whole_number(t, Table::degree) - 1) / 2, terms = (n + 1) * (n + 2) * (n + 3) / 6;
   const float* c = list(t, Table::rays) + 4 * terms * w;
   float sums[4] = {0, 0, 0, 0}, by_r = 1;
@@ -109,22 +141,67 @@ PETZVAL_DEVICE inline bool by_polynomial(const float* t, const float film[2], co
       }
     }
   }
-  float s[2], o[2];
   for (int k = 0; k < 2; ++k) s[k] = sums[0] * f[k] + sums[1] * p[k], o[k] = sums[2] * f[k] + sums[3] * p[k];
+}
+
+/// The same of a lens with cylinders, along one axis.
+PETZVAL_DEVICE inline void mirror_sums(const float* t, const float f[2], const float p[2], int w, int axis, float s[2],
+                                       float o[2]) {
+  const int n = (whole_number(t, Table::degree) - 1) / 2, other = 1 - axis;
+  const int terms = (n + 1) * (n + 2) * (n + 3) * (n + 4) / 24 + n * (n + 1) * (n + 2) * (n + 3) / 24;
+  const float* c = list(t, Table::rays) + terms * (8 * w + axis);
+  float sums[4] = {0, 0, 0, 0};
+  for (int odd = 0; odd < 2; ++odd) {
+    const int most = n - odd;
+    float by_other_pupil = odd ? f[other] * p[other] : 1;
+    for (int l = 0; l <= most; ++l, by_other_pupil *= p[other] * p[other]) {
+      float by_other_film = by_other_pupil;
+      for (int k = 0; k <= most - l; ++k, by_other_film *= f[other] * f[other]) {
+        float by_pupil = by_other_film;
+        for (int j = 0; j <= most - l - k; ++j, by_pupil *= p[axis] * p[axis]) {
+          float term = by_pupil;
+          for (int i = 0; i <= most - l - k - j; ++i, term *= f[axis] * f[axis], ++c) {
+            for (int list = 0; list < 4; ++list) sums[list] += c[2 * list * terms] * term;
+          }
+        }
+      }
+    }
+  }
+  s[axis] = sums[0] * f[axis] + sums[1] * p[axis], o[axis] = sums[2] * f[axis] + sums[3] * p[axis];
+}
+
+/// See RayPolynomial for the chart of rays.
+PETZVAL_DEVICE inline bool by_polynomial(const float* t, const float film[2], const float pupil[2], int w,
+                                         DeviceRay& ray) {
+  const bool mirrors = t[Table::domain_pupil_radius_x] != 0;
+  float f[2], p[2], s[2], o[2];
+  for (int k = 0; k < 2; ++k) {
+    const bool x = mirrors && k == 0;
+    const float shift = t[x ? Table::domain_pupil_shift_x : Table::domain_pupil_shift];
+    const float radius = t[x ? Table::domain_pupil_radius_x : Table::domain_pupil_radius];
+    f[k] = film[k] / t[Table::domain_film_radius];
+    p[k] = (pupil[k] - shift * film[k]) / radius;
+  }
+  if (!(f[0] * f[0] + f[1] * f[1] <= 1.00001f && p[0] * p[0] + p[1] * p[1] <= 1.00001f)) return false;
+  if (mirrors) {
+    mirror_sums(t, f, p, w, 0, s, o), mirror_sums(t, f, p, w, 1, s, o);
+  } else {
+    turning_sums(t, f, p, w, s, o);
+  }
   const float square = s[0] * s[0] + s[1] * s[1], twice = 2 / (square + 1), along = twice * (s[0] * o[0] + s[1] * o[1]);
   for (int k = 0; k < 2; ++k) ray.origin[k] = o[k] - s[k] * along, ray.direction[k] = twice * s[k];
   ray.origin[2] = along + t[Table::reference_z], ray.direction[2] = twice * (square - 1) / 2;
   return true;
 }
 
-/// Sag of a surface and its slope over r: z = sag, dz/dx = slope x.
+/// Sag of a surface and its slope over r: z = sag, dz/dx = slope x. r2: in the section in which a cylinder is curved.
 PETZVAL_DEVICE inline bool sag_of(const float* surface, float r2, float& z, float& slope) {
   const float c = surface[1], inside = 1 - (1 + surface[2]) * c * c * r2;
   if (!(inside > 0)) return false;
-  const float root = std::sqrt(inside), height = surface[7], rho = std::sqrt(r2) / height;
+  const float root = std::sqrt(inside), height = surface[8], rho = std::sqrt(r2) / height;
   float sum = 0, derivative = 0;  // of the aspheric terms by rho, over rho^2 and rho
   for (int order = 40; order >= 2; --order) {
-    const float a = surface[8 + order - 2];
+    const float a = surface[9 + order - 2];
     sum = sum * rho + a;
     derivative = derivative * rho + static_cast<float>(order) * a;
   }
@@ -144,17 +221,20 @@ PETZVAL_DEVICE inline bool by_surfaces(const float* t, int w, DeviceRay& ray) {
     // In the plane of the vertex the quadratic loses no digits.
     const float start = (surface[0] - o[2]) / d[2];
     const float x = o[0] + start * d[0], y = o[1] + start * d[1];
-    const float quadratic = c * (d[0] * d[0] + d[1] * d[1] + e * d[2] * d[2]), free = c * (x * x + y * y);
-    const float linear = d[2] - c * (x * d[0] + y * d[1]), square = linear * linear - quadratic * free;
+    // 0 along the axis in which a cylinder is not curved.
+    const float in_x = surface[7] == 2 ? 0.0f : 1.0f, in_y = surface[7] == 1 ? 0.0f : 1.0f;
+    const float quadratic = c * (in_x * d[0] * d[0] + in_y * d[1] * d[1] + e * d[2] * d[2]);
+    const float free = c * (in_x * x * x + in_y * y * y);
+    const float linear = d[2] - c * (in_x * x * d[0] + in_y * y * d[1]), square = linear * linear - quadratic * free;
     if (!(square >= 0)) return false;
     float way = free / (linear + sense * std::sqrt(square)), slope = 0;
     for (int step = 0; step < 12; ++step) {  // Newton, for the aspheric terms
       const float px = x + way * d[0], py = y + way * d[1];
       float z = 0;
-      if (!sag_of(surface, px * px + py * py, z, slope)) return false;
-      const float above = way * d[2] - z, rate = d[2] - slope * (px * d[0] + py * d[1]);
+      if (!sag_of(surface, in_x * px * px + in_y * py * py, z, slope)) return false;
+      const float above = way * d[2] - z, rate = d[2] - slope * (in_x * px * d[0] + in_y * py * d[1]);
       way -= above / rate;
-      if (std::fabs(above) <= 1e-7f * surface[7]) break;
+      if (std::fabs(above) <= 1e-7f * surface[8]) break;
     }
     o[0] = x + way * d[0], o[1] = y + way * d[1], o[2] = surface[0] + way * d[2];
     const float r2 = o[0] * o[0] + o[1] * o[1];
@@ -164,7 +244,7 @@ PETZVAL_DEVICE inline bool by_surfaces(const float* t, int w, DeviceRay& ray) {
       if (o[0] * edge[0] + o[1] * edge[1] > edge[2]) return false;
     }
     // The normal, against the ray.
-    float normal[3] = {slope * o[0] * sense, slope * o[1] * sense, -sense};
+    float normal[3] = {in_x * slope * o[0] * sense, in_y * slope * o[1] * sense, -sense};
     const float per_length = 1 / std::sqrt(normal[0] * normal[0] + normal[1] * normal[1] + 1);
     float cosine = 0;
     for (int k = 0; k < 3; ++k) normal[k] *= per_length, cosine -= normal[k] * d[k];
@@ -201,8 +281,12 @@ PETZVAL_DEVICE inline DeviceRay sample(const float* t, float film_x, float film_
                        std::fabs(film_y - t[Table::film_y]) <= t[Table::half_height];
   const float r2 = film_x * film_x + film_y * film_y, reach = t[Table::pupil_radius] * 1.000001f;
   if (!on_film || !(r2 <= reach * reach)) return ray;
-  const DevicePlace place = t[Table::pupils_are_images] != 0 ? sample_image(t, film_x, film_y, u, v, w)
-                                                             : sample_polygon(t, film_x, film_y, u, v, w);
+  DevicePlace place;
+  switch (whole_number(t, Table::pupils_kind)) {
+    case 0: place = sample_polygon(t, film_x, film_y, u, v, w); break;
+    case 1: place = sample_image(t, film_x, film_y, u, v, w); break;
+    default: place = sample_cell(t, film_x, film_y, u, v, w);
+  }
   if (!(place.area > 0)) return ray;
   const float film[2] = {film_x, film_y}, pupil[2] = {place.x, place.y};
   const float depth = t[Table::pupil_z] - t[Table::film_z], x = place.x - film_x, y = place.y - film_y;

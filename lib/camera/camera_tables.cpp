@@ -49,6 +49,10 @@ void put_polynomial(Numbers& to, const RayPolynomial& polynomial) {
   to.set(Table::domain_film_radius, domain.film_radius);
   to.set(Table::domain_pupil_shift, domain.pupil_shift);
   to.set(Table::domain_pupil_radius, domain.pupil_radius);
+  if (domain.along_x) {
+    to.set(Table::domain_pupil_shift_x, domain.along_x->pupil_shift);
+    to.set(Table::domain_pupil_radius_x, domain.along_x->pupil_radius);
+  }
   for (const RayPolynomial::Fit& fit : polynomial.fits()) {
     to.add(fit.direction_by_film), to.add(fit.direction_by_pupil);
     to.add(fit.offset_by_film), to.add(fit.offset_by_pupil);
@@ -64,8 +68,9 @@ void put_surfaces(Numbers& to, const Lens& lens) {
     const double height = limited ? s.semi_diameter : 1;
     to.add(std::array{s.vertex_z, s.curvature, s.conic});
     to.add(std::isfinite(s.semi_diameter) ? s.semi_diameter : double{unlimited});
-    to.add(std::array{s.obscuration_semi_diameter, s.mirror ? 1.0 : 0.0, lens.stop() == i ? 1.0 : 0.0, height});
-    std::array<double, Table::surface_size - 8> terms{};
+    to.add(std::array{s.obscuration_semi_diameter, s.mirror ? 1.0 : 0.0, lens.stop() == i ? 1.0 : 0.0});
+    to.add(std::array{s.curved_in == Section::x ? 1.0 : s.curved_in == Section::y ? 2.0 : 0.0, height});
+    std::array<double, Table::surface_size - 9> terms{};
     for (const auto& [order, coefficient] : s.aspheric) {
       terms[static_cast<std::size_t>(order) - 2] += coefficient * std::pow(height, order);
     }
@@ -86,7 +91,7 @@ void put_surfaces(Numbers& to, const Lens& lens) {
 
 void CameraTables::check(std::span<const float> tables, const std::string& where) {
   const auto refuse = [&](const std::string& found) { throw Error(where + ": found " + found); };
-  if (tables.size() < head_size || tables[format] != 1) refuse("no camera tables of format 1, wanted them");
+  if (tables.size() < head_size || tables[format] != 2) refuse("no camera tables of format 2, wanted them");
   const auto number = [&](Position at) {
     const float value = tables[at];
     if (!(value >= 0 && value <= 1 << 24 && value == std::floor(value))) {
@@ -100,15 +105,28 @@ void CameraTables::check(std::span<const float> tables, const std::string& where
   };
   const std::size_t w = number(wavelength_count), spaces = number(surface_count) + 1;
   check_list(wavelengths, w), check_list(scales, w);
-  check_list(pupils, w * (number(pupils_are_images) ? FilmPupilArrays::image_size
-                                                    : number(strips) * FilmPupilArrays::strip_size));
+  switch (number(pupils_kind)) {
+    case 0: check_list(pupils, w * number(strips) * FilmPupilArrays::strip_size); break;
+    case 1: check_list(pupils, w * FilmPupilArrays::image_size); break;
+    case 2: {
+      const std::size_t cells = number(rows) * number(columns);
+      if (cells == 0) refuse("no cells of pupils, wanted them");
+      check_list(half_widths, number(rows) + 1);
+      check_list(pupils, cells), check_list(pupils, w * cells * FilmPupilArrays::cell_size);
+      break;
+    }
+    default: refuse("pupils of kind " + std::to_string(number(pupils_kind)) + ", wanted 0, 1 or 2");
+  }
   if (number(iris_corners) > 0) check_list(iris, 3 * (number(iris_corners) + 1));
   switch (number(rays_kind)) {
     case 0: check_list(rays, 8 * w); break;
-    case 1:
-      check_list(rays,
-                 4 * w * RayPolynomial::terms(static_cast<int>(std::min<std::size_t>(number(degree), 11))).size());
+    case 1: {
+      const int n = static_cast<int>(std::min<std::size_t>(number(degree), 11));
+      const bool mirrors = tables[domain_pupil_radius_x] != 0;
+      const std::size_t each = mirrors ? 2 * RayPolynomial::mirror_terms(n).size() : RayPolynomial::terms(n).size();
+      check_list(rays, 4 * w * each);
       break;
+    }
     case 2:
       check_list(rays, number(surface_count) * surface_size), check_list(indices, w * spaces);
       check_list(edges, 3 * number(edge_count));
@@ -122,7 +140,7 @@ std::vector<float> Camera::tables() const {
   const std::string where = data.lens.name() + ": tables: ";
   if (data.tilted) throw Error(where + "the film is tilted or travels, wanted an upright one that stays");
   Numbers to;
-  to.set(Table::format, 1);
+  to.set(Table::format, 2);
   to.set(Table::model, static_cast<int>(data.model.kind()));
   to.set(Table::wavelength_count, data.lens.wavelengths_nm().size());
   to.set(Table::primary_wavelength, data.lens.primary_wavelength());
@@ -137,9 +155,15 @@ std::vector<float> Camera::tables() const {
 
   const FilmPupilArrays pupils = data.model.pupils().arrays();
   to.begin(Table::pupils), to.list.insert(to.list.end(), pupils.pupils.begin(), pupils.pupils.end());
-  to.set(Table::pupils_are_images, pupils.images ? 1 : 0);
+  to.set(Table::pupils_kind, static_cast<int>(pupils.kind));
   to.set(Table::pupil_radius, pupils.film_radius);
   to.set(Table::strips, pupils.strips);
+  if (pupils.kind == FilmPupilArrays::Kind::cells) {
+    to.set(Table::rows, pupils.half_widths.size() - 1), to.set(Table::columns, pupils.columns);
+    to.set(Table::height, pupils.height);
+    to.begin(Table::half_widths);
+    to.list.insert(to.list.end(), pupils.half_widths.begin(), pupils.half_widths.end());
+  }
   to.begin(Table::iris), to.list.insert(to.list.end(), pupils.iris.begin(), pupils.iris.end());
   to.set(Table::iris_corners, std::max<std::size_t>(pupils.iris.size() / 3, 1) - 1);
 

@@ -144,6 +144,15 @@ CellTable<R> FilmCells::table() const noexcept {
   return result;
 }
 
+void FilmCells::put(FilmPupilArrays& arrays) const {
+  static_assert(L::size == FilmPupilArrays::cell_size && L::whole == 8 && L::sectors == 17 && L::sector == 17);
+  arrays.kind = FilmPupilArrays::Kind::cells;
+  arrays.pupils = single_;
+  arrays.columns = grid_.columns;
+  arrays.height = grid_.height;
+  arrays.half_widths = half_widths_single_;
+}
+
 PupilSample FilmCells::sample(const FilmPoint& film, double u, double v, std::size_t wavelength) const noexcept {
   const Place at = find(film, wavelength);
   if (!at.cell || !(u - u == 0 && v - v == 0)) return {};

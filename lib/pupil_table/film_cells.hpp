@@ -34,6 +34,7 @@ class FilmCells {
 
   template <class R>
   CellTable<R> table() const noexcept;
+  void put(FilmPupilArrays& arrays) const;
 
  private:
   struct Place;

@@ -338,13 +338,12 @@ bool FilmPupilTable::covers(Wavelength wavelength) const noexcept {
 
 FilmPupilArrays FilmPupilTable::arrays() const {
   static_assert(L::size == FilmPupilArrays::strip_size && L::obscured == 528 && L::sectors == 8);
-  if (data_->cells) {
-    throw Error("pupil table: found pupils over both axes of the film, wanted those of a lens of revolution");
-  }
   FilmPupilArrays result;
   result.film_radius = lit_radius();
   if (const auto& images = data_->images) {
     images->put(result);
+  } else if (const auto& cells = data_->cells) {
+    cells->put(result);
   } else {
     result.pupils = data_->single;
     result.strips = data_->strips_each;

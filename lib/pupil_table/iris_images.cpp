@@ -35,7 +35,7 @@ IrisImages IrisImages::tilted(const FilmTilt& tilt) const {
 }
 
 void IrisImages::put(FilmPupilArrays& arrays) const {
-  arrays.images = true;
+  arrays.kind = FilmPupilArrays::Kind::images;
   const auto number = [](double x) { return static_cast<float>(x); };
   for (const Image& image : images_) {
     arrays.pupils.insert(arrays.pupils.end(), {number(image.shift_x), number(image.shift_y), number(image.radius_x),

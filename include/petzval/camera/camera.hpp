@@ -123,8 +123,8 @@ class PETZVAL_API Camera {
                         Wavelength wavelength = {}) const noexcept;
 
   /// The camera's film side as plain numbers, for hosts that sample on another processor: CameraTables
-  /// (camera_tables.hpp) has the layout. Throws Error for a film that is tilted or travels, a renderer's own model, and
-  /// exact or fitted models of a lens with cylinders.
+  /// (camera_tables.hpp) has the layout. Throws Error for a film that is tilted or travels and for a renderer's own
+  /// model.
   std::vector<float> tables() const;
 
   /// Where the camera sees a scene point: the film point and raster position of its chief ray.

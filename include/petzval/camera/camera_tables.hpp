@@ -17,19 +17,20 @@ namespace petzval::inline v0 {
 ///     wavelengths            [wavelength] nm
 ///     scales                 [wavelength] of weights: weight = scale area depth^2 / length^4, length that of the line
 ///                            from the film point to the place in the pupil, depth from film_z to pupil_z
-///     pupils, iris           as in FilmPupilArrays
+///     pupils, half_widths, iris  as in FilmPupilArrays
 ///     rays, first order      [wavelength] a, b, c, d along x, then along y: place = a f + b p and slope = c f + d p of
 ///                            film and pupil point, in the plane reference_z; rays run towards -z
-///     rays, polynomial       [wavelength] the terms of direction_by_film, direction_by_pupil, offset_by_film and
-///                            offset_by_pupil (see RayPolynomial; degree and domain: below)
+///     rays, polynomial       [wavelength] the coefficients of direction_by_film, direction_by_pupil, offset_by_film
+///                            and offset_by_pupil (see RayPolynomial; degree and domain: below)
 ///     rays, surfaces         [surface] surface_size numbers each: vertex_z, curvature, conic constant, semi-diameter
 ///                            (infinite: 3e38), that of the central obscuration, 1 for a mirror, 1 for the stop,
-///                            height h of the aspheric terms, and a[2] ... a[40]: z gains a[i] (r / h)^i
+///                            1 for a cylinder curved along x and 2 for one along y, height h of the aspheric terms,
+///                            and a[2] ... a[40]: z gains a[i] (r / h)^i, r along x or y of a cylinder
 ///     indices                [wavelength][space] of the media, before each surface and behind the last one
 ///     edges                  [edge] nx, ny, distance: light passes the stop where x nx + y ny <= distance
 struct CameraTables {
   enum Position : std::size_t {
-    format,  ///< 1
+    format,  ///< 2
     model,   ///< a ModelKind
     wavelength_count,
     primary_wavelength,
@@ -44,9 +45,13 @@ struct CameraTables {
     wavelengths,      ///< where the lists begin
     scales,
     pupils,
-    pupils_are_images,  ///< 1 or 0
-    pupil_radius,       ///< film points farther from the axis see nothing
+    pupils_kind,   ///< a FilmPupilArrays::Kind: 0 strips, 1 images, 2 cells
+    pupil_radius,  ///< film points farther from the axis see nothing
     strips,
+    rows,
+    columns,
+    height,
+    half_widths,
     iris,
     iris_corners,  ///< 0: a disc
     rays,
@@ -56,13 +61,15 @@ struct CameraTables {
     domain_film_radius,
     domain_pupil_shift,
     domain_pupil_radius,
+    domain_pupil_shift_x,
+    domain_pupil_radius_x,  ///< 0: a polynomial of a lens of revolution
     surface_count,
     indices,
     edges,
     edge_count,
-    head_size = 32
+    head_size = 40
   };
-  static constexpr std::size_t surface_size = 8 + 39;
+  static constexpr std::size_t surface_size = 9 + 39;
 
   /// For tables that were read from a file (read_floats() in io/write_file.hpp). Throws Error, which begins with
   /// `where`, for another format and for lists that are not as long as they must be.

@@ -64,7 +64,7 @@ class PETZVAL_API RayPolynomial {
     double pupil_radius = 0;  ///< mm
     double reference_z = 0;   ///< of the centre of the entrance pupil, from which offsets count
     struct Section {
-      double pupil_shift = 0, pupil_radius = 0;
+      double pupil_shift, pupil_radius;
     };
     /// Set for a lens with mirror symmetry instead of that of revolution: those above are along y, these along x.
     std::optional<Section> along_x = {};

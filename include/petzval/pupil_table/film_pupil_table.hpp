@@ -52,23 +52,36 @@ struct PupilSample {
 
 /// A FilmPupilTable as plain numbers, for another processor.
 struct FilmPupilArrays {
-  /// Images of an iris, or of a lens of revolution: polygons by distance from the axis.
-  bool images = false;
+  /// Images of an iris. Or polygons: of a lens of revolution in strips, by distance from the axis; of a lens with
+  /// cylinders in cells, over both axes of the film.
+  enum class Kind : std::uint8_t { strips, images, cells };
+  Kind kind = Kind::strips;
   double film_radius = 0;  ///< mm; film points beyond see nothing
-  /// [wavelength] shift x, shift y, radius x, radius y, area (see PupilImage). Or [wavelength][strip] the polygons of
-  /// film points on +y between film_radius strip / strips and the next, by the fraction t of the way:
+  /// Images: [wavelength] shift x, shift y, radius x, radius y, area (see PupilImage). Strips: [wavelength][strip] the
+  /// polygons of film points on +y between film_radius strip / strips and the next, by the fraction t of the way:
   ///
   ///     0       y of the middle, that by t, 0, 0 (x is 0)
   ///     4       area by 1, t, t^2, t^3, mm^2
   ///     8 + 8k  corner k from the middle: x, y, x by t, y by t; area before it by 1, t, t^2, t^3 (k = 0 ... 64)
   ///     528 + 4k  the obscured part of sector k: begin and width, these by t, in squared ways from the middle (0) to
   ///               the outer edge (1)
+  ///
+  /// Cells: [wavelength][row][column] the polygons of film points x, y >= 0 between y = height row / rows and the next,
+  /// by the fraction s of the way, and along that line, half_widths long, between the column and the next, by t. Those
+  /// of other quadrants are mirror images.
+  ///
+  ///     0, 4        x and y of the middle, each by 1, t, s, st
+  ///     8           area by 1, t, t^2, s, st, st^2, s^2, s^2 t, s^2 t^2, mm^2
+  ///     17 + 17k    corner k from the middle: x and y by 1, t, s, st; area before it as above (k = 0 ... 64)
   std::vector<float> pupils;
   std::size_t strips = 0;
+  std::size_t columns = 0;
+  double height = 0;               ///< of the cells, mm
+  std::vector<float> half_widths;  ///< [row] of the cells, mm; that of the last line at the end
   /// [corner] share of the area before it, x, y, in radii, the first one once more at the end. Empty: a disc.
   std::vector<float> iris;
 
-  static constexpr std::size_t image_size = 5, strip_size = 784, corners = 64;
+  static constexpr std::size_t image_size = 5, strip_size = 784, cell_size = 1122, corners = 64;
 };
 
 /// The pupils of every point of a film: the parts of the plane behind the lens through which the points see the scene,
@@ -173,7 +186,6 @@ class PETZVAL_API FilmPupilTable {
   void contains(std::size_t count, const TwoPlaneRays<const T>& lines, const RayWavelengths& wavelengths,
                 std::uint8_t* within) const noexcept;
 
-  /// Throws Error for a table over both axes of the film, of a lens with cylinders.
   FilmPupilArrays arrays() const;
 
   /// Derivatives of a sample's (x, y) by film x and by film y, at constant u and v.
