@@ -24,11 +24,16 @@ class Samples {
  public:
   Samples(const FilmPupilTable& pupils, bool mirrors) : pupils_(pupils), mirrors_(mirrors) {}
 
+  void reserve(std::size_t count) {
+    for (auto* numbers : {&film_x_, &film_y_, &u_, &v_}) numbers->reserve(count);
+  }
+
   /// A film point by parts of the film's radius and, with mirror symmetry, of a right angle from +y to +x.
   void add(double height, double turn, double u, double v) {
     constexpr double right_angle = std::numbers::pi / 2;
-    const double angle = mirrors_ ? right_angle * turn : 0, radius = pupils_.film_radius() * height;
-    film_x_.push_back(radius * std::sin(angle)), film_y_.push_back(radius * std::cos(angle));
+    const double radius = pupils_.film_radius() * height;
+    film_x_.push_back(mirrors_ ? radius * std::sin(right_angle * turn) : 0);
+    film_y_.push_back(mirrors_ ? radius * std::cos(right_angle * turn) : radius);
     u_.push_back(u), v_.push_back(v);
   }
 
@@ -48,6 +53,7 @@ class Samples {
     pupils_.sample<double>(count, film_x_.data(), film_y_.data(), u_.data(), v_.data(), {wavelength}, x.data(),
                            y.data(), areas.data());
     Lines lines;
+    for (auto* numbers : {&lines.film_x, &lines.film_y, &lines.pupil_x, &lines.pupil_y}) numbers->reserve(count);
     for (std::size_t i = 0; i < count; ++i) {
       if (!(areas[i] > 0)) continue;
       lines.film_x.push_back(film_x_[i]);
@@ -68,6 +74,7 @@ class Samples {
 /// pupil like Chebyshev nodes: that makes the largest errors some tenths smaller, and the RMS one tenth larger.
 Samples spread(Samples samples, std::size_t first, std::size_t count, bool dense) {
   constexpr double quarter = std::numbers::pi / 2;
+  samples.reserve(count);
   for (std::size_t i = 0; i < count; ++i) {
     const auto [height, around, outwards, turn] = samples.uniform(first + i);
     const double edge = std::sin(quarter * outwards);
@@ -92,6 +99,7 @@ double part(int k, int count) noexcept { return count > 1 ? static_cast<double>(
 /// The rims of the pupils. turns: of film points of one height.
 Samples rims(Samples samples, int steps, int turns) {
   constexpr int around = 128;
+  samples.reserve(static_cast<std::size_t>((steps + 1) * turns * around));
   for (int i = 0; i <= steps; ++i) {
     for (int turn = 0; turn < turns; ++turn) {
       for (int k = 0; k < around; ++k) {
@@ -107,7 +115,9 @@ Samples rims(Samples samples, int steps, int turns) {
 Samples edges(Samples samples, int turns) {
   constexpr std::size_t near_rims = 8192, on_rim = 1024, within = 3072;
   constexpr double margin = 0.02;  // of the pupil's area
-  for (std::size_t i = 0; i < near_rims * static_cast<std::size_t>(turns); ++i) {
+  const auto all = static_cast<std::size_t>(turns);
+  samples.reserve((near_rims + on_rim + within) * all);
+  for (std::size_t i = 0; i < near_rims * all; ++i) {
     const auto [height, around, inwards, turn] = samples.uniform(i);
     samples.add(height, turn, around, 1 - margin * inwards * inwards);
   }
@@ -209,14 +219,16 @@ RayPolynomial RayPolynomial::fit(const Lens& lens, const FilmPupilTable& pupils,
   // One more dimension takes more lines, of which there are enough for 12 equations for each coefficient.
   const std::size_t fitted = mirrors ? std::max<std::size_t>(3072, 24 * mirror_terms(degree).size()) : 1536;
   constexpr std::size_t judged = 4096;
+  const Samples to_fit = spread(none, 0, fitted, true), on_axis = axial(none),
+                fresh = spread(none, fitted, judged, false), at_edges = edges(none, mirrors ? 9 : 1);
   std::vector<Fit> fits;
   for (std::size_t wavelength = 0; wavelength < pupils.wavelengths(); ++wavelength) {
     fits.push_back(polynomial_detail::fit(lens, domain, degree, wavelength,
-                                          {.fitted = spread(none, 0, fitted, true).lines(wavelength),
-                                           .axial = axial(none).lines(wavelength),
-                                           .fresh = spread(none, fitted, judged, false).lines(wavelength),
-                                           .rims = all_rims[wavelength],
-                                           .edges = edges(none, mirrors ? 9 : 1).lines(wavelength)}));
+                                          {.fitted = to_fit.lines(wavelength),
+                                           .axial = on_axis.lines(wavelength),
+                                           .fresh = fresh.lines(wavelength),
+                                           .rims = std::move(all_rims[wavelength]),
+                                           .edges = at_edges.lines(wavelength)}));
   }
   return RayPolynomial(degree, domain, std::move(fits), lens.primary_wavelength());
 }

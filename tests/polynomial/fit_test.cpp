@@ -204,6 +204,39 @@ TEST(PolynomialFit, AnamorphicIsAsGoodAsStated) {
   }
 }
 
+TEST(PolynomialFit, TurnsWithTheCylinders) {
+  Prescription prescription = data_prescription("anamorphic_60mm_2x");
+  const Lens lens = compile(prescription);
+  for (SurfaceRow& row : prescription.surfaces) {
+    if (row.curved_in == Section::x) row.curved_in = Section::y;
+  }
+  const Lens turned = compile(prescription);
+  const FilmPupilTable pupils = FilmPupilTable::equal_area(lens, 14.4);
+  const FilmPupilTable turned_pupils = FilmPupilTable::equal_area(turned, 14.4);
+  const TwoPlanes &space = pupils.space(), &turned_space = turned_pupils.space();
+  Lines<double> lines = lines_through<double>(pupils, 2000, 7), about;
+  // The pupils lie in other planes.
+  const double part = (turned_space.pupil_z - space.film_z) / space.depth();
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const double fx = lines.film_x[i], fy = lines.film_y[i];
+    about.add(fy, fx, fy + part * (lines.pupil_y[i] - fy), fx + part * (lines.pupil_x[i] - fx));
+  }
+  for (const int degree : {5, 9}) {
+    const RayPolynomial one = RayPolynomial::fit(lens, pupils, degree);
+    const RayPolynomial other = RayPolynomial::fit(turned, turned_pupils, degree);
+    const RayPolynomial::Fit &a = one.fits()[0], &b = other.fits()[0];
+    EXPECT_NEAR(b.rms_rad, a.rms_rad, 0.1 * a.rms_rad);
+    lines.through(one), about.through(other);
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      if (about.fates[i] != RayFate::transmitted) continue;  // on the rim
+      const Vec3<double> direction = about.direction(i);
+      EXPECT_LT(glm::length(lines.direction(i) - Vec3<double>(direction.y, direction.x, direction.z)),
+                a.max_rad + b.max_rad);
+    }
+    EXPECT_GT(std::count(about.fates.begin(), about.fates.end(), RayFate::transmitted), 1980);
+  }
+}
+
 TEST(PolynomialFit, HoldsThePupilsOfItsMap) {
   for (const Case& c : cases) {
     const Lens lens = lens_of(c);
