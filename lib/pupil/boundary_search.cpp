@@ -8,6 +8,7 @@
 #include <limits>
 #include <numbers>
 #include <numeric>
+#include <optional>
 #include <utility>
 
 namespace petzval::inline v0::pupil_detail {
@@ -127,7 +128,7 @@ class Search {
     for (const std::uint32_t p : look_along_y(all, seen, rings)) {
       batch.clear();
       if (places_seen_) {
-        for (const SeenPlace& place : places_seen_(p)) batch.add({p, place.at.x, place.at.y}, 0);
+        for (const SeenPlace& place : places_seen_(p).places) batch.add({p, place.at.x, place.at.y}, 0);
       }
       batch.test(clearances_);
       lit[p] = std::any_of(batch.clearances.begin(), batch.clearances.end(), [](double c) { return c >= 0; });
@@ -496,7 +497,7 @@ class Search {
     std::vector<std::uint32_t> larger;
     for (const std::uint32_t p : which) {
       Found& found = found_[p];
-      const std::vector<SeenPlace> places = places_seen_(p);
+      const auto [places, row] = places_seen_(p);
       batch.clear();
       for (const SeenPlace& place : places) batch.add({p, place.at.x, place.at.y}, 0);
       batch.test(clearances_);
@@ -504,10 +505,21 @@ class Search {
       const auto take = [&](const Vec2<double>& at) {
         for (int axis : {0, 1}) low[axis] = std::min(low[axis], at[axis]), high[axis] = std::max(high[axis], at[axis]);
       };
+      std::size_t passing = 0;
       for (std::size_t i = 0; i < places.size(); ++i) {
+        if (!batch.passes(i)) continue;
+        ++passing;
         const auto& [place, beside] = places[i];
-        if (!batch.passes(i) || holds(found, place)) continue;
-        take(place - beside), take(place + beside);
+        if (!holds(found, place)) take(place - beside), take(place + beside);
+      }
+      // Parts smaller than a place count where few of them pass.
+      constexpr std::size_t enough = 16;
+      if (passing < enough) {
+        for (const std::size_t i : summits(batch.clearances, row)) {
+          if (holds(found, places[i].at)) continue;
+          const auto near = near_summit(p, places[i]);
+          if (near) take(near->at - near->beside), take(near->at + near->beside);
+        }
       }
       if (!(low.y < high.y)) continue;
       for (std::size_t k = 0; k < found.ends.size(); ++k) {
@@ -522,6 +534,50 @@ class Search {
       larger.push_back(p);
     }
     outwards(larger, 480, 1.6);
+  }
+
+  /// Of values in rows the highest that are negative, of places that no neighbour exceeds: a part of a pupil may slip
+  /// between these. The first column counts as one between two that are alike.
+  std::vector<std::size_t> summits(const std::vector<double>& values, std::size_t row) const {
+    std::vector<std::size_t> result;
+    for (std::size_t i = row; i + row < values.size(); ++i) {
+      const std::size_t column = i % row;
+      if (!(values[i] > -1 && values[i] < 0) || column + 1 == row || (column == 0 && !mirrored_)) continue;
+      bool summit = true;
+      for (const std::size_t at : {i - row, i, i + row}) {
+        for (std::size_t n = at - (column > 0); n <= at + 1; ++n) summit = summit && !(values[n] > values[i]);
+      }
+      if (summit) result.push_back(i);
+    }
+    std::stable_sort(result.begin(), result.end(), [&](auto a, auto b) { return values[a] > values[b]; });
+    constexpr std::size_t most = 8;
+    if (result.size() > most) result.resize(most);
+    return result;
+  }
+
+  /// A place that passes near one whose clearance is a maximum, looked for in smaller and smaller steps.
+  std::optional<SeenPlace> near_summit(std::uint32_t point, SeenPlace place) const {
+    constexpr int half_side = 4, passes = 6;
+    double before = -1;
+    Batch batch;
+    for (int pass = 0; pass < passes; ++pass) {
+      batch.clear();
+      const Vec2<double> step = place.beside / static_cast<double>(half_side);
+      for (int j = -half_side; j <= half_side; ++j) {
+        for (int i = -half_side; i <= half_side; ++i) {
+          batch.add({point, place.at.x + i * step.x, place.at.y + j * step.y}, 0);
+        }
+      }
+      batch.test(clearances_);
+      const auto highest = std::max_element(batch.clearances.begin(), batch.clearances.end());
+      const std::size_t at = static_cast<std::size_t>(highest - batch.clearances.begin());
+      place = {{batch.x[at], batch.y[at]}, step * 2.0};
+      if (*highest >= 0) return SeenPlace{place.at, step};
+      // At a ridge the value grows by half as much in each pass, roughly.
+      if (4 * (*highest - before) < -*highest) break;
+      before = *highest;
+    }
+    return {};
   }
 
   /// Whether a place lies within the outer ends, or little outside.

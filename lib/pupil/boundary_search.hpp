@@ -23,7 +23,7 @@ struct PupilGuess {
 };
 
 /// Places all over what a point sees, for parts of its pupil that lie elsewhere than the guess has them.
-using PlacesSeen = std::function<std::vector<SeenPlace>(std::uint32_t point)>;
+using PlacesSeen = std::function<SeenPlaces(std::uint32_t point)>;
 
 /// A point about halfway between two others, where its pupil is looked for next to theirs. The farther two are as far
 /// again from these on both sides; the point itself: there is none.

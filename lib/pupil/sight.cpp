@@ -133,16 +133,17 @@ struct Grid {
 
 }  // namespace
 
-std::vector<SeenPlace> places_seen(const Lens& lens, const PupilPlane& plane, int steps, bool half) {
+SeenPlaces places_seen(const Lens& lens, const PupilPlane& plane, int steps, bool half) {
   const Sines sines(plane);
   const Box box = seen_face(lens, plane, sines);
   const Place cell = (box.high - box.low) / static_cast<double>(steps);
-  std::vector<SeenPlace> result;
-  result.reserve(static_cast<std::size_t>((steps + 1) * (steps + 1)));
+  const int first = half ? steps / 2 : 0;
+  SeenPlaces result{{}, static_cast<std::size_t>(steps + 1 - first)};
+  result.places.reserve(result.row * static_cast<std::size_t>(steps + 1));
   for (int j = 0; j <= steps; ++j) {
-    for (int i = half ? steps / 2 : 0; i <= steps; ++i) {
+    for (int i = first; i <= steps; ++i) {
       const Place p = sines.place(box.low + Place{static_cast<double>(i), static_cast<double>(j)} * cell);
-      if (std::isfinite(p.x + p.y)) result.push_back({p, cell * sines.stretch(p)});
+      result.places.push_back({p, cell * sines.stretch(p)});
     }
   }
   return result;

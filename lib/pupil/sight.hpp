@@ -17,9 +17,16 @@ struct SeenPlace {
   Vec2<double> at{0, 0}, beside{0, 0};
 };
 
-/// Places all over what the point of a plane sees of the surface through which its rays enter: up to steps + 1 a side,
-/// even in the sines of their directions. half: those with x >= 0 alone, of a point for which the others are alike.
-std::vector<SeenPlace> places_seen(const Lens& lens, const PupilPlane& plane, int steps, bool half);
+/// Places in rows.
+struct SeenPlaces {
+  std::vector<SeenPlace> places;
+  std::size_t row = 0;  ///< places in one
+};
+
+/// Places all over what the point of a plane sees of the surface through which its rays enter: steps + 1 a side, even
+/// in the sines of their directions. Some are not finite: directions along the plane. half: those with x >= 0 alone, of
+/// a point for which the others are alike.
+SeenPlaces places_seen(const Lens& lens, const PupilPlane& plane, int steps, bool half);
 
 /// The rays of one point, many at a time. Keeps the memory for them.
 class Sight {

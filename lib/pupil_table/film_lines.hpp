@@ -19,7 +19,7 @@ pupil_detail::PlaceClearances traced_lines(const Lens& lens, const TwoPlanes& sp
 
 /// Places of the plane of the pupil all over what a film point sees of the last surface; of a point on +y of a lens of
 /// revolution, over half of it.
-std::vector<pupil_detail::SeenPlace> places_seen(const Lens& lens, const TwoPlanes& space, const FilmPoint& film);
+pupil_detail::SeenPlaces places_seen(const Lens& lens, const TwoPlanes& space, const FilmPoint& film);
 
 /// Where the pupils of film points are expected to first order. Rays pass the last surface: a pupil is no larger than
 /// what is seen through it.

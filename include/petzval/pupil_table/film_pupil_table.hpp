@@ -105,9 +105,9 @@ class PETZVAL_API FilmPupilTable {
   /// Polygons that contain every ray that the lens passes and few others; rays still have to be traced. At most 1e-5 of
   /// the pupils' area is missed (tests/pupil_table/film_pupil_table_test.cpp: every lens of data/ wide open over its
   /// declared field, some of them stopped down; film_cells_test.cpp: a lens with cylinders from wide open to f/64),
-  /// except where a pupil comes in parts that lie apart: up to 5e-3 of the light of a ball lens at f/8 and f/16, and
-  /// parts that show at none of 48 x 48 places over all that the film point sees of the last surface, such as the
-  /// slivers beside the disc of a ball lens at f/45. The pupils of a round iris contain those of any other.
+  /// except where a pupil comes in parts that lie apart and are smaller than a 48th of what the film point sees of the
+  /// last surface: up to 1e-3 of the light of a ball lens from f/8 to f/22, 1e-2 at f/45 to .26 mm from the axis, and
+  /// most of it beyond. The pupils of a round iris contain those of any other.
   ///
   /// film_radius: of the farthest film point, mm, >= 0. The film is that of the lens. Throws Error for a film in the
   /// plane of the last vertex, for a film_radius that is negative or not finite, and for less than one thread.
