@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <ceres/jet.h>
-
 #include <Eigen/LU>
 #include <algorithm>
 #include <array>
@@ -20,40 +18,115 @@ using polynomial_detail::OfRevolution;
 using polynomial_detail::SceneLine;
 using Place = Eigen::Vector4d;  // f and p, scaled to the domain
 
-/// One of the sums A f + B p with its derivatives by f and p, by way of those of A and B by u, v and w.
-void add(const ceres::Jet<double, 3>& by_film, const ceres::Jet<double, 3>& by_pupil, const Place& x,
-         const Eigen::Matrix<double, 3, 4>& invariants, int row, Eigen::Matrix4d& slope, Place& value) noexcept {
-  const Eigen::RowVector4d film_slope = by_film.v.transpose() * invariants;
-  const Eigen::RowVector4d pupil_slope = by_pupil.v.transpose() * invariants;
-  for (int axis = 0; axis < 2; ++axis) {
-    value[row + axis] = by_film.a * x[axis] + by_pupil.a * x[axis + 2];
-    slope.row(row + axis) = film_slope * x[axis] + pupil_slope * x[axis + 2];
-    slope(row + axis, axis) += by_film.a;
-    slope(row + axis, axis + 2) += by_pupil.a;
+/// A polynomial's value and its derivatives by the last N of its variables, the first of these first. Horner's rule
+/// meets the last variable most often, where there is but one derivative to carry.
+template <int N>
+struct Gradient {
+  double value = 0;
+  std::array<double, N> by{};
+
+  Gradient() = default;
+  Gradient(double constant) noexcept : value(constant) {}
+};
+
+/// The variable from which on there are N.
+template <int N>
+struct Variable {
+  double value;
+
+  friend PETZVAL_INLINE Gradient<N> operator*(const Variable& x, const Gradient<N>& p) noexcept {
+    Gradient<N> product;
+    product.value = x.value * p.value;
+    product.by[0] = x.value * p.by[0] + p.value;
+    for (std::size_t k = 1; k < N; ++k) product.by[k] = x.value * p.by[k];
+    return product;
   }
+  friend PETZVAL_INLINE Gradient<N> operator*(const Variable& x, double p) noexcept {
+    Gradient<N> product;
+    product.value = x.value * p;
+    product.by[0] = p;
+    return product;
+  }
+};
+
+/// Adds what does not depend on the first variable.
+template <int N>
+PETZVAL_INLINE Gradient<N> operator+(const Gradient<N>& p, const Gradient<N - 1>& q) noexcept {
+  Gradient<N> sum;
+  sum.value = p.value + q.value;
+  sum.by[0] = p.by[0];
+  for (std::size_t k = 1; k < N; ++k) sum.by[k] = p.by[k] + q.by[k - 1];
+  return sum;
+}
+template <int N>
+PETZVAL_INLINE Gradient<N> operator+(const Gradient<N>& p, double q) noexcept {
+  Gradient<N> sum = p;
+  sum.value += q;
+  return sum;
 }
 
-/// s and o at (f, p), with their derivatives.
+/// s and o at (f, p), with their derivatives: A f + B p, by way of those of A and B by u, v and w. Flat: so much code
+/// is not inlined otherwise.
 template <int n>
 [[gnu::flatten]] void evaluate(OfRevolution<n>, const double* c, const Place& x, Place& value,
                                Eigen::Matrix4d& slope) noexcept {
-  using Jet = ceres::Jet<double, 3>;
-  const Jet u(x[0] * x[0] + x[1] * x[1], 0), v(x[0] * x[2] + x[1] * x[3], 1), w(x[2] * x[2] + x[3] * x[3], 2);
+  const Variable<1> u{x[0] * x[0] + x[1] * x[1]};
+  const Variable<2> v{x[0] * x[2] + x[1] * x[3]};
+  const Variable<3> w{x[2] * x[2] + x[3] * x[3]};
   Eigen::Matrix<double, 3, 4> invariants;
   invariants << 2 * x[0], 2 * x[1], 0, 0, x[2], x[3], x[0], x[1], 0, 0, 2 * x[2], 2 * x[3];
   constexpr int terms = OfRevolution<n>::terms;
-  add(horner<n>(c, w, v, u), horner<n>(c + terms, w, v, u), x, invariants, 0, slope, value);
-  add(horner<n>(c + 2 * terms, w, v, u), horner<n>(c + 3 * terms, w, v, u), x, invariants, 2, slope, value);
+  const auto put = [&](int row, const Gradient<3>& by_film, const Gradient<3>& by_pupil) {
+    const auto along = [&](const Gradient<3>& p, int k) {
+      return p.by[2] * invariants(0, k) + p.by[1] * invariants(1, k) + p.by[0] * invariants(2, k);
+    };
+    for (int k = 0; k < 4; ++k) {
+      const double film_slope = along(by_film, k), pupil_slope = along(by_pupil, k);
+      for (int axis = 0; axis < 2; ++axis) {
+        slope(row + axis, k) = film_slope * x[axis] + pupil_slope * x[axis + 2];
+      }
+    }
+    for (int axis = 0; axis < 2; ++axis) {
+      value[row + axis] = by_film.value * x[axis] + by_pupil.value * x[axis + 2];
+      slope(row + axis, axis) += by_film.value;
+      slope(row + axis, axis + 2) += by_pupil.value;
+    }
+  };
+  put(0, horner<n>(c, w, v, u), horner<n>(c + terms, w, v, u));
+  put(2, horner<n>(c + 2 * terms, w, v, u), horner<n>(c + 3 * terms, w, v, u));
 }
 
+/// The same by way of the derivatives of A and B by the squares of fx, fy, px and py, and by the product of film and
+/// pupil point along the other axis.
 template <int n>
 [[gnu::flatten]] void evaluate(OfMirrors<n>, const double* c, const Place& x, Place& value,
                                Eigen::Matrix4d& slope) noexcept {
-  using Jet = ceres::Jet<double, 4>;
-  const polynomial_detail::FilmAndPupil<Jet> at{Jet(x[0], 0), Jet(x[1], 1), Jet(x[2], 2), Jet(x[3], 3)};
-  const auto [sx, sy, ox, oy] = OfMirrors<n>::sums(c, at);
-  value << sx.a, sy.a, ox.a, oy.a;
-  slope << sx.v.transpose(), sy.v.transpose(), ox.v.transpose(), oy.v.transpose();
+  using Mirrors = OfMirrors<n>;
+  for (const int axis : {0, 1}) {
+    const int other = 1 - axis;
+    const double film = x[axis], pupil = x[axis + 2], other_film = x[other], other_pupil = x[other + 2];
+    const Variable<1> film2{film * film};
+    const Variable<2> pupil2{pupil * pupil};
+    const Variable<3> other_film2{other_film * other_film};
+    const Variable<4> other_pupil2{other_pupil * other_pupil};
+    for (const int row : {axis, axis + 2}) {
+      value[row] = 0;
+      slope.row(row).setZero();
+      for (const int factor : {axis, axis + 2}) {  // film or pupil point
+        const double* own = c + ((row - axis) * 2 + factor) * Mirrors::terms;
+        const Gradient<4> even = horner<n>(own, other_pupil2, other_film2, pupil2, film2);
+        const Gradient<4> odd = horner<n - 1>(own + Mirrors::even, other_pupil2, other_film2, pupil2, film2);
+        const double sum = other_film * other_pupil * odd.value + even.value;
+        const auto by = [&](std::size_t k) { return other_film * other_pupil * odd.by[k] + even.by[k]; };
+        value[row] += x[factor] * sum;
+        slope(row, factor) += sum;
+        slope(row, axis) += x[factor] * 2 * film * by(3);
+        slope(row, axis + 2) += x[factor] * 2 * pupil * by(2);
+        slope(row, other) += x[factor] * (2 * other_film * by(1) + other_pupil * odd.value);
+        slope(row, other + 2) += x[factor] * (2 * other_pupil * by(0) + other_film * odd.value);
+      }
+    }
+  }
 }
 
 bool within(const Place& x, double square) noexcept {
