@@ -7,8 +7,10 @@
 #include <limits>
 #include <utility>
 
+#include "core/meet_plane.hpp"
 #include "film_lines.hpp"
 #include "petzval/core/parallel.hpp"
+#include "pupil/aim.hpp"
 
 namespace petzval::inline v0::pupil_table_detail {
 
@@ -17,7 +19,17 @@ FilmPupils traced_pupils(const Lens& lens, const TwoPlanes& space, std::size_t w
   const auto search = [&lens, space, wavelength](std::span<const double> heights, const auto& find) {
     std::vector<FilmPoint> points;
     for (const double height : heights) points.push_back({0, height});
-    return find(first_order_guesses(lens, space, points, wavelength), traced_lines(lens, space, points, wavelength),
+    std::vector<pupil_detail::PupilGuess> guesses = first_order_guesses(lens, space, points, wavelength);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      // Aberrations move the image of a tiny stop by more than its size.
+      constexpr double tiny = 1e-3;
+      pupil_detail::PupilGuess& guess = guesses[i];
+      if (guess.radius > tiny * (guess.high - guess.low)) continue;
+      const AimedRay chief = pupil_detail::aim(lens, PupilPlane::of_film(lens, points[i]), {}, wavelength);
+      const double y = chief ? core_detail::meet_plane(chief.ray, space.pupil_z).y : guess.y;
+      if (std::isfinite(y)) guess.y = y;
+    }
+    return find(guesses, traced_lines(lens, space, points, wavelength),
                 [&](std::uint32_t i) { return places_seen(lens, space, points[i]); });
   };
   const auto regions = [](const auto& guesses, const auto& clearances, const auto& seen) {

@@ -66,6 +66,21 @@ TEST(FilmPupilTable, CoversSmallPupilsToo) {
   }
 }
 
+// Aberrations move the pupil by more than its size, first order does not tell where it is.
+TEST(FilmPupilTable, CoversTheFilmBehindTinyStops) {
+  for (const auto& [id, f_number, least] :
+       {std::tuple{"modern_58mm_f0.95", 1e3, 0.9}, std::tuple{"biogon_35mm_f2.8", 1e3, 0.95},
+        std::tuple{"double_gauss_100mm_f2_28deg", 1e5, 0.65}, std::tuple{"tessar_100mm_f2.8", 1e5, 0.8}}) {
+    const Lens lens = with_f_number(data_lens(id), f_number);
+    constexpr double radius = 21.6;
+    const FilmPupilTable table = FilmPupilTable::enclosing(lens, radius);
+    EXPECT_EQ(table.lit_radius(), radius) << id;
+    const Coverage c = coverage(lens, table, radius, 24, 2000);
+    EXPECT_GT(c.mean, least) << id;
+    EXPECT_LE(c.missed, 1e-3) << id;
+  }
+}
+
 /// The share of the rays that pass, of rays all over what the film point sees of the last surface, outside its pupil.
 double missed_anywhere(const Lens& lens, const FilmPupilTable& table, const FilmPoint& film, double widths,
                        int side = 700) {

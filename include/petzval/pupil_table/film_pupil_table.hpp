@@ -107,7 +107,9 @@ class PETZVAL_API FilmPupilTable {
   /// declared field, some of them stopped down; film_cells_test.cpp: a lens with cylinders from wide open to f/64),
   /// except where a pupil comes in parts that lie apart and are smaller than a 48th of what the film point sees of the
   /// last surface: up to 1e-3 of the light of a ball lens from f/8 to f/22, 1e-2 at f/45 to .26 mm from the axis, and
-  /// most of it beyond. The pupils of a round iris contain those of any other.
+  /// most of it beyond. Behind tiny stops, whose images move over the film by more than their size, pupils hold more
+  /// than the rays that pass: half of the samples are lost at about f/1e5, most at f/1e6. The pupils of a round iris
+  /// contain those of any other.
   ///
   /// film_radius: of the farthest film point, mm, >= 0. The film is that of the lens. Throws Error for a film in the
   /// plane of the last vertex, for a film_radius that is negative or not finite, and for less than one thread.
