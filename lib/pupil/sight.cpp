@@ -74,10 +74,13 @@ Box seen_face(const Lens& lens, const PupilPlane& plane, const Sines& sines) {
   constexpr int radii = 10, around = 16;
   Box box;
   double facing = 0;
+  const bool revolved = lens.surfaces()[entered].curved_in == Section::both;
   for (int i = 0; i <= radii; ++i) {
-    for (int k = 0; k < around; ++k) {
-      const double r = half * i / radii, angle = 2 * std::numbers::pi * k / around;
-      const double x = r * std::sin(angle), y = r * std::cos(angle), z = sag(lens, entered, x, y);
+    const double r = half * i / radii, revolved_z = sag(lens, entered, 0, r);
+    for (int k = 0; k < (i == 0 ? 1 : around); ++k) {
+      const double angle = 2 * std::numbers::pi * k / around;
+      const double x = r * std::sin(angle), y = r * std::cos(angle);
+      const double z = revolved ? revolved_z : sag(lens, entered, x, y);
       if (std::isnan(z)) continue;
       const Vec3<double> place{x, y, vertex_z + z};
       // A surface that bends around the point is seen at any angle.
