@@ -8,15 +8,39 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <exception>
+#include <fstream>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "petzval/core/error.hpp"
+#include "petzval/core/instruction_set.hpp"
 
-/// Defaults that options of the caller override: the number of interleaved rounds of all benchmarks, and the time (s)
-/// of each in a round.
+/// Prints what times depend on: processor, compiler, date.
+inline void print_conditions() {
+  std::string processor = "unknown processor";
+  std::ifstream cpuinfo("/proc/cpuinfo");
+  for (std::string line; std::getline(cpuinfo, line);) {
+    if (line.rfind("model name", 0) != 0) continue;
+    processor = line.substr(line.find(':') + 2);
+    break;
+  }
+#if defined(__clang__)
+  const std::string compiler = "clang " __clang_version__;
+#else
+  const std::string compiler = "g++ " __VERSION__;
+#endif
+  const std::time_t now = std::time(nullptr);
+  char date[16];
+  std::strftime(date, sizeof date, "%Y-%m-%d", std::localtime(&now));
+  std::printf("%s (%s), %s, %s\n", processor.c_str(),
+              std::string(petzval::name(petzval::instruction_sets().back())).c_str(), compiler.c_str(), date);
+}
+
+/// Prints the conditions and reads the command line. Defaults that options of the caller override: the number of
+/// interleaved rounds of all benchmarks, and the time (s) of each in a round.
 inline void initialize(int argc, char** argv, int rounds = 15, double round_time = 0.02) {
   std::vector<std::string> defaults{"--benchmark_repetitions=" + std::to_string(rounds),
                                     "--benchmark_enable_random_interleaving=true",
@@ -27,6 +51,7 @@ inline void initialize(int argc, char** argv, int rounds = 15, double round_time
   int count = static_cast<int>(arguments.size());
   benchmark::Initialize(&count, arguments.data());
   if (benchmark::ReportUnrecognizedArguments(count, arguments.data())) std::exit(1);
+  print_conditions();
 }
 
 /// Removes an option of the program and its value from the command line. Nothing if it is not
