@@ -22,11 +22,11 @@ CompiledWavelengths::CompiledWavelengths(std::span<const double> wavelengths_nm)
     middles_.push_back(static_cast<float>((ranked_[r].nm + ranked_[r + 1].nm) / 2));
     const std::size_t nodes = std::min(most_nodes, count()), before = nodes / 2 - 1;
     const Interval cubic = interval(r, std::min(r - std::min(r, before), count() - nodes), nodes);
-    // How much larger the nodes' errors may be between them: 1.6 times at the ends of an even row.
-    constexpr double much_larger = 2;
+    // How much larger the nodes' errors may be between them: 2.6 times at the ends of a row that is even in nm.
+    constexpr double much_larger = 4;
     double sum = 0;
     for (const double w : about(cubic, (ranked_[r].place + ranked_[r + 1].place) / 2).weights) sum += std::abs(w);
-    const bool apart = ranked_[r].place < ranked_[r + 1].place;
+    const bool apart = ranked_[r].place != ranked_[r + 1].place;
     intervals_.push_back(sum <= much_larger ? cubic : interval(r, r, apart ? 2 : 1));
   }
   if (count() == 1) intervals_.push_back(interval(0, 0, 1));

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <limits>
@@ -10,6 +11,7 @@
 #include <vector>
 
 #include "../message.hpp"
+#include "lens/between_wavelengths.hpp"
 #include "petzval/io/lens_json.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/media/glass.hpp"
@@ -25,6 +27,7 @@ using petzval::Lens;
 using petzval::Prescription;
 using petzval::RayWavelengths;
 using petzval::Wavelength;
+namespace lens_detail = petzval::lens_detail;
 using petzval::testing::message;
 
 const std::filesystem::path data = PETZVAL_TEST_DATA;
@@ -188,6 +191,42 @@ TEST(Spectrum, AMediumWithoutIndicesBetweenCompiledWavelengthsLeavesThese) {
   EXPECT_EQ(lens.index(1, Wavelength::nm(700)), lens.index(1, 1));
   EXPECT_EQ(message([&] { lens.index(1, Wavelength::nm(550)); }),
             "window of POLE: wavelength is 550 nm, wanted a compiled one: a medium has no index between them");
+}
+
+// Whatever their spacing, what is linear in 1 / nm is found exactly, and what is known at a wavelength stays there.
+TEST(Spectrum, NumbersBetweenWavelengthsFollowThoseOfNeighbours) {
+  for (const std::vector<double>& nm : {std::vector{400., 700.}, std::vector{400., 550., 700.},
+                                        std::vector{400., 500., 600., 700.}, std::vector{700., 400., 475., 550., 625.},
+                                        std::vector{400., 405., 700.}, std::vector{400., 550., 555., 560., 700.},
+                                        std::vector{404.7, 435.8, 480., 486.1, 546.1, 587.6, 589.3, 706.5}}) {
+    const auto line = [](double at) { return 3 - 800 / at; };
+    std::vector<std::array<double, 2>> values;
+    for (std::size_t i = 0; i < nm.size(); ++i) values.push_back({line(nm[i]), i % 2 ? 1. : -1.});
+    const lens_detail::BetweenWavelengths<2> between(lens_detail::CompiledWavelengths(nm), values);
+    for (double at = 405; at < 700; at += 0.5) EXPECT_NEAR(between(at)[0], line(at), 1e-4) << nm.size() << " " << at;
+    const lens_detail::CompiledWavelengths wavelengths(nm);
+    for (std::size_t i = 0; i < nm.size(); ++i) {
+      const auto [first, weights] = wavelengths.about(nm[i]);
+      double sum = 0;
+      for (std::size_t k = 0; k < weights.size() && first + k < nm.size(); ++k) {
+        sum += weights[k] * values[wavelengths.position(first + k)][1];
+      }
+      EXPECT_NEAR(sum, values[i][1], 1e-9) << nm[i];
+    }
+  }
+}
+
+// Cubics, where wavelengths are even.
+TEST(Spectrum, NumbersAtEvenWavelengthsAreInterpolatedByCubics) {
+  for (int count = 4; count <= 9; ++count) {
+    std::vector<double> nm;
+    for (int i = 0; i < count; ++i) nm.push_back(400 + 300. * i / (count - 1));
+    const auto cubic = [](double at) { return std::pow(1000 / at - 2, 3); };
+    std::vector<std::array<double, 1>> values;
+    for (const double at : nm) values.push_back({cubic(at)});
+    const lens_detail::BetweenWavelengths<1> between(lens_detail::CompiledWavelengths(nm), values);
+    for (double at = 400; at < 700; at += 0.5) EXPECT_NEAR(between(at)[0], cubic(at), 1e-4) << count << " " << at;
+  }
 }
 
 TEST(Spectrum, WavelengthsOfRaysAreTheirOwn) {
