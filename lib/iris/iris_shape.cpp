@@ -94,7 +94,7 @@ IrisShape::IrisShape(const Iris& iris) {
 }
 
 Vec2<double> IrisShape::sample(double u, double v) const noexcept {
-  if (twice_.x.empty()) {
+  if (round()) {
     const auto [x, y] = disc_point(u, v);
     return {x, y};
   }

@@ -21,6 +21,8 @@ class PETZVAL_API IrisShape {
   /// Throws Error for an iris with edges that do not form a polygon about the axis with its corners within the rim.
   explicit IrisShape(const Iris& iris);
 
+  /// The disc.
+  bool round() const noexcept { return twice_.x.empty(); }
   double area() const noexcept { return area_; }
   /// A uniform point for u and v in [0, 1]: u runs around the axis from +y towards +x, v outwards. Equal areas of the
   /// square become equal areas of the iris, and neighbours stay neighbours.

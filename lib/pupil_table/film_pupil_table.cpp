@@ -300,7 +300,12 @@ FilmPupilTable FilmPupilTable::for_tilted_film(const FilmTilt& tilt) const {
     data->images = data_->images->tilted(tilt);
     return FilmPupilTable(std::move(data));
   }
-  if (data_->cells) {
+  if (data_->images && !data_->images->round()) {  // edges are alike neither all around nor at mirror images
+    *data = *data_;
+    data->images = data_->images->of_round_stop();
+    return FilmPupilTable(std::move(data)).for_tilted_film(tilt);
+  }
+  if (data_->cells || (data_->images && !data_->images->of_revolution())) {
     data->space = space();
     data->primary = data_->primary;
     data->compiled = data_->compiled;

@@ -34,6 +34,19 @@ IrisImages IrisImages::tilted(const FilmTilt& tilt) const {
   return result;
 }
 
+IrisImages IrisImages::of_round_stop() const {
+  IrisImages result = *this;
+  result.shape_ = {};
+  for (Image& image : result.images_) image.area = result.shape_.area() * image.radius_x * image.radius_y;
+  return result;
+}
+
+bool IrisImages::of_revolution() const noexcept {
+  return std::all_of(images_.begin(), images_.end(), [](const Image& image) {
+    return image.shift_x == image.shift_y && image.radius_x == image.radius_y;
+  });
+}
+
 void IrisImages::put(FilmPupilArrays& arrays) const {
   arrays.kind = FilmPupilArrays::Kind::images;
   const auto number = [](double x) { return static_cast<float>(x); };

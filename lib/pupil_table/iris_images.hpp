@@ -26,6 +26,12 @@ class IrisImages {
   /// Those of a tilted film, by virtual film points; for images of an upright one.
   IrisImages tilted(const FilmTilt& tilt) const;
 
+  bool round() const noexcept { return shape_.round(); }
+  /// Those of the whole stop, which contain these.
+  IrisImages of_round_stop() const;
+  /// Whether discs stay discs, so that turns about the axis change nothing. For round ones.
+  bool of_revolution() const noexcept;
+
   /// As plain numbers. For images of an upright film.
   void put(FilmPupilArrays& arrays) const;
 

@@ -75,6 +75,25 @@ TEST(MovingFilm, ExposesAsAFilmThatStaysThere) {
   }
 }
 
+// Pupils in closed form that are no discs, on a film that hardly travels.
+TEST(MovingFilm, LosesNothingOfPupilsWithoutRevolution) {
+  const Lens lens = with_iris(testing::data_lens("double_gauss_100mm_f2.0"), regular_iris(3, 0.2));
+  for (const Lens& own : {testing::data_lens("anamorphic_60mm_2x"), lens}) {
+    for (const ModelKind model : {ModelKind::thin, ModelKind::thick}) {
+      SCOPED_TRACE(own.name() + " " + std::string(name(model)));
+      const Film film{.width_mm = 24, .height_mm = 16};
+      Film moving = film;
+      moving.travel_mm = 1e-9;
+      const Camera still(own, film, {.model = model}), travels(own, moving, {.model = model});
+      for (const FilmPoint& point : {FilmPoint{0, 0}, FilmPoint{10, 0}, FilmPoint{0, 7}, FilmPoint{-8, 5}}) {
+        const double wanted = mean_weight(still, point, 0);
+        ASSERT_GT(wanted, 0);
+        EXPECT_NEAR(mean_weight(travels, point, 0.5) / wanted, 1, 5e-3) << point.x << " " << point.y;
+      }
+    }
+  }
+}
+
 // Its rays are those of the film that stays: that sees them come from the same film point, with the same importance.
 TEST(MovingFilm, SamplesTheRaysOfAFilmThatStaysThere) {
   for (const auto& [id, film] : cases()) {
