@@ -274,13 +274,14 @@ PETZVAL_DEVICE inline void move_to_front(const float* t, DeviceRay& ray) {
   for (int k = 0; k < 3; ++k) o[k] += way * d[k];
 }
 
-/// A film point and a sample of its pupil, as CameraSample; w: position of the wavelength.
+/// A film point and a sample of its pupil, as CameraSample; w: position of a compiled wavelength.
 PETZVAL_DEVICE inline DeviceRay sample(const float* t, float film_x, float film_y, float u, float v, int w) {
   DeviceRay ray;
   const bool on_film = std::fabs(film_x - t[Table::film_x]) <= t[Table::half_width] &&
                        std::fabs(film_y - t[Table::film_y]) <= t[Table::half_height];
   const float r2 = film_x * film_x + film_y * film_y, reach = t[Table::pupil_radius] * 1.000001f;
   if (!on_film || !(r2 <= reach * reach)) return ray;
+  u = std::fmin(std::fmax(u, 0.0f), 1.0f), v = std::fmin(std::fmax(v, 0.0f), 1.0f);
   DevicePlace place;
   switch (whole_number(t, Table::pupils_kind)) {
     case 0: place = sample_polygon(t, film_x, film_y, u, v, w); break;

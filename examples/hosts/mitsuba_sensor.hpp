@@ -24,15 +24,17 @@ class MitsubaSensor {
         frame_(petzval::Host::mitsuba, camera_.lens(), petzval::FrameOrigin::film),
         to_world_(std::move(to_world)) {}
 
-  /// At the lens's primary wavelength. position_sample: the place in the picture, (0, 0) in the upper left corner, (1,
-  /// 1) in the lower right one. The weight is 0 for a ray that is lost.
+  /// At the lens's primary wavelength. time: part of the time that the shutter is open, 0 to 1. position_sample: the
+  /// place in the picture, (0, 0) in the upper left corner, (1, 1) in the lower right one. The weight is 0 for a ray
+  /// that is lost.
   std::pair<Ray3f, Float> sample_ray(Float time, Float /* wavelength_sample */, const Point2f& position_sample,
                                      const Point2f& aperture_sample) const {
     const petzval::Film& film = camera_.film();
     const petzval::CameraRay r =
         camera_.sample({.film = film.point(position_sample.x() * film.columns, position_sample.y() * film.rows),
                         .pupil_u = aperture_sample.x(),
-                        .pupil_v = aperture_sample.y()});
+                        .pupil_v = aperture_sample.y(),
+                        .time = double{time}});
     const petzval::Ray<double> ray = frame_.to_host(r.ray);
     const auto number = [](double value) { return static_cast<Float>(value); };
     const Point3f origin(number(ray.origin.x), number(ray.origin.y), number(ray.origin.z));

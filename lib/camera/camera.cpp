@@ -11,6 +11,7 @@
 #include "core/low_discrepancy.hpp"
 #include "core/text.hpp"
 #include "make_model.hpp"
+#include "petzval/camera/polynomial_model.hpp"
 #include "petzval/core/error.hpp"
 #include "tilted_pinhole.hpp"
 
@@ -46,6 +47,19 @@ void check_model(const Lens& lens, const FilmPupilTable& pupils, double radius) 
   if (!(radius <= pupils.film_radius() * (1 + rounding))) {
     throw Error(lens.name() + ": camera: the model is one for film points up to " + to_text(pupils.film_radius()) +
                 " mm from the axis, wanted " + to_text(radius) + " mm or more");
+  }
+}
+
+/// Throws Error for polynomials of other wavelengths.
+void check_wavelengths(const Lens& lens, const AnyRayModel& model) {
+  const auto* const polynomials = model.as<PolynomialModel>();
+  if (!polynomials) return;
+  const auto& fits = polynomials->polynomial().fits();
+  for (std::size_t w = 0; w < fits.size(); ++w) {
+    const double wanted = lens.wavelengths_nm()[w];
+    if (std::abs(fits[w].wavelength_nm - wanted) <= 1e-6) continue;
+    throw Error(lens.name() + ": camera: the model has " + to_text(fits[w].wavelength_nm) + " nm for wavelength " +
+                std::to_string(w) + ", wanted the lens's, " + to_text(wanted) + " nm");
   }
 }
 
@@ -143,6 +157,7 @@ Camera::Camera(const Lens& lens, const Film& film, const AnyRayModel& model, Nor
   const LensFacts facts(placed_lens);
   const double radius = camera_detail::upright_radius(facts, placed_film, model.kind());
   check_model(placed_lens, model.pupils(), radius);
+  check_wavelengths(placed_lens, model);
   data_ = std::make_shared<const Data>(facts, placed_film, model, radius, normalisation);
 }
 

@@ -91,7 +91,7 @@ void put_surfaces(Numbers& to, const Lens& lens) {
 
 void CameraTables::check(std::span<const float> tables, const std::string& where) {
   const auto refuse = [&](const std::string& found) { throw Error(where + ": found " + found); };
-  if (tables.size() < head_size || tables[format] != 2) refuse("no camera tables of format 2, wanted them");
+  if (tables.size() < head_size || tables[format] != 2) refuse("something else, wanted camera tables of format 2");
   const auto number = [&](Position at) {
     const float value = tables[at];
     if (!(value >= 0 && value <= 1 << 24 && value == std::floor(value))) {
@@ -100,17 +100,32 @@ void CameraTables::check(std::span<const float> tables, const std::string& where
     return static_cast<std::size_t>(value);
   };
   const auto check_list = [&](Position at, std::size_t size) {
-    if (number(at) + size <= tables.size()) return;
-    refuse(std::to_string(tables.size()) + " numbers, wanted " + std::to_string(number(at) + size) + " or more");
+    const std::size_t begin = number(at);
+    if (begin >= head_size && begin + size <= tables.size()) return;
+    refuse("a list of " + std::to_string(size) + " numbers that begins at " + std::to_string(begin) + " (position " +
+           std::to_string(at) + "), wanted it between " + std::to_string(std::size_t{head_size}) + " and " +
+           std::to_string(tables.size()));
   };
+  const auto check_number = [&](Position at, std::size_t least, std::size_t most) {
+    if (const std::size_t value = number(at); value < least || value > most) {
+      refuse(std::to_string(value) + " at position " + std::to_string(at) + ", wanted " + std::to_string(least) +
+             " to " + std::to_string(most));
+    }
+  };
+  check_number(model, 0, static_cast<std::size_t>(ModelKind::custom));
+  check_number(wavelength_count, 1, 1 << 16);
+  check_number(primary_wavelength, 0, number(wavelength_count) - 1);
   const std::size_t w = number(wavelength_count), spaces = number(surface_count) + 1;
   check_list(wavelengths, w), check_list(scales, w);
   switch (number(pupils_kind)) {
-    case 0: check_list(pupils, w * number(strips) * FilmPupilArrays::strip_size); break;
+    case 0:
+      check_number(strips, 1, 1 << 16);
+      check_list(pupils, w * number(strips) * FilmPupilArrays::strip_size);
+      break;
     case 1: check_list(pupils, w * FilmPupilArrays::image_size); break;
     case 2: {
+      check_number(rows, 1, 1 << 16), check_number(columns, 1, 1 << 16);
       const std::size_t cells = number(rows) * number(columns);
-      if (cells == 0) refuse("no cells of pupils, wanted them");
       check_list(half_widths, number(rows) + 1);
       check_list(pupils, cells), check_list(pupils, w * cells * FilmPupilArrays::cell_size);
       break;
@@ -121,7 +136,9 @@ void CameraTables::check(std::span<const float> tables, const std::string& where
   switch (number(rays_kind)) {
     case 0: check_list(rays, 8 * w); break;
     case 1: {
-      const int n = static_cast<int>(std::min<std::size_t>(number(degree), 11));
+      check_number(degree, 3, 11);
+      const int n = static_cast<int>(number(degree));
+      if (n % 2 == 0) refuse("polynomials of degree " + std::to_string(n) + ", wanted an odd one");
       const bool mirrors = tables[domain_pupil_radius_x] != 0;
       const std::size_t each = mirrors ? 2 * RayPolynomial::mirror_terms(n).size() : RayPolynomial::terms(n).size();
       check_list(rays, 4 * w * each);

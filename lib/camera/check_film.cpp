@@ -22,14 +22,16 @@ void check_rectangle(const std::string& where, const Film& film) {
            " mm, wanted positive lengths and an area that is a number");
   }
   if (film.columns <= 0 || film.rows <= 0) {
-    refuse("it has " + std::to_string(film.columns) + " by " + std::to_string(film.rows) + " pixels, wanted some");
+    refuse("it has " + std::to_string(film.columns) + " by " + std::to_string(film.rows) +
+           " pixels, wanted one or more each way");
   }
   if (!(film.margin_mm >= 0 && std::isfinite(film.margin_mm))) {
     refuse("its margin is " + to_text(film.margin_mm) + " mm, wanted a finite one, 0 or more");
   }
   if (!std::isfinite(film.travel_mm)) refuse("it travels " + to_text(film.travel_mm) + " mm, wanted a finite way");
   if (!(std::isfinite(film.shift_x_mm) && std::isfinite(film.shift_y_mm))) {
-    refuse("its centre is (" + to_text(film.shift_x_mm) + ", " + to_text(film.shift_y_mm) + ") mm, wanted a place");
+    refuse("its centre is (" + to_text(film.shift_x_mm) + ", " + to_text(film.shift_y_mm) +
+           ") mm, wanted finite numbers");
   }
   constexpr double quarter_turn = std::numbers::pi / 2;
   if (!(std::abs(film.tilt_rad) < quarter_turn && std::abs(film.swing_rad) < quarter_turn)) {
@@ -101,7 +103,12 @@ void check_film(const Lens& lens, const Film& film) {
   check_rectangle(lens.name() + ": film", film);
   check_outside_surface(lens, film);
   if (film.tilted()) check_tilted(lens, film);
-  if (film.travel_mm != 0) check_film(lens, placed(lens, film.at(1)).film);
+  if (film.travel_mm == 0) return;
+  try {
+    check_film(lens, placed(lens, film.at(1)).film);
+  } catch (const Error& error) {
+    throw Error(std::string(error.what()) + "; there it is when it has travelled " + to_text(film.travel_mm) + " mm");
+  }
 }
 
 void check_upright_film(const Lens& lens, const Film& film) {

@@ -12,7 +12,7 @@ namespace petzval::inline v0 {
 
 Film Film::at(double time) const {
   Film result = *this;
-  result.z_mm = z() + time * travel_mm;
+  result.z_mm = z() + (time > 0 ? std::min(time, 1.0) : 0.0) * travel_mm;
   result.travel_mm = 0;
   return result;
 }

@@ -109,12 +109,24 @@ TEST(CameraTables, AreRefusedWhereTheyAreNone) {
     EXPECT_EQ(fault(good), "no error");
     EXPECT_NE(fault({good.begin(), good.end() - 1}), "no error");
     for (std::size_t at = 0; at < CameraTables::head_size; ++at) {
-      std::vector<float> bad = good;
-      bad[at] = std::nanf("");
-      fault(bad);  // an Error or none, and no read out of bounds
+      for (const float value : {std::nanf(""), 0.f, 1.f, 7.f, 31.f, 1000.f, 1e6f}) {
+        std::vector<float> bad = good;
+        bad[at] = value;
+        if (fault(bad) != "no error") continue;
+        for (const float x : {0.f, 5.f, 17.f}) hosts::sample(bad.data(), x, -x / 2, 0.3f, 0.7f, 0);  // within bounds
+      }
     }
+    const auto changed = [&](CameraTables::Position at, float value) {
+      std::vector<float> bad = good;
+      bad[at] = value;
+      return fault(bad);
+    };
+    EXPECT_NE(changed(CameraTables::primary_wavelength, 7).find("7 at position 3, wanted 0 to 0"), std::string::npos);
+    EXPECT_NE(changed(CameraTables::wavelengths, 3).find("begins at 3"), std::string::npos);
+    EXPECT_NE(changed(CameraTables::wavelength_count, 0), "no error");
+    EXPECT_NE(changed(CameraTables::model, 77), "no error");
   }
-  EXPECT_NE(fault({}).find("no camera tables"), std::string::npos);
+  EXPECT_NE(fault({}).find("wanted camera tables of format 2"), std::string::npos);
   const auto refusal = [&](const Lens& of, const Film& on, ModelKind model) {
     return testing::message([&] { Camera(of, on, {.model = model}).tables(); });
   };

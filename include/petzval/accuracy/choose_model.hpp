@@ -72,8 +72,8 @@ struct ModelChoice {
 ///     const ModelChoice choice = choose_model(lens, {.near_mm = 1000, .film = film}, {.max_px = 0.25});
 ///     const Camera camera(lens, film, {.model = choice.model});
 ///
-/// Throws Error for a tilted film, for near_mm that is not in front of the lens or beyond far_mm, for wavelengths that
-/// were not compiled, for a limit that is negative or NaN, and where with_f_number(), Camera with
+/// Throws Error for a film that is tilted or travels, for near_mm that is not in front of the lens or beyond far_mm,
+/// for wavelengths that were not compiled, for a limit that is negative or NaN, and where with_f_number(), Camera with
 /// ModelKind::exact_double and model_error() do.
 PETZVAL_API ModelChoice choose_model(const Lens& lens, const SceneRequirements& scene, const ErrorBudget& budget,
                                      int threads = 1);

@@ -61,9 +61,9 @@ struct ModelError {
   double exposure = 0;  ///< largest over film points and wavelengths: |irradiance / exact irradiance - 1|
 };
 
-/// Measures a built-in model. Throws Error where it cannot be built (see Camera), for a tilted film, for no depths or
-/// depths that are not in front of the lens, for wavelengths that were not compiled, for a lens without focal length,
-/// and for one without light on the film.
+/// Measures a built-in model. Throws Error where it cannot be built (see Camera), for a film that is tilted or travels,
+/// for no depths or depths that are not in front of the lens, for wavelengths that were not compiled, for a lens
+/// without focal length, and for one without light on the film.
 PETZVAL_API ModelError model_error(const Lens& lens, const Film& film, ModelKind model, const ErrorSamples& samples);
 /// The same for models that were built before for this lens and film, a renderer's own included. Exact rays are traced
 /// once for all of them.

@@ -52,20 +52,22 @@ struct CameraOptions {
 /// Rays of every model start on the front of the lens, and shadow rays of connections end there: on the sphere through
 /// the vertex and the rim of the first surface, which is that surface where it is spherical or plane. Where other
 /// surfaces stand before the first one, as with some mirrors, or it is a cylinder, the front is the plane across the
-/// axis before all of them. A line that passes the sphere by starts in the plane that touches it at the vertex.
+/// axis before all of them. A line that misses the sphere starts in the plane that touches it at the vertex.
 ///
 /// A pull of focus while the shutter is open is a film that travels (Film::travel_mm): each sample has its time, and
 /// the ray is that of the film's place then, without interpolation. First-order models keep the focus and the size of
 /// the pupil that they are given as the shutter opens: after a pull from 3 m to infinity of a 100 mm lens their
-/// exposure is 1.5 % off. Such a film costs what a tilted one does.
+/// exposure is 1 to 4 % off. Such a film costs what a tilted one does; pinhole, thin and thick, which tilt for nothing,
+/// are set up as an exact camera is.
 ///
 /// A sample has a wavelength of its own: a position among the compiled ones, or any between them in nm
 /// (Wavelength::nm(), RayWavelengths::each_nm), so that hero wavelengths need no camera per bin. Set-up grows with the
-/// compiled ones only. From eight of them over 400 to 700 nm, a ray meets the film of 36 mm where that of a camera
-/// compiled for its wavelength does, in pixels of 1920: within 1e-4 for exact models, 0.03 for polynomials of degree 7
-/// and first-order ones (tests/camera/any_wavelength_test.cpp). The light of polynomials and two discs steps in the
-/// middles between compiled wavelengths, by 1 % or less (FilmPupilTable). Film and scene hold the same light at every
-/// wavelength. A renderer's own models take nm where they say so (RayModel).
+/// compiled ones only. A ray meets the film of 36 mm where that of a camera compiled for its wavelength does, in pixels
+/// of 1920: exact models within 1e-4, whatever wavelengths were compiled; polynomials of degree 7 and first-order ones
+/// within 0.03 (lenses faster than f/1.4: 0.08) from eight even ones over 400 to 700 nm, and within pixels from three
+/// (tests/camera/any_wavelength_test.cpp). The light of polynomials and two discs steps in the middles between compiled
+/// wavelengths, by 1 % or less (FilmPupilTable). Film and scene hold the same light at every wavelength. A renderer's
+/// own models take nm where they say so (RayModel).
 ///
 /// Immutable, cheap to copy, shared freely between threads. Calls neither allocate nor draw random numbers nor loop
 /// until a ray passes: a lost sample has weight 0 and a fate. Only the first call that concerns rays from the scene
@@ -80,7 +82,7 @@ class PETZVAL_API Camera {
   /// discs of a lens with cylinders.
   Camera(const Lens& lens, const Film& film, const CameraOptions& options = {});
   /// With a model that was built before: a renderer's own, or polynomials read from a file (ray_model.hpp). Throws
-  /// Error also for a model with another number of wavelengths, another place of the film, or a film smaller than
+  /// Error also for a model of other wavelengths, of another place of the film, or whose pupils reach less far than
   /// upright_radius().
   Camera(const Lens& lens, const Film& film, const AnyRayModel& model,
          Normalisation normalisation = Normalisation::irradiance);
@@ -118,7 +120,7 @@ class PETZVAL_API Camera {
   /// pdf is the film's mean irradiance by light of the irradiance E across that direction.
   ImportanceSample sample_distant_importance(const Vec3<double>& direction, double u, double v,
                                              Wavelength wavelength = {}, double time = 0) const noexcept;
-  /// The density with which sample_importance() gives a direction at a point, 1/sr.
+  /// The density with which sample_importance() gives a direction at a point, 1/sr; the same at all times.
   double pdf_importance(const Vec3<double>& point, const Vec3<double>& direction,
                         Wavelength wavelength = {}) const noexcept;
 

@@ -18,7 +18,8 @@ struct CameraSample {
   FilmPoint film;
   double pupil_u = 0, pupil_v = 0;  ///< in the unit square; mapped uniformly to the pupil of this film point
   Wavelength wavelength = {};
-  double time = 0;  ///< part of the time that the shutter is open, 0 to 1 (clamped): where a film that travels is
+  double time = 0;  ///< part of the time that the shutter is open, 0 to 1 (clamped; not a number: 0): where a film that
+                    ///< travels is
 };
 
 /// A ray that leaves the lens towards the scene, from the front of the lens (see Camera).
@@ -88,10 +89,11 @@ PETZVAL_API RasterDifferential by_raster(const CameraRayDifferential& ray, const
 /// The importance of a ray from the scene, for light tracing and bidirectional methods.
 ///
 /// The film's mean irradiance is the integral of We x radiance over the rays of the scene, in the measure cos dA dw of
-/// any surface in front of the lens. For Normalisation::irradiance, We is the square of the index in front of the lens
-/// over the film's area for every ray that arrives; there is no cosine in it. The other normalisations divide We as
-/// they divide weights. The index of the film's medium changes the weights of film samples by its square, and not We:
-/// derivation in lib/camera/importance.cpp.
+/// any surface in front of the lens. (Rays that meet the film's margin have We as well, and their raster outside the
+/// picture: they count for pixel filters and not for that mean.) For Normalisation::irradiance, We is the square of the
+/// index in front of the lens over the film's area for every ray that arrives; there is no cosine in it. The other
+/// normalisations divide We as they divide weights. The index of the film's medium changes the weights of film samples
+/// by its square, and not We: derivation in lib/camera/importance.cpp.
 ///
 /// First-order models are linear in slopes and do not conserve etendue, as no lens can that images planes sharply.
 /// There We has the factor (cos t / cos t')^4, t and t' the angles of the ray with the axis behind and before the lens,

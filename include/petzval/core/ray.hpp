@@ -41,7 +41,7 @@ enum class RayFate : std::uint8_t {
   no_convergence,     ///< the iteration for an asphere did not converge
   outside_fit,        ///< outside the domain of a fitted model of the lens
   outside_film,       ///< starts or ends outside the film of a camera
-  invalid,            ///< a camera was given no ray: a wavelength or numbers that are none, or no unit direction
+  invalid,            ///< a wavelength that does not exist, numbers that are not finite, or no unit direction
 };
 
 /// The fate as the programs print it: "transmitted", "missed_surface", ...

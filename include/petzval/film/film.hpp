@@ -18,9 +18,9 @@ struct FilmPoint {
 
 /// The rectangle that is exposed: its size, its pixels, and its place behind the lens.
 ///
-/// The film crosses the axis at z_mm, or unset where the lens has its film plane, and turns about that point: its
-/// normal is Ry(swing) Rx(tilt) e_z (tilt about +x first). A shift moves the rectangle within that plane. Where the
-/// film travels, its place is that when the shutter opens.
+/// The film crosses the axis at z_mm (where the lens has its film plane, if that is not set) and turns about that
+/// point: its normal is Ry(swing) Rx(tilt) e_z (tilt about +x first). A shift moves the rectangle within that plane.
+/// Where the film travels, its place is that when the shutter opens.
 ///
 ///     const Film film{.width_mm = 36, .height_mm = 24, .columns = 1920, .rows = 1280};
 ///     const Camera camera(lens, film);
@@ -32,14 +32,14 @@ struct PETZVAL_API Film {
   double shift_x_mm = 0, shift_y_mm = 0;  ///< film point in the middle of the rectangle
   /// Around the rectangle on all sides. Film points there see the scene too, for pixel filters that reach over the edge
   /// and for overscan: a filter of radius r pixels wants r * width_mm / columns. Size, area and raster are those of the
-  /// rectangle.
+  /// rectangle: points of the margin have their raster outside the picture, and connections find them too.
   double margin_mm = 0;
   std::optional<double> z_mm = {};  ///< lens frame; unset: the lens's own film_z()
   double tilt_rad = 0, swing_rad = 0;
   double travel_mm = 0;  ///< along z while the shutter is open: a pull of focus
 
-  /// The film at a part of the time that the shutter is open (0: it opens; 1: it closes), without travel. Throws Error
-  /// where z_mm is not set.
+  /// The film at a part of the time that the shutter is open (0: it opens; 1: it closes; clamped, and not a number is
+  /// 0), without travel. Throws Error where z_mm is not set.
   Film at(double time) const;
 
   bool tilted() const noexcept { return tilt_rad != 0 || swing_rad != 0; }

@@ -108,7 +108,7 @@ class PETZVAL_API Lens {
   /// How far the index of any medium at a wavelength in nm may be from its dispersion formula: the largest error of the
   /// polynomials of degree 7 in 1 / nm that stand for it, at their extremes and the compiled wavelengths, and 10 % to
   /// spare. Neither number nor spacing of the compiled wavelengths matters, but their range. From 400 to 700 nm it is
-  /// below 5e-8 for every lens of data/lenses and 7e-7 for every glass of data/glass (tests/lens). Rays in float add
+  /// below 6e-8 for every lens of data/lenses and 7e-7 for every glass of data/glass (tests/lens). Rays in float add
   /// 2e-7. Infinite where a formula gives no index between compiled wavelengths: the lens has these alone.
   double index_error() const noexcept;
   /// Direction along z of light from the scene in a space: +1, or -1 behind an odd number of mirrors. Throws Error for

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -18,13 +19,18 @@ namespace petzval::inline v0 {
 ///     first_order(lens, lens.wavelength(486.1327));          // at the F line, which has to be compiled
 ///     first_order(lens, lens.nearest_wavelength(510));       // at the compiled one nearest to 510 nm
 ///
-/// Indices, rays and cameras take any wavelength (Lens::index_error() says how well), and so does what follows from
-/// indices alone, as first_order() and pupils() do. Functions that search for pupils take compiled ones, of nm within
-/// 1e-6 nm.
+/// Indices and exact rays take any wavelength (Lens::index_error() says how well), and so does what follows from
+/// indices alone, as first_order() and pupils() do. Cameras take them too (Camera says how well). Functions that search
+/// for pupils take compiled ones, of nm within 1e-6 nm.
 class Wavelength {
  public:
   constexpr Wavelength() noexcept = default;
   constexpr Wavelength(std::size_t position) noexcept : position_(position < by_nm ? position : none) {}
+  /// What is no position is no wavelength either: nm() takes those.
+  template <class T>
+    requires(std::floating_point<T> || std::same_as<T, bool>)
+  Wavelength(T)
+  = delete;
   static constexpr Wavelength nm(double nm) noexcept {
     Wavelength result;
     result.position_ = by_nm;

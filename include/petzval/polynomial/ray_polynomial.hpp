@@ -41,7 +41,8 @@ namespace petzval::inline v0 {
 /// rad and 3e-5 mm. With mirror symmetry there are 3 to 7 times as many coefficients, and a batch takes 2 to 6 times as
 /// long.
 ///
-/// Wavelengths in nm between those of fits get the combination of up to four neighbouring fits: a cubic, in 1 / nm.
+/// Wavelengths in nm between those of fits get the combination of up to four neighbouring fits: a cubic in 1 / nm, or a
+/// straight line where neighbours stand very unevenly.
 ///
 /// Immutable, cheap to copy, free to share between threads.
 class PETZVAL_API RayPolynomial {
