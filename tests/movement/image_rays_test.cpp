@@ -69,7 +69,8 @@ TEST(ImageRays, HaveTheSpotsOfOutlines) {
     const Lens lens = compile(prescription);
     const double f = std::abs(thick_lens(lens).rear_focal_length), film_z = lens.film_z() + 0.01 * f;
     for (const std::size_t rays : {256, 1024}) {
-      const double relative = rays == 256 ? 0.01 : 0.005;
+      // The fisheye's spot has few rays far from most: from .0244 to .0251 mm with 256, .0248 mm with 65536.
+      const double relative = rays == 256 ? 0.015 : 0.01;
       const ImageRays bundles(lens, 0.4 * f, rays);
       for (const double field : {0.0, 0.5, 0.9}) {
         for (const double distance : {20 * f, 1e9}) {
