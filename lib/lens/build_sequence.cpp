@@ -86,6 +86,10 @@ SurfaceSequenceTables<R> build_sequence(std::span<const LensSurface> surfaces, s
   tables.sequence.last_z = static_cast<R>((to_film ? surfaces.back() : surfaces.front()).vertex_z);
   tables.sequence.last_sense = static_cast<R>(sense);
 
+  const std::size_t row = kernel::row_length<R>(wavelengths);
+  tables.bend_rows.resize(3 * count * row);
+  tables.n_first.resize(row);
+  tables.per_n_last.resize(row);
   for (std::size_t w = 0; w < wavelengths; ++w) {
     const double* n = indices.data() + w * (count + 1);
     for (auto& step : tables.steps) {
@@ -93,11 +97,16 @@ SurfaceSequenceTables<R> build_sequence(std::span<const LensSurface> surfaces, s
       const double in = n[to_film ? i : i + 1], out = n[to_film ? i + 1 : i];
       const double curvature = double{step.sense} * surfaces[i].curvature;
       step.bends = step.bends || in != out;
-      tables.bends.push_back({static_cast<R>(curvature * in * in), static_cast<R>((out - in) * (out + in)),
-                              static_cast<R>(1 / (in * in))});
+      const kernel::RefractionConstants<R> bend{static_cast<R>(curvature * in * in),
+                                                static_cast<R>((out - in) * (out + in)), static_cast<R>(1 / (in * in))};
+      R* const rows = tables.bend_rows.data() + 3 * (tables.bends.size() % count) * row + w;
+      rows[0] = bend.cn2;
+      rows[row] = bend.k;
+      rows[2 * row] = bend.per_n2;
+      tables.bends.push_back(bend);
     }
-    tables.n_first.push_back(static_cast<R>(n[to_film ? 0 : count]));
-    tables.per_n_last.push_back(static_cast<R>(1 / n[to_film ? count : 0]));
+    tables.n_first[w] = static_cast<R>(n[to_film ? 0 : count]);
+    tables.per_n_last[w] = static_cast<R>(1 / n[to_film ? count : 0]);
   }
   const auto& place = spectrum.place();
   tables.sequence.place = {static_cast<R>(place.shortest), static_cast<R>(place.longest), static_cast<R>(place.scale),

@@ -18,7 +18,7 @@ template <class R>
 struct SurfaceSequenceTables {
   std::vector<kernel::Step<R>> steps;
   std::vector<kernel::RefractionConstants<R>> bends;
-  std::vector<R> n_first, per_n_last;
+  std::vector<R> bend_rows, n_first, per_n_last;
   std::vector<kernel::SquaredIndex<R>> media;
   kernel::SurfaceSequence<R> sequence;  ///< its pointers are set by view()
 
@@ -26,6 +26,7 @@ struct SurfaceSequenceTables {
     auto seen = sequence;
     seen.steps = steps.data();
     seen.bends = bends.data();
+    seen.bend_rows = bend_rows.data();
     seen.n_first = n_first.data();
     seen.per_n_last = per_n_last.data();
     seen.media = media.data();

@@ -95,13 +95,22 @@ struct SquaredIndex {
   }
 };
 
+/// Numbers in a row of one for each wavelength: with zeros to whole pairs of the widest registers, which look_up() in
+/// trace/lanes.hpp loads.
+template <class R>
+constexpr std::size_t row_length(std::size_t wavelengths) noexcept {
+  constexpr std::size_t pair = 2 * 64 / sizeof(R);
+  return (wavelengths + pair - 1) / pair * pair;
+}
+
 /// The surfaces of a lens in the order of travel.
 template <class R>
 struct SurfaceSequence {
   const Step<R>* steps = nullptr;
   const RefractionConstants<R>* bends = nullptr;  ///< [wavelength * count + step]
-  const R* n_first = nullptr;                     ///< [wavelength], in front of the lens
-  const R* per_n_last = nullptr;                  ///< [wavelength], behind it
+  const R* bend_rows = nullptr;                   ///< the same in rows, [3 * step + 0 for cn2, 1 for k, 2 for per_n2]
+  const R* n_first = nullptr;                     ///< a row, in front of the lens
+  const R* per_n_last = nullptr;                  ///< a row, behind it
   SpectralPlace<R> place{};                       ///< of any wavelength
   const SquaredIndex<R>* media = nullptr;         ///< [step] in front of it; the last one behind the lens
   R first_z = 0, last_z = 0;                      ///< vertices of the first and the last step, lens frame

@@ -5,7 +5,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 
 #include "least_clearance.hpp"
 #include "march.hpp"
@@ -106,17 +105,9 @@ void trace_blocks(const BlockJob<R>& job) noexcept {
     return;
   }
   for (std::size_t o = 0; o < job.rays; o += rays) {
-    std::uint16_t wavelengths[rays];
-    for (std::size_t l = 0; l < rays; ++l) {
-      // A wavelength that was not compiled loses the ray: there is no index.
-      const bool known = job.wavelengths[o + l] < job.compiled_wavelengths;
-      wavelengths[l] = known ? job.wavelengths[o + l] : std::uint16_t{0};
-      index[l] = known ? sequence.n_first[wavelengths[l]] : std::numeric_limits<R>::quiet_NaN();
-      per_index[l] = sequence.per_n_last[wavelengths[l]];
-    }
-    trace_bundle(job, o, index, per_index, [&](std::size_t j) {
-      return MediaByRay<R>{sequence.bends + j, job.steps, wavelengths};
-    });
+    const MediaByRay<R> media(sequence, job.wavelengths + o, job.compiled_wavelengths);
+    media.indices(index, per_index);
+    trace_bundle(job, o, index, per_index, [&](std::size_t j) { return media.at(j); });
   }
 }
 

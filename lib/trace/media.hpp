@@ -22,22 +22,58 @@ struct SharedMedia {
   PETZVAL_INLINE Lanes<R> per_n2(int) const noexcept { return bend->per_n2; }
 };
 
-/// The media at a step, where each ray has its wavelength.
+/// The media where each ray has a compiled wavelength: constants are looked up in rows of one for each wavelength.
 template <class R>
-struct MediaByRay {
-  const kernel::RefractionConstants<R>* bends;  ///< of the step, at the first wavelength
-  std::size_t stride;                           ///< from one wavelength to the next
-  const std::uint16_t* wavelengths;
+class MediaByRay {
+  using V = Lanes<R>;
+  using Places = typename Native<R>::Bits;
 
-  template <R kernel::RefractionConstants<R>::*member>
-  PETZVAL_INLINE Lanes<R> gather(int i) const noexcept {
-    R values[Lanes<R>::width];
-    for (int l = 0; l < Lanes<R>::width; ++l) values[l] = bends[wavelengths[i * Lanes<R>::width + l] * stride].*member;
-    return load(values);
+ public:
+  /// The media at a step.
+  struct Step {
+    const R* rows;
+    std::size_t count, length;
+    const Places* places;
+
+    PETZVAL_INLINE V cn2(int i) const noexcept { return look_up(rows, count, places[i]); }
+    PETZVAL_INLINE V k(int i) const noexcept { return look_up(rows + length, count, places[i]); }
+    PETZVAL_INLINE V per_n2(int i) const noexcept { return look_up(rows + 2 * length, count, places[i]); }
+  };
+
+  /// wavelengths: of each ray; count: how many are compiled.
+  PETZVAL_INLINE MediaByRay(const kernel::SurfaceSequence<R>& sequence, const std::uint16_t* wavelengths,
+                            std::size_t count) noexcept
+      : sequence_(sequence), count_(count), length_(kernel::row_length<R>(count)) {
+    // Of 32 bits, as many as a float has: on them loops run best.
+    const auto compiled = static_cast<std::int32_t>(count <= 0xffff ? count : 0x10000);
+    typename Native<R>::Bit places[Bundle<R>::rays];
+    for (int l = 0; l < Bundle<R>::rays; ++l) {
+      const std::int32_t place = wavelengths[l];
+      places[l] = place < compiled ? place : 0;
+      unless_known_[l] = place < compiled ? R(0) : std::numeric_limits<R>::quiet_NaN();
+    }
+    __builtin_memcpy(places_, places, sizeof places);
   }
-  PETZVAL_INLINE Lanes<R> cn2(int i) const noexcept { return gather<&kernel::RefractionConstants<R>::cn2>(i); }
-  PETZVAL_INLINE Lanes<R> k(int i) const noexcept { return gather<&kernel::RefractionConstants<R>::k>(i); }
-  PETZVAL_INLINE Lanes<R> per_n2(int i) const noexcept { return gather<&kernel::RefractionConstants<R>::per_n2>(i); }
+
+  /// The indices in front of the first step, and one over those behind the last one. Not a number, which loses the ray,
+  /// for a wavelength that was not compiled.
+  PETZVAL_INLINE void indices(R* first, R* per_last) const noexcept {
+    for (int i = 0; i < Bundle<R>::vectors; ++i) {
+      const int o = i * V::width;
+      store(first + o, look_up(sequence_.n_first, count_, places_[i]) + load(unless_known_ + o));
+      store(per_last + o, look_up(sequence_.per_n_last, count_, places_[i]));
+    }
+  }
+
+  PETZVAL_INLINE Step at(std::size_t j) const noexcept {
+    return {sequence_.bend_rows + 3 * j * length_, count_, length_, places_};
+  }
+
+ private:
+  const kernel::SurfaceSequence<R>& sequence_;
+  std::size_t count_, length_;
+  Places places_[Bundle<R>::vectors];
+  R unless_known_[Bundle<R>::rays];
 };
 
 /// The media of rays of any wavelengths, step by step: squares of indices by their polynomials.

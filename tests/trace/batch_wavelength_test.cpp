@@ -73,6 +73,33 @@ TYPED_TEST(BatchWavelengths, MixedInABatchAreWhatEachGivesAlone) {
   }
 }
 
+// Constants of 4 to 32 wavelengths are permuted in one register or two, those of more are gathered.
+TYPED_TEST(BatchWavelengths, MixedInABatchAreWhatEachGivesAloneHoweverManyThereAre) {
+  using T = TypeParam;
+  static const auto glasses = petzval::GlassCatalogue::load(std::filesystem::path(PETZVAL_TEST_DATA) / "glass");
+  auto sample = testing_lenses::load("double_gauss_100mm_f2.0");
+  for (const std::size_t count : {1, 4, 8, 9, 16, 17, 32, 33}) {
+    std::vector<double> nm;
+    for (std::size_t w = 0; w < count; ++w) nm.push_back(400 + 9 * static_cast<double>(w));
+    sample.lens =
+        petzval::compile(sample.prescription, nm, {.glasses = &glasses, .missing_glass = petzval::MissingGlass::abbe});
+    const auto rays = rays_for<T>(sample, Travel::to_scene, 3 * count);
+    std::vector<std::uint16_t> mixed(rays.size());
+    for (std::size_t i = 0; i < mixed.size(); ++i) mixed[i] = static_cast<std::uint16_t>(i % count);
+    for (BatchOptions options : ways(Travel::to_scene)) {
+      options.wavelengths = {.each = mixed.data()};
+      const Answer<T> found = traced(sample.lens, rays, options);
+      for (std::size_t w = 0; w < count; ++w) {
+        options.wavelengths = {w};
+        const Answer<T> alone = traced(sample.lens, rays, options);
+        for (std::size_t i = w; i < rays.size(); i += count) {
+          ASSERT_TRUE(same_bits(found, i, alone, i)) << text(options) << " ray " << i << ", " << w << " of " << count;
+        }
+      }
+    }
+  }
+}
+
 TYPED_TEST(BatchWavelengths, GivenForEachRayTakeThePlaceOfTheCommonOne) {
   using T = TypeParam;
   const auto sample = colourful(testing_lenses::load("double_gauss_100mm_f2.0"));
