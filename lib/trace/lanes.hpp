@@ -112,6 +112,15 @@ template <class R>
 PETZVAL_INLINE Mask<R> all_of(Mask<R> a, Mask<R> b, Mask<R> c) noexcept {
   return a & b & c;
 }
+/// The same with a mask in memory. (Compilers would take it to the registers of integers.)
+template <class R>
+PETZVAL_INLINE Mask<R> also(const Mask<R>& in_memory, Mask<R> b) noexcept {
+#if defined(__AVX512F__)
+  return {_kand_mask16(in_memory.bits, b.bits)};
+#else
+  return in_memory & b;
+#endif
+}
 template <class R>
 PETZVAL_INLINE Mask<R> any_of(Mask<R> a, Mask<R> b) noexcept {
   return a | b;

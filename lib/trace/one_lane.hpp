@@ -67,6 +67,10 @@ Mask<R> all_of(Mask<R> a, More... more) noexcept {
   return {(a.bits && ... && more.bits)};
 }
 template <class R>
+Mask<R> also(Mask<R> a, Mask<R> b) noexcept {
+  return a & b;
+}
+template <class R>
 Mask<R> any_of(Mask<R> a, Mask<R> b) noexcept {
   return a | b;
 }

@@ -43,7 +43,7 @@ struct NoTangents {
 /// Updates the tally of vector i of a bundle.
 template <class R>
 PETZVAL_INLINE void book(Bundle<R>& b, int i, Mask<R> found, Mask<R> inside, Mask<R> refracted) noexcept {
-  const Mask<R> hit = b.alive[i] & found;
+  const Mask<R> hit = also(b.alive[i], found);
   const Mask<R> let_in = hit & inside;
   b.alive[i] = let_in & refracted;
   count<1>(b.tally[i], hit);
@@ -108,47 +108,68 @@ PETZVAL_INLINE void approach(const kernel::Step<R>& s, const Media& media, Bundl
   follow.shift(i, t);
 }
 
-/// A refracting sphere.
+/// The second of a pair may be one without rays: code of its own for a single one would round otherwise.
+template <class R>
+inline constexpr int vectors_together = Bundle<R>::vectors % 2 == 0 ? 2 : 1;
+
+/// A refracting sphere, for a pair of vectors from the first on, stage by stage: while one waits for a root, the other
+/// goes on.
 template <bool far, class R, class Media, class Follow>
-PETZVAL_ONE_LANE_INLINE void sphere(const kernel::Step<R>& s, const Lanes<R>& rim2, const Media& media, Bundle<R>& b,
-                                    Follow& follow) noexcept {
+PETZVAL_INLINE void sphere(const kernel::Step<R>& s, const Lanes<R>& rim2, const Media& media, Bundle<R>& b, int first,
+                           Follow& follow) noexcept {
   using V = Lanes<R>;
-  const V c(s.curvature);
-  PETZVAL_UNROLL
-  for (int i = 0; i < b.used; ++i) {
+  constexpr int together = vectors_together<R>;
+  const V c(s.curvature), one(R(1)), none(R(0));
+  V z[together], f[together], slant[together], cn2[together], k[together], d[together], d_out[together];
+  V xi[together], xo[together], q[together];
+  for (int m = 0, i = first; m < together; ++m, ++i) {
     if constexpr (far) approach(s, media, b, i, follow);
-    const V px = b.px[i], py = b.py[i], pz = b.pz[i];
-    const V z = far ? b.z[i] : b.z[i] - V(s.gap);
-    const V f = c * (b.r2[i] + z * z) - (z + z);
-    const V slant = pz - c * (b.x[i] * px + b.y[i] * py + z * pz);
-    const V cn2 = media.cn2(i), k = media.k(i);
-    const V d = slant * slant - cn2 * f;
-    const V d_out = d + k;
-    const V xi = root(d), xo = second_root(d_out);
-    V q;
+    z[m] = far ? b.z[i] : b.z[i] - V(s.gap);
+    cn2[m] = media.cn2(i);
+    k[m] = media.k(i);
+    f[m] = c * (b.r2[i] + z[m] * z[m]) - (z[m] + z[m]);
+    slant[m] = b.pz[i] - c * (b.x[i] * b.px[i] + b.y[i] * b.py[i] + z[m] * b.pz[i]);
+  }
+  for (int m = 0; m < together; ++m) {
+    d[m] = slant[m] * slant[m] - cn2[m] * f[m];
+    d_out[m] = d[m] + k[m];
+  }
+  for (int m = 0; m < together; ++m) xi[m] = root(d[m]);
+  for (int m = 0; m < together; ++m) {
     if constexpr (far) {  // beyond 90 degrees the same root by its other form
-      const Mask<R> facing = slant >= V(R(0));
-      q = select(facing, f, slant - xi) / select(facing, slant + xi, cn2);
+      const Mask<R> facing = slant[m] >= none;
+      q[m] = select(facing, f[m], slant[m] - xi[m]) / select(facing, slant[m] + xi[m], cn2[m]);
     } else {
-      q = f / (slant + xi);
+      q[m] = f[m] / (slant[m] + xi[m]);
     }
-    b.x[i] = b.x[i] + q * px;
-    b.y[i] = b.y[i] + q * py;
-    b.z[i] = z + q * pz;
+  }
+  for (int m = 0; m < together; ++m) xo[m] = second_root(d_out[m]);
+  for (int m = 0, i = first; m < together; ++m, ++i) {
+    const V px = b.px[i], py = b.py[i], pz = b.pz[i];
+    b.x[i] = b.x[i] + q[m] * px;
+    b.y[i] = b.y[i] + q[m] * py;
+    b.z[i] = z[m] + q[m] * pz;
     b.r2[i] = b.x[i] * b.x[i] + b.y[i] * b.y[i];
 
-    const V w = V(R(1)) - c * b.z[i];
-    const V gamma = xo - xi;
+    const V w = one - c * b.z[i];
+    const V gamma = xo[m] - xi[m];
     const V bend = gamma * c;
     b.px[i] = px - bend * b.x[i];
     b.py[i] = py - bend * b.y[i];
     b.pz[i] = pz + gamma * w;
-    book(b, i, w > V(R(0)), b.r2[i] <= rim2, has_root(d_out));
+    book(b, i, w > none, b.r2[i] <= rim2, has_root(d_out[m]));
     if constexpr (Follow::wanted) {
-      const V none(R(0));
-      follow.pass(s, b, i, {q, px, py, pz, c * b.x[i], c * b.y[i], w, V(R(1)), xi, xo, gamma, k, c, c, c, none, none});
+      follow.pass(s, b, i,
+                  {q[m], px, py, pz, c * b.x[i], c * b.y[i], w, one, xi[m], xo[m], gamma, k[m], c, c, c, none, none});
     }
   }
+}
+
+/// A refracting sphere.
+template <bool far, class R, class Media, class Follow>
+PETZVAL_ONE_LANE_INLINE void sphere(const kernel::Step<R>& s, const Lanes<R>& rim2, const Media& media, Bundle<R>& b,
+                                    Follow& follow) noexcept {
+  for (int i = 0; i < b.used; i += vectors_together<R>) sphere<far>(s, rim2, media, b, i, follow);
 }
 
 /// Turns the frame round behind a mirror.
