@@ -44,6 +44,19 @@ void report(const BlockJob<R>& job, const Bundle<R>& b, const std::uint8_t* unse
   }
 }
 
+/// Through all steps, or as far as a ray is left.
+template <class R, class MediaAt, class Follow>
+PETZVAL_INLINE void march(const BlockJob<R>& job, MediaAt&& media_at, std::uint8_t* unsettled, Bundle<R>& b,
+                          Follow& follow) {
+  for (std::size_t j = 0; j < job.steps; ++j) {
+    pass(job, j, media_at(j), unsettled, b, follow);
+    if (j % 4 != 3) continue;
+    Mask<R> left = b.alive[0];
+    for (int i = 1; i < b.used; ++i) left = left | b.alive[i];
+    if (!any(left)) return;
+  }
+}
+
 /// One bundle of a job: the rays from o on. index, per_index: in front of the lens and one over that behind it, by ray.
 template <class R, class MediaAt>
 void trace_bundle(const BlockJob<R>& job, std::size_t o, const R* index, const R* per_index, MediaAt&& media_at) {
@@ -60,18 +73,18 @@ void trace_bundle(const BlockJob<R>& job, std::size_t o, const R* index, const R
     TwoTangents<R> tangents;
     enter(job, from<R>(job.tangents_in->u, o), index, tangents.u);
     enter(job, from<R>(job.tangents_in->v, o), index, tangents.v);
-    for (std::size_t j = 0; j < job.steps; ++j) pass(job, j, media_at(j), unsettled, b, tangents);
+    march(job, media_at, unsettled, b, tangents);
     leave(job, in, per_index, b, out);
     leave(job, per_index, b, tangents.u, from<R>(job.tangents_out.u, o));
     leave(job, per_index, b, tangents.v, from<R>(job.tangents_out.v, o));
   } else if (job.clearances) {
     LeastClearance<R> clearance(b);
-    for (std::size_t j = 0; j < job.steps; ++j) pass(job, j, media_at(j), unsettled, b, clearance);
+    march(job, media_at, unsettled, b, clearance);
     leave(job, in, per_index, b, out);
     clearance.leave(b, job.clearances + o);
   } else {
     NoTangents none;
-    for (std::size_t j = 0; j < job.steps; ++j) pass(job, j, media_at(j), unsettled, b, none);
+    march(job, media_at, unsettled, b, none);
     leave(job, in, per_index, b, out);
   }
   if (!every(taken)) put_on_axis(job, b.used * Lanes<R>::width, out);
