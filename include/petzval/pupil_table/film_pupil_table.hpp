@@ -107,9 +107,9 @@ class PETZVAL_API FilmPupilTable {
   /// declared field, some of them stopped down; film_cells_test.cpp: a lens with cylinders from wide open to f/64),
   /// except where a pupil comes in parts that lie apart, as a ball lens's do: narrow rings of its film, where parts
   /// appear, miss up to 15 % of their light (0.5 % of that of its declared field, 1 to 13 % of that of a film six times
-  /// as large), and at f/45 most of it is missed from 0.26 mm off the axis on. Behind tiny stops, whose images move over
-  /// the film by more than their size, pupils hold more than the rays that pass: half of the samples are lost at about
-  /// f/1e5, most at f/1e6. The pupils of a round iris contain those of any other.
+  /// as large), and at f/45 most of it is missed from 0.26 mm off the axis on. Behind tiny stops, whose images move
+  /// over the film by more than their size, pupils hold more than the rays that pass: half of the samples are lost at
+  /// about f/1e5, most at f/1e6. The pupils of a round iris contain those of any other.
   ///
   /// film_radius: of the farthest film point, mm, >= 0. The film is that of the lens. Throws Error for a film in the
   /// plane of the last vertex, for a film_radius that is negative or not finite, and for less than one thread.
