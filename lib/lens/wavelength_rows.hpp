@@ -38,7 +38,7 @@ inline void look_up(const WavelengthRows<R, numbers>& table, const RayWavelength
     const auto place = table.place;
     R part[look_up_block];
     for (std::size_t i = 0; i < count; ++i) {
-      constexpr R cells = table.cells;
+      constexpr R cells = WavelengthRows<R, numbers>::cells;
       const R own = static_cast<R>(nm[begin + i]);
       const bool covered = (own >= place.shortest) & (own <= place.longest);
       const R at = (place.at(covered ? own : place.longest) + R(1)) * (cells / 2);
