@@ -56,10 +56,9 @@ void check_wavelengths(const Lens& lens, const AnyRayModel& model) {
   if (!polynomials) return;
   const auto& fits = polynomials->polynomial().fits();
   for (std::size_t w = 0; w < fits.size(); ++w) {
-    const double wanted = lens.wavelengths_nm()[w];
-    if (std::abs(fits[w].wavelength_nm - wanted) <= 1e-6) continue;
+    if (lens.position(Wavelength::nm(fits[w].wavelength_nm)) == w) continue;
     throw Error(lens.name() + ": camera: the model has " + to_text(fits[w].wavelength_nm) + " nm for wavelength " +
-                std::to_string(w) + ", wanted the lens's, " + to_text(wanted) + " nm");
+                std::to_string(w) + ", wanted the lens's, " + to_text(lens.wavelengths_nm()[w]) + " nm");
   }
 }
 

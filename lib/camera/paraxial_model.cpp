@@ -52,6 +52,18 @@ SectionMaps maps_of(const std::array<double, 8>& numbers) noexcept {
   return {{xa, xb, xc, xd}, {ya, yb, yc, yd}};
 }
 
+/// The maps at a compiled wavelength or at one in nm, which is written to `own`; null for one that is not covered.
+const SectionMaps* at_wavelength(Wavelength at, std::size_t primary, const std::vector<SectionMaps>& compiled,
+                                 const lens_detail::BetweenWavelengths<8>& between, SectionMaps& own) noexcept {
+  if (const auto nm = at.in_nm()) {
+    if (!between.covers(*nm)) return nullptr;
+    own = maps_of(between(*nm));
+    return &own;
+  }
+  const std::size_t position = at.position(primary);
+  return position < compiled.size() ? &compiled[position] : nullptr;
+}
+
 /// Where a film point sees the stop in the plane of the pupil: its centre at shift times the film point.
 struct StopImage {
   double shift = 0;
@@ -200,24 +212,13 @@ ParaxialModel::ParaxialModel(ModelKind model, const LensFacts& facts, double fil
 }
 
 const SectionMaps* ParaxialModel::map_at(Wavelength at, SectionMaps& own) const noexcept {
-  if (const auto nm = at.in_nm()) {
-    if (!between_.covers(*nm)) return nullptr;
-    own = maps_of(between_(*nm));
-    return &own;
-  }
-  const std::size_t position = at.position(pupils_.primary_wavelength());
-  return position < to_scene_.size() ? &to_scene_[position] : nullptr;
+  return at_wavelength(at, pupils_.primary_wavelength(), to_scene_, between_, own);
 }
 
 const SectionMaps* ParaxialModel::inverse_at(Wavelength at, SectionMaps& own) const noexcept {
-  if (const auto nm = at.in_nm()) {
-    if (!of_thick_lens_.covers(*nm)) return nullptr;
-    const auto [x, y] = maps_of(of_thick_lens_(*nm));
-    own = {x.inverse(), y.inverse()};
-    return &own;
-  }
-  const std::size_t position = at.position(pupils_.primary_wavelength());
-  return position < to_film_.size() ? &to_film_[position] : nullptr;
+  const SectionMaps* const found = at_wavelength(at, pupils_.primary_wavelength(), to_film_, of_thick_lens_, own);
+  if (found == &own) own = {own.x.inverse(), own.y.inverse()};
+  return found;
 }
 
 template <class T>

@@ -305,11 +305,11 @@ FilmPupilTable FilmPupilTable::for_tilted_film(const FilmTilt& tilt) const {
     data->images = data_->images->of_round_stop();
     return FilmPupilTable(std::move(data)).for_tilted_film(tilt);
   }
+  data->space = data_->space;
+  data->primary = data_->primary;
+  data->compiled = data_->compiled;
+  data->film_radius = tilt.radius;
   if (data_->cells || (data_->images && !data_->images->of_revolution())) {
-    data->space = space();
-    data->primary = data_->primary;
-    data->compiled = data_->compiled;
-    data->film_radius = tilt.radius;
     data->wavelengths = wavelengths();
     const FilmGrid grid = disc_grid(tilt.radius);
     data->cells.emplace(grid, tilt.radius, data->primary);
@@ -318,10 +318,6 @@ FilmPupilTable FilmPupilTable::for_tilted_film(const FilmTilt& tilt) const {
     }
     return FilmPupilTable(std::move(data));
   }
-  data->space = data_->space;
-  data->primary = data_->primary;
-  data->compiled = data_->compiled;
-  data->film_radius = tilt.radius;
   std::vector<FilmPupils> pupils;
   for (std::size_t w = 0; w < wavelengths(); ++w) pupils.push_back(tilted_film_pupils(*this, tilt, w));
   const auto [lit_radius, polygons] = film_polygons(tilt.radius, PolygonFit::enclosing, pupils, 1);

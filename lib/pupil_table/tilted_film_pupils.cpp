@@ -86,8 +86,9 @@ FilmPupils tilted_film_pupils(const FilmPupilTable& upright, const FilmTilt& til
               return pupil_detail::lit_points(guesses, clearances);
             });
             std::vector<bool> lit(heights.size(), false);
-            for (std::size_t i = 0; i < points.size(); ++i)
-              lit[i % heights.size()] = lit[i % heights.size()] || points[i];
+            for (std::size_t i = 0; i < points.size(); ++i) {
+              if (points[i]) lit[i % heights.size()] = true;
+            }
             return lit;
           }};
 }

@@ -19,28 +19,19 @@
 
 namespace {
 
-/// The fastest time of each benchmark in a file, ns per item, and their order there.
-struct Times {
-  std::map<std::string, double> fastest;
-  std::vector<std::string> order;
-};
-
-Times read_times(const std::string& file) {
+/// The fastest time of each benchmark in a file, ns per item.
+std::map<std::string, double> fastest_times(const std::string& file) {
   std::ifstream in(file);
   if (!in) throw petzval::Error(file + ": cannot be opened, wanted the results of a round");
-  Times times;
   const nlohmann::json results = nlohmann::json::parse(in);
+  std::map<std::string, double> fastest;
   for (const nlohmann::json& run : results.at("benchmarks")) {
     if (run.at("run_type") != "iteration" || !run.contains("items_per_second")) continue;
-    const std::string name = run.at("run_name");
     const double ns = 1e9 / run.at("items_per_second").get<double>();
-    const auto [at, added] = times.fastest.emplace(name, ns);
-    if (added) times.order.push_back(name);
-    at->second = std::min(at->second, ns);
+    double& least = fastest.emplace(run.at("run_name"), ns).first->second;
+    least = std::min(least, ns);
   }
-  // Rounds come in random order.
-  std::sort(times.order.begin(), times.order.end());
-  return times;
+  return fastest;
 }
 
 struct Change {
@@ -54,14 +45,13 @@ int run(std::vector<char*> arguments) {
   const int rounds = std::stoi(arguments[3]);
 
   std::map<std::string, Change> changes;
-  std::vector<std::string> order, alone;
+  std::vector<std::string> alone;
   for (int round = 1; round <= rounds; ++round) {
     const std::string file = std::to_string(round) + ".json";
-    const Times before = read_times(folder + "/old" + file), after = read_times(folder + "/new" + file);
-    if (round == 1) order = after.order;
-    for (const auto& [name, ns] : after.fastest) {
-      const auto same = before.fastest.find(name);
-      if (same == before.fastest.end()) {
+    const auto before = fastest_times(folder + "/old" + file), after = fastest_times(folder + "/new" + file);
+    for (const auto& [name, ns] : after) {
+      const auto same = before.find(name);
+      if (same == before.end()) {
         if (round == 1) alone.push_back(name);
         continue;
       }
@@ -79,10 +69,7 @@ int run(std::vector<char*> arguments) {
               rounds);
   std::printf("%-72s %10s %10s %7s   %s\n", "", (commit + " ns").c_str(), "now, ns", "ratio", "one round");
   std::vector<double> ratios;
-  for (const std::string& name : order) {
-    const auto at = changes.find(name);
-    if (at == changes.end()) continue;
-    const Change& c = at->second;
+  for (const auto& [name, c] : changes) {
     ratios.push_back(c.after / c.before);
     std::printf("%-72s %10s %10s %7.3f   %.3f to %.3f\n", name.c_str(), digits(c.before).c_str(),
                 digits(c.after).c_str(), ratios.back(), c.least, c.most);

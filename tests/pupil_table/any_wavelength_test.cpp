@@ -71,12 +71,24 @@ Shares shares(const Lens& lens, const FilmPupilTable& table, double radius, Wave
   return {0.1 * missed / std::max(lit, 1), static_cast<double>(in) / std::max(lit, 1)};
 }
 
+/// A lens of three wavelengths with its table over the declared field.
+struct Tabled {
+  Prescription prescription;
+  Lens lens;
+  double radius;
+  FilmPupilTable table;
+};
+
+Tabled tabled(const char* id) {
+  const Prescription prescription = petzval::testing::data_prescription(id);
+  const Lens lens = compiled(prescription, {550, 400, 700});
+  const double radius = petzval::testing::declared_radius(prescription, lens);
+  return {prescription, lens, radius, FilmPupilTable::enclosing(lens, radius)};
+}
+
 TEST(AnyWavelength, IsEnclosedByThePupilsOfTheNearestOne) {
   for (const char* id : ids) {
-    const Prescription prescription = petzval::testing::data_prescription(id);
-    const Lens lens = compiled(prescription, {550, 400, 700});
-    const double radius = petzval::testing::declared_radius(prescription, lens);
-    const FilmPupilTable table = FilmPupilTable::enclosing(lens, radius);
+    const auto [prescription, lens, radius, table] = tabled(id);
     double worst_share = 1;
     for (const double nm : {474.9, 475.1, 624.9, 625.1, 430., 512.}) {
       const Shares found = shares(lens, table, radius, Wavelength::nm(nm));
@@ -170,10 +182,7 @@ TEST(AnyWavelength, HasNoPupilsInATableWithoutWavelengths) {
 
 TEST(AnyWavelength, HasEveryRayAmongTheSamplesOfScenePoints) {
   for (const char* id : ids) {
-    const Prescription prescription = petzval::testing::data_prescription(id);
-    const Lens lens = compiled(prescription, {550, 400, 700});
-    const double radius = petzval::testing::declared_radius(prescription, lens);
-    const FilmPupilTable table = FilmPupilTable::enclosing(lens, radius);
+    const auto [prescription, lens, radius, table] = tabled(id);
     const EntrancePupilTable entrances = traced_entrances(lens, table);
     const double towards = towards_scene(lens, table.space()), depth = table.space().depth();
     std::mt19937_64 random(11);
