@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -11,59 +10,10 @@
 #include <optional>
 #include <utility>
 
+#include "found_pupil.hpp"
+
 namespace petzval::inline v0::pupil_detail {
 namespace {
-
-/// What is known of a region while it is searched: middle, half axes and, by direction, what passes from the middle to
-/// `to`, except for one obscuration and other gaps. Nothing passes where `to` is 0, and nothing at all without
-/// directions.
-struct Found {
-  struct Ends {
-    double obscured_from = 0, obscured_to = 0, to = 0;
-    double slope = 0;  // of the clearance at `to`, where it is known
-  };
-  Vec2<double> middle{0, 0}, half_axes{0, 0};
-  std::vector<Ends> ends;
-  std::vector<std::vector<Gap>> gaps;  // of each direction; empty: there are none
-
-  bool empty() const noexcept { return ends.empty(); }
-};
-
-/// Values halfway between two pupils that were found, by those and the next beyond them, if these were found too.
-class Interpolation {
- public:
-  Interpolation(const Found& far_before, const Found& before, const Found& after, const Found& far_after) noexcept
-      : found_{usable(far_before), &before, &after, usable(far_after)} {
-    const bool left = found_[0], right = found_[3];  // Lagrange's weights
-    weights_ = left && right ? std::array{-1. / 16, 9. / 16, 9. / 16, -1. / 16}
-               : left        ? std::array{-1. / 8, 6. / 8, 3. / 8, 0.}
-               : right       ? std::array{0., 3. / 8, 6. / 8, -1. / 8}
-                             : std::array{0., 1. / 2, 1. / 2, 0.};
-  }
-
-  template <class Value>
-  double operator()(const Value& value) const noexcept {
-    double sum = 0;
-    for (std::size_t i = 0; i < 4; ++i) {
-      if (found_[i]) sum += weights_[i] * value(*found_[i]);
-    }
-    return sum;
-  }
-  /// Of a value that is not negative; the mean of both neighbours where one is 0 or values change too fast.
-  template <class Value>
-  double positive(const Value& value) const noexcept {
-    const double sum = (*this)(value), a = value(*found_[1]), b = value(*found_[2]);
-    return sum > std::min(a, b) / 2 && sum < 2 * std::max(a, b) ? sum : (a + b) / 2;
-  }
-
- private:
-  static const Found* usable(const Found& found) noexcept {
-    return found.empty() || !found.gaps.empty() ? nullptr : &found;
-  }
-
-  std::array<const Found*, 4> found_;
-  std::array<double, 4> weights_;
-};
 
 /// Of ends, in half axes.
 constexpr double tolerance = 2e-5;
@@ -515,7 +465,7 @@ class Search {
       // Parts smaller than a place count where few of them pass.
       constexpr std::size_t enough = 16;
       if (passing < enough) {
-        for (const std::size_t i : summits(batch.clearances, row)) {
+        for (const std::size_t i : highest_summits(batch.clearances, row)) {
           if (holds(found, places[i].at)) continue;
           const auto near = near_summit(p, places[i]);
           if (near) take(near->at - near->beside), take(near->at + near->beside);
@@ -536,19 +486,10 @@ class Search {
     outwards(larger, 480, 1.6);
   }
 
-  /// Of values in rows the highest that are negative, of places that no neighbour exceeds: a part of a pupil may slip
-  /// between these. The first column counts as one between two that are alike.
-  std::vector<std::size_t> summits(const std::vector<double>& values, std::size_t row) const {
-    std::vector<std::size_t> result;
-    for (std::size_t i = row; i + row < values.size(); ++i) {
-      const std::size_t column = i % row;
-      if (!(values[i] > -1 && values[i] < 0) || column + 1 == row || (column == 0 && !mirrored_)) continue;
-      bool summit = true;
-      for (const std::size_t at : {i - row, i, i + row}) {
-        for (std::size_t n = at - (column > 0); n <= at + 1; ++n) summit = summit && !(values[n] > values[i]);
-      }
-      if (summit) result.push_back(i);
-    }
+  /// The highest summits of the rays that a rim stops.
+  std::vector<std::size_t> highest_summits(const std::vector<double>& values, std::size_t row) const {
+    std::vector<std::size_t> result = summits(values, row, mirrored_);
+    std::erase_if(result, [&](std::size_t i) { return values[i] <= -1; });
     std::stable_sort(result.begin(), result.end(), [&](auto a, auto b) { return values[a] > values[b]; });
     constexpr std::size_t most = 8;
     if (result.size() > most) result.resize(most);
@@ -629,46 +570,6 @@ class Search {
 };
 
 }  // namespace
-
-SearchOrder SearchOrder::rows(std::size_t points, std::size_t row) {
-  SearchOrder order;
-  constexpr std::size_t first_step = 32;
-  for (std::size_t begin = 0; begin < points; begin += row) {
-    const Line line{begin, 1, row};
-    for (std::size_t i = 0; i < row; ++i) {
-      if (i % first_step == 0 || i + 1 == row) order.full.push_back(line.at(i));
-    }
-    order.halve(line, first_step, 0);
-  }
-  return order;
-}
-
-SearchOrder SearchOrder::grid(std::size_t rows, std::size_t row) {
-  SearchOrder order;
-
-  for (const std::size_t column : {std::size_t{0}, row - 1}) {
-    const Line line{column, row, rows};
-    order.full.insert(order.full.end(), {line.at(0), line.at(rows - 1)});
-    order.halve(line, std::bit_ceil(rows - 1), 0);
-  }
-  const std::size_t columns_done = order.rounds.size();
-  for (std::size_t i = 0; i < rows; ++i) order.halve({i * row, 1, row}, std::bit_ceil(row - 1), columns_done);
-  return order;
-}
-
-void SearchOrder::halve(const Line& line, std::size_t first_step, std::size_t first_round) {
-  std::size_t round = first_round;
-  for (std::size_t step = first_step; step > 1; step /= 2, ++round) {
-    if (rounds.size() <= round) rounds.resize(round + 1);
-    for (std::size_t i = step / 2; i + 1 < line.count; i += step) {
-      const std::size_t half = step / 2, after = std::min(i + half, line.count - 1);
-      const bool even = after == i + half;
-      rounds[round].push_back({line.at(i), line.at(i - half), line.at(after),
-                               line.at(even && i >= 3 * half ? i - 3 * half : i),
-                               line.at(even && i + 3 * half < line.count ? i + 3 * half : i)});
-    }
-  }
-}
 
 std::vector<PupilRegion> find_regions(std::span<const PupilGuess> points, const SearchOrder& order,
                                       std::size_t directions, bool mirrored, const PlaceClearances& clearances,

@@ -116,25 +116,23 @@ struct Grid {
     const Place p{x[at], y[at]};
     return {p, cell * sines.stretch(p)};
   }
-
-  /// The places within the grid whose values are negative and that no neighbour exceeds.
-  std::vector<int> summits(std::span<const double> values) const {
-    std::vector<int> result;
-    for (int j = 1; j < steps; ++j) {
-      for (int i = 1; i < steps; ++i) {
-        const int at = j * side + i;
-        bool summit = values[at] < 0;
-        for (const int row : {at - side, at, at + side}) {
-          for (int n = row - 1; n <= row + 1; ++n) summit = summit && !(values[n] > values[at]);
-        }
-        if (summit) result.push_back(at);
-      }
-    }
-    return result;
-  }
 };
 
 }  // namespace
+
+std::vector<std::size_t> summits(std::span<const double> values, std::size_t row, bool half) {
+  std::vector<std::size_t> result;
+  for (std::size_t i = row; i + row < values.size(); ++i) {
+    const std::size_t column = i % row;
+    if (!(values[i] < 0) || column + 1 == row || (column == 0 && !half)) continue;
+    bool summit = true;
+    for (const std::size_t at : {i - row, i, i + row}) {
+      for (std::size_t n = at - (column > 0); n <= at + 1; ++n) summit = summit && !(values[n] > values[i]);
+    }
+    if (summit) result.push_back(i);
+  }
+  return result;
+}
 
 SeenPlaces places_seen(const Lens& lens, const PupilPlane& plane, int steps, bool half) {
   const Sines sines(plane);
@@ -223,11 +221,11 @@ std::vector<SeenPlace> Sight::passing_places() {
   const auto surfaces = lens_.surfaces();
   const bool aspheric =
       std::any_of(surfaces.begin(), surfaces.end(), [](const LensSurface& s) { return !s.aspheric.empty(); });
-  std::vector<std::pair<double, SeenPlace>> summits;
+  std::vector<std::pair<double, SeenPlace>> highest;
   const auto take_summits = [&](const Grid& on, std::span<const double> heights) {
     const double lost = result.empty() ? -infinity : -1;  // otherwise than by a rim
-    for (const int at : on.summits(heights)) {
-      if (heights[at] > lost) summits.push_back({heights[at], on.place(at)});
+    for (const std::size_t at : summits(heights, static_cast<std::size_t>(on.side))) {
+      if (heights[at] > lost) highest.push_back({heights[at], on.place(static_cast<int>(at))});
     }
   };
   if (aspheric) {
@@ -238,18 +236,18 @@ std::vector<SeenPlace> Sight::passing_places() {
     take_passing(finer, heights);
     take_summits(finer, heights);
   }
-  std::stable_sort(summits.begin(), summits.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::stable_sort(highest.begin(), highest.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
   const std::size_t most = aspheric ? 8 : 64;
-  if (summits.size() > most) summits.resize(most);
+  if (highest.size() > most) highest.resize(most);
   const AimedRay chief = aim(lens_, plane_, {}, wavelength_);
   if (chief) {
     const Place p = plane_.meet(chief.ray);
     const Place half = result.empty() ? (box.high - box.low) / 4.0 : result.front().beside;
     if (chief.status == AimStatus::converged) result.push_back({p, half});
-    summits.push_back({0, {p, half}});
+    highest.push_back({0, {p, half}});
   }
   std::vector<double> x, y;
-  for (const auto& [height, summit] : summits) {
+  for (const auto& [height, summit] : highest) {
     constexpr int half_side = 4;
     auto [middle, half] = summit;
     std::array<double, 2> before{-infinity, -infinity};  // the values two passes ago and one
@@ -262,15 +260,15 @@ std::vector<SeenPlace> Sight::passing_places() {
         }
       }
       const auto closer = clearances(x, y, aspheric);
-      const auto highest = static_cast<std::size_t>(std::max_element(closer.begin(), closer.end()) - closer.begin());
-      middle = {x[highest], y[highest]};
-      if (closer[highest] >= 0) {
+      const auto best = static_cast<std::size_t>(std::max_element(closer.begin(), closer.end()) - closer.begin());
+      middle = {x[best], y[best]};
+      if (closer[best] >= 0) {
         result.push_back({middle, half / static_cast<double>(half_side)});
         break;
       }
       // At a ridge the value grows by half as much in each pass, roughly.
-      if (!result.empty() && 4 * (closer[highest] - before[0]) < -closer[highest]) break;
-      before = {before[1], closer[highest]};
+      if (!result.empty() && 4 * (closer[best] - before[0]) < -closer[best]) break;
+      before = {before[1], closer[best]};
       half = half * (2.0 / half_side);
     }
   }

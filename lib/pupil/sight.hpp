@@ -28,6 +28,11 @@ struct SeenPlaces {
 /// a point for which the others are alike.
 SeenPlaces places_seen(const Lens& lens, const PupilPlane& plane, int steps, bool half);
 
+/// Of values in rows, one for each place, those that are negative and that no neighbour exceeds: a part of a pupil may
+/// slip between these places. Places at the border do not count, but for the first column of a half, which stands
+/// between two that are alike.
+std::vector<std::size_t> summits(std::span<const double> values, std::size_t row, bool half = false);
+
 /// The rays of one point, many at a time. Keeps the memory for them.
 class Sight {
  public:

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "line_extents.hpp"
+
+namespace petzval::inline v0::pupil_detail {
+
+/// What is known of a region while it is searched: middle, half axes and, by direction, what passes from the middle to
+/// `to`, except for one obscuration and other gaps. Nothing passes where `to` is 0, and nothing at all without
+/// directions.
+struct Found {
+  struct Ends {
+    double obscured_from = 0, obscured_to = 0, to = 0;
+    double slope = 0;  // of the clearance at `to`, where it is known
+  };
+  Vec2<double> middle{0, 0}, half_axes{0, 0};
+  std::vector<Ends> ends;
+  std::vector<std::vector<Gap>> gaps;  // of each direction; empty: there are none
+
+  bool empty() const noexcept { return ends.empty(); }
+};
+
+/// Values halfway between two pupils that were found, by those and the next beyond them, if these were found too.
+class Interpolation {
+ public:
+  Interpolation(const Found& far_before, const Found& before, const Found& after, const Found& far_after) noexcept
+      : found_{usable(far_before), &before, &after, usable(far_after)} {
+    const bool left = found_[0], right = found_[3];  // Lagrange's weights
+    weights_ = left && right ? std::array{-1. / 16, 9. / 16, 9. / 16, -1. / 16}
+               : left        ? std::array{-1. / 8, 6. / 8, 3. / 8, 0.}
+               : right       ? std::array{0., 3. / 8, 6. / 8, -1. / 8}
+                             : std::array{0., 1. / 2, 1. / 2, 0.};
+  }
+
+  template <class Value>
+  double operator()(const Value& value) const noexcept {
+    double sum = 0;
+    for (std::size_t i = 0; i < 4; ++i) {
+      if (found_[i]) sum += weights_[i] * value(*found_[i]);
+    }
+    return sum;
+  }
+  /// Of a value that is not negative; the mean of both neighbours where one is 0 or values change too fast.
+  template <class Value>
+  double positive(const Value& value) const noexcept {
+    const double sum = (*this)(value), a = value(*found_[1]), b = value(*found_[2]);
+    return sum > std::min(a, b) / 2 && sum < 2 * std::max(a, b) ? sum : (a + b) / 2;
+  }
+
+ private:
+  static const Found* usable(const Found& found) noexcept {
+    return found.empty() || !found.gaps.empty() ? nullptr : &found;
+  }
+
+  std::array<const Found*, 4> found_;
+  std::array<double, 4> weights_;
+};
+
+}  // namespace petzval::inline v0::pupil_detail
