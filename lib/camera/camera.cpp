@@ -137,7 +137,9 @@ Camera::Data::Data(const LensFacts& facts, const Film& placed, const AnyRayModel
       front(camera_detail::front_of(lens)),
       pdf_film(1 / film.area_mm2()),
       facts_(facts),
-      radius_(radius) {}
+      radius_(radius),
+      primary_(lens.primary_wavelength()),
+      view_{model, film, tilted ? &*tilted : nullptr, wavelengths, front} {}
 
 Camera::Camera(const Lens& lens, const Film& film, const CameraOptions& options) {
   const auto [placed_lens, placed_film] = camera_detail::placed(lens, film);

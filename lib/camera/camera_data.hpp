@@ -27,12 +27,11 @@ struct Camera::Data {
   camera_detail::Front front;
   double pdf_film;  ///< of film points spread uniformly over the film, 1/mm^2
 
-  camera_detail::FilmView view() const noexcept {
-    return {model, film, tilted ? &*tilted : nullptr, wavelengths, front};
-  }
+  const camera_detail::FilmView& view() const noexcept { return view_; }
   /// A wavelength as the model takes it: a position, or nm where it takes any.
   Wavelength resolved(Wavelength given) const noexcept {
-    return given.in_nm() && model.any_wavelength() ? given : Wavelength(lens.position(given));
+    if (!given.in_nm()) return given.position(primary_);
+    return model.any_wavelength() ? given : Wavelength(lens.position(given));
   }
   /// Renderers that trace paths from the film alone never ask for it.
   const camera_detail::SceneSide& scene() const {
@@ -43,6 +42,8 @@ struct Camera::Data {
  private:
   camera_detail::LensFacts facts_;
   double radius_;
+  std::size_t primary_;
+  camera_detail::FilmView view_;
   mutable std::once_flag scene_once_;
   mutable std::optional<camera_detail::SceneSide> scene_;
 };

@@ -43,7 +43,7 @@ void start(const TwoPlanes& space, T towards, std::size_t count, const TwoPlaneR
 }
 
 template <class T>
-void move_to_front(T vertex_z, T curvature, std::size_t count, const RayArrays<T>& rays) noexcept {
+inline void move_to_front(T vertex_z, T curvature, std::size_t count, const RayArrays<T>& rays) noexcept {
   const auto [ox, oy, oz, dx, dy, dz] = rays;
   PETZVAL_INDEPENDENT
   for (std::size_t i = 0; i < count; ++i) {
@@ -83,9 +83,22 @@ void weigh(const FilmBounds<T>& film, T depth, std::size_t count, const T* film_
     for (std::size_t i = 0; i < count; ++i) {
       const bool sampled = on_film(bounds, film_x[i], film_y[i]) & (areas[i] > T(0));
       const T length2 = of.length2(kept_x[i], kept_y[i], pupil_x[i], pupil_y[i]);
-      pdf[i] = sampled ? of.pdf_direction(length2, areas[i]) : T(0);
+      pdf[i] = sampled ? of.pdf_direction(length2, T(1) / areas[i]) : T(0);
     }
   }
+}
+
+void weigh_one(const Front* front, double depth, const TwoPlaneRay& line, double area, double scale,
+               CameraRay& ray) noexcept {
+  if (front) {
+    auto& [o, d] = ray.ray;
+    move_to_front(front->vertex_z, front->curvature, 1, RayArrays<double>{&o.x, &o.y, &o.z, &d.x, &d.y, &d.z});
+  }
+  const PupilWeight<double> of(depth);
+  const double length2 = of.length2(line.film_x, line.film_y, line.pupil_x, line.pupil_y);
+  ray.weight = scale * of.weight(length2, area);
+  ray.pdf_pupil = 1 / area;
+  ray.pdf_direction = of.pdf_direction(length2, ray.pdf_pupil);
 }
 
 /// A film that stays where it is, and one where it is at a moment.
@@ -164,6 +177,6 @@ constexpr CameraLoopsOf<T> loops{keep_on_film<T>, start<T>,      move_to_front<T
 
 }  // namespace
 
-const CameraLoops PETZVAL_LOOPS{loops<float>, loops<double>};
+const CameraLoops PETZVAL_LOOPS{loops<float>, loops<double>, weigh_one};
 
 }  // namespace petzval::inline v0::camera_detail

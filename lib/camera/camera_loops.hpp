@@ -6,6 +6,7 @@
 
 #include "camera_steps.hpp"
 #include "core/widest.hpp"
+#include "front.hpp"
 #include "petzval/camera/camera_ray.hpp"
 #include "petzval/pupil_table/two_plane_rays.hpp"
 
@@ -43,6 +44,10 @@ struct CameraLoopsOf {
 struct CameraLoops {
   CameraLoopsOf<float> single;
   CameraLoopsOf<double> twice;
+  /// The ray of one sample with an area, whatever its fate: moves it to a lens's front, unless that is null, and sets
+  /// its weight and densities.
+  void (*weigh_one)(const Front* front, double depth, const TwoPlaneRay&, double area, double scale,
+                    CameraRay&) noexcept;
 
   template <class T>
   const CameraLoopsOf<T>& of() const noexcept {

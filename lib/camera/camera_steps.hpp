@@ -23,9 +23,9 @@ inline bool on_film(const FilmBounds<T>& film, T x, T y) noexcept {
 /// The weight of a sample of a pupil, and its density in solid angle at the film point.
 template <class T>
 struct PupilWeight {
-  T depth2, along;  ///< square of the distance between the planes, and the distance
+  T depth2, per_depth;  ///< square of the distance between the planes, and one over the distance
 
-  explicit PupilWeight(T depth) noexcept : depth2(depth * depth), along(depth < T(0) ? -depth : depth) {}
+  explicit PupilWeight(T depth) noexcept : depth2(depth * depth), per_depth(T(1) / (depth < T(0) ? -depth : depth)) {}
   /// Square of the distance between the film point and the place in the pupil.
   T length2(T film_x, T film_y, T pupil_x, T pupil_y) const noexcept {
     const T x = pupil_x - film_x, y = pupil_y - film_y;
@@ -33,11 +33,11 @@ struct PupilWeight {
   }
   /// cos / pdf_direction, pdf_direction = pdf_pupil length^3 / depth.
   T weight(T length2, T area) const noexcept {
-    const T part = depth2 / length2;
-    return area * part * part / depth2;
+    const T part = depth2 / length2 * per_depth;
+    return area * part * part;
   }
-  T pdf_direction(T length2, T area) const noexcept {
-    return length2 * core_detail::square_root(length2) / (along * area);
+  T pdf_direction(T length2, T pdf_pupil) const noexcept {
+    return length2 * core_detail::square_root(length2) * per_depth * pdf_pupil;
   }
 };
 

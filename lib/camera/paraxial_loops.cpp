@@ -12,7 +12,7 @@ namespace {
 constexpr double reach = 1e12;
 
 template <class T>
-bool in_reach(T fx, T fy, T px, T py) noexcept {
+inline bool in_reach(T fx, T fy, T px, T py) noexcept {
   return std::abs(fx) + std::abs(fy) + std::abs(px) + std::abs(py) <= static_cast<T>(reach);
 }
 
@@ -21,6 +21,27 @@ template <class T>
 struct Maps {
   T xa, xb, xc, xd, ya, yb, yc, yd;
 };
+
+template <class T>
+inline Maps<T> maps_in(const SectionMaps& maps) noexcept {
+  const auto number = [](double value) { return static_cast<T>(value); };
+  const auto& [mx, my] = maps;
+  return {number(mx.a), number(mx.b), number(mx.c), number(mx.d),
+          number(my.a), number(my.b), number(my.c), number(my.d)};
+}
+
+/// A ray of the scene, in the plane of the maps.
+template <class T>
+struct Mapped {
+  T x, y, dx, dy, dz;
+};
+
+template <class T>
+inline Mapped<T> mapped(const Maps<T>& maps, T film_x, T film_y, T pupil_x, T pupil_y) noexcept {
+  const T ux = maps.xc * film_x + maps.xd * pupil_x, uy = maps.yc * film_y + maps.yd * pupil_y;
+  const T down = T(-1) / std::sqrt(T(1) + ux * ux + uy * uy);
+  return {maps.xa * film_x + maps.xb * pupil_x, maps.ya * film_y + maps.yb * pupil_y, ux * down, uy * down, down};
+}
 
 // The promise that nothing overlaps lets a compiler run these loops on lanes; it takes it of parameters only.
 template <class T, class MapsOf>
@@ -34,14 +55,13 @@ void fill(std::size_t count, const MapsOf& maps_of, T z, const T* __restrict fil
     // A line that is no good becomes the axis.
     const T fx = good ? film_x[i] : T(0), fy = good ? film_y[i] : T(0);
     const T px = good ? pupil_x[i] : T(0), py = good ? pupil_y[i] : T(0);
-    const T ux = maps.xc * fx + maps.xd * px, uy = maps.yc * fy + maps.yd * py;
-    const T down = T(-1) / std::sqrt(T(1) + ux * ux + uy * uy);
-    x[i] = maps.xa * fx + maps.xb * px;
-    y[i] = maps.ya * fy + maps.yb * py;
+    const Mapped<T> ray = mapped(maps, fx, fy, px, py);
+    x[i] = ray.x;
+    y[i] = ray.y;
     out_z[i] = z;
-    dx[i] = ux * down;
-    dy[i] = uy * down;
-    dz[i] = down;
+    dx[i] = ray.dx;
+    dy[i] = ray.dy;
+    dz[i] = ray.dz;
   }
   for (std::size_t i = 0; i < count; ++i) {
     const Maps<T> maps = maps_of(i);
@@ -59,14 +79,7 @@ void to_scene(std::size_t count, const ParaxialJob<T>& job, const TwoPlaneRays<c
          rays.y + o, rays.z + o, rays.dx + o, rays.dy + o, rays.dz + o, fates + o);
   };
   if (!job.wavelengths.each && !job.wavelengths.each_nm) {
-    Maps<T> shared{};
-    if (job.shared) {
-      const auto number = [](double value) { return static_cast<T>(value); };
-      const auto& [mx, my] = *job.shared;
-      shared = {number(mx.a), number(mx.b), number(mx.c), number(mx.d),
-                number(my.a), number(my.b), number(my.c), number(my.d)};
-    }
-    run(0, count, [shared](std::size_t) { return shared; });
+    run(0, count, [shared = job.shared ? maps_in<T>(*job.shared) : Maps<T>{}](std::size_t) { return shared; });
     return;
   }
   constexpr std::size_t block = lens_detail::look_up_block;
@@ -80,9 +93,18 @@ void to_scene(std::size_t count, const ParaxialJob<T>& job, const TwoPlaneRays<c
   }
 }
 
+RayFate one_to_scene(const SectionMaps* maps, double z, const TwoPlaneRay& line, Ray<double>& ray) noexcept {
+  auto& [o, d] = ray;
+  o.x = 0, o.y = 0, o.z = z, d.x = 0, d.y = 0, d.z = -1;
+  if (!maps || !in_reach(line.film_x, line.film_y, line.pupil_x, line.pupil_y)) return RayFate::missed_surface;
+  const auto found = mapped(maps_in<double>(*maps), line.film_x, line.film_y, line.pupil_x, line.pupil_y);
+  o.x = found.x, o.y = found.y, d.x = found.dx, d.y = found.dy, d.z = found.dz;
+  return RayFate::transmitted;
+}
+
 }  // namespace
 
 extern const ParaxialLoops PETZVAL_LOOPS;
-const ParaxialLoops PETZVAL_LOOPS{&to_scene<float>, &to_scene<double>};
+const ParaxialLoops PETZVAL_LOOPS{&to_scene<float>, &to_scene<double>, &one_to_scene};
 
 }  // namespace petzval::inline v0::camera_detail

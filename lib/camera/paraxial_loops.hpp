@@ -25,6 +25,8 @@ struct ParaxialLoops {
                    const RayArrays<float>& rays, RayFate* fates) noexcept;
   void (*of_double)(std::size_t count, const ParaxialJob<double>& job, const TwoPlaneRays<const double>& lines,
                     const RayArrays<double>& rays, RayFate* fates) noexcept;
+  /// One line; maps: null as `shared`.
+  RayFate (*one)(const SectionMaps* maps, double z, const TwoPlaneRay& line, Ray<double>& ray) noexcept;
 };
 
 }  // namespace petzval::inline v0::camera_detail

@@ -234,19 +234,8 @@ void ParaxialModel::to_scene(std::size_t count, const TwoPlaneRays<const T>& lin
 }
 
 RayFate ParaxialModel::to_scene(const TwoPlaneRay& line, Wavelength wavelength, Ray<double>& ray) const noexcept {
-  const auto& [film_x, film_y, pupil_x, pupil_y] = line;
-  const bool good = std::abs(film_x) + std::abs(film_y) + std::abs(pupil_x) + std::abs(pupil_y) <= reach;
-  if (!good) {
-    ray = {{0, 0, z_}, {0, 0, -1}};
-    return RayFate::missed_surface;
-  }
   SectionMaps own;
-  const SectionMaps* const known = map_at(wavelength, own);
-  const auto& [mx, my] = known ? *known : to_scene_[0];
-  const double slope_x = mx.c * film_x + mx.d * pupil_x, slope_y = my.c * film_y + my.d * pupil_y;
-  const double down = -1 / std::sqrt(1 + slope_x * slope_x + slope_y * slope_y);
-  ray = {{mx.a * film_x + mx.b * pupil_x, my.a * film_y + my.b * pupil_y, z_}, {slope_x * down, slope_y * down, down}};
-  return known ? RayFate::transmitted : RayFate::missed_surface;
+  return paraxial_loops().one(map_at(wavelength, own), z_, line, ray);
 }
 
 void ParaxialModel::to_film(std::size_t count, const RayArrays<const double>& rays, const RayWavelengths& wavelengths,

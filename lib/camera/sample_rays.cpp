@@ -184,10 +184,9 @@ bool WavelengthFacts::covers(Wavelength wavelength) const noexcept {
   return nm ? between_.covers(*nm) : wavelength.position(primary_) < count();
 }
 
-double WavelengthFacts::scale(Wavelength wavelength) const noexcept {
-  if (!covers(wavelength)) return 0;
+double WavelengthFacts::scale_between(Wavelength wavelength) const noexcept {
   const auto nm = wavelength.in_nm();
-  return nm ? between_(*nm)[0] : scale_[wavelength.position(primary_)];
+  return nm && between_.covers(*nm) ? between_(*nm)[0] : 0;
 }
 
 double WavelengthFacts::pinhole_shift(Wavelength wavelength) const noexcept {
@@ -220,9 +219,9 @@ CameraRay sample_ray(const FilmView& view, const FilmPoint& film, double u, doub
   const FilmPupilTable& pupils = view.model.pupils();
   const TiltedFilm* const tilted = view.tilted;
   const TiltedPlane plane = tilted ? tilted->plane(time) : TiltedPlane{};
-  const auto bounds = film_detail::bounds_of<double>(view.film);
-  const bool kept = on_film(bounds, film.x, film.y);
-  const FilmPoint point = kept ? film : FilmPoint{bounds.centre_x, bounds.centre_y};
+  const bool kept = on_film(view.bounds, film.x, film.y);
+  // Number by number: a load of two that a caller has just stored one by one waits until they are in the cache.
+  const FilmPoint point{kept ? film.x : view.bounds.centre_x, kept ? film.y : view.bounds.centre_y};
   CameraRay out;
 
   // The line for the weight, and that of the ray.
@@ -251,16 +250,11 @@ CameraRay sample_ray(const FilmView& view, const FilmPoint& film, double u, doub
     if (!within) out.fate = RayFate::vignetted;
   }
 
-  if (view.moves_rays()) out.ray.origin += way_to_front(view.front, out.ray) * out.ray.direction;
   const double scale = view.wavelengths.scale(wavelength);
   out.fate = fate_of(out.fate, kept, scale > 0, area > 0);
-  if (kept && area > 0) {
-    const PupilWeight<double> of(pupils.space().depth());
-    const double length2 = of.length2(line.film_x, line.film_y, line.pupil_x, line.pupil_y);
-    out.pdf_pupil = 1 / area;
-    out.pdf_direction = of.pdf_direction(length2, area);
-    if (out.fate == RayFate::transmitted) out.weight = scale * of.weight(length2, area);
-  }
+  camera_loops().weigh_one(view.moves_rays() ? &view.front : nullptr, pupils.space().depth(), line, area, scale, out);
+  if (!(kept && area > 0)) out.pdf_pupil = out.pdf_direction = 0;
+  if (out.fate != RayFate::transmitted) out.weight = 0;
   if (tilted) {
     const double near = 1 + plane.nearer_by(virtual_point);
     const double facing = plane.weight(virtual_point, {line.pupil_x, line.pupil_y});

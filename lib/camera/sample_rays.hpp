@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "film/film_bounds.hpp"
 #include "front.hpp"
 #include "lens/between_wavelengths.hpp"
 #include "petzval/camera/camera_ray.hpp"
@@ -29,7 +30,10 @@ class WavelengthFacts {
   bool covers(Wavelength wavelength) const noexcept;
   /// What weights are multiplied with: the square of the index behind the lens for irradiance; 0 for a wavelength that
   /// is not covered.
-  double scale(Wavelength wavelength) const noexcept;
+  double scale(Wavelength wavelength) const noexcept {
+    const std::size_t position = wavelength.position(primary_);
+    return position < count() ? scale_[position] : scale_between(wavelength);
+  }
   /// Where all wavelengths in nm have the same scale, of air behind the lens: it and the range, nm.
   struct SameScale {
     float shortest, longest;
@@ -40,6 +44,8 @@ class WavelengthFacts {
   double pinhole_shift(Wavelength wavelength) const noexcept;
 
  private:
+  double scale_between(Wavelength wavelength) const noexcept;
+
   std::size_t primary_;
   std::vector<double> scale_, shifts_;
   std::optional<SameScale> same_scale_;
@@ -54,6 +60,7 @@ struct FilmView {
   const TiltedFilm* tilted = nullptr;
   const WavelengthFacts& wavelengths;
   Front front = {};  ///< of the lens
+  film_detail::FilmBounds<double> bounds = film_detail::bounds_of<double>(film);
 
   /// Rays of the model start elsewhere.
   bool moves_rays() const noexcept {

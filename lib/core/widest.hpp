@@ -10,12 +10,15 @@
 #define PETZVAL_WIDEST(Type, name)                               \
   extern const Type name##_baseline, name##_avx2, name##_avx512; \
   inline const Type& name() noexcept {                           \
-    switch (instruction_sets().back()) {                         \
-      case InstructionSet::avx512: return name##_avx512;         \
-      case InstructionSet::avx2: return name##_avx2;             \
-      case InstructionSet::baseline: break;                      \
-    }                                                            \
-    return name##_baseline;                                      \
+    static const Type& widest = []() -> const Type& {            \
+      switch (instruction_sets().back()) {                       \
+        case InstructionSet::avx512: return name##_avx512;       \
+        case InstructionSet::avx2: return name##_avx2;           \
+        case InstructionSet::baseline: break;                    \
+      }                                                          \
+      return name##_baseline;                                    \
+    }();                                                         \
+    return widest;                                               \
   }
 #else
 #define PETZVAL_WIDEST(Type, name)   \

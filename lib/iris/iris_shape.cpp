@@ -99,9 +99,7 @@ Vec2<double> IrisShape::sample(double u, double v) const noexcept {
     return {x, y};
   }
   const IrisTriangles<double> t = triangles<double>();
-  std::size_t k = 0;
-  while (k + 1 < t.count && u >= t.before[k + 1]) ++k;
-  const auto [x, y] = triangle_point(t, k, u, v);
+  const auto [x, y] = triangle_point(t, triangle_with(t, u), u, v);
   return {x, y};
 }
 

@@ -43,11 +43,12 @@ RayDerivatives RayPolynomial::to_scene(const TwoPlaneRayDerivatives& line, Wavel
         place.px.a * place.px.a + place.py.a * place.py.a <= polynomial_detail::within_domain))
     return result;
 
-  const auto [sx, sy, ox, oy] = evaluators[data_->loop()](coefficients, place);
-  const Jet square = sx * sx + sy * sy, twice = 2.0 / (square + 1.0), along = twice * (sx * ox + sy * oy);
-  const Jet x = ox - sx * along, y = oy - sy * along, z = along + domain.reference_z;
-  const Jet dx = twice * sx, dy = twice * sy, dz = twice * (square - 1.0) / 2.0;
-  const auto part = [&](int k) -> Ray<double> { return {{x.v[k], y.v[k], z.v[k]}, {dx.v[k], dy.v[k], dz.v[k]}}; };
+  const ChartLine<Jet> chart = evaluators[data_->loop()](coefficients, place);
+  const auto [x, y, along, dx, dy, dz] = polynomial_detail::out_of_chart<double>(chart);
+  const Jet z = along + domain.reference_z;
+  const auto part = [&, x = x, y = y, dx = dx, dy = dy, dz = dz](int k) -> Ray<double> {
+    return {{x.v[k], y.v[k], z.v[k]}, {dx.v[k], dy.v[k], dz.v[k]}};
+  };
   return {RayFate::transmitted, {{x.a, y.a, z.a}, {dx.a, dy.a, dz.a}}, part(0), part(1)};
 }
 

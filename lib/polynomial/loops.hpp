@@ -55,10 +55,16 @@ struct ToSceneJob {
 template <class R>
 using ToSceneLoops = std::array<void (*)(const ToSceneJob<R>&) noexcept, 2 * degree_count>;
 
+/// One line. coefficients: of its wavelength, null where there is no fit.
+using OneToScene = std::array<RayFate (*)(const double* coefficients, const Scales<double>&, const TwoPlaneRay&,
+                                          Ray<double>&) noexcept,
+                              2 * degree_count>;
+
 /// By Data::loop().
 struct PolynomialLoops {
   ToSceneLoops<float> in_float;
   ToSceneLoops<double> in_double;
+  OneToScene one;
 };
 
 PETZVAL_WIDEST(PolynomialLoops, polynomial_loops)

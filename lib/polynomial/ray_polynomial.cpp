@@ -191,6 +191,13 @@ void RayPolynomial::to_scene(std::size_t count, const TwoPlaneRays<const T>& lin
   }
 }
 
+RayFate RayPolynomial::to_scene(const TwoPlaneRay& line, Wavelength wavelength, Ray<double>& ray) const noexcept {
+  const Data& data = *data_;
+  Data::Room<double> room;
+  const double* const coefficients = data.coefficients(wavelength, room);
+  return polynomial_detail::polynomial_loops().one[data.loop()](coefficients, data.in_double.scales, line, ray);
+}
+
 template PETZVAL_API void RayPolynomial::to_scene<float>(std::size_t, const TwoPlaneRays<const float>&,
                                                          const RayWavelengths&, const RayArrays<float>&,
                                                          RayFate*) const noexcept;

@@ -14,7 +14,19 @@ namespace {
 template <class T>
 struct FilmAndPupil {
   T fx, fy, px, py;
+
+  PETZVAL_INLINE T film_square() const noexcept { return fx * fx + fy * fy; }
+  PETZVAL_INLINE T pupil_square() const noexcept { return px * px + py * py; }
 };
+
+/// A line, from mm. Scaling: Scales<R>; R: the plain type of T.
+template <class R, class T, class Scaling>
+PETZVAL_INLINE FilmAndPupil<T> in_domain(const Scaling& scales, const FilmAndPupil<T>& line) noexcept {
+  const auto& [film_x, film_y, pupil_x, pupil_y] = line;
+  return {film_x * scales.per_film_radius, film_y * scales.per_film_radius,
+          (pupil_x - scales.along_x.pupil_shift * film_x) * scales.along_x.per_pupil_radius,
+          (pupil_y - scales.along_y.pupil_shift * film_y) * scales.along_y.per_pupil_radius};
+}
 
 template <class T>
 struct FourSums {
@@ -25,6 +37,22 @@ template <class T>
 struct ChartLine {
   T sx, sy, ox, oy;
 };
+
+template <class T>
+struct LocalRay {
+  T x, y, z;  ///< from the reference point
+  T dx, dy, dz;
+};
+
+/// Out of the chart (chart.hpp). R: the plain type of T.
+template <class R, class T>
+PETZVAL_INLINE LocalRay<T> out_of_chart(const ChartLine<T>& line) noexcept {
+  const auto& [sx, sy, ox, oy] = line;
+  const T square = sx * sx + sy * sy;
+  const T twice = R(2) / (square + R(1));
+  const T along = twice * (sx * ox + sy * oy);
+  return {ox - sx * along, oy - sy * along, along, twice * sx, twice * sy, twice * (square - R(1)) / R(2)};
+}
 
 /// s = A f + B p and o = C f + D p, with A to D polynomials of f.f, f.p and p.p.
 template <int n>

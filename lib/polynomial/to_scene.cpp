@@ -102,12 +102,10 @@ PETZVAL_INLINE void map_lanes(const ToSceneJob<R>& job, std::size_t o, std::size
   };
   const Scales<R>& scales = job.scales;
   const Values film_x = load(job.lines.film_x), film_y = load(job.lines.film_y);
-  const Values fx = film_x * scales.per_film_radius, fy = film_y * scales.per_film_radius;
-  const Values px = (load(job.lines.pupil_x) - scales.along_x.pupil_shift * film_x) * scales.along_x.per_pupil_radius;
-  const Values py = (load(job.lines.pupil_y) - scales.along_y.pupil_shift * film_y) * scales.along_y.per_pupil_radius;
-  const Place<R> place{fx, fy, px, py};
+  const Place<R> place =
+      in_domain<R, Values>(scales, {film_x, film_y, load(job.lines.pupil_x), load(job.lines.pupil_y)});
   typename Native<R>::Bits inside =
-      (fx * fx + fy * fy <= static_cast<R>(within_domain)) & (px * px + py * py <= static_cast<R>(within_domain));
+      (place.film_square() <= static_cast<R>(within_domain)) & (place.pupil_square() <= static_cast<R>(within_domain));
 
   Sums<R> sums{};
   if (job.mixed.first) {
@@ -123,22 +121,17 @@ PETZVAL_INLINE void map_lanes(const ToSceneJob<R>& job, std::size_t o, std::size
   } else {
     inside = inside != inside;
   }
-  const auto [sx, sy, ox, oy] = Symmetry::line(sums, place);
-
-  // Out of the chart (chart.hpp).
-  const Values square = sx * sx + sy * sy;
-  const Values twice = R(2) / (square + R(1));
-  const Values along = twice * (sx * ox + sy * oy);
+  const LocalRay<Values> found = out_of_chart<R>(Symmetry::line(sums, place));
   const auto store = [&](R* to, const Values& ray, R otherwise) {
     const Values result = inside ? ray : Values{} + otherwise;
     __builtin_memcpy(to + o, &result, count * sizeof(R));
   };
-  store(job.rays.x, ox - sx * along, 0);
-  store(job.rays.y, oy - sy * along, 0);
-  store(job.rays.z, along + scales.reference_z, scales.reference_z);
-  store(job.rays.dx, twice * sx, 0);
-  store(job.rays.dy, twice * sy, 0);
-  store(job.rays.dz, twice * (square - R(1)) / R(2), -1);
+  store(job.rays.x, found.x, 0);
+  store(job.rays.y, found.y, 0);
+  store(job.rays.z, found.z + scales.reference_z, scales.reference_z);
+  store(job.rays.dx, found.dx, 0);
+  store(job.rays.dy, found.dy, 0);
+  store(job.rays.dz, found.dz, -1);
 
   static_assert(sizeof(RayFate) == 1 && static_cast<int>(RayFate::transmitted) == 0);
   const auto fates =
@@ -154,6 +147,22 @@ void to_scene(const ToSceneJob<R>& job) noexcept {
   if (o < job.count) map_lanes<Symmetry>(job, o, job.count - o);
 }
 
+template <class Symmetry>
+RayFate one_to_scene(const double* coefficients, const Scales<double>& scales, const TwoPlaneRay& line,
+                     Ray<double>& ray) noexcept {
+  const auto place = in_domain<double, double>(scales, {line.film_x, line.film_y, line.pupil_x, line.pupil_y});
+  const bool inside = place.film_square() <= within_domain && place.pupil_square() <= within_domain;
+  LocalRay<double> found{0, 0, 0, 0, 0, -1};
+  const bool fitted = inside && coefficients;
+  if (fitted) found = out_of_chart<double>(Symmetry::line(Symmetry::sums(coefficients, place), place));
+  auto& [o, d] = ray;
+  o.x = found.x, o.y = found.y, o.z = found.z + scales.reference_z;
+  d.x = found.dx, d.y = found.dy, d.z = found.dz;
+  return fitted ? RayFate::transmitted : RayFate::outside_fit;
+}
+
+constexpr OneToScene one = by_symmetry_and_degree([]<class Symmetry>(Symmetry) { return one_to_scene<Symmetry>; });
+
 template <class R>
 constexpr ToSceneLoops<R> loops = by_symmetry_and_degree([]<class Symmetry>(Symmetry) {
   return to_scene<Symmetry, R>;
@@ -162,6 +171,6 @@ constexpr ToSceneLoops<R> loops = by_symmetry_and_degree([]<class Symmetry>(Symm
 }  // namespace
 
 extern const PolynomialLoops PETZVAL_LOOPS;
-const PolynomialLoops PETZVAL_LOOPS{loops<float>, loops<double>};
+const PolynomialLoops PETZVAL_LOOPS{loops<float>, loops<double>, one};
 
 }  // namespace petzval::inline v0::polynomial_detail

@@ -153,17 +153,6 @@ void FilmCells::put(FilmPupilArrays& arrays) const {
   arrays.half_widths = half_widths_single_;
 }
 
-PupilSample FilmCells::sample(const FilmPoint& film, double u, double v, std::size_t wavelength) const noexcept {
-  const Place at = find(film, wavelength);
-  if (!at.cell || !(u - u == 0 && v - v == 0)) return {};
-  const InCell<double> polygon = at.polygon();
-  const double whole = polygon.area_before(polygon_corners);
-  if (!(whole > 0)) return {};
-  const double share = at.share(polygon, std::clamp(u, 0.0, 1.0));
-  const Point<double> p = sample_place(polygon, sector_with(polygon, share * whole), share, std::clamp(v, 0.0, 1.0));
-  return {at.sign_x * p.x, at.sign_y * p.y, whole};
-}
-
 double FilmCells::area(const FilmPoint& film, std::size_t wavelength) const noexcept {
   const Place at = find(film, wavelength);
   return at.cell ? std::max(at.polygon().area_before(polygon_corners), 0.0) : 0;

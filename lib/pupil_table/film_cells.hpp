@@ -24,7 +24,6 @@ class FilmCells {
   /// Adds a wavelength: the polygons of the nodes.
   void add(const std::vector<PupilPolygon>& polygons);
 
-  PupilSample sample(const FilmPoint& film, double u, double v, std::size_t wavelength) const noexcept;
   double area(const FilmPoint& film, std::size_t wavelength) const noexcept;
   Vec2<double> middle(const FilmPoint& film, std::size_t wavelength) const noexcept;
   bool contains(const FilmPoint& film, double x, double y, std::size_t wavelength) const noexcept;

@@ -68,6 +68,7 @@ struct FilmPupilTable::Data {
   std::optional<FilmCells> cells;             // instead of strips
   double lit_radius = 0;                      // to which the strips reach: beyond it is dark
   std::size_t strips_each = 0;
+  double strips_per_mm = 0;
   bool obscured = false;
   int corrections = 0;
   std::vector<double> twice;  // strips by StripLayout
@@ -77,6 +78,9 @@ struct FilmPupilTable::Data {
   void add(const std::vector<PupilPolygon>& polygons) {
     ++wavelengths;
     strips_each = polygons.size() - 1;
+    // A smaller film counts as one of the axis alone, so that this is finite in float too.
+    constexpr double smallest = 1e-30;  // mm
+    strips_per_mm = lit_radius > smallest ? static_cast<double>(strips_each) / lit_radius : 0;
     for (std::size_t i = 0; i < strips_each; ++i) {
       const PupilPolygon &a = polygons[i], &b = polygons[i + 1];
       const auto strip = strip_between(a, b);
@@ -87,12 +91,6 @@ struct FilmPupilTable::Data {
         corrections = std::max(corrections, corrections_of(InStrip<double>{strip.data(), step / 8.0}));
       }
     }
-  }
-
-  /// 0 for a film of the axis alone; a smaller one than 1e-30 mm counts as that, so that this is finite in float too.
-  double strips_per_mm() const noexcept {
-    constexpr double smallest = 1e-30;
-    return lit_radius > smallest ? static_cast<double>(strips_each) / lit_radius : 0;
   }
 
   template <class R>
@@ -108,7 +106,7 @@ struct FilmPupilTable::Data {
     result.primary = primary;
     // The corner itself, rounded, still belongs to the film.
     result.lit_radius = static_cast<R>(lit_radius * (1 + 1e-6));
-    result.strips_per_mm = static_cast<R>(strips_per_mm());
+    result.strips_per_mm = static_cast<R>(strips_per_mm);
     result.obscured = obscured;
     result.corrections = corrections;
     return result;
@@ -145,17 +143,11 @@ struct FilmPupilTable::Data {
     const std::size_t wavelength = position(at_wavelength);
     const double r = std::sqrt(film.x * film.x + film.y * film.y);
     if (!(r <= lit_radius * (1 + 1e-6)) || wavelength >= wavelengths) return {};
-    const double at = r * strips_per_mm();
+    const double at = r * strips_per_mm;
     const std::size_t strip = std::min(static_cast<std::size_t>(at), strips_each - 1);
     const bool turn = r > 0;
     return {&twice[(wavelength * strips_each + strip) * L::size], at - static_cast<double>(strip),
             turn ? film.y / r : 1, turn ? film.x / r : 0};
-  }
-
-  /// u, from the film point's own direction.
-  double share(const Place& place, double u) const noexcept {
-    const double from = u - turn_of(place.sine, place.cosine);
-    return from < 0 ? from + 1 : from < 1 ? from : from - 1;
   }
 };
 
@@ -354,16 +346,11 @@ FilmPupilArrays FilmPupilTable::arrays() const {
 
 PupilSample FilmPupilTable::sample(const FilmPoint& film, double u, double v, Wavelength wavelength) const noexcept {
   if (const auto& images = data_->images) return images->sample(film, u, v, wavelength);
-  if (const auto& cells = data_->cells) return cells->sample(film, u, v, data_->position(wavelength));
-  const auto found = data_->find(film, wavelength);
-  if (!found.strip || !(u - u == 0 && v - v == 0)) return {};
-  const InStrip<double> polygon = found.polygon();
-  const double whole = polygon.area_before(polygon_corners);
-  if (!(whole > 0)) return {};
-  const double share = data_->share(found, std::clamp(u, 0.0, 1.0));
-  const std::size_t k = sector_with(polygon, share * whole);
-  const auto [x, y] = sample_place(polygon, k, share, std::clamp(v, 0.0, 1.0));
-  return {found.cosine * x + found.sine * y, found.cosine * y - found.sine * x, whole};
+  const std::size_t position = data_->position(wavelength);
+  const std::int32_t known = position < wavelengths() ? static_cast<std::int32_t>(position) : -1;
+  const auto& [strips, cells] = pupil_table_detail::film_pupil_table();
+  return data_->cells ? cells.one(data_->cells->table<double>(), film.x, film.y, u, v, known)
+                      : strips.one(data_->table<double>(), film.x, film.y, u, v, known);
 }
 
 template <class T>
@@ -474,7 +461,7 @@ FilmPupilTable::Derivatives FilmPupilTable::derivatives(const FilmPoint& film, d
   if (const auto& images = data_->images) return images->derivatives(film, u, v, wavelength);
   if (const auto& cells = data_->cells) return cells->derivatives(film, u, v, data_->position(wavelength));
   using Jet = ceres::Jet<double, 2>;
-  if (data_->strips_per_mm() == 0) return {};
+  if (data_->strips_per_mm == 0) return {};
   // On the axis the directions around it meet: beside it is near enough.
   const double beside = 1e-4 * data_->film_radius;
   const bool on_axis = std::hypot(film.x, film.y) < beside;
@@ -485,7 +472,7 @@ FilmPupilTable::Derivatives FilmPupilTable::derivatives(const FilmPoint& film, d
   v = std::clamp(v, 0.0, 1.0);
   const Jet x(at.x, 0), y(at.y, 1);
   const Jet r = sqrt(x * x + y * y);
-  Jet t = r * data_->strips_per_mm();
+  Jet t = r * data_->strips_per_mm;
   t.a = found.t;
   const Jet cosine = y / r, sine = x / r;
   Jet share(u);

@@ -6,6 +6,7 @@
 #include <type_traits>
 
 #include "core/loop_math.hpp"
+#include "core/simd.hpp"
 
 namespace petzval::inline v0::pupil_table_detail {
 namespace {
@@ -18,9 +19,11 @@ struct Place {
   std::int32_t known, begin;
 };
 
+// Inlined, or a call would take a copy of the table, which compilers make with wide registers and without emptying
+// them: code for narrow ones then waits for each.
 template <class R>
-inline Place<R> place_of(const StripTable<R>& table, R film_x, R film_y, std::int32_t sound,
-                         std::int32_t wavelength) noexcept {
+PETZVAL_INLINE Place<R> place_of(const StripTable<R>& table, R film_x, R film_y, std::int32_t sound,
+                                 std::int32_t wavelength) noexcept {
   const auto last = static_cast<std::int32_t>(table.count) - 1;
   const R r2 = film_x * film_x + film_y * film_y;
   const R r = core_detail::square_root(r2);
@@ -37,8 +40,8 @@ inline Place<R> place_of(const StripTable<R>& table, R film_x, R film_y, std::in
 }
 
 template <class R>
-inline Place<R> place_of(const CellTable<R>& table, R film_x, R film_y, std::int32_t sound,
-                         std::int32_t wavelength) noexcept {
+PETZVAL_INLINE Place<R> place_of(const CellTable<R>& table, R film_x, R film_y, std::int32_t sound,
+                                 std::int32_t wavelength) noexcept {
   const auto rows = static_cast<std::int32_t>(table.rows), columns = static_cast<std::int32_t>(table.columns);
   const R x = film_x < R(0) ? -film_x : film_x, y = film_y < R(0) ? -film_y : film_y;
   constexpr R end = R(1) + R(1e-6);  // the edge itself, rounded, still belongs to the film
@@ -182,8 +185,8 @@ inline Sector<R> sector_of(Layout layout, const R* all, std::int32_t begin, std:
 
 /// One block, in loops without branches. Slots beyond `count` hold zeros.
 template <std::size_t block, bool obscured, class Table, class R>
-void sample_block(const Table& table, const R* film_x, const R* film_y, const R* u, const R* v,
-                  const std::int32_t* wavelength, R* x, R* y, R* area) noexcept {
+PETZVAL_INLINE void sample_block(const Table& table, const R* film_x, const R* film_y, const R* u, const R* v,
+                                 const std::int32_t* wavelength, R* x, R* y, R* area) noexcept {
   using L = typename Table::Layout;
   constexpr auto corners = static_cast<std::int32_t>(polygon_corners);
   const Table own_table = table;  // which nothing that is written overlaps
@@ -221,12 +224,14 @@ void sample_block(const Table& table, const R* film_x, const R* film_y, const R*
   }
   // Sectors have nearly equal shares: the right one is this or the next, or else near.
   for (int step = 0; step < table.corrections; ++step) {
+    const std::int32_t last = sector[0];
     for (std::size_t i = 0; i < block; ++i) {
       const std::int32_t k = sector[i];
       const std::int32_t back = (target[i] < before(i, k)) & (k > 0);
       const std::int32_t on = (target[i] > before(i, k + 1)) & (k < corners - 1);
       sector[i] = k + on - back;
     }
+    if (block == 1 && sector[0] == last) break;  // of many, some always move
   }
   for (std::size_t i = 0; i < block; ++i) {
     const std::int32_t k = sector[i];
@@ -375,6 +380,20 @@ void sample_strips(const StripTable<R>& table, std::size_t count, const R* film_
   blocks(table, count, film_x, film_y, u, v, wavelengths, x, y, areas);
 }
 
+template <bool obscured, class Table>
+PupilSample one_of(const Table& table, double film_x, double film_y, double u, double v,
+                   std::int32_t wavelength) noexcept {
+  PupilSample result;
+  sample_block<1, obscured>(table, &film_x, &film_y, &u, &v, &wavelength, &result.x, &result.y, &result.area);
+  return result;
+}
+
+PupilSample one_of_strips(const StripTable<double>& table, double film_x, double film_y, double u, double v,
+                          std::int32_t wavelength) noexcept {
+  return table.obscured ? one_of<true>(table, film_x, film_y, u, v, wavelength)
+                        : one_of<false>(table, film_x, film_y, u, v, wavelength);
+}
+
 template <class R>
 constexpr auto contains_strips = contains<true, StripTable<R>, R>;
 template <class R>
@@ -384,8 +403,9 @@ constexpr auto contains_cells = contains<false, CellTable<R>, R>;
 
 }  // namespace
 
-const FilmPupilLoops PETZVAL_LOOPS{
-    .strips = {sample_strips<float>, sample_strips<double>, contains_strips<float>, contains_strips<double>},
-    .cells = {sample_cells<float>, sample_cells<double>, contains_cells<float>, contains_cells<double>}};
+const FilmPupilLoops PETZVAL_LOOPS{.strips = {sample_strips<float>, sample_strips<double>, contains_strips<float>,
+                                              contains_strips<double>, one_of_strips},
+                                   .cells = {sample_cells<float>, sample_cells<double>, contains_cells<float>,
+                                             contains_cells<double>, one_of<false, CellTable<double>>}};
 
 }  // namespace petzval::inline v0::pupil_table_detail

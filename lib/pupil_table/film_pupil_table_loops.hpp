@@ -4,8 +4,10 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "core/simd.hpp"
 #include "core/widest.hpp"
 #include "petzval/lens/wavelength.hpp"
+#include "petzval/pupil_table/film_pupil_table.hpp"
 #include "pupil_table/sector.hpp"
 
 namespace petzval::inline v0::pupil_table_detail {
@@ -62,7 +64,7 @@ namespace {
 /// 6e-8: u counts from +y of the film's frame, not from the direction of the film point, so that near the axis the
 /// samples of neighbours are neighbours. One polynomial for all scalars, derivatives included.
 template <class T>
-inline T turn_of(const T& sine, const T& cosine) noexcept {
+PETZVAL_INLINE T turn_of(const T& sine, const T& cosine) noexcept {
   const T across = sine < T(0) ? T(-sine) : sine, along = cosine < T(0) ? T(-cosine) : cosine;
   const bool steep = across > along;
   const T a = steep ? along : across;
@@ -104,6 +106,9 @@ struct FilmPupilLoops {
     Sample<Table<double>, double> twice;
     Contains<Table<float>, float> contains_single;
     Contains<Table<double>, double> contains_twice;
+    /// One sample. wavelength: -1 for one that does not exist.
+    PupilSample (*one)(const Table<double>&, double film_x, double film_y, double u, double v,
+                       std::int32_t wavelength) noexcept;
   };
   Of<StripTable> strips;
   Of<CellTable> cells;

@@ -61,17 +61,20 @@ void IrisImages::put(FilmPupilArrays& arrays) const {
 }
 
 template <class R>
+SeenIris<R> IrisImages::seen() const noexcept {
+  return {shape_.triangles<R>(), static_cast<R>(film_radius_ * rounded_up), static_cast<R>(slope_x_),
+          static_cast<R>(slope_y_)};
+}
+
+template <class R>
 IrisImageTable<R> IrisImages::table(Wavelength all) const noexcept {
   const auto number = [](double x) { return static_cast<R>(x); };
   const Image shared = image(all);
-  return {shape_.triangles<R>(),
+  return {seen<R>(),
           between_.rows<R>(),
           {number(shared.shift_x), number(shared.shift_y), number(shared.radius_x), number(shared.radius_y),
            number(shared.area)},
-          number(shape_.area()),
-          number(film_radius_ * rounded_up),
-          number(slope_x_),
-          number(slope_y_)};
+          number(shape_.area())};
 }
 
 IrisImages::Image IrisImages::image(Wavelength at) const noexcept {
@@ -91,10 +94,7 @@ IrisImages::Image IrisImages::image(const FilmPoint& film, Wavelength wavelength
 }
 
 PupilSample IrisImages::sample(const FilmPoint& film, double u, double v, Wavelength wavelength) const noexcept {
-  const Image seen = image(film, wavelength);
-  if (!(seen.area > 0 && u - u == 0 && v - v == 0)) return {};
-  const Vec2<double> place = shape_.sample(std::clamp(u, 0.0, 1.0), std::clamp(v, 0.0, 1.0));
-  return {seen.shift_x * film.x + seen.radius_x * place.x, seen.shift_y * film.y + seen.radius_y * place.y, seen.area};
+  return iris_images().one(seen<double>(), image(wavelength), film.x, film.y, u, v);
 }
 
 double IrisImages::area(const FilmPoint& film, Wavelength wavelength) const noexcept {

@@ -55,6 +55,8 @@ class IrisImages {
   Image image(const FilmPoint& film, Wavelength wavelength) const noexcept;
   /// The image at a wavelength, seen from the axis.
   Image image(Wavelength wavelength) const noexcept;
+  template <class R>
+  SeenIris<R> seen() const noexcept;
   /// all: the wavelength that rays share.
   template <class R>
   IrisImageTable<R> table(Wavelength all) const noexcept;

@@ -36,8 +36,7 @@ struct Seen {
 };
 
 template <class R>
-inline Seen<R> seen(const IrisImageTable<R>& table, const ImageSections<R>& image, R film_x, R film_y,
-                    bool sound) noexcept {
+inline Seen<R> seen(const SeenIris<R>& table, const ImageSections<R>& image, R film_x, R film_y, bool sound) noexcept {
   const bool known = sound & (film_x * film_x + film_y * film_y <= table.film_radius * table.film_radius);
   const R fx = known ? film_x : R(0), fy = known ? film_y : R(0);
   ImageSections<R> own = image;
@@ -47,10 +46,10 @@ inline Seen<R> seen(const IrisImageTable<R>& table, const ImageSections<R>& imag
 
 /// sample_at(i, u, v): a uniform point of the iris.
 template <class R, class ImageOf, class SampleAt>
-inline void fill(const IrisImageTable<R>& given, const ImageOf& image_of, const SampleAt& sample_at, std::size_t begin,
+inline void fill(const SeenIris<R>& given, const ImageOf& image_of, const SampleAt& sample_at, std::size_t begin,
                  std::size_t end, const R* film_x, const R* film_y, const R* u, const R* v, R* x, R* y,
                  R* areas) noexcept {
-  const IrisImageTable<R> table = given;  // which nothing that is written overlaps
+  const SeenIris<R> table = given;  // which nothing that is written overlaps
   PETZVAL_INDEPENDENT
   for (std::size_t i = begin; i < end; ++i) {
     // Comparisons with what is not a number are false.
@@ -91,6 +90,24 @@ void sample(const IrisImageTable<R>& table, std::size_t count, const R* film_x, 
   });
 }
 
+PupilSample sample_one(const SeenIris<double>& given, const ImageSections<double>& image, double film_x, double film_y,
+                       double u, double v) noexcept {
+  const iris_detail::IrisTriangles<double> iris = given.iris;
+  PupilSample result{};
+  const auto run = [&](const auto& sample_at) {
+    const auto image_of = [&image](std::size_t) { return image; };
+    fill(given, image_of, sample_at, 0, 1, &film_x, &film_y, &u, &v, &result.x, &result.y, &result.area);
+  };
+  if (iris.count == 0) {
+    run([](std::size_t, double a, double b) { return iris_detail::disc_point(a, b); });
+  } else {
+    run([&](std::size_t, double a, double b) {
+      return iris_detail::triangle_point(iris, iris_detail::triangle_with(iris, a), a, b);
+    });
+  }
+  return result;
+}
+
 template <class R>
 void contains(const IrisImageTable<R>& given, std::size_t count, const TwoPlaneRays<const R>& lines,
               const RayWavelengths& wavelengths, std::uint8_t* within) noexcept {
@@ -120,6 +137,6 @@ void contains(const IrisImageTable<R>& given, std::size_t count, const TwoPlaneR
 
 }  // namespace
 
-const IrisImageLoops PETZVAL_LOOPS{{sample<float>, contains<float>}, {sample<double>, contains<double>}};
+const IrisImageLoops PETZVAL_LOOPS{{sample<float>, contains<float>}, {sample<double>, contains<double>}, sample_one};
 
 }  // namespace petzval::inline v0::pupil_table_detail

@@ -8,6 +8,7 @@
 #include "iris/iris_sample.hpp"
 #include "lens/wavelength_rows.hpp"
 #include "petzval/lens/wavelength.hpp"
+#include "petzval/pupil_table/film_pupil_table.hpp"
 #include "petzval/pupil_table/two_plane_rays.hpp"
 
 namespace petzval::inline v0::pupil_table_detail {
@@ -30,14 +31,19 @@ inline ImageSections<R> on_tilted(const ImageSections<R>& image, R nearer) noexc
 
 }  // namespace
 
+/// An iris and the film that sees images of it, in numbers of type R, borrowed.
+template <class R>
+struct SeenIris {
+  iris_detail::IrisTriangles<R> iris;
+  R film_radius = 0, slope_x = 0, slope_y = 0;
+};
+
 /// IrisImages in numbers of type R, borrowed.
 template <class R>
-struct IrisImageTable {
-  iris_detail::IrisTriangles<R> iris;
+struct IrisImageTable : SeenIris<R> {
   lens_detail::WavelengthRows<R, 4> images{};  ///< shifts and radii
   ImageSections<R> image{};                    ///< that of a wavelength that rays share
   R area = 0;                                  ///< of the iris
-  R film_radius = 0, slope_x = 0, slope_y = 0;
 };
 
 /// Loops over samples, for float or double.
@@ -51,6 +57,9 @@ struct IrisImageLoopsOf {
 struct IrisImageLoops {
   IrisImageLoopsOf<float> single;
   IrisImageLoopsOf<double> twice;
+  /// One sample.
+  PupilSample (*one)(const SeenIris<double>&, const ImageSections<double>&, double film_x, double film_y, double u,
+                     double v) noexcept;
 
   template <class R>
   const IrisImageLoopsOf<R>& of() const noexcept {

@@ -27,6 +27,10 @@ class PolynomialModel {
                 const RayArrays<T>& rays, RayFate* fates) const noexcept {
     polynomial_.to_scene<T>(count, lines, wavelengths.resolved(pupils_.primary_wavelength()), rays, fates);
   }
+  /// One ray.
+  RayFate to_scene(const TwoPlaneRay& line, Wavelength wavelength, Ray<double>& ray) const noexcept {
+    return polynomial_.to_scene(line, wavelength, ray);
+  }
   /// One ray with its derivatives.
   RayDerivatives to_scene(const TwoPlaneRayDerivatives& line, Wavelength wavelength) const noexcept {
     return polynomial_.to_scene(line, wavelength);

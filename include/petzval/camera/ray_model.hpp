@@ -162,29 +162,27 @@ class AnyRayModel {
       model.to_film(count, rays, wavelengths, film_rays, fates);
     }
     RayFate to_scene(const TwoPlaneRay& film_ray, Wavelength wavelength, Ray<double>& ray) const noexcept override {
-      const std::size_t position = this->position(wavelength);
       if constexpr (requires {
                       { model.to_scene(film_ray, wavelength, ray) } -> std::same_as<RayFate>;
                     }) {
         return model.to_scene(film_ray, wavelength, ray);
       } else if constexpr (requires {
-                             { model.to_scene(film_ray, position, ray) } -> std::same_as<RayFate>;
+                             { model.to_scene(film_ray, std::size_t{}, ray) } -> std::same_as<RayFate>;
                            }) {
-        return model.to_scene(film_ray, position, ray);
+        return model.to_scene(film_ray, this->position(wavelength), ray);
       } else {
         return this->batch_of_one(film_ray, wavelength, ray);
       }
     }
     RayDerivatives to_scene(const TwoPlaneRayDerivatives& film_ray, Wavelength wavelength) const noexcept override {
-      const std::size_t position = this->position(wavelength);
       if constexpr (requires {
                       { model.to_scene(film_ray, wavelength) } -> std::same_as<RayDerivatives>;
                     }) {
         return model.to_scene(film_ray, wavelength);
       } else if constexpr (requires {
-                             { model.to_scene(film_ray, position) } -> std::same_as<RayDerivatives>;
+                             { model.to_scene(film_ray, std::size_t{}) } -> std::same_as<RayDerivatives>;
                            }) {
-        return model.to_scene(film_ray, position);
+        return model.to_scene(film_ray, this->position(wavelength));
       } else {
         return this->differences(film_ray, wavelength);
       }

@@ -107,6 +107,8 @@ class PETZVAL_API RayPolynomial {
   template <class T>
   void to_scene(std::size_t count, const TwoPlaneRays<const T>& lines, const RayWavelengths& wavelengths,
                 const RayArrays<T>& rays, RayFate* fates) const noexcept;
+  /// The same for one line, within rounding.
+  RayFate to_scene(const TwoPlaneRay& line, Wavelength wavelength, Ray<double>& ray) const noexcept;
   /// The same for one line with its derivatives, in double.
   RayDerivatives to_scene(const TwoPlaneRayDerivatives& line, Wavelength wavelength = {}) const noexcept;
   /// The inverse: maps rays from the scene, at any point on them, to the lines that to_scene maps to them, within 1e-9
