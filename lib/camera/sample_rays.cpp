@@ -95,8 +95,8 @@ void sample_block(const FilmView& view, std::size_t n, std::size_t wanted, const
     }
   };
   const auto weigh = [&] {
-    loops.weigh(bounds, static_cast<T>(pupils.space().depth()), wanted, samples.film_x, samples.film_y, lines,
-                areas.data(), scales.data(), fates, rays);
+    loops.weigh(bounds, static_cast<T>(view.depth), wanted, samples.film_x, samples.film_y, lines, areas.data(),
+                scales.data(), fates, rays);
   };
   if (!tilted) {
     pupils.sample(n, film_x.data(), film_y.data(), samples.pupil_u, samples.pupil_v, wavelengths, x.data(), y.data(),
@@ -252,7 +252,7 @@ CameraRay sample_ray(const FilmView& view, const FilmPoint& film, double u, doub
 
   const double scale = view.wavelengths.scale(wavelength);
   out.fate = fate_of(out.fate, kept, scale > 0, area > 0);
-  camera_loops().weigh_one(view.moves_rays() ? &view.front : nullptr, pupils.space().depth(), line, area, scale, out);
+  camera_loops().weigh_one(view.moves_rays() ? &view.front : nullptr, view.depth, line, area, scale, out);
   if (!(kept && area > 0)) out.pdf_pupil = out.pdf_direction = 0;
   if (out.fate != RayFate::transmitted) out.weight = 0;
   if (tilted) {

@@ -60,6 +60,7 @@ struct FilmView {
   const TiltedFilm* tilted = nullptr;
   const WavelengthFacts& wavelengths;
   Front front = {};  ///< of the lens
+  double depth = model.pupils().space().depth();
   film_detail::FilmBounds<double> bounds = film_detail::bounds_of<double>(film);
 
   /// Rays of the model start elsewhere.

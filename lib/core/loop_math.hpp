@@ -10,6 +10,14 @@ namespace {
 inline float square_root(float x) noexcept { return __builtin_sqrtf(x); }
 inline double square_root(double x) noexcept { return __builtin_sqrt(x); }
 
+/// 1 or -1, in a form without branches, which nobody could predict; of a dual number without derivatives.
+inline float sign_of(float x) noexcept { return __builtin_copysignf(1, x); }
+inline double sign_of(double x) noexcept { return __builtin_copysign(1, x); }
+template <class T>
+inline T sign_of(const T& x) noexcept {
+  return x < T(0) ? T(-1) : T(1);
+}
+
 /// Into [0, 1]; 0 for what is not a number.
 template <class R>
 inline R clamped(R x) noexcept {

@@ -347,7 +347,7 @@ FilmPupilArrays FilmPupilTable::arrays() const {
 PupilSample FilmPupilTable::sample(const FilmPoint& film, double u, double v, Wavelength wavelength) const noexcept {
   if (const auto& images = data_->images) return images->sample(film, u, v, wavelength);
   const std::size_t position = data_->position(wavelength);
-  const std::int32_t known = position < wavelengths() ? static_cast<std::int32_t>(position) : -1;
+  const std::int32_t known = position < data_->wavelengths ? static_cast<std::int32_t>(position) : -1;
   const auto& [strips, cells] = pupil_table_detail::film_pupil_table();
   return data_->cells ? cells.one(data_->cells->table<double>(), film.x, film.y, u, v, known)
                       : strips.one(data_->table<double>(), film.x, film.y, u, v, known);

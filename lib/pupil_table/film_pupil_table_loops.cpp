@@ -147,19 +147,25 @@ inline R right_share(const R* all, std::int32_t begin, R t, R s, R whole) noexce
   return area_before<false>(CellLayout{}, all, begin, index(polygon_corners / 2), t, s) / (whole > R(0) ? whole : R(1));
 }
 
+/// Of a number from -1 to 2, from 0 to 1, in a form without branches.
+template <class R>
+PETZVAL_INLINE R fraction_of(R x) noexcept {
+  const R from_0 = x + R(0.5) * (R(1) - core_detail::sign_of(x));
+  return from_0 - R(0.5) * (R(1) - core_detail::sign_of(R(1) - from_0));
+}
+
 /// u from where the polygon of the table begins, in the direction of its corners.
 template <class R>
-inline R share_of(StripLayout, const R*, std::int32_t, R, R, R, R cosine, R sine, R u) noexcept {
+PETZVAL_INLINE R share_of(StripLayout, const R*, std::int32_t, R, R, R, R cosine, R sine, R u) noexcept {
   const R from = u - turn_of(sine, cosine);
-  const R fraction = from < R(0) ? from + R(1) : from;
-  return fraction < R(1) ? fraction : fraction - R(1);
+  return fraction_of(from);
 }
 template <class R>
-inline R share_of(CellLayout, const R* all, std::int32_t begin, R t, R s, R whole, R sign_y, R sign_x, R u) noexcept {
+PETZVAL_INLINE R share_of(CellLayout, const R* all, std::int32_t begin, R t, R s, R whole, R sign_y, R sign_x,
+                          R u) noexcept {
   const R across = (R(1) - sign_x) / R(2) + sign_x * u;
   const R from = (R(1) - sign_y) / R(2) * right_share(all, begin, t, s, whole) + sign_y * across;
-  const R fraction = from < R(0) ? from + R(1) : from;
-  return fraction < R(1) ? fraction : fraction - R(1);
+  return fraction_of(from);
 }
 
 /// In sectors, where a share of the area is expected to end.
@@ -236,8 +242,9 @@ PETZVAL_INLINE void sample_block(const Table& table, const R* film_x, const R* f
   for (std::size_t i = 0; i < block; ++i) {
     const std::int32_t k = sector[i];
     behind[i] = target[i] - before(i, k + 1);
-    sector[i] = k + ((behind[i] >= R(0)) & (k < corners - 1));
-    beyond[i] = sector[i] == k ? R(1) : R(0);
+    const std::int32_t next = (behind[i] >= R(0)) & (k < corners - 1);
+    sector[i] = k + next;
+    beyond[i] = static_cast<R>(1 - next);
   }
   // The results overlap nothing that is read here.
   PETZVAL_INDEPENDENT

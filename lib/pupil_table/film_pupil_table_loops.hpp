@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 
+#include "core/loop_math.hpp"
 #include "core/simd.hpp"
 #include "core/widest.hpp"
 #include "petzval/lens/wavelength.hpp"
@@ -65,9 +67,9 @@ namespace {
 /// samples of neighbours are neighbours. One polynomial for all scalars, derivatives included.
 template <class T>
 PETZVAL_INLINE T turn_of(const T& sine, const T& cosine) noexcept {
-  const T across = sine < T(0) ? T(-sine) : sine, along = cosine < T(0) ? T(-cosine) : cosine;
-  const bool steep = across > along;
-  const T a = steep ? along : across;
+  // In forms without branches, which nobody could predict.
+  using core_detail::sign_of, std::abs;
+  const T across = abs(sine), along = abs(cosine), a = along < across ? along : across;
   const T s = a * a;
   // asin(a) / 2 pi within an eighth of a turn, by least squares of the largest error, 1/8 at its end.
   T turn =
@@ -75,9 +77,10 @@ PETZVAL_INLINE T turn_of(const T& sine, const T& cosine) noexcept {
       (T(0.15915393812486814) +
        s * (T(0.0265771964583) +
             s * (T(0.0111934983367) + s * (T(0.0116048821993) + s * (T(-0.0077339762488) + s * T(0.0181935231706))))));
-  turn = steep ? T(T(0.25) - turn) : turn;
-  turn = cosine < T(0) ? T(T(0.5) - turn) : turn;
-  return sine < T(0) ? T(-turn) : turn;
+  const T octant = sign_of(T(along - across)), half = sign_of(cosine);
+  turn = T(0.125) * (T(1) - octant) + octant * turn;
+  turn = T(0.25) * (T(1) - half) + half * turn;
+  return sign_of(sine) * turn;
 }
 
 /// Where a share of the area is expected to end, in sectors that have equal areas in each of two halves. right: the
