@@ -188,7 +188,10 @@ FilmPupilTable pupils_of(ModelKind model, const LensFacts& facts, double film_ra
 }  // namespace
 
 ParaxialModel::ParaxialModel(ModelKind model, const LensFacts& facts, double film_radius)
-    : kind_(model), pupils_(pupils_of(model, facts, film_radius)), z_(facts.lens().surfaces().front().vertex_z) {
+    : kind_(model),
+      pupils_(pupils_of(model, facts, film_radius)),
+      primary_(pupils_.primary_wavelength()),
+      z_(facts.lens().surfaces().front().vertex_z) {
   const Lens& lens = facts.lens();
   const TwoPlanes& space = pupils_.space();
   std::vector<SectionMaps> thick;
@@ -234,8 +237,11 @@ void ParaxialModel::to_scene(std::size_t count, const TwoPlaneRays<const T>& lin
 }
 
 RayFate ParaxialModel::to_scene(const TwoPlaneRay& line, Wavelength wavelength, Ray<double>& ray) const noexcept {
+  const auto one = paraxial_loops().one;
+  const std::size_t position = wavelength.position(primary_);
+  if (position < to_scene_.size()) return one(&to_scene_[position], z_, line, ray);
   SectionMaps own;
-  return paraxial_loops().one(map_at(wavelength, own), z_, line, ray);
+  return one(map_at(wavelength, own), z_, line, ray);
 }
 
 void ParaxialModel::to_film(std::size_t count, const RayArrays<const double>& rays, const RayWavelengths& wavelengths,

@@ -72,11 +72,11 @@ PETZVAL_INLINE T turn_of(const T& sine, const T& cosine) noexcept {
   const T across = abs(sine), along = abs(cosine), a = along < across ? along : across;
   const T s = a * a;
   // asin(a) / 2 pi within an eighth of a turn, by least squares of the largest error, 1/8 at its end.
-  T turn =
-      a *
-      (T(0.15915393812486814) +
-       s * (T(0.0265771964583) +
-            s * (T(0.0111934983367) + s * (T(0.0116048821993) + s * (T(-0.0077339762488) + s * T(0.0181935231706))))));
+  const T s2 = s * s;
+  const T first = T(0.15915393812486814) + s * T(0.0265771964583);
+  const T second = T(0.0111934983367) + s * T(0.0116048821993);
+  const T third = T(-0.0077339762488) + s * T(0.0181935231706);
+  T turn = a * (first + s2 * (second + s2 * third));
   const T octant = sign_of(T(along - across)), half = sign_of(cosine);
   turn = T(0.125) * (T(1) - octant) + octant * turn;
   turn = T(0.25) * (T(1) - half) + half * turn;

@@ -382,6 +382,28 @@ TEST(RayPolynomial, RaysDoNotDependOnTheirNeighbours) {
   for (const bool mirrors : {false, true}) check(float(), mirrors), check(double(), mirrors);
 }
 
+TEST(RayPolynomial, MapsOneLineAsMany) {
+  for (const bool mirrors : {false, true}) {
+    for (const int degree : {3, 5, 7, 9, 11}) {
+      const auto fit = [&](double slope, double nm) { return numbers(degree, slope, 0.02, nm, mirrors); };
+      const RayPolynomial polynomial(degree, domain(mirrors), {fit(-0.6, 480), fit(-0.5, 550), fit(-0.4, 640)});
+      Lines<double> lines = all_over<double>(mirrors);
+      lines.add(20.01, 0, 0, 0), lines.add(0, 0, 7.1, 10.1), lines.add(infinity, 0, 0, 0);
+      for (const Wavelength wavelength : {Wavelength(0), Wavelength(2), Wavelength(3), Wavelength::nm(600)}) {
+        lines.through(polynomial, {.all = wavelength});
+        for (std::size_t i = 0; i < lines.size(); ++i) {
+          Ray<double> one;
+          const RayFate fate = polynomial.to_scene(
+              TwoPlaneRay{lines.film_x[i], lines.film_y[i], lines.pupil_x[i], lines.pupil_y[i]}, wavelength, one);
+          EXPECT_EQ(fate, lines.fates[i]) << degree << ' ' << i;
+          EXPECT_NEAR(glm::distance(one.origin, lines.origin(i)), 0, 1e-12) << degree << ' ' << i;
+          EXPECT_NEAR(glm::distance(one.direction, lines.direction(i)), 0, 1e-14) << degree << ' ' << i;
+        }
+      }
+    }
+  }
+}
+
 TEST(RayPolynomial, RefusesWhatIsNotConsistent) {
   using Domain = RayPolynomial::Domain;
   using Fits = std::vector<RayPolynomial::Fit>;
