@@ -5,6 +5,7 @@
 
 #include "camera_steps.hpp"
 #include "core/loop_math.hpp"
+#include "lens/look_up.hpp"
 #include "way_to_front.hpp"
 
 namespace petzval::inline v0::camera_detail {
@@ -51,6 +52,18 @@ inline void move_to_front(T vertex_z, T curvature, std::size_t count, const RayA
     ox[i] += way * dx[i];
     oy[i] += way * dy[i];
     oz[i] += way * dz[i];
+  }
+}
+
+template <class T>
+void look_up(const lens_detail::WavelengthRows<T>& rows, std::size_t count, const RayWavelengths& wavelengths,
+             T* to) noexcept {
+  constexpr std::size_t block = lens_detail::look_up_block;
+  for (std::size_t begin = 0; begin < count; begin += block) {
+    const std::size_t n = count - begin < block ? count - begin : block;
+    T found[1][block];
+    lens_detail::look_up(rows, wavelengths, begin, n, found);
+    for (std::size_t i = 0; i < n; ++i) to[begin + i] = found[0][i];
   }
 }
 
@@ -172,8 +185,8 @@ void weigh_tilted(const TiltedBounds<T>& tilted, std::size_t count, const T* vir
 }
 
 template <class T>
-constexpr CameraLoopsOf<T> loops{keep_on_film<T>, start<T>,      move_to_front<T>, weigh<T>,
-                                 to_virtual<T>,   to_upright<T>, weigh_tilted<T>};
+constexpr CameraLoopsOf<T> loops{keep_on_film<T>, start<T>,      move_to_front<T>, look_up<T>,
+                                 weigh<T>,        to_virtual<T>, to_upright<T>,    weigh_tilted<T>};
 
 }  // namespace
 

@@ -7,6 +7,7 @@
 #include "camera_steps.hpp"
 #include "core/widest.hpp"
 #include "front.hpp"
+#include "lens/wavelength_rows.hpp"
 #include "petzval/camera/camera_ray.hpp"
 #include "petzval/pupil_table/two_plane_rays.hpp"
 
@@ -29,6 +30,8 @@ struct CameraLoopsOf {
   void (*start)(const TwoPlanes&, T towards, std::size_t, const TwoPlaneRays<const T>&, const RayArrays<T>&) noexcept;
   /// Moves the origins of rays to a lens's front, along them.
   void (*move_to_front)(T vertex_z, T curvature, std::size_t, const RayArrays<T>&) noexcept;
+  /// The number of each ray's own wavelength; 0 where there is none.
+  void (*look_up)(const lens_detail::WavelengthRows<T>&, std::size_t, const RayWavelengths&, T*) noexcept;
   /// scale: one for each ray, 0 for a ray without a wavelength.
   void (*weigh)(const FilmBounds<T>&, T depth, std::size_t, const T* film_x, const T* film_y,
                 const TwoPlaneRays<const T>&, const T* areas, const T* scale, RayFate*, const CameraRays<T>&) noexcept;

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdint>
 
+#include "lens/look_up.hpp"
+
 namespace petzval::inline v0::camera_detail {
 namespace {
 
@@ -86,10 +88,17 @@ void to_scene(std::size_t count, const ParaxialJob<T>& job, const TwoPlaneRays<c
   for (std::size_t begin = 0; begin < count; begin += block) {
     const std::size_t n = count - begin < block ? count - begin : block;
     T m[8][block];
-    lens_detail::look_up(job.maps, job.wavelengths, begin, n, m);
-    run(begin, n, [&m](std::size_t i) -> Maps<T> {
-      return {m[0][i], m[1][i], m[2][i], m[3][i], m[4][i], m[5][i], m[6][i], m[7][i]};
-    });
+    if (job.sections_alike) {
+      lens_detail::look_up(job.maps, job.wavelengths, begin, n, m, 4);
+      run(begin, n, [&m](std::size_t i) -> Maps<T> {
+        return {m[0][i], m[1][i], m[2][i], m[3][i], m[0][i], m[1][i], m[2][i], m[3][i]};
+      });
+    } else {
+      lens_detail::look_up(job.maps, job.wavelengths, begin, n, m);
+      run(begin, n, [&m](std::size_t i) -> Maps<T> {
+        return {m[0][i], m[1][i], m[2][i], m[3][i], m[4][i], m[5][i], m[6][i], m[7][i]};
+      });
+    }
   }
 }
 

@@ -7,14 +7,11 @@
 
 namespace petzval::inline v0::camera_detail {
 
-/// The numbers of two SectionMaps, as rows by wavelength.
-template <class T>
-using MapRows = lens_detail::WavelengthRows<T, 8>;
-
 /// Film lines as rays in the plane z, for first-order models.
 template <class T>
 struct ParaxialJob {
-  MapRows<T> maps;
+  lens_detail::WavelengthRows<T> maps;  ///< the numbers of two SectionMaps
+  bool sections_alike = false;          ///< those along y are those along x
   const SectionMaps* shared = nullptr;  ///< at the wavelength of all rays; null: it does not exist
   T z = 0;
   RayWavelengths wavelengths;

@@ -191,7 +191,8 @@ ParaxialModel::ParaxialModel(ModelKind model, const LensFacts& facts, double fil
     : kind_(model),
       pupils_(pupils_of(model, facts, film_radius)),
       primary_(pupils_.primary_wavelength()),
-      z_(facts.lens().surfaces().front().vertex_z) {
+      z_(facts.lens().surfaces().front().vertex_z),
+      sections_alike_(!has_cylinders(facts.lens())) {
   const Lens& lens = facts.lens();
   const TwoPlanes& space = pupils_.space();
   std::vector<SectionMaps> thick;
@@ -228,7 +229,8 @@ template <class T>
 void ParaxialModel::to_scene(std::size_t count, const TwoPlaneRays<const T>& lines, const RayWavelengths& wavelengths,
                              const RayArrays<T>& rays, RayFate* fates) const noexcept {
   SectionMaps own;
-  const ParaxialJob<T> job{between_.rows<T>(), map_at(wavelengths.all, own), static_cast<T>(z_), wavelengths};
+  const ParaxialJob<T> job{between_.rows<T>(), sections_alike_, map_at(wavelengths.all, own), static_cast<T>(z_),
+                           wavelengths};
   if constexpr (std::is_same_v<T, float>) {
     paraxial_loops().of_float(count, job, lines, rays, fates);
   } else {

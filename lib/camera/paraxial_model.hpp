@@ -83,7 +83,8 @@ class ParaxialModel {
   ModelKind kind_;
   FilmPupilTable pupils_;
   std::size_t primary_;
-  double z_ = 0;                                                // of the first vertex, where rays are given
+  double z_ = 0;  // of the first vertex, where rays are given
+  bool sections_alike_;
   std::vector<SectionMaps> to_scene_, to_film_;                 // of each wavelength
   lens_detail::BetweenWavelengths<8> between_, of_thick_lens_;  // to the scene, of this model and of the thick lens
   std::vector<double> pinhole_shifts_;

@@ -37,16 +37,7 @@ void fill_scales(std::size_t count, const WavelengthFacts& facts, const RayWavel
     std::fill_n(scales, count, static_cast<T>(facts.scale(wavelengths.all)));
     return;
   }
-  if (const auto alike = facts.same_scale(); wavelengths.each_nm && alike) {
-    const auto [shortest, longest, scale] = *alike;
-    const T own = static_cast<T>(scale);
-    for (std::size_t i = 0; i < count; ++i) {
-      const bool covered = wavelengths.each_nm[i] >= shortest && wavelengths.each_nm[i] <= longest;
-      scales[i] = covered ? own : T(0);
-    }
-    return;
-  }
-  for (std::size_t i = 0; i < count; ++i) scales[i] = static_cast<T>(facts.scale(wavelengths.at(i)));
+  camera_loops().of<T>().look_up(facts.scale_rows<T>(), count, wavelengths, scales);
 }
 
 /// The points of the upright film whose rays through the middles of their pupils are those of a pinhole in front of a
@@ -169,30 +160,29 @@ WavelengthFacts::WavelengthFacts(const AnyRayModel& model, std::vector<double> s
       scale_(std::move(scale)),
       shifts_(model.pinhole_shifts().begin(), model.pinhole_shifts().end()) {
   shifts_.resize(scale_.size());
-  if (nm.empty()) return;
-  std::vector<std::array<double, 2>> values;
-  for (std::size_t w = 0; w < scale_.size(); ++w) values.push_back({scale_[w], shifts_[w]});
-  const lens_detail::CompiledWavelengths compiled(nm);
-  between_ = {compiled, values};
-  if (std::ranges::all_of(scale_, [&](double s) { return s == scale_[0]; })) {
-    same_scale_ = {static_cast<float>(compiled.shortest()), static_cast<float>(compiled.longest()), scale_[0]};
-  }
+  const auto between = [&](const std::vector<double>& of) -> lens_detail::BetweenWavelengths<1> {
+    std::vector<std::array<double, 1>> values;
+    for (const double value : of) values.push_back({value});
+    return {nm.empty() ? lens_detail::CompiledWavelengths() : lens_detail::CompiledWavelengths(nm), values};
+  };
+  between_scales_ = between(scale_);
+  between_shifts_ = between(shifts_);
 }
 
 bool WavelengthFacts::covers(Wavelength wavelength) const noexcept {
   const auto nm = wavelength.in_nm();
-  return nm ? between_.covers(*nm) : wavelength.position(primary_) < count();
+  return nm ? between_scales_.covers(*nm) : wavelength.position(primary_) < count();
 }
 
 double WavelengthFacts::scale_between(Wavelength wavelength) const noexcept {
   const auto nm = wavelength.in_nm();
-  return nm && between_.covers(*nm) ? between_(*nm)[0] : 0;
+  return nm && between_scales_.covers(*nm) ? between_scales_(*nm)[0] : 0;
 }
 
 double WavelengthFacts::pinhole_shift(Wavelength wavelength) const noexcept {
   if (!covers(wavelength)) return 0;
   const auto nm = wavelength.in_nm();
-  return nm ? between_(*nm)[1] : shifts_[wavelength.position(primary_)];
+  return nm ? between_shifts_(*nm)[0] : shifts_[wavelength.position(primary_)];
 }
 
 template <class T>

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstddef>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -34,12 +33,11 @@ class WavelengthFacts {
     const std::size_t position = wavelength.position(primary_);
     return position < count() ? scale_[position] : scale_between(wavelength);
   }
-  /// Where all wavelengths in nm have the same scale, of air behind the lens: it and the range, nm.
-  struct SameScale {
-    float shortest, longest;
-    double scale;
-  };
-  const std::optional<SameScale>& same_scale() const noexcept { return same_scale_; }
+  /// The scales, for loops over rays.
+  template <class T>
+  lens_detail::WavelengthRows<T> scale_rows() const noexcept {
+    return between_scales_.rows<T>();
+  }
   /// AnyRayModel::pinhole_shifts(); 0 for other models.
   double pinhole_shift(Wavelength wavelength) const noexcept;
 
@@ -48,8 +46,7 @@ class WavelengthFacts {
 
   std::size_t primary_;
   std::vector<double> scale_, shifts_;
-  std::optional<SameScale> same_scale_;
-  lens_detail::BetweenWavelengths<2> between_;  // covers nothing where there are no samples in nm
+  lens_detail::BetweenWavelengths<1> between_scales_, between_shifts_;  // cover nothing without samples in nm
 };
 
 /// What samples of a film are drawn from.

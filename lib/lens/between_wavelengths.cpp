@@ -19,7 +19,9 @@ CompiledWavelengths::CompiledWavelengths(std::span<const double> wavelengths_nm)
   }
   std::sort(ranked_.begin(), ranked_.end(), [](const Ranked& a, const Ranked& b) { return a.nm < b.nm; });
   for (std::size_t r = 0; r + 1 < count(); ++r) {
-    middles_.push_back(static_cast<float>((ranked_[r].nm + ranked_[r + 1].nm) / 2));
+    const auto [nm, place, position] = ranked_[r];
+    steps_.push_back({static_cast<float>((nm + ranked_[r + 1].nm) / 2),
+                      static_cast<std::int32_t>(ranked_[r + 1].position) - static_cast<std::int32_t>(position)});
     const std::size_t nodes = std::min(most_nodes, count()), before = nodes / 2 - 1;
     const Interval cubic = interval(r, std::min(r - std::min(r, before), count() - nodes), nodes);
     // How much larger the nodes' errors may be between them: 2.6 times at the ends of a row that is even in nm.
@@ -58,26 +60,9 @@ double CompiledWavelengths::nm_at(double place) const noexcept {
 std::size_t CompiledWavelengths::nearest(double nm) const noexcept {
   const auto narrow = static_cast<float>(nm);
   if (!covers(nm)) return count();
-  return ranked_[static_cast<std::size_t>(
-                     std::count_if(middles_.begin(), middles_.end(), [&](float middle) { return narrow > middle; }))]
+  return ranked_[static_cast<std::size_t>(std::count_if(steps_.begin(), steps_.end(),
+                                                        [&](const auto& step) { return narrow > step.middle; }))]
       .position;
-}
-
-void CompiledWavelengths::nearest(std::size_t count, const float* nm, std::uint16_t* positions) const noexcept {
-  constexpr std::size_t block = 64;
-  const auto shortest = static_cast<float>(place_.shortest), longest = static_cast<float>(place_.longest);
-  for (std::size_t begin = 0; begin < count; begin += block) {
-    const std::size_t n = std::min(block, count - begin);
-    std::array<std::int32_t, block> ranks{};
-    for (const float middle : middles_) {
-      for (std::size_t i = 0; i < n; ++i) ranks[i] += nm[begin + i] > middle;
-    }
-    for (std::size_t i = 0; i < n; ++i) {
-      const bool known = nm[begin + i] >= shortest && nm[begin + i] <= longest;
-      const std::size_t found = position(static_cast<std::size_t>(ranks[i]));
-      positions[begin + i] = known ? static_cast<std::uint16_t>(found) : std::uint16_t{65535};
-    }
-  }
 }
 
 }  // namespace petzval::inline v0::lens_detail

@@ -37,8 +37,11 @@ class PETZVAL_API CompiledWavelengths {
 
   /// Position of the nearest one; count() for a wavelength that is not covered.
   std::size_t nearest(double nm) const noexcept;
-  /// The same for N; 65535 for those not covered.
-  void nearest(std::size_t count, const float* nm, std::uint16_t* positions) const noexcept;
+  /// For loops over rays.
+  NearestPosition nearest_position() const noexcept {
+    return {steps_.data(), steps_.size(), static_cast<float>(place_.shortest), static_cast<float>(place_.longest),
+            ranked_.empty() ? 0 : static_cast<std::int32_t>(ranked_.front().position)};
+  }
 
   /// The weights of some ranks in what lies at a wavelength between them.
   struct Neighbours {
@@ -75,12 +78,12 @@ class PETZVAL_API CompiledWavelengths {
 
   kernel::SpectralPlace<double> place_;
   std::vector<Ranked> ranked_;
-  std::vector<Interval> intervals_;  // from each rank to the next
-  std::vector<float> middles_;       // nm, between neighbours
+  std::vector<Interval> intervals_;           // from each rank to the next
+  std::vector<NearestPosition::Step> steps_;  // at the middles between neighbours
 };
 
-/// Some numbers of a lens, known at its compiled wavelengths, at any wavelength between: in tables so fine that linear
-/// interpolation shows nothing of them.
+/// Some numbers of a lens, known at its compiled wavelengths, at any wavelength between: in parabolas over cells so
+/// small that they show nothing of it.
 template <std::size_t numbers>
 class BetweenWavelengths {
  public:
@@ -90,45 +93,69 @@ class BetweenWavelengths {
   BetweenWavelengths() : BetweenWavelengths({}, {}) {}
   /// values: by position. wavelengths: theirs, or none where there is nothing between them.
   BetweenWavelengths(const CompiledWavelengths& wavelengths, std::span<const Values> values)
-      : wavelengths_(wavelengths), compiled_(values.size()) {
-    std::vector<Values> rows(values.begin(), values.end());
-    for (std::size_t i = 0; i <= cells && wavelengths.count() > 0; ++i) {
-      const auto [first, weights] = wavelengths.about(wavelengths.nm_at(2 * static_cast<double>(i) / cells - 1));
-      Values& row = rows.emplace_back(Values{});
-      for (std::size_t k = 0; k < weights.size() && first + k < wavelengths.count(); ++k) {
-        const Values& own = values[wavelengths.position(first + k)];
-        for (std::size_t j = 0; j < numbers; ++j) row[j] += weights[k] * own[j];
+      : wavelengths_(wavelengths),
+        compiled_(values.size()),
+        powers_(wavelengths.count() > 0 ? cells : 0),
+        single_(compiled_),
+        twice_(compiled_) {
+    const double range = wavelengths.longest() - wavelengths.shortest();
+    cells_per_nm_ = range > 0 ? cells / range : 0;
+    for (std::size_t i = 0; i < powers_.size(); ++i) {
+      const auto at = [&](double cell) {
+        const double nm = wavelengths.shortest() + std::max(range, 0.0) * cell / cells;
+        const auto [first, weights] = wavelengths.about(nm);
+        Values sum{};
+        for (std::size_t k = 0; k < weights.size() && first + k < wavelengths.count(); ++k) {
+          const Values& own = values[wavelengths.position(first + k)];
+          for (std::size_t j = 0; j < numbers; ++j) sum[j] += weights[k] * own[j];
+        }
+        return sum;
+      };
+      const auto cell = static_cast<double>(i);
+      const Values begin = at(cell), middle = at(cell + 0.5), end = at(cell + 1);
+      for (std::size_t j = 0; j < numbers; ++j) {
+        const double by_square = 2 * (begin[j] - 2 * middle[j] + end[j]);
+        powers_[i][j] = {begin[j], end[j] - begin[j] - by_square, by_square};
       }
     }
-    rows.resize(rows.size() + 2, Values{});
-    for (const Values& row : rows) {
-      twice_.insert(twice_.end(), row.begin(), row.end());
-      for (const double value : row) single_.push_back(static_cast<float>(value));
-    }
+    const auto fill = [&](auto& in) {
+      for (std::size_t j = 0; j < numbers; ++j) {
+        for (std::size_t w = 0; w < compiled_; ++w) in.by_position.set(j, w, values[w][j]);
+        for (std::size_t i = 0; i < powers_.size(); ++i) {
+          for (std::size_t p = 0; p < 3; ++p) in.by_nm.set(3 * j + p, i, powers_[i][j][p]);
+        }
+      }
+    };
+    fill(single_);
+    fill(twice_);
   }
 
   bool covers(double nm) const noexcept { return wavelengths_.covers(nm); }
   /// For a wavelength that is covered.
   Values operator()(double nm) const noexcept {
-    const double at = (wavelengths_.place(nm) + 1) / 2 * cells;
+    const double at = std::max((nm - wavelengths_.shortest()) * cells_per_nm_, 0.0);
     const auto cell = std::min(static_cast<std::size_t>(at), cells - 1);
     const double part = at - static_cast<double>(cell);
-    const double* const row = twice_.data() + (compiled_ + cell) * numbers;
     Values result;
-    for (std::size_t j = 0; j < numbers; ++j) result[j] = row[j] + part * (row[j + numbers] - row[j]);
+    for (std::size_t j = 0; j < numbers; ++j) {
+      const auto& [begin, by_part, by_square] = powers_[cell][j];
+      result[j] = begin + part * (by_part + part * by_square);
+    }
     return result;
   }
 
   /// For loops over rays.
   template <class R>
-  WavelengthRows<R, numbers> rows() const noexcept {
-    const auto of = [this](const std::vector<R>& rows) -> WavelengthRows<R, numbers> {
-      const auto& [shortest, longest, scale, offset] = wavelengths_.range();
-      const auto number = [](double x) { return static_cast<R>(x); };
-      return {rows.data(),
+  WavelengthRows<R> rows() const noexcept {
+    const auto of = [this](const In<R>& in) -> WavelengthRows<R> {
+      return {in.by_position.data(),
+              in.by_position.length(),
               static_cast<std::int32_t>(compiled_),
-              static_cast<std::int32_t>(rows.size() / numbers - 2),
-              {number(shortest), number(longest), number(scale), number(offset)}};
+              in.by_nm.data(),
+              in.by_nm.length(),
+              static_cast<R>(wavelengths_.shortest()),
+              static_cast<R>(wavelengths_.longest()),
+              static_cast<R>(cells_per_nm_)};
     };
     if constexpr (sizeof(R) == sizeof(float)) {
       return of(single_);
@@ -138,12 +165,22 @@ class BetweenWavelengths {
   }
 
  private:
-  static constexpr std::size_t cells = WavelengthRows<double, numbers>::cells;
+  static constexpr std::size_t cells = WavelengthRows<double>::cells;
+
+  /// As WavelengthRows has them.
+  template <class R>
+  struct In {
+    AlignedRows<R> by_position, by_nm;
+    explicit In(std::size_t compiled)
+        : by_position(numbers, compiled + 1), by_nm(3 * numbers, WavelengthRows<R>::in_cells) {}
+  };
 
   CompiledWavelengths wavelengths_;
   std::size_t compiled_ = 0;
-  std::vector<float> single_;  // WavelengthRows::rows
-  std::vector<double> twice_;
+  double cells_per_nm_ = 0;
+  std::vector<std::array<std::array<double, 3>, numbers>> powers_;  // of each cell, by powers of the part of it
+  In<float> single_;
+  In<double> twice_;
 };
 
 }  // namespace petzval::inline v0::lens_detail

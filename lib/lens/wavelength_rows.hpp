@@ -3,65 +3,66 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "lens_view.hpp"
-#include "petzval/lens/wavelength.hpp"
 
 namespace petzval::inline v0::lens_detail {
 
-/// Some numbers for each wavelength, borrowed, for loops over rays of mixed wavelengths: rows of those at the compiled
-/// ones, at `cells` + 1 even places of the range, and two of zeros.
-template <class R, std::size_t numbers>
-struct WavelengthRows {
-  static constexpr std::size_t cells = 128;
+/// Rows of numbers as core_detail::look_up() reads them: on registers of their own, with zeros to whole pairs.
+template <class R>
+class AlignedRows {
+ public:
+  AlignedRows() = default;
+  AlignedRows(std::size_t rows, std::size_t numbers)
+      : length_(kernel::row_length<R>(numbers)), registers_(rows * length_ / Register::size) {}
 
-  const R* rows = nullptr;
-  std::int32_t compiled = 0, none = 0;  ///< how many there are of the first, and the first row of zeros
-  kernel::SpectralPlace<R> place{};     ///< covers nothing where there are no rows at even places
+  /// From the beginning of a row to that of the next.
+  std::size_t length() const noexcept { return length_; }
+  const R* data() const noexcept { return registers_.empty() ? nullptr : registers_.front().numbers; }
+  void set(std::size_t row, std::size_t at, double value) noexcept {
+    const std::size_t o = row * length_ + at;
+    registers_[o / Register::size].numbers[o % Register::size] = static_cast<R>(value);
+  }
+
+ private:
+  struct alignas(64) Register {
+    static constexpr std::size_t size = 64 / sizeof(R);
+    R numbers[size] = {};
+  };
+
+  std::size_t length_ = 0;
+  std::vector<Register> registers_;
 };
 
-// Local names: this is compiled for several instruction sets, and the linker must not take one for another.
-namespace {
+/// Some numbers for each wavelength, borrowed, for loops over rays of mixed wavelengths (lens/look_up.hpp): of each
+/// number a row by compiled wavelength, then, in nm, parabolas over even cells of the range.
+template <class R>
+struct WavelengthRows {
+  /// Cells, and one of zeros: as many numbers as permutations of registers reach.
+  static constexpr std::int32_t cells = 15;
+  static constexpr std::size_t in_cells = cells + 1;
 
-/// The most rays that look_up() takes.
-inline constexpr std::size_t look_up_block = 64;
+  const R* by_position = nullptr;  ///< [number]; zeros behind the compiled ones
+  std::size_t length = 0;          ///< of these rows
+  std::int32_t compiled = 0;
+  const R* by_nm = nullptr;     ///< [number][power of the part of a cell] in_cells numbers
+  std::size_t cell_length = 0;  ///< of these rows
+  R shortest = 1, longest = 0;  ///< the range, nm; empty where nothing is known between compiled wavelengths
+  R cells_per_nm = 0;
+};
 
-/// The numbers of the rays from `begin` on that have wavelengths of their own, at most a block of them: each number of
-/// all rays, then the next. Zeros for a wavelength that does not exist.
-template <class R, std::size_t numbers>
-inline void look_up(const WavelengthRows<R, numbers>& table, const RayWavelengths& wavelengths, std::size_t begin,
-                    std::size_t count, R (&to)[numbers][look_up_block]) noexcept {
-  const R* const rows = table.rows;
-  const std::int32_t compiled = table.compiled, none = table.none;
-  std::int32_t row[look_up_block];
-  if (const float* const nm = wavelengths.each_nm) {
-    const auto place = table.place;
-    R part[look_up_block];
-    for (std::size_t i = 0; i < count; ++i) {
-      constexpr R cells = WavelengthRows<R, numbers>::cells;
-      const R own = static_cast<R>(nm[begin + i]);
-      const bool covered = (own >= place.shortest) & (own <= place.longest);
-      const R at = (place.at(covered ? own : place.longest) + R(1)) * (cells / 2);
-      const auto cell = static_cast<std::int32_t>(at < cells - 1 ? at : cells - 1);
-      row[i] = covered ? compiled + cell : none;
-      part[i] = covered ? at - static_cast<R>(cell) : R(0);
-    }
-    for (std::size_t k = 0; k < numbers; ++k) {
-      for (std::size_t i = 0; i < count; ++i) {
-        const std::size_t o = static_cast<std::size_t>(row[i]) * numbers + k;
-        to[k][i] = rows[o] + part[i] * (rows[o + numbers] - rows[o]);
-      }
-    }
-    return;
-  }
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::int32_t position = wavelengths.each[begin + i];
-    row[i] = position < compiled ? position : none;
-  }
-  for (std::size_t k = 0; k < numbers; ++k) {
-    for (std::size_t i = 0; i < count; ++i) to[k][i] = rows[static_cast<std::size_t>(row[i]) * numbers + k];
-  }
-}
+/// The position of the compiled wavelength that is nearest to another one, borrowed: that of the smallest, and what is
+/// added to it at each middle between neighbours that a wavelength exceeds.
+struct NearestPosition {
+  struct Step {
+    float middle;  ///< nm
+    std::int32_t added;
+  };
+  const Step* steps = nullptr;
+  std::size_t count = 0;
+  float shortest = 1, longest = 0;  ///< the range, nm
+  std::int32_t first = 0;
+};
 
-}  // namespace
 }  // namespace petzval::inline v0::lens_detail

@@ -16,7 +16,9 @@ struct RayPolynomial::Data {
   template <class R>
   struct In {
     polynomial_detail::Scales<R> scales;
-    std::vector<R> coefficients;  ///< by wavelength, as in ToSceneJob
+    std::vector<R> coefficients = {};       ///< by wavelength, as in ToSceneJob
+    lens_detail::AlignedRows<R> rows = {};  ///< the same by coefficient
+    std::vector<R> modes = {};              ///< coefficients by mode
   };
 
   int degree;
@@ -24,7 +26,8 @@ struct RayPolynomial::Data {
   std::vector<Fit> fits;
   std::size_t primary;  ///< position of the primary wavelength
   lens_detail::CompiledWavelengths wavelengths;
-  std::vector<std::uint16_t> positions;  ///< of fits, by rank
+  std::size_t modes;  ///< how many there are
+  lens_detail::BetweenWavelengths<polynomial_detail::most_modes> mode_weights;
   In<float> in_float{};
   In<double> in_double{};
 
@@ -82,13 +85,12 @@ const R* RayPolynomial::Data::coefficients(Wavelength wavelength, Room<R>& room)
     return position < fits.size() ? all.data() + position * each : nullptr;
   }
   if (!wavelengths.covers(*nm)) return nullptr;
-  const auto [first, weights] = wavelengths.about(*nm);
+  const auto weights = mode_weights(*nm);
+  const R* mode = polynomial_detail::in<R>(*this).modes.data();
   std::fill_n(room.coefficients.begin(), each, R(0));
-  for (std::size_t k = 0; k < weights.size(); ++k) {
-    if (weights[k] == 0) continue;
-    const R* own = all.data() + wavelengths.position(first + k) * each;
+  for (std::size_t k = 0; k < modes; ++k, mode += each) {
     const R weight = static_cast<R>(weights[k]);
-    for (std::size_t i = 0; i < each; ++i) room.coefficients[i] += weight * own[i];
+    for (std::size_t i = 0; i < each; ++i) room.coefficients[i] += weight * mode[i];
   }
   return room.coefficients.data();
 }

@@ -14,7 +14,8 @@ using Place = polynomial_detail::FilmAndPupil<Jet>;
 
 using Evaluate = ChartLine<Jet> (*)(const double*, const Place&);
 constexpr auto evaluators = polynomial_detail::by_symmetry_and_degree([]<class Symmetry>(Symmetry) -> Evaluate {
-  return [](const double* c, const Place& at) { return Symmetry::line(Symmetry::sums(c, at), at); };
+  return
+      [](const double* c, const Place& at) { return Symmetry::line(Symmetry::sums(c, Symmetry::variables(at)), at); };
 });
 
 }  // namespace

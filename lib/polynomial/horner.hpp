@@ -16,16 +16,16 @@ constexpr int term_count(int n, int variables) {
   return count;
 }
 
-template <int n, class R>
-PETZVAL_INLINE R horner(const R* c) noexcept {
+template <int n, class C>
+PETZVAL_INLINE auto horner(const C& c) noexcept {
   return c[0];
 }
 
 /// All products of at most n variables: those without the first variable, then it times those with one factor less.
 /// In each group the same of the other variables: powers of the last one change fastest. T: float, double, lanes or a
-/// dual number; R: the plain type of its constants.
-template <int n, class R, class T, class... Rest>
-PETZVAL_INLINE auto horner(const R* c, const T& first, const Rest&... rest) noexcept {
+/// dual number; C: a pointer to plain constants, or what is read like one.
+template <int n, class C, class T, class... Rest>
+PETZVAL_INLINE auto horner(const C& c, const T& first, const Rest&... rest) noexcept {
   if constexpr (n == 0) {
     return c[0];
   } else {

@@ -7,6 +7,7 @@
 #include <cstdint>
 
 #include "core/widest.hpp"
+#include "lens/wavelength_rows.hpp"
 #include "petzval/core/ray.hpp"
 #include "petzval/lens/wavelength.hpp"
 #include "petzval/pupil_table/two_plane_rays.hpp"
@@ -31,25 +32,31 @@ struct Scales {
 /// Limit of |f|^2 and |p|^2, at most 1: lines on the rim of the domain belong to it in float too.
 inline constexpr double within_domain = 1 + 1e-5;
 
-/// Fits that are mixed for each ray: `weights` of those at the ranks from `first` on, by ray and then by rank.
+/// The most modes of a polynomial.
+inline constexpr std::size_t most_modes = 8;
+
+/// Fits at any wavelength, borrowed: sums of modes, which are coefficients as of a fit, with weights by wavelength.
+/// That of the first mode is 1.
 template <class R>
-struct MixedFits {
-  const std::uint16_t* positions = nullptr;  ///< of the fits, by rank
-  const std::int32_t* first = nullptr;       ///< of each ray; null: rays have fits of their own; negative: no fit
-  const R* weights = nullptr;                ///< four of each ray
+struct Modes {
+  const R* coefficients = nullptr;  ///< by mode
+  std::size_t count = 0;
+  lens_detail::WavelengthRows<R> weights;
 };
 
 template <class R>
 struct ToSceneJob {
   const R* coefficients;  ///< by wavelength: direction by film and by pupil, offset by film and by pupil
+  const R* rows;          ///< the same in rows by wavelength, one for each coefficient
+  std::size_t row_length;
   std::size_t fits, primary;
+  Modes<R> modes;
   Scales<R> scales;
   std::size_t count;
   TwoPlaneRays<const R> lines;
   RayWavelengths wavelengths;
   RayArrays<R> rays;
   RayFate* fates;
-  MixedFits<R> mixed{};  ///< instead of wavelengths
 };
 
 template <class R>

@@ -11,6 +11,7 @@
 
 #include "core/text.hpp"
 #include "data.hpp"
+#include "modes.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/units.hpp"
 
@@ -79,7 +80,8 @@ std::size_t nearest_to_d(const std::vector<RayPolynomial::Fit>& fits) {
 }
 
 template <class R, class In>
-void round_to(In& in, const RayPolynomial::Domain& domain, const std::vector<RayPolynomial::Fit>& fits) {
+void round_to(In& in, const RayPolynomial::Domain& domain, const std::vector<std::vector<double>>& fits,
+              const std::vector<std::vector<double>>& modes) {
   const auto scales = [](const RayPolynomial::Domain::Section& section) {
     return typename polynomial_detail::Scales<R>::Section{static_cast<R>(section.pupil_shift),
                                                           static_cast<R>(1 / section.pupil_radius)};
@@ -87,12 +89,25 @@ void round_to(In& in, const RayPolynomial::Domain& domain, const std::vector<Ray
   const auto [along_x, along_y] = polynomial_detail::sections(domain);
   in.scales = {static_cast<R>(1 / domain.film_radius), static_cast<R>(domain.reference_z), scales(along_x),
                scales(along_y)};
-  for (const RayPolynomial::Fit& fit : fits) {
-    for (const auto* c : {&fit.direction_by_film, &fit.direction_by_pupil, &fit.offset_by_film, &fit.offset_by_pupil}) {
-      std::transform(c->begin(), c->end(), std::back_inserter(in.coefficients),
-                     [](double value) { return static_cast<R>(value); });
-    }
+  const auto append = [](std::vector<R>& to, const std::vector<double>& from) {
+    std::transform(from.begin(), from.end(), std::back_inserter(to),
+                   [](double value) { return static_cast<R>(value); });
+  };
+  for (const auto& mode : modes) append(in.modes, mode);
+  in.rows = {fits[0].size(), fits.size()};
+  for (std::size_t w = 0; w < fits.size(); ++w) {
+    append(in.coefficients, fits[w]);
+    for (std::size_t i = 0; i < fits[w].size(); ++i) in.rows.set(i, w, fits[w][i]);
   }
+}
+
+/// The coefficients of a fit in the order of ToSceneJob.
+std::vector<double> all_coefficients(const RayPolynomial::Fit& fit) {
+  std::vector<double> result;
+  for (const auto* c : {&fit.direction_by_film, &fit.direction_by_pupil, &fit.offset_by_film, &fit.offset_by_pupil}) {
+    result.insert(result.end(), c->begin(), c->end());
+  }
+  return result;
 }
 
 }  // namespace
@@ -109,11 +124,13 @@ RayPolynomial::Data::Data(int of_degree, const Domain& of_domain, std::vector<Fi
   std::vector<double> nm;
   for (const Fit& fit : fits) nm.push_back(fit.wavelength_nm);
   wavelengths = lens_detail::CompiledWavelengths(nm);
-  for (std::size_t rank = 0; rank < fits.size(); ++rank) {
-    positions.push_back(static_cast<std::uint16_t>(wavelengths.position(rank)));
-  }
-  round_to<float>(in_float, domain, fits);
-  round_to<double>(in_double, domain, fits);
+  std::vector<std::vector<double>> coefficients;
+  std::transform(fits.begin(), fits.end(), std::back_inserter(coefficients), all_coefficients);
+  const auto found = polynomial_detail::find_modes(fits, coefficients);
+  modes = found.modes.size();
+  mode_weights = {wavelengths, found.weights};
+  round_to<float>(in_float, domain, coefficients, found.modes);
+  round_to<double>(in_double, domain, coefficients, found.modes);
 }
 
 std::vector<RayPolynomial::Term> RayPolynomial::terms(int degree) {
@@ -157,38 +174,21 @@ void RayPolynomial::to_scene(std::size_t count, const TwoPlaneRays<const T>& lin
   const Data& data = *data_;
   const auto& in = polynomial_detail::in<T>(data);
   const auto to_scene = polynomial_detail::to_scene_loops<T>()[data.loop()];
-  if (!wavelengths.each_nm) {
-    Data::Room<T> room;
-    const bool blended = wavelengths.in_nm();
-    const T* own = blended ? data.coefficients(wavelengths.all, room) : nullptr;
-    to_scene({own ? own : in.coefficients.data(), data.fits.size(), data.primary, in.scales, count, lines,
-              own ? RayWavelengths{0} : wavelengths, rays, fates});
-    return;
-  }
-  // Fits and their weights, block by block.
-  constexpr std::size_t block = 64;
-  std::array<std::int32_t, block> first;
-  std::array<T, 4 * block> weights;
-  for (std::size_t begin = 0; begin < count; begin += block) {
-    const std::size_t n = std::min(block, count - begin);
-    for (std::size_t i = 0; i < n; ++i) {
-      const double nm{wavelengths.each_nm[begin + i]};
-      const bool covered = data.wavelengths.covers(nm);
-      const auto about = covered ? data.wavelengths.about(nm) : lens_detail::CompiledWavelengths::Neighbours{};
-      first[i] = covered ? static_cast<std::int32_t>(about.first) : -1;
-      for (std::size_t k = 0; k < 4; ++k) weights[4 * i + k] = static_cast<T>(about.weights[k]);
-    }
-    to_scene({in.coefficients.data(),
-              data.fits.size(),
-              data.primary,
-              in.scales,
-              n,
-              lines.from(begin),
-              {},
-              {rays.x + begin, rays.y + begin, rays.z + begin, rays.dx + begin, rays.dy + begin, rays.dz + begin},
-              fates + begin,
-              {data.positions.data(), first.data(), weights.data()}});
-  }
+  Data::Room<T> room;
+  const bool blended = !wavelengths.each_nm && wavelengths.in_nm();
+  const T* own = blended ? data.coefficients(wavelengths.all, room) : nullptr;
+  to_scene({own ? own : in.coefficients.data(),
+            in.rows.data(),
+            in.rows.length(),
+            data.fits.size(),
+            data.primary,
+            {in.modes.data(), data.modes, data.mode_weights.rows<T>()},
+            in.scales,
+            count,
+            lines,
+            own ? RayWavelengths{0} : wavelengths,
+            rays,
+            fates});
 }
 
 RayFate RayPolynomial::to_scene(const TwoPlaneRay& line, Wavelength wavelength, Ray<double>& ray) const noexcept {

@@ -58,12 +58,23 @@ PETZVAL_INLINE LocalRay<T> out_of_chart(const ChartLine<T>& line) noexcept {
 template <int n>
 struct OfRevolution {
   static constexpr int terms = term_count(n, 3), coefficients = 4 * terms;
+  /// Sums of the same variables have the same bits in all code made of them: no compiler can choose which of two
+  /// products it fuses.
+  static constexpr bool same_bits = true;
 
-  /// A, B, C and D.
-  template <class R, class T>
-  static PETZVAL_INLINE FourSums<T> sums(const R* c, const FilmAndPupil<T>& at) noexcept {
+  template <class T>
+  struct Variables {
+    T u, v, w;
+  };
+  template <class T>
+  static PETZVAL_INLINE Variables<T> variables(const FilmAndPupil<T>& at) noexcept {
     const auto& [fx, fy, px, py] = at;
-    const T u = fx * fx + fy * fy, v = fx * px + fy * py, w = px * px + py * py;
+    return {fx * fx + fy * fy, fx * px + fy * py, px * px + py * py};
+  }
+  /// A, B, C and D. c: as of horner().
+  template <class C, class T>
+  static PETZVAL_INLINE FourSums<T> sums(const C& c, const Variables<T>& at) noexcept {
+    const auto& [u, v, w] = at;
     return {horner<n>(c, w, v, u), horner<n>(c + terms, w, v, u), horner<n>(c + 2 * terms, w, v, u),
             horner<n>(c + 3 * terms, w, v, u)};
   }
@@ -82,7 +93,14 @@ struct OfRevolution {
 template <int n>
 struct OfMirrors {
   static constexpr int even = term_count(n, 4), terms = even + term_count(n - 1, 4), coefficients = 8 * terms;
+  static constexpr bool same_bits = false;
 
+  template <class T>
+  using Variables = FilmAndPupil<T>;
+  template <class T>
+  static PETZVAL_INLINE Variables<T> variables(const FilmAndPupil<T>& at) noexcept {
+    return at;
+  }
   /// The components themselves. Not inlined: there is one of each degree, with the same bits for every caller.
   template <class R, class T>
   static __attribute__((noinline)) FourSums<T> sums(const R* c, const FilmAndPupil<T>& at) noexcept {

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "core/simd.hpp"
+#include "lens/look_up.hpp"
 #include "loops.hpp"
 #include "sums.hpp"
 
@@ -14,8 +15,8 @@ namespace {
 using core_detail::lane_count;
 using core_detail::Native;
 
-template <class R>
-using Place = FilmAndPupil<typename Native<R>::Values>;
+template <class Symmetry, class R>
+using Variables = typename Symmetry::template Variables<typename Native<R>::Values>;
 template <class R>
 using Sums = FourSums<typename Native<R>::Values>;
 
@@ -24,14 +25,14 @@ static_assert(OfMirrors<degree_count>::coefficients == most_coefficients);
 /// The sums for a wavelength for each lane: all lanes are evaluated at each wavelength that occurs, smallest first, and
 /// the lanes of that wavelength are kept. known: the lanes whose wavelength has a fit.
 template <class Symmetry, class R>
-PETZVAL_INLINE Sums<R> mixed_sums(const ToSceneJob<R>& job, const std::uint16_t* each, std::size_t count,
-                                  const Place<R>& place, typename Native<R>::Bits& known) noexcept {
+PETZVAL_INLINE Sums<R> mixed_sums(const ToSceneJob<R>& job, const std::uint16_t* each,
+                                  const Variables<Symmetry, R>& at_place, typename Native<R>::Bits& known) noexcept {
   using Bit = typename Native<R>::Bit;
   constexpr std::size_t lanes = lane_count<R>;
   constexpr Bit none = 1 << 16;
   const Bit fits = job.fits < none ? static_cast<Bit>(job.fits) : none;
   Bit own[lanes];
-  for (std::size_t l = 0; l < lanes; ++l) own[l] = l < count ? each[l] : none;
+  for (std::size_t l = 0; l < lanes; ++l) own[l] = each[l];
   const auto next = [&](Bit last) {
     Bit smallest = none;
     for (std::size_t l = 0; l < lanes; ++l) smallest = own[l] > last && own[l] < smallest ? own[l] : smallest;
@@ -43,7 +44,7 @@ PETZVAL_INLINE Sums<R> mixed_sums(const ToSceneJob<R>& job, const std::uint16_t*
   Sums<R> result{};
   for (Bit at = next(-1); at < fits; at = next(at)) {
     const auto theirs = owns == at;
-    const Sums<R> found = Symmetry::sums(job.coefficients + Symmetry::coefficients * at, place);
+    const Sums<R> found = Symmetry::sums(job.coefficients + Symmetry::coefficients * at, at_place);
     result.first = theirs ? found.first : result.first;
     result.second = theirs ? found.second : result.second;
     result.third = theirs ? found.third : result.third;
@@ -52,37 +53,55 @@ PETZVAL_INLINE Sums<R> mixed_sums(const ToSceneJob<R>& job, const std::uint16_t*
   return result;
 }
 
-/// The same for lanes between the wavelengths of fits: every fit that has a weight in a lane is evaluated for all.
+/// The coefficients of the lanes' own wavelengths, read like a pointer to those of one: rows of two registers, also
+/// where one would do (the code for those is slower).
+template <class R>
+struct CoefficientsByLane {
+  const R* rows;
+  std::size_t length;
+  typename Native<R>::Bits places;
+
+  PETZVAL_INLINE CoefficientsByLane operator+(int coefficients) const noexcept {
+    return {rows + static_cast<std::ptrdiff_t>(length) * coefficients, length, places};
+  }
+  PETZVAL_INLINE typename Native<R>::Values operator[](int) const noexcept {
+    return core_detail::permute<2>(rows, places);
+  }
+};
+
+/// The same where registers hold a coefficient of all fits.
 template <class Symmetry, class R>
-PETZVAL_INLINE Sums<R> blended_sums(const ToSceneJob<R>& job, std::size_t o, std::size_t count, const Place<R>& place,
-                                    typename Native<R>::Bits& known) noexcept {
+PETZVAL_INLINE Sums<R> permuted_sums(const ToSceneJob<R>& job, const std::uint16_t* each,
+                                     const Variables<Symmetry, R>& at_place, typename Native<R>::Bits& known) noexcept {
   using Bit = typename Native<R>::Bit;
   constexpr std::size_t lanes = lane_count<R>;
-  constexpr Bit each = 4;
-  const MixedFits<R>& mixed = job.mixed;
-  Bit first[lanes], lowest = static_cast<Bit>(job.fits), highest = -1;
-  for (std::size_t l = 0; l < lanes; ++l) {
-    first[l] = l < count ? mixed.first[o + l] : -1;
-    lowest = first[l] >= 0 && first[l] < lowest ? first[l] : lowest;
-    highest = first[l] > highest ? first[l] : highest;
-  }
-  typename Native<R>::Bits from;
-  __builtin_memcpy(&from, first, sizeof from);
-  known = from >= 0;
-  Sums<R> result{};
-  for (Bit rank = lowest; rank < highest + each && rank < static_cast<Bit>(job.fits); ++rank) {
-    R weights[lanes];
-    bool any = false;
-    for (std::size_t l = 0; l < lanes; ++l) {
-      const Bit k = rank - first[l];
-      const bool has = first[l] >= 0 && k >= 0 && k < each;
-      weights[l] = has ? mixed.weights[each * static_cast<Bit>(o + l) + k] : R(0);
-      any |= weights[l] != R(0);
-    }
-    if (!any) continue;
+  Bit own[lanes];
+  for (std::size_t l = 0; l < lanes; ++l) own[l] = each[l];
+  typename Native<R>::Bits places;
+  __builtin_memcpy(&places, own, sizeof places);
+  known = places < static_cast<Bit>(job.fits);
+  places &= known;
+  return Symmetry::sums(CoefficientsByLane<R>{job.rows, job.row_length, places}, at_place);
+}
+
+/// The weights of modes for a block of rays.
+template <class R>
+using ModeWeights = R[most_modes][lens_detail::look_up_block];
+
+/// The sums for any wavelengths. weights: those of the lanes, from `at` on.
+template <class Symmetry, class R>
+PETZVAL_INLINE Sums<R> mode_sums(const ToSceneJob<R>& job, const ModeWeights<R>& weights, std::size_t at,
+                                 const Variables<Symmetry, R>& at_place, typename Native<R>::Bits& known) noexcept {
+  const auto weight_of = [&](std::size_t mode) {
     typename Native<R>::Values weight;
-    __builtin_memcpy(&weight, weights, sizeof weight);
-    const Sums<R> found = Symmetry::sums(job.coefficients + Symmetry::coefficients * mixed.positions[rank], place);
+    __builtin_memcpy(&weight, weights[mode] + at, sizeof weight);
+    return weight;
+  };
+  known = weight_of(0) > R(0);
+  Sums<R> result = Symmetry::sums(job.modes.coefficients, at_place);
+  for (std::size_t k = 1; k < job.modes.count; ++k) {
+    const auto weight = weight_of(k);
+    const Sums<R> found = Symmetry::sums(job.modes.coefficients + Symmetry::coefficients * k, at_place);
     result.first += weight * found.first;
     result.second += weight * found.second;
     result.third += weight * found.third;
@@ -91,40 +110,46 @@ PETZVAL_INLINE Sums<R> blended_sums(const ToSceneJob<R>& job, std::size_t o, std
   return result;
 }
 
-/// `count` rays, at most as many as there are lanes.
+/// As many rays as there are lanes.
 template <class Symmetry, class R>
-PETZVAL_INLINE void map_lanes(const ToSceneJob<R>& job, std::size_t o, std::size_t count) noexcept {
+PETZVAL_INLINE void map_lanes(const ToSceneJob<R>& job, std::size_t o, const ModeWeights<R>& weights) noexcept {
   using Values = typename Native<R>::Values;
   const auto load = [&](const R* from) {
-    Values v{};
-    __builtin_memcpy(&v, from + o, count * sizeof(R));
+    Values v;
+    __builtin_memcpy(&v, from + o, sizeof v);
     return v;
   };
   const Scales<R>& scales = job.scales;
   const Values film_x = load(job.lines.film_x), film_y = load(job.lines.film_y);
-  const Place<R> place =
+  const FilmAndPupil<Values> place =
       in_domain<R, Values>(scales, {film_x, film_y, load(job.lines.pupil_x), load(job.lines.pupil_y)});
+  const Variables<Symmetry, R> variables = Symmetry::variables(place);
   typename Native<R>::Bits inside =
       (place.film_square() <= static_cast<R>(within_domain)) & (place.pupil_square() <= static_cast<R>(within_domain));
 
   Sums<R> sums{};
-  if (job.mixed.first) {
+  if (job.wavelengths.each_nm) {
     typename Native<R>::Bits known;
-    sums = blended_sums<Symmetry, R>(job, o, count, place, known);
+    sums = mode_sums<Symmetry, R>(job, weights, o % lens_detail::look_up_block, variables, known);
     inside &= known;
-  } else if (job.wavelengths.each) {
+  } else if (const std::uint16_t* const each = job.wavelengths.each) {
     typename Native<R>::Bits known;
-    sums = mixed_sums<Symmetry, R>(job, job.wavelengths.each + o, count, place, known);
+    if constexpr (Symmetry::same_bits && core_detail::permuted<R> != 0) {
+      sums = job.fits <= core_detail::permuted<R> ? permuted_sums<Symmetry, R>(job, each + o, variables, known)
+                                                  : mixed_sums<Symmetry, R>(job, each + o, variables, known);
+    } else {
+      sums = mixed_sums<Symmetry, R>(job, each + o, variables, known);
+    }
     inside &= known;
   } else if (const std::size_t all = job.wavelengths.all.position(job.primary); all < job.fits) {
-    sums = Symmetry::sums(job.coefficients + static_cast<std::ptrdiff_t>(all) * Symmetry::coefficients, place);
+    sums = Symmetry::sums(job.coefficients + static_cast<std::ptrdiff_t>(all) * Symmetry::coefficients, variables);
   } else {
     inside = inside != inside;
   }
   const LocalRay<Values> found = out_of_chart<R>(Symmetry::line(sums, place));
   const auto store = [&](R* to, const Values& ray, R otherwise) {
     const Values result = inside ? ray : Values{} + otherwise;
-    __builtin_memcpy(to + o, &result, count * sizeof(R));
+    __builtin_memcpy(to + o, &result, sizeof result);
   };
   store(job.rays.x, found.x, 0);
   store(job.rays.y, found.y, 0);
@@ -136,15 +161,60 @@ PETZVAL_INLINE void map_lanes(const ToSceneJob<R>& job, std::size_t o, std::size
   static_assert(sizeof(RayFate) == 1 && static_cast<int>(RayFate::transmitted) == 0);
   const auto fates =
       __builtin_convertvector(~inside & static_cast<int>(RayFate::outside_fit), typename Native<R>::Bytes);
-  __builtin_memcpy(job.fates + o, &fates, count);
+  __builtin_memcpy(job.fates + o, &fates, sizeof fates);
 }
 
+/// A number of rays that fills lanes. Not inlined: all rays pass the same code, in which the compiler chose once which
+/// of two products it fuses.
+template <class Symmetry, class R>
+__attribute__((noinline)) void map_whole(const ToSceneJob<R>& job) noexcept {
+  constexpr std::size_t lanes = lane_count<R>, block = lens_detail::look_up_block;
+  ModeWeights<R> weights;
+  for (std::size_t begin = 0; begin < job.count; begin += block) {
+    const std::size_t end = job.count - begin < block ? job.count : begin + block;
+    if (job.wavelengths.each_nm) {
+      lens_detail::look_up(job.modes.weights, job.wavelengths, begin, end - begin, weights, job.modes.count);
+    }
+    for (std::size_t o = begin; o < end; o += lanes) map_lanes<Symmetry>(job, o, weights);
+  }
+}
+
+/// The last rays fill lanes with copies of the first of them.
 template <class Symmetry, class R>
 void to_scene(const ToSceneJob<R>& job) noexcept {
   constexpr std::size_t lanes = lane_count<R>;
-  std::size_t o = 0;
-  for (; o + lanes <= job.count; o += lanes) map_lanes<Symmetry>(job, o, lanes);
-  if (o < job.count) map_lanes<Symmetry>(job, o, job.count - o);
+  ToSceneJob<R> part = job;
+  part.count = job.count - job.count % lanes;
+  map_whole<Symmetry>(part);
+  const std::size_t o = part.count, rest = job.count - o;
+  if (rest == 0) return;
+  R in[4][lanes], out[6][lanes];
+  std::uint16_t each[lanes];
+  float each_nm[lanes];
+  RayFate fates[lanes];
+  const auto fill = [&](const auto* from, auto& to) {
+    for (std::size_t l = 0; l < lanes; ++l) to[l] = from[o + (l < rest ? l : 0)];
+  };
+  fill(job.lines.film_x, in[0]), fill(job.lines.film_y, in[1]);
+  fill(job.lines.pupil_x, in[2]), fill(job.lines.pupil_y, in[3]);
+  if (job.wavelengths.each) {
+    fill(job.wavelengths.each, each);
+    part.wavelengths.each = each;
+  }
+  if (job.wavelengths.each_nm) {
+    fill(job.wavelengths.each_nm, each_nm);
+    part.wavelengths.each_nm = each_nm;
+  }
+  part.count = lanes;
+  part.lines = {in[0], in[1], in[2], in[3]};
+  part.rays = {out[0], out[1], out[2], out[3], out[4], out[5]};
+  part.fates = fates;
+  map_whole<Symmetry>(part);
+  R* const to[] = {job.rays.x, job.rays.y, job.rays.z, job.rays.dx, job.rays.dy, job.rays.dz};
+  for (std::size_t k = 0; k < 6; ++k) {
+    for (std::size_t l = 0; l < rest; ++l) to[k][o + l] = out[k][l];
+  }
+  for (std::size_t l = 0; l < rest; ++l) job.fates[o + l] = fates[l];
 }
 
 template <class Symmetry>
@@ -154,7 +224,8 @@ RayFate one_to_scene(const double* coefficients, const Scales<double>& scales, c
   const bool inside = place.film_square() <= within_domain && place.pupil_square() <= within_domain;
   LocalRay<double> found{0, 0, 0, 0, 0, -1};
   const bool fitted = inside && coefficients;
-  if (fitted) found = out_of_chart<double>(Symmetry::line(Symmetry::sums(coefficients, place), place));
+  if (fitted)
+    found = out_of_chart<double>(Symmetry::line(Symmetry::sums(coefficients, Symmetry::variables(place)), place));
   auto& [o, d] = ray;
   o.x = found.x, o.y = found.y, o.z = found.z + scales.reference_z;
   d.x = found.dx, d.y = found.dy, d.z = found.dz;

@@ -135,7 +135,8 @@ struct FilmPupilTable::Data {
     std::array<std::uint16_t, block> positions;
     for (std::size_t begin = 0; begin < count; begin += block) {
       const std::size_t n = std::min(block, count - begin);
-      compiled.nearest(n, by_nm.each_nm + begin, positions.data());
+      pupil_table_detail::film_pupil_table().find_nearest(compiled.nearest_position(), n, by_nm.each_nm + begin,
+                                                          positions.data());
       body(begin, n, RayWavelengths{.each = positions.data()});
     }
   }
@@ -348,7 +349,7 @@ PupilSample FilmPupilTable::sample(const FilmPoint& film, double u, double v, Wa
   if (const auto& images = data_->images) return images->sample(film, u, v, wavelength);
   const std::size_t position = data_->position(wavelength);
   const std::int32_t known = position < data_->wavelengths ? static_cast<std::int32_t>(position) : -1;
-  const auto& [strips, cells] = pupil_table_detail::film_pupil_table();
+  const auto& [strips, cells, find_nearest] = pupil_table_detail::film_pupil_table();
   return data_->cells ? cells.one(data_->cells->table<double>(), film.x, film.y, u, v, known)
                       : strips.one(data_->table<double>(), film.x, film.y, u, v, known);
 }
@@ -366,7 +367,7 @@ void FilmPupilTable::sample(std::size_t count, const T* film_x, const T* film_y,
     data_->images->sample(count, film_x, film_y, u, v, wavelengths, x, y, areas);
     return;
   }
-  const auto& [strips, cells] = pupil_table_detail::film_pupil_table();
+  const auto& [strips, cells, find_nearest] = pupil_table_detail::film_pupil_table();
   const auto run = [&](const auto& loops, const auto& table) {
     if constexpr (sizeof(T) == sizeof(float)) {
       loops.single(table, count, film_x, film_y, u, v, wavelengths, x, y, areas);
@@ -441,7 +442,7 @@ void FilmPupilTable::contains(std::size_t count, const TwoPlaneRays<const T>& li
     }
     return;
   }
-  const auto& [strips, cells] = pupil_table_detail::film_pupil_table();
+  const auto& [strips, cells, find_nearest] = pupil_table_detail::film_pupil_table();
   const auto run = [&, film_x = film_x, film_y = film_y, x = x, y = y](const auto& loops, const auto& table) {
     if constexpr (sizeof(T) == sizeof(float)) {
       loops.contains_single(table, count, film_x, film_y, x, y, wavelengths, within);

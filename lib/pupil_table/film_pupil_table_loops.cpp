@@ -7,6 +7,7 @@
 
 #include "core/loop_math.hpp"
 #include "core/simd.hpp"
+#include "lens/look_up.hpp"
 
 namespace petzval::inline v0::pupil_table_detail {
 namespace {
@@ -324,8 +325,11 @@ inline void by_blocks(const Table& table, std::size_t count, const R* const (&in
   const auto known = [&](std::size_t w) { return w < table.wavelengths ? static_cast<std::int32_t>(w) : -1; };
   std::int32_t w[whole_block];
   for (std::size_t i = 0; i < whole_block; ++i) w[i] = known(wavelengths.all.position(table.primary));
-  const auto find_wavelengths = [&](std::size_t begin, std::size_t n) {
-    for (std::size_t i = 0; wavelengths.each && i < n; ++i) w[i] = known(wavelengths.each[begin + i]);
+  const auto find_wavelengths = [&](std::size_t begin, auto n) {
+    if (!wavelengths.each) return;
+    const std::uint16_t* const each = wavelengths.each + begin;
+    const auto count_known = static_cast<std::int32_t>(table.wavelengths);
+    for (std::size_t i = 0; i < n; ++i) w[i] = each[i] < count_known ? each[i] : -1;
   };
   std::size_t begin = 0;
   const auto whole = [&](auto block) {
@@ -413,6 +417,7 @@ constexpr auto contains_cells = contains<false, CellTable<R>, R>;
 const FilmPupilLoops PETZVAL_LOOPS{.strips = {sample_strips<float>, sample_strips<double>, contains_strips<float>,
                                               contains_strips<double>, one_of_strips},
                                    .cells = {sample_cells<float>, sample_cells<double>, contains_cells<float>,
-                                             contains_cells<double>, one_of<false, CellTable<double>>}};
+                                             contains_cells<double>, one_of<false, CellTable<double>>},
+                                   .find_nearest = lens_detail::find_nearest};
 
 }  // namespace petzval::inline v0::pupil_table_detail

@@ -8,6 +8,7 @@
 #include "core/loop_math.hpp"
 #include "core/simd.hpp"
 #include "core/widest.hpp"
+#include "lens/wavelength_rows.hpp"
 #include "petzval/lens/wavelength.hpp"
 #include "petzval/pupil_table/film_pupil_table.hpp"
 #include "pupil_table/sector.hpp"
@@ -115,6 +116,8 @@ struct FilmPupilLoops {
   };
   Of<StripTable> strips;
   Of<CellTable> cells;
+  void (*find_nearest)(const lens_detail::NearestPosition&, std::size_t, const float* nm,
+                       std::uint16_t* positions) noexcept;
 };
 
 PETZVAL_WIDEST(FilmPupilLoops, film_pupil_table)

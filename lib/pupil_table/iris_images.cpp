@@ -19,7 +19,8 @@ IrisImages::IrisImages(const Iris& iris, std::span<const PupilImage> images, dou
     : shape_(iris), film_radius_(film_radius), primary_(primary) {
   std::vector<std::array<double, 4>> values;
   for (const auto& [shift, radius] : images) {
-    values.push_back({shift.x, shift.y, radius.x, radius.y});
+    sections_alike_ &= shift.x == shift.y && radius.x == radius.y;
+    values.push_back({shift.x, radius.x, shift.y, radius.y});
     images_.push_back({shift.x, shift.y, radius.x, radius.y, shape_.area() * radius.x * radius.y});
   }
   const bool known = wavelengths.count() == images.size();
@@ -39,12 +40,6 @@ IrisImages IrisImages::of_round_stop() const {
   result.shape_ = {};
   for (Image& image : result.images_) image.area = result.shape_.area() * image.radius_x * image.radius_y;
   return result;
-}
-
-bool IrisImages::of_revolution() const noexcept {
-  return std::all_of(images_.begin(), images_.end(), [](const Image& image) {
-    return image.shift_x == image.shift_y && image.radius_x == image.radius_y;
-  });
 }
 
 void IrisImages::put(FilmPupilArrays& arrays) const {
@@ -72,6 +67,7 @@ IrisImageTable<R> IrisImages::table(Wavelength all) const noexcept {
   const Image shared = image(all);
   return {seen<R>(),
           between_.rows<R>(),
+          sections_alike_,
           {number(shared.shift_x), number(shared.shift_y), number(shared.radius_x), number(shared.radius_y),
            number(shared.area)},
           number(shape_.area())};
@@ -80,7 +76,7 @@ IrisImageTable<R> IrisImages::table(Wavelength all) const noexcept {
 IrisImages::Image IrisImages::image(Wavelength at) const noexcept {
   if (const auto nm = at.in_nm()) {
     if (!between_.covers(*nm)) return {};
-    const auto [shift_x, shift_y, radius_x, radius_y] = between_(*nm);
+    const auto [shift_x, radius_x, shift_y, radius_y] = between_(*nm);
     return {shift_x, shift_y, radius_x, radius_y, shape_.area() * radius_x * radius_y};
   }
   const std::size_t w = at.position(primary_);

@@ -30,7 +30,7 @@ class IrisImages {
   /// Those of the whole stop, which contain these.
   IrisImages of_round_stop() const;
   /// Whether discs stay discs, so that turns about the axis change nothing. For round ones.
-  bool of_revolution() const noexcept;
+  bool of_revolution() const noexcept { return sections_alike_; }
 
   /// As plain numbers. For images of an upright film.
   void put(FilmPupilArrays& arrays) const;
@@ -64,8 +64,9 @@ class IrisImages {
   iris_detail::IrisShape shape_;
   double film_radius_ = 0, slope_x_ = 0, slope_y_ = 0;
   std::size_t primary_ = 0;
+  bool sections_alike_ = true;
   std::vector<Image> images_;                   // by wavelength
-  lens_detail::BetweenWavelengths<4> between_;  // shifts and radii
+  lens_detail::BetweenWavelengths<4> between_;  // shift and radius along x, along y
 };
 
 }  // namespace petzval::inline v0::pupil_table_detail

@@ -4,6 +4,7 @@
 #include "iris_images_loops.hpp"
 
 #include "core/loop_math.hpp"
+#include "lens/look_up.hpp"
 
 namespace petzval::inline v0::pupil_table_detail {
 namespace {
@@ -20,10 +21,13 @@ inline void with_images(const IrisImageTable<R>& table, std::size_t count, const
   for (std::size_t begin = 0; begin < count; begin += block) {
     const std::size_t n = count - begin < block ? count - begin : block;
     R seen[4][block];
-    lens_detail::look_up(table.images, wavelengths, begin, n, seen);
-    body(begin, begin + n, [&seen, begin, area = table.area](std::size_t i) -> ImageSections<R> {
+    const std::size_t y = table.sections_alike ? 0 : 2;
+    lens_detail::look_up(table.images, wavelengths, begin, n, seen, y + 2);
+    const R *const shift_x = seen[0], *const radius_x = seen[1], *const shift_y = seen[y],
+                   *const radius_y = seen[y + 1];
+    body(begin, begin + n, [=, area = table.area](std::size_t i) -> ImageSections<R> {
       const std::size_t k = i - begin;
-      return {seen[0][k], seen[1][k], seen[2][k], seen[3][k], area * (seen[2][k] * seen[3][k])};
+      return {shift_x[k], shift_y[k], radius_x[k], radius_y[k], area * (radius_x[k] * radius_y[k])};
     });
   }
 }

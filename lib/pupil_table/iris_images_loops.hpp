@@ -41,9 +41,10 @@ struct SeenIris {
 /// IrisImages in numbers of type R, borrowed.
 template <class R>
 struct IrisImageTable : SeenIris<R> {
-  lens_detail::WavelengthRows<R, 4> images{};  ///< shifts and radii
-  ImageSections<R> image{};                    ///< that of a wavelength that rays share
-  R area = 0;                                  ///< of the iris
+  lens_detail::WavelengthRows<R> images{};  ///< shift and radius along x, then along y
+  bool sections_alike = false;              ///< those along y are those along x
+  ImageSections<R> image{};                 ///< that of a wavelength that rays share
+  R area = 0;                               ///< of the iris
 };
 
 /// Loops over samples, for float or double.

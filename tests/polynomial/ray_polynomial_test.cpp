@@ -357,9 +357,12 @@ TEST(RayPolynomial, FindsNoLinesForRaysFromElsewhere) {
 }
 
 TEST(RayPolynomial, RaysDoNotDependOnTheirNeighbours) {
-  const auto check = [&]<class T>(T, bool mirrors) {
-    const auto fit = [&](double slope, double higher) { return numbers(9, slope, higher, 587.5618, mirrors); };
-    const RayPolynomial polynomial(9, domain(mirrors), {fit(-0.6, 0.02), fit(-0.5, 0.03), fit(-0.4, 0)});
+  const auto check = [&]<class T>(T, bool mirrors, unsigned fits) {
+    std::vector<RayPolynomial::Fit> all_fits;
+    for (unsigned w = 0; w < fits; ++w) {
+      all_fits.push_back(numbers(9, -0.6 + 0.1 * (w % 5), 0.01 * (w % 7), 587.5618, mirrors));
+    }
+    const RayPolynomial polynomial(9, domain(mirrors), all_fits);
     Lines<T> all = all_over<T>(mirrors);
     for (int k = 0; k < 3; ++k) {  // more than a block of mixed wavelengths
       const Lines<T> more = all_over<T>(mirrors);
@@ -368,18 +371,22 @@ TEST(RayPolynomial, RaysDoNotDependOnTheirNeighbours) {
       }
     }
     std::vector<std::uint16_t> each;
-    for (std::size_t i = 0; i < all.size(); ++i) each.push_back(static_cast<std::uint16_t>(i * i % 7 % 4));
+    for (std::size_t i = 0; i < all.size(); ++i) each.push_back(static_cast<std::uint16_t>(i * i % 71 % (fits + 1)));
     all.through(polynomial, {0, each.data()});
     for (std::size_t i = 0; i < all.size(); ++i) {
       Lines<T> one;
       one.add(all.film_x[i], all.film_y[i], all.pupil_x[i], all.pupil_y[i]);
       one.through(polynomial, {each[i]});
       EXPECT_EQ(one.fates[0], all.fates[i]);
-      EXPECT_EQ(one.fates[0], each[i] == 3 ? RayFate::outside_fit : RayFate::transmitted);
-      for (std::size_t k = 0; k < 6; ++k) EXPECT_EQ(one.ray[k][0], all.ray[k][i]) << i;
+      EXPECT_EQ(one.fates[0], each[i] == fits ? RayFate::outside_fit : RayFate::transmitted);
+      for (std::size_t k = 0; k < 6; ++k)
+        EXPECT_EQ(one.ray[k][0], all.ray[k][i]) << i << " of " << fits << " fits, mirrors " << mirrors;
     }
   };
-  for (const bool mirrors : {false, true}) check(float(), mirrors), check(double(), mirrors);
+  // Their coefficients lie in a register, in a pair, and in none.
+  for (const unsigned fits : {3u, 16u, 20u, 40u}) {
+    for (const bool mirrors : {false, true}) check(float(), mirrors, fits), check(double(), mirrors, fits);
+  }
 }
 
 TEST(RayPolynomial, MapsOneLineAsMany) {

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+// Numbers of a short table by lane, for sources of one instruction set each, as core/simd.hpp.
+#pragma once
+
+#include <cstddef>
+
+#if defined(__x86_64__)
+#include <immintrin.h>
+#endif
+
+#include "core/simd.hpp"
+
+namespace petzval::inline v0::core_detail {
+namespace {
+
+/// The longest table that registers hold and permute; 0 without such an instruction.
+#if defined(__AVX512F__)
+template <class R>
+inline constexpr std::size_t permuted = 2 * static_cast<std::size_t>(lane_count<R>);
+#elif defined(__AVX2__)
+template <class R>
+inline constexpr std::size_t permuted = sizeof(R) == 4 ? 2 * static_cast<std::size_t>(lane_count<R>) : 0;
+#else
+template <class R>
+inline constexpr std::size_t permuted = 0;
+#endif
+
+/// The numbers at places of a table that fills so many registers, 1 or 2, which are loaded whole. For permuted<R> > 0.
+template <int registers, class R>
+PETZVAL_INLINE typename Native<R>::Values permute(const R* table,
+                                                  [[maybe_unused]] const typename Native<R>::Bits& places) noexcept {
+  typename Native<R>::Values low, high{};
+  __builtin_memcpy(&low, table, sizeof low);
+  if constexpr (registers == 2) __builtin_memcpy(&high, table + lane_count<R>, sizeof high);
+#if defined(__AVX512F__)
+  const auto at = reinterpret_cast<__m512i>(places);
+  if constexpr (sizeof(R) == 4) {
+    if constexpr (registers == 1) return _mm512_maskz_permutexvar_ps(0xffff, at, low);
+    return _mm512_permutex2var_ps(low, at, high);
+  } else {
+    if constexpr (registers == 1) return _mm512_maskz_permutexvar_pd(0xff, at, low);
+    return _mm512_permutex2var_pd(low, at, high);
+  }
+#elif defined(__AVX2__)
+  if constexpr (sizeof(R) == 4) {
+    const auto at = reinterpret_cast<__m256i>(places);
+    const __m256 from_low = _mm256_permutevar8x32_ps(low, at);
+    if constexpr (registers == 1) return from_low;
+    const __m256 from_high = _mm256_permutevar8x32_ps(high, at);
+    return _mm256_blendv_ps(from_low, from_high, _mm256_castsi256_ps(_mm256_slli_epi32(at, 28)));
+  }
+#endif
+  return low;
+}
+
+/// The numbers at places of a table of `count` numbers: permuted, or gathered from one that registers do not hold.
+/// Whole registers of it are loaded, up to a pair.
+template <class R>
+PETZVAL_INLINE typename Native<R>::Values look_up(const R* table, std::size_t count,
+                                                  const typename Native<R>::Bits& places) noexcept {
+  constexpr int width = lane_count<R>;
+  if (permuted < R >> 0 && count <= width) return permute<1>(table, places);
+  if (count <= permuted<R>) return permute<2>(table, places);
+  R values[width];
+  for (int l = 0; l < width; ++l) values[l] = table[places[l]];
+  typename Native<R>::Values result;
+  __builtin_memcpy(&result, values, sizeof result);
+  return result;
+}
+
+}  // namespace
+}  // namespace petzval::inline v0::core_detail

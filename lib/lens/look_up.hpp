@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+// Numbers by wavelength for rays of mixed wavelengths, for sources of one instruction set each, as core/simd.hpp.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "core/look_up.hpp"
+#include "petzval/lens/wavelength.hpp"
+#include "wavelength_rows.hpp"
+
+namespace petzval::inline v0::lens_detail {
+namespace {
+
+/// The most rays that look_up() takes.
+inline constexpr std::size_t look_up_block = 64;
+
+/// Positions of as many rays as a register has lanes.
+using Positions = std::uint16_t __attribute__((vector_size(core_detail::lane_bytes / 2)));
+
+/// The first `used` numbers of the rays from `begin` on that have wavelengths of their own, at most a block of them:
+/// each number of all rays, then the next. Zeros for a wavelength that does not exist.
+template <class R, std::size_t numbers>
+inline void look_up(const WavelengthRows<R>& given, const RayWavelengths& wavelengths, std::size_t begin,
+                    std::size_t count, R (&to)[numbers][look_up_block], std::size_t used = numbers) noexcept {
+  using Native = core_detail::Native<R>;
+  using Values = typename Native::Values;
+  using Bits = typename Native::Bits;
+  constexpr std::size_t lanes = core_detail::lane_count<R>;
+  const WavelengthRows<R> table = given;  // which nothing that is written overlaps
+  const auto store = [&](std::size_t k, std::size_t o, const Values& values) {
+    __builtin_memcpy(&to[k][o], &values, sizeof values);
+  };
+  // Places of all rays first, in loops that a compiler runs on its lanes; best when it knows how many there are.
+  typename Native::Bit places[look_up_block];
+  const auto for_each = [&](const auto& body) {
+    if (count == look_up_block) {
+      for (std::size_t i = 0; i < look_up_block; ++i) body(i);
+    } else {
+      for (std::size_t i = 0; i < count; ++i) body(i);
+      for (std::size_t i = count; i < (count + lanes - 1) / lanes * lanes; ++i) places[i] = 0;
+    }
+  };
+  if (const float* const nm = wavelengths.each_nm) {
+    R parts[look_up_block] = {};
+    for_each([&](std::size_t i) {
+      constexpr std::int32_t last = WavelengthRows<R>::cells - 1;
+      const R own = static_cast<R>(nm[begin + i]);
+      const bool covered = (own >= table.shortest) & (own <= table.longest);
+      const R at = covered ? (own - table.shortest) * table.cells_per_nm : R(0);
+      const auto cell = static_cast<std::int32_t>(at < static_cast<R>(last) ? at : static_cast<R>(last));
+      places[i] = covered ? cell : last + 1;
+      parts[i] = at - static_cast<R>(cell);
+    });
+    for (std::size_t o = 0; o < count; o += lanes) {
+      Bits at;
+      Values part;
+      __builtin_memcpy(&at, places + o, sizeof at);
+      __builtin_memcpy(&part, parts + o, sizeof part);
+      const R* row = table.by_nm;
+      for (std::size_t k = 0; k < used; ++k, row += 3 * table.cell_length) {
+        const auto power = [&](std::size_t p) {
+          return core_detail::look_up(row + p * table.cell_length, table.in_cells, at);
+        };
+        store(k, o, power(0) + part * (power(1) + part * power(2)));
+      }
+    }
+    return;
+  }
+  for_each([&](std::size_t i) {
+    const std::int32_t position = wavelengths.each[begin + i];
+    places[i] = position < table.compiled ? position : table.compiled;
+  });
+  const auto known = static_cast<std::size_t>(table.compiled) + 1;
+  for (std::size_t o = 0; o < count; o += lanes) {
+    Bits at;
+    __builtin_memcpy(&at, places + o, sizeof at);
+    for (std::size_t k = 0; k < used; ++k) {
+      store(k, o, core_detail::look_up(table.by_position + k * table.length, known, at));
+    }
+  }
+}
+
+/// Positions of the compiled wavelengths nearest to those of N rays, nm; 65535 for those not covered.
+inline void find_nearest(const NearestPosition& nearest, std::size_t count, const float* nm,
+                         std::uint16_t* positions) noexcept {
+  using Native = core_detail::Native<float>;
+  constexpr std::size_t lanes = core_detail::lane_count<float>;
+  const auto find = [&](std::size_t o, std::size_t n) {
+    Native::Values own{};
+    __builtin_memcpy(&own, nm + o, n * sizeof(float));
+    Native::Bits found = Native::Bits{} + nearest.first;
+    for (std::size_t k = 0; k < nearest.count; ++k) {
+      const auto [middle, added] = nearest.steps[k];
+      found += (own > middle) & added;
+    }
+    const Native::Bits covered = (own >= nearest.shortest) & (own <= nearest.longest);
+    found = covered ? found : Native::Bits{} + 65535;
+    const auto narrow = __builtin_convertvector(found, Positions);
+    __builtin_memcpy(positions + o, &narrow, n * sizeof(std::uint16_t));
+  };
+  std::size_t o = 0;
+  for (; o + lanes <= count; o += lanes) find(o, lanes);
+  if (o < count) find(o, count - o);
+}
+
+}  // namespace
+}  // namespace petzval::inline v0::lens_detail
