@@ -3,6 +3,7 @@
 // remainder of a batch goes through the same vectors as the rest.
 #include <cstddef>
 #include <cstdint>
+#include <type_traits>
 
 #include "core/simd.hpp"
 #include "lens/look_up.hpp"
@@ -69,16 +70,19 @@ struct CoefficientsByLane {
   }
 };
 
+/// lens_detail::Positions for the lanes of doubles.
+using HalfPositions = std::uint16_t __attribute__((vector_size(core_detail::lane_bytes / 4)));
+
 /// The same where registers hold a coefficient of all fits.
 template <class Symmetry, class R>
 PETZVAL_INLINE Sums<R> permuted_sums(const ToSceneJob<R>& job, const std::uint16_t* each,
                                      const Variables<Symmetry, R>& at_place, typename Native<R>::Bits& known) noexcept {
   using Bit = typename Native<R>::Bit;
-  constexpr std::size_t lanes = lane_count<R>;
-  Bit own[lanes];
-  for (std::size_t l = 0; l < lanes; ++l) own[l] = each[l];
-  typename Native<R>::Bits places;
-  __builtin_memcpy(&places, own, sizeof places);
+  // Converted as a whole: put together one by one, it would be read before it is written.
+  using Positions = std::conditional_t<sizeof(R) == 4, lens_detail::Positions, HalfPositions>;
+  Positions positions;
+  __builtin_memcpy(&positions, each, sizeof positions);
+  typename Native<R>::Bits places = __builtin_convertvector(positions, typename Native<R>::Bits);
   known = places < static_cast<Bit>(job.fits);
   places &= known;
   return Symmetry::sums(CoefficientsByLane<R>{job.rows, job.row_length, places}, at_place);
