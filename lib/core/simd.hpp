@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstdint>
+#include <type_traits>
 
 namespace petzval::inline v0::core_detail {
 namespace {
@@ -44,6 +45,20 @@ inline constexpr int lane_count = lane_bytes / static_cast<int>(sizeof(R));
 
 /// For functions over vectors: a call would pass them through memory.
 #define PETZVAL_INLINE inline __attribute__((always_inline))
+
+/// a b + c d, where the first product alone may be fused with the sum. Compilers choose one of the two, not the same
+/// one everywhere, and results would depend on the code that a ray meets.
+template <class T>
+PETZVAL_INLINE T sum_of_products(const T& a, const T& b, const T& c, const T& d) noexcept {
+  T second = c * d;
+#if defined(__x86_64__)
+  if constexpr (std::is_floating_point_v<T> || std::is_same_v<T, Native<float>::Values> ||
+                std::is_same_v<T, Native<double>::Values>) {
+    asm("" : "+v"(second));
+  }
+#endif
+  return a * b + second;
+}
 
 }  // namespace
 }  // namespace petzval::inline v0::core_detail

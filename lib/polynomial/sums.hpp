@@ -10,13 +10,15 @@
 namespace petzval::inline v0::polynomial_detail {
 namespace {
 
+using core_detail::sum_of_products;
+
 /// Film and pupil point, scaled to the domain.
 template <class T>
 struct FilmAndPupil {
   T fx, fy, px, py;
 
-  PETZVAL_INLINE T film_square() const noexcept { return fx * fx + fy * fy; }
-  PETZVAL_INLINE T pupil_square() const noexcept { return px * px + py * py; }
+  PETZVAL_INLINE T film_square() const noexcept { return sum_of_products(fx, fx, fy, fy); }
+  PETZVAL_INLINE T pupil_square() const noexcept { return sum_of_products(px, px, py, py); }
 };
 
 /// A line, from mm. Scaling: Scales<R>; R: the plain type of T.
@@ -48,9 +50,9 @@ struct LocalRay {
 template <class R, class T>
 PETZVAL_INLINE LocalRay<T> out_of_chart(const ChartLine<T>& line) noexcept {
   const auto& [sx, sy, ox, oy] = line;
-  const T square = sx * sx + sy * sy;
+  const T square = sum_of_products(sx, sx, sy, sy);
   const T twice = R(2) / (square + R(1));
-  const T along = twice * (sx * ox + sy * oy);
+  const T along = twice * sum_of_products(sx, ox, sy, oy);
   return {ox - sx * along, oy - sy * along, along, twice * sx, twice * sy, twice * (square - R(1)) / R(2)};
 }
 
@@ -68,8 +70,7 @@ struct OfRevolution {
   };
   template <class T>
   static PETZVAL_INLINE Variables<T> variables(const FilmAndPupil<T>& at) noexcept {
-    const auto& [fx, fy, px, py] = at;
-    return {fx * fx + fy * fy, fx * px + fy * py, px * px + py * py};
+    return {at.film_square(), sum_of_products(at.fx, at.px, at.fy, at.py), at.pupil_square()};
   }
   /// A, B, C and D. c: as of horner().
   template <class C, class T>
@@ -82,8 +83,8 @@ struct OfRevolution {
   template <class T>
   static PETZVAL_INLINE ChartLine<T> line(const FourSums<T>& sums, const FilmAndPupil<T>& at) noexcept {
     const auto& [a, b, by_film, by_pupil] = sums;
-    return {a * at.fx + b * at.px, a * at.fy + b * at.py, by_film * at.fx + by_pupil * at.px,
-            by_film * at.fy + by_pupil * at.py};
+    return {sum_of_products(a, at.fx, b, at.px), sum_of_products(a, at.fy, b, at.py),
+            sum_of_products(by_film, at.fx, by_pupil, at.px), sum_of_products(by_film, at.fy, by_pupil, at.py)};
   }
 };
 
