@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "lens/lens_view.hpp"
@@ -60,6 +61,17 @@ struct Tables {
             .sequence_to_film = sequence_to_film.view(),
             .sequence_to_scene = sequence_to_scene.view()};
   }
+};
+
+/// Tables and the view of them, made once: a view is long, and a ray is short.
+template <class R>
+struct SharedTables {
+  const Tables<R> tables;
+  const kernel::LensView<R> view = tables.view();
+
+  explicit SharedTables(Tables<R>&& built) : tables(std::move(built)) {}
+  SharedTables(const SharedTables&) = delete;
+  SharedTables& operator=(const SharedTables&) = delete;
 };
 
 /// aspheres: the surfaces that are (describe_aspheres). stop: position of the stop. indices: [wavelength][space], one

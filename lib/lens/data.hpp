@@ -2,8 +2,11 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <optional>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "build_tables.hpp"
@@ -23,17 +26,24 @@ struct Lens::Data {
   std::vector<double> wavelengths_nm;
   std::size_t primary = 0;
   lens_detail::Indices indices;
-  lens_detail::Tables<float> in_float;
-  lens_detail::Tables<double> in_double;
+  std::shared_ptr<const lens_detail::SharedTables<float>> in_float;
+  std::shared_ptr<const lens_detail::SharedTables<double>> in_double;
 
   /// Builds the tables from the rest.
   void build() {
-    using lens_detail::build_tables;
-    const std::size_t count = wavelengths_nm.size();
     const auto aspheres = lens_detail::describe_aspheres(surfaces);
-    in_float = build_tables<float>(surfaces, aspheres, stop, iris, indices.values, count, indices.spectrum);
-    in_double = build_tables<double>(surfaces, aspheres, stop, iris, indices.values, count, indices.spectrum);
-    in_float.primary = in_double.primary = primary;
+    build(aspheres, in_float);
+    build(aspheres, in_double);
+  }
+
+ private:
+  template <class R>
+  void build(std::span<const kernel::Asphere<double>> aspheres,
+             std::shared_ptr<const lens_detail::SharedTables<R>>& tables) const {
+    auto built = lens_detail::build_tables<R>(surfaces, aspheres, stop, iris, indices.values, wavelengths_nm.size(),
+                                              indices.spectrum);
+    built.primary = primary;
+    tables = std::make_shared<const lens_detail::SharedTables<R>>(std::move(built));
   }
 };
 

@@ -93,7 +93,7 @@ double Lens::index_error() const noexcept { return data_->indices.spectrum.error
 double Lens::light_direction(std::size_t space) const {
   demand(*this, "space", space, surface_count() + 1);
   if (space == 0) return 1;
-  const kernel::SurfaceTable<double>& before = data_->in_double.surfaces[space - 1];
+  const kernel::SurfaceTable<double>& before = data_->in_double->tables.surfaces[space - 1];
   return before.mirror ? -before.sense : before.sense;
 }
 
@@ -115,12 +115,12 @@ bool Lens::rotationally_symmetric() const noexcept {
 }
 
 template <>
-kernel::LensView<float> kernel::view(const Lens& lens) noexcept {
-  return lens.data().in_float.view();
+const kernel::LensView<float>& kernel::view(const Lens& lens) noexcept {
+  return lens.data().in_float->view;
 }
 template <>
-kernel::LensView<double> kernel::view(const Lens& lens) noexcept {
-  return lens.data().in_double.view();
+const kernel::LensView<double>& kernel::view(const Lens& lens) noexcept {
+  return lens.data().in_double->view;
 }
 
 Lens compile(const Prescription& prescription, std::span<const double> wavelengths_nm, const CompileOptions& options) {

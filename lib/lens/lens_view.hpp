@@ -133,12 +133,12 @@ struct LensView {
   SurfaceSequence<R> sequence_to_film{}, sequence_to_scene{};
 };
 
-/// The tables of a lens, rounded once from double. R: float or double.
+/// The tables of a lens, rounded once from double; they live as long as the lens. R: float or double.
 template <class R>
-LensView<R> view(const Lens& lens) noexcept;
+const LensView<R>& view(const Lens& lens) noexcept;
 template <>
-PETZVAL_API LensView<float> view(const Lens& lens) noexcept;
+PETZVAL_API const LensView<float>& view(const Lens& lens) noexcept;
 template <>
-PETZVAL_API LensView<double> view(const Lens& lens) noexcept;
+PETZVAL_API const LensView<double>& view(const Lens& lens) noexcept;
 
 }  // namespace petzval::inline v0::kernel

@@ -10,7 +10,7 @@
 namespace petzval::inline v0 {
 
 double sag(const Lens& lens, std::size_t surface, double x, double y) noexcept {
-  const auto view = kernel::view<double>(lens);
+  const auto& view = kernel::view<double>(lens);
   const auto& row = view.surfaces[surface];
   kernel::Asphere<double> shape;
   shape.base = row.quadric;

@@ -43,7 +43,7 @@ trace_detail::TraceBlocks<R> loops(const trace_detail::BlockTracer& tracer) noex
 /// Where each ray has its own wavelength, that of the batch is ignored.
 template <class R>
 BlockJob<R> job_for(const Lens& lens, const BatchOptions& options) noexcept {
-  const auto view = kernel::view<R>(lens);
+  const auto& view = kernel::view<R>(lens);
   const auto& [all, each, each_nm] = options.wavelengths;
   BlockJob<R> job;
   static_cast<trace_detail::Route<R>&>(job) =

@@ -102,7 +102,7 @@ TracedRay<R> trace_one(const Route<R>& route, const R* vertex_z, const Ray<R>& r
 
 template <class R, class Seen>
 TracedRay<R> trace_one(const Lens& lens, const Ray<R>& ray, const TraceOptions& options, const Seen& seen) {
-  const auto view = kernel::view<R>(lens);
+  const auto& view = kernel::view<R>(lens);
   const auto route = route_of<R>(view, options, options.wavelength);
   const auto& sequence = route.sequence;
   if (route.spectral) {
