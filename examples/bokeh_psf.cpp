@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iostream>
+#include <numbers>
 #include <numeric>
 #include <string>
 #include <vector>
@@ -18,6 +19,7 @@
 #include "support/bokeh.hpp"
 #include "support/cli.hpp"
 #include "support/files.hpp"
+#include "support/iris_setup.hpp"
 #include "support/load_lens.hpp"
 #include "support/text.hpp"
 
@@ -31,7 +33,8 @@ constexpr int picture_pixels = 512, tile_pixels = 320;
 struct Options {
   std::string lens_file, out_folder, origin = "front_vertex", criterion = "min_rms";
   std::vector<double> focus_mm, wavelengths_nm{petzval::d_line_nm};
-  double subject_mm = 0, f_number = 0, field_deg = 0;  // f_number 0: wide open
+  double subject_mm = 0, field_deg = 0;
+  examples::IrisSetup iris;
   std::uint32_t samples = 1u << 21;
 };
 
@@ -43,7 +46,7 @@ struct Picture {
 
 std::vector<Picture> render(const examples::LoadedLens& loaded, const Options& options,
                             const examples::BokehSetup& setup) {
-  const petzval::Lens lens = options.f_number > 0 ? petzval::with_f_number(loaded.lens, options.f_number) : loaded.lens;
+  const petzval::Lens lens = examples::stopped_down(loaded.lens, options.iris);
   examples::Progress progress("bokeh", options.focus_mm.size());
   std::vector<Picture> pictures;
   for (const double focus : options.focus_mm) {
@@ -67,7 +70,8 @@ examples::Sheet contact_sheet(const std::vector<Picture>& pictures, const exampl
       .subtitle = "point light at " + examples::number(options.subject_mm) + " mm, " +
                   examples::number(options.field_deg) + "°; distances from the " +
                   (options.origin == "film" ? "film" : "front vertex") + "; focus " + options.criterion +
-                  (options.f_number > 0 ? "; f/" + examples::number(options.f_number) : "; wide open"),
+                  (options.iris.f_number > 0 ? "; f/" + examples::number(options.iris.f_number) : "; wide open") +
+                  (options.iris.blades > 0 ? "; " + std::to_string(options.iris.blades) + " blades" : ""),
       .pixel_mm = 2 * half_width / tile_pixels,
       .tiles = {}};
   examples::Progress progress("contact sheet", pictures.size());
@@ -89,7 +93,7 @@ Json to_json(const std::vector<Picture>& pictures, const examples::LoadedLens& l
             {"wavelengths_nm", options.wavelengths_nm},
             {"subject_distance_mm", finite_or_null(options.subject_mm)},
             {"distance_from", options.origin},
-            {"f_number_real", options.f_number > 0 ? options.f_number : petzval::real_f_number(loaded.lens)},
+            {"f_number_real", options.iris.f_number > 0 ? options.iris.f_number : petzval::real_f_number(loaded.lens)},
             {"field_deg", options.field_deg},
             {"samples", options.samples},
             {"results", Json::array()}};
@@ -97,18 +101,23 @@ Json to_json(const std::vector<Picture>& pictures, const examples::LoadedLens& l
   for (const Picture& p : pictures) {
     const auto pair = [](const petzval::Vec2<double>& v) { return std::array{v.x, v.y}; };
     const auto if_any = [&](const auto& size) { return p.image.throughput > 0 ? Json(size) : Json(); };
-    json["results"].push_back({{"focus_mm", finite_or_null(p.focus_mm)},
-                               {"film_z_mm", p.scene.lens.film_z()},
-                               {"criterion", options.criterion},
-                               {"throughput", p.image.throughput},
-                               {"centroid_mm", if_any(pair(p.image.size.centroid))},
-                               {"rms_radius_mm", if_any(p.image.size.rms_radius)},
-                               {"radius_mm", if_any(p.image.size.max_radius)},
-                               {"rays_sent", sum(p.image.psf.sent)},
-                               {"rays_transmitted", sum(p.image.psf.transmitted)},
-                               {"radial_profile", p.image.radial_profile},
-                               {"picture_centre_mm", pair(p.image.psf.centre)},
-                               {"picture_pixel_mm", p.image.psf.pixel_mm}});
+    json["results"].push_back(
+        {{"focus_mm", finite_or_null(p.focus_mm)},
+         {"film_z_mm", p.scene.lens.film_z()},
+         {"criterion", options.criterion},
+         {"throughput", p.image.throughput},
+         {"centroid_mm", if_any(pair(p.image.size.centroid))},
+         {"rms_radius_mm", if_any(p.image.size.rms_radius)},
+         {"second_moments_mm2", if_any(std::array{p.image.size.xx, p.image.size.yy, p.image.size.xy})},
+         {"radius_mm", if_any(p.image.size.max_radius)},
+         {"iris_area_share", petzval::iris_area(p.scene.lens.iris()) / std::numbers::pi},
+         {"airy_radius_mm", finite_or_null(petzval::airy_radius(p.scene.lens))},
+         {"diffraction", petzval::name(petzval::diffraction(petzval::airy_radius(p.scene.lens), p.image.size))},
+         {"rays_sent", sum(p.image.psf.sent)},
+         {"rays_transmitted", sum(p.image.psf.transmitted)},
+         {"radial_profile", p.image.radial_profile},
+         {"picture_centre_mm", pair(p.image.psf.centre)},
+         {"picture_pixel_mm", p.image.psf.pixel_mm}});
   }
   return json;
 }
@@ -141,7 +150,8 @@ int main(int argc, char** argv) {
       "Writes to DIR, and prints the paths: LENS_focus_<D>mm.exr (float, linear: share of the light in the paraxial "
       "entrance pupil, per mm^2 of film), LENS_focus_<D>mm.png (each with its own exposure), LENS_bokeh.png (all at "
       "one "
-      "scale) and LENS_bokeh.json. Images show the film with x to the right and y upwards. The lens is focused at the "
+      "scale) and LENS_bokeh.json. Images show the film as a photograph does, turned by half a turn (+x to the left, "
+      "+y down); centroids are in the axes of the film. The lens is focused at the "
       "primary wavelength: the one nearest to the d line (587.5618 nm).",
       "bokeh_psf");
   app.add_option("LENS.json", options.lens_file, "lens prescription (JSON as in data/lenses)")->required();
@@ -158,9 +168,7 @@ int main(int argc, char** argv) {
   examples::add_numbers(
       app, "--wavelengths-nm", options.wavelengths_nm, examples::positive_number,
       "wavelengths of the light (nm); several, from 420 to 680, are weighted to RGB by the CIE 1931 functions");
-  examples::add_number(app, "--f-number", options.f_number, examples::positive_number,
-                       "stop the lens down (by exact rays)")
-      ->default_str("wide open");
+  examples::add_iris(app, options.iris);
   examples::add_number(app, "--field-deg", options.field_deg, examples::finite_number,
                        "angle of the light towards +y, seen from the paraxial entrance pupil (degrees)");
   examples::add_samples(app, options.samples);

@@ -32,16 +32,21 @@ PETZVAL_DEVICE inline const float* list(const float* t, Table::Position at) { re
 PETZVAL_DEVICE inline DevicePlace sample_image(const float* t, float film_x, float film_y, float u, float v, int w) {
   const float* image = list(t, Table::pupils) + 5 * w;
   const float way = std::sqrt(v);
-  const int corners = whole_number(t, Table::iris_corners);
+  const int blades = whole_number(t, Table::iris_blades);
   float x, y;
-  if (corners == 0) {
+  if (blades == 0) {
     const float turn = 6.28318531f * u;
     x = way * std::sin(turn), y = way * std::cos(turn);
   } else {
-    const float* corner = list(t, Table::iris);
-    for (int k = 1; k < corners && u >= corner[3]; ++k) corner += 3;
-    const float along = (u - corner[0]) / (corner[3] - corner[0]);
-    x = way * (corner[1] + along * (corner[4] - corner[1])), y = way * (corner[2] + along * (corner[5] - corner[2]));
+    constexpr int terms = 8;
+    const float at = u * static_cast<float>(blades);
+    const int k = static_cast<int>(at) < blades ? static_cast<int>(at) : blades - 1;
+    const float q = 2 * (at - static_cast<float>(k)) - 1, square = 2 * q * q - 1;
+    const float *edge = list(t, Table::iris), *turn = edge + 2 * terms + 2 * k;
+    float across = 0, along = 0;
+    for (int i = terms - 1; i >= 0; --i) across = edge[i] + square * across, along = edge[terms + i] + square * along;
+    across *= q;
+    x = way * (along * turn[0] + across * turn[1]), y = way * (along * turn[1] - across * turn[0]);
   }
   return {image[0] * film_x + image[2] * x, image[1] * film_y + image[3] * y, image[4]};
 }
@@ -240,8 +245,8 @@ PETZVAL_DEVICE inline bool by_surfaces(const float* t, int w, DeviceRay& ray) {
     const float r2 = o[0] * o[0] + o[1] * o[1];
     if (!(r2 <= surface[3] * surface[3] && r2 >= surface[4] * surface[4])) return false;
     for (int k = 0; k < edges && surface[6] != 0; ++k) {
-      const float* edge = list(t, Table::edges) + 3 * k;
-      if (o[0] * edge[0] + o[1] * edge[1] > edge[2]) return false;
+      const float* edge = list(t, Table::edges) + 4 * k;
+      if (o[0] * edge[0] + o[1] * edge[1] + edge[2] * r2 > edge[3]) return false;
     }
     // The normal, against the ray.
     float normal[3] = {in_x * slope * o[0] * sense, in_y * slope * o[1] * sense, -sense};

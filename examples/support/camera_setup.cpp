@@ -7,15 +7,13 @@
 #include "petzval/core/error.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/lint/lint.hpp"
-#include "petzval/pupil/f_number.hpp"
 
 namespace examples {
 
 std::array<double, 2> CameraSetup::film_size() const { return parse_size("--film-mm", film_mm, positive_number); }
 
 void add_camera(App& app, CameraSetup& setup) {
-  add_number(app, "--f-number", setup.f_number, positive_number, "stop the lens down (by exact rays)")
-      ->default_str("wide open");
+  add_iris(app, setup.iris);
   add_number(
       app, "--focus-mm", setup.focus_mm, positive_length,
       "distance of the subject in focus from the film (mm), or inf; at the primary of the wavelengths in use: the one "
@@ -35,9 +33,8 @@ std::array<double, 2> parse_size(const std::string& where, std::string_view text
 }
 
 petzval::Lens focused(const LoadedLens& loaded, const CameraSetup& setup) {
-  const petzval::Lens lens = setup.f_number > 0 ? petzval::with_f_number(loaded.lens, setup.f_number) : loaded.lens;
   return petzval::with_focus(
-      lens, setup.focus_mm,
+      stopped_down(loaded.lens, setup.iris), setup.focus_mm,
       {.criterion = named(setup.criterion, focus_criteria), .origin = petzval::DistanceOrigin::film});
 }
 

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "cli.hpp"
+#include "iris_setup.hpp"
 #include "load_lens.hpp"
 #include "petzval/film/film.hpp"
 #include "petzval/lens/lens.hpp"
@@ -14,7 +15,7 @@ namespace examples {
 
 /// Command line of the programs with a camera.
 struct CameraSetup {
-  double f_number = 0;     ///< 0: wide open
+  IrisSetup iris;
   double focus_mm = 3000;  ///< of the subject from the film
   std::string criterion = "min_rms";
   std::string film_mm = "36x24";
@@ -23,7 +24,7 @@ struct CameraSetup {
   std::array<double, 2> film_size() const;
 };
 
-/// Options --f-number, --focus-mm, --criterion and --film-mm.
+/// Options of add_iris, --focus-mm, --criterion and --film-mm.
 void add_camera(App& app, CameraSetup& setup);
 
 /// "36x24". Throws petzval::Error beginning with `where`.

@@ -114,19 +114,24 @@ Option* add_criterion(App& app, std::string& criterion) {
       ->capture_default_str();
 }
 
-Option* add_samples(App& app, std::uint32_t& samples) {
+Option* add_count(App& app, const std::string& flag, std::uint32_t& value, const Range& range,
+                  const std::string& help) {
   return app
       .add_option(
-          "--samples",
-          [&samples](const std::string& text) {
-            constexpr Range range{1, 1u << 26, "a whole number from 1 to 67108864"};
-            const double value = parse_number("--samples", text, range);
-            samples = static_cast<std::uint32_t>(value);
-            if (samples != value) throw petzval::Error("--samples: found \"" + text + "\", wanted " + range.words);
+          flag,
+          [&value, flag, range](const std::string& text) {
+            const double number = parse_number(flag, text, range);
+            value = static_cast<std::uint32_t>(number);
+            if (value != number) throw petzval::Error(flag + ": found \"" + text + "\", wanted " + range.words);
           },
-          "rays per wavelength, 1 to 67108864")
+          help)
       ->type_name("N")
-      ->default_str(std::to_string(samples));
+      ->default_str(std::to_string(value));
+}
+
+Option* add_samples(App& app, std::uint32_t& samples) {
+  return add_count(app, "--samples", samples, {1, 1u << 26, "a whole number from 1 to 67108864"},
+                   "rays per wavelength, 1 to 67108864");
 }
 
 int run(App& app, int argc, char** argv, const std::function<void()>& body) {

@@ -86,6 +86,9 @@ Option* add_number(App& app, const std::string& flag, double& value, const Range
 Option* add_numbers(App& app, const std::string& flag, std::vector<double>& values, const Range& range,
                     const std::string& help);
 
+/// A whole number; the range has whole ends from 0 on.
+Option* add_count(App& app, const std::string& flag, std::uint32_t& value, const Range& range, const std::string& help);
+
 /// The criteria of focus and the origins of distances.
 inline constexpr std::array focus_criteria{petzval::FocusCriterion::thin, petzval::FocusCriterion::paraxial,
                                            petzval::FocusCriterion::min_rms, petzval::FocusCriterion::min_max};

@@ -28,7 +28,7 @@ void check_iris(const Lens& lens, ModelKind kind) {
   if (lens.iris().round() || !fitted) return;
   throw Error(
       lens.name() + ": camera: " + std::string(name(kind)) +
-      " has the pupils of a round stop, wanted an exact model, or pinhole, thin or thick, for an iris with edges");
+      " has the pupils of a round stop, wanted an exact model, or pinhole, thin or thick, for an iris with blades");
 }
 
 /// Throws Error for a model of another lens or film, as far as its pupils show.

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "camera_data.hpp"
+#include "lens/lens_view.hpp"
 #include "make_model.hpp"
 #include "paraxial_model.hpp"
 #include "petzval/camera/polynomial_model.hpp"
@@ -81,17 +82,16 @@ void put_surfaces(Numbers& to, const Lens& lens) {
     for (std::size_t space = 0; space <= lens.surface_count(); ++space) to.add(lens.index(space, w));
   }
   to.begin(Table::edges);
-  to.set(Table::edge_count, lens.iris().edges.size());
-  for (const IrisEdge& edge : lens.iris().edges) {
-    to.add(std::array{edge.nx, edge.ny, edge.distance * lens.surfaces()[*lens.stop()].semi_diameter});
-  }
+  const auto iris = kernel::view<double>(lens).iris;
+  to.set(Table::edge_count, iris.size());
+  for (const auto& [nx, ny, bend, distance] : iris) to.add(std::array{nx, ny, bend, distance});
 }
 
 }  // namespace
 
 void CameraTables::check(std::span<const float> tables, const std::string& where) {
   const auto refuse = [&](const std::string& found) { throw Error(where + ": found " + found); };
-  if (tables.size() < head_size || tables[format] != 2) refuse("something else, wanted camera tables of format 2");
+  if (tables.size() < head_size || tables[format] != 3) refuse("something else, wanted camera tables of format 3");
   const auto number = [&](Position at) {
     const float value = tables[at];
     if (!(value >= 0 && value <= 1 << 24 && value == std::floor(value))) {
@@ -132,7 +132,7 @@ void CameraTables::check(std::span<const float> tables, const std::string& where
     }
     default: refuse("pupils of kind " + std::to_string(number(pupils_kind)) + ", wanted 0, 1 or 2");
   }
-  if (number(iris_corners) > 0) check_list(iris, 3 * (number(iris_corners) + 1));
+  if (number(iris_blades) > 0) check_list(iris, 2 * (FilmPupilArrays::edge_terms + number(iris_blades)));
   switch (number(rays_kind)) {
     case 0: check_list(rays, 8 * w); break;
     case 1: {
@@ -146,7 +146,7 @@ void CameraTables::check(std::span<const float> tables, const std::string& where
     }
     case 2:
       check_list(rays, number(surface_count) * surface_size), check_list(indices, w * spaces);
-      check_list(edges, 3 * number(edge_count));
+      check_list(edges, 4 * number(edge_count));
       break;
     default: refuse("rays of kind " + std::to_string(number(rays_kind)) + ", wanted 0, 1 or 2");
   }
@@ -157,7 +157,7 @@ std::vector<float> Camera::tables() const {
   const std::string where = data.lens.name() + ": tables: ";
   if (data.tilted) throw Error(where + "the film is tilted or travels, wanted an upright one that stays");
   Numbers to;
-  to.set(Table::format, 2);
+  to.set(Table::format, 3);
   to.set(Table::model, static_cast<int>(data.model.kind()));
   to.set(Table::wavelength_count, data.lens.wavelengths_nm().size());
   to.set(Table::primary_wavelength, data.lens.primary_wavelength());
@@ -182,7 +182,7 @@ std::vector<float> Camera::tables() const {
     to.list.insert(to.list.end(), pupils.half_widths.begin(), pupils.half_widths.end());
   }
   to.begin(Table::iris), to.list.insert(to.list.end(), pupils.iris.begin(), pupils.iris.end());
-  to.set(Table::iris_corners, std::max<std::size_t>(pupils.iris.size() / 3, 1) - 1);
+  to.set(Table::iris_blades, pupils.iris.empty() ? 0 : pupils.iris.size() / 2 - FilmPupilArrays::edge_terms);
 
   to.begin(Table::rays);
   if (const auto* paraxial = data.model.as<camera_detail::ParaxialModel>()) {

@@ -14,7 +14,7 @@
 #include "core/meet_plane.hpp"
 #include "core/text.hpp"
 #include "core/widest.hpp"
-#include "iris/iris_shape.hpp"
+#include "iris/iris_edges.hpp"
 #include "make_model.hpp"
 #include "paraxial_loops.hpp"
 #include "petzval/core/error.hpp"
@@ -123,7 +123,7 @@ void check(ModelKind model, const LensFacts& facts) {
                 ", or another model");
   }
   if (model == ModelKind::thin_two_disc && !lens.iris().round()) {
-    throw Error(lens.name() + ": found an iris with edges, wanted a round one for thin_two_disc, or another model");
+    throw Error(lens.name() + ": found an iris with blades, wanted a round one for thin_two_disc, or another model");
   }
   for (std::size_t w = 0; w < facts.wavelengths(); ++w) {
     if (facts.first_order(w).afocal || (cylinders && first_order(lens, w, Meridian::x).afocal)) {

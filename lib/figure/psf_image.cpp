@@ -19,7 +19,7 @@ RgbImage render(const Psf& psf, std::span<const std::array<double, 3>> weights) 
   for (std::size_t w = 0; w < weights.size(); ++w) {
     const double per_count = psf.ray_weight(w) / (psf.pixel_mm * psf.pixel_mm);
     for (std::size_t i = 0; i < plane; ++i) {
-      const double irradiance = per_count * static_cast<double>(psf.counts[w * plane + i]);
+      const double irradiance = per_count * static_cast<double>(psf.counts[w * plane + plane - 1 - i]);  // turned
       for (std::size_t k = 0; k < 3; ++k) sums[3 * i + k] += weights[w][k] * irradiance;
     }
   }

@@ -61,12 +61,6 @@ std::string marker(std::size_t kind, double x, double y) {
   }
 }
 
-/// The f-number of the cone of light on the film.
-double film_side_f_number(const Lens& lens) {
-  const Pupil exit = pupils(lens, lens.primary_wavelength()).exit;
-  return std::isfinite(exit.z) ? std::abs((lens.film_z() - exit.z) / exit.diameter) : paraxial_f_number(lens);
-}
-
 class Figure {
  public:
   Figure(const Lens& lens, std::span<const Spot> spots)
@@ -106,7 +100,7 @@ class Figure {
 
  private:
   std::span<const Spot> of(std::size_t row) const { return spots_.subspan(row * wavelengths_, wavelengths_); }
-  double airy(std::size_t w) const { return 1.22 * lens_.wavelengths_nm()[w] * 1e-6 * f_number_; }
+  double airy(std::size_t w) const { return airy_radius(lens_, w); }
   double cell_x(std::size_t column) const { return left + static_cast<double>(column) * (cell + gap); }
   double cell_y(std::size_t row) const { return top + static_cast<double>(row) * (cell + under + gap); }
 

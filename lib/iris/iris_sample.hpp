@@ -10,12 +10,20 @@
 /// Uniform points of an iris, one at a time, for loops over many and for IrisShape.
 namespace petzval::inline v0::iris_detail {
 
-/// A polygon as triangles between the axis and its edges or parts of them, in order from +y towards +x. Borrowed.
+/// How many terms the polynomials of an edge have: within 1e-7 semi-diameters, and 2e-13.
 template <class R>
-struct IrisTriangles {
-  std::size_t count = 0;               ///< 0: the unit disc instead
-  const R* before = nullptr;           ///< [count + 1] the part of the area in the triangles before each
-  const R *x = nullptr, *y = nullptr;  ///< [count + 1] corners; the last is the first
+inline constexpr std::size_t edge_terms = sizeof(R) == sizeof(float) ? 8 : 17;
+
+/// The sectors of a bladed iris between the centre and the edge of a blade each, in order from +y towards +x, and the
+/// edges. Borrowed.
+template <class R>
+struct IrisSectors {
+  std::size_t count = 0;     ///< 0: the unit disc instead
+  const R* turns = nullptr;  ///< [count] sine and cosine of the angle from +y towards +x of the edge's middle
+  /// The point of an edge that has the part (1 + q) / 2 of the sector's area before it: q across(2 q^2 - 1) across and
+  /// along(2 q^2 - 1) along the direction of the edge's middle; by powers, [edge_terms].
+  const R *across = nullptr, *along = nullptr;
+  const R* edges = nullptr;  ///< [count] the numbers of an IrisEdge
 };
 
 // Local names: this is compiled for several instruction sets, and the linker must not take one for another.
@@ -72,25 +80,28 @@ inline IrisPoint<R> disc_point(R u, R v) noexcept {
   return {way * x, way * y};
 }
 
-/// The triangle that holds the part u of the area.
+/// A uniform point of a bladed iris.
 template <class R>
-inline std::size_t triangle_with(const IrisTriangles<R>& t, R u) noexcept {
-  std::size_t k = 0;
-  while (k + 1 < t.count && u >= t.before[k + 1]) ++k;
-  return k;
+inline IrisPoint<R> sector_point(const IrisSectors<R>& s, R u, R v) noexcept {
+  const R at = u * static_cast<R>(static_cast<std::int32_t>(s.count));
+  const auto whole = static_cast<std::int32_t>(at), last = static_cast<std::int32_t>(s.count) - 1;
+  const std::int32_t k = whole < last ? whole : last;
+  const R q = R(2) * (at - static_cast<R>(k)) - R(1), t = R(2) * q * q - R(1);
+  R across = s.across[edge_terms<R> - 1], along = s.along[edge_terms<R> - 1];
+  for (std::size_t i = edge_terms<R> - 1; i-- > 0;) {
+    across = s.across[i] + t * across;
+    along = s.along[i] + t * along;
+  }
+  const R way = core_detail::square_root(v), sine = s.turns[2 * k], cosine = s.turns[2 * k + 1];
+  across *= q;
+  return {way * (along * sine + across * cosine), way * (along * cosine - across * sine)};
 }
 
-/// A uniform point of a polygon whose triangle k holds the part u of the area.
+/// Whether light passes beside the edge of a blade.
 template <class R>
-inline IrisPoint<R> triangle_point(const IrisTriangles<R>& t, std::size_t k, R u, R v) noexcept {
-  const R along = (u - t.before[k]) / (t.before[k + 1] - t.before[k]), way = core_detail::square_root(v);
-  return {way * (t.x[k] + along * (t.x[k + 1] - t.x[k])), way * (t.y[k] + along * (t.y[k + 1] - t.y[k]))};
-}
-
-/// Whether a point lies on the inner side of the outer edge of triangle k.
-template <class R>
-inline bool within_edge(const IrisTriangles<R>& t, std::size_t k, R x, R y) noexcept {
-  return (t.x[k + 1] - t.x[k]) * (y - t.y[k]) <= (t.y[k + 1] - t.y[k]) * (x - t.x[k]);
+inline bool within_edge(const IrisSectors<R>& s, std::size_t k, R x, R y) noexcept {
+  const R* edge = s.edges + 4 * k;
+  return x * edge[0] + y * edge[1] + edge[2] * (x * x + y * y) <= edge[3];
 }
 
 }  // namespace

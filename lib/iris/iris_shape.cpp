@@ -2,111 +2,95 @@
 #include "iris_shape.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <limits>
 #include <numbers>
-#include <string>
 #include <vector>
 
-#include "core/text.hpp"
-#include "petzval/core/error.hpp"
+#include "iris/iris_edges.hpp"
 
 namespace petzval::inline v0::iris_detail {
 namespace {
 
-constexpr double rounding = 1e-9;
+constexpr double pi = std::numbers::pi;
 
-/// The part of an edge's line that lies within the other edges: between `low` and `high` along its tangent (-ny, nx).
-struct Part {
-  double low = -std::numeric_limits<double>::infinity(), high = std::numeric_limits<double>::infinity();
-};
-
-Part part_of(const std::vector<IrisEdge>& edges, const IrisEdge& own) noexcept {
-  Part part;
-  for (const IrisEdge& other : edges) {
-    // On the line the other one's condition reads across + t along <= 0.
-    const double along = other.ny * own.nx - other.nx * own.ny;
-    const double across = own.distance * (own.nx * other.nx + own.ny * other.ny) - other.distance;
-    if (std::abs(along) > rounding) {
-      double& end = along > 0 ? part.high : part.low;
-      end = along > 0 ? std::min(end, -across / along) : std::max(end, -across / along);
-    } else if (across > rounding) {
-      return {0, 0};
+/// Powers of t in [-1, 1] of the polynomial through value(t) at Chebyshev's points.
+template <std::size_t n, class Value>
+std::array<double, n> interpolate(const Value& value) {
+  std::array<double, n> sums{};
+  for (std::size_t j = 0; j < n; ++j) {
+    const double angle = pi * (static_cast<double>(j) + 0.5) / n, f = value(std::cos(angle));
+    for (std::size_t k = 0; k < n; ++k) {
+      sums[k] += (k == 0 ? 1.0 : 2.0) / n * f * std::cos(static_cast<double>(k) * angle);
     }
   }
-  return part;
+  // Chebyshev's polynomials by powers: T(k + 1) = 2 t T(k) - T(k - 1).
+  std::array<double, n> powers{}, before{}, own{1};
+  for (std::size_t k = 0; k < n; ++k) {
+    for (std::size_t i = 0; i <= k; ++i) powers[i] += sums[k] * own[i];
+    std::array<double, n> next{};
+    for (std::size_t i = 0; i < n; ++i) next[i] = (i > 0 ? (k == 0 ? 1 : 2) * own[i - 1] : 0) - before[i];
+    before = own, own = next;
+  }
+  return powers;
 }
 
-/// From +y towards +x, in [0, 2 pi).
-double angle_of(const Vec2<double>& p) noexcept {
-  const double angle = std::atan2(p.x, p.y);
-  return angle < 0 ? angle + 2 * std::numbers::pi : angle;
-}
+/// The remainder of a division by 1, from 0 on.
+double fraction(double x) noexcept { return x - std::floor(x); }
 
 }  // namespace
 
-Iris upside_down(Iris iris, bool along_x, bool along_y) {
-  for (IrisEdge& edge : iris.edges) {
-    if (along_x) edge.nx = -edge.nx;
-    if (along_y) edge.ny = -edge.ny;
+template <class R>
+void IrisShape::fill(Columns<R>& columns) const {
+  const Blade blade(iris_);
+  const auto part = [](double t) { return std::sqrt((1 + t) / 2); };
+  const auto across = interpolate<edge_terms<R>>([&](double t) { return blade.across_at(part(t)) / part(t); });
+  const auto along = interpolate<edge_terms<R>>([&](double t) { return blade.along_at(blade.across_at(part(t))); });
+  columns.across.assign(across.begin(), across.end());
+  columns.along.assign(along.begin(), along.end());
+  for (int k = 0; k < iris_.blades; ++k) {
+    const double angle = (2 * k + 1) * blade.half_angle - iris_.rotation_rad;
+    columns.turns.insert(columns.turns.end(), {static_cast<R>(std::sin(angle)), static_cast<R>(std::cos(angle))});
   }
-  return iris;
+  for (const auto& [nx, ny, bend, distance] : edges(iris_)) {
+    columns.edges.insert(columns.edges.end(),
+                         {static_cast<R>(nx), static_cast<R>(ny), static_cast<R>(bend), static_cast<R>(distance)});
+  }
 }
 
-IrisShape::IrisShape(const Iris& iris) {
+IrisShape::IrisShape(const Iris& iris) : iris_(iris), area_(iris_area(iris)) {
   if (iris.round()) return;
-  std::vector<Vec2<double>> corners;
-  double top = std::numeric_limits<double>::infinity();  // where the polygon crosses +y
-  for (std::size_t i = 0; i < iris.edges.size(); ++i) {
-    const auto& [nx, ny, distance] = iris.edges[i];
-    const std::string where = "iris: edge " + std::to_string(i) + ": ";
-    if (!(distance > 0)) {
-      throw Error(where + "distance is " + to_text(distance) + ", wanted a positive one: the axis within the iris");
-    }
-    if (ny > 0) top = std::min(top, distance / ny);
-    const Part part = part_of(iris.edges, iris.edges[i]);
-    if (!(part.low < part.high)) continue;
-    const double farthest = std::hypot(distance, std::max(-part.low, part.high));
-    if (!(farthest <= 1 + rounding)) {
-      throw Error(where + "it reaches " + to_text(farthest, 6) +
-                  " semi-diameters from the axis, wanted a polygon with its corners within the rim");
-    }
-    corners.push_back({distance * nx - part.low * ny, distance * ny + part.low * nx});
-  }
-  // The triangles begin at +y, which may be a corner.
-  const auto at_top = [&](const Vec2<double>& corner) { return std::hypot(corner.x, corner.y - top) < rounding; };
-  corners.erase(std::remove_if(corners.begin(), corners.end(), at_top), corners.end());
-  std::sort(corners.begin(), corners.end(),
-            [](const Vec2<double>& a, const Vec2<double>& b) { return angle_of(a) < angle_of(b); });
-  corners.insert(corners.begin(), {0, top});
-  corners.push_back({0, top});
-
-  std::vector<double> before{0};
-  for (std::size_t k = 0; k + 1 < corners.size(); ++k) {
-    const Vec2<double>&a = corners[k], &b = corners[k + 1];
-    before.push_back(before.back() + (b.x * a.y - a.x * b.y) / 2);
-  }
-  area_ = before.back();
-  for (std::size_t k = 0; k < corners.size(); ++k) {
-    put(single_, corners[k], before[k] / area_);
-    put(twice_, corners[k], before[k] / area_);
-  }
+  fill(single_);
+  fill(twice_);
 }
 
 Vec2<double> IrisShape::sample(double u, double v) const noexcept {
-  if (round()) {
-    const auto [x, y] = disc_point(u, v);
-    return {x, y};
-  }
-  const IrisTriangles<double> t = triangles<double>();
-  const auto [x, y] = triangle_point(t, triangle_with(t, u), u, v);
+  const auto [x, y] = round() ? disc_point(u, v) : sector_point(sectors<double>(), u, v);
   return {x, y};
 }
 
+Vec2<double> IrisShape::position(double x, double y) const noexcept {
+  const double square = x * x + y * y;
+  if (!(square > 0)) return {0, 0};
+  const double turn = std::atan2(x, y);
+  if (round()) return {fraction(turn / (2 * pi)), square};
+  const Blade blade(iris_);
+  const double sectors = fraction((turn + iris_.rotation_rad) / (2 * pi)) * iris_.blades;
+  const double sector = std::min(std::floor(sectors), iris_.blades - 1.0);
+  const double angle = (2 * (sectors - sector) - 1) * blade.half_angle;
+  // Where the ray from the centre meets the edge.
+  const double slope = (1 - blade.curvature * blade.middle) * std::cos(angle);
+  const double distance = blade.middle * (1 - blade.curvature * blade.middle / 2);
+  const double edge = 2 * distance / (slope + std::sqrt(slope * slope + 2 * blade.curvature * distance));
+  const double across = std::clamp(edge * std::sin(angle), -blade.half_chord, blade.half_chord);
+  const double part = blade.twice_area(across) / blade.twice_area(blade.half_chord);
+  return {(sector + (1 + part) / 2) / iris_.blades, square / (edge * edge)};
+}
+
 bool IrisShape::contains(double x, double y) const noexcept {
-  const IrisTriangles<double> t = triangles<double>();
-  bool within = t.count > 0 || x * x + y * y <= 1;
-  for (std::size_t k = 0; k < t.count; ++k) within = within && within_edge(t, k, x, y);
+  const IrisSectors<double> s = sectors<double>();
+  bool within = s.count > 0 || x * x + y * y <= 1;
+  for (std::size_t k = 0; k < s.count; ++k) within = within && within_edge(s, k, x, y);
   return within;
 }
 

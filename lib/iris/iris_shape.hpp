@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <numbers>
 #include <vector>
 
 #include "iris/iris_sample.hpp"
@@ -10,31 +11,31 @@
 
 namespace petzval::inline v0::iris_detail {
 
-/// The iris as an image shows it that is upside down along an axis, or along both: turned by half a turn.
-PETZVAL_API Iris upside_down(Iris iris, bool along_x = true, bool along_y = true);
-
-/// An iris in units of the stop's semi-diameter, to be sampled: the unit disc, or a polygon within it.
+/// An iris in units of the stop's semi-diameter, to be sampled.
 class PETZVAL_API IrisShape {
  public:
   /// The unit disc.
   IrisShape() = default;
-  /// Throws Error for an iris with edges that do not form a polygon about the axis with its corners within the rim.
+  /// Throws Error for blades, roundness or rotation out of range.
   explicit IrisShape(const Iris& iris);
 
   /// The disc.
-  bool round() const noexcept { return twice_.x.empty(); }
+  bool round() const noexcept { return iris_.round(); }
   double area() const noexcept { return area_; }
-  /// A uniform point for u and v in [0, 1]: u runs around the axis from +y towards +x, v outwards. Equal areas of the
-  /// square become equal areas of the iris, and neighbours stay neighbours.
+  /// A uniform point for u and v in [0, 1]: u runs around the axis, from the first corner (of a disc: from +y) in the
+  /// direction from +y towards +x; v, the share of the area that lies nearer to the centre, outwards. Equal areas of
+  /// the square become equal areas of the iris, and neighbours stay neighbours.
   Vec2<double> sample(double u, double v) const noexcept;
+  /// The inverse: u and v of a point. v is above 1 outside; u is 0 at the centre.
+  Vec2<double> position(double x, double y) const noexcept;
   bool contains(double x, double y) const noexcept;
 
   /// For loops over samples, in float or double.
   template <class R>
-  IrisTriangles<R> triangles() const noexcept {
-    const auto of = [](const auto& columns) -> IrisTriangles<R> {
-      if (columns.x.empty()) return {};
-      return {columns.x.size() - 1, columns.before.data(), columns.x.data(), columns.y.data()};
+  IrisSectors<R> sectors() const noexcept {
+    const auto of = [](const auto& columns) -> IrisSectors<R> {
+      return {columns.turns.size() / 2, columns.turns.data(), columns.across.data(), columns.along.data(),
+              columns.edges.data()};
     };
     if constexpr (sizeof(R) == sizeof(float)) {
       return of(single_);
@@ -46,15 +47,12 @@ class PETZVAL_API IrisShape {
  private:
   template <class R>
   struct Columns {
-    std::vector<R> before, x, y;
+    std::vector<R> turns, across, along, edges;
   };
   template <class R>
-  static void put(Columns<R>& columns, const Vec2<double>& corner, double before) {
-    columns.before.push_back(static_cast<R>(before));
-    columns.x.push_back(static_cast<R>(corner.x));
-    columns.y.push_back(static_cast<R>(corner.y));
-  }
+  void fill(Columns<R>& columns) const;
 
+  Iris iris_;
   double area_ = std::numbers::pi;
   Columns<float> single_;
   Columns<double> twice_;

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "describe_asphere.hpp"
+#include "iris/iris_edges.hpp"
 
 namespace petzval::inline v0::lens_detail {
 namespace {
@@ -53,9 +54,10 @@ Tables<R> build_tables(std::span<const LensSurface> surfaces, std::span<const ke
   Tables<R> tables;
   tables.wavelengths = wavelengths;
   if (stop) tables.stop = static_cast<std::int32_t>(*stop);
-  for (const IrisEdge& edge : iris.edges) {
-    tables.iris.push_back({static_cast<R>(edge.nx), static_cast<R>(edge.ny),
-                           static_cast<R>(edge.distance * surfaces[*stop].semi_diameter)});
+  for (const auto& [nx, ny, bend, distance] : iris_detail::edges(iris)) {
+    const double rim = surfaces[*stop].semi_diameter;
+    tables.iris.push_back({static_cast<R>(nx), static_cast<R>(ny), static_cast<R>(rim > 0 ? bend / rim : 0),
+                           static_cast<R>(distance * rim)});
   }
   R sense = 1;
   for (std::size_t i = 0; i < count; ++i) {

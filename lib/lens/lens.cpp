@@ -10,6 +10,7 @@
 
 #include "core/text.hpp"
 #include "data.hpp"
+#include "iris/iris_edges.hpp"
 #include "petzval/core/error.hpp"
 
 namespace petzval::inline v0 {
@@ -195,23 +196,15 @@ Lens with_film(const Lens& lens, double film_z) {
 }
 
 Lens with_iris(const Lens& lens, const Iris& iris) {
-  if (iris.round() && lens.iris().round()) return lens;
   const std::string where = lens.name() + ": iris";
+  iris_detail::check(iris, where + ": ");
+  if (iris.round() && lens.iris().round()) return lens;
   if (!iris.round()) {
     if (!lens.stop()) throw Error(where + ": no surface is marked as the stop, wanted one that the iris stands at");
     if (std::isinf(lens.surfaces()[*lens.stop()].semi_diameter)) {
       throw Error(where + ": surface " + std::to_string(*lens.stop()) +
                   ", the stop, is unlimited, wanted a semi_diameter");
     }
-  }
-  for (std::size_t i = 0; i < iris.edges.size(); ++i) {
-    const auto& [nx, ny, distance] = iris.edges[i];
-    const std::string here = where + ": edge " + std::to_string(i) + ": ";
-    constexpr double rounding = 1e-9;
-    if (!(std::abs(nx * nx + ny * ny - 1) <= rounding)) {
-      throw Error(here + "its normal is (" + to_text(nx) + ", " + to_text(ny) + "), wanted a unit vector");
-    }
-    if (!std::isfinite(distance)) throw Error(here + "distance is " + to_text(distance) + ", wanted a finite number");
   }
   auto data = std::make_shared<Lens::Data>(*lens.data_);
   data->iris = iris;

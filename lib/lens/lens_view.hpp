@@ -29,10 +29,10 @@ struct SurfaceTable {
   R sense = 1;  ///< direction along z of light in front of the surface: -1 behind an odd number of mirrors
 };
 
-/// An edge of the iris: light passes where x nx + y ny <= distance, mm.
+/// An edge of the iris, mm: light passes where x nx + y ny + bend (x^2 + y^2) <= distance (iris_detail::IrisEdge).
 template <class R>
 struct StopEdge {
-  R nx = 1, ny = 0, distance = 0;
+  R nx = 1, ny = 0, bend = 0, distance = 0;
 };
 
 /// Which intersection a surface needs in a batch.

@@ -74,4 +74,10 @@ double paraxial_f_number(const Lens& lens, Wavelength wavelength) {
   return data.afocal ? infinity : std::abs(data.effective_focal_length) / diameter;
 }
 
+double film_side_f_number(const Lens& lens, Wavelength wavelength) {
+  const Pupil exit = pupils(lens, wavelength).exit;
+  return std::isfinite(exit.z) ? std::abs((lens.film_z() - exit.z) / exit.diameter)
+                               : paraxial_f_number(lens, wavelength);
+}
+
 }  // namespace petzval::inline v0

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "partial_sums.hpp"
+#include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/aim.hpp"
 #include "petzval/pupil/illumination.hpp"
 #include "rays/trace_rays.hpp"
@@ -35,15 +36,21 @@ SpotSize size_of(const Sets& sets) noexcept {
   psf_detail::for_each(sets, [&](std::size_t part, double x, double y) { dx[part] += x - x0, dy[part] += y - y0; });
   const double cx = x0 + psf_detail::sum(dx) / n, cy = y0 + psf_detail::sum(dy) / n;
 
-  psf_detail::PartialSums squares{}, farthest{};
+  psf_detail::PartialSums xx{}, yy{}, xy{}, squares{}, farthest{};
   psf_detail::for_each(sets, [&](std::size_t part, double x, double y) {
     const double squared = (x - cx) * (x - cx) + (y - cy) * (y - cy);
+    xx[part] += (x - cx) * (x - cx);
+    yy[part] += (y - cy) * (y - cy);
+    xy[part] += (x - cx) * (y - cy);
     squares[part] += squared;
     farthest[part] = std::max(farthest[part], squared);
   });
   size.centroid = {cx, cy};
   size.rms_radius = std::sqrt(psf_detail::sum(squares) / n);
   size.max_radius = std::sqrt(psf_detail::largest(farthest));
+  size.xx = psf_detail::sum(xx) / n;
+  size.yy = psf_detail::sum(yy) / n;
+  size.xy = psf_detail::sum(xy) / n;
   return size;
 }
 
@@ -54,6 +61,26 @@ SpotSize spot_size(std::span<const double> x, std::span<const double> y) noexcep
 }
 
 SpotSize spot_size(std::span<const RayBundle> sets) noexcept { return size_of(sets); }
+
+double airy_radius(const Lens& lens, Wavelength wavelength) {
+  const double nm = wavelength.in_nm() ? *wavelength.in_nm() : lens.wavelengths_nm()[lens.position(wavelength)];
+  return 1.22 * nm * 1e-6 * film_side_f_number(lens);
+}
+
+std::string_view name(Diffraction diffraction) noexcept {
+  switch (diffraction) {
+    case Diffraction::negligible: return "negligible";
+    case Diffraction::visible: return "visible";
+    case Diffraction::dominant: break;
+  }
+  return "dominant";
+}
+
+Diffraction diffraction(double airy_radius_mm, const SpotSize& size) noexcept {
+  const double blur = std::sqrt(2.0) * size.rms_radius;
+  if (airy_radius_mm <= blur / 10) return Diffraction::negligible;
+  return airy_radius_mm < blur ? Diffraction::visible : Diffraction::dominant;
+}
 
 std::vector<Spot> spot_diagram(const Lens& lens, double subject_z, std::span<const double> fields_rad,
                                std::uint32_t samples) {

@@ -227,7 +227,7 @@ FilmPupilTable FilmPupilTable::enclosing(const Lens& lens, double film_radius, i
 
 FilmPupilTable FilmPupilTable::equal_area(const Lens& lens, double film_radius, int threads) {
   if (!lens.iris().round()) {
-    throw Error(lens.name() + ": pupils: the iris has edges, wanted a round one");
+    throw Error(lens.name() + ": pupils: the iris has blades, wanted a round one");
   }
   return traced(lens, film_radius, false, threads);
 }

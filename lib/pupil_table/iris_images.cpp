@@ -49,15 +49,18 @@ void IrisImages::put(FilmPupilArrays& arrays) const {
     arrays.pupils.insert(arrays.pupils.end(), {number(image.shift_x), number(image.shift_y), number(image.radius_x),
                                                number(image.radius_y), number(image.area)});
   }
-  const auto iris = shape_.triangles<float>();
-  for (std::size_t k = 0; iris.count > 0 && k <= iris.count; ++k) {
-    arrays.iris.insert(arrays.iris.end(), {iris.before[k], iris.x[k], iris.y[k]});
-  }
+  const auto iris = shape_.sectors<float>();
+  if (iris.count == 0) return;
+  constexpr std::size_t terms = iris_detail::edge_terms<float>;
+  static_assert(FilmPupilArrays::edge_terms == terms);
+  arrays.iris.assign(iris.across, iris.across + terms);
+  arrays.iris.insert(arrays.iris.end(), iris.along, iris.along + terms);
+  arrays.iris.insert(arrays.iris.end(), iris.turns, iris.turns + 2 * iris.count);
 }
 
 template <class R>
 SeenIris<R> IrisImages::seen() const noexcept {
-  return {shape_.triangles<R>(), static_cast<R>(film_radius_ * rounded_up), static_cast<R>(slope_x_),
+  return {shape_.sectors<R>(), static_cast<R>(film_radius_ * rounded_up), static_cast<R>(slope_x_),
           static_cast<R>(slope_y_)};
 }
 

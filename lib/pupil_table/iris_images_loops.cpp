@@ -67,48 +67,33 @@ inline void fill(const SeenIris<R>& given, const ImageOf& image_of, const Sample
   }
 }
 
+/// Calls body(sample_at) with what fill() wants for an iris.
+template <class R, class Body>
+inline void with_places(const iris_detail::IrisSectors<R>& iris, const Body& body) noexcept {
+  if (iris.count == 0) {
+    body([](std::size_t, R u, R v) { return iris_detail::disc_point(u, v); });
+  } else {
+    body([iris](std::size_t, R u, R v) { return iris_detail::sector_point(iris, u, v); });
+  }
+}
+
 template <class R>
 void sample(const IrisImageTable<R>& table, std::size_t count, const R* film_x, const R* film_y, const R* u, const R* v,
             const RayWavelengths& wavelengths, R* x, R* y, R* areas) noexcept {
-  const iris_detail::IrisTriangles<R> iris = table.iris;
   with_images(table, count, wavelengths, [&](std::size_t first, std::size_t last, const auto& image_of) {
-    if (iris.count == 0) {
-      const auto on_disc = [](std::size_t, R a, R b) { return iris_detail::disc_point(a, b); };
-      fill(table, image_of, on_disc, first, last, film_x, film_y, u, v, x, y, areas);
-      return;
-    }
-    constexpr std::size_t block = 64;
-    std::int32_t triangle[block];
-    for (std::size_t begin = first; begin < last; begin += block) {
-      const std::size_t n = last - begin < block ? last - begin : block;
-      for (std::size_t i = 0; i < n; ++i) triangle[i] = 0;
-      for (std::size_t k = 1; k < iris.count; ++k) {
-        const R before = iris.before[k];
-        for (std::size_t i = 0; i < n; ++i) triangle[i] += u[begin + i] >= before;
-      }
-      const auto in_triangle = [&](std::size_t i, R a, R b) {
-        return iris_detail::triangle_point(iris, static_cast<std::size_t>(triangle[i - begin]), a, b);
-      };
-      fill(table, image_of, in_triangle, begin, begin + n, film_x, film_y, u, v, x, y, areas);
-    }
+    with_places(table.iris, [&](const auto& sample_at) {
+      fill(table, image_of, sample_at, first, last, film_x, film_y, u, v, x, y, areas);
+    });
   });
 }
 
 PupilSample sample_one(const SeenIris<double>& given, const ImageSections<double>& image, double film_x, double film_y,
                        double u, double v) noexcept {
-  const iris_detail::IrisTriangles<double> iris = given.iris;
   PupilSample result{};
-  const auto run = [&](const auto& sample_at) {
+  with_places(given.iris, [&](const auto& sample_at) {
     const auto image_of = [&image](std::size_t) { return image; };
     fill(given, image_of, sample_at, 0, 1, &film_x, &film_y, &u, &v, &result.x, &result.y, &result.area);
-  };
-  if (iris.count == 0) {
-    run([](std::size_t, double a, double b) { return iris_detail::disc_point(a, b); });
-  } else {
-    run([&](std::size_t, double a, double b) {
-      return iris_detail::triangle_point(iris, iris_detail::triangle_with(iris, a), a, b);
-    });
-  }
+  });
   return result;
 }
 

@@ -34,7 +34,7 @@ inline ImageSections<R> on_tilted(const ImageSections<R>& image, R nearer) noexc
 /// An iris and the film that sees images of it, in numbers of type R, borrowed.
 template <class R>
 struct SeenIris {
-  iris_detail::IrisTriangles<R> iris;
+  iris_detail::IrisSectors<R> iris;
   R film_radius = 0, slope_x = 0, slope_y = 0;
 };
 

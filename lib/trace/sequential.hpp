@@ -29,11 +29,17 @@ struct TraceState {
   int surface = -1;
 };
 
+/// How far beside an edge of the iris a point of the stop's plane lies, > 0 inside, to first order.
+template <class T>
+T room_at(const StopEdge<Storage<T>>& edge, const T& x, const T& y) noexcept {
+  return T(edge.distance) - (x * T(edge.nx) + y * T(edge.ny) + T(edge.bend) * (x * x + y * y));
+}
+
 /// Whether a point of the stop's plane lies within the iris; its edges count as inside.
 template <class T>
 Mask<T> within(std::span<const StopEdge<Storage<T>>> iris, const T& x, const T& y) noexcept {
   Mask<T> inside = x <= std::numeric_limits<Storage<T>>::max();
-  for (const auto& [nx, ny, distance] : iris) inside = all_of(inside, x * nx + y * ny <= distance);
+  for (const auto& edge : iris) inside = all_of(inside, room_at(edge, x, y) >= Storage<T>(0));
   return inside;
 }
 

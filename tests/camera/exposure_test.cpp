@@ -99,7 +99,8 @@ TEST(Exposure, OverTheFieldIsThatOfTheExactLensWhereAModelHasItsPupils) {
 TEST(Exposure, OfAnIrisWithEdgesIsThatOfTheExactLens) {
   for (const char* id : {"double_gauss_100mm_f2.0", "tessar_100mm_f2.8", "modern_58mm_f0.95"}) {
     for (const double f_number : {2.9, 8.0}) {
-      const Lens lens = with_iris(with_f_number(testing::data_lens(id), f_number), regular_iris(6, 0.1));
+      const Lens lens = with_iris(with_f_number(testing::data_lens(id), f_number),
+                                  {.blades = 6, .roundness = -0.6, .rotation_rad = 0.1});
       for (const ModelKind model : {ModelKind::pinhole, ModelKind::thin, ModelKind::thick}) {
         const FilmPupilTable pupils = camera_detail::make_model(model, lens, 10).pupils();
         EXPECT_NEAR(exposure(lens, pupils, {}) / film_irradiance(lens, {}), 1, 5e-3) << id << ' ' << name(model);

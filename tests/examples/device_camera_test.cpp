@@ -66,7 +66,8 @@ TEST(DeviceCamera, SamplesTheRaysOfEveryModel) {
 }
 
 TEST(DeviceCamera, SamplesBladesMirrorsAspheresAndCylinders) {
-  const Lens blades = with_iris(testing::data_lens("double_gauss_100mm_f1.35"), regular_iris(5, 0.4));
+  const Lens blades =
+      with_iris(testing::data_lens("double_gauss_100mm_f1.35"), {.blades = 5, .roundness = -0.5, .rotation_rad = 0.4});
   expect_same_rays(Camera(blades, film, {.model = ModelKind::thick}));
   expect_same_rays(Camera(blades, film, {.model = ModelKind::exact_double}));
   const Film small{.width_mm = 12, .height_mm = 8};

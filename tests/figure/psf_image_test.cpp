@@ -11,6 +11,7 @@
 
 #include "petzval/core/error.hpp"
 #include "petzval/core/units.hpp"
+#include "petzval/focus/focus.hpp"
 #include "petzval/io/lens_json.hpp"
 #include "petzval/pupil/f_number.hpp"
 
@@ -50,9 +51,31 @@ TEST(Render, WeighsWavelengths) {
   psf.entrance_pupil_area = 8;
   const RgbImage image = render(psf, std::vector<std::array<double, 3>>{{0, 0.25, 1}, {1, 0.75, -0.5}});
   // A ray carries 2 / (100 * 8) or 4 / (100 * 8), spread over 0.25 mm^2: 0.01 and 0.02 per mm^2.
-  const std::vector<float> expected{0, 0, 0, 0.4f, 0.325f, -0.1f, 0, 0, 0, 0.1f, 0.075f, -0.05f};
+  const std::vector<float> expected{0.1f, 0.075f, -0.05f, 0, 0, 0, 0.4f, 0.325f, -0.1f, 0, 0, 0};
   ASSERT_EQ(image.pixels.size(), expected.size());
   for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_NEAR(image.pixels[i], expected[i], 1e-7f) << i;
+}
+
+// As a photograph does: the triangle stands on its edge behind the focus and on its corner in front of it.
+TEST(Render, ShowsTheIrisUprightForALightBeyondTheFocus) {
+  const std::vector<std::array<double, 3>> white{{1, 1, 1}};
+  const Lens lens = with_iris(
+      compile(read_prescription(std::filesystem::path(PETZVAL_TEST_DATA) / "lenses" / "double_gauss_100mm_f2.0.json")),
+      {.blades = 3});
+  for (const double light_z : {-1e5, -1000.0}) {
+    const Lens focused = with_focus(with_f_number(lens, 5.6), 3000);
+    const RgbImage picture = render(point_image(focused, {0, light_z}, {.samples = 1 << 16, .pixels = 64}).psf, white);
+    const auto lit_in_row = [&](int row) {
+      int lit = 0;
+      for (int column = 0; column < 64; ++column) {
+        lit += picture.pixels[3 * (64 * static_cast<std::size_t>(row) + static_cast<std::size_t>(column))] > 0;
+      }
+      return lit;
+    };
+    int upper = 0, lower = 0;
+    for (int row = 0; row < 32; ++row) upper += lit_in_row(row), lower += lit_in_row(63 - row);
+    EXPECT_GT(light_z < -3000 ? lower : upper, 1.2 * (light_z < -3000 ? upper : lower));
+  }
 }
 
 TEST(Render, WantsAWeightForEachWavelength) {

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <vector>
 
+#include "../blades.hpp"
 #include "../data_lenses.hpp"
 #include "../message.hpp"
 #include "petzval/camera/camera.hpp"
@@ -23,7 +24,7 @@ namespace petzval {
 namespace {
 
 const double hexagon_over_disc = 3 * std::numbers::sqrt3 / 2 / std::numbers::pi;
-const Iris hexagon = regular_iris(6, 0.1);
+const Iris hexagon{.blades = 6, .rotation_rad = 0.1};
 
 struct Pair {
   Lens round, bladed;
@@ -54,9 +55,7 @@ TEST(LensWithIris, EveryRimPointOfItsBoundaryIsOneOfTheIris) {
     double nearest = 1;
     trace<double>(lens, ray, {}, [&](int surface, const Vec3<double>& p) {
       if (surface != static_cast<int>(*lens.stop())) return;
-      for (const IrisEdge& e : hexagon.edges) {
-        nearest = std::min(nearest, e.distance - (p.x * e.nx + p.y * e.ny) / radius);
-      }
+      nearest = testing::room_between_blades(hexagon, p.x / radius, p.y / radius);
     });
     beside += !(std::abs(nearest) < 1e-10);
     EXPECT_EQ(span.to.surface, static_cast<int>(*lens.stop()));

@@ -45,7 +45,7 @@ TEST(Clearances, AreNotNegativeExactlyForRaysThatPass) {
   for (const Prescription& p : testing::data_prescriptions()) {
     for (const bool bladed : {false, true}) {
       const Lens round = compile(p);
-      const Lens lens = bladed ? with_iris(round, regular_iris(7, 0.2)) : round;
+      const Lens lens = bladed ? with_iris(round, Iris{.blades = 7, .rotation_rad = 0.2}) : round;
       constexpr std::size_t count = 403;
       const Columns rays = rays_to_scene(lens, count);
       for (const Arithmetic arithmetic : {Arithmetic::fast, Arithmetic::reproducible}) {
@@ -67,12 +67,12 @@ TEST(Clearances, AreNotNegativeExactlyForRaysThatPass) {
 }
 
 TEST(Clearances, AreTheLeastRoomAtARim) {
-  // A stop alone limits, with a rim of 2, an obscuration of 1 and a straight edge at x = 1.5.
+  // A stop alone limits, with a rim of 2, an obscuration of 1 and six straight edges, one at x = sqrt 3.
   Prescription p;
   p.name = "one rim";
   p.surfaces = {{.thickness = 1, .semi_diameter = 2, .obscuration_semi_diameter = 1, .stop = true},
                 {.thickness = 50, .semi_diameter = 100}};
-  const Lens lens = with_iris(compile(p), {{{1, 0, 0.75}}});
+  const Lens lens = with_iris(compile(p), {.blades = 6});
   const auto clearance = [&](double x, double y, bool apertures) {
     Columns ray;
     ray.values = {{{x}, {y}, {-5}, {0}, {0}, {1}}};
@@ -80,13 +80,14 @@ TEST(Clearances, AreTheLeastRoomAtARim) {
     trace_detail::clearances<double>(lens, 1, ray.arrays(), &value, {.apertures = apertures});
     return value;
   };
+  const double edge = std::sqrt(3.0) / 2;
   for (const bool apertures : {false, true}) {
-    EXPECT_NEAR(clearance(0, 1.8, apertures), 1 - 0.81, 1e-12);
+    EXPECT_NEAR(clearance(0, 1.8, apertures), edge * 0.1, 1e-12);
     EXPECT_NEAR(clearance(0, 1.2, apertures), (1.44 - 1) / 4, 1e-12);
-    EXPECT_NEAR(clearance(1.4, 0, apertures), 0.05, 1e-12);
+    EXPECT_NEAR(clearance(1.4, 0, apertures), edge - 0.7, 1e-12);
     EXPECT_NEAR(clearance(-1.2, 0, apertures), (1.44 - 1) / 4, 1e-12);
     EXPECT_NEAR(clearance(0, 4, apertures), -3.0 / 4, 1e-12);  // v / (1 - v) of v = -3
-    EXPECT_NEAR(clearance(1.7, 0, apertures), -0.1 / 1.1, 1e-12);
+    EXPECT_NEAR(clearance(1.8, 0, apertures), (edge - 0.9) / (1.9 - edge), 1e-12);
   }
 }
 

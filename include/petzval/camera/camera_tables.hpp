@@ -27,10 +27,11 @@ namespace petzval::inline v0 {
 ///                            1 for a cylinder curved along x and 2 for one along y, height h of the aspheric terms,
 ///                            and a[2] ... a[40]: z gains a[i] (r / h)^i, r along x or y of a cylinder
 ///     indices                [wavelength][space] of the media, before each surface and behind the last one
-///     edges                  [edge] nx, ny, distance: light passes the stop where x nx + y ny <= distance
+///     edges                  [edge] nx, ny, bend, distance: light passes the stop where
+///                            x nx + y ny + bend (x^2 + y^2) <= distance
 struct CameraTables {
   enum Position : std::size_t {
-    format,  ///< 2
+    format,  ///< 3
     model,   ///< a ModelKind
     wavelength_count,
     primary_wavelength,
@@ -53,7 +54,7 @@ struct CameraTables {
     height,
     half_widths,
     iris,
-    iris_corners,  ///< 0: a disc
+    iris_blades,  ///< 0: a disc
     rays,
     rays_kind,  ///< 0 first order, 1 polynomial, 2 surfaces
     reference_z,

@@ -12,7 +12,10 @@ namespace petzval::inline v0 {
 
 /// The picture of a PSF: irradiance on the film as a share of the light on the paraxial entrance pupil, per mm^2.
 /// Pictures of one light through different lenses and apertures have the same scale; the sum of all pixels times the
-/// area of one is the throughput, less the rays outside the picture. Rows from the top.
+/// area of one is the throughput, less the rays outside the picture.
+///
+/// It shows the film as a photograph does, turned by half a turn: to the left and down are +x and +y of the film, and a
+/// light beyond the focus shows the iris upright.
 ///
 /// weights: a linear RGB triple for each wavelength, as rgb_weights gives them; the light of all wavelengths is then
 /// white. Throws Error for another number of weights.

@@ -153,10 +153,10 @@ PETZVAL_API Lens with_semi_diameter(const Lens& lens, std::size_t surface, doubl
 /// on the side that light runs to.
 PETZVAL_API Lens with_film(const Lens& lens, double film_z);
 
-/// The lens with another shape of its stop; an empty Iris makes it round again. Every ray that is traced with apertures
+/// The lens with another shape of its stop; Iris{} makes it round again. Every ray that is traced with apertures
 /// passes the iris, and so do boundaries of pupils, film irradiance, spots, PSFs and the rays of exact cameras.
 /// Paraxial pupils and f-numbers are those of the round stop. Throws Error for a lens without a stop, a stop without a
-/// finite semi-diameter, and an edge that is not finite or whose normal is not a unit vector.
+/// finite semi-diameter, and for blades, roundness or rotation out of range.
 PETZVAL_API Lens with_iris(const Lens& lens, const Iris& iris);
 
 /// Sag of a surface at (x, y), mm: the height along z over the plane of its vertex; NaN beyond the equator of a sphere

@@ -119,4 +119,8 @@ PETZVAL_API Pupils pupils(const Lens& lens, Wavelength wavelength = {}, Meridian
 /// |EFL| / entrance pupil diameter, in the main meridian. Infinite for an afocal lens or an empty pupil.
 PETZVAL_API double paraxial_f_number(const Lens& lens, Wavelength wavelength = {});
 
+/// The f-number of the cone of light on the lens's film: distance of the exit pupil from the film over its diameter.
+/// Infinite for an empty pupil.
+PETZVAL_API double film_side_f_number(const Lens& lens, Wavelength wavelength = {});
+
 }  // namespace petzval::inline v0

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "petzval/core/export.hpp"
@@ -12,17 +14,33 @@
 
 namespace petzval::inline v0 {
 
-/// Centroid, RMS and largest radius of a set of film points (mm); zeros for none.
+/// Centroid, and moments and largest radius about it, of a set of film points (mm); zeros for none.
 struct SpotSize {
   Vec2<double> centroid{0, 0};
-  double rms_radius = 0;  ///< about the centroid
-  double max_radius = 0;  ///< about the centroid
+  double rms_radius = 0;
+  double max_radius = 0;
+  double xx = 0, yy = 0, xy = 0;  ///< mean squares and product, mm^2
 };
 
 PETZVAL_API SpotSize spot_size(std::span<const double> x, std::span<const double> y) noexcept;
 
 /// The same of all rays of several bundles, which all have the same weight.
 PETZVAL_API SpotSize spot_size(std::span<const RayBundle> sets) noexcept;
+
+/// Radius of the first dark ring of an ideal image on the film, 1.22 wavelength N, mm, N = film_side_f_number
+/// (lens). Infinite for a closed stop.
+PETZVAL_API double airy_radius(const Lens& lens, Wavelength wavelength = {});
+
+/// How much of a blur is diffraction.
+enum class Diffraction : std::uint8_t {
+  negligible,  ///< the Airy disc is at most a tenth as large as the geometric blur: rays tell its shape
+  visible,     ///< it softens edges and fine structure
+  dominant,    ///< it is as large as the blur: rays tell neither size nor shape
+};
+PETZVAL_API std::string_view name(Diffraction diffraction) noexcept;
+
+/// By airy_radius() and the geometric blur's rms_radius, of which a uniform disc has 1 / sqrt 2 of its radius.
+PETZVAL_API Diffraction diffraction(double airy_radius_mm, const SpotSize& size) noexcept;
 
 /// The spot of one field and wavelength.
 struct Spot {

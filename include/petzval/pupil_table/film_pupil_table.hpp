@@ -78,10 +78,13 @@ struct FilmPupilArrays {
   std::size_t columns = 0;
   double height = 0;               ///< of the cells, mm
   std::vector<float> half_widths;  ///< [row] of the cells, mm; that of the last line at the end
-  /// [corner] share of the area before it, x, y, in radii, the first one once more at the end. Empty: a disc.
+  /// Empty: a disc. Or for the edges of blades, in radii: across [edge_terms] and along [edge_terms], then [blade] sine
+  /// and cosine of the angle from +y towards +x of the direction to the edge's middle. The point of the edge that has
+  /// the part (1 + q) / 2 of its sector's area before it lies q across(t) across that direction, clockwise, and along(t)
+  /// along it; t = 2 q^2 - 1, and both are polynomials in t.
   std::vector<float> iris;
 
-  static constexpr std::size_t image_size = 5, strip_size = 784, cell_size = 1122, corners = 64;
+  static constexpr std::size_t image_size = 5, strip_size = 784, cell_size = 1122, corners = 64, edge_terms = 8;
 };
 
 /// The pupils of every point of a film: the parts of the plane behind the lens through which the points see the scene,
@@ -120,7 +123,7 @@ class PETZVAL_API FilmPupilTable {
   /// obscuration. That is not enough for pupils in several parts (a ball lens, catadioptrics beyond their field): they
   /// are described as one part of about that area, and a ball lens at f/8 gets up to 2.5 times its light. So do the
   /// models that use these pupils, polynomials and two discs; exact ones do not. Throws Error as enclosing() does, and
-  /// for an iris with edges.
+  /// for an iris with blades.
   static FilmPupilTable equal_area(const Lens& lens, double film_radius, int threads = 1);
 
   /// The same for the overlap of some discs, one list for each wavelength. One disc alone has a closed form: of_iris().
@@ -134,8 +137,7 @@ class PETZVAL_API FilmPupilTable {
   FilmPupilTable reshaped(std::span<const std::vector<PupilDisc>> discs) const;
 
   /// Pupils in closed form: images of an iris, one for each wavelength. iris: as the plane of the pupil shows it.
-  /// Throws Error for a film_radius that is negative or not finite, and for an iris with edges that do not form a
-  /// polygon about the axis with its corners within the rim.
+  /// Throws Error for a film_radius that is negative or not finite, and for blades, roundness or rotation out of range.
   static FilmPupilTable of_iris(const TwoPlanes& space, const Iris& iris, std::span<const PupilImage> images,
                                 double film_radius, std::size_t primary_wavelength = 0,
                                 std::span<const double> wavelengths_nm = {});

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "iris_setup.hpp"
+
+#include "petzval/core/error.hpp"
+#include "petzval/core/units.hpp"
+#include "petzval/iris/iris.hpp"
+#include "petzval/pupil/f_number.hpp"
+
+namespace examples {
+
+void add_iris(App& app, IrisSetup& setup) {
+  add_number(app, "--f-number", setup.f_number, positive_number, "stop the lens down (by exact rays)")
+      ->default_str("wide open");
+  constexpr Range blades{0, 20, "3 to 20, or 0 for a round iris"};
+  add_count(app, "--blades", setup.blades, blades, "blades of the iris, 3 to 20; 0: round");
+  add_number(app, "--roundness", setup.roundness, {-1, 1, "a number from -1 to 1"},
+             "0: the edges of the blades are straight; 1: round; below 0: hollow");
+  add_number(app, "--iris-rotation-deg", setup.rotation_deg, finite_number,
+             "turn of the first corner from straight up, anticlockwise seen from behind the camera (degrees)");
+  app.add_option("--iris-area", setup.area,
+                 "what the f-number means for blades. circumscribed: their corners lie on the round iris; equal: they "
+                 "let through as much light")
+      ->one_of({"circumscribed", "equal"})
+      ->capture_default_str();
+}
+
+petzval::Lens stopped_down(const petzval::Lens& lens, const IrisSetup& setup) {
+  const petzval::Iris iris{.blades = static_cast<int>(setup.blades),
+                           .roundness = setup.roundness,
+                           .rotation_rad = petzval::radians(setup.rotation_deg)};
+  const petzval::Lens shaped = petzval::with_iris(lens, iris);
+  const bool equal = setup.area == "equal";
+  if (setup.f_number == 0) {
+    if (equal && !iris.round()) {
+      throw petzval::Error(
+          "--iris-area: found equal without --f-number, wanted one: wide open, blades open no further");
+    }
+    return shaped;
+  }
+  return petzval::with_f_number(shaped, equal ? petzval::equal_area_f_number(iris, setup.f_number) : setup.f_number);
+}
+
+}  // namespace examples

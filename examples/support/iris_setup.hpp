@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "cli.hpp"
+#include "petzval/lens/lens.hpp"
+
+namespace examples {
+
+/// Command line of the programs that shape and stop down the iris.
+struct IrisSetup {
+  double f_number = 0;  ///< 0: wide open
+  std::uint32_t blades = 0;
+  double roundness = 0, rotation_deg = 0;
+  std::string area = "circumscribed";
+};
+
+/// Options --f-number, --blades, --roundness, --iris-rotation-deg and --iris-area.
+void add_iris(App& app, IrisSetup& setup);
+
+/// The lens with that iris, stopped down. Throws petzval::Error for an iris and an f-number that it cannot have.
+petzval::Lens stopped_down(const petzval::Lens& lens, const IrisSetup& setup);
+
+}  // namespace examples
