@@ -31,6 +31,7 @@ using examples::Json;
 constexpr int picture_pixels = 512, tile_pixels = 320;
 
 struct Options {
+  std::vector<std::string> formats{"exr", "png"};
   std::string lens_file, out_folder, origin = "front_vertex", criterion = "min_rms";
   std::vector<double> focus_mm, wavelengths_nm{petzval::d_line_nm};
   double subject_mm = 0, field_deg = 0;
@@ -93,7 +94,8 @@ Json to_json(const std::vector<Picture>& pictures, const examples::LoadedLens& l
             {"wavelengths_nm", options.wavelengths_nm},
             {"subject_distance_mm", finite_or_null(options.subject_mm)},
             {"distance_from", options.origin},
-            {"f_number_real", options.iris.f_number > 0 ? options.iris.f_number : petzval::real_f_number(loaded.lens)},
+            {"f_number_real",
+             options.iris.f_number > 0 ? options.iris.f_number_by_corners() : petzval::real_f_number(loaded.lens)},
             {"field_deg", options.field_deg},
             {"samples", options.samples},
             {"results", Json::array()}};
@@ -113,6 +115,7 @@ Json to_json(const std::vector<Picture>& pictures, const examples::LoadedLens& l
          {"iris_area_share", petzval::iris_area(p.scene.lens.iris()) / std::numbers::pi},
          {"airy_radius_mm", finite_or_null(petzval::airy_radius(p.scene.lens))},
          {"diffraction", petzval::name(petzval::diffraction(petzval::airy_radius(p.scene.lens), p.image.size))},
+         {"rays", sum(p.image.psf.sent)},
          {"rays_sent", sum(p.image.psf.sent)},
          {"rays_transmitted", sum(p.image.psf.transmitted)},
          {"radial_profile", p.image.radial_profile},
@@ -130,10 +133,13 @@ void write_all(const std::vector<Picture>& pictures, const examples::LoadedLens&
   for (const Picture& p : pictures) {
     const std::string stem = loaded.id + "_focus_" + examples::number(p.focus_mm) + "mm";
     const petzval::RgbImage image = examples::irradiance(p.image.psf);
-    petzval::write_exr(image, folder / (stem + ".exr"));
-    written(folder / (stem + ".exr"));
-    petzval::write_png(examples::expose(image).picture, folder / (stem + ".png"));
-    written(folder / (stem + ".png"));
+    for (const std::string& format : options.formats) {
+      const auto file = folder / (stem + '.' + format);
+      if (format == "exr") petzval::write_exr(image, file);
+      if (format == "pfm") petzval::write_pfm(image, file);
+      if (format == "png") petzval::write_png(examples::expose(image).picture, file);
+      written(file);
+    }
   }
   petzval::write_png(sheet, folder / (loaded.id + "_bokeh.png"));
   written(folder / (loaded.id + "_bokeh.png"));
@@ -172,6 +178,11 @@ int main(int argc, char** argv) {
   examples::add_number(app, "--field-deg", options.field_deg, examples::finite_number,
                        "angle of the light towards +y, seen from the paraxial entrance pupil (degrees)");
   examples::add_samples(app, options.samples);
+  app.add_option("--format", options.formats,
+                 "files of each image: exr and pfm (float, linear), png (each with its own exposure)")
+      ->delimiter(',')
+      ->one_of({"exr", "png", "pfm"})
+      ->default_str("exr,png");
   app.add_option("--out", options.out_folder, "folder for the results")->required()->type_name("DIR");
 
   return examples::run(app, argc, argv, [&] {

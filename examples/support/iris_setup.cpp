@@ -3,10 +3,17 @@
 
 #include "petzval/core/error.hpp"
 #include "petzval/core/units.hpp"
-#include "petzval/iris/iris.hpp"
 #include "petzval/pupil/f_number.hpp"
 
 namespace examples {
+
+petzval::Iris IrisSetup::iris() const {
+  return {.blades = static_cast<int>(blades), .roundness = roundness, .rotation_rad = petzval::radians(rotation_deg)};
+}
+
+double IrisSetup::f_number_by_corners() const {
+  return area == "equal" ? petzval::equal_area_f_number(iris(), f_number) : f_number;
+}
 
 void add_iris(App& app, IrisSetup& setup) {
   add_number(app, "--f-number", setup.f_number, positive_number, "stop the lens down (by exact rays)")
@@ -25,19 +32,12 @@ void add_iris(App& app, IrisSetup& setup) {
 }
 
 petzval::Lens stopped_down(const petzval::Lens& lens, const IrisSetup& setup) {
-  const petzval::Iris iris{.blades = static_cast<int>(setup.blades),
-                           .roundness = setup.roundness,
-                           .rotation_rad = petzval::radians(setup.rotation_deg)};
-  const petzval::Lens shaped = petzval::with_iris(lens, iris);
-  const bool equal = setup.area == "equal";
-  if (setup.f_number == 0) {
-    if (equal && !iris.round()) {
-      throw petzval::Error(
-          "--iris-area: found equal without --f-number, wanted one: wide open, blades open no further");
-    }
-    return shaped;
+  const petzval::Lens shaped = petzval::with_iris(lens, setup.iris());
+  if (setup.f_number > 0) return petzval::with_f_number(shaped, setup.f_number_by_corners());
+  if (setup.area == "equal" && !setup.iris().round()) {
+    throw petzval::Error("--iris-area: found equal without --f-number, wanted one: wide open, blades open no further");
   }
-  return petzval::with_f_number(shaped, equal ? petzval::equal_area_f_number(iris, setup.f_number) : setup.f_number);
+  return shaped;
 }
 
 }  // namespace examples

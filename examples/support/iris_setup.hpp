@@ -5,6 +5,7 @@
 #include <string>
 
 #include "cli.hpp"
+#include "petzval/iris/iris.hpp"
 #include "petzval/lens/lens.hpp"
 
 namespace examples {
@@ -15,6 +16,10 @@ struct IrisSetup {
   std::uint32_t blades = 0;
   double roundness = 0, rotation_deg = 0;
   std::string area = "circumscribed";
+
+  petzval::Iris iris() const;
+  /// What petzval::with_f_number takes. Throws petzval::Error for an iris out of range.
+  double f_number_by_corners() const;
 };
 
 /// Options --f-number, --blades, --roundness, --iris-rotation-deg and --iris-area.

@@ -12,7 +12,10 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
+#include <string>
 #include <string_view>
 
 #include "core/text.hpp"
@@ -89,6 +92,19 @@ RgbImage read_exr(const std::filesystem::path& file) {
   } catch (const std::exception& e) {
     throw Error(file.string() + ": " + e.what());
   }
+}
+
+void write_pfm(const RgbImage& image, const std::filesystem::path& file) {
+  validate(image, file);
+  std::string bytes = "PF\n" + std::to_string(image.width) + ' ' + std::to_string(image.height) + "\n-1.0\n";
+  for (int y = image.height; y-- > 0;) {
+    const float* const row = image.pixel(0, y);
+    for (int i = 0; i < 3 * image.width; ++i) {
+      const auto bits = std::bit_cast<std::uint32_t>(row[i]);
+      for (int byte = 0; byte < 4; ++byte) bytes += static_cast<char>(bits >> (8 * byte) & 0xff);
+    }
+  }
+  write_file(bytes, file);
 }
 
 void write_png(const Rgb8Image& image, const std::filesystem::path& file) {

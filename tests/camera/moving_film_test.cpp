@@ -77,7 +77,8 @@ TEST(MovingFilm, ExposesAsAFilmThatStaysThere) {
 
 // Pupils in closed form that are no discs, on a film that hardly travels.
 TEST(MovingFilm, LosesNothingOfPupilsWithoutRevolution) {
-  const Lens lens = with_iris(testing::data_lens("double_gauss_100mm_f2.0"), {.blades = 3, .roundness = 0.3, .rotation_rad = 0.2});
+  const Lens lens =
+      with_iris(testing::data_lens("double_gauss_100mm_f2.0"), {.blades = 3, .roundness = 0.3, .rotation_rad = 0.2});
   for (const Lens& own : {testing::data_lens("anamorphic_60mm_2x"), lens}) {
     for (const ModelKind model : {ModelKind::thin, ModelKind::thick}) {
       SCOPED_TRACE(own.name() + " " + std::string(name(model)));

@@ -179,7 +179,8 @@ TEST(Reciprocity, HoldsForModelsWithoutRims) {
 }
 
 TEST(Reciprocity, HoldsForAnIrisWithEdges) {
-  const Lens lens = with_iris(testing::data_lens("double_gauss_100mm_f2_28deg"), {.blades = 5, .roundness = 0.5, .rotation_rad = 0.3});
+  const Lens lens = with_iris(testing::data_lens("double_gauss_100mm_f2_28deg"),
+                              {.blades = 5, .roundness = 0.5, .rotation_rad = 0.3});
   const Film tilted{.width_mm = 36, .height_mm = 24, .tilt_rad = 0.15, .swing_rad = -0.1};
   for (const ModelKind model : {ModelKind::pinhole, ModelKind::thin, ModelKind::thick, ModelKind::exact_float}) {
     SCOPED_TRACE(name(model));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <numbers>
 
 #include "petzval/focus/focus.hpp"
@@ -122,6 +123,62 @@ TEST_F(BokehPsf, IsSharpestWhereItIsFocused) {
   }
 }
 
+// Well out of focus at f/16 the blur is the iris: its area and its moments.
+TEST_F(BokehPsf, HasTheShapeOfTheIris) {
+  const auto all = [&](std::vector<std::string> iris) {
+    iris.insert(iris.end(), {"--subject-distance-mm", "3000", "--focus-mm", "1500", "--f-number", "16"});
+    return bokeh(iris);
+  };
+  const auto result = [&](const std::vector<std::string>& iris) { return all(iris)["results"][0]; };
+  const auto number = [](const nlohmann::json& row, const char* key) { return row.at(key).get<double>(); };
+  const auto round = result({});
+  EXPECT_EQ(number(round, "iris_area_share"), 1);
+  constexpr double pi = std::numbers::pi;
+  for (const int n : {3, 6, 9}) {
+    const auto bladed = result({"--blades", std::to_string(n), "--iris-rotation-deg", "10"});
+    const double share = n / (2 * pi) * std::sin(2 * pi / n), square = (2 + std::cos(2 * pi / n)) / 12;
+    EXPECT_NEAR(number(bladed, "iris_area_share"), share, 1e-14);
+    EXPECT_NEAR(number(bladed, "throughput") / number(round, "throughput") / share, 1, 5e-3);
+    const auto moments = bladed.at("second_moments_mm2").get<std::array<double, 3>>();
+    const auto of_round = round.at("second_moments_mm2").get<std::array<double, 3>>();
+    EXPECT_NEAR(moments[0] / of_round[0] / (square / 0.25), 1, 0.01) << n;
+    EXPECT_NEAR(moments[1] / of_round[1] / (square / 0.25), 1, 0.01) << n;
+    EXPECT_NEAR(moments[2] / of_round[0], 0, 0.01) << n;
+    EXPECT_EQ(bladed.at("diffraction"), "visible");
+    EXPECT_NEAR(number(bladed, "airy_radius_mm"), 1.22 * 587.5618e-6 * 16 * 1581.11 / (1581.11 - 100.44), 2e-4);
+
+    // Throughputs are shares of the paraxial pupil, which opens with the corners.
+    const auto equal = all({"--blades", std::to_string(n), "--iris-area", "equal"});
+    const double opened = 16 / equal.at("f_number_real").get<double>();
+    EXPECT_NEAR(opened * opened * share, 1, 1e-12);
+    EXPECT_NEAR(number(equal["results"][0], "throughput") * opened * opened / number(round, "throughput"), 1, 5e-3);
+  }
+  EXPECT_EQ(result({"--blades", "5", "--roundness", "1"}), round);
+  EXPECT_LT(number(result({"--blades", "5", "--roundness", "-1"}), "throughput"),
+            number(result({"--blades", "5", "--roundness", "-0.5"}), "throughput"));
+}
+
+TEST_F(BokehPsf, WritesTheFormatsThatAreAskedFor) {
+  bokeh({"--subject-distance-mm", "1000", "--focus-mm", "900", "--format", "exr,pfm"});
+  const std::string stem = path(std::string("bokeh/") + id + "_focus_900mm");
+  EXPECT_FALSE(std::filesystem::exists(stem + ".png"));
+  const std::string pfm = read(stem + ".pfm"), head = "PF\n512 512\n-1.0\n";
+  ASSERT_TRUE(pfm.starts_with(head));
+  ASSERT_EQ(pfm.size(), head.size() + 4 * 3 * 512 * 512);
+  const auto image = petzval::read_exr(stem + ".exr");
+  int lit = 0;
+  for (int y = 0; y < 512; ++y) {
+    for (int x = 0; x < 512; ++x) {
+      const std::size_t row = 511 - static_cast<std::size_t>(y);
+      float value = 0;
+      std::memcpy(&value, pfm.data() + head.size() + 4 * (3 * (512 * row + static_cast<std::size_t>(x)) + 1), 4);
+      ASSERT_EQ(value, image.pixel(x, y)[1]);
+      lit += value > 0;
+    }
+  }
+  EXPECT_GT(lit, 10000);
+}
+
 TEST_F(BokehPsf, GivesTheSameBytesTwice) {
   const std::vector<std::string> arguments{"--subject-distance-mm", "inf",         "--focus-mm",  "1000,inf",
                                            "--wavelengths-nm",      "480,550,620", "--field-deg", "7"};
@@ -138,6 +195,17 @@ TEST_F(BokehPsf, RefusesABadCommandLineInOneLine) {
     expect_failure("bokeh_psf", arguments, reason);
     EXPECT_FALSE(std::filesystem::exists(path("bokeh")));
   };
+  const auto refuse_iris = [&](std::vector<std::string> more, const std::string& reason) {
+    more.insert(more.end(), {"--subject-distance-mm", "1000", "--focus-mm", "900"});
+    refuse(more, reason);
+  };
+  for (const char* blades : {"1", "2"}) {
+    refuse_iris({"--blades", blades}, std::string("blades is ") + blades + ", wanted 3 to 20, or 0 for a round iris");
+  }
+  refuse_iris({"--blades", "21"}, "--blades: found \"21\", wanted 3 to 20, or 0 for a round iris");
+  refuse_iris({"--blades", "5.5"}, "--blades: found \"5.5\", wanted 3 to 20, or 0 for a round iris");
+  refuse_iris({"--blades", "5", "--roundness", "1.1"}, "--roundness: found \"1.1\", wanted a number from -1 to 1");
+  refuse_iris({"--blades", "5", "--iris-area", "equal"}, "--iris-area: found equal without --f-number");
   refuse({"--subject-distance-mm", "1000"}, "--focus-mm is required");
   refuse({"--focus-mm", "1000"}, "--subject-distance-mm is required");
   refuse({"--subject-distance-mm", "1000", "--focus-mm", "10x"}, "--focus-mm: found \"10x\"");

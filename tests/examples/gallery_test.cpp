@@ -13,6 +13,13 @@ TEST_F(Gallery, DrawsFigure7) {
   EXPECT_TRUE(read(path("figure.png")).starts_with("\x89PNG"));
 }
 
+TEST_F(Gallery, DrawsIrisesWithBlades) {
+  const auto outcome = run("bokeh_shapes", {"--out", path("shapes")});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(lines(outcome.out), std::vector{path("shapes/bokeh_blades.png")});
+  EXPECT_TRUE(read(path("shapes/bokeh_blades.png")).starts_with("\x89PNG"));
+}
+
 /// Wu et al. 2010 describe their figure 7 in words, tested here for four readings of "in focus" and "distance from the
 /// lens".
 TEST_F(Gallery, TheProfilesAgreeWithThePapersWordsExceptWhereKnown) {

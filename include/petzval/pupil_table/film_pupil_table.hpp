@@ -80,8 +80,8 @@ struct FilmPupilArrays {
   std::vector<float> half_widths;  ///< [row] of the cells, mm; that of the last line at the end
   /// Empty: a disc. Or for the edges of blades, in radii: across [edge_terms] and along [edge_terms], then [blade] sine
   /// and cosine of the angle from +y towards +x of the direction to the edge's middle. The point of the edge that has
-  /// the part (1 + q) / 2 of its sector's area before it lies q across(t) across that direction, clockwise, and along(t)
-  /// along it; t = 2 q^2 - 1, and both are polynomials in t.
+  /// the part (1 + q) / 2 of its sector's area before it lies q across(t) across that direction, clockwise, and
+  /// along(t) along it; t = 2 q^2 - 1, and both are polynomials in t.
   std::vector<float> iris;
 
   static constexpr std::size_t image_size = 5, strip_size = 784, cell_size = 1122, corners = 64, edge_terms = 8;
