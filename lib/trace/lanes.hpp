@@ -10,6 +10,7 @@
 #include <immintrin.h>
 #endif
 
+#include "core/look_up.hpp"
 #include "core/simd.hpp"
 
 namespace petzval::inline v0::trace_detail {
@@ -293,41 +294,10 @@ PETZVAL_INLINE void store(R* to, Lanes<R> x) noexcept {
   __builtin_memcpy(to, &x.v, sizeof x.v);
 }
 
-/// The numbers at places of a table. count: how many it has; where they fill two registers at most, as many are loaded
-/// and permuted, and must be there.
+/// core_detail::look_up().
 template <class R>
-PETZVAL_INLINE Lanes<R> look_up(const R* table, [[maybe_unused]] std::size_t count,
-                                const typename Native<R>::Bits& places) noexcept {
-  constexpr int width = Lanes<R>::width;
-#if defined(__AVX512F__)
-  const auto at = reinterpret_cast<__m512i>(places);
-  if (count <= width) {
-    if constexpr (sizeof(R) == 4) {
-      return Lanes<R>(_mm512_maskz_permutexvar_ps(0xffff, at, load(table).v));
-    } else {
-      return Lanes<R>(_mm512_maskz_permutexvar_pd(0xff, at, load(table).v));
-    }
-  }
-  if (count <= 2 * width) {
-    if constexpr (sizeof(R) == 4) {
-      return Lanes<R>(_mm512_permutex2var_ps(load(table).v, at, load(table + width).v));
-    } else {
-      return Lanes<R>(_mm512_permutex2var_pd(load(table).v, at, load(table + width).v));
-    }
-  }
-#elif defined(__AVX2__)
-  if constexpr (sizeof(R) == 4) {
-    if (count <= 2 * width) {
-      const auto at = reinterpret_cast<__m256i>(places);
-      const __m256 low = _mm256_permutevar8x32_ps(load(table).v, at);
-      const __m256 high = _mm256_permutevar8x32_ps(load(table + width).v, at);
-      return Lanes<R>(_mm256_blendv_ps(low, high, _mm256_castsi256_ps(_mm256_slli_epi32(at, 28))));
-    }
-  }
-#endif
-  R values[width];
-  for (int l = 0; l < width; ++l) values[l] = table[places[l]];
-  return load(values);
+PETZVAL_INLINE Lanes<R> look_up(const R* table, std::size_t count, const typename Native<R>::Bits& places) noexcept {
+  return Lanes<R>(core_detail::look_up(table, count, places));
 }
 
 /// How many lanes a mask has.
