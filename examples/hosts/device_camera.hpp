@@ -78,6 +78,31 @@ PETZVAL_DEVICE inline DevicePlace sample_polygon(const float* t, float film_x, f
   return {cosine * x + sine * y, cosine * y - sine * x, before(64)};
 }
 
+/// The polygon at fractions of a cell.
+struct DeviceCell {
+  const float* numbers;
+  float t, s;
+
+  PETZVAL_DEVICE float bilinear(const float* a) const { return a[0] + t * a[1] + s * (a[2] + t * a[3]); }
+  PETZVAL_DEVICE float middle(int axis) const { return bilinear(numbers + 4 * axis); }
+  /// Area before a corner; 64: the whole.
+  PETZVAL_DEVICE float before(int k) const {
+    const float* a = numbers + (k == 64 ? 8 : 25 + 17 * k);
+    const float by_s = a[3] + t * (a[4] + t * a[5]), by_s2 = a[6] + t * (a[7] + t * a[8]);
+    return a[0] + t * (a[1] + t * a[2]) + s * (by_s + s * by_s2);
+  }
+  /// A place, from the middle, and the whole area. share: of the area before it.
+  PETZVAL_DEVICE DevicePlace place(float share, float v) const {
+    const float whole = before(64), wanted = share * whole;
+    int k = 0;
+    for (int step = 32; step > 0; step /= 2) k += before(k + step) <= wanted ? step : 0;
+    const float own = before(k + 1) - before(k), along = own > 0 ? (wanted - before(k)) / own : 0, way = std::sqrt(v);
+    const float *a = numbers + 17 + 17 * k, *b = a + 17;
+    const float ax = bilinear(a), ay = bilinear(a + 4), bx = bilinear(b), by = bilinear(b + 4);
+    return {way * (ax + along * (bx - ax)), way * (ay + along * (by - ay)), whole};
+  }
+};
+
 /// Of a lens with cylinders: in the quadrant x, y >= 0 of the film; the pupils of the others are mirror images.
 PETZVAL_DEVICE inline DevicePlace sample_cell(const float* t, float film_x, float film_y, float u, float v, int w) {
   const int rows = whole_number(t, Table::rows), columns = whole_number(t, Table::columns);
@@ -89,31 +114,45 @@ PETZVAL_DEVICE inline DevicePlace sample_cell(const float* t, float film_x, floa
   if (!(std::fabs(film_x) <= 1.000001f * width)) return {};
   const float column = width > 0 ? std::fabs(film_x) / width * static_cast<float>(columns) : 0;
   const int j = static_cast<int>(column) < columns ? static_cast<int>(column) : columns - 1;
-  const float part_x = column - static_cast<float>(j);
-  const float* cell = list(t, Table::pupils) + ((w * rows + i) * columns + j) * 1122;
-  const auto bilinear = [part_x, part_y](const float* a) {
-    return a[0] + part_x * a[1] + part_y * (a[2] + part_x * a[3]);
-  };
-  const auto before = [cell, part_x, part_y](int k) {
-    const float* a = cell + (k == 64 ? 8 : 25 + 17 * k);
-    const float one = a[0] + part_x * (a[1] + part_x * a[2]), by_y = a[3] + part_x * (a[4] + part_x * a[5]);
-    return one + part_y * (by_y + part_y * (a[6] + part_x * (a[7] + part_x * a[8])));
-  };
-  const float whole = before(64);
-  if (!(whole > 0)) return {};
+  const DeviceCell cell{list(t, Table::pupils) + ((w * rows + i) * columns + j) * 1122, column - static_cast<float>(j),
+                        part_y};
+  if (!(cell.before(64) > 0)) return {};
   // u runs on where quadrants meet.
   float share = film_x < 0 ? 1 - u : u;
-  if (film_y < 0) share = before(32) / whole - share;
+  if (film_y < 0) share = cell.before(32) / cell.before(64) - share;
   share -= std::floor(share);
-  const float wanted = share * whole;
-  int k = 0;
-  for (int step = 32; step > 0; step /= 2) k += before(k + step) <= wanted ? step : 0;
-  const float own = before(k + 1) - before(k), along = own > 0 ? (wanted - before(k)) / own : 0, way = std::sqrt(v);
-  const float *a = cell + 17 + 17 * k, *b = a + 17;
-  const float ax = bilinear(a), ay = bilinear(a + 4), bx = bilinear(b), by = bilinear(b + 4);
-  const float x = bilinear(cell) + way * (ax + along * (bx - ax));
-  const float y = bilinear(cell + 4) + way * (ay + along * (by - ay));
-  return {film_x < 0 ? -x : x, film_y < 0 ? -y : y, whole};
+  const DevicePlace p = cell.place(share, v);
+  const float x = cell.middle(0) + p.x, y = cell.middle(1) + p.y;
+  return {film_x < 0 ? -x : x, film_y < 0 ? -y : y, p.area};
+}
+
+/// Of a bladed iris: in a film that is turned, and mirrored, until the nearest corner of the iris is on +y.
+PETZVAL_DEVICE inline DevicePlace sample_bladed(const float* t, float film_x, float film_y, float u, float v, int w) {
+  const int rows = whole_number(t, Table::rows), columns = whole_number(t, Table::columns);
+  const int blades = whole_number(t, Table::blades);
+  const float height = std::sqrt(film_x * film_x + film_y * film_y), count = static_cast<float>(blades);
+  const float sine = height > 0 ? film_x / height : 0, cosine = height > 0 ? film_y / height : 1;
+  const float row = t[Table::pupil_radius] > 0 ? height * static_cast<float>(rows) / t[Table::pupil_radius] : 0;
+  const int i = static_cast<int>(row) < rows ? static_cast<int>(row) : rows - 1;
+  // In blades, from one turn before the first corner.
+  constexpr float whole_turn = 6.28318531f;
+  const float turn = count * (std::atan2(sine, cosine) / whole_turn + 1) + t[Table::first_blade];
+  const int nearest = static_cast<int>(turn + 0.5f), blade = nearest % blades;
+  const float beside = turn - static_cast<float>(nearest), sign = beside < 0 ? -1.0f : 1.0f;
+  const float column = 2 * std::fabs(beside) * static_cast<float>(columns);
+  const int j = static_cast<int>(column) < columns ? static_cast<int>(column) : columns - 1;
+  const DeviceCell cell{list(t, Table::pupils) + ((w * rows + i) * columns + j) * 1139, column - static_cast<float>(j),
+                        row - static_cast<float>(i)};
+  if (!(cell.before(64) > 0)) return {};
+  // u begins at the iris's first corner.
+  const int first = sign > 0 ? (blades - blade) % blades : blade;
+  float share = cell.before(first * (whole_number(t, Table::blade_corners) / blades)) / cell.before(64) + sign * u;
+  share -= std::floor(share);
+  const DevicePlace p = cell.place(share, v);
+  const float angle = whole_turn * (static_cast<float>(blade) - t[Table::first_blade]) / count;
+  const float across = sign * p.x, along = p.y, middle = cell.middle(1);
+  return {sine * middle + std::cos(angle) * across + std::sin(angle) * along,
+          cosine * middle - std::sin(angle) * across + std::cos(angle) * along, p.area};
 }
 
 PETZVAL_DEVICE inline bool by_first_order(const float* t, const float film[2], const float pupil[2], int w,
@@ -291,7 +330,8 @@ PETZVAL_DEVICE inline DeviceRay sample(const float* t, float film_x, float film_
   switch (whole_number(t, Table::pupils_kind)) {
     case 0: place = sample_polygon(t, film_x, film_y, u, v, w); break;
     case 1: place = sample_image(t, film_x, film_y, u, v, w); break;
-    default: place = sample_cell(t, film_x, film_y, u, v, w);
+    case 2: place = sample_cell(t, film_x, film_y, u, v, w); break;
+    default: place = sample_bladed(t, film_x, film_y, u, v, w);
   }
   if (!(place.area > 0)) return ray;
   const float film[2] = {film_x, film_y}, pupil[2] = {place.x, place.y};

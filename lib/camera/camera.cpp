@@ -22,15 +22,6 @@ using camera_detail::FilmView;
 using camera_detail::LensFacts;
 using camera_detail::TiltedFilm;
 
-/// Throws Error for a model whose pupils are fitted to those of a round stop.
-void check_iris(const Lens& lens, ModelKind kind) {
-  const bool fitted = kind == ModelKind::thin_two_disc || camera_detail::is_polynomial(kind);
-  if (lens.iris().round() || !fitted) return;
-  throw Error(
-      lens.name() + ": camera: " + std::string(name(kind)) +
-      " has the pupils of a round stop, wanted an exact model, or pinhole, thin or thick, for an iris with blades");
-}
-
 /// Throws Error for a model of another lens or film, as far as its pupils show.
 void check_model(const Lens& lens, const FilmPupilTable& pupils, double radius) {
   const std::size_t wavelengths = lens.wavelengths_nm().size();
@@ -144,7 +135,6 @@ Camera::Data::Data(const LensFacts& facts, const Film& placed, const AnyRayModel
 Camera::Camera(const Lens& lens, const Film& film, const CameraOptions& options) {
   const auto [placed_lens, placed_film] = camera_detail::placed(lens, film);
   camera_detail::check_film(placed_lens, placed_film);
-  check_iris(placed_lens, options.model);
   const LensFacts facts(placed_lens);
   const double radius = camera_detail::upright_radius(facts, placed_film, options.model);
   const AnyRayModel model = camera_detail::make_model(options.model, facts, radius, options.threads);
@@ -154,7 +144,6 @@ Camera::Camera(const Lens& lens, const Film& film, const CameraOptions& options)
 Camera::Camera(const Lens& lens, const Film& film, const AnyRayModel& model, Normalisation normalisation) {
   const auto [placed_lens, placed_film] = camera_detail::placed(lens, film);
   camera_detail::check_film(placed_lens, placed_film);
-  check_iris(placed_lens, model.kind());
   const LensFacts facts(placed_lens);
   const double radius = camera_detail::upright_radius(facts, placed_film, model.kind());
   check_model(placed_lens, model.pupils(), radius);

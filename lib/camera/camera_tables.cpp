@@ -130,7 +130,16 @@ void CameraTables::check(std::span<const float> tables, const std::string& where
       check_list(pupils, cells), check_list(pupils, w * cells * FilmPupilArrays::cell_size);
       break;
     }
-    default: refuse("pupils of kind " + std::to_string(number(pupils_kind)) + ", wanted 0, 1 or 2");
+    case 3:
+      check_number(rows, 1, 1 << 16), check_number(columns, 1, 1 << 16);
+      check_number(blades, 3, 20), check_number(blade_corners, number(blades), FilmPupilArrays::corners);
+      if (const float turn = tables[first_blade]; !(turn >= 0 && turn <= static_cast<float>(number(blades)))) {
+        refuse(std::to_string(turn) + " at position " + std::to_string(first_blade) + ", wanted 0 to " +
+               std::to_string(number(blades)));
+      }
+      check_list(pupils, w * number(rows) * number(columns) * FilmPupilArrays::bladed_size);
+      break;
+    default: refuse("pupils of kind " + std::to_string(number(pupils_kind)) + ", wanted 0 to 3");
   }
   if (number(iris_blades) > 0) check_list(iris, 2 * (FilmPupilArrays::edge_terms + number(iris_blades)));
   switch (number(rays_kind)) {
@@ -180,6 +189,11 @@ std::vector<float> Camera::tables() const {
     to.set(Table::height, pupils.height);
     to.begin(Table::half_widths);
     to.list.insert(to.list.end(), pupils.half_widths.begin(), pupils.half_widths.end());
+  }
+  if (pupils.kind == FilmPupilArrays::Kind::bladed) {
+    to.set(Table::rows, pupils.rows), to.set(Table::columns, pupils.columns);
+    to.set(Table::blades, pupils.blades), to.set(Table::blade_corners, pupils.blade_corners);
+    to.set(Table::first_blade, pupils.first_blade);
   }
   to.begin(Table::iris), to.list.insert(to.list.end(), pupils.iris.begin(), pupils.iris.end());
   to.set(Table::iris_blades, pupils.iris.empty() ? 0 : pupils.iris.size() / 2 - FilmPupilArrays::edge_terms);

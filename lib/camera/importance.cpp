@@ -27,6 +27,7 @@
 
 #include "camera_data.hpp"
 #include "make_model.hpp"
+#include "petzval/camera/polynomial_model.hpp"
 #include "scene_side.hpp"
 #include "tilted_pinhole.hpp"
 
@@ -82,6 +83,9 @@ EntrancePupilTable entrance_of(const Lens& lens, const AnyRayModel& model) {
   if (is_first_order(model.kind()) && !lens.iris().round()) {  // whose pupils the round stop's enclose
     const Lens round = with_iris(lens, {});
     return entrance_of(round, make_model(model.kind(), round, model.pupils().film_radius()));
+  }
+  if (const auto* polynomial = model.as<PolynomialModel>(); polynomial && !lens.iris().round()) {
+    return entrance_of(with_iris(lens, {}), PolynomialModel(polynomial->polynomial(), model.pupils().of_round_stop()));
   }
   // A pinhole only needs to know what lies in front of the lens.
   if (model.pinhole()) {

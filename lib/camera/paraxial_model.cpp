@@ -122,9 +122,6 @@ void check(ModelKind model, const LensFacts& facts) {
     throw Error(lens.name() + ": found cylinders, wanted a lens of revolution for " + std::string(name(model)) +
                 ", or another model");
   }
-  if (model == ModelKind::thin_two_disc && !lens.iris().round()) {
-    throw Error(lens.name() + ": found an iris with blades, wanted a round one for thin_two_disc, or another model");
-  }
   for (std::size_t w = 0; w < facts.wavelengths(); ++w) {
     if (facts.first_order(w).afocal || (cylinders && first_order(lens, w, Meridian::x).afocal)) {
       throw Error(lens.name() + ": found an afocal lens, wanted a focal length for a first-order model");
@@ -133,10 +130,10 @@ void check(ModelKind model, const LensFacts& facts) {
 }
 
 FilmPupilTable two_disc_pupils(const Lens& lens, double film_radius) {
-  const FilmPupilTable real = FilmPupilTable::equal_area(lens, film_radius);
+  const FilmPupilTable real = FilmPupilTable::equal_area(lens, film_radius), round = real.of_round_stop();
   std::vector<std::vector<PupilDisc>> discs;
   for (std::size_t w = 0; w < real.wavelengths(); ++w) {
-    const auto fitted = fit_two_discs(real_edges(real, w));
+    const auto fitted = fit_two_discs(real_edges(round, w));
     discs.emplace_back(fitted.begin(), fitted.end());
   }
   return real.reshaped(discs);

@@ -40,7 +40,8 @@ struct SectionMaps {
 /// A lens with cylinders has cardinal points, focus and image of the stop of its own in each section; it has no centre
 /// of projection, and so neither pinhole nor two discs.
 ///
-/// An iris with blades is seen as its image, by all but thin_two_disc. The pinhole has the weights of the thick lens: a
+/// An iris with blades is seen as its image; two discs, which are fitted to the round stop, keep what the real iris
+/// leaves of them. The pinhole has the weights of the thick lens: a
 /// picture keeps its exposure when it is stopped down to a point. Central obscurations are ignored. Rays are given
 /// in the plane of the first vertex.
 class ParaxialModel {
@@ -49,9 +50,9 @@ class ParaxialModel {
   static constexpr bool any_wavelength = true;
 
   /// film_radius: of the farthest film point, mm. Throws Error for another model, for a lens that is afocal, has no
-  /// pupils or no finite one that the model needs, for a pinhole or two discs of one with cylinders, for an iris with
-  /// blades where the model refuses it, and for a film in the image of the stop or, for thin lenses, in the
-  /// rear principal plane.
+  /// pupils or no finite one that the model needs, for a pinhole or two discs of one with cylinders, for two discs
+  /// of an iris with blades and a central obscuration, and for a film in the image of the stop or, for thin lenses, in
+  /// the rear principal plane.
   PETZVAL_API ParaxialModel(ModelKind model, const LensFacts& facts, double film_radius);
 
   ModelKind kind() const noexcept { return kind_; }

@@ -193,7 +193,8 @@ double reference_of(const Lens& lens) {
 
 RayPolynomial RayPolynomial::fit(const Lens& lens, const FilmPupilTable& pupils, int degree) {
   const std::string where = lens.name() + ": polynomial: ";
-  if (!lens.iris().round()) throw Error(where + "the iris has blades, wanted a round stop");
+  // Rays do not depend on the iris.
+  if (!lens.iris().round()) return fit(with_iris(lens, {}), pupils.of_round_stop(), degree);
   if (!(degree >= 3 && degree <= 11 && degree % 2 == 1)) {
     throw Error(where + "degree is " + std::to_string(degree) + ", wanted 3, 5, 7, 9 or 11");
   }

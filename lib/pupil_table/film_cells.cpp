@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "polygon_place.hpp"
 
@@ -58,18 +59,51 @@ std::array<double, L::size> cell_between(const AtCorners& at) {
   return cell;
 }
 
+/// Adds the guide of BladedLayout: in the middle of the cell.
+void add_guide(std::vector<double>& cell, std::size_t corners) {
+  const InCell<double> polygon{cell.data(), 0.5, 0.5, corners, true};
+  const double whole = polygon.area_before(polygon_corners);
+  std::array<double, BladedLayout::guide_steps + 1> guide;
+  for (std::size_t step = 0, k = 0; step <= BladedLayout::guide_steps; ++step) {
+    const double wanted = whole * static_cast<double>(step) / BladedLayout::guide_steps;
+    while (k + 1 < corners && polygon.area_before(k + 1) <= wanted) ++k;
+    const double before = polygon.area_before(k), own = polygon.area_before(k + 1) - before;
+    guide[step] = static_cast<double>(k) + (own > 0 ? std::clamp((wanted - before) / own, 0.0, 1.0) : 0);
+  }
+  cell.insert(cell.end(), guide.begin(), guide.end());
+}
+
 }  // namespace
 
-/// Where a film point stands in the table, and where it lies: the signs of its coordinates.
+/// Where a film point stands in the table, and where it lies: the signs of its coordinates, or its direction and fold.
 struct FilmCells::Place {
   const double* cell = nullptr;  // null: nowhere
   double t = 0, s = 0, row = 0;
   double sign_x = 1, sign_y = 1;
+  const double* fold = nullptr;  // of a bladed iris (BladedTable)
+  double sine = 0, cosine = 1;
+  std::size_t corners = polygon_corners;
 
-  InCell<double> polygon() const noexcept { return {cell, t, s}; }
+  InCell<double> polygon() const noexcept { return {cell, t, s, corners, fold != nullptr}; }
+  Vec2<double> middle() const noexcept {
+    const Point<double> p = polygon().middle();
+    return fold ? Vec2<double>{sine * p.y, cosine * p.y} : Vec2<double>{sign_x * p.x, sign_y * p.y};
+  }
+  /// A place of the plane, from the middle, as the table has it.
+  Point<double> from_middle(double x, double y) const noexcept {
+    const Vec2<double> own = middle();
+    const double px = x - own.x, py = y - own.y;
+    if (!fold) return {sign_x * px, sign_y * py};
+    return {fold[0] * px + fold[2] * py, fold[1] * px + fold[3] * py};
+  }
   /// u in the quadrant of the table. Towards -y it is the share of the half at +x.
   template <class T>
   T share(const InCell<T>& polygon, double u) const noexcept {
+    if (fold) {
+      const T begin = polygon.area_before(static_cast<std::size_t>(fold[4])) / polygon.area_before(polygon_corners);
+      const T from = begin + fold[5] * u;
+      return from < 0.0 ? T(from + 1.0) : from < 1.0 ? from : T(from - 1.0);
+    }
     const double across = sign_x < 0 ? 1 - u : u;
     const T from = sign_y < 0 ? polygon.right_share() - across : T(across);
     return from < 0.0 ? T(from + 1.0) : from < 1.0 ? from : T(from - 1.0);
@@ -77,30 +111,76 @@ struct FilmCells::Place {
 };
 
 FilmCells::FilmCells(const FilmGrid& grid, double film_radius, std::size_t primary)
-    : grid_(grid), film_radius_(film_radius), primary_(primary) {
+    : grid_(grid), film_radius_(film_radius), primary_(primary), rows_(grid.rows()), columns_(grid.columns) {
   for (const double width : grid.half_widths) half_widths_single_.push_back(static_cast<float>(width));
+}
+
+FilmCells::FilmCells(const BladedGrid& grid, std::size_t primary)
+    : film_radius_(grid.film_radius),
+      primary_(primary),
+      rows_(grid.rows),
+      columns_(grid.columns),
+      corners_(grid.corners),
+      blades_(grid.iris.blades) {
+  constexpr double full_turn = 2 * std::numbers::pi;
+  const auto blades = static_cast<std::size_t>(grid.iris.blades);
+  first_blade_ = grid.iris.rotation_rad / full_turn * blades_;
+  first_blade_ -= blades_ * std::floor(first_blade_ / blades_);
+  const std::size_t each = corners_ / blades;
+  for (std::size_t blade = 0; blade < blades; ++blade) {
+    const double angle = full_turn * static_cast<double>(blade) / blades_ - grid.iris.rotation_rad;
+    for (const double sign : {1.0, -1.0}) {
+      const std::size_t first = sign > 0 ? (blades - blade) % blades : blade;
+      folds_.insert(folds_.end(), {sign * std::cos(angle), std::sin(angle), -sign * std::sin(angle), std::cos(angle),
+                                   static_cast<double>(first * each), sign});
+    }
+  }
+  for (const double value : folds_) folds_single_.push_back(static_cast<float>(value));
 }
 
 void FilmCells::add(const std::vector<PupilPolygon>& polygons) {
   ++wavelengths_;
-  for (std::size_t i = 0; i < grid_.rows(); ++i) {
-    for (std::size_t j = 0; j < grid_.columns; ++j) {
-      const auto node = [&](std::size_t row, std::size_t column) {
-        return &polygons[row * (grid_.columns + 1) + column];
-      };
-      const auto cell = cell_between({node(i, j), node(i, j + 1), node(i + 1, j), node(i + 1, j + 1)});
+  const std::size_t corners = bladed() ? corners_ : polygon_corners;
+  for (std::size_t i = 0; i < rows_; ++i) {
+    for (std::size_t j = 0; j < columns_; ++j) {
+      const auto node = [&](std::size_t row, std::size_t column) { return &polygons[row * (columns_ + 1) + column]; };
+      const auto numbers = cell_between({node(i, j), node(i, j + 1), node(i + 1, j), node(i + 1, j + 1)});
+      std::vector<double> cell(numbers.begin(), numbers.end());
+      if (bladed()) add_guide(cell, corners);
       twice_.insert(twice_.end(), cell.begin(), cell.end());
       for (const double value : cell) single_.push_back(static_cast<float>(value));
       constexpr int steps = 4;
       for (int place = 0; place < (steps + 1) * (steps + 1); ++place) {
         const double t = place % (steps + 1) / double{steps}, s = place / (steps + 1) / double{steps};
-        corrections_ = std::max(corrections_, corrections_of(InCell<double>{cell.data(), t, s}));
+        corrections_ = std::max(corrections_, corrections_of(InCell<double>{cell.data(), t, s, corners, bladed()}));
       }
     }
   }
 }
 
+FilmCells::Place FilmCells::find_bladed(const FilmPoint& film, std::size_t wavelength) const noexcept {
+  const double r = std::hypot(film.x, film.y);
+  const BladedTable<double> own = bladed_table<double>();
+  if (!(r <= own.lit_radius) || wavelength >= wavelengths_) return {};
+  const double sine = r > 0 ? film.x / r : 0, cosine = r > 0 ? film.y / r : 1, row = r * own.rows_per_mm;
+  const std::size_t i = std::min(static_cast<std::size_t>(row), rows_ - 1);
+  const double turn = blades_ * (turn_of(sine, cosine) + 1) + first_blade_;
+  const auto nearest = static_cast<std::size_t>(turn + 0.5);
+  const double beside = turn - static_cast<double>(nearest);
+  const double column = 2 * std::abs(beside) * static_cast<double>(columns_);
+  const std::size_t j = std::min(static_cast<std::size_t>(column), columns_ - 1);
+  const std::size_t fold = 2 * (nearest % static_cast<std::size_t>(blades_)) + (beside < 0 ? 1 : 0);
+  Place place;
+  place.cell = own.cells + ((wavelength * rows_ + i) * columns_ + j) * BladedLayout::size;
+  place.t = column - static_cast<double>(j), place.s = row - static_cast<double>(i);
+  place.fold = own.folds + fold * BladedLayout::fold;
+  place.sine = sine, place.cosine = cosine;
+  place.corners = corners_;
+  return place;
+}
+
 FilmCells::Place FilmCells::find(const FilmPoint& film, std::size_t wavelength) const noexcept {
+  if (bladed()) return find_bladed(film, wavelength);
   const double x = std::abs(film.x), y = std::abs(film.y);
   constexpr double end = 1 + 1e-6;  // as in the loops
   const CellTable<double> own = table<double>();
@@ -114,12 +194,36 @@ FilmCells::Place FilmCells::find(const FilmPoint& film, std::size_t wavelength) 
   if (!(x <= end * width)) return {};
   const double column = x / (width > 0 ? width : 1) * static_cast<double>(own.columns);
   const std::size_t j = std::min(static_cast<std::size_t>(column), own.columns - 1);
-  return {own.cells + ((wavelength * own.rows + i) * own.columns + j) * L::size,
-          column - static_cast<double>(j),
-          s,
-          static_cast<double>(i),
-          film.x < 0 ? -1.0 : 1.0,
-          film.y < 0 ? -1.0 : 1.0};
+  return {.cell = own.cells + ((wavelength * own.rows + i) * own.columns + j) * L::size,
+          .t = column - static_cast<double>(j),
+          .s = s,
+          .row = static_cast<double>(i),
+          .sign_x = film.x < 0 ? -1.0 : 1.0,
+          .sign_y = film.y < 0 ? -1.0 : 1.0};
+}
+
+template <class R>
+BladedTable<R> FilmCells::bladed_table() const noexcept {
+  BladedTable<R> result;
+  if constexpr (sizeof(R) == sizeof(float)) {
+    result.cells = single_.data();
+    result.folds = folds_single_.data();
+  } else {
+    result.cells = twice_.data();
+    result.folds = folds_.data();
+  }
+  result.rows = rows_;
+  result.columns = columns_;
+  result.wavelengths = wavelengths_;
+  result.primary = primary_;
+  result.corners = corners_;
+  result.blades = static_cast<R>(blades_);
+  result.first_blade = static_cast<R>(first_blade_);
+  result.lit_radius = static_cast<R>(film_radius_ * (1 + 1e-6));  // the corner itself, rounded
+  constexpr double smallest = 1e-30;                              // as of strips
+  result.rows_per_mm = static_cast<R>(film_radius_ > smallest ? static_cast<double>(rows_) / film_radius_ : 0);
+  result.corrections = corrections_;
+  return result;
 }
 
 template <class R>
@@ -146,9 +250,18 @@ CellTable<R> FilmCells::table() const noexcept {
 
 void FilmCells::put(FilmPupilArrays& arrays) const {
   static_assert(L::size == FilmPupilArrays::cell_size && L::whole == 8 && L::sectors == 17 && L::sector == 17);
-  arrays.kind = FilmPupilArrays::Kind::cells;
+  static_assert(BladedLayout::size == FilmPupilArrays::bladed_size);
   arrays.pupils = single_;
-  arrays.columns = grid_.columns;
+  arrays.columns = columns_;
+  if (bladed()) {
+    arrays.kind = FilmPupilArrays::Kind::bladed;
+    arrays.rows = rows_;
+    arrays.blades = folds_.size() / (2 * BladedLayout::fold);
+    arrays.blade_corners = corners_;
+    arrays.first_blade = first_blade_;
+    return;
+  }
+  arrays.kind = FilmPupilArrays::Kind::cells;
   arrays.height = grid_.height;
   arrays.half_widths = half_widths_single_;
 }
@@ -160,19 +273,17 @@ double FilmCells::area(const FilmPoint& film, std::size_t wavelength) const noex
 
 Vec2<double> FilmCells::middle(const FilmPoint& film, std::size_t wavelength) const noexcept {
   const Place at = find(film, wavelength);
-  if (!at.cell) return {0, 0};
-  const Point<double> p = at.polygon().middle();
-  return {at.sign_x * p.x, at.sign_y * p.y};
+  return at.cell ? at.middle() : Vec2<double>{0, 0};
 }
 
 bool FilmCells::contains(const FilmPoint& film, double x, double y, std::size_t wavelength) const noexcept {
   const Place at = find(film, wavelength);
-  return at.cell && contains_place(at.polygon(), {at.sign_x * x, at.sign_y * y});
+  return at.cell && contains_place(at.polygon(), at.from_middle(x, y));
 }
 
 double FilmCells::clearance(const FilmPoint& film, double x, double y, std::size_t wavelength) const noexcept {
   const Place at = find(film, wavelength);
-  return at.cell ? clearance_of_place(at.polygon(), {at.sign_x * x, at.sign_y * y}) : -1;
+  return at.cell ? clearance_of_place(at.polygon(), at.from_middle(x, y)) : -1;
 }
 
 FilmPupilTable::Derivatives FilmCells::derivatives(const FilmPoint& film, double u, double v,
@@ -181,6 +292,7 @@ FilmPupilTable::Derivatives FilmCells::derivatives(const FilmPoint& film, double
   const Place at = find(film, wavelength);
   if (!at.cell || !(u - u == 0 && v - v == 0)) return {};
   if (!(at.polygon().area_before(polygon_corners) > 0)) return {};
+  if (bladed()) return bladed_derivatives(at, film, u, v);
   // s by y; t by x and, where the rows around have different widths, by s.
   const auto i = static_cast<std::size_t>(at.row);
   const double widening = grid_.half_widths[i + 1] - grid_.half_widths[i];
@@ -194,11 +306,33 @@ FilmPupilTable::Derivatives FilmCells::derivatives(const FilmPoint& film, double
   const InCell<Jet> polygon{at.cell, t, s};
   const Jet share = at.share(polygon, std::clamp(u, 0.0, 1.0));
   const std::size_t k = sector_with(at.polygon(), share.a * at.polygon().area_before(polygon_corners));
-  const Point<Jet> p = sample_place(polygon, k, share, std::clamp(v, 0.0, 1.0));
+  const Point<Jet> p = polygon.middle() + sample_place(polygon, k, share, std::clamp(v, 0.0, 1.0));
   const Jet x = at.sign_x * p.x, y = at.sign_y * p.y;
   return {{x.v[0], y.v[0]}, {x.v[1], y.v[1]}};
 }
 
+FilmPupilTable::Derivatives FilmCells::bladed_derivatives(const Place& at, const FilmPoint& film, double u,
+                                                          double v) const noexcept {
+  using Jet = ceres::Jet<double, 2>;
+  const BladedTable<double> own = bladed_table<double>();
+  // On the axis the directions around it meet: beside it is near enough.
+  const double beside = 1e-4 * film_radius_;
+  if (!(std::hypot(film.x, film.y) >= beside)) return {};
+  const Jet x(film.x, 0), y(film.y, 1), r = sqrt(x * x + y * y), sine = x / r, cosine = y / r;
+  Jet s = r * own.rows_per_mm, t = 2.0 * at.fold[5] * static_cast<double>(columns_) * blades_ * turn_of(sine, cosine);
+  s.a = at.s, t.a = at.t;
+  const InCell<Jet> polygon{at.cell, t, s, corners_, true};
+  const Jet share = at.share(polygon, std::clamp(u, 0.0, 1.0));
+  const std::size_t k = sector_with(at.polygon(), share.a * at.polygon().area_before(polygon_corners));
+  const Point<Jet> p = sample_place(polygon, k, share, std::clamp(v, 0.0, 1.0));
+  const Jet middle = polygon.middle().y;
+  const Jet qx = sine * middle + at.fold[0] * p.x + at.fold[1] * p.y;
+  const Jet qy = cosine * middle + at.fold[2] * p.x + at.fold[3] * p.y;
+  return {{qx.v[0], qy.v[0]}, {qx.v[1], qy.v[1]}};
+}
+
+template BladedTable<float> FilmCells::bladed_table() const noexcept;
+template BladedTable<double> FilmCells::bladed_table() const noexcept;
 template CellTable<float> FilmCells::table() const noexcept;
 template CellTable<double> FilmCells::table() const noexcept;
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "bladed_polygons.hpp"
 #include "film_grid.hpp"
 #include "film_pupil_table_loops.hpp"
 #include "petzval/pupil_table/film_pupil_table.hpp"
@@ -12,14 +13,17 @@
 
 namespace petzval::inline v0::pupil_table_detail {
 
-/// Pupils over the two axes of a film, of a lens that is alike at x and -x and at y and -y: polygons at the nodes of a
-/// FilmGrid, bilinear between them.
+/// Pupils over two coordinates of a film, bilinear between polygons at the nodes of a grid: over its two axes, of a
+/// lens that is alike at x and -x and at y and -y; or over the distance from the axis and the azimuth, of a lens of
+/// revolution with a bladed iris.
 ///
 /// In the other quadrants u runs the other way round, from where it begins at the axis between them: samples of
-/// neighbours are neighbours there too.
+/// neighbours are neighbours there too. So it does with the other blades, where u begins at the first corner of the
+/// iris.
 class FilmCells {
  public:
   FilmCells(const FilmGrid& grid, double film_radius, std::size_t primary);
+  FilmCells(const BladedGrid& grid, std::size_t primary);
 
   /// Adds a wavelength: the polygons of the nodes.
   void add(const std::vector<PupilPolygon>& polygons);
@@ -31,21 +35,28 @@ class FilmCells {
   FilmPupilTable::Derivatives derivatives(const FilmPoint& film, double u, double v,
                                           std::size_t wavelength) const noexcept;
 
+  bool bladed() const noexcept { return corners_ > 0; }
   template <class R>
   CellTable<R> table() const noexcept;
+  template <class R>
+  BladedTable<R> bladed_table() const noexcept;
   void put(FilmPupilArrays& arrays) const;
 
  private:
   struct Place;
   Place find(const FilmPoint& film, std::size_t wavelength) const noexcept;
+  Place find_bladed(const FilmPoint& film, std::size_t wavelength) const noexcept;
+  FilmPupilTable::Derivatives bladed_derivatives(const Place& at, const FilmPoint& film, double u,
+                                                 double v) const noexcept;
 
   FilmGrid grid_;
   double film_radius_;
-  std::size_t primary_, wavelengths_ = 0;
+  std::size_t primary_, rows_, columns_, wavelengths_ = 0;
+  std::size_t corners_ = 0;  // of polygons of a bladed iris
+  double blades_ = 0, first_blade_ = 0;
   int corrections_ = 0;
-  std::vector<std::vector<PupilPolygon>> polygons_;  // by wavelength
-  std::vector<double> twice_;                        // cells by CellLayout
-  std::vector<float> single_, half_widths_single_;
+  std::vector<double> twice_, folds_;  // cells by CellLayout
+  std::vector<float> single_, folds_single_, half_widths_single_;
 };
 
 }  // namespace petzval::inline v0::pupil_table_detail

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "bladed_polygons.hpp"
 #include "core/quadrature.hpp"
 #include "core/text.hpp"
 #include "film_cells.hpp"
@@ -65,14 +66,18 @@ struct FilmPupilTable::Data {
   std::size_t wavelengths = 0, primary = 0;
   lens_detail::CompiledWavelengths compiled;  // for samples by nm
   std::optional<IrisImages> images;           // instead of strips
-  std::optional<FilmCells> cells;             // instead of strips
-  double lit_radius = 0;                      // to which the strips reach: beyond it is dark
+  std::optional<FilmCells> cells;             // instead of strips; of a bladed iris, strips are those of the round stop
+  Iris iris;
+  std::vector<std::vector<StopMap>> maps;  // of a bladed iris, by wavelength
+  double lit_radius = 0;                   // to which the strips reach: beyond it is dark
   std::size_t strips_each = 0;
   double strips_per_mm = 0;
   bool obscured = false;
   int corrections = 0;
   std::vector<double> twice;  // strips by StripLayout
   std::vector<float> single;
+
+  bool bladed() const noexcept { return cells && cells->bladed(); }
 
   /// Adds a wavelength.
   void add(const std::vector<PupilPolygon>& polygons) {
@@ -171,6 +176,17 @@ double solid_angle(const TwoPlanes& space, const FilmPoint& film, double area, c
   return area * depth2 * sum / around;
 }
 
+/// Scales a polygon until its film point sees it in a projected solid angle.
+void scale_to_light(PupilPolygon& polygon, const TwoPlanes& space, const FilmPoint& film, double wanted) {
+  // The solid angle grows with the square of the scale, nearly.
+  for (int round = 0; round < 3; ++round) {
+    const PolygonSampler sampler(polygon);
+    const double own = solid_angle(space, film, sampler.area(), sampler);
+    const double scale = own > 0 ? std::sqrt(wanted / own) : 0;
+    for (auto& corner : polygon.corners) corner = {scale * corner[0], scale * corner[1]};
+  }
+}
+
 /// Makes the pupils of each wavelength contain those up to the middles between it and its neighbours.
 void expand_to_neighbours(const lens_detail::CompiledWavelengths& compiled,
                           std::vector<std::vector<PupilPolygon>>& polygons) {
@@ -182,6 +198,15 @@ void expand_to_neighbours(const lens_detail::CompiledWavelengths& compiled,
       expand_towards(polygons[next][i], own[w][i]);
     }
   }
+}
+
+bool obscured(const std::vector<std::vector<PupilPolygon>>& polygons) {
+  for (const auto& own : polygons) {
+    for (const PupilPolygon& polygon : own) {
+      if (std::any_of(polygon.obscured.begin(), polygon.obscured.end(), [](double w) { return w > 0; })) return true;
+    }
+  }
+  return false;
 }
 
 void check_film_radius(const std::string& where, double film_radius) {
@@ -200,34 +225,54 @@ FilmPupilTable FilmPupilTable::traced(const Lens& lens, double film_radius, bool
   data->primary = lens.primary_wavelength();
   data->compiled = lens_detail::CompiledWavelengths(lens.wavelengths_nm());
   const std::size_t wavelengths = lens.wavelengths_nm().size();
-  if (!lens.rotationally_symmetric()) {
+  const Lens round = with_iris(lens, {});
+  if (!round.rotationally_symmetric()) {
     data->wavelengths = wavelengths;
-    const FilmGrid grid = film_grid(lens, data->space, film_radius);
+    const FilmGrid grid = film_grid(round, data->space, film_radius);
     data->cells.emplace(grid, film_radius, data->primary);
     std::vector<std::vector<PupilPolygon>> polygons(wavelengths);
     parallel_for(wavelengths, 1, threads,
-                 [&](std::size_t w, std::size_t) { polygons[w] = grid_polygons(lens, data->space, grid, fit, w); });
+                 [&](std::size_t w, std::size_t) { polygons[w] = grid_polygons(round, data->space, grid, fit, w); });
     if (enclosing) expand_to_neighbours(data->compiled, polygons);
     for (const auto& own : polygons) data->cells->add(own);
     return FilmPupilTable(std::move(data));
   }
   std::vector<FilmPupils> pupils;
-  for (std::size_t w = 0; w < wavelengths; ++w) pupils.push_back(traced_pupils(lens, data->space, w));
+  for (std::size_t w = 0; w < wavelengths; ++w) pupils.push_back(traced_pupils(round, data->space, w));
   auto [lit_radius, polygons] = film_polygons(film_radius, fit, pupils, threads);
-  if (enclosing) expand_to_neighbours(data->compiled, polygons);
   data->lit_radius = lit_radius;
+  std::vector<std::vector<PupilPolygon>> bladed;
+  if (!lens.iris().round() && !obscured(polygons)) {
+    const BladedGrid grid(lens.iris(), lit_radius, polygons[0].size());
+    data->iris = lens.iris();
+    data->cells.emplace(grid, data->primary);
+    data->maps.resize(wavelengths), bladed.resize(wavelengths);
+    parallel_for(wavelengths, 1, threads, [&, lit = lit_radius, &polygons = polygons](std::size_t w, std::size_t) {
+      for (std::size_t i = 0; i < polygons[w].size(); ++i) {
+        const double height = lit * static_cast<double>(i) / static_cast<double>(polygons[w].size() - 1);
+        data->maps[w].emplace_back(lens, data->space, height, polygons[w][i], w);
+      }
+      bladed[w] = bladed_polygons(grid, polygons[w], data->maps[w], fit);
+    });
+  } else if (!lens.iris().round() && !enclosing) {
+    throw Error(lens.name() + ": pupils: found an iris with blades and a central obscuration, wanted a round stop");
+  }
+  if (enclosing) {
+    expand_to_neighbours(data->compiled, polygons);
+    if (!bladed.empty()) expand_to_neighbours(data->compiled, bladed);
+  }
   for (const auto& own : polygons) data->add(own);
+  for (const auto& own : bladed) data->cells->add(own);
   return FilmPupilTable(std::move(data));
 }
 
 FilmPupilTable FilmPupilTable::enclosing(const Lens& lens, double film_radius, int threads) {
-  // Whatever its shape, the iris lies within the round stop: the pupils of that enclose its own.
-  return traced(with_iris(lens, {}), film_radius, true, threads);
+  return traced(lens, film_radius, true, threads);
 }
 
 FilmPupilTable FilmPupilTable::equal_area(const Lens& lens, double film_radius, int threads) {
-  if (!lens.iris().round()) {
-    throw Error(lens.name() + ": pupils: the iris has blades, wanted a round one");
+  if (!lens.iris().round() && !with_iris(lens, {}).rotationally_symmetric()) {
+    throw Error(lens.name() + ": pupils: found cylinders and an iris with blades, wanted a round stop");
   }
   return traced(lens, film_radius, false, threads);
 }
@@ -245,27 +290,49 @@ FilmPupilTable FilmPupilTable::of_discs(const TwoPlanes& space, std::span<const 
   return FilmPupilTable(std::move(data));
 }
 
+FilmPupilTable FilmPupilTable::of_round_stop() const {
+  auto data = std::make_shared<Data>(*data_);
+  if (data->bladed()) data->cells.reset();
+  if (data->images) data->images = data->images->of_round_stop();
+  return FilmPupilTable(std::move(data));
+}
+
 FilmPupilTable FilmPupilTable::reshaped(std::span<const std::vector<PupilDisc>> discs) const {
+  const FilmPupilTable round = of_round_stop();
   auto data = std::make_shared<Data>();
   data->space = data_->space;
   data->film_radius = film_radius();
   data->lit_radius = lit_radius();
   data->primary = primary_wavelength();
   data->compiled = data_->compiled;
+  constexpr std::size_t strips = film_strips(PolygonFit::equal_area);
+  const std::optional<BladedGrid> grid =
+      data_->bladed() ? std::optional(BladedGrid(data_->iris, lit_radius(), strips + 1)) : std::nullopt;
+  if (grid) {
+    data->iris = data_->iris, data->maps = data_->maps;
+    data->cells.emplace(*grid, data->primary);
+  }
   for (std::size_t w = 0; w < discs.size(); ++w) {
     std::vector<PupilPolygon> polygons = disc_polygons(discs[w], lit_radius());
     for (std::size_t i = 0; i < polygons.size(); ++i) {
-      const FilmPoint film{0, lit_radius() * static_cast<double>(i) / film_strips(PolygonFit::equal_area)};
-      const double wanted = projected_solid_angle(film, w);
-      // The solid angle grows with the square of the scale, nearly.
-      for (int round = 0; round < 3; ++round) {
-        const PolygonSampler sampler(polygons[i]);
-        const double own = solid_angle(space(), film, sampler.area(), sampler);
-        const double scale = own > 0 ? std::sqrt(wanted / own) : 0;
-        for (auto& corner : polygons[i].corners) corner = {scale * corner[0], scale * corner[1]};
-      }
+      const FilmPoint film{0, lit_radius() * static_cast<double>(i) / strips};
+      scale_to_light(polygons[i], space(), film, round.projected_solid_angle(film, w));
     }
     data->add(polygons);
+    if (!grid) continue;
+    std::vector<PupilPolygon> bladed = bladed_polygons(*grid, polygons, data_->maps[w], PolygonFit::equal_area);
+    for (std::size_t i = 0; i < bladed.size(); ++i) {
+      // In the frame of the iris, in which the polygons are, and in that of the lens.
+      const auto [radius, azimuth] = grid->node(i);
+      const double turn = azimuth - data_->iris.rotation_rad;
+      PupilPolygon& polygon = bladed[i];
+      const double middle = polygon.middle.y;
+      polygon.middle = {middle * std::sin(azimuth), middle * std::cos(azimuth)};
+      scale_to_light(polygon, space(), {radius * std::sin(azimuth), radius * std::cos(azimuth)},
+                     projected_solid_angle({radius * std::sin(turn), radius * std::cos(turn)}, w));
+      polygon.middle = {0, middle};
+    }
+    data->cells->add(bladed);
   }
   return FilmPupilTable(std::move(data));
 }
@@ -293,11 +360,8 @@ FilmPupilTable FilmPupilTable::for_tilted_film(const FilmTilt& tilt) const {
     data->images = data_->images->tilted(tilt);
     return FilmPupilTable(std::move(data));
   }
-  if (data_->images && !data_->images->round()) {  // edges are alike neither all around nor at mirror images
-    *data = *data_;
-    data->images = data_->images->of_round_stop();
-    return FilmPupilTable(std::move(data)).for_tilted_film(tilt);
-  }
+  // Edges of blades are alike neither all around nor at mirror images.
+  if (data_->bladed() || (data_->images && !data_->images->round())) return of_round_stop().for_tilted_film(tilt);
   data->space = data_->space;
   data->primary = data_->primary;
   data->compiled = data_->compiled;
@@ -322,7 +386,8 @@ FilmPupilTable FilmPupilTable::for_tilted_film(const FilmTilt& tilt) const {
 const TwoPlanes& FilmPupilTable::space() const noexcept { return data_->space; }
 double FilmPupilTable::film_radius() const noexcept { return data_->film_radius; }
 double FilmPupilTable::lit_radius() const noexcept {
-  return data_->images || data_->cells ? film_radius() : data_->lit_radius;
+  const bool everywhere = data_->images || (data_->cells && !data_->bladed());
+  return everywhere ? film_radius() : data_->lit_radius;
 }
 std::size_t FilmPupilTable::wavelengths() const noexcept { return data_->wavelengths; }
 std::size_t FilmPupilTable::primary_wavelength() const noexcept { return data_->primary; }
@@ -349,9 +414,10 @@ PupilSample FilmPupilTable::sample(const FilmPoint& film, double u, double v, Wa
   if (const auto& images = data_->images) return images->sample(film, u, v, wavelength);
   const std::size_t position = data_->position(wavelength);
   const std::int32_t known = position < data_->wavelengths ? static_cast<std::int32_t>(position) : -1;
-  const auto& [strips, cells, find_nearest] = pupil_table_detail::film_pupil_table();
-  return data_->cells ? cells.one(data_->cells->table<double>(), film.x, film.y, u, v, known)
-                      : strips.one(data_->table<double>(), film.x, film.y, u, v, known);
+  const auto& [strips, cells, bladed, find_nearest] = pupil_table_detail::film_pupil_table();
+  if (!data_->cells) return strips.one(data_->table<double>(), film.x, film.y, u, v, known);
+  return data_->bladed() ? bladed.one(data_->cells->bladed_table<double>(), film.x, film.y, u, v, known)
+                         : cells.one(data_->cells->table<double>(), film.x, film.y, u, v, known);
 }
 
 template <class T>
@@ -367,7 +433,7 @@ void FilmPupilTable::sample(std::size_t count, const T* film_x, const T* film_y,
     data_->images->sample(count, film_x, film_y, u, v, wavelengths, x, y, areas);
     return;
   }
-  const auto& [strips, cells, find_nearest] = pupil_table_detail::film_pupil_table();
+  const auto& [strips, cells, bladed, find_nearest] = pupil_table_detail::film_pupil_table();
   const auto run = [&](const auto& loops, const auto& table) {
     if constexpr (sizeof(T) == sizeof(float)) {
       loops.single(table, count, film_x, film_y, u, v, wavelengths, x, y, areas);
@@ -375,7 +441,9 @@ void FilmPupilTable::sample(std::size_t count, const T* film_x, const T* film_y,
       loops.twice(table, count, film_x, film_y, u, v, wavelengths, x, y, areas);
     }
   };
-  if (data_->cells) {
+  if (data_->bladed()) {
+    run(bladed, data_->cells->bladed_table<T>());
+  } else if (data_->cells) {
     run(cells, data_->cells->table<T>());
   } else {
     run(strips, data_->table<T>());
@@ -410,7 +478,8 @@ bool FilmPupilTable::contains(const FilmPoint& film, double x, double y, Wavelen
   if (const auto& cells = data_->cells) return cells->contains(film, x, y, data_->position(wavelength));
   const auto [strip, t, cosine, sine] = data_->find(film, wavelength);
   if (!strip) return false;
-  return contains_place(InStrip<double>{strip, t}, {cosine * x - sine * y, sine * x + cosine * y});
+  const InStrip<double> polygon{strip, t};
+  return contains_place(polygon, Point<double>{cosine * x - sine * y, sine * x + cosine * y} - polygon.middle());
 }
 
 double FilmPupilTable::clearance(const FilmPoint& film, double x, double y, Wavelength wavelength) const noexcept {
@@ -418,7 +487,8 @@ double FilmPupilTable::clearance(const FilmPoint& film, double x, double y, Wave
   if (const auto& cells = data_->cells) return cells->clearance(film, x, y, data_->position(wavelength));
   const auto [strip, t, cosine, sine] = data_->find(film, wavelength);
   if (!strip) return -1;
-  return clearance_of_place(InStrip<double>{strip, t}, {cosine * x - sine * y, sine * x + cosine * y});
+  const InStrip<double> polygon{strip, t};
+  return clearance_of_place(polygon, Point<double>{cosine * x - sine * y, sine * x + cosine * y} - polygon.middle());
 }
 
 template <class T>
@@ -442,7 +512,7 @@ void FilmPupilTable::contains(std::size_t count, const TwoPlaneRays<const T>& li
     }
     return;
   }
-  const auto& [strips, cells, find_nearest] = pupil_table_detail::film_pupil_table();
+  const auto& [strips, cells, bladed, find_nearest] = pupil_table_detail::film_pupil_table();
   const auto run = [&, film_x = film_x, film_y = film_y, x = x, y = y](const auto& loops, const auto& table) {
     if constexpr (sizeof(T) == sizeof(float)) {
       loops.contains_single(table, count, film_x, film_y, x, y, wavelengths, within);
@@ -450,7 +520,9 @@ void FilmPupilTable::contains(std::size_t count, const TwoPlaneRays<const T>& li
       loops.contains_twice(table, count, film_x, film_y, x, y, wavelengths, within);
     }
   };
-  if (data_->cells) {
+  if (data_->bladed()) {
+    run(bladed, data_->cells->bladed_table<T>());
+  } else if (data_->cells) {
     run(cells, data_->cells->table<T>());
   } else {
     run(strips, data_->table<T>());
@@ -483,7 +555,8 @@ FilmPupilTable::Derivatives FilmPupilTable::derivatives(const FilmPoint& film, d
   const double whole = found.polygon().area_before(polygon_corners);
   if (!(whole > 0)) return {};
   const std::size_t k = sector_with(found.polygon(), share.a * whole);
-  const auto [px, py] = sample_place(InStrip<Jet>{found.strip, t}, k, share, v);
+  const InStrip<Jet> polygon{found.strip, t};
+  const auto [px, py] = polygon.middle() + sample_place(polygon, k, share, v);
   const Jet qx = cosine * px + sine * py, qy = cosine * py - sine * px;
   return {{qx.v[0], qy.v[0]}, {qx.v[1], qy.v[1]}};
 }

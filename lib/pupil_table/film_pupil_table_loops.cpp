@@ -18,6 +18,7 @@ struct Place {
   R t, s;          // s: of a cell
   R cosine, sine;  // which way the point lies; of a cell: the signs of its y and x
   std::int32_t known, begin;
+  std::int32_t fold = 0;  // of a bladed iris
 };
 
 // Inlined, or a call would take a copy of the table, which compilers make with wide registers and without emptying
@@ -62,24 +63,80 @@ PETZVAL_INLINE Place<R> place_of(const CellTable<R>& table, R film_x, R film_y, 
   return {column - static_cast<R>(j), s, film_y < R(0) ? R(-1) : R(1), film_x < R(0) ? R(-1) : R(1), known, cell};
 }
 
+template <class R>
+PETZVAL_INLINE Place<R> place_of(const BladedTable<R>& table, R film_x, R film_y, std::int32_t sound,
+                                 std::int32_t wavelength) noexcept {
+  const auto rows = static_cast<std::int32_t>(table.rows), columns = static_cast<std::int32_t>(table.columns);
+  const R r2 = film_x * film_x + film_y * film_y;
+  const R r = core_detail::square_root(r2);
+  const std::int32_t known = (r <= table.lit_radius) & (wavelength >= 0) & sound;
+  const std::int32_t off_axis = known & (r2 > R(0));
+  const R per_length = R(1) / (off_axis ? r : R(1));
+  const R cosine = off_axis ? film_y * per_length : R(1), sine = off_axis ? film_x * per_length : R(0);
+  const R row = known ? r * table.rows_per_mm : R(0);
+  const auto above = static_cast<std::int32_t>(row);
+  const std::int32_t i = above < rows - 1 ? above : rows - 1;
+  // From the nearest corner of the iris, in blades; counted from one turn before the first.
+  const R turn = table.blades * (turn_of(sine, cosine) + R(1)) + table.first_blade;
+  auto blade = static_cast<std::int32_t>(turn + R(0.5));
+  const R beside = turn - static_cast<R>(blade), mirrored = core_detail::sign_of(beside);
+  const auto blades = static_cast<std::int32_t>(table.blades);
+  blade -= blade >= blades ? blades : 0;
+  blade -= blade >= blades ? blades : 0;
+  const R column = R(2) * mirrored * beside * static_cast<R>(columns);
+  const auto across = static_cast<std::int32_t>(column);
+  const std::int32_t j = across < columns - 1 ? across : columns - 1;
+  const std::int32_t cell =
+      known ? ((wavelength * rows + i) * columns + j) * static_cast<std::int32_t>(BladedLayout::size) : 0;
+  return {column - static_cast<R>(j),           row - static_cast<R>(i), cosine, sine, known, cell,
+          2 * blade + (mirrored < R(0) ? 1 : 0)};
+}
+
+/// Corners of the polygons.
+template <class Table>
+PETZVAL_INLINE std::int32_t corners_of(const Table&) noexcept {
+  return static_cast<std::int32_t>(polygon_corners);
+}
+template <class R>
+PETZVAL_INLINE std::int32_t corners_of(const BladedTable<R>& table) noexcept {
+  return static_cast<std::int32_t>(table.corners);
+}
+
 /// A place in the plane, given as the table has it: from the middle.
 template <class R>
-inline Point<R> turned(StripLayout, const Point<R>& middle, R cosine, R sine, const Point<R>& p) noexcept {
+inline Point<R> turned(const StripTable<R>&, const Point<R>& middle, R cosine, R sine, std::int32_t,
+                       const Point<R>& p) noexcept {
   const R y = middle.y + p.y;
   return {cosine * p.x + sine * y, cosine * y - sine * p.x};
 }
 template <class R>
-inline Point<R> turned(CellLayout, const Point<R>& middle, R sign_y, R sign_x, const Point<R>& p) noexcept {
+inline Point<R> turned(const CellTable<R>&, const Point<R>& middle, R sign_y, R sign_x, std::int32_t,
+                       const Point<R>& p) noexcept {
   return {sign_x * (middle.x + p.x), sign_y * (middle.y + p.y)};
 }
-/// A place of the plane as the table has it.
 template <class R>
-inline Point<R> turned_back(StripLayout, R cosine, R sine, const Point<R>& p) noexcept {
-  return {cosine * p.x - sine * p.y, sine * p.x + cosine * p.y};
+inline Point<R> turned(const BladedTable<R>& table, const Point<R>& middle, R cosine, R sine, std::int32_t fold,
+                       const Point<R>& p) noexcept {
+  const R* by = table.folds + static_cast<std::int32_t>(BladedLayout::fold) * fold;
+  return {sine * middle.y + (by[0] * p.x + by[1] * p.y), cosine * middle.y + (by[2] * p.x + by[3] * p.y)};
+}
+/// A place of the plane as the table has it: from the middle.
+template <class R>
+inline Point<R> turned_back(const StripTable<R>&, const Point<R>& middle, R cosine, R sine, std::int32_t,
+                            const Point<R>& p) noexcept {
+  return {cosine * p.x - sine * p.y - middle.x, sine * p.x + cosine * p.y - middle.y};
 }
 template <class R>
-inline Point<R> turned_back(CellLayout, R sign_y, R sign_x, const Point<R>& p) noexcept {
-  return {sign_x * p.x, sign_y * p.y};
+inline Point<R> turned_back(const CellTable<R>&, const Point<R>& middle, R sign_y, R sign_x, std::int32_t,
+                            const Point<R>& p) noexcept {
+  return {sign_x * p.x - middle.x, sign_y * p.y - middle.y};
+}
+template <class R>
+inline Point<R> turned_back(const BladedTable<R>& table, const Point<R>& middle, R cosine, R sine, std::int32_t fold,
+                            const Point<R>& p) noexcept {
+  const R* by = table.folds + static_cast<std::int32_t>(BladedLayout::fold) * fold;
+  const R x = p.x - sine * middle.y, y = p.y - cosine * middle.y;
+  return {by[0] * x + by[2] * y, by[1] * x + by[3] * y};
 }
 
 inline std::int32_t index(std::size_t place) noexcept { return static_cast<std::int32_t>(place); }
@@ -91,6 +148,10 @@ inline const R* numbers(const StripTable<R>& table) noexcept {
 }
 template <class R>
 inline const R* numbers(const CellTable<R>& table) noexcept {
+  return table.cells;
+}
+template <class R>
+inline const R* numbers(const BladedTable<R>& table) noexcept {
   return table.cells;
 }
 
@@ -157,26 +218,44 @@ PETZVAL_INLINE R fraction_of(R x) noexcept {
 
 /// u from where the polygon of the table begins, in the direction of its corners.
 template <class R>
-PETZVAL_INLINE R share_of(StripLayout, const R*, std::int32_t, R, R, R, R cosine, R sine, R u) noexcept {
+PETZVAL_INLINE R share_of(const StripTable<R>&, const R*, std::int32_t, R, R, R, R cosine, R sine, std::int32_t,
+                          R u) noexcept {
   const R from = u - turn_of(sine, cosine);
   return fraction_of(from);
 }
 template <class R>
-PETZVAL_INLINE R share_of(CellLayout, const R* all, std::int32_t begin, R t, R s, R whole, R sign_y, R sign_x,
-                          R u) noexcept {
+PETZVAL_INLINE R share_of(const CellTable<R>&, const R* all, std::int32_t begin, R t, R s, R whole, R sign_y, R sign_x,
+                          std::int32_t, R u) noexcept {
   const R across = (R(1) - sign_x) / R(2) + sign_x * u;
   const R from = (R(1) - sign_y) / R(2) * right_share(all, begin, t, s, whole) + sign_y * across;
   return fraction_of(from);
 }
 
+template <class R>
+PETZVAL_INLINE R share_of(const BladedTable<R>& table, const R* all, std::int32_t begin, R t, R s, R whole, R, R,
+                          std::int32_t fold, R u) noexcept {
+  const R* by = table.folds + static_cast<std::int32_t>(BladedLayout::fold) * fold;
+  const R before = area_before<false>(CellLayout{}, all, begin, static_cast<std::int32_t>(by[4]), t, s);
+  return fraction_of(before / (whole > R(0) ? whole : R(1)) + by[5] * u);
+}
+
 /// In sectors, where a share of the area is expected to end.
 template <class R>
-inline R expected_sector(StripLayout, const R*, std::int32_t, R, R, R, R share) noexcept {
+inline R expected_sector(const StripTable<R>&, const R*, std::int32_t, R, R, R, R share) noexcept {
   return share * R(polygon_corners);
 }
 template <class R>
-inline R expected_sector(CellLayout, const R* all, std::int32_t begin, R t, R s, R whole, R share) noexcept {
+inline R expected_sector(const CellTable<R>&, const R* all, std::int32_t begin, R t, R s, R whole, R share) noexcept {
   return sectors_in_halves(share, right_share(all, begin, t, s, whole));
+}
+template <class R>
+inline R expected_sector(const BladedTable<R>&, const R* all, std::int32_t begin, R, R, R, R share) noexcept {
+  constexpr auto steps = static_cast<std::int32_t>(BladedLayout::guide_steps);
+  const R place = share * static_cast<R>(steps);
+  const auto below = static_cast<std::int32_t>(place);
+  const std::int32_t k = below < steps - 1 ? below : steps - 1;
+  const std::int32_t at = begin + static_cast<std::int32_t>(BladedLayout::guide) + k;
+  return all[at] + (place - static_cast<R>(k)) * (all[at + 1] - all[at]);
 }
 
 template <bool obscured, class Layout, class R>
@@ -195,24 +274,25 @@ template <std::size_t block, bool obscured, class Table, class R>
 PETZVAL_INLINE void sample_block(const Table& table, const R* film_x, const R* film_y, const R* u, const R* v,
                                  const std::int32_t* wavelength, R* x, R* y, R* area) noexcept {
   using L = typename Table::Layout;
-  constexpr auto corners = static_cast<std::int32_t>(polygon_corners);
   const Table own_table = table;  // which nothing that is written overlaps
+  const std::int32_t corners = corners_of(own_table);
   const R* all = numbers(own_table);
   constexpr L layout;
   R t[block], s[block], cosine[block], sine[block], target[block], whole[block], outer[block], behind[block],
       beyond[block];
-  std::int32_t begin[block], sector[block];
+  std::int32_t begin[block], sector[block], fold[block];
 
   for (std::size_t i = 0; i < block; ++i) {
     // Comparisons with what is not a number are false.
     const R sound = (film_x[i] + film_y[i] + u[i] + v[i]) * R(0);
-    const auto [along, across, cos, sin, known, at] =
+    const auto [along, across, cos, sin, known, at, way] =
         place_of(own_table, film_x[i], film_y[i], sound >= R(0), wavelength[i]);
     t[i] = along;
     s[i] = across;
     cosine[i] = cos;
     sine[i] = sin;
     begin[i] = at;
+    fold[i] = way;
     target[i] = core_detail::clamped(u[i]);
     whole[i] = known ? R(1) : R(0);
     outer[i] = core_detail::clamped(v[i]);
@@ -223,8 +303,8 @@ PETZVAL_INLINE void sample_block(const Table& table, const R* film_x, const R* f
   const R early = table.corrections > 0 ? R(0) : R(0.5);
   for (std::size_t i = 0; i < block; ++i) {
     whole[i] = whole[i] * area_at<obscured>(layout, all, begin[i] + index(L::whole), t[i], s[i]);
-    target[i] = share_of(layout, all, begin[i], t[i], s[i], whole[i], cosine[i], sine[i], target[i]);
-    const R expected = expected_sector(layout, all, begin[i], t[i], s[i], whole[i], target[i]);
+    target[i] = share_of(own_table, all, begin[i], t[i], s[i], whole[i], cosine[i], sine[i], fold[i], target[i]);
+    const R expected = expected_sector(own_table, all, begin[i], t[i], s[i], whole[i], target[i]);
     const auto k = static_cast<std::int32_t>(expected - early);
     sector[i] = k < corners ? k : corners - 1;
     target[i] = target[i] * whole[i];
@@ -256,7 +336,7 @@ PETZVAL_INLINE void sample_block(const Table& table, const R* film_x, const R* f
     const R along = core_detail::clamped(behind[i] / (own_area > R(0) ? own_area : R(1)) + beyond[i]);
     const Point<R> p = own.at(core_detail::square_root(own.squared_way(outer[i])), along);
     const Point<R> middle = middle_of(layout, all, begin[i], t[i], s[i]);
-    const Point<R> place = turned(layout, middle, cosine[i], sine[i], p);
+    const Point<R> place = turned(own_table, middle, cosine[i], sine[i], fold[i], p);
     const R some = whole[i] > R(0) ? R(1) : R(0);
     x[i] = some * place.x;
     y[i] = some * place.y;
@@ -270,26 +350,26 @@ void contains_block(const Table& table, const R* film_x, const R* film_y, const 
                     const std::int32_t* wavelength, std::uint8_t* within) noexcept {
   constexpr auto corners = static_cast<std::int32_t>(polygon_corners);
   const Table own_table = table;
+  const std::int32_t used = corners_of(own_table);
   const R* all = numbers(own_table);
   constexpr typename Table::Layout layout;
   R t[block], s[block], qx[block], qy[block];
   std::int32_t begin[block], sector[block], half[block], known[block];
   for (std::size_t i = 0; i < block; ++i) {
-    const auto [along, across, cosine, sine, lit, at] = place_of(own_table, film_x[i], film_y[i], 1, wavelength[i]);
+    const auto [along, across, cosine, sine, lit, at, fold] =
+        place_of(own_table, film_x[i], film_y[i], 1, wavelength[i]);
     t[i] = along;
     s[i] = across;
     begin[i] = at;
     known[i] = lit;
-    const Point<R> q = turned_back(layout, cosine, sine, Point<R>{x[i], y[i]});
+    const Point<R> middle = middle_of(layout, all, at, along, across);
+    const Point<R> q = turned_back(own_table, middle, cosine, sine, fold, Point<R>{x[i], y[i]});
     qx[i] = q.x;
     qy[i] = q.y;
   }
   const auto corner = [&](std::size_t i, std::int32_t k) { return corner_of(layout, all, begin[i], k, t[i], s[i]); };
   // Half turns count from the first corner.
   for (std::size_t i = 0; i < block; ++i) {
-    const Point<R> middle = middle_of(layout, all, begin[i], t[i], s[i]);
-    qx[i] -= middle.x;
-    qy[i] -= middle.y;
     half[i] = turn(corner(i, 0), Point<R>{qx[i], qy[i]}) < R(0);
     sector[i] = 0;
   }
@@ -297,7 +377,8 @@ void contains_block(const Table& table, const R* film_x, const R* film_y, const 
     for (std::size_t i = 0; i < block; ++i) {
       const Point<R> c = corner(i, sector[i] + step);
       const std::int32_t corner_half = turn(corner(i, 0), c) < R(0), behind = turn(c, Point<R>{qx[i], qy[i]}) >= R(0);
-      sector[i] += (corner_half < half[i]) | ((corner_half == half[i]) & behind) ? step : 0;
+      const std::int32_t exists = sector[i] + step < used;
+      sector[i] += exists & ((corner_half < half[i]) | ((corner_half == half[i]) & behind)) ? step : 0;
     }
   }
   PETZVAL_INDEPENDENT
@@ -411,6 +492,10 @@ template <class R>
 constexpr auto sample_cells = sample_blocks<false, CellTable<R>, R>;
 template <class R>
 constexpr auto contains_cells = contains<false, CellTable<R>, R>;
+template <class R>
+constexpr auto sample_bladed = sample_blocks<false, BladedTable<R>, R>;
+template <class R>
+constexpr auto contains_bladed = contains<false, BladedTable<R>, R>;
 
 }  // namespace
 
@@ -418,6 +503,9 @@ const FilmPupilLoops PETZVAL_LOOPS{.strips = {sample_strips<float>, sample_strip
                                               contains_strips<double>, one_of_strips},
                                    .cells = {sample_cells<float>, sample_cells<double>, contains_cells<float>,
                                              contains_cells<double>, one_of<false, CellTable<double>>},
+                                   .bladed = {sample_bladed<float>, sample_bladed<double>, contains_bladed<float>,
+                                              contains_bladed<double>, one_of<false, BladedTable<double>>},
+
                                    .find_nearest = lens_detail::find_nearest};
 
 }  // namespace petzval::inline v0::pupil_table_detail

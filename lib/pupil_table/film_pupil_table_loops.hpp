@@ -61,6 +61,31 @@ struct CellTable {
   int corrections = 0;  ///< as in StripTable
 };
 
+/// As CellLayout; s and t are fractions of the way between two distances from the axis and between two azimuths.
+struct BladedLayout : CellLayout {
+  static constexpr std::size_t guide = CellLayout::size;  ///< [17] in sectors, where k / 16 of the area end, nearly
+  static constexpr std::size_t guide_steps = 16;
+  static constexpr std::size_t size = guide + guide_steps + 1;
+  static constexpr std::size_t fold = 6;  ///< numbers of one: see BladedTable
+};
+
+/// The cells of a lens of revolution with a bladed iris, of all wavelengths, borrowed. They cover the film from the
+/// direction of a blade's corner, as +y, to that of the next edge's middle; in a film turned or mirrored about the axis
+/// so that the corner is another one pupils are alike.
+template <class R>
+struct BladedTable {
+  using Layout = BladedLayout;
+  const R* cells = nullptr;  ///< [(wavelength * rows + row) * columns + column] CellLayout; middles lie on the
+                             ///< direction of the film point, at middle_y
+  const R* folds = nullptr;  ///< [2 blade + mirrored] the matrix, by rows, from the table's film to the lens's, then
+                             ///< the table's corner that is the iris's first one, and -1 where u runs backwards, or 1
+  std::size_t rows = 0, columns = 0, wavelengths = 0, primary = 0;
+  std::size_t corners = 0;        ///< of the polygons: as many for each blade; the others are like corner 0
+  R blades = 0, first_blade = 0;  ///< how many, and the turn from the first corner to +y, 0 to `blades`
+  R lit_radius = 0, rows_per_mm = 0;
+  int corrections = 0;  ///< as in StripTable
+};
+
 namespace {
 
 /// The angle of a direction from +y to +x, of its sine and cosine, as a part of the whole turn (|turn| <= 1/2), within
@@ -116,6 +141,7 @@ struct FilmPupilLoops {
   };
   Of<StripTable> strips;
   Of<CellTable> cells;
+  Of<BladedTable> bladed;
   void (*find_nearest)(const lens_detail::NearestPosition&, std::size_t, const float* nm,
                        std::uint16_t* positions) noexcept;
 };

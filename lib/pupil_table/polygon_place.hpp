@@ -32,13 +32,16 @@ struct InStrip {
   }
   /// In sectors, where a share of the area is expected to end.
   double expected(double share) const { return share * polygon_corners; }
+  static constexpr std::size_t corners = polygon_corners;
 };
 
-/// The polygon at fractions of a cell (CellLayout).
+/// The polygon at fractions of a cell (CellLayout, BladedLayout).
 template <class T>
 struct InCell {
   const double* cell = nullptr;
   T t{}, s{};
+  std::size_t corners = polygon_corners;  ///< fewer of a bladed iris
+  bool bladed = false;                    ///< with a guide; else corners are even in halves
 
   T bilinear(const double* f) const { return f[0] + t * f[1] + s * (f[2] + t * f[3]); }
   Point<T> corner(std::size_t k) const {
@@ -54,7 +57,13 @@ struct InCell {
   }
   /// Of the half at +x.
   T right_share() const { return area_before(polygon_corners / 2) / area_before(polygon_corners); }
-  double expected(double share) const { return sectors_in_halves(share, right_share()); }
+  double expected(double share) const {
+    if (!bladed) return sectors_in_halves(share, right_share());
+    const double place = share * BladedLayout::guide_steps;
+    const std::size_t k = std::min(static_cast<std::size_t>(place), BladedLayout::guide_steps - 1);
+    const double* guide = cell + BladedLayout::guide + k;
+    return guide[0] + (place - static_cast<double>(k)) * (guide[1] - guide[0]);
+  }
 };
 
 template <template <class> class In, class T>
@@ -69,7 +78,7 @@ std::size_t sector_with(const In<double>& polygon, double area) {
   return sector_of_area(area, [&](std::size_t k) { return polygon.area_before(k); });
 }
 
-/// The place of a sample in the sector k.
+/// The place of a sample in the sector k, from the middle.
 template <template <class> class In, class T>
 Point<T> sample_place(const In<T>& polygon, std::size_t k, const T& u, double v) {
   using std::sqrt;
@@ -78,7 +87,7 @@ Point<T> sample_place(const In<T>& polygon, std::size_t k, const T& u, double v)
   if (!(along <= 1.0)) along = T(1.0);
   const T squared = sector.squared_way(T(v));
   const Point<T> p = sector.at(squared > 0.0 ? T(sqrt(squared)) : T(0.0), along);  // no derivative in the middle
-  return polygon.middle() + p;
+  return p;
 }
 
 /// The last corner before a place, seen from the middle, of corners in order.
@@ -86,7 +95,7 @@ template <template <class> class In>
 std::size_t corner_before(const In<double>& polygon, const Point<double>& q) {
   const Point<double> first = polygon.corner(0);
   const bool first_half = turn(first, q) >= 0;
-  std::size_t low = 0, high = polygon_corners;
+  std::size_t low = 0, high = polygon.corners;
   while (high - low > 1) {
     const std::size_t k = (low + high) / 2;
     const Point<double> corner = polygon.corner(k);
@@ -96,10 +105,9 @@ std::size_t corner_before(const In<double>& polygon, const Point<double>& q) {
   return low;
 }
 
-/// The squared way outwards to a place and the sector that faces it; none: no sector does.
+/// The squared way outwards to a place, seen from the middle, and the sector that faces it; none: no sector does.
 template <template <class> class In>
-std::optional<std::pair<double, Sector<double>>> way_to_place(const In<double>& polygon, const Point<double>& place) {
-  const Point<double> q = place - polygon.middle();
+std::optional<std::pair<double, Sector<double>>> way_to_place(const In<double>& polygon, const Point<double>& q) {
   const auto sectors = [&](std::size_t k) { return sector_at(polygon, k); };
   const std::size_t k = sector_facing(q, sectors, corner_before(polygon, q));
   if (k == polygon_corners) return {};
@@ -109,15 +117,15 @@ std::optional<std::pair<double, Sector<double>>> way_to_place(const In<double>& 
 }
 
 template <template <class> class In>
-bool contains_place(const In<double>& polygon, const Point<double>& place) {
-  const auto found = way_to_place(polygon, place);
+bool contains_place(const In<double>& polygon, const Point<double>& q) {
+  const auto found = way_to_place(polygon, q);
   return found && found->first <= 1 && !found->second.obscures(found->first);
 }
 
 /// As FilmPupilTable::clearance().
 template <template <class> class In>
-double clearance_of_place(const In<double>& polygon, const Point<double>& place) {
-  const auto found = way_to_place(polygon, place);
+double clearance_of_place(const In<double>& polygon, const Point<double>& q) {
+  const auto found = way_to_place(polygon, q);
   if (!found) return -1;
   const auto& [squared, sector] = *found;
   double least = 1 - squared;
@@ -133,7 +141,7 @@ template <template <class> class In>
 int corrections_of(const In<double>& polygon) {
   int corrections = 0;
   const double whole = polygon.area_before(polygon_corners);
-  for (std::size_t k = 0; whole > 0 && k < polygon_corners; ++k) {
+  for (std::size_t k = 0; whole > 0 && k < polygon.corners; ++k) {
     const double off = std::abs(polygon.expected(polygon.area_before(k) / whole) - static_cast<double>(k));
     constexpr int most = 64;
     if (off > 0.49) corrections = std::max(corrections, std::min(static_cast<int>(std::ceil(off)), most));

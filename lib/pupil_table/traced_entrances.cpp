@@ -19,8 +19,9 @@ ScenePassing traced_passing(const Lens& lens) {
   };
 }
 
-EntrancePupilTable traced_entrances(const Lens& bladed, const FilmPupilTable& pupils) {
+EntrancePupilTable traced_entrances(const Lens& bladed, const FilmPupilTable& of_iris) {
   const Lens lens = with_iris(bladed, {});  // whose pupils enclose those of any iris
+  const FilmPupilTable pupils = of_iris.of_round_stop();
   const TwoPlanes& space = pupils.space();
   const double towards = towards_scene(lens, space);
   const auto to_scene = [&](std::size_t count, const TwoPlaneRays<const double>& lines, std::size_t wavelength,

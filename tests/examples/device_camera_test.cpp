@@ -68,8 +68,11 @@ TEST(DeviceCamera, SamplesTheRaysOfEveryModel) {
 TEST(DeviceCamera, SamplesBladesMirrorsAspheresAndCylinders) {
   const Lens blades =
       with_iris(testing::data_lens("double_gauss_100mm_f1.35"), {.blades = 5, .roundness = -0.5, .rotation_rad = 0.4});
-  expect_same_rays(Camera(blades, film, {.model = ModelKind::thick}));
-  expect_same_rays(Camera(blades, film, {.model = ModelKind::exact_double}));
+  for (const ModelKind model :
+       {ModelKind::thin_two_disc, ModelKind::thick, ModelKind::polynomial_7, ModelKind::exact_double}) {
+    SCOPED_TRACE(name(model));
+    expect_same_rays(Camera(blades, film, {.model = model}));
+  }
   const Film small{.width_mm = 12, .height_mm = 8};
   expect_same_rays(
       Camera(testing::data_lens("catadioptric_mangin_1000mm_f7.5"), small, {.model = ModelKind::exact_double}));
@@ -105,7 +108,8 @@ TEST(CameraTables, AreRefusedWhereTheyAreNone) {
   for (const Camera& camera :
        {Camera(lens, film, {.model = ModelKind::thick}), Camera(lens, film, {.model = ModelKind::polynomial_5}),
         Camera(lens, film, {.model = ModelKind::exact_float}),
-        Camera(cylinders, film, {.model = ModelKind::polynomial_5})}) {
+        Camera(cylinders, film, {.model = ModelKind::polynomial_5}),
+        Camera(with_iris(lens, {.blades = 7, .rotation_rad = 1}), film, {.model = ModelKind::exact_float})}) {
     const std::vector<float> good = camera.tables();
     EXPECT_EQ(fault(good), "no error");
     EXPECT_NE(fault({good.begin(), good.end() - 1}), "no error");

@@ -585,7 +585,6 @@ TEST(FilmPupilTable, HasNothingOutsideItsFilm) {
   EXPECT_THROW((void)FilmPupilTable::enclosing(lens, nan), Error);
   EXPECT_THROW((void)FilmPupilTable::enclosing(lens, -1), Error);
   EXPECT_THROW((void)FilmPupilTable::enclosing(with_film(lens, lens.surfaces().back().vertex_z), 10), Error);
-  EXPECT_THROW((void)FilmPupilTable::equal_area(with_iris(lens, {.blades = 6}), 10), Error);
   EXPECT_THROW((void)FilmPupilTable::of_iris({50, 0}, {}, {}, nan), Error);
   EXPECT_THROW((void)hexagons({.blades = 2}), Error);
   const FilmPupilTable dark = FilmPupilTable::enclosing(with_semi_diameter(lens, *lens.stop(), 0), 20);

@@ -46,7 +46,7 @@ struct CameraTables {
     wavelengths,      ///< where the lists begin
     scales,
     pupils,
-    pupils_kind,   ///< a FilmPupilArrays::Kind: 0 strips, 1 images, 2 cells
+    pupils_kind,   ///< a FilmPupilArrays::Kind: 0 strips, 1 images, 2 cells, 3 bladed
     pupil_radius,  ///< film points farther from the axis see nothing
     strips,
     rows,
@@ -68,6 +68,9 @@ struct CameraTables {
     indices,
     edges,
     edge_count,
+    blades,  ///< of pupils of the kind bladed, as what follows
+    blade_corners,
+    first_blade,
     head_size = 40
   };
   static constexpr std::size_t surface_size = 9 + 39;

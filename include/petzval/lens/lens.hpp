@@ -154,7 +154,7 @@ PETZVAL_API Lens with_semi_diameter(const Lens& lens, std::size_t surface, doubl
 PETZVAL_API Lens with_film(const Lens& lens, double film_z);
 
 /// The lens with another shape of its stop; Iris{} makes it round again. Every ray that is traced with apertures
-/// passes the iris, and so do boundaries of pupils, film irradiance, spots, PSFs and the rays of exact cameras.
+/// passes the iris, and so do boundaries of pupils, film irradiance, spots, PSFs and cameras.
 /// Paraxial pupils and f-numbers are those of the round stop. Throws Error for a lens without a stop, a stop without a
 /// finite semi-diameter, and for blades, roundness or rotation out of range.
 PETZVAL_API Lens with_iris(const Lens& lens, const Iris& iris);

@@ -89,8 +89,9 @@ class PETZVAL_API RayPolynomial {
   /// Fits all compiled wavelengths by least squares (QR, in double) to exact rays through the pupils, with the focus of
   /// the film's centre where exact rays are sharpest, with cylinders in both sections. The domain is the smallest that
   /// holds all of them. Within 20 ms for each wavelength; with cylinders within 60 ms for degrees up to 7, 0.4 s for
-  /// degree 11. Throws Error for another degree, an iris with blades, pupils of other wavelengths, a film of one point,
-  /// and if fewer rays pass the lens than there are coefficients.
+  /// degree 11. Those of a lens with a bladed iris are fitted to all rays through its round stop. Throws Error for
+  /// another degree, pupils of other wavelengths, a film of one point, and if fewer rays pass the lens than there are
+  /// coefficients.
   static RayPolynomial fit(const Lens& lens, const FilmPupilTable& pupils, int degree);
   /// From data. primary_wavelength: position of the fit that is used by default; if unset, the one nearest to the d
   /// line. Throws Error, which names the entry, for inconsistent data.

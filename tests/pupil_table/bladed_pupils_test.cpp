@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: Apache-2.0
+// The pupils of lenses of revolution with bladed irises.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "../data_lenses.hpp"
+#include "../declared_radius.hpp"
+#include "petzval/core/error.hpp"
+#include "petzval/pupil/f_number.hpp"
+#include "petzval/pupil/illumination.hpp"
+#include "petzval/pupil_table/film_pupil_table.hpp"
+#include "pupil_coverage.hpp"
+
+namespace {
+
+using namespace petzval;
+using petzval::testing::Coverage;
+using petzval::testing::coverage;
+using petzval::testing::data_lens;
+using petzval::testing::data_prescription;
+using petzval::testing::declared_radius;
+
+constexpr double pi = std::numbers::pi;
+
+class Bladed : public ::testing::TestWithParam<std::tuple<const char*, double>> {};
+
+TEST_P(Bladed, SamplesReachTheSceneAtEveryFieldAndNothingIsMissed) {
+  const auto& [id, f_number] = GetParam();
+  const Lens open = data_lens(id);
+  const double radius = declared_radius(data_prescription(id), open);
+  for (const Iris& iris :
+       {Iris{.blades = 5}, Iris{.blades = 5, .roundness = -1, .rotation_rad = 1}, Iris{.blades = 6, .roundness = 0.5},
+        Iris{.blades = 7, .rotation_rad = -2}, Iris{.blades = 8, .roundness = 0.9}, Iris{.blades = 9}}) {
+    const Lens lens = with_iris(with_f_number(open, f_number), iris);
+    const Coverage c = coverage(lens, FilmPupilTable::enclosing(lens, radius), radius, 32, 2000);
+    EXPECT_GT(c.mean, 0.975) << iris.blades << " " << iris.roundness;
+    EXPECT_GT(c.worst, 0.93) << iris.blades << " " << iris.roundness;
+    EXPECT_LE(c.missed, 1e-5) << iris.blades << " " << iris.roundness;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(FilmPupilTable, Bladed,
+                         ::testing::Combine(::testing::Values("double_gauss_100mm_f2.0", "tessar_100mm_f2.8",
+                                                              "fisheye_8mm_f2.8"),
+                                            ::testing::Values(2.87, 5.6, 16)));
+
+TEST(BladedPupils, MissNothingWhereLightEndsFast) {
+  for (const auto& [id, part, blades] :
+       {std::tuple{"phone_5.6mm_f3.5", 0.5, 3}, std::tuple{"phone_5.6mm_f3.5", 1.0, 5},
+        std::tuple{"biogon_35mm_f2.8", 0.5, 5}, std::tuple{"telephoto_100mm_f5.6", 0.5, 3},
+        std::tuple{"wide_100mm_roosinov", 0.5, 20}, std::tuple{"catadioptric_mangin_1000mm_f7.5", 0.5, 8}}) {
+    Lens lens = data_lens(id);
+    const double radius = declared_radius(data_prescription(id), lens);
+    lens = with_semi_diameter(lens, *lens.stop(), part * lens.surfaces()[*lens.stop()].semi_diameter);
+    lens = with_iris(lens, {.blades = blades, .rotation_rad = 0.3});
+    EXPECT_LE(coverage(lens, FilmPupilTable::enclosing(lens, radius), radius, 64, 1500).missed, 1e-5) << id;
+  }
+}
+
+TEST(BladedPupils, OfEqualAreaGiveTheLightOfTheLens) {
+  for (const auto& [id, f_number, radius] :
+       {std::tuple{"double_gauss_100mm_f2.0", 2.8, 36.0}, std::tuple{"double_gauss_100mm_f2.0", 8.0, 36.0},
+        std::tuple{"tessar_100mm_f2.8", 4.0, 40.0}, std::tuple{"fisheye_8mm_f2.8", 4.0, 7.5}}) {
+    const Lens lens =
+        with_iris(with_f_number(data_lens(id), f_number), {.blades = 5, .roundness = -0.4, .rotation_rad = 0.3});
+    const FilmPupilTable table = FilmPupilTable::equal_area(lens, radius);
+    for (int i = 0; i < 9; ++i) {
+      const double r = radius * i / 8, azimuth = 2.4 * i;
+      const FilmPoint film{r * std::sin(azimuth), r * std::cos(azimuth)};
+      EXPECT_NEAR(table.projected_solid_angle(film) / film_irradiance(lens, film), 1, 2e-3) << id << " " << r;
+    }
+  }
+}
+
+/// A lens whose pupils are cut by rims too, in a frame with no other symmetry than that of its five blades.
+const Iris pentagon{.blades = 5, .roundness = 0.2, .rotation_rad = 0.7};
+Lens vignetting() { return with_iris(with_f_number(data_lens("double_gauss_100mm_f2.0"), 2.4), pentagon); }
+constexpr double corner = 40;  // mm
+
+TEST(BladedPupils, TurnWithTheBladesAndAreMirroredInThem) {
+  const FilmPupilTable table = FilmPupilTable::enclosing(vignetting(), corner);
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> unit(0, 1);
+  for (int i = 0; i < 200; ++i) {
+    const double r = corner * unit(random), azimuth = 2 * pi * unit(random), u = unit(random), v = unit(random);
+    const auto at = [r](double angle) { return FilmPoint{r * std::sin(angle), r * std::cos(angle)}; };
+    const PupilSample own = table.sample(at(azimuth), u, v);
+    EXPECT_TRUE(table.contains(at(azimuth), own.x, own.y) || v > 1 - 1e-9);
+    // One blade on, and u with it, by the share of the first blade's sector.
+    const double step = 2 * pi / 5, cosine = std::cos(step), sine = std::sin(step);
+    const double area = table.area(at(azimuth + step));
+    EXPECT_NEAR(area, own.area, 1e-6 * own.area);
+    EXPECT_TRUE(table.contains(at(azimuth + step), cosine * own.x + sine * own.y, cosine * own.y - sine * own.x) ||
+                v > 1 - 1e-6);
+    // The first corner's direction is an axis of symmetry.
+    const double first = -pentagon.rotation_rad, mirrored = 2 * first - azimuth;
+    const PupilSample other = table.sample(at(mirrored), 1 - u, v);
+    const double turn = 2 * first, x = std::sin(turn) * own.y - std::cos(turn) * own.x,
+                 y = std::sin(turn) * own.x + std::cos(turn) * own.y;
+    EXPECT_NEAR(other.x, x, 1e-4);
+    EXPECT_NEAR(other.y, y, 1e-4);
+    EXPECT_NEAR(other.area, own.area, 1e-6 * own.area);
+  }
+}
+
+TEST(BladedPupils, MoveContinuouslyWithTheFilmPoint) {
+  const FilmPupilTable table = FilmPupilTable::enclosing(vignetting(), corner);
+  for (const double r : {1e-6, 3.0, 20.0, 39.9}) {
+    PupilSample before = table.sample({0, r}, 0.37, 0.9);
+    double longest = 0;
+    constexpr int steps = 20000;
+    for (int i = 1; i <= steps; ++i) {
+      const double azimuth = 2 * pi * i / steps;
+      const PupilSample here = table.sample({r * std::sin(azimuth), r * std::cos(azimuth)}, 0.37, 0.9);
+      longest = std::max(longest, std::hypot(here.x - before.x, here.y - before.y));
+      before = here;
+    }
+    // All the way around is a few radii of the pupil, and a jump would be a share of one.
+    const double radius = std::sqrt(before.area / pi);
+    EXPECT_LT(longest, 0.01 * radius) << r;
+  }
+}
+
+TEST(BladedPupils, OneSampleIsLikeManyInFloatAndDouble) {
+  const FilmPupilTable table = FilmPupilTable::enclosing(vignetting(), corner);
+  constexpr std::size_t count = 3000;
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> unit(0, 1);
+  std::array<std::vector<double>, 7> twice;
+  std::array<std::vector<float>, 7> single;
+  for (auto& a : twice) a.resize(count);
+  for (auto& a : single) a.resize(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const double r = 1.02 * corner * std::sqrt(unit(random)), azimuth = 2 * pi * unit(random);
+    const std::array in{r * std::sin(azimuth), r * std::cos(azimuth), unit(random), unit(random)};
+    for (std::size_t k = 0; k < 4; ++k) twice[k][i] = single[k][i] = static_cast<float>(in[k]);
+  }
+  const auto run = [&](auto& a) {
+    table.sample(count, a[0].data(), a[1].data(), a[2].data(), a[3].data(), {}, a[4].data(), a[5].data(), a[6].data());
+  };
+  run(twice), run(single);
+  std::vector<std::uint8_t> within(count);
+  table.contains<double>(count, {twice[0].data(), twice[1].data(), twice[4].data(), twice[5].data()}, {},
+                         within.data());
+  int lit = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const FilmPoint film{twice[0][i], twice[1][i]};
+    const PupilSample one = table.sample(film, twice[2][i], twice[3][i]);
+    EXPECT_NEAR(one.x, twice[4][i], 1e-9);
+    EXPECT_NEAR(one.y, twice[5][i], 1e-9);
+    EXPECT_NEAR(one.area, twice[6][i], 1e-9 * one.area);
+    if (one.area == 0) continue;
+    ++lit;
+    EXPECT_NEAR(single[4][i], one.x, 2e-3);
+    EXPECT_NEAR(single[5][i], one.y, 2e-3);
+    EXPECT_NEAR(single[6][i], one.area, 1e-5 * one.area);
+    EXPECT_NEAR(table.area(film), one.area, 1e-9 * one.area);
+    EXPECT_EQ(table.contains(film, one.x, one.y), within[i] != 0) << i;
+    EXPECT_TRUE(within[i] != 0 || twice[3][i] > 1 - 1e-9) << i;
+  }
+  EXPECT_GT(lit, 0.9 * count);
+}
+
+TEST(BladedPupils, HaveTheDerivativesOfTheirSamples) {
+  const FilmPupilTable table = FilmPupilTable::equal_area(vignetting(), corner);
+  std::mt19937 random(9);
+  std::uniform_real_distribution<double> unit(0, 1);
+  int kinks = 0;
+  constexpr int count = 300;
+  for (int i = 0; i < count; ++i) {
+    const double r = corner * (0.05 + 0.9 * unit(random)), azimuth = 2 * pi * unit(random);
+    const double u = unit(random), v = unit(random), step = 1e-5;
+    const FilmPoint film{r * std::sin(azimuth), r * std::cos(azimuth)};
+    const auto at = [&](double x, double y) { return table.sample({film.x + x, film.y + y}, u, v); };
+    const auto [by_x, by_y] = table.derivatives(film, u, v);
+    const PupilSample right = at(step, 0), left = at(-step, 0), up = at(0, step), down = at(0, -step);
+    const double error = std::hypot((right.x - left.x) / (2 * step) - by_x[0],
+                                    (right.y - left.y) / (2 * step) - by_x[1], (up.x - down.x) / (2 * step) - by_y[0]) +
+                         std::abs((up.y - down.y) / (2 * step) - by_y[1]);
+    kinks += error > 1e-3;  // between cells and sectors
+  }
+  EXPECT_LE(kinks, 3);
+}
+
+TEST(BladedPupils, AreThoseOfTheWholeStopForTiltedFilmsAndOnRequest) {
+  const Lens lens = vignetting();
+  const FilmPupilTable table = FilmPupilTable::enclosing(lens, corner);
+  const FilmPupilTable round = FilmPupilTable::enclosing(with_iris(lens, {}), corner), same = table.of_round_stop();
+  const PupilSample wanted = round.sample({20, -7}, 0.3, 0.8), found = same.sample({20, -7}, 0.3, 0.8);
+  EXPECT_EQ(found.x, wanted.x);
+  EXPECT_EQ(found.y, wanted.y);
+  EXPECT_EQ(found.area, wanted.area);
+  EXPECT_GT(found.area, table.area({20, -7}));
+}
+
+TEST(BladedPupils, OfEqualAreaAreRefusedWithCylindersAndObscurations) {
+  for (const char* id : {"anamorphic_60mm_2x", "catadioptric_mangin_1000mm_f7.5"}) {
+    const Lens lens = with_iris(data_lens(id), {.blades = 6});
+    EXPECT_THROW((void)FilmPupilTable::equal_area(lens, 10), Error) << id;
+    EXPECT_NO_THROW((void)FilmPupilTable::enclosing(lens, 10)) << id;
+  }
+}
+
+}  // namespace
