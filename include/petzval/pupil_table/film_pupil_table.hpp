@@ -135,7 +135,7 @@ class PETZVAL_API FilmPupilTable {
   /// Of a bladed iris at least 97.5 % of the samples pass on the double Gauss, the Tessar and a fisheye of data/, at
   /// any film point 93 % (tests/pupil_table/bladed_pupils_test.cpp: 5 to 9 blades from f/2.87 to f/16); in narrow rings
   /// where pupils change fast as few as 60 % do. A lens with cylinders or central obscurations has the pupils of its
-  /// round stop, which contain those of any iris. A table takes 4 to 8 ms for each wavelength instead of 1.2, and a
+  /// round stop, which contain those of any iris. A table takes 5 to 15 ms for each wavelength instead of 1.3, and a
   /// sample 6 to 8 times as long as one of a round iris, 22 to 27 ns in a batch.
   ///
   /// film_radius: of the farthest film point, mm, >= 0. The film is that of the lens. Throws Error for a film in the
