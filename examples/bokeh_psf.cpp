@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iostream>
+#include <limits>
 #include <numbers>
 #include <numeric>
 #include <string>
@@ -34,7 +35,7 @@ struct Options {
   std::vector<std::string> formats{"exr", "png"};
   std::string lens_file, out_folder, origin = "front_vertex", criterion = "min_rms";
   std::vector<double> focus_mm, wavelengths_nm{petzval::d_line_nm};
-  double subject_mm = 0, field_deg = 0;
+  double subject_mm = 0, field_deg = 0, tolerance = 0;
   examples::IrisSetup iris;
   std::uint32_t samples = 1u << 21;
 };
@@ -53,9 +54,11 @@ std::vector<Picture> render(const examples::LoadedLens& loaded, const Options& o
   for (const double focus : options.focus_mm) {
     progress.step(examples::focus_caption(focus));
     auto scene = examples::focused_scene(lens, focus, setup);
-    auto image = petzval::point_image(
-        scene.lens, scene.light,
-        {.samples = options.samples, .pixels = picture_pixels, .threads = petzval::processor_threads()});
+    auto image = petzval::point_image(scene.lens, scene.light,
+                                      {.samples = options.samples,
+                                       .tolerance = options.tolerance,
+                                       .pixels = picture_pixels,
+                                       .threads = petzval::processor_threads()});
     pictures.push_back({focus, std::move(scene), std::move(image)});
   }
   return pictures;
@@ -119,6 +122,7 @@ Json to_json(const std::vector<Picture>& pictures, const examples::LoadedLens& l
          {"rays_sent", sum(p.image.psf.sent)},
          {"rays_transmitted", sum(p.image.psf.transmitted)},
          {"radial_profile", p.image.radial_profile},
+         {"error", p.image.error},
          {"picture_centre_mm", pair(p.image.psf.centre)},
          {"picture_pixel_mm", p.image.psf.pixel_mm}});
   }
@@ -178,6 +182,11 @@ int main(int argc, char** argv) {
   examples::add_number(app, "--field-deg", options.field_deg, examples::finite_number,
                        "angle of the light towards +y, seen from the paraxial entrance pupil (degrees)");
   examples::add_samples(app, options.samples);
+  examples::add_number(
+      app, "--tolerance", options.tolerance, {std::numeric_limits<double>::min(), 1, "a number above 0, at most 1"},
+      "send rays until the relative error of the radial profile is at most this, --samples at most; 2^14 "
+      "first, then twice as many")
+      ->default_str("all samples");
   app.add_option("--format", options.formats,
                  "files of each image: exr and pfm (float, linear), png (each with its own exposure)")
       ->delimiter(',')

@@ -9,14 +9,11 @@
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/aim.hpp"
 #include "petzval/pupil/illumination.hpp"
+#include "points.hpp"
 #include "rays/trace_rays.hpp"
 
 namespace petzval::inline v0 {
 namespace {
-
-struct Points {
-  std::span<const double> x, y;
-};
 
 /// Sets: a range of values that have x and y, N each.
 template <class Sets>
@@ -57,8 +54,10 @@ SpotSize size_of(const Sets& sets) noexcept {
 }  // namespace
 
 SpotSize spot_size(std::span<const double> x, std::span<const double> y) noexcept {
-  return size_of(std::array{Points{x, y}});
+  return size_of(std::array{psf_detail::Points{x, y}});
 }
+
+SpotSize psf_detail::spot_size(std::span<const Points> sets) noexcept { return size_of(sets); }
 
 SpotSize spot_size(std::span<const RayBundle> sets) noexcept { return size_of(sets); }
 

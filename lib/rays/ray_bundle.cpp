@@ -12,12 +12,12 @@
 namespace petzval::inline v0 {
 
 RayBundle trace_bundle(const Lens& lens, const PupilSampler& pupil, std::uint32_t samples, std::uint32_t seed,
-                       int threads) {
+                       int threads, std::uint32_t first) {
   if (threads < 1) throw Error("trace_bundle: threads is " + std::to_string(threads) + ", wanted 1 or more");
   const auto start = [&](std::size_t begin, std::size_t end, const RayArrays<double>& rays) {
     std::array<double, rays_detail::block_rays> room_u, room_v;
     const std::span u(room_u.data(), end - begin), v(room_v.data(), end - begin);
-    owen_sobol(static_cast<std::uint32_t>(begin), seed, u, v);
+    owen_sobol(first + static_cast<std::uint32_t>(begin), seed, u, v);
     pupil(u, v, u, v);
     pupil.plane().rays(u, v, rays);
     return end - begin;

@@ -179,6 +179,18 @@ TEST_F(BokehPsf, WritesTheFormatsThatAreAskedFor) {
   EXPECT_GT(lit, 10000);
 }
 
+TEST_F(BokehPsf, SendsAsManyRaysAsTheToleranceNeeds) {
+  const auto result = [&](const std::string& tolerance) {
+    return bokeh({"--subject-distance-mm", "1000", "--focus-mm", "900", "--tolerance", tolerance})["results"][0];
+  };
+  const auto rough = result("0.1"), too_fine = result("1e-6");
+  EXPECT_EQ(rough["rays"], 1 << 14);
+  EXPECT_LE(rough["error"], 0.1);
+  EXPECT_EQ(too_fine["rays"], 1 << 15);
+  EXPECT_LT(too_fine["error"], rough["error"]);
+  EXPECT_EQ(too_fine["rays"], too_fine["rays_sent"]);
+}
+
 TEST_F(BokehPsf, GivesTheSameBytesTwice) {
   const std::vector<std::string> arguments{"--subject-distance-mm", "inf",         "--focus-mm",  "1000,inf",
                                            "--wavelengths-nm",      "480,550,620", "--field-deg", "7"};
@@ -205,6 +217,7 @@ TEST_F(BokehPsf, RefusesABadCommandLineInOneLine) {
   refuse_iris({"--blades", "21"}, "--blades: found \"21\", wanted 3 to 20, or 0 for a round iris");
   refuse_iris({"--blades", "5.5"}, "--blades: found \"5.5\", wanted 3 to 20, or 0 for a round iris");
   refuse_iris({"--blades", "5", "--roundness", "1.1"}, "--roundness: found \"1.1\", wanted a number from -1 to 1");
+  refuse_iris({"--tolerance", "0"}, "--tolerance: found \"0\", wanted a number above 0, at most 1");
   refuse_iris({"--blades", "5", "--iris-area", "equal"}, "--iris-area: found equal without --f-number");
   refuse({"--subject-distance-mm", "1000"}, "--focus-mm is required");
   refuse({"--focus-mm", "1000"}, "--subject-distance-mm is required");

@@ -29,11 +29,12 @@ struct RayBundle {
   }
 };
 
-/// Traces `samples` rays, Owen-scrambled Sobol over the pupil, onto the lens's film; without slopes.
+/// Traces `samples` rays, Owen-scrambled Sobol over the pupil from point `first` of the sequence on, onto the lens's
+/// film; without slopes.
 ///
 /// The bundle does not depend on `threads` (1 or more; more than one starts threads and ends them before it returns).
 /// Rays that leave the lens away from the film are lost. Throws Error for less than one thread.
 PETZVAL_API RayBundle trace_bundle(const Lens& lens, const PupilSampler& pupil, std::uint32_t samples,
-                                   std::uint32_t seed = 0, int threads = 1);
+                                   std::uint32_t seed = 0, int threads = 1, std::uint32_t first = 0);
 
 }  // namespace petzval::inline v0
