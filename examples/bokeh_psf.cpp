@@ -117,7 +117,7 @@ Json to_json(const std::vector<Picture>& pictures, const examples::LoadedLens& l
          {"radius_mm", if_any(p.image.size.max_radius)},
          {"iris_area_share", petzval::iris_area(p.scene.lens.iris()) / std::numbers::pi},
          {"airy_radius_mm", finite_or_null(petzval::airy_radius(p.scene.lens))},
-         {"diffraction", petzval::name(petzval::diffraction(petzval::airy_radius(p.scene.lens), p.image.size))},
+         {"diffraction", if_any(petzval::name(petzval::diffraction(petzval::airy_radius(p.scene.lens), p.image.size)))},
          {"rays", sum(p.image.psf.sent)},
          {"rays_sent", sum(p.image.psf.sent)},
          {"rays_transmitted", sum(p.image.psf.transmitted)},

@@ -87,6 +87,7 @@ std::vector<IrisEdge> edges(const Iris& iris) {
 }
 
 Iris upside_down(Iris iris, bool along_x, bool along_y) {
+  iris.rotation_rad = std::remainder(iris.rotation_rad, 2 * pi);
   // A regular polygon is its own mirror image in the line through a corner.
   if (along_x) iris.rotation_rad = -iris.rotation_rad;
   if (along_y) iris.rotation_rad = pi - iris.rotation_rad;

@@ -9,7 +9,8 @@
 
 namespace petzval::inline v0::iris_detail {
 
-/// The edge of one blade, in semi-diameters of the stop: light passes where x nx + y ny + bend (x^2 + y^2) <= distance.
+/// The edge of one blade, in semi-diameters of the stop: within the rim, light passes where
+/// x nx + y ny + bend (x^2 + y^2) <= distance.
 /// That is a straight line or a circle; the left side grows at the rate 1 across it.
 struct IrisEdge {
   double nx = 1, ny = 0, bend = 0, distance = 1;

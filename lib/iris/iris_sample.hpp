@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <numbers>
 
 #include "core/loop_math.hpp"
@@ -13,6 +14,10 @@ namespace petzval::inline v0::iris_detail {
 /// How many terms the polynomials of an edge have: within 1e-7 semi-diameters, and 2e-13.
 template <class R>
 inline constexpr std::size_t edge_terms = sizeof(R) == sizeof(float) ? 8 : 17;
+
+/// The rim, with room for the rounding of corners: hollow edges are parts of circles, beyond which light passes again.
+template <class R>
+inline constexpr R rim_squared = 1 + 8 * std::numeric_limits<R>::epsilon();
 
 /// The sectors of a bladed iris between the centre and the edge of a blade each, in order from +y towards +x, and the
 /// edges. Borrowed.

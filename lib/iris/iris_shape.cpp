@@ -89,7 +89,7 @@ Vec2<double> IrisShape::position(double x, double y) const noexcept {
 
 bool IrisShape::contains(double x, double y) const noexcept {
   const IrisSectors<double> s = sectors<double>();
-  bool within = s.count > 0 || x * x + y * y <= 1;
+  bool within = x * x + y * y <= rim_squared<double>;
   for (std::size_t k = 0; k < s.count; ++k) within = within && within_edge(s, k, x, y);
   return within;
 }

@@ -2,6 +2,7 @@
 #include "between_wavelengths.hpp"
 
 #include <cmath>
+#include <limits>
 
 #include "spectrum.hpp"
 
@@ -52,9 +53,13 @@ CompiledWavelengths::Interval CompiledWavelengths::interval(std::size_t rank, st
   return result;
 }
 
-double CompiledWavelengths::nm_at(double place) const noexcept {
-  if (place_.scale == 0) return ranked_.front().nm;
-  return std::clamp(place_.scale / (place + place_.offset), ranked_.front().nm, ranked_.back().nm);
+bool CompiledWavelengths::even() const noexcept {
+  double least = std::numeric_limits<double>::infinity(), most = 0;
+  for (std::size_t r = 1; r < ranked_.size(); ++r) {
+    const double step = ranked_[r].nm - ranked_[r - 1].nm;
+    least = std::min(least, step), most = std::max(most, step);
+  }
+  return most <= 2 * least && longest() <= 1.8 * shortest();
 }
 
 std::size_t CompiledWavelengths::nearest(double nm) const noexcept {

@@ -23,17 +23,16 @@ class PETZVAL_API CompiledWavelengths {
 
   std::size_t count() const noexcept { return ranked_.size(); }
   std::size_t position(std::size_t rank) const noexcept { return ranked_[rank].position; }
+  /// No step to the next one is more than twice as long as another, and the range is not wider than that of light.
+  bool even() const noexcept;
 
   /// The range of wavelengths that are covered, nm.
   double shortest() const noexcept { return place_.shortest; }
   double longest() const noexcept { return place_.longest; }
   /// Whether a wavelength lies among them, or beside them by the rounding of a float.
   bool covers(double nm) const noexcept { return place_.covers(nm); }
-  const kernel::SpectralPlace<double>& range() const noexcept { return place_; }
   /// The place in the range, from -1 to 1.
   double place(double nm) const noexcept { return place_.at(nm); }
-  /// The wavelength at a place.
-  double nm_at(double place) const noexcept;
 
   /// Position of the nearest one; count() for a wavelength that is not covered.
   std::size_t nearest(double nm) const noexcept;
@@ -82,8 +81,9 @@ class PETZVAL_API CompiledWavelengths {
   std::vector<NearestPosition::Step> steps_;  // at the middles between neighbours
 };
 
-/// Some numbers of a lens, known at its compiled wavelengths, at any wavelength between: in parabolas over cells so
-/// small that they show nothing of it.
+/// Some numbers of a lens, known at its compiled wavelengths, at any wavelength between: in parabolas over even cells
+/// so small that they show little of it: a few of even wavelengths; 2047 of uneven ones, between which straight lines
+/// meet, and of a wide range, at whose end dispersion is steep.
 template <std::size_t numbers>
 class BetweenWavelengths {
  public:
@@ -93,31 +93,20 @@ class BetweenWavelengths {
   BetweenWavelengths() : BetweenWavelengths({}, {}) {}
   /// values: by position. wavelengths: theirs, or none where there is nothing between them.
   BetweenWavelengths(const CompiledWavelengths& wavelengths, std::span<const Values> values)
-      : wavelengths_(wavelengths),
-        compiled_(values.size()),
-        powers_(wavelengths.count() > 0 ? cells : 0),
-        single_(compiled_),
-        twice_(compiled_) {
-    const double range = wavelengths.longest() - wavelengths.shortest();
-    cells_per_nm_ = range > 0 ? cells / range : 0;
-    for (std::size_t i = 0; i < powers_.size(); ++i) {
-      const auto at = [&](double cell) {
-        const double nm = wavelengths.shortest() + std::max(range, 0.0) * cell / cells;
-        const auto [first, weights] = wavelengths.about(nm);
-        Values sum{};
-        for (std::size_t k = 0; k < weights.size() && first + k < wavelengths.count(); ++k) {
-          const Values& own = values[wavelengths.position(first + k)];
-          for (std::size_t j = 0; j < numbers; ++j) sum[j] += weights[k] * own[j];
-        }
-        return sum;
-      };
-      const auto cell = static_cast<double>(i);
-      const Values begin = at(cell), middle = at(cell + 0.5), end = at(cell + 1);
-      for (std::size_t j = 0; j < numbers; ++j) {
-        const double by_square = 2 * (begin[j] - 2 * middle[j] + end[j]);
-        powers_[i][j] = {begin[j], end[j] - begin[j] - by_square, by_square};
+      : wavelengths_(wavelengths), compiled_(values.size()) {
+    const double range = std::max(wavelengths.longest() - wavelengths.shortest(), 0.0);
+    const auto at = [&](double nm) {
+      const auto [first, weights] = wavelengths.about(nm);
+      Values sum{};
+      for (std::size_t k = 0; k < weights.size() && first + k < wavelengths.count(); ++k) {
+        const Values& own = values[wavelengths.position(first + k)];
+        for (std::size_t j = 0; j < numbers; ++j) sum[j] += weights[k] * own[j];
       }
-    }
+      return sum;
+    };
+    if (wavelengths.count() > 0) cut(wavelengths.even() ? few_cells : 2047, range, at);
+    single_ = In<float>(compiled_, powers_.size());
+    twice_ = In<double>(compiled_, powers_.size());
     const auto fill = [&](auto& in) {
       for (std::size_t j = 0; j < numbers; ++j) {
         for (std::size_t w = 0; w < compiled_; ++w) in.by_position.set(j, w, values[w][j]);
@@ -134,7 +123,7 @@ class BetweenWavelengths {
   /// For a wavelength that is covered.
   Values operator()(double nm) const noexcept {
     const double at = std::max((nm - wavelengths_.shortest()) * cells_per_nm_, 0.0);
-    const auto cell = std::min(static_cast<std::size_t>(at), cells - 1);
+    const auto cell = std::min(static_cast<std::size_t>(at), powers_.size() - 1);
     const double part = at - static_cast<double>(cell);
     Values result;
     for (std::size_t j = 0; j < numbers; ++j) {
@@ -151,6 +140,7 @@ class BetweenWavelengths {
       return {in.by_position.data(),
               in.by_position.length(),
               static_cast<std::int32_t>(compiled_),
+              static_cast<std::int32_t>(powers_.size()),
               in.by_nm.data(),
               in.by_nm.length(),
               static_cast<R>(wavelengths_.shortest()),
@@ -165,14 +155,28 @@ class BetweenWavelengths {
   }
 
  private:
-  static constexpr std::size_t cells = WavelengthRows<double>::cells;
+  /// Makes parabolas of at(nm) over a number of cells.
+  template <class At>
+  void cut(std::size_t cells, double range, const At& at) {
+    const double width = range / static_cast<double>(cells);
+    cells_per_nm_ = range > 0 ? 1 / width : 0;
+    powers_.resize(cells);
+    for (std::size_t i = 0; i < cells; ++i) {
+      const double from = wavelengths_.shortest() + width * static_cast<double>(i);
+      const Values begin = at(from), middle = at(from + width / 2), end = at(from + width);
+      for (std::size_t j = 0; j < numbers; ++j) {
+        const double by_square = 2 * (begin[j] - 2 * middle[j] + end[j]);
+        powers_[i][j] = {begin[j], end[j] - begin[j] - by_square, by_square};
+      }
+    }
+  }
 
   /// As WavelengthRows has them.
   template <class R>
   struct In {
     AlignedRows<R> by_position, by_nm;
-    explicit In(std::size_t compiled)
-        : by_position(numbers, compiled + 1), by_nm(3 * numbers, WavelengthRows<R>::in_cells) {}
+    In() = default;
+    In(std::size_t compiled, std::size_t cells) : by_position(numbers, compiled + 1), by_nm(3 * numbers, cells + 1) {}
   };
 
   CompiledWavelengths wavelengths_;

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <type_traits>
 
 #include "core/look_up.hpp"
 #include "petzval/lens/wavelength.hpp"
@@ -43,8 +44,8 @@ inline void look_up(const WavelengthRows<R>& given, const RayWavelengths& wavele
   };
   if (const float* const nm = wavelengths.each_nm) {
     R parts[look_up_block] = {};
+    const std::int32_t last = table.cells - 1;
     for_each([&](std::size_t i) {
-      constexpr std::int32_t last = WavelengthRows<R>::cells - 1;
       const R own = static_cast<R>(nm[begin + i]);
       const bool covered = (own >= table.shortest) & (own <= table.longest);
       const R at = covered ? (own - table.shortest) * table.cells_per_nm : R(0);
@@ -52,18 +53,25 @@ inline void look_up(const WavelengthRows<R>& given, const RayWavelengths& wavele
       places[i] = covered ? cell : last + 1;
       parts[i] = at - static_cast<R>(cell);
     });
-    for (std::size_t o = 0; o < count; o += lanes) {
-      Bits at;
-      Values part;
-      __builtin_memcpy(&at, places + o, sizeof at);
-      __builtin_memcpy(&part, parts + o, sizeof part);
-      const R* row = table.by_nm;
-      for (std::size_t k = 0; k < used; ++k, row += 3 * table.cell_length) {
-        const auto power = [&](std::size_t p) {
-          return core_detail::look_up(row + p * table.cell_length, table.in_cells, at);
-        };
-        store(k, o, power(0) + part * (power(1) + part * power(2)));
+    const auto sum = [&](auto in_cells) {
+      for (std::size_t o = 0; o < count; o += lanes) {
+        Bits at;
+        Values part;
+        __builtin_memcpy(&at, places + o, sizeof at);
+        __builtin_memcpy(&part, parts + o, sizeof part);
+        const R* row = table.by_nm;
+        for (std::size_t k = 0; k < used; ++k, row += 3 * table.cell_length) {
+          const auto power = [&](std::size_t p) {
+            return core_detail::look_up(row + p * table.cell_length, in_cells, at);
+          };
+          store(k, o, power(0) + part * (power(1) + part * power(2)));
+        }
       }
+    };
+    if (table.cells == few_cells) {
+      sum(std::integral_constant<std::size_t, few_cells + 1>());
+    } else {
+      sum(static_cast<std::size_t>(table.cells) + 1);
     }
     return;
   }

@@ -35,18 +35,18 @@ class AlignedRows {
   std::vector<Register> registers_;
 };
 
+/// The cells between even wavelengths: with the zero, permutations of registers reach them (core/look_up.hpp).
+inline constexpr std::int32_t few_cells = 15;
+
 /// Some numbers for each wavelength, borrowed, for loops over rays of mixed wavelengths (lens/look_up.hpp): of each
 /// number a row by compiled wavelength, then, in nm, parabolas over even cells of the range.
 template <class R>
 struct WavelengthRows {
-  /// Cells, and one of zeros: as many numbers as permutations of registers reach.
-  static constexpr std::int32_t cells = 15;
-  static constexpr std::size_t in_cells = cells + 1;
-
   const R* by_position = nullptr;  ///< [number]; zeros behind the compiled ones
   std::size_t length = 0;          ///< of these rows
   std::int32_t compiled = 0;
-  const R* by_nm = nullptr;     ///< [number][power of the part of a cell] in_cells numbers
+  std::int32_t cells = 0;
+  const R* by_nm = nullptr;     ///< [number][power of the part of a cell] a number for each cell, and zero
   std::size_t cell_length = 0;  ///< of these rows
   R shortest = 1, longest = 0;  ///< the range, nm; empty where nothing is known between compiled wavelengths
   R cells_per_nm = 0;

@@ -63,7 +63,7 @@ SpotSize spot_size(std::span<const RayBundle> sets) noexcept { return size_of(se
 
 double airy_radius(const Lens& lens, Wavelength wavelength) {
   const double nm = wavelength.in_nm() ? *wavelength.in_nm() : lens.wavelengths_nm()[lens.position(wavelength)];
-  return 1.22 * nm * 1e-6 * film_side_f_number(lens);
+  return 1.22 * nm * 1e-6 / lens.index(lens.surface_count(), wavelength) * film_side_f_number(lens);
 }
 
 std::string_view name(Diffraction diffraction) noexcept {

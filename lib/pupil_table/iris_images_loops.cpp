@@ -113,8 +113,8 @@ void contains(const IrisImageTable<R>& given, std::size_t count, const TwoPlaneR
         const auto [fx, fy, image] = seen(table, image_of(o), own.film_x[o], own.film_y[o], true);
         x[i] = (own.pupil_x[o] - image.shift_x * fx) / image.radius_x;
         y[i] = (own.pupil_y[o] - image.shift_y * fy) / image.radius_y;
-        const bool in_disc = table.iris.count > 0 || x[i] * x[i] + y[i] * y[i] <= R(1);
-        inside[i] = (image.area > R(0)) & in_disc;
+        const bool in_rim = x[i] * x[i] + y[i] * y[i] <= iris_detail::rim_squared<R>;
+        inside[i] = (image.area > R(0)) & in_rim;
       }
       for (std::size_t k = 0; k < table.iris.count; ++k) {
         for (std::size_t i = 0; i < n; ++i) inside[i] &= iris_detail::within_edge(table.iris, k, x[i], y[i]);

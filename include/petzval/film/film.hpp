@@ -56,7 +56,7 @@ struct PETZVAL_API Film {
   /// The film point of a place in the picture, and back. Raster: (0, 0) is the upper left corner of the upright
   /// picture, (columns, rows) the lower right one. The image on the film is upside down: what lies to the right in the
   /// scene (+x) meets the film on its -x side and the picture on the right; what lies above (+y) meets the film below
-  /// and the picture at the top. Nothing else in petzval turns an image.
+  /// and the picture at the top. Pictures of PSFs, which have no film, are turned by render(Psf).
   FilmPoint point(double column, double row) const noexcept;
   Vec2<double> raster(const FilmPoint& point) const noexcept;
   /// The film points of many places, float or double. raster_x, raster_y, film_x, film_y: N each; outputs may be

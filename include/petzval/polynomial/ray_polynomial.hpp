@@ -44,7 +44,7 @@ namespace petzval::inline v0 {
 /// Wavelengths in nm between those of fits get the combination of up to four neighbouring fits: a cubic in 1 / nm, or a
 /// straight line where neighbours stand very unevenly. It is a sum of modes in which the coefficients of all fits vary
 /// together (their singular vectors, eight at most): at the wavelength of a fit what the fit is, within a twentieth of
-/// its error and 4e-7 rad. A batch of such wavelengths evaluates each mode; a lens has 3 to 5 of them.
+/// the largest error of a fit and 6e-7 rad. A batch of such wavelengths evaluates each mode; a lens has 3 to 5 of them.
 ///
 /// Immutable, cheap to copy, free to share between threads.
 class PETZVAL_API RayPolynomial {

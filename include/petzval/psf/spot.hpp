@@ -27,8 +27,8 @@ PETZVAL_API SpotSize spot_size(std::span<const double> x, std::span<const double
 /// The same of all rays of several bundles, which all have the same weight.
 PETZVAL_API SpotSize spot_size(std::span<const RayBundle> sets) noexcept;
 
-/// Radius of the first dark ring of an ideal image on the film, 1.22 wavelength N, mm, N = film_side_f_number
-/// (lens). Infinite for a closed stop.
+/// Radius of the first dark ring of an ideal image on the film, 1.22 wavelength N / n, mm, n: index in front of the
+/// film, N = film_side_f_number (lens). Infinite for a closed stop.
 PETZVAL_API double airy_radius(const Lens& lens, Wavelength wavelength = {});
 
 /// How much of a blur is diffraction.
