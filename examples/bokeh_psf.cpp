@@ -106,6 +106,7 @@ Json to_json(const std::vector<Picture>& pictures, const examples::LoadedLens& l
   for (const Picture& p : pictures) {
     const auto pair = [](const petzval::Vec2<double>& v) { return std::array{v.x, v.y}; };
     const auto if_any = [&](const auto& size) { return p.image.throughput > 0 ? Json(size) : Json(); };
+    const double airy_radius = petzval::airy_radius(p.scene.lens);
     json["results"].push_back(
         {{"focus_mm", finite_or_null(p.focus_mm)},
          {"film_z_mm", p.scene.lens.film_z()},
@@ -116,8 +117,8 @@ Json to_json(const std::vector<Picture>& pictures, const examples::LoadedLens& l
          {"second_moments_mm2", if_any(std::array{p.image.size.xx, p.image.size.yy, p.image.size.xy})},
          {"radius_mm", if_any(p.image.size.max_radius)},
          {"iris_area_share", petzval::iris_area(p.scene.lens.iris()) / std::numbers::pi},
-         {"airy_radius_mm", finite_or_null(petzval::airy_radius(p.scene.lens))},
-         {"diffraction", if_any(petzval::name(petzval::diffraction(petzval::airy_radius(p.scene.lens), p.image.size)))},
+         {"airy_radius_mm", finite_or_null(airy_radius)},
+         {"diffraction", if_any(petzval::name(petzval::diffraction(airy_radius, p.image.size)))},
          {"rays", sum(p.image.psf.sent)},
          {"rays_sent", sum(p.image.psf.sent)},
          {"rays_transmitted", sum(p.image.psf.transmitted)},

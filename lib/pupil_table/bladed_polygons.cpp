@@ -62,7 +62,7 @@ StopMap::StopMap(const Lens& lens, const TwoPlanes& space, double height, const 
   for (const auto& corner : pupil.corners) farthest = std::max(farthest, std::hypot(corner[0], corner[1]));
   if (!(farthest > 0)) return;
   radius_ = farthest, base_ = pupil.middle.y;
-  const auto view = kernel::view<double>(lens);
+  const auto& view = kernel::view<double>(lens);
   const std::size_t stop = *lens.stop();
   const double semi_diameter = lens.surfaces()[stop].semi_diameter, towards = towards_scene(lens, space);
   std::vector<Place> places, stops;
@@ -116,7 +116,7 @@ Vec2<double> StopMap::place(const Vec2<double>& stop) const noexcept {
 }
 
 BladedGrid::BladedGrid(const Iris& shape, double radius, std::size_t polygons)
-    : iris{shape.blades, shape.roundness, shape.rotation_rad}, film_radius(radius), rows((polygons - 1) / 2) {
+    : iris(shape), film_radius(radius), rows((polygons - 1) / 2) {
   const auto blades = static_cast<std::size_t>(shape.blades);
   constexpr std::size_t around = 20;  // columns in half a turn
   columns = (around + blades - 1) / blades;
@@ -142,13 +142,13 @@ struct Turn {
 
 /// The iris with its first corner on +y.
 struct Blades {
-  std::vector<iris_detail::IrisEdge> edges;
-  std::vector<Place> rim;  // the corners of polygons
+  std::vector<kernel::StopEdge<double>> edges;  // in semi-diameters
+  std::vector<Place> rim;                       // the corners of polygons
 
   explicit Blades(const BladedGrid& grid) {
     Iris iris = grid.iris;
     iris.rotation_rad = 0;
-    edges = iris_detail::edges(iris);
+    for (const auto& [nx, ny, bend, distance] : iris_detail::edges(iris)) edges.push_back({nx, ny, bend, distance});
     const iris_detail::IrisShape shape(iris);
     for (std::size_t k = 0; k < grid.corners; ++k) {
       rim.push_back(shape.sample(static_cast<double>(k) / static_cast<double>(grid.corners), 1));
@@ -223,10 +223,7 @@ class CutPupil {
     const Place film = turn_.back(p);
     const Place at = turn_.forward(&map_ == &next_ ? map_.stop(film) : 0.5 * (map_.stop(film) + next_.stop(film)));
     double least = std::numeric_limits<double>::infinity();
-    const double square = at.x * at.x + at.y * at.y;
-    for (const auto& [nx, ny, bend, distance] : blades_.edges) {
-      least = std::min(least, distance - (at.x * nx + at.y * ny + bend * square));
-    }
+    for (const auto& edge : blades_.edges) least = std::min(least, kernel::room_at(edge, at.x, at.y));
     return least + margin_;
   }
   double scale_to_round(const Place& p) const noexcept {

@@ -220,8 +220,7 @@ BladedTable<R> FilmCells::bladed_table() const noexcept {
   result.blades = static_cast<R>(blades_);
   result.first_blade = static_cast<R>(first_blade_);
   result.lit_radius = static_cast<R>(film_radius_ * (1 + 1e-6));  // the corner itself, rounded
-  constexpr double smallest = 1e-30;                              // as of strips
-  result.rows_per_mm = static_cast<R>(film_radius_ > smallest ? static_cast<double>(rows_) / film_radius_ : 0);
+  result.rows_per_mm = static_cast<R>(steps_per_mm(rows_, film_radius_));
   result.corrections = corrections_;
   return result;
 }
@@ -242,8 +241,7 @@ CellTable<R> FilmCells::table() const noexcept {
   result.primary = primary_;
   // The corner itself, rounded, still belongs to the film.
   result.film_radius = static_cast<R>(film_radius_ * (1 + 1e-6));
-  constexpr double smallest = 1e-30;  // a lower film counts as one on the axis y = 0, so that this is finite
-  result.rows_per_mm = static_cast<R>(grid_.height > smallest ? static_cast<double>(grid_.rows()) / grid_.height : 0);
+  result.rows_per_mm = static_cast<R>(steps_per_mm(grid_.rows(), grid_.height));
   result.corrections = corrections_;
   return result;
 }

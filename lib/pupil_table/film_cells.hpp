@@ -13,6 +13,13 @@
 
 namespace petzval::inline v0::pupil_table_detail {
 
+/// Rows or strips per mm of a film. A film smaller than 1e-30 mm counts as one of the axis alone, so that this is
+/// finite in float too.
+inline double steps_per_mm(std::size_t steps, double mm) noexcept {
+  constexpr double smallest = 1e-30;
+  return mm > smallest ? static_cast<double>(steps) / mm : 0;
+}
+
 /// Pupils over two coordinates of a film, bilinear between polygons at the nodes of a grid: over its two axes, of a
 /// lens that is alike at x and -x and at y and -y; or over the distance from the axis and the azimuth, of a lens of
 /// revolution with a bladed iris.

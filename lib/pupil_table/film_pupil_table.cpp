@@ -83,9 +83,7 @@ struct FilmPupilTable::Data {
   void add(const std::vector<PupilPolygon>& polygons) {
     ++wavelengths;
     strips_each = polygons.size() - 1;
-    // A smaller film counts as one of the axis alone, so that this is finite in float too.
-    constexpr double smallest = 1e-30;  // mm
-    strips_per_mm = lit_radius > smallest ? static_cast<double>(strips_each) / lit_radius : 0;
+    strips_per_mm = steps_per_mm(strips_each, lit_radius);
     for (std::size_t i = 0; i < strips_each; ++i) {
       const PupilPolygon &a = polygons[i], &b = polygons[i + 1];
       const auto strip = strip_between(a, b);

@@ -86,8 +86,7 @@ Point<T> sample_place(const In<T>& polygon, std::size_t k, const T& u, double v)
   T along = (polygon.area_before(polygon_corners) * u - polygon.area_before(k)) / sector.area();
   if (!(along <= 1.0)) along = T(1.0);
   const T squared = sector.squared_way(T(v));
-  const Point<T> p = sector.at(squared > 0.0 ? T(sqrt(squared)) : T(0.0), along);  // no derivative in the middle
-  return p;
+  return sector.at(squared > 0.0 ? T(sqrt(squared)) : T(0.0), along);  // no derivative in the middle
 }
 
 /// The last corner before a place, seen from the middle, of corners in order.
