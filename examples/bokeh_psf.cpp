@@ -33,7 +33,7 @@ constexpr int picture_pixels = 512, tile_pixels = 320;
 
 struct Options {
   std::vector<std::string> formats{"exr", "png"};
-  std::string lens_file, out_folder, origin = "front_vertex", criterion = "min_rms";
+  std::string lens_file, out_folder, origin = "front_vertex", criterion = "min_rms", white_point = "D65";
   std::vector<double> focus_mm, wavelengths_nm{petzval::d_line_nm};
   double subject_mm = 0, field_deg = 0, tolerance = 0;
   examples::IrisSetup iris;
@@ -78,6 +78,7 @@ examples::Sheet contact_sheet(const std::vector<Picture>& pictures, const exampl
                   (options.iris.blades > 0 ? "; " + std::to_string(options.iris.blades) + " blades" : ""),
       .pixel_mm = 2 * half_width / tile_pixels,
       .tiles = {}};
+  const petzval::Spectrum light = examples::white_light(options.white_point);
   examples::Progress progress("contact sheet", pictures.size());
   for (const Picture& p : pictures) {
     progress.step(examples::focus_caption(p.focus_mm));
@@ -86,7 +87,7 @@ examples::Sheet contact_sheet(const std::vector<Picture>& pictures, const exampl
                                              .pixels = tile_pixels,
                                              .half_width_mm = half_width,
                                              .threads = petzval::processor_threads()});
-    row.tiles.push_back(examples::bokeh_tile(p.focus_mm, image));
+    row.tiles.push_back(examples::bokeh_tile(p.focus_mm, image, light));
   }
   return {"Bokeh of a point light", {std::move(row)}, examples::bokeh_notes()};
 }
@@ -95,6 +96,7 @@ Json to_json(const std::vector<Picture>& pictures, const examples::LoadedLens& l
   Json json{{"lens", loaded.lens.name()},
             {"dispersion", petzval::name(loaded.lens.dispersion())},
             {"wavelengths_nm", options.wavelengths_nm},
+            {"white_point", options.white_point},
             {"subject_distance_mm", finite_or_null(options.subject_mm)},
             {"distance_from", options.origin},
             {"f_number_real",
@@ -132,12 +134,13 @@ Json to_json(const std::vector<Picture>& pictures, const examples::LoadedLens& l
 
 void write_all(const std::vector<Picture>& pictures, const examples::LoadedLens& loaded, const Options& options) {
   const auto sheet = examples::draw_sheet(contact_sheet(pictures, loaded, options));
+  const petzval::Spectrum light = examples::white_light(options.white_point);
   const std::filesystem::path folder = options.out_folder;
   examples::make_folder(folder);
   const auto written = [](const std::filesystem::path& file) { std::cout << file.string() << '\n'; };
   for (const Picture& p : pictures) {
     const std::string stem = loaded.id + "_focus_" + examples::number(p.focus_mm) + "mm";
-    const petzval::RgbImage image = examples::irradiance(p.image.psf);
+    const petzval::RgbImage image = examples::irradiance(p.image.psf, light);
     for (const std::string& format : options.formats) {
       const auto file = folder / (stem + '.' + format);
       if (format == "exr") petzval::write_exr(image, file);
@@ -179,6 +182,7 @@ int main(int argc, char** argv) {
   examples::add_numbers(
       app, "--wavelengths-nm", options.wavelengths_nm, examples::positive_number,
       "wavelengths of the light (nm); several, from 420 to 680, are weighted to RGB by the CIE 1931 functions");
+  examples::add_white_point(app, options.white_point);
   examples::add_iris(app, options.iris);
   examples::add_number(app, "--field-deg", options.field_deg, examples::finite_number,
                        "angle of the light towards +y, seen from the paraxial entrance pupil (degrees)");
@@ -196,7 +200,8 @@ int main(int argc, char** argv) {
   app.add_option("--out", options.out_folder, "folder for the results")->required()->type_name("DIR");
 
   return examples::run(app, argc, argv, [&] {
-    examples::rgb_weights(options.wavelengths_nm);  // refuses an invalid set before the work
+    examples::rgb_weights(options.wavelengths_nm,
+                          examples::white_light(options.white_point));  // refuses what is invalid before the work
     const auto loaded = examples::load_lens(options.lens_file, options.wavelengths_nm);
     const examples::BokehSetup setup{.light_mm = options.subject_mm,
                                      .origin = examples::named(options.origin, examples::distance_origins),

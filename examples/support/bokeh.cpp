@@ -2,13 +2,14 @@
 #include "bokeh.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <string_view>
 
 #include "petzval/core/error.hpp"
 #include "petzval/figure/psf_image.hpp"
 #include "petzval/media/glass.hpp"
-#include "petzval/psf/colour.hpp"
 #include "text.hpp"
 
 namespace examples {
@@ -48,12 +49,32 @@ BokehScene focused_scene(const petzval::Lens& lens, double focus_mm, const Bokeh
   return {focused, {setup.field_rad, origin_z - setup.light_mm}};
 }
 
-std::vector<std::array<double, 3>> rgb_weights(std::span<const double> wavelengths_nm) {
-  const auto file = petzval::data_directory() / "glass" / "cie1931_2deg_5nm.csv";
-  return petzval::rgb_weights(wavelengths_nm, petzval::ColourMatching::load(file));
+petzval::Spectrum white_light(const std::string& white_point) {
+  if (white_point.ends_with(".csv")) return petzval::Spectrum::load(white_point);
+  const std::array<std::string_view, 4> names{"D65", "D50", "A", "E"};
+  if (std::find(names.begin(), names.end(), white_point) == names.end()) {
+    throw petzval::Error("--white-point: found \"" + white_point + "\", wanted D65, D50, A, E or a file.csv");
+  }
+  return petzval::illuminant(white_point, petzval::data_directory() / "glass" / "cie_daylight_10nm.csv");
 }
 
-petzval::RgbImage irradiance(const petzval::Psf& psf) { return petzval::render(psf, rgb_weights(psf.wavelengths_nm)); }
+void add_white_point(App& app, std::string& white_point) {
+  app.add_option("--white-point", white_point,
+                 "spectrum of the light, which looks white in the pictures: D65 or D50 (daylight), A (tungsten), E "
+                 "(equal power), or a file.csv of wavelength_nm,power; it weights several wavelengths, one alone is "
+                 "white")
+      ->type_name("NAME|FILE.csv")
+      ->capture_default_str();
+}
+
+std::vector<std::array<double, 3>> rgb_weights(std::span<const double> wavelengths_nm, const petzval::Spectrum& light) {
+  const auto file = petzval::data_directory() / "glass" / "cie1931_2deg_5nm.csv";
+  return petzval::rgb_weights(wavelengths_nm, petzval::ColourMatching::load(file), light, light);
+}
+
+petzval::RgbImage irradiance(const petzval::Psf& psf, const petzval::Spectrum& light) {
+  return petzval::render(psf, rgb_weights(psf.wavelengths_nm, light));
+}
 
 Exposed expose(const petzval::RgbImage& image) {
   std::vector<float> lit;
@@ -78,8 +99,8 @@ std::string short_number(double value) { return value < 100 ? number(value, 3) :
 
 }  // namespace
 
-Tile bokeh_tile(double focus_mm, const petzval::PointImage& image) {
-  Exposed exposed = expose(irradiance(image.psf));
+Tile bokeh_tile(double focus_mm, const petzval::PointImage& image, const petzval::Spectrum& light) {
+  Exposed exposed = expose(irradiance(image.psf, light));
   return {std::move(exposed.picture),
           {focus_caption(focus_mm),
            "radius " + short_number(image.size.max_radius) + " mm, RMS " + short_number(image.size.rms_radius) + " mm",

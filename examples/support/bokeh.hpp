@@ -5,10 +5,12 @@
 #include <span>
 #include <string>
 
+#include "cli.hpp"
 #include "contact_sheet.hpp"
 #include "load_lens.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/io/image.hpp"
+#include "petzval/psf/colour.hpp"
 #include "petzval/psf/psf.hpp"
 
 namespace examples {
@@ -31,11 +33,20 @@ struct BokehScene {
 /// front of the lens.
 BokehScene focused_scene(const petzval::Lens& lens, double focus_mm, const BokehSetup& setup);
 
-/// The linear image of a PSF, in the units of petzval::render. The CIE 1931 functions weight wavelengths to RGB.
-petzval::RgbImage irradiance(const petzval::Psf& psf);
+/// The light of a point, which looks white: D65, D50, A, E or a file "wavelength_nm,power" that ends in .csv. Throws
+/// Error that names it.
+petzval::Spectrum white_light(const std::string& white_point);
 
-/// Weights of wavelengths by the colour matching functions of the data directory. Throws Error for an invalid set.
-std::vector<std::array<double, 3>> rgb_weights(std::span<const double> wavelengths_nm);
+/// Option --white-point, for white_light().
+void add_white_point(App& app, std::string& white_point);
+
+/// The linear image of a PSF in such a light, in the units of petzval::render. The CIE 1931 functions weight
+/// wavelengths to RGB.
+petzval::RgbImage irradiance(const petzval::Psf& psf, const petzval::Spectrum& light = white_light("D65"));
+
+/// Weights of wavelengths in such a light by the colour matching functions of the data directory. Throws Error for an
+/// invalid set.
+std::vector<std::array<double, 3>> rgb_weights(std::span<const double> wavelengths_nm, const petzval::Spectrum& light);
 
 /// A displayable picture, and the irradiance that it shows as white: the 99th percentile of the lit pixels.
 struct Exposed {
@@ -48,7 +59,7 @@ Exposed expose(const petzval::RgbImage& image);
 std::string focus_caption(double focus_mm);
 
 /// A tile of a contact sheet: picture, focus distance, size of the blur, exposure.
-Tile bokeh_tile(double focus_mm, const petzval::PointImage& image);
+Tile bokeh_tile(double focus_mm, const petzval::PointImage& image, const petzval::Spectrum& light = white_light("D65"));
 
 /// Explains the lines below a tile.
 std::vector<std::string> bokeh_notes();

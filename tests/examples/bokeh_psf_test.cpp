@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <fstream>
 #include <numbers>
 
 #include "petzval/focus/focus.hpp"
@@ -191,6 +193,29 @@ TEST_F(BokehPsf, SendsAsManyRaysAsTheToleranceNeeds) {
   EXPECT_EQ(too_fine["rays"], too_fine["rays_sent"]);
 }
 
+// Whatever the light is, its picture is white in all and holds all of it; wavelengths differ in throughput by a
+// percent.
+TEST_F(BokehPsf, ShowsTheLightOfTheWhitePointWhite) {
+  std::ofstream(path("led.csv")) << "wavelength_nm,power\n440,0\n455,10\n470,2\n560,6\n700,0\n";
+  const auto reddest = [&](const std::string& white) {
+    const auto json = bokeh({"--subject-distance-mm", "1000", "--focus-mm", "900", "--wavelengths-nm",
+                             "450,520,590,650", "--white-point", white});
+    EXPECT_EQ(json["white_point"], white);
+    const auto image = petzval::read_exr(path(std::string("bokeh/") + id + "_focus_900mm.exr"));
+    const double area = std::pow(json["results"][0]["picture_pixel_mm"].get<double>(), 2);
+    std::array<double, 3> sums{};
+    double result = 0;
+    for (std::size_t p = 0; p < image.pixels.size(); ++p) sums[p % 3] += image.pixels[p] * area;
+    for (std::size_t p = 0; p < image.pixels.size(); p += 3) {
+      result = std::max(result, double{image.pixels[p]} - image.pixels[p + 2]);
+    }
+    for (const double sum : sums) EXPECT_NEAR(sum, json["results"][0]["throughput"].get<double>(), 0.01) << white;
+    return result;
+  };
+  EXPECT_NE(reddest("D65"), reddest("A"));
+  EXPECT_NE(reddest("D65"), reddest(path("led.csv")));
+}
+
 TEST_F(BokehPsf, GivesTheSameBytesTwice) {
   const std::vector<std::string> arguments{"--subject-distance-mm", "inf",         "--focus-mm",  "1000,inf",
                                            "--wavelengths-nm",      "480,550,620", "--field-deg", "7"};
@@ -219,6 +244,8 @@ TEST_F(BokehPsf, RefusesABadCommandLineInOneLine) {
   refuse_iris({"--blades", "5", "--roundness", "1.1"}, "--roundness: found \"1.1\", wanted a number from -1 to 1");
   refuse_iris({"--tolerance", "0"}, "--tolerance: found \"0\", wanted a number above 0, at most 1");
   refuse_iris({"--blades", "5", "--iris-area", "equal"}, "--iris-area: found equal without --f-number");
+  refuse_iris({"--white-point", "D66"}, "--white-point: found \"D66\", wanted D65, D50, A, E or a file.csv");
+  refuse_iris({"--white-point", "none.csv"}, "none.csv: cannot be read, wanted the table of a light's power");
   refuse({"--subject-distance-mm", "1000"}, "--focus-mm is required");
   refuse({"--focus-mm", "1000"}, "--subject-distance-mm is required");
   refuse({"--subject-distance-mm", "1000", "--focus-mm", "10x"}, "--focus-mm: found \"10x\"");
