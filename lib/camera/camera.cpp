@@ -73,7 +73,8 @@ double on_axis(const FilmView& view, std::size_t wavelength) {
   return sum / count;
 }
 
-std::vector<double> scales(const Lens& lens, const Film& film, const AnyRayModel& model, Normalisation normalisation) {
+std::vector<double> scales(const Lens& lens, const Film& film, const AnyRayModel& model,
+                           const camera_detail::PupilWeights& weights, Normalisation normalisation) {
   const std::size_t wavelengths = lens.wavelengths_nm().size();
   std::vector<double> result;
   for (std::size_t w = 0; w < wavelengths; ++w) {
@@ -90,7 +91,7 @@ std::vector<double> scales(const Lens& lens, const Film& film, const AnyRayModel
   std::optional<TiltedFilm> tilted;
   if (film.tilted()) tilted.emplace(about, model.pupils());  // as the shutter opens
   const camera_detail::WavelengthFacts own(model, result);
-  const FilmView view{model, about, tilted ? &*tilted : nullptr, own};
+  const FilmView view{model, about, tilted ? &*tilted : nullptr, own, weights};
   const auto light = [&](std::size_t wavelength) {
     const double axis = on_axis(view, wavelength);
     if (axis > 0) return axis;
@@ -119,36 +120,44 @@ std::span<const double> nm_of(const Lens& lens, const AnyRayModel& model) {
 }  // namespace
 
 Camera::Data::Data(const LensFacts& facts, const Film& placed, const AnyRayModel& any, double radius,
-                   Normalisation normalisation)
+                   Normalisation normalisation, const BokehControls& bokeh)
     : lens(facts.lens()),
       film(placed),
       model(any),
       tilted(camera_detail::tilted_or_moving(placed) ? std::optional(TiltedFilm(placed, any.pupils())) : std::nullopt),
-      wavelengths(model, scales(lens, film, model, normalisation), nm_of(lens, model)),
+      weights(lens, model, bokeh),
+      wavelengths(model, scales(lens, film, model, weights, normalisation), nm_of(lens, model)),
       front(camera_detail::front_of(lens)),
       pdf_film(1 / film.area_mm2()),
       facts_(facts),
       radius_(radius),
       primary_(lens.primary_wavelength()),
-      view_{model, film, tilted ? &*tilted : nullptr, wavelengths, front} {}
+      view_{model, film, tilted ? &*tilted : nullptr, wavelengths, weights, front} {}
 
 Camera::Camera(const Lens& lens, const Film& film, const CameraOptions& options) {
-  const auto [placed_lens, placed_film] = camera_detail::placed(lens, film);
+  const int blades = options.bokeh.lens_elements;
+  const auto [placed_lens, placed_film] =
+      camera_detail::placed(blades == 0 ? lens : with_iris(lens, {.blades = blades}), film);
   camera_detail::check_film(placed_lens, placed_film);
   const LensFacts facts(placed_lens);
   const double radius = camera_detail::upright_radius(facts, placed_film, options.model);
   const AnyRayModel model = camera_detail::make_model(options.model, facts, radius, options.threads);
-  data_ = std::make_shared<const Data>(facts, placed_film, model, radius, options.normalisation);
+  data_ = std::make_shared<const Data>(facts, placed_film, model, radius, options.normalisation, options.bokeh);
 }
 
-Camera::Camera(const Lens& lens, const Film& film, const AnyRayModel& model, Normalisation normalisation) {
+Camera::Camera(const Lens& lens, const Film& film, const AnyRayModel& model, Normalisation normalisation,
+               const BokehControls& bokeh) {
+  if (bokeh.lens_elements != 0) {
+    throw Error(lens.name() + ": camera: found lens_elements " + std::to_string(bokeh.lens_elements) +
+                " for a model that was built before, wanted 0, and a model of a lens with that iris");
+  }
   const auto [placed_lens, placed_film] = camera_detail::placed(lens, film);
   camera_detail::check_film(placed_lens, placed_film);
   const LensFacts facts(placed_lens);
   const double radius = camera_detail::upright_radius(facts, placed_film, model.kind());
   check_model(placed_lens, model.pupils(), radius);
   check_wavelengths(placed_lens, model);
-  data_ = std::make_shared<const Data>(facts, placed_film, model, radius, normalisation);
+  data_ = std::make_shared<const Data>(facts, placed_film, model, radius, normalisation, bokeh);
 }
 
 const Lens& Camera::lens() const noexcept { return data_->lens; }
@@ -173,17 +182,21 @@ CameraRayDifferential Camera::sample_differential(const CameraSample& s) const n
   if (!result.sample) return result;
   const Data& data = *data_;
   const Wavelength wavelength = data.resolved(s.wavelength);
+  double u = s.pupil_u, v = s.pupil_v;
+  if (data.weights) {
+    const auto drawn = data.weights.draw(u, v);
+    u = drawn.u, v = drawn.v;
+  }
   const auto upright = [&]() -> TwoPlaneRayDerivatives {
     const FilmPupilTable& pupils = data.model.pupils();
-    const PupilSample at = pupils.sample(s.film, s.pupil_u, s.pupil_v, wavelength);
-    const auto [by_x, by_y] = pupils.derivatives(s.film, s.pupil_u, s.pupil_v, wavelength);
+    const PupilSample at = pupils.sample(s.film, u, v, wavelength);
+    const auto [by_x, by_y] = pupils.derivatives(s.film, u, v, wavelength);
     return {{s.film.x, s.film.y, at.x, at.y}, {1, 0, by_x[0], by_x[1]}, {0, 1, by_y[0], by_y[1]}};
   };
-  const TwoPlaneRayDerivatives line =
-      !data.tilted ? upright()
-      : data.model.pinhole()
-          ? pinhole_line(data.tilted->plane(s.time), s.film, data.wavelengths.pinhole_shift(wavelength))
-          : data.tilted->line(s.film, s.pupil_u, s.pupil_v, wavelength, s.time);
+  const TwoPlaneRayDerivatives line = !data.tilted           ? upright()
+                                      : data.model.pinhole() ? pinhole_line(data.tilted->plane(s.time), s.film,
+                                                                            data.wavelengths.pinhole_shift(wavelength))
+                                                             : data.tilted->line(s.film, u, v, wavelength, s.time);
   RayDerivatives ray = data.model.to_scene(line, wavelength);
   if (data.view().moves_rays()) ray = at_front(data.front, ray);
   result.by_film_x = ray.by_u;

@@ -17,12 +17,13 @@ namespace petzval::inline v0 {
 struct Camera::Data {
   /// radius: upright_radius() of the film.
   Data(const camera_detail::LensFacts& facts, const Film& placed, const AnyRayModel& model, double radius,
-       Normalisation normalisation);
+       Normalisation normalisation, const BokehControls& bokeh);
 
   Lens lens;
   Film film;
   AnyRayModel model;
   std::optional<camera_detail::TiltedFilm> tilted;
+  camera_detail::PupilWeights weights;
   camera_detail::WavelengthFacts wavelengths;  ///< scales of weights and importance
   camera_detail::Front front;
   double pdf_film;  ///< of film points spread uniformly over the film, 1/mm^2
@@ -35,7 +36,8 @@ struct Camera::Data {
   }
   /// Renderers that trace paths from the film alone never ask for it.
   const camera_detail::SceneSide& scene() const {
-    std::call_once(scene_once_, [&] { scene_.emplace(facts_, film, tilted, front, model, radius_, wavelengths); });
+    std::call_once(scene_once_,
+                   [&] { scene_.emplace(facts_, film, tilted, front, model, radius_, wavelengths, weights); });
     return *scene_;
   }
 

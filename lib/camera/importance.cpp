@@ -117,7 +117,8 @@ double pinhole_entrance_area(const AnyRayModel& model, double entrance_z, std::s
 }  // namespace
 
 SceneSide::SceneSide(const LensFacts& facts, const Film& film, std::optional<TiltedFilm> tilted, const Front& front,
-                     const AnyRayModel& model, double radius, const WavelengthFacts& wavelengths)
+                     const AnyRayModel& model, double radius, const WavelengthFacts& wavelengths,
+                     const PupilWeights& weights)
     : film_(film),
       tilted_(std::move(tilted)),
       upright_radius_(radius),
@@ -125,6 +126,7 @@ SceneSide::SceneSide(const LensFacts& facts, const Film& film, std::optional<Til
       space_(model.pupils().space()),
       front_(front),
       wavelengths_(wavelengths),
+      weights_(weights),
       in_nm_(facts.lens().wavelengths_nm()),
       primary_(model.pupils().primary_wavelength()),
       entrance_(entrance_of(facts.lens(), model)) {
@@ -239,6 +241,11 @@ Importance SceneSide::importance(const AnyRayModel& model, const Ray<double>& ra
   const bool within = sampled.contains(met->virtual_point, pupil.x, pupil.y, wavelength);
   weigh(result, model, arrival, placed ? placed->weight(met->virtual_point, pupil) : 1, ray.direction.z,
         within ? sampled.area(met->virtual_point, wavelength) : 0, at);
+  if (!weights_) return result;
+  const double density = weights_.density(sampled.position(met->virtual_point, pupil.x, pupil.y, wavelength));
+  result.we *= weights_.of_line({upright.x, upright.y, pupil.x, pupil.y}, wavelength);
+  result.pdf_pupil *= density, result.pdf_direction *= density;
+  if (!(result.we > 0)) result.fate = RayFate::vignetted;
   return result;
 }
 
@@ -297,7 +304,9 @@ ImportanceSample SceneSide::through_pinhole(const AnyRayModel& model, const Vec3
   Importance& seen = result.importance = met_by(arrival, met);
   if (seen.fate != RayFate::transmitted) return result;
   const FilmPupilTable& pupils = tilted_ ? tilted_->pupils() : model.pupils();
-  const PupilSample s = pupils.sample(met->virtual_point, u, v, wavelength);
+  iris_detail::IrisWeights::Drawn drawn{u, v, 1};
+  if (weights_) drawn = weights_.draw(u, v);
+  const PupilSample s = pupils.sample(met->virtual_point, drawn.u, drawn.v, wavelength);
   const FilmPoint place{s.x, s.y};
   double spread = 1, facing = 1;
   bool passes = s.area > 0;
@@ -317,6 +326,11 @@ ImportanceSample SceneSide::through_pinhole(const AnyRayModel& model, const Vec3
   }
   weigh(seen, model, arrival, facing, result.direction.z, s.area, at);
   seen.we *= spread, seen.pdf_direction *= spread;
+  if (weights_) {
+    const TwoPlaneRay line{arrival.upright.x, arrival.upright.y, place.x, place.y};
+    seen.we *= weights_.of_sample(drawn.u, drawn.v, line, wavelength) / drawn.density;
+    seen.pdf_pupil *= drawn.density, seen.pdf_direction *= drawn.density;
+  }
   return result;
 }
 

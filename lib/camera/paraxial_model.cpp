@@ -90,6 +90,12 @@ StopImage thin_image(const LensFacts& facts, std::size_t wavelength, const TwoPl
   return image_of(lens, line_at(space, z), stop_over_image, "the rear principal plane");
 }
 
+StopImage stop_image(ModelKind model, const LensFacts& facts, std::size_t wavelength, const TwoPlanes& space,
+                     Meridian section) {
+  return model == ModelKind::thin ? thin_image(facts, wavelength, space, section)
+                                  : thick_image(facts, wavelength, space, section);
+}
+
 /// Edges of the real pupils of some film points, at equal steps of film area; none where hardly any light comes.
 std::vector<EdgePoint> real_edges(const FilmPupilTable& real, std::size_t wavelength) {
   constexpr int fields = 16, directions = pupil_table_detail::polygon_corners / 2;
@@ -159,9 +165,7 @@ FilmPupilTable pupils_of(ModelKind model, const LensFacts& facts, double film_ra
   const Lens& lens = facts.lens();
   if (model == ModelKind::thin_two_disc) return two_disc_pupils(lens, film_radius);
   const TwoPlanes space = two_planes(lens);
-  const auto image_at = [&](std::size_t w, Meridian section) {
-    return model == ModelKind::thin ? thin_image(facts, w, space, section) : thick_image(facts, w, space, section);
-  };
+  const auto image_at = [&](std::size_t w, Meridian section) { return stop_image(model, facts, w, space, section); };
   struct Sections {
     StopImage x, y;
   };
@@ -192,6 +196,13 @@ ParaxialModel::ParaxialModel(ModelKind model, const LensFacts& facts, double fil
       sections_alike_(!has_cylinders(facts.lens())) {
   const Lens& lens = facts.lens();
   const TwoPlanes& space = pupils_.space();
+  if (!two_discs()) {
+    const auto upside_down = [&](Meridian section) {
+      return stop_image(model, facts, primary_, space, section).size < 0;
+    };
+    const bool along_y = upside_down(Meridian::y);
+    stop_upside_down_ = {has_cylinders(lens) ? upside_down(Meridian::x) : along_y, along_y};
+  }
   std::vector<SectionMaps> thick;
   for (std::size_t w = 0; w < lens.wavelengths_nm().size(); ++w) {
     const RayMatrix y = to_scene_map(facts, w, space, Meridian::y);

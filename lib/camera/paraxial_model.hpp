@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -56,6 +57,9 @@ class ParaxialModel {
   PETZVAL_API ParaxialModel(ModelKind model, const LensFacts& facts, double film_radius);
 
   ModelKind kind() const noexcept { return kind_; }
+  bool two_discs() const noexcept { return kind_ == ModelKind::thin_two_disc; }
+  /// Whether the pupil is an image of the stop that is upside down, along x and along y; not for two discs.
+  std::array<bool, 2> stop_upside_down() const noexcept { return stop_upside_down_; }
   const FilmPupilTable& pupils() const noexcept { return pupils_; }
   /// From film and pupil points to place and slope in the plane z(), one for each wavelength.
   std::span<const SectionMaps> maps() const noexcept { return to_scene_; }
@@ -86,6 +90,7 @@ class ParaxialModel {
   std::size_t primary_;
   double z_ = 0;  // of the first vertex, where rays are given
   bool sections_alike_;
+  std::array<bool, 2> stop_upside_down_{};
   std::vector<SectionMaps> to_scene_, to_film_;                 // of each wavelength
   lens_detail::BetweenWavelengths<8> between_, of_thick_lens_;  // to the scene, of this model and of the thick lens
   std::vector<double> pinhole_shifts_;

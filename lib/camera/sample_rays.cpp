@@ -62,6 +62,26 @@ void keep_within(std::size_t count, const FilmPupilTable& pupils, const TwoPlane
   for (std::size_t i = 0; i < count; ++i) fates[i] = within[i] ? fates[i] : RayFate::vignetted;
 }
 
+/// Gives rays the weights of their places in the stop, and samples the densities with which they were drawn.
+template <class T>
+void weigh_pupil(const FilmView& view, std::size_t count, std::size_t wanted, const T* u, const T* v,
+                 const TwoPlaneRays<const T>& lines, const RayWavelengths& wavelengths, const T* densities,
+                 RayFate* fates, const CameraRays<T>& rays) noexcept {
+  Values<T> weights;
+  if (view.tilted && !view.model.pinhole()) {
+    view.weights.of_lines(count, lines, wavelengths, weights.data());
+  } else {
+    view.weights.of_samples(count, u, v, lines, wavelengths, weights.data());
+  }
+  for (std::size_t i = 0; i < wanted; ++i) {
+    const bool lit = weights[i] > T(0);
+    rays.weights[i] = lit ? rays.weights[i] * weights[i] / densities[i] : T(0);
+    fates[i] = lit || fates[i] != RayFate::transmitted ? fates[i] : RayFate::vignetted;
+    if (rays.pdf_pupil) rays.pdf_pupil[i] *= densities[i];
+    if (rays.pdf_direction) rays.pdf_direction[i] *= densities[i];
+  }
+}
+
 /// One block, of a number of rays that fills lanes: each has the same bits wherever it stands. The first `wanted` of
 /// them get weights.
 template <class T>
@@ -78,6 +98,12 @@ void sample_block(const FilmView& view, std::size_t n, std::size_t wanted, const
   RayFate* const fates = rays.fates ? rays.fates : local_fates.data();
   const TwoPlaneRays<const T> lines{film_x.data(), film_y.data(), x.data(), y.data()};
   fill_scales(n, view.wavelengths, wavelengths, scales.data());
+  const T *pupil_u = samples.pupil_u, *pupil_v = samples.pupil_v;
+  alignas(64) Values<T> drawn_u, drawn_v, densities;
+  if (view.weights) {
+    view.weights.draw(n, pupil_u, pupil_v, drawn_u.data(), drawn_v.data(), densities.data());
+    pupil_u = drawn_u.data(), pupil_v = drawn_v.data();
+  }
   loops.keep_on_film(bounds, n, samples.film_x, samples.film_y, film_x.data(), film_y.data());
   const auto trace = [&] {
     view.model.to_scene(n, lines, wavelengths, rays.rays, fates);
@@ -88,10 +114,10 @@ void sample_block(const FilmView& view, std::size_t n, std::size_t wanted, const
   const auto weigh = [&] {
     loops.weigh(bounds, static_cast<T>(view.depth), wanted, samples.film_x, samples.film_y, lines, areas.data(),
                 scales.data(), fates, rays);
+    if (view.weights) weigh_pupil(view, n, wanted, pupil_u, pupil_v, lines, wavelengths, densities.data(), fates, rays);
   };
   if (!tilted) {
-    pupils.sample(n, film_x.data(), film_y.data(), samples.pupil_u, samples.pupil_v, wavelengths, x.data(), y.data(),
-                  areas.data());
+    pupils.sample(n, film_x.data(), film_y.data(), pupil_u, pupil_v, wavelengths, x.data(), y.data(), areas.data());
     trace();
     weigh();
     return;
@@ -99,8 +125,8 @@ void sample_block(const FilmView& view, std::size_t n, std::size_t wanted, const
   const TiltedBounds<T> plane = bounds_of(*tilted, samples.times);
   alignas(64) Values<T> virtual_x, virtual_y;
   loops.to_virtual(plane, n, film_x.data(), film_y.data(), virtual_x.data(), virtual_y.data());
-  tilted->pupils().sample(n, virtual_x.data(), virtual_y.data(), samples.pupil_u, samples.pupil_v, wavelengths,
-                          x.data(), y.data(), areas.data());
+  tilted->pupils().sample(n, virtual_x.data(), virtual_y.data(), pupil_u, pupil_v, wavelengths, x.data(), y.data(),
+                          areas.data());
   if (view.model.pinhole()) {
     find_chiefs(n, view, wavelengths, samples.times, virtual_x.data(), virtual_y.data(), film_x.data(), film_y.data());
     trace();
@@ -211,6 +237,11 @@ CameraRay sample_ray(const FilmView& view, const FilmPoint& film, double u, doub
   const TiltedPlane plane = tilted ? tilted->plane(time) : TiltedPlane{};
   const bool kept = on_film(view.bounds, film.x, film.y);
   // Number by number: a load of two that a caller has just stored one by one waits until they are in the cache.
+  double density = 1;
+  if (view.weights) {
+    const auto drawn = view.weights.draw(u, v);
+    u = drawn.u, v = drawn.v, density = drawn.density;
+  }
   const FilmPoint point{kept ? film.x : view.bounds.centre_x, kept ? film.y : view.bounds.centre_y};
   CameraRay out;
 
@@ -244,6 +275,14 @@ CameraRay sample_ray(const FilmView& view, const FilmPoint& film, double u, doub
   out.fate = fate_of(out.fate, kept, scale > 0, area > 0);
   camera_loops().weigh_one(view.moves_rays() ? &view.front : nullptr, view.depth, line, area, scale, out);
   if (!(kept && area > 0)) out.pdf_pupil = out.pdf_direction = 0;
+  if (view.weights) {
+    const double weight = out.fate != RayFate::transmitted  ? 0
+                          : tilted && !view.model.pinhole() ? view.weights.of_line(line, wavelength)
+                                                            : view.weights.of_sample(u, v, line, wavelength);
+    out.weight *= weight / density;
+    out.pdf_pupil *= density, out.pdf_direction *= density;
+    if (!(weight > 0) && out.fate == RayFate::transmitted) out.fate = RayFate::vignetted;
+  }
   if (out.fate != RayFate::transmitted) out.weight = 0;
   if (tilted) {
     const double near = 1 + plane.nearer_by(virtual_point);

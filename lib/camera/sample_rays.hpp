@@ -12,6 +12,7 @@
 #include "petzval/camera/ray_model.hpp"
 #include "petzval/core/export.hpp"
 #include "petzval/film/film.hpp"
+#include "pupil_weights.hpp"
 #include "tilted_film.hpp"
 
 namespace petzval::inline v0::camera_detail {
@@ -56,6 +57,7 @@ struct FilmView {
   /// Of the same film, with the model's pupils; null for an upright one that stays.
   const TiltedFilm* tilted = nullptr;
   const WavelengthFacts& wavelengths;
+  PupilWeights weights = {};
   Front front = {};  ///< of the lens
   double depth = model.pupils().space().depth();
   film_detail::FilmBounds<double> bounds = film_detail::bounds_of<double>(film);

@@ -21,9 +21,9 @@ namespace petzval::inline v0::camera_detail {
 /// The scene's side of a camera: importance.cpp and projection.cpp.
 class SceneSide {
  public:
-  /// radius: upright_radius() of the film; wavelengths: as in FilmView.
+  /// radius: upright_radius() of the film; wavelengths, weights: as in FilmView.
   SceneSide(const LensFacts& facts, const Film& film, std::optional<TiltedFilm> tilted, const Front& front,
-            const AnyRayModel& model, double radius, const WavelengthFacts& wavelengths);
+            const AnyRayModel& model, double radius, const WavelengthFacts& wavelengths, const PupilWeights& weights);
 
   Importance importance(const AnyRayModel& model, const Ray<double>& ray, Wavelength wavelength,
                         double time) const noexcept;
@@ -85,6 +85,7 @@ class SceneSide {
   TwoPlanes space_;
   Front front_;
   WavelengthFacts wavelengths_;
+  PupilWeights weights_;
   lens_detail::CompiledWavelengths in_nm_;
   lens_detail::BetweenWavelengths<3> between_;  // etendue, place and area of the entrance pupil
   std::size_t primary_ = 0;

@@ -79,12 +79,25 @@ Vec2<double> IrisShape::position(double x, double y) const noexcept {
   const double sector = std::min(std::floor(sectors), iris_.blades - 1.0);
   const double angle = (2 * (sectors - sector) - 1) * blade.half_angle;
   // Where the ray from the centre meets the edge.
-  const double slope = (1 - blade.curvature * blade.middle) * std::cos(angle);
-  const double distance = blade.middle * (1 - blade.curvature * blade.middle / 2);
-  const double edge = 2 * distance / (slope + std::sqrt(slope * slope + 2 * blade.curvature * distance));
-  const double across = std::clamp(edge * std::sin(angle), -blade.half_chord, blade.half_chord);
+  const double way = share(x, y), to_edge = std::sqrt(square / way);
+  const double across = std::clamp(to_edge * std::sin(angle), -blade.half_chord, blade.half_chord);
   const double part = blade.twice_area(across) / blade.twice_area(blade.half_chord);
-  return {(sector + (1 + part) / 2) / iris_.blades, square / (edge * edge)};
+  return {(sector + (1 + part) / 2) / iris_.blades, way};
+}
+
+double IrisShape::share(double x, double y) const noexcept {
+  const double square = x * x + y * y;
+  const IrisSectors<double> s = sectors<double>();
+  if (s.count == 0) return square;
+  // The point over `part` lies on an edge: distance part^2 - across part - bend square = 0.
+  double largest = 0;
+  for (std::size_t k = 0; k < s.count; ++k) {
+    const double* edge = s.edges + 4 * k;
+    const double nx = edge[0], ny = edge[1], bend = edge[2], distance = edge[3];
+    const double across = x * nx + y * ny, inner = across * across + 4 * distance * bend * square;
+    if (inner >= 0) largest = std::max(largest, (across + std::sqrt(inner)) / (2 * distance));
+  }
+  return largest * largest;
 }
 
 bool IrisShape::contains(double x, double y) const noexcept {

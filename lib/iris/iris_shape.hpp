@@ -28,6 +28,8 @@ class PETZVAL_API IrisShape {
   Vec2<double> sample(double u, double v) const noexcept;
   /// The inverse: u and v of a point. v is above 1 outside; u is 0 at the centre.
   Vec2<double> position(double x, double y) const noexcept;
+  /// v of a point alone: the share of the area that lies nearer to the centre.
+  double share(double x, double y) const noexcept;
   bool contains(double x, double y) const noexcept;
 
   /// For loops over samples, in float or double.

@@ -96,16 +96,17 @@ struct FilmCells::Place {
     if (!fold) return {sign_x * px, sign_y * py};
     return {fold[0] * px + fold[2] * py, fold[1] * px + fold[3] * py};
   }
-  /// u in the quadrant of the table. Towards -y it is the share of the half at +x.
+  /// Where u begins in the quadrant of the table, and which way it runs. Towards -y it is the share of the half at +x.
+  template <class T>
+  T first_share(const InCell<T>& polygon) const noexcept {
+    if (fold) return polygon.area_before(static_cast<std::size_t>(fold[4])) / polygon.area_before(polygon_corners);
+    const double across = sign_x < 0 ? 1 : 0;
+    return sign_y < 0 ? polygon.right_share() - across : T(across);
+  }
+  double sense() const noexcept { return fold ? fold[5] : sign_x * sign_y; }
   template <class T>
   T share(const InCell<T>& polygon, double u) const noexcept {
-    if (fold) {
-      const T begin = polygon.area_before(static_cast<std::size_t>(fold[4])) / polygon.area_before(polygon_corners);
-      const T from = begin + fold[5] * u;
-      return from < 0.0 ? T(from + 1.0) : from < 1.0 ? from : T(from - 1.0);
-    }
-    const double across = sign_x < 0 ? 1 - u : u;
-    const T from = sign_y < 0 ? polygon.right_share() - across : T(across);
+    const T from = first_share(polygon) + sense() * u;
     return from < 0.0 ? T(from + 1.0) : from < 1.0 ? from : T(from - 1.0);
   }
 };
@@ -282,6 +283,14 @@ bool FilmCells::contains(const FilmPoint& film, double x, double y, std::size_t 
 double FilmCells::clearance(const FilmPoint& film, double x, double y, std::size_t wavelength) const noexcept {
   const Place at = find(film, wavelength);
   return at.cell ? clearance_of_place(at.polygon(), at.from_middle(x, y)) : -1;
+}
+
+Vec2<double> FilmCells::position(const FilmPoint& film, double x, double y, std::size_t wavelength) const noexcept {
+  const Place at = find(film, wavelength);
+  if (!at.cell) return {0, 2};
+  const auto [share, v] = position_of_place(at.polygon(), at.from_middle(x, y));
+  const double u = at.sense() * (share - at.first_share(at.polygon()));
+  return {u - std::floor(u), v};
 }
 
 FilmPupilTable::Derivatives FilmCells::derivatives(const FilmPoint& film, double u, double v,

@@ -39,6 +39,7 @@ class FilmCells {
   Vec2<double> middle(const FilmPoint& film, std::size_t wavelength) const noexcept;
   bool contains(const FilmPoint& film, double x, double y, std::size_t wavelength) const noexcept;
   double clearance(const FilmPoint& film, double x, double y, std::size_t wavelength) const noexcept;
+  Vec2<double> position(const FilmPoint& film, double x, double y, std::size_t wavelength) const noexcept;
   FilmPupilTable::Derivatives derivatives(const FilmPoint& film, double u, double v,
                                           std::size_t wavelength) const noexcept;
 

@@ -489,6 +489,18 @@ double FilmPupilTable::clearance(const FilmPoint& film, double x, double y, Wave
   return clearance_of_place(polygon, Point<double>{cosine * x - sine * y, sine * x + cosine * y} - polygon.middle());
 }
 
+Vec2<double> FilmPupilTable::position(const FilmPoint& film, double x, double y, Wavelength wavelength) const noexcept {
+  if (const auto& images = data_->images) return images->position(film, x, y, wavelength);
+  if (const auto& cells = data_->cells) return cells->position(film, x, y, data_->position(wavelength));
+  const auto [strip, t, cosine, sine] = data_->find(film, wavelength);
+  if (!strip) return {0, 2};
+  const InStrip<double> polygon{strip, t};
+  const auto [share, v] =
+      position_of_place(polygon, Point<double>{cosine * x - sine * y, sine * x + cosine * y} - polygon.middle());
+  const double u = share + turn_of(sine, cosine);
+  return {u - std::floor(u), v};
+}
+
 template <class T>
 void FilmPupilTable::contains(std::size_t count, const TwoPlaneRays<const T>& lines, const RayWavelengths& wavelengths,
                               std::uint8_t* within) const noexcept {

@@ -111,6 +111,12 @@ bool IrisImages::contains(const FilmPoint& film, double x, double y, Wavelength 
          shape_.contains((x - seen.shift_x * film.x) / seen.radius_x, (y - seen.shift_y * film.y) / seen.radius_y);
 }
 
+Vec2<double> IrisImages::position(const FilmPoint& film, double x, double y, Wavelength wavelength) const noexcept {
+  const Image seen = image(film, wavelength);
+  if (!(seen.area > 0)) return {0, 2};
+  return shape_.position((x - seen.shift_x * film.x) / seen.radius_x, (y - seen.shift_y * film.y) / seen.radius_y);
+}
+
 FilmPupilTable::Derivatives IrisImages::derivatives(const FilmPoint& film, double u, double v,
                                                     Wavelength wavelength) const noexcept {
   // Of part (shift film + radius place), by way of part's own: - part^2 shift slope.

@@ -39,6 +39,7 @@ class IrisImages {
   double area(const FilmPoint& film, Wavelength wavelength) const noexcept;
   Vec2<double> middle(const FilmPoint& film, Wavelength wavelength) const noexcept;
   bool contains(const FilmPoint& film, double x, double y, Wavelength wavelength) const noexcept;
+  Vec2<double> position(const FilmPoint& film, double x, double y, Wavelength wavelength) const noexcept;
   FilmPupilTable::Derivatives derivatives(const FilmPoint& film, double u, double v,
                                           Wavelength wavelength) const noexcept;
 

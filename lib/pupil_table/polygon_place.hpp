@@ -104,15 +104,33 @@ std::size_t corner_before(const In<double>& polygon, const Point<double>& q) {
   return low;
 }
 
+/// The sector that faces a place, seen from the middle; polygon_corners: none does.
+template <template <class> class In>
+std::size_t sector_towards(const In<double>& polygon, const Point<double>& q) {
+  return sector_facing(
+      q, [&](std::size_t k) { return sector_at(polygon, k); }, corner_before(polygon, q));
+}
+
 /// The squared way outwards to a place, seen from the middle, and the sector that faces it; none: no sector does.
 template <template <class> class In>
 std::optional<std::pair<double, Sector<double>>> way_to_place(const In<double>& polygon, const Point<double>& q) {
-  const auto sectors = [&](std::size_t k) { return sector_at(polygon, k); };
-  const std::size_t k = sector_facing(q, sectors, corner_before(polygon, q));
+  const std::size_t k = sector_towards(polygon, q);
   if (k == polygon_corners) return {};
-  const Sector<double> sector = sectors(k);
+  const Sector<double> sector = sector_at(polygon, k);
   const double way = sector.way_to(q);
   return std::pair{way * way, sector};
+}
+
+/// The inverse of sample_place: the share of the area before a place and v, which is above 1 outside. Outside of a
+/// polygon without sectors there: v is 2.
+template <template <class> class In>
+Point<double> position_of_place(const In<double>& polygon, const Point<double>& q) {
+  const std::size_t k = sector_towards(polygon, q);
+  const double whole = polygon.area_before(polygon_corners);
+  if (k == polygon_corners || !(whole > 0)) return {0, 2};
+  const Sector<double> sector = sector_at(polygon, k);
+  const double way = sector.way_to(q);
+  return {(polygon.area_before(k) + sector.along_to(q) * sector.area()) / whole, sector.share_within(way * way)};
 }
 
 template <template <class> class In>

@@ -42,6 +42,11 @@ struct Sector {
     const T within = (T(1) - obscured) * v;
     return within < obscured_from ? within : T(within + obscured);
   }
+  /// The v of a squared way: the inverse; of one that is obscured, that where the obscured part begins.
+  T share_within(const T& squared_way) const noexcept {
+    const T past = squared_way - obscured > obscured_from ? squared_way - obscured : obscured_from;
+    return (squared_way < obscured_from ? squared_way : past) / (T(1) - obscured);
+  }
   /// The place at a way outwards and a part of the way along the outer edge, from a (0) to b (1).
   Point<T> at(const T& way, const T& along) const noexcept {
     return {way * (a.x + along * (b.x - a.x)), way * (a.y + along * (b.y - a.y))};
@@ -51,6 +56,11 @@ struct Sector {
   bool faces(const Point<T>& q) const noexcept { return turn(a, q) >= T(0) && turn(q, b) >= T(0) && turn(a, b) > T(0); }
   /// The way outwards to a place that the sector faces.
   T way_to(const Point<T>& q) const noexcept { return (turn(a, q) + turn(q, b)) / turn(a, b); }
+  /// The part of the way along the outer edge to where a place lies that it faces.
+  T along_to(const Point<T>& q) const noexcept {
+    const T before = turn(a, q), after = turn(q, b);
+    return before + after > T(0) ? before / (before + after) : T(0);
+  }
   bool obscures(const T& squared_way) const noexcept {
     return squared_way >= obscured_from && squared_way < obscured_from + obscured;
   }

@@ -315,6 +315,32 @@ TEST_P(SampledTable, SamplesBatchesLikeSinglePoints) {
 INSTANTIATE_TEST_SUITE_P(FilmPupilTable, SampledTable,
                          ::testing::Values("catadioptric_mangin_1000mm_f7.5", "anamorphic_60mm_2x"));
 
+TEST_P(SampledTable, KnowsWhichSampleAPlaceIs) {
+  const Lens lens = data_lens(GetParam());
+  std::vector<FilmPupilTable> tables{FilmPupilTable::enclosing(lens, 20)};
+  const Lens round = data_lens("double_gauss_100mm_f1.35");
+  tables.push_back(FilmPupilTable::enclosing(with_iris(round, {.blades = 5, .rotation_rad = 0.3}), 20));
+  const PupilImage image{{-0.4, -0.4}, {20, 18}};
+  tables.push_back(FilmPupilTable::of_iris(two_planes(round), {.blades = 7, .roundness = 0.4}, {&image, 1}, 20));
+  std::mt19937_64 random(8);
+  std::uniform_real_distribution<double> unit(0, 1);
+  for (const FilmPupilTable& table : tables) {
+    for (int i = 0; i < 2000; ++i) {
+      const FilmPoint film{20 * unit(random) - 10, 20 * unit(random) - 10};
+      const double u = unit(random), v = unit(random);
+      const PupilSample s = table.sample(film, u, v);
+      const Vec2<double> at = table.position(film, s.x, s.y);
+      EXPECT_NEAR(std::remainder(at.x - u, 1), 0, 1e-9 / v);
+      EXPECT_NEAR(at.y, v, 1e-9);
+      const PupilSample edge = table.sample(film, u, 1);
+      const Vec2<double> middle = table.middle(film);
+      const Vec2<double> beyond = middle + 1.1 * (Vec2<double>{edge.x, edge.y} - middle);
+      EXPECT_GT(table.position(film, beyond.x, beyond.y).y, 1);
+    }
+    EXPECT_GT(table.position({100, 0}, 0, 0).y, 1);
+  }
+}
+
 TEST(FilmPupilTable, ContainsManyPlacesAsItContainsOne) {
   const std::vector<double> nm{450, 650};
   const auto with = [&](const char* id) {

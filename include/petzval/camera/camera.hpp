@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "petzval/camera/bokeh_controls.hpp"
 #include "petzval/camera/camera_ray.hpp"
 #include "petzval/camera/model_kind.hpp"
 #include "petzval/core/export.hpp"
@@ -35,6 +36,7 @@ struct CameraOptions {
   /// Of the set-up, 1 or more: they share the compiled wavelengths of exact models and polynomials. The camera does not
   /// depend on them.
   int threads = 1;
+  BokehControls bokeh{};  ///< the defaults change nothing
 };
 
 /// A film behind a focused lens, seen through a ray model: what a renderer holds.
@@ -83,9 +85,9 @@ class PETZVAL_API Camera {
   Camera(const Lens& lens, const Film& film, const CameraOptions& options = {});
   /// With a model that was built before: a renderer's own, or polynomials read from a file (ray_model.hpp). Throws
   /// Error also for a model of other wavelengths, of another place of the film, or whose pupils reach less far than
-  /// upright_radius().
+  /// upright_radius(), and for lens_elements, which such a model cannot follow.
   Camera(const Lens& lens, const Film& film, const AnyRayModel& model,
-         Normalisation normalisation = Normalisation::irradiance);
+         Normalisation normalisation = Normalisation::irradiance, const BokehControls& bokeh = {});
 
   /// With the film's place.
   const Lens& lens() const noexcept;
@@ -125,8 +127,8 @@ class PETZVAL_API Camera {
                         Wavelength wavelength = {}) const noexcept;
 
   /// The camera's film side as plain numbers, for hosts that sample on another processor: CameraTables
-  /// (camera_tables.hpp) has the layout. Throws Error for a film that is tilted or travels and for a renderer's own
-  /// model.
+  /// (camera_tables.hpp) has the layout. Throws Error for a film that is tilted or travels, for weights of the
+  /// pupil and for a renderer's own model.
   std::vector<float> tables() const;
 
   /// Where the camera sees a scene point: the film point and raster position of its chief ray.

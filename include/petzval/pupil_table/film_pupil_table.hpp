@@ -214,6 +214,10 @@ class PETZVAL_API FilmPupilTable {
   /// obscuration. Continuous over film points and places that the pupil faces; of pupils in closed form 1 or -1.
   double clearance(const FilmPoint& film, double x, double y, Wavelength wavelength = {}) const noexcept;
 
+  /// The u and v whose sample is a place in the pupil of a film point; v is above 1 outside, and where an obscuration
+  /// lies that of its inner edge.
+  Vec2<double> position(const FilmPoint& film, double x, double y, Wavelength wavelength = {}) const noexcept;
+
   /// contains() for many rays. within: N, 0 or 1. Float or double.
   template <class T>
   void contains(std::size_t count, const TwoPlaneRays<const T>& lines, const RayWavelengths& wavelengths,

@@ -1,0 +1,278 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "iris_weights.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/text.hpp"
+#include "petzval/core/error.hpp"
+
+namespace petzval::inline v0 {
+namespace {
+
+/// The printed formula and its integral from 0 on, for d >= 0.
+double uncut(const EdgeWeight& w, double x) noexcept {
+  const double d = std::abs(w.distribution);
+  return 1 + w.strength * ((d + 1) * std::pow(x, d) - 1);
+}
+double uncut_below(const EdgeWeight& w, double x) noexcept {
+  const double d = std::abs(w.distribution);
+  return x + w.strength * (std::pow(x, d + 1) - x);
+}
+
+/// Where the formula is not negative: it rises or falls all the way.
+std::array<double, 2> lit(const EdgeWeight& w) noexcept {
+  const bool first = uncut(w, 0) >= 0, last = uncut(w, 1) >= 0;
+  if (first && last) return {0, 1};
+  double low = 0, high = 1;
+  for (int i = 0; i < 60; ++i) {
+    const double middle = (low + high) / 2;
+    ((uncut(w, middle) >= 0) == first ? low : high) = middle;
+  }
+  return first ? std::array{0.0, low} : std::array{high, 1.0};
+}
+
+/// The light of the places with less than x, cut at 0.
+double light_below(const EdgeWeight& w, double x) noexcept {
+  const auto [begin, end] = lit(w);
+  const auto from_begin = [&](double to) { return uncut_below(w, std::clamp(to, begin, end)) - uncut_below(w, begin); };
+  return w.distribution < 0 ? from_begin(1) - from_begin(1 - x) : from_begin(x);
+}
+
+}  // namespace
+
+double EdgeWeight::at(double share) const noexcept {
+  if (even()) return 1;
+  const double x = std::clamp(share, 0.0, 1.0);
+  return std::max(uncut(*this, distribution < 0 ? 1 - x : x), 0.0);
+}
+
+double EdgeWeight::light_added() const noexcept { return even() ? 0 : std::max(light_below(*this, 1) - 1, 0.0); }
+
+IrisMap onion_rings(const OnionRings& rings, int pixels) {
+  if (!(pixels >= 2 && pixels <= 8192)) {
+    throw Error("onion_rings: pixels is " + std::to_string(pixels) + ", wanted 2 to 8192");
+  }
+  const double least = 4.0 / pixels;
+  if (!(rings.period >= least && rings.period <= 2)) {
+    throw Error("onion_rings: period is " + to_text(rings.period) + ", wanted " + to_text(least) + " to 2");
+  }
+  if (!(rings.contrast >= 0 && rings.contrast <= 1)) {
+    throw Error("onion_rings: contrast is " + to_text(rings.contrast) + ", wanted 0 to 1");
+  }
+  if (!(rings.jitter >= 0 && std::isfinite(rings.jitter))) {
+    throw Error("onion_rings: jitter is " + to_text(rings.jitter) + ", wanted a number of 0 or more");
+  }
+  // The phase walks at random from ring to ring, in straight lines between them.
+  constexpr double pi = std::numbers::pi;
+  std::vector<double> walk{0};
+  std::uint32_t state = rings.seed;
+  const auto random = [&] {  // splitmix by 32 bits
+    std::uint32_t z = state += 0x9e3779b9u;
+    z = (z ^ (z >> 16)) * 0x85ebca6bu;
+    z = (z ^ (z >> 13)) * 0xc2b2ae35u;
+    return (z ^ (z >> 16)) / 4294967296.0;
+  };
+  const auto count = static_cast<std::size_t>(std::sqrt(2.0) / rings.period) + 2;
+  while (walk.size() <= count) walk.push_back(walk.back() + 2 * pi * rings.jitter * (2 * random() - 1));
+  IrisMap map{pixels, pixels, {}, true};
+  for (int row = 0; row < pixels; ++row) {
+    for (int column = 0; column < pixels; ++column) {
+      const double x = (2 * column + 1.0) / pixels - 1, y = (2 * row + 1.0) / pixels - 1;
+      const double ring = std::hypot(x, y) / rings.period;
+      const auto k = static_cast<std::size_t>(ring);
+      const double phase = walk[k] + (ring - static_cast<double>(k)) * (walk[k + 1] - walk[k]);
+      map.values.push_back(static_cast<float>(1 + rings.contrast * std::cos(2 * pi * ring + phase)));
+    }
+  }
+  return map;
+}
+
+namespace iris_detail {
+namespace {
+
+/// Where a sum that rises reaches a value: the last begin of a part that is not beyond it.
+template <class Iterator>
+std::size_t part_at(Iterator begin, Iterator end, double value) noexcept {
+  const auto above = std::upper_bound(begin + 1, end - 1, value);
+  return static_cast<std::size_t>(above - begin - 1);
+}
+
+}  // namespace
+
+void check(const IrisMap& map, const std::string& where) {
+  if (map.empty() && map.width == 0 && map.height == 0) return;
+  const auto size = std::to_string(map.width) + " x " + std::to_string(map.height);
+  constexpr std::int64_t most = std::int64_t{1} << 26;
+  const std::int64_t pixels = std::int64_t{map.width} * map.height;
+  if (map.width < 1 || map.height < 1 || pixels > most) {
+    throw Error(where + "the map has " + size + " pixels, wanted 1 x 1 to " + std::to_string(most) + " in all");
+  }
+  if (static_cast<std::int64_t>(map.values.size()) != pixels) {
+    throw Error(where + "the map has " + std::to_string(map.values.size()) + " values, wanted " + size);
+  }
+  for (std::size_t i = 0; i < map.values.size(); ++i) {
+    const float value = map.values[i];
+    if (std::isfinite(value) && value >= 0) continue;
+    const auto width = static_cast<std::size_t>(map.width);
+    throw Error(where + "the map has " + to_text(value) + " in row " + std::to_string(i / width) + ", column " +
+                std::to_string(i % width) + ", wanted finite weights of 0 or more");
+  }
+}
+
+IrisMap upside_down(IrisMap map, bool along_x, bool along_y) {
+  if (along_x && along_y) {
+    std::reverse(map.values.begin(), map.values.end());
+  } else if (along_x || along_y) {
+    for (auto row = map.values.begin(); row != map.values.end(); row += map.width) std::reverse(row, row + map.width);
+    if (along_y) std::reverse(map.values.begin(), map.values.end());
+  }
+  return map;
+}
+
+IrisWeights::IrisWeights(const Iris& iris, const EdgeWeight& edge, const IrisMap& map, double uniform_part,
+                         const std::string& where)
+    : shape_(iris), edge_(edge), map_(map) {
+  if (!std::isfinite(edge.distribution) || !std::isfinite(edge.strength)) {
+    throw Error(where + "found the weight distribution " + to_text(edge.distribution) + " and strength " +
+                to_text(edge.strength) + ", wanted finite numbers");
+  }
+  // Rows of equal light by the edge's weights, so that these are nearly even in each; columns where a map has some.
+  const std::size_t rows = map.empty() ? 2048 : 256;
+  columns_ = map.empty() ? 1 : 256;
+  const double all = edge.even() ? 1 : light_below(edge, 1);
+  const auto samples_below = [&](double v) {
+    return uniform_part * v + (1 - uniform_part) * (edge.even() ? v : light_below(edge, v) / all);
+  };
+  rows_.push_back(0);
+  for (std::size_t k = 1; k < rows; ++k) {
+    double low = rows_.back(), high = 1;
+    const double wanted = static_cast<double>(k) / static_cast<double>(rows);
+    for (int i = 0; i < 60; ++i) {
+      const double middle = (low + high) / 2;
+      (samples_below(middle) < wanted ? low : high) = middle;
+    }
+    rows_.push_back(high);
+  }
+  rows_.push_back(1);
+  if (map.empty()) {
+    mean_ = all;
+    for (std::size_t k = 0; k <= rows; ++k) {
+      before_rows_.push_back(static_cast<double>(k) / static_cast<double>(rows));
+      if (k < rows) before_in_row_.insert(before_in_row_.end(), {0, 1});
+    }
+    return;
+  }
+  // The light of each cell by its mean over some places.
+  constexpr int places = 4;
+  std::vector<double> light(rows * columns_), in_row(rows);
+  double total = 0, of_map = 0;
+  for (std::size_t i = 0; i < rows; ++i) {
+    const double height = rows_[i + 1] - rows_[i];
+    for (std::size_t j = 0; j < columns_; ++j) {
+      double sum = 0, own_map = 0;
+      for (int k = 0; k < places * places; ++k) {
+        const double v = rows_[i] + height * (k / places + 0.5) / places;
+        const double u = (static_cast<double>(j) + (k % places + 0.5) / places) / static_cast<double>(columns_);
+        const double at_place = map_at(shape_.sample(u, v));
+        sum += edge.at(v) * at_place, own_map += at_place;
+      }
+      const double area = height / static_cast<double>(columns_) / (places * places);
+      light[i * columns_ + j] = sum * area;
+      in_row[i] += sum * area;
+      of_map += own_map * area;
+    }
+    total += in_row[i];
+  }
+  if (!(total > 0)) throw Error(where + "the map is black on the iris, wanted light somewhere");
+  if (map.keep_mean) {
+    for (float& value : map_.values) value = static_cast<float>(value / of_map);
+    for (double& value : light) value /= of_map;
+    for (double& value : in_row) value /= of_map;
+    total /= of_map;
+  }
+  mean_ = total;
+  // What lies between those places may be brighter.
+  const double floor = std::max(uniform_part, 0.02);
+  before_rows_.push_back(0);
+  for (std::size_t i = 0; i < rows; ++i) {
+    const double height = rows_[i + 1] - rows_[i];
+    const double own = (1 - floor) * in_row[i] / total + floor * height;
+    before_rows_.push_back(before_rows_.back() + own);
+    before_in_row_.push_back(0);
+    for (std::size_t j = 0; j < columns_; ++j) {
+      const double part =
+          (1 - floor) * light[i * columns_ + j] / total + floor * height / static_cast<double>(columns_);
+      before_in_row_.push_back(before_in_row_.back() + part / own);
+    }
+    before_in_row_.back() = 1;
+  }
+  before_rows_.back() = 1;
+}
+
+double IrisWeights::map_at(const Vec2<double>& place) const noexcept {
+  if (map_.empty()) return 1;
+  const auto along = [](double at, int pixels) {
+    const double x = std::clamp((at + 1) / 2 * pixels - 0.5, 0.0, pixels - 1.0);
+    const int below = std::min(static_cast<int>(x), std::max(pixels - 2, 0));
+    return std::pair{below, x - below};
+  };
+  const auto [column, s] = along(place.x, map_.width);
+  const auto [row, t] = along(-place.y, map_.height);
+  const auto value = [&, column = column, row = row](int right, int down) -> double {
+    const int c = std::min(column + right, map_.width - 1), r = std::min(row + down, map_.height - 1);
+    return map_
+        .values[static_cast<std::size_t>(r) * static_cast<std::size_t>(map_.width) + static_cast<std::size_t>(c)];
+  };
+  const double above = value(0, 0) + s * (value(1, 0) - value(0, 0));
+  return above + t * (value(0, 1) + s * (value(1, 1) - value(0, 1)) - above);
+}
+
+double IrisWeights::at(const Vec2<double>& place) const noexcept {
+  return edge_.at(edge_.even() ? 0 : shape_.share(place.x, place.y)) * map_at(place);
+}
+
+double IrisWeights::of_sample(double u, double v) const noexcept {
+  return edge_.at(v) * (map_.empty() ? 1 : map_at(shape_.sample(u, v)));
+}
+
+std::size_t IrisWeights::row_of(double v) const noexcept { return part_at(rows_.begin(), rows_.end(), v); }
+
+std::size_t IrisWeights::column_of(double u) const noexcept {
+  return std::min(static_cast<std::size_t>(u * static_cast<double>(columns_)), columns_ - 1);
+}
+
+IrisWeights::Drawn IrisWeights::draw(double u, double v) const noexcept {
+  // Comparisons with what is not a number are false; the pupil refuses it.
+  if (!((u + v) * 0 == 0)) return {u, v, 1};
+  u = std::clamp(u, 0.0, 1.0), v = std::clamp(v, 0.0, 1.0);
+  const std::size_t row =
+      map_.empty() ? std::min(static_cast<std::size_t>(v * static_cast<double>(rows_.size() - 1)), rows_.size() - 2)
+                   : part_at(before_rows_.begin(), before_rows_.end(), v);
+  const double own = before_rows_[row + 1] - before_rows_[row], height = rows_[row + 1] - rows_[row];
+  const double to_v = rows_[row] + height * std::min((v - before_rows_[row]) / own, 1.0);
+  const auto columns = before_in_row_.begin() + static_cast<std::ptrdiff_t>(row * (columns_ + 1));
+  const std::size_t column =
+      columns_ == 1 ? 0 : part_at(columns, columns + static_cast<std::ptrdiff_t>(columns_ + 1), u);
+  const auto at_column = columns + static_cast<std::ptrdiff_t>(column);
+  const double part = at_column[1] - at_column[0];
+  const double to_u =
+      (static_cast<double>(column) + std::min((u - at_column[0]) / part, 1.0)) / static_cast<double>(columns_);
+  return {to_u, to_v, own / height * part * static_cast<double>(columns_)};
+}
+
+double IrisWeights::density(double u, double v) const noexcept {
+  if (!(u >= 0 && u <= 1 && v >= 0 && v <= 1)) return 0;
+  const std::size_t row = row_of(v), at = row * (columns_ + 1) + column_of(u);
+  return (before_rows_[row + 1] - before_rows_[row]) / (rows_[row + 1] - rows_[row]) *
+         (before_in_row_[at + 1] - before_in_row_[at]) * static_cast<double>(columns_);
+}
+
+}  // namespace iris_detail
+}  // namespace petzval::inline v0

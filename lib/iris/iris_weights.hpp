@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "iris/iris_shape.hpp"
+#include "petzval/core/export.hpp"
+#include "petzval/core/geometry.hpp"
+#include "petzval/iris/iris_weights.hpp"
+
+namespace petzval::inline v0::iris_detail {
+
+/// Throws Error, which begins with `where`, for weights that are not finite or negative, sizes that do not fit them,
+/// and more than 2^26 pixels.
+PETZVAL_API void check(const IrisMap& map, const std::string& where);
+
+/// The map as an image shows it that is upside down along an axis, or along both.
+PETZVAL_API IrisMap upside_down(IrisMap map, bool along_x, bool along_y);
+
+/// Weights over an iris, and samples that follow them.
+class PETZVAL_API IrisWeights {
+ public:
+  /// map: as check() lets it pass. uniform_part: of the samples, whatever the weights are. Throws Error, which begins
+  /// with `where`, for an edge whose numbers are not finite and a map that is black on the iris.
+  IrisWeights(const Iris& iris, const EdgeWeight& edge, const IrisMap& map, double uniform_part,
+              const std::string& where);
+
+  /// At a point of the stop, in semi-diameters. Beyond the rim: as there.
+  double at(const Vec2<double>& place) const noexcept;
+  /// At IrisShape::sample(u, v).
+  double of_sample(double u, double v) const noexcept;
+  /// Over the iris.
+  double mean() const noexcept { return mean_; }
+
+  /// Where uniform numbers of the unit square go: numbers of IrisShape::sample() whose density is nearly in proportion
+  /// to the weights.
+  struct Drawn {
+    double u, v, density;
+  };
+  Drawn draw(double u, double v) const noexcept;
+  /// Of such numbers at a place.
+  double density(double u, double v) const noexcept;
+
+ private:
+  double map_at(const Vec2<double>& place) const noexcept;
+  std::size_t row_of(double v) const noexcept;
+  std::size_t column_of(double u) const noexcept;
+
+  IrisShape shape_;
+  EdgeWeight edge_;
+  IrisMap map_;  // scaled
+  double mean_ = 1;
+  std::size_t columns_ = 1;
+  std::vector<double> rows_;           // where they begin, by v; the end of the last one
+  std::vector<double> before_rows_;    // the part of all samples, likewise
+  std::vector<double> before_in_row_;  // [row][column]: the part of the row's samples, [columns + 1]
+};
+
+}  // namespace petzval::inline v0::iris_detail

@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "petzval/camera/bokeh_controls.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "../data_lenses.hpp"
+#include "../message.hpp"
+#include "camera_samples.hpp"
+#include "core/low_discrepancy.hpp"
+#include "iris/iris_shape.hpp"
+#include "iris/iris_weights.hpp"
+#include "petzval/camera/camera.hpp"
+#include "petzval/pupil/f_number.hpp"
+#include "petzval/trace/trace.hpp"
+
+namespace petzval {
+namespace {
+
+using testing::data_lens;
+using testing::message;
+using testing::Samples;
+
+const Film film{.width_mm = 36, .height_mm = 24};
+const BokehControls ring{.weight_distribution = 12.7, .weight_strength = 0.6};
+const BokehControls soft{.weight_distribution = -4, .weight_strength = 0.8};
+
+/// A map without symmetries.
+BokehControls mapped() {
+  BokehControls result;
+  result.weight_map = {16, 16, {}, false};
+  for (int i = 0; i < 256; ++i) {
+    result.weight_map.values.push_back(static_cast<float>(0.3 + 0.04 * (i % 16) + 0.01 * (i / 16)));
+  }
+  return result;
+}
+
+template <class T>
+Samples<T> some_samples(const Film& on, std::size_t count) {
+  Samples<T> samples;
+  const core_detail::Kronecker<4> random(5);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const auto [x, y, u, v] = random(i);
+    samples.add(on.width_mm * (x - 0.5), on.height_mm * (y - 0.5), u, v);
+  }
+  return samples;
+}
+
+TEST(BokehControls, ChangeNoBitByDefault) {
+  const Lens lens = with_f_number(data_lens("double_gauss_100mm_f2.0"), 2.8);
+  for (const ModelKind model : models()) {
+    auto as_before = some_samples<float>(film, 500), same = as_before;
+    as_before.run(Camera(lens, film, {.model = model}));
+    for (const BokehControls& none : {BokehControls{}, BokehControls{.weight_strength = 0.9},
+                                      BokehControls{.weight_distribution = 5, .weight_strength = 0}}) {
+      const Camera camera(lens, film, {.model = model, .bokeh = none});
+      same.run(camera);
+      EXPECT_EQ(same.weights, as_before.weights) << name(model);
+      EXPECT_EQ(same.dx, as_before.dx) << name(model);
+      EXPECT_EQ(same.pdf_direction, as_before.pdf_direction) << name(model);
+    }
+  }
+}
+
+TEST(BokehControls, TakeBladesByTheTextsName) {
+  const Lens lens = data_lens("double_gauss_100mm_f2.0");
+  auto samples = some_samples<double>(film, 300), same = samples;
+  samples.run(Camera(lens, film, {.model = ModelKind::thick, .bokeh = {.lens_elements = 6}}));
+  same.run(Camera(with_iris(lens, {.blades = 6}), film, {.model = ModelKind::thick}));
+  EXPECT_EQ(samples.weights, same.weights);
+  EXPECT_EQ(samples.dx, same.dx);
+}
+
+/// Where a camera ray meets the stop, by its number of surfaces in all.
+std::optional<Vec2<double>> at_stop(const Lens& lens, const Ray<double>& from_lens) {
+  std::optional<Vec2<double>> found;
+  const std::size_t stop = *lens.stop();
+  trace<double>(lens, {from_lens.origin - from_lens.direction * -10.0, -from_lens.direction}, {.apertures = false},
+                [&](int surface, const Vec3<double>& p) {
+                  if (surface == static_cast<int>(stop)) found = {p.x, p.y};
+                });
+  if (found) *found /= lens.surfaces()[stop].semi_diameter;
+  return found;
+}
+
+class RealLens : public ::testing::TestWithParam<const char*> {};
+
+// On the film's side: weight with controls, over that without, times the density of the sample is the weight of the
+// place in the stop. The scene's side says the same.
+TEST_P(RealLens, HasWeightsOnItsStop) {
+  const Lens open = data_lens(GetParam());
+  for (const Iris& iris : {Iris{}, Iris{.blades = 5, .rotation_rad = 0.3}}) {
+    if (!iris.round() && !open.rotationally_symmetric()) continue;
+    const Lens lens = with_iris(open, iris);
+    for (const BokehControls& controls : {ring, soft, mapped()}) {
+      const iris_detail::IrisWeights weights(iris, controls.edge(), controls.weight_map, 0, "");
+      for (const ModelKind model : {ModelKind::exact_double, ModelKind::polynomial_7}) {
+        const Film small{.width_mm = 18, .height_mm = 12};
+        const Camera camera(lens, small, {.model = model, .bokeh = controls});
+        const Camera plain(lens, small, {.model = model});
+        const core_detail::Kronecker<4> random(7);
+        int seen = 0;
+        const double near = model == ModelKind::exact_double ? 1e-6 : 0.1;  // its rays miss the exact ones
+        for (std::uint32_t i = 0; i < 400; ++i) {
+          const auto [x, y, u, v] = random(i);
+          const CameraSample s{.film = {18 * x - 9, 12 * y - 6}, .pupil_u = u, .pupil_v = v};
+          const CameraRay r = camera.sample(s);
+          if (!r) continue;
+          const auto stop = at_stop(lens, r.ray);
+          ASSERT_TRUE(stop);
+          const double weight = weights.at(*stop);
+          const Importance back = camera.importance({r.ray.origin, -r.ray.direction});
+          const Importance even = plain.importance({r.ray.origin, -r.ray.direction});
+          if (!back || back.pdf_pupil == 0) continue;
+          ++seen;
+          EXPECT_NEAR(back.we / even.we, weight, near * weight) << GetParam() << name(model) << iris.blades;
+          EXPECT_NEAR(back.we / (back.pdf_position * back.pdf_direction) / r.weight, 1, 0.05);
+          EXPECT_NEAR(back.pdf_pupil / r.pdf_pupil, 1, 0.05);
+        }
+        EXPECT_GT(seen, 200);
+      }
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(BokehControls, RealLens,
+                         ::testing::Values("double_gauss_100mm_f1.35", "fisheye_8mm_f2.8", "anamorphic_60mm_2x",
+                                           "mirror_newton_200mm_f8"));
+
+// What a map shows to the left of a stop passes there in every model.
+TEST(BokehControls, ShowAMapTheSameWayInAllModels) {
+  for (const char* id : {"double_gauss_100mm_f2.0", "telephoto_100mm_f5.6"}) {
+    const Lens lens = data_lens(id);
+    const Film point{.width_mm = 0.02, .height_mm = 0.02};
+    for (const int half : {0, 1, 2}) {
+      BokehControls controls;
+      controls.weight_map = {64, 64, {}, false};
+      for (int i = 0; i < 64 * 64; ++i) {
+        const bool right = i % 64 >= 32, low = i / 64 >= 32;
+        controls.weight_map.values.push_back((half == 0 ? right : half == 1 ? low : right && low) ? 1.0f : 0.0f);
+      }
+      for (const ModelKind model : models()) {
+        if (model == ModelKind::pinhole) continue;
+        const Camera camera(lens, point, {.model = model, .bokeh = controls});
+        const Camera plain(lens, point, {.model = model});
+        double sum_x = 0, sum_y = 0, light = 0, all = 0;
+        constexpr std::size_t count = 2000;
+        for (std::size_t i = 0; i < count; ++i) {
+          const auto [u, v] = core_detail::fibonacci_point(i, count);
+          const CameraRay r = camera.sample({.film = {}, .pupil_u = u, .pupil_v = v});
+          all += plain.sample({.film = {}, .pupil_u = u, .pupil_v = v}).weight;
+          if (!r) continue;
+          const auto stop = at_stop(lens, r.ray);
+          if (!stop) continue;
+          light += r.weight, sum_x += r.weight * stop->x, sum_y += r.weight * stop->y;
+        }
+        const double expected = half == 2 ? 0.25 : 0.5;
+        EXPECT_NEAR(light / all, expected, 0.02) << name(model);
+        constexpr double of_half_disc = 0.4244;  // 4 / 3 pi
+        EXPECT_NEAR(sum_x / light, half == 1 ? 0 : of_half_disc, 0.06) << name(model);
+        EXPECT_NEAR(sum_y / light, half == 0 ? 0 : -of_half_disc, 0.06) << name(model);
+      }
+    }
+  }
+}
+
+// Of a small pupil, whose parts are seen alike: rays through the rim of an f/2 bring 12 % less than those of the axis.
+TEST(BokehControls, KeepTheLightOfEveryModel) {
+  const Lens lens = with_f_number(data_lens("double_gauss_100mm_f2.0"), 11);
+  const Film point{.width_mm = 0.02, .height_mm = 0.02};
+  for (const ModelKind model : models()) {
+    const auto light = [&](const BokehControls& controls) {
+      const Camera camera(lens, point, {.model = model, .bokeh = controls});
+      double sum = 0, squares = 0;
+      constexpr std::size_t count = 1 << 14;
+      for (std::size_t i = 0; i < count; ++i) {
+        const auto [u, v] = core_detail::fibonacci_point(i, count);
+        const double weight = camera.sample({.film = {}, .pupil_u = u, .pupil_v = v}).weight;
+        sum += weight / count, squares += weight * weight / count;
+      }
+      return std::array{sum, squares / (sum * sum) - 1};
+    };
+    const auto plain = light({});
+    for (const BokehControls& controls : {ring, soft}) {
+      const auto [own, variance] = light(controls);
+      EXPECT_NEAR(own / plain[0], 1, model >= ModelKind::polynomial_3 ? 0.01 : 0.002)
+          << name(model) << controls.weight_distribution;
+      // Samples follow the weights.
+      EXPECT_LT(variance, plain[1] + 0.25) << name(model) << controls.weight_distribution;
+    }
+  }
+}
+
+TEST(BokehControls, SampleManyAsOneByOne) {
+  const Lens lens = data_lens("double_gauss_100mm_f2.0");
+  Film tilted = film;
+  tilted.tilt_rad = 0.05;
+  for (const Film& on : {film, tilted}) {
+    for (const ModelKind model : models()) {
+      for (const BokehControls& controls : {ring, mapped()}) {
+        const Camera camera(lens, on, {.model = model, .bokeh = controls});
+        auto samples = some_samples<double>(on, 77);
+        samples.run(camera);
+        for (std::size_t i = 0; i < samples.size(); ++i) {
+          const CameraRay one = camera.sample(samples.one(i));
+          const double near = model == ModelKind::exact_float ? 2e-4 : 1e-8;
+          EXPECT_NEAR(samples.weights[i], one.weight, near * (one.weight + 1e-3)) << name(model);
+          EXPECT_NEAR(samples.pdf_pupil[i], one.pdf_pupil, 1e-9 * one.pdf_pupil) << name(model);
+          EXPECT_EQ(samples.fates[i], one.fate) << name(model);
+        }
+      }
+    }
+  }
+}
+
+TEST(BokehControls, RefuseBadInput) {
+  const Lens lens = data_lens("double_gauss_100mm_f2.0");
+  const auto refused = [&](const BokehControls& controls) {
+    return message([&] { Camera(lens, film, {.model = ModelKind::thin, .bokeh = controls}); });
+  };
+  EXPECT_NE(refused({.lens_elements = 2}), "");
+  EXPECT_NE(refused({.lens_elements = 21}), "");
+  EXPECT_NE(refused({.weight_distribution = std::nan("")}), "");
+  EXPECT_EQ(refused({.weight_map = {1, 1, {0}}}),
+            lens.name() + ": camera: the map is black on the iris, wanted light somewhere");
+  const Camera weighted(lens, film, {.model = ModelKind::thin, .bokeh = ring});
+  EXPECT_NE(message([&] { weighted.tables(); }), "");
+}
+
+}  // namespace
+}  // namespace petzval

@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "iris/iris_weights.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "../message.hpp"
+#include "core/low_discrepancy.hpp"
+#include "iris/iris_edges.hpp"
+#include "petzval/core/error.hpp"
+
+namespace petzval {
+namespace {
+
+using iris_detail::IrisShape;
+using iris_detail::IrisWeights;
+using testing::message;
+
+std::vector<Iris> irises() {
+  return {{},
+          {.blades = 3},
+          {.blades = 5, .roundness = -1, .rotation_rad = 0.4},
+          {.blades = 6, .roundness = 0.5},
+          {.blades = 9, .rotation_rad = -1}};
+}
+
+/// The rows of weights in the text.
+std::vector<EdgeWeight> edges_of_the_text() {
+  std::vector<EdgeWeight> result;
+  for (const double p : {0.8, 0.6, 0.4, 0.2, 0.0}) result.push_back({-4, p}), result.push_back({4, p});
+  for (const double d : {5.5, 8.7, 12.7, 20.7, 50.7}) result.push_back({d, 0.6});
+  return result;
+}
+
+/// A bright half, a dark one and a spot.
+IrisMap some_map(bool keep_mean = false) {
+  IrisMap map{32, 24, {}, keep_mean};
+  for (int i = 0; i < 32 * 24; ++i) map.values.push_back(i % 32 < 16 ? 0.2f : 0.9f);
+  map.values[24 * 5 + 7] = 3;
+  return map;
+}
+
+TEST(EdgeWeight, IsThePrintedFormula) {
+  EXPECT_DOUBLE_EQ((EdgeWeight{4, 0.6}.at(0)), 0.4);
+  EXPECT_DOUBLE_EQ((EdgeWeight{4, 0.6}.at(1)), 3.4);
+  EXPECT_DOUBLE_EQ((EdgeWeight{4, 0.6}.at(0.5)), 0.4 + 3.0 / 16);
+  EXPECT_DOUBLE_EQ((EdgeWeight{-4, 0.6}.at(0.25)), (EdgeWeight{4, 0.6}.at(0.75)));
+  EXPECT_EQ((EdgeWeight{0, 0.5}.at(0.3)), 1);
+  EXPECT_EQ((EdgeWeight{7, 0}.at(0.3)), 1);
+}
+
+TEST(EdgeWeight, ConservesLightOnEveryShape) {
+  for (const EdgeWeight& edge : edges_of_the_text()) {
+    EXPECT_NEAR(edge.light_added(), 0, 1e-12);
+    for (const Iris& iris : irises()) {
+      const IrisShape shape(iris);
+      const IrisWeights weights(iris, edge, {}, 0, "");
+      EXPECT_NEAR(weights.mean(), 1, 1e-12);
+      double sum = 0;
+      constexpr std::size_t count = 1 << 15;
+      for (std::size_t i = 0; i < count; ++i) {
+        const auto [u, v] = core_detail::fibonacci_point(i, count);
+        sum += weights.at(shape.sample(u, v));
+      }
+      EXPECT_NEAR(sum / count, 1, 1e-4) << iris.blades << ' ' << edge.distribution << ' ' << edge.strength;
+    }
+  }
+}
+
+TEST(EdgeWeight, SaysWhatTheCutAdds) {
+  for (const EdgeWeight& edge : {EdgeWeight{4, 1.5}, EdgeWeight{-3, 2}, EdgeWeight{4, -0.9}, EdgeWeight{0.5, 3}}) {
+    double sum = 0;
+    constexpr int count = 1 << 16;
+    for (int i = 0; i < count; ++i) sum += edge.at((i + 0.5) / count);
+    EXPECT_GT(edge.light_added(), 0.01);
+    EXPECT_NEAR(edge.light_added(), sum / count - 1, 1e-6);
+    EXPECT_NEAR((IrisWeights({}, edge, {}, 0, "").mean()), sum / count, 1e-6);
+  }
+}
+
+TEST(IrisWeights, AreAlikeForAllSamplesThatFollowThem) {
+  for (const EdgeWeight& edge : edges_of_the_text()) {
+    const IrisWeights weights({.blades = 7}, edge, {}, 0, "");
+    for (std::size_t i = 0; i < 10000; ++i) {
+      const auto [u, v] = core_detail::fibonacci_point(i, 10000);
+      const auto drawn = weights.draw(u, v);
+      EXPECT_NEAR(weights.of_sample(drawn.u, drawn.v) / drawn.density, 1, 0.0125) << edge.distribution;
+    }
+  }
+}
+
+/// Chi-square of samples in cells of the square against the density that they are said to have.
+TEST(IrisWeights, DrawSamplesOfTheDensityTheySay) {
+  constexpr std::size_t columns = 16, rows = 16, count = 1 << 18;
+  const core_detail::Kronecker<2> random(3);
+  for (const EdgeWeight& edge : {EdgeWeight{20.7, 0.6}, EdgeWeight{-4, 0.8}, EdgeWeight{}}) {
+    for (const IrisMap& map : {IrisMap{}, some_map(), onion_rings({.period = 0.2}, 64)}) {
+      for (const double uniform : {0.0, 0.25}) {
+        const IrisWeights weights({.blades = 5, .roundness = 0.3}, edge, map, uniform, "");
+        std::array<double, columns * rows> found{}, wanted{};
+        for (std::size_t i = 0; i < count; ++i) {
+          const auto [u, v] = random(static_cast<std::uint32_t>(i));
+          const auto drawn = weights.draw(u, v);
+          ASSERT_TRUE(drawn.u >= 0 && drawn.u <= 1 && drawn.v >= 0 && drawn.v <= 1);
+          ASSERT_NEAR(weights.density(drawn.u, drawn.v) / drawn.density, 1, 0.02);
+          const auto cell = [](double x, std::size_t of) {
+            return std::min(static_cast<std::size_t>(x * static_cast<double>(of)), of - 1);
+          };
+          ++found[cell(drawn.v, rows) * columns + cell(drawn.u, columns)];
+          wanted[cell(v, rows) * columns + cell(u, columns)] += weights.density(u, v);
+        }
+        double chi2 = 0;
+        for (std::size_t k = 0; k < found.size(); ++k) {
+          if (wanted[k] > 5) chi2 += (found[k] - wanted[k]) * (found[k] - wanted[k]) / wanted[k];
+        }
+        // Samples are more even than random ones: 255 would be their mean.
+        EXPECT_LT(chi2, 255);
+      }
+    }
+  }
+}
+
+TEST(IrisWeights, OfAMapHaveItsMeanOrOne) {
+  const auto mean = [](const IrisWeights& weights, const Iris& iris) {
+    const IrisShape shape(iris);
+    double sum = 0;
+    constexpr std::size_t count = 1 << 16;
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto [u, v] = core_detail::fibonacci_point(i, count);
+      sum += weights.at(shape.sample(u, v)) / count;
+    }
+    return sum;
+  };
+  for (const Iris& iris : irises()) {
+    const IrisWeights as_given(iris, {}, some_map(), 0, ""), kept(iris, {}, some_map(true), 0, "");
+    EXPECT_NEAR(mean(as_given, iris), as_given.mean(), 1e-3);
+    EXPECT_GT(as_given.mean(), 0.4);
+    EXPECT_LT(as_given.mean(), 0.7);
+    EXPECT_NEAR(mean(kept, iris), 1, 2e-3);
+    EXPECT_NEAR(kept.mean(), 1, 1e-6);
+  }
+}
+
+TEST(IrisWeights, ShowTheMapWithXToTheRightAndYUp) {
+  IrisMap map{2, 2, {1, 2, 3, 4}};
+  const IrisWeights weights({}, {}, map, 0, "");
+  EXPECT_FLOAT_EQ(weights.at({-0.6, 0.6}), 1);
+  EXPECT_FLOAT_EQ(weights.at({0.6, 0.6}), 2);
+  EXPECT_FLOAT_EQ(weights.at({-0.6, -0.6}), 3);
+  EXPECT_FLOAT_EQ(weights.at({0.6, -0.6}), 4);
+  EXPECT_FLOAT_EQ(weights.at({0, 0}), 2.5);
+  EXPECT_EQ(iris_detail::upside_down(map, true, true).values, (std::vector<float>{4, 3, 2, 1}));
+  EXPECT_EQ(iris_detail::upside_down(map, true, false).values, (std::vector<float>{2, 1, 4, 3}));
+  EXPECT_EQ(iris_detail::upside_down(map, false, true).values, (std::vector<float>{3, 4, 1, 2}));
+}
+
+TEST(OnionRings, HaveThePeriodTheySay) {
+  const IrisMap map = onion_rings({.period = 0.1, .contrast = 0.3, .jitter = 0}, 500);
+  const auto at = [&](double radius) {
+    return map.values[250 * 500 + static_cast<std::size_t>((radius + 1) / 2 * 500)];
+  };
+  for (const double radius : {0.2, 0.5, 0.9}) {
+    EXPECT_NEAR(at(radius), 1.3, 0.01);
+    EXPECT_NEAR(at(radius + 0.05), 0.7, 0.01);
+  }
+}
+
+TEST(IrisWeights, RefuseWhatIsNoMap) {
+  const auto refused = [](const IrisMap& map) {
+    return message([&] {
+      iris_detail::check(map, "");
+      IrisWeights({}, {}, map, 0, "");
+    });
+  };
+  EXPECT_EQ(refused({2, 2, {1, 2, 3}}), "the map has 3 values, wanted 2 x 2");
+  EXPECT_EQ(refused({2, 1, {1, -1}}), "the map has -1 in row 0, column 1, wanted finite weights of 0 or more");
+  EXPECT_NE(refused({1, 1, {std::numeric_limits<float>::quiet_NaN()}}), "");
+  EXPECT_NE(refused({1, 1, {std::numeric_limits<float>::infinity()}}), "");
+  EXPECT_EQ(refused({1, 1, {0}}), "the map is black on the iris, wanted light somewhere");
+  EXPECT_NE(refused({1 << 14, 1 << 13, {}}), "");
+  EXPECT_NE(refused({-1, -1, {1}}), "");
+  EXPECT_NE(message([] { IrisWeights({}, {std::nan(""), 0.5}, {}, 0, ""); }), "");
+  for (const OnionRings& rings : {OnionRings{.period = 0}, OnionRings{.period = std::nan("")},
+                                  OnionRings{.contrast = 1.5}, OnionRings{.jitter = -1}}) {
+    EXPECT_NE(message([&] { onion_rings(rings); }), "");
+  }
+  EXPECT_NE(message([] { onion_rings({}, 1); }), "");
+}
+
+}  // namespace
+}  // namespace petzval
