@@ -7,7 +7,7 @@
 namespace petzval::inline v0::psf_detail {
 
 void count_points(const PixelGrid& grid, std::span<const double> x, std::span<const double> y,
-                  std::span<std::uint64_t> counts) noexcept {
+                  std::span<std::uint64_t> counts, std::span<const std::uint32_t> units) noexcept {
   // Pixel numbers of a block of points on lanes, then additions one by one: an image for each lane costs more. Points
   // outside the grid convert a 0: integers cannot hold all of their numbers.
   constexpr std::size_t block = 256;
@@ -22,6 +22,12 @@ void count_points(const PixelGrid& grid, std::span<const double> x, std::span<co
       const auto at =
           static_cast<std::int32_t>(inside ? row : 0) * grid.pixels + static_cast<std::int32_t>(inside ? column : 0);
       pixel[i] = inside ? at : -1;
+    }
+    if (!units.empty()) {
+      for (std::size_t i = 0; i < count; ++i) {
+        if (pixel[i] >= 0) counts[static_cast<std::size_t>(pixel[i])] += units[begin + i];
+      }
+      continue;
     }
     // Points outside the grid drop out without a branch, which a cropped picture would mispredict.
     std::size_t kept = 0;

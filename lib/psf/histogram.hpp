@@ -17,8 +17,9 @@ struct PixelGrid {
 };
 
 /// Adds 1 to the pixel of each point; points outside the grid are not counted. x, y: N each, film, mm. counts: pixels
-/// squared, [row][column]; integers, which count exactly however full a pixel is.
+/// squared, [row][column]; integers, which count exactly however full a pixel is. units: what to add in place of 1 for
+/// each point, or none.
 PETZVAL_API void count_points(const PixelGrid& grid, std::span<const double> x, std::span<const double> y,
-                              std::span<std::uint64_t> counts) noexcept;
+                              std::span<std::uint64_t> counts, std::span<const std::uint32_t> units = {}) noexcept;
 
 }  // namespace petzval::inline v0::psf_detail

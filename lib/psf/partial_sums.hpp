@@ -17,17 +17,25 @@ inline double sum(const PartialSums& parts) noexcept { return std::accumulate(pa
 
 inline double largest(const PartialSums& parts) noexcept { return *std::max_element(parts.begin(), parts.end()); }
 
-/// Calls see(part, x, y) for all points of sets with coordinates x and y; the points of a set take the parts by turns.
+/// Calls see(part, x, y, weight) for all points of sets with coordinates x and y and weights, or none, which are 1; the
+/// points of a set take the parts by turns.
 template <class Sets, class See>
 void for_each(const Sets& sets, See&& see) noexcept {
   constexpr std::size_t parts = std::tuple_size_v<PartialSums>;
   for (const auto& points : sets) {
-    const std::span<const double> xs = points.x, ys = points.y;
+    const std::span<const double> xs = points.x, ys = points.y, weights = points.weights;
     const std::size_t whole = xs.size() - xs.size() % parts;
-    for (std::size_t i = 0; i < whole; i += parts) {
-      for (std::size_t part = 0; part < parts; ++part) see(part, xs[i + part], ys[i + part]);
+    const auto see_all = [&](const auto& weight) {
+      for (std::size_t i = 0; i < whole; i += parts) {
+        for (std::size_t part = 0; part < parts; ++part) see(part, xs[i + part], ys[i + part], weight(i + part));
+      }
+      for (std::size_t i = whole; i < xs.size(); ++i) see(i - whole, xs[i], ys[i], weight(i));
+    };
+    if (weights.empty()) {
+      see_all([](std::size_t) { return 1.0; });
+    } else {
+      see_all([weights](std::size_t i) { return weights[i]; });
     }
-    for (std::size_t i = whole; i < xs.size(); ++i) see(i - whole, xs[i], ys[i]);
   }
 }
 

@@ -7,9 +7,9 @@
 
 namespace petzval::inline v0::psf_detail {
 
-/// Coordinates of film points, N each, mm.
+/// Coordinates of film points, N each, mm, and their weights, or none.
 struct Points {
-  std::span<const double> x, y;
+  std::span<const double> x, y, weights{};
 };
 
 /// spot_size() of all points of several sets.

@@ -3,13 +3,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <glm/geometric.hpp>
 #include <numbers>
+#include <numeric>
 #include <span>
 #include <string>
 
 #include "core/text.hpp"
 #include "partial_sums.hpp"
+#include "petzval/camera/camera.hpp"
 #include "petzval/core/error.hpp"
+#include "petzval/core/parallel.hpp"
+#include "petzval/core/sobol.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "psf/histogram.hpp"
 #include "psf/points.hpp"
@@ -34,28 +40,41 @@ void validate(const PsfOptions& options) {
 /// Into how many parts samples are divided to estimate errors.
 constexpr std::size_t parts = 8;
 
+/// Rays of a point at a wavelength, samples of a sequence from `first` on.
+using SendRays = std::function<RayBundle(std::size_t wavelength, std::uint32_t first, std::uint32_t count)>;
+
 /// The rays of a point: of each wavelength, sampled in parts.
 struct Rays {
   std::vector<RayBundle> sets;
-  std::vector<std::size_t> wavelength, part;  ///< of each set
-  std::uint32_t sent = 0;                     ///< for each wavelength
+  std::vector<std::size_t> wavelength, part;      ///< of each set
+  std::vector<std::vector<std::uint32_t>> units;  ///< likewise, of each ray with a weight
+  std::uint32_t sent = 0;                         ///< for each wavelength
 
   /// Sends the samples up to a number: the first ones in eight parts; then twice as many, when two parts become one and
   /// the new samples are four.
-  void send(const Lens& lens, std::span<const PupilSampler> pupils, std::uint32_t samples, const PsfOptions& options) {
+  void send(std::size_t wavelengths, std::uint32_t samples, const SendRays& send_rays) {
     const std::size_t first_part = sent == 0 ? 0 : parts / 2;
     for (std::size_t& own : part) own /= 2;
-    for (std::size_t w = 0; w < pupils.size(); ++w) {
+    for (std::size_t w = 0; w < wavelengths; ++w) {
       for (std::size_t k = first_part; k < parts; ++k) {
         const std::uint32_t begin = begin_of(k, samples), count = begin_of(k + 1, samples) - begin;
-        sets.push_back(trace_bundle(lens, pupils[w], count, options.seed, options.threads, begin));
+        sets.push_back(send_rays(w, begin, count));
         wavelength.push_back(w);
         part.push_back(k);
+        auto& own = units.emplace_back();
+        for (const double weight : sets.back().weights) own.push_back(units_of(weight));
       }
     }
     sent = samples;
   }
+  bool weighted() const noexcept {
+    return std::any_of(units.begin(), units.end(), [](const auto& own) { return !own.empty(); });
+  }
 
+  static constexpr std::uint32_t units_per_ray = 1u << 16;
+  static std::uint32_t units_of(double weight) noexcept {
+    return static_cast<std::uint32_t>(std::min(weight * units_per_ray + 0.5, 4294967295.0));
+  }
   static std::uint32_t begin_of(std::size_t part, std::uint32_t samples) noexcept {
     return static_cast<std::uint32_t>(std::uint64_t{samples} * part / parts);
   }
@@ -65,7 +84,7 @@ struct Rays {
 double fitting_half_width(const std::vector<RayBundle>& sets, const SpotSize& size) {
   const double cx = size.centroid.x, cy = size.centroid.y;
   psf_detail::PartialSums extent{};
-  psf_detail::for_each(sets, [&](std::size_t part, double x, double y) {
+  psf_detail::for_each(sets, [&](std::size_t part, double x, double y, double) {
     extent[part] = std::max(extent[part], std::max(std::abs(x - cx), std::abs(y - cy)));
   });
   return std::max(1.05 * psf_detail::largest(extent), 1e-4);
@@ -77,14 +96,15 @@ void fill_counts(Psf& psf, const Rays& rays) {
   psf.counts.assign(psf.wavelengths_nm.size() * plane, 0);
   for (std::size_t i = 0; i < rays.sets.size(); ++i) {
     const auto own = std::span(psf.counts).subspan(rays.wavelength[i] * plane, plane);
-    psf_detail::count_points(grid, rays.sets[i].x, rays.sets[i].y, own);
+    psf_detail::count_points(grid, rays.sets[i].x, rays.sets[i].y, own, rays.units[i]);
   }
 }
 
 constexpr std::size_t rings = std::tuple_size_v<decltype(PointImage::radial_profile)>;
 
-/// The number of hits in each ring of a width about a centre; the last ring has those that rounding puts beyond it.
-std::array<std::uint64_t, rings> count_by_ring(const RayBundle& hits, const Vec2<double>& centre, double width) {
+/// The counts of hits in each ring of a width about a centre; the last ring has those that rounding puts beyond it.
+std::array<std::uint64_t, rings> count_by_ring(const RayBundle& hits, std::span<const std::uint32_t> units,
+                                               const Vec2<double>& centre, double width) {
   constexpr std::size_t block = 256;
   std::array<std::int32_t, block> ring;
   std::array<std::uint64_t, rings> counts{};
@@ -97,7 +117,9 @@ std::array<std::uint64_t, rings> count_by_ring(const RayBundle& hits, const Vec2
       const double r = std::sqrt((x[i] - cx) * (x[i] - cx) + (y[i] - cy) * (y[i] - cy)) * scale;
       ring[i] = static_cast<std::int32_t>(r < rings - 1.0 ? r : rings - 1.0);
     }
-    for (std::size_t i = 0; i < count; ++i) ++counts[static_cast<std::size_t>(ring[i])];
+    for (std::size_t i = 0; i < count; ++i) {
+      counts[static_cast<std::size_t>(ring[i])] += units.empty() ? 1 : units[begin + i];
+    }
   }
   return counts;
 }
@@ -113,7 +135,7 @@ std::array<double, rings> light_by_ring(const Psf& psf, const Rays& rays, const 
   std::array<double, rings> light{};
   for (std::size_t i = 0; i < rays.sets.size(); ++i) {
     if (part != parts && rays.part[i] != part) continue;
-    const auto counts = count_by_ring(rays.sets[i], own.centre, own.width);
+    const auto counts = count_by_ring(rays.sets[i], rays.units[i], own.centre, own.width);
     const double weight = psf.ray_weight(rays.wavelength[i]) / static_cast<double>(psf.wavelengths_nm.size());
     for (std::size_t k = 0; k < rings; ++k) light[k] += weight * static_cast<double>(counts[k]);
   }
@@ -137,7 +159,7 @@ void fill_profile(PointImage& image, const Rays& rays) {
   for (std::size_t part = 0; part < parts; ++part) {
     std::vector<psf_detail::Points> own;
     for (std::size_t i = 0; i < rays.sets.size(); ++i) {
-      if (rays.part[i] == part) own.push_back({rays.sets[i].x, rays.sets[i].y});
+      if (rays.part[i] == part) own.push_back({rays.sets[i].x, rays.sets[i].y, rays.sets[i].weights});
     }
     const SpotSize size = psf_detail::spot_size(own);
     if (size.max_radius == 0) continue;
@@ -147,42 +169,72 @@ void fill_profile(PointImage& image, const Rays& rays) {
   image.error = confidence * std::sqrt(errors / (parts * (parts - 1)) / squares);
 }
 
-}  // namespace
-
-double Psf::ray_weight(std::size_t wavelength) const noexcept {
-  if (entrance_pupil_area == 0 || sent[wavelength] == 0) return 0;
-  return sampled_area[wavelength] / (static_cast<double>(sent[wavelength]) * entrance_pupil_area);
+/// The rays of a camera that connect a point with the entrance pupil, with weights: the area of the pupil plane that a
+/// ray stands for, over the mean one, `area` / count.
+RayBundle connected_rays(const Camera& camera, const PupilPlane& plane, std::size_t wavelength, double area,
+                         std::uint32_t first, std::uint32_t count, const PsfOptions& options) {
+  const bool far = plane.reciprocal_distance() == 0;
+  const Vec3<double> point = far ? plane.centre() : plane.centre() + plane.towards() / plane.reciprocal_distance();
+  // Importance is a ray's share of the film's mean irradiance.
+  const double index = camera.lens().index(0, wavelength);
+  const double per_importance = camera.film().area_mm2() / (index * index) / area;
+  std::vector<double> x(count), y(count), weights(count);
+  constexpr std::size_t block = 4096;
+  parallel_for(count, block, options.threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const Vec2<double> at = owen_sobol(first + static_cast<std::uint32_t>(i), options.seed);
+      const ImportanceSample s = far ? camera.sample_distant_importance(-plane.towards(), at.x, at.y, wavelength)
+                                     : camera.sample_importance(point, at.x, at.y, wavelength);
+      if (!(s.pdf > 0)) continue;
+      const double cosine = std::abs(glm::dot(s.direction, plane.normal()));
+      // From solid angle, or area across the ray, to the plane.
+      const double way = far ? 1 : glm::dot(plane.centre() - point, plane.normal()) / cosine;
+      const double spread = way * way / cosine;
+      x[i] = s.importance.film.x, y[i] = s.importance.film.y;
+      weights[i] = s.importance.we / s.pdf * per_importance * spread;
+    }
+  });
+  RayBundle bundle{.plane_z = camera.lens().film_z(), .x = {}, .y = {}};
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!(weights[i] > 0)) continue;
+    bundle.x.push_back(x[i]), bundle.y.push_back(y[i]), bundle.weights.push_back(weights[i]);
+  }
+  bundle.sent = count;
+  bundle.sampled_area = area;
+  return bundle;
 }
 
-double Psf::throughput(std::size_t wavelength) const noexcept {
-  return ray_weight(wavelength) * static_cast<double>(transmitted[wavelength]);
+double entrance_pupil_area(const Lens& lens) {
+  const auto diameter = [&](Meridian section) {
+    return pupils(lens, lens.primary_wavelength(), section).entrance.diameter;
+  };
+  return std::numbers::pi / 4 * diameter(Meridian::x) * diameter(Meridian::y);
 }
 
-PointImage point_image(const Lens& lens, const FieldPoint& point, const PsfOptions& options) {
-  validate(options);
+PointImage image_of(const Lens& lens, const std::vector<double>& sampled_area, const SendRays& send_rays,
+                    const PsfOptions& options) {
   PointImage image;
   Psf& psf = image.psf;
   psf.wavelengths_nm.assign(lens.wavelengths_nm().begin(), lens.wavelengths_nm().end());
-  psf.entrance_pupil_area = std::numbers::pi / 4 *
-                            pupils(lens, lens.primary_wavelength(), Meridian::x).entrance.diameter *
-                            pupils(lens, lens.primary_wavelength(), Meridian::y).entrance.diameter;
-  std::vector<PupilSampler> pupils_by_wavelength;
-  for (std::size_t w = 0; w < psf.wavelengths_nm.size(); ++w) {
-    pupils_by_wavelength.emplace_back(pupil_boundary(lens, point, w));
-    psf.sampled_area.push_back(pupils_by_wavelength.back().area());
-  }
+  psf.entrance_pupil_area = entrance_pupil_area(lens);
+  psf.sampled_area = sampled_area;
   constexpr std::uint32_t first = 1u << 14;
   Rays rays;
   for (std::uint32_t samples = options.tolerance > 0 ? std::min(first, options.samples) : options.samples;;) {
-    rays.send(lens, pupils_by_wavelength, samples, options);
+    rays.send(psf.wavelengths_nm.size(), samples, send_rays);
     psf.sent.assign(psf.wavelengths_nm.size(), samples);
+    psf.units_per_ray = rays.weighted() ? Rays::units_per_ray : 1;
     image.size = spot_size(rays.sets);
     fill_profile(image, rays);
     if (options.tolerance == 0 || image.error <= options.tolerance || samples > options.samples / 2) break;
     samples *= 2;
   }
   psf.transmitted.assign(psf.wavelengths_nm.size(), 0);
-  for (std::size_t i = 0; i < rays.sets.size(); ++i) psf.transmitted[rays.wavelength[i]] += rays.sets[i].size();
+  for (std::size_t i = 0; i < rays.sets.size(); ++i) {
+    const auto& units = rays.units[i];
+    psf.transmitted[rays.wavelength[i]] +=
+        units.empty() ? rays.sets[i].size() : std::accumulate(units.begin(), units.end(), std::uint64_t{0});
+  }
   for (std::size_t w = 0; w < psf.wavelengths_nm.size(); ++w) {
     image.throughput += psf.throughput(w) / static_cast<double>(psf.wavelengths_nm.size());
   }
@@ -192,6 +244,46 @@ PointImage point_image(const Lens& lens, const FieldPoint& point, const PsfOptio
   psf.pixel_mm = 2 * half / options.pixels;
   fill_counts(psf, rays);
   return image;
+}
+
+}  // namespace
+
+double Psf::ray_weight(std::size_t wavelength) const noexcept {
+  if (entrance_pupil_area == 0 || sent[wavelength] == 0) return 0;
+  return sampled_area[wavelength] / (static_cast<double>(sent[wavelength]) * units_per_ray * entrance_pupil_area);
+}
+
+double Psf::throughput(std::size_t wavelength) const noexcept {
+  return ray_weight(wavelength) * static_cast<double>(transmitted[wavelength]);
+}
+
+PointImage point_image(const Lens& lens, const FieldPoint& point, const PsfOptions& options) {
+  validate(options);
+  std::vector<PupilSampler> pupils_by_wavelength;
+  std::vector<double> areas;
+  for (std::size_t w = 0; w < lens.wavelengths_nm().size(); ++w) {
+    pupils_by_wavelength.emplace_back(pupil_boundary(lens, point, w));
+    areas.push_back(pupils_by_wavelength.back().area());
+  }
+  const auto send = [&](std::size_t w, std::uint32_t first, std::uint32_t count) {
+    return trace_bundle(lens, pupils_by_wavelength[w], count, options.seed, options.threads, first);
+  };
+  return image_of(lens, areas, send, options);
+}
+
+PointImage point_image(const Camera& camera, const FieldPoint& point, const PsfOptions& options) {
+  validate(options);
+  const Lens& lens = camera.lens();
+  const PupilPlane plane(lens, point);
+  const double area = entrance_pupil_area(lens);
+  if (!std::isfinite(area)) throw Error(lens.name() + ": point_image: the entrance pupil is infinite, wanted a size");
+  if (area == 0)
+    return image_of(
+        lens, std::vector(lens.wavelengths_nm().size(), 0.0), [](auto...) { return RayBundle{}; }, options);
+  const auto send = [&](std::size_t w, std::uint32_t first, std::uint32_t count) {
+    return connected_rays(camera, plane, w, area, first, count, options);
+  };
+  return image_of(lens, std::vector(lens.wavelengths_nm().size(), area), send, options);
 }
 
 }  // namespace petzval::inline v0

@@ -15,7 +15,7 @@
 namespace petzval::inline v0 {
 namespace {
 
-/// Sets: a range of values that have x and y, N each.
+/// Sets: a range of values that have x and y, N each, and N weights or none.
 template <class Sets>
 SpotSize size_of(const Sets& sets) noexcept {
   SpotSize size;
@@ -24,22 +24,26 @@ SpotSize size_of(const Sets& sets) noexcept {
     if (count == 0 && !points.x.empty()) size.centroid = {points.x[0], points.y[0]};
     count += points.x.size();
   }
-  if (count == 0) return size;
+  psf_detail::PartialSums weights{};
+  psf_detail::for_each(sets, [&](std::size_t part, double, double, double w) { weights[part] += w; });
+  const double n = psf_detail::sum(weights);
+  if (!(n > 0)) return size;
 
   // Relative to one of the points: rounding errors then scale with the spot and not with its height.
-  const auto n = static_cast<double>(count);
   const double x0 = size.centroid.x, y0 = size.centroid.y;
   psf_detail::PartialSums dx{}, dy{};
-  psf_detail::for_each(sets, [&](std::size_t part, double x, double y) { dx[part] += x - x0, dy[part] += y - y0; });
+  psf_detail::for_each(sets, [&](std::size_t part, double x, double y, double w) {
+    dx[part] += w * (x - x0), dy[part] += w * (y - y0);
+  });
   const double cx = x0 + psf_detail::sum(dx) / n, cy = y0 + psf_detail::sum(dy) / n;
 
   psf_detail::PartialSums xx{}, yy{}, xy{}, squares{}, farthest{};
-  psf_detail::for_each(sets, [&](std::size_t part, double x, double y) {
+  psf_detail::for_each(sets, [&](std::size_t part, double x, double y, double w) {
     const double squared = (x - cx) * (x - cx) + (y - cy) * (y - cy);
-    xx[part] += (x - cx) * (x - cx);
-    yy[part] += (y - cy) * (y - cy);
-    xy[part] += (x - cx) * (y - cy);
-    squares[part] += squared;
+    xx[part] += w * ((x - cx) * (x - cx));
+    yy[part] += w * ((y - cy) * (y - cy));
+    xy[part] += w * ((x - cx) * (y - cy));
+    squares[part] += w * squared;
     farthest[part] = std::max(farthest[part], squared);
   });
   size.centroid = {cx, cy};

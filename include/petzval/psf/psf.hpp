@@ -12,11 +12,16 @@
 #include "petzval/rays/ray_bundle.hpp"
 
 namespace petzval::inline v0 {
+class Camera;
+}
+
+namespace petzval::inline v0 {
 
 /// Geometric image of a point light: how the light that enters the entrance pupil spreads over the film.
 ///
-/// counts are exact integers: their sum is the number of rays that hit the picture, for any number of threads. Each
-/// wavelength has one plane of counts, rows from the top (largest y first), `pixels` squared.
+/// counts are exact integers: their sum is the number of rays that hit the picture, for any number of threads; rays
+/// with weights count in units of 1 / units_per_ray. Each wavelength has one plane of counts, rows from the top
+/// (largest y first), `pixels` squared.
 struct Psf {
   int pixels = 0;
   double pixel_mm = 0;
@@ -24,11 +29,12 @@ struct Psf {
   std::vector<double> wavelengths_nm;
   std::vector<std::uint64_t> counts;       ///< [wavelength][row][column]
   std::vector<std::uint64_t> sent;         ///< rays started, per wavelength
-  std::vector<std::uint64_t> transmitted;  ///< rays that reached the film, on the picture or outside it
+  std::vector<std::uint64_t> transmitted;  ///< counts of the rays that reached the film, on the picture or outside it
+  std::uint32_t units_per_ray = 1;         ///< counts of a ray of weight 1
   std::vector<double> sampled_area;        ///< of the pupil plane where the rays start, mm^2, per wavelength
   double entrance_pupil_area = 0;  ///< of the paraxial entrance pupil, mm^2; an ellipse in a lens with cylinders
 
-  /// The share of the light on the paraxial entrance pupil that one ray carries. 0 for an empty pupil.
+  /// The share of the light on the paraxial entrance pupil that a count of 1 carries. 0 for an empty pupil.
   PETZVAL_API double ray_weight(std::size_t wavelength) const noexcept;
 
   /// Area of the pupil plane that transmits to the film, over the area of the paraxial entrance pupil; the crop of the
@@ -59,6 +65,13 @@ struct PointImage {
   /// pupils it is two to four times the error, because these parts complement each other. 0 where no ray passes.
   double error = 0;
 };
+
+/// The image that a camera makes of a point light, at every wavelength of its lens: by its ray model and with its
+/// weights (BokehControls), from connections of the point to the entrance pupil. Rays that miss the film are lost, so
+/// it has to hold the picture. A share is of the light on the lens's paraxial entrance pupil, as for a lens;
+/// first-order models do not conserve etendue and have their own. Half a microsecond to two a ray. The camera has to
+/// have Normalisation::irradiance. Throws Error as below, and for a lens whose entrance pupil is infinite.
+PETZVAL_API PointImage point_image(const Camera& camera, const FieldPoint& point, const PsfOptions& options = {});
 
 /// Traces a point light onto the lens's film at every compiled wavelength. The picture is centred on the centroid. All
 /// values are 0 where no ray passes. Throws Error where pupil_boundary does, for 0 samples, pixels or threads, and for

@@ -24,7 +24,7 @@ struct SpotSize {
 
 PETZVAL_API SpotSize spot_size(std::span<const double> x, std::span<const double> y) noexcept;
 
-/// The same of all rays of several bundles, which all have the same weight.
+/// The same of all rays of several bundles, by their weights where they have some.
 PETZVAL_API SpotSize spot_size(std::span<const RayBundle> sets) noexcept;
 
 /// Radius of the first dark ring of an ideal image on the film, 1.22 wavelength N / n, mm, n: index in front of the
