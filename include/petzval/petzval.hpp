@@ -18,6 +18,7 @@
 ///                                                                             renderer, by any model of the lens
 ///                                    --> choose_model                         the fastest model in an error budget
 ///                                    --> spot_diagram, point_image            spots and images of points
+///                                    --> chromatic_aberration                 longitudinal and lateral colour
 ///
 /// Lens frame: right-handed, millimetres. Light travels towards +z, the origin is the vertex of the first surface, the
 /// scene lies at negative z, and the image on the film is upside down. Surfaces count from 0. Angles are in radians,

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "partial_sums.hpp"
+#include "petzval/focus/focus.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/aim.hpp"
 #include "petzval/pupil/illumination.hpp"
@@ -55,6 +56,31 @@ SpotSize size_of(const Sets& sets) noexcept {
   return size;
 }
 
+std::optional<double> chief_ray_height(const Lens& lens, const FieldPoint& point, std::size_t wavelength) {
+  const AimedRay chief = chief_ray(lens, point, wavelength);
+  if (!chief || !chief.end.transmitted()) return std::nullopt;
+  const auto hit = rays_detail::meet_film(lens, chief.end.ray);
+  return hit ? std::optional(hit->y) : std::nullopt;
+}
+
+/// The film of least RMS radius in the light of one wavelength.
+std::optional<double> sharpest_film(const Lens& lens, double subject_z, std::size_t wavelength) {
+  FocusOptions options{.criterion = FocusCriterion::min_rms};
+  options.wavelength_weights.assign(lens.wavelengths_nm().size(), 0);
+  options.wavelength_weights[wavelength] = 1;
+  const FocusSolution focus = solve_focus(lens, -subject_z, options);
+  return focus ? std::optional(focus.film_z) : std::nullopt;
+}
+
+/// Differences from one of the values, where both are set.
+std::vector<std::optional<double>> differences(const std::vector<std::optional<double>>& values, std::size_t from) {
+  std::vector<std::optional<double>> result(values.size());
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (values[i] && values[from]) result[i] = *values[i] - *values[from];
+  }
+  return result;
+}
+
 }  // namespace
 
 SpotSize spot_size(std::span<const double> x, std::span<const double> y) noexcept {
@@ -97,13 +123,28 @@ std::vector<Spot> spot_diagram(const Lens& lens, double subject_z, std::span<con
       spot.hits = trace_bundle(lens, PupilSampler(pupil_boundary(lens, point, w)), samples);
       spot.size = spot_size(spot.hits.x, spot.hits.y);
       spot.relative_illumination = relative_illumination(lens, point, w);
-      const AimedRay chief = chief_ray(lens, point, w);
-      const auto hit = chief && chief.end.transmitted() ? rays_detail::meet_film(lens, chief.end.ray) : std::nullopt;
-      if (hit) spot.chief_ray_height = hit->y;
+      spot.chief_ray_height = chief_ray_height(lens, point, w);
       spots.push_back(std::move(spot));
     }
   }
   return spots;
+}
+
+ChromaticAberration chromatic_aberration(const Lens& lens, double subject_z, std::span<const double> fields_rad) {
+  const std::size_t count = lens.wavelengths_nm().size(), primary = lens.primary_wavelength();
+  const Meridian meridian = main_meridian(lens);
+  std::vector<std::optional<double>> paraxial(count), sharpest(count), heights(count);
+  for (std::size_t w = 0; w < count; ++w) {
+    const double image_z = paraxial_image_z(lens, subject_z, w, meridian);
+    if (std::isfinite(image_z)) paraxial[w] = image_z;
+    sharpest[w] = sharpest_film(lens, subject_z, w);
+  }
+  ChromaticAberration result{differences(paraxial, primary), differences(sharpest, primary), {}};
+  for (const double field : fields_rad) {
+    for (std::size_t w = 0; w < count; ++w) heights[w] = chief_ray_height(lens, {field, subject_z}, w);
+    result.lateral.push_back(differences(heights, primary));
+  }
+  return result;
 }
 
 }  // namespace petzval::inline v0

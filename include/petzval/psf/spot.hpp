@@ -60,4 +60,20 @@ struct Spot {
 PETZVAL_API std::vector<Spot> spot_diagram(const Lens& lens, double subject_z, std::span<const double> fields_rad,
                                            std::uint32_t samples = 4096);
 
+/// Longitudinal and lateral colour: what each compiled wavelength differs by from the primary one, mm; 0 at that one.
+struct ChromaticAberration {
+  /// z of the paraxial image of the subject. Positive: farther from the lens. Unset for an image at infinity.
+  std::vector<std::optional<double>> paraxial_focus_shift;
+  /// The same of the film on which the axial point has the least RMS radius: also spherical aberration varies with the
+  /// wavelength. Unset where no such film exists.
+  std::vector<std::optional<double>> sharpest_focus_shift;
+  /// [field][wavelength]: y of the chief ray on the lens's film, as Spot::chief_ray_height. Unset without such a ray.
+  std::vector<std::vector<std::optional<double>>> lateral;
+};
+
+/// For a subject at subject_z (lens frame, mm, in front of the first vertex, -inf at infinity). Lateral colour belongs
+/// to a film on which the subject is in focus: see with_focus(). Throws Error where chief_ray() and solve_focus() do.
+PETZVAL_API ChromaticAberration chromatic_aberration(const Lens& lens, double subject_z,
+                                                     std::span<const double> fields_rad);
+
 }  // namespace petzval::inline v0
