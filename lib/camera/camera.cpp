@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "petzval/camera/camera.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <span>
@@ -141,15 +142,20 @@ Camera::Camera(const Lens& lens, const Film& film, const CameraOptions& options)
   camera_detail::check_film(placed_lens, placed_film);
   const LensFacts facts(placed_lens);
   const double radius = camera_detail::upright_radius(facts, placed_film, options.model);
-  const AnyRayModel model = camera_detail::make_model(options.model, facts, radius, options.threads);
+  const BokehControls& bokeh = options.bokeh;
+  const double half = std::max(film.width_mm, film.height_mm) / 2;
+  const auto rim =
+      bokeh.vignettes() ? std::optional(PupilRim{bokeh.lens_ratio, bokeh.rate_of_change / half}) : std::nullopt;
+  const AnyRayModel model = camera_detail::make_model(options.model, facts, radius, options.threads, rim);
   data_ = std::make_shared<const Data>(facts, placed_film, model, radius, options.normalisation, options.bokeh);
 }
 
 Camera::Camera(const Lens& lens, const Film& film, const AnyRayModel& model, Normalisation normalisation,
                const BokehControls& bokeh) {
-  if (bokeh.lens_elements != 0) {
-    throw Error(lens.name() + ": camera: found lens_elements " + std::to_string(bokeh.lens_elements) +
-                " for a model that was built before, wanted 0, and a model of a lens with that iris");
+  if (bokeh.lens_elements != 0 || bokeh.vignettes()) {
+    throw Error(lens.name() +
+                ": camera: found lens_elements, lens_ratio or rate_of_change for a model that was built before, wanted "
+                "0, 1 and 0, and a model with such pupils");
   }
   const auto [placed_lens, placed_film] = camera_detail::placed(lens, film);
   camera_detail::check_film(placed_lens, placed_film);

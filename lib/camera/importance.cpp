@@ -234,7 +234,7 @@ Importance SceneSide::importance(const AnyRayModel& model, const Ray<double>& ra
   const FilmPupilTable &passing = model.pupils(), &sampled = tilted_ ? tilted_->pupils() : passing;
   const Facts at = facts_at(wavelength);
   if (at.entrance_area == 0 ||
-      (!model.clips_at_apertures() && !passing.contains(upright, pupil.x, pupil.y, wavelength))) {
+      ((!model.clips_at_apertures() || passing.cut()) && !passing.contains(upright, pupil.x, pupil.y, wavelength))) {
     result.fate = RayFate::vignetted;
     return result;
   }

@@ -26,15 +26,19 @@ bool is_polynomial(ModelKind model) noexcept {
   return model >= ModelKind::polynomial_3 && model <= ModelKind::polynomial_11;
 }
 
-AnyRayModel make_model(ModelKind model, const LensFacts& facts, double film_radius, int threads) {
-  if (is_first_order(model)) return ParaxialModel(model, facts, film_radius);
+AnyRayModel make_model(ModelKind model, const LensFacts& facts, double film_radius, int threads,
+                       const std::optional<PupilRim>& rim) {
+  const auto behind_rim = [&](const FilmPupilTable& pupils) { return rim ? pupils.cut_by_rim(*rim) : pupils; };
+  if (is_first_order(model)) return ParaxialModel(model, facts, film_radius, rim);
   if (is_polynomial(model)) {
     const int steps = static_cast<int>(model) - static_cast<int>(ModelKind::polynomial_3);
     FilmPupilTable pupils = FilmPupilTable::equal_area(facts.lens(), film_radius, threads);
-    return PolynomialModel(RayPolynomial::fit(facts.lens(), pupils, least_degree + degree_step * steps), pupils);
+    return PolynomialModel(RayPolynomial::fit(facts.lens(), pupils, least_degree + degree_step * steps),
+                           behind_rim(pupils));
   }
-  if (model == ModelKind::exact_float) return ExactModel<float>(facts.lens(), film_radius, threads);
-  if (model == ModelKind::exact_double) return ExactModel<double>(facts.lens(), film_radius, threads);
+  const auto enclosing = [&] { return behind_rim(FilmPupilTable::enclosing(facts.lens(), film_radius, threads)); };
+  if (model == ModelKind::exact_float) return ExactModel<float>(facts.lens(), enclosing());
+  if (model == ModelKind::exact_double) return ExactModel<double>(facts.lens(), enclosing());
   throw Error(facts.lens().name() + ": camera: model is " + std::string(name(model)) +
               ", wanted one of models(), or an AnyRayModel");
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
+
 #include "lens_facts.hpp"
 #include "petzval/camera/model_kind.hpp"
 #include "petzval/camera/ray_model.hpp"
@@ -8,9 +10,10 @@
 
 namespace petzval::inline v0::camera_detail {
 
-/// Builds a model for film points up to film_radius (mm) from the axis. Throws Error where the model's own constructor
-/// does, and for ModelKind::custom.
-PETZVAL_API AnyRayModel make_model(ModelKind model, const LensFacts& facts, double film_radius, int threads = 1);
+/// Builds a model for film points up to film_radius (mm) from the axis. rim: cuts its pupils. Throws Error where the
+/// model's own constructor and FilmPupilTable::cut_by_rim() do, and for ModelKind::custom.
+PETZVAL_API AnyRayModel make_model(ModelKind model, const LensFacts& facts, double film_radius, int threads = 1,
+                                   const std::optional<PupilRim>& rim = {});
 
 /// Whether a model is a ParaxialModel, or a PolynomialModel.
 bool is_first_order(ModelKind model) noexcept;

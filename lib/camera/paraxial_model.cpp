@@ -96,27 +96,6 @@ StopImage stop_image(ModelKind model, const LensFacts& facts, std::size_t wavele
                                   : thick_image(facts, wavelength, space, section);
 }
 
-/// Edges of the real pupils of some film points, at equal steps of film area; none where hardly any light comes.
-std::vector<EdgePoint> real_edges(const FilmPupilTable& real, std::size_t wavelength) {
-  constexpr int fields = 16, directions = pupil_table_detail::polygon_corners / 2;
-  // Polygons have the area of the pupils; they cross a round one at this part of the way between their corners.
-  constexpr double crossing = 0.21, step = 2.0 / pupil_table_detail::polygon_corners;
-  constexpr double darkest = 0.01;  // of the pupil's area on the axis
-  std::vector<EdgePoint> edges;
-  for (int j = 0; j <= fields; ++j) {
-    const FilmPoint film{0, real.lit_radius() * std::sqrt(static_cast<double>(j) / fields)};
-    std::array<PupilSample, directions> points;
-    for (int k = 0; k < directions; ++k) points[k] = real.sample(film, (k + crossing / 2) * step, 1, wavelength);
-    if (!(points[0].area > darkest * real.area({}, wavelength))) continue;
-    for (int k = 0; k < directions; ++k) {
-      const PupilSample &before = points[(k + directions - 1) % directions], &after = points[(k + 1) % directions];
-      const double length = std::hypot(after.x - before.x, after.y - before.y) / 2;
-      edges.push_back({film.y, points[k].x, points[k].y, length / points[k].area});
-    }
-  }
-  return edges;
-}
-
 /// Throws Error for a lens that has no model of a kind.
 void check(ModelKind model, const LensFacts& facts) {
   const Lens& lens = facts.lens();
@@ -188,9 +167,10 @@ FilmPupilTable pupils_of(ModelKind model, const LensFacts& facts, double film_ra
 
 }  // namespace
 
-ParaxialModel::ParaxialModel(ModelKind model, const LensFacts& facts, double film_radius)
+ParaxialModel::ParaxialModel(ModelKind model, const LensFacts& facts, double film_radius,
+                             const std::optional<PupilRim>& rim)
     : kind_(model),
-      pupils_(pupils_of(model, facts, film_radius)),
+      pupils_(rim ? pupils_of(model, facts, film_radius).cut_by_rim(*rim) : pupils_of(model, facts, film_radius)),
       primary_(pupils_.primary_wavelength()),
       z_(facts.lens().surfaces().front().vertex_z),
       sections_alike_(!has_cylinders(facts.lens())) {

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -53,8 +54,9 @@ class ParaxialModel {
   /// film_radius: of the farthest film point, mm. Throws Error for another model, for a lens that is afocal, has no
   /// pupils or no finite one that the model needs, for a pinhole or two discs of one with cylinders, for two discs
   /// of an iris with blades and a central obscuration, and for a film in the image of the stop or, for thin lenses, in
-  /// the rear principal plane.
-  PETZVAL_API ParaxialModel(ModelKind model, const LensFacts& facts, double film_radius);
+  /// the rear principal plane. rim: cuts the pupils, as FilmPupilTable::cut_by_rim() does, and throws.
+  PETZVAL_API ParaxialModel(ModelKind model, const LensFacts& facts, double film_radius,
+                            const std::optional<PupilRim>& rim = {});
 
   ModelKind kind() const noexcept { return kind_; }
   bool two_discs() const noexcept { return kind_ == ModelKind::thin_two_disc; }

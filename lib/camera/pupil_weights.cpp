@@ -62,16 +62,29 @@ std::array<bool, 2> upside_down(const AnyRayModel& model, const std::optional<Re
 }  // namespace
 
 struct PupilWeights::Data {
-  FilmPupilTable pupils;
+  FilmPupilTable pupils, whole;
   std::optional<RealStop> stop;  // none: weights act on pupils
   Vec2<double> sense;            // of the stop's axes in the frame of the weights
-  iris_detail::IrisWeights weights;
+  std::optional<iris_detail::IrisWeights> weights;
+  bool keep_light;  // that the rim which cuts the pupils takes
+
+  /// What makes up for the rim.
+  double brighter(const FilmPoint& film, Wavelength wavelength) const noexcept {
+    if (!keep_light) return 1;
+    const double left = pupils.area(film, wavelength);
+    return left > 0 ? whole.area(film, wavelength) / left : 1;
+  }
 };
 
 PupilWeights::PupilWeights(const Lens& lens, const AnyRayModel& model, const BokehControls& controls) {
-  if (controls.edge().even() && controls.weight_map.empty()) return;
   const std::string where = lens.name() + ": camera: ";
   iris_detail::check(controls.weight_map, where);
+  const FilmPupilTable& pupils = model.pupils();
+  const bool keep_light = controls.keep_light && pupils.cut();
+  if (controls.edge().even() && controls.weight_map.empty()) {
+    if (keep_light) data_ = std::make_shared<const Data>(Data{pupils, pupils.whole(), {}, {1, 1}, {}, keep_light});
+    return;
+  }
   const ModelKind kind = model.kind();
   const bool custom = kind == ModelKind::custom, first_order = !custom && is_first_order(kind);
   std::optional<RealStop> stop;
@@ -84,39 +97,45 @@ PupilWeights::PupilWeights(const Lens& lens, const AnyRayModel& model, const Bok
   if (first_order) stop.reset();
   // Between the stop and its image, places are nearly alike; behind vignetted pupils they are not.
   const double uniform_part = stop ? 0.25 : 0;
-  data_ = std::make_shared<const Data>(Data{
-      model.pupils(),
-      std::move(stop),
-      {along_x ? -1.0 : 1.0, along_y ? -1.0 : 1.0},
-      iris_detail::IrisWeights(iris, controls.edge(), iris_detail::upside_down(controls.weight_map, along_x, along_y),
-                               uniform_part, where)});
+  iris_detail::IrisWeights weights(
+      iris, controls.edge(), iris_detail::upside_down(controls.weight_map, along_x, along_y), uniform_part, where);
+  data_ = std::make_shared<const Data>(Data{pupils,
+                                            pupils.whole(),
+                                            std::move(stop),
+                                            {along_x ? -1.0 : 1.0, along_y ? -1.0 : 1.0},
+                                            std::move(weights),
+                                            keep_light});
 }
 
 template <class T>
 void PupilWeights::draw(std::size_t count, const T* u, const T* v, T* to_u, T* to_v, T* densities) const noexcept {
   for (std::size_t i = 0; i < count; ++i) {
-    const auto drawn = data_->weights.draw(u[i], v[i]);
+    const auto drawn = draw(u[i], v[i]);
     to_u[i] = static_cast<T>(drawn.u), to_v[i] = static_cast<T>(drawn.v);
     densities[i] = static_cast<T>(drawn.density);
   }
 }
 
 iris_detail::IrisWeights::Drawn PupilWeights::draw(double u, double v) const noexcept {
-  return data_->weights.draw(u, v);
+  return data_->weights ? data_->weights->draw(u, v) : iris_detail::IrisWeights::Drawn{u, v, 1};
 }
 
 double PupilWeights::density(const Vec2<double>& sample) const noexcept {
-  return data_->weights.density(sample.x, sample.y);
+  return data_->weights ? data_->weights->density(sample.x, sample.y) : 1;
 }
 
 template <class T>
 void PupilWeights::of_samples(std::size_t count, const T* u, const T* v, const TwoPlaneRays<const T>& lines,
                               const RayWavelengths& wavelengths, T* weights) const noexcept {
-  if (data_->stop) {
+  const Data& data = *data_;
+  if (data.stop) {
     of_lines(count, lines, wavelengths, weights);
     return;
   }
-  for (std::size_t i = 0; i < count; ++i) weights[i] = static_cast<T>(data_->weights.of_sample(u[i], v[i]));
+  for (std::size_t i = 0; i < count; ++i) {
+    const double brighter = data.brighter({lines.film_x[i], lines.film_y[i]}, wavelengths.at(i));
+    weights[i] = static_cast<T>(data.weights ? brighter * data.weights->of_sample(u[i], v[i]) : brighter);
+  }
 }
 
 template <class T>
@@ -125,9 +144,13 @@ void PupilWeights::of_lines(std::size_t count, const TwoPlaneRays<const T>& line
   const Data& data = *data_;
   if (!data.stop) {
     for (std::size_t i = 0; i < count; ++i) {
-      const Vec2<double> at = data.pupils.position({lines.film_x[i], lines.film_y[i]}, lines.pupil_x[i],
-                                                   lines.pupil_y[i], wavelengths.at(i));
-      weights[i] = static_cast<T>(data.weights.of_sample(at.x, std::min(at.y, 1.0)));
+      const FilmPoint film{lines.film_x[i], lines.film_y[i]};
+      double weight = data.brighter(film, wavelengths.at(i));
+      if (data.weights) {
+        const Vec2<double> at = data.pupils.position(film, lines.pupil_x[i], lines.pupil_y[i], wavelengths.at(i));
+        weight *= data.weights->of_sample(at.x, std::min(at.y, 1.0));
+      }
+      weights[i] = static_cast<T>(weight);
     }
     return;
   }
@@ -135,14 +158,19 @@ void PupilWeights::of_lines(std::size_t count, const TwoPlaneRays<const T>& line
   for (std::size_t begin = 0; begin < count; begin += block) {
     const std::size_t n = std::min(block, count - begin);
     data.stop->points(n, lines.from(begin), wavelengths.from(begin), x.data(), y.data());
-    for (std::size_t i = 0; i < n; ++i) {
-      weights[begin + i] = static_cast<T>(data.weights.at({data.sense.x * x[i], data.sense.y * y[i]}));
+    for (std::size_t k = 0; k < n; ++k) {
+      const std::size_t i = begin + k;
+      const double brighter = data.brighter({lines.film_x[i], lines.film_y[i]}, wavelengths.at(i));
+      weights[i] = static_cast<T>(brighter * data.weights->at({data.sense.x * x[k], data.sense.y * y[k]}));
     }
   }
 }
 
 double PupilWeights::of_sample(double u, double v, const TwoPlaneRay& line, Wavelength wavelength) const noexcept {
-  return data_->stop ? of_line(line, wavelength) : data_->weights.of_sample(u, v);
+  double weight = 0;
+  of_samples<double>(1, &u, &v, {&line.film_x, &line.film_y, &line.pupil_x, &line.pupil_y}, {.all = wavelength},
+                     &weight);
+  return weight;
 }
 
 double PupilWeights::of_line(const TwoPlaneRay& line, Wavelength wavelength) const noexcept {

@@ -133,7 +133,7 @@ void sample_block(const FilmView& view, std::size_t n, std::size_t wanted, const
   }
   loops.to_upright(plane, n, virtual_x.data(), virtual_y.data(), x.data(), y.data(), film_x.data(), film_y.data());
   if (!view.model.pinhole()) trace();
-  if (!view.model.clips_at_apertures()) keep_within(n, pupils, lines, wavelengths, fates);
+  if (!view.model.clips_at_apertures() || pupils.cut()) keep_within(n, pupils, lines, wavelengths, fates);
   weigh();
   loops.weigh_tilted(plane, wanted, virtual_x.data(), virtual_y.data(), x.data(), y.data(), fates, rays);
 }
@@ -266,7 +266,7 @@ CameraRay sample_ray(const FilmView& view, const FilmPoint& film, double u, doub
       leaving.film_x = virtual_point.x * part, leaving.film_y = virtual_point.y * part;
     }
     out.fate = view.model.to_scene(leaving, wavelength, out.ray);
-    const bool within = view.model.clips_at_apertures() ||
+    const bool within = (view.model.clips_at_apertures() && !pupils.cut()) ||
                         pupils.contains({line.film_x, line.film_y}, line.pupil_x, line.pupil_y, wavelength);
     if (!within) out.fate = RayFate::vignetted;
   }

@@ -6,9 +6,17 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
-namespace petzval::inline v0::camera_detail {
+#include "core/text.hpp"
+#include "lens_facts.hpp"
+#include "petzval/camera/two_discs.hpp"
+#include "petzval/core/error.hpp"
+#include "pupil_table/pupil_polygon.hpp"
+
+namespace petzval::inline v0 {
+namespace camera_detail {
 namespace {
 
 using Discs = std::array<PupilDisc, 2>;
@@ -79,6 +87,26 @@ void add_starts(std::span<const EdgePoint> pupil, double radius, std::vector<Dis
 
 }  // namespace
 
+std::vector<EdgePoint> real_edges(const FilmPupilTable& real, std::size_t wavelength) {
+  constexpr int fields = 16, directions = pupil_table_detail::polygon_corners / 2;
+  // Polygons have the area of the pupils; they cross a round one at this part of the way between their corners.
+  constexpr double crossing = 0.21, step = 2.0 / pupil_table_detail::polygon_corners;
+  constexpr double darkest = 0.01;  // of the pupil's area on the axis
+  std::vector<EdgePoint> edges;
+  for (int j = 0; j <= fields; ++j) {
+    const FilmPoint film{0, real.lit_radius() * std::sqrt(static_cast<double>(j) / fields)};
+    std::array<PupilSample, directions> points;
+    for (int k = 0; k < directions; ++k) points[k] = real.sample(film, (k + crossing / 2) * step, 1, wavelength);
+    if (!(points[0].area > darkest * real.area({}, wavelength))) continue;
+    for (int k = 0; k < directions; ++k) {
+      const PupilSample &before = points[(k + directions - 1) % directions], &after = points[(k + 1) % directions];
+      const double length = std::hypot(after.x - before.x, after.y - before.y) / 2;
+      edges.push_back({film.y, points[k].x, points[k].y, length / points[k].area});
+    }
+  }
+  return edges;
+}
+
 double two_disc_error(std::span<const EdgePoint> edges, const Discs& discs) noexcept {
   double sum = 0;
   for (const EdgePoint& e : edges) sum += std::abs(outside(e, discs)) * e.share;
@@ -127,4 +155,33 @@ std::array<PupilDisc, 2> fit_two_discs(std::span<const EdgePoint> edges) {
   return best;
 }
 
-}  // namespace petzval::inline v0::camera_detail
+}  // namespace camera_detail
+
+TwoDiscs fit_two_discs(const Lens& lens, double film_radius, Wavelength wavelength) {
+  const std::size_t w = lens.position(wavelength);
+  if (!(film_radius > 0 && std::isfinite(film_radius))) {
+    throw Error(lens.name() + ": fit_two_discs: film_radius is " + to_text(film_radius) + " mm, wanted a length");
+  }
+  if (camera_detail::has_cylinders(lens))
+    throw Error(lens.name() + ": fit_two_discs: found cylinders, wanted a lens of revolution");
+  using camera_detail::EdgePoint;
+  const FilmPupilTable pupils = FilmPupilTable::equal_area(with_iris(lens, {}), film_radius);
+  const std::vector<EdgePoint> edges = camera_detail::real_edges(pupils, w);
+  if (edges.empty()) throw Error(lens.name() + ": fit_two_discs: the lens is dark, wanted one that passes light");
+  auto discs = camera_detail::fit_two_discs(edges);
+  if (discs[1].radius < discs[0].radius) std::swap(discs[0], discs[1]);
+  TwoDiscs result;
+  result.lens_ratio = discs[1].radius / discs[0].radius;
+  result.rate_of_change = (discs[0].shift - discs[1].shift) * film_radius / discs[0].radius;
+  for (auto from = edges.begin(); from != edges.end();) {
+    const auto to = std::find_if(from, edges.end(), [&](const EdgePoint& e) { return e.field != from->field; });
+    result.film_mm.push_back(from->field);
+    result.errors.push_back(camera_detail::two_disc_error({from, to}, discs));
+    result.error += result.errors.back();
+    from = to;
+  }
+  result.error /= static_cast<double>(result.errors.size());
+  return result;
+}
+
+}  // namespace petzval::inline v0

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <span>
+#include <vector>
 
 #include "petzval/pupil_table/film_pupil_table.hpp"
 
@@ -13,6 +15,9 @@ struct EdgePoint {
   double field = 0, x = 0, y = 0;
   double share = 0;  ///< length of the edge that it represents, mm, over the pupil's area, mm^2
 };
+
+/// Edges of the pupils of some film points, at equal steps of film area; none where hardly any light comes.
+std::vector<EdgePoint> real_edges(const FilmPupilTable& pupils, std::size_t wavelength);
 
 /// The error of the intersection of two discs: the area between its edge and those of some pupils, over the areas of
 /// the pupils.

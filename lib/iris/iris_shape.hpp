@@ -19,6 +19,7 @@ class PETZVAL_API IrisShape {
   /// Throws Error for blades, roundness or rotation out of range.
   explicit IrisShape(const Iris& iris);
 
+  const Iris& iris() const noexcept { return iris_; }
   /// The disc.
   bool round() const noexcept { return iris_.round(); }
   double area() const noexcept { return area_; }

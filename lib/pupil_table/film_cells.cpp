@@ -159,6 +159,18 @@ void FilmCells::add(const std::vector<PupilPolygon>& polygons) {
   }
 }
 
+PupilPolygon FilmCells::node(std::size_t wavelength, std::size_t i) const noexcept {
+  const std::size_t row = i / (columns_ + 1), column = i % (columns_ + 1);
+  const std::size_t r = std::min(row, rows_ - 1), c = std::min(column, columns_ - 1);
+  const std::size_t size = bladed() ? BladedLayout::size : L::size;
+  const double* cell = twice_.data() + ((wavelength * rows_ + r) * columns_ + c) * size;
+  const InCell<double> polygon{cell, static_cast<double>(column - c), static_cast<double>(row - r), corners_, bladed()};
+  PupilPolygon result;
+  result.middle = {polygon.middle().x, polygon.middle().y};
+  for (std::size_t k = 0; k < polygon_corners; ++k) result.corners[k] = {polygon.corner(k).x, polygon.corner(k).y};
+  return result;
+}
+
 FilmCells::Place FilmCells::find_bladed(const FilmPoint& film, std::size_t wavelength) const noexcept {
   const double r = std::hypot(film.x, film.y);
   const BladedTable<double> own = bladed_table<double>();

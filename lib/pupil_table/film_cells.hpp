@@ -44,6 +44,8 @@ class FilmCells {
                                           std::size_t wavelength) const noexcept;
 
   bool bladed() const noexcept { return corners_ > 0; }
+  /// The polygon at a node, as add() took it, without obscurations.
+  PupilPolygon node(std::size_t wavelength, std::size_t i) const noexcept;
   template <class R>
   CellTable<R> table() const noexcept;
   template <class R>

@@ -16,12 +16,14 @@
 #include "film_grid.hpp"
 #include "film_polygons.hpp"
 #include "film_pupil_table_loops.hpp"
+#include "iris/iris_shape.hpp"
 #include "iris_images.hpp"
 #include "lens/between_wavelengths.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/parallel.hpp"
 #include "polygon_place.hpp"
 #include "pupil/line_extents.hpp"
+#include "rim_cut.hpp"
 
 namespace petzval::inline v0 {
 namespace {
@@ -76,6 +78,7 @@ struct FilmPupilTable::Data {
   int corrections = 0;
   std::vector<double> twice;  // strips by StripLayout
   std::vector<float> single;
+  std::shared_ptr<const Data> whole;  // the pupils that a rim has cut; null: none has
 
   bool bladed() const noexcept { return cells && cells->bladed(); }
 
@@ -113,6 +116,16 @@ struct FilmPupilTable::Data {
     result.obscured = obscured;
     result.corrections = corrections;
     return result;
+  }
+
+  /// The polygon at the side of a strip, as add() took it, without obscurations.
+  PupilPolygon node(std::size_t wavelength, std::size_t i) const noexcept {
+    const std::size_t strip = std::min(i, strips_each - 1);
+    const InStrip<double> at{&twice[(wavelength * strips_each + strip) * L::size], static_cast<double>(i - strip)};
+    PupilPolygon polygon;
+    polygon.middle = {at.middle().x, at.middle().y};
+    for (std::size_t k = 0; k < polygon_corners; ++k) polygon.corners[k] = {at.corner(k).x, at.corner(k).y};
+    return polygon;
   }
 
   /// Where a film point stands in the table.
@@ -183,6 +196,13 @@ void scale_to_light(PupilPolygon& polygon, const TwoPlanes& space, const FilmPoi
     const double scale = own > 0 ? std::sqrt(wanted / own) : 0;
     for (auto& corner : polygon.corners) corner = {scale * corner[0], scale * corner[1]};
   }
+}
+
+/// The disc that moves as the pupil does near the axis and holds it there. beside: of a film point at a height.
+PupilDisc disc_about(const PupilPolygon& on_axis, const PupilPolygon& beside, double height) noexcept {
+  double radius = 0;
+  for (const auto& corner : on_axis.corners) radius = std::max(radius, std::hypot(corner.x, corner.y));
+  return {height > 0 ? (beside.middle.y - on_axis.middle.y) / height : 0, radius};
 }
 
 /// Makes the pupils of each wavelength contain those up to the middles between it and its neighbours.
@@ -289,6 +309,7 @@ FilmPupilTable FilmPupilTable::of_discs(const TwoPlanes& space, std::span<const 
 }
 
 FilmPupilTable FilmPupilTable::of_round_stop() const {
+  if (data_->whole) return whole().of_round_stop();
   auto data = std::make_shared<Data>(*data_);
   if (data->bladed()) data->cells.reset();
   if (data->images) data->images = data->images->of_round_stop();
@@ -334,6 +355,77 @@ FilmPupilTable FilmPupilTable::reshaped(std::span<const std::vector<PupilDisc>> 
   }
   return FilmPupilTable(std::move(data));
 }
+
+FilmPupilTable FilmPupilTable::cut_by_rim(const PupilRim& rim) const {
+  const auto& images = data_->images;
+  if ((data_->cells && !data_->bladed()) || (images && !images->of_revolution()) || data_->obscured) {
+    throw Error(
+        "pupils: found cylinders or a central obscuration, wanted a lens of revolution without for a rim that "
+        "cuts cat's eyes");
+  }
+  if (!(rim.ratio > 0 && std::isfinite(rim.ratio)) || !std::isfinite(rim.radii_per_mm)) {
+    throw Error("pupils: a rim of " + to_text(rim.ratio) + " radii that moves by " + to_text(rim.radii_per_mm) +
+                " of them per mm, wanted a positive radius and finite numbers");
+  }
+  auto data = std::make_shared<Data>();
+  data->space = data_->space;
+  data->film_radius = film_radius();
+  data->lit_radius = lit_radius();
+  data->primary = primary_wavelength();
+  data->compiled = data_->compiled;
+  data->whole = data_;
+  constexpr std::size_t image_strips = film_strips(PolygonFit::equal_area);
+  const std::size_t strips = images ? image_strips : data_->strips_each;
+  const Iris iris = images ? images->iris() : data_->bladed() ? data_->iris : Iris{};
+  std::optional<BladedGrid> grid;
+  if (!iris.round()) {
+    grid.emplace(iris, lit_radius(), strips + 1);
+    data->iris = iris;
+    data->cells.emplace(*grid, data->primary);
+  }
+  std::vector<Vec2<double>> corners;  // of an iris in closed form, its first corner on +y
+  if (images && grid) {
+    const iris_detail::IrisShape shape({iris.blades, iris.roundness});
+    for (std::size_t k = 0; k < polygon_corners; ++k) {
+      corners.push_back(
+          shape.sample(k < grid->corners ? static_cast<double>(k) / static_cast<double>(grid->corners) : 0, 1));
+    }
+  }
+  for (std::size_t w = 0; w < wavelengths(); ++w) {
+    const PupilDisc pupil =
+        images ? images->disc(w)
+               : disc_about(data_->node(w, 0), data_->node(w, 1), lit_radius() / static_cast<double>(strips));
+    const PupilDisc disc{pupil.shift - rim.radii_per_mm * pupil.radius, rim.ratio * pupil.radius};
+    std::vector<PupilPolygon> polygons;
+    if (images) {
+      polygons = disc_polygons(std::array{pupil, disc}, lit_radius());
+    } else {
+      for (std::size_t i = 0; i <= strips; ++i) {
+        const double height = lit_radius() * static_cast<double>(i) / static_cast<double>(strips);
+        polygons.push_back(cut_by_disc(data_->node(w, i), {0, 1}, disc.shift * height, disc.radius));
+      }
+    }
+    data->add(polygons);
+    if (!grid) continue;
+    std::vector<PupilPolygon> bladed;
+    for (std::size_t i = 0; i < (grid->rows + 1) * (grid->columns + 1); ++i) {
+      const auto [radius, azimuth] = grid->node(i);
+      PupilPolygon polygon;
+      if (images) {
+        polygon.middle = {0, pupil.shift * radius};
+        for (std::size_t k = 0; k < polygon_corners; ++k) polygon.corners[k] = pupil.radius * corners[k];
+      } else {
+        polygon = data_->cells->node(w, i);
+      }
+      bladed.push_back(cut_by_disc(polygon, {std::sin(azimuth), std::cos(azimuth)}, disc.shift * radius, disc.radius));
+    }
+    data->cells->add(bladed);
+  }
+  return FilmPupilTable(std::move(data));
+}
+
+FilmPupilTable FilmPupilTable::whole() const { return FilmPupilTable(data_->whole ? data_->whole : data_); }
+bool FilmPupilTable::cut() const noexcept { return data_->whole != nullptr; }
 
 FilmPupilTable FilmPupilTable::of_iris(const TwoPlanes& space, const Iris& iris, std::span<const PupilImage> images,
                                        double film_radius, std::size_t primary_wavelength,

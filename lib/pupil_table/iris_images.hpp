@@ -27,6 +27,11 @@ class IrisImages {
   IrisImages tilted(const FilmTilt& tilt) const;
 
   bool round() const noexcept { return shape_.round(); }
+  const Iris& iris() const noexcept { return shape_.iris(); }
+  /// That of a wavelength, of a lens of revolution.
+  PupilDisc disc(std::size_t wavelength) const noexcept {
+    return {images_[wavelength].shift_y, images_[wavelength].radius_y};
+  }
   /// Those of the whole stop, which contain these.
   IrisImages of_round_stop() const;
   /// Whether discs stay discs, so that turns about the axis change nothing. For round ones.

@@ -196,13 +196,74 @@ TEST(BokehControls, KeepTheLightOfEveryModel) {
   }
 }
 
+/// A film point's light, and that of light tracing through a strip of the film about it, over the same of the camera
+/// without controls.
+class CatsEyes : public ::testing::TestWithParam<ModelKind> {};
+
+TEST_P(CatsEyes, HaveTheSameLightOnTheFilmAndInTheScene) {
+  const ModelKind model = GetParam();
+  const Lens open = with_f_number(data_lens("double_gauss_100mm_f2.0"), 4);
+  for (const Iris& iris : {Iris{}, Iris{.blades = 6, .rotation_rad = 0.2}}) {
+    const Lens lens = with_iris(open, iris);
+    for (const bool keep_light : {false, true}) {
+      const BokehControls controls{
+          .lens_ratio = 1.1, .rate_of_change = 0.9, .keep_light = keep_light, .weight_distribution = 4};
+      const Camera camera(lens, film, {.model = model, .bokeh = controls});
+      const core_detail::Kronecker<4> random(11);
+      int seen = 0, lost = 0;
+      for (std::uint32_t i = 0; i < 1000; ++i) {
+        const auto [x, y, u, v] = random(i);
+        const CameraSample s{.film = {36 * x - 18, 24 * y - 12}, .pupil_u = u, .pupil_v = v};
+        const CameraRay r = camera.sample(s);
+        lost += !r;
+        if (!r) continue;
+        const Importance back = camera.importance({r.ray.origin, -r.ray.direction});
+        if (!back || back.pdf_pupil == 0) continue;
+        ++seen;
+        EXPECT_NEAR(back.we / (back.pdf_position * back.pdf_direction) / r.weight, 1, 0.05);
+        EXPECT_NEAR(back.pdf_pupil / r.pdf_pupil, 1, 0.05);
+      }
+      EXPECT_GT(seen, 940) << name(model) << iris.blades;
+      EXPECT_LT(lost, 40) << name(model) << iris.blades;  // sampled, not rejected
+    }
+  }
+}
+
+TEST_P(CatsEyes, LoseLightWithTheirAreaOrKeepIt) {
+  const ModelKind model = GetParam();
+  const Lens lens = with_f_number(data_lens("double_gauss_100mm_f2.0"), 8);
+  const auto light = [&](const BokehControls& controls, const FilmPoint& at) {
+    const Camera camera(lens, film, {.model = model, .bokeh = controls});
+    double sum = 0;
+    constexpr std::size_t count = 4096;
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto [u, v] = core_detail::fibonacci_point(i, count);
+      sum += camera.sample({.film = at, .pupil_u = u, .pupil_v = v}).weight / count;
+    }
+    return sum;
+  };
+  // Discs of radius 1 whose centres lie 1 apart share 2 acos(1/2) - sqrt(3) / 2. The same to the right and upwards.
+  const double share = (2 * std::acos(0.5) - std::sqrt(0.75)) / std::acos(-1.0);
+  for (const FilmPoint& at : {FilmPoint{9, 0}, FilmPoint{0, 9}, FilmPoint{-9, 0}}) {
+    const double plain = light({}, at);
+    EXPECT_NEAR(light({.lens_ratio = 1, .rate_of_change = 2}, at) / plain, share, 0.02) << name(model);
+    EXPECT_NEAR(light({.lens_ratio = 1, .rate_of_change = 2, .keep_light = true}, at) / plain, 1, 0.02) << name(model);
+  }
+  EXPECT_NEAR(light({.lens_ratio = 1, .rate_of_change = 2}, {}) / light({}, {}), 1, 0.01);
+}
+
+INSTANTIATE_TEST_SUITE_P(BokehControls, CatsEyes,
+                         ::testing::Values(ModelKind::thin, ModelKind::thin_two_disc, ModelKind::thick,
+                                           ModelKind::polynomial_5, ModelKind::exact_float, ModelKind::exact_double));
+
 TEST(BokehControls, SampleManyAsOneByOne) {
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
   Film tilted = film;
   tilted.tilt_rad = 0.05;
   for (const Film& on : {film, tilted}) {
     for (const ModelKind model : models()) {
-      for (const BokehControls& controls : {ring, mapped()}) {
+      for (const BokehControls& controls :
+           {ring, mapped(), BokehControls{.lens_ratio = 1.2, .rate_of_change = 0.8, .keep_light = true}}) {
         const Camera camera(lens, on, {.model = model, .bokeh = controls});
         auto samples = some_samples<double>(on, 77);
         samples.run(camera);

@@ -17,9 +17,17 @@ namespace petzval::inline v0 {
 /// uniform, which bounds the weights where pupils are vignetted. A weight follows the stop on the scene's side too.
 struct BokehControls {
   int lens_elements = 0;  ///< straight blades in place of the lens's own iris, 3 to 20; 0: that iris
+  /// A second rim, that cuts cat's eyes: its radius over that of the pupil on the axis. (The text's program divides
+  /// squared radii by this number.)
+  double lens_ratio = 1;
+  /// By how many of these radii it moves against the film point from the film's centre to where its longer side ends:
+  /// over the same length in all directions, so that cat's eyes lie around the centre of a film that is not square.
+  double rate_of_change = 0;
+  bool keep_light = false;  ///< cat's eyes have the light of the whole pupil; else it falls with their area
   double weight_distribution = 0, weight_strength = 0.5;  ///< EdgeWeight
   IrisMap weight_map{};                                   ///< empty: none
 
+  bool vignettes() const noexcept { return lens_ratio != 1 || rate_of_change != 0; }
   EdgeWeight edge() const noexcept { return {weight_distribution, weight_strength}; }
 };
 

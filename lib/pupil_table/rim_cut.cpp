@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "rim_cut.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace petzval::inline v0::pupil_table_detail {
+namespace {
+
+/// How far the polygon reaches from its middle in a direction; 0 where no sector faces it.
+double reach(const PupilPolygon& polygon, const Vec2<double>& d) {
+  const auto sectors = [&](std::size_t k) { return polygon.sector(k); };
+  // On the line to a corner both sectors beside it may miss the direction by rounding.
+  for (const double aside : {0.0, 1e-9}) {
+    const Point<double> q{d.x + aside * d.y, d.y - aside * d.x};
+    const std::size_t found = sector_facing(q, sectors);
+    if (found != polygon_corners) return 1 / polygon.sector(found).way_to(q);
+  }
+  return 0;
+}
+
+}  // namespace
+
+PupilPolygon cut_by_disc(const PupilPolygon& polygon, const Vec2<double>& towards, double centre, double radius) {
+  // Along the vector from the middle: what both hold.
+  const double from_middle = centre - polygon.middle.y;
+  const double low = std::max(-reach(polygon, -towards), from_middle - radius);
+  const double high = std::min(reach(polygon, towards), from_middle + radius);
+  const double step = low < high ? (low + high) / 2 : from_middle;
+  PupilPolygon result;
+  result.middle = {0, polygon.middle.y + step};
+  if (!(low < high)) return result;
+  const double to_centre = from_middle - step, room = radius * radius - to_centre * to_centre;
+  for (std::size_t k = 0; k < polygon_corners; ++k) {
+    const Vec2<double> way = polygon.corners[k] - step * towards;
+    // Where the way leaves the disc: square t^2 - 2 t along - room = 0.
+    const double square = way.x * way.x + way.y * way.y;
+    const double along = (way.x * towards.x + way.y * towards.y) * to_centre;
+    const double leaves = square > 0 ? (along + std::sqrt(along * along + square * room)) / square : 1;
+    result.corners[k] = std::min(leaves, 1.0) * way;
+  }
+  return result;
+}
+
+}  // namespace petzval::inline v0::pupil_table_detail

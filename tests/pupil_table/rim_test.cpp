@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+// Cat's eyes that a rim cuts out of pupils.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include "../blades.hpp"
+#include "../data_lenses.hpp"
+#include "../message.hpp"
+#include "core/low_discrepancy.hpp"
+#include "petzval/pupil_table/film_pupil_table.hpp"
+
+namespace petzval {
+namespace {
+
+using testing::data_lens;
+using testing::message;
+
+constexpr double pi = std::numbers::pi, film_radius = 20;
+
+/// The area that two discs of radii 1 and r share at a distance.
+double lens_area(double r, double distance) {
+  if (distance >= 1 + r) return 0;
+  if (distance <= std::abs(1 - r)) return pi * std::min(1.0, r * r);
+  const double a = (distance * distance + 1 - r * r) / (2 * distance), b = distance - a;
+  return std::acos(a) - a * std::sqrt(1 - a * a) + r * r * std::acos(b / r) - b * std::sqrt(r * r - b * b);
+}
+
+FilmPupilTable image(const Lens& lens, const Iris& iris) {
+  const PupilImage of_stop{{0.2, 0.2}, {10, 10}};
+  return FilmPupilTable::of_iris(two_planes(lens), iris, {&of_stop, 1}, film_radius);
+}
+
+TEST(PupilRim, LeavesTheAreaThatBothDiscsShare) {
+  const FilmPupilTable pupils = image(data_lens("double_gauss_100mm_f2.0"), {});
+  for (const PupilRim& rim : {PupilRim{1, 0.05}, PupilRim{1.5, 0.08}, PupilRim{0.7, 0.06}, PupilRim{2, -0.1}}) {
+    const FilmPupilTable cut = pupils.cut_by_rim(rim);
+    EXPECT_TRUE(cut.cut());
+    EXPECT_FALSE(pupils.cut());
+    for (const double r : {0.0, 3.0, 9.0, 13.0, 19.0}) {
+      for (const double azimuth : {0.0, 0.8, 2.0}) {
+        const FilmPoint film{r * std::sin(azimuth), r * std::cos(azimuth)};
+        const double wanted = 100 * lens_area(rim.ratio, std::abs(rim.radii_per_mm) * r);
+        EXPECT_NEAR(cut.area(film), wanted, 0.01 * wanted + 0.1) << rim.ratio << ' ' << r;
+        EXPECT_EQ(cut.whole().area(film), pupils.area(film));
+      }
+    }
+  }
+}
+
+// Every sample lies in the pupil before and in the disc, and both are covered, whatever the shape.
+TEST(PupilRim, LeavesWhatLiesInTheDisc) {
+  const Lens lens = data_lens("double_gauss_100mm_f2.0");
+  const Iris blades{.blades = 5, .rotation_rad = 0.4};
+  const PupilRim rim{1.2, 0.05};
+  for (const FilmPupilTable& pupils :
+       {image(lens, {}), image(lens, blades), FilmPupilTable::equal_area(lens, film_radius),
+        FilmPupilTable::enclosing(with_iris(lens, blades), film_radius)}) {
+    const FilmPupilTable cut = pupils.cut_by_rim(rim);
+    double radius = 0;
+    for (int k = 0; k < 64; ++k) {
+      const PupilSample edge = pupils.of_round_stop().sample({}, k / 64., 1);
+      radius = std::max(radius, std::hypot(edge.x, edge.y));
+    }
+    const double shift = pupils.of_round_stop().middle({0, 0.5}).y / 0.5 - rim.radii_per_mm * radius;
+    const core_detail::Kronecker<4> random(3);
+    double outside = 0, missed = 0, both = 0, area = 0;
+    for (std::uint32_t i = 0; i < 20000; ++i) {
+      const auto [r, azimuth, u, v] = random(i);
+      const FilmPoint film{16 * r * std::sin(2 * pi * azimuth), 16 * r * std::cos(2 * pi * azimuth)};
+      const auto room = [&](const PupilSample& s) {
+        return 1 - std::hypot(s.x - shift * film.x, s.y - shift * film.y) / (rim.ratio * radius);
+      };
+      const PupilSample own = cut.sample(film, u, v), before = pupils.sample(film, u, v);
+      if (!(own.area > 0)) continue;
+      area += own.area;
+      if (!pupils.contains(film, own.x, own.y) || room(own) < 0) outside += own.area;
+      if (room(before) < 0) continue;
+      both += before.area;
+      if (!cut.contains(film, before.x, before.y)) missed += before.area;
+    }
+    EXPECT_LT(outside, 0.012 * area);
+    EXPECT_LT(missed, 0.015 * both);
+    EXPECT_NEAR(area / both, 1, 0.01);
+    EXPECT_LT(area, 20000 * 0.98 * pupils.area({}));
+  }
+}
+
+TEST(PupilRim, RefusesWhatItCannotCut) {
+  const Lens lens = data_lens("double_gauss_100mm_f2.0");
+  const FilmPupilTable pupils = image(lens, {});
+  for (const PupilRim& rim : {PupilRim{0, 0}, PupilRim{-1, 0}, PupilRim{std::nan(""), 0}, PupilRim{1, std::nan("")},
+                              PupilRim{std::numeric_limits<double>::infinity(), 0}}) {
+    EXPECT_NE(message([&] { pupils.cut_by_rim(rim); }), "");
+  }
+  for (const char* id : {"anamorphic_60mm_2x", "catadioptric_mangin_1000mm_f7.5"}) {
+    EXPECT_NE(message([&] { FilmPupilTable::enclosing(data_lens(id), 10).cut_by_rim({1, 0.1}); }), "") << id;
+  }
+}
+
+}  // namespace
+}  // namespace petzval
