@@ -1,13 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "petzval/io/image.hpp"
 
-#include <ImathBox.h>
-#include <ImfChannelList.h>
-#include <ImfFrameBuffer.h>
-#include <ImfHeader.h>
-#include <ImfInputFile.h>
-#include <ImfOutputFile.h>
-#include <ImfStdIO.h>
 #include <png.h>
 
 #include <algorithm>
@@ -17,17 +10,17 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "core/text.hpp"
+#include "io/exr.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/io/write_file.hpp"
 
 namespace petzval::inline v0 {
 namespace {
 
-constexpr std::array<const char*, 3> channel_names{"R", "G", "B"};
-// 3 GiB in memory. A damaged header may claim any size.
-constexpr std::size_t most_pixels = std::size_t(1) << 28;
+constexpr std::array<std::string_view, 3> rgb_channels{"R", "G", "B"};
 
 template <class Image>
 void validate(const Image& image, const std::filesystem::path& file) {
@@ -39,17 +32,6 @@ void validate(const Image& image, const std::filesystem::path& file) {
               " with " + std::to_string(image.pixels.size()) + " values, wanted 3 a pixel and at least one pixel");
 }
 
-/// The three channels of interleaved float pixels; the first pixel is the upper left corner of the data window.
-Imf::FrameBuffer frame(float* pixels, const Imath::Box2i& window, int width, int height) {
-  Imf::FrameBuffer buffer;
-  for (std::size_t c = 0; c < channel_names.size(); ++c) {
-    buffer.insert(channel_names[c],
-                  Imf::Slice::Make(Imf::FLOAT, pixels + c, window.min, width, height, 3 * sizeof(float),
-                                   3 * sizeof(float) * static_cast<std::size_t>(width)));
-  }
-  return buffer;
-}
-
 float srgb(float linear) noexcept {
   return linear <= 0.0031308f ? 12.92f * linear : 1.055f * std::pow(linear, 1 / 2.4f) - 0.055f;
 }
@@ -58,40 +40,24 @@ float srgb(float linear) noexcept {
 
 void write_exr(const RgbImage& image, const std::filesystem::path& file) {
   validate(image, file);
-  Imf::StdOSStream stream;
-  try {
-    Imf::Header header(image.width, image.height);
-    for (const char* name : channel_names) header.channels().insert(name, Imf::Channel(Imf::FLOAT));
-    Imf::OutputFile out(stream, header, 0);
-    out.setFrameBuffer(frame(const_cast<float*>(image.pixels.data()), header.dataWindow(), image.width, image.height));
-    out.writePixels(image.height);
-  } catch (const std::exception& e) {
-    throw Error(file.string() + ": " + e.what());
+  ExrPart part{.width = image.width, .height = image.height};
+  for (std::size_t c = 0; c < rgb_channels.size(); ++c) {
+    ExrChannel channel{std::string(rgb_channels[c]), {}};
+    channel.values.reserve(image.pixels.size() / 3);
+    for (std::size_t i = c; i < image.pixels.size(); i += 3) channel.values.push_back(image.pixels[i]);
+    part.channels.push_back(std::move(channel));
   }
-  write_file(stream.str(), file);
+  write_exr({&part, 1}, file);
 }
 
 RgbImage read_exr(const std::filesystem::path& file) {
-  try {
-    Imf::InputFile in(file.string().c_str(), 0);
-    for (const char* name : channel_names) {
-      if (!in.header().channels().findChannel(name))
-        throw Error(std::string("no channel ") + name + ", wanted R, G and B");
-    }
-    const Imath::Box2i window = in.header().dataWindow();
-    const auto width = std::int64_t(window.max.x) - window.min.x + 1;
-    const auto height = std::int64_t(window.max.y) - window.min.y + 1;
-    if (static_cast<std::size_t>(width) > most_pixels / static_cast<std::size_t>(height)) {
-      throw Error("image is " + std::to_string(width) + " x " + std::to_string(height) + ", wanted " +
-                  std::to_string(most_pixels) + " pixels or fewer");
-    }
-    RgbImage image(static_cast<int>(width), static_cast<int>(height));
-    in.setFrameBuffer(frame(image.pixels.data(), window, image.width, image.height));
-    in.readPixels(window.min.y, window.max.y);
-    return image;
-  } catch (const std::exception& e) {
-    throw Error(file.string() + ": " + e.what());
+  const ExrPart part = io_detail::read_first_part(file, rgb_channels);
+  RgbImage image(part.width, part.height);
+  for (std::size_t c = 0; c < rgb_channels.size(); ++c) {
+    const std::vector<float>& values = part.channels[c].values;
+    for (std::size_t i = 0; i < values.size(); ++i) image.pixels[3 * i + c] = values[i];
   }
+  return image;
 }
 
 void write_pfm(const RgbImage& image, const std::filesystem::path& file) {

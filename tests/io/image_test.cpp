@@ -65,6 +65,83 @@ TEST_F(ImageFiles, ExrKeepsEveryBitOfEveryFloat) {
   EXPECT_EQ(files(), 1u);
 }
 
+/// Two parts of different sizes with channels in the order of their names.
+std::vector<ExrPart> two_parts() {
+  const auto values = [](int count, int seed) {
+    std::vector<float> all = random_floats(count, 1).pixels;
+    std::rotate(all.begin(), all.begin() + seed, all.end());
+    all.resize(static_cast<std::size_t>(count));
+    return all;
+  };
+  return {{"first", 7, 3, {{"S0.475nm", values(21, 1)}, {"Y", values(21, 2)}}, {{"units", "1/mm²"}}, {}},
+          {"second", 2, 40, {{"Z", values(80, 3)}}, {{"empty", ""}}, {{"field_deg", 0.1}, {"distance_mm", HUGE_VAL}}}};
+}
+
+TEST_F(ImageFiles, ExrPartsComeBackBitForBit) {
+  const auto same = [](const std::vector<float>& a, const std::vector<float>& b) {
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](float x, float y) {
+      return std::bit_cast<std::uint32_t>(x) == std::bit_cast<std::uint32_t>(y);
+    });
+  };
+  const auto file = folder_ / "a.exr";
+  for (const std::size_t count : {1u, 2u}) {
+    const std::vector<ExrPart> parts = two_parts();
+    write_exr(std::span(parts).first(count), file);
+    const std::vector<ExrPart> back = read_exr_parts(file);
+    ASSERT_EQ(back.size(), count);
+    for (std::size_t i = 0; i < count; ++i) {
+      EXPECT_EQ(back[i].name, parts[i].name);
+      EXPECT_EQ(back[i].width, parts[i].width);
+      EXPECT_EQ(back[i].height, parts[i].height);
+      EXPECT_EQ(back[i].texts, parts[i].texts);
+      EXPECT_EQ(back[i].numbers, parts[i].numbers);
+      ASSERT_EQ(back[i].channels.size(), parts[i].channels.size());
+      for (std::size_t c = 0; c < parts[i].channels.size(); ++c) {
+        EXPECT_EQ(back[i].channels[c].name, parts[i].channels[c].name);
+        EXPECT_TRUE(same(back[i].channels[c].values, parts[i].channels[c].values)) << i << ' ' << c;
+      }
+    }
+  }
+  EXPECT_EQ(files(), 1u);
+}
+
+TEST_F(ImageFiles, RgbIsReadFromTheFirstPart) {
+  const auto file = folder_ / "a.exr";
+  std::vector<ExrPart> parts = two_parts();
+  parts[0].channels = {{"B", {3, 6}}, {"G", {2, 5}}, {"R", {1, 4}}, {"A", {7, 8}}};
+  parts[0].width = 2, parts[0].height = 1;
+  write_exr(parts, file);
+  EXPECT_EQ(read_exr(file).pixels, (std::vector<float>{1, 2, 3, 4, 5, 6}));
+  std::swap(parts[0], parts[1]);
+  write_exr(parts, file);
+  EXPECT_EQ(message([&] { read_exr(file); }), file.string() + ": no channel R, wanted R, G, B");
+}
+
+TEST_F(ImageFiles, RefusesExrPartsThatNoFileHolds) {
+  const auto file = folder_ / "a.exr";
+  const auto refused = [&](auto&& change, const std::string& words) {
+    std::vector<ExrPart> parts = two_parts();
+    change(parts);
+    const std::string said = message([&] { write_exr(parts, file); });
+    EXPECT_EQ(said.rfind(file.string() + ": ", 0), 0u) << said;
+    EXPECT_NE(said.find(words), std::string::npos) << said;
+  };
+  using Parts = std::vector<ExrPart>;
+  refused([](Parts& p) { p.clear(); }, "no part");
+  refused([](Parts& p) { p[1].channels.clear(); }, "part \"second\": no channel");
+  refused([](Parts& p) { p[1].width = 0; }, "part \"second\": is 0 x 40");
+  refused([](Parts& p) { p[0].channels[1].values.pop_back(); },
+          "channel Y has 20 values, wanted one for each of 7 x 3");
+  refused([](Parts& p) { p[0].channels[1].name = "S0.475nm"; }, "channel S0.475nm stands twice");
+  refused([](Parts& p) { p[0].channels[1].name.clear(); }, "a channel has no name");
+  refused([](Parts& p) { p[1].name = "first"; }, "part \"first\" stands twice");
+  refused([](Parts& p) { p[1].name.clear(); }, "has no name");
+  refused([](Parts& p) { p[0].texts["type"] = "deepscanline"; }, "attribute type is EXR's own");
+  refused([](Parts& p) { p[0].numbers["dataWindow"] = 1; }, "attribute dataWindow is EXR's own");
+  refused([](Parts& p) { p[0].numbers["units"] = 1; }, "attribute units is a text and a number");
+  EXPECT_EQ(files(), 0u);
+}
+
 TEST_F(ImageFiles, PngDecodesToTheSamePixels) {
   Rgb8Image image{19, 7, {}};
   for (int i = 0; i < 19 * 7 * 3; ++i) image.pixels.push_back(static_cast<std::uint8_t>(i * 37));
@@ -128,6 +205,13 @@ TEST_F(ImageFiles, ReadingSaysWhichFileIsBad) {
     std::filesystem::resize_file(file, kept);
     EXPECT_NE(message([&] { read_exr(file); }).find(file.string()), std::string::npos) << kept;
   }
+
+  write_exr(two_parts(), file);
+  for (auto kept = std::filesystem::file_size(file); kept-- > 0;) {
+    std::filesystem::resize_file(file, kept);
+    EXPECT_NE(message([&] { read_exr_parts(file); }).find(file.string()), std::string::npos) << kept;
+  }
+  EXPECT_NE(message([&] { read_exr_parts(absent); }).find(absent.string()), std::string::npos);
 }
 
 TEST(Image, IsDesqueezed) {

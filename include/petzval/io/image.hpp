@@ -4,6 +4,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <map>
+#include <span>
+#include <string>
 #include <vector>
 
 #include "petzval/core/export.hpp"
@@ -35,10 +38,37 @@ struct Rgb8Image {
   std::vector<std::uint8_t> pixels;
 };
 
+/// One channel of an EXR part: width x height values, rows from the top.
+struct ExrChannel {
+  std::string name;
+  std::vector<float> values;
+};
+
+/// One picture of an EXR file: channels of one size, and what the file says about them.
+struct ExrPart {
+  std::string name{};  ///< may be empty in a file of one part
+  int width = 0;
+  int height = 0;
+  std::vector<ExrChannel> channels{};          ///< read ones are sorted by name, as the format keeps them
+  std::map<std::string, std::string> texts{};  ///< attributes of type string
+  std::map<std::string, double> numbers{};     ///< of type double; float and int are read too
+};
+
+/// Writes parts of 32-bit float channels, without loss, as write_file does; a file of several is multi-part.
+///
+/// The data windows of parts begin at (0, 0); the display window is the smallest one around all of them. Throws Error
+/// that names the file: for no part, a part without channels or pixels, channels of another size than their part, names
+/// that are empty or stand twice, and attributes that EXR has for itself.
+PETZVAL_API void write_exr(std::span<const ExrPart> parts, const std::filesystem::path& file);
+
+/// Reads all parts of an EXR file of scan lines or tiles, any channel as float; attributes that every EXR has, and
+/// those of other types, are left out. Throws Error that names the file, also for more than 3 GiB of values.
+PETZVAL_API std::vector<ExrPart> read_exr_parts(const std::filesystem::path& file);
+
 /// Writes 32-bit float channels R, G, B, without loss, as write_file does. Throws Error that names the file.
 PETZVAL_API void write_exr(const RgbImage& image, const std::filesystem::path& file);
 
-/// Reads channels R, G, B of any EXR file as float. Throws Error that names the file.
+/// Reads channels R, G, B of the first part of any EXR file as float. Throws Error that names the file.
 PETZVAL_API RgbImage read_exr(const std::filesystem::path& file);
 
 /// Writes a PFM, for scripts that read without libraries: "PF", width and height, -1.0 (little-endian), then RGB

@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/exr.hpp"
+
+#include <ImathBox.h>
+#include <ImfChannelList.h>
+#include <ImfDoubleAttribute.h>
+#include <ImfFloatAttribute.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfInputPart.h>
+#include <ImfIntAttribute.h>
+#include <ImfMultiPartInputFile.h>
+#include <ImfMultiPartOutputFile.h>
+#include <ImfOutputPart.h>
+#include <ImfPartType.h>
+#include <ImfStdIO.h>
+#include <ImfStringAttribute.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <set>
+#include <string>
+
+#include "petzval/core/error.hpp"
+#include "petzval/io/write_file.hpp"
+
+namespace petzval::inline v0 {
+namespace {
+
+// 3 GiB in memory. A damaged header may claim any size.
+constexpr std::uint64_t most_values = std::uint64_t(3) << 28;
+
+/// Attributes that OpenEXR writes into every file by itself.
+constexpr std::array<std::string_view, 6> of_every_file{"chunkCount",        "name", "pixelAspectRatio",
+                                                        "screenWindowWidth", "type", "version"};
+
+bool in_every_file(std::string_view name) noexcept {
+  return std::find(of_every_file.begin(), of_every_file.end(), name) != of_every_file.end();
+}
+
+std::string size_of(const ExrPart& part) { return std::to_string(part.width) + " x " + std::to_string(part.height); }
+
+void validate(const ExrPart& part) {
+  const std::string where = "part \"" + part.name + "\": ";
+  if (part.width < 1 || part.height < 1) throw Error(where + "is " + size_of(part) + ", wanted at least one pixel");
+  if (part.channels.empty()) throw Error(where + "no channel, wanted one at least");
+  std::set<std::string_view> names;
+  for (const ExrChannel& channel : part.channels) {
+    if (channel.name.empty()) throw Error(where + "a channel has no name, wanted one");
+    if (!names.insert(channel.name).second)
+      throw Error(where + "channel " + channel.name + " stands twice, wanted once");
+    if (channel.values.size() != static_cast<std::size_t>(part.width) * static_cast<std::size_t>(part.height)) {
+      throw Error(where + "channel " + channel.name + " has " + std::to_string(channel.values.size()) +
+                  " values, wanted one for each of " + size_of(part) + " pixels");
+    }
+  }
+  for (const auto& [name, text] : part.texts) {
+    if (part.numbers.contains(name)) throw Error(where + "attribute " + name + " is a text and a number, wanted one");
+  }
+}
+
+void validate(std::span<const ExrPart> parts) {
+  if (parts.empty()) throw Error("no part, wanted one at least");
+  std::set<std::string_view> names;
+  for (const ExrPart& part : parts) {
+    validate(part);
+    if (parts.size() == 1) break;
+    if (part.name.empty()) throw Error("one of several parts has no name, wanted one");
+    if (!names.insert(part.name).second) throw Error("part \"" + part.name + "\" stands twice, wanted once");
+  }
+}
+
+/// Refuses names that EXR has a meaning for: it would overwrite their values, or refuse them by a message without name.
+template <class Attribute, class Value>
+void insert(Imf::Header& header, const std::string& name, const Value& value) {
+  if (in_every_file(name) || header.find(name) != header.end()) {
+    throw Error("attribute " + name + " is EXR's own, wanted another name");
+  }
+  header.insert(name, Attribute(value));
+}
+
+Imf::Header header_of(const ExrPart& part, const Imath::Box2i& display) {
+  Imf::Header header(display, {{0, 0}, {part.width - 1, part.height - 1}});
+  header.setType(Imf::SCANLINEIMAGE);
+  for (const ExrChannel& channel : part.channels) header.channels().insert(channel.name, Imf::Channel(Imf::FLOAT));
+  for (const auto& [name, text] : part.texts) insert<Imf::StringAttribute>(header, name, text);
+  for (const auto& [name, number] : part.numbers) insert<Imf::DoubleAttribute>(header, name, number);
+  if (!part.name.empty()) header.setName(part.name);
+  return header;
+}
+
+/// The first pixel is the upper left corner of the data window.
+Imf::FrameBuffer frame(std::span<ExrChannel> channels, const Imath::Box2i& window, int width, int height) {
+  Imf::FrameBuffer buffer;
+  for (ExrChannel& channel : channels) {
+    buffer.insert(channel.name, Imf::Slice::Make(Imf::FLOAT, channel.values.data(), window.min, width, height,
+                                                 sizeof(float), sizeof(float) * static_cast<std::size_t>(width)));
+  }
+  return buffer;
+}
+
+template <class T>
+const T* number(const Imf::Attribute& attribute) {
+  const auto* typed = dynamic_cast<const Imf::TypedAttribute<T>*>(&attribute);
+  return typed ? &typed->value() : nullptr;
+}
+
+void read_attributes(const Imf::Header& header, ExrPart& part) {
+  if (header.hasName()) part.name = header.name();
+  for (auto i = header.begin(); i != header.end(); ++i) {
+    if (in_every_file(i.name())) continue;
+    const Imf::Attribute& attribute = i.attribute();
+    if (const auto* text = number<std::string>(attribute)) part.texts[i.name()] = *text;
+    if (const auto* value = number<double>(attribute)) part.numbers[i.name()] = *value;
+    if (const auto* value = number<float>(attribute)) part.numbers[i.name()] = static_cast<double>(*value);
+    if (const auto* value = number<int>(attribute)) part.numbers[i.name()] = *value;
+  }
+}
+
+/// An EXR file, part by part.
+class Reader {
+ public:
+  explicit Reader(const std::filesystem::path& file) : file_(file.string().c_str(), 0) {}
+
+  int parts() const { return file_.parts(); }
+
+  /// Of all channels, or of those, in that order.
+  ExrPart part(int index, std::span<const std::string_view> wanted = {}) {
+    const Imf::Header& header = file_.header(index);
+    ExrPart part;
+    read_attributes(header, part);
+    for (const std::string_view name : wanted) part.channels.push_back({std::string(name), {}});
+    if (wanted.empty()) {
+      for (auto i = header.channels().begin(); i != header.channels().end(); ++i)
+        part.channels.push_back({i.name(), {}});
+    }
+    for (const ExrChannel& channel : part.channels) {
+      if (header.channels().findChannel(channel.name)) continue;
+      std::string all;
+      for (const std::string_view name : wanted) all += (all.empty() ? "" : ", ") + std::string(name);
+      throw Error("no channel " + channel.name + ", wanted " + all);
+    }
+
+    const Imath::Box2i window = header.dataWindow();
+    const auto width = std::uint64_t(std::int64_t(window.max.x) - window.min.x + 1);
+    const auto height = std::uint64_t(std::int64_t(window.max.y) - window.min.y + 1);
+    // Checked in this order, no product overflows: sides are below 2^32.
+    if (width * height > left_ || width * height * part.channels.size() > left_) {
+      throw Error("part \"" + part.name + "\" is " + std::to_string(width) + " x " + std::to_string(height) + " with " +
+                  std::to_string(part.channels.size()) + " channels, wanted " + std::to_string(most_values) +
+                  " values or fewer in all parts");
+    }
+    left_ -= width * height * part.channels.size();
+    part.width = static_cast<int>(width);
+    part.height = static_cast<int>(height);
+    for (ExrChannel& channel : part.channels) channel.values.resize(static_cast<std::size_t>(width * height));
+    Imf::InputPart in(file_, index);
+    in.setFrameBuffer(frame(part.channels, window, part.width, part.height));
+    in.readPixels(window.min.y, window.max.y);
+    return part;
+  }
+
+ private:
+  Imf::MultiPartInputFile file_;
+  std::uint64_t left_ = most_values;  ///< may still be read
+};
+
+}  // namespace
+
+void write_exr(std::span<const ExrPart> parts, const std::filesystem::path& file) {
+  Imf::StdOSStream stream;
+  try {
+    validate(parts);
+    Imath::Box2i display{{0, 0}, {0, 0}};
+    for (const ExrPart& part : parts) display.extendBy(Imath::V2i(part.width - 1, part.height - 1));
+    std::vector<Imf::Header> headers;
+    for (const ExrPart& part : parts) headers.push_back(header_of(part, display));
+    Imf::MultiPartOutputFile out(stream, headers.data(), static_cast<int>(headers.size()), false, 0);
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      const ExrPart& part = parts[i];
+      // A frame has no constant pixels; these are only read.
+      const std::span channels(const_cast<ExrChannel*>(part.channels.data()), part.channels.size());
+      Imf::OutputPart out_part(out, static_cast<int>(i));
+      out_part.setFrameBuffer(frame(channels, headers[i].dataWindow(), part.width, part.height));
+      out_part.writePixels(part.height);
+    }
+  } catch (const std::exception& e) {
+    throw Error(file.string() + ": " + e.what());
+  }
+  write_file(stream.str(), file);
+}
+
+std::vector<ExrPart> read_exr_parts(const std::filesystem::path& file) {
+  try {
+    Reader reader(file);
+    std::vector<ExrPart> parts;
+    for (int i = 0; i < reader.parts(); ++i) parts.push_back(reader.part(i));
+    return parts;
+  } catch (const std::exception& e) {
+    throw Error(file.string() + ": " + e.what());
+  }
+}
+
+ExrPart io_detail::read_first_part(const std::filesystem::path& file, std::span<const std::string_view> channels) {
+  try {
+    return Reader(file).part(0, channels);
+  } catch (const std::exception& e) {
+    throw Error(file.string() + ": " + e.what());
+  }
+}
+
+}  // namespace petzval::inline v0

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string_view>
+
+#include "petzval/io/image.hpp"
+
+namespace petzval::inline v0::io_detail {
+
+/// Reads the first part of an EXR file, of its channels those, in that order. Throws Error that names the file, also
+/// where it has no such channel.
+ExrPart read_first_part(const std::filesystem::path& file, std::span<const std::string_view> channels);
+
+}  // namespace petzval::inline v0::io_detail
