@@ -10,6 +10,7 @@
 #include <limits>
 #include <numbers>
 #include <numeric>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,8 @@
 #include "petzval/core/units.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "support/bokeh.hpp"
+#include "support/bokeh_flags.hpp"
+#include "support/camera_setup.hpp"
 #include "support/cli.hpp"
 #include "support/files.hpp"
 #include "support/iris_setup.hpp"
@@ -33,33 +36,46 @@ constexpr int picture_pixels = 512, tile_pixels = 320;
 
 struct Options {
   std::vector<std::string> formats{"exr", "png"};
-  std::string lens_file, out_folder, origin = "front_vertex", criterion = "min_rms", white_point = "D65";
+  std::string model = "exact_double", lens_file, out_folder, origin = "front_vertex", criterion = "min_rms",
+              white_point = "D65";
   std::vector<double> focus_mm, wavelengths_nm{petzval::d_line_nm};
   double subject_mm = 0, field_deg = 0, tolerance = 0;
   examples::IrisSetup iris;
+  examples::BokehFlags bokeh;
   std::uint32_t samples = 1u << 21;
+
+  /// Rays of the lens alone; else those of a camera.
+  bool plain() const noexcept { return model == "exact_double" && bokeh.change_nothing(); }
 };
 
 struct Picture {
   double focus_mm = 0;
   examples::BokehScene scene;
+  std::optional<petzval::Camera> camera;
   petzval::PointImage image;
 };
 
+petzval::PointImage image_of(const Picture& picture, const petzval::PsfOptions& options) {
+  if (picture.camera) return petzval::point_image(*picture.camera, picture.scene.light, options);
+  return petzval::point_image(picture.scene.lens, picture.scene.light, options);
+}
+
 std::vector<Picture> render(const examples::LoadedLens& loaded, const Options& options,
-                            const examples::BokehSetup& setup) {
+                            const petzval::BokehControls& controls, const examples::BokehSetup& setup) {
   const petzval::Lens lens = examples::stopped_down(loaded.lens, options.iris);
   examples::Progress progress("bokeh", options.focus_mm.size());
   std::vector<Picture> pictures;
   for (const double focus : options.focus_mm) {
     progress.step(examples::focus_caption(focus));
-    auto scene = examples::focused_scene(lens, focus, setup);
-    auto image = petzval::point_image(scene.lens, scene.light,
-                                      {.samples = options.samples,
+    Picture picture{focus, examples::focused_scene(lens, focus, setup), {}, {}};
+    if (!options.plain()) {
+      picture.camera = examples::camera_of(picture.scene, *petzval::model_named(options.model), controls);
+    }
+    picture.image = image_of(picture, {.samples = options.samples,
                                        .tolerance = options.tolerance,
                                        .pixels = picture_pixels,
                                        .threads = petzval::processor_threads()});
-    pictures.push_back({focus, std::move(scene), std::move(image)});
+    pictures.push_back(std::move(picture));
   }
   return pictures;
 }
@@ -75,25 +91,32 @@ examples::Sheet contact_sheet(const std::vector<Picture>& pictures, const exampl
                   examples::number(options.field_deg) + "°; distances from the " +
                   (options.origin == "film" ? "film" : "front vertex") + "; focus " + options.criterion +
                   (options.iris.f_number > 0 ? "; f/" + examples::number(options.iris.f_number) : "; wide open") +
-                  (options.iris.blades > 0 ? "; " + std::to_string(options.iris.blades) + " blades" : ""),
+                  (options.iris.blades > 0 ? "; " + std::to_string(options.iris.blades) + " blades" : "") +
+                  (options.model == "exact_double" ? "" : "; " + options.model),
       .pixel_mm = 2 * half_width / tile_pixels,
       .tiles = {}};
   const petzval::Spectrum light = examples::white_light(options.white_point);
   examples::Progress progress("contact sheet", pictures.size());
   for (const Picture& p : pictures) {
     progress.step(examples::focus_caption(p.focus_mm));
-    const auto image = petzval::point_image(p.scene.lens, p.scene.light,
-                                            {.samples = options.samples,
-                                             .pixels = tile_pixels,
-                                             .half_width_mm = half_width,
-                                             .threads = petzval::processor_threads()});
+    const auto image = image_of(p, {.samples = options.samples,
+                                    .pixels = tile_pixels,
+                                    .half_width_mm = half_width,
+                                    .threads = petzval::processor_threads()});
     row.tiles.push_back(examples::bokeh_tile(p.focus_mm, image, light));
   }
   return {"Bokeh of a point light", {std::move(row)}, examples::bokeh_notes()};
 }
 
-Json to_json(const std::vector<Picture>& pictures, const examples::LoadedLens& loaded, const Options& options) {
+Json to_json(const std::vector<Picture>& pictures, const examples::LoadedLens& loaded, const Options& options,
+             const petzval::BokehControls& controls) {
   Json json{{"lens", loaded.lens.name()},
+            {"model", options.model},
+            {"lens_ratio", controls.lens_ratio},
+            {"rate_of_change", controls.rate_of_change},
+            {"weight_distribution", controls.weight_distribution},
+            {"weight_strength", controls.weight_strength},
+            {"weights_add_light", controls.edge().light_added()},
             {"dispersion", petzval::name(loaded.lens.dispersion())},
             {"wavelengths_nm", options.wavelengths_nm},
             {"white_point", options.white_point},
@@ -109,6 +132,9 @@ Json to_json(const std::vector<Picture>& pictures, const examples::LoadedLens& l
     const auto pair = [](const petzval::Vec2<double>& v) { return std::array{v.x, v.y}; };
     const auto if_any = [&](const auto& size) { return p.image.throughput > 0 ? Json(size) : Json(); };
     const double airy_radius = petzval::airy_radius(p.scene.lens);
+    const petzval::Iris& iris = p.scene.lens.iris();
+    const double iris_area =
+        options.bokeh.iris_image.empty() ? petzval::iris_area(iris) : petzval::iris_area(iris, controls.weight_map);
     json["results"].push_back(
         {{"focus_mm", finite_or_null(p.focus_mm)},
          {"film_z_mm", p.scene.lens.film_z()},
@@ -118,12 +144,12 @@ Json to_json(const std::vector<Picture>& pictures, const examples::LoadedLens& l
          {"rms_radius_mm", if_any(p.image.size.rms_radius)},
          {"second_moments_mm2", if_any(std::array{p.image.size.xx, p.image.size.yy, p.image.size.xy})},
          {"radius_mm", if_any(p.image.size.max_radius)},
-         {"iris_area_share", petzval::iris_area(p.scene.lens.iris()) / std::numbers::pi},
+         {"iris_area_share", iris_area / std::numbers::pi},
          {"airy_radius_mm", finite_or_null(airy_radius)},
          {"diffraction", if_any(petzval::name(petzval::diffraction(airy_radius, p.image.size)))},
          {"rays", sum(p.image.psf.sent)},
          {"rays_sent", sum(p.image.psf.sent)},
-         {"rays_transmitted", sum(p.image.psf.transmitted)},
+         {"rays_transmitted", sum(p.image.psf.transmitted) / p.image.psf.units_per_ray},
          {"radial_profile", p.image.radial_profile},
          {"error", p.image.error},
          {"picture_centre_mm", pair(p.image.psf.centre)},
@@ -132,7 +158,8 @@ Json to_json(const std::vector<Picture>& pictures, const examples::LoadedLens& l
   return json;
 }
 
-void write_all(const std::vector<Picture>& pictures, const examples::LoadedLens& loaded, const Options& options) {
+void write_all(const std::vector<Picture>& pictures, const examples::LoadedLens& loaded, const Options& options,
+               const petzval::BokehControls& controls) {
   const auto sheet = examples::draw_sheet(contact_sheet(pictures, loaded, options));
   const petzval::Spectrum light = examples::white_light(options.white_point);
   const std::filesystem::path folder = options.out_folder;
@@ -151,7 +178,8 @@ void write_all(const std::vector<Picture>& pictures, const examples::LoadedLens&
   }
   petzval::write_png(sheet, folder / (loaded.id + "_bokeh.png"));
   written(folder / (loaded.id + "_bokeh.png"));
-  examples::write_text(folder / (loaded.id + "_bokeh.json"), to_json(pictures, loaded, options).dump(1) + '\n');
+  examples::write_text(folder / (loaded.id + "_bokeh.json"),
+                       to_json(pictures, loaded, options, controls).dump(1) + '\n');
   written(folder / (loaded.id + "_bokeh.json"));
 }
 
@@ -183,7 +211,9 @@ int main(int argc, char** argv) {
       app, "--wavelengths-nm", options.wavelengths_nm, examples::positive_number,
       "wavelengths of the light (nm); several, from 420 to 680, are weighted to RGB by the CIE 1931 functions");
   examples::add_white_point(app, options.white_point);
+  examples::add_model(app, options.model)->capture_default_str();
   examples::add_iris(app, options.iris);
+  examples::add_bokeh(app, options.bokeh);
   examples::add_number(app, "--field-deg", options.field_deg, examples::finite_number,
                        "angle of the light towards +y, seen from the paraxial entrance pupil (degrees)");
   examples::add_samples(app, options.samples);
@@ -207,6 +237,7 @@ int main(int argc, char** argv) {
                                      .origin = examples::named(options.origin, examples::distance_origins),
                                      .criterion = examples::named(options.criterion, examples::focus_criteria),
                                      .field_rad = petzval::radians(options.field_deg)};
-    write_all(render(loaded, options, setup), loaded, options);
+    const petzval::BokehControls controls = examples::controls_of(options.bokeh);
+    write_all(render(loaded, options, controls, setup), loaded, options, controls);
   });
 }

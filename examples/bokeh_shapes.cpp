@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// Draws a contact sheet of the shapes that irises with blades give to a point of light out of focus.
+// Draws contact sheets of the shapes that irises, cat's eyes and weights give to a point of light out of focus.
 //
 //   bokeh_shapes --out out
 #include <array>
+#include <cmath>
+#include <functional>
 #include <iostream>
 #include <string>
 #include <vector>
 
+#include "petzval/camera/two_discs.hpp"
 #include "petzval/core/parallel.hpp"
+#include "petzval/core/units.hpp"
 #include "petzval/io/lens_json.hpp"
 #include "petzval/media/glass.hpp"
 #include "petzval/pupil/f_number.hpp"
@@ -18,57 +22,189 @@
 
 namespace {
 
+using examples::number;
+
 constexpr int tile_pixels = 200;
-constexpr std::array blade_counts{3, 4, 5, 6, 7, 8, 9};
-constexpr double f_number = 4, focus_mm = 2000, light_mm = 10000;
+constexpr double focus_mm = 2000, light_mm = 10000;  // from the film
 
-struct Edges {
-  const char* name;
-  double roundness;
-};
-constexpr std::array all_edges{Edges{"straight", 0}, Edges{"rounded", 0.5}, Edges{"hollow", -0.5}};
-
-/// The light through irises of 3 to 9 blades. half_width_mm: of a tile.
-examples::SheetRow blades(const petzval::Lens& lens, const petzval::FieldPoint& light, const Edges& edges,
-                          double half_width_mm, examples::Progress& progress) {
-  examples::SheetRow row{.title = std::string(edges.name) + " edges",
-                         .subtitle = "roundness " + examples::number(edges.roundness),
-                         .pixel_mm = 2 * half_width_mm / tile_pixels,
-                         .tiles = {}};
-  for (const int count : blade_counts) {
-    const std::string caption = std::to_string(count) + " blades";
-    progress.step(caption + ", " + edges.name);
-    const petzval::Iris iris{.blades = count, .roundness = edges.roundness};
-    const auto image = petzval::point_image(petzval::with_iris(lens, iris), light,
-                                            {.samples = 1 << 20,
-                                             .pixels = tile_pixels,
-                                             .half_width_mm = half_width_mm,
-                                             .threads = petzval::processor_threads()});
-    const double share = petzval::iris_area(iris) / petzval::iris_area({});
-    row.tiles.push_back({examples::expose(examples::irradiance(image.psf)).picture,
-                         {caption, "light: " + examples::number(100 * share, 3) + " %"}});
-  }
-  return row;
+petzval::Lens lens_of_data(const std::string& id) {
+  return petzval::compile(petzval::read_prescription(petzval::data_directory() / "lenses" / (id + ".json")));
 }
 
-examples::Sheet sheet() {
-  const auto file = petzval::data_directory() / "lenses" / "double_gauss_100mm_f2.0.json";
-  const petzval::Lens open = petzval::compile(petzval::read_prescription(file));
-  const petzval::Lens lens =
-      petzval::with_focus(petzval::with_f_number(open, f_number), focus_mm, {.origin = petzval::DistanceOrigin::film});
-  const petzval::FieldPoint light{0, lens.film_z() - light_mm};
-  const double half_width_mm = 1.08 * petzval::point_image(lens, light, {.samples = 1 << 14}).size.max_radius;
-  examples::Sheet result{
+petzval::Lens focused(const petzval::Lens& lens) {
+  return petzval::with_focus(lens, focus_mm, {.origin = petzval::DistanceOrigin::film});
+}
+
+std::uint32_t samples = 1 << 19;  // of a tile
+
+petzval::PsfOptions tile_options(double half_width_mm) {
+  return {.samples = samples,
+          .pixels = tile_pixels,
+          .half_width_mm = half_width_mm,
+          .threads = petzval::processor_threads()};
+}
+
+/// A row of tiles of one scale.
+examples::SheetRow row(const std::string& title, const std::string& subtitle, double half_width_mm) {
+  return {.title = title, .subtitle = subtitle, .pixel_mm = 2 * half_width_mm / tile_pixels, .tiles = {}};
+}
+
+examples::Tile tile(const petzval::PointImage& image, const std::vector<std::string>& captions) {
+  return {examples::expose(examples::irradiance(image.psf)).picture, captions};
+}
+
+/// The Tronnier double Gauss at f/4, and a light on its axis.
+struct AxialScene {
+  petzval::Lens lens = focused(petzval::with_f_number(lens_of_data("double_gauss_100mm_f2.0"), 4));
+  petzval::FieldPoint light{0, lens.film_z() - light_mm};
+  double half_width_mm = 1.08 * petzval::point_image(lens, light, {.samples = 1 << 14}).size.max_radius;
+  std::string text = lens.name() +
+                     " at f/4, focused at 2 m. A point of light at 10 m on the axis, as a photograph shows "
+                     "it. Each tile has its own exposure.";
+
+  petzval::PointImage image(petzval::ModelKind model, const petzval::BokehControls& controls) const {
+    return petzval::point_image(examples::camera_of({lens, light}, model, controls), light,
+                                tile_options(half_width_mm));
+  }
+};
+
+examples::Sheet blades() {
+  constexpr std::array counts{3, 4, 5, 6, 7, 8, 9};
+  struct Edges {
+    const char* name;
+    double roundness;
+  };
+  constexpr std::array all_edges{Edges{"straight", 0}, Edges{"rounded", 0.5}, Edges{"hollow", -0.5}};
+  const AxialScene scene;
+  examples::Sheet sheet{
       "Bokeh of irises with blades",
       {},
-      {lens.name() +
-           " at f/4, focused at 2 m. A point of light at 10 m on the axis, as a photograph shows it. Each tile "
-           "has its own exposure.",
+      {scene.text,
        "Light: the area of the iris, of the round one's at the same f-number. The first corner points up, and all "
        "corners lie where the round iris ends."}};
-  examples::Progress progress("bokeh shapes", all_edges.size() * blade_counts.size());
-  for (const Edges& edges : all_edges) result.rows.push_back(blades(lens, light, edges, half_width_mm, progress));
-  return result;
+  for (const auto& [name, roundness] : all_edges) {
+    auto& tiles =
+        sheet.rows
+            .emplace_back(row(std::string(name) + " edges", "roundness " + number(roundness), scene.half_width_mm))
+            .tiles;
+    for (const int count : counts) {
+      const petzval::Iris iris{.blades = count, .roundness = roundness};
+      const auto image =
+          petzval::point_image(petzval::with_iris(scene.lens, iris), scene.light, tile_options(scene.half_width_mm));
+      const double share = petzval::iris_area(iris) / petzval::iris_area(petzval::Iris{});
+      tiles.push_back(tile(image, {std::to_string(count) + " blades", "light: " + number(100 * share, 3) + " %"}));
+    }
+  }
+  return sheet;
+}
+
+/// A real lens, the two discs fitted to it, and a thin lens with these as controls.
+examples::Sheet cats_eyes() {
+  constexpr std::array fields_deg{0.0, 4.0, 7.0, 9.5, 11.5};
+  constexpr double half_film_mm = 18;
+  const petzval::Lens lens = focused(lens_of_data("double_gauss_100mm_f1.35"));
+  const petzval::TwoDiscs discs = petzval::fit_two_discs(lens, half_film_mm);
+  const petzval::BokehControls eye{.lens_ratio = discs.lens_ratio, .rate_of_change = discs.rate_of_change};
+  const auto light = [&](double field_deg) {
+    return petzval::FieldPoint{petzval::radians(field_deg), lens.film_z() - light_mm};
+  };
+  const double half_width_mm = 1.08 * petzval::point_image(lens, light(0), {.samples = 1 << 14}).size.max_radius;
+  examples::Sheet sheet{
+      "Cat's eyes over the field",
+      {},
+      {lens.name() +
+           ", wide open, focused at 2 m. A point of light at 10 m, as a photograph shows it. Each tile has its "
+           "own exposure.",
+       "Light: of the light on the axis. Two discs: lens ratio " + number(discs.lens_ratio, 3) + ", rate of change " +
+           number(discs.rate_of_change, 3) + "; the pupil's shape is off by " + number(100 * discs.error, 2) +
+           " % of its area on a film of 36 mm."}};
+  struct Row {
+    const char *title, *subtitle;
+    petzval::ModelKind model;
+    petzval::BokehControls controls;
+  };
+  for (const auto& [title, subtitle, model, controls] :
+       {Row{"exact rays", "every surface of the lens", petzval::ModelKind::exact_double, {}},
+        Row{"two discs",
+            "a thin lens with two discs fitted to it, as bright as it",
+            petzval::ModelKind::thin_two_disc,
+            {}},
+        Row{"thin lens", "with the lens ratio and the rate of change of the fit", petzval::ModelKind::thin, eye}}) {
+    auto& tiles = sheet.rows.emplace_back(row(title, subtitle, half_width_mm)).tiles;
+    double on_axis = 0;
+    for (const double field : fields_deg) {
+      const examples::BokehScene scene{lens, light(field)};
+      const auto image =
+          petzval::point_image(examples::camera_of(scene, model, controls), scene.light, tile_options(half_width_mm));
+      if (on_axis == 0) on_axis = image.throughput;
+      tiles.push_back(
+          tile(image, {number(field) + "°", "light: " + number(100 * image.throughput / on_axis, 3) + " %"}));
+    }
+  }
+  return sheet;
+}
+
+/// The three rows of the text.
+examples::Sheet weights() {
+  const AxialScene scene;
+  examples::Sheet sheet{"Weights of the rim",
+                        {},
+                        {scene.text,
+                         "Weight 1 + p (d + 1) x^d - p; x: the share of the iris that lies nearer to its centre, for d "
+                         "below 0 that which lies farther out."}};
+  const auto add_row = [&](const std::string& title, const std::vector<petzval::EdgeWeight>& edges, int blades) {
+    auto& tiles = sheet.rows.emplace_back(row(title, "", scene.half_width_mm)).tiles;
+    for (const auto& [d, p] : edges) {
+      const auto image = scene.image(petzval::ModelKind::exact_float,
+                                     {.lens_elements = blades, .weight_distribution = d, .weight_strength = p});
+      tiles.push_back(tile(image, {"d = " + number(d), "p = " + number(p)}));
+    }
+  };
+  std::vector<petzval::EdgeWeight> middle, rim, thin;
+  for (const double p : {0.8, 0.6, 0.4, 0.2, 0.0}) middle.push_back({-4, p}), rim.push_back({4, p});
+  for (const double d : {5.5, 8.7, 12.7, 20.7, 50.7}) thin.push_back({d, 0.6});
+  add_row("bright middle", middle, 0);
+  add_row("bright rim", rim, 0);
+  add_row("thin rim", thin, 0);
+  add_row("thin rim, six blades", thin, 6);
+  return sheet;
+}
+
+/// A heart, soft by a pixel.
+petzval::IrisMap heart() {
+  constexpr int pixels = 256;
+  petzval::IrisMap map{pixels, pixels, {}};
+  for (int i = 0; i < pixels * pixels; ++i) {
+    const double x = 1.35 * (2 * (i % pixels) + 1 - pixels) / pixels;
+    const double y = 1.35 * (pixels - 1 - 2 * (i / pixels)) / pixels + 0.1;
+    const double a = x * x + y * y - 1;
+    map.values.push_back(a * a * a - x * x * y * y * y < 0 ? 1.0f : 0.0f);
+  }
+  return map;
+}
+
+examples::Sheet maps() {
+  const AxialScene scene;
+  examples::Sheet sheet{"Weight maps of the stop", {}, {scene.text}};
+  struct Shown {
+    petzval::IrisMap map;
+    std::string title, subtitle;
+  };
+  const std::vector<Shown> shown{
+      {petzval::onion_rings({.period = 0.06, .contrast = 0.25}), "onion rings", "period .06, contrast .25"},
+      {petzval::onion_rings({.period = 0.1, .contrast = 0.5, .jitter = 0.3}), "onion rings", "period .1, contrast .5"},
+      {heart(), "an image as iris", "a heart"}};
+  const auto add_row = [&](petzval::ModelKind model, const std::string& title) {
+    auto& tiles = sheet.rows.emplace_back(row(title, "", scene.half_width_mm)).tiles;
+    for (const auto& [map, caption, below] : shown) {
+      petzval::BokehControls controls;
+      controls.weight_map = map;
+      tiles.push_back(tile(scene.image(model, controls), {caption, below}));
+    }
+  };
+  add_row(petzval::ModelKind::exact_float, "exact rays");
+  add_row(petzval::ModelKind::thin, "thin lens");
+  return sheet;
 }
 
 }  // namespace
@@ -76,15 +212,32 @@ examples::Sheet sheet() {
 int main(int argc, char** argv) {
   std::string out_folder;
   examples::App app(
-      "Draws bokeh_blades.png into DIR and prints its path: a point of light out of focus through the Tronnier double "
-      "Gauss with 3 to 9 blades, whose edges are straight, rounded or hollow.",
+      "Draws contact sheets of a point of light out of focus into DIR and prints their paths: bokeh_blades.png (3 to 9 "
+      "blades, straight, rounded and hollow), bokeh_cats_eyes.png (a lens over its field beside two fitted discs), "
+      "bokeh_weights.png (weights of the rim) and bokeh_maps.png (onion rings, an image as iris).",
       "bokeh_shapes");
-  app.add_option("--out", out_folder, "folder for the sheet")->required()->type_name("DIR");
+  app.add_option("--out", out_folder, "folder for the sheets")->required()->type_name("DIR");
+  examples::add_samples(app, samples);
   return examples::run(app, argc, argv, [&] {
-    const auto picture = examples::draw_sheet(sheet());
+    struct Drawn {
+      const char *file, *caption;
+      std::function<examples::Sheet()> sheet;
+    };
+    const std::array<Drawn, 4> all{{{"bokeh_blades.png", "blades", blades},
+                                    {"bokeh_cats_eyes.png", "cat's eyes", cats_eyes},
+                                    {"bokeh_weights.png", "weights", weights},
+                                    {"bokeh_maps.png", "maps", maps}}};
+    examples::Progress progress("bokeh shapes", all.size());
+    std::vector<petzval::Rgb8Image> pictures;
+    for (const auto& [file, caption, sheet] : all) {
+      progress.step(caption);
+      pictures.push_back(examples::draw_sheet(sheet()));
+    }
     const std::filesystem::path folder = out_folder;
     examples::make_folder(folder);
-    petzval::write_png(picture, folder / "bokeh_blades.png");
-    std::cout << (folder / "bokeh_blades.png").string() << '\n';
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      petzval::write_png(pictures[i], folder / all[i].file);
+      std::cout << (folder / all[i].file).string() << '\n';
+    }
   });
 }

@@ -14,6 +14,7 @@
 #include "petzval/camera/camera.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/units.hpp"
+#include "support/bokeh_flags.hpp"
 #include "support/camera_setup.hpp"
 #include "support/cli.hpp"
 #include "support/files.hpp"
@@ -125,10 +126,10 @@ int main(int argc, char** argv) {
                  "irradiance of the film point; the weight is 0 unless the fate is transmitted")
       ->required()
       ->type_name("CSV");
-  std::vector<std::string> model_names;
-  for (const petzval::ModelKind m : petzval::models()) model_names.emplace_back(petzval::name(m));
-  app.add_option("--model", model, "model of the lens")->required()->one_of(model_names);
+  examples::add_model(app, model)->required();
   examples::add_camera(app, setup);
+  examples::BokehFlags bokeh;
+  examples::add_bokeh(app, bokeh);
   examples::add_number(
       app, "--tilt-deg", tilt_deg, below_quarter_turn,
       "tilt of the film about +x (degrees); its normal is Ry(swing) Rx(tilt) e_z, and film points are in its own "
@@ -146,7 +147,8 @@ int main(int argc, char** argv) {
                              .swing_rad = petzval::radians(swing_deg)};
     const petzval::Lens lens = examples::focused(loaded, setup);
     examples::say_what_does_not_fit(lens, film);
-    const petzval::Camera camera(lens, film, {.model = *petzval::model_named(model)});
+    const petzval::Camera camera(lens, film,
+                                 {.model = *petzval::model_named(model), .bokeh = examples::controls_of(bokeh)});
     examples::write_text(out_file, rays_csv(camera, samples));
   });
 }

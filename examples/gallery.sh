@@ -28,7 +28,7 @@ echo "== Bokeh off axis, in colour (3/9)"
   --focus-mm 800,900,1000,1100,1200 --criterion paraxial --field-deg 8 --wavelengths-nm "$(seq -s , 430 10 670)" --samples 262144 \
   --out "$out/bokeh"
 
-echo "== Irises with blades (4/9)"
+echo "== Irises, cat's eyes and weights (4/9)"
 "$programs/bokeh_shapes" --out "$out/bokeh"
 
 echo "== Spot diagrams of five lenses (5/9)"

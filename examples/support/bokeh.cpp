@@ -8,8 +8,10 @@
 #include <string_view>
 
 #include "petzval/core/error.hpp"
+#include "petzval/core/sobol.hpp"
 #include "petzval/figure/psf_image.hpp"
 #include "petzval/media/glass.hpp"
+#include "petzval/pupil/pupil_plane.hpp"
 #include "text.hpp"
 
 namespace examples {
@@ -47,6 +49,32 @@ BokehScene focused_scene(const petzval::Lens& lens, double focus_mm, const Bokeh
   const double origin_z = setup.origin == petzval::DistanceOrigin::film ? focused.film_z() : 0;
   check_light(lens, setup, origin_z);
   return {focused, {setup.field_rad, origin_z - setup.light_mm}};
+}
+
+petzval::Camera camera_of(const BokehScene& scene, petzval::ModelKind model, petzval::BokehControls controls) {
+  constexpr double half_of_36 = 18, longest = 1e4;  // mm
+  constexpr std::uint32_t few = 1 << 10;
+  const double rate_per_mm = controls.rate_of_change / half_of_36;
+  const petzval::PupilPlane plane(scene.lens, scene.light);
+  const bool far = plane.reciprocal_distance() == 0;
+  const auto point = far ? plane.centre() : plane.centre() + plane.towards() / plane.reciprocal_distance();
+  const auto exact = petzval::point_image(scene.lens, scene.light, {.samples = few}).size;
+  double side = 1 + 2.2 * (std::hypot(exact.centroid.x, exact.centroid.y) + exact.max_radius);
+  for (; side <= longest; side *= 2) {
+    controls.rate_of_change = rate_per_mm * side / 2;
+    const petzval::Camera camera(scene.lens, {.width_mm = side, .height_mm = side},
+                                 {.model = model, .bokeh = controls});
+    bool holds = true;
+    for (std::uint32_t i = 0; i < few && holds; ++i) {
+      const petzval::Vec2<double> at = petzval::owen_sobol(i, 0);
+      const auto s = far ? camera.sample_distant_importance(-plane.towards(), at.x, at.y)
+                         : camera.sample_importance(point, at.x, at.y);
+      holds = s.importance.fate != petzval::RayFate::outside_film;
+    }
+    if (holds) return camera;
+  }
+  throw petzval::Error(scene.lens.name() + ": the picture of " + std::string(petzval::name(model)) +
+                       " does not fit on " + number(longest / 1000) + " m of film, wanted one that does");
 }
 
 petzval::Spectrum white_light(const std::string& white_point) {

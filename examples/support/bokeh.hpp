@@ -8,6 +8,7 @@
 #include "cli.hpp"
 #include "contact_sheet.hpp"
 #include "load_lens.hpp"
+#include "petzval/camera/camera.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/io/image.hpp"
 #include "petzval/psf/colour.hpp"
@@ -32,6 +33,10 @@ struct BokehScene {
 /// Focuses at the primary wavelength. Throws petzval::Error for a focus out of reach and for a light that is not in
 /// front of the lens.
 BokehScene focused_scene(const petzval::Lens& lens, double focus_mm, const BokehSetup& setup);
+
+/// A camera behind a focused lens whose square film holds the picture of a light. The rate of change of controls is
+/// that on a film of 36 x 24 mm. Throws petzval::Error where Camera does, and for a picture beyond 10 m.
+petzval::Camera camera_of(const BokehScene& scene, petzval::ModelKind model, petzval::BokehControls controls);
 
 /// The light of a point, which looks white: D65, D50, A, E or a file "wavelength_nm,power" that ends in .csv. Throws
 /// Error that names it.

@@ -4,6 +4,7 @@
 #include <iostream>
 
 #include "cli.hpp"
+#include "petzval/camera/model_kind.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/lint/lint.hpp"
@@ -22,6 +23,12 @@ void add_camera(App& app, CameraSetup& setup) {
   app.add_option("--film-mm", setup.film_mm, "width and height of the film (mm)")
       ->type_name("WxH")
       ->capture_default_str();
+}
+
+Option* add_model(App& app, std::string& model) {
+  std::vector<std::string> names;
+  for (const petzval::ModelKind m : petzval::models()) names.emplace_back(petzval::name(m));
+  return app.add_option("--model", model, "model of the lens")->one_of(names);
 }
 
 std::array<double, 2> parse_size(const std::string& where, std::string_view text, const Range& range) {

@@ -27,6 +27,9 @@ struct CameraSetup {
 /// Options of add_iris, --focus-mm, --criterion and --film-mm.
 void add_camera(App& app, CameraSetup& setup);
 
+/// Option --model.
+Option* add_model(App& app, std::string& model);
+
 /// "36x24". Throws petzval::Error beginning with `where`.
 std::array<double, 2> parse_size(const std::string& where, std::string_view text, const Range& range);
 

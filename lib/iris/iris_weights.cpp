@@ -55,6 +55,11 @@ double EdgeWeight::at(double share) const noexcept {
 
 double EdgeWeight::light_added() const noexcept { return even() ? 0 : std::max(light_below(*this, 1) - 1, 0.0); }
 
+double iris_area(const Iris& iris, const IrisMap& map) {
+  iris_detail::check(map, "iris: ");
+  return iris_area(iris) * iris_detail::IrisWeights(iris, {}, map, 0, "iris: ").mean();
+}
+
 IrisMap onion_rings(const OnionRings& rings, int pixels) {
   if (!(pixels >= 2 && pixels <= 8192)) {
     throw Error("onion_rings: pixels is " + std::to_string(pixels) + ", wanted 2 to 8192");

@@ -225,6 +225,46 @@ TEST_F(BokehPsf, GivesTheSameBytesTwice) {
   }
 }
 
+TEST_F(BokehPsf, LooksThroughAnyModelWithItsWeights) {
+  const std::vector<std::string> plain{"--subject-distance-mm", "2000", "--focus-mm", "1000", "--f-number", "4"};
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), plain.begin(), plain.end());
+    return bokeh(more)["results"][0];
+  };
+  const auto exact = with({});
+  for (const char* model : {"thin", "thin_two_disc", "thick", "polynomial_7", "exact_float"}) {
+    const auto result = with({"--model", model});
+    EXPECT_NEAR(result["throughput"].get<double>(), exact["throughput"].get<double>(), 0.02) << model;
+    EXPECT_NEAR(result["rms_radius_mm"].get<double>() / exact["rms_radius_mm"].get<double>(), 1, 0.04) << model;
+    EXPECT_NEAR(ring_sum(result), result["throughput"].get<double>(), 1e-9);
+  }
+  const auto ring = with({"--weight-distribution", "20", "--weight-strength", "0.6"});
+  EXPECT_NEAR(ring["throughput"].get<double>() / exact["throughput"].get<double>(), 1, 0.03);
+  EXPECT_GT(ring["rms_radius_mm"].get<double>(), 1.15 * exact["rms_radius_mm"].get<double>());
+  const auto eye = with({"--model", "thin", "--field-deg", "8", "--rate-of-change", "1"});
+  EXPECT_LT(eye["throughput"].get<double>(), 0.75 * exact["throughput"].get<double>());
+  EXPECT_LT(eye["second_moments_mm2"][1].get<double>(), 0.5 * eye["second_moments_mm2"][0].get<double>());
+  EXPECT_NEAR(with({"--model", "thin", "--field-deg", "8", "--rate-of-change", "1", "--keep-light"})["throughput"]
+                  .get<double>(),
+              with({"--model", "thin", "--field-deg", "8"})["throughput"].get<double>(), 0.01);
+}
+
+TEST_F(BokehPsf, TakesAPictureAsIris) {
+  petzval::RgbImage half(8, 8);  // the part at -x passes
+  for (int y = 0; y < 8; ++y) std::fill_n(half.pixel(0, y), 12, 1.0f);
+  petzval::write_exr(half, path("half.exr"));
+  petzval::write_png(petzval::to_srgb8(half), path("half.png"));
+  for (const char* file : {"half.exr", "half.png"}) {
+    const auto json =
+        bokeh({"--subject-distance-mm", "2000", "--focus-mm", "1000", "--f-number", "4", "--iris-image", path(file)});
+    const auto& result = json["results"][0];
+    EXPECT_NEAR(result["iris_area_share"].get<double>(), 0.5, 0.01);
+    EXPECT_NEAR(result["throughput"].get<double>(), 0.5, 0.02);
+    // Focused nearer than the light: rays cross in front of the film, and the picture of the stop is upside down there.
+    EXPECT_GT(result["centroid_mm"][0].get<double>(), 0.3 * result["radius_mm"].get<double>());
+  }
+}
+
 TEST_F(BokehPsf, RefusesABadCommandLineInOneLine) {
   const auto refuse = [&](std::vector<std::string> more, const std::string& reason) {
     std::vector<std::string> arguments{lens(id), "--out", path("bokeh")};
@@ -246,6 +286,12 @@ TEST_F(BokehPsf, RefusesABadCommandLineInOneLine) {
   refuse_iris({"--blades", "5", "--iris-area", "equal"}, "--iris-area: found equal without --f-number");
   refuse_iris({"--white-point", "D66"}, "--white-point: found \"D66\", wanted D65, D50, A, E or a file.csv");
   refuse_iris({"--white-point", "none.csv"}, "none.csv: cannot be read, wanted the table of a light's power");
+  refuse_iris({"--lens-ratio", "0"}, "--lens-ratio: found \"0\", wanted a finite number above 0");
+  refuse_iris({"--model", "fast"}, "--model");
+  refuse_iris({"--weight-map", "none.png"}, "none.png");
+  petzval::write_png({2, 2, std::vector<std::uint8_t>(12, 0)}, path("black.png"));
+  refuse_iris({"--iris-image", path("black.png")}, "the map is black on the iris, wanted light somewhere");
+  refuse_iris({"--iris-image", path("black.png"), "--weight-map", path("black.png")}, "wanted one of them");
   refuse({"--subject-distance-mm", "1000"}, "--focus-mm is required");
   refuse({"--focus-mm", "1000"}, "--subject-distance-mm is required");
   refuse({"--subject-distance-mm", "1000", "--focus-mm", "10x"}, "--focus-mm: found \"10x\"");

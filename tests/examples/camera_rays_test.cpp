@@ -127,6 +127,25 @@ TEST_F(CameraRays, TellsWavelengthsApart) {
   EXPECT_NEAR(std::stod(rows[0][4]), std::stod(rows[1][4]), 1e-2);
 }
 
+TEST_F(CameraRays, TakesIrisAndWeights) {
+  std::string csv = header;
+  for (int i = 0; i < 64; ++i) csv += "5,-3," + std::to_string(i / 64.) + ",0.9,587.5618\n";
+  const petzval::Lens hexagon = petzval::with_focus(
+      petzval::with_iris(petzval::compile(petzval::read_prescription(lens("double_gauss_100mm_f2.0"))), {.blades = 6}),
+      3000, {.origin = petzval::DistanceOrigin::film});
+  const petzval::Camera camera(hexagon, {},
+                               {.model = petzval::ModelKind::thin,
+                                .bokeh = {.lens_ratio = 1.2, .rate_of_change = 0.5, .weight_distribution = -4}});
+  const auto rows =
+      rays("double_gauss_100mm_f2.0", csv, "thin",
+           {"--blades", "6", "--lens-ratio", "1.2", "--rate-of-change", "0.5", "--weight-distribution", "-4"});
+  for (int i = 0; i < 64; ++i) {
+    const auto ray = camera.sample({.film = {5, -3}, .pupil_u = i / 64., .pupil_v = 0.9});
+    EXPECT_NEAR(std::stod(rows[static_cast<std::size_t>(i)][6]), ray.weight, 1e-12 * ray.weight);
+    EXPECT_NEAR(std::stod(rows[static_cast<std::size_t>(i)][3]), ray.ray.direction.x, 1e-12);
+  }
+}
+
 TEST_F(CameraRays, GivesAFateToWhatTheFilmDoesNotHave) {
   const std::string csv = std::string(header) + "0,0,0.5,0.5,587.5618\n0,12.5,0.5,0.5,587.5618\n";
   auto rows = rays("double_gauss_100mm_f2.0", csv);

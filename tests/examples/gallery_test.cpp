@@ -13,11 +13,15 @@ TEST_F(Gallery, DrawsFigure7) {
   EXPECT_TRUE(read(path("figure.png")).starts_with("\x89PNG"));
 }
 
-TEST_F(Gallery, DrawsIrisesWithBlades) {
-  const auto outcome = run("bokeh_shapes", {"--out", path("shapes")});
+TEST_F(Gallery, DrawsTheShapesOfBokeh) {
+  const auto outcome = run("bokeh_shapes", {"--out", path("shapes"), "--samples", "4096"});
   EXPECT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_EQ(lines(outcome.out), std::vector{path("shapes/bokeh_blades.png")});
-  EXPECT_TRUE(read(path("shapes/bokeh_blades.png")).starts_with("\x89PNG"));
+  std::vector<std::string> files;
+  for (const char* name : {"blades", "cats_eyes", "weights", "maps"}) {
+    files.push_back(path(std::string("shapes/bokeh_") + name + ".png"));
+    EXPECT_TRUE(read(files.back()).starts_with("\x89PNG"));
+  }
+  EXPECT_EQ(lines(outcome.out), files);
 }
 
 /// Wu et al. 2010 describe their figure 7 in words, tested here for four readings of "in focus" and "distance from the

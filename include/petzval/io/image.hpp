@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "petzval/core/export.hpp"
+#include "petzval/iris/iris_weights.hpp"
 
 namespace petzval::inline v0 {
 
@@ -77,6 +78,10 @@ PETZVAL_API void write_pfm(const RgbImage& image, const std::filesystem::path& f
 
 /// Writes an 8-bit sRGB PNG as write_file does. Throws Error that names the file.
 PETZVAL_API void write_png(const Rgb8Image& image, const std::filesystem::path& file);
+
+/// Reads a PNG, or an EXR with a channel Y or R, G and B, as weights over the stop: grey, or the mean of the three; of
+/// a PNG over 255 and without a gamma. Throws Error that names the file, also for more than 2^26 pixels.
+PETZVAL_API IrisMap read_iris_map(const std::filesystem::path& file);
 
 /// The picture of an anamorphic lens as the scene looks: wider by squeeze(lens), or for less than 1 higher by its
 /// inverse, so that no detail is lost. Pixels are interpolated linearly. Throws Error for a squeeze that is not

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "petzval/core/export.hpp"
+#include "petzval/iris/iris.hpp"
 
 namespace petzval::inline v0 {
 
@@ -36,6 +37,10 @@ struct IrisMap {
 
   bool empty() const noexcept { return values.empty(); }
 };
+
+/// The area in squares of the stop's semi-diameter of an iris without a map that lets as much light through. Throws
+/// Error as iris_area() does, and for weights that are not finite or negative, or black.
+PETZVAL_API double iris_area(const Iris& iris, const IrisMap& map);
 
 /// The rings that turning leaves on an aspheric mould, which blurs show as those of an onion.
 struct OnionRings {
