@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <span>
 
 #include "petzval/psf/spot.hpp"
@@ -14,5 +15,9 @@ struct Points {
 
 /// spot_size() of all points of several sets.
 SpotSize spot_size(std::span<const Points> sets) noexcept;
+
+/// Where the chief ray of a point meets the film, x and y, mm; clear apertures do not stop it. Nothing where no such
+/// ray reaches the film.
+std::optional<Vec2<double>> chief_point(const Lens& lens, const FieldPoint& point, std::size_t wavelength);
 
 }  // namespace petzval::inline v0::psf_detail

@@ -35,6 +35,10 @@ void validate(const PsfOptions& options) {
   if (!(options.tolerance >= 0)) {
     throw Error("point_image: tolerance is " + to_text(options.tolerance) + ", wanted 0 or more");
   }
+  if (options.centre && !(std::isfinite(options.centre->x) && std::isfinite(options.centre->y))) {
+    throw Error("point_image: centre is (" + to_text(options.centre->x) + ", " + to_text(options.centre->y) +
+                "), wanted finite numbers");
+  }
 }
 
 /// Into how many parts samples are divided to estimate errors.
@@ -80,9 +84,9 @@ struct Rays {
   }
 };
 
-/// Half the side of a square about the centroid that holds all hits.
-double fitting_half_width(const std::vector<RayBundle>& sets, const SpotSize& size) {
-  const double cx = size.centroid.x, cy = size.centroid.y;
+/// Half the side of a square about a centre that holds all hits.
+double fitting_half_width(const std::vector<RayBundle>& sets, const Vec2<double>& centre) {
+  const double cx = centre.x, cy = centre.y;
   psf_detail::PartialSums extent{};
   psf_detail::for_each(sets, [&](std::size_t part, double x, double y, double) {
     extent[part] = std::max(extent[part], std::max(std::abs(x - cx), std::abs(y - cy)));
@@ -211,11 +215,20 @@ double entrance_pupil_area(const Lens& lens) {
   return std::numbers::pi / 4 * diameter(Meridian::x) * diameter(Meridian::y);
 }
 
+/// Positions of the wavelengths of an image.
+std::vector<std::size_t> wavelengths_of(const Lens& lens, const PsfOptions& options) {
+  if (options.wavelength) return {lens.compiled_position(*options.wavelength)};
+  std::vector<std::size_t> all(lens.wavelengths_nm().size());
+  std::iota(all.begin(), all.end(), std::size_t(0));
+  return all;
+}
+
+/// sampled_area: of each wavelength of the image; send_rays takes its place among these.
 PointImage image_of(const Lens& lens, const std::vector<double>& sampled_area, const SendRays& send_rays,
                     const PsfOptions& options) {
   PointImage image;
   Psf& psf = image.psf;
-  psf.wavelengths_nm.assign(lens.wavelengths_nm().begin(), lens.wavelengths_nm().end());
+  for (const std::size_t w : wavelengths_of(lens, options)) psf.wavelengths_nm.push_back(lens.wavelengths_nm()[w]);
   psf.entrance_pupil_area = entrance_pupil_area(lens);
   psf.sampled_area = sampled_area;
   constexpr std::uint32_t first = 1u << 14;
@@ -238,9 +251,9 @@ PointImage image_of(const Lens& lens, const std::vector<double>& sampled_area, c
   for (std::size_t w = 0; w < psf.wavelengths_nm.size(); ++w) {
     image.throughput += psf.throughput(w) / static_cast<double>(psf.wavelengths_nm.size());
   }
-  psf.centre = image.size.centroid;
+  psf.centre = options.centre.value_or(image.size.centroid);
   psf.pixels = options.pixels;
-  const double half = options.half_width_mm > 0 ? options.half_width_mm : fitting_half_width(rays.sets, image.size);
+  const double half = options.half_width_mm > 0 ? options.half_width_mm : fitting_half_width(rays.sets, psf.centre);
   psf.pixel_mm = 2 * half / options.pixels;
   fill_counts(psf, rays);
   return image;
@@ -261,7 +274,7 @@ PointImage point_image(const Lens& lens, const FieldPoint& point, const PsfOptio
   validate(options);
   std::vector<PupilSampler> pupils_by_wavelength;
   std::vector<double> areas;
-  for (std::size_t w = 0; w < lens.wavelengths_nm().size(); ++w) {
+  for (const std::size_t w : wavelengths_of(lens, options)) {
     pupils_by_wavelength.emplace_back(pupil_boundary(lens, point, w));
     areas.push_back(pupils_by_wavelength.back().area());
   }
@@ -277,13 +290,14 @@ PointImage point_image(const Camera& camera, const FieldPoint& point, const PsfO
   const PupilPlane plane(lens, point);
   const double area = entrance_pupil_area(lens);
   if (!std::isfinite(area)) throw Error(lens.name() + ": point_image: the entrance pupil is infinite, wanted a size");
+  const std::vector<std::size_t> wavelengths = wavelengths_of(lens, options);
   if (area == 0)
     return image_of(
-        lens, std::vector(lens.wavelengths_nm().size(), 0.0), [](auto...) { return RayBundle{}; }, options);
+        lens, std::vector(wavelengths.size(), 0.0), [](auto...) { return RayBundle{}; }, options);
   const auto send = [&](std::size_t w, std::uint32_t first, std::uint32_t count) {
-    return connected_rays(camera, plane, w, area, first, count, options);
+    return connected_rays(camera, plane, wavelengths[w], area, first, count, options);
   };
-  return image_of(lens, std::vector(lens.wavelengths_nm().size(), area), send, options);
+  return image_of(lens, std::vector(wavelengths.size(), area), send, options);
 }
 
 }  // namespace petzval::inline v0

@@ -57,9 +57,7 @@ SpotSize size_of(const Sets& sets) noexcept {
 }
 
 std::optional<double> chief_ray_height(const Lens& lens, const FieldPoint& point, std::size_t wavelength) {
-  const AimedRay chief = chief_ray(lens, point, wavelength);
-  if (!chief || !chief.end.transmitted()) return std::nullopt;
-  const auto hit = rays_detail::meet_film(lens, chief.end.ray);
+  const auto hit = psf_detail::chief_point(lens, point, wavelength);
   return hit ? std::optional(hit->y) : std::nullopt;
 }
 
@@ -90,6 +88,12 @@ SpotSize spot_size(std::span<const double> x, std::span<const double> y) noexcep
 SpotSize psf_detail::spot_size(std::span<const Points> sets) noexcept { return size_of(sets); }
 
 SpotSize spot_size(std::span<const RayBundle> sets) noexcept { return size_of(sets); }
+
+std::optional<Vec2<double>> psf_detail::chief_point(const Lens& lens, const FieldPoint& point, std::size_t wavelength) {
+  const AimedRay chief = chief_ray(lens, point, wavelength);
+  const auto hit = chief && chief.end.transmitted() ? rays_detail::meet_film(lens, chief.end.ray) : std::nullopt;
+  return hit ? std::optional(Vec2<double>{hit->x, hit->y}) : std::nullopt;
+}
 
 double airy_radius(const Lens& lens, Wavelength wavelength) {
   const double nm = wavelength.in_nm() ? *wavelength.in_nm() : lens.wavelengths_nm()[lens.position(wavelength)];

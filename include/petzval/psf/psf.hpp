@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "petzval/core/export.hpp"
@@ -47,7 +48,9 @@ struct PsfOptions {
   /// > 0: rays are sent until PointImage::error is at most that, or all have been: 2^14 first, then twice as many.
   double tolerance = 0;
   int pixels = 512;
-  double half_width_mm = 0;  ///< of the picture; 0: 5 % more than the hits need, at least 0.1 um
+  double half_width_mm = 0;                 ///< of the picture; 0: 5 % more than the hits need, at least 0.1 um
+  std::optional<Vec2<double>> centre{};     ///< of the picture, film, mm; else the centroid
+  std::optional<std::size_t> wavelength{};  ///< the only one, a position in Lens::wavelengths_nm(); else all
   std::uint32_t seed = 0;
   int threads = 1;  ///< results do not depend on it
 };
@@ -73,9 +76,9 @@ struct PointImage {
 /// have Normalisation::irradiance. Throws Error as below, and for a lens whose entrance pupil is infinite.
 PETZVAL_API PointImage point_image(const Camera& camera, const FieldPoint& point, const PsfOptions& options = {});
 
-/// Traces a point light onto the lens's film at every compiled wavelength. The picture is centred on the centroid. All
-/// values are 0 where no ray passes. Throws Error where pupil_boundary does, for 0 samples, pixels or threads, and for
-/// an invalid half width or tolerance.
+/// Traces a point light onto the lens's film at every compiled wavelength. All values are 0 where no ray passes. Throws
+/// Error where pupil_boundary does, for 0 samples, pixels or threads, and for an invalid half width, tolerance or
+/// centre.
 PETZVAL_API PointImage point_image(const Lens& lens, const FieldPoint& point, const PsfOptions& options = {});
 
 }  // namespace petzval::inline v0
