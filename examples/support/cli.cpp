@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <iostream>
 #include <memory>
 
@@ -159,8 +160,16 @@ Progress::~Progress() {
 }
 
 void Progress::step(const std::string& what) {
-  ++done_;
-  if (shown_) std::cerr << "\r\033[K" << title_ << ' ' << done_ << '/' << steps_ << ": " << what << std::flush;
+  const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start_;
+  const std::size_t done = begun_++;
+  if (!shown_) return;
+  std::cerr << "\r\033[K" << title_ << ' ' << begun_ << '/' << steps_ << ": " << what;
+  if (done > 0) {
+    const double seconds = spent.count() / static_cast<double>(done) * static_cast<double>(steps_ - done);
+    std::cerr << ", " << (seconds < 100 ? number(std::ceil(seconds)) + " s" : number(std::ceil(seconds / 60)) + " min")
+              << " left";
+  }
+  std::cerr << std::flush;
 }
 
 }  // namespace examples

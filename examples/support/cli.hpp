@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <deque>
 #include <functional>
 #include <limits>
@@ -118,18 +119,21 @@ Option* add_samples(App& app, std::uint32_t& samples);
 /// standard error.
 int run(App& app, int argc, char** argv, const std::function<void()>& body);
 
-/// Shows the progress of a long job in one line if standard error is a terminal.
+/// Shows the progress of a long job and the time left in one line if standard error is a terminal. Steps are taken to
+/// last as long as those before them.
 class Progress {
  public:
   Progress(std::string title, std::size_t steps);
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
+  /// The next step begins.
   void step(const std::string& what);
 
  private:
   std::string title_;
-  std::size_t steps_, done_ = 0;
+  std::size_t steps_, begun_ = 0;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   bool shown_;
 };
 

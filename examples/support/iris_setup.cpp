@@ -18,6 +18,10 @@ double IrisSetup::f_number_by_corners() const {
 void add_iris(App& app, IrisSetup& setup) {
   add_number(app, "--f-number", setup.f_number, positive_number, "stop the lens down (by exact rays)")
       ->default_str("wide open");
+  add_iris_shape(app, setup);
+}
+
+void add_iris_shape(App& app, IrisSetup& setup) {
   constexpr Range blades{0, 20, "3 to 20, or 0 for a round iris"};
   add_count(app, "--blades", setup.blades, blades, "blades of the iris, 3 to 20; 0: round");
   add_number(app, "--roundness", setup.roundness, {-1, 1, "a number from -1 to 1"},

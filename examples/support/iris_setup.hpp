@@ -22,7 +22,10 @@ struct IrisSetup {
   double f_number_by_corners() const;
 };
 
-/// Options --f-number, --blades, --roundness, --iris-rotation-deg and --iris-area.
+/// Options --blades, --roundness, --iris-rotation-deg and --iris-area.
+void add_iris_shape(App& app, IrisSetup& setup);
+
+/// The same and --f-number.
 void add_iris(App& app, IrisSetup& setup);
 
 /// The lens with that iris, stopped down. Throws petzval::Error for an iris and an f-number that it cannot have.

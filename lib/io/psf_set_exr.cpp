@@ -5,45 +5,21 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <concepts>
 #include <cstdint>
-#include <cstdio>
 #include <map>
 #include <set>
-#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "core/text.hpp"
 #include "petzval/core/error.hpp"
+#include "petzval/io/write_file.hpp"
 
 namespace petzval::inline v0 {
 namespace {
 
 constexpr std::array<const char*, 3> channel_names{"Y", "hits.x", "hits.y"};
 constexpr std::array diffractions{Diffraction::negligible, Diffraction::visible, Diffraction::dominant};
-
-/// FNV-1a of 64 bits (Fowler, Noll and Vo), which sees every changed bit of a file that its packing did not protect.
-class Checksum {
- public:
-  template <std::unsigned_integral Unsigned>
-  void add(Unsigned bits) noexcept {
-    for (std::size_t byte = 0; byte < sizeof(bits); ++byte) {
-      hash_ = (hash_ ^ (static_cast<std::uint64_t>(bits) >> (8 * byte) & 0xff)) * 0x100000001b3u;
-    }
-  }
-  void add(std::string_view text) noexcept {
-    for (const char c : text) add(static_cast<unsigned char>(c));
-  }
-  std::string text() const {
-    std::array<char, 17> digits{};
-    std::snprintf(digits.data(), digits.size(), "%016llx", static_cast<unsigned long long>(hash_));
-    return digits.data();
-  }
-
- private:
-  std::uint64_t hash_ = 0xcbf29ce484222325u;
-};
 
 /// Channels are looked up by name: files keep them sorted.
 const std::vector<float>* channel(const ExrPart& part, const char* name) {
@@ -52,15 +28,19 @@ const std::vector<float>* channel(const ExrPart& part, const char* name) {
   return found == part.channels.end() ? nullptr : &found->values;
 }
 
-std::string checksum(const ExrPart& part) {
-  Checksum sum;
-  for (const auto& [name, value] : part.numbers) sum.add(name), sum.add(std::bit_cast<std::uint64_t>(value));
+/// Of numbers and channels.
+std::string checksum_of(const ExrPart& part) {
+  std::string bytes;
+  const auto add = [&bytes](std::uint64_t bits, int count) {
+    for (int byte = 0; byte < count; ++byte) bytes += static_cast<char>(bits >> (8 * byte) & 0xff);
+  };
+  for (const auto& [name, value] : part.numbers) bytes += name, add(std::bit_cast<std::uint64_t>(value), 8);
   for (const char* name : channel_names) {
     const std::vector<float>* values = channel(part, name);
     if (!values) continue;
-    for (const float value : *values) sum.add(std::bit_cast<std::uint32_t>(value));
+    for (const float value : *values) add(std::bit_cast<std::uint32_t>(value), 4);
   }
-  return sum.text();
+  return checksum(bytes);
 }
 
 }  // namespace
@@ -90,7 +70,7 @@ ExrPart to_exr_part(const PsfKernel& kernel, const PsfSetPoint& point) {
                   {"rays", kernel.rays}};
   part.texts = {{"anchor", kernel.chief_ray ? "chief_ray" : "centroid"},
                 {"diffraction", std::string(name(kernel.diffraction))},
-                {"checksum", checksum(part)}};
+                {"checksum", checksum_of(part)}};
   return part;
 }
 
@@ -126,8 +106,9 @@ PsfPart from_exr_part(const ExrPart& part) {
     if (!own) throw Error(where + "no channel " + channel_names[c] + ", wanted a part of a PSF set");
     *values[c] = *own;
   }
-  if (part.width != part.height || text("checksum") != checksum(part)) {
-    throw Error(where + "found checksum " + checksum(part) + ", wanted " + text("checksum") + ": the file has changed");
+  if (part.width != part.height || text("checksum") != checksum_of(part)) {
+    throw Error(where + "found checksum " + checksum_of(part) + ", wanted " + text("checksum") +
+                ": the file has changed");
   }
   return result;
 }

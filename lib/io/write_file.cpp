@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <bit>
 #include <cerrno>
+#include <cstdint>
 #include <cstring>
 #include <optional>
 #include <string>
@@ -125,6 +126,14 @@ void write_file(std::string_view bytes, const fs::path& file) {
     throw Error(file.string() + ": cannot be written (" + error.code().message() +
                 "), wanted an existing, writable folder with space");
   }
+}
+
+std::string checksum(std::string_view bytes) {
+  std::uint64_t hash = 0xcbf29ce484222325u;
+  for (const char c : bytes) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
+  std::string digits(16, '0');
+  for (std::size_t i = 0; i < digits.size(); ++i) digits[i] = "0123456789abcdef"[hash >> (60 - 4 * i) & 0xf];
+  return digits;
 }
 
 void write_floats(std::span<const float> numbers, const std::filesystem::path& file) {

@@ -100,7 +100,6 @@ PsfKernel psf_kernel(const Lens& lens, const Lens& wide_open, const FieldPoint& 
   const auto chief = psf_detail::chief_point(lens, point, wavelength);
   const PointImage image = point_image(lens, point,
                                        {.samples = options.samples,
-                                        .tolerance = options.tolerance,
                                         .pixels = options.pixels,
                                         .half_width_mm = options.half_width_mm,
                                         .centre = chief,

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -20,5 +21,8 @@ PETZVAL_API void write_file(std::string_view bytes, const std::filesystem::path&
 PETZVAL_API void write_floats(std::span<const float> numbers, const std::filesystem::path& file);
 /// Reads them, bit for bit. Throws Error that names the file, also where its bytes are no whole number of floats.
 PETZVAL_API std::vector<float> read_floats(const std::filesystem::path& file);
+
+/// FNV-1a of 64 bits (Fowler, Noll and Vo) as 16 hexadecimal digits: tells whether bytes have changed, not who did it.
+PETZVAL_API std::string checksum(std::string_view bytes);
 
 }  // namespace petzval::inline v0

@@ -44,8 +44,7 @@ struct PsfKernel {
 
 struct PsfKernelOptions {
   std::uint32_t samples = 1u << 20;
-  double tolerance = 0;  ///< as in PsfOptions
-  int pixels = 129;      ///< a side, odd
+  int pixels = 129;  ///< a side, odd
   std::uint32_t seed = 0;
   int threads = 1;           ///< results do not depend on it
   double half_width_mm = 0;  ///< of the picture; 0: 5 % more than the hits need

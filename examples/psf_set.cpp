@@ -1,0 +1,338 @@
+// SPDX-License-Identifier: Apache-2.0
+// Computes the images of point lights over fields, distances, wavelengths and f-numbers as one EXR, in shards on as
+// many machines as there are, and looks up the image of any point between them.
+//
+//   psf_set data/lenses/double_gauss_100mm_f2_28deg.json --fields 0,5,10,14 --distances-mm 1000,2000,4000,inf
+//           --f-numbers 2,2.8 --focus-mm 2000 --out set
+//   psf_set query set/psf_set.exr --field-deg 7 --distance-mm 1500 --out psf.exr
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <iostream>
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "petzval/core/error.hpp"
+#include "petzval/core/parallel.hpp"
+#include "petzval/core/units.hpp"
+#include "petzval/io/lens_json.hpp"
+#include "petzval/io/psf_set_exr.hpp"
+#include "petzval/pupil/f_number.hpp"
+#include "support/bokeh.hpp"
+#include "support/cli.hpp"
+#include "support/files.hpp"
+#include "support/iris_setup.hpp"
+#include "support/load_lens.hpp"
+#include "support/psf_job.hpp"
+#include "support/text.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+using examples::Json;
+using petzval::PsfSetPoint;
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+struct Options {
+  std::string lens_file, out_folder, origin = "front_vertex", criterion = "min_rms";
+  petzval::PsfSet::Axes axes{
+      .fields_deg = {}, .distances_mm = {}, .wavelengths_nm = {petzval::d_line_nm}, .f_numbers = {}};
+  double focus_mm = infinity;
+  examples::IrisSetup iris;
+  std::uint32_t samples = 1u << 20, pixels = 129;
+  examples::Shard shard;
+  bool resume = false, check = false;
+};
+
+/// The lens at its f-numbers, focused, and lights in front of it.
+class Scenes {
+ public:
+  Scenes(const examples::LoadedLens& loaded, const Options& options)
+      : lens_(loaded.lens), options_(options), wide_open_(options.axes.f_numbers.empty()) {}
+
+  bool wide_open() const noexcept { return wide_open_; }
+  const petzval::Lens& lens() const noexcept { return lens_; }
+
+  /// Throws petzval::Error for a point that the lens cannot have in front of it.
+  examples::BokehScene at(const PsfSetPoint& point) {
+    if (!stopped_ || f_number_ != point.f_number) {
+      examples::IrisSetup iris = options_.iris;
+      if (!wide_open_) iris.f_number = point.f_number;
+      stopped_ = examples::stopped_down(lens_, iris);
+      f_number_ = point.f_number;
+    }
+    auto scene = examples::focused_scene(*stopped_, options_.focus_mm,
+                                         {.light_mm = point.distance_mm,
+                                          .origin = examples::named(options_.origin, examples::distance_origins),
+                                          .criterion = examples::named(options_.criterion, examples::focus_criteria),
+                                          .field_rad = petzval::radians(point.field_deg)});
+    petzval::PupilPlane(scene.lens, scene.light);
+    return scene;
+  }
+
+  petzval::PsfKernel kernel(const PsfSetPoint& point, std::uint32_t seed = 0, double half_width_mm = 0) {
+    const examples::BokehScene scene = at(point);
+    return petzval::psf_kernel(scene.lens, lens_, scene.light, scene.lens.wavelength(point.wavelength_nm),
+                               {.samples = options_.samples,
+                                .pixels = static_cast<int>(options_.pixels),
+                                .seed = seed,
+                                .threads = petzval::processor_threads(),
+                                .half_width_mm = half_width_mm});
+  }
+
+ private:
+  petzval::Lens lens_;
+  Options options_;
+  bool wide_open_;
+  std::optional<petzval::Lens> stopped_;
+  double f_number_ = 0;
+};
+
+examples::PsfJob job_of(const examples::LoadedLens& loaded, const Options& options) {
+  Json distances = Json::array();
+  for (const double mm : options.axes.distances_mm) distances.push_back(examples::finite_or_null(mm));
+  std::vector<double> f_numbers = options.axes.f_numbers;
+  if (f_numbers.empty()) f_numbers = {petzval::real_f_number(loaded.lens)};
+  return examples::PsfJob({{"lens", loaded.lens.name()},
+                           {"dispersion", petzval::name(loaded.lens.dispersion())},
+                           {"fields_deg", options.axes.fields_deg},
+                           {"distances_mm", std::move(distances)},
+                           {"distance_from", options.origin},
+                           {"wavelengths_nm", options.axes.wavelengths_nm},
+                           {"f_numbers", std::move(f_numbers)},
+                           {"wide_open", options.axes.f_numbers.empty()},
+                           {"focus_mm", examples::finite_or_null(options.focus_mm)},
+                           {"criterion", options.criterion},
+                           {"iris",
+                            {{"blades", options.iris.blades},
+                             {"roundness", options.iris.roundness},
+                             {"rotation_deg", options.iris.rotation_deg},
+                             {"area", options.iris.area}}},
+                           {"samples", options.samples},
+                           {"pixels", options.pixels},
+                           {"prescription", Json::parse(petzval::format_prescription(loaded.prescription))},
+                           {"petzval", PETZVAL_VERSION}});
+}
+
+/// The own PSFs of a folder that are not whole yet. A note on standard error names those that are corrupt.
+std::vector<std::size_t> left_to_do(const examples::PsfJob& job, const Options& options) {
+  std::vector<std::size_t> left;
+  for (std::size_t node = 0; node < job.axes().size(); ++node) {
+    if (!options.shard.has(node)) continue;
+    if (options.resume && fs::exists(job.file(options.out_folder, node))) {
+      try {
+        job.part(options.out_folder, node);
+        continue;
+      } catch (const petzval::Error& error) {
+        std::cerr << "note: " << error.what() << "; computed again\n";
+      }
+    }
+    left.push_back(node);
+  }
+  return left;
+}
+
+/// Traces the middles of all cells of the grid, at the wavelengths of the set, and compares.
+Json interpolation_error(const std::vector<petzval::ExrPart>& parts, const examples::PsfJob& job, Scenes& scenes) {
+  std::vector<petzval::PsfKernel> kernels;
+  for (const petzval::ExrPart& part : parts) kernels.push_back(petzval::from_exr_part(part).kernel);
+  const petzval::PsfSet set(job.axes(), std::move(kernels));
+  const auto middles = [](const std::vector<double>& axis, bool inverse) {
+    std::vector<double> result;
+    for (std::size_t i = 0; i + 1 < axis.size(); ++i) {
+      result.push_back(inverse ? 2 / (1 / axis[i] + 1 / axis[i + 1]) : (axis[i] + axis[i + 1]) / 2);
+    }
+    return result.empty() ? axis : result;
+  };
+  const petzval::PsfSet::Axes cells{middles(set.axes().fields_deg, false), middles(set.axes().distances_mm, true),
+                                    set.axes().wavelengths_nm, middles(set.axes().f_numbers, true)};
+  examples::Progress progress("check", cells.size());
+  std::vector<double> moved, noise, light;
+  Json worst;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const PsfSetPoint point = cells.point(i);
+    progress.step(petzval::psf_part_name(point));
+    const petzval::PsfKernel between = set.at(point);
+    const double half_width = between.pixels * between.pixel_mm / 2;
+    // Seeds of their own: kernels and their interpolation share one.
+    const auto traced = scenes.kernel(point, 1, half_width), again = scenes.kernel(point, 2, half_width);
+    // Anchors differ by the distortion between nodes, which is no error of the shape.
+    moved.push_back(100 * petzval::light_moved(between, traced));
+    noise.push_back(100 * petzval::light_moved(traced, again));
+    light.push_back(traced.total > 0 ? 100 * std::abs(between.total / traced.total - 1) : 0.0);
+    if (moved.back() >= *std::max_element(moved.begin(), moved.end())) worst = petzval::psf_part_name(point);
+  }
+  const auto summary = [](std::vector<double> values) {
+    std::sort(values.begin(), values.end());
+    return Json{{"median", values[values.size() / 2]}, {"worst", values.back()}};
+  };
+  return {{"what", "middles of all cells of the grid against traced PSFs"},
+          {"points", cells.size()},
+          {"light_moved_percent", summary(moved)},
+          {"worst_at", std::move(worst)},
+          {"noise_of_two_traced_percent", summary(noise)},
+          {"total_percent", summary(light)}};
+}
+
+void say(const std::vector<fs::path>& files) {
+  for (const fs::path& file : files) std::cout << file.string() << '\n';
+}
+
+void compute(const Options& options) {
+  petzval::PsfSet::Axes axes = options.axes;
+  if (axes.f_numbers.empty()) axes.f_numbers = {1};  // found out below
+  petzval::PsfSet::validate(axes);
+  if (options.pixels % 2 == 0) {
+    throw petzval::Error("--pixels: found \"" + std::to_string(options.pixels) +
+                         "\", wanted an odd number: the chief ray is in the middle of a pixel");
+  }
+  if (options.check && options.shard.count > 1) {
+    throw petzval::Error("--check: found --shard " + options.shard.text() + ", wanted a whole set");
+  }
+  const auto loaded = examples::load_lens(options.lens_file, options.axes.wavelengths_nm);
+  const examples::PsfJob job = job_of(loaded, options);
+  Scenes scenes(loaded, options);
+  // Refuses what no ray can be sent from before anything is written.
+  for (std::size_t node = 0; node < job.axes().size(); ++node) scenes.at(job.axes().point(node));
+
+  const fs::path folder = options.out_folder;
+  job.begin(folder, options.shard);
+  const std::vector<std::size_t> left = left_to_do(job, options);
+  {
+    examples::Progress progress("PSFs", left.size());
+    for (const std::size_t node : left) {
+      progress.step(job.name(node));
+      job.write(folder, node, scenes.kernel(job.axes().point(node)));
+      if (options.shard.count > 1) say({job.file(folder, node)});
+    }
+  }
+  if (options.shard.count > 1) return;
+  const std::vector<petzval::ExrPart> parts = job.gather({folder});
+  std::optional<Json> error;
+  if (options.check) error = interpolation_error(parts, job, scenes);
+  say(examples::write_psf_set(job, parts, folder / "psf_set.exr", error));
+}
+
+void merge(const std::vector<std::string>& names, const std::string& out) {
+  const std::vector<fs::path> folders(names.begin(), names.end());
+  const auto job = examples::PsfJob::read(folders.front());
+  for (const fs::path& folder : folders) {
+    if (examples::PsfJob::read(folder).description() == job.description()) continue;
+    throw petzval::Error(folder.string() + ": describes another set than " + folders.front().string() +
+                         ", wanted shards of one set");
+  }
+  say(examples::write_psf_set(job, job.gather(folders), out));
+}
+
+/// A number that may be left out.
+struct Maybe {
+  double value = 0;
+  examples::Option* option = nullptr;
+};
+
+void query(const std::string& file, PsfSetPoint point, const Maybe& wavelength, const Maybe& f_number,
+           const std::string& out) {
+  const petzval::PsfSet set = petzval::read_psf_set(file);
+  const auto& nm = set.axes().wavelengths_nm;
+  point.wavelength_nm =
+      wavelength.option->given() ? wavelength.value : *std::min_element(nm.begin(), nm.end(), [](double a, double b) {
+        return std::abs(a - petzval::d_line_nm) < std::abs(b - petzval::d_line_nm);
+      });
+  point.f_number = f_number.option->given() ? f_number.value : set.axes().f_numbers.front();
+  const petzval::ExrPart part = petzval::to_exr_part(set.at(point), point);
+  petzval::write_exr({&part, 1}, out);
+  say({out});
+}
+
+int main_compute(int argc, char** argv) {
+  Options options;
+  examples::App app(
+      "Computes the images of point lights over a grid of fields, distances, wavelengths and f-numbers. Writes to DIR, "
+      "and prints the paths: psf_set.exr (one part for each PSF: channel Y is its light, hits.x and hits.y its rays), "
+      "psf_set.json (index with units) and psf_set.png (contact sheet). Each PSF is a file in DIR/psfs as soon as it "
+      "is "
+      "whole. With --shard only these are written; psf_set merge makes the set of them, with the same bits on every "
+      "machine.\n"
+      "psf_set merge DIR... --out FILE.exr   gathers the shards of one or several folders\n"
+      "psf_set query FILE.exr --field-deg F --distance-mm D --out PSF.exr   looks up a point, between nodes too",
+      "psf_set");
+  app.add_option("LENS.json", options.lens_file, "lens prescription (JSON as in data/lenses)")->required();
+  examples::add_numbers(app, "--fields", options.axes.fields_deg, {0, 180, "an angle from 0 to 180 degrees"},
+                        "angles of the light seen from the paraxial entrance pupil (degrees, ascending)")
+      ->required();
+  examples::add_numbers(app, "--distances-mm", options.axes.distances_mm, examples::positive_length,
+                        "distances of the light (mm, ascending), the last may be inf")
+      ->required();
+  examples::add_numbers(app, "--wavelengths-nm", options.axes.wavelengths_nm, examples::positive_number,
+                        "wavelengths (nm, ascending)");
+  examples::add_numbers(app, "--f-numbers", options.axes.f_numbers, examples::positive_number,
+                        "f-numbers, by exact rays (ascending)")
+      ->default_str("wide open");
+  examples::add_number(app, "--focus-mm", options.focus_mm, examples::positive_length,
+                       "focus distance (mm), or inf; each f-number has its film");
+  app.add_option("--distance-from", options.origin, "origin of the distances of light and focus")
+      ->one_of({"front_vertex", "film"})
+      ->capture_default_str();
+  examples::add_criterion(app, options.criterion);
+  examples::add_iris_shape(app, options.iris);
+  examples::add_samples(app, options.samples);
+  examples::add_count(app, "--pixels", options.pixels, {3, 1025, "an odd number from 3 to 1025"},
+                      "pixels along a side of each image, odd");
+  app.add_option(
+         "--shard", [&](const std::string& text) { options.shard = examples::parse_shard("--shard", text); },
+         "compute part i of n, from 1/n to n/n")
+      ->type_name("I/N")
+      ->default_str("1/1");
+  app.add_flag("--resume", options.resume, "keep the PSFs that an interrupted run has left whole in DIR");
+  app.add_flag("--check", options.check,
+               "compare the middles between nodes with traced PSFs: interpolation_error in the index");
+  app.add_option("--out", options.out_folder, "folder for the results")->required()->type_name("DIR");
+  return examples::run(app, argc, argv, [&] { compute(options); });
+}
+
+int main_merge(int argc, char** argv) {
+  std::vector<std::string> folders;
+  std::string out;
+  examples::App app(
+      "Gathers the PSFs of shards. Writes FILE.exr, and index and contact sheet beside it, as one run without shards "
+      "does. "
+      "Names every PSF that is missing or corrupt, and its shard; to repair it, run that shard with --resume.",
+      "psf_set merge");
+  app.add_option("DIR", folders, "folders that psf_set --shard wrote to")->required();
+  app.add_option("--out", out, "the set")->required()->type_name("FILE.exr");
+  return examples::run(app, argc, argv, [&] { merge(folders, out); });
+}
+
+int main_query(int argc, char** argv) {
+  std::string file, out;
+  PsfSetPoint point;
+  Maybe wavelength, f_number;
+  examples::App app("Looks up a PSF of a set: a node as it is, any other point interpolated.", "psf_set query");
+  app.add_option("FILE.exr", file, "a set of psf_set")->required();
+  examples::add_number(app, "--field-deg", point.field_deg, examples::finite_number, "angle of the light (degrees)")
+      ->required()
+      ->default_str("");
+  examples::add_number(app, "--distance-mm", point.distance_mm, examples::positive_length, "its distance (mm), or inf")
+      ->required()
+      ->default_str("");
+  wavelength.option =
+      examples::add_number(app, "--wavelength-nm", wavelength.value, examples::positive_number, "wavelength (nm)")
+          ->default_str("that of the set nearest to the d line");
+  f_number.option = examples::add_number(app, "--f-number", f_number.value, examples::positive_number, "f-number")
+                        ->default_str("the smallest of the set");
+  app.add_option("--out", out, "the PSF: a set of one part")->required()->type_name("PSF.exr");
+  return examples::run(app, argc, argv, [&] { query(file, point, wavelength, f_number, out); });
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const std::string_view first = argc > 1 ? argv[1] : "";
+  if (first == "merge") return main_merge(argc - 1, argv + 1);
+  if (first == "query") return main_query(argc - 1, argv + 1);
+  return main_compute(argc, argv);
+}

@@ -1,0 +1,274 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "psf_job.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <set>
+#include <utility>
+
+#include "bokeh.hpp"
+#include "contact_sheet.hpp"
+#include "petzval/core/error.hpp"
+#include "petzval/core/units.hpp"
+#include "petzval/io/psf_set_exr.hpp"
+#include "petzval/io/write_file.hpp"
+#include "text.hpp"
+
+namespace examples {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* job_file = "job.json";
+
+std::vector<double> axis(const Json& description, const char* key) {
+  std::vector<double> values;
+  for (const Json& value : description.at(key)) {
+    values.push_back(value.is_null() ? std::numeric_limits<double>::infinity() : value.get<double>());
+  }
+  return values;
+}
+
+/// The number of shards, where those that began in folders agree on one.
+std::optional<std::size_t> shard_count(const std::vector<fs::path>& folders) {
+  std::set<std::size_t> counts;
+  for (const fs::path& folder : folders) {
+    for (const auto& entry : fs::directory_iterator(folder)) {
+      const std::string stem = entry.path().stem().string();
+      const std::size_t of = stem.rfind("_of_");
+      std::size_t count = 0;
+      if (!stem.starts_with("shard_") || of == std::string::npos) continue;
+      std::from_chars(stem.data() + of + 4, stem.data() + stem.size(), count);
+      counts.insert(count);
+    }
+  }
+  return counts.size() == 1 && *counts.begin() > 1 ? std::optional(*counts.begin()) : std::nullopt;
+}
+
+Json index(const PsfJob& job, const std::vector<petzval::ExrPart>& parts, const fs::path& file) {
+  Json json = job.description();
+  json.erase("prescription");
+  json["exr"] = file.filename().string();
+  json["units"] = {
+      {"light",
+       "channel Y: share of the film irradiance that the wide-open lens gives on the axis in an evenly bright "
+       "scene; total is the sum of all pixels"},
+      {"lengths", "mm"},
+      {"throughput", "share of the light on the paraxial entrance pupil of the PSF's own stop"},
+      {"error", "bound of the relative error of the radial profile, kept by 95 of 100 runs"}};
+  json["frame"] =
+      "rows from the top; up is away from the middle of a photograph, towards the field; the anchor is in the middle "
+      "of "
+      "the middle pixel; anchor_mm is its place on the film, where the picture stands upside down";
+  json["psfs"] = Json::array();
+  for (const petzval::ExrPart& part : parts) {
+    const auto [point, kernel] = petzval::from_exr_part(part);
+    json["psfs"].push_back({{"part", part.name},
+                            {"field_deg", point.field_deg},
+                            {"distance_mm", finite_or_null(point.distance_mm)},
+                            {"wavelength_nm", point.wavelength_nm},
+                            {"f_number", point.f_number},
+                            {"pixels", kernel.pixels},
+                            {"pixel_mm", kernel.pixel_mm},
+                            {"anchor", part.texts.at("anchor")},
+                            {"anchor_mm", {kernel.anchor_mm.x, kernel.anchor_mm.y}},
+                            {"total", kernel.total},
+                            {"throughput", kernel.throughput},
+                            {"error", kernel.error},
+                            {"rays", kernel.rays},
+                            {"diffraction", part.texts.at("diffraction")}});
+  }
+  return json;
+}
+
+/// The picture of a kernel at a scale: its irradiance, in grey.
+petzval::RgbImage picture(const petzval::PsfKernel& kernel, int side, double pixel_mm) {
+  petzval::RgbImage image(side, side);
+  constexpr int samples = 4;  // along each side of a pixel
+  const auto source = [&](int i, int k) {
+    const double place = (i + (k + 0.5) / samples - side / 2.0) * pixel_mm / kernel.pixel_mm + kernel.pixels / 2.0;
+    return static_cast<int>(std::floor(place));
+  };
+  const auto inside = [&](int i) { return i >= 0 && i < kernel.pixels; };
+  for (int y = 0; y < side; ++y) {
+    for (int x = 0; x < side; ++x) {
+      float sum = 0;
+      for (int k = 0; k < samples * samples; ++k) {
+        const int column = source(x, k % samples), row = source(y, k / samples);
+        if (inside(column) && inside(row)) sum += kernel.light[static_cast<std::size_t>(row * kernel.pixels + column)];
+      }
+      const auto area = static_cast<float>(samples * samples * kernel.pixel_mm * kernel.pixel_mm);
+      std::fill_n(image.pixel(x, y), 3, sum / area);
+    }
+  }
+  return image;
+}
+
+/// Fields by distances, at the wavelength nearest to the d line and the largest stop.
+Sheet contact_sheet(const PsfJob& job, const std::vector<petzval::ExrPart>& parts) {
+  constexpr int tile_pixels = 220;
+  const auto& axes = job.axes();
+  const double nm = *std::min_element(axes.wavelengths_nm.begin(), axes.wavelengths_nm.end(), [](double a, double b) {
+    return std::abs(a - petzval::d_line_nm) < std::abs(b - petzval::d_line_nm);
+  });
+  Sheet sheet{
+      .title = "PSFs of " + job.description().at("lens").get<std::string>(),
+      .rows = {},
+      .notes = {"Angle of the field, and light: the film irradiance of an evenly bright scene, as a share of that of "
+                "the wide-open lens on the axis.",
+                "Up is away from the middle of the photograph. Tiles of a row have the same scale of film and their "
+                "own exposure."}};
+  for (const double distance : axes.distances_mm) {
+    std::vector<petzval::PsfPart> row;
+    for (std::size_t node = 0; node < parts.size(); ++node) {
+      const petzval::PsfSetPoint point = axes.point(node);
+      if (point.distance_mm == distance && point.wavelength_nm == nm && point.f_number == axes.f_numbers.front()) {
+        row.push_back(petzval::from_exr_part(parts[node]));
+      }
+    }
+    double width = 0;
+    for (const auto& [point, kernel] : row) width = std::max(width, kernel.pixels * kernel.pixel_mm);
+    SheetRow shown{.title = std::isinf(distance) ? "a light at infinity" : "a light at " + number(distance) + " mm",
+                   .subtitle = number(nm) + " nm, f/" + number(axes.f_numbers.front(), 3),
+                   .pixel_mm = width / tile_pixels,
+                   .tiles = {}};
+    for (const auto& [point, kernel] : row) {
+      shown.tiles.push_back({expose(picture(kernel, tile_pixels, shown.pixel_mm)).picture,
+                             {number(point.field_deg) + "°", "light " + number(kernel.total, 3)}});
+    }
+    sheet.rows.push_back(std::move(shown));
+  }
+  return sheet;
+}
+
+}  // namespace
+
+Shard parse_shard(const std::string& where, const std::string& text) {
+  Shard shard;
+  const char* const end = text.data() + text.size();
+  const auto [slash, first] = std::from_chars(text.data(), end, shard.index);
+  if (first == std::errc() && slash != end && *slash == '/') {
+    const auto [rest, second] = std::from_chars(slash + 1, end, shard.count);
+    if (second == std::errc() && rest == end && shard.index >= 1 && shard.index <= shard.count) return shard;
+  }
+  throw petzval::Error(where + ": found \"" + text + "\", wanted i/n with whole numbers, i from 1 to n");
+}
+
+PsfJob::PsfJob(Json description)
+    : description_(std::move(description)),
+      id_(petzval::checksum(description_.dump())),
+      axes_{axis(description_, "fields_deg"), axis(description_, "distances_mm"), axis(description_, "wavelengths_nm"),
+            axis(description_, "f_numbers")} {
+  petzval::PsfSet::validate(axes_);
+}
+
+PsfJob PsfJob::read(const fs::path& folder) {
+  const fs::path file = folder / job_file;
+  if (!fs::exists(file)) throw petzval::Error(folder.string() + ": no " + job_file + ", wanted a folder of psf_set");
+  try {
+    return PsfJob(Json::parse(read_text(file)));
+  } catch (const nlohmann::json::exception&) {
+    throw petzval::Error(file.string() + ": cannot be read as a job of psf_set: the file has changed");
+  }
+}
+
+std::string PsfJob::name(std::size_t node) const { return petzval::psf_part_name(axes_.point(node)); }
+
+fs::path PsfJob::file(const fs::path& folder, std::size_t node) const {
+  return folder / "psfs" / (name(node) + ".exr");
+}
+
+void PsfJob::begin(const fs::path& folder, const Shard& shard) const {
+  if (fs::exists(folder / job_file)) {
+    if (read(folder).description_ != description_) {
+      throw petzval::Error((folder / job_file).string() +
+                           ": describes another set, wanted an empty folder or the same set");
+    }
+  } else {
+    make_folder(folder / "psfs");
+    write_text(folder / job_file, description_.dump(1) + '\n');
+  }
+  make_folder(folder / "psfs");
+  Json names = Json::array();
+  for (std::size_t node = 0; node < axes_.size(); ++node) {
+    if (shard.has(node)) names.push_back(name(node));
+  }
+  write_text(folder / ("shard_" + std::to_string(shard.index) + "_of_" + std::to_string(shard.count) + ".json"),
+             Json{{"shard", shard.text()}, {"psfs", std::move(names)}}.dump(1) + '\n');
+}
+
+void PsfJob::write(const fs::path& folder, std::size_t node, const petzval::PsfKernel& kernel) const {
+  petzval::ExrPart part = petzval::to_exr_part(kernel, axes_.point(node));
+  part.texts["lens"] = description_.at("lens").get<std::string>();
+  part.texts["job"] = id_;
+  petzval::write_exr({&part, 1}, file(folder, node));
+}
+
+petzval::ExrPart PsfJob::part(const fs::path& folder, std::size_t node) const {
+  const fs::path own = file(folder, node);
+  std::vector<petzval::ExrPart> parts = petzval::read_exr_parts(own);
+  try {
+    petzval::from_exr_part(parts.front());
+  } catch (const petzval::Error& error) {
+    throw petzval::Error(own.string() + ": " + error.what());
+  }
+  const auto job = parts.front().texts.find("job");
+  if (parts.size() != 1 || parts.front().name != name(node) || job == parts.front().texts.end() || job->second != id_) {
+    throw petzval::Error(own.string() + ": belongs to another set");
+  }
+  return std::move(parts.front());
+}
+
+std::vector<petzval::ExrPart> PsfJob::gather(const std::vector<fs::path>& folders) const {
+  const std::optional<std::size_t> shards = shard_count(folders);
+  std::vector<petzval::ExrPart> parts;
+  std::vector<std::string> faults;
+  for (std::size_t node = 0; node < axes_.size(); ++node) {
+    std::optional<petzval::ExrPart> found;
+    fs::path found_in;
+    std::vector<std::string> reasons;
+    for (const fs::path& folder : folders) {
+      if (!fs::exists(file(folder, node))) continue;
+      try {
+        petzval::ExrPart own = part(folder, node);
+        if (found && found->texts != own.texts) {
+          throw petzval::Error(file(folder, node).string() + ": differs from " + file(found_in, node).string());
+        }
+        if (!found) found = std::move(own), found_in = folder;
+      } catch (const petzval::Error& error) {
+        // A copy that is whole replaces a corrupt one, but of two whole ones nobody knows which is right.
+        if (found) faults.push_back(error.what());
+        reasons.push_back(error.what());
+      }
+    }
+    if (found) {
+      parts.push_back(std::move(*found));
+      continue;
+    }
+    const std::string shard = shards ? "shard " + Shard{node % *shards + 1, *shards}.text() + ": " : std::string();
+    if (reasons.empty()) reasons.push_back("PSF " + name(node) + " is missing");
+    for (const std::string& reason : reasons) faults.push_back(shard + reason);
+  }
+  if (faults.empty()) return parts;
+  std::string all = std::to_string(faults.size()) + (faults.size() == 1 ? " fault" : " faults") + " in " +
+                    std::to_string(axes_.size()) + " PSFs, wanted all of them whole";
+  for (const std::string& fault : faults) all += "; " + fault;
+  throw petzval::Error(all);
+}
+
+std::vector<fs::path> write_psf_set(const PsfJob& job, const std::vector<petzval::ExrPart>& parts, const fs::path& file,
+                                    const std::optional<Json>& interpolation_error) {
+  const auto beside = [&](const char* extension) { return fs::path(file).replace_extension(extension); };
+  Json json = index(job, parts, file);
+  if (interpolation_error) json["interpolation_error"] = *interpolation_error;
+  const petzval::Rgb8Image sheet = draw_sheet(contact_sheet(job, parts));
+  petzval::write_exr(parts, file);
+  write_text(beside(".json"), json.dump(1) + '\n');
+  petzval::write_png(sheet, beside(".png"));
+  return {file, beside(".json"), beside(".png")};
+}
+
+}  // namespace examples
