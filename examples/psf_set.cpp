@@ -96,7 +96,10 @@ examples::PsfJob job_of(const examples::LoadedLens& loaded, const Options& optio
   Json distances = Json::array();
   for (const double mm : options.axes.distances_mm) distances.push_back(examples::finite_or_null(mm));
   std::vector<double> f_numbers = options.axes.f_numbers;
-  if (f_numbers.empty()) f_numbers = {petzval::real_f_number(loaded.lens)};
+  if (f_numbers.empty()) {  // rounded: a name for what the lens has
+    f_numbers = {examples::parse_number("f-number", examples::number(petzval::real_f_number(loaded.lens), 4),
+                                        examples::positive_number)};
+  }
   return examples::PsfJob({{"lens", loaded.lens.name()},
                            {"dispersion", petzval::name(loaded.lens.dispersion())},
                            {"fields_deg", options.axes.fields_deg},

@@ -224,39 +224,48 @@ petzval::ExrPart PsfJob::part(const fs::path& folder, std::size_t node) const {
 
 std::vector<petzval::ExrPart> PsfJob::gather(const std::vector<fs::path>& folders) const {
   const std::optional<std::size_t> shards = shard_count(folders);
+  const auto of_shard = [&](std::size_t node) {
+    return shards ? "shard " + Shard{node % *shards + 1, *shards}.text() + ": " : std::string();
+  };
   std::vector<petzval::ExrPart> parts;
   std::vector<std::string> faults;
+  std::map<std::string, std::vector<std::string>> missing;  // by shard
   for (std::size_t node = 0; node < axes_.size(); ++node) {
+    std::vector<std::string> corrupt;
     std::optional<petzval::ExrPart> found;
     fs::path found_in;
-    std::vector<std::string> reasons;
     for (const fs::path& folder : folders) {
       if (!fs::exists(file(folder, node))) continue;
       try {
         petzval::ExrPart own = part(folder, node);
-        if (found && found->texts != own.texts) {
-          throw petzval::Error(file(folder, node).string() + ": differs from " + file(found_in, node).string());
+        if (!found) {
+          found = std::move(own), found_in = folder;
+        } else if (found->texts != own.texts) {  // checksums
+          faults.push_back(of_shard(node) + file(folder, node).string() + " and " + file(found_in, node).string() +
+                           " differ");
         }
-        if (!found) found = std::move(own), found_in = folder;
       } catch (const petzval::Error& error) {
-        // A copy that is whole replaces a corrupt one, but of two whole ones nobody knows which is right.
-        if (found) faults.push_back(error.what());
-        reasons.push_back(error.what());
+        corrupt.push_back(of_shard(node) + error.what());
       }
     }
-    if (found) {
+    if (found) {  // a copy that is whole replaces a corrupt one
       parts.push_back(std::move(*found));
-      continue;
+    } else if (corrupt.empty()) {
+      missing[of_shard(node)].push_back(name(node));
+    } else {
+      faults.insert(faults.end(), corrupt.begin(), corrupt.end());
     }
-    const std::string shard = shards ? "shard " + Shard{node % *shards + 1, *shards}.text() + ": " : std::string();
-    if (reasons.empty()) reasons.push_back("PSF " + name(node) + " is missing");
-    for (const std::string& reason : reasons) faults.push_back(shard + reason);
+  }
+  constexpr std::size_t named = 4;
+  for (const auto& [shard, names] : missing) {
+    std::string fault = shard + std::to_string(names.size()) + " missing: ";
+    for (std::size_t i = 0; i < std::min(named, names.size()); ++i) fault += (i > 0 ? ", " : "") + names[i];
+    faults.push_back(fault + (names.size() > named ? " and others" : ""));
   }
   if (faults.empty()) return parts;
-  std::string all = std::to_string(faults.size()) + (faults.size() == 1 ? " fault" : " faults") + " in " +
-                    std::to_string(axes_.size()) + " PSFs, wanted all of them whole";
+  std::string all = "of " + std::to_string(axes_.size()) + " PSFs";
   for (const std::string& fault : faults) all += "; " + fault;
-  throw petzval::Error(all);
+  throw petzval::Error(all + "; wanted all of them whole");
 }
 
 std::vector<fs::path> write_psf_set(const PsfJob& job, const std::vector<petzval::ExrPart>& parts, const fs::path& file,

@@ -47,8 +47,9 @@ class PsfJob {
   /// A PSF as it was written. Throws petzval::Error that names its file, also where it belongs to another job.
   petzval::ExrPart part(const std::filesystem::path& folder, std::size_t node) const;
 
-  /// All PSFs, gathered from folders of this job. Throws one petzval::Error that names every PSF that is missing or
-  /// corrupt in all folders, with its shard where shards tell, and those that differ between folders.
+  /// All PSFs, gathered from folders of this job. Throws one petzval::Error that names every file that is corrupt
+  /// without a whole copy or differs between folders, and the shards of missing ones, where shards that began tell
+  /// them.
   std::vector<petzval::ExrPart> gather(const std::vector<std::filesystem::path>& folders) const;
 
  private:

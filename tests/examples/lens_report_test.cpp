@@ -204,7 +204,7 @@ TEST_F(LensReport, RefusesFieldsWithoutFigures) {
 
 TEST_F(LensReport, EveryProgramExplainsItself) {
   for (const char* program :
-       {"lens_report", "trace_rays", "spot_diagram", "bokeh_psf", "wu_figure7", "wu_statements"}) {
+       {"lens_report", "trace_rays", "spot_diagram", "bokeh_psf", "psf_set", "wu_figure7", "wu_statements"}) {
     const auto outcome = run(program, {"--help"});
     EXPECT_EQ(outcome.status, 0) << program;
     EXPECT_EQ(outcome.err, "") << program;

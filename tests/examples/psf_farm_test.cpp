@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: Apache-2.0
+// What farms run: each where its program is installed, and what can be checked without it.
+#include <cstdlib>
+#include <map>
+#include <regex>
+#include <set>
+
+#include "program.hpp"
+
+namespace {
+
+class PsfFarm : public Programs {
+ protected:
+  static std::string farm(const std::string& file) {
+    return (std::filesystem::path(PETZVAL_TEST_DATA).parent_path() / "examples/farm" / file).string();
+  }
+  std::vector<std::string> grid() const {
+    return {lens("double_gauss_100mm_f2_28deg"),
+            "--fields",
+            "0,7",
+            "--distances-mm",
+            "1000,inf",
+            "--samples",
+            "4096",
+            "--pixels",
+            "33"};
+  }
+  /// Runs a line of the shell with psf_set on the path.
+  int shell(const std::string& line) const {
+    return std::system(("PATH='" + std::string(PETZVAL_TEST_PROGRAMS) + "':\"$PATH\"; " + line + " > '" +
+                        path("stdout") + "' 2> '" + path("stderr") + "'")
+                           .c_str());
+  }
+  std::string quoted(const std::vector<std::string>& words) const {
+    std::string text;
+    for (const std::string& word : words) text += " '" + word + "'";
+    return text;
+  }
+  std::string whole() const {
+    auto arguments = grid();
+    arguments.insert(arguments.end(), {"--out", path("whole")});
+    EXPECT_EQ(run("psf_set", arguments).status, 0);
+    return read(path("whole/psf_set.exr"));
+  }
+};
+
+TEST_F(PsfFarm, GnuParallelMakesTheSetOfOneRun) {
+  if (std::system("parallel --version 2> /dev/null | grep -q 'GNU parallel'") != 0) GTEST_SKIP() << "no GNU parallel";
+  ASSERT_EQ(shell("sh '" + farm("psf_set.parallel.sh") + "' 3 '" + path("out") + "'" + quoted(grid())), 0)
+      << read(path("stderr"));
+  EXPECT_EQ(read(path("out/psf_set.exr")), whole());
+  EXPECT_NE(shell("sh '" + farm("psf_set.parallel.sh") + "' 3 '" + path("bad") + "' nowhere.json"), 0);
+  EXPECT_FALSE(std::filesystem::exists(path("bad/psf_set.exr")));
+}
+
+/// The script as Slurm runs it: with these variables, once for each task of the array.
+TEST_F(PsfFarm, ASlurmArrayMakesTheSetOfOneRun) {
+  const auto task = [&](int first, int last, int count, int id) {
+    return shell("SLURM_ARRAY_TASK_MIN=" + std::to_string(first) + " SLURM_ARRAY_TASK_MAX=" + std::to_string(last) +
+                 " SLURM_ARRAY_TASK_COUNT=" + std::to_string(count) + " SLURM_ARRAY_TASK_ID=" + std::to_string(id) +
+                 " sh '" + farm("psf_set.slurm.sh") + "' '" + path("out") + "'" + quoted(grid()));
+  };
+  EXPECT_NE(task(0, 1, 2, 0), 0);
+  EXPECT_NE(task(1, 3, 2, 1), 0) << "1,3";
+  EXPECT_NE(read(path("stderr")).find("wanted --array=1-N"), std::string::npos);
+  EXPECT_FALSE(std::filesystem::exists(path("out")));
+  for (const int id : {2, 1, 2}) EXPECT_EQ(task(1, 2, 2, id), 0) << read(path("stderr"));
+  ASSERT_EQ(shell("psf_set merge '" + path("out") + "' --out '" + path("out/psf_set.exr") + "'"), 0);
+  EXPECT_EQ(read(path("out/psf_set.exr")), whole());
+}
+
+/// Where a cluster answers: the array and its merge as jobs.
+TEST_F(PsfFarm, SlurmRunsTheArray) {
+  if (std::system("sinfo --noheader --states=idle,mixed 2> /dev/null | grep -q .") != 0)
+    GTEST_SKIP() << "no Slurm that answers";
+  const std::string wait = "sbatch --wait --export=ALL --chdir='" + folder.string() + "' ";
+  ASSERT_EQ(shell(wait + "--array=1-2 '" + farm("psf_set.slurm.sh") + "' '" + path("out") + "'" + quoted(grid())), 0)
+      << read(path("stderr"));
+  ASSERT_EQ(shell("psf_set merge '" + path("out") + "' --out '" + path("out/psf_set.exr") + "'"), 0)
+      << read(path("stderr"));
+  EXPECT_EQ(read(path("out/psf_set.exr")), whole());
+}
+
+/// The rules of the specification "jobtemplate-2023-09" that the template makes use of: keys, names, references.
+class OpenJobDescription : public PsfFarm {
+ protected:
+  using Json = nlohmann::json;
+
+  static void only_keys(const Json& object, const std::set<std::string>& required,
+                        const std::set<std::string>& optional) {
+    for (const std::string& key : required) EXPECT_TRUE(object.contains(key)) << key << " in " << object;
+    for (const auto& [key, value] : object.items()) {
+      EXPECT_TRUE(required.contains(key) || optional.contains(key)) << key << " in " << object;
+    }
+  }
+  static void identifier(const std::string& name) {
+    EXPECT_TRUE(std::regex_match(name, std::regex("[A-Za-z_][A-Za-z0-9_]{0,63}"))) << name;
+  }
+  /// Every {{...}} of a format string is a known value.
+  static void references(const std::string& text, const std::set<std::string>& known) {
+    const std::regex reference("\\{\\{ *([^} ]*) *\\}\\}");
+    for (std::sregex_iterator at(text.begin(), text.end(), reference), end; at != end; ++at) {
+      EXPECT_TRUE(known.contains((*at)[1])) << text;
+    }
+    EXPECT_EQ(std::regex_replace(text, reference, "").find("{{"), std::string::npos) << text;
+  }
+  static std::string filled(std::string text, const std::map<std::string, std::string>& values) {
+    for (const auto& [name, value] : values) {
+      const std::string reference = "{{" + name + "}}";
+      for (std::size_t at; (at = text.find(reference)) != std::string::npos;) text.replace(at, reference.size(), value);
+    }
+    return text;
+  }
+};
+
+TEST_F(OpenJobDescription, TheTemplateFollowsTheSchema) {
+  const Json job = read_json(farm("psf_set.openjd.json"));
+  only_keys(job, {"specificationVersion", "name", "steps"}, {"description", "parameterDefinitions"});
+  EXPECT_EQ(job["specificationVersion"], "jobtemplate-2023-09");
+  std::set<std::string> known;
+  ASSERT_LE(job["parameterDefinitions"].size(), 50u);
+  for (const Json& parameter : job["parameterDefinitions"]) {
+    const std::string name = parameter.at("name"), type = parameter.at("type");
+    identifier(name);
+    EXPECT_TRUE(known.insert("Param." + name).second) << name;
+    known.insert("RawParam." + name);
+    std::set<std::string> optional{"description", "default", "allowedValues"};
+    if (type == "PATH") {
+      optional.insert({"objectType", "dataFlow"});
+      EXPECT_TRUE(std::set<std::string>({"FILE", "DIRECTORY"}).contains(parameter["objectType"])) << name;
+      EXPECT_TRUE(std::set<std::string>({"NONE", "IN", "OUT", "INOUT"}).contains(parameter["dataFlow"])) << name;
+    } else if (type == "INT") {
+      optional.insert({"minValue", "maxValue"});
+      EXPECT_TRUE(parameter["default"].is_number_integer());
+      EXPECT_GE(parameter["default"], parameter["minValue"]);
+      EXPECT_LE(parameter["default"], parameter["maxValue"]);
+    } else {
+      EXPECT_EQ(type, "STRING");
+      EXPECT_LE(parameter["default"].get<std::string>().size(), 1024u);
+    }
+    only_keys(parameter, {"name", "type"}, optional);
+  }
+  EXPECT_LE(job["name"].get<std::string>().size(), 128u);
+  references(job["name"], known);
+
+  std::set<std::string> steps;
+  for (const Json& step : job["steps"]) {
+    only_keys(step, {"name", "script"}, {"description", "dependencies", "parameterSpace"});
+    const std::string step_name = step["name"];
+    EXPECT_LE(step_name.size(), 64u);
+    for (const Json& dependency : step.value("dependencies", Json::array())) {
+      only_keys(dependency, {"dependsOn"}, {});
+      EXPECT_TRUE(steps.contains(dependency["dependsOn"])) << dependency;
+    }
+    EXPECT_TRUE(steps.insert(step_name).second) << step_name;
+    std::set<std::string> of_task = known;
+    if (step.contains("parameterSpace")) {
+      only_keys(step["parameterSpace"], {"taskParameterDefinitions"}, {"combination"});
+      for (const Json& parameter : step["parameterSpace"]["taskParameterDefinitions"]) {
+        only_keys(parameter, {"name", "type", "range"}, {});
+        identifier(parameter["name"]);
+        EXPECT_EQ(parameter["type"], "INT");
+        references(parameter["range"], known);
+        EXPECT_TRUE(std::regex_match(filled(parameter["range"], {{"Param.Shards", "8"}}),
+                                     std::regex("-?\\d+--?\\d+(:-?\\d+)?")));
+        of_task.insert("Task.Param." + parameter["name"].get<std::string>());
+      }
+    }
+    only_keys(step["script"], {"actions"}, {"embeddedFiles"});
+    only_keys(step["script"]["actions"], {"onRun"}, {});
+    const Json& run = step["script"]["actions"]["onRun"];
+    only_keys(run, {"command", "args"}, {"timeout", "cancelation"});
+    references(run["command"], of_task);
+    for (const Json& argument : run["args"]) references(argument, of_task);
+  }
+}
+
+/// What a scheduler does with it: values for names, a task for each value of the range, steps in the order of their
+/// dependencies.
+TEST_F(OpenJobDescription, TheTasksOfTheTemplateMakeTheSetOfOneRun) {
+  const Json job = read_json(farm("psf_set.openjd.json"));
+  std::map<std::string, std::string> values;
+  for (const Json& parameter : job["parameterDefinitions"]) {
+    if (!parameter.contains("default")) continue;
+    const Json& value = parameter["default"];
+    values["Param." + parameter["name"].get<std::string>()] =
+        value.is_string() ? value.get<std::string>() : value.dump();
+  }
+  const std::map<std::string, std::string> chosen{{"Param.Lens", lens("double_gauss_100mm_f2_28deg")},
+                                                  {"Param.Out", path("out")},
+                                                  {"Param.Fields", "0,7"},
+                                                  {"Param.DistancesMm", "1000,inf"},
+                                                  {"Param.WavelengthsNm", "587.5618"},
+                                                  {"Param.FNumbers", "2.8"},
+                                                  {"Param.Samples", "4096"},
+                                                  {"Param.Shards", "3"}};
+  for (const auto& [name, value] : chosen) values[name] = value;
+  const auto task = [&](const Json& step) {
+    const Json& action = step["script"]["actions"]["onRun"];
+    std::vector<std::string> arguments;
+    for (const Json& argument : action["args"]) arguments.push_back(filled(argument, values));
+    const auto outcome = run(filled(action["command"], values), arguments);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+  };
+  for (const Json& step : job["steps"]) {
+    if (!step.contains("parameterSpace")) {
+      task(step);
+      continue;
+    }
+    const Json& parameter = step["parameterSpace"]["taskParameterDefinitions"].at(0);
+    const std::string range = filled(parameter["range"], values);
+    const int first = std::stoi(range), last = std::stoi(range.substr(range.find('-') + 1));
+    for (int i = first; i <= last; ++i) {
+      values["Task.Param." + parameter["name"].get<std::string>()] = std::to_string(i);
+      task(step);
+    }
+  }
+  ASSERT_EQ(run("psf_set", {lens("double_gauss_100mm_f2_28deg"), "--fields", "0,7", "--distances-mm", "1000,inf",
+                            "--f-numbers", "2.8", "--samples", "4096", "--out", path("whole")})
+                .status,
+            0);
+  EXPECT_EQ(read(path("out/psf_set.exr")), read(path("whole/psf_set.exr")));
+}
+
+/// The reference implementation's own check.
+TEST_F(OpenJobDescription, OpenjdAcceptsTheTemplate) {
+  if (std::system("openjd --version > /dev/null 2>&1") != 0) GTEST_SKIP() << "no openjd";
+  EXPECT_EQ(shell("openjd check '" + farm("psf_set.openjd.json") + "'"), 0)
+      << read(path("stdout")) << read(path("stderr"));
+}
+
+}  // namespace

@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cstdlib>
+#include <set>
+
+#include "petzval/io/psf_set_exr.hpp"
+#include "program.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+
+class PsfSets : public Programs {
+ protected:
+  /// A set of twelve PSFs: what to compute, then more options.
+  std::vector<std::string> set(const std::string& out, std::vector<std::string> more = {}) const {
+    std::vector<std::string> arguments{lens("double_gauss_100mm_f2_28deg"),
+                                       "--fields",
+                                       "0,7,14",
+                                       "--distances-mm",
+                                       "1000,inf",
+                                       "--f-numbers",
+                                       "2.8,4",
+                                       "--focus-mm",
+                                       "2000",
+                                       "--samples",
+                                       "4096",
+                                       "--pixels",
+                                       "33",
+                                       "--out",
+                                       path(out)};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return arguments;
+  }
+  void succeed(const std::vector<std::string>& arguments) const {
+    const auto outcome = run("psf_set", arguments);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+  }
+  std::string whole() const {
+    succeed(set("whole"));
+    return read(path("whole/psf_set.exr"));
+  }
+  static std::string psf(const std::string& name) { return "psfs/" + name + "_587.5618nm_f2.8.exr"; }
+};
+
+TEST_F(PsfSets, IndexTellsWhatTheSetHolds) {
+  const auto outcome = run("psf_set", set("whole", {"--check"}));
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(lines(outcome.out),
+            (std::vector{path("whole/psf_set.exr"), path("whole/psf_set.json"), path("whole/psf_set.png")}));
+  EXPECT_TRUE(read(path("whole/psf_set.png")).starts_with("\x89PNG"));
+  const auto json = read_json(path("whole/psf_set.json"));
+  const petzval::PsfSet set = petzval::read_psf_set(path("whole/psf_set.exr"));
+  ASSERT_EQ(json["psfs"].size(), 12u);
+  EXPECT_TRUE(json["units"].contains("light"));
+  EXPECT_EQ(json["focus_mm"], 2000);
+  EXPECT_EQ(json["distances_mm"], (nlohmann::json{1000.0, nullptr}));
+  for (std::size_t node = 0; node < 12; ++node) {
+    const auto& row = json["psfs"][node];
+    const petzval::PsfKernel& kernel = set.kernels()[node];
+    EXPECT_EQ(row["part"], petzval::psf_part_name(set.axes().point(node)));
+    EXPECT_EQ(row["total"], kernel.total);
+    EXPECT_EQ(row["anchor_mm"][1], kernel.anchor_mm.y);
+    EXPECT_EQ(row["anchor"], "chief_ray");
+    EXPECT_EQ(row["error"], kernel.error);
+    EXPECT_GT(kernel.error, 0);
+  }
+  // The f/2 lens stopped down, and darker towards the edge.
+  EXPECT_NEAR(set.kernels()[0].total, 4 / (2.8 * 2.8), 0.01);
+  EXPECT_LT(set.kernels()[2].total, 0.95 * set.kernels()[0].total);
+  const auto& error = json["interpolation_error"];
+  EXPECT_EQ(error["points"], 2);
+  EXPECT_GE(error["light_moved_percent"]["worst"], error["light_moved_percent"]["median"]);
+  EXPECT_LT(error["noise_of_two_traced_percent"]["median"], error["light_moved_percent"]["worst"]);
+}
+
+TEST_F(PsfSets, ShardsHaveTheBitsOfOneRun) {
+  const std::string exr = whole();
+  for (const char* shard : {"1/3", "3/3"}) succeed(set("a", {"--shard", shard}));
+  succeed(set("b", {"--shard", "2/3"}));
+  EXPECT_FALSE(fs::exists(path("a/psf_set.exr")));
+  succeed({"merge", path("a"), path("b"), "--out", path("ab.exr")});
+  succeed({"merge", path("b"), path("a"), "--out", path("ba.exr")});
+  EXPECT_EQ(read(path("ab.exr")), exr);
+  EXPECT_EQ(read(path("ba.exr")), exr);
+  auto merged = read_json(path("ab.json")), one = read_json(path("whole/psf_set.json"));
+  merged.erase("exr"), one.erase("exr");
+  EXPECT_EQ(merged, one);
+  EXPECT_EQ(read(path("ab.png")), read(path("whole/psf_set.png")));
+  // More shards than PSFs: some have nothing to do.
+  for (int i = 1; i <= 13; ++i) succeed(set("many", {"--shard", std::to_string(i) + "/13"}));
+  succeed({"merge", path("many"), "--out", path("many.exr")});
+  EXPECT_EQ(read(path("many.exr")), exr);
+}
+
+TEST_F(PsfSets, AFaultyShardIsNamedAndRepaired) {
+  const std::string exr = whole();
+  for (const char* shard : {"1/4", "2/4", "4/4"}) succeed(set("s", {"--shard", shard}));
+  expect_failure("psf_set", {"merge", path("s"), "--out", path("s.exr")},
+                 "shard 3/4: 3 missing: 14deg_1000mm_587.5618nm_f2.8");
+  succeed(set("s", {"--shard", "3/4"}));
+  const std::string corrupt = path("s/" + psf("7deg_inf"));  // the fifth: of the first shard
+  const std::string bytes = read(corrupt);
+  const auto refused = [&](const std::string& content, const std::string& reason) {
+    write("s/" + psf("7deg_inf"), content);
+    expect_failure("psf_set", {"merge", path("s"), "--out", path("s.exr")}, "shard 1/4: " + corrupt + ": " + reason);
+    EXPECT_FALSE(fs::exists(path("s.exr")));
+    EXPECT_FALSE(fs::exists(path("s.json")));
+  };
+  refused(bytes.substr(0, bytes.size() / 2), "");
+  refused("", "");
+  refused(read(path("s/" + psf("0deg_inf"))), "belongs to another set");
+  std::string changed = bytes;
+  const std::size_t at = changed.find("throughput") + 25;
+  changed[at] = static_cast<char>(changed[at] ^ 1);
+  refused(changed, "part \"7deg_inf_587.5618nm_f2.8\": found checksum");
+  // A whole copy in another folder stands in for it; without one its shard computes it again, and nothing else.
+  succeed({"merge", path("s"), path("whole"), "--out", path("s.exr")});
+  EXPECT_EQ(read(path("s.exr")), exr);
+  const auto before = fs::last_write_time(path("s/" + psf("0deg_1000mm")));
+  const auto outcome = run("psf_set", set("s", {"--shard", "1/4", "--resume"}));
+  EXPECT_EQ(lines(outcome.out), std::vector{corrupt});
+  EXPECT_NE(outcome.err.find("note: " + corrupt), std::string::npos) << outcome.err;
+  EXPECT_EQ(fs::last_write_time(path("s/" + psf("0deg_1000mm"))), before);
+  succeed({"merge", path("s"), "--out", path("s.exr")});
+  EXPECT_EQ(read(path("s.exr")), exr);
+}
+
+TEST_F(PsfSets, AKilledRunGoesOnAtItsLastWholePsf) {
+  const std::string exr = whole();
+  std::string command = "'" + std::string(PETZVAL_TEST_PROGRAMS) + "/psf_set'";
+  for (const std::string& argument : set("killed")) command += " '" + argument + "'";
+  const std::string psfs = path("killed/psfs");
+  write("kill.sh", command + " > /dev/null & pid=$!\nwhile [ -z \"$(ls '" + psfs +
+                       "')\" ] && kill -0 $pid; do :; done 2> /dev/null\n"
+                       "kill -9 $pid 2> /dev/null\nwait $pid\nexit 0\n");
+  ASSERT_EQ(std::system(("sh '" + path("kill.sh") + "' 2> /dev/null").c_str()), 0);
+  std::set<std::pair<std::string, fs::file_time_type>> had;
+  for (const auto& entry : fs::directory_iterator(psfs)) {
+    if (entry.path().extension() == ".exr") had.insert({entry.path(), entry.last_write_time()});
+  }
+  EXPECT_FALSE(had.empty());
+  succeed(set("killed", {"--resume"}));
+  for (const auto& [file, time] : had) EXPECT_EQ(fs::last_write_time(file), time) << file;
+  EXPECT_EQ(read(path("killed/psf_set.exr")), exr);
+}
+
+TEST_F(PsfSets, QueriesGiveNodesBitForBitAndPointsBetween) {
+  whole();
+  const std::string file = path("whole/psf_set.exr");
+  succeed({"query", file, "--field-deg", "7", "--distance-mm", "inf", "--f-number", "4", "--out", path("node.exr")});
+  const auto query = petzval::read_exr_parts(path("node.exr")),
+             node = petzval::read_exr_parts(path("whole/psfs/7deg_inf_587.5618nm_f4.exr"));
+  ASSERT_EQ(query.size(), 1u);
+  EXPECT_EQ(query[0].numbers, node[0].numbers);
+  EXPECT_EQ(query[0].texts.at("checksum"), node[0].texts.at("checksum"));
+  succeed({"query", file, "--field-deg", "3", "--distance-mm", "1500", "--out", path("between.exr")});
+  const auto between = petzval::from_exr_part(petzval::read_exr_parts(path("between.exr")).front());
+  EXPECT_EQ(between.point.f_number, 2.8);
+  EXPECT_EQ(between.point.wavelength_nm, 587.5618);
+  EXPECT_GT(between.kernel.total, 0.4);
+  const auto refused = [&](std::vector<std::string> more, const std::string& reason) {
+    std::vector<std::string> arguments{"query", file, "--out", path("no.exr")};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    expect_failure("psf_set", arguments, reason);
+    EXPECT_FALSE(fs::exists(path("no.exr")));
+  };
+  refused({"--field-deg", "15", "--distance-mm", "1500"}, "field_deg is 15, wanted 0 to 14");
+  refused({"--field-deg", "3", "--distance-mm", "900"}, "distance_mm is 900, wanted 1000 to inf");
+  refused({"--field-deg", "3", "--distance-mm", "-1"}, "--distance-mm: found \"-1\"");
+  refused({"--field-deg", "3", "--distance-mm", "1500", "--wavelength-nm", "500"},
+          "wavelength_nm is 500, wanted 587.5618");
+  refused({"--field-deg", "3"}, "--distance-mm is required");
+  write("text.exr", "no picture");
+  expect_failure("psf_set",
+                 {"query", path("text.exr"), "--field-deg", "3", "--distance-mm", "1500", "--out", path("no.exr")},
+                 path("text.exr"));
+}
+
+TEST_F(PsfSets, RefusesABadCommandLineAndWritesNothing) {
+  const std::string file = lens("double_gauss_100mm_f2_28deg");
+  const auto refused = [&](std::vector<std::string> more, const std::string& reason) {
+    std::vector<std::string> arguments{file, "--out", path("bad")};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    expect_failure("psf_set", arguments, reason);
+    EXPECT_FALSE(fs::exists(path("bad"))) << reason;
+  };
+  const auto grid = [&](std::vector<std::string> more, const std::string& reason) {
+    more.insert(more.end(), {"--fields", "0", "--distances-mm", "1000"});
+    refused(more, reason);
+  };
+  for (const char* shard : {"0/0", "5/4", "a/b", "0/4", "1/", "/2", "1", "", "-1/2", "1/2/3", "1.5/2"}) {
+    grid({"--shard", shard}, "--shard: found \"" + std::string(shard) + "\", wanted i/n");
+  }
+  refused({"--distances-mm", "1000"}, "--fields is required");
+  refused({"--fields", "0"}, "--distances-mm is required");
+  refused({"--fields", "", "--distances-mm", "1000"}, "--fields: found \"\"");
+  refused({"--fields", "-1", "--distances-mm", "1000"}, "--fields: found \"-1\"");
+  refused({"--fields", "7,0", "--distances-mm", "1000"}, "found 0 after 7, wanted ascending numbers");
+  refused({"--fields", "0,95", "--distances-mm", "1000"}, "95 degrees");
+  refused({"--fields", "0", "--distances-mm", "1000,-5"}, "--distances-mm: found \"-5\"");
+  refused({"--fields", "0", "--distances-mm", "1000,1000"}, "twice");
+  grid({"--f-numbers", "1"}, "f-number is 1, wanted");
+  grid({"--f-numbers", "0"}, "--f-numbers: found \"0\"");
+  grid({"--wavelengths-nm", "5"}, "5 nm");
+  grid({"--pixels", "32"}, "--pixels: found \"32\", wanted an odd number");
+  grid({"--samples", "0"}, "--samples: found \"0\"");
+  grid({"--focus-mm", "20"}, "cannot be focused");
+  grid({"--blades", "2"}, "blades");
+  grid({"--check", "--shard", "1/2"}, "--check: found --shard 1/2");
+
+  succeed(set("set"));
+  expect_failure("psf_set", {file, "--fields", "0", "--distances-mm", "1000", "--out", path("set")},
+                 path("set/job.json") + ": describes another set");
+  expect_failure("psf_set", {file, "--fields", "0", "--distances-mm", "1000", "--resume", "--out", path("set")},
+                 path("set/job.json") + ": describes another set");
+  write("set/job.json", "{");
+  expect_failure("psf_set", {"merge", path("set"), "--out", path("no.exr")}, path("set/job.json") + ": cannot be read");
+  expect_failure("psf_set", {"merge", path("nowhere"), "--out", path("no.exr")}, "nowhere: no job.json");
+  expect_failure("psf_set", {"merge", "--out", path("no.exr")}, "DIR is required");
+}
+
+}  // namespace
