@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
-# Renders the gallery with the example programs: bokeh after figure 7 of Wu et al. 2010, irises with blades, spot
+# Renders the gallery with the example programs: bokeh after figure 7 of Wu et al. 2010, irises with blades, PSFs, spot
 # diagrams, reports of twelve lenses, camera rays, tilted films, a focus pull, and index.html.
 #
 #   sh examples/gallery.sh PROGRAMS OUT        (examples/run.sh calls it with build/examples and out)
@@ -28,8 +28,10 @@ echo "== Bokeh off axis, in colour (3/9)"
   --focus-mm 800,900,1000,1100,1200 --criterion paraxial --field-deg 8 --wavelengths-nm "$(seq -s , 430 10 670)" --samples 262144 \
   --out "$out/bokeh"
 
-echo "== Irises, cat's eyes and weights (4/9)"
+echo "== Irises, cat's eyes, weights, and a set of PSFs (4/9)"
 "$programs/bokeh_shapes" --out "$out/bokeh"
+"$programs/psf_set" "$lenses/double_gauss_100mm_f2_28deg.json" --fields 0,5,10,14 --distances-mm 1000,1400,2000,4000,inf \
+  --focus-mm 2000 --out "$out/psf_set"
 
 echo "== Spot diagrams of five lenses (5/9)"
 # spots LENS FIELDS WAVELENGTHS

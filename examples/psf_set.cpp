@@ -167,7 +167,12 @@ Json interpolation_error(const std::vector<petzval::ExrPart>& parts, const examp
     moved.push_back(100 * petzval::light_moved(between, traced));
     noise.push_back(100 * petzval::light_moved(traced, again));
     light.push_back(traced.total > 0 ? 100 * std::abs(between.total / traced.total - 1) : 0.0);
-    if (moved.back() >= *std::max_element(moved.begin(), moved.end())) worst = petzval::psf_part_name(point);
+    if (moved.back() >= *std::max_element(moved.begin(), moved.end())) {
+      worst = {{"field_deg", point.field_deg},
+               {"distance_mm", examples::finite_or_null(point.distance_mm)},
+               {"wavelength_nm", point.wavelength_nm},
+               {"f_number", point.f_number}};
+    }
   }
   const auto summary = [](std::vector<double> values) {
     std::sort(values.begin(), values.end());

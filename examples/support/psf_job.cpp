@@ -133,7 +133,7 @@ Sheet contact_sheet(const PsfJob& job, const std::vector<petzval::ExrPart>& part
     for (const auto& [point, kernel] : row) width = std::max(width, kernel.pixels * kernel.pixel_mm);
     SheetRow shown{.title = std::isinf(distance) ? "a light at infinity" : "a light at " + number(distance) + " mm",
                    .subtitle = number(nm) + " nm, f/" + number(axes.f_numbers.front(), 3),
-                   .pixel_mm = width / tile_pixels,
+                   .pixel_mm = 1.15 * width / tile_pixels,  // room for the scale bar
                    .tiles = {}};
     for (const auto& [point, kernel] : row) {
       shown.tiles.push_back({expose(picture(kernel, tile_pixels, shown.pixel_mm)).picture,

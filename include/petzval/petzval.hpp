@@ -18,6 +18,8 @@
 ///                                                                             renderer, by any model of the lens
 ///                                    --> choose_model                         the fastest model in an error budget
 ///                                    --> spot_diagram, point_image            spots and images of points
+///                                    --> psf_kernel, PsfSet                   images of points over field, distance,
+///                                                                             wavelength and stop, interpolated
 ///                                    --> chromatic_aberration                 longitudinal and lateral colour
 ///
 /// Lens frame: right-handed, millimetres. Light travels towards +z, the origin is the vertex of the first surface, the
@@ -64,6 +66,7 @@
 #include "petzval/prescription/prescription.hpp"
 #include "petzval/psf/colour.hpp"
 #include "petzval/psf/psf.hpp"
+#include "petzval/psf/psf_set.hpp"
 #include "petzval/psf/spot.hpp"
 #include "petzval/pupil/aim.hpp"
 #include "petzval/pupil/f_number.hpp"

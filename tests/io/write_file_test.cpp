@@ -236,5 +236,12 @@ TEST_F(WriteFile, WritesIntoAPipe) {
   EXPECT_TRUE(fs::is_fifo(pipe));
 }
 
+/// Values of the authors' test program.
+TEST(Checksum, IsFnv1a) {
+  EXPECT_EQ(checksum(""), "cbf29ce484222325");
+  EXPECT_EQ(checksum("a"), "af63dc4c8601ec8c");
+  EXPECT_EQ(checksum("foobar"), "85944171f73967e8");
+}
+
 }  // namespace
 }  // namespace petzval
