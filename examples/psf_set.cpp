@@ -163,7 +163,6 @@ Json interpolation_error(const std::vector<petzval::ExrPart>& parts, const examp
     const double half_width = between.pixels * between.pixel_mm / 2;
     // Seeds of their own: kernels and their interpolation share one.
     const auto traced = scenes.kernel(point, 1, half_width), again = scenes.kernel(point, 2, half_width);
-    // Anchors differ by the distortion between nodes, which is no error of the shape.
     moved.push_back(100 * petzval::light_moved(between, traced));
     noise.push_back(100 * petzval::light_moved(traced, again));
     light.push_back(traced.total > 0 ? 100 * std::abs(between.total / traced.total - 1) : 0.0);
@@ -263,8 +262,7 @@ int main_compute(int argc, char** argv) {
       "and prints the paths: psf_set.exr (one part for each PSF: channel Y is its light, hits.x and hits.y its rays), "
       "psf_set.json (index with units) and psf_set.png (contact sheet). Each PSF is a file in DIR/psfs as soon as it "
       "is "
-      "whole. With --shard only these are written; psf_set merge makes the set of them, with the same bits on every "
-      "machine.\n"
+      "whole. With --shard only these are written; psf_set merge makes the set of them, with the bits of one run.\n"
       "psf_set merge DIR... --out FILE.exr   gathers the shards of one or several folders\n"
       "psf_set query FILE.exr --field-deg F --distance-mm D --out PSF.exr   looks up a point, between nodes too",
       "psf_set");

@@ -18,19 +18,23 @@ struct MeanBundle {
   int side = 0;
   std::vector<double> x, y, passing;
 
+  /// A ray that passes everywhere has smooth means; at the edge of the pupil, where it is lost in some kernels, those
+  /// of the next ones in which it passes.
   explicit MeanBundle(std::span<const WeightedKernel> nodes) : side(nodes.front().kernel->pixels) {
     const std::size_t count = nodes.front().kernel->hits_x.size();
     x.assign(count, 0.0), y = passing = x;
-    for (const auto& [kernel, weight] : nodes) {
+    std::vector<double> smooth_x = x, smooth_y = x;
+    for (const auto& [kernel, smooth, linear] : nodes) {
       for (std::size_t i = 0; i < count; ++i) {
-        if (std::isnan(kernel->hits_x[i])) continue;
-        x[i] += weight * static_cast<double>(kernel->hits_x[i]);
-        y[i] += weight * static_cast<double>(kernel->hits_y[i]);
-        passing[i] += weight;
+        const auto hit_x = static_cast<double>(kernel->hits_x[i]), hit_y = static_cast<double>(kernel->hits_y[i]);
+        smooth_x[i] += smooth * hit_x, smooth_y[i] += smooth * hit_y;  // NaN where it is lost
+        if (linear == 0 || std::isnan(hit_x)) continue;
+        x[i] += linear * hit_x, y[i] += linear * hit_y, passing[i] += linear;
       }
     }
     for (std::size_t i = 0; i < count; ++i) {
       if (passing[i] > 0) x[i] /= passing[i], y[i] /= passing[i];
+      if (!std::isnan(smooth_x[i])) x[i] = smooth_x[i], y[i] = smooth_y[i];
     }
   }
 
@@ -70,32 +74,36 @@ PsfKernel psf_detail::blend(std::span<const WeightedKernel> nodes) {
   PsfKernel result;
   result.pixels = nodes.front().kernel->pixels;
   result.chief_ray = true;
-  double most = 0, amplitude = 0;
-  std::vector<WeightedKernel> lit;
-  for (const WeightedKernel& node : nodes) {
-    const auto& [kernel, weight] = node;
+  // Light goes with the area of the pupil: the square of what f-numbers and fields change evenly, up to where it is
+  // dark.
+  double most = 0, amplitude = 0, linear_amplitude = 0;
+  bool dark = false;
+  for (const auto& [kernel, smooth, linear] : nodes) {
+    result.anchor_mm += smooth * kernel->anchor_mm;
+    amplitude += smooth * std::sqrt(kernel->total);
+    linear_amplitude += linear * std::sqrt(kernel->total);
+    dark = dark || kernel->total == 0;
+    if (linear == 0) continue;
     result.chief_ray = result.chief_ray && kernel->chief_ray;
-    result.anchor_mm += weight * kernel->anchor_mm;
-    result.throughput += weight * kernel->throughput;
-    result.error += weight * kernel->error;
+    result.throughput += linear * kernel->throughput;
+    result.error += linear * kernel->error;
     result.rays += kernel->rays;
-    amplitude += weight * std::sqrt(kernel->total);
     result.pixel_mm = std::max(result.pixel_mm, kernel->pixel_mm);
-    if (weight > most) most = weight, result.diffraction = kernel->diffraction;
-    if (kernel->total > 0) lit.push_back(node);
+    if (linear > most) most = linear, result.diffraction = kernel->diffraction;
   }
   const std::size_t plane = static_cast<std::size_t>(result.pixels) * static_cast<std::size_t>(result.pixels);
   result.light.assign(plane, 0.0f);
   result.hits_x.assign(plane, std::nanf("")), result.hits_y = result.hits_x;
-  if (lit.empty()) return result;
-
-  const MeanBundle bundle(lit);
+  const MeanBundle bundle(nodes);
+  bool lit = false;
   double half = 0;
   for (std::size_t i = 0; i < plane; ++i) {
     if (bundle.passing[i] == 0) continue;
+    lit = true;
     half = std::max({half, std::abs(bundle.x[i]), std::abs(bundle.y[i])});
     result.hits_x[i] = static_cast<float>(bundle.x[i]), result.hits_y[i] = static_cast<float>(bundle.y[i]);
   }
+  if (!lit) return result;
   result.pixel_mm = 2 * std::max(1.05 * half, 1e-4) / result.pixels;
 
   // The bundle is sampled as rays are, from the same points of the pupil each time.
@@ -114,8 +122,7 @@ PsfKernel psf_detail::blend(std::span<const WeightedKernel> nodes) {
       all += hit.light;
     }
   }
-  // Light goes with the area of the pupil: the square of what f-numbers and fields change evenly.
-  result.total = amplitude * amplitude;
+  result.total = dark ? linear_amplitude * linear_amplitude : amplitude * amplitude;
   for (std::size_t i = 0; i < plane; ++i) result.light[i] = static_cast<float>(light[i] * (result.total / all));
   return result;
 }

@@ -7,10 +7,11 @@
 
 namespace petzval::inline v0::psf_detail {
 
-/// A kernel and its share of a blend; shares are positive and sum to 1.
+/// A kernel and its weights in a blend, which sum to 1: of polynomials through all nodes around, some negative; and of
+/// lines through the next ones, 0 for the others.
 struct WeightedKernel {
   const PsfKernel* kernel;
-  double weight;
+  double smooth, linear;
 };
 
 /// The kernel between several: PsfSet::at(). All have the same number of pixels.

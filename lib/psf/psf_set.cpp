@@ -71,22 +71,34 @@ void check_axis(const std::vector<double>& axis, const AxisRule& rule) {
   }
 }
 
-/// Two neighbours on an axis, and the weight of the upper one.
-struct Between {
-  std::size_t lower, upper;
-  double weight;
+/// A node of an axis and its weights, as WeightedKernel has them.
+struct AxisNode {
+  std::size_t index;
+  double smooth, linear;
 };
 
-Between between(const std::vector<double>& axis, double at, const char* name, bool inverse) {
+/// The node itself, or two before a value and two behind, as far as there are.
+std::vector<AxisNode> around(const std::vector<double>& axis, double at, const char* name, bool inverse) {
   if (!(at >= axis.front() && at <= axis.back())) {
     throw Error(std::string("PSF set: ") + name + " is " + to_text(at) + ", wanted " +
                 (axis.size() == 1 ? to_text(axis.front()) : to_text(axis.front()) + " to " + to_text(axis.back())));
   }
   const auto upper = static_cast<std::size_t>(std::lower_bound(axis.begin(), axis.end(), at) - axis.begin());
-  if (axis[upper] == at) return {upper, upper, 0};
+  if (axis[upper] == at) return {{upper, 1, 1}};
   const auto coordinate = [&](double value) { return inverse ? 1 / value : value; };
-  const double low = coordinate(axis[upper - 1]), high = coordinate(axis[upper]);
-  return {upper - 1, upper, (coordinate(at) - low) / (high - low)};
+  const std::size_t first = std::max(upper, std::size_t(2)) - 2, end = std::min(upper + 2, axis.size());
+  std::vector<AxisNode> nodes;
+  for (std::size_t i = first; i < end; ++i) {
+    AxisNode node{i, 1, 0};
+    for (std::size_t k = first; k < end; ++k) {  // Lagrange's polynomials
+      if (k == i) continue;
+      const double step = (coordinate(at) - coordinate(axis[k])) / (coordinate(axis[i]) - coordinate(axis[k]));
+      node.smooth *= step;
+      if ((i == upper && k + 1 == upper) || (i + 1 == upper && k == upper)) node.linear = step;
+    }
+    nodes.push_back(node);
+  }
+  return nodes;
 }
 
 }  // namespace
@@ -184,23 +196,22 @@ PsfSet::PsfSet(Axes axes, std::vector<PsfKernel> kernels) : axes_(std::move(axes
 }
 
 PsfKernel PsfSet::at(const PsfSetPoint& point) const {
-  const std::array along{between(axes_.fields_deg, point.field_deg, "field_deg", false),
-                         between(axes_.distances_mm, point.distance_mm, "distance_mm", true),
-                         between(axes_.wavelengths_nm, point.wavelength_nm, "wavelength_nm", false),
-                         between(axes_.f_numbers, point.f_number, "f_number", true)};
-  const std::array sizes{axes_.fields_deg.size(), axes_.distances_mm.size(), axes_.wavelengths_nm.size(),
-                         axes_.f_numbers.size()};
   std::vector<psf_detail::WeightedKernel> nodes;
-  for (unsigned corner = 0; corner < 1u << along.size(); ++corner) {
-    std::size_t node = 0, stride = 1;
-    double weight = 1;
-    for (std::size_t axis = 0; axis < along.size(); ++axis) {
-      const bool upper = (corner >> axis & 1u) != 0;
-      weight *= upper ? along[axis].weight : 1 - along[axis].weight;
-      node += stride * (upper ? along[axis].upper : along[axis].lower);
-      stride *= sizes[axis];
+  const auto fields = around(axes_.fields_deg, point.field_deg, "field_deg", false);
+  const auto distances = around(axes_.distances_mm, point.distance_mm, "distance_mm", true);
+  const auto wavelengths = around(axes_.wavelengths_nm, point.wavelength_nm, "wavelength_nm", false);
+  for (const AxisNode& stop : around(axes_.f_numbers, point.f_number, "f_number", true)) {
+    for (const AxisNode& colour : wavelengths) {
+      for (const AxisNode& distance : distances) {
+        for (const AxisNode& field : fields) {
+          const std::size_t row =
+              (stop.index * axes_.wavelengths_nm.size() + colour.index) * axes_.distances_mm.size() + distance.index;
+          nodes.push_back({&kernels_[row * axes_.fields_deg.size() + field.index],
+                           stop.smooth * colour.smooth * distance.smooth * field.smooth,
+                           stop.linear * colour.linear * distance.linear * field.linear});
+        }
+      }
     }
-    if (weight > 0) nodes.push_back({&kernels_[node], weight});
   }
   return nodes.size() == 1 ? *nodes.front().kernel : psf_detail::blend(nodes);
 }

@@ -101,14 +101,18 @@ class PETZVAL_API PsfSet {
   const Axes& axes() const noexcept { return axes_; }
   const std::vector<PsfKernel>& kernels() const noexcept { return kernels_; }
 
-  /// The kernel at a point: that of the node, bit for bit, or between up to 16 of them, linear in angle, in 1 /
-  /// distance, in nm and in 1 / f-number.
+  /// The kernel at a point: that of the node, bit for bit, or between nodes by polynomials in angle, 1 / distance, nm
+  /// and 1 / f-number, of degree 3 along an axis (2 in its end cells, and as far as there are nodes).
   ///
   /// Hits of rays through the same place of the pupil are interpolated, not pictures: a blur shrinks to the focus and
-  /// grows again turned over, as it does on film, and 2^20 rays of that bundle make the picture. The root of `total` is
-  /// interpolated. The anchor is, too, with the distortion between nodes left out: who knows the lens places the kernel
-  /// by a chief ray. `error` is that of the nodes. Accuracy: tests/psf/psf_set_test.cpp compares with traced kernels.
-  /// Throws Error for a point outside the axes; on an axis of one number only that number is inside.
+  /// grows again turned over, as it does on film, and 2^20 rays of that bundle make the picture. So are the anchor and
+  /// the root of `total`; `throughput` and `error` are linear between those of the next nodes.
+  ///
+  /// Error in percent of light moved against traced kernels in the middles of cells, median and worst, with a noise of
+  /// 0.5 to 1.3 (psf_set --check; steps of 5 to 20 degrees, five distances from 1 m to infinity, focused at 2 m):
+  /// double Gauss f/2 1.8 and 5.8, f/2.8 2.2 and 3.1; fisheye 2.5 and 3.4; Tessar 6 and 21, double Gauss f/1.35 3 and
+  /// 24, both worst next to the focus, where nodes have to be closer. The means of pictures are 70 off. Throws Error
+  /// for a point outside the axes; on an axis of one number only that number is inside.
   PsfKernel at(const PsfSetPoint& point) const;
 
  private:
