@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <numbers>
 #include <numeric>
@@ -16,6 +17,7 @@
 #include "../message.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/units.hpp"
+#include "petzval/media/glass.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "petzval/trace/trace.hpp"
@@ -25,6 +27,7 @@ namespace {
 
 using testing::data_lens;
 using testing::front_stop_lens;
+using testing::message;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
@@ -51,6 +54,46 @@ TEST(PointImage, PictureHoldsEveryTransmittedRay) {
       EXPECT_NEAR(profile_light(image), image.throughput, 1e-14);
     }
   }
+}
+
+TEST(PointImage, ACentreMovesThePictureAlone) {
+  const Lens lens = data_lens("double_gauss_100mm_f1.35");
+  const FieldPoint point{radians(10), -700};
+  const PointImage own = point_image(lens, point, {.samples = 1 << 14, .pixels = 64});
+  const Vec2<double> centre = own.size.centroid + Vec2<double>{0.5, -1};
+  const PointImage moved = point_image(lens, point, {.samples = 1 << 14, .pixels = 64, .centre = centre});
+  EXPECT_EQ(moved.psf.centre, centre);
+  EXPECT_EQ(moved.size.centroid, own.size.centroid);
+  EXPECT_EQ(moved.radial_profile, own.radial_profile);
+  EXPECT_GT(moved.psf.pixel_mm, own.psf.pixel_mm) << "holds every ray";
+  EXPECT_EQ(sum(moved.psf), moved.psf.transmitted[0]);
+  for (const double bad : {std::nan(""), infinity}) {
+    EXPECT_NE(message([&] {
+                point_image(lens, point, {.centre = Vec2<double>{0, bad}});
+              }).find("centre is (0, "),
+              std::string::npos);
+  }
+}
+
+TEST(PointImage, OfOneWavelengthIsItsPlaneOfAll) {
+  const auto glasses = GlassCatalogue::load(std::filesystem::path(PETZVAL_TEST_DATA) / "glass");
+  const Lens lens = compile(testing::data_prescription("cooke_triplet_50mm_f5"),
+                            std::array{656.2725, 486.1327, 587.5618}, {.glasses = &glasses});
+  const FieldPoint point{radians(10), -2000};
+  const PsfOptions options{.samples = 1 << 12, .pixels = 32, .half_width_mm = 0.5, .centre = Vec2<double>{0, -9}};
+  const Psf all = point_image(lens, point, options).psf;
+  for (std::size_t w = 0; w < 3; ++w) {
+    PsfOptions one = options;
+    one.wavelength = w;
+    const Psf psf = point_image(lens, point, one).psf;
+    EXPECT_EQ(psf.wavelengths_nm, std::vector{lens.wavelengths_nm()[w]});
+    ASSERT_EQ(psf.counts.size(), 1024u);
+    EXPECT_TRUE(std::equal(psf.counts.begin(), psf.counts.end(), all.counts.begin() + static_cast<int>(w) * 1024)) << w;
+    EXPECT_EQ(psf.throughput(0), all.throughput(w));
+  }
+  PsfOptions none = options;
+  none.wavelength = 3;
+  EXPECT_NE(message([&] { point_image(lens, point, none); }).find("wavelength"), std::string::npos);
 }
 
 TEST(PointImage, CropTakesNothingFromThroughputOrProfile) {
