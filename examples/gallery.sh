@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
-# Renders the gallery with the example programs: bokeh after figure 7 of Wu et al. 2010, irises with blades, PSFs, spot
-# diagrams, reports of twelve lenses, camera rays, tilted films, a focus pull, and index.html.
+# Renders the gallery with the example programs: bokeh after figure 7 of Wu et al. 2010, its colours, irises with blades,
+# PSFs, spot diagrams, reports of twelve lenses, camera rays, tilted films, a focus pull, and index.html.
 #
 #   sh examples/gallery.sh PROGRAMS OUT        (examples/run.sh calls it with build/examples and out)
 set -eu
@@ -15,25 +15,31 @@ here=$(CDPATH= cd -- "$(dirname -- "$0")" && pwd)
 lenses=$here/../data/lenses
 mkdir -p "$out"
 
-echo "== Figure 7 of Wu et al. 2010 (1/9)"
+echo "== Figure 7 of Wu et al. 2010 (1/10)"
 "$programs/wu_figure7" --criterion min_rms --out "$out/wu_figure7.png"
 "$programs/wu_figure7" --criterion paraxial --out "$out/wu_figure7_paraxial.png"
 
-echo "== The statements of the paper, by number (2/9)"
+echo "== The statements of the paper, by number (2/10)"
 "$programs/wu_statements" --html "$out/wu_statements.html" > "$out/wu_statements.txt"
 echo "$out/wu_statements.txt"
 
-echo "== Bokeh off axis, in colour (3/9)"
+echo "== Bokeh off axis, in colour (3/10)"
 "$programs/bokeh_psf" "$lenses/double_gauss_100mm_f1.35.json" --subject-distance-mm 1000 \
   --focus-mm 800,900,1000,1100,1200 --criterion paraxial --field-deg 8 --wavelengths-nm "$(seq -s , 430 10 670)" --samples 262144 \
   --out "$out/bokeh"
 
-echo "== Irises, cat's eyes, weights, and a set of PSFs (4/9)"
+echo "== The colours of bokeh (4/10)"
+mkdir -p "$out/chromatic"
+"$programs/chromatic_bokeh" "$lenses/double_gauss_100mm_f1.35.json" --samples 131072 --out "$out/chromatic" \
+  > "$out/chromatic/chromatic_bokeh.txt"
+echo "$out/chromatic"
+
+echo "== Irises, cat's eyes, weights, and a set of PSFs (5/10)"
 "$programs/bokeh_shapes" --out "$out/bokeh"
 "$programs/psf_set" "$lenses/double_gauss_100mm_f2_28deg.json" --fields 0,5,10,14 --distances-mm 1000,1400,2000,4000,inf \
   --focus-mm 2000 --out "$out/psf_set"
 
-echo "== Spot diagrams of five lenses (5/9)"
+echo "== Spot diagrams of five lenses (6/10)"
 # spots LENS FIELDS WAVELENGTHS
 spots() {
   "$programs/spot_diagram" "$lenses/$1.json" --field-deg "$2" --wavelengths-nm "$3" --out "$out/spots"
@@ -45,14 +51,14 @@ spots cooke_triplet_50mm_f5 0,14,20 $f_d_c
 spots petzval_portrait_100mm_f3.4 0,7,12 $f_d_c
 spots fisheye_10mm_f4 0,40,70 587.5618
 
-echo "== Reports of twelve lenses (6/9)"
+echo "== Reports of twelve lenses (7/10)"
 for lens in petzval_portrait_100mm_f3.4 cooke_triplet_50mm_f5 planar_1896_f4.5 tessar_100mm_f5.5_1902 \
   sonnar_180mm_f2.8 biogon_35mm_f2.8 telephoto_250mm_f5.6 retrofocus_100mm_f2 \
   catadioptric_mangin_1000mm_f7.5 anamorphic_60mm_2x modern_58mm_f0.95 fisheye_6.3mm_f2.8; do
   "$programs/lens_report" "$lenses/$lens.json" --out "$out/lenses"
 done
 
-echo "== Rays of a camera, by every model of its lens (7/9)"
+echo "== Rays of a camera, by every model of its lens (8/10)"
 mkdir -p "$out/camera_rays"
 awk 'BEGIN {
   print "film_x_mm,film_y_mm,pupil_u,pupil_v,wavelength_nm"
@@ -65,7 +71,7 @@ for model in pinhole thin thin_two_disc thick polynomial_3 polynomial_5 polynomi
 done
 echo "$out/camera_rays"
 
-echo "== Accuracy and speed of the models, and the model for a scene (8/9)"
+echo "== Accuracy and speed of the models, and the model for a scene (9/10)"
 "$programs/accuracy_speed" "$lenses/double_gauss_100mm_f2_28deg.json" --f-number 2 --out "$out/models" \
   > "$out/accuracy_speed.txt"
 "$programs/choose_camera" "$lenses/double_gauss_100mm_f2_28deg.json" --f-number 2 --near-mm 2000 --far-mm inf \
@@ -73,7 +79,7 @@ echo "== Accuracy and speed of the models, and the model for a scene (8/9)"
 echo "$out/accuracy_speed.txt"
 echo "$out/choose_camera.txt"
 
-echo "== Films tilted to points, and a focus pull (9/9)"
+echo "== Films tilted to points, and a focus pull (10/10)"
 # tilted FOLDER SCENE OPTION...
 tilted() {
   folder=$out/tilt/$1

@@ -18,21 +18,10 @@
 namespace examples {
 namespace {
 
-/// As declared, or by the diagonal of the image, or 10 degrees if the source has neither.
-double half_field_deg(const Report& r) {
-  const petzval::Prescription& p = r.loaded.prescription;
-  if (p.half_field_deg) return *p.half_field_deg;
-  const double focal_length = std::abs(r.main().first_order.effective_focal_length);
-  if (p.image_diagonal_mm && std::isfinite(focal_length)) {
-    return std::round(100 * petzval::degrees(std::atan(*p.image_diagonal_mm / 2 / focal_length))) / 100;
-  }
-  return 10;
-}
-
 std::vector<double> fields_rad(const Report& r, const PageOptions& options) {
   std::vector<double> fields = options.field_deg;
   if (fields.empty()) {
-    const double half = half_field_deg(r);
+    const double half = half_field_deg(r.loaded);
     // Half of the picture's area lies within 0.7 of its radius. Three digits keep captions short.
     fields = {0, half};
     const double power = std::pow(10, std::floor(std::log10(0.7 * half)) - 2);

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "load_lens.hpp"
 
+#include <cmath>
 #include <iostream>
 #include <utility>
 
+#include "petzval/core/units.hpp"
 #include "petzval/io/lens_json.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "text.hpp"
@@ -49,6 +51,17 @@ LoadedLens load_lens(const std::filesystem::path& file, std::span<const double> 
   say_what_is_known(loaded);
   say_what_limits(loaded);
   return loaded;
+}
+
+double half_field_deg(const LoadedLens& loaded) {
+  const petzval::Prescription& p = loaded.prescription;
+  if (p.half_field_deg) return *p.half_field_deg;
+  const petzval::Meridian meridian = petzval::main_meridian(loaded.lens);
+  const double focal_length = std::abs(petzval::first_order(loaded.lens, {}, meridian).effective_focal_length);
+  if (p.image_diagonal_mm && std::isfinite(focal_length)) {
+    return std::round(100 * petzval::degrees(std::atan(*p.image_diagonal_mm / 2 / focal_length))) / 100;
+  }
+  return 10;
 }
 
 petzval::Lens compiled_for(const LoadedLens& loaded, std::span<const double> wavelengths_nm) {

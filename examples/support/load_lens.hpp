@@ -24,6 +24,9 @@ struct LoadedLens {
 /// serves as the stop if none is marked.
 LoadedLens load_lens(const std::filesystem::path& file, std::span<const double> wavelengths_nm);
 
+/// As declared, or by the diagonal of the image, or 10 degrees if the source has neither.
+double half_field_deg(const LoadedLens& loaded);
+
 /// The prescription compiled for other wavelengths, in the same way.
 petzval::Lens compiled_for(const LoadedLens& loaded, std::span<const double> wavelengths_nm);
 

@@ -3,9 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <regex>
 #include <string>
 #include <vector>
 
@@ -54,6 +57,50 @@ TEST(Render, WeighsWavelengths) {
   const std::vector<float> expected{0.1f, 0.075f, -0.05f, 0, 0, 0, 0.4f, 0.325f, -0.1f, 0, 0, 0};
   ASSERT_EQ(image.pixels.size(), expected.size());
   for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_NEAR(image.pixels[i], expected[i], 1e-7f) << i;
+}
+
+// The layout's own pattern of names (Fichet et al. 2021; its Stokes component 0), with the wavelength in its first
+// group.
+TEST(SpectralImage, IsReadBackBitForBitByTheNamesOfItsLayout) {
+  const std::vector<double> set{587.5618, 430, 656.2725};
+  Psf psf;
+  psf.pixels = 3;
+  psf.pixel_mm = 0.5;
+  psf.wavelengths_nm = set;
+  for (std::uint64_t i = 0; i < 27; ++i) psf.counts.push_back(i * i);
+  psf.sent = {100, 100, 300};
+  psf.sampled_area = {2, 4, 3};
+  psf.entrance_pupil_area = 8;
+  const std::vector<std::array<double, 3>> weights{{0.2, 0.7, 0}, {0.1, -0.1, 1}, {0.7, 0.4, 0}};
+  const auto file = std::filesystem::path(::testing::TempDir()) / "petzval_spectral_test.exr";
+  write_exr(std::array{spectral_image(psf, weights)}, file);
+  const auto parts = read_exr_parts(file);
+  const RgbImage rgb = read_exr(file);
+  std::filesystem::remove(file);
+
+  EXPECT_EQ(rgb.pixels, render(psf, weights).pixels);
+  ASSERT_EQ(parts.size(), 1u);
+  EXPECT_EQ(parts[0].texts.at("spectralLayoutVersion"), "1.0");
+  EXPECT_EQ(parts[0].texts.at("emissiveUnits"), "mm^-2");
+  const std::regex pattern("^S0\\.(\\d*,?\\d*([Ee][+-]?\\d+)?)(Y|Z|E|P|T|G|M|k|h|da|d|c|m|u|n|p)?(m|Hz)$");
+  std::size_t found = 0;
+  for (const ExrChannel& channel : parts[0].channels) {
+    std::smatch match;
+    if (!std::regex_match(channel.name, match, pattern)) continue;
+    EXPECT_EQ(match[3].str() + match[4].str(), "nm");
+    std::string nm = match[1];
+    std::replace(nm.begin(), nm.end(), ',', '.');
+    const auto at = std::find(set.begin(), set.end(), std::stod(nm));
+    ASSERT_NE(at, set.end()) << channel.name;
+    std::vector<std::array<double, 3>> alone(3);
+    alone[static_cast<std::size_t>(at - set.begin())] = {1, 0, 0};
+    const RgbImage expected = render(psf, alone);
+    ASSERT_EQ(channel.values.size(), 9u);
+    for (std::size_t i = 0; i < 9; ++i) EXPECT_EQ(channel.values[i], expected.pixels[3 * i]);
+    ++found;
+  }
+  EXPECT_EQ(found, 3u);
+  EXPECT_EQ(parts[0].channels.size(), 6u);
 }
 
 // As a photograph does: the triangle stands on its edge behind the focus and on its corner in front of it.

@@ -21,4 +21,12 @@ namespace petzval::inline v0 {
 /// white. Throws Error for another number of weights.
 PETZVAL_API RgbImage render(const Psf& psf, std::span<const std::array<double, 3>> weights);
 
+/// The same by wavelength, for write_exr(): a channel for each, and R, G, B of render() for viewers.
+///
+/// The channel of 587.5618 nm is S0.587,5618nm (a point would begin a layer). Its values are those of render() for the
+/// light of that wavelength alone, whatever its weight. Its attributes say the version of the layout and the
+/// unit, mm^-2. Throws Error where render() does.
+/// Source: Fichet, Pacanowski, Wilkie, An OpenEXR Layout for Spectral Images, JCGT 10(3), 2021.
+PETZVAL_API ExrPart spectral_image(const Psf& psf, std::span<const std::array<double, 3>> weights);
+
 }  // namespace petzval::inline v0

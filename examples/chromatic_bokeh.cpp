@@ -1,0 +1,276 @@
+// SPDX-License-Identifier: Apache-2.0
+// Shows the colours that a lens gives to a point of light out of focus: contact sheets over a spectral set of
+// wavelengths and over one wavelength per channel, a spectral EXR for each picture, and longitudinal and lateral colour
+// as numbers.
+//
+//   chromatic_bokeh data/lenses/double_gauss_100mm_f1.35.json --out out
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iostream>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "petzval/core/error.hpp"
+#include "petzval/core/parallel.hpp"
+#include "petzval/core/units.hpp"
+#include "petzval/figure/psf_image.hpp"
+#include "petzval/paraxial/first_order.hpp"
+#include "petzval/pupil/f_number.hpp"
+#include "support/bokeh.hpp"
+#include "support/cli.hpp"
+#include "support/files.hpp"
+#include "support/iris_setup.hpp"
+#include "support/load_lens.hpp"
+#include "support/text.hpp"
+
+namespace {
+
+using examples::Json;
+using Weights = std::vector<std::array<double, 3>>;
+
+constexpr int tile_pixels = 320;
+
+struct Options {
+  std::string lens_file, out_folder, white_point = "D65";
+  double subject_mm = 0;                    ///< 0: twenty focal lengths
+  std::vector<double> focus_mm, field_deg;  ///< none: about the light; the axis and 0.7 of the field
+  examples::IrisSetup iris;
+  std::uint32_t samples = 1u << 18;
+};
+
+/// The set over the visible range, with the wavelengths of the RGB triple among it.
+std::vector<double> wavelengths_nm() {
+  std::vector<double> set;
+  for (int nm = 430; nm <= 670; nm += 10) set.push_back(nm);
+  for (const double nm : petzval::rgb_triple_nm) {
+    if (std::find(set.begin(), set.end(), nm) == set.end()) set.push_back(nm);
+  }
+  std::sort(set.begin(), set.end());
+  return set;
+}
+
+/// Of the set: the RGB triple's weights, 0 for the others.
+Weights triple_weights(const std::vector<double>& set) {
+  Weights weights(set.size());
+  for (std::size_t i = 0; i < petzval::rgb_triple_nm.size(); ++i) {
+    const auto at = std::find(set.begin(), set.end(), petzval::rgb_triple_nm[i]);
+    weights[static_cast<std::size_t>(at - set.begin())] = petzval::rgb_triple_weights[i];
+  }
+  return weights;
+}
+
+double rounded(double value, int digits) {
+  return examples::parse_number("rounded", examples::number(value, digits), examples::finite_number);
+}
+
+/// What the command line leaves open.
+void complete(Options& options, const examples::LoadedLens& loaded) {
+  const petzval::Meridian meridian = petzval::main_meridian(loaded.lens);
+  const double focal_length = std::abs(petzval::first_order(loaded.lens, {}, meridian).effective_focal_length);
+  if (!std::isfinite(focal_length)) throw petzval::Error(loaded.lens.name() + ": afocal, wanted a lens with a focus");
+  if (options.subject_mm == 0) options.subject_mm = rounded(20 * focal_length, 2);
+  if (options.focus_mm.empty() && std::isinf(options.subject_mm)) {
+    for (const double lengths : {25, 50, 100}) options.focus_mm.push_back(rounded(lengths * focal_length, 3));
+    options.focus_mm.push_back(options.subject_mm);
+  } else if (options.focus_mm.empty()) {
+    for (const double share : {0.8, 0.9, 1.0, 1.1, 1.2})
+      options.focus_mm.push_back(rounded(share * options.subject_mm, 3));
+  }
+  if (options.field_deg.empty()) options.field_deg = {0, rounded(0.7 * examples::half_field_deg(loaded), 2)};
+}
+
+struct Picture {
+  double field_deg = 0, focus_mm = 0, film_z_mm = 0;
+  petzval::PointImage image;
+};
+
+std::vector<Picture> render(const petzval::Lens& lens, const Options& options) {
+  examples::Progress progress("chromatic bokeh", options.field_deg.size() * options.focus_mm.size());
+  std::vector<Picture> pictures;
+  for (const double field : options.field_deg) {
+    double half_width_mm = 1e-4;  // of all at a field; a perfect point has no size
+    std::vector<examples::BokehScene> scenes;
+    for (const double focus : options.focus_mm) {
+      scenes.push_back(
+          examples::focused_scene(lens, focus, {.light_mm = options.subject_mm, .field_rad = petzval::radians(field)}));
+      const auto sketch =
+          petzval::point_image(scenes.back().lens, scenes.back().light, {.samples = 1u << 10, .pixels = 1});
+      half_width_mm = std::max(half_width_mm, 1.08 * sketch.size.max_radius);
+    }
+    for (std::size_t i = 0; i < scenes.size(); ++i) {
+      const double focus = options.focus_mm[i];
+      progress.step(examples::number(field) + "°, " + examples::focus_caption(focus));
+      auto image = petzval::point_image(scenes[i].lens, scenes[i].light,
+                                        {.samples = options.samples,
+                                         .pixels = tile_pixels,
+                                         .half_width_mm = half_width_mm,
+                                         .threads = petzval::processor_threads()});
+      pictures.push_back({field, focus, scenes[i].lens.film_z(), std::move(image)});
+    }
+  }
+  return pictures;
+}
+
+examples::Sheet sheet(const std::vector<Picture>& pictures, const petzval::Lens& lens, const Options& options,
+                      const Weights& spectral) {
+  const auto set = wavelengths_nm();
+  const std::string title =
+      lens.name() + ", " +
+      (std::isinf(options.subject_mm) ? std::string("a point of light at infinity")
+                                      : "a point of light at " + examples::number(options.subject_mm) + " mm");
+  examples::Sheet result{
+      title,
+      {},
+      {"The film is where the primary wavelength, " + examples::number(set[lens.primary_wavelength()]) +
+           " nm, is sharpest. Tiles of a row have the same scale of film and their own exposure.",
+       "In three wavelengths each channel has its own image, and no colours lie between them."}};
+  for (const double field : options.field_deg) {
+    for (const bool triple : {false, true}) {
+      const Weights weights = triple ? triple_weights(set) : spectral;
+      examples::SheetRow row{.title = (field == 0 ? "on the axis" : examples::number(field) + "° off the axis") +
+                                      (triple ? ", 3 wavelengths" : ", " + std::to_string(set.size()) + " wavelengths"),
+                             .subtitle = triple
+                                             ? "650 nm in red, 510 nm in green, 475 nm in blue"
+                                             : "white: " + options.white_point + ", weighted by the CIE 1931 functions",
+                             .pixel_mm = 0,
+                             .tiles = {}};
+      for (const Picture& p : pictures) {
+        if (p.field_deg != field) continue;
+        row.pixel_mm = p.image.psf.pixel_mm;
+        row.tiles.push_back({examples::expose(petzval::render(p.image.psf, weights)).picture,
+                             {examples::focus_caption(p.focus_mm),
+                              "RMS radius " + examples::number(p.image.size.rms_radius, 3) + " mm"}});
+      }
+      result.rows.push_back(std::move(row));
+    }
+  }
+  return result;
+}
+
+Json or_null(const std::optional<double>& value) { return value ? Json(*value) : Json(); }
+
+Json to_json(const petzval::ChromaticAberration& colour, const Options& options) {
+  const auto set = wavelengths_nm();
+  Json longitudinal = Json::array(), lateral = Json::array();
+  for (std::size_t w = 0; w < set.size(); ++w) {
+    longitudinal.push_back({{"wavelength_nm", set[w]},
+                            {"paraxial_focus_shift_mm", or_null(colour.paraxial_focus_shift[w])},
+                            {"sharpest_focus_shift_mm", or_null(colour.sharpest_focus_shift[w])}});
+  }
+  for (std::size_t i = 0; i < options.field_deg.size(); ++i) {
+    Json rows = Json::array();
+    for (std::size_t w = 0; w < set.size(); ++w) {
+      rows.push_back({{"wavelength_nm", set[w]}, {"chief_ray_shift_mm", or_null(colour.lateral[i][w])}});
+    }
+    lateral.push_back({{"field_deg", options.field_deg[i]}, {"wavelengths", std::move(rows)}});
+  }
+  return {{"longitudinal", std::move(longitudinal)}, {"lateral", std::move(lateral)}};
+}
+
+std::string right(const std::string& text, std::size_t width) {
+  return std::string(width > text.size() ? width - text.size() : 0, ' ') + text;
+}
+
+/// Micrometres to a tenth, signed.
+std::string micrometres(const std::optional<double>& mm) {
+  if (!mm) return "-";
+  const double tenths = std::round(*mm * 1e4);
+  std::string text = examples::number(std::abs(tenths) / 10);
+  if (text.find('.') == std::string::npos) text += ".0";
+  return (tenths < 0 ? "-" : tenths > 0 ? "+" : "") + text;
+}
+
+std::string table(const petzval::ChromaticAberration& colour, const Options& options) {
+  const auto set = wavelengths_nm();
+  std::string text = "wavelength   paraxial focus   sharpest film";
+  for (const double field : options.field_deg) text += right("height at " + examples::number(field) + " deg", 22);
+  text += "\n";
+  for (std::size_t w = 0; w < set.size(); ++w) {
+    text += right(examples::number(set[w]), 7) + " nm" + right(micrometres(colour.paraxial_focus_shift[w]), 14) +
+            " um" + right(micrometres(colour.sharpest_focus_shift[w]), 13) + " um";
+    for (const auto& lateral : colour.lateral) text += right(micrometres(lateral[w]), 19) + " um";
+    text += "\n";
+  }
+  return text;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options options;
+  examples::App app(
+      "Shows the colours of a point of light out of focus, on the axis and off it, over 26 wavelengths and over one "
+      "for "
+      "each channel (650, 510, 475 nm).\n"
+      "Prints longitudinal and lateral colour: how far focus and chief ray are from those of the primary wavelength, "
+      "the "
+      "one nearest to the d line; positive: farther from the lens, and towards +y on the film. Writes to DIR, and "
+      "prints "
+      "the paths: LENS_chromatic.png (contact sheet), LENS_<F>deg_focus_<D>mm.exr (a channel S0.<wavelength>nm for "
+      "each "
+      "wavelength: share of its light in the paraxial entrance pupil, per mm^2 of film; and R, G, B of all in the "
+      "light "
+      "of the white point) and LENS_chromatic.json. Images show the film as a photograph does.",
+      "chromatic_bokeh");
+  app.add_option("LENS.json", options.lens_file, "lens prescription (JSON as in data/lenses)")->required();
+  examples::add_number(app, "--subject-distance-mm", options.subject_mm, examples::positive_length,
+                       "distance of the light from the front vertex (mm), or inf")
+      ->default_str("20 focal lengths");
+  examples::add_numbers(app, "--focus-mm", options.focus_mm, examples::positive_length, "focus distances (mm), or inf")
+      ->default_str("0.8, 0.9, 1, 1.1, 1.2 of the light's distance; for inf 25, 50, 100 focal lengths, and inf");
+  examples::add_numbers(app, "--field-deg", options.field_deg, examples::finite_number,
+                        "angles of the light towards +y, seen from the paraxial entrance pupil (degrees)")
+      ->default_str("0 and 0.7 of the lens's half field");
+  examples::add_iris(app, options.iris);
+  examples::add_white_point(app, options.white_point);
+  examples::add_samples(app, options.samples);
+  app.add_option("--out", options.out_folder, "folder for the results")->required()->type_name("DIR");
+
+  return examples::run(app, argc, argv, [&] {
+    const auto set = wavelengths_nm();
+    const Weights weights = examples::rgb_weights(set, examples::white_light(options.white_point));
+    const auto loaded = examples::load_lens(options.lens_file, set);
+    complete(options, loaded);
+    const petzval::Lens lens = examples::stopped_down(loaded.lens, options.iris);
+    const auto pictures = render(lens, options);
+    const auto in_focus = examples::focused_scene(lens, options.subject_mm, {.light_mm = options.subject_mm});
+    std::vector<double> fields_rad;
+    for (const double field : options.field_deg) fields_rad.push_back(petzval::radians(field));
+    const auto colour = petzval::chromatic_aberration(in_focus.lens, in_focus.light.z, fields_rad);
+
+    Json json{{"lens", lens.name()},
+              {"dispersion", petzval::name(lens.dispersion())},
+              {"f_number_real",
+               options.iris.f_number > 0 ? options.iris.f_number_by_corners() : petzval::real_f_number(loaded.lens)},
+              {"subject_distance_mm", examples::finite_or_null(options.subject_mm)},
+              {"white_point", options.white_point},
+              {"primary_nm", set[lens.primary_wavelength()]},
+              {"rgb_weights", weights}};
+    json.update(to_json(colour, options));
+    const auto contact_sheet = examples::draw_sheet(sheet(pictures, lens, options, weights));
+
+    std::cout << table(colour, options);
+    const std::filesystem::path folder = options.out_folder;
+    examples::make_folder(folder);
+    for (const Picture& p : pictures) {
+      const auto name =
+          loaded.id + "_" + examples::number(p.field_deg) + "deg_focus_" + examples::number(p.focus_mm) + "mm.exr";
+      petzval::write_exr(std::array{petzval::spectral_image(p.image.psf, weights)}, folder / name);
+      std::cout << (folder / name).string() << '\n';
+      json["pictures"].push_back({{"file", name},
+                                  {"field_deg", p.field_deg},
+                                  {"focus_mm", examples::finite_or_null(p.focus_mm)},
+                                  {"film_z_mm", p.film_z_mm},
+                                  {"throughput", p.image.throughput},
+                                  {"rms_radius_mm", p.image.throughput > 0 ? Json(p.image.size.rms_radius) : Json()},
+                                  {"picture_centre_mm", {p.image.psf.centre.x, p.image.psf.centre.y}},
+                                  {"picture_pixel_mm", p.image.psf.pixel_mm}});
+    }
+    petzval::write_png(contact_sheet, folder / (loaded.id + "_chromatic.png"));
+    std::cout << (folder / (loaded.id + "_chromatic.png")).string() << '\n';
+    examples::write_text(folder / (loaded.id + "_chromatic.json"), json.dump(1) + '\n');
+    std::cout << (folder / (loaded.id + "_chromatic.json")).string() << '\n';
+  });
+}

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "petzval/io/image.hpp"
+#include "program.hpp"
+
+namespace {
+
+class ChromaticBokeh : public Programs {
+ protected:
+  static constexpr const char* id = "double_gauss_100mm_f1.35";
+
+  nlohmann::json colours(std::vector<std::string> more = {}, const std::string& out = "out") const {
+    std::vector<std::string> arguments{lens(id), "--out", path(out), "--samples", "8192"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const auto outcome = run("chromatic_bokeh", arguments);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    for (const auto& line : lines(outcome.out)) {
+      EXPECT_TRUE(!line.starts_with("/") || std::filesystem::exists(line)) << line;
+    }
+    EXPECT_TRUE(outcome.out.starts_with("wavelength   paraxial focus   sharpest film")) << outcome.out;
+    EXPECT_TRUE(read(path(out + '/' + id + "_chromatic.png")).starts_with("\x89PNG"));
+    return read_json(path(out + '/' + id + "_chromatic.json"));
+  }
+
+  /// The channels of a picture by name.
+  std::map<std::string, std::vector<float>> channels(const nlohmann::json& picture) const {
+    std::map<std::string, std::vector<float>> result;
+    for (const auto& part : petzval::read_exr_parts(path("out/" + picture["file"].get<std::string>()))) {
+      for (const auto& channel : part.channels) result[channel.name] = channel.values;
+    }
+    return result;
+  }
+};
+
+TEST_F(ChromaticBokeh, WritesAChannelForEachWavelength) {
+  const auto json = colours({"--focus-mm", "1800,2200"});
+  EXPECT_EQ(json["subject_distance_mm"], 2000);
+  EXPECT_EQ(json["white_point"], "D65");
+  ASSERT_EQ(json["pictures"].size(), 4u);  // two fields
+  const auto& weights = json["rgb_weights"];
+  for (const auto& picture : json["pictures"]) {
+    const auto file = channels(picture);
+    ASSERT_EQ(file.size(), 3 + 26u);
+    for (const char* name : {"S0.430nm", "S0.475nm", "S0.670nm"}) EXPECT_EQ(file.count(name), 1u) << name;
+    // R, G and B are what the channels and the weights make of it, and all light is there.
+    const double area = std::pow(picture["picture_pixel_mm"].get<double>(), 2);
+    double throughput = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      std::vector<double> sums(file.at("R").size());
+      for (std::size_t w = 0; w < 26; ++w) {
+        const auto nm = json["longitudinal"][w]["wavelength_nm"].get<int>();
+        const auto& light = file.at("S0." + std::to_string(nm) + "nm");
+        for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += weights[w][k].get<double>() * light[i];
+        if (k == 0) {
+          for (const float value : light) throughput += value * area / 26;
+        }
+      }
+      const auto& channel = file.at(std::string(1, "RGB"[k]));
+      const float most = *std::max_element(channel.begin(), channel.end());
+      for (std::size_t i = 0; i < sums.size(); ++i) ASSERT_NEAR(channel[i], sums[i], 1e-5 * most);
+    }
+    EXPECT_NEAR(throughput, picture["throughput"].get<double>(), 1e-3);
+  }
+}
+
+// Blue light has the shorter focus in this lens: its image is the larger one where the film is too far from the lens,
+// and the smaller one where it is too near.
+TEST_F(ChromaticBokeh, TheOutlineIsBlueNearerThanTheLightAndRedBeyond) {
+  const auto json = colours({"--focus-mm", "1600,2400", "--field-deg", "0"});
+  EXPECT_LT(json["longitudinal"][0]["paraxial_focus_shift_mm"], -0.2);
+  EXPECT_GT(json["longitudinal"][25]["paraxial_focus_shift_mm"], 0.1);
+  const auto rms_radius = [&](const nlohmann::json& picture, const std::string& name) {
+    const auto values = channels(picture).at(name);
+    double light = 0, squares = 0;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      const double x = static_cast<double>(i % 320) - 159.5, y = static_cast<double>(i / 320) - 159.5;
+      light += values[i], squares += values[i] * (x * x + y * y);
+    }
+    return std::sqrt(squares / light);
+  };
+  const auto &nearer = json["pictures"][0], &farther = json["pictures"][1];
+  EXPECT_GT(rms_radius(nearer, "S0.450nm"), 1.3 * rms_radius(nearer, "S0.650nm"));
+  EXPECT_LT(1.3 * rms_radius(farther, "S0.450nm"), rms_radius(farther, "S0.650nm"));
+}
+
+TEST_F(ChromaticBokeh, LateralColourIsNoneOnTheAxis) {
+  const auto json = colours({"--focus-mm", "2000", "--field-deg", "0,9", "--f-number", "4"});
+  EXPECT_EQ(json["primary_nm"], 590);
+  EXPECT_EQ(json["f_number_real"], 4);
+  for (const auto& row : json["lateral"][0]["wavelengths"]) {
+    EXPECT_NEAR(row["chief_ray_shift_mm"].get<double>(), 0, 1e-12);
+  }
+  EXPECT_GT(json["lateral"][1]["wavelengths"][0]["chief_ray_shift_mm"], 0.01);
+}
+
+TEST_F(ChromaticBokeh, RefusesABadCommandLineInOneLine) {
+  const auto refuse = [&](std::vector<std::string> more, const std::string& reason) {
+    std::vector<std::string> arguments{lens(id), "--out", path("out")};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    expect_failure("chromatic_bokeh", arguments, reason);
+    EXPECT_FALSE(std::filesystem::exists(path("out")));
+  };
+  refuse({"--white-point", "moon"}, "--white-point: found \"moon\"");
+  refuse({"--subject-distance-mm", "0"}, "--subject-distance-mm: found \"0\"");
+  refuse({"--focus-mm", "15"}, "cannot be focused");
+  refuse({"--field-deg", "95"}, "95");
+  expect_failure("chromatic_bokeh", {lens("fisheye_10mm_f4"), "--out", path("out")},
+                 "wanted one of them for its index at 430 nm");
+}
+
+}  // namespace
