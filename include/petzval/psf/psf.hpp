@@ -64,8 +64,9 @@ struct PointImage {
   std::array<double, 64> radial_profile{};
   double throughput = 0;  ///< mean over wavelengths
   /// A bound of the relative error of the light in the rings of the profile (root of summed squares), which 95 of 100
-  /// fresh runs keep (tests/psf/psf_error_test.cpp). From eight parts of the samples that follow each other; of round
-  /// pupils it is two to four times the error, because these parts complement each other. 0 where no ray passes.
+  /// fresh runs keep (tests/psf/psf_error_test.cpp). From eight parts of the samples that follow each other; as these
+  /// complement each other, it is about twice the error off the axis and with blades, and four to five times the error
+  /// on the axis of round pupils. 0 where no ray passes.
   double error = 0;
 };
 
