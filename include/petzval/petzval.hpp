@@ -17,6 +17,7 @@
 ///                                    --> Camera                               rays, importance and projection for a
 ///                                                                             renderer, by any model of the lens
 ///                                    --> choose_model                         the fastest model in an error budget
+///                                    --> fit_two_discs                        its cat's eyes as two discs
 ///                                    --> spot_diagram, point_image            spots and images of points
 ///                                    --> psf_kernel, PsfSet                   images of points over field, distance,
 ///                                                                             wavelength and stop, interpolated
@@ -44,6 +45,7 @@
 #include "petzval/camera/host_frame.hpp"
 #include "petzval/camera/polynomial_model.hpp"
 #include "petzval/camera/ray_model.hpp"
+#include "petzval/camera/two_discs.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/parallel.hpp"
 #include "petzval/core/ray.hpp"

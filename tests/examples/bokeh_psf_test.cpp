@@ -282,6 +282,7 @@ TEST_F(BokehPsf, RefusesABadCommandLineInOneLine) {
   refuse_iris({"--blades", "21"}, "--blades: found \"21\", wanted 3 to 20, or 0 for a round iris");
   refuse_iris({"--blades", "5.5"}, "--blades: found \"5.5\", wanted 3 to 20, or 0 for a round iris");
   refuse_iris({"--blades", "5", "--roundness", "1.1"}, "--roundness: found \"1.1\", wanted a number from -1 to 1");
+  refuse_iris({"--roundness", "0.5"}, "--roundness: found it without --blades");
   refuse_iris({"--tolerance", "0"}, "--tolerance: found \"0\", wanted a number above 0, at most 1");
   refuse_iris({"--blades", "5", "--iris-area", "equal"}, "--iris-area: found equal without --f-number");
   refuse_iris({"--white-point", "D66"}, "--white-point: found \"D66\", wanted D65, D50, A, E or a file.csv");
