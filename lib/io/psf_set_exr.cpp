@@ -28,13 +28,16 @@ const std::vector<float>* channel(const ExrPart& part, const char* name) {
   return found == part.channels.end() ? nullptr : &found->values;
 }
 
-/// Of numbers and channels.
+/// Of numbers and channels, and of the texts that tell a number.
 std::string checksum_of(const ExrPart& part) {
   std::string bytes;
   const auto add = [&bytes](std::uint64_t bits, int count) {
     for (int byte = 0; byte < count; ++byte) bytes += static_cast<char>(bits >> (8 * byte) & 0xff);
   };
   for (const auto& [name, value] : part.numbers) bytes += name, add(std::bit_cast<std::uint64_t>(value), 8);
+  for (const char* name : {"anchor", "diffraction"}) {
+    if (const auto text = part.texts.find(name); text != part.texts.end()) bytes += text->second;
+  }
   for (const char* name : channel_names) {
     const std::vector<float>* values = channel(part, name);
     if (!values) continue;
@@ -69,8 +72,8 @@ ExrPart to_exr_part(const PsfKernel& kernel, const PsfSetPoint& point) {
                   {"error", kernel.error},
                   {"rays", kernel.rays}};
   part.texts = {{"anchor", kernel.chief_ray ? "chief_ray" : "centroid"},
-                {"diffraction", std::string(name(kernel.diffraction))},
-                {"checksum", checksum_of(part)}};
+                {"diffraction", std::string(name(kernel.diffraction))}};
+  part.texts["checksum"] = checksum_of(part);
   return part;
 }
 

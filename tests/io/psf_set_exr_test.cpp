@@ -83,6 +83,8 @@ TEST(PsfSetExr, RefusesPartsThatHaveChangedOrAreSomethingElse) {
   refused([](ExrPart& p) { p.channels[2].values[8] = 0; }, "the file has changed");  // was -0
   refused([](ExrPart& p) { p.numbers["error"] += 1e-16; }, "the file has changed");
   refused([](ExrPart& p) { p.numbers["more"] = 1; }, "the file has changed");
+  refused([](ExrPart& p) { p.texts["anchor"] = "chief_ray"; }, "the file has changed");
+  refused([](ExrPart& p) { p.texts["diffraction"] = "none"; }, "the file has changed");
   refused([](ExrPart& p) { p.numbers.erase("total"); }, "no number total");
   refused([](ExrPart& p) { p.texts.erase("anchor"); }, "no text anchor");
   refused([](ExrPart& p) { p.channels.erase(p.channels.begin()); }, "no channel Y");

@@ -14,7 +14,7 @@ namespace petzval::inline v0 {
 ///
 /// Channels: Y, the light, and hits.x, hits.y. Attributes: the point (field_deg, distance_mm, wavelength_nm, f_number),
 /// the numbers of PsfKernel by their names with anchor_x_mm and anchor_y_mm, `anchor` (chief_ray or centroid),
-/// `diffraction`, and `checksum` over channels and numbers. Any reader of EXR shows Y.
+/// `diffraction`, and `checksum` over all of these. Any reader of EXR shows Y.
 ///
 /// The part's name tells the point: "10deg_1000mm_587.5618nm_f2.8".
 PETZVAL_API std::string psf_part_name(const PsfSetPoint& point);
