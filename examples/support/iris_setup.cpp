@@ -37,7 +37,8 @@ void add_iris_shape(App& app, IrisSetup& setup) {
 
 petzval::Lens stopped_down(const petzval::Lens& lens, const IrisSetup& setup) {
   if (setup.blades == 0 && setup.roundness != 0) {
-    throw petzval::Error("--roundness: found it without --blades, wanted a number of blades: a round iris has no edges");
+    throw petzval::Error(
+        "--roundness: found it without --blades, wanted a number of blades: a round iris has no edges");
   }
   const petzval::Lens shaped = petzval::with_iris(lens, setup.iris());
   if (setup.f_number > 0) return petzval::with_f_number(shaped, setup.f_number_by_corners());

@@ -144,6 +144,20 @@ TEST_F(PsfSets, AKilledRunGoesOnAtItsLastWholePsf) {
   EXPECT_EQ(read(path("killed/psf_set.exr")), exr);
 }
 
+TEST_F(PsfSets, TellTheTimeLeftOnATerminal) {
+  if (std::system("command -v script > /dev/null") != 0) GTEST_SKIP() << "no script, which is a terminal";
+  std::string command = std::string(PETZVAL_TEST_PROGRAMS) + "/psf_set";
+  for (const std::string& argument : set("shown")) command += ' ' + argument;
+  ASSERT_EQ(std::system(("script -qec '" + command + "' /dev/null > '" + path("screen") + "'").c_str()), 0);
+  const std::string screen = read(path("screen"));
+  const std::string second = "PSFs 2/12: 7deg_1000mm_587.5618nm_f2.8, ";
+  const std::size_t at = screen.find(second);
+  ASSERT_NE(at, std::string::npos) << screen;
+  EXPECT_EQ(screen.substr(screen.find(' ', at + second.size()), 7), " s left");
+  const auto silent = run("psf_set", set("silent"));
+  EXPECT_EQ(silent.err, "");
+}
+
 TEST_F(PsfSets, QueriesGiveNodesBitForBitAndPointsBetween) {
   whole();
   const std::string file = path("whole/psf_set.exr");

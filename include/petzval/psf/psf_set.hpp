@@ -18,7 +18,8 @@ namespace petzval::inline v0 {
 ///
 /// Light: an evenly bright scene gives the film irradiance where the kernel stands; `total`, the sum of all pixels, is
 /// that as a share of what the wide-open lens gives on the axis, at its primary wavelength. So a kernel holds the
-/// relative illumination of its field (cos^4 and vignetting) and the light that a smaller stop takes.
+/// relative illumination of its field (cos^4 and vignetting) and the light that a smaller stop takes. It is dark where
+/// the film sees nothing, although rays of a point far out of focus may arrive there.
 ///
 /// Frame: a photograph's, upright, with +y away from its middle: in the direction of the field. Rows come from the top
 /// (largest y first); x runs to the right. On the film both axes are the other way round. The anchor lies in the middle
