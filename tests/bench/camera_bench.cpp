@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Time of a camera ray, one thread: pupil sample, ray and weight by every model of a lens, in batches of 4096 samples,
-// one by one, and on a tilted film; and the set-up time of cameras, of all lenses too.
+// one by one, on a tilted film, and with what shapes a bokeh; and the set-up time of cameras, of all lenses too.
 //
 //   camera_bench [--json FILE] [options of Google Benchmark]
 //
@@ -165,11 +165,11 @@ void print_rows(const Bench& bench, const std::vector<Row>& rows) {
       bench.lens.name.c_str(), bench.lens.lens.surface_count(), bench.film.width_mm, bench.film.height_mm,
       petzval::degrees(bench.tilted.tilt_rad), digits(first->textbook_ns).c_str());
   std::printf(
-      "| model         | call   | precision | ns per sample | useful  | ns per useful ray | x textbook ray |\n"
-      "|---------------|--------|-----------|--------------:|--------:|------------------:|---------------:|\n");
+      "| model         | call      | precision | ns per sample | useful  | ns per useful ray | x textbook ray |\n"
+      "|---------------|-----------|-----------|--------------:|--------:|------------------:|---------------:|\n");
   for (const Row& row : rows) {
     if (!mine(row)) continue;
-    std::printf("| %-13s | %-6s | %-9s | %13s | %5.1f %% | %17s | %14s |\n",
+    std::printf("| %-13s | %-9s | %-9s | %13s | %5.1f %% | %17s | %14s |\n",
                 std::string(petzval::name(row.model)).c_str(), row.call.c_str(), row.precision(),
                 digits(row.ns).c_str(), 100 * row.useful, digits(row.ns_per_useful()).c_str(),
                 digits(row.ratio(), 3).c_str());
@@ -253,6 +253,23 @@ int run(std::vector<char*> arguments) {
           {bench.lens.id, "tilted", model, in_double, Camera(bench.lens.lens, bench.tilted, {.model = model})});
       benchmark::RegisterBenchmark(rows.back().name().c_str(), in_double ? time_batches<double> : time_batches<float>,
                                    rows.back());
+    }
+    // What shapes a bokeh.
+    struct Shape {
+      const char* call;
+      petzval::BokehControls controls;
+    };
+    petzval::BokehControls rings;
+    rings.weight_map = petzval::onion_rings({}, 512);
+    for (const ModelKind model :
+         {ModelKind::thin, ModelKind::thin_two_disc, ModelKind::polynomial_7, ModelKind::exact_float}) {
+      for (const auto& [call, controls] :
+           {Shape{"hexagon", {.lens_elements = 6}}, Shape{"cat's eye", {.rate_of_change = 1}},
+            Shape{"rim", {.weight_distribution = 12.7, .weight_strength = 0.6}}, Shape{"rings", rings}}) {
+        rows.push_back({bench.lens.id, call, model, false,
+                        Camera(bench.lens.lens, bench.film, {.model = model, .bokeh = controls})});
+        benchmark::RegisterBenchmark(rows.back().name().c_str(), time_batches<float>, rows.back());
+      }
     }
   }
   Rounds rounds;

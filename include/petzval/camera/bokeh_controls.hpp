@@ -18,8 +18,8 @@ namespace petzval::inline v0 {
 /// batches a ray takes 10 ns more, behind a real stop 17, with a map 85.
 struct BokehControls {
   int lens_elements = 0;  ///< straight blades in place of the lens's own iris, 3 to 20; 0: that iris
-  /// A second rim, that cuts cat's eyes: its radius over that of the pupil on the axis. (The text's program divides
-  /// squared radii by this number.)
+  /// A second rim, that cuts cat's eyes: its radius over that of the pupil on the axis. (In the text's program it has
+  /// 1 / sqrt of this number.)
   double lens_ratio = 1;
   /// By how many of these radii it moves against the film point from the film's centre to where its longer side ends:
   /// over the same length in all directions, so that cat's eyes lie around the centre of a film that is not square.
