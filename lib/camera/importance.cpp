@@ -111,7 +111,7 @@ double pinhole_entrance_area(const AnyRayModel& model, double entrance_z, std::s
   const auto [film_by_height, pupil_by_height] = image(1, 0);
   const auto [film_by_slope, pupil_by_slope] = image(0, 1);
   const double height_by_pupil = film_by_slope / (pupil_by_height * film_by_slope - pupil_by_slope * film_by_height);
-  return model.pupils().area({}, wavelength) * squared(height_by_pupil);
+  return model.pupils().whole().area({}, wavelength) * squared(height_by_pupil);
 }
 
 }  // namespace
@@ -131,6 +131,9 @@ SceneSide::SceneSide(const LensFacts& facts, const Film& film, std::optional<Til
       primary_(model.pupils().primary_wavelength()),
       entrance_(entrance_of(facts.lens(), model)) {
   const Lens& lens = facts.lens();
+  if (const FilmPupilTable& pupils = model.pupils(); model.pinhole() && pupils.cut()) {
+    whole_ = tilted_ ? TiltedFilm(film, pupils.whole()).pupils() : pupils.whole();
+  }
   std::vector<std::array<double, 3>> values;
   for (std::size_t w = 0; w < wavelengths.count(); ++w) {
     const double n = lens.index(0, w), n_film = lens.index(lens.surface_count(), w), etendue = squared(n / n_film);
@@ -324,7 +327,14 @@ ImportanceSample SceneSide::through_pinhole(const AnyRayModel& model, const Vec3
     seen.fate = RayFate::vignetted;
     return result;
   }
-  weigh(seen, model, arrival, facing, result.direction.z, s.area, at);
+  // A rim leaves a part of the entrance pupil too.
+  Facts left = at;
+  if (whole_) {
+    const double part = s.area / whole_->area(met->virtual_point, wavelength);
+    left.entrance_area *= part;
+    result.pdf /= part;
+  }
+  weigh(seen, model, arrival, facing, result.direction.z, s.area, left);
   seen.we *= spread, seen.pdf_direction *= spread;
   if (weights_) {
     const TwoPlaneRay line{arrival.upright.x, arrival.upright.y, place.x, place.y};

@@ -17,6 +17,14 @@ constexpr int least_degree = 3, degree_step = 2;
 
 namespace camera_detail {
 
+FilmPupilTable behind(const PupilRim& rim, const FilmPupilTable& pupils, const Lens& lens) {
+  try {
+    return pupils.cut_by_rim(rim);
+  } catch (const Error& error) {
+    throw Error(lens.name() + ": " + error.what());
+  }
+}
+
 bool is_first_order(ModelKind model) noexcept {
   using enum ModelKind;
   return model == pinhole || model == thin || model == thin_two_disc || model == thick;
@@ -28,7 +36,9 @@ bool is_polynomial(ModelKind model) noexcept {
 
 AnyRayModel make_model(ModelKind model, const LensFacts& facts, double film_radius, int threads,
                        const std::optional<PupilRim>& rim) {
-  const auto behind_rim = [&](const FilmPupilTable& pupils) { return rim ? pupils.cut_by_rim(*rim) : pupils; };
+  const auto behind_rim = [&](const FilmPupilTable& pupils) {
+    return rim ? behind(*rim, pupils, facts.lens()) : pupils;
+  };
   if (is_first_order(model)) return ParaxialModel(model, facts, film_radius, rim);
   if (is_polynomial(model)) {
     const int steps = static_cast<int>(model) - static_cast<int>(ModelKind::polynomial_3);

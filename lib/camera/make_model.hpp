@@ -15,6 +15,9 @@ namespace petzval::inline v0::camera_detail {
 PETZVAL_API AnyRayModel make_model(ModelKind model, const LensFacts& facts, double film_radius, int threads = 1,
                                    const std::optional<PupilRim>& rim = {});
 
+/// What a rim leaves of the pupils of a lens. Throws Error where FilmPupilTable::cut_by_rim() does.
+FilmPupilTable behind(const PupilRim& rim, const FilmPupilTable& pupils, const Lens& lens);
+
 /// Whether a model is a ParaxialModel, or a PolynomialModel.
 bool is_first_order(ModelKind model) noexcept;
 PETZVAL_API bool is_polynomial(ModelKind model) noexcept;

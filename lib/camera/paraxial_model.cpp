@@ -170,7 +170,8 @@ FilmPupilTable pupils_of(ModelKind model, const LensFacts& facts, double film_ra
 ParaxialModel::ParaxialModel(ModelKind model, const LensFacts& facts, double film_radius,
                              const std::optional<PupilRim>& rim)
     : kind_(model),
-      pupils_(rim ? pupils_of(model, facts, film_radius).cut_by_rim(*rim) : pupils_of(model, facts, film_radius)),
+      pupils_(rim ? behind(*rim, pupils_of(model, facts, film_radius), facts.lens())
+                  : pupils_of(model, facts, film_radius)),
       primary_(pupils_.primary_wavelength()),
       z_(facts.lens().surfaces().front().vertex_z),
       sections_alike_(!has_cylinders(facts.lens())) {

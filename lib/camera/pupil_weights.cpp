@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <optional>
 
 #include "camera_loops.hpp"
@@ -93,7 +94,8 @@ PupilWeights::PupilWeights(const Lens& lens, const AnyRayModel& model, const Bok
   const ModelKind kind = model.kind();
   const bool custom = kind == ModelKind::custom, first_order = !custom && is_first_order(kind);
   std::optional<RealStop> stop;
-  if (lens.stop() && !custom) stop.emplace(lens, model.pupils().space());
+  const bool has_rim = lens.stop() && std::isfinite(lens.surfaces()[*lens.stop()].semi_diameter);
+  if (has_rim && !custom) stop.emplace(lens, model.pupils().space());
   // Samples begin at the first corner of a real stop's blades, wherever the pupil shows it; else at +y of the pupil.
   const auto* const closed = model.as<ParaxialModel>();
   const bool by_blades = !lens.iris().round() && !(closed && !closed->two_discs());

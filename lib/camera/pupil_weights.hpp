@@ -19,7 +19,7 @@ class PupilWeights {
   /// No weights.
   PupilWeights() = default;
   /// Of a model of the lens. Throws Error for a weight map with weights that are not finite or negative, of a size that
-  /// does not fit them, of more than 2^26 pixels or black, and for an edge whose numbers are not finite.
+  /// does not fit them, of more than 2^26 pixels or black, and for an edge out of range.
   PupilWeights(const Lens& lens, const AnyRayModel& model, const BokehControls& controls);
 
   explicit operator bool() const noexcept { return data_ != nullptr; }

@@ -91,6 +91,7 @@ class SceneSide {
   std::size_t primary_ = 0;
   std::vector<Compiled> compiled_;
   EntrancePupilTable entrance_;
+  std::optional<FilmPupilTable> whole_;  // of a pinhole whose pupils a rim has cut: those before, of the same film
 };
 
 }  // namespace petzval::inline v0::camera_detail

@@ -159,6 +159,9 @@ std::array<PupilDisc, 2> fit_two_discs(std::span<const EdgePoint> edges) {
 
 TwoDiscs fit_two_discs(const Lens& lens, double film_radius, Wavelength wavelength) {
   const std::size_t w = lens.position(wavelength);
+  if (w >= lens.wavelengths_nm().size()) {
+    throw Error(lens.name() + ": fit_two_discs: found a wavelength that the lens does not have, wanted a compiled one");
+  }
   if (!(film_radius > 0 && std::isfinite(film_radius))) {
     throw Error(lens.name() + ": fit_two_discs: film_radius is " + to_text(film_radius) + " mm, wanted a length");
   }

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <png.h>
 
+#include <csetjmp>
 #include <cstdint>
+#include <cstdio>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -18,23 +21,55 @@ void check_size(std::size_t width, std::size_t height, const std::filesystem::pa
               std::to_string(most) + " or fewer");
 }
 
-/// As the file has them: weights are no light, and have no gamma.
+/// The rows of an open PNG file, 16 bits a channel, as the file has them: weights are no light, and have no gamma.
+/// Null: they cannot be read. (libpng jumps out of a function on an error; nothing in this one has a destructor.)
+struct PngRows {
+  png_structp png = nullptr;
+  png_infop info = nullptr;
+  std::uint32_t width = 0, height = 0, channels = 0;
+};
+bool read_head(std::FILE* file, PngRows& rows) noexcept {
+  rows.png = png_create_read_struct(
+      PNG_LIBPNG_VER_STRING, nullptr, [](png_structp png, png_const_charp) { png_longjmp(png, 1); },
+      [](png_structp, png_const_charp) {});
+  if (rows.png) rows.info = png_create_info_struct(rows.png);
+  if (!rows.info || setjmp(png_jmpbuf(rows.png))) return false;
+  png_init_io(rows.png, file);
+  png_read_info(rows.png, rows.info);
+  png_set_expand_16(rows.png);
+  png_set_strip_alpha(rows.png);
+  png_set_interlace_handling(rows.png);
+  png_read_update_info(rows.png, rows.info);
+  rows.width = png_get_image_width(rows.png, rows.info), rows.height = png_get_image_height(rows.png, rows.info);
+  rows.channels = png_get_channels(rows.png, rows.info);
+  return true;
+}
+bool read_rows(PngRows& rows, png_bytepp to) noexcept {
+  if (setjmp(png_jmpbuf(rows.png))) return false;
+  png_read_image(rows.png, to);
+  return true;
+}
+
 IrisMap read_png_map(const std::filesystem::path& file) {
-  png_image png{};
-  png.version = PNG_IMAGE_VERSION;
-  if (!png_image_begin_read_from_file(&png, file.c_str())) throw Error(file.string() + ": " + png.message);
-  IrisMap map{static_cast<int>(png.width), static_cast<int>(png.height), {}};
-  try {
-    check_size(png.width, png.height, file);
-  } catch (const Error&) {
-    png_image_free(&png);
-    throw;
-  }
-  png.format = PNG_FORMAT_RGB;
-  std::vector<std::uint8_t> bytes(PNG_IMAGE_SIZE(png));
-  if (!png_image_finish_read(&png, nullptr, bytes.data(), 0, nullptr)) throw Error(file.string() + ": " + png.message);
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    map.values.push_back(static_cast<float>(bytes[i] + bytes[i + 1] + bytes[i + 2]) / (3 * 255));
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> open(std::fopen(file.c_str(), "rb"), std::fclose);
+  if (!open) throw Error(file.string() + ": cannot be opened, wanted a PNG or EXR file");
+  PngRows rows;
+  const auto end = [](PngRows* own) { png_destroy_read_struct(&own->png, &own->info, nullptr); };
+  const std::unique_ptr<PngRows, decltype(end)> ended(&rows, end);
+  const auto refuse = [&] { throw Error(file.string() + ": cannot be read as a PNG file, wanted a whole one"); };
+  if (!read_head(open.get(), rows)) refuse();
+  check_size(rows.width, rows.height, file);
+  const std::size_t row_bytes = std::size_t{2} * rows.channels * rows.width;
+  std::vector<std::uint8_t> bytes(row_bytes * rows.height);
+  std::vector<png_bytep> row_begins;
+  for (std::size_t y = 0; y < rows.height; ++y) row_begins.push_back(&bytes[y * row_bytes]);
+  if (!read_rows(rows, row_begins.data())) refuse();
+  IrisMap map{static_cast<int>(rows.width), static_cast<int>(rows.height), {}};
+  for (std::size_t i = 0; i < bytes.size(); i += std::size_t{2} * rows.channels) {
+    float sum = 0;
+    for (std::size_t c = 0; c < rows.channels; ++c)
+      sum += static_cast<float>(bytes[i + 2 * c] << 8 | bytes[i + 2 * c + 1]);
+    map.values.push_back(sum / (65535 * static_cast<float>(rows.channels)));
   }
   return map;
 }
@@ -62,7 +97,8 @@ IrisMap read_exr_map(const std::filesystem::path& file) {
 }  // namespace
 
 IrisMap read_iris_map(const std::filesystem::path& file) {
-  return file.extension() == ".exr" ? read_exr_map(file) : read_png_map(file);
+  const std::string ending = file.extension().string();
+  return ending == ".exr" || ending == ".EXR" ? read_exr_map(file) : read_png_map(file);
 }
 
 }  // namespace petzval::inline v0

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <numbers>
+#include <numeric>
 #include <string>
 #include <utility>
 #include <vector>
@@ -148,9 +149,9 @@ IrisMap upside_down(IrisMap map, bool along_x, bool along_y) {
 IrisWeights::IrisWeights(const Iris& iris, const EdgeWeight& edge, const IrisMap& map, double uniform_part,
                          const std::string& where)
     : shape_(iris), edge_(edge), map_(map) {
-  if (!std::isfinite(edge.distribution) || !std::isfinite(edge.strength)) {
+  if (!(std::abs(edge.distribution) <= 1000) || !(std::abs(edge.strength) <= 1e6)) {
     throw Error(where + "found the weight distribution " + to_text(edge.distribution) + " and strength " +
-                to_text(edge.strength) + ", wanted finite numbers");
+                to_text(edge.strength) + ", wanted at most 1000 and 1e6 in size");
   }
   // Within 2e-6 of the brightest weight: (d / steps)^4 / 384.
   constexpr double least = 4, most = 200;
@@ -187,26 +188,26 @@ IrisWeights::IrisWeights(const Iris& iris, const EdgeWeight& edge, const IrisMap
     }
     return;
   }
-  // The light of each cell by its mean over some places.
-  constexpr int places = 4;
+  // The light of each cell by places of an even grid over the square, of every pixel one at least.
+  constexpr int across_at_least = 1024;
+  const auto along = [](int pixels) { return pixels * ((across_at_least + pixels - 1) / pixels); };
+  const int across = along(map.width), down = along(map.height);
   std::vector<double> light(rows * columns_), in_row(rows);
-  double total = 0, of_map = 0;
-  for (std::size_t i = 0; i < rows; ++i) {
-    const double height = rows_[i + 1] - rows_[i];
-    for (std::size_t j = 0; j < columns_; ++j) {
-      double sum = 0, own_map = 0;
-      for (int k = 0; k < places * places; ++k) {
-        const double v = rows_[i] + height * (k / places + 0.5) / places;
-        const double u = (static_cast<double>(j) + (k % places + 0.5) / places) / static_cast<double>(columns_);
-        const double at_place = map_at(shape_.sample(u, v));
-        sum += edge.at(v) * at_place, own_map += at_place;
-      }
-      const double area = height / static_cast<double>(columns_) / (places * places);
-      light[i * columns_ + j] = sum * area;
-      in_row[i] += sum * area;
-      of_map += own_map * area;
+  double total = 0, of_map = 0, within = 0;
+  for (int i = 0; i < down; ++i) {
+    for (int j = 0; j < across; ++j) {
+      const Vec2<double> place{(2 * j + 1.0) / across - 1, 1 - (2 * i + 1.0) / down};
+      const Vec2<double> at = shape_.position(place.x, place.y);
+      if (!(at.y <= 1)) continue;
+      const double own = map_at(place), weight = edge_at(at.y) * own;
+      light[row_of(at.y) * columns_ + column_of(at.x)] += weight;
+      of_map += own, total += weight, ++within;
     }
-    total += in_row[i];
+  }
+  for (double& value : light) value /= within;
+  of_map /= within, total /= within;
+  for (std::size_t i = 0; i < rows; ++i) {
+    in_row[i] = std::accumulate(&light[i * columns_], &light[i * columns_] + columns_, 0.0);
   }
   if (!(total > 0)) throw Error(where + "the map is black on the iris, wanted light somewhere");
   if (map.keep_mean) {
@@ -216,7 +217,7 @@ IrisWeights::IrisWeights(const Iris& iris, const EdgeWeight& edge, const IrisMap
     total /= of_map;
   }
   mean_ = total;
-  // What lies between those places may be brighter.
+  // What lies between those places may be brighter, and small cells may hold none of them.
   const double floor = std::max(uniform_part, 0.02);
   before_rows_.push_back(0);
   for (std::size_t i = 0; i < rows; ++i) {

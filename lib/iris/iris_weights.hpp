@@ -24,7 +24,7 @@ PETZVAL_API IrisMap upside_down(IrisMap map, bool along_x, bool along_y);
 class PETZVAL_API IrisWeights {
  public:
   /// map: as check() lets it pass. uniform_part: of the samples, whatever the weights are. Throws Error, which begins
-  /// with `where`, for an edge whose numbers are not finite and a map that is black on the iris.
+  /// with `where`, for an edge out of range and a map that is black on the iris.
   IrisWeights(const Iris& iris, const EdgeWeight& edge, const IrisMap& map, double uniform_part,
               const std::string& where);
 

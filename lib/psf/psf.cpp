@@ -77,6 +77,16 @@ struct Rays {
     return std::any_of(units.begin(), units.end(), [](const auto& own) { return !own.empty(); });
   }
 
+  /// Some rays weigh far more than others: the variance of weights over their squared mean.
+  bool uneven() const noexcept {
+    double count = 0, sum = 0, squares = 0;
+    for (const RayBundle& set : sets) {
+      for (const double weight : set.weights) ++count, sum += weight, squares += weight * weight;
+    }
+    constexpr double much = 0.25;
+    return count * squares > (1 + much) * sum * sum;
+  }
+
   static constexpr std::uint32_t units_per_ray = 1u << 16;
   static std::uint32_t units_of(double weight) noexcept {
     return static_cast<std::uint32_t>(std::min(weight * units_per_ray + 0.5, 4294967295.0));
@@ -150,6 +160,8 @@ std::array<double, rings> light_by_ring(const Psf& psf, const Rays& rays, const 
 
 /// Standard errors to a bound that 95 of 100 fresh runs keep: measured, tests/psf/psf_error_test.cpp.
 constexpr double confidence = 1.6;
+/// The same of uneven rays: where a bright rim ends depends on few of them.
+constexpr double uneven_confidence = 3.6;
 
 /// Profile and error. Parts have rings of their own: how wide these are is a part of the error.
 void fill_profile(PointImage& image, const Rays& rays) {
@@ -172,7 +184,7 @@ void fill_profile(PointImage& image, const Rays& rays) {
     const auto its = light_by_ring(image.psf, rays, {size.centroid, size.max_radius / rings}, part);
     for (std::size_t k = 0; k < rings; ++k) errors += (parts * its[k] - light[k]) * (parts * its[k] - light[k]);
   }
-  image.error = confidence * std::sqrt(errors / (parts * (parts - 1)) / squares);
+  image.error = (rays.uneven() ? uneven_confidence : confidence) * std::sqrt(errors / (parts * (parts - 1)) / squares);
 }
 
 /// The rays of a camera that connect a point with the entrance pupil, with weights: the area of the pupil plane that a
@@ -286,11 +298,21 @@ PointImage point_image(const Lens& lens, const FieldPoint& point, const PsfOptio
   return image_of(lens, areas, send, options);
 }
 
+/// The largest weight of some rays, over all wavelengths; 1 for none.
+double brightest(const SendRays& send, std::size_t wavelengths) {
+  constexpr std::uint32_t some = 256;
+  double result = 0;
+  for (std::size_t w = 0; w < wavelengths; ++w) {
+    for (const double weight : send(w, 0, some).weights) result = std::max(result, weight);
+  }
+  return result > 0 ? result : 1;
+}
+
 PointImage point_image(const Camera& camera, const FieldPoint& point, const PsfOptions& options) {
   validate(options);
   const Lens& lens = camera.lens();
   const PupilPlane plane(lens, point);
-  const double area = entrance_pupil_area(lens);
+  double area = entrance_pupil_area(lens);
   if (!std::isfinite(area)) throw Error(lens.name() + ": point_image: the entrance pupil is infinite, wanted a size");
   const std::vector<std::size_t> wavelengths = wavelengths_of(lens, options);
   if (area == 0)
@@ -299,6 +321,8 @@ PointImage point_image(const Camera& camera, const FieldPoint& point, const PsfO
   const auto send = [&](std::size_t w, std::uint32_t first, std::uint32_t count) {
     return connected_rays(camera, plane, wavelengths[w], area, first, count, options);
   };
+  // Counts tell weights apart that are 1/65536 of the brightest.
+  area *= brightest(send, wavelengths.size());
   return image_of(lens, std::vector(wavelengths.size(), area), send, options);
 }
 

@@ -147,6 +147,16 @@ TEST(IrisWeights, OfAMapHaveItsMeanOrOne) {
   }
 }
 
+// A slit, and a hole, a pixel wide.
+TEST(IrisWeights, SeeDetailsOfAPixel) {
+  constexpr int pixels = 512;
+  IrisMap slit{pixels, pixels, std::vector<float>(pixels * pixels)}, hole = slit;
+  for (int i = 0; i < pixels; ++i) slit.values[static_cast<std::size_t>(i * pixels + pixels / 2)] = 1;
+  hole.values[static_cast<std::size_t>(100 * pixels + 300)] = 1;
+  EXPECT_NEAR(iris_area({}, slit), 2 * 2.0 / pixels, 0.02 * 4 / pixels);
+  EXPECT_NEAR(iris_area({}, hole), 4.0 / (pixels * pixels), 0.02 * 4 / (pixels * pixels));
+}
+
 TEST(IrisWeights, ShowTheMapWithXToTheRightAndYUp) {
   IrisMap map{2, 2, {1, 2, 3, 4}};
   const IrisWeights weights({}, {}, map, 0, "");

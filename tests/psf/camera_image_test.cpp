@@ -78,6 +78,17 @@ TEST(CameraImages, HaveTheWeightsOfTheCamera) {
   }
 }
 
+// Whatever the unit of a map is.
+TEST(CameraImages, CountWeightsOfAnySize) {
+  const Lens lens = with_f_number(with_focus(data_lens("double_gauss_100mm_f2.0"), 3000), 5.6);
+  const auto light = [&](float value) {
+    BokehControls bokeh;
+    bokeh.weight_map = {1, 1, {value}};
+    return point_image(Camera(lens, film, {.bokeh = bokeh}), {0, -1000}, options).throughput;
+  };
+  for (const float value : {1e-6f, 1e-3f, 1e6f}) EXPECT_NEAR(light(value) / value / light(1), 1, 1e-3) << value;
+}
+
 TEST(CameraImages, DoNotDependOnThreads) {
   const Lens lens = with_focus(data_lens("double_gauss_100mm_f2.0"), 3000);
   const Camera camera(lens, film, {.bokeh = {.weight_distribution = 4}});

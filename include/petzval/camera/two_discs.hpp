@@ -22,10 +22,11 @@ struct TwoDiscs {
 };
 
 /// Fits the round stop's pupils of a film up to film_radius (mm) from the axis; the camera of two discs
-/// (ModelKind::thin_two_disc) uses the same fit, scaled to the real light. Mean error: below 3 % for double
-/// Gauss lenses and a Tessar on 36 x 24 mm and a fisheye of 156 degrees (tests/camera/two_discs_test.cpp), 5 to 7 % for
-/// a Tessar on twice the film and a fisheye of 180 degrees. Throws Error for a lens with
-/// cylinders, without pupils or dark, and for a film_radius that is no length.
+/// (ModelKind::thin_two_disc) uses the same fit, scaled to the real light. Mean error: below 3 % for the
+/// double Gauss lenses of 100 mm f/2 and f/1.35 and a Tessar on 36 x 24 mm and a fisheye of 156 degrees up to 11 mm
+/// (tests/camera/two_discs_test.cpp), 3 to 5 % for faster or shorter ones, 5 to 7 % where the light ends within the
+/// film or pupils move as a fisheye's of 180 degrees do. Throws Error for a lens with cylinders, without pupils or
+/// dark, a wavelength that is not compiled, and a film_radius that is no length.
 PETZVAL_API TwoDiscs fit_two_discs(const Lens& lens, double film_radius, Wavelength wavelength = {});
 
 }  // namespace petzval::inline v0

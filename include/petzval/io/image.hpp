@@ -79,8 +79,9 @@ PETZVAL_API void write_pfm(const RgbImage& image, const std::filesystem::path& f
 /// Writes an 8-bit sRGB PNG as write_file does. Throws Error that names the file.
 PETZVAL_API void write_png(const Rgb8Image& image, const std::filesystem::path& file);
 
-/// Reads a PNG, or an EXR with a channel Y or R, G and B, as weights over the stop: grey, or the mean of the three; of
-/// a PNG over 255 and without a gamma. Throws Error that names the file, also for more than 2^26 pixels.
+/// Reads a PNG, or an EXR (.exr) with a channel Y or R, G and B, as weights over the stop: grey, or the mean of the
+/// three, of a PNG as the file has it, from 0 to 1, whatever gamma it states. Alpha is left out. Throws Error that
+/// names the file, also for more than 2^26 pixels.
 PETZVAL_API IrisMap read_iris_map(const std::filesystem::path& file);
 
 /// The picture of an anamorphic lens as the scene looks: wider by squeeze(lens), or for less than 1 higher by its

@@ -66,7 +66,8 @@ struct PointImage {
   /// A bound of the relative error of the light in the rings of the profile (root of summed squares), which 95 of 100
   /// fresh runs keep (tests/psf/psf_error_test.cpp). From eight parts of the samples that follow each other; as these
   /// complement each other, it is about twice the error off the axis and with blades, and four to five times the error
-  /// on the axis of round pupils. 0 where no ray passes.
+  /// on the axis of round pupils. Of a camera whose weights are uneven the bound is wider (times 2.25): where a bright
+  /// rim ends depends on few rays. 0 where no ray passes.
   double error = 0;
 };
 
