@@ -153,27 +153,38 @@ IrisWeights::IrisWeights(const Iris& iris, const EdgeWeight& edge, const IrisMap
     throw Error(where + "found the weight distribution " + to_text(edge.distribution) + " and strength " +
                 to_text(edge.strength) + ", wanted at most 1000 and 1e6 in size");
   }
+  tabulate_edge();
+  divide_rows(map.empty() ? 2048 : map_cells, uniform_part);
+  if (map.empty()) return;
+  std::vector<double> light = light_of_cells();
+  mean_ = std::accumulate(light.begin(), light.end(), 0.0);
+  if (!(mean_ > 0)) throw Error(where + "the map is black on the iris, wanted light somewhere");
+  for (double& value : light) value /= mean_;
+  divide_columns(light, uniform_part);
+}
+
+void IrisWeights::tabulate_edge() {
   // Within 2e-6 of the brightest weight: (d / steps)^4 / 384.
   constexpr double least = 4, most = 200;
   constexpr int steps = 1024;
-  if (const double d = std::abs(edge.distribution); d >= least && d <= most) {
-    for (int i = 0; i <= steps; ++i) {
-      const double share = static_cast<double>(i) / steps, x = edge.distribution < 0 ? 1 - share : share;
-      const double rate = edge.strength * (d + 1) * d * std::pow(x, d - 1) / steps;
-      edge_steps_.push_back({uncut(edge, x), edge.distribution < 0 ? -rate : rate});
-    }
+  const double d = std::abs(edge_.distribution);
+  if (!(d >= least && d <= most)) return;
+  for (int i = 0; i <= steps; ++i) {
+    const double share = static_cast<double>(i) / steps, x = edge_.distribution < 0 ? 1 - share : share;
+    const double rate = edge_.strength * (d + 1) * d * std::pow(x, d - 1) / steps;
+    edge_steps_.push_back({uncut(edge_, x), edge_.distribution < 0 ? -rate : rate});
   }
-  // Rows of equal light by the edge's weights, so that these are nearly even in each; columns where a map has some.
-  const std::size_t rows = map.empty() ? 2048 : map_cells;
-  columns_ = map.empty() ? 1 : map_cells;
-  const double all = edge.even() ? 1 : light_below(edge, 1);
+}
+
+void IrisWeights::divide_rows(std::size_t count, double uniform_part) {
+  mean_ = edge_.even() ? 1 : light_below(edge_, 1);
   const auto samples_below = [&](double v) {
-    return uniform_part * v + (1 - uniform_part) * (edge.even() ? v : light_below(edge, v) / all);
+    return uniform_part * v + (1 - uniform_part) * (edge_.even() ? v : light_below(edge_, v) / mean_);
   };
   rows_.push_back(0);
-  for (std::size_t k = 1; k < rows; ++k) {
+  for (std::size_t k = 1; k < count; ++k) {
     double low = rows_.back(), high = 1;
-    const double wanted = static_cast<double>(k) / static_cast<double>(rows);
+    const double wanted = static_cast<double>(k) / static_cast<double>(count);
     for (int i = 0; i < 60; ++i) {
       const double middle = (low + high) / 2;
       (samples_below(middle) < wanted ? low : high) = middle;
@@ -181,55 +192,50 @@ IrisWeights::IrisWeights(const Iris& iris, const EdgeWeight& edge, const IrisMap
     rows_.push_back(high);
   }
   rows_.push_back(1);
-  if (map.empty()) {
-    mean_ = all;
-    for (std::size_t k = 0; k < rows; ++k) {
-      row_densities_.push_back(1 / (static_cast<double>(rows) * (rows_[k + 1] - rows_[k])));
-    }
-    return;
+  for (std::size_t k = 0; k < count; ++k) {
+    row_densities_.push_back(1 / (static_cast<double>(count) * (rows_[k + 1] - rows_[k])));
   }
-  // The light of each cell by places of an even grid over the square, of every pixel one at least.
+}
+
+std::vector<double> IrisWeights::light_of_cells() {
+  // An even grid over the square: of every pixel one place at least.
   constexpr int across_at_least = 1024;
-  const auto along = [](int pixels) { return pixels * ((across_at_least + pixels - 1) / pixels); };
-  const int across = along(map.width), down = along(map.height);
-  std::vector<double> light(rows * columns_), in_row(rows);
-  double total = 0, of_map = 0, within = 0;
+  const auto places = [](int pixels) { return pixels * ((across_at_least + pixels - 1) / pixels); };
+  const int across = places(map_.width), down = places(map_.height);
+  std::vector<double> light(map_cells * map_cells);
+  double of_map = 0, within = 0;
   for (int i = 0; i < down; ++i) {
     for (int j = 0; j < across; ++j) {
       const Vec2<double> place{(2 * j + 1.0) / across - 1, 1 - (2 * i + 1.0) / down};
       const Vec2<double> at = shape_.position(place.x, place.y);
       if (!(at.y <= 1)) continue;
-      const double own = map_at(place), weight = edge_at(at.y) * own;
-      light[row_of(at.y) * columns_ + column_of(at.x)] += weight;
-      of_map += own, total += weight, ++within;
+      const double own = map_at(place);
+      light[row_of(at.y) * map_cells + column_of(at.x)] += edge_at(at.y) * own;
+      of_map += own, ++within;
     }
   }
+  if (map_.keep_mean && of_map > 0) {
+    const double map_mean = of_map / within;
+    for (float& value : map_.values) value = static_cast<float>(value / map_mean);
+    for (double& value : light) value /= map_mean;
+  }
   for (double& value : light) value /= within;
-  of_map /= within, total /= within;
-  for (std::size_t i = 0; i < rows; ++i) {
-    in_row[i] = std::accumulate(&light[i * columns_], &light[i * columns_] + columns_, 0.0);
-  }
-  if (!(total > 0)) throw Error(where + "the map is black on the iris, wanted light somewhere");
-  if (map.keep_mean) {
-    for (float& value : map_.values) value = static_cast<float>(value / of_map);
-    for (double& value : light) value /= of_map;
-    for (double& value : in_row) value /= of_map;
-    total /= of_map;
-  }
-  mean_ = total;
-  // What lies between those places may be brighter, and small cells may hold none of them.
+  return light;
+}
+
+void IrisWeights::divide_columns(const std::vector<double>& parts, double uniform_part) {
+  // What lies between the places may be brighter, and small cells may hold none of them.
   const double floor = std::max(uniform_part, 0.02);
   before_rows_.push_back(0);
-  for (std::size_t i = 0; i < rows; ++i) {
+  for (std::size_t i = 0; i < map_cells; ++i) {
+    const double* const of_row = &parts[i * map_cells];
     const double height = rows_[i + 1] - rows_[i];
-    const double own = (1 - floor) * in_row[i] / total + floor * height;
+    const double own = (1 - floor) * std::accumulate(of_row, of_row + map_cells, 0.0) + floor * height;
     before_rows_.push_back(before_rows_.back() + own);
-    row_densities_.push_back(own / height);
+    row_densities_[i] = own / height;
     before_in_row_.push_back(0);
-    for (std::size_t j = 0; j < columns_; ++j) {
-      const double part =
-          (1 - floor) * light[i * columns_ + j] / total + floor * height / static_cast<double>(columns_);
-      before_in_row_.push_back(before_in_row_.back() + part / own);
+    for (std::size_t j = 0; j < map_cells; ++j) {
+      before_in_row_.push_back(before_in_row_.back() + ((1 - floor) * of_row[j] + floor * height / map_cells) / own);
     }
     before_in_row_.back() = 1;
   }
@@ -280,7 +286,7 @@ std::size_t IrisWeights::row_of(double v) const noexcept {
 }
 
 std::size_t IrisWeights::column_of(double u) const noexcept {
-  return std::min(static_cast<std::size_t>(u * static_cast<double>(columns_)), columns_ - 1);
+  return std::min(static_cast<std::size_t>(u * map_cells), map_cells - 1);
 }
 
 IrisWeights::Drawn IrisWeights::draw(double u, double v) const noexcept {
@@ -296,21 +302,20 @@ IrisWeights::Drawn IrisWeights::draw(double u, double v) const noexcept {
   const std::size_t row = part_at(before_rows_.data(), v);
   const double own = before_rows_[row + 1] - before_rows_[row], height = rows_[row + 1] - rows_[row];
   const double to_v = rows_[row] + height * std::min((v - before_rows_[row]) / own, 1.0);
-  const double* const columns = before_in_row_.data() + row * (columns_ + 1);
+  const double* const columns = before_in_row_.data() + row * (map_cells + 1);
   const std::size_t column = part_at(columns, u);
   const double* const at_column = columns + column;
   const double part = at_column[1] - at_column[0];
-  const double to_u =
-      (static_cast<double>(column) + std::min((u - at_column[0]) / part, 1.0)) / static_cast<double>(columns_);
-  return {to_u, to_v, row_densities_[row] * part * static_cast<double>(columns_)};
+  const double to_u = (static_cast<double>(column) + std::min((u - at_column[0]) / part, 1.0)) / map_cells;
+  return {to_u, to_v, row_densities_[row] * part * map_cells};
 }
 
 double IrisWeights::density(double u, double v) const noexcept {
   if (!(u >= 0 && u <= 1 && v >= 0 && v <= 1)) return 0;
   const std::size_t row = row_of(v);
   if (map_.empty()) return row_densities_[row];
-  const std::size_t at = row * (columns_ + 1) + column_of(u);
-  return row_densities_[row] * (before_in_row_[at + 1] - before_in_row_[at]) * static_cast<double>(columns_);
+  const std::size_t at = row * (map_cells + 1) + column_of(u);
+  return row_densities_[row] * (before_in_row_[at + 1] - before_in_row_[at]) * map_cells;
 }
 
 }  // namespace iris_detail

@@ -45,6 +45,14 @@ class PETZVAL_API IrisWeights {
   double density(double u, double v) const noexcept;
 
  private:
+  void tabulate_edge();
+  /// Rows with equal parts of the samples that follow the edge's weights: in each, these are nearly even.
+  void divide_rows(std::size_t count, double uniform_part);
+  /// The light of each row's columns by edge and map, of the map of mean 1 if it keeps that: together the mean weight.
+  std::vector<double> light_of_cells();
+  /// Samples in cells. parts: of the light, of each row's columns.
+  void divide_columns(const std::vector<double>& parts, double uniform_part);
+
   double edge_at(double share) const noexcept;
   double map_at(const Vec2<double>& place) const noexcept;
   std::size_t row_of(double v) const noexcept;
@@ -57,12 +65,11 @@ class PETZVAL_API IrisWeights {
   std::vector<std::array<double, 2>> edge_steps_;
   IrisMap map_;  // scaled
   double mean_ = 1;
-  std::size_t columns_ = 1;
   std::vector<double> rows_;           // where they begin, by v; the end of the last one
   std::vector<double> row_densities_;  // of samples in each
   // Of a map; else rows have equal parts of all samples.
   std::vector<double> before_rows_;    // the part of all samples, likewise
-  std::vector<double> before_in_row_;  // [row][column]: the part of the row's samples, [columns + 1]
+  std::vector<double> before_in_row_;  // [row][column]: the part of the row's samples, one more than columns
 };
 
 }  // namespace petzval::inline v0::iris_detail

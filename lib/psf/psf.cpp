@@ -222,6 +222,16 @@ RayBundle connected_rays(const Camera& camera, const PupilPlane& plane, std::siz
   return bundle;
 }
 
+/// The largest weight of some rays, over all wavelengths; 1 for none.
+double brightest(const SendRays& send, std::size_t wavelengths) {
+  constexpr std::uint32_t some = 256;
+  double result = 0;
+  for (std::size_t w = 0; w < wavelengths; ++w) {
+    for (const double weight : send(w, 0, some).weights) result = std::max(result, weight);
+  }
+  return result > 0 ? result : 1;
+}
+
 double entrance_pupil_area(const Lens& lens) {
   const auto diameter = [&](Meridian section) {
     return pupils(lens, lens.primary_wavelength(), section).entrance.diameter;
@@ -298,16 +308,6 @@ PointImage point_image(const Lens& lens, const FieldPoint& point, const PsfOptio
   return image_of(lens, areas, send, options);
 }
 
-/// The largest weight of some rays, over all wavelengths; 1 for none.
-double brightest(const SendRays& send, std::size_t wavelengths) {
-  constexpr std::uint32_t some = 256;
-  double result = 0;
-  for (std::size_t w = 0; w < wavelengths; ++w) {
-    for (const double weight : send(w, 0, some).weights) result = std::max(result, weight);
-  }
-  return result > 0 ? result : 1;
-}
-
 PointImage point_image(const Camera& camera, const FieldPoint& point, const PsfOptions& options) {
   validate(options);
   const Lens& lens = camera.lens();
@@ -315,9 +315,6 @@ PointImage point_image(const Camera& camera, const FieldPoint& point, const PsfO
   double area = entrance_pupil_area(lens);
   if (!std::isfinite(area)) throw Error(lens.name() + ": point_image: the entrance pupil is infinite, wanted a size");
   const std::vector<std::size_t> wavelengths = wavelengths_of(lens, options);
-  if (area == 0)
-    return image_of(
-        lens, std::vector(wavelengths.size(), 0.0), [](auto...) { return RayBundle{}; }, options);
   const auto send = [&](std::size_t w, std::uint32_t first, std::uint32_t count) {
     return connected_rays(camera, plane, wavelengths[w], area, first, count, options);
   };
