@@ -2,6 +2,7 @@
 // Images of points by cameras.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <numeric>
@@ -75,6 +76,37 @@ TEST(CameraImages, HaveTheWeightsOfTheCamera) {
     EXPECT_EQ(std::accumulate(ring.psf.counts.begin(), ring.psf.counts.end(), std::uint64_t{0}),
               ring.psf.transmitted[0]);
     EXPECT_NEAR(ring.psf.throughput(0), ring.throughput, 1e-12);
+  }
+}
+
+TEST(CameraImages, KeepTheBoundOfTheirError) {
+  const Lens lens = with_f_number(with_focus(data_lens("double_gauss_100mm_f2.0"), 3000), 5.6);
+  for (const BokehControls& bokeh : {BokehControls{.weight_distribution = 12.7, .weight_strength = 0.6},
+                                     BokehControls{.weight_distribution = -4, .weight_strength = 0.8}}) {
+    const Camera camera(lens, film, {.model = ModelKind::thick, .bokeh = bokeh});
+    const auto light = [](const PointImage& image) {
+      std::array<double, 64> result;
+      for (int k = 0; k < 64; ++k) {
+        result[static_cast<std::size_t>(k)] = image.radial_profile[static_cast<std::size_t>(k)] *
+                                              image.size.max_radius * image.size.max_radius * (2 * k + 1);
+      }
+      return result;
+    };
+    PsfOptions run = options;
+    run.samples = 1 << 18;
+    const auto exact = light(point_image(camera, {0.05, -1000}, run));
+    int broken = 0;
+    run.samples = 1 << 12;
+    for (run.seed = 1; run.seed <= 20; ++run.seed) {
+      const PointImage image = point_image(camera, {0.05, -1000}, run);
+      const auto own = light(image);
+      double errors = 0, squares = 0;
+      for (std::size_t k = 0; k < 64; ++k) {
+        errors += (own[k] - exact[k]) * (own[k] - exact[k]), squares += exact[k] * exact[k];
+      }
+      broken += std::sqrt(errors / squares) > image.error;
+    }
+    EXPECT_LE(broken, 1);
   }
 }
 

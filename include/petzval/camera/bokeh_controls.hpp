@@ -16,14 +16,14 @@ namespace petzval::inline v0 {
 ///
 /// Samples follow the weights (EdgeWeight): where the stop is the pupil, all rays of a film point weigh within 1 % the
 /// same, but for the few where weights fall to 0, as of a strength near 1; of a map, as far as 256 x 256 cells of the
-/// iris show it. Behind real lenses a quarter of the samples is
-/// uniform, which bounds the weights where pupils are vignetted. A weight follows the stop on the scene's side too. In
-/// batches a ray takes 11 ns more, behind a real stop 19, with a map 40 to 50 (tests/bench/camera_bench.cpp).
+/// iris show it. Behind real lenses a quarter of the samples is uniform, which bounds the weights where pupils are
+/// vignetted. A weight follows the stop on the scene's side too. In batches a ray takes 11 ns more, behind a real stop
+/// 19, with a map 40 to 50 (tests/bench/camera_bench.cpp).
 struct BokehControls {
   int lens_elements = 0;  ///< straight blades in place of the lens's own iris, 3 to 20; 0: that iris
-  /// A second rim, that cuts cat's eyes. Lenses with cylinders have none, and exact models and polynomials of lenses
-  /// with a central obscuration (Error). This is its radius over that of the pupil on the axis. (In the text's program
-  /// it has 1 / sqrt of this number.)
+  /// The radius of a second rim, which cuts cat's eyes, over that of the pupil on the axis. (In the text's program the
+  /// rim has 1 / sqrt of this number.) Error for a rim in a lens with cylinders, and in exact models and polynomials of
+  /// a lens with a central obscuration.
   double lens_ratio = 1;
   /// By how many of these radii it moves against the film point from the axis to half of the film's longer side: over
   /// the same length in all directions, so that cat's eyes lie around the axis of a film that is not square, or

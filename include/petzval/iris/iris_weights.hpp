@@ -39,8 +39,8 @@ struct IrisMap {
 };
 
 /// The area in squares of the stop's semi-diameter of an iris without a map that lets as much light through: within 1 %
-/// for maps of details that are a pixel wide. Throws
-/// Error as iris_area() does, and for weights that are not finite or negative, or black.
+/// for maps of details that are a pixel wide. Throws Error as iris_area() does, for weights that are negative or not
+/// finite, and for a map that is black on the iris.
 PETZVAL_API double iris_area(const Iris& iris, const IrisMap& map);
 
 /// The rings that turning leaves on an aspheric mould, which blurs show as those of an onion.

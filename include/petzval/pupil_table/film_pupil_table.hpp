@@ -168,11 +168,10 @@ class PETZVAL_API FilmPupilTable {
   /// bladed iris cuts them as it does these; discs are those of the round stop.
   FilmPupilTable reshaped(std::span<const std::vector<PupilDisc>> discs) const;
 
-  /// What a rim leaves of these pupils: cat's eyes that an artist asks for. Their light falls with their area. The
-  /// polygons have 64 corners (disc_polygons' where they are round and in closed form): up to a radii_per_mm
-  /// film_radius of 5, areas are within 2 % of the whole pupil's (tests/pupil_table/rim_test.cpp), and may be 0 where
-  /// eyes nearly close. Throws Error for a ratio that is not positive, numbers that are not finite, and the pupils of a
-  /// lens with cylinders or a central obscuration.
+  /// What a rim leaves of these pupils: cat's eyes that an artist asks for. Their light falls with their area. Where
+  /// the rim moves by 5 radii or less over the film, areas are off by 2 % of the whole pupil's or less
+  /// (tests/pupil_table/rim_test.cpp), and may be 0 where eyes nearly close. Throws Error for a ratio that is not
+  /// positive, numbers that are not finite, and the pupils of a lens with cylinders or a central obscuration.
   FilmPupilTable cut_by_rim(const PupilRim& rim) const;
   /// Whether a rim has cut them, and the pupils before that.
   bool cut() const noexcept;
