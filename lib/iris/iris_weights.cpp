@@ -41,8 +41,10 @@ std::array<double, 2> lit(const EdgeWeight& w) noexcept {
 
 /// The light of the places with less than x, cut at 0.
 double light_below(const EdgeWeight& w, double x) noexcept {
-  const auto [begin, end] = lit(w);
-  const auto from_begin = [&](double to) { return uncut_below(w, std::clamp(to, begin, end)) - uncut_below(w, begin); };
+  const std::array<double, 2> range = lit(w);
+  const auto from_begin = [&](double to) {
+    return uncut_below(w, std::clamp(to, range[0], range[1])) - uncut_below(w, range[0]);
+  };
   return w.distribution < 0 ? from_begin(1) - from_begin(1 - x) : from_begin(x);
 }
 
