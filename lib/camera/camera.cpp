@@ -121,14 +121,15 @@ std::span<const double> nm_of(const Lens& lens, const AnyRayModel& model) {
 }  // namespace
 
 Camera::Data::Data(const LensFacts& facts, const Film& placed, const AnyRayModel& any, double radius,
-                   Normalisation normalisation, const BokehControls& bokeh)
+                   Normalisation unit, const BokehControls& bokeh)
     : lens(facts.lens()),
       film(placed),
       model(any),
       tilted(camera_detail::tilted_or_moving(placed) ? std::optional(TiltedFilm(placed, any.pupils())) : std::nullopt),
       weights(lens, model, bokeh),
-      wavelengths(model, scales(lens, film, model, weights, normalisation), nm_of(lens, model)),
+      wavelengths(model, scales(lens, film, model, weights, unit), nm_of(lens, model)),
       front(camera_detail::front_of(lens)),
+      normalisation(unit),
       pdf_film(1 / film.area_mm2()),
       facts_(facts),
       radius_(radius),
@@ -169,6 +170,7 @@ Camera::Camera(const Lens& lens, const Film& film, const AnyRayModel& model, Nor
 const Lens& Camera::lens() const noexcept { return data_->lens; }
 const Film& Camera::film() const noexcept { return data_->film; }
 ModelKind Camera::model() const noexcept { return data_->model.kind(); }
+Normalisation Camera::normalisation() const noexcept { return data_->normalisation; }
 
 CameraRay Camera::sample(const CameraSample& s) const noexcept {
   const Data& data = *data_;

@@ -17,7 +17,7 @@ namespace petzval::inline v0 {
 struct Camera::Data {
   /// radius: upright_radius() of the film.
   Data(const camera_detail::LensFacts& facts, const Film& placed, const AnyRayModel& model, double radius,
-       Normalisation normalisation, const BokehControls& bokeh);
+       Normalisation unit, const BokehControls& bokeh);
 
   Lens lens;
   Film film;
@@ -26,6 +26,7 @@ struct Camera::Data {
   camera_detail::PupilWeights weights;
   camera_detail::WavelengthFacts wavelengths;  ///< scales of weights and importance
   camera_detail::Front front;
+  Normalisation normalisation;
   double pdf_film;  ///< of film points spread uniformly over the film, 1/mm^2
 
   const camera_detail::FilmView& view() const noexcept { return view_; }

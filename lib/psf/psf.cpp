@@ -312,6 +312,9 @@ PointImage point_image(const Camera& camera, const FieldPoint& point, const PsfO
   validate(options);
   const Lens& lens = camera.lens();
   const PupilPlane plane(lens, point);
+  if (camera.normalisation() != Normalisation::irradiance) {
+    throw Error(lens.name() + ": point_image: the camera's weights are relative, wanted Normalisation::irradiance");
+  }
   double area = entrance_pupil_area(lens);
   if (!std::isfinite(area)) throw Error(lens.name() + ": point_image: the entrance pupil is infinite, wanted a size");
   const std::vector<std::size_t> wavelengths = wavelengths_of(lens, options);

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "../data_lenses.hpp"
+#include "../message.hpp"
 #include "petzval/camera/camera.hpp"
 #include "petzval/core/units.hpp"
 #include "petzval/focus/focus.hpp"
@@ -119,6 +120,15 @@ TEST(CameraImages, CountWeightsOfAnySize) {
     return point_image(Camera(lens, film, {.bokeh = bokeh}), {0, -1000}, options).throughput;
   };
   for (const float value : {1e-6f, 1e-3f, 1e6f}) EXPECT_NEAR(light(value) / value / light(1), 1, 1e-3) << value;
+}
+
+TEST(CameraImages, WantIrradiance) {
+  const Lens lens = data_lens("double_gauss_100mm_f2.0");
+  const Camera camera(lens, film, {.normalisation = Normalisation::unity_on_axis});
+  EXPECT_EQ(testing::message([&] {
+              point_image(camera, {0, -1000}, options);
+            }),
+            lens.name() + ": point_image: the camera's weights are relative, wanted Normalisation::irradiance");
 }
 
 TEST(CameraImages, DoNotDependOnThreads) {

@@ -93,6 +93,7 @@ class PETZVAL_API Camera {
   const Lens& lens() const noexcept;
   const Film& film() const noexcept;
   ModelKind model() const noexcept;
+  Normalisation normalisation() const noexcept;
 
   /// One ray; it agrees with that of a batch within rounding. The densities of a pinhole's rays are those of the thick
   /// lens's pupil. Fates of invalid samples: outside_film for a film point that is outside the film or not finite,

@@ -74,8 +74,8 @@ struct PointImage {
 /// The image that a camera makes of a point light, at every wavelength of its lens: by its ray model and with its
 /// weights (BokehControls), from connections of the point to the entrance pupil. Rays that miss the film are lost, so
 /// it has to hold the picture. A share is of the light on the lens's paraxial entrance pupil, as for a lens;
-/// first-order models do not conserve etendue and have their own. A ray takes half a microsecond to two. The camera has
-/// to have Normalisation::irradiance. Throws Error as below, and for a lens whose entrance pupil is infinite.
+/// first-order models do not conserve etendue and have their own. A ray takes half a microsecond to two. Throws Error
+/// as below, for a lens whose entrance pupil is infinite, and for another normalisation than irradiance.
 PETZVAL_API PointImage point_image(const Camera& camera, const FieldPoint& point, const PsfOptions& options = {});
 
 /// Traces a point light onto the lens's film at every compiled wavelength. All values are 0 where no ray passes. Throws
