@@ -43,6 +43,7 @@ struct Options {
   examples::IrisSetup iris;
   examples::BokehFlags bokeh;
   std::uint32_t samples = 1u << 21;
+  petzval::Spectrum light;  ///< of the white point
 
   /// Rays of the lens alone; else those of a camera.
   bool plain() const noexcept { return model == "exact_double" && bokeh.change_nothing(); }
@@ -95,7 +96,6 @@ examples::Sheet contact_sheet(const std::vector<Picture>& pictures, const exampl
                   (options.model == "exact_double" ? "" : "; " + options.model),
       .pixel_mm = 2 * half_width / tile_pixels,
       .tiles = {}};
-  const petzval::Spectrum light = examples::white_light(options.white_point);
   examples::Progress progress("contact sheet", pictures.size());
   for (const Picture& p : pictures) {
     progress.step(examples::focus_caption(p.focus_mm));
@@ -103,7 +103,7 @@ examples::Sheet contact_sheet(const std::vector<Picture>& pictures, const exampl
                                     .pixels = tile_pixels,
                                     .half_width_mm = half_width,
                                     .threads = petzval::processor_threads()});
-    row.tiles.push_back(examples::bokeh_tile(p.focus_mm, image, light));
+    row.tiles.push_back(examples::bokeh_tile(p.focus_mm, image, options.light));
   }
   return {"Bokeh of a point light", {std::move(row)}, examples::bokeh_notes()};
 }
@@ -164,13 +164,12 @@ Json to_json(const std::vector<Picture>& pictures, const examples::LoadedLens& l
 void write_all(const std::vector<Picture>& pictures, const examples::LoadedLens& loaded, const Options& options,
                const petzval::BokehControls& controls) {
   const auto sheet = examples::draw_sheet(contact_sheet(pictures, loaded, options));
-  const petzval::Spectrum light = examples::white_light(options.white_point);
   const std::filesystem::path folder = options.out_folder;
   examples::make_folder(folder);
   const auto written = [](const std::filesystem::path& file) { std::cout << file.string() << '\n'; };
   for (const Picture& p : pictures) {
     const std::string stem = loaded.id + "_focus_" + examples::number(p.focus_mm) + "mm";
-    const petzval::RgbImage image = examples::irradiance(p.image.psf, light);
+    const petzval::RgbImage image = examples::irradiance(p.image.psf, options.light);
     for (const std::string& format : options.formats) {
       const auto file = folder / (stem + '.' + format);
       if (format == "exr") petzval::write_exr(image, file);
@@ -233,8 +232,8 @@ int main(int argc, char** argv) {
   app.add_option("--out", options.out_folder, "folder for the results")->required()->type_name("DIR");
 
   return examples::run(app, argc, argv, [&] {
-    examples::rgb_weights(options.wavelengths_nm,
-                          examples::white_light(options.white_point));  // refuses what is invalid before the work
+    options.light = examples::white_light(options.white_point);
+    examples::rgb_weights(options.wavelengths_nm, options.light);  // refuses an invalid set before the work
     const auto loaded = examples::load_lens(options.lens_file, options.wavelengths_nm);
     const examples::BokehSetup setup{.light_mm = options.subject_mm,
                                      .origin = examples::named(options.origin, examples::distance_origins),

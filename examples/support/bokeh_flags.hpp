@@ -13,7 +13,7 @@ struct BokehFlags {
   petzval::BokehControls controls;  ///< without its map
   std::string iris_image, weight_map;
 
-  /// Whether a picture differs from that of the lens alone.
+  /// Whether pictures are those of the lens alone.
   bool change_nothing() const noexcept;
 };
 

@@ -190,11 +190,8 @@ CameraRayDifferential Camera::sample_differential(const CameraSample& s) const n
   if (!result.sample) return result;
   const Data& data = *data_;
   const Wavelength wavelength = data.resolved(s.wavelength);
-  double u = s.pupil_u, v = s.pupil_v;
-  if (data.weights) {
-    const auto drawn = data.weights.draw(u, v);
-    u = drawn.u, v = drawn.v;
-  }
+  const auto drawn = data.weights.draw(s.pupil_u, s.pupil_v);
+  const double u = drawn.u, v = drawn.v;
   const auto upright = [&]() -> TwoPlaneRayDerivatives {
     const FilmPupilTable& pupils = data.model.pupils();
     const PupilSample at = pupils.sample(s.film, u, v, wavelength);

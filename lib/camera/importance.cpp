@@ -236,8 +236,7 @@ Importance SceneSide::importance(const AnyRayModel& model, const Ray<double>& ra
   if (result.fate != RayFate::transmitted) return result;
   const FilmPupilTable &passing = model.pupils(), &sampled = tilted_ ? tilted_->pupils() : passing;
   const Facts at = facts_at(wavelength);
-  if (at.entrance_area == 0 ||
-      ((!model.clips_at_apertures() || passing.cut()) && !passing.contains(upright, pupil.x, pupil.y, wavelength))) {
+  if (at.entrance_area == 0 || (decide(passing, model) && !passing.contains(upright, pupil.x, pupil.y, wavelength))) {
     result.fate = RayFate::vignetted;
     return result;
   }
@@ -307,8 +306,7 @@ ImportanceSample SceneSide::through_pinhole(const AnyRayModel& model, const Vec3
   Importance& seen = result.importance = met_by(arrival, met);
   if (seen.fate != RayFate::transmitted) return result;
   const FilmPupilTable& pupils = tilted_ ? tilted_->pupils() : model.pupils();
-  iris_detail::IrisWeights::Drawn drawn{u, v, 1};
-  if (weights_) drawn = weights_.draw(u, v);
+  const auto drawn = weights_.draw(u, v);
   const PupilSample s = pupils.sample(met->virtual_point, drawn.u, drawn.v, wavelength);
   const FilmPoint place{s.x, s.y};
   double spread = 1, facing = 1;

@@ -123,8 +123,8 @@ void PupilWeights::draw(std::size_t count, const T* u, const T* v, T* to_u, T* t
   }
 }
 
-iris_detail::IrisWeights::Drawn PupilWeights::draw(double u, double v) const noexcept {
-  return data_->weights ? data_->weights->draw(u, v) : iris_detail::IrisWeights::Drawn{u, v, 1};
+PupilWeights::Drawn PupilWeights::drawn(double u, double v) const noexcept {
+  return data_->weights ? data_->weights->draw(u, v) : Drawn{u, v, 1};
 }
 
 double PupilWeights::density(const Vec2<double>& sample) const noexcept {

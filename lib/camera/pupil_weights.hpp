@@ -27,7 +27,9 @@ class PupilWeights {
   /// Samples of the pupil for uniform numbers, N each.
   template <class T>
   void draw(std::size_t count, const T* u, const T* v, T* to_u, T* to_v, T* densities) const noexcept;
-  iris_detail::IrisWeights::Drawn draw(double u, double v) const noexcept;
+  using Drawn = iris_detail::IrisWeights::Drawn;
+  /// Without weights: the same numbers.
+  Drawn draw(double u, double v) const noexcept { return data_ ? drawn(u, v) : Drawn{u, v, 1}; }
   /// Of the samples drawn, over that of uniform ones.
   double density(const Vec2<double>& sample) const noexcept;
 
@@ -43,6 +45,8 @@ class PupilWeights {
   double of_line(const TwoPlaneRay& line, Wavelength wavelength) const noexcept;
 
  private:
+  Drawn drawn(double u, double v) const noexcept;
+
   struct Data;
   std::shared_ptr<const Data> data_;
 };

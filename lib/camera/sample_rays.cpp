@@ -133,7 +133,7 @@ void sample_block(const FilmView& view, std::size_t n, std::size_t wanted, const
   }
   loops.to_upright(plane, n, virtual_x.data(), virtual_y.data(), x.data(), y.data(), film_x.data(), film_y.data());
   if (!view.model.pinhole()) trace();
-  if (!view.model.clips_at_apertures() || pupils.cut()) keep_within(n, pupils, lines, wavelengths, fates);
+  if (decide(pupils, view.model)) keep_within(n, pupils, lines, wavelengths, fates);
   weigh();
   loops.weigh_tilted(plane, wanted, virtual_x.data(), virtual_y.data(), x.data(), y.data(), fates, rays);
 }
@@ -237,11 +237,8 @@ CameraRay sample_ray(const FilmView& view, const FilmPoint& film, double u, doub
   const TiltedPlane plane = tilted ? tilted->plane(time) : TiltedPlane{};
   const bool kept = on_film(view.bounds, film.x, film.y);
   // Number by number: a load of two that a caller has just stored one by one waits until they are in the cache.
-  double density = 1;
-  if (view.weights) {
-    const auto drawn = view.weights.draw(u, v);
-    u = drawn.u, v = drawn.v, density = drawn.density;
-  }
+  const auto drawn = view.weights.draw(u, v);
+  u = drawn.u, v = drawn.v;
   const FilmPoint point{kept ? film.x : view.bounds.centre_x, kept ? film.y : view.bounds.centre_y};
   CameraRay out;
 
@@ -266,7 +263,7 @@ CameraRay sample_ray(const FilmView& view, const FilmPoint& film, double u, doub
       leaving.film_x = virtual_point.x * part, leaving.film_y = virtual_point.y * part;
     }
     out.fate = view.model.to_scene(leaving, wavelength, out.ray);
-    const bool within = (view.model.clips_at_apertures() && !pupils.cut()) ||
+    const bool within = !decide(pupils, view.model) ||
                         pupils.contains({line.film_x, line.film_y}, line.pupil_x, line.pupil_y, wavelength);
     if (!within) out.fate = RayFate::vignetted;
   }
@@ -279,8 +276,8 @@ CameraRay sample_ray(const FilmView& view, const FilmPoint& film, double u, doub
     const double weight = out.fate != RayFate::transmitted  ? 0
                           : tilted && !view.model.pinhole() ? view.weights.of_line(line, wavelength)
                                                             : view.weights.of_sample(u, v, line, wavelength);
-    out.weight *= weight / density;
-    out.pdf_pupil *= density, out.pdf_direction *= density;
+    out.weight *= weight / drawn.density;
+    out.pdf_pupil *= drawn.density, out.pdf_direction *= drawn.density;
     if (!(weight > 0) && out.fate == RayFate::transmitted) out.fate = RayFate::vignetted;
   }
   if (out.fate != RayFate::transmitted) out.weight = 0;

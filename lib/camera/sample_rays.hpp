@@ -50,6 +50,11 @@ class WavelengthFacts {
   lens_detail::BetweenWavelengths<1> between_scales_, between_shifts_;  // cover nothing without samples in nm
 };
 
+/// Whether a model's pupils decide which rays pass, and not its apertures alone.
+inline bool decide(const FilmPupilTable& pupils, const AnyRayModel& model) noexcept {
+  return !model.clips_at_apertures() || pupils.cut();
+}
+
 /// What samples of a film are drawn from.
 struct FilmView {
   const AnyRayModel& model;

@@ -210,4 +210,10 @@ ExrPart io_detail::read_first_part(const std::filesystem::path& file, std::span<
   }
 }
 
+const std::vector<float>* io_detail::channel(const ExrPart& part, std::string_view name) noexcept {
+  const auto found =
+      std::find_if(part.channels.begin(), part.channels.end(), [&](const ExrChannel& own) { return own.name == name; });
+  return found == part.channels.end() ? nullptr : &found->values;
+}
+
 }  // namespace petzval::inline v0

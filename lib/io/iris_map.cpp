@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "io/exr.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/io/image.hpp"
 
@@ -77,18 +78,13 @@ IrisMap read_png_map(const std::filesystem::path& file) {
 IrisMap read_exr_map(const std::filesystem::path& file) {
   const ExrPart part = read_exr_parts(file).front();
   check_size(static_cast<std::size_t>(part.width), static_cast<std::size_t>(part.height), file);
-  const auto channel = [&](const char* name) -> const std::vector<float>* {
-    for (const ExrChannel& own : part.channels) {
-      if (own.name == name) return &own.values;
-    }
-    return nullptr;
-  };
   IrisMap map{part.width, part.height, {}};
-  if (const auto* const grey = channel("Y")) {
+  using io_detail::channel;
+  if (const auto* const grey = channel(part, "Y")) {
     map.values = *grey;
     return map;
   }
-  const auto *const red = channel("R"), *const green = channel("G"), *const blue = channel("B");
+  const auto *const red = channel(part, "R"), *const green = channel(part, "G"), *const blue = channel(part, "B");
   if (!red || !green || !blue) throw Error(file.string() + ": found neither a channel Y nor R, G and B, wanted grey");
   for (std::size_t i = 0; i < red->size(); ++i) map.values.push_back(((*red)[i] + (*green)[i] + (*blue)[i]) / 3);
   return map;

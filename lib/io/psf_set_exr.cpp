@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "petzval/io/psf_set_exr.hpp"
 
-#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -12,6 +11,7 @@
 #include <vector>
 
 #include "core/text.hpp"
+#include "io/exr.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/io/write_file.hpp"
 
@@ -21,12 +21,7 @@ namespace {
 constexpr std::array<const char*, 3> channel_names{"Y", "hits.x", "hits.y"};
 constexpr std::array diffractions{Diffraction::negligible, Diffraction::visible, Diffraction::dominant};
 
-/// Channels are looked up by name: files keep them sorted.
-const std::vector<float>* channel(const ExrPart& part, const char* name) {
-  const auto found =
-      std::find_if(part.channels.begin(), part.channels.end(), [&](const ExrChannel& own) { return own.name == name; });
-  return found == part.channels.end() ? nullptr : &found->values;
-}
+using io_detail::channel;
 
 /// Of numbers and channels, and of the texts that tell a number.
 std::string checksum_of(const ExrPart& part) {

@@ -39,14 +39,25 @@ std::array<double, 2> lit(const EdgeWeight& w) noexcept {
   return first ? std::array{0.0, low} : std::array{high, 1.0};
 }
 
-/// The light of the places with less than x, cut at 0.
-double light_below(const EdgeWeight& w, double x) noexcept {
-  const std::array<double, 2> range = lit(w);
-  const auto from_begin = [&](double to) {
-    return uncut_below(w, std::clamp(to, range[0], range[1])) - uncut_below(w, range[0]);
-  };
-  return w.distribution < 0 ? from_begin(1) - from_begin(1 - x) : from_begin(x);
-}
+/// The light of an edge, cut at 0.
+class EdgeLight {
+ public:
+  explicit EdgeLight(const EdgeWeight& weight) noexcept : weight_(weight), lit_(lit(weight)) {}
+
+  /// Of the places with a share below x.
+  double below(double x) const noexcept {
+    if (weight_.even()) return x;
+    return weight_.distribution < 0 ? from_begin(1) - from_begin(1 - x) : from_begin(x);
+  }
+
+ private:
+  double from_begin(double to) const noexcept {
+    return uncut_below(weight_, std::clamp(to, lit_[0], lit_[1])) - uncut_below(weight_, lit_[0]);
+  }
+
+  EdgeWeight weight_;
+  std::array<double, 2> lit_;
+};
 
 }  // namespace
 
@@ -56,7 +67,7 @@ double EdgeWeight::at(double share) const noexcept {
   return std::max(uncut(*this, distribution < 0 ? 1 - x : x), 0.0);
 }
 
-double EdgeWeight::light_added() const noexcept { return even() ? 0 : std::max(light_below(*this, 1) - 1, 0.0); }
+double EdgeWeight::light_added() const noexcept { return std::max(EdgeLight(*this).below(1) - 1, 0.0); }
 
 double iris_area(const Iris& iris, const IrisMap& map) {
   iris_detail::check(map, "iris: ");
@@ -179,10 +190,9 @@ void IrisWeights::tabulate_edge() {
 }
 
 void IrisWeights::divide_rows(std::size_t count, double uniform_part) {
-  mean_ = edge_.even() ? 1 : light_below(edge_, 1);
-  const auto samples_below = [&](double v) {
-    return uniform_part * v + (1 - uniform_part) * (edge_.even() ? v : light_below(edge_, v) / mean_);
-  };
+  const EdgeLight light(edge_);
+  mean_ = light.below(1);
+  const auto samples_below = [&](double v) { return uniform_part * v + (1 - uniform_part) * (light.below(v) / mean_); };
   rows_.push_back(0);
   for (std::size_t k = 1; k < count; ++k) {
     double low = rows_.back(), high = 1;

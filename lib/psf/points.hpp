@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <span>
 
@@ -12,6 +13,9 @@ namespace petzval::inline v0::psf_detail {
 struct Points {
   std::span<const double> x, y, weights{};
 };
+
+/// Half the side of a picture for hits up to `farthest` from its centre, mm: 5 % more, at least 0.1 um.
+inline double fitting_half_width(double farthest) noexcept { return std::max(1.05 * farthest, 1e-4); }
 
 /// spot_size() of all points of several sets.
 SpotSize spot_size(std::span<const Points> sets) noexcept;

@@ -103,7 +103,7 @@ double fitting_half_width(const std::vector<RayBundle>& sets, const Vec2<double>
   psf_detail::for_each(sets, [&](std::size_t part, double x, double y, double) {
     extent[part] = std::max(extent[part], std::max(std::abs(x - cx), std::abs(y - cy)));
   });
-  return std::max(1.05 * psf_detail::largest(extent), 1e-4);
+  return psf_detail::fitting_half_width(psf_detail::largest(extent));
 }
 
 void fill_counts(Psf& psf, const Rays& rays) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "petzval/core/sobol.hpp"
+#include "psf/points.hpp"
 
 namespace petzval::inline v0 {
 namespace {
@@ -104,7 +105,7 @@ PsfKernel psf_detail::blend(std::span<const WeightedKernel> nodes) {
     result.hits_x[i] = static_cast<float>(bundle.x[i]), result.hits_y[i] = static_cast<float>(bundle.y[i]);
   }
   if (!lit) return result;
-  result.pixel_mm = 2 * std::max(1.05 * half, 1e-4) / result.pixels;
+  result.pixel_mm = 2 * psf_detail::fitting_half_width(half) / result.pixels;
 
   // The bundle is sampled as rays are, from the same points of the pupil each time.
   constexpr std::size_t samples = 1u << 20, block = 4096;
