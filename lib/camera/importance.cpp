@@ -96,6 +96,9 @@ EntrancePupilTable entrance_of(const Lens& lens, const AnyRayModel& model) {
                             model.clips_at_apertures() ? ClippedBy::apertures : ClippedBy::samples);
 }
 
+/// The pupil that a point so far away sees is that of infinity within rounding, mm.
+constexpr double far = 1e12;
+
 /// The area of the entrance pupil that a pinhole's pupil on the axis is the image of, mm^2. Film and pupil points are
 /// linear in height and slope of a ray at the entrance pupil; of a film point on the axis, so is the height in the
 /// pupil point.
@@ -266,8 +269,6 @@ ImportanceSample SceneSide::sample_distant(const AnyRayModel& model, const Vec3<
                                            Wavelength wavelength, double time) const noexcept {
   ImportanceSample result{.importance = {.fate = RayFate::invalid}};
   if (!wavelengths_.covers(wavelength) || !unit_length(direction)) return result;
-  // The pupil that a point so far away sees is that of infinity within rounding.
-  constexpr double far = 1e12;  // mm
   const Vec3<double> point = direction * -far;
   if (model.pinhole()) {
     const ImportanceSample s = through_pinhole(model, point, u, v, wavelength, time);
@@ -347,6 +348,10 @@ double SceneSide::pdf(const AnyRayModel& model, const Vec3<double>& point, const
   return model.pinhole() ? 0 : entrance_.pdf(point, direction, wavelength);
 }
 
+double SceneSide::pdf_distant(const AnyRayModel& model, const Ray<double>& ray, Wavelength wavelength) const noexcept {
+  return pdf(model, ray.origin - ray.direction * far, ray.direction, wavelength) / squared(far);
+}
+
 }  // namespace camera_detail
 
 Importance Camera::importance(const Ray<double>& ray, Wavelength wavelength, double time) const noexcept {
@@ -366,6 +371,10 @@ ImportanceSample Camera::sample_distant_importance(const Vec3<double>& direction
 double Camera::pdf_importance(const Vec3<double>& point, const Vec3<double>& direction,
                               Wavelength wavelength) const noexcept {
   return data_->scene().pdf(data_->model, point, direction, data_->resolved(wavelength));
+}
+
+double Camera::pdf_distant_importance(const Ray<double>& ray, Wavelength wavelength) const noexcept {
+  return data_->scene().pdf_distant(data_->model, ray, data_->resolved(wavelength));
 }
 
 Projection Camera::project(const Vec3<double>& point, Wavelength wavelength, double time) const noexcept {

@@ -33,6 +33,7 @@ class SceneSide {
                                   Wavelength wavelength, double time) const noexcept;
   double pdf(const AnyRayModel& model, const Vec3<double>& point, const Vec3<double>& direction,
              Wavelength wavelength) const noexcept;
+  double pdf_distant(const AnyRayModel& model, const Ray<double>& ray, Wavelength wavelength) const noexcept;
   Projection project(const AnyRayModel& model, const Vec3<double>& point, Wavelength wavelength,
                      double time) const noexcept;
 

@@ -218,6 +218,8 @@ TEST(Importance, OfASunIsTheAreaThroughWhichItShines) {
           EXPECT_EQ(s.direction, direction);
           EXPECT_LT(s.on_front.z, lens.surfaces()[0].vertex_z + 40);
           EXPECT_NEAR(camera.importance({s.on_front, direction}).we, s.importance.we, 1e-9 * s.importance.we);
+          EXPECT_NEAR(camera.pdf_distant_importance({s.on_front, direction}) / s.pdf, 1, 1e-6);
+          EXPECT_EQ(camera.pdf_distant_importance({s.on_front + Vec3<double>{0, 500, 0}, direction}), 0);
         }
         const ImportanceSample near = camera.sample_importance(-far * direction, u, v);
         if (near) far_mean += near.importance.we / near.pdf / count;
@@ -238,6 +240,7 @@ TEST(Importance, OfASunIsTheAreaThroughWhichItShines) {
   EXPECT_EQ(camera.sample_distant_importance({0, 0, 2}, 0.3, 0.4).importance.fate, RayFate::invalid);
   EXPECT_EQ(camera.sample_distant_importance(direction, 0.3, 0.4, 7).importance.fate, RayFate::invalid);
   EXPECT_FALSE(camera.sample_distant_importance({0, 0, -1}, 0.3, 0.4));
+  EXPECT_EQ(camera.pdf_distant_importance({s.on_front, direction}), 0);  // of a pinhole
 }
 
 TEST(Importance, IsTheSameWhicheverThreadAsksFirst) {

@@ -126,6 +126,9 @@ class PETZVAL_API Camera {
   /// The density with which sample_importance() gives a direction at a point, 1/sr; the same at all times.
   double pdf_importance(const Vec3<double>& point, const Vec3<double>& direction,
                         Wavelength wavelength = {}) const noexcept;
+  /// The same for sample_distant_importance(): of a ray with its direction of travel, given anywhere on its line, among
+  /// those of its direction, 1/mm^2 across it.
+  double pdf_distant_importance(const Ray<double>& ray, Wavelength wavelength = {}) const noexcept;
 
   /// The camera's film side as plain numbers, for hosts that sample on another processor: CameraTables
   /// (camera_tables.hpp) has the layout. Throws Error for a film that is tilted or travels, for weights of the
