@@ -3,7 +3,7 @@
 # needs to build petzval, and the build. POSIX sh.
 
 library_packages="g++ cmake ninja-build pkg-config libglm-dev nlohmann-json3-dev libceres-dev libopenexr-dev libpng-dev"
-example_packages="libcli11-dev libfreetype-dev libfontconfig-dev fonts-dejavu-core"
+example_packages="libcli11-dev libfreetype-dev libfontconfig-dev fonts-dejavu-core libembree-dev libtinyobjloader-dev"
 test_packages="libgtest-dev"
 
 BUILD_DIR=${BUILD_DIR:-$root/build}

@@ -24,7 +24,7 @@ using Rgb = glm::vec3;
 struct Albedo {
   struct Checker {
     Rgb other{0, 0, 0};
-    float size_mm = 10;  ///< edge of its cubes, which lie along the axes of the world
+    float size_mm = 10;  ///< edge of its cubes, along the axes of the world; the middle of one is the origin
   };
 
   Rgb colour{0.5f, 0.5f, 0.5f};

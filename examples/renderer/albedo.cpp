@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "renderer/albedo.hpp"
+
+#include <cmath>
+#include <glm/common.hpp>
+
+namespace renderer {
+namespace {
+
+/// The cubes along one axis, counted from the origin. They lie half a cube off, so that a plane through the origin, as
+/// a floor is, does not run along their faces, where rounding would choose the colour.
+bool odd(float x, float size) { return std::fmod(std::floor(x / size + 0.5f), 2.0f) != 0; }
+
+int wrapped(int i, int count) {
+  const int rest = i % count;
+  return rest < 0 ? rest + count : rest;
+}
+
+Rgb interpolated(const petzval::RgbImage& image, const glm::vec2& uv) {
+  const float x = (uv.x - std::floor(uv.x)) * static_cast<float>(image.width) - 0.5f;
+  const float y = (1 - (uv.y - std::floor(uv.y))) * static_cast<float>(image.height) - 0.5f;
+  const int left = static_cast<int>(std::floor(x)), upper = static_cast<int>(std::floor(y));
+  const float right_share = x - static_cast<float>(left), lower_share = y - static_cast<float>(upper);
+  const auto pixel = [&](int column, int row) {
+    const float* const p = image.pixel(wrapped(column, image.width), wrapped(row, image.height));
+    return Rgb{p[0], p[1], p[2]};
+  };
+  const Rgb above = glm::mix(pixel(left, upper), pixel(left + 1, upper), right_share);
+  const Rgb below = glm::mix(pixel(left, upper + 1), pixel(left + 1, upper + 1), right_share);
+  return glm::clamp(glm::mix(above, below, lower_share), 0.0f, 1.0f);
+}
+
+}  // namespace
+
+Rgb at(const Albedo& albedo, const glm::vec3& point_world, const glm::vec2& uv) {
+  if (albedo.image) return interpolated(*albedo.image, uv);
+  if (!albedo.checker) return albedo.colour;
+  const float size = albedo.checker->size_mm;
+  const bool other = odd(point_world.x, size) != odd(point_world.y, size);
+  return other != odd(point_world.z, size) ? albedo.checker->other : albedo.colour;
+}
+
+}  // namespace renderer
