@@ -96,8 +96,8 @@ struct Pose {
 };
 
 struct SceneDescription {
-  std::string name;
-  std::vector<Object> objects;
+  std::string name{};
+  std::vector<Object> objects{};
   Sky sky{};
   Pose pose{};
 };

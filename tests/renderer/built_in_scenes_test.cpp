@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "renderer/built_in_scenes.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <string>
+#include <variant>
+
+namespace {
+
+using namespace renderer;
+
+bool emits(const Object& object) { return object.emission != Rgb(0, 0, 0); }
+
+/// Tangents of a place as the camera sees it, and how far it is along the axis.
+struct Seen {
+  double right, up, depth;
+};
+Seen seen(const SceneDescription& scene, const glm::vec3& place) {
+  const glm::dvec3 forward = glm::normalize(scene.pose.look_at - scene.pose.position);
+  const glm::dvec3 right = glm::normalize(glm::cross(forward, scene.pose.up)), up = glm::cross(right, forward);
+  const glm::dvec3 way = glm::dvec3(place) - scene.pose.position;
+  const double depth = glm::dot(way, forward);
+  return {glm::dot(way, right) / depth, glm::dot(way, up) / depth, depth};
+}
+/// In the picture of a lens of 100 mm at some focus, on 36 x 24 mm.
+bool in_picture(const Seen& at) { return at.depth > 0 && std::abs(at.right) < 0.18 && std::abs(at.up) < 0.12; }
+
+TEST(BuiltInScenes, HaveTheNamesThatTheProgramLists) {
+  std::string names;
+  for (const char* name : {"balls", "chess", "street"}) {
+    const auto scene = built_in_scene(name);
+    ASSERT_TRUE(scene);
+    EXPECT_EQ(scene->name, name);
+    names += (names.empty() ? "" : ", ") + scene->name;
+  }
+  EXPECT_EQ(names, built_in_scene_names);
+  EXPECT_FALSE(built_in_scene("ball"));
+}
+
+TEST(BallsScene, IsARowAtOneDistanceToTheEdgeOfThePicture) {
+  const SceneDescription scene = balls_scene();
+  int balls = 0;
+  double last = 0;
+  for (const Object& object : scene.objects) {
+    const auto* const sphere = std::get_if<Sphere>(&object.shape);
+    if (!sphere) continue;
+    const Seen at = seen(scene, sphere->centre);
+    if (emits(object)) {
+      EXPECT_FALSE(in_picture(at));
+      continue;
+    }
+    ++balls;
+    EXPECT_FLOAT_EQ(sphere->centre.z, -1050 - sphere->radius / 2);
+    EXPECT_EQ(sphere->centre.y, 0);
+    EXPECT_TRUE(in_picture(at));
+    last = std::max(last, at.right);
+  }
+  EXPECT_EQ(balls, 13);
+  EXPECT_GT(last, 0.14);
+}
+
+TEST(ChessScene, HasItsPiecesOnTheBoardFromTheForegroundToTheBackground) {
+  const SceneDescription scene = chess_scene();
+  int pieces = 0, lamps = 0;
+  double nearest = 1e9, farthest = 0;
+  for (const Object& object : scene.objects) {
+    if (const auto* const lamp = std::get_if<Sphere>(&object.shape)) {
+      EXPECT_TRUE(emits(object));
+      const Seen at = seen(scene, lamp->centre);
+      EXPECT_TRUE(in_picture(at));
+      EXPECT_GT(at.depth, 2000);
+      ++lamps;
+    }
+    if (object.name.rfind("piece", 0) != 0) continue;
+    ++pieces;
+    glm::vec3 foot{0, 0, 0};
+    int of_foot = 0;
+    for (const glm::vec3& p : std::get<Mesh>(object.shape).positions)
+      if (p.y == 0) foot += p, ++of_foot;
+    foot /= static_cast<float>(of_foot);
+    // In the middle of a square: the lines are at odd multiples of 20.
+    EXPECT_NEAR(std::remainder(foot.x, 40.0f), 0, 1e-3) << object.name;
+    EXPECT_NEAR(std::remainder(foot.z, 40.0f), 0, 1e-3) << object.name;
+    const double depth = seen(scene, foot).depth;
+    nearest = std::min(nearest, depth), farthest = std::max(farthest, depth);
+  }
+  EXPECT_EQ(pieces, 22);
+  EXPECT_EQ(lamps, 9);
+  EXPECT_LT(nearest, 850);
+  EXPECT_GT(farthest, 1080);
+}
+
+TEST(StreetScene, HasItsLightsInThePictureAndItsWindowsOnTheStreet) {
+  const SceneDescription scene = street_scene();
+  int lights = 0, windows = 0;
+  double nearest = 1e9, farthest = 0;
+  for (const Object& object : scene.objects) {
+    if (const auto* const light = std::get_if<Sphere>(&object.shape)) {
+      const Seen at = seen(scene, light->centre);
+      lights += in_picture(at);
+      nearest = std::min(nearest, at.depth), farthest = std::max(farthest, at.depth);
+    }
+    if (object.name == "window") {
+      const auto& quad = std::get<Quad>(object.shape);
+      EXPECT_LT(glm::cross(quad.edge_u, quad.edge_v).x * quad.corner.x, 0);  // towards the middle
+      ++windows;
+    }
+  }
+  EXPECT_GT(lights, 60);
+  EXPECT_GT(windows, 20);
+  EXPECT_LT(nearest, 6000);
+  EXPECT_GT(farthest, 180000);
+}
+
+}  // namespace
