@@ -345,11 +345,11 @@ ImportanceSample SceneSide::through_pinhole(const AnyRayModel& model, const Vec3
 
 double SceneSide::pdf(const AnyRayModel& model, const Vec3<double>& point, const Vec3<double>& direction,
                       Wavelength wavelength) const noexcept {
-  return model.pinhole() ? 0 : entrance_.pdf(point, direction, wavelength);
+  return model.pinhole() ? 0 : entrance_.pdf(point, {point, direction}, wavelength);
 }
 
 double SceneSide::pdf_distant(const AnyRayModel& model, const Ray<double>& ray, Wavelength wavelength) const noexcept {
-  return pdf(model, ray.origin - ray.direction * far, ray.direction, wavelength) / squared(far);
+  return model.pinhole() ? 0 : entrance_.pdf(ray.direction * -far, ray, wavelength) / squared(far);
 }
 
 }  // namespace camera_detail

@@ -15,6 +15,7 @@
 #include "petzval/lens/lens.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/pupil_plane.hpp"
+#include "polygon_place.hpp"
 #include "pupil/boundary_search.hpp"
 #include "pupil/face.hpp"
 #include "pupil_table/pupil_polygon.hpp"
@@ -49,6 +50,40 @@ double cone(double radius, double distance) noexcept {
   if (!(distance > radius)) return 4 * pi;
   const double sine2 = squared(radius / distance);
   return 2 * pi * sine2 / (1 + std::sqrt(1 - sine2));  // 1 - cosine, without cancellation
+}
+
+/// The polygon between some nodes of a table, worked out where it is asked for.
+template <class T>
+struct BetweenNodes {
+  std::array<const PupilPolygon*, 4> nodes{};
+  std::array<T, 4> weights{};
+  std::size_t count = 0;
+  static constexpr std::size_t corners = polygon_corners;
+
+  template <class Of>
+  Point<T> mean(const Of& of) const {
+    Point<T> sum;
+    for (std::size_t j = 0; j < count; ++j) sum = sum + weights[j] * of(*nodes[j]);
+    return sum;
+  }
+  Point<T> middle() const {
+    return mean([](const PupilPolygon& p) { return Point<T>{p.middle[0], p.middle[1]}; });
+  }
+  Point<T> corner(std::size_t k) const {
+    return mean([i = k % polygon_corners](const PupilPolygon& p) {
+      return Point<T>{p.corners[i][0], p.corners[i][1]};
+    });
+  }
+  Point<T> obscured(std::size_t k) const {
+    return mean([k](const PupilPolygon& p) { return Point<T>{p.obscured_from[k], p.obscured[k]}; });
+  }
+};
+
+/// The share of samples that each sector of a polygon gets, over its area. Sectors have nearly the same one, and are
+/// taken alike: samples need not know the whole.
+double density_in(const Sector<double>& sector) noexcept {
+  const double area = sector.area();
+  return area > 0 ? 1 / (static_cast<double>(polygon_corners) * area) : 0;
 }
 
 /// Instead of a polygon where nothing passes any more: between it and the last one, which has `before` others before
@@ -138,9 +173,23 @@ struct EntrancePupilTable::Data {
     const auto at = weights_of(table, field, reciprocal);
     return at ? interpolated(table.polygons, *at) : PupilPolygon{};
   }
-  PupilPolygon polygon_at(const Table& table, const Bearing& bearing, double reciprocal,
-                          Wavelength wavelength) const noexcept {
-    if (!table.grid) return polygon_at(table, bearing.field, reciprocal);
+  /// The pupil of a point, in the quadrant of its bearing with a grid. Nothing beyond the table. own: where it is kept.
+  BetweenNodes<double> pupil_at(const Table& table, const Bearing& bearing, double reciprocal, Wavelength wavelength,
+                                std::optional<PupilPolygon>& own) const noexcept {
+    BetweenNodes<double> result;
+    if (table.grid) {
+      own = polygon_of_grid(table, bearing, reciprocal, wavelength);
+      result.nodes[0] = &*own, result.weights[0] = 1, result.count = 1;
+    } else if (const auto at = weights_of(table, bearing.field, reciprocal)) {
+      for (result.count = 0; result.count < 4; ++result.count) {
+        result.nodes[result.count] = &table.polygons[at->polygons[result.count]];
+        result.weights[result.count] = at->weights[result.count];
+      }
+    }
+    return result;
+  }
+  PupilPolygon polygon_of_grid(const Table& table, const Bearing& bearing, double reciprocal,
+                               Wavelength wavelength) const noexcept {
     PupilPolygon polygon = table.grid->polygon(bearing, reciprocal);
     if (!wavelength.in_nm()) return polygon;
     // Polygons of grids are no larger than those of their own wavelengths.
@@ -385,15 +434,22 @@ void EntrancePupilTable::sample(const Vec3<double>& point, std::size_t count, co
   const PupilPlane plane = data_->plane_facing(bearing, 1 / distance);
 
   if (data_->covers(*table, distance)) {
-    const PupilPolygon polygon = data_->polygon_at(*table, bearing, 1 / distance, wavelength);
-    const PolygonSampler sampler(polygon);
-    if (!(sampler.area() > 0)) return;
+    std::optional<PupilPolygon> own;
+    const auto pupil = data_->pupil_at(*table, bearing, 1 / distance, wavelength, own);
+    const Point<double> middle = pupil.middle();
     for (std::size_t i = 0; i < count; ++i) {
       if (!std::isfinite(u[i]) || !std::isfinite(v[i])) continue;
-      const Vec2<double> place = sampler(u[i], v[i]), p = table->grid ? bearing.from_quadrant(place) : place;
+      const double share = std::clamp(u[i], 0.0, 1.0) * polygon_corners;
+      const std::size_t k = std::min(static_cast<std::size_t>(share), polygon_corners - 1);
+      const Sector<double> sector = sector_at(pupil, k);
+      const double density = density_in(sector);
+      if (!(density > 0)) continue;
+      const double way = std::sqrt(sector.squared_way(std::clamp(v[i], 0.0, 1.0)));
+      const Point<double> at = middle + sector.at(way, share - static_cast<double>(k));
+      const Vec2<double> place{at.x, at.y}, p = table->grid ? bearing.from_quadrant(place) : place;
       const Ray<double> ray = plane.ray(p.x, p.y);
       const double far = std::sqrt(squared(distance) + squared(p.x) + squared(p.y));
-      samples[i] = {ray.origin, ray.direction, far, squared(far) * (far / distance) / sampler.area()};
+      samples[i] = {ray.origin, ray.direction, far, squared(far) * (far / distance) * density};
     }
     return;
   }
@@ -416,7 +472,7 @@ EntranceSample EntrancePupilTable::sample(const Vec3<double>& point, double u, d
   return result;
 }
 
-double EntrancePupilTable::pdf(const Vec3<double>& point, const Vec3<double>& direction,
+double EntrancePupilTable::pdf(const Vec3<double>& point, const Ray<double>& ray,
                                Wavelength wavelength) const noexcept {
   const Data::Table* table = data_->table_for(point, wavelength);
   if (!table) return 0;
@@ -424,14 +480,15 @@ double EntrancePupilTable::pdf(const Vec3<double>& point, const Vec3<double>& di
   const double distance = glm::length(from_centre);
   const Bearing bearing(from_centre / distance);
   const PupilPlane plane = data_->plane_facing(bearing, 1 / distance);
-  const double cosine = -glm::dot(direction, plane.towards());
+  const double cosine = -glm::dot(ray.direction, plane.towards());
   if (data_->covers(*table, distance)) {
     if (!(cosine > 0)) return 0;
-    const Vec2<double> met = plane.meet({point, direction}), place = table->grid ? bearing.in_quadrant(met) : met;
-    const PupilPolygon polygon = data_->polygon_at(*table, bearing, 1 / distance, wavelength);
-    const double way = polygon.way_to(place.x, place.y);
-    if (!(way >= 0 && way <= 1)) return 0;
-    return squared(distance) / (polygon.area() * cosine * squared(cosine));
+    const Vec2<double> met = plane.meet(ray), place = table->grid ? bearing.in_quadrant(met) : met;
+    std::optional<PupilPolygon> own;
+    const auto pupil = data_->pupil_at(*table, bearing, 1 / distance, wavelength, own);
+    const auto found = way_to_place(pupil, Point<double>{place.x, place.y} - pupil.middle());
+    if (!found || found->first > 1 || found->second.obscures(found->first)) return 0;
+    return squared(distance) * density_in(found->second) / (cosine * squared(cosine));
   }
   const double solid = cone(table->ball, distance);
   constexpr double rounding = 1e-15;  // of the cosine

@@ -51,8 +51,9 @@ using ScenePassing = std::function<void(std::size_t count, const RayArrays<const
 /// A point is identified by its distance from the pupil's centre and by its field, the angle between the axis and the
 /// line to that centre. Its pupil lies in the plane perpendicular to that line, so that fields of 90 degrees and more
 /// are like any other. Pupils are interpolated polygons of 64 corners that contain every ray that passes and few
-/// others. Points nearer to the lens than the table reaches, and all points of lenses without symmetry of revolution,
-/// get a cone about a ball that all rays meet. Every ray that passes can be sampled: estimates have no bias.
+/// others; samples take their sectors alike and are uniform within each. Points nearer to the lens than the table
+/// reaches, and all points of lenses without symmetry of revolution, get a cone about a ball that all rays meet. Every
+/// ray that passes can be sampled: estimates have no bias.
 ///
 /// Immutable, cheap to copy, free to share between threads.
 class PETZVAL_API EntrancePupilTable {
@@ -71,8 +72,9 @@ class PETZVAL_API EntrancePupilTable {
   void sample(const Vec3<double>& point, std::size_t count, const double* u, const double* v, Wavelength wavelength,
               EntranceSample* samples) const noexcept;
 
-  /// The density with which `sample` gives a direction, 1/sr.
-  double pdf(const Vec3<double>& point, const Vec3<double>& direction, Wavelength wavelength = {}) const noexcept;
+  /// The density with which `sample` gives the direction of a ray at a point, 1/sr. The ray is given anywhere on its
+  /// line, which passes the point, or one that is so far away that all its rays are parallel.
+  double pdf(const Vec3<double>& point, const Ray<double>& ray, Wavelength wavelength = {}) const noexcept;
 
  private:
   struct Data;

@@ -184,7 +184,8 @@ TEST_P(CustomModel, IsSeenFromTheSceneAsTheBuiltInModelIs) {
     // area changes by up to 2e-4. Any area that encloses the pupil gives the same light.
     EXPECT_NEAR(own.pdf, wanted.pdf, 5e-4 * wanted.pdf);
     EXPECT_NEAR(glm::length(own.direction - wanted.direction), 0, 1e-5);
-    EXPECT_NEAR(own_.pdf_importance(point, wanted.direction), wanted.pdf, 5e-4 * wanted.pdf);
+    // A direction between two sectors of the polygon may be in the other one, which is up to 1 % larger.
+    EXPECT_NEAR(own_.pdf_importance(point, wanted.direction), wanted.pdf, 1e-2 * wanted.pdf);
     const Importance a = own_.importance({wanted.on_front, wanted.direction}), b = wanted.importance;
     if (a.fate != b.fate) continue;  // at an edge
     EXPECT_NEAR(a.we, b.we, 1e-9 * b.we);

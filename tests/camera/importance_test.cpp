@@ -94,7 +94,7 @@ TEST_P(Importances, OfWhatTheCameraSeesAreConnected) {
     const ImportanceSample s = camera.sample_importance(point, x[0], x[1]);
     expect_finite(s.importance);
     if (!(s.pdf > 0)) continue;
-    EXPECT_NEAR(camera.pdf_importance(point, s.direction) / s.pdf, 1, 1e-6);
+    EXPECT_NEAR(camera.pdf_importance(point, s.direction) / s.pdf, 1, 1e-9);
     EXPECT_NEAR(glm::length(s.direction), 1, 1e-12);
     EXPECT_NEAR(glm::distance(point + s.direction * s.distance, s.on_front) / (1 + s.distance), 0, 1e-14);
     // The connection equals the importance of its ray.
@@ -218,7 +218,7 @@ TEST(Importance, OfASunIsTheAreaThroughWhichItShines) {
           EXPECT_EQ(s.direction, direction);
           EXPECT_LT(s.on_front.z, lens.surfaces()[0].vertex_z + 40);
           EXPECT_NEAR(camera.importance({s.on_front, direction}).we, s.importance.we, 1e-9 * s.importance.we);
-          EXPECT_NEAR(camera.pdf_distant_importance({s.on_front, direction}) / s.pdf, 1, 1e-6);
+          EXPECT_NEAR(camera.pdf_distant_importance({s.on_front, direction}) / s.pdf, 1, 1e-9);
           EXPECT_EQ(camera.pdf_distant_importance({s.on_front + Vec3<double>{0, 500, 0}, direction}), 0);
         }
         const ImportanceSample near = camera.sample_importance(-far * direction, u, v);

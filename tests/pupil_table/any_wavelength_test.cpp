@@ -201,7 +201,7 @@ TEST(AnyWavelength, HasEveryRayAmongTheSamplesOfScenePoints) {
       const Vec3<double> point = end.ray.origin + end.ray.direction * (i % 2 == 0 ? 1e5 : 3 * lens.film_z());
       if (!entrances.in_front(point)) continue;
       ++passing;
-      missed += !(entrances.pdf(point, -end.ray.direction, nm) > 0);
+      missed += !(entrances.pdf(point, {point, -end.ray.direction}, nm) > 0);
     }
     EXPECT_GT(passing, 10000) << id;
     EXPECT_LE(missed, 3) << id << " of " << passing;  // 1e-5 of them at compiled wavelengths too

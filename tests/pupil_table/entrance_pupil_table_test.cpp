@@ -79,7 +79,7 @@ Count count_missed(const Seen& s, std::uint32_t lines) {
     if (!end.transmitted()) continue;
     const Vec3<double> point = end.ray.origin + end.ray.direction * std::pow(10, 1 + 5 * e);
     ++count.passed;
-    count.missed += !(s.table.pdf(point, -end.ray.direction) > 0);
+    count.missed += !(s.table.pdf(point, {point, -end.ray.direction}) > 0);
   }
   return count;
 }
@@ -110,7 +110,7 @@ TEST(EntrancePupilTable, SendsMostRaysThroughCylinders) {
       if (!end.transmitted()) continue;
       const Vec3<double> point = end.ray.origin + end.ray.direction * (300 * std::pow(10, 3 * e));
       const EntranceSample sample = s.table.sample(point, v, u);
-      EXPECT_NEAR(s.table.pdf(point, sample.direction) / sample.pdf, 1, 1e-6);
+      EXPECT_NEAR(s.table.pdf(point, {point, sample.direction}) / sample.pdf, 1, 1e-6);
       ++all;
       passed += trace(s.lens, Ray<double>{sample.place, sample.direction}).transmitted();
     }
@@ -147,7 +147,7 @@ TEST(EntrancePupilTable, HasTheDensityItSays) {
         const EntranceSample sample = s.table.sample(point, u, v);
         ASSERT_GT(sample.pdf, 0);
         EXPECT_NEAR(glm::length(sample.direction), 1, 1e-12);
-        EXPECT_NEAR(s.table.pdf(point, sample.direction) / sample.pdf, 1, 1e-7);
+        EXPECT_NEAR(s.table.pdf(point, {point, sample.direction}) / sample.pdf, 1, 1e-7);
         EXPECT_NEAR(glm::distance(point + sample.direction * sample.distance, sample.place), 0, 1e-9);
         solid += 1 / sample.pdf / draws;
         widest = std::max(widest, 1 - glm::dot(axis, sample.direction));
@@ -162,7 +162,7 @@ TEST(EntrancePupilTable, HasTheDensityItSays) {
         const double sine = std::sqrt(cone * v * (2 - cone * v));
         const Vec3<double> d =
             axis * (1 - cone * v) + x * (sine * std::cos(2 * pi * u)) + y * (sine * std::sin(2 * pi * u));
-        const double pdf = s.table.pdf(point, d);
+        const double pdf = s.table.pdf(point, {point, d});
         met += (pdf > 0 ? 1.0 : 0.0) * 2 * pi * cone / (4 * draws);
         whole += pdf * 2 * pi * cone / (4 * draws);
       }
@@ -234,12 +234,12 @@ TEST(EntrancePupilTable, HasNothingForWhatIsNotInFrontOfTheLens) {
     const EntranceSample sample = s.table.sample(point, 0.4, 0.6);
     EXPECT_EQ(sample.pdf, 0) << point.x << ' ' << point.y << ' ' << point.z;
     EXPECT_TRUE(std::isfinite(sample.place.x + sample.direction.x + sample.distance));
-    EXPECT_EQ(s.table.pdf(point, {0, 0, 1}), 0);
+    EXPECT_EQ(s.table.pdf(point, {point, {0, 0, 1}}), 0);
   }
   EXPECT_EQ(s.table.sample({0, 0, -1000}, 0.4, 0.6, 1).pdf, 0);
   EXPECT_EQ(s.table.sample({0, 0, -1000}, nan, 0.6).pdf, 0);
-  EXPECT_EQ(s.table.pdf({0, 0, -1000}, {nan, 0, 1}), 0);
-  EXPECT_EQ(s.table.pdf({0, 0, -1000}, {0, 0, -1}), 0);
+  EXPECT_EQ(s.table.pdf({0, 0, -1000}, {{0, 0, -1000}, {nan, 0, 1}}), 0);
+  EXPECT_EQ(s.table.pdf({0, 0, -1000}, {{0, 0, -1000}, {0, 0, -1}}), 0);
   EXPECT_GT(s.table.sample({0, 0, -1000}, 0, 1).pdf, 0);
 }
 
