@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "renderer/bsdf.hpp"
+#include "renderer/integrators.hpp"
+#include "renderer/light_paths.hpp"
+
+namespace renderer {
+namespace {
+
+/// What the weights of all ways to make a path take from the part behind a vertex: sums of densities of the other ways,
+/// over that of this one. A path that is connected at the vertex, or ends there, takes `connected`; one that goes on
+/// backwards through it, `through` times the density of that.
+/// Source: Georgiev, Implementing vertex connection and merging, 2012 (dVCM and dVC; nothing is merged here).
+struct OtherWays {
+  double connected = 0, through = 0;
+
+  /// The path arrives at a surface.
+  void arrive(double d2, double cosine) noexcept { connected *= d2 / cosine, through /= cosine; }
+  /// It is scattered there.
+  void scatter(const Bsdf::Sample& next, double goes_on, double cosine) noexcept {
+    if (next.specular) {
+      connected = 0, through *= cosine;
+      return;
+    }
+    const double pdf = next.pdf * goes_on;
+    through = cosine / pdf * (through * next.pdf_reverse * goes_on + connected);
+    connected = 1 / pdf;
+  }
+  double with(double backwards) const noexcept { return connected + through * backwards; }
+};
+
+struct LightVertex {
+  SurfacePoint point;
+  Bsdf bsdf;
+  Lanes power;
+  OtherWays others;
+  int scatterings;  ///< up to it and there
+};
+
+/// One path from both ends. The lens has two ways: film samples, and connections from the light's side.
+class Path {
+ public:
+  Path(const Scene& scene, const LensView& lens, Random& random, Splats& splats)
+      : scene_(scene), lens_(lens), colours_(lens.colours()), random_(random), splats_(splats) {
+    vertices_.reserve(most_scatterings);
+  }
+
+  void from_light() {
+    const auto start = emit(scene_, random_);
+    if (!start) return;
+    const Lanes emitted = colours_.from_rgb * start->from.radiance;
+    see_lamp(*start, emitted);
+    OtherWays others{start->from.pdf / start->pdf_emission, start->cosine / start->pdf_emission};
+    Lanes power = emitted * static_cast<float>(start->cosine / start->pdf_emission);
+    WorldRay ray{start->origin, start->direction};
+    const bool near = start->from.surface.has_value();
+    for (int k = 1; k <= most_scatterings; ++k) {
+      const auto met = scene_.meet(ray.origin, ray.direction);
+      if (!met) return;
+      // Light from the sky is spread over an area, not from a point.
+      others.arrive(k > 1 || near ? distance2(ray.origin, met->position) : 1, cosine(met->normal, ray.direction));
+      const Bsdf bsdf(*met, -ray.direction, colours_);
+      if (!bsdf.specular()) {
+        vertices_.push_back({*met, bsdf, power, others, k});
+        see(vertices_.back());
+      }
+      if (!scatter(*met, bsdf, Carries::power, power, others, ray)) return;
+    }
+  }
+
+  void from_film(const FilmSample& sample) {
+    if (!sample) return;
+    Lanes radiance(0), throughput(1);
+    WorldRay ray = sample.ray;
+    OtherWays others;
+    for (int k = 0;; ++k) {
+      const auto met = scene_.meet(ray.origin, ray.direction);
+      if (k == 0) {
+        const SeenRay seen = lens_.seen(sample, met ? &*met : nullptr);
+        others.connected = seen.by_film > 0 ? seen.by_connection / seen.by_film : 0;
+        if (met) others.arrive(1, cosine(met->normal, ray.direction));
+      } else if (met) {
+        others.arrive(distance2(ray.origin, met->position), cosine(met->normal, ray.direction));
+      }
+      if (!met) {
+        const double p = scene_.pdf_sky(-ray.direction), emission = pdf_sky_emission(scene_, -ray.direction);
+        radiance += throughput * (colours_.from_rgb * scene_.sky(-ray.direction)) *
+                    weight(p * others.connected + emission * others.through);
+        break;
+      }
+      if (const Rgb emitted = Scene::emission(*met, -ray.direction); emitted != Rgb(0)) {
+        const double emission = pdf_emission(scene_, *met, cosine(met->normal, ray.direction));
+        radiance += throughput * (colours_.from_rgb * emitted) *
+                    weight(scene_.pdf_light(*met) * others.connected + emission * others.through);
+      }
+      if (k == most_scatterings) break;
+      const Bsdf bsdf(*met, -ray.direction, colours_);
+      if (!bsdf.specular()) {
+        radiance += throughput * (lit(*met, bsdf, others) + connected(*met, bsdf, others, most_scatterings - k - 1));
+      }
+      if (!scatter(*met, bsdf, Carries::radiance, throughput, others, ray)) break;
+    }
+    splats_.add(colours_, sample.pixels, sample.weight * radiance);
+  }
+
+ private:
+  static float weight(double other_ways) { return static_cast<float>(1 / (1 + other_ways)); }
+
+  bool scatter(const SurfacePoint& at, const Bsdf& bsdf, Carries carries, Lanes& throughput, OtherWays& others,
+               WorldRay& ray) {
+    if (random_() >= bsdf.goes_on()) return false;
+    const float choice = random_(), u = random_(), v = random_();
+    const auto next = bsdf.sample(choice, u, v, carries);
+    if (!next) return false;
+    throughput *= next->weight / static_cast<float>(bsdf.goes_on());
+    others.scatter(*next, bsdf.goes_on(), cosine(at.normal, next->wi));
+    ray = {Scene::leave(at, next->wi), next->wi};
+    return true;
+  }
+
+  /// The lamp where the light path begins, or the sky, seen by the lens.
+  void see_lamp(const Emitted& start, const Lanes& emitted) {
+    const float u = random_(), v = random_();
+    const auto& lamp = start.from.surface;
+    const SeenRay seen = lamp ? lens_.connect(*lamp, u, v) : lens_.connect_sky(start.direction, u, v);
+    const double facing = lamp ? glm::dot(lamp->normal, seen.direction) : 1;
+    if (!seen || !(facing > 0)) return;
+    if (!(lamp ? scene_.sees(*lamp, seen.on_front) : scene_.sees_sky(seen.on_front, -seen.direction))) return;
+    const double film = seen.by_film * facing / (start.from.pdf * seen.by_connection);
+    splats_.add(colours_, seen.pixels,
+                emitted * seen.we * static_cast<float>(facing / (start.from.pdf * seen.by_connection)) * weight(film));
+  }
+
+  /// A lit surface, seen by the lens.
+  void see(const LightVertex& vertex) {
+    const float u = random_(), v = random_();
+    const SeenRay seen = lens_.connect(vertex.point, u, v);
+    if (!seen) return;
+    const Lanes f = vertex.bsdf.times_cosine(seen.direction, Carries::power);
+    if (f == Lanes(0) || !scene_.sees(vertex.point, seen.on_front)) return;
+    const double film = seen.by_film * cosine(vertex.point.normal, seen.direction) / seen.by_connection;
+    const double back = vertex.bsdf.pdf_reverse(seen.direction) * vertex.bsdf.goes_on();
+    splats_.add(
+        colours_, seen.pixels,
+        vertex.power * f * seen.we / static_cast<float>(seen.by_connection) * weight(film * vertex.others.with(back)));
+  }
+
+  /// Light straight from a lamp.
+  Lanes lit(const SurfacePoint& at, const Bsdf& bsdf, const OtherWays& others) {
+    const auto light = illumination(scene_, at, random_);
+    if (!light) return Lanes(0);
+    const Lanes f = bsdf.times_cosine(light->direction, Carries::radiance);
+    if (f == Lanes(0) || !sees(scene_, at, *light)) return Lanes(0);
+    const double meets = bsdf.pdf(light->direction) * bsdf.goes_on() / light->pdf;
+    const double back = bsdf.pdf_reverse(light->direction) * bsdf.goes_on();
+    const double emitted = light->pdf_emission * cosine(at.normal, light->direction) / (light->pdf * light->cosine);
+    return f * (colours_.from_rgb * light->radiance) / static_cast<float>(light->pdf) *
+           weight(meets + emitted * others.with(back));
+  }
+
+  /// Light from all vertices of the light path, with at most so many scatterings there.
+  Lanes connected(const SurfacePoint& at, const Bsdf& bsdf, const OtherWays& others, int most) {
+    Lanes sum(0);
+    for (const LightVertex& vertex : vertices_) {
+      if (vertex.scatterings > most) break;
+      const double d2 = distance2(at.position, vertex.point.position);
+      if (!(d2 > 0)) continue;
+      const glm::vec3 way = (vertex.point.position - at.position) / static_cast<float>(std::sqrt(d2));
+      const Lanes here = bsdf.times_cosine(way, Carries::radiance);
+      if (here == Lanes(0)) continue;
+      // times_cosine() holds the cosine of the direction wi, which for power is this one.
+      const Lanes there = vertex.bsdf.times_cosine(-way, Carries::power);
+      if (there == Lanes(0) || !scene_.sees(at, vertex.point)) continue;
+      const double here_cosine = cosine(at.normal, way), there_cosine = cosine(vertex.point.normal, way);
+      const double to_there = bsdf.pdf(way) * bsdf.goes_on() * there_cosine / d2;
+      const double to_here = vertex.bsdf.pdf(-way) * vertex.bsdf.goes_on() * here_cosine / d2;
+      const double back = bsdf.pdf_reverse(way) * bsdf.goes_on();
+      const double back_there = vertex.bsdf.pdf_reverse(-way) * vertex.bsdf.goes_on();
+      sum += here * there * vertex.power / static_cast<float>(d2) *
+             weight(to_there * vertex.others.with(back_there) + to_here * others.with(back));
+    }
+    return sum;
+  }
+
+  const Scene& scene_;
+  const LensView& lens_;
+  const PathColours& colours_;
+  Random& random_;
+  Splats& splats_;
+  std::vector<LightVertex> vertices_;
+};
+
+}  // namespace
+
+void trace_both(const Scene& scene, const LensView& lens, const FilmSample& sample, Random& random, Splats& splats) {
+  Path path(scene, lens, random, splats);
+  path.from_light();
+  path.from_film(sample);
+}
+
+}  // namespace renderer

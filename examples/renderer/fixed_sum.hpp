@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+
+namespace renderer {
+
+/// A sum in whole multiples of 2^-64, up to 2^63: the same bits in whatever order numbers are added.
+class FixedSum {
+ public:
+  constexpr FixedSum() noexcept = default;
+  /// A finite number below 2^62 in size, rounded down to a multiple of 2^-64.
+  explicit FixedSum(double x) noexcept {
+    const double whole = std::floor(x);
+    high_ = static_cast<std::int64_t>(whole);
+    low_ = static_cast<std::uint64_t>((x - whole) * 0x1p64);  // below 2^64: x - floor(x) is exact
+  }
+
+  FixedSum& operator+=(const FixedSum& other) noexcept {
+    low_ += other.low_;
+    high_ += other.high_ + (low_ < other.low_ ? 1 : 0);
+    return *this;
+  }
+  FixedSum& operator-=(const FixedSum& other) noexcept {
+    high_ -= other.high_ + (low_ < other.low_ ? 1 : 0);
+    low_ -= other.low_;
+    return *this;
+  }
+  friend bool operator==(const FixedSum&, const FixedSum&) = default;
+
+  /// The nearest double but for one unit in the last place. Small negative numbers keep their digits.
+  double value() const noexcept {
+    if (high_ >= 0) return static_cast<double>(high_) + static_cast<double>(low_) * 0x1p-64;
+    FixedSum opposite;
+    opposite -= *this;
+    return -opposite.value();
+  }
+
+ private:
+  std::int64_t high_ = 0;
+  std::uint64_t low_ = 0;
+};
+
+}  // namespace renderer

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "renderer/lens_view.hpp"
+
+#include <algorithm>
+
+namespace renderer {
+
+petzval::Wavelength LensView::wavelength(int lane) const noexcept {
+  if (colours_.one_wavelength) return {};
+  return petzval::Wavelength::nm(double{colours_.nm[static_cast<std::size_t>(lane)]});
+}
+
+std::uint32_t LensView::pixel_of(const petzval::Importance& seen) const noexcept {
+  const petzval::Film& film = lens_.film();
+  const auto place = [](double raster, int count) {
+    return static_cast<std::uint32_t>(std::clamp(static_cast<int>(raster), 0, count - 1));
+  };
+  return place(seen.raster.y, film.rows) * static_cast<std::uint32_t>(film.columns) +
+         place(seen.raster.x, film.columns);
+}
+
+void LensView::add(SeenRay& ray, int lane, const petzval::Importance& seen, double by_connection) const noexcept {
+  const auto all = colours_.one_wavelength ? colours_.lanes : 1;
+  for (int i = lane; i < lane + all; ++i) {
+    if (!seen) continue;
+    ray.we[i] = static_cast<float>(seen.we);
+    ray.pixels[static_cast<std::size_t>(i)] = pixel_of(seen);
+  }
+  const double share = static_cast<double>(all) / colours_.lanes;
+  ray.by_film += share * (seen ? seen.pdf_position * seen.pdf_direction : 0);
+  ray.by_connection += share * by_connection;
+}
+
+SeenRay LensView::at_all_lanes(const LensCamera::Connection& hero, const glm::vec3* point) const noexcept {
+  SeenRay result{.direction = hero.direction, .on_front = hero.on_front};
+  if (!(hero.pdf > 0)) return result;
+  if (colours_.one_wavelength) {
+    add(result, 0, hero.importance, hero.pdf);
+    return result;
+  }
+  if (lens_.pinhole()) {  // only the hero meets its point; the others have theirs when they are heroes
+    add(result, colours_.hero, hero.importance, hero.pdf);
+    result.we *= static_cast<float>(colours_.lanes);
+    result.by_film *= colours_.lanes, result.by_connection *= colours_.lanes;
+    return result;
+  }
+  for (int lane = 0; lane < colours_.lanes; ++lane) {
+    if (lane == colours_.hero) {
+      add(result, lane, hero.importance, hero.pdf);
+    } else {
+      add(result, lane, lens_.importance(hero.on_front, hero.direction, wavelength(lane)),
+          point ? lens_.pdf_connection(*point, hero.direction, wavelength(lane))
+                : lens_.pdf_distant_connection({hero.on_front, hero.direction}, wavelength(lane)));
+    }
+  }
+  return result;
+}
+
+SeenRay LensView::connect(const SurfacePoint& from, float u, float v) const noexcept {
+  const Stopwatch watch(seconds_);
+  return at_all_lanes(lens_.connect(from.position, u, v, wavelength(colours_.hero)), &from.position);
+}
+
+SeenRay LensView::connect_sky(const glm::vec3& travel, float u, float v) const noexcept {
+  const Stopwatch watch(seconds_);
+  return at_all_lanes(lens_.connect_distant(travel, u, v, wavelength(colours_.hero)), nullptr);
+}
+
+SeenRay LensView::seen(const FilmSample& sample, const SurfacePoint* from) const noexcept {
+  if (lens_.pinhole()) {
+    return from ? connect(*from, sample.u, sample.v) : connect_sky(-sample.ray.direction, sample.u, sample.v);
+  }
+  const Stopwatch watch(seconds_);
+  SeenRay result{.direction = -sample.ray.direction};
+  const int calls = colours_.one_wavelength ? 1 : colours_.lanes;
+  for (int lane = 0; lane < calls; ++lane) {
+    add(result, lane, lens_.importance(sample.ray.origin, result.direction, wavelength(lane)),
+        from ? lens_.pdf_connection(from->position, result.direction, wavelength(lane))
+             : lens_.pdf_distant_connection({sample.ray.origin, result.direction}, wavelength(lane)));
+  }
+  return result;
+}
+
+FilmSample LensView::film_sample(const LensCamera::Batch& batch, std::size_t index,
+                                 std::uint32_t pixel) const noexcept {
+  FilmSample result{.ray = batch.rays[index], .u = batch.u[index], .v = batch.v[index]};
+  const float weight = batch.weights[index];
+  if (!(weight > 0)) return result;
+  if (colours_.one_wavelength || lens_.pinhole()) {
+    const int first = colours_.one_wavelength ? 0 : colours_.hero, count = colours_.one_wavelength ? colours_.lanes : 1;
+    for (int lane = first; lane < first + count; ++lane) {
+      result.weight[lane] = colours_.one_wavelength ? weight : weight * static_cast<float>(colours_.lanes);
+      result.pixels[static_cast<std::size_t>(lane)] = pixel;
+    }
+    return result;
+  }
+  const Stopwatch watch(seconds_);
+  SeenRay seen;
+  for (int lane = 0; lane < colours_.lanes; ++lane) {
+    add(seen, lane, lens_.importance(result.ray.origin, -result.ray.direction, wavelength(lane)), 0);
+  }
+  if (!(seen.by_film > 0)) return result;
+  result.weight = seen.we / static_cast<float>(seen.by_film);
+  result.pixels = seen.pixels;
+  return result;
+}
+
+}  // namespace renderer

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <cstdint>
+
+#include "renderer/lens_camera.hpp"
+#include "renderer/path_colours.hpp"
+#include "renderer/scene.hpp"
+
+namespace renderer {
+
+inline constexpr std::uint32_t no_pixel = ~std::uint32_t{0};
+/// Where the lanes of a path meet the film: a lens bends each wavelength in its own way.
+using LanePixels = std::array<std::uint32_t, 4>;
+
+/// A film sample, and what its lanes weigh: radiance by lane times weight is what the path adds to a pixel.
+struct FilmSample {
+  WorldRay ray;
+  float u = 0, v = 0;  ///< of the pupil
+  Lanes weight{0};
+  LanePixels pixels{no_pixel, no_pixel, no_pixel, no_pixel};
+
+  explicit operator bool() const noexcept { return weight != Lanes(0); }
+};
+
+/// A ray of the scene, as the lens sees it at the wavelengths of a path.
+///
+/// A ray may be found from the film or by a connection, at the hero's wavelength, and any lane may be the hero. So its
+/// densities are the means over the lanes (Wilkie et al. 2014), and all lanes share one path.
+struct SeenRay {
+  glm::vec3 direction{0, 0, 1};  ///< towards the lens
+  glm::vec3 on_front{0, 0, 0};   ///< of connections: where shadow rays end
+  Lanes we{0};                   ///< importance, 1/mm^2
+  LanePixels pixels{no_pixel, no_pixel, no_pixel, no_pixel};
+  double by_film = 0;        ///< among film samples, in the measure cos dA dw of the scene, 1/(mm^2 sr)
+  double by_connection = 0;  ///< among connections, 1/sr at their point; of light from the sky 1/mm^2
+
+  explicit operator bool() const noexcept { return we != Lanes(0); }
+};
+
+/// The lens for one path.
+class LensView {
+ public:
+  /// seconds: where the time spent in the lens is added.
+  LensView(const LensCamera& lens, const PathColours& colours, double& seconds) noexcept
+      : lens_(lens), colours_(colours), seconds_(seconds) {}
+
+  const PathColours& colours() const noexcept { return colours_; }
+
+  /// A sample of a batch, drawn at the hero's wavelength in a pixel.
+  FilmSample film_sample(const LensCamera::Batch& batch, std::size_t index, std::uint32_t pixel) const noexcept;
+  /// The same ray from where it begins in the scene: a surface, or with none the sky.
+  SeenRay seen(const FilmSample& sample, const SurfacePoint* from) const noexcept;
+  /// A connection with a surface, or with the sky's light.
+  SeenRay connect(const SurfacePoint& from, float u, float v) const noexcept;
+  SeenRay connect_sky(const glm::vec3& travel, float u, float v) const noexcept;
+
+ private:
+  petzval::Wavelength wavelength(int lane) const noexcept;
+  std::uint32_t pixel_of(const petzval::Importance& seen) const noexcept;
+  SeenRay at_all_lanes(const LensCamera::Connection& hero, const glm::vec3* point) const noexcept;
+  void add(SeenRay& ray, int lane, const petzval::Importance& seen, double by_connection) const noexcept;
+
+  const LensCamera& lens_;
+  const PathColours& colours_;
+  double& seconds_;
+};
+
+/// Adds the time of its life to a sum.
+class Stopwatch {
+ public:
+  explicit Stopwatch(double& seconds) noexcept : seconds_(seconds) {}
+  ~Stopwatch() { seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count(); }
+  Stopwatch(const Stopwatch&) = delete;
+  Stopwatch& operator=(const Stopwatch&) = delete;
+
+ private:
+  double& seconds_;
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace renderer
