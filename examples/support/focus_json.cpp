@@ -4,12 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
-#include <set>
 #include <string>
 #include <string_view>
 
 #include "cli.hpp"
-#include "files.hpp"
+#include "json_input.hpp"
 #include "petzval/core/error.hpp"
 
 namespace examples {
@@ -17,50 +16,13 @@ namespace {
 
 constexpr Range weight_range{0, std::numeric_limits<double>::max(), "a finite number, 0 or more"};
 
-[[noreturn]] void refuse(const std::string& where, const Json& found, const std::string& wanted) {
-  std::string text = found.dump(-1, ' ', false, Json::error_handler_t::replace);
-  if (text.size() > 60) text = text.substr(0, 57) + "...";
-  throw petzval::Error(where + ": found " + text + ", wanted " + wanted);
-}
-
-/// The document. Refuses a repeated key, which would hide a value, and more levels than any format here has: printing
-/// and comparing values takes a call for each.
-Json parse(const std::filesystem::path& file) {
-  constexpr int deepest = 8;
-  const std::string text = read_text(file);
-  std::vector<std::set<std::string>> open;
-  const auto look = [&](int depth, Json::parse_event_t event, Json& value) {
-    if (depth > deepest) {
-      throw petzval::Error(file.string() + ": found lists or objects nested more than " + std::to_string(deepest) +
-                           " deep, wanted a list of points");
-    }
-    if (event == Json::parse_event_t::object_start) open.emplace_back();
-    if (event == Json::parse_event_t::object_end) open.pop_back();
-    if (event == Json::parse_event_t::key && !open.back().insert(value.get<std::string>()).second) {
-      throw petzval::Error(file.string() + ": found the key " + value.dump() + " twice in one object, wanted once");
-    }
-    return true;
-  };
-  try {
-    return Json::parse(text, look);
-  } catch (const Json::exception& error) {
-    const std::string reason = error.what();
-    const auto end = reason.find("] ");
-    throw petzval::Error(file.string() + ": not JSON: " + (end == std::string::npos ? reason : reason.substr(end + 2)));
-  }
-}
-
 /// An object of the file and its name in messages.
 struct Entry {
   std::string where;
   const Json& json;
 
   void keys(std::initializer_list<std::string_view> known, const std::string& words) const {
-    if (!json.is_object()) refuse(where, json, "an object with " + words);
-    for (const auto& [key, value] : json.items()) {
-      if (std::find(known.begin(), known.end(), key) != known.end()) continue;
-      throw petzval::Error(where + ": found the key " + Json(key).dump() + ", wanted " + words);
-    }
+    check_keys(where, json, known, words);
   }
 
   const Json& at(const char* key, const std::string& wanted) const {
@@ -104,7 +66,7 @@ void for_entries(const std::string& where, const Json& list, const std::string& 
 
 std::vector<petzval::FocusTarget> read_targets(const std::filesystem::path& file) {
   std::vector<petzval::FocusTarget> result;
-  const Json document = parse(file);
+  const Json document = read_json(file);
   if (document == Json::array()) return result;
   for_entries(file.string(), document, "point", [&](const Entry& entry) {
     entry.keys({"position_mm", "weight", "blur_mm", "at_infinity"}, "position_mm, weight, blur_mm and at_infinity");
@@ -116,7 +78,7 @@ std::vector<petzval::FocusTarget> read_targets(const std::filesystem::path& file
 
 std::vector<petzval::FocusPoint> read_focus_points(const std::filesystem::path& file) {
   std::vector<petzval::FocusPoint> result;
-  const Json document = parse(file);
+  const Json document = read_json(file);
   for_entries(file.string(), document, "point", [&](const Entry& entry) {
     entry.keys({"from_s", "until_s", "keys"}, "from_s, until_s and keys");
     petzval::FocusPoint point;

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "json_input.hpp"
+
+#include <algorithm>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "petzval/core/error.hpp"
+
+namespace examples {
+
+void refuse(const std::string& where, const Json& found, const std::string& wanted) {
+  std::string text = found.dump(-1, ' ', false, Json::error_handler_t::replace);
+  if (text.size() > 60) text = text.substr(0, 57) + "...";
+  throw petzval::Error(where + ": found " + text + ", wanted " + wanted);
+}
+
+Json read_json(const std::filesystem::path& file) {
+  constexpr int deepest = 8;
+  const std::string text = read_text(file);
+  std::vector<std::set<std::string>> open;
+  const auto look = [&](int depth, Json::parse_event_t event, Json& value) {
+    if (depth > deepest) {
+      throw petzval::Error(file.string() + ": found lists or objects nested more than " + std::to_string(deepest) +
+                           " deep, wanted fewer levels");
+    }
+    if (event == Json::parse_event_t::object_start) open.emplace_back();
+    if (event == Json::parse_event_t::object_end) open.pop_back();
+    if (event == Json::parse_event_t::key && !open.back().insert(value.get<std::string>()).second) {
+      throw petzval::Error(file.string() + ": found the key " + value.dump() + " twice in one object, wanted once");
+    }
+    return true;
+  };
+  try {
+    return Json::parse(text, look);
+  } catch (const Json::exception& error) {
+    const std::string reason = error.what();
+    const auto end = reason.find("] ");
+    throw petzval::Error(file.string() + ": not JSON: " + (end == std::string::npos ? reason : reason.substr(end + 2)));
+  }
+}
+
+void check_keys(const std::string& where, const Json& json, std::initializer_list<std::string_view> known,
+                const std::string& words) {
+  if (!json.is_object()) refuse(where, json, "an object with " + words);
+  for (const auto& [key, value] : json.items()) {
+    if (std::find(known.begin(), known.end(), key) != known.end()) continue;
+    throw petzval::Error(where + ": found the key " + Json(key).dump() + ", wanted " + words);
+  }
+}
+
+}  // namespace examples
