@@ -29,6 +29,10 @@ class LensCamera {
   const petzval::Camera& camera() const noexcept { return camera_; }
   bool pinhole() const noexcept { return camera_.model() == petzval::ModelKind::pinhole; }
   const petzval::Film& film() const noexcept { return camera_.film(); }
+  /// How far a point lies in front of the film, along the axis, mm.
+  double depth(const glm::vec3& point) const noexcept;
+  /// The first vertex of the lens.
+  glm::vec3 front() const noexcept { return to_world({0, 0, 0}); }
 
   /// Samples of the film, drawn in one call: the exact lens traces them side by side.
   struct Batch {

@@ -25,6 +25,12 @@ void add_camera(App& app, CameraSetup& setup) {
       ->capture_default_str();
 }
 
+Option* add_distance_origin(App& app, CameraSetup& setup) {
+  return app.add_option("--distance-from", setup.origin, "origin of --focus-mm")
+      ->one_of({"front_vertex", "film"})
+      ->capture_default_str();
+}
+
 Option* add_model(App& app, std::string& model) {
   std::vector<std::string> names;
   for (const petzval::ModelKind m : petzval::models()) names.emplace_back(petzval::name(m));
@@ -42,7 +48,7 @@ std::array<double, 2> parse_size(const std::string& where, std::string_view text
 petzval::Lens focused(const LoadedLens& loaded, const CameraSetup& setup) {
   return petzval::with_focus(
       stopped_down(loaded.lens, setup.iris), setup.focus_mm,
-      {.criterion = named(setup.criterion, focus_criteria), .origin = petzval::DistanceOrigin::film});
+      {.criterion = named(setup.criterion, focus_criteria), .origin = named(setup.origin, distance_origins)});
 }
 
 void say_what_does_not_fit(const petzval::Lens& lens, const petzval::Film& film) {

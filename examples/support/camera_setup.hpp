@@ -16,7 +16,8 @@ namespace examples {
 /// Command line of the programs with a camera.
 struct CameraSetup {
   IrisSetup iris;
-  double focus_mm = 3000;  ///< of the subject from the film
+  double focus_mm = 3000;       ///< of the subject
+  std::string origin = "film";  ///< of that distance
   std::string criterion = "min_rms";
   std::string film_mm = "36x24";
 
@@ -26,6 +27,9 @@ struct CameraSetup {
 
 /// Options of add_iris, --focus-mm, --criterion and --film-mm.
 void add_camera(App& app, CameraSetup& setup);
+
+/// Option --distance-from, of --focus-mm.
+Option* add_distance_origin(App& app, CameraSetup& setup);
 
 /// Option --model.
 Option* add_model(App& app, std::string& model);

@@ -1,0 +1,271 @@
+// SPDX-License-Identifier: Apache-2.0
+// Renders a scene through a lens by path, light or bidirectional path tracing.
+//
+//   bokeh_scene --scene chess --lens data/lenses/double_gauss_100mm_f2_28deg.json --model exact_float --focus-mm 950
+//               --integrator bidirectional --spp 256 --out chess
+//   bokeh_scene --scene room.json --lens data/lenses/double_gauss_52mm_f1.8.json --model auto --spp 64 --focus-mm 2000
+//               --wavelengths hero --out room
+#include <algorithm>
+#include <filesystem>
+#include <iostream>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "petzval/camera/camera.hpp"
+#include "petzval/core/error.hpp"
+#include "petzval/core/parallel.hpp"
+#include "petzval/core/units.hpp"
+#include "petzval/io/image.hpp"
+#include "petzval/pupil/f_number.hpp"
+#include "renderer/built_in_scenes.hpp"
+#include "renderer/render.hpp"
+#include "renderer/scene_checksum.hpp"
+#include "renderer/scene_json.hpp"
+#include "renderer/scene_model.hpp"
+#include "support/bokeh_flags.hpp"
+#include "support/camera_setup.hpp"
+#include "support/cli.hpp"
+#include "support/files.hpp"
+#include "support/load_lens.hpp"
+#include "support/model_rows.hpp"
+#include "support/text.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+using examples::Json;
+
+struct Options {
+  std::string scene, lens_file, model = "exact_float", integrator = "bidirectional", wavelengths = "d",
+                                normalisation = "unity_on_axis", tile = "1/1", out_folder;
+  examples::CameraSetup setup;
+  examples::BokehFlags bokeh;
+  std::vector<std::string> formats{"exr", "png"};
+  std::uint32_t samples = 0, width = 600, height = 400, seed = 0;
+  std::uint32_t threads = static_cast<std::uint32_t>(petzval::processor_threads());
+  double budget_px = 0, seconds = 0, tilt_deg = 0, swing_deg = 0;
+  bool resume = false;
+};
+
+/// The scene, the lens, and what decides the picture's numbers.
+class Job {
+ public:
+  explicit Job(const Options& options)
+      : options_(options),
+        integrator_(*renderer::integrator_named(options.integrator)),
+        colours_(*renderer::colour_mode_named(options.wavelengths)),
+        scene_(description(options)),
+        lens_(focused_lens()) {
+    const auto [width, height] = options.setup.film_size();
+    film_ = {.width_mm = width,
+             .height_mm = height,
+             .columns = static_cast<int>(options.width),
+             .rows = static_cast<int>(options.height),
+             .tilt_rad = petzval::radians(options.tilt_deg),
+             .swing_rad = petzval::radians(options.swing_deg)};
+    examples::say_what_does_not_fit(lens_, film_);
+    choose_model();
+  }
+
+  renderer::RenderReport run() {
+    const renderer::LensCamera lens = camera(chosen_.model);
+    const fs::path folder = options_.out_folder;
+    examples::make_folder(folder);
+    const Json job = description_of_numbers();
+    renderer::PictureSums sums(film_.columns, film_.rows);
+    std::vector<std::size_t> tiles;
+    for (std::size_t t = 0; t < sums.tiles(); ++t) {
+      tiles.push_back(t);
+    }
+    const renderer::UnitTracer tracer(scene_, lens, colours_, integrator_, options_.seed);
+    const renderer::RenderReport report =
+        renderer::render(tracer, sums, tiles, effort(), static_cast<int>(options_.threads), [] {});
+    write(sums, job, report);
+    return report;
+  }
+
+ private:
+  static renderer::SceneDescription description(const Options& options) {
+    if (options.scene.ends_with(".json")) return renderer::read_scene(options.scene);
+    if (auto scene = renderer::built_in_scene(options.scene)) return std::move(*scene);
+    throw petzval::Error("--scene: found \"" + options.scene + "\", wanted one of " +
+                         std::string(renderer::built_in_scene_names) + ", or a file that ends in .json");
+  }
+  petzval::Lens focused_lens() const {
+    return examples::focused(examples::load_lens(options_.lens_file, colours_.compiled_nm()), options_.setup);
+  }
+  renderer::LensCamera camera(petzval::ModelKind model) const {
+    return {petzval::Camera(
+                lens_, film_,
+                {.model = model,
+                 .normalisation = options_.normalisation == "irradiance" ? petzval::Normalisation::irradiance
+                                                                         : petzval::Normalisation::unity_on_axis,
+                 .threads = static_cast<int>(options_.threads),
+                 .bokeh = examples::controls_of(options_.bokeh)}),
+            scene_.description().pose};
+  }
+  renderer::Effort effort() const {
+    renderer::Effort effort;
+    if (options_.samples > 0) effort.samples = options_.samples;
+    if (options_.seconds > 0) effort.seconds = options_.seconds;
+    return effort;
+  }
+
+  void choose_model() {
+    if (const auto named = petzval::model_named(options_.model)) {
+      chosen_ = {*named, {"--model " + options_.model}};
+    } else {
+      const renderer::LensCamera exact = camera(petzval::ModelKind::exact_float);
+      refuse_walls(exact);
+      chosen_ = options_.budget_px > 0 ? renderer::model_within(scene_, exact, options_.budget_px)
+                                       : renderer::model_below_noise(scene_, exact, scene_.description().pose, colours_,
+                                                                     integrator_, options_.samples);
+      std::cerr << "note: model " << petzval::name(chosen_.model) << '\n' << examples::bullets(chosen_.why);
+      return;
+    }
+    refuse_walls(camera(petzval::ModelKind::pinhole));
+  }
+  void refuse_walls(const renderer::LensCamera& lens) const {
+    if (const renderer::Object* const wall = scene_.around(lens.front())) {
+      throw petzval::Error(options_.scene + ": the camera stands inside " + wall->name +
+                           ", wanted it in the open (a room is a mesh that faces inwards, or quads)");
+    }
+  }
+
+  Json description_of_numbers() const {
+    const examples::CameraSetup& setup = options_.setup;
+    const petzval::BokehControls& controls = options_.bokeh.controls;
+    return {{"scene", renderer::checksum(scene_.description())},
+            {"lens", lens_.name()},
+            {"model", petzval::name(chosen_.model)},
+            {"integrator", options_.integrator},
+            {"wavelengths", options_.wavelengths},
+            {"normalisation", options_.normalisation},
+            {"width", film_.columns},
+            {"height", film_.rows},
+            {"film_mm", setup.film_mm},
+            {"tilt_deg", options_.tilt_deg},
+            {"swing_deg", options_.swing_deg},
+            {"focus_mm", examples::finite_or_null(setup.focus_mm)},
+            {"distance_from", setup.origin},
+            {"criterion", setup.criterion},
+            {"f_number", setup.iris.f_number},
+            {"iris",
+             {{"blades", setup.iris.blades},
+              {"roundness", setup.iris.roundness},
+              {"rotation_deg", setup.iris.rotation_deg},
+              {"area", setup.iris.area},
+              {"image", options_.bokeh.iris_image}}},
+            {"bokeh",
+             {{"lens_ratio", controls.lens_ratio},
+              {"rate_of_change", controls.rate_of_change},
+              {"keep_light", controls.keep_light},
+              {"weight_distribution", controls.weight_distribution},
+              {"weight_strength", controls.weight_strength},
+              {"weight_map", options_.bokeh.weight_map}}},
+            {"seed", options_.seed},
+            {"samples", options_.samples > 0 ? Json(options_.samples) : Json()},
+            {"passes", options_.samples > 0 ? Json(effort().passes()) : Json()},
+            {"petzval", PETZVAL_VERSION}};
+  }
+
+  void write(const renderer::PictureSums& sums, const Json& job, const renderer::RenderReport& report) const {
+    Json json{{"model", petzval::name(chosen_.model)},
+              {"why", chosen_.why},
+              {"seconds", report.seconds},
+              {"lens_seconds_share", report.busy_seconds > 0 ? report.lens_seconds / report.busy_seconds : 0},
+              {"paths_per_second", report.seconds > 0 ? static_cast<double>(report.paths) / report.seconds : 0},
+              {"finished", report.finished}};
+    const auto mean = sums.mean();
+    json["mean_radiance"] = {mean[0].mean, mean[1].mean, mean[2].mean};
+    json["mean_se"] = {mean[0].standard_error, mean[1].standard_error, mean[2].standard_error};
+    json["job"] = job;
+    const fs::path folder = options_.out_folder;
+    petzval::write_exr(sums.picture(), folder / "picture.exr");
+    petzval::write_png(petzval::to_srgb8(sums.picture()), folder / "picture.png");
+    examples::write_text(folder / "render.json", json.dump(1) + '\n');
+  }
+
+  Options options_;
+  renderer::Integrator integrator_;
+  renderer::PathColourSource colours_;
+  renderer::Scene scene_;
+  petzval::Lens lens_;
+  petzval::Film film_;
+  renderer::ModelForScene chosen_;
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options options;
+  examples::App app(
+      "Renders a scene through a lens. World: right-handed, y up, mm; the scene's camera stands where the entrance "
+      "pupil "
+      "is. Writes picture.* to DIR (linear Rec. 709; a sky of radiance 1 gives 1 in the middle, unless --normalisation "
+      "says irradiance) and render.json: model and why, samples, seconds, the share of the time spent in the lens, "
+      "mean "
+      "radiance and luminance of tiles with standard errors.\n"
+      "Without --spp and --time-s it takes 64 samples of each pixel. --time-s alone takes as many as it can, --time-s "
+      "with --spp leaves the rest for --resume.",
+      "bokeh_scene");
+  app.add_option("--scene", options.scene,
+                 "balls, chess or street, made for lenses of 100 mm and the film of 36x24; or a scene as JSON")
+      ->required()
+      ->type_name("NAME|FILE.json");
+  app.add_option("--lens", options.lens_file, "lens prescription (JSON as in data/lenses)")
+      ->required()
+      ->type_name("LENS.json");
+  std::vector<std::string> models{"auto"};
+  for (const petzval::ModelKind m : petzval::models()) models.emplace_back(petzval::name(m));
+  app.add_option(
+         "--model", options.model,
+         "model of the lens; auto: the fastest one within --budget-px, or without it the fastest one whose bias "
+         "is below a tenth of the noise")
+      ->one_of(models)
+      ->capture_default_str();
+  examples::add_number(app, "--budget-px", options.budget_px, examples::positive_number,
+                       "of --model auto: the largest error of a ray (pixels)")
+      ->default_str("a tenth of the noise");
+  app.add_option("--integrator", options.integrator,
+                 "path: from the film; light: from the lamps, without what only mirrors and smooth glass show; "
+                 "bidirectional: both, for small lamps")
+      ->one_of({"path", "light", "bidirectional"})
+      ->capture_default_str();
+  examples::add_count(app, "--spp", options.samples, {1, 1u << 24, "a whole number from 1 to 16777216"},
+                      "samples of each pixel")
+      ->default_str("64");
+  examples::add_number(app, "--time-s", options.seconds, examples::positive_number, "time limit (s)")
+      ->default_str("none");
+  examples::add_count(app, "--seed", options.seed, {0, 4294967295.0, "a whole number from 0 to 4294967295"},
+                      "another seed gives other noise");
+  examples::add_count(app, "--threads", options.threads, {1, 1024, "a whole number from 1 to 1024"},
+                      "threads; the picture does not depend on them");
+  constexpr examples::Range side{1, 16384, "a whole number from 1 to 16384"};
+  examples::add_count(app, "--width", options.width, side, "pixels across");
+  examples::add_count(app, "--height", options.height, side, "pixels down");
+  examples::add_camera(app, options.setup);
+  app.get_option("--focus-mm")->required()->default_str("");
+  examples::add_distance_origin(app, options.setup);
+  examples::add_bokeh(app, options.bokeh);
+  constexpr examples::Range below_quarter_turn{-89.9, 89.9, "an angle from -89.9 to 89.9"};
+  examples::add_number(app, "--tilt-deg", options.tilt_deg, below_quarter_turn, "tilt of the film about +x (degrees)");
+  examples::add_number(app, "--swing-deg", options.swing_deg, below_quarter_turn,
+                       "swing of the film about +y (degrees)");
+  app.add_option(
+         "--wavelengths", options.wavelengths,
+         "d: the lens at the d line; rgb: each channel at a wavelength of its own; hero: four wavelengths a path, "
+         "over the visible spectrum")
+      ->one_of({"d", "rgb", "hero"})
+      ->capture_default_str();
+  app.add_option("--normalisation", options.normalisation, "unit of the picture")
+      ->one_of({"unity_on_axis", "irradiance"})
+      ->capture_default_str();
+  app.add_option("--out", options.out_folder, "folder for the results")->required()->type_name("DIR");
+
+  return examples::run(app, argc, argv, [&] {
+    if (options.samples == 0 && options.seconds == 0) options.samples = 64;
+    Job(options).run();
+  });
+}

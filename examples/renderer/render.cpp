@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "renderer/render.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <limits>
+#include <mutex>
+
+#include "petzval/core/parallel.hpp"
+#include "support/cli.hpp"
+
+namespace renderer {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
+
+constexpr double save_every = 20;  // seconds
+
+}  // namespace
+
+std::uint32_t Effort::passes() const noexcept {
+  if (!samples) return std::numeric_limits<std::uint32_t>::max();
+  return std::min(*samples, static_cast<std::uint32_t>(PictureSums::rounds));
+}
+
+std::uint32_t Effort::first_sample(std::uint32_t pass) const noexcept {
+  if (!samples) return pass;
+  return static_cast<std::uint32_t>(std::uint64_t{*samples} * pass / passes());
+}
+
+std::uint32_t Effort::samples_in(std::uint32_t pass) const noexcept {
+  return first_sample(pass + 1) - first_sample(pass);
+}
+
+RenderReport render(const UnitTracer& tracer, PictureSums& sums, const std::vector<std::size_t>& tiles,
+                    const Effort& effort, int threads, const std::function<void()>& save) {
+  const auto begin = Clock::now();
+  auto saved = begin;
+  RenderReport report;
+  std::mutex keeping;
+  const auto late = [&] { return effort.seconds && seconds_since(begin) >= *effort.seconds; };
+  std::uint32_t pass = effort.passes();
+  std::size_t units = 0;
+  for (const std::size_t tile : tiles) {
+    pass = std::min(pass, sums.passes(tile));
+    if (effort.samples) units += effort.passes() - std::min(effort.passes(), sums.passes(tile));
+  }
+  std::optional<examples::Progress> progress;
+  if (effort.samples) progress.emplace("tiles", units);
+  for (; pass < effort.passes() && !tiles.empty() && !late(); ++pass) {
+    std::vector<std::size_t> missing;
+    for (const std::size_t tile : tiles) {
+      if (sums.passes(tile) == pass) missing.push_back(tile);
+    }
+    petzval::parallel_for(missing.size(), 1, threads, [&](std::size_t i, std::size_t) {
+      // A picture by samples goes on here later; one by time ends with a whole pass.
+      if (effort.samples && late()) return;
+      const auto unit_begin = Clock::now();
+      const PixelBlock block = sums.block(missing[i]);
+      const std::uint32_t count = effort.samples_in(pass);
+      Splats splats;
+      double lens_seconds = 0;
+      tracer.trace(block, effort.first_sample(pass), count, splats, lens_seconds);
+      const std::lock_guard guard(keeping);
+      sums.add(missing[i], count, splats.all());
+      report.paths += std::uint64_t{count} * static_cast<std::uint64_t>(block.width * block.height);
+      report.lens_seconds += lens_seconds;
+      report.busy_seconds += seconds_since(unit_begin);
+      if (progress) progress->step("pass " + std::to_string(pass + 1) + " of " + std::to_string(effort.passes()));
+      if (seconds_since(saved) < save_every) return;
+      save();
+      saved = Clock::now();
+    });
+  }
+  report.seconds = seconds_since(begin);
+  report.finished = !effort.samples || std::all_of(tiles.begin(), tiles.end(), [&](std::size_t tile) {
+    return sums.passes(tile) == effort.passes();
+  });
+  save();
+  return report;
+}
+
+}  // namespace renderer

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "renderer/scene_model.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+
+#include <glm/glm.hpp>
+
+#include "petzval/accuracy/choose_model.hpp"
+#include "petzval/core/error.hpp"
+#include "petzval/core/parallel.hpp"
+#include "petzval/core/sobol.hpp"
+#include "renderer/luminance.hpp"
+#include "renderer/render.hpp"
+#include "support/text.hpp"
+
+namespace renderer {
+namespace {
+
+using examples::number;
+
+ModelForScene exact_lens(const std::string& why) { return {petzval::ModelKind::exact_float, {why}}; }
+
+std::vector<petzval::ModelCandidate> candidates(const LensCamera& exact, const std::array<double, 2>& depths,
+                                                const petzval::ErrorBudget& budget, petzval::ModelChoice& choice) {
+  choice =
+      petzval::choose_model(exact.camera().lens(), {.near_mm = depths[0], .far_mm = depths[1], .film = exact.film()},
+                            budget, petzval::processor_threads());
+  return choice.table;
+}
+
+std::string in_words(const std::array<double, 2>& depths) {
+  return number(depths[0], 3) + " mm to " + (std::isinf(depths[1]) ? "infinity" : number(depths[1], 3) + " mm") +
+         " from the film";
+}
+
+/// What a pilot picture says about a scene.
+struct Pilot {
+  double noise = 0;  ///< of one sample of a pixel
+  double slope = 0;  ///< of the large picture, per pixel
+  double contrast = 0, brightness = 0;
+};
+
+Pilot pilot_of(const Scene& scene, const LensCamera& exact, const Pose& pose, const PathColourSource& colours,
+               Integrator integrator) {
+  constexpr int width = 96, samples = 16;
+  petzval::Film film = exact.film();
+  const double scale = static_cast<double>(width) / film.columns;
+  film.rows = std::max(2, static_cast<int>(std::lround(film.rows * scale)));
+  film.columns = width;
+  const LensCamera lens(petzval::Camera(exact.camera().lens(), film,
+                                        {.model = petzval::ModelKind::exact_float,
+                                         .normalisation = petzval::Normalisation::unity_on_axis}),
+                        pose);
+  std::array<std::vector<double>, 2> halves;
+  for (std::size_t half = 0; half < 2; ++half) {
+    PictureSums sums(film.columns, film.rows);
+    std::vector<std::size_t> tiles(sums.tiles());
+    for (std::size_t t = 0; t < tiles.size(); ++t) tiles[t] = t;
+    const UnitTracer tracer(scene, lens, colours, integrator, 0x9e37 + half);
+    for (const std::size_t tile : tiles) {
+      Splats splats;
+      double seconds = 0;
+      tracer.trace(sums.block(tile), 0, samples, splats, seconds);
+      sums.add(tile, samples, splats.all());
+    }
+    const petzval::RgbImage image = sums.picture();
+    for (std::size_t p = 0; p < image.pixels.size(); p += 3) {
+      const float* const rgb = &image.pixels[p];
+      halves[half].push_back(std::min(1.0, static_cast<double>(luminance({rgb[0], rgb[1], rgb[2]}))));
+    }
+  }
+  Pilot result;
+  const auto& [a, b] = halves;
+  const auto columns = static_cast<std::size_t>(film.columns);
+  double noise = 0, slope = 0, product = 0, mean = 0;
+  for (std::size_t p = 0; p < a.size(); ++p) {
+    noise += (a[p] - b[p]) * (a[p] - b[p]) / 2;
+    product += a[p] * b[p];
+    mean += (a[p] + b[p]) / 2;
+    if (p % columns + 1 < columns) slope += (a[p + 1] - a[p]) * (b[p + 1] - b[p]);
+    if (p + columns < a.size()) slope += (a[p + columns] - a[p]) * (b[p + columns] - b[p]);
+  }
+  const auto count = static_cast<double>(a.size());
+  mean /= count;
+  result.noise = std::sqrt(noise / count * samples);
+  result.slope = std::sqrt(std::max(0.0, slope / count) * scale);  // squares of slopes at edges, as many along a line
+  result.contrast = std::sqrt(std::max(0.0, product / count - mean * mean));
+  result.brightness = std::sqrt(std::max(0.0, product / count));
+  return result;
+}
+
+}  // namespace
+
+std::array<double, 2> depths(const Scene& scene, const LensCamera& exact) {
+  constexpr std::size_t count = 4096;
+  LensCamera::Batch batch;
+  batch.resize(count, false);
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto place = petzval::owen_sobol(static_cast<std::uint32_t>(i), 1);
+    const auto pupil = petzval::owen_sobol(static_cast<std::uint32_t>(i), 2);
+    batch.raster_x[i] = static_cast<float>(place.x * exact.film().columns);
+    batch.raster_y[i] = static_cast<float>(place.y * exact.film().rows);
+    batch.u[i] = static_cast<float>(pupil.x), batch.v[i] = static_cast<float>(pupil.y);
+  }
+  exact.sample(batch);
+  double near = std::numeric_limits<double>::infinity(), far = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!(batch.weights[i] > 0)) continue;
+    const auto met = scene.meet(batch.rays[i].origin, batch.rays[i].direction);
+    const double depth = met ? exact.depth(met->position) : std::numeric_limits<double>::infinity();
+    // What lies beside the lens or behind it has no plane in front of it.
+    if (depth > 0) near = std::min(near, depth);
+    far = std::max(far, depth);
+  }
+  return {near, far};
+}
+
+ModelForScene model_within(const Scene& scene, const LensCamera& exact, double budget_px) {
+  const petzval::Film& film = exact.film();
+  if (film.tilted() || film.travel_mm != 0)
+    return exact_lens("the film is tilted: the exact lens, as models are measured on upright films");
+  const auto range = depths(scene, exact);
+  if (std::isinf(range[0]))
+    return exact_lens("the picture shows the sky alone: the exact lens, as there is no depth to measure at");
+  petzval::ModelChoice choice;
+  candidates(exact, range, {.max_px = budget_px, .exposure = 0.01, .pupil_shape = 0.02}, choice);
+  ModelForScene result{choice.model, {"rays within " + number(budget_px) + " px at " + in_words(range)}};
+  result.why.insert(result.why.end(), choice.reasons.begin(), choice.reasons.end());
+  return result;
+}
+
+ModelForScene model_below_noise(const Scene& scene, const LensCamera& exact, const Pose& pose,
+                                const PathColourSource& colours, Integrator integrator, std::uint32_t samples) {
+  const petzval::Film& film = exact.film();
+  if (film.tilted() || film.travel_mm != 0)
+    return exact_lens("the film is tilted: the exact lens, as models are measured on upright films");
+  const auto range = depths(scene, exact);
+  if (std::isinf(range[0]))
+    return exact_lens("the picture shows the sky alone: the exact lens, as there is no depth to measure at");
+  const Pilot pilot = pilot_of(scene, exact, pose, colours, integrator);
+  const double noise = pilot.noise / std::sqrt(static_cast<double>(samples));
+  petzval::ModelChoice choice;
+  const auto table = candidates(exact, range, {.max_px = 0, .pupil_shape = 0}, choice);
+  const petzval::ModelCandidate* best = nullptr;
+  double best_bias = 0;
+  std::vector<std::string> refused;
+  for (const petzval::ModelCandidate& c : table) {
+    if (!c.available) continue;
+    const double moved = c.error.all.rms_px * pilot.slope / std::sqrt(2.0);
+    const double bias =
+        std::hypot(moved, std::min(c.error.pupil_shape, 1.0) * pilot.contrast, c.error.exposure * pilot.brightness);
+    if (!(bias < noise / 10)) {
+      if (!best) refused.push_back(std::string(petzval::name(c.model)) + ": bias " + number(bias, 2));
+      continue;
+    }
+    if (best && !(c.ns_per_ray < 0.9 * best->ns_per_ray)) continue;
+    best = &c, best_bias = bias;
+  }
+  ModelForScene result;
+  result.why.push_back("noise of " + std::to_string(samples) + " samples: " + number(noise, 2) +
+                       " of white, so that the bias may be " + number(noise / 10, 2) + "; depths " + in_words(range));
+  if (best) {
+    result.model = best->model;
+    result.why.push_back(std::string(petzval::name(best->model)) + ": bias " + number(best_bias, 2) + ", " +
+                         number(best->ns_per_ray, 2) + " ns a ray");
+  } else {
+    result.model = petzval::ModelKind::exact_double;
+  }
+  if (!refused.empty()) {
+    std::string line = "too far off: ";
+    for (const std::string& r : refused) line += (&r == refused.data() ? "" : "; ") + r;
+    result.why.push_back(line);
+  }
+  return result;
+}
+
+}  // namespace renderer
