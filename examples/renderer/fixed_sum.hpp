@@ -10,11 +10,12 @@ namespace renderer {
 class FixedSum {
  public:
   constexpr FixedSum() noexcept = default;
-  /// A finite number below 2^62 in size, rounded down to a multiple of 2^-64.
+  /// A finite number below 2^62 in size, rounded towards zero to a multiple of 2^-64.
   explicit FixedSum(double x) noexcept {
-    const double whole = std::floor(x);
+    const double size = std::abs(x), whole = std::floor(size);
     high_ = static_cast<std::int64_t>(whole);
-    low_ = static_cast<std::uint64_t>((x - whole) * 0x1p64);  // below 2^64: x - floor(x) is exact
+    low_ = static_cast<std::uint64_t>((size - whole) * 0x1p64);  // below 2^64: the difference is exact
+    if (x < 0) *this = FixedSum() -= *this;
   }
 
   FixedSum& operator+=(const FixedSum& other) noexcept {

@@ -63,12 +63,17 @@ class PictureSums {
   std::array<Estimate, 3> mean() const;
   Estimate luminance(std::size_t tile) const;
 
+  /// The same bits.
+  friend bool operator==(const PictureSums&, const PictureSums&) = default;
+
  private:
   friend class Checkpoint;
   struct Tile {
     std::uint32_t passes = 0;
     std::array<std::uint32_t, rounds> samples{};  ///< of each pixel
     std::array<FixedSum, rounds> luminance{};
+
+    friend bool operator==(const Tile&, const Tile&) = default;
   };
   using Rgb3 = std::array<FixedSum, 3>;
 

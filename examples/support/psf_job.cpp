@@ -2,7 +2,6 @@
 #include "psf_job.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -37,12 +36,7 @@ std::optional<std::size_t> shard_count(const std::vector<fs::path>& folders) {
   std::set<std::size_t> counts;
   for (const fs::path& folder : folders) {
     for (const auto& entry : fs::directory_iterator(folder)) {
-      const std::string stem = entry.path().stem().string();
-      const std::size_t of = stem.rfind("_of_");
-      std::size_t count = 0;
-      if (!stem.starts_with("shard_") || of == std::string::npos) continue;
-      std::from_chars(stem.data() + of + 4, stem.data() + stem.size(), count);
-      counts.insert(count);
+      if (const auto shard = shard_of_file(entry.path(), "shard")) counts.insert(shard->count);
     }
   }
   return counts.size() == 1 && *counts.begin() > 1 ? std::optional(*counts.begin()) : std::nullopt;
@@ -146,17 +140,6 @@ Sheet contact_sheet(const PsfJob& job, const std::vector<petzval::ExrPart>& part
 
 }  // namespace
 
-Shard parse_shard(const std::string& where, const std::string& text) {
-  Shard shard;
-  const char* const end = text.data() + text.size();
-  const auto [slash, first] = std::from_chars(text.data(), end, shard.index);
-  if (first == std::errc() && slash != end && *slash == '/') {
-    const auto [rest, second] = std::from_chars(slash + 1, end, shard.count);
-    if (second == std::errc() && rest == end && shard.index >= 1 && shard.index <= shard.count) return shard;
-  }
-  throw petzval::Error(where + ": found \"" + text + "\", wanted i/n with whole numbers, i from 1 to n");
-}
-
 PsfJob::PsfJob(Json description)
     : description_(std::move(description)),
       id_(petzval::checksum(description_.dump())),
@@ -196,7 +179,7 @@ void PsfJob::begin(const fs::path& folder, const Shard& shard) const {
   for (std::size_t node = 0; node < axes_.size(); ++node) {
     if (shard.has(node)) names.push_back(name(node));
   }
-  write_text(folder / ("shard_" + std::to_string(shard.index) + "_of_" + std::to_string(shard.count) + ".json"),
+  write_text(folder / (shard.stem("shard") + ".json"),
              Json{{"shard", shard.text()}, {"psfs", std::move(names)}}.dump(1) + '\n');
 }
 

@@ -10,19 +10,9 @@
 #include "files.hpp"
 #include "petzval/io/image.hpp"
 #include "petzval/psf/psf_set.hpp"
+#include "shard.hpp"
 
 namespace examples {
-
-/// Part `index` of `count`, from 1 on: every count-th PSF.
-struct Shard {
-  std::size_t index = 1, count = 1;
-
-  bool has(std::size_t node) const noexcept { return node % count == index - 1; }
-  std::string text() const { return std::to_string(index) + '/' + std::to_string(count); }
-};
-
-/// "2/8". Throws petzval::Error beginning with `where`.
-Shard parse_shard(const std::string& where, const std::string& text);
 
 /// A set of PSFs to be computed: all that its numbers depend on.
 ///

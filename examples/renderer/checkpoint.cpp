@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "renderer/checkpoint.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "petzval/core/error.hpp"
+#include "petzval/io/image.hpp"
+#include "petzval/io/write_file.hpp"
+
+namespace renderer {
+namespace {
+
+namespace fs = std::filesystem;
+using examples::Json;
+
+constexpr std::array<const char*, 3> rgb{"R", "G", "B"};
+
+std::string of_round(const char* name, std::size_t round) { return name + std::to_string(round + 1); }
+
+std::string term_name(const std::string& name, std::size_t term) {
+  return term == 0 ? name : name + '.' + std::to_string(term);
+}
+
+/// Adds the channels of sums; at(i): the i-th.
+template <class At>
+void add_channels(petzval::ExrPart& part, const std::string& name, const At& at) {
+  const auto size = static_cast<std::size_t>(part.width) * static_cast<std::size_t>(part.height);
+  std::vector<FixedSum> rest;
+  for (std::size_t i = 0; i < size; ++i) rest.push_back(at(i));
+  std::size_t term = 0;
+  do {
+    petzval::ExrChannel channel{term_name(name, term++), std::vector<float>(size)};
+    for (std::size_t i = 0; i < size; ++i) {
+      channel.values[i] = static_cast<float>(rest[i].value());
+      rest[i] -= FixedSum(static_cast<double>(channel.values[i]));
+    }
+    part.channels.push_back(std::move(channel));
+  } while (std::any_of(rest.begin(), rest.end(), [](const FixedSum& sum) { return sum != FixedSum(); }));
+}
+
+/// The sums that add_channels() wrote, given to set(i, sum).
+template <class Set>
+void read_channels(const petzval::ExrPart& part, const std::string& name, const Set& set) {
+  std::vector<FixedSum> sums(static_cast<std::size_t>(part.width) * static_cast<std::size_t>(part.height));
+  for (std::size_t term = 0;; ++term) {
+    const auto channel = std::find_if(part.channels.begin(), part.channels.end(),
+                                      [&](const auto& own) { return own.name == term_name(name, term); });
+    if (channel == part.channels.end()) {
+      if (term == 0) throw petzval::Error("part \"" + part.name + "\" has no channel " + name);
+      break;
+    }
+    for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += FixedSum(static_cast<double>(channel->values[i]));
+  }
+  for (std::size_t i = 0; i < sums.size(); ++i) set(i, sums[i]);
+}
+
+FixedSum whole(std::uint32_t count) { return FixedSum(static_cast<double>(count)); }
+std::uint32_t count(const FixedSum& sum) { return static_cast<std::uint32_t>(sum.value()); }
+
+std::string checksum_of(const std::string& job, const std::vector<petzval::ExrPart>& parts) {
+  std::string bytes = job;
+  const auto add = [&bytes](std::uint64_t bits, int size) {
+    for (int byte = 0; byte < size; ++byte) bytes += static_cast<char>(bits >> (8 * byte) & 0xff);
+  };
+  for (const petzval::ExrPart& part : parts) {
+    bytes += part.name;
+    for (const auto& [name, value] : part.numbers) bytes += name, add(std::bit_cast<std::uint64_t>(value), 8);
+    std::vector<const petzval::ExrChannel*> sorted;  // as files keep them
+    for (const petzval::ExrChannel& channel : part.channels) sorted.push_back(&channel);
+    std::sort(sorted.begin(), sorted.end(), [](const auto* a, const auto* b) { return a->name < b->name; });
+    for (const petzval::ExrChannel* const channel : sorted) {
+      bytes += channel->name;
+      for (const float value : channel->values) add(std::bit_cast<std::uint32_t>(value), 4);
+    }
+  }
+  return petzval::checksum(bytes);
+}
+
+const std::string& text(const petzval::ExrPart& part, const char* key) {
+  const auto found = part.texts.find(key);
+  if (found == part.texts.end()) throw petzval::Error(std::string("no text ") + key);
+  return found->second;
+}
+
+}  // namespace
+
+std::vector<petzval::ExrPart> Checkpoint::parts(const PictureSums& sums) {
+  petzval::ExrPart pixels{.name = "sums", .width = sums.width_, .height = sums.height_};
+  petzval::ExrPart tiles{
+      .name = "tiles", .width = static_cast<int>(sums.tile_columns_), .height = static_cast<int>(sums.tile_rows_)};
+  petzval::ExrPart totals{.name = "totals", .width = static_cast<int>(PictureSums::rounds), .height = 1};
+  for (std::size_t c = 0; c < rgb.size(); ++c) {
+    add_channels(pixels, rgb[c], [&](std::size_t i) { return sums.pixels_[i][c]; });
+    add_channels(totals, rgb[c], [&](std::size_t r) { return sums.totals_[r][c]; });
+  }
+  add_channels(tiles, "passes", [&](std::size_t t) { return whole(sums.tiles_[t].passes); });
+  for (std::size_t r = 0; r < PictureSums::rounds; ++r) {
+    add_channels(tiles, of_round("samples_", r), [&](std::size_t t) { return whole(sums.tiles_[t].samples[r]); });
+    add_channels(tiles, of_round("luminance_", r), [&](std::size_t t) { return sums.tiles_[t].luminance[r]; });
+  }
+  pixels.numbers["rejected"] = static_cast<double>(sums.rejected_);
+  return {std::move(pixels), std::move(tiles), std::move(totals)};
+}
+
+void Checkpoint::write(const PictureSums& sums, const Json& job, const fs::path& file) {
+  std::vector<petzval::ExrPart> all = parts(sums);
+  const std::string job_text = job.dump();
+  const std::string sum = checksum_of(job_text, all);
+  all.front().texts = {{"job", job_text}, {"checksum", sum}};
+  petzval::write_exr(all, file);
+}
+
+PictureSums Checkpoint::read(const fs::path& file, const Json& job) {
+  Json found;
+  PictureSums sums = read_any(file, found);
+  refuse_other_job(file, found, job);
+  return sums;
+}
+
+PictureSums Checkpoint::read_any(const fs::path& file, Json& job) {
+  const std::vector<petzval::ExrPart> all = petzval::read_exr_parts(file);
+  try {
+    const auto& job_text = text(all.front(), "job");
+    const std::string sum = checksum_of(job_text, all);
+    if (text(all.front(), "checksum") != sum) {
+      throw petzval::Error("found checksum " + sum + ", wanted " + text(all.front(), "checksum") +
+                           ": the file has changed");
+    }
+    job = Json::parse(job_text, nullptr, false);
+    if (!job.is_object()) throw petzval::Error("text job is no JSON object");
+    PictureSums sums(all.front().width, all.front().height);
+    const auto part = [&](std::size_t i, const char* name, std::size_t width, std::size_t height) -> const auto& {
+      if (i >= all.size() || all[i].name != name || all[i].width != static_cast<int>(width) ||
+          all[i].height != static_cast<int>(height)) {
+        throw petzval::Error("no part \"" + std::string(name) + "\" of " + std::to_string(width) + " x " +
+                             std::to_string(height));
+      }
+      return all[i];
+    };
+    const petzval::ExrPart& tiles = part(1, "tiles", sums.tile_columns_, sums.tile_rows_);
+    const petzval::ExrPart& totals = part(2, "totals", PictureSums::rounds, 1);
+    for (std::size_t c = 0; c < rgb.size(); ++c) {
+      read_channels(all.front(), rgb[c], [&](std::size_t i, const FixedSum& own) { sums.pixels_[i][c] = own; });
+      read_channels(totals, rgb[c], [&](std::size_t r, const FixedSum& own) { sums.totals_[r][c] = own; });
+    }
+    read_channels(tiles, "passes", [&](std::size_t t, const FixedSum& own) { sums.tiles_[t].passes = count(own); });
+    for (std::size_t r = 0; r < PictureSums::rounds; ++r) {
+      read_channels(tiles, of_round("samples_", r),
+                    [&](std::size_t t, const FixedSum& own) { sums.tiles_[t].samples[r] = count(own); });
+      read_channels(tiles, of_round("luminance_", r),
+                    [&](std::size_t t, const FixedSum& own) { sums.tiles_[t].luminance[r] = own; });
+    }
+    const auto rejected = all.front().numbers.find("rejected");
+    if (rejected == all.front().numbers.end()) throw petzval::Error("no number rejected");
+    sums.rejected_ = static_cast<std::uint64_t>(rejected->second);
+    return sums;
+  } catch (const petzval::Error& error) {
+    throw petzval::Error(file.string() + ": " + error.what() + "; wanted a checkpoint of bokeh_scene");
+  }
+}
+
+void refuse_other_job(const fs::path& file, const Json& found, const Json& wanted) {
+  const Json own = found.flatten(), other = wanted.flatten();
+  const auto at = [](const Json& values, const std::string& key) {
+    return values.contains(key) ? values.at(key).dump() : "nothing";
+  };
+  std::string differences;
+  std::set<std::string> seen;
+  for (const Json* const values : {&own, &other}) {
+    for (const auto& [key, value] : values->items()) {
+      if (at(own, key) == at(other, key) || !seen.insert(key).second) continue;
+      differences +=
+          (differences.empty() ? "" : "; ") + key.substr(1) + ": found " + at(own, key) + ", wanted " + at(other, key);
+    }
+  }
+  if (differences.empty()) return;
+  throw petzval::Error(file.string() + ": belongs to another picture: " + differences);
+}
+
+}  // namespace renderer

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "renderer/checkpoint.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+
+#include "../message.hpp"
+#include "made_up_sums.hpp"
+
+namespace {
+
+using namespace renderer;
+using examples::Json;
+using petzval::testing::message;
+
+constexpr int width = 40, height = 35;
+
+class CheckpointFile : public testing::Test {
+ protected:
+  void SetUp() override { std::filesystem::create_directories(file_.parent_path()); }
+
+  const std::filesystem::path file_ =
+      std::filesystem::path(testing::TempDir()) / "petzval_checkpoint" /
+      (std::string(testing::UnitTest::GetInstance()->current_test_info()->name()) + ".exr");
+  const Json job_{{"lens", "a \"lens\" of glass"},        {"focus_mm", 0.1}, {"limit", nullptr},
+                  {"iris", {{"blades", 7}, {"map", ""}}}, {"width", width},  {"height", height}};
+  const PictureSums sums_ = made_up_part(width, height, 1, 1, 18);
+};
+
+TEST_F(CheckpointFile, KeepsAllBits) {
+  Checkpoint::write(sums_, job_, file_);
+  const PictureSums read = Checkpoint::read(file_, job_);
+  EXPECT_EQ(read, sums_);
+  EXPECT_EQ(read.mean()[0].standard_error, sums_.mean()[0].standard_error);
+  const std::string bytes = examples::read_text(file_);
+  Checkpoint::write(read, job_, file_);
+  EXPECT_EQ(examples::read_text(file_), bytes);
+}
+
+TEST_F(CheckpointFile, KeepsLargeCountsAndNothing) {
+  Checkpoint::write(PictureSums(3, 1), job_, file_);
+  EXPECT_EQ(Checkpoint::read(file_, job_), PictureSums(3, 1));
+  PictureSums many(1, 1);
+  many.add(0, 4294967295u, std::vector<Contribution>(3, {0, {1e30f, 0, 0}}));
+  Checkpoint::write(many, job_, file_);
+  EXPECT_EQ(Checkpoint::read(file_, job_), many);
+  EXPECT_EQ(many.rejected(), 3u);
+}
+
+TEST_F(CheckpointFile, GoesOnToTheSameBits) {
+  Checkpoint::write(made_up_part(width, height, 1, 1, 7), job_, file_);
+  PictureSums resumed = Checkpoint::read(file_, job_);
+  for (std::uint32_t pass = 7; pass < 18; ++pass) {
+    for (std::size_t t = 0; t < resumed.tiles(); ++t) resumed.add(t, 3, made_up_unit(resumed, t, pass));
+  }
+  EXPECT_EQ(resumed, sums_);
+}
+
+TEST_F(CheckpointFile, ShowsTheSums) {
+  Checkpoint::write(sums_, job_, file_);
+  const petzval::RgbImage shown = petzval::read_exr(file_), picture = sums_.picture();
+  ASSERT_EQ(shown.width, width);
+  ASSERT_EQ(shown.height, height);
+  for (std::size_t i = 0; i < shown.pixels.size(); ++i) {
+    EXPECT_FLOAT_EQ(shown.pixels[i], picture.pixels[i] * static_cast<float>(sums_.samples(0)));
+  }
+}
+
+TEST_F(CheckpointFile, RefusesAnotherJob) {
+  Checkpoint::write(sums_, job_, file_);
+  Json other = job_;
+  other["iris"]["blades"] = 5;
+  other["focus_mm"] = 0.2;
+  other.erase("limit");
+  other["seed"] = 3;
+  EXPECT_EQ(message([&] { Checkpoint::read(file_, other); }),
+            file_.string() +
+                ": belongs to another picture: focus_mm: found 0.1, wanted 0.2; limit: found null, wanted nothing; "
+                "iris/blades: found 7, wanted 5; seed: found nothing, wanted 3");
+  Json larger = job_;
+  larger["width"] = 41;
+  EXPECT_EQ(message([&] { Checkpoint::read(file_, larger); }),
+            file_.string() + ": belongs to another picture: width: found 40, wanted 41");
+}
+
+TEST_F(CheckpointFile, RefusesWhatIsNoneOrWasCut) {
+  const auto refused = [&](const std::string& bytes) {
+    examples::write_text(file_, bytes);
+    const std::string text = message([&] { Checkpoint::read(file_, job_); });
+    EXPECT_EQ(text.find(file_.string() + ": "), 0u) << text;
+    return text;
+  };
+  EXPECT_NE(message([&] { Checkpoint::read(file_.parent_path() / "none.exr", job_); }).find("none.exr"),
+            std::string::npos);
+  refused("");
+  refused("no EXR at all");
+  petzval::write_exr(petzval::RgbImage(4, 4), file_);
+  EXPECT_NE(refused(examples::read_text(file_)).find("no text job; wanted a checkpoint"), std::string::npos);
+  Checkpoint::write(sums_, job_, file_);
+  const std::string whole = examples::read_text(file_);
+  for (std::size_t size = whole.size() - 1; size > 0; size -= std::min<std::size_t>(size, whole.size() / 23)) {
+    SCOPED_TRACE(size);
+    refused(whole.substr(0, size));
+  }
+}
+
+/// Any byte: a wrong one is refused, or it has changed nothing (some bytes of the format are not read).
+TEST_F(CheckpointFile, NoFlippedByteGoesUnseen) {
+  Checkpoint::write(sums_, job_, file_);
+  const std::string whole = examples::read_text(file_);
+  std::size_t refused = 0, flips = 0;
+  for (std::size_t at = 0; at < whole.size(); at += whole.size() / 120, ++flips) {
+    std::string bytes = whole;
+    bytes[at] = static_cast<char>(bytes[at] ^ 0x10);
+    examples::write_text(file_, bytes);
+    PictureSums read(1, 1);
+    const std::string text = message([&] { read = Checkpoint::read(file_, job_); });
+    if (text == "no error") {
+      EXPECT_EQ(read, sums_) << at;
+    } else {
+      EXPECT_EQ(text.find(file_.string() + ": "), 0u) << text;
+      ++refused;
+    }
+  }
+  EXPECT_GT(refused, flips * 9 / 10);
+}
+
+}  // namespace

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "renderer/picture_sums.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <random>
+
+#include "../message.hpp"
+#include "made_up_sums.hpp"
+
+namespace {
+
+using namespace renderer;
+using petzval::testing::message;
+
+constexpr int width = 40, height = 35;  // 3 x 3 tiles, those at the edges cut
+
+TEST(PictureSums, TilesCoverEachPixelOnce) {
+  const PictureSums sums(width, height);
+  EXPECT_EQ(sums.tile_columns(), 3u);
+  EXPECT_EQ(sums.tile_rows(), 3u);
+  std::vector<int> seen(static_cast<std::size_t>(width * height));
+  for (std::size_t t = 0; t < sums.tiles(); ++t) {
+    const PixelBlock b = sums.block(t);
+    for (int y = b.y; y < b.y + b.height; ++y) {
+      for (int x = b.x; x < b.x + b.width; ++x) ++seen[static_cast<std::size_t>(y * width + x)];
+    }
+  }
+  EXPECT_EQ(std::count(seen.begin(), seen.end(), 1), width * height);
+}
+
+TEST(PictureSums, HaveTheSameBitsInAnyOrder) {
+  const PictureSums forwards = made_up_part(width, height, 1, 1, 20);
+  PictureSums backwards(width, height);
+  std::mt19937 random(3);
+  for (std::size_t t = backwards.tiles(); t-- > 0;) {
+    for (std::uint32_t pass = 0; pass < 20; ++pass) {
+      std::vector<Contribution> unit = made_up_unit(backwards, t, pass);
+      std::shuffle(unit.begin(), unit.end(), random);
+      backwards.add(t, 3, unit);
+    }
+  }
+  EXPECT_EQ(backwards, forwards);
+  EXPECT_EQ(backwards.picture().pixels, forwards.picture().pixels);
+  EXPECT_NE(made_up_part(width, height, 1, 1, 19), forwards);
+}
+
+TEST(PictureSums, PartsMakeTheWhole) {
+  const PictureSums whole = made_up_part(width, height, 1, 1, 17);
+  for (const std::size_t count : {2u, 3u, 12u}) {
+    PictureSums merged(width, height);
+    for (std::size_t i = count; i >= 1; --i) merged.add(made_up_part(width, height, i, count, 17));
+    EXPECT_EQ(merged, whole) << count;
+  }
+}
+
+TEST(PictureSums, RefuseOtherSizesAndTilesThatStandTwice) {
+  PictureSums sums = made_up_part(width, height, 1, 3, 1);
+  const PictureSums before = sums;
+  EXPECT_EQ(message([&] { sums.add(PictureSums(width, height + 1)); }),
+            "found a part of 40 x 36 pixels, wanted 40 x 35");
+  const std::size_t last[] = {6};
+  EXPECT_EQ(message([&] { sums.add(made_up_sums(width, height, last, 1)); }),
+            "found tile 6 in two parts, wanted it in one");
+  EXPECT_EQ(sums, before);
+}
+
+TEST(PictureSums, LeaveOutWhatIsNoLight) {
+  PictureSums sums(width, height);
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  sums.add(0, 1,
+           std::vector<Contribution>{
+               {0, {std::nanf(""), 1, 1}}, {0, {1, -infinity, 1}}, {0, {1, 1, 0x1p40f}}, {0, {1, 2, -3}}});
+  EXPECT_EQ(sums.rejected(), 3u);
+  EXPECT_EQ(sums.picture().pixel(0, 0)[1], 2);
+  EXPECT_EQ(sums.picture().pixel(0, 0)[2], -3);
+  PictureSums both(width, height);
+  both.add(8, 1, std::vector<Contribution>{{0, {0, 0, infinity}}});
+  both.add(sums);
+  EXPECT_EQ(both.rejected(), 4u);
+}
+
+TEST(PictureSums, APixelIsItsSumOverItsOwnSamples) {
+  PictureSums sums(width, height);
+  sums.add(0, 4, std::vector<Contribution>{{1, {8, 0, 0}}, {static_cast<std::uint32_t>(width - 1), {3, 0, 0}}});
+  EXPECT_EQ(sums.picture().pixel(1, 0)[0], 2);
+  EXPECT_EQ(sums.picture().pixel(width - 1, 0)[0], 0) << "a tile without samples";
+  sums.add(2, 6, {});
+  EXPECT_EQ(sums.picture().pixel(width - 1, 0)[0], 0.5f);
+  EXPECT_EQ(sums.samples(2), 6u);
+  EXPECT_EQ(sums.passes(2), 1u);
+}
+
+/// Contributions of a known scatter: standard errors, and how often the mean is beyond them, are as the theory says.
+TEST(PictureSums, StandardErrorsAreThoseOfTheScatter) {
+  constexpr int side = PictureSums::tile_pixels, runs = 400;
+  constexpr std::uint32_t samples = 4;
+  constexpr double true_mean = 1, samples_in_all = PictureSums::rounds * samples * side * side;
+  const double true_error = std::sqrt(1 / 3.0 / samples_in_all);  // uniform numbers from 0 to 2: variance 1/3
+  std::mt19937 random(9);
+  std::uniform_real_distribution<float> light(0, 2);
+  double squares = 0, tile_squares = 0;
+  int beyond = 0;
+  for (int run = 0; run < runs; ++run) {
+    PictureSums sums(side, side);
+    for (std::size_t pass = 0; pass < PictureSums::rounds; ++pass) {
+      std::vector<Contribution> unit;
+      for (std::uint32_t p = 0; p < side * side; ++p) {
+        for (std::uint32_t s = 0; s < samples; ++s) {
+          const float value = light(random);
+          unit.push_back({p, {value, value, value}});
+        }
+      }
+      sums.add(0, samples, unit);
+    }
+    const Estimate green = sums.mean()[1], tile = sums.luminance(0);
+    squares += green.standard_error * green.standard_error;
+    tile_squares += tile.standard_error * tile.standard_error;
+    beyond += std::abs(green.mean - true_mean) > 2.131 * green.standard_error;
+    ASSERT_NEAR(green.mean, tile.mean, 1e-6) << "weights of luminance sum to one";
+  }
+  // Of a variance with 15 degrees of freedom and 400 runs: sqrt(2 / 15 / 400) = 1.8 %.
+  EXPECT_NEAR(squares / runs / (true_error * true_error), 1, 0.07);
+  EXPECT_NEAR(tile_squares / runs / (true_error * true_error), 1, 0.07);
+  // Student's t of 15 degrees: 5 % beyond 2.131, 20 +- 4.4 of 400.
+  EXPECT_NEAR(beyond, 20, 14);
+}
+
+TEST(PictureSums, AreNotANumberWithoutAnythingToCompare) {
+  PictureSums sums(width, height);
+  EXPECT_EQ(sums.mean()[0].mean, 0);
+  EXPECT_TRUE(std::isnan(sums.mean()[0].standard_error));
+  sums.add(0, 5, std::vector<Contribution>{{0, {1, 1, 1}}});
+  EXPECT_EQ(sums.mean()[0].mean, 1.0 / (5 * 16 * 16));
+  EXPECT_TRUE(std::isnan(sums.mean()[0].standard_error));
+  EXPECT_TRUE(std::isnan(sums.luminance(3).standard_error));
+}
+
+}  // namespace
