@@ -75,7 +75,7 @@ class Path {
     for (int k = 0;; ++k) {
       const auto met = scene_.meet(ray.origin, ray.direction);
       if (k == 0) {
-        const SeenRay seen = lens_.seen(sample, met ? &*met : nullptr);
+        const auto seen = lens_.densities(sample, met ? &*met : nullptr);
         others.connected = seen.by_film > 0 ? seen.by_connection / seen.by_film : 0;
         if (met) others.arrive(1, cosine(met->normal, ray.direction));
       } else if (met) {

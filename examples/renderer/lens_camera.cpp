@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "renderer/lens_camera.hpp"
 
+#include <array>
 #include <cmath>
 
 #include <glm/glm.hpp>
@@ -63,6 +64,20 @@ void LensCamera::sample(Batch& batch) const noexcept {
   for (std::size_t i = 0; i < batch.size(); ++i) {
     batch.rays[i] = {to_world({x[i], y[i], z[i]}), turn_to_world({dx[i], dy[i], dz[i]})};
   }
+}
+
+void LensCamera::importance(const Batch& batch, std::span<const float> nm, std::span<petzval::Importance> found) const {
+  std::array<std::vector<double>, 6> columns;
+  for (std::size_t c = 0; c < 6; ++c) columns[c].assign(batch.lens_[c].begin(), batch.lens_[c].end());
+  auto& [x, y, z, dx, dy, dz] = columns;
+  for (std::size_t i = 0; i < batch.size(); ++i) {
+    const double length = -std::sqrt(dx[i] * dx[i] + dy[i] * dy[i] + dz[i] * dz[i]);
+    dx[i] /= length, dy[i] /= length, dz[i] /= length;
+  }
+  petzval::RayWavelengths wavelengths;
+  if (!nm.empty()) wavelengths.each_nm = nm.data();
+  camera_.importance(batch.size(), {x.data(), y.data(), z.data(), dx.data(), dy.data(), dz.data()}, wavelengths,
+                     found.data());
 }
 
 petzval::Importance LensCamera::importance(const glm::vec3& point, const glm::vec3& direction,

@@ -50,6 +50,9 @@ class LensCamera {
     std::vector<float> x_, y_, lens_[6];
   };
   void sample(Batch& batch) const noexcept;
+  /// The importance of the rays of a batch, back towards the lens, at these wavelengths in nm, or with none at the
+  /// primary one. found: one for each.
+  void importance(const Batch& batch, std::span<const float> nm, std::span<petzval::Importance> found) const;
 
   /// Where a ray in the world that runs towards the lens meets the film, and its densities.
   petzval::Importance importance(const glm::vec3& point, const glm::vec3& direction,

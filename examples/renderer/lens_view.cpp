@@ -66,42 +66,42 @@ SeenRay LensView::connect_sky(const glm::vec3& travel, float u, float v) const n
   return at_all_lanes(lens_.connect_distant(travel, u, v, wavelength(colours_.hero)), nullptr);
 }
 
-SeenRay LensView::seen(const FilmSample& sample, const SurfacePoint* from) const noexcept {
+LensView::Densities LensView::densities(const FilmSample& sample, const SurfacePoint* from) const noexcept {
   if (lens_.pinhole()) {
-    return from ? connect(*from, sample.u, sample.v) : connect_sky(-sample.ray.direction, sample.u, sample.v);
+    const SeenRay seen =
+        from ? connect(*from, sample.u, sample.v) : connect_sky(-sample.ray.direction, sample.u, sample.v);
+    return {seen.by_film, seen.by_connection};
   }
   const Stopwatch watch(seconds_);
-  SeenRay result{.direction = -sample.ray.direction};
+  Densities result{.by_film = sample.by_film};
   const int calls = colours_.one_wavelength ? 1 : colours_.lanes;
   for (int lane = 0; lane < calls; ++lane) {
-    add(result, lane, lens_.importance(sample.ray.origin, result.direction, wavelength(lane)),
-        from ? lens_.pdf_connection(from->position, result.direction, wavelength(lane))
-             : lens_.pdf_distant_connection({sample.ray.origin, result.direction}, wavelength(lane)));
+    const glm::vec3 direction = -sample.ray.direction;
+    result.by_connection += (from ? lens_.pdf_connection(from->position, direction, wavelength(lane))
+                                  : lens_.pdf_distant_connection({sample.ray.origin, direction}, wavelength(lane))) /
+                            calls;
   }
   return result;
 }
 
-FilmSample LensView::film_sample(const LensCamera::Batch& batch, std::size_t index,
-                                 std::uint32_t pixel) const noexcept {
+FilmSample LensView::film_sample(const LensCamera::Batch& batch, std::size_t index, std::uint32_t pixel,
+                                 std::span<const std::vector<petzval::Importance>> seen) const noexcept {
   FilmSample result{.ray = batch.rays[index], .u = batch.u[index], .v = batch.v[index]};
   const float weight = batch.weights[index];
   if (!(weight > 0)) return result;
+  SeenRay ray;
+  for (std::size_t lane = 0; lane < seen.size(); ++lane) add(ray, static_cast<int>(lane), seen[lane][index], 0);
+  result.by_film = ray.by_film;
   if (colours_.one_wavelength || lens_.pinhole()) {
     const int first = colours_.one_wavelength ? 0 : colours_.hero, count = colours_.one_wavelength ? colours_.lanes : 1;
     for (int lane = first; lane < first + count; ++lane) {
       result.weight[lane] = colours_.one_wavelength ? weight : weight * static_cast<float>(colours_.lanes);
       result.pixels[static_cast<std::size_t>(lane)] = pixel;
     }
-    return result;
+  } else if (ray.by_film > 0) {
+    result.weight = ray.we / static_cast<float>(ray.by_film);
+    result.pixels = ray.pixels;
   }
-  const Stopwatch watch(seconds_);
-  SeenRay seen;
-  for (int lane = 0; lane < colours_.lanes; ++lane) {
-    add(seen, lane, lens_.importance(result.ray.origin, -result.ray.direction, wavelength(lane)), 0);
-  }
-  if (!(seen.by_film > 0)) return result;
-  result.weight = seen.we / static_cast<float>(seen.by_film);
-  result.pixels = seen.pixels;
   return result;
 }
 

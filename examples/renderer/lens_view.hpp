@@ -4,6 +4,8 @@
 #include <array>
 #include <chrono>
 #include <cstdint>
+#include <span>
+#include <vector>
 
 #include "renderer/lens_camera.hpp"
 #include "renderer/path_colours.hpp"
@@ -21,6 +23,7 @@ struct FilmSample {
   float u = 0, v = 0;  ///< of the pupil
   Lanes weight{0};
   LanePixels pixels{no_pixel, no_pixel, no_pixel, no_pixel};
+  double by_film = 0;  ///< as in SeenRay, where it was asked for
 
   explicit operator bool() const noexcept { return weight != Lanes(0); }
 };
@@ -49,10 +52,15 @@ class LensView {
 
   const PathColours& colours() const noexcept { return colours_; }
 
-  /// A sample of a batch, drawn at the hero's wavelength in a pixel.
-  FilmSample film_sample(const LensCamera::Batch& batch, std::size_t index, std::uint32_t pixel) const noexcept;
-  /// The same ray from where it begins in the scene: a surface, or with none the sky.
-  SeenRay seen(const FilmSample& sample, const SurfacePoint* from) const noexcept;
+  /// A sample of a batch, drawn at the hero's wavelength in a pixel. seen: what the lens says of its ray at each lane's
+  /// wavelength, or nothing.
+  FilmSample film_sample(const LensCamera::Batch& batch, std::size_t index, std::uint32_t pixel,
+                         std::span<const std::vector<petzval::Importance>> seen) const noexcept;
+  /// The densities of a sample's ray from where it begins in the scene: a surface, or with none the sky.
+  struct Densities {
+    double by_film = 0, by_connection = 0;  ///< as in SeenRay
+  };
+  Densities densities(const FilmSample& sample, const SurfacePoint* from) const noexcept;
   /// A connection with a surface, or with the sky's light.
   SeenRay connect(const SurfacePoint& from, float u, float v) const noexcept;
   SeenRay connect_sky(const glm::vec3& travel, float u, float v) const noexcept;

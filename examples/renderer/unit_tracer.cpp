@@ -60,6 +60,7 @@ void UnitTracer::trace(const PixelBlock& block, std::uint32_t first, std::uint32
     colours.push_back(colours_.draw(random.back()()));
   }
   LensCamera::Batch batch;
+  std::vector<std::vector<petzval::Importance>> seen;  // of the batch's rays, by lane
   if (integrator_ != Integrator::light) {
     batch.resize(paths, !colours.front().one_wavelength);
     std::vector<double> u(count), v(count);
@@ -80,6 +81,16 @@ void UnitTracer::trace(const PixelBlock& block, std::uint32_t first, std::uint32
     }
     const Stopwatch watch(lens_seconds);
     lens_.sample(batch);
+    const bool one = colours.front().one_wavelength;
+    if (!lens_.pinhole() && (integrator_ == Integrator::bidirectional || !one)) {
+      seen.resize(one ? 1 : static_cast<std::size_t>(colours.front().lanes));
+      std::vector<float> nm(batch.nm.size());
+      for (std::size_t lane = 0; lane < seen.size(); ++lane) {
+        for (std::size_t i = 0; i < nm.size(); ++i) nm[i] = colours[i].nm[lane];
+        seen[lane].resize(paths);
+        lens_.importance(batch, nm, seen[lane]);
+      }
+    }
   }
   for (std::size_t i = 0; i < paths; ++i) {
     const LensView view(lens_, colours[i], lens_seconds);
@@ -87,7 +98,7 @@ void UnitTracer::trace(const PixelBlock& block, std::uint32_t first, std::uint32
       trace_light(scene_, view, random[i], splats);
       continue;
     }
-    const FilmSample sample = view.film_sample(batch, i, pixel_at(i / count));
+    const FilmSample sample = view.film_sample(batch, i, pixel_at(i / count), seen);
     if (integrator_ == Integrator::path) trace_path(scene_, view, sample, random[i], splats);
     if (integrator_ == Integrator::bidirectional) trace_both(scene_, view, sample, random[i], splats);
   }

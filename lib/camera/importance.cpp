@@ -99,6 +99,11 @@ EntrancePupilTable entrance_of(const Lens& lens, const AnyRayModel& model) {
 /// The pupil that a point so far away sees is that of infinity within rounding, mm.
 constexpr double far = 1e12;
 
+/// The point of a ray's line from which nothing is lost on the way to the lens, however far it comes.
+Vec3<double> nearest_to_lens(const Ray<double>& ray) noexcept {
+  return ray.origin - ray.direction * glm::dot(ray.origin, ray.direction);
+}
+
 /// The area of the entrance pupil that a pinhole's pupil on the axis is the image of, mm^2. Film and pupil points are
 /// linear in height and slope of a ray at the entrance pupil; of a film point on the axis, so is the height in the
 /// pupil point.
@@ -182,8 +187,7 @@ SceneSide::Arrival SceneSide::arrive(const AnyRayModel& model, const Ray<double>
                                      Wavelength wavelength) const noexcept {
   Arrival result;
   if (!valid(ray, wavelength)) return result;
-  // Nothing is lost on the way from a far point where the line begins near the lens.
-  const Vec3<double>&d = ray.direction, o = ray.origin - d * glm::dot(ray.origin, d);
+  const Vec3<double>&d = ray.direction, o = nearest_to_lens(ray);
   const TwoPlaneRays<double> line{&result.upright.x, &result.upright.y, &result.pupil.x, &result.pupil.y};
   model.to_film(1, {&o.x, &o.y, &o.z, &d.x, &d.y, &d.z}, {.all = wavelength}, line, &result.fate);
   return result;
@@ -231,7 +235,46 @@ Importance SceneSide::importance(const AnyRayModel& model, const Ray<double>& ra
                                  double time) const noexcept {
   // No ray meets a point but one that was aimed at it.
   if (model.pinhole()) return {.fate = valid(ray, wavelength) ? RayFate::vignetted : RayFate::invalid};
-  const Arrival arrival = arrive(model, ray, wavelength);
+  return arrived(model, arrive(model, ray, wavelength), ray.direction.z, wavelength, time);
+}
+
+void SceneSide::importance(const AnyRayModel& model, std::size_t count, const RayArrays<const double>& rays,
+                           const RayWavelengths& wavelengths, const double* times, Importance* found) const noexcept {
+  constexpr std::size_t block = 64;
+  const auto ray_at = [&](std::size_t i) -> Ray<double> {
+    return {{rays.x[i], rays.y[i], rays.z[i]}, {rays.dx[i], rays.dy[i], rays.dz[i]}};
+  };
+  for (std::size_t begin = 0; begin < count; begin += block) {
+    const std::size_t n = std::min(block, count - begin);
+    std::array<std::array<double, block>, 10> columns;
+    auto& [x, y, z, dx, dy, dz, film_x, film_y, pupil_x, pupil_y] = columns;
+    bool all_valid = !model.pinhole();
+    for (std::size_t i = 0; i < n; ++i) {
+      const Ray<double> ray = ray_at(begin + i);
+      all_valid = all_valid && valid(ray, wavelengths.at(begin + i));
+      const Vec3<double> near = nearest_to_lens(ray);
+      x[i] = near.x, y[i] = near.y, z[i] = near.z;
+      dx[i] = ray.direction.x, dy[i] = ray.direction.y, dz[i] = ray.direction.z;
+    }
+    const auto time = [&](std::size_t i) { return times ? times[begin + i] : 0; };
+    if (!all_valid) {
+      for (std::size_t i = 0; i < n; ++i) {
+        found[begin + i] = importance(model, ray_at(begin + i), wavelengths.at(begin + i), time(i));
+      }
+      continue;
+    }
+    std::array<RayFate, block> fates;
+    model.to_film(n, {x.data(), y.data(), z.data(), dx.data(), dy.data(), dz.data()}, wavelengths.from(begin),
+                  {film_x.data(), film_y.data(), pupil_x.data(), pupil_y.data()}, fates.data());
+    for (std::size_t i = 0; i < n; ++i) {
+      const Arrival arrival{fates[i], {film_x[i], film_y[i]}, {pupil_x[i], pupil_y[i]}};
+      found[begin + i] = arrived(model, arrival, dz[i], wavelengths.at(begin + i), time(i));
+    }
+  }
+}
+
+Importance SceneSide::arrived(const AnyRayModel& model, const Arrival& arrival, double cosine, Wavelength wavelength,
+                              double time) const noexcept {
   const auto& [fate, upright, pupil] = arrival;
   const auto placed = plane(time);
   const auto met = on_film(upright, pupil, placed);
@@ -244,7 +287,7 @@ Importance SceneSide::importance(const AnyRayModel& model, const Ray<double>& ra
     return result;
   }
   const bool within = sampled.contains(met->virtual_point, pupil.x, pupil.y, wavelength);
-  weigh(result, model, arrival, placed ? placed->weight(met->virtual_point, pupil) : 1, ray.direction.z,
+  weigh(result, model, arrival, placed ? placed->weight(met->virtual_point, pupil) : 1, cosine,
         within ? sampled.area(met->virtual_point, wavelength) : 0, at);
   if (!weights_) return result;
   const double density = weights_.density(sampled.position(met->virtual_point, pupil.x, pupil.y, wavelength));
@@ -356,6 +399,12 @@ double SceneSide::pdf_distant(const AnyRayModel& model, const Ray<double>& ray, 
 
 Importance Camera::importance(const Ray<double>& ray, Wavelength wavelength, double time) const noexcept {
   return data_->scene().importance(data_->model, ray, data_->resolved(wavelength), time);
+}
+
+void Camera::importance(std::size_t count, const RayArrays<const double>& rays, const RayWavelengths& wavelengths,
+                        Importance* found, const double* times) const noexcept {
+  data_->scene().importance(data_->model, count, rays, wavelengths.resolved(data_->model.pupils().primary_wavelength()),
+                            times, found);
 }
 
 ImportanceSample Camera::sample_importance(const Vec3<double>& point, double u, double v, Wavelength wavelength,

@@ -27,6 +27,8 @@ class SceneSide {
 
   Importance importance(const AnyRayModel& model, const Ray<double>& ray, Wavelength wavelength,
                         double time) const noexcept;
+  void importance(const AnyRayModel& model, std::size_t count, const RayArrays<const double>& rays,
+                  const RayWavelengths& wavelengths, const double* times, Importance* found) const noexcept;
   ImportanceSample sample_importance(const AnyRayModel& model, const Vec3<double>& point, double u, double v,
                                      Wavelength wavelength, double time) const noexcept;
   ImportanceSample sample_distant(const AnyRayModel& model, const Vec3<double>& direction, double u, double v,
@@ -68,6 +70,9 @@ class SceneSide {
   /// A direction of unit length, numbers that are finite, and a wavelength that is covered.
   bool valid(const Ray<double>& ray, Wavelength wavelength) const noexcept;
   Arrival arrive(const AnyRayModel& model, const Ray<double>& ray, Wavelength wavelength) const noexcept;
+  /// The importance of a ray that arrives. cosine: of its angle with the axis in the scene.
+  Importance arrived(const AnyRayModel& model, const Arrival& arrival, double cosine, Wavelength wavelength,
+                     double time) const noexcept;
   /// Film point, raster and fate of a ray that arrives.
   Importance met_by(const Arrival& arrival, const std::optional<OnFilm>& met) const noexcept;
   /// Weight and densities of a ray that meets the film. facing: TiltedPlane::weight(); cosine: of its angle with the

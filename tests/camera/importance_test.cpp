@@ -199,6 +199,44 @@ TEST(Importance, IsConnectedToAFilmThatIsDarkOnTheAxis) {
   EXPECT_LT(missed, 0.01 * seen);  // the disc clips pupils abruptly within a field
 }
 
+TEST(Importance, OfManyRaysIsThatOfEach) {
+  constexpr std::array<double, 3> nm{450, 587.5618, 650};
+  const Lens lens =
+      compile(testing::data_prescription("double_gauss_100mm_f2.0"), nm, {.missing_glass = MissingGlass::abbe});
+  Film tilted = film;
+  tilted.tilt_rad = 0.05;
+  for (const Film& f : {film, tilted}) {
+    for (const ModelKind model : models()) {
+      const Camera camera(lens, f, {.model = model});
+      constexpr std::size_t count = 150;
+      std::array<std::vector<double>, 6> columns;
+      for (auto& column : columns) column.resize(count);
+      auto& [x, y, z, dx, dy, dz] = columns;
+      std::vector<float> wavelengths(count);
+      for (std::size_t i = 0; i < count; ++i) {
+        const auto [u, v] = core_detail::Kronecker<2>()(i);
+        const CameraRay r = camera.sample({.film = {36 * (u - 0.5), 24 * (v - 0.5)}, .pupil_u = v, .pupil_v = u});
+        const Vec3<double> o = r.ray.origin + 700.0 * r.ray.direction;
+        x[i] = o.x, y[i] = o.y, z[i] = o.z;
+        dx[i] = -r.ray.direction.x, dy[i] = -r.ray.direction.y, dz[i] = -r.ray.direction.z;
+        wavelengths[i] = static_cast<float>(460 + 180 * u);
+      }
+      dx[3] = 2, z[100] = std::numeric_limits<double>::quiet_NaN(), wavelengths[120] = 1000;
+      std::vector<Importance> found(count);
+      camera.importance(count, {x.data(), y.data(), z.data(), dx.data(), dy.data(), dz.data()},
+                        {.each_nm = wavelengths.data()}, found.data());
+      for (std::size_t i = 0; i < count; ++i) {
+        const Importance one = camera.importance({{x[i], y[i], z[i]}, {dx[i], dy[i], dz[i]}},
+                                                 Wavelength::nm(static_cast<double>(wavelengths[i])));
+        EXPECT_EQ(found[i].fate, one.fate) << name(model) << i;
+        EXPECT_NEAR(found[i].we, one.we, 1e-9 * one.we);
+        EXPECT_NEAR(found[i].pdf_direction, one.pdf_direction, 1e-6 * one.pdf_direction);
+        EXPECT_NEAR(found[i].raster.x, one.raster.x, 1e-2);
+      }
+    }
+  }
+}
+
 TEST(Importance, OfASunIsTheAreaThroughWhichItShines) {
   // A sun on the axis of a lens with a large film: every ray through the entrance pupil arrives, with We = n^2 / A.
   const Lens lens = testing::data_lens("double_gauss_100mm_f2.0");

@@ -115,6 +115,9 @@ class PETZVAL_API Camera {
   /// pinhole, which no ray meets by chance; so is pdf_importance(). Only connections meet it.
   /// time: as in CameraSample, here and below.
   Importance importance(const Ray<double>& ray, Wavelength wavelength = {}, double time = 0) const noexcept;
+  /// The same for N rays, faster than one by one: within rounding. times: N, or null.
+  void importance(std::size_t count, const RayArrays<const double>& rays, const RayWavelengths& wavelengths,
+                  Importance* found, const double* times = nullptr) const noexcept;
   /// Samples a connection from a scene point (lens frame, mm) to the part of the entrance pupil that it sees.
   ImportanceSample sample_importance(const Vec3<double>& point, double u, double v, Wavelength wavelength = {},
                                      double time = 0) const noexcept;
