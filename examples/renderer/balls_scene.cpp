@@ -4,6 +4,7 @@
 #include <string>
 
 #include "renderer/built_in_scenes.hpp"
+#include "renderer/solids.hpp"
 
 namespace renderer {
 
@@ -12,21 +13,23 @@ SceneDescription balls_scene() {
 
   // A convex mirror of radius r shows a distant lamp r/2 before its centre: there the highlights are 1050 mm away.
   // Metal, because a varnish reflects 1/20 of the light, and the highlights, spread out of focus, would drown in that
-  // of the floor. The spacing leaves discs of an f/1.35 lens, 18 mm wide at 800 mm, side by side.
+  // of the table. The spacing leaves discs of an f/1.35 lens, 18 mm wide at 800 mm, side by side.
   constexpr float radius = 12, spacing = 25, highlights_z = -1050;
   constexpr std::array metals{Rgb{0.88f, 0.88f, 0.90f}, Rgb{0.90f, 0.70f, 0.40f}, Rgb{0.90f, 0.58f, 0.46f}};
   for (int i = -6; i <= 6; ++i) {
     const glm::vec3 centre{spacing * static_cast<float>(i), 0, highlights_z - radius / 2};
     const Rgb metal = metals[static_cast<std::size_t>(std::abs(i)) % metals.size()];
-    scene.objects.push_back({"ball " + std::to_string(i), Sphere{centre, radius}, Rough{metal, 0.02f}});
+    scene.objects.push_back({"ball " + std::to_string(i), Sphere{centre, radius}, Rough{metal, 0.03f}});
   }
 
-  const Diffuse felt{{.colour = {0.04f, 0.045f, 0.055f}}};
-  scene.objects.push_back({"floor", Quad{{-1500, -radius, 500}, {3000, 0, 0}, {0, 0, -2200}}, felt});
-  scene.objects.push_back({"backdrop", Quad{{-1500, -radius, -1700}, {3000, 0, 0}, {0, 1500, 0}}, felt});
+  // The table ends before the balls, or it would hide the lower part of the lens from them.
+  const Diffuse felt{{.colour = {0.025f, 0.028f, 0.035f}}};
+  scene.objects.push_back({"table", box({-1500, -600, -1500}, {1500, -radius, -950}), felt});
+  scene.objects.push_back({"backdrop", Quad{{-1500, -radius, -1500}, {3000, 0, 0}, {0, 1500, 0}}, felt});
 
-  // Above the lens, so that each ball shows it near its middle. Out of focus the highlights are 0.5 to 3 bright.
-  scene.objects.push_back({"lamp", Sphere{{0, 250, 0}, 25}, Diffuse{{.colour = {0, 0, 0}}}, {3000, 3000, 3000}});
+  // Behind the camera and above it, so that each ball shows it near its middle. Out of focus the highlights are 0.5 to
+  // 3 bright.
+  scene.objects.push_back({"lamp", Sphere{{0, 700, 500}, 60}, Diffuse{{.colour = {0, 0, 0}}}, {1200, 1200, 1200}});
   return scene;
 }
 

@@ -44,7 +44,7 @@ void set_up(SceneDescription& scene, std::string_view position) {
       const bool white = std::isupper(static_cast<unsigned char>(letter));
       const auto steps = [](int i) { return square * (static_cast<float>(i) - 3.5f); };
       // Turned a little, as hands put them; knights and the bar of a king's cross face the other side at angles.
-      const float turn_deg = (white ? 75.0f : -60.0f) + static_cast<float>(column * 31 % 17);
+      const float turn_deg = (white ? 40.0f : -155.0f) + static_cast<float>(column * 31 % 17);
       Mesh mesh = placed(chess_piece(*piece), middle + glm::vec3{steps(column), 0, steps(row)}, turn_deg);
       scene.objects.push_back({std::string("piece ") + letter, std::move(mesh),
                                Varnish{{.colour = white ? boxwood : ebony}, white ? 0.12f : 0.08f}});
@@ -65,11 +65,11 @@ Object panel(const char* name, const glm::vec3& centre, const glm::vec3& towards
 }  // namespace
 
 SceneDescription chess_scene() {
-  SceneDescription scene{.name = "chess", .sky = {.colour = {0.07f, 0.08f, 0.10f}}};
+  SceneDescription scene{.name = "chess", .sky = {.colour = {0.055f, 0.065f, 0.085f}}};
 
   // Seen across a corner of the board, 950 mm from its middle.
   constexpr double aside = 28 * std::numbers::pi / 180, above = 12 * std::numbers::pi / 180;
-  const glm::dvec3 target = glm::dvec3(middle) + glm::dvec3{0, 30, 0};
+  const glm::dvec3 target = glm::dvec3(middle) + glm::dvec3{10, 26, 0};
   const glm::dvec3 back{std::sin(aside) * std::cos(above), std::sin(above), std::cos(aside) * std::cos(above)};
   scene.pose = {.position = target + 950.0 * back, .look_at = target};
 
@@ -85,15 +85,15 @@ SceneDescription chess_scene() {
                            Varnish{{.colour = {0.055f, 0.05f, 0.045f}}, 0.3f}});
   set_up(scene, "3r2k1/pp3ppp/2n1b3/3qp3/8/2N1PN2/PPQ2PPP/3R2K1");
 
-  scene.objects.push_back(panel("window", middle + glm::vec3{-700, 900, 300}, middle, 500, {15, 14, 12.5f}));
-  scene.objects.push_back(panel("rim light", middle + glm::vec3{550, 500, -800}, middle, 250, {10, 11, 13}));
+  scene.objects.push_back(panel("window", middle + glm::vec3{-700, 900, 300}, middle, 500, {27, 25, 22.5f}));
+  scene.objects.push_back(panel("rim light", middle + glm::vec3{550, 500, -800}, middle, 250, {16, 18, 21}));
 
   // Lamps in the dark behind the table, given as seen: right and up of the axis over distance, and distance.
   struct Lamp {
     double right, up, distance;
     Rgb emission;
   };
-  constexpr Rgb warm{150, 105, 55}, red{120, 30, 18}, cold{70, 95, 140};
+  constexpr Rgb warm{52, 33, 15}, red{48, 9, 5}, cold{20, 29, 46};
   constexpr std::array lamps{
       Lamp{-0.150, 0.088, 2300, warm}, Lamp{-0.105, 0.072, 3100, warm}, Lamp{-0.070, 0.096, 2700, cold},
       Lamp{-0.028, 0.078, 3500, warm}, Lamp{0.012, 0.094, 2500, red},   Lamp{0.055, 0.074, 3300, warm},

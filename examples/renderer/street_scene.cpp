@@ -68,11 +68,11 @@ void houses(SceneDescription& scene, float side, Chance& chance) {
 
 /// The object in focus: a checkered plate on a post at the left.
 void sign(SceneDescription& scene) {
-  const glm::vec3 foot{-230, 0, -sign_away};
+  const glm::vec3 foot{-275, 0, -sign_away};
   constexpr ProfilePoint post[] = {{0, 0}, {30, 0}, {30, 1640}, {38, 1645, 1}, {0, 1690}};
   scene.objects.push_back({"post", placed(lathe(post), foot - glm::vec3{0, 0, 45}), Rough{{0.5f, 0.5f, 0.5f}, 0.25f}});
   const Varnish paint{{.colour = {0.8f, 0.78f, 0.72f}, .checker = Albedo::Checker{{0.5f, 0.03f, 0.03f}, 50}}, 0.1f};
-  scene.objects.push_back({"sign", box(foot + glm::vec3{-175, 1275, -14}, foot + glm::vec3{175, 1525, 0}), paint});
+  scene.objects.push_back({"sign", box(foot + glm::vec3{-150, 1275, -14}, foot + glm::vec3{150, 1525, 0}), paint});
   // The shop window that it stands before is out of the picture.
   scene.objects.push_back(
       {"shop window", Quad{{-1500, 600, -100}, {-900, 0, -900}, {0, 1800, 0}}, black, {6, 5, 3.6f}});
@@ -81,7 +81,7 @@ void sign(SceneDescription& scene) {
 }  // namespace
 
 SceneDescription street_scene() {
-  SceneDescription scene{.name = "street", .sky = {.colour = {0.004f, 0.005f, 0.009f}}};
+  SceneDescription scene{.name = "street", .sky = {.colour = {0.008f, 0.010f, 0.018f}}};
   scene.pose = {.position = {0, eye_height, 0}, .look_at = {0, eye_height, -1000}};
   Chance chance;
 
@@ -95,7 +95,7 @@ SceneDescription street_scene() {
   int count = 0;
   for (float away = 36000; away < 200000; away += 11000, ++count) {
     const float x = count % 2 == 0 ? -kerb : kerb;
-    light(scene, "street lamp", {x, 5200, -away}, 40, sodium, 3.5f);
+    light(scene, "street lamp", {x, 5200, -away}, 40, sodium, 1.1f);
     const glm::vec3 post{x + (x < 0 ? -300.0f : 300.0f), 0, -away};
     scene.objects.push_back({"lamp post", box(post - glm::vec3{50, 0, 50}, post + glm::vec3{50, 5300, 50}),
                              Diffuse{{.colour = {0.05f, 0.05f, 0.05f}}}});
@@ -104,15 +104,15 @@ SceneDescription street_scene() {
   // Cars: white lights come on the left half of the road, red ones go on the right.
   for (const float away : {19000.0f, 31000.0f, 47000.0f, 68000.0f, 98000.0f, 140000.0f}) {
     for (const float apart : {-650.0f, 650.0f}) {
-      light(scene, "headlight", {-1700 + apart, 650, -away * 1.12f}, 35, white, 4.5f);
-      light(scene, "tail light", {1700 + apart, 750, -away}, 30, red, 2.0f);
+      light(scene, "headlight", {-1700 + apart, 650, -away * 1.12f}, 35, white, 0.9f);
+      light(scene, "tail light", {1700 + apart, 750, -away}, 30, red, 0.9f);
     }
   }
 
   // Traffic lights.
   for (const float away : {24000.0f, 75000.0f}) {
-    light(scene, "traffic light", {kerb - 300, 3000, -away}, 40, green, 2.5f);
-    light(scene, "traffic light", {-kerb + 300, 3000, -away - 9000}, 40, red, 2.5f);
+    light(scene, "traffic light", {kerb - 300, 3000, -away}, 40, green, 1.0f);
+    light(scene, "traffic light", {-kerb + 300, 3000, -away - 9000}, 40, red, 1.0f);
   }
 
   // Strings of bulbs hang across the street, from 5 m.
@@ -123,16 +123,16 @@ SceneDescription street_scene() {
       const float half_width = std::min(0.2f * away, walls);
       const float y = eye_height + 0.055f * away + 0.04f * away * across * across;
       const Rgb colours[] = {warm, warm, red, warm, green, warm};
-      light(scene, "bulb", {across * half_width, y, -away}, 12, colours[i % 6], 1.2f);
+      light(scene, "bulb", {across * half_width, y, -away}, 12, colours[i % 6], 0.8f);
     }
   }
 
   // The end of the street, and lights of the town behind.
-  for (int i = 0; i < 24; ++i) {
+  for (int i = 0; i < 16; ++i) {
     const float away = 150000 + 50000 * chance.next(), across = 2 * chance.next() - 1;
     const Rgb colours[] = {sodium, white, warm};
     light(scene, "distant light", {across * 3800, 1500 + 11000 * chance.next(), -away}, 40, colours[i % 3],
-          0.5f + 1.5f * chance.next());
+          0.3f + 0.6f * chance.next());
   }
   return scene;
 }
