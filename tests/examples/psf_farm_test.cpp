@@ -88,6 +88,26 @@ TEST_F(PsfFarm, SlurmRunsTheArray) {
   EXPECT_EQ(read(path("out/psf_set.exr")), whole());
 }
 
+/// A program that writes down how it was called stands for the renderer, which is not built everywhere.
+TEST_F(PsfFarm, TheScriptsCallBokehSceneByItsOwnFlags) {
+  write("bokeh_scene", "#!/bin/sh\necho \"$@\" >> '" + path("calls") + "'\n");
+  std::filesystem::permissions(path("bokeh_scene"), std::filesystem::perms::owner_all);
+  const std::string renderer = "PROGRAM=bokeh_scene PATH='" + folder.string() + "':\"$PATH\" ", out = path("an out"),
+                    resumed = " --resume --out " + out;
+  ASSERT_EQ(shell(renderer + "SLURM_ARRAY_TASK_MIN=1 SLURM_ARRAY_TASK_MAX=3 SLURM_ARRAY_TASK_COUNT=3 " +
+                  "SLURM_ARRAY_TASK_ID=2 sh '" + farm("psf_set.slurm.sh") + "' '" + out + "' --scene chess"),
+            0)
+      << read(path("stderr"));
+  EXPECT_EQ(lines(read(path("calls"))), std::vector<std::string>{"--scene chess --tile 2/3" + resumed});
+  std::filesystem::remove(path("calls"));
+  if (std::system("parallel --version 2> /dev/null | grep -q 'GNU parallel'") != 0) GTEST_SKIP() << "no GNU parallel";
+  ASSERT_EQ(shell(renderer + "sh '" + farm("psf_set.parallel.sh") + "' 2 '" + out + "' --scene chess"), 0)
+      << read(path("stderr"));
+  EXPECT_EQ(lines(read(path("calls"))),
+            (std::vector<std::string>{"--scene chess --tile 1/2" + resumed, "--scene chess --tile 2/2" + resumed,
+                                      "merge " + out + " --out " + out}));
+}
+
 /// The rules of the specification "jobtemplate-2023-09" that the template makes use of: keys, names, references.
 /// Source: Open Job Description, Template Schemas 2023-09, sections 1 to 3 and 7.
 class OpenJobDescription : public PsfFarm {
@@ -119,10 +139,46 @@ class OpenJobDescription : public PsfFarm {
     }
     return text;
   }
+  /// What a scheduler does with a template: values for names, a task for each value of the range, steps in the order of
+  /// their dependencies.
+  void run_tasks(const Json& job, const std::map<std::string, std::string>& chosen) const {
+    std::map<std::string, std::string> values = chosen;
+    for (const Json& parameter : job["parameterDefinitions"]) {
+      if (!parameter.contains("default")) continue;
+      const Json& value = parameter["default"];
+      values.emplace("Param." + parameter["name"].get<std::string>(),
+                     value.is_string() ? value.get<std::string>() : value.dump());
+    }
+    const auto task = [&](const Json& step) {
+      const Json& action = step["script"]["actions"]["onRun"];
+      std::vector<std::string> arguments;
+      for (const Json& argument : action["args"]) arguments.push_back(filled(argument, values));
+      const auto outcome = run(filled(action["command"], values), arguments);
+      EXPECT_EQ(outcome.status, 0) << outcome.err;
+    };
+    for (const Json& step : job["steps"]) {
+      if (!step.contains("parameterSpace")) {
+        task(step);
+        continue;
+      }
+      const Json& parameter = step["parameterSpace"]["taskParameterDefinitions"].at(0);
+      const std::string range = filled(parameter["range"], values);
+      const int first = std::stoi(range), last = std::stoi(range.substr(range.find('-') + 1));
+      for (int i = first; i <= last; ++i) {
+        values["Task.Param." + parameter["name"].get<std::string>()] = std::to_string(i);
+        task(step);
+      }
+    }
+  }
 };
 
-TEST_F(OpenJobDescription, TheTemplateFollowsTheSchema) {
-  const Json job = read_json(farm("psf_set.openjd.json"));
+class OpenJobTemplate : public OpenJobDescription, public testing::WithParamInterface<const char*> {};
+
+INSTANTIATE_TEST_SUITE_P(Farm, OpenJobTemplate, testing::Values("psf_set", "bokeh_scene"),
+                         [](const auto& program) { return std::string(program.param); });
+
+TEST_P(OpenJobTemplate, FollowsTheSchema) {
+  const Json job = read_json(farm(GetParam() + std::string(".openjd.json")));
   only_keys(job, {"specificationVersion", "name", "steps"}, {"description", "parameterDefinitions"});
   EXPECT_EQ(job["specificationVersion"], "jobtemplate-2023-09");
   // A path is mapped on the worker: only scripts know it, but its raw value is known everywhere.
@@ -185,46 +241,15 @@ TEST_F(OpenJobDescription, TheTemplateFollowsTheSchema) {
   }
 }
 
-/// What a scheduler does with it: values for names, a task for each value of the range, steps in the order of their
-/// dependencies.
 TEST_F(OpenJobDescription, TheTasksOfTheTemplateMakeTheSetOfOneRun) {
-  const Json job = read_json(farm("psf_set.openjd.json"));
-  std::map<std::string, std::string> values;
-  for (const Json& parameter : job["parameterDefinitions"]) {
-    if (!parameter.contains("default")) continue;
-    const Json& value = parameter["default"];
-    values["Param." + parameter["name"].get<std::string>()] =
-        value.is_string() ? value.get<std::string>() : value.dump();
-  }
-  const std::map<std::string, std::string> chosen{{"Param.Lens", lens("double_gauss_100mm_f2_28deg")},
-                                                  {"Param.Out", path("out")},
-                                                  {"Param.Fields", "0,7"},
-                                                  {"Param.DistancesMm", "1000,inf"},
-                                                  {"Param.WavelengthsNm", "587.5618"},
-                                                  {"Param.FNumbers", "2.8"},
-                                                  {"Param.Samples", "4096"},
-                                                  {"Param.Shards", "3"}};
-  for (const auto& [name, value] : chosen) values[name] = value;
-  const auto task = [&](const Json& step) {
-    const Json& action = step["script"]["actions"]["onRun"];
-    std::vector<std::string> arguments;
-    for (const Json& argument : action["args"]) arguments.push_back(filled(argument, values));
-    const auto outcome = run(filled(action["command"], values), arguments);
-    EXPECT_EQ(outcome.status, 0) << outcome.err;
-  };
-  for (const Json& step : job["steps"]) {
-    if (!step.contains("parameterSpace")) {
-      task(step);
-      continue;
-    }
-    const Json& parameter = step["parameterSpace"]["taskParameterDefinitions"].at(0);
-    const std::string range = filled(parameter["range"], values);
-    const int first = std::stoi(range), last = std::stoi(range.substr(range.find('-') + 1));
-    for (int i = first; i <= last; ++i) {
-      values["Task.Param." + parameter["name"].get<std::string>()] = std::to_string(i);
-      task(step);
-    }
-  }
+  run_tasks(read_json(farm("psf_set.openjd.json")), {{"Param.Lens", lens("double_gauss_100mm_f2_28deg")},
+                                                     {"Param.Out", path("out")},
+                                                     {"Param.Fields", "0,7"},
+                                                     {"Param.DistancesMm", "1000,inf"},
+                                                     {"Param.WavelengthsNm", "587.5618"},
+                                                     {"Param.FNumbers", "2.8"},
+                                                     {"Param.Samples", "4096"},
+                                                     {"Param.Shards", "3"}});
   ASSERT_EQ(run("psf_set", {lens("double_gauss_100mm_f2_28deg"), "--fields", "0,7", "--distances-mm", "1000,inf",
                             "--f-numbers", "2.8", "--samples", "4096", "--out", path("whole")})
                 .status,
@@ -233,9 +258,9 @@ TEST_F(OpenJobDescription, TheTasksOfTheTemplateMakeTheSetOfOneRun) {
 }
 
 /// The reference implementation's own check.
-TEST_F(OpenJobDescription, OpenjdAcceptsTheTemplate) {
+TEST_P(OpenJobTemplate, IsWhatOpenjdAccepts) {
   if (std::system("openjd --version > /dev/null 2>&1") != 0) GTEST_SKIP() << "no openjd";
-  EXPECT_EQ(shell("openjd check '" + farm("psf_set.openjd.json") + "'"), 0)
+  EXPECT_EQ(shell("openjd check '" + farm(GetParam() + std::string(".openjd.json")) + "'"), 0)
       << read(path("stdout")) << read(path("stderr"));
 }
 
