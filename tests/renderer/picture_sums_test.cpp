@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -95,6 +96,55 @@ TEST(PictureSums, APixelIsItsSumOverItsOwnSamples) {
   EXPECT_EQ(sums.passes(2), 1u);
 }
 
+/// Of pixels over the samples of their tile, of luminance over its area, which is smaller at the edges.
+TEST(PictureSums, MeansArePlainMeans) {
+  constexpr std::uint32_t passes = 5;
+  constexpr double samples = 1 + 2 + 1 + 2 + 1;
+  PictureSums sums(width, height);
+  std::vector<double> area(sums.tiles()), luminance(area), luminance_size(area);
+  std::array<double, 3> total{}, size{};
+  std::vector<std::array<double, 3>> pixels(static_cast<std::size_t>(width * height));
+  std::mt19937 random(4);
+  std::uniform_real_distribution<float> light(-1, 3);
+  for (std::uint32_t pass = 0; pass < passes; ++pass) {
+    for (std::size_t t = 0; t < sums.tiles(); ++t) {
+      std::vector<Contribution> unit(300);
+      for (auto& [pixel, rgb] : unit) {
+        pixel = static_cast<std::uint32_t>(random() % pixels.size());
+        const std::size_t fallen_on = pixel / width / 16 * sums.tile_columns() + pixel % width / 16;
+        for (std::size_t c = 0; c < 3; ++c) {
+          rgb[c] = light(random);
+          const double value = static_cast<double>(rgb[c]), weighted = std::array{0.2126, 0.7152, 0.0722}[c] * value;
+          pixels[pixel][c] += value;
+          total[c] += value;
+          size[c] += std::abs(value);
+          luminance[fallen_on] += weighted;
+          luminance_size[fallen_on] += std::abs(weighted);
+        }
+      }
+      sums.add(t, 1 + pass % 2, unit);
+    }
+  }
+  const petzval::RgbImage picture = sums.picture();
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      area[static_cast<std::size_t>(y / 16) * sums.tile_columns() + static_cast<std::size_t>(x / 16)] += 1;
+      for (std::size_t c = 0; c < 3; ++c) {
+        EXPECT_FLOAT_EQ(picture.pixel(x, y)[c],
+                        static_cast<float>(pixels[static_cast<std::size_t>(y * width + x)][c] / samples));
+      }
+    }
+  }
+  for (std::size_t c = 0; c < 3; ++c) {
+    const double all = samples * width * height;
+    EXPECT_NEAR(sums.mean()[c].mean, total[c] / all, size[c] / all * 1e-12);
+  }
+  for (std::size_t t = 0; t < sums.tiles(); ++t) {
+    const double all = samples * area[t];
+    EXPECT_NEAR(sums.luminance(t).mean, luminance[t] / all, luminance_size[t] / all * 1e-6) << t;
+  }
+}
+
 /// Contributions of a known scatter: standard errors, and how often the mean is beyond them, are as the theory says.
 TEST(PictureSums, StandardErrorsAreThoseOfTheScatter) {
   constexpr int side = PictureSums::tile_pixels, runs = 400;
@@ -128,6 +178,32 @@ TEST(PictureSums, StandardErrorsAreThoseOfTheScatter) {
   EXPECT_NEAR(tile_squares / runs / (true_error * true_error), 1, 0.07);
   // Student's t of 15 degrees: 5 % beyond 2.131, 20 +- 4.4 of 400.
   EXPECT_NEAR(beyond, 20, 14);
+}
+
+/// Fewer passes than rounds, and more, of different numbers of samples.
+TEST(PictureSums, StandardErrorsFollowTheSamplesOfEachRound) {
+  constexpr int runs = 4000;
+  constexpr double spread = 0.25;
+  std::mt19937 random(7);
+  std::normal_distribution<float> light(1, spread);
+  for (const std::size_t passes : {3u, 16u, 40u}) {
+    double squares = 0, samples = 0;
+    for (int run = 0; run < runs; ++run) {
+      PictureSums sums(1, 1);
+      for (std::size_t pass = 0; pass < passes; ++pass) {
+        std::vector<Contribution> unit(4 + pass % 2);
+        for (Contribution& own : unit) own.rgb.fill(light(random));
+        sums.add(0, static_cast<std::uint32_t>(unit.size()), unit);
+      }
+      const double error = sums.mean()[0].standard_error;
+      ASSERT_NEAR(sums.luminance(0).standard_error, error, 1e-6);
+      squares += error * error;
+      samples = static_cast<double>(sums.samples(0));
+    }
+    // Four standard errors of a variance with so many degrees of freedom; 1 % for unequal rounds.
+    const double freedom = runs * static_cast<double>(std::min(passes, PictureSums::rounds) - 1);
+    EXPECT_NEAR(squares / runs / (spread * spread / samples), 1, 4 * std::sqrt(2 / freedom) + 0.01) << passes;
+  }
 }
 
 TEST(PictureSums, AreNotANumberWithoutAnythingToCompare) {
