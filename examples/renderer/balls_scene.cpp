@@ -13,8 +13,9 @@ SceneDescription balls_scene() {
 
   // A convex mirror of radius r shows a distant lamp r/2 before its centre: there the highlights are 1050 mm away.
   // Metal, because a varnish reflects 1/20 of the light, and the highlights, spread out of focus, would drown in that
-  // of the table. The spacing leaves discs of an f/1.35 lens, 18 mm wide at 800 mm, side by side.
-  constexpr float radius = 12, spacing = 25, highlights_z = -1050;
+  // of the table. The spacing leaves discs of an f/1.35 lens, 18 mm wide at 800 mm, side by side, and weakens what
+  // balls show of each other's highlights.
+  constexpr float radius = 9, spacing = 25, highlights_z = -1050;
   constexpr std::array metals{Rgb{0.88f, 0.88f, 0.90f}, Rgb{0.90f, 0.70f, 0.40f}, Rgb{0.90f, 0.58f, 0.46f}};
   for (int i = -6; i <= 6; ++i) {
     const glm::vec3 centre{spacing * static_cast<float>(i), 0, highlights_z - radius / 2};
@@ -23,13 +24,13 @@ SceneDescription balls_scene() {
   }
 
   // The table ends before the balls, or it would hide the lower part of the lens from them.
-  const Diffuse felt{{.colour = {0.025f, 0.028f, 0.035f}}};
+  const Diffuse felt{{.colour = {0.015f, 0.017f, 0.021f}}};
   scene.objects.push_back({"table", box({-1500, -600, -1500}, {1500, -radius, -950}), felt});
   scene.objects.push_back({"backdrop", Quad{{-1500, -radius, -1500}, {3000, 0, 0}, {0, 1500, 0}}, felt});
 
   // Behind the camera and above it, so that each ball shows it near its middle. Out of focus the highlights are 0.5 to
   // 3 bright.
-  scene.objects.push_back({"lamp", Sphere{{0, 700, 500}, 60}, Diffuse{{.colour = {0, 0, 0}}}, {1200, 1200, 1200}});
+  scene.objects.push_back({"lamp", Sphere{{0, 700, 500}, 100}, Diffuse{{.colour = {0, 0, 0}}}, {760, 760, 760}});
   return scene;
 }
 
