@@ -6,28 +6,6 @@
 namespace renderer {
 namespace {
 
-/// What the weights of all ways to make a path take from the part behind a vertex: sums of densities of the other ways,
-/// over that of this one. A path that is connected at the vertex, or ends there, takes `connected`; one that goes on
-/// backwards through it, `through` times the density of that.
-/// Source: Georgiev, Implementing vertex connection and merging, 2012 (dVCM and dVC; nothing is merged here).
-struct OtherWays {
-  double connected = 0, through = 0;
-
-  /// The path arrives at a surface.
-  void arrive(double d2, double cosine) noexcept { connected *= d2 / cosine, through /= cosine; }
-  /// It is scattered there.
-  void scatter(const Bsdf::Sample& next, double goes_on, double cosine) noexcept {
-    if (next.specular) {
-      connected = 0, through *= cosine;
-      return;
-    }
-    const double pdf = next.pdf * goes_on;
-    through = cosine / pdf * (through * next.pdf_reverse * goes_on + connected);
-    connected = 1 / pdf;
-  }
-  double with(double backwards) const noexcept { return connected + through * backwards; }
-};
-
 struct LightVertex {
   SurfacePoint point;
   Bsdf bsdf;
@@ -39,18 +17,23 @@ struct LightVertex {
 /// One path from both ends. The lens has two ways: film samples, and connections from the light's side.
 class Path {
  public:
-  Path(const Scene& scene, const LensView& lens, Random& random, Splats& splats)
-      : scene_(scene), lens_(lens), colours_(lens.colours()), random_(random), splats_(splats) {
+  Path(const Scene& scene, const LensView& lens, Random& random, LensConnections& connections, Splats& splats)
+      : scene_(scene),
+        lens_(lens),
+        colours_(lens.colours()),
+        random_(random),
+        connections_(connections),
+        splats_(splats) {
     vertices_.reserve(most_scatterings);
   }
 
   void from_light() {
     const auto start = emit(scene_, random_);
     if (!start) return;
-    const Lanes emitted = colours_.from_rgb * start->from.radiance;
-    see_lamp(*start, emitted);
+    const float lamp_u = random_(), lamp_v = random_();
+    connections_.add(colours_, *start, lamp_u, lamp_v);
     OtherWays others{start->from.pdf / start->pdf_emission, start->cosine / start->pdf_emission};
-    Lanes power = emitted * static_cast<float>(start->cosine / start->pdf_emission);
+    Lanes power = colours_.from_rgb * start->from.radiance * static_cast<float>(start->cosine / start->pdf_emission);
     WorldRay ray{start->origin, start->direction};
     const bool near = start->from.surface.has_value();
     for (int k = 1; k <= most_scatterings; ++k) {
@@ -61,7 +44,8 @@ class Path {
       const Bsdf bsdf(*met, -ray.direction, colours_);
       if (!bsdf.specular()) {
         vertices_.push_back({*met, bsdf, power, others, k});
-        see(vertices_.back());
+        const float u = random_(), v = random_();
+        connections_.add(colours_, *met, bsdf, power, others, u, v);
       }
       if (!scatter(*met, bsdf, Carries::power, power, others, ray)) return;
     }
@@ -117,33 +101,6 @@ class Path {
     return true;
   }
 
-  /// The lamp where the light path begins, or the sky, seen by the lens.
-  void see_lamp(const Emitted& start, const Lanes& emitted) {
-    const float u = random_(), v = random_();
-    const auto& lamp = start.from.surface;
-    const SeenRay seen = lamp ? lens_.connect(*lamp, u, v) : lens_.connect_sky(start.direction, u, v);
-    const double facing = lamp ? glm::dot(lamp->normal, seen.direction) : 1;
-    if (!seen || !(facing > 0)) return;
-    if (!(lamp ? scene_.sees(*lamp, seen.on_front) : scene_.sees_sky(seen.on_front, -seen.direction))) return;
-    const double film = seen.by_film * facing / (start.from.pdf * seen.by_connection);
-    splats_.add(colours_, seen.pixels,
-                emitted * seen.we * static_cast<float>(facing / (start.from.pdf * seen.by_connection)) * weight(film));
-  }
-
-  /// A lit surface, seen by the lens.
-  void see(const LightVertex& vertex) {
-    const float u = random_(), v = random_();
-    const SeenRay seen = lens_.connect(vertex.point, u, v);
-    if (!seen) return;
-    const Lanes f = vertex.bsdf.times_cosine(seen.direction, Carries::power);
-    if (f == Lanes(0) || !scene_.sees(vertex.point, seen.on_front)) return;
-    const double film = seen.by_film * cosine(vertex.point.normal, seen.direction) / seen.by_connection;
-    const double back = vertex.bsdf.pdf_reverse(seen.direction) * vertex.bsdf.goes_on();
-    splats_.add(
-        colours_, seen.pixels,
-        vertex.power * f * seen.we / static_cast<float>(seen.by_connection) * weight(film * vertex.others.with(back)));
-  }
-
   /// Light straight from a lamp.
   Lanes lit(const SurfacePoint& at, const Bsdf& bsdf, const OtherWays& others) {
     const auto light = illumination(scene_, at, random_);
@@ -185,14 +142,16 @@ class Path {
   const LensView& lens_;
   const PathColours& colours_;
   Random& random_;
+  LensConnections& connections_;
   Splats& splats_;
   std::vector<LightVertex> vertices_;
 };
 
 }  // namespace
 
-void trace_both(const Scene& scene, const LensView& lens, const FilmSample& sample, Random& random, Splats& splats) {
-  Path path(scene, lens, random, splats);
+void trace_both(const Scene& scene, const LensView& lens, const FilmSample& sample, Random& random,
+                LensConnections& connections, Splats& splats) {
+  Path path(scene, lens, random, connections, splats);
   path.from_light();
   path.from_film(sample);
 }

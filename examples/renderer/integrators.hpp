@@ -3,10 +3,9 @@
 
 #include <optional>
 #include <string_view>
-#include <vector>
 
+#include "renderer/lens_connections.hpp"
 #include "renderer/lens_view.hpp"
-#include "renderer/picture_sums.hpp"
 #include "renderer/random.hpp"
 #include "renderer/scene.hpp"
 
@@ -23,20 +22,12 @@ enum class Integrator : std::uint8_t {
 };
 std::optional<Integrator> integrator_named(std::string_view name) noexcept;
 
-/// What paths add to a picture.
-class Splats {
- public:
-  void add(const PathColours& colours, const LanePixels& pixels, const Lanes& value);
-  const std::vector<Contribution>& all() const noexcept { return all_; }
-
- private:
-  std::vector<Contribution> all_;
-};
-
 /// One path each, or one from either end. Their sums over all film samples, one path for each sample, over the samples
-/// of a pixel estimate the irradiance of the pixel in the camera's normalisation.
+/// of a pixel estimate the irradiance of the pixel in the camera's normalisation. What connections with the lens add
+/// comes with LensConnections::finish(); colours have to live until then.
 void trace_path(const Scene& scene, const LensView& lens, const FilmSample& sample, Random& random, Splats& splats);
-void trace_light(const Scene& scene, const LensView& lens, Random& random, Splats& splats);
-void trace_both(const Scene& scene, const LensView& lens, const FilmSample& sample, Random& random, Splats& splats);
+void trace_light(const Scene& scene, const PathColours& colours, Random& random, LensConnections& connections);
+void trace_both(const Scene& scene, const LensView& lens, const FilmSample& sample, Random& random,
+                LensConnections& connections, Splats& splats);
 
 }  // namespace renderer

@@ -94,6 +94,24 @@ LensCamera::Connection LensCamera::connect(const glm::vec3& point, float u, floa
   return connection(camera_.sample_importance(to_lens(point), u, v, wavelength));
 }
 
+std::vector<LensCamera::Connection> LensCamera::connect(std::span<const Request> requests,
+                                                        std::span<const float> nm) const {
+  std::vector<Vec3<double>> points;
+  std::vector<double> u, v;
+  for (const Request& request : requests) {
+    points.push_back(to_lens(request.point));
+    u.push_back(static_cast<double>(request.u)), v.push_back(static_cast<double>(request.v));
+  }
+  petzval::RayWavelengths wavelengths;
+  if (!nm.empty()) wavelengths.each_nm = nm.data();
+  std::vector<petzval::ImportanceSample> samples(requests.size());
+  camera_.sample_importance(requests.size(), points.data(), u.data(), v.data(), wavelengths, samples.data());
+  std::vector<Connection> result;
+  result.reserve(samples.size());
+  for (const petzval::ImportanceSample& sample : samples) result.push_back(connection(sample));
+  return result;
+}
+
 LensCamera::Connection LensCamera::connect_distant(const glm::vec3& travel, float u, float v,
                                                    petzval::Wavelength wavelength) const noexcept {
   return connection(camera_.sample_distant_importance(turn_to_lens(travel), u, v, wavelength));

@@ -67,6 +67,12 @@ class LensCamera {
     explicit operator bool() const noexcept { return importance.we > 0; }
   };
   Connection connect(const glm::vec3& point, float u, float v, petzval::Wavelength wavelength) const noexcept;
+  /// Many connections in one call, each at its wavelength in nm, or with none at the primary one.
+  struct Request {
+    glm::vec3 point{0, 0, 0};
+    float u = 0, v = 0;
+  };
+  std::vector<Connection> connect(std::span<const Request> requests, std::span<const float> nm) const;
   Connection connect_distant(const glm::vec3& travel, float u, float v, petzval::Wavelength wavelength) const noexcept;
   /// The densities with which these two give a ray that runs towards the lens; 0 for a pinhole.
   double pdf_connection(const glm::vec3& point, const glm::vec3& direction,

@@ -56,23 +56,15 @@ SeenRay LensView::at_all_lanes(const LensCamera::Connection& hero, const glm::ve
   return result;
 }
 
-SeenRay LensView::connect(const SurfacePoint& from, float u, float v) const noexcept {
-  const Stopwatch watch(seconds_);
-  return at_all_lanes(lens_.connect(from.position, u, v, wavelength(colours_.hero)), &from.position);
-}
-
-SeenRay LensView::connect_sky(const glm::vec3& travel, float u, float v) const noexcept {
-  const Stopwatch watch(seconds_);
-  return at_all_lanes(lens_.connect_distant(travel, u, v, wavelength(colours_.hero)), nullptr);
-}
-
 LensView::Densities LensView::densities(const FilmSample& sample, const SurfacePoint* from) const noexcept {
+  const Stopwatch watch(seconds_);
   if (lens_.pinhole()) {
-    const SeenRay seen =
-        from ? connect(*from, sample.u, sample.v) : connect_sky(-sample.ray.direction, sample.u, sample.v);
+    const auto point = from ? &from->position : nullptr;
+    const SeenRay seen = at_all_lanes(from ? lens_.connect(*point, sample.u, sample.v, hero())
+                                           : lens_.connect_distant(-sample.ray.direction, sample.u, sample.v, hero()),
+                                      point);
     return {seen.by_film, seen.by_connection};
   }
-  const Stopwatch watch(seconds_);
   Densities result{.by_film = sample.by_film};
   const int calls = colours_.one_wavelength ? 1 : colours_.lanes;
   for (int lane = 0; lane < calls; ++lane) {

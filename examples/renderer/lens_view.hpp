@@ -10,12 +10,9 @@
 #include "renderer/lens_camera.hpp"
 #include "renderer/path_colours.hpp"
 #include "renderer/scene.hpp"
+#include "renderer/splats.hpp"
 
 namespace renderer {
-
-inline constexpr std::uint32_t no_pixel = ~std::uint32_t{0};
-/// Where the lanes of a path meet the film: a lens bends each wavelength in its own way.
-using LanePixels = std::array<std::uint32_t, 4>;
 
 /// A film sample, and what its lanes weigh: radiance by lane times weight is what the path adds to a pixel.
 struct FilmSample {
@@ -61,14 +58,13 @@ class LensView {
     double by_film = 0, by_connection = 0;  ///< as in SeenRay
   };
   Densities densities(const FilmSample& sample, const SurfacePoint* from) const noexcept;
-  /// A connection with a surface, or with the sky's light.
-  SeenRay connect(const SurfacePoint& from, float u, float v) const noexcept;
-  SeenRay connect_sky(const glm::vec3& travel, float u, float v) const noexcept;
+  /// A connection that was made at the hero's wavelength, from a point or, without one, with the sky's light.
+  SeenRay at_all_lanes(const LensCamera::Connection& hero, const glm::vec3* point) const noexcept;
+  petzval::Wavelength hero() const noexcept { return wavelength(colours_.hero); }
 
  private:
   petzval::Wavelength wavelength(int lane) const noexcept;
   std::uint32_t pixel_of(const petzval::Importance& seen) const noexcept;
-  SeenRay at_all_lanes(const LensCamera::Connection& hero, const glm::vec3* point) const noexcept;
   void add(SeenRay& ray, int lane, const petzval::Importance& seen, double by_connection) const noexcept;
 
   const LensCamera& lens_;

@@ -28,18 +28,6 @@ std::optional<Integrator> integrator_named(std::string_view name) noexcept {
   return {};
 }
 
-void Splats::add(const PathColours& colours, const LanePixels& pixels, const Lanes& value) {
-  for (int lane = 0; lane < colours.lanes;) {
-    const std::uint32_t pixel = pixels[static_cast<std::size_t>(lane)];
-    Rgb rgb(0);
-    // Neighbouring lanes mostly meet the same pixel.
-    for (; lane < colours.lanes && pixels[static_cast<std::size_t>(lane)] == pixel; ++lane) {
-      rgb += colours.to_rgb[lane] * value[lane];
-    }
-    if (pixel != no_pixel && rgb != Rgb(0)) all_.push_back({pixel, {rgb.r, rgb.g, rgb.b}});
-  }
-}
-
 void UnitTracer::trace(const PixelBlock& block, std::uint32_t first, std::uint32_t count, Splats& splats,
                        double& lens_seconds) const {
   const auto columns = static_cast<std::uint32_t>(lens_.film().columns);
@@ -92,16 +80,20 @@ void UnitTracer::trace(const PixelBlock& block, std::uint32_t first, std::uint32
       }
     }
   }
+  LensConnections connections(scene_, lens_, integrator_ == Integrator::bidirectional);
   for (std::size_t i = 0; i < paths; ++i) {
-    const LensView view(lens_, colours[i], lens_seconds);
     if (integrator_ == Integrator::light) {
-      trace_light(scene_, view, random[i], splats);
+      trace_light(scene_, colours[i], random[i], connections);
       continue;
     }
+    const LensView view(lens_, colours[i], lens_seconds);
     const FilmSample sample = view.film_sample(batch, i, pixel_at(i / count), seen);
     if (integrator_ == Integrator::path) trace_path(scene_, view, sample, random[i], splats);
-    if (integrator_ == Integrator::bidirectional) trace_both(scene_, view, sample, random[i], splats);
+    if (integrator_ == Integrator::bidirectional) {
+      trace_both(scene_, view, sample, random[i], connections, splats);
+    }
   }
+  connections.finish(splats, lens_seconds);
 }
 
 }  // namespace renderer

@@ -308,6 +308,53 @@ ImportanceSample SceneSide::sample_importance(const AnyRayModel& model, const Ve
   return result;
 }
 
+void SceneSide::sample_importance(const AnyRayModel& model, std::size_t count, const Vec3<double>* points,
+                                  const double* u, const double* v, const RayWavelengths& wavelengths,
+                                  const double* times, ImportanceSample* found) const noexcept {
+  constexpr std::size_t block = 64;
+  for (std::size_t begin = 0; begin < count; begin += block) {
+    const std::size_t n = std::min(block, count - begin);
+    // The rays of connections that have one, side by side.
+    std::array<std::array<double, block>, 7> columns;
+    auto& [x, y, z, dx, dy, dz, rays_times] = columns;
+    std::array<std::size_t, block> which;
+    std::array<float, block> nm;
+    std::array<std::uint16_t, block> positions;
+    std::size_t rays = 0;
+    const bool in_nm = wavelengths.in_nm();
+    for (std::size_t i = begin; i < begin + n; ++i) {
+      const Wavelength wavelength = wavelengths.at(i);
+      if (model.pinhole() || !wavelengths_.covers(wavelength) || !finite(points[i])) {
+        found[i] = sample_importance(model, points[i], u[i], v[i], wavelength, times ? times[i] : 0);
+        continue;
+      }
+      const EntranceSample s = entrance_.sample(points[i], u[i], v[i], wavelength);
+      found[i] = s.pdf > 0 ? connection(s.place, s.direction, s.distance, s.pdf) : ImportanceSample{};
+      if (!(s.pdf > 0)) continue;
+      which[rays] = i;
+      x[rays] = s.place.x, y[rays] = s.place.y, z[rays] = s.place.z;
+      dx[rays] = s.direction.x, dy[rays] = s.direction.y, dz[rays] = s.direction.z;
+      rays_times[rays] = times ? times[i] : 0;
+      if (in_nm) {
+        nm[rays] = static_cast<float>(*wavelength.in_nm());
+      } else {
+        positions[rays] = static_cast<std::uint16_t>(wavelength.position(primary_));
+      }
+      ++rays;
+    }
+    RayWavelengths of_rays;
+    if (in_nm) {
+      of_rays.each_nm = nm.data();
+    } else {
+      of_rays.each = positions.data();
+    }
+    std::array<Importance, block> importances;
+    importance(model, rays, {x.data(), y.data(), z.data(), dx.data(), dy.data(), dz.data()}, of_rays,
+               times ? rays_times.data() : nullptr, importances.data());
+    for (std::size_t r = 0; r < rays; ++r) found[which[r]].importance = importances[r];
+  }
+}
+
 ImportanceSample SceneSide::sample_distant(const AnyRayModel& model, const Vec3<double>& direction, double u, double v,
                                            Wavelength wavelength, double time) const noexcept {
   ImportanceSample result{.importance = {.fate = RayFate::invalid}};
@@ -410,6 +457,13 @@ void Camera::importance(std::size_t count, const RayArrays<const double>& rays, 
 ImportanceSample Camera::sample_importance(const Vec3<double>& point, double u, double v, Wavelength wavelength,
                                            double time) const noexcept {
   return data_->scene().sample_importance(data_->model, point, u, v, data_->resolved(wavelength), time);
+}
+
+void Camera::sample_importance(std::size_t count, const Vec3<double>* points, const double* u, const double* v,
+                               const RayWavelengths& wavelengths, ImportanceSample* found,
+                               const double* times) const noexcept {
+  data_->scene().sample_importance(data_->model, count, points, u, v,
+                                   wavelengths.resolved(data_->model.pupils().primary_wavelength()), times, found);
 }
 
 ImportanceSample Camera::sample_distant_importance(const Vec3<double>& direction, double u, double v,

@@ -31,6 +31,9 @@ class SceneSide {
                   const RayWavelengths& wavelengths, const double* times, Importance* found) const noexcept;
   ImportanceSample sample_importance(const AnyRayModel& model, const Vec3<double>& point, double u, double v,
                                      Wavelength wavelength, double time) const noexcept;
+  void sample_importance(const AnyRayModel& model, std::size_t count, const Vec3<double>* points, const double* u,
+                         const double* v, const RayWavelengths& wavelengths, const double* times,
+                         ImportanceSample* found) const noexcept;
   ImportanceSample sample_distant(const AnyRayModel& model, const Vec3<double>& direction, double u, double v,
                                   Wavelength wavelength, double time) const noexcept;
   double pdf(const AnyRayModel& model, const Vec3<double>& point, const Vec3<double>& direction,

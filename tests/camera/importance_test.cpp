@@ -233,6 +233,24 @@ TEST(Importance, OfManyRaysIsThatOfEach) {
         EXPECT_NEAR(found[i].pdf_direction, one.pdf_direction, 1e-6 * one.pdf_direction);
         EXPECT_NEAR(found[i].raster.x, one.raster.x, 1e-2);
       }
+      std::vector<Vec3<double>> points(count);
+      for (std::size_t i = 0; i < count; ++i) points[i] = {x[i], y[i], z[i]};
+      std::vector<double> u(count, 0.3), v(count, 0.6);
+      std::vector<ImportanceSample> connections(count);
+      camera.sample_importance(count, points.data(), u.data(), v.data(), {.each_nm = wavelengths.data()},
+                               connections.data());
+      int connected = 0;
+      for (std::size_t i = 0; i < count; ++i) {
+        const ImportanceSample one =
+            camera.sample_importance(points[i], u[i], v[i], Wavelength::nm(static_cast<double>(wavelengths[i])));
+        EXPECT_EQ(connections[i].importance.fate, one.importance.fate) << name(model) << i;
+        EXPECT_EQ(connections[i].pdf, one.pdf);
+        EXPECT_EQ(connections[i].on_front, one.on_front);
+        EXPECT_NEAR(connections[i].importance.we, one.importance.we, 1e-9 * one.importance.we);
+        EXPECT_NEAR(connections[i].importance.raster.y, one.importance.raster.y, 1e-2);
+        connected += one.importance.we > 0;
+      }
+      EXPECT_GT(connected, 50) << name(model);
     }
   }
 }
