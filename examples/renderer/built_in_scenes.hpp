@@ -20,7 +20,7 @@ std::optional<SceneDescription> built_in_scene(std::string_view name);
 /// effect based on optical aberrations". From the middle to the edge they are those of x = 0, 25, 50 ... 150 mm.
 SceneDescription balls_scene();
 
-/// A game of chess, 770 to 1150 mm from the entrance pupil, with lamps far behind: figure 9 there.
+/// A game of chess, 790 to 1110 mm from the entrance pupil, with lamps far behind: figure 9 there.
 SceneDescription chess_scene();
 
 /// A street at night: a sign at 3 m from the entrance pupil to focus on, and small lights from there to 200 m.

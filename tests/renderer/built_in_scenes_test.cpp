@@ -89,8 +89,8 @@ TEST(ChessScene, HasItsPiecesOnTheBoardFromTheForegroundToTheBackground) {
   }
   EXPECT_EQ(pieces, 22);
   EXPECT_EQ(lamps, 9);
-  EXPECT_LT(nearest, 850);
-  EXPECT_GT(farthest, 1080);
+  EXPECT_NEAR(nearest, 790, 5);
+  EXPECT_NEAR(farthest, 1110, 5);
 }
 
 TEST(StreetScene, HasItsLightsInThePictureAndItsWindowsOnTheStreet) {
