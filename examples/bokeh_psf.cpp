@@ -25,6 +25,7 @@
 #include "support/files.hpp"
 #include "support/iris_setup.hpp"
 #include "support/load_lens.hpp"
+#include "support/picture_files.hpp"
 #include "support/text.hpp"
 
 namespace {
@@ -35,7 +36,7 @@ using examples::Json;
 constexpr int picture_pixels = 512, tile_pixels = 320;
 
 struct Options {
-  std::vector<std::string> formats{"exr", "png"};
+  std::vector<std::string> formats;
   std::string model = "exact_double", lens_file, out_folder, origin = "front_vertex", criterion = "min_rms",
               white_point = "D65";
   std::vector<double> focus_mm, wavelengths_nm{petzval::d_line_nm};
@@ -170,11 +171,8 @@ void write_all(const std::vector<Picture>& pictures, const examples::LoadedLens&
   for (const Picture& p : pictures) {
     const std::string stem = loaded.id + "_focus_" + examples::number(p.focus_mm) + "mm";
     const petzval::RgbImage image = examples::irradiance(p.image.psf, options.light);
-    for (const std::string& format : options.formats) {
-      const auto file = folder / (stem + '.' + format);
-      if (format == "exr") petzval::write_exr(image, file);
-      if (format == "pfm") petzval::write_pfm(image, file);
-      if (format == "png") petzval::write_png(examples::expose(image).picture, file);
+    for (const auto& file :
+         examples::write_picture(image, examples::expose(image).picture, options.formats, folder / stem)) {
       written(file);
     }
   }
@@ -224,11 +222,7 @@ int main(int argc, char** argv) {
       "send rays until the relative error of the radial profile is at most this, --samples at most; 2^14 "
       "first, then twice as many")
       ->default_str("all samples");
-  app.add_option("--format", options.formats,
-                 "files of each image: exr and pfm (float, linear), png (each with its own exposure)")
-      ->delimiter(',')
-      ->one_of({"exr", "png", "pfm"})
-      ->default_str("exr,png");
+  examples::add_formats(app, options.formats, "each with its own exposure");
   app.add_option("--out", options.out_folder, "folder for the results")->required()->type_name("DIR");
 
   return examples::run(app, argc, argv, [&] {

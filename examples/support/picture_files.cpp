@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "picture_files.hpp"
+
+#include <utility>
+
+namespace examples {
+namespace {
+
+petzval::ExrPart exr_part(const petzval::RgbImage& image) {
+  petzval::ExrPart part{.width = image.width, .height = image.height, .channels = {{"R", {}}, {"G", {}}, {"B", {}}}};
+  for (std::size_t i = 0; i < image.pixels.size(); ++i) part.channels[i % 3].values.push_back(image.pixels[i]);
+  return part;
+}
+
+}  // namespace
+
+Option* add_formats(App& app, std::vector<std::string>& formats, const std::string& png) {
+  formats = {"exr", "png"};
+  return app.add_option("--format", formats, "files of each image: exr and pfm (float, linear), png (" + png + ")")
+      ->delimiter(',')
+      ->one_of({"exr", "png", "pfm"})
+      ->default_str("exr,png");
+}
+
+std::vector<std::filesystem::path> write_picture(const petzval::RgbImage& image, const petzval::Rgb8Image& shown,
+                                                 const std::vector<std::string>& formats,
+                                                 const std::filesystem::path& stem,
+                                                 const std::map<std::string, std::string>& texts,
+                                                 const std::map<std::string, double>& numbers) {
+  std::vector<std::filesystem::path> files;
+  for (const std::string& format : formats) {
+    std::filesystem::path file = stem;
+    file += '.' + format;
+    if (format == "exr") {
+      petzval::ExrPart part = exr_part(image);
+      part.texts = texts;
+      part.numbers = numbers;
+      petzval::write_exr({&part, 1}, file);
+    }
+    if (format == "pfm") petzval::write_pfm(image, file);
+    if (format == "png") petzval::write_png(shown, file);
+    files.push_back(std::move(file));
+  }
+  return files;
+}
+
+}  // namespace examples
