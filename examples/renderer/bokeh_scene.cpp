@@ -8,27 +8,37 @@
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
+#include <limits>
+#include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "petzval/camera/camera.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/parallel.hpp"
+#include "petzval/core/sobol.hpp"
 #include "petzval/core/units.hpp"
 #include "petzval/io/image.hpp"
+#include "petzval/io/lens_json.hpp"
+#include "petzval/io/write_file.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "renderer/built_in_scenes.hpp"
+#include "renderer/checkpoint.hpp"
+#include "renderer/outputs.hpp"
 #include "renderer/render.hpp"
 #include "renderer/scene_checksum.hpp"
 #include "renderer/scene_json.hpp"
 #include "renderer/scene_model.hpp"
+#include "renderer/shards.hpp"
 #include "support/bokeh_flags.hpp"
 #include "support/camera_setup.hpp"
 #include "support/cli.hpp"
 #include "support/files.hpp"
 #include "support/load_lens.hpp"
 #include "support/model_rows.hpp"
+#include "support/picture_files.hpp"
 #include "support/text.hpp"
 
 namespace {
@@ -38,15 +48,61 @@ using examples::Json;
 
 struct Options {
   std::string scene, lens_file, model = "exact_float", integrator = "bidirectional", wavelengths = "d",
-                                normalisation = "unity_on_axis", tile = "1/1", out_folder;
+                                normalisation = "unity_on_axis", out_folder;
   examples::CameraSetup setup;
   examples::BokehFlags bokeh;
+  examples::Shard shard;
   std::vector<std::string> formats{"exr", "png"};
   std::uint32_t samples = 0, width = 600, height = 400, seed = 0;
   std::uint32_t threads = static_cast<std::uint32_t>(petzval::processor_threads());
   double budget_px = 0, seconds = 0, tilt_deg = 0, swing_deg = 0;
   bool resume = false;
 };
+
+void say(const fs::path& file) { std::cout << file.string() << '\n'; }
+
+/// Writes picture.* and render.json. job: what the numbers depend on; about: what else render.json says first.
+void write_results(const renderer::PictureSums& sums, const Json& job, Json about,
+                   const std::vector<std::string>& formats, const fs::path& folder) {
+  const std::map<std::string, std::string> texts{{"lens", job.at("lens")},
+                                                 {"model", job.at("model")},
+                                                 {"integrator", job.at("integrator")},
+                                                 {"wavelengths", job.at("wavelengths")},
+                                                 {"normalisation", job.at("normalisation")},
+                                                 {"distanceFrom", job.at("distance_from")},
+                                                 {"petzval", job.at("petzval")}};
+  const auto number = [&](const char* key) {
+    return job.at(key).is_null() ? std::numeric_limits<double>::infinity() : job.at(key).get<double>();
+  };
+  const std::map<std::string, double> numbers{{"fNumber", number("real_f_number")},
+                                              {"focusMm", number("focus_mm")},
+                                              {"white", number("white")},
+                                              {"seed", number("seed")}};
+  const auto white = static_cast<float>(1 / number("white"));
+  for (const fs::path& file : renderer::write_pictures(sums.picture(), texts, numbers, formats, folder, white)) {
+    say(file);
+  }
+  about.update(renderer::statistics(sums));
+  about["job"] = job;
+  examples::write_text(folder / "render.json", about.dump(1) + '\n');
+  say(folder / "render.json");
+}
+
+/// Of a sky of radiance 1.
+double irradiance_on_axis(const petzval::Camera& camera) {
+  constexpr std::uint32_t count = 4096;
+  double sum = 0;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const auto pupil = petzval::owen_sobol(i, 0);
+    sum += camera.sample({.film = {0, 0}, .pupil_u = pupil.x, .pupil_v = pupil.y}).weight / count;
+  }
+  if (!(sum > 0)) throw petzval::Error(camera.lens().name() + ": no light reaches the axis");
+  return sum;
+}
+
+std::string file_checksum(const std::string& file) {
+  return file.empty() ? "" : petzval::checksum(examples::read_text(file));
+}
 
 /// The scene, the lens, and what decides the picture's numbers.
 class Job {
@@ -55,8 +111,10 @@ class Job {
       : options_(options),
         integrator_(*renderer::integrator_named(options.integrator)),
         colours_(*renderer::colour_mode_named(options.wavelengths)),
+        controls_(examples::controls_of(options.bokeh)),
         scene_(description(options)),
-        lens_(focused_lens()) {
+        loaded_(examples::load_lens(options.lens_file, colours_.compiled_nm())),
+        lens_(examples::focused(loaded_, options.setup)) {
     const auto [width, height] = options.setup.film_size();
     film_ = {.width_mm = width,
              .height_mm = height,
@@ -64,25 +122,39 @@ class Job {
              .rows = static_cast<int>(options.height),
              .tilt_rad = petzval::radians(options.tilt_deg),
              .swing_rad = petzval::radians(options.swing_deg)};
+    if (!scene_.has_light()) std::cerr << "note: " << options.scene << " has no light: the picture is black\n";
     examples::say_what_does_not_fit(lens_, film_);
     choose_model();
   }
 
-  renderer::RenderReport run() {
+  void run() {
     const renderer::LensCamera lens = camera(chosen_.model);
+    refuse_walls(lens);
     const fs::path folder = options_.out_folder;
-    examples::make_folder(folder);
-    const Json job = description_of_numbers();
+    const fs::path file = renderer::checkpoint_file(folder, options_.shard);
+    const Json job = description_of_numbers(lens.camera());
     renderer::PictureSums sums(film_.columns, film_.rows);
+    if (options_.resume && fs::exists(file)) sums = renderer::Checkpoint::read(file, job);
+    examples::make_folder(folder);
     std::vector<std::size_t> tiles;
     for (std::size_t t = 0; t < sums.tiles(); ++t) {
-      tiles.push_back(t);
+      if (options_.shard.has(t)) tiles.push_back(t);
     }
     const renderer::UnitTracer tracer(scene_, lens, colours_, integrator_, options_.seed);
     const renderer::RenderReport report =
-        renderer::render(tracer, sums, tiles, effort(), static_cast<int>(options_.threads), [] {});
-    write(sums, job, report);
-    return report;
+        renderer::render(tracer, sums, tiles, effort(), static_cast<int>(options_.threads),
+                         [&] { renderer::Checkpoint::write(sums, job, file); });
+    say(file);
+    if (!report.finished) std::cerr << "note: out of time; the same command with --resume goes on\n";
+    if (options_.shard.count > 1) return;
+    write_results(sums, job,
+                  {{"model", petzval::name(chosen_.model)},
+                   {"why", chosen_.why},
+                   {"seconds", report.seconds},
+                   {"lens_seconds_share", report.busy_seconds > 0 ? report.lens_seconds / report.busy_seconds : 0},
+                   {"paths_per_second", report.seconds > 0 ? static_cast<double>(report.paths) / report.seconds : 0},
+                   {"finished", report.finished}},
+                  options_.formats, folder);
   }
 
  private:
@@ -92,9 +164,6 @@ class Job {
     throw petzval::Error("--scene: found \"" + options.scene + "\", wanted one of " +
                          std::string(renderer::built_in_scene_names) + ", or a file that ends in .json");
   }
-  petzval::Lens focused_lens() const {
-    return examples::focused(examples::load_lens(options_.lens_file, colours_.compiled_nm()), options_.setup);
-  }
   renderer::LensCamera camera(petzval::ModelKind model) const {
     return {petzval::Camera(
                 lens_, film_,
@@ -102,7 +171,7 @@ class Job {
                  .normalisation = options_.normalisation == "irradiance" ? petzval::Normalisation::irradiance
                                                                          : petzval::Normalisation::unity_on_axis,
                  .threads = static_cast<int>(options_.threads),
-                 .bokeh = examples::controls_of(options_.bokeh)}),
+                 .bokeh = controls_}),
             scene_.description().pose};
   }
   renderer::Effort effort() const {
@@ -115,16 +184,17 @@ class Job {
   void choose_model() {
     if (const auto named = petzval::model_named(options_.model)) {
       chosen_ = {*named, {"--model " + options_.model}};
-    } else {
-      const renderer::LensCamera exact = camera(petzval::ModelKind::exact_float);
-      refuse_walls(exact);
-      chosen_ = options_.budget_px > 0 ? renderer::model_within(scene_, exact, options_.budget_px)
-                                       : renderer::model_below_noise(scene_, exact, scene_.description().pose, colours_,
-                                                                     integrator_, options_.samples);
-      std::cerr << "note: model " << petzval::name(chosen_.model) << '\n' << examples::bullets(chosen_.why);
       return;
     }
-    refuse_walls(camera(petzval::ModelKind::pinhole));
+    if (options_.budget_px == 0 && options_.samples == 0) {
+      throw petzval::Error("--model auto: found --time-s alone, wanted --budget-px or --spp to choose by");
+    }
+    const renderer::LensCamera exact = camera(petzval::ModelKind::exact_float);
+    refuse_walls(exact);
+    chosen_ = options_.budget_px > 0
+                  ? renderer::model_within(scene_, exact, options_.budget_px)
+                  : renderer::model_below_noise(scene_, exact, colours_, integrator_, options_.samples);
+    std::cerr << "note: model " << petzval::name(chosen_.model) << '\n' << examples::bullets(chosen_.why);
   }
   void refuse_walls(const renderer::LensCamera& lens) const {
     if (const renderer::Object* const wall = scene_.around(lens.front())) {
@@ -133,15 +203,18 @@ class Job {
     }
   }
 
-  Json description_of_numbers() const {
+  Json description_of_numbers(const petzval::Camera& camera) const {
     const examples::CameraSetup& setup = options_.setup;
-    const petzval::BokehControls& controls = options_.bokeh.controls;
+    double white = 1;
+    if (options_.normalisation == "irradiance") white = irradiance_on_axis(camera);
     return {{"scene", renderer::checksum(scene_.description())},
             {"lens", lens_.name()},
+            {"prescription", petzval::checksum(petzval::format_prescription(loaded_.prescription))},
             {"model", petzval::name(chosen_.model)},
             {"integrator", options_.integrator},
             {"wavelengths", options_.wavelengths},
             {"normalisation", options_.normalisation},
+            {"white", white},
             {"width", film_.columns},
             {"height", film_.rows},
             {"film_mm", setup.film_mm},
@@ -151,54 +224,61 @@ class Job {
             {"distance_from", setup.origin},
             {"criterion", setup.criterion},
             {"f_number", setup.iris.f_number},
+            {"real_f_number", petzval::real_f_number(lens_)},
             {"iris",
              {{"blades", setup.iris.blades},
               {"roundness", setup.iris.roundness},
               {"rotation_deg", setup.iris.rotation_deg},
               {"area", setup.iris.area},
-              {"image", options_.bokeh.iris_image}}},
+              {"image", file_checksum(options_.bokeh.iris_image)}}},
             {"bokeh",
-             {{"lens_ratio", controls.lens_ratio},
-              {"rate_of_change", controls.rate_of_change},
-              {"keep_light", controls.keep_light},
-              {"weight_distribution", controls.weight_distribution},
-              {"weight_strength", controls.weight_strength},
-              {"weight_map", options_.bokeh.weight_map}}},
+             {{"lens_ratio", controls_.lens_ratio},
+              {"rate_of_change", controls_.rate_of_change},
+              {"keep_light", controls_.keep_light},
+              {"weight_distribution", controls_.weight_distribution},
+              {"weight_strength", controls_.weight_strength},
+              {"weight_map", file_checksum(options_.bokeh.weight_map)}}},
             {"seed", options_.seed},
             {"samples", options_.samples > 0 ? Json(options_.samples) : Json()},
             {"passes", options_.samples > 0 ? Json(effort().passes()) : Json()},
             {"petzval", PETZVAL_VERSION}};
   }
 
-  void write(const renderer::PictureSums& sums, const Json& job, const renderer::RenderReport& report) const {
-    Json json{{"model", petzval::name(chosen_.model)},
-              {"why", chosen_.why},
-              {"seconds", report.seconds},
-              {"lens_seconds_share", report.busy_seconds > 0 ? report.lens_seconds / report.busy_seconds : 0},
-              {"paths_per_second", report.seconds > 0 ? static_cast<double>(report.paths) / report.seconds : 0},
-              {"finished", report.finished}};
-    const auto mean = sums.mean();
-    json["mean_radiance"] = {mean[0].mean, mean[1].mean, mean[2].mean};
-    json["mean_se"] = {mean[0].standard_error, mean[1].standard_error, mean[2].standard_error};
-    json["job"] = job;
-    const fs::path folder = options_.out_folder;
-    petzval::write_exr(sums.picture(), folder / "picture.exr");
-    petzval::write_png(petzval::to_srgb8(sums.picture()), folder / "picture.png");
-    examples::write_text(folder / "render.json", json.dump(1) + '\n');
-  }
-
   Options options_;
   renderer::Integrator integrator_;
   renderer::PathColourSource colours_;
+  petzval::BokehControls controls_;
   renderer::Scene scene_;
+  examples::LoadedLens loaded_;
   petzval::Lens lens_;
   petzval::Film film_;
   renderer::ModelForScene chosen_;
 };
 
+/// bokeh_scene merge FOLDER... --out DIR
+int merge(int argc, char** argv) {
+  std::vector<std::string> folders, formats{"exr", "png"};
+  std::string out_folder;
+  examples::App app(
+      "Adds the shards of a picture, each rendered with --tile I/N, to the bits of one run. Writes picture.* and "
+      "render.json to DIR.",
+      "bokeh_scene merge");
+  app.add_option("FOLDER", folders, "folders with tile_I_of_N.exr")->required();
+  examples::add_formats(app, formats, "png (sRGB)");
+  app.add_option("--out", out_folder, "folder for the results")->required()->type_name("DIR");
+  return examples::run(app, argc, argv, [&] {
+    Json job;
+    const renderer::PictureSums sums = renderer::gather({folders.begin(), folders.end()}, job);
+    examples::make_folder(out_folder);
+    write_results(sums, job, {{"model", job.at("model")}, {"why", Json::array({"merged from shards"})}}, formats,
+                  out_folder);
+  });
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
+  if (argc > 1 && std::string_view(argv[1]) == "merge") return merge(argc - 1, argv + 1);
   Options options;
   examples::App app(
       "Renders a scene through a lens. World: right-handed, y up, mm; the scene's camera stands where the entrance "
@@ -262,10 +342,19 @@ int main(int argc, char** argv) {
   app.add_option("--normalisation", options.normalisation, "unit of the picture")
       ->one_of({"unity_on_axis", "irradiance"})
       ->capture_default_str();
+  std::string tile;
+  app.add_option(
+         "--tile", tile,
+         "render every Nth tile of 16 x 16 pixels, from the Ith on; 'bokeh_scene merge DIR --out DIR' adds them")
+      ->type_name("I/N");
+  app.add_flag("--resume", options.resume,
+               "go on from the checkpoint in DIR, to the bits of a run that was not cut off");
+  examples::add_formats(app, options.formats, "png (sRGB)");
   app.add_option("--out", options.out_folder, "folder for the results")->required()->type_name("DIR");
 
   return examples::run(app, argc, argv, [&] {
     if (options.samples == 0 && options.seconds == 0) options.samples = 64;
+    if (!tile.empty()) options.shard = examples::parse_shard("--tile", tile);
     Job(options).run();
   });
 }

@@ -12,8 +12,9 @@ std::vector<std::filesystem::path> write_pictures(const petzval::RgbImage& pictu
                                                   const std::map<std::string, std::string>& texts,
                                                   const std::map<std::string, double>& numbers,
                                                   const std::vector<std::string>& formats,
-                                                  const std::filesystem::path& folder) {
-  return examples::write_picture(picture, petzval::to_srgb8(picture), formats, folder / "picture", texts, numbers);
+                                                  const std::filesystem::path& folder, float exposure) {
+  return examples::write_picture(picture, petzval::to_srgb8(picture, exposure), formats, folder / "picture", texts,
+                                 numbers);
 }
 
 Json statistics(const PictureSums& sums) {

@@ -13,12 +13,13 @@
 namespace renderer {
 
 /// Writes picture.exr (linear Rec. 709; texts and numbers go into its header), picture.pfm (the same) and picture.png
-/// (sRGB of exposure 1) to a folder, as the formats say. Returns the paths. Throws petzval::Error that names a file.
+/// (sRGB of the values times
+/// `exposure`) to a folder, as the formats say. Returns the paths. Throws petzval::Error that names a file.
 std::vector<std::filesystem::path> write_pictures(const petzval::RgbImage& picture,
                                                   const std::map<std::string, std::string>& texts,
                                                   const std::map<std::string, double>& numbers,
                                                   const std::vector<std::string>& formats,
-                                                  const std::filesystem::path& folder);
+                                                  const std::filesystem::path& folder, float exposure = 1);
 
 /// "samples" (of a pixel, the mean of all), "mean_radiance" (R, G, B: mean and standard_error), "tiles" (of rows by
 /// columns: mean and standard_error of the luminance, a list for each row), "rejected". A standard error is null where

@@ -16,7 +16,8 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
 
-constexpr double save_every = 20;  // seconds
+/// Seconds between checkpoints, and how many times as long as one takes.
+constexpr double save_every = 20, save_share = 20;
 
 }  // namespace
 
@@ -38,6 +39,7 @@ RenderReport render(const UnitTracer& tracer, PictureSums& sums, const std::vect
                     const Effort& effort, int threads, const std::function<void()>& save) {
   const auto begin = Clock::now();
   auto saved = begin;
+  double save_takes = 0;
   RenderReport report;
   std::mutex keeping;
   const auto late = [&] { return effort.seconds && seconds_since(begin) >= *effort.seconds; };
@@ -63,15 +65,18 @@ RenderReport render(const UnitTracer& tracer, PictureSums& sums, const std::vect
       Splats splats;
       double lens_seconds = 0;
       tracer.trace(block, effort.first_sample(pass), count, splats, lens_seconds);
+      const double busy_seconds = seconds_since(unit_begin);
       const std::lock_guard guard(keeping);
       sums.add(missing[i], count, splats.all());
       report.paths += std::uint64_t{count} * static_cast<std::uint64_t>(block.width * block.height);
       report.lens_seconds += lens_seconds;
-      report.busy_seconds += seconds_since(unit_begin);
+      report.busy_seconds += busy_seconds;
       if (progress) progress->step("pass " + std::to_string(pass + 1) + " of " + std::to_string(effort.passes()));
-      if (seconds_since(saved) < save_every) return;
+      if (seconds_since(saved) < std::max(save_every, save_share * save_takes)) return;
+      const auto save_begin = Clock::now();
       save();
       saved = Clock::now();
+      save_takes = std::chrono::duration<double>(saved - save_begin).count();
     });
   }
   report.seconds = seconds_since(begin);

@@ -43,8 +43,7 @@ struct Pilot {
   double contrast = 0, brightness = 0;
 };
 
-Pilot pilot_of(const Scene& scene, const LensCamera& exact, const Pose& pose, const PathColourSource& colours,
-               Integrator integrator) {
+Pilot pilot_of(const Scene& scene, const LensCamera& exact, const PathColourSource& colours, Integrator integrator) {
   constexpr int width = 96, samples = 16;
   petzval::Film film = exact.film();
   const double scale = static_cast<double>(width) / film.columns;
@@ -53,7 +52,7 @@ Pilot pilot_of(const Scene& scene, const LensCamera& exact, const Pose& pose, co
   const LensCamera lens(petzval::Camera(exact.camera().lens(), film,
                                         {.model = petzval::ModelKind::exact_float,
                                          .normalisation = petzval::Normalisation::unity_on_axis}),
-                        pose);
+                        scene.description().pose);
   std::array<std::vector<double>, 2> halves;
   for (std::size_t half = 0; half < 2; ++half) {
     PictureSums sums(film.columns, film.rows);
@@ -132,15 +131,15 @@ ModelForScene model_within(const Scene& scene, const LensCamera& exact, double b
   return result;
 }
 
-ModelForScene model_below_noise(const Scene& scene, const LensCamera& exact, const Pose& pose,
-                                const PathColourSource& colours, Integrator integrator, std::uint32_t samples) {
+ModelForScene model_below_noise(const Scene& scene, const LensCamera& exact, const PathColourSource& colours,
+                                Integrator integrator, std::uint32_t samples) {
   const petzval::Film& film = exact.film();
   if (film.tilted() || film.travel_mm != 0)
     return exact_lens("the film is tilted: the exact lens, as models are measured on upright films");
   const auto range = depths(scene, exact);
   if (std::isinf(range[0]))
     return exact_lens("the picture shows the sky alone: the exact lens, as there is no depth to measure at");
-  const Pilot pilot = pilot_of(scene, exact, pose, colours, integrator);
+  const Pilot pilot = pilot_of(scene, exact, colours, integrator);
   const double noise = pilot.noise / std::sqrt(static_cast<double>(samples));
   petzval::ModelChoice choice;
   const auto table = candidates(exact, range, {.max_px = 0, .pupil_shape = 0}, choice);

@@ -35,7 +35,7 @@ ModelForScene model_within(const Scene& scene, const LensCamera& exact, double b
 /// mean a bias: rays that are e pixels off change a pixel by e times the slope over sqrt 2, a pupil whose area is wrong
 /// in a share s of it by s times the contrast, and an exposure by its error times the brightness. Edges that the small
 /// picture does not resolve are as many along a line as those that it does.
-ModelForScene model_below_noise(const Scene& scene, const LensCamera& exact, const Pose& pose,
-                                const PathColourSource& colours, Integrator integrator, std::uint32_t samples);
+ModelForScene model_below_noise(const Scene& scene, const LensCamera& exact, const PathColourSource& colours,
+                                Integrator integrator, std::uint32_t samples);
 
 }  // namespace renderer
