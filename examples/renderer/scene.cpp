@@ -183,16 +183,17 @@ void Scene::Data::find_light() {
     powers.push_back(double{luminance(description.objects[i].emission)} * bodies[i].area * pi);
     total += powers.back();
   }
-  // What of the sky's light enters the sphere around the scene; a sky without objects has some too.
+  // What of the sky's light enters the sphere around the scene; a sky without objects has some too. Beside lamps it
+  // gets half of the samples at most: most of its light falls far from what the lens sees.
   const double sky_power = sky.total() * pi * double{radius} * double{radius};
-  total += sky_power;
-  if (!(total > 0)) return;
+  if (!(total + sky_power > 0)) return;
+  constexpr double most = 0.5;
+  sky_share = total > 0 ? std::min(sky_power / (total + sky_power), most) : 1;
   double end = 0;
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    bodies[i].lamp_share = powers[i] / total;
+    bodies[i].lamp_share = total > 0 ? powers[i] / total * (1 - sky_share) : 0;
     lamp_ends.push_back(end += bodies[i].lamp_share);
   }
-  sky_share = sky_power / total;
 }
 
 Scene::Scene(SceneDescription description) {
