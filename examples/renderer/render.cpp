@@ -23,7 +23,10 @@ constexpr double save_every = 20, save_share = 20;
 
 std::uint32_t Effort::passes() const noexcept {
   if (!samples) return std::numeric_limits<std::uint32_t>::max();
-  return std::min(*samples, static_cast<std::uint32_t>(PictureSums::rounds));
+  // As many as there are rounds to compare, or more: a unit has 16 samples of a pixel at most.
+  constexpr std::uint32_t most = 16;
+  const auto rounds = static_cast<std::uint32_t>(PictureSums::rounds);
+  return std::max(std::min(*samples, rounds), *samples / most + (*samples % most != 0));
 }
 
 std::uint32_t Effort::first_sample(std::uint32_t pass) const noexcept {

@@ -11,8 +11,8 @@
 
 namespace renderer {
 
-/// How much is traced. With a number of samples the picture is that of these, in 16 passes or fewer, and a limit of
-/// time leaves the rest for later. Without one it is as good as the time allows, in passes of one sample.
+/// How much is traced. With a number of samples the picture is that of these, and a limit of time leaves the rest for
+/// later. Without one it is as good as the time allows, in passes of one sample.
 struct Effort {
   std::optional<std::uint32_t> samples;  ///< of each pixel
   std::optional<double> seconds;

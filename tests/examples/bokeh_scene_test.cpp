@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "petzval/io/image.hpp"
+#include "program.hpp"
+
+namespace {
+
+using nlohmann::json;
+
+class BokehScene : public Programs {
+ protected:
+  using Arguments = std::vector<std::string>;
+
+  /// A white floor under a sky with a lamp; the camera looks along -z.
+  void SetUp() override {
+    Programs::SetUp();
+    write("scene.json", R"({"sky": [0.5, 0.5, 0.5], "camera": {"position_mm": [0, 50, 0], "look_at_mm": [0, 50, -1000]},
+      "objects": [{"quad": {"corner_mm": [-500, 0, 0], "edge_u_mm": [1000, 0, 0], "edge_v_mm": [0, 0, -1500]},
+                   "material": {"diffuse": [0.6, 0.5, 0.4]}},
+                  {"sphere": {"centre_mm": [40, 60, -1200], "radius_mm": 10}, "emission": [9, 6, 3]},
+                  {"sphere": {"centre_mm": [-60, 40, -900], "radius_mm": 40},
+                   "material": {"varnish": {"diffuse": [0.1, 0.3, 0.1], "roughness": 0.2}}}]})");
+  }
+  /// Later values take the place of earlier ones.
+  Arguments arguments(const std::string& out, const Arguments& more = {}) const {
+    Arguments all{"--scene",    path("scene.json"),
+                  "--lens",     lens("double_gauss_100mm_f2_28deg"),
+                  "--focus-mm", "1000",
+                  "--width",    "72",
+                  "--height",   "48",
+                  "--spp",      "20",
+                  "--out",      path(out)};
+    for (std::size_t i = 0; i < more.size(); ++i) {
+      const auto at = std::find(all.begin(), all.end(), more[i]);
+      const bool has_value = i + 1 < more.size() && more[i + 1].rfind("--", 0) != 0;
+      if (at != all.end()) {
+        *(at + 1) = more[i + 1];
+      } else {
+        all.push_back(more[i]);
+        if (has_value) all.push_back(more[i + 1]);
+      }
+      i += has_value;
+    }
+    return all;
+  }
+  json render(const std::string& out, const Arguments& more = {}) const {
+    const Outcome done = run("bokeh_scene", arguments(out, more));
+    EXPECT_EQ(done.status, 0) << done.err;
+    return read_json(path(out) + "/render.json");
+  }
+  static double mean(const json& report, int channel) { return report["mean_radiance"][channel]["mean"]; }
+  static double error(const json& report, int channel) { return report["mean_radiance"][channel]["standard_error"]; }
+};
+
+TEST_F(BokehScene, WritesAPictureAndWhatItIs) {
+  const json report = render("a", {"--format", "exr,png,pfm"});
+  const auto part = petzval::read_exr_parts(path("a/picture.exr")).front();
+  EXPECT_EQ(part.width, 72);
+  EXPECT_EQ(part.texts.at("model"), "exact_float");
+  EXPECT_NEAR(part.numbers.at("fNumber"), 2, 0.05);
+  EXPECT_EQ(part.numbers.at("focusMm"), 1000);
+  EXPECT_TRUE(std::filesystem::exists(path("a/picture.png")));
+  EXPECT_TRUE(std::filesystem::exists(path("a/picture.pfm")));
+  EXPECT_EQ(report["samples"], 20);
+  EXPECT_EQ(report["rejected"], 0);
+  EXPECT_EQ(report["tiles"]["rows"], 3);
+  EXPECT_EQ(report["tiles"]["mean"][0].size(), 5);
+  EXPECT_GT(report["lens_seconds_share"], 0);
+  EXPECT_GT(report["paths_per_second"], 0);
+  // Up in the sky of radiance 0.5, near the axis's column: the lens keeps most of it.
+  const petzval::RgbImage image = petzval::read_exr(path("a/picture.exr"));
+  EXPECT_NEAR(static_cast<double>(image.pixel(36, 6)[1]), 0.45, 0.06);
+}
+
+TEST_F(BokehScene, HasTheBitsOfOneRunHoweverItIsCutUp) {
+  render("whole", {"--threads", "1"});
+  const std::string whole = read(path("whole/picture.exr"));
+  render("threads", {"--threads", "3"});
+  EXPECT_EQ(read(path("threads/picture.exr")), whole);
+
+  const Outcome stopped = run("bokeh_scene", arguments("resumed", {"--time-s", "0.02"}));
+  EXPECT_EQ(stopped.status, 0);
+  EXPECT_NE(stopped.err.find("--resume goes on"), std::string::npos) << stopped.err;
+  EXPECT_FALSE(read_json(path("resumed/render.json"))["finished"]);
+  EXPECT_NE(read(path("resumed/picture.exr")), whole);
+  EXPECT_TRUE(render("resumed", {"--resume"})["finished"]);
+  EXPECT_EQ(read(path("resumed/picture.exr")), whole);
+
+  for (const char* tile : {"1/2", "2/2"}) {
+    EXPECT_EQ(run("bokeh_scene", arguments("tiles", {"--tile", tile})).status, 0);
+  }
+  EXPECT_EQ(run("bokeh_scene", {"merge", path("tiles"), "--out", path("merged")}).status, 0);
+  EXPECT_EQ(read(path("merged/picture.exr")), whole);
+  EXPECT_NE(read(path("whole/picture.exr")), [&] {
+    render("seed", {"--seed", "1"});
+    return read(path("seed/picture.exr"));
+  }());
+}
+
+TEST_F(BokehScene, SeesTheSameByEveryIntegratorAndModel) {
+  for (const char* colours : {"d", "rgb", "hero"}) {
+    const json reference = render("path", {"--integrator", "path", "--wavelengths", colours, "--spp", "256"});
+    for (const char* integrator : {"light", "bidirectional"}) {
+      const json report = render("other", {"--integrator", integrator, "--wavelengths", colours, "--spp", "128"});
+      for (int c = 0; c < 3; ++c) {
+        EXPECT_NEAR(mean(report, c), mean(reference, c),
+                    0.001 * mean(reference, c) + 4 * std::hypot(error(report, c), error(reference, c)))
+            << integrator << ' ' << colours << ' ' << c;
+      }
+    }
+  }
+  // The exposure of the middle is that of all models; corners of first-order ones are brighter. (A pinhole's picture
+  // has no blur of the lamp beside it.)
+  for (const char* model : {"thin", "thin_two_disc", "polynomial_5", "exact_double"}) {
+    const json report = render("model", {"--model", model, "--film-mm", "6x4", "--spp", "64"});
+    const json exact = render("exact", {"--film-mm", "6x4", "--spp", "64"});
+    EXPECT_NEAR(mean(report, 1) / mean(exact, 1), 1, 0.03) << model;
+  }
+}
+
+TEST_F(BokehScene, ChoosesAModelAndSaysWhy) {
+  const json rough = render("rough", {"--model", "auto", "--spp", "1"});
+  const json fine = render("fine", {"--model", "auto", "--budget-px", "0.01", "--spp", "1"});
+  EXPECT_GE(rough["why"].size(), 2);
+  EXPECT_NE(rough["model"], fine["model"]);
+  EXPECT_NE(fine["why"].dump().find("0.01"), std::string::npos);
+  // With more samples there is less noise, and less room for bias.
+  const json clean = render("clean", {"--model", "auto", "--spp", "16000000", "--time-s", "0.01"});
+  EXPECT_NE(clean["model"], "pinhole");
+  EXPECT_NE(clean["model"], "thin");
+}
+
+TEST_F(BokehScene, UnityAndIrradianceAreOnePictureToTheEye) {
+  const json unity = render("unity"), irradiance = render("irradiance", {"--normalisation", "irradiance"});
+  EXPECT_NEAR(mean(irradiance, 1) / mean(unity, 1), irradiance["job"]["white"].get<double>(), 1e-3);
+  const std::string a = read(path("unity/picture.png")), b = read(path("irradiance/picture.png"));
+  EXPECT_NEAR(static_cast<double>(a.size()), static_cast<double>(b.size()), 0.02 * static_cast<double>(a.size()));
+}
+
+TEST_F(BokehScene, RefusesWhatItCannotRender) {
+  const auto refused = [&](const Arguments& more, const std::string& reason) {
+    expect_failure("bokeh_scene", arguments("bad", more), reason);
+    EXPECT_FALSE(std::filesystem::exists(path("bad"))) << reason;
+  };
+  refused({"--scene", "town"}, "wanted one of balls, chess, street");
+  refused({"--scene", path("no.json")}, "no.json");
+  refused({"--lens", path("no.json")}, "no.json");
+  refused({"--width", "0"}, "--width");
+  refused({"--spp", "0"}, "--spp");
+  refused({"--time-s", "nan"}, "--time-s");
+  refused({"--tile", "3/2"}, "--tile");
+  refused({"--tile", "x"}, "--tile");
+  refused({"--focus-mm", "10"}, "focus");
+  refused({"--integrator", "metropolis"}, "--integrator");
+  refused({"--wavelengths", "all"}, "--wavelengths");
+  refused({"--model", "thinner"}, "--model");
+  refused({"--film-mm", "36"}, "--film-mm");
+  refused({"--weight-map", path("no.png")}, "no.png");
+  write("inside.json", R"({"camera": {"position_mm": [0, 0, 0]}, "objects": [
+    {"sphere": {"centre_mm": [0, 0, 0], "radius_mm": 500}, "emission": [1, 1, 1]}]})");
+  refused({"--scene", path("inside.json")}, "inside");
+}
+
+TEST_F(BokehScene, RefusesOtherAndDamagedCheckpoints) {
+  render("a");
+  expect_failure("bokeh_scene", arguments("a", {"--resume", "--seed", "4"}), "seed: found 0, wanted 4");
+  const std::string whole = read(path("a/sums.exr"));
+  write("a/sums.exr", whole.substr(0, whole.size() / 2));
+  expect_failure("bokeh_scene", arguments("a", {"--resume"}), "sums.exr");
+  EXPECT_EQ(read(path("a/sums.exr")).size(), whole.size() / 2);  // nothing is lost
+  EXPECT_EQ(run("bokeh_scene", arguments("b", {"--tile", "1/2"})).status, 0);
+  expect_failure("bokeh_scene", {"merge", path("b"), "--out", path("c")}, "2/2");
+}
+
+}  // namespace
