@@ -43,7 +43,7 @@ class Bytes {
   template <class... T>
   void add(const std::variant<T...>& one_of) {
     add(one_of.index());
-    std::visit([this](const auto& held) { add(held); }, one_of);
+    std::visit([this](const auto& held) { this->add(held); }, one_of);
   }
   void add(const Object& o) { add(o.shape), add(o.material), add(o.emission); }
 
