@@ -101,7 +101,7 @@ RayBundle ImageRays::Data::send(const Vec3<double>& point, std::size_t count) co
       u[i - begin] = around, v[i - begin] = outwards;
     }
     std::array<EntranceSample, rays_detail::block_rays> samples;
-    entrances.sample(point, end - begin, u.data(), v.data(), wavelength, samples.data());
+    entrances.spread(point, end - begin, u.data(), v.data(), wavelength, samples.data());
     std::size_t started = 0;
     for (std::size_t i = 0; i < end - begin; ++i) {
       const auto& [at, along, distance, pdf] = samples[i];

@@ -86,6 +86,45 @@ double density_in(const Sector<double>& sector) noexcept {
   return area > 0 ? 1 / (static_cast<double>(polygon_corners) * area) : 0;
 }
 
+/// Where a sample of a polygon lies along it, and the density of samples there, 1/mm^2.
+struct Drawn {
+  Sector<double> sector;
+  double along = 0, density = 0;
+};
+
+/// Sectors taken alike.
+struct SectorsAlike {
+  const BetweenNodes<double>& polygon;
+
+  explicit SectorsAlike(const BetweenNodes<double>& p) noexcept : polygon(p) {}
+  Drawn operator()(double u) const noexcept {
+    const double place = u * polygon_corners;
+    const std::size_t k = std::min(static_cast<std::size_t>(place), polygon_corners - 1);
+    const Sector<double> sector = sector_at(polygon, k);
+    return {sector, place - static_cast<double>(k), density_in(sector)};
+  }
+};
+
+/// Sectors by their area: samples are uniform over the whole.
+struct SectorsByArea {
+  std::array<Sector<double>, polygon_corners> sectors;
+  std::array<double, polygon_corners + 1> before{};
+
+  explicit SectorsByArea(const BetweenNodes<double>& polygon) noexcept {
+    for (std::size_t k = 0; k < polygon_corners; ++k) {
+      sectors[k] = sector_at(polygon, k);
+      before[k + 1] = before[k] + std::max(sectors[k].area(), 0.0);
+    }
+  }
+  Drawn operator()(double u) const noexcept {
+    const double whole = before[polygon_corners], area = u * whole;
+    if (!(whole > 0)) return {};
+    const std::size_t k = sector_of_area(area, [this](std::size_t i) { return before[i]; });
+    const double own = before[k + 1] - before[k];
+    return {sectors[k], own > 0 ? std::clamp((area - before[k]) / own, 0.0, 1.0) : 0, 1 / whole};
+  }
+};
+
 /// Instead of a polygon where nothing passes any more: between it and the last one, which has `before` others before
 /// it, the pupil ends and moves on as it did, and faster.
 PupilPolygon beyond(const PupilPolygon* polygon, std::size_t before) noexcept {
@@ -423,8 +462,9 @@ EntrancePupilTable::EntrancePupilTable(const Lens& lens, std::span<const std::ve
 
 bool EntrancePupilTable::in_front(const Vec3<double>& point) const noexcept { return data_->in_front(point); }
 
-void EntrancePupilTable::sample(const Vec3<double>& point, std::size_t count, const double* u, const double* v,
-                                Wavelength wavelength, EntranceSample* samples) const noexcept {
+template <class Pupil>
+void EntrancePupilTable::draw(const Vec3<double>& point, std::size_t count, const double* u, const double* v,
+                              Wavelength wavelength, EntranceSample* samples) const noexcept {
   std::fill_n(samples, count, EntranceSample{.place = data_->centre});
   const Data::Table* table = data_->table_for(point, wavelength);
   if (!table) return;
@@ -435,17 +475,15 @@ void EntrancePupilTable::sample(const Vec3<double>& point, std::size_t count, co
 
   if (data_->covers(*table, distance)) {
     std::optional<PupilPolygon> own;
-    const auto pupil = data_->pupil_at(*table, bearing, 1 / distance, wavelength, own);
-    const Point<double> middle = pupil.middle();
+    const auto polygon = data_->pupil_at(*table, bearing, 1 / distance, wavelength, own);
+    const Pupil pupil(polygon);
+    const Point<double> middle = polygon.middle();
     for (std::size_t i = 0; i < count; ++i) {
       if (!std::isfinite(u[i]) || !std::isfinite(v[i])) continue;
-      const double share = std::clamp(u[i], 0.0, 1.0) * polygon_corners;
-      const std::size_t k = std::min(static_cast<std::size_t>(share), polygon_corners - 1);
-      const Sector<double> sector = sector_at(pupil, k);
-      const double density = density_in(sector);
+      const auto [sector, along, density] = pupil(std::clamp(u[i], 0.0, 1.0));
       if (!(density > 0)) continue;
       const double way = std::sqrt(sector.squared_way(std::clamp(v[i], 0.0, 1.0)));
-      const Point<double> at = middle + sector.at(way, share - static_cast<double>(k));
+      const Point<double> at = middle + sector.at(way, along);
       const Vec2<double> place{at.x, at.y}, p = table->grid ? bearing.from_quadrant(place) : place;
       const Ray<double> ray = plane.ray(p.x, p.y);
       const double far = std::sqrt(squared(distance) + squared(p.x) + squared(p.y));
@@ -468,8 +506,13 @@ void EntrancePupilTable::sample(const Vec3<double>& point, std::size_t count, co
 EntranceSample EntrancePupilTable::sample(const Vec3<double>& point, double u, double v,
                                           Wavelength wavelength) const noexcept {
   EntranceSample result;
-  sample(point, 1, &u, &v, wavelength, &result);
+  draw<SectorsAlike>(point, 1, &u, &v, wavelength, &result);
   return result;
+}
+
+void EntrancePupilTable::spread(const Vec3<double>& point, std::size_t count, const double* u, const double* v,
+                                Wavelength wavelength, EntranceSample* samples) const noexcept {
+  draw<SectorsByArea>(point, count, u, v, wavelength, samples);
 }
 
 double EntrancePupilTable::pdf(const Vec3<double>& point, const Ray<double>& ray,

@@ -68,8 +68,9 @@ class PETZVAL_API EntrancePupilTable {
   /// A ray from a point (lens frame, mm) for u and v in [0, 1]. pdf 0 for a point that is not in front of the lens or
   /// beyond all fields, numbers that are not finite, and wavelengths that are not in the table.
   EntranceSample sample(const Vec3<double>& point, double u, double v, Wavelength wavelength = {}) const noexcept;
-  /// The same for many rays of one point, faster than one by one. u, v, samples: N each.
-  void sample(const Vec3<double>& point, std::size_t count, const double* u, const double* v, Wavelength wavelength,
+  /// Many rays of one point, uniform over its pupil in the plane that faces the point; their pdf is that of this.
+  /// u, v, samples: N each.
+  void spread(const Vec3<double>& point, std::size_t count, const double* u, const double* v, Wavelength wavelength,
               EntranceSample* samples) const noexcept;
 
   /// The density with which `sample` gives the direction of a ray at a point, 1/sr. The ray is given anywhere on its
@@ -78,6 +79,11 @@ class PETZVAL_API EntrancePupilTable {
 
  private:
   struct Data;
+
+  template <class Pupil>
+  void draw(const Vec3<double>& point, std::size_t count, const double* u, const double* v, Wavelength wavelength,
+            EntranceSample* samples) const noexcept;
+
   std::shared_ptr<const Data> data_;
 };
 

@@ -206,22 +206,39 @@ TEST(EntrancePupilTable, EstimatesTheSolidAngleOfThePupil) {
   }
 }
 
-TEST(EntrancePupilTable, SamplesManyAsOneByOne) {
+TEST(EntrancePupilTable, SpreadsRaysEvenly) {
+  const Seen s = seen("double_gauss_100mm_f2_28deg");
+  const Vec3<double> point{30, 250, -1500};
+  std::vector<double> u, v;
+  Vec3<double> mean{0, 0, 0};
+  double all = 0;
+  constexpr int side = 256;
+  for (int i = 0; i < side * side; ++i) {
+    u.push_back((i % side + 0.5) / side), v.push_back((i / side + 0.5) / side);
+    // Samples weighed by the area that they stand for, nearly: the pupil is small.
+    const EntranceSample one = s.table.sample(point, u.back(), v.back());
+    mean += one.place / one.pdf, all += 1 / one.pdf;
+  }
+  mean /= all;
+  std::vector<EntranceSample> samples(u.size());
+  s.table.spread(point, u.size(), u.data(), v.data(), 0, samples.data());
+  Vec3<double> even{0, 0, 0};
+  for (const EntranceSample& sample : samples) {
+    EXPECT_NEAR(sample.pdf * all / side / side, 1, 0.05);
+    even += sample.place / static_cast<double>(u.size());
+  }
+  EXPECT_NEAR(glm::length(even - mean), 0, 0.02);
+}
+
+TEST(EntrancePupilTable, SpreadsNothingForBadNumbersAndPlaces) {
   const Seen s = seen("double_gauss_100mm_f2_28deg");
   const std::vector<double> u{0, 0.3, 0.99, std::numeric_limits<double>::quiet_NaN(), 1}, v{0.5, 0, 1, 0.5, 0.7};
   // By the table, by the cone of a point that is too near for it, beyond all fields.
   for (const Vec3<double> point : {Vec3<double>{30, 50, -800}, Vec3<double>{0, 1, -3}, Vec3<double>{0, 9000, -1000}}) {
     std::vector<EntranceSample> samples(u.size(), EntranceSample{.distance = 7, .pdf = 7});
-    s.table.sample(point, u.size(), u.data(), v.data(), 0, samples.data());
-    for (std::size_t i = 0; i < u.size(); ++i) {
-      const EntranceSample one = s.table.sample(point, u[i], v[i]);
-      EXPECT_EQ(samples[i].place, one.place);
-      EXPECT_EQ(samples[i].direction, one.direction);
-      EXPECT_EQ(samples[i].distance, one.distance);
-      EXPECT_EQ(samples[i].pdf, one.pdf);
-    }
+    s.table.spread(point, u.size(), u.data(), v.data(), 0, samples.data());
     EXPECT_EQ(samples[3].pdf, 0);
-    EXPECT_EQ(samples[1].pdf > 0, point.y < 9000);
+    for (const std::size_t i : {0, 1, 2, 4}) EXPECT_EQ(samples[i].pdf > 0, point.y < 9000);
   }
 }
 
