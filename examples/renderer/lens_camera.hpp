@@ -29,6 +29,8 @@ class LensCamera {
   const petzval::Camera& camera() const noexcept { return camera_; }
   bool pinhole() const noexcept { return camera_.model() == petzval::ModelKind::pinhole; }
   const petzval::Film& film() const noexcept { return camera_.film(); }
+  /// Where the lens sees a point sharp.
+  petzval::Projection project(const glm::vec3& point) const noexcept { return camera_.project(to_lens(point)); }
   /// How far a point lies in front of the film, along the axis, mm.
   double depth(const glm::vec3& point) const noexcept;
   /// The first vertex of the lens.
