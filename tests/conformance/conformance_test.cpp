@@ -258,6 +258,21 @@ TEST_P(Conformance, ATinyLightIsWhereItsChiefRayMeetsTheFilm) {
   }
 }
 
+/// Differences of two estimates in standard errors, over many settings: a bias that one setting does not show adds up.
+class Differences {
+ public:
+  void add(const Estimate& a, const Estimate& b) {
+    const double error = std::hypot(a.standard_error, b.standard_error);
+    if (error > 0) sum_ += (a.mean - b.mean) / error, ++count_;
+  }
+  /// About 1 without a bias.
+  double together() const { return std::abs(sum_) / std::sqrt(static_cast<double>(count_)); }
+
+ private:
+  double sum_ = 0;
+  int count_ = 0;
+};
+
 /// Tiles whose means differ by more than 3 standard errors. Scatter of 16 rounds gives Student's t with about 25
 /// degrees of freedom for a difference: .6 % of tiles are beyond.
 int tiles_beyond(const PictureSums& a, const PictureSums& b) {
@@ -272,23 +287,28 @@ int tiles_beyond(const PictureSums& a, const PictureSums& b) {
 TEST_P(Conformance, ThreeIntegratorsSeeTheSameRoom) {
   const SceneDescription room = read_scene(kit / "scenes/room.json");
   const Scene scene(room);
+  Differences by_light, by_both;
   for (const ModelKind model : petzval::models()) {
     const bool main = model == ModelKind::exact_float;
     const auto lens = camera(lens_, model, film(main ? 96 : 48), room.pose);
     if (!lens) continue;
     const std::uint32_t samples = main ? 128 : 64;
-    const PictureSums path = picture(scene, *lens, Integrator::path, samples, 1);
-    const PictureSums light = picture(scene, *lens, Integrator::light, samples, 2);
-    const PictureSums both = picture(scene, *lens, Integrator::bidirectional, samples / 2, 3);
+    const std::uint64_t seed = 10 * static_cast<std::uint64_t>(model);
+    const PictureSums path = picture(scene, *lens, Integrator::path, samples, seed);
+    const PictureSums light = picture(scene, *lens, Integrator::light, samples, seed + 1);
+    const PictureSums both = picture(scene, *lens, Integrator::bidirectional, samples / 2, seed + 2);
     const Estimate a = path.mean()[1], b = light.mean()[1], c = both.mean()[1];
     EXPECT_NEAR(a.mean, b.mean, 0.001 * a.mean + 3.5 * std::hypot(a.standard_error, b.standard_error))
         << petzval::name(model);
     EXPECT_NEAR(b.mean, c.mean, 0.001 * a.mean + 3.5 * std::hypot(b.standard_error, c.standard_error))
         << petzval::name(model);
+    by_light.add(a, b), by_both.add(a, c);
     const auto allowed = static_cast<int>(2 + 0.02 * static_cast<double>(path.tiles()));
     EXPECT_LE(tiles_beyond(path, light), allowed) << petzval::name(model);
     EXPECT_LE(tiles_beyond(light, both), allowed) << petzval::name(model);
   }
+  EXPECT_LT(by_light.together(), 4) << by_light.together();
+  EXPECT_LT(by_both.together(), 4);
 }
 
 TEST_P(Conformance, ExposureFollowsTheStop) {
@@ -399,6 +419,7 @@ INSTANTIATE_TEST_SUITE_P(Lenses, Conformance, testing::ValuesIn(settings), [](co
 /// A matt floor under a lamp, lit once, through every lens of data/.
 TEST(OneBounce, IsTheSameByThreeIntegratorsForEveryLens) {
   int compared = 0;
+  Differences by_light, by_both;
   for (const petzval::Prescription& prescription : petzval::testing::data_prescriptions()) {
     const Lens lens = petzval::compile(prescription);
     const double length = std::abs(petzval::first_order(lens).effective_focal_length);
@@ -414,22 +435,26 @@ TEST(OneBounce, IsTheSameByThreeIntegratorsForEveryLens) {
     SceneDescription d;
     d.pose.look_at = {0, 0, -distance};
     d.objects.push_back({"wall", Quad{{-size, -size, -1.1f * size}, {2 * size, 0, 0}, {0, 2 * size, 0}}, Diffuse{}});
-    d.objects.push_back(
-        {"lamp", Sphere{{0.3f * size, 0.6f * size, -0.5f * size}, 0.1f * size}, Diffuse{{.colour = Rgb(0)}}, Rgb(30)});
+    d.objects.push_back({"lamp", Sphere{{0.1f * size, 0.25f * size, -0.85f * size}, 0.05f * size},
+                         Diffuse{{.colour = Rgb(0)}}, Rgb(30)});
     const Scene scene(d);
     const petzval::Film film{.width_mm = side, .height_mm = side / 1.5, .columns = 24, .rows = 16};
     const LensCamera camera(
         Camera(*focused, film, {.model = ModelKind::exact_float, .normalisation = Normalisation::unity_on_axis}),
         d.pose);
-    const Estimate a = picture(scene, camera, Integrator::path, 64).mean()[1];
-    const Estimate b = picture(scene, camera, Integrator::light, 128).mean()[1];
-    const Estimate c = picture(scene, camera, Integrator::bidirectional, 32).mean()[1];
+    const std::uint64_t seed = 10 * static_cast<std::uint64_t>(compared);
+    const Estimate a = picture(scene, camera, Integrator::path, 64, seed).mean()[1];
+    const Estimate b = picture(scene, camera, Integrator::light, 128, seed + 1).mean()[1];
+    const Estimate c = picture(scene, camera, Integrator::bidirectional, 64, seed + 2).mean()[1];
     EXPECT_GT(a.mean, 0) << lens.name();
     EXPECT_NEAR(a.mean, b.mean, 0.002 * a.mean + 4 * std::hypot(a.standard_error, b.standard_error)) << lens.name();
     EXPECT_NEAR(a.mean, c.mean, 0.002 * a.mean + 4 * std::hypot(a.standard_error, c.standard_error)) << lens.name();
+    by_light.add(a, b), by_both.add(a, c);
     ++compared;
   }
   EXPECT_GT(compared, 65);
+  EXPECT_LT(by_light.together(), 4) << by_light.together();
+  EXPECT_LT(by_both.together(), 4);
 }
 
 }  // namespace
