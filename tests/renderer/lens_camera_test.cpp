@@ -54,6 +54,48 @@ TEST(LensCamera, DensitiesOfLightFromAfarIntegrateToOne) {
   }
 }
 
+TEST(LensCamera, BlursOfAThinLensHaveTheirClosedForm) {
+  // c = |U - Uf| f D / (U (Uf - f)), distances from the lens. Film samples tell where the lens is, its diameter and
+  // what is sharp; connections have to land accordingly.
+  const petzval::Lens real = double_gauss();
+  const LensCamera lens = camera(real, ModelKind::thin);
+  constexpr std::uint32_t count = 4096;
+  LensCamera::Batch batch;
+  batch.resize(count + 1, false);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const auto s = petzval::owen_sobol(i, 11);
+    batch.raster_x[i] = 18, batch.raster_y[i] = 12;
+    batch.u[i] = static_cast<float>(s.x), batch.v[i] = static_cast<float>(s.y);
+  }
+  batch.raster_x[count] = 28, batch.raster_y[count] = 12;
+  batch.u[count] = 0.25f, batch.v[count] = 0;  // the middle of the pupil
+  lens.sample(batch);
+  const auto slope = [](const WorldRay& ray) { return static_cast<double>(ray.direction.x / ray.direction.z); };
+  const auto axis_z = [&](const WorldRay& ray) {
+    return static_cast<double>(ray.origin.z) - ray.origin.x / slope(ray);
+  };
+  const double lens_z = axis_z(batch.rays[count]);
+  double radius = 0, focus_z = 0;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const WorldRay& ray = batch.rays[i];
+    const double x = ray.origin.x + slope(ray) * (lens_z - ray.origin.z);
+    if (x > radius) radius = x, focus_z = axis_z(ray);
+  }
+  EXPECT_NEAR(focus_z, static_cast<double>(lens.front().z) - 1000, 10);
+  const double f = petzval::first_order(real).effective_focal_length, Uf = lens_z - focus_z;
+  for (const double mm : {500.0, 700.0, 900.0, 1100.0, 2000.0, 10000.0}) {
+    const glm::vec3 light = lens.front() - glm::vec3{0, 0, mm};
+    double least = 1e9, most = -1e9;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const auto seen = lens.connect(light, batch.u[i], batch.v[i], {});
+      if (!seen) continue;
+      least = std::min(least, seen.importance.film.x), most = std::max(most, seen.importance.film.x);
+    }
+    const double U = lens_z - light.z, wanted = std::abs(U - Uf) * f * 2 * radius / (U * (Uf - f));
+    EXPECT_NEAR((most - least) / wanted, 1, 0.01) << mm;
+  }
+}
+
 TEST(LensCamera, ExposureFollowsTheStop) {
   const petzval::Lens open = petzval::testing::data_lens("double_gauss_100mm_f2_28deg");
   for (const double f_number : {petzval::real_f_number(open), 2.8, 4.0, 8.0}) {
