@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <span>
+#include <variant>
 
 #include <glm/glm.hpp>
 
@@ -21,14 +21,49 @@ namespace {
 
 using examples::number;
 
-ModelForScene exact_lens(const std::string& why) { return {petzval::ModelKind::exact_float, {why}}; }
+/// The nearest and the farthest surface in the picture, along the axis from the film, mm; infinity for the sky.
+std::array<double, 2> depths(const Scene& scene, const LensCamera& exact) {
+  constexpr std::size_t count = 4096;
+  LensCamera::Batch batch;
+  batch.resize(count, false);
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto place = petzval::owen_sobol(static_cast<std::uint32_t>(i), 1);
+    const auto pupil = petzval::owen_sobol(static_cast<std::uint32_t>(i), 2);
+    batch.raster_x[i] = static_cast<float>(place.x * exact.film().columns);
+    batch.raster_y[i] = static_cast<float>(place.y * exact.film().rows);
+    batch.u[i] = static_cast<float>(pupil.x), batch.v[i] = static_cast<float>(pupil.y);
+  }
+  exact.sample(batch);
+  double near = std::numeric_limits<double>::infinity(), far = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!(batch.weights[i] > 0)) continue;
+    const auto met = scene.meet(batch.rays[i].origin, batch.rays[i].direction);
+    const double depth = met ? exact.depth(met->position) : std::numeric_limits<double>::infinity();
+    // What lies beside the lens or behind it has no plane in front of it.
+    if (depth > 0) near = std::min(near, depth);
+    far = std::max(far, depth);
+  }
+  return {near, far};
+}
 
-std::vector<petzval::ModelCandidate> candidates(const LensCamera& exact, const std::array<double, 2>& depths,
-                                                const petzval::ErrorBudget& budget, petzval::ModelChoice& choice) {
-  choice =
-      petzval::choose_model(exact.camera().lens(), {.near_mm = depths[0], .far_mm = depths[1], .film = exact.film()},
-                            budget, petzval::processor_threads());
-  return choice.table;
+/// The depths at which models can be measured, or why the exact lens is taken without.
+std::variant<std::array<double, 2>, ModelForScene> measurable(const Scene& scene, const LensCamera& exact) {
+  const petzval::Film& film = exact.film();
+  const auto exact_lens = [](const char* why) { return ModelForScene{petzval::ModelKind::exact_float, {why}}; };
+  if (film.tilted() || film.travel_mm != 0) {
+    return exact_lens("the film is tilted: the exact lens, as models are measured on upright films");
+  }
+  const auto range = depths(scene, exact);
+  if (std::isinf(range[0])) {
+    return exact_lens("the picture shows the sky alone: the exact lens, as there is no depth to measure at");
+  }
+  return range;
+}
+
+petzval::ModelChoice choice(const LensCamera& exact, const std::array<double, 2>& depths,
+                            const petzval::ErrorBudget& budget) {
+  return petzval::choose_model(exact.camera().lens(), {.near_mm = depths[0], .far_mm = depths[1], .film = exact.film()},
+                               budget, petzval::processor_threads());
 }
 
 std::string in_words(const std::array<double, 2>& depths) {
@@ -93,60 +128,28 @@ Pilot pilot_of(const Scene& scene, const LensCamera& exact, const PathColourSour
 
 }  // namespace
 
-std::array<double, 2> depths(const Scene& scene, const LensCamera& exact) {
-  constexpr std::size_t count = 4096;
-  LensCamera::Batch batch;
-  batch.resize(count, false);
-  for (std::size_t i = 0; i < count; ++i) {
-    const auto place = petzval::owen_sobol(static_cast<std::uint32_t>(i), 1);
-    const auto pupil = petzval::owen_sobol(static_cast<std::uint32_t>(i), 2);
-    batch.raster_x[i] = static_cast<float>(place.x * exact.film().columns);
-    batch.raster_y[i] = static_cast<float>(place.y * exact.film().rows);
-    batch.u[i] = static_cast<float>(pupil.x), batch.v[i] = static_cast<float>(pupil.y);
-  }
-  exact.sample(batch);
-  double near = std::numeric_limits<double>::infinity(), far = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    if (!(batch.weights[i] > 0)) continue;
-    const auto met = scene.meet(batch.rays[i].origin, batch.rays[i].direction);
-    const double depth = met ? exact.depth(met->position) : std::numeric_limits<double>::infinity();
-    // What lies beside the lens or behind it has no plane in front of it.
-    if (depth > 0) near = std::min(near, depth);
-    far = std::max(far, depth);
-  }
-  return {near, far};
-}
-
 ModelForScene model_within(const Scene& scene, const LensCamera& exact, double budget_px) {
-  const petzval::Film& film = exact.film();
-  if (film.tilted() || film.travel_mm != 0)
-    return exact_lens("the film is tilted: the exact lens, as models are measured on upright films");
-  const auto range = depths(scene, exact);
-  if (std::isinf(range[0]))
-    return exact_lens("the picture shows the sky alone: the exact lens, as there is no depth to measure at");
-  petzval::ModelChoice choice;
-  candidates(exact, range, {.max_px = budget_px, .exposure = 0.01, .pupil_shape = 0.02}, choice);
-  ModelForScene result{choice.model, {"rays within " + number(budget_px) + " px at " + in_words(range)}};
-  result.why.insert(result.why.end(), choice.reasons.begin(), choice.reasons.end());
+  const auto measured_at = measurable(scene, exact);
+  if (const auto* const exact_lens = std::get_if<ModelForScene>(&measured_at)) return *exact_lens;
+  const auto& range = std::get<0>(measured_at);
+  const petzval::ModelChoice made = choice(exact, range, {.max_px = budget_px, .exposure = 0.01, .pupil_shape = 0.02});
+  ModelForScene result{made.model, {"rays within " + number(budget_px) + " px at " + in_words(range)}};
+  result.why.insert(result.why.end(), made.reasons.begin(), made.reasons.end());
   return result;
 }
 
 ModelForScene model_below_noise(const Scene& scene, const LensCamera& exact, const PathColourSource& colours,
                                 Integrator integrator, std::uint32_t samples) {
-  const petzval::Film& film = exact.film();
-  if (film.tilted() || film.travel_mm != 0)
-    return exact_lens("the film is tilted: the exact lens, as models are measured on upright films");
-  const auto range = depths(scene, exact);
-  if (std::isinf(range[0]))
-    return exact_lens("the picture shows the sky alone: the exact lens, as there is no depth to measure at");
+  const auto measured_at = measurable(scene, exact);
+  if (const auto* const exact_lens = std::get_if<ModelForScene>(&measured_at)) return *exact_lens;
+  const auto& range = std::get<0>(measured_at);
   const Pilot pilot = pilot_of(scene, exact, colours, integrator);
   const double noise = pilot.noise / std::sqrt(static_cast<double>(samples));
-  petzval::ModelChoice choice;
-  const auto table = candidates(exact, range, {.max_px = 0, .pupil_shape = 0}, choice);
+  const petzval::ModelChoice measured = choice(exact, range, {.max_px = 0, .pupil_shape = 0});
   const petzval::ModelCandidate* best = nullptr;
   double best_bias = 0;
   std::vector<std::string> refused;
-  for (const petzval::ModelCandidate& c : table) {
+  for (const petzval::ModelCandidate& c : measured.table) {
     if (!c.available) continue;
     const double moved = c.error.all.rms_px * pilot.slope / std::sqrt(2.0);
     const double bias =

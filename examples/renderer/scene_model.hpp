@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,9 +17,6 @@ struct ModelForScene {
   petzval::ModelKind model = petzval::ModelKind::exact_float;
   std::vector<std::string> why;
 };
-
-/// The nearest and the farthest surface that a lens sees on the axis's way, from the film, mm; infinity for the sky.
-std::array<double, 2> depths(const Scene& scene, const LensCamera& exact);
 
 /// The fastest model whose rays are nowhere more than so many pixels off, at the depths of a scene, with 1 % of the
 /// exposure and 2 % of the pupil's shape: petzval::choose_model(). Tilted films take the exact lens.
