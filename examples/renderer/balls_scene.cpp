@@ -20,7 +20,7 @@ SceneDescription balls_scene() {
   for (int i = -6; i <= 6; ++i) {
     const glm::vec3 centre{spacing * static_cast<float>(i), 0, highlights_z - radius / 2};
     const Rgb metal = metals[static_cast<std::size_t>(std::abs(i)) % metals.size()];
-    scene.objects.push_back({"ball " + std::to_string(i), Sphere{centre, radius}, Rough{metal, 0.03f}});
+    scene.objects.push_back({"ball " + std::to_string(i), Sphere{centre, radius}, Rough{metal, 0.02f}});
   }
 
   // The table ends before the balls, or it would hide the lower part of the lens from them.
@@ -30,7 +30,7 @@ SceneDescription balls_scene() {
 
   // Behind the camera and above it, so that each ball shows it near its middle. Out of focus the highlights are 0.5 to
   // 3 bright.
-  scene.objects.push_back({"lamp", Sphere{{0, 700, 500}, 100}, Diffuse{{.colour = {0, 0, 0}}}, {760, 760, 760}});
+  scene.objects.push_back({"lamp", Sphere{{0, 700, 500}, 240}, Diffuse{{.colour = {0, 0, 0}}}, {132, 132, 132}});
   return scene;
 }
 
