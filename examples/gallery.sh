@@ -1,45 +1,49 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
 # Renders the gallery with the example programs: bokeh after figure 7 of Wu et al. 2010, its colours, irises with blades,
-# PSFs, spot diagrams, reports of twelve lenses, camera rays, tilted films, a focus pull, and index.html.
+# PSFs, spot diagrams, reports of twelve lenses, camera rays, tilted films, a focus pull, scenes through lenses, and
+# index.html.
 #
-#   sh examples/gallery.sh PROGRAMS OUT        (examples/run.sh calls it with build/examples and out)
+#   sh examples/gallery.sh PROGRAMS OUT [--full]    (examples/run.sh calls it with build/examples and out)
+#
+# --full: large pictures of the scenes with little noise, an hour of two cores.
 set -eu
-if [ $# -ne 2 ]; then
-  echo "usage: sh examples/gallery.sh PROGRAMS OUT" >&2
+if [ $# -lt 2 ] || [ $# -gt 3 ] || { [ $# -eq 3 ] && [ "$3" != --full ]; }; then
+  echo "usage: sh examples/gallery.sh PROGRAMS OUT [--full]" >&2
   exit 2
 fi
 programs=$1
 out=$2
+full=${3-}
 here=$(CDPATH= cd -- "$(dirname -- "$0")" && pwd)
 lenses=$here/../data/lenses
 mkdir -p "$out"
 
-echo "== Figure 7 of Wu et al. 2010 (1/10)"
+echo "== Figure 7 of Wu et al. 2010 (1/11)"
 "$programs/wu_figure7" --criterion min_rms --out "$out/wu_figure7.png"
 "$programs/wu_figure7" --criterion paraxial --out "$out/wu_figure7_paraxial.png"
 
-echo "== The statements of the paper, by number (2/10)"
+echo "== The statements of the paper, by number (2/11)"
 "$programs/wu_statements" --html "$out/wu_statements.html" > "$out/wu_statements.txt"
 echo "$out/wu_statements.txt"
 
-echo "== Bokeh off axis, in colour (3/10)"
+echo "== Bokeh off axis, in colour (3/11)"
 "$programs/bokeh_psf" "$lenses/double_gauss_100mm_f1.35.json" --subject-distance-mm 1000 \
   --focus-mm 800,900,1000,1100,1200 --criterion paraxial --field-deg 8 --wavelengths-nm "$(seq -s , 430 10 670)" --samples 262144 \
   --out "$out/bokeh"
 
-echo "== The colours of bokeh (4/10)"
+echo "== The colours of bokeh (4/11)"
 mkdir -p "$out/chromatic"
 "$programs/chromatic_bokeh" "$lenses/double_gauss_100mm_f1.35.json" --samples 131072 --out "$out/chromatic" \
   > "$out/chromatic/chromatic_bokeh.txt"
 echo "$out/chromatic"
 
-echo "== Irises, cat's eyes, weights, and a set of PSFs (5/10)"
+echo "== Irises, cat's eyes, weights, and a set of PSFs (5/11)"
 "$programs/bokeh_shapes" --out "$out/bokeh"
 "$programs/psf_set" "$lenses/double_gauss_100mm_f2_28deg.json" --fields 0,5,10,14 --distances-mm 1000,1400,2000,4000,inf \
   --focus-mm 2000 --out "$out/psf_set"
 
-echo "== Spot diagrams of five lenses (6/10)"
+echo "== Spot diagrams of five lenses (6/11)"
 # spots LENS FIELDS WAVELENGTHS
 spots() {
   "$programs/spot_diagram" "$lenses/$1.json" --field-deg "$2" --wavelengths-nm "$3" --out "$out/spots"
@@ -51,14 +55,14 @@ spots cooke_triplet_50mm_f5 0,14,20 $f_d_c
 spots petzval_portrait_100mm_f3.4 0,7,12 $f_d_c
 spots fisheye_10mm_f4 0,40,70 587.5618
 
-echo "== Reports of twelve lenses (7/10)"
+echo "== Reports of twelve lenses (7/11)"
 for lens in petzval_portrait_100mm_f3.4 cooke_triplet_50mm_f5 planar_1896_f4.5 tessar_100mm_f5.5_1902 \
   sonnar_180mm_f2.8 biogon_35mm_f2.8 telephoto_250mm_f5.6 retrofocus_100mm_f2 \
   catadioptric_mangin_1000mm_f7.5 anamorphic_60mm_2x modern_58mm_f0.95 fisheye_6.3mm_f2.8; do
   "$programs/lens_report" "$lenses/$lens.json" --out "$out/lenses"
 done
 
-echo "== Rays of a camera, by every model of its lens (8/10)"
+echo "== Rays of a camera, by every model of its lens (8/11)"
 mkdir -p "$out/camera_rays"
 awk 'BEGIN {
   print "film_x_mm,film_y_mm,pupil_u,pupil_v,wavelength_nm"
@@ -71,7 +75,7 @@ for model in pinhole thin thin_two_disc thick polynomial_3 polynomial_5 polynomi
 done
 echo "$out/camera_rays"
 
-echo "== Accuracy and speed of the models, and the model for a scene (9/10)"
+echo "== Accuracy and speed of the models, and the model for a scene (9/11)"
 "$programs/accuracy_speed" "$lenses/double_gauss_100mm_f2_28deg.json" --f-number 2 --out "$out/models" \
   > "$out/accuracy_speed.txt"
 "$programs/choose_camera" "$lenses/double_gauss_100mm_f2_28deg.json" --f-number 2 --near-mm 2000 --far-mm inf \
@@ -79,7 +83,7 @@ echo "== Accuracy and speed of the models, and the model for a scene (9/10)"
 echo "$out/accuracy_speed.txt"
 echo "$out/choose_camera.txt"
 
-echo "== Films tilted to points, and a focus pull (10/10)"
+echo "== Films tilted to points, and a focus pull (10/11)"
 # tilted FOLDER SCENE OPTION...
 tilted() {
   folder=$out/tilt/$1
@@ -99,5 +103,45 @@ mkdir -p "$out/focus_pull"
   --out "$out/focus_pull" > "$out/focus_pull/focus_pull.txt"
 echo "$out/focus_pull"
 
-sed -e "/@statements@/r $out/wu_statements.html" -e "/@statements@/d" "$here/gallery.html" > "$out/index.html"
+echo "== Scenes through lenses (11/11)"
+mkdir -p "$out/scenes"
+scenes_file=$out/scenes/scenes.html
+if [ -x "$programs/bokeh_scene" ]; then
+  # scene FOLDER SCENE LENS SPP WIDTH HEIGHT OPTION...: twice as large with --full, and sixteen times the samples.
+  scene() {
+    folder=$out/scenes/$1 name=$2 lens=$3 spp=$4 width=$5 height=$6
+    shift 6
+    resume=
+    if [ -n "$full" ]; then
+      folder=${folder}_large resume=--resume
+      spp=$((16 * spp)) width=$((2 * width)) height=$((2 * height))
+    fi
+    "$programs/bokeh_scene" --scene "$name" --lens "$lenses/$lens.json" --spp "$spp" --width "$width" --height "$height" \
+      --distance-from front_vertex $resume --out "$folder" "$@" > "$out/scenes/log.txt"
+    scenes="$scenes $folder"
+  }
+  wu="double_gauss_100mm_f1.35 double_gauss_100mm_f1.7_substitute double_gauss_100mm_f2_28deg"
+  scenes=
+  for lens in $wu; do
+    for focus in 800 900 1000 1100 1200; do
+      scene "balls_${lens}_$focus" balls "$lens" 128 600 80 --focus-mm $focus --integrator path --film-mm 36x4.8
+    done
+  done
+  "$programs/bokeh_sheet" --columns 5 --title "A row of balls, after figure 8 of Wu et al. 2010" --out "$out/scenes/balls.png" \
+    --balls "$out/scenes/balls.csv" $scenes
+  scenes=
+  scene chess_pinhole chess double_gauss_100mm_f2_28deg 32 480 320 --focus-mm 880 --model pinhole
+  for lens in $wu; do scene "chess_$lens" chess "$lens" 32 480 320 --focus-mm 880; done
+  "$programs/bokeh_sheet" --columns 2 --title "Chess, after figure 9 of Wu et al. 2010" --out "$out/scenes/chess.png" $scenes
+  scenes=
+  scene street street double_gauss_100mm_f2_28deg 48 480 320 --focus-mm 2960
+  "$programs/bokeh_sheet" --title "A street at night" --out "$out/scenes/street.png" $scenes
+  cp "$here/scenes.html" "$scenes_file"
+else
+  echo "bokeh_scene was not built: no Embree (libembree-dev, libtinyobjloader-dev)"
+  echo "<p>bokeh_scene was not built: it needs Embree and tinyobjloader.</p>" > "$scenes_file"
+fi
+
+sed -e "/@statements@/r $out/wu_statements.html" -e "/@statements@/d" -e "/@scenes@/r $scenes_file" -e "/@scenes@/d" \
+  "$here/gallery.html" > "$out/index.html"
 echo "== Done: open $out/index.html"

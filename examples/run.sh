@@ -2,8 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 # Builds the example programs and renders the gallery; installs what a bare Debian 12 lacks.
 #
-#   sh examples/run.sh [--build-only]
+#   sh examples/run.sh [--build-only | --full]
 #
+# --full renders the scenes large and with little noise, which takes an hour of two cores; what is there already stays.
 # The programs land in build/examples/, the pictures in out/ (start with out/index.html).
 # BUILD_DIR=... builds elsewhere, OUT_DIR=... renders elsewhere.
 set -eu
@@ -11,13 +12,15 @@ root=$(CDPATH= cd -- "$(dirname -- "$0")/.." && pwd)
 . "$root/cmake/build.sh"
 
 render=yes
+full=
 case ${1-} in
   '') ;;
   --build-only) render=no ;;
-  *) echo "usage: sh examples/run.sh [--build-only]" >&2; exit 2 ;;
+  --full) full=--full ;;
+  *) echo "usage: sh examples/run.sh [--build-only | --full]" >&2; exit 2 ;;
 esac
 
 need $library_packages $example_packages
 build -DPETZVAL_BUILD_TESTS=OFF -DPETZVAL_BUILD_EXAMPLES=ON
 [ "$render" = yes ] || exit 0
-exec sh "$root/examples/gallery.sh" "$BUILD_DIR/examples" "${OUT_DIR:-$root/out}"
+exec sh "$root/examples/gallery.sh" "$BUILD_DIR/examples" "${OUT_DIR:-$root/out}" $full

@@ -40,11 +40,11 @@ petzval::Rgb8Image draw_sheet(const Sheet& sheet) {
   width += font.width(sheet.title, title_size);
   for (const std::string& note : sheet.notes) width = std::max(width, 2 * margin + font.width(note, caption_size));
   for (const SheetRow& row : sheet.rows) {
-    const int tile = row.tiles.front().picture.width;
+    const int tile = row.tiles.front().picture.width, tile_height = row.tiles.front().picture.height;
     const int lines = static_cast<int>(row.tiles.front().captions.size());
     width = std::max(width, 2 * margin + static_cast<int>(row.tiles.size()) * (tile + gap) - gap);
     width = std::max(width, 2 * margin + font.width(row.subtitle, caption_size));
-    height += row_title_height + tile + lines * line + 2 * gap;
+    height += row_title_height + tile_height + lines * line + 2 * gap;
   }
   height += static_cast<int>(sheet.notes.size()) * line;
 
@@ -56,19 +56,19 @@ petzval::Rgb8Image draw_sheet(const Sheet& sheet) {
     font.draw(picture, margin, y + 28, row_title_size, row.title, ink);
     font.draw(picture, margin, y + 50, caption_size, row.subtitle, faint);
     y += row_title_height;
-    const int tile_size = row.tiles.front().picture.width;
+    const int tile_width = row.tiles.front().picture.width, tile_height = row.tiles.front().picture.height;
     int x = margin;
     for (const Tile& tile : row.tiles) {
       place(picture, x, y, tile.picture);
-      int baseline = y + tile_size + line;
+      int baseline = y + tile_height + line;
       for (const std::string& caption : tile.captions) {
         font.draw(picture, x + 2, baseline, caption_size, caption, &caption == &tile.captions.front() ? ink : faint);
         baseline += line;
       }
-      x += tile_size + gap;
+      x += tile_width + gap;
     }
-    draw_scale_bar(picture, font, margin, y + tile_size, tile_size, row.pixel_mm);
-    y += tile_size + static_cast<int>(row.tiles.front().captions.size()) * line + 2 * gap;
+    draw_scale_bar(picture, font, margin, y + tile_height, tile_width, row.pixel_mm);
+    y += tile_height + static_cast<int>(row.tiles.front().captions.size()) * line + 2 * gap;
   }
   y += line;
   for (const std::string& note : sheet.notes) {

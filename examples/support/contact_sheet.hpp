@@ -29,7 +29,7 @@ struct Sheet {
   std::vector<std::string> notes;  ///< lines at the foot
 };
 
-/// Lays out the tiles on a dark sheet with captions. Tiles are square and of one size.
+/// Lays out the tiles on a dark sheet with captions. The tiles of a row have one size.
 petzval::Rgb8Image draw_sheet(const Sheet& sheet);
 
 }  // namespace examples

@@ -176,4 +176,18 @@ TEST_F(BokehScene, RefusesOtherAndDamagedCheckpoints) {
   expect_failure("bokeh_scene", {"merge", path("b"), "--out", path("c")}, "2/2");
 }
 
+TEST_F(BokehScene, GoesOnSheets) {
+  render("a"), render("b", {"--focus-mm", "1500"});
+  const Outcome done = run("bokeh_sheet", {path("a"), path("b"), "--columns", "2", "--out", path("sheet.png"),
+                                           "--balls", path("balls.csv")});
+  EXPECT_EQ(done.status, 0) << done.err;
+  EXPECT_TRUE(read(path("sheet.png")).starts_with("\x89PNG"));
+  EXPECT_TRUE(read(path("balls.csv")).starts_with("lens,focus_mm,x_mm,"));
+  render("small", {"--width", "36", "--height", "24"});
+  expect_failure("bokeh_sheet", {path("a"), path("small"), "--out", path("c.png")}, "wanted all pictures of one size");
+  expect_failure("bokeh_sheet", {path("nothing"), "--out", path("c.png")}, "nothing");
+  write("a/render.json", "{}");
+  expect_failure("bokeh_sheet", {path("a"), "--out", path("c.png")}, "render.json");
+}
+
 }  // namespace

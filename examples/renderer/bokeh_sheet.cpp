@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+// Lays out pictures of bokeh_scene on a sheet, and measures the highlights of the balls scene.
+//
+//   bokeh_sheet --columns 5 --title "Balls" --out balls.png --balls balls.csv FOLDER...
+#include <algorithm>
+#include <cstddef>
+#include <filesystem>
+#include <iostream>
+#include <string>
+#include <vector>
+
+#include "petzval/core/error.hpp"
+#include "petzval/io/image.hpp"
+#include "renderer/highlights.hpp"
+#include "support/cli.hpp"
+#include "support/contact_sheet.hpp"
+#include "support/files.hpp"
+#include "support/text.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+using examples::Json;
+using examples::number;
+
+struct Picture {
+  fs::path folder;
+  petzval::RgbImage image;
+  Json job;
+
+  std::string focus() const {
+    const Json& mm = job.at("focus_mm");
+    const std::string from = job.at("distance_from") == "film" ? " from the film" : " from the front vertex";
+    return mm.is_null() ? "focus infinity" : "focus " + number(mm.get<double>()) + " mm" + from;
+  }
+  std::string lens() const {
+    return job.at("lens").get<std::string>() + (job.at("model") == "pinhole" ? ", pinhole" : "");
+  }
+};
+
+Picture read(const fs::path& folder) {
+  Picture picture{folder, petzval::read_exr(folder / "picture.exr"), {}};
+  try {
+    picture.job = Json::parse(examples::read_text(folder / "render.json")).at("job");
+    picture.focus(), picture.lens();
+  } catch (const Json::exception&) {
+    throw petzval::Error((folder / "render.json").string() + ": found another file, wanted that of bokeh_scene");
+  }
+  return picture;
+}
+
+examples::Sheet sheet_of(const std::vector<Picture>& pictures, const std::string& title, std::size_t columns) {
+  examples::Sheet sheet{title, {}, {}};
+  for (std::size_t i = 0; i < pictures.size(); ++i) {
+    const Picture& p = pictures[i];
+    if (p.image.width != pictures[0].image.width || p.image.height != pictures[0].image.height) {
+      throw petzval::Error((p.folder / "picture.exr").string() + ": found " + std::to_string(p.image.width) + " x " +
+                           std::to_string(p.image.height) + " pixels, wanted all pictures of one size");
+    }
+    if (i % columns == 0) {
+      const std::string film = p.job.at("film_mm");
+      const double width_mm = examples::parse_number("film", film.substr(0, film.find('x')), examples::positive_number);
+      const auto end = pictures.begin() + static_cast<std::ptrdiff_t>(std::min(i + columns, pictures.size()));
+      const bool alike = std::all_of(pictures.begin() + static_cast<std::ptrdiff_t>(i), end,
+                                     [&](const Picture& other) { return other.lens() == p.lens(); });
+      sheet.rows.push_back({alike ? p.lens() : "", "", width_mm / p.image.width, {}});
+    }
+    examples::SheetRow& row = sheet.rows.back();
+    row.tiles.push_back({petzval::to_srgb8(p.image), {p.focus()}});
+    if (row.title.empty()) row.tiles.back().captions.insert(row.tiles.back().captions.begin(), p.lens());
+  }
+  sheet.notes = {"bokeh_scene: white is the radiance 1 in the middle; scale bars on the film."};
+  return sheet;
+}
+
+std::string ball_table(const std::vector<Picture>& pictures) {
+  std::string csv =
+      "lens,focus_mm,x_mm,centroid_x_px,centroid_y_px,axis_ratio,long_axis_to_radius_deg,outward_skewness,light\n";
+  for (const Picture& p : pictures) {
+    const auto highlights = renderer::ball_highlights(p.image);
+    for (std::size_t i = 0; i < highlights.size(); ++i) {
+      if (!highlights[i]) continue;
+      const renderer::Highlight& h = *highlights[i];
+      csv +=
+          '"' + p.lens() + "\"," + p.job.at("focus_mm").dump() + ',' + std::to_string(25 * (static_cast<int>(i) - 6));
+      for (const double x : {h.x, h.y, h.axis_ratio, h.to_radius_deg, h.outward_skewness, h.light})
+        csv += ',' + number(x, 4);
+      csv += '\n';
+    }
+  }
+  return csv;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  std::vector<std::string> folders;
+  std::string title = "Scenes through lenses", out, balls;
+  std::uint32_t columns = 1;
+  examples::App app("Lays out pictures of bokeh_scene on a sheet, in rows from the left. Pictures have one size.",
+                    "bokeh_sheet");
+  app.add_option("FOLDER", folders, "folders with picture.exr and render.json")->required();
+  examples::add_count(app, "--columns", columns, {1, 100, "a whole number from 1 to 100"}, "pictures in a row");
+  app.add_option("--title", title, "title of the sheet")->capture_default_str();
+  app.add_option(
+         "--balls", balls,
+         "CSV to write: of the balls scene, each highlight's ratio of axes, the angle of the long axis against the "
+         "radius, and skewness outwards; x_mm is the place of the ball. Highlights whose halo is as bright as "
+         "they are measure the halo too")
+      ->type_name("CSV");
+  app.add_option("--out", out, "PNG to write")->required()->type_name("PNG");
+  return examples::run(app, argc, argv, [&] {
+    std::vector<Picture> pictures;
+    for (const std::string& folder : folders) pictures.push_back(read(folder));
+    petzval::write_png(examples::draw_sheet(sheet_of(pictures, title, columns)), out);
+    std::cout << out << '\n';
+    if (balls.empty()) return;
+    examples::write_text(balls, ball_table(pictures));
+    std::cout << balls << '\n';
+  });
+}

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "renderer/highlights.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "petzval/core/units.hpp"
+#include "renderer/luminance.hpp"
+
+namespace renderer {
+namespace {
+
+constexpr int balls_beside = 6;  // the middle one
+
+double luminance_at(const petzval::RgbImage& picture, int x, int y) {
+  const float* const p = picture.pixel(x, y);
+  return static_cast<double>(luminance({p[0], p[1], p[2]}));
+}
+
+/// The value below which a share of the values lies.
+double quantile(std::vector<double> values, double share) {
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+/// The columns of a ball, `spacing` apart.
+std::pair<int, int> columns_of(const petzval::RgbImage& picture, int ball, double spacing) {
+  const double middle = picture.width / 2.0 + ball * spacing;
+  return {std::max(0, static_cast<int>(middle - spacing / 2)),
+          std::min(picture.width - 1, static_cast<int>(middle + spacing / 2))};
+}
+
+double spacing_of(const petzval::RgbImage& picture) {
+  std::vector<double> columns;
+  for (int x = 0; x < picture.width; ++x) {
+    double sum = 0;
+    for (int y = 0; y < picture.height; ++y) sum += luminance_at(picture, x, y);
+    columns.push_back(sum);
+  }
+  double best = 0, found = 0;
+  // From half of what the picture has room for.
+  const double most = picture.width / (2.0 * balls_beside + 1);
+  for (double spacing = most / 2; spacing <= most; spacing += 0.1) {
+    double sum = 0;
+    int count = 0;
+    for (int ball = -balls_beside; ball <= balls_beside; ++ball) {
+      const double middle = picture.width / 2.0 + ball * spacing;
+      for (int x = static_cast<int>(middle - 0.18 * spacing); x <= static_cast<int>(middle + 0.18 * spacing); ++x) {
+        sum += columns[static_cast<std::size_t>(std::clamp(x, 0, picture.width - 1))];
+        ++count;
+      }
+    }
+    if (sum / count > best) best = sum / count, found = spacing;
+  }
+  return found;
+}
+
+}  // namespace
+
+std::optional<Highlight> highlight_in(const petzval::RgbImage& picture, int first_column, int last_column) {
+  const int border = std::max(1, picture.height / 8);
+  std::vector<double> beside;
+  for (int y = 0; y < picture.height; ++y) {
+    if (y >= border && y < picture.height - border) continue;
+    for (int x = first_column; x <= last_column; ++x) beside.push_back(luminance_at(picture, x, y));
+  }
+  if (beside.empty()) return {};
+  const double background = quantile(beside, 0.5);
+  struct Point {
+    double x, y, value, mean;
+  };
+  std::vector<Point> points;
+  std::vector<double> means;
+  for (int y = 1; y + 1 < picture.height; ++y) {
+    for (int x = std::max(first_column, 1); x <= std::min(last_column, picture.width - 2); ++x) {
+      double mean = 0;
+      for (int dy : {-1, 0, 1}) {
+        for (int dx : {-1, 0, 1}) mean += (luminance_at(picture, x + dx, y + dy) - background) / 9;
+      }
+      points.push_back({x + 0.5, y + 0.5, luminance_at(picture, x, y) - background, mean});
+      means.push_back(mean);
+    }
+  }
+  if (points.empty()) return {};
+  const double least = 0.25 * quantile(means, 0.975);
+  if (!(least > 0)) return {};
+  std::erase_if(points, [&](const Point& p) { return p.mean <= least; });
+
+  Highlight result;
+  for (const Point& p : points) result.light += p.value, result.x += p.value * p.x, result.y += p.value * p.y;
+  if (!(result.light > 0)) return {};
+  result.x /= result.light, result.y /= result.light;
+  const double from_x = result.x - picture.width / 2.0, from_y = result.y - picture.height / 2.0;
+  const double radius = std::hypot(from_x, from_y);
+  // In the middle the radius is taken along x.
+  const double rx = radius > 1 ? from_x / radius : 1, ry = radius > 1 ? from_y / radius : 0;
+  double along = 0, across = 0, mixed = 0, cubes = 0;
+  for (const Point& p : points) {
+    const double a = (p.x - result.x) * rx + (p.y - result.y) * ry, b = (p.y - result.y) * rx - (p.x - result.x) * ry;
+    along += p.value * a * a / result.light, across += p.value * b * b / result.light;
+    mixed += p.value * a * b / result.light, cubes += p.value * a * a * a / result.light;
+  }
+  const double middle = (along + across) / 2, half = std::hypot((along - across) / 2, mixed);
+  if (!(middle > half)) return {};
+  result.axis_ratio = std::sqrt((middle + half) / (middle - half));
+  result.to_radius_deg = std::abs(petzval::degrees(std::atan2(2 * mixed, along - across) / 2));
+  result.outward_skewness = cubes / (along * std::sqrt(along));
+  return result;
+}
+
+std::vector<std::optional<Highlight>> ball_highlights(const petzval::RgbImage& picture) {
+  const double spacing = spacing_of(picture);
+  std::vector<std::optional<Highlight>> result;
+  if (!(spacing > 2)) return result;
+  for (int ball = -balls_beside; ball <= balls_beside; ++ball) {
+    const auto [first, last] = columns_of(picture, ball, spacing);
+    result.push_back(highlight_in(picture, first, last));
+  }
+  return result;
+}
+
+}  // namespace renderer
