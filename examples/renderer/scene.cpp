@@ -189,9 +189,11 @@ void Scene::Data::find_light() {
   if (!(total + sky_power > 0)) return;
   constexpr double most = 0.5;
   sky_share = total > 0 ? std::min(sky_power / (total + sky_power), most) : 1;
+  // Half by power, half alike: small lamps are bright where the lens sees them.
+  const auto lamps = static_cast<double>(std::count_if(powers.begin(), powers.end(), [](double p) { return p > 0; }));
   double end = 0;
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    bodies[i].lamp_share = total > 0 ? powers[i] / total * (1 - sky_share) : 0;
+    bodies[i].lamp_share = powers[i] > 0 ? (powers[i] / total + 1 / lamps) / 2 * (1 - sky_share) : 0;
     lamp_ends.push_back(end += bodies[i].lamp_share);
   }
 }
