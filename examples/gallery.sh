@@ -112,6 +112,7 @@ if [ -x "$programs/bokeh_scene" ]; then
     folder=$out/scenes/$1 name=$2 lens=$3 spp=$4 width=$5 height=$6
     shift 6
     resume=
+    rm -f "$folder/sums.exr"
     if [ -n "$full" ]; then
       folder=${folder}_large resume=--resume
       spp=$((16 * spp)) width=$((2 * width)) height=$((2 * height))

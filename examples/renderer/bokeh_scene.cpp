@@ -82,6 +82,9 @@ void write_results(const renderer::PictureSums& sums, const Json& job, Json abou
   for (const fs::path& file : renderer::write_pictures(sums.picture(), texts, numbers, formats, folder, white)) {
     say(file);
   }
+  if (sums.rejected() > 0) {
+    std::cerr << "note: " << sums.rejected() << " contributions were left out: not finite, or beyond 2^40\n";
+  }
   about.update(renderer::statistics(sums));
   about["job"] = job;
   examples::write_text(folder / "render.json", about.dump(1) + '\n');
@@ -134,7 +137,15 @@ class Job {
     const fs::path file = renderer::checkpoint_file(folder, options_.shard);
     const Json job = description_of_numbers(lens.camera());
     renderer::PictureSums sums(film_.columns, film_.rows);
-    if (options_.resume && fs::exists(file)) sums = renderer::Checkpoint::read(file, job);
+    if (options_.resume && fs::exists(file)) {
+      sums = renderer::Checkpoint::read(file, job);
+    } else if (options_.resume) {
+      std::cerr << "note: " << file.string() << " does not exist: the picture begins anew\n";
+    } else if (fs::exists(file)) {
+      const fs::path kept = fs::path(file).replace_extension(".before.exr");
+      fs::rename(file, kept);
+      std::cerr << "note: without --resume the picture begins anew; the old sums are kept in " << kept.string() << '\n';
+    }
     examples::make_folder(folder);
     std::vector<std::size_t> tiles;
     for (std::size_t t = 0; t < sums.tiles(); ++t) {
@@ -152,6 +163,7 @@ class Job {
                    {"why", chosen_.why},
                    {"seconds", report.seconds},
                    {"lens_seconds_share", report.busy_seconds > 0 ? report.lens_seconds / report.busy_seconds : 0},
+                   {"paths", report.paths},
                    {"paths_per_second", report.seconds > 0 ? static_cast<double>(report.paths) / report.seconds : 0},
                    {"finished", report.finished}},
                   options_.formats, folder);
@@ -183,8 +195,25 @@ class Job {
 
   void choose_model() {
     if (const auto named = petzval::model_named(options_.model)) {
+      if (options_.budget_px > 0)
+        throw petzval::Error("--budget-px: found it with --model " + options_.model + ", wanted --model auto");
       chosen_ = {*named, {"--model " + options_.model}};
       return;
+    }
+    // The choice follows measured times, which differ between machines and days.
+    if (options_.shard.count > 1) {
+      throw petzval::Error("--model auto: found --tile " + options_.shard.text() +
+                           ", wanted one model for all shards by name");
+    }
+    const fs::path file = renderer::checkpoint_file(options_.out_folder, options_.shard);
+    if (options_.resume && fs::exists(file)) {
+      Json job;
+      renderer::Checkpoint::read_any(file, job);
+      const std::string before = job.value("model", "");
+      if (const auto model = petzval::model_named(before)) {
+        chosen_ = {*model, {before + " was chosen when the picture began"}};
+        return;
+      }
     }
     if (options_.budget_px == 0 && options_.samples == 0) {
       throw petzval::Error("--model auto: found --time-s alone, wanted --budget-px or --spp to choose by");
@@ -192,8 +221,9 @@ class Job {
     const renderer::LensCamera exact = camera(petzval::ModelKind::exact_float);
     refuse_walls(exact);
     chosen_ = options_.budget_px > 0
-                  ? renderer::model_within(scene_, exact, options_.budget_px)
-                  : renderer::model_below_noise(scene_, exact, colours_, integrator_, options_.samples);
+                  ? renderer::model_within(scene_, exact, options_.budget_px, static_cast<int>(options_.threads))
+                  : renderer::model_below_noise(scene_, exact, colours_, integrator_, options_.samples,
+                                                static_cast<int>(options_.threads));
     std::cerr << "note: model " << petzval::name(chosen_.model) << '\n' << examples::bullets(chosen_.why);
   }
   void refuse_walls(const renderer::LensCamera& lens) const {

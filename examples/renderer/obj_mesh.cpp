@@ -76,8 +76,8 @@ class Lines {
       if (error == std::errc::result_out_of_range && std::abs(std::strtod(std::string(word).c_str(), nullptr)) < 1) {
         continue;  // less than the least float: 0
       }
-      if (error != std::errc() || end != digits.data() + digits.size() || !std::isfinite(value)) {
-        refuse('"' + std::string(word) + '"', "a finite number");
+      if (error != std::errc() || end != digits.data() + digits.size() || !(std::abs(value) <= 1e9f)) {
+        refuse('"' + std::string(word) + '"', "a finite number, up to 1e9");
       }
     }
     if (count < wanted) refuse(std::to_string(count) + " numbers", std::to_string(wanted));

@@ -25,7 +25,8 @@ Estimate estimate(const std::array<FixedSum, PictureSums::rounds>& sums,
   }
   if (!(all > 0)) return {0, std::numeric_limits<double>::quiet_NaN()};
   const double mean = sum.value() / all;
-  if (used < 2) return {mean, std::numeric_limits<double>::quiet_NaN()};
+  // Where nothing arrived, nothing is known.
+  if (used < 2 || sum == FixedSum()) return {mean, std::numeric_limits<double>::quiet_NaN()};
   double squares = 0;
   for (std::size_t r = 0; r < sums.size(); ++r) {
     if (!(samples[r] > 0)) continue;

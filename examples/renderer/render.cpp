@@ -60,8 +60,6 @@ RenderReport render(const UnitTracer& tracer, PictureSums& sums, const std::vect
       if (sums.passes(tile) == pass) missing.push_back(tile);
     }
     petzval::parallel_for(missing.size(), 1, threads, [&](std::size_t i, std::size_t) {
-      // A picture by samples goes on here later; one by time ends with a whole pass.
-      if (effort.samples && late()) return;
       const auto unit_begin = Clock::now();
       const PixelBlock block = sums.block(missing[i]);
       const std::uint32_t count = effort.samples_in(pass);

@@ -12,7 +12,8 @@
 namespace renderer {
 
 /// How much is traced. With a number of samples the picture is that of these, and a limit of time leaves the rest for
-/// later. Without one it is as good as the time allows, in passes of one sample.
+/// later. Without one it is as good as the time allows, in passes of one sample. Time ends with a whole pass: light
+/// falls on all tiles, and a picture with more samples here than there has too little of it.
 struct Effort {
   std::optional<std::uint32_t> samples;  ///< of each pixel
   std::optional<double> seconds;

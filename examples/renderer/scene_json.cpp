@@ -22,10 +22,9 @@ using examples::Json;
 using examples::Range;
 using examples::refuse;
 
-constexpr double largest = std::numeric_limits<float>::max();
-constexpr Range finite{-largest, largest, "finite number"},
-    positive{std::numeric_limits<float>::min(), largest, "number above 0"},
-    not_negative{0, largest, "finite number, 0 or more"}, share{0, 1, "number from 0 to 1"},
+// Embree loses what is larger, and float what is brighter.
+constexpr Range finite{-1e9, 1e9, "number from -1e9 to 1e9"}, positive{1e-9, 1e9, "number above 0, from 1e-9 to 1e9"},
+    not_negative{0, 1e12, "finite number, 0 or more, up to 1e12"}, share{0, 1, "number from 0 to 1"},
     rough{0.01, 1, "number from 0.01 to 1"}, index_of_glass{1.001, 4, "number from 1.001 to 4"};
 
 std::shared_ptr<const petzval::RgbImage> read_image(const std::string& where, const std::filesystem::path& file,

@@ -10,7 +10,6 @@
 
 #include "petzval/accuracy/choose_model.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/core/parallel.hpp"
 #include "petzval/core/sobol.hpp"
 #include "renderer/luminance.hpp"
 #include "renderer/render.hpp"
@@ -61,9 +60,9 @@ std::variant<std::array<double, 2>, ModelForScene> measurable(const Scene& scene
 }
 
 petzval::ModelChoice choice(const LensCamera& exact, const std::array<double, 2>& depths,
-                            const petzval::ErrorBudget& budget) {
+                            const petzval::ErrorBudget& budget, int threads) {
   return petzval::choose_model(exact.camera().lens(), {.near_mm = depths[0], .far_mm = depths[1], .film = exact.film()},
-                               budget, petzval::processor_threads());
+                               budget, threads);
 }
 
 std::string in_words(const std::array<double, 2>& depths) {
@@ -79,11 +78,11 @@ struct Pilot {
 };
 
 Pilot pilot_of(const Scene& scene, const LensCamera& exact, const PathColourSource& colours, Integrator integrator) {
-  constexpr int width = 96, samples = 16;
+  constexpr int pixels = 96 * 64, samples = 16;
   petzval::Film film = exact.film();
-  const double scale = static_cast<double>(width) / film.columns;
-  film.rows = std::max(2, static_cast<int>(std::lround(film.rows * scale)));
-  film.columns = width;
+  const double scale = std::min(1.0, std::sqrt(pixels / (static_cast<double>(film.columns) * film.rows)));
+  film.columns = std::max(1, static_cast<int>(std::lround(film.columns * scale)));
+  film.rows = std::max(1, static_cast<int>(std::lround(film.rows * scale)));
   const LensCamera lens(petzval::Camera(exact.camera().lens(), film,
                                         {.model = petzval::ModelKind::exact_float,
                                          .normalisation = petzval::Normalisation::unity_on_axis}),
@@ -128,24 +127,25 @@ Pilot pilot_of(const Scene& scene, const LensCamera& exact, const PathColourSour
 
 }  // namespace
 
-ModelForScene model_within(const Scene& scene, const LensCamera& exact, double budget_px) {
+ModelForScene model_within(const Scene& scene, const LensCamera& exact, double budget_px, int threads) {
   const auto measured_at = measurable(scene, exact);
   if (const auto* const exact_lens = std::get_if<ModelForScene>(&measured_at)) return *exact_lens;
   const auto& range = std::get<0>(measured_at);
-  const petzval::ModelChoice made = choice(exact, range, {.max_px = budget_px, .exposure = 0.01, .pupil_shape = 0.02});
+  const petzval::ModelChoice made =
+      choice(exact, range, {.max_px = budget_px, .exposure = 0.01, .pupil_shape = 0.02}, threads);
   ModelForScene result{made.model, {"rays within " + number(budget_px) + " px at " + in_words(range)}};
   result.why.insert(result.why.end(), made.reasons.begin(), made.reasons.end());
   return result;
 }
 
 ModelForScene model_below_noise(const Scene& scene, const LensCamera& exact, const PathColourSource& colours,
-                                Integrator integrator, std::uint32_t samples) {
+                                Integrator integrator, std::uint32_t samples, int threads) {
   const auto measured_at = measurable(scene, exact);
   if (const auto* const exact_lens = std::get_if<ModelForScene>(&measured_at)) return *exact_lens;
   const auto& range = std::get<0>(measured_at);
   const Pilot pilot = pilot_of(scene, exact, colours, integrator);
   const double noise = pilot.noise / std::sqrt(static_cast<double>(samples));
-  const petzval::ModelChoice measured = choice(exact, range, {.max_px = 0, .pupil_shape = 0});
+  const petzval::ModelChoice measured = choice(exact, range, {.max_px = 0, .pupil_shape = 0}, threads);
   const petzval::ModelCandidate* best = nullptr;
   double best_bias = 0;
   std::vector<std::string> refused;
@@ -154,7 +154,7 @@ ModelForScene model_below_noise(const Scene& scene, const LensCamera& exact, con
     const double moved = c.error.all.rms_px * pilot.slope / std::sqrt(2.0);
     const double bias =
         std::hypot(moved, std::min(c.error.pupil_shape, 1.0) * pilot.contrast, c.error.exposure * pilot.brightness);
-    if (!(bias < noise / 10)) {
+    if (!(bias <= noise / 10)) {
       if (!best) refused.push_back(std::string(petzval::name(c.model)) + ": bias " + number(bias, 2));
       continue;
     }
@@ -170,6 +170,7 @@ ModelForScene model_below_noise(const Scene& scene, const LensCamera& exact, con
                          number(best->ns_per_ray, 2) + " ns a ray");
   } else {
     result.model = petzval::ModelKind::exact_double;
+    result.why.push_back("exact_double: no other model will do");
   }
   if (!refused.empty()) {
     std::string line = "too far off: ";

@@ -20,7 +20,7 @@ struct ModelForScene {
 
 /// The fastest model whose rays are nowhere more than so many pixels off, at the depths of a scene, with 1 % of the
 /// exposure and 2 % of the pupil's shape: petzval::choose_model(). Tilted films take the exact lens.
-ModelForScene model_within(const Scene& scene, const LensCamera& exact, double budget_px);
+ModelForScene model_within(const Scene& scene, const LensCamera& exact, double budget_px, int threads);
 
 /// The fastest model whose bias is below a tenth of the noise of a picture with so many samples of each pixel, both as
 /// root mean squares over the picture, of values up to white.
@@ -31,6 +31,6 @@ ModelForScene model_within(const Scene& scene, const LensCamera& exact, double b
 /// in a share s of it by s times the contrast, and an exposure by its error times the brightness. Edges that the small
 /// picture does not resolve are as many along a line as those that it does.
 ModelForScene model_below_noise(const Scene& scene, const LensCamera& exact, const PathColourSource& colours,
-                                Integrator integrator, std::uint32_t samples);
+                                Integrator integrator, std::uint32_t samples, int threads);
 
 }  // namespace renderer

@@ -89,6 +89,12 @@ TEST_F(BokehScene, HasTheBitsOfOneRunHoweverItIsCutUp) {
   EXPECT_NE(read(path("resumed/picture.exr")), whole);
   EXPECT_TRUE(render("resumed", {"--resume"})["finished"]);
   EXPECT_EQ(read(path("resumed/picture.exr")), whole);
+  // Light falls on all tiles, in a picture that is not finished too.
+  const petzval::RgbImage image = petzval::read_exr(path("resumed/picture.exr"));
+  EXPECT_GT(image.pixel(36, 45)[1], 0);
+  const Outcome anew = run("bokeh_scene", arguments("resumed"));
+  EXPECT_NE(anew.err.find("sums.before.exr"), std::string::npos) << anew.err;
+  EXPECT_TRUE(std::filesystem::exists(path("resumed/sums.before.exr")));
 
   for (const char* tile : {"1/2", "2/2"}) {
     EXPECT_EQ(run("bokeh_scene", arguments("tiles", {"--tile", tile})).status, 0);
@@ -126,6 +132,9 @@ TEST_F(BokehScene, ChoosesAModelAndSaysWhy) {
   const json rough = render("rough", {"--model", "auto", "--spp", "1"});
   const json fine = render("fine", {"--model", "auto", "--budget-px", "0.01", "--spp", "1"});
   EXPECT_GE(rough["why"].size(), 2);
+  const Outcome again = run("bokeh_scene", arguments("rough", {"--model", "auto", "--spp", "1", "--resume"}));
+  EXPECT_EQ(again.status, 0) << again.err;
+  EXPECT_EQ(read_json(path("rough/render.json"))["model"], rough["model"]);
   EXPECT_NE(rough["model"], fine["model"]);
   EXPECT_NE(fine["why"].dump().find("0.01"), std::string::npos);
   // With more samples there is less noise, and less room for bias.
@@ -159,6 +168,8 @@ TEST_F(BokehScene, RefusesWhatItCannotRender) {
   refused({"--wavelengths", "all"}, "--wavelengths");
   refused({"--model", "thinner"}, "--model");
   refused({"--film-mm", "36"}, "--film-mm");
+  refused({"--budget-px", "1"}, "--model auto");
+  refused({"--model", "auto", "--tile", "1/2"}, "--tile");
   refused({"--weight-map", path("no.png")}, "no.png");
   write("inside.json", R"({"camera": {"position_mm": [0, 0, 0]}, "objects": [
     {"sphere": {"centre_mm": [0, 0, 0], "radius_mm": 500}, "emission": [1, 1, 1]}]})");
