@@ -224,6 +224,7 @@ TEST_P(Conformance, FilmAndSceneHoldTheSameLightOfAnEmitter) {
       const Scene scene(light_at(places[i], 12));
       const Estimate by_film = picture(scene, *lens, Integrator::path, 96).mean()[1];
       const Estimate by_scene = picture(scene, *lens, Integrator::light, 32).mean()[1];
+      if (by_film.mean == 0 && by_scene.mean == 0) continue;  // beside what this model sees
       EXPECT_NEAR(by_film.mean, by_scene.mean,
                   0.002 * by_scene.mean + 4 * std::hypot(by_film.standard_error, by_scene.standard_error))
           << petzval::name(model) << " light " << i;
