@@ -15,7 +15,7 @@ double pdf_emission(const Scene& scene, const SurfacePoint& lamp, double cosine)
 }
 
 double pdf_sky_emission(const Scene& scene, const glm::vec3& travel) {
-  return scene.pdf_sky(travel) / scene.sky_entry(travel, 0, 0).second;
+  return scene.pdf_sky(travel) / scene.sky_entry_area();
 }
 
 std::optional<Emitted> emit(const Scene& scene, Random& random) {
@@ -31,9 +31,8 @@ std::optional<Emitted> emit(const Scene& scene, Random& random) {
     result.pdf_emission = pdf_emission(scene, *lamp, result.cosine);
   } else {
     result.direction = result.from.travel;
-    const auto [origin, area] = scene.sky_entry(result.direction, a, b);
-    result.origin = origin;
-    result.pdf_emission = result.from.pdf / area;
+    result.origin = scene.sky_entry(result.direction, a, b);
+    result.pdf_emission = result.from.pdf / scene.sky_entry_area();
   }
   return result;
 }

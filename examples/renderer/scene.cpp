@@ -292,11 +292,12 @@ Rgb Scene::emission(const SurfacePoint& lamp, const glm::vec3& away) noexcept {
   return glm::dot(lamp.normal, away) > 0 ? lamp.object->emission : Rgb(0);
 }
 
-std::pair<glm::vec3, double> Scene::sky_entry(const glm::vec3& travel, float u, float v) const noexcept {
+glm::vec3 Scene::sky_entry(const glm::vec3& travel, float u, float v) const noexcept {
   const glm::vec2 disc = on_disc(u, v) * data_->radius;
-  const glm::vec3 place = Frame(travel).to_world({disc, -data_->radius});
-  return {data_->centre + place, pi * double{data_->radius} * double{data_->radius}};
+  return data_->centre + Frame(travel).to_world({disc, -data_->radius});
 }
+
+double Scene::sky_entry_area() const noexcept { return pi * double{data_->radius} * double{data_->radius}; }
 
 const Object* Scene::around(const glm::vec3& point) const noexcept {
   const Object* solid = nullptr;

@@ -3,7 +3,6 @@
 
 #include <memory>
 #include <optional>
-#include <utility>
 
 #include "renderer/scene_description.hpp"
 
@@ -60,8 +59,9 @@ class Scene {
   /// What a surface emits in a direction away from it.
   static Rgb emission(const SurfacePoint& lamp, const glm::vec3& away) noexcept;
   /// A disc across the direction of travel through which the sky lights all objects: its point by u and v, and its
-  /// area.
-  std::pair<glm::vec3, double> sky_entry(const glm::vec3& travel, float u, float v) const noexcept;
+  /// area, which is that of all directions.
+  glm::vec3 sky_entry(const glm::vec3& travel, float u, float v) const noexcept;
+  double sky_entry_area() const noexcept;
 
   /// The solid that encloses a place on all sides: a sphere, or a mesh seen from behind, that light cannot pass. Null
   /// for none.
