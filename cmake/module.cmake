@@ -80,12 +80,17 @@ endfunction()
 
 # petzval_loops(film_pupil_table.cpp film_pupil_table): a file of loops for every instruction set; PETZVAL_LOOPS names what each defines:
 # film_pupil_table_baseline, film_pupil_table_avx2, film_pupil_table_avx512. Tuned for processors that gather: tables of pupils are read twice as fast.
+# REPRODUCIBLE: without fused operations, so that all sets give the same bits.
 function(petzval_loops file name)
-  petzval_lanes(${file} ${name}_baseline baseline PETZVAL_LOOPS=${name}_baseline)
+  set(fast PETZVAL_FAST=1)
+  if("REPRODUCIBLE" IN_LIST ARGN)
+    set(fast PETZVAL_FAST=0)
+  endif()
+  petzval_lanes(${file} ${name}_baseline baseline PETZVAL_LOOPS=${name}_baseline PETZVAL_FAST=0)
   target_compile_options(petzval-${name}_baseline PRIVATE ${PETZVAL_NO_PAIRS})
   if(PETZVAL_X86_64)
     foreach(set avx2 avx512)
-      petzval_lanes(${file} ${name}_${set} ${set} PETZVAL_LOOPS=${name}_${set} PETZVAL_FAST=1)
+      petzval_lanes(${file} ${name}_${set} ${set} PETZVAL_LOOPS=${name}_${set} ${fast})
     endforeach()
     target_compile_options(petzval-${name}_avx2 PRIVATE ${PETZVAL_NO_PAIRS} -mtune=haswell)
     target_compile_options(petzval-${name}_avx512 PRIVATE ${PETZVAL_NO_PAIRS} -mtune=icelake-server -mprefer-vector-width=512)

@@ -61,6 +61,7 @@
 #include "petzval/lint/lint.hpp"
 #include "petzval/media/glass.hpp"
 #include "petzval/movement/autofocus.hpp"
+#include "petzval/movement/focal_surface.hpp"
 #include "petzval/movement/focus_point.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/paraxial/ideal_lens.hpp"

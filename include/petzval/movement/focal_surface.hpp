@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "petzval/core/export.hpp"
+#include "petzval/core/geometry.hpp"
+#include "petzval/film/film.hpp"
+#include "petzval/paraxial/ideal_lens.hpp"
+
+namespace petzval::inline v0 {
+
+/// How values between points are interpolated. Both go through the points.
+enum class SurfaceKind : std::uint8_t {
+  affine,   ///< by planes: reproduces planes, has slopes at the points
+  shepard,  ///< by constants: weighted means, flat at the points
+};
+
+/// "affine", "shepard".
+PETZVAL_API std::string_view name(SurfaceKind kind) noexcept;
+
+/// What an artist fixes at a place of the picture: the distance in focus, the extent of the depth of field, or both.
+struct FocalPoint {
+  FilmPoint place;  ///< mm; may lie outside the frame
+  /// Of the object there, 1/mm, along the axis from the entrance pupil towards the scene; 0: infinity.
+  std::optional<double> inverse_distance = {};
+  /// Diameter that the blur of that object should have, signed as FocusTarget::blur_mm: the surface passes it by so
+  /// much.
+  double blur_mm = 0;
+  /// Of the depth of field, in stops: +2 as if stopped down by two stops, at the same exposure.
+  std::optional<double> extent_stops = {};
+  double weight = 1;  ///< 0 or more, against the other points
+  double fade = 1;    ///< from 0 (gone) to 1
+};
+
+struct FocalSurfaceOptions {
+  SurfaceKind kind = SurfaceKind::affine;
+  double beta = 3;  ///< 1 to 8: weights fall with the distance in the picture to the power -beta
+};
+
+/// The distance in focus and the extent of the depth of field at every place of the picture, through focal points: what
+/// no lens does, and artists ask for.
+///
+///     const IdealLens lens = thin_lens(50, 2);
+///     const Film film{.z_mm = 51.2};
+///     const std::vector<FocalPoint> points{{.place = {-9, 0}, .inverse_distance = 1 / 1500.0},
+///                                          {.place = {9, 2}, .inverse_distance = 1 / 4000.0},
+///                                          {.place = {0, -8}, .inverse_distance = 0, .extent_stops = 2}};
+///     const FocalSurface surface(lens, film, points);
+///     const double in_focus = surface.at({3, 1}).inverse_distance;
+///
+/// Moving least squares in inverse distance, so that infinity is a value, and in stops. At a place of the film, point i
+/// weighs weight fade / d_i^beta, with d_i the distance on the film: results do not depend on the resolution of the
+/// picture, on its aspect, or on a common factor of the weights. A point that counts in full is met exactly. One that
+/// fades, or weighs less than a thousandth of what the heaviest one weighs, is passed at a growing distance, so that
+/// it leaves without a jump. Extrapolated values are limited to [least - m, most + m] of those of the points, with m =
+/// most - least, and to objects that the lens images. Values below 0, beyond infinity, may occur.
+///
+/// Distances and extents go through the points that fix them, each with weights of its own. If no point fixes a
+/// distance, the distance in focus is that of the film where it crosses the axis; if none fixes an extent, that is 0.
+/// Results are finite for every place, and the same for all instruction sets and however places are batched.
+class PETZVAL_API FocalSurface {
+ public:
+  /// lens: the entrance pupil is the origin of distances; with the film it tells how large a blur comes of an error in
+  /// inverse distance. film: its size tells how far points lie apart, in parts of the picture.
+  ///
+  /// Throws Error for points with numbers that are not finite, places beyond 1e6 sides of the picture, negative
+  /// weights, fades outside [0, 1], extents beyond 20 stops, and objects that the lens does not image with a margin of
+  /// 1e-3 focal lengths, or passed at such distances because of blur_mm; if no point has a weight; for beta outside [1,
+  /// 8]; for an entrance pupil at infinity; and for a film without size or place. Points are numbered from 1.
+  FocalSurface(const IdealLens& lens, const Film& film, std::span<const FocalPoint> points,
+               const FocalSurfaceOptions& options = {});
+
+  /// z of the entrance pupil, lens frame: distances count from here towards -z.
+  double origin_z() const noexcept;
+
+  struct Values {
+    double inverse_distance = 0;  ///< 1/mm
+    double extent_stops = 0;
+    double blur_mm = 0;  ///< signed diameter that points ask for here: of an object at their own distances
+  };
+  Values at(const FilmPoint& place) const noexcept;
+
+  /// With the derivatives by film x and y, 1/mm^2 and stops/mm. 0 where a limit holds.
+  struct Slopes {
+    Values values;
+    Vec2<double> inverse_distance, extent_stops;
+  };
+  Slopes slopes(const FilmPoint& place) const noexcept;
+
+  /// N places, float or double; inverse_distances, extents: N each, extents may be null.
+  template <class T>
+  void at(std::size_t count, const T* film_x, const T* film_y, T* inverse_distances, T* extents) const noexcept;
+
+  /// Limits of what at() gives: inverse distances, 1/mm, and extents, stops.
+  double nearest() const noexcept;
+  double farthest() const noexcept;
+  double least_extent() const noexcept;
+  double most_extent() const noexcept;
+
+ private:
+  struct Fields;
+  std::shared_ptr<const Fields> fields_;
+};
+
+}  // namespace petzval::inline v0

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "petzval/movement/focal_surface.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "core/text.hpp"
+#include "moving_least_squares.hpp"
+#include "petzval/core/error.hpp"
+
+namespace petzval::inline v0 {
+namespace {
+
+using movement_detail::MovingLeastSquares;
+using movement_detail::WeighedValue;
+
+constexpr double margin = 1e-3;        // focal lengths in front of the front focal plane
+constexpr double largest_power = 1e6;  // inverse distances, in 1 / focal length: their squares are numbers
+constexpr double largest_extent = 20;  // stops
+
+double entrance_pupil(const IdealLens& lens) {
+  const double z = lens.pupils.entrance.z;
+  if (!std::isfinite(z)) throw Error("focal surface: the entrance pupil is at infinity, wanted it at a finite place");
+  return z;
+}
+
+/// Of the nearest object that a surface may focus on.
+double nearest_inverse(const IdealLens& lens) {
+  const double f = std::abs(lens.front_focal_length);
+  const double in_front = entrance_pupil(lens) - std::min(lens.front_focal_z - margin * f, lens.front_z);
+  return in_front > 0 ? std::min(1 / in_front, largest_power / f) : largest_power / f;
+}
+
+/// Diameter of the blur on the film, mm, per 1/mm from the plane of focus to the object: linear for an ideal lens.
+double blur_per_inverse(const IdealLens& lens, Film film) {
+  film.tilt_rad = film.swing_rad = 0;
+  const double near = nearest_inverse(lens) / 2;
+  const auto blur = [&](const ScenePoint& at) {
+    const auto image = lens.image(at);
+    return image ? signed_blur(*image, film) : std::nan("");
+  };
+  return (blur({{0, 0, -1}, true}) - blur({{0, 0, entrance_pupil(lens) - 1 / near}, false})) / near;
+}
+
+/// Where the film is in focus, on the axis.
+double inverse_in_focus(const IdealLens& lens, const Film& film) {
+  const ScenePoint scene = lens.scene_of({0, 0, film.z()});
+  return scene.at_infinity ? 0 : 1 / (entrance_pupil(lens) - scene.position.z);
+}
+
+std::string point_name(std::size_t i) { return "focal surface: point " + std::to_string(i + 1) + ": "; }
+
+void check(const FocalPoint& point, double nearest, double farthest, const std::string& where) {
+  if (point.inverse_distance && !(*point.inverse_distance >= farthest && *point.inverse_distance <= nearest)) {
+    throw Error(where + "1 / distance is " + to_text(*point.inverse_distance) + " / mm, wanted one from " +
+                to_text(farthest) + " to " + to_text(nearest) + " / mm, in front of the front focal plane");
+  }
+  if (!std::isfinite(point.blur_mm)) {
+    throw Error(where + "the blur is " + to_text(point.blur_mm) + " mm, wanted a finite one");
+  }
+  if (point.extent_stops && !(std::abs(*point.extent_stops) <= largest_extent)) {
+    throw Error(where + "the extent is " + to_text(*point.extent_stops) + " stops, wanted one from " +
+                to_text(-largest_extent) + " to " + to_text(largest_extent) + " stops");
+  }
+}
+
+}  // namespace
+
+std::string_view name(SurfaceKind kind) noexcept {
+  switch (kind) {
+    case SurfaceKind::affine: return "affine";
+    case SurfaceKind::shepard: return "shepard";
+  }
+  return "unknown";
+}
+
+struct FocalSurface::Fields {
+  double origin_z = 0;
+  double blur_per_inverse = 0;
+  MovingLeastSquares distance, extent;
+  /// Through the points' own distances; nothing if no blur is wanted.
+  std::optional<MovingLeastSquares> objects;
+};
+
+FocalSurface::FocalSurface(const IdealLens& lens, const Film& film, std::span<const FocalPoint> points,
+                           const FocalSurfaceOptions& options) {
+  const double origin_z = entrance_pupil(lens), side = std::sqrt(film.area_mm2());
+  const double nearest = nearest_inverse(lens);
+  const double farthest = -largest_power / std::abs(lens.front_focal_length);
+  const double per_inverse = blur_per_inverse(lens, film);
+  bool blurs = false, any = false;
+  std::vector<WeighedValue> objects, extents;
+  std::vector<std::size_t> numbers;  // of the points with distances
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const FocalPoint& point = points[i];
+    check(point, nearest, farthest, point_name(i));
+    const WeighedValue with{point.place, 0, point.weight, point.fade};
+    movement_detail::check(with, side, point_name(i));
+    const bool counts = point.weight > 0 && point.fade > 0;
+    if (!counts) continue;
+    const auto add = [&](std::vector<WeighedValue>& to, double value) {
+      to.push_back(with);
+      to.back().value = value;
+    };
+    if (point.inverse_distance) {
+      add(objects, *point.inverse_distance);
+      numbers.push_back(i);
+      blurs = blurs || point.blur_mm != 0;
+    }
+    if (point.extent_stops) add(extents, *point.extent_stops);
+    any = any || point.inverse_distance || point.extent_stops;
+  }
+  if (!any) {
+    throw Error("focal surface: none of " + std::to_string(points.size()) +
+                " points has a weight and a distance or an extent, wanted one at least");
+  }
+  if (objects.empty()) objects.push_back({{0, 0}, inverse_in_focus(lens, film)});
+  if (extents.empty()) extents.push_back({{0, 0}, 0});
+  const auto field = [&](const std::vector<WeighedValue>& of) {
+    return MovingLeastSquares("focal surface", of, side, options.kind, options.beta);
+  };
+  MovingLeastSquares extent = field(extents), distance = field(objects);
+  std::optional<MovingLeastSquares> own;
+  if (blurs) {
+    own = distance;
+    std::vector<WeighedValue> moved = objects;
+    for (std::size_t k = 0; k < moved.size(); ++k) {
+      const double blur = points[numbers[k]].blur_mm;
+      const double stopped = std::exp2(-extent.at(moved[k].place) / 2);
+      if (blur != 0) moved[k].value += blur / (per_inverse * stopped);
+      if (!(moved[k].value >= farthest && moved[k].value <= nearest)) {
+        throw Error(point_name(numbers[k]) + "a blur of " + to_text(blur) + " mm wants the surface at " +
+                    to_text(moved[k].value) + " / mm, wanted 1 / distance from " + to_text(farthest) + " to " +
+                    to_text(nearest) + " / mm, in front of the front focal plane");
+      }
+    }
+    distance = field(moved);
+  }
+  distance.keep_below(nearest);
+  fields_ = std::make_shared<const Fields>(
+      Fields{origin_z, per_inverse, std::move(distance), std::move(extent), std::move(own)});
+}
+
+double FocalSurface::origin_z() const noexcept { return fields_->origin_z; }
+
+FocalSurface::Values FocalSurface::at(const FilmPoint& place) const noexcept {
+  Values values{fields_->distance.at(place), fields_->extent.at(place), 0};
+  if (fields_->objects) {
+    const double stopped = std::exp2(-values.extent_stops / 2);
+    values.blur_mm = fields_->blur_per_inverse * stopped * (values.inverse_distance - fields_->objects->at(place));
+  }
+  return values;
+}
+
+FocalSurface::Slopes FocalSurface::slopes(const FilmPoint& place) const noexcept {
+  return {at(place), fields_->distance.slopes(place), fields_->extent.slopes(place)};
+}
+
+template <class T>
+void FocalSurface::at(std::size_t count, const T* film_x, const T* film_y, T* inverse_distances,
+                      T* extents) const noexcept {
+  fields_->distance.at(count, film_x, film_y, inverse_distances);
+  if (extents) fields_->extent.at(count, film_x, film_y, extents);
+}
+template PETZVAL_API void FocalSurface::at(std::size_t, const float*, const float*, float*, float*) const noexcept;
+template PETZVAL_API void FocalSurface::at(std::size_t, const double*, const double*, double*, double*) const noexcept;
+
+double FocalSurface::nearest() const noexcept { return fields_->distance.most(); }
+double FocalSurface::farthest() const noexcept { return fields_->distance.least(); }
+double FocalSurface::least_extent() const noexcept { return fields_->extent.least(); }
+double FocalSurface::most_extent() const noexcept { return fields_->extent.most(); }
+
+}  // namespace petzval::inline v0

@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "moving_least_squares.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <type_traits>
+
+#include "core/text.hpp"
+#include "moving_least_squares_loops.hpp"
+#include "petzval/core/error.hpp"
+
+namespace petzval::inline v0::movement_detail {
+namespace {
+
+constexpr double reach = 1e6;         // sides
+constexpr double longest_soft = 0.1;  // sides
+constexpr double full_alpha = 1e-3;   // of the largest: with less, a point becomes soft
+constexpr double negligible = 1e-9;   // of the largest
+
+const LeastSquaresLoops& loops_of([[maybe_unused]] InstructionSet set) noexcept {
+#if defined(__x86_64__)
+  if (set == InstructionSet::avx512) return least_squares_loops_avx512;
+  if (set == InstructionSet::avx2) return least_squares_loops_avx2;
+#endif
+  return least_squares_loops_baseline;
+}
+
+/// The power of two that brings a number into [1, 2), or near.
+double scale_of(double x) { return std::ldexp(1, -std::clamp(std::ilogb(x), -1000, 1000)); }
+
+}  // namespace
+
+void check(const WeighedValue& point, double side, const std::string& where) {
+  const auto& [place, value, weight, fade] = point;
+  if (!(std::abs(place.x) <= reach * side && std::abs(place.y) <= reach * side)) {
+    throw Error(where + "the place is (" + to_text(place.x) + ", " + to_text(place.y) + ") mm, wanted one within " +
+                to_text(reach * side) + " mm");
+  }
+  if (!std::isfinite(value)) throw Error(where + "the value is " + to_text(value) + ", wanted a finite one");
+  if (!std::isfinite(weight) || weight < 0) {
+    throw Error(where + "the weight is " + to_text(weight) + ", wanted a finite one of 0 or more");
+  }
+  if (!(fade >= 0 && fade <= 1)) throw Error(where + "the fade is " + to_text(fade) + ", wanted one from 0 to 1");
+}
+
+MovingLeastSquares::MovingLeastSquares(std::string_view where, std::span<const WeighedValue> points, double side,
+                                       SurfaceKind kind, double beta)
+    : affine_(kind == SurfaceKind::affine), beta_(beta) {
+  const std::string begin(where);
+  if (!(beta >= 1 && beta <= 8)) throw Error(begin + ": beta is " + to_text(beta) + ", wanted one from 1 to 8");
+  if (!(side > 0 && std::isfinite(side))) {
+    throw Error(begin + ": the side of the picture is " + to_text(side) + " mm, wanted one above 0");
+  }
+  double most_weight = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    check(points[i], side, begin + ": point " + std::to_string(i + 1) + ": ");
+    if (points[i].fade > 0) most_weight = std::max(most_weight, points[i].weight);
+  }
+  const auto raw_alpha = [&](const WeighedValue& point) { return point.weight / most_weight * point.fade; };
+  double most_alpha = 0, most_present = 0;
+  if (most_weight > 0) {
+    for (const auto& point : points) most_alpha = std::max(most_alpha, raw_alpha(point));
+  }
+  if (!(most_alpha > 0)) {
+    throw Error(begin + ": none of " + std::to_string(points.size()) + " points has a weight, wanted one at least");
+  }
+  // Continuous in all weights and fades, and 1 for the point that counts most if all fade alike.
+  const auto presence = [&](const WeighedValue& point) {
+    return point.fade * std::min(1.0, raw_alpha(point) / most_alpha / full_alpha);
+  };
+  for (const auto& point : points) most_present = std::max(most_present, presence(point));
+
+  to_scaled_ = scale_of(side);
+  double largest = 0;
+  for (const auto& point : points) {
+    if (raw_alpha(point) >= negligible * most_alpha) largest = std::max(largest, std::abs(point.value));
+  }
+  to_scaled_value_ = largest > 0 ? scale_of(largest) : 1;
+  Columns<double>& to = in_double_;
+  for (const auto& point : points) {
+    const double alpha = raw_alpha(point) / most_alpha;
+    if (!(alpha >= negligible)) continue;
+    const double soft = (1 - presence(point) / most_present) * longest_soft * side * to_scaled_;
+    to.x.push_back(point.place.x * to_scaled_);
+    to.y.push_back(point.place.y * to_scaled_);
+    to.value.push_back(point.value * to_scaled_value_);
+    to.alpha.push_back(alpha);
+    to.soft2.push_back(soft * soft);
+  }
+  const auto [least, most] = std::minmax_element(to.value.begin(), to.value.end());
+  to.low = *least - (*most - *least);
+  to.high = *most + (*most - *least);
+  const auto rounded = [](const std::vector<double>& from) { return std::vector<float>(from.begin(), from.end()); };
+  in_float_ = {rounded(to.x),
+               rounded(to.y),
+               rounded(to.value),
+               rounded(to.alpha),
+               rounded(to.soft2),
+               static_cast<float>(to.low),
+               static_cast<float>(to.high)};
+}
+
+void MovingLeastSquares::keep_below(double limit) noexcept {
+  in_double_.high = std::min(in_double_.high, limit * to_scaled_value_);
+  in_float_.high = static_cast<float>(in_double_.high);
+}
+
+template <class T>
+void MovingLeastSquares::at(InstructionSet set, std::size_t count, const T* x, const T* y, T* out) const noexcept {
+  const auto& columns = [this]() -> const Columns<T>& {
+    if constexpr (std::is_same_v<T, float>) {
+      return in_float_;
+    } else {
+      return in_double_;
+    }
+  }();
+  const bool whole = beta_ == std::floor(beta_);
+  const LeastSquaresJob<T> job{
+      .points = columns.x.size(),
+      .x = columns.x.data(),
+      .y = columns.y.data(),
+      .value = columns.value.data(),
+      .alpha = columns.alpha.data(),
+      .soft2 = columns.soft2.data(),
+      .affine = affine_,
+      .odd = whole && std::fmod(beta_, 2) == 1,
+      .wholes = whole ? static_cast<int>(beta_) / 2 : -1,
+      .half_beta = static_cast<T>(beta_ / 2),
+      .low = columns.low,
+      .high = columns.high,
+      .to_scaled = static_cast<T>(to_scaled_),
+      .reach = static_cast<T>(2 * reach),
+      .from_scaled = static_cast<T>(1 / to_scaled_value_),
+      .count = count,
+      .at_x = x,
+      .at_y = y,
+      .out = out,
+  };
+  const LeastSquaresLoops& loops = loops_of(set);
+  if constexpr (std::is_same_v<T, float>) {
+    loops.in_float(job);
+  } else {
+    loops.in_double(job);
+  }
+}
+
+template <class T>
+void MovingLeastSquares::at(std::size_t count, const T* x, const T* y, T* out) const noexcept {
+  at(instruction_sets().back(), count, x, y, out);
+}
+
+double MovingLeastSquares::at(const FilmPoint& place) const noexcept {
+  double value = 0;
+  at(InstructionSet::baseline, 1, &place.x, &place.y, &value);  // the quickest for one
+  return value;
+}
+
+template PETZVAL_API void MovingLeastSquares::at(std::size_t, const float*, const float*, float*) const noexcept;
+template PETZVAL_API void MovingLeastSquares::at(std::size_t, const double*, const double*, double*) const noexcept;
+template PETZVAL_API void MovingLeastSquares::at(InstructionSet, std::size_t, const float*, const float*,
+                                                 float*) const noexcept;
+template PETZVAL_API void MovingLeastSquares::at(InstructionSet, std::size_t, const double*, const double*,
+                                                 double*) const noexcept;
+
+// Let h(q) = a + g . (q - p) be the plane of a place p, and L_i = 1 / W + (p - mean) . C^-1 (x_i - mean) the part of
+// point i in a. The normal equations, differentiated, give
+//
+//     da/dp = g + sum_i dw_i/dp L_i (f_i - h(x_i)),   dw_i/dp = -beta w_i (p - x_i) / r2_i,
+//
+// in which the common factor m of the weights counts as constant.
+Vec2<double> MovingLeastSquares::slopes(const FilmPoint& place) const noexcept {
+  using V = Vec2<double>;
+  const Columns<double>& points = in_double_;
+  const std::size_t count = points.x.size();
+  const V p{place.x * to_scaled_, place.y * to_scaled_};
+  const double value = at(place) * to_scaled_value_;
+  if (!(value > points.low && value < points.high)) return {0, 0};
+  const auto away = [&](std::size_t i) { return p - V{points.x[i], points.y[i]}; };
+  const auto dot = [](const V& a, const V& b) { return a.x * b.x + a.y * b.y; };
+  const auto r2_of = [&](std::size_t i) { return dot(away(i), away(i)) + points.soft2[i]; };
+
+  std::size_t nearest = 0;
+  double least = std::numeric_limits<double>::infinity(), next = least;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double r2 = r2_of(i);
+    if (r2 < least) least = r2, nearest = i;
+    if (r2 > 0) next = std::min(next, r2);
+  }
+  // At a point, the others alone determine the slopes: their weights relative to the nearest of them.
+  const bool on_point = least == 0;
+  if (on_point && !(affine_ && std::isfinite(next))) return {0, 0};
+  const auto weight = [&](std::size_t i) {
+    const double r2 = r2_of(i);
+    if (r2 == 0) return 0.0;
+    return points.alpha[i] * std::pow((on_point ? next : least) / r2, beta_ / 2);
+  };
+  const V centre{points.x[nearest], points.y[nearest]};
+  const double centre_value = on_point ? value : points.value[nearest];
+  double w_sum = 0, wf = 0, xx = 0, xy = 0, yy = 0;
+  V wq{0, 0}, wqf{0, 0};
+  for (std::size_t i = 0; i < count; ++i) {
+    const double w = weight(i), f = points.value[i] - centre_value;
+    const V q = V{points.x[i], points.y[i]} - centre;
+    w_sum += w;
+    wf += w * f;
+    wq += w * q;
+    wqf += w * f * q;
+    xx += w * q.x * q.x;
+    xy += w * q.x * q.y;
+    yy += w * q.y * q.y;
+  }
+  const V mean = on_point ? V{0, 0} : wq / w_sum;
+  const double mean_value = on_point ? 0 : wf / w_sum, ridge = 1e-12 * (xx + yy);
+  V slope{0, 0};
+  const auto solved = [&](const V& right) {
+    if (!affine_ || !(ridge > 0)) return V{0, 0};
+    const double a = xx - w_sum * mean.x * mean.x + ridge, c = yy - w_sum * mean.y * mean.y + ridge;
+    const double b = xy - w_sum * mean.x * mean.y;
+    // By elimination from the longer axis, as the loops do.
+    if (a < c) {
+      const double part = b / c, x = (right.x - part * right.y) / std::max(a - part * b, ridge);
+      return V{x, (right.y - b * x) / c};
+    }
+    const double part = b / a, y = (right.y - part * right.x) / std::max(c - part * b, ridge);
+    return V{(right.x - b * y) / a, y};
+  };
+  slope = solved(wqf - w_sum * mean_value * mean);
+  V result = slope;
+  if (!on_point) {
+    const V from_mean = p - centre - mean, towards = solved(from_mean);
+    for (std::size_t i = 0; i < count; ++i) {
+      const V q = V{points.x[i], points.y[i]} - centre - mean;
+      const double residual = points.value[i] - centre_value - mean_value - dot(slope, q);
+      const double part = 1 / w_sum + dot(towards, q);
+      result -= beta_ * weight(i) / r2_of(i) * part * residual * away(i);
+    }
+  }
+  return result * (to_scaled_ / to_scaled_value_);
+}
+
+}  // namespace petzval::inline v0::movement_detail

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "petzval/core/export.hpp"
+#include "petzval/core/geometry.hpp"
+#include "petzval/core/instruction_set.hpp"
+#include "petzval/film/film.hpp"
+#include "petzval/movement/focal_surface.hpp"
+
+namespace petzval::inline v0::movement_detail {
+
+/// A value at a place of the film.
+struct WeighedValue {
+  FilmPoint place;
+  double value = 0;
+  double weight = 1;  ///< 0 or more
+  double fade = 1;    ///< from 0 (gone) to 1
+};
+
+/// Throws Error, which begins with `where`, for what MovingLeastSquares does not take.
+void check(const WeighedValue& point, double side, const std::string& where);
+
+/// A function of film places through values at some of them, by moving least squares: at each place the constant or the
+/// plane that fits the values best, with weights that fall with the distance d to the power -beta.
+///
+/// Weights are alpha (m / r2)^(beta / 2) with r2 = d^2 + soft^2 and m the least r2, so that nothing overflows, and a
+/// place at a point gives the point's value to the last bit (points in one place: their mean). alpha is weight times
+/// fade. soft is 0 for points that count in full, and grows as a point fades, or as its alpha falls below a thousandth
+/// of the largest, up to a tenth of the picture's side: a point that vanishes leaves no spike behind. Only ratios of
+/// alphas count; points below 1e-9 of the largest are left out.
+///
+/// Planes: about the weighted mean, with a relative ridge (1e-12 in double, 1e-6 in float): points on a line give the
+/// slope along it alone, points in one place their mean. The result stays within [least - m, most + m] of the values of
+/// the points, with m = most - least.
+///
+/// Accuracy in double: within 1e-10 of the range of the values for points that are not near a line (float: 1e-4). Results are the same
+/// for all instruction sets and however places are batched; they are finite for any place, as constants beyond 1e6
+/// sides. Source: Lancaster and Salkauskas 1981; weights of Lee et al. 2010, section 5.2.
+class PETZVAL_API MovingLeastSquares {
+ public:
+  /// side: of the picture, mm: the root of its area. Throws Error, which begins with `where` and the number of the
+  /// point from 1, for numbers that are not finite, places beyond 1e6 sides, negative weights and fades outside [0, 1];
+  /// and for no points of weight, beta outside [1, 8], and a side that is not above 0.
+  MovingLeastSquares(std::string_view where, std::span<const WeighedValue> points, double side, SurfaceKind kind,
+                     double beta);
+
+  double at(const FilmPoint& place) const noexcept;
+  /// N places, float or double; out: N.
+  template <class T>
+  void at(std::size_t count, const T* x, const T* y, T* out) const noexcept;
+  /// The same by the loops of one of instruction_sets().
+  template <class T>
+  void at(InstructionSet set, std::size_t count, const T* x, const T* y, T* out) const noexcept;
+  /// The derivatives of at() by x and y. At a point: those of the plane there (beta 1 has a cusp there).
+  Vec2<double> slopes(const FilmPoint& place) const noexcept;
+
+  /// What results are within.
+  double least() const noexcept { return in_double_.low / to_scaled_value_; }
+  double most() const noexcept { return in_double_.high / to_scaled_value_; }
+  /// Keeps results at or below a limit, which is not below any value.
+  void keep_below(double limit) noexcept;
+
+ private:
+  template <class R>
+  struct Columns {
+    std::vector<R> x, y, value, alpha, soft2;
+    R low = 0, high = 0;
+  };
+
+  bool affine_;
+  double beta_;
+  double to_scaled_ = 1, to_scaled_value_ = 1;
+  Columns<double> in_double_;
+  Columns<float> in_float_;
+};
+
+}  // namespace petzval::inline v0::movement_detail

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+// The loops of MovingLeastSquares over places, which moving_least_squares_loops.cpp defines for each instruction set.
+#pragma once
+
+#include <cstddef>
+
+#include "petzval/core/version.hpp"
+
+namespace petzval::inline v0::movement_detail {
+
+/// Points and places in one type of number. Places and values are scaled by powers of two, which loses nothing, so that
+/// squares neither overflow nor vanish.
+template <class R>
+struct LeastSquaresJob {
+  std::size_t points = 0;
+  const R *x = nullptr, *y = nullptr, *value = nullptr;  ///< scaled
+  const R *alpha = nullptr, *soft2 = nullptr;            ///< above 0, at most 1; 0 or more
+  bool affine = true;
+  bool odd = false;  ///< beta is 2 wholes + 1, or 2 wholes
+  int wholes = 0;    ///< negative: any other beta, twice half_beta
+  R half_beta = 0;
+  R low = 0, high = 0;  ///< of the result, scaled
+  R to_scaled = 1, reach = 0, from_scaled = 1;
+  std::size_t count = 0;
+  const R *at_x = nullptr, *at_y = nullptr;  ///< mm
+  R* out = nullptr;
+};
+
+struct LeastSquaresLoops {
+  void (*in_float)(const LeastSquaresJob<float>&) noexcept;
+  void (*in_double)(const LeastSquaresJob<double>&) noexcept;
+};
+
+extern const LeastSquaresLoops least_squares_loops_baseline, least_squares_loops_avx2, least_squares_loops_avx512;
+
+}  // namespace petzval::inline v0::movement_detail

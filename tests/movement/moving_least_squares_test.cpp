@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "movement/moving_least_squares.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "petzval/core/error.hpp"
+#include "petzval/core/instruction_set.hpp"
+
+namespace {
+
+using namespace petzval;
+using movement_detail::MovingLeastSquares;
+using movement_detail::WeighedValue;
+
+constexpr SurfaceKind kinds[] = {SurfaceKind::affine, SurfaceKind::shepard};
+constexpr double betas[] = {1, 2, 2.5, 3, 4, 5.3, 8};
+
+MovingLeastSquares through(const std::vector<WeighedValue>& points, SurfaceKind kind = SurfaceKind::affine,
+                           double beta = 3, double side = 1) {
+  return {"test", points, side, kind, beta};
+}
+
+std::vector<WeighedValue> random_points(unsigned seed, std::size_t count) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  std::vector<WeighedValue> points;
+  for (std::size_t i = 0; i < count; ++i) {
+    points.push_back({{unit(random), unit(random)}, unit(random), 0.1 + std::abs(unit(random))});
+  }
+  return points;
+}
+
+// Computed with 40 digits.
+TEST(MovingLeastSquares, GivesTheValuesOfAnIndependentComputation) {
+  std::vector<WeighedValue> points{{{0, 0}, 0.5}, {{1, 0}, 0.25}, {{0, 1}, 0.125, 2}};
+  const FilmPoint at{0.3, 0.2};
+  const double by_beta[] = {0.31177199880250149, 0.37830858618463525, 0.43180227305683083, 0.46544479750646939};
+  for (int b = 0; b < 4; ++b) {
+    EXPECT_NEAR(through(points, SurfaceKind::shepard, b + 1).at(at), by_beta[b], 1e-15) << b;
+  }
+  points.push_back({{1, 1}, 0.4});
+  EXPECT_NEAR(through(points, SurfaceKind::shepard, 2).at(at), 0.37976240763813471, 1e-15);
+  EXPECT_NEAR(through(points, SurfaceKind::affine, 2).at(at), 0.39068445475636171, 1e-12);
+  EXPECT_NEAR(through(points, SurfaceKind::affine, 4).at(at), 0.38681544143619512, 1e-12);
+}
+
+TEST(MovingLeastSquares, IsExactAtItsPoints) {
+  for (const SurfaceKind kind : kinds) {
+    for (const double beta : betas) {
+      const auto points = random_points(1, 16);
+      const auto surface = through(points, kind, beta);
+      for (const auto& point : points) {
+        EXPECT_EQ(surface.at(point.place), point.value) << name(kind) << beta;
+        const float x = static_cast<float>(point.place.x), y = static_cast<float>(point.place.y);
+        float value = 0;
+        surface.at(1, &x, &y, &value);
+        EXPECT_EQ(value, static_cast<float>(point.value)) << name(kind) << beta;
+      }
+    }
+  }
+}
+
+TEST(MovingLeastSquares, ReproducesPlanes) {
+  for (const double beta : betas) {
+    auto points = random_points(2, 8);
+    const auto plane = [](const FilmPoint& p) { return 0.3 - 0.7 * p.x + 0.4 * p.y; };
+    for (auto& point : points) point.value = plane(point.place);
+    const auto surface = through(points, SurfaceKind::affine, beta);
+    for (const auto& at : random_points(3, 100)) {
+      EXPECT_NEAR(surface.at(at.place), plane(at.place), 1e-10) << beta;
+      const float x = static_cast<float>(at.place.x), y = static_cast<float>(at.place.y);
+      float value = 0;
+      surface.at(1, &x, &y, &value);
+      EXPECT_NEAR(value, plane(at.place), 1e-4) << beta;
+    }
+  }
+}
+
+TEST(MovingLeastSquares, SlopesAreFiniteDifferences) {
+  for (const SurfaceKind kind : kinds) {
+    for (const double beta : betas) {
+      const auto points = random_points(4, 12);
+      const auto surface = through(points, kind, beta);
+      for (const auto& at : random_points(5, 50)) {
+        const auto& [x, y] = at.place;
+        const double h = 1e-6;
+        const Vec2<double> slopes = surface.slopes(at.place);
+        EXPECT_NEAR(slopes.x, (surface.at({x + h, y}) - surface.at({x - h, y})) / (2 * h), 1e-6) << name(kind) << beta;
+        EXPECT_NEAR(slopes.y, (surface.at({x, y + h}) - surface.at({x, y - h})) / (2 * h), 1e-6) << name(kind) << beta;
+      }
+      if (beta <= 1.5) continue;
+      for (const auto& at : points) {
+        const auto& [x, y] = at.place;
+        const double h = beta < 3 ? 1e-9 : 1e-6;
+        const Vec2<double> slopes = surface.slopes(at.place);
+        const double tolerance = beta < 3 ? 3e-3 : 1e-3;
+        EXPECT_NEAR(slopes.x, (surface.at({x + h, y}) - surface.at({x - h, y})) / (2 * h), tolerance)
+            << name(kind) << beta;
+        EXPECT_NEAR(slopes.y, (surface.at({x, y + h}) - surface.at({x, y - h})) / (2 * h), tolerance)
+            << name(kind) << beta;
+      }
+    }
+  }
+}
+
+template <class T>
+void expect_same_bits() {
+  std::vector<T> x, y;
+  for (const auto& at : random_points(6, 333)) {
+    x.push_back(static_cast<T>(1.5 * at.place.x));
+    y.push_back(static_cast<T>(1.5 * at.place.y));
+  }
+  for (const SurfaceKind kind : kinds) {
+    for (const double beta : betas) {
+      const auto surface = through(random_points(7, 13), kind, beta);
+      std::vector<T> expected(x.size()), found(x.size());
+      surface.at(InstructionSet::baseline, x.size(), x.data(), y.data(), expected.data());
+      for (const InstructionSet set : instruction_sets()) {
+        surface.at(set, x.size(), x.data(), y.data(), found.data());
+        EXPECT_EQ(found, expected) << name(set) << name(kind) << beta;
+        for (std::size_t i = 0; i < x.size(); ++i) {
+          T single = 0;
+          surface.at(set, 1, &x[i], &y[i], &single);
+          EXPECT_EQ(single, expected[i]) << name(set) << name(kind) << beta;
+        }
+      }
+    }
+  }
+}
+
+TEST(MovingLeastSquares, GivesTheSameBitsOnAllInstructionSetsAndInBatches) {
+  expect_same_bits<float>();
+  expect_same_bits<double>();
+}
+
+}  // namespace
