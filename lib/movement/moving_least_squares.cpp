@@ -212,21 +212,24 @@ Vec2<double> MovingLeastSquares::slopes(const FilmPoint& place) const noexcept {
     yy += w * q.y * q.y;
   }
   const V mean = on_point ? V{0, 0} : wq / w_sum;
-  const double mean_value = on_point ? 0 : wf / w_sum, ridge = 1e-12 * (xx + yy);
-  V slope{0, 0};
-  const auto solved = [&](const V& right) {
-    if (!affine_ || !(ridge > 0)) return V{0, 0};
-    const double a = xx - w_sum * mean.x * mean.x + ridge, c = yy - w_sum * mean.y * mean.y + ridge;
-    const double b = xy - w_sum * mean.x * mean.y;
-    // By elimination from the longer axis, as the loops do.
-    if (a < c) {
-      const double part = b / c, x = (right.x - part * right.y) / std::max(a - part * b, ridge);
-      return V{x, (right.y - b * x) / c};
-    }
-    const double part = b / a, y = (right.y - part * right.x) / std::max(c - part * b, ridge);
-    return V{(right.x - b * y) / a, y};
+  const double mean_value = on_point ? 0 : wf / w_sum, trace = xx + yy;
+  // As the loops solve it.
+  const auto inverse = [&](double moment) {
+    constexpr double thin = 1e-10;
+    const double relative = std::max(moment / trace, 0.0);
+    return relative / (relative * relative + thin * thin) / trace;
   };
-  slope = solved(wqf - w_sum * mean_value * mean);
+  const double a = xx - w_sum * mean.x * mean.x, b = xy - w_sum * mean.x * mean.y, c = yy - w_sum * mean.y * mean.y;
+  const auto solved = [&](const V& right) {
+    if (!affine_ || !(trace > 1e-290)) return V{0, 0};
+    const bool upright = a < c;
+    const V ordered = upright ? V{right.y, right.x} : right;
+    const double per_first = inverse(std::max(a, c)), part = b * per_first;
+    const double second = (ordered.y - part * ordered.x) * inverse(std::min(a, c) - part * b);
+    const double first = (ordered.x - b * second) * per_first;
+    return upright ? V{second, first} : V{first, second};
+  };
+  const V slope = solved(wqf - w_sum * mean_value * mean);
   V result = slope;
   if (!on_point) {
     const V from_mean = p - centre - mean, towards = solved(from_mean);

@@ -35,13 +35,14 @@ void check(const WeighedValue& point, double side, const std::string& where);
 /// of the largest, up to a tenth of the picture's side: a point that vanishes leaves no spike behind. Only ratios of
 /// alphas count; points below 1e-9 of the largest are left out.
 ///
-/// Planes: about the weighted mean, with a relative ridge (1e-12 in double, 1e-6 in float): points on a line give the
-/// slope along it alone, points in one place their mean. The result stays within [least - m, most + m] of the values of
-/// the points, with m = most - least.
+/// Planes of points on a line have the slope along it alone, those of points in one place none: second moments far
+/// below 1e-10 (float: 1e-5) of the larger one count as 0. The result stays within [least - m, most + m] of the values
+/// of the points, with m = most - least.
 ///
-/// Accuracy in double: within 1e-10 of the range of the values for points that are not near a line (float: 1e-4). Results are the same
-/// for all instruction sets and however places are batched; they are finite for any place, as constants beyond 1e6
-/// sides. Source: Lancaster and Salkauskas 1981; weights of Lee et al. 2010, section 5.2.
+/// Results are the same for all instruction sets and however places are batched; they are finite for any place, as
+/// constants beyond 1e6 sides. Accuracy: planes are reproduced within 1e-13 (float: 1e-5) of the range of values for
+/// beta up to 4, and within 1e-11 (1e-3) for 8. Source: Lancaster and Salkauskas 1981; weights of Lee et al. 2010,
+/// section 5.2.
 class PETZVAL_API MovingLeastSquares {
  public:
   /// side: of the picture, mm: the root of its area. Throws Error, which begins with `where` and the number of the

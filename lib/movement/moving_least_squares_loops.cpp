@@ -30,14 +30,14 @@ struct Format<float> {
   using Bits = std::int32_t;
   static constexpr int fraction_bits = 23, log_terms = 6, exp_terms = 8;
   static constexpr Bits root_half = 0x3f3504f3;  // of 0.70710678
-  static constexpr float least_power = -125, least_base = 1.2e-38F, ridge = 1e-6F, least_trace = 1e-36F;
+  static constexpr float least_power = -125, least_base = 1.2e-38F, thin = 1e-5F, least_trace = 1e-36F;
 };
 template <>
 struct Format<double> {
   using Bits = std::int64_t;
   static constexpr int fraction_bits = 52, log_terms = 12, exp_terms = 14;
   static constexpr Bits root_half = 0x3fe6a09e667f3bcd;
-  static constexpr double least_power = -1021, least_base = 2.3e-308, ridge = 1e-12, least_trace = 1e-290;
+  static constexpr double least_power = -1021, least_base = 2.3e-308, thin = 1e-10, least_trace = 1e-290;
 };
 
 /// base^exponent for base from 0 to 1 and exponent above 0, by logarithm and exponential to the base 2; what is below
@@ -124,17 +124,23 @@ PETZVAL_INLINE Lanes<R> value_at(const LeastSquaresJob<R>& job, Lanes<R> x, Lane
   const L per_weight = L(1) / w_sum, mean = wf * per_weight;
   if constexpr (!affine) return centre_value + mean;
 
-  // The plane through the mean, its slopes from the moments about it, by elimination from the longer axis.
-  const L mean_x = wx * per_weight, mean_y = wy * per_weight;
-  const L trace = wxx + wyy, ridge = trace * L(Format<R>::ridge);
-  const L xx = larger(wxx - wx * mean_x, L(0)) + ridge, yy = larger(wyy - wy * mean_y, L(0)) + ridge;
-  const L xy = wxy - wx * mean_y, xf = wxf - wf * mean_x, yf = wyf - wf * mean_y;
-  const auto upright = xx < yy, spread = L(Format<R>::least_trace) < trace;
-  const L first = select(spread, select(upright, yy, xx), L(1)), second = select(upright, xx, yy);
+  // The plane through the mean, its slopes from the moments about it, by elimination from the longer axis. Relative
+  // moments m far below `thin` are rounding errors of points on a line: m / (m^2 + thin^2) stands for 1 / m.
+  const L mean_x = wx * per_weight, mean_y = wy * per_weight, trace = wxx + wyy;
+  const auto spread = L(Format<R>::least_trace) < trace;
+  const L per_trace = L(1) / select(spread, trace, L(1));
+  const auto inverse = [&](L moment) {
+    const L relative = larger(moment * per_trace, L(0));
+    return relative / (relative * relative + L(Format<R>::thin * Format<R>::thin)) * per_trace;
+  };
+  const L xx = wxx - wx * mean_x, xy = wxy - wx * mean_y, yy = wyy - wy * mean_y;
+  const L xf = wxf - wf * mean_x, yf = wyf - wf * mean_y;
+  const auto upright = xx < yy;
+  const L first = select(upright, yy, xx), second = select(upright, xx, yy);
   const L first_f = select(upright, yf, xf), second_f = select(upright, xf, yf);
-  const L part = xy / first;
-  const L rest = select(spread, larger(second - part * xy, ridge), L(1));
-  const L second_slope = (second_f - part * first_f) / rest, first_slope = (first_f - xy * second_slope) / first;
+  const L per_first = inverse(first), part = xy * per_first;
+  const L second_slope = (second_f - part * first_f) * inverse(second - part * xy);
+  const L first_slope = (first_f - xy * second_slope) * per_first;
   const L from_x = x - centre_x - mean_x, from_y = y - centre_y - mean_y;
   const L along = select(upright, from_y, from_x), across = select(upright, from_x, from_y);
   const L rise = first_slope * along + second_slope * across;
