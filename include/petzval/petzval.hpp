@@ -42,6 +42,7 @@
 #include "petzval/accuracy/choose_model.hpp"
 #include "petzval/camera/camera.hpp"
 #include "petzval/camera/camera_tables.hpp"
+#include "petzval/camera/expressive_lens.hpp"
 #include "petzval/camera/host_frame.hpp"
 #include "petzval/camera/polynomial_model.hpp"
 #include "petzval/camera/ray_model.hpp"

@@ -112,6 +112,13 @@ std::vector<double> scales(const Lens& lens, const Film& film, const AnyRayModel
   return each;
 }
 
+/// Bends a ray with its derivatives to the focus of its film point.
+void bend(const camera_detail::LocalFocus& focus, const std::optional<TiltedFilm>& tilted, const CameraSample& sample,
+          Wavelength wavelength, RayDerivatives& ray) {
+  const auto nearer = tilted ? tilted->plane(sample.time).nearer_at(sample.film) : camera_detail::TiltedPlane::Nearer{};
+  focus.bend(sample.film, nearer.value, nearer.by, wavelength, ray);
+}
+
 /// The wavelengths between which there are samples.
 std::span<const double> nm_of(const Lens& lens, const AnyRayModel& model) {
   const bool any = model.any_wavelength() && std::isfinite(lens.index_error());
@@ -121,20 +128,21 @@ std::span<const double> nm_of(const Lens& lens, const AnyRayModel& model) {
 }  // namespace
 
 Camera::Data::Data(const LensFacts& facts, const Film& placed, const AnyRayModel& any, double radius,
-                   Normalisation unit, const BokehControls& bokeh)
+                   const CameraOptions& options)
     : lens(facts.lens()),
       film(placed),
       model(any),
       tilted(camera_detail::tilted_or_moving(placed) ? std::optional(TiltedFilm(placed, any.pupils())) : std::nullopt),
-      weights(lens, model, bokeh),
-      wavelengths(model, scales(lens, film, model, weights, unit), nm_of(lens, model)),
+      weights(lens, model, options.bokeh),
+      wavelengths(model, scales(lens, film, model, weights, options.normalisation), nm_of(lens, model)),
       front(camera_detail::front_of(lens)),
-      normalisation(unit),
+      focus(facts, placed, any, options.focal_surface, options.expressive),
+      normalisation(options.normalisation),
       pdf_film(1 / film.area_mm2()),
       facts_(facts),
       radius_(radius),
       primary_(lens.primary_wavelength()),
-      view_{model, film, tilted ? &*tilted : nullptr, wavelengths, weights, front} {}
+      view_{model, film, tilted ? &*tilted : nullptr, wavelengths, weights, front, focus} {}
 
 Camera::Camera(const Lens& lens, const Film& film, const CameraOptions& options) {
   const int blades = options.bokeh.lens_elements;
@@ -148,7 +156,7 @@ Camera::Camera(const Lens& lens, const Film& film, const CameraOptions& options)
   const auto rim =
       bokeh.vignettes() ? std::optional(PupilRim{bokeh.lens_ratio, bokeh.rate_of_change / half}) : std::nullopt;
   const AnyRayModel model = camera_detail::make_model(options.model, facts, radius, options.threads, rim);
-  data_ = std::make_shared<const Data>(facts, placed_film, model, radius, options.normalisation, options.bokeh);
+  data_ = std::make_shared<const Data>(facts, placed_film, model, radius, options);
 }
 
 Camera::Camera(const Lens& lens, const Film& film, const AnyRayModel& model, Normalisation normalisation,
@@ -164,13 +172,19 @@ Camera::Camera(const Lens& lens, const Film& film, const AnyRayModel& model, Nor
   const double radius = camera_detail::upright_radius(facts, placed_film, model.kind());
   check_model(placed_lens, model.pupils(), radius);
   check_wavelengths(placed_lens, model);
-  data_ = std::make_shared<const Data>(facts, placed_film, model, radius, normalisation, bokeh);
+  data_ = std::make_shared<const Data>(facts, placed_film, model, radius,
+                                       CameraOptions{.normalisation = normalisation, .bokeh = bokeh});
 }
 
 const Lens& Camera::lens() const noexcept { return data_->lens; }
 const Film& Camera::film() const noexcept { return data_->film; }
 ModelKind Camera::model() const noexcept { return data_->model.kind(); }
 Normalisation Camera::normalisation() const noexcept { return data_->normalisation; }
+
+FocalSteepness Camera::focal_steepness() const noexcept {
+  if (!data_->focus) return {};
+  return data_->focus.steepness(data_->tilted ? std::optional(data_->tilted->plane(0)) : std::nullopt);
+}
 
 CameraRay Camera::sample(const CameraSample& s) const noexcept {
   const Data& data = *data_;
@@ -203,6 +217,7 @@ CameraRayDifferential Camera::sample_differential(const CameraSample& s) const n
                                                                             data.wavelengths.pinhole_shift(wavelength))
                                                              : data.tilted->line(s.film, u, v, wavelength, s.time);
   RayDerivatives ray = data.model.to_scene(line, wavelength);
+  if (data.focus) bend(data.focus, data.tilted, s, wavelength, ray);
   if (data.view().moves_rays()) ray = at_front(data.front, ray);
   result.by_film_x = ray.by_u;
   result.by_film_y = ray.by_v;

@@ -17,7 +17,7 @@ namespace petzval::inline v0 {
 struct Camera::Data {
   /// radius: upright_radius() of the film.
   Data(const camera_detail::LensFacts& facts, const Film& placed, const AnyRayModel& model, double radius,
-       Normalisation unit, const BokehControls& bokeh);
+       const CameraOptions& options);
 
   Lens lens;
   Film film;
@@ -26,6 +26,7 @@ struct Camera::Data {
   camera_detail::PupilWeights weights;
   camera_detail::WavelengthFacts wavelengths;  ///< scales of weights and importance
   camera_detail::Front front;
+  camera_detail::LocalFocus focus;
   Normalisation normalisation;
   double pdf_film;  ///< of film points spread uniformly over the film, 1/mm^2
 
@@ -38,7 +39,7 @@ struct Camera::Data {
   /// Renderers that trace paths from the film alone never ask for it.
   const camera_detail::SceneSide& scene() const {
     std::call_once(scene_once_,
-                   [&] { scene_.emplace(facts_, film, tilted, front, model, radius_, wavelengths, weights); });
+                   [&] { scene_.emplace(facts_, film, tilted, front, focus, model, radius_, wavelengths, weights); });
     return *scene_;
   }
 

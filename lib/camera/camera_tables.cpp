@@ -166,6 +166,7 @@ std::vector<float> Camera::tables() const {
   const std::string where = data.lens.name() + ": tables: ";
   if (data.tilted) throw Error(where + "the film is tilted or travels, wanted an upright one that stays");
   if (data.weights) throw Error(where + "the pupil has weights, wanted one without: a host weighs its own samples");
+  if (data.focus) throw Error(where + "found a focal surface or an expressive lens, wanted a camera without");
   Numbers to;
   to.set(Table::format, 3);
   to.set(Table::model, static_cast<int>(data.model.kind()));

@@ -94,7 +94,7 @@ std::optional<Ray<double>> to_scene(const AnyRayModel& model, std::size_t wavele
 }  // namespace
 
 ChiefRayTable::ChiefRayTable(const LensFacts& facts, const AnyRayModel& model, double film_radius,
-                             std::size_t wavelength) {
+                             std::size_t wavelength, std::optional<double> middle) {
   const Lens& lens = facts.lens();
   const TwoPlanes space = model.pupils().space();
   const bool traced =
@@ -113,8 +113,8 @@ ChiefRayTable::ChiefRayTable(const LensFacts& facts, const AnyRayModel& model, d
         const double film = film_radius * beyond_film * i / steps,
                      near = std::clamp(film, 1e-3 * film_radius, film_radius);
         const auto [x, y] = section.pair(near);
-        const auto middle = model.pupils().middle({x, y}, wavelength);
-        const double ratio = middle[section.along_x ? 0 : 1] / near;
+        const auto of_pupil = model.pupils().middle({x, y}, wavelength);
+        const double ratio = middle.value_or(of_pupil[section.along_x ? 0 : 1] / near);
         add(nodes, section, {film, ratio * film}, ratio);
       }
     };

@@ -17,7 +17,9 @@ namespace petzval::inline v0::camera_detail {
 /// centre of the stop; for the others, the model's rays through the middles of its own pupils.
 class ChiefRayTable {
  public:
-  ChiefRayTable(const LensFacts& facts, const AnyRayModel& model, double film_radius, std::size_t wavelength);
+  /// middle: of first-order models, where chief rays pass the plane of the pupil instead, over their film points.
+  ChiefRayTable(const LensFacts& facts, const AnyRayModel& model, double film_radius, std::size_t wavelength,
+                std::optional<double> middle = {});
 
   /// Where a film point's chief ray passes the plane of the pupil.
   std::array<double, 2> pupil_point(const FilmPoint& film) const noexcept;

@@ -125,19 +125,20 @@ double pinhole_entrance_area(const AnyRayModel& model, double entrance_z, std::s
 }  // namespace
 
 SceneSide::SceneSide(const LensFacts& facts, const Film& film, std::optional<TiltedFilm> tilted, const Front& front,
-                     const AnyRayModel& model, double radius, const WavelengthFacts& wavelengths,
-                     const PupilWeights& weights)
+                     const LocalFocus& focus, const AnyRayModel& model, double radius,
+                     const WavelengthFacts& wavelengths, const PupilWeights& weights)
     : film_(film),
       tilted_(std::move(tilted)),
       upright_radius_(radius),
       pdf_film_(1 / film.area_mm2()),
       space_(model.pupils().space()),
       front_(front),
+      focus_(focus),
       wavelengths_(wavelengths),
       weights_(weights),
       in_nm_(facts.lens().wavelengths_nm()),
       primary_(model.pupils().primary_wavelength()),
-      entrance_(entrance_of(facts.lens(), model)) {
+      entrance_(focus ? focus.entrances(facts.lens(), model) : entrance_of(facts.lens(), model)) {
   const Lens& lens = facts.lens();
   if (const FilmPupilTable& pupils = model.pupils(); model.pinhole() && pupils.cut()) {
     whole_ = tilted_ ? TiltedFilm(film, pupils.whole()).pupils() : pupils.whole();
@@ -151,11 +152,12 @@ SceneSide::SceneSide(const LensFacts& facts, const Film& film, std::optional<Til
         model.pinhole() ? pinhole_entrance_area(model, entrance.z, w) : pi / 4 * across * entrance.diameter;
     // Nothing passes a pupil whose density has no number.
     const double area = found >= std::numeric_limits<double>::min() ? found : 0;
-    compiled_.push_back({{.we = etendue * wavelengths.scale(w) / film.area_mm2(),
-                          .density = etendue / film.area_mm2() / squared(space_.depth()),
-                          .entrance_z = entrance.z,
-                          .entrance_area = area},
-                         ChiefRayTable(facts, model, upright_radius_, w)});
+    compiled_.push_back(
+        {{.we = etendue * wavelengths.scale(w) / film.area_mm2(),
+          .density = etendue / film.area_mm2() / squared(space_.depth()),
+          .entrance_z = entrance.z,
+          .entrance_area = area},
+         ChiefRayTable(facts, model, upright_radius_, w, focus ? std::optional(focus.middle(w)) : std::nullopt)});
     values.push_back({etendue, entrance.z, area});
   }
   between_ = {in_nm_, values};
@@ -183,11 +185,18 @@ bool SceneSide::valid(const Ray<double>& ray, Wavelength wavelength) const noexc
   return wavelengths_.covers(wavelength) && finite(ray.origin) && unit_length(ray.direction);
 }
 
-SceneSide::Arrival SceneSide::arrive(const AnyRayModel& model, const Ray<double>& ray,
-                                     Wavelength wavelength) const noexcept {
+SceneSide::Arrival SceneSide::arrive(const AnyRayModel& model, const Ray<double>& ray, Wavelength wavelength,
+                                     double time) const noexcept {
   Arrival result;
   if (!valid(ray, wavelength)) return result;
-  const Vec3<double>&d = ray.direction, o = nearest_to_lens(ray);
+  Ray<double> arrives{nearest_to_lens(ray), ray.direction};
+  if (focus_) {
+    const LocalFocus::Straight straight = focus_.straighten(arrives, wavelength, plane(time));
+    result.fate = RayFate::vignetted;
+    if (!(straight.spread > 0)) return result;
+    arrives = straight.ray, result.spread = straight.spread;
+  }
+  const auto& [o, d] = arrives;
   const TwoPlaneRays<double> line{&result.upright.x, &result.upright.y, &result.pupil.x, &result.pupil.y};
   model.to_film(1, {&o.x, &o.y, &o.z, &d.x, &d.y, &d.z}, {.all = wavelength}, line, &result.fate);
   return result;
@@ -219,23 +228,24 @@ Importance SceneSide::met_by(const Arrival& arrival, const std::optional<OnFilm>
 
 void SceneSide::weigh(Importance& result, const AnyRayModel& model, const Arrival& arrival, double facing,
                       double cosine, double area, const Facts& at) const noexcept {
-  const auto& [fate, upright, pupil] = arrival;
+  const auto& [fate, upright, pupil, spread] = arrival;
   const double depth2 = squared(space_.depth());
   const double length2 = squared(pupil.x - upright.x) + squared(pupil.y - upright.y) + depth2;
   const double slopes = model.linear_in_slopes() ? squared(depth2 / (length2 * squared(cosine))) : 1;
-  result.we = at.we * slopes;
+  result.we = at.we * slopes / spread;
   result.pdf_film = pdf_film_;
   result.pdf_pupil = area > 0 ? 1 / area : 0;
   // A pupil at infinity has no place; all of the density is the direction's.
   result.pdf_position = std::isfinite(at.entrance_area) ? 1 / at.entrance_area : 1;
-  result.pdf_direction = at.density * squared(length2) / facing * slopes * result.pdf_pupil / result.pdf_position;
+  result.pdf_direction =
+      at.density * squared(length2) / facing * slopes / spread * result.pdf_pupil / result.pdf_position;
 }
 
 Importance SceneSide::importance(const AnyRayModel& model, const Ray<double>& ray, Wavelength wavelength,
                                  double time) const noexcept {
   // No ray meets a point but one that was aimed at it.
   if (model.pinhole()) return {.fate = valid(ray, wavelength) ? RayFate::vignetted : RayFate::invalid};
-  return arrived(model, arrive(model, ray, wavelength), ray.direction.z, wavelength, time);
+  return arrived(model, arrive(model, ray, wavelength, time), ray.direction.z, wavelength, time);
 }
 
 void SceneSide::importance(const AnyRayModel& model, std::size_t count, const RayArrays<const double>& rays,
@@ -248,16 +258,16 @@ void SceneSide::importance(const AnyRayModel& model, std::size_t count, const Ra
     const std::size_t n = std::min(block, count - begin);
     std::array<std::array<double, block>, 10> columns;
     auto& [x, y, z, dx, dy, dz, film_x, film_y, pupil_x, pupil_y] = columns;
-    bool all_valid = !model.pinhole();
+    bool side_by_side = !model.pinhole() && !focus_;
     for (std::size_t i = 0; i < n; ++i) {
       const Ray<double> ray = ray_at(begin + i);
-      all_valid = all_valid && valid(ray, wavelengths.at(begin + i));
+      side_by_side = side_by_side && valid(ray, wavelengths.at(begin + i));
       const Vec3<double> near = nearest_to_lens(ray);
       x[i] = near.x, y[i] = near.y, z[i] = near.z;
       dx[i] = ray.direction.x, dy[i] = ray.direction.y, dz[i] = ray.direction.z;
     }
     const auto time = [&](std::size_t i) { return times ? times[begin + i] : 0; };
-    if (!all_valid) {
+    if (!side_by_side) {
       for (std::size_t i = 0; i < n; ++i) {
         found[begin + i] = importance(model, ray_at(begin + i), wavelengths.at(begin + i), time(i));
       }
@@ -275,7 +285,7 @@ void SceneSide::importance(const AnyRayModel& model, std::size_t count, const Ra
 
 Importance SceneSide::arrived(const AnyRayModel& model, const Arrival& arrival, double cosine, Wavelength wavelength,
                               double time) const noexcept {
-  const auto& [fate, upright, pupil] = arrival;
+  const FilmPoint &upright = arrival.upright, &pupil = arrival.pupil;
   const auto placed = plane(time);
   const auto met = on_film(upright, pupil, placed);
   Importance result = met_by(arrival, met);
@@ -391,7 +401,7 @@ ImportanceSample SceneSide::through_pinhole(const AnyRayModel& model, const Vec3
   // The weights are those of all the thick lens's pupil, and so are the places in it that the film sees it through.
   const Vec3<double> direction = to / distance;
   result = connection(pupil, direction, distance, squared(distance) / (at.entrance_area * direction.z));
-  Arrival arrival = arrive(model, {pupil, result.direction}, wavelength);
+  Arrival arrival = arrive(model, {pupil, result.direction}, wavelength, time);
   const auto placed = plane(time);
   const auto met = on_film(arrival.upright, arrival.pupil, placed);
   Importance& seen = result.importance = met_by(arrival, met);

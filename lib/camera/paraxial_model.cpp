@@ -139,10 +139,10 @@ double axial_radius(const Lens& lens, std::size_t wavelength, const TwoPlanes& s
   return radius;
 }
 
-FilmPupilTable pupils_of(ModelKind model, const LensFacts& facts, double film_radius) {
-  check(model, facts);
+}  // namespace
+
+IrisImages iris_images(ModelKind model, const LensFacts& facts) {
   const Lens& lens = facts.lens();
-  if (model == ModelKind::thin_two_disc) return two_disc_pupils(lens, film_radius);
   const TwoPlanes space = two_planes(lens);
   const auto image_at = [&](std::size_t w, Meridian section) { return stop_image(model, facts, w, space, section); };
   struct Sections {
@@ -162,7 +162,17 @@ FilmPupilTable pupils_of(ModelKind model, const LensFacts& facts, double film_ra
     const double radius = axial_radius(lens, w, space, iris, along_x);
     images.push_back({{x.shift, y.shift}, {along_x * radius, radius}});
   }
-  return FilmPupilTable::of_iris(space, iris, images, film_radius, primary, lens.wavelengths_nm());
+  return {space, iris, images};
+}
+
+namespace {
+
+FilmPupilTable pupils_of(ModelKind model, const LensFacts& facts, double film_radius) {
+  check(model, facts);
+  const Lens& lens = facts.lens();
+  if (model == ModelKind::thin_two_disc) return two_disc_pupils(lens, film_radius);
+  const auto [space, iris, images] = iris_images(model, facts);
+  return FilmPupilTable::of_iris(space, iris, images, film_radius, lens.primary_wavelength(), lens.wavelengths_nm());
 }
 
 }  // namespace
@@ -206,6 +216,12 @@ ParaxialModel::ParaxialModel(ModelKind model, const LensFacts& facts, double fil
 
 const SectionMaps* ParaxialModel::map_at(Wavelength at, SectionMaps& own) const noexcept {
   return at_wavelength(at, pupils_.primary_wavelength(), to_scene_, between_, own);
+}
+
+std::optional<SectionMaps> ParaxialModel::maps(Wavelength at) const noexcept {
+  SectionMaps own;
+  const SectionMaps* const found = map_at(at, own);
+  return found ? std::optional(*found) : std::nullopt;
 }
 
 const SectionMaps* ParaxialModel::inverse_at(Wavelength at, SectionMaps& own) const noexcept {

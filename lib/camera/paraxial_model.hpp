@@ -22,6 +22,15 @@ struct SectionMaps {
   RayMatrix x, y;
 };
 
+/// The image of the stop in the plane of the pupil as a model sees it; two discs see that of the thick lens.
+struct IrisImages {
+  TwoPlanes space;
+  Iris iris;                       ///< upside down where its image is
+  std::vector<PupilImage> images;  ///< at each wavelength
+};
+/// Throws Error for a film in the image of the stop or, for a thin lens, in the rear principal plane.
+IrisImages iris_images(ModelKind model, const LensFacts& facts);
+
 /// The lens to first order: pinhole, thin, thin_two_disc and thick.
 ///
 /// All four map an image-space ray to the same ray of the scene, by the cardinal points (the thin lens stands in both
@@ -65,6 +74,8 @@ class ParaxialModel {
   const FilmPupilTable& pupils() const noexcept { return pupils_; }
   /// From film and pupil points to place and slope in the plane z(), one for each wavelength.
   std::span<const SectionMaps> maps() const noexcept { return to_scene_; }
+  /// Those at any wavelength; nothing for one that is not covered.
+  std::optional<SectionMaps> maps(Wavelength wavelength) const noexcept;
   double z() const noexcept { return z_; }
   /// As in RayModel; empty unless this is the pinhole.
   std::span<const double> pinhole_shifts() const noexcept { return pinhole_shifts_; }

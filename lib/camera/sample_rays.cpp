@@ -82,6 +82,20 @@ void weigh_pupil(const FilmView& view, std::size_t count, std::size_t wanted, co
   }
 }
 
+/// Bends rays to the focus of their film points.
+template <class T>
+void bend(const FilmView& view, std::size_t count, const CameraSamples<T>& samples, const RayArrays<T>& rays) noexcept {
+  alignas(64) Values<T> film_x, film_y, nearer;
+  camera_loops().of<T>().keep_on_film(film_detail::bounds_of<T>(view.film), count, samples.film_x, samples.film_y,
+                                      film_x.data(), film_y.data());
+  for (std::size_t i = 0; i < count && view.tilted; ++i) {
+    const TiltedPlane plane = view.tilted->plane(samples.times ? samples.times[i] : 0);
+    nearer[i] = static_cast<T>(plane.nearer_by(plane.virtual_point({film_x[i], film_y[i]})));
+  }
+  view.focus.bend(count, film_x.data(), film_y.data(), view.tilted ? nearer.data() : nullptr, samples.wavelengths,
+                  rays);
+}
+
 /// One block, of a number of rays that fills lanes: each has the same bits wherever it stands. The first `wanted` of
 /// them get weights.
 template <class T>
@@ -107,6 +121,7 @@ void sample_block(const FilmView& view, std::size_t n, std::size_t wanted, const
   loops.keep_on_film(bounds, n, samples.film_x, samples.film_y, film_x.data(), film_y.data());
   const auto trace = [&] {
     view.model.to_scene(n, lines, wavelengths, rays.rays, fates);
+    if (view.focus) bend(view, n, samples, rays.rays);
     if (view.moves_rays()) {
       loops.move_to_front(static_cast<T>(view.front.vertex_z), static_cast<T>(view.front.curvature), n, rays.rays);
     }
@@ -251,6 +266,7 @@ CameraRay sample_ray(const FilmView& view, const FilmPoint& film, double u, doub
     line = {point.x, point.y, at.x, at.y};
     area = at.area;
     out.fate = view.model.to_scene(line, wavelength, out.ray);
+    if (view.focus) view.focus.bend(point, 0, wavelength, out.ray);
   } else {
     virtual_point = plane.virtual_point(point);
     const PupilSample at = tilted->pupils().sample(virtual_point, u, v, wavelength);
@@ -263,6 +279,7 @@ CameraRay sample_ray(const FilmView& view, const FilmPoint& film, double u, doub
       leaving.film_x = virtual_point.x * part, leaving.film_y = virtual_point.y * part;
     }
     out.fate = view.model.to_scene(leaving, wavelength, out.ray);
+    if (view.focus) view.focus.bend(point, plane.nearer_by(virtual_point), wavelength, out.ray);
     const bool within = !decide(pupils, view.model) ||
                         pupils.contains({line.film_x, line.film_y}, line.pupil_x, line.pupil_y, wavelength);
     if (!within) out.fate = RayFate::vignetted;

@@ -8,6 +8,7 @@
 #include "film/film_bounds.hpp"
 #include "front.hpp"
 #include "lens/between_wavelengths.hpp"
+#include "local_focus.hpp"
 #include "petzval/camera/camera_ray.hpp"
 #include "petzval/camera/ray_model.hpp"
 #include "petzval/core/export.hpp"
@@ -64,6 +65,7 @@ struct FilmView {
   const WavelengthFacts& wavelengths;
   PupilWeights weights = {};
   Front front = {};  ///< of the lens
+  LocalFocus focus = {};
   double depth = model.pupils().space().depth();
   film_detail::FilmBounds<double> bounds = film_detail::bounds_of<double>(film);
 

@@ -9,6 +9,7 @@
 #include "front.hpp"
 #include "lens/between_wavelengths.hpp"
 #include "lens_facts.hpp"
+#include "local_focus.hpp"
 #include "petzval/camera/camera_ray.hpp"
 #include "petzval/camera/ray_model.hpp"
 #include "petzval/film/film.hpp"
@@ -23,7 +24,8 @@ class SceneSide {
  public:
   /// radius: upright_radius() of the film; wavelengths, weights: as in FilmView.
   SceneSide(const LensFacts& facts, const Film& film, std::optional<TiltedFilm> tilted, const Front& front,
-            const AnyRayModel& model, double radius, const WavelengthFacts& wavelengths, const PupilWeights& weights);
+            const LocalFocus& focus, const AnyRayModel& model, double radius, const WavelengthFacts& wavelengths,
+            const PupilWeights& weights);
 
   Importance importance(const AnyRayModel& model, const Ray<double>& ray, Wavelength wavelength,
                         double time) const noexcept;
@@ -61,6 +63,7 @@ class SceneSide {
   struct Arrival {
     RayFate fate = RayFate::invalid;
     FilmPoint upright, pupil;
+    double spread = 1;  // LocalFocus::Straight
   };
   /// Where an image-space ray meets the film, and the virtual point of that; of an upright film, the point itself.
   struct OnFilm {
@@ -72,7 +75,7 @@ class SceneSide {
                                 const std::optional<TiltedPlane>& plane) const noexcept;
   /// A direction of unit length, numbers that are finite, and a wavelength that is covered.
   bool valid(const Ray<double>& ray, Wavelength wavelength) const noexcept;
-  Arrival arrive(const AnyRayModel& model, const Ray<double>& ray, Wavelength wavelength) const noexcept;
+  Arrival arrive(const AnyRayModel& model, const Ray<double>& ray, Wavelength wavelength, double time) const noexcept;
   /// The importance of a ray that arrives. cosine: of its angle with the axis in the scene.
   Importance arrived(const AnyRayModel& model, const Arrival& arrival, double cosine, Wavelength wavelength,
                      double time) const noexcept;
@@ -93,6 +96,7 @@ class SceneSide {
   double upright_radius_ = 0, pdf_film_ = 0;
   TwoPlanes space_;
   Front front_;
+  LocalFocus focus_;
   WavelengthFacts wavelengths_;
   PupilWeights weights_;
   lens_detail::CompiledWavelengths in_nm_;

@@ -191,6 +191,11 @@ double TiltedPlane::nearer_by(const FilmPoint& point) const noexcept {
   return camera_detail::nearer_by(*this, point.x, point.y);
 }
 
+TiltedPlane::Nearer TiltedPlane::nearer_at(const FilmPoint& film) const noexcept {
+  const Jet nearer = differentiated(*this, film).nearer;
+  return {nearer.a, {nearer.v[0], nearer.v[1]}};
+}
+
 TwoPlaneRay TiltedPlane::upright(const FilmPoint& point, const FilmPoint& place) const noexcept {
   const auto [x, y] = upright_of(*this, point.x, point.y, place.x, place.y);
   return {x, y, place.x, place.y};

@@ -26,6 +26,12 @@ struct PETZVAL_API TiltedPlane {
   /// By how much the upright film's distance from the pupil's plane is larger than that of the film point, in parts of
   /// the latter.
   double nearer_by(const FilmPoint& virtual_point) const noexcept;
+  /// The same of a film point, with its derivatives by film x and y.
+  struct Nearer {
+    double value = 0;
+    Vec2<double> by{0, 0};
+  };
+  Nearer nearer_at(const FilmPoint& film) const noexcept;
   /// The image-space ray that runs from the film point of a virtual point through a place in the pupil's plane.
   TwoPlaneRay upright(const FilmPoint& virtual_point, const FilmPoint& place) const noexcept;
   /// The virtual point of the film point that a ray meets. Nothing for a ray that meets the back of the film or is

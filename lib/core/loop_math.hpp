@@ -9,6 +9,10 @@ namespace {
 
 inline float square_root(float x) noexcept { return __builtin_sqrtf(x); }
 inline double square_root(double x) noexcept { return __builtin_sqrt(x); }
+template <class T>
+inline T square_root(const T& x) noexcept {
+  return sqrt(x);
+}
 
 /// 1 or -1, in a form without branches, which nobody could predict; of a dual number without derivatives.
 inline float sign_of(float x) noexcept { return __builtin_copysignf(1, x); }

@@ -189,6 +189,29 @@ TEST(Reciprocity, HoldsForAnIrisWithEdges) {
   }
 }
 
+// A light that is out of focus in several ways, and the extent of the depth of field with it.
+TEST(Reciprocity, HoldsForAFocusOfItsOwnAtEachPlace) {
+  const Lens lens = testing::data_lens("double_gauss_100mm_f2_28deg");
+  Film tilted{.width_mm = 36, .height_mm = 24, .tilt_rad = 0.1, .swing_rad = -0.07};
+  Film placed = wide;
+  placed.z_mm = tilted.z_mm = lens.film_z();
+  std::vector<FocalPoint> points(4);
+  points[0].place = {-9, -3}, points[0].inverse_distance = 1 / 1500., points[0].extent_stops = 0.5;
+  points[1].place = {8, -9}, points[1].inverse_distance = 0, points[1].extent_stops = 1;
+  points[2].place = {-3, 8}, points[2].inverse_distance = 1 / 4000.;
+  points[3].place = {-1, -11}, points[3].inverse_distance = 1 / 2500.;
+  const ExpressiveLens expressive{.power = {{0, 1}, {0.7, 1.01}, {1, 0.98}},
+                                  .film_offsets = {{{0, 0}, 0}, {{14, 3}, 0.7}, {{-14, 4}, -0.5}}};
+  for (const ModelKind model : {ModelKind::thin, ModelKind::thick, ModelKind::thin_two_disc}) {
+    SCOPED_TRACE(name(model));
+    for (const Film& film : {placed, tilted}) {
+      const CameraOptions options{
+          .model = model, .focal_surface = FocalSurface(thick_lens(lens), film, points), .expressive = expressive};
+      expect_reciprocity(lens, film, options, 6, 2500, 0, 0.04, 5e-3);
+    }
+  }
+}
+
 TEST(Reciprocity, HoldsForTiltedFilms) {
   constexpr double degree = pi / 180;
   const Film eight{.width_mm = 36, .height_mm = 24, .tilt_rad = 8 * degree, .swing_rad = -3 * degree};

@@ -4,14 +4,17 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "petzval/camera/bokeh_controls.hpp"
 #include "petzval/camera/camera_ray.hpp"
+#include "petzval/camera/expressive_lens.hpp"
 #include "petzval/camera/model_kind.hpp"
 #include "petzval/core/export.hpp"
 #include "petzval/film/film.hpp"
 #include "petzval/lens/wavelength.hpp"
+#include "petzval/movement/focal_surface.hpp"
 
 namespace petzval::inline v0 {
 
@@ -37,6 +40,9 @@ struct CameraOptions {
   /// depend on them.
   int threads = 1;
   BokehControls bokeh{};  ///< the defaults change nothing
+  /// Of first-order models: what is in focus at each place of the film, in place of the film's own focus.
+  std::optional<FocalSurface> focal_surface = {};
+  ExpressiveLens expressive{};  ///< of first-order models
 };
 
 /// A film behind a focused lens, seen through a ray model: what a renderer holds.
@@ -70,6 +76,11 @@ struct CameraOptions {
 /// (tests/camera/any_wavelength_test.cpp). The light of polynomials and two discs steps in the middles between compiled
 /// wavelengths, by 1 % or less (FilmPupilTable). Film and scene hold the same light at every wavelength. A renderer's
 /// own models take nm where they say so (RayModel).
+///
+/// A first-order model may have a focus of its own at each place of the film (CameraOptions::focal_surface) and the
+/// aberrations of an ExpressiveLens. Film samples keep their weights and densities: a picture keeps its exposure. Rays
+/// of the scene spread otherwise, and their importance with them, so that film and scene hold the same light. Of a
+/// tilted film the surface decides what is in focus, and the tilt the perspective.
 ///
 /// Immutable, cheap to copy, shared freely between threads. Calls neither allocate nor draw random numbers nor loop
 /// until a ray passes: a lost sample has weight 0 and a fate. Only the first call that concerns rays from the scene
@@ -139,11 +150,17 @@ class PETZVAL_API Camera {
 
   /// The camera's film side as plain numbers, for hosts that sample on another processor: CameraTables
   /// (camera_tables.hpp) has the layout. Throws Error for a film that is tilted or travels, for weights of the
-  /// pupil and for a renderer's own model.
+  /// pupil, a focal surface or an expressive lens, and for a renderer's own model.
   std::vector<float> tables() const;
 
   /// Where the camera sees a scene point: the film point and raster position of its chief ray.
   Projection project(const Vec3<double>& point, Wavelength wavelength = {}, double time = 0) const noexcept;
+
+  /// Of the focal surface and the film offsets, on a grid of 96 x 64 places of the film as the shutter opens; 0 without
+  /// them. From 1 on rays of several film points coincide. Film samples stay what they are; importance, connections and
+  /// projections know one of these film points, so that light tracing lacks the light of the others: trace paths from
+  /// the film.
+  FocalSteepness focal_steepness() const noexcept;
 
  private:
   struct Data;

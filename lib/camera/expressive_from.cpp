@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include "check_film.hpp"
+#include "core/meet_plane.hpp"
+#include "local_focus.hpp"
+#include "paraxial_model.hpp"
+#include "petzval/camera/expressive_lens.hpp"
+#include "petzval/pupil/pupil_boundary.hpp"
+#include "petzval/trace/trace.hpp"
+#include "pupil/boundary_nodes.hpp"
+
+namespace petzval::inline v0 {
+namespace {
+
+/// The plane of focus of a film point's exact rays, as what is added to slopes per height in the plane z: that of least
+/// squares over the light of the pupil. Nothing where no ray passes.
+std::optional<double> in_focus(const Lens& lens, const FilmPoint& film, double z) {
+  const PupilBoundary boundary = exit_pupil_boundary(lens, film, lens.primary_wavelength());
+  double light = 0;
+  Vec2<double> height{0, 0}, slope{0, 0};
+  double across = 0, along = 0;
+  pupil_detail::for_each_node<32>(boundary, [&](const Vec2<double>& p, double area, double weight) {
+    const Ray<double> start = boundary.plane.ray(p.x, p.y);
+    const auto end = trace(lens, start, {.travel = Travel::to_scene});
+    if (!end.transmitted()) return;
+    const auto line = core_detail::slope_ray(end.ray, z);
+    const double part = area * weight * std::pow(start.direction.z, 4);
+    light += part;
+    height += Vec2<double>{line.x, line.y} * part, slope += Vec2<double>{line.slope_x, line.slope_y} * part;
+    across += part * (line.x * line.x + line.y * line.y);
+    along += part * (line.x * line.slope_x + line.y * line.slope_y);
+  });
+  if (!(light > 0)) return {};
+  height /= light, slope /= light;
+  const double focus = (along / light - glm::dot(height, slope)) / (across / light - glm::dot(height, height));
+  return std::isfinite(focus) ? std::optional(focus) : std::nullopt;
+}
+
+}  // namespace
+
+ExpressiveLens expressive_from(const Lens& given, const Film& given_film) {
+  using camera_detail::EntranceMaps;
+  const auto [lens, film] = camera_detail::placed(given, given_film);
+  camera_detail::check_film(lens, film);
+  const camera_detail::LensFacts facts(lens);
+  const camera_detail::ParaxialModel model(ModelKind::thick, facts, film.radius_mm());
+  const std::size_t primary = lens.primary_wavelength();
+  const auto [middle, radius] = camera_detail::iris_images(ModelKind::thick, facts).images[primary];
+  const EntranceMaps<double> maps =
+      camera_detail::entrance_maps(model.maps()[primary].y, model.z(), middle.y, radius.y);
+  const TwoPlanes& space = model.pupils().space();
+  const double own = maps.d / maps.b, focal_length = facts.first_order(primary).effective_focal_length;
+
+  ExpressiveLens found;
+  constexpr int knots = 12;
+  for (int i = 0; i <= knots; ++i) {
+    const double part = i == 0 ? 1e-3 : static_cast<double>(i) / knots, place = part * radius.y;
+    const Vec3<double> along{0, place, space.depth()};
+    const Ray<double> start{{0, place, space.pupil_z}, along * (towards_scene(lens, space) / glm::length(along))};
+    const auto end = trace(lens, start, {.travel = Travel::to_scene, .apertures = false});
+    if (!end.transmitted()) break;
+    // The model's ray is as far beside the axis in the plane of focus as the exact one.
+    const auto line = core_detail::slope_ray(end.ray, maps.z);
+    const double beyond = (line.slope_y - own * line.y) / (maps.b * place);
+    found.power.push_back({i == 0 ? 0 : part, 1 + beyond * focal_length});
+  }
+
+  // Rings about the axis, out to the farthest corner, with ever more places.
+  const auto centre = in_focus(lens, {}, maps.z);
+  constexpr int rings = 4, first_ring = 6;
+  for (int ring = 0; ring <= rings && centre; ++ring) {
+    const double height = film.radius_mm() * ring / rings;
+    const auto focus = in_focus(lens, {0, height}, maps.z);
+    if (!focus) break;
+    // in_focus(maps, nearer), solved for nearer.
+    const double asked = own + *focus - *centre, nearer = (maps.b * asked - maps.d) / (maps.a * asked - maps.c);
+    const double offset = (1 / (1 + nearer) - 1) * -space.depth();
+    const int places = ring == 0 ? 1 : first_ring * ring;
+    for (int k = 0; k < places; ++k) {
+      const double azimuth = 2 * std::numbers::pi * k / places;
+      found.film_offsets.push_back({{height * std::sin(azimuth), height * std::cos(azimuth)}, offset});
+    }
+  }
+  return found;
+}
+
+}  // namespace petzval::inline v0

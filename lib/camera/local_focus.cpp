@@ -1,0 +1,490 @@
+// SPDX-License-Identifier: Apache-2.0
+// Let X be a film point, H the height of a ray in the plane of the entrance pupil, and u = U(X) + w(X) H its slope
+// there. A bent ray has the height H' = s(X) H and the slope u' = U(X) + w'(X, |H|) H'. With A the derivative of U by
+// X, heights and slopes (H, u) of the model's rays have the area |A| (1 + w_X . A^-1 H) of (X, H), and those of bent
+// ones s^2 |A| (1 + w'_X . A^-1 H'), w'_X taken at the same H'. The quotient is how far bent rays spread: the density
+// of film samples in the scene is that of the model's rays over it. Where 1 + w'_X . A^-1 H' falls to 0, the rays of
+// neighbouring film points coincide.
+//
+// A ray of the scene has H' and u'. Its film point is where the chief ray's slope u' - t H' has t in focus: one
+// equation for t, whose left side grows with the slope 1 + w'_X . A^-1 H' (t less what is in focus).
+#include "local_focus.hpp"
+
+#include <ceres/jet.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/meet_plane.hpp"
+#include "core/text.hpp"
+#include "focus/root.hpp"
+#include "lens/between_wavelengths.hpp"
+#include "local_focus_loops.hpp"
+#include "make_model.hpp"
+#include "movement/moving_least_squares.hpp"
+#include "paraxial_model.hpp"
+#include "petzval/core/error.hpp"
+#include "tilted_pinhole.hpp"
+
+namespace petzval::inline v0::camera_detail {
+namespace {
+
+using Jet = ceres::Jet<double, 2>;
+
+constexpr std::size_t block = 256;
+
+/// How much nearer to the pupil than the film, or farther from it, offsets may lead.
+constexpr double nearest_offset = -0.9, farthest_offset = 9;
+
+/// Natural at the last knot, flat at the first.
+PowerSpline<double> spline_of(const std::string& where, const std::vector<PowerKnot>& knots) {
+  PowerSpline<double> spline;
+  const std::size_t n = knots.size();
+  if (n == 0) return spline;
+  if (n > spline.most_knots) {
+    throw Error(where + "power: found " + std::to_string(n) + " knots, wanted " + std::to_string(spline.most_knots) +
+                " or fewer");
+  }
+  for (std::size_t i = 0; i < n; ++i) {
+    const auto [radius, power] = knots[i];
+    const std::string knot = where + "power: knot " + std::to_string(i + 1) + ": ";
+    if (!(radius >= 0 && radius <= 1) || (i > 0 && !(radius > knots[i - 1].radius))) {
+      throw Error(knot + "the radius is " + to_text(radius) + ", wanted one from 0 to 1 and above the one before");
+    }
+    if (!(std::abs(power) <= 1000)) {
+      throw Error(knot + "the power is " + to_text(power) + ", wanted one from -1000 to 1000");
+    }
+    spline.at[i] = radius;
+  }
+  spline.knots = n;
+  spline.first = knots[0].power;
+  if (n == 1) return spline;
+  // Second derivatives by Thomas's algorithm; rows: below, on and above the diagonal.
+  const auto width = [&](std::size_t i) { return knots[i + 1].radius - knots[i].radius; };
+  const auto slope = [&](std::size_t i) { return (knots[i + 1].power - knots[i].power) / width(i); };
+  std::vector<double> over(n, 0), second(n, 0);
+  over[0] = 0.5, second[0] = 3 * slope(0) / width(0);
+  for (std::size_t i = 1; i + 1 < n; ++i) {
+    const double below = width(i - 1), above = width(i), on = 2 * (below + above) - below * over[i - 1];
+    over[i] = above / on;
+    second[i] = (6 * (slope(i) - slope(i - 1)) - below * second[i - 1]) / on;
+  }
+  second[n - 1] = 0;
+  for (std::size_t i = n - 1; i-- > 0;) second[i] -= over[i] * second[i + 1];
+  spline.square = second[0] / 2;
+  double before = 0;
+  for (std::size_t i = 0; i + 1 < n; ++i) {
+    const double third = (second[i + 1] - second[i]) / width(i);
+    spline.cube[i] = (third - std::exchange(before, third)) / 6;
+  }
+  return spline;
+}
+
+/// The film's offsets over its distance from the plane of the pupil.
+movement_detail::MovingLeastSquares offsets_of(const std::string& where, const std::vector<FilmOffset>& offsets,
+                                               const Film& film, double film_from_pupil) {
+  std::vector<movement_detail::WeighedValue> points;
+  for (const auto& [place, offset, weight] : offsets) points.push_back({place, offset / film_from_pupil, weight});
+  constexpr double beta = 3;
+  movement_detail::MovingLeastSquares surface(where + "film offsets: ", points, std::sqrt(film.area_mm2()),
+                                              SurfaceKind::affine, beta);
+  if (!(surface.least() > nearest_offset && surface.most() < farthest_offset)) {
+    throw Error(where + "film offsets: the surface reaches from " + to_text(surface.least() * film_from_pupil) +
+                " to " + to_text(surface.most() * film_from_pupil) +
+                " mm, wanted the film between a tenth and ten times its distance from the pupil, " +
+                to_text(std::abs(film_from_pupil)) + " mm");
+  }
+  return surface;
+}
+
+template <class T>
+EntranceMaps<T> in_type(const EntranceMaps<double>& maps) noexcept {
+  const auto number = [](double value) { return static_cast<T>(value); };
+  return {number(maps.z), number(maps.a),           number(maps.b),      number(maps.c),
+          number(maps.d), number(maps.chief_slope), number(maps.radius), number(maps.from_surface)};
+}
+
+template <class T>
+FocusRules<T> in_type(const FocusRules<double>& rules) {
+  FocusRules<T> result{in_type<T>(rules.primary), rules.by_surface, rules.by_offset, static_cast<T>(rules.power), {}};
+  result.spline.knots = rules.spline.knots;
+  result.spline.first = static_cast<T>(rules.spline.first), result.spline.square = static_cast<T>(rules.spline.square);
+  for (std::size_t i = 0; i < rules.spline.knots; ++i) {
+    result.spline.at[i] = static_cast<T>(rules.spline.at[i]);
+    result.spline.cube[i] = static_cast<T>(rules.spline.cube[i]);
+  }
+  return result;
+}
+
+double scale_of(double stops) noexcept { return std::exp2(-stops / 2); }
+
+/// A number by film x and y.
+Jet jet(double value, const Vec2<double>& by) noexcept {
+  Jet result(value);
+  result.v[0] = by.x, result.v[1] = by.y;
+  return result;
+}
+
+}  // namespace
+
+EntranceMaps<double> entrance_maps(const RayMatrix& map, double z, double middle, double radius) noexcept {
+  const double slope = map.c + map.d * middle;
+  const double away = -(map.a + map.b * middle) / slope;  // to where chief rays meet the axis
+  const double b = map.b + map.d * away;
+  return {.z = z + away,
+          .a = -b * middle,
+          .b = b,
+          .c = map.c,
+          .d = map.d,
+          .chief_slope = slope,
+          .radius = std::abs(b) * radius};
+}
+
+struct LocalFocus::Data {
+  /// What belongs to a wavelength.
+  struct At {
+    EntranceMaps<double> maps;
+    double dispersion = 1;
+    double middle = 0;  // of the stop's image, over the film point
+  };
+
+  AnyRayModel model;
+  Film film;
+  std::optional<FocalSurface> surface;
+  std::optional<movement_detail::MovingLeastSquares> offsets = {};
+  FocusRules<double> rules = {};
+  FocusRules<float> rules_in_float = {};
+  double surface_z = 0;
+  std::vector<At> compiled = {};
+  std::size_t primary = 0;
+  lens_detail::BetweenWavelengths<3> between = {};  // middle, radius and dispersion
+
+  const ParaxialModel& first_order() const noexcept { return *model.as<ParaxialModel>(); }
+
+  /// Of a wavelength whose stop has its image at `middle` times the film point, as wide as `radius`.
+  At at(const SectionMaps& maps, double middle, double radius, double dispersion) const noexcept {
+    EntranceMaps<double> found = entrance_maps(maps.y, first_order().z(), middle, radius);
+    found.from_surface = found.z - surface_z;
+    return {found, dispersion, middle};
+  }
+  /// The film point whose chief ray has a slope, and how much nearer it is to the plane of the pupil. Nothing for a
+  /// chief ray that does not meet the film's front.
+  struct Seen {
+    FilmPoint place;
+    double nearer = 0;
+  };
+  std::optional<Seen> seen(const At& at, const Vec2<double>& slope,
+                           const std::optional<TiltedPlane>& plane) const noexcept {
+    const FilmPoint upright{slope.x / at.maps.chief_slope, slope.y / at.maps.chief_slope};
+    if (!plane) return Seen{upright};
+    const auto point = plane->virtual_point_of({upright.x, upright.y, at.middle * upright.x, at.middle * upright.y});
+    if (!point) return {};
+    return Seen{plane->point(*point), plane->nearer_by(*point)};
+  }
+  /// By how much film points move for a step of their chief ray's slope.
+  Vec2<double> moved(const At& at, const Vec2<double>& slope, const Vec2<double>& step,
+                     const std::optional<TiltedPlane>& plane) const noexcept {
+    if (!plane) return step / at.maps.chief_slope;
+    const double small = 1e-5 / std::max(glm::length(step), std::numeric_limits<double>::min());
+    const auto before = seen(at, slope - step * small, plane), behind = seen(at, slope + step * small, plane);
+    if (!before || !behind) return {0, 0};
+    return Vec2<double>{behind->place.x - before->place.x, behind->place.y - before->place.y} / (2 * small);
+  }
+  /// Nothing for a wavelength that is not covered.
+  std::optional<At> at(Wavelength wavelength) const noexcept {
+    if (const auto nm = wavelength.in_nm()) {
+      const auto maps = first_order().maps(wavelength);
+      if (!maps) return {};
+      const auto [middle, radius, dispersion] = between(*nm);
+      return at(*maps, middle, radius, dispersion);
+    }
+    const std::size_t position = wavelength.position(primary);
+    return position < compiled.size() ? std::optional(compiled[position]) : std::nullopt;
+  }
+
+  FilmPointFocus<double> point(const FilmPoint& place, double nearer) const noexcept {
+    FilmPointFocus<double> result{nearer, 0, 0, 1};
+    if (surface) {
+      const auto values = surface->at(place);
+      result.surface = values.inverse_distance, result.scale = scale_of(values.extent_stops);
+    }
+    if (offsets) result.offset = offsets->at(place);
+    return result;
+  }
+  FilmPointFocus<Jet> point(const FilmPoint& place, double nearer, const Vec2<double>& nearer_by) const noexcept {
+    FilmPointFocus<Jet> result{jet(nearer, nearer_by), Jet(0.0), Jet(0.0), Jet(1.0)};
+    if (surface) {
+      const auto at_place = surface->slopes(place);
+      result.surface = jet(at_place.values.inverse_distance, at_place.inverse_distance);
+      const double scale = scale_of(at_place.values.extent_stops);
+      result.scale = jet(scale, at_place.extent_stops * (-std::log(2.0) / 2 * scale));
+    }
+    if (offsets) {
+      result.offset = jet(offsets->at(place), offsets->slopes(place));
+    }
+    return result;
+  }
+};
+
+LocalFocus::LocalFocus(const LensFacts& facts, const Film& film, const AnyRayModel& model,
+                       const std::optional<FocalSurface>& surface, const ExpressiveLens& expressive) {
+  const Lens& lens = facts.lens();
+  const std::string where = lens.name() + ": camera: ";
+  if (!surface && expressive.empty()) return;
+  if (!is_first_order(model.kind())) {
+    throw Error(where + "found a focal surface or an expressive lens for " + std::string(name(model.kind())) +
+                ", wanted a first-order model: pinhole, thin, thin_two_disc or thick");
+  }
+  if (has_cylinders(lens)) {
+    throw Error(where + "found cylinders, wanted a lens of revolution for a focal surface or an expressive lens");
+  }
+  const std::size_t wavelengths = facts.wavelengths(), strengths = expressive.dispersion.size();
+  if (strengths > 1 && strengths != wavelengths) {
+    throw Error(where + "found " + std::to_string(strengths) + " numbers of dispersion, wanted 1 or one for each of " +
+                std::to_string(wavelengths) + " wavelengths");
+  }
+  for (const double strength : expressive.dispersion) {
+    if (std::abs(strength) <= 1e6) continue;
+    throw Error(where + "found a dispersion of " + to_text(strength) + ", wanted one from -1e6 to 1e6");
+  }
+  Data data{model, film, surface};
+  data.primary = lens.primary_wavelength();
+  data.rules.spline = spline_of(where, expressive.power);
+  const TwoPlanes& space = model.pupils().space();
+  if (!expressive.film_offsets.empty()) data.offsets = offsets_of(where, expressive.film_offsets, film, -space.depth());
+  if (model.pinhole()) return;
+
+  data.surface_z = surface ? surface->origin_z() : 0;
+  const IrisImages images = iris_images(model.kind(), facts);
+  std::vector<std::array<double, 3>> values;
+  for (std::size_t w = 0; w < wavelengths; ++w) {
+    const double strength = strengths == 0 ? 1 : expressive.dispersion[strengths > 1 ? w : 0];
+    const auto& [shift, radius] = images.images[w];
+    data.compiled.push_back(data.at(data.first_order().maps()[w], shift.y, radius.y, strength));
+    values.push_back({shift.y, radius.y, strength});
+    const EntranceMaps<double>& maps = data.compiled.back().maps;
+    if (!std::isfinite(maps.z)) {
+      throw Error(where +
+                  "found an entrance pupil at infinity, wanted it at a finite place for a focal surface or an "
+                  "expressive lens");
+    }
+    constexpr double nearest = 0.05;
+    if (surface && !(1 + surface->nearest() * maps.from_surface >= nearest)) {
+      throw Error(where + "the focal surface comes as near as " + to_text(1 / surface->nearest()) +
+                  " mm to the entrance pupil, wanted it farther away than the pupil of " +
+                  std::string(name(model.kind())) + ", which lies at z = " + to_text(maps.z) + " mm");
+    }
+  }
+  data.between = {lens_detail::CompiledWavelengths(lens.wavelengths_nm()), values};
+  data.rules.primary = data.compiled[data.primary].maps;
+  data.rules.by_surface = surface.has_value(), data.rules.by_offset = data.offsets.has_value();
+  data.rules.power = 1 / facts.first_order(data.primary).effective_focal_length;
+  data.rules_in_float = in_type<float>(data.rules);
+  data_ = std::make_shared<const Data>(std::move(data));
+}
+
+template <class T>
+void LocalFocus::bend(std::size_t count, const T* film_x, const T* film_y, const T* nearer,
+                      const RayWavelengths& wavelengths, const RayArrays<T>& rays) const noexcept {
+  const Data& data = *data_;
+  const auto& loop = local_focus_loops().of<T>();
+  const FocusRules<T>* rules = nullptr;
+  if constexpr (std::is_same_v<T, float>) {
+    rules = &data.rules_in_float;
+  } else {
+    rules = &data.rules;
+  }
+  const T z = static_cast<T>(data.first_order().z());
+  for (std::size_t begin = 0; begin < count; begin += block) {
+    const std::size_t n = std::min(block, count - begin);
+    alignas(64) std::array<T, block> none{}, surface, offset, scale;
+    const T* const x = film_x + begin;
+    const T* const y = film_y + begin;
+    scale.fill(T(1));
+    if (data.surface) {
+      data.surface->at(n, x, y, surface.data(), scale.data());
+      for (std::size_t i = 0; i < n; ++i) scale[i] = std::exp2(scale[i] * T(-0.5));
+    }
+    if (data.offsets) data.offsets->at(n, x, y, offset.data());
+    const auto run = [&](std::size_t from, std::size_t to, const Data::At& at) {
+      loop(*rules, in_type<T>(at.maps), static_cast<T>(at.dispersion), z, to - from,
+           {(nearer ? nearer + begin : none.data()) + from, (data.surface ? surface : none).data() + from,
+            (data.offsets ? offset : none).data() + from, scale.data() + from},
+           {rays.x + begin + from, rays.y + begin + from, rays.z + begin + from, rays.dx + begin + from,
+            rays.dy + begin + from, rays.dz + begin + from});
+    };
+    if (!wavelengths.each && !wavelengths.each_nm) {
+      if (const auto at = data.at(wavelengths.all)) run(0, n, *at);
+      continue;
+    }
+    for (std::size_t i = 0; i < n; ++i) {
+      if (const auto at = data.at(wavelengths.at(begin + i))) run(i, i + 1, *at);
+    }
+  }
+}
+template void LocalFocus::bend(std::size_t, const float*, const float*, const float*, const RayWavelengths&,
+                               const RayArrays<float>&) const noexcept;
+template void LocalFocus::bend(std::size_t, const double*, const double*, const double*, const RayWavelengths&,
+                               const RayArrays<double>&) const noexcept;
+
+void LocalFocus::bend(const FilmPoint& film, double nearer, Wavelength wavelength, Ray<double>& ray) const noexcept {
+  const Data& data = *data_;
+  const auto at = data.at(wavelength);
+  if (!at) return;
+  const auto point = data.point(film, nearer);
+  auto& [o, d] = ray;
+  local_focus_loops().of<double>()(data.rules, at->maps, at->dispersion, data.first_order().z(), 1,
+                                   {&point.nearer, &point.surface, &point.offset, &point.scale},
+                                   {&o.x, &o.y, &o.z, &d.x, &d.y, &d.z});
+}
+
+void LocalFocus::bend(const FilmPoint& film, double nearer, const Vec2<double>& nearer_by, Wavelength wavelength,
+                      RayDerivatives& ray) const noexcept {
+  const Data& data = *data_;
+  const auto at = data.at(wavelength);
+  if (!at) return;
+  const auto part = [&](auto of) {
+    Jet result(of(ray.ray));
+    result.v[0] = of(ray.by_u), result.v[1] = of(ray.by_v);
+    return result;
+  };
+  BentRay<Jet> bent{part([](const Ray<double>& r) { return r.origin.x; }),
+                    part([](const Ray<double>& r) { return r.origin.y; }),
+                    part([](const Ray<double>& r) { return r.direction.x; }),
+                    part([](const Ray<double>& r) { return r.direction.y; }),
+                    part([](const Ray<double>& r) { return r.direction.z; })};
+  const double z = data.first_order().z();
+  bent = bent_ray(data.rules, at->maps, at->dispersion, z, data.point(film, nearer, nearer_by), bent);
+  ray.ray = {{bent.x.a, bent.y.a, z}, {bent.dx.a, bent.dy.a, bent.dz.a}};
+  ray.by_u = {{bent.x.v[0], bent.y.v[0], 0}, {bent.dx.v[0], bent.dy.v[0], bent.dz.v[0]}};
+  ray.by_v = {{bent.x.v[1], bent.y.v[1], 0}, {bent.dx.v[1], bent.dy.v[1], bent.dz.v[1]}};
+}
+
+LocalFocus::Straight LocalFocus::straighten(const Ray<double>& ray, Wavelength wavelength,
+                                            const std::optional<TiltedPlane>& plane) const noexcept {
+  const Data& data = *data_;
+  const auto at = data.at(wavelength);
+  if (!at || !(ray.direction.z > 0)) return {};
+  const auto [x, y, slope_x, slope_y] = core_detail::slope_ray(ray, at->maps.z);
+  const Vec2<double> height{x, y}, slope{slope_x, slope_y};
+  if (!(glm::length(height) + glm::length(slope) < 1e12)) return {};
+
+  // What the film point has in focus whose chief ray's slope says that it is t.
+  const double by_radius = data.rules.power * beyond_one(data.rules.spline, glm::length(height) / at->maps.radius);
+  const auto asked = [&](double t) -> std::optional<double> {
+    const auto from = data.seen(*at, slope - height * t, plane);
+    if (!from) return {};
+    const auto point = data.point(from->place, from->nearer);
+    return focus_of(data.rules, at->maps, at->dispersion, point).asked + by_radius;
+  };
+  const double start = data.rules.primary.d / data.rules.primary.b;
+  const auto residual = [&](double t) { return t - asked(start + t).value_or(start) + start; };
+  // The span doubles until it holds the root: what is in focus is bounded.
+  double low = -std::abs(data.rules.power), high = -low;
+  for (int i = 0; i < 64 && residual(low) > 0; ++i) low *= 2;
+  for (int i = 0; i < 64 && residual(high) < 0; ++i) high *= 2;
+  const double t = start + focus_detail::root(residual, low, high);
+
+  const Vec2<double> chief = slope - height * t;
+  const auto from = data.seen(*at, chief, plane);
+  if (!from) return {};
+  const Vec2<double> nearer_by = plane ? plane->nearer_at(from->place).by : Vec2<double>{0, 0};
+  const FilmPointFocus<Jet> point = data.point(from->place, from->nearer, nearer_by);
+  const auto focus = focus_of(data.rules, at->maps, at->dispersion, point);
+  const double scale = point.scale.a;
+  const Vec2<double> straight = height / scale;
+  const auto spread = [&](const Jet& in_focus, const Vec2<double>& at_height) {
+    const Vec2<double> by = data.moved(*at, chief, at_height, plane);
+    return 1 + in_focus.v[0] * by.x + in_focus.v[1] * by.y;
+  };
+  const double wider = scale * scale * spread(focus.asked, height) / spread(focus.own, straight);
+  if (!(wider > 0 && std::isfinite(wider))) return {};
+  const Vec2<double> u = chief + straight * focus.own.a;
+  const Vec3<double> direction = glm::normalize(Vec3<double>{u.x, u.y, 1});
+  return {{{straight.x, straight.y, at->maps.z}, direction}, wider};
+}
+
+FocalSteepness LocalFocus::steepness(const std::optional<TiltedPlane>& plane) const noexcept {
+  FocalSteepness result;
+  const Data& data = *data_;
+  const Data::At& at = data.compiled[data.primary];
+  constexpr int columns = 96, rows = 64;
+  for (int row = 0; row <= rows; ++row) {
+    for (int column = 0; column <= columns; ++column) {
+      const double right = double(column) / columns - 0.5, up = double(row) / rows - 0.5;
+      const FilmPoint place{data.film.shift_x_mm + right * data.film.width_mm,
+                            data.film.shift_y_mm + up * data.film.height_mm};
+      const TiltedPlane upright, &lies = plane ? *plane : upright;
+      const FilmPoint from_pupil = lies.virtual_point(place);
+      const double nearer = lies.nearer_by(from_pupil), part = part_of_virtual(lies, from_pupil, at.middle);
+      const Vec2<double> chief = Vec2<double>{from_pupil.x, from_pupil.y} * (part * at.maps.chief_slope);
+      const FilmPointFocus<Jet> point = data.point(place, nearer, lies.nearer_at(place).by);
+      const auto [own, asked] = focus_of(data.rules, at.maps, at.dispersion, point);
+      const double rim = at.maps.radius * point.scale.a;
+      const Vec2<double> x = data.moved(at, chief, {rim, 0}, plane), y = data.moved(at, chief, {0, rim}, plane);
+      const Vec2<double> steep{asked.v[0] * x.x + asked.v[1] * x.y, asked.v[0] * y.x + asked.v[1] * y.y};
+      if (glm::length(steep) > result.steepness) result = {glm::length(steep), place};
+    }
+  }
+  return result;
+}
+
+EntrancePupilTable LocalFocus::entrances(const Lens& lens, const AnyRayModel& model) const {
+  const Data& data = *data_;
+  const double widest = data.surface ? scale_of(data.surface->least_extent()) : 1;
+  double least_power = 0, most_power = 0;
+  constexpr int steps = 64;
+  for (int i = 0; i <= steps; ++i) {
+    const double power = data.rules.power * beyond_one(data.rules.spline, double(i) / steps);
+    least_power = std::min(least_power, power), most_power = std::max(most_power, power);
+  }
+  std::vector<double> radii(data.compiled.size(), 0);
+  // The rays of all pupils, as wide as the widest extent makes them, to the nearest and to the farthest focus: they
+  // show how far fields reach.
+  const auto to_focus = [&](bool near) {
+    const FilmPointFocus<double> point{0,
+                                       data.surface ? (near ? data.surface->nearest() : data.surface->farthest()) : 0,
+                                       data.offsets ? (near ? data.offsets->most() : data.offsets->least()) : 0, 1};
+    return leaving_rays(model.pupils(), lens.rotationally_symmetric(),
+                        [&](std::size_t count, const TwoPlaneRays<const double>& lines, std::size_t wavelength,
+                            const RayArrays<double>& rays, RayFate* fates) {
+                          model.to_scene(count, lines, {.all = wavelength}, rays, fates);
+                          const Data::At& at = data.compiled[wavelength];
+                          const auto [own, asked] = focus_of(data.rules, at.maps, at.dispersion, point);
+                          const double in_focus = asked + (near ? most_power : least_power);
+                          for (std::size_t i = 0; i < count; ++i) {
+                            const auto line = core_detail::slope_ray(core_detail::ray_at(rays, i), at.maps.z);
+                            const Vec2<double> height{line.x, line.y}, slope{line.slope_x, line.slope_y};
+                            radii[wavelength] = std::max(radii[wavelength], glm::length(height));
+                            const Vec2<double> u = slope + height * (in_focus * widest - own);
+                            const Vec3<double> direction = -glm::normalize(Vec3<double>{u.x, u.y, 1});
+                            rays.x[i] = height.x * widest, rays.y[i] = height.y * widest, rays.z[i] = at.maps.z;
+                            rays.dx[i] = direction.x, rays.dy[i] = direction.y, rays.dz[i] = direction.z;
+                          }
+                        });
+  };
+  auto rays = to_focus(true);
+  const auto far = to_focus(false);
+  for (std::size_t w = 0; w < rays.size(); ++w) rays[w].insert(rays[w].end(), far[w].begin(), far[w].end());
+  constexpr double rounding = 1e-9;
+  return EntrancePupilTable(
+      lens, rays,
+      [&](std::size_t count, const RayArrays<const double>& from, std::size_t wavelength, std::uint8_t* passes) {
+        for (std::size_t i = 0; i < count; ++i) {
+          const double z = data.compiled[wavelength].maps.z;
+          const auto line = core_detail::slope_ray(core_detail::ray_at(from, i), z);
+          passes[i] = from.dz[i] > 0 && std::hypot(line.x, line.y) <= radii[wavelength] * widest * (1 + rounding);
+        }
+      },
+      ClippedBy::samples);
+}
+
+double LocalFocus::middle(std::size_t wavelength) const noexcept { return data_->compiled[wavelength].middle; }
+
+}  // namespace petzval::inline v0::camera_detail

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "core/loop_math.hpp"
+#include "power_spline.hpp"
+
+/// What a LocalFocus does to one ray, for loops over many, for a single one and for dual numbers.
+///
+/// To first order the rays of a film point X meet the plane of the entrance pupil at heights H from the axis under
+/// slopes u = U + w H: U is that of the chief ray, and w, the same for all of them, is 1 / distance of the plane in
+/// focus. Another plane in focus is another w, for each film point, radius in the pupil and wavelength; another extent
+/// of the depth of field is another scale s of H.
+namespace petzval::inline v0::camera_detail {
+
+/// First-order optics of one wavelength, in mm: the maps from film and pupil point to height and slope in the plane of
+/// the entrance pupil, height a X + b P and slope c X + d P.
+template <class T>
+struct EntranceMaps {
+  T z = 0;  ///< of that plane
+  T a = 0, b = 0, c = 0, d = 0;
+  T chief_slope = 0;   ///< per mm on the film
+  T radius = 0;        ///< of the pupil
+  T from_surface = 0;  ///< z less that from which a focal surface counts distances
+};
+
+/// What is asked of a film point.
+template <class N>
+struct FilmPointFocus {
+  N nearer;   ///< TiltedPlane::nearer_by(): 0 on an upright film
+  N surface;  ///< 1 / distance in focus by a focal surface, from where that counts
+  N offset;   ///< of the film, over its distance from the plane of the pupil
+  N scale;    ///< of the pupil
+};
+
+/// What does not change from ray to ray.
+template <class T>
+struct FocusRules {
+  EntranceMaps<T> primary;
+  bool by_surface = false, by_offset = false;
+  T power = 0;  ///< of the lens, 1/mm
+  PowerSpline<T> spline;
+};
+
+/// A ray by its place in a plane across the axis.
+template <class N>
+struct BentRay {
+  N x, y, dx, dy, dz;
+};
+
+/// 1 / distance in focus at the middle of the pupil, as the film has it and as it is asked for.
+template <class N>
+struct InFocus {
+  N own, asked;
+};
+
+// Local names: this is compiled for several instruction sets, and the linker must not take one for another.
+namespace {
+
+/// 1 / distance in focus of a film point that is nearer to the plane of the pupil (TiltedPlane::nearer_by()).
+template <class T, class N>
+inline N in_focus(const EntranceMaps<T>& maps, N nearer) noexcept {
+  return (maps.d - maps.c * nearer) / (maps.b - maps.a * nearer);
+}
+
+template <class T, class N>
+inline InFocus<N> focus_of(const FocusRules<T>& rules, const EntranceMaps<T>& maps, T dispersion,
+                           const FilmPointFocus<N>& point) noexcept {
+  const N own = in_focus(maps, point.nearer), primary = in_focus(rules.primary, point.nearer);
+  N asked = primary;
+  if (rules.by_surface) asked = point.surface / (T(1) + point.surface * maps.from_surface);
+  if (rules.by_offset) {
+    // The film point's distance from the plane of the pupil is 1 / (1 + nearer) of the upright film's.
+    const N moved = T(1) / (T(1) / (T(1) + point.nearer) + point.offset) - T(1);
+    asked += in_focus(rules.primary, moved) - primary;
+  }
+  asked += (own - primary) * dispersion;
+  return {own, asked};
+}
+
+/// z: of the plane in which rays are given, before and after.
+template <class T, class N>
+inline BentRay<N> bent_ray(const FocusRules<T>& rules, const EntranceMaps<T>& maps, T dispersion, T z,
+                           const FilmPointFocus<N>& point, const BentRay<N>& ray) noexcept {
+  const auto [own, asked] = focus_of(rules, maps, dispersion, point);
+  const N per_z = T(1) / ray.dz, slope_x = ray.dx * per_z, slope_y = ray.dy * per_z;
+  const T away = maps.z - z;
+  const N x = ray.x + slope_x * away, y = ray.y + slope_y * away;
+  using core_detail::square_root;
+  const N to_x = x * point.scale, to_y = y * point.scale;
+  const N height = square_root(N(to_x * to_x + to_y * to_y + T(1e-30)));  // a root of 0 has no derivative
+  const N in_focus = asked + beyond_one(rules.spline, N(height * (T(1) / maps.radius))) * rules.power;
+  // u' = U + w' s H = u + (w' s - w) H.
+  const N turn = in_focus * point.scale - own;
+  const N u = slope_x + turn * x, v = slope_y + turn * y;
+  const N down = T(-1) / square_root(N(u * u + v * v + T(1)));
+  return {to_x - u * away, to_y - v * away, u * down, v * down, down};
+}
+
+}  // namespace
+}  // namespace petzval::inline v0::camera_detail

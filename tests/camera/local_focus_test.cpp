@@ -1,0 +1,362 @@
+// SPDX-License-Identifier: Apache-2.0
+// Cameras with a focus of their own at each place of the film: focal surfaces and expressive lenses.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <glm/geometric.hpp>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "../data_lenses.hpp"
+#include "../message.hpp"
+#include "camera_samples.hpp"
+#include "core/low_discrepancy.hpp"
+#include "petzval/camera/camera.hpp"
+#include "petzval/core/units.hpp"
+#include "petzval/media/glass.hpp"
+#include "petzval/movement/focal_surface.hpp"
+#include "petzval/paraxial/ideal_lens.hpp"
+#include "petzval/pupil/f_number.hpp"
+#include "tilted_films.hpp"
+
+namespace petzval {
+namespace {
+
+using testing::pose_of;
+using testing::shifted;
+using testing::tilted_by;
+using testing::wide;
+
+const std::array first_order{ModelKind::thin, ModelKind::thick, ModelKind::thin_two_disc};
+
+Lens double_gauss() { return testing::data_lens("double_gauss_100mm_f2_28deg"); }
+
+/// Points at several distances, one at infinity; some of them fix the extent.
+FocalSurface surface_of(const Lens& lens, const Film& film, bool extents, double nearest_mm = 1200) {
+  std::vector<FocalPoint> points{{.place = {-12, 6}, .inverse_distance = 1 / nearest_mm},
+                                 {.place = {11, -5}, .inverse_distance = 1 / 4000.},
+                                 {.place = {2, 8}, .inverse_distance = 0},
+                                 {.place = {-4, -9}, .inverse_distance = 1 / 2000.},
+                                 {.place = {14, 9}, .inverse_distance = 1 / 2600., .weight = 2}};
+  if (extents) points[0].extent_stops = 2, points[1].extent_stops = -1, points[2].extent_stops = 0.5;
+  return {thick_lens(lens), pose_of(lens, film), points};
+}
+
+ExpressiveLens aberrations() {
+  return {.power = {{0, 1}, {0.5, 1.004}, {0.8, 0.99}, {1, 1.02}},
+          .film_offsets = {{{0, 0}, 0}, {{18, 0}, 0.6}, {{-18, 0}, 0.5}, {{0, 12}, -0.4}, {{0, -12}, 0.3}},
+          .dispersion = {3}};
+}
+
+struct Setting {
+  std::string what;
+  CameraOptions options;
+  Film film;
+};
+
+/// All of them on upright, tilted and travelling films.
+std::vector<Setting> settings(const Lens& lens, const std::vector<ModelKind>& models) {
+  std::vector<Setting> result;
+  Film travels = tilted_by(shifted, -4, 2);
+  travels.travel_mm = 1;
+  for (const auto& [where, film] : {std::pair<std::string, Film>{"upright", wide},
+                                    {"tilted", tilted_by(shifted, 7, -5)},
+                                    {"travelling", travels}}) {
+    for (const ModelKind model : models) {
+      const std::string of = std::string(name(model)) + ", " + where;
+      result.push_back({of + ", surface", {.model = model, .focal_surface = surface_of(lens, film, false)}, film});
+      result.push_back({of + ", extents", {.model = model, .focal_surface = surface_of(lens, film, true)}, film});
+      result.push_back({of + ", lens", {.model = model, .expressive = aberrations()}, film});
+      result.push_back({of + ", all",
+                        {.model = model, .focal_surface = surface_of(lens, film, true), .expressive = aberrations()},
+                        film});
+    }
+  }
+  return result;
+}
+
+Vec3<double> in_plane(const Ray<double>& ray, double z) {
+  return ray.origin + ray.direction * ((z - ray.origin.z) / ray.direction.z);
+}
+
+// The rays of a film point meet where the surface says, in every first-order model, on films in any pose.
+TEST(LocalFocus, RaysMeetOnTheFocalSurface) {
+  const Lens lens = double_gauss();
+  const core_detail::Kronecker<4> random(5);
+  for (const Film& film : {wide, tilted_by(shifted, 7, -5)}) {
+    for (const bool extents : {false, true}) {
+      const FocalSurface surface = surface_of(lens, film, extents);
+      for (const ModelKind model : first_order) {
+        const Camera camera(lens, film, {.model = model, .focal_surface = surface});
+        for (std::uint32_t i = 0; i < 50; ++i) {
+          const auto [x, y, u, v] = random(i);
+          const FilmPoint place = film.point(x * film.columns, y * film.rows);
+          const double distance = 1 / surface.at(place).inverse_distance;
+          const CameraRay one = camera.sample({place, u, v}), other = camera.sample({place, u + 0.5, 1 - v});
+          if (!one || !other) continue;
+          const double z = surface.origin_z() - distance;
+          const Vec3<double> apart = in_plane(one.ray, z) - in_plane(other.ray, z);
+          EXPECT_LT(glm::length(apart), 1e-9 * std::abs(distance) + 1e-9) << name(model) << " at " << distance;
+          // Twice as far away they do not.
+          EXPECT_GT(glm::length(in_plane(one.ray, 2 * z) - in_plane(other.ray, 2 * z)), 1e-3);
+        }
+      }
+    }
+  }
+}
+
+// An extent scales the pupil, and keeps weights.
+TEST(LocalFocus, ExtentsScaleBlurAndKeepExposure) {
+  const Lens lens = double_gauss();
+  const auto with = [&](double stops) {
+    const std::array points{FocalPoint{.place = {0, 0}, .inverse_distance = 1 / 2000., .extent_stops = stops}};
+    return Camera(
+        lens, wide,
+        {.model = ModelKind::thick, .focal_surface = FocalSurface(thick_lens(lens), pose_of(lens, wide), points)});
+  };
+  const Camera plain = with(0), closed = with(4), open = with(-2);
+  for (const FilmPoint place : {FilmPoint{0, 0}, FilmPoint{-15, 8}}) {
+    const auto blur = [&](const Camera& camera) {
+      const auto at = [&](double u) { return in_plane(camera.sample({place, u, 0.9}).ray, -5000); };
+      return glm::length(at(0.1) - at(0.6));
+    };
+    EXPECT_NEAR(blur(closed) / blur(plain), 0.25, 1e-9);
+    EXPECT_NEAR(blur(open) / blur(plain), 2, 1e-9);
+    EXPECT_EQ(closed.sample({place, 0.3, 0.7}).weight, plain.sample({place, 0.3, 0.7}).weight);
+  }
+}
+
+// Importance finds the film point, the weight and the density of a film sample from its ray alone.
+TEST(LocalFocus, SceneAndFilmAreInverse) {
+  const Lens lens = double_gauss();
+  const core_detail::Kronecker<5> random(2);
+  for (const auto& [what, options, film] :
+       settings(lens, {ModelKind::thin, ModelKind::thick, ModelKind::thin_two_disc})) {
+    const Camera camera(lens, film, options);
+    EXPECT_LT(camera.focal_steepness().steepness, 0.7) << what;
+    EXPECT_GT(camera.focal_steepness().steepness, 0.001) << what;
+    int seen = 0;
+    for (std::uint32_t i = 0; i < 40; ++i) {
+      const auto [x, y, u, v, time] = random(i);
+      const FilmPoint place = film.point(x * film.columns, y * film.rows);
+      const CameraSample sample{place, u, v, {}, time};
+      const CameraRay ray = camera.sample(sample);
+      if (!ray) continue;
+      ++seen;
+      const Importance found = camera.importance({ray.ray.origin, -ray.ray.direction}, {}, time);
+      ASSERT_TRUE(found) << what << ", sample " << i << ": " << name(found.fate);
+      EXPECT_NEAR(std::hypot(found.film.x - place.x, found.film.y - place.y), 0, 1e-8) << what;
+      EXPECT_NEAR(found.we / (found.pdf_position * found.pdf_direction) / ray.weight, 1, 1e-8) << what;
+      EXPECT_NEAR(found.pdf_pupil / ray.pdf_pupil, 1, 1e-8) << what;
+    }
+    EXPECT_GT(seen, 20) << what;
+  }
+}
+
+// The density of film samples in the scene, by differences of film point and place in the pupil.
+TEST(LocalFocus, DensitiesAreThoseOfTheMapOfRays) {
+  const Lens lens = double_gauss();
+  for (const auto& [what, options, film] : settings(lens, {ModelKind::thin, ModelKind::thick})) {
+    const Camera camera(lens, film, options);
+    for (const auto& [u, v, place] : {std::tuple{0.2, 0.3, FilmPoint{-9, 4}}, {0.7, 0.8, FilmPoint{10, 3}}}) {
+      // Height and slope in a plane across the axis, by film x and y, u and v.
+      const auto at = [&](const std::array<double, 4>& s) -> std::array<double, 4> {
+        const Ray<double> ray = camera.sample({{s[0], s[1]}, s[2], s[3]}).ray;
+        const Vec3<double> point = in_plane(ray, -100);
+        return {point.x, point.y, ray.direction.x / ray.direction.z, ray.direction.y / ray.direction.z};
+      };
+      const std::array<double, 4> middle{place.x, place.y, u, v}, step{1e-3, 1e-3, 1e-5, 1e-5};
+      std::array<std::array<double, 4>, 4> by;
+      for (std::size_t k = 0; k < 4; ++k) {
+        auto before = middle, behind = middle;
+        before[k] -= step[k], behind[k] += step[k];
+        const auto from = at(before), to = at(behind);
+        for (std::size_t j = 0; j < 4; ++j) by[k][j] = (to[j] - from[j]) / (2 * step[k]);
+      }
+      double determinant = 1;
+      for (std::size_t k = 0; k < 4; ++k) {  // Gauss's elimination
+        std::size_t pivot = k;
+        for (std::size_t r = k; r < 4; ++r) pivot = std::abs(by[r][k]) > std::abs(by[pivot][k]) ? r : pivot;
+        if (pivot != k) std::swap(by[k], by[pivot]), determinant = -determinant;
+        determinant *= by[k][k];
+        for (std::size_t r = k + 1; r < 4; ++r) {
+          const double part = by[r][k] / by[k][k];
+          for (std::size_t j = 0; j < 4; ++j) by[r][j] -= part * by[k][j];
+        }
+      }
+      // u and v are spread over the unit square, film points over the film.
+      const CameraRay ray = camera.sample({place, u, v});
+      const double cosine = std::abs(ray.ray.direction.z);
+      const double density = 1 / film.area_mm2() / std::abs(determinant) / std::pow(cosine, 4);
+      const Importance found = camera.importance({ray.ray.origin, -ray.ray.direction});
+      ASSERT_TRUE(found) << what;
+      EXPECT_NEAR(found.pdf_position * found.pdf_direction / density, 1, 1e-5) << what;
+    }
+  }
+}
+
+// A batch is its single samples, in both precisions; derivatives are differences.
+TEST(LocalFocus, BatchesSinglesAndDerivativesAgree) {
+  const Lens lens = double_gauss();
+  const core_detail::Kronecker<5> random(9);
+  for (const auto& [what, options, film] : settings(lens, {ModelKind::thick, ModelKind::thin_two_disc})) {
+    const Camera camera(lens, film, options);
+    constexpr std::size_t count = 70;
+    std::vector<double> in[5];
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const auto [x, y, u, v, time] = random(i);
+      const FilmPoint place = film.point(x * film.columns, y * film.rows);
+      in[0].push_back(place.x), in[1].push_back(place.y);
+      in[2].push_back(u), in[3].push_back(v), in[4].push_back(time);
+    }
+    std::vector<double> out[7];
+    for (auto& values : out) values.resize(count);
+    camera.sample<double>(
+        count, {in[0].data(), in[1].data(), in[2].data(), in[3].data(), {}, in[4].data()},
+        {{out[0].data(), out[1].data(), out[2].data(), out[3].data(), out[4].data(), out[5].data()}, out[6].data()});
+    std::vector<float> in_float[5], out_float[7];
+    for (int k = 0; k < 5; ++k) in_float[k].assign(in[k].begin(), in[k].end());
+    for (auto& values : out_float) values.resize(count);
+    camera.sample<float>(
+        count, {in_float[0].data(), in_float[1].data(), in_float[2].data(), in_float[3].data(), {}, in_float[4].data()},
+        {{out_float[0].data(), out_float[1].data(), out_float[2].data(), out_float[3].data(), out_float[4].data(),
+          out_float[5].data()},
+         out_float[6].data()});
+    for (std::size_t i = 0; i < count; ++i) {
+      const CameraSample sample{{in[0][i], in[1][i]}, in[2][i], in[3][i], {}, in[4][i]};
+      const CameraRay ray = camera.sample(sample);
+      const Vec3<double> origin{out[0][i], out[1][i], out[2][i]}, direction{out[3][i], out[4][i], out[5][i]};
+      EXPECT_LT(glm::length(origin - ray.ray.origin), 1e-9) << what;
+      EXPECT_LT(glm::length(direction - ray.ray.direction), 1e-12) << what;
+      const Vec3<double> in_single{out_float[3][i], out_float[4][i], out_float[5][i]};
+      EXPECT_LT(glm::length(in_single - ray.ray.direction), 1e-6) << what;
+      const CameraRayDifferential found = camera.sample_differential(sample);
+      if (!found.sample || i > 10) continue;
+      EXPECT_LT(glm::length(found.sample.ray.direction - ray.ray.direction), 1e-12);
+      constexpr double step = 1e-4;
+      CameraSample before = sample, behind = sample;
+      before.film.x -= step, behind.film.x += step;
+      const CameraRay from = camera.sample(before), to = camera.sample(behind);
+      if (!from || !to) continue;
+      const Vec3<double> by = (to.ray.direction - from.ray.direction) / (2 * step);
+      EXPECT_LT(glm::length(found.by_film_x.direction - by), 1e-6 * glm::length(by)) << what;
+      const Vec3<double> moved = (to.ray.origin - from.ray.origin) / (2 * step);
+      EXPECT_LT(glm::length(found.by_film_x.origin - moved), 1e-5 * (1 + glm::length(moved))) << what;
+    }
+  }
+}
+
+// Points on a plane make a surface that is the plane which a tilted film has in focus: Scheimpflug's.
+TEST(LocalFocus, SurfaceThroughAPlaneFocusesAsATiltedFilm) {
+  const Lens lens = with_f_number(double_gauss(), 11);  // its spherical aberration is small there
+  const IdealLens ideal = thick_lens(lens);
+  const Vec3<double> through{0, -150, -2500}, normal = glm::normalize(Vec3<double>{0.2, 0.6, 1});
+  const Film upright = pose_of(lens, wide),
+             tilted = film_in(*ideal.image_of({normal, glm::dot(normal, through)}), wide);
+  EXPECT_GT(tilted.angle(), radians(1.0));
+  const Camera plain(lens, upright, {.model = ModelKind::thick}), by_film(lens, tilted, {.model = ModelKind::thick});
+  std::vector<FocalPoint> points;
+  for (const auto& [x, y] : {std::pair{-300.0, 150.0}, {320.0, 120.0}, {-250.0, -220.0}, {260.0, -180.0}}) {
+    const double z = through.z - (normal.x * (x - through.x) + normal.y * (y - through.y)) / normal.z;
+    const Projection seen = plain.project({x, y, z});
+    ASSERT_TRUE(seen);
+    points.push_back({.place = seen.film, .inverse_distance = 1 / (ideal.pupils.entrance.z - z)});
+  }
+  const Camera by_surface(lens, upright,
+                          {.model = ModelKind::thick, .focal_surface = FocalSurface(ideal, upright, points)});
+  const core_detail::Kronecker<2> random(3);
+  for (const Camera* camera : {&by_surface, &by_film}) {
+    for (std::uint32_t i = 0; i < 40; ++i) {
+      const auto [x, y] = random(i);
+      const FilmPoint place = camera->film().point(x * wide.columns, y * wide.rows);
+      const Ray<double> one = camera->sample({place, 0.1, 0.9}).ray, other = camera->sample({place, 0.6, 0.9}).ray;
+      // Where each meets the plane.
+      const auto met = [&](const Ray<double>& ray) {
+        return ray.origin + ray.direction * (glm::dot(through - ray.origin, normal) / glm::dot(ray.direction, normal));
+      };
+      const double distance = glm::length(met(one));
+      if (distance > 20000) continue;
+      // The film's focus follows what is left of the spherical aberration.
+      const bool film = camera == &by_film;
+      EXPECT_LT(glm::length(met(one) - met(other)), (film ? 5e-5 : 1e-9) * distance) << (film ? "film" : "surface");
+      EXPECT_GT(glm::length(in_plane(one, -600) - in_plane(other, -600)), 1);
+    }
+  }
+}
+
+// Wavelengths in nm have the colour of the lens, and the distance of the surface at the primary one; film and scene
+// agree at each.
+TEST(LocalFocus, HoldsAtAnyWavelength) {
+  constexpr std::array nm{587.56, 430., 480., 540., 680.};
+  const auto glasses = GlassCatalogue::load(std::filesystem::path(PETZVAL_TEST_DATA) / "glass");
+  const Lens lens = compile(testing::data_prescription("double_gauss_100mm_f2_28deg"), nm,
+                            {.glasses = &glasses, .missing_glass = MissingGlass::abbe});
+  const Camera camera(
+      lens, wide,
+      {.model = ModelKind::thick, .focal_surface = surface_of(lens, wide, true), .expressive = aberrations()});
+  for (const Wavelength wavelength : {Wavelength(1), Wavelength(4), Wavelength::nm(500), Wavelength::nm(611)}) {
+    const core_detail::Kronecker<4> random(1);
+    std::vector<double> in[4], out[7];
+    constexpr std::size_t count = 30;
+    for (auto& values : out) values.resize(count);
+    std::vector<float> each_nm(count, 0);
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const auto [x, y, u, v] = random(i);
+      const FilmPoint place = wide.point(x * wide.columns, y * wide.rows);
+      in[0].push_back(place.x), in[1].push_back(place.y), in[2].push_back(u), in[3].push_back(v);
+      each_nm[i] = static_cast<float>(wavelength.in_nm().value_or(0));
+    }
+    RayWavelengths wavelengths{.all = wavelength};
+    if (wavelength.in_nm()) wavelengths.each_nm = each_nm.data();
+    camera.sample<double>(
+        count, {in[0].data(), in[1].data(), in[2].data(), in[3].data(), wavelengths},
+        {{out[0].data(), out[1].data(), out[2].data(), out[3].data(), out[4].data(), out[5].data()}, out[6].data()});
+    for (std::size_t i = 0; i < count; ++i) {
+      const FilmPoint place{in[0][i], in[1][i]};
+      const CameraRay ray = camera.sample({place, in[2][i], in[3][i], wavelength});
+      ASSERT_TRUE(ray);
+      EXPECT_LT(glm::length(Vec3<double>{out[3][i], out[4][i], out[5][i]} - ray.ray.direction), 1e-9);
+      const Importance found = camera.importance({ray.ray.origin, -ray.ray.direction}, wavelength);
+      ASSERT_TRUE(found);
+      EXPECT_NEAR(std::hypot(found.film.x - place.x, found.film.y - place.y), 0, 1e-7);
+      EXPECT_NEAR(found.we / (found.pdf_position * found.pdf_direction) / ray.weight, 1, 1e-7);
+    }
+  }
+}
+
+// Where neighbouring film points' rays cross, film samples go on as they are, and the camera says so.
+TEST(LocalFocus, SteepSurfacesAreFound) {
+  const Lens lens = double_gauss();
+  const auto with = [&](double apart) {
+    const std::array points{FocalPoint{.place = {-apart, 0}, .inverse_distance = 1 / 600.},
+                            FocalPoint{.place = {apart, 0}, .inverse_distance = 0}};
+    return Camera(
+        lens, wide,
+        {.model = ModelKind::thin,
+         .focal_surface = FocalSurface(thick_lens(lens), pose_of(lens, wide), points, {.kind = SurfaceKind::shepard})});
+  };
+  const auto gentle = with(17).focal_steepness(), steep = with(1).focal_steepness();
+  EXPECT_LT(gentle.steepness, 1);
+  EXPECT_GT(steep.steepness, 1);
+  EXPECT_LT(std::abs(steep.place.x), 1.5);
+  EXPECT_NEAR(steep.steepness / gentle.steepness, 17, 2);
+  const Camera camera = with(1);
+  for (const double x : {-0.3, 0.0, 0.4}) EXPECT_TRUE(camera.sample({{x, 0.1}, 0.3, 0.8}));
+  EXPECT_EQ(Camera(lens, wide, {.model = ModelKind::thin}).focal_steepness().steepness, 0);
+}
+
+TEST(LocalFocus, PinholesSeeEverythingSharp) {
+  const Lens lens = double_gauss();
+  const Camera plain(lens, wide, {.model = ModelKind::pinhole}),
+      bent(lens, wide,
+           {.model = ModelKind::pinhole, .focal_surface = surface_of(lens, wide, true), .expressive = aberrations()});
+  for (const FilmPoint place : {FilmPoint{0, 0}, FilmPoint{-15, 8}}) {
+    EXPECT_EQ(plain.sample({place, 0.3, 0.7}).ray.direction, bent.sample({place, 0.3, 0.7}).ray.direction);
+  }
+}
+
+}  // namespace
+}  // namespace petzval
