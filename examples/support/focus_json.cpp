@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -14,6 +15,7 @@
 namespace examples {
 namespace {
 
+constexpr Range extent_range{-20, 20, "a number of stops from -20 to 20"};
 constexpr Range weight_range{0, std::numeric_limits<double>::max(), "a finite number, 0 or more"};
 
 /// An object of the file and its name in messages.
@@ -39,6 +41,17 @@ struct Entry {
     return x;
   }
 
+  bool flag(const char* key, bool unless) const {
+    if (!json.contains(key)) return unless;
+    if (!json.at(key).is_boolean()) refuse(where + ": " + key, json.at(key), "true or false");
+    return json.at(key);
+  }
+
+  std::optional<double> extent() const {
+    if (!json.contains("extent_stops")) return {};
+    return number("extent_stops", 0, extent_range);
+  }
+
   petzval::ScenePoint place() const {
     const std::string wanted = "three finite numbers, [x, y, z]";
     const Json& value = at("position_mm", wanted);
@@ -46,12 +59,7 @@ struct Entry {
     if (!value.is_array() || value.size() != 3 || !std::all_of(value.begin(), value.end(), finite)) {
       refuse(where + ": position_mm", value, wanted);
     }
-    petzval::ScenePoint result{{value[0], value[1], value[2]}, false};
-    if (json.contains("at_infinity")) {
-      if (!json["at_infinity"].is_boolean()) refuse(where + ": at_infinity", json["at_infinity"], "true or false");
-      result.at_infinity = json["at_infinity"];
-    }
-    return result;
+    return {{value[0], value[1], value[2]}, flag("at_infinity", false)};
   }
 };
 
@@ -69,9 +77,10 @@ std::vector<petzval::FocusTarget> read_targets(const std::filesystem::path& file
   const Json document = read_json(file);
   if (document == Json::array()) return result;
   for_entries(file.string(), document, "point", [&](const Entry& entry) {
-    entry.keys({"position_mm", "weight", "blur_mm", "at_infinity"}, "position_mm, weight, blur_mm and at_infinity");
-    result.push_back(
-        {entry.place(), entry.number("blur_mm", 0, finite_number), entry.number("weight", 1, weight_range)});
+    entry.keys({"position_mm", "weight", "blur_mm", "at_infinity", "extent_stops", "fixes_distance"},
+               "position_mm, weight, blur_mm, at_infinity, extent_stops and fixes_distance");
+    result.push_back({entry.place(), entry.number("blur_mm", 0, finite_number), entry.number("weight", 1, weight_range),
+                      entry.extent(), entry.flag("fixes_distance", true)});
   });
   return result;
 }
@@ -80,19 +89,24 @@ std::vector<petzval::FocusPoint> read_focus_points(const std::filesystem::path& 
   std::vector<petzval::FocusPoint> result;
   const Json document = read_json(file);
   for_entries(file.string(), document, "point", [&](const Entry& entry) {
-    entry.keys({"from_s", "until_s", "keys"}, "from_s, until_s and keys");
+    entry.keys({"from_s", "until_s", "keys", "fixes_distance"}, "from_s, until_s, keys and fixes_distance");
     petzval::FocusPoint point;
+    point.fixes_distance = entry.flag("fixes_distance", true);
     point.from = entry.number("from_s", point.from, finite_number);
     point.until = entry.number("until_s", point.until, finite_number);
     if (!(point.until >= point.from)) {
       refuse(entry.where + ": until_s", entry.json["until_s"], "a time not before from_s");
     }
     for_entries(entry.where + ": keys", entry.at("keys", "a list of keys"), "key", [&](const Entry& key) {
-      key.keys({"time_s", "position_mm", "weight", "blur_mm", "at_infinity"},
-               "time_s, position_mm, weight, blur_mm and at_infinity");
+      key.keys({"time_s", "position_mm", "weight", "blur_mm", "at_infinity", "extent_stops"},
+               "time_s, position_mm, weight, blur_mm, at_infinity and extent_stops");
       key.at("time_s", finite_number.words);
       point.keys.push_back({key.number("time_s", 0, finite_number), key.place(),
-                            key.number("blur_mm", 0, finite_number), key.number("weight", 1, weight_range)});
+                            key.number("blur_mm", 0, finite_number), key.number("weight", 1, weight_range),
+                            key.extent()});
+      if (point.keys.back().extent_stops.has_value() != point.keys.front().extent_stops.has_value()) {
+        throw petzval::Error(key.where + ": extent_stops: found in some keys only, wanted it in all keys or in none");
+      }
       if (point.keys.size() > 1 && !(point.keys.end()[-2].time < point.keys.back().time)) {
         refuse(key.where + ": time_s", key.json["time_s"], "a time after the previous key");
       }

@@ -51,7 +51,7 @@ Request checked(const IdealLens& lens, const FocusTarget& target, Request reques
   if (!movement_detail::well_formed(target)) return {TargetUse::not_finite, nan, 0};
   if (request.use != TargetUse::used) return request;
   if (!(std::abs(request.film_z - lens.rear_focal_z) < farthest)) return {TargetUse::no_image, nan, 0};
-  if (target.weight == 0 || request.steepness == 0) request.use = TargetUse::no_weight;
+  if (target.weight == 0 || !target.fixes_distance || request.steepness == 0) request.use = TargetUse::no_weight;
   return request;
 }
 

@@ -10,6 +10,8 @@
 #include "core/text.hpp"
 #include "moving_least_squares.hpp"
 #include "petzval/core/error.hpp"
+#include "petzval/core/parallel.hpp"
+#include "targets.hpp"
 
 namespace petzval::inline v0 {
 namespace {
@@ -19,7 +21,6 @@ using movement_detail::WeighedValue;
 
 constexpr double margin = 1e-3;        // focal lengths in front of the front focal plane
 constexpr double largest_power = 1e6;  // inverse distances, in 1 / focal length: their squares are numbers
-constexpr double largest_extent = 20;  // stops
 
 double entrance_pupil(const IdealLens& lens) {
   const double z = lens.pupils.entrance.z;
@@ -61,10 +62,7 @@ void check(const FocalPoint& point, double nearest, double farthest, const std::
   if (!std::isfinite(point.blur_mm)) {
     throw Error(where + "the blur is " + to_text(point.blur_mm) + " mm, wanted a finite one");
   }
-  if (point.extent_stops && !(std::abs(*point.extent_stops) <= largest_extent)) {
-    throw Error(where + "the extent is " + to_text(*point.extent_stops) + " stops, wanted one from " +
-                to_text(-largest_extent) + " to " + to_text(largest_extent) + " stops");
-  }
+  if (point.extent_stops) movement_detail::check_extent(*point.extent_stops, where);
 }
 
 }  // namespace
@@ -168,9 +166,89 @@ void FocalSurface::at(std::size_t count, const T* film_x, const T* film_y, T* in
 template PETZVAL_API void FocalSurface::at(std::size_t, const float*, const float*, float*, float*) const noexcept;
 template PETZVAL_API void FocalSurface::at(std::size_t, const double*, const double*, double*, double*) const noexcept;
 
+template <class T>
+void FocalSurface::frame(const Film& film, int threads, T* inverse_distances, T* extents) const {
+  const auto columns = static_cast<std::size_t>(std::max(film.columns, 0));
+  const auto rows = static_cast<std::size_t>(std::max(film.rows, 0));
+  parallel_for(rows, 8, threads, [&](std::size_t begin, std::size_t end) {
+    std::vector<T> x(columns), y(columns);
+    for (std::size_t c = 0; c < columns; ++c) {
+      x[c] = static_cast<T>(film.point(static_cast<double>(c) + 0.5, 0).x);
+    }
+    for (std::size_t r = begin; r < end; ++r) {
+      std::fill(y.begin(), y.end(), static_cast<T>(film.point(0, static_cast<double>(r) + 0.5).y));
+      at(columns, x.data(), y.data(), inverse_distances + r * columns, extents ? extents + r * columns : nullptr);
+    }
+  });
+}
+template PETZVAL_API void FocalSurface::frame(const Film&, int, float*, float*) const;
+template PETZVAL_API void FocalSurface::frame(const Film&, int, double*, double*) const;
+
 double FocalSurface::nearest() const noexcept { return fields_->distance.most(); }
 double FocalSurface::farthest() const noexcept { return fields_->distance.least(); }
 double FocalSurface::least_extent() const noexcept { return fields_->extent.least(); }
 double FocalSurface::most_extent() const noexcept { return fields_->extent.most(); }
+
+std::vector<FocalPoint> focal_points(const IdealLens& lens, const Film& film, std::span<const FocusPoint> points,
+                                     const FocusMoment& moment, std::span<const double> fades) {
+  movement_detail::check_points(points, moment);
+  if (!fades.empty() && fades.size() != points.size()) {
+    throw Error("focal_points: " + std::to_string(fades.size()) + " fades for " + std::to_string(points.size()) +
+                " points, wanted as many or none");
+  }
+  const double nearest = nearest_inverse(lens),
+               farthest_place = movement_detail::reach_in_sides * std::sqrt(film.area_mm2());
+  std::vector<FocusTarget> targets;
+  std::vector<FocalPoint> result;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const bool valid = moment.time >= points[i].from && moment.time <= points[i].until;
+    const double fade = fades.empty() ? (valid ? 1 : 0) : fades[i];
+    if (fade == 0) continue;
+    const auto target = movement_detail::target_at(lens, points[i], moment);
+    const auto image = target ? lens.image(target->place) : std::nullopt;
+    const auto place = image ? chief_point(*image, film) : std::nullopt;
+    if (!place || !(std::abs(place->x) <= farthest_place && std::abs(place->y) <= farthest_place)) continue;
+    FocalPoint point{.place = *place, .blur_mm = target->blur_mm, .extent_stops = target->extent_stops, .fade = fade};
+    if (target->fixes_distance) {
+      const bool at_infinity = target->place.at_infinity;
+      point.inverse_distance = at_infinity ? 0 : 1 / (lens.pupils.entrance.z - target->place.position.z);
+      if (!(*point.inverse_distance >= 0 && *point.inverse_distance <= nearest)) continue;
+    }
+    targets.push_back(*target);
+    result.push_back(point);
+  }
+  if (moment.nearer_weighs_more) movement_detail::weigh_nearer_more(lens, targets);
+  for (std::size_t k = 0; k < result.size(); ++k) result[k].weight = targets[k].weight;
+  return result;
+}
+
+std::vector<bool> points_in_view(const IdealLens& lens, const Film& film, std::span<const FocusPoint> points,
+                                 const FocusMoment& moment) {
+  FocusMoment when = moment;
+  when.film = film;
+  movement_detail::check_points(points, when);
+  std::vector<bool> result;
+  for (const FocusPoint& point : points) {
+    const bool valid = moment.time >= point.from && moment.time <= point.until;
+    result.push_back(valid && movement_detail::target_at(lens, point, when));
+  }
+  return result;
+}
+
+FocusFades::FocusFades(double time_constant_s) : time_constant_(time_constant_s) {
+  if (time_constant_s >= 0 && std::isfinite(time_constant_s)) return;
+  throw Error("FocusFades: the time constant is " + to_text(time_constant_s) + " s, wanted a finite one of 0 or more");
+}
+
+void FocusFades::advance(double seconds, const std::vector<bool>& in_view) {
+  if (!(seconds >= 0)) throw Error("FocusFades: the step is " + to_text(seconds) + " s, wanted one of 0 or more");
+  const double left = time_constant_ > 0 ? std::exp(-seconds / time_constant_) : 0;
+  const std::size_t known = std::min(fades_.size(), in_view.size());
+  fades_.resize(in_view.size());
+  for (std::size_t i = 0; i < in_view.size(); ++i) {
+    const double end = in_view[i] ? 1 : 0;
+    fades_[i] = i < known ? end + (fades_[i] - end) * left : end;
+  }
+}
 
 }  // namespace petzval::inline v0

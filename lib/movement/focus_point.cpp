@@ -11,6 +11,7 @@
 #include "petzval/core/error.hpp"
 #include "petzval/film/film.hpp"
 #include "plane_fit.hpp"
+#include "targets.hpp"
 
 namespace petzval::inline v0 {
 namespace {
@@ -58,6 +59,11 @@ void check(const FocusPoint& point, std::size_t vertices, const std::string& whe
     if (!std::isfinite(key.weight) || key.weight < 0) {
       throw Error(at + "weight is " + to_text(key.weight) + ", wanted a finite one of 0 or more");
     }
+    if (key.extent_stops.has_value() != point.keys.front().extent_stops.has_value()) {
+      throw Error(at + "an extent is " + (key.extent_stops ? "given" : "missing") +
+                  ", wanted one in all keys of the point or in none");
+    }
+    if (key.extent_stops) movement_detail::check_extent(*key.extent_stops, at);
     if (const auto* place = std::get_if<ScenePoint>(&key.anchor)) {
       check(*place, at);
     } else {
@@ -162,26 +168,49 @@ bool within(Film film, const IdealLens& lens, const ImagePoint& image) {
 
 }  // namespace
 
+std::optional<FocusTarget> movement_detail::target_at(const IdealLens& lens, const FocusPoint& point,
+                                                      const FocusMoment& moment) {
+  const auto place = place_at(lens, point, moment);
+  const auto image = place ? lens.image(*place) : std::nullopt;
+  if (!image || (moment.film && !within(*moment.film, lens, *image))) return {};
+  const auto now = [&](const auto& of) {
+    return at_time(point, moment.time, [&](std::size_t k) { return of(point.keys[k]); });
+  };
+  FocusTarget target{*place, now([](const FocusKey& key) { return key.blur_mm; }),
+                     now([](const FocusKey& key) { return key.weight; })};
+  if (point.keys.front().extent_stops) {
+    target.extent_stops = now([](const FocusKey& key) { return *key.extent_stops; });
+  }
+  target.fixes_distance = point.fixes_distance;
+  return target;
+}
+
+void movement_detail::check_points(std::span<const FocusPoint> points, const FocusMoment& moment) {
+  check(moment);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    check(points[i], moment.vertices.size(), "focus point " + std::to_string(i) + ": ");
+  }
+}
+
+void movement_detail::weigh_nearer_more(const IdealLens& lens, std::span<FocusTarget> targets) {
+  const auto inverse_distance = [&](const FocusTarget& target) {
+    return seen(target.place, lens.front_principal_z()).z;
+  };
+  double nearest = 0;
+  for (const FocusTarget& target : targets) nearest = std::max(nearest, inverse_distance(target));
+  if (!(nearest > 0)) return;
+  for (FocusTarget& target : targets) target.weight *= inverse_distance(target) / nearest;
+}
+
 std::vector<FocusTarget> focus_targets(const IdealLens& lens, std::span<const FocusPoint> points,
                                        const FocusMoment& moment) {
-  check(moment);
+  movement_detail::check_points(points, moment);
   std::vector<FocusTarget> targets;
-  std::vector<double> inverse_distances;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const FocusPoint& point = points[i];
-    check(point, moment.vertices.size(), "focus point " + std::to_string(i) + ": ");
+  for (const FocusPoint& point : points) {
     if (moment.time < point.from || moment.time > point.until) continue;
-    const auto place = place_at(lens, point, moment);
-    const auto image = place ? lens.image(*place) : std::nullopt;
-    if (!image || (moment.film && !within(*moment.film, lens, *image))) continue;
-    targets.push_back({*place, at_time(point, moment.time, [&](std::size_t k) { return point.keys[k].blur_mm; }),
-                       at_time(point, moment.time, [&](std::size_t k) { return point.keys[k].weight; })});
-    inverse_distances.push_back(seen(*place, lens.front_principal_z()).z);
+    if (const auto target = movement_detail::target_at(lens, point, moment)) targets.push_back(*target);
   }
-  if (moment.nearer_weighs_more && !targets.empty()) {
-    const double nearest = *std::max_element(inverse_distances.begin(), inverse_distances.end());
-    for (std::size_t i = 0; i < targets.size() && nearest > 0; ++i) targets[i].weight *= inverse_distances[i] / nearest;
-  }
+  if (moment.nearer_weighs_more) movement_detail::weigh_nearer_more(lens, targets);
   return targets;
 }
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/text.hpp"
+#include "petzval/core/error.hpp"
 #include "targets.hpp"
 
 namespace petzval::inline v0 {
@@ -28,6 +30,12 @@ std::string_view name(PlaneRank rank) noexcept {
     case PlaneRank::plane: return "plane";
   }
   return "unknown";
+}
+
+void movement_detail::check_extent(double stops, const std::string& where) {
+  if (std::abs(stops) <= largest_extent) return;
+  throw Error(where + "the extent is " + to_text(stops) + " stops, wanted one from " + to_text(-largest_extent) +
+              " to " + to_text(largest_extent) + " stops");
 }
 
 bool movement_detail::well_formed(const FocusTarget& target) noexcept {

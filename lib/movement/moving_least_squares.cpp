@@ -14,7 +14,6 @@
 namespace petzval::inline v0::movement_detail {
 namespace {
 
-constexpr double reach = 1e6;         // sides
 constexpr double longest_soft = 0.1;  // sides
 constexpr double full_alpha = 1e-3;   // of the largest: with less, a point becomes soft
 constexpr double negligible = 1e-9;   // of the largest
@@ -34,9 +33,9 @@ double scale_of(double x) { return std::ldexp(1, -std::clamp(std::ilogb(x), -100
 
 void check(const WeighedValue& point, double side, const std::string& where) {
   const auto& [place, value, weight, fade] = point;
-  if (!(std::abs(place.x) <= reach * side && std::abs(place.y) <= reach * side)) {
+  if (!(std::abs(place.x) <= reach_in_sides * side && std::abs(place.y) <= reach_in_sides * side)) {
     throw Error(where + "the place is (" + to_text(place.x) + ", " + to_text(place.y) + ") mm, wanted one within " +
-                to_text(reach * side) + " mm");
+                to_text(reach_in_sides * side) + " mm");
   }
   if (!std::isfinite(value)) throw Error(where + "the value is " + to_text(value) + ", wanted a finite one");
   if (!std::isfinite(weight) || weight < 0) {
@@ -79,19 +78,30 @@ MovingLeastSquares::MovingLeastSquares(std::string_view where, std::span<const W
   }
   to_scaled_value_ = largest > 0 ? scale_of(largest) : 1;
   Columns<double>& to = in_double_;
+  std::vector<double> shares;
   for (const auto& point : points) {
     const double alpha = raw_alpha(point) / most_alpha;
     if (!(alpha >= negligible)) continue;
-    const double soft = (1 - presence(point) / most_present) * longest_soft * side * to_scaled_;
+    shares.push_back(presence(point) / most_present);
+    const double soft = (1 - shares.back()) * longest_soft * side * to_scaled_;
     to.x.push_back(point.place.x * to_scaled_);
     to.y.push_back(point.place.y * to_scaled_);
     to.value.push_back(point.value * to_scaled_value_);
     to.alpha.push_back(alpha);
     to.soft2.push_back(soft * soft);
   }
-  const auto [least, most] = std::minmax_element(to.value.begin(), to.value.end());
-  to.low = *least - (*most - *least);
-  to.high = *most + (*most - *least);
+  // A point that vanishes takes its part of the limits along.
+  double mean = 0, alphas = 0;
+  for (std::size_t i = 0; i < to.alpha.size(); ++i) mean += to.alpha[i] * to.value[i], alphas += to.alpha[i];
+  mean /= alphas;
+  double least = std::numeric_limits<double>::infinity(), most = -least;
+  for (std::size_t i = 0; i < shares.size(); ++i) {
+    const double value = shares[i] == 1 ? to.value[i] : mean + shares[i] * (to.value[i] - mean);
+    least = std::min(least, value);
+    most = std::max(most, value);
+  }
+  to.low = least - (most - least);
+  to.high = most + (most - least);
   const auto rounded = [](const std::vector<double>& from) { return std::vector<float>(from.begin(), from.end()); };
   in_float_ = {rounded(to.x),
                rounded(to.y),
@@ -131,7 +141,7 @@ void MovingLeastSquares::at(InstructionSet set, std::size_t count, const T* x, c
       .low = columns.low,
       .high = columns.high,
       .to_scaled = static_cast<T>(to_scaled_),
-      .reach = static_cast<T>(2 * reach),
+      .reach = static_cast<T>(2 * reach_in_sides),
       .from_scaled = static_cast<T>(1 / to_scaled_value_),
       .count = count,
       .at_x = x,

@@ -23,6 +23,9 @@ struct WeighedValue {
   double fade = 1;    ///< from 0 (gone) to 1
 };
 
+/// Places of points lie within so many sides of the picture.
+inline constexpr double reach_in_sides = 1e6;
+
 /// Throws Error, which begins with `where`, for what MovingLeastSquares does not take.
 void check(const WeighedValue& point, double side, const std::string& where);
 

@@ -3,7 +3,9 @@
 
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <span>
+#include <string>
 
 #include "petzval/core/export.hpp"
 #include "petzval/movement/focus_point.hpp"
@@ -12,6 +14,18 @@ namespace petzval::inline v0::movement_detail {
 
 /// Whether a target has no NaN, nothing infinite except z = -inf, and no negative weight.
 PETZVAL_API bool well_formed(const FocusTarget& target) noexcept;
+
+/// Extents of the depth of field are within so many stops.
+inline constexpr double largest_extent = 20;
+/// Throws Error, which begins with `where`, for an extent that is not.
+void check_extent(double stops, const std::string& where);
+
+/// Throws what focus_targets() throws.
+void check_points(std::span<const FocusPoint> points, const FocusMoment& moment);
+/// A checked point as target at a moment, valid then or not. Nothing without an image, and beside the moment's film.
+std::optional<FocusTarget> target_at(const IdealLens& lens, const FocusPoint& point, const FocusMoment& moment);
+/// FocusMoment::nearer_weighs_more.
+void weigh_nearer_more(const IdealLens& lens, std::span<FocusTarget> targets);
 
 /// In focal lengths from the rear focal point: no film is farther away, and images that are belong to points in the
 /// front focal plane or far beside the lens.

@@ -70,7 +70,8 @@ std::vector<SeenTarget> seen_targets(const IdealLens& lens, std::span<const Focu
   std::vector<SeenTarget> result;
   result.reserve(targets.size());
   for (const FocusTarget& target : targets) {
-    const auto& [place, blur, weight] = target;
+    const ScenePoint& place = target.place;
+    const double blur = target.blur_mm, weight = target.fixes_distance ? target.weight : 0;
     SeenTarget& seen = result.emplace_back();
     seen.image = lens.image(place);
     if (!well_formed(target)) {

@@ -23,7 +23,7 @@ while [ "$left" -gt 0 ]; do
     *) set -- "$@" "$1"; shift; left=$((left - 1)) ;;
   esac
 done
-for bench in camera pupil psf movement; do
+for bench in camera pupil psf surface movement; do
   [ -x "$BUILD_DIR/tests/bench/${bench}_bench" ] || continue  # movement: built with Ceres alone
   echo
   "$BUILD_DIR/tests/bench/${bench}_bench" "$@"

@@ -235,9 +235,10 @@ TEST(Autofocus, LeavesTheFilmWhereNothingCanBeDone) {
                             at(0, 0, -1000, 0, -1),
                             at(0, 0, -1000, 0, infinity),
                             at(0, 0, -1000, 0, 0),
-                            at(0, 0, -10)};
+                            at(0, 0, -10),
+                            {.place = {{0, 0, -1000}}, .extent_stops = 2, .fixes_distance = false}};
   const std::vector expected{TargetUse::no_image,   TargetUse::not_finite, TargetUse::not_finite, TargetUse::not_finite,
-                             TargetUse::not_finite, TargetUse::no_weight,  TargetUse::no_image};
+                             TargetUse::not_finite, TargetUse::no_weight,  TargetUse::no_image,   TargetUse::no_weight};
   for (const Autofocus& focus : {autofocus(bundles.ideal(), useless, film_at(lens.film_z())),
                                  autofocus(bundles, useless, {}, min_rms), autofocus(bundles, useless, {}, min_max)}) {
     EXPECT_EQ(focus.status, no_targets);

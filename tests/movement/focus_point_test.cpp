@@ -63,6 +63,23 @@ TEST(FocusPoints, AreAtTheirKeys) {
   EXPECT_EQ(only(one, moment(-1e9)).place.position, (Vec{1, 2, -300.1}));
 }
 
+TEST(FocusPoints, HaveAnExtentInAllKeysOrInNone) {
+  FocusPoint p = point({key(0, {0, 0, -1000}), key(2, {0, 0, -1000})});
+  EXPECT_FALSE(only(p, moment(1)).extent_stops);
+  p.keys[0].extent_stops = -2;
+  EXPECT_NE(message([&] { targets({p}, moment(1)); }).find("key 1: an extent is missing"), std::string::npos);
+  p.keys[1].extent_stops = 4;
+  EXPECT_EQ(only(p, moment(0)).extent_stops, -2);
+  EXPECT_DOUBLE_EQ(only(p, moment(1)).extent_stops.value_or(0), 1);
+  EXPECT_EQ(only(p, moment(9)).extent_stops, 4);
+  p.keys[1].extent_stops = 20.1;
+  EXPECT_NE(message([&] { targets({p}, moment(1)); }).find("key 1: the extent is 20.1 stops"), std::string::npos);
+  EXPECT_TRUE(only(point({key(0, {0, 0, -1000})}), moment(0)).fixes_distance);
+  p = point({key(0, {0, 0, -1000})});
+  p.fixes_distance = false;
+  EXPECT_FALSE(only(p, moment(0)).fixes_distance);
+}
+
 TEST(FocusPoints, MoveEvenlyInReciprocalDepthAlongStraightLines) {
   const Vec from{-100, 20, -500}, to{900, -50, -4000};
   const FocusPoint p = point({key(0, from), key(1, to)});

@@ -276,6 +276,7 @@ TEST(TiltFitSets, WhatCannotBeServedTakesNoPart) {
       {target(0, 0, -2000, infinity), not_finite},
       {target(0, 0, -2000, 1, nan), not_finite},
       {target(0, 0, -2000, 0), no_weight},
+      {{.place = {{0, 0, -2000}}, .extent_stops = 2, .fixes_distance = false}, no_weight},
       {target(0, 0, 0), no_image},
       {target(0, 0, -50), no_image},
       {target(0, 0, -50 * (1 + 1e-15)), no_image},

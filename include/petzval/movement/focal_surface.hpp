@@ -7,10 +7,12 @@
 #include <optional>
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "petzval/core/export.hpp"
 #include "petzval/core/geometry.hpp"
 #include "petzval/film/film.hpp"
+#include "petzval/movement/focus_point.hpp"
 #include "petzval/paraxial/ideal_lens.hpp"
 
 namespace petzval::inline v0 {
@@ -26,7 +28,7 @@ PETZVAL_API std::string_view name(SurfaceKind kind) noexcept;
 
 /// What an artist fixes at a place of the picture: the distance in focus, the extent of the depth of field, or both.
 struct FocalPoint {
-  FilmPoint place;  ///< mm; may lie outside the frame
+  FilmPoint place = {};  ///< mm; may lie outside the frame
   /// Of the object there, 1/mm, along the axis from the entrance pupil towards the scene; 0: infinity.
   std::optional<double> inverse_distance = {};
   /// Diameter that the blur of that object should have, signed as FocusTarget::blur_mm: the surface passes it by so
@@ -97,6 +99,11 @@ class PETZVAL_API FocalSurface {
   template <class T>
   void at(std::size_t count, const T* film_x, const T* film_y, T* inverse_distances, T* extents) const noexcept;
 
+  /// At the middles of all pixels of a film, row by row from the upper left one; columns x rows each, extents may be
+  /// null. The same for any number of threads. Throws Error for fewer than 1 thread.
+  template <class T>
+  void frame(const Film& film, int threads, T* inverse_distances, T* extents) const;
+
   /// Limits of what at() gives: inverse distances, 1/mm, and extents, stops.
   double nearest() const noexcept;
   double farthest() const noexcept;
@@ -106,6 +113,45 @@ class PETZVAL_API FocalSurface {
  private:
   struct Fields;
   std::shared_ptr<const Fields> fields_;
+};
+
+/// The focal points of a moment, to make a surface of; places are where chief rays meet the film, in the frame or not.
+///
+/// fades: of each point, whether it is valid at the moment or not, as FocusFades gives them; or none: 1 for points that
+/// are valid, and others are left out. So are points without an image, those that a surface does not take (too near the
+/// lens, or more than 1e6 sides of the picture beside it), and, if the moment has a film, those beside that.
+/// nearer_weighs_more works as for focus_targets(). Throws Error as that and for another number of fades.
+PETZVAL_API std::vector<FocalPoint> focal_points(const IdealLens& lens, const Film& film,
+                                                 std::span<const FocusPoint> points, const FocusMoment& moment,
+                                                 std::span<const double> fades = {});
+
+/// Whether each point is valid at a moment, has an image and lies on the film: what FocusFades follows, with what the
+/// renderer knows of hidden points. Throws Error as focus_targets().
+PETZVAL_API std::vector<bool> points_in_view(const IdealLens& lens, const Film& film,
+                                             std::span<const FocusPoint> points, const FocusMoment& moment);
+
+/// Fades of points that leave the picture or are hidden, and come back: exponential in time, the same for any frame
+/// rate.
+///
+///     FocusFades fades(0.2);
+///     for (...) {
+///       moment.time += 1 / 24.0;
+///       fades.advance(1 / 24.0, points_in_view(lens, film, points, moment));
+///       const FocalSurface surface(lens, film, focal_points(lens, film, points, moment, fades.fades()));
+///     }
+class PETZVAL_API FocusFades {
+ public:
+  /// After this time, 1 / e of the way is left; 0: no fading. Throws Error unless finite and 0 or more.
+  explicit FocusFades(double time_constant_s);
+
+  /// Goes on by a time, in which all points stay in view or out of it. A point that was not known before begins at 1 in
+  /// view and at 0 out of it. Throws Error unless seconds >= 0.
+  void advance(double seconds, const std::vector<bool>& in_view);
+  const std::vector<double>& fades() const noexcept { return fades_; }
+
+ private:
+  double time_constant_;
+  std::vector<double> fades_;
 };
 
 }  // namespace petzval::inline v0

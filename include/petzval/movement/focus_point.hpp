@@ -22,12 +22,15 @@ struct FocusTarget {
   ScenePoint place;
   double blur_mm = 0;  ///< wanted diameter: 0 sharp; negative: in front of the plane of focus; positive: beyond it
   double weight = 1;   ///< of the squared error of the blur; 0: the blur is reported, but does not count
+  /// Of the depth of field, as in FocalPoint.
+  std::optional<double> extent_stops = {};
+  bool fixes_distance = true;  ///< false: the extent alone; films do not follow it
 };
 
 /// How a target was used.
 enum class TargetUse : std::uint8_t {
   used,
-  no_weight,
+  no_weight,   ///< or it fixes the extent of the depth of field alone
   not_finite,  ///< a coordinate, the blur or the weight is not finite, or the weight is negative
   no_image,    ///< behind the lens, within the front focal length, or imaged more than 1e9 focal lengths away
   outlier,     ///< the robust fit gave it no weight
@@ -67,19 +70,22 @@ struct FocusKey {
   std::variant<ScenePoint, OnTriangle> anchor = ScenePoint{};
   double blur_mm = 0;  ///< as in FocusTarget
   double weight = 1;   ///< 0 or more
+  /// As in FocalPoint, within 20 stops; in all keys of a point or in none.
+  std::optional<double> extent_stops = {};
 };
 
 /// A point that an artist wants sharp, or blurred by so much, over time: keys in the order of time, valid from `from`
 /// to `until`, both included.
 ///
-/// Between keys, blur and weight follow a piecewise cubic with a continuous derivative that never leaves the span of
-/// the two keys; they are constant before the first key and after the last. If all keys lie on one triangle, the point
-/// moves over it by its barycentric coordinates. Otherwise it moves as the camera sees it, by x / depth, y / depth and
-/// 1 / depth from the front principal point: a focus pull looks uniform, a straight line joins two keys, and keys may
-/// lie at infinity. If a key does not lie in front of that point, the point moves by x, y and z.
+/// Between keys, blur, weight and extent follow a piecewise cubic with a continuous derivative that never leaves the
+/// span of the two keys; they are constant before the first key and after the last. If all keys lie on one triangle,
+/// the point moves over it by its barycentric coordinates. Otherwise it moves as the camera sees it, by x / depth, y /
+/// depth and 1 / depth from the front principal point: a focus pull looks uniform, a straight line joins two keys, and
+/// keys may lie at infinity. If a key does not lie in front of that point, the point moves by x, y and z.
 struct FocusPoint {
   std::vector<FocusKey> keys;
   double from = -std::numeric_limits<double>::infinity(), until = std::numeric_limits<double>::infinity();  ///< s
+  bool fixes_distance = true;  ///< as in FocusTarget
 };
 
 /// A time, and what counts then.
@@ -96,7 +102,8 @@ struct FocusMoment {
 ///
 /// Throws Error for a NaN time; a film that is not finite or of negative size; points without keys; times out of order;
 /// an interval that ends before it begins; positions, blurs and weights that are not finite, and negative weights;
-/// invalid barycentric coordinates; and vertices that do not exist.
+/// extents beyond 20 stops or in some keys of a point only; invalid barycentric coordinates; and vertices that do not
+/// exist.
 PETZVAL_API std::vector<FocusTarget> focus_targets(const IdealLens& lens, std::span<const FocusPoint> points,
                                                    const FocusMoment& moment);
 
