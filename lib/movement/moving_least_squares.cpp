@@ -71,13 +71,17 @@ MovingLeastSquares::MovingLeastSquares(std::string_view where, std::span<const W
   };
   for (const auto& point : points) most_present = std::max(most_present, presence(point));
 
+  if (beta == std::floor(beta)) {
+    odd_ = static_cast<int>(beta) % 2 == 1;
+    wholes_ = static_cast<int>(beta) / 2;
+  }
   to_scaled_ = scale_of(side);
   double largest = 0;
   for (const auto& point : points) {
     if (raw_alpha(point) >= negligible * most_alpha) largest = std::max(largest, std::abs(point.value));
   }
   to_scaled_value_ = largest > 0 ? scale_of(largest) : 1;
-  Columns<double>& to = in_double_;
+  Columns<double>& to = points_;
   std::vector<double> shares;
   for (const auto& point : points) {
     const double alpha = raw_alpha(point) / most_alpha;
@@ -100,25 +104,30 @@ MovingLeastSquares::MovingLeastSquares(std::string_view where, std::span<const W
     least = std::min(least, value);
     most = std::max(most, value);
   }
-  to.low = least - (most - least);
-  to.high = most + (most - least);
-  const auto rounded = [](const std::vector<double>& from) { return std::vector<float>(from.begin(), from.end()); };
-  in_float_ = {rounded(to.x),
-               rounded(to.y),
-               rounded(to.value),
-               rounded(to.alpha),
-               rounded(to.soft2),
-               static_cast<float>(to.low),
-               static_cast<float>(to.high)};
+  low_ = least - (most - least);
+  high_ = most + (most - least);
+  soft_ = std::any_of(to.soft2.begin(), to.soft2.end(), [](double soft2) { return soft2 > 0; });
+
+  const auto fill = [&]<class R>(Columns<R>& columns) {
+    const auto copied = [](const std::vector<double>& from) {
+      std::vector<R> copies;
+      for (const double number : from) copies.insert(copies.end(), LeastSquaresJob<R>::copies, static_cast<R>(number));
+      return copies;
+    };
+    columns = {copied(to.x), copied(to.y), copied(to.value), copied(to.alpha), copied(to.soft2)};
+  };
+  fill(in_float_);
+  fill(in_double_);
 }
 
-void MovingLeastSquares::keep_below(double limit) noexcept {
-  in_double_.high = std::min(in_double_.high, limit * to_scaled_value_);
-  in_float_.high = static_cast<float>(in_double_.high);
-}
+void MovingLeastSquares::keep_below(double limit) noexcept { high_ = std::min(high_, limit * to_scaled_value_); }
 
 template <class T>
 void MovingLeastSquares::at(InstructionSet set, std::size_t count, const T* x, const T* y, T* out) const noexcept {
+  if (points_.x.size() == 1) {
+    std::fill_n(out, count, static_cast<T>(high_ / to_scaled_value_));
+    return;
+  }
   const auto& columns = [this]() -> const Columns<T>& {
     if constexpr (std::is_same_v<T, float>) {
       return in_float_;
@@ -126,20 +135,20 @@ void MovingLeastSquares::at(InstructionSet set, std::size_t count, const T* x, c
       return in_double_;
     }
   }();
-  const bool whole = beta_ == std::floor(beta_);
   const LeastSquaresJob<T> job{
-      .points = columns.x.size(),
+      .points = points_.x.size(),
       .x = columns.x.data(),
       .y = columns.y.data(),
       .value = columns.value.data(),
       .alpha = columns.alpha.data(),
       .soft2 = columns.soft2.data(),
+      .soft = soft_,
       .affine = affine_,
-      .odd = whole && std::fmod(beta_, 2) == 1,
-      .wholes = whole ? static_cast<int>(beta_) / 2 : -1,
+      .odd = odd_,
+      .wholes = wholes_,
       .half_beta = static_cast<T>(beta_ / 2),
-      .low = columns.low,
-      .high = columns.high,
+      .low = static_cast<T>(low_),
+      .high = static_cast<T>(high_),
       .to_scaled = static_cast<T>(to_scaled_),
       .reach = static_cast<T>(2 * reach_in_sides),
       .from_scaled = static_cast<T>(1 / to_scaled_value_),
@@ -182,11 +191,11 @@ template PETZVAL_API void MovingLeastSquares::at(InstructionSet, std::size_t, co
 // in which the common factor m of the weights counts as constant.
 Vec2<double> MovingLeastSquares::slopes(const FilmPoint& place) const noexcept {
   using V = Vec2<double>;
-  const Columns<double>& points = in_double_;
+  const Columns<double>& points = points_;
   const std::size_t count = points.x.size();
   const V p{place.x * to_scaled_, place.y * to_scaled_};
   const double value = at(place) * to_scaled_value_;
-  if (!(value > points.low && value < points.high)) return {0, 0};
+  if (!(value > low_ && value < high_)) return {0, 0};
   const auto away = [&](std::size_t i) { return p - V{points.x[i], points.y[i]}; };
   const auto dot = [](const V& a, const V& b) { return a.x * b.x + a.y * b.y; };
   const auto r2_of = [&](std::size_t i) { return dot(away(i), away(i)) + points.soft2[i]; };

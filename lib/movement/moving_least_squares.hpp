@@ -65,23 +65,29 @@ class PETZVAL_API MovingLeastSquares {
   Vec2<double> slopes(const FilmPoint& place) const noexcept;
 
   /// What results are within.
-  double least() const noexcept { return in_double_.low / to_scaled_value_; }
-  double most() const noexcept { return in_double_.high / to_scaled_value_; }
+  double least() const noexcept { return low_ / to_scaled_value_; }
+  double most() const noexcept { return high_ / to_scaled_value_; }
   /// Keeps results at or below a limit, which is not below any value.
   void keep_below(double limit) noexcept;
 
  private:
+  /// What counts of the points: places and values scaled by powers of two, weights against the heaviest point's, and
+  /// squares of softness.
   template <class R>
   struct Columns {
     std::vector<R> x, y, value, alpha, soft2;
-    R low = 0, high = 0;
   };
 
   bool affine_;
   double beta_;
+  bool odd_ = false;  ///< as in LeastSquaresJob
+  int wholes_ = -1;
   double to_scaled_ = 1, to_scaled_value_ = 1;
+  Columns<double> points_;
+  double low_ = 0, high_ = 0;  ///< of the result, scaled
+  bool soft_ = false;
+  Columns<float> in_float_;  ///< as LeastSquaresJob wants them
   Columns<double> in_double_;
-  Columns<float> in_float_;
 };
 
 }  // namespace petzval::inline v0::movement_detail

@@ -13,13 +13,49 @@ namespace {
 using core_detail::Native;
 using trace_detail::Lanes;
 
-template <class R>
-PETZVAL_INLINE Lanes<R> larger(Lanes<R> a, Lanes<R> b) noexcept {
-  return select(a < b, b, a);
-}
+/// a < b ? a : b and a > b ? a : b: b where one is not a number. (Compilers make several instructions of select.)
 template <class R>
 PETZVAL_INLINE Lanes<R> smaller(Lanes<R> a, Lanes<R> b) noexcept {
-  return select(b < a, b, a);
+#if defined(__AVX512F__)
+  if constexpr (sizeof(R) == 4) return Lanes<R>(_mm512_maskz_min_ps(0xffff, a.v, b.v));
+  if constexpr (sizeof(R) == 8) return Lanes<R>(_mm512_maskz_min_pd(0xff, a.v, b.v));
+#elif defined(__AVX2__)
+  if constexpr (sizeof(R) == 4) return Lanes<R>(_mm256_min_ps(a.v, b.v));
+  if constexpr (sizeof(R) == 8) return Lanes<R>(_mm256_min_pd(a.v, b.v));
+#elif defined(__x86_64__)
+  if constexpr (sizeof(R) == 4) return Lanes<R>(_mm_min_ps(a.v, b.v));
+  if constexpr (sizeof(R) == 8) return Lanes<R>(_mm_min_pd(a.v, b.v));
+#else
+  return select(a < b, a, b);
+#endif
+}
+template <class R>
+PETZVAL_INLINE Lanes<R> larger(Lanes<R> a, Lanes<R> b) noexcept {
+#if defined(__AVX512F__)
+  if constexpr (sizeof(R) == 4) return Lanes<R>(_mm512_maskz_max_ps(0xffff, a.v, b.v));
+  if constexpr (sizeof(R) == 8) return Lanes<R>(_mm512_maskz_max_pd(0xff, a.v, b.v));
+#elif defined(__AVX2__)
+  if constexpr (sizeof(R) == 4) return Lanes<R>(_mm256_max_ps(a.v, b.v));
+  if constexpr (sizeof(R) == 8) return Lanes<R>(_mm256_max_pd(a.v, b.v));
+#elif defined(__x86_64__)
+  if constexpr (sizeof(R) == 4) return Lanes<R>(_mm_max_ps(a.v, b.v));
+  if constexpr (sizeof(R) == 8) return Lanes<R>(_mm_max_pd(a.v, b.v));
+#else
+  return select(a > b, a, b);
+#endif
+}
+
+/// A number of a point on all lanes.
+template <class R>
+PETZVAL_INLINE Lanes<R> of_point(const R* numbers, std::size_t i) noexcept {
+  numbers += i * LeastSquaresJob<R>::copies;
+#if defined(__AVX2__)
+  return Lanes<R>(*numbers);
+#else
+  Lanes<R> result(0);
+  __builtin_memcpy(&result.v, numbers, sizeof result.v);
+  return result;
+#endif
 }
 
 /// What numbers of a type need. The terms of both series are below a quarter of the last bit.
@@ -87,31 +123,39 @@ template <bool affine, Power kind, class R>
 PETZVAL_INLINE Lanes<R> value_at(const LeastSquaresJob<R>& job, Lanes<R> x, Lanes<R> y) noexcept {
   using L = Lanes<R>;
   const auto distance2 = [&](std::size_t i) {
-    const L dx = x - L(job.x[i]), dy = y - L(job.y[i]);
-    return dx * dx + dy * dy + L(job.soft2[i]);
+    const L dx = x - of_point(job.x, i), dy = y - of_point(job.y, i), d2 = dx * dx + dy * dy;
+    return job.soft ? d2 + of_point(job.soft2, i) : d2;
   };
-  L least = distance2(0), centre_x(job.x[0]), centre_y(job.y[0]), centre_value(job.value[0]);
-  for (std::size_t i = 1; i < job.points; ++i) {
-    const L r2 = distance2(i);
+  // Of so many points the distances are kept.
+  constexpr std::size_t most_kept = 128;
+  L kept[most_kept];
+  const std::size_t keep = job.points < most_kept ? job.points : most_kept;
+  L least(R(3e38)), centre_x(0), centre_y(0), centre_value(0);
+  const auto look = [&](std::size_t i, L r2) {
     const auto nearer = r2 < least;
-    least = select(nearer, r2, least);
+    least = smaller(r2, least);
+    // Few points are the nearest so far of any lane, and for neighbours in a picture they are the same ones. (Doubles
+    // are often single places anywhere: nobody could predict the branch.)
+    if (sizeof(R) == 4 && !any(nearer)) return;
     if constexpr (affine) {
-      centre_x = select(nearer, L(job.x[i]), centre_x);
-      centre_y = select(nearer, L(job.y[i]), centre_y);
+      centre_x = select(nearer, of_point(job.x, i), centre_x);
+      centre_y = select(nearer, of_point(job.y, i), centre_y);
     }
-    centre_value = select(nearer, L(job.value[i]), centre_value);
-  }
+    centre_value = select(nearer, of_point(job.value, i), centre_value);
+  };
+  for (std::size_t i = 0; i < keep; ++i) look(i, kept[i] = distance2(i));
+  for (std::size_t i = keep; i < job.points; ++i) look(i, distance2(i));
+
   // Moments about the nearest point. It adds nothing to them, however much it weighs: nothing cancels next to it.
   L w_sum(0), wx(0), wy(0), wxx(0), wxy(0), wyy(0), wf(0), wxf(0), wyf(0);
-  for (std::size_t i = 0; i < job.points; ++i) {
-    const L r2 = distance2(i);
-    const L ratio = select(least < r2, least / r2, L(1));
-    const L w = L(job.alpha[i]) * falling<kind>(job, ratio);
-    const L f = L(job.value[i]) - centre_value;
+  const auto add = [&](std::size_t i, L r2) {
+    // At the point itself the ratio is 0 / 0, which counts as 1.
+    const L w = of_point(job.alpha, i) * falling<kind>(job, smaller(least / r2, L(1)));
+    const L f = of_point(job.value, i) - centre_value;
     w_sum = w_sum + w;
     wf = wf + w * f;
     if constexpr (affine) {
-      const L px = L(job.x[i]) - centre_x, py = L(job.y[i]) - centre_y, ax = w * px, ay = w * py;
+      const L px = of_point(job.x, i) - centre_x, py = of_point(job.y, i) - centre_y, ax = w * px, ay = w * py;
       wx = wx + ax;
       wy = wy + ay;
       wxx = wxx + ax * px;
@@ -120,7 +164,9 @@ PETZVAL_INLINE Lanes<R> value_at(const LeastSquaresJob<R>& job, Lanes<R> x, Lane
       wxf = wxf + ax * f;
       wyf = wyf + ay * f;
     }
-  }
+  };
+  for (std::size_t i = 0; i < keep; ++i) add(i, kept[i]);
+  for (std::size_t i = keep; i < job.points; ++i) add(i, distance2(i));
   const L per_weight = L(1) / w_sum, mean = wf * per_weight;
   if constexpr (!affine) return centre_value + mean;
 

@@ -10,11 +10,17 @@ namespace petzval::inline v0::movement_detail {
 
 /// Points and places in one type of number. Places and values are scaled by powers of two, which loses nothing, so that
 /// squares neither overflow nor vanish.
+///
+/// Each number of a point stands there for 16 bytes side by side, so that instruction sets without loads that spread
+/// one number over the lanes read it at once.
 template <class R>
 struct LeastSquaresJob {
+  static constexpr std::size_t copies = 16 / sizeof(R);
+
   std::size_t points = 0;
   const R *x = nullptr, *y = nullptr, *value = nullptr;  ///< scaled
   const R *alpha = nullptr, *soft2 = nullptr;            ///< above 0, at most 1; 0 or more
+  bool soft = false;                                     ///< any soft2 is above 0
   bool affine = true;
   bool odd = false;  ///< beta is 2 wholes + 1, or 2 wholes
   int wholes = 0;    ///< negative: any other beta, twice half_beta
