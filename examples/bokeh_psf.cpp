@@ -71,7 +71,8 @@ std::vector<Picture> render(const examples::LoadedLens& loaded, const Options& o
     progress.step(examples::focus_caption(focus));
     Picture picture{focus, examples::focused_scene(lens, focus, setup), {}, {}};
     if (!options.plain()) {
-      picture.camera = examples::camera_of(picture.scene, *petzval::model_named(options.model), controls);
+      picture.camera =
+          examples::camera_of(picture.scene, {.model = *petzval::model_named(options.model), .bokeh = controls});
     }
     picture.image = image_of(picture, {.samples = options.samples,
                                        .tolerance = options.tolerance,

@@ -63,7 +63,7 @@ struct AxialScene {
                      "it. Each tile has its own exposure.";
 
   petzval::PointImage image(petzval::ModelKind model, const petzval::BokehControls& controls) const {
-    return petzval::point_image(examples::camera_of({lens, light}, model, controls), light,
+    return petzval::point_image(examples::camera_of({lens, light}, {.model = model, .bokeh = controls}), light,
                                 tile_options(half_width_mm));
   }
 };
@@ -134,8 +134,8 @@ examples::Sheet cats_eyes() {
     double on_axis = 0;
     for (const double field : fields_deg) {
       const examples::BokehScene scene{lens, light(field)};
-      const auto image =
-          petzval::point_image(examples::camera_of(scene, model, controls), scene.light, tile_options(half_width_mm));
+      const auto image = petzval::point_image(examples::camera_of(scene, {.model = model, .bokeh = controls}),
+                                              scene.light, tile_options(half_width_mm));
       if (on_axis == 0) on_axis = image.throughput;
       tiles.push_back(
           tile(image, {number(field) + "°", "light: " + number(100 * image.throughput / on_axis, 3) + " %"}));

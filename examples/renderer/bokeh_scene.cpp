@@ -23,6 +23,7 @@
 #include "petzval/io/image.hpp"
 #include "petzval/io/lens_json.hpp"
 #include "petzval/io/write_file.hpp"
+#include "petzval/paraxial/ideal_lens.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "renderer/built_in_scenes.hpp"
 #include "renderer/checkpoint.hpp"
@@ -35,7 +36,9 @@
 #include "support/bokeh_flags.hpp"
 #include "support/camera_setup.hpp"
 #include "support/cli.hpp"
+#include "support/expressive_flags.hpp"
 #include "support/files.hpp"
+#include "support/focal_surface_setup.hpp"
 #include "support/load_lens.hpp"
 #include "support/model_rows.hpp"
 #include "support/picture_files.hpp"
@@ -51,6 +54,8 @@ struct Options {
                                 normalisation = "unity_on_axis", out_folder;
   examples::CameraSetup setup;
   examples::BokehFlags bokeh;
+  examples::ExpressiveFlags expressive;
+  examples::FocalSurfaceSetup surface;
   examples::Shard shard;
   std::vector<std::string> formats{"exr", "png"};
   std::uint32_t samples = 0, width = 600, height = 400, seed = 0;
@@ -128,11 +133,14 @@ class Job {
     if (!scene_.has_light()) std::cerr << "note: " << options.scene << " has no light: the picture is black\n";
     examples::say_what_does_not_fit(lens_, film_);
     choose_model();
+    if (!options.surface.points_file.empty()) surface_ = surface();
+    expressive_ = examples::expressive_of(options.expressive, lens_, film_);
   }
 
   void run() {
     const renderer::LensCamera lens = camera(chosen_.model);
     refuse_walls(lens);
+    say_where_focus_is_steep(lens.camera());
     const fs::path folder = options_.out_folder;
     const fs::path file = renderer::checkpoint_file(folder, options_.shard);
     const Json job = description_of_numbers(lens.camera());
@@ -183,8 +191,27 @@ class Job {
                  .normalisation = options_.normalisation == "irradiance" ? petzval::Normalisation::irradiance
                                                                          : petzval::Normalisation::unity_on_axis,
                  .threads = static_cast<int>(options_.threads),
-                 .bokeh = controls_}),
+                 .bokeh = controls_,
+                 .focal_surface = surface_,
+                 .expressive = expressive_}),
             scene_.description().pose};
+  }
+  /// Through the points of the file, where the model sees them.
+  petzval::FocalSurface surface() const {
+    const renderer::LensCamera lens = camera(chosen_.model);
+    const petzval::Camera& sees = lens.camera();
+    const auto points = examples::read_focal_points(
+        options_.surface.points_file, sees, examples::named(options_.setup.origin, examples::distance_origins),
+        [&](const petzval::Vec3<double>& world) { return lens.to_lens(world); });
+    return {petzval::thick_lens(sees.lens()), sees.film(), points, options_.surface.options()};
+  }
+  void say_where_focus_is_steep(const petzval::Camera& camera) const {
+    const petzval::FocalSteepness found = camera.focal_steepness();
+    if (found.steepness < 1 || integrator_ == renderer::Integrator::path) return;
+    const petzval::Vec2<double> pixel = film_.raster(found.place);
+    std::cerr << "note: about the pixel (" << examples::number(pixel.x, 3) << ", " << examples::number(pixel.y, 3)
+              << ") the focus is so steep that rays of several film points coincide; of these, light paths know one: "
+                 "--integrator path has all their light\n";
   }
   renderer::Effort effort() const {
     renderer::Effort effort;
@@ -194,6 +221,12 @@ class Job {
   }
 
   void choose_model() {
+    const bool bent = !options_.surface.points_file.empty() || !options_.expressive.change_nothing();
+    if (bent && options_.model == "auto") {
+      throw petzval::Error(
+          "--model auto: found a focal surface or an expressive lens, wanted a first-order model by "
+          "name: pinhole, thin, thin_two_disc or thick");
+    }
     if (const auto named = petzval::model_named(options_.model)) {
       if (options_.budget_px > 0)
         throw petzval::Error("--budget-px: found it with --model " + options_.model + ", wanted --model auto");
@@ -268,6 +301,15 @@ class Job {
               {"weight_distribution", controls_.weight_distribution},
               {"weight_strength", controls_.weight_strength},
               {"weight_map", file_checksum(options_.bokeh.weight_map)}}},
+            {"focal_surface",
+             {{"points", file_checksum(options_.surface.points_file)},
+              {"kind", options_.surface.kind},
+              {"beta", options_.surface.beta}}},
+            {"expressive",
+             {{"power_spline", options_.expressive.power_spline},
+              {"curvature_points", options_.expressive.curvature_points},
+              {"dispersion", options_.expressive.dispersion},
+              {"from_lens", options_.expressive.from_lens}}},
             {"seed", options_.seed},
             {"samples", options_.samples > 0 ? Json(options_.samples) : Json()},
             {"passes", options_.samples > 0 ? Json(effort().passes()) : Json()},
@@ -283,6 +325,8 @@ class Job {
   petzval::Lens lens_;
   petzval::Film film_;
   renderer::ModelForScene chosen_;
+  std::optional<petzval::FocalSurface> surface_;
+  petzval::ExpressiveLens expressive_;
 };
 
 /// bokeh_scene merge FOLDER... --out DIR
@@ -359,6 +403,13 @@ int main(int argc, char** argv) {
   app.get_option("--focus-mm")->required()->default_str("");
   examples::add_distance_origin(app, options.setup);
   examples::add_bokeh(app, options.bokeh);
+  app.add_option("--focal-surface", options.surface.points_file,
+                 "distances in focus, extents of the depth of field and blurs at places of the picture, for a "
+                 "first-order --model: {\"points\": [{\"pixel\": [x, y] or \"world_mm\": [x, y, z], "
+                 "\"distance_mm\", \"extent_stops\", \"blur_px\", \"weight\", \"fade\"}]}")
+      ->type_name("POINTS.json");
+  examples::add_surface_kind(app, options.surface);
+  examples::add_expressive(app, options.expressive);
   constexpr examples::Range below_quarter_turn{-89.9, 89.9, "an angle from -89.9 to 89.9"};
   examples::add_number(app, "--tilt-deg", options.tilt_deg, below_quarter_turn, "tilt of the film about +x (degrees)");
   examples::add_number(app, "--swing-deg", options.swing_deg, below_quarter_turn,

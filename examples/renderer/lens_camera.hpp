@@ -33,6 +33,8 @@ class LensCamera {
   petzval::Projection project(const glm::vec3& point) const noexcept { return camera_.project(to_lens(point)); }
   /// How far a point lies in front of the film, along the axis, mm.
   double depth(const glm::vec3& point) const noexcept;
+  /// A point of the world in the lens frame, mm.
+  petzval::Vec3<double> to_lens(const glm::vec3& point) const noexcept;
   /// The first vertex of the lens.
   glm::vec3 front() const noexcept { return to_world({0, 0, 0}); }
 
@@ -82,7 +84,6 @@ class LensCamera {
   double pdf_distant_connection(const WorldRay& travel, petzval::Wavelength wavelength) const noexcept;
 
  private:
-  petzval::Vec3<double> to_lens(const glm::vec3& point) const noexcept;
   petzval::Vec3<double> turn_to_lens(const glm::vec3& direction) const noexcept;
   glm::vec3 to_world(const petzval::Vec3<double>& point) const noexcept;
   glm::vec3 turn_to_world(const petzval::Vec3<double>& direction) const noexcept;

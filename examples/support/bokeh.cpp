@@ -51,19 +51,18 @@ BokehScene focused_scene(const petzval::Lens& lens, double focus_mm, const Bokeh
   return {focused, {setup.field_rad, origin_z - setup.light_mm}};
 }
 
-petzval::Camera camera_of(const BokehScene& scene, petzval::ModelKind model, petzval::BokehControls controls) {
+petzval::Camera camera_of(const BokehScene& scene, petzval::CameraOptions options) {
   constexpr double half_of_36 = 18, longest = 1e4;  // mm
   constexpr std::uint32_t few = 1 << 10;
-  const double rate_per_mm = controls.rate_of_change / half_of_36;
+  const double rate_per_mm = options.bokeh.rate_of_change / half_of_36;
   const petzval::PupilPlane plane(scene.lens, scene.light);
   const bool far = plane.reciprocal_distance() == 0;
   const auto point = far ? plane.centre() : plane.centre() + plane.towards() / plane.reciprocal_distance();
   const auto exact = petzval::point_image(scene.lens, scene.light, {.samples = few}).size;
   double side = 1 + 2.2 * (std::hypot(exact.centroid.x, exact.centroid.y) + exact.max_radius);
   for (; side <= longest; side *= 2) {
-    controls.rate_of_change = rate_per_mm * side / 2;
-    const petzval::Camera camera(scene.lens, {.width_mm = side, .height_mm = side},
-                                 {.model = model, .bokeh = controls});
+    options.bokeh.rate_of_change = rate_per_mm * side / 2;
+    const petzval::Camera camera(scene.lens, {.width_mm = side, .height_mm = side}, options);
     bool holds = true;
     for (std::uint32_t i = 0; i < few && holds; ++i) {
       const petzval::Vec2<double> at = petzval::owen_sobol(i, 0);
@@ -73,7 +72,7 @@ petzval::Camera camera_of(const BokehScene& scene, petzval::ModelKind model, pet
     }
     if (holds) return camera;
   }
-  throw petzval::Error(scene.lens.name() + ": the picture of " + std::string(petzval::name(model)) +
+  throw petzval::Error(scene.lens.name() + ": the picture of " + std::string(petzval::name(options.model)) +
                        " does not fit on " + number(longest / 1000) + " m of film, wanted one that does");
 }
 

@@ -34,9 +34,9 @@ struct BokehScene {
 /// front of the lens.
 BokehScene focused_scene(const petzval::Lens& lens, double focus_mm, const BokehSetup& setup);
 
-/// A camera behind a focused lens whose square film holds the picture of a light. The rate of change of controls is
+/// A camera behind a focused lens whose square film holds the picture of a light. The rate of change of its controls is
 /// that on a film of 36 x 24 mm. Throws petzval::Error where Camera does, and for a picture beyond 10 m.
-petzval::Camera camera_of(const BokehScene& scene, petzval::ModelKind model, petzval::BokehControls controls);
+petzval::Camera camera_of(const BokehScene& scene, petzval::CameraOptions options);
 
 /// The light of a point, which looks white: D65, D50, A, E or a file "wavelength_nm,power" that ends in .csv. Throws
 /// Error that names it.

@@ -99,14 +99,14 @@ inline constexpr std::array distance_origins{petzval::DistanceOrigin::front_vert
 template <class Enum, std::size_t count>
 std::vector<std::string> names(const std::array<Enum, count>& all) {
   std::vector<std::string> result;
-  for (const Enum e : all) result.emplace_back(petzval::name(e));
+  for (const Enum e : all) result.emplace_back(name(e));
   return result;
 }
 
 /// The one with that name, which must exist.
 template <class Enum, std::size_t count>
 Enum named(const std::string& text, const std::array<Enum, count>& all) {
-  return *std::find_if(all.begin(), all.end(), [&](Enum e) { return petzval::name(e) == text; });
+  return *std::find_if(all.begin(), all.end(), [&](Enum e) { return name(e) == text; });
 }
 
 /// --criterion: what "in focus" means, by name. --help shows the value of the variable as the default.

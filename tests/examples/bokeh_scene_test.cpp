@@ -187,6 +187,54 @@ TEST_F(BokehScene, RefusesOtherAndDamagedCheckpoints) {
   expect_failure("bokeh_scene", {"merge", path("b"), "--out", path("c")}, "2/2");
 }
 
+// A focal surface and aberrations change the picture, and not its exposure; the sphere that a point of the world stands
+// for is sharper than without.
+TEST_F(BokehScene, TakesAFocalSurfaceAndAberrations) {
+  write("points.json", R"({"points": [{"world_mm": [40, 60, -1200]}, {"world_mm": [-60, 40, -900], "extent_stops": 1},
+    {"pixel": [36, 2], "distance_mm": null}, {"pixel": [36, 46], "distance_mm": 700, "blur_px": 2, "weight": 0.5}]})");
+  const Arguments thick{"--model", "thick", "--integrator", "path", "--focus-mm", "3000"};
+  const auto with = [&](Arguments more) {
+    more.insert(more.begin(), thick.begin(), thick.end());
+    return more;
+  };
+  const json plain = render("plain", thick),
+             surface = render("surface", with({"--focal-surface", path("points.json")})),
+             lens = render("lens", with({"--power-spline", "0:1", "1:1.05", "--dispersion", "1"}));
+  // Pixels that the small lamp lights.
+  const auto lit = [&](const std::string& out) {
+    std::ptrdiff_t count = 0;
+    for (const auto& part : petzval::read_exr_parts(path(out + "/picture.exr"))) {
+      for (const auto& [channel, values] : part.channels) {
+        if (channel == "R") count += std::count_if(values.begin(), values.end(), [](float v) { return v > 1.5f; });
+      }
+    }
+    return count;
+  };
+  EXPECT_GT(lit("surface"), 5);
+  EXPECT_LT(lit("surface"), 0.6 * static_cast<double>(lit("plain")));
+  for (const json& report : {surface, lens}) {
+    EXPECT_NEAR(mean(report, 0), mean(plain, 0), 5 * std::hypot(error(report, 0), error(plain, 0)));
+  }
+  // Light paths see the same picture.
+  const json light = render("light", with({"--focal-surface", path("points.json"), "--integrator", "bidirectional"}));
+  EXPECT_NEAR(mean(light, 0), mean(surface, 0), 5 * std::hypot(error(light, 0), error(surface, 0)));
+  const auto refused = [&](const std::string& points, const std::string& reason) {
+    write("bad.json", points);
+    expect_failure("bokeh_scene", arguments("x", with({"--focal-surface", path("bad.json")})), reason);
+  };
+  refused("{}", "bad.json: points: found null, wanted a list of one point or more");
+  refused(R"({"points": [{"distance_mm": 4}]})", "point 1: found no place, wanted one of pixel and world_mm");
+  refused(R"({"points": [{"pixel": [1, 2]}]})", "point 1: found neither distance_mm nor extent_stops");
+  refused(R"({"points": [{"pixel": [1], "distance_mm": 4}]})", "point 1: pixel: found [1], wanted two finite numbers");
+  refused(R"({"points": [{"pixel": [1, 2], "distance_mm": 4}]})", "point 1: distance_mm: found 4, wanted more than");
+  refused(R"({"points": [{"world_mm": [0, 0, 500]}]})", "point 1: world_mm: found [0,0,500], wanted a point that the");
+  refused(R"({"points": [{"pixel": [1, 2], "distance_mm": 4000, "sharp": 1}]})", "found the key \"sharp\"");
+  expect_failure("bokeh_scene", arguments("x", {"--focal-surface", path("points.json")}),
+                 "found a focal surface or an expressive lens for exact_float, wanted a first-order model");
+  expect_failure("bokeh_scene", arguments("x", {"--focal-surface", path("points.json"), "--model", "auto"}),
+                 "--model auto: found a focal surface");
+}
+
 TEST_F(BokehScene, GoesOnSheets) {
   render("a"), render("b", {"--focus-mm", "1500"});
   const Outcome done = run("bokeh_sheet", {path("a"), path("b"), "--columns", "2", "--out", path("sheet.png"),

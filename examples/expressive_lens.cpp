@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: Apache-2.0
+// Shows what an artist's power spline, curvature of field and dispersion do to highlights over the field, beside the
+// real lens.
+//
+//   expressive_lens data/lenses/double_gauss_100mm_f1.35.json --focus-mm 1000 --from-lens 2 --out out
+//   expressive_lens data/lenses/double_gauss_100mm_f2_28deg.json --power-spline 0:1 0.7:1.02 1:0.97 --dispersion 4
+//   --out out
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iostream>
+#include <string>
+#include <vector>
+
+#include "petzval/camera/camera.hpp"
+#include "petzval/core/error.hpp"
+#include "petzval/core/parallel.hpp"
+#include "petzval/core/units.hpp"
+#include "petzval/io/image.hpp"
+#include "petzval/pupil/f_number.hpp"
+#include "support/bokeh.hpp"
+#include "support/camera_setup.hpp"
+#include "support/cli.hpp"
+#include "support/expressive_flags.hpp"
+#include "support/files.hpp"
+#include "support/load_lens.hpp"
+#include "support/text.hpp"
+
+namespace {
+
+using examples::Json;
+using examples::number;
+
+constexpr int tile_pixels = 200;
+constexpr std::array film_parts{0.0, 0.3, 0.55, 0.75, 0.9};  // of the way to the film's corner
+
+struct Options {
+  std::string lens_file, out_folder, model = "thin_two_disc";
+  std::vector<double> light_mm;  // none: nearer and farther than the focus
+  examples::CameraSetup setup;
+  examples::ExpressiveFlags expressive;
+  std::uint32_t samples = 1u << 17;
+};
+
+/// One wavelength, or with a dispersion that shows a set over the visible range.
+std::vector<double> wavelengths_nm(const Options& options) {
+  if (options.expressive.dispersion == 1) return {petzval::d_line_nm};
+  std::vector<double> set;
+  for (int nm = 430; nm <= 670; nm += 20) set.push_back(nm);
+  return set;
+}
+
+/// The angles under which film points between the axis and the corner see the scene by exact rays; those that see it.
+std::vector<double> fields_rad(const petzval::Lens& lens, const petzval::Film& film) {
+  const petzval::Camera exact(lens, film, {.model = petzval::ModelKind::exact_double});
+  std::vector<double> fields;
+  for (const double part : film_parts) {
+    const petzval::CameraRay chief =
+        exact.sample({.film = {part * film.width_mm / 2, part * film.height_mm / 2}, .pupil_u = 0, .pupil_v = 0});
+    if (chief) fields.push_back(std::acos(std::min(-chief.ray.direction.z, 1.0)));
+  }
+  return fields;
+}
+
+/// A light in front of the lens, seen through a camera of its own for each field.
+class Highlights {
+ public:
+  Highlights(const petzval::Lens& lens, double light_mm, double origin_z, const Options& options)
+      : lens_(lens), z_(origin_z - light_mm), samples_(options.samples) {}
+
+  petzval::PointImage image(double field_rad, const petzval::CameraOptions& camera, double half_width_mm,
+                            std::uint32_t samples) const {
+    const examples::BokehScene scene{lens_, {field_rad, z_}};
+    return petzval::point_image(examples::camera_of(scene, camera), scene.light,
+                                {.samples = samples,
+                                 .pixels = tile_pixels,
+                                 .half_width_mm = half_width_mm,
+                                 .threads = petzval::processor_threads()});
+  }
+  double radius_mm(double field_rad, const petzval::CameraOptions& camera) const {
+    return image(field_rad, camera, 0, 1 << 12).size.max_radius;
+  }
+  examples::Tile tile(double field_rad, const petzval::CameraOptions& camera, double half_width_mm,
+                      Json& described) const {
+    const petzval::PointImage found = image(field_rad, camera, half_width_mm, samples_);
+    described["field_deg"] = petzval::degrees(field_rad);
+    described["rms_mm"] = found.size.rms_radius;
+    return {examples::expose(examples::irradiance(found.psf)).picture,
+            {number(petzval::degrees(field_rad), 3) + " degrees", "RMS " + number(found.size.rms_radius, 3) + " mm"}};
+  }
+
+ private:
+  petzval::Lens lens_;
+  double z_;
+  std::uint32_t samples_;
+};
+
+Json description(const petzval::ExpressiveLens& expressive) {
+  Json power = Json::array(), offsets = Json::array();
+  for (const auto& [radius, value] : expressive.power) power.push_back({radius, value});
+  for (const auto& [place, offset, weight] : expressive.film_offsets) offsets.push_back({place.x, place.y, offset});
+  return {{"power", power},
+          {"film_offsets_mm", offsets},
+          {"dispersion", expressive.dispersion.empty() ? 1 : expressive.dispersion.front()}};
+}
+
+void draw(Options options) {
+  if (options.expressive.change_nothing()) {
+    options.expressive.from_lens = 1;
+    std::cerr << "note: no aberrations are given, so they are those of the lens (--from-lens 1)\n";
+  }
+  const examples::LoadedLens loaded = examples::load_lens(options.lens_file, wavelengths_nm(options));
+  const petzval::Lens lens = examples::focused(loaded, options.setup);
+  const auto [width, height] = options.setup.film_size();
+  const petzval::Film film{.width_mm = width, .height_mm = height};
+  const petzval::ExpressiveLens expressive = examples::expressive_of(options.expressive, lens, film);
+  const petzval::ModelKind model = *petzval::model_named(options.model);
+  const petzval::Camera bent(lens, film, {.model = model, .expressive = expressive});
+
+  struct Row {
+    const char *title, *subtitle;
+    petzval::CameraOptions camera;
+  };
+  const std::vector<Row> rows{{"real lens", "exact rays", {.model = petzval::ModelKind::exact_float}},
+                              {"expressive lens", options.model.c_str(), {.model = model, .expressive = expressive}},
+                              {"without aberrations", options.model.c_str(), {.model = model}}};
+  const double focus = options.setup.focus_mm;
+  std::vector<double> lights = options.light_mm;
+  if (lights.empty()) lights = std::isinf(focus) ? std::vector<double>{10000} : std::vector{0.85 * focus, 1.2 * focus};
+  const double origin_z = options.setup.origin == "film" ? lens.film_z() : 0;
+  const std::vector<double> fields = fields_rad(lens, film);
+  examples::Sheet sheet{
+      "Highlights of an expressive lens",
+      {},
+      {lens.name() + " at f/" + number(petzval::real_f_number(lens), 3) + ", " + examples::focus_caption(focus) +
+           " from the " + (options.setup.origin == "film" ? "film" : "front vertex") +
+           ". A point of light over the field, as a photograph shows it. The tiles of a light have one scale, and each "
+           "its "
+           "own exposure.",
+       "Fields are those of film points on the way to the corner of " + options.setup.film_mm +
+           " mm. RMS: of the distance of hits from their centroid."}};
+  Json highlights_json = Json::array();
+  examples::Progress progress("expressive lens", lights.size() * rows.size());
+  for (const double light_mm : lights) {
+    const Highlights highlights(lens, light_mm, origin_z, options);
+    double half_width = 0;
+    for (const Row& row : rows) {
+      for (const double field : fields) half_width = std::max(half_width, highlights.radius_mm(field, row.camera));
+    }
+    half_width = 1.08 * std::max(half_width, 0.01);
+    for (const auto& [title, subtitle, camera] : rows) {
+      progress.step(std::string(title) + ", light at " + number(light_mm) + " mm");
+      auto& row =
+          sheet.rows.emplace_back(examples::SheetRow{.title = title,
+                                                     .subtitle = "light at " + number(light_mm) + " mm, " + subtitle,
+                                                     .pixel_mm = 2 * half_width / tile_pixels,
+                                                     .tiles = {}});
+      for (const double field : fields) {
+        Json& tile =
+            highlights_json.emplace_back(Json{{"row", title}, {"light_mm", examples::finite_or_null(light_mm)}});
+        row.tiles.push_back(highlights.tile(field, camera, half_width, tile));
+      }
+    }
+  }
+  const std::filesystem::path folder = options.out_folder;
+  examples::make_folder(folder);
+  petzval::write_png(examples::draw_sheet(sheet), folder / "highlights.png");
+  Json document = description(expressive);
+  document["lens"] = lens.name();
+  document["highlights"] = highlights_json;
+  examples::write_text(folder / "expressive.json", document.dump(1) + '\n');
+  std::cout << (folder / "highlights.png").string() << '\n' << (folder / "expressive.json").string() << '\n';
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options options;
+  examples::App app(
+      "Draws highlights over the field of a lens, of its first-order model with expressive aberrations, and without "
+      "them: DIR/highlights.png, and the numbers of the aberrations and of the highlights as DIR/expressive.json. "
+      "Without any option of "
+      "them they are those of the real lens.",
+      "expressive_lens");
+  app.add_option("LENS", options.lens_file, "lens prescription (JSON as in data/lenses)")->required();
+  examples::add_camera(app, options.setup);
+  examples::add_distance_origin(app, options.setup);
+  examples::add_expressive(app, options.expressive);
+  app.add_option("--model", options.model, "first-order model that is bent")
+      ->one_of({"thin", "thick", "thin_two_disc"})
+      ->capture_default_str();
+  examples::add_numbers(app, "--light-mm", options.light_mm, examples::positive_length,
+                        "distances of the lights, from the same origin (mm)")
+      ->default_str("0.85 and 1.2 of the focus");
+  examples::add_samples(app, options.samples);
+  app.add_option("--out", options.out_folder, "folder for the results")->required()->type_name("DIR");
+  return examples::run(app, argc, argv, [&] { draw(options); });
+}

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "cli.hpp"
+#include "petzval/camera/expressive_lens.hpp"
+
+namespace examples {
+
+/// Command line of the programs with an expressive lens.
+struct ExpressiveFlags {
+  std::vector<std::string> power_spline;      ///< radius:power
+  std::vector<std::string> curvature_points;  ///< x,y:offset
+  double dispersion = 1, from_lens = 0;
+
+  bool change_nothing() const noexcept;
+};
+
+/// Options --power-spline, --curvature-points, --dispersion and --from-lens.
+void add_expressive(App& app, ExpressiveFlags& flags);
+
+/// Throws petzval::Error that names the option, and where expressive_from() does.
+petzval::ExpressiveLens expressive_of(const ExpressiveFlags& flags, const petzval::Lens& lens,
+                                      const petzval::Film& film);
+
+}  // namespace examples

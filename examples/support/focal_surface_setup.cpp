@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "focal_surface_setup.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "json_input.hpp"
+#include "petzval/core/error.hpp"
+#include "petzval/paraxial/first_order.hpp"
+#include "text.hpp"
+
+namespace examples {
+namespace {
+
+using petzval::Vec3;
+
+constexpr std::array kinds{petzval::SurfaceKind::affine, petzval::SurfaceKind::shepard};
+constexpr Range weight_range{0, std::numeric_limits<double>::max(), "a finite number, 0 or more"};
+constexpr Range part_range{0, 1, "a number from 0 to 1"};
+
+/// An object of the file and its name in messages.
+struct Entry {
+  std::string where;
+  const Json& json;
+
+  std::optional<double> number(const char* key, const Range& range) const {
+    if (!json.contains(key)) return {};
+    const Json& value = json.at(key);
+    if (!value.is_number() || !(value.get<double>() >= range.least && value.get<double>() <= range.most)) {
+      refuse(where + ": " + key, value, range.words);
+    }
+    return value.get<double>();
+  }
+  template <std::size_t count>
+  std::optional<std::array<double, count>> numbers(const char* key, const char* wanted) const {
+    if (!json.contains(key)) return {};
+    const Json& value = json.at(key);
+    const auto finite = [](const Json& c) { return c.is_number() && std::isfinite(c.get<double>()); };
+    if (!value.is_array() || value.size() != count || !std::all_of(value.begin(), value.end(), finite)) {
+      refuse(where + ": " + key, value, wanted);
+    }
+    std::array<double, count> result;
+    for (std::size_t i = 0; i < count; ++i) result[i] = value[i].get<double>();
+    return result;
+  }
+};
+
+}  // namespace
+
+petzval::FocalSurfaceOptions FocalSurfaceSetup::options() const { return {named(kind, kinds), beta}; }
+
+void add_surface_kind(App& app, FocalSurfaceSetup& setup) {
+  app.add_option("--kind", setup.kind,
+                 "how distances are interpolated between points: affine (by planes, which it reproduces) or shepard "
+                 "(weighted means, flat at the points)")
+      ->one_of(names(kinds))
+      ->capture_default_str();
+  add_number(app, "--beta", setup.beta, {1, 8, "a number from 1 to 8"},
+             "weights of points fall with their distance in the picture to the power -beta");
+}
+
+double origin_z(const petzval::Lens& lens, petzval::DistanceOrigin origin) {
+  switch (origin) {
+    case petzval::DistanceOrigin::film: return lens.film_z();
+    case petzval::DistanceOrigin::front_principal: return petzval::first_order(lens).front_principal_z;
+    case petzval::DistanceOrigin::front_vertex: break;
+  }
+  return 0;
+}
+
+std::vector<petzval::FocalPoint> read_focal_points(const std::filesystem::path& file, const petzval::Camera& camera,
+                                                   petzval::DistanceOrigin origin, const WorldToLens& to_lens) {
+  const Json document = read_json(file);
+  check_keys(file.string(), document, {"points"}, "points");
+  if (!document.contains("points") || !document["points"].is_array() || document["points"].empty()) {
+    refuse(file.string() + ": points", document.contains("points") ? document["points"] : Json(),
+           "a list of one point or more");
+  }
+  const double entrance_z = petzval::pupils(camera.lens()).entrance.z, counted_from = origin_z(camera.lens(), origin);
+  std::vector<petzval::FocalPoint> result;
+  for (const Json& json : document["points"]) {
+    const Entry entry{file.string() + ": point " + std::to_string(result.size() + 1), json};
+    check_keys(entry.where, json, {"pixel", "world_mm", "distance_mm", "extent_stops", "blur_px", "weight", "fade"},
+               "pixel or world_mm, distance_mm, extent_stops, blur_px, weight and fade");
+    const auto pixel = entry.numbers<2>("pixel", "two finite numbers, [x, y]");
+    const auto world = entry.numbers<3>("world_mm", "three finite numbers, [x, y, z]");
+    if (pixel.has_value() == world.has_value()) {
+      throw petzval::Error(entry.where + ": found " + (pixel ? "pixel and world_mm" : "no place") +
+                           ", wanted one of pixel and world_mm");
+    }
+    petzval::FocalPoint point;
+    if (pixel) {
+      point.place = camera.film().point((*pixel)[0], (*pixel)[1]);
+    } else {
+      const Vec3<double> position = to_lens({(*world)[0], (*world)[1], (*world)[2]});
+      const petzval::Projection seen = camera.project(position);
+      if (seen.status == petzval::ProjectionStatus::not_visible) {
+        refuse(entry.where + ": world_mm", json["world_mm"], "a point that the camera sees, or one beside its film");
+      }
+      point.place = seen.film;
+      point.inverse_distance = 1 / (entrance_z - position.z);
+    }
+    if (json.contains("distance_mm") && json["distance_mm"].is_null()) {
+      point.inverse_distance = 0;
+    } else if (const auto distance = entry.number("distance_mm", positive_number)) {
+      const double from_pupil = *distance + entrance_z - counted_from;
+      if (!(from_pupil > 0)) {
+        refuse(entry.where + ": distance_mm", json["distance_mm"],
+               "more than " + number(counted_from - entrance_z) + ", the distance of the entrance pupil");
+      }
+      point.inverse_distance = 1 / from_pupil;
+    }
+    point.extent_stops = entry.number("extent_stops", {-20, 20, "a number from -20 to 20"});
+    if (!point.inverse_distance && !point.extent_stops) {
+      throw petzval::Error(entry.where + ": found neither distance_mm nor extent_stops, wanted one of them");
+    }
+    if (const auto blur = entry.number("blur_px", finite_number)) {
+      if (!point.inverse_distance) {
+        refuse(entry.where + ": blur_px", json["blur_px"], "a distance_mm with it");
+      }
+      point.blur_mm = *blur * camera.film().pixel_mm();
+    }
+    point.weight = entry.number("weight", weight_range).value_or(1);
+    point.fade = entry.number("fade", part_range).value_or(1);
+    result.push_back(point);
+  }
+  return result;
+}
+
+}  // namespace examples

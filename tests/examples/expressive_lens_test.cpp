@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "program.hpp"
+
+namespace {
+
+class ExpressiveLensProgram : public Programs {
+ protected:
+  nlohmann::json draw(const std::string& id, std::vector<std::string> more, const std::string& out = "out") const {
+    std::vector<std::string> arguments{lens(id), "--focus-mm", "1000", "--samples", "2048", "--out", path(out)};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const auto outcome = run("expressive_lens", arguments);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_EQ(lines(outcome.out), (std::vector{path(out + "/highlights.png"), path(out + "/expressive.json")}));
+    EXPECT_TRUE(read(path(out + "/highlights.png")).starts_with("\x89PNG"));
+    return read_json(path(out + "/expressive.json"));
+  }
+};
+
+// Without options the aberrations are those of the lens, and the highlights have its size.
+TEST_F(ExpressiveLensProgram, BeginsWithTheRealLens) {
+  const auto json = draw("double_gauss_100mm_f1.35", {"--light-mm", "850,1300"});
+  EXPECT_EQ(json["power"].size(), 13u);
+  EXPECT_GT(json["film_offsets_mm"].size(), 30u);
+  EXPECT_EQ(json["dispersion"], 1);
+  std::map<std::string, std::vector<double>> rms;
+  for (const auto& tile : json["highlights"]) rms[tile["row"]].push_back(tile["rms_mm"]);
+  ASSERT_EQ(rms.size(), 3u);
+  ASSERT_EQ(rms["real lens"].size(), 10u);
+  for (std::size_t i = 0; i < 10; ++i) EXPECT_NEAR(rms["expressive lens"][i] / rms["real lens"][i], 1, 0.1) << i;
+  const auto twice = draw("double_gauss_100mm_f1.35", {"--light-mm", "850", "--from-lens", "2"}, "twice");
+  for (std::size_t k = 0; k < 13; ++k) {
+    EXPECT_NEAR(twice["power"][k][1].get<double>() - 1, 2 * (json["power"][k][1].get<double>() - 1), 1e-12);
+  }
+}
+
+TEST_F(ExpressiveLensProgram, TakesASplinePointsAndADispersion) {
+  const auto json = draw("double_gauss_100mm_f2_28deg",
+                         {"--power-spline", "0:1", "0.7:1.02", "1:0.97", "--curvature-points", "0,0:0", "-18,12:1.5",
+                          "--dispersion", "3", "--light-mm", "1200", "--model", "thick"});
+  EXPECT_EQ(json["power"], (nlohmann::json{{0, 1}, {0.7, 1.02}, {1, 0.97}}));
+  EXPECT_EQ(json["film_offsets_mm"], (nlohmann::json{{0, 0, 0}, {-18, 12, 1.5}}));
+  EXPECT_EQ(json["dispersion"], 3);
+}
+
+TEST_F(ExpressiveLensProgram, RefusesWhatIsNoLens) {
+  const auto refused = [&](std::vector<std::string> more, const std::string& reason) {
+    std::vector<std::string> arguments{lens("double_gauss_100mm_f1.35"), "--out", path("out")};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    expect_failure("expressive_lens", arguments, reason);
+  };
+  refused({"--power-spline", "0.5"}, "--power-spline: found \"0.5\", wanted radius:power");
+  refused({"--power-spline", "0:1", "0:2"}, "knot 2");
+  refused({"--power-spline", "0:x"}, "--power-spline");
+  refused({"--curvature-points", "1:2"}, "--curvature-points: found \"1\", wanted x,y:offset");
+  refused({"--curvature-points", "0,0:-500"}, "wanted the film between");
+  refused({"--model", "exact_float"}, "--model");
+  refused({"--light-mm", "20", "--from-lens", "1"}, "scene point: z is");
+}
+
+}  // namespace
