@@ -123,19 +123,8 @@ MovingLeastSquares::MovingLeastSquares(std::string_view where, std::span<const W
 void MovingLeastSquares::keep_below(double limit) noexcept { high_ = std::min(high_, limit * to_scaled_value_); }
 
 template <class T>
-void MovingLeastSquares::at(InstructionSet set, std::size_t count, const T* x, const T* y, T* out) const noexcept {
-  if (points_.x.size() == 1) {
-    std::fill_n(out, count, static_cast<T>(high_ / to_scaled_value_));
-    return;
-  }
-  const auto& columns = [this]() -> const Columns<T>& {
-    if constexpr (std::is_same_v<T, float>) {
-      return in_float_;
-    } else {
-      return in_double_;
-    }
-  }();
-  const LeastSquaresJob<T> job{
+LeastSquaresJob<T> MovingLeastSquares::job(const Columns<T>& columns) const noexcept {
+  return {
       .points = points_.x.size(),
       .x = columns.x.data(),
       .y = columns.y.data(),
@@ -152,16 +141,23 @@ void MovingLeastSquares::at(InstructionSet set, std::size_t count, const T* x, c
       .to_scaled = static_cast<T>(to_scaled_),
       .reach = static_cast<T>(2 * reach_in_sides),
       .from_scaled = static_cast<T>(1 / to_scaled_value_),
-      .count = count,
-      .at_x = x,
-      .at_y = y,
-      .out = out,
   };
-  const LeastSquaresLoops& loops = loops_of(set);
+}
+
+template <class T>
+void MovingLeastSquares::at(InstructionSet set, std::size_t count, const T* x, const T* y, T* out) const noexcept {
+  if (points_.x.size() == 1) {
+    std::fill_n(out, count, static_cast<T>(most()));
+    return;
+  }
+  const auto run = [&](LeastSquaresJob<T> work, void (*loop)(const LeastSquaresJob<T>&) noexcept) {
+    work.count = count, work.at_x = x, work.at_y = y, work.out = out;
+    loop(work);
+  };
   if constexpr (std::is_same_v<T, float>) {
-    loops.in_float(job);
+    run(job(in_float_), loops_of(set).in_float);
   } else {
-    loops.in_double(job);
+    run(job(in_double_), loops_of(set).in_double);
   }
 }
 
@@ -171,8 +167,9 @@ void MovingLeastSquares::at(std::size_t count, const T* x, const T* y, T* out) c
 }
 
 double MovingLeastSquares::at(const FilmPoint& place) const noexcept {
+  if (least_squares_takes_one(points_.x.size())) return least_squares_of_one(job(points_), place.x, place.y);
   double value = 0;
-  at(InstructionSet::baseline, 1, &place.x, &place.y, &value);  // the quickest for one
+  at(1, &place.x, &place.y, &value);
   return value;
 }
 
@@ -232,21 +229,14 @@ Vec2<double> MovingLeastSquares::slopes(const FilmPoint& place) const noexcept {
   }
   const V mean = on_point ? V{0, 0} : wq / w_sum;
   const double mean_value = on_point ? 0 : wf / w_sum, trace = xx + yy;
-  // As the loops solve it.
-  const auto inverse = [&](double moment) {
-    constexpr double thin = 1e-10;
-    const double relative = std::max(moment / trace, 0.0);
-    return relative / (relative * relative + thin * thin) / trace;
-  };
   const double a = xx - w_sum * mean.x * mean.x, b = xy - w_sum * mean.x * mean.y, c = yy - w_sum * mean.y * mean.y;
+  // As the loops solve it.
   const auto solved = [&](const V& right) {
     if (!affine_ || !(trace > 1e-290)) return V{0, 0};
-    const bool upright = a < c;
-    const V ordered = upright ? V{right.y, right.x} : right;
-    const double per_first = inverse(std::max(a, c)), part = b * per_first;
-    const double second = (ordered.y - part * ordered.x) * inverse(std::min(a, c) - part * b);
-    const double first = (ordered.x - b * second) * per_first;
-    return upright ? V{second, first} : V{first, second};
+    constexpr double thin2 = 1e-20;
+    const double xx1 = a / trace, xy1 = b / trace, yy1 = c / trace, det = xx1 * yy1 - xy1 * xy1, tr = xx1 + yy1;
+    const V by = right / trace, along{xx1 * by.x + xy1 * by.y, xy1 * by.x + yy1 * by.y};
+    return (thin2 * along + det * (tr * by - along)) / (det * det + thin2 * (tr * tr - 2 * det + thin2));
   };
   const V slope = solved(wqf - w_sum * mean_value * mean);
   V result = slope;

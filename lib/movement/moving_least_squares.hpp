@@ -23,6 +23,9 @@ struct WeighedValue {
   double fade = 1;    ///< from 0 (gone) to 1
 };
 
+template <class R>
+struct LeastSquaresJob;
+
 /// Places of points lie within so many sides of the picture.
 inline constexpr double reach_in_sides = 1e6;
 
@@ -77,6 +80,9 @@ class PETZVAL_API MovingLeastSquares {
   struct Columns {
     std::vector<R> x, y, value, alpha, soft2;
   };
+
+  template <class R>
+  LeastSquaresJob<R> job(const Columns<R>& columns) const noexcept;
 
   bool affine_;
   double beta_;

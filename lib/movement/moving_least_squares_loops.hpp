@@ -39,4 +39,10 @@ struct LeastSquaresLoops {
 
 extern const LeastSquaresLoops least_squares_loops_baseline, least_squares_loops_avx2, least_squares_loops_avx512;
 
+/// The same at a single place, in less time, for some numbers of points: moving_least_squares_one.cpp.
+inline constexpr std::size_t most_points_of_one = 128;
+bool least_squares_takes_one(std::size_t points) noexcept;
+/// job: each number of a point stands there once; count, at_x, at_y and out are not read.
+double least_squares_of_one(const LeastSquaresJob<double>& job, double at_x, double at_y) noexcept;
+
 }  // namespace petzval::inline v0::movement_detail

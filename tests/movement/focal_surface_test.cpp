@@ -65,6 +65,9 @@ TEST(FocalSurface, WithoutDistancesIsWhereTheFilmIsFocused) {
   EXPECT_NEAR(surface.at({7, 7}).inverse_distance, 1 / 2000.0, 1e-15);
   EXPECT_EQ(surface.at({7, 7}).extent_stops, 3);
   EXPECT_EQ(FocalSurface(lens, {.z_mm = 50}, points).at({7, 7}).inverse_distance, 0);
+  // 0.1 mm behind the image of 2 m: computed with 40 digits.
+  const Film behind{.z_mm = 50 * 2000 / 1950.0 + 0.1};
+  EXPECT_NEAR(FocalSurface(lens, behind, points).at({0, 0}).inverse_distance, 0.53795099555866061e-3, 1e-16);
 }
 
 std::vector<FocalPoint> random_points(unsigned seed, std::size_t count) {

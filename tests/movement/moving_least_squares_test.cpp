@@ -48,6 +48,51 @@ TEST(MovingLeastSquares, GivesTheValuesOfAnIndependentComputation) {
   EXPECT_NEAR(through(points, SurfaceKind::affine, 4).at(at), 0.38681544143619512, 1e-12);
 }
 
+// Two points: a closed form, for every power.
+TEST(MovingLeastSquares, ComesToTheNearestPointAsBetaGrows) {
+  const std::vector<WeighedValue> points{{{0, 0}, 0.7}, {{4, 0}, -0.2, 0.5}};
+  for (double beta = 1; beta <= 8; beta += 0.125) {
+    const double other = 0.5 * std::pow(3, -beta), expected = (0.7 - 0.2 * other) / (1 + other);
+    const auto surface = through(points, SurfaceKind::shepard, beta, 10);
+    EXPECT_NEAR(surface.at({1, 0}), expected, 2e-15) << beta;
+    const float x = 1, y = 0;
+    float value = 0;
+    surface.at(1, &x, &y, &value);
+    EXPECT_NEAR(value, expected, 2e-7) << beta;
+  }
+}
+
+TEST(MovingLeastSquares, TakesTheMeanOfPointsInOnePlace) {
+  for (const SurfaceKind kind : kinds) {
+    for (const double beta : betas) {
+      const std::vector<WeighedValue> points{{{1, 2}, 0.5, 1}, {{1, 2}, 0.1, 3}, {{-3, 1}, 5, 1}};
+      EXPECT_DOUBLE_EQ(through(points, kind, beta, 10).at({1, 2}), 0.2);
+      const std::vector<WeighedValue> alone(points.begin(), points.begin() + 2);
+      EXPECT_DOUBLE_EQ(through(alone, kind, beta, 10).at({7, -9}), 0.2);
+      const Vec2<double> slopes = through(alone, kind, beta, 10).slopes({7, -9});
+      EXPECT_NEAR(std::abs(slopes.x) + std::abs(slopes.y), 0, 1e-15);
+    }
+  }
+}
+
+TEST(MovingLeastSquares, HasTheSlopeAlongALineOfPointsAlone) {
+  for (const double beta : betas) {
+    std::vector<WeighedValue> points;
+    for (const double t : {-1.0, 0.1, 0.5, 2.0}) points.push_back({{3 * t + 1, 1 - 2 * t}, 0.4 + 0.3 * t});
+    const auto surface = through(points, SurfaceKind::affine, beta, 10);
+    for (const double t : {-1.5, -0.3, 0.2, 0.9, 2.1}) {
+      for (const double across : {-2.0, 0.0, 0.4}) {
+        const FilmPoint at{3 * t + 1 + 2 * across, 1 - 2 * t + 3 * across};
+        EXPECT_NEAR(surface.at(at), 0.4 + 0.3 * t, 1e-11) << beta;
+        const float x = static_cast<float>(at.x), y = static_cast<float>(at.y);
+        float value = 0;
+        surface.at(1, &x, &y, &value);
+        EXPECT_NEAR(value, 0.4 + 0.3 * t, 1e-4) << beta;
+      }
+    }
+  }
+}
+
 TEST(MovingLeastSquares, IsExactAtItsPoints) {
   for (const SurfaceKind kind : kinds) {
     for (const double beta : betas) {
@@ -109,7 +154,7 @@ TEST(MovingLeastSquares, SlopesAreFiniteDifferences) {
 }
 
 template <class T>
-void expect_same_bits() {
+void expect_same_bits(std::size_t points) {
   std::vector<T> x, y;
   for (const auto& at : random_points(6, 333)) {
     x.push_back(static_cast<T>(1.5 * at.place.x));
@@ -117,9 +162,12 @@ void expect_same_bits() {
   }
   for (const SurfaceKind kind : kinds) {
     for (const double beta : betas) {
-      const auto surface = through(random_points(7, 13), kind, beta);
+      const auto surface = through(random_points(7, points), kind, beta);
       std::vector<T> expected(x.size()), found(x.size());
       surface.at(InstructionSet::baseline, x.size(), x.data(), y.data(), expected.data());
+      for (std::size_t i = 0; i < x.size() && sizeof(T) == sizeof(double); ++i) {
+        EXPECT_EQ(surface.at({x[i], y[i]}), expected[i]) << name(kind) << beta;
+      }
       for (const InstructionSet set : instruction_sets()) {
         surface.at(set, x.size(), x.data(), y.data(), found.data());
         EXPECT_EQ(found, expected) << name(set) << name(kind) << beta;
@@ -134,8 +182,10 @@ void expect_same_bits() {
 }
 
 TEST(MovingLeastSquares, GivesTheSameBitsOnAllInstructionSetsAndInBatches) {
-  expect_same_bits<float>();
-  expect_same_bits<double>();
+  for (const std::size_t points : {2, 3, 13, 200}) {
+    expect_same_bits<float>(points);
+    expect_same_bits<double>(points);
+  }
 }
 
 }  // namespace
