@@ -37,8 +37,6 @@ namespace {
 
 using Jet = ceres::Jet<double, 2>;
 
-constexpr std::size_t block = 256;
-
 /// How much nearer to the pupil than the film, or farther from it, offsets may lead.
 constexpr double nearest_offset = -0.9, farthest_offset = 9;
 
@@ -120,6 +118,26 @@ FocusRules<T> in_type(const FocusRules<double>& rules) {
     result.spline.cube[i] = static_cast<T>(rules.spline.cube[i]);
   }
   return result;
+}
+
+/// A zero of a function that grows on the whole, with a slope of about 1; scale: of its arguments. By the secant, and
+/// where that does not settle, as on steep surfaces, by bisection.
+double zero_of(const auto& f, double scale) {
+  const double settled = 1e-13 * scale;
+  double before = 0, at_before = f(before), t = -at_before;
+  for (int i = 0; i < 8; ++i) {
+    const double at_t = f(t);
+    if (std::abs(at_t) <= settled) return t;
+    const double step = at_t * (t - before) / (at_t - at_before);
+    if (!(std::abs(step) < scale)) break;
+    before = t, at_before = at_t;
+    t -= step;
+  }
+  // The span doubles until it holds the zero: what is in focus is bounded.
+  double low = -scale, high = scale;
+  for (int i = 0; i < 64 && f(low) > 0; ++i) low *= 2;
+  for (int i = 0; i < 64 && f(high) < 0; ++i) high *= 2;
+  return focus_detail::root(f, low, high);
 }
 
 double scale_of(double stops) noexcept { return std::exp2(-stops / 2); }
@@ -301,9 +319,9 @@ void LocalFocus::bend(std::size_t count, const T* film_x, const T* film_y, const
     rules = &data.rules;
   }
   const T z = static_cast<T>(data.first_order().z());
-  for (std::size_t begin = 0; begin < count; begin += block) {
-    const std::size_t n = std::min(block, count - begin);
-    alignas(64) std::array<T, block> none{}, surface, offset, scale;
+  for (std::size_t begin = 0; begin < count; begin += bend_block) {
+    const std::size_t n = std::min(bend_block, count - begin);
+    alignas(64) std::array<T, bend_block> none{}, surface, offset, scale;
     const T* const x = film_x + begin;
     const T* const y = film_y + begin;
     scale.fill(T(1));
@@ -360,7 +378,10 @@ void LocalFocus::bend(const FilmPoint& film, double nearer, const Vec2<double>& 
                     part([](const Ray<double>& r) { return r.direction.y; }),
                     part([](const Ray<double>& r) { return r.direction.z; })};
   const double z = data.first_order().z();
-  bent = bent_ray(data.rules, at->maps, at->dispersion, z, data.point(film, nearer, nearer_by), bent);
+  const auto point = data.point(film, nearer, nearer_by);
+  const Jet radius = radius_of(at->maps, point, at_entrance(at->maps, z, bent));
+  const Jet by_radius = beyond_one(data.rules.spline, radius) * data.rules.power;
+  bent = bent_ray(data.rules, at->maps, at->dispersion, z, point, by_radius, bent);
   ray.ray = {{bent.x.a, bent.y.a, z}, {bent.dx.a, bent.dy.a, bent.dz.a}};
   ray.by_u = {{bent.x.v[0], bent.y.v[0], 0}, {bent.dx.v[0], bent.dy.v[0], bent.dz.v[0]}};
   ray.by_v = {{bent.x.v[1], bent.y.v[1], 0}, {bent.dx.v[1], bent.dy.v[1], bent.dz.v[1]}};
@@ -385,11 +406,7 @@ LocalFocus::Straight LocalFocus::straighten(const Ray<double>& ray, Wavelength w
   };
   const double start = data.rules.primary.d / data.rules.primary.b;
   const auto residual = [&](double t) { return t - asked(start + t).value_or(start) + start; };
-  // The span doubles until it holds the root: what is in focus is bounded.
-  double low = -std::abs(data.rules.power), high = -low;
-  for (int i = 0; i < 64 && residual(low) > 0; ++i) low *= 2;
-  for (int i = 0; i < 64 && residual(high) < 0; ++i) high *= 2;
-  const double t = start + focus_detail::root(residual, low, high);
+  const double t = start + zero_of(residual, std::abs(data.rules.power));
 
   const Vec2<double> chief = slope - height * t;
   const auto from = data.seen(*at, chief, plane);

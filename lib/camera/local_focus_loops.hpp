@@ -18,7 +18,9 @@ struct FilmPointFocuses {
   const T* scale;
 };
 
-/// Bends N rays of one wavelength, in place. z: of the plane in which they are given.
+constexpr std::size_t bend_block = 256;
+
+/// Bends N rays of one wavelength, bend_block at most, in place. z: of the plane in which they are given.
 template <class T>
 using BendLoop = void (*)(const FocusRules<T>& rules, const EntranceMaps<T>& maps, T dispersion, T z, std::size_t count,
                           const FilmPointFocuses<T>& points, const RayArrays<T>& rays) noexcept;

@@ -77,23 +77,38 @@ inline InFocus<N> focus_of(const FocusRules<T>& rules, const EntranceMaps<T>& ma
   return {own, asked};
 }
 
-/// z: of the plane in which rays are given, before and after.
+/// A ray in the plane of the entrance pupil, given in the plane z.
+template <class N>
+struct AtEntrance {
+  N x, y, slope_x, slope_y;
+};
 template <class T, class N>
-inline BentRay<N> bent_ray(const FocusRules<T>& rules, const EntranceMaps<T>& maps, T dispersion, T z,
-                           const FilmPointFocus<N>& point, const BentRay<N>& ray) noexcept {
-  const auto [own, asked] = focus_of(rules, maps, dispersion, point);
+inline AtEntrance<N> at_entrance(const EntranceMaps<T>& maps, T z, const BentRay<N>& ray) noexcept {
   const N per_z = T(1) / ray.dz, slope_x = ray.dx * per_z, slope_y = ray.dy * per_z;
   const T away = maps.z - z;
-  const N x = ray.x + slope_x * away, y = ray.y + slope_y * away;
-  using core_detail::square_root;
-  const N to_x = x * point.scale, to_y = y * point.scale;
-  const N height = square_root(N(to_x * to_x + to_y * to_y + T(1e-30)));  // a root of 0 has no derivative
-  const N in_focus = asked + beyond_one(rules.spline, N(height * (T(1) / maps.radius))) * rules.power;
+  return {ray.x + slope_x * away, ray.y + slope_y * away, slope_x, slope_y};
+}
+
+/// Where a ray of the scaled pupil passes it, over its radius.
+template <class T, class N>
+inline N radius_of(const EntranceMaps<T>& maps, const FilmPointFocus<N>& point, const AtEntrance<N>& ray) noexcept {
+  // A root of 0 has no derivative.
+  return core_detail::square_root(N(ray.x * ray.x + ray.y * ray.y + T(1e-30))) * point.scale * (T(1) / maps.radius);
+}
+
+/// z: of the plane in which rays are given, before and after; by_radius: what the spline of power adds to what is in
+/// focus.
+template <class T, class N>
+inline BentRay<N> bent_ray(const FocusRules<T>& rules, const EntranceMaps<T>& maps, T dispersion, T z,
+                           const FilmPointFocus<N>& point, N by_radius, const BentRay<N>& ray) noexcept {
+  const auto [own, asked] = focus_of(rules, maps, dispersion, point);
+  const auto [x, y, slope_x, slope_y] = at_entrance(maps, z, ray);
   // u' = U + w' s H = u + (w' s - w) H.
-  const N turn = in_focus * point.scale - own;
+  const N turn = (asked + by_radius) * point.scale - own;
   const N u = slope_x + turn * x, v = slope_y + turn * y;
-  const N down = T(-1) / square_root(N(u * u + v * v + T(1)));
-  return {to_x - u * away, to_y - v * away, u * down, v * down, down};
+  const N down = T(-1) / core_detail::square_root(N(u * u + v * v + T(1)));
+  const T away = maps.z - z;
+  return {x * point.scale - u * away, y * point.scale - v * away, u * down, v * down, down};
 }
 
 }  // namespace

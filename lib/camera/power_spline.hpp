@@ -21,20 +21,32 @@ struct PowerSpline {
 // Local names: this is compiled for several instruction sets, and the linker must not take one for another.
 namespace {
 
+/// The sum that is k(t) - 1, in parts: t limited to the knots, what begins at the first of them, and the cube of knot
+/// j, which is not the last.
+template <class T, class N>
+inline N within_knots(const PowerSpline<T>& spline, N t) noexcept {
+  const T first = spline.at[0], last = spline.at[spline.knots - 1];
+  t = t < first ? N(first) : t;
+  return last < t ? N(last) : t;
+}
+template <class T, class N>
+inline N beyond_one_at_first(const PowerSpline<T>& spline, N t) noexcept {
+  const N from_first = t - spline.at[0];
+  return from_first * from_first * spline.square + (spline.first - T(1));
+}
+template <class T, class N>
+inline N of_knot(const PowerSpline<T>& spline, std::size_t j, N t) noexcept {
+  const N over = t - spline.at[j];
+  return (over < T(0) ? N(T(0)) : N(over * over * over)) * spline.cube[j];
+}
+
 /// k(t) - 1, constant outside the knots. N: T, or a dual number over it.
 template <class T, class N>
 inline N beyond_one(const PowerSpline<T>& spline, N t) noexcept {
-  const std::size_t knots = spline.knots;
-  if (knots == 0) return N(T(0));
-  const T first = spline.at[0], last = spline.at[knots - 1];
-  t = t < first ? N(first) : t;
-  t = last < t ? N(last) : t;
-  const N from_first = t - first;
-  N sum = from_first * from_first * spline.square + (spline.first - T(1));
-  for (std::size_t j = 0; j + 1 < knots; ++j) {
-    const N over = t - spline.at[j];
-    sum += (over < T(0) ? N(T(0)) : N(over * over * over)) * spline.cube[j];
-  }
+  if (spline.knots == 0) return N(T(0));
+  t = within_knots(spline, t);
+  N sum = beyond_one_at_first(spline, t);
+  for (std::size_t j = 0; j + 1 < spline.knots; ++j) sum += of_knot(spline, j, t);
   return sum;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Time of a camera ray, one thread: pupil sample, ray and weight by every model of a lens, in batches of 4096 samples,
-// one by one, on a tilted film, and with what shapes a bokeh; and the set-up time of cameras, of all lenses too.
+// one by one, on a tilted film, with what shapes a bokeh, and with a focus of its own at each place; and the set-up
+// time of cameras, of all lenses too.
 //
 //   camera_bench [--json FILE] [options of Google Benchmark]
 //
@@ -29,6 +30,8 @@
 #include "petzval/core/units.hpp"
 #include "petzval/io/lens_json.hpp"
 #include "petzval/io/write_file.hpp"
+#include "petzval/movement/focal_surface.hpp"
+#include "petzval/paraxial/ideal_lens.hpp"
 #include "table.hpp"
 #include "trace_rays.hpp"
 #include "trace_work.hpp"
@@ -156,6 +159,21 @@ struct Bench {
   }
 };
 
+/// Sixteen points all over the film.
+petzval::FocalSurface surface_of(const Bench& bench, bool extents) {
+  Film film = bench.film;
+  film.z_mm = bench.lens.lens.film_z();
+  std::mt19937 random(2);
+  std::uniform_real_distribution<double> one;
+  std::vector<petzval::FocalPoint> points(16);
+  for (petzval::FocalPoint& point : points) {
+    point.place = {(one(random) - 0.5) * film.width_mm, (one(random) - 0.5) * film.height_mm};
+    point.inverse_distance = 1e-3 * one(random);
+    if (extents) point.extent_stops = 2 * one(random);
+  }
+  return {petzval::thick_lens(bench.lens.lens), film, points};
+}
+
 void print_rows(const Bench& bench, const std::vector<Row>& rows) {
   const auto mine = [&](const Row& row) { return row.lens == bench.lens.id; };
   const auto first = std::find_if(rows.begin(), rows.end(), mine);
@@ -165,11 +183,12 @@ void print_rows(const Bench& bench, const std::vector<Row>& rows) {
       bench.lens.name.c_str(), bench.lens.lens.surface_count(), bench.film.width_mm, bench.film.height_mm,
       petzval::degrees(bench.tilted.tilt_rad), digits(first->textbook_ns).c_str());
   std::printf(
-      "| model         | call      | precision | ns per sample | useful  | ns per useful ray | x textbook ray |\n"
-      "|---------------|-----------|-----------|--------------:|--------:|------------------:|---------------:|\n");
+      "| model         | call            | precision | ns per sample | useful  | ns per useful ray | x textbook ray |\n"
+      "|---------------|-----------------|-----------|--------------:|--------:|------------------:|---------------:|"
+      "\n");
   for (const Row& row : rows) {
     if (!mine(row)) continue;
-    std::printf("| %-13s | %-9s | %-9s | %13s | %5.1f %% | %17s | %14s |\n",
+    std::printf("| %-13s | %-15s | %-9s | %13s | %5.1f %% | %17s | %14s |\n",
                 std::string(petzval::name(row.model)).c_str(), row.call.c_str(), row.precision(),
                 digits(row.ns).c_str(), 100 * row.useful, digits(row.ns_per_useful()).c_str(),
                 digits(row.ratio(), 3).c_str());
@@ -271,6 +290,18 @@ int run(std::vector<char*> arguments) {
         benchmark::RegisterBenchmark(rows.back().name().c_str(), time_batches<float>, rows.back());
       }
     }
+    // A focus of its own at each place.
+    const auto add = [&](const char* call, const petzval::CameraOptions& options, bool single) {
+      rows.push_back({bench.lens.id, call, options.model, single, Camera(bench.lens.lens, bench.film, options)});
+      benchmark::RegisterBenchmark(rows.back().name().c_str(), single ? time_single : time_batches<float>, rows.back());
+    };
+    const petzval::FocalSurface surface = surface_of(bench, false), extents = surface_of(bench, true);
+    add("surface", {.model = ModelKind::thick, .focal_surface = surface}, false);
+    add("surface, single", {.model = ModelKind::thick, .focal_surface = surface}, true);
+    add("extents", {.model = ModelKind::thick, .focal_surface = extents}, false);
+    add("power", {.model = ModelKind::thick, .expressive = {.power = {{0, 1}, {0.6, 1.01}, {1, 0.99}}}}, false);
+    add("from lens", {.model = ModelKind::thick, .expressive = petzval::expressive_from(bench.lens.lens, bench.film)},
+        false);
   }
   Rounds rounds;
   benchmark::RunSpecifiedBenchmarks(&rounds);
