@@ -43,7 +43,7 @@ void check(const WeighedValue& point, double side, const std::string& where);
 ///
 /// Planes of points on a line have the slope along it alone, those of points in one place none: second moments far
 /// below 1e-10 (float: 1e-5) of the larger one count as 0. The result stays within [least - m, most + m] of the values
-/// of the points, with m = most - least.
+/// of the points, with m = most - least; points that fade widen this in part.
 ///
 /// Results are the same for all instruction sets and however places are batched; they are finite for any place, as
 /// constants beyond 1e6 sides. Accuracy: planes are reproduced within 1e-13 (float: 1e-5) of the range of values for

@@ -60,20 +60,20 @@ PETZVAL_INLINE Lanes<R> of_point(const R* numbers, std::size_t i) noexcept {
 #endif
 }
 
-/// What numbers of a type need. The terms of both series are below a quarter of the last bit.
+/// What numbers of a type need. The terms that both series leave out are below a quarter of the last bit.
 template <class R>
 struct Format;
 template <>
 struct Format<float> {
   using Bits = std::int32_t;
-  static constexpr int fraction_bits = 23, log_terms = 6, exp_terms = 8;
+  static constexpr int fraction_bits = 23, log_terms = 4, exp_terms = 7;
   static constexpr Bits root_half = 0x3f3504f3;  // of 0.70710678
   static constexpr float least_power = -125, least_base = 1.2e-38F, thin = 1e-5F, least_trace = 1e-36F;
 };
 template <>
 struct Format<double> {
   using Bits = std::int64_t;
-  static constexpr int fraction_bits = 52, log_terms = 12, exp_terms = 14;
+  static constexpr int fraction_bits = 52, log_terms = 9, exp_terms = 13;
   static constexpr Bits root_half = 0x3fe6a09e667f3bcd;
   static constexpr double least_power = -1021, least_base = 2.3e-308, thin = 1e-10, least_trace = 1e-290;
 };
@@ -109,7 +109,7 @@ PETZVAL_INLINE Lanes<R> power(Lanes<R> base, R exponent) noexcept {
   return select(vanishes, Lanes<R>(0), scaled);
 }
 
-enum class Power { even, odd, any };
+enum class Power { even, odd, any };  // of beta
 
 /// ratio^(beta / 2).
 template <Power kind, class R>
@@ -164,6 +164,16 @@ PETZVAL_INLINE Lanes<R> limited(const LeastSquaresJob<R>& job, Lanes<R> value) n
 template <class R>
 PETZVAL_INLINE Lanes<R> scaled(const LeastSquaresJob<R>& job, Lanes<R> place) noexcept {
   return larger(smaller(place * Lanes<R>(job.to_scaled), Lanes<R>(job.reach)), Lanes<R>(-job.reach));
+}
+
+/// Calls work.operator()<affine, kind>() for those of a job.
+template <class R>
+auto by_kind(const LeastSquaresJob<R>& job, const auto& work) noexcept {
+  const auto by_power = [&]<bool affine>() {
+    if (job.wholes < 0) return work.template operator()<affine, Power::any>();
+    return job.odd ? work.template operator()<affine, Power::odd>() : work.template operator()<affine, Power::even>();
+  };
+  return job.affine ? by_power.template operator()<true>() : by_power.template operator()<false>();
 }
 
 }  // namespace

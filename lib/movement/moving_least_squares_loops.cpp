@@ -75,15 +75,9 @@ void fill(const LeastSquaresJob<R>& job) noexcept {
   if (i < job.count) fill_some(i, job.count - i);
 }
 
-template <bool affine, class R>
-void fill_kind(const LeastSquaresJob<R>& job) noexcept {
-  if (job.wholes < 0) return fill<affine, Power::any>(job);
-  return job.odd ? fill<affine, Power::odd>(job) : fill<affine, Power::even>(job);
-}
-
 template <class R>
 void run(const LeastSquaresJob<R>& job) noexcept {
-  return job.affine ? fill_kind<true>(job) : fill_kind<false>(job);
+  by_kind(job, [&]<bool affine, Power kind>() { fill<affine, kind>(job); });
 }
 
 }  // namespace

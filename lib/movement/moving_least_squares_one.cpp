@@ -65,19 +65,13 @@ double value_at(const LeastSquaresJob<double>& job, L x, L y) noexcept {
   return limited(job, value_of<affine>(m, x, y)).v[0];
 }
 
-template <bool affine>
-double value_of_kind(const LeastSquaresJob<double>& job, L x, L y) noexcept {
-  if (job.wholes < 0) return value_at<affine, Power::any>(job, x, y);
-  return job.odd ? value_at<affine, Power::odd>(job, x, y) : value_at<affine, Power::even>(job, x, y);
-}
-
 }  // namespace
 
 bool least_squares_takes_one(std::size_t points) noexcept { return points >= L::width && points <= most_points_of_one; }
 
 double least_squares_of_one(const LeastSquaresJob<double>& job, double at_x, double at_y) noexcept {
   const L x = scaled(job, L(at_x)), y = scaled(job, L(at_y));
-  return job.affine ? value_of_kind<true>(job, x, y) : value_of_kind<false>(job, x, y);
+  return by_kind(job, [&]<bool affine, Power kind>() { return value_at<affine, kind>(job, x, y); });
 }
 
 }  // namespace petzval::inline v0::movement_detail

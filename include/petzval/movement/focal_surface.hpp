@@ -32,7 +32,7 @@ struct FocalPoint {
   /// Of the object there, 1/mm, along the axis from the entrance pupil towards the scene; 0: infinity.
   std::optional<double> inverse_distance = {};
   /// Diameter that the blur of that object should have, signed as FocusTarget::blur_mm: the surface passes it by so
-  /// much.
+  /// much. For n pixels: n Film::pixel_mm().
   double blur_mm = 0;
   /// Of the depth of field, in stops: +2 as if stopped down by two stops, at the same exposure.
   std::optional<double> extent_stops = {};
