@@ -29,9 +29,16 @@ struct Picture {
   Json job;
 
   std::string focus() const {
-    const Json& mm = job.at("focus_mm");
+    const Json &mm = job.at("focus_mm"), &expressive = job.at("expressive");
     const std::string from = job.at("distance_from") == "film" ? " from the film" : " from the front vertex";
-    return mm.is_null() ? "focus infinity" : "focus " + number(mm.get<double>()) + " mm" + from;
+    const bool surface = !job.at("focal_surface").at("points").get<std::string>().empty();
+    std::string text = surface        ? "focal surface"
+                       : mm.is_null() ? "focus infinity"
+                                      : "focus " + number(mm.get<double>()) + " mm" + from;
+    if (job.at("tilt_deg") != 0 || job.at("swing_deg") != 0) text += ", film tilted";
+    const bool bent = !expressive.at("power_spline").empty() || !expressive.at("curvature_points").empty() ||
+                      expressive.at("dispersion") != 1 || expressive.at("from_lens") != 0;
+    return bent ? text + ", expressive lens" : text;
   }
   std::string lens() const {
     return job.at("lens").get<std::string>() + (job.at("model") == "pinhole" ? ", pinhole" : "");

@@ -40,50 +40,6 @@ using Jet = ceres::Jet<double, 2>;
 /// How much nearer to the pupil than the film, or farther from it, offsets may lead.
 constexpr double nearest_offset = -0.9, farthest_offset = 9;
 
-/// Natural at the last knot, flat at the first.
-PowerSpline<double> spline_of(const std::string& where, const std::vector<PowerKnot>& knots) {
-  PowerSpline<double> spline;
-  const std::size_t n = knots.size();
-  if (n == 0) return spline;
-  if (n > spline.most_knots) {
-    throw Error(where + "power: found " + std::to_string(n) + " knots, wanted " + std::to_string(spline.most_knots) +
-                " or fewer");
-  }
-  for (std::size_t i = 0; i < n; ++i) {
-    const auto [radius, power] = knots[i];
-    const std::string knot = where + "power: knot " + std::to_string(i + 1) + ": ";
-    if (!(radius >= 0 && radius <= 1) || (i > 0 && !(radius > knots[i - 1].radius))) {
-      throw Error(knot + "the radius is " + to_text(radius) + ", wanted one from 0 to 1 and above the one before");
-    }
-    if (!(std::abs(power) <= 1000)) {
-      throw Error(knot + "the power is " + to_text(power) + ", wanted one from -1000 to 1000");
-    }
-    spline.at[i] = radius;
-  }
-  spline.knots = n;
-  spline.first = knots[0].power;
-  if (n == 1) return spline;
-  // Second derivatives by Thomas's algorithm; rows: below, on and above the diagonal.
-  const auto width = [&](std::size_t i) { return knots[i + 1].radius - knots[i].radius; };
-  const auto slope = [&](std::size_t i) { return (knots[i + 1].power - knots[i].power) / width(i); };
-  std::vector<double> over(n, 0), second(n, 0);
-  over[0] = 0.5, second[0] = 3 * slope(0) / width(0);
-  for (std::size_t i = 1; i + 1 < n; ++i) {
-    const double below = width(i - 1), above = width(i), on = 2 * (below + above) - below * over[i - 1];
-    over[i] = above / on;
-    second[i] = (6 * (slope(i) - slope(i - 1)) - below * second[i - 1]) / on;
-  }
-  second[n - 1] = 0;
-  for (std::size_t i = n - 1; i-- > 0;) second[i] -= over[i] * second[i + 1];
-  spline.square = second[0] / 2;
-  double before = 0;
-  for (std::size_t i = 0; i + 1 < n; ++i) {
-    const double third = (second[i + 1] - second[i]) / width(i);
-    spline.cube[i] = (third - std::exchange(before, third)) / 6;
-  }
-  return spline;
-}
-
 /// The film's offsets over its distance from the plane of the pupil.
 movement_detail::MovingLeastSquares offsets_of(const std::string& where, const std::vector<FilmOffset>& offsets,
                                                const Film& film, double film_from_pupil) {
@@ -273,7 +229,7 @@ LocalFocus::LocalFocus(const LensFacts& facts, const Film& film, const AnyRayMod
   }
   Data data{model, film, surface};
   data.primary = lens.primary_wavelength();
-  data.rules.spline = spline_of(where, expressive.power);
+  data.rules.spline = power_spline(where, expressive.power);
   const TwoPlanes& space = model.pupils().space();
   if (!expressive.film_offsets.empty()) data.offsets = offsets_of(where, expressive.film_offsets, film, -space.depth());
   if (model.pinhole()) return;

@@ -3,6 +3,10 @@
 
 #include <array>
 #include <cstddef>
+#include <string>
+#include <vector>
+
+#include "petzval/camera/expressive_lens.hpp"
 
 namespace petzval::inline v0::camera_detail {
 
@@ -17,6 +21,10 @@ struct PowerSpline {
   T first = 1, square = 0;
   std::array<T, most_knots> at{}, cube{};
 };
+
+/// Through knots, flat at the first and without curvature at the last; none: k is 1. Throws Error, beginning with
+/// `where`, for too many knots, radii that do not grow from 0 to 1, and powers beyond 1000.
+PowerSpline<double> power_spline(const std::string& where, const std::vector<PowerKnot>& knots);
 
 // Local names: this is compiled for several instruction sets, and the linker must not take one for another.
 namespace {
