@@ -58,7 +58,11 @@ struct Point {
   /// Whether it lies on the scene: an outlier does not.
   bool shows() const { return in_picture && (use == TargetUse::used || use == TargetUse::no_weight); }
   std::string use_name() const { return in_picture ? std::string(petzval::name(use)) : "outside_picture"; }
-  std::string use_in_words() const { return in_picture ? examples::in_words(use) : "left out: outside the picture"; }
+  std::string use_in_words() const {
+    if (!in_picture) return "left out: outside the picture";
+    const bool extent_alone = use == TargetUse::no_weight && !target.fixes_distance;
+    return extent_alone ? "shown only: it fixes no distance" : examples::in_words(use);
+  }
 };
 
 struct Result {

@@ -173,6 +173,9 @@ TEST_F(FocusPull, RefusesKeysThatAreNone) {
   refuses(R"([{"until": 3, "keys": [{"time_s": 0, "position_mm": [0, 0, -1]}]}])", "found the key \"until\"");
   refuses(R"([{"keys": [{"time_s": 1, "position_mm": [0, 0, -900]}, {"time_s": 1, "position_mm": [0, 0, -800]}]}])",
           "key 2: time_s: found 1, wanted a time after");
+  refuses(R"([{"keys": [{"time_s": 1, "position_mm": [0, 0, -9], "extent_stops": 1},)"
+          R"({"time_s": 2, "position_mm": [0, 0, -8]}]}])",
+          "key 2: extent_stops: found in some keys only");
   refuses(R"([{"from_s": 2, "until_s": 1, "keys": [{"time_s": 1, "position_mm": [0, 0, -900]}]}])",
           "until_s: found 1, wanted");
   refuses(R"([{"keys": [{"time_s": 0, "position_mm": [0, 0, 900]}]}])", "found no point to focus on in any frame");

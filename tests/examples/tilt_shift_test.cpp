@@ -314,6 +314,9 @@ TEST_F(TiltShift, RefusesPointsThatAreNone) {
   refuses(R"([{"position_mm": [0, 0, -1000], "weight": "1"}])", "weight: found \"1\"");
   refuses(R"([{"position_mm": [0, 0, -1000], "blur_mm": true}])", "blur_mm: found true, wanted a finite number");
   refuses(R"([{"position_mm": [0, 0, -1000], "at_infinity": 1}])", "at_infinity: found 1, wanted true or false");
+  refuses(R"([{"position_mm": [0, 0, -1000], "extent_stops": 21}])",
+          "extent_stops: found 21, wanted a number of stops");
+  refuses(R"([{"position_mm": [0, 0, -1000], "fixes_distance": 0}])", "fixes_distance: found 0, wanted true or false");
   refuses(R"([{"position_mm": [0, 0, -1000], "wieght": 2}])", "found the key \"wieght\", wanted position_mm, weight");
   refuses(R"([{"position_mm": [0, 0, -1000], "position_mm": [0, 0, -1]}])", "found the key \"position_mm\" twice");
   const std::string deep = std::string(100'000, '[') + std::string(100'000, ']');
@@ -326,6 +329,7 @@ TEST_F(TiltShift, RefusesPointsThatCannotBeInFocus) {
           "found no point to focus on (point 1 is left out: no film can reach its image");
   refuses(R"([{"position_mm": [0, 0, 0]}])", "found no point to focus on");
   refuses(R"([{"position_mm": [0, 0, -1000], "weight": 0}])", "its weight is 0");
+  refuses(R"([{"position_mm": [0, 0, -1000], "extent_stops": 2, "fixes_distance": false}])", "it fixes no distance");
   refuses(R"([{"position_mm": [0, 900, -1000]}])", "outside the picture", {"--film-mm", "36x24"});
 }
 
