@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
 # Renders the gallery with the example programs: bokeh after figure 7 of Wu et al. 2010, its colours, irises with blades,
-# PSFs, spot diagrams, reports of twelve lenses, camera rays, tilted films, a focus pull, scenes through lenses, and
+# an expressive lens, PSFs, spot diagrams, reports of twelve lenses, camera rays, tilted films, a focus pull, scenes through lenses, and
 # index.html.
 #
 #   sh examples/gallery.sh PROGRAMS OUT [--full]    (examples/run.sh calls it with build/examples and out)
@@ -38,8 +38,9 @@ mkdir -p "$out/chromatic"
   > "$out/chromatic/chromatic_bokeh.txt"
 echo "$out/chromatic"
 
-echo "== Irises, cat's eyes, weights, and a set of PSFs (5/11)"
+echo "== Irises, cat's eyes, weights, an expressive lens, and a set of PSFs (5/11)"
 "$programs/bokeh_shapes" --out "$out/bokeh"
+"$programs/expressive_lens" "$lenses/double_gauss_100mm_f1.35.json" --focus-mm 1000 --samples 65536 --out "$out/expressive"
 "$programs/psf_set" "$lenses/double_gauss_100mm_f2_28deg.json" --fields 0,5,10,14 --distances-mm 1000,1400,2000,4000,inf \
   --focus-mm 2000 --out "$out/psf_set"
 
@@ -137,6 +138,21 @@ if [ -x "$programs/bokeh_scene" ]; then
   scenes=
   scene street street double_gauss_100mm_f2_28deg 48 480 320 --focus-mm 2960
   "$programs/bokeh_sheet" --title "A street at night" --out "$out/scenes/street.png" $scenes
+  scenes=
+  scene statues_near statues double_gauss_52mm_f1.8 32 450 300 --focus-mm 1500 --integrator path
+  scene statues_far statues double_gauss_52mm_f1.8 32 450 300 --focus-mm 6000 --integrator path
+  scene statues_both statues double_gauss_52mm_f1.8 32 450 300 --focus-mm 1500 --integrator path --model thin_two_disc \
+    --focal-surface "$here/scenes/statues_focus.json"
+  "$programs/bokeh_sheet" --columns 3 --title "Two statues, after figure 1 (d) of Lee et al. 2010" \
+    --out "$out/scenes/statues.png" $scenes
+  scenes=
+  for lens in "" "--curvature-points 0,0:0 18,0:3 -18,0:3 0,12:1.5 0,-12:1.5"; do
+    # shellcheck disable=SC2086
+    scene "table_$(echo "$lens" | wc -w)" chess double_gauss_100mm_f2_28deg 32 450 300 --focus-mm 920 --tilt-deg 12 \
+      --model thick --integrator path $lens
+  done
+  "$programs/bokeh_sheet" --columns 2 --title "Curvature of field on a tilted film, after figure 6 of Lee et al. 2010" \
+    --out "$out/scenes/table.png" $scenes
   cp "$here/scenes.html" "$scenes_file"
 else
   echo "bokeh_scene was not built: no Embree (libembree-dev, libtinyobjloader-dev)"

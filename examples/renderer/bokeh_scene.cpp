@@ -364,8 +364,10 @@ int main(int argc, char** argv) {
       "Without --spp and --time-s it takes 64 samples of each pixel. --time-s alone takes as many as it can, --time-s "
       "with --spp leaves the rest for --resume.",
       "bokeh_scene");
-  app.add_option("--scene", options.scene,
-                 "balls, chess or street, made for lenses of 100 mm and the film of 36x24; or a scene as JSON")
+  app.add_option(
+         "--scene", options.scene,
+         "balls, chess, statues or street, made for the film of 36x24 and lenses of 100 mm (statues: 50 mm); or "
+         "a scene as JSON")
       ->required()
       ->type_name("NAME|FILE.json");
   app.add_option("--lens", options.lens_file, "lens prescription (JSON as in data/lenses)")

@@ -28,17 +28,19 @@ struct Picture {
   petzval::RgbImage image;
   Json job;
 
-  std::string focus() const {
+  /// What is in focus, and what else differs from an upright film behind the lens.
+  std::vector<std::string> captions() const {
     const Json &mm = job.at("focus_mm"), &expressive = job.at("expressive");
     const std::string from = job.at("distance_from") == "film" ? " from the film" : " from the front vertex";
     const bool surface = !job.at("focal_surface").at("points").get<std::string>().empty();
-    std::string text = surface        ? "focal surface"
-                       : mm.is_null() ? "focus infinity"
-                                      : "focus " + number(mm.get<double>()) + " mm" + from;
-    if (job.at("tilt_deg") != 0 || job.at("swing_deg") != 0) text += ", film tilted";
+    std::vector<std::string> lines{surface        ? "a focal surface"
+                                   : mm.is_null() ? "focus infinity"
+                                                  : "focus " + number(mm.get<double>()) + " mm" + from};
     const bool bent = !expressive.at("power_spline").empty() || !expressive.at("curvature_points").empty() ||
                       expressive.at("dispersion") != 1 || expressive.at("from_lens") != 0;
-    return bent ? text + ", expressive lens" : text;
+    if (job.at("tilt_deg") != 0 || job.at("swing_deg") != 0) lines.emplace_back("film tilted");
+    if (bent) lines.emplace_back("expressive lens");
+    return lines;
   }
   std::string lens() const {
     return job.at("lens").get<std::string>() + (job.at("model") == "pinhole" ? ", pinhole" : "");
@@ -49,7 +51,7 @@ Picture read(const fs::path& folder) {
   Picture picture{folder, petzval::read_exr(folder / "picture.exr"), {}};
   try {
     picture.job = Json::parse(examples::read_text(folder / "render.json")).at("job");
-    picture.focus(), picture.lens();
+    picture.captions(), picture.lens();
   } catch (const Json::exception&) {
     throw petzval::Error((folder / "render.json").string() + ": found another file, wanted that of bokeh_scene");
   }
@@ -73,7 +75,7 @@ examples::Sheet sheet_of(const std::vector<Picture>& pictures, const std::string
       sheet.rows.push_back({alike ? p.lens() : "", "", width_mm / p.image.width, {}});
     }
     examples::SheetRow& row = sheet.rows.back();
-    row.tiles.push_back({petzval::to_srgb8(p.image), {p.focus()}});
+    row.tiles.push_back({petzval::to_srgb8(p.image), p.captions()});
     if (row.title.empty()) row.tiles.back().captions.insert(row.tiles.back().captions.begin(), p.lens());
   }
   sheet.notes = {"bokeh_scene: white is the radiance 1 in the middle; scale bars on the film."};

@@ -6,6 +6,7 @@ namespace renderer {
 std::optional<SceneDescription> built_in_scene(std::string_view name) {
   if (name == "balls") return balls_scene();
   if (name == "chess") return chess_scene();
+  if (name == "statues") return statues_scene();
   if (name == "street") return street_scene();
   return {};
 }

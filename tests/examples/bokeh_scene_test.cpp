@@ -155,7 +155,7 @@ TEST_F(BokehScene, RefusesWhatItCannotRender) {
     expect_failure("bokeh_scene", arguments("bad", more), reason);
     EXPECT_FALSE(std::filesystem::exists(path("bad"))) << reason;
   };
-  refused({"--scene", "town"}, "wanted one of balls, chess, street");
+  refused({"--scene", "town"}, "wanted one of balls, chess, statues, street");
   refused({"--scene", path("no.json")}, "no.json");
   refused({"--lens", path("no.json")}, "no.json");
   refused({"--width", "0"}, "--width");

@@ -3,10 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <string>
 #include <variant>
+#include <vector>
 
 namespace {
 
@@ -30,7 +32,7 @@ bool in_picture(const Seen& at) { return at.depth > 0 && std::abs(at.right) < 0.
 
 TEST(BuiltInScenes, HaveTheNamesThatTheProgramLists) {
   std::string names;
-  for (const char* name : {"balls", "chess", "street"}) {
+  for (const char* name : {"balls", "chess", "statues", "street"}) {
     const auto scene = built_in_scene(name);
     ASSERT_TRUE(scene);
     EXPECT_EQ(scene->name, name);
@@ -91,6 +93,38 @@ TEST(ChessScene, HasItsPiecesOnTheBoardFromTheForegroundToTheBackground) {
   EXPECT_EQ(lamps, 9);
   EXPECT_NEAR(nearest, 790, 5);
   EXPECT_NEAR(farthest, 1110, 5);
+}
+
+TEST(StatuesScene, HasAnAngelNearAndOneFarAndFiguresBetween) {
+  const SceneDescription scene = statues_scene();
+  struct Statue {
+    double nearest = 1e9, farthest = 0, left = 1e9, right = -1e9, low = 1e9, high = -1e9;
+  };
+  std::vector<Statue> statues;
+  for (const Object& object : scene.objects) {
+    if (object.name != "statue") continue;
+    Statue& s = statues.emplace_back();
+    for (const glm::vec3& p : std::get<Mesh>(object.shape).positions) {
+      const Seen at = seen(scene, p);
+      s.nearest = std::min(s.nearest, at.depth), s.farthest = std::max(s.farthest, at.depth);
+      s.left = std::min(s.left, at.right), s.right = std::max(s.right, at.right);
+      s.low = std::min(s.low, at.up), s.high = std::max(s.high, at.up);
+    }
+  }
+  ASSERT_EQ(statues.size(), 6u);
+  // In the picture of a lens of 50 mm, half of its height each, on either side of the middle.
+  const Statue &near = statues[0], &far = statues[1];
+  EXPECT_LT(near.right, 0);
+  EXPECT_GT(far.left, 0);
+  for (const Statue& s : {near, far}) {
+    EXPECT_TRUE(s.left > -0.36 && s.right < 0.36 && s.high < 0.24 && s.low > -0.24);
+    EXPECT_GT(s.high - s.low, 0.24);
+  }
+  EXPECT_TRUE(near.nearest > 1300 && near.farthest < 1700);
+  EXPECT_TRUE(far.nearest > 5400 && far.farthest < 6600);
+  for (std::size_t i = 2; i < statues.size(); ++i) {
+    EXPECT_TRUE(statues[i].farthest < near.nearest || statues[i].nearest > near.farthest) << i;
+  }
 }
 
 TEST(StreetScene, HasItsLightsInThePictureAndItsWindowsOnTheStreet) {
