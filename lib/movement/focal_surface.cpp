@@ -118,7 +118,7 @@ FocalSurface::FocalSurface(const IdealLens& lens, const Film& film, std::span<co
   if (objects.empty()) objects.push_back({{0, 0}, inverse_in_focus(lens, film)});
   if (extents.empty()) extents.push_back({{0, 0}, 0});
   const auto field = [&](const std::vector<WeighedValue>& of) {
-    return MovingLeastSquares("focal surface", of, side, options.kind, options.beta);
+    return MovingLeastSquares("focal surface: ", of, side, options.kind, options.beta);
   };
   MovingLeastSquares extent = field(extents), distance = field(objects);
   std::optional<MovingLeastSquares> own;

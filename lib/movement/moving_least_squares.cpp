@@ -44,17 +44,16 @@ void check(const WeighedValue& point, double side, const std::string& where) {
   if (!(fade >= 0 && fade <= 1)) throw Error(where + "the fade is " + to_text(fade) + ", wanted one from 0 to 1");
 }
 
-MovingLeastSquares::MovingLeastSquares(std::string_view where, std::span<const WeighedValue> points, double side,
+MovingLeastSquares::MovingLeastSquares(const std::string& where, std::span<const WeighedValue> points, double side,
                                        SurfaceKind kind, double beta)
     : affine_(kind == SurfaceKind::affine), beta_(beta) {
-  const std::string begin(where);
-  if (!(beta >= 1 && beta <= 8)) throw Error(begin + ": beta is " + to_text(beta) + ", wanted one from 1 to 8");
+  if (!(beta >= 1 && beta <= 8)) throw Error(where + "beta is " + to_text(beta) + ", wanted one from 1 to 8");
   if (!(side > 0 && std::isfinite(side))) {
-    throw Error(begin + ": the side of the picture is " + to_text(side) + " mm, wanted one above 0");
+    throw Error(where + "the side of the picture is " + to_text(side) + " mm, wanted one above 0");
   }
   double most_weight = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    check(points[i], side, begin + ": point " + std::to_string(i + 1) + ": ");
+    check(points[i], side, where + "point " + std::to_string(i + 1) + ": ");
     if (points[i].fade > 0) most_weight = std::max(most_weight, points[i].weight);
   }
   const auto raw_alpha = [&](const WeighedValue& point) { return point.weight / most_weight * point.fade; };
@@ -63,7 +62,7 @@ MovingLeastSquares::MovingLeastSquares(std::string_view where, std::span<const W
     for (const auto& point : points) most_alpha = std::max(most_alpha, raw_alpha(point));
   }
   if (!(most_alpha > 0)) {
-    throw Error(begin + ": none of " + std::to_string(points.size()) + " points has a weight, wanted one at least");
+    throw Error(where + "none of " + std::to_string(points.size()) + " points has a weight, wanted one at least");
   }
   // Continuous in all weights and fades, and 1 for the point that counts most if all fade alike.
   const auto presence = [&](const WeighedValue& point) {

@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "petzval/core/export.hpp"
@@ -54,7 +53,7 @@ class PETZVAL_API MovingLeastSquares {
   /// side: of the picture, mm: the root of its area. Throws Error, which begins with `where` and the number of the
   /// point from 1, for numbers that are not finite, places beyond 1e6 sides, negative weights and fades outside [0, 1];
   /// and for no points of weight, beta outside [1, 8], and a side that is not above 0.
-  MovingLeastSquares(std::string_view where, std::span<const WeighedValue> points, double side, SurfaceKind kind,
+  MovingLeastSquares(const std::string& where, std::span<const WeighedValue> points, double side, SurfaceKind kind,
                      double beta);
 
   double at(const FilmPoint& place) const noexcept;

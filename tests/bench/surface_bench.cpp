@@ -41,7 +41,7 @@ void loops(benchmark::State& state, InstructionSet set, SurfaceKind kind, double
   const Film film{.columns = 800, .rows = 600};
   std::vector<movement_detail::WeighedValue> values;
   for (const FocalPoint& point : points_on(film, 16)) values.push_back({point.place, *point.inverse_distance});
-  const movement_detail::MovingLeastSquares surface("surface_bench", values, 29, kind, beta);
+  const movement_detail::MovingLeastSquares surface("surface_bench: ", values, 29, kind, beta);
   std::vector<float> x, y;
   for (int r = 0; r < film.rows; ++r) {
     for (int c = 0; c < film.columns; ++c) {

@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-#include "petzval/core/error.hpp"
+#include "../message.hpp"
 #include "petzval/core/instruction_set.hpp"
 
 namespace {
@@ -21,7 +21,7 @@ constexpr double betas[] = {1, 2, 2.5, 3, 4, 5.3, 8};
 
 MovingLeastSquares through(const std::vector<WeighedValue>& points, SurfaceKind kind = SurfaceKind::affine,
                            double beta = 3, double side = 1) {
-  return {"test", points, side, kind, beta};
+  return {"test: ", points, side, kind, beta};
 }
 
 std::vector<WeighedValue> random_points(unsigned seed, std::size_t count) {
@@ -91,6 +91,21 @@ TEST(MovingLeastSquares, HasTheSlopeAlongALineOfPointsAlone) {
       }
     }
   }
+}
+
+TEST(MovingLeastSquares, SaysWhichPointItDoesNotTake) {
+  using petzval::testing::message;
+  const double nan = std::nan("");
+  const WeighedValue good{{1, 1}, 2};
+  EXPECT_EQ(message([&] { through({good, {{1, 1}, nan}}); }), "test: point 2: the value is nan, wanted a finite one");
+  EXPECT_EQ(message([&] {
+              through({good, {{1, 2e6}, 0}});
+            }),
+            "test: point 2: the place is (1, 2e+06) mm, wanted one within 1e+06 mm");
+  EXPECT_EQ(message([&] { through({}); }), "test: none of 0 points has a weight, wanted one at least");
+  EXPECT_EQ(message([&] { through({good}, SurfaceKind::affine, 8.1); }), "test: beta is 8.1, wanted one from 1 to 8");
+  EXPECT_EQ(message([&] { through({good}, SurfaceKind::affine, 3, 0); }),
+            "test: the side of the picture is 0 mm, wanted one above 0");
 }
 
 TEST(MovingLeastSquares, IsExactAtItsPoints) {
