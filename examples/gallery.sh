@@ -1,8 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
 # Renders the gallery with the example programs: bokeh after figure 7 of Wu et al. 2010, its colours, irises with blades,
-# an expressive lens, PSFs, spot diagrams, reports of twelve lenses, camera rays, tilted films, a focus pull, scenes through lenses, and
-# index.html.
+# an expressive lens, PSFs, spot diagrams, reports of twelve lenses, camera rays, tilted films, a focus pull, a focal surface,
+# scenes through lenses, and index.html.
 #
 #   sh examples/gallery.sh PROGRAMS OUT [--full]    (examples/run.sh calls it with build/examples and out)
 #
@@ -84,7 +84,7 @@ echo "== Accuracy and speed of the models, and the model for a scene (9/11)"
 echo "$out/accuracy_speed.txt"
 echo "$out/choose_camera.txt"
 
-echo "== Films tilted to points, and a focus pull (10/11)"
+echo "== Films tilted to points, a focus pull, and a focal surface (10/11)"
 # tilted FOLDER SCENE OPTION...
 tilted() {
   folder=$out/tilt/$1
@@ -103,6 +103,8 @@ mkdir -p "$out/focus_pull"
 "$programs/focus_pull" "$lenses/double_gauss_100mm_f2_28deg.json" --f-number 2 --keys "$here/scenes/rack.json" \
   --out "$out/focus_pull" > "$out/focus_pull/focus_pull.txt"
 echo "$out/focus_pull"
+"$programs/focal_surface" "$lenses/double_gauss_52mm_f1.8.json" --points "$here/scenes/statues_focus.json" --width 600 --height 400 \
+  --distance-from front_vertex --focus-mm 1500 --out "$out/focal_surface"
 
 echo "== Scenes through lenses (11/11)"
 mkdir -p "$out/scenes"

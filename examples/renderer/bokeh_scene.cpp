@@ -23,7 +23,6 @@
 #include "petzval/io/image.hpp"
 #include "petzval/io/lens_json.hpp"
 #include "petzval/io/write_file.hpp"
-#include "petzval/paraxial/ideal_lens.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "renderer/built_in_scenes.hpp"
 #include "renderer/checkpoint.hpp"
@@ -199,11 +198,10 @@ class Job {
   /// Through the points of the file, where the model sees them.
   petzval::FocalSurface surface() const {
     const renderer::LensCamera lens = camera(chosen_.model);
-    const petzval::Camera& sees = lens.camera();
-    const auto points = examples::read_focal_points(
-        options_.surface.points_file, sees, examples::named(options_.setup.origin, examples::distance_origins),
-        [&](const petzval::Vec3<double>& world) { return lens.to_lens(world); });
-    return {petzval::thick_lens(sees.lens()), sees.film(), points, options_.surface.options()};
+    return examples::read_focal_surface(options_.surface, lens.camera(),
+                                        examples::named(options_.setup.origin, examples::distance_origins),
+                                        [&](const petzval::Vec3<double>& world) { return lens.to_lens(world); })
+        .surface;
   }
   void say_where_focus_is_steep(const petzval::Camera& camera) const {
     const petzval::FocalSteepness found = camera.focal_steepness();

@@ -5,10 +5,12 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "json_input.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/paraxial/first_order.hpp"
+#include "petzval/paraxial/ideal_lens.hpp"
 #include "text.hpp"
 
 namespace examples {
@@ -47,31 +49,8 @@ struct Entry {
   }
 };
 
-}  // namespace
-
-petzval::FocalSurfaceOptions FocalSurfaceSetup::options() const { return {named(kind, kinds), beta}; }
-
-void add_surface_kind(App& app, FocalSurfaceSetup& setup) {
-  app.add_option("--kind", setup.kind,
-                 "how distances are interpolated between points: affine (by planes, which it reproduces) or shepard "
-                 "(weighted means, flat at the points)")
-      ->one_of(names(kinds))
-      ->capture_default_str();
-  add_number(app, "--beta", setup.beta, {1, 8, "a number from 1 to 8"},
-             "weights of points fall with their distance in the picture to the power -beta");
-}
-
-double origin_z(const petzval::Lens& lens, petzval::DistanceOrigin origin) {
-  switch (origin) {
-    case petzval::DistanceOrigin::film: return lens.film_z();
-    case petzval::DistanceOrigin::front_principal: return petzval::first_order(lens).front_principal_z;
-    case petzval::DistanceOrigin::front_vertex: break;
-  }
-  return 0;
-}
-
-std::vector<petzval::FocalPoint> read_focal_points(const std::filesystem::path& file, const petzval::Camera& camera,
-                                                   petzval::DistanceOrigin origin, const WorldToLens& to_lens) {
+std::vector<petzval::FocalPoint> points_of(const std::filesystem::path& file, const petzval::Camera& camera,
+                                           petzval::DistanceOrigin origin, const WorldToLens& to_lens) {
   const Json document = read_json(file);
   check_keys(file.string(), document, {"points"}, "points");
   if (!document.contains("points") || !document["points"].is_array() || document["points"].empty()) {
@@ -127,6 +106,39 @@ std::vector<petzval::FocalPoint> read_focal_points(const std::filesystem::path& 
     result.push_back(point);
   }
   return result;
+}
+
+}  // namespace
+
+void add_surface_kind(App& app, FocalSurfaceSetup& setup) {
+  app.add_option("--kind", setup.kind,
+                 "how distances are interpolated between points: affine (by planes, which it reproduces) or shepard "
+                 "(weighted means, flat at the points)")
+      ->one_of(names(kinds))
+      ->capture_default_str();
+  add_number(app, "--beta", setup.beta, {1, 8, "a number from 1 to 8"},
+             "weights of points fall with their distance in the picture to the power -beta");
+}
+
+double origin_z(const petzval::Lens& lens, petzval::DistanceOrigin origin) {
+  switch (origin) {
+    case petzval::DistanceOrigin::film: return lens.film_z();
+    case petzval::DistanceOrigin::front_principal: return petzval::first_order(lens).front_principal_z;
+    case petzval::DistanceOrigin::front_vertex: break;
+  }
+  return 0;
+}
+
+ReadSurface read_focal_surface(const FocalSurfaceSetup& setup, const petzval::Camera& camera,
+                               petzval::DistanceOrigin origin, const WorldToLens& to_lens) {
+  std::vector<petzval::FocalPoint> points = points_of(setup.points_file, camera, origin, to_lens);
+  try {
+    petzval::FocalSurface surface(petzval::thick_lens(camera.lens()), camera.film(), points,
+                                  {named(setup.kind, kinds), setup.beta});
+    return {std::move(points), std::move(surface)};
+  } catch (const petzval::Error& error) {
+    throw petzval::Error(setup.points_file + ": " + error.what());
+  }
 }
 
 }  // namespace examples

@@ -18,8 +18,6 @@ struct FocalSurfaceSetup {
   std::string points_file;  ///< empty: none
   std::string kind = "affine";
   double beta = 3;
-
-  petzval::FocalSurfaceOptions options() const;
 };
 
 /// Options --kind and --beta.
@@ -28,13 +26,19 @@ void add_surface_kind(App& app, FocalSurfaceSetup& setup);
 /// A point of the world in the lens frame, mm.
 using WorldToLens = std::function<petzval::Vec3<double>(const petzval::Vec3<double>&)>;
 
-/// The focal points of a file {"points": [{"pixel": [x, y] or "world_mm": [x, y, z], "distance_mm", "extent_stops",
-/// "blur_px", "weight", "fade"}]}. Pixels count from the upper left corner, centres at halves; distance_mm counts from
-/// the origin, and may be null for infinity; without it a point of the world has its own distance, and a pixel fixes
-/// the extent alone. camera: of a first-order model, without a surface: where it sees points of the world. Throws
-/// petzval::Error that names the file, the point (from 1) and the key.
-std::vector<petzval::FocalPoint> read_focal_points(const std::filesystem::path& file, const petzval::Camera& camera,
-                                                   petzval::DistanceOrigin origin, const WorldToLens& to_lens);
+/// A surface with its points.
+struct ReadSurface {
+  std::vector<petzval::FocalPoint> points;
+  petzval::FocalSurface surface;
+};
+
+/// The surface through the points of a file {"points": [{"pixel": [x, y] or "world_mm": [x, y, z], "distance_mm",
+/// "extent_stops", "blur_px", "weight", "fade"}]}. Pixels count from the upper left corner, centres at halves;
+/// distance_mm counts from the origin, and may be null for infinity; without it a point of the world has its own
+/// distance, and a pixel fixes the extent alone. camera: of a first-order model, without a surface: where it sees
+/// points of the world. Throws petzval::Error that names the file, the point (from 1) and the key.
+ReadSurface read_focal_surface(const FocalSurfaceSetup& setup, const petzval::Camera& camera,
+                               petzval::DistanceOrigin origin, const WorldToLens& to_lens);
 
 /// z of the origin of distances, lens frame.
 double origin_z(const petzval::Lens& lens, petzval::DistanceOrigin origin);

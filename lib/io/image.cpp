@@ -60,17 +60,34 @@ RgbImage read_exr(const std::filesystem::path& file) {
   return image;
 }
 
-void write_pfm(const RgbImage& image, const std::filesystem::path& file) {
-  validate(image, file);
-  std::string bytes = "PF\n" + std::to_string(image.width) + ' ' + std::to_string(image.height) + "\n-1.0\n";
-  for (int y = image.height; y-- > 0;) {
-    const float* const row = image.pixel(0, y);
-    for (int i = 0; i < 3 * image.width; ++i) {
-      const auto bits = std::bit_cast<std::uint32_t>(row[i]);
+namespace {
+
+/// values: rows from the top, each `row` numbers.
+void write_pfm(const char* kind, int width, int height, std::size_t row, std::span<const float> values,
+               const std::filesystem::path& file) {
+  std::string bytes = std::string(kind) + '\n' + std::to_string(width) + ' ' + std::to_string(height) + "\n-1.0\n";
+  for (auto y = static_cast<std::size_t>(height); y-- > 0;) {
+    for (const float value : values.subspan(y * row, row)) {
+      const auto bits = std::bit_cast<std::uint32_t>(value);
       for (int byte = 0; byte < 4; ++byte) bytes += static_cast<char>(bits >> (8 * byte) & 0xff);
     }
   }
   write_file(bytes, file);
+}
+
+}  // namespace
+
+void write_pfm(const RgbImage& image, const std::filesystem::path& file) {
+  validate(image, file);
+  write_pfm("PF", image.width, image.height, 3 * static_cast<std::size_t>(image.width), image.pixels, file);
+}
+
+void write_pfm(int width, int height, std::span<const float> values, const std::filesystem::path& file) {
+  if (width < 1 || height < 1 || values.size() != static_cast<std::size_t>(width) * static_cast<std::size_t>(height)) {
+    throw Error(file.string() + ": found " + std::to_string(values.size()) + " values for " + std::to_string(width) +
+                " x " + std::to_string(height) + " pixels, wanted one for each");
+  }
+  write_pfm("Pf", width, height, static_cast<std::size_t>(width), values, file);
 }
 
 void write_png(const Rgb8Image& image, const std::filesystem::path& file) {

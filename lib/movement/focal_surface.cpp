@@ -55,9 +55,14 @@ double inverse_in_focus(const IdealLens& lens, const Film& film) {
 std::string point_name(std::size_t i) { return "focal surface: point " + std::to_string(i + 1) + ": "; }
 
 void check(const FocalPoint& point, double nearest, double farthest, const std::string& where) {
-  if (point.inverse_distance && !(*point.inverse_distance >= farthest && *point.inverse_distance <= nearest)) {
-    throw Error(where + "1 / distance is " + to_text(*point.inverse_distance) + " / mm, wanted one from " +
-                to_text(farthest) + " to " + to_text(nearest) + " / mm, in front of the front focal plane");
+  if (point.inverse_distance && *point.inverse_distance > nearest) {
+    throw Error(where + "the object is " + to_text(1 / *point.inverse_distance) +
+                " mm from the entrance pupil, wanted it farther away than " + to_text(1 / nearest) +
+                " mm, in front of the front focal plane");
+  }
+  if (point.inverse_distance && !(*point.inverse_distance >= farthest)) {
+    throw Error(where + "1 / distance is " + to_text(*point.inverse_distance) + " / mm, wanted " + to_text(farthest) +
+                " / mm or more");
   }
   if (!std::isfinite(point.blur_mm)) {
     throw Error(where + "the blur is " + to_text(point.blur_mm) + " mm, wanted a finite one");
@@ -117,10 +122,14 @@ FocalSurface::FocalSurface(const IdealLens& lens, const Film& film, std::span<co
   }
   if (objects.empty()) objects.push_back({{0, 0}, inverse_in_focus(lens, film)});
   if (extents.empty()) extents.push_back({{0, 0}, 0});
+  const MovingLeastSquares extent("focal surface: ", extents, side, options.kind, options.beta, 0);
+  // Not beyond infinity, unless a point is.
   const auto field = [&](const std::vector<WeighedValue>& of) {
-    return MovingLeastSquares("focal surface: ", of, side, options.kind, options.beta);
+    MovingLeastSquares result("focal surface: ", of, side, options.kind, options.beta);
+    result.keep_within(std::min(0.0, result.least_value()), nearest);
+    return result;
   };
-  MovingLeastSquares extent = field(extents), distance = field(objects);
+  MovingLeastSquares distance = field(objects);
   std::optional<MovingLeastSquares> own;
   if (blurs) {
     own = distance;
@@ -137,9 +146,7 @@ FocalSurface::FocalSurface(const IdealLens& lens, const Film& film, std::span<co
     }
     distance = field(moved);
   }
-  distance.keep_below(nearest);
-  fields_ = std::make_shared<const Fields>(
-      Fields{origin_z, per_inverse, std::move(distance), std::move(extent), std::move(own)});
+  fields_ = std::make_shared<const Fields>(Fields{origin_z, per_inverse, std::move(distance), extent, std::move(own)});
 }
 
 double FocalSurface::origin_z() const noexcept { return fields_->origin_z; }

@@ -45,7 +45,7 @@ void check(const WeighedValue& point, double side, const std::string& where) {
 }
 
 MovingLeastSquares::MovingLeastSquares(const std::string& where, std::span<const WeighedValue> points, double side,
-                                       SurfaceKind kind, double beta)
+                                       SurfaceKind kind, double beta, double beyond)
     : affine_(kind == SurfaceKind::affine), beta_(beta) {
   if (!(beta >= 1 && beta <= 8)) throw Error(where + "beta is " + to_text(beta) + ", wanted one from 1 to 8");
   if (!(side > 0 && std::isfinite(side))) {
@@ -103,8 +103,9 @@ MovingLeastSquares::MovingLeastSquares(const std::string& where, std::span<const
     least = std::min(least, value);
     most = std::max(most, value);
   }
-  low_ = least - (most - least);
-  high_ = most + (most - least);
+  low_ = least - beyond * (most - least);
+  high_ = most + beyond * (most - least);
+  least_value_ = least;
   soft_ = std::any_of(to.soft2.begin(), to.soft2.end(), [](double soft2) { return soft2 > 0; });
 
   const auto fill = [&]<class R>(Columns<R>& columns) {
@@ -119,7 +120,10 @@ MovingLeastSquares::MovingLeastSquares(const std::string& where, std::span<const
   fill(in_double_);
 }
 
-void MovingLeastSquares::keep_below(double limit) noexcept { high_ = std::min(high_, limit * to_scaled_value_); }
+void MovingLeastSquares::keep_within(double low, double high) noexcept {
+  low_ = std::max(low_, low * to_scaled_value_);
+  high_ = std::min(high_, high * to_scaled_value_);
+}
 
 template <class T>
 LeastSquaresJob<T> MovingLeastSquares::job(const Columns<T>& columns) const noexcept {

@@ -42,7 +42,7 @@ void check(const WeighedValue& point, double side, const std::string& where);
 ///
 /// Planes of points on a line have the slope along it alone, those of points in one place none: second moments far
 /// below 1e-10 (float: 1e-5) of the larger one count as 0. The result stays within [least - m, most + m] of the values
-/// of the points, with m = most - least; points that fade widen this in part.
+/// of the points, with m = `beyond` times most - least; points that fade widen this in part.
 ///
 /// Results are the same for all instruction sets and however places are batched; they are finite for any place, as
 /// constants beyond 1e6 sides. Accuracy: planes are reproduced within 1e-13 (float: 1e-5) of the range of values for
@@ -54,7 +54,7 @@ class PETZVAL_API MovingLeastSquares {
   /// point from 1, for numbers that are not finite, places beyond 1e6 sides, negative weights and fades outside [0, 1];
   /// and for no points of weight, beta outside [1, 8], and a side that is not above 0.
   MovingLeastSquares(const std::string& where, std::span<const WeighedValue> points, double side, SurfaceKind kind,
-                     double beta);
+                     double beta, double beyond = 1);
 
   double at(const FilmPoint& place) const noexcept;
   /// N places, float or double; out: N.
@@ -69,8 +69,10 @@ class PETZVAL_API MovingLeastSquares {
   /// What results are within.
   double least() const noexcept { return low_ / to_scaled_value_; }
   double most() const noexcept { return high_ / to_scaled_value_; }
-  /// Keeps results at or below a limit, which is not below any value.
-  void keep_below(double limit) noexcept;
+  /// Of the points, as they widen the limits.
+  double least_value() const noexcept { return least_value_ / to_scaled_value_; }
+  /// Keeps results within limits, which hold all values.
+  void keep_within(double low, double high) noexcept;
 
  private:
   /// What counts of the points: places and values scaled by powers of two, weights against the heaviest point's, and
@@ -89,7 +91,7 @@ class PETZVAL_API MovingLeastSquares {
   int wholes_ = -1;
   double to_scaled_ = 1, to_scaled_value_ = 1;
   Columns<double> points_;
-  double low_ = 0, high_ = 0;  ///< of the result, scaled
+  double low_ = 0, high_ = 0, least_value_ = 0;  ///< of the result, scaled
   bool soft_ = false;
   Columns<float> in_float_;  ///< as LeastSquaresJob wants them
   Columns<double> in_double_;

@@ -9,6 +9,7 @@
 #include "petzval/core/export.hpp"
 #include "petzval/film/film.hpp"
 #include "petzval/lens/lens.hpp"
+#include "petzval/movement/focal_surface.hpp"
 #include "petzval/movement/focus_plane.hpp"
 #include "petzval/paraxial/ideal_lens.hpp"
 
@@ -67,5 +68,23 @@ struct TiltView {
 /// The region that is sharp within blur_mm is a wedge with its edge on the hinge line, by the blur that signed_blur()
 /// gives. Throws Error for films that are not finite or have no place or size, and a blur that is not above 0.
 PETZVAL_API std::string tilt_figure(const TiltView& view);
+
+/// A focal surface in front of its lens.
+struct FocalSurfaceView {
+  std::string_view title;   ///< the lens's name
+  std::string_view remark;  ///< a line about the conditions
+  IdealLens lens;           ///< with the entrance pupil that the surface has
+  Film film;                ///< with its place
+  const FocalSurface& surface;
+  std::span<const FocalPoint> points;
+};
+
+/// Film, lens and focal surface in section through the axis, as SVG text: from the side and from above, to scale except
+/// where lens and film would be too small to see, with the edges of what the film sees. Focus points are projected into
+/// both and numbered from 1, at their own distances, hollow where they have a blur; those at infinity and those that
+/// fix the extent alone are left out. The panels reach a quarter beyond the farthest sharp point that is not at
+/// infinity.
+/// Throws Error for a film that has no place or size.
+PETZVAL_API std::string focal_surface_figure(const FocalSurfaceView& view);
 
 }  // namespace petzval::inline v0

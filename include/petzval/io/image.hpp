@@ -75,6 +75,8 @@ PETZVAL_API RgbImage read_exr(const std::filesystem::path& file);
 /// Writes a PFM, for scripts that read without libraries: "PF", width and height, -1.0 (little-endian), then RGB
 /// triples of 32-bit floats, rows from the bottom. As write_file does. Throws Error that names the file.
 PETZVAL_API void write_pfm(const RgbImage& image, const std::filesystem::path& file);
+/// The same of one channel, "Pf". values: width x height, rows from the top.
+PETZVAL_API void write_pfm(int width, int height, std::span<const float> values, const std::filesystem::path& file);
 
 /// Writes an 8-bit sRGB PNG as write_file does. Throws Error that names the file.
 PETZVAL_API void write_png(const Rgb8Image& image, const std::filesystem::path& file);

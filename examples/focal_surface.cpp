@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: Apache-2.0
+// Puts each place of a picture in focus at the distance that an artist asks for: the surface through focus points as a
+// map, in section, as numbers.
+//
+//   focal_surface data/lenses/double_gauss_52mm_f1.8.json --points examples/scenes/statues_focus.json --width 600
+//                 --height 400 --film-mm 36x24 --out out
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iostream>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "petzval/camera/camera.hpp"
+#include "petzval/core/error.hpp"
+#include "petzval/core/parallel.hpp"
+#include "petzval/figure/focus_figures.hpp"
+#include "petzval/io/image.hpp"
+#include "petzval/lens/wavelength.hpp"
+#include "petzval/media/glass.hpp"
+#include "petzval/paraxial/ideal_lens.hpp"
+#include "petzval/pupil/f_number.hpp"
+#include "support/blur_map.hpp"
+#include "support/camera_setup.hpp"
+#include "support/cli.hpp"
+#include "support/files.hpp"
+#include "support/focal_surface_setup.hpp"
+#include "support/load_lens.hpp"
+#include "support/number_csv.hpp"
+#include "support/surface_sheet.hpp"
+#include "support/text.hpp"
+
+namespace {
+
+using examples::number;
+
+struct Options {
+  std::string lens_file, queries_file, out_folder;
+  std::uint32_t width = 600, height = 400;
+  examples::CameraSetup setup;
+  examples::FocalSurfaceSetup surface;
+};
+
+/// The surface of the points, with distances from the origin of the options.
+class Surface {
+ public:
+  explicit Surface(const Options& options)
+      : loaded_(examples::load_lens(options.lens_file, std::array{petzval::d_line_nm})),
+        lens_(examples::focused(loaded_, options.setup)) {
+    const auto [width, height] = options.setup.film_size();
+    const petzval::Film film{.width_mm = width,
+                             .height_mm = height,
+                             .columns = static_cast<int>(options.width),
+                             .rows = static_cast<int>(options.height)};
+    const petzval::Camera camera(lens_, film, {.model = petzval::ModelKind::thick});
+    const petzval::DistanceOrigin origin = examples::named(options.setup.origin, examples::distance_origins);
+    film_ = camera.film();
+    ideal_ = petzval::thick_lens(camera.lens());
+    auto [points, surface] = examples::read_focal_surface(options.surface, camera, origin,
+                                                          [](const petzval::Vec3<double>& place) { return place; });
+    points_ = std::move(points);
+    surface_.emplace(std::move(surface));
+    beyond_pupil_ = examples::origin_z(camera.lens(), origin) - surface_->origin_z();
+  }
+
+  const petzval::Lens& lens() const { return lens_; }
+  const petzval::IdealLens& ideal() const { return ideal_; }
+  const petzval::Film& film() const { return film_; }
+  const petzval::FocalSurface& surface() const { return *surface_; }
+  const std::vector<petzval::FocalPoint>& points() const { return points_; }
+
+  /// 1 / distance from the origin, of 1 / distance from the entrance pupil.
+  double inverse(double from_pupil) const { return from_pupil / (1 + from_pupil * beyond_pupil_); }
+
+  /// Row by row from the upper left.
+  std::vector<double> inverses(const petzval::Film& film) const {
+    const std::size_t pixels = static_cast<std::size_t>(film.columns) * static_cast<std::size_t>(film.rows);
+    std::vector<double> result(pixels);
+    surface_->frame<double>(film, petzval::processor_threads(), result.data(), nullptr);
+    for (double& value : result) value = inverse(value);
+    return result;
+  }
+  std::vector<double> extents(const petzval::Film& film) const {
+    const std::size_t pixels = static_cast<std::size_t>(film.columns) * static_cast<std::size_t>(film.rows);
+    std::vector<double> result(pixels), distances(pixels);
+    surface_->frame<double>(film, petzval::processor_threads(), distances.data(), result.data());
+    return result;
+  }
+  bool has_extents() const {
+    return std::any_of(points_.begin(), points_.end(), [](const auto& p) { return p.extent_stops.has_value(); });
+  }
+
+ private:
+  examples::LoadedLens loaded_;
+  petzval::Lens lens_;
+  petzval::Film film_;
+  petzval::IdealLens ideal_;
+  std::vector<petzval::FocalPoint> points_;
+  std::optional<petzval::FocalSurface> surface_;
+  double beyond_pupil_ = 0;
+};
+
+/// Round distances whose inverses lie within a range, the farthest first, not too close to each other.
+std::vector<examples::SurfaceMap::Level> distance_levels(double least, double most) {
+  std::vector<examples::SurfaceMap::Level> result;
+  constexpr double lines = 12;
+  const auto add = [&](double inverse, const std::string& words) {
+    const bool apart = result.empty() || inverse - result.back().value >= (most - least) / lines;
+    if (inverse > least && inverse < most && apart) result.push_back({inverse, words});
+  };
+  add(0, "infinity");
+  for (double decade = 1e6; decade >= 10; decade /= 10) {
+    for (const double digits : {1.0, 0.8, 0.6, 0.5, 0.4, 0.3, 0.25, 0.2, 0.15, 0.12}) {
+      const double mm = digits * decade;
+      add(1 / mm, mm >= 1000 ? number(mm / 1000) + " m" : number(mm) + " mm");
+    }
+  }
+  return result;
+}
+
+std::vector<examples::SurfaceMap::Level> stop_levels(double least, double most) {
+  std::vector<examples::SurfaceMap::Level> result;
+  double step = 0.25;
+  while ((most - least) / step > 10) step *= 2;
+  for (double stops = std::ceil(least / step) * step; stops < most; stops += step) {
+    if (stops > least) result.push_back({stops, number(stops + 0.0)});
+  }
+  return result;
+}
+
+petzval::Rgb8Image map_of(const Surface& surface, const Options& options) {
+  const petzval::Film film = examples::with_pixels(surface.film(), 900);
+  examples::SurfaceSheet sheet;
+  sheet.title = "Focal surface";
+  sheet.subtitle = surface.lens().name() + " at f/" + number(petzval::real_f_number(surface.lens()), 3) + ", " +
+                   std::to_string(surface.points().size()) + (surface.points().size() == 1 ? " point, " : " points, ") +
+                   options.surface.kind + ", beta " + number(options.surface.beta);
+  sheet.width = film.columns, sheet.height = film.rows;
+  const auto add = [&](std::string title, std::vector<double> values, auto levels_of, const char* low,
+                       const char* high) {
+    const auto [least, most] = std::minmax_element(values.begin(), values.end());
+    auto levels = levels_of(*least, *most);
+    if (levels.empty()) title += ": the same everywhere, " + number(*least, 6);
+    sheet.maps.push_back({std::move(title), std::move(values), std::move(levels), low, high});
+  };
+  add("Distance in focus from the " + std::string(options.setup.origin == "film" ? "film" : "front vertex") +
+          ", on a scale of 1/distance",
+      surface.inverses(film), distance_levels, "farther", "nearer");
+  if (surface.has_extents()) {
+    add("Extent of the depth of field, in stops: more is sharp above 0, less below", surface.extents(film), stop_levels,
+        "less is sharp", "more is sharp");
+  }
+  for (const petzval::FocalPoint& point : surface.points()) {
+    const petzval::Vec2<double> at = film.raster(point.place);
+    sheet.points.push_back({at.x, at.y, {}});
+  }
+  sheet.notes = {"Points by their numbers in " + options.surface.points_file +
+                 "; the picture as a photograph shows it."};
+  return examples::draw_surface_sheet(sheet);
+}
+
+/// x_px,y_px to answers. An object at the points' own distances has the blur that they ask for.
+std::string answers(const Surface& surface, const std::string& queries_file) {
+  constexpr std::array columns{examples::CsvColumn{"x_px"}, examples::CsvColumn{"y_px"}};
+  const auto queries = examples::parse_columns(examples::read_text(queries_file), columns, queries_file);
+  std::string csv = "x_px,y_px,distance_mm,extent_stops,blur_px\n";
+  for (std::size_t i = 0; i < queries[0].size(); ++i) {
+    const double x = queries[0][i], y = queries[1][i];
+    const auto at = surface.surface().at(surface.film().point(x, y));
+    csv += number(x) + ',' + number(y) + ',' + number(1 / surface.inverse(at.inverse_distance)) + ',' +
+           number(at.extent_stops) + ',' + number(at.blur_mm / surface.film().pixel_mm()) + '\n';
+  }
+  return csv;
+}
+
+void write(const Options& options) {
+  const Surface surface(options);
+  const petzval::Rgb8Image map = map_of(surface, options);
+  const std::string side = petzval::focal_surface_figure(
+      {surface.lens().name(),
+       "f/" + number(petzval::real_f_number(surface.lens()), 3) + ", film " + options.setup.film_mm + " mm.",
+       surface.ideal(), surface.film(), surface.surface(), surface.points()});
+  const std::vector<double> inverses = surface.inverses(surface.film());
+  const std::string found = options.queries_file.empty() ? "" : answers(surface, options.queries_file);
+
+  const std::filesystem::path folder = options.out_folder;
+  examples::make_folder(folder);
+  const auto say = [&](const char* name) { std::cout << (folder / name).string() << '\n'; };
+  petzval::write_png(map, folder / "surface.png");
+  say("surface.png");
+  examples::write_text(folder / "side.svg", side);
+  say("side.svg");
+  petzval::write_pfm(surface.film().columns, surface.film().rows, std::vector<float>(inverses.begin(), inverses.end()),
+                     folder / "surface.pfm");
+  say("surface.pfm");
+  if (options.queries_file.empty()) return;
+  examples::write_text(folder / "answers.csv", found);
+  say("answers.csv");
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options options;
+  examples::App app(
+      "Puts each place of a picture in focus at the distance that focus points ask for. Writes to DIR: surface.png, "
+      "the "
+      "distance over the picture, and the extent of the depth of field where points give it; side.svg, lens, film and "
+      "surface in section; surface.pfm, 1/distance in 1/mm for each pixel, rows from the bottom as PFM has them; and "
+      "for --queries answers.csv (x_px,y_px,distance_mm,extent_stops,blur_px). Distances count from --distance-from; "
+      "infinity is inf, and beyond it, where a blur leads there, they are negative. blur_px is the signed diameter of "
+      "the blur that the points "
+      "ask "
+      "for: of an object at their own distances, negative in front of what is in focus. Points that fix a distance "
+      "outweigh --focus-mm.",
+      "focal_surface");
+  app.add_option("LENS", options.lens_file, "lens prescription (JSON as in data/lenses)")->required();
+  app.add_option(
+         "--points", options.surface.points_file,
+         "{\"points\": [{\"pixel\": [x, y] or \"world_mm\": [x, y, z], \"distance_mm\", \"extent_stops\", "
+         "\"blur_px\", \"weight\", \"fade\"}]}; pixels from the upper left corner, centres at halves; the world "
+         "is the lens frame, with the scene at negative z; distance_mm null: infinity")
+      ->required()
+      ->type_name("POINTS.json");
+  constexpr examples::Range side{1, 16384, "a whole number from 1 to 16384"};
+  examples::add_count(app, "--width", options.width, side, "pixels across");
+  examples::add_count(app, "--height", options.height, side, "pixels down");
+  examples::add_camera(app, options.setup);
+  examples::add_distance_origin(app, options.setup);
+  examples::add_surface_kind(app, options.surface);
+  app.add_option("--queries", options.queries_file, "places of the picture: a CSV file of x_px,y_px")
+      ->type_name("Q.csv");
+  app.add_option("--out", options.out_folder, "folder for the results")->required()->type_name("DIR");
+  return examples::run(app, argc, argv, [&] { write(options); });
+}

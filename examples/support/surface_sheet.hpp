@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "petzval/io/image.hpp"
+
+namespace examples {
+
+/// A number over a picture, as colours with contour lines.
+struct SurfaceMap {
+  std::string title;           ///< "distance in focus"
+  std::vector<double> values;  ///< width x height, rows from the top
+  /// Contours and ticks of the scale.
+  struct Level {
+    double value = 0;
+    std::string words;
+  };
+  std::vector<Level> levels;
+  std::string low_words, high_words;  ///< of the ends of the scale
+};
+
+/// A focus point by its place in the picture, and what it says.
+struct SurfacePoint {
+  double x = 0, y = 0;  ///< pixels from the upper left
+  std::string words;
+};
+
+struct SurfaceSheet {
+  std::string title, subtitle;
+  std::vector<std::string> notes;  ///< lines at the foot
+  int width = 0, height = 0;       ///< of the maps
+  std::vector<SurfaceMap> maps;    ///< below each other
+  std::vector<SurfacePoint> points;
+};
+
+petzval::Rgb8Image draw_surface_sheet(const SurfaceSheet& sheet);
+
+}  // namespace examples
