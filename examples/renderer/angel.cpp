@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "renderer/angel.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include "renderer/solids.hpp"
@@ -48,13 +50,15 @@ Mesh limb(const glm::vec3& from, const glm::vec3& to, float first, float last) {
   const auto station = [&](float s, float radius) {
     return TubeStation{s * along + radius * left, s * along - radius * left, radius};
   };
-  const std::array stations{station(-0.75f * first, 0.55f * first),
-                            station(-0.3f * first, 0.9f * first),
-                            station(0, first),
-                            station(length / 2, (first + last) / 2),
-                            station(length, last),
-                            station(length + 0.3f * last, 0.9f * last),
-                            station(length + 0.75f * last, 0.55f * last)};
+  // Not much farther apart than those of the round ends, or the curve through them would loop there.
+  const int parts = std::max(1, static_cast<int>(std::ceil(length / (1.4f * std::min(first, last)))));
+  std::vector<TubeStation> stations{station(-0.75f * first, 0.55f * first), station(-0.3f * first, 0.9f * first)};
+  for (int i = 0; i <= parts; ++i) {
+    const float t = static_cast<float>(i) / static_cast<float>(parts);
+    stations.push_back(station(t * length, first + t * (last - first)));
+  }
+  stations.push_back(station(length + 0.3f * last, 0.9f * last));
+  stations.push_back(station(length + 0.75f * last, 0.55f * last));
   return placed(tube(stations, 20), from, std::atan2(-way.z, way.x) * 180 / pi);
 }
 
@@ -68,14 +72,17 @@ void add_folds(Mesh& mesh) {
   for (int k = 0; k < count; ++k) {
     const float angle = 2 * pi * (static_cast<float>(k) + 0.3f * std::sin(5.0f * static_cast<float>(k))) / count;
     const float strength = 1 + 0.35f * std::sin(3.0f * static_cast<float>(k) + 1);
-    std::array<TubeStation, 5> stations;
-    for (std::size_t i = 0; i < stations.size(); ++i) {
-      const auto& [y, half_x, half_z] = robe[5 - i];  // from the girdle down
+    std::array<TubeStation, 6> stations;
+    for (std::size_t i = 1; i < stations.size(); ++i) {
+      const auto& [y, half_x, half_z] = robe[6 - i];  // from the girdle down
       const float away = 1 / std::hypot(std::cos(angle) / half_x, std::sin(angle) / half_z);
-      const float radius = strength * (2.5f + 3.2f * static_cast<float>(i));
+      const float radius = strength * (2.5f + 3.2f * static_cast<float>(i - 1));
       // Downwards the left side is that of +x.
-      stations[i] = {{away - 0.2f * radius + radius, y}, {away - 0.2f * radius - radius, y}, radius};
+      stations[i] = {{away + 0.8f * radius, y}, {away - 1.2f * radius, y}, radius};
     }
+    // The upper end is hidden in the body.
+    const TubeStation& girdle = stations[1];
+    stations[0] = {girdle.left + glm::vec2{-3, 30}, girdle.right + glm::vec2{-1, 30}, girdle.half_z - 1};
     append(mesh, placed(tube(stations, 12), {0, 0, 0}, -angle * 180 / pi));
   }
   for (int k = 0; k < 40; ++k) {  // the girdle's beads
@@ -84,7 +91,8 @@ void add_folds(Mesh& mesh) {
   }
 }
 
-void add_head(Mesh& mesh) {
+void add_head(Mesh& body) {
+  Mesh mesh;
   constexpr std::array skull{Section{868, 22, 26}, Section{882, 33, 38}, Section{905, 41, 47},
                              Section{935, 45, 53}, Section{962, 42, 50}, Section{982, 27, 33}};
   constexpr float forward = 9;
@@ -106,6 +114,10 @@ void add_head(Mesh& mesh) {
     if (out.z > 0.35f && out.y < 0.55f) continue;
     append(mesh, ball(glm::vec3{0, 935, forward - 2} + out * glm::vec3{47, 53, 54}, 10.5f));
   }
+  // An eighth of the height, as of a young person.
+  for (glm::vec3& position : mesh.positions)
+    position = {1.1f * position.x, 1.1f * (position.y - 909), 1.1f * position.z};
+  append(body, placed(std::move(mesh), {0, 901.8f, 0}));
 }
 
 /// A feather in the plane of a wing.
@@ -123,29 +135,36 @@ Mesh feather(const glm::vec2& root, const glm::vec2& tip, float half_width, floa
 /// side: 1 for the wing at +x.
 void add_wing(Mesh& mesh, float side) {
   Mesh wing;
-  const glm::vec2 root{side * 20, 700}, wrist{side * 175, 985};
+  // Its upper edge, from the shoulder.
+  const auto edge = [&](float t) {
+    return (1 - t) * (1 - t) * glm::vec2{side * 20, 700} + 2 * t * (1 - t) * glm::vec2{side * 95, 1095} +
+           t * t * glm::vec2{side * 262, 925};
+  };
   // Rows from the longest feathers, behind, to the shortest: how many, where the first and the last one end.
   struct Row {
     int count;
     glm::vec2 first_tip, last_tip;
     float half_width, z;
   };
-  const Row rows[] = {{12, {side * 95, 250}, {side * 385, 640}, 19, 0},
-                      {10, {side * 75, 430}, {side * 320, 760}, 17, 7},
-                      {9, {side * 60, 560}, {side * 270, 850}, 15, 13},
-                      {8, {side * 50, 650}, {side * 232, 915}, 13, 18}};
+  const Row rows[] = {{13, {side * 95, 250}, {side * 400, 600}, 19, 0},
+                      {11, {side * 75, 430}, {side * 360, 715}, 17, 7},
+                      {10, {side * 60, 560}, {side * 322, 795}, 15, 13},
+                      {9, {side * 50, 650}, {side * 296, 860}, 13, 18}};
   for (const auto& [count, first_tip, last_tip, half_width, z] : rows) {
+    const glm::vec2 away{side * (last_tip.y - first_tip.y), -std::abs(last_tip.x - first_tip.x)};
     for (int k = 0; k < count; ++k) {
       const float t = static_cast<float>(k) / static_cast<float>(count - 1);
-      // Tips lie on a curve that bulges away from the shoulder.
-      glm::vec2 tip = first_tip + t * (last_tip - first_tip);
-      tip += t * (1 - t) * 0.55f * glm::vec2{side * (last_tip.y - first_tip.y), -std::abs(last_tip.x - first_tip.x)};
-      append(wing, feather(root + (0.1f + 0.86f * t) * (wrist - root), tip, half_width,
-                           z + 1.6f * static_cast<float>(k % 2)));
+      const glm::vec2 tip = first_tip + t * (last_tip - first_tip) + 0.55f * t * (1 - t) * away;
+      append(wing, feather(edge(0.1f + 0.88f * t), tip, half_width, z + 1.6f * static_cast<float>(k % 2)));
     }
   }
-  append(wing, limb({root, 8}, {wrist, 12}, 30, 19));                                // the arm of the wing
-  append(wing, limb({wrist, 12}, {wrist + glm::vec2{side * 34, -55}, 12}, 18, 12));  // and its hand
+  std::array<TubeStation, 9> arm;
+  for (std::size_t i = 0; i < arm.size(); ++i) {
+    const float t = static_cast<float>(i) / (arm.size() - 1), radius = i + 1 < arm.size() ? 27 - 12 * t : 7;
+    const glm::vec2 along = glm::normalize(edge(t + 0.01f) - edge(t - 0.01f)), left{-along.y, along.x};
+    arm[i] = {edge(t) + radius * left, edge(t) - radius * left, radius};
+  }
+  append(wing, placed(tube(arm, 20), {0, 0, 12}));
   append(mesh, placed(std::move(wing), {0, 0, -62}, side * 20));
 }
 

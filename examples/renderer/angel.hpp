@@ -11,7 +11,7 @@ enum class AngelPose {
 };
 
 /// A winged statue, `height` mm from its foot in the middle of the plane y = 0 to its crown; it looks along +z. The
-/// wings are 0.67 of the height wide. Its details are some thousandths of the height: curls, feathers, folds.
+/// wings are 0.76 of the height wide. Its details are some thousandths of the height: curls, feathers, folds.
 Mesh angel(AngelPose pose, float height);
 
 }  // namespace renderer

@@ -24,11 +24,10 @@ SceneDescription balls_scene();
 SceneDescription chess_scene();
 
 /// Two angels far apart, 1.5 m and 6 m from the entrance pupil, on the left and on the right of a colonnade at dusk,
-/// with smaller figures from 1.1 to 15 m between and beside them and lamps far behind: in the manner of figure 1 (d) of
-/// Lee, Eisemann, Seidel 2010, "Real-time lens blur effects and focus control". In mm, the near one stands with its
-/// foot at
-/// (-235, -235, -1500) and its head at (-235, 240, -1500), the far one at (930, -640, -6000) and (930, 1100, -6000).
-/// The globes of the lamps are large, so that path tracing finds them.
+/// with smaller figures from 1.1 to 15 m between and beside them, garlands, and lamps far behind: in the manner of
+/// figure 1 (d) of Lee, Eisemann, Seidel 2010, "Real-time lens blur effects and focus control". In mm, the near one
+/// stands with its foot at (-235, -235, -1500) and its head at (-235, 235, -1500), the far one at (930, -640, -6000)
+/// and (930, 1100, -6000). The globes of the lamps are large, so that path tracing finds them.
 SceneDescription statues_scene();
 
 /// A street at night: a sign at 3 m from the entrance pupil to focus on, and small lights from there to 200 m.

@@ -179,6 +179,16 @@ SceneDescription statues_scene() {
     for (int i = 0; i < 5; ++i)
       lamp(scene, {side * 1000, ground, -11000 - 4200 * static_cast<float>(i)}, 2500, 120, warm);
   }
+  // Garlands of lanterns between the columns.
+  for (const float z : {-7100.0f, -12900.0f}) {
+    constexpr int count = 10;
+    const std::array colours{warm, red, white, warm, cold};
+    for (int i = 0; i < count; ++i) {
+      const float across = 2 * (static_cast<float>(i) + 0.5f) / count - 1;  // -1 to 1
+      const glm::vec3 centre{1850 * across, 0.22f * -z - 350 + 500 * across * across, z};
+      scene.objects.push_back({"lantern", Sphere{centre, 0.0042f * -z}, black, colours[i % 5]});
+    }
+  }
   struct Distant {
     float right, up, away;  ///< tangents, and mm
     Rgb emission;

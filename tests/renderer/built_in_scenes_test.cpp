@@ -111,6 +111,14 @@ TEST(StatuesScene, HasAnAngelNearAndOneFarAndFiguresBetween) {
       s.low = std::min(s.low, at.up), s.high = std::max(s.high, at.up);
     }
   }
+  int lanterns = 0;
+  for (const Object& object : scene.objects) {
+    if (object.name != "lantern") continue;
+    ++lanterns;
+    EXPECT_TRUE(emits(object));
+    EXPECT_LT(std::abs(seen(scene, std::get<Sphere>(object.shape).centre).right), 0.36);
+  }
+  EXPECT_EQ(lanterns, 20);
   ASSERT_EQ(statues.size(), 6u);
   // In the picture of a lens of 50 mm, half of its height each, on either side of the middle.
   const Statue &near = statues[0], &far = statues[1];

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <map>
 #include <numbers>
@@ -12,6 +13,7 @@
 #include <utility>
 
 #include "petzval/core/error.hpp"
+#include "renderer/angel.hpp"
 #include "renderer/chess_pieces.hpp"
 
 namespace {
@@ -124,6 +126,23 @@ TEST(ChessPieces, AreClosedAndStandOnTheBoard) {
       EXPECT_GE(p.y, 0) << name;
       EXPECT_LT(std::hypot(p.x, p.z), 20) << name;  // inside its square
     }
+  }
+}
+
+TEST(Angels, AreClosedAndAsHighAsAskedFor) {
+  for (const AngelPose pose : {AngelPose::praying, AngelPose::calling}) {
+    const Mesh mesh = angel(pose, 500);
+    expect_closed(mesh, "angel");
+    glm::vec3 least(1e9f), most(-1e9f), crown(0);
+    for (const glm::vec3& p : mesh.positions) {
+      least = glm::min(least, p), most = glm::max(most, p);
+      if (std::abs(p.x) < 10 && p.y > crown.y) crown = p;
+    }
+    EXPECT_EQ(least.y, 0);
+    EXPECT_NEAR(crown.y, 500, 1);
+    EXPECT_NEAR(most.y, 500, 6);  // the raised hand may reach over the crown
+    EXPECT_NEAR(most.x - least.x, 0.76 * 500, 3);
+    EXPECT_NEAR(most.x, -least.x, 1);  // the wings
   }
 }
 
