@@ -114,7 +114,7 @@ void add_head(Mesh& body) {
     if (out.z > 0.35f && out.y < 0.55f) continue;
     append(mesh, ball(glm::vec3{0, 935, forward - 2} + out * glm::vec3{47, 53, 54}, 10.5f));
   }
-  // An eighth of the height, as of a young person.
+  // A seventh of the height, as of a young person.
   for (glm::vec3& position : mesh.positions)
     position = {1.1f * position.x, 1.1f * (position.y - 909), 1.1f * position.z};
   append(body, placed(std::move(mesh), {0, 901.8f, 0}));
