@@ -35,9 +35,9 @@ struct FilmOffset {
 ///     w(X) + (k(rho) - 1) / F + strength(l) (w(X, l) - w(X)),
 ///
 /// distances counted along the axis from the entrance pupil, F the focal length, k the spline of power, and w(X) what
-/// the moved film or the focal surface has in focus at the primary wavelength, w(X, l) at its own. Chief rays stay: the aberrations have no
-/// distortion and no lateral colour of their own.
-/// Source: Lee, Eisemann, Seidel 2010, "Real-time lens blur effects and focus control", section 5.3.
+/// the moved film or the focal surface has in focus at the primary wavelength, w(X, l) at its own. Chief rays stay: the
+/// aberrations have no distortion and no lateral colour of their own. Source: Lee, Eisemann, Seidel 2010, "Real-time
+/// lens blur effects and focus control", section 5.3.
 struct ExpressiveLens {
   /// A cubic spline (continuous second derivative, flat at the first knot, without curvature at the last), constant on
   /// both sides. Up to 32 knots in the order of their radii; empty: even power.

@@ -60,8 +60,8 @@ struct FocalSurfaceOptions {
 /// weighs weight fade / d_i^beta, with d_i the distance on the film: results do not depend on the resolution of the
 /// picture, on its aspect, or on a common factor of the weights. A point that counts in full is met exactly. One that
 /// fades, or weighs less than a thousandth of what the heaviest one weighs, is passed at a growing distance, so that
-/// it leaves without a jump. Extrapolated distances are limited to [least - m, most + m] of those of the points, with m =
-/// most - least, to objects that the lens images, and to infinity, unless a blur leads beyond it (values below 0);
+/// it leaves without a jump. Extrapolated distances are limited to [least - m, most + m] of those of the points, with m
+/// = most - least, to objects that the lens images, and to infinity, unless a blur leads beyond it (values below 0);
 /// extents to those of the points.
 ///
 /// Distances and extents go through the points that fix them, each with weights of its own. If no point fixes a
