@@ -15,6 +15,7 @@
 #include "petzval/camera/camera.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/parallel.hpp"
+#include "petzval/core/sobol.hpp"
 #include "petzval/core/units.hpp"
 #include "petzval/io/image.hpp"
 #include "petzval/pupil/f_number.hpp"
@@ -50,14 +51,27 @@ std::vector<double> wavelengths_nm(const Options& options) {
   return set;
 }
 
-/// The angles under which film points between the axis and the corner see the scene by exact rays; those that see it.
+/// The angles under which film points between the axis and the corner see the scene by exact rays, of those that do:
+/// the mean of what passes their pupils. Throws petzval::Error where none does.
 std::vector<double> fields_rad(const petzval::Lens& lens, const petzval::Film& film) {
   const petzval::Camera exact(lens, film, {.model = petzval::ModelKind::exact_double});
   std::vector<double> fields;
   for (const double part : film_parts) {
-    const petzval::CameraRay chief =
-        exact.sample({.film = {part * film.width_mm / 2, part * film.height_mm / 2}, .pupil_u = 0, .pupil_v = 0});
-    if (chief) fields.push_back(std::acos(std::min(-chief.ray.direction.z, 1.0)));
+    const petzval::FilmPoint place{part * film.width_mm / 2, part * film.height_mm / 2};
+    double weight = 0, x = 0, y = 0, z = 0;
+    constexpr std::uint32_t count = 256;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const auto pupil = petzval::owen_sobol(i, 0);
+      const petzval::CameraRay ray = exact.sample({.film = place, .pupil_u = pupil.x, .pupil_v = pupil.y});
+      const petzval::Vec3<double>& way = ray.ray.direction;
+      if (ray) weight += ray.weight, x += ray.weight * way.x, y += ray.weight * way.y, z -= ray.weight * way.z;
+    }
+    if (weight > 0) fields.push_back(part == 0 ? 0 : std::atan2(std::hypot(x, y), z));
+  }
+  if (fields.empty()) throw petzval::Error(lens.name() + ": no light reaches the film, wanted some for highlights");
+  if (fields.size() < film_parts.size()) {
+    std::cerr << "note: " << film_parts.size() - fields.size() << " of " << film_parts.size()
+              << " places of the film see no light; --film-mm makes it smaller\n";
   }
   return fields;
 }
@@ -86,7 +100,8 @@ class Highlights {
     described["field_deg"] = petzval::degrees(field_rad);
     described["rms_mm"] = found.size.rms_radius;
     return {examples::expose(examples::irradiance(found.psf)).picture,
-            {number(petzval::degrees(field_rad), 3) + " degrees", "RMS " + number(found.size.rms_radius, 3) + " mm"}};
+            {number(petzval::degrees(field_rad), 3) + " degrees",
+             found.throughput > 0 ? "RMS " + number(found.size.rms_radius, 3) + " mm" : "no light"}};
   }
 
  private:

@@ -57,7 +57,7 @@ class Surface {
     const petzval::DistanceOrigin origin = examples::named(options.setup.origin, examples::distance_origins);
     film_ = camera.film();
     ideal_ = petzval::thick_lens(camera.lens());
-    auto [points, surface] = examples::read_focal_surface(options.surface, camera, origin,
+    auto [points, surface] = examples::read_focal_surface(options.surface, camera, origin, options.setup.focus_mm,
                                                           [](const petzval::Vec3<double>& place) { return place; });
     points_ = std::move(points);
     surface_.emplace(std::move(surface));

@@ -133,6 +133,9 @@ class Job {
     examples::say_what_does_not_fit(lens_, film_);
     choose_model();
     if (!options.surface.points_file.empty()) surface_ = surface();
+    if (options.expressive.dispersion != 1 && options.wavelengths == "d") {
+      std::cerr << "note: --dispersion shows with --wavelengths rgb or hero alone\n";
+    }
     expressive_ = examples::expressive_of(options.expressive, lens_, film_);
   }
 
@@ -200,6 +203,7 @@ class Job {
     const renderer::LensCamera lens = camera(chosen_.model);
     return examples::read_focal_surface(options_.surface, lens.camera(),
                                         examples::named(options_.setup.origin, examples::distance_origins),
+                                        options_.setup.focus_mm,
                                         [&](const petzval::Vec3<double>& world) { return lens.to_lens(world); })
         .surface;
   }

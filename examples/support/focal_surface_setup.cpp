@@ -130,11 +130,13 @@ double origin_z(const petzval::Lens& lens, petzval::DistanceOrigin origin) {
 }
 
 ReadSurface read_focal_surface(const FocalSurfaceSetup& setup, const petzval::Camera& camera,
-                               petzval::DistanceOrigin origin, const WorldToLens& to_lens) {
+                               petzval::DistanceOrigin origin, double focus_mm, const WorldToLens& to_lens) {
   std::vector<petzval::FocalPoint> points = points_of(setup.points_file, camera, origin, to_lens);
   try {
-    petzval::FocalSurface surface(petzval::thick_lens(camera.lens()), camera.film(), points,
-                                  {named(setup.kind, kinds), setup.beta});
+    petzval::FocalSurface surface(
+        petzval::thick_lens(camera.lens()), camera.film(), points,
+        {named(setup.kind, kinds), setup.beta,
+         1 / (focus_mm + petzval::pupils(camera.lens()).entrance.z - origin_z(camera.lens(), origin))});
     return {std::move(points), std::move(surface)};
   } catch (const petzval::Error& error) {
     throw petzval::Error(setup.points_file + ": " + error.what());

@@ -38,7 +38,7 @@ struct ReadSurface {
 /// distance, and a pixel fixes the extent alone. camera: of a first-order model, without a surface: where it sees
 /// points of the world. Throws petzval::Error that names the file, the point (from 1) and the key.
 ReadSurface read_focal_surface(const FocalSurfaceSetup& setup, const petzval::Camera& camera,
-                               petzval::DistanceOrigin origin, const WorldToLens& to_lens);
+                               petzval::DistanceOrigin origin, double focus_mm, const WorldToLens& to_lens);
 
 /// z of the origin of distances, lens frame.
 double origin_z(const petzval::Lens& lens, petzval::DistanceOrigin origin);

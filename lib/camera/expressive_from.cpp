@@ -8,6 +8,7 @@
 #include "local_focus.hpp"
 #include "paraxial_model.hpp"
 #include "petzval/camera/expressive_lens.hpp"
+#include "petzval/core/error.hpp"
 #include "petzval/pupil/pupil_boundary.hpp"
 #include "petzval/trace/trace.hpp"
 #include "pupil/boundary_nodes.hpp"
@@ -39,12 +40,27 @@ std::optional<double> in_focus(const Lens& lens, const FilmPoint& film, double z
   return std::isfinite(focus) ? std::optional(focus) : std::nullopt;
 }
 
+/// How far from the axis the film sees light, up to a radius.
+double lit_radius(const Lens& lens, double radius, double z) {
+  if (in_focus(lens, {0, radius}, z)) return radius;
+  double lit = 0, dark = radius;
+  constexpr int halvings = 8;
+  for (int i = 0; i < halvings; ++i) {
+    const double middle = (lit + dark) / 2;
+    (in_focus(lens, {0, middle}, z) ? lit : dark) = middle;
+  }
+  return lit;
+}
+
 }  // namespace
 
 ExpressiveLens expressive_from(const Lens& given, const Film& given_film) {
   using camera_detail::EntranceMaps;
   const auto [lens, film] = camera_detail::placed(given, given_film);
   camera_detail::check_film(lens, film);
+  if (camera_detail::has_cylinders(lens)) {
+    throw Error(lens.name() + ": expressive_from: found cylinders, wanted a lens of revolution");
+  }
   const camera_detail::LensFacts facts(lens);
   const camera_detail::ParaxialModel model(ModelKind::thick, facts, film.radius_mm());
   const std::size_t primary = lens.primary_wavelength();
@@ -71,13 +87,16 @@ ExpressiveLens expressive_from(const Lens& given, const Film& given_film) {
   // Rings about the axis, out to the farthest corner, with ever more places.
   const auto centre = in_focus(lens, {}, maps.z);
   constexpr int rings = 4, first_ring = 6;
+  const double reach = centre ? lit_radius(lens, film.radius_mm(), maps.z) : 0;
   for (int ring = 0; ring <= rings && centre; ++ring) {
-    const double height = film.radius_mm() * ring / rings;
+    const double height = reach * ring / rings;
     const auto focus = in_focus(lens, {0, height}, maps.z);
     if (!focus) break;
     // in_focus(maps, nearer), solved for nearer.
     const double asked = own + *focus - *centre, nearer = (maps.b * asked - maps.d) / (maps.a * asked - maps.c);
-    const double offset = (1 / (1 + nearer) - 1) * -space.depth();
+    const double part = 1 / (1 + nearer) - 1, offset = part * -space.depth();
+    constexpr double largest = 0.2;
+    if (!(std::abs(part) <= largest)) break;
     const int places = ring == 0 ? 1 : first_ring * ring;
     for (int k = 0; k < places; ++k) {
       const double azimuth = 2 * std::numbers::pi * k / places;

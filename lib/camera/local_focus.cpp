@@ -249,15 +249,16 @@ LocalFocus::LocalFocus(const LensFacts& facts, const Film& film, const AnyRayMod
                   "expressive lens");
     }
     constexpr double nearest = 0.05;
-    if (surface && !(1 + surface->nearest() * maps.from_surface >= nearest)) {
-      throw Error(where + "the focal surface comes as near as " + to_text(1 / surface->nearest()) +
-                  " mm to the entrance pupil, wanted it farther away than the pupil of " +
+    const auto reaches = [&](double inverse) { return 1 + inverse * maps.from_surface >= nearest; };
+    if (surface && !(reaches(surface->nearest()) && reaches(surface->farthest()))) {
+      throw Error(where + "the focal surface has 1 / distance from " + to_text(surface->farthest()) + " to " +
+                  to_text(surface->nearest()) + " / mm, wanted it in front of the pupil of " +
                   std::string(name(model.kind())) + ", which lies at z = " + to_text(maps.z) + " mm");
     }
   }
   data.between = {lens_detail::CompiledWavelengths(lens.wavelengths_nm()), values};
   data.rules.primary = data.compiled[data.primary].maps;
-  data.rules.by_surface = surface.has_value(), data.rules.by_offset = data.offsets.has_value();
+  data.rules.by_surface = surface && surface->fixes_distance(), data.rules.by_offset = data.offsets.has_value();
   data.rules.power = 1 / facts.first_order(data.primary).effective_focal_length;
   data.rules_in_float = in_type<float>(data.rules);
   data_ = std::make_shared<const Data>(std::move(data));

@@ -20,8 +20,10 @@ PowerSpline<double> power_spline(const std::string& where, const std::vector<Pow
   for (std::size_t i = 0; i < n; ++i) {
     const auto [radius, power] = knots[i];
     const std::string knot = where + "power: knot " + std::to_string(i + 1) + ": ";
-    if (!(radius >= 0 && radius <= 1) || (i > 0 && !(radius > knots[i - 1].radius))) {
-      throw Error(knot + "the radius is " + to_text(radius) + ", wanted one from 0 to 1 and above the one before");
+    constexpr double apart = 1e-3;
+    if (!(radius >= 0 && radius <= 1) || (i > 0 && !(radius - knots[i - 1].radius >= (1 - 1e-9) * apart))) {
+      throw Error(knot + "the radius is " + to_text(radius) + ", wanted one from 0 to 1 and " + to_text(apart) +
+                  " above the one before");
     }
     if (!(std::abs(power) <= 1000)) {
       throw Error(knot + "the power is " + to_text(power) + ", wanted one from -1000 to 1000");

@@ -82,6 +82,7 @@ std::string_view name(SurfaceKind kind) noexcept {
 
 struct FocalSurface::Fields {
   double origin_z = 0;
+  bool fixes_distance = false;
   double blur_per_inverse = 0;
   MovingLeastSquares distance, extent;
   /// Through the points' own distances; nothing if no blur is wanted.
@@ -90,6 +91,11 @@ struct FocalSurface::Fields {
 
 FocalSurface::FocalSurface(const IdealLens& lens, const Film& film, std::span<const FocalPoint> points,
                            const FocalSurfaceOptions& options) {
+  const double place = film.z() + film.tilt_rad + film.swing_rad;
+  if (!(film.width_mm > 0 && film.height_mm > 0 && std::isfinite(film.area_mm2()) && std::isfinite(place))) {
+    throw Error("focal surface: the film is " + to_text(film.width_mm) + " x " + to_text(film.height_mm) +
+                " mm at z = " + to_text(film.z()) + " mm, wanted a size above 0 and finite numbers");
+  }
   const double origin_z = entrance_pupil(lens), side = std::sqrt(film.area_mm2());
   const double nearest = nearest_inverse(lens);
   const double farthest = -largest_power / std::abs(lens.front_focal_length);
@@ -120,7 +126,15 @@ FocalSurface::FocalSurface(const IdealLens& lens, const Film& film, std::span<co
     throw Error("focal surface: none of " + std::to_string(points.size()) +
                 " points has a weight and a distance or an extent, wanted one at least");
   }
-  if (objects.empty()) objects.push_back({{0, 0}, inverse_in_focus(lens, film)});
+  const bool fixes_distance = !objects.empty();
+  if (!fixes_distance) {
+    const double otherwise = options.otherwise.value_or(inverse_in_focus(lens, film));
+    if (!(otherwise >= farthest && otherwise <= nearest)) {
+      throw Error("focal surface: in focus otherwise is " + to_text(otherwise) + " / mm, wanted one from " +
+                  to_text(farthest) + " to " + to_text(nearest) + " / mm");
+    }
+    objects.push_back({{0, 0}, otherwise});
+  }
   if (extents.empty()) extents.push_back({{0, 0}, 0});
   const MovingLeastSquares extent("focal surface: ", extents, side, options.kind, options.beta, 0);
   // Not beyond infinity, unless a point is.
@@ -146,9 +160,11 @@ FocalSurface::FocalSurface(const IdealLens& lens, const Film& film, std::span<co
     }
     distance = field(moved);
   }
-  fields_ = std::make_shared<const Fields>(Fields{origin_z, per_inverse, std::move(distance), extent, std::move(own)});
+  fields_ = std::make_shared<const Fields>(
+      Fields{origin_z, fixes_distance, per_inverse, std::move(distance), extent, std::move(own)});
 }
 
+bool FocalSurface::fixes_distance() const noexcept { return fields_->fixes_distance; }
 double FocalSurface::origin_z() const noexcept { return fields_->origin_z; }
 
 FocalSurface::Values FocalSurface::at(const FilmPoint& place) const noexcept {
@@ -211,6 +227,9 @@ std::vector<FocalPoint> focal_points(const IdealLens& lens, const Film& film, st
     const bool valid = moment.time >= points[i].from && moment.time <= points[i].until;
     const double fade = fades.empty() ? (valid ? 1 : 0) : fades[i];
     if (fade == 0) continue;
+    if (!(fade > 0 && fade <= 1)) {
+      throw Error("focal_points: fade " + std::to_string(i) + " is " + to_text(fade) + ", wanted one from 0 to 1");
+    }
     const auto target = movement_detail::target_at(lens, points[i], moment);
     const auto image = target ? lens.image(target->place) : std::nullopt;
     const auto place = image ? chief_point(*image, film) : std::nullopt;

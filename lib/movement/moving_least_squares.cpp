@@ -93,6 +93,7 @@ MovingLeastSquares::MovingLeastSquares(const std::string& where, std::span<const
     to.alpha.push_back(alpha);
     to.soft2.push_back(soft * soft);
   }
+  find_line(shares);
   // A point that vanishes takes its part of the limits along.
   double mean = 0, alphas = 0;
   for (std::size_t i = 0; i < to.alpha.size(); ++i) mean += to.alpha[i] * to.value[i], alphas += to.alpha[i];
@@ -120,6 +121,28 @@ MovingLeastSquares::MovingLeastSquares(const std::string& where, std::span<const
   fill(in_double_);
 }
 
+// A plane through points on a line with one beside it is the same however little that one weighs. So points nearly on a
+// line keep the slope along it alone, and those that fade count for this by the square of their share.
+void MovingLeastSquares::find_line(std::span<const double> shares) {
+  constexpr double line_aspect = 0.02, plane_aspect = 0.08;
+  double sum = 0, mean_x = 0, mean_y = 0, xx = 0, xy = 0, yy = 0;
+  for (std::size_t i = 0; i < shares.size(); ++i) {
+    const double share = shares[i] * shares[i];
+    sum += share, mean_x += share * points_.x[i], mean_y += share * points_.y[i];
+  }
+  mean_x /= sum, mean_y /= sum;
+  for (std::size_t i = 0; i < shares.size(); ++i) {
+    const double share = shares[i] * shares[i], x = points_.x[i] - mean_x, y = points_.y[i] - mean_y;
+    xx += share * x * x, xy += share * x * y, yy += share * y * y;
+  }
+  const double angle = std::atan2(2 * xy, xx - yy) / 2, half = std::hypot((xx - yy) / 2, xy);
+  along_ = {std::cos(angle), std::sin(angle)};
+  const double along = (xx + yy) / 2 + half, across = std::max((xx + yy) / 2 - half, 0.0);
+  const double aspect = along > 0 ? std::sqrt(across / along) : 0;
+  const double part = std::clamp((aspect - line_aspect) / (plane_aspect - line_aspect), 0.0, 1.0);
+  plane_ = part * part * (3 - 2 * part);
+}
+
 void MovingLeastSquares::keep_within(double low, double high) noexcept {
   low_ = std::max(low_, low * to_scaled_value_);
   high_ = std::min(high_, high * to_scaled_value_);
@@ -136,6 +159,9 @@ LeastSquaresJob<T> MovingLeastSquares::job(const Columns<T>& columns) const noex
       .soft2 = columns.soft2.data(),
       .soft = soft_,
       .affine = affine_,
+      .plane = static_cast<T>(plane_),
+      .along_x = static_cast<T>(along_.x),
+      .along_y = static_cast<T>(along_.y),
       .odd = odd_,
       .wholes = wholes_,
       .half_beta = static_cast<T>(beta_ / 2),
@@ -233,17 +259,21 @@ Vec2<double> MovingLeastSquares::slopes(const FilmPoint& place) const noexcept {
   const V mean = on_point ? V{0, 0} : wq / w_sum;
   const double mean_value = on_point ? 0 : wf / w_sum, trace = xx + yy;
   const double a = xx - w_sum * mean.x * mean.x, b = xy - w_sum * mean.x * mean.y, c = yy - w_sum * mean.y * mean.y;
-  // As the loops solve it.
-  const auto solved = [&](const V& right) {
-    if (!affine_ || !(trace > 1e-290)) return V{0, 0};
+  // As the loops solve it: for planes, and for those that rise along a line alone.
+  const auto in_planes = [&](const V& right) {
     constexpr double thin2 = 1e-20;
     const double xx1 = a / trace, xy1 = b / trace, yy1 = c / trace, det = xx1 * yy1 - xy1 * xy1, tr = xx1 + yy1;
     const V by = right / trace, along{xx1 * by.x + xy1 * by.y, xy1 * by.x + yy1 * by.y};
     return (thin2 * along + det * (tr * by - along)) / (det * det + thin2 * (tr * tr - 2 * det + thin2));
   };
-  const V slope = solved(wqf - w_sum * mean_value * mean);
-  V result = slope;
-  if (!on_point) {
+  const auto along_line = [&](const V& right) {
+    const double moment = along_.x * (along_.x * a + along_.y * b) + along_.y * (along_.x * b + along_.y * c);
+    return moment > 1e-10 * trace ? along_ * (dot(along_, right) / moment) : V{0, 0};
+  };
+  const auto with = [&](const auto& solved) {
+    const V slope = solved(wqf - w_sum * mean_value * mean);
+    V result = slope;
+    if (on_point) return result;
     const V from_mean = p - centre - mean, towards = solved(from_mean);
     for (std::size_t i = 0; i < count; ++i) {
       const V q = V{points.x[i], points.y[i]} - centre - mean;
@@ -251,8 +281,12 @@ Vec2<double> MovingLeastSquares::slopes(const FilmPoint& place) const noexcept {
       const double part = 1 / w_sum + dot(towards, q);
       result -= beta_ * weight(i) / r2_of(i) * part * residual * away(i);
     }
-  }
-  return result * (to_scaled_ / to_scaled_value_);
+    return result;
+  };
+  const double unit = to_scaled_ / to_scaled_value_;
+  if (!affine_ || !(trace > 1e-290)) return with([](const V&) { return V{0, 0}; }) * unit;
+  if (plane_ == 1) return with(in_planes) * unit;
+  return (plane_ * with(in_planes) + (1 - plane_) * with(along_line)) * unit;
 }
 
 }  // namespace petzval::inline v0::movement_detail

@@ -40,9 +40,11 @@ void check(const WeighedValue& point, double side, const std::string& where);
 /// of the largest, up to a tenth of the picture's side: a point that vanishes leaves no spike behind. Only ratios of
 /// alphas count; points below 1e-9 of the largest are left out.
 ///
-/// Planes of points on a line have the slope along it alone, those of points in one place none: second moments far
-/// below 1e-10 (float: 1e-5) of the larger one count as 0. The result stays within [least - m, most + m] of the values
-/// of the points, with m = `beyond` times most - least; points that fade widen this in part.
+/// Planes of points on a line have the slope along it alone, those of points in one place none. Points count as on a
+/// line where their RMS spread across it is below 0.02 of that along it, and as in a plane from 0.08 on; between, and
+/// as a point fades, values blend, so that it leaves without a jump even if the others lie on a line. The result stays
+/// within [least - m, most + m] of the values of the points, with m = `beyond` times most - least; points that fade
+/// widen this in part.
 ///
 /// Results are the same for all instruction sets and however places are batched; they are finite for any place, as
 /// constants beyond 1e6 sides. Accuracy: planes are reproduced within 1e-13 (float: 1e-5) of the range of values for
@@ -75,6 +77,8 @@ class PETZVAL_API MovingLeastSquares {
   void keep_within(double low, double high) noexcept;
 
  private:
+  void find_line(std::span<const double> shares);
+
   /// What counts of the points: places and values scaled by powers of two, weights against the heaviest point's, and
   /// squares of softness.
   template <class R>
@@ -86,6 +90,8 @@ class PETZVAL_API MovingLeastSquares {
   LeastSquaresJob<R> job(const Columns<R>& columns) const noexcept;
 
   bool affine_;
+  double plane_ = 1;  ///< as in LeastSquaresJob
+  Vec2<double> along_{1, 0};
   double beta_;
   bool odd_ = false;  ///< as in LeastSquaresJob
   int wholes_ = -1;

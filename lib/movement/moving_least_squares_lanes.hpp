@@ -68,7 +68,7 @@ struct Format<float> {
   using Bits = std::int32_t;
   static constexpr int fraction_bits = 23, log_terms = 4, exp_terms = 7;
   static constexpr Bits root_half = 0x3f3504f3;  // of 0.70710678
-  static constexpr float least_power = -125, least_base = 1.2e-38F, thin = 1e-5F, least_trace = 1e-36F;
+  static constexpr float least_power = -125, least_base = 1.2e-38F, thin = 1e-6F, least_trace = 1e-36F;
 };
 template <>
 struct Format<double> {
@@ -130,7 +130,7 @@ struct Moments {
 
 /// The value at places, scaled.
 template <bool affine, class R>
-PETZVAL_INLINE Lanes<R> value_of(const Moments<R>& m, Lanes<R> x, Lanes<R> y) noexcept {
+PETZVAL_INLINE Lanes<R> value_of(const LeastSquaresJob<R>& job, const Moments<R>& m, Lanes<R> x, Lanes<R> y) noexcept {
   using L = Lanes<R>;
   const L per_weight = L(1) / m.w, mean = m.wf * per_weight;
   if constexpr (!affine) return m.centre_value + mean;
@@ -150,7 +150,16 @@ PETZVAL_INLINE Lanes<R> value_of(const Moments<R>& m, Lanes<R> x, Lanes<R> y) no
   const L along_x = xx * bx + xy * by, along_y = xy * bx + yy * by;
   const L slope_x = thin2 * along_x + det * (tr * bx - along_x), slope_y = thin2 * along_y + det * (tr * by - along_y);
   const L from_x = x - m.centre_x - mean_x, from_y = y - m.centre_y - mean_y;
-  const L rise = (slope_x * from_x + slope_y * from_y) * per_norm;
+  L rise = (slope_x * from_x + slope_y * from_y) * per_norm;
+  if (job.plane < R(1)) {
+    // The same of planes that rise along a line alone.
+    const L ex(job.along_x), ey(job.along_y), plane(job.plane);
+    const L moment = ex * (ex * xx + ey * xy) + ey * (ex * xy + ey * yy);
+    const auto spread_along = L(Format<R>::thin) < moment;
+    const L slope = (ex * bx + ey * by) / select(spread_along, moment, L(1));
+    const L along = select(spread_along, slope * (ex * from_x + ey * from_y), L(0));
+    rise = plane * rise + (L(1) - plane) * along;
+  }
   return m.centre_value + (mean + select(spread, rise, L(0)));
 }
 

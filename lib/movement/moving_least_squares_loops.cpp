@@ -56,7 +56,7 @@ PETZVAL_INLINE Lanes<R> value_at(const LeastSquaresJob<R>& job, Lanes<R> x, Lane
   };
   for (std::size_t i = 0; i < keep; ++i) add(i, kept[i]);
   for (std::size_t i = keep; i < job.points; ++i) add(i, distance2(i));
-  return value_of<affine>(m, x, y);
+  return value_of<affine>(job, m, x, y);
 }
 
 template <bool affine, Power kind, class R>

@@ -22,8 +22,9 @@ struct LeastSquaresJob {
   const R *alpha = nullptr, *soft2 = nullptr;            ///< above 0, at most 1; 0 or more
   bool soft = false;                                     ///< any soft2 is above 0
   bool affine = true;
-  bool odd = false;  ///< beta is 2 wholes + 1, or 2 wholes
-  int wholes = 0;    ///< negative: any other beta, twice half_beta
+  R plane = 1, along_x = 1, along_y = 0;  ///< affine: the part that planes have, and the direction of lines (unit)
+  bool odd = false;                       ///< beta is 2 wholes + 1, or 2 wholes
+  int wholes = 0;                         ///< negative: any other beta, twice half_beta
   R half_beta = 0;
   R low = 0, high = 0;  ///< of the result, scaled
   R to_scaled = 1, reach = 0, from_scaled = 1;

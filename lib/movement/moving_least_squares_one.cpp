@@ -62,7 +62,7 @@ double value_at(const LeastSquaresJob<double>& job, L x, L y) noexcept {
   m.centre_x = L(centre[0]), m.centre_y = L(centre[1]), m.centre_value = L(centre_value);
   m.w = L(w_sum), m.wf = L(wf), m.wx = L(first[0]), m.wy = L(first[1]);
   m.wxx = L(second[0]), m.wxy = L(wxy), m.wyy = L(second[1]), m.wxf = L(mixed[0]), m.wyf = L(mixed[1]);
-  return limited(job, value_of<affine>(m, x, y)).v[0];
+  return limited(job, value_of<affine>(job, m, x, y)).v[0];
 }
 
 }  // namespace

@@ -191,14 +191,31 @@ TEST(ExpressiveLens, OfAThinLensAtFTwelveThousandIsNone) {
   for (const FilmOffset& offset : found.film_offsets) EXPECT_NEAR(offset.offset_mm, 0, 0.02);
 }
 
+// What is found for a lens is what a camera takes, on any film.
+TEST(ExpressiveLens, OfEveryLensIsOneForItsCamera) {
+  for (const char* id : {"phone_5.6mm_f3.5", "ball_10mm", "eye_gullstrand_le_grand", "fisheye_16mm_f2.8",
+                         "catadioptric_mangin_1000mm_f7.5", "landscape_meniscus_10mm", "modern_58mm_f0.95"}) {
+    const Lens lens = testing::data_lens(id);
+    for (const Film& film : {wide, Film{.width_mm = 4, .height_mm = 3}}) {
+      const ExpressiveLens found = expressive_from(lens, film);
+      EXPECT_FALSE(found.power.empty()) << id;
+      EXPECT_NO_THROW(Camera(lens, film, {.model = ModelKind::thick, .expressive = found})) << id;
+    }
+  }
+  EXPECT_GT(expressive_from(testing::data_lens("phone_5.6mm_f3.5")).film_offsets.size(), 30u);
+  EXPECT_NE(testing::message([] { expressive_from(testing::data_lens("anamorphic_60mm_2x")); }).find("cylinders"),
+            std::string::npos);
+}
+
 TEST(ExpressiveLens, InvalidOnesAreRefused) {
   const Lens lens = testing::data_lens("double_gauss_100mm_f2_28deg");
   const auto refused = [&](const ExpressiveLens& expressive, ModelKind model = ModelKind::thick) {
     return testing::message([&] { Camera(lens, wide, {.model = model, .expressive = expressive}); });
   };
-  EXPECT_EQ(
-      refused({.power = {{0.5, 1}, {0.5, 2}}}),
-      lens.name() + ": camera: power: knot 2: the radius is 0.5, wanted one from 0 to 1 and above the one before");
+  EXPECT_EQ(refused({.power = {{0.5, 1}, {0.5, 2}}}),
+            lens.name() +
+                ": camera: power: knot 2: the radius is 0.5, wanted one from 0 to 1 and 0.001 above the one before");
+  EXPECT_NE(refused({.power = {{0, 1}, {1e-310, 2}, {1, 1}}}).find("knot 2"), std::string::npos);
   EXPECT_EQ(refused({.power = {{0, std::nan("")}}}),
             lens.name() + ": camera: power: knot 1: the power is nan, wanted one from -1000 to 1000");
   EXPECT_NE(refused({.power = std::vector<PowerKnot>(33)}).find("found 33 knots, wanted 32 or fewer"),

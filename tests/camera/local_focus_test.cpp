@@ -352,6 +352,25 @@ TEST(LocalFocus, SteepSurfacesAreFound) {
   EXPECT_EQ(Camera(lens, wide, {.model = ModelKind::thin}).focal_steepness().steepness, 0);
 }
 
+// Extents alone leave the focus to the film, where exact rays have it.
+TEST(LocalFocus, ExtentsAloneKeepTheFocus) {
+  const Lens lens = testing::data_lens("double_gauss_100mm_f1.1");
+  const std::array points{FocalPoint{.place = {0, 0}, .extent_stops = 2}};
+  const FocalSurface surface(thick_lens(lens), pose_of(lens, wide), points);
+  EXPECT_FALSE(surface.fixes_distance());
+  const Camera plain(lens, wide, {.model = ModelKind::thick}),
+      closed(lens, wide, {.model = ModelKind::thick, .focal_surface = surface});
+  for (const FilmPoint place : {FilmPoint{0, 0}, FilmPoint{-15, 8}}) {
+    const auto crossing = [&](const Camera& camera) {
+      const Ray<double> one = camera.sample({place, 0.1, 0.9}).ray, other = camera.sample({place, 0.6, 0.9}).ray;
+      const Vec3<double> apart = in_plane(one, 0) - in_plane(other, 0);
+      const Vec3<double> by = one.direction / one.direction.z - other.direction / other.direction.z;
+      return glm::dot(by, by) / glm::dot(apart, by);
+    };
+    EXPECT_NEAR(crossing(closed) / crossing(plain), 1, 1e-6);
+  }
+}
+
 TEST(LocalFocus, PinholesSeeEverythingSharp) {
   const Lens lens = double_gauss();
   const Camera plain(lens, wide, {.model = ModelKind::pinhole}),

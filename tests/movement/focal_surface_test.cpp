@@ -163,6 +163,52 @@ TEST(FocalSurface, IsContinuousWhereAPointVanishes) {
   }
 }
 
+// A plane through three points is the same however little one of them weighs; yet it has to leave without a jump, by
+// its fade and by its weight, and in both precisions.
+TEST(FocalSurface, IsContinuousWhereOnlyALineOfPointsStays) {
+  const auto value = [&](double fade, double weight, const FilmPoint& place) {
+    const FocalPoint points[]{{.place = {-9, 0}, .inverse_distance = 1 / 1500.0},
+                              {.place = {0, -8}, .inverse_distance = 0},
+                              {.place = {9, 2}, .inverse_distance = 1 / 2500.0, .weight = weight, .fade = fade}};
+    const FocalSurface surface(lens, film, points);
+    const float x = static_cast<float>(place.x), y = static_cast<float>(place.y);
+    float in_float = 0;
+    surface.at(1, &x, &y, &in_float, static_cast<float*>(nullptr));
+    const double result = surface.at(place).inverse_distance;
+    EXPECT_NEAR(static_cast<double>(in_float), result, 1e-6) << fade << ", " << weight;
+    return result;
+  };
+  for (const FilmPoint place : {FilmPoint{9, 8}, {9, 2}, {-3, 5}}) {
+    for (const bool by_fade : {true, false}) {
+      const auto at = [&](double amount) { return by_fade ? value(amount, 1, place) : value(1, amount, place); };
+      // In steps of 5 % from 1 to nothing.
+      double before = at(1);
+      for (double amount = 0.95; amount > 1e-12; amount *= 0.95) {
+        const double now = at(amount);
+        EXPECT_LT(std::abs(now - before), 0.06 / 1500) << amount;
+        before = now;
+      }
+      EXPECT_NEAR(before, at(0), 1e-9);
+    }
+  }
+}
+
+// Points beside a line by little: floats and doubles agree.
+TEST(FocalSurface, IsTheSameInFloatNextToALineOfPoints) {
+  for (const double beside : {1.0, 0.6, 0.3, 0.1, 0.02, 1e-4}) {
+    const FocalPoint points[]{{.place = {-9, 0}, .inverse_distance = 1 / 1500.0},
+                              {.place = {0, beside}, .inverse_distance = 1 / 3000.0},
+                              {.place = {9, 0}, .inverse_distance = 1 / 2000.0}};
+    const FocalSurface surface(lens, film, points);
+    for (const FilmPoint place : {FilmPoint{4, 9}, {-12, -7}, {1, 1}}) {
+      const float x = static_cast<float>(place.x), y = static_cast<float>(place.y);
+      float in_float = 0;
+      surface.at(1, &x, &y, &in_float, static_cast<float*>(nullptr));
+      EXPECT_NEAR(static_cast<double>(in_float), surface.at(place).inverse_distance, 3e-7) << beside;
+    }
+  }
+}
+
 TEST(FocalSurface, BatchesFramesAndSinglePlacesAgree) {
   const auto points = random_points(7, 16);
   const FocalSurface surface(lens, film, points);

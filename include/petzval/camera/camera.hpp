@@ -40,7 +40,9 @@ struct CameraOptions {
   /// depend on them.
   int threads = 1;
   BokehControls bokeh{};  ///< the defaults change nothing
-  /// Of first-order models: what is in focus at each place of the film, in place of the film's own focus.
+  /// Of first-order models: what is in focus at each place of the film, in place of the film's own focus, where a point
+  /// of it fixes a distance. Connections sample the pupil of the least extent everywhere: where others are stopped down
+  /// by s stops, one in 2^s is of use.
   std::optional<FocalSurface> focal_surface = {};
   ExpressiveLens expressive{};  ///< of first-order models
 };
@@ -156,10 +158,10 @@ class PETZVAL_API Camera {
   /// Where the camera sees a scene point: the film point and raster position of its chief ray.
   Projection project(const Vec3<double>& point, Wavelength wavelength = {}, double time = 0) const noexcept;
 
-  /// Of the focal surface and the film offsets, on a grid of 96 x 64 places of the film as the shutter opens; 0 without
-  /// them. From 1 on rays of several film points coincide. Film samples stay what they are; importance, connections and
-  /// projections know one of these film points, so that light tracing lacks the light of the others: trace paths from
-  /// the film.
+  /// Of the focal surface and the film offsets, on a grid of 96 x 64 places of the film as the shutter opens, which may
+  /// miss folds that are narrower; 0 without them. From 1 on rays of several film points coincide. Film samples stay
+  /// what they are; importance, connections and projections know one of these film points, and where it turns the rays
+  /// over none, so that light tracing lacks light: trace paths from the film.
   FocalSteepness focal_steepness() const noexcept;
 
  private:

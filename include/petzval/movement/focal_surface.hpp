@@ -43,6 +43,9 @@ struct FocalPoint {
 struct FocalSurfaceOptions {
   SurfaceKind kind = SurfaceKind::affine;
   double beta = 3;  ///< 1 to 8: weights fall with the distance in the picture to the power -beta
+  /// In focus where no point fixes a distance, 1/mm from the entrance pupil; unset: what the ideal lens images to the
+  /// film.
+  std::optional<double> otherwise = {};
 };
 
 /// The distance in focus and the extent of the depth of field at every place of the picture, through focal points: what
@@ -65,7 +68,7 @@ struct FocalSurfaceOptions {
 /// extents to those of the points.
 ///
 /// Distances and extents go through the points that fix them, each with weights of its own. If no point fixes a
-/// distance, the distance in focus is that of the film where it crosses the axis; if none fixes an extent, that is 0.
+/// distance, that is FocalSurfaceOptions::otherwise; if none fixes an extent, that is 0.
 /// Results are finite for every place, and the same for all instruction sets and however places are batched.
 class PETZVAL_API FocalSurface {
  public:
@@ -78,6 +81,9 @@ class PETZVAL_API FocalSurface {
   /// 8]; for an entrance pupil at infinity; and for a film without size or place. Points are numbered from 1.
   FocalSurface(const IdealLens& lens, const Film& film, std::span<const FocalPoint> points,
                const FocalSurfaceOptions& options = {});
+
+  /// Whether a point fixes a distance. Otherwise a Camera keeps the focus of its film, and takes extents alone.
+  bool fixes_distance() const noexcept;
 
   /// z of the entrance pupil, lens frame: distances count from here towards -z.
   double origin_z() const noexcept;
@@ -138,7 +144,8 @@ PETZVAL_API std::vector<bool> points_in_view(const IdealLens& lens, const Film& 
 ///     for (...) {
 ///       moment.time += 1 / 24.0;
 ///       fades.advance(1 / 24.0, points_in_view(lens, film, points, moment));
-///       const FocalSurface surface(lens, film, focal_points(lens, film, points, moment, fades.fades()));
+///       const auto seen = focal_points(lens, film, points, moment, fades.fades());
+///       if (!seen.empty()) surface.emplace(lens, film, seen);  // else the last one stays
 ///     }
 class PETZVAL_API FocusFades {
  public:
