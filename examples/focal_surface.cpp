@@ -106,8 +106,8 @@ std::vector<examples::SurfaceMap::Level> distance_levels(double least, double mo
   std::vector<examples::SurfaceMap::Level> result;
   constexpr double lines = 12;
   const auto add = [&](double inverse, const std::string& words) {
-    const bool apart = result.empty() || inverse - result.back().value >= (most - least) / lines;
-    if (inverse > least && inverse < most && apart) result.push_back({inverse, words});
+    const double before = result.empty() ? least : result.back().value;
+    if (inverse < most && inverse - before >= (most - least) / lines) result.push_back({inverse, words});
   };
   add(0, "infinity");
   for (double decade = 1e6; decade >= 10; decade /= 10) {
@@ -137,23 +137,25 @@ petzval::Rgb8Image map_of(const Surface& surface, const Options& options) {
                    std::to_string(surface.points().size()) + (surface.points().size() == 1 ? " point, " : " points, ") +
                    options.surface.kind + ", beta " + number(options.surface.beta);
   sheet.width = film.columns, sheet.height = film.rows;
-  const auto add = [&](std::string title, std::vector<double> values, auto levels_of, const char* low,
-                       const char* high) {
+  const auto add = [&](std::string title, std::vector<double> values, auto levels_of, const char* low, const char* high,
+                       std::optional<double> petzval::FocalPoint::*fixed) {
     const auto [least, most] = std::minmax_element(values.begin(), values.end());
     auto levels = levels_of(*least, *most);
     if (levels.empty()) title += ": the same everywhere, " + number(*least, 6);
-    sheet.maps.push_back({std::move(title), std::move(values), std::move(levels), low, high});
+    auto& map = sheet.maps.emplace_back(
+        examples::SurfaceMap{std::move(title), std::move(values), std::move(levels), low, high, {}});
+    for (std::size_t i = 0; i < surface.points().size(); ++i) {
+      const petzval::FocalPoint& point = surface.points()[i];
+      const petzval::Vec2<double> at = film.raster(point.place);
+      if (point.*fixed) map.points.push_back({at.x, at.y, i + 1});
+    }
   };
   add("Distance in focus from the " + std::string(options.setup.origin == "film" ? "film" : "front vertex") +
           ", on a scale of 1/distance",
-      surface.inverses(film), distance_levels, "farther", "nearer");
+      surface.inverses(film), distance_levels, "farther", "nearer", &petzval::FocalPoint::inverse_distance);
   if (surface.has_extents()) {
     add("Extent of the depth of field, in stops: more is sharp above 0, less below", surface.extents(film), stop_levels,
-        "less is sharp", "more is sharp");
-  }
-  for (const petzval::FocalPoint& point : surface.points()) {
-    const petzval::Vec2<double> at = film.raster(point.place);
-    sheet.points.push_back({at.x, at.y, {}});
+        "less is sharp", "more is sharp", &petzval::FocalPoint::extent_stops);
   }
   sheet.notes = {"Points by their numbers in " + options.surface.points_file +
                  "; the picture as a photograph shows it."};

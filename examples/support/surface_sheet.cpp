@@ -47,7 +47,7 @@ class Drawing {
     for (const SurfaceMap& map : sheet_.maps) {
       font_.draw(page_, margin, y + 17, small, map.title, ink);
       draw_map(map, y + heading);
-      draw_points(y + heading);
+      draw_points(map, y + heading);
       draw_scale(map, y + heading + sheet_.height + below_map);
       y += each;
     }
@@ -100,7 +100,7 @@ class Drawing {
     std::array<int, 2> place{};
     for (const auto& [x, y] : pixels) {
       double room = std::min({x - width / 2, sheet_.width - x - width / 2, y - 8, sheet_.height - y - 8}) - 2.0;
-      for (const SurfacePoint& point : sheet_.points) room = std::min(room, std::hypot(x - point.x, y - point.y) - 24);
+      for (const SurfacePoint& point : map.points) room = std::min(room, std::hypot(x - point.x, y - point.y) - 24);
       for (const auto& other : names_) room = std::min(room, std::hypot(x - other[0], y - other[1]) - 30);
       if (room > best) best = room, place = {x, y};
     }
@@ -110,12 +110,11 @@ class Drawing {
     font_.draw(page_, margin + place[0] - width / 2, map_top + place[1] + 5, small, level.words, ink);
   }
 
-  void draw_points(int map_top) {
+  void draw_points(const SurfaceMap& map, int map_top) {
     names_.clear();
-    for (std::size_t i = 0; i < sheet_.points.size(); ++i) {
-      const SurfacePoint& point = sheet_.points[i];
+    for (const SurfacePoint& point : map.points) {
       if (!(point.x >= 0 && point.x < sheet_.width && point.y >= 0 && point.y < sheet_.height)) continue;
-      const std::string name = std::to_string(i + 1);
+      const std::string name = std::to_string(point.number);
       disc(page_, margin + point.x, map_top + point.y, 11, ink);
       disc(page_, margin + point.x, map_top + point.y, 9.5, {255, 255, 255});
       const int left = margin + static_cast<int>(std::lround(point.x)),

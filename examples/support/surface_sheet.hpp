@@ -1,13 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <span>
+#include <cstddef>
 #include <string>
 #include <vector>
 
 #include "petzval/io/image.hpp"
 
 namespace examples {
+
+/// A focus point by its place in the picture.
+struct SurfacePoint {
+  double x = 0, y = 0;  ///< pixels from the upper left
+  std::size_t number = 0;
+};
 
 /// A number over a picture, as colours with contour lines.
 struct SurfaceMap {
@@ -20,12 +26,7 @@ struct SurfaceMap {
   };
   std::vector<Level> levels;
   std::string low_words, high_words;  ///< of the ends of the scale
-};
-
-/// A focus point by its place in the picture, and what it says.
-struct SurfacePoint {
-  double x = 0, y = 0;  ///< pixels from the upper left
-  std::string words;
+  std::vector<SurfacePoint> points;   ///< through which it goes
 };
 
 struct SurfaceSheet {
@@ -33,7 +34,6 @@ struct SurfaceSheet {
   std::vector<std::string> notes;  ///< lines at the foot
   int width = 0, height = 0;       ///< of the maps
   std::vector<SurfaceMap> maps;    ///< below each other
-  std::vector<SurfacePoint> points;
 };
 
 petzval::Rgb8Image draw_surface_sheet(const SurfaceSheet& sheet);
