@@ -30,7 +30,7 @@ PETZVAL_DEVICE inline const float* list(const float* t, Table::Position at) { re
 
 /// Turns count from +y towards +x.
 PETZVAL_DEVICE inline DevicePlace sample_image(const float* t, float film_x, float film_y, float u, float v, int w) {
-  const float* image = list(t, Table::pupils) + 5 * w;
+  const float* image = list(t, Table::pupil_list) + 5 * w;
   const float way = std::sqrt(v);
   const int blades = whole_number(t, Table::iris_blades);
   float x, y;
@@ -57,7 +57,7 @@ PETZVAL_DEVICE inline DevicePlace sample_polygon(const float* t, float film_x, f
   const float at = t[Table::pupil_radius] > 0 ? height * static_cast<float>(strips) / t[Table::pupil_radius] : 0;
   const int strip = static_cast<int>(at) < strips ? static_cast<int>(at) : strips - 1;
   const float part = at - static_cast<float>(strip);
-  const float* row = list(t, Table::pupils) + (w * strips + strip) * 784;
+  const float* row = list(t, Table::pupil_list) + (w * strips + strip) * 784;
   const auto before = [row, part](int k) {
     const float* a = row + (k == 64 ? 4 : 12 + 8 * k);
     return a[0] + part * (a[1] + part * (a[2] + part * a[3]));
@@ -114,8 +114,8 @@ PETZVAL_DEVICE inline DevicePlace sample_cell(const float* t, float film_x, floa
   if (!(std::fabs(film_x) <= 1.000001f * width)) return {};
   const float column = width > 0 ? std::fabs(film_x) / width * static_cast<float>(columns) : 0;
   const int j = static_cast<int>(column) < columns ? static_cast<int>(column) : columns - 1;
-  const DeviceCell cell{list(t, Table::pupils) + ((w * rows + i) * columns + j) * 1122, column - static_cast<float>(j),
-                        part_y};
+  const DeviceCell cell{list(t, Table::pupil_list) + ((w * rows + i) * columns + j) * 1122,
+                        column - static_cast<float>(j), part_y};
   if (!(cell.before(64) > 0)) return {};
   // u runs on where quadrants meet.
   float share = film_x < 0 ? 1 - u : u;
@@ -141,8 +141,8 @@ PETZVAL_DEVICE inline DevicePlace sample_bladed(const float* t, float film_x, fl
   const float beside = turn - static_cast<float>(nearest), sign = beside < 0 ? -1.0f : 1.0f;
   const float column = 2 * std::fabs(beside) * static_cast<float>(columns);
   const int j = static_cast<int>(column) < columns ? static_cast<int>(column) : columns - 1;
-  const DeviceCell cell{list(t, Table::pupils) + ((w * rows + i) * columns + j) * 1139, column - static_cast<float>(j),
-                        row - static_cast<float>(i)};
+  const DeviceCell cell{list(t, Table::pupil_list) + ((w * rows + i) * columns + j) * 1139,
+                        column - static_cast<float>(j), row - static_cast<float>(i)};
   if (!(cell.before(64) > 0)) return {};
   // u begins at the iris's first corner.
   const int first = sign > 0 ? (blades - blade) % blades : blade;

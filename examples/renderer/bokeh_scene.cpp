@@ -201,10 +201,9 @@ class Job {
   /// Through the points of the file, where the model sees them.
   petzval::FocalSurface surface() const {
     const renderer::LensCamera lens = camera(chosen_.model);
-    return examples::read_focal_surface(options_.surface, lens.camera(),
-                                        examples::named(options_.setup.origin, examples::distance_origins),
-                                        options_.setup.focus_mm,
-                                        [&](const petzval::Vec3<double>& world) { return lens.to_lens(world); })
+    return examples::read_focal_surface(
+               options_.surface, lens.camera(), examples::named(options_.setup.origin, examples::distance_origins),
+               options_.setup.focus_mm, [&](const petzval::Vec3<double>& world) { return lens.to_lens(world); })
         .surface;
   }
   void say_where_focus_is_steep(const petzval::Camera& camera) const {

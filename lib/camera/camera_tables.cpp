@@ -120,14 +120,14 @@ void CameraTables::check(std::span<const float> tables, const std::string& where
   switch (number(pupils_kind)) {
     case 0:
       check_number(strips, 1, 1 << 16);
-      check_list(pupils, w * number(strips) * FilmPupilArrays::strip_size);
+      check_list(pupil_list, w * number(strips) * FilmPupilArrays::strip_size);
       break;
-    case 1: check_list(pupils, w * FilmPupilArrays::image_size); break;
+    case 1: check_list(pupil_list, w * FilmPupilArrays::image_size); break;
     case 2: {
       check_number(rows, 1, 1 << 16), check_number(columns, 1, 1 << 16);
       const std::size_t cells = number(rows) * number(columns);
       check_list(half_widths, number(rows) + 1);
-      check_list(pupils, cells), check_list(pupils, w * cells * FilmPupilArrays::cell_size);
+      check_list(pupil_list, cells), check_list(pupil_list, w * cells * FilmPupilArrays::cell_size);
       break;
     }
     case 3:
@@ -137,7 +137,7 @@ void CameraTables::check(std::span<const float> tables, const std::string& where
         refuse(std::to_string(turn) + " at position " + std::to_string(first_blade) + ", wanted 0 to " +
                std::to_string(number(blades)));
       }
-      check_list(pupils, w * number(rows) * number(columns) * FilmPupilArrays::bladed_size);
+      check_list(pupil_list, w * number(rows) * number(columns) * FilmPupilArrays::bladed_size);
       break;
     default: refuse("pupils of kind " + std::to_string(number(pupils_kind)) + ", wanted 0 to 3");
   }
@@ -182,7 +182,7 @@ std::vector<float> Camera::tables() const {
   to.begin(Table::scales), to.add(data.wavelengths.scales());
 
   const FilmPupilArrays pupils = data.model.pupils().arrays();
-  to.begin(Table::pupils), to.list.insert(to.list.end(), pupils.pupils.begin(), pupils.pupils.end());
+  to.begin(Table::pupil_list), to.list.insert(to.list.end(), pupils.pupils.begin(), pupils.pupils.end());
   to.set(Table::pupils_kind, static_cast<int>(pupils.kind));
   to.set(Table::pupil_radius, pupils.film_radius);
   to.set(Table::strips, pupils.strips);

@@ -17,7 +17,7 @@ namespace petzval::inline v0 {
 ///     wavelengths            [wavelength] nm
 ///     scales                 [wavelength] of weights: weight = scale area depth^2 / length^4, length that of the line
 ///                            from the film point to the place in the pupil, depth from film_z to pupil_z
-///     pupils, half_widths, iris  as in FilmPupilArrays
+///     pupil_list, half_widths, iris  as in FilmPupilArrays
 ///     rays, first order      [wavelength] a, b, c, d along x, then along y: place = a f + b p and slope = c f + d p of
 ///                            film and pupil point, in the plane reference_z; rays run towards -z
 ///     rays, polynomial       [wavelength] the coefficients of direction_by_film, direction_by_pupil, offset_by_film
@@ -45,7 +45,7 @@ struct CameraTables {
     front_curvature,  ///< 0: a plane
     wavelengths,      ///< where the lists begin
     scales,
-    pupils,
+    pupil_list,
     pupils_kind,   ///< a FilmPupilArrays::Kind: 0 strips, 1 images, 2 cells, 3 bladed
     pupil_radius,  ///< film points farther from the axis see nothing
     strips,
