@@ -22,33 +22,6 @@ constexpr std::array kinds{petzval::SurfaceKind::affine, petzval::SurfaceKind::s
 constexpr Range weight_range{0, std::numeric_limits<double>::max(), "a finite number, 0 or more"};
 constexpr Range part_range{0, 1, "a number from 0 to 1"};
 
-/// An object of the file and its name in messages.
-struct Entry {
-  std::string where;
-  const Json& json;
-
-  std::optional<double> number(const char* key, const Range& range) const {
-    if (!json.contains(key)) return {};
-    const Json& value = json.at(key);
-    if (!value.is_number() || !(value.get<double>() >= range.least && value.get<double>() <= range.most)) {
-      refuse(where + ": " + key, value, range.words);
-    }
-    return value.get<double>();
-  }
-  template <std::size_t count>
-  std::optional<std::array<double, count>> numbers(const char* key, const char* wanted) const {
-    if (!json.contains(key)) return {};
-    const Json& value = json.at(key);
-    const auto finite = [](const Json& c) { return c.is_number() && std::isfinite(c.get<double>()); };
-    if (!value.is_array() || value.size() != count || !std::all_of(value.begin(), value.end(), finite)) {
-      refuse(where + ": " + key, value, wanted);
-    }
-    std::array<double, count> result;
-    for (std::size_t i = 0; i < count; ++i) result[i] = value[i].get<double>();
-    return result;
-  }
-};
-
 std::vector<petzval::FocalPoint> points_of(const std::filesystem::path& file, const petzval::Camera& camera,
                                            petzval::DistanceOrigin origin, const WorldToLens& to_lens) {
   const Json document = read_json(file);
@@ -60,8 +33,8 @@ std::vector<petzval::FocalPoint> points_of(const std::filesystem::path& file, co
   const double entrance_z = petzval::pupils(camera.lens()).entrance.z, counted_from = origin_z(camera.lens(), origin);
   std::vector<petzval::FocalPoint> result;
   for (const Json& json : document["points"]) {
-    const Entry entry{file.string() + ": point " + std::to_string(result.size() + 1), json};
-    check_keys(entry.where, json, {"pixel", "world_mm", "distance_mm", "extent_stops", "blur_px", "weight", "fade"},
+    const JsonEntry entry{file.string() + ": point " + std::to_string(result.size() + 1), json};
+    entry.keys({"pixel", "world_mm", "distance_mm", "extent_stops", "blur_px", "weight", "fade"},
                "pixel or world_mm, distance_mm, extent_stops, blur_px, weight and fade");
     const auto pixel = entry.numbers<2>("pixel", "two finite numbers, [x, y]");
     const auto world = entry.numbers<3>("world_mm", "three finite numbers, [x, y, z]");

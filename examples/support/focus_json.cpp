@@ -18,48 +18,26 @@ namespace {
 constexpr Range extent_range{-20, 20, "a number of stops from -20 to 20"};
 constexpr Range weight_range{0, std::numeric_limits<double>::max(), "a finite number, 0 or more"};
 
-/// An object of the file and its name in messages.
-struct Entry {
-  std::string where;
-  const Json& json;
-
-  void keys(std::initializer_list<std::string_view> known, const std::string& words) const {
-    check_keys(where, json, known, words);
-  }
-
+/// A target, a point or a key.
+struct Entry : JsonEntry {
   const Json& at(const char* key, const std::string& wanted) const {
     if (!json.contains(key)) throw petzval::Error(where + ": " + key + ": found none, wanted " + wanted);
     return json.at(key);
   }
-
   double number(const char* key, double unless, const Range& range) const {
-    if (!json.contains(key)) return unless;
-    const Json& value = json.at(key);
-    if (!value.is_number()) refuse(where + ": " + key, value, range.words);
-    const auto x = value.get<double>();
-    if (!(x >= range.least && x <= range.most)) refuse(where + ": " + key, value, range.words);
-    return x;
+    return JsonEntry::number(key, range).value_or(unless);
   }
-
   bool flag(const char* key, bool unless) const {
     if (!json.contains(key)) return unless;
     if (!json.at(key).is_boolean()) refuse(where + ": " + key, json.at(key), "true or false");
     return json.at(key);
   }
-
-  std::optional<double> extent() const {
-    if (!json.contains("extent_stops")) return {};
-    return number("extent_stops", 0, extent_range);
-  }
-
+  std::optional<double> extent() const { return JsonEntry::number("extent_stops", extent_range); }
   petzval::ScenePoint place() const {
-    const std::string wanted = "three finite numbers, [x, y, z]";
-    const Json& value = at("position_mm", wanted);
-    const auto finite = [](const Json& c) { return c.is_number() && std::isfinite(c.get<double>()); };
-    if (!value.is_array() || value.size() != 3 || !std::all_of(value.begin(), value.end(), finite)) {
-      refuse(where + ": position_mm", value, wanted);
-    }
-    return {{value[0], value[1], value[2]}, flag("at_infinity", false)};
+    constexpr const char* wanted = "three finite numbers, [x, y, z]";
+    at("position_mm", wanted);
+    const auto [x, y, z] = *numbers<3>("position_mm", wanted);
+    return {{x, y, z}, flag("at_infinity", false)};
   }
 };
 
@@ -67,7 +45,8 @@ struct Entry {
 template <class Read>
 void for_entries(const std::string& where, const Json& list, const std::string& name, Read read) {
   if (!list.is_array() || list.empty()) refuse(where, list, "a list of one " + name + " or more");
-  for (std::size_t i = 0; i < list.size(); ++i) read(Entry{where + ": " + name + " " + std::to_string(i + 1), list[i]});
+  for (std::size_t i = 0; i < list.size(); ++i)
+    read(Entry{{where + ": " + name + " " + std::to_string(i + 1), list[i]}});
 }
 
 }  // namespace

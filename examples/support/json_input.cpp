@@ -2,6 +2,7 @@
 #include "json_input.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 #include <string>
 #include <vector>
@@ -48,6 +49,24 @@ void check_keys(const std::string& where, const Json& json, std::initializer_lis
     if (std::find(known.begin(), known.end(), key) != known.end()) continue;
     throw petzval::Error(where + ": found the key " + Json(key).dump() + ", wanted " + words);
   }
+}
+
+std::optional<double> JsonEntry::number(const char* key, const Range& range) const {
+  if (!json.contains(key)) return {};
+  const Json& value = json.at(key);
+  const bool within = value.is_number() && value.get<double>() >= range.least && value.get<double>() <= range.most;
+  if (!within) refuse(where + ": " + key, value, range.words);
+  return value.get<double>();
+}
+
+std::vector<double> JsonEntry::list(const char* key, std::size_t count, const char* wanted) const {
+  if (!json.contains(key)) return {};
+  const Json& value = json.at(key);
+  const auto finite = [](const Json& c) { return c.is_number() && std::isfinite(c.get<double>()); };
+  if (!value.is_array() || value.size() != count || !std::all_of(value.begin(), value.end(), finite)) {
+    refuse(where + ": " + key, value, wanted);
+  }
+  return value.get<std::vector<double>>();
 }
 
 }  // namespace examples
