@@ -3,8 +3,8 @@
 // real lens.
 //
 //   expressive_lens data/lenses/double_gauss_100mm_f1.35.json --focus-mm 1000 --from-lens 2 --out out
-//   expressive_lens data/lenses/double_gauss_100mm_f2_28deg.json --power-spline 0:1 0.7:1.02 1:0.97 --dispersion 4
-//   --out out
+//   expressive_lens data/lenses/double_gauss_100mm_f2_28deg.json --power-spline 0:1 0.7:1.02 1:0.97
+//                   --dispersion 4 --out out
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -142,7 +142,7 @@ void draw(Options options) {
   const double focus = options.setup.focus_mm;
   std::vector<double> lights = options.light_mm;
   if (lights.empty()) lights = std::isinf(focus) ? std::vector<double>{10000} : std::vector{0.85 * focus, 1.2 * focus};
-  const double origin_z = options.setup.origin == "film" ? lens.film_z() : 0;
+  const double from_z = examples::origin_z(lens, examples::named(options.setup.origin, examples::distance_origins));
   const std::vector<double> fields = fields_rad(lens, film);
   examples::Sheet sheet{
       "Highlights of an expressive lens",
@@ -150,14 +150,13 @@ void draw(Options options) {
       {lens.name() + " at f/" + number(petzval::real_f_number(lens), 3) + ", " + examples::focus_caption(focus) +
            " from the " + (options.setup.origin == "film" ? "film" : "front vertex") +
            ". A point of light over the field, as a photograph shows it. The tiles of a light have one scale, and each "
-           "its "
-           "own exposure.",
+           "its own exposure.",
        "Fields are those of film points on the way to the corner of " + options.setup.film_mm +
            " mm. RMS: of the distance of hits from their centroid."}};
   Json highlights_json = Json::array();
   examples::Progress progress("expressive lens", lights.size() * rows.size());
   for (const double light_mm : lights) {
-    const Highlights highlights(lens, light_mm, origin_z, options);
+    const Highlights highlights(lens, light_mm, from_z, options);
     double half_width = 0;
     for (const Row& row : rows) {
       for (const double field : fields) half_width = std::max(half_width, highlights.radius_mm(field, row.camera));
@@ -194,8 +193,7 @@ int main(int argc, char** argv) {
   examples::App app(
       "Draws highlights over the field of a lens, of its first-order model with expressive aberrations, and without "
       "them: DIR/highlights.png, and the numbers of the aberrations and of the highlights as DIR/expressive.json. "
-      "Without any option of "
-      "them they are those of the real lens.",
+      "Without any option of them they are those of the real lens.",
       "expressive_lens");
   app.add_option("LENS", options.lens_file, "lens prescription (JSON as in data/lenses)")->required();
   examples::add_camera(app, options.setup);

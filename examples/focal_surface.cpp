@@ -73,18 +73,15 @@ class Surface {
   /// 1 / distance from the origin, of 1 / distance from the entrance pupil.
   double inverse(double from_pupil) const { return from_pupil / (1 + from_pupil * beyond_pupil_); }
 
-  /// Row by row from the upper left.
-  std::vector<double> inverses(const petzval::Film& film) const {
+  /// Of all pixels of a film, row by row from the upper left.
+  struct Frame {
+    std::vector<double> inverses, extents;
+  };
+  Frame frame(const petzval::Film& film) const {
     const std::size_t pixels = static_cast<std::size_t>(film.columns) * static_cast<std::size_t>(film.rows);
-    std::vector<double> result(pixels);
-    surface_->frame<double>(film, petzval::processor_threads(), result.data(), nullptr);
-    for (double& value : result) value = inverse(value);
-    return result;
-  }
-  std::vector<double> extents(const petzval::Film& film) const {
-    const std::size_t pixels = static_cast<std::size_t>(film.columns) * static_cast<std::size_t>(film.rows);
-    std::vector<double> result(pixels), distances(pixels);
-    surface_->frame<double>(film, petzval::processor_threads(), distances.data(), result.data());
+    Frame result{std::vector<double>(pixels), std::vector<double>(pixels)};
+    surface_->frame<double>(film, petzval::processor_threads(), result.inverses.data(), result.extents.data());
+    for (double& value : result.inverses) value = inverse(value);
     return result;
   }
   bool has_extents() const {
@@ -137,6 +134,7 @@ petzval::Rgb8Image map_of(const Surface& surface, const Options& options) {
                    std::to_string(surface.points().size()) + (surface.points().size() == 1 ? " point, " : " points, ") +
                    options.surface.kind + ", beta " + number(options.surface.beta);
   sheet.width = film.columns, sheet.height = film.rows;
+  const Surface::Frame frame = surface.frame(film);
   const auto add = [&](std::string title, std::vector<double> values, auto levels_of, const char* low, const char* high,
                        std::optional<double> petzval::FocalPoint::*fixed) {
     const auto [least, most] = std::minmax_element(values.begin(), values.end());
@@ -152,9 +150,9 @@ petzval::Rgb8Image map_of(const Surface& surface, const Options& options) {
   };
   add("Distance in focus from the " + std::string(options.setup.origin == "film" ? "film" : "front vertex") +
           ", on a scale of 1/distance",
-      surface.inverses(film), distance_levels, "farther", "nearer", &petzval::FocalPoint::inverse_distance);
+      frame.inverses, distance_levels, "farther", "nearer", &petzval::FocalPoint::inverse_distance);
   if (surface.has_extents()) {
-    add("Extent of the depth of field, in stops: more is sharp above 0, less below", surface.extents(film), stop_levels,
+    add("Extent of the depth of field, in stops: more is sharp above 0, less below", frame.extents, stop_levels,
         "less is sharp", "more is sharp", &petzval::FocalPoint::extent_stops);
   }
   sheet.notes = {"Points by their numbers in " + options.surface.points_file +
@@ -183,7 +181,7 @@ void write(const Options& options) {
       {surface.lens().name(),
        "f/" + number(petzval::real_f_number(surface.lens()), 3) + ", film " + options.setup.film_mm + " mm.",
        surface.ideal(), surface.film(), surface.surface(), surface.points()});
-  const std::vector<double> inverses = surface.inverses(surface.film());
+  const std::vector<double> inverses = surface.frame(surface.film()).inverses;
   const std::string found = options.queries_file.empty() ? "" : answers(surface, options.queries_file);
 
   const std::filesystem::path folder = options.out_folder;

@@ -7,6 +7,7 @@
 #include <limits>
 #include <string_view>
 
+#include "camera_setup.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/sobol.hpp"
 #include "petzval/figure/psf_image.hpp"
@@ -46,9 +47,9 @@ void check_light(const petzval::Lens& lens, const BokehSetup& setup, double orig
 
 BokehScene focused_scene(const petzval::Lens& lens, double focus_mm, const BokehSetup& setup) {
   const petzval::Lens focused = petzval::with_focus(lens, focus_mm, {setup.criterion, setup.origin});
-  const double origin_z = setup.origin == petzval::DistanceOrigin::film ? focused.film_z() : 0;
-  check_light(lens, setup, origin_z);
-  return {focused, {setup.field_rad, origin_z - setup.light_mm}};
+  const double from_z = origin_z(focused, setup.origin);
+  check_light(lens, setup, from_z);
+  return {focused, {setup.field_rad, from_z - setup.light_mm}};
 }
 
 petzval::Camera camera_of(const BokehScene& scene, petzval::CameraOptions options) {

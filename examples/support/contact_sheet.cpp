@@ -32,6 +32,13 @@ void draw_scale_bar(petzval::Rgb8Image& picture, Font& font, int x, int bottom, 
   font.draw(picture, x + 12, bottom - 21, 13, number(length, 3) + " mm", ink);
 }
 
+/// The most lines below a tile of the row.
+int caption_lines(const SheetRow& row) {
+  std::size_t most = 0;
+  for (const Tile& tile : row.tiles) most = std::max(most, tile.captions.size());
+  return static_cast<int>(most);
+}
+
 }  // namespace
 
 petzval::Rgb8Image draw_sheet(const Sheet& sheet) {
@@ -41,7 +48,7 @@ petzval::Rgb8Image draw_sheet(const Sheet& sheet) {
   for (const std::string& note : sheet.notes) width = std::max(width, 2 * margin + font.width(note, caption_size));
   for (const SheetRow& row : sheet.rows) {
     const int tile = row.tiles.front().picture.width, tile_height = row.tiles.front().picture.height;
-    const int lines = static_cast<int>(row.tiles.front().captions.size());
+    const int lines = caption_lines(row);
     width = std::max(width, 2 * margin + static_cast<int>(row.tiles.size()) * (tile + gap) - gap);
     width = std::max(width, 2 * margin + font.width(row.subtitle, caption_size));
     height += row_title_height + tile_height + lines * line + 2 * gap;
@@ -68,7 +75,7 @@ petzval::Rgb8Image draw_sheet(const Sheet& sheet) {
       x += tile_width + gap;
     }
     draw_scale_bar(picture, font, margin, y + tile_height, tile_width, row.pixel_mm);
-    y += tile_height + static_cast<int>(row.tiles.front().captions.size()) * line + 2 * gap;
+    y += tile_height + caption_lines(row) * line + 2 * gap;
   }
   y += line;
   for (const std::string& note : sheet.notes) {

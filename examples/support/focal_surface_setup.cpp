@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "camera_setup.hpp"
 #include "json_input.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/paraxial/first_order.hpp"
@@ -91,15 +92,6 @@ void add_surface_kind(App& app, FocalSurfaceSetup& setup) {
       ->capture_default_str();
   add_number(app, "--beta", setup.beta, {1, 8, "a number from 1 to 8"},
              "weights of points fall with their distance in the picture to the power -beta");
-}
-
-double origin_z(const petzval::Lens& lens, petzval::DistanceOrigin origin) {
-  switch (origin) {
-    case petzval::DistanceOrigin::film: return lens.film_z();
-    case petzval::DistanceOrigin::front_principal: return petzval::first_order(lens).front_principal_z;
-    case petzval::DistanceOrigin::front_vertex: break;
-  }
-  return 0;
 }
 
 ReadSurface read_focal_surface(const FocalSurfaceSetup& setup, const petzval::Camera& camera,

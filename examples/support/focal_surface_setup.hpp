@@ -40,7 +40,4 @@ struct ReadSurface {
 ReadSurface read_focal_surface(const FocalSurfaceSetup& setup, const petzval::Camera& camera,
                                petzval::DistanceOrigin origin, double focus_mm, const WorldToLens& to_lens);
 
-/// z of the origin of distances, lens frame.
-double origin_z(const petzval::Lens& lens, petzval::DistanceOrigin origin);
-
 }  // namespace examples

@@ -28,12 +28,15 @@
 #include "local_focus_loops.hpp"
 #include "make_model.hpp"
 #include "movement/moving_least_squares.hpp"
+#include "movement/targets.hpp"
 #include "paraxial_model.hpp"
 #include "petzval/core/error.hpp"
 #include "tilted_pinhole.hpp"
 
 namespace petzval::inline v0::camera_detail {
 namespace {
+
+using movement_detail::pupil_scale;
 
 using Jet = ceres::Jet<double, 2>;
 
@@ -96,8 +99,6 @@ double zero_of(const auto& f, double scale) {
   return focus_detail::root(f, low, high);
 }
 
-double scale_of(double stops) noexcept { return std::exp2(-stops / 2); }
-
 /// A number by film x and y.
 Jet jet(double value, const Vec2<double>& by) noexcept {
   Jet result(value);
@@ -134,7 +135,6 @@ struct LocalFocus::Data {
   std::optional<movement_detail::MovingLeastSquares> offsets = {};
   FocusRules<double> rules = {};
   FocusRules<float> rules_in_float = {};
-  double surface_z = 0;
   std::vector<At> compiled = {};
   std::size_t primary = 0;
   lens_detail::BetweenWavelengths<3> between = {};  // middle, radius and dispersion
@@ -144,7 +144,7 @@ struct LocalFocus::Data {
   /// Of a wavelength whose stop has its image at `middle` times the film point, as wide as `radius`.
   At at(const SectionMaps& maps, double middle, double radius, double dispersion) const noexcept {
     EntranceMaps<double> found = entrance_maps(maps.y, first_order().z(), middle, radius);
-    found.from_surface = found.z - surface_z;
+    if (surface) found.from_surface = found.z - surface->origin_z();
     return {found, dispersion, middle};
   }
   /// The film point whose chief ray has a slope, and how much nearer it is to the plane of the pupil. Nothing for a
@@ -186,7 +186,7 @@ struct LocalFocus::Data {
     FilmPointFocus<double> result{nearer, 0, 0, 1};
     if (surface) {
       const auto values = surface->at(place);
-      result.surface = values.inverse_distance, result.scale = scale_of(values.extent_stops);
+      result.surface = values.inverse_distance, result.scale = pupil_scale(values.extent_stops);
     }
     if (offsets) result.offset = offsets->at(place);
     return result;
@@ -196,7 +196,7 @@ struct LocalFocus::Data {
     if (surface) {
       const auto at_place = surface->slopes(place);
       result.surface = jet(at_place.values.inverse_distance, at_place.inverse_distance);
-      const double scale = scale_of(at_place.values.extent_stops);
+      const double scale = pupil_scale(at_place.values.extent_stops);
       result.scale = jet(scale, at_place.extent_stops * (-std::log(2.0) / 2 * scale));
     }
     if (offsets) {
@@ -234,7 +234,6 @@ LocalFocus::LocalFocus(const LensFacts& facts, const Film& film, const AnyRayMod
   if (!expressive.film_offsets.empty()) data.offsets = offsets_of(where, expressive.film_offsets, film, -space.depth());
   if (model.pinhole()) return;
 
-  data.surface_z = surface ? surface->origin_z() : 0;
   const IrisImages images = iris_images(model.kind(), facts);
   std::vector<std::array<double, 3>> values;
   for (std::size_t w = 0; w < wavelengths; ++w) {
@@ -284,7 +283,7 @@ void LocalFocus::bend(std::size_t count, const T* film_x, const T* film_y, const
     scale.fill(T(1));
     if (data.surface) {
       data.surface->at(n, x, y, surface.data(), scale.data());
-      for (std::size_t i = 0; i < n; ++i) scale[i] = std::exp2(scale[i] * T(-0.5));
+      for (std::size_t i = 0; i < n; ++i) scale[i] = pupil_scale(scale[i]);
     }
     if (data.offsets) data.offsets->at(n, x, y, offset.data());
     const auto run = [&](std::size_t from, std::size_t to, const Data::At& at) {
@@ -411,7 +410,7 @@ FocalSteepness LocalFocus::steepness(const std::optional<TiltedPlane>& plane) co
 
 EntrancePupilTable LocalFocus::entrances(const Lens& lens, const AnyRayModel& model) const {
   const Data& data = *data_;
-  const double widest = data.surface ? scale_of(data.surface->least_extent()) : 1;
+  const double widest = data.surface ? pupil_scale(data.surface->least_extent()) : 1;
   double least_power = 0, most_power = 0;
   constexpr int steps = 64;
   for (int i = 0; i <= steps; ++i) {

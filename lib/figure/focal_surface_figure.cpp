@@ -15,19 +15,18 @@
 namespace petzval::inline v0 {
 namespace {
 
+using figure_detail::axis_style;
+using figure_detail::film_style;
+using figure_detail::focus_style;
 using figure_detail::SceneFrame;
 using figure_detail::ScenePanel;
 using figure_detail::SectionBox;
 using figure_detail::SectionPoint;
 using figure_detail::Svg;
 
-constexpr std::string_view surface_style = "fill=\"none\" stroke=\"#1a8f3c\" stroke-width=\"2\"";
 constexpr std::string_view beside_style = "fill=\"none\" stroke=\"#9bd3ab\" stroke-width=\"1\"";
-constexpr std::string_view film_style = "fill=\"none\" stroke=\"#111\" stroke-width=\"2.6\"";
 constexpr std::string_view lens_style = "fill=\"none\" stroke=\"#1f5fc4\" stroke-width=\"2\"";
 constexpr std::string_view cone_style = "fill=\"none\" stroke=\"#888\" stroke-width=\"0.8\"";
-constexpr std::string_view axis_style =
-    "fill=\"none\" stroke=\"#888\" stroke-width=\"0.8\" stroke-dasharray=\"14 3 2 3\"";
 
 class Figure {
  public:
@@ -110,7 +109,7 @@ class Figure {
       panel.stroke({entrance_z(), 0}, at(place(t, across_x), reach_, across_x), cone_style);
     }
     for (const double beside : {-0.8, -0.4, 0.4, 0.8}) draw_surface(panel, across_x, beside, beside_style);
-    draw_surface(panel, across_x, 0, surface_style);
+    draw_surface(panel, across_x, 0, focus_style);
     // Lens and film would be too small to see to scale.
     const double least = 10 / frame.px_per_mm;
     const double pupil = std::max(view_.lens.pupils.entrance.diameter / 2, least);

@@ -12,6 +12,12 @@
 
 namespace petzval::inline v0::figure_detail {
 
+/// Of the film's exposed part, of what is in focus, and of the axis.
+inline constexpr std::string_view film_style = "fill=\"none\" stroke=\"#111\" stroke-width=\"2.6\"";
+inline constexpr std::string_view focus_style = "fill=\"none\" stroke=\"#1a8f3c\" stroke-width=\"2\"";
+inline constexpr std::string_view axis_style =
+    "fill=\"none\" stroke=\"#888\" stroke-width=\"0.8\" stroke-dasharray=\"14 3 2 3\"";
+
 /// The part of a section that a panel shows, mm.
 struct SectionBox {
   double z_min = 0, z_max = 0, low = 0, high = 0;

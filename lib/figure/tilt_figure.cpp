@@ -16,6 +16,9 @@
 namespace petzval::inline v0 {
 namespace {
 
+using figure_detail::axis_style;
+using figure_detail::film_style;
+using figure_detail::focus_style;
 using figure_detail::SceneFrame;
 using figure_detail::ScenePanel;
 using figure_detail::SectionBox;
@@ -25,16 +28,12 @@ using figure_detail::SectionTrace;
 using figure_detail::Svg;
 using figure_detail::svg_number;
 
-constexpr std::string_view film_style = "fill=\"none\" stroke=\"#111\" stroke-width=\"2.6\"";
 constexpr std::string_view film_plane = "fill=\"none\" stroke=\"#111\" stroke-width=\"0.8\"";
 constexpr std::string_view film_before = "fill=\"none\" stroke=\"#111\" stroke-width=\"1.5\" stroke-dasharray=\"5 3\"";
-constexpr std::string_view focus_style = "fill=\"none\" stroke=\"#1a8f3c\" stroke-width=\"2\"";
 constexpr std::string_view focus_before =
     "fill=\"none\" stroke=\"#1a8f3c\" stroke-width=\"1.2\" stroke-dasharray=\"5 3\"";
 constexpr std::string_view principal_plane = "fill=\"none\" stroke=\"#1f5fc4\" stroke-width=\"1\"";
 constexpr std::string_view focal_plane = "fill=\"none\" stroke=\"#b97a00\" stroke-width=\"1\" stroke-dasharray=\"2 3\"";
-constexpr std::string_view axis_style =
-    "fill=\"none\" stroke=\"#888\" stroke-width=\"0.8\" stroke-dasharray=\"14 3 2 3\"";
 constexpr std::string_view chief_style = "fill=\"none\" stroke=\"#d0331f\" stroke-width=\"0.6\"";
 constexpr std::string_view meeting_style = "fill=\"none\" stroke=\"#7b3fb5\" stroke-width=\"1.4\"";
 constexpr std::string_view wedge_style = "fill=\"#dff2e3\"";

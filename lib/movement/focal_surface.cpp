@@ -150,7 +150,7 @@ FocalSurface::FocalSurface(const IdealLens& lens, const Film& film, std::span<co
     std::vector<WeighedValue> moved = objects;
     for (std::size_t k = 0; k < moved.size(); ++k) {
       const double blur = points[numbers[k]].blur_mm;
-      const double stopped = std::exp2(-extent.at(moved[k].place) / 2);
+      const double stopped = movement_detail::pupil_scale(extent.at(moved[k].place));
       if (blur != 0) moved[k].value += blur / (per_inverse * stopped);
       if (!(moved[k].value >= farthest && moved[k].value <= nearest)) {
         throw Error(point_name(numbers[k]) + "a blur of " + to_text(blur) + " mm wants the surface at " +
@@ -170,7 +170,7 @@ double FocalSurface::origin_z() const noexcept { return fields_->origin_z; }
 FocalSurface::Values FocalSurface::at(const FilmPoint& place) const noexcept {
   Values values{fields_->distance.at(place), fields_->extent.at(place), 0};
   if (fields_->objects) {
-    const double stopped = std::exp2(-values.extent_stops / 2);
+    const double stopped = movement_detail::pupil_scale(values.extent_stops);
     values.blur_mm = fields_->blur_per_inverse * stopped * (values.inverse_distance - fields_->objects->at(place));
   }
   return values;

@@ -31,6 +31,12 @@ void weigh_nearer_more(const IdealLens& lens, std::span<FocusTarget> targets);
 /// front focal plane or far beside the lens.
 inline constexpr double farthest_film = 1e9;
 
+/// How large the pupil is for an extent of the depth of field in stops, over that for 0.
+template <class T>
+T pupil_scale(T extent_stops) noexcept {
+  return std::exp2(extent_stops * T(-0.5));
+}
+
 /// The weighted RMS of the blur minus the wanted blur over the targets used, without overflow; 0 if there are none.
 inline double rms_error(std::span<const FocusTarget> targets, std::span<const TargetBlur> blurs) noexcept {
   const auto error = [&](std::size_t i) {

@@ -32,7 +32,8 @@ struct FocalPoint {
   /// Of the object there, 1/mm, along the axis from the entrance pupil towards the scene; 0: infinity.
   std::optional<double> inverse_distance = {};
   /// Diameter that the blur of that object should have, signed as FocusTarget::blur_mm: the surface passes it by so
-  /// much. For n pixels: n Film::pixel_mm().
+  /// much, by the paraxial pupil of the ideal lens. A camera's pupil is as bright as the real one: its blur is 4 %
+  /// larger at f/1.8 and 14 % at f/1.1, for double Gauss lenses. For n pixels: n Film::pixel_mm().
   double blur_mm = 0;
   /// Of the depth of field, in stops: +2 as if stopped down by two stops, at the same exposure.
   std::optional<double> extent_stops = {};
