@@ -37,6 +37,7 @@ endfunction()
 
 petzval_install(core DESCRIPTION "Real lenses for renderers: prescriptions, ray tracing, pupils, focus, point spread functions"
   REQUIRES glm STATIC_LIBS -ldl)
+petzval_install(blur DESCRIPTION "Lens blur of layered pictures" REQUIRES petzval-core)
 petzval_install(fit DESCRIPTION "Least-squares fits for lens optics" REQUIRES petzval-core)
 petzval_install(figure DESCRIPTION "SVG figures of lenses" REQUIRES petzval-core)
 petzval_install(image DESCRIPTION "EXR and PNG images" REQUIRES petzval-core STATIC_REQUIRES "OpenEXR libpng")

@@ -54,10 +54,10 @@ if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
   set(PETZVAL_X86_64 ON)
 endif()
 
-# petzval_lanes(block.cpp tracer_avx2_fast avx2 PETZVAL_FAST=1 ...): loops for one instruction set, as an object of the core with
-# flags and definitions of its own. Fused operations where PETZVAL_FAST=1 is among these. Optimised whatever the kind of build,
+# petzval_lanes(core block.cpp tracer_avx2_fast avx2 PETZVAL_FAST=1 ...): loops for one instruction set, as an object of a library
+# with flags and definitions of its own. Fused operations where PETZVAL_FAST=1 is among these. Optimised whatever the kind of build,
 # so that no inline function of a header stays behind for the linker to give to files of another instruction set.
-function(petzval_lanes file name set)
+function(petzval_lanes library file name set)
   set(flags_avx2 -mavx2 -mfma)
   set(flags_avx512 ${flags_avx2} -mavx512f -mavx512dq -mavx512bw -mavx512vl)
   set(contract off)
@@ -75,22 +75,22 @@ function(petzval_lanes file name set)
   set_target_properties(petzval-${name} PROPERTIES CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON
     POSITION_INDEPENDENT_CODE ON)
   petzval_warnings(petzval-${name})
-  target_sources(petzval-core PRIVATE $<TARGET_OBJECTS:petzval-${name}>)
+  target_sources(petzval-${library} PRIVATE $<TARGET_OBJECTS:petzval-${name}>)
 endfunction()
 
-# petzval_loops(film_pupil_table.cpp film_pupil_table): a file of loops for every instruction set; PETZVAL_LOOPS names what each defines:
-# film_pupil_table_baseline, film_pupil_table_avx2, film_pupil_table_avx512. Tuned for processors that gather: tables of pupils are read twice as fast.
+# petzval_loops(core film_pupil_table.cpp film_pupil_table): a file of loops for every instruction set; PETZVAL_LOOPS names what each
+# defines: film_pupil_table_baseline, film_pupil_table_avx2, film_pupil_table_avx512. Tuned for processors that gather: tables of pupils are read twice as fast.
 # REPRODUCIBLE: without fused operations, so that all sets give the same bits.
-function(petzval_loops file name)
+function(petzval_loops library file name)
   set(fast PETZVAL_FAST=1)
   if("REPRODUCIBLE" IN_LIST ARGN)
     set(fast PETZVAL_FAST=0)
   endif()
-  petzval_lanes(${file} ${name}_baseline baseline PETZVAL_LOOPS=${name}_baseline PETZVAL_FAST=0)
+  petzval_lanes(${library} ${file} ${name}_baseline baseline PETZVAL_LOOPS=${name}_baseline PETZVAL_FAST=0)
   target_compile_options(petzval-${name}_baseline PRIVATE ${PETZVAL_NO_PAIRS})
   if(PETZVAL_X86_64)
     foreach(set avx2 avx512)
-      petzval_lanes(${file} ${name}_${set} ${set} PETZVAL_LOOPS=${name}_${set} ${fast})
+      petzval_lanes(${library} ${file} ${name}_${set} ${set} PETZVAL_LOOPS=${name}_${set} ${fast})
     endforeach()
     target_compile_options(petzval-${name}_avx2 PRIVATE ${PETZVAL_NO_PAIRS} -mtune=haswell)
     target_compile_options(petzval-${name}_avx512 PRIVATE ${PETZVAL_NO_PAIRS} -mtune=icelake-server -mprefer-vector-width=512)

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string_view>
+#include <vector>
+
+#include "petzval/blur/layers.hpp"
+#include "petzval/blur/lens_rays.hpp"
+#include "petzval/core/export.hpp"
+
+namespace petzval::inline v0 {
+
+/// How rays are brought to the lanes of the processor.
+enum class GatherPath : std::uint8_t {
+  automatic,        ///< the fastest that the rays allow
+  shift_invariant,  ///< neighbouring pixels, one ray: the same step for all
+  coherent,         ///< neighbouring pixels, one ray each, nearly the same step
+  general,          ///< the rays of one pixel
+};
+/// "automatic", ...
+PETZVAL_API std::string_view name(GatherPath path) noexcept;
+
+struct GatherOptions {
+  int threads = 1;
+  GatherPath path = GatherPath::automatic;
+  /// Whether the depths below the rays of a tile bound the way of its rays. The picture does not depend on it.
+  bool bounded = true;
+  /// By how much of its length a step along a ray is widened on both sides, so that rays do not slip between pixels.
+  double tolerance = 0.1;
+  /// Surfaces brighter than this, in any channel, whose blur covers more pixels than there are rays, are spread over
+  /// the pixels instead: even discs of the lens's own shape. 0: none.
+  double highlights_above = 1;
+};
+
+struct GatherStatistics {
+  std::uint64_t rays = 0;
+  std::uint64_t missed = 0;  ///< found no surface although the scene goes on there
+  std::uint64_t steps = 0;   ///< of all lanes of the processor
+  std::uint64_t highlights = 0;
+  double gather_seconds = 0, highlight_seconds = 0;
+};
+
+/// A picture. Refilled without allocation if it does not grow.
+struct Blurred {
+  int columns = 0, rows = 0;
+  std::vector<float> rgba;    ///< columns x rows x 4, linear, multiplied with alpha
+  std::vector<float> missed;  ///< columns x rows: the share of rays that met what the layers do not know
+  GatherStatistics statistics;
+
+  /// What gather() works with.
+  struct Memory;
+  std::shared_ptr<Memory> memory;
+};
+
+/// The picture of layers through a lens.
+///
+/// Each ray is followed from near to far in steps of a pixel until it meets a surface; those with alpha below 1 let the
+/// rest through. A ray that ends where the first layer is empty is transparent. One that finds a hole behind a surface
+/// counts as missed, and the pixel is the mean of its others. Beyond the layers' edges their last pixels repeat. Layers
+/// reach beyond the picture equally on all sides (PeelPlan::camera). The same bits for any number of threads.
+///
+/// Source: Lee, Eisemann, Seidel 2010, "Real-time lens blur effects and focus control", section 3.1.
+///
+/// Throws Error for layers of another size, a path that the rays do not allow, and options out of range.
+PETZVAL_API void gather(const LayerSet& layers, const LensRays& rays, const GatherOptions& options, Blurred& picture);
+PETZVAL_API Blurred gather(const LayerSet& layers, const LensRays& rays, const GatherOptions& options = {});
+
+}  // namespace petzval::inline v0

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "petzval/blur/lens_rays.hpp"
+#include "petzval/camera/camera.hpp"
+#include "petzval/core/error.hpp"
+
+namespace petzval::inline v0 {
+namespace {
+
+/// Rays of one film point.
+class Bundle {
+ public:
+  Bundle(const Camera& camera, const FilmPoint& film, std::span<const PupilPoint> points, Wavelength wavelength)
+      : film_x_(points.size(), film.x), film_y_(points.size(), film.y), weights_(points.size()) {
+    for (const PupilPoint& p : points) u_.push_back(p.u), v_.push_back(p.v);
+    for (std::vector<double>& numbers : rays_) numbers.resize(points.size());
+    camera.sample<double>(
+        points.size(), {film_x_.data(), film_y_.data(), u_.data(), v_.data(), {wavelength}, nullptr},
+        {{rays_[0].data(), rays_[1].data(), rays_[2].data(), rays_[3].data(), rays_[4].data(), rays_[5].data()},
+         weights_.data()});
+  }
+
+  double weight(std::size_t i) const noexcept { return weights_[i]; }
+  Ray<double> ray(std::size_t i) const noexcept {
+    return {{rays_[0][i], rays_[1][i], rays_[2][i]}, {rays_[3][i], rays_[4][i], rays_[5][i]}};
+  }
+  double mean_weight() const noexcept {
+    return std::accumulate(weights_.begin(), weights_.end(), 0.0) / static_cast<double>(weights_.size());
+  }
+
+ private:
+  std::vector<double> film_x_, film_y_, u_, v_, rays_[6], weights_;
+};
+
+/// What layers make of the rays of a camera.
+class RaysOfCamera {
+ public:
+  RaysOfCamera(const Camera& camera, const LayerCamera& layers, std::span<const Wavelength> wavelengths)
+      : camera_(camera),
+        layers_(layers),
+        origin_z_(layer_origin_z(camera)),
+        wavelengths_(wavelengths.begin(), wavelengths.end()),
+        clips_(camera.model() == ModelKind::exact_float || camera.model() == ModelKind::exact_double ||
+               camera.model() == ModelKind::custom),
+        light_points_(vogel_points(509)) {}
+
+  void operator()(int channel, const Vec2<double>& raster, std::span<const PupilPoint> points,
+                  std::span<LayerRay> found) const {
+    const FilmPoint film = camera_.film().point(raster.x, raster.y);
+    const Wavelength wavelength = wavelengths_[static_cast<std::size_t>(channel)];
+    const Bundle bundle(camera_, film, points, wavelength);
+    double light = bundle.mean_weight(), sum = 0;
+    LayerRay mean{{0, 0}, {0, 0}, 0};
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      found[i].weight = bundle.weight(i);
+      if (found[i].weight > 0) {
+        found[i] = line(bundle.ray(i), found[i].weight);
+      } else {
+        found[i] = pulled_in(film, points[i], wavelength);
+      }
+      sum += found[i].weight;
+      mean.at += found[i].weight * found[i].at, mean.slope += found[i].weight * found[i].slope;
+    }
+    if (!(sum > 0)) {
+      std::fill(found.begin(), found.end(), LayerRay{raster, {0, 0}, 0});
+      return;
+    }
+    // The pupil that samples are drawn from is a little larger than what passes. More samples know by how much.
+    if (clips_) light = Bundle(camera_, film, light_points_, wavelength).mean_weight();
+    const double scale = light * static_cast<double>(found.size()) / sum;
+    for (LayerRay& ray : found) {
+      if (ray.weight == 0) ray.at = mean.at / sum, ray.slope = mean.slope / sum;
+      ray.weight *= scale;
+    }
+  }
+
+ private:
+  LayerRay line(const Ray<double>& ray, double weight) const noexcept {
+    const Vec3<double>&o = ray.origin, &d = ray.direction;
+    const double run_x = d.x / -d.z, run_y = d.y / -d.z, way = origin_z_ - o.z;  // towards the scene is -z
+    return {layers_.axis + layers_.focal_px * Vec2<double>{run_x, -run_y},
+            layers_.focal_px * Vec2<double>{o.x - run_x * way, -(o.y - run_y * way)}, weight};
+  }
+
+  /// The ray of a lost sample that is moved towards the middle of the pupil until it passes; of weight 0 if none does.
+  LayerRay pulled_in(const FilmPoint& film, const PupilPoint& point, Wavelength wavelength) const {
+    double passes = 0, lost = 1;  // parts of v
+    CameraRay found;
+    for (const double part : {0.98, 0.95, 0.9, 0.8, 0.6, 0.4, 0.2}) {
+      found = sample(film, point.u, part * point.v, wavelength);
+      if (found) {
+        passes = part;
+        break;
+      }
+      lost = part;
+    }
+    if (!found) return {{0, 0}, {0, 0}, 0};
+    for (int i = 0; i < 6; ++i) {
+      const double part = 0.5 * (passes + lost);
+      const CameraRay nearer = sample(film, point.u, part * point.v, wavelength);
+      if (nearer) {
+        passes = part, found = nearer;
+      } else {
+        lost = part;
+      }
+    }
+    return line(found.ray, found.weight);
+  }
+  CameraRay sample(const FilmPoint& film, double u, double v, Wavelength wavelength) const {
+    return camera_.sample({.film = film, .pupil_u = u, .pupil_v = v, .wavelength = wavelength});
+  }
+
+  Camera camera_;
+  LayerCamera layers_;
+  double origin_z_;
+  std::vector<Wavelength> wavelengths_;
+  bool clips_;  ///< at apertures
+  std::vector<PupilPoint> light_points_;
+};
+
+}  // namespace
+
+LensRays LensRays::of(const Camera& camera, const LayerCamera& layers, std::span<const PupilPoint> points,
+                      std::span<const Wavelength> wavelengths, const LensRaysOptions& options) {
+  if (camera.film().travel_mm != 0) {
+    throw Error("lens rays: the film travels while the shutter is open, wanted one that stays (Film::at)");
+  }
+  if (layers.columns != camera.film().columns || layers.rows != camera.film().rows) {
+    throw Error("lens rays: the layers' picture is " + std::to_string(layers.columns) + " x " +
+                std::to_string(layers.rows) + ", wanted that of the film, " + std::to_string(camera.film().columns) +
+                " x " + std::to_string(camera.film().rows));
+  }
+  const Wavelength primary{};
+  if (wavelengths.empty()) wavelengths = {&primary, 1};
+  return LensRays(layers, points, static_cast<int>(wavelengths.size()), RaysOfCamera(camera, layers, wavelengths),
+                  options);
+}
+
+}  // namespace petzval::inline v0

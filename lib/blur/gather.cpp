@@ -1,0 +1,364 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "petzval/blur/gather.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <string>
+
+#include "core/text.hpp"
+#include "gather_loops.hpp"
+#include "gather_memory.hpp"
+#include "highlights.hpp"
+#include "layer_data.hpp"
+#include "petzval/core/error.hpp"
+#include "petzval/core/parallel.hpp"
+#include "ray_table.hpp"
+
+namespace petzval::inline v0 {
+namespace {
+
+using namespace blur_detail;
+
+int floor_of(double x) { return static_cast<int>(std::floor(x)); }
+
+/// A part of the picture whose rays are followed together.
+struct Tile {
+  int left = 0, top = 0, columns = 0, rows = 0;
+};
+
+/// Offsets of rays from their pixels, px.
+struct Reach {
+  double left = 0, right = 0, top = 0, bottom = 0;
+
+  void take(double x, double y) noexcept {
+    left = std::min(left, x), right = std::max(right, x), top = std::min(top, y), bottom = std::max(bottom, y);
+  }
+};
+
+/// Between two inverse depths, of rays given by [Row][ray] numbers. Lines are straight: their ends reach farthest.
+Reach reach_of(std::span<const float* const> corners, std::size_t stride, std::size_t count, double w, double v) {
+  Reach reach{1e9, -1e9, 1e9, -1e9};
+  for (const float* c : corners) {
+    for (std::size_t i = 0; i < count; ++i) {
+      const double x = c[at_x * stride + i], y = c[at_y * stride + i], sx = c[slope_x * stride + i],
+                   sy = c[slope_y * stride + i];
+      reach.take(x + w * sx, y + w * sy), reach.take(x + v * sx, y + v * sy);
+    }
+  }
+  return reach;
+}
+
+/// The steps of a ray that all pixels share: one for each pixel that it passes along its main direction, as far as it
+/// may meet depths of a range. all: the range of all layers.
+void add_steps(const float* rows, std::size_t stride, std::size_t i, const DepthRange& range, const DepthRange& all,
+               double tolerance, std::ptrdiff_t row_stride, std::vector<Step>& steps) {
+  const double ax = rows[at_x * stride + i], ay = rows[at_y * stride + i], bx = rows[slope_x * stride + i],
+               by = rows[slope_y * stride + i];
+  const bool along_x = std::abs(bx) >= std::abs(by);
+  const double a = along_x ? ax : ay, b = along_x ? bx : by, c = along_x ? ay : ax, d = along_x ? by : bx;
+  const auto offset = [&](int main, int other) {
+    return along_x ? other * row_stride + main : main * row_stride + other;
+  };
+  if (std::abs(b) * all.most < 1e-6) {
+    steps.push_back({offset(floor_of(a + 0.5), floor_of(c + 0.5)), 0, std::numeric_limits<float>::max()});
+    return;
+  }
+  const double length = 1 / std::abs(b), half = (0.5 + tolerance) * length, beyond = tolerance * length;
+  const int first = floor_of(a + b * (range.most + beyond) + 0.5),
+            last = floor_of(a + b * (range.least - beyond) + 0.5);
+  for (int k = first;; k += first < last ? 1 : -1) {
+    const double w = (k - a) / b;
+    steps.push_back({offset(k, floor_of(c + d * std::clamp<double>(w, 0, all.most) + 0.5)),
+                     static_cast<float>(std::max(w - half, 0.0)), static_cast<float>(w + half)});
+    if (k == last) break;
+  }
+}
+
+/// One call of gather().
+class Gathering {
+ public:
+  Gathering(const LayerSet& layers, const LensRays& rays, const GatherOptions& options, GatherPath path, int overscan,
+            const Highlights& highlights, Blurred& picture)
+      : layers_(LayerAccess::data(layers)),
+        rays_(RayAccess::data(rays)),
+        options_(options),
+        path_(path),
+        overscan_(overscan),
+        highlights_(highlights),
+        picture_(picture),
+        all_(layers_.n_buffer.below({0, 0, layers_.columns - 1, layers_.rows - 1})) {}
+
+  void run() {
+    // Rays of a tile are interpolated between its corners, which lie in one cell of the table.
+    tile_columns_ = std::min(rays_.table.step, TileSums::columns);
+    const int across = (picture_.columns + tile_columns_ - 1) / tile_columns_,
+              down = (picture_.rows + TileSums::rows - 1) / TileSums::rows;
+    parallel_for(static_cast<std::size_t>(across) * static_cast<std::size_t>(down), 4, options_.threads,
+                 [&](std::size_t begin, std::size_t end) {
+                   const Blurred::Memory::Loan loan(*picture_.memory);
+                   for (std::size_t t = begin; t < end; ++t) {
+                     const int left = static_cast<int>(t) % across * tile_columns_,
+                               top = static_cast<int>(t) / across * TileSums::rows;
+                     follow({left, top, std::min(tile_columns_, picture_.columns - left),
+                             std::min(TileSums::rows, picture_.rows - top)},
+                            *loan);
+                   }
+                 });
+    picture_.statistics.steps = steps_;
+    picture_.statistics.missed = missed_;
+  }
+
+ private:
+  using Memory = Blurred::Memory::OfThread;
+
+  void follow(const Tile& tile, Memory& memory) {
+    for (std::size_t channel = 0; channel < rays_.table.channels; ++channel) {
+      TileSums& sums = memory.sums[channel];
+      for (int row = 0; row < tile.rows; ++row) {
+        const int from = row * TileSums::columns;
+        for (float* plane : {sums.colour[0], sums.colour[1], sums.colour[2], sums.alpha, sums.total, sums.open,
+                             sums.missed, sums.unknown}) {
+          std::fill_n(plane + from, TileSums::columns, 0.0f);
+        }
+      }
+      follow(tile, channel, memory);
+    }
+    compose(tile, memory);
+  }
+
+  void follow(const Tile& tile, std::size_t channel, Memory& memory) {
+    const std::size_t stride = rays_.table.rays;
+    const float* corners[4];
+    if (path_ == GatherPath::shift_invariant) {
+      corners[0] = rays_.table.node(channel, 0, 0);
+    } else {
+      for (int c = 0; c < 4; ++c) {
+        std::vector<float>& corner = memory.corners[c];
+        corner.resize(rays_.table.node_size() + 64);
+        rays_.table.at(channel, tile.left + (c % 2) * tile.columns, tile.top + (c / 2) * tile.rows, corner.data());
+        corners[c] = corner.data();
+      }
+    }
+    const std::span<const float* const> known(corners, path_ == GatherPath::shift_invariant ? 1 : 4);
+    const auto rect_of = [&](const DepthRange& range) {
+      const Reach reach = reach_of(known, stride, stride, range.least, range.most);
+      const int left = tile.left + overscan_, top = tile.top + overscan_;
+      // A pixel more: places are rounded.
+      return PixelRect{left + floor_of(reach.left) - 1, top + floor_of(reach.top) - 1,
+                       left + tile.columns + floor_of(reach.right) + 1, top + tile.rows + floor_of(reach.bottom) + 1};
+    };
+    DepthRange range = all_;
+    PixelRect rect = rect_of(range.empty() ? DepthRange{0, 0, 0} : range);
+    constexpr int iterations = 3;
+    for (int i = 0; options_.bounded && i < iterations && !range.empty(); ++i) {
+      const DepthRange narrower = layers_.n_buffer.below(rect);
+      const bool same = narrower.least == range.least && narrower.most == range.most;
+      range = narrower;
+      if (same || range.empty()) break;
+      rect = rect_of(range);
+    }
+
+    TileJob job{.window = window(tile, rect, range.empty() ? 1 : range.layers, channel, memory),
+                .columns = tile.columns,
+                .rows = tile.rows,
+                .left = tile.left,
+                .top = tile.top,
+                .colours = rays_.table.channels == 1 ? 3 : 1,
+                .opaque = layers_.opaque,
+                .sums = &memory.sums[channel]};
+    if (range.empty()) range = {0, 0, 1};
+    const GatherLoops& loops = gather_loops();
+    std::uint64_t made = 0;
+    if (path_ == GatherPath::shift_invariant) {
+      memory.steps.clear(), memory.first.assign(1, 0);
+      for (std::size_t i = 0; i < stride; ++i) {
+        add_steps(corners[0], stride, i, range, all_, options_.tolerance, job.window.stride, memory.steps);
+        memory.first.push_back(static_cast<std::uint32_t>(memory.steps.size()));
+      }
+      made = loops.same(job, {.count = stride,
+                              .steps = memory.steps.data(),
+                              .first = memory.first.data(),
+                              .weights = corners[0] + weight * stride});
+    } else {
+      const DifferentRays rays{.count = rays_.rays_of_set(),
+                               .row_stride = stride,
+                               .corners = {corners[0], corners[1], corners[2], corners[3]},
+                               .from = range.most,
+                               .to = range.least,
+                               .most = std::max(all_.most, 1e-30f),
+                               .tolerance = static_cast<float>(options_.tolerance),
+                               .side = rays_.options.sets == 16  ? 4
+                                       : rays_.options.sets == 4 ? 2
+                                                                 : 1};
+      made = path_ == GatherPath::coherent ? loops.coherent(job, rays) : loops.general(job, rays);
+    }
+    steps_ += made;
+  }
+
+  /// The layers at a tile whose rays stay within a rectangle.
+  LayerWindow window(const Tile& tile, const PixelRect& rect, int count, std::size_t channel, Memory& memory) {
+    const auto& d = layers_;
+    const bool one = rays_.table.channels == 3;
+    LayerWindow w{.layers = count,
+                  .stride = d.columns,
+                  .layer_stride = static_cast<std::ptrdiff_t>(LayerData::planes * d.plane_stride())};
+    const bool inside = rect.left >= 0 && rect.top >= 0 && rect.right < d.columns && rect.bottom < d.rows;
+    if (inside && !highlights_.in(rect)) {
+      const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(tile.top + overscan_) * d.columns + tile.left + overscan_;
+      w.depth = d.plane(0, 0) + at, w.alpha = d.plane(0, 4) + at;
+      for (int c = 0; c < 3; ++c) w.colour[c] = d.plane(0, 1 + (one ? static_cast<int>(channel) : c)) + at;
+      return w;
+    }
+    // Copies, with edges repeated and highlights cut.
+    constexpr std::size_t slack = LayerData::slack;
+    const std::size_t columns = static_cast<std::size_t>(rect.right - rect.left + 1),
+                      rows = static_cast<std::size_t>(rect.bottom - rect.top + 1), plane = columns * rows + slack;
+    const std::size_t planes = static_cast<std::size_t>(LayerData::planes * count);
+    if (memory.window.size() < 2 * slack + planes * plane) memory.window.resize(2 * slack + planes * plane);
+    for (std::size_t p = 0; p < planes; ++p) {
+      const float* const from =
+          d.plane(static_cast<int>(p) / LayerData::planes, static_cast<int>(p) % LayerData::planes);
+      float* to = memory.window.data() + slack + p * plane;
+      for (int row = rect.top; row <= rect.bottom; ++row) {
+        const float* const line = from + static_cast<std::ptrdiff_t>(std::clamp(row, 0, d.rows - 1)) * d.columns;
+        const int before = std::min(std::max(0, -rect.left), static_cast<int>(columns)),
+                  after = std::min(std::max(0, rect.right - (d.columns - 1)), static_cast<int>(columns));
+        to = std::fill_n(to, before, line[0]);
+        const int within = static_cast<int>(columns) - before - after;
+        if (within > 0) to = std::copy_n(line + std::max(rect.left, 0), within, to);
+        to = std::fill_n(to, after, line[d.columns - 1]);
+      }
+    }
+    highlights_.cut(rect, static_cast<int>(columns), count, LayerData::planes, plane, memory.window.data() + slack);
+    const std::ptrdiff_t at =
+        static_cast<std::ptrdiff_t>(tile.top + overscan_ - rect.top) * static_cast<std::ptrdiff_t>(columns) +
+        tile.left + overscan_ - rect.left;
+    const auto first = [&](int p) { return memory.window.data() + slack + static_cast<std::size_t>(p) * plane + at; };
+    w.stride = static_cast<std::ptrdiff_t>(columns),
+    w.layer_stride = static_cast<std::ptrdiff_t>(LayerData::planes * plane);
+    w.depth = first(0), w.alpha = first(4);
+    for (int c = 0; c < 3; ++c) w.colour[c] = first(1 + (one ? static_cast<int>(channel) : c));
+    return w;
+  }
+
+  void compose(const Tile& tile, Memory& memory) {
+    const std::size_t channels = rays_.table.channels;
+    const auto rays = static_cast<float>(rays_.rays_of_set());
+    double missed_rays = 0;
+    for (int row = 0; row < tile.rows; ++row) {
+      for (int column = 0; column < tile.columns; ++column) {
+        const int at = row * TileSums::columns + column;
+        const std::size_t pixel =
+            static_cast<std::size_t>(tile.top + row) * static_cast<std::size_t>(picture_.columns) +
+            static_cast<std::size_t>(tile.left + column);
+        float* const rgba = &picture_.rgba[4 * pixel];
+        float alpha = 0, missed = 0;
+        for (std::size_t c = 0; c < 3; ++c) {
+          const TileSums& sums = memory.sums[channels == 1 ? 0 : c];
+          const float total = sums.total[at], known = total - sums.unknown[at];
+          const float* const colour = sums.colour[channels == 1 ? c : 0];
+          // Of rays that met what nothing is known of, the first layer is the nearest thing.
+          if (known > 1e-6f * total) {
+            rgba[c] = colour[at] / known * (total / rays);
+            alpha += layers_.opaque ? 1 - sums.open[at] / known : sums.alpha[at] / known;
+          } else {
+            const std::ptrdiff_t below = static_cast<std::ptrdiff_t>(tile.top + row + overscan_) * layers_.columns +
+                                         tile.left + column + overscan_;
+            const bool any = layers_.count > 0 && layers_.plane(0, 0)[below] >= 0;
+            rgba[c] = any ? layers_.plane(0, static_cast<int>(1 + c))[below] * (total / rays) : 0.0f;
+            alpha += any ? layers_.plane(0, 4)[below] : total > 0 ? 0.0f : 1.0f;
+          }
+          missed += total > 0 ? sums.missed[at] / total : 0.0f;
+        }
+        rgba[3] = alpha / 3;
+        picture_.missed[pixel] = missed / 3;
+        missed_rays += static_cast<double>(missed) / 3 * rays;
+      }
+    }
+    missed_ += static_cast<std::uint64_t>(std::llround(missed_rays));
+  }
+
+  const LayerData& layers_;
+  const RayData& rays_;
+  const GatherOptions& options_;
+  GatherPath path_;
+  int overscan_, tile_columns_ = 0;
+  const Highlights& highlights_;
+  Blurred& picture_;
+  DepthRange all_;
+  std::atomic<std::uint64_t> steps_ = 0, missed_ = 0;
+};
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+}  // namespace
+
+std::string_view name(GatherPath path) noexcept {
+  switch (path) {
+    case GatherPath::automatic: return "automatic";
+    case GatherPath::shift_invariant: return "shift_invariant";
+    case GatherPath::coherent: return "coherent";
+    case GatherPath::general: return "general";
+  }
+  return "unknown";
+}
+
+void gather(const LayerSet& layers, const LensRays& rays, const GatherOptions& options, Blurred& picture) {
+  const auto wrong = [](const std::string& what) { return Error("gather: " + what); };
+  const LayerCamera& camera = rays.camera();
+  const int beyond = layers.columns() - camera.columns;
+  if (beyond < 0 || beyond % 2 != 0 || layers.rows() - camera.rows != beyond) {
+    throw wrong("layers are " + std::to_string(layers.columns()) + " x " + std::to_string(layers.rows()) +
+                ", wanted the picture's " + std::to_string(camera.columns) + " x " + std::to_string(camera.rows) +
+                " and the same overscan on all sides");
+  }
+  if (!(options.tolerance >= 0 && options.tolerance <= 1)) {
+    throw wrong("tolerance is " + to_text(options.tolerance) + ", wanted 0 to 1");
+  }
+  if (!(options.highlights_above >= 0)) {
+    throw wrong("highlights_above is " + to_text(options.highlights_above) + ", wanted 0 (none) or more");
+  }
+  GatherPath path = options.path;
+  if (path == GatherPath::automatic) {
+    path = rays.shift_invariant() ? GatherPath::shift_invariant
+           : rays.sets() == 1     ? GatherPath::coherent
+                                  : GatherPath::general;
+  }
+  if (path == GatherPath::shift_invariant && !rays.shift_invariant()) {
+    throw wrong("the rays differ from pixel to pixel, wanted another path than shift_invariant");
+  }
+  if (path == GatherPath::coherent && rays.sets() != 1) {
+    throw wrong("the rays are " + std::to_string(rays.sets()) + " sets, wanted one for the path coherent");
+  }
+
+  const auto pixels = static_cast<std::size_t>(camera.columns) * static_cast<std::size_t>(camera.rows);
+  picture.columns = camera.columns, picture.rows = camera.rows;
+  picture.rgba.resize(4 * pixels), picture.missed.resize(pixels);
+  picture.statistics = {.rays = pixels * rays.count() * static_cast<std::size_t>(rays.channels())};
+  if (!picture.memory) picture.memory = std::make_shared<Blurred::Memory>();
+
+  auto start = std::chrono::steady_clock::now();
+  const Highlights highlights(LayerAccess::data(layers), rays, options, beyond / 2);
+  const double finding = seconds_since(start);
+  start = std::chrono::steady_clock::now();
+  Gathering(layers, rays, options, path, beyond / 2, highlights, picture).run();
+  picture.statistics.gather_seconds = seconds_since(start);
+  start = std::chrono::steady_clock::now();
+  highlights.spread(options.threads, picture);
+  picture.statistics.highlights = highlights.count();
+  picture.statistics.highlight_seconds = finding + seconds_since(start);
+}
+
+Blurred gather(const LayerSet& layers, const LensRays& rays, const GatherOptions& options) {
+  Blurred picture;
+  gather(layers, rays, options, picture);
+  return picture;
+}
+
+}  // namespace petzval::inline v0

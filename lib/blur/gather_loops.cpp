@@ -1,0 +1,373 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gather_loops.hpp"
+
+#include "ray_rows.hpp"
+#include "trace/lanes.hpp"
+
+namespace petzval::inline v0::blur_detail {
+namespace {
+
+using Numbers = trace_detail::Lanes<float>;
+using Mask = trace_detail::Mask<float>;
+using Places = core_detail::Native<float>::Bits;  // of 32 bits
+constexpr int width = Numbers::width;
+
+PETZVAL_INLINE Numbers load(const float* from) noexcept {
+  Numbers result;
+  __builtin_memcpy(&result.v, from, sizeof result.v);
+  return result;
+}
+PETZVAL_INLINE void add(float* to, Numbers numbers) noexcept {
+  const Numbers sum = load(to) + numbers;
+  __builtin_memcpy(to, &sum.v, sizeof sum.v);
+}
+PETZVAL_INLINE float sum_of(Numbers numbers) noexcept {
+  float sum = 0;
+  for (int i = 0; i < width; ++i) sum += numbers.v[i];
+  return sum;
+}
+PETZVAL_INLINE Numbers only(Mask mask, Numbers numbers) noexcept { return select(mask, numbers, Numbers(0.0f)); }
+
+PETZVAL_INLINE Mask first_lanes(std::size_t count) noexcept {
+  Numbers lane;
+  for (int i = 0; i < width; ++i) lane.v[i] = static_cast<float>(i);
+  return lane < Numbers(static_cast<float>(count));
+}
+
+/// Pixels side by side, one for each lane.
+struct Beside {
+  std::ptrdiff_t offset;
+
+  PETZVAL_INLINE Numbers operator()(const float* plane) const noexcept { return load(plane + offset); }
+};
+
+/// A pixel for each lane.
+struct Anywhere {
+  Places offsets;
+
+  PETZVAL_INLINE Numbers operator()(const float* plane) const noexcept {
+#if defined(__AVX512F__)
+    return Numbers(_mm512_mask_i32gather_ps(_mm512_setzero_ps(), 0xffff, reinterpret_cast<__m512i>(offsets), plane, 4));
+#elif defined(__AVX2__)
+    return Numbers(_mm256_i32gather_ps(plane, reinterpret_cast<__m256i>(offsets), 4));
+#else
+    Numbers result;
+    for (int i = 0; i < width; ++i) result.v[i] = plane[offsets[i]];
+    return result;
+#endif
+  }
+};
+
+/// What the rays of the lanes have found.
+template <bool opaque, int colours>
+struct Found {
+  Numbers colour[colours], missed{0.0f}, unknown{0.0f}, open{0.0f};
+  Mask seeking;  ///< lanes whose rays go on
+  // Of surfaces that let light through:
+  Numbers alpha{0.0f};
+  Numbers through{1.0f};  ///< what is left of a ray
+  Numbers below{1e30f};   ///< steps overlap: what a ray has met in one it does not meet again in the next
+
+  PETZVAL_INLINE explicit Found(Mask lanes) noexcept : seeking(lanes) {
+    for (Numbers& c : colour) c = Numbers(0.0f);
+  }
+};
+
+/// A step of rays that seek: lanes of `here` pass the pixels that `at` loads.
+template <bool opaque, int colours, class At>
+PETZVAL_INLINE void meet(const LayerWindow& window, const At& at, Numbers low, Numbers high, Numbers weight, Mask here,
+                         Found<opaque, colours>& found) noexcept {
+  const float* depth = window.depth;
+  std::ptrdiff_t layer = 0;
+  [[maybe_unused]] const Numbers below = found.below;
+  for (int l = 0; l < window.layers; ++l, depth += window.layer_stride, layer += window.layer_stride) {
+    const Numbers w = at(depth);
+    Mask hit = all_of(w >= low, w <= high, here);
+    if constexpr (!opaque) hit = all_of(hit, w < below);
+    if (any(hit)) {
+      const Numbers share = opaque ? weight : weight * found.through;
+      for (int c = 0; c < colours; ++c) {
+        found.colour[c] = found.colour[c] + only(hit, share * at(window.colour[c] + layer));
+      }
+      if constexpr (opaque) {
+        found.seeking = without(found.seeking, hit), here = without(here, hit);
+      } else {
+        const Numbers alpha = at(window.alpha + layer);
+        found.alpha = found.alpha + only(hit, share * alpha);
+        found.through = select(hit, found.through * (Numbers(1.0f) - alpha), found.through);
+        found.below = select(hit, low, found.below);
+        const Mask full = all_of(hit, found.through <= Numbers(1e-3f));
+        found.seeking = without(found.seeking, full), here = without(here, full);
+      }
+    }
+    // Surfaces behind this one are farther still: rays that have not reached it do not reach them.
+    if (!any(opaque ? all_of(here, w > high) : all_of(here, w >= low))) return;
+  }
+}
+
+/// The ends of rays that found nothing. Where the first layer is empty they see the void. Else they slipped behind a
+/// surface, and the best guess of what is there is what they passed last before.
+template <bool opaque, int colours, class At>
+PETZVAL_INLINE void guess(const LayerWindow& window, const At& at, Numbers low, Numbers weight, Mask here, bool last,
+                          Found<opaque, colours>& found) noexcept {
+  const float* depth = window.depth;
+  std::ptrdiff_t layer = 0;
+  const Numbers none(0.0f);
+  for (int l = 0; l < window.layers; ++l, depth += window.layer_stride, layer += window.layer_stride) {
+    const Numbers w = at(depth);
+    if (l == 0 && last) {
+      const Mask empty = all_of(here, w < none);
+      found.open = found.open + only(empty, weight);
+      found.seeking = without(found.seeking, empty), here = without(here, empty);
+    }
+    const Mask before = all_of(here, w < low, w >= none);
+    if (any(before)) {
+      for (int c = 0; c < colours; ++c) {
+        found.colour[c] = found.colour[c] + only(before, weight * at(window.colour[c] + layer));
+      }
+      if constexpr (!opaque) found.alpha = found.alpha + only(before, weight * at(window.alpha + layer));
+      found.missed = found.missed + only(before, weight);
+      found.seeking = without(found.seeking, before), here = without(here, before);
+    }
+    if (!any(here)) return;
+  }
+}
+
+/// Of rays with alpha that met a surface, what is left ends in the void.
+template <bool opaque, int colours>
+PETZVAL_INLINE void end_partly(Found<opaque, colours>& found) noexcept {
+  if constexpr (!opaque) found.seeking = all_of(found.seeking, found.through >= Numbers(1.0f));
+}
+
+template <bool opaque, int colours>
+PETZVAL_INLINE void give_up(Numbers weight, Found<opaque, colours>& found) noexcept {
+  const Numbers rest = only(found.seeking, weight);
+  found.missed = found.missed + rest, found.unknown = found.unknown + rest;
+}
+
+/// Adds what pixels side by side have found.
+template <bool opaque, int colours>
+PETZVAL_INLINE void keep(TileSums& sums, int pixel, const Found<opaque, colours>& found, Numbers weight) noexcept {
+  for (int c = 0; c < colours; ++c) add(sums.colour[c] + pixel, found.colour[c]);
+  add(sums.total + pixel, weight);
+  if constexpr (!opaque) add(sums.alpha + pixel, found.alpha);
+  add(sums.open + pixel, found.open);
+  add(sums.missed + pixel, found.missed);
+  add(sums.unknown + pixel, found.unknown);
+}
+
+template <bool opaque, int colours>
+std::uint64_t follow_same(const TileJob& job, const SameRays& rays) noexcept {
+  std::uint64_t made = 0;
+  for (int row = 0; row < job.rows; ++row) {
+    for (int column = 0; column < job.columns; column += width) {
+      const LayerWindow window = job.window.from(row, column);
+      Found<opaque, colours> sum(first_lanes(0));
+      Numbers total(0.0f);
+      const Mask lanes = first_lanes(static_cast<std::size_t>(job.columns - column));
+      for (std::size_t i = 0; i < rays.count; ++i) {
+        const Numbers weight(rays.weights[i]);
+        sum.seeking = lanes;
+        if constexpr (!opaque) sum.through = Numbers(1.0f), sum.below = Numbers(1e30f);
+        const Step *const begin = rays.steps + rays.first[i], *const end = rays.steps + rays.first[i + 1];
+        const Step* step = begin;
+        for (; step != end; ++step) {
+          meet(window, Beside{step->offset}, Numbers(step->low), Numbers(step->high), weight, sum.seeking, sum);
+          if (!any(sum.seeking)) break;
+        }
+        made += static_cast<std::uint64_t>(step - begin);
+        total = total + weight;
+        if (!any(sum.seeking)) continue;
+        end_partly(sum);
+        for (step = end; step-- != begin && any(sum.seeking);) {
+          guess(window, Beside{step->offset}, Numbers(step->low), weight, sum.seeking, step + 1 == end, sum);
+        }
+        give_up(weight, sum);
+      }
+      keep(*job.sums, row * TileSums::columns + column, sum, total);
+    }
+  }
+  return made * static_cast<std::uint64_t>(width);
+}
+
+/// The whole number at or below.
+PETZVAL_INLINE Places floor_of(Numbers x) noexcept {
+  constexpr int up = 1 << 15;  // conversions cut towards 0
+  return __builtin_convertvector((x + Numbers(static_cast<float>(up))).v, Places) - up;
+}
+
+/// The pixels that lines pass at an inverse depth, as offsets.
+PETZVAL_INLINE Places pixels_at(const Numbers (&line)[row_count], Numbers w, std::ptrdiff_t stride) noexcept {
+  const Numbers half(0.5f), x = line[at_x] + line[slope_x] * w + half, y = line[at_y] + line[slope_y] * w + half;
+  return floor_of(y) * static_cast<std::int32_t>(stride) + floor_of(x);
+}
+
+/// Even steps of a pixel at most along each line, at multiples of their length: which depths bound a ray changes
+/// nothing of its steps. Steps count from the scene's far end.
+struct EvenSteps {
+  Numbers length, reach, first, last;  ///< first >= last, as rays run
+
+  PETZVAL_INLINE EvenSteps(const DifferentRays& rays, const Numbers (&line)[row_count]) noexcept {
+    const Numbers none(0.0f), least(1e-6f / rays.most);  // of lines that hardly lean one step holds all depths
+    const Numbers x = larger(line[slope_x], -line[slope_x]), y = larger(line[slope_y], -line[slope_y]);
+    const Numbers steepest = larger(larger(x, y), least), tolerance(rays.tolerance);
+    length = Numbers(1.0f) / steepest, reach = tolerance * length;
+    first = whole(Numbers(rays.from) * steepest + tolerance);
+    last = whole(larger(Numbers(rays.to) * steepest - tolerance, none));
+  }
+  PETZVAL_INLINE Numbers at(Numbers k) const noexcept { return (k + Numbers(0.5f)) * length; }
+  PETZVAL_INLINE Numbers low(Numbers k) const noexcept { return larger(k * length - reach, Numbers(0.0f)); }
+  PETZVAL_INLINE Numbers high(Numbers k) const noexcept { return (k + Numbers(1.0f)) * length + reach; }
+
+ private:
+  static PETZVAL_INLINE Numbers larger(Numbers a, Numbers b) noexcept { return select(a > b, a, b); }
+  /// Of numbers from 0 on.
+  static PETZVAL_INLINE Numbers whole(Numbers x) noexcept {
+    return Numbers(__builtin_convertvector(__builtin_convertvector(x.v, Places), core_detail::Native<float>::Values));
+  }
+};
+
+/// Follows the rays of lanes to their ends. load: calls visit(at, here) for all lanes given, with the planes' loader at
+/// the pixels of an inverse depth. Returns how many steps the longest ray made.
+template <bool opaque, int colours, class Load>
+PETZVAL_INLINE std::uint64_t follow(const LayerWindow& window, const DifferentRays& rays,
+                                    const Numbers (&line)[row_count], const Load& load,
+                                    Found<opaque, colours>& found) noexcept {
+  const EvenSteps steps(rays, line);
+  const Numbers seen = line[weight], one(1.0f);
+  std::uint64_t made = 0;
+  Numbers k = steps.first;
+  for (Mask here = found.seeking; any(here); here = all_of(found.seeking, k >= steps.last), ++made) {
+    const Numbers low = steps.low(k), high = steps.high(k);
+    load(steps.at(k), here, [&](const auto& at, Mask lanes) { meet(window, at, low, high, seen, lanes, found); });
+    k = k - one;
+  }
+  if (!any(found.seeking)) return made;
+  end_partly(found);
+  k = steps.last;
+  bool last = true;
+  for (Mask here = found.seeking; any(here); here = all_of(found.seeking, k <= steps.first), last = false) {
+    const Numbers low = steps.low(k);
+    load(steps.at(k), here, [&](const auto& at, Mask lanes) { guess(window, at, low, seen, lanes, last, found); });
+    k = k + one;
+  }
+  give_up(seen, found);
+  return made;
+}
+
+/// The steps of lanes that pass nearly the same pixels beside their own: one load for each different one.
+template <class Visit>
+PETZVAL_INLINE void for_each_offset(Places offsets, Mask lanes, const Visit& visit) noexcept {
+  std::int32_t places[width];
+  __builtin_memcpy(places, &offsets, sizeof places);
+  // Offsets as numbers are exact up to 2^24, which keeps masks of one kind.
+  const Numbers numbers(__builtin_convertvector(offsets, core_detail::Native<float>::Values));
+  while (any(lanes)) {
+#if defined(__AVX512F__)
+    const std::int32_t offset = places[__builtin_ctz(lanes.bits)];
+#else
+    int lane = 0;
+    while (!lanes.bits[lane]) ++lane;
+    const std::int32_t offset = places[lane];
+#endif
+    const Numbers same(static_cast<float>(offset));
+    const Mask here = all_of(lanes, numbers >= same, numbers <= same);
+    lanes = without(lanes, here);
+    visit(Beside{offset}, here);
+  }
+}
+
+template <bool opaque, int colours>
+std::uint64_t follow_coherent(const TileJob& job, const DifferentRays& rays) noexcept {
+  std::uint64_t made = 0;
+  Numbers lane;
+  for (int i = 0; i < width; ++i) lane.v[i] = static_cast<float>(i) + 0.5f;
+  for (std::size_t i = 0; i < rays.count; ++i) {
+    for (int row = 0; row < job.rows; ++row) {
+      float left[row_count], rise[row_count];  // of the row, from column to column
+      const float down = (static_cast<float>(row) + 0.5f) / static_cast<float>(job.rows);
+      for (std::size_t r = 0; r < row_count; ++r) {
+        const std::size_t at = r * rays.row_stride + i;
+        left[r] = rays.corners[0][at] + down * (rays.corners[2][at] - rays.corners[0][at]);
+        const float right = rays.corners[1][at] + down * (rays.corners[3][at] - rays.corners[1][at]);
+        rise[r] = (right - left[r]) / static_cast<float>(job.columns);
+      }
+      for (int column = 0; column < job.columns; column += width) {
+        const Numbers place = lane + Numbers(static_cast<float>(column));
+        Numbers line[row_count];
+        for (std::size_t r = 0; r < row_count; ++r) line[r] = Numbers(left[r]) + place * Numbers(rise[r]);
+        const LayerWindow window = job.window.from(row, column);
+        Found<opaque, colours> found(first_lanes(static_cast<std::size_t>(job.columns - column)));
+        const auto load_pixels = [&](Numbers w, Mask lanes, const auto& visit) {
+          for_each_offset(pixels_at(line, w, window.stride), lanes, visit);
+        };
+        made += follow(window, rays, line, load_pixels, found);
+        keep(*job.sums, row * TileSums::columns + column, found, line[weight]);
+      }
+    }
+  }
+  return made * static_cast<std::uint64_t>(width);
+}
+
+template <bool opaque, int colours>
+std::uint64_t follow_general(const TileJob& job, const DifferentRays& rays) noexcept {
+  TileSums& sums = *job.sums;
+  std::uint64_t made = 0;
+  const auto sets = static_cast<std::size_t>(rays.side * rays.side);
+  for (std::size_t set = 0; set < sets; ++set) {
+    for (std::size_t begin = 0; begin < rays.count; begin += static_cast<std::size_t>(width)) {
+      const Mask lanes = first_lanes(rays.count - begin);
+      Numbers corner[4][row_count];
+      for (int c = 0; c < 4; ++c) {
+        for (std::size_t r = 0; r < row_count; ++r) {
+          corner[c][r] = only(lanes, load(rays.corners[c] + r * rays.row_stride + set * rays.count + begin));
+        }
+      }
+      for (int row = 0; row < job.rows; ++row) {
+        const Numbers down((static_cast<float>(row) + 0.5f) / static_cast<float>(job.rows));
+        for (int column = 0; column < job.columns; ++column) {
+          if (set_of(job.left + column, job.top + row, rays.side) != set) continue;
+          const Numbers across((static_cast<float>(column) + 0.5f) / static_cast<float>(job.columns));
+          Numbers line[row_count];
+          for (std::size_t r = 0; r < row_count; ++r) {
+            const Numbers from = corner[0][r] + down * (corner[2][r] - corner[0][r]),
+                          to = corner[1][r] + down * (corner[3][r] - corner[1][r]);
+            line[r] = from + across * (to - from);
+          }
+          const LayerWindow window = job.window.from(row, column);
+          Found<opaque, colours> found(lanes);
+          const auto load_pixels = [&](Numbers w, Mask here, const auto& visit) {
+            visit(Anywhere{pixels_at(line, w, window.stride)}, here);
+          };
+          made += follow(window, rays, line, load_pixels, found);
+          const int pixel = row * TileSums::columns + column;
+          for (int c = 0; c < colours; ++c) sums.colour[c][pixel] += sum_of(found.colour[c]);
+          if constexpr (!opaque) sums.alpha[pixel] += sum_of(found.alpha);
+          sums.total[pixel] += sum_of(line[weight]);
+          sums.open[pixel] += sum_of(found.open);
+          sums.missed[pixel] += sum_of(found.missed);
+          sums.unknown[pixel] += sum_of(found.unknown);
+        }
+      }
+    }
+  }
+  return made * static_cast<std::uint64_t>(width);
+}
+
+#define PETZVAL_FOLLOW(name, Rays)                                                                     \
+  std::uint64_t name(const TileJob& job, const Rays& rays) noexcept {                                  \
+    if (job.opaque) {                                                                                  \
+      return job.colours == 3 ? follow_##name<true, 3>(job, rays) : follow_##name<true, 1>(job, rays); \
+    }                                                                                                  \
+    return job.colours == 3 ? follow_##name<false, 3>(job, rays) : follow_##name<false, 1>(job, rays); \
+  }
+PETZVAL_FOLLOW(same, SameRays)
+PETZVAL_FOLLOW(coherent, DifferentRays)
+PETZVAL_FOLLOW(general, DifferentRays)
+
+}  // namespace
+
+extern const GatherLoops PETZVAL_LOOPS;
+const GatherLoops PETZVAL_LOOPS{same, coherent, general};
+
+}  // namespace petzval::inline v0::blur_detail

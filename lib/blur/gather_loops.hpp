@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+// The loops that follow rays through layers, which gather_loops.cpp defines for each instruction set.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "core/widest.hpp"
+
+namespace petzval::inline v0::blur_detail {
+
+/// Layers around a tile: a window of them, or where rays leave them a copy with repeated edges. Lanes read up to 63
+/// numbers beyond the ends of what rays reach.
+struct LayerWindow {
+  int layers = 0;
+  std::ptrdiff_t stride = 0;        ///< from row to row
+  std::ptrdiff_t layer_stride = 0;  ///< from layer to layer
+  /// Of the first layer at the tile's first pixel: inverse depth, below 0 where empty; as many colours as rays have in
+  /// common; alpha.
+  const float *depth = nullptr, *colour[3] = {}, *alpha = nullptr;
+
+  /// From another pixel of the tile on.
+  LayerWindow from(int row, int column) const noexcept {
+    const std::ptrdiff_t first = row * stride + column;
+    return {
+        layers,       stride, layer_stride, depth + first, {colour[0] + first, colour[1] + first, colour[2] + first},
+        alpha + first};
+  }
+};
+
+/// Sums over the rays of the pixels of a tile, [row][column], of weights and of weights times what was found.
+struct TileSums {
+  static constexpr int columns = 64, rows = 16, pixels = columns * rows;
+  float colour[3][pixels], alpha[pixels];
+  float total[pixels];    ///< of all rays
+  float open[pixels];     ///< of those that ended in the void (alpha 1 less), where no surface is
+  float missed[pixels];   ///< of those that met what the layers do not know
+  float unknown[pixels];  ///< of the latter, of those for which not even a guess was found
+};
+
+/// What a ray of all pixels does in a step: it passes a pixel beside its own, while inverse depths are in a range.
+struct Step {
+  std::ptrdiff_t offset;
+  float low, high;  ///< low >= 0
+};
+
+/// The rays of a tile that are the same for all its pixels: ray i has the steps first[i] to first[i + 1] - 1.
+struct SameRays {
+  std::size_t count = 0;
+  const Step* steps = nullptr;
+  const std::uint32_t* first = nullptr;
+  const float* weights = nullptr;
+};
+
+/// Rays that differ: lines at the tile's four corners (upper left, upper right, lower left, lower right), each
+/// [Row][ray] as in RayTable. Loops read a register beyond the last ray.
+struct DifferentRays {
+  std::size_t count = 0, row_stride = 0;
+  const float* corners[4] = {};
+  float from = 0, to = 0;  ///< inverse depths between which they are followed
+  float most = 0;          ///< of all surfaces, above 0
+  float tolerance = 0;
+  int side = 1;  ///< pixels take `count` rays of side x side sets in turn
+};
+
+struct TileJob {
+  LayerWindow window;
+  int columns = 0, rows = 0;  ///< of the tile
+  int left = 0, top = 0;      ///< of the tile in the picture
+  int colours = 3;            ///< in common, 3 or 1
+  bool opaque = true;
+  TileSums* sums = nullptr;
+};
+
+struct GatherLoops {
+  /// Each adds to the sums and returns how many steps its lanes made.
+  std::uint64_t (*same)(const TileJob&, const SameRays&) noexcept;
+  std::uint64_t (*coherent)(const TileJob&, const DifferentRays&) noexcept;
+  std::uint64_t (*general)(const TileJob&, const DifferentRays&) noexcept;
+};
+
+PETZVAL_WIDEST(GatherLoops, gather_loops)
+
+}  // namespace petzval::inline v0::blur_detail

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "gather_loops.hpp"
+#include "petzval/blur/gather.hpp"
+
+namespace petzval::inline v0 {
+
+/// What threads of gather() work with, kept from picture to picture.
+struct Blurred::Memory {
+  struct OfThread {
+    std::vector<blur_detail::Step> steps;
+    std::vector<std::uint32_t> first;
+    std::vector<float> corners[4], window;
+    blur_detail::TileSums sums[3];
+  };
+
+  /// One for each thread at work.
+  class Loan {
+   public:
+    explicit Loan(Memory& memory) : memory_(memory) {
+      const std::lock_guard guard(memory_.mutex_);
+      if (memory_.free_.empty()) memory_.free_.push_back(std::make_unique<OfThread>());
+      lent_ = std::move(memory_.free_.back());
+      memory_.free_.pop_back();
+    }
+    ~Loan() {
+      const std::lock_guard guard(memory_.mutex_);
+      memory_.free_.push_back(std::move(lent_));
+    }
+    Loan(const Loan&) = delete;
+    Loan& operator=(const Loan&) = delete;
+    OfThread& operator*() const noexcept { return *lent_; }
+
+   private:
+    Memory& memory_;
+    std::unique_ptr<OfThread> lent_;
+  };
+
+ private:
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<OfThread>> free_;
+};
+
+}  // namespace petzval::inline v0

@@ -1,0 +1,279 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "highlights.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <tuple>
+
+#include "core/low_discrepancy.hpp"
+#include "petzval/core/parallel.hpp"
+
+namespace petzval::inline v0::blur_detail {
+namespace {
+
+constexpr int block = NBuffer::block;
+
+/// The area that the lines of a node cover at an inverse depth, as an ellipse of the same moments has it.
+class CoveredArea {
+ public:
+  CoveredArea(const float* rows, std::size_t rays) {
+    const auto mean = [&](auto&& number) {
+      double sum = 0;
+      for (std::size_t i = 0; i < rays; ++i) sum += number(i);
+      return sum / static_cast<double>(rays);
+    };
+    const auto column = [&](Row r) { return [=](std::size_t i) { return static_cast<double>(rows[r * rays + i]); }; };
+    const auto covariance = [&](Row a, Row b) {
+      return mean([&](std::size_t i) { return column(a)(i) * column(b)(i); }) - mean(column(a)) * mean(column(b));
+    };
+    const auto along = [&](Row a, Row b, Row sa, Row sb) {
+      return Quadratic{covariance(a, b), covariance(a, sb) + covariance(sa, b), covariance(sa, sb)};
+    };
+    xx_ = along(at_x, at_x, slope_x, slope_x), yy_ = along(at_y, at_y, slope_y, slope_y);
+    xy_ = along(at_x, at_y, slope_x, slope_y);
+  }
+
+  double at(double w) const noexcept {
+    const double determinant = xx_.at(w) * yy_.at(w) - xy_.at(w) * xy_.at(w);
+    return 4 * std::numbers::pi * std::sqrt(std::max(determinant, 0.0));
+  }
+
+ private:
+  struct Quadratic {
+    double c0 = 0, c1 = 0, c2 = 0;
+    double at(double w) const noexcept { return c0 + w * (c1 + w * c2); }
+  };
+  Quadratic xx_, yy_, xy_;
+};
+
+/// A number that differs from pixel to pixel.
+std::uint64_t chance(int column, int row, int layer) {
+  return core_detail::mixed(static_cast<std::uint64_t>(column) << 40 | static_cast<std::uint64_t>(row) << 16 |
+                            static_cast<std::uint64_t>(layer));
+}
+
+}  // namespace
+
+/// Light that falls on a square of the picture.
+struct Highlights::Splat {
+  float x, y, side, light[3];
+};
+
+Highlights::Highlights(const LayerData& layers, const LensRays& rays, const GatherOptions& options, int overscan)
+    : layers_(layers), rays_(RayAccess::data(rays)), tolerance_(options.tolerance), overscan_(overscan) {
+  if (options.highlights_above == 0) return;
+  find(static_cast<float>(options.highlights_above));
+  share_neighbourhoods();
+}
+
+void Highlights::find(float above) {
+  const RayTable& table = rays_.table;
+  std::vector<CoveredArea> areas;
+  for (std::size_t row = 0; row < table.node_rows; ++row) {
+    for (std::size_t column = 0; column < table.node_columns; ++column) {
+      areas.emplace_back(table.node(0, row, column), table.rays);
+    }
+  }
+  const auto area_at = [&](int column, int row, double w) {
+    const auto node = [&](int position, int end, std::size_t nodes) {
+      return std::min(
+          static_cast<std::size_t>(std::clamp(position - overscan_, 0, end)) / static_cast<std::size_t>(table.step),
+          nodes - 1);
+    };
+    return areas[node(row, table.rows, table.node_rows) * table.node_columns +
+                 node(column, table.columns, table.node_columns)]
+        .at(w);
+  };
+  const auto rays = static_cast<double>(rays_.rays_of_set());
+  for (int row = 0; row < layers_.rows; ++row) {
+    row_begin_.push_back(found_.size());
+    for (int layer = 0; layer < layers_.count; ++layer) {
+      const std::ptrdiff_t from = static_cast<std::ptrdiff_t>(row) * layers_.columns;
+      const float* planes[5];
+      for (int p = 0; p < 5; ++p) planes[p] = layers_.plane(layer, p) + from;
+      for (int column = 0; column < layers_.columns; ++column) {
+        const float r = planes[1][column], g = planes[2][column], b = planes[3][column];
+        if (!(std::max({r, g, b}) > above) || planes[0][column] < 0) continue;
+        const double area = area_at(column, row, planes[0][column]);
+        if (!(area > rays) || !std::isfinite(r + g + b)) continue;
+        Highlight h{.column = column,
+                    .row = row,
+                    .layer = layer,
+                    .inverse_depth = planes[0][column],
+                    .area = static_cast<float>(area)};
+        for (int c = 0; c < 3; ++c) h.excess[c] = std::max(planes[1 + c][column] - above, 0.0f);
+        found_.push_back(h);
+      }
+    }
+  }
+  row_begin_.push_back(found_.size());
+  if (found_.empty()) return;
+
+  block_columns_ = (layers_.columns + block - 1) / block;
+  const int block_rows = (layers_.rows + block - 1) / block;
+  const auto stride = static_cast<std::size_t>(block_columns_ + 1);
+  before_.assign(stride * static_cast<std::size_t>(block_rows + 1), 0);
+  for (const Highlight& h : found_) {
+    ++before_[static_cast<std::size_t>(h.row / block + 1) * stride + static_cast<std::size_t>(h.column / block + 1)];
+  }
+  for (std::size_t i = stride; i < before_.size(); ++i) {
+    if (i % stride != 0) before_[i] += before_[i - 1] + before_[i - stride] - before_[i - stride - 1];
+  }
+}
+
+void Highlights::share_neighbourhoods() {
+  constexpr int cell = 16;
+  const auto cell_of = [](const Highlight& h) { return std::tuple(h.layer, h.row / cell, h.column / cell); };
+  const auto light_of = [](const Highlight& h) { return h.excess[0] + h.excess[1] + h.excess[2]; };
+  std::map<std::tuple<int, int, int>, float> light;
+  for (const Highlight& h : found_) light[cell_of(h)] += light_of(h);
+  for (Highlight& h : found_) h.share = light_of(h) / light[cell_of(h)];
+}
+
+bool Highlights::in(const PixelRect& rect) const noexcept {
+  if (found_.empty()) return false;
+  const auto stride = static_cast<std::size_t>(block_columns_ + 1);
+  const auto at = [](int pixel, int end) { return static_cast<std::size_t>(std::clamp(pixel, 0, end - 1) / block); };
+  const std::size_t left = at(rect.left, layers_.columns), right = at(rect.right, layers_.columns) + 1,
+                    top = at(rect.top, layers_.rows), bottom = at(rect.bottom, layers_.rows) + 1;
+  return before_[bottom * stride + right] + before_[top * stride + left] !=
+         before_[top * stride + right] + before_[bottom * stride + left];
+}
+
+void Highlights::cut(const PixelRect& rect, int columns, int layers, int planes, std::size_t plane_stride,
+                     float* copy) const {
+  if (found_.empty()) return;
+  for (int row = std::max(rect.top, 0); row <= std::min(rect.bottom, layers_.rows - 1); ++row) {
+    for (std::size_t i = row_begin_[static_cast<std::size_t>(row)]; i < row_begin_[static_cast<std::size_t>(row) + 1];
+         ++i) {
+      const Highlight& h = found_[i];
+      if (h.column < rect.left || h.column > rect.right || h.layer >= layers) continue;
+      float* const at = copy + static_cast<std::size_t>(h.layer * planes) * plane_stride +
+                        static_cast<std::ptrdiff_t>(row - rect.top) * columns + (h.column - rect.left);
+      for (int c = 0; c < 3; ++c) at[static_cast<std::size_t>(1 + c) * plane_stride] -= h.excess[c];
+    }
+  }
+}
+
+float Highlights::visible(const float* line, double x, double y, const Highlight& h) const {
+  const auto place_at = [&](double w) {
+    return Vec2<double>{x + line[at_x] + w * line[slope_x] + overscan_, y + line[at_y] + w * line[slope_y] + overscan_};
+  };
+  const auto rect_to = [&](double w) {
+    const Vec2<double> a = place_at(w), b = place_at(h.inverse_depth);
+    return PixelRect{
+        static_cast<int>(std::floor(std::min(a.x, b.x))) - 1, static_cast<int>(std::floor(std::min(a.y, b.y))) - 1,
+        static_cast<int>(std::ceil(std::max(a.x, b.x))) + 1, static_cast<int>(std::ceil(std::max(a.y, b.y))) + 1};
+  };
+  // From the nearest surface of all, then from the nearest one below that way.
+  double from = layers_.n_buffer.below({0, 0, layers_.columns - 1, layers_.rows - 1}).most;
+  const double steepest = std::max({std::abs(line[slope_x]), std::abs(line[slope_y]), 1e-30f});
+  const double margin = (0.5 + tolerance_) / steepest;  // the highlight's own surface
+  for (int i = 0; i < 2; ++i) {
+    from = layers_.n_buffer.below(rect_to(from)).most;
+    if (from <= h.inverse_depth + margin) return 1;
+  }
+  const int steps = static_cast<int>((from - h.inverse_depth) * steepest) + 1;
+  const double length = (from - h.inverse_depth) / steps, half = length * (0.5 + tolerance_);
+  float through = 1;
+  for (int k = 0; k < steps && through > 1e-3f; ++k) {
+    const double w = from - (k + 0.5) * length;
+    const Vec2<double> at = place_at(w);
+    const int column = std::clamp(static_cast<int>(std::floor(at.x)), 0, layers_.columns - 1),
+              row = std::clamp(static_cast<int>(std::floor(at.y)), 0, layers_.rows - 1);
+    const std::ptrdiff_t pixel = static_cast<std::ptrdiff_t>(row) * layers_.columns + column;
+    for (int layer = 0; layer < layers_.count; ++layer) {
+      const double met = layers_.plane(layer, 0)[pixel];
+      if (met < w - half || met <= h.inverse_depth + margin) break;
+      if (met <= w + half) through *= 1 - layers_.plane(layer, 4)[pixel];
+    }
+  }
+  return through;
+}
+
+void Highlights::rays_of(const Highlight& h, std::vector<Splat>& splats) const {
+  const RayTable& table = rays_.dense();
+  const std::size_t known = table.rays;
+  // Eight rays for each pixel that the light of the neighbourhood covers.
+  const auto rays = static_cast<std::size_t>(std::clamp(8.0 * h.area * h.share, 4.0, static_cast<double>(known)));
+  const double density = static_cast<double>(rays) / (h.area * h.share);  // per pixel, with those of the neighbours
+  const auto side = static_cast<float>(std::max(1.0, 3 / std::sqrt(density)));
+  const auto first = chance(h.column, h.row, h.layer) % known;
+  const double x = h.column + 0.5 - overscan_, y = h.row + 0.5 - overscan_, w = h.inverse_depth;
+  for (std::size_t channel = 0; channel < table.channels; ++channel) {
+    for (std::size_t i = 0; i < rays; ++i) {
+      const std::size_t ray = (first + i) % known;
+      float line[row_count];
+      // Where the ray's line leads at the highlight's depth, from a place of the picture.
+      const auto lead = [&](double from_x, double from_y) {
+        table.ray_at(channel, ray, from_x, from_y, line);
+        return Vec2<double>{from_x + line[at_x] + w * line[slope_x], from_y + line[at_y] + w * line[slope_y]};
+      };
+      Vec2<double> place{x, y};
+      double stretch = 1;
+      if (rays_.shift_invariant) {
+        const Vec2<double> led = lead(x, y);
+        place += Vec2<double>{x, y} - led;
+      } else {
+        double off = 1;
+        for (int k = 0; k < 12 && off > 0.05; ++k) {
+          const Vec2<double> led = lead(place.x, place.y), miss = Vec2<double>{x, y} - led;
+          off = std::max(std::abs(miss.x), std::abs(miss.y));
+          place += miss;
+        }
+        if (off > 1) continue;
+        const Vec2<double> here = lead(place.x, place.y), right = lead(place.x + 1, place.y),
+                           down = lead(place.x, place.y + 1);
+        stretch = std::abs((right.x - here.x) * (down.y - here.y) - (right.y - here.y) * (down.x - here.x));
+        lead(place.x, place.y);
+        if (!(stretch > 1e-3)) continue;
+      }
+      const double reach = 0.5 * side;
+      if (place.x < -reach || place.y < -reach || place.x > table.columns + reach || place.y > table.rows + reach)
+        continue;
+      const double light = visible(line, place.x, place.y, h) * line[weight] / (static_cast<double>(rays) * stretch);
+      if (!(light > 0)) continue;
+      Splat splat{static_cast<float>(place.x), static_cast<float>(place.y), side, {}};
+      for (std::size_t c = 0; c < 3; ++c) {
+        if (table.channels == 1 || c == channel) splat.light[c] = static_cast<float>(light) * h.excess[c];
+      }
+      splats.push_back(splat);
+    }
+  }
+}
+
+void Highlights::spread(int threads, Blurred& picture) const {
+  constexpr std::size_t at_once = 128;
+  std::vector<std::vector<Splat>> splats(std::min(at_once, found_.size()));
+  for (std::size_t begin = 0; begin < found_.size(); begin += at_once) {
+    const std::size_t count = std::min(at_once, found_.size() - begin);
+    parallel_for(count, 1, threads, [&](std::size_t first, std::size_t end) {
+      for (std::size_t i = first; i < end; ++i) splats[i].clear(), rays_of(found_[begin + i], splats[i]);
+    });
+    // One after the other: the same sums for any number of threads.
+    for (std::size_t i = 0; i < count; ++i) {
+      for (const Splat& s : splats[i]) {
+        const float left = s.x - 0.5f * s.side, top = s.y - 0.5f * s.side, scale = 1 / (s.side * s.side);
+        const auto covered = [&](float begin_at, int pixel) {
+          const auto p = static_cast<float>(pixel);
+          return std::min(begin_at + s.side, p + 1) - std::max(begin_at, p);
+        };
+        const int last_column = std::min(static_cast<int>(std::ceil(left + s.side)), picture.columns),
+                  last_row = std::min(static_cast<int>(std::ceil(top + s.side)), picture.rows);
+        for (int row = std::max(0, static_cast<int>(std::floor(top))); row < last_row; ++row) {
+          for (int column = std::max(0, static_cast<int>(std::floor(left))); column < last_column; ++column) {
+            const float part = std::max(covered(left, column), 0.0f) * std::max(covered(top, row), 0.0f) * scale;
+            float* const rgba =
+                &picture.rgba[4 * (static_cast<std::size_t>(row) * static_cast<std::size_t>(picture.columns) +
+                                   static_cast<std::size_t>(column))];
+            for (int c = 0; c < 3; ++c) rgba[c] += part * s.light[c];
+          }
+        }
+      }
+    }
+  }
+}
+
+}  // namespace petzval::inline v0::blur_detail

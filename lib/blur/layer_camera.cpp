@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "petzval/blur/layer_camera.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "core/text.hpp"
+#include "petzval/camera/camera.hpp"
+#include "petzval/core/error.hpp"
+#include "petzval/core/units.hpp"
+#include "petzval/paraxial/first_order.hpp"
+#include "petzval/paraxial/ideal_lens.hpp"
+
+namespace petzval::inline v0 {
+namespace {
+
+constexpr int most_side = 32768;
+constexpr double steepest = radians(60);  // of rays from the axis
+
+void check_size(int columns, int rows) {
+  if (columns < 1 || rows < 1 || columns > most_side || rows > most_side) {
+    throw Error("layer camera: picture is " + std::to_string(columns) + " x " + std::to_string(rows) +
+                ", wanted 1 to " + std::to_string(most_side) + " pixels a side");
+  }
+}
+
+}  // namespace
+
+LayerCamera layer_camera(int columns, int rows, double vertical_angle_rad) {
+  check_size(columns, rows);
+  if (!(vertical_angle_rad > 0 && vertical_angle_rad <= radians(120))) {
+    throw Error("layer camera: vertical angle is " + to_text(degrees(vertical_angle_rad)) +
+                " degrees, wanted more than 0 and at most 120: planes of pixels do not show more");
+  }
+  return {.columns = columns,
+          .rows = rows,
+          .focal_px = 0.5 * rows / std::tan(0.5 * vertical_angle_rad),
+          .axis = {0.5 * columns, 0.5 * rows}};
+}
+
+LayerCamera layer_camera(const Camera& camera) {
+  const Film& film = camera.film();
+  check_size(film.columns, film.rows);
+  const double origin = layer_origin_z(camera);
+
+  // How far from the axis, per pixel, the ideal lens sees the scene of a film point next to it.
+  const IdealLens ideal = thick_lens(camera.lens());
+  const double height = film.height_mm / film.rows;
+  const ScenePoint seen = ideal.scene_of({0, -height, film.z()});
+  const double slope =
+      seen.at_infinity ? seen.position.y / -seen.position.z : seen.position.y / (origin - seen.position.z);
+  const LayerCamera layers{.columns = film.columns,
+                           .rows = film.rows,
+                           .focal_px = std::abs(1 / slope),
+                           .axis = film.raster(FilmPoint{0, 0})};
+
+  constexpr int places = 9;  // along each side; those without light do not count
+  for (int i = 0; i < places * places; ++i) {
+    const double column = film.columns * (i % places) / (places - 1.0), row = film.rows * (i / places) / (places - 1.0);
+    const CameraRay ray = camera.sample({.film = film.point(column, row)});
+    if (!ray || -ray.ray.direction.z >= std::cos(steepest)) continue;
+    throw Error("layer camera: the ray of column " + to_text(column) + ", row " + to_text(row) + " runs " +
+                to_text(degrees(std::acos(std::clamp(-ray.ray.direction.z, -1.0, 1.0)))) +
+                " degrees from the axis, wanted at most " + to_text(degrees(steepest)) +
+                ": planes of pixels do not show more");
+  }
+  return layers;
+}
+
+double layer_origin_z(const Camera& camera) {
+  const double z = pupils(camera.lens()).entrance.z;
+  if (!std::isfinite(z))
+    throw Error("layer camera: the entrance pupil of the lens is at infinity, wanted a finite place");
+  return z;
+}
+
+}  // namespace petzval::inline v0

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "n_buffer.hpp"
+#include "petzval/blur/layers.hpp"
+
+namespace petzval::inline v0 {
+
+/// Planes of columns x rows numbers, side by side: of each layer inverse depth, red, green, blue, alpha.
+struct LayerSet::Data {
+  static constexpr int planes = 5;
+  /// Before, between and after planes: lanes may read that far beyond the ends of a row.
+  static constexpr std::size_t slack = 64;
+
+  int columns = 0, rows = 0, count = 0;
+  bool opaque = true;
+  std::vector<float> memory, below;
+  blur_detail::NBuffer n_buffer;
+
+  std::size_t pixels() const noexcept { return static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows); }
+  std::size_t plane_stride() const noexcept { return pixels() + slack; }
+  float* plane(int layer, int plane) noexcept {
+    return memory.data() + slack + static_cast<std::size_t>(layer * planes + plane) * plane_stride();
+  }
+  const float* plane(int layer, int p) const noexcept { return const_cast<Data*>(this)->plane(layer, p); }
+
+  /// Room for `layers`; what they held is lost.
+  void resize(int new_columns, int new_rows, int layers);
+  /// One more layer, empty and black with alpha 1, before it counts.
+  LayerPlanes begin_layer();
+  /// Takes in the layer that was begun, if it has a surface. where: for messages.
+  void end_layer(const std::string& where);
+  /// When all layers are there.
+  void finish();
+};
+
+class LayerAccess {
+ public:
+  using Data = LayerSet::Data;
+  static const LayerSet::Data& data(const LayerSet& layers) noexcept { return *layers.data_; }
+};
+
+namespace blur_detail {
+using LayerData = LayerAccess::Data;
+}
+
+}  // namespace petzval::inline v0

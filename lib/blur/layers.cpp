@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "petzval/blur/layers.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "core/text.hpp"
+#include "layer_data.hpp"
+#include "petzval/core/error.hpp"
+
+namespace petzval::inline v0 {
+namespace {
+
+constexpr float infinity = std::numeric_limits<float>::infinity();
+constexpr int most_layers = 64, most_side = 65536;
+
+void check_number(int layers) {
+  if (layers < 1 || layers > most_layers) {
+    throw Error("layers: " + std::to_string(layers) + " layers, wanted 1 to " + std::to_string(most_layers));
+  }
+}
+
+void check_size(const std::string& where, int columns, int rows) {
+  if (columns < 1 || rows < 1 || columns > most_side || rows > most_side) {
+    throw Error(where + ": size is " + std::to_string(columns) + " x " + std::to_string(rows) + ", wanted 1 to " +
+                std::to_string(most_side) + " pixels a side");
+  }
+}
+
+std::string pixel_name(std::size_t pixel, int columns) {
+  const auto width = static_cast<std::size_t>(columns);
+  return "column " + std::to_string(pixel % width) + ", row " + std::to_string(pixel / width);
+}
+
+/// 1/mm of a depth, -1 of what is no surface.
+float inverse_of(float depth_mm) { return depth_mm > 0 ? 1 / depth_mm : -1.0f; }
+
+}  // namespace
+
+void LayerSet::Data::resize(int new_columns, int new_rows, int layers) {
+  columns = new_columns, rows = new_rows, count = 0, opaque = true;
+  below.assign(pixels(), infinity);
+  const std::size_t wanted = 2 * slack + static_cast<std::size_t>(layers * planes) * plane_stride();
+  if (memory.size() < wanted) memory.resize(wanted);
+}
+
+LayerPlanes LayerSet::Data::begin_layer() {
+  const auto span = [&](int p, float value) {
+    float* const begin = plane(count, p);
+    std::fill_n(begin, pixels(), value);
+    return std::span<float>(begin, pixels());
+  };
+  return {span(0, -1), span(1, 0), span(2, 0), span(3, 0), span(4, 1)};
+}
+
+void LayerSet::Data::end_layer(const std::string& where) {
+  float* const w = plane(count, 0);
+  const float* const alpha = plane(count, 4);
+  bool any = false, solid = true, ordered = true;
+  for (std::size_t i = 0; i < pixels(); ++i) {
+    w[i] = w[i] >= 0 ? w[i] : -1.0f;  // not a number: empty
+    any |= w[i] >= 0;
+    ordered &= w[i] < 0 || w[i] < below[i];
+    solid &= w[i] < 0 || alpha[i] == 1;
+  }
+  if (!ordered) {
+    std::size_t i = 0;
+    while (w[i] < 0 || w[i] < below[i]) ++i;
+    throw Error(where + ": " + pixel_name(i, columns) + ": inverse depth is " + to_text(w[i], 6) +
+                " / mm, wanted one below " + to_text(below[i], 6) + ", or no surface");
+  }
+  if (!any) return;
+  ++count;
+  opaque &= solid;
+}
+
+void LayerSet::Data::finish() {
+  std::vector<std::span<const float>> depths;
+  for (int layer = 0; layer < count; ++layer) depths.emplace_back(plane(layer, 0), pixels());
+  n_buffer.fill(columns, rows, depths);
+}
+
+LayerSet::LayerSet() : data_(std::make_unique<Data>()) {}
+LayerSet::LayerSet(LayerSet&&) noexcept = default;
+LayerSet& LayerSet::operator=(LayerSet&&) noexcept = default;
+LayerSet::~LayerSet() = default;
+
+void LayerSet::peel(const PeelPlan& plan, int layers, const Peel& peel) {
+  check_number(layers);
+  const LayerCamera& camera = plan.camera;
+  check_size("layers", camera.layer_columns(), camera.layer_rows());
+  Data& d = *data_;
+  d.resize(camera.layer_columns(), camera.layer_rows(), layers);
+  const auto bias = static_cast<float>(plan.bias);
+  for (int layer = 0; layer < layers; ++layer) {
+    const std::size_t written = peel(layer, d.below, d.begin_layer());
+    const int before = d.count;
+    if (written > 0) d.end_layer("layer " + std::to_string(layer));
+    if (d.count == before) break;
+    const float* const w = d.plane(layer, 0);
+    for (std::size_t i = 0; i < d.pixels(); ++i) d.below[i] = w[i] >= 0 ? w[i] - bias : -1.0f;
+  }
+  d.finish();
+}
+
+void LayerSet::thin(const FragmentLists& lists, double bias, int layers) {
+  check_number(layers);
+  check_size("fragments", lists.columns, lists.rows);
+  const auto pixels = static_cast<std::size_t>(lists.columns) * static_cast<std::size_t>(lists.rows);
+  const auto wrong = [](const std::string& what) { return Error("fragments: " + what); };
+  if (lists.offsets.size() != pixels + 1 || lists.offsets.front() != 0 ||
+      lists.offsets.back() != lists.fragments.size() || !std::is_sorted(lists.offsets.begin(), lists.offsets.end())) {
+    throw wrong("offsets do not rise from 0 to the number of fragments, one for each pixel and one more");
+  }
+  if (!(bias >= 0)) throw wrong("bias is " + to_text(bias) + ", wanted 0 or more");
+
+  // Layer by layer over all pixels would sort each list again: one pass keeps what each layer has.
+  Data& d = *data_;
+  d.resize(lists.columns, lists.rows, layers);
+  struct Planes {
+    float* p[Data::planes];
+  };
+  std::vector<Planes> out(static_cast<std::size_t>(layers));
+  for (int layer = 0; layer < layers; ++layer) {
+    d.count = layer;
+    const LayerPlanes planes = d.begin_layer();
+    out[static_cast<std::size_t>(layer)] = {
+        {planes.inverse_depth.data(), planes.red.data(), planes.green.data(), planes.blue.data(), planes.alpha.data()}};
+  }
+  d.count = 0;
+  const auto step = static_cast<float>(bias);
+  std::vector<FragmentLists::Fragment> list;
+  std::size_t deepest = 0;
+  for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
+    list.clear();
+    for (std::size_t i = lists.offsets[pixel]; i < lists.offsets[pixel + 1]; ++i) {
+      const FragmentLists::Fragment& f = lists.fragments[i];
+      if (!(f.depth_mm > 0)) continue;
+      if (!(f.alpha >= 0 && f.alpha <= 1)) {
+        throw wrong(pixel_name(pixel, lists.columns) + ": alpha is " + to_text(f.alpha) + ", wanted 0 to 1");
+      }
+      list.push_back(f);
+    }
+    std::stable_sort(list.begin(), list.end(), [](const auto& a, const auto& b) { return a.depth_mm < b.depth_mm; });
+    std::size_t kept = 0;
+    float last = infinity;
+    for (const FragmentLists::Fragment& f : list) {
+      const float w = inverse_of(f.depth_mm), values[] = {w, f.red, f.green, f.blue, f.alpha};
+      if (kept == 0 || w < last - step) {
+        if (kept == out.size()) break;
+        for (int p = 0; p < Data::planes; ++p) out[kept].p[p][pixel] = values[p];
+        ++kept, last = w;
+      } else {
+        // Behind a surface that lets light through: what it lets through.
+        float* const* const front = out[kept - 1].p;
+        const float through = 1 - front[4][pixel];
+        for (int p = 1; p < Data::planes; ++p) front[p][pixel] += through * values[p];
+      }
+    }
+    deepest = std::max(deepest, kept);
+  }
+  for (std::size_t layer = 0; layer < deepest; ++layer) {
+    d.end_layer("layer " + std::to_string(layer));
+  }
+  d.finish();
+}
+
+void LayerSet::set(std::span<const LayerImage> images) {
+  check_number(static_cast<int>(std::min<std::size_t>(images.size(), most_layers + 1)));
+  const LayerImage& first = images.front();
+  check_size("layer 0", first.columns, first.rows);
+  const auto pixels = static_cast<std::size_t>(first.columns) * static_cast<std::size_t>(first.rows);
+  for (std::size_t layer = 0; layer < images.size(); ++layer) {
+    const LayerImage& image = images[layer];
+    const std::string where = "layer " + std::to_string(layer);
+    if (image.columns != first.columns || image.rows != first.rows) {
+      throw Error(where + ": size is " + std::to_string(image.columns) + " x " + std::to_string(image.rows) +
+                  ", wanted that of the first, " + std::to_string(first.columns) + " x " + std::to_string(first.rows));
+    }
+    if (image.rgba.size() != 4 * pixels || image.depth_mm.size() != pixels) {
+      throw Error(where + ": found " + std::to_string(image.rgba.size()) + " colours and " +
+                  std::to_string(image.depth_mm.size()) + " depths, wanted 4 and 1 for each pixel");
+    }
+  }
+  Data& d = *data_;
+  d.resize(first.columns, first.rows, static_cast<int>(images.size()));
+  for (std::size_t layer = 0; layer < images.size(); ++layer) {
+    const LayerPlanes out = d.begin_layer();
+    for (std::size_t i = 0; i < pixels; ++i) {
+      const float* const rgba = &images[layer].rgba[4 * i];
+      out.inverse_depth[i] = inverse_of(images[layer].depth_mm[i]);
+      if (out.inverse_depth[i] < 0) continue;
+      out.red[i] = rgba[0], out.green[i] = rgba[1], out.blue[i] = rgba[2], out.alpha[i] = rgba[3];
+    }
+    const int number = d.count;
+    d.end_layer("layer " + std::to_string(layer));
+    if (d.count == number) break;
+    std::copy_n(d.plane(number, 0), pixels, d.below.begin());
+    // A surface may touch the one before it, at the same depth; none stands behind an empty pixel.
+    for (float& w : d.below) w = w >= 0 ? std::nextafter(w, infinity) : -1.0f;
+  }
+  d.finish();
+}
+
+int LayerSet::columns() const noexcept { return data_->columns; }
+int LayerSet::rows() const noexcept { return data_->rows; }
+int LayerSet::count() const noexcept { return data_->count; }
+bool LayerSet::opaque() const noexcept { return data_->opaque; }
+std::span<const float> LayerSet::inverse_depth(int layer) const noexcept {
+  return {data_->plane(layer, 0), data_->pixels()};
+}
+std::span<const float> LayerSet::channel(int layer, int channel) const noexcept {
+  return {data_->plane(layer, 1 + channel), data_->pixels()};
+}
+
+FragmentLists LayerSet::fragments() const {
+  const Data& d = *data_;
+  FragmentLists lists{.columns = d.columns, .rows = d.rows, .offsets = {0}, .fragments = {}};
+  lists.offsets.reserve(d.pixels() + 1);
+  for (std::size_t i = 0; i < d.pixels(); ++i) {
+    for (int layer = 0; layer < d.count && d.plane(layer, 0)[i] >= 0; ++layer) {
+      lists.fragments.push_back({1 / d.plane(layer, 0)[i], d.plane(layer, 1)[i], d.plane(layer, 2)[i],
+                                 d.plane(layer, 3)[i], d.plane(layer, 4)[i]});
+    }
+    lists.offsets.push_back(lists.fragments.size());
+  }
+  return lists;
+}
+
+}  // namespace petzval::inline v0

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "petzval/blur/lens_rays.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "core/low_discrepancy.hpp"
+#include "core/text.hpp"
+#include "petzval/core/error.hpp"
+#include "ray_table.hpp"
+
+namespace petzval::inline v0 {
+namespace {
+
+using namespace blur_detail;
+
+constexpr int widest_step = 256, narrowest_step = 16;
+constexpr double same_px = 1e-3;  // lines that differ by less are the same
+
+/// How far a finer table is from what a coarser one interpolates, at the worst place.
+struct TableError {
+  double px = 0;     ///< RMS of a place's lines at the depth where they are nearest to each other
+  double light = 0;  ///< of the weights of all rays of a place, over the largest of all places
+
+  bool within_limits() const noexcept { return px <= 0.1 && light <= 6e-3; }
+};
+
+/// The inverse depth, from 0 to `nearest`, at which the lines of a node are nearest to each other.
+double sharpest(const float* node, std::size_t rays, double nearest) {
+  const auto n = static_cast<double>(rays);
+  double across = 0, steep = 0;  // covariance of places and slopes, variance of slopes
+  for (const auto& [at, slope] : {std::pair{at_x, slope_x}, std::pair{at_y, slope_y}}) {
+    double a = 0, s = 0, as = 0, ss = 0;
+    for (std::size_t i = 0; i < rays; ++i) {
+      const double x = node[at * rays + i], y = node[slope * rays + i];
+      a += x, s += y, as += x * y, ss += y * y;
+    }
+    across += as - a * s / n, steep += ss - s * s / n;
+  }
+  return steep > 0 ? std::clamp(-across / steep, 0.0, nearest) : 0;
+}
+
+TableError error_of(const RayTable& coarse, const RayTable& fine, double nearest) {
+  std::vector<float> found(coarse.node_size());
+  TableError error;
+  double brightest = 0;
+  for (std::size_t channel = 0; channel < fine.channels; ++channel) {
+    for (std::size_t row = 0; row < fine.node_rows; ++row) {
+      for (std::size_t column = 0; column < fine.node_columns; ++column) {
+        coarse.at(channel, fine.column_of(column), fine.row_of(row), found.data());
+        const float* const exact = fine.node(channel, row, column);
+        const double focus = sharpest(exact, fine.rays, nearest);
+        double light = 0, wanted = 0, sum = 0;
+        for (std::size_t i = 0; i < fine.rays; ++i) {
+          const auto off = [&](Row r) {
+            return static_cast<double>(found[r * fine.rays + i]) - exact[r * fine.rays + i];
+          };
+          light += found[weight * fine.rays + i], wanted += exact[weight * fine.rays + i];
+          if (exact[weight * fine.rays + i] == 0) continue;
+          const double x = off(at_x) + focus * off(slope_x), y = off(at_y) + focus * off(slope_y);
+          sum += x * x + y * y;
+        }
+        error.px = std::max(error.px, std::sqrt(sum / static_cast<double>(fine.rays)));
+        error.light = std::max(error.light, std::abs(light - wanted)), brightest = std::max(brightest, wanted);
+      }
+    }
+  }
+  if (brightest > 0) error.light /= brightest;
+  return error;
+}
+
+}  // namespace
+
+LensRays::LensRays(const LayerCamera& camera, std::span<const PupilPoint> points, int channels, Source source,
+                   const LensRaysOptions& options) {
+  const auto wrong = [](const std::string& what) { return Error("lens rays: " + what); };
+  if (camera.columns < 1 || camera.rows < 1 || !(camera.focal_px > 0) || !std::isfinite(camera.focal_px)) {
+    throw wrong("layer camera is " + std::to_string(camera.columns) + " x " + std::to_string(camera.rows) +
+                " with a focal length of " + to_text(camera.focal_px) + " px, wanted positive numbers");
+  }
+  if (channels != 1 && channels != 3) throw wrong(std::to_string(channels) + " channels, wanted 1 or 3");
+  if (options.sets != 1 && options.sets != 4 && options.sets != 16) {
+    throw wrong(std::to_string(options.sets) + " sets, wanted 1, 4 or 16");
+  }
+  if (points.empty() || points.size() % static_cast<std::size_t>(options.sets) != 0) {
+    throw wrong(std::to_string(points.size()) + " points, wanted 1 or more, as many for each of " +
+                std::to_string(options.sets) + " sets");
+  }
+  if (!(options.nearest_mm >= 0 && std::isfinite(options.nearest_mm))) {
+    throw wrong("nearest depth is " + to_text(options.nearest_mm) + " mm, wanted 0 (a default) or more");
+  }
+  auto d = std::make_shared<Data>();
+  d->camera = camera, d->camera.overscan = 0;
+  d->points.assign(points.begin(), points.end());
+  d->source = std::move(source), d->options = options;
+  if (options.nearest_mm == 0) d->options.nearest_mm = 24 * camera.focal_px / camera.rows;
+  const double nearest = 1 / d->options.nearest_mm;
+
+  const auto count = static_cast<std::size_t>(channels);
+  const auto table = [&](int step) { return ray_table(d->camera, points, count, d->source, step, options.threads); };
+  d->table = table(widest_step);
+  for (int step = widest_step / 2;; step /= 2) {
+    RayTable fine = table(step);
+    const TableError error = error_of(d->table, fine, nearest);
+    d->error_px = error.px;
+    if (error.within_limits() || d->table.step == narrowest_step) break;
+    d->table = std::move(fine);
+  }
+
+  const RayTable& t = d->table;
+  const std::size_t n = t.rays;
+  double differ = 0, light = 0, lean = 0;
+  for (std::size_t channel = 0; channel < count; ++channel) {
+    for (std::size_t node = 0; node < t.node_columns * t.node_rows; ++node) {
+      const float *const first = t.node(channel, 0, 0), *const here = first + node * t.node_size();
+      for (std::size_t i = 0; i < n; ++i) {
+        const auto off = [&](Row r) { return std::abs(static_cast<double>(here[r * n + i]) - first[r * n + i]); };
+        for (const auto& [at, slope] : {std::pair{at_x, slope_x}, std::pair{at_y, slope_y}}) {
+          differ = std::max({differ, off(at), off(at) + nearest * off(slope)});
+          lean = std::max(lean, std::abs(static_cast<double>(here[slope * n + i])));
+        }
+        light = std::max(light, off(weight));
+      }
+    }
+  }
+  d->largest_slope = lean;
+  d->shift_invariant = options.sets == 1 && differ <= same_px && light <= 1e-6;
+  data_ = std::move(d);
+}
+
+const LayerCamera& LensRays::camera() const noexcept { return data_->camera; }
+int LensRays::channels() const noexcept { return static_cast<int>(data_->table.channels); }
+int LensRays::sets() const noexcept { return data_->options.sets; }
+std::size_t LensRays::count() const noexcept { return data_->rays_of_set(); }
+bool LensRays::shift_invariant() const noexcept { return data_->shift_invariant; }
+double LensRays::error_px() const noexcept { return data_->error_px; }
+double LensRays::nearest_mm() const noexcept { return data_->options.nearest_mm; }
+double LensRays::largest_slope() const noexcept { return data_->largest_slope; }
+
+double LensRays::reach_px(double least_inverse_depth, double most_inverse_depth) const noexcept {
+  const RayTable& t = data_->table;
+  const std::size_t n = t.rays;
+  double reach = 0;
+  for (std::size_t channel = 0; channel < t.channels; ++channel) {
+    for (std::size_t row = 0; row < t.node_rows; ++row) {
+      for (std::size_t column = 0; column < t.node_columns; ++column) {
+        // Inner nodes reach beyond an edge only by what they lack to it.
+        const double x = t.column_of(column), y = t.row_of(row);
+        const float* const node = t.node(channel, row, column);
+        for (std::size_t i = 0; i < n; ++i) {
+          for (const double w : {least_inverse_depth, most_inverse_depth}) {
+            const double px = x + node[at_x * n + i] + w * node[slope_x * n + i],
+                         py = y + node[at_y * n + i] + w * node[slope_y * n + i];
+            reach = std::max({reach, -px, px - t.columns, -py, py - t.rows});
+          }
+        }
+      }
+    }
+  }
+  return reach;
+}
+
+const RayTable& LensRays::Data::dense() const {
+  std::call_once(dense_once_, [this] {
+    // As many as memory of 64 MiB holds; any run of these points covers the pupil evenly.
+    const std::size_t nodes = table.channels * table.node_columns * table.node_rows;
+    const std::size_t count = std::clamp<std::size_t>((std::size_t{1} << 24) / (nodes * row_count), 256, 16384);
+    const core_detail::Kronecker<2> points_of;
+    std::vector<PupilPoint> many(count);
+    for (std::size_t i = 0; i < count; ++i) many[i] = {points_of(i)[0], points_of(i)[1]};
+    dense_ = ray_table(camera, many, table.channels, source, table.step, options.threads);
+  });
+  return dense_;
+}
+
+void LensRays::at(int channel, int column, int row, std::span<LayerRay> rays) const {
+  const RayTable& t = data_->table;
+  std::vector<float> found(t.node_size());
+  const Vec2<double> place{column + 0.5, row + 0.5};
+  t.at(static_cast<std::size_t>(channel), place.x, place.y, found.data());
+  const std::size_t first = set_of(column, row, data_->side()) * count();
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const auto number = [&](Row r) { return static_cast<double>(found[r * t.rays + first + i]); };
+    rays[i] = {place + Vec2<double>{number(at_x), number(at_y)}, {number(slope_x), number(slope_y)}, number(weight)};
+  }
+}
+
+void LensRays::exact_at(int channel, int column, int row, std::span<LayerRay> rays) const {
+  const std::size_t first = set_of(column, row, data_->side()) * count();
+  data_->source(channel, {column + 0.5, row + 0.5}, std::span(data_->points).subspan(first, rays.size()), rays);
+}
+
+}  // namespace petzval::inline v0

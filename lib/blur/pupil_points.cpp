@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+#include <string>
+
+#include "petzval/blur/lens_rays.hpp"
+#include "petzval/core/error.hpp"
+
+namespace petzval::inline v0 {
+
+std::vector<PupilPoint> vogel_points(int count, double turn) {
+  if (count < 1 || count > (1 << 20)) {
+    throw Error("vogel_points: " + std::to_string(count) + " points, wanted 1 to " + std::to_string(1 << 20));
+  }
+  constexpr double golden = 0.38196601125010515;  // of a turn, 2 less the golden ratio
+  std::vector<PupilPoint> points(static_cast<std::size_t>(count));
+  for (int i = 0; i < count; ++i) {
+    const double u = i * golden + turn;
+    points[static_cast<std::size_t>(i)] = {u - std::floor(u), (i + 0.5) / count};
+  }
+  return points;
+}
+
+}  // namespace petzval::inline v0

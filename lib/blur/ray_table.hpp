@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <mutex>
+#include <span>
+#include <vector>
+
+#include "petzval/blur/lens_rays.hpp"
+#include "ray_rows.hpp"
+
+namespace petzval::inline v0::blur_detail {
+
+/// Rays at nodes over a picture: every `step` pixels from its upper left corner, and at its right and lower edges.
+struct RayTable {
+  int columns = 0, rows = 0;           ///< of the picture
+  int step = 0;                        ///< px, a power of 2
+  std::size_t channels = 0, rays = 0;  ///< rays of a node and channel
+  std::size_t node_columns = 0, node_rows = 0;
+  std::vector<float> nodes;  ///< [channel][node row][node column][Row][ray]
+
+  std::size_t node_size() const noexcept { return row_count * rays; }
+  const float* node(std::size_t channel, std::size_t row, std::size_t column) const noexcept {
+    return nodes.data() + ((channel * node_rows + row) * node_columns + column) * node_size();
+  }
+  double column_of(std::size_t node) const noexcept;  ///< raster position
+  double row_of(std::size_t node) const noexcept;
+  /// The rows of a place of the picture, interpolated between the nodes around it: node_size() numbers.
+  void at(std::size_t channel, double column, double row, float* found) const noexcept;
+  /// The same of one ray: row_count numbers.
+  void ray_at(std::size_t channel, std::size_t ray, double column, double row, float* found) const noexcept;
+};
+
+/// The rays of a source at all nodes. Throws Error for rays that are not finite, and for negative weights.
+RayTable ray_table(const LayerCamera& camera, std::span<const PupilPoint> points, std::size_t channels,
+                   const LensRays::Source& source, int step, int threads);
+
+}  // namespace petzval::inline v0::blur_detail
+
+namespace petzval::inline v0 {
+
+struct LensRays::Data {
+  LayerCamera camera;
+  std::vector<PupilPoint> points;
+  Source source;
+  LensRaysOptions options;
+  blur_detail::RayTable table;
+  double error_px = 0, largest_slope = 0;
+  bool shift_invariant = false;
+
+  /// Many more rays, for light that few would show as dots; traced when first asked for.
+  const blur_detail::RayTable& dense() const;
+
+  std::size_t sets() const noexcept { return static_cast<std::size_t>(options.sets); }
+  /// Of the squares in which sets take turns.
+  int side() const noexcept { return options.sets == 16 ? 4 : options.sets == 4 ? 2 : 1; }
+  std::size_t rays_of_set() const noexcept { return points.size() / sets(); }
+
+ private:
+  mutable std::once_flag dense_once_;
+  mutable blur_detail::RayTable dense_;
+};
+
+class RayAccess {
+ public:
+  using Data = LensRays::Data;
+  static const LensRays::Data& data(const LensRays& rays) noexcept { return *rays.data_; }
+};
+
+namespace blur_detail {
+using RayData = RayAccess::Data;
+}
+
+}  // namespace petzval::inline v0

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+#include <memory>
+
+#include "core/text.hpp"
+#include "iris/iris_shape.hpp"
+#include "iris/iris_weights.hpp"
+#include "petzval/blur/lens_rays.hpp"
+#include "petzval/core/error.hpp"
+
+namespace petzval::inline v0 {
+namespace {
+
+/// Samples of an iris that follow its weights; a small part is uniform, so that no weight is large.
+struct WeightedIris {
+  iris_detail::IrisShape shape;
+  iris_detail::IrisWeights weights;
+
+  explicit WeightedIris(const ThinLens& lens)
+      : shape(lens.iris), weights(lens.iris, lens.edge, lens.map, 0.1, "thin lens: ") {}
+};
+
+}  // namespace
+
+LensRays LensRays::thin(const LayerCamera& camera, const ThinLens& lens, std::span<const PupilPoint> points,
+                        const LensRaysOptions& options) {
+  const auto wrong = [](const std::string& what) { return Error("thin lens: " + what); };
+  if (!(lens.radius_mm >= 0 && std::isfinite(lens.radius_mm))) {
+    throw wrong("radius is " + to_text(lens.radius_mm) + " mm, wanted 0 or more");
+  }
+  if (!(lens.inverse_focus >= 0 && 2 * lens.radius_mm * lens.inverse_focus < 1)) {
+    throw wrong("inverse depth in focus is " + to_text(lens.inverse_focus) +
+                " / mm, wanted 0 or more, and a depth beyond the diameter of the lens, " + to_text(2 * lens.radius_mm) +
+                " mm");
+  }
+  if (!lens.map.empty()) iris_detail::check(lens.map, "thin lens: ");
+  const bool even = lens.edge.even() && lens.map.empty();
+  const auto weighted = std::make_shared<const WeightedIris>(lens);
+  const bool coloured = lens.colour_shift != Vec3<double>{0, 0, 0};
+
+  const auto source = [=, radius = lens.radius_mm, inverse_focus = lens.inverse_focus, focus = lens.focus,
+                       shift = lens.colour_shift, focal = camera.focal_px](int channel, const Vec2<double>& raster,
+                                                                           std::span<const PupilPoint> places,
+                                                                           std::span<LayerRay> found) {
+    const FocusAt at = focus ? focus(raster) : FocusAt{inverse_focus, 1};
+    const double in_focus = at.inverse_depth + (coloured ? shift[channel] : 0.0),
+                 scale = focal * radius * at.pupil_scale;
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      double u = places[i].u, v = places[i].v, weight = 1;
+      if (!even) {
+        const auto drawn = weighted->weights.draw(u, v);
+        u = drawn.u, v = drawn.v;
+        weight = weighted->weights.of_sample(u, v) / (drawn.density * weighted->weights.mean());
+      }
+      const Vec2<double> place = weighted->shape.sample(u, v), slope{scale * place.x, -scale * place.y};
+      found[i] = {raster - slope * in_focus, slope, weight};
+    }
+  };
+  return LensRays(camera, points, coloured ? 3 : 1, source, options);
+}
+
+}  // namespace petzval::inline v0

@@ -1,0 +1,318 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "petzval/blur/gather.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "../message.hpp"
+#include "petzval/blur/layers.hpp"
+#include "petzval/blur/lens_rays.hpp"
+#include "petzval/core/error.hpp"
+#include "petzval/core/units.hpp"
+#include "reference_gather.hpp"
+
+namespace {
+
+using namespace petzval;
+
+constexpr float infinity = std::numeric_limits<float>::infinity();
+
+/// What a scene shows at a place of the tangents x and y (up) of the layer camera.
+struct Surface {
+  float inverse_depth = -1, red = 0, green = 0, blue = 0, alpha = 1;
+};
+using Scene = std::vector<Surface> (*)(double x, double y);
+
+/// A floor, two boards with holes, a sky: occlusion at edges, and depths that change along a pixel.
+std::vector<Surface> boards(double x, double y) {
+  std::vector<Surface> seen;
+  const auto wave = [](double a) { return static_cast<float>(0.5 + 0.5 * std::sin(a)); };
+  if (std::abs(x + 0.08) < 0.05 && std::abs(y) < 0.1 && std::hypot(x + 0.08, y) > 0.02) {
+    seen.push_back({1 / 1200.0f, 1, wave(300 * x), 0.2f});
+  }
+  if (std::abs(x - 0.05) < 0.07 && std::abs(y - 0.03) < 0.06) seen.push_back({1 / 2100.0f, wave(200 * y), 0.3f, 1});
+  if (y < -0.02) {
+    const double w = -y / 300;
+    seen.push_back({static_cast<float>(w), wave(0.02 * x / w), wave(0.003 / w), 0.5f});
+  }
+  std::stable_sort(seen.begin(), seen.end(),
+                   [](const auto& a, const auto& b) { return a.inverse_depth > b.inverse_depth; });
+  seen.push_back({0, 0.3f, 0.5f, 0.9f});
+  return seen;
+}
+
+/// The same with glass instead of the first board.
+std::vector<Surface> panes(double x, double y) {
+  std::vector<Surface> seen = boards(x, y);
+  for (Surface& s : seen) {
+    if (s.inverse_depth == 1 / 1200.0f) s.alpha = 0.4f, s.red *= 0.4f, s.green *= 0.4f, s.blue *= 0.4f;
+  }
+  return seen;
+}
+
+LayerSet::Peel renderer_of(Scene scene, const LayerCamera& camera) {
+  return [=](int, std::span<const float> below, const LayerPlanes& out) {
+    std::size_t written = 0;
+    for (int row = 0; row < camera.layer_rows(); ++row) {
+      for (int column = 0; column < camera.layer_columns(); ++column) {
+        const auto pixel = static_cast<std::size_t>(row * camera.layer_columns() + column);
+        const double x = (column + 0.5 - camera.overscan - camera.axis.x) / camera.focal_px,
+                     y = -(row + 0.5 - camera.overscan - camera.axis.y) / camera.focal_px;
+        for (const Surface& s : scene(x, y)) {
+          if (!(s.inverse_depth < below[pixel])) continue;
+          out.inverse_depth[pixel] = s.inverse_depth;
+          out.red[pixel] = s.red, out.green[pixel] = s.green, out.blue[pixel] = s.blue, out.alpha[pixel] = s.alpha;
+          ++written;
+          break;
+        }
+      }
+    }
+    return written;
+  };
+}
+
+LayerCamera small_camera() { return layer_camera(150, 100, radians(15)); }
+
+LayerSet layers_of(Scene scene, const LensRays& rays, int count = 6) {
+  const PeelPlan plan = plan_peel(rays, 1000, infinity);
+  LayerSet layers;
+  layers.peel(plan, count, renderer_of(scene, plan.camera));
+  return layers;
+}
+
+LensRays thin_rays(double radius, int points = 61, const LensRaysOptions& options = {.nearest_mm = 1000}) {
+  return LensRays::thin(small_camera(), {.radius_mm = radius, .inverse_focus = 1 / 2000.0},
+                        vogel_points(points * options.sets), options);
+}
+/// Rays that differ from pixel to pixel.
+LensRays tilted_rays(double radius, int points = 61, const LensRaysOptions& options = {.nearest_mm = 1000}) {
+  return LensRays::thin(small_camera(),
+                        {.radius_mm = radius,
+                         .focus =
+                             [](const Vec2<double>& raster) {
+                               return FocusAt{(1 + 0.4 * raster.y / 100) / 2000.0, 1};
+                             }},
+                        vogel_points(points * options.sets), options);
+}
+
+struct Difference {
+  double mean = 0, most = 0;
+};
+Difference difference(const Blurred& a, const Blurred& b) {
+  Difference d;
+  EXPECT_EQ(a.rgba.size(), b.rgba.size());
+  for (std::size_t i = 0; i < a.rgba.size(); ++i) {
+    const double off = std::abs(a.rgba[i] - b.rgba[i]);
+    d.mean += off / static_cast<double>(a.rgba.size()), d.most = std::max(d.most, off);
+  }
+  return d;
+}
+
+TEST(Gather, ThroughAPinholeIsTheFirstLayer) {
+  const LensRays rays = thin_rays(0, 5);
+  const LayerSet layers = layers_of(boards, rays);
+  const int overscan = (layers.columns() - 150) / 2;
+  for (const GatherPath path : {GatherPath::shift_invariant, GatherPath::coherent, GatherPath::general}) {
+    const Blurred picture = gather(layers, rays, {.path = path});
+    double worst = 0;
+    for (int row = 0; row < 100; ++row) {
+      for (int column = 0; column < 150; ++column) {
+        for (int c = 0; c < 4; ++c) {
+          const float seen = picture.rgba[static_cast<std::size_t>(4 * (row * 150 + column) + c)];
+          const float layer =
+              layers.channel(0, c)[static_cast<std::size_t>((row + overscan) * layers.columns() + column + overscan)];
+          worst = std::max(worst, static_cast<double>(std::abs(seen - layer)));
+        }
+      }
+    }
+    EXPECT_LT(worst, 1e-6) << name(path);
+  }
+}
+
+TEST(Gather, KeepsAnEvenColour) {
+  const Scene even = [](double x, double y) {
+    std::vector<Surface> seen = boards(x, y);
+    for (Surface& s : seen) s.red = 3, s.green = 0.25f, s.blue = 1e-3f;
+    return seen;
+  };
+  for (const LensRays& rays : {thin_rays(20), tilted_rays(20)}) {
+    const Blurred picture = gather(layers_of(even, rays), rays, {.highlights_above = 0});
+    for (std::size_t i = 0; i < picture.rgba.size(); i += 4) {
+      ASSERT_NEAR(picture.rgba[i], 3, 1e-5);
+      ASSERT_NEAR(picture.rgba[i + 1], 0.25, 1e-6);
+      ASSERT_NEAR(picture.rgba[i + 3], 1, 1e-6);
+    }
+  }
+}
+
+TEST(Gather, IsTheReference) {
+  for (const Scene scene : {Scene(boards), Scene(panes)}) {
+    for (const LensRays& rays :
+         {thin_rays(25), tilted_rays(25), tilted_rays(25, 20, {.nearest_mm = 1000, .sets = 4})}) {
+      const LayerSet layers = layers_of(scene, rays);
+      const Blurred reference = petzval::testing::reference_gather(layers, rays);
+      for (const GatherPath path : {GatherPath::coherent, GatherPath::general}) {
+        if (path == GatherPath::coherent && rays.sets() > 1) continue;
+        const Difference d = difference(gather(layers, rays, {.path = path}), reference);
+        // Rounding in float takes a few rays to the pixel beside.
+        EXPECT_LT(d.mean, 2e-4) << name(path) << (scene == Scene(panes) ? ", panes" : "");
+        EXPECT_LT(d.most, 0.06) << name(path);
+      }
+    }
+  }
+}
+
+TEST(Gather, PathsAgree) {
+  // Steps of the first one begin at the middles of pixels, those of the others do not: rays land a pixel beside.
+  const LensRays rays = thin_rays(25, 200);
+  for (const Scene scene : {Scene(boards), Scene(panes)}) {
+    const LayerSet layers = layers_of(scene, rays);
+    const Blurred same = gather(layers, rays, {.path = GatherPath::shift_invariant});
+    const Blurred coherent = gather(layers, rays, {.path = GatherPath::coherent});
+    EXPECT_LT(difference(same, coherent).mean, 0.005);
+    EXPECT_LT(difference(gather(layers, rays, {.path = GatherPath::general}), coherent).mean, 2e-4);
+  }
+}
+
+TEST(Gather, FindsTheSameWithAndWithoutBounds) {
+  for (const LensRays& rays : {thin_rays(25), tilted_rays(25)}) {
+    const LayerSet layers = layers_of(boards, rays);
+    for (const GatherPath path : {GatherPath::shift_invariant, GatherPath::coherent, GatherPath::general}) {
+      if (path == GatherPath::shift_invariant && !rays.shift_invariant()) continue;
+      const Blurred bounded = gather(layers, rays, {.path = path}),
+                    free = gather(layers, rays, {.path = path, .bounded = false});
+      EXPECT_EQ(bounded.rgba, free.rgba) << name(path);
+      EXPECT_LT(bounded.statistics.steps, free.statistics.steps) << name(path);
+    }
+  }
+}
+
+TEST(Gather, DoesNotDependOnThreads) {
+  for (const LensRays& rays : {thin_rays(25), tilted_rays(25), tilted_rays(9, 20, {.nearest_mm = 1000, .sets = 4})}) {
+    const LayerSet layers = layers_of(boards, rays);
+    const Blurred one = gather(layers, rays), three = gather(layers, rays, {.threads = 3});
+    EXPECT_EQ(one.rgba, three.rgba);
+    EXPECT_EQ(one.missed, three.missed);
+  }
+}
+
+TEST(Gather, SeesThroughTheVoid) {
+  const Scene alone = [](double x, double y) {
+    std::vector<Surface> seen;
+    if (x < 0) seen.push_back({1 / 1500.0f, 0.5f, 0.5f, static_cast<float>(0.5 + y)});
+    return seen;
+  };
+  const LensRays rays = thin_rays(60, 400);
+  const Blurred picture = gather(layers_of(alone, rays), rays);
+  const double blur = 60 * (1 / 1500.0 - 1 / 2000.0) * rays.camera().focal_px;
+  ASSERT_GT(blur, 2);
+  for (int column = 0; column < 150; ++column) {
+    // The part of the disc about the pixel that lies left of the edge at 75.
+    const double s = std::clamp((75 - (column + 0.5)) / blur, -1.0, 1.0);
+    const double wanted = 0.5 + (s * std::sqrt(1 - s * s) + std::asin(s)) / std::numbers::pi;
+    const float* const pixel = &picture.rgba[static_cast<std::size_t>(4 * (50 * 150 + column))];
+    EXPECT_NEAR(pixel[3], wanted, 0.06) << column;
+    EXPECT_NEAR(pixel[0], 0.5 * pixel[3], 0.06) << column;  // missed rays are not transparent
+  }
+}
+
+TEST(Gather, SaysWhatLayersDoNotKnow) {
+  const LensRays rays = thin_rays(25);
+  const LayerSet one = layers_of(boards, rays, 1), all = layers_of(boards, rays, 8);
+  const Blurred of_one = gather(one, rays), of_all = gather(all, rays);
+  EXPECT_GT(of_one.statistics.missed, 50 * (of_all.statistics.missed + 1));
+  EXPECT_GT(*std::max_element(of_one.missed.begin(), of_one.missed.end()), 0.2f);
+  EXPECT_LT(difference(of_one, of_all).mean, 0.01);
+}
+
+TEST(Gather, KeepsItsMemory) {
+  const LensRays rays = thin_rays(25);
+  const LayerSet layers = layers_of(boards, rays);
+  Blurred picture;
+  gather(layers, rays, {}, picture);
+  const float* const before = picture.rgba.data();
+  gather(layers, rays, {}, picture);
+  EXPECT_EQ(before, picture.rgba.data());
+}
+
+TEST(Gather, RefusesWhatDoesNotFit) {
+  const LensRays rays = thin_rays(9), tilted = tilted_rays(9);
+  const LayerSet layers = layers_of(boards, rays);
+  const auto says = [&](const LayerSet& l, const LensRays& r, const GatherOptions& options, const std::string& what) {
+    const std::string said = petzval::testing::message([&] { gather(l, r, options); });
+    EXPECT_NE(said.find(what), std::string::npos) << said;
+  };
+  says(LayerSet(), rays, {}, "layers are 0 x 0");
+  says(layers, tilted, {.path = GatherPath::shift_invariant}, "differ from pixel to pixel");
+  says(layers, tilted_rays(9, 4, {.nearest_mm = 1000, .sets = 4}), {.path = GatherPath::coherent}, "4 sets");
+  says(layers, rays, {.tolerance = -1}, "tolerance is -1");
+  says(layers, rays, {.highlights_above = -1}, "highlights_above is -1");
+  says(layers, rays, {.threads = 0}, "threads is 0");
+}
+
+TEST(Highlights, AreEvenDiscs) {
+  // One pixel of 1000 at 1 m, seen by 32 rays: a disc of the formula's radius, without holes.
+  const Scene lamp = [](double x, double y) {
+    std::vector<Surface> seen;
+    if (std::abs(x) < 0.0014 && std::abs(y) < 0.0014) seen.push_back({1 / 1000.0f, 1000, 500, 0.5f});
+    seen.push_back({1 / 2000.0f, 0.1f, 0.1f, 0.1f});
+    return seen;
+  };
+  for (const LensRays& rays : {thin_rays(30, 32), LensRays::thin(small_camera(),
+                                                                 {.radius_mm = 30,
+                                                                 .focus =
+                                                                      [](const Vec2<double>& r) {
+                                                                        return FocusAt{1 / 2000.0 + 1e-9 * r.x, 1};
+                                                                      }},
+                                                                 vogel_points(32), {.nearest_mm = 1000})}) {
+    const LayerSet layers = layers_of(lamp, rays);
+    const Blurred picture = gather(layers, rays);
+    EXPECT_GT(picture.statistics.highlights, 0u);
+    const double radius = 30 * (1 / 1000.0 - 1 / 2000.0) * rays.camera().focal_px;
+    const double area = std::numbers::pi * radius * radius, level = picture.statistics.highlights * 1000 / area;
+    double light = 0, least = 1e9, most = 0, outside = 0;
+    for (int row = 0; row < 100; ++row) {
+      for (int column = 0; column < 150; ++column) {
+        const float* const pixel = &picture.rgba[static_cast<std::size_t>(4 * (row * 150 + column))];
+        light += pixel[0] - 0.1;
+        const double from_middle = std::hypot(column + 0.5 - 75, row + 0.5 - 50);
+        if (from_middle < radius - 3)
+          least = std::min<double>(least, pixel[0]), most = std::max<double>(most, pixel[0]);
+        if (from_middle > radius + 3) outside = std::max<double>(outside, pixel[0]);
+      }
+    }
+    EXPECT_NEAR(light, level * area, 0.01 * level * area);
+    EXPECT_LT(outside, 0.2);
+    EXPECT_GT(least, 0.85 * level);
+    EXPECT_LT(most, 1.15 * level);
+  }
+}
+
+TEST(Highlights, HideBehindWhatIsNearer) {
+  // A far lamp behind a near board that covers the left half of its disc.
+  const Scene lamp = [](double x, double y) {
+    std::vector<Surface> seen;
+    if (x < 0) seen.push_back({1 / 2000.0f, 0.1f, 0.1f, 0.1f});
+    if (std::abs(x) < 0.0014 && std::abs(y) < 0.0014) seen.push_back({1 / 20000.0f, 3000, 3000, 3000});
+    seen.push_back({0, 0.1f, 0.1f, 0.1f});
+    return seen;
+  };
+  const LensRays rays = thin_rays(30, 32);
+  const Blurred picture = gather(layers_of(lamp, rays), rays);
+  double left = 0, right = 0;
+  for (int row = 0; row < 100; ++row) {
+    for (int column = 0; column < 150; ++column) {
+      (column < 74 ? left : right) += picture.rgba[static_cast<std::size_t>(4 * (row * 150 + column))] - 0.1;
+    }
+  }
+  EXPECT_GT(right, 1000);
+  EXPECT_LT(left, 0.02 * right);
+}
+
+}  // namespace

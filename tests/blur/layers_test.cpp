@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "petzval/blur/layers.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <vector>
+
+#include "../message.hpp"
+#include "petzval/blur/lens_rays.hpp"
+#include "petzval/core/error.hpp"
+#include "petzval/core/units.hpp"
+
+namespace {
+
+using namespace petzval;
+
+constexpr float infinity = std::numeric_limits<float>::infinity(), none = std::numeric_limits<float>::quiet_NaN();
+
+/// The camera of Lee, Eisemann, Seidel 2010: 30 degrees, 800 x 600, a lens of 18 mm.
+LensRays rays_of_paper(double nearest = 1000) {
+  return LensRays::thin(layer_camera(800, 600, radians(30)), {.radius_mm = 9, .inverse_focus = 1 / 5000.0},
+                        vogel_points(100), {.nearest_mm = nearest});
+}
+
+FragmentLists random_lists(int columns, int rows, int most, unsigned seed) {
+  std::mt19937 engine(seed);
+  std::uniform_real_distribution<float> number(0, 1);
+  FragmentLists lists{.columns = columns, .rows = rows, .offsets = {0}, .fragments = {}};
+  for (int i = 0; i < columns * rows; ++i) {
+    const int count = static_cast<int>(number(engine) * static_cast<float>(most + 1));
+    for (int k = 0; k < count; ++k) {
+      const float w = number(engine) < 0.1f ? 0.0f : 1e-3f * number(engine);
+      lists.fragments.push_back({1 / w, number(engine), number(engine), number(engine), 1});
+    }
+    lists.offsets.push_back(lists.fragments.size());
+  }
+  return lists;
+}
+
+/// A renderer that knows lists of surfaces.
+LayerSet::Peel renderer_of(const FragmentLists& lists) {
+  return [&lists](int, std::span<const float> below, const LayerPlanes& out) {
+    std::size_t written = 0;
+    for (std::size_t pixel = 0; pixel < below.size(); ++pixel) {
+      float nearest = -1;
+      for (std::size_t i = lists.offsets[pixel]; i < lists.offsets[pixel + 1]; ++i) {
+        const auto& f = lists.fragments[i];
+        const float w = 1 / f.depth_mm;
+        if (w < below[pixel] && w > nearest) {
+          nearest = w;
+          out.inverse_depth[pixel] = w, out.red[pixel] = f.red, out.green[pixel] = f.green, out.blue[pixel] = f.blue;
+        }
+      }
+      written += nearest >= 0;
+    }
+    return written;
+  };
+}
+
+TEST(PeelPlans, HaveTheBiasOfTheUmbra) {
+  // x = d s / (E - s), s = 2 pixels of the sample's depth, in mm: numbers of 40 digits.
+  const PeelPlan plan = plan_peel(rays_of_paper(), 1000, infinity);
+  EXPECT_GE(plan.bias * 1000, 0.099240441641156558);  // of 100 points, none lies at the very rim
+  EXPECT_LE(plan.bias * 1000, 1.06 * 0.099240441641156558);
+  const LensRays rim =
+      LensRays::thin(layer_camera(800, 600, radians(30)), {.radius_mm = 9}, std::vector<PupilPoint>{{0.25, 1}});
+  const double bias = plan_peel(rim, 1000, infinity).bias;
+  EXPECT_NEAR(bias * 1000, 0.099240441641156558, 1e-8);
+  const double behind[][2] = {{1000, 110.17417547249749}, {2000, 495.26175768611782}, {5000, 4924.6167439382412}};
+  for (const auto& [d, x] : behind) EXPECT_NEAR(1 / (1 / d - bias) - d, x, 1e-5 * x);
+  EXPECT_EQ(plan_peel(rim, 1000, infinity).most_layers, 11);  // 10.08 offsets from 1 m to infinity
+  EXPECT_GE(plan.camera.overscan, 8);
+  EXPECT_LE(plan.camera.overscan, 14);
+}
+
+TEST(PeelPlans, OfAPinholeWantOneLayer) {
+  const LensRays pinhole = LensRays::thin(layer_camera(80, 60, radians(30)), {.radius_mm = 0}, vogel_points(4));
+  EXPECT_EQ(plan_peel(pinhole, 1000, infinity).most_layers, 1);
+}
+
+TEST(PeelPlans, RefuseDepthsThatMakeNoSense) {
+  const LensRays rays = rays_of_paper();
+  EXPECT_NE(petzval::testing::message([&] { plan_peel(rays, 0, 100); }).find("wanted 0 < nearest < farthest"),
+            std::string::npos);
+  EXPECT_NE(petzval::testing::message([&] { plan_peel(rays, 100, 100); }).find("wanted 0 < nearest < farthest"),
+            std::string::npos);
+  EXPECT_NE(petzval::testing::message([&] { plan_peel(rays, 0.001, 100); }).find("px beyond the picture"),
+            std::string::npos);
+}
+
+TEST(Peeling, IsThinningOfFullLists) {
+  PeelPlan plan = plan_peel(rays_of_paper(), 1000, infinity);
+  plan.camera.columns = 37, plan.camera.rows = 23, plan.camera.overscan = 0;
+  for (unsigned seed = 0; seed < 8; ++seed) {
+    const FragmentLists lists = random_lists(37, 23, 40, seed);
+    LayerSet peeled, thinned;
+    peeled.peel(plan, 16, renderer_of(lists));
+    thinned.thin(lists, plan.bias, 16);
+    ASSERT_EQ(peeled.count(), thinned.count());
+    EXPECT_LE(peeled.count(), plan.most_layers);
+    EXPECT_GT(peeled.count(), 6);
+    for (int layer = 0; layer < peeled.count(); ++layer) {
+      EXPECT_TRUE(std::ranges::equal(peeled.inverse_depth(layer), thinned.inverse_depth(layer)));
+      for (int c = 0; c < 4; ++c) EXPECT_TRUE(std::ranges::equal(peeled.channel(layer, c), thinned.channel(layer, c)));
+    }
+  }
+}
+
+TEST(Peeling, RefusesASurfaceThatIsNotFarther) {
+  PeelPlan plan{.camera = {.columns = 2, .rows = 1, .focal_px = 1}, .bias = 0.1};
+  LayerSet layers;
+  const auto same_again = [](int, std::span<const float>, const LayerPlanes& out) {
+    out.inverse_depth[1] = 0.5f;
+    return std::size_t{1};
+  };
+  const std::string said = petzval::testing::message([&] { layers.peel(plan, 2, same_again); });
+  EXPECT_NE(said.find("layer 1: column 1, row 0: inverse depth is 0.5"), std::string::npos) << said;
+  EXPECT_NE(petzval::testing::message([&] { layers.peel(plan, 0, same_again); }).find("0 layers"), std::string::npos);
+  EXPECT_NE(petzval::testing::message([&] { layers.peel(plan, 65, same_again); }).find("65 layers"), std::string::npos);
+}
+
+TEST(Lists, ComposeWhatAlphaLetsThrough) {
+  // A pane of alpha 1/2, a wall closely behind it, one far behind it.
+  const FragmentLists lists{.columns = 1,
+                            .rows = 1,
+                            .offsets = {0, 3},
+                            .fragments = {{5000, 0, 0, 1, 1}, {1001, 0, 1, 0, 1}, {1000, 0.5f, 0, 0, 0.5f}}};
+  LayerSet layers;
+  layers.thin(lists, 1e-5, 4);
+  ASSERT_EQ(layers.count(), 2);
+  EXPECT_FLOAT_EQ(layers.channel(0, 0)[0], 0.5f);
+  EXPECT_FLOAT_EQ(layers.channel(0, 1)[0], 0.5f);
+  EXPECT_FLOAT_EQ(layers.channel(0, 3)[0], 1);
+  EXPECT_FLOAT_EQ(layers.inverse_depth(1)[0], 1 / 5000.0f);
+  EXPECT_TRUE(layers.opaque());
+}
+
+TEST(Lists, LeaveOutWhatIsNoSurfaceAndKeepTheSky) {
+  const FragmentLists lists{
+      .columns = 2,
+      .rows = 1,
+      .offsets = {0, 4, 4},
+      .fragments = {{none, 9, 9, 9, 1}, {-1, 9, 9, 9, 1}, {0, 9, 9, 9, 1}, {infinity, 1, 2, 3, 1}}};
+  LayerSet layers;
+  layers.thin(lists, 1e-5, 4);
+  ASSERT_EQ(layers.count(), 1);
+  EXPECT_EQ(layers.inverse_depth(0)[0], 0);
+  EXPECT_EQ(layers.channel(0, 2)[0], 3);
+  EXPECT_LT(layers.inverse_depth(0)[1], 0);
+}
+
+TEST(Lists, ComeBackFromLayers) {
+  const FragmentLists lists = random_lists(19, 11, 5, 4);
+  LayerSet layers, again;
+  layers.thin(lists, 1e-6, 8);
+  again.thin(layers.fragments(), 1e-6, 8);
+  ASSERT_EQ(layers.count(), again.count());
+  for (int layer = 0; layer < layers.count(); ++layer) {
+    for (int c = 0; c < 4; ++c) EXPECT_TRUE(std::ranges::equal(layers.channel(layer, c), again.channel(layer, c)));
+    for (std::size_t i = 0; i < layers.inverse_depth(layer).size(); ++i) {
+      EXPECT_NEAR(layers.inverse_depth(layer)[i], again.inverse_depth(layer)[i], 2e-10f);
+    }
+  }
+}
+
+TEST(Lists, AreRefusedWhereNumbersDoNotFit) {
+  LayerSet layers;
+  FragmentLists lists{.columns = 1, .rows = 1, .offsets = {0, 1}, .fragments = {{100, 1, 1, 1, 1.5f}}};
+  EXPECT_NE(petzval::testing::message([&] { layers.thin(lists, 0, 4); }).find("alpha is 1.5"), std::string::npos);
+  lists.offsets = {0, 2};
+  EXPECT_NE(petzval::testing::message([&] { layers.thin(lists, 0, 4); }).find("offsets"), std::string::npos);
+  lists.offsets = {0};
+  EXPECT_NE(petzval::testing::message([&] { layers.thin(lists, 0, 4); }).find("offsets"), std::string::npos);
+  lists.columns = 0;
+  EXPECT_NE(petzval::testing::message([&] { layers.thin(lists, 0, 4); }).find("0 x 1"), std::string::npos);
+}
+
+TEST(Images, BecomeLayers) {
+  const std::vector<float> rgba{1, 2, 3, 1, 4, 5, 6, 1}, depth{100, infinity}, behind{200, none};
+  LayerSet layers;
+  const std::vector<LayerImage> images{{2, 1, rgba, depth}, {2, 1, rgba, behind}};
+  layers.set(images);
+  ASSERT_EQ(layers.count(), 2);
+  EXPECT_EQ(layers.channel(0, 1)[1], 5);
+  EXPECT_EQ(layers.inverse_depth(0)[1], 0);
+  EXPECT_FLOAT_EQ(layers.inverse_depth(1)[0], 0.005f);
+  EXPECT_LT(layers.inverse_depth(1)[1], 0);
+}
+
+TEST(Images, AreRefusedWhereTheyDoNotFit) {
+  const std::vector<float> rgba{1, 2, 3, 1, 4, 5, 6, 1}, depth{100, infinity}, nearer{50, none}, empty{none, none};
+  LayerSet layers;
+  const auto says = [&](std::vector<LayerImage> images, const std::string& what) {
+    const std::string said = petzval::testing::message([&] { layers.set(images); });
+    EXPECT_NE(said.find(what), std::string::npos) << said;
+  };
+  says({}, "0 layers");
+  says({{2, 1, rgba, depth}, {1, 1, std::span(rgba).first(4), std::span(depth).first(1)}}, "layer 1: size is 1 x 1");
+  says({{2, 1, rgba, std::span(depth).first(1)}}, "layer 0: found 8 colours and 1 depths");
+  says({{2, 1, rgba, depth}, {2, 1, rgba, nearer}}, "layer 1: column 0, row 0: inverse depth is 0.02");
+  says({{2, 1, rgba, nearer}, {2, 1, rgba, depth}},
+       "layer 1: column 1, row 0: inverse depth is 0 / mm");  // behind an empty pixel
+}
+
+}  // namespace

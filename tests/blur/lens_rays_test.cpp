@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "petzval/blur/lens_rays.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include "../data_lenses.hpp"
+#include "../message.hpp"
+#include "petzval/camera/camera.hpp"
+#include "petzval/core/error.hpp"
+#include "petzval/core/units.hpp"
+#include "petzval/focus/focus.hpp"
+#include "petzval/lens/lens.hpp"
+
+namespace {
+
+using namespace petzval;
+
+constexpr double in_focus = 1 / 2000.0;
+
+Lens double_gauss() { return with_focus(petzval::testing::data_lens("double_gauss_52mm_f1.8"), 2000.0); }
+const Film film{.width_mm = 36, .height_mm = 24, .columns = 480, .rows = 320};
+
+LayerCamera small_camera() { return layer_camera(320, 240, radians(30)); }
+
+TEST(VogelPoints, AreEven) {
+  // The mean of u-periodic and of radial functions.
+  const std::vector<PupilPoint> points = vogel_points(1000);
+  double wave = 0, share = 0;
+  for (const PupilPoint& p : points) wave += std::cos(2 * std::numbers::pi * p.u) / 1000, share += p.v / 1000;
+  EXPECT_NEAR(wave, 0, 2e-3);
+  EXPECT_NEAR(share, 0.5, 1e-12);
+  EXPECT_NE(petzval::testing::message([] { vogel_points(0); }).find("0 points"), std::string::npos);
+}
+
+TEST(ThinLensRays, MeetInThePlaneOfFocus) {
+  const LensRays rays = LensRays::thin(small_camera(), {.radius_mm = 20, .inverse_focus = in_focus}, vogel_points(64));
+  EXPECT_TRUE(rays.shift_invariant());
+  EXPECT_LT(rays.error_px(), 1e-3);
+  EXPECT_NEAR(rays.largest_slope(), 20 * rays.camera().focal_px, 0.07 * 20 * rays.camera().focal_px);
+  std::vector<LayerRay> found(rays.count());
+  rays.at(0, 17, 201, found);
+  for (const LayerRay& ray : found) {
+    const Vec2<double> place = ray.at + ray.slope * in_focus;
+    EXPECT_NEAR(place.x, 17.5, 1e-3);
+    EXPECT_NEAR(place.y, 201.5, 1e-3);
+  }
+}
+
+TEST(ThinLensRays, BlurAsTheFormulaSays) {
+  // A disc of radius |w - 1 / focus| x E / 2 x (rows / 2) / tan(fov / 2).
+  const std::vector<PupilPoint> rim{{0, 1}, {0.25, 1}, {0.5, 1}, {0.75, 1}};
+  const LensRays rays = LensRays::thin(small_camera(), {.radius_mm = 20, .inverse_focus = in_focus}, rim);
+  std::vector<LayerRay> found(rays.count());
+  rays.at(0, 100, 100, found);
+  for (const double w : {0.0, 1 / 1000.0, 1 / 9000.0}) {
+    for (const LayerRay& ray : found) {
+      const Vec2<double> off = ray.at + ray.slope * w - Vec2<double>{100.5, 100.5};
+      EXPECT_NEAR(std::hypot(off.x, off.y), std::abs(w - in_focus) * 20 * 120 / std::tan(radians(15)), 1e-3);
+    }
+  }
+  // u = 0 is up: farther than focus, an upper part of the pupil looks down.
+  EXPECT_LT(found[0].slope.y, 0);
+  EXPECT_GT(found[1].slope.x, 0);
+}
+
+TEST(ThinLensRays, FollowAFocusOfTheirOwn) {
+  const ThinLens tilted{.radius_mm = 20, .focus = [](const Vec2<double>& raster) {
+                          return FocusAt{(1 + raster.x / 320) / 2000.0, 0.5};
+                        }};
+  const LensRays rays = LensRays::thin(small_camera(), tilted, vogel_points(32));
+  EXPECT_FALSE(rays.shift_invariant());
+  EXPECT_LT(rays.error_px(), 1e-2);  // linear in the raster: interpolation is exact
+  EXPECT_NEAR(rays.largest_slope(), 0.5 * 20 * rays.camera().focal_px, 0.04 * 20 * rays.camera().focal_px);
+}
+
+TEST(ThinLensRays, KeepTheLightOfWeights) {
+  for (const EdgeWeight& edge : {EdgeWeight{4, 0.8}, EdgeWeight{-3, 0.5}, EdgeWeight{100, 0.9}}) {
+    const LensRays rays =
+        LensRays::thin(small_camera(), {.radius_mm = 9, .iris = {.blades = 6}, .edge = edge}, vogel_points(512));
+    std::vector<LayerRay> found(rays.count());
+    rays.at(0, 0, 0, found);
+    double sum = 0;
+    for (const LayerRay& ray : found) sum += ray.weight;
+    EXPECT_NEAR(sum / 512, 1, 0.03);
+  }
+}
+
+TEST(ThinLensRays, RefuseWhatIsNoLens) {
+  const auto says = [](const ThinLens& lens, const std::string& what) {
+    const std::string said = petzval::testing::message([&] { LensRays::thin(small_camera(), lens, vogel_points(4)); });
+    EXPECT_NE(said.find(what), std::string::npos) << said;
+  };
+  says({.radius_mm = -1}, "radius is -1");
+  says({.radius_mm = 100, .inverse_focus = 0.01}, "beyond the diameter of the lens");
+  says({.radius_mm = 1, .inverse_focus = -0.01}, "wanted 0 or more");
+  says({.radius_mm = 1, .inverse_focus = std::numeric_limits<double>::quiet_NaN()}, "wanted 0 or more");
+  says({.radius_mm = 1,
+        .focus =
+            [](const Vec2<double>&) {
+              return FocusAt{std::numeric_limits<double>::infinity(), 1};
+            }},
+       "wanted a finite one");
+}
+
+TEST(Rays, AreRefusedWhereOptionsDoNotFit) {
+  const auto says = [](std::vector<PupilPoint> points, const LensRaysOptions& options, const std::string& what) {
+    const std::string said = petzval::testing::message([&] { LensRays::thin(small_camera(), {}, points, options); });
+    EXPECT_NE(said.find(what), std::string::npos) << said;
+  };
+  says({}, {}, "0 points");
+  says(vogel_points(6), {.sets = 4}, "6 points");
+  says(vogel_points(6), {.sets = 2}, "2 sets");
+  says(vogel_points(6), {.nearest_mm = -1}, "nearest depth is -1");
+}
+
+class CameraRays : public ::testing::TestWithParam<ModelKind> {};
+
+TEST_P(CameraRays, AreThoseOfTheCamera) {
+  const Camera camera(double_gauss(), film, {.model = GetParam(), .normalisation = Normalisation::unity_on_axis});
+  const LayerCamera layers = layer_camera(camera);
+  const std::vector<PupilPoint> points = vogel_points(64);
+  const LensRays rays = LensRays::of(camera, layers, points, {}, {.nearest_mm = 1000});
+  EXPECT_LE(rays.error_px(), 0.1);
+  const double origin = layer_origin_z(camera);
+  std::vector<LayerRay> found(points.size());
+  double worst = 0;
+  for (const auto& [column, row] : {std::pair{240, 160}, {3, 5}, {400, 77}, {33, 300}}) {
+    rays.at(0, column, row, found);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const CameraRay ray =
+          camera.sample({.film = film.point(column + 0.5, row + 0.5), .pupil_u = points[i].u, .pupil_v = points[i].v});
+      if (!ray) continue;
+      // Two points of the ray, where the layers see them and where the line has them.
+      for (const double depth : {1000.0, 5e4}) {
+        const double way = (origin - depth - ray.ray.origin.z) / ray.ray.direction.z;
+        const Vec3<double> point = ray.ray.origin + way * ray.ray.direction;
+        const Vec2<double> seen = layers.raster({point.x, point.y, depth}), line = found[i].at + found[i].slope / depth;
+        worst = std::max({worst, std::abs(seen.x - line.x), std::abs(seen.y - line.y)});
+      }
+    }
+  }
+  EXPECT_LT(worst, 0.1);
+}
+
+TEST_P(CameraRays, SeeTheSharpObjectWhereTheLayersDo) {
+  // Within the distortion of the lens: the middle of a pixel's rays in the plane of focus.
+  const Camera camera(double_gauss(), film, {.model = GetParam()});
+  const LensRays rays = LensRays::of(camera, layer_camera(camera), vogel_points(256));
+  std::vector<LayerRay> found(256);
+  const double depth = 2000 - camera.film().z() + layer_origin_z(camera);
+  for (const auto& [column, row] : {std::pair{240, 160}, {300, 200}, {100, 100}}) {
+    rays.at(0, column, row, found);
+    Vec2<double> mean{0, 0};
+    for (const LayerRay& ray : found) mean += (ray.at + ray.slope / depth) / 256.0;
+    EXPECT_NEAR(mean.x, column + 0.5, 1.5);
+    EXPECT_NEAR(mean.y, row + 0.5, 1.5);
+  }
+}
+
+TEST_P(CameraRays, HaveTheLightOfTheCamera) {
+  const Camera camera(double_gauss(), film, {.model = GetParam(), .normalisation = Normalisation::unity_on_axis});
+  const LensRays rays = LensRays::of(camera, layer_camera(camera), vogel_points(64));
+  std::vector<LayerRay> found(64);
+  for (const auto& [column, row] : {std::pair{240, 160}, {2, 2}, {470, 160}}) {
+    rays.at(0, column, row, found);
+    double light = 0, wanted = 0;
+    for (const LayerRay& ray : found) light += ray.weight / 64;
+    const std::vector<PupilPoint> many = vogel_points(20000);
+    for (const PupilPoint& p : many) {
+      wanted +=
+          camera.sample({.film = film.point(column + 0.5, row + 0.5), .pupil_u = p.u, .pupil_v = p.v}).weight / 20000;
+    }
+    EXPECT_NEAR(light, wanted, 0.005);
+  }
+}
+INSTANTIATE_TEST_SUITE_P(Models, CameraRays,
+                         ::testing::Values(ModelKind::thin, ModelKind::thick, ModelKind::polynomial_7,
+                                           ModelKind::exact_float),
+                         [](const auto& model) { return std::string(name(model.param)); });
+
+TEST(CameraRays, RefuseAFilmThatTravelsAndOtherPictures) {
+  Film travelling = film;
+  travelling.travel_mm = 1;
+  const Camera moving(double_gauss(), travelling, {.model = ModelKind::thick}),
+      still(double_gauss(), film, {.model = ModelKind::thick});
+  const LayerCamera layers = layer_camera(still);
+  EXPECT_NE(petzval::testing::message([&] { LensRays::of(moving, layers, vogel_points(4)); }).find("travels"),
+            std::string::npos);
+  EXPECT_NE(petzval::testing::message([&] { LensRays::of(still, small_camera(), vogel_points(4)); }).find("320 x 240"),
+            std::string::npos);
+}
+
+TEST(LayerCameras, RefuseFisheyes) {
+  const Lens fisheye = petzval::testing::data_lens("fisheye_8mm_f2.8");
+  EXPECT_NE(petzval::testing::message([&] {
+              layer_camera(Camera(fisheye, film, {.model = ModelKind::exact_float}));
+            }).find("degrees from the axis"),
+            std::string::npos);
+  EXPECT_NE(petzval::testing::message([] { layer_camera(10, 10, radians(150)); }).find("150 degrees"),
+            std::string::npos);
+  EXPECT_NE(petzval::testing::message([] { layer_camera(0, 10, radians(15)); }).find("0 x 10"), std::string::npos);
+}
+
+}  // namespace

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "petzval/blur/gather.hpp"
+
+namespace petzval::testing {
+
+/// The picture by the shortest code that could be right, in double: each ray of a pixel, step after step through all
+/// depths, layer after layer. Without highlights.
+inline Blurred reference_gather(const LayerSet& layers, const LensRays& rays, double tolerance = 0.1) {
+  const LayerCamera& camera = rays.camera();
+  const int overscan = (layers.columns() - camera.columns) / 2;
+  Blurred picture;
+  picture.columns = camera.columns, picture.rows = camera.rows;
+  float most = 0;
+  for (const float w : layers.inverse_depth(0)) most = std::max(most, w);
+
+  std::vector<LayerRay> found(rays.count());
+  for (int row = 0; row < camera.rows; ++row) {
+    for (int column = 0; column < camera.columns; ++column) {
+      double colour[3] = {}, alpha = 0, missed = 0;
+      for (int channel = 0; channel < 3; ++channel) {
+        rays.at(std::min(channel, rays.channels() - 1), column, row, found);
+        double total = 0, known = 0, sum = 0;
+        for (const LayerRay& ray : found) {
+          total += ray.weight;
+          const double steepest = std::max({std::abs(ray.slope.x), std::abs(ray.slope.y), 1e-6 / most});
+          double through = 1;
+          double guess = std::numeric_limits<double>::quiet_NaN(), guess_alpha = 0;
+          bool empty = false, met = false;
+          double below = 1e30;
+          for (int k = static_cast<int>(most * steepest + 1); k >= 0; --k) {
+            const double low = std::max((k - tolerance) / steepest, 0.0), high = (k + 1 + tolerance) / steepest;
+            const Vec2<double> at = ray.at + ray.slope * ((k + 0.5) / steepest);
+            const int x = std::clamp(static_cast<int>(std::floor(at.x)) + overscan, 0, layers.columns() - 1),
+                      y = std::clamp(static_cast<int>(std::floor(at.y)) + overscan, 0, layers.rows() - 1);
+            const auto pixel = static_cast<std::size_t>(y * layers.columns() + x);
+            empty = layers.inverse_depth(0)[pixel] < 0;
+            bool before = false, met_here = false;
+            for (int layer = 0; layer < layers.count() && through > 1e-3; ++layer) {
+              const double w = layers.inverse_depth(layer)[pixel], a = layers.channel(layer, 3)[pixel];
+              if (w >= 0 && w < low && !before) {
+                guess = layers.channel(layer, channel)[pixel], guess_alpha = a, before = true;
+              }
+              if (w < low || w > high || w >= below) continue;
+              sum += through * ray.weight * layers.channel(layer, channel)[pixel];
+              alpha += through * ray.weight * a / 3 / static_cast<double>(found.size());
+              through *= 1 - a;
+              met = met_here = true;
+            }
+            if (met_here) below = low;
+            if (through <= 1e-3) break;
+          }
+          if (met || empty) {
+            known += ray.weight;
+          } else {
+            missed += ray.weight;
+            if (!std::isnan(guess)) {
+              known += ray.weight, sum += ray.weight * guess;
+              alpha += ray.weight * guess_alpha / 3 / static_cast<double>(found.size());
+            }
+          }
+        }
+        colour[channel] = sum / known * total / static_cast<double>(found.size());
+      }
+      for (const double c : colour) picture.rgba.push_back(static_cast<float>(c));
+      picture.rgba.push_back(static_cast<float>(alpha));
+      picture.missed.push_back(static_cast<float>(missed / 3 / static_cast<double>(found.size())));
+    }
+  }
+  return picture;
+}
+
+}  // namespace petzval::testing
