@@ -30,28 +30,6 @@ struct Tile {
   int left = 0, top = 0, columns = 0, rows = 0;
 };
 
-/// Offsets of rays from their pixels, px.
-struct Reach {
-  double left = 0, right = 0, top = 0, bottom = 0;
-
-  void take(double x, double y) noexcept {
-    left = std::min(left, x), right = std::max(right, x), top = std::min(top, y), bottom = std::max(bottom, y);
-  }
-};
-
-/// Between two inverse depths, of rays given by [Row][ray] numbers. Lines are straight: their ends reach farthest.
-Reach reach_of(std::span<const float* const> corners, std::size_t stride, std::size_t count, double w, double v) {
-  Reach reach{1e9, -1e9, 1e9, -1e9};
-  for (const float* c : corners) {
-    for (std::size_t i = 0; i < count; ++i) {
-      const double x = c[at_x * stride + i], y = c[at_y * stride + i], sx = c[slope_x * stride + i],
-                   sy = c[slope_y * stride + i];
-      reach.take(x + w * sx, y + w * sy), reach.take(x + v * sx, y + v * sy);
-    }
-  }
-  return reach;
-}
-
 /// The steps of a ray that all pixels share: one for each pixel that it passes along its main direction, as far as it
 /// may meet depths of a range. all: the range of all layers.
 void add_steps(const float* rows, std::size_t stride, std::size_t i, const DepthRange& range, const DepthRange& all,
@@ -143,9 +121,10 @@ class Gathering {
         corners[c] = corner.data();
       }
     }
-    const std::span<const float* const> known(corners, path_ == GatherPath::shift_invariant ? 1 : 4);
+    const GatherLoops& loops = gather_loops();
+    const std::size_t corner_count = path_ == GatherPath::shift_invariant ? 1 : 4;
     const auto rect_of = [&](const DepthRange& range) {
-      const Reach reach = reach_of(known, stride, stride, range.least, range.most);
+      const Limits reach = loops.limits(corners, corner_count, stride, stride, range.least, range.most);
       const int left = tile.left + overscan_, top = tile.top + overscan_;
       // A pixel more: places are rounded.
       return PixelRect{left + floor_of(reach.left) - 1, top + floor_of(reach.top) - 1,
@@ -171,7 +150,6 @@ class Gathering {
                 .opaque = layers_.opaque,
                 .sums = &memory.sums[channel]};
     if (range.empty()) range = {0, 0, 1};
-    const GatherLoops& loops = gather_loops();
     std::uint64_t made = 0;
     if (path_ == GatherPath::shift_invariant) {
       memory.steps.clear(), memory.first.assign(1, 0);
@@ -245,10 +223,10 @@ class Gathering {
     return w;
   }
 
-  void compose(const Tile& tile, Memory& memory) {
+  void compose(const Tile& tile, const Memory& memory) {
     const std::size_t channels = rays_.table.channels;
-    const auto rays = static_cast<float>(rays_.rays_of_set());
-    double missed_rays = 0;
+    const float per_ray = 1 / static_cast<float>(rays_.rays_of_set());
+    double missed = 0;
     for (int row = 0; row < tile.rows; ++row) {
       for (int column = 0; column < tile.columns; ++column) {
         const int at = row * TileSums::columns + column;
@@ -256,30 +234,36 @@ class Gathering {
             static_cast<std::size_t>(tile.top + row) * static_cast<std::size_t>(picture_.columns) +
             static_cast<std::size_t>(tile.left + column);
         float* const rgba = &picture_.rgba[4 * pixel];
-        float alpha = 0, missed = 0;
+        float alpha = 0, unseen = 0;
         for (std::size_t c = 0; c < 3; ++c) {
           const TileSums& sums = memory.sums[channels == 1 ? 0 : c];
-          const float total = sums.total[at], known = total - sums.unknown[at];
-          const float* const colour = sums.colour[channels == 1 ? c : 0];
+          const float total = sums.total[at], colour = sums.colour[channels == 1 ? c : 0][at];
+          if (layers_.opaque && sums.open[at] == 0 && sums.missed[at] == 0) {
+            rgba[c] = colour * per_ray, alpha += 1;
+            continue;
+          }
+          const float known = total - sums.unknown[at];
+          unseen += sums.missed[at] / total;
           // Of rays that met what nothing is known of, the first layer is the nearest thing.
           if (known > 1e-6f * total) {
-            rgba[c] = colour[at] / known * (total / rays);
+            rgba[c] = colour / known * total * per_ray;
             alpha += layers_.opaque ? 1 - sums.open[at] / known : sums.alpha[at] / known;
           } else {
             const std::ptrdiff_t below = static_cast<std::ptrdiff_t>(tile.top + row + overscan_) * layers_.columns +
                                          tile.left + column + overscan_;
             const bool any = layers_.count > 0 && layers_.plane(0, 0)[below] >= 0;
-            rgba[c] = any ? layers_.plane(0, static_cast<int>(1 + c))[below] * (total / rays) : 0.0f;
-            alpha += any ? layers_.plane(0, 4)[below] : total > 0 ? 0.0f : 1.0f;
+            rgba[c] = any ? layers_.plane(0, static_cast<int>(1 + c))[below] * total * per_ray : 0.0f;
+            alpha += any ? layers_.plane(0, 4)[below] : 0.0f;
           }
-          missed += total > 0 ? sums.missed[at] / total : 0.0f;
         }
         rgba[3] = alpha / 3;
-        picture_.missed[pixel] = missed / 3;
-        missed_rays += static_cast<double>(missed) / 3 * rays;
+        picture_.missed[pixel] = unseen / 3;
+        missed += static_cast<double>(unseen);
       }
     }
-    missed_ += static_cast<std::uint64_t>(std::llround(missed_rays));
+    // Of each channel.
+    missed_ +=
+        static_cast<std::uint64_t>(std::llround(missed / 3 * static_cast<double>(channels * rays_.rays_of_set())));
   }
 
   const LayerData& layers_;

@@ -68,6 +68,7 @@ struct Found {
   Numbers through{1.0f};  ///< what is left of a ray
   Numbers below{1e30f};   ///< steps overlap: what a ray has met in one it does not meet again in the next
 
+  PETZVAL_INLINE Found() noexcept : Found(first_lanes(0)) {}
   PETZVAL_INLINE explicit Found(Mask lanes) noexcept : seeking(lanes) {
     for (Numbers& c : colour) c = Numbers(0.0f);
   }
@@ -156,38 +157,112 @@ PETZVAL_INLINE void keep(TileSums& sums, int pixel, const Found<opaque, colours>
   add(sums.unknown + pixel, found.unknown);
 }
 
+/// One ray of pixels side by side, from a step on.
+template <bool opaque, int colours>
+PETZVAL_INLINE std::uint64_t follow_ray(const LayerWindow& window, const Step* begin, const Step* from, const Step* end,
+                                        Numbers weight, Mask lanes, Found<opaque, colours>& found) noexcept {
+  found.seeking = lanes;
+  if constexpr (!opaque) found.through = Numbers(1.0f), found.below = Numbers(1e30f);
+  std::uint64_t made = 0;
+  for (const Step* step = from; step != end && any(found.seeking); ++step, ++made) {
+    meet(window, Beside{step->offset}, Numbers(step->low), Numbers(step->high), weight, found.seeking, found);
+  }
+  if (!any(found.seeking)) return made;
+  end_partly(found);
+  for (const Step* step = end; step-- != begin && any(found.seeking);) {
+    guess(window, Beside{step->offset}, Numbers(step->low), weight, found.seeking, step + 1 == end, found);
+  }
+  give_up(weight, found);
+  return made;
+}
+
+/// The rays of `at_once` rows of pixels side by side. Where all pixels meet the first layer in the same step, which
+/// most do, nothing has to be told apart.
+template <bool opaque, int colours, int at_once>
+std::uint64_t follow_rows(const TileJob& job, const SameRays& rays, int row, int column) noexcept {
+  LayerWindow windows[at_once];
+  for (int r = 0; r < at_once; ++r) windows[r] = job.window.from(row + r, column);
+  const Mask lanes = first_lanes(static_cast<std::size_t>(job.columns - column));
+  const bool full = opaque && every(lanes);
+  Found<opaque, colours> found[at_once];
+  Numbers total(0.0f);
+  std::uint64_t made = 0;
+  for (std::size_t i = 0; i < rays.count; ++i) {
+    const Step *const begin = rays.steps + rays.first[i], *const end = rays.steps + rays.first[i + 1], *step = begin;
+    const Numbers weight(rays.weights[i]);
+    total = total + weight;
+    bool met = false;
+    for (; full && step != end; ++step) {
+      const Numbers low(step->low), high(step->high);
+      Mask all = lanes, reached = first_lanes(0);
+      for (int r = 0; r < at_once; ++r) {
+        const Numbers w = load(windows[r].depth + step->offset);
+        const Mask here = w >= low;
+        reached = reached | here, all = all_of(all, here, w <= high);
+      }
+      if (every(all)) {
+        for (int r = 0; r < at_once; ++r) {
+          for (int c = 0; c < colours; ++c) {
+            found[r].colour[c] = found[r].colour[c] + weight * load(windows[r].colour[c] + step->offset);
+          }
+        }
+        met = true;
+        break;
+      }
+      if (any(reached)) break;
+    }
+    made += static_cast<std::uint64_t>(at_once) * static_cast<std::uint64_t>(step - begin + met);
+    if (met) continue;
+    for (int r = 0; r < at_once; ++r) made += follow_ray(windows[r], begin, step, end, weight, lanes, found[r]);
+  }
+  for (int r = 0; r < at_once; ++r) keep(*job.sums, (row + r) * TileSums::columns + column, found[r], total);
+  return made;
+}
+
 template <bool opaque, int colours>
 std::uint64_t follow_same(const TileJob& job, const SameRays& rays) noexcept {
+  constexpr int at_once = width == 16 ? 4 : 2;
   std::uint64_t made = 0;
-  for (int row = 0; row < job.rows; ++row) {
-    for (int column = 0; column < job.columns; column += width) {
-      const LayerWindow window = job.window.from(row, column);
-      Found<opaque, colours> sum(first_lanes(0));
-      Numbers total(0.0f);
-      const Mask lanes = first_lanes(static_cast<std::size_t>(job.columns - column));
-      for (std::size_t i = 0; i < rays.count; ++i) {
-        const Numbers weight(rays.weights[i]);
-        sum.seeking = lanes;
-        if constexpr (!opaque) sum.through = Numbers(1.0f), sum.below = Numbers(1e30f);
-        const Step *const begin = rays.steps + rays.first[i], *const end = rays.steps + rays.first[i + 1];
-        const Step* step = begin;
-        for (; step != end; ++step) {
-          meet(window, Beside{step->offset}, Numbers(step->low), Numbers(step->high), weight, sum.seeking, sum);
-          if (!any(sum.seeking)) break;
-        }
-        made += static_cast<std::uint64_t>(step - begin);
-        total = total + weight;
-        if (!any(sum.seeking)) continue;
-        end_partly(sum);
-        for (step = end; step-- != begin && any(sum.seeking);) {
-          guess(window, Beside{step->offset}, Numbers(step->low), weight, sum.seeking, step + 1 == end, sum);
-        }
-        give_up(weight, sum);
-      }
-      keep(*job.sums, row * TileSums::columns + column, sum, total);
+  for (int column = 0; column < job.columns; column += width) {
+    int row = 0;
+    for (; row + at_once <= job.rows; row += at_once) {
+      made += follow_rows<opaque, colours, at_once>(job, rays, row, column);
     }
+    for (; row < job.rows; ++row) made += follow_rows<opaque, colours, 1>(job, rays, row, column);
   }
   return made * static_cast<std::uint64_t>(width);
+}
+
+Limits limits(const float* const* corners, std::size_t corner_count, std::size_t stride, std::size_t count, float w,
+              float v) noexcept {
+  const auto smaller = [](Numbers a, Numbers b) { return select(a < b, a, b); };
+  const auto larger = [](Numbers a, Numbers b) { return select(a > b, a, b); };
+  Numbers least_x(1e9f), most_x(-1e9f), least_y(1e9f), most_y(-1e9f);
+  for (std::size_t c = 0; c < corner_count; ++c) {
+    for (std::size_t i = 0; i < count; i += static_cast<std::size_t>(width)) {
+      // The last lanes repeat rays before them, or are none where there are fewer.
+      const std::size_t from = i + static_cast<std::size_t>(width) <= count ? i
+                               : count < static_cast<std::size_t>(width)    ? 0
+                                                                            : count - static_cast<std::size_t>(width);
+      const Mask lanes = first_lanes(count - from);
+      const float* const rows = corners[c] + from;
+      const Numbers x = load(rows + at_x * stride), y = load(rows + at_y * stride),
+                    run_x = load(rows + slope_x * stride), run_y = load(rows + slope_y * stride);
+      for (const float depth : {w, v}) {
+        const Numbers at(depth), px = x + at * run_x, py = y + at * run_y;
+        least_x = select(lanes, smaller(least_x, px), least_x), most_x = select(lanes, larger(most_x, px), most_x);
+        least_y = select(lanes, smaller(least_y, py), least_y), most_y = select(lanes, larger(most_y, py), most_y);
+      }
+    }
+  }
+  Limits result{1e9f, -1e9f, 1e9f, -1e9f};
+  for (int i = 0; i < width; ++i) {
+    result.left = least_x.v[i] < result.left ? least_x.v[i] : result.left;
+    result.right = most_x.v[i] > result.right ? most_x.v[i] : result.right;
+    result.top = least_y.v[i] < result.top ? least_y.v[i] : result.top;
+    result.bottom = most_y.v[i] > result.bottom ? most_y.v[i] : result.bottom;
+  }
+  return result;
 }
 
 /// The whole number at or below.
@@ -368,6 +443,6 @@ PETZVAL_FOLLOW(general, DifferentRays)
 }  // namespace
 
 extern const GatherLoops PETZVAL_LOOPS;
-const GatherLoops PETZVAL_LOOPS{same, coherent, general};
+const GatherLoops PETZVAL_LOOPS{same, coherent, general, limits};
 
 }  // namespace petzval::inline v0::blur_detail

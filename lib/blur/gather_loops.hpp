@@ -72,11 +72,20 @@ struct TileJob {
   TileSums* sums = nullptr;
 };
 
+/// Offsets of rays from their pixels, px.
+struct Limits {
+  float left, right, top, bottom;
+};
+
 struct GatherLoops {
   /// Each adds to the sums and returns how many steps its lanes made.
   std::uint64_t (*same)(const TileJob&, const SameRays&) noexcept;
   std::uint64_t (*coherent)(const TileJob&, const DifferentRays&) noexcept;
   std::uint64_t (*general)(const TileJob&, const DifferentRays&) noexcept;
+  /// Between two inverse depths, of `count` rays at some corners, [Row][ray] with rows `stride` apart; a register more
+  /// is read. Lines are straight: they reach farthest at the ends.
+  Limits (*limits)(const float* const* corners, std::size_t corner_count, std::size_t stride, std::size_t count,
+                   float w, float v) noexcept;
 };
 
 PETZVAL_WIDEST(GatherLoops, gather_loops)
