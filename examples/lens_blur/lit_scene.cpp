@@ -1,0 +1,359 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lens_blur/lit_scene.hpp"
+
+#include <embree3/rtcore.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <random>
+#include <string>
+#include <variant>
+
+#include <glm/glm.hpp>
+
+#include "petzval/core/error.hpp"
+#include "petzval/core/parallel.hpp"
+#include "renderer/albedo.hpp"
+#include "renderer/sky_light.hpp"
+#include "renderer/solids.hpp"
+
+namespace lens_blur {
+namespace {
+
+using renderer::Rgb;
+
+constexpr int packet = 16;
+constexpr float infinity = std::numeric_limits<float>::infinity();
+
+template <class... F>
+struct Cases : F... {
+  using F::operator()...;
+};
+template <class... F>
+Cases(F...) -> Cases<F...>;
+
+struct DeviceRelease {
+  void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
+};
+struct SceneRelease {
+  void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
+};
+
+renderer::Mesh mesh_of(const renderer::Sphere& sphere) {
+  const std::vector<renderer::ProfilePoint> outline{
+      {0, -sphere.radius, 0.41421356f}, {sphere.radius, 0, 0.41421356f}, {0, sphere.radius}};
+  return placed(renderer::lathe(outline, 24), sphere.centre);
+}
+renderer::Mesh mesh_of(const renderer::Quad& q) {
+  return {{q.corner, q.corner + q.edge_u, q.corner + q.edge_u + q.edge_v, q.corner + q.edge_v},
+          {{0, 1, 2}, {0, 2, 3}},
+          {},
+          {{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
+}
+renderer::Mesh mesh_of(const renderer::Mesh& mesh) { return mesh; }
+
+renderer::Albedo albedo_of(const renderer::Material& material) {
+  return std::visit(
+      Cases{[](const renderer::Diffuse& m) { return m.albedo; }, [](const renderer::Varnish& m) { return m.albedo; },
+            [](const renderer::Mirror& m) { return renderer::Albedo{.colour = 0.5f * m.reflectance}; },
+            [](const renderer::Rough& m) { return renderer::Albedo{.colour = 0.6f * m.reflectance}; },
+            [](const renderer::Glass&) {
+              return renderer::Albedo{.colour = {0.5f, 0.55f, 0.55f}};
+            }},
+      material);
+}
+
+/// Noise from 0 to 1, smooth between the points of a lattice that repeats.
+class Noise {
+ public:
+  Noise() {
+    std::mt19937 engine(1);
+    for (float& value : values_) value = static_cast<float>(engine() >> 8) / 16777216.0f;
+  }
+  float at(const glm::vec3& p) const {
+    const glm::vec3 floor = glm::floor(p), t = p - floor;
+    const int x = static_cast<int>(floor.x), y = static_cast<int>(floor.y), z = static_cast<int>(floor.z);
+    const auto line = [&](int dy, int dz) { return &values_[(((z + dz) & last) * side + ((y + dy) & last)) * side]; };
+    const int x0 = x & last, x1 = (x + 1) & last;
+    const auto along_x = [&](const float* v) { return v[x0] + t.x * (v[x1] - v[x0]); };
+    const float a = along_x(line(0, 0)), b = along_x(line(1, 0)), c = along_x(line(0, 1)), d = along_x(line(1, 1));
+    const float front = a + t.y * (b - a), back = c + t.y * (d - c);
+    return front + t.z * (back - front);
+  }
+
+ private:
+  static constexpr int side = 32, last = side - 1;
+  std::array<float, side * side * side> values_;
+};
+
+/// An object, ready to be seen.
+struct Body {
+  renderer::Mesh mesh;     ///< in the camera's space: x to the right, y up, z along the axis
+  std::vector<Rgb> light;  ///< that falls on the mesh's corners
+  renderer::Albedo albedo;
+  Rgb emission{0, 0, 0};
+};
+
+/// Rays of a packet; directions run one mm along the axis, so that distances are depths.
+struct alignas(64) Packet {
+  RTCRayHit16 rays;
+  alignas(64) int valid[packet];
+  Rgb colours[packet];
+
+  Packet() { std::fill_n(valid, packet, 0); }
+  void set(int lane, float x, float y, float run_x, float run_y, float near) {
+    RTCRay16& r = rays.ray;
+    r.org_x[lane] = x, r.org_y[lane] = y, r.org_z[lane] = 0;
+    r.dir_x[lane] = run_x, r.dir_y[lane] = run_y, r.dir_z[lane] = 1;
+    r.tnear[lane] = near, r.tfar[lane] = infinity, r.time[lane] = 0, r.mask[lane] = ~0u, r.flags[lane] = 0;
+    rays.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID, rays.hit.instID[0][lane] = RTC_INVALID_GEOMETRY_ID;
+    valid[lane] = -1;
+  }
+  bool hit(int lane) const { return rays.hit.geomID[lane] != RTC_INVALID_GEOMETRY_ID; }
+};
+
+}  // namespace
+
+struct LitScene::Data {
+  std::unique_ptr<RTCDeviceTy, DeviceRelease> device;
+  std::unique_ptr<RTCSceneTy, SceneRelease> scene;
+  std::vector<Body> bodies;
+  glm::mat3 turn{1};  ///< camera to world
+  glm::vec3 origin{0, 0, 0};
+  renderer::SkyLight sky;
+  std::optional<Rgb> plain_sky;
+  Noise noise;
+
+  explicit Data(const renderer::SceneDescription& description) : sky(description.sky) {
+    if (!description.sky.image) plain_sky = description.sky.colour;
+    const renderer::Pose& pose = description.pose;
+    const glm::dvec3 forward = glm::normalize(pose.look_at - pose.position);
+    const glm::dvec3 right = glm::normalize(glm::cross(forward, pose.up));
+    if (!(glm::dot(right, right) > 0.5)) throw petzval::Error("scene: the pose has no directions");
+    turn = glm::mat3(right, glm::cross(right, forward), forward);
+    origin = pose.position;
+
+    device.reset(rtcNewDevice(nullptr));
+    scene.reset(rtcNewScene(device.get()));
+    rtcSetSceneBuildQuality(scene.get(), RTC_BUILD_QUALITY_HIGH);
+    for (const renderer::Object& object : description.objects) {
+      Body& body = bodies.emplace_back();
+      body.mesh = std::visit([](const auto& shape) { return mesh_of(shape); }, object.shape);
+      if (body.mesh.triangles.empty()) throw petzval::Error("scene: " + object.name + " has no area");
+      body.albedo = albedo_of(object.material), body.emission = object.emission;
+      light(body);
+      for (glm::vec3& p : body.mesh.positions) p = (p - origin) * turn;
+    }
+    for (const Body& body : bodies) attach(body.mesh);
+    rtcCommitScene(scene.get());
+  }
+
+  /// The light on the corners: from the sky by how far they look up, and from the sun, low behind the camera's left.
+  void light(Body& body) const {
+    renderer::Mesh& mesh = body.mesh;
+    if (mesh.normals.empty()) {  // flat triangles have corners of their own
+      renderer::Mesh flat;
+      for (const auto& t : mesh.triangles) {
+        const auto first = static_cast<std::uint32_t>(flat.positions.size());
+        const glm::vec3 a = mesh.positions[t[0]], b = mesh.positions[t[1]], c = mesh.positions[t[2]];
+        for (const std::uint32_t k : t) {
+          flat.positions.push_back(mesh.positions[k]);
+          flat.normals.push_back(glm::normalize(glm::cross(b - a, c - a)));
+          if (!mesh.uvs.empty()) flat.uvs.push_back(mesh.uvs[k]);
+        }
+        flat.triangles.push_back({first, first + 1, first + 2});
+      }
+      mesh = std::move(flat);
+    }
+    const glm::vec3 sun = glm::normalize(glm::vec3{-0.5f, 0.6f, 0.65f});
+    const Rgb above =
+        sky.radiance({0, -1, 0}) + sky.radiance({0.6f, -0.5f, 0.6f}) + sky.radiance({-0.6f, -0.5f, -0.6f});
+    const float brightness = std::max({above.x, above.y, above.z, 1e-3f}) / 3;
+    for (const glm::vec3& n : mesh.normals) {
+      const float up = 0.5f + 0.5f * n.y, direct = std::max(0.0f, glm::dot(n, sun));
+      body.light.push_back((0.15f + 0.35f * up) * above / 3.0f + 0.9f * direct * brightness * Rgb{1, 0.93f, 0.82f});
+    }
+  }
+
+  void attach(const renderer::Mesh& mesh) {
+    RTCGeometry geometry = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
+    void* const corners = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                                  sizeof(glm::vec3), mesh.positions.size());
+    std::copy(mesh.positions.begin(), mesh.positions.end(), static_cast<glm::vec3*>(corners));
+    void* const triangles = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                                    3 * sizeof(std::uint32_t), mesh.triangles.size());
+    std::copy(mesh.triangles.begin(), mesh.triangles.end(), static_cast<std::array<std::uint32_t, 3>*>(triangles));
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometry(scene.get(), geometry);
+    rtcReleaseGeometry(geometry);
+  }
+
+  /// Finds what the rays of a packet meet, and its colour.
+  void trace(Packet& p) const {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    rtcIntersect16(p.valid, scene.get(), &context, &p.rays);
+    for (int lane = 0; lane < packet; ++lane) {
+      if (p.valid[lane]) p.colours[lane] = colour(p, lane);
+    }
+  }
+
+  Rgb colour(const Packet& p, int lane) const {
+    const RTCRay16& ray = p.rays.ray;
+    const glm::vec3 run{ray.dir_x[lane], ray.dir_y[lane], 1};
+    if (!p.hit(lane)) return plain_sky ? *plain_sky : sky.radiance(-glm::normalize(turn * run));
+    const Body& body = bodies[p.rays.hit.geomID[lane]];
+    const auto& t = body.mesh.triangles[p.rays.hit.primID[lane]];
+    const float u = p.rays.hit.u[lane], v = p.rays.hit.v[lane], w = 1 - u - v;
+    const glm::vec3 place = turn * (glm::vec3{ray.org_x[lane], ray.org_y[lane], 0} + ray.tfar[lane] * run) + origin;
+    glm::vec2 uv{u, v};
+    if (!body.mesh.uvs.empty()) uv = w * body.mesh.uvs[t[0]] + u * body.mesh.uvs[t[1]] + v * body.mesh.uvs[t[2]];
+    const Rgb light = w * body.light[t[0]] + u * body.light[t[1]] + v * body.light[t[2]];
+    return body.emission + light * at(body.albedo, place, uv) * (0.7f + 0.6f * noise.at(place * (1 / 35.0f)));
+  }
+};
+
+LitScene::LitScene(const renderer::SceneDescription& description) : data_(std::make_unique<Data>(description)) {}
+LitScene::~LitScene() = default;
+
+namespace {
+
+/// The pixels of a packet: squares of 4 x 4, whose rays are alike.
+struct Square {
+  int column = 0, row = 0, columns = 0, rows = 0;
+
+  int column_of(int lane) const { return column + lane % side; }
+  int row_of(int lane) const { return row + lane / side; }
+  /// Squares at the right and lower edges are smaller.
+  bool has(int lane) const { return lane % side < columns && lane / side < rows; }
+
+  static constexpr int side = 4;
+};
+
+/// Calls work(square) for all squares of a picture.
+template <class Work>
+void for_squares(int columns, int rows, int threads, const Work& work) {
+  const std::size_t down = static_cast<std::size_t>((rows + Square::side - 1) / Square::side);
+  petzval::parallel_for(down, 1, threads, [&](std::size_t begin, std::size_t end) {
+    for (int row = static_cast<int>(begin) * Square::side; row < std::min(rows, static_cast<int>(end) * Square::side);
+         row += Square::side) {
+      for (int column = 0; column < columns; column += Square::side) {
+        work({column, row, std::min(Square::side, columns - column), std::min(Square::side, rows - row)});
+      }
+    }
+  });
+}
+
+}  // namespace
+
+petzval::LayerSet::Peel LitScene::peel(const petzval::LayerCamera& camera, int threads) const {
+  return [this, camera, threads](int, std::span<const float> below, const petzval::LayerPlanes& out) {
+    std::atomic<std::size_t> written = 0;
+    const auto focal = static_cast<float>(camera.focal_px);
+    const glm::vec2 axis = glm::vec2(camera.axis) + static_cast<float>(camera.overscan);
+    for_squares(camera.layer_columns(), camera.layer_rows(), threads, [&](const Square& square) {
+      const auto pixel_of = [&](int lane) {
+        return static_cast<std::size_t>(square.row_of(lane)) * static_cast<std::size_t>(camera.layer_columns()) +
+               static_cast<std::size_t>(square.column_of(lane));
+      };
+      Packet p;
+      bool any = false;
+      for (int lane = 0; lane < packet; ++lane) {
+        if (!square.has(lane)) continue;
+        const float limit = below[pixel_of(lane)];
+        if (!(limit > 0)) continue;
+        const glm::vec2 at{static_cast<float>(square.column_of(lane)) + 0.5f,
+                           static_cast<float>(square.row_of(lane)) + 0.5f},
+            run = (at - axis) / focal;
+        p.set(lane, 0, 0, run.x, -run.y, limit < infinity ? 1 / limit : 0.0f);
+        any = true;
+      }
+      if (!any) return;
+      data_->trace(p);
+      std::size_t count = 0;
+      for (int lane = 0; lane < packet; ++lane) {
+        if (!p.valid[lane]) continue;
+        const std::size_t pixel = pixel_of(lane);
+        const float w = p.hit(lane) ? 1 / p.rays.ray.tfar[lane] : 0.0f;
+        out.inverse_depth[pixel] = std::min(w, std::nextafter(below[pixel], 0.0f));
+        out.red[pixel] = p.colours[lane].x, out.green[pixel] = p.colours[lane].y, out.blue[pixel] = p.colours[lane].z;
+        ++count;
+      }
+      written += count;
+    });
+    return written.load();
+  };
+}
+
+double LitScene::nearest_mm(const petzval::LayerCamera& camera, int threads) const {
+  petzval::LayerSet layers;
+  layers.peel({.camera = camera, .bias = 0}, 1, peel(camera, threads));
+  float most = 0;
+  for (int layer = 0; layer < layers.count(); ++layer) {
+    for (const float w : layers.inverse_depth(layer)) most = std::max(most, w);
+  }
+  return most > 0 ? 1 / static_cast<double>(most) : std::numeric_limits<double>::infinity();
+}
+
+petzval::RgbImage LitScene::reference(const petzval::LensRays& rays, int threads) const {
+  const petzval::LayerCamera& camera = rays.camera();
+  petzval::RgbImage picture(camera.columns, camera.rows);
+  const std::size_t count = rays.count();
+  const auto focal = static_cast<float>(camera.focal_px);
+  const auto axis = glm::vec2(camera.axis);
+
+  // Rays that all pixels share are worked out once, as a renderer with an accumulation buffer does.
+  std::vector<petzval::LayerRay> shared(count);
+  const bool same = rays.shift_invariant() && rays.channels() == 1;
+  if (same) rays.exact_at(0, 0, 0, shared);
+
+  for_squares(camera.columns, camera.rows, threads, [&](const Square& square) {
+    thread_local std::vector<petzval::LayerRay> own;
+    own.resize(count * packet);
+    glm::vec3 sums[packet] = {};
+    for (int channel = 0; channel < rays.channels(); ++channel) {
+      for (int lane = 0; !same && lane < packet; ++lane) {
+        if (!square.has(lane)) continue;
+        rays.exact_at(channel, square.column_of(lane), square.row_of(lane),
+                      std::span(own).subspan(static_cast<std::size_t>(lane) * count, count));
+      }
+      for (std::size_t i = 0; i < count; ++i) {
+        Packet p;
+        float weights[packet] = {};
+        for (int lane = 0; lane < packet; ++lane) {
+          if (!square.has(lane)) continue;
+          const petzval::LayerRay& ray = same ? shared[i] : own[static_cast<std::size_t>(lane) * count + i];
+          glm::vec2 at(ray.at);
+          if (same)
+            at += glm::vec2{static_cast<float>(square.column_of(lane)), static_cast<float>(square.row_of(lane))};
+          const glm::vec2 run = (at - axis) / focal, from = glm::vec2(ray.slope) / focal;
+          p.set(lane, from.x, -from.y, run.x, -run.y, 0);
+          weights[lane] = static_cast<float>(ray.weight);
+        }
+        data_->trace(p);
+        for (int lane = 0; lane < packet; ++lane) {
+          if (!p.valid[lane]) continue;
+          if (rays.channels() == 1) {
+            sums[lane] += weights[lane] * p.colours[lane];
+          } else {
+            sums[lane][channel] += weights[lane] * p.colours[lane][channel];
+          }
+        }
+      }
+    }
+    for (int lane = 0; lane < packet; ++lane) {
+      if (!square.has(lane)) continue;
+      float* const pixel = picture.pixel(square.column_of(lane), square.row_of(lane));
+      for (int c = 0; c < 3; ++c) pixel[c] = sums[lane][c] / static_cast<float>(count);
+    }
+  });
+  return picture;
+}
+
+}  // namespace lens_blur
