@@ -40,7 +40,7 @@ petzval_install(core DESCRIPTION "Real lenses for renderers: prescriptions, ray 
 petzval_install(blur DESCRIPTION "Lens blur of layered pictures" REQUIRES petzval-core)
 petzval_install(fit DESCRIPTION "Least-squares fits for lens optics" REQUIRES petzval-core)
 petzval_install(figure DESCRIPTION "SVG figures of lenses" REQUIRES petzval-core)
-petzval_install(image DESCRIPTION "EXR and PNG images" REQUIRES petzval-core STATIC_REQUIRES "OpenEXR libpng")
+petzval_install(image DESCRIPTION "EXR and PNG images" REQUIRES "petzval-core, petzval-blur" STATIC_REQUIRES "OpenEXR libpng")
 
 configure_package_config_file(cmake/petzvalConfig.cmake.in petzvalConfig.cmake INSTALL_DESTINATION ${package_dir}
   PATH_VARS CMAKE_INSTALL_DATADIR NO_SET_AND_CHECK_MACRO)

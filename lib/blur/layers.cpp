@@ -82,6 +82,38 @@ void LayerSet::Data::finish() {
   n_buffer.fill(columns, rows, depths);
 }
 
+namespace {
+
+/// The axial part of a distance along the ray of a pixel of the layers.
+float axial_share(const LayerCamera& camera, std::size_t pixel) {
+  const auto width = static_cast<std::size_t>(camera.layer_columns());
+  const double x = (static_cast<double>(pixel % width) + 0.5 - camera.overscan - camera.axis.x) / camera.focal_px,
+               y = (static_cast<double>(pixel / width) + 0.5 - camera.overscan - camera.axis.y) / camera.focal_px;
+  return static_cast<float>(1 / std::sqrt(1 + x * x + y * y));
+}
+
+void check_pixels(const LayerCamera& camera, std::size_t pixels) {
+  const auto wanted = static_cast<std::size_t>(camera.layer_columns()) * static_cast<std::size_t>(camera.layer_rows());
+  if (pixels == wanted) return;
+  throw Error("axial_depths: found " + std::to_string(pixels) + " pixels, wanted those of the layers, " +
+              std::to_string(camera.layer_columns()) + " x " + std::to_string(camera.layer_rows()));
+}
+
+}  // namespace
+
+void axial_depths(const LayerCamera& camera, FragmentLists& lists) {
+  check_pixels(camera, lists.offsets.empty() ? 0 : lists.offsets.size() - 1);
+  for (std::size_t pixel = 0; pixel + 1 < lists.offsets.size(); ++pixel) {
+    const float share = axial_share(camera, pixel);
+    for (std::size_t i = lists.offsets[pixel]; i < lists.offsets[pixel + 1]; ++i) lists.fragments[i].depth_mm *= share;
+  }
+}
+
+void axial_depths(const LayerCamera& camera, std::span<float> depth_mm) {
+  check_pixels(camera, depth_mm.size());
+  for (std::size_t pixel = 0; pixel < depth_mm.size(); ++pixel) depth_mm[pixel] *= axial_share(camera, pixel);
+}
+
 LayerSet::LayerSet() : data_(std::make_unique<Data>()) {}
 LayerSet::LayerSet(LayerSet&&) noexcept = default;
 LayerSet& LayerSet::operator=(LayerSet&&) noexcept = default;

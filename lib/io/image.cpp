@@ -8,12 +8,14 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <fstream>
 #include <string>
 #include <string_view>
 #include <utility>
 
 #include "core/text.hpp"
 #include "io/exr.hpp"
+#include "io/png.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/io/write_file.hpp"
 
@@ -88,6 +90,48 @@ void write_pfm(int width, int height, std::span<const float> values, const std::
                 " x " + std::to_string(height) + " pixels, wanted one for each");
   }
   write_pfm("Pf", width, height, static_cast<std::size_t>(width), values, file);
+}
+
+RgbImage read_pfm(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  if (!in) throw Error(file.string() + ": cannot be opened, wanted a PFM file");
+  std::string kind;
+  std::int64_t width = 0, height = 0;
+  double scale = 0;
+  in >> kind >> width >> height >> scale;
+  in.get();  // the one white space before the values
+  if (!in || (kind != "PF" && kind != "Pf") || width < 1 || height < 1 || scale == 0) {
+    throw Error(file.string() + ": no head of a PFM file, wanted PF or Pf, width, height and scale");
+  }
+  io_detail::check_size(static_cast<std::size_t>(width), static_cast<std::size_t>(height), file);
+  const std::size_t channels = kind == "PF" ? 3 : 1, row = channels * static_cast<std::size_t>(width);
+  RgbImage image(static_cast<int>(width), static_cast<int>(height));
+  std::vector<unsigned char> bytes(4 * row);
+  for (auto y = static_cast<int>(height); y-- > 0;) {
+    if (!in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()))) {
+      throw Error(file.string() + ": ends before its last value, wanted a whole PFM file");
+    }
+    for (std::size_t i = 0; i < 3 * static_cast<std::size_t>(width); ++i) {
+      const unsigned char* const b = &bytes[4 * (channels == 3 ? i : i / 3)];
+      const auto of = [&](int k) { return static_cast<std::uint32_t>(b[scale < 0 ? k : 3 - k]) << (8 * k); };
+      image.pixel(0, y)[i] = std::bit_cast<float>(of(0) | of(1) | of(2) | of(3));
+    }
+  }
+  return image;
+}
+
+RgbImage read_png(const std::filesystem::path& file) {
+  const io_detail::PngPicture picture = io_detail::read_png_picture(file);
+  RgbImage image(static_cast<int>(picture.width), static_cast<int>(picture.height));
+  std::vector<float> linear(65536);
+  for (std::size_t i = 0; i < linear.size(); ++i) {
+    const double v = static_cast<double>(i) / 65535;
+    linear[i] = static_cast<float>(v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4));
+  }
+  for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+    image.pixels[i] = linear[picture.values[picture.channels == 3 ? i : i / 3]];
+  }
+  return image;
 }
 
 void write_png(const Rgb8Image& image, const std::filesystem::path& file) {

@@ -1,76 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <png.h>
-
-#include <csetjmp>
-#include <cstdint>
-#include <cstdio>
-#include <memory>
+#include <cstddef>
 #include <string>
-#include <vector>
 
 #include "io/exr.hpp"
+#include "io/png.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/io/image.hpp"
 
 namespace petzval::inline v0 {
 namespace {
 
-void check_size(std::size_t width, std::size_t height, const std::filesystem::path& file) {
-  constexpr std::size_t most = std::size_t(1) << 26;
-  if (width <= most / height) return;
-  throw Error(file.string() + ": found " + std::to_string(width) + " x " + std::to_string(height) + " pixels, wanted " +
-              std::to_string(most) + " or fewer");
-}
+using io_detail::check_size;
 
-/// The rows of an open PNG file, 16 bits a channel, as the file has them: weights are no light, and have no gamma.
-/// Null: they cannot be read. (libpng jumps out of a function on an error; nothing in this one has a destructor.)
-struct PngRows {
-  png_structp png = nullptr;
-  png_infop info = nullptr;
-  std::uint32_t width = 0, height = 0, channels = 0;
-};
-bool read_head(std::FILE* file, PngRows& rows) noexcept {
-  rows.png = png_create_read_struct(
-      PNG_LIBPNG_VER_STRING, nullptr, [](png_structp png, png_const_charp) { png_longjmp(png, 1); },
-      [](png_structp, png_const_charp) {});
-  if (rows.png) rows.info = png_create_info_struct(rows.png);
-  if (!rows.info || setjmp(png_jmpbuf(rows.png))) return false;
-  png_init_io(rows.png, file);
-  png_read_info(rows.png, rows.info);
-  png_set_expand_16(rows.png);
-  png_set_strip_alpha(rows.png);
-  png_set_interlace_handling(rows.png);
-  png_read_update_info(rows.png, rows.info);
-  rows.width = png_get_image_width(rows.png, rows.info), rows.height = png_get_image_height(rows.png, rows.info);
-  rows.channels = png_get_channels(rows.png, rows.info);
-  return true;
-}
-bool read_rows(PngRows& rows, png_bytepp to) noexcept {
-  if (setjmp(png_jmpbuf(rows.png))) return false;
-  png_read_image(rows.png, to);
-  return true;
-}
-
+/// As the file has them: weights are no light, and have no gamma.
 IrisMap read_png_map(const std::filesystem::path& file) {
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> open(std::fopen(file.c_str(), "rb"), std::fclose);
-  if (!open) throw Error(file.string() + ": cannot be opened, wanted a PNG or EXR file");
-  PngRows rows;
-  const auto end = [](PngRows* own) { png_destroy_read_struct(&own->png, &own->info, nullptr); };
-  const std::unique_ptr<PngRows, decltype(end)> ended(&rows, end);
-  const auto refuse = [&] { throw Error(file.string() + ": cannot be read as a PNG file, wanted a whole one"); };
-  if (!read_head(open.get(), rows)) refuse();
-  check_size(rows.width, rows.height, file);
-  const std::size_t row_bytes = std::size_t{2} * rows.channels * rows.width;
-  std::vector<std::uint8_t> bytes(row_bytes * rows.height);
-  std::vector<png_bytep> row_begins;
-  for (std::size_t y = 0; y < rows.height; ++y) row_begins.push_back(&bytes[y * row_bytes]);
-  if (!read_rows(rows, row_begins.data())) refuse();
-  IrisMap map{static_cast<int>(rows.width), static_cast<int>(rows.height), {}};
-  for (std::size_t i = 0; i < bytes.size(); i += std::size_t{2} * rows.channels) {
+  const io_detail::PngPicture picture = io_detail::read_png_picture(file);
+  IrisMap map{static_cast<int>(picture.width), static_cast<int>(picture.height), {}};
+  for (std::size_t i = 0; i < picture.values.size(); i += picture.channels) {
     float sum = 0;
-    for (std::size_t c = 0; c < rows.channels; ++c)
-      sum += static_cast<float>(bytes[i + 2 * c] << 8 | bytes[i + 2 * c + 1]);
-    map.values.push_back(sum / (65535 * static_cast<float>(rows.channels)));
+    for (std::size_t c = 0; c < picture.channels; ++c) sum += static_cast<float>(picture.values[i + c]);
+    map.values.push_back(sum / (65535 * static_cast<float>(picture.channels)));
   }
   return map;
 }

@@ -61,6 +61,11 @@ struct FragmentLists {
   std::vector<Fragment> fragments;
 };
 
+/// Turns distances from the pinhole into depths along the axis, in place; infinity and what is no depth stay. camera:
+/// whose layers these are, overscan included. Throws Error for numbers of another size than its layers.
+PETZVAL_API void axial_depths(const LayerCamera& camera, FragmentLists& lists);
+PETZVAL_API void axial_depths(const LayerCamera& camera, std::span<float> depth_mm);
+
 /// A picture with depths: the surfaces of one layer, or all that a single picture knows.
 struct LayerImage {
   int columns = 0, rows = 0;

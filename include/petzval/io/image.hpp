@@ -78,6 +78,14 @@ PETZVAL_API void write_pfm(const RgbImage& image, const std::filesystem::path& f
 /// The same of one channel, "Pf". values: width x height, rows from the top.
 PETZVAL_API void write_pfm(int width, int height, std::span<const float> values, const std::filesystem::path& file);
 
+/// Reads a PFM, of either order of bytes, rows from the bottom: three channels ("PF"), or one ("Pf") for all three.
+/// Throws Error that names the file, also for more than 2^26 pixels.
+PETZVAL_API RgbImage read_pfm(const std::filesystem::path& file);
+
+/// Reads a PNG of 8 or 16 bits as linear light: its values decoded as sRGB, whatever gamma it states, alpha left out.
+/// Throws Error that names the file, also for more than 2^26 pixels.
+PETZVAL_API RgbImage read_png(const std::filesystem::path& file);
+
 /// Writes an 8-bit sRGB PNG as write_file does. Throws Error that names the file.
 PETZVAL_API void write_png(const Rgb8Image& image, const std::filesystem::path& file);
 

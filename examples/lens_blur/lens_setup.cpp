@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lens_blur/lens_setup.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "petzval/core/error.hpp"
+#include "petzval/core/units.hpp"
+#include "petzval/focus/focus.hpp"
+#include "petzval/lens/lens.hpp"
+#include "petzval/media/glass.hpp"
+#include "petzval/paraxial/first_order.hpp"
+#include "petzval/paraxial/ideal_lens.hpp"
+#include "renderer/lens_camera.hpp"
+#include "support/focus_json.hpp"
+#include "support/load_lens.hpp"
+#include "support/text.hpp"
+
+namespace lens_blur {
+namespace {
+
+using examples::number;
+using petzval::Error;
+
+/// Those of the red, green and blue of Lee, Eisemann, Seidel 2010.
+constexpr std::array colours_nm{650.0, 510.0, 475.0};
+
+/// Two spheres of a glass, R1,R2,thickness,glass, the stop on the first one.
+petzval::Prescription singlet_of(const std::string& text) {
+  std::vector<std::string> parts(1);
+  for (const char c : text) {
+    if (c == ',') {
+      parts.emplace_back();
+    } else {
+      parts.back() += c;
+    }
+  }
+  if (parts.size() != 4) throw Error("--singlet: found \"" + text + "\", wanted R1,R2,thickness,glass");
+  const auto length = [&](std::size_t i) {
+    return examples::parse_number("--singlet", parts[i], examples::finite_number);
+  };
+  petzval::Prescription p;
+  p.id = "singlet", p.name = "singlet " + text;
+  p.surfaces = {{.radius = length(0), .thickness = length(2), .medium = {.glass = parts[3], .nd = 1.5}, .stop = true},
+                {.radius = length(1), .thickness = 1}};
+  // As wide as both spheres allow; the f-number stops it down.
+  double widest = std::numeric_limits<double>::infinity();
+  for (const petzval::SurfaceRow& row : p.surfaces) {
+    if (row.radius != 0) widest = std::min(widest, 0.8 * std::abs(row.radius));
+  }
+  for (petzval::SurfaceRow& row : p.surfaces) row.semi_diameter = std::isfinite(widest) ? widest : 10;
+  return p;
+}
+
+/// A singlet so thin that its first-order model is a thin lens of BK7.
+petzval::Prescription thin_singlet(double focal_length, double diameter) {
+  const double radius = 2 * 0.5168 * focal_length;
+  petzval::Prescription p;
+  p.id = "thin", p.name = "thin lens of " + number(focal_length) + " mm";
+  p.surfaces = {{.radius = radius,
+                 .thickness = 1e-6 * focal_length,
+                 .medium = {.glass = "N-BK7", .nd = 1.5168},
+                 .semi_diameter = std::min(diameter / 2, 0.9 * radius),
+                 .stop = true},
+                {.radius = -radius, .thickness = focal_length}};
+  return p;
+}
+
+}  // namespace
+
+void add_lens(examples::App& app, LensFlags& flags) {
+  add_number(app, "--thin-lens-mm", flags.thin_lens_mm, examples::positive_number, "focal length of a thin lens (mm)")
+      ->default_str("");
+  add_number(app, "--lens-diameter-mm", flags.lens_diameter_mm, examples::positive_number, "of a thin lens (mm)")
+      ->default_str("");
+  app.add_option("--lens", flags.lens_file, "a lens of data/lenses, or any file like it, by exact rays")
+      ->type_name("LENS.json");
+  app.add_option("--singlet", flags.singlet, "two spheres by exact rays; f/2 without --f-number")
+      ->type_name("R1,R2,THICKNESS,GLASS");
+  add_number(app, "--focus-mm", flags.focus_mm, examples::positive_length,
+             "depth in focus from the entrance pupil, where layers are seen from (mm), or inf")
+      ->required();
+  constexpr examples::Range angle{1e-3, 120, "more than 0 and at most 120"};
+  add_number(app, "--fov-deg", flags.fov_deg, angle,
+             "vertical angle of the picture (degrees); 30 for a thin lens, else that of a film 24 mm high")
+      ->default_str("");
+  constexpr examples::Range tilt{-60, 60, "a number from -60 to 60"};
+  add_number(app, "--tilt-deg", flags.tilt_deg, tilt, "of the film, about the horizontal axis (degrees)");
+  add_number(app, "--swing-deg", flags.swing_deg, tilt, "of the film, about the vertical axis (degrees)");
+  constexpr examples::Range rays{1, 16384, "a whole number from 1 to 16384"};
+  add_count(app, "--rays", flags.rays, rays, "through the lens, for each pixel");
+  app.add_flag("--chroma", flags.chroma, "red, green and blue have rays of their own, at 650, 510 and 475 nm");
+  add_iris(app, flags.iris);
+  add_bokeh(app, flags.bokeh);
+  app.add_option("--points", flags.surface.points_file,
+                 "what is in focus at places of the picture: a focal surface; with --frames, focus points with keys")
+      ->type_name("POINTS.json");
+  add_surface_kind(app, flags.surface);
+  add_expressive(app, flags.expressive);
+}
+
+BlurLens::BlurLens(const LensFlags& flags, int columns, int rows, const renderer::Pose& pose, bool keyed)
+    : flags_(flags), columns_(columns), rows_(rows), pose_(pose), keyed_(keyed), controls_(controls_of(flags.bokeh)) {
+  const int kinds = (flags.thin_lens_mm > 0) + !flags.lens_file.empty() + !flags.singlet.empty();
+  if (kinds != 1) {
+    throw Error("lens: found " + std::to_string(kinds) + " of --thin-lens-mm, --lens and --singlet, wanted one");
+  }
+  if ((flags.thin_lens_mm > 0) != (flags.lens_diameter_mm > 0)) {
+    throw Error("--thin-lens-mm and --lens-diameter-mm: found one of them, wanted both");
+  }
+  thin_ = flags.thin_lens_mm > 0;
+  if (thin_ && flags.iris.f_number > 0) throw Error("--f-number: a thin lens has --lens-diameter-mm");
+  load();
+  const petzval::Camera plain = camera({});
+  film_ = plain.film();
+  layers_ = thin_ ? petzval::layer_camera(columns, rows, petzval::radians(fov_deg())) : petzval::layer_camera(plain);
+  if (keyed_ && !flags.surface.points_file.empty()) points_ = examples::read_focus_points(flags.surface.points_file);
+  surface_ = surface_at(0);
+}
+
+double BlurLens::fov_deg() const { return flags_.fov_deg > 0 ? flags_.fov_deg : 30; }
+
+void BlurLens::load() {
+  // Focus is that of the d line, also where colours have their own.
+  std::vector<double> wavelengths{petzval::d_line_nm};
+  if (flags_.chroma) wavelengths.insert(wavelengths.end(), colours_nm.begin(), colours_nm.end());
+  examples::IrisSetup iris = flags_.iris;
+  petzval::Lens lens = [&] {
+    if (!flags_.lens_file.empty()) return examples::load_lens(flags_.lens_file, wavelengths).lens;
+    const auto glasses = petzval::GlassCatalogue::load(petzval::data_directory() / "glass");
+    if (!thin_ && iris.f_number == 0) iris.f_number = 2;
+    return petzval::compile(
+        thin_ ? thin_singlet(flags_.thin_lens_mm, flags_.lens_diameter_mm) : singlet_of(flags_.singlet), wavelengths,
+        {.glasses = &glasses});
+  }();
+  lens = examples::stopped_down(lens, iris);
+  if (thin_ && !(flags_.focus_mm > flags_.thin_lens_mm)) {
+    throw Error("--focus-mm: found " + number(flags_.focus_mm) + ", wanted more than the focal length, " +
+                number(flags_.thin_lens_mm) + ": what is nearer has no real image");
+  }
+  const petzval::FocusCriterion criterion =
+      thin_ ? petzval::FocusCriterion::paraxial : petzval::FocusCriterion::min_rms;
+  lens_ = petzval::with_focus(lens, flags_.focus_mm - petzval::pupils(lens).entrance.z,
+                              {.criterion = criterion, .origin = petzval::DistanceOrigin::front_vertex});
+  name_ = lens_->name();
+}
+
+petzval::Camera BlurLens::camera(const std::optional<petzval::FocalSurface>& surface) const {
+  // The film that has the angle of the picture, by the ideal lens.
+  double height = 24;
+  if (thin_ || flags_.fov_deg > 0) {
+    const petzval::ScenePoint seen = petzval::thick_lens(*lens_).scene_of({0, -1, lens_->film_z()});
+    const double origin = petzval::pupils(*lens_).entrance.z;
+    const double per_mm =
+        std::abs(seen.at_infinity ? seen.position.y / seen.position.z : seen.position.y / (origin - seen.position.z));
+    height = 2 * std::tan(petzval::radians(fov_deg()) / 2) / per_mm;
+  }
+  const petzval::Film film{.width_mm = height * columns_ / rows_,
+                           .height_mm = height,
+                           .columns = columns_,
+                           .rows = rows_,
+                           .tilt_rad = petzval::radians(flags_.tilt_deg),
+                           .swing_rad = petzval::radians(flags_.swing_deg)};
+  const bool first_order = surface || !flags_.expressive.change_nothing();
+  const petzval::ModelKind model = thin_         ? petzval::ModelKind::thin
+                                   : first_order ? petzval::ModelKind::thick
+                                                 : petzval::ModelKind::exact_float;
+  petzval::CameraOptions options{.model = model,
+                                 .normalisation = petzval::Normalisation::unity_on_axis,
+                                 .bokeh = controls_,
+                                 .focal_surface = surface};
+  if (!flags_.expressive.change_nothing()) options.expressive = expressive_of(flags_.expressive, *lens_, film);
+  return petzval::Camera(*lens_, film, options);
+}
+
+std::optional<petzval::FocalSurface> BlurLens::surface_at(double time) {
+  if (flags_.surface.points_file.empty()) return {};
+  if (!keyed_) {
+    if (surface_) return surface_;
+    const petzval::Camera plain = camera({});
+    const renderer::LensCamera in_world(plain, pose_);
+    return examples::read_focal_surface(flags_.surface, plain, petzval::DistanceOrigin::front_vertex, flags_.focus_mm,
+                                        [&](const petzval::Vec3<double>& p) { return in_world.to_lens(glm::vec3(p)); })
+        .surface;
+  }
+  const petzval::IdealLens ideal = petzval::thick_lens(*lens_);
+  const std::vector<petzval::FocalPoint> seen =
+      petzval::focal_points(ideal, film_, points_, {.time = time, .film = film_});
+  if (seen.empty()) return surface_;  // the last one stays
+  return petzval::FocalSurface(
+      ideal, film_, seen,
+      {.kind = flags_.surface.kind == "shepard" ? petzval::SurfaceKind::shepard : petzval::SurfaceKind::affine,
+       .beta = flags_.surface.beta});
+}
+
+petzval::LensRays BlurLens::rays(double nearest_mm, int threads, double time) {
+  if (keyed_) surface_ = surface_at(time);
+  const std::vector<petzval::PupilPoint> points = petzval::vogel_points(static_cast<int>(flags_.rays));
+  const petzval::LensRaysOptions options{.nearest_mm = nearest_mm, .threads = threads};
+  if (!thin_ || controls_.vignettes() || !flags_.expressive.change_nothing()) {
+    std::vector<petzval::Wavelength> wavelengths;
+    for (std::size_t i = 1; flags_.chroma && i <= colours_nm.size(); ++i) wavelengths.emplace_back(i);
+    return petzval::LensRays::of(camera(surface_), layers_, points, wavelengths, options);
+  }
+
+  petzval::ThinLens thin{.radius_mm = flags_.lens_diameter_mm / 2,
+                         .inverse_focus = 1 / flags_.focus_mm,
+                         .iris = flags_.iris.iris(),
+                         .edge = controls_.edge(),
+                         .map = controls_.weight_map};
+  if (flags_.chroma) {
+    const double power = 1 / petzval::first_order(*lens_).effective_focal_length;
+    for (int c = 0; c < 3; ++c) {
+      thin.colour_shift[c] =
+          1 / petzval::first_order(*lens_, static_cast<std::size_t>(c + 1)).effective_focal_length - power;
+    }
+  }
+  if (surface_) {
+    thin.focus = [surface = *surface_, film = film_](const petzval::Vec2<double>& raster) {
+      const petzval::FocalSurface::Values at = surface.at(film.point(raster.x, raster.y));
+      return petzval::FocusAt{at.inverse_distance, std::exp2(-at.extent_stops / 2)};
+    };
+  } else if (film_.tilted()) {
+    // What a tilted film has in focus is linear over the picture; the picture keeps its frame.
+    const double power = 1 / flags_.thin_lens_mm, image = power - 1 / flags_.focus_mm;
+    thin.focus = [=, normal = film_.normal(), camera = layers_](const petzval::Vec2<double>& raster) {
+      const petzval::Vec2<double> run = (raster - camera.axis) / camera.focal_px;
+      return petzval::FocusAt{power - image * (1 - (normal.x * run.x - normal.y * run.y) / normal.z), 1};
+    };
+  }
+  return petzval::LensRays::thin(layers_, thin, points, options);
+}
+
+}  // namespace lens_blur
