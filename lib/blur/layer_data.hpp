@@ -17,6 +17,7 @@ struct LayerSet::Data {
 
   int columns = 0, rows = 0, count = 0;
   bool opaque = true;
+  double n_buffer_seconds = 0;
   std::vector<float> memory, below;
   blur_detail::NBuffer n_buffer;
 

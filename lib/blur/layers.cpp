@@ -2,6 +2,7 @@
 #include "petzval/blur/layers.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -77,9 +78,11 @@ void LayerSet::Data::end_layer(const std::string& where) {
 }
 
 void LayerSet::Data::finish() {
+  const auto start = std::chrono::steady_clock::now();
   std::vector<std::span<const float>> depths;
   for (int layer = 0; layer < count; ++layer) depths.emplace_back(plane(layer, 0), pixels());
   n_buffer.fill(columns, rows, depths);
+  n_buffer_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 namespace {
@@ -239,6 +242,7 @@ void LayerSet::set(std::span<const LayerImage> images) {
 int LayerSet::columns() const noexcept { return data_->columns; }
 int LayerSet::rows() const noexcept { return data_->rows; }
 int LayerSet::count() const noexcept { return data_->count; }
+double LayerSet::n_buffer_seconds() const noexcept { return data_->n_buffer_seconds; }
 bool LayerSet::opaque() const noexcept { return data_->opaque; }
 std::span<const float> LayerSet::inverse_depth(int layer) const noexcept {
   return {data_->plane(layer, 0), data_->pixels()};

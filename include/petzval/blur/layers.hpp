@@ -111,6 +111,8 @@ class PETZVAL_API LayerSet {
   std::span<const float> channel(int layer, int channel) const noexcept;
   /// Whether all surfaces have alpha 1.
   bool opaque() const noexcept;
+  /// Of the last filling: what bounding the ways of rays took.
+  double n_buffer_seconds() const noexcept;
   /// Back to lists, for files.
   FragmentLists fragments() const;
 

@@ -25,6 +25,9 @@ class LitScene {
   LitScene(const LitScene&) = delete;
   LitScene& operator=(const LitScene&) = delete;
 
+  /// Moves the camera from its pose: to the right, up and ahead, mm.
+  void move_to(const glm::vec3& place) noexcept { eye_ = place; }
+
   /// Depth of the nearest thing that a camera sees through the centres of its pixels, mm; infinity for sky alone.
   double nearest_mm(const petzval::LayerCamera& camera, int threads) const;
 
@@ -37,6 +40,7 @@ class LitScene {
  private:
   struct Data;
   std::unique_ptr<const Data> data_;
+  glm::vec3 eye_{0, 0, 0};
 };
 
 }  // namespace lens_blur

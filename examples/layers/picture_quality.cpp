@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lens_blur/picture_quality.hpp"
+#include "layers/picture_quality.hpp"
 
 #include <algorithm>
 #include <array>

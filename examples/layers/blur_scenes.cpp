@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lens_blur/blur_scenes.hpp"
+#include "layers/blur_scenes.hpp"
 
 #include <array>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lens_blur/lit_scene.hpp"
+#include "layers/lit_scene.hpp"
 
 #include <embree3/rtcore.h>
 
@@ -106,10 +106,10 @@ struct alignas(64) Packet {
   Rgb colours[packet];
 
   Packet() { std::fill_n(valid, packet, 0); }
-  void set(int lane, float x, float y, float run_x, float run_y, float near) {
+  void set(int lane, const glm::vec3& from, const glm::vec2& run, float near) {
     RTCRay16& r = rays.ray;
-    r.org_x[lane] = x, r.org_y[lane] = y, r.org_z[lane] = 0;
-    r.dir_x[lane] = run_x, r.dir_y[lane] = run_y, r.dir_z[lane] = 1;
+    r.org_x[lane] = from.x, r.org_y[lane] = from.y, r.org_z[lane] = from.z;
+    r.dir_x[lane] = run.x, r.dir_y[lane] = run.y, r.dir_z[lane] = 1;
     r.tnear[lane] = near, r.tfar[lane] = infinity, r.time[lane] = 0, r.mask[lane] = ~0u, r.flags[lane] = 0;
     rays.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID, rays.hit.instID[0][lane] = RTC_INVALID_GEOMETRY_ID;
     valid[lane] = -1;
@@ -211,7 +211,8 @@ struct LitScene::Data {
     const Body& body = bodies[p.rays.hit.geomID[lane]];
     const auto& t = body.mesh.triangles[p.rays.hit.primID[lane]];
     const float u = p.rays.hit.u[lane], v = p.rays.hit.v[lane], w = 1 - u - v;
-    const glm::vec3 place = turn * (glm::vec3{ray.org_x[lane], ray.org_y[lane], 0} + ray.tfar[lane] * run) + origin;
+    const glm::vec3 place =
+        turn * (glm::vec3{ray.org_x[lane], ray.org_y[lane], ray.org_z[lane]} + ray.tfar[lane] * run) + origin;
     glm::vec2 uv{u, v};
     if (!body.mesh.uvs.empty()) uv = w * body.mesh.uvs[t[0]] + u * body.mesh.uvs[t[1]] + v * body.mesh.uvs[t[2]];
     const Rgb light = w * body.light[t[0]] + u * body.light[t[1]] + v * body.light[t[2]];
@@ -271,7 +272,7 @@ petzval::LayerSet::Peel LitScene::peel(const petzval::LayerCamera& camera, int t
         const glm::vec2 at{static_cast<float>(square.column_of(lane)) + 0.5f,
                            static_cast<float>(square.row_of(lane)) + 0.5f},
             run = (at - axis) / focal;
-        p.set(lane, 0, 0, run.x, -run.y, limit < infinity ? 1 / limit : 0.0f);
+        p.set(lane, eye_, {run.x, -run.y}, limit < infinity ? 1 / limit : 0.0f);
         any = true;
       }
       if (!any) return;
@@ -333,7 +334,7 @@ petzval::RgbImage LitScene::reference(const petzval::LensRays& rays, int threads
           if (same)
             at += glm::vec2{static_cast<float>(square.column_of(lane)), static_cast<float>(square.row_of(lane))};
           const glm::vec2 run = (at - axis) / focal, from = glm::vec2(ray.slope) / focal;
-          p.set(lane, from.x, -from.y, run.x, -run.y, 0);
+          p.set(lane, eye_ + glm::vec3{from.x, -from.y, 0}, {run.x, -run.y}, 0);
           weights[lane] = static_cast<float>(ray.weight);
         }
         data_->trace(p);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lens_blur/lens_setup.hpp"
+#include "layers/lens_setup.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "layers/layer_input.hpp"
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <iostream>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "layers/blur_scenes.hpp"
+#include "petzval/core/error.hpp"
+#include "petzval/io/deep_exr.hpp"
+#include "petzval/io/image.hpp"
+
+namespace lens_blur {
+namespace {
+
+using petzval::Error;
+using petzval::FragmentLists;
+
+const std::vector<float>* channel(const petzval::ExrPart& part, const std::string& name) {
+  const auto found =
+      std::find_if(part.channels.begin(), part.channels.end(), [&](const auto& c) { return c.name == name; });
+  return found == part.channels.end() ? nullptr : &found->values;
+}
+
+const std::vector<float>& wanted(const petzval::ExrPart& part, const std::string& name, const std::string& file) {
+  if (const auto* const values = channel(part, name)) return *values;
+  throw Error(file + ": no channel " + name + ", wanted R, G, B, Z and perhaps A");
+}
+
+bool ends_with(const std::string& name, const std::string& ending) {
+  return std::filesystem::path(name).extension() == ending;
+}
+
+/// Depths of a file with one number for each pixel: Z or the only channel of an EXR, or a PFM.
+std::vector<float> read_depths(const std::string& file, int& columns, int& rows) {
+  if (ends_with(file, ".pfm")) {
+    const petzval::RgbImage image = petzval::read_pfm(file);
+    columns = image.width, rows = image.height;
+    std::vector<float> depths;
+    for (std::size_t i = 0; i < image.pixels.size(); i += 3) depths.push_back(image.pixels[i]);
+    return depths;
+  }
+  const petzval::ExrPart part = petzval::read_exr_parts(file).front();
+  columns = part.width, rows = part.height;
+  return part.channels.size() == 1 ? part.channels[0].values : wanted(part, "Z", file);
+}
+
+}  // namespace
+
+void add_input(examples::App& app, InputFlags& flags) {
+  app.add_option("--scene", flags.scene, "a scene of this program")
+      ->one_of({"town", "statues", "knot", "leaves", "street"});
+  app.add_option("--image", flags.image, "channels R, G, B, Z and perhaps A; several parts are layers from near to far")
+      ->type_name("RGBAZ.exr");
+  app.add_option("--deep", flags.deep, "a deep picture")->type_name("DEEP.exr");
+  app.add_option("--rgb", flags.rgb, "a picture: PNG (sRGB) or PFM (linear)")->type_name("A.png");
+  app.add_option("--depth", flags.depth, "its depths, mm: EXR or PFM")->type_name("D.exr");
+  app.add_option("--depth-kind", flags.depth_kind, "what depths of files are: along the axis, or along rays")
+      ->one_of({"axial", "distance"})
+      ->capture_default_str();
+  constexpr examples::Range side{1, 16384, "a whole number from 1 to 16384"};
+  examples::add_count(app, "--width", flags.width, side, "pixels across, of a scene")->default_str("800");
+  examples::add_count(app, "--height", flags.height, side, "pixels down, of a scene")->default_str("600");
+}
+
+LayerInput::LayerInput(const InputFlags& flags) : flags_(flags), depths_are_axial_(flags.depth_kind == "axial") {
+  const int given = !flags.scene.empty() + !flags.image.empty() + !flags.deep.empty() + !flags.rgb.empty();
+  if (given != 1) {
+    throw Error("layers: found " + std::to_string(given) + " of --scene, --image, --deep and --rgb, wanted one");
+  }
+  if (flags.rgb.empty() != flags.depth.empty()) throw Error("--rgb and --depth: found one of them, wanted both");
+  if (!flags.scene.empty()) {
+    const auto description = blur_scene(flags.scene);
+    if (!description) throw Error("--scene: found " + flags.scene + ", wanted " + std::string(blur_scene_names));
+    pose_ = description->pose;
+    scene_ = std::make_unique<LitScene>(*description);
+    columns_ = flags.width > 0 ? static_cast<int>(flags.width) : 800;
+    rows_ = flags.height > 0 ? static_cast<int>(flags.height) : 600;
+    return;
+  }
+  if (flags.width > 0 || flags.height > 0) throw Error("--width and --height: files have a size of their own");
+  if (!flags.deep.empty()) {
+    petzval::DeepPicture deep = petzval::read_deep_exr(flags.deep);
+    if (deep.without_depth > 0)
+      std::cerr << "note: " << deep.without_depth << " samples without a depth are left out\n";
+    if (deep.volumes > 0)
+      std::cerr << "note: " << deep.volumes << " samples of volumes count as surfaces at their front\n";
+    lists_ = std::move(deep.lists);
+  } else if (!flags.image.empty()) {
+    read_layers(flags.image);
+  } else {
+    read_picture(flags.rgb, flags.depth);
+  }
+  columns_ = lists_.columns, rows_ = lists_.rows;
+}
+
+void LayerInput::read_layers(const std::string& file) {
+  const std::vector<petzval::ExrPart> parts = petzval::read_exr_parts(file);
+  lists_ = {.columns = parts[0].width, .rows = parts[0].height, .offsets = {0}, .fragments = {}};
+  struct Planes {
+    const std::vector<float>*r, *g, *b, *z, *a;
+  };
+  std::vector<Planes> planes;
+  for (const petzval::ExrPart& part : parts) {
+    if (part.width != lists_.columns || part.height != lists_.rows) {
+      throw Error(file + ": part " + part.name + " is " + std::to_string(part.width) + " x " +
+                  std::to_string(part.height) + ", wanted the size of the first, " + std::to_string(lists_.columns) +
+                  " x " + std::to_string(lists_.rows));
+    }
+    planes.push_back({&wanted(part, "R", file), &wanted(part, "G", file), &wanted(part, "B", file),
+                      &wanted(part, "Z", file), channel(part, "A")});
+  }
+  for (std::size_t i = 0; i < planes[0].r->size(); ++i) {
+    for (const auto& [r, g, b, z, a] : planes) {
+      if ((*z)[i] > 0) lists_.fragments.push_back({(*z)[i], (*r)[i], (*g)[i], (*b)[i], a ? (*a)[i] : 1.0f});
+    }
+    lists_.offsets.push_back(lists_.fragments.size());
+  }
+}
+
+void LayerInput::read_picture(const std::string& rgb, const std::string& depth) {
+  const petzval::RgbImage picture = ends_with(rgb, ".pfm") ? petzval::read_pfm(rgb) : petzval::read_png(rgb);
+  int columns = 0, rows = 0;
+  const std::vector<float> depths = read_depths(depth, columns, rows);
+  if (columns != picture.width || rows != picture.height) {
+    throw Error(depth + ": is " + std::to_string(columns) + " x " + std::to_string(rows) + ", wanted the size of " +
+                rgb + ", " + std::to_string(picture.width) + " x " + std::to_string(picture.height));
+  }
+  lists_ = {.columns = columns, .rows = rows, .offsets = {0}, .fragments = {}};
+  for (std::size_t i = 0; i < depths.size(); ++i) {
+    const float* const p = &picture.pixels[3 * i];
+    if (depths[i] > 0) lists_.fragments.push_back({depths[i], p[0], p[1], p[2], 1});
+    lists_.offsets.push_back(lists_.fragments.size());
+  }
+}
+
+double LayerInput::nearest_mm(const petzval::LayerCamera& camera, int threads) {
+  if (scene_) return scene_->nearest_mm(camera, threads);
+  if (!std::exchange(depths_are_axial_, true)) petzval::axial_depths(camera, lists_);
+  float nearest = std::numeric_limits<float>::infinity();
+  for (const FragmentLists::Fragment& f : lists_.fragments) nearest = std::min(nearest, f.depth_mm);
+  return static_cast<double>(nearest);
+}
+
+void LayerInput::fill(const petzval::PeelPlan& plan, int layers, int threads, petzval::LayerSet& set) {
+  if (scene_) {
+    set.peel(plan, layers, scene_->peel(plan.camera, threads));
+  } else {
+    set.thin(lists_, plan.bias, layers);
+  }
+}
+
+}  // namespace lens_blur

@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: Apache-2.0
+// Blurs layers of a scene, or a picture with depths, by a lens: thin, two spheres, or any prescription.
+//
+//   lens_blur --scene town --thin-lens-mm 50 --lens-diameter-mm 100 --focus-mm 5000 --compare --out out
+//   lens_blur --scene street --lens data/lenses/double_gauss_52mm_f1.8.json --focus-mm 3000 --rays 32 --out out
+//   lens_blur --rgb photo.png --depth photo.pfm --thin-lens-mm 85 --lens-diameter-mm 60 --focus-mm 2000 --out out
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <iostream>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "layers/layer_input.hpp"
+#include "layers/lens_setup.hpp"
+#include "layers/lit_scene.hpp"
+#include "layers/picture_quality.hpp"
+#include "petzval/blur/gather.hpp"
+#include "petzval/core/error.hpp"
+#include "petzval/core/parallel.hpp"
+#include "petzval/io/image.hpp"
+#include "support/cli.hpp"
+#include "support/files.hpp"
+#include "support/picture_files.hpp"
+
+namespace {
+
+using examples::Json;
+using petzval::RgbImage;
+
+struct Options {
+  lens_blur::InputFlags input;
+  lens_blur::LensFlags lens;
+  std::uint32_t layers = 4, supersample = 1, threads = static_cast<std::uint32_t>(petzval::processor_threads());
+  std::uint32_t frames = 1;
+  double frames_per_second = 24, travel_mm = 0, highlights_above = 1;
+  bool compare = false;
+  std::vector<std::string> formats;
+  std::string out_folder;
+};
+
+double ms_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// The mean of squares of pixels.
+RgbImage averaged(const RgbImage& image, int side) {
+  if (side == 1) return image;
+  RgbImage result(image.width / side, image.height / side);
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      for (int c = 0; c < 3; ++c)
+        result.pixel(x / side, y / side)[c] += image.pixel(x, y)[c] / static_cast<float>(side * side);
+    }
+  }
+  return result;
+}
+
+RgbImage colours_of(const petzval::Blurred& picture) {
+  RgbImage image(picture.columns, picture.rows);
+  for (std::size_t i = 0; i < picture.missed.size(); ++i) std::copy_n(&picture.rgba[4 * i], 3, &image.pixels[3 * i]);
+  return image;
+}
+
+RgbImage missed_of(const petzval::Blurred& picture) {
+  RgbImage image(picture.columns, picture.rows);
+  for (std::size_t i = 0; i < picture.missed.size(); ++i) std::fill_n(&image.pixels[3 * i], 3, picture.missed[i]);
+  return image;
+}
+
+/// What the pinhole sees.
+RgbImage sharp_of(const petzval::LayerSet& layers, const petzval::LayerCamera& camera) {
+  RgbImage image(camera.columns, camera.rows);
+  const int overscan = (layers.columns() - camera.columns) / 2;
+  if (layers.count() == 0) return image;
+  for (int y = 0; y < camera.rows; ++y) {
+    for (int x = 0; x < camera.columns; ++x) {
+      const auto pixel = static_cast<std::size_t>((y + overscan) * layers.columns() + x + overscan);
+      for (int c = 0; c < 3; ++c) image.pixel(x, y)[c] = layers.channel(0, c)[pixel];
+    }
+  }
+  return image;
+}
+
+class Job {
+ public:
+  explicit Job(const Options& options)
+      : options_(options),
+        threads_(static_cast<int>(options.threads)),
+        side_(static_cast<int>(options.supersample)),
+        input_(options.input),
+        lens_(options.lens, input_.columns() * side_, input_.rows() * side_, input_.pose(), options.frames > 1) {
+    if (!input_.scene()) {
+      if (options.compare) throw petzval::Error("--compare: files have no scene to compare with, wanted --scene");
+      if (side_ > 1) throw petzval::Error("--supersample: files have the pixels that they have, wanted --scene");
+      if (options.travel_mm != 0) throw petzval::Error("--travel-mm: files have one place, wanted --scene");
+    }
+  }
+
+  void run() {
+    const std::filesystem::path folder = options_.out_folder;
+    examples::make_folder(folder);
+    std::optional<examples::Progress> progress;
+    if (options_.frames > 1) progress.emplace("lens_blur", options_.frames);
+    for (std::uint32_t frame = 0; frame < options_.frames; ++frame) {
+      if (progress) progress->step("frame " + std::to_string(frame + 1));
+      std::string number = std::to_string(frame + 1);
+      number.insert(0, 4 - std::min<std::size_t>(number.size(), 4), '0');
+      do_frame(frame, folder, options_.frames > 1 ? "_" + number : "");
+    }
+    if (options_.compare && options_.frames > 1) result_["flicker"] = flicker_ / (options_.frames - 1);
+    examples::write_text(folder / "blur.json", result_.dump(1) + '\n');
+    std::cout << (folder / "blur.json").string() << '\n';
+  }
+
+ private:
+  void do_frame(std::uint32_t frame, const std::filesystem::path& folder, const std::string& number) {
+    const double time = frame / options_.frames_per_second;
+    if (input_.scene()) {
+      const double part = options_.frames > 1 ? frame / (options_.frames - 1.0) : 0;
+      input_.scene()->move_to({static_cast<float>(part * options_.travel_mm), 0, 0});
+    }
+    const double nearest = input_.nearest_mm(lens_.layers(), threads_);
+    if (!std::isfinite(nearest)) throw petzval::Error("layers: no surface before infinity, wanted one at least");
+    auto start = std::chrono::steady_clock::now();
+    // Layers reach beyond the picture, where nearer things may stand.
+    const petzval::LensRays rays = lens_.rays(0.8 * nearest, threads_, time);
+    const double rays_ms = ms_since(start);
+    petzval::PeelPlan plan = petzval::plan_peel(rays, 0.8 * nearest, std::numeric_limits<double>::infinity());
+    if (!input_.scene()) plan.camera.overscan = 0;
+
+    // A single picture is worked out three times, so that its times are not those of a cold start.
+    double peel_ms = 1e300, n_buffer_ms = 1e300, gather_ms = 1e300;
+    for (int run = 0; run < (options_.frames > 1 ? 1 : 3); ++run) {
+      start = std::chrono::steady_clock::now();
+      input_.fill(plan, static_cast<int>(options_.layers), threads_, layers_);
+      peel_ms = std::min(peel_ms, ms_since(start) - 1e3 * layers_.n_buffer_seconds());
+      n_buffer_ms = std::min(n_buffer_ms, 1e3 * layers_.n_buffer_seconds());
+      start = std::chrono::steady_clock::now();
+      petzval::gather(layers_, rays, {.threads = threads_, .highlights_above = options_.highlights_above}, blurred_);
+      gather_ms = std::min(gather_ms, ms_since(start));
+    }
+    const RgbImage picture = averaged(colours_of(blurred_), side_);
+    write(picture, folder / ("blur" + number));
+    if (frame == 0) {
+      write(averaged(sharp_of(layers_, rays.camera()), side_), folder / "sharp");
+      write(averaged(missed_of(blurred_), side_), folder / "missed");
+    }
+
+    const petzval::GatherStatistics& statistics = blurred_.statistics;
+    Json json{{"lens", lens_.name()},
+              {"columns", picture.width},
+              {"rows", picture.height},
+              {"layers", layers_.count()},
+              {"most_layers", plan.most_layers},
+              {"rays", options_.lens.rays},
+              {"overscan_px", plan.camera.overscan},
+              {"rays_ms", rays_ms},
+              {"rays_error_px", rays.error_px()},
+              {"peel_ms", peel_ms},
+              {"nbuffer_ms", n_buffer_ms},
+              {"gather_ms", gather_ms},
+              {"total_ms", peel_ms + n_buffer_ms + gather_ms},
+              {"miss_rate", static_cast<double>(statistics.missed) / static_cast<double>(statistics.rays)},
+              {"highlights", statistics.highlights}};
+    if (options_.compare) compare(rays, picture, json);
+    if (options_.frames == 1) {
+      result_ = json;
+    } else {
+      result_["frames"].push_back(json);
+    }
+  }
+
+  void compare(const petzval::LensRays& rays, const RgbImage& picture, Json& json) {
+    const auto start = std::chrono::steady_clock::now();
+    const RgbImage reference = averaged(input_.scene()->reference(rays, threads_), side_);
+    json["reference_ms"] = ms_since(start);
+    const lens_blur::Likeness all = lens_blur::likeness(picture, reference);
+    json["psnr_db"] = examples::finite_or_null(all.psnr_db), json["ssim"] = all.ssim;
+    if (side_ == 1) {
+      const lens_blur::Likeness edges =
+          lens_blur::likeness(picture, reference, lens_blur::near_depth_edges(layers_, rays));
+      json["psnr_edges_db"] = examples::finite_or_null(edges.psnr_db), json["ssim_edges"] = edges.ssim;
+    }
+    std::vector<float> flip = lens_blur::flip(picture, reference);
+    double sum = 0;
+    for (const float f : flip) sum += static_cast<double>(f);
+    json["flip_mean"] = sum / static_cast<double>(flip.size());
+    const auto last = flip.begin() + static_cast<std::ptrdiff_t>(0.99 * static_cast<double>(flip.size()));
+    std::nth_element(flip.begin(), last, flip.end());
+    json["flip_p99"] = *last;
+    json["energy_drift"] = lens_blur::energy_drift(picture, reference);
+
+    // How much the error changes from frame to frame.
+    std::vector<float> error(picture.pixels.size());
+    for (std::size_t i = 0; i < error.size(); ++i) error[i] = picture.pixels[i] - reference.pixels[i];
+    if (!last_error_.empty()) {
+      double squares = 0;
+      for (std::size_t i = 0; i < error.size(); ++i)
+        squares += std::pow(static_cast<double>(error[i] - last_error_[i]), 2);
+      flicker_ += std::sqrt(squares / static_cast<double>(error.size()));
+    }
+    last_error_ = std::move(error);
+    if (options_.frames == 1) write(reference, std::filesystem::path(options_.out_folder) / "reference");
+  }
+
+  void write(const RgbImage& image, const std::filesystem::path& stem) const {
+    for (const auto& file : examples::write_picture(image, petzval::to_srgb8(image), options_.formats, stem)) {
+      std::cout << file.string() << '\n';
+    }
+  }
+
+  Options options_;
+  int threads_, side_;
+  lens_blur::LayerInput input_;
+  lens_blur::BlurLens lens_;
+  petzval::LayerSet layers_;
+  petzval::Blurred blurred_;
+  Json result_;
+  std::vector<float> last_error_;
+  double flicker_ = 0;
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options options;
+  examples::App app(
+      "Blurs layers of a scene, or a picture with depths, by a lens that is focused at --focus-mm. Writes DIR/blur.*, "
+      "sharp.* (what a pinhole sees), missed.* (the share of rays that met what the layers do not know) and blur.json; "
+      "with --compare reference.*, the same rays through the scene itself.",
+      "lens_blur");
+  lens_blur::add_input(app, options.input);
+  lens_blur::add_lens(app, options.lens);
+  constexpr examples::Range layers{1, 64, "a whole number from 1 to 64"};
+  examples::add_count(app, "--layers", options.layers, layers, "surfaces behind each other, at most");
+  app.add_flag("--compare", options.compare, "measure the picture of a scene against all rays traced");
+  examples::add_count(app, "--supersample", options.supersample, {1, 4, "a whole number from 1 to 4"},
+                      "pixels of a scene are so many in each direction, and averaged");
+  examples::add_number(app, "--highlights-above", options.highlights_above, {0, 1e9, "a number from 0 to 1e9"},
+                       "radiance above which small lights become even discs; 0: none");
+  examples::add_count(app, "--frames", options.frames, {1, 100000, "a whole number from 1 to 100000"},
+                      "blur_0001.* and so on; --points has focus points with keys then");
+  examples::add_number(app, "--fps", options.frames_per_second, examples::positive_number, "frames per second");
+  examples::add_number(app, "--travel-mm", options.travel_mm, examples::finite_number,
+                       "way of the camera to the right over all frames (mm)");
+  examples::add_count(app, "--threads", options.threads, {1, 1024, "a whole number from 1 to 1024"},
+                      "threads; the picture does not depend on them");
+  examples::add_formats(app, options.formats, "png (sRGB)");
+  app.add_option("--out", options.out_folder, "folder for the results")->required()->type_name("DIR");
+  return examples::run(app, argc, argv, [&] { Job(options).run(); });
+}
