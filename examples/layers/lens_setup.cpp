@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <utility>
 
 #include "petzval/core/error.hpp"
@@ -29,7 +30,7 @@ using petzval::Error;
 constexpr std::array colours_nm{650.0, 510.0, 475.0};
 
 /// Two spheres of a glass, R1,R2,thickness,glass, the stop on the first one.
-petzval::Prescription singlet_of(const std::string& text) {
+petzval::Prescription singlet_of(const std::string& text, const petzval::GlassCatalogue& glasses) {
   std::vector<std::string> parts(1);
   for (const char c : text) {
     if (c == ',') {
@@ -42,9 +43,15 @@ petzval::Prescription singlet_of(const std::string& text) {
   const auto length = [&](std::size_t i) {
     return examples::parse_number("--singlet", parts[i], examples::finite_number);
   };
+  const auto found = std::find_if(glasses.glasses().begin(), glasses.glasses().end(),
+                                  [&](const petzval::Glass& g) { return g.name == parts[3]; });
+  if (found == glasses.glasses().end()) {
+    throw Error("--singlet: glass " + parts[3] + " is in no table of data/glass, wanted one");
+  }
+  const petzval::Medium glass{.glass = found->name, .catalogue = found->catalogue, .nd = found->nd};
   petzval::Prescription p;
   p.id = "singlet", p.name = "singlet " + text;
-  p.surfaces = {{.radius = length(0), .thickness = length(2), .medium = {.glass = parts[3], .nd = 1.5}, .stop = true},
+  p.surfaces = {{.radius = length(0), .thickness = length(2), .medium = glass, .stop = true},
                 {.radius = length(1), .thickness = 1}};
   // As wide as both spheres allow; the f-number stops it down.
   double widest = std::numeric_limits<double>::infinity();
@@ -92,6 +99,9 @@ void add_lens(examples::App& app, LensFlags& flags) {
   add_number(app, "--swing-deg", flags.swing_deg, tilt, "of the film, about the vertical axis (degrees)");
   constexpr examples::Range rays{1, 16384, "a whole number from 1 to 16384"};
   add_count(app, "--rays", flags.rays, rays, "through the lens, for each pixel");
+  app.add_flag(
+      "--jitter", flags.jitter,
+      "16 sets of rays, of which pixels take one in turn: grain instead of repeated patterns, at a third of the speed");
   app.add_flag("--chroma", flags.chroma, "red, green and blue have rays of their own, at 650, 510 and 475 nm");
   add_iris(app, flags.iris);
   add_bokeh(app, flags.bokeh);
@@ -133,8 +143,8 @@ void BlurLens::load() {
     const auto glasses = petzval::GlassCatalogue::load(petzval::data_directory() / "glass");
     if (!thin_ && iris.f_number == 0) iris.f_number = 2;
     return petzval::compile(
-        thin_ ? thin_singlet(flags_.thin_lens_mm, flags_.lens_diameter_mm) : singlet_of(flags_.singlet), wavelengths,
-        {.glasses = &glasses});
+        thin_ ? thin_singlet(flags_.thin_lens_mm, flags_.lens_diameter_mm) : singlet_of(flags_.singlet, glasses),
+        wavelengths, {.glasses = &glasses});
   }();
   lens = examples::stopped_down(lens, iris);
   if (thin_ && !(flags_.focus_mm > flags_.thin_lens_mm)) {
@@ -198,8 +208,13 @@ std::optional<petzval::FocalSurface> BlurLens::surface_at(double time) {
 
 petzval::LensRays BlurLens::rays(double nearest_mm, int threads, double time) {
   if (keyed_) surface_ = surface_at(time);
-  const std::vector<petzval::PupilPoint> points = petzval::vogel_points(static_cast<int>(flags_.rays));
-  const petzval::LensRaysOptions options{.nearest_mm = nearest_mm, .threads = threads};
+  const int sets = flags_.jitter ? 16 : 1;
+  std::vector<petzval::PupilPoint> points;
+  for (int set = 0; set < sets; ++set) {
+    const auto turned = petzval::vogel_points(static_cast<int>(flags_.rays), 0.618 * set);
+    points.insert(points.end(), turned.begin(), turned.end());
+  }
+  const petzval::LensRaysOptions options{.nearest_mm = nearest_mm, .sets = sets, .threads = threads};
   if (!thin_ || controls_.vignettes() || !flags_.expressive.change_nothing()) {
     std::vector<petzval::Wavelength> wavelengths;
     for (std::size_t i = 1; flags_.chroma && i <= colours_nm.size(); ++i) wavelengths.emplace_back(i);

@@ -25,7 +25,7 @@ struct LensFlags {
   double focus_mm = 0, fov_deg = 0;
   double tilt_deg = 0, swing_deg = 0;
   std::uint32_t rays = 100;
-  bool chroma = false;
+  bool chroma = false, jitter = false;
   examples::IrisSetup iris;
   examples::BokehFlags bokeh;
   examples::FocalSurfaceSetup surface;

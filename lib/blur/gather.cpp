@@ -185,7 +185,7 @@ class Gathering {
                   .stride = d.columns,
                   .layer_stride = static_cast<std::ptrdiff_t>(LayerData::planes * d.plane_stride())};
     const bool inside = rect.left >= 0 && rect.top >= 0 && rect.right < d.columns && rect.bottom < d.rows;
-    if (inside && !highlights_.in(rect)) {
+    if (inside && highlights_.count_in(rect) == 0) {
       const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(tile.top + overscan_) * d.columns + tile.left + overscan_;
       w.depth = d.plane(0, 0) + at, w.alpha = d.plane(0, 4) + at;
       for (int c = 0; c < 3; ++c) w.colour[c] = d.plane(0, 1 + (one ? static_cast<int>(channel) : c)) + at;

@@ -69,6 +69,22 @@ Highlights::Highlights(const LayerData& layers, const LensRays& rays, const Gath
 }
 
 void Highlights::find(float above) {
+  std::vector<Highlight> bright;
+  for (int row = 0; row < layers_.rows; ++row) {
+    for (int layer = 0; layer < layers_.count; ++layer) {
+      const std::ptrdiff_t from = static_cast<std::ptrdiff_t>(row) * layers_.columns;
+      const float* planes[LayerData::planes];
+      for (int p = 0; p < LayerData::planes; ++p) planes[p] = layers_.plane(layer, p) + from;
+      for (int column = 0; column < layers_.columns; ++column) {
+        const float r = planes[1][column], g = planes[2][column], b = planes[3][column];
+        if (!(std::max({r, g, b}) > above) || planes[0][column] < 0 || !std::isfinite(r + g + b)) continue;
+        bright.push_back({column, row, layer, planes[0][column], {r, g, b}});
+      }
+    }
+  }
+  if (bright.empty()) return;
+  count_blocks(bright);
+
   const RayTable& table = rays_.table;
   std::vector<CoveredArea> areas;
   for (std::size_t row = 0; row < table.node_rows; ++row) {
@@ -76,46 +92,35 @@ void Highlights::find(float above) {
       areas.emplace_back(table.node(0, row, column), table.rays);
     }
   }
-  const auto area_at = [&](int column, int row, double w) {
-    const auto node = [&](int position, int end, std::size_t nodes) {
-      return std::min(
-          static_cast<std::size_t>(std::clamp(position - overscan_, 0, end)) / static_cast<std::size_t>(table.step),
-          nodes - 1);
-    };
-    return areas[node(row, table.rows, table.node_rows) * table.node_columns +
-                 node(column, table.columns, table.node_columns)]
-        .at(w);
+  const auto node = [&](int position, int end, std::size_t nodes) {
+    const int within = std::clamp(position - overscan_, 0, end);
+    return std::min(static_cast<std::size_t>(within / table.step), nodes - 1);
   };
   const auto rays = static_cast<double>(rays_.rays_of_set());
-  for (int row = 0; row < layers_.rows; ++row) {
-    row_begin_.push_back(found_.size());
-    for (int layer = 0; layer < layers_.count; ++layer) {
-      const std::ptrdiff_t from = static_cast<std::ptrdiff_t>(row) * layers_.columns;
-      const float* planes[5];
-      for (int p = 0; p < 5; ++p) planes[p] = layers_.plane(layer, p) + from;
-      for (int column = 0; column < layers_.columns; ++column) {
-        const float r = planes[1][column], g = planes[2][column], b = planes[3][column];
-        if (!(std::max({r, g, b}) > above) || planes[0][column] < 0) continue;
-        const double area = area_at(column, row, planes[0][column]);
-        if (!(area > rays) || !std::isfinite(r + g + b)) continue;
-        Highlight h{.column = column,
-                    .row = row,
-                    .layer = layer,
-                    .inverse_depth = planes[0][column],
-                    .area = static_cast<float>(area)};
-        for (int c = 0; c < 3; ++c) h.excess[c] = std::max(planes[1 + c][column] - above, 0.0f);
-        found_.push_back(h);
-      }
-    }
+  for (Highlight h : bright) {
+    h.area = static_cast<float>(areas[node(h.row, table.rows, table.node_rows) * table.node_columns +
+                                      node(h.column, table.columns, table.node_columns)]
+                                    .at(h.inverse_depth));
+    // Rays show a wide bright surface well: enough of each pixel's meet it.
+    const int reach = static_cast<int>(std::sqrt(h.area / std::numbers::pi));
+    const double covered =
+        count_in({h.column - reach, h.row - reach, h.column + reach, h.row + reach}) / std::max(h.area, 1.0f);
+    if (h.area > rays && covered < 0.5 && covered * rays < 32) found_.push_back(h);
   }
-  row_begin_.push_back(found_.size());
-  if (found_.empty()) return;
+  count_blocks(found_);
+  std::size_t at = 0;
+  for (int row = 0; row <= layers_.rows; ++row) {
+    while (at < found_.size() && found_[at].row < row) ++at;
+    row_begin_.push_back(at);
+  }
+}
 
+void Highlights::count_blocks(const std::vector<Highlight>& of) {
   block_columns_ = (layers_.columns + block - 1) / block;
   const int block_rows = (layers_.rows + block - 1) / block;
   const auto stride = static_cast<std::size_t>(block_columns_ + 1);
   before_.assign(stride * static_cast<std::size_t>(block_rows + 1), 0);
-  for (const Highlight& h : found_) {
+  for (const Highlight& h : of) {
     ++before_[static_cast<std::size_t>(h.row / block + 1) * stride + static_cast<std::size_t>(h.column / block + 1)];
   }
   for (std::size_t i = stride; i < before_.size(); ++i) {
@@ -126,20 +131,20 @@ void Highlights::find(float above) {
 void Highlights::share_neighbourhoods() {
   constexpr int cell = 16;
   const auto cell_of = [](const Highlight& h) { return std::tuple(h.layer, h.row / cell, h.column / cell); };
-  const auto light_of = [](const Highlight& h) { return h.excess[0] + h.excess[1] + h.excess[2]; };
+  const auto light_of = [](const Highlight& h) { return h.light[0] + h.light[1] + h.light[2]; };
   std::map<std::tuple<int, int, int>, float> light;
   for (const Highlight& h : found_) light[cell_of(h)] += light_of(h);
   for (Highlight& h : found_) h.share = light_of(h) / light[cell_of(h)];
 }
 
-bool Highlights::in(const PixelRect& rect) const noexcept {
-  if (found_.empty()) return false;
+std::uint32_t Highlights::count_in(const PixelRect& rect) const noexcept {
+  if (before_.empty()) return 0;
   const auto stride = static_cast<std::size_t>(block_columns_ + 1);
   const auto at = [](int pixel, int end) { return static_cast<std::size_t>(std::clamp(pixel, 0, end - 1) / block); };
   const std::size_t left = at(rect.left, layers_.columns), right = at(rect.right, layers_.columns) + 1,
                     top = at(rect.top, layers_.rows), bottom = at(rect.bottom, layers_.rows) + 1;
-  return before_[bottom * stride + right] + before_[top * stride + left] !=
-         before_[top * stride + right] + before_[bottom * stride + left];
+  return before_[bottom * stride + right] + before_[top * stride + left] - before_[top * stride + right] -
+         before_[bottom * stride + left];
 }
 
 void Highlights::cut(const PixelRect& rect, int columns, int layers, int planes, std::size_t plane_stride,
@@ -152,7 +157,7 @@ void Highlights::cut(const PixelRect& rect, int columns, int layers, int planes,
       if (h.column < rect.left || h.column > rect.right || h.layer >= layers) continue;
       float* const at = copy + static_cast<std::size_t>(h.layer * planes) * plane_stride +
                         static_cast<std::ptrdiff_t>(row - rect.top) * columns + (h.column - rect.left);
-      for (int c = 0; c < 3; ++c) at[static_cast<std::size_t>(1 + c) * plane_stride] -= h.excess[c];
+      for (int c = 0; c < 3; ++c) at[static_cast<std::size_t>(1 + c) * plane_stride] -= h.light[c];
     }
   }
 }
@@ -170,7 +175,8 @@ float Highlights::visible(const float* line, double x, double y, const Highlight
   // From the nearest surface of all, then from the nearest one below that way.
   double from = layers_.n_buffer.below({0, 0, layers_.columns - 1, layers_.rows - 1}).most;
   const double steepest = std::max({std::abs(line[slope_x]), std::abs(line[slope_y]), 1e-30f});
-  const double margin = (0.5 + tolerance_) / steepest;  // the highlight's own surface
+  // Nearer by less, nothing hides it from any ray: the umbra's offset.
+  const double margin = 0.5 / std::max(rays_.largest_slope, 1e-30);
   for (int i = 0; i < 2; ++i) {
     from = layers_.n_buffer.below(rect_to(from)).most;
     if (from <= h.inverse_depth + margin) return 1;
@@ -237,7 +243,7 @@ void Highlights::rays_of(const Highlight& h, std::vector<Splat>& splats) const {
       if (!(light > 0)) continue;
       Splat splat{static_cast<float>(place.x), static_cast<float>(place.y), side, {}};
       for (std::size_t c = 0; c < 3; ++c) {
-        if (table.channels == 1 || c == channel) splat.light[c] = static_cast<float>(light) * h.excess[c];
+        if (table.channels == 1 || c == channel) splat.light[c] = static_cast<float>(light) * h.light[c];
       }
       splats.push_back(splat);
     }

@@ -11,15 +11,15 @@
 
 namespace petzval::inline v0::blur_detail {
 
-/// Bright pixels that a few rays would show as patterns of dots: their light above a limit leaves the layers, and each
-/// is spread over the pixels that see it through the lens.
+/// Bright pixels that a few rays would show as patterns of dots: they leave the layers, and the light of each is spread
+/// over the pixels that see it through the lens.
 class Highlights {
  public:
   Highlights(const LayerData& layers, const LensRays& rays, const GatherOptions& options, int overscan);
 
   std::size_t count() const noexcept { return found_.size(); }
-  /// Whether there are any in a rectangle of the layers.
-  bool in(const PixelRect& rect) const noexcept;
+  /// How many are in a rectangle of the layers, widened to whole blocks.
+  std::uint32_t count_in(const PixelRect& rect) const noexcept;
   /// Takes their light out of a copy of a rectangle: `planes` planes for each of `layers` layers, `plane_stride` apart,
   /// of rows of `columns` pixels.
   void cut(const PixelRect& rect, int columns, int layers, int planes, std::size_t plane_stride, float* copy) const;
@@ -29,13 +29,14 @@ class Highlights {
  private:
   struct Highlight {
     int column = 0, row = 0, layer = 0;  ///< of the layers
-    float inverse_depth = 0, excess[3] = {};
+    float inverse_depth = 0, light[3] = {};
     float area = 0;   ///< of its blur, px
     float share = 1;  ///< of the light of its neighbourhood
   };
   struct Splat;
 
   void find(float above);
+  void count_blocks(const std::vector<Highlight>& of);
   void share_neighbourhoods();
   void rays_of(const Highlight& highlight, std::vector<Splat>& splats) const;
   float visible(const float* line, double x, double y, const Highlight& highlight) const;

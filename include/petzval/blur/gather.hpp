@@ -30,8 +30,8 @@ struct GatherOptions {
   bool bounded = true;
   /// By how much of its length a step along a ray is widened on both sides, so that rays do not slip between pixels.
   double tolerance = 0.1;
-  /// Surfaces brighter than this, in any channel, whose blur covers more pixels than there are rays, are spread over
-  /// the pixels instead: even discs of the lens's own shape. 0: none.
+  /// Surfaces brighter than this in any channel, of which the rays of a pixel would meet too few to show their blur
+  /// evenly, are spread over the pixels instead: even discs of the lens's own shape. 0: none.
   double highlights_above = 1;
 };
 
