@@ -7,7 +7,6 @@
 #include <numbers>
 #include <tuple>
 
-#include "core/low_discrepancy.hpp"
 #include "petzval/core/parallel.hpp"
 
 namespace petzval::inline v0::blur_detail {
@@ -48,24 +47,20 @@ class CoveredArea {
   Quadratic xx_, yy_, xy_;
 };
 
-/// A number that differs from pixel to pixel.
-std::uint64_t chance(int column, int row, int layer) {
-  return core_detail::mixed(static_cast<std::uint64_t>(column) << 40 | static_cast<std::uint64_t>(row) << 16 |
-                            static_cast<std::uint64_t>(layer));
-}
-
 }  // namespace
 
-/// Light that falls on a square of the picture.
-struct Highlights::Splat {
-  float x, y, side, light[3];
+/// What a light of 1 adds to a rectangle of the picture, from the light's pixel on.
+struct Highlights::Stamp {
+  int left = 0, top = 0, columns = 0, rows = 0;
+  bool hidden = false;  ///< from some rays
+  std::vector<float> light;
 };
 
 Highlights::Highlights(const LayerData& layers, const LensRays& rays, const GatherOptions& options, int overscan)
     : layers_(layers), rays_(RayAccess::data(rays)), tolerance_(options.tolerance), overscan_(overscan) {
   if (options.highlights_above == 0) return;
   find(static_cast<float>(options.highlights_above));
-  share_neighbourhoods();
+  make_groups();
 }
 
 void Highlights::find(float above) {
@@ -128,13 +123,18 @@ void Highlights::count_blocks(const std::vector<Highlight>& of) {
   }
 }
 
-void Highlights::share_neighbourhoods() {
+void Highlights::make_groups() {
   constexpr int cell = 16;
-  const auto cell_of = [](const Highlight& h) { return std::tuple(h.layer, h.row / cell, h.column / cell); };
-  const auto light_of = [](const Highlight& h) { return h.light[0] + h.light[1] + h.light[2]; };
-  std::map<std::tuple<int, int, int>, float> light;
-  for (const Highlight& h : found_) light[cell_of(h)] += light_of(h);
-  for (Highlight& h : found_) h.share = light_of(h) / light[cell_of(h)];
+  // Blurs of one group differ by less than a pixel.
+  const auto key_of = [&](const Highlight& h) {
+    return std::tuple(h.row / cell, h.column / cell, h.layer, static_cast<int>(h.inverse_depth * rays_.largest_slope));
+  };
+  std::map<std::tuple<int, int, int, int>, std::size_t> known;
+  for (std::size_t i = 0; i < found_.size(); ++i) {
+    const auto [at, added] = known.try_emplace(key_of(found_[i]), groups_.size());
+    if (added) groups_.emplace_back();
+    groups_[at->second].push_back(i);
+  }
 }
 
 std::uint32_t Highlights::count_in(const PixelRect& rect) const noexcept {
@@ -199,84 +199,112 @@ float Highlights::visible(const float* line, double x, double y, const Highlight
   return through;
 }
 
-void Highlights::rays_of(const Highlight& h, std::vector<Splat>& splats) const {
+Highlights::Stamp Highlights::stamp_of(const Highlight& h, double rays_of_pixel, std::size_t channel) const {
   const RayTable& table = rays_.dense();
-  const std::size_t known = table.rays;
-  // Eight rays for each pixel that the light of the neighbourhood covers.
-  const auto rays = static_cast<std::size_t>(std::clamp(8.0 * h.area * h.share, 4.0, static_cast<double>(known)));
-  const double density = static_cast<double>(rays) / (h.area * h.share);  // per pixel, with those of the neighbours
-  const auto side = static_cast<float>(std::max(1.0, 3 / std::sqrt(density)));
-  const auto first = chance(h.column, h.row, h.layer) % known;
+  const auto rays = static_cast<std::size_t>(std::clamp(rays_of_pixel * h.area, 64.0, static_cast<double>(table.rays)));
+  const double side = std::max(1.0, 3 * std::sqrt(h.area / static_cast<double>(rays)));
   const double x = h.column + 0.5 - overscan_, y = h.row + 0.5 - overscan_, w = h.inverse_depth;
-  for (std::size_t channel = 0; channel < table.channels; ++channel) {
-    for (std::size_t i = 0; i < rays; ++i) {
-      const std::size_t ray = (first + i) % known;
-      float line[row_count];
-      // Where the ray's line leads at the highlight's depth, from a place of the picture.
-      const auto lead = [&](double from_x, double from_y) {
-        table.ray_at(channel, ray, from_x, from_y, line);
-        return Vec2<double>{from_x + line[at_x] + w * line[slope_x], from_y + line[at_y] + w * line[slope_y]};
-      };
-      Vec2<double> place{x, y};
-      double stretch = 1;
-      if (rays_.shift_invariant) {
-        const Vec2<double> led = lead(x, y);
-        place += Vec2<double>{x, y} - led;
-      } else {
-        double off = 1;
-        for (int k = 0; k < 12 && off > 0.05; ++k) {
-          const Vec2<double> led = lead(place.x, place.y), miss = Vec2<double>{x, y} - led;
-          off = std::max(std::abs(miss.x), std::abs(miss.y));
-          place += miss;
-        }
-        if (off > 1) continue;
-        const Vec2<double> here = lead(place.x, place.y), right = lead(place.x + 1, place.y),
-                           down = lead(place.x, place.y + 1);
-        stretch = std::abs((right.x - here.x) * (down.y - here.y) - (right.y - here.y) * (down.x - here.x));
-        lead(place.x, place.y);
-        if (!(stretch > 1e-3)) continue;
+
+  struct Splat {
+    double x, y, light;
+  };
+  std::vector<Splat> splats;
+  double left = 1e9, right = -1e9, top = 1e9, bottom = -1e9;
+  Stamp stamp;
+  for (std::size_t ray = 0; ray < rays; ++ray) {
+    float line[row_count];
+    // Where the ray's line leads at the highlight's depth, from a place of the picture.
+    const auto lead = [&](const Vec2<double>& from) {
+      table.ray_at(channel, ray, from.x, from.y, line);
+      return Vec2<double>{from.x + line[at_x] + w * line[slope_x], from.y + line[at_y] + w * line[slope_y]};
+    };
+    Vec2<double> place{x, y};
+    double stretch = 1, off = 1;
+    for (int k = 0; k < 12 && off > 0.05; ++k) {
+      const Vec2<double> miss = Vec2<double>{x, y} - lead(place);
+      off = std::max(std::abs(miss.x), std::abs(miss.y));
+      place += miss;
+    }
+    if (off > 1) continue;
+    if (!rays_.shift_invariant) {
+      const Vec2<double> here = lead(place), across = lead(place + Vec2<double>{1, 0}) - here,
+                         down = lead(place + Vec2<double>{0, 1}) - here;
+      stretch = std::abs(across.x * down.y - across.y * down.x);
+      if (!(stretch > 1e-3)) continue;
+    }
+    lead(place);
+    const float through = visible(line, place.x, place.y, h);
+    stamp.hidden |= through < 1;
+    const double light = through * line[weight] / (static_cast<double>(rays) * stretch);
+    if (!(light > 0)) continue;
+    splats.push_back({place.x - 0.5 * side, place.y - 0.5 * side, light});
+    left = std::min(left, splats.back().x), right = std::max(right, splats.back().x + side);
+    top = std::min(top, splats.back().y), bottom = std::max(bottom, splats.back().y + side);
+  }
+  if (splats.empty()) return stamp;
+
+  stamp.left = static_cast<int>(std::floor(left)) - h.column, stamp.top = static_cast<int>(std::floor(top)) - h.row;
+  const int first_column = stamp.left + h.column, first_row = stamp.top + h.row;
+  stamp.columns = static_cast<int>(std::ceil(right)) - first_column;
+  stamp.rows = static_cast<int>(std::ceil(bottom)) - first_row;
+  stamp.light.resize(static_cast<std::size_t>(stamp.columns) * static_cast<std::size_t>(stamp.rows));
+  for (const Splat& s : splats) {
+    const auto covered = [&](double begin, int pixel) {
+      return std::max(std::min(begin + side, pixel + 1.0) - std::max<double>(begin, pixel), 0.0);
+    };
+    for (int row = static_cast<int>(std::floor(s.y)); row < std::ceil(s.y + side); ++row) {
+      for (int column = static_cast<int>(std::floor(s.x)); column < std::ceil(s.x + side); ++column) {
+        const auto at = static_cast<std::size_t>(row - first_row) * static_cast<std::size_t>(stamp.columns) +
+                        static_cast<std::size_t>(column - first_column);
+        stamp.light[at] += static_cast<float>(s.light * covered(s.x, column) * covered(s.y, row) / (side * side));
       }
-      const double reach = 0.5 * side;
-      if (place.x < -reach || place.y < -reach || place.x > table.columns + reach || place.y > table.rows + reach)
-        continue;
-      const double light = visible(line, place.x, place.y, h) * line[weight] / (static_cast<double>(rays) * stretch);
-      if (!(light > 0)) continue;
-      Splat splat{static_cast<float>(place.x), static_cast<float>(place.y), side, {}};
-      for (std::size_t c = 0; c < 3; ++c) {
-        if (table.channels == 1 || c == channel) splat.light[c] = static_cast<float>(light) * h.light[c];
+    }
+  }
+  return stamp;
+}
+
+std::vector<Highlights::Stamp> Highlights::stamps_of(const Group& group, std::size_t channel) const {
+  const auto brightness = [&](std::size_t i) { return found_[i].light[0] + found_[i].light[1] + found_[i].light[2]; };
+  const std::size_t brightest = *std::max_element(
+      group.begin(), group.end(), [&](std::size_t a, std::size_t b) { return brightness(a) < brightness(b); });
+  std::vector<Stamp> stamps{stamp_of(found_[brightest], 16, channel)};
+  if (!stamps[0].hidden || group.size() == 1) return stamps;
+  // What stands before them hides other rays of each.
+  stamps.clear();
+  const double rays_of_pixel = std::clamp(16.0 / static_cast<double>(group.size()), 1.0, 4.0);
+  for (const std::size_t member : group) stamps.push_back(stamp_of(found_[member], rays_of_pixel, channel));
+  return stamps;
+}
+
+void Highlights::spread(int threads, Blurred& picture) const {
+  const std::size_t channels = rays_.table.channels;
+  constexpr std::size_t at_once = 64;
+  std::vector<std::vector<Stamp>> stamps(channels * std::min(at_once, groups_.size()));
+  for (std::size_t begin = 0; begin < groups_.size(); begin += at_once) {
+    const std::size_t count = channels * std::min(at_once, groups_.size() - begin);
+    parallel_for(count, 1, threads, [&](std::size_t first, std::size_t end) {
+      for (std::size_t i = first; i < end; ++i) stamps[i] = stamps_of(groups_[begin + i / channels], i % channels);
+    });
+    // One after the other: the same sums for any number of threads.
+    for (std::size_t i = 0; i < count; ++i) {
+      const Group& group = groups_[begin + i / channels];
+      for (std::size_t member = 0; member < group.size(); ++member) {
+        add(stamps[i][stamps[i].size() == 1 ? 0 : member], found_[group[member]], i % channels, picture);
       }
-      splats.push_back(splat);
     }
   }
 }
 
-void Highlights::spread(int threads, Blurred& picture) const {
-  constexpr std::size_t at_once = 128;
-  std::vector<std::vector<Splat>> splats(std::min(at_once, found_.size()));
-  for (std::size_t begin = 0; begin < found_.size(); begin += at_once) {
-    const std::size_t count = std::min(at_once, found_.size() - begin);
-    parallel_for(count, 1, threads, [&](std::size_t first, std::size_t end) {
-      for (std::size_t i = first; i < end; ++i) splats[i].clear(), rays_of(found_[begin + i], splats[i]);
-    });
-    // One after the other: the same sums for any number of threads.
-    for (std::size_t i = 0; i < count; ++i) {
-      for (const Splat& s : splats[i]) {
-        const float left = s.x - 0.5f * s.side, top = s.y - 0.5f * s.side, scale = 1 / (s.side * s.side);
-        const auto covered = [&](float begin_at, int pixel) {
-          const auto p = static_cast<float>(pixel);
-          return std::min(begin_at + s.side, p + 1) - std::max(begin_at, p);
-        };
-        const int last_column = std::min(static_cast<int>(std::ceil(left + s.side)), picture.columns),
-                  last_row = std::min(static_cast<int>(std::ceil(top + s.side)), picture.rows);
-        for (int row = std::max(0, static_cast<int>(std::floor(top))); row < last_row; ++row) {
-          for (int column = std::max(0, static_cast<int>(std::floor(left))); column < last_column; ++column) {
-            const float part = std::max(covered(left, column), 0.0f) * std::max(covered(top, row), 0.0f) * scale;
-            float* const rgba =
-                &picture.rgba[4 * (static_cast<std::size_t>(row) * static_cast<std::size_t>(picture.columns) +
-                                   static_cast<std::size_t>(column))];
-            for (int c = 0; c < 3; ++c) rgba[c] += part * s.light[c];
-          }
-        }
+void Highlights::add(const Stamp& stamp, const Highlight& h, std::size_t channel, Blurred& picture) const {
+  const int left = stamp.left + h.column, top = stamp.top + h.row;
+  const int first = std::max(0, -left), last = std::min(stamp.columns, picture.columns - left);
+  for (int row = std::max(0, -top); row < std::min(stamp.rows, picture.rows - top); ++row) {
+    const float* const light = &stamp.light[static_cast<std::size_t>(row) * static_cast<std::size_t>(stamp.columns)];
+    float* const rgba = picture.rgba.data() + 4 * (static_cast<std::ptrdiff_t>(top + row) * picture.columns + left);
+    for (int column = first; column < last; ++column) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        if (rays_.table.channels == 1 || c == channel)
+          rgba[4 * column + static_cast<int>(c)] += light[column] * h.light[c];
       }
     }
   }

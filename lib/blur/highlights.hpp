@@ -30,22 +30,28 @@ class Highlights {
   struct Highlight {
     int column = 0, row = 0, layer = 0;  ///< of the layers
     float inverse_depth = 0, light[3] = {};
-    float area = 0;   ///< of its blur, px
-    float share = 1;  ///< of the light of its neighbourhood
+    float area = 0;  ///< of its blur, px
   };
-  struct Splat;
+  /// Neighbours of about one depth, which are seen through the same rays: positions in found_.
+  using Group = std::vector<std::size_t>;
+  struct Stamp;
 
   void find(float above);
   void count_blocks(const std::vector<Highlight>& of);
-  void share_neighbourhoods();
-  void rays_of(const Highlight& highlight, std::vector<Splat>& splats) const;
+  void make_groups();
+  /// rays_of_pixel: for each pixel that its blur covers.
+  Stamp stamp_of(const Highlight& highlight, double rays_of_pixel, std::size_t channel) const;
+  /// One for all of a group, or one for each.
+  std::vector<Stamp> stamps_of(const Group& group, std::size_t channel) const;
+  void add(const Stamp& stamp, const Highlight& highlight, std::size_t channel, Blurred& picture) const;
   float visible(const float* line, double x, double y, const Highlight& highlight) const;
 
   const LayerData& layers_;
   const RayData& rays_;
   double tolerance_;
   int overscan_;
-  std::vector<Highlight> found_;        ///< by rows
+  std::vector<Highlight> found_;  ///< by rows
+  std::vector<Group> groups_;
   std::vector<std::size_t> row_begin_;  ///< of the layers' rows among them, and their end
   std::vector<std::uint32_t> before_;   ///< how many are in blocks above and left
   int block_columns_ = 0;

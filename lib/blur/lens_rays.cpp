@@ -2,6 +2,7 @@
 #include "petzval/blur/lens_rays.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -100,8 +101,11 @@ LensRays::LensRays(const LayerCamera& camera, std::span<const PupilPoint> points
 
   const auto count = static_cast<std::size_t>(channels);
   const auto table = [&](int step) { return ray_table(d->camera, points, count, d->source, step, options.threads); };
-  d->table = table(widest_step);
-  for (int step = widest_step / 2;; step /= 2) {
+  // Steps above the picture's side would have no node within it to tell how wrong they are.
+  const auto side = static_cast<unsigned>(std::min(camera.columns, camera.rows));
+  const int first_step = std::clamp(static_cast<int>(std::bit_floor(side)), narrowest_step, widest_step);
+  d->table = table(first_step);
+  for (int step = first_step / 2;; step /= 2) {
     RayTable fine = table(step);
     const TableError error = error_of(d->table, fine, nearest);
     d->error_px = error.px;

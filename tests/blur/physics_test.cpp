@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+// What optics says of blurred pictures, whatever made them.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "../data_lenses.hpp"
+#include "petzval/blur/gather.hpp"
+#include "petzval/blur/layers.hpp"
+#include "petzval/blur/lens_rays.hpp"
+#include "petzval/camera/camera.hpp"
+#include "petzval/core/units.hpp"
+#include "petzval/focus/focus.hpp"
+#include "petzval/psf/psf.hpp"
+
+namespace {
+
+using namespace petzval;
+
+/// Layers of one plane across the axis, with what it shows at raster positions of the picture.
+template <class Light>
+LayerSet plane(const PeelPlan& plan, float depth, const Light& light) {
+  LayerSet layers;
+  layers.peel(plan, 1, [&](int, std::span<const float>, const LayerPlanes& out) {
+    const int columns = plan.camera.layer_columns();
+    for (std::size_t i = 0; i < out.red.size(); ++i) {
+      const int column = static_cast<int>(i) % columns - plan.camera.overscan,
+                row = static_cast<int>(i) / columns - plan.camera.overscan;
+      out.inverse_depth[i] = 1 / depth;
+      out.red[i] = out.green[i] = out.blue[i] = light(column, row);
+    }
+    return out.red.size();
+  });
+  return layers;
+}
+
+class Planes : public ::testing::TestWithParam<double> {};
+
+TEST_P(Planes, AreConvolutionsWithThePointImage) {
+  constexpr double pixel = 0.075;
+  const Film film{.width_mm = 96 * pixel, .height_mm = 64 * pixel, .columns = 96, .rows = 64};
+  const Lens lens =
+      with_focus(petzval::testing::data_lens("double_gauss_52mm_f1.8"), 2000, {.origin = DistanceOrigin::front_vertex});
+  const Camera camera(lens, film, {.model = ModelKind::exact_float, .normalisation = Normalisation::unity_on_axis});
+  const LensRays rays = LensRays::of(camera, layer_camera(camera), vogel_points(3000), {}, {.nearest_mm = 900});
+  const double from_vertex = GetParam(), depth = from_vertex + layer_origin_z(camera);
+  const auto light = [](int column, int row) {
+    return static_cast<float>(0.5 + 0.25 * std::sin(0.9 * column) + 0.25 * std::cos(0.6 * row + 0.3 * column));
+  };
+  const LayerSet layers = plane(plan_peel(rays, 0.9 * depth, 1e6), static_cast<float>(depth), light);
+  const Blurred picture = gather(layers, rays);
+
+  constexpr int size = 41;
+  const Psf psf = point_image(lens, {.z = -from_vertex},
+                              {.pixels = size, .half_width_mm = size * pixel / 2, .centre = Vec2<double>{0, 0}})
+                      .psf;
+  double sum = 0;
+  for (const auto count : psf.counts) sum += static_cast<double>(count);
+  double worst = 0, spread = 0;
+  for (int row = 24; row < 40; ++row) {
+    for (int column = 40; column < 56; ++column) {
+      double wanted = 0;
+      for (int y = 0; y < size; ++y) {
+        for (int x = 0; x < size; ++x) {
+          wanted += static_cast<double>(psf.counts[static_cast<std::size_t>(y * size + x)]) / sum *
+                    static_cast<double>(light(column + x - size / 2, row + y - size / 2));
+        }
+      }
+      const double found = picture.rgba[static_cast<std::size_t>(4 * (row * 96 + column))];
+      worst = std::max(worst, std::abs(found - wanted)), spread = std::max(spread, std::abs(wanted - 0.5));
+    }
+  }
+  // Rays and points of the PSF land in pixels; half a contrast of the plane is 0.5.
+  EXPECT_LT(worst, 0.025);
+  EXPECT_GT(spread, 0.02);  // not everything is blurred away
+}
+INSTANTIATE_TEST_SUITE_P(Depths, Planes, ::testing::Values(1300.0, 1600.0, 2000.0, 4000.0));
+
+TEST(HalfPlanes, HideWhatIsBehindByTheAnalyticEdge) {
+  // A dark half plane at 1 m before a light wall in focus at 2 m: the part of the pupil that looks past the edge.
+  const LayerCamera camera = layer_camera(120, 90, radians(10));
+  const LensRays rays =
+      LensRays::thin(camera, {.radius_mm = 30, .inverse_focus = 1 / 2000.0}, vogel_points(2000), {.nearest_mm = 900});
+  const PeelPlan plan = plan_peel(rays, 900, 3000);
+  LayerSet layers;
+  layers.peel(plan, 2, [&](int layer, std::span<const float>, const LayerPlanes& out) {
+    const int columns = plan.camera.layer_columns();
+    for (std::size_t i = 0; i < out.red.size(); ++i) {
+      const bool dark = static_cast<int>(i) % columns < plan.camera.overscan + 60;
+      if (layer == 1 && !dark) continue;
+      const bool wall = layer == 1 || !dark;
+      out.inverse_depth[i] = wall ? 1 / 2000.0f : 1 / 1000.0f;
+      out.red[i] = wall ? 1.0f : 0.0f;
+    }
+    return out.red.size();
+  });
+  const Blurred picture = gather(layers, rays);
+  const double radius = 30 * (1 / 1000.0 - 1 / 2000.0) * camera.focal_px;
+  ASSERT_GT(radius, 7);
+  for (int column = 30; column < 90; ++column) {
+    const double s = std::clamp((column + 0.5 - 60) / radius, -1.0, 1.0);
+    const double wanted = 0.5 + (s * std::sqrt(1 - s * s) + std::asin(s)) / std::numbers::pi;
+    EXPECT_NEAR(picture.rgba[static_cast<std::size_t>(4 * (45 * 120 + column))], wanted, 0.04) << column;
+  }
+}
+
+TEST(Points, FarBehindFocusCoverTheirCircleOfConfusion) {
+  const LayerCamera camera = layer_camera(160, 120, radians(10));
+  for (const double radius_mm : {20.0, 50.0}) {
+    const LensRays rays = LensRays::thin(camera, {.radius_mm = radius_mm, .inverse_focus = 1 / 2000.0},
+                                         vogel_points(64), {.nearest_mm = 900});
+    const auto point = [](int column, int row) { return column == 80 && row == 60 ? 1e4f : 0.0f; };
+    const Blurred picture = gather(plane(plan_peel(rays, 1900, 1e7), 1e6f, point), rays);
+    const double radius = radius_mm * (1 / 2000.0 - 1e-6) * camera.focal_px, area = std::numbers::pi * radius * radius;
+    int covered = 0;
+    for (std::size_t i = 0; i < picture.rgba.size(); i += 4)
+      covered += picture.rgba[i] > 0.5f * 1e4f / static_cast<float>(area);
+    EXPECT_NEAR(covered, area, 0.03 * area + 2 * radius) << radius_mm;
+  }
+}
+
+}  // namespace
