@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # Renders the gallery with the example programs: bokeh after figure 7 of Wu et al. 2010, its colours, irises with blades,
 # an expressive lens, PSFs, spot diagrams, reports of twelve lenses, camera rays, tilted films, a focus pull, a focal surface,
-# scenes through lenses, and index.html.
+# scenes through lenses, lens blur from layers, and index.html.
 #
 #   sh examples/gallery.sh PROGRAMS OUT [--full]    (examples/run.sh calls it with build/examples and out)
 #
@@ -19,32 +19,32 @@ here=$(CDPATH= cd -- "$(dirname -- "$0")" && pwd)
 lenses=$here/../data/lenses
 mkdir -p "$out"
 
-echo "== Figure 7 of Wu et al. 2010 (1/11)"
+echo "== Figure 7 of Wu et al. 2010 (1/12)"
 "$programs/wu_figure7" --criterion min_rms --out "$out/wu_figure7.png"
 "$programs/wu_figure7" --criterion paraxial --out "$out/wu_figure7_paraxial.png"
 
-echo "== The statements of the paper, by number (2/11)"
+echo "== The statements of the paper, by number (2/12)"
 "$programs/wu_statements" --html "$out/wu_statements.html" > "$out/wu_statements.txt"
 echo "$out/wu_statements.txt"
 
-echo "== Bokeh off axis, in colour (3/11)"
+echo "== Bokeh off axis, in colour (3/12)"
 "$programs/bokeh_psf" "$lenses/double_gauss_100mm_f1.35.json" --subject-distance-mm 1000 \
   --focus-mm 800,900,1000,1100,1200 --criterion paraxial --field-deg 8 --wavelengths-nm "$(seq -s , 430 10 670)" --samples 262144 \
   --out "$out/bokeh"
 
-echo "== The colours of bokeh (4/11)"
+echo "== The colours of bokeh (4/12)"
 mkdir -p "$out/chromatic"
 "$programs/chromatic_bokeh" "$lenses/double_gauss_100mm_f1.35.json" --samples 131072 --out "$out/chromatic" \
   > "$out/chromatic/chromatic_bokeh.txt"
 echo "$out/chromatic"
 
-echo "== Irises, cat's eyes, weights, an expressive lens, and a set of PSFs (5/11)"
+echo "== Irises, cat's eyes, weights, an expressive lens, and a set of PSFs (5/12)"
 "$programs/bokeh_shapes" --out "$out/bokeh"
 "$programs/expressive_lens" "$lenses/double_gauss_100mm_f1.35.json" --focus-mm 1000 --samples 65536 --out "$out/expressive"
 "$programs/psf_set" "$lenses/double_gauss_100mm_f2_28deg.json" --fields 0,5,10,14 --distances-mm 1000,1400,2000,4000,inf \
   --focus-mm 2000 --out "$out/psf_set"
 
-echo "== Spot diagrams of five lenses (6/11)"
+echo "== Spot diagrams of five lenses (6/12)"
 # spots LENS FIELDS WAVELENGTHS
 spots() {
   "$programs/spot_diagram" "$lenses/$1.json" --field-deg "$2" --wavelengths-nm "$3" --out "$out/spots"
@@ -56,14 +56,14 @@ spots cooke_triplet_50mm_f5 0,14,20 $f_d_c
 spots petzval_portrait_100mm_f3.4 0,7,12 $f_d_c
 spots fisheye_10mm_f4 0,40,70 587.5618
 
-echo "== Reports of twelve lenses (7/11)"
+echo "== Reports of twelve lenses (7/12)"
 for lens in petzval_portrait_100mm_f3.4 cooke_triplet_50mm_f5 planar_1896_f4.5 tessar_100mm_f5.5_1902 \
   sonnar_180mm_f2.8 biogon_35mm_f2.8 telephoto_250mm_f5.6 retrofocus_100mm_f2 \
   catadioptric_mangin_1000mm_f7.5 anamorphic_60mm_2x modern_58mm_f0.95 fisheye_6.3mm_f2.8; do
   "$programs/lens_report" "$lenses/$lens.json" --out "$out/lenses"
 done
 
-echo "== Rays of a camera, by every model of its lens (8/11)"
+echo "== Rays of a camera, by every model of its lens (8/12)"
 mkdir -p "$out/camera_rays"
 awk 'BEGIN {
   print "film_x_mm,film_y_mm,pupil_u,pupil_v,wavelength_nm"
@@ -76,7 +76,7 @@ for model in pinhole thin thin_two_disc thick polynomial_3 polynomial_5 polynomi
 done
 echo "$out/camera_rays"
 
-echo "== Accuracy and speed of the models, and the model for a scene (9/11)"
+echo "== Accuracy and speed of the models, and the model for a scene (9/12)"
 "$programs/accuracy_speed" "$lenses/double_gauss_100mm_f2_28deg.json" --f-number 2 --out "$out/models" \
   > "$out/accuracy_speed.txt"
 "$programs/choose_camera" "$lenses/double_gauss_100mm_f2_28deg.json" --f-number 2 --near-mm 2000 --far-mm inf \
@@ -84,7 +84,7 @@ echo "== Accuracy and speed of the models, and the model for a scene (9/11)"
 echo "$out/accuracy_speed.txt"
 echo "$out/choose_camera.txt"
 
-echo "== Films tilted to points, a focus pull, and a focal surface (10/11)"
+echo "== Films tilted to points, a focus pull, and a focal surface (10/12)"
 # tilted FOLDER SCENE OPTION...
 tilted() {
   folder=$out/tilt/$1
@@ -106,7 +106,7 @@ echo "$out/focus_pull"
 "$programs/focal_surface" "$lenses/double_gauss_52mm_f1.8.json" --points "$here/scenes/statues_focus.json" --width 600 --height 400 \
   --distance-from front_vertex --focus-mm 1500 --out "$out/focal_surface"
 
-echo "== Scenes through lenses (11/11)"
+echo "== Scenes through lenses (11/12)"
 mkdir -p "$out/scenes"
 scenes_file=$out/scenes/scenes.html
 if [ -x "$programs/bokeh_scene" ]; then
@@ -155,6 +155,24 @@ if [ -x "$programs/bokeh_scene" ]; then
   done
   "$programs/bokeh_sheet" --columns 2 --title "Curvature of field on a tilted film, after figure 6 of Lee et al. 2010" \
     --out "$out/scenes/table.png" $scenes
+
+  echo "== Lens blur from layers (12/12)"
+  # blur FOLDER SCENE OPTION...
+  blur() {
+    folder=$out/layers/$1 name=$2
+    shift 2
+    "$programs/lens_blur" --scene "$name" --format png "$@" --out "$folder" > "$out/scenes/log.txt"
+    echo "$folder"
+  }
+  blur thin town --thin-lens-mm 50 --lens-diameter-mm 100 --focus-mm 5000
+  blur singlet town --singlet 51.68,-51.68,8,N-BK7 --f-number 2 --focus-mm 5000 --fov-deg 30
+  blur chroma town --singlet 51.68,-51.68,8,N-BK7 --f-number 2 --focus-mm 5000 --fov-deg 30 --chroma
+  blur tilt town --thin-lens-mm 50 --lens-diameter-mm 40 --focus-mm 5000 --tilt-deg 6
+  blur knot knot --thin-lens-mm 50 --lens-diameter-mm 100 --focus-mm 3600
+  blur leaves leaves --thin-lens-mm 50 --lens-diameter-mm 100 --focus-mm 5000 --layers 8
+  blur cats_eyes statues --lens "$lenses/double_gauss_100mm_f1.35.json" --focus-mm 3000 --fov-deg 22
+  blur surface statues --thin-lens-mm 50 --lens-diameter-mm 28 --focus-mm 5000 --points "$here/scenes/statues_focus.json"
+  blur night street --thin-lens-mm 100 --lens-diameter-mm 50 --focus-mm 3000 --fov-deg 14 --rays 32 --blades 6
   cp "$here/scenes.html" "$scenes_file"
 else
   echo "bokeh_scene was not built: no Embree (libembree-dev, libtinyobjloader-dev)"
