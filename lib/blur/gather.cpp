@@ -162,9 +162,11 @@ class Gathering {
                               .first = memory.first.data(),
                               .weights = corners[0] + weight * stride});
     } else {
+      memory.scratch.resize(2 * rays_.table.node_size());
       const DifferentRays rays{.count = rays_.rays_of_set(),
                                .row_stride = stride,
                                .corners = {corners[0], corners[1], corners[2], corners[3]},
+                               .scratch = memory.scratch.data(),
                                .from = range.most,
                                .to = range.least,
                                .most = std::max(all_.most, 1e-30f),

@@ -68,6 +68,11 @@ struct Found {
   Numbers through{1.0f};  ///< what is left of a ray
   Numbers below{1e30f};   ///< steps overlap: what a ray has met in one it does not meet again in the next
 
+  /// The sums stay.
+  PETZVAL_INLINE void begin_ray(Mask lanes) noexcept {
+    seeking = lanes;
+    if constexpr (!opaque) through = Numbers(1.0f), below = Numbers(1e30f);
+  }
   PETZVAL_INLINE Found() noexcept : Found(first_lanes(0)) {}
   PETZVAL_INLINE explicit Found(Mask lanes) noexcept : seeking(lanes) {
     for (Numbers& c : colour) c = Numbers(0.0f);
@@ -161,8 +166,7 @@ PETZVAL_INLINE void keep(TileSums& sums, int pixel, const Found<opaque, colours>
 template <bool opaque, int colours>
 PETZVAL_INLINE std::uint64_t follow_ray(const LayerWindow& window, const Step* begin, const Step* from, const Step* end,
                                         Numbers weight, Mask lanes, Found<opaque, colours>& found) noexcept {
-  found.seeking = lanes;
-  if constexpr (!opaque) found.through = Numbers(1.0f), found.below = Numbers(1e30f);
+  found.begin_ray(lanes);
   std::uint64_t made = 0;
   for (const Step* step = from; step != end && any(found.seeking); ++step, ++made) {
     meet(window, Beside{step->offset}, Numbers(step->low), Numbers(step->high), weight, found.seeking, found);
@@ -330,25 +334,31 @@ PETZVAL_INLINE std::uint64_t follow(const LayerWindow& window, const DifferentRa
   return made;
 }
 
-/// The steps of lanes that pass nearly the same pixels beside their own: one load for each different one.
+/// The lanes of a number.
+PETZVAL_INLINE Mask lanes_of(Places numbers, std::int32_t number) noexcept {
+#if defined(__AVX512F__)
+  return {_mm512_cmpeq_epi32_mask(reinterpret_cast<__m512i>(numbers), _mm512_set1_epi32(number))};
+#else
+  return {numbers == number};
+#endif
+}
+
+/// Lanes that pass nearly the same pixels beside their own: one load for each different one.
 template <class Visit>
 PETZVAL_INLINE void for_each_offset(Places offsets, Mask lanes, const Visit& visit) noexcept {
-  std::int32_t places[width];
-  __builtin_memcpy(places, &offsets, sizeof places);
-  // Offsets as numbers are exact up to 2^24, which keeps masks of one kind.
-  const Numbers numbers(__builtin_convertvector(offsets, core_detail::Native<float>::Values));
-  while (any(lanes)) {
-#if defined(__AVX512F__)
-    const std::int32_t offset = places[__builtin_ctz(lanes.bits)];
-#else
-    int lane = 0;
-    while (!lanes.bits[lane]) ++lane;
-    const std::int32_t offset = places[lane];
-#endif
-    const Numbers same(static_cast<float>(offset));
-    const Mask here = all_of(lanes, numbers >= same, numbers <= same);
-    lanes = without(lanes, here);
-    visit(Beside{offset}, here);
+  // Mostly all are alike.
+  const std::int32_t first = offsets[0];
+  const Mask here = all_of(lanes, lanes_of(offsets, first));
+  lanes = without(lanes, here);
+  if (any(here)) visit(Beside{first}, here);
+  if (!any(lanes)) return;
+  std::int32_t each[width];
+  __builtin_memcpy(each, &offsets, sizeof each);
+  for (int lane = 1; lane < width && any(lanes); ++lane) {
+    const Mask alike = all_of(lanes, lanes_of(offsets, each[lane]));
+    if (!any(alike)) continue;
+    lanes = without(lanes, alike);
+    visit(Beside{each[lane]}, alike);
   }
 }
 
@@ -357,28 +367,35 @@ std::uint64_t follow_coherent(const TileJob& job, const DifferentRays& rays) noe
   std::uint64_t made = 0;
   Numbers lane;
   for (int i = 0; i < width; ++i) lane.v[i] = static_cast<float>(i) + 0.5f;
-  for (std::size_t i = 0; i < rays.count; ++i) {
-    for (int row = 0; row < job.rows; ++row) {
-      float left[row_count], rise[row_count];  // of the row, from column to column
-      const float down = (static_cast<float>(row) + 0.5f) / static_cast<float>(job.rows);
-      for (std::size_t r = 0; r < row_count; ++r) {
-        const std::size_t at = r * rays.row_stride + i;
-        left[r] = rays.corners[0][at] + down * (rays.corners[2][at] - rays.corners[0][at]);
-        const float right = rays.corners[1][at] + down * (rays.corners[3][at] - rays.corners[1][at]);
-        rise[r] = (right - left[r]) / static_cast<float>(job.columns);
-      }
-      for (int column = 0; column < job.columns; column += width) {
-        const Numbers place = lane + Numbers(static_cast<float>(column));
+  const std::size_t numbers = row_count * rays.row_stride;
+  float *const left = rays.scratch, *const rise = rays.scratch + numbers;  // of a row, from column to column
+  for (int row = 0; row < job.rows; ++row) {
+    const float down = (static_cast<float>(row) + 0.5f) / static_cast<float>(job.rows);
+    const float per_column = 1 / static_cast<float>(job.columns);
+    for (std::size_t i = 0; i < numbers; ++i) {
+      left[i] = rays.corners[0][i] + down * (rays.corners[2][i] - rays.corners[0][i]);
+      rise[i] = (rays.corners[1][i] + down * (rays.corners[3][i] - rays.corners[1][i]) - left[i]) * per_column;
+    }
+    for (int column = 0; column < job.columns; column += width) {
+      const Numbers place = lane + Numbers(static_cast<float>(column));
+      const LayerWindow window = job.window.from(row, column);
+      const Mask lanes = first_lanes(static_cast<std::size_t>(job.columns - column));
+      Found<opaque, colours> found;
+      Numbers total(0.0f);
+      for (std::size_t i = 0; i < rays.count; ++i) {
         Numbers line[row_count];
-        for (std::size_t r = 0; r < row_count; ++r) line[r] = Numbers(left[r]) + place * Numbers(rise[r]);
-        const LayerWindow window = job.window.from(row, column);
-        Found<opaque, colours> found(first_lanes(static_cast<std::size_t>(job.columns - column)));
-        const auto load_pixels = [&](Numbers w, Mask lanes, const auto& visit) {
-          for_each_offset(pixels_at(line, w, window.stride), lanes, visit);
+        for (std::size_t r = 0; r < row_count; ++r) {
+          const std::size_t at = r * rays.row_stride + i;
+          line[r] = Numbers(left[at]) + place * Numbers(rise[at]);
+        }
+        found.begin_ray(lanes);
+        const auto load_pixels = [&](Numbers w, Mask here, const auto& visit) {
+          for_each_offset(pixels_at(line, w, window.stride), here, visit);
         };
         made += follow(window, rays, line, load_pixels, found);
-        keep(*job.sums, row * TileSums::columns + column, found, line[weight]);
+        total = total + line[weight];
       }
+      keep(*job.sums, row * TileSums::columns + column, found, total);
     }
   }
   return made * static_cast<std::uint64_t>(width);

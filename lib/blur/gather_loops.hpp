@@ -57,8 +57,9 @@ struct SameRays {
 struct DifferentRays {
   std::size_t count = 0, row_stride = 0;
   const float* corners[4] = {};
-  float from = 0, to = 0;  ///< inverse depths between which they are followed
-  float most = 0;          ///< of all surfaces, above 0
+  float* scratch = nullptr;  ///< of coherent: 2 row_count row_stride numbers
+  float from = 0, to = 0;    ///< inverse depths between which they are followed
+  float most = 0;            ///< of all surfaces, above 0
   float tolerance = 0;
   int side = 1;  ///< pixels take `count` rays of side x side sets in turn
 };

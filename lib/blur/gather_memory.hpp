@@ -16,7 +16,7 @@ struct Blurred::Memory {
   struct OfThread {
     std::vector<blur_detail::Step> steps;
     std::vector<std::uint32_t> first;
-    std::vector<float> corners[4], window;
+    std::vector<float> corners[4], scratch, window;
     blur_detail::TileSums sums[3];
   };
 
