@@ -102,26 +102,21 @@ Plane ssim_map(const petzval::RgbImage& picture, const petzval::RgbImage& refere
   return map;
 }
 
-// FLIP's spaces: linear RGB to XYZ of D65, relative to white.
-const glm::dvec3 white{0.950428545, 1.0, 1.088900371};
+// FLIP's spaces: linear RGB to XYZ of D65, relative to white. By rows, which GLM takes as columns.
+const glm::dmat3 to_xyz =
+    glm::transpose(glm::dmat3(10135552.0 / 24577794, 8788810.0 / 24577794, 4435075.0 / 24577794,    // X
+                              2613072.0 / 12288897, 8788810.0 / 12288897, 887015.0 / 12288897,      // Y
+                              1425312.0 / 73733382, 8788810.0 / 73733382, 70074185.0 / 73733382));  // Z
+const glm::dmat3 to_rgb = glm::inverse(to_xyz);
+const glm::dvec3 white = to_xyz * glm::dvec3(1);
 
-glm::dvec3 xyz(const glm::dvec3& rgb) {
-  return {0.4123908 * rgb.x + 0.3575843 * rgb.y + 0.1804808 * rgb.z,
-          0.2126390 * rgb.x + 0.7151687 * rgb.y + 0.0721923 * rgb.z,
-          0.0193308 * rgb.x + 0.1191948 * rgb.y + 0.9505322 * rgb.z};
-}
-glm::dvec3 rgb(const glm::dvec3& xyz) {
-  return {3.2409699 * xyz.x - 1.5373832 * xyz.y - 0.4986108 * xyz.z,
-          -0.9692436 * xyz.x + 1.8759675 * xyz.y + 0.0415551 * xyz.z,
-          0.0556301 * xyz.x - 0.2039770 * xyz.y + 1.0569715 * xyz.z};
-}
 glm::dvec3 opponent(const glm::dvec3& rgb) {
-  const glm::dvec3 n = xyz(rgb) / white;
+  const glm::dvec3 n = to_xyz * rgb / white;
   return {116 * n.y - 16, 500 * (n.x - n.y), 200 * (n.y - n.z)};
 }
 glm::dvec3 from_opponent(const glm::dvec3& yc) {
   const double y = (yc.x + 16) / 116;
-  return rgb(glm::dvec3(y + yc.y / 500, y, y - yc.z / 200) * white);
+  return to_rgb * (glm::dvec3(y + yc.y / 500, y, y - yc.z / 200) * white);
 }
 /// L*a*b*, its colours less strong in the dark.
 glm::dvec3 hunt_lab(const glm::dvec3& rgb) {
@@ -129,7 +124,7 @@ glm::dvec3 hunt_lab(const glm::dvec3& rgb) {
     constexpr double limit = 6.0 / 29;
     return t > limit * limit * limit ? std::cbrt(t) : t / (3 * limit * limit) + 4.0 / 29;
   };
-  const glm::dvec3 n = xyz(rgb) / white;
+  const glm::dvec3 n = to_xyz * rgb / white;
   const double l = 116 * f(n.y) - 16;
   return {l, 0.01 * l * 500 * (f(n.x) - f(n.y)), 0.01 * l * 200 * (f(n.y) - f(n.z))};
 }
@@ -153,7 +148,8 @@ std::vector<glm::dvec3> seen(const petzval::RgbImage& image) {
     Plane plane(image.width, image.height);
     for (std::size_t i = 0; i < pixels; ++i) plane.values[i] = opponent(clipped(image, i))[c];
     const int reach = static_cast<int>(std::ceil(3 * std::sqrt(0.04 / (2 * pi * pi)) * pixels_per_degree));
-    // Sums of Gaussians: each is separable, and weighs its part of the whole sum.
+    // Sums of Gaussians: each is separable, and weighs its part of the whole sum. Its height is that of the paper,
+    // sqrt(pi / b) also over two dimensions.
     double whole = 0;
     std::array<double, 2> parts{};
     std::array<Kernel, 2> kernels;
@@ -164,7 +160,7 @@ std::vector<glm::dvec3> seen(const petzval::RgbImage& image) {
       });
       double line = 0;
       for (const double v : kernels[g]) line += v;
-      parts[g] = a * pi / b * line * line, whole += parts[g];
+      parts[g] = a * std::sqrt(pi / b) * line * line, whole += parts[g];
     }
     for (std::size_t g = 0; g < 2; ++g) {
       if (parts[g] == 0) continue;
