@@ -105,7 +105,14 @@ struct alignas(64) Packet {
   alignas(64) int valid[packet];
   Rgb colours[packet];
 
-  Packet() { std::fill_n(valid, packet, 0); }
+  /// No ray at all. Embree may look at lanes that are not valid: these have ways without a length.
+  Packet() {
+    std::fill_n(valid, packet, 0);
+    RTCRay16& r = rays.ray;
+    for (float* const values : {r.org_x, r.org_y, r.org_z, r.dir_x, r.dir_y}) std::fill_n(values, packet, 0.0f);
+    std::fill_n(r.dir_z, packet, 1.0f);
+    std::fill_n(r.tnear, packet, infinity), std::fill_n(r.tfar, packet, -infinity);
+  }
   void set(int lane, const glm::vec3& from, const glm::vec2& run, float near) {
     RTCRay16& r = rays.ray;
     r.org_x[lane] = from.x, r.org_y[lane] = from.y, r.org_z[lane] = from.z;
@@ -318,6 +325,8 @@ petzval::RgbImage LitScene::reference(const petzval::LensRays& rays, int threads
     thread_local std::vector<petzval::LayerRay> own;
     own.resize(count * packet);
     glm::vec3 sums[packet] = {};
+    Packet p;
+    float weights[packet] = {};
     for (int channel = 0; channel < rays.channels(); ++channel) {
       for (int lane = 0; !same && lane < packet; ++lane) {
         if (!square.has(lane)) continue;
@@ -325,8 +334,6 @@ petzval::RgbImage LitScene::reference(const petzval::LensRays& rays, int threads
                       std::span(own).subspan(static_cast<std::size_t>(lane) * count, count));
       }
       for (std::size_t i = 0; i < count; ++i) {
-        Packet p;
-        float weights[packet] = {};
         for (int lane = 0; lane < packet; ++lane) {
           if (!square.has(lane)) continue;
           const petzval::LayerRay& ray = same ? shared[i] : own[static_cast<std::size_t>(lane) * count + i];
