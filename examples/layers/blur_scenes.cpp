@@ -220,12 +220,20 @@ SceneDescription leaves_scene() {
   Chance chance(11);
   constexpr int kinds = 6;
   std::array<Mesh, kinds> leaves;
-  for (int i = 0; i < 120000; ++i) {
+  // Boughs are balls, wider with their depth: one looks through between them at any depth.
+  std::array<glm::vec3, 150> boughs;
+  for (glm::vec3& bough : boughs) {
     const float away = chance.next(1900, 10000), wide = 0.40f * away;
-    const glm::vec3 centre{chance.next(-wide, wide), chance.next(-0.8f * wide, 0.8f * wide), -away};
+    bough = {chance.next(-wide, wide), chance.next(-0.8f * wide, 0.8f * wide), -away};
+  }
+  for (std::size_t i = 0; i < 120000; ++i) {
+    const glm::vec3 bough = boughs[i % boughs.size()];
+    const float z = chance.next(-1, 1), turn = chance.next(0, 2 * pi), flat = std::sqrt(1 - z * z);
+    const glm::vec3 centre = bough - 0.055f * bough.z * std::cbrt(chance.next()) *
+                                         glm::vec3{flat * std::cos(turn), flat * std::sin(turn), z};
     glm::vec3 u{chance.next(-1, 1), chance.next(-1, 1), chance.next(-1, 1)},
         v{chance.next(-1, 1), chance.next(-1, 1), chance.next(-1, 1)};
-    const float size = chance.next(8, 22);
+    const float size = chance.next(16, 45);
     u *= size, v *= 0.6f * size;
     append(leaves[static_cast<std::size_t>(kinds * chance.next())],
            Mesh{{centre - u - v, centre + u - v, centre + u + v, centre - u + v}, {{0, 1, 2}, {0, 2, 3}}});
