@@ -33,10 +33,10 @@ need() {
   $as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends $missing
 }
 
-# build OPTION...: configures with the CMake options given and builds, in $BUILD_DIR.
+# build OPTION...: configures with the CMake options given and builds $target, or all, in $BUILD_DIR.
 build() {
   echo "== Configuring in $BUILD_DIR"
   cmake -S "$root" -B "$BUILD_DIR" -G Ninja -DCMAKE_BUILD_TYPE=Release "$@"
   echo "== Building"
-  NINJA_STATUS="[%f/%t, %es] " cmake --build "$BUILD_DIR"
+  NINJA_STATUS="[%f/%t, %es] " cmake --build "$BUILD_DIR" --target "${target:-all}"
 }
