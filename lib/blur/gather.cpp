@@ -68,7 +68,8 @@ class Gathering {
         overscan_(overscan),
         highlights_(highlights),
         picture_(picture),
-        all_(layers_.n_buffer.below({0, 0, layers_.columns - 1, layers_.rows - 1})) {}
+        all_(layers_.n_buffer.below({0, 0, layers_.columns - 1, layers_.rows - 1})),
+        farthest_(all_.empty() ? 0 : all_.least) {}
 
   void run() {
     // Rays of a tile are interpolated between its corners, which lie in one cell of the table.
@@ -141,7 +142,9 @@ class Gathering {
       rect = rect_of(range);
     }
 
-    TileJob job{.window = window(tile, rect, range.empty() ? 1 : range.layers, channel, memory),
+    // Rays that find nothing are followed to the farthest depth of all: do they end in the void?
+    const PixelRect all_read = rect_of({farthest_, range.empty() ? farthest_ : range.most, 1});
+    TileJob job{.window = window(tile, all_read, range.empty() ? 1 : range.layers, channel, memory),
                 .columns = tile.columns,
                 .rows = tile.rows,
                 .left = tile.left,
@@ -152,15 +155,20 @@ class Gathering {
     if (range.empty()) range = {0, 0, 1};
     std::uint64_t made = 0;
     if (path_ == GatherPath::shift_invariant) {
-      memory.steps.clear(), memory.first.assign(1, 0);
+      memory.steps.clear(), memory.ends.clear(), memory.first.assign(1, 0);
       for (std::size_t i = 0; i < stride; ++i) {
         add_steps(corners[0], stride, i, range, all_, options_.tolerance, job.window.stride, memory.steps);
         memory.first.push_back(static_cast<std::uint32_t>(memory.steps.size()));
+        const auto at_end = [&](Row at, Row slope) {
+          return floor_of(corners[0][at * stride + i] + farthest_ * corners[0][slope * stride + i] + 0.5f);
+        };
+        memory.ends.push_back(at_end(at_y, slope_y) * job.window.stride + at_end(at_x, slope_x));
       }
       made = loops.same(job, {.count = stride,
                               .steps = memory.steps.data(),
                               .first = memory.first.data(),
-                              .weights = corners[0] + weight * stride});
+                              .weights = corners[0] + weight * stride,
+                              .ends = memory.ends.data()});
     } else {
       memory.scratch.resize(2 * rays_.table.node_size());
       const DifferentRays rays{.count = rays_.rays_of_set(),
@@ -170,6 +178,7 @@ class Gathering {
                                .from = range.most,
                                .to = range.least,
                                .most = std::max(all_.most, 1e-30f),
+                               .end = farthest_,
                                .tolerance = static_cast<float>(options_.tolerance),
                                .side = rays_.options.sets == 16  ? 4
                                        : rays_.options.sets == 4 ? 2
@@ -276,6 +285,7 @@ class Gathering {
   const Highlights& highlights_;
   Blurred& picture_;
   DepthRange all_;
+  float farthest_;  ///< inverse depth where rays end
   std::atomic<std::uint64_t> steps_ = 0, missed_ = 0;
 };
 

@@ -111,21 +111,24 @@ PETZVAL_INLINE void meet(const LayerWindow& window, const At& at, Numbers low, N
   }
 }
 
-/// The ends of rays that found nothing. Where the first layer is empty they see the void. Else they slipped behind a
-/// surface, and the best guess of what is there is what they passed last before.
+/// Rays that found nothing see the void where the first layer is empty at the depth of the farthest surface.
 template <bool opaque, int colours, class At>
-PETZVAL_INLINE void guess(const LayerWindow& window, const At& at, Numbers low, Numbers weight, Mask here, bool last,
+PETZVAL_INLINE void end_in_void(const LayerWindow& window, const At& end, Numbers weight, Mask here,
+                                Found<opaque, colours>& found) noexcept {
+  const Mask empty = all_of(here, end(window.depth) < Numbers(0.0f));
+  found.open = found.open + only(empty, weight);
+  found.seeking = without(found.seeking, empty);
+}
+
+/// Others slipped behind a surface: the best guess of what is there is what they passed last before.
+template <bool opaque, int colours, class At>
+PETZVAL_INLINE void guess(const LayerWindow& window, const At& at, Numbers low, Numbers weight, Mask here,
                           Found<opaque, colours>& found) noexcept {
   const float* depth = window.depth;
   std::ptrdiff_t layer = 0;
   const Numbers none(0.0f);
   for (int l = 0; l < window.layers; ++l, depth += window.layer_stride, layer += window.layer_stride) {
     const Numbers w = at(depth);
-    if (l == 0 && last) {
-      const Mask empty = all_of(here, w < none);
-      found.open = found.open + only(empty, weight);
-      found.seeking = without(found.seeking, empty), here = without(here, empty);
-    }
     const Mask before = all_of(here, w < low, w >= none);
     if (any(before)) {
       for (int c = 0; c < colours; ++c) {
@@ -165,7 +168,8 @@ PETZVAL_INLINE void keep(TileSums& sums, int pixel, const Found<opaque, colours>
 /// One ray of pixels side by side, from a step on.
 template <bool opaque, int colours>
 PETZVAL_INLINE std::uint64_t follow_ray(const LayerWindow& window, const Step* begin, const Step* from, const Step* end,
-                                        Numbers weight, Mask lanes, Found<opaque, colours>& found) noexcept {
+                                        std::ptrdiff_t last, Numbers weight, Mask lanes,
+                                        Found<opaque, colours>& found) noexcept {
   found.begin_ray(lanes);
   std::uint64_t made = 0;
   for (const Step* step = from; step != end && any(found.seeking); ++step, ++made) {
@@ -173,8 +177,9 @@ PETZVAL_INLINE std::uint64_t follow_ray(const LayerWindow& window, const Step* b
   }
   if (!any(found.seeking)) return made;
   end_partly(found);
+  end_in_void(window, Beside{last}, weight, found.seeking, found);
   for (const Step* step = end; step-- != begin && any(found.seeking);) {
-    guess(window, Beside{step->offset}, Numbers(step->low), weight, found.seeking, step + 1 == end, found);
+    guess(window, Beside{step->offset}, Numbers(step->low), weight, found.seeking, found);
   }
   give_up(weight, found);
   return made;
@@ -217,7 +222,8 @@ std::uint64_t follow_rows(const TileJob& job, const SameRays& rays, int row, int
     }
     made += static_cast<std::uint64_t>(at_once) * static_cast<std::uint64_t>(step - begin + met);
     if (met) continue;
-    for (int r = 0; r < at_once; ++r) made += follow_ray(windows[r], begin, step, end, weight, lanes, found[r]);
+    for (int r = 0; r < at_once; ++r)
+      made += follow_ray(windows[r], begin, step, end, rays.ends[i], weight, lanes, found[r]);
   }
   for (int r = 0; r < at_once; ++r) keep(*job.sums, (row + r) * TileSums::columns + column, found[r], total);
   return made;
@@ -323,11 +329,12 @@ PETZVAL_INLINE std::uint64_t follow(const LayerWindow& window, const DifferentRa
   }
   if (!any(found.seeking)) return made;
   end_partly(found);
+  load(Numbers(rays.end), found.seeking,
+       [&](const auto& at, Mask lanes) { end_in_void(window, at, seen, lanes, found); });
   k = steps.last;
-  bool last = true;
-  for (Mask here = found.seeking; any(here); here = all_of(found.seeking, k <= steps.first), last = false) {
+  for (Mask here = found.seeking; any(here); here = all_of(found.seeking, k <= steps.first)) {
     const Numbers low = steps.low(k);
-    load(steps.at(k), here, [&](const auto& at, Mask lanes) { guess(window, at, low, seen, lanes, last, found); });
+    load(steps.at(k), here, [&](const auto& at, Mask lanes) { guess(window, at, low, seen, lanes, found); });
     k = k + one;
   }
   give_up(seen, found);

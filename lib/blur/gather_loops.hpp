@@ -50,6 +50,7 @@ struct SameRays {
   const Step* steps = nullptr;
   const std::uint32_t* first = nullptr;
   const float* weights = nullptr;
+  const std::ptrdiff_t* ends = nullptr;  ///< offsets of the pixels at the depth of the farthest surface
 };
 
 /// Rays that differ: lines at the tile's four corners (upper left, upper right, lower left, lower right), each
@@ -59,7 +60,7 @@ struct DifferentRays {
   const float* corners[4] = {};
   float* scratch = nullptr;  ///< of coherent: 2 row_count row_stride numbers
   float from = 0, to = 0;    ///< inverse depths between which they are followed
-  float most = 0;            ///< of all surfaces, above 0
+  float most = 0, end = 0;   ///< of all surfaces, the nearest (above 0) and the farthest
   float tolerance = 0;
   int side = 1;  ///< pixels take `count` rays of side x side sets in turn
 };

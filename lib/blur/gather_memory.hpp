@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <mutex>
@@ -16,6 +17,7 @@ struct Blurred::Memory {
   struct OfThread {
     std::vector<blur_detail::Step> steps;
     std::vector<std::uint32_t> first;
+    std::vector<std::ptrdiff_t> ends;
     std::vector<float> corners[4], scratch, window;
     blur_detail::TileSums sums[3];
   };

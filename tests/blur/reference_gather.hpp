@@ -18,7 +18,13 @@ inline Blurred reference_gather(const LayerSet& layers, const LensRays& rays, do
   Blurred picture;
   picture.columns = camera.columns, picture.rows = camera.rows;
   float most = 0;
-  for (const float w : layers.inverse_depth(0)) most = std::max(most, w);
+  float least = std::numeric_limits<float>::max();
+  for (int layer = 0; layer < layers.count(); ++layer) {
+    for (const float w : layers.inverse_depth(layer)) {
+      most = std::max(most, w);
+      if (w >= 0) least = std::min(least, w);
+    }
+  }
 
   std::vector<LayerRay> found(rays.count());
   for (int row = 0; row < camera.rows; ++row) {
@@ -29,18 +35,21 @@ inline Blurred reference_gather(const LayerSet& layers, const LensRays& rays, do
         double total = 0, known = 0, sum = 0;
         for (const LayerRay& ray : found) {
           total += ray.weight;
-          const double steepest = std::max({std::abs(ray.slope.x), std::abs(ray.slope.y), 1e-6 / most});
+          const double steepest = std::max({std::abs(ray.slope.x), std::abs(ray.slope.y), 1e-6 / std::max(most, 1e-30f)});
           double through = 1;
           double guess = std::numeric_limits<double>::quiet_NaN(), guess_alpha = 0;
-          bool empty = false, met = false;
+          bool met = false;
+          const auto pixel_at = [&](double w) {
+            const Vec2<double> at = ray.at + ray.slope * w;
+            const int x = std::clamp(static_cast<int>(std::floor(at.x)) + overscan, 0, layers.columns() - 1),
+                      y = std::clamp(static_cast<int>(std::floor(at.y)) + overscan, 0, layers.rows() - 1);
+            return static_cast<std::size_t>(y * layers.columns() + x);
+          };
+          const bool empty = layers.inverse_depth(0)[pixel_at(least)] < 0;
           double below = 1e30;
           for (int k = static_cast<int>(most * steepest + 1); k >= 0; --k) {
             const double low = std::max((k - tolerance) / steepest, 0.0), high = (k + 1 + tolerance) / steepest;
-            const Vec2<double> at = ray.at + ray.slope * ((k + 0.5) / steepest);
-            const int x = std::clamp(static_cast<int>(std::floor(at.x)) + overscan, 0, layers.columns() - 1),
-                      y = std::clamp(static_cast<int>(std::floor(at.y)) + overscan, 0, layers.rows() - 1);
-            const auto pixel = static_cast<std::size_t>(y * layers.columns() + x);
-            empty = layers.inverse_depth(0)[pixel] < 0;
+            const std::size_t pixel = pixel_at((k + 0.5) / steepest);
             bool before = false, met_here = false;
             for (int layer = 0; layer < layers.count() && through > 1e-3; ++layer) {
               const double w = layers.inverse_depth(layer)[pixel], a = layers.channel(layer, 3)[pixel];

@@ -26,7 +26,8 @@ PETZVAL_API std::string_view name(GatherPath path) noexcept;
 struct GatherOptions {
   int threads = 1;
   GatherPath path = GatherPath::automatic;
-  /// Whether the depths below the rays of a tile bound the way of its rays. The picture does not depend on it.
+  /// Whether the depths below the rays of a tile bound the way of its rays. What they meet does not depend on it;
+  /// guesses for those that meet nothing may.
   bool bounded = true;
   /// By how much of its length a step along a ray is widened on both sides, so that rays do not slip between pixels.
   double tolerance = 0.1;
@@ -58,8 +59,9 @@ struct Blurred {
 /// The picture of layers through a lens.
 ///
 /// Each ray is followed from near to far in steps of a pixel until it meets a surface; those with alpha below 1 let the
-/// rest through. A ray that ends where the first layer is empty is transparent. One that finds a hole behind a surface
-/// counts as missed, and the pixel is the mean of its others. Beyond the layers' edges their last pixels repeat. Layers
+/// rest through. A ray that meets nothing is transparent if the first layer is empty where it ends, at the depth of the
+/// farthest surface. Else it slipped behind a surface: it counts as missed, and takes what it passed last before, or
+/// where there is nothing, the mean of the pixel's others. Beyond the layers' edges their last pixels repeat. Layers
 /// reach beyond the picture equally on all sides (PeelPlan::camera). The same bits for any number of threads.
 ///
 /// Source: Lee, Eisemann, Seidel 2010, "Real-time lens blur effects and focus control", section 3.1.
