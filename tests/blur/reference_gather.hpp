@@ -35,7 +35,8 @@ inline Blurred reference_gather(const LayerSet& layers, const LensRays& rays, do
         double total = 0, known = 0, sum = 0;
         for (const LayerRay& ray : found) {
           total += ray.weight;
-          const double steepest = std::max({std::abs(ray.slope.x), std::abs(ray.slope.y), 1e-6 / std::max(most, 1e-30f)});
+          const double steepest =
+              std::max({std::abs(ray.slope.x), std::abs(ray.slope.y), 1e-6 / std::max(most, 1e-30f)});
           double through = 1;
           double guess = std::numeric_limits<double>::quiet_NaN(), guess_alpha = 0;
           bool met = false;
