@@ -350,23 +350,24 @@ PETZVAL_INLINE Mask lanes_of(Places numbers, std::int32_t number) noexcept {
 #endif
 }
 
-/// Lanes that pass nearly the same pixels beside their own: one load for each different one.
+PETZVAL_INLINE Places chosen(Mask mask, Places a, Places b) noexcept {
+#if defined(__AVX512F__)
+  return reinterpret_cast<Places>(
+      _mm512_mask_mov_epi32(reinterpret_cast<__m512i>(b), mask.bits, reinterpret_cast<__m512i>(a)));
+#else
+  return mask.bits ? a : b;
+#endif
+}
+
+/// The pixels of lanes beside each other: mostly as far beside their own for all, which one load finds.
 template <class Visit>
-PETZVAL_INLINE void for_each_offset(Places offsets, Mask lanes, const Visit& visit) noexcept {
-  // Mostly all are alike.
+PETZVAL_INLINE void load_beside(Places offsets, Mask lanes, const Visit& visit) noexcept {
   const std::int32_t first = offsets[0];
-  const Mask here = all_of(lanes, lanes_of(offsets, first));
-  lanes = without(lanes, here);
-  if (any(here)) visit(Beside{first}, here);
-  if (!any(lanes)) return;
-  std::int32_t each[width];
-  __builtin_memcpy(each, &offsets, sizeof each);
-  for (int lane = 1; lane < width && any(lanes); ++lane) {
-    const Mask alike = all_of(lanes, lanes_of(offsets, each[lane]));
-    if (!any(alike)) continue;
-    lanes = without(lanes, alike);
-    visit(Beside{each[lane]}, alike);
-  }
+  if (!any(without(lanes, lanes_of(offsets, first)))) return visit(Beside{first}, lanes);
+  // Those of other lanes may lie anywhere.
+  Places own;
+  for (int i = 0; i < width; ++i) own[i] = i;
+  visit(Anywhere{chosen(lanes, offsets, first + Places{}) + own}, lanes);
 }
 
 template <bool opaque, int colours>
@@ -397,7 +398,7 @@ std::uint64_t follow_coherent(const TileJob& job, const DifferentRays& rays) noe
         }
         found.begin_ray(lanes);
         const auto load_pixels = [&](Numbers w, Mask here, const auto& visit) {
-          for_each_offset(pixels_at(line, w, window.stride), here, visit);
+          load_beside(pixels_at(line, w, window.stride), here, visit);
         };
         made += follow(window, rays, line, load_pixels, found);
         total = total + line[weight];
