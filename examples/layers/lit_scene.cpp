@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "layers/lit_scene.hpp"
 
-#include <embree3/rtcore.h>
-
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -19,6 +17,7 @@
 #include "petzval/core/error.hpp"
 #include "petzval/core/parallel.hpp"
 #include "renderer/albedo.hpp"
+#include "renderer/embree.hpp"
 #include "renderer/sky_light.hpp"
 #include "renderer/solids.hpp"
 
@@ -29,20 +28,6 @@ using renderer::Rgb;
 
 constexpr int packet = 16;
 constexpr float infinity = std::numeric_limits<float>::infinity();
-
-template <class... F>
-struct Cases : F... {
-  using F::operator()...;
-};
-template <class... F>
-Cases(F...) -> Cases<F...>;
-
-struct DeviceRelease {
-  void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
-};
-struct SceneRelease {
-  void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
-};
 
 renderer::Mesh mesh_of(const renderer::Sphere& sphere) {
   const std::vector<renderer::ProfilePoint> outline{
@@ -59,12 +44,13 @@ renderer::Mesh mesh_of(const renderer::Mesh& mesh) { return mesh; }
 
 renderer::Albedo albedo_of(const renderer::Material& material) {
   return std::visit(
-      Cases{[](const renderer::Diffuse& m) { return m.albedo; }, [](const renderer::Varnish& m) { return m.albedo; },
-            [](const renderer::Mirror& m) { return renderer::Albedo{.colour = 0.5f * m.reflectance}; },
-            [](const renderer::Rough& m) { return renderer::Albedo{.colour = 0.6f * m.reflectance}; },
-            [](const renderer::Glass&) {
-              return renderer::Albedo{.colour = {0.5f, 0.55f, 0.55f}};
-            }},
+      renderer::Cases{[](const renderer::Diffuse& m) { return m.albedo; },
+                      [](const renderer::Varnish& m) { return m.albedo; },
+                      [](const renderer::Mirror& m) { return renderer::Albedo{.colour = 0.5f * m.reflectance}; },
+                      [](const renderer::Rough& m) { return renderer::Albedo{.colour = 0.6f * m.reflectance}; },
+                      [](const renderer::Glass&) {
+                        return renderer::Albedo{.colour = {0.5f, 0.55f, 0.55f}};
+                      }},
       material);
 }
 
@@ -127,8 +113,8 @@ struct alignas(64) Packet {
 }  // namespace
 
 struct LitScene::Data {
-  std::unique_ptr<RTCDeviceTy, DeviceRelease> device;
-  std::unique_ptr<RTCSceneTy, SceneRelease> scene;
+  renderer::EmbreeDevice device;
+  renderer::EmbreeScene scene;
   std::vector<Body> bodies;
   glm::mat3 turn{1};  ///< camera to world
   glm::vec3 origin{0, 0, 0};

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "renderer/scene.hpp"
 
-#include <embree3/rtcore.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -14,6 +12,7 @@
 #include <glm/glm.hpp>
 
 #include "petzval/core/error.hpp"
+#include "renderer/embree.hpp"
 #include "renderer/frame.hpp"
 #include "renderer/luminance.hpp"
 #include "renderer/sky_light.hpp"
@@ -26,20 +25,6 @@ using std::numbers::pi;
 constexpr float infinity = std::numeric_limits<float>::infinity();
 /// Rays start so far from a surface, times the size of its coordinates: sixteen units of float's last place.
 constexpr float rounding = 1e-6f;
-
-template <class... F>
-struct Cases : F... {
-  using F::operator()...;
-};
-template <class... F>
-Cases(F...) -> Cases<F...>;
-
-struct DeviceRelease {
-  void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
-};
-struct SceneRelease {
-  void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
-};
 
 Mesh mesh_of(const Quad& q) {
   return {{q.corner, q.corner + q.edge_u, q.corner + q.edge_u + q.edge_v, q.corner + q.edge_v},
@@ -93,8 +78,8 @@ SurfacePoint point_on(const Object& object, const Body& body, const Sphere& sphe
 struct Scene::Data {
   SceneDescription description;
   SkyLight sky;
-  std::unique_ptr<RTCDeviceTy, DeviceRelease> device;
-  std::unique_ptr<RTCSceneTy, SceneRelease> scene;
+  EmbreeDevice device;
+  EmbreeScene scene;
   std::vector<Body> bodies;
   std::vector<double> lamp_ends;  ///< of the objects: share of the light of lamps up to each; the rest is the sky's
   double sky_share = 0;

@@ -180,9 +180,7 @@ class Gathering {
                                .most = std::max(all_.most, 1e-30f),
                                .end = farthest_,
                                .tolerance = static_cast<float>(options_.tolerance),
-                               .side = rays_.options.sets == 16  ? 4
-                                       : rays_.options.sets == 4 ? 2
-                                                                 : 1};
+                               .side = rays_.side()};
       made = path_ == GatherPath::coherent ? loops.coherent(job, rays) : loops.general(job, rays);
     }
     steps_ += made;
@@ -331,6 +329,14 @@ void gather(const LayerSet& layers, const LensRays& rays, const GatherOptions& o
   }
   if (path == GatherPath::coherent && rays.sets() != 1) {
     throw wrong("the rays are " + std::to_string(rays.sets()) + " sets, wanted one for the path coherent");
+  }
+
+  const LayerData& data = LayerAccess::data(layers);
+  const DepthRange depths = data.n_buffer.below({0, 0, data.columns - 1, data.rows - 1});
+  const double reach = depths.empty() ? 0 : rays.reach_px(depths.least, depths.most);
+  if (!(reach <= most_reach_px)) {
+    throw wrong("rays reach " + to_text(reach, 6) + " px beyond the picture, wanted at most " + to_text(most_reach_px) +
+                ": the nearest surface is " + to_text(1 / static_cast<double>(depths.most), 6) + " mm away");
   }
 
   const auto pixels = static_cast<std::size_t>(camera.columns) * static_cast<std::size_t>(camera.rows);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <string>
 
@@ -15,7 +16,7 @@ namespace petzval::inline v0 {
 namespace {
 
 constexpr float infinity = std::numeric_limits<float>::infinity();
-constexpr int most_layers = 64, most_side = 65536;
+constexpr int most_layers = 64;
 
 void check_number(int layers) {
   if (layers < 1 || layers > most_layers) {
@@ -24,9 +25,10 @@ void check_number(int layers) {
 }
 
 void check_size(const std::string& where, int columns, int rows) {
-  if (columns < 1 || rows < 1 || columns > most_side || rows > most_side) {
+  constexpr std::int64_t most_pixels = std::int64_t{1} << 26;
+  if (columns < 1 || rows < 1 || static_cast<std::int64_t>(columns) * rows > most_pixels) {
     throw Error(where + ": size is " + std::to_string(columns) + " x " + std::to_string(rows) + ", wanted 1 to " +
-                std::to_string(most_side) + " pixels a side");
+                std::to_string(most_pixels) + " pixels");
   }
 }
 

@@ -7,8 +7,11 @@
 #include "petzval/blur/layers.hpp"
 #include "petzval/blur/lens_rays.hpp"
 #include "petzval/core/error.hpp"
+#include "ray_table.hpp"
 
 namespace petzval::inline v0 {
+
+using blur_detail::most_reach_px;
 
 PeelPlan plan_peel(const LensRays& rays, double nearest_mm, double farthest_mm) {
   if (!(nearest_mm > 0 && nearest_mm < farthest_mm)) {
@@ -16,10 +19,9 @@ PeelPlan plan_peel(const LensRays& rays, double nearest_mm, double farthest_mm) 
                 " mm, wanted 0 < nearest < farthest");
   }
   const double nearest = 1 / nearest_mm, farthest = 1 / farthest_mm, reach = rays.reach_px(farthest, nearest);
-  constexpr double most_reach = 16384;
-  if (!(reach <= most_reach)) {
+  if (!(reach <= most_reach_px)) {
     throw Error("plan_peel: rays reach " + to_text(reach) + " px beyond the picture, wanted at most " +
-                to_text(most_reach) + ": is the nearest depth, " + to_text(nearest_mm) + " mm, right?");
+                to_text(most_reach_px) + ": is the nearest depth, " + to_text(nearest_mm) + " mm, right?");
   }
   PeelPlan plan{.camera = rays.camera(), .nearest_mm = nearest_mm, .farthest_mm = farthest_mm};
   // A ray may land half a pixel beside its line, and lies in the tolerance of the next one.

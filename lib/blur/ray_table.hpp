@@ -11,6 +11,9 @@
 
 namespace petzval::inline v0::blur_detail {
 
+/// Layers of more overscan are refused.
+inline constexpr double most_reach_px = 16384;
+
 /// Rays at nodes over a picture: every `step` pixels from its upper left corner, and at its right and lower edges.
 struct RayTable {
   int columns = 0, rows = 0;           ///< of the picture

@@ -254,6 +254,13 @@ TEST(Gather, RefusesWhatDoesNotFit) {
   says(layers, rays, {.tolerance = -1}, "tolerance is -1");
   says(layers, rays, {.highlights_above = -1}, "highlights_above is -1");
   says(layers, rays, {.threads = 0}, "threads is 0");
+  // A surface a hundredth of a mm before a lens of 18 mm.
+  FragmentLists near{
+      .columns = 150, .rows = 100, .offsets = std::vector<std::size_t>(15001, 1), .fragments = {{0.01f, 1, 1, 1, 1}}};
+  near.offsets[0] = 0;
+  LayerSet too_near;
+  too_near.thin(near, 0, 1);
+  says(too_near, rays, {}, "px beyond the picture, wanted at most 16384: the nearest surface is 0.01 mm away");
 }
 
 TEST(Highlights, AreEvenDiscs) {

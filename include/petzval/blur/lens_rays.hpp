@@ -54,8 +54,8 @@ struct ThinLens {
 };
 
 struct LensRaysOptions {
-  double nearest_mm =
-      0;  ///< depth of the nearest surface; 0: a focal length of the layer camera in a picture 24 mm high
+  /// Depth of the nearest surface; 0: the focal length of the layer camera, for a picture 24 mm high.
+  double nearest_mm = 0;
   /// How many sets of rays the points are, one after the other; pixels take them in turn, 4 in squares of 2 x 2, 16 of
   /// 4 x 4. More than 1 trade repeated patterns for grain, and cost three times as much.
   int sets = 1;
@@ -84,8 +84,8 @@ class PETZVAL_API LensRays {
   LensRays(const LayerCamera& camera, std::span<const PupilPoint> points, int channels, Source source,
            const LensRaysOptions& options = {});
 
-  /// A thin lens, of even light over the picture. Throws Error also for a radius that is negative or not below the
-  /// nearest depth, and for a focus that is negative or not beyond... the nearest depth.
+  /// A thin lens, of even light over the picture. Throws Error also for a radius that is negative, a depth in focus
+  /// that is negative or within the diameter of the lens, and for an iris and weights out of range.
   static LensRays thin(const LayerCamera& camera, const ThinLens& lens, std::span<const PupilPoint> points,
                        const LensRaysOptions& options = {});
 
