@@ -68,7 +68,7 @@ class Gathering {
         overscan_(overscan),
         highlights_(highlights),
         picture_(picture),
-        all_(layers_.n_buffer.below({0, 0, layers_.columns - 1, layers_.rows - 1})),
+        all_(layers_.depths()),
         farthest_(all_.empty() ? 0 : all_.least) {}
 
   void run() {
@@ -331,8 +331,7 @@ void gather(const LayerSet& layers, const LensRays& rays, const GatherOptions& o
     throw wrong("the rays are " + std::to_string(rays.sets()) + " sets, wanted one for the path coherent");
   }
 
-  const LayerData& data = LayerAccess::data(layers);
-  const DepthRange depths = data.n_buffer.below({0, 0, data.columns - 1, data.rows - 1});
+  const DepthRange depths = LayerAccess::data(layers).depths();
   const double reach = depths.empty() ? 0 : rays.reach_px(depths.least, depths.most);
   if (!(reach <= most_reach_px)) {
     throw wrong("rays reach " + to_text(reach, 6) + " px beyond the picture, wanted at most " + to_text(most_reach_px) +

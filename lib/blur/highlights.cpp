@@ -57,7 +57,11 @@ struct Highlights::Stamp {
 };
 
 Highlights::Highlights(const LayerData& layers, const LensRays& rays, const GatherOptions& options, int overscan)
-    : layers_(layers), rays_(RayAccess::data(rays)), tolerance_(options.tolerance), overscan_(overscan) {
+    : layers_(layers),
+      rays_(RayAccess::data(rays)),
+      tolerance_(options.tolerance),
+      nearest_(layers.depths().most),
+      overscan_(overscan) {
   if (options.highlights_above == 0) return;
   find(static_cast<float>(options.highlights_above));
   make_groups();
@@ -173,7 +177,7 @@ float Highlights::visible(const float* line, double x, double y, const Highlight
         static_cast<int>(std::ceil(std::max(a.x, b.x))) + 1, static_cast<int>(std::ceil(std::max(a.y, b.y))) + 1};
   };
   // From the nearest surface of all, then from the nearest one below that way.
-  double from = layers_.n_buffer.below({0, 0, layers_.columns - 1, layers_.rows - 1}).most;
+  double from = nearest_;
   const double steepest = std::max({std::abs(line[slope_x]), std::abs(line[slope_y]), 1e-30f});
   // Nearer by less, nothing hides it from any ray: the umbra's offset.
   const double margin = 0.5 / std::max(rays_.largest_slope, 1e-30);

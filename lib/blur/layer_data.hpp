@@ -28,6 +28,9 @@ struct LayerSet::Data {
   }
   const float* plane(int layer, int p) const noexcept { return const_cast<Data*>(this)->plane(layer, p); }
 
+  /// Of all layers.
+  blur_detail::DepthRange depths() const noexcept { return n_buffer.below({0, 0, columns - 1, rows - 1}); }
+
   /// Room for `layers`; what they held is lost.
   void resize(int new_columns, int new_rows, int layers);
   /// One more layer, empty and black with alpha 1, before it counts.

@@ -72,10 +72,8 @@ TableError error_of(const RayTable& coarse, const RayTable& fine, double nearest
   return error;
 }
 
-}  // namespace
-
-LensRays::LensRays(const LayerCamera& camera, std::span<const PupilPoint> points, int channels, Source source,
-                   const LensRaysOptions& options) {
+void check(const LayerCamera& camera, std::span<const PupilPoint> points, int channels,
+           const LensRaysOptions& options) {
   const auto wrong = [](const std::string& what) { return Error("lens rays: " + what); };
   if (camera.columns < 1 || camera.rows < 1 || !(camera.focal_px > 0) || !std::isfinite(camera.focal_px)) {
     throw wrong("layer camera is " + std::to_string(camera.columns) + " x " + std::to_string(camera.rows) +
@@ -92,6 +90,39 @@ LensRays::LensRays(const LayerCamera& camera, std::span<const PupilPoint> points
   if (!(options.nearest_mm >= 0 && std::isfinite(options.nearest_mm))) {
     throw wrong("nearest depth is " + to_text(options.nearest_mm) + " mm, wanted 0 (a default) or more");
   }
+}
+
+/// How much the rays of nodes differ from those of the first one, and how steep they are.
+struct Spread {
+  double differ_px = 0;  ///< of lines at infinity and at the nearest depth, along columns or rows
+  double light = 0;      ///< of weights
+  double steepest = 0;   ///< |slope| of all, px mm
+};
+
+Spread spread_of(const RayTable& t, double nearest) {
+  const std::size_t n = t.rays;
+  Spread spread;
+  for (std::size_t channel = 0; channel < t.channels; ++channel) {
+    for (std::size_t node = 0; node < t.node_columns * t.node_rows; ++node) {
+      const float *const first = t.node(channel, 0, 0), *const here = first + node * t.node_size();
+      for (std::size_t i = 0; i < n; ++i) {
+        const auto off = [&](Row r) { return std::abs(static_cast<double>(here[r * n + i]) - first[r * n + i]); };
+        for (const auto& [at, slope] : {std::pair{at_x, slope_x}, std::pair{at_y, slope_y}}) {
+          spread.differ_px = std::max({spread.differ_px, off(at), off(at) + nearest * off(slope)});
+          spread.steepest = std::max(spread.steepest, std::abs(static_cast<double>(here[slope * n + i])));
+        }
+        spread.light = std::max(spread.light, off(weight));
+      }
+    }
+  }
+  return spread;
+}
+
+}  // namespace
+
+LensRays::LensRays(const LayerCamera& camera, std::span<const PupilPoint> points, int channels, Source source,
+                   const LensRaysOptions& options) {
+  check(camera, points, channels, options);
   auto d = std::make_shared<Data>();
   d->camera = camera, d->camera.overscan = 0;
   d->points.assign(points.begin(), points.end());
@@ -113,24 +144,9 @@ LensRays::LensRays(const LayerCamera& camera, std::span<const PupilPoint> points
     d->table = std::move(fine);
   }
 
-  const RayTable& t = d->table;
-  const std::size_t n = t.rays;
-  double differ = 0, light = 0, lean = 0;
-  for (std::size_t channel = 0; channel < count; ++channel) {
-    for (std::size_t node = 0; node < t.node_columns * t.node_rows; ++node) {
-      const float *const first = t.node(channel, 0, 0), *const here = first + node * t.node_size();
-      for (std::size_t i = 0; i < n; ++i) {
-        const auto off = [&](Row r) { return std::abs(static_cast<double>(here[r * n + i]) - first[r * n + i]); };
-        for (const auto& [at, slope] : {std::pair{at_x, slope_x}, std::pair{at_y, slope_y}}) {
-          differ = std::max({differ, off(at), off(at) + nearest * off(slope)});
-          lean = std::max(lean, std::abs(static_cast<double>(here[slope * n + i])));
-        }
-        light = std::max(light, off(weight));
-      }
-    }
-  }
-  d->largest_slope = lean;
-  d->shift_invariant = options.sets == 1 && differ <= same_px && light <= 1e-6;
+  const Spread spread = spread_of(d->table, nearest);
+  d->largest_slope = spread.steepest;
+  d->shift_invariant = options.sets == 1 && spread.differ_px <= same_px && spread.light <= 1e-6;
   data_ = std::move(d);
 }
 
