@@ -17,7 +17,7 @@ set(layer_6 focus polynomial)
 set(layer_7 movement)
 set(layer_8 camera)
 set(layer_9 accuracy blur psf)
-set(layer_10 io figure)   # the edge
+set(layer_10 io figure files)   # the edge
 set(edge 10)
 foreach(layer RANGE ${edge})
   foreach(module IN LISTS layer_${layer})

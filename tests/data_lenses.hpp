@@ -12,8 +12,11 @@
 
 namespace petzval::testing {
 
+/// A lens of data/lenses: "double_gauss_100mm_f2.0", or one position of it: "zoom_14-30mm_f4:wide".
 inline Prescription data_prescription(const std::string& id) {
-  return read_prescription(std::filesystem::path(PETZVAL_TEST_DATA) / "lenses" / (id + ".json"));
+  const std::string file = id.substr(0, id.find(':'));
+  const auto lens = read_prescription(std::filesystem::path(PETZVAL_TEST_DATA) / "lenses" / (file + ".json"));
+  return file == id ? lens : configured(lens, id.substr(file.size() + 1));
 }
 
 inline Lens data_lens(const std::string& id) { return compile(data_prescription(id)); }
@@ -28,7 +31,7 @@ inline Lens front_stop_lens(double stop_semi_diameter = 2) {
   return compile(p);
 }
 
-/// Every lens of data/lenses, in the order of names.
+/// Every lens of data/lenses, in the order of names, and each position of those that zoom ("FILE:POSITION" is its id).
 inline std::vector<Prescription> data_prescriptions() {
   std::vector<std::filesystem::path> files;
   for (const auto& entry : std::filesystem::directory_iterator(std::filesystem::path(PETZVAL_TEST_DATA) / "lenses")) {
@@ -36,7 +39,14 @@ inline std::vector<Prescription> data_prescriptions() {
   }
   std::sort(files.begin(), files.end());
   std::vector<Prescription> result;
-  for (const auto& file : files) result.push_back(read_prescription(file));
+  for (const auto& file : files) {
+    const Prescription lens = read_prescription(file);
+    if (lens.configurations.empty()) result.push_back(lens);
+    for (const Configuration& position : lens.configurations) {
+      result.push_back(configured(lens, position.name));
+      result.back().id += ':' + position.name;
+    }
+  }
   return result;
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "core/text.hpp"
+#include "moved_groups.hpp"
 #include "petzval/core/error.hpp"
 #include "solver.hpp"
 
@@ -58,6 +59,7 @@ FocusSolution nearest_focus(const Lens& lens, const FocusOptions& options) {
 }
 
 Lens with_focus(const Lens& lens, double distance, const FocusOptions& options) {
+  if (!lens.focus_positions().empty()) return focus_detail::with_moved_groups(lens, distance, options);
   const FocusSolution solution = solve_focus(lens, distance, options);
   if (solution) return with_film(lens, solution.film_z);
 

@@ -2,8 +2,10 @@
 #include "petzval/io/lens_json.hpp"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <span>
 #include <system_error>
 
@@ -21,11 +23,65 @@ constexpr std::string_view format_name = "petzval-lens 1";
 constexpr std::size_t longest_list = 10'000;
 
 /// The lists and objects of the format.
-enum class Place { file, source, zoom, variable_gaps, aliases, object_space, surfaces, surface, aspheric, term };
+enum class Place {
+  file,
+  source,
+  zoom,
+  variable_gaps,
+  aliases,
+  imported,
+  notes,
+  warnings,
+  warning,
+  design,
+  aperture,
+  fields,
+  field,
+  wavelengths,
+  wavelength,
+  object_space,
+  surfaces,
+  surface,
+  aspheric,
+  term,
+  configurations,
+  configuration,
+  changes,
+  change,
+  new_medium,
+};
 
-constexpr bool is_list(Place place) {
-  return place == Place::aliases || place == Place::surfaces || place == Place::aspheric;
+/// What a list holds: a place, or strings where there is none.
+struct ListOf {
+  std::optional<Place> entry;
+  const char* word;  ///< for one entry in messages
+};
+
+constexpr std::optional<ListOf> list_of(Place place) {
+  switch (place) {
+    case Place::aliases: return ListOf{{}, "aliases"};
+    case Place::notes: return ListOf{{}, "notes"};
+    case Place::warnings: return ListOf{Place::warning, "warning"};
+    case Place::fields: return ListOf{Place::field, "field"};
+    case Place::wavelengths: return ListOf{Place::wavelength, "wavelength"};
+    case Place::surfaces: return ListOf{Place::surface, "surface"};
+    case Place::aspheric: return ListOf{Place::term, "aspheric"};
+    case Place::configurations: return ListOf{Place::configuration, "configuration"};
+    case Place::changes: return ListOf{Place::change, "change"};
+    default: return {};
+  }
 }
+
+constexpr bool is_list(Place place) { return list_of(place).has_value(); }
+
+constexpr std::array aperture_settings{ApertureSetting::entrance_pupil_diameter,
+                                       ApertureSetting::f_number,
+                                       ApertureSetting::working_f_number,
+                                       ApertureSetting::object_na,
+                                       ApertureSetting::image_na,
+                                       ApertureSetting::stop_size};
+constexpr std::array field_kinds{FieldKind::angle_deg, FieldKind::object_height, FieldKind::paraxial_image,
+                                 FieldKind::real_image_height};
 
 /// Builds a prescription while nlohmann's parser walks the text.
 class Reader : public io_detail::JsonReader {
@@ -49,7 +105,19 @@ class Reader : public io_detail::JsonReader {
   static std::span<const Key> keys(Place place);
   const Key* current() const { return key_ < 0 ? nullptr : &keys(open_.back().place)[static_cast<std::size_t>(key_)]; }
   SurfaceRow& row() { return lens_.surfaces.back(); }
-  Medium& medium() { return open_.back().place == Place::surface ? row().medium : lens_.object_space; }
+  Configuration& configuration() { return lens_.configurations.back(); }
+  SurfaceChange& change() { return configuration().changes.back(); }
+  DesignField& field() { return lens_.design.fields.back(); }
+  Medium& medium() {
+    switch (open_.back().place) {
+      case Place::surface: return row().medium;
+      case Place::new_medium: return *change().medium;
+      default: return lens_.object_space;
+    }
+  }
+  int whole_number(const JsonValue& value, int least, int most) const;
+  template <class Enum, std::size_t count>
+  Enum one_of(const JsonValue& value, const std::array<Enum, count>& all) const;
 
   void key(const std::string& name) override;
   void assign(JsonValue value) override;
@@ -67,7 +135,7 @@ class Reader : public io_detail::JsonReader {
 std::span<const Reader::Key> Reader::keys(Place place) {
   using R = Reader;
   using V = const JsonValue;
-  static constexpr std::array<Key, 18> file = {{
+  static constexpr std::array<Key, 21> file = {{
       {"format",
        [](R& r, V& v) {
          if (r.text_of(v) != format_name) r.refuse(describe(v), in_quotes(format_name));
@@ -89,19 +157,85 @@ std::span<const Reader::Key> Reader::keys(Place place) {
       {"zoom", nullptr, Place::zoom},
       {"notes", [](R& r, V& v) { r.lens_.notes = r.maybe_text(v); }},
       {"aliases", nullptr, Place::aliases},
+      {"imported", nullptr, Place::imported},
+      {"design", nullptr, Place::design},
       {"object_space", nullptr, Place::object_space},
       {"surfaces", nullptr, Place::surfaces, true},
+      {"configurations", nullptr, Place::configurations},
   }};
   static constexpr std::array<Key, 2> source = {{
       {"design", [](R& r, V& v) { r.lens_.source_design = r.text_of(v); }},
       {"numbers", [](R& r, V& v) { r.lens_.source_numbers = r.text_of(v); }},
   }};
   static constexpr std::array<Key, 2> zoom = {{
-      {"position", [](R& r, V& v) { r.lens_.zoom->position = r.text_of(v); }},
+      {"position", [](R& r, V& v) { r.configuration().name = r.text_of(v); }},
       {"variable_gaps", nullptr, Place::variable_gaps},
   }};
+  static constexpr std::array<Key, 5> imported = {{
+      {"format", [](R& r, V& v) { r.lens_.imported->format = r.text_of(v); }, {}, true},
+      {"file", [](R& r, V& v) { r.lens_.imported->file = r.text_of(v); }},
+      {"title", [](R& r, V& v) { r.lens_.imported->title = r.text_of(v); }},
+      {"notes", nullptr, Place::notes},
+      {"warnings", nullptr, Place::warnings},
+  }};
+  static constexpr std::array<Key, 3> warning = {{
+      {"line", [](R& r, V& v) { r.lens_.imported->warnings.back().line = r.whole_number(v, 0, 2'000'000'000); }},
+      {"command", [](R& r, V& v) { r.lens_.imported->warnings.back().command = r.text_of(v); }},
+      {"message", [](R& r, V& v) { r.lens_.imported->warnings.back().message = r.text_of(v); }, {}, true},
+  }};
+  static constexpr std::array<Key, 6> design = {{
+      {"aperture", nullptr, Place::aperture},
+      {"object_distance_mm",
+       [](R& r, V& v) {
+         r.lens_.design.object_distance_mm = r.maybe_number(v).value_or(std::numeric_limits<double>::infinity());
+       }},
+      {"field_kind", [](R& r, V& v) { r.lens_.design.field_kind = r.one_of(v, field_kinds); }},
+      {"fields", nullptr, Place::fields},
+      {"wavelengths", nullptr, Place::wavelengths},
+      {"primary_wavelength",
+       [](R& r, V& v) {
+         r.lens_.design.primary_wavelength = static_cast<std::size_t>(r.whole_number(v, 0, longest_list));
+       }},
+  }};
+  static constexpr std::array<Key, 2> aperture = {{
+      {"setting", [](R& r, V& v) { r.lens_.design.aperture->setting = r.one_of(v, aperture_settings); }, {}, true},
+      {"value", [](R& r, V& v) { r.lens_.design.aperture->value = r.number_of(v); }, {}, true},
+  }};
+  static constexpr std::array<Key, 8> field = {{
+      {"x", [](R& r, V& v) { r.field().x = r.number_of(v); }},
+      {"y", [](R& r, V& v) { r.field().y = r.number_of(v); }},
+      {"weight", [](R& r, V& v) { r.field().weight = r.number_of(v); }},
+      {"decentre_x", [](R& r, V& v) { r.field().decentre_x = r.number_of(v); }},
+      {"decentre_y", [](R& r, V& v) { r.field().decentre_y = r.number_of(v); }},
+      {"compress_x", [](R& r, V& v) { r.field().compress_x = r.number_of(v); }},
+      {"compress_y", [](R& r, V& v) { r.field().compress_y = r.number_of(v); }},
+      {"angle_deg", [](R& r, V& v) { r.field().angle_deg = r.number_of(v); }},
+  }};
+  static constexpr std::array<Key, 2> wavelength = {{
+      {"nm", [](R& r, V& v) { r.lens_.design.wavelengths.back().nm = r.number_of(v); }, {}, true},
+      {"weight", [](R& r, V& v) { r.lens_.design.wavelengths.back().weight = r.number_of(v); }},
+  }};
+  static constexpr std::array<Key, 9> configuration = {{
+      {"name", [](R& r, V& v) { r.configuration().name = r.text_of(v); }, {}, true},
+      {"focus_of", [](R& r, V& v) { r.configuration().focus_of = r.maybe_text(v); }},
+      {"subject_distance_mm", [](R& r, V& v) { r.configuration().subject_distance_mm = r.maybe_number(v); }},
+      {"stop", [](R& r, V& v) { r.configuration().stop = r.whole_number(v, 0, longest_list); }},
+      {"focal_length_mm", [](R& r, V& v) { r.configuration().focal_length_mm = r.maybe_number(v); }},
+      {"f_number", [](R& r, V& v) { r.configuration().f_number = r.maybe_number(v); }},
+      {"half_field_deg", [](R& r, V& v) { r.configuration().half_field_deg = r.maybe_number(v); }},
+      {"image_diagonal_mm", [](R& r, V& v) { r.configuration().image_diagonal_mm = r.maybe_number(v); }},
+      {"changes", nullptr, Place::changes},
+  }};
+  static constexpr std::array<Key, 6> change = {{
+      {"surface", [](R& r, V& v) { r.change().surface = r.whole_number(v, 0, longest_list); }, {}, true},
+      {"thickness", [](R& r, V& v) { r.change().thickness = r.number_of(v); }},
+      {"radius", [](R& r, V& v) { r.change().radius = r.number_of(v); }},
+      {"conic", [](R& r, V& v) { r.change().conic = r.number_of(v); }},
+      {"semi_diameter", [](R& r, V& v) { r.change().semi_diameter = r.number_of(v); }},
+      {"medium", nullptr, Place::new_medium},
+  }};
   // The keys of the medium come first: object_space has only these.
-  static constexpr std::array<Key, 14> surface = {{
+  static constexpr std::array<Key, 15> surface = {{
       {"glass", [](R& r, V& v) { r.medium().glass = r.maybe_text(v); }},
       {"catalogue", [](R& r, V& v) { r.medium().catalogue = r.maybe_text(v); }},
       {"glass_origin", [](R& r, V& v) { r.medium().glass_origin = r.maybe_text(v); }},
@@ -121,45 +255,50 @@ std::span<const Reader::Key> Reader::keys(Place place) {
          if (section != "x" && section != "y") r.refuse(describe(v), "\"x\" or \"y\"");
          r.row().curved_in = section == "x" ? Section::x : Section::y;
        }},
+      {"comment", [](R& r, V& v) { r.row().comment = r.maybe_text(v); }},
   }};
   static constexpr std::array<Key, 2> term = {{
-      {"order",
-       [](R& r, V& v) {
-         const double order = r.number_of(v);
-         if (!(order >= 2 && order <= 40 && order == std::floor(order)))
-           r.refuse(describe(v), "a whole number from 2 to 40");
-         r.row().aspheric.back().order = static_cast<int>(order);
-       },
-       {},
-       true},
+      {"order", [](R& r, V& v) { r.row().aspheric.back().order = r.whole_number(v, 2, 40); }, {}, true},
       {"coefficient", [](R& r, V& v) { r.row().aspheric.back().coefficient = r.number_of(v); }, {}, true},
   }};
   switch (place) {
     case Place::file: return file;
     case Place::source: return source;
     case Place::zoom: return zoom;
-    case Place::object_space: return std::span(surface).first(5);
+    case Place::imported: return imported;
+    case Place::warning: return warning;
+    case Place::design: return design;
+    case Place::aperture: return aperture;
+    case Place::field: return field;
+    case Place::wavelength: return wavelength;
+    case Place::object_space:
+    case Place::new_medium: return std::span(surface).first(5);
     case Place::surface: return surface;
     case Place::term: return term;
-    case Place::variable_gaps:
-    case Place::aliases:
-    case Place::surfaces:
-    case Place::aspheric: break;
+    case Place::configuration: return configuration;
+    case Place::change: return change;
+    default: return {};
   }
-  return {};
 }
 
 /// The place in words: file, surface, term and key.
 std::string Reader::here() const {
   std::string text = where_;
   for (const Open& open : open_) {
-    if (open.place == Place::source) text += ": source";
-    if (open.place == Place::zoom) text += ": zoom";
-    if (open.place == Place::object_space) text += ": object_space";
-    if (open.place == Place::variable_gaps) text += ": variable_gaps";
-    if (open.place == Place::surfaces) text += ": surface " + std::to_string(open.entries - 1);
-    if (open.place == Place::aspheric) text += ": aspheric " + std::to_string(open.entries - 1);
-    if (open.place == Place::aliases) text += ": aliases";
+    switch (open.place) {
+      case Place::source: text += ": source"; break;
+      case Place::zoom: text += ": zoom"; break;
+      case Place::variable_gaps: text += ": variable_gaps"; break;
+      case Place::imported: text += ": imported"; break;
+      case Place::design: text += ": design"; break;
+      case Place::aperture: text += ": aperture"; break;
+      case Place::object_space: text += ": object_space"; break;
+      case Place::new_medium: text += ": medium"; break;
+      default:
+        if (const auto list = list_of(open.place)) {
+          text += ": " + std::string(list->word) + (list->entry ? ' ' + std::to_string(open.entries - 1) : "");
+        }
+    }
   }
   if (const Key* key = open_.empty() ? nullptr : current()) return text + ": " + std::string(key->name);
   return text;
@@ -173,7 +312,7 @@ void Reader::key(const std::string& name) {
     if (!whole || gap_ < 0 || static_cast<std::size_t>(gap_) >= longest_list) {
       throw Error(here() + ": key " + in_quotes(name) + ", wanted the number of a surface");
     }
-    if (lens_.zoom->variable_gaps.contains(gap_))
+    if (std::ranges::find(configuration().changes, gap_, &SurfaceChange::surface) != configuration().changes.end())
       throw Error(here() + ": key " + in_quotes(name) + " is given twice, wanted once");
     return;
   }
@@ -195,14 +334,22 @@ void Reader::key(const std::string& name) {
 void Reader::assign(JsonValue value) {
   if (open_.empty()) throw Error(where_ + ": document is " + describe(value) + ", wanted an object");
   switch (open_.back().place) {
-    case Place::variable_gaps: lens_.zoom->variable_gaps[gap_] = number_of(value); return;
+    case Place::variable_gaps:
+      configuration().changes.push_back({.surface = gap_, .thickness = number_of(value)});
+      return;
     case Place::aliases:
       count_entry();
       lens_.aliases.push_back(text_of(value));
       return;
-    case Place::surfaces:
-    case Place::aspheric: count_entry(); refuse(describe(value), "an object");
+    case Place::notes:
+      count_entry();
+      lens_.imported->notes.push_back(text_of(value));
+      return;
     default: break;
+  }
+  if (is_list(open_.back().place)) {
+    count_entry();
+    refuse(describe(value), "an object");
   }
   const Key& key = *current();
   if (key.opens) refuse(describe(value), is_list(*key.opens) ? "a list" : "an object");
@@ -227,8 +374,8 @@ void Reader::open(bool list) {
   std::optional<Place> inner;
   if (is_list(outer)) {
     count_entry();
-    if (list || outer == Place::aliases) refuse(found, outer == Place::aliases ? "a string" : "an object");
-    inner = outer == Place::surfaces ? Place::surface : Place::term;
+    inner = list_of(outer)->entry;
+    if (list || !inner) refuse(found, inner ? "an object" : "a string");
   } else if (outer == Place::variable_gaps) {
     refuse(found, "a number");
   } else {
@@ -238,9 +385,45 @@ void Reader::open(bool list) {
   }
   open_.push_back({*inner});
   key_ = -1;
-  if (inner == Place::surface) lens_.surfaces.emplace_back();
-  if (inner == Place::term) row().aspheric.emplace_back();
-  if (inner == Place::zoom) lens_.zoom.emplace();
+  switch (*inner) {
+    case Place::surface: lens_.surfaces.emplace_back(); break;
+    case Place::term: row().aspheric.emplace_back(); break;
+    case Place::zoom:
+      if (!lens_.configurations.empty())
+        throw Error(where_ + ": \"zoom\" beside \"configurations\", wanted one of them");
+      lens_.configurations.push_back({.name = "zoom"});
+      break;
+    case Place::configurations:
+      if (!lens_.configurations.empty())
+        throw Error(where_ + ": \"zoom\" beside \"configurations\", wanted one of them");
+      break;
+    case Place::imported: lens_.imported.emplace(); break;
+    case Place::warning: lens_.imported->warnings.emplace_back(); break;
+    case Place::aperture: lens_.design.aperture.emplace(); break;
+    case Place::field: lens_.design.fields.emplace_back(); break;
+    case Place::wavelength: lens_.design.wavelengths.emplace_back(); break;
+    case Place::configuration: lens_.configurations.emplace_back(); break;
+    case Place::change: configuration().changes.emplace_back(); break;
+    case Place::new_medium: change().medium.emplace(); break;
+    default: break;
+  }
+}
+
+int Reader::whole_number(const JsonValue& value, int least, int most) const {
+  const double number = number_of(value);
+  if (number >= least && number <= most && number == std::floor(number)) return static_cast<int>(number);
+  refuse(describe(value), "a whole number from " + std::to_string(least) + " to " + std::to_string(most));
+}
+
+template <class Enum, std::size_t count>
+Enum Reader::one_of(const JsonValue& value, const std::array<Enum, count>& all) const {
+  const std::string text = text_of(value);
+  std::string known;
+  for (const Enum entry : all) {
+    if (name(entry) == text) return entry;
+    known += (known.empty() ? "" : ", ") + std::string(name(entry));
+  }
+  refuse(describe(value), "one of " + known);
 }
 
 void Reader::close() {

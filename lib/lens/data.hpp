@@ -23,6 +23,7 @@ struct Lens::Data {
   std::optional<std::size_t> stop;
   Iris iris;
   double film_z = 0;
+  std::vector<FocusPosition> focus_positions;
   std::vector<double> wavelengths_nm;
   std::size_t primary = 0;
   lens_detail::Indices indices;

@@ -50,6 +50,7 @@ const std::string& Lens::name() const noexcept { return data_->name; }
 std::span<const LensSurface> Lens::surfaces() const noexcept { return data_->surfaces; }
 std::optional<std::size_t> Lens::stop() const noexcept { return data_->stop; }
 const Iris& Lens::iris() const noexcept { return data_->iris; }
+std::span<const FocusPosition> Lens::focus_positions() const noexcept { return data_->focus_positions; }
 double Lens::film_z() const noexcept { return data_->film_z; }
 std::span<const double> Lens::wavelengths_nm() const noexcept { return data_->wavelengths_nm; }
 Dispersion Lens::dispersion() const noexcept { return data_->indices.dispersion; }
@@ -124,9 +125,44 @@ const kernel::LensView<double>& kernel::view(const Lens& lens) noexcept {
   return lens.data().in_double->view;
 }
 
-Lens compile(const Prescription& prescription, std::span<const double> wavelengths_nm, const CompileOptions& options) {
-  const std::string where = prescription.name.empty() ? std::string("lens") : prescription.name;
-  validate(prescription, where);
+namespace {
+
+/// Vertices and film by the thicknesses.
+void place_vertices(Lens::Data& data) {
+  double z = 0;
+  for (LensSurface& surface : data.surfaces) {
+    surface.vertex_z = z;
+    z += surface.thickness;
+  }
+  data.film_z = z;
+}
+
+/// Those of a prescription in one configuration; none if no other position focuses it, or if more than thicknesses
+/// change.
+std::vector<FocusPosition> focus_positions(const Prescription& prescription) {
+  std::vector<FocusPosition> result;
+  for (std::size_t i = 0; i < prescription.configurations.size(); ++i) {
+    const Prescription rows = configured(prescription, i);
+    const double distance =
+        prescription.configurations[i].subject_distance_mm.value_or(std::numeric_limits<double>::infinity());
+    FocusPosition position{1 / distance, {}};
+    for (const SurfaceRow& row : rows.surfaces) position.thicknesses.push_back(row.thickness);
+    const bool known =
+        std::ranges::find(result, position.inverse_distance, &FocusPosition::inverse_distance) != result.end();
+    if (!known) result.push_back(std::move(position));
+  }
+  if (result.size() < 2) return {};
+  std::ranges::sort(result, {}, &FocusPosition::inverse_distance);
+  return result;
+}
+
+}  // namespace
+
+Lens compile(const Prescription& source, std::span<const double> wavelengths_nm, const CompileOptions& options) {
+  const auto name_of = [](const Prescription& p) { return p.name.empty() ? std::string("lens") : p.name; };
+  validate(source, name_of(source));
+  const Prescription prescription = configured(source, options.configuration);
+  const std::string where = name_of(prescription);
   if (wavelengths_nm.empty()) throw Error(where + ": no wavelength to compile for, wanted one at least");
 
   auto data = std::make_shared<Lens::Data>();
@@ -140,10 +176,8 @@ Lens compile(const Prescription& prescription, std::span<const double> wavelengt
   }
   data->primary = compiled(data->wavelengths_nm, prescription.reference_wavelength_nm)
                       .value_or(nearest(data->wavelengths_nm, d_line_nm));
-  double z = 0;
   for (const SurfaceRow& row : prescription.surfaces) {
     LensSurface s;
-    s.vertex_z = z;
     s.thickness = row.thickness;
     s.curvature = row.radius == 0 ? 0 : 1 / row.radius;
     s.conic = row.conic;
@@ -154,9 +188,9 @@ Lens compile(const Prescription& prescription, std::span<const double> wavelengt
     s.mirror = row.mirror;
     if (row.stop && !data->stop) data->stop = data->surfaces.size();
     data->surfaces.push_back(std::move(s));
-    z += row.thickness;
   }
-  data->film_z = z;
+  place_vertices(*data);
+  data->focus_positions = focus_positions(prescription);
   data->indices = lens_detail::indices(prescription, wavelengths_nm, options, where);
   data->build();
   return Lens(std::move(data));
@@ -192,6 +226,33 @@ Lens with_film(const Lens& lens, double film_z) {
   }
   auto data = std::make_shared<Lens::Data>(*lens.data_);
   data->film_z = film_z;
+  return Lens(std::move(data));
+}
+
+Lens with_groups_at(const Lens& lens, double inverse_distance) {
+  const std::span<const FocusPosition> positions = lens.focus_positions();
+  const auto refuse = [&](const std::string& found, const std::string& wanted) {
+    throw Error(lens.name() + ": " + found + ", wanted " + wanted);
+  };
+  if (positions.empty()) refuse("no group moves", "a lens with positions that focus");
+  if (!std::isfinite(inverse_distance)) refuse("inverse distance is " + to_text(inverse_distance), "a finite one");
+
+  const auto above = std::ranges::upper_bound(positions.subspan(1, positions.size() - 2), inverse_distance, {},
+                                              &FocusPosition::inverse_distance);
+  const FocusPosition &to = *above, &from = *(above - 1);
+  const double t = (inverse_distance - from.inverse_distance) / (to.inverse_distance - from.inverse_distance);
+  auto data = std::make_shared<Lens::Data>(*lens.data_);
+  for (std::size_t i = 0; i < data->surfaces.size(); ++i) {
+    const double near = from.thicknesses[i], far = to.thicknesses[i];
+    const double thickness = near == far ? near : near + t * (far - near);
+    if (thickness < 0 && near > 0 && far > 0) {
+      refuse("surface " + std::to_string(i) + ": its thickness would be " + to_text(thickness) + " mm",
+             "groups that do not meet");
+    }
+    data->surfaces[i].thickness = thickness;
+  }
+  place_vertices(*data);
+  data->build();
   return Lens(std::move(data));
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "core/text.hpp"
 #include "petzval/core/error.hpp"
@@ -20,6 +21,34 @@ double times(double value, double factor, const std::string& where) {
               ", wanted a number in the normal range of double");
 }
 
+void enlarge(std::optional<double>& length, double factor, const std::string& where) {
+  if (length) length = times(*length, factor, where);
+}
+
+void scale(DesignData& design, double factor, const std::string& where) {
+  using enum ApertureSetting;
+  if (design.aperture && design.aperture->setting == entrance_pupil_diameter) {
+    design.aperture->value = times(design.aperture->value, factor, where);
+  }
+  design.object_distance_mm = times(design.object_distance_mm, factor, where);
+  if (design.field_kind == FieldKind::angle_deg) return;
+  for (DesignField& field : design.fields) {
+    field.x = times(field.x, factor, where);
+    field.y = times(field.y, factor, where);
+  }
+}
+
+void scale(Configuration& configuration, double factor, const std::string& where) {
+  enlarge(configuration.subject_distance_mm, factor, where);
+  enlarge(configuration.focal_length_mm, factor, where);
+  enlarge(configuration.image_diagonal_mm, factor, where);
+  for (SurfaceChange& change : configuration.changes) {
+    enlarge(change.thickness, factor, where);
+    enlarge(change.radius, factor, where);
+    enlarge(change.semi_diameter, factor, where);
+  }
+}
+
 }  // namespace
 
 Prescription scale(const Prescription& prescription, double factor) {
@@ -28,21 +57,17 @@ Prescription scale(const Prescription& prescription, double factor) {
   if (!(factor > 0 && std::isfinite(factor))) {
     throw Error(where + ": scale factor is " + to_text(factor) + ", wanted a finite number above 0");
   }
-  const auto enlarge = [&](std::optional<double>& length) {
-    if (length) length = times(*length, factor, where);
-  };
-  enlarge(p.focal_length_mm);
-  enlarge(p.image_diagonal_mm);
-  if (p.zoom) {
-    for (auto& [surface, gap] : p.zoom->variable_gaps) gap = times(gap, factor, where);
-  }
+  enlarge(p.focal_length_mm, factor, where);
+  enlarge(p.image_diagonal_mm, factor, where);
+  scale(p.design, factor, where);
+  for (Configuration& c : p.configurations) scale(c, factor, where + ": configuration \"" + c.name + '"');
   for (std::size_t i = 0; i < p.surfaces.size(); ++i) {
     SurfaceRow& row = p.surfaces[i];
     const std::string here = where + ": surface " + std::to_string(i);
     row.radius = times(row.radius, factor, here);
     row.thickness = times(row.thickness, factor, here);
-    enlarge(row.semi_diameter);
-    enlarge(row.obscuration_semi_diameter);
+    enlarge(row.semi_diameter, factor, here);
+    enlarge(row.obscuration_semi_diameter, factor, here);
     for (auto& [order, coefficient] : row.aspheric) coefficient = times(coefficient, std::pow(factor, 1 - order), here);
   }
   return p;
@@ -76,11 +101,33 @@ Prescription reverse(const Prescription& prescription) {
   p.half_field_deg.reset();
   p.image_diagonal_mm.reset();
   p.image_distance.reset();
-  if (p.zoom) {
-    p.zoom->variable_gaps.clear();
-    for (const auto& [surface, gap] : prescription.zoom->variable_gaps) {
-      const int last = static_cast<int>(count) - 1;
-      if (surface < last) p.zoom->variable_gaps[last - 1 - surface] = opposite_if(!turned, gap);
+  p.design = {};
+  std::erase_if(p.configurations, [](const Configuration& c) { return c.focus_of.has_value(); });
+  for (Configuration& c : p.configurations) {
+    const int last = static_cast<int>(count) - 1;
+    c.f_number.reset();
+    c.half_field_deg.reset();
+    c.image_diagonal_mm.reset();
+    c.subject_distance_mm.reset();
+    if (c.stop) c.stop = last - *c.stop;
+    std::map<int, SurfaceChange> changes;
+    for (const SurfaceChange& old : c.changes) {
+      // What lies behind a surface lies behind the one before it in the reversed lens.
+      if (old.surface < last && (old.thickness || old.medium)) {
+        SurfaceChange& gap = changes[last - 1 - old.surface];
+        gap.medium = old.medium;
+        if (old.thickness) gap.thickness = opposite_if(!turned, *old.thickness);
+      }
+      if (!old.radius && !old.conic && !old.semi_diameter) continue;
+      SurfaceChange& surface = changes[last - old.surface];
+      surface.conic = old.conic;
+      surface.semi_diameter = old.semi_diameter;
+      if (old.radius) surface.radius = opposite_if(turned, *old.radius);
+    }
+    c.changes.clear();
+    for (auto& [surface, change] : changes) {
+      change.surface = surface;
+      c.changes.push_back(change);
     }
   }
   return p;

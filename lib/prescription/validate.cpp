@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -13,6 +14,7 @@ namespace {
 constexpr double smallest_radius = 1e-12;
 constexpr double longest_thickness = 1e10;
 constexpr std::size_t most_surfaces = 10'000;
+constexpr std::size_t most_configurations = 1'000;
 
 [[noreturn]] void refuse(const std::string& where, const std::string& what, double found, const std::string& wanted) {
   throw Error(where + ": " + what + " is " + to_text(found) + ", wanted " + wanted);
@@ -70,6 +72,75 @@ void check_surface(const std::string& where, const SurfaceRow& row, const Medium
   }
 }
 
+void check_design(const std::string& where, const DesignData& design) {
+  if (design.aperture && !(design.aperture->value >= 0 && std::isfinite(design.aperture->value))) {
+    refuse(where, "aperture", design.aperture->value, "a finite number of 0 or more");
+  }
+  if (std::isnan(design.object_distance_mm)) refuse(where, "object distance", design.object_distance_mm, "a length");
+  for (std::size_t i = 0; i < design.fields.size(); ++i) {
+    const std::string here = where + ": field " + std::to_string(i);
+    const DesignField& f = design.fields[i];
+    for (const double value : {f.x, f.y, f.weight, f.decentre_x, f.decentre_y, f.compress_x, f.compress_y, f.angle_deg})
+      check_finite(here, "a value", value, "a finite number");
+  }
+  for (std::size_t i = 0; i < design.wavelengths.size(); ++i) {
+    const auto& [nm, weight] = design.wavelengths[i];
+    const std::string here = where + ": wavelength " + std::to_string(i);
+    if (!(nm >= 10 && nm <= 1e5)) refuse(here, "it", nm, "10 to 100000 nm");
+    check_finite(here, "weight", weight, "a finite number");
+  }
+  if (design.primary_wavelength > 0 && design.primary_wavelength >= design.wavelengths.size()) {
+    refuse(where, "primary wavelength", static_cast<double>(design.primary_wavelength),
+           "one of " + std::to_string(design.wavelengths.size()));
+  }
+}
+
+void check_configuration(const std::string& where, const Prescription& p, const Configuration& c) {
+  const auto check_place = [&](const char* what, int surface) {
+    if (surface < 0 || static_cast<std::size_t>(surface) >= p.surfaces.size()) {
+      refuse(where, what, surface, "one of " + std::to_string(p.surfaces.size()));
+    }
+  };
+  if (c.stop) check_place("stop", *c.stop);
+  if (c.subject_distance_mm && !(*c.subject_distance_mm > 0)) {
+    refuse(where, "subject_distance_mm", *c.subject_distance_mm, "a length above 0, or inf");
+  }
+  std::set<int> changed;
+  for (const SurfaceChange& change : c.changes) {
+    check_place("changed surface", change.surface);
+    if (!changed.insert(change.surface).second) {
+      throw Error(where + ": surface " + std::to_string(change.surface) + " is changed twice, wanted once");
+    }
+  }
+  if (c.focus_of && std::ranges::none_of(p.configurations, [&](const Configuration& other) {
+        return !other.focus_of && other.name == *c.focus_of;
+      })) {
+    throw Error(where + " focuses \"" + *c.focus_of + "\", wanted the name of a zoom position");
+  }
+}
+
+void check_configurations(const std::string& where, const Prescription& p) {
+  if (p.configurations.size() > most_configurations) {
+    throw Error(where + ": " + std::to_string(p.configurations.size()) + " configurations, wanted at most " +
+                std::to_string(most_configurations));
+  }
+  std::set<std::string> names;
+  for (std::size_t i = 0; i < p.configurations.size(); ++i) {
+    const Configuration& c = p.configurations[i];
+    const std::string here = where + ": configuration " + std::to_string(i);
+    if (c.name.empty()) throw Error(here + " has no name, wanted one");
+    if (!names.insert(c.name).second) throw Error(here + ": name \"" + c.name + "\" is given twice, wanted once");
+    if (i == 0 && c.focus_of) throw Error(here + " focuses another, wanted a zoom position first");
+    check_configuration(here, p, c);
+    Prescription rows = p;
+    rows.configurations = {c};
+    rows.configurations[0].focus_of.reset();
+    rows = configured(rows, 0);
+    rows.configurations.clear();
+    validate(rows, here);
+  }
+}
+
 }  // namespace
 
 void validate(const Prescription& p, const std::string& where) {
@@ -95,14 +166,8 @@ void validate(const Prescription& p, const std::string& where) {
     check_surface(where + ": surface " + std::to_string(i), p.surfaces[i], *before);
     before = &p.surfaces[i].medium;
   }
-  if (!p.zoom) return;
-  for (const auto& [surface, gap] : p.zoom->variable_gaps) {
-    if (surface < 0 || static_cast<std::size_t>(surface) >= p.surfaces.size()) {
-      refuse(where + ": zoom", "variable gap's surface", surface, "one of " + std::to_string(p.surfaces.size()));
-    }
-    const std::string what = "variable gap " + std::to_string(surface);
-    check_finite(where + ": zoom", what.c_str(), gap, "a finite length in mm");
-  }
+  check_design(where + ": design", p.design);
+  check_configurations(where, p);
 }
 
 }  // namespace petzval::inline v0

@@ -196,8 +196,8 @@ TEST(Lint, FindsInDataTheKnownOverlapsAndNothingElse) {
       {"biotar_100mm_f1.4", {4}},         {"double_gauss_100mm_f1.7_substitute", {3}},
       {"modern_50mm_f1.0", {6}},          {"retrofocus_100mm_f2", {3}},
       {"telephoto_200mm_f1.8", {3}},      {"telephoto_392mm_f2.9", {12, 23}},
-      {"tessar_100mm_f5.5_1902", {0, 6}}, {"zoom_70-210mm_f4_middle", {6}},
-      {"zoom_70-210mm_f4_tele", {6}},     {"zoom_70-210mm_f4_wide", {6}},
+      {"tessar_100mm_f5.5_1902", {0, 6}}, {"zoom_70-210mm_f4:middle", {6}},
+      {"zoom_70-210mm_f4:tele", {6}},     {"zoom_70-210mm_f4:wide", {6}},
   };
   std::size_t count = 0;
   for (const Prescription& p : testing::data_prescriptions()) {

@@ -49,7 +49,7 @@ TEST(Autofocus, OfAThinLensFollowsItsFormula) {
 
 TEST(Autofocus, OfOneTargetOnTheAxisIsSolveFocus) {
   for (const char* id : {"double_gauss_100mm_f2.0", "telephoto_100mm_f5.6", "retrofocus_100mm_f2.8", "fisheye_8mm_f2.8",
-                         "zoom_57-143mm_f2.8_tele", "anamorphic_60mm_2x"}) {
+                         "zoom_57-143mm_f2.8:tele", "anamorphic_60mm_2x"}) {
     const Lens lens = data_lens(id);
     const std::size_t wavelength = lens.primary_wavelength();
     for (const double distance : {2000.0, 1e5, 1e12, infinity}) {

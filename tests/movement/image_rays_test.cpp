@@ -42,7 +42,7 @@ BundleBlur blur(const ImageRays& bundles, const Vec3<double>& place, const Film&
 
 TEST(ImageRays, OfALensStoppedDownBlurAsTheThickLensDoes) {
   for (const char* id : {"double_gauss_100mm_f2.0", "telephoto_100mm_f5.6", "retrofocus_100mm_f2.8",
-                         "zoom_57-143mm_f2.8_tele", "singlet_50mm_biconvex"}) {
+                         "zoom_57-143mm_f2.8:tele", "singlet_50mm_biconvex"}) {
     SCOPED_TRACE(id);
     const Lens lens = with_f_number(data_lens(id), 64);
     const ImageRays bundles(lens, 20);
@@ -64,7 +64,7 @@ TEST(ImageRays, OfALensStoppedDownBlurAsTheThickLensDoes) {
 // Two ways through other code: outlines of each point and scrambled points; tables of all points and a lattice.
 TEST(ImageRays, HaveTheSpotsOfOutlines) {
   for (const char* id :
-       {"double_gauss_100mm_f2.0", "modern_50mm_f1.0", "zoom_57-143mm_f2.8_tele", "fisheye_8mm_f2.8"}) {
+       {"double_gauss_100mm_f2.0", "modern_50mm_f1.0", "zoom_57-143mm_f2.8:tele", "fisheye_8mm_f2.8"}) {
     const Prescription prescription = testing::data_prescription(id);
     const Lens lens = compile(prescription);
     const double f = std::abs(thick_lens(lens).rear_focal_length), film_z = lens.film_z() + 0.01 * f;

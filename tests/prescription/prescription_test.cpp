@@ -115,14 +115,27 @@ TEST(Validate, FieldsThatContradictEachOtherAreRefused) {
               p.surfaces[0].aspheric = {{4, 0.5}, {4, 0.5}};
             }),
             "s: surface 0: aspheric coefficient of order 4 is given twice, wanted once");
+  EXPECT_EQ(
+      refusal([](auto& p) { p.configurations = {{.name = "wide", .changes = {{.surface = 2, .thickness = 5}}}}; }),
+      "s: configuration 0: changed surface is 2, wanted one of 2");
+  EXPECT_EQ(
+      refusal([](auto& p) { p.configurations = {{.name = "wide", .changes = {{.surface = 1, .thickness = nan}}}}; }),
+      "s: configuration 0: surface 1: thickness is nan, wanted a finite length below 1e10 mm");
+  EXPECT_EQ(refusal([](auto& p) { p.configurations = {{}}; }), "s: configuration 0 has no name, wanted one");
   EXPECT_EQ(refusal([](auto& p) {
-              p.zoom = {.position = "wide", .variable_gaps = {{2, 5.0}}};
+              p.configurations = {{.name = "a"}, {.name = "a"}};
             }),
-            "s: zoom: variable gap's surface is 2, wanted one of 2");
+            "s: configuration 1: name \"a\" is given twice, wanted once");
   EXPECT_EQ(refusal([](auto& p) {
-              p.zoom = {.position = "wide", .variable_gaps = {{1, nan}}};
+              p.configurations = {{.name = "a"}, {.name = "b", .focus_of = "c"}};
             }),
-            "s: zoom: variable gap 1 is nan, wanted a finite length in mm");
+            "s: configuration 1 focuses \"c\", wanted the name of a zoom position");
+  EXPECT_EQ(refusal([](auto& p) {
+              p.configurations = {{.name = "a", .changes = {{.surface = 1}, {.surface = 1}}}};
+            }),
+            "s: configuration 0: surface 1 is changed twice, wanted once");
+  EXPECT_EQ(refusal([](auto& p) { p.design.wavelengths = {{.nm = 0.5876}}; }),
+            "s: design: wavelength 0: it is 0.5876, wanted 10 to 100000 nm");
 }
 
 TEST(Validate, StrangeButLegalLensesPass) {
@@ -174,13 +187,14 @@ TEST(Scale, AspheresStaySimilar) {
 }
 
 TEST(Scale, LengthsFollowAndRatiosStay) {
-  Prescription p = petzval::testing::data_prescription("zoom_14-30mm_f4_middle");
+  const Prescription p = petzval::testing::data_prescription("zoom_14-30mm_f4:middle");
+  const Prescription whole = petzval::testing::data_prescription("zoom_14-30mm_f4");
   const Prescription scaled = petzval::scale(p, 2);
   EXPECT_EQ(scaled.focal_length_mm, 40.0);
   EXPECT_EQ(scaled.image_diagonal_mm, 2 * 43.4);
   EXPECT_EQ(scaled.f_number, p.f_number);
   EXPECT_EQ(scaled.half_field_deg, p.half_field_deg);
-  EXPECT_EQ(scaled.zoom->variable_gaps.at(7), 2 * 12.942);
+  EXPECT_EQ(configured(petzval::scale(whole, 2), "middle"), scaled);
   EXPECT_EQ(scaled.surfaces[1].conic, -1);
   EXPECT_EQ(scaled.surfaces[0].semi_diameter, 2 * 29.285);
 }

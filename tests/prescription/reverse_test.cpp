@@ -147,7 +147,9 @@ TEST(Reverse, TwiceGivesTheLensBackButForWhatOneSideHas) {
     expected.half_field_deg.reset();
     expected.image_diagonal_mm.reset();
     expected.image_distance.reset();
-    if (expected.zoom) expected.zoom->variable_gaps.erase(static_cast<int>(p.surfaces.size()) - 1);
+    for (petzval::Configuration& c : expected.configurations) {
+      c.f_number = c.half_field_deg = c.image_diagonal_mm = std::nullopt;
+    }
     EXPECT_EQ(petzval::reverse(petzval::reverse(p)), expected) << p.id;
   }
 }

@@ -124,7 +124,7 @@ TEST(FilmPupilTable, CoversPupilsInParts) {
 TEST(FilmPupilTable, FindsWhereTheLightEnds) {
   for (const auto& [id, radius] : {std::pair{"fisheye_8mm_f2.8", 13.0},
                                    {"phone_5.6mm_f3.5", 5.0},
-                                   {"zoom_57-143mm_f2.8_wide", 60.0},
+                                   {"zoom_57-143mm_f2.8:wide", 60.0},
                                    {"catadioptric_mangin_1000mm_f7.5", 80.0}}) {
     const Lens lens = data_lens(id);
     const auto lit = [&](double height) { return !exit_pupil_boundary(lens, {0, height}).empty(); };

@@ -56,7 +56,7 @@ const std::vector<Row> table = {
     {"mirror_ritchey_chretien_57.6m_f24",
      {0xb978909970d9f034, 0xb43f31a5c3bca86a, 0xec1342377a5872bd, 0x3bb8ccae08ddd341}},
     {"mirror_newton_200mm_f8", {0x27ea6f62eae31797, 0xd252f2c35a36fe6a, 0xba895f72eec632af, 0xbd15b31fe8b82adb}},
-    {"zoom_14-30mm_f4_wide", {0x2fd09796a6419818, 0x7e6e6e8e33678586, 0x2cb18390cf551e4b, 0xab6ea931a44d3c75}},
+    {"zoom_14-30mm_f4:wide", {0x2fd09796a6419818, 0x7e6e6e8e33678586, 0x2cb18390cf551e4b, 0xab6ea931a44d3c75}},
     {"analytic_plano_hyperbolic_100mm",
      {0x792f5ee52a42d4ac, 0x19c72fcf9cc203ca, 0x7cb190f5137ae332, 0x9b42f2e6ecc2d51c}},
     {"eye_gullstrand_le_grand", {0x4f32c6bd4f383490, 0xb82239d997ad019f, 0xae3f7721e23be21d, 0x00e777adbb786302}},

@@ -36,7 +36,7 @@ TYPED_TEST(BatchWavelengths, MixedInABatchAreWhatEachGivesAlone) {
   using T = TypeParam;
   constexpr std::uint16_t beyond[] = {5, 6, 64, 4096, 65535};
   for (const char* id : {"double_gauss_100mm_f2.0", "modern_58mm_f0.95", "fisheye_6.3mm_f2.8",
-                         "catadioptric_mangin_1000mm_f7.5", "zoom_14-30mm_f4_wide"}) {
+                         "catadioptric_mangin_1000mm_f7.5", "zoom_14-30mm_f4:wide"}) {
     const auto sample = colourful(testing_lenses::load(id));
     for (const Travel travel : {Travel::to_film, Travel::to_scene}) {
       const auto rays = rays_for<T>(sample, travel, 333);
@@ -163,7 +163,7 @@ double apart(const Ray<T>& a, const Ray<T>& b, double size) {
 TYPED_TEST(BatchWavelengths, InNmGiveTheRaysOfALensCompiledForThem) {
   using T = TypeParam;
   for (const char* id : {"double_gauss_100mm_f2.0", "modern_58mm_f0.95", "fisheye_6.3mm_f2.8",
-                         "catadioptric_mangin_1000mm_f7.5", "zoom_14-30mm_f4_wide", "anamorphic_60mm_2x"}) {
+                         "catadioptric_mangin_1000mm_f7.5", "zoom_14-30mm_f4:wide", "anamorphic_60mm_2x"}) {
     const auto sample = colourful(testing_lenses::load(id));
     static const auto glasses = petzval::GlassCatalogue::load(std::filesystem::path(PETZVAL_TEST_DATA) / "glass");
     for (const Travel travel : {Travel::to_film, Travel::to_scene}) {

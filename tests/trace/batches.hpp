@@ -51,7 +51,7 @@ inline const std::vector<testing_lenses::Sample>& telling() {
          {"double_gauss_100mm_f2.0", "petzval_100mm_f1.6", "fisheye_6.3mm_f2.8", "modern_58mm_f0.95",
           "phone_5.6mm_f3.5", "anamorphic_60mm_2x", "cylinder_3.9mm", "catadioptric_corrector_25mm_f1.25",
           "catadioptric_mangin_1000mm_f7.5", "mirror_ritchey_chretien_57.6m_f24", "mirror_newton_200mm_f8",
-          "zoom_14-30mm_f4_wide", "analytic_plano_hyperbolic_100mm", "eye_gullstrand_le_grand"}) {
+          "zoom_14-30mm_f4:wide", "analytic_plano_hyperbolic_100mm", "eye_gullstrand_le_grand"}) {
       result.push_back(testing_lenses::load(id));
     }
     return result;

@@ -3,14 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <limits>
 #include <optional>
 #include <random>
 #include <string>
 #include <vector>
 
-#include "petzval/io/lens_json.hpp"
+#include "../data_lenses.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/trace/trace.hpp"
 #include "trace/sequential.hpp"
@@ -25,30 +24,22 @@ struct Sample {
   double size;  ///< largest clear aperture, mm
 };
 
-inline Sample load_file(const std::filesystem::path& file) {
-  auto prescription = petzval::read_prescription(file);
+inline Sample sample_of(petzval::Prescription prescription, const std::string& id) {
   auto lens = petzval::compile(prescription);
   double size = 0;
   for (const auto& s : lens.surfaces()) {
     if (std::isfinite(s.semi_diameter)) size = std::max(size, s.semi_diameter);
   }
-  return {file.stem().string(), std::move(prescription), std::move(lens), size};
+  return {id, std::move(prescription), std::move(lens), size};
 }
 
-inline Sample load(const std::string& id) {
-  return load_file(std::filesystem::path(PETZVAL_TEST_DATA) / "lenses" / (id + ".json"));
-}
+inline Sample load(const std::string& id) { return sample_of(petzval::testing::data_prescription(id), id); }
 
-/// Every lens of data/lenses, in the order of names.
+/// Every lens of data/lenses, in the order of names, each position of those that zoom.
 inline const std::vector<Sample>& all() {
   static const std::vector<Sample> samples = [] {
-    std::vector<std::filesystem::path> files;
-    for (const auto& entry : std::filesystem::directory_iterator(std::filesystem::path(PETZVAL_TEST_DATA) / "lenses")) {
-      if (entry.path().extension() == ".json") files.push_back(entry.path());
-    }
-    std::sort(files.begin(), files.end());
     std::vector<Sample> result;
-    for (const auto& file : files) result.push_back(load_file(file));
+    for (const auto& lens : petzval::testing::data_prescriptions()) result.push_back(sample_of(lens, lens.id));
     return result;
   }();
   return samples;

@@ -93,10 +93,14 @@ PETZVAL_API FocusSolution solve_subject(const Lens& lens, double film_z, const F
 /// The nearest subject that solve_focus reaches, as a limit: its distance itself may be out of reach.
 PETZVAL_API FocusSolution nearest_focus(const Lens& lens, const FocusOptions& options = {});
 
-/// The lens with its film where solve_focus puts it: by default, where a subject on the axis is sharpest. A camera of
+/// The lens in focus at a distance. If its groups move (Lens::focus_positions), they stand where the subject is sharp
+/// on the film, which keeps its place behind them: where the table says, but for what the criterion of focus differs
+/// from that of the table. Otherwise its film is where solve_focus puts it: by default, where a subject on the axis is
+/// sharpest. A camera of
 /// it, by whatever ray model, is sharpest there too, within the depth over which the RMS blur grows by 5 %
 /// (tests/camera/focus_test.cpp). A stop moves the sharpest film of a lens with spherical aberration: set the f-number
-/// first. Throws Error, which names the nearest distance, if there is no focus.
+/// first. Throws Error, which names the nearest distance, if there is no focus; groups move no farther than a fifth of
+/// their way beyond its ends.
 PETZVAL_API Lens with_focus(const Lens& lens, double distance, const FocusOptions& options = {});
 
 /// Diameter of the blur (circle of confusion) of a subject on the film of the lens, as the criterion measures it. For

@@ -41,6 +41,7 @@ struct CompileOptions {
   const GlassCatalogue* glasses = nullptr;  ///< not needed for printed indices at the reference wavelength
   IndexPolicy index_policy = IndexPolicy::printed;
   MissingGlass missing_glass = MissingGlass::error;
+  ConfigurationChoice configuration{};  ///< of a prescription with configurations: its first one
 };
 
 /// One surface of a compiled lens, in double. Millimetres. Curvature, never radius.
@@ -56,12 +57,21 @@ struct LensSurface {
   bool mirror = false;
 };
 
+/// The thicknesses of a lens whose groups move, focused at one distance.
+struct FocusPosition {
+  double inverse_distance = 0;  ///< 1 / mm, of the subject from the first surface; 0: infinity
+  std::vector<double> thicknesses;
+
+  bool operator==(const FocusPosition&) const = default;
+};
+
 /// A compiled lens: always valid, immutable, cheap to copy (one shared pointer), free to share between threads.
 ///
 ///     petzval::Lens lens = petzval::compile(petzval::read_prescription("data/lenses/double_gauss_100mm_f1.35.json"));
 ///     auto exit = petzval::trace(lens, petzval::Ray<double>{{0, 10, -50}, {0, 0, 1}});
 ///
-/// A change makes a new lens: `with_semi_diameter`, `with_film`, `with_iris`, `with_f_number`, `with_focus`.
+/// A change makes a new lens: `with_semi_diameter`, `with_film`, `with_groups_at`, `with_iris`, `with_f_number`,
+/// `with_focus`.
 class PETZVAL_API Lens {
  public:
   /// Copies. Moves copy too, so that no Lens is ever empty.
@@ -82,6 +92,9 @@ class PETZVAL_API Lens {
 
   /// Place of the film (lens frame, mm): the prescription's or that of `with_film`.
   double film_z() const noexcept;
+
+  /// How the groups move to focus: positions by inverse distance, the first at infinity. Empty if the film moves.
+  std::span<const FocusPosition> focus_positions() const noexcept;
 
   /// Wavelengths the lens was compiled for.
   std::span<const double> wavelengths_nm() const noexcept;
@@ -134,11 +147,12 @@ class PETZVAL_API Lens {
   friend PETZVAL_API Lens with_semi_diameter(const Lens&, std::size_t, double);
   friend PETZVAL_API Lens with_film(const Lens&, double);
   friend PETZVAL_API Lens with_iris(const Lens&, const Iris&);
+  friend PETZVAL_API Lens with_groups_at(const Lens&, double);
 };
 
-/// Compiles a prescription for some wavelengths (nm). Throws Error, naming lens and surface, for an invalid
-/// prescription, a wavelength given twice (within 1e-6 nm) or outside the range of a glass, a missing glass (see
-/// MissingGlass) and an index outside 0..5.
+/// Compiles a prescription, in one of its configurations, for some wavelengths (nm). Throws Error, naming lens and
+/// surface, for an invalid prescription, a wavelength given twice (within 1e-6 nm) or outside the range of a glass, a
+/// missing glass (see MissingGlass) and an index outside 0..5.
 PETZVAL_API Lens compile(const Prescription& prescription, std::span<const double> wavelengths_nm,
                          const CompileOptions& options = {});
 
@@ -152,6 +166,12 @@ PETZVAL_API Lens with_semi_diameter(const Lens& lens, std::size_t surface, doubl
 /// The lens with its film at another place (lens frame, mm). Throws Error for one that is not behind the last vertex,
 /// on the side that light runs to.
 PETZVAL_API Lens with_film(const Lens& lens, double film_z);
+
+/// The lens with its groups, and its film, where they stand for subjects at an inverse distance (1 / mm): thicknesses
+/// are linear in it between neighbouring focus positions, and go on so beyond the first and the last. Throws Error for
+/// a lens without focus positions, an inverse distance that is not finite, and groups that would meet: a thickness of
+/// air below 0 whose positions are all above 0.
+PETZVAL_API Lens with_groups_at(const Lens& lens, double inverse_distance);
 
 /// The lens with another shape of its stop; Iris{} makes it round again. Every ray that is traced with apertures
 /// passes the iris, and so do boundaries of pupils, film irradiance, spots, PSFs and cameras.

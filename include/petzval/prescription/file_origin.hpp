@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "petzval/core/version.hpp"
+
+namespace petzval::inline v0 {
+
+/// What an importer assumed, changed or left out.
+struct ImportWarning {
+  int line = 0;         ///< of the file, from 1; 0: the file as a whole
+  std::string command;  ///< the word of the file that it is about
+  std::string message;  ///< one line
+
+  bool operator==(const ImportWarning&) const = default;
+};
+
+/// The file of another program from which a prescription was read.
+struct FileOrigin {
+  std::string format;  ///< "zemax", "codev", "oslo", "opticalbench", "table", "lentil" or "optiland"
+  std::string file;    ///< its name without folders
+  std::string title;
+  std::vector<std::string> notes;
+  std::vector<ImportWarning> warnings;
+
+  bool operator==(const FileOrigin&) const = default;
+};
+
+}  // namespace petzval::inline v0
