@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/text.hpp"
+#include "formulas.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/units.hpp"
 
@@ -48,16 +49,50 @@ double sum(std::span<const double> c, double first, Shape shape) {
   return total;
 }
 
+/// One point of a table of indices, over x = 1 / l^2: there n of a glass is nearly a line.
+struct TablePoint {
+  double x, n;
+};
+
+double secant(const TablePoint& a, const TablePoint& b) { return (b.n - a.n) / (b.x - a.x); }
+
+/// The slope at a point between two others: the mean of the secants that keeps the cubics monotone; 0 at an extremum.
+/// Source: Fritsch and Butland, A method for constructing local monotone piecewise cubic interpolants, 1984.
+double slope_between(const TablePoint& before, const TablePoint& at, const TablePoint& after) {
+  const double left = secant(before, at), right = secant(at, after);
+  if (!(left * right > 0)) return 0;
+  const double part = (1 + (after.x - at.x) / (after.x - before.x)) / 3;
+  return left * right / (part * right + (1 - part) * left);
+}
+
+/// The index at wavelength l (micrometres) of a table l0, n0, l1, n1, ...
+double interpolated(std::span<const double> table, double l) {
+  const std::size_t count = table.size() / 2;
+  const auto point = [&](std::size_t i) { return TablePoint{1 / (table[2 * i] * table[2 * i]), table[2 * i + 1]}; };
+  std::size_t low = 0, high = count - 1;  // l lies between these two
+  while (high - low > 1) {
+    const std::size_t middle = (low + high) / 2;
+    (table[2 * middle] <= l ? low : high) = middle;
+  }
+  const TablePoint a = point(low), b = point(high);
+  const double chord = secant(a, b);
+  const double slope_a = low > 0 ? slope_between(point(low - 1), a, b) : chord;
+  const double slope_b = high + 1 < count ? slope_between(a, b, point(high + 1)) : chord;
+  const double step = b.x - a.x, t = (1 / (l * l) - a.x) / step;
+  return a.n + t * (chord + (1 - t) * ((slope_a - chord) * (1 - t) + (chord - slope_b) * t)) * step;
+}
+
 }  // namespace
 
 double refractive_index(const Glass& glass, double wavelength_nm) {
   const std::string where = glass.catalogue + " " + glass.name;
   check_wavelength(where, wavelength_nm, glass.shortest_nm, glass.longest_nm);
   const std::span<const double> c = glass.coefficients;
-  const bool right_count = glass.formula == DispersionFormula::buchdahl ? c.size() == 3 : c.size() % 2 == 1;
-  if (!right_count)
-    throw Error(where + ": formula has " + std::to_string(c.size()) +
-                " coefficients, wanted c0 and pairs (buchdahl: 3)");
+  const auto& form = media_detail::form_of(glass.formula);
+  if (!form.takes(c.size())) {
+    throw Error(where + ": formula has " + std::to_string(c.size()) + " coefficients, wanted " +
+                std::string(form.wanted));
+  }
 
   const double l = wavelength_nm * 1e-3, l2 = l * l;
   const auto power = [l](double exponent) { return std::pow(l, exponent); };
@@ -70,6 +105,20 @@ double refractive_index(const Glass& glass, double wavelength_nm) {
     case DispersionFormula::polynomial: n2 = sum(c, c[0], power); break;
     case DispersionFormula::cauchy:
       n = sum(c, c[0], power);
+      n2 = n * std::abs(n);
+      break;
+    case DispersionFormula::rational:
+      n2 = c[0];
+      for (std::size_t i = 1; i < c.size(); i += 3) n2 += c[i] * power(c[i + 1]) / (l2 - c[i + 2]);
+      break;
+    case DispersionFormula::herzberger: {
+      const double pole = 1 / (l2 - 0.028);
+      n = c[0] + (c[1] + c[2] * pole) * pole + (c[3] + (c[4] + c[5] * l2) * l2) * l2;
+      n2 = n * std::abs(n);
+      break;
+    }
+    case DispersionFormula::tabulated:
+      n = interpolated(c, l);
       n2 = n * std::abs(n);
       break;
     case DispersionFormula::buchdahl: {

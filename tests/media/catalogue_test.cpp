@@ -3,8 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <string>
 
 #include "../message.hpp"
@@ -12,6 +14,7 @@
 namespace {
 
 namespace fs = std::filesystem;
+using petzval::Glass;
 using petzval::GlassCatalogue;
 using petzval::testing::message;
 
@@ -86,6 +89,59 @@ TEST(DataDirectory, HoldsLensesAndGlass) {
   EXPECT_TRUE(fs::exists(data / "lenses" / "double_gauss_100mm_f1.35.json"));
 }
 
+Glass named(const std::string& catalogue, const std::string& name, double nd, double vd = 60) {
+  Glass glass;
+  glass.catalogue = catalogue;
+  glass.name = name;
+  glass.nd = nd;
+  glass.vd = vd;
+  return glass;
+}
+
+TEST(GlassCatalogue, AnAddedGlassComesBeforeThoseOfItsName) {
+  const GlassCatalogue tables({named("schott", "F2", 1.62004), named("cdgm", "F2", 1.61293), named("a", "K", 1.5)});
+  const auto more = with_glasses(tables, {named("Schott", "f2", 1.62), named("mine", "F2", 1.6205)});
+  EXPECT_EQ(tables.glasses().size(), 3u);
+  ASSERT_EQ(more.glasses().size(), 5u);
+  EXPECT_EQ(more.find("F2", "schott")->nd, 1.62);
+  EXPECT_EQ(more.find("F2", "MINE")->nd, 1.6205);
+  EXPECT_EQ(more.find("F2", "cdgm")->nd, 1.61293);
+  EXPECT_EQ(more.find("K", "a")->nd, 1.5);
+  // By index alone: an added one within what moulding changes, else the nearest of all.
+  EXPECT_EQ(more.find("F2", 1.62004)->nd, 1.62);
+  EXPECT_EQ(more.find("F2", 1.6204)->nd, 1.6205);
+  EXPECT_EQ(more.find("F2", 1.613)->nd, 1.61293);
+  EXPECT_EQ(with_glasses(GlassCatalogue(), {named("mine", "F2", 1.62)}).find("F2", 1.613)->nd, 1.62);
+}
+
+TEST(GlassCatalogue, WhatWasAddedLastIsFoundFirst) {
+  const auto first = with_glasses(GlassCatalogue(), {named("mine", "X", 1.5), named("mine", "A", 1.4)});
+  const auto second = with_glasses(first, {named("mine", "X", 1.6), named("mine", "Z", 1.7)});
+  EXPECT_EQ(second.find("x", "mine")->nd, 1.6);
+  EXPECT_EQ(second.find("a", "mine")->nd, 1.4);
+  EXPECT_EQ(second.find("z", "mine")->nd, 1.7);
+  EXPECT_EQ(second.find("x", 1.5)->nd, 1.5);
+  EXPECT_EQ(second.glasses().size(), 4u);
+}
+
+TEST(GlassCatalogue, NamesTheGlassesNearestByIndexAndAbbeNumber) {
+  const GlassCatalogue glasses(
+      {named("a", "A", 1.5, 60), named("a", "B", 1.501, 60), named("a", "C", 1.5, 61), named("a", "D", 1.5, 60)});
+  const auto names = [&](double nd, std::optional<double> vd, std::size_t count) {
+    std::string all;
+    for (const Glass* glass : nearest_glasses(glasses, nd, vd, count)) all += glass->name;
+    return all;
+  };
+  EXPECT_EQ(names(1.5, 60, 9), "ADBC");
+  EXPECT_EQ(names(1.5, 60, 1), "A");
+  EXPECT_EQ(names(1.5, 60, 0), "");
+  EXPECT_EQ(names(1.5, 61, 2), "CA");
+  EXPECT_EQ(names(1.501, std::nullopt, 1), "B");
+  EXPECT_EQ(message([&] { names(std::nan(""), 60, 1); }), "glasses near n_d nan, V_d 60: wanted finite numbers");
+  EXPECT_EQ(message([&] { names(1.5, INFINITY, 1); }), "glasses near n_d 1.5, V_d inf: wanted finite numbers");
+  EXPECT_TRUE(nearest_glasses(GlassCatalogue(), 1.5, 60, 3).empty());
+}
+
 TEST_F(TableFolder, LineEndsOfAnyKindReadTheSame) {
   write("glass_unix.csv", header + row + "mine,X2,1.6,40,buchdahl,0.4,0.7,1.6 -0.05 0.01,me");
   std::string dos = header + row;
@@ -113,7 +169,8 @@ TEST_F(TableFolder, ABadTableIsRefusedWithFileLineAndReason) {
   EXPECT_EQ(refusal(header + "mine,X1,1.5,1e400,cauchy,0.4,0.7,1.5,me\n"),
             ": line 2: vd is \"1e400\", wanted a finite number");
   EXPECT_EQ(refusal(header + "mine,X1,1.5,60,magic,0.4,0.7,1.5,me\n"),
-            ": line 2: formula is \"magic\", wanted sellmeier, sellmeier_squared, polynomial, cauchy or buchdahl");
+            ": line 2: formula is \"magic\", wanted one of sellmeier, sellmeier_squared, polynomial, cauchy, "
+            "buchdahl, rational, herzberger, tabulated");
   EXPECT_EQ(refusal(header + "mine,X1,1.5,60,cauchy,0.7,0.4,1.5,me\n"),
             ": line 2: range is 0.7 to 0.4 um, wanted two increasing positive numbers");
   EXPECT_EQ(refusal(header + "mine,X1,1.5,60,cauchy,0,0.4,1.5,me\n"),
@@ -123,6 +180,11 @@ TEST_F(TableFolder, ABadTableIsRefusedWithFileLineAndReason) {
   EXPECT_EQ(refusal(header + "mine,X1,1.5,60,buchdahl,0.4,0.7,1.5,me\n"), ": line 2: 1 coefficients, wanted 3");
   EXPECT_EQ(refusal(header + "mine,X1,1.5,60,cauchy,0.4,0.7,1.5  0.1 2,me\n"),
             ": line 2: coefficient is \"\", wanted a finite number");
+  for (const char* table :
+       {"0.5 1.5 0.4 1.6 0.7 1.5", "0.4 1.6 0.4 1.5 0.7 1.5", "0.41 1.6 0.7 1.5", "0.4 1.6 0.69 1.5"}) {
+    EXPECT_EQ(refusal(header + "mine,X1,1.5,60,tabulated,0.4,0.7," + table + ",me\n"),
+              ": line 2: wanted wavelengths that increase from wl_min_um or less to wl_max_um or more");
+  }
   EXPECT_EQ(refusal(header + ",X1,1.5,60,cauchy,0.4,0.7,1.5,me\n"),
             ": line 2: catalogue or name is empty, wanted both");
   EXPECT_EQ(refusal(header + row), "no error");

@@ -98,6 +98,67 @@ TEST(Dispersion, EachFormulaIsTheOneOfItsName) {
   EXPECT_DOUBLE_EQ(refractive_index(made_up(polynomial, {2, 0.25, 2, 0.5, -2}), 500), std::sqrt(2 + 0.0625 + 2.0));
   EXPECT_DOUBLE_EQ(refractive_index(made_up(cauchy, {1.5, 0.25, -2}), 500), 2.5);
   EXPECT_DOUBLE_EQ(refractive_index(made_up(buchdahl, {1.5, -0.0625, 0.125}), 974), 1.5 - 0.0625 * 0.2 + 0.125 * 0.04);
+  EXPECT_DOUBLE_EQ(refractive_index(made_up(rational, {2, 0.25, 2, 0.5, 0.125, 0, -1}), 1000),
+                   std::sqrt(2 + 0.25 / 0.5 + 0.125 / 2));
+  EXPECT_DOUBLE_EQ(refractive_index(made_up(rational, {2, 4, 4, 0}), 500), std::sqrt(2 + 4 * 0.25));
+  const double pole = 1 / (0.25 - 0.028);
+  EXPECT_DOUBLE_EQ(refractive_index(made_up(herzberger, {1.5, 0.25, 0.125, 0.5, 0.25, 0.125}), 500),
+                   1.5 + 0.25 * pole + 0.125 * pole * pole + 0.5 * 0.25 + 0.25 * 0.0625 + 0.125 * 0.015625);
+}
+
+Glass table_of(const Glass& glass, const std::vector<double>& wavelengths_nm) {
+  Glass table = made_up(DispersionFormula::tabulated, {});
+  for (const double nm : wavelengths_nm) {
+    table.coefficients.insert(table.coefficients.end(), {nm * 1e-3, refractive_index(glass, nm)});
+  }
+  table.shortest_nm = wavelengths_nm.front();
+  table.longest_nm = wavelengths_nm.back();
+  return table;
+}
+
+TEST(Dispersion, ATableGivesItsOwnIndicesAndFallsBetweenThem) {
+  const Glass& flint = *glasses().find("SF6", "schott");
+  const std::vector<double> lines = {404.6561, 435.8343, 486.1327, 587.5618, 656.2725, 706.5188};
+  const Glass table = table_of(flint, lines);
+  for (const double nm : lines) EXPECT_NEAR(refractive_index(table, nm), refractive_index(flint, nm), 1e-15);
+  double before = infinity;
+  for (double nm = 405; nm <= 706; ++nm) {
+    const double n = refractive_index(table, nm);
+    EXPECT_LT(n, before) << nm;
+    before = n;
+  }
+}
+
+// Half the step, less than a quarter of the error: the cubic is better than chords.
+TEST(Dispersion, ATableIsBetterTheFinerItIs) {
+  const Glass& flint = *glasses().find("SF6", "schott");
+  const auto worst = [&](double step) {
+    std::vector<double> nodes;
+    for (double nm = 400; nm <= 720; nm += step) nodes.push_back(nm);
+    const Glass table = table_of(flint, nodes);
+    double error = 0;
+    for (double nm = 440; nm <= 680; nm += 1) {
+      error = std::max(error, std::abs(refractive_index(table, nm) - refractive_index(flint, nm)));
+    }
+    return error;
+  };
+  EXPECT_LT(worst(40), 2e-4);
+  EXPECT_LT(worst(20), worst(40) / 5);
+  EXPECT_LT(worst(10), worst(20) / 5);
+}
+
+TEST(Dispersion, ATableOfTwoIndicesIsALineOverTheInverseSquare) {
+  const Glass table = made_up(DispersionFormula::tabulated, {0.5, 1.75, 1, 1.5});
+  EXPECT_NEAR(refractive_index(table, 1000 / std::sqrt(2.5)), 1.625, 1e-15);
+}
+
+TEST(Dispersion, ATableThatRisesAndFallsHasNoIndexBeyondItsOwn) {
+  const Glass table = made_up(DispersionFormula::tabulated, {0.4, 1.5, 0.5, 1.75, 0.6, 1.5, 0.7, 1.5});
+  for (double nm = 400; nm <= 700; ++nm) {
+    const double n = refractive_index(table, nm);
+    EXPECT_GE(n, 1.5 - 1e-15) << nm;
+    EXPECT_LE(n, 1.75 + 1e-15) << nm;
+  }
 }
 
 TEST(Dispersion, SpectralLinesAreThoseOfTheTable) {
@@ -147,11 +208,21 @@ TEST(Dispersion, AFormulaWithAPieceMissingIsRefused) {
   EXPECT_EQ(message([] {
               refractive_index(made_up(sellmeier, {0, 1}), 500);
             }),
-            "test X: formula has 2 coefficients, wanted c0 and pairs (buchdahl: 3)");
+            "test X: formula has 2 coefficients, wanted c0 and pairs");
   EXPECT_EQ(message([] { refractive_index(made_up(cauchy, {}), 500); }),
-            "test X: formula has 0 coefficients, wanted c0 and pairs (buchdahl: 3)");
+            "test X: formula has 0 coefficients, wanted c0 and pairs");
   EXPECT_EQ(message([] { refractive_index(made_up(buchdahl, {1.5}), 500); }),
-            "test X: formula has 1 coefficients, wanted c0 and pairs (buchdahl: 3)");
+            "test X: formula has 1 coefficients, wanted 3");
+  EXPECT_EQ(message([] {
+              refractive_index(made_up(rational, {1.5, 1, 2}), 500);
+            }),
+            "test X: formula has 3 coefficients, wanted c0 and triples");
+  EXPECT_EQ(message([] { refractive_index(made_up(herzberger, {1.5}), 500); }),
+            "test X: formula has 1 coefficients, wanted 6");
+  EXPECT_EQ(message([] {
+              refractive_index(made_up(tabulated, {0.5, 1.5, 1}), 500);
+            }),
+            "test X: formula has 3 coefficients, wanted two pairs or more");
 }
 
 TEST(Dispersion, TheAbbeModelKeepsIndexAndAbbeNumber) {

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -18,6 +20,9 @@ enum class DispersionFormula {
   polynomial,         ///< n^2 = c0 + sum c l^e
   cauchy,             ///< n   = c0 + sum c l^e
   buchdahl,           ///< n   = c0 + c1 w + c2 w^2, w = (l - 0.574) / (1 + 2.5 (l - 0.574))
+  rational,           ///< n^2 = c0 + sum c l^e / (l^2 - p); triples c, e, p
+  herzberger,         ///< n   = c0 + c1 L + c2 L^2 + c3 l^2 + c4 l^4 + c5 l^6, L = 1 / (l^2 - 0.028)
+  tabulated,          ///< pairs l, n with l increasing; between them a monotone cubic of 1 / l^2
 };
 
 /// One glass of a catalogue: its dispersion formula and the range in which the formula was fitted.
@@ -63,16 +68,31 @@ class PETZVAL_API GlassCatalogue {
   const Glass* find(std::string_view name, std::string_view catalogue) const noexcept;
 
   /// The glass of that name with the nearest n_d, if it is within 0.01; nullptr otherwise. For media without a
-  /// catalogue: F2 has n_d 1.62004 in one catalogue and 1.61293 in another.
+  /// catalogue: F2 has n_d 1.62004 in one catalogue and 1.61293 in another. A glass that `with_glasses` added comes
+  /// first where its n_d is within 0.002.
   const Glass* find(std::string_view name, double nd) const noexcept;
 
   const std::vector<Glass>& glasses() const noexcept { return glasses_; }
 
  private:
-  std::span<const Glass> named(std::string_view name) const noexcept;
+  std::span<const Glass> added() const noexcept { return std::span(glasses_).first(added_count_); }
+  std::span<const Glass> tables() const noexcept { return std::span(glasses_).subspan(added_count_); }
 
-  std::vector<Glass> glasses_;  // sorted by name, then in the order of loading
+  std::vector<Glass> glasses_;  // added ones, then those of the tables; each sorted by name, then in their order
+  std::size_t added_count_ = 0;
+
+  friend PETZVAL_API GlassCatalogue with_glasses(const GlassCatalogue&, std::vector<Glass>);
 };
+
+/// The catalogue and more glasses, those of a user: they are found before glasses of the same name (of the same
+/// catalogue, where one is asked for). What was added last is found first.
+PETZVAL_API GlassCatalogue with_glasses(const GlassCatalogue& catalogue, std::vector<Glass> glasses);
+
+/// The glasses most like an index and an Abbe number, the most like first: by the sum of the squares of the differences
+/// over 0.001 in n_d and 0.5 in V_d, about what tells two glasses of a catalogue apart. Without vd, by n_d alone. They
+/// are valid as long as the catalogue. Throws Error for a number that is not finite.
+PETZVAL_API std::vector<const Glass*> nearest_glasses(const GlassCatalogue& catalogue, double nd,
+                                                      std::optional<double> vd, std::size_t count);
 
 /// The folder that holds lenses/ and glass/: share/petzval beside the library, in the installed tree or in the build
 /// tree. No absolute path is baked in: the search starts where the code was loaded from. Throws Error where it finds
