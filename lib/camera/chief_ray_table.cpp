@@ -183,6 +183,33 @@ std::optional<double> ChiefRayTable::find(const Meridian& nodes, double height, 
     if (!(h * dh + along * dz > 0)) return {};
     return (dh * along - dz * h) / std::hypot(h, along);
   };
+  // Film height as a function of that sine, between the nodes k - 1 and k: the cubic through four nodes where it is
+  // one, else the chord.
+  const auto between = [&](std::size_t k, double sign, double before, double now) {
+    if (nodes.size() >= 4) {
+      const std::size_t first = std::clamp<std::size_t>(k, 2, nodes.size() - 2) - 2;
+      std::array<double, 4> p{};
+      bool monotonic = true;
+      for (std::size_t i = 0; i < 4 && monotonic; ++i) {
+        const auto by = passes_by(nodes[first + i], sign);
+        if (by) p[i] = *by;
+        monotonic = by && (i == 0 || (p[i] > p[i - 1]) == (now > before));
+      }
+      if (monotonic) {
+        double sum = 0;
+        for (std::size_t i = 0; i < 4; ++i) {
+          double part = nodes[first + i].film;
+          for (std::size_t j = 0; j < 4; ++j) {
+            if (j != i) part *= p[j] / (p[j] - p[i]);
+          }
+          sum += part;
+        }
+        return sum;
+      }
+    }
+    const double t = before / (before - now);
+    return nodes[k - 1].film + t * (nodes[k].film - nodes[k - 1].film);
+  };
   std::optional<double> last[2];
   for (std::size_t k = 0; k < nodes.size(); ++k) {
     for (int side : {0, 1}) {
@@ -192,8 +219,7 @@ std::optional<double> ChiefRayTable::find(const Meridian& nodes, double height, 
       if (!now) continue;
       if (*now == 0) return sign * nodes[k].film;
       if (!before || (*before < 0) == (*now < 0)) continue;
-      const double t = *before / (*before - *now);
-      return sign * (nodes[k - 1].film + t * (nodes[k].film - nodes[k - 1].film));
+      return sign * between(k, sign, *before, *now);
     }
   }
   return {};

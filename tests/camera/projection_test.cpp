@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -103,6 +104,33 @@ TEST(Projection, OfACameraRaysPointsAreItsFilmPoint) {
         EXPECT_NEAR(std::hypot(again.x - first.film.x, again.y - first.film.y), 0, 1e-9);
       }
     }
+  }
+}
+
+// Of points that the lens clips or images beside the film, whose chief rays a table has.
+TEST(Projection, IsExactWhereChiefRaysAreClipped) {
+  for (const char* id :
+       {"catadioptric_mangin_1000mm_f7.5", "petzval_portrait_100mm_f3.4", "double_gauss_100mm_f2_28deg"}) {
+    SCOPED_TRACE(id);
+    const Lens lens = testing::data_lens(id);
+    const Film film{.width_mm = 36, .height_mm = 24};
+    const Camera camera(lens, film, {.model = ModelKind::exact_double});
+    const double pupil_z = pupils(lens).entrance.z;
+    const double focal_length = std::abs(first_order(lens).effective_focal_length);
+    const double widest = std::min(1.4 * film.radius_mm() / focal_length, 1.5);
+    int clipped = 0;
+    for (int i = 1; i <= 100; ++i) {
+      const double field = widest * i / 100, azimuth = 0.1 * i, distance = 1e6;
+      const double z = pupil_z - distance * std::cos(field), across = distance * std::sin(field);
+      const AimedRay chief = chief_ray(lens, {field, z, azimuth});
+      if (!chief || z > -1000) continue;
+      const FilmPoint wanted = at_film(lens, chief.end.ray);
+      const Projection p = camera.project({across * std::sin(azimuth), across * std::cos(azimuth), z});
+      if (p.status == ProjectionStatus::converged || p.status == ProjectionStatus::not_visible) continue;
+      ++clipped;
+      EXPECT_NEAR(std::hypot(p.film.x - wanted.x, p.film.y - wanted.y), 0, 2e-5 * film.radius_mm()) << field;
+    }
+    EXPECT_GT(clipped, 10);
   }
 }
 
