@@ -16,7 +16,7 @@ set(layer_5 pupil_table rays lint)  # lint compares what a prescription declares
 set(layer_6 focus polynomial)
 set(layer_7 movement)
 set(layer_8 camera)
-set(layer_9 accuracy blur psf)
+set(layer_9 accuracy blur distortion psf)
 set(layer_10 io figure files)   # the edge
 set(edge 10)
 foreach(layer RANGE ${edge})

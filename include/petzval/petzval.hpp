@@ -16,6 +16,7 @@
 ///                                                                             one or in batches on SIMD lanes
 ///                                    --> Camera                               rays, importance and projection for a
 ///                                                                             renderer, by any model of the lens
+///                                        --> LensDistortion                where it differs from a pinhole's picture
 ///                                    --> choose_model                         the fastest model in an error budget
 ///                                    --> fit_two_discs                        its cat's eyes as two discs
 ///                                    --> spot_diagram, point_image            spots and images of points
@@ -53,6 +54,9 @@
 #include "petzval/core/sobol.hpp"
 #include "petzval/core/units.hpp"
 #include "petzval/core/version.hpp"
+#include "petzval/distortion/brown_conrady.hpp"
+#include "petzval/distortion/lens_distortion.hpp"
+#include "petzval/distortion/st_map.hpp"
 #include "petzval/film/film.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/io/lens_json.hpp"
