@@ -334,9 +334,12 @@ void Reader::key(const std::string& name) {
 void Reader::assign(JsonValue value) {
   if (open_.empty()) throw Error(where_ + ": document is " + describe(value) + ", wanted an object");
   switch (open_.back().place) {
-    case Place::variable_gaps:
-      configuration().changes.push_back({.surface = gap_, .thickness = number_of(value)});
+    case Place::variable_gaps: {
+      const double thickness = number_of(value);
+      SurfaceChange& change = configuration().changes.emplace_back();
+      change.surface = gap_, change.thickness = thickness;
       return;
+    }
     case Place::aliases:
       count_entry();
       lens_.aliases.push_back(text_of(value));
