@@ -12,7 +12,7 @@
 #include "petzval/camera/two_discs.hpp"
 #include "petzval/core/parallel.hpp"
 #include "petzval/core/units.hpp"
-#include "petzval/io/lens_json.hpp"
+#include "petzval/files/lens_file.hpp"
 #include "petzval/media/glass.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "support/bokeh.hpp"

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "petzval/io/lens_json.hpp"
+#include "petzval/files/lens_file.hpp"
 #include "petzval/lens/lens.hpp"
 
 namespace petzval::testing {

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "petzval/core/units.hpp"
-#include "petzval/io/lens_json.hpp"
+#include "petzval/files/lens_file.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "text.hpp"
 

@@ -59,6 +59,8 @@
 #include "petzval/distortion/st_map.hpp"
 #include "petzval/film/film.hpp"
 #include "petzval/focus/focus.hpp"
+#include "petzval/files/lens_file.hpp"
+#include "petzval/files/lens_file.hpp"
 #include "petzval/io/lens_json.hpp"
 #include "petzval/io/write_file.hpp"
 #include "petzval/iris/iris.hpp"

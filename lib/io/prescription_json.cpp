@@ -451,8 +451,4 @@ Prescription parse_prescription(std::string_view json, const std::string& where)
   return prescription;
 }
 
-Prescription read_prescription(const std::filesystem::path& file) {
-  return parse_prescription(io_detail::read_text(file, "a lens file"), file.string());
-}
-
 }  // namespace petzval::inline v0

@@ -28,7 +28,7 @@
 #include "petzval/camera/camera.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/units.hpp"
-#include "petzval/io/lens_json.hpp"
+#include "petzval/files/lens_file.hpp"
 #include "petzval/io/write_file.hpp"
 #include "petzval/movement/focal_surface.hpp"
 #include "petzval/paraxial/ideal_lens.hpp"

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "petzval/core/units.hpp"
-#include "petzval/io/lens_json.hpp"
+#include "petzval/files/lens_file.hpp"
 #include "petzval/movement/focus_point.hpp"
 #include "petzval/movement/tilt_fit.hpp"
 #include "table.hpp"

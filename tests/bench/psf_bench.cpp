@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "petzval/core/sobol.hpp"
-#include "petzval/io/lens_json.hpp"
+#include "petzval/files/lens_file.hpp"
 #include "petzval/psf/psf.hpp"
 #include "petzval/trace/trace.hpp"
 #include "psf/histogram.hpp"

@@ -15,7 +15,7 @@
 
 #include "petzval/camera/camera.hpp"
 #include "petzval/focus/focus.hpp"
-#include "petzval/io/lens_json.hpp"
+#include "petzval/files/lens_file.hpp"
 #include "petzval/media/glass.hpp"
 #include "renderer/built_in_scenes.hpp"
 #include "renderer/unit_tracer.hpp"

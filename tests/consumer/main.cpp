@@ -8,6 +8,7 @@
 #include <iostream>
 
 #include "petzval/core/error.hpp"
+#include "petzval/files/lens_file.hpp"
 #include "petzval/io/lens_json.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/media/glass.hpp"

@@ -8,7 +8,7 @@
 
 #include "petzval/focus/focus.hpp"
 #include "petzval/io/image.hpp"
-#include "petzval/io/lens_json.hpp"
+#include "petzval/files/lens_file.hpp"
 #include "petzval/paraxial/ideal_lens.hpp"
 #include "program.hpp"
 

@@ -6,7 +6,7 @@
 #include "petzval/camera/camera.hpp"
 #include "petzval/core/units.hpp"
 #include "petzval/focus/focus.hpp"
-#include "petzval/io/lens_json.hpp"
+#include "petzval/files/lens_file.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "program.hpp"
 

@@ -3,7 +3,7 @@
 #include <set>
 
 #include "petzval/focus/focus.hpp"
-#include "petzval/io/lens_json.hpp"
+#include "petzval/files/lens_file.hpp"
 #include "petzval/movement/autofocus.hpp"
 #include "petzval/movement/focus_point.hpp"
 #include "petzval/pupil/f_number.hpp"

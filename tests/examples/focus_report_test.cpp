@@ -5,7 +5,7 @@
 
 #include "petzval/core/units.hpp"
 #include "petzval/focus/focus.hpp"
-#include "petzval/io/lens_json.hpp"
+#include "petzval/files/lens_file.hpp"
 #include "program.hpp"
 
 namespace {

@@ -5,7 +5,7 @@
 
 #include "core/text.hpp"
 #include "petzval/core/units.hpp"
-#include "petzval/io/lens_json.hpp"
+#include "petzval/files/lens_file.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "program.hpp"
 

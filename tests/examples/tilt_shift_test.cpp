@@ -4,7 +4,7 @@
 #include <set>
 
 #include "petzval/core/units.hpp"
-#include "petzval/io/lens_json.hpp"
+#include "petzval/files/lens_file.hpp"
 #include "petzval/movement/autofocus.hpp"
 #include "petzval/movement/tilt_fit.hpp"
 #include "petzval/pupil/f_number.hpp"

@@ -15,7 +15,7 @@
 #include "petzval/core/error.hpp"
 #include "petzval/core/units.hpp"
 #include "petzval/focus/focus.hpp"
-#include "petzval/io/lens_json.hpp"
+#include "petzval/files/lens_file.hpp"
 #include "petzval/pupil/f_number.hpp"
 
 namespace petzval {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "petzval/files/lens_file.hpp"
 #include "petzval/io/lens_json.hpp"
 
 #include <gtest/gtest.h>

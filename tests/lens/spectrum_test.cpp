@@ -13,7 +13,7 @@
 #include "../data_lenses.hpp"
 #include "../message.hpp"
 #include "lens/between_wavelengths.hpp"
-#include "petzval/io/lens_json.hpp"
+#include "petzval/files/lens_file.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/media/glass.hpp"
 #include "petzval/paraxial/first_order.hpp"

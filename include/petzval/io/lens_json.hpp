@@ -11,14 +11,13 @@
 
 namespace petzval::inline v0 {
 
-/// Reads a lens from a JSON file (format "petzval-lens 1"; data/README.md has its keys). Throws Error that names the
-/// file, the surface (from 0), the key, what was found and what was wanted, or the byte at which the text is not JSON.
-/// It refuses unknown and duplicate keys, comments, NaN, numbers out of range of double, brackets nested deeper than
-/// the format has them, lists of more than 10,000 entries, and all that `validate` refuses. Time is proportional to the
-/// size of the file, memory at most 4 times its size (8 times for a file that is one number of megabytes).
-PETZVAL_API Prescription read_prescription(const std::filesystem::path& file);
-
-/// The same from memory. `where` is the name of the source in messages.
+/// Reads a lens from JSON (format "petzval-lens 1"; data/README.md has its keys); read_prescription() in
+/// files/lens_file.hpp reads a file of this or any other format. `where` is the name of the source in messages. Throws
+/// Error that names it, the surface (from 0), the key, what was found and what was wanted, or the byte at which the
+/// text is not JSON. It refuses unknown and duplicate keys, comments, NaN, numbers out of range of double, brackets
+/// nested deeper than the format has them, lists of more than 10,000 entries, and all that `validate` refuses. Time is
+/// proportional to the size of the file, memory at most 4 times its size (8 times for a file that is one number of
+/// megabytes).
 PETZVAL_API Prescription parse_prescription(std::string_view json, const std::string& where);
 
 /// The lens as JSON: one surface a line, numbers as the shortest decimals that read back exactly. Reading and writing

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "petzval/core/export.hpp"
+#include "petzval/prescription/prescription.hpp"
+
+namespace petzval::inline v0 {
+
+class GlassCatalogue;
+
+struct ReadOptions {
+  /// Every assumption is an error: the first entry of Prescription::imported->warnings is thrown.
+  bool strict = false;
+  /// Indices of glasses that a file only names. Null: the tables of data_directory(), which are read if a name occurs.
+  const GlassCatalogue* glasses = nullptr;
+};
+
+/// Reads a lens from a file of any of these formats, which it knows by their content:
+///
+///     petzval-lens 1        the library's own JSON (lens_json.hpp); it has no assumptions
+///     zemax                 .zmx, sequential
+///     codev                 .seq
+///     oslo                  .len
+///     opticalbench          the tables of Photons to Photos, .txt
+///     table                 renderers' tables: radius, thickness, index, aperture, four columns or five
+///     lentil, optiland      their JSON
+///
+/// Text may be UTF-8, UTF-16 or Latin-1, with any line ends; lengths become millimetres. A command of the file is
+/// honoured, or is named in Prescription::imported->warnings with its line, or the file is refused: never does a lens
+/// come out that differs from the file without a word. What changes nothing of the lens (merit functions, tolerances,
+/// colours, windows) is left out. A stop without a size gets that of the declared aperture.
+///
+/// Throws Error that names file, line, what was found and what was wanted; for other programs' binary files, what they
+/// are. Time is proportional to the size of the file, memory at most 4 times its size.
+PETZVAL_API Prescription read_prescription(const std::filesystem::path& file, const ReadOptions& options = {});
+
+/// The same from memory. `where` is the name of the source in messages.
+PETZVAL_API Prescription parse_lens(std::string bytes, const std::string& where, const ReadOptions& options = {});
+
+/// A lens in the format of another program, and what that format cannot say.
+struct WrittenLens {
+  std::string text;
+  std::vector<ImportWarning> losses;  ///< line: 0; command: what is lost ("aspheric", "vd", ...)
+};
+
+/// A renderer's table of four columns: radius, thickness, n_d (0 at the stop), diameter, in mm. It has one index for
+/// all wavelengths, spheres only, and one stop. Throws Error for mirrors, cylinders and aspheres: without them it would
+/// be another lens.
+PETZVAL_API WrittenLens format_table(const Prescription& prescription);
+/// A .zmx of sequential Zemax, in millimetres. Throws Error for strings with line breaks.
+PETZVAL_API WrittenLens format_zemax(const Prescription& prescription);
+/// A .seq of CODE V, in millimetres. Throws Error for terms of odd order, which it lacks.
+PETZVAL_API WrittenLens format_codev(const Prescription& prescription);
+
+}  // namespace petzval::inline v0

@@ -1,0 +1,316 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "import.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <tuple>
+#include <utility>
+
+#include "core/text.hpp"
+#include "io/json.hpp"
+#include "petzval/core/error.hpp"
+#include "petzval/lens/lens.hpp"
+#include "petzval/paraxial/first_order.hpp"
+#include "petzval/pupil/f_number.hpp"
+#include "text_file.hpp"
+
+namespace petzval::inline v0::files_detail {
+namespace {
+
+constexpr std::size_t most_warnings = 1000;
+
+/// Names under which other programs know materials of the tables.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 12> other_names = {{
+    {"SILICA", "F_SILICA"},
+    {"FUSEDSILICA", "F_SILICA"},
+    {"FSILICA", "F_SILICA"},
+    {"SIO2", "F_SILICA"},
+    {"MGF2", "MGF2_O"},
+    {"SAPPHIRE", "SAPPHIRE_O"},
+    {"POLYCARB", "POLYCARBONATE"},
+    {"POLYSTYR", "POLYSTYRENE"},
+    {"ACRYLIC", "PMMA"},
+    {"E48R", "ZEONEX_E48R"},
+    {"SEAWATER", "WATER"},
+    {"CAFL", "CAF2"},
+}};
+
+/// Letters and digits only: "N-BK7" and "nbk7" are one glass.
+std::string bare(std::string_view name) {
+  std::string result;
+  for (const char c : name) {
+    if (c != '-' && c != ' ' && c != '_') result.push_back(lower(c));
+  }
+  return result;
+}
+
+/// The letters at the start: "SUMITA_AUG2011" and "schott-1983" are catalogues of sumita and schott.
+std::string_view maker(std::string_view catalogue) {
+  return catalogue.substr(0, std::min(catalogue.find_first_of("-_ 0123456789"), catalogue.size()));
+}
+
+std::string describe(const Glass& glass) {
+  return glass.name + " (" + glass.catalogue + ", n_d " + to_text(glass.nd, 6) + ", V_d " + to_text(glass.vd, 4) + ")";
+}
+
+/// Catalogues of today count more than those of the past.
+int age(const Glass& glass) {
+  return glass.catalogue.ends_with("-1983") ? 2 : glass.catalogue.ends_with("-legacy") ? 1 : 0;
+}
+
+/// Where the image of the stop lies in object space, from the first surface: the ray that crosses the axis there meets
+/// the middle of the stop.
+double entrance_pupil_z(const RayMatrix& to_stop, double object_index) {
+  return to_stop.a == 0 ? std::numeric_limits<double>::infinity() : to_stop.b * object_index / to_stop.a;
+}
+
+}  // namespace
+
+Import::Import(std::string where, std::string_view format, const GlassCatalogue* glasses)
+    : where_(std::move(where)), glasses_(glasses) {
+  const std::filesystem::path path = where_;
+  lens.id = path.stem().string();
+  lens.imported = FileOrigin{std::string(format), path.filename().string(), {}, {}, {}};
+}
+
+void Import::warn(int line, std::string_view command, const std::string& message) {
+  auto& warnings = lens.imported->warnings;
+  if (warnings.size() < most_warnings) {
+    const std::string_view word = command.substr(0, 60);
+    warnings.push_back({line, as_utf8(std::string(word), where_, "text"), message});
+  } else {
+    ++left_out_;
+  }
+}
+
+void Import::refuse(int line, std::string_view command, const std::string& found, const std::string& wanted) const {
+  std::string text = where_;
+  if (line > 0) text += ": line " + std::to_string(line);
+  if (!command.empty()) text += ": " + std::string(command.substr(0, 60));
+  throw Error(text + " is " + found + ", wanted " + wanted);
+}
+
+double Import::number(int line, std::string_view command, std::string_view word) const {
+  if (const auto value = files_detail::number(word)) return *value;
+  refuse(line, command, io_detail::in_quotes(word), "a finite number with a decimal point");
+}
+
+const GlassCatalogue& Import::glasses() {
+  if (!glasses_) {
+    own_ = std::make_shared<const GlassCatalogue>(GlassCatalogue::load(data_directory() / "glass"));
+    glasses_ = own_.get();
+  }
+  return *glasses_;
+}
+
+const Glass* Import::find(std::string_view name, std::span<const std::string> catalogues, std::optional<double> nd) {
+  if (by_name_.empty()) {
+    for (const Glass& glass : glasses().glasses()) by_name_.emplace(bare(glass.name), &glass);
+  }
+  const auto rank = [&](const Glass& glass) {
+    const auto listed = std::ranges::find_if(catalogues, [&](const std::string& c) {
+      return same(c, glass.catalogue) || same(maker(c), maker(glass.catalogue));
+    });
+    return std::tuple(listed - catalogues.begin(), age(glass), nd ? std::abs(glass.nd - *nd) : 0.0);
+  };
+  const auto [first, last] = by_name_.equal_range(bare(name));
+  const Glass* best = nullptr;
+  for (auto it = first; it != last; ++it) {
+    if (!best || rank(*it->second) < rank(*best)) best = it->second;
+  }
+  return best;
+}
+
+Medium Import::glass(int line, std::string_view name, std::span<const std::string> catalogues, std::optional<double> nd,
+                     std::optional<double> vd) {
+  const auto medium = [](const Glass& found) {
+    return Medium{.glass = found.name, .catalogue = found.catalogue, .nd = found.nd, .vd = found.vd};
+  };
+  const Glass* found = find(name, catalogues, nd);
+  if (!found) {
+    const auto other =
+        std::ranges::find_if(other_names, [&](const auto& entry) { return bare(entry.first) == bare(name); });
+    if (other != other_names.end()) found = find(other->second, {}, nd);
+  }
+  // "L-TIM28_MOLD" is a moulded L-TIM28, "NBK7_SCHOTT" an N-BK7.
+  if (const std::size_t tail = name.find_last_of('_'); !found && tail != std::string_view::npos && tail > 0) {
+    const std::string maker_name(name.substr(tail + 1));
+    found = find(name.substr(0, tail), std::array{maker_name}, nd);
+    const bool is_maker = found && same(maker(found->catalogue), maker(maker_name));
+    if (found && !is_maker) {
+      warn(line, name, "is in no table; " + describe(*found) + " is taken for it");
+    }
+  }
+  // A name alone does not tell a glass apart from one of another maker; its index does.
+  constexpr double another_glass = 0.01;
+  if (found && nd && std::abs(found->nd - *nd) > another_glass) {
+    warn(line, name,
+         "has n_d " + to_text(*nd, 6) + " in the file; " + describe(*found) +
+             " has another, so the file's n_d and V_d are taken");
+    return {.glass = std::string(name), .nd = *nd, .vd = vd};
+  }
+  if (found) return medium(*found);
+
+  if (nd && *nd > 0 && *nd <= 5) {
+    std::string message = "is in no glass table; n_d " + to_text(*nd, 6) +
+                          (vd ? " and V_d " + to_text(*vd, 4) + " of the file are" : " of the file is") + " taken";
+    for (const Glass* nearest : nearest_glasses(glasses(), *nd, vd, 1)) {
+      message += "; the nearest glass is " + describe(*nearest);
+    }
+    warn(line, name, message);
+    return {.glass = std::string(name), .nd = *nd, .vd = vd};
+  }
+
+  std::string alike;
+  for (const Glass& glass : glasses().glasses()) {
+    const bool near = bare(glass.name).starts_with(bare(name).substr(0, 4));
+    if (near && age(glass) == 0 && std::ranges::count(alike, ',') < 5)
+      alike += (alike.empty() ? "" : ", ") + glass.name;
+  }
+  refuse(line, name, "in no glass table and has no index in the file",
+         "its catalogue (.agf or .yml) among the glasses to read: --glasses FILE" +
+             (alike.empty() ? std::string() : " (names like it: " + alike + ")"));
+}
+
+void Import::mark_a_stop() {
+  const auto marked = std::ranges::find_if(lens.surfaces, [](const SurfaceRow& row) { return row.stop; });
+  if (marked != lens.surfaces.end()) return;
+  lens.surfaces.front().stop = true;
+  warn(0, "stop", "no surface is marked as the stop; the first one is taken");
+}
+
+void Import::size_the_stop() {
+  const auto stop = std::ranges::find_if(lens.surfaces, [](const SurfaceRow& row) { return row.stop; });
+  if (stop->semi_diameter && !std::isinf(*stop->semi_diameter)) return;
+  const auto& aperture = lens.design.aperture;
+  if (!aperture || aperture->setting == ApertureSetting::stop_size || !(aperture->value > 0)) {
+    warn(0, "stop", "neither the size of the stop nor an aperture is given; the rims limit the beam");
+    return;
+  }
+  const auto position = static_cast<std::size_t>(stop - lens.surfaces.begin());
+  Prescription open = lens;
+  open.imported.reset();
+  for (SurfaceRow& row : open.surfaces) {
+    row.semi_diameter.reset();
+    row.obscuration_semi_diameter.reset();
+  }
+  open.configurations.clear();
+  const Lens compiled = compile(open);
+  const FirstOrder first = first_order(compiled, {}, main_meridian(compiled));
+  const double object = lens.design.object_distance_mm;
+
+  // The marginal ray of the design: its height and slope in front of the first surface.
+  const RayMatrix to_stop = ray_matrix_to(compiled, position, {}, main_meridian(compiled));
+  const bool far = !std::isfinite(object);
+  const auto per_unit = [&](double height, double slope) { return to_stop.a * height + to_stop.b * slope; };
+  const double unit = far ? per_unit(1, 0) : per_unit(object, first.object_index);  // slope 1: u = 1, n u = n
+  const auto image_slope = [&] {
+    const RayMatrix all = ray_matrix(compiled, 0, compiled.surface_count(), {}, main_meridian(compiled));
+    return std::abs((far ? all.c : all.c * object + all.d * first.object_index) / first.image_index);
+  };
+  double height = 0;  // of the marginal ray at the stop
+  const double value = aperture->value;
+  switch (aperture->setting) {
+    case ApertureSetting::entrance_pupil_diameter:
+    case ApertureSetting::f_number: {
+      const bool by_ratio = aperture->setting == ApertureSetting::f_number;
+      if (by_ratio && first.afocal) break;
+      const double diameter = by_ratio ? std::abs(first.effective_focal_length) / value : value;
+      if (!first.afocal && far) {
+        try {
+          const double n = std::abs(first.effective_focal_length) / diameter;
+          const Lens wide = with_semi_diameter(compiled, position, 100 * std::abs(first.effective_focal_length));
+          height = with_f_number(wide, n).surfaces()[position].semi_diameter;
+          break;
+        } catch (const Error&) {
+          // rays of this height miss a surface: first order then
+        }
+      }
+      // A parallel beam, or the one from the object to the rim of the entrance pupil, where the stop's image is.
+      height = std::abs(unit) * diameter / 2;
+      if (!far) height *= 1 / std::abs(object + entrance_pupil_z(to_stop, first.object_index));
+      break;
+    }
+    case ApertureSetting::working_f_number: height = std::abs(unit) / image_slope() / (2 * value); break;
+    case ApertureSetting::image_na: {
+      const double sine = std::min(value / std::abs(first.image_index), 0.999999);
+      height = std::abs(unit) / image_slope() * sine / std::sqrt(1 - sine * sine);
+      break;
+    }
+    case ApertureSetting::object_na: {
+      const double sine = std::min(value / std::abs(first.object_index), 0.999999);
+      height = far ? 0 : std::abs(unit) * sine / std::sqrt(1 - sine * sine);
+      break;
+    }
+    case ApertureSetting::stop_size: break;
+  }
+  if (!(height > 0 && std::isfinite(height))) {
+    warn(0, "stop", "the declared aperture does not give its size; the rims limit the beam");
+    return;
+  }
+  stop->semi_diameter = height;
+  lens.stop_size = "from the declared " + std::string(name(aperture->setting)) + " of " + to_text(value, 8);
+}
+
+void Import::declare() {
+  const auto& aperture = lens.design.aperture;
+  if (aperture && aperture->setting == ApertureSetting::f_number && aperture->value > 0 && !lens.f_number) {
+    lens.f_number = aperture->value;
+  }
+  double largest = 0;
+  for (const DesignField& field : lens.design.fields) largest = std::max(largest, std::hypot(field.x, field.y));
+  if (largest == 0) return;
+  switch (lens.design.field_kind) {
+    case FieldKind::angle_deg:
+      if (!lens.half_field_deg && largest < 180) lens.half_field_deg = largest;
+      break;
+    case FieldKind::paraxial_image:
+    case FieldKind::real_image_height:
+      if (!lens.image_diagonal_mm) lens.image_diagonal_mm = 2 * largest;
+      break;
+    case FieldKind::object_height: break;
+  }
+}
+
+Prescription Import::finish() {
+  FileOrigin& origin = *lens.imported;
+  if (lens.name.empty()) lens.name = origin.title.empty() ? lens.id : origin.title;
+  if (lens.source_design.empty()) lens.source_design = origin.title;
+  lens.source_numbers = origin.file;
+  if (lens.surfaces.empty()) throw Error(where_ + ": no surfaces, wanted at least one");
+  mark_a_stop();
+  validate(lens, where_);
+  size_the_stop();
+  declare();
+  if (left_out_ > 0) {
+    origin.warnings.push_back({0, "file", std::to_string(left_out_) + " more warnings are left out"});
+  }
+  validate(lens, where_);
+  return std::move(lens);
+}
+
+std::optional<Medium> medium_of_code(std::string_view code) {
+  // "517642" and "517.642"; with more digits "51680.6417" and "620410.603236".
+  const std::size_t point = code.find('.');
+  const std::string_view left = code.substr(0, point);
+  const std::string_view right = point == std::string_view::npos ? std::string_view() : code.substr(point + 1);
+  const auto digits = [](std::string_view text) {
+    return !text.empty() && text.size() <= 12 && std::ranges::all_of(text, [](char c) { return c >= '0' && c <= '9'; });
+  };
+  const auto fraction = [](std::string_view text, std::size_t whole) {
+    return *files_detail::number(text) * std::pow(10.0, static_cast<double>(whole) - static_cast<double>(text.size()));
+  };
+  std::string_view index = left, abbe = right;
+  if (point == std::string_view::npos) {
+    if (left.size() != 6) return {};
+    index = left.substr(0, 3), abbe = left.substr(3);
+  }
+  if (!digits(index) || !digits(abbe) || index.size() < 3 || abbe.size() < 2) return {};
+  const double vd = fraction(abbe, 2);
+  if (!(vd > 0)) return {};
+  return Medium{.glass = std::string(code), .nd = 1 + fraction(index, 0), .vd = vd};
+}
+
+}  // namespace petzval::inline v0::files_detail

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "petzval/media/glass.hpp"
+#include "petzval/prescription/prescription.hpp"
+
+namespace petzval::inline v0::files_detail {
+
+/// A prescription on its way from a file of another program: where it comes from, what was assumed, and the glasses.
+class Import {
+ public:
+  /// where: the file's name, for messages. glasses: null: those of data_directory(), read when the first is asked for.
+  Import(std::string where, std::string_view format, const GlassCatalogue* glasses);
+
+  Prescription lens;  ///< `imported` is set
+
+  /// Takes note of what the file does not say, or of what is left out. After a thousand only their number is kept.
+  void warn(int line, std::string_view command, const std::string& message);
+  /// Throws Error: "file: line 7: CURV is found, wanted wanted".
+  [[noreturn]] void refuse(int line, std::string_view command, const std::string& found,
+                           const std::string& wanted) const;
+  /// The word as a number; refuses what is none, also one with a decimal comma, beyond double or not a number.
+  double number(int line, std::string_view command, std::string_view word) const;
+
+  /// A medium by the name that a file gives: "N-BK7", "NBK7" (dashes and blanks left out), "BK7_SCHOTT". catalogues: of
+  /// those the file names, the first that has it. nd, vd: what the file says beside, which counts where it is not in
+  /// the tables. Refuses a glass in no table without an index: the message names glasses near it.
+  Medium glass(int line, std::string_view name, std::span<const std::string> catalogues, std::optional<double> nd,
+               std::optional<double> vd);
+  const GlassCatalogue& glasses();
+  const std::string& where() const noexcept { return where_; }
+
+  /// What is common to all: rims of a stop that has none by the aperture of the design, nominal data by the fields, a
+  /// name; validated. Returns the prescription.
+  Prescription finish();
+
+ private:
+  const Glass* find(std::string_view name, std::span<const std::string> catalogues, std::optional<double> nd);
+  void mark_a_stop();
+  void size_the_stop();
+  void declare();
+
+  std::string where_;
+  const GlassCatalogue* glasses_;
+  std::shared_ptr<const GlassCatalogue> own_;
+  std::multimap<std::string, const Glass*> by_name_;  ///< by bare name, in the order of the catalogue
+  std::size_t left_out_ = 0;
+};
+
+/// nd and vd of six digits and more: "517642", "517.642", "620410.603236": n_d - 1 and V_d without the point.
+std::optional<Medium> medium_of_code(std::string_view code);
+
+}  // namespace petzval::inline v0::files_detail

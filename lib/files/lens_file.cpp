@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "petzval/files/lens_file.hpp"
+
+#include <array>
+#include <utility>
+
+#include "import.hpp"
+#include "io/json.hpp"
+#include "petzval/core/error.hpp"
+#include "petzval/files/lens_file.hpp"
+#include "petzval/io/lens_json.hpp"
+#include "table_reader.hpp"
+#include "text_file.hpp"
+#include "zemax_reader.hpp"
+
+namespace petzval::inline v0 {
+namespace {
+
+using namespace files_detail;
+
+constexpr const char* wanted =
+    "a lens: petzval JSON, Zemax .zmx, CODE V .seq, OSLO .len, an OpticalBench or renderer's table, lentil or optiland "
+    "JSON";
+
+/// A format of another program: how to know it, and how to read it.
+struct Format {
+  std::string_view name;
+  bool (*is)(std::string_view text);
+  void (*read)(std::string_view text, Import& in);
+};
+
+/// In the order in which they are tried: each is sure of what it takes.
+constexpr std::array formats{
+    Format{"zemax", is_zemax, read_zemax},
+    Format{"table", is_table, read_table},
+};
+
+void refuse_warnings(const Prescription& lens, const std::string& where) {
+  if (!lens.imported || lens.imported->warnings.empty()) return;
+  const ImportWarning& first = lens.imported->warnings.front();
+  throw Error(where + (first.line > 0 ? ": line " + std::to_string(first.line) : "") + ": " + first.command + ": " +
+              first.message + "; wanted a file without assumptions (strict)");
+}
+
+}  // namespace
+
+Prescription parse_lens(std::string bytes, const std::string& where, const ReadOptions& options) {
+  const bool own_json = [&] {
+    const std::size_t first = bytes.find_first_not_of(" \t\r\n");
+    return first != std::string::npos && bytes[first] == '{' && bytes.find("\"petzval-lens 1\"") != std::string::npos;
+  }();
+  if (own_json) return parse_prescription(bytes, where);
+
+  const std::string text = as_utf8(std::move(bytes), where, wanted);
+  for (const Format& format : formats) {
+    if (!format.is(text)) continue;
+    Import in(where, format.name, options.glasses);
+    format.read(text, in);
+    Prescription lens = in.finish();
+    if (options.strict) refuse_warnings(lens, where);
+    return lens;
+  }
+  // Most likely a damaged file of the library's own: its messages name the byte.
+  if (const std::string_view start = trimmed(text); start.starts_with('{') || start.empty()) {
+    return parse_prescription(text, where);
+  }
+  std::string first_line(trimmed(text.substr(0, text.find_first_of("\r\n"))));
+  throw Error(where + ": begins with " + io_detail::in_quotes(first_line) + ", wanted " + wanted);
+}
+
+Prescription read_prescription(const std::filesystem::path& file, const ReadOptions& options) {
+  return parse_lens(io_detail::read_text(file, "a lens file"), file.string(), options);
+}
+
+}  // namespace petzval::inline v0

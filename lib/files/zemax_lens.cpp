@@ -1,0 +1,373 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "zemax_lens.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+#include "core/text.hpp"
+#include "petzval/core/error.hpp"
+#include "petzval/lens/lens.hpp"
+#include "petzval/paraxial/first_order.hpp"
+#include "text_file.hpp"
+
+namespace petzval::inline v0::files_detail {
+namespace {
+
+using Surfaces = std::vector<ZemaxSurface>;
+
+// Thicknesses of 1e10 and more stand for infinity.
+constexpr double endless = 1e10;
+
+/// Fits as the file's digits do: values are stored with 12 and more.
+bool agree(double a, double b) { return std::abs(a - b) <= 1e-9 * std::max(std::abs(a), std::abs(b)) + 1e-15; }
+
+double radius_of(double curvature) { return curvature == 0 ? 0 : 1 / curvature; }
+
+// --- pickups --------------------------------------------------------------------------------------------------------
+
+class Pickups {
+ public:
+  Pickups(Surfaces& surfaces, Import& in) : surfaces_(surfaces), in_(in) {}
+
+  /// In the order of surfaces: a pickup may be of one before that is picked up itself.
+  void evaluate() {
+    for (std::size_t i = 0; i < surfaces_.size(); ++i) {
+      ZemaxSurface& s = surfaces_[i];
+      if (s.curvature_pickup) take(i, *s.curvature_pickup, "CURV", &ZemaxSurface::curvature);
+      if (s.conic_pickup) take(i, *s.conic_pickup, "CONI", &ZemaxSurface::conic);
+      if (s.thickness_pickup) take(i, *s.thickness_pickup, "DISZ", &ZemaxSurface::thickness);
+      if (s.thickness_sum) complete(i, *s.thickness_sum, "TCOM", false);
+      if (s.position) complete(i, *s.position, "TOLE", true);
+      if (s.glass && s.glass->pickup) take_glass(i);
+    }
+  }
+
+ private:
+  const ZemaxSurface& source(std::size_t i, int line, const char* command, int surface) const {
+    if (surface >= 0 && static_cast<std::size_t>(surface) < i) return surfaces_[static_cast<std::size_t>(surface)];
+    in_.refuse(line, command, "picked up from surface " + std::to_string(surface), "a surface before it");
+  }
+
+  void set(int line, const char* command, double& value, double wanted) const {
+    if (!agree(value, wanted)) {
+      in_.warn(line, command,
+               "the file states " + to_text(value, 12) + ", its pickup or solve gives " + to_text(wanted, 12) +
+                   ", which is taken");
+    }
+    value = wanted;
+  }
+
+  void take(std::size_t i, const ZemaxPickup& pickup, const char* command, double ZemaxSurface::*member) {
+    const double wanted = source(i, pickup.line, command, pickup.surface).*member * pickup.scale + pickup.offset;
+    double& value = surfaces_[i].*member;
+    if (agree(value, wanted)) return;  // keep the digits of the file
+    set(pickup.line, command, value, wanted);
+  }
+
+  /// The thickness that makes the sum of two, or of all from one on, the total.
+  void complete(std::size_t i, const ZemaxPickup& sum, const char* command, bool all) {
+    source(i, sum.line, command, sum.surface);
+    double rest = sum.offset;
+    for (auto k = static_cast<std::size_t>(sum.surface); k < i; ++k) {
+      if (all || k == static_cast<std::size_t>(sum.surface)) rest -= surfaces_[k].thickness;
+    }
+    double& value = surfaces_[i].thickness;
+    if (!agree(value, rest)) set(sum.line, command, value, rest);
+  }
+
+  void take_glass(std::size_t i) {
+    ZemaxGlass& glass = *surfaces_[i].glass;
+    const ZemaxSurface& from = source(i, glass.line, "GLAS", *glass.pickup);
+    if (!from.glass) {
+      surfaces_[i].glass.reset();
+      return;
+    }
+    const int line = glass.line;
+    glass = *from.glass;
+    glass.line = line;
+  }
+
+  Surfaces& surfaces_;
+  Import& in_;
+};
+
+// --- rows -----------------------------------------------------------------------------------------------------------
+
+class Rows {
+ public:
+  Rows(const ZemaxLens& zemax, double unit, Import& in) : zemax_(zemax), unit_(unit), in_(in) {}
+
+  SurfaceRow row(const ZemaxSurface& s, const Medium& before);
+  Medium medium(const ZemaxGlass& glass);
+
+ private:
+  void asphere(const ZemaxSurface& s, SurfaceRow& row) const;
+  void rims(const ZemaxSurface& s, const Medium& before, SurfaceRow& row) const;
+  void term(const ZemaxSurface& s, int order, double coefficient, SurfaceRow& row) const;
+
+  const ZemaxLens& zemax_;
+  double unit_;
+  Import& in_;
+};
+
+Medium Rows::medium(const ZemaxGlass& glass) {
+  if (same(glass.name, "AIR") || same(glass.name, "VACUUM")) return {};
+  if (glass.model) {
+    if (!glass.nd) in_.refuse(glass.line, "GLAS", "a model without n_d", "its n_d");
+    return {.nd = *glass.nd, .vd = glass.vd};
+  }
+  Medium result;
+  const auto code = medium_of_code(glass.name);
+  result = code ? *code : in_.glass(glass.line, glass.name, zemax_.catalogues, glass.nd, glass.vd);
+  if (glass.vd_offset != 0) {
+    in_.warn(
+        glass.line, "GLAS",
+        "V_d is offset by " + to_text(glass.vd_offset) + "; the dispersion of " + glass.name + " is taken as it is");
+  }
+  result.nd += glass.nd_offset;
+  return result;
+}
+
+void Rows::term(const ZemaxSurface& s, int order, double coefficient, SurfaceRow& row) const {
+  if (coefficient == 0) return;
+  if (order < 2) {
+    in_.refuse(s.line, s.type, "with a term of order " + std::to_string(order) + ", a cone",
+               "terms of order 2 and more");
+  }
+  if (order > 40) in_.refuse(s.line, s.type, "with a term of order " + std::to_string(order), "orders up to 40");
+  row.aspheric.push_back({order, coefficient});
+}
+
+void Rows::asphere(const ZemaxSurface& s, SurfaceRow& row) const {
+  const auto parameter = [&](int i) {
+    const auto found = s.parameters.find(i);
+    return found == s.parameters.end() ? 0.0 : found->second;
+  };
+  if (s.type == "STANDARD") return;
+  if (s.type == "EVENASPH" || s.type == "ODDASPHE") {
+    const int step = s.type == "EVENASPH" ? 2 : 1;
+    for (int i = 1; i <= 8; ++i) {
+      const int order = step * i;
+      term(s, order, parameter(i) * std::pow(unit_, 1 - order), row);
+    }
+    return;
+  }
+  if (s.type == "XASPHERE" || s.type == "XOSPHERE") {
+    // Terms in (r / r0), as many as the first number says.
+    const auto extra = [&](int i) {
+      const auto found = s.extra.find(i);
+      return found == s.extra.end() ? 0.0 : found->second;
+    };
+    const int step = s.type == "XASPHERE" ? 2 : 1;
+    const double r0 = extra(2) * unit_;
+    const double count = extra(1);
+    if (!(count >= 0 && count <= 1000)) in_.refuse(s.line, s.type, to_text(count) + " terms", "0 to 1000");
+    for (int i = 1; i <= static_cast<int>(count); ++i) {
+      const int order = step * i;
+      if (extra(i + 2) == 0) continue;
+      if (!(r0 > 0)) in_.refuse(s.line, s.type, "normalised to a radius of " + to_text(r0), "one above 0");
+      term(s, order, extra(i + 2) * unit_ * std::pow(r0, -order), row);
+    }
+    return;
+  }
+  if (s.type == "TOROIDAL") {
+    const bool only_a_cylinder = parameter(1) == 0 && s.conic == 0 &&
+                                 std::ranges::all_of(s.parameters, [](const auto& p) { return p.second == 0; });
+    if (only_a_cylinder) {
+      row.curved_in = Section::y;
+      return;
+    }
+  }
+  in_.refuse(s.line, "TYPE", s.type,
+             "STANDARD, EVENASPH, ODDASPHE, XASPHERE, XOSPHERE, COORDBRK, or a TOROIDAL that is a cylinder");
+}
+
+/// Rims that the user set, of elements and of the stop; the width of the design's beams where the file has no other.
+void Rows::rims(const ZemaxSurface& s, const Medium& before, SurfaceRow& row) const {
+  row.obscuration_semi_diameter = s.obscuration;
+  const bool dummy = !row.mirror && row.medium == before;
+  if (s.aperture) {
+    row.semi_diameter = s.aperture;
+  } else if (s.semi_diameter > 0 && (s.fixed_semi_diameter || !(dummy || s.stop))) {
+    row.semi_diameter = s.semi_diameter;
+  }
+  if (row.obscuration_semi_diameter && row.semi_diameter && *row.semi_diameter <= *row.obscuration_semi_diameter) {
+    row.semi_diameter.reset();  // the width of the beam that passes beside it
+  }
+}
+
+SurfaceRow Rows::row(const ZemaxSurface& s, const Medium& before) {
+  SurfaceRow row{.radius = radius_of(s.curvature), .thickness = s.thickness};
+  if (std::abs(row.thickness) >= endless) {
+    in_.refuse(s.line, "DISZ", "infinite behind a surface of the lens", "a finite thickness");
+  }
+  row.conic = s.conic;
+  row.stop = s.stop;
+  if (!s.comment.empty()) row.comment = s.comment;
+  row.mirror = s.glass && same(s.glass->name, "MIRROR");
+  if (row.mirror) {
+    row.medium = before;
+  } else if (s.glass) {
+    row.medium = medium(*s.glass);
+  }
+  asphere(s, row);
+  rims(s, before, row);
+  return row;
+}
+
+// --- configurations ---------------------------------------------------------------------------------------------
+
+class Configurations {
+ public:
+  Configurations(const ZemaxLens& zemax, const std::vector<int>& place, double unit, Rows& rows, Import& in)
+      : zemax_(zemax), place_(place), unit_(unit), rows_(rows), in_(in) {}
+
+  void build();
+
+ private:
+  void take(const ZemaxOperand& operand);
+  SurfaceChange& change(Configuration& c, const ZemaxOperand& operand);
+
+  const ZemaxLens& zemax_;
+  const std::vector<int>& place_;  ///< of the rows: their numbers in the file, the object not counted
+  double unit_;
+  Rows& rows_;
+  Import& in_;
+  std::map<std::pair<std::string, int>, std::pair<std::string, bool>> left_out_;  ///< first value; whether they differ
+};
+
+/// The change of the operand's surface; a surface that the rows do not have is refused.
+SurfaceChange& Configurations::change(Configuration& c, const ZemaxOperand& operand) {
+  const auto found = std::ranges::find(place_, operand.surface);
+  if (found == place_.end()) {
+    in_.refuse(operand.line, operand.name, "of surface " + std::to_string(operand.surface), "a surface of the lens");
+  }
+  const int surface = static_cast<int>(found - place_.begin());
+  const auto same_surface = std::ranges::find(c.changes, surface, &SurfaceChange::surface);
+  if (same_surface != c.changes.end()) return *same_surface;
+  c.changes.emplace_back();
+  c.changes.back().surface = surface;
+  return c.changes.back();
+}
+
+void Configurations::take(const ZemaxOperand& operand) {
+  auto& list = in_.lens.configurations;
+  if (operand.configuration < 1 || static_cast<std::size_t>(operand.configuration) > list.size()) {
+    in_.refuse(operand.line, operand.name, "of configuration " + std::to_string(operand.configuration),
+               "1 to " + std::to_string(list.size()));
+  }
+  Configuration& c = list[static_cast<std::size_t>(operand.configuration) - 1];
+  const auto value = [&] { return in_.number(operand.line, operand.name, operand.value); };
+  if (operand.name == "MOFF") return;
+  if (operand.name == "LTTL") {
+    if (!operand.value.empty()) c.name = operand.value;
+  } else if (operand.name == "THIC" && operand.surface == 0) {
+    const double distance = same(operand.value, "INFINITY") ? endless : value() * unit_;
+    if (distance > 0 && distance < endless) c.subject_distance_mm = distance;
+  } else if (operand.name == "THIC") {
+    change(c, operand).thickness = value() * unit_;
+  } else if (operand.name == "CRVT") {
+    change(c, operand).radius = radius_of(value() / unit_);
+  } else if (operand.name == "CONN") {
+    change(c, operand).conic = value();
+  } else if (operand.name == "SDIA") {
+    change(c, operand).semi_diameter = std::abs(value() * unit_);
+  } else if (operand.name == "GLSS") {
+    change(c, operand).medium = rows_.medium({.line = operand.line, .name = operand.value});
+  } else if (operand.name == "APER" && in_.lens.design.aperture &&
+             in_.lens.design.aperture->setting == ApertureSetting::f_number) {
+    c.f_number = value();
+  } else {
+    const auto [entry, first] = left_out_.try_emplace({operand.name, operand.surface}, std::pair{operand.value, false});
+    if (first || entry->second.second || entry->second.first == operand.value) return;
+    entry->second.second = true;
+    in_.warn(operand.line, operand.name, "its values differ among the configurations; it is left out");
+  }
+}
+
+void Configurations::build() {
+  if (zemax_.configurations < 2) return;
+  auto& list = in_.lens.configurations;
+  list.resize(static_cast<std::size_t>(zemax_.configurations));
+  for (std::size_t i = 0; i < list.size(); ++i) list[i].name = std::to_string(i + 1);
+  for (const ZemaxOperand& operand : zemax_.operands) take(operand);
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const auto earlier = std::ranges::find(list, list[i].name, &Configuration::name);
+    if (earlier != list.begin() + static_cast<std::ptrdiff_t>(i)) list[i].name += " (" + std::to_string(i + 1) + ")";
+  }
+  // Where one position alone is at infinity, the others focus it.
+  const auto far = [](const Configuration& c) { return !c.subject_distance_mm; };
+  if (std::ranges::count_if(list, far) != 1 || !far(list[0])) return;
+  for (Configuration& c : list) {
+    if (!far(c)) c.focus_of = list[0].name;
+  }
+}
+
+// --- solves ---------------------------------------------------------------------------------------------------------
+
+/// A thickness at which the paraxial marginal ray has a height: the file's, or the one computed where they differ.
+void check_marginal_height(const ZemaxSurface& s, std::size_t number, Import& in) {
+  const auto [height, zone] = *s.marginal_height;
+  SurfaceRow& row = in.lens.surfaces[number];
+  if (height != 0 || !std::isinf(in.lens.design.object_distance_mm)) {
+    in.warn(s.solve_line, "MAZH", "this marginal height solve is not evaluated; the file's thickness is taken");
+    return;
+  }
+  Prescription front = in.lens;
+  front.surfaces.resize(number + 1);
+  front.configurations.clear();
+  try {
+    const Lens lens = compile(front);
+    const FirstOrder first = first_order(lens, {}, main_meridian(lens));
+    const double focus = first.back_focal_distance;
+    // The solve is of the primary wavelength, and a zone of the pupil has its own focus.
+    const double tolerance = (zone == 0 ? 0.01 : 0.05) * std::abs(first.effective_focal_length);
+    if (first.afocal || std::abs(focus - row.thickness) <= tolerance) return;
+    in.warn(s.solve_line, "MAZH",
+            "the file states " + to_text(row.thickness, 8) + " mm, its solve gives " + to_text(focus, 8) +
+                " mm, which is taken");
+    row.thickness = focus;
+  } catch (const Error&) {
+    in.warn(s.solve_line, "MAZH", "this marginal height solve cannot be evaluated; the file's thickness is taken");
+  }
+}
+
+}  // namespace
+
+void build_lens(ZemaxLens zemax, double unit, Import& in) {
+  Pickups(zemax.surfaces, in).evaluate();
+  std::vector<int> place(zemax.surfaces.size());
+  std::iota(place.begin(), place.end(), 0);
+  fold_breaks(zemax.surfaces, place, in);
+  if (zemax.surfaces.size() < 3) throw Error(in.where() + ": no surface of a lens, wanted one at least");
+
+  const ZemaxSurface &object = zemax.surfaces.front(), &image = zemax.surfaces.back();
+  DesignData& design = in.lens.design;
+  design.object_distance_mm =
+      std::abs(object.thickness) >= endless ? std::numeric_limits<double>::infinity() : object.thickness;
+  Rows rows(zemax, unit, in);
+  if (object.glass) in.lens.object_space = rows.medium(*object.glass);
+  if (object.stop) in.refuse(object.line, "STOP", "at the object", "a surface of the lens");
+  if (image.curvature != 0) in.warn(image.line, "SURF", "the image is curved; a flat film is taken");
+
+  const Medium* before = &in.lens.object_space;
+  for (const ZemaxSurface& s : std::span(zemax.surfaces).subspan(1, zemax.surfaces.size() - 2)) {
+    in.lens.surfaces.push_back(rows.row(s, *before));
+    before = &in.lens.surfaces.back().medium;
+  }
+  if (image.stop) in.refuse(image.line, "STOP", "at the image", "a surface of the lens");
+  in.lens.semi_diameters = "of the file: clear apertures, else the widths of the design's beams";
+  place.erase(place.begin());
+  place.pop_back();
+  Configurations(zemax, place, unit, rows, in).build();
+  for (std::size_t i = 0; i < in.lens.surfaces.size(); ++i) {
+    const ZemaxSurface& s = zemax.surfaces[i + 1];
+    if (s.marginal_height) check_marginal_height(s, i, in);
+  }
+}
+
+}  // namespace petzval::inline v0::files_detail
