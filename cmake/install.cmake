@@ -36,7 +36,7 @@ function(petzval_install component)
 endfunction()
 
 petzval_install(core DESCRIPTION "Real lenses for renderers: prescriptions, ray tracing, pupils, focus, point spread functions"
-  REQUIRES glm STATIC_LIBS -ldl)
+  REQUIRES glm STATIC_REQUIRES yaml-cpp STATIC_LIBS -ldl)
 petzval_install(blur DESCRIPTION "Lens blur of layered pictures" REQUIRES petzval-core)
 petzval_install(fit DESCRIPTION "Least-squares fits for lens optics" REQUIRES petzval-core)
 petzval_install(figure DESCRIPTION "SVG figures of lenses" REQUIRES petzval-core)
