@@ -6,6 +6,7 @@
 
 #include "import.hpp"
 #include "io/json.hpp"
+#include "opticalbench_reader.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/files/lens_file.hpp"
 #include "petzval/io/lens_json.hpp"
@@ -32,6 +33,7 @@ struct Format {
 /// In the order in which they are tried: each is sure of what it takes.
 constexpr std::array formats{
     Format{"zemax", is_zemax, read_zemax},
+    Format{"opticalbench", is_opticalbench, read_opticalbench},
     Format{"table", is_table, read_table},
 };
 

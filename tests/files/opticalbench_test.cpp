@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tables of Photons to Photos.
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "../message.hpp"
+#include "petzval/lens/lens.hpp"
+#include "petzval/paraxial/first_order.hpp"
+#include "petzval/pupil/f_number.hpp"
+#include "said.hpp"
+
+namespace {
+
+using petzval::AsphereTerm;
+using petzval::parse_lens;
+using petzval::testing::message;
+using petzval::testing::read_sample;
+using petzval::testing::said;
+using petzval::testing::with;
+using Said = std::vector<std::string>;
+
+TEST(OpticalBench, TheZoomHasItsFocalLengthInEachPosition) {
+  const auto lens = read_sample("opticalbench_zoom.txt");
+  EXPECT_EQ(lens.imported->format, "opticalbench");
+  EXPECT_EQ(lens.name, "Zoom 70-210 mm f/4");
+  EXPECT_EQ(lens.imported->notes, Said{"The stop is estimated."});
+  EXPECT_TRUE(said(lens).empty());
+  ASSERT_EQ(lens.configurations.size(), 3u);
+  const std::vector<double> focal_lengths = {70.55, 137.04, 205.31};
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(lens.configurations[i].name, std::vector<std::string>({"70.55 mm", "137.04 mm", "205.31 mm"})[i]);
+    EXPECT_FALSE(lens.configurations[i].focus_of.has_value());
+    EXPECT_EQ(lens.configurations[i].focal_length_mm, focal_lengths[i]);
+    const auto compiled = compile(configured(lens, static_cast<double>(i)));
+    EXPECT_NEAR(first_order(compiled).effective_focal_length, focal_lengths[i],
+                3e-4 * focal_lengths[i]);  // as the patent rounds
+    EXPECT_NEAR(real_f_number(compiled), 4.0, 1e-4);
+  }
+  EXPECT_TRUE(lens.configurations[0].changes.empty());
+  EXPECT_EQ(lens.configurations[2].changes.size(), 5u);  // four distances and the stop
+  EXPECT_EQ(lens.image_diagonal_mm, 43.27);
+  EXPECT_EQ(lens.half_field_deg, 34.1 / 2);
+}
+
+TEST(OpticalBench, EveryWordOfTheFormIsHonouredOrNamed) {
+  const auto lens = read_sample("opticalbench_macro.txt");
+  EXPECT_EQ(lens.name, "Two groups that focus");
+  EXPECT_EQ(lens.focal_length_mm, 100);
+  EXPECT_EQ(lens.f_number, 4);
+  EXPECT_EQ(lens.half_field_deg, 10);
+  EXPECT_EQ(lens.imported->notes, (Said{"patent none", "Some words.", "number 0"}));
+  ASSERT_EQ(lens.surfaces.size(), 9u);
+  const auto& s = lens.surfaces;
+  EXPECT_EQ(s[0].radius, 60);
+  EXPECT_EQ(s[0].semi_diameter, 15);
+  EXPECT_EQ(s[0].medium.glass, "N-BK7");
+  EXPECT_EQ(s[0].medium.catalogue, "schott");
+  EXPECT_EQ(s[1].medium.glass, "F2");
+  EXPECT_EQ(s[2].radius, 0);
+  EXPECT_EQ(s[3].comment, "field stop");
+  EXPECT_EQ(s[3].semi_diameter, std::nullopt);
+  EXPECT_EQ(s[3].thickness, 10);
+  EXPECT_TRUE(s[4].stop);
+  EXPECT_EQ(s[4].semi_diameter, 10);
+  EXPECT_EQ(s[5].medium, (petzval::Medium{.nd = 1.6, .vd = 50}));
+  EXPECT_EQ(s[6].medium, petzval::Medium{});
+  EXPECT_EQ(s[7].comment, "cover glass");
+  EXPECT_EQ(s[8].thickness, 70);
+  // One odd power: 3, then 4, 6, 8.
+  EXPECT_EQ(s[0].conic, 0.5);
+  EXPECT_EQ(s[0].aspheric, (std::vector<AsphereTerm>{{3, 1e-7}, {4, -2e-6}, {6, 3e-9}}));
+  EXPECT_EQ(s[5].aspheric, (std::vector<AsphereTerm>{{6, 4e-12}}));
+  EXPECT_EQ(said(lens), (Said{"7 Unknown: an unknown constant is left out",
+                              "30 6: its asphere has a radius of -200.5, [lens data] one of -200, which is taken",
+                              "16 d9: no surface has this distance; it is left out"}));
+  ASSERT_EQ(lens.configurations.size(), 3u);
+  EXPECT_EQ(lens.configurations[0].name, "far");
+  EXPECT_EQ(lens.configurations[1].name, "near");
+  EXPECT_EQ(lens.configurations[1].focus_of, "far");
+  EXPECT_EQ(lens.configurations[1].subject_distance_mm, 1100);
+  EXPECT_EQ(lens.configurations[1].changes.size(), 2u);
+  EXPECT_EQ(lens.configurations[2].focus_of, "far");
+}
+
+// A position that states its magnification only is focused where the lens has it.
+TEST(OpticalBench, AMagnificationTellsTheSubject) {
+  const auto lens = read_sample("opticalbench_macro.txt");
+  const auto& near = lens.configurations.at(2);
+  petzval::Prescription rows = lens;
+  for (const auto& change : near.changes) {
+    rows.surfaces[static_cast<std::size_t>(change.surface)].thickness = change.thickness.value();
+  }
+  rows.configurations.clear();
+  const auto first = first_order(compile(rows));
+  // Newton: the subject is f / m in front of the front focal point.
+  EXPECT_NEAR(*near.subject_distance_mm - first.effective_focal_length / 0.2,
+              first.effective_focal_length - first.front_principal_z, 1e-9);
+}
+
+const std::string plain =
+    "[descriptive data]\ntitle\tplain\n[variable distances]\nFocal Length\t100\nF-Number\t5\nd2\t97\n[lens data]\n"
+    "1\tAS\t1\t\t19\n2\t50\t5\t1.5\t30\t60\n3\tInfinity\td2\t\t30\n[aspherical data]\n2\t50\t0\t1\t2\t3\t4\t5\n";
+
+std::vector<int> orders(const std::string& constant) {
+  const auto lens = parse_lens(with(plain, "[variable", "[constants]\n" + constant + "\n[variable"), "x.txt");
+  std::vector<int> result;
+  for (const auto& term : lens.surfaces[1].aspheric) {
+    EXPECT_EQ(term.coefficient, static_cast<double>(result.size() + 1));
+    result.push_back(term.order);
+  }
+  return result;
+}
+
+TEST(OpticalBench, ConstantsSayWhichPowersTheCoefficientsHave) {
+  using Orders = std::vector<int>;
+  EXPECT_EQ(orders(""), (Orders{4, 6, 8, 10, 12}));
+  EXPECT_EQ(orders("AsphericalA2"), (Orders{2, 4, 6, 8, 10}));
+  EXPECT_EQ(orders("AsphericalOddCount\t0"), (Orders{4, 6, 8, 10, 12}));
+  EXPECT_EQ(orders("AsphericalOddCount\t1"), (Orders{3, 4, 6, 8, 10}));
+  EXPECT_EQ(orders("AsphericalOddCount\t2"), (Orders{3, 4, 5, 6, 8}));
+  EXPECT_EQ(orders("AsphericalOddCount\t20"), (Orders{3, 4, 5, 6, 7}));
+}
+
+TEST(OpticalBench, OnePositionIsNoConfiguration) {
+  const auto lens = parse_lens(plain, "x.txt");
+  EXPECT_TRUE(lens.configurations.empty());
+  EXPECT_TRUE(said(lens).empty());
+  EXPECT_EQ(lens.surfaces[2].thickness, 97);
+}
+
+TEST(OpticalBench, AnUnknownFilmIsPutAtTheFocus) {
+  auto lens = parse_lens(with(plain, "d2\t97", "d2\tundefined"), "x.txt");
+  EXPECT_NEAR(lens.surfaces[2].thickness, 100 - 5 / 1.5 + 5 * (1 - 1 / 1.0), 1e-9);
+  EXPECT_EQ(said(lens), Said{"10 thickness: the place of the film is not stated; it is put at the paraxial focus, "
+                             "96.66667 mm"});
+  lens = parse_lens(with(plain, "3\tInfinity\td2", "3\tInfinity\t"), "x.txt");
+  EXPECT_NEAR(lens.surfaces[2].thickness, 96.66667, 1e-5);
+}
+
+// Two zoom positions, each focused twice; the near ones are told apart by their distances.
+TEST(OpticalBench, NearPositionsFocusTheZoomPositionThatTheyAreLike) {
+  const auto lens = parse_lens(
+      "[descriptive data]\n[variable distances]\nFocal Length\t50\t70\n"
+      "d0\tInfinity\tInfinity\t900\t300\t900\nd2\t10\t20\t20.5\t9\t11\nBf\t60\t80\t81\t62\t61\n[lens data]\n"
+      "1\tAS\t1\t\t9\n2\t50\td2\t\t30\n3\t40\t5\t1.5\t30\t60\n4\tInfinity\tBf\t\t30\n",
+      "x.txt");
+  ASSERT_EQ(lens.configurations.size(), 5u);
+  Said names;
+  for (const auto& c : lens.configurations) names.push_back(c.name + " < " + c.focus_of.value_or("-"));
+  EXPECT_EQ(names, (Said{"50 mm < -", "70 mm < -", "70 mm at 900 mm < 70 mm", "50 mm at 300 mm < 50 mm",
+                         "50 mm at 900 mm < 50 mm"}));
+  EXPECT_EQ(said(lens).size(), 3u);
+  EXPECT_EQ(said(lens)[0],
+            "4 d0: the position at 900 mm is taken to focus 70 mm, whose distances are most like its own");
+}
+
+TEST(OpticalBench, APositionWithoutItsDistancesIsLeftOut) {
+  const auto lens = parse_lens(
+      "[descriptive data]\n[variable distances]\nd2\t10\tundefined\nBf\t60\t80\n[lens data]\n"
+      "1\tAS\t1\t\t9\n2\t50\td2\t\t30\n3\t40\t5\t1.5\t30\t60\n4\tInfinity\tBf\t\t30\n",
+      "x.txt");
+  EXPECT_TRUE(lens.configurations.empty());
+  EXPECT_EQ(said(lens).at(0), "0 variable distances: column 2 is left out: it does not state all distances");
+}
+
+TEST(OpticalBench, WhatIsInvalidIsRefusedWithItsLine) {
+  const auto refusal = [](std::string_view old, std::string_view text) {
+    return message([&] { parse_lens(with(plain, old, text), "x.txt"); });
+  };
+  EXPECT_EQ(refusal("50\t5\t1.5", "5x\t5\t1.5"),
+            "x.txt: line 9: radius is \"5x\", wanted a finite number with a decimal point");
+  EXPECT_EQ(refusal("50\t5\t1.5", "50\t5\t1,5"),
+            "x.txt: line 9: index is \"1,5\", wanted a finite number with a decimal point");
+  EXPECT_EQ(refusal("50\t5\t1.5", "50\t5\t-1"),
+            "x.txt: line 9: index is -1, wanted one above 0; mirrors are not known in these tables");
+  EXPECT_EQ(refusal("50\t5\t1.5", "50\t1e400\t1.5"),
+            "x.txt: line 9: thickness is \"1e400\", wanted a finite number with a decimal point");
+  EXPECT_EQ(refusal("50\t5\t1.5", "50\td7\t1.5"),
+            "x.txt: line 9: thickness is \"d7\", wanted a number or a row of [variable distances]");
+  EXPECT_EQ(refusal("50\t5\t1.5", "50\t\t1.5"),
+            "x.txt: line 9: thickness is missing, wanted a number or a row of [variable distances]");
+  EXPECT_EQ(refusal("2\t50\t5", "1\t50\t5"), "x.txt: line 9: row is named 1 as one before, wanted one name each");
+  EXPECT_EQ(
+      refusal("2\t50\t5\t1.5\t30\t60", "2 50 5 1.5 30 60"),
+      "x.txt: line 9: row is 1 columns, wanted a name, radius, thickness, index, diameter and V-number, with tabs "
+      "between them");
+  EXPECT_EQ(refusal("2\t50\t0\t1", "9\t50\t0\t1"),
+            "x.txt: line 12: asphere is of surface \"9\", wanted one of [lens data]");
+  EXPECT_EQ(refusal("2\t50\t0\t1\t2\t3\t4\t5", "2\t50"),
+            "x.txt: line 12: asphere is 2 columns, wanted its name, radius and conic");
+  EXPECT_EQ(refusal("d2\t97", "d2\tnan"),
+            "x.txt: line 6: value is \"nan\", wanted a finite number with a decimal point");
+  EXPECT_EQ(refusal("d2\t97", "d2\t97\nd2\t98"), "x.txt: line 7: d2 is given twice, wanted one row of it");
+  EXPECT_EQ(refusal("[variable", "[constants]\nAsphericalOddCount\t1.5\n[variable"),
+            "x.txt: line 4: AsphericalOddCount is 1.5, wanted a whole number from 0 to 20");
+  EXPECT_EQ(message([] { parse_lens("[lens data]\n", "x.txt"); }),
+            "x.txt: no rows of [lens data], wanted at least one surface");
+  EXPECT_EQ(message([] { parse_lens("[lens data]\n1" + std::string(200, '\t') + "5\n", "x.txt"); }),
+            "x.txt: line 2: line is of more than 101 columns, wanted fewer");
+}
+
+}  // namespace
