@@ -15,11 +15,13 @@
 #include <ImfPartType.h>
 #include <ImfStdIO.h>
 #include <ImfStringAttribute.h>
+#include <ImfVecAttribute.h>
 
 #include <algorithm>
 #include <array>
 #include <cstdint>
 #include <set>
+#include <span>
 #include <string>
 
 #include "petzval/core/error.hpp"
@@ -32,18 +34,27 @@ namespace {
 constexpr std::uint64_t most_values = std::uint64_t(3) << 28;
 
 /// Attributes that OpenEXR writes into every file by itself.
-constexpr std::array<std::string_view, 6> of_every_file{"chunkCount",        "name", "pixelAspectRatio",
-                                                        "screenWindowWidth", "type", "version"};
+constexpr std::array<std::string_view, 7> of_every_file{
+    "chunkCount", "name", "pixelAspectRatio", "screenWindowCenter", "screenWindowWidth", "type", "version"};
+/// Attributes of lenses that are float by OpenEXR's standard.
+constexpr std::array<std::string_view, 7> standard_floats{"aperture", "effectiveFocalLength", "entrancePupilOffset",
+                                                          "focus",    "nominalFocalLength",   "pinholeFocalLength",
+                                                          "tStop"};
 
-bool in_every_file(std::string_view name) noexcept {
-  return std::find(of_every_file.begin(), of_every_file.end(), name) != of_every_file.end();
+bool is_among(std::span<const std::string_view> names, std::string_view name) noexcept {
+  return std::find(names.begin(), names.end(), name) != names.end();
 }
+bool in_every_file(std::string_view name) noexcept { return is_among(of_every_file, name); }
 
 std::string size_of(const ExrPart& part) { return std::to_string(part.width) + " x " + std::to_string(part.height); }
 
 void validate(const ExrPart& part) {
   const std::string where = "part \"" + part.name + "\": ";
   if (part.width < 1 || part.height < 1) throw Error(where + "is " + size_of(part) + ", wanted at least one pixel");
+  if (part.margin_x < 0 || part.margin_y < 0 || 2 * part.margin_x >= part.width || 2 * part.margin_y >= part.height) {
+    throw Error(where + "has margins of " + std::to_string(part.margin_x) + " and " + std::to_string(part.margin_y) +
+                " pixels, wanted 0 or more, and less than half of " + size_of(part));
+  }
   if (part.channels.empty()) throw Error(where + "no channel, wanted one at least");
   std::set<std::string_view> names;
   for (const ExrChannel& channel : part.channels) {
@@ -57,6 +68,11 @@ void validate(const ExrPart& part) {
   }
   for (const auto& [name, text] : part.texts) {
     if (part.numbers.contains(name)) throw Error(where + "attribute " + name + " is a text and a number, wanted one");
+  }
+  for (const auto& [name, pair] : part.pairs) {
+    if (part.texts.contains(name) || part.numbers.contains(name)) {
+      throw Error(where + "attribute " + name + " is a pair and something else, wanted one");
+    }
   }
 }
 
@@ -81,11 +97,19 @@ void insert(Imf::Header& header, const std::string& name, const Value& value) {
 }
 
 Imf::Header header_of(const ExrPart& part, const Imath::Box2i& display) {
-  Imf::Header header(display, {{0, 0}, {part.width - 1, part.height - 1}});
+  const Imath::V2i first{-part.margin_x, -part.margin_y};
+  Imf::Header header(display, {first, first + Imath::V2i(part.width - 1, part.height - 1)});
   header.setType(Imf::SCANLINEIMAGE);
   for (const ExrChannel& channel : part.channels) header.channels().insert(channel.name, Imf::Channel(Imf::FLOAT));
   for (const auto& [name, text] : part.texts) insert<Imf::StringAttribute>(header, name, text);
-  for (const auto& [name, number] : part.numbers) insert<Imf::DoubleAttribute>(header, name, number);
+  for (const auto& [name, number] : part.numbers) {
+    if (is_among(standard_floats, name)) {
+      insert<Imf::FloatAttribute>(header, name, static_cast<float>(number));
+    } else {
+      insert<Imf::DoubleAttribute>(header, name, number);
+    }
+  }
+  for (const auto& [name, pair] : part.pairs) insert<Imf::V2fAttribute>(header, name, Imath::V2f(pair.x, pair.y));
   if (!part.name.empty()) header.setName(part.name);
   return header;
 }
@@ -115,6 +139,7 @@ void read_attributes(const Imf::Header& header, ExrPart& part) {
     if (const auto* value = number<double>(attribute)) part.numbers[i.name()] = *value;
     if (const auto* value = number<float>(attribute)) part.numbers[i.name()] = static_cast<double>(*value);
     if (const auto* value = number<int>(attribute)) part.numbers[i.name()] = *value;
+    if (const auto* value = number<Imath::V2f>(attribute)) part.pairs[i.name()] = {value->x, value->y};
   }
 }
 
@@ -154,6 +179,9 @@ class Reader {
     left_ -= width * height * part.channels.size();
     part.width = static_cast<int>(width);
     part.height = static_cast<int>(height);
+    const Imath::Box2i& display = header.displayWindow();
+    const Imath::V2i before = display.min - window.min, after = window.max - display.max;
+    if (before == after && before.x >= 0 && before.y >= 0) part.margin_x = before.x, part.margin_y = before.y;
     for (ExrChannel& channel : part.channels) channel.values.resize(static_cast<std::size_t>(width * height));
     Imf::InputPart in(file_, index);
     in.setFrameBuffer(frame(part.channels, window, part.width, part.height));
@@ -173,7 +201,9 @@ void write_exr(std::span<const ExrPart> parts, const std::filesystem::path& file
   try {
     validate(parts);
     Imath::Box2i display{{0, 0}, {0, 0}};
-    for (const ExrPart& part : parts) display.extendBy(Imath::V2i(part.width - 1, part.height - 1));
+    for (const ExrPart& part : parts) {
+      display.extendBy(Imath::V2i(part.width - 2 * part.margin_x - 1, part.height - 2 * part.margin_y - 1));
+    }
     std::vector<Imf::Header> headers;
     for (const ExrPart& part : parts) headers.push_back(header_of(part, display));
     Imf::MultiPartOutputFile out(stream, headers.data(), static_cast<int>(headers.size()), false, 0);

@@ -105,6 +105,24 @@ TEST_F(ImageFiles, ExrPartsComeBackBitForBit) {
   EXPECT_EQ(files(), 1u);
 }
 
+TEST_F(ImageFiles, ExrKeepsMarginsPairsAndStandardFloats) {
+  const auto file = folder_ / "a.exr";
+  std::vector<ExrPart> parts = two_parts();
+  parts[0].margin_x = 2, parts[0].margin_y = 1;
+  parts[0].pairs["size"] = {0.1f, -2};
+  parts[0].numbers["aperture"] = 2.8;
+  for (const std::size_t count : {1u, 2u}) {
+    write_exr(std::span(parts).first(count), file);
+    const std::vector<ExrPart> back = read_exr_parts(file);
+    // Beside a higher part the first one is no longer in the middle of the display window.
+    EXPECT_EQ(back[0].margin_x, count == 1 ? 2 : 0);
+    EXPECT_EQ(back[0].margin_y, count == 1 ? 1 : 0);
+    EXPECT_EQ(back[0].pairs, parts[0].pairs);
+    EXPECT_EQ(back[0].numbers.at("aperture"), double{2.8f});
+    EXPECT_EQ(back[0].channels[1].values, parts[0].channels[1].values);
+  }
+}
+
 TEST_F(ImageFiles, RgbIsReadFromTheFirstPart) {
   const auto file = folder_ / "a.exr";
   std::vector<ExrPart> parts = two_parts();
@@ -139,6 +157,9 @@ TEST_F(ImageFiles, RefusesExrPartsThatNoFileHolds) {
   refused([](Parts& p) { p[0].texts["type"] = "deepscanline"; }, "attribute type is EXR's own");
   refused([](Parts& p) { p[0].numbers["dataWindow"] = 1; }, "attribute dataWindow is EXR's own");
   refused([](Parts& p) { p[0].numbers["units"] = 1; }, "attribute units is a text and a number");
+  refused([](Parts& p) { p[1].pairs["field_deg"] = {1, 2}; }, "attribute field_deg is a pair and something else");
+  refused([](Parts& p) { p[1].margin_x = 1; }, "part \"second\": has margins of 1 and 0 pixels");
+  refused([](Parts& p) { p[1].margin_y = -1; }, "part \"second\": has margins of 0 and -1 pixels");
   EXPECT_EQ(files(), 0u);
 }
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "petzval/core/export.hpp"
+#include "petzval/core/geometry.hpp"
 #include "petzval/iris/iris_weights.hpp"
 
 namespace petzval::inline v0 {
@@ -46,20 +47,26 @@ struct ExrChannel {
 };
 
 /// One picture of an EXR file: channels of one size, and what the file says about them.
+///
+/// Numbers become attributes of type double, except those for which OpenEXR has a standard of type float: aperture,
+/// effectiveFocalLength, entrancePupilOffset, focus, nominalFocalLength, pinholeFocalLength and tStop.
 struct ExrPart {
   std::string name{};  ///< may be empty in a file of one part
   int width = 0;
   int height = 0;
   std::vector<ExrChannel> channels{};          ///< read ones are sorted by name, as the format keeps them
   std::map<std::string, std::string> texts{};  ///< attributes of type string
-  std::map<std::string, double> numbers{};     ///< of type double; float and int are read too
+  std::map<std::string, double> numbers{};     ///< of type double or float; int is read too
+  std::map<std::string, Vec2<float>> pairs{};  ///< of type v2f
+  /// Pixels on either side beyond the display window. Read ones are 0 where a data window has others.
+  int margin_x = 0, margin_y = 0;
 };
 
 /// Writes parts of 32-bit float channels, without loss, as write_file does; a file of several is multi-part.
 ///
-/// The data windows of parts begin at (0, 0); the display window is the smallest one around all of them. Throws Error
-/// that names the file: for no part, a part without channels or pixels, channels of another size than their part, names
-/// that are empty or stand twice, and attributes that EXR has for itself.
+/// The display window begins at (0, 0) and is the smallest one around all parts without their margins. Throws Error
+/// that names the file: for no part, a part without channels or pixels, margins that leave no pixel, channels of
+/// another size than their part, names that are empty or stand twice, and attributes that EXR has for itself.
 PETZVAL_API void write_exr(std::span<const ExrPart> parts, const std::filesystem::path& file);
 
 /// Reads all parts of an EXR file of scan lines or tiles, any channel as float; attributes that every EXR has, and
