@@ -69,6 +69,7 @@ void say(const fs::path& file) { std::cout << file.string() << '\n'; }
 void write_results(const renderer::PictureSums& sums, const Json& job, Json about,
                    const std::vector<std::string>& formats, const fs::path& folder) {
   const std::map<std::string, std::string> texts{{"lens", job.at("lens")},
+                                                 {"lensModel", job.at("lens")},
                                                  {"model", job.at("model")},
                                                  {"integrator", job.at("integrator")},
                                                  {"wavelengths", job.at("wavelengths")},
@@ -79,6 +80,8 @@ void write_results(const renderer::PictureSums& sums, const Json& job, Json abou
     return job.at(key).is_null() ? std::numeric_limits<double>::infinity() : job.at(key).get<double>();
   };
   const std::map<std::string, double> numbers{{"fNumber", number("real_f_number")},
+                                              {"aperture", number("real_f_number")},
+                                              {"focus", number("focus_mm") / 1000},  // m
                                               {"focusMm", number("focus_mm")},
                                               {"white", number("white")},
                                               {"seed", number("seed")}};

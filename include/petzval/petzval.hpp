@@ -59,6 +59,8 @@
 #include "petzval/distortion/st_map.hpp"
 #include "petzval/files/glass_files.hpp"
 #include "petzval/files/lens_file.hpp"
+#include "petzval/files/lens_metadata.hpp"
+#include "petzval/files/open_track_io.hpp"
 #include "petzval/film/film.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/io/lens_json.hpp"

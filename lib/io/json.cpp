@@ -155,4 +155,12 @@ std::string json_number(double value) {
   return plain.find('.') == std::string::npos ? plain + ".0" : plain;
 }
 
+std::string json_text(const std::string& text) {
+  try {
+    return nlohmann::json(text).dump();
+  } catch (const nlohmann::json::exception&) {
+    throw Error("a string of the lens is not UTF-8, wanted UTF-8 to write JSON");
+  }
+}
+
 }  // namespace petzval::inline v0::io_detail

@@ -58,4 +58,7 @@ std::string read_text(const std::filesystem::path& file, const std::string& want
 /// The shortest decimals that read back; without an exponent from 1e-4 to 1e16, and always with a point.
 std::string json_number(double value);
 
+/// A text in quotes, with escapes. Throws Error for one that is not UTF-8.
+std::string json_text(const std::string& text);
+
 }  // namespace petzval::inline v0::io_detail

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "json.hpp"
-#include "petzval/core/error.hpp"
 #include "petzval/io/lens_json.hpp"
 #include "petzval/io/write_file.hpp"
 
@@ -12,13 +10,7 @@ namespace {
 
 std::string json(double value) { return io_detail::json_number(value); }
 
-std::string json(const std::string& text) {
-  try {
-    return nlohmann::json(text).dump();
-  } catch (const nlohmann::json::exception&) {
-    throw Error("a string of the lens is not UTF-8, wanted UTF-8 to write JSON");
-  }
-}
+std::string json(const std::string& text) { return io_detail::json_text(text); }
 
 std::string json(bool flag) { return flag ? "true" : "false"; }
 

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+// Writes what compositing and virtual production ask of a lens at its stop and focus: a lens sample of OpenTrackIO and
+// ST maps that remove and restore its distortion.
+//
+//   lens_metadata data/lenses/biogon_35mm_f2.8.json --f-number 4 --focus-mm 2000 --out out
+#include <array>
+#include <filesystem>
+#include <iostream>
+#include <string>
+
+#include "petzval/core/parallel.hpp"
+#include "petzval/core/units.hpp"
+#include "petzval/distortion/brown_conrady.hpp"
+#include "petzval/files/lens_exr.hpp"
+#include "petzval/files/open_track_io.hpp"
+#include "support/camera_setup.hpp"
+#include "support/cli.hpp"
+#include "support/files.hpp"
+#include "support/load_lens.hpp"
+#include "support/text.hpp"
+
+namespace {
+
+using examples::number;
+
+struct Options {
+  std::string lens_file, out_folder;
+  examples::CameraSetup setup;
+};
+
+void write(const Options& options) {
+  const examples::LoadedLens loaded = examples::load_lens(options.lens_file, std::array{petzval::d_line_nm});
+  const petzval::Lens lens = examples::focused(loaded, options.setup);
+  const auto [width, height] = options.setup.film_size();
+  const petzval::Film film{.width_mm = width, .height_mm = height, .columns = 1920, .rows = 1280};
+  const petzval::LensDistortion distortion(petzval::Camera(lens, film, {.model = petzval::ModelKind::exact_double}));
+  const petzval::LensIdentity identity = petzval::identity_of(loaded.prescription);
+  examples::make_folder(options.out_folder);
+  const std::filesystem::path stem = std::filesystem::path(options.out_folder) / loaded.id;
+  const auto written = [&](const std::string& ending, const auto& write_to) {
+    const std::filesystem::path file = stem.string() + ending;
+    write_to(file);
+    std::cout << file.string() << '\n';
+  };
+
+  const petzval::BrownConrady fit = petzval::fit_brown_conrady(distortion);
+  std::cout << "pinhole " << number(fit.pinhole.focal_length_mm.y, 6) << " mm in front of its film, field "
+            << number(petzval::degrees(fit.field_rad), 3) << " degrees; Brown-Conrady within "
+            << number(fit.largest_px, 2) << " pixels of " << film.columns << " x " << film.rows << '\n';
+  written(".opentrackio.json", [&](const auto& file) { petzval::write_open_track_io(lens, film, identity, file); });
+  written(".stmap.exr", [&](const auto& file) {
+    petzval::write_st_map(lens, film, identity, file, {.threads = petzval::processor_threads()});
+  });
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options options;
+  examples::App app(
+      "Writes a lens at its stop and focus as DIR/LENS.opentrackio.json, and the ST maps of its distortion as "
+      "DIR/LENS.stmap.exr.",
+      "lens_metadata");
+  app.add_option("LENS", options.lens_file, "lens prescription (JSON as in data/lenses)")->required();
+  examples::add_camera(app, options.setup);
+  app.add_option("--out", options.out_folder, "folder for the files")->required()->type_name("DIR");
+  return examples::run(app, argc, argv, [&] { write(options); });
+}

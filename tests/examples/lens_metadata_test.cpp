@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <string>
+
+#include "petzval/io/image.hpp"
+#include "program.hpp"
+
+namespace {
+
+class LensMetadata : public Programs {};
+
+TEST_F(LensMetadata, WritesBothFilesOfTheFocusedLens) {
+  const auto outcome =
+      run("lens_metadata", {lens("biogon_35mm_f2.8"), "--f-number", "4", "--focus-mm", "2000", "--out", path("out")});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("field 30 degrees; Brown-Conrady within"), std::string::npos) << outcome.out;
+  const auto sample = read_json(path("out/biogon_35mm_f2.8.opentrackio.json")).at("lens");
+  EXPECT_NEAR(sample.at("focusDistance").get<double>(), 2, 1e-6);
+  EXPECT_NEAR(sample.at("tStop").get<double>(), 4, 0.05);
+  const auto parts = petzval::read_exr_parts(path("out/biogon_35mm_f2.8.stmap.exr"));
+  ASSERT_EQ(parts.size(), 2u);
+  EXPECT_EQ(parts[1].width, 1920);
+  EXPECT_NEAR(parts[1].numbers.at("focus"), 2, 1e-6);
+}
+
+TEST_F(LensMetadata, RefusesFisheyes) {
+  const auto outcome = run("lens_metadata", {lens("fisheye_8mm_f2.8"), "--film-mm", "24x24", "--out", path("out")});
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_NE(outcome.err.find("as a fisheye's does"), std::string::npos) << outcome.err;
+}
+
+}  // namespace
