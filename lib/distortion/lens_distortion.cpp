@@ -49,8 +49,6 @@ LensDistortion::LensDistortion(const Camera& camera, const DistortionOptions& op
   pinhole_.centre_mm = {(centre_.x - film.columns / 2.0) * pixel_mm.x, (centre_.y - film.rows / 2.0) * pixel_mm.y};
 
   // The slope of the picture about the axis, freed of distortion of the third order by two steps (Richardson).
-  const double focal_length = std::abs(first_order(lens, {}, main_meridian(lens)).effective_focal_length);
-  const double step = 0.04 * film.radius_mm() / focal_length;
   const auto slope = [&](double x, double y, double by) {
     const auto shown = [&](double sign) {
       const Projection at =
@@ -60,7 +58,11 @@ LensDistortion::LensDistortion(const Camera& camera, const DistortionOptions& op
     };
     return (shown(1) - shown(-1)) / (2 * by);
   };
-  const auto on_axis = [&](double x, double y) { return (4.0 * slope(x, y, step) - slope(x, y, 2 * step)) / 3.0; };
+  const auto on_axis = [&](double x, double y) {
+    const Vec2<double> rough = slope(x, y, 1e-4) * pixel_mm;
+    const double step = 0.04 * film.radius_mm() / std::hypot(rough.x, rough.y);
+    return (4.0 * slope(x, y, step) - slope(x, y, 2 * step)) / 3.0;
+  };
   focal_length_px_ = {on_axis(1, 0).x, -on_axis(0, 1).y};
   if (!(focal_length_px_.x > 0 && focal_length_px_.y > 0)) {
     throw Error(where + "the picture is upside down, wanted an upright one");

@@ -8,6 +8,7 @@
 
 #include "core/text.hpp"
 #include "io/json.hpp"
+#include "petzval/core/error.hpp"
 #include "petzval/core/units.hpp"
 #include "petzval/distortion/brown_conrady.hpp"
 #include "petzval/io/write_file.hpp"
@@ -25,7 +26,12 @@ class Object {
  public:
   void add(std::string_view key, const std::string& json) { members_.emplace_back(key, json); }
   void add(std::string_view key, double value) { add(key, json_number(value)); }
+  /// Unless it is empty. Texts of the standard have at most 1023 bytes.
   void add_text(std::string_view key, const std::string& text) {
+    if (text.size() > 1023) {
+      throw Error("OpenTrackIO: " + std::string(key) + " has " + std::to_string(text.size()) +
+                  " bytes, wanted 1023 or fewer");
+    }
     if (!text.empty()) add(key, json_text(text));
   }
   std::string on_one_line() const { return text("", ", ", ""); }
@@ -111,8 +117,8 @@ std::string format_open_track_io(const Lens& lens, const Film& film, const LensI
   sample.add("projectionOffset", offset.on_one_line());
   sample.add("entrancePupilOffset", state.entrance_pupil_offset_mm * metres);
   if (std::isfinite(state.focus_distance_mm)) sample.add("focusDistance", state.focus_distance_mm * metres);
-  sample.add("fStop", state.f_number);
-  sample.add("tStop", state.t_number);
+  if (std::isfinite(state.f_number)) sample.add("fStop", state.f_number);
+  if (std::isfinite(state.t_number)) sample.add("tStop", state.t_number);
   sample.add("exposureFalloff", light.on_one_line());
 
   Object protocol, file;

@@ -84,6 +84,20 @@ TEST(LensDistortion, OfAPlateBehindItIsThatOfSnellsLaw) {
   EXPECT_GT(most, 5);
 }
 
+// A plate behind a stop has no focal length, and a picture.
+TEST(LensDistortion, NeedsNoFocalLength) {
+  Prescription p;
+  p.name = "plate";
+  p.surfaces = {{.thickness = 10, .semi_diameter = 0.1, .stop = true},
+                {.thickness = 6, .medium = {.nd = 1.5}, .semi_diameter = 30},
+                {.thickness = 14, .semi_diameter = 30}};
+  const Lens lens = compile(p);
+  EXPECT_TRUE(first_order(lens).afocal);
+  const LensDistortion distortion(Camera(lens, small_film(12), {.model = ModelKind::exact_double}),
+                                  {.subject_z_mm = -1000.0});
+  EXPECT_NEAR(distortion.pinhole().focal_length_mm.x, 24 + 6 / 1.5, 1e-4);
+}
+
 // The same chief rays by other code, aimed at the stop from the scene.
 TEST(LensDistortion, IsThatOfExactChiefRays) {
   for (const char* id : {"double_gauss_100mm_f2_28deg", "biogon_35mm_f2.8", "zoom_14-30mm_f4:wide"}) {

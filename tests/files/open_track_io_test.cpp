@@ -155,6 +155,8 @@ TEST(OpenTrackIo, RefusesFisheyesAndTextsThatAreNotUtf8) {
   };
   EXPECT_NE(refused("fisheye_8mm_f2.8", {}).find("as a fisheye's does"), std::string::npos);
   EXPECT_NE(refused("biogon_35mm_f2.8", {.model = "\xff"}).find("UTF-8"), std::string::npos);
+  EXPECT_EQ(refused("biogon_35mm_f2.8", {.make = std::string(1024, 'x')}),
+            "OpenTrackIO: make has 1024 bytes, wanted 1023 or fewer");
 }
 
 }  // namespace

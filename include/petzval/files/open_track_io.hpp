@@ -24,7 +24,7 @@ namespace petzval::inline v0 {
 ///
 /// No key is written whose value is unknown. The lens has the film where it is focused. Throws Error where
 /// LensDistortion, fit_brown_conrady(), overscan() and fit_exposure_falloff() do: for fisheyes, lenses with cylinders
-/// and tilted films among others; and for texts that are not UTF-8.
+/// and tilted films among others; and for texts that are not UTF-8 or longer than 1023 bytes.
 PETZVAL_API std::string format_open_track_io(const Lens& lens, const Film& film, const LensIdentity& identity = {});
 
 /// Writes that text as write_file does. Throws Error that names the file.
