@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "petzval/camera/camera.hpp"
-#include "petzval/focus/focus.hpp"
 #include "petzval/files/lens_file.hpp"
+#include "petzval/focus/focus.hpp"
 #include "petzval/media/glass.hpp"
 #include "renderer/built_in_scenes.hpp"
 #include "renderer/unit_tracer.hpp"

@@ -2,8 +2,8 @@
 #include <cmath>
 #include <set>
 
-#include "petzval/focus/focus.hpp"
 #include "petzval/files/lens_file.hpp"
+#include "petzval/focus/focus.hpp"
 #include "petzval/movement/autofocus.hpp"
 #include "petzval/movement/focus_point.hpp"
 #include "petzval/pupil/f_number.hpp"

@@ -14,8 +14,8 @@
 
 #include "petzval/core/error.hpp"
 #include "petzval/core/units.hpp"
-#include "petzval/focus/focus.hpp"
 #include "petzval/files/lens_file.hpp"
+#include "petzval/focus/focus.hpp"
 #include "petzval/pupil/f_number.hpp"
 
 namespace petzval {
