@@ -80,7 +80,7 @@ int main(int argc, char** argv) {
     if (out->given()) {
       const auto write = [&](const char* kind, const std::string& text) {
         const auto file =
-            folder / (std::filesystem::path(options.lens_file).stem().string() + "_accuracy_speed." + kind);
+            folder / (std::filesystem::path(options.lens_file.file).stem().string() + "_accuracy_speed." + kind);
         examples::write_text(file, text);
         (options.json ? std::cerr : std::cout) << file.string() << '\n';
       };

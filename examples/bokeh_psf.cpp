@@ -37,8 +37,8 @@ constexpr int picture_pixels = 512, tile_pixels = 320;
 
 struct Options {
   std::vector<std::string> formats;
-  std::string model = "exact_double", lens_file, out_folder, origin = "front_vertex", criterion = "min_rms",
-              white_point = "D65";
+  examples::LensInput lens_file;
+  std::string model = "exact_double", out_folder, origin = "front_vertex", criterion = "min_rms", white_point = "D65";
   std::vector<double> focus_mm, wavelengths_nm{petzval::d_line_nm};
   double subject_mm = 0, field_deg = 0, tolerance = 0;
   examples::IrisSetup iris;
@@ -197,7 +197,7 @@ int main(int argc, char** argv) {
       "+y down); centroids are in the axes of the film. The lens is focused at the "
       "primary wavelength: the one nearest to the d line (587.5618 nm).",
       "bokeh_psf");
-  app.add_option("LENS.json", options.lens_file, "lens prescription (JSON as in data/lenses)")->required();
+  examples::add_lens(app, options.lens_file);
   examples::add_number(app, "--subject-distance-mm", options.subject_mm, examples::positive_length,
                        "distance of the light (mm), or inf")
       ->required()

@@ -63,7 +63,7 @@ Samples parse_samples(const std::string& csv, const std::string& where) {
 }
 
 /// The lens compiled for the wavelengths of the samples. An error names the line of its wavelength.
-LoadedLens load_for(const Samples& samples, const std::string& lens_file, const std::string& where) {
+LoadedLens load_for(const Samples& samples, const examples::LensInput& lens_file, const std::string& where) {
   LoadedLens loaded = examples::load_lens(lens_file, std::array{petzval::d_line_nm});
   for (std::size_t w = 0; w < samples.wavelengths_nm.size(); ++w) {
     try {
@@ -106,7 +106,8 @@ std::string rays_csv(const petzval::Camera& camera, const Samples& samples) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  std::string lens_file, samples_file, out_file, model;
+  examples::LensInput lens_file;
+  std::string samples_file, out_file, model;
   examples::CameraSetup setup;
   double tilt_deg = 0, swing_deg = 0;
   examples::App app(
@@ -114,7 +115,7 @@ int main(int argc, char** argv) {
       "origin at the first vertex, light travels towards +z, and these rays the other way. The image on the film is "
       "upside down.",
       "camera_rays");
-  app.add_option("LENS.json", lens_file, "lens prescription (JSON as in data/lenses)")->required();
+  examples::add_lens(app, lens_file);
   app.add_option("--samples", samples_file,
                  "CSV with the columns film_x_mm,film_y_mm,pupil_u,pupil_v,wavelength_nm; pupil_u and pupil_v from 0 "
                  "to 1, uniform by area over the model's pupil of the film point")

@@ -33,7 +33,8 @@ using Weights = std::vector<std::array<double, 3>>;
 constexpr int tile_pixels = 320;
 
 struct Options {
-  std::string lens_file, out_folder, white_point = "D65";
+  examples::LensInput lens_file;
+  std::string out_folder, white_point = "D65";
   double subject_mm = 0;                    ///< 0: twenty focal lengths
   std::vector<double> focus_mm, field_deg;  ///< none: about the light; the axis and 0.7 of the field
   examples::IrisSetup iris;
@@ -214,7 +215,7 @@ int main(int argc, char** argv) {
       "light "
       "of the white point) and LENS_chromatic.json. Images show the film as a photograph does.",
       "chromatic_bokeh");
-  app.add_option("LENS.json", options.lens_file, "lens prescription (JSON as in data/lenses)")->required();
+  examples::add_lens(app, options.lens_file);
   examples::add_number(app, "--subject-distance-mm", options.subject_mm, examples::positive_length,
                        "distance of the light from the front vertex (mm), or inf")
       ->default_str("20 focal lengths");

@@ -36,7 +36,8 @@ constexpr int tile_pixels = 200;
 constexpr std::array film_parts{0.0, 0.3, 0.55, 0.75, 0.9};  // of the way to the film's corner
 
 struct Options {
-  std::string lens_file, out_folder, model = "thin_two_disc";
+  examples::LensInput lens_file;
+  std::string out_folder, model = "thin_two_disc";
   std::vector<double> light_mm;  // none: nearer and farther than the focus
   examples::CameraSetup setup;
   examples::ExpressiveFlags expressive;
@@ -195,7 +196,7 @@ int main(int argc, char** argv) {
       "them: DIR/highlights.png, and the numbers of the aberrations and of the highlights as DIR/expressive.json. "
       "Without any option of them they are those of the real lens.",
       "expressive_lens");
-  app.add_option("LENS", options.lens_file, "lens prescription (JSON as in data/lenses)")->required();
+  examples::add_lens(app, options.lens_file);
   examples::add_camera(app, options.setup);
   examples::add_distance_origin(app, options.setup);
   examples::add_expressive(app, options.expressive);

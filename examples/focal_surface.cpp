@@ -36,7 +36,8 @@ namespace {
 using examples::number;
 
 struct Options {
-  std::string lens_file, queries_file, out_folder;
+  examples::LensInput lens_file;
+  std::string queries_file, out_folder;
   std::uint32_t width = 600, height = 400;
   examples::CameraSetup setup;
   examples::FocalSurfaceSetup surface;
@@ -215,7 +216,7 @@ int main(int argc, char** argv) {
       "for: of an object at their own distances, negative in front of what is in focus. Points that fix a distance "
       "outweigh --focus-mm.",
       "focal_surface");
-  app.add_option("LENS", options.lens_file, "lens prescription (JSON as in data/lenses)")->required();
+  examples::add_lens(app, options.lens_file);
   app.add_option(
          "--points", options.surface.points_file,
          "{\"points\": [{\"pixel\": [x, y] or \"world_mm\": [x, y, z], \"distance_mm\", \"extent_stops\", "

@@ -34,7 +34,8 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double none = std::numeric_limits<double>::quiet_NaN();  // no value
 
 struct Options {
-  std::string lens_file, origin = "front_vertex";
+  examples::LensInput lens_file;
+  std::string origin = "front_vertex";
   std::vector<std::string> criteria{"paraxial", "min_rms", "min_max"};
   std::vector<double> distance_mm, field_deg{0}, wavelengths_nm{petzval::d_line_nm};
   double blur_mm = 0.03, f_number = 0;  // f_number 0: wide open
@@ -230,7 +231,7 @@ int main(int argc, char** argv) {
       "of the paraxial cone, of the uniform disc with that RMS radius, twice the largest radius.\n"
       "thin and paraxial use the axis and the wavelength nearest to the d line (587.5618 nm) only.",
       "focus_report");
-  app.add_option("LENS.json", options.lens_file, "lens prescription (JSON as in data/lenses)")->required();
+  examples::add_lens(app, options.lens_file);
   app.add_flag("--json", options.json,
                "print an array of rows, one per criterion and distance; null is an infinite or absent value, explained "
                "by status and depth_status (refused: by message); blur_mm is the value of --blur-mm, breathing a "

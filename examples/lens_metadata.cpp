@@ -24,7 +24,8 @@ namespace {
 using examples::number;
 
 struct Options {
-  std::string lens_file, out_folder;
+  examples::LensInput lens_file;
+  std::string out_folder;
   examples::CameraSetup setup;
 };
 
@@ -61,7 +62,7 @@ int main(int argc, char** argv) {
       "Writes a lens at its stop and focus as DIR/LENS.opentrackio.json, and the ST maps of its distortion as "
       "DIR/LENS.stmap.exr.",
       "lens_metadata");
-  app.add_option("LENS", options.lens_file, "lens prescription (JSON as in data/lenses)")->required();
+  examples::add_lens(app, options.lens_file);
   examples::add_camera(app, options.setup);
   app.add_option("--out", options.out_folder, "folder for the files")->required()->type_name("DIR");
   return examples::run(app, argc, argv, [&] { write(options); });

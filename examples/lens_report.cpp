@@ -24,7 +24,7 @@
 namespace {
 
 struct Options {
-  std::string lens_file;
+  examples::LensInput lens_file;
   double wavelength_nm = petzval::d_line_nm;
   bool json = false;
   double f_number = 0;    // 0: wide open
@@ -83,7 +83,7 @@ int main(int argc, char** argv) {
       "LENS_footprints.svg, LENS_focus.svg, LENS_illumination.svg and LENS.html, a page with all of them, to DIR, and "
       "prints their paths instead.",
       "lens_report");
-  app.add_option("LENS.json", options.lens_file, "lens prescription (JSON as in data/lenses)")->required();
+  examples::add_lens(app, options.lens_file);
   app.add_flag("--json", options.json, "print one JSON object; null is an infinite or absent value");
   examples::add_number(app, "--wavelength-nm", options.wavelength_nm, examples::positive_number,
                        "wavelength (nm); without it figures show F, d and C");

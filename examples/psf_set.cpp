@@ -38,7 +38,8 @@ using petzval::PsfSetPoint;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 struct Options {
-  std::string lens_file, out_folder, origin = "front_vertex", criterion = "min_rms";
+  examples::LensInput lens_file;
+  std::string out_folder, origin = "front_vertex", criterion = "min_rms";
   petzval::PsfSet::Axes axes{
       .fields_deg = {}, .distances_mm = {}, .wavelengths_nm = {petzval::d_line_nm}, .f_numbers = {}};
   double focus_mm = infinity;
@@ -266,7 +267,7 @@ int main_compute(int argc, char** argv) {
       "psf_set merge DIR... --out FILE.exr   gathers the shards of one or several folders\n"
       "psf_set query FILE.exr --field-deg F --distance-mm D --out PSF.exr   looks up a point, between nodes too",
       "psf_set");
-  app.add_option("LENS.json", options.lens_file, "lens prescription (JSON as in data/lenses)")->required();
+  examples::add_lens(app, options.lens_file);
   examples::add_numbers(app, "--fields", options.axes.fields_deg, {0, 180, "an angle from 0 to 180 degrees"},
                         "angles of the light seen from the paraxial entrance pupil (degrees, ascending)")
       ->required();

@@ -26,7 +26,8 @@ using examples::Json;
 constexpr examples::Range film_shift{-1e6, 1e6, "a number from -1000000 to 1000000"};
 
 struct Options {
-  std::string lens_file, out_folder;
+  examples::LensInput lens_file;
+  std::string out_folder;
   std::vector<double> field_deg, wavelengths_nm;
   double subject_mm = std::numeric_limits<double>::infinity(), defocus_mm = 0;
   std::uint32_t samples = 4096;
@@ -89,7 +90,7 @@ int main(int argc, char** argv) {
       "through the centre of the stop; illumination of the film relative to the axis; RMS and largest radius about the "
       "centroid; null if no such ray exists).",
       "spot_diagram");
-  app.add_option("LENS.json", options.lens_file, "lens prescription (JSON as in data/lenses)")->required();
+  examples::add_lens(app, options.lens_file);
   examples::add_numbers(app, "--field-deg", options.field_deg, examples::finite_number,
                         "field angles towards +y, in object space at the paraxial entrance pupil (degrees)")
       ->required();

@@ -346,7 +346,7 @@ int main(int argc, char** argv) {
       "lens frame, the scene at negative z; at infinity the position is a direction. Blurs are signed diameters on the "
       "film: negative nearer than the plane of focus, positive beyond it.\n"
       "predicted: by the fitted model; traced: by 4096 exact rays of each point (fewer of more than 1024 points) for "
-      "every model (needs LENS.json). "
+      "every model (needs LENS). "
       "Plane "
       "and lines of the real model are those of its cardinal points. If the points do not determine a plane, the "
       "result "

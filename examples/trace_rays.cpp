@@ -78,7 +78,8 @@ std::string traced_csv(const petzval::Lens& lens, const RayTable& rays, const pe
 }  // namespace
 
 int main(int argc, char** argv) {
-  std::string lens_file, rays_file, out_file, precision = "double", travel = "to_film";
+  examples::LensInput lens_file;
+  std::string rays_file, out_file, precision = "double", travel = "to_film";
   double wavelength_nm = petzval::d_line_nm;
   bool ignore_apertures = false;
 
@@ -86,7 +87,7 @@ int main(int argc, char** argv) {
       "Traces rays through a lens, surface by surface. Lengths in mm, in the lens frame: origin at the first vertex, "
       "light travels towards +z.",
       "trace_rays");
-  app.add_option("LENS.json", lens_file, "lens prescription (JSON as in data/lenses)")->required();
+  examples::add_lens(app, lens_file);
   app.add_option("--rays", rays_file, "CSV with the columns x_mm,y_mm,z_mm,dx,dy,dz; directions of any length")
       ->required()
       ->type_name("CSV");

@@ -24,7 +24,7 @@ constexpr int tile_pixels = 300;
 examples::SheetRow sheet_row(const examples::WuRow& wu, const examples::BokehSetup& setup, std::uint32_t samples,
                              examples::Progress& progress) {
   const auto file = petzval::data_directory() / "lenses" / (std::string(wu.lens) + ".json");
-  const auto loaded = examples::load_lens(file, std::array{petzval::d_line_nm});
+  const auto loaded = examples::load_lens({.file = file.string()}, std::array{petzval::d_line_nm});
   std::vector<examples::BokehScene> scenes;
   double half_width = 0;
   for (const double focus : examples::wu_focus_mm) {

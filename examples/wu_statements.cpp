@@ -70,7 +70,7 @@ std::vector<Verdict> all_verdicts(std::uint32_t samples) {
   examples::Progress progress("statements", examples::wu_rows().size() * 4);
   for (const examples::WuRow& wu : examples::wu_rows()) {
     const auto file = petzval::data_directory() / "lenses" / (std::string(wu.lens) + ".json");
-    const auto loaded = examples::load_lens(file, std::array{petzval::d_line_nm});
+    const auto loaded = examples::load_lens({.file = file.string()}, std::array{petzval::d_line_nm});
     for (const FocusCriterion criterion : {FocusCriterion::paraxial, FocusCriterion::min_rms}) {
       for (const DistanceOrigin origin : {DistanceOrigin::front_vertex, DistanceOrigin::film}) {
         progress.step(wu.lens);

@@ -3,8 +3,8 @@
 # A set of PSFs by GNU parallel: one shard at a time on each machine, for psf_set runs on all of its processors. Machines
 # are named by PARALLEL='--sshlogin a,b'; OUT is a folder that all of them see. PROGRAM=bokeh_scene makes a picture.
 #
-#   sh examples/farm/psf_set.parallel.sh 8 OUT LENS.json --fields 0,10 --distances-mm 1000,inf
-#   PROGRAM=bokeh_scene sh examples/farm/psf_set.parallel.sh 8 OUT --scene chess --lens LENS.json --focus-mm 950 --spp 256
+#   sh examples/farm/psf_set.parallel.sh 8 OUT LENS --fields 0,10 --distances-mm 1000,inf
+#   PROGRAM=bokeh_scene sh examples/farm/psf_set.parallel.sh 8 OUT --scene chess --lens LENS --focus-mm 950 --spp 256
 set -eu
 shards=$1
 out=$2

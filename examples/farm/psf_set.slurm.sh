@@ -3,10 +3,10 @@
 # A set of PSFs as a Slurm array, one task for each shard; OUT is a folder that all nodes see. PROGRAM=bokeh_scene makes
 # a picture.
 #
-#   job=$(sbatch --parsable --array=1-8 examples/farm/psf_set.slurm.sh OUT LENS.json --fields 0,10 --distances-mm 1000,inf)
+#   job=$(sbatch --parsable --array=1-8 examples/farm/psf_set.slurm.sh OUT LENS --fields 0,10 --distances-mm 1000,inf)
 #   sbatch --dependency=afterok:$job --wrap 'psf_set merge OUT --out OUT/psf_set.exr'
 #
-#   job=$(PROGRAM=bokeh_scene sbatch --parsable --array=1-8 examples/farm/psf_set.slurm.sh OUT --scene chess --lens LENS.json --focus-mm 950 --spp 256)
+#   job=$(PROGRAM=bokeh_scene sbatch --parsable --array=1-8 examples/farm/psf_set.slurm.sh OUT --scene chess --lens LENS --focus-mm 950 --spp 256)
 #   sbatch --dependency=afterok:$job --wrap 'bokeh_scene merge OUT --out OUT'
 #
 # A task that was cut off goes on where its files end when it is queued again: scontrol requeue $job

@@ -83,8 +83,7 @@ void add_lens(examples::App& app, LensFlags& flags) {
       ->default_str("");
   add_number(app, "--lens-diameter-mm", flags.lens_diameter_mm, examples::positive_number, "of a thin lens (mm)")
       ->default_str("");
-  app.add_option("--lens", flags.lens_file, "a lens of data/lenses, or any file like it, by exact rays")
-      ->type_name("LENS.json");
+  examples::add_lens(app, flags.lens_file, "--lens", "by exact rays");
   app.add_option("--singlet", flags.singlet, "two spheres by exact rays; f/2 without --f-number")
       ->type_name("R1,R2,THICKNESS,GLASS");
   add_number(app, "--focus-mm", flags.focus_mm, examples::positive_length,
@@ -114,7 +113,7 @@ void add_lens(examples::App& app, LensFlags& flags) {
 
 BlurLens::BlurLens(const LensFlags& flags, int columns, int rows, const renderer::Pose& pose, bool keyed)
     : flags_(flags), columns_(columns), rows_(rows), pose_(pose), keyed_(keyed), controls_(controls_of(flags.bokeh)) {
-  const int kinds = (flags.thin_lens_mm > 0) + !flags.lens_file.empty() + !flags.singlet.empty();
+  const int kinds = (flags.thin_lens_mm > 0) + !flags.lens_file.file.empty() + !flags.singlet.empty();
   if (kinds != 1) {
     throw Error("lens: found " + std::to_string(kinds) + " of --thin-lens-mm, --lens and --singlet, wanted one");
   }
@@ -139,7 +138,7 @@ void BlurLens::load() {
   if (flags_.chroma) wavelengths.insert(wavelengths.end(), colours_nm.begin(), colours_nm.end());
   examples::IrisSetup iris = flags_.iris;
   petzval::Lens lens = [&] {
-    if (!flags_.lens_file.empty()) return examples::load_lens(flags_.lens_file, wavelengths).lens;
+    if (!flags_.lens_file.file.empty()) return examples::load_lens(flags_.lens_file, wavelengths).lens;
     const auto glasses = petzval::GlassCatalogue::load(petzval::data_directory() / "glass");
     if (!thin_ && iris.f_number == 0) iris.f_number = 2;
     return petzval::compile(

@@ -15,13 +15,15 @@
 #include "support/expressive_flags.hpp"
 #include "support/focal_surface_setup.hpp"
 #include "support/iris_setup.hpp"
+#include "support/load_lens.hpp"
 
 namespace lens_blur {
 
 /// Command line of a lens that blurs layers.
 struct LensFlags {
   double thin_lens_mm = 0, lens_diameter_mm = 0;
-  std::string lens_file, singlet;
+  examples::LensInput lens_file;
+  std::string singlet;
   double focus_mm = 0, fov_deg = 0;
   double tilt_deg = 0, swing_deg = 0;
   std::uint32_t rays = 100;

@@ -49,8 +49,9 @@ namespace fs = std::filesystem;
 using examples::Json;
 
 struct Options {
-  std::string scene, lens_file, model = "exact_float", integrator = "bidirectional", wavelengths = "d",
-                                normalisation = "unity_on_axis", out_folder;
+  examples::LensInput lens_file;
+  std::string scene, model = "exact_float", integrator = "bidirectional", wavelengths = "d",
+                     normalisation = "unity_on_axis", out_folder;
   examples::CameraSetup setup;
   examples::BokehFlags bokeh;
   examples::ExpressiveFlags expressive;
@@ -374,9 +375,7 @@ int main(int argc, char** argv) {
          "a scene as JSON")
       ->required()
       ->type_name("NAME|FILE.json");
-  app.add_option("--lens", options.lens_file, "lens prescription (JSON as in data/lenses)")
-      ->required()
-      ->type_name("LENS.json");
+  examples::add_lens(app, options.lens_file, "--lens")->required();
   std::vector<std::string> models{"auto"};
   for (const petzval::ModelKind m : petzval::models()) models.emplace_back(petzval::name(m));
   app.add_option(

@@ -67,7 +67,7 @@ Report report(LoadedLens loaded) {
   if (!lens.rotationally_symmetric()) {
     meridians.push_back(in_meridian(lens, main == petzval::Meridian::y ? petzval::Meridian::x : petzval::Meridian::y));
   }
-  auto findings = petzval::lint(loaded.prescription);
+  auto findings = petzval::lint(loaded.prescription, loaded.glasses);
   return {std::move(loaded), std::move(meridians), std::move(findings)};
 }
 
@@ -89,6 +89,15 @@ Json to_json(const Report& r) {
       json["meridians"][meridian.meridian == petzval::Meridian::y ? "y" : "x"] = numbers(meridian);
     }
   }
+  const auto& imported = r.loaded.prescription.imported;
+  json["format"] = imported ? imported->format : "petzval";
+  json["warnings"] = Json::array();
+  if (imported) {
+    for (const petzval::ImportWarning& w : imported->warnings) {
+      json["warnings"].push_back({{"line", w.line}, {"command", w.command}, {"message", w.message}});
+    }
+  }
+  json["missing_glasses"] = lens.missing_glasses();
   json["lint"] = Json::array();
   for (const petzval::Finding& finding : r.findings) {
     json["lint"].push_back({{"kind", petzval::name(finding.kind)},
@@ -137,6 +146,31 @@ std::string to_text(const Report& r) {
     if (meridian.first_order.afocal) {
       text << "\nThe lens is afocal: it has no focal length and no focal or principal points.\n";
     }
+  }
+  if (const auto& imported = r.loaded.prescription.imported) {
+    text << "\nread from " << imported->file << " (" << imported->format << ", lengths in " << imported->units
+         << "); assumed: " << (imported->warnings.empty() ? "nothing" : "") << '\n';
+    for (const petzval::ImportWarning& w : imported->warnings) {
+      text << "  " << (w.line > 0 ? "line " + std::to_string(w.line) + ": " : "") << w.command << ' ' << w.message
+           << '\n';
+    }
+  }
+  if (!lens.missing_glasses().empty()) text << "\nin no glass table:\n";
+  for (std::size_t space = 1; space <= lens.surface_count(); ++space) {
+    const petzval::Medium& medium = r.loaded.prescription.surfaces[space - 1].medium;
+    if (medium == petzval::Medium{} || r.loaded.prescription.surfaces[space - 1].mirror) continue;
+    const petzval::Glass* found = !medium.glass      ? nullptr
+                                  : medium.catalogue ? r.loaded.glasses.find(*medium.glass, *medium.catalogue)
+                                                     : r.loaded.glasses.find(*medium.glass, medium.nd);
+    if (found) continue;
+    text << "  surface " << space - 1 << ": " << medium.glass.value_or("a glass without a name") << ", n_d "
+         << number(medium.nd, 7);
+    if (medium.vd) text << ", V_d " << number(*medium.vd, 4);
+    for (const petzval::Glass* nearest : petzval::nearest_glasses(r.loaded.glasses, medium.nd, medium.vd, 1)) {
+      text << "; the nearest is " << nearest->name << " (" << nearest->catalogue << ", " << number(nearest->nd, 7)
+           << ", " << number(nearest->vd, 4) << ")";
+    }
+    text << "; --glasses FILE adds a catalogue\n";
   }
   text << "\nlint: " << (r.findings.empty() ? "no findings" : "") << '\n';
   for (const petzval::Finding& finding : r.findings) {

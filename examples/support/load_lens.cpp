@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "load_lens.hpp"
 
+#include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <iostream>
 #include <utility>
 
 #include "petzval/core/units.hpp"
+#include "petzval/files/glass_files.hpp"
 #include "petzval/files/lens_file.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "text.hpp"
@@ -33,6 +36,15 @@ void say_what_is_known(const LoadedLens& loaded) {
             << '\n';
 }
 
+void say_what_was_assumed(const LoadedLens& loaded) {
+  if (!loaded.prescription.imported) return;
+  for (const petzval::ImportWarning& warning : loaded.prescription.imported->warnings) {
+    std::cerr << "note: " << loaded.id << ": ";
+    if (warning.line > 0) std::cerr << "line " << warning.line << ": ";
+    std::cerr << warning.command << ' ' << warning.message << '\n';
+  }
+}
+
 void say_what_limits(const LoadedLens& loaded) {
   if (!petzval::has_pupils(loaded.lens)) return;
   const petzval::Pupils pupils = petzval::pupils(loaded.lens);
@@ -43,11 +55,51 @@ void say_what_limits(const LoadedLens& loaded) {
 
 }  // namespace
 
-LoadedLens load_lens(const std::filesystem::path& file, std::span<const double> wavelengths_nm) {
-  petzval::Prescription prescription = petzval::read_prescription(file);
+Option* add_lens(App& app, LensInput& input, const std::string& name, const std::string& remark) {
+  Option* lens = app.add_option(name, input.file,
+                                "a lens: JSON as in data/lenses, .zmx, .seq, .len, OpticalBench or renderers' tables" +
+                                    (remark.empty() ? "" : "; " + remark));
+  if (name == "LENS" && remark.empty()) lens->required();
+  lens->type_name("FILE");
+  app.add_option("--glasses", input.glass_files,
+                 "glass catalogues to look into first (.agf, refractiveindex.info .yml)")
+      ->type_name("FILE...");
+  app.add_option("--configuration", input.configuration, "position of a zoom lens, by name or by number from 0")
+      ->default_str("the first");
+  return lens;
+}
+
+petzval::GlassCatalogue glasses_of(const LensInput& input) {
   auto glasses = petzval::GlassCatalogue::load(petzval::data_directory() / "glass");
+  for (const std::string& file : input.glass_files) {
+    petzval::GlassFile more = petzval::read_glasses(file);
+    for (const petzval::ImportWarning& warning : more.warnings) {
+      std::cerr << "note: " << file << ": line " << warning.line << ": " << warning.command << ' ' << warning.message
+                << '\n';
+    }
+    glasses = petzval::with_glasses(glasses, std::move(more.glasses));
+  }
+  return glasses;
+}
+
+petzval::ConfigurationChoice configuration_of(const LensInput& input) {
+  const std::string& text = input.configuration;
+  if (text.empty()) return {};
+  double number = 0;
+  const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (status == std::errc() && end == text.data() + text.size()) return number;
+  return text;
+}
+
+LoadedLens load_lens(const LensInput& input, std::span<const double> wavelengths_nm) {
+  auto glasses = glasses_of(input);
+  const petzval::Prescription whole = petzval::read_prescription(input.file, {.glasses = &glasses});
+  petzval::Prescription prescription = petzval::configured(whole, configuration_of(input));
   petzval::Lens lens = petzval::compile(prescription, wavelengths_nm, with_stand_ins(glasses));
-  LoadedLens loaded{file.stem().string(), std::move(prescription), std::move(glasses), std::move(lens)};
+  std::string id = std::filesystem::path(input.file).stem().string();
+  if (!input.configuration.empty()) id += '_' + input.configuration;
+  LoadedLens loaded{std::move(id), std::move(prescription), std::move(glasses), std::move(lens)};
+  say_what_was_assumed(loaded);
   say_what_is_known(loaded);
   say_what_limits(loaded);
   return loaded;

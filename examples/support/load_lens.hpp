@@ -1,28 +1,46 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <filesystem>
 #include <span>
 #include <string>
+#include <vector>
 
+#include "cli.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/media/glass.hpp"
 #include "petzval/prescription/prescription.hpp"
 
 namespace examples {
 
+/// What a command line says about a lens.
+struct LensInput {
+  std::string file{};                      ///< of any format that read_prescription() knows
+  std::vector<std::string> glass_files{};  ///< looked into before the tables of petzval
+  std::string configuration{};             ///< a name or a number from 0; empty: the first
+};
+
+/// The option LENS, or --lens, with --glasses and --configuration beside it. LENS is required if nothing is to be said
+/// about it.
+Option* add_lens(App& app, LensInput& input, const std::string& name = "LENS", const std::string& remark = "");
+
+/// The glass tables of petzval, and what --glasses adds.
+petzval::GlassCatalogue glasses_of(const LensInput& input);
+
+/// "tele" or "1", "0.5": by name or by number.
+petzval::ConfigurationChoice configuration_of(const LensInput& input);
+
 /// A lens file, read and compiled.
 struct LoadedLens {
-  std::string id;  ///< the name of the file without .json; output files begin with it
+  std::string id;  ///< the name of the file without its ending, and of the configuration; output files begin with it
   petzval::Prescription prescription;
   petzval::GlassCatalogue glasses;
   petzval::Lens lens;  ///< for the given wavelengths
 };
 
-/// Reads and compiles a lens with the glass tables of petzval. The n_d/V_d model replaces glasses that are in no table
-/// (without V_d only the reference wavelength is left). Notes on standard error report this, and the surface that
-/// serves as the stop if none is marked.
-LoadedLens load_lens(const std::filesystem::path& file, std::span<const double> wavelengths_nm);
+/// Reads and compiles a lens with these glasses. What its file left open is noted on standard error. The n_d/V_d model
+/// replaces glasses that are in no table (without V_d only the reference wavelength is left). Notes on standard error
+/// report this, and the surface that serves as the stop if none is marked.
+LoadedLens load_lens(const LensInput& input, std::span<const double> wavelengths_nm);
 
 /// As declared, or by the diagonal of the image, or 10 degrees if the source has neither.
 double half_field_deg(const LoadedLens& loaded);

@@ -46,7 +46,7 @@ petzval::Film ModelOptions::film() const {
 }
 
 void add_model_options(App& app, ModelOptions& options) {
-  app.add_option("LENS.json", options.lens_file, "lens prescription (JSON as in data/lenses)")->required();
+  add_lens(app, options.lens_file);
   add_camera(app, options.setup);
   app.add_option("--resolution", options.resolution, "pixels across and up")->type_name("WxH")->capture_default_str();
   app.add_flag("--json", options.json, "print JSON");

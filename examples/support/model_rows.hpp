@@ -8,6 +8,7 @@
 #include "camera_setup.hpp"
 #include "cli.hpp"
 #include "files.hpp"
+#include "load_lens.hpp"
 #include "petzval/accuracy/choose_model.hpp"
 #include "petzval/film/film.hpp"
 
@@ -15,7 +16,7 @@ namespace examples {
 
 /// Command line of the programs that compare models.
 struct ModelOptions {
-  std::string lens_file;
+  LensInput lens_file;
   CameraSetup setup;
   std::string resolution = "3840x2560";
   bool json = false;

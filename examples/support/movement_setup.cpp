@@ -15,13 +15,13 @@
 namespace examples {
 
 void add_movement_options(App& app, MovementOptions& options) {
-  app.add_option("LENS.json", options.lens_file, "lens prescription; may be left out for a thin lens");
+  add_lens(app, options.lens_file, "LENS", "may be left out for a thin lens");
   app.add_option("--model", options.model,
                  "model of the lens: thin (one plane), thick (cardinal points and pupils), real (exact rays)")
       ->one_of({"thin", "thick", "real"})
       ->capture_default_str();
   add_number(app, "--thin-focal-length-mm", options.focal_length_mm, positive_number,
-             "focal length of a thin lens at the origin, in place of LENS.json; needs --model thin and --f-number")
+             "focal length of a thin lens at the origin, in place of LENS; needs --model thin and --f-number")
       ->default_str("none");
   add_number(app, "--f-number", options.f_number, positive_number, "stop the lens down (by exact rays)")
       ->default_str("wide open");
@@ -41,8 +41,8 @@ MovingLens moving_lens(const MovementOptions& options) {
   const auto [width, height] = parse_size("--film-mm", options.film_mm, positive_number);
   result.film = {.width_mm = width, .height_mm = height};
   if (options.focal_length_mm > 0) {
-    if (!options.lens_file.empty()) {
-      throw petzval::Error("--thin-focal-length-mm: found with " + options.lens_file + ", wanted one of them");
+    if (!options.lens_file.file.empty()) {
+      throw petzval::Error("--thin-focal-length-mm: found with " + options.lens_file.file + ", wanted one of them");
     }
     if (options.model != "thin") {
       throw petzval::Error("--thin-focal-length-mm: found with --model " + options.model + ", wanted --model thin");
@@ -54,8 +54,8 @@ MovingLens moving_lens(const MovementOptions& options) {
     result.ideal = petzval::thin_lens(options.focal_length_mm, options.f_number);
     return result;
   }
-  if (options.lens_file.empty()) {
-    throw petzval::Error("LENS.json is required, or --model thin --thin-focal-length-mm F --f-number N");
+  if (options.lens_file.file.empty()) {
+    throw petzval::Error("LENS is required, or --model thin --thin-focal-length-mm F --f-number N");
   }
   const LoadedLens loaded = load_lens(options.lens_file, std::array{petzval::d_line_nm});
   petzval::Lens lens = loaded.lens;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cli.hpp"
+#include "load_lens.hpp"
 #include "petzval/film/film.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/movement/focus_point.hpp"
@@ -17,7 +18,8 @@ namespace examples {
 
 /// Command line of the programs that move the film.
 struct MovementOptions {
-  std::string lens_file, model = "real", film_mm = "36x24";
+  LensInput lens_file;
+  std::string model = "real", film_mm = "36x24";
   double f_number = 0, focal_length_mm = 0;  // 0: not given
   bool film_given = false;
 };

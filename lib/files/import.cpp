@@ -66,13 +66,77 @@ double entrance_pupil_z(const RayMatrix& to_stop, double object_index) {
   return to_stop.a == 0 ? std::numeric_limits<double>::infinity() : to_stop.b * object_index / to_stop.a;
 }
 
+/// How high the marginal ray of the design meets the stop, in mm: of exact rays where a parallel beam enters, else in
+/// first order. 0 where the aperture does not tell.
+double marginal_height_at_the_stop(const Prescription& rows, const DesignAperture& aperture) {
+  const auto stop = std::ranges::find_if(rows.surfaces, [](const SurfaceRow& row) { return row.stop; });
+  const auto position = static_cast<std::size_t>(stop - rows.surfaces.begin());
+  Prescription open = rows;
+  open.imported.reset();
+  for (SurfaceRow& row : open.surfaces) {
+    row.semi_diameter.reset();
+    row.obscuration_semi_diameter.reset();
+  }
+  open.configurations.clear();
+  const Lens compiled = compile(open);
+  const FirstOrder first = first_order(compiled, {}, main_meridian(compiled));
+  const double object = rows.design.object_distance_mm;
+
+  // The marginal ray of the design: its height and slope in front of the first surface.
+  const RayMatrix to_stop = ray_matrix_to(compiled, position, {}, main_meridian(compiled));
+  const bool far = !std::isfinite(object);
+  const auto per_unit = [&](double height, double slope) { return to_stop.a * height + to_stop.b * slope; };
+  const double unit = far ? per_unit(1, 0) : per_unit(object, first.object_index);  // slope 1: u = 1, n u = n
+  const auto image_slope = [&] {
+    const RayMatrix all = ray_matrix(compiled, 0, compiled.surface_count(), {}, main_meridian(compiled));
+    return std::abs((far ? all.c : all.c * object + all.d * first.object_index) / first.image_index);
+  };
+  double height = 0;  // of the marginal ray at the stop
+  const double value = aperture.value;
+  switch (aperture.setting) {
+    case ApertureSetting::entrance_pupil_diameter:
+    case ApertureSetting::f_number: {
+      const bool by_ratio = aperture.setting == ApertureSetting::f_number;
+      if (by_ratio && first.afocal) break;
+      const double diameter = by_ratio ? std::abs(first.effective_focal_length) / value : value;
+      if (!first.afocal && far) {
+        try {
+          const double n = std::abs(first.effective_focal_length) / diameter;
+          const Lens wide = with_semi_diameter(compiled, position, 100 * std::abs(first.effective_focal_length));
+          height = with_f_number(wide, n).surfaces()[position].semi_diameter;
+          break;
+        } catch (const Error&) {
+          // rays of this height miss a surface: first order then
+        }
+      }
+      // A parallel beam, or the one from the object to the rim of the entrance pupil, where the stop's image is.
+      height = std::abs(unit) * diameter / 2;
+      if (!far) height *= 1 / std::abs(object + entrance_pupil_z(to_stop, first.object_index));
+      break;
+    }
+    case ApertureSetting::working_f_number: height = std::abs(unit) / image_slope() / (2 * value); break;
+    case ApertureSetting::image_na: {
+      const double sine = std::min(value / std::abs(first.image_index), 0.999999);
+      height = std::abs(unit) / image_slope() * sine / std::sqrt(1 - sine * sine);
+      break;
+    }
+    case ApertureSetting::object_na: {
+      const double sine = std::min(value / std::abs(first.object_index), 0.999999);
+      height = far ? 0 : std::abs(unit) * sine / std::sqrt(1 - sine * sine);
+      break;
+    }
+    case ApertureSetting::stop_size: break;
+  }
+  return height;
+}
+
 }  // namespace
 
 Import::Import(std::string where, std::string_view format, const GlassCatalogue* glasses)
     : where_(std::move(where)), glasses_(glasses) {
   const std::filesystem::path path = where_;
   lens.id = path.stem().string();
-  lens.imported = FileOrigin{std::string(format), path.filename().string(), {}, {}, {}};
+  lens.imported = FileOrigin{std::string(format), path.filename().string()};
 }
 
 void Import::warn(int line, std::string_view command, const std::string& message) {
@@ -113,7 +177,9 @@ const Glass* Import::find(std::string_view name, std::span<const std::string> ca
     const auto listed = std::ranges::find_if(catalogues, [&](const std::string& c) {
       return same(c, glass.catalogue) || same(maker(c), maker(glass.catalogue));
     });
-    return std::tuple(listed - catalogues.begin(), age(glass), nd ? std::abs(glass.nd - *nd) : 0.0);
+    // An index that the file states tells best, within its digits.
+    const double off = nd ? std::round(std::abs(glass.nd - *nd) / 1e-6) : 0;
+    return std::tuple(off, listed - catalogues.begin(), age(glass));
   };
   const auto [first, last] = by_name_.equal_range(bare(name));
   const Glass* best = nullptr;
@@ -189,69 +255,28 @@ void Import::size_the_stop() {
     warn(0, "stop", "neither the size of the stop nor an aperture is given; the rims limit the beam");
     return;
   }
-  const auto position = static_cast<std::size_t>(stop - lens.surfaces.begin());
-  Prescription open = lens;
-  open.imported.reset();
-  for (SurfaceRow& row : open.surfaces) {
-    row.semi_diameter.reset();
-    row.obscuration_semi_diameter.reset();
-  }
-  open.configurations.clear();
-  const Lens compiled = compile(open);
-  const FirstOrder first = first_order(compiled, {}, main_meridian(compiled));
-  const double object = lens.design.object_distance_mm;
-
-  // The marginal ray of the design: its height and slope in front of the first surface.
-  const RayMatrix to_stop = ray_matrix_to(compiled, position, {}, main_meridian(compiled));
-  const bool far = !std::isfinite(object);
-  const auto per_unit = [&](double height, double slope) { return to_stop.a * height + to_stop.b * slope; };
-  const double unit = far ? per_unit(1, 0) : per_unit(object, first.object_index);  // slope 1: u = 1, n u = n
-  const auto image_slope = [&] {
-    const RayMatrix all = ray_matrix(compiled, 0, compiled.surface_count(), {}, main_meridian(compiled));
-    return std::abs((far ? all.c : all.c * object + all.d * first.object_index) / first.image_index);
-  };
-  double height = 0;  // of the marginal ray at the stop
-  const double value = aperture->value;
-  switch (aperture->setting) {
-    case ApertureSetting::entrance_pupil_diameter:
-    case ApertureSetting::f_number: {
-      const bool by_ratio = aperture->setting == ApertureSetting::f_number;
-      if (by_ratio && first.afocal) break;
-      const double diameter = by_ratio ? std::abs(first.effective_focal_length) / value : value;
-      if (!first.afocal && far) {
-        try {
-          const double n = std::abs(first.effective_focal_length) / diameter;
-          const Lens wide = with_semi_diameter(compiled, position, 100 * std::abs(first.effective_focal_length));
-          height = with_f_number(wide, n).surfaces()[position].semi_diameter;
-          break;
-        } catch (const Error&) {
-          // rays of this height miss a surface: first order then
-        }
-      }
-      // A parallel beam, or the one from the object to the rim of the entrance pupil, where the stop's image is.
-      height = std::abs(unit) * diameter / 2;
-      if (!far) height *= 1 / std::abs(object + entrance_pupil_z(to_stop, first.object_index));
-      break;
-    }
-    case ApertureSetting::working_f_number: height = std::abs(unit) / image_slope() / (2 * value); break;
-    case ApertureSetting::image_na: {
-      const double sine = std::min(value / std::abs(first.image_index), 0.999999);
-      height = std::abs(unit) / image_slope() * sine / std::sqrt(1 - sine * sine);
-      break;
-    }
-    case ApertureSetting::object_na: {
-      const double sine = std::min(value / std::abs(first.object_index), 0.999999);
-      height = far ? 0 : std::abs(unit) * sine / std::sqrt(1 - sine * sine);
-      break;
-    }
-    case ApertureSetting::stop_size: break;
-  }
+  const int surface = static_cast<int>(stop - lens.surfaces.begin());
+  const double height = marginal_height_at_the_stop(configured(lens, 0), *aperture);
   if (!(height > 0 && std::isfinite(height))) {
     warn(0, "stop", "the declared aperture does not give its size; the rims limit the beam");
     return;
   }
+  lens.stop_size = "from the declared " + std::string(name(aperture->setting)) + " of " + to_text(aperture->value, 8);
+  // The stop opens and closes as the lens zooms.
+  for (std::size_t i = 0; i < lens.configurations.size(); ++i) {
+    Configuration& c = lens.configurations[i];
+    DesignAperture own = *aperture;
+    if (c.f_number && own.setting == ApertureSetting::f_number) own.value = *c.f_number;
+    const double size = marginal_height_at_the_stop(configured(lens, i), own);
+    if (c.stop || !(size > 0 && std::isfinite(size)) || std::abs(size - height) <= 1e-9 * height) continue;
+    auto change = std::ranges::find(c.changes, surface, &SurfaceChange::surface);
+    if (change == c.changes.end()) {
+      change = c.changes.emplace(change);
+      change->surface = surface;
+    }
+    if (!change->semi_diameter) change->semi_diameter = size;
+  }
   stop->semi_diameter = height;
-  lens.stop_size = "from the declared " + std::string(name(aperture->setting)) + " of " + to_text(value, 8);
 }
 
 void Import::declare() {

@@ -4,11 +4,11 @@
 #include <array>
 #include <utility>
 
+#include "codev_reader.hpp"
 #include "import.hpp"
 #include "io/json.hpp"
 #include "opticalbench_reader.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/files/lens_file.hpp"
 #include "petzval/io/lens_json.hpp"
 #include "table_reader.hpp"
 #include "text_file.hpp"
@@ -34,6 +34,7 @@ struct Format {
 constexpr std::array formats{
     Format{"zemax", is_zemax, read_zemax},
     Format{"opticalbench", is_opticalbench, read_opticalbench},
+    Format{"codev", is_codev, read_codev},
     Format{"table", is_table, read_table},
 };
 

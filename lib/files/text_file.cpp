@@ -115,7 +115,7 @@ std::string as_utf8(std::string bytes, const std::string& where, const std::stri
   const std::size_t looked_at = std::min<std::size_t>(bytes.size() & ~std::size_t{1}, 4096);
   std::array<std::size_t, 2> zeros{};
   for (std::size_t i = 0; i < looked_at; ++i) zeros[i % 2] += bytes[i] == '\0';
-  if (zeros[0] + zeros[1] > 0) {
+  if (zeros[0] + zeros[1] > 0 && looked_at >= 16) {
     const bool big = zeros[0] > zeros[1];
     if (zeros[big ? 0 : 1] * 4 >= looked_at && zeros[big ? 1 : 0] * 16 <= looked_at) return from_utf16(bytes, big);
   }

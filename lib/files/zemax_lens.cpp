@@ -354,10 +354,10 @@ void build_lens(ZemaxLens zemax, double unit, Import& in) {
   if (object.stop) in.refuse(object.line, "STOP", "at the object", "a surface of the lens");
   if (image.curvature != 0) in.warn(image.line, "SURF", "the image is curved; a flat film is taken");
 
-  const Medium* before = &in.lens.object_space;
+  Medium before = in.lens.object_space;
   for (const ZemaxSurface& s : std::span(zemax.surfaces).subspan(1, zemax.surfaces.size() - 2)) {
-    in.lens.surfaces.push_back(rows.row(s, *before));
-    before = &in.lens.surfaces.back().medium;
+    in.lens.surfaces.push_back(rows.row(s, before));
+    before = in.lens.surfaces.back().medium;
   }
   if (image.stop) in.refuse(image.line, "STOP", "at the image", "a surface of the lens");
   in.lens.semi_diameters = "of the file: clear apertures, else the widths of the design's beams";

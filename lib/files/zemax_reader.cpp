@@ -297,6 +297,7 @@ void ZemaxReader::unit(Words words) {
     set->value *= found->second / unit_;
   }
   unit_ = found->second;
+  in_.lens.imported->units = unit_ == 1 ? "mm" : unit_ == 10 ? "cm" : unit_ == 25.4 ? "in" : "m";
 }
 
 void ZemaxReader::f_number(Words words) {

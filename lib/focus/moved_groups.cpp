@@ -13,7 +13,7 @@ namespace petzval::inline v0::focus_detail {
 Lens with_moved_groups(const Lens& lens, double distance, const FocusOptions& options) {
   const double first = lens.focus_positions().front().inverse_distance;
   const double last = lens.focus_positions().back().inverse_distance;
-  const double spare = 0.2 * (last - first), least = first - spare, most = last + spare;
+  const double spare = last - first, least = first - spare, most = last + spare;
 
   FocusSolution solution;
   const auto at = [&](double inverse_distance) {

@@ -171,9 +171,10 @@ std::span<const Reader::Key> Reader::keys(Place place) {
       {"position", [](R& r, V& v) { r.configuration().name = r.text_of(v); }},
       {"variable_gaps", nullptr, Place::variable_gaps},
   }};
-  static constexpr std::array<Key, 5> imported = {{
+  static constexpr std::array<Key, 6> imported = {{
       {"format", [](R& r, V& v) { r.lens_.imported->format = r.text_of(v); }, {}, true},
       {"file", [](R& r, V& v) { r.lens_.imported->file = r.text_of(v); }},
+      {"units", [](R& r, V& v) { r.lens_.imported->units = r.text_of(v); }},
       {"title", [](R& r, V& v) { r.lens_.imported->title = r.text_of(v); }},
       {"notes", nullptr, Place::notes},
       {"warnings", nullptr, Place::warnings},

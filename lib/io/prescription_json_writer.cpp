@@ -66,7 +66,7 @@ std::string imported(const FileOrigin& origin) {
            member("message", w.message) + "}";
   };
   return "{\n    " + member("format", origin.format) + ",\n    " + member("file", origin.file) + ",\n    " +
-         member("title", origin.title) +
+         member("units", origin.units) + ",\n    " + member("title", origin.title) +
          ",\n    \"notes\": " + list(origin.notes, [](const std::string& note) { return json(note); }) +
          ",\n    \"warnings\": " + list(origin.warnings, warning) + "\n  }";
 }

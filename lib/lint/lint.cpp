@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/text.hpp"
+#include "petzval/media/glass.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "petzval/pupil/illumination.hpp"
@@ -71,10 +72,75 @@ bool limits_the_beam(const Lens& lens) {
                      [](const LensSurface& s) { return std::isfinite(s.semi_diameter); });
 }
 
+/// 10, 25.4 or 1000, or one over it, if a length is that many times a declared one.
+std::optional<double> unit_between(double length, double declared) {
+  for (const double factor : {10.0, 25.4, 1000.0}) {
+    for (const double ratio : {factor, 1 / factor}) {
+      if (std::abs(length - ratio * declared) <= 0.005 * std::abs(ratio * declared)) return ratio;
+    }
+  }
+  return {};
+}
+
+/// The f-number with all clear apertures so many times as large; nothing where it has none.
+std::optional<double> f_number_with(const Prescription& prescription, double factor) {
+  Prescription scaled = prescription;
+  for (SurfaceRow& row : scaled.surfaces) {
+    if (row.semi_diameter) *row.semi_diameter *= factor;
+    if (row.obscuration_semi_diameter) *row.obscuration_semi_diameter *= factor;
+  }
+  const Lens lens = compile(scaled);
+  if (!has_pupils(lens)) return {};
+  return real_f_number(lens);
+}
+
+/// By what factor all apertures are too large or too small: 2 or a half, if that gives the declared f-number.
+std::optional<double> aperture_factor(const Prescription& prescription, double f_number) {
+  const double factor = f_number < *prescription.f_number ? 2 : 0.5;
+  if (std::abs(std::log2(*prescription.f_number / f_number)) < 0.8) return {};
+  const auto mended = f_number_with(prescription, 1 / factor);
+  if (mended && std::abs(*mended - *prescription.f_number) <= 0.04 * *prescription.f_number) return factor;
+  return {};
+}
+
+/// The rim that clips the axial beam first, if that is well before the marked stop does.
+void check_stop(const Lens& lens, Findings& findings) {
+  constexpr double well_before = 0.7;
+  if (!lens.stop()) return;
+  const auto margin = [&](std::size_t i) {
+    const double height = std::abs(ray_matrix_to(lens, i, {}, main_meridian(lens)).a);
+    return lens.surfaces()[i].semi_diameter / height;  // of a ray that enters at height 1
+  };
+  const double of_stop = margin(*lens.stop());
+  std::size_t first = *lens.stop();
+  for (std::size_t i = 0; i < lens.surface_count(); ++i) {
+    if (lens.surfaces()[i].semi_diameter > 0 && margin(i) < margin(first)) first = i;
+  }
+  if (!(margin(first) < well_before * of_stop) || !std::isfinite(of_stop)) return;
+  findings.push_back({Kind::idle_stop, static_cast<int>(*lens.stop()), of_stop, margin(first),
+                      at(static_cast<int>(*lens.stop())) + "the stop lets an axial beam of " + mm(of_stop) +
+                          " radius pass, surface " + std::to_string(first) + " clips it at " + mm(margin(first))});
+}
+
+/// From the last vertex to the paraxial image of the design's object; infinite for an afocal lens.
+double image_distance(const Prescription& prescription, const Lens& lens) {
+  const double object_z = -prescription.design.object_distance_mm;
+  return paraxial_image_z(lens, object_z, {}, main_meridian(lens)) - lens.surfaces().back().vertex_z;
+}
+
 void check_first_order(const Prescription& prescription, const Lens& lens, Findings& findings) {
   const FirstOrder data = first_order(lens, 0, main_meridian(lens));
   const double focal_length = data.effective_focal_length;
-  if (prescription.focal_length_mm && differs(focal_length, *prescription.focal_length_mm)) {
+  const auto unit =
+      prescription.focal_length_mm ? unit_between(focal_length, *prescription.focal_length_mm) : std::nullopt;
+  if (unit) {
+    findings.push_back({Kind::units,
+                        {},
+                        focal_length,
+                        *prescription.focal_length_mm,
+                        "focal length is " + mm(focal_length) + ", declared " + mm(*prescription.focal_length_mm) +
+                            ": lengths are " + to_text(*unit, 4) + " times what they should be"});
+  } else if (prescription.focal_length_mm && differs(focal_length, *prescription.focal_length_mm)) {
     findings.push_back({Kind::focal_length,
                         {},
                         focal_length,
@@ -83,7 +149,14 @@ void check_first_order(const Prescription& prescription, const Lens& lens, Findi
   }
   if (prescription.f_number && limits_the_beam(lens)) {
     const double f_number = real_f_number(lens);
-    if (differs(f_number, *prescription.f_number)) {
+    if (const auto factor = aperture_factor(prescription, f_number)) {
+      findings.push_back({Kind::apertures,
+                          {},
+                          f_number,
+                          *prescription.f_number,
+                          "f-number is " + to_text(f_number, 4) + ", declared " + to_text(*prescription.f_number, 4) +
+                              ": semi-diameters are " + (*factor > 1 ? "diameters" : "halves of them")});
+    } else if (differs(f_number, *prescription.f_number)) {
       findings.push_back({Kind::f_number,
                           {},
                           f_number,
@@ -93,10 +166,26 @@ void check_first_order(const Prescription& prescription, const Lens& lens, Findi
   }
   const int last = static_cast<int>(lens.surface_count()) - 1;
   const double distance = lens.surfaces().back().thickness;
-  if (!data.afocal && std::abs(distance - data.back_focal_distance) > tolerance * std::abs(focal_length)) {
-    findings.push_back({Kind::image_distance, last, distance, data.back_focal_distance,
-                        at(last) + "the film is " + mm(distance) + " behind it and the paraxial focus " +
-                            mm(data.back_focal_distance)});
+  const double image = image_distance(prescription, lens);
+  if (std::isfinite(image) && std::abs(distance - image) > tolerance * std::abs(focal_length)) {
+    const bool far = std::isinf(prescription.design.object_distance_mm);
+    findings.push_back({Kind::image_distance, last, distance, image,
+                        at(last) + "the film is " + mm(distance) + " behind it and the paraxial " +
+                            (far ? "focus " : "image of the object ") + mm(image)});
+  }
+}
+
+void check_glasses(const Prescription& prescription, const GlassCatalogue& glasses, Findings& findings) {
+  constexpr double another_glass = 0.005;
+  for (std::size_t i = 0; i < prescription.surfaces.size(); ++i) {
+    const Medium& medium = prescription.surfaces[i].medium;
+    if (!medium.glass || !medium.catalogue) continue;
+    const Glass* glass = glasses.find(*medium.glass, *medium.catalogue);
+    if (!glass || std::abs(glass->nd - medium.nd) <= another_glass) continue;
+    const int surface = static_cast<int>(i);
+    findings.push_back({Kind::glass_index, surface, medium.nd, glass->nd,
+                        at(surface) + "n_d is " + to_text(medium.nd, 6) + ", that of " + glass->name + " is " +
+                            to_text(glass->nd, 6)});
   }
 }
 
@@ -111,18 +200,71 @@ std::string_view name(FindingKind kind) noexcept {
     case Kind::no_stop: return "no_stop";
     case Kind::several_stops: return "several_stops";
     case Kind::image_distance: return "image_distance";
+    case Kind::units: return "units";
+    case Kind::apertures: return "apertures";
+    case Kind::idle_stop: return "idle_stop";
+    case Kind::glass_index: return "glass_index";
     case Kind::film_size: return "film_size";
   }
   return "unknown";
 }
 
 std::vector<Finding> lint(const Prescription& prescription) {
-  const Lens lens = compile(prescription);
+  const Prescription rows = configured(prescription, 0);
+  const Lens lens = compile(rows);
   Findings findings;
-  check_stops(prescription, findings);
+  check_stops(rows, findings);
+  check_stop(lens, findings);
   check_surfaces(lens, findings);
-  check_first_order(prescription, lens, findings);
+  check_first_order(rows, lens, findings);
   return findings;
+}
+
+std::vector<Finding> lint(const Prescription& prescription, const GlassCatalogue& glasses) {
+  Findings findings = lint(prescription);
+  check_glasses(configured(prescription, 0), glasses, findings);
+  return findings;
+}
+
+Repaired repair(const Prescription& prescription) {
+  Repaired result{prescription, {}};
+  Prescription& p = result.prescription;
+  const auto find = [&](Kind kind) -> std::optional<Finding> {
+    const Findings findings = lint(p);
+    const auto found = std::ranges::find(findings, kind, &Finding::kind);
+    return found == findings.end() ? std::nullopt : std::optional(*found);
+  };
+  const auto say = [&](const Finding& finding, const std::string& cure) {
+    result.changes.push_back({0, std::string(name(finding.kind)), finding.message + "; " + cure});
+  };
+  const bool alone = p.configurations.size() < 2;
+  if (const auto units = find(Kind::units); alone && units) {
+    const auto declared = p.focal_length_mm, diagonal = p.image_diagonal_mm;
+    p = scale(p, 1 / *unit_between(units->found, units->wanted));
+    p.focal_length_mm = declared, p.image_diagonal_mm = diagonal;
+    say(*units, "all lengths are scaled");
+  }
+  if (const auto apertures = find(Kind::apertures); alone && apertures) {
+    const double factor = apertures->found < apertures->wanted ? 0.5 : 2;
+    for (SurfaceRow& row : p.surfaces) {
+      if (row.semi_diameter) *row.semi_diameter *= factor;
+      if (row.obscuration_semi_diameter) *row.obscuration_semi_diameter *= factor;
+    }
+    say(*apertures, std::string("they are ") + (factor < 1 ? "halved" : "doubled"));
+  }
+  if (const auto stops = find(Kind::several_stops)) {
+    bool first = true;
+    for (SurfaceRow& row : p.surfaces) {
+      row.stop = row.stop && first;
+      first = first && !row.stop;
+    }
+    say(*stops, "the marks behind the first are taken off");
+  }
+  if (const auto film = find(Kind::image_distance); alone && film && film->wanted > 0) {
+    p.surfaces.back().thickness = film->wanted;
+    say(*film, "the film is put there");
+  }
+  return result;
 }
 
 std::vector<Finding> lint(const Lens& lens, const Film& film) {

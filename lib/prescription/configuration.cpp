@@ -141,6 +141,7 @@ Prescription configured(const Prescription& p, const ConfigurationChoice& choice
     result.configurations.push_back(first);
     result.configurations[0].changes.clear();
     result.configurations[0].stop.reset();
+    result.configurations[0].focus_of.reset();
     if (!first.focus_of) {
       for (const std::size_t i : focusing(p, number)) {
         result.configurations.push_back(difference(result, rows_at(p, i), p.configurations[i]));

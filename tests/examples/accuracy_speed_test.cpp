@@ -92,7 +92,7 @@ TEST_F(AccuracySpeed, ExplainsItselfAndRefusesABadCommandLine) {
   EXPECT_EQ(help.status, 0);
   EXPECT_NE(help.out.find("Usage: accuracy_speed"), std::string::npos);
   const std::string file = lens("double_gauss_100mm_f2.0");
-  expect_failure("accuracy_speed", {}, "LENS.json is required");
+  expect_failure("accuracy_speed", {}, "LENS is required");
   expect_failure("accuracy_speed", {file, "--film-mm", "36"}, "--film-mm: found \"36\"");
   expect_failure("accuracy_speed", {file, "--resolution", "10.5x20"}, "--resolution: found \"10.5x20\"");
   expect_failure("accuracy_speed", {file, "--resolution", "0x20"}, "--resolution");

@@ -193,7 +193,7 @@ TEST_F(FocusPull, ExplainsItselfAndRefusesABadCommandLine) {
   const auto fails = [&](const Arguments& arguments, const std::string& reason) {
     expect_failure("focus_pull", command(arguments, rack, {}), reason);
   };
-  fails({}, "LENS.json is required");
+  fails({}, "LENS is required");
   fails({lens("double_gauss_100mm_f2.0"), "--criterion", "sharp"}, "--criterion");
   fails({lens("double_gauss_100mm_f2.0"), "--frames-per-s", "0"}, "--frames-per-s: found \"0\"");
   expect_failure("focus_pull", {lens("double_gauss_100mm_f2.0"), "--out", path("out")}, "--keys is required");

@@ -136,7 +136,7 @@ TEST_F(FocusReport, ExplainsItselfAndRefusesABadCommandLine) {
   EXPECT_EQ(help.status, 0);
   EXPECT_NE(help.out.find("Usage: focus_report"), std::string::npos);
   const std::string file = lens("double_gauss_100mm_f2.0");
-  expect_failure("focus_report", {}, "LENS.json is required");
+  expect_failure("focus_report", {}, "LENS is required");
   expect_failure("focus_report", {file, "--distance-mm", "0"}, "--distance-mm: found \"0\"");
   expect_failure("focus_report", {file, "--blur-mm", "-1"}, "--blur-mm: found \"-1\"");
   expect_failure("focus_report", {file, "--criterion", "sharp"}, "--criterion");

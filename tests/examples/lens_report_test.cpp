@@ -98,7 +98,7 @@ TEST_F(LensReport, AllowsTheDLineAloneWithoutVd) {
 
 TEST_F(LensReport, RefusesABadCommandLineInOneLine) {
   const std::string file = lens("double_gauss_100mm_f1.35");
-  expect_failure("lens_report", {}, "LENS.json is required");
+  expect_failure("lens_report", {}, "LENS is required");
   expect_failure("lens_report", {path("none.json")}, "none.json");
   expect_failure("lens_report", {file, "--colour"}, "--colour");
   expect_failure("lens_report", {file, "--wavelength-nm", "10x"}, "--wavelength-nm: found \"10x\"");

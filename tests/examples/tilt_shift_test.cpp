@@ -348,7 +348,7 @@ TEST_F(TiltShift, ExplainsItselfAndRefusesABadCommandLine) {
   expect_failure("tilt_shift", {file, "--out", path("out")}, "--points is required");
   expect_failure("tilt_shift", {file, "--points", path("points.json")}, "--out is required");
   expect_failure("tilt_shift", {file, "--points", path("none.json"), "--out", path("out")}, "none.json");
-  fails({}, "LENS.json is required, or --model thin");
+  fails({}, "LENS is required, or --model thin");
   fails({path("none.json")}, "none.json: cannot be opened");
   fails({"--thin-focal-length-mm", "50", "--f-number", "2"}, "found with --model real, wanted --model thin");
   fails({"--model", "thin", "--thin-focal-length-mm", "50"}, "found no --f-number");

@@ -145,7 +145,8 @@ Prescription random_prescription(std::mt19937_64& random) {
     p.surfaces.push_back(s);
   }
   if (often()) {
-    p.imported = petzval::FileOrigin{"zemax", text(), text(), {text(), text()}, {{7, text(), text()}, {0, text(), ""}}};
+    p.imported =
+        petzval::FileOrigin{"zemax", text(), "in", text(), {text(), text()}, {{7, text(), text()}, {0, text(), ""}}};
   }
   if (often()) {
     p.design.aperture = {petzval::ApertureSetting::image_na, 0.25};

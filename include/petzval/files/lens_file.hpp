@@ -52,9 +52,12 @@ struct WrittenLens {
 /// all wavelengths, spheres only, and one stop. Throws Error for mirrors, cylinders and aspheres: without them it would
 /// be another lens.
 PETZVAL_API WrittenLens format_table(const Prescription& prescription);
-/// A .zmx of sequential Zemax, in millimetres. Throws Error for strings with line breaks.
-PETZVAL_API WrittenLens format_zemax(const Prescription& prescription);
-/// A .seq of CODE V, in millimetres. Throws Error for terms of odd order, which it lacks.
-PETZVAL_API WrittenLens format_codev(const Prescription& prescription);
+/// A .zmx of sequential Zemax, in millimetres. Glasses of the tables (ReadOptions) keep their names, with an offset
+/// where the printed n_d is another; others become models of n_d and V_d. Throws Error for strings with line breaks and
+/// for cylinders curved along x.
+PETZVAL_API WrittenLens format_zemax(const Prescription& prescription, const GlassCatalogue* glasses = nullptr);
+/// A .seq of CODE V, in millimetres. Glasses of the tables keep their names where the printed n_d is theirs; others
+/// become private ones. Throws Error for aspheric terms that it lacks: of odd order, of order 2 and above 20.
+PETZVAL_API WrittenLens format_codev(const Prescription& prescription, const GlassCatalogue* glasses = nullptr);
 
 }  // namespace petzval::inline v0

@@ -99,8 +99,8 @@ PETZVAL_API FocusSolution nearest_focus(const Lens& lens, const FocusOptions& op
 /// sharpest. A camera of
 /// it, by whatever ray model, is sharpest there too, within the depth over which the RMS blur grows by 5 %
 /// (tests/camera/focus_test.cpp). A stop moves the sharpest film of a lens with spherical aberration: set the f-number
-/// first. Throws Error, which names the nearest distance, if there is no focus; groups move no farther than a fifth of
-/// their way beyond its ends.
+/// first. Throws Error, which names the nearest distance, if there is no focus; groups move beyond either
+/// end of their way by the length of the way at most.
 PETZVAL_API Lens with_focus(const Lens& lens, double distance, const FocusOptions& options = {});
 
 /// Diameter of the blur (circle of confusion) of a subject on the film of the lens, as the criterion measures it. For

@@ -14,6 +14,8 @@
 
 namespace petzval::inline v0 {
 
+class GlassCatalogue;
+
 enum class FindingKind : std::uint8_t {
   focal_length,   ///< computed differs from declared by more than 2 %
   f_number,       ///< the same for the f-number of an exact ray
@@ -22,6 +24,10 @@ enum class FindingKind : std::uint8_t {
   no_stop,
   several_stops,
   image_distance,  ///< the film is farther from the paraxial focus than 2 % of the focal length
+  units,           ///< the lens is 10, 25.4 or 1000 times as large, or as small, as its declared focal length
+  apertures,       ///< semi-diameters that are diameters, or halves of semi-diameters: the declared f-number tells
+  idle_stop,       ///< a rim clips the axial beam well before the marked stop does
+  glass_index,     ///< n_d is not that of the named glass
   film_size,       ///< a film several times as large as the image circle, or smaller than a fiftieth of it
 };
 
@@ -37,9 +43,24 @@ struct Finding {
   std::string message;  ///< one line, with units
 };
 
-/// Compares the declared data of a prescription with computed ones, at its reference wavelength. Throws Error only for
-/// an invalid prescription.
+/// Compares the declared data of a prescription, in its first configuration, with computed ones, at its reference
+/// wavelength. The film is compared with the image of the design's object. Throws Error only for an invalid
+/// prescription.
 PETZVAL_API std::vector<Finding> lint(const Prescription& prescription);
+
+/// The same, and the glasses: an n_d that differs by more than 0.005 from that of the glass it names is a finding.
+PETZVAL_API std::vector<Finding> lint(const Prescription& prescription, const GlassCatalogue& glasses);
+
+/// A prescription without the faults whose cure is certain, and what was changed.
+struct Repaired {
+  Prescription prescription;
+  std::vector<ImportWarning> changes;  ///< command: the kind of the finding
+};
+
+/// Mends, in this order, what lint() finds beyond doubt: `units` by the factor, `apertures` by 2 or a half,
+/// `several_stops` by the first, and `image_distance` by the paraxial image. Every other finding, and a lens with
+/// configurations but for its stops, stays as it is. Throws Error only for an invalid prescription.
+PETZVAL_API Repaired repair(const Prescription& prescription);
 
 /// The film of a camera compared with the image circle of its lens (image_circle_mm, of any light): found is the
 /// diameter of the circle about the axis that holds the film, wanted that of the image. A film is as large as one likes

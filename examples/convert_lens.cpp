@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: Apache-2.0
+// Reads a lens from a file of any format and writes it in another, chosen by the ending of OUT. Says what was assumed
+// and what is lost.
+//
+//   convert_lens lens.zmx lens.json
+//   convert_lens zoom.txt tele.zmx --configuration tele --glasses hoya.agf --json
+//   convert_lens table.dat lens.json --repair
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <iostream>
+#include <string>
+#include <vector>
+
+#include "petzval/core/error.hpp"
+#include "petzval/core/parallel.hpp"
+#include "petzval/core/units.hpp"
+#include "petzval/files/lens_exr.hpp"
+#include "petzval/files/lens_file.hpp"
+#include "petzval/files/lens_metadata.hpp"
+#include "petzval/files/open_track_io.hpp"
+#include "petzval/files/osl_camera.hpp"
+#include "petzval/io/lens_json.hpp"
+#include "petzval/lint/lint.hpp"
+#include "petzval/paraxial/first_order.hpp"
+#include "petzval/pupil/f_number.hpp"
+#include "support/cli.hpp"
+#include "support/files.hpp"
+#include "support/load_lens.hpp"
+#include "support/text.hpp"
+
+namespace {
+
+using examples::Json;
+using petzval::ImportWarning;
+using petzval::Prescription;
+
+struct Options {
+  examples::LensInput in;
+  std::string out;
+  bool strict = false, repair = false, json = false;
+};
+
+constexpr int refused_by_strict = 3;
+
+/// A format to write: the ending of its files, and what writes one.
+struct Output {
+  std::string_view ending;
+  std::vector<ImportWarning> (*write)(const Prescription& lens, const petzval::GlassCatalogue& glasses,
+                                      const std::filesystem::path& file);
+};
+
+std::vector<ImportWarning> write_text(const petzval::WrittenLens& written, const std::filesystem::path& file) {
+  examples::write_text(file, written.text);
+  return written.losses;
+}
+
+/// What a file has that says what a lens does, not what it is made of.
+std::vector<ImportWarning> only_metadata(const Prescription& lens, const petzval::Lens& compiled) {
+  const petzval::Film film = petzval::film_of(lens, compiled);
+  return {{0, "surfaces",
+           "are lost; the file has what the lens does to a picture of " + examples::number(film.width_mm, 4) + " x " +
+               examples::number(film.height_mm, 4) + " mm"}};
+}
+
+// Longer endings first: .opentrackio.json ends in .json too.
+constexpr std::array outputs{
+    Output{".opentrackio.json",
+           [](const Prescription& lens, const petzval::GlassCatalogue&, const std::filesystem::path& file) {
+             const petzval::Lens compiled = petzval::compile(lens);
+             petzval::write_open_track_io(compiled, petzval::film_of(lens, compiled), petzval::identity_of(lens), file);
+             return only_metadata(lens, compiled);
+           }},
+    Output{".stmap.exr",
+           [](const Prescription& lens, const petzval::GlassCatalogue&, const std::filesystem::path& file) {
+             const petzval::Lens compiled = petzval::compile(lens);
+             petzval::write_st_map(compiled, petzval::film_of(lens, compiled), petzval::identity_of(lens), file,
+                                   {.threads = petzval::processor_threads()});
+             return only_metadata(lens, compiled);
+           }},
+    Output{".json",
+           [](const Prescription& lens, const petzval::GlassCatalogue&, const std::filesystem::path& file) {
+             petzval::write_prescription(lens, file);
+             return std::vector<ImportWarning>();
+           }},
+    Output{".dat", [](const Prescription& lens, const petzval::GlassCatalogue&,
+                      const std::filesystem::path& file) { return write_text(petzval::format_table(lens), file); }},
+    Output{".osl",
+           [](const Prescription& lens, const petzval::GlassCatalogue&, const std::filesystem::path& file) {
+             examples::write_text(file, petzval::format_osl_camera(petzval::compile(lens)));
+             return std::vector<ImportWarning>{
+                 {0, "wavelengths",
+                  "the shader has the indices of " + examples::number(lens.reference_wavelength_nm) + " nm alone"}};
+           }},
+    Output{".zmx",
+           [](const Prescription& lens, const petzval::GlassCatalogue& glasses, const std::filesystem::path& file) {
+             return write_text(petzval::format_zemax(lens, &glasses), file);
+           }},
+    Output{".seq",
+           [](const Prescription& lens, const petzval::GlassCatalogue& glasses, const std::filesystem::path& file) {
+             return write_text(petzval::format_codev(lens, &glasses), file);
+           }},
+};
+
+const Output& output_for(const std::string& file) {
+  const auto found = std::ranges::find_if(outputs, [&](const Output& o) { return file.ends_with(o.ending); });
+  if (found != outputs.end()) return *found;
+  std::string known;
+  for (const Output& o : outputs) known += (known.empty() ? "" : ", ") + std::string(o.ending);
+  throw petzval::Error(file + ": its ending is unknown, wanted one of " + known);
+}
+
+Json maybe(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
+
+Json declared(const Prescription& p) {
+  Json json{{"focal_length_mm", maybe(p.focal_length_mm)},
+            {"f_number", maybe(p.f_number)},
+            {"half_field_deg", maybe(p.half_field_deg)},
+            {"image_diagonal_mm", maybe(p.image_diagonal_mm)},
+            {"object_distance_mm", examples::finite_or_null(p.design.object_distance_mm)}};
+  json["aperture"] = nullptr;
+  if (const auto& set = p.design.aperture) json["aperture"] = {{"setting", name(set->setting)}, {"value", set->value}};
+  json["fields"] = p.design.fields.size();
+  json["field_kind"] = name(p.design.field_kind);
+  json["wavelengths_nm"] = Json::array();
+  for (const auto& wavelength : p.design.wavelengths) json["wavelengths_nm"].push_back(wavelength.nm);
+  json["primary_wavelength"] = p.design.primary_wavelength;
+  return json;
+}
+
+Json to_json(const std::vector<ImportWarning>& warnings) {
+  Json json = Json::array();
+  for (const ImportWarning& w : warnings) {
+    json.push_back({{"line", w.line}, {"command", w.command}, {"message", w.message}});
+  }
+  return json;
+}
+
+Json report(const Prescription& whole, const Prescription& lens, const std::vector<ImportWarning>& warnings,
+            const std::vector<ImportWarning>& losses, const std::vector<ImportWarning>& repairs) {
+  const petzval::Lens compiled = petzval::compile(lens);
+  const petzval::Meridian main = petzval::main_meridian(compiled);
+  const auto& imported = lens.imported;
+  Json json{{"format", imported ? imported->format : "petzval"},
+            {"title", imported && !imported->title.empty() ? imported->title : whole.name},
+            {"units", imported ? imported->units : "mm"},
+            {"surfaces", lens.surfaces.size()},
+            {"stop", compiled.stop() ? Json(*compiled.stop()) : Json(nullptr)},
+            {"effective_focal_length_mm",
+             examples::finite_or_null(petzval::first_order(compiled, {}, main).effective_focal_length)},
+            {"f_number", petzval::has_pupils(compiled) ? examples::finite_or_null(petzval::real_f_number(compiled))
+                                                       : Json(nullptr)},
+            {"wavelength_nm", lens.reference_wavelength_nm},
+            {"declared", declared(lens)},
+            {"warnings", to_json(warnings)},
+            {"losses", to_json(losses)},
+            {"repairs", to_json(repairs)}};
+  json["lint"] = Json::array();
+  for (const petzval::Finding& finding : petzval::lint(lens)) {
+    json["lint"].push_back({{"kind", name(finding.kind)}, {"message", finding.message}});
+  }
+  json["configurations"] = Json::array();
+  for (const petzval::Configuration& c : whole.configurations) {
+    const petzval::Lens position = petzval::compile(whole, {.configuration = c.name});
+    json["configurations"].push_back(
+        {{"name", c.name},
+         {"focus_of", c.focus_of ? Json(*c.focus_of) : Json(nullptr)},
+         {"subject_distance_mm", maybe(c.subject_distance_mm)},
+         {"effective_focal_length_mm",
+          examples::finite_or_null(petzval::first_order(position, {}, main).effective_focal_length)},
+         {"declared", {{"focal_length_mm", maybe(c.focal_length_mm)}, {"f_number", maybe(c.f_number)}}}});
+  }
+  return json;
+}
+
+void say(const char* kind, const std::string& file, const std::vector<ImportWarning>& warnings) {
+  for (const ImportWarning& w : warnings) {
+    std::cerr << kind << ": " << file << ": ";
+    if (w.line > 0) std::cerr << "line " << w.line << ": ";
+    std::cerr << w.command << ' ' << w.message << '\n';
+  }
+}
+
+/// Returns whether a file was written.
+bool convert(const Options& options) {
+  const Output& output = output_for(options.out);
+  const auto glasses = examples::glasses_of(options.in);
+  Prescription whole = petzval::read_prescription(options.in.file, {.glasses = &glasses});
+  const std::vector<ImportWarning> warnings = whole.imported ? whole.imported->warnings : std::vector<ImportWarning>();
+  say("warning", options.in.file, warnings);
+  if (options.strict && !warnings.empty()) {
+    std::cerr << "convert_lens: " << options.in.file << ": " << warnings.size()
+              << (warnings.size() == 1 ? " assumption" : " assumptions") << ", wanted none (--strict)\n";
+    if (options.json) std::cout << Json{{"refused_by_strict", true}, {"warnings", to_json(warnings)}}.dump(2) << '\n';
+    return false;
+  }
+  std::vector<ImportWarning> repairs;
+  if (options.repair) {
+    petzval::Repaired repaired = petzval::repair(whole);
+    whole = std::move(repaired.prescription);
+    repairs = std::move(repaired.changes);
+    say("repaired", options.in.file, repairs);
+  }
+  Prescription lens = petzval::configured(whole, examples::configuration_of(options.in));
+  // A position that was asked for is a lens of its own; else all positions are written.
+  const bool one = !options.in.configuration.empty();
+  const auto losses = output.write(one ? lens : whole, glasses, options.out);
+  say("lost", options.out, losses);
+  if (options.json) std::cout << report(whole, lens, warnings, losses, repairs).dump(2) << '\n';
+  return true;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options options;
+  bool refused = false;
+  examples::App app(
+      "Reads a lens of any format (petzval JSON, Zemax .zmx, CODE V .seq, OSLO .len, OpticalBench and renderers' "
+      "tables, lentil and optiland JSON; known by its content) and writes OUT in the format of its ending. Warnings "
+      "name the lines of IN that were not taken as they are. The exit status is 0 if OUT was written, 3 if --strict "
+      "refused IN.",
+      "convert_lens");
+  examples::add_lens(app, options.in, "IN", "the lens to convert")->required();
+  app.add_option("OUT", options.out, "the file to write: .json .dat .zmx .seq .osl .opentrackio.json .stmap.exr")
+      ->required()
+      ->type_name("FILE");
+  app.add_flag("--strict", options.strict, "refuse a file of which anything had to be assumed or left out");
+  app.add_flag("--repair", options.repair, "mend faults whose cure is certain, and say what was changed");
+  app.add_flag("--json", options.json, "print a report of IN as one JSON object");
+  const int status = examples::run(app, argc, argv, [&] { refused = !convert(options); });
+  return status == 0 && refused ? refused_by_strict : status;
+}

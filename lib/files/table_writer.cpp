@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+
+#include "core/text.hpp"
+#include "text_file.hpp"
+#include "written_lens.hpp"
+
+namespace petzval::inline v0 {
+namespace {
+
+using namespace files_detail;
+
+/// Renderers take radius 0 for the stop. A sphere this flat departs from a plane by 5e-5 mm at 10 mm from the axis.
+constexpr double nearly_plane = 1e6;
+
+std::string cells(double radius, double thickness, double index, double diameter) {
+  return to_text(radius) + '\t' + to_text(thickness) + '\t' + to_text(index) + '\t' + to_text(diameter);
+}
+
+std::string one_line(std::string text) {
+  std::ranges::replace(text, '\n', ' ');
+  std::ranges::replace(text, '\r', ' ');
+  return text;
+}
+
+}  // namespace
+
+WrittenLens format_table(const Prescription& prescription) {
+  Writer out(prescription, nullptr);
+  const Prescription& p = out.lens();
+  double largest = 0;
+  for (const SurfaceRow& row : p.surfaces) {
+    if (row.semi_diameter && std::isfinite(*row.semi_diameter)) largest = std::max(largest, *row.semi_diameter);
+  }
+  out.line("# " + one_line(p.name.empty() ? std::string("lens") : p.name));
+  std::string nominal;
+  if (p.focal_length_mm) nominal += to_text(*p.focal_length_mm) + " mm";
+  if (p.f_number) nominal += (nominal.empty() ? "" : " ") + ("f/" + to_text(*p.f_number));
+  if (!nominal.empty()) out.line("# " + nominal);
+  out.line("# millimetres; the row of index 0 is the stop");
+  out.line("# radius\tthickness\tn\taperture diameter");
+
+  bool disperses = p.object_space != Medium{}, planes = false, open = false, obscured = false;
+  const SurfaceRow* first_stop = nullptr;
+  double before = p.object_space.nd;
+  for (std::size_t i = 0; i < p.surfaces.size(); ++i) {
+    const SurfaceRow& row = p.surfaces[i];
+    if (row.mirror) out.refuse(i, "a mirror", "refracting surfaces for a table");
+    if (row.curved_in != Section::both) out.refuse(i, "a cylinder", "spheres for a table");
+    if (row.conic != 0 && row.radius != 0) out.refuse(i, "a conic", "spheres for a table");
+    if (!row.aspheric.empty()) out.refuse(i, "an asphere", "spheres for a table");
+    disperses = disperses || row.medium.vd || row.medium.glass;
+    obscured = obscured || row.obscuration_semi_diameter.value_or(0) > 0;
+    const bool limited = row.semi_diameter && std::isfinite(*row.semi_diameter);
+    open = open || !limited;
+    const double diameter = 2 * (limited ? *row.semi_diameter : std::max(largest, 1.0));
+    const double index = row.medium.nd;
+    const bool is_stop = row.stop && !first_stop;
+    if (is_stop) first_stop = &row;
+    if (is_stop && row.radius == 0 && index == 1 && before == 1) {
+      out.line(cells(0, row.thickness, 0, diameter));
+    } else {
+      const double radius = row.radius == 0 ? nearly_plane : row.radius;
+      planes = planes || row.radius == 0;
+      // A stop on a lens surface becomes a row of its own, in air beside it.
+      if (is_stop && before == 1) {
+        out.line(cells(0, 0, 0, diameter));
+        out.line(cells(radius, row.thickness, index, diameter));
+      } else if (is_stop && index == 1) {
+        out.line(cells(radius, 0, index, diameter));
+        out.line(cells(0, row.thickness, 0, diameter));
+      } else if (is_stop) {
+        out.refuse(i, "the stop inside glass", "a stop in air for a table");
+      } else {
+        out.line(cells(radius, row.thickness, index, diameter));
+      }
+      if (is_stop) out.lose("stop", "of surface " + std::to_string(i) + " becomes a plane at its vertex");
+    }
+    before = index;
+  }
+  if (!first_stop) out.lose("stop", "none is marked; renderers want a row of index 0");
+  if (planes) out.lose("radius", "of planes is written as 1e6 mm, as 0 marks the stop");
+  if (disperses) out.lose("vd", "the dispersion of glasses is lost: a table has n_d alone");
+  if (open) out.lose("semi_diameter", "surfaces without one get the largest of the others");
+  if (obscured) out.lose("inner_semi_diameter", "central obscurations are lost");
+  if (p.configurations.size() > 1) out.lose("configurations", "all but the first are lost");
+  return out.take();
+}
+
+}  // namespace petzval::inline v0

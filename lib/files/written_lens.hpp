@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "petzval/files/lens_file.hpp"
+#include "petzval/media/glass.hpp"
+#include "petzval/prescription/prescription.hpp"
+
+namespace petzval::inline v0::files_detail {
+
+/// A lens on its way into the format of another program: its text, and what is lost.
+class Writer {
+ public:
+  /// Throws Error for an invalid lens.
+  Writer(const Prescription& lens, const GlassCatalogue* glasses);
+
+  const Prescription& lens() const noexcept { return lens_; }
+  /// The prescription's name, for messages.
+  const std::string& where() const noexcept { return where_; }
+  /// Throws Error: "lens: surface 3: cylinder, wanted wanted".
+  [[noreturn]] void refuse(std::size_t surface, const std::string& found, const std::string& wanted) const;
+  void line(const std::string& text) { text_ += text + '\n'; }
+  void lose(std::string_view what, const std::string& message) { losses_.push_back({0, std::string(what), message}); }
+  /// The glass of the tables that a medium names; null if there is none.
+  const Glass* glass(const Medium& medium);
+  WrittenLens take() { return {std::move(text_), std::move(losses_)}; }
+
+ private:
+  Prescription lens_;
+  std::string where_;
+  const GlassCatalogue* glasses_;
+  std::shared_ptr<const GlassCatalogue> own_;
+  std::string text_;
+  std::vector<ImportWarning> losses_;
+};
+
+/// The rows in the first configuration.
+Prescription first_rows(const Prescription& lens);
+
+}  // namespace petzval::inline v0::files_detail

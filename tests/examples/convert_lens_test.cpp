@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "petzval/files/lens_file.hpp"
+#include "petzval/io/image.hpp"
+#include "petzval/io/lens_json.hpp"
+#include "petzval/lens/lens.hpp"
+#include "petzval/paraxial/first_order.hpp"
+#include "program.hpp"
+
+namespace {
+
+using ConvertLens = Programs;
+
+const std::string table = "# A singlet 50 mm f/5\n50.6 5.2 1.5168 25.4\n-50.6 1 1 25.4\n0 47 0 9.7\n";
+const std::string zemax = R"(MODE SEQ
+NAME Two positions
+UNIT IN X W X CM MR CPMM
+FNUM 8 0
+SURF 0
+  DISZ INFINITY
+SURF 1
+  STOP
+  CURV 0.5
+  DISZ 0.2
+  GLAS MYGLASS 0 0 1.5 40
+SURF 2
+  CURV -0.5
+  DISZ 1.9
+SURF 3
+MNUM 2 1
+LTTL 0 1 "near"
+LTTL 0 2 "far"
+THIC 2 1 1.9
+THIC 2 2 2.1
+)";
+const std::string glasses = R"(CC
+NM MYGLASS 2 517642 1.5168 64.17 0 1
+CD 1.03961212 0.00600069867 0.231792344 0.0200179144 1.01046945 103.560653 0 0 0 0
+LD 0.3 2.5
+)";
+
+TEST_F(ConvertLens, WritesEveryFormatByItsEnding) {
+  for (const char* ending : {".json", ".dat", ".zmx", ".seq"}) {
+    const auto outcome = run("convert_lens", {lens("double_gauss_100mm_f2.0"), path(std::string("lens") + ending)});
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    const auto back = petzval::read_prescription(path(std::string("lens") + ending));
+    EXPECT_NEAR(petzval::first_order(petzval::compile(back)).effective_focal_length, 100.7163339, 1e-6) << ending;
+  }
+  EXPECT_EQ(read(path("lens.json")), read(lens("double_gauss_100mm_f2.0")));  // byte for byte
+  EXPECT_EQ(run("convert_lens", {lens("double_gauss_100mm_f2.0"), path("lens.osl")}).status, 0);
+  EXPECT_EQ(read(path("lens.osl")).find("// Double Gauss 100 mm f/2"), 0u);
+  EXPECT_EQ(run("convert_lens", {lens("double_gauss_100mm_f2.0"), path("lens.opentrackio.json")}).status, 0);
+  EXPECT_TRUE(read_json(path("lens.opentrackio.json")).contains("lens"));
+  EXPECT_EQ(run("convert_lens", {lens("double_gauss_100mm_f2.0"), path("lens.stmap.exr")}).status, 0);
+  EXPECT_EQ(petzval::read_exr_parts(path("lens.stmap.exr")).size(), 2u);
+  expect_failure("convert_lens", {lens("double_gauss_100mm_f2.0"), path("lens.doc")}, "its ending is unknown");
+}
+
+TEST_F(ConvertLens, ReportsWhatItRead) {
+  write("lens.dat", table);
+  const auto outcome = run("convert_lens", {path("lens.dat"), path("lens.json"), "--json"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const auto json = nlohmann::json::parse(outcome.out);
+  EXPECT_EQ(json["format"], "table");
+  EXPECT_EQ(json["title"], "A singlet 50 mm f/5");
+  EXPECT_EQ(json["units"], "mm");
+  EXPECT_EQ(json["surfaces"], 3);
+  EXPECT_EQ(json["stop"], 2);
+  EXPECT_NEAR(json["effective_focal_length_mm"].get<double>(), 49.8272, 1e-3);
+  EXPECT_NEAR(json["f_number"].get<double>(), 5, 0.2);
+  EXPECT_EQ(json["declared"]["focal_length_mm"], 50);
+  EXPECT_EQ(json["warnings"].size(), 0u);
+  EXPECT_EQ(json["configurations"].size(), 0u);
+}
+
+TEST_F(ConvertLens, StrictRefusesWithStatus3AndWritesNothing) {
+  write("lens.dat", "50.6 5.2 1.5168 25.4\n-50.6 0 1 25.4\n");
+  const auto outcome = run("convert_lens", {path("lens.dat"), path("lens.json"), "--strict"});
+  EXPECT_EQ(outcome.status, 3);
+  EXPECT_FALSE(std::filesystem::exists(path("lens.json")));
+  EXPECT_NE(outcome.err.find("line 2: thickness"), std::string::npos);
+  write("lens.dat", table);
+  EXPECT_EQ(run("convert_lens", {path("lens.dat"), path("lens.json"), "--strict"}).status, 0);
+}
+
+TEST_F(ConvertLens, MissingGlassesComeFromFilesOfTheUser) {
+  write("lens.zmx", zemax);
+  write("my.agf", glasses);
+  expect_failure("convert_lens", {path("lens.zmx"), path("lens.json")}, "MYGLASS is in no glass table");
+  const auto outcome =
+      run("convert_lens", {path("lens.zmx"), path("lens.json"), "--glasses", path("my.agf"), "--json"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const auto json = nlohmann::json::parse(outcome.out);
+  EXPECT_EQ(json["units"], "in");
+  ASSERT_EQ(json["configurations"].size(), 2u);
+  EXPECT_EQ(json["configurations"][1]["name"], "far");
+  EXPECT_NEAR(json["f_number"].get<double>(), 8, 1e-6);
+  const auto back = petzval::read_prescription(path("lens.json"));
+  EXPECT_EQ(back.configurations.size(), 2u);
+  EXPECT_EQ(back.surfaces[0].medium.nd, 1.5168);
+  // One position alone.
+  EXPECT_EQ(
+      run("convert_lens", {path("lens.zmx"), path("far.json"), "--glasses", path("my.agf"), "--configuration", "far"})
+          .status,
+      0);
+  EXPECT_NEAR(petzval::read_prescription(path("far.json")).surfaces[1].thickness, 2.1 * 25.4, 1e-9);
+}
+
+TEST_F(ConvertLens, RepairsWhatIsCertain) {
+  // A lens of 50 mm that declares 50 mm and f/5, with diameters in the place of semi-diameters, ten times too large.
+  write("lens.json", R"({"format": "petzval-lens 1", "name": "bad", "focal_length_mm": 50, "f_number": 5, "surfaces": [
+    {"radius": 506, "thickness": 52, "nd": 1.5168, "semi_diameter": 100, "stop": true},
+    {"radius": -506, "thickness": 600, "nd": 1, "semi_diameter": 120, "stop": true}]})");
+  const auto outcome = run("convert_lens", {path("lens.json"), path("good.json"), "--repair", "--json"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const auto json = nlohmann::json::parse(outcome.out);
+  EXPECT_EQ(json["repairs"].size(), 4u) << outcome.err;
+  EXPECT_NEAR(json["effective_focal_length_mm"].get<double>(), 49.83, 0.01);
+  EXPECT_NEAR(json["f_number"].get<double>(), 5, 0.1);
+  EXPECT_EQ(json["lint"].size(), 0u);
+}
+
+TEST_F(ConvertLens, EveryProgramTakesEveryFormat) {
+  write("lens.dat", table);
+  const auto outcome = run("lens_report", {path("lens.dat"), "--json"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(nlohmann::json::parse(outcome.out)["format"], "table");
+  EXPECT_NE(run("lens_report", {path("lens.dat")}).out.find("read from lens.dat (table, lengths in mm)"),
+            std::string::npos);
+  const auto zoom = run("lens_report", {lens("zoom_70-210mm_f4"), "--json", "--configuration", "tele"});
+  EXPECT_NEAR(nlohmann::json::parse(zoom.out)["effective_focal_length_mm"].get<double>(), 205.265, 1e-3);
+  expect_failure("lens_report", {lens("zoom_70-210mm_f4"), "--configuration", "far"}, "wide, middle, tele");
+}
+
+TEST_F(ConvertLens, BadFilesFailInOneLine) {
+  write("lens.zar", "PK\x03\x04");
+  expect_failure("convert_lens", {path("lens.zar"), path("lens.json")}, "is a zip archive");
+  expect_failure("convert_lens", {path("none.zmx"), path("lens.json")}, "none.zmx");
+  expect_failure("convert_lens", {path("lens.zar")}, "OUT is required");
+  EXPECT_FALSE(std::filesystem::exists(path("lens.json")));
+}
+
+}  // namespace

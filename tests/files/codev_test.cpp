@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "lens_text.hpp"
+#include "petzval/lens/lens.hpp"
+#include "petzval/paraxial/first_order.hpp"
+#include "petzval/pupil/f_number.hpp"
+
+namespace {
+
+using petzval::Prescription;
+using petzval::testing::read;
+using petzval::testing::refusal;
+using petzval::testing::warning;
+using petzval::testing::with;
+
+const std::string singlet = R"(RDM;LEN  "VERSION: 10.7"
+TITLE 'A singlet; of glass'   ! a comment
+EPD 10
+DIM M
+WL 656.3 587.6 486.1
+REF 2
+WTW 1 2 1
+XAN 0 0
+YAN 0 5
+VUY 0 0.2
+VLY 0 0.4
+SO 0 1e13
+S 0 2
+  STO
+S 50 4 1.5:60
+  CIR 8; SLB 'front'
+S -50 &
+  48
+SI 0 0.5
+GO
+)";
+
+std::string with_line(const std::string& line) { return with(singlet, "  CIR 8;", "  " + line + "\n  CIR 8;"); }
+
+TEST(Codev, SaysWhatTheFileSays) {
+  const Prescription p = read(singlet);
+  EXPECT_EQ(p.imported->format, "codev");
+  EXPECT_EQ(p.imported->title, "A singlet; of glass");
+  EXPECT_TRUE(p.imported->warnings.empty()) << p.imported->warnings[0].message;
+  ASSERT_EQ(p.surfaces.size(), 3u);
+  EXPECT_TRUE(p.surfaces[0].stop);
+  EXPECT_NEAR(*p.surfaces[0].semi_diameter, 5, 1e-12);
+  EXPECT_EQ(p.surfaces[1].radius, 50);
+  EXPECT_EQ(p.surfaces[1].medium, (petzval::Medium{.nd = 1.5, .vd = 60}));
+  EXPECT_EQ(p.surfaces[1].semi_diameter, 8);
+  EXPECT_EQ(p.surfaces[1].comment, "front");
+  EXPECT_EQ(p.surfaces[2].thickness, 48.5);  // with the defocus of SI
+  ASSERT_EQ(p.design.wavelengths.size(), 3u);
+  EXPECT_EQ(p.design.wavelengths[1], (petzval::DesignWavelength{587.6, 2}));
+  EXPECT_EQ(p.design.primary_wavelength, 1u);
+  EXPECT_EQ(p.design.fields[1].y, 5);
+  EXPECT_NEAR(p.design.fields[1].compress_y, 0.3, 1e-15);
+  EXPECT_NEAR(p.design.fields[1].decentre_y, 0.1, 1e-15);
+}
+
+TEST(Codev, CurvaturesAndUnitsAreLengthsAndTheirInverses) {
+  std::string curved = with(with(with(singlet, "RDM;", "RDM N;"), "S 50 4", "S 0.02 4"), "S -50 &", "S -0.02 &");
+  EXPECT_EQ(read(curved).surfaces, read(singlet).surfaces);
+  const Prescription inches = read(with(singlet, "DIM M", "DIM I"));
+  EXPECT_EQ(inches.imported->units, "in");
+  EXPECT_NEAR(inches.surfaces[1].radius, 1270, 1e-9);
+  EXPECT_NEAR(inches.surfaces[2].thickness, 48.5 * 25.4, 1e-9);
+  EXPECT_NEAR(*inches.surfaces[0].semi_diameter, 127, 1e-9);
+  EXPECT_NEAR(*inches.surfaces[1].semi_diameter, 8 * 25.4, 1e-9);
+  EXPECT_EQ(read(with(singlet, "DIM M", "DIM C")).surfaces[1].radius, 500);
+  EXPECT_NE(refusal(with(singlet, "DIM M", "DIM F")), "no error");
+  // Without RDM: what would be too steep is a radius.
+  EXPECT_EQ(read(with(singlet, "RDM;", "")).surfaces[1].radius, 50);
+  EXPECT_NE(warning(with(singlet, "RDM;", ""), "RDM"), "no warning");
+  curved = with(curved, "RDM N;", "");
+  EXPECT_EQ(read(curved).surfaces[1].radius, 50);
+  EXPECT_NE(warning(with(singlet, "DIM M\n", ""), "DIM"), "no warning");
+}
+
+TEST(Codev, ShapesAreConicsAndEvenTerms) {
+  const petzval::SurfaceRow row = read(with_line("ASP; K -0.5; A 1e-5; B 2e-8; J 1e-30")).surfaces[1];
+  EXPECT_EQ(row.conic, -0.5);
+  EXPECT_EQ(row.aspheric, (std::vector<petzval::AsphereTerm>{{4, 1e-5}, {6, 2e-8}, {20, 1e-30}}));
+  EXPECT_EQ(read(with_line("CON; K -1")).surfaces[1].conic, -1);
+  EXPECT_EQ(read(with_line("CYL; RDX 0")).surfaces[1].curved_in, petzval::Section::y);
+  for (const char* word : {"SPS XYP", "DIF GRT", "XDE 1", "ADE 5", "BEN", "UDS"}) {
+    EXPECT_EQ(refusal(with_line(word)).substr(0, 11), "x: line 16:") << word << refusal(with_line(word));
+  }
+  EXPECT_EQ(refusal(with_line("XDE 0; YDE 0; ADE 0")), "no error");
+}
+
+TEST(Codev, AperturesAreRims) {
+  EXPECT_EQ(read(with_line("CIR EDG 9")).surfaces[1].semi_diameter, 8);
+  EXPECT_EQ(read(with(singlet, "CIR 8;", "CIR EDG 9;")).surfaces[1].semi_diameter, 9);
+  EXPECT_EQ(read(with_line("CIR HOL 2")).surfaces[1].obscuration_semi_diameter, 2);
+  EXPECT_EQ(read(with_line("CIR OBS L'A' 3")).surfaces[1].obscuration_semi_diameter, 3);
+  EXPECT_NE(warning(with_line("REX 5"), "REX"), "no warning");
+}
+
+TEST(Codev, ApertureSettingsSizeTheStop) {
+  const double focal = petzval::first_order(compile(read(singlet))).effective_focal_length;
+  EXPECT_NEAR(petzval::real_f_number(compile(read(with(singlet, "EPD 10", "FNO 6")))), 6, 1e-6);
+  EXPECT_NEAR(petzval::real_f_number(compile(read(singlet))), focal / 10, 1e-6);
+  const Prescription na = read(with(singlet, "EPD 10", "NA 0.05"));
+  EXPECT_NEAR(petzval::paraxial_f_number(compile(na)), 1 / (2 * std::tan(std::asin(0.05))), 0.05);
+  EXPECT_EQ(read(with(singlet, "EPD 10", "NAO 0.05")).design.aperture->setting, petzval::ApertureSetting::object_na);
+}
+
+TEST(Codev, GlassesAreNamesCodesAndPrivateOnes) {
+  const auto medium = [](const std::string& glass) { return read(with(singlet, "1.5:60", glass)).surfaces[1].medium; };
+  EXPECT_EQ(medium("NBK7_SCHOTT").glass, "N-BK7");
+  EXPECT_EQ(medium("nbk7_schott").catalogue, "schott");
+  EXPECT_EQ(medium("N-BK7_SCHOTT").nd, 1.5168);
+  EXPECT_NEAR(medium("517.642").nd, 1.517, 1e-12);
+  EXPECT_NEAR(*medium("517.642").vd, 64.2, 1e-12);
+  EXPECT_NEAR(medium("620410.603236").nd, 1.62041, 1e-12);
+  EXPECT_NEAR(*medium("620410.603236").vd, 60.3236, 1e-12);
+  EXPECT_NEAR(medium("500.700").nd, 1.5, 1e-12);
+  EXPECT_NE(refusal(with(singlet, "1.5:60", "XYZ_SCHOTT")).find("--glasses FILE"), std::string::npos);
+  const std::string own = "PRV\nPWL 656.2725 587.5618 486.1327\n'MYGLASS' 1.59 1.6 1.62\nEND\n";
+  const petzval::Medium mine = read(with(with(singlet, "SO 0", own + "SO 0"), "1.5:60", "MYGLASS")).surfaces[1].medium;
+  EXPECT_EQ(mine.nd, 1.6);
+  EXPECT_NEAR(*mine.vd, 0.6 / 0.03, 1e-9);
+  const Prescription mirror = read(with(with(singlet, "S 50 4 1.5:60", "S -50 -4 REFL"), "S -50 &", "S 60 -40"));
+  EXPECT_TRUE(mirror.surfaces[1].mirror);
+}
+
+TEST(Codev, PickupsSolvesAndLaterWordsAreHonoured) {
+  const Prescription p =
+      read(with(singlet, "GO", "THI S2 5\nRDY S2 60\nGLA S2 NSK16_SCHOTT\nPIK RDY S3 Z1 RDY S2 Z1 -1\nGO"));
+  EXPECT_EQ(p.surfaces[1].thickness, 5);
+  EXPECT_EQ(p.surfaces[1].radius, 60);
+  EXPECT_EQ(p.surfaces[1].medium.glass, "N-SK16");
+  EXPECT_EQ(p.surfaces[2].radius, -60);
+  EXPECT_NE(warning(p, "PIK"), "no warning");
+  const Prescription image = read(with(with(singlet, "  48\n", "  49.2\n"), "SI 0 0.5", "PIM\nSI 0 0"));
+  EXPECT_NEAR(image.surfaces[2].thickness, 49.2, 1e-12);  // near the focus: as the file states it
+  const double focus = petzval::first_order(compile(read(singlet))).back_focal_distance;
+  const Prescription far = read(with(with(singlet, "  48\n", "  10\n"), "SI 0 0.5", "PIM\nSI 0 0"));
+  EXPECT_NEAR(far.surfaces[2].thickness, focus, 1e-9);
+  EXPECT_NE(warning(far, "PIM"), "no warning");
+}
+
+TEST(Codev, ZoomPositionsAreConfigurations) {
+  const Prescription p = read(with(
+      singlet, "GO",
+      "ZOO 3\nZOO TIT 'wide' 'middle' 'tele'\nZOO THI S2 4 5 6\nTHI S3 48 47 46\nZOO FNO 4 4 5\nZOO YAN F2 5 4 3\nGO"));
+  ASSERT_EQ(p.configurations.size(), 3u);
+  EXPECT_EQ(p.configurations[2].name, "tele");
+  EXPECT_EQ(p.configurations[2].f_number, 5);
+  EXPECT_EQ(configured(p, "tele").surfaces[1].thickness, 6);
+  EXPECT_EQ(configured(p, "tele").surfaces[2].thickness, 46.5);
+  EXPECT_NE(warning(p, "ZOO"), "no warning");
+  EXPECT_NE(refusal(with(singlet, "GO", "ZOO 3\nZOO THI S2 4 5\nGO")).find("given 2 values"), std::string::npos);
+}
+
+TEST(Codev, EveryWordIsHonouredOrNamed) {
+  EXPECT_EQ(warning(with_line("XYZ 5"), "XYZ"), "is not known and is left out");
+  EXPECT_TRUE(read(with_line("CCY 0; THC 0; KC 1")).imported->warnings.empty());
+  const Prescription without = read(with(singlet, "  STO\n", ""));
+  EXPECT_TRUE(without.surfaces[0].stop);
+  EXPECT_NE(warning(without, "stop"), "no warning");
+}
+
+TEST(Codev, ATextCutOffAtAnyByteIsReadOrRefused) {
+  int refused = 0;
+  for (std::size_t length = 0; length < singlet.size(); ++length)
+    refused += refusal(singlet.substr(0, length)) != "no error";
+  EXPECT_GT(refused, 200);
+}
+
+}  // namespace

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <string>
+#include <string_view>
+
+#include "../message.hpp"
+#include "petzval/files/lens_file.hpp"
+
+namespace petzval::testing {
+
+/// A text with one part in place of another, which it must have.
+inline std::string with(std::string text, std::string_view old, std::string_view replacement) {
+  const std::size_t at = text.find(old);
+  if (at == std::string::npos) throw Error("the text has no \"" + std::string(old) + '"');
+  return text.replace(at, old.size(), replacement);
+}
+
+inline Prescription read(const std::string& text) { return parse_lens(text, "x"); }
+
+inline std::string refusal(const std::string& text) {
+  return message([&] { read(text); });
+}
+
+/// The message of the warning about a command; "no warning" if there is none.
+inline std::string warning(const Prescription& lens, std::string_view command) {
+  const auto found = std::ranges::find(lens.imported->warnings, command, &ImportWarning::command);
+  return found == lens.imported->warnings.end() ? "no warning" : found->message;
+}
+inline std::string warning(const std::string& text, std::string_view command) { return warning(read(text), command); }
+
+}  // namespace petzval::testing
