@@ -476,6 +476,9 @@ void CodevReader::pickup(Words w) {
   }
   if (!numbers.empty()) p.scale = numbers[0];
   if (numbers.size() > 1 && numbers[1] != 0) in_.warn(line_, "PIK", "its offset is left out");
+  if (pickups_.size() >= most_surfaces) {
+    throw Error(in_.where() + ": more than " + std::to_string(most_surfaces) + " pickups, wanted fewer");
+  }
   pickups_.push_back(std::move(p));
 }
 
@@ -498,6 +501,9 @@ void CodevReader::zoomed(Words w) {
   std::size_t first = 1;
   if (const auto at = number_of(w[1])) z.surface = *at, first = 2;
   for (std::size_t i = first; i < std::min<std::size_t>(w.size(), 1002); ++i) z.values.emplace_back(w[i]);
+  if (zooms_.size() >= most_surfaces) {
+    throw Error(in_.where() + ": more than " + std::to_string(most_surfaces) + " zoomed values, wanted fewer");
+  }
   zooms_.push_back(std::move(z));
 }
 

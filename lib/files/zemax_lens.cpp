@@ -336,6 +336,19 @@ void check_marginal_height(const ZemaxSurface& s, std::size_t number, Import& in
   }
 }
 
+/// Where the image is at infinity: a film at the paraxial focus of light from infinity, if that lies behind the lens.
+void put_film_at_focus(const ZemaxSurface& s, Import& in) {
+  Prescription rows = in.lens;
+  rows.configurations.clear();
+  const Lens lens = compile(rows);
+  const FirstOrder first = first_order(lens, {}, main_meridian(lens));
+  const bool behind = !first.afocal && first.back_focal_distance > 0;
+  in.lens.surfaces.back().thickness = behind ? first.back_focal_distance : 0;
+  in.warn(s.line, "DISZ",
+          std::string("the image is at infinity; the film is put at ") +
+              (behind ? "the focus of light from infinity" : "the last surface"));
+}
+
 }  // namespace
 
 void build_lens(ZemaxLens zemax, double unit, Import& in) {
@@ -354,11 +367,16 @@ void build_lens(ZemaxLens zemax, double unit, Import& in) {
   if (object.stop) in.refuse(object.line, "STOP", "at the object", "a surface of the lens");
   if (image.curvature != 0) in.warn(image.line, "SURF", "the image is curved; a flat film is taken");
 
+  // Light that leaves as a parallel beam has no film.
+  ZemaxSurface& last = zemax.surfaces[zemax.surfaces.size() - 2];
+  const bool image_at_infinity = std::abs(last.thickness) >= endless;
+  if (image_at_infinity) last.thickness = 0;
   Medium before = in.lens.object_space;
   for (const ZemaxSurface& s : std::span(zemax.surfaces).subspan(1, zemax.surfaces.size() - 2)) {
     in.lens.surfaces.push_back(rows.row(s, before));
     before = in.lens.surfaces.back().medium;
   }
+  if (image_at_infinity) put_film_at_focus(zemax.surfaces[zemax.surfaces.size() - 2], in);
   if (image.stop) in.refuse(image.line, "STOP", "at the image", "a surface of the lens");
   in.lens.semi_diameters = "of the file: clear apertures, else the widths of the design's beams";
   place.erase(place.begin());

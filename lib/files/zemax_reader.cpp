@@ -21,7 +21,7 @@ namespace {
 using Words = std::span<const std::string_view>;
 using io_detail::in_quotes;
 
-constexpr std::size_t most_surfaces = 10'000;
+constexpr std::size_t most_surfaces = 10'000, most_operands = 100'000;
 
 /// Commands that change nothing of the lens: windows, tolerances of rays, coatings, colours, polarisation.
 constexpr std::array silent{
@@ -117,7 +117,7 @@ class ZemaxReader {
   double unit_ = 1;        ///< mm
   std::size_t field_count_ = 0, wavelength_count_ = 0;
   std::string note_;
-  bool in_configurations_ = false, multi_ = false;
+  bool in_configurations_ = false, unit_given_ = false;
 };
 
 std::span<const ZemaxReader::Command> ZemaxReader::of_file() {
@@ -201,6 +201,7 @@ void ZemaxReader::read(std::string_view text) {
     unknown(all);
   }
   end_note();
+  if (!unit_given_) in_.warn(0, "UNIT", "is missing; lengths are taken as millimetres");
   if (lens_.surfaces.size() < 3) {
     throw Error(in_.where() + ": " + std::to_string(lens_.surfaces.size()) +
                 " surfaces, wanted an object, one or more of the lens, and an image");
@@ -226,6 +227,10 @@ bool ZemaxReader::take(std::span<const Command> commands, Words words) {
 
 void ZemaxReader::unknown(Words words) {
   if (in_configurations_ && words.size() >= 4) {
+    if (lens_.operands.size() >= most_operands) {
+      throw Error(in_.where() + ": more than " + std::to_string(most_operands) +
+                  " values of configurations, wanted fewer");
+    }
     lens_.operands.push_back({line_, std::string(words[0]), whole(words, 1, 0, 100'000), whole(words, 2, 0, 100'000),
                               std::string(words[3])});
     return;
@@ -297,6 +302,7 @@ void ZemaxReader::unit(Words words) {
     set->value *= found->second / unit_;
   }
   unit_ = found->second;
+  unit_given_ = true;
   in_.lens.imported->units = unit_ == 1 ? "mm" : unit_ == 10 ? "cm" : unit_ == 25.4 ? "in" : "m";
 }
 

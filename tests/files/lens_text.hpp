@@ -7,15 +7,9 @@
 
 #include "../message.hpp"
 #include "petzval/files/lens_file.hpp"
+#include "said.hpp"
 
 namespace petzval::testing {
-
-/// A text with one part in place of another, which it must have.
-inline std::string with(std::string text, std::string_view old, std::string_view replacement) {
-  const std::size_t at = text.find(old);
-  if (at == std::string::npos) throw Error("the text has no \"" + std::string(old) + '"');
-  return text.replace(at, old.size(), replacement);
-}
 
 inline Prescription read(const std::string& text) { return parse_lens(text, "x"); }
 

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "petzval/core/error.hpp"
 #include "petzval/files/lens_file.hpp"
 
 namespace petzval::testing {
@@ -23,9 +24,11 @@ inline Prescription read_sample(std::string_view name) {
   return read_prescription(std::filesystem::path(PETZVAL_TEST_SAMPLES) / name);
 }
 
-/// The text with `old` replaced where it stands first.
+/// The text with `old` replaced where it stands first. Throws Error where it does not stand.
 inline std::string with(std::string text, std::string_view old, std::string_view replacement) {
-  return text.replace(text.find(old), old.size(), replacement);
+  const std::size_t at = text.find(old);
+  if (at == std::string::npos) throw Error("the text has no \"" + std::string(old) + '"');
+  return text.replace(at, old.size(), replacement);
 }
 
 }  // namespace petzval::testing

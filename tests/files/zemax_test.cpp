@@ -324,6 +324,22 @@ YFIE 1 2 6 0 0 0 1 1 1 0 0 "" 0
   EXPECT_EQ(compile(near).focus_positions().size(), 2u);
 }
 
+TEST(Zemax, AnImageAtInfinityAndAMissingUnitAreSaid) {
+  const Prescription p = read(with(singlet, "DISZ 48", "DISZ INFINITY"));
+  EXPECT_NEAR(p.surfaces[2].thickness, petzval::first_order(compile(p)).back_focal_distance, 1e-9);
+  EXPECT_NE(warning(p, "DISZ"), "no warning");
+  EXPECT_NE(refusal(with(singlet, "DISZ 4\n", "DISZ INFINITY\n")).find("DISZ is infinite"), std::string::npos);
+  EXPECT_NE(warning(with(singlet, "UNIT MM X W X CM MR CPMM\n", ""), "UNIT"), "no warning");
+}
+
+TEST(Zemax, TheStopOpensAsTheLensZooms) {
+  const std::string text = with(singlet, "ENPD 10", "FNUM 5 0") + "MNUM 2 1\nCRVT 2 1 0.02\nCRVT 2 2 0.03\n";
+  const Prescription p = read(text);
+  for (const int i : {0, 1}) {
+    EXPECT_NEAR(petzval::real_f_number(compile(p, {.configuration = i})), 5, 1e-6) << i;
+  }
+}
+
 TEST(Zemax, EveryCommandIsHonouredOrNamed) {
   EXPECT_EQ(warning(singlet + "XYZZ 1 2 3\n", "XYZZ"), "is not known and is left out");
   EXPECT_EQ(warning(with_line("ABCD 1"), "ABCD"), "is not known and is left out");

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <initializer_list>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "import.hpp"
+
+namespace petzval::inline v0::files_detail {
+
+/// A JSON document of another program, as a tree: Infinity, -Infinity and NaN, which Python writes, are read too, as
+/// strings of these names. Throws Error with the byte for text that is no JSON, for nesting deeper than 64, and for
+/// more than 16 MiB: a tree takes many times the memory of its text.
+nlohmann::json json_tree(std::string_view text, const std::string& where);
+
+/// One object of a tree, and where it stands, for messages.
+struct JsonObject {
+  const nlohmann::json& json;
+  std::string path;
+  Import& in;
+
+  /// The member, or null.
+  const nlohmann::json* find(const char* key) const;
+  /// A number, which may be infinite; refuses anything else. Without it: nothing.
+  std::optional<double> number(const char* key) const;
+  double needed(const char* key) const;
+  std::string text(const char* key) const;  ///< empty where it is absent or null
+  bool flag(const char* key) const;         ///< false where it is absent
+  JsonObject object(const char* key) const;
+  /// Names each key that is neither `used` nor `silent` in a warning.
+  void name_others(std::initializer_list<std::string_view> used) const;
+  [[noreturn]] void refuse(const char* key, const std::string& found, const std::string& wanted) const;
+};
+
+}  // namespace petzval::inline v0::files_detail

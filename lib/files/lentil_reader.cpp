@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lentil_reader.hpp"
+
+#include <array>
+#include <cmath>
+
+#include "core/text.hpp"
+#include "io/json.hpp"
+#include "json_tree.hpp"
+#include "petzval/core/error.hpp"
+#include "text_file.hpp"
+
+namespace petzval::inline v0::files_detail {
+namespace {
+
+constexpr std::size_t most_surfaces = 10'000;
+constexpr std::array<const char*, 3> positions = {"short", "middle", "long"};
+
+class LentilReader {
+ public:
+  explicit LentilReader(Import& in) : in_(in) {}
+  void read(std::string_view text);
+
+ private:
+  void lens(const JsonObject& o);
+  void element(const JsonObject& e);
+  void thickness(const JsonObject& e, SurfaceRow& row);
+
+  Import& in_;
+};
+
+/// One number, or three: of the short, the middle and the long end of a zoom lens.
+void LentilReader::thickness(const JsonObject& e, SurfaceRow& row) {
+  const nlohmann::json* value = e.find("thickness");
+  if (!value || !value->is_array()) {
+    row.thickness = e.needed("thickness");
+    return;
+  }
+  const bool three =
+      value->size() == 3 && (*value)[0].is_number() && (*value)[1].is_number() && (*value)[2].is_number();
+  if (!three) e.refuse("thickness", io_detail::in_quotes(value->dump()), "a number or three");
+  row.thickness = (*value)[0].get<double>();
+  auto& list = in_.lens.configurations;
+  if (list.empty()) {
+    list.resize(3);
+    for (std::size_t i = 0; i < 3; ++i) list[i].name = positions[i];
+  }
+  for (std::size_t i = 0; i < 3; ++i) {
+    SurfaceChange& change = list[i].changes.emplace_back();
+    change.surface = static_cast<int>(in_.lens.surfaces.size());
+    change.thickness = (*value)[i].get<double>();
+  }
+}
+
+void LentilReader::element(const JsonObject& e) {
+  SurfaceRow row;
+  row.radius = e.needed("radius");
+  thickness(e, row);
+  const std::string material = lower(e.text("material")), geometry = lower(e.text("lens-geometry"));
+  const Medium before = in_.lens.surfaces.empty() ? in_.lens.object_space : in_.lens.surfaces.back().medium;
+  row.stop = material == "iris";
+  if (row.stop) {
+    row.medium = before;
+    row.radius = 0;
+  } else if (material != "air") {
+    row.medium.nd = e.needed("ior");
+    if (const double vd = e.number("abbe").value_or(0); vd > 0) row.medium.vd = vd;
+    if (!material.empty() && material != "glass" && material != "none") row.medium.glass = e.text("material");
+  }
+  if (row.radius != 0 && std::abs(row.radius) >= 9999) row.radius = geometry == "planar" ? 0 : row.radius;
+  const double rim = e.number("housing-radius").value_or(0);
+  if (rim > 0) row.semi_diameter = rim;
+  const nlohmann::json* asphere = e.find("aspherical-equation");
+  if (geometry == "aspherical" || (asphere && asphere->is_array())) {
+    e.refuse("lens-geometry", "aspherical", "spherical or planar: the format does not say what its coefficients are");
+  }
+  if (geometry.starts_with("cyl")) {
+    e.refuse("lens-geometry", io_detail::in_quotes(geometry), "spherical or planar surfaces");
+  }
+  e.name_others(
+      {"radius", "thickness", "material", "ior", "abbe", "housing-radius", "lens-geometry", "aspherical-equation"});
+  in_.lens.surfaces.push_back(std::move(row));
+}
+
+void LentilReader::lens(const JsonObject& o) {
+  const nlohmann::json* adjusted = o.find("optical-elements-adjusted");
+  const bool has_adjusted = adjusted && adjusted->is_array() && !adjusted->empty();
+  const char* key = has_adjusted ? "optical-elements-adjusted" : "optical-elements-patent";
+  const nlohmann::json* elements = o.find(key);
+  if (!elements || !elements->is_array()) o.refuse(key, elements ? "no list" : "missing", "a list of surfaces");
+  if (elements->size() > most_surfaces) {
+    throw Error(in_.where() + ": more than " + std::to_string(most_surfaces) + " surfaces, wanted fewer");
+  }
+  if (has_adjusted && o.find("optical-elements-patent")) {
+    in_.warn(0, "optical-elements-patent", "is left out beside optical-elements-adjusted");
+  }
+  for (std::size_t i = 0; i < elements->size(); ++i) {
+    const nlohmann::json& e = (*elements)[i];
+    const std::string path = o.path + '.' + key + '[' + std::to_string(i) + ']';
+    if (!e.is_object()) in_.refuse(0, path, io_detail::in_quotes(e.dump()), "an object");
+    element({e, path, in_});
+  }
+  const auto words = [&](const char* name) {
+    const nlohmann::json* value = o.find(name);
+    return !value ? std::string() : value->is_string() ? value->get<std::string>() : value->dump();
+  };
+  std::string title;
+  for (const char* part : {"company", "product-name", "year"}) {
+    if (const std::string word = words(part); !word.empty()) title += (title.empty() ? "" : " ") + word;
+  }
+  in_.lens.imported->title = title;
+  if (const std::string patent = words("patent-number"); !patent.empty()) in_.lens.source_design = patent;
+  for (const char* note : {"notes", "lens-type", "photographic-description"}) {
+    if (const std::string word = words(note); !word.empty()) in_.lens.imported->notes.push_back(word);
+  }
+  for (const char* name : {"focal-length-mm-raytraced", "focal-length-mm-patent"}) {
+    const nlohmann::json* value = o.find(name);
+    if (value && value->is_number() && !in_.lens.focal_length_mm) in_.lens.focal_length_mm = value->get<double>();
+  }
+  const nlohmann::json* f_number = o.find("fstop");
+  if (f_number && f_number->is_number() && f_number->get<double>() > 0) in_.lens.f_number = f_number->get<double>();
+  in_.lens.semi_diameters = "housing radii";
+  o.name_others({"company", "product-name", "year", "patent-number", "notes", "lens-type", "photographic-description",
+                 "focal-length-mm-raytraced", "focal-length-mm-patent", "fstop", "optical-elements-patent",
+                 "optical-elements-adjusted", "production-status"});
+}
+
+void LentilReader::read(std::string_view text) {
+  const nlohmann::json document = json_tree(text, in_.where());
+  if (!document.is_object()) in_.refuse(0, "file", "no object", "an object");
+  if (document.contains("optical-elements-patent") || document.contains("optical-elements-adjusted")) {
+    return lens({document, "file", in_});
+  }
+  // A database: lenses by their numbers.
+  if (document.size() != 1) {
+    std::string names;
+    for (const auto& [key, value] : document.items()) {
+      if (names.size() < 200) names += (names.empty() ? "" : ", ") + key;
+    }
+    in_.refuse(0, "file", "a database of " + std::to_string(document.size()) + " lenses (" + names + ")",
+               "one lens in a file");
+  }
+  const auto only = document.begin();
+  if (!only->is_object()) in_.refuse(0, only.key(), "no object", "a lens");
+  lens({*only, only.key(), in_});
+}
+
+}  // namespace
+
+bool is_lentil(std::string_view text) {
+  return trimmed(text).starts_with('{') && (text.find("\"optical-elements-patent\"") != std::string_view::npos ||
+                                            text.find("\"optical-elements-adjusted\"") != std::string_view::npos);
+}
+
+void read_lentil(std::string_view text, Import& in) { LentilReader(in).read(text); }
+
+}  // namespace petzval::inline v0::files_detail
