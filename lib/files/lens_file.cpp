@@ -10,6 +10,7 @@
 #include "lentil_reader.hpp"
 #include "opticalbench_reader.hpp"
 #include "optiland_reader.hpp"
+#include "oslo_reader.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/io/lens_json.hpp"
 #include "table_reader.hpp"
@@ -34,9 +35,13 @@ struct Format {
 
 /// In the order in which they are tried: each is sure of what it takes.
 constexpr std::array formats{
-    Format{"zemax", is_zemax, read_zemax},          Format{"opticalbench", is_opticalbench, read_opticalbench},
-    Format{"optiland", is_optiland, read_optiland}, Format{"lentil", is_lentil, read_lentil},
-    Format{"codev", is_codev, read_codev},          Format{"table", is_table, read_table},
+    Format{"zemax", is_zemax, read_zemax},
+    Format{"oslo", is_oslo, read_oslo},
+    Format{"opticalbench", is_opticalbench, read_opticalbench},
+    Format{"optiland", is_optiland, read_optiland},
+    Format{"lentil", is_lentil, read_lentil},
+    Format{"codev", is_codev, read_codev},
+    Format{"table", is_table, read_table},
 };
 
 void refuse_warnings(const Prescription& lens, const std::string& where) {

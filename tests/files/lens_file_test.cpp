@@ -32,18 +32,27 @@ std::string bytes_of(const fs::path& file) {
 TEST(LensFile, TheSamplesOfOtherProgramsHaveTheirFocalLengths) {
   if (!fs::exists(formats)) GTEST_SKIP() << "no samples";
   // Focal lengths by the tables of the same lenses in data/README.md, and of lenses that it lacks by their makers.
-  const std::map<std::string, double> focal_lengths = {
-      {"cooke_triplet.zmx", 50.0213},       {"cooke_triplet_utf16.zmx", 50.0213},
-      {"compact_even_asphere.zmx", 30.806}, {"catadioptric_corrector.zmx", 24.612},
-      {"mangin_photographic.zmx", 999.595}, {"planar_1896_pickups.zmx", 49.389},
-      {"ag_dblgauss.seq", 100.004},         {"landscape_lens.seq", 10.034},
-      {"questar35.seq", 1282.62},           {"dgauss.50mm.dat", 50.358},
-      {"dgauss.axpos.dat", 100.716},        {"dgauss.f1.35.100mm.dat", 100.437},
-      {"fisheye.10mm.dat", 9.991},          {"telephoto.250mm.dat", 249.567},
-      {"wide.22mm.dat", 22.0235},           {"double_gauss_f1.35.txt", 100.437},
-      {"double_gauss_f2.0.txt", 100.716},   {"double_gauss_f1.7_substitute.txt", 99.913}};
+  const std::map<std::string, double> focal_lengths = {{"cooke_triplet.zmx", 50.0213},
+                                                       {"cooke_triplet.len", 50.0213},
+                                                       {"cooke_triplet_utf16.zmx", 50.0213},
+                                                       {"compact_even_asphere.zmx", 30.806},
+                                                       {"catadioptric_corrector.zmx", 24.612},
+                                                       {"mangin_photographic.zmx", 999.595},
+                                                       {"planar_1896_pickups.zmx", 49.389},
+                                                       {"ag_dblgauss.seq", 100.004},
+                                                       {"landscape_lens.seq", 10.034},
+                                                       {"questar35.seq", 1282.62},
+                                                       {"dgauss.50mm.dat", 50.358},
+                                                       {"dgauss.axpos.dat", 100.716},
+                                                       {"dgauss.f1.35.100mm.dat", 100.437},
+                                                       {"fisheye.10mm.dat", 9.991},
+                                                       {"telephoto.250mm.dat", 249.567},
+                                                       {"wide.22mm.dat", 22.0235},
+                                                       {"double_gauss_f1.35.txt", 100.437},
+                                                       {"double_gauss_f2.0.txt", 100.716},
+                                                       {"double_gauss_f1.7_substitute.txt", 99.913}};
   std::size_t known = 0, lenses = 0;
-  for (const char* folder : {"zemax", "codev", "pbrt", "table"}) {
+  for (const char* folder : {"zemax", "codev", "oslo", "pbrt", "table"}) {
     for (const auto& entry : fs::directory_iterator(formats / folder)) {
       const Prescription lens = petzval::read_prescription(entry.path());
       ++lenses;
@@ -55,7 +64,7 @@ TEST(LensFile, TheSamplesOfOtherProgramsHaveTheirFocalLengths) {
     }
   }
   EXPECT_EQ(known, focal_lengths.size());
-  EXPECT_EQ(lenses, 27u);
+  EXPECT_EQ(lenses, 28u);
 }
 
 TEST(LensFile, ASampleCutOffAtAnyByteIsReadOrRefused) {

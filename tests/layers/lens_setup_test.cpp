@@ -103,7 +103,7 @@ TEST(BlurLens, FocusesASingletAndAPrescription) {
   LensFlags singlet;
   singlet.singlet = "100,-100,8,N-BK7", singlet.focus_mm = 3000, singlet.iris.f_number = 8;
   LensFlags file;
-  file.lens_file = std::string(PETZVAL_TEST_DATA) + "/lenses/double_gauss_52mm_f1.8.json", file.focus_mm = 3000;
+  file.lens_file.file = std::string(PETZVAL_TEST_DATA) + "/lenses/double_gauss_52mm_f1.8.json", file.focus_mm = 3000;
   for (const LensFlags& flags : {singlet, file}) {
     const LensRays rays = lens_of(flags, 300, 200).rays(1000, 1);
     EXPECT_FALSE(rays.shift_invariant());
