@@ -149,7 +149,7 @@ std::string to_text(const Report& r) {
   }
   if (const auto& imported = r.loaded.prescription.imported) {
     text << "\nread from " << imported->file << " (" << imported->format << ", lengths in " << imported->units
-         << "); assumed: " << (imported->warnings.empty() ? "nothing" : "") << '\n';
+         << "); assumed:" << (imported->warnings.empty() ? " nothing" : "") << '\n';
     for (const petzval::ImportWarning& w : imported->warnings) {
       text << "  " << (w.line > 0 ? "line " + std::to_string(w.line) + ": " : "") << w.command << ' ' << w.message
            << '\n';

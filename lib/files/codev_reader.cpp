@@ -119,6 +119,7 @@ class CodevReader {
   bool zoomed_values(Words);
   void private_begins(Words) { in_private_ = true; }
   void refused_surface(Words);
+  void refused_edit(Words w) { in_.refuse(line_, w[0], "a change of the lens before it", "the lens as it becomes"); }
   void not_a_shape(Words);
 
   void private_statement(Words);
@@ -148,7 +149,7 @@ class CodevReader {
 
 std::span<const CodevReader::Command> CodevReader::commands() {
   using C = CodevReader;
-  static constexpr std::array<Command, 92> all = {{
+  static constexpr std::array<Command, 95> all = {{
       {"LEN", &C::new_lens},
       {"RDM", &C::radius_mode},
       {"TIT", &C::title},
@@ -237,9 +238,12 @@ std::span<const CodevReader::Command> CodevReader::commands() {
       {"ADY", &C::not_a_shape},
       {"ARO", &C::not_a_shape},
       {"POL", &C::not_a_shape},
-      {"INS", &C::refused_surface},
+      {"INS", &C::refused_edit},
       {"IC", &C::term},
       {"XRX", &C::not_a_shape},
+      {"SCA", &C::refused_edit},
+      {"DEL", &C::refused_edit},
+      {"FLY", &C::refused_edit},
   }};
   return all;
 }
@@ -545,6 +549,11 @@ void CodevReader::statement(std::string_view text) {
 
   // S3 50 2 NBK7: a surface by its number.
   if (const auto at = number_of(w[0]); at && w.size() > 1) {
+    if (*at == 0 && surfaces_.empty()) {
+      std::vector<std::string_view> as_object(w.begin(), w.end());
+      as_object[0] = "SO";
+      return object(as_object);
+    }
     if (static_cast<std::size_t>(*at) == surfaces_.size()) return lens_surface(w);
     CodevSurface& s = numbered(w, w[0]);
     s.shape = value(w, 1);
@@ -706,31 +715,35 @@ void CodevReader::build() {
 }
 
 /// PIM: the image is the paraxial one; the file states where that is, if it was saved so.
-void CodevReader::put_paraxial_image() {
+void CodevReader::put_paraxial_image() try {
   SurfaceRow& last = in_.lens.surfaces.back();
   const double defocus = surfaces_.back().thickness * unit_;
   Prescription p = in_.lens;
   p.imported.reset();
   p.configurations.clear();
-  const Lens lens = compile(p);
+  const double nm =
+      p.design.wavelengths.empty() ? p.reference_wavelength_nm : p.design.wavelengths[p.design.primary_wavelength].nm;
+  const Lens lens = compile(p, std::array{nm}, {.glasses = &in_.glasses(), .missing_glass = MissingGlass::abbe});
   const FirstOrder first = first_order(lens, {}, main_meridian(lens));
   const double object = in_.lens.design.object_distance_mm;
   const double image = paraxial_image_z(lens, -object, {}, main_meridian(lens)) - lens.surfaces().back().vertex_z;
   const double wanted = image + defocus;
   if (!std::isfinite(wanted) || first.afocal) return;
-  // The file's is that of its reference wavelength.
-  if (std::abs(wanted - last.thickness) <= 0.01 * std::abs(first.effective_focal_length)) return;
+  // The digits that files state, and what indices of one catalogue's editions differ by.
+  if (std::abs(wanted - last.thickness) <= 2e-4 * std::abs(first.effective_focal_length)) return;
   in_.warn(paraxial_image_, "PIM",
            "the file states an image distance of " + to_text(last.thickness, 8) + " mm, the paraxial image lies at " +
                to_text(wanted, 8) + " mm, which is taken");
   last.thickness = wanted;
+} catch (const Error& error) {
+  in_.warn(paraxial_image_, "PIM", std::string("is not evaluated: ") + error.what());
 }
 
 void CodevReader::build_zooms() {
   if (zoom_positions_ < 2) return;
   auto& list = in_.lens.configurations;
   list.resize(zoom_positions_);
-  for (std::size_t i = 0; i < list.size(); ++i) list[i].name = std::to_string(i + 1);
+  for (std::size_t i = 0; i < list.size(); ++i) list[i].name = "position " + std::to_string(i + 1);
   for (const CodevZoom& z : zooms_) {
     const bool lens_value = z.what == "thi" || z.what == "rdy" || z.what == "cuy";
     if (!lens_value && z.what != "fno" && z.what != "tit") {
@@ -789,7 +802,7 @@ bool is_codev(std::string_view text) {
   for (Statements statements(text); statements.next() && !(object && surface && image);) {
     const auto first = words(statements.text(), 2);
     if (first.size() < 2) continue;
-    object = object || same(first[0], "SO");
+    object = object || same(first[0], "SO") || same(first[0], "S0");
     surface = surface || (object && (same(first[0], "S") || same(first[0], "S1")));
     image = image || (surface && same(first[0], "SI"));
   }

@@ -12,6 +12,7 @@
 #include "io/json.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/lens/lens.hpp"
+#include "petzval/lint/lint.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "text_file.hpp"
@@ -249,8 +250,8 @@ void Import::mark_a_stop() {
 
 void Import::size_the_stop() {
   const auto stop = std::ranges::find_if(lens.surfaces, [](const SurfaceRow& row) { return row.stop; });
-  if (stop->semi_diameter && !std::isinf(*stop->semi_diameter)) return;
   const auto& aperture = lens.design.aperture;
+  if (stop->semi_diameter && !std::isinf(*stop->semi_diameter)) return compare_the_stop(*stop->semi_diameter);
   if (!aperture || aperture->setting == ApertureSetting::stop_size || !(aperture->value > 0)) {
     warn(0, "stop", "neither the size of the stop nor an aperture is given; the rims limit the beam");
     return;
@@ -277,6 +278,29 @@ void Import::size_the_stop() {
     if (!change->semi_diameter) change->semi_diameter = size;
   }
   stop->semi_diameter = height;
+}
+
+/// A rim of the stop and an aperture of the design may be two sizes of the beam.
+void Import::compare_the_stop(double rim) {
+  const auto& aperture = lens.design.aperture;
+  if (!aperture || aperture->setting == ApertureSetting::stop_size || !(aperture->value > 0)) return;
+  if (aperture->setting == ApertureSetting::f_number) return;  // lint() compares f-numbers
+  const double height = marginal_height_at_the_stop(configured(lens, 0), *aperture);
+  if (!(height > 0) || !std::isfinite(height) || std::abs(height - rim) <= 0.01 * rim) return;
+  warn(0, "stop",
+       "its rim has a semi-diameter of " + to_text(rim, 6) + " mm, the declared " +
+           std::string(name(aperture->setting)) + " of " + to_text(aperture->value, 6) + " wants " +
+           to_text(height, 6) + " mm; the rim is taken");
+}
+
+/// What the file declares and the lens misses, as lint() finds it.
+void Import::compare_the_declared() {
+  using enum FindingKind;
+  for (const Finding& finding : lint(lens)) {
+    const bool declared =
+        finding.kind == focal_length || finding.kind == units || finding.kind == apertures || finding.kind == f_number;
+    if (declared) warn(0, name(finding.kind), finding.message);
+  }
 }
 
 void Import::declare() {
@@ -309,6 +333,11 @@ Prescription Import::finish() {
   validate(lens, where_);
   size_the_stop();
   declare();
+  try {
+    compare_the_declared();
+  } catch (const Error&) {
+    // a lens whose f-number cannot be computed misses none
+  }
   if (left_out_ > 0) {
     origin.warnings.push_back({0, "file", std::to_string(left_out_) + " more warnings are left out"});
   }

@@ -46,6 +46,8 @@ class Import {
   const Glass* find(std::string_view name, std::span<const std::string> catalogues, std::optional<double> nd);
   void mark_a_stop();
   void size_the_stop();
+  void compare_the_stop(double rim);
+  void compare_the_declared();
   void declare();
 
   std::string where_;

@@ -69,8 +69,9 @@ Prescription parse_lens(std::string bytes, const std::string& where, const ReadO
     if (options.strict) refuse_warnings(lens, where);
     return lens;
   }
+  if (trimmed(text).empty()) throw Error(where + ": is empty, wanted " + wanted);
   // Most likely a damaged file of the library's own: its messages name the byte.
-  if (const std::string_view start = trimmed(text); start.starts_with('{') || start.empty()) {
+  if (const std::string_view start = trimmed(text); start.starts_with('{')) {
     return parse_prescription(text, where);
   }
   std::string first_line(trimmed(text.substr(0, text.find_first_of("\r\n"))));

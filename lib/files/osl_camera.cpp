@@ -296,7 +296,7 @@ std::string OslCamera::tables() const {
 /// The part that is the same for all lenses. Its statements are also C++, but for `point`, `vector` and `color`.
 constexpr const char* body = R"OSL(
   vector raster = camera_shader_raster_position();
-  vector random = camera_shader_random_sample();
+  vector places = camera_shader_random_sample();
   throughput = 0.0;
 
   // Focus: between two nodes of inverse distance.
@@ -344,8 +344,8 @@ constexpr const char* body = R"OSL(
   int last = surfaces - 1;
   float last_z = vertex[focus * move + last];
   if (groups_move == 1) last_z += focus_part * (vertex[(focus + 1) * surfaces + last] - last_z);
-  float a = box_low + random[0] * (box_high - box_low);
-  float b = (2.0 * random[1] - 1.0) * box_half;
+  float a = box_low + places[0] * (box_high - box_low);
+  float b = (2.0 * places[1] - 1.0) * box_half;
   float rear_x = a * along_x + b * along_y;
   float rear_y = a * along_y - b * along_x;
   float depth = film_z - last_z;

@@ -171,6 +171,13 @@ std::string_view trimmed(std::string_view text) {
 
 std::optional<double> number(std::string_view word) {
   if (word.starts_with('+')) word.remove_prefix(1);
+  // FORTRAN's exponents: 1.0D+10.
+  std::string with_e;
+  if (const std::size_t d = word.find_first_of("dD"); d != std::string_view::npos && d > 0 && word.size() < 64) {
+    with_e = word;
+    with_e[d] = 'e';
+    word = with_e;
+  }
   double value = 0;
   const auto [end, status] = std::from_chars(word.data(), word.data() + word.size(), value);
   if (status != std::errc() || end != word.data() + word.size() || !std::isfinite(value)) return {};

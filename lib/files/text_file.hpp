@@ -39,7 +39,8 @@ std::vector<std::string_view> words(std::string_view line, std::size_t most = 40
 /// Without blanks and tabs at both ends.
 std::string_view trimmed(std::string_view text);
 
-/// The whole word as a number; nothing if it is none, or not finite. A leading + is allowed, a decimal comma is not.
+/// The whole word as a number; nothing if it is none, or not finite. A leading + and FORTRAN's
+/// exponents (1.0D+10) are allowed, a decimal comma is not.
 std::optional<double> number(std::string_view word);
 
 char lower(char c) noexcept;

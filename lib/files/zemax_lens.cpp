@@ -11,7 +11,9 @@
 #include "core/text.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/lens/lens.hpp"
+#include "petzval/media/glass.hpp"
 #include "petzval/paraxial/first_order.hpp"
+#include "petzval/trace/trace.hpp"
 #include "text_file.hpp"
 
 namespace petzval::inline v0::files_detail {
@@ -293,7 +295,7 @@ void Configurations::build() {
   if (zemax_.configurations < 2) return;
   auto& list = in_.lens.configurations;
   list.resize(static_cast<std::size_t>(zemax_.configurations));
-  for (std::size_t i = 0; i < list.size(); ++i) list[i].name = std::to_string(i + 1);
+  for (std::size_t i = 0; i < list.size(); ++i) list[i].name = "position " + std::to_string(i + 1);
   for (const ZemaxOperand& operand : zemax_.operands) take(operand);
   for (std::size_t i = 0; i < list.size(); ++i) {
     const auto earlier = std::ranges::find(list, list[i].name, &Configuration::name);
@@ -309,30 +311,58 @@ void Configurations::build() {
 
 // --- solves ---------------------------------------------------------------------------------------------------------
 
-/// A thickness at which the paraxial marginal ray has a height: the file's, or the one computed where they differ.
+/// Where the ray of a height, parallel to the axis in front of the lens, crosses the axis behind the last surface.
+std::optional<double> crossing(const Lens& lens, double height) {
+  const double start = -10 - std::abs(height);
+  const auto exit = trace(lens, Ray<double>{{0, height, start}, {0, 0, 1}});
+  const auto& [at, direction] = exit.ray;
+  if (!exit.transmitted() || direction.y == 0) return {};
+  return at.z - at.y / direction.y * direction.z - lens.surfaces().back().vertex_z;
+}
+
+/// MAZH: the thickness behind which the marginal ray, of a zone of the pupil or (zone 0) of first order, is on the
+/// axis. The file's where it is that; the one computed, said in a warning, where it is not.
 void check_marginal_height(const ZemaxSurface& s, std::size_t number, Import& in) {
   const auto [height, zone] = *s.marginal_height;
   SurfaceRow& row = in.lens.surfaces[number];
-  if (height != 0 || !std::isinf(in.lens.design.object_distance_mm)) {
+  const auto not_evaluated = [&] {
     in.warn(s.solve_line, "MAZH", "this marginal height solve is not evaluated; the file's thickness is taken");
-    return;
-  }
+  };
+  const DesignData& design = in.lens.design;
+  if (height != 0 || !std::isinf(design.object_distance_mm)) return not_evaluated();
   Prescription front = in.lens;
   front.surfaces.resize(number + 1);
   front.configurations.clear();
+  for (SurfaceRow& surface : front.surfaces) {
+    surface.semi_diameter.reset();
+    surface.obscuration_semi_diameter.reset();
+  }
   try {
-    const Lens lens = compile(front);
+    const double nm =
+        design.wavelengths.empty() ? front.reference_wavelength_nm : design.wavelengths[design.primary_wavelength].nm;
+    const Lens lens = compile(front, std::array{nm}, {.glasses = &in.glasses(), .missing_glass = MissingGlass::abbe});
     const FirstOrder first = first_order(lens, {}, main_meridian(lens));
-    const double focus = first.back_focal_distance;
-    // The solve is of the primary wavelength, and a zone of the pupil has its own focus.
-    const double tolerance = (zone == 0 ? 0.01 : 0.05) * std::abs(first.effective_focal_length);
-    if (first.afocal || std::abs(focus - row.thickness) <= tolerance) return;
+    if (first.afocal) return not_evaluated();
+    std::optional<double> focus = first.back_focal_distance;
+    if (zone != 0) {
+      using enum ApertureSetting;
+      const auto& set = design.aperture;
+      const double focal_length = std::abs(first.effective_focal_length);
+      const double diameter = !set                                      ? 0
+                              : set->setting == entrance_pupil_diameter ? set->value
+                              : set->setting == f_number                ? focal_length / set->value
+                                                                        : 0;
+      focus = diameter > 0 ? crossing(lens, zone * diameter / 2) : std::nullopt;
+    }
+    if (!focus || !std::isfinite(*focus)) return not_evaluated();
+    // The digits that files state, and what indices of one catalogue's editions differ by.
+    if (std::abs(*focus - row.thickness) <= 2e-4 * std::abs(first.effective_focal_length)) return;
     in.warn(s.solve_line, "MAZH",
-            "the file states " + to_text(row.thickness, 8) + " mm, its solve gives " + to_text(focus, 8) +
+            "the file states " + to_text(row.thickness, 8) + " mm, its solve gives " + to_text(*focus, 8) +
                 " mm, which is taken");
-    row.thickness = focus;
+    row.thickness = *focus;
   } catch (const Error&) {
-    in.warn(s.solve_line, "MAZH", "this marginal height solve cannot be evaluated; the file's thickness is taken");
+    not_evaluated();
   }
 }
 
@@ -365,6 +395,15 @@ void build_lens(ZemaxLens zemax, double unit, Import& in) {
   Rows rows(zemax, unit, in);
   if (object.glass) in.lens.object_space = rows.medium(*object.glass);
   if (object.stop) in.refuse(object.line, "STOP", "at the object", "a surface of the lens");
+  for (const ZemaxSurface& s : zemax.surfaces) {
+    if (s.has_thickness || &s == &image) continue;
+    in.warn(s.line, "DISZ", "is missing for this surface; 0 is taken");
+  }
+  if (image.glass)
+    in.refuse(image.line, "SURF", "the last one and has a glass", "an image behind it: the file is cut off");
+  if (!image.has_thickness) in.warn(image.line, "SURF", "the image is incomplete; the file may be cut off");
+  const auto stops = std::ranges::count_if(zemax.surfaces, &ZemaxSurface::stop);
+  if (stops > 1) in.warn(0, "STOP", "is marked on " + std::to_string(stops) + " surfaces; the first one is taken");
   if (image.curvature != 0) in.warn(image.line, "SURF", "the image is curved; a flat film is taken");
 
   // Light that leaves as a parallel beam has no film.

@@ -214,7 +214,10 @@ void ZemaxReader::read(std::string_view text) {
   if (wavelength_count_ > 0 && design.wavelengths.size() > wavelength_count_) {
     design.wavelengths.resize(wavelength_count_);
   }
-  if (design.primary_wavelength >= design.wavelengths.size()) design.primary_wavelength = 0;
+  if (design.primary_wavelength >= std::max<std::size_t>(design.wavelengths.size(), 1)) {
+    in_.warn(0, "PWAV", "is no number of a wavelength; the first one is taken");
+    design.primary_wavelength = 0;
+  }
   build_lens(std::move(lens_), unit_, in_);
 }
 
@@ -403,6 +406,8 @@ void ZemaxReader::curvature(Words words) {
 }
 
 void ZemaxReader::thickness(Words words) {
+  if (surface().has_thickness) in_.warn(line_, "DISZ", "is given twice for a surface; the last one is taken");
+  surface().has_thickness = true;
   if (words.size() > 1 && same(words[1], "INFINITY")) {
     surface().thickness = std::numeric_limits<double>::infinity();
   } else {

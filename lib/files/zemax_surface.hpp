@@ -33,6 +33,7 @@ struct ZemaxSurface {
   std::string type = "STANDARD";
   double curvature = 0;
   double thickness = 0;  ///< may be infinite
+  bool has_thickness = false;
   double conic = 0;
   std::map<int, double> parameters;  ///< PARM
   std::map<int, double> extra;       ///< XDAT

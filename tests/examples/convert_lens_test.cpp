@@ -15,7 +15,7 @@ namespace {
 
 using ConvertLens = Programs;
 
-const std::string table = "# A singlet 50 mm f/5\n50.6 5.2 1.5168 25.4\n-50.6 1 1 25.4\n0 47 0 9.7\n";
+const std::string table = "# A singlet 50 mm f/5\n50.6 5.2 1.5168 25.4\n-50.6 1 1 25.4\n0 47 0 9.4\n";
 const std::string zemax = R"(MODE SEQ
 NAME Two positions
 UNIT IN X W X CM MR CPMM

@@ -74,7 +74,8 @@ TEST(OpticalBench, EveryWordOfTheFormIsHonouredOrNamed) {
   EXPECT_EQ(s[5].aspheric, (std::vector<AsphereTerm>{{6, 4e-12}}));
   EXPECT_EQ(said(lens), (Said{"7 Unknown: an unknown constant is left out",
                               "30 6: its asphere has a radius of -200.5, [lens data] one of -200, which is taken",
-                              "16 d9: no surface has this distance; it is left out"}));
+                              "16 d9: no surface has this distance; it is left out",
+                              "0 f_number: f-number is 4.50026, declared 4"}));
   ASSERT_EQ(lens.configurations.size(), 3u);
   EXPECT_EQ(lens.configurations[0].name, "far");
   EXPECT_EQ(lens.configurations[1].name, "near");
@@ -101,7 +102,7 @@ TEST(OpticalBench, AMagnificationTellsTheSubject) {
 
 const std::string plain =
     "[descriptive data]\ntitle\tplain\n[variable distances]\nFocal Length\t100\nF-Number\t5\nd2\t97\n[lens data]\n"
-    "1\tAS\t1\t\t19\n2\t50\t5\t1.5\t30\t60\n3\tInfinity\td2\t\t30\n[aspherical data]\n2\t50\t0\t1\t2\t3\t4\t5\n";
+    "1\tAS\t1\t\t20\n2\t50\t5\t1.5\t30\t60\n3\tInfinity\td2\t\t30\n[aspherical data]\n2\t50\t0\t1\t2\t3\t4\t5\n";
 
 std::vector<int> orders(const std::string& constant) {
   const auto lens = parse_lens(with(plain, "[variable", "[constants]\n" + constant + "\n[variable"), "x.txt");
@@ -151,7 +152,7 @@ TEST(OpticalBench, NearPositionsFocusTheZoomPositionThatTheyAreLike) {
   for (const auto& c : lens.configurations) names.push_back(c.name + " < " + c.focus_of.value_or("-"));
   EXPECT_EQ(names, (Said{"50 mm < -", "70 mm < -", "70 mm at 900 mm < 70 mm", "50 mm at 300 mm < 50 mm",
                          "50 mm at 900 mm < 50 mm"}));
-  EXPECT_EQ(said(lens).size(), 3u);
+  EXPECT_EQ(said(lens).size(), 4u);  // the focal length, which the words only declare
   EXPECT_EQ(said(lens)[0],
             "4 d0: the position at 900 mm is taken to focus 70 mm, whose distances are most like its own");
 }
