@@ -97,7 +97,9 @@ void CodevWriter::private_glasses() {
   out_.line("PRV");
   out_.line("PWL " + to_text(c_nm) + ' ' + to_text(d_line_nm) + ' ' + to_text(f_nm));
   bool without_vd = false;
-  for (const auto& [name, medium] : private_) {
+  for (const auto& entry : private_) {
+    const std::string& name = entry.first;
+    const Medium& medium = entry.second;
     const auto at = [&](double nm) {
       const Glass* found = out_.glass(medium);
       if (found) return medium.nd + refractive_index(*found, nm) - refractive_index(*found, d_line_nm);
