@@ -4,17 +4,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <span>
 #include <utility>
 #include <vector>
 
+#include "codev_lens.hpp"
 #include "core/text.hpp"
 #include "io/json.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/lens/lens.hpp"
-#include "petzval/paraxial/first_order.hpp"
 #include "statements.hpp"
 #include "text_file.hpp"
 
@@ -25,43 +23,6 @@ using Words = std::span<const std::string_view>;
 using io_detail::in_quotes;
 
 constexpr std::size_t most_surfaces = 10'000;
-constexpr double endless = 1e10;
-
-/// One surface of a .seq as the file has it: lengths in its unit, the first number a radius or a curvature.
-struct CodevSurface {
-  int line = 0;
-  double shape = 0;
-  double thickness = 0;
-  std::string glass{};
-  bool mirror = false, stop = false;
-  double conic = 0;
-  std::vector<AsphereTerm> aspheric{};
-  std::optional<double> aperture{}, edge{}, obscuration{};
-  std::string label{};
-  bool cylinder_x = false, cylinder_y = false;
-};
-
-/// PRV: a glass of the file itself, by its indices at wavelengths.
-struct PrivateGlass {
-  std::string name;
-  std::vector<double> indices;
-};
-
-/// PIK: a value of a surface that is another's times a factor.
-struct CodevPickup {
-  int line = 0;
-  std::string what{}, of{};
-  int surface = 0, from = 0;
-  double scale = 1;
-};
-
-/// A value of a surface in a zoom position.
-struct CodevZoom {
-  int line = 0;
-  std::string what{};
-  int surface = 0;
-  std::vector<std::string> values{};
-};
 
 class CodevReader {
  public:
@@ -87,7 +48,7 @@ class CodevReader {
   std::optional<int> number_of(std::string_view word) const;
 
   void new_lens(Words) {}
-  void radius_mode(Words w) { curvatures_ = w.size() > 1 && same(w[1], "N"); }
+  void radius_mode(Words w) { lens_.curvatures = w.size() > 1 && same(w[1], "N"); }
   void title(Words w) { in_.lens.imported->title = w.size() > 1 ? std::string(w[1].substr(0, 4096)) : std::string(); }
   void dimension(Words);
   void aperture(Words);
@@ -105,7 +66,7 @@ class CodevReader {
   void conic(Words w) { surface(w).conic = needed(w, 1); }
   void term(Words);
   void asphere_begins(Words w) { surface(w); }
-  void paraxial_image(Words) { paraxial_image_ = line_; }
+  void paraxial_image(Words) { lens_.paraxial_image = line_; }
   void tilt(Words);
   void label(Words w) { surface(w).label = w.size() > 1 ? std::string(w[1].substr(0, 200)) : std::string(); }
   void thickness(Words);
@@ -123,28 +84,11 @@ class CodevReader {
   void not_a_shape(Words);
 
   void private_statement(Words);
-  void evaluate_pickups();
-  double* member(CodevSurface& s, std::string_view what);
-  void choose_shapes();
-  void build();
-  Medium medium(const CodevSurface& s);
-  void build_zooms();
-  void put_paraxial_image();
 
   Import& in_;
   int line_ = 0;
-  double unit_ = 1;
-  std::optional<bool> curvatures_;
-  std::vector<CodevSurface> surfaces_;
-  bool ended_ = false, unit_given_ = false;
-  std::vector<PrivateGlass> private_;
-  std::vector<double> private_nm_;
+  CodevLens lens_;
   bool in_private_ = false;
-  std::vector<CodevPickup> pickups_;
-  std::size_t zoom_positions_ = 1;
-  std::vector<CodevZoom> zooms_;
-  int paraxial_image_ = 0;
-  std::vector<std::array<double, 4>> vignetting_;  ///< VUY VLY VUX VLX of each field
 };
 
 std::span<const CodevReader::Command> CodevReader::commands() {
@@ -256,7 +200,7 @@ constexpr std::array<std::string_view, 34> silent = {"INI",  "CCY", "THC", "KC",
 
 std::optional<int> CodevReader::number_of(std::string_view word) const {
   if (word.size() < 2 || lower(word[0]) != 's') return {};
-  if (same(word, "SI")) return static_cast<int>(surfaces_.size()) - 1;
+  if (same(word, "SI")) return static_cast<int>(lens_.surfaces.size()) - 1;
   if (same(word, "SO")) return 0;
   const auto number = files_detail::number(word.substr(1));
   if (!number || *number < 0 || *number > 1e6 || *number != std::floor(*number)) return {};
@@ -265,13 +209,13 @@ std::optional<int> CodevReader::number_of(std::string_view word) const {
 
 CodevSurface& CodevReader::numbered(Words w, std::string_view word) {
   const auto at = number_of(word);
-  if (at && static_cast<std::size_t>(*at) < surfaces_.size()) return surfaces_[static_cast<std::size_t>(*at)];
+  if (at && static_cast<std::size_t>(*at) < lens_.surfaces.size()) return lens_.surfaces[static_cast<std::size_t>(*at)];
   in_.refuse(line_, w[0], "of " + in_quotes(word), "a surface that the file has by then");
 }
 
 CodevSurface& CodevReader::surface(Words w) {
-  if (surfaces_.empty()) in_.refuse(line_, w[0], "in front of the first surface", "it behind one");
-  return surfaces_.back();
+  if (lens_.surfaces.empty()) in_.refuse(line_, w[0], "in front of the first surface", "it behind one");
+  return lens_.surfaces.back();
 }
 
 void CodevReader::dimension(Words w) {
@@ -280,9 +224,9 @@ void CodevReader::dimension(Words w) {
   const auto found = std::ranges::find_if(units, [&](const auto& u) { return same(u.first, word); });
   if (found == units.end())
     in_.refuse(line_, "DIM", w.size() > 1 ? in_quotes(w[1]) : "empty", "M (mm), C (cm) or I (inch)");
-  unit_ = found->second;
-  in_.lens.imported->units = unit_ == 1 ? "mm" : unit_ == 10 ? "cm" : "in";
-  unit_given_ = true;
+  lens_.unit = found->second;
+  in_.lens.imported->units = lens_.unit == 1 ? "mm" : lens_.unit == 10 ? "cm" : "in";
+  lens_.unit_given = true;
 }
 
 void CodevReader::aperture(Words w) {
@@ -342,19 +286,19 @@ void CodevReader::vignetting(Words w) {
   static constexpr std::array<std::string_view, 4> names = {"VUY", "VLY", "VUX", "VLX"};
   const auto which = std::ranges::find_if(names, [&](auto name) { return same(name, w[0]); }) - names.begin();
   const std::size_t count = std::min<std::size_t>(w.size() - 1, 1000);
-  if (vignetting_.size() < count) vignetting_.resize(count);
-  for (std::size_t i = 0; i < count; ++i) vignetting_[i][static_cast<std::size_t>(which)] = value(w, i + 1);
+  if (lens_.vignetting.size() < count) lens_.vignetting.resize(count);
+  for (std::size_t i = 0; i < count; ++i) lens_.vignetting[i][static_cast<std::size_t>(which)] = value(w, i + 1);
 }
 
 void CodevReader::object(Words w) {
-  if (!surfaces_.empty()) in_.refuse(line_, "SO", "given twice", "one object in front of all surfaces");
+  if (!lens_.surfaces.empty()) in_.refuse(line_, "SO", "given twice", "one object in front of all surfaces");
   lens_surface(w);
 }
 
 void CodevReader::lens_surface(Words w) {
-  if (ended_) in_.refuse(line_, w[0], "behind SI, the image", "it in front");
-  if (surfaces_.empty() && !same(w[0], "SO")) in_.refuse(line_, w[0], "in front of SO, the object", "SO first");
-  if (surfaces_.size() >= most_surfaces + 2) {
+  if (lens_.ended) in_.refuse(line_, w[0], "behind SI, the image", "it in front");
+  if (lens_.surfaces.empty() && !same(w[0], "SO")) in_.refuse(line_, w[0], "in front of SO, the object", "SO first");
+  if (lens_.surfaces.size() >= most_surfaces + 2) {
     throw Error(in_.where() + ": more than " + std::to_string(most_surfaces) + " surfaces, wanted fewer");
   }
   CodevSurface s{.line = line_, .shape = value(w, 1), .thickness = value(w, 2)};
@@ -366,12 +310,12 @@ void CodevReader::lens_surface(Words w) {
     }
   }
   for (std::size_t i = 4; i < w.size(); ++i) in_.warn(line_, w[0], "its word " + in_quotes(w[i]) + " is left out");
-  surfaces_.push_back(std::move(s));
+  lens_.surfaces.push_back(std::move(s));
 }
 
 void CodevReader::image(Words w) {
   lens_surface(w);
-  ended_ = true;
+  lens_.ended = true;
 }
 
 void CodevReader::circle(Words w) {
@@ -433,9 +377,9 @@ void CodevReader::shape(Words w) {
   const bool named = w.size() > 1 && number_of(w[1]);
   const double given = needed(w, named ? 2 : 1);
   const bool is_curvature = same(w[0], "CUY");
-  if (!curvatures_) curvatures_ = is_curvature;
+  if (!lens_.curvatures) lens_.curvatures = is_curvature;
   const double other = given == 0 ? 0 : 1 / given;
-  (named ? numbered(w, w[1]) : surface(w)).shape = is_curvature == *curvatures_ ? given : other;
+  (named ? numbered(w, w[1]) : surface(w)).shape = is_curvature == *lens_.curvatures ? given : other;
 }
 
 void CodevReader::glass(Words w) {
@@ -480,10 +424,10 @@ void CodevReader::pickup(Words w) {
   }
   if (!numbers.empty()) p.scale = numbers[0];
   if (numbers.size() > 1 && numbers[1] != 0) in_.warn(line_, "PIK", "its offset is left out");
-  if (pickups_.size() >= most_surfaces) {
+  if (lens_.pickups.size() >= most_surfaces) {
     throw Error(in_.where() + ": more than " + std::to_string(most_surfaces) + " pickups, wanted fewer");
   }
-  pickups_.push_back(std::move(p));
+  lens_.pickups.push_back(std::move(p));
 }
 
 void CodevReader::zoom(Words w) {
@@ -492,7 +436,7 @@ void CodevReader::zoom(Words w) {
     if (!(count >= 1 && count <= 1000 && count == std::floor(count))) {
       in_.refuse(line_, "ZOO", to_text(count), "1 to 1000 positions");
     }
-    zoom_positions_ = static_cast<std::size_t>(count);
+    lens_.zoom_positions = static_cast<std::size_t>(count);
     return;
   }
   if (w.size() < 3)
@@ -505,15 +449,16 @@ void CodevReader::zoomed(Words w) {
   std::size_t first = 1;
   if (const auto at = number_of(w[1])) z.surface = *at, first = 2;
   for (std::size_t i = first; i < std::min<std::size_t>(w.size(), 1002); ++i) z.values.emplace_back(w[i]);
-  if (zooms_.size() >= most_surfaces) {
+  if (lens_.zooms.size() >= most_surfaces) {
     throw Error(in_.where() + ": more than " + std::to_string(most_surfaces) + " zoomed values, wanted fewer");
   }
-  zooms_.push_back(std::move(z));
+  lens_.zooms.push_back(std::move(z));
 }
 
 bool CodevReader::zoomed_values(Words w) {
   // THI S3 1 2 3, with as many values as there are positions.
-  if (zoom_positions_ < 2 || w.size() < 2 || !number_of(w[1]) || w.size() - 2 != zoom_positions_) return false;
+  if (lens_.zoom_positions < 2 || w.size() < 2 || !number_of(w[1]) || w.size() - 2 != lens_.zoom_positions)
+    return false;
   zoomed(w);
   return true;
 }
@@ -522,12 +467,12 @@ void CodevReader::private_statement(Words w) {
   if (same(w[0], "END")) {
     in_private_ = false;
   } else if (same(w[0], "PWL")) {
-    private_nm_.clear();
-    for (std::size_t i = 1; i < std::min<std::size_t>(w.size(), 100); ++i) private_nm_.push_back(value(w, i));
+    lens_.private_nm.clear();
+    for (std::size_t i = 1; i < std::min<std::size_t>(w.size(), 100); ++i) lens_.private_nm.push_back(value(w, i));
   } else {
     PrivateGlass glass{std::string(w[0]), {}};
     for (std::size_t i = 1; i < std::min<std::size_t>(w.size(), 100); ++i) glass.indices.push_back(value(w, i));
-    if (private_.size() < 10'000) private_.push_back(std::move(glass));
+    if (lens_.private_glasses.size() < 10'000) lens_.private_glasses.push_back(std::move(glass));
   }
 }
 
@@ -549,12 +494,12 @@ void CodevReader::statement(std::string_view text) {
 
   // S3 50 2 NBK7: a surface by its number.
   if (const auto at = number_of(w[0]); at && w.size() > 1) {
-    if (*at == 0 && surfaces_.empty()) {
+    if (*at == 0 && lens_.surfaces.empty()) {
       std::vector<std::string_view> as_object(w.begin(), w.end());
       as_object[0] = "SO";
       return object(as_object);
     }
-    if (static_cast<std::size_t>(*at) == surfaces_.size()) return lens_surface(w);
+    if (static_cast<std::size_t>(*at) == lens_.surfaces.size()) return lens_surface(w);
     CodevSurface& s = numbered(w, w[0]);
     s.shape = value(w, 1);
     if (w.size() > 2) s.thickness = value(w, 2);
@@ -566,233 +511,12 @@ void CodevReader::statement(std::string_view text) {
   in_.warn(line_, w[0], "is not known and is left out");
 }
 
-double* CodevReader::member(CodevSurface& s, std::string_view what) {
-  if (what == "rdy" || what == "cuy") return &s.shape;
-  if (what == "thi") return &s.thickness;
-  if (what == "k") return &s.conic;
-  return nullptr;
-}
-
-void CodevReader::evaluate_pickups() {
-  for (const CodevPickup& p : pickups_) {
-    const auto inside = [&](int at) { return at >= 0 && static_cast<std::size_t>(at) < surfaces_.size(); };
-    if (!inside(p.surface) || !inside(p.from)) {
-      in_.refuse(p.line, "PIK", "of a surface that does not exist", "surfaces of the file");
-    }
-    CodevSurface& to = surfaces_[static_cast<std::size_t>(p.surface)];
-    CodevSurface& from = surfaces_[static_cast<std::size_t>(p.from)];
-    if (p.what == "gla") {
-      to.glass = from.glass;
-      continue;
-    }
-    double* value = member(to, p.what);
-    const double* source = member(from, p.of.empty() ? p.what : p.of);
-    if (!value || !source) {
-      in_.warn(p.line, "PIK", "of " + p.what + " is not evaluated; the value that the file states is taken");
-      continue;
-    }
-    const double scale = value == &to.shape && !*curvatures_ && p.scale != 0 ? 1 / p.scale : p.scale;
-    const double wanted = *source * scale;
-    if (std::abs(*value - wanted) > 1e-9 * std::abs(wanted)) {
-      in_.warn(
-          p.line, "PIK",
-          "the file states " + to_text(*value, 12) + ", the pickup gives " + to_text(wanted, 12) + ", which is taken");
-      *value = wanted;
-    }
-  }
-}
-
-/// Without RDM CODE V reads curvatures. Files of other programs mean radii: no surface can be as steep as they would
-/// be.
-void CodevReader::choose_shapes() {
-  if (curvatures_) return;
-  const auto& aperture = in_.lens.design.aperture;
-  const bool has_pupil = aperture && aperture->setting == ApertureSetting::entrance_pupil_diameter;
-  bool impossible = false;
-  for (const CodevSurface& s : surfaces_) {
-    const double height = s.aperture.value_or(has_pupil ? aperture->value / 4 : 0);
-    impossible = impossible || std::abs(s.shape) * height >= 1 || std::abs(s.shape * s.thickness) > 50;
-  }
-  curvatures_ = !impossible;
-  in_.warn(0, "RDM",
-           impossible ? "is missing; the first number of a surface is taken as its radius, as it would be too "
-                        "steep by its curvature"
-                      : "is missing; the first number of a surface is taken as its curvature");
-}
-
-Medium CodevReader::medium(const CodevSurface& s) {
-  std::string_view name = s.glass;
-  if (name.empty() || same(name, "AIR")) return {};
-  const auto own = std::ranges::find_if(private_, [&](const PrivateGlass& g) { return same(g.name, name); });
-  if (own != private_.end()) {
-    // The index nearest to the d line; V_d from those nearest to F and C.
-    const auto at = [&](double nm) -> std::optional<double> {
-      std::optional<double> best;
-      double distance = 3;
-      for (std::size_t i = 0; i < std::min(private_nm_.size(), own->indices.size()); ++i) {
-        if (std::abs(private_nm_[i] - nm) < distance) distance = std::abs(private_nm_[i] - nm), best = own->indices[i];
-      }
-      return best;
-    };
-    const auto nd = at(587.5618), nf = at(486.1327), nc = at(656.2725);
-    if (!nd) {
-      in_.refuse(s.line, s.glass, "a private glass without an index at the d line", "one near 587.56 nm under PWL");
-    }
-    Medium medium{.glass = own->name, .nd = *nd};
-    if (nf && nc && *nf != *nc) medium.vd = (*nd - 1) / (*nf - *nc);
-    in_.warn(s.line, s.glass,
-             medium.vd ? "is known by n_d and V_d, from its private indices"
-                       : "is known by n_d alone, from its private indices");
-    return medium;
-  }
-  // 1.5168:64.17, n_d and V_d
-  if (const std::size_t colon = name.find(':'); colon != std::string_view::npos) {
-    const auto nd = number(name.substr(0, colon)), vd = number(name.substr(colon + 1));
-    if (nd && vd && *nd >= 1 && *vd > 0) return {.nd = *nd, .vd = *vd};
-  }
-  if (const auto code = medium_of_code(name)) return *code;
-  if (const auto nd = number(name); nd && *nd >= 1 && *nd <= 5) return {.nd = *nd};
-  std::vector<std::string> catalogues;
-  if (const std::size_t maker = name.find_last_of('_'); maker != std::string_view::npos) {
-    catalogues.emplace_back(name.substr(maker + 1));
-    return in_.glass(s.line, name.substr(0, maker), catalogues, {}, {});
-  }
-  return in_.glass(s.line, name, catalogues, {}, {});
-}
-
-void CodevReader::build() {
-  if (surfaces_.size() < 3 || !ended_) {
-    throw Error(in_.where() + ": " + std::to_string(surfaces_.size()) + " surfaces" + (ended_ ? "" : " and no SI") +
-                ", wanted SO, one S or more, and SI");
-  }
-  if (!unit_given_) in_.warn(0, "DIM", "is missing; lengths are taken as millimetres");
-  choose_shapes();
-  evaluate_pickups();
-  DesignData& design = in_.lens.design;
-  if (design.aperture && design.aperture->setting == ApertureSetting::entrance_pupil_diameter)
-    design.aperture->value *= unit_;
-  if (design.field_kind != FieldKind::angle_deg) {
-    for (DesignField& f : design.fields) f.x *= unit_, f.y *= unit_;
-  }
-  for (std::size_t i = 0; i < std::min(vignetting_.size(), design.fields.size()); ++i) {
-    const auto [upper, lower_y, right, left] = vignetting_[i];
-    design.fields[i].compress_y = (upper + lower_y) / 2;
-    design.fields[i].decentre_y = (lower_y - upper) / 2;
-    design.fields[i].compress_x = (right + left) / 2;
-    design.fields[i].decentre_x = (left - right) / 2;
-  }
-  const double object = surfaces_.front().thickness;
-  design.object_distance_mm = std::abs(object) >= endless ? std::numeric_limits<double>::infinity() : object * unit_;
-  if (design.aperture && design.aperture->setting == ApertureSetting::working_f_number &&
-      !std::isfinite(design.object_distance_mm)) {
-    design.aperture->setting = ApertureSetting::f_number;
-  }
-  in_.lens.object_space = medium(surfaces_.front());
-  if (surfaces_.back().shape != 0) in_.warn(surfaces_.back().line, "SI", "the image is curved; a flat film is taken");
-
-  Medium before = in_.lens.object_space;
-  for (const CodevSurface& s : std::span(surfaces_).subspan(1, surfaces_.size() - 2)) {
-    SurfaceRow& row = in_.lens.surfaces.emplace_back();
-    row.radius = s.shape == 0 ? 0 : *curvatures_ ? unit_ / s.shape : s.shape * unit_;
-    row.thickness = s.thickness * unit_;
-    row.conic = s.conic;
-    for (const AsphereTerm& t : s.aspheric)
-      row.aspheric.push_back({t.order, t.coefficient * std::pow(unit_, 1 - t.order)});
-    row.stop = s.stop;
-    row.mirror = s.mirror;
-    row.medium = s.mirror ? before : medium(s);
-    if (s.aperture || s.edge) row.semi_diameter = (s.aperture ? *s.aperture : *s.edge) * unit_;
-    if (s.obscuration) row.obscuration_semi_diameter = *s.obscuration * unit_;
-    if (!s.label.empty()) row.comment = s.label;
-    if (s.cylinder_x) row.curved_in = Section::x;
-    if (s.cylinder_y && s.shape != 0) row.curved_in = Section::y;
-    before = row.medium;
-  }
-  // The thickness of the image surface is its distance from where the last surface put it.
-  in_.lens.surfaces.back().thickness += surfaces_.back().thickness * unit_;
-  if (paraxial_image_ > 0) put_paraxial_image();
-  build_zooms();
-}
-
-/// PIM: the image is the paraxial one; the file states where that is, if it was saved so.
-void CodevReader::put_paraxial_image() try {
-  SurfaceRow& last = in_.lens.surfaces.back();
-  const double defocus = surfaces_.back().thickness * unit_;
-  Prescription p = in_.lens;
-  p.imported.reset();
-  p.configurations.clear();
-  const double nm =
-      p.design.wavelengths.empty() ? p.reference_wavelength_nm : p.design.wavelengths[p.design.primary_wavelength].nm;
-  const Lens lens = compile(p, std::array{nm}, {.glasses = &in_.glasses(), .missing_glass = MissingGlass::abbe});
-  const FirstOrder first = first_order(lens, {}, main_meridian(lens));
-  const double object = in_.lens.design.object_distance_mm;
-  const double image = paraxial_image_z(lens, -object, {}, main_meridian(lens)) - lens.surfaces().back().vertex_z;
-  const double wanted = image + defocus;
-  if (!std::isfinite(wanted) || first.afocal) return;
-  // The digits that files state, and what indices of one catalogue's editions differ by.
-  if (std::abs(wanted - last.thickness) <= 2e-4 * std::abs(first.effective_focal_length)) return;
-  in_.warn(paraxial_image_, "PIM",
-           "the file states an image distance of " + to_text(last.thickness, 8) + " mm, the paraxial image lies at " +
-               to_text(wanted, 8) + " mm, which is taken");
-  last.thickness = wanted;
-} catch (const Error& error) {
-  in_.warn(paraxial_image_, "PIM", std::string("is not evaluated: ") + error.what());
-}
-
-void CodevReader::build_zooms() {
-  if (zoom_positions_ < 2) return;
-  auto& list = in_.lens.configurations;
-  list.resize(zoom_positions_);
-  for (std::size_t i = 0; i < list.size(); ++i) list[i].name = "position " + std::to_string(i + 1);
-  for (const CodevZoom& z : zooms_) {
-    const bool lens_value = z.what == "thi" || z.what == "rdy" || z.what == "cuy";
-    if (!lens_value && z.what != "fno" && z.what != "tit") {
-      in_.warn(z.line, "ZOO", "of " + z.what + " is left out; all positions have the value of the first");
-      continue;
-    }
-    if (z.values.size() != zoom_positions_) {
-      in_.refuse(z.line, "ZOO", "given " + std::to_string(z.values.size()) + " values",
-                 std::to_string(zoom_positions_) + ", one for each position");
-    }
-    const int last = static_cast<int>(in_.lens.surfaces.size()) - 1, surface = z.surface - 1;
-    const bool of_object = z.what == "thi" && z.surface == 0;
-    if (lens_value && !of_object && (surface < 0 || surface > last)) {
-      in_.refuse(z.line, "ZOO", "of surface " + std::to_string(z.surface), "a surface of the lens");
-    }
-    for (std::size_t i = 0; i < list.size(); ++i) {
-      if (z.what == "tit") {
-        if (!z.values[i].empty()) list[i].name = z.values[i];
-        continue;
-      }
-      const double value = in_.number(z.line, "ZOO", z.values[i]);
-      if (z.what == "fno") {
-        list[i].f_number = value;
-      } else if (of_object) {
-        if (value < endless) list[i].subject_distance_mm = value * unit_;
-      } else {
-        auto& changes = list[i].changes;
-        auto known = std::ranges::find(changes, surface, &SurfaceChange::surface);
-        if (known == changes.end()) known = changes.emplace(changes.end());
-        SurfaceChange& change = *known;
-        change.surface = surface;
-        if (z.what == "thi") {
-          const double defocus = surface == last ? surfaces_.back().thickness : 0;
-          change.thickness = (value + defocus) * unit_;
-        } else {
-          const bool curvature = z.what == "cuy";
-          change.radius = value == 0 ? 0 : curvature ? unit_ / value : value * unit_;
-        }
-      }
-    }
-  }
-}
-
 void CodevReader::read(std::string_view text) {
   for (Statements statements(text); statements.next();) {
     line_ = statements.line();
     statement(statements.text());
   }
-  build();
+  build_codev(std::move(lens_), in_);
 }
 
 }  // namespace
