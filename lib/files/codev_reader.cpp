@@ -490,7 +490,11 @@ void CodevReader::statement(std::string_view text) {
   auto found = find(name);
   if (found == commands().end() && name.size() > 3) found = find(std::string_view(name).substr(0, 3));
   if (name == "STOP") found = find("STO");
-  if (found != commands().end()) return (this->*found->take)(w);
+  if (found != commands().end()) {
+    std::vector<std::string_view> known = w;
+    known[0] = found->name;  // what a command compares itself with
+    return (this->*found->take)(known);
+  }
 
   // S3 50 2 NBK7: a surface by its number.
   if (const auto at = number_of(w[0]); at && w.size() > 1) {

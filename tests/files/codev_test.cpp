@@ -169,6 +169,12 @@ TEST(Codev, EveryWordIsHonouredOrNamed) {
   EXPECT_NE(warning(without, "stop"), "no warning");
 }
 
+TEST(Codev, ThreeLettersOfAWordAreEnough) {
+  const Prescription p = read(with(with(singlet, "EPD 10", "EPDIAMETER 12"), "VUY 0 0.2", "VUYX 0 0.2"));
+  EXPECT_EQ(p.design.aperture, (petzval::DesignAperture{petzval::ApertureSetting::entrance_pupil_diameter, 12}));
+  EXPECT_NEAR(p.design.fields[1].compress_y, 0.3, 1e-15);
+}
+
 TEST(Codev, ATextCutOffAtAnyByteIsReadOrRefused) {
   int refused = 0;
   for (std::size_t length = 0; length < singlet.size(); ++length)
