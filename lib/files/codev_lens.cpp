@@ -192,9 +192,7 @@ void CodevBuilder::put_paraxial_image() try {
   Prescription p = in_.lens;
   p.imported.reset();
   p.configurations.clear();
-  const double nm =
-      p.design.wavelengths.empty() ? p.reference_wavelength_nm : p.design.wavelengths[p.design.primary_wavelength].nm;
-  const Lens lens = compile(p, std::array{nm}, {.glasses = &in_.glasses(), .missing_glass = MissingGlass::abbe});
+  const Lens lens = in_.at_primary_wavelength(p);
   const FirstOrder first = first_order(lens, {}, main_meridian(lens));
   const double object = in_.lens.design.object_distance_mm;
   const double image = paraxial_image_z(lens, -object, {}, main_meridian(lens)) - lens.surfaces().back().vertex_z;
@@ -241,11 +239,7 @@ void CodevBuilder::build_zooms() {
       } else if (of_object) {
         if (value < codev_endless) list[i].subject_distance_mm = value * lens_.unit;
       } else {
-        auto& changes = list[i].changes;
-        auto known = std::ranges::find(changes, surface, &SurfaceChange::surface);
-        if (known == changes.end()) known = changes.emplace(changes.end());
-        SurfaceChange& change = *known;
-        change.surface = surface;
+        SurfaceChange& change = change_of(list[i], surface);
         if (z.what == "thi") {
           const double defocus = surface == last ? lens_.surfaces.back().thickness : 0;
           change.thickness = (value + defocus) * lens_.unit;

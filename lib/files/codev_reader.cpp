@@ -480,12 +480,8 @@ void CodevReader::statement(std::string_view text) {
   const auto w = words(text);
   if (w.empty()) return;
   if (in_private_) return private_statement(w);
-  const std::string name = [&] {
-    // TITLE is TIT, LENS is LEN: three letters are enough of longer words.
-    std::string word = lower(w[0]);
-    for (char& c : word) c = c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
-    return word;
-  }();
+  // TITLE is TIT, LENS is LEN: three letters are enough of longer words.
+  const std::string name = upper(w[0]);
   const auto find = [&](std::string_view word) { return std::ranges::find(commands(), word, &Command::name); };
   auto found = find(name);
   if (found == commands().end() && name.size() > 3) found = find(std::string_view(name).substr(0, 3));

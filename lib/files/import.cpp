@@ -241,6 +241,13 @@ Medium Import::glass(int line, std::string_view name, std::span<const std::strin
              (alike.empty() ? std::string() : " (names like it: " + alike + ")"));
 }
 
+Lens Import::at_primary_wavelength(const Prescription& rows) {
+  const DesignData& design = lens.design;
+  const double nm =
+      design.wavelengths.empty() ? rows.reference_wavelength_nm : design.wavelengths[design.primary_wavelength].nm;
+  return compile(rows, std::array{nm}, {.glasses = &glasses(), .missing_glass = MissingGlass::abbe});
+}
+
 void Import::mark_a_stop() {
   const auto marked = std::ranges::find_if(lens.surfaces, [](const SurfaceRow& row) { return row.stop; });
   if (marked != lens.surfaces.end()) return;
@@ -270,12 +277,8 @@ void Import::size_the_stop() {
     if (c.f_number && own.setting == ApertureSetting::f_number) own.value = *c.f_number;
     const double size = marginal_height_at_the_stop(configured(lens, i), own);
     if (c.stop || !(size > 0 && std::isfinite(size)) || std::abs(size - height) <= 1e-9 * height) continue;
-    auto change = std::ranges::find(c.changes, surface, &SurfaceChange::surface);
-    if (change == c.changes.end()) {
-      change = c.changes.emplace(change);
-      change->surface = surface;
-    }
-    if (!change->semi_diameter) change->semi_diameter = size;
+    SurfaceChange& change = change_of(c, surface);
+    if (!change.semi_diameter) change.semi_diameter = size;
   }
   stop->semi_diameter = height;
 }
@@ -343,6 +346,15 @@ Prescription Import::finish() {
   }
   validate(lens, where_);
   return std::move(lens);
+}
+
+SurfaceChange& change_of(Configuration& configuration, int surface) {
+  auto& changes = configuration.changes;
+  const auto known = std::ranges::find(changes, surface, &SurfaceChange::surface);
+  if (known != changes.end()) return *known;
+  SurfaceChange& change = changes.emplace_back();
+  change.surface = surface;
+  return change;
 }
 
 std::optional<Medium> medium_of_code(std::string_view code) {

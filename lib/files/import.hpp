@@ -9,6 +9,7 @@
 #include <string>
 #include <string_view>
 
+#include "petzval/lens/lens.hpp"
 #include "petzval/media/glass.hpp"
 #include "petzval/prescription/prescription.hpp"
 
@@ -38,6 +39,9 @@ class Import {
   const GlassCatalogue& glasses();
   const std::string& where() const noexcept { return where_; }
 
+  /// Rows compiled for the primary wavelength of the design, with the n_d/V_d model where a glass is unknown.
+  Lens at_primary_wavelength(const Prescription& rows);
+
   /// What is common to all: rims of a stop that has none by the aperture of the design, nominal data by the fields, a
   /// name; validated. Returns the prescription.
   Prescription finish();
@@ -56,6 +60,9 @@ class Import {
   std::multimap<std::string, const Glass*> by_name_;  ///< by bare name, in the order of the catalogue
   std::size_t left_out_ = 0;
 };
+
+/// What a configuration changes of a surface: nothing yet, if it was not asked for before.
+SurfaceChange& change_of(Configuration& configuration, int surface);
 
 /// nd and vd of six digits and more: "517642", "517.642", "620410.603236": n_d - 1 and V_d without the point.
 std::optional<Medium> medium_of_code(std::string_view code);

@@ -107,8 +107,7 @@ class OsloReader {
 
 void OsloReader::take(int line, std::string_view text) {
   const Words w = words(text, 1024);
-  std::string command(w[0]);
-  for (char& c : command) c = c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+  const std::string command = upper(w[0]);
   if (take_general(line, command, w)) return;
   if (ended_) {
     // Rays, variables and merit functions follow the lens.
@@ -248,8 +247,7 @@ void OsloReader::take_pickup(int line, const Words& w, OsloSurface& s) {
   if (!(surface >= 0 && surface < own && surface == std::floor(surface))) {
     in_.refuse(line, "PK", "of surface " + to_text(surface), "a surface before it");
   }
-  OsloPickup pickup{line, std::string(w[1]), static_cast<int>(surface), w.size() > 3 ? value(line, w, 3) : 0};
-  for (char& c : pickup.what) c = c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+  OsloPickup pickup{line, upper(w[1]), static_cast<int>(surface), w.size() > 3 ? value(line, w, 3) : 0};
   s.pickups.push_back(std::move(pickup));
 }
 

@@ -45,6 +45,7 @@ std::optional<double> number(std::string_view word);
 
 char lower(char c) noexcept;
 std::string lower(std::string_view text);
+std::string upper(std::string_view text);
 bool same(std::string_view a, std::string_view b) noexcept;  ///< but for the case of ASCII letters
 
 /// Characters that some formats cannot have in a name: blanks and quotes become underscores.

@@ -5,6 +5,9 @@
 
 namespace petzval::inline v0::files_detail {
 
+namespace {
+
+/// The rows in the first configuration.
 Prescription first_rows(const Prescription& lens) {
   if (lens.configurations.empty()) return lens;
   Prescription rows = configured(lens, 0);
@@ -12,6 +15,8 @@ Prescription first_rows(const Prescription& lens) {
   rows.configurations = lens.configurations;
   return rows;
 }
+
+}  // namespace
 
 Writer::Writer(const Prescription& lens, const GlassCatalogue* glasses)
     : where_(lens.name.empty() ? std::string("lens") : lens.name), glasses_(glasses) {

@@ -37,7 +37,4 @@ class Writer {
   std::vector<ImportWarning> losses_;
 };
 
-/// The rows in the first configuration.
-Prescription first_rows(const Prescription& lens);
-
 }  // namespace petzval::inline v0::files_detail

@@ -40,7 +40,6 @@ class Pickups {
     for (std::size_t i = 0; i < surfaces_.size(); ++i) {
       ZemaxSurface& s = surfaces_[i];
       if (s.curvature_pickup) take(i, *s.curvature_pickup, "CURV", &ZemaxSurface::curvature);
-      if (s.conic_pickup) take(i, *s.conic_pickup, "CONI", &ZemaxSurface::conic);
       if (s.thickness_pickup) take(i, *s.thickness_pickup, "DISZ", &ZemaxSurface::thickness);
       if (s.thickness_sum) complete(i, *s.thickness_sum, "TCOM", false);
       if (s.position) complete(i, *s.position, "TOLE", true);
@@ -54,20 +53,18 @@ class Pickups {
     in_.refuse(line, command, "picked up from surface " + std::to_string(surface), "a surface before it");
   }
 
+  /// The value of a pickup or solve; the file's digits where they agree with it.
   void set(int line, const char* command, double& value, double wanted) const {
-    if (!agree(value, wanted)) {
-      in_.warn(line, command,
-               "the file states " + to_text(value, 12) + ", its pickup or solve gives " + to_text(wanted, 12) +
-                   ", which is taken");
-    }
+    if (agree(value, wanted)) return;
+    in_.warn(line, command,
+             "the file states " + to_text(value, 12) + ", its pickup or solve gives " + to_text(wanted, 12) +
+                 ", which is taken");
     value = wanted;
   }
 
   void take(std::size_t i, const ZemaxPickup& pickup, const char* command, double ZemaxSurface::*member) {
-    const double wanted = source(i, pickup.line, command, pickup.surface).*member * pickup.scale + pickup.offset;
-    double& value = surfaces_[i].*member;
-    if (agree(value, wanted)) return;  // keep the digits of the file
-    set(pickup.line, command, value, wanted);
+    const double picked = source(i, pickup.line, command, pickup.surface).*member;
+    set(pickup.line, command, surfaces_[i].*member, picked * pickup.scale + pickup.offset);
   }
 
   /// The thickness that makes the sum of two, or of all from one on, the total.
@@ -77,8 +74,7 @@ class Pickups {
     for (auto k = static_cast<std::size_t>(sum.surface); k < i; ++k) {
       if (all || k == static_cast<std::size_t>(sum.surface)) rest -= surfaces_[k].thickness;
     }
-    double& value = surfaces_[i].thickness;
-    if (!agree(value, rest)) set(sum.line, command, value, rest);
+    set(sum.line, command, surfaces_[i].thickness, rest);
   }
 
   void take_glass(std::size_t i) {
@@ -248,12 +244,7 @@ SurfaceChange& Configurations::change(Configuration& c, const ZemaxOperand& oper
   if (found == place_.end()) {
     in_.refuse(operand.line, operand.name, "of surface " + std::to_string(operand.surface), "a surface of the lens");
   }
-  const int surface = static_cast<int>(found - place_.begin());
-  const auto same_surface = std::ranges::find(c.changes, surface, &SurfaceChange::surface);
-  if (same_surface != c.changes.end()) return *same_surface;
-  c.changes.emplace_back();
-  c.changes.back().surface = surface;
-  return c.changes.back();
+  return change_of(c, static_cast<int>(found - place_.begin()));
 }
 
 void Configurations::take(const ZemaxOperand& operand) {
@@ -338,9 +329,7 @@ void check_marginal_height(const ZemaxSurface& s, std::size_t number, Import& in
     surface.obscuration_semi_diameter.reset();
   }
   try {
-    const double nm =
-        design.wavelengths.empty() ? front.reference_wavelength_nm : design.wavelengths[design.primary_wavelength].nm;
-    const Lens lens = compile(front, std::array{nm}, {.glasses = &in.glasses(), .missing_glass = MissingGlass::abbe});
+    const Lens lens = in.at_primary_wavelength(front);
     const FirstOrder first = first_order(lens, {}, main_meridian(lens));
     if (first.afocal) return not_evaluated();
     std::optional<double> focus = first.back_focal_distance;

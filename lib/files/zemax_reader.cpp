@@ -57,14 +57,14 @@ class ZemaxReader {
   double length(Words words, std::size_t at) const { return value(words, at) * unit_; }
   int whole(Words words, std::size_t at, int least, int most) const;
   ZemaxSurface& surface() { return lens_.surfaces.back(); }
-  std::string rest(Words words) const;
-  void fields(Words words, double DesignField::*member, double scale);
+  std::string rest() const;
+  void fields(Words words, double DesignField::*member);
   void wavelength(std::size_t number, double micrometres, double weight);
   void aperture(Words words, ApertureSetting setting, double scale);
 
   // Commands of the file.
   void mode(Words);
-  void title(Words) { in_.lens.imported->title = rest({}); }
+  void title(Words) { in_.lens.imported->title = rest(); }
   void note(Words);
   void end_note();
   void unit(Words);
@@ -75,14 +75,14 @@ class ZemaxReader {
   void environment(Words);
   void catalogues(Words);
   void field_type(Words);
-  void x_fields(Words w) { fields(w, &DesignField::x, 1); }
-  void y_fields(Words w) { fields(w, &DesignField::y, 1); }
-  void field_weights(Words w) { fields(w, &DesignField::weight, 1); }
-  void decentre_x(Words w) { fields(w, &DesignField::decentre_x, 1); }
-  void decentre_y(Words w) { fields(w, &DesignField::decentre_y, 1); }
-  void compress_x(Words w) { fields(w, &DesignField::compress_x, 1); }
-  void compress_y(Words w) { fields(w, &DesignField::compress_y, 1); }
-  void field_angles(Words w) { fields(w, &DesignField::angle_deg, 1); }
+  void x_fields(Words w) { fields(w, &DesignField::x); }
+  void y_fields(Words w) { fields(w, &DesignField::y); }
+  void field_weights(Words w) { fields(w, &DesignField::weight); }
+  void decentre_x(Words w) { fields(w, &DesignField::decentre_x); }
+  void decentre_y(Words w) { fields(w, &DesignField::decentre_y); }
+  void compress_x(Words w) { fields(w, &DesignField::compress_x); }
+  void compress_y(Words w) { fields(w, &DesignField::compress_y); }
+  void field_angles(Words w) { fields(w, &DesignField::angle_deg); }
   void wavelength_row(Words);
   void wavelength_list(Words);
   void wavelength_weights(Words);
@@ -104,7 +104,7 @@ class ZemaxReader {
   void decentred_aperture(Words);
   void other_aperture(Words);
   void stop(Words) { surface().stop = true; }
-  void comment(Words) { surface().comment = rest({}); }
+  void comment(Words) { surface().comment = rest(); }
   void thickness_pickup(Words);
   void marginal_height(Words);
   void thickness_sum(Words);
@@ -253,17 +253,17 @@ int ZemaxReader::whole(Words words, std::size_t at, int least, int most) const {
 }
 
 /// What stands behind the command.
-std::string ZemaxReader::rest(Words) const {
+std::string ZemaxReader::rest() const {
   const std::string_view line = trimmed(text_);
   const std::string_view behind = trimmed(line.substr(std::min(line.find_first_of(" \t"), line.size())));
   return std::string(behind.substr(0, 4096));
 }
 
-void ZemaxReader::fields(Words words, double DesignField::*member, double scale) {
+void ZemaxReader::fields(Words words, double DesignField::*member) {
   auto& list = in_.lens.design.fields;
   const std::size_t count = std::min<std::size_t>(words.size() - 1, 1000);
   if (list.size() < count) list.resize(count);
-  for (std::size_t i = 0; i < count; ++i) list[i].*member = value(words, i + 1) * scale;
+  for (std::size_t i = 0; i < count; ++i) list[i].*member = value(words, i + 1);
 }
 
 void ZemaxReader::aperture(Words words, ApertureSetting setting, double scale) {
@@ -275,10 +275,10 @@ void ZemaxReader::mode(Words words) {
   in_.refuse(line_, "MODE", words.size() > 1 ? in_quotes(words[1]) : "empty", "SEQ, a sequential lens");
 }
 
-void ZemaxReader::note(Words words) {
+void ZemaxReader::note(Words) {
   // "NOTE 0 text" goes on where the line before ended, "NOTE 4" ends a paragraph.
   constexpr std::size_t longest = 65'536;
-  const std::string text = rest(words);
+  const std::string text = rest();
   if (text.starts_with("0")) {
     if (note_.size() < longest) note_ += text.substr(std::min<std::size_t>(2, text.size()));
   } else {

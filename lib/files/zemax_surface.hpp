@@ -43,8 +43,7 @@ struct ZemaxSurface {
   double semi_diameter = 0;
   bool fixed_semi_diameter = false;  ///< the user's, not the width of the design's beams
   std::optional<double> aperture, obscuration;
-  std::optional<ZemaxPickup> curvature_pickup, conic_pickup, thickness_pickup;
-  std::map<int, ZemaxPickup> parameter_pickups;
+  std::optional<ZemaxPickup> curvature_pickup, thickness_pickup;
   std::optional<std::array<double, 2>> marginal_height;  ///< MAZH: height and zone of the pupil
   std::optional<ZemaxPickup> thickness_sum, position;    ///< TCOM, TOLE: offset is the total
   int solve_line = 0;

@@ -14,11 +14,6 @@ namespace {
 
 using namespace files_detail;
 
-std::string upper(std::string text) {
-  for (char& c : text) c = c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
-  return text;
-}
-
 /// Refuses line breaks: what follows one would be a command.
 const std::string& one_line(const Writer& out, const std::string& text) {
   if (text.find_first_of("\r\n") == std::string::npos) return text;
