@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "petzval/core/instruction_set.hpp"
 
+#include <algorithm>
 #include <cstddef>
+#include <cstdlib>
 
 namespace petzval::inline v0 {
 
@@ -14,15 +16,29 @@ std::string_view name(InstructionSet set) noexcept {
   return "unknown";
 }
 
+namespace {
+
+constexpr InstructionSet all[] = {InstructionSet::baseline, InstructionSet::avx2, InstructionSet::avx512};
+
+/// How many of them the environment allows: all where it says nothing.
+[[maybe_unused]] std::size_t allowed() noexcept {
+  const char* widest = std::getenv("PETZVAL_INSTRUCTION_SET");
+  if (!widest || !*widest) return std::size(all);
+  const auto found =
+      std::find_if(std::begin(all), std::end(all), [&](InstructionSet set) { return name(set) == widest; });
+  return found == std::end(all) ? 1 : static_cast<std::size_t>(found - std::begin(all)) + 1;
+}
+
+}  // namespace
+
 std::span<const InstructionSet> instruction_sets() noexcept {
-  static constexpr InstructionSet all[] = {InstructionSet::baseline, InstructionSet::avx2, InstructionSet::avx512};
 #if defined(__x86_64__)
   static const std::size_t count = [] {
     __builtin_cpu_init();
     const bool avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
     const bool avx512 = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
                         __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl");
-    return std::size_t{1} + (avx2 ? 1 : 0) + (avx2 && avx512 ? 1 : 0);
+    return std::min(allowed(), std::size_t{1} + (avx2 ? 1 : 0) + (avx2 && avx512 ? 1 : 0));
   }();
   return {all, count};
 #else

@@ -3,7 +3,12 @@
 
 #include <fcntl.h>
 #include <sys/stat.h>
+#if defined(_WIN32)
+#include <io.h>
+#include <process.h>
+#else
 #include <unistd.h>
+#endif
 
 #include <algorithm>
 #include <bit>
@@ -27,6 +32,33 @@ void check(bool done) {
   if (!done) throw std::system_error(errno, std::generic_category());
 }
 
+/// What the two kinds of systems call by different names. All return what write(2) and its like do, and set errno.
+#if defined(_WIN32)
+
+using Mode = int;
+int open_file(const fs::path& file, int flags, Mode mode) {
+  return ::_wopen(file.c_str(), flags | _O_BINARY | _O_NOINHERIT, mode & (_S_IREAD | _S_IWRITE));
+}
+int sync(int descriptor) { return ::_commit(descriptor); }
+std::optional<Mode> mode_of(const fs::path&) { return {}; }  // files have lists of rights, which folders hand on
+void set_mode(int, Mode) {}
+int remove_file(const fs::path& file) { return ::_wunlink(file.c_str()); }
+
+#else
+
+using Mode = ::mode_t;
+int open_file(const fs::path& file, int flags, Mode mode) { return ::open(file.c_str(), flags | O_CLOEXEC, mode); }
+int sync(int descriptor) { return ::fsync(descriptor); }
+std::optional<Mode> mode_of(const fs::path& file) {
+  struct stat status {};
+  if (::stat(file.c_str(), &status) != 0) return {};
+  return status.st_mode & 0777;
+}
+void set_mode(int descriptor, Mode mode) { static_cast<void>(::fchmod(descriptor, mode)); }
+int remove_file(const fs::path& file) { return ::unlink(file.c_str()); }
+
+#endif
+
 /// An open file.
 class OpenFile {
  public:
@@ -42,7 +74,7 @@ class OpenFile {
   void write(std::string_view bytes) const {
     constexpr std::size_t most = std::size_t{1} << 30;  // some systems refuse more in one call
     while (!bytes.empty()) {
-      const auto count = ::write(descriptor_, bytes.data(), std::min(bytes.size(), most));
+      const auto count = ::write(descriptor_, bytes.data(), static_cast<unsigned>(std::min(bytes.size(), most)));
       check(count >= 0 || errno == EINTR);
       if (count > 0) bytes.remove_prefix(static_cast<std::size_t>(count));
     }
@@ -64,12 +96,12 @@ class NewFile {
   NewFile(const NewFile&) = delete;
   NewFile& operator=(const NewFile&) = delete;
   ~NewFile() {
-    if (!name_.empty()) ::unlink(name_.c_str());
+    if (!name_.empty()) remove_file(name_);
   }
 
   void write(std::string_view bytes) {
     file_.write(bytes);
-    check(::fsync(file_.descriptor()) == 0 || errno == EINVAL);  // not every file system can
+    check(sync(file_.descriptor()) == 0 || errno == EINVAL);  // not every file system can
     file_.close();
   }
 
@@ -80,16 +112,14 @@ class NewFile {
 
  private:
   int created(const fs::path& old) {
-    struct stat status {};
-    const bool known = ::stat(old.c_str(), &status) == 0;
-    const mode_t mode = known ? status.st_mode & 0777 : 0666;
+    const std::optional<Mode> known = mode_of(old);
     const std::string prefix = ".petzval-" + std::to_string(::getpid()) + '-';
     for (int i = 0;; ++i) {
       name_ = old.parent_path() / (prefix + std::to_string(i));
-      const int descriptor = ::open(name_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
+      const int descriptor = open_file(name_, O_WRONLY | O_CREAT | O_EXCL, known.value_or(0666));
       if (descriptor < 0 && errno == EEXIST) continue;
       check(descriptor >= 0);
-      if (known) ::fchmod(descriptor, mode);  // the mask took bits from it
+      if (known) set_mode(descriptor, *known);  // the mask took bits from it
       return descriptor;
     }
   }
@@ -117,7 +147,7 @@ void write_file(std::string_view bytes, const fs::path& file) {
       replacement.write(bytes);
       replacement.replace(*target);
     } else {
-      OpenFile out(::open(file.c_str(), O_WRONLY | O_CLOEXEC));
+      OpenFile out(open_file(file, O_WRONLY, 0));
       check(out.descriptor() >= 0);
       out.write(bytes);
       out.close();

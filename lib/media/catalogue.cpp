@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+#if !defined(_WIN32)
 #include <dirent.h>
+#endif
 
 #include <algorithm>
 #include <cerrno>
@@ -52,6 +54,22 @@ const Glass* nearest_named(std::span<const Glass> glasses, std::string_view name
   return nearest != candidates.end() && std::abs(nearest->nd - nd) <= most ? &*nearest : nullptr;
 }
 
+#if defined(_WIN32)
+
+/// Of the files in a folder.
+std::vector<std::string> names_in(const std::filesystem::path& directory) {
+  std::vector<std::string> names;
+  std::error_code failed;
+  for (std::filesystem::directory_iterator entry(directory, failed), end; !failed && entry != end;
+       entry.increment(failed)) {
+    names.push_back(entry->path().filename().string());
+  }
+  if (failed) throw Error(directory.string() + ": " + failed.message() + ", wanted a folder of glass tables");
+  return names;
+}
+
+#else
+
 struct CloseFolder {
   void operator()(DIR* folder) const noexcept { ::closedir(folder); }
 };
@@ -72,6 +90,8 @@ std::vector<std::string> names_in(const std::filesystem::path& directory) {
   }
   return names;
 }
+
+#endif
 
 }  // namespace
 

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#if __has_include(<dlfcn.h>)
+#if defined(_WIN32)
+#include <windows.h>
+#elif __has_include(<dlfcn.h>)
 #include <dlfcn.h>
 #endif
 
+#include <array>
 #include <system_error>
 
 #include "petzval/core/error.hpp"
@@ -11,20 +14,38 @@
 namespace petzval::inline v0 {
 namespace {
 
-/// The file this code was loaded from: the shared library, or the program it was linked into.
-std::filesystem::path own_module() {
+const char anchor = 0;  ///< An address in the file this code was loaded from.
+
+/// The name of that file, as the system tells it.
+#if defined(_WIN32)
+std::filesystem::path loaded_from() {
+  HMODULE module = nullptr;
+  GetModuleHandleExW(GET_MODULE_HANDLE_EX_FLAG_FROM_ADDRESS | GET_MODULE_HANDLE_EX_FLAG_UNCHANGED_REFCOUNT,
+                     reinterpret_cast<LPCWSTR>(&anchor), &module);
+  std::array<wchar_t, 32768> name{};  // the longest path that Windows has
+  return std::wstring(name.data(), GetModuleFileNameW(module, name.data(), static_cast<DWORD>(name.size())));
+}
+#else
+std::filesystem::path loaded_from() {
   std::string name;
 #if __has_include(<dlfcn.h>)
-  static const char anchor = 0;
   Dl_info info{};
   if (dladdr(&anchor, &info) != 0 && info.dli_fname != nullptr) name = info.dli_fname;
 #endif
   // A bare name was looked up in PATH; the kernel knows the result.
-  if (name.find('/') == std::string::npos) name = "/proc/self/exe";
+  return name.find('/') == std::string::npos ? "/proc/self/exe" : name;
+}
+#endif
+
+/// The shared library, or the program it was linked into.
+std::filesystem::path own_module() {
+  const std::filesystem::path name = loaded_from();
   std::error_code failed;
   const auto file = std::filesystem::canonical(name, failed);
-  if (failed)
-    throw Error("data directory: " + name + ": " + failed.message() + ", wanted the file of the loaded library");
+  if (failed) {
+    throw Error("data directory: " + name.string() + ": " + failed.message() +
+                ", wanted the file of the loaded library");
+  }
   return file;
 }
 

@@ -3,7 +3,7 @@
 // their hashes are constants. After an intended change of the arithmetic or of a lens in the table, the failing test
 // prints the new table:
 //
-//   build/tests/trace/trace_batch_bits_test --gtest_filter='*Hash*'
+//   build/tests/bits/bits_tests --gtest_filter='BatchBits.*Hash*'
 #include <gtest/gtest.h>
 
 #include <iomanip>
@@ -11,27 +11,27 @@
 #include <string>
 #include <vector>
 
-#include "batches.hpp"
+#include "../trace/batches.hpp"
+#include "hash.hpp"
 
 namespace {
 
 using namespace testing_batches;
 
-/// FNV-1a over 64-bit words of rays, fates and surfaces.
+/// Of rays, fates and surfaces.
 template <class T>
 std::uint64_t hash(const Answer<T>& answer) {
-  std::uint64_t h = 0xcbf29ce484222325u;
-  const auto take = [&](std::uint64_t word) { h = (h ^ word) * 0x100000001b3u; };
+  testing_bits::Hash h;
   for (std::size_t i = 0; i < answer.fates.size(); ++i) {
     const Ray<T> ray = answer.rays[i];
     for (int k = 0; k < 3; ++k) {
-      take(bits(ray.origin[k]));
-      take(bits(ray.direction[k]));
+      h.take(ray.origin[k]);
+      h.take(ray.direction[k]);
     }
-    take(static_cast<std::uint64_t>(answer.fates[i]));
-    take(static_cast<std::uint64_t>(answer.surfaces[i]));
+    h.take(static_cast<std::uint64_t>(answer.fates[i]));
+    h.take(static_cast<std::uint64_t>(answer.surfaces[i]));
   }
-  return h;
+  return h.value();
 }
 
 struct Row {

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+// Blurred pictures have the bits of a constant where the baseline alone is used (PETZVAL_INSTRUCTION_SET=baseline).
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "hash.hpp"
+#include "petzval/blur/gather.hpp"
+#include "petzval/blur/layers.hpp"
+#include "petzval/blur/lens_rays.hpp"
+#include "petzval/core/instruction_set.hpp"
+#include "petzval/core/units.hpp"
+
+namespace petzval {
+namespace {
+
+/// Two boards with stripes before a wall, from integers alone: the same on every machine.
+LayerSet boards(const LensRays& rays) {
+  const PeelPlan plan = plan_peel(rays, 1000, 8000);
+  LayerSet layers;
+  layers.peel(plan, 3, [&](int layer, std::span<const float>, const LayerPlanes& out) {
+    std::size_t written = 0;
+    const int columns = plan.camera.layer_columns(), rows = plan.camera.layer_rows();
+    for (int row = 0; row < rows; ++row) {
+      for (int column = 0; column < columns; ++column) {
+        const auto pixel = static_cast<std::size_t>(row * columns + column);
+        const bool near = column % 60 < 25 && row % 50 < 35, middle = (column + 2 * row) % 80 < 50;
+        const float depths[] = {1000, 2500, 8000};
+        int surface = -1;
+        for (int skip = layer, k = 0; k < 3; ++k) {
+          if ((k == 0 && !near) || (k == 1 && !middle)) continue;
+          if (skip-- == 0) surface = k;
+        }
+        if (surface < 0) continue;
+        const float stripe = (column / 4 + row / 4 + surface) % 2 ? 0.75f : 0.25f;
+        out.inverse_depth[pixel] = 1 / depths[surface];
+        out.red[pixel] = stripe, out.green[pixel] = 0.5f * stripe, out.blue[pixel] = 1 - stripe, out.alpha[pixel] = 1;
+        ++written;
+      }
+    }
+    return written;
+  });
+  return layers;
+}
+
+std::uint64_t hash(const Blurred& picture) {
+  testing_bits::Hash h;
+  for (const float value : picture.rgba) h.take(value);
+  for (const float value : picture.missed) h.take(value);
+  return h.value();
+}
+
+TEST(GatherBits, AreThoseOfTheTable) {
+  if (instruction_sets().size() > 1) GTEST_SKIP() << "wider sets have bits of their own";
+  const LayerCamera camera = layer_camera(120, 90, radians(15));
+  const LensRays same =
+      LensRays::thin(camera, {.radius_mm = 20, .inverse_focus = 1 / 2000.0}, vogel_points(31), {.nearest_mm = 1000});
+  const LensRays varied = LensRays::thin(camera,
+                                         {.radius_mm = 20,
+                                          .focus =
+                                              [](const Vec2<double>& raster) {
+                                                return FocusAt{(1 + 0.4 * raster.y / 90) / 2000.0, 1};
+                                              }},
+                                         vogel_points(31), {.nearest_mm = 1000});
+  EXPECT_EQ(hash(gather(boards(same), same, {.path = GatherPath::shift_invariant})), 0xc6d7992d4136cecfu);
+  EXPECT_EQ(hash(gather(boards(varied), varied, {.path = GatherPath::coherent})), 0x10843956971fa68du);
+  EXPECT_EQ(hash(gather(boards(varied), varied, {.threads = 2, .path = GatherPath::general})), 0x10843956971fa68du);
+}
+
+}  // namespace
+}  // namespace petzval
