@@ -1,0 +1,48 @@
+#!/bin/sh
+# SPDX-License-Identifier: Apache-2.0
+# Compares what two commits install: the binary interface of the libraries and the list of files.
+#
+#   sh tests/abi.sh OLD [NEW]      commits, tags or branches; NEW is HEAD where it is not named
+#
+# Prints what changed. The exit status is 0 where programs that were linked with OLD run with NEW, 1 where they may not: then the
+# version wants another MINOR (lib/README.md, Versions).
+set -eu
+root=$(CDPATH= cd -- "$(dirname -- "$0")/.." && pwd)
+. "$root/cmake/build.sh"
+[ $# -ge 1 ] || { echo "usage: sh tests/abi.sh OLD [NEW]" >&2; exit 2; }
+
+need $library_packages git abigail-tools
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+
+# installed SIDE COMMIT: the libraries of a commit with their debug information, under $work/SIDE/usr.
+installed() {
+  commit=$(git -C "$root" rev-parse --verify --quiet "$2^{commit}") || { echo "tests/abi.sh: found $2, wanted a commit" >&2; exit 2; }
+  mkdir -p "$work/$1/source"
+  git -C "$root" archive "$commit" | tar -x -C "$work/$1/source"
+  (root=$work/$1/source BUILD_DIR=$work/$1/build
+    build -DCMAKE_BUILD_TYPE=Debug -DPETZVAL_BUILD_TESTS=OFF -DPETZVAL_BUILD_EXAMPLES=OFF)
+  cmake --install "$work/$1/build" --prefix "$work/$1/usr" >"$work/$1/log"
+  (cd "$work/$1/usr" && find . -type f -o -type l) | sort >"$work/$1/files"
+}
+installed old "$1"
+installed new "${2:-HEAD}"
+
+changed=0
+echo "== Installed files, old and new"
+removed=$(comm -23 "$work/old/files" "$work/new/files")
+diff "$work/old/files" "$work/new/files" || true
+[ -z "$removed" ] || changed=1
+for library in "$work"/old/usr/lib/*/libpetzval-*.so "$work"/old/usr/lib/libpetzval-*.so; do
+  [ -e "$library" ] || continue
+  name=${library#"$work/old/"}
+  echo "== $(basename "$library")"
+  [ -e "$work/new/$name" ] || { changed=1; continue; }
+  status=0
+  abidiff --headers-dir1 "$work/old/usr/include" --headers-dir2 "$work/new/usr/include" --drop-private-types \
+    "$library" "$work/new/$name" || status=$?
+  # Bits of the status (abidiff's manual): 1 and 2 a failure, 4 a change, 8 one that breaks programs.
+  [ $((status & 3)) -eq 0 ] || exit 2
+  [ $((status & 8)) -eq 0 ] || changed=1
+done
+exit $changed
