@@ -75,7 +75,9 @@ FirstOrder first_order(const Lens& lens, Wavelength wavelength, Meridian meridia
   const double n = result.object_index = signed_index(lens, 0, wavelength);
   const double n_image = result.image_index = signed_index(lens, count, wavelength);
 
-  result.afocal = !(std::abs(m.c) > 1e-12 * contributions);
+  // A focal length beyond 1e100 mm is infinite too, and so is one of a matrix beyond the range of double.
+  const bool in_range = std::isfinite(m.a) && std::isfinite(m.b) && std::isfinite(m.c) && std::isfinite(m.d);
+  result.afocal = !(in_range && std::abs(m.c) > std::max(1e-12 * contributions, 1e-100));
   if (result.afocal) {
     result.effective_focal_length = infinity;
     result.front_focal_z = result.front_principal_z = result.front_nodal_z = result.front_focal_distance = -infinity;

@@ -228,6 +228,19 @@ TEST(FirstOrder, OfAWeakLensIsNotTakenForAfocal) {
   EXPECT_NEAR(data.effective_focal_length, 2e9, 1e-3);
 }
 
+TEST(FirstOrder, BeyondTheRangeOfLengthsIsAfocal) {
+  for (const double r : {1e101, 1.7e308}) EXPECT_TRUE(first_order(compile(element(1.5, r, -r, 5))).afocal) << r;
+  EXPECT_FALSE(first_order(compile(element(1.5, 1e99, -1e99, 5))).afocal);
+
+  Prescription steep;  // powers of 1e12 and distances of 1e9, again and again
+  steep.name = "steep";
+  steep.surfaces.assign(40, {.radius = 1e-12, .thickness = 1e9, .medium = {.nd = 1.5}});
+  for (std::size_t i = 0; i < 40; i += 2) steep.surfaces[i].medium.nd = 1;
+  const FirstOrder data = first_order(compile(steep));
+  EXPECT_TRUE(data.afocal);
+  expect_no_nan(data);
+}
+
 TEST(FirstOrder, IsNeverNaN) {
   for (const double r : {1e-12, 1e-9, 1e12, 1e300, 1e308}) {
     for (const double t : {0.0, 1e-9, 1e9}) {

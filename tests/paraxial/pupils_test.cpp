@@ -139,6 +139,12 @@ TEST(Pupils, OfAStopWithoutARimAreThoseOfALensWithoutAStop) {
   }
 }
 
+TEST(Pupils, OfAClosedStopOnTheFilmHaveNoCone) {
+  Prescription p = testing::open_singlet(0);
+  p.surfaces.back().thickness = 0;
+  EXPECT_EQ(film_side_f_number(compile(p)), infinity);
+}
+
 TEST(Pupils, OfAClosedStopAreEmpty) {
   const Lens lens = with_semi_diameter(data_lens("double_gauss_100mm_f1.35"), 5, 0);
   EXPECT_EQ(pupils(lens).entrance.diameter, 0);

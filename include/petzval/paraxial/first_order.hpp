@@ -53,9 +53,9 @@ PETZVAL_API RayMatrix ray_matrix_to(const Lens& lens, std::size_t surface, Wavel
 /// The first-order data of a lens: all z in the lens frame, lengths and distances signed, all in mm.
 ///
 /// power = sum of h_i phi_i over the surfaces, h_i the height of a ray that enters parallel to the axis at height 1 and
-/// phi_i the power of the surface. If it is less than 1e-12 of the sum of |h_i phi_i|, the lens is afocal: power is 0,
-/// the focal length infinite, and the focal, principal and nodal points are at infinity (front -inf, rear +inf). Never
-/// NaN.
+/// phi_i the power of the surface. If it is less than 1e-12 of the sum of |h_i phi_i|, or less than 1e-100 / mm, the
+/// lens is afocal: power is 0, the focal length infinite, and the focal, principal and nodal points are at infinity
+/// (front -inf, rear +inf). So is a lens whose matrix leaves the range of double. Never NaN.
 struct FirstOrder {
   bool afocal = false;
   double power = 0;                   ///< 1/mm, exactly 0 when afocal
