@@ -20,6 +20,8 @@
 #include <string>
 #include <vector>
 
+#include "io/exr_head.hpp"
+#include "io/file_room.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/io/write_file.hpp"
 
@@ -66,6 +68,7 @@ std::array<std::string, 4> colours_of(const Imf::ChannelList& channels) {
 }
 
 DeepPicture read(const std::filesystem::path& file, double unit_mm) {
+  io_detail::check_exr_attributes(file);
   Imf::MultiPartInputFile in(file.string().c_str(), 0);
   int part = 0;
   while (part < in.parts() && !(in.header(part).hasType() && in.header(part).type() == Imf::DEEPSCANLINE)) ++part;
@@ -79,6 +82,11 @@ DeepPicture read(const std::filesystem::path& file, double unit_mm) {
   if (width > most || height > most || width * height > most) {
     throw Error("is " + std::to_string(width) + " x " + std::to_string(height) + ", wanted " + std::to_string(most) +
                 " pixels or fewer");
+  }
+  // Deflate makes 1032 bytes of one: counts of 4 bytes, and samples of 2 and more.
+  const std::string no_room = ", wanted no more than the file has room for";
+  if (!io_detail::has_room_for(width * height, 1 << 9, file)) {
+    throw Error("claims " + std::to_string(width) + " x " + std::to_string(height) + " pixels" + no_room);
   }
   DeepPicture picture;
   FragmentLists& lists = picture.lists;
@@ -111,6 +119,9 @@ DeepPicture read(const std::filesystem::path& file, double unit_mm) {
     if (samples > most) {
       throw Error("has " + std::to_string(samples) + " samples up to row " + std::to_string(row - window.min.y) +
                   ", wanted " + std::to_string(most) + " or fewer");
+    }
+    if (!io_detail::has_room_for(samples, 1 << 10, file)) {
+      throw Error("claims " + std::to_string(samples) + " samples" + no_room);
     }
     for (DeepPlane& plane : planes) plane.point(counts);
     deep.readPixels(row, row);

@@ -15,6 +15,7 @@
 
 #include "core/text.hpp"
 #include "io/exr.hpp"
+#include "io/file_room.hpp"
 #include "io/png.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/io/write_file.hpp"
@@ -105,11 +106,13 @@ RgbImage read_pfm(const std::filesystem::path& file) {
   }
   io_detail::check_size(static_cast<std::size_t>(width), static_cast<std::size_t>(height), file);
   const std::size_t channels = kind == "PF" ? 3 : 1, row = channels * static_cast<std::size_t>(width);
+  const std::string too_short = file.string() + ": ends before its last value, wanted a whole PFM file";
+  if (!io_detail::has_room_for(row * static_cast<std::size_t>(height), 1, file)) throw Error(too_short);
   RgbImage image(static_cast<int>(width), static_cast<int>(height));
   std::vector<unsigned char> bytes(4 * row);
   for (auto y = static_cast<int>(height); y-- > 0;) {
     if (!in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()))) {
-      throw Error(file.string() + ": ends before its last value, wanted a whole PFM file");
+      throw Error(too_short);
     }
     for (std::size_t i = 0; i < 3 * static_cast<std::size_t>(width); ++i) {
       const unsigned char* const b = &bytes[4 * (channels == 3 ? i : i / 3)];

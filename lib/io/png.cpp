@@ -8,6 +8,7 @@
 #include <memory>
 #include <string>
 
+#include "io/file_room.hpp"
 #include "petzval/core/error.hpp"
 
 namespace petzval::inline v0::io_detail {
@@ -19,6 +20,7 @@ struct PngRows {
   png_structp png = nullptr;
   png_infop info = nullptr;
   std::uint32_t width = 0, height = 0, channels = 0;
+  std::size_t stored_row = 0;  ///< bytes of a row, as the file has it without compression
 };
 bool read_head(std::FILE* file, PngRows& rows) noexcept {
   rows.png = png_create_read_struct(
@@ -28,6 +30,7 @@ bool read_head(std::FILE* file, PngRows& rows) noexcept {
   if (!rows.info || setjmp(png_jmpbuf(rows.png))) return false;
   png_init_io(rows.png, file);
   png_read_info(rows.png, rows.info);
+  rows.stored_row = png_get_rowbytes(rows.png, rows.info);
   png_set_expand_16(rows.png);
   png_set_strip_alpha(rows.png);
   png_set_interlace_handling(rows.png);
@@ -60,6 +63,8 @@ PngPicture read_png_picture(const std::filesystem::path& file) {
   const auto refuse = [&] { throw Error(file.string() + ": cannot be read as a PNG file, wanted a whole one"); };
   if (!read_head(open.get(), rows)) refuse();
   check_size(rows.width, rows.height, file);
+  // Deflate makes 1032 bytes of one.
+  if (!has_room_for(rows.stored_row * rows.height, 1 << 11, file)) refuse();
   const std::size_t row_bytes = std::size_t{2} * rows.channels * rows.width;
   std::vector<std::uint8_t> bytes(row_bytes * rows.height);
   std::vector<png_bytep> row_begins;
