@@ -1,0 +1,10 @@
+# SPDX-License-Identifier: Apache-2.0
+# A build for fuzzing: all that is compiled below is instrumented, the loops of every instruction set too. Undefined behaviour
+# ends the program, as a fault of memory does, and the standard library checks its own preconditions.
+if(NOT CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
+  message(FATAL_ERROR "PETZVAL_BUILD_FUZZERS: the compiler is ${CMAKE_CXX_COMPILER_ID}, wanted Clang (libFuzzer)")
+endif()
+set(petzval_sanitizers address,undefined)
+add_compile_options(-fsanitize=fuzzer-no-link,${petzval_sanitizers} -fno-sanitize-recover=undefined -fno-omit-frame-pointer
+  -gline-tables-only -O1 -D_GLIBCXX_ASSERTIONS)
+add_link_options(-fsanitize=${petzval_sanitizers})

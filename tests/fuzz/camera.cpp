@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+// Cameras of any lens, by every ray model, with blades, weights and tilted films.
+#include "petzval/camera/camera.hpp"
+
+#include <array>
+#include <span>
+#include <type_traits>
+
+#include "laws.hpp"
+#include "wild_lens.hpp"
+
+namespace {
+
+using namespace petzval;
+
+constexpr std::size_t count = 5;
+
+Film wild_film(fuzz::Bytes& bytes) {
+  Film film{.width_mm = bytes.number(1, 40),
+            .height_mm = bytes.number(1, 30),
+            .columns = bytes.count(1, 64),
+            .rows = bytes.count(1, 64)};
+  const int kind = bytes.byte();
+  if (kind < 32) film.tilt_rad = bytes.number(-0.3, 0.3), film.swing_rad = bytes.number(-0.3, 0.3);
+  if (kind % 32 == 1) film.travel_mm = bytes.number(-1, 1);
+  if (kind % 16 == 2) film.shift_x_mm = bytes.number(-20, 20), film.margin_mm = bytes.number(0, 4);
+  if (kind % 16 == 3) film.z_mm = bytes.number(0, 300);
+  return film;
+}
+
+CameraOptions wild_options(fuzz::Bytes& bytes) {
+  CameraOptions options{.model = models()[bytes.byte() % models().size()]};
+  options.normalisation = static_cast<Normalisation>(bytes.count(0, 2));
+  const int kind = bytes.byte();
+  if (kind < 32)
+    options.bokeh.weight_distribution = bytes.number(-20, 20), options.bokeh.weight_strength = bytes.number(0, 1);
+  if (kind % 16 == 1) options.bokeh.lens_elements = bytes.count(0, 21);
+  if (kind % 16 == 2)
+    options.bokeh.lens_ratio = bytes.number(0.5, 3), options.bokeh.rate_of_change = bytes.number(0, 2);
+  if (kind % 16 == 3) {
+    options.bokeh.weight_map = {.width = 2, .height = 3, .values = {}, .keep_mean = bytes.one_in(2)};
+    for (int i = 0; i < 6; ++i) options.bokeh.weight_map.values.push_back(static_cast<float>(bytes.number(0, 1)));
+  }
+  if (kind % 16 == 4) {
+    for (int i = bytes.count(0, 4); i > 0; --i)
+      options.expressive.power.push_back({bytes.number(0, 1), bytes.number(0, 2)});
+    options.expressive.dispersion = {bytes.number(0, 2)};
+  }
+  return options;
+}
+
+template <class T>
+void samples(const Camera& camera, fuzz::Bytes& bytes) {
+  std::array<std::array<T, count>, 4> in;
+  std::array<std::array<T, count>, 9> out{};
+  std::array<RayFate, count> fates;
+  for (std::size_t i = 0; i < count; ++i) {
+    const FilmPoint film =
+        camera.film().point(bytes.number(0, 1) * camera.film().columns, bytes.number(0, 1) * camera.film().rows);
+    in[0][i] = static_cast<T>(film.x), in[1][i] = static_cast<T>(film.y);
+    in[2][i] = static_cast<T>(bytes.number(0, 1)), in[3][i] = static_cast<T>(bytes.number(0, 1));
+  }
+  camera.sample<T>(count, {in[0].data(), in[1].data(), in[2].data(), in[3].data()},
+                   {{out[0].data(), out[1].data(), out[2].data(), out[3].data(), out[4].data(), out[5].data()},
+                    out[6].data(),
+                    fates.data(),
+                    out[7].data(),
+                    out[8].data()});
+  for (std::size_t i = 0; i < count; ++i) {
+    for (const auto& numbers : out) fuzz::require(std::isfinite(numbers[i]), "a camera ray is finite");
+    fuzz::require(out[6][i] >= 0, "a weight is 0 or more");
+    if (out[6][i] > 0) {
+      fuzz::require(fates[i] == RayFate::transmitted, "a ray with a weight passes");
+      fuzz::require(fuzz::unit(Vec3<T>{out[3][i], out[4][i], out[5][i]}, 2e-5), "a camera ray has unit length");
+    }
+  }
+}
+
+void from_the_scene(const Camera& camera, fuzz::Bytes& bytes) {
+  const Vec3<double> point{bytes.number(-500, 500), bytes.number(-500, 500), bytes.number(-2000, -10)};
+  const ImportanceSample found = camera.sample_importance(point, bytes.number(0, 1), bytes.number(0, 1));
+  fuzz::require(std::isfinite(found.importance.we) && found.importance.we >= 0, "importance is 0 or more");
+  fuzz::require(std::isfinite(found.pdf) && found.pdf >= 0, "a density is 0 or more");
+  if (found) {
+    fuzz::require(fuzz::unit(found.direction, 1e-9) && fuzz::finite(found.on_front), "a connection is finite");
+    const Importance met = camera.importance({point, found.direction});
+    fuzz::require(std::isfinite(met.we) && met.we >= 0, "importance of a ray is 0 or more");
+  }
+  const Projection seen = camera.project(point);
+  if (seen) fuzz::require(std::isfinite(seen.raster.x) && std::isfinite(seen.raster.y), "a projection is finite");
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  fuzz::Bytes bytes(data, size);
+  fuzz::done([&] {
+    const CameraOptions options = wild_options(bytes);
+    const Film film = wild_film(bytes);
+    const bool scene = bytes.one_in(8), derivatives = bytes.one_in(8), tables = bytes.one_in(8);
+    const Camera camera(fuzz::wild_lens(bytes), film, options);
+    samples<float>(camera, bytes);
+    samples<double>(camera, bytes);
+    if (derivatives) {
+      const auto ray =
+          camera.sample_differential({.film = camera.film().point(0.5, 0.5), .pupil_u = 0.3, .pupil_v = 0.6});
+      fuzz::require(fuzz::finite(ray.sample.ray), "a camera ray with derivatives is finite");
+    }
+    if (tables) {
+      fuzz::done([&] {
+        for (const float number : camera.tables()) fuzz::require(!std::isnan(number), "tables are made of numbers");
+      });
+    }
+    if (scene) from_the_scene(camera, bytes);
+  });
+  return 0;
+}

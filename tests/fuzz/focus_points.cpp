@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+// Films and focal surfaces fitted to any focus points.
+#include <vector>
+
+#include "laws.hpp"
+#include "petzval/movement/autofocus.hpp"
+#include "petzval/movement/focal_surface.hpp"
+#include "petzval/movement/tilt_fit.hpp"
+#include "wild_lens.hpp"
+
+namespace {
+
+using namespace petzval;
+
+std::vector<FocusTarget> wild_targets(fuzz::Bytes& bytes) {
+  std::vector<FocusTarget> targets;
+  for (int i = bytes.count(0, 8); i > 0; --i) {
+    FocusTarget target{.place = {{bytes.number(-500, 500), bytes.number(-500, 500), bytes.number(-3000, -60)}}};
+    const int kind = bytes.byte();
+    if (kind < 32) target.blur_mm = bytes.number(-0.2, 0.2);
+    if (kind % 8 == 1) target.weight = bytes.number(0, 4);
+    if (kind % 32 == 2) target.place.at_infinity = true;
+    if (kind % 32 == 3) target.fixes_distance = false;
+    targets.push_back(target);
+  }
+  return targets;
+}
+
+void check(const Film& film) {
+  fuzz::require(!film.z_mm || !std::isnan(*film.z_mm), "a film has a place");
+  fuzz::require(std::isfinite(film.tilt_rad) && std::isfinite(film.swing_rad), "a film has a tilt");
+}
+
+void tilt(const auto& lens, const std::vector<FocusTarget>& targets, const TiltOptions& options) {
+  const TiltFit fit = fit_tilt(lens, targets, options);
+  fuzz::require(fit.blurs.size() == targets.size(), "each target has a blur");
+  fuzz::require(!std::isnan(fit.rms_mm), "a fit has an error");
+  check(fit.film);
+  if (!fit) return;
+  fuzz::require(fit.film.z_mm && std::isfinite(*fit.film.z_mm), "a fitted film has a place");
+  fuzz::require(fit.film.angle() <= options.max_tilt_rad + 1e-6, "a fit keeps the limit of tilt");
+}
+
+void surface(const IdealLens& lens, const Film& film, fuzz::Bytes& bytes) {
+  std::vector<FocalPoint> points;
+  for (int i = bytes.count(0, 6); i > 0; --i) {
+    FocalPoint point{.place = {bytes.number(-20, 20), bytes.number(-15, 15)}};
+    const int kind = bytes.byte();
+    if (kind < 224) point.inverse_distance = bytes.number(0, 1 / 300.0);
+    if (kind % 4 == 1) point.extent_stops = bytes.number(-4, 4);
+    if (kind % 8 == 2) point.weight = bytes.number(0, 3);
+    if (kind % 8 == 3) point.fade = bytes.number(0, 1);
+    if (kind % 16 == 4) point.blur_mm = bytes.number(-0.1, 0.1);
+    points.push_back(point);
+  }
+  const FocalSurface fitted(
+      lens, film, points,
+      {.kind = bytes.one_in(2) ? SurfaceKind::shepard : SurfaceKind::affine, .beta = bytes.number(1, 8)});
+  for (int i = 0; i < 4; ++i) {
+    const FilmPoint place{bytes.number(-30, 30), bytes.number(-30, 30)};
+    const auto slopes = fitted.slopes(place);
+    fuzz::require(std::isfinite(slopes.values.inverse_distance) && std::isfinite(slopes.values.extent_stops),
+                  "a focal surface is finite");
+    fuzz::require(
+        slopes.values.inverse_distance <= fitted.nearest() && slopes.values.inverse_distance >= fitted.farthest(),
+        "a focal surface keeps its limits");
+  }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  fuzz::Bytes bytes(data, size);
+  fuzz::done([&] {
+    const int work = bytes.byte();
+    TiltOptions options{.robust = bytes.one_in(2)};
+    options.film = {.width_mm = bytes.number(0, 40), .height_mm = bytes.number(0, 30)};
+    const int kind = bytes.byte();
+    if (kind < 16) options.film.tilt_rad = bytes.number(-0.5, 0.5);
+    if (kind % 16 == 1) options.max_tilt_rad = bytes.number(0, 1.5);
+    if (kind % 16 == 2) options.film.shift_y_mm = bytes.number(-20, 20);
+    if (work < 8) {  // exact rays, a thousand times as slow
+      const ImageRays lens(fuzz::wild_lens(bytes), bytes.number(1, 20), 16);
+      const auto targets = wild_targets(bytes);
+      if (work < 4) return tilt(lens, targets, options);
+      return check(autofocus(lens, targets, {}, work % 2 ? FocusCriterion::min_rms : FocusCriterion::min_max).film);
+    }
+    const IdealLens lens =
+        work < 64 ? thick_lens(fuzz::wild_lens(bytes)) : thin_lens(bytes.number(5, 300), bytes.number(0.8, 32));
+    if (work < 160) return tilt(lens, wild_targets(bytes), options);
+    if (work < 192) return check(autofocus(lens, wild_targets(bytes)).film);
+    surface(lens, {.width_mm = 36, .height_mm = 24, .z_mm = lens.rear_focal_z + bytes.number(0, 3)}, bytes);
+  });
+  return 0;
+}

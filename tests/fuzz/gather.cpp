@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+// Small pictures of any layers through any rays: finite, and on the whole those of the reference.
+#include "petzval/blur/gather.hpp"
+
+#include <algorithm>
+#include <vector>
+
+#include "../blur/reference_gather.hpp"
+#include "bytes.hpp"
+#include "laws.hpp"
+
+namespace {
+
+using namespace petzval;
+
+constexpr float infinity = std::numeric_limits<float>::infinity();
+
+FragmentLists wild_lists(fuzz::Bytes& bytes, int columns, int rows, bool tame) {
+  FragmentLists lists{.columns = columns, .rows = rows, .offsets = {0}, .fragments = {}};
+  const auto number = [&](double least, double most) {
+    return static_cast<float>(tame ? bytes.between(least, most) : bytes.number(least, most));
+  };
+  const bool opaque = bytes.one_in(2);
+  for (int i = 0; i < columns * rows; ++i) {
+    for (int k = bytes.count(0, 3); k > 0; --k) {
+      const bool sky = bytes.byte() < 16;
+      lists.fragments.push_back(
+          {sky ? infinity : number(500, 5000), number(0, 2), number(0, 2), number(0, 2), opaque ? 1 : number(0, 1)});
+    }
+    lists.offsets.push_back(lists.fragments.size());
+  }
+  return lists;
+}
+
+/// A thin lens, or a line for each point and place that no lens has.
+LensRays wild_rays(fuzz::Bytes& bytes, const LayerCamera& camera, bool tame) {
+  const int sets = bytes.one_in(8) ? 4 : 1, kind = bytes.count(0, 3);
+  const auto points = vogel_points(sets * bytes.count(1, 6), bytes.between(0, 1));
+  const LensRaysOptions options{.nearest_mm = 400, .sets = sets};
+  const auto number = [&](double least, double most) {
+    return tame ? bytes.between(least, most) : bytes.number(least, most);
+  };
+  if (kind < 3) {
+    ThinLens lens{.radius_mm = number(0, 60), .inverse_focus = number(0, 1 / 500.0)};
+    if (kind == 2) lens.iris = {.blades = bytes.count(3, 9), .roundness = number(-1, 1)};
+    return LensRays::thin(camera, lens, points, options);
+  }
+  const double slope = number(-2000, 2000), turn = number(-30, 30), weight = number(0, 1);
+  return LensRays(
+      camera, points, 1,
+      [=](int, const Vec2<double>& raster, std::span<const PupilPoint> at, std::span<LayerRay> found) {
+        for (std::size_t i = 0; i < at.size(); ++i) {
+          found[i].at = raster + Vec2<double>{0.0137, 0.0291};  // not between two pixels
+          found[i].slope = {slope * at[i].u + turn * raster.y, slope * at[i].v - turn * raster.x};
+          found[i].weight = 1 + weight * at[i].v;
+        }
+      },
+      options);
+}
+
+double mean_difference(const Blurred& a, const Blurred& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.rgba.size(); ++i) sum += std::abs(double(a.rgba[i]) - double(b.rgba[i]));
+  return sum / static_cast<double>(a.rgba.size());
+}
+
+void check(const Blurred& picture, bool tame) {
+  for (const float share : picture.missed) fuzz::require(share >= 0 && share <= 1.001f, "rays that missed are a share");
+  if (!tame) return;
+  for (std::size_t i = 0; i < picture.rgba.size(); ++i) {
+    fuzz::require(std::isfinite(picture.rgba[i]), "a picture of finite colours is finite");
+    if (i % 4 == 3)
+      fuzz::require(picture.rgba[i] >= 0 && picture.rgba[i] <= 2.001f, "alpha is no more than rays weigh");
+  }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  fuzz::Bytes bytes(data, size);
+  fuzz::done([&] {
+    const bool tame = !bytes.one_in(4);
+    LayerCamera camera = layer_camera(bytes.count(1, 9), bytes.count(1, 9), bytes.between(0.3, 1.2));
+    const LensRays rays = wild_rays(bytes, camera, tame);
+    const PeelPlan plan = plan_peel(rays, 450, infinity);
+    if (plan.camera.overscan > 40) return;  // larger pictures, and no other work
+    LayerSet layers;
+    layers.thin(wild_lists(bytes, plan.camera.layer_columns(), plan.camera.layer_rows(), tame),
+                bytes.one_in(2) ? plan.bias : 0, bytes.count(1, 4));
+    const auto path = static_cast<GatherPath>(bytes.count(0, 3));
+    GatherOptions options{.path = path, .bounded = !bytes.one_in(4), .highlights_above = bytes.one_in(4) ? 1.0 : 0.0};
+    const Blurred picture = gather(layers, rays, options);
+    check(picture, tame);
+    if (!tame || options.highlights_above > 0 || path == GatherPath::shift_invariant || layers.count() == 0) return;
+    if (path == GatherPath::automatic && rays.shift_invariant()) return;
+    fuzz::require(mean_difference(picture, testing::reference_gather(layers, rays)) < 0.1,
+                  "a picture is that of the reference");
+  });
+  return 0;
+}

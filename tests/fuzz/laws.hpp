@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <string_view>
+
+#include "petzval/core/error.hpp"
+#include "petzval/core/ray.hpp"
+
+namespace petzval::fuzz {
+
+/// Ends the program with the law that is broken: a fuzzer keeps the input.
+inline void require(bool holds, const char* law) {
+  if (holds) return;
+  std::fprintf(stderr, "broken law: %s\n", law);
+  std::abort();
+}
+
+/// Does work that may be refused: by Error, in one line of at most 1000 bytes, and by nothing else. Whether it was
+/// done.
+bool done(const auto& work) {
+  try {
+    work();
+    return true;
+  } catch (const Error& error) {
+    const std::string_view what = error.what();
+    require(!what.empty() && what.size() <= 1000, "a message has 1 to 1000 bytes");
+    require(what.find('\n') == what.npos, "a message is one line");
+    return false;
+  }
+}
+
+template <class T>
+bool finite(const Vec3<T>& v) noexcept {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+template <class T>
+bool finite(const Ray<T>& ray) noexcept {
+  return finite(ray.origin) && finite(ray.direction);
+}
+/// Whether a direction has unit length, as far as rounding of `eps` allows.
+template <class T>
+bool unit(const Vec3<T>& v, double eps) noexcept {
+  const double x = v.x, y = v.y, z = v.z;
+  return std::abs(x * x + y * y + z * z - 1) <= eps;
+}
+
+}  // namespace petzval::fuzz

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// Lens files of every format: what is read is a valid lens, and this library's own JSON keeps it to the byte.
+#include "petzval/files/lens_file.hpp"
+
+#include "laws.hpp"
+#include "petzval/io/lens_json.hpp"
+#include "petzval/media/glass.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace petzval;
+  static const auto glasses = GlassCatalogue::load(std::filesystem::path(PETZVAL_TEST_DATA) / "glass");
+  Prescription lens;
+  const bool read = fuzz::done([&] {
+    lens = parse_lens({reinterpret_cast<const char*>(data), size}, "x", {.glasses = &glasses});
+  });
+  if (!read) return 0;
+
+  validate(lens, "x");
+  const std::string json = format_prescription(lens);
+  const Prescription back = parse_prescription(json, "x");
+  fuzz::require(back == lens, "JSON keeps a lens");
+  fuzz::require(format_prescription(back) == json, "JSON that was written and read is written as the same bytes");
+  return 0;
+}

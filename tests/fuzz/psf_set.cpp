@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+// Parts of PSF sets with entries that were changed: a kernel comes back bit for bit, or the part is refused.
+#include "petzval/io/psf_set_exr.hpp"
+
+#include <string>
+#include <utility>
+
+#include "bytes.hpp"
+#include "laws.hpp"
+
+namespace {
+
+using namespace petzval;
+
+PsfKernel kernel_of(fuzz::Bytes& bytes) {
+  PsfKernel kernel{.pixels = 3, .pixel_mm = bytes.number(0, 1)};
+  for (int i = 0; i < 9; ++i) {
+    kernel.light.push_back(static_cast<float>(bytes.between(0, 4)));
+    kernel.hits_x.push_back(static_cast<float>(bytes.number(-1, 1)));
+    kernel.hits_y.push_back(static_cast<float>(bytes.number(-1, 1)));
+  }
+  kernel.total = bytes.number(0, 1), kernel.throughput = bytes.number(0, 1), kernel.error = bytes.number(0, 1);
+  kernel.rays = bytes.count(0, 100);
+  kernel.anchor_mm = {bytes.number(-20, 20), bytes.number(-20, 20)};
+  return kernel;
+}
+
+/// Changes an entry. Of the checksum too, which nobody guesses: what stands behind it is met by the kernels above.
+void damage(ExrPart& part, fuzz::Bytes& bytes) {
+  const auto some = [&](auto& map) { return std::next(map.begin(), bytes.byte() % static_cast<long>(map.size())); };
+  switch (bytes.count(0, 7)) {
+    case 0: part.channels.erase(part.channels.begin() + bytes.byte() % static_cast<long>(part.channels.size())); break;
+    case 1: part.channels[0].values.resize(static_cast<std::size_t>(bytes.count(0, 20))); break;
+    case 2: part.numbers.erase(some(part.numbers)); break;
+    case 3: some(part.numbers)->second = bytes.wild(); break;
+    case 4: part.texts.erase(some(part.texts)); break;
+    case 5: some(part.texts)->second += static_cast<char>(bytes.byte()); break;
+    case 6: part.width = bytes.count(0, 5); break;
+    default: part.channels[0].values[0] = static_cast<float>(bytes.wild()); break;
+  }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  fuzz::Bytes bytes(data, size);
+  fuzz::done([&] {
+    const PsfSetPoint point{bytes.number(0, 90), bytes.number(100, 1e4), bytes.number(400, 700), bytes.number(1, 22)};
+    ExrPart part = to_exr_part(kernel_of(bytes), point);
+    for (int i = bytes.count(0, 2); i > 0 && !part.channels.empty() && !part.channels[0].values.empty(); --i) {
+      damage(part, bytes);
+    }
+    const PsfPart read = from_exr_part(part);
+    const ExrPart again = to_exr_part(read.kernel, read.point);
+    fuzz::require(again.texts == part.texts, "a part that was read is written with the same checksum");
+
+    const PsfSet set(
+        {{read.point.field_deg}, {read.point.distance_mm}, {read.point.wavelength_nm}, {read.point.f_number}},
+        {read.kernel});
+    fuzz::require(set.at(read.point).pixels == read.kernel.pixels, "a set has the kernel of its node");
+  });
+  return 0;
+}

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// Files of ray polynomials: they come back to the byte, and their rays are finite.
+#include "petzval/polynomial/ray_polynomial.hpp"
+
+#include <array>
+
+#include "laws.hpp"
+#include "petzval/io/lens_json.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace petzval;
+  fuzz::done([&] {
+    const RayPolynomial read = parse_ray_polynomial({reinterpret_cast<const char*>(data), size}, "x");
+    const std::string json = format_ray_polynomial(read);
+    fuzz::require(format_ray_polynomial(parse_ray_polynomial(json, "x")) == json,
+                  "a polynomial that was written and read is written as the same bytes");
+    const auto& domain = read.domain();
+    for (const double part : {0.0, 0.3, -0.9, 2.0}) {
+      const TwoPlaneRay line{part * domain.film_radius, 0.1, part * domain.pupil_radius, 0.2};
+      Ray<double> ray;
+      read.to_scene(line, {}, ray);
+      fuzz::require(fuzz::finite(ray), "a ray of a polynomial is finite");
+    }
+  });
+  return 0;
+}

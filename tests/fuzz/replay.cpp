@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+// The fuzz targets without a fuzzer, for the tests of every build:
+//
+//     fuzz_replay TARGET              its seeds, cut off and changed, the same on every machine;
+//                                     an input that fails is kept in crash-TARGET
+//     fuzz_replay TARGET FILE...      inputs that a fuzzer has kept
+//     fuzz_replay --list              a target, its libFuzzer program and its largest input a line
+//     fuzz_replay --write-seeds DIR   the seeds of each target in a folder of its own
+#include <algorithm>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <iterator>
+#include <random>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "targets.hpp"
+
+namespace {
+
+using petzval::fuzz::Target;
+
+/// The input that runs, for the handler of a crash.
+const std::string* current = nullptr;
+std::string kept_in;
+
+/// Keeps the input as fuzzers do.
+void keep_input(int) {
+  if (current != nullptr) std::ofstream(kept_in, std::ios::binary) << *current;
+  std::cerr << "the input is in " << kept_in << '\n';
+}
+
+void run(const Target& target, const std::string& input) {
+  current = &input;
+  target.function(reinterpret_cast<const std::uint8_t*>(input.data()), input.size());
+}
+
+/// One to four changes: a byte, a piece that goes, comes twice or comes from elsewhere.
+std::string changed(std::string text, const std::vector<std::string>& seeds, std::mt19937& engine) {
+  static constexpr std::string_view hard = "0123456789.-+eE\t\n ;\"/[]{}:,xN";
+  const auto below = [&](std::size_t n) { return n == 0 ? 0 : engine() % n; };
+  for (std::size_t i = 1 + below(4); i > 0; --i) {
+    const std::size_t at = below(text.size()), length = below(12);
+    const std::string& other = seeds[below(seeds.size())];
+    switch (below(5)) {
+      case 0: text[at] = hard[below(hard.size())]; break;
+      case 1: text[at] = static_cast<char>(below(256)); break;
+      case 2: text.erase(at, length); break;
+      case 3: text.insert(at, text.substr(below(text.size()), length)); break;
+      default: text.insert(at, other.substr(below(other.size()), length)); break;
+    }
+    if (text.empty()) text = " ";
+  }
+  return text;
+}
+
+void run_fixed(const Target& target) {
+  const std::vector<std::string> seeds = target.seeds();
+  std::mt19937 engine(7);  // its numbers are those of every compiler
+  run(target, "");
+  for (const std::string& seed : seeds) run(target, seed);
+  for (int i = 0; i < target.changed_seeds; ++i) {
+    const std::string& seed = seeds[engine() % seeds.size()];
+    run(target, i % 4 == 0 ? seed.substr(0, engine() % seed.size()) : changed(seed, seeds, engine));
+  }
+}
+
+void write_seeds(const std::filesystem::path& folder) {
+  for (const Target& target : petzval::fuzz::targets()) {
+    const auto place = folder / target.name;
+    std::filesystem::create_directories(place);
+    int number = 0;
+    for (const std::string& seed : target.seeds())
+      std::ofstream(place / std::to_string(++number), std::ios::binary) << seed;
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const std::vector<std::string> words(argv + 1, argv + argc);
+  const auto targets = petzval::fuzz::targets();
+  if (words == std::vector<std::string>{"--list"}) {
+    for (const Target& target : targets)
+      std::cout << target.name << ' ' << target.program << ' ' << target.largest << '\n';
+    return 0;
+  }
+  if (words.size() == 2 && words[0] == "--write-seeds") return write_seeds(words[1]), 0;
+  const auto target = words.empty() ? targets.end() : std::ranges::find(targets, words[0], &Target::name);
+  if (target == targets.end()) {
+    std::cerr << "fuzz_replay: wanted a target of --list, --list or --write-seeds DIR\n";
+    return 2;
+  }
+  if (words.size() == 1) {
+    kept_in = "crash-" + words[0];
+    std::signal(SIGABRT, keep_input);
+    return run_fixed(*target), 0;
+  }
+  for (std::size_t i = 1; i < words.size(); ++i) {
+    std::ifstream file(words[i], std::ios::binary);
+    if (!file) return std::cerr << "fuzz_replay: " << words[i] << " cannot be read\n", 2;
+    run(*target, {std::istreambuf_iterator<char>(file), {}});
+  }
+  return 0;
+}

@@ -1,0 +1,103 @@
+#!/bin/sh
+# SPDX-License-Identifier: Apache-2.0
+# Fuzzes petzval with libFuzzer under ASan and UBSan, and prints what was run; installs what a bare Debian 12 lacks.
+#
+#   sh tests/fuzz/run.sh --runs N [--targets zemax,trace] [--jobs J]
+#
+# N inputs for each target, J targets at once (by default 1). An input may take 2 s and 512 MB. Exit status 1 where one
+# crashes, breaks a law or takes more; it is kept in BUILD_DIR/found/TARGET, and BUILD_DIR/tests/fuzz/fuzz_replay TARGET
+# FILE runs it again. Inputs that reach something new stay in BUILD_DIR/corpus/TARGET, where the next run starts.
+#
+# BUILD_DIR=... builds elsewhere than in build/fuzz/.
+set -eu
+root=$(CDPATH= cd -- "$(dirname -- "$0")/../.." && pwd)
+BUILD_DIR=${BUILD_DIR:-$root/build/fuzz}
+. "$root/cmake/build.sh"
+
+runs= targets= jobs=1
+while [ $# -gt 1 ]; do
+  case $1 in
+    --runs) runs=$2 ;;
+    --targets) targets=$2 ;;
+    --jobs) jobs=$2 ;;
+    *) break ;;
+  esac
+  shift 2
+done
+if [ $# -gt 0 ] || [ -z "$runs" ]; then
+  echo "wanted: run.sh --runs N [--targets A,B] [--jobs J]" >&2
+  exit 2
+fi
+
+need $library_packages libcli11-dev libtinyobjloader-dev clang-14 libclang-rt-14-dev
+target=fuzz build -DCMAKE_CXX_COMPILER=clang++-14 -DBUILD_SHARED_LIBS=OFF -DPETZVAL_BUILD_FUZZERS=ON \
+  -DPETZVAL_BUILD_TESTS=OFF -DPETZVAL_BUILD_EXAMPLES=OFF
+programs=$BUILD_DIR/tests/fuzz
+"$programs/fuzz_replay" --write-seeds "$BUILD_DIR/seeds"
+
+# What ASan keeps of freed memory is not the library's.
+export ASAN_OPTIONS=quarantine_size_mb=8
+logs=$(mktemp -d)
+trap 'rm -rf "$logs"' EXIT
+trap 'exit 130' INT TERM
+
+# fuzz NAME PROGRAM LARGEST: a target, its log in $logs.
+fuzz() {
+  mkdir -p "$BUILD_DIR/corpus/$1" "$BUILD_DIR/found/$1"
+  status=0
+  "$programs/fuzz_$2" "$BUILD_DIR/corpus/$1" "$BUILD_DIR/seeds/$1" -runs="$runs" -max_len="$3" -rss_limit_mb=512 -timeout=2 \
+    -artifact_prefix="$BUILD_DIR/found/$1/" -print_final_stats=1 >"$logs/$1" 2>&1 || status=$?
+  echo "$status" >"$logs/$1.status"
+}
+
+# The inputs so far of the targets that run, on a terminal.
+progress() {
+  [ -t 2 ] || return 0
+  line=
+  for log in "$logs"/*; do
+    case $log in *.status | "$logs/*") continue ;; esac
+    [ -e "$log.status" ] || line="$line ${log##*/} $(grep -o '^#[0-9]*' "$log" | tail -n 1)"
+  done
+  printf '\r\033[K%.110s' "$line" >&2
+}
+
+# stat NAME LOG: a number that libFuzzer prints at its end.
+stat() { sed -n "s/^stat::$1: *//p" "$2" | tail -n 1; }
+
+"$programs/fuzz_replay" --list >"$logs/list"
+if [ -n "$targets" ]; then
+  : >"$logs/wanted"
+  for name in $(echo "$targets" | tr , ' '); do
+    grep "^$name " "$logs/list" >>"$logs/wanted" || { echo "no target $name, wanted some of:" $(cut -d ' ' -f 1 "$logs/list") >&2; exit 2; }
+  done
+  mv "$logs/wanted" "$logs/list"
+fi
+mv "$logs/list" "$logs.list"
+trap 'rm -rf "$logs" "$logs.list"' EXIT
+
+echo "== Fuzzing at $(git -C "$root" rev-parse --short HEAD 2>/dev/null || echo "an unknown commit"), $(date -u +%F)"
+running() { started=0; for log in "$logs"/*; do case $log in *.status | "$logs/*") ;; *) [ -e "$log.status" ] || started=$((started + 1)) ;; esac; done; echo "$started"; }
+while read -r name program largest; do
+  while [ "$(running)" -ge "$jobs" ]; do sleep 1; progress; done
+  : >"$logs/$name"
+  fuzz "$name" "$program" "$largest" &
+done <"$logs.list"
+while [ "$(running)" -gt 0 ]; do sleep 1; progress; done
+wait
+[ ! -t 2 ] || printf '\r\033[K' >&2
+
+failed=0
+echo "| target | executions | a second | edges | features | slowest, ms | memory, MB |"
+echo "|---|---|---|---|---|---|---|"
+while read -r name program largest; do
+  log=$logs/$name
+  covered=$(grep -o 'cov: [0-9]* ft: [0-9]*' "$log" | tail -n 1)
+  set -- $covered - - - -
+  echo "| $name | $(stat number_of_executed_units "$log") | $(stat average_exec_per_sec "$log") | $2 | $4 | $(stat slowest_ms "$log") | $(stat peak_rss_mb "$log") |"
+  if [ "$(cat "$log.status")" -ne 0 ]; then
+    failed=1
+    grep -E '^broken law|ERROR|SUMMARY|runtime error|what\(\)|Test unit written' "$log" | sed "s/^/    /"
+  fi
+done <"$logs.list"
+[ $failed -eq 0 ] || echo "Inputs that failed are in $BUILD_DIR/found"
+exit $failed

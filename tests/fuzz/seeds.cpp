@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "seeds.hpp"
+
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <iterator>
+#include <random>
+
+#include "../data_lenses.hpp"
+#include "laws.hpp"
+#include "petzval/io/lens_json.hpp"
+#include "petzval/media/glass.hpp"
+#include "petzval/polynomial/ray_polynomial.hpp"
+
+namespace petzval::fuzz {
+namespace {
+
+namespace fs = std::filesystem;
+using Texts = std::vector<std::string>;
+
+std::string bytes_of(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) throw Error(file.string() + ": cannot be read, wanted a seed");
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+std::string seed(const char* name) { return bytes_of(fs::path(PETZVAL_FUZZ_SEEDS) / name); }
+std::string sample(const char* name) { return bytes_of(fs::path(PETZVAL_TEST_SAMPLES) / name); }
+
+/// Lenses that together have spheres, cylinders, mirrors, obscurations, aspheres, configurations and media other than
+/// air.
+std::vector<Prescription> small_lenses() {
+  std::vector<Prescription> result;
+  for (const char* id : {"singlet_50mm_biconvex", "achromat_100mm", "cylinder_3.9mm", "mirror_newton_200mm_f8",
+                         "phone_5.6mm_f3.5", "eye_gullstrand_le_grand", "zoom_14-30mm_f4"}) {
+    result.push_back(testing::data_prescription(id));
+  }
+  return result;
+}
+
+Texts written(const std::function<WrittenLens(const Prescription&)>& write) {
+  Texts result;
+  for (const Prescription& lens : small_lenses()) {
+    done([&] { result.push_back(write(lens).text); });
+  }
+  return result;
+}
+
+const GlassCatalogue& glasses() {
+  static const auto tables = GlassCatalogue::load(fs::path(PETZVAL_TEST_DATA) / "glass");
+  return tables;
+}
+
+}  // namespace
+
+Texts own_json() {
+  Texts result;
+  for (const Prescription& lens : small_lenses()) result.push_back(format_prescription(lens));
+  return result;
+}
+Texts zemax_texts() {
+  return written([](const Prescription& lens) { return format_zemax(lens, &glasses()); });
+}
+Texts codev_texts() {
+  return written([](const Prescription& lens) { return format_codev(lens, &glasses()); });
+}
+Texts tables() {
+  return written([](const Prescription& lens) { return format_table(lens); });
+}
+Texts oslo_texts() { return {sample("oslo_words.len")}; }
+Texts opticalbench_texts() { return {sample("opticalbench_macro.txt"), sample("opticalbench_zoom.txt")}; }
+Texts lentil_texts() { return {seed("lentil.json")}; }
+Texts optiland_texts() { return {seed("optiland.json")}; }
+Texts all_lens_texts() {
+  Texts result;
+  for (const auto& texts :
+       {own_json, zemax_texts, codev_texts, tables, oslo_texts, opticalbench_texts, lentil_texts, optiland_texts}) {
+    const Texts some = texts();
+    result.insert(result.end(), some.begin(), some.begin() + 1);
+  }
+  std::string wide = "\xff\xfe";  // UTF-16, as Zemax writes it
+  for (const char c : result[1]) wide += {c, '\0'};
+  result.push_back(wide);
+  return result;
+}
+Texts agf_texts() { return {sample("every_formula.agf")}; }
+Texts rii_texts() { return {seed("rii_formula.yml"), seed("rii_table.yml")}; }
+Texts glass_tables() { return {bytes_of(fs::path(PETZVAL_TEST_DATA) / "glass" / "glass_misc.csv")}; }
+
+Texts ray_polynomials() {
+  Texts result;
+  for (const char* id : {"singlet_50mm_biconvex", "cylinder_3.9mm"}) {
+    done([&] {
+      const Lens lens = testing::data_lens(id);
+      const auto polynomial = RayPolynomial::fit(lens, FilmPupilTable::equal_area(lens, 2), 3);
+      result.push_back(format_ray_polynomial(polynomial));
+    });
+  }
+  return result;
+}
+
+Texts scene_texts() { return {seed("scene.json")}; }
+Texts obj_texts() { return {seed("mesh.obj")}; }
+
+Texts random_bytes() {
+  Texts result;
+  std::mt19937 engine(1);  // its numbers are those of every compiler
+  for (int i = 0; i < 24; ++i) {
+    std::string bytes;
+    for (int k = 0; k < 64 + 16 * i; ++k) bytes += static_cast<char>(engine() & 255);
+    result.push_back(bytes);
+  }
+  return result;
+}
+
+}  // namespace petzval::fuzz

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+/// Where fuzzing starts: lenses of data/, small, in every format that is written here; texts of tests/fuzz/seeds and
+/// tests/files/samples in the others; pictures of a few pixels; bytes for targets that make lenses of them.
+namespace petzval::fuzz {
+
+std::vector<std::string> own_json();
+std::vector<std::string> zemax_texts();
+std::vector<std::string> codev_texts();
+std::vector<std::string> oslo_texts();
+std::vector<std::string> opticalbench_texts();
+std::vector<std::string> tables();
+std::vector<std::string> lentil_texts();
+std::vector<std::string> optiland_texts();
+std::vector<std::string> all_lens_texts();
+std::vector<std::string> agf_texts();
+std::vector<std::string> rii_texts();
+std::vector<std::string> glass_tables();
+std::vector<std::string> ray_polynomials();
+std::vector<std::string> exr_files();
+std::vector<std::string> deep_exr_files();
+std::vector<std::string> png_files();
+std::vector<std::string> pfm_files();
+std::vector<std::string> scene_texts();
+std::vector<std::string> obj_texts();
+std::vector<std::string> random_bytes();
+
+}  // namespace petzval::fuzz

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// Any lens: edited, checked, and written in every format.
+#include <string>
+
+#include "laws.hpp"
+#include "petzval/files/lens_file.hpp"
+#include "petzval/io/lens_json.hpp"
+#include "petzval/lint/lint.hpp"
+#include "petzval/media/glass.hpp"
+#include "wild_lens.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace petzval;
+  static const auto glasses = GlassCatalogue::load(std::filesystem::path(PETZVAL_TEST_DATA) / "glass");
+  fuzz::Bytes bytes(data, size);
+  const Prescription lens = fuzz::wild_prescription(bytes);
+  if (!fuzz::done([&] { validate(lens, "x"); })) return 0;
+
+  const std::string json = format_prescription(lens);
+  const Prescription back = parse_prescription(json, "x");
+  fuzz::require(back == lens, "JSON keeps a lens");
+  fuzz::require(format_prescription(back) == json, "JSON that was written and read is written as the same bytes");
+
+  const auto returns = [&](const WrittenLens& written) { parse_lens(written.text, "x", {.glasses = &glasses}); };
+  fuzz::done([&] { returns(format_zemax(lens, &glasses)); });
+  fuzz::done([&] { returns(format_codev(lens, &glasses)); });
+  fuzz::done([&] { returns(format_table(lens)); });
+  for (const Finding& finding : lint(lens, glasses)) fuzz::require(!finding.message.empty(), "a finding has a message");
+  validate(repair(lens).prescription, "x");
+  fuzz::done([&] { validate(scale(lens, bytes.number(0.1, 10)), "x"); });
+  fuzz::done([&] { validate(reverse(lens), "x"); });
+  fuzz::done([&] { validate(configured(lens, bytes.number(0, 3)), "x"); });
+  return 0;
+}
