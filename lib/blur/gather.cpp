@@ -338,22 +338,27 @@ void gather(const LayerSet& layers, const LensRays& rays, const GatherOptions& o
                 ": the nearest surface is " + to_text(1 / static_cast<double>(depths.most), 6) + " mm away");
   }
 
-  const auto pixels = static_cast<std::size_t>(camera.columns) * static_cast<std::size_t>(camera.rows);
-  picture.columns = camera.columns, picture.rows = camera.rows;
-  picture.rgba.resize(4 * pixels), picture.missed.resize(pixels);
-  picture.statistics = {.rays = pixels * rays.count() * static_cast<std::size_t>(rays.channels())};
-  if (!picture.memory) picture.memory = std::make_shared<Blurred::Memory>();
+  try {
+    const auto pixels = static_cast<std::size_t>(camera.columns) * static_cast<std::size_t>(camera.rows);
+    picture.columns = camera.columns, picture.rows = camera.rows;
+    picture.rgba.resize(4 * pixels), picture.missed.resize(pixels);
+    picture.statistics = {.rays = pixels * rays.count() * static_cast<std::size_t>(rays.channels())};
+    if (!picture.memory) picture.memory = std::make_shared<Blurred::Memory>();
 
-  auto start = std::chrono::steady_clock::now();
-  const Highlights highlights(LayerAccess::data(layers), rays, options, beyond / 2);
-  const double finding = seconds_since(start);
-  start = std::chrono::steady_clock::now();
-  Gathering(layers, rays, options, path, beyond / 2, highlights, picture).run();
-  picture.statistics.gather_seconds = seconds_since(start);
-  start = std::chrono::steady_clock::now();
-  highlights.spread(options.threads, picture);
-  picture.statistics.highlights = highlights.count();
-  picture.statistics.highlight_seconds = finding + seconds_since(start);
+    auto start = std::chrono::steady_clock::now();
+    const Highlights highlights(LayerAccess::data(layers), rays, options, beyond / 2);
+    const double finding = seconds_since(start);
+    start = std::chrono::steady_clock::now();
+    Gathering(layers, rays, options, path, beyond / 2, highlights, picture).run();
+    picture.statistics.gather_seconds = seconds_since(start);
+    start = std::chrono::steady_clock::now();
+    highlights.spread(options.threads, picture);
+    picture.statistics.highlights = highlights.count();
+    picture.statistics.highlight_seconds = finding + seconds_since(start);
+  } catch (...) {
+    picture.columns = picture.rows = 0, picture.rgba.clear(), picture.missed.clear();
+    throw;
+  }
 }
 
 Blurred gather(const LayerSet& layers, const LensRays& rays, const GatherOptions& options) {

@@ -27,26 +27,32 @@ struct Blurred::Memory {
    public:
     explicit Loan(Memory& memory) : memory_(memory) {
       const std::lock_guard guard(memory_.mutex_);
-      if (memory_.free_.empty()) memory_.free_.push_back(std::make_unique<OfThread>());
-      lent_ = std::move(memory_.free_.back());
+      if (memory_.free_.empty()) {
+        memory_.free_.reserve(memory_.lent_ + 1);  // for all of them, as giving back must not allocate
+        memory_.free_.push_back(std::make_unique<OfThread>());
+      }
+      mine_ = std::move(memory_.free_.back());
       memory_.free_.pop_back();
+      ++memory_.lent_;
     }
     ~Loan() {
       const std::lock_guard guard(memory_.mutex_);
-      memory_.free_.push_back(std::move(lent_));
+      memory_.free_.push_back(std::move(mine_));
+      --memory_.lent_;
     }
     Loan(const Loan&) = delete;
     Loan& operator=(const Loan&) = delete;
-    OfThread& operator*() const noexcept { return *lent_; }
+    OfThread& operator*() const noexcept { return *mine_; }
 
    private:
     Memory& memory_;
-    std::unique_ptr<OfThread> lent_;
+    std::unique_ptr<OfThread> mine_;
   };
 
  private:
   std::mutex mutex_;
   std::vector<std::unique_ptr<OfThread>> free_;
+  std::size_t lent_ = 0;
 };
 
 }  // namespace petzval::inline v0

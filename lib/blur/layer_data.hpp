@@ -31,14 +31,26 @@ struct LayerSet::Data {
   /// Of all layers.
   blur_detail::DepthRange depths() const noexcept { return n_buffer.below({0, 0, columns - 1, rows - 1}); }
 
-  /// Room for `layers`; what they held is lost.
-  void resize(int new_columns, int new_rows, int layers);
   /// One more layer, empty and black with alpha 1, before it counts.
   LayerPlanes begin_layer();
   /// Takes in the layer that was begun, if it has a surface. where: for messages.
   void end_layer(const std::string& where);
-  /// When all layers are there.
-  void finish();
+
+  /// From its beginning to its end. One that does not come to its end leaves no layer.
+  class Filling {
+   public:
+    /// Room for `layers`; what they held is lost.
+    Filling(Data& data, int columns, int rows, int layers);
+    Filling(const Filling&) = delete;
+    Filling& operator=(const Filling&) = delete;
+    ~Filling();
+    /// When all layers are there.
+    void finish();
+
+   private:
+    Data& data_;
+    bool finished_ = false;
+  };
 };
 
 class LayerAccess {

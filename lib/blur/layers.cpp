@@ -42,11 +42,26 @@ float inverse_of(float depth_mm) { return depth_mm > 0 ? 1 / depth_mm : -1.0f; }
 
 }  // namespace
 
-void LayerSet::Data::resize(int new_columns, int new_rows, int layers) {
-  columns = new_columns, rows = new_rows, count = 0, opaque = true;
-  below.assign(pixels(), infinity);
-  const std::size_t wanted = 2 * slack + static_cast<std::size_t>(layers * planes) * plane_stride();
-  if (memory.size() < wanted) memory.resize(wanted);
+LayerSet::Data::Filling::Filling(Data& data, int columns, int rows, int layers) : data_(data) {
+  data.columns = data.rows = data.count = 0, data.opaque = true;  // also where there is no memory
+  const std::size_t pixels = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
+  data.below.assign(pixels, infinity);
+  const std::size_t wanted = 2 * slack + static_cast<std::size_t>(layers * planes) * (pixels + slack);
+  if (data.memory.size() < wanted) data.memory.resize(wanted);
+  data.columns = columns, data.rows = rows;
+}
+
+LayerSet::Data::Filling::~Filling() {
+  if (!finished_) data_.columns = data_.rows = data_.count = 0;
+}
+
+void LayerSet::Data::Filling::finish() {
+  const auto start = std::chrono::steady_clock::now();
+  std::vector<std::span<const float>> depths;
+  for (int layer = 0; layer < data_.count; ++layer) depths.emplace_back(data_.plane(layer, 0), data_.pixels());
+  data_.n_buffer.fill(data_.columns, data_.rows, depths);
+  data_.n_buffer_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  finished_ = true;
 }
 
 LayerPlanes LayerSet::Data::begin_layer() {
@@ -77,14 +92,6 @@ void LayerSet::Data::end_layer(const std::string& where) {
   if (!any) return;
   ++count;
   opaque &= solid;
-}
-
-void LayerSet::Data::finish() {
-  const auto start = std::chrono::steady_clock::now();
-  std::vector<std::span<const float>> depths;
-  for (int layer = 0; layer < count; ++layer) depths.emplace_back(plane(layer, 0), pixels());
-  n_buffer.fill(columns, rows, depths);
-  n_buffer_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 namespace {
@@ -129,7 +136,7 @@ void LayerSet::peel(const PeelPlan& plan, int layers, const Peel& peel) {
   const LayerCamera& camera = plan.camera;
   check_size("layers", camera.layer_columns(), camera.layer_rows());
   Data& d = *data_;
-  d.resize(camera.layer_columns(), camera.layer_rows(), layers);
+  Data::Filling filling(d, camera.layer_columns(), camera.layer_rows(), layers);
   const auto bias = static_cast<float>(plan.bias);
   for (int layer = 0; layer < layers; ++layer) {
     const std::size_t written = peel(layer, d.below, d.begin_layer());
@@ -139,7 +146,7 @@ void LayerSet::peel(const PeelPlan& plan, int layers, const Peel& peel) {
     const float* const w = d.plane(layer, 0);
     for (std::size_t i = 0; i < d.pixels(); ++i) d.below[i] = w[i] >= 0 ? w[i] - bias : -1.0f;
   }
-  d.finish();
+  filling.finish();
 }
 
 void LayerSet::thin(const FragmentLists& lists, double bias, int layers) {
@@ -155,7 +162,7 @@ void LayerSet::thin(const FragmentLists& lists, double bias, int layers) {
 
   // Layer by layer over all pixels would sort each list again: one pass keeps what each layer has.
   Data& d = *data_;
-  d.resize(lists.columns, lists.rows, layers);
+  Data::Filling filling(d, lists.columns, lists.rows, layers);
   struct Planes {
     float* p[Data::planes];
   };
@@ -201,7 +208,7 @@ void LayerSet::thin(const FragmentLists& lists, double bias, int layers) {
   for (std::size_t layer = 0; layer < deepest; ++layer) {
     d.end_layer("layer " + std::to_string(layer));
   }
-  d.finish();
+  filling.finish();
 }
 
 void LayerSet::set(std::span<const LayerImage> images) {
@@ -222,7 +229,7 @@ void LayerSet::set(std::span<const LayerImage> images) {
     }
   }
   Data& d = *data_;
-  d.resize(first.columns, first.rows, static_cast<int>(images.size()));
+  Data::Filling filling(d, first.columns, first.rows, static_cast<int>(images.size()));
   for (std::size_t layer = 0; layer < images.size(); ++layer) {
     const LayerPlanes out = d.begin_layer();
     for (std::size_t i = 0; i < pixels; ++i) {
@@ -238,7 +245,7 @@ void LayerSet::set(std::span<const LayerImage> images) {
     // A surface may touch the one before it, at the same depth; none stands behind an empty pixel.
     for (float& w : d.below) w = w >= 0 ? std::nextafter(w, infinity) : -1.0f;
   }
-  d.finish();
+  filling.finish();
 }
 
 int LayerSet::columns() const noexcept { return data_->columns; }

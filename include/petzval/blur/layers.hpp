@@ -76,7 +76,7 @@ struct LayerImage {
 /// What the layer camera sees: for each pixel, surfaces from near to far.
 ///
 /// A pixel without a surface in one layer has none in those behind it. Colours are linear and unlimited. Refilled
-/// without allocation if its size and number of layers do not grow.
+/// without allocation if its size and number of layers do not grow. A filling that throws on its way leaves no layer.
 class PETZVAL_API LayerSet {
  public:
   LayerSet();
