@@ -454,43 +454,41 @@ double SceneSide::pdf_distant(const AnyRayModel& model, const Ray<double>& ray, 
 
 }  // namespace camera_detail
 
-Importance Camera::importance(const Ray<double>& ray, Wavelength wavelength, double time) const noexcept {
+Importance Camera::importance(const Ray<double>& ray, Wavelength wavelength, double time) const {
   return data_->scene().importance(data_->model, ray, data_->resolved(wavelength), time);
 }
 
 void Camera::importance(std::size_t count, const RayArrays<const double>& rays, const RayWavelengths& wavelengths,
-                        Importance* found, const double* times) const noexcept {
+                        Importance* found, const double* times) const {
   data_->scene().importance(data_->model, count, rays, wavelengths.resolved(data_->model.pupils().primary_wavelength()),
                             times, found);
 }
 
 ImportanceSample Camera::sample_importance(const Vec3<double>& point, double u, double v, Wavelength wavelength,
-                                           double time) const noexcept {
+                                           double time) const {
   return data_->scene().sample_importance(data_->model, point, u, v, data_->resolved(wavelength), time);
 }
 
 void Camera::sample_importance(std::size_t count, const Vec3<double>* points, const double* u, const double* v,
-                               const RayWavelengths& wavelengths, ImportanceSample* found,
-                               const double* times) const noexcept {
+                               const RayWavelengths& wavelengths, ImportanceSample* found, const double* times) const {
   data_->scene().sample_importance(data_->model, count, points, u, v,
                                    wavelengths.resolved(data_->model.pupils().primary_wavelength()), times, found);
 }
 
 ImportanceSample Camera::sample_distant_importance(const Vec3<double>& direction, double u, double v,
-                                                   Wavelength wavelength, double time) const noexcept {
+                                                   Wavelength wavelength, double time) const {
   return data_->scene().sample_distant(data_->model, direction, u, v, data_->resolved(wavelength), time);
 }
 
-double Camera::pdf_importance(const Vec3<double>& point, const Vec3<double>& direction,
-                              Wavelength wavelength) const noexcept {
+double Camera::pdf_importance(const Vec3<double>& point, const Vec3<double>& direction, Wavelength wavelength) const {
   return data_->scene().pdf(data_->model, point, direction, data_->resolved(wavelength));
 }
 
-double Camera::pdf_distant_importance(const Ray<double>& ray, Wavelength wavelength) const noexcept {
+double Camera::pdf_distant_importance(const Ray<double>& ray, Wavelength wavelength) const {
   return data_->scene().pdf_distant(data_->model, ray, data_->resolved(wavelength));
 }
 
-Projection Camera::project(const Vec3<double>& point, Wavelength wavelength, double time) const noexcept {
+Projection Camera::project(const Vec3<double>& point, Wavelength wavelength, double time) const {
   return data_->scene().project(data_->model, point, data_->resolved(wavelength), time);
 }
 

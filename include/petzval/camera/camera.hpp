@@ -86,8 +86,9 @@ struct CameraOptions {
 ///
 /// Immutable, cheap to copy, shared freely between threads. Calls neither allocate nor draw random numbers nor loop
 /// until a ray passes: a lost sample has weight 0 and a fate. Only the first call that concerns rays from the scene
-/// (importance and projection) makes the tables for those, while other threads that want them wait. Lens frame, mm;
-/// host_frame.hpp has the frames of hosts.
+/// (importance and projection) makes the tables for those, while other threads that want them wait; it throws
+/// std::bad_alloc where there is no memory for them, and the next call tries again. Lens frame, mm; host_frame.hpp has
+/// the frames of hosts.
 class PETZVAL_API Camera {
  public:
   /// The lens has its film where film.z_mm says, as with_film() would. A film that is tilted or travels takes four to
@@ -127,28 +128,27 @@ class PETZVAL_API Camera {
   /// The importance of a ray from the scene, given anywhere on its line, in its direction towards the lens. 0 for a
   /// pinhole, which no ray meets by chance; so is pdf_importance(). Only connections meet it.
   /// time: as in CameraSample, here and below.
-  Importance importance(const Ray<double>& ray, Wavelength wavelength = {}, double time = 0) const noexcept;
+  Importance importance(const Ray<double>& ray, Wavelength wavelength = {}, double time = 0) const;
   /// The same for N rays, faster than one by one: within rounding. times: N, or null.
   void importance(std::size_t count, const RayArrays<const double>& rays, const RayWavelengths& wavelengths,
-                  Importance* found, const double* times = nullptr) const noexcept;
+                  Importance* found, const double* times = nullptr) const;
   /// Samples a connection from a scene point (lens frame, mm) to the part of the entrance pupil that it sees.
   ImportanceSample sample_importance(const Vec3<double>& point, double u, double v, Wavelength wavelength = {},
-                                     double time = 0) const noexcept;
+                                     double time = 0) const;
   /// The same for N points, faster than one by one: within rounding. times: N, or null.
   void sample_importance(std::size_t count, const Vec3<double>* points, const double* u, const double* v,
                          const RayWavelengths& wavelengths, ImportanceSample* found,
-                         const double* times = nullptr) const noexcept;
+                         const double* times = nullptr) const;
   /// A connection with light from infinity, of a sun or an environment, in a direction of travel (unit, towards the
   /// lens): the pdf is that of the ray's place in a plane across it, 1/mm^2, and the distance is infinite. The mean of
   /// E We / pdf is the film's mean irradiance by light of the irradiance E across that direction.
   ImportanceSample sample_distant_importance(const Vec3<double>& direction, double u, double v,
-                                             Wavelength wavelength = {}, double time = 0) const noexcept;
+                                             Wavelength wavelength = {}, double time = 0) const;
   /// The density with which sample_importance() gives a direction at a point, 1/sr; the same at all times.
-  double pdf_importance(const Vec3<double>& point, const Vec3<double>& direction,
-                        Wavelength wavelength = {}) const noexcept;
+  double pdf_importance(const Vec3<double>& point, const Vec3<double>& direction, Wavelength wavelength = {}) const;
   /// The same for sample_distant_importance(): of a ray with its direction of travel, given anywhere on its line, among
   /// those of its direction, 1/mm^2 across it.
-  double pdf_distant_importance(const Ray<double>& ray, Wavelength wavelength = {}) const noexcept;
+  double pdf_distant_importance(const Ray<double>& ray, Wavelength wavelength = {}) const;
 
   /// The camera's film side as plain numbers, for hosts that sample on another processor: CameraTables
   /// (camera_tables.hpp) has the layout. Throws Error for a film that is tilted or travels, for weights of the
@@ -156,7 +156,7 @@ class PETZVAL_API Camera {
   std::vector<float> tables() const;
 
   /// Where the camera sees a scene point: the film point and raster position of its chief ray.
-  Projection project(const Vec3<double>& point, Wavelength wavelength = {}, double time = 0) const noexcept;
+  Projection project(const Vec3<double>& point, Wavelength wavelength = {}, double time = 0) const;
 
   /// Of the focal surface and the film offsets, on a grid of 96 x 64 places of the film as the shutter opens, which may
   /// miss folds that are narrower; 0 without them. From 1 on rays of several film points coincide. Film samples stay
