@@ -2,7 +2,10 @@
 #include "json_tree.hpp"
 
 #include <algorithm>
+#include <cstdint>
 #include <limits>
+#include <utility>
+#include <vector>
 
 #include "io/json.hpp"
 #include "petzval/core/error.hpp"
@@ -11,7 +14,7 @@ namespace petzval::inline v0::files_detail {
 namespace {
 
 constexpr std::size_t largest_text = std::size_t{16} << 20;
-constexpr int deepest = 64;
+constexpr std::size_t deepest = 64;
 
 /// Bare words that are no JSON, in quotes.
 std::string with_quoted_numbers(std::string_view text) {
@@ -40,24 +43,83 @@ std::string with_quoted_numbers(std::string_view text) {
   return result;
 }
 
+/// Receives the events of nlohmann's parser, and makes a tree of them where its owner can empty it.
+class Builder {
+ public:
+  Builder(nlohmann::json& root, const std::string& where) : next_(&root), where_(where) {}
+
+  bool null() { return add(nullptr); }
+  bool boolean(bool value) { return add(value); }
+  bool number_integer(std::int64_t value) { return add(value); }
+  bool number_unsigned(std::uint64_t value) { return add(value); }
+  bool number_float(double value, const std::string&) { return add(value); }
+  bool string(std::string& value) { return add(std::move(value)); }
+  bool binary(nlohmann::json::binary_t&) { return false; }  // does not occur in JSON text
+  bool start_object(std::size_t) { return open(nlohmann::json::value_t::object); }
+  bool start_array(std::size_t) { return open(nlohmann::json::value_t::array); }
+  bool end_object() { return close(); }
+  bool end_array() { return close(); }
+  bool key(std::string& name) {
+    next_ = &(*open_.back())[name];
+    return true;
+  }
+  bool parse_error(std::size_t byte, const std::string&, const nlohmann::json::exception& error) {
+    if (dynamic_cast<const nlohmann::json::parse_error*>(&error)) {
+      throw Error(where_ + ": byte " + std::to_string(byte) + " is no JSON, wanted a lens");
+    }
+    throw Error(where_ + ": a number is out of range, wanted finite numbers");
+  }
+
+ private:
+  nlohmann::json& place() {
+    if (open_.empty() || open_.back()->is_object()) return *next_;
+    open_.back()->push_back(nullptr);
+    return open_.back()->back();
+  }
+  template <class Value>
+  bool add(Value&& value) {
+    place() = std::forward<Value>(value);
+    return true;
+  }
+  bool open(nlohmann::json::value_t type) {
+    if (open_.size() >= deepest) {
+      throw Error(where_ + ": more than " + std::to_string(deepest) + " levels, wanted fewer");
+    }
+    nlohmann::json& here = place();
+    here = type;
+    open_.push_back(&here);
+    return true;
+  }
+  bool close() {
+    open_.pop_back();
+    return true;
+  }
+
+  nlohmann::json* next_;               ///< the root, then the member whose key was read last
+  std::vector<nlohmann::json*> open_;  ///< an entry moves only while none of its own is open
+  const std::string& where_;
+};
+
+/// From the leaves on: the destructor of a list or object that has entries allocates, and ends the program where there
+/// is no memory.
+void empty(nlohmann::json& value) noexcept {
+  if (!value.is_structured()) return;
+  for (nlohmann::json& entry : value) empty(entry);
+  value.clear();
+}
+
 }  // namespace
 
-nlohmann::json json_tree(std::string_view text, const std::string& where) {
+// The first constructor is done before the text is read, so that whatever is thrown then finds the destructor.
+JsonTree::JsonTree(std::string_view text, const std::string& where) : JsonTree() {
   if (text.size() > largest_text) {
     throw Error(where + ": " + std::to_string(text.size()) + " bytes, wanted at most " + std::to_string(largest_text));
   }
-  const auto shallow = [&](int depth, nlohmann::json::parse_event_t, nlohmann::json&) {
-    if (depth > deepest) throw Error(where + ": more than " + std::to_string(deepest) + " levels, wanted fewer");
-    return true;
-  };
-  try {
-    return nlohmann::json::parse(with_quoted_numbers(text), shallow);
-  } catch (const nlohmann::json::parse_error& error) {
-    throw Error(where + ": byte " + std::to_string(error.byte) + " is no JSON, wanted a lens");
-  } catch (const nlohmann::json::exception&) {
-    throw Error(where + ": a number is out of range, wanted finite numbers");
-  }
+  Builder builder(root_, where);
+  nlohmann::json::sax_parse(with_quoted_numbers(text), &builder);
 }
+
+JsonTree::~JsonTree() { empty(root_); }
 
 const nlohmann::json* JsonObject::find(const char* key) const {
   const auto found = json.find(key);
@@ -72,8 +134,10 @@ std::optional<double> JsonObject::number(const char* key) const {
   const nlohmann::json* value = find(key);
   if (!value) return {};
   if (value->is_number()) return value->get<double>();
-  if (*value == "Infinity") return std::numeric_limits<double>::infinity();
-  if (*value == "-Infinity") return -std::numeric_limits<double>::infinity();
+  if (const auto* word = value->get_ptr<const std::string*>()) {
+    if (*word == "Infinity") return std::numeric_limits<double>::infinity();
+    if (*word == "-Infinity") return -std::numeric_limits<double>::infinity();
+  }
   refuse(key, io_detail::in_quotes(value->dump()), "a number");
 }
 

@@ -12,9 +12,23 @@
 namespace petzval::inline v0::files_detail {
 
 /// A JSON document of another program, as a tree: Infinity, -Infinity and NaN, which Python writes, are read too, as
-/// strings of these names. Throws Error with the byte for text that is no JSON, for nesting deeper than 64, and for
-/// more than 16 MiB: a tree takes many times the memory of its text.
-nlohmann::json json_tree(std::string_view text, const std::string& where);
+/// strings of these names.
+class JsonTree {
+ public:
+  /// Throws Error with the byte for text that is no JSON, for nesting deeper than 64, and for more than 16 MiB: a tree
+  /// takes many times the memory of its text.
+  JsonTree(std::string_view text, const std::string& where);
+  ~JsonTree();
+  JsonTree(const JsonTree&) = delete;
+  JsonTree& operator=(const JsonTree&) = delete;
+
+  const nlohmann::json& root() const noexcept { return root_; }
+
+ private:
+  JsonTree() = default;
+
+  nlohmann::json root_;
+};
 
 /// One object of a tree, and where it stands, for messages.
 struct JsonObject {

@@ -126,7 +126,8 @@ void LentilReader::lens(const JsonObject& o) {
 }
 
 void LentilReader::read(std::string_view text) {
-  const nlohmann::json document = json_tree(text, in_.where());
+  const JsonTree tree(text, in_.where());
+  const nlohmann::json& document = tree.root();
   if (!document.is_object()) in_.refuse(0, "file", "no object", "an object");
   if (document.contains("optical-elements-patent") || document.contains("optical-elements-adjusted")) {
     return lens({document, "file", in_});

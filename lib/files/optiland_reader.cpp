@@ -234,8 +234,8 @@ void OptilandReader::surfaces(const JsonObject& group) {
 }
 
 void OptilandReader::read(std::string_view text) {
-  const nlohmann::json document = json_tree(text, in_.where());
-  const JsonObject root{document, "file", in_};
+  const JsonTree tree(text, in_.where());
+  const JsonObject root{tree.root(), "file", in_};
   if (root.find("name") && root.find("name")->is_string()) in_.lens.imported->title = root.text("name");
   if (root.find("aperture")) aperture(root.object("aperture"));
   if (root.find("fields")) fields(root.object("fields"));
