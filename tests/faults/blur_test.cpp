@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where memory ends while layers are filled and blurred.
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "allocations.hpp"
+#include "petzval/blur/gather.hpp"
+#include "petzval/blur/layers.hpp"
+#include "petzval/blur/lens_rays.hpp"
+#include "petzval/core/units.hpp"
+
+namespace petzval {
+namespace {
+
+using testing::bits;
+using testing::expect_all_or_nothing;
+
+constexpr float infinity = std::numeric_limits<float>::infinity();
+
+LayerCamera small_camera() { return layer_camera(64, 96, radians(15)); }
+
+/// Rays that all pixels share, or that differ.
+LensRays rays_of(bool shared) {
+  ThinLens lens{.radius_mm = 15, .inverse_focus = 1 / 2000.0};
+  if (!shared) lens.focus = [](const Vec2<double>& at) { return FocusAt{(1 + 0.01 * at.y) / 2000, 1}; };
+  return LensRays::thin(small_camera(), lens, vogel_points(7), {.nearest_mm = 1000});
+}
+
+/// A bright board before a sky.
+void fill(LayerSet& layers, const PeelPlan& plan) {
+  layers.peel(plan, 3, [&](int layer, std::span<const float>, const LayerPlanes& out) -> std::size_t {
+    if (layer > 1) return 0;
+    for (std::size_t i = 0; i < out.red.size(); ++i) {
+      const bool board = layer == 0 && i % 16 < 8;
+      out.inverse_depth[i] = layer == 0 ? (board ? 1 / 1200.0f : 0.0f) : (i % 16 < 8 ? 0.0f : -1.0f);
+      out.red[i] = i % 64 == 0 ? 100.0f : 0.5f, out.green[i] = 0.2f, out.blue[i] = 1;
+    }
+    return out.red.size();
+  });
+}
+LayerSet layers_for(const LensRays& rays) {
+  LayerSet layers;
+  fill(layers, plan_peel(rays, 1000, infinity));
+  return layers;
+}
+
+std::string shown(const LayerSet& layers) {
+  std::string text = std::to_string(layers.columns()) + ' ' + std::to_string(layers.rows());
+  for (int layer = 0; layer < layers.count(); ++layer) text += bits(layers.inverse_depth(layer));
+  return text;
+}
+std::string shown(const Blurred& picture) { return bits(std::span<const float>(picture.rgba)); }
+
+TEST(MemoryEnds, WhileLayersAreFilled) {
+  const PeelPlan plan = plan_peel(rays_of(true), 1000, infinity);
+  const LayerSet whole = layers_for(rays_of(true));
+  const FragmentLists lists = whole.fragments();
+  const std::vector<float> rgba(4 * 64), depths(64, 2000.0f);
+  const LayerImage image{8, 8, rgba, depths};
+  const std::vector<std::function<void(LayerSet&)>> fillings{[&](LayerSet& layers) { fill(layers, plan); },
+                                                             [&](LayerSet& layers) { layers.thin(lists, 0, 4); },
+                                                             [&](LayerSet& layers) {
+                                                               layers.set({&image, 1});
+                                                             }};
+  for (const auto& filling : fillings) {
+    // Grown over the layers of another picture.
+    const LayerImage small{4, 4, std::span(rgba).first(64), std::span(depths).first(16)};
+    expect_all_or_nothing([&] {
+      LayerSet layers;
+      layers.set({&small, 1});
+      try {
+        filling(layers);
+      } catch (...) {
+        if (layers.columns() != 0 || layers.rows() != 0 || layers.count() != 0) return std::string("half filled");
+        throw;
+      }
+      return shown(layers);
+    });
+  }
+}
+
+TEST(MemoryEnds, WhileRaysOfALensAreTabulated) {
+  for (const bool shared : {true, false}) {
+    expect_all_or_nothing([&] {
+      const LensRays rays = rays_of(shared);
+      std::vector<LayerRay> found(rays.count());
+      rays.at(0, 5, 7, found);
+      std::string text;
+      for (const LayerRay& ray : found) text += bits(std::span<const double>(&ray.at.x, 1));
+      return text;
+    });
+  }
+}
+
+TEST(MemoryEnds, InAnyThreadOfABlur) {
+  for (const GatherPath path : {GatherPath::shift_invariant, GatherPath::coherent, GatherPath::general}) {
+    SCOPED_TRACE(name(path));
+    const LensRays rays = rays_of(path == GatherPath::shift_invariant);
+    const LayerSet layers = layers_for(rays);
+    expect_all_or_nothing([&] {
+      Blurred picture;
+      try {
+        gather(layers, rays, {.threads = 4, .path = path}, picture);
+      } catch (...) {
+        if (picture.columns != 0 || picture.rows != 0 || !picture.rgba.empty()) return std::string("half blurred");
+        throw;
+      }
+      return shown(picture);
+    });
+  }
+}
+
+}  // namespace
+}  // namespace petzval

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+// Processes that are killed while they write.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <random>
+#include <string>
+#include <thread>
+
+#include "petzval/core/error.hpp"
+#include "writers.hpp"
+
+namespace petzval {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::bytes_of;
+
+/// A picture of one colour: 300 KB as EXR, of which compression leaves less.
+RgbImage picture(float value) {
+  RgbImage image(160, 160);
+  for (std::size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] = value + static_cast<float>(i * i % 977);
+  return image;
+}
+
+TEST(Killed, AWriterLeavesTheOldFileOrTheNewOne) {
+  const fs::path folder = fs::path(::testing::TempDir()) / ("petzval_killed_" + std::to_string(getpid()));
+  fs::remove_all(folder);
+  fs::create_directories(folder);
+  const fs::path file = folder / "a.exr";
+  const RgbImage one = picture(1), other = picture(2);
+  write_exr(one, file);
+  const std::string ones = bytes_of(file);
+  write_exr(other, file);
+  const std::string others = bytes_of(file);
+
+  std::mt19937 random(1);
+  int found_ones = 0, left_behind = 0;
+  for (int round = 0; round < 60; ++round) {
+    const pid_t child = fork();
+    if (child == 0) {
+      for (;;) write_exr(one, file), write_exr(other, file);
+    }
+    std::this_thread::sleep_for(std::chrono::microseconds(random() % 20'000));
+    ASSERT_EQ(kill(child, SIGKILL), 0);
+    int status = 0;
+    ASSERT_EQ(waitpid(child, &status, 0), child);
+    ASSERT_TRUE(WIFSIGNALED(status)) << "it stopped by itself";
+
+    const std::string found = bytes_of(file);
+    ASSERT_TRUE(found == ones || found == others) << "round " << round << ": " << found.size() << " bytes";
+    found_ones += found == ones;
+    // What it leaves behind has the name that write_file() says, and is in nobody's way.
+    const std::string own = ".petzval-" + std::to_string(child) + '-';
+    for (const std::string& name : testing::names_in(folder)) {
+      if (name == "a.exr") continue;
+      ASSERT_TRUE(name.starts_with(own)) << name;
+      fs::remove(folder / name);
+      ++left_behind;
+    }
+  }
+  EXPECT_GT(found_ones, 0);
+  EXPECT_LT(found_ones, 60);
+  EXPECT_GT(left_behind, 0) << "none was killed while it wrote";
+  fs::remove_all(folder);
+}
+
+}  // namespace
+}  // namespace petzval

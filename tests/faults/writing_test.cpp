@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where memory or the disk ends while a file of any kind is written, and memory while it is read.
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "../message.hpp"
+#include "allocations.hpp"
+#include "writers.hpp"
+
+namespace petzval {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::bits;
+using testing::bytes_of;
+using testing::message;
+using testing::Writer;
+
+/// OpenEXR 3.1 does not survive the end of memory: its constructors forget what they hold, the destructor of a deep
+/// picture that was not opened reads through null.
+bool by_openexr(const std::string& name) { return name.ends_with(".exr"); }
+
+/// A folder for the test.
+class Writing : public ::testing::Test {
+ protected:
+  Writing() {
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
+  ~Writing() override { fs::remove_all(folder_); }
+
+  fs::path folder_ = fs::path(::testing::TempDir()) / ("petzval_writing_" + std::to_string(getpid()));
+};
+
+/// Without operator new.
+void write_old(const fs::path& file) {
+  std::FILE* const out = std::fopen(file.c_str(), "w");
+  std::fputs("old", out);
+  std::fclose(out);
+}
+
+TEST_F(Writing, WithoutMemoryLeavesTheOldFileOrTheNewOne) {
+  for (const Writer& writer : testing::writers()) {
+    if (by_openexr(writer.name)) continue;
+    SCOPED_TRACE(writer.name);
+    const fs::path file = folder_ / writer.name;
+    writer.write(file);
+    const std::string whole = bytes_of(file);
+    testing::expect_all_or_nothing([&] {
+      write_old(file);
+      try {
+        writer.write(file);
+      } catch (...) {
+        if (const std::string found = bytes_of(file); found != "old" && found != whole) return "half: " + found;
+        throw;
+      }
+      return bytes_of(file);
+    });
+    EXPECT_EQ(testing::names_in(folder_), std::vector{writer.name});
+    fs::remove(file);
+  }
+}
+
+TEST_F(Writing, ReadsAllOrNothingWithoutMemory) {
+  std::map<std::string, fs::path> files;
+  for (const Writer& writer : testing::writers()) {
+    files[writer.name] = folder_ / writer.name;
+    writer.write(files[writer.name]);
+  }
+  const auto pixels = [](const RgbImage& image) { return bits(std::span<const float>(image.pixels)); };
+  const std::vector<std::pair<std::string, std::function<std::string(const fs::path&)>>> readers{
+      {"lens.json", [](const auto& file) { return format_prescription(read_prescription(file)); }},
+      {"polynomial.json", [](const auto& file) { return format_ray_polynomial(read_ray_polynomial(file)); }},
+      {"image.png", [&](const auto& file) { return pixels(read_png(file)); }},
+      {"image.png", [](const auto& file) { return bits(std::span<const float>(read_iris_map(file).values)); }},
+      {"image.pfm", [&](const auto& file) { return pixels(read_pfm(file)); }},
+      {"tables.f32", [](const auto& file) { return bits(std::span<const float>(read_floats(file))); }}};
+  for (const auto& [name, read] : readers) {
+    SCOPED_TRACE(name);
+    const auto& file = files[name];
+    const auto& reader = read;
+    testing::expect_all_or_nothing([&] { return reader(file); });
+  }
+}
+
+/// The status of a process that does this work: 0 where it returns true.
+int status_of_process(const std::function<bool()>& work) {
+  const pid_t child = fork();
+  if (child == 0) _exit(work() ? 0 : 1);
+  int status = -1;
+  EXPECT_EQ(waitpid(child, &status, 0), child);
+  return status;
+}
+
+TEST_F(Writing, OnAFullDiskSaysSoAndLeavesTheOldFile) {
+  for (const Writer& writer : testing::writers()) {
+    SCOPED_TRACE(writer.name);
+    const fs::path file = folder_ / writer.name;
+    write_file("old", file);
+    // A process that may write files of 256 bytes stops in the middle.
+    const auto refused = [&] {
+      signal(SIGXFSZ, SIG_IGN);
+      const rlimit limit{256, 256};
+      setrlimit(RLIMIT_FSIZE, &limit);
+      return message([&] { writer.write(file); }).starts_with(file.string() + ": cannot be written (");
+    };
+    EXPECT_EQ(status_of_process(refused), 0);
+    EXPECT_EQ(bytes_of(file), "old");
+    EXPECT_EQ(testing::names_in(folder_), std::vector{writer.name});
+    fs::remove(file);
+    if (fs::exists("/dev/full")) {
+      EXPECT_TRUE(message([&] { writer.write("/dev/full"); }).starts_with("/dev/full: cannot be written ("));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace petzval
