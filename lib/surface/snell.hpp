@@ -61,6 +61,9 @@ Refracted<T> refract(const Vec<T>& direction, const Vec<T>& normal, const T& cos
 }
 
 /// The same for a unit normal on either side; the result has unit length.
+/// Accuracy: |error| cos(refraction) <= 4 eps, 0.91 at worst in tests/surface. Proven where the ratio of the indices is
+/// within 1.8, the sine of the larger angle within 0.9 and the normal within 44 degrees of the axis (`sh tests/run.sh
+/// -R Certified`): 16 eps into the denser medium, 24 eps (n / n')^2 into the thinner one.
 template <class T>
 Refracted<T> refract(const Vec<T>& direction, const Vec<T>& normal, const Interface<Storage<T>>& interface) noexcept {
   using R = Storage<T>;
