@@ -70,7 +70,8 @@ class OsloReader {
     start_surface(line);
   }
   void start_surface(int line) {
-    if (lens_.surfaces.size() > most_surfaces) throw Error(in_.where() + ": more than 10000 surfaces, wanted fewer");
+    if (lens_.surfaces.size() > most_surfaces + 1)
+      throw Error(in_.where() + ": more than 10000 surfaces, wanted fewer");
     lens_.surfaces.back().line = std::max(lens_.surfaces.back().line, 1);
     lens_.surfaces.emplace_back().line = has_next_.value_or(false) ? line : 0;
   }

@@ -377,7 +377,7 @@ void ZemaxReader::primary(Words words) {
 
 void ZemaxReader::new_surface(Words words) {
   const int number = whole(words, 1, 0, 1'000'000);
-  if (lens_.surfaces.size() >= most_surfaces) {
+  if (lens_.surfaces.size() >= most_surfaces + 2) {  // with object and image
     throw Error(in_.where() + ": more than " + std::to_string(most_surfaces) + " surfaces, wanted fewer");
   }
   if (static_cast<std::size_t>(number) != lens_.surfaces.size()) {

@@ -107,10 +107,9 @@ std::optional<double> aperture_factor(const Prescription& prescription, double f
 void check_stop(const Lens& lens, Findings& findings) {
   constexpr double well_before = 0.7;
   if (!lens.stop()) return;
-  const auto margin = [&](std::size_t i) {
-    const double height = std::abs(ray_matrix_to(lens, i, {}, main_meridian(lens)).a);
-    return lens.surfaces()[i].semi_diameter / height;  // of a ray that enters at height 1
-  };
+  const auto to = ray_matrices_to(lens, {}, main_meridian(lens));
+  // Of a ray that enters at height 1.
+  const auto margin = [&](std::size_t i) { return lens.surfaces()[i].semi_diameter / std::abs(to[i].a); };
   const double of_stop = margin(*lens.stop());
   std::size_t first = *lens.stop();
   for (std::size_t i = 0; i < lens.surface_count(); ++i) {

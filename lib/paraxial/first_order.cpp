@@ -60,6 +60,19 @@ RayMatrix ray_matrix_to(const Lens& lens, std::size_t surface, Wavelength wavele
       .then(transfer_to(lens, surface, signed_index(lens, surface, wavelength)));
 }
 
+std::vector<RayMatrix> ray_matrices_to(const Lens& lens, Wavelength wavelength, Meridian meridian) {
+  std::vector<RayMatrix> result;
+  result.reserve(lens.surface_count());
+  RayMatrix m;
+  for (std::size_t i = 0; i < lens.surface_count(); ++i) {
+    const VertexSurface s = at_vertex(lens, i, wavelength, meridian);
+    if (i > 0) m = m.then(transfer_to(lens, i, s.n_in));
+    result.push_back(m);
+    m = m.then(s.matrix());
+  }
+  return result;
+}
+
 FirstOrder first_order(const Lens& lens, Wavelength wavelength, Meridian meridian) {
   const std::size_t count = lens.surface_count();
   FirstOrder result;

@@ -17,9 +17,10 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 std::size_t limiting_surface(const Lens& lens, Wavelength wavelength) {
   std::size_t limiting = lens.surface_count();
   double least = infinity;
+  const auto in_y = ray_matrices_to(lens, wavelength, Meridian::y),
+             in_x = ray_matrices_to(lens, wavelength, Meridian::x);
   for (std::size_t i = 0; i < lens.surface_count(); ++i) {
-    const double height = std::max(std::abs(ray_matrix_to(lens, i, wavelength, Meridian::y).a),
-                                   std::abs(ray_matrix_to(lens, i, wavelength, Meridian::x).a));
+    const double height = std::max(std::abs(in_y[i].a), std::abs(in_x[i].a));
     const double semi_diameter = lens.surfaces()[i].semi_diameter;
     const double entering = semi_diameter == 0 ? 0 : semi_diameter / height;
     if (entering < least) {

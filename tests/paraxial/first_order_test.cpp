@@ -80,6 +80,12 @@ TEST(RayMatrix, FollowedByItsInverseIsTheIdentity) {
 TEST(RayMatrix, OfPartsMakesTheMatrixOfTheWhole) {
   const Lens lens = data_lens("double_gauss_100mm_f1.35");
   const RayMatrix whole = ray_matrix(lens, 0, lens.surface_count());
+  const auto all = ray_matrices_to(lens);
+  ASSERT_EQ(all.size(), lens.surface_count());
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const RayMatrix one = ray_matrix_to(lens, i);
+    EXPECT_TRUE(all[i].a == one.a && all[i].b == one.b && all[i].c == one.c && all[i].d == one.d) << i;
+  }
   const RayMatrix parts = ray_matrix_to(lens, 5).then(ray_matrix(lens, 5, 99));
   EXPECT_NEAR(parts.a, whole.a, 1e-14);
   EXPECT_NEAR(parts.b, whole.b, 1e-12);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <vector>
 
 #include "petzval/core/export.hpp"
 #include "petzval/core/version.hpp"
@@ -49,6 +50,9 @@ PETZVAL_API RayMatrix ray_matrix(const Lens& lens, std::size_t first, std::size_
 /// From the first vertex (before refraction) to the vertex of `surface`, before refraction there too.
 PETZVAL_API RayMatrix ray_matrix_to(const Lens& lens, std::size_t surface, Wavelength wavelength = {},
                                     Meridian meridian = Meridian::y);
+/// The same for each surface, in time proportional to their number.
+PETZVAL_API std::vector<RayMatrix> ray_matrices_to(const Lens& lens, Wavelength wavelength = {},
+                                                   Meridian meridian = Meridian::y);
 
 /// The first-order data of a lens: all z in the lens frame, lengths and distances signed, all in mm.
 ///
