@@ -10,8 +10,11 @@ set -eu
 root=$(CDPATH= cd -- "$(dirname -- "$0")/.." && pwd)
 . "$root/cmake/build.sh"
 
-# table MODULE/CASES...: what these cases report (tests/report.hpp), a row for each name in the order of appearance.
+# table COLUMNS MODULE/CASES...: what these cases report (tests/report.hpp), a row for each name in the order of appearance.
+# COLUMNS are divided by ";"; what follows a comma is for the head alone.
 table() {
+  columns=$1
+  shift
   files=
   for cases; do
     module=${cases%%/*}
@@ -21,11 +24,12 @@ table() {
       { cat "$work/log" >&2; exit 1; }
     shift
   done
-  awk -F '"' '
+  awk -F '"' -v list="$columns" '
     BEGIN {
-      split("float, double, batch float, batch double", columns, ", ")
-      print "\n| case | float | double | batch float, fast / reproducible | batch double, fast / reproducible | bound |"
-      print "|---|---|---|---|---|---|"
+      count = split(list, columns, ";")
+      head = "\n| case |"; line = "|---|"
+      for (c = 1; c <= count; ++c) { head = head " " columns[c] " |"; line = line "---|"; sub(/,.*/, "", columns[c]) }
+      print head " bound |\n" line "---|"
     }
     /<property name=".* [|] / {
       split($2, key, " [|] ")
@@ -36,7 +40,7 @@ table() {
     END {
       for (i = 1; i <= rows; ++i) {
         line = "| " row[i] " |"
-        for (c = 1; c <= 4; ++c) line = line " " cell[row[i], columns[c]] " |"
+        for (c = 1; c <= count; ++c) line = line " " cell[row[i], columns[c]] " |"
         print line " " bound[row[i]] " |"
       }
     }' $files
@@ -47,12 +51,15 @@ build -DPETZVAL_BUILD_TESTS=ON -DPETZVAL_BUILD_EXAMPLES=ON -DCMAKE_COMPILE_WARNI
 if [ "${1-}" = --report ]; then
   work=$(mktemp -d)
   trap 'rm -rf "$work"' EXIT
+  by_type='float;double;batch float, fast / reproducible;batch double, fast / reproducible'
   printf '\nAccuracy'
-  table 'surface/Quadric*' 'surface/Asphere*' 'surface/Snell*' 'trace/ReferenceRays*' 'trace/BatchReference*' \
+  table "$by_type" 'surface/Quadric*' 'surface/Asphere*' 'surface/Snell*' 'trace/ReferenceRays*' 'trace/BatchReference*' \
     'trace/Laws*' 'trace/Derivative*' 'trace/DifferentialsOf*AreThoseOfExactRays' \
     'trace/DifferentialsOf*-*AreThoseOfExactRays' 'pupil/Aim*'
   printf '\nLimits'
-  table 'trace/Extremes*'
+  table "$by_type" 'trace/Extremes*'
+  printf '\nMemory'
+  table 'text, MB;beside it, MB' 'files/LargestInputs*'
   exit
 fi
 echo "== Testing"

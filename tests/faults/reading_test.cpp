@@ -14,6 +14,7 @@
 #include "petzval/core/error.hpp"
 #include "petzval/files/lens_file.hpp"
 #include "petzval/io/lens_json.hpp"
+#include "petzval/media/glass.hpp"
 #include "petzval/paraxial/first_order.hpp"
 
 namespace petzval {
@@ -86,6 +87,13 @@ TEST(MemoryEnds, WhileTheGlassesAreReadForTheFirstLens) {
   expect_all_or_nothing_at_first([&] {
     const Lens lens = compile(parse_lens(text, "x"));
     return std::to_string(first_order(lens).effective_focal_length);
+  });
+}
+
+TEST(MemoryEnds, WhileACatalogueIsRead) {
+  expect_all_or_nothing([] {
+    const auto glasses = GlassCatalogue::load(std::filesystem::path(PETZVAL_TEST_DATA) / "glass");
+    return std::to_string(glasses.glasses().size()) + glasses.glasses().back().name;
   });
 }
 

@@ -83,8 +83,8 @@ void expect_frugal(const std::string& what, const std::string& text,
   const double taken = peak_of(text, read);
   EXPECT_GE(taken, 0);
   EXPECT_LE(taken, 512);
-  testing_report::put(what, "text MB", static_cast<double>(text.size()) / megabyte, "512 MB");
-  testing_report::put(what, "beside it MB", taken, "512 MB");
+  testing_report::put(what, "text", static_cast<double>(text.size()) / megabyte, "512 MB");
+  testing_report::put(what, "beside it", taken, "512 MB");
 }
 
 class LargestInputs : public ::testing::Test {
