@@ -564,6 +564,17 @@ TEST(FilmPupilTable, KnowsTheSolidAngleOfAPupil) {
   }
 }
 
+TEST(FilmPupilTable, KnowsTheLightThatARingLetsThrough) {
+  for (const char* id :
+       {"catadioptric_mangin_1000mm_f7.5", "catadioptric_maksutov_1280mm_f14.4", "mirror_newton_200mm_f8"}) {
+    const Lens lens = data_lens(id);
+    const FilmPupilTable table = FilmPupilTable::equal_area(lens, 7.5);
+    for (const FilmPoint& film : {FilmPoint{0, 0}, FilmPoint{3, -4}}) {
+      EXPECT_NEAR(table.projected_solid_angle(film) / film_irradiance(lens, film), 1, 2e-4) << id;
+    }
+  }
+}
+
 // The ray of a virtual film point V through q meets the upright film in V - (slope . V) q.
 TEST(FilmPupilTable, KnowsTheImagesOfATiltedFilmExactly) {
   const FilmTilt tilt{.slope_x = 0.012, .slope_y = -0.02, .radius = 8};
