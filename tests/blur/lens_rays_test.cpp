@@ -118,6 +118,20 @@ TEST(Rays, AreRefusedWhereOptionsDoNotFit) {
   says(vogel_points(6), {.nearest_mm = -1}, "nearest depth is -1");
 }
 
+// Pencils that vary over the picture in a way that no table follows, each through its place at the depth in focus.
+TEST(Rays, AreJudgedAtTheDepthWhereTheyMeet) {
+  const auto source = [](int, const Vec2<double>& raster, std::span<const PupilPoint> points,
+                         std::span<LayerRay> found) {
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const double turn = 2 * std::numbers::pi * points[i].u, wide = 2e4 * (1 + std::cos(0.3 * raster.x));
+      const Vec2<double> slope{wide * std::cos(turn), wide * std::sin(turn)};
+      found[i] = {raster - in_focus * slope, slope, 1};
+    }
+  };
+  const LensRays rays(small_camera(), vogel_points(16), 1, source, {.nearest_mm = 1000});
+  EXPECT_LT(rays.error_px(), 1e-3);
+}
+
 class CameraRays : public ::testing::TestWithParam<ModelKind> {};
 
 TEST_P(CameraRays, AreThoseOfTheCamera) {
