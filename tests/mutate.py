@@ -44,7 +44,7 @@ STATEMENT = re.compile(
 ASIDE = re.compile(r"\bstatic_assert\b|\bthrow\b|\bError\b|\busing\b|\boperator\b|\brequires\b|\bconcept\b|\benum\b|\btemplate\b"
                    r"|\bvirtual\b|\breserve\(|\bcase\b|@")
 
-Mutant = collections.namedtuple("Mutant", "module file line before after start end text")
+Mutant = collections.namedtuple("Mutant", "module file line before after text key")
 
 
 def blank(match):
@@ -116,12 +116,16 @@ def mutant(module, name, text, place, chance):
     start, end, others = place
     after = text[:start] + chance.choice(others) + text[end:]
     first, last = text.rfind("\n", 0, start) + 1, text.find("\n", end)
-    behind = len(after) - len(text)
-    return Mutant(module, name, text.count("\n", 0, start) + 1, text[first:last], after[first:last + behind], start, end, after)
+    before, changed = text[first:last], after[first:last + len(after) - len(text)]
+    alike = [match.start() for match in re.finditer(rf"^{re.escape(before)}$", text, re.M)]
+    which = name if len(alike) == 1 else f"{name}#{alike.index(first) + 1}"
+    return Mutant(module, name, text.count("\n", 0, start) + 1, before, changed, after,
+                  key(which, before.splitlines(), changed.splitlines()))
 
 
 def read_equivalent(path):
-    """Blocks between blank lines: the file, -lines, +lines, then the reason in lines that are indented."""
+    """Blocks between blank lines: the file, -lines, +lines, then the reason in lines that are indented. file#2: the second of
+    the lines that are alike."""
     known = {}
     for block in re.split(r"\n\s*\n", path.read_text()):
         lines = [line for line in block.splitlines() if line and not line.startswith("#")]
@@ -295,7 +299,7 @@ def main():
             if tests.objects[str(options.copy / change.file)] > MOST_OBJECTS:
                 continue
             start = time.monotonic()
-            if key(change.file, change.before.splitlines(), change.after.splitlines()) in known:
+            if change.key in known:
                 fate = "equivalent"
             else:
                 by = tests.killer(change)
