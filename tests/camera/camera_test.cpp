@@ -20,6 +20,7 @@
 #include "camera_samples.hpp"
 #include "core/low_discrepancy.hpp"
 #include "core/text.hpp"
+#include "petzval/camera/camera_tables.hpp"
 #include "petzval/camera/ray_model.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/focus/focus.hpp"
@@ -444,6 +445,20 @@ TEST(Camera, SeesBehindItselfWithAFisheye) {
 TEST(Camera, TakesNoOptionsForTheDefaultOnes) {
   const Lens lens = testing::data_lens("tessar_100mm_f2.8");
   EXPECT_EQ(Camera(lens, {}, {}).model(), Camera(lens, {}).model());
+}
+
+// All of a list but its first number: a device would read beyond its tables.
+TEST(CameraTables, AreRefusedWhereListsEndBeyondThem) {
+  for (const char* id : {"double_gauss_100mm_f2.0", "anamorphic_60mm_2x"}) {
+    const Camera camera(petzval::testing::data_lens(id), {}, {.model = ModelKind::exact_float});
+    const std::vector<float> tables = camera.tables();
+    for (const auto list : {CameraTables::pupil_list, CameraTables::rays}) {
+      std::vector<float> late = tables;
+      late[list] = static_cast<float>(tables.size() - 1);
+      const std::string said = petzval::testing::message([&] { CameraTables::check(late, "tables"); });
+      EXPECT_NE(said.find("that begins at " + std::to_string(tables.size() - 1)), std::string::npos) << id << said;
+    }
+  }
 }
 
 TEST(Camera, RefusesModelsThatAreNone) {
