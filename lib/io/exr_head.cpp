@@ -4,10 +4,31 @@
 #include <cstdint>
 #include <fstream>
 #include <string>
+#include <string_view>
+#include <utility>
 
 #include "petzval/core/error.hpp"
 
 namespace petzval::inline v0::io_detail {
+namespace {
+
+/// Types of which OpenEXR reads so many bytes, whatever size the head states.
+constexpr std::pair<std::uint64_t, std::string_view> fixed_sizes[] = {
+    {1, " compression deepImageState envmap lineOrder "},
+    {4, " float int "},
+    {8, " double rational timecode v2f v2i "},
+    {9, " tiledesc "},
+    {12, " v3f v3i "},
+    {16, " box2f box2i v2d "},
+    {24, " v3d "},
+    {28, " keycode "},
+    {32, " chromaticities "},
+    {36, " m33f "},
+    {64, " m44f "},
+    {72, " m33d "},
+    {128, " m44d "}};
+
+}  // namespace
 
 void check_exr_attributes(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
@@ -18,10 +39,11 @@ void check_exr_attributes(const std::filesystem::path& file) {
     in.read(reinterpret_cast<char*>(b), 4);
     return std::uint32_t{b[0]} | std::uint32_t{b[1]} << 8 | std::uint32_t{b[2]} << 16 | std::uint32_t{b[3]} << 24;
   };
-  // A name ends with 0. OpenEXR has at most 255 characters.
+  // A name ends with 0. OpenEXR has at most 255 characters. Messages are to stay in one line.
   const auto text = [&] {
     std::string name;
-    for (int c = in.get(); c > 0 && name.size() < 256; c = in.get()) name += static_cast<char>(c);
+    for (int c = in.get(); c > 0 && name.size() < 256; c = in.get())
+      name += c >= ' ' && c < 127 ? static_cast<char>(c) : '?';
     return name;
   };
   if (without || word() != 20000630) return;
@@ -34,13 +56,32 @@ void check_exr_attributes(const std::filesystem::path& file) {
       if (in.peek() == 0) return;
       continue;
     }
-    text();
-    const std::uint32_t bytes = word();
+    const std::string type = text();
+    const std::uint64_t bytes = word(), begin = static_cast<std::uint64_t>(in.tellg());
+    if (!in) return;
     if (bytes > size) {
       throw Error("attribute " + name + " claims " + std::to_string(bytes) + " bytes of a file of " +
                   std::to_string(size) + ", wanted one within it");
     }
-    in.seekg(bytes, std::ios::cur);
+    // What OpenEXR reads of it; it goes on from there.
+    std::uint64_t read = bytes;
+    for (const auto& [length, types] : fixed_sizes) {
+      if (types.find(" " + type + " ") != types.npos) read = length;
+    }
+    if (type == "chlist") {
+      while (in && !text().empty()) in.seekg(16, std::ios::cur);
+      read = in ? static_cast<std::uint64_t>(in.tellg()) - begin : 0;
+    } else if (type == "preview") {
+      const std::uint64_t width = word(), height = word();
+      read = width > size || height > size ? size : 8 + 4 * width * height;
+    } else if (type == "stringvector") {
+      for (read = 0; in && read < bytes; in.seekg(static_cast<std::streamoff>(begin + read))) read += 4 + word();
+    }
+    if (read != bytes) {
+      throw Error("attribute " + name + " of type " + type + " claims " + std::to_string(bytes) + " bytes, wanted " +
+                  std::to_string(read));
+    }
+    in.seekg(static_cast<std::streamoff>(begin + bytes));
   }
 }
 

@@ -36,9 +36,10 @@ double term_height(const LensSurface& s, double slope) {
 /// unlimited one ends where the strongest term alone has a slope of one.
 double height(const LensSurface& s) {
   constexpr double runs_away = 1e6;  // whatever the other terms are
+  constexpr double least = 1e-12;    // mm; of less, float has no square
   const double curvature = std::abs(s.curvature) * std::sqrt(std::max(0.0, 1 + s.conic));
   double limit = curvature > 0 ? 1 / curvature : std::numeric_limits<double>::infinity();
-  if (s.semi_diameter > 0) limit = std::min(limit, s.semi_diameter);
+  if (s.semi_diameter > 0) limit = std::min(limit, std::max(s.semi_diameter, least));
   limit = std::min(limit, term_height(s, std::isfinite(s.semi_diameter) ? runs_away : 1));
   return std::isfinite(limit) && limit > 0 ? limit : 1.0;
 }

@@ -76,7 +76,15 @@ inline Blurred reference_gather(const LayerSet& layers, const LensRays& rays, do
             }
           }
         }
-        colour[channel] = sum / known * total / static_cast<double>(found.size());
+        if (known > 0) {
+          colour[channel] = sum / known * total / static_cast<double>(found.size());
+          continue;
+        }
+        // Of rays that met what nothing is known of, the first layer is the nearest thing.
+        const auto below = static_cast<std::size_t>((row + overscan) * layers.columns() + column + overscan);
+        if (layers.inverse_depth(0)[below] < 0) continue;
+        colour[channel] = layers.channel(0, channel)[below] * total / static_cast<double>(found.size());
+        alpha += layers.channel(0, 3)[below] / 3;
       }
       for (const double c : colour) picture.rgba.push_back(static_cast<float>(c));
       picture.rgba.push_back(static_cast<float>(alpha));

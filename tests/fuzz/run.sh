@@ -4,9 +4,10 @@
 #
 #   sh tests/fuzz/run.sh --runs N [--targets zemax,trace] [--jobs J]
 #
-# N inputs for each target, J targets at once (by default 1). An input may take 2 s and 512 MB. Exit status 1 where one
-# crashes, breaks a law or takes more; it is kept in BUILD_DIR/found/TARGET, and BUILD_DIR/tests/fuzz/fuzz_replay TARGET
-# FILE runs it again. Inputs that reach something new stay in BUILD_DIR/corpus/TARGET, where the next run starts.
+# N inputs for each target, J targets at once (by default 1). An input may take 512 MB, and 10 s: the sanitizers make it ten
+# times as slow and more. Exit status 1 where one crashes, breaks a law or takes more; it is kept in BUILD_DIR/found/TARGET,
+# and BUILD_DIR/tests/fuzz/fuzz_replay TARGET FILE runs it again. Inputs that reach something new stay in
+# BUILD_DIR/corpus/TARGET, where the next run starts.
 #
 # BUILD_DIR=... builds elsewhere than in build/fuzz/.
 set -eu
@@ -45,7 +46,7 @@ trap 'exit 130' INT TERM
 fuzz() {
   mkdir -p "$BUILD_DIR/corpus/$1" "$BUILD_DIR/found/$1"
   status=0
-  "$programs/fuzz_$2" "$BUILD_DIR/corpus/$1" "$BUILD_DIR/seeds/$1" -runs="$runs" -max_len="$3" -rss_limit_mb=512 -timeout=2 \
+  "$programs/fuzz_$2" "$BUILD_DIR/corpus/$1" "$BUILD_DIR/seeds/$1" -runs="$runs" -max_len="$3" -rss_limit_mb=512 -timeout=10 \
     -artifact_prefix="$BUILD_DIR/found/$1/" -print_final_stats=1 >"$logs/$1" 2>&1 || status=$?
   echo "$status" >"$logs/$1.status"
 }

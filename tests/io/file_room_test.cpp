@@ -54,6 +54,14 @@ TEST(FileRoom, IsAskedByEveryReaderOfPictures) {
   write_bytes(file, with_width(bytes_of(file), 10'000'000));
   EXPECT_NE(testing::message([&] { read_exr(file); }).find("claims 60000000 values"), std::string::npos);
 
+  // OpenEXR reads 16 bytes, whatever the head says, and takes what follows for the next attribute.
+  write_exr(RgbImage(3, 2), file);
+  std::string longer = bytes_of(file);
+  longer[longer.find("box2i") + 6] = 17;
+  write_bytes(file, longer);
+  EXPECT_NE(testing::message([&] { read_exr(file); }).find("of type box2i claims 17 bytes, wanted 16"),
+            std::string::npos);
+
   write_deep_exr({.columns = 1, .rows = 1, .offsets = {0, 1}, .fragments = {{.depth_mm = 5}}}, deep);
   write_bytes(deep, with_width(bytes_of(deep), 10'000'000));
   EXPECT_NE(testing::message([&] { read_deep_exr(deep); }).find("claims 10000000 x 1 pixels"), std::string::npos);

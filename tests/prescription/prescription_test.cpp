@@ -73,6 +73,14 @@ TEST(Validate, NumbersThatNoSurfaceHasAreRefusedByNameAndSurface) {
   EXPECT_EQ(refusal([](auto& p) { p.surfaces[0].radius = 5e-324; }), "s: surface 0: radius is 5e-324" + finite_radius);
   EXPECT_EQ(refusal([](auto& p) { p.surfaces[0].thickness = 1e10; }),
             "s: surface 0: thickness is 1e+10" + finite_thickness);
+  for (const char* conic : {"1e+34", "-1e+34", "1e+300"}) {
+    EXPECT_EQ(refusal([&](auto& p) {
+                p.surfaces[1].conic = std::stod(conic);
+                p.surfaces[1].aspheric = {{4, 1e-6}};
+              }),
+              "s: surface 1: conic is " + std::string(conic) +
+                  ", wanted one with a radius / sqrt|1 + conic| of at least 1e-15 mm");
+  }
   EXPECT_EQ(refusal([](auto& p) { p.surfaces[0].medium.nd = 0; }),
             "s: surface 0: nd is 0, wanted an index above 0 and up to 5");
   EXPECT_EQ(refusal([](auto& p) { p.surfaces[0].medium.nd = -1.5; }),

@@ -170,6 +170,8 @@ TEST(Asphere, IsDescribedAsFarAsItIsNotSteep) {
     const Asphere<double> a = described(extreme);
     EXPECT_TRUE(a.height > 0 && a.steepest < 5 && std::isfinite(a.highest - a.lowest)) << order;
   }
+  runaway.semi_diameter = 1e-200;  // its square is none
+  EXPECT_EQ(described(runaway).height, 1e-12);
   for (const Named& named : surfaces()) {
     const double e = 1 + named.row.conic;
     const bool ends = named.row.radius != 0 && e > 0;
