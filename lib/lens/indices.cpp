@@ -87,8 +87,8 @@ Indices indices(const Prescription& prescription, std::span<const double> wavele
     };
     const auto sound_index_at = [&](double nm) {
       const double n = index_at(nm);
-      if (!(n > 0 && n <= 5))
-        throw Error(here + ": index at " + to_text(nm) + " nm is " + to_text(n) + ", wanted 0 < n <= 5");
+      if (!(n >= 0.1 && n <= 5))
+        throw Error(here + ": index at " + to_text(nm) + " nm is " + to_text(n) + ", wanted 0.1 <= n <= 5");
       return n;
     };
     for (std::size_t w = 0; w < wavelengths_nm.size(); ++w) {

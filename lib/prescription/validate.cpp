@@ -30,7 +30,7 @@ void check_nominal(const std::string& where, const char* what, const std::option
 }
 
 void check_medium(const std::string& where, const Medium& medium) {
-  if (!(medium.nd > 0 && medium.nd <= 5)) refuse(where, "nd", medium.nd, "an index above 0 and up to 5");
+  if (!(medium.nd >= 0.1 && medium.nd <= 5)) refuse(where, "nd", medium.nd, "an index of 0.1 to 5");
   if (medium.vd && !(*medium.vd > 0 && std::isfinite(*medium.vd)))
     refuse(where, "vd", *medium.vd, "a finite number above 0");
 }

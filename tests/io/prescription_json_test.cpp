@@ -331,7 +331,7 @@ TEST(PrescriptionJson, UnknownAndDuplicateKeysAreRefused) {
 
 TEST(PrescriptionJson, WhatIsNotALensIsRefusedWithTheSurface) {
   EXPECT_EQ(refusal(with_surface(R"({"radius": 50, "thickness": 5, "nd": -1})")),
-            "x.json: surface 1: nd is -1, wanted an index above 0 and up to 5");
+            "x.json: surface 1: nd is -1, wanted an index of 0.1 to 5");
   EXPECT_EQ(refusal(with_member(R"("semi_diameter": -3)")),
             "x.json: surface 1: semi_diameter is -3, wanted 0 mm or more");
   EXPECT_EQ(refusal(file(R"("zoom": {"variable_gaps": {"1": 5}}, "surfaces": [)" + row + "]")),

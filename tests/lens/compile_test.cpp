@@ -215,7 +215,7 @@ TEST(Compile, IndicesNoGlassHasAreRefused) {
               compile(doublet(unknown), std::array{d},
                       {.glasses = &odd, .index_policy = IndexPolicy::catalogue, .missing_glass = MissingGlass::abbe});
             }),
-            "pair: surface 1: index at 587.5618 nm is 6, wanted 0 < n <= 5");
+            "pair: surface 1: index at 587.5618 nm is 6, wanted 0.1 <= n <= 5");
 }
 
 TEST(Compile, DispersionHasAName) {

@@ -52,7 +52,7 @@ TEST(Validate, NumbersThatNoSurfaceHasAreRefusedByNameAndSurface) {
     EXPECT_EQ(refusal([&](auto& p) { p.surfaces[1].conic = value; }),
               "s: surface 1: conic" + is + ", wanted a finite number");
     EXPECT_EQ(refusal([&](auto& p) { p.surfaces[0].medium.nd = value; }),
-              "s: surface 0: nd" + is + ", wanted an index above 0 and up to 5");
+              "s: surface 0: nd" + is + ", wanted an index of 0.1 to 5");
     EXPECT_EQ(refusal([&](auto& p) { p.surfaces[0].medium.vd = value; }),
               "s: surface 0: vd" + is + ", wanted a finite number above 0");
     EXPECT_EQ(refusal([&](auto& p) { p.surfaces[0].obscuration_semi_diameter = value; }),
@@ -68,7 +68,7 @@ TEST(Validate, NumbersThatNoSurfaceHasAreRefusedByNameAndSurface) {
     EXPECT_EQ(refusal([&](auto& p) { p.reference_wavelength_nm = value; }),
               "s: reference_wavelength_nm" + is + ", wanted 10 to 100000 nm");
     EXPECT_EQ(refusal([&](auto& p) { p.object_space.nd = value; }),
-              "s: object_space: nd" + is + ", wanted an index above 0 and up to 5");
+              "s: object_space: nd" + is + ", wanted an index of 0.1 to 5");
   }
   EXPECT_EQ(refusal([](auto& p) { p.surfaces[0].radius = 5e-324; }), "s: surface 0: radius is 5e-324" + finite_radius);
   EXPECT_EQ(refusal([](auto& p) { p.surfaces[0].thickness = 1e10; }),
@@ -82,11 +82,11 @@ TEST(Validate, NumbersThatNoSurfaceHasAreRefusedByNameAndSurface) {
                   ", wanted one with a radius / sqrt|1 + conic| of at least 1e-15 mm");
   }
   EXPECT_EQ(refusal([](auto& p) { p.surfaces[0].medium.nd = 0; }),
-            "s: surface 0: nd is 0, wanted an index above 0 and up to 5");
+            "s: surface 0: nd is 0, wanted an index of 0.1 to 5");
   EXPECT_EQ(refusal([](auto& p) { p.surfaces[0].medium.nd = -1.5; }),
-            "s: surface 0: nd is -1.5, wanted an index above 0 and up to 5");
+            "s: surface 0: nd is -1.5, wanted an index of 0.1 to 5");
   EXPECT_EQ(refusal([](auto& p) { p.surfaces[0].medium.nd = 5.1; }),
-            "s: surface 0: nd is 5.1, wanted an index above 0 and up to 5");
+            "s: surface 0: nd is 5.1, wanted an index of 0.1 to 5");
   EXPECT_EQ(refusal([](auto& p) { p.surfaces[0].semi_diameter = -1; }),
             "s: surface 0: semi_diameter is -1, wanted 0 mm or more");
   EXPECT_EQ(refusal([](auto& p) { p.surfaces[0].semi_diameter = nan; }),
