@@ -359,15 +359,21 @@ PETZVAL_INLINE Places chosen(Mask mask, Places a, Places b) noexcept {
 #endif
 }
 
+/// A pixel for each of the lanes given. Others are beyond the ends of their rays, where there may be no pixels: they
+/// take the first one.
+template <class Visit>
+PETZVAL_INLINE void load_anywhere(Places offsets, Mask lanes, const Visit& visit) noexcept {
+  visit(Anywhere{chosen(lanes, offsets, Places{})}, lanes);
+}
+
 /// The pixels of lanes beside each other: mostly as far beside their own for all, which one load finds.
 template <class Visit>
 PETZVAL_INLINE void load_beside(Places offsets, Mask lanes, const Visit& visit) noexcept {
   const std::int32_t first = offsets[0];
   if (!any(without(lanes, lanes_of(offsets, first)))) return visit(Beside{first}, lanes);
-  // Those of other lanes may lie anywhere.
   Places own;
   for (int i = 0; i < width; ++i) own[i] = i;
-  visit(Anywhere{chosen(lanes, offsets, first + Places{}) + own}, lanes);
+  load_anywhere(offsets + own, lanes, visit);
 }
 
 template <bool opaque, int colours>
@@ -437,7 +443,7 @@ std::uint64_t follow_general(const TileJob& job, const DifferentRays& rays) noex
           const LayerWindow window = job.window.from(row, column);
           Found<opaque, colours> found(lanes);
           const auto load_pixels = [&](Numbers w, Mask here, const auto& visit) {
-            visit(Anywhere{pixels_at(line, w, window.stride)}, here);
+            load_anywhere(pixels_at(line, w, window.stride), here, visit);
           };
           made += follow(window, rays, line, load_pixels, found);
           const int pixel = row * TileSums::columns + column;

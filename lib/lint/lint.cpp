@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "core/text.hpp"
+#include "petzval/core/error.hpp"
 #include "petzval/media/glass.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/f_number.hpp"
@@ -236,20 +238,35 @@ Repaired repair(const Prescription& prescription) {
   const auto say = [&](const Finding& finding, const std::string& cure) {
     result.changes.push_back({0, std::string(name(finding.kind)), finding.message + "; " + cure});
   };
+  // Makes a change, unless the lens would be invalid with it: whether it was made.
+  const auto changed = [&](const std::function<void(Prescription&)>& change) {
+    Prescription after = p;
+    try {
+      change(after);
+      validate(after, "");
+    } catch (const Error&) {
+      return false;
+    }
+    p = std::move(after);
+    return true;
+  };
   const bool alone = p.configurations.size() < 2;
   if (const auto units = find(Kind::units); alone && units) {
-    const auto declared = p.focal_length_mm, diagonal = p.image_diagonal_mm;
-    p = scale(p, 1 / *unit_between(units->found, units->wanted));
-    p.focal_length_mm = declared, p.image_diagonal_mm = diagonal;
-    say(*units, "all lengths are scaled");
+    const bool made = changed([&](Prescription& lens) {
+      lens = scale(lens, 1 / *unit_between(units->found, units->wanted));
+      lens.focal_length_mm = p.focal_length_mm, lens.image_diagonal_mm = p.image_diagonal_mm;
+    });
+    if (made) say(*units, "all lengths are scaled");
   }
   if (const auto apertures = find(Kind::apertures); alone && apertures) {
     const double factor = apertures->found < apertures->wanted ? 0.5 : 2;
-    for (SurfaceRow& row : p.surfaces) {
-      if (row.semi_diameter) *row.semi_diameter *= factor;
-      if (row.obscuration_semi_diameter) *row.obscuration_semi_diameter *= factor;
-    }
-    say(*apertures, std::string("they are ") + (factor < 1 ? "halved" : "doubled"));
+    const bool made = changed([&](Prescription& lens) {
+      for (SurfaceRow& row : lens.surfaces) {
+        if (row.semi_diameter) *row.semi_diameter *= factor;
+        if (row.obscuration_semi_diameter) *row.obscuration_semi_diameter *= factor;
+      }
+    });
+    if (made) say(*apertures, std::string("they are ") + (factor < 1 ? "halved" : "doubled"));
   }
   if (const auto stops = find(Kind::several_stops)) {
     bool first = true;
@@ -260,8 +277,8 @@ Repaired repair(const Prescription& prescription) {
     say(*stops, "the marks behind the first are taken off");
   }
   if (const auto film = find(Kind::image_distance); alone && film && film->wanted > 0) {
-    p.surfaces.back().thickness = film->wanted;
-    say(*film, "the film is put there");
+    if (changed([&](Prescription& lens) { lens.surfaces.back().thickness = film->wanted; }))
+      say(*film, "the film is put there");
   }
   return result;
 }

@@ -17,6 +17,7 @@
 #include <string_view>
 #include <vector>
 
+#include "petzval/core/error.hpp"
 #include "targets.hpp"
 
 namespace {
@@ -57,8 +58,26 @@ std::string changed(std::string text, const std::vector<std::string>& seeds, std
   return text;
 }
 
+std::string bytes_of(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) throw petzval::Error(file.string() + ": cannot be read, wanted an input");
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+/// With the inputs that have failed once, in seeds/failed.
+std::vector<std::string> seeds_of(const Target& target) {
+  std::vector<std::string> seeds = target.seeds();
+  const auto folder = std::filesystem::path(PETZVAL_FUZZ_SEEDS) / "failed" / target.name;
+  if (!std::filesystem::exists(folder)) return seeds;
+  std::vector<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) files.push_back(entry.path());
+  std::ranges::sort(files);
+  std::ranges::transform(files, std::back_inserter(seeds), bytes_of);
+  return seeds;
+}
+
 void run_fixed(const Target& target) {
-  const std::vector<std::string> seeds = target.seeds();
+  const std::vector<std::string> seeds = seeds_of(target);
   std::mt19937 engine(7);  // its numbers are those of every compiler
   run(target, "");
   for (const std::string& seed : seeds) run(target, seed);
@@ -73,7 +92,7 @@ void write_seeds(const std::filesystem::path& folder) {
     const auto place = folder / target.name;
     std::filesystem::create_directories(place);
     int number = 0;
-    for (const std::string& seed : target.seeds())
+    for (const std::string& seed : seeds_of(target))
       std::ofstream(place / std::to_string(++number), std::ios::binary) << seed;
   }
 }
@@ -100,9 +119,8 @@ int main(int argc, char** argv) {
     return run_fixed(*target), 0;
   }
   for (std::size_t i = 1; i < words.size(); ++i) {
-    std::ifstream file(words[i], std::ios::binary);
-    if (!file) return std::cerr << "fuzz_replay: " << words[i] << " cannot be read\n", 2;
-    run(*target, {std::istreambuf_iterator<char>(file), {}});
+    if (!std::filesystem::exists(words[i])) return std::cerr << "fuzz_replay: " << words[i] << " does not exist\n", 2;
+    run(*target, bytes_of(words[i]));
   }
   return 0;
 }

@@ -58,8 +58,9 @@ struct Repaired {
 };
 
 /// Mends, in this order, what lint() finds beyond doubt: `units` by the factor, `apertures` by 2 or a half,
-/// `several_stops` by the first, and `image_distance` by the paraxial image. Every other finding, and a lens with
-/// configurations but for its stops, stays as it is. Throws Error only for an invalid prescription.
+/// `several_stops` by the first, and `image_distance` by the paraxial image; not by what makes a lens invalid. Every
+/// other finding, and a lens with configurations but for its stops, stays. Throws Error only for an invalid
+/// prescription.
 PETZVAL_API Repaired repair(const Prescription& prescription);
 
 /// The film of a camera compared with the image circle of its lens (image_circle_mm, of any light): found is the

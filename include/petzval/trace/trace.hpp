@@ -45,7 +45,7 @@ PETZVAL_API TracedRay<T> trace(const Lens& lens, const Ray<T>& ray, const TraceO
 /// Arithmetic of a batch. Either way the result of a ray depends on that ray alone, not on its neighbours, the size of
 /// the batch or the number of threads.
 enum class Arithmetic : std::uint8_t {
-  fast,          ///< fused operations and approximate roots with Newton steps, if the processor has them
+  fast,          ///< fused operations and approximate roots with Newton steps, if the processor has them; to 1e15 mm
   reproducible,  ///< IEEE operations only: the same bits from every instruction set and compiler
 };
 
