@@ -12,7 +12,7 @@ namespace {
 
 // The squared curvature of a smaller radius overflows float. File formats write infinity as longer thicknesses.
 constexpr double smallest_radius = 1e-12;
-constexpr double smallest_base = 1e-15;
+constexpr double smallest_bend = 1e-15;
 constexpr double longest_thickness = 1e10;
 constexpr std::size_t most_surfaces = 10'000;
 constexpr std::size_t most_configurations = 1'000;
@@ -60,11 +60,9 @@ void check_surface(const std::string& where, const SurfaceRow& row, const Medium
   }
 
   check_finite(where, "conic", row.conic, "a finite number");
-  if (!row.aspheric.empty() && row.radius != 0) {
-    // Where an asphere's base bends away from its sphere; of less, float has no square.
-    if (std::abs(row.radius) / std::sqrt(std::abs(1 + row.conic)) < smallest_base)
-      refuse(where, "conic", row.conic, "one with a radius / sqrt|1 + conic| of at least 1e-15 mm");
-  }
+  // Where a conic bends away from its sphere; of less, float has no square.
+  if (row.radius != 0 && std::abs(row.radius) / std::sqrt(std::abs(1 + row.conic)) < smallest_bend)
+    refuse(where, "conic", row.conic, "one with a radius / sqrt|1 + conic| of at least 1e-15 mm");
   std::set<int> orders;
   for (const auto& [order, coefficient] : row.aspheric) {
     if (order < 2 || order > 40) refuse(where, "aspheric order", order, "2 to 40");

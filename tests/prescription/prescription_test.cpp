@@ -74,10 +74,7 @@ TEST(Validate, NumbersThatNoSurfaceHasAreRefusedByNameAndSurface) {
   EXPECT_EQ(refusal([](auto& p) { p.surfaces[0].thickness = 1e10; }),
             "s: surface 0: thickness is 1e+10" + finite_thickness);
   for (const char* conic : {"1e+34", "-1e+34", "1e+300"}) {
-    EXPECT_EQ(refusal([&](auto& p) {
-                p.surfaces[1].conic = std::stod(conic);
-                p.surfaces[1].aspheric = {{4, 1e-6}};
-              }),
+    EXPECT_EQ(refusal([&](auto& p) { p.surfaces[1].conic = std::stod(conic); }),
               "s: surface 1: conic is " + std::string(conic) +
                   ", wanted one with a radius / sqrt|1 + conic| of at least 1e-15 mm");
   }

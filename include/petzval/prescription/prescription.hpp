@@ -52,8 +52,8 @@ struct Prescription {
 
 /// Throws Error for a number that is not finite, |radius| below 1e-12 mm (0 is a plane), |thickness| of 1e10 mm or more
 /// (an object at infinity is not a surface), an index outside 0.1 to 5, a central obscuration not smaller than its
-/// surface, an asphere order outside 2 to 40 or given twice, a term whose slope reaches 1 within 1e-12 mm or a base
-/// with a radius / sqrt|1 + conic| below 1e-15 mm, a mirror whose medium differs from the one in front of it, no
+/// surface, an asphere order outside 2 to 40 or given twice, a term whose slope reaches 1 within 1e-12 mm, a conic
+/// with radius / sqrt|1 + conic| below 1e-15 mm, a mirror whose medium differs from the one in front of it, no
 /// surface, or more than 10,000; and for configurations of the same name or without one, more than 1,000 of them, a
 /// change of a surface that the lens lacks or that is changed twice, or one that makes an invalid lens; a position that
 /// focuses no zoom position. The message begins with `where`, the name of the file or of the lens.
