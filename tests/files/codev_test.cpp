@@ -169,6 +169,24 @@ TEST(Codev, EveryWordIsHonouredOrNamed) {
   EXPECT_NE(warning(without, "stop"), "no warning");
 }
 
+TEST(Codev, WhatNoLensHasIsRefused) {
+  const auto refused = [](const std::string& words, std::string_view message) {
+    return petzval::testing::refuses(with(singlet, "\nGO", '\n' + words + "\nGO"), message);
+  };
+  EXPECT_TRUE(refused("PIK RDY S9 Z1 RDY S2 Z1", "PIK is of a surface that does not exist"));
+  EXPECT_TRUE(refused("ZOO 0", "ZOO is 0, wanted 1 to 1000 positions"));
+  EXPECT_TRUE(refused("ZOO THI", "ZOO is incomplete"));
+  EXPECT_TRUE(refused("ZOO 3\nZOO THI S9 4 5 6", "ZOO is of surface 9"));
+  EXPECT_TRUE(refused(petzval::testing::repeated(10'001, "PIK RDY S3 Z1 RDY S2 Z1\n"), "more than 10000 pickups"));
+  EXPECT_TRUE(
+      refused("ZOO 3\n" + petzval::testing::repeated(10'001, "ZOO THI S2 4 5 6\n"), "more than 10000 zoomed values"));
+  EXPECT_NE(refusal(with_line("CYL; RDX 40")).find("RDX is 40, wanted 0, a cylinder"), std::string::npos);
+  const std::string own = "PRV\nPWL 656.2725 486.1327\n'MYGLASS' 1.59 1.62\nEND\n";
+  EXPECT_NE(refusal(with(with(singlet, "SO 0", own + "SO 0"), "1.5:60", "MYGLASS"))
+                .find("MYGLASS is a private glass without an index at the d line"),
+            std::string::npos);
+}
+
 TEST(Codev, ThreeLettersOfAWordAreEnough) {
   const Prescription p = read(with(with(singlet, "EPD 10", "EPDIAMETER 12"), "VUY 0 0.2", "VUYX 0 0.2"));
   EXPECT_EQ(p.design.aperture, (petzval::DesignAperture{petzval::ApertureSetting::entrance_pupil_diameter, 12}));

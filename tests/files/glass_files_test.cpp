@@ -300,6 +300,12 @@ TEST_F(GlassFiles, APageKeepsWhatItPrints) {
                                       "7 x: no n_d is printed; the formula gives 1.511587 at 587.5618 nm"}));
 }
 
+TEST_F(GlassFiles, OfTwoEntriesOfAPageTheFirstIsTaken) {
+  const std::string entry = "  - type: formula 5\n    wavelength_range: 0.4 0.7\n    coefficients: 1.5 0.004 -2\n";
+  EXPECT_EQ(said(read(page(entry + entry), "x.yml")).at(0),
+            "10 formula 5: left out: the indices are those of the entry before");
+}
+
 std::string table(const std::string& type, const std::string& rows) {
   return page("  - type: tabulated " + type + "\n    data: |\n" + rows);
 }

@@ -73,6 +73,25 @@ TEST(Optiland, WhatIsNotALensOfRevolutionIsRefused) {
   EXPECT_NE(refusal("{\"surface_group\": " + std::string(100'000, '[')), "no error");
 }
 
+TEST(Optiland, WhatIsMissingOrUnknownIsSaid) {
+  using petzval::testing::refuses;
+  using petzval::testing::warns;
+  EXPECT_TRUE(refuses(with(optiland, "\"EPD\"", "\"EPX\""), "type is \"EPX\", wanted EPD"));
+  EXPECT_TRUE(refuses(with(optiland, "\"value\": 10", "\"value\": \"ten\""), "wanted a number"));
+  EXPECT_TRUE(refuses(with(optiland, "\"value\": 10,", ""), "value is missing, wanted a number"));
+  EXPECT_TRUE(refuses(with(optiland, "\"value\": 10", "\"value\": 1e999"), "a number is out of range"));
+  EXPECT_TRUE(warns(with(optiland, "\"angle\"", "\"angel\""), "file.fields.field_type", "\"angel\" is not known"));
+  EXPECT_TRUE(refuses(with(with(optiland, "EvenAsphere", "OddAsphere"), "[0, 1e-6]", "[1e-3]"),
+                      "coefficients is given for order 1, wanted orders 2 to 40"));
+  EXPECT_TRUE(warns(with(optiland, "RadialAperture", "RectangularAperture"), "file.surface_group.surfaces[2].aperture",
+                    "is left out: it is not round"));
+  const std::size_t list = optiland.find("\"surfaces\": [") + 13;
+  EXPECT_TRUE(refuses(optiland.substr(0, list) + "1, 2]}}", "surfaces is 2 surfaces, wanted an object, a lens and"));
+  EXPECT_TRUE(refuses(optiland.substr(0, list) + petzval::testing::repeated(10'002, "1,") + "1]}}",
+                      "more than 10000 surfaces"));
+  EXPECT_TRUE(refuses(optiland + std::string(1 << 24, ' '), "bytes, wanted at most"));
+}
+
 const std::string lentil =
     R"({"0001": {"company": "none", "product-name": "singlet", "year": 2000, "patent-number": "US 1",
   "focal-length-mm-patent": 50, "fstop": 5, "optical-elements-patent": [
@@ -102,6 +121,20 @@ TEST(Lentil, WhatTheFormatDoesNotSayIsRefused) {
                 .find("a database of 2 lenses (0001, 0002)"),
             std::string::npos);
   EXPECT_NE(warning(with(lentil, "\"year\"", "\"mass\": 5, \"year\""), "0001.mass"), "no warning");
+}
+
+TEST(Lentil, ListsAreOfNumbersAndSurfaces) {
+  using petzval::testing::refuses;
+  EXPECT_TRUE(refuses(with(lentil, "[2, 3, 4]", "[2, 3]"), "thickness is \"[2,3]\", wanted a number or three"));
+  const std::string both =
+      with(lentil, "\"year\"", "\"optical-elements-adjusted\": [{\"radius\": 50, \"thickness\": 5}], \"year\"");
+  EXPECT_NE(refusal(both).find("ior is missing"), std::string::npos);
+  const std::string whole = with(both, "\"thickness\": 5}", "\"thickness\": 5, \"ior\": 1.5}");
+  EXPECT_EQ(read(whole).surfaces.size(), 1u);
+  EXPECT_EQ(warning(whole, "optical-elements-patent"), "is left out beside optical-elements-adjusted");
+  const std::size_t list = lentil.find("-patent\": [") + 11;
+  EXPECT_TRUE(
+      refuses(lentil.substr(0, list) + petzval::testing::repeated(10'000, "1,") + "1]}}", "more than 10000 surfaces"));
 }
 
 }  // namespace

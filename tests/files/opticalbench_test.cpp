@@ -166,6 +166,17 @@ TEST(OpticalBench, APositionWithoutItsDistancesIsLeftOut) {
   EXPECT_EQ(said(lens).at(0), "0 variable distances: column 2 is left out: it does not state all distances");
 }
 
+TEST(OpticalBench, WithoutDistancesOrAFocusThereIsNoLens) {
+  const auto refusal = [](const std::string& text) { return message([&] { parse_lens(text, "x.txt"); }); };
+  EXPECT_EQ(refusal(with(with(plain, "\t5\t1.5", "\td1\t1.5"), "d2\t97", "d1\tundefined\nd2\t97")),
+            "x.txt: no column of [variable distances] states all distances, wanted one");
+  const std::string afocal =
+      with(with(plain, "2\t50\t5", "2\tInfinity\t5"), "[aspherical data]\n2\t50\t0\t1\t2\t3\t4\t5\n", "");
+  EXPECT_EQ(
+      refusal(with(afocal, "d2\t97", "d2\tundefined")),
+      "x.txt: line 10: thickness is unknown, and light from afar is not focused behind it, wanted the film's place");
+}
+
 TEST(OpticalBench, WhatIsInvalidIsRefusedWithItsLine) {
   const auto refusal = [](std::string_view old, std::string_view text) {
     return message([&] { parse_lens(with(plain, old, text), "x.txt"); });

@@ -191,6 +191,16 @@ TEST(Oslo, WhatWouldBeAnotherLensIsRefusedWithItsLine) {
             Said{"10 PK: an unknown pickup is left out; the value that the file states is taken"});
 }
 
+TEST(Oslo, SolvesWithoutAnAnswerAndListsTooLongAreSaid) {
+  EXPECT_EQ(said(parse_lens(with(with(plain, "RD 25", "RD 0"), "TH 50", "TH 50\nPY 0"), "x.len")).at(0),
+            "13 PY: no thickness fulfils it: the one that the file states is taken");
+  EXPECT_EQ(message([] { parse_lens(with(plain, "EBR 5", "EBR 5\nWV101 0.5"), "x.len"); }),
+            "x.len: line 3: WV101 is not a place in the list, wanted WV1 to WV100");
+  std::string many = plain;
+  for (int i = 0; i < 10'001; ++i) many.insert(many.find("RD 25"), "TH 1\nNXT\n");
+  EXPECT_EQ(message([&] { parse_lens(many, "x.len"); }), "x.len: more than 10000 surfaces, wanted fewer");
+}
+
 TEST(OsloOfOthers, TheCookeTripletHasItsFocalLength) {
   const std::filesystem::path file = std::filesystem::path(PETZVAL_TEST_FORMATS) / "oslo" / "cooke_triplet.len";
   if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is missing";

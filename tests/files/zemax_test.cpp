@@ -367,6 +367,21 @@ TEST(Zemax, EveryCommandIsHonouredOrNamed) {
   EXPECT_NE(warning(with(singlet, "ENVD 20 1 0", "ENVD 35 1 0"), "ENVD"), "no warning");
 }
 
+TEST(Zemax, WhatIsNotEvaluatedIsSaid) {
+  using petzval::testing::warns;
+  EXPECT_TRUE(warns(with(singlet, "GLAS ___BLANK 1 0 1.5 60 0 0 0 0 0 0", "GLAS N-BK7 4 0 0 0 0 0 0 0 0 0.5"), "GLAS",
+                    "V_d is offset by 0.5; the dispersion of N-BK7 is taken as it is"));
+  EXPECT_TRUE(warns(with(singlet, "  DISZ 48\n", "  DISZ 48\n  MAZH 1 0\n"), "MAZH", "is not evaluated"));
+  EXPECT_TRUE(warns(with(singlet, "FTYP 0", "FTYP 7"), "FTYP", "field type 7 is not known; fields are left out"));
+  EXPECT_NE(refusal(singlet + "MNUM 1 1\n" + petzval::testing::repeated(100'001, "THIC 2 1 4\n"))
+                .find("more than 100000 values of configurations"),
+            std::string::npos);
+  Prescription p = read(singlet);
+  p.name = "two\nlines";
+  EXPECT_EQ(petzval::testing::message([&] { format_zemax(p); }),
+            "two lines: a text of several lines, wanted one line for a .zmx");
+}
+
 TEST(Zemax, NumbersAreFiniteAndHaveDecimalPoints) {
   EXPECT_EQ(refusal(with(singlet, "CURV 0.02", "CURV 0,02")),
             "x: line 38: CURV is \"0,02\", wanted a finite number with a decimal point");

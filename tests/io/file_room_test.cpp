@@ -66,6 +66,14 @@ TEST(FileRoom, IsAskedByEveryReaderOfPictures) {
   write_bytes(deep, with_width(bytes_of(deep), 10'000'000));
   EXPECT_NE(testing::message([&] { read_deep_exr(deep); }).find("claims 10000000 x 1 pixels"), std::string::npos);
 
+  // Before that, more than any file may have.
+  write_deep_exr({.columns = 1, .rows = 1, .offsets = {0, 1}, .fragments = {{.depth_mm = 5}}}, deep);
+  write_bytes(deep, with_width(bytes_of(deep), 1 << 28));
+  EXPECT_NE(testing::message([&] { read_deep_exr(deep); }).find("is 268435456 x 1"), std::string::npos);
+  write_exr(RgbImage(3, 2), file);
+  write_bytes(file, with_width(bytes_of(file), 1 << 28));
+  EXPECT_NE(testing::message([&] { read_exr(file); }).find("is 268435456 x 2 with 3 channels"), std::string::npos);
+
   write_png({3, 1, {0, 128, 255, 10, 188, 64, 255, 255, 255}}, png);
   std::string bytes = bytes_of(png);
   bytes[18] = bytes[22] = 0x1f;  // of the width and the height

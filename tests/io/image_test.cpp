@@ -212,6 +212,13 @@ TEST_F(ImageFiles, RefusesImagesWithoutPixelsOrWithTooFew) {
             file.string() + ": image is 3 x 2 with 17 values, wanted 3 a pixel and at least one pixel");
   EXPECT_EQ(message([&] { write_png(Rgb8Image{}, file); }),
             file.string() + ": image is 0 x 0 with 0 values, wanted 3 a pixel and at least one pixel");
+  EXPECT_EQ(message([&] { write_pfm(2, 2, std::vector<float>(3), file); }),
+            file.string() + ": found 3 values for 2 x 2 pixels, wanted one for each");
+  constexpr int wide = 1'000'001;  // libpng writes no more than a million
+  EXPECT_NE(message([&] {
+              write_png(Rgb8Image{wide, 1, std::vector<std::uint8_t>(3 * wide)}, file);
+            }).find(file.string() + ": "),
+            std::string::npos);
   EXPECT_EQ(files(), 0u);
 }
 

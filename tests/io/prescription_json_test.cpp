@@ -346,6 +346,13 @@ TEST(PrescriptionJson, TheOldFormOfZoomPositionsIsAConfiguration) {
   EXPECT_EQ(old.configurations[0].changes, (std::vector<petzval::SurfaceChange>{{.surface = 0, .thickness = 5.5}}));
 }
 
+TEST(PrescriptionJson, TheOldFormOfZoomPositionsStandsAloneAndHasNumbers) {
+  EXPECT_EQ(refusal(file(R"("zoom": {"position": "wide"}, "configurations": [{"name": "a"}])")),
+            "x.json: \"zoom\" beside \"configurations\", wanted one of them");
+  EXPECT_EQ(refusal(file(R"("zoom": {"variable_gaps": {"3": {}}})")),
+            "x.json: zoom: variable_gaps is an object, wanted a number");
+}
+
 TEST(PrescriptionJson, NumbersBeyondDoubleAreRefused) {
   const auto radius = [](const std::string& number) { return refusal(with_surface("{\"radius\": " + number)); };
   EXPECT_NE(radius("1e309").find("not JSON number overflow parsing '1e309'"), std::string::npos) << radius("1e309");
