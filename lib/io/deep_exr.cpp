@@ -116,12 +116,9 @@ DeepPicture read(const std::filesystem::path& file, double unit_mm) {
     deep.setFrameBuffer(buffer);
     deep.readPixelSampleCounts(row, row);
     samples += std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
-    if (samples > most) {
-      throw Error("has " + std::to_string(samples) + " samples up to row " + std::to_string(row - window.min.y) +
-                  ", wanted " + std::to_string(most) + " or fewer");
-    }
-    if (!io_detail::has_room_for(samples, 1 << 10, file)) {
-      throw Error("claims " + std::to_string(samples) + " samples" + no_room);
+    if (samples > most || !io_detail::has_room_for(samples, 1 << 10, file)) {
+      throw Error("claims " + std::to_string(samples) + " samples up to row " + std::to_string(row - window.min.y) +
+                  no_room + " and at most " + std::to_string(most));
     }
     for (DeepPlane& plane : planes) plane.point(counts);
     deep.readPixels(row, row);

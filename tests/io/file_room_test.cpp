@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -65,6 +66,20 @@ TEST(FileRoom, IsAskedByEveryReaderOfPictures) {
   write_deep_exr({.columns = 1, .rows = 1, .offsets = {0, 1}, .fragments = {{.depth_mm = 5}}}, deep);
   write_bytes(deep, with_width(bytes_of(deep), 10'000'000));
   EXPECT_NE(testing::message([&] { read_deep_exr(deep); }).find("claims 10000000 x 1 pixels"), std::string::npos);
+
+  // The same for its samples. Behind the place of the only row in the file: its number, three sizes, the table of
+  // counts.
+  write_deep_exr({.columns = 1, .rows = 1, .offsets = {0, 1}, .fragments = {{.depth_mm = 5}}}, deep);
+  std::string counted = bytes_of(deep);
+  std::uint64_t place = 0, size = 0;
+  for (std::size_t at = 0; place != at + 7; ++at) std::memcpy(&place, &counted.at(at), 8);
+  const std::uint32_t count = 2'000'000;
+  size = 20ull * count;
+  std::memcpy(&counted.at(place + 20), &size, 8);
+  std::memcpy(&counted.at(place + 28), &count, 4);
+  write_bytes(deep, counted);
+  EXPECT_NE(testing::message([&] { read_deep_exr(deep); }).find("claims 2000000 samples up to row 0"),
+            std::string::npos);
 
   // Before that, more than any file may have.
   write_deep_exr({.columns = 1, .rows = 1, .offsets = {0, 1}, .fragments = {{.depth_mm = 5}}}, deep);
