@@ -144,7 +144,12 @@ Mesh read_obj(const std::filesystem::path& file) {
   for (const tinyobj::shape_t& shape : reader.GetShapes()) {
     for (std::size_t i = 0; i + 2 < shape.mesh.indices.size(); i += 3) {
       const auto at = [&](const std::vector<float>& values, int index, std::size_t size) {
-        return &values[size * static_cast<std::size_t>(index)];
+        const std::size_t first = size * static_cast<std::size_t>(index);
+        if (index < 0 || first + size > values.size()) {
+          throw Error(file.string() + ": triangle " + std::to_string(mesh.triangles.size() + 1) + " has a corner " +
+                      std::to_string(index + 1) + ", wanted one of " + std::to_string(values.size() / size));
+        }
+        return &values[first];
       };
       std::array<glm::vec3, 3> places;
       for (std::size_t k = 0; k < 3; ++k) {

@@ -93,7 +93,7 @@ class CodevReader {
 
 std::span<const CodevReader::Command> CodevReader::commands() {
   using C = CodevReader;
-  static constexpr std::array<Command, 95> all = {{
+  static constexpr Command all[] = {
       {"LEN", &C::new_lens},
       {"RDM", &C::radius_mode},
       {"TIT", &C::title},
@@ -188,7 +188,7 @@ std::span<const CodevReader::Command> CodevReader::commands() {
       {"SCA", &C::refused_edit},
       {"DEL", &C::refused_edit},
       {"FLY", &C::refused_edit},
-  }};
+  };
   return all;
 }
 

@@ -161,6 +161,7 @@ TEST(Codev, ZoomPositionsAreConfigurations) {
 
 TEST(Codev, EveryWordIsHonouredOrNamed) {
   EXPECT_EQ(warning(with_line("XYZ 5"), "XYZ"), "is not known and is left out");
+  EXPECT_EQ(warning(with_line("'' 5"), ""), "is not known and is left out");  // a word of no letters
   EXPECT_NE(refusal(with(singlet, "GO", "SCA 2\nGO")).find("a change of the lens before it"), std::string::npos);
   EXPECT_EQ(read(with(singlet, "SO 0", "S0 0")).surfaces, read(singlet).surfaces);
   EXPECT_TRUE(read(with_line("CCY 0; THC 0; KC 1")).imported->warnings.empty());
