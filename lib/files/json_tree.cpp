@@ -23,8 +23,11 @@ std::string with_quoted_numbers(std::string_view text) {
   bool in_string = false;
   for (std::size_t i = 0; i < text.size(); ++i) {
     if (in_string) {
-      if (text[i] == '\\' && i + 1 < text.size()) result.push_back(text[i++]);
-      in_string = text[i] != '"';
+      if (text[i] == '\\' && i + 1 < text.size()) {
+        result.push_back(text[i++]);  // what it escapes ends no string
+      } else {
+        in_string = text[i] != '"';
+      }
     } else if (text[i] == '"') {
       in_string = true;
     } else {
@@ -121,6 +124,11 @@ JsonTree::JsonTree(std::string_view text, const std::string& where) : JsonTree()
 
 JsonTree::~JsonTree() { empty(root_); }
 
+std::string shown(const nlohmann::json& value) {
+  const auto* word = value.get_ptr<const std::string*>();
+  return io_detail::in_quotes(word ? *word : value.dump());
+}
+
 const nlohmann::json* JsonObject::find(const char* key) const {
   const auto found = json.find(key);
   return found == json.end() || found->is_null() ? nullptr : &*found;
@@ -138,7 +146,7 @@ std::optional<double> JsonObject::number(const char* key) const {
     if (*word == "Infinity") return std::numeric_limits<double>::infinity();
     if (*word == "-Infinity") return -std::numeric_limits<double>::infinity();
   }
-  refuse(key, io_detail::in_quotes(value->dump()), "a number");
+  refuse(key, shown(*value), "a number");
 }
 
 double JsonObject::needed(const char* key) const {
@@ -149,20 +157,20 @@ double JsonObject::needed(const char* key) const {
 std::string JsonObject::text(const char* key) const {
   const nlohmann::json* value = find(key);
   if (!value) return {};
-  if (!value->is_string()) refuse(key, io_detail::in_quotes(value->dump()), "a string");
+  if (!value->is_string()) refuse(key, shown(*value), "a string");
   return value->get<std::string>();
 }
 
 bool JsonObject::flag(const char* key) const {
   const nlohmann::json* value = find(key);
   if (!value) return false;
-  if (!value->is_boolean()) refuse(key, io_detail::in_quotes(value->dump()), "true or false");
+  if (!value->is_boolean()) refuse(key, shown(*value), "true or false");
   return value->get<bool>();
 }
 
 JsonObject JsonObject::object(const char* key) const {
   const nlohmann::json* value = find(key);
-  if (!value || !value->is_object()) refuse(key, value ? io_detail::in_quotes(value->dump()) : "missing", "an object");
+  if (!value || !value->is_object()) refuse(key, value ? shown(*value) : "missing", "an object");
   return {*value, path + '.' + key, in};
 }
 

@@ -30,6 +30,9 @@ class JsonTree {
   nlohmann::json root_;
 };
 
+/// A value as messages show it: in quotes, shortened.
+std::string shown(const nlohmann::json& value);
+
 /// One object of a tree, and where it stands, for messages.
 struct JsonObject {
   const nlohmann::json& json;

@@ -38,7 +38,7 @@ void LentilReader::thickness(const JsonObject& e, SurfaceRow& row) {
   }
   const bool three =
       value->size() == 3 && (*value)[0].is_number() && (*value)[1].is_number() && (*value)[2].is_number();
-  if (!three) e.refuse("thickness", io_detail::in_quotes(value->dump()), "a number or three");
+  if (!three) e.refuse("thickness", shown(*value), "a number or three");
   row.thickness = (*value)[0].get<double>();
   auto& list = in_.lens.configurations;
   if (list.empty()) {
@@ -97,7 +97,7 @@ void LentilReader::lens(const JsonObject& o) {
   for (std::size_t i = 0; i < elements->size(); ++i) {
     const nlohmann::json& e = (*elements)[i];
     const std::string path = o.path + '.' + key + '[' + std::to_string(i) + ']';
-    if (!e.is_object()) in_.refuse(0, path, io_detail::in_quotes(e.dump()), "an object");
+    if (!e.is_object()) in_.refuse(0, path, shown(e), "an object");
     element({e, path, in_});
   }
   const auto words = [&](const char* name) {

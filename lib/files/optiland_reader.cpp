@@ -26,7 +26,7 @@ const nlohmann::json& list(const JsonObject& object, const char* key) {
 JsonObject entry(const JsonObject& object, const char* key, std::size_t i) {
   const nlohmann::json& value = object.json.at(key).at(i);
   std::string path = object.path + '.' + key + '[' + std::to_string(i) + ']';
-  if (!value.is_object()) object.in.refuse(0, path, io_detail::in_quotes(value.dump()), "an object");
+  if (!value.is_object()) object.in.refuse(0, path, shown(value), "an object");
   return {value, std::move(path), object.in};
 }
 
@@ -116,7 +116,7 @@ void OptilandReader::terms(const JsonObject& geometry, int first, int step, Surf
   if (!geometry.find("coefficients")) return;
   const nlohmann::json& all = list(geometry, "coefficients");
   for (std::size_t i = 0; i < all.size(); ++i) {
-    if (!all[i].is_number()) geometry.refuse("coefficients", io_detail::in_quotes(all[i].dump()), "numbers");
+    if (!all[i].is_number()) geometry.refuse("coefficients", shown(all[i]), "numbers");
     const double coefficient = all[i].get<double>();
     const int order = first + step * static_cast<int>(i);
     if (coefficient == 0) continue;

@@ -268,7 +268,8 @@ void Configurations::take(const ZemaxOperand& operand) {
   } else if (operand.name == "CONN") {
     change(c, operand).conic = value();
   } else if (operand.name == "SDIA") {
-    change(c, operand).semi_diameter = std::abs(value() * unit_);
+    // As under DIAM, 0 is no rim.
+    if (const double rim = std::abs(value() * unit_); rim > 0) change(c, operand).semi_diameter = rim;
   } else if (operand.name == "GLSS") {
     change(c, operand).medium = rows_.medium({.line = operand.line, .name = operand.value});
   } else if (operand.name == "APER" && in_.lens.design.aperture &&

@@ -136,9 +136,11 @@ void ZemaxWriter::object() {
   if (p_.object_space != Medium{}) out_.line("  GLAS " + glass(p_.object_space));
 }
 
+/// Empty for a medium that has no name.
 std::string ZemaxWriter::glass_name(const Medium& medium) {
+  if (medium == Medium{}) return "AIR";
   const Glass* found = out_.glass(medium);
-  return found ? one_word(found->name) : "___BLANK";
+  return found ? one_word(found->name) : std::string();
 }
 
 std::string ZemaxWriter::glass(const Medium& medium) {
@@ -232,11 +234,17 @@ void ZemaxWriter::configurations() {
       }
     }
     for (const int s : surfaces) {
-      operand(name, s + 1, [&](const Configuration& c) {
+      const auto word = [&](const Configuration& c) {
         const auto found = std::ranges::find(c.changes, s, &SurfaceChange::surface);
         const bool given = found != c.changes.end() && ((*found).*member).has_value();
         return words(given ? *((*found).*member) : of_row(p_.surfaces[static_cast<std::size_t>(s)]));
-      });
+      };
+      if (std::ranges::any_of(list, [&](const Configuration& c) { return word(c).empty(); })) {
+        out_.lose("configurations", "the glass of surface " + std::to_string(s) +
+                                        ", which no catalogue has in one of them, is that of the first in all");
+      } else {
+        operand(name, s + 1, word);
+      }
     }
   };
   const auto number = [](double value) { return to_text(value); };
@@ -247,11 +255,16 @@ void ZemaxWriter::configurations() {
       [](double radius) { return to_text(radius == 0 ? 0 : 1 / radius); });
   changes(
       "CONN", &SurfaceChange::conic, [](const SurfaceRow& r) { return r.conic; }, number);
+  // 0 is no rim.
   changes(
-      "SDIA", &SurfaceChange::semi_diameter, [](const SurfaceRow& r) { return r.semi_diameter.value_or(0); }, number);
+      "SDIA", &SurfaceChange::semi_diameter, [](const SurfaceRow& r) { return r.semi_diameter.value_or(0); },
+      [](double rim) { return to_text(std::isfinite(rim) ? rim : 0); });
   changes(
       "GLSS", &SurfaceChange::medium, [](const SurfaceRow& r) { return r.medium; },
-      [&](const Medium& medium) { return '"' + glass_name(medium) + '"'; });
+      [&](const Medium& medium) {
+        const std::string glass = glass_name(medium);
+        return glass.empty() ? glass : '"' + glass + '"';
+      });
 
   const auto focusing = std::ranges::count_if(list, [](const Configuration& c) { return c.focus_of.has_value(); });
   if (focusing > 0 && static_cast<std::size_t>(focusing) + 1 < list.size()) {

@@ -92,6 +92,113 @@ TEST(Optiland, WhatIsMissingOrUnknownIsSaid) {
   EXPECT_TRUE(refuses(optiland + std::string(1 << 24, ' '), "bytes, wanted at most"));
 }
 
+TEST(Optiland, OtherWordsForTheSameAreRead) {
+  using petzval::FieldKind;
+  const auto kind = [](const std::string& word) {
+    return read(with(optiland, "\"angle\"", '"' + word + '"')).design.field_kind;
+  };
+  EXPECT_EQ(kind("object_height"), FieldKind::object_height);
+  EXPECT_EQ(kind("paraxial_image_height"), FieldKind::paraxial_image);
+  EXPECT_EQ(kind("real_image_height"), FieldKind::real_image_height);
+  const std::string of_fields = with(with(optiland, ", \"field_type\": \"angle\"}", "}"), "\"y\": 7,",
+                                     "\"y\": 7, \"field_type\": \"real_image_height\",");
+  EXPECT_EQ(read(of_fields).design.field_kind, FieldKind::real_image_height);
+
+  const auto nm = [](const std::string& value, const std::string& unit) {
+    return read(with(with(optiland, "0.5876", value), "true, \"unit\": \"um\"", "true, \"unit\": \"" + unit + '"'))
+        .design.wavelengths.at(1)
+        .nm;
+  };
+  EXPECT_EQ(nm("587.6", "nm"), 587.6);
+  EXPECT_EQ(nm("0.0005876", "mm"), 587.6);
+
+  const auto setting = [](const std::string& word) {
+    return read(with(optiland, "\"EPD\"", '"' + word + '"')).design.aperture.value().setting;
+  };
+  EXPECT_EQ(setting("imageFNO"), petzval::ApertureSetting::f_number);
+  EXPECT_EQ(read(with(optiland, "{\"type\": \"EPD\"", "{\"ap_type\": \"EPD\"")).design, read(optiland).design);
+
+  const Prescription near = read(with(optiland, "\"z\": -Infinity", "\"z\": -100"));
+  EXPECT_EQ(near.design.object_distance_mm, 100);
+  EXPECT_EQ(read(with(optiland, "\"version\": 1.0", "\"name\": \"a \\\"NaN\\\" lens\"")).imported->title,
+            "a \"NaN\" lens");
+  EXPECT_EQ(read(with(optiland, "\"is_stop\": true", "\"is_stop\": true, \"comment\": \"iris\"")).surfaces[0].comment,
+            "iris");
+  const Prescription wide =
+      read(with(with(optiland, "\"r_max\": 8", "\"r_max\": Infinity"), "\"r_min\": 1", "\"r_min\": 0"));
+  EXPECT_FALSE(wide.surfaces[1].semi_diameter);
+  EXPECT_FALSE(wide.surfaces[1].obscuration_semi_diameter);
+  EXPECT_EQ(read(with(optiland, "\"radius\": 50", "\"radius\": -Infinity")).surfaces[1].radius, 0);
+}
+
+TEST(Optiland, MaterialsAreNamesFilesAndNumbers) {
+  const auto medium = [](const std::string& material) {
+    return read(with(optiland, R"({"type": "AbbeMaterial", "index": 1.3, "abbe": 55})", material)).surfaces[2].medium;
+  };
+  for (const char* material :
+       {R"({"type": "Material", "filename": null, "name": "N-BK7", "reference": "schott"})",
+        R"({"type": "Material", "filename": "schott/N-BK7.yml", "name": "N-BK7"})",
+        R"({"type": "Material", "name": "N-BK7"})", R"({"type": "MaterialFile", "filename": "glasses/N-BK7.yml"})",
+        R"({"type": "MaterialFile", "filename": "N-BK7"})"}) {
+    EXPECT_EQ(medium(material).glass, "N-BK7") << material;
+    EXPECT_EQ(medium(material).catalogue, "schott") << material;
+  }
+  EXPECT_EQ(medium(R"({"type": "IdealMaterial", "index": [1.4]})"), petzval::Medium{.nd = 1.4});
+  EXPECT_EQ(medium(R"({"type": "IdealMaterial", "index": [1.0]})"), petzval::Medium{});
+  EXPECT_EQ(medium(R"({"type": "AbbeMaterialE", "index": [1.4], "abbe": [50]})"),
+            (petzval::Medium{.nd = 1.4, .vd = 50}));
+  const auto refused = [](const std::string& material) {
+    return refusal(with(optiland, R"({"type": "AbbeMaterial", "index": 1.3, "abbe": 55})", material));
+  };
+  const std::string where = "x: file.surface_group.surfaces[3].material_post";
+  EXPECT_EQ(refused(R"({"type": "IdealMaterial", "index": [1.4, 1.5]})"),
+            where + ".index is \"[1.4,1.5]\", wanted a number");
+  EXPECT_EQ(refused(R"({"type": "IdealMaterial", "index": ["1.4"]})"),
+            where + ".index is \"[\"1.4\"]\", wanted a number");
+  EXPECT_EQ(refused(R"({"type": "AbbeMaterial", "index": 1.4, "abbe": []})"),
+            where + ".abbe is \"[]\", wanted a number");
+  EXPECT_EQ(refused(R"({"type": "Jelly"})"),
+            where + ".type is \"Jelly\", wanted IdealMaterial, AbbeMaterial, Material, MaterialFile or Mirror");
+}
+
+TEST(Optiland, MirrorsAreSaidInThreeWays) {
+  for (const auto& [old, now] :
+       {std::pair(R"("index": 1.3, "abbe": 55})", R"("index": 1.3, "abbe": 55}, "is_reflective": true)"),
+        std::pair(R"({"type": "AbbeMaterial", "index": 1.3, "abbe": 55})", R"({"type": "Mirror"})"),
+        std::pair(R"("index": 1.3, "abbe": 55})",
+                  R"("index": 1.3, "abbe": 55}, "interaction_model": {"is_reflective": true})")}) {
+    const Prescription p = read(with(with(optiland, "\"z\": 54", "\"z\": -42"), old, now));
+    EXPECT_TRUE(p.surfaces[2].mirror) << now;
+    EXPECT_EQ(p.surfaces[2].medium, p.surfaces[1].medium) << now;
+    EXPECT_EQ(p.surfaces[2].thickness, -48) << now;
+  }
+}
+
+TEST(Optiland, WhatIsOfAnotherKindIsRefusedWithItsPlace) {
+  const auto refused = [](const std::string& old, const std::string& now) { return refusal(with(optiland, old, now)); };
+  const std::string surface = "x: file.surface_group.surfaces[1]";
+  EXPECT_EQ(refused("\"is_stop\": true", "\"is_stop\": 1"), surface + ".is_stop is \"1\", wanted true or false");
+  EXPECT_EQ(refused("\"is_stop\": true", "\"comment\": 1"), surface + ".comment is \"1\", wanted a string");
+  EXPECT_EQ(refused("\"cs\": {\"z\": 0}", "\"cs\": 0"), surface + ".geometry.cs is \"0\", wanted an object");
+  EXPECT_EQ(refused("\"cs\": {\"z\": 0}, ", ""), surface + ".geometry.cs is missing, wanted an object");
+  EXPECT_EQ(refused("\"cs\": {\"z\": 0}", "\"cs\": {\"z\": NaN}"),
+            surface + ".geometry.cs.z is \"NaN\", wanted a number");
+  EXPECT_EQ(refused("\"cs\": {\"z\": 0}", "\"cs\": {\"z\": 0, \"reference_cs\": {}}"),
+            surface + ".geometry.cs.reference_cs is another system of coordinates, wanted none");
+  EXPECT_EQ(refused("[0, 1e-6]", "[0, \"A\"]"),
+            "x: file.surface_group.surfaces[2].geometry.coefficients is \"A\", wanted numbers");
+  EXPECT_EQ(refused("[0, 1e-6]", "5"),
+            "x: file.surface_group.surfaces[2].geometry.coefficients is no list, wanted a list");
+  EXPECT_EQ(refused("{\"x\": 0, \"y\": 0, \"vx\": 0, \"vy\": 0}", "7"),
+            "x: file.fields.fields[0] is \"7\", wanted an object");
+  EXPECT_EQ(refused("{\"wavelengths\": [", "{\"waves\": ["),
+            "x: file.wavelengths.wavelengths is missing, wanted a list");
+  const std::string telecentric = with(optiland, "_telecentric\": false", "_telecentric\": true");
+  EXPECT_EQ(warning(telecentric, "file.aperture.object_space_telecentric"), "is left out");
+  EXPECT_EQ(warning(with(optiland, "{\"solves\": []}", "{\"solves\": [1]}"), "file.solves"),
+            "are not evaluated; the values that the file states are taken");
+}
+
 const std::string lentil =
     R"({"0001": {"company": "none", "product-name": "singlet", "year": 2000, "patent-number": "US 1",
   "focal-length-mm-patent": 50, "fstop": 5, "optical-elements-patent": [

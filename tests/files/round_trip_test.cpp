@@ -127,10 +127,206 @@ TEST(RoundTrip, ZemaxTakesWhatItWroteAsItIs) {
   }
 }
 
+/// A stop and a lens of N-BK7, with rims.
+Prescription singlet() {
+  Prescription p;
+  p.name = "singlet";
+  p.surfaces = {{.radius = 0, .thickness = 2, .semi_diameter = 5, .stop = true},
+                {.radius = 50,
+                 .thickness = 4,
+                 .medium = {.glass = "N-BK7", .catalogue = "schott", .nd = 1.5168, .vd = 64.17},
+                 .semi_diameter = 8},
+                {.radius = -50, .thickness = 48, .semi_diameter = 7}};
+  return p;
+}
+
+/// Whether a loss of this kind is said.
+bool lost(const WrittenLens& written, std::string_view what) {
+  return std::ranges::find(written.losses, what, &petzval::ImportWarning::command) != written.losses.end();
+}
+
+using Write = WrittenLens (*)(const Prescription&);
+const Write zemax = [](const Prescription& p) { return petzval::format_zemax(p, &glasses()); };
+const Write codev = [](const Prescription& p) { return petzval::format_codev(p, &glasses()); };
+
+TEST(RoundTrip, TheDesignsApertureComesBack) {
+  using enum petzval::ApertureSetting;
+  for (const double object : {HUGE_VAL, 200.0}) {
+    for (const auto& [setting, value] :
+         {std::pair(entrance_pupil_diameter, 9.5), std::pair(object_na, 0.02), std::pair(working_f_number, 6.0)}) {
+      Prescription p = singlet();
+      p.design.object_distance_mm = object;
+      p.design.aperture = {setting, value};
+      for (const Write write : {zemax, codev}) {
+        const Prescription back = read(write(p));
+        EXPECT_EQ(back.design.object_distance_mm, object);
+        // At infinity CODE V's f-numbers are those of the focal length.
+        const bool same = write != codev || setting != working_f_number || std::isfinite(object);
+        EXPECT_EQ(back.design.aperture, (petzval::DesignAperture{same ? setting : f_number, value})) << write(p).text;
+      }
+    }
+  }
+  Prescription p = singlet();
+  p.design.aperture = {f_number, 6};
+  EXPECT_EQ(read(zemax(p)).design.aperture, p.design.aperture);
+  EXPECT_EQ(read(codev(p)).design.aperture, p.design.aperture);
+  p.design.aperture = {image_na, 0.06};
+  EXPECT_EQ(read(codev(p)).design.aperture, p.design.aperture);
+  EXPECT_TRUE(lost(zemax(p), "aperture"));
+  EXPECT_EQ(read(zemax(p)).surfaces[0].semi_diameter, 5);
+  p.design.aperture = {stop_size, 5};
+  EXPECT_EQ(read(zemax(p)).surfaces[0].semi_diameter, 5);
+  EXPECT_FALSE(lost(zemax(p), "aperture"));
+}
+
+TEST(RoundTrip, FieldsAndWavelengthsComeBack) {
+  using petzval::FieldKind;
+  Prescription p = singlet();
+  p.design.fields = {{.x = 1, .y = 0},
+                     {.x = 0, .y = 2, .weight = 2, .decentre_x = 0.25, .decentre_y = 0.125},
+                     {.x = 0, .y = 3, .compress_x = 0.25, .compress_y = 0.5}};
+  p.design.wavelengths = {{486.5, 1}, {587.5, 3}, {656.25, 2}};
+  p.design.primary_wavelength = 1;
+  for (const FieldKind kind :
+       {FieldKind::angle_deg, FieldKind::object_height, FieldKind::paraxial_image, FieldKind::real_image_height}) {
+    p.design.field_kind = kind;
+    for (const Write write : {zemax, codev}) {
+      const Prescription back = read(write(p));
+      EXPECT_EQ(back.design.field_kind, kind);
+      EXPECT_EQ(back.design.fields, p.design.fields) << write(p).text;
+      ASSERT_EQ(back.design.wavelengths.size(), 3u);
+      EXPECT_EQ(back.design.wavelengths[back.design.primary_wavelength], (petzval::DesignWavelength{587.5, 3}));
+    }
+    EXPECT_EQ(read(zemax(p)).design.wavelengths, p.design.wavelengths);
+  }
+  p.design.fields[0].angle_deg = 5;
+  EXPECT_TRUE(lost(codev(p), "fields"));
+  EXPECT_EQ(read(zemax(p)).design.fields, p.design.fields);
+  p.design.fields.resize(13);
+  p.design.wavelengths.resize(25, {500, 1});
+  EXPECT_TRUE(lost(zemax(p), "fields"));
+  EXPECT_TRUE(lost(zemax(p), "wavelengths"));
+  EXPECT_EQ(read(zemax(p)).design.fields.size(), 12u);
+  EXPECT_EQ(read(zemax(p)).design.wavelengths.size(), 24u);
+}
+
+TEST(RoundTrip, RowsComeBack) {
+  Prescription p = singlet();
+  p.object_space = {.nd = 1.333, .vd = 55};
+  p.surfaces[0].comment = "the stop";
+  p.surfaces[0].medium = p.object_space;
+  p.surfaces[1].obscuration_semi_diameter = 1;
+  p.surfaces[2].semi_diameter.reset();
+  for (const Write write : {zemax, codev}) {
+    const Prescription back = read(write(p));
+    EXPECT_EQ(back.object_space.nd, 1.333);
+    EXPECT_NEAR(*back.object_space.vd, 55, 0.1);
+    EXPECT_EQ(back.surfaces[0].comment, "the stop");
+    EXPECT_EQ(back.surfaces[1].obscuration_semi_diameter, 1);
+    EXPECT_EQ(back.surfaces[1].semi_diameter, 8);
+    EXPECT_EQ(back.surfaces[1].medium, p.surfaces[1].medium);
+    EXPECT_FALSE(back.surfaces[2].semi_diameter);
+  }
+}
+
+TEST(RoundTrip, AspheresOfEveryTypeComeBack) {
+  using Terms = std::vector<petzval::AsphereTerm>;
+  for (const Terms& terms : {Terms{{4, 1e-6}, {16, 1e-22}}, Terms{{4, 1e-6}, {18, 1e-24}}, Terms{{3, 1e-6}, {8, 1e-11}},
+                             Terms{{3, 1e-6}, {11, 1e-15}}}) {
+    Prescription p = singlet();
+    p.surfaces[1].conic = -0.5;
+    p.surfaces[1].aspheric = terms;
+    EXPECT_EQ(read(zemax(p)).surfaces[1].aspheric, terms);
+    EXPECT_EQ(read(zemax(p)).surfaces[1].conic, -0.5);
+    if (terms[0].order % 2 == 0) {
+      EXPECT_EQ(read(codev(p)).surfaces[1].aspheric, terms);
+    } else {
+      EXPECT_EQ(petzval::testing::message([&] { codev(p); }),
+                "singlet: surface 1: an aspheric term of order 3, wanted even orders from 4 to 20 for a .seq");
+    }
+  }
+  Prescription p = singlet();
+  p.surfaces[1].aspheric = {{22, 1e-30}};
+  EXPECT_NE(petzval::testing::message([&] { codev(p); }).find("of order 22"), std::string::npos);
+  p.surfaces[1].aspheric = {{2, 1e-3}};
+  EXPECT_NE(petzval::testing::message([&] { codev(p); }).find("of order 2,"), std::string::npos);
+}
+
+TEST(RoundTrip, CylindersComeBackOrAreRefused) {
+  Prescription p = singlet();
+  p.surfaces[1].curved_in = petzval::Section::y;
+  for (const Write write : {zemax, codev}) {
+    EXPECT_EQ(read(write(p)).surfaces[1].curved_in, petzval::Section::y);
+  }
+  p.surfaces[1].conic = -1;
+  EXPECT_EQ(petzval::testing::message([&] { zemax(p); }),
+            "singlet: surface 1: an aspheric cylinder, wanted a circular one for a .zmx");
+  p.surfaces[1].curved_in = petzval::Section::x;
+  EXPECT_EQ(petzval::testing::message([&] { zemax(p); }),
+            "singlet: surface 1: a cylinder curved along x, wanted one curved along y for a .zmx");
+  EXPECT_EQ(petzval::testing::message([&] { codev(p); }),
+            "singlet: surface 1: a cylinder curved along x, wanted one curved along y for a .seq");
+}
+
+TEST(RoundTrip, WhatConfigurationsChangeComesBack) {
+  Prescription p = singlet();
+  p.configurations = {{.name = "wide"},
+                      {.name = "tele",
+                       .changes = {{.surface = 0, .thickness = 3},
+                                   {.surface = 1, .radius = 0, .conic = -0.5, .semi_diameter = 7.5},
+                                   {.surface = 2, .thickness = 90}}},
+                      {.name = "tele near",
+                       .focus_of = "tele",
+                       .subject_distance_mm = 500,
+                       .changes = {{.surface = 2, .thickness = 95}}}};
+  Prescription back = read(zemax(p));
+  ASSERT_EQ(back.configurations.size(), 3u);
+  EXPECT_EQ(back.configurations[2].subject_distance_mm, 500);
+  for (const int i : {0, 1, 2}) {
+    EXPECT_EQ(configured(back, i).surfaces, configured(p, i).surfaces) << i;
+  }
+  EXPECT_TRUE(lost(zemax(p), "focus_of"));
+  back = read(codev(p));
+  ASSERT_EQ(back.configurations.size(), 3u);
+  EXPECT_EQ(back.configurations[2].subject_distance_mm, 500);
+  EXPECT_EQ(configured(back, 2).surfaces[2].thickness, 95);
+  EXPECT_EQ(configured(back, 1).surfaces[1].radius, 0);
+  EXPECT_TRUE(lost(codev(p), "configurations"));
+  EXPECT_TRUE(lost(codev(p), "focus_of"));
+  p.configurations.pop_back();
+  p.configurations[1].changes = {{.surface = 2, .thickness = 90}};
+  EXPECT_TRUE(codev(p).losses.empty());
+  EXPECT_TRUE(zemax(p).losses.empty());
+  p.configurations[1].stop = 1;
+  EXPECT_TRUE(lost(codev(p), "configurations"));
+  EXPECT_TRUE(lost(zemax(p), "stop"));
+}
+
+TEST(RoundTrip, GlassesAndRimsOfConfigurationsComeBack) {
+  Prescription p = singlet();
+  const petzval::Medium f2{.glass = "F2", .catalogue = "schott", .nd = 1.62004, .vd = 36.37};
+  p.configurations = {{.name = "a"}, {.name = "b", .changes = {{.surface = 1, .medium = f2}}}};
+  EXPECT_EQ(configured(read(zemax(p)), 1).surfaces[1].medium.glass, "F2");
+  EXPECT_EQ(configured(read(zemax(p)), 0).surfaces[1].medium.glass, "N-BK7");
+  // A rim in one configuration alone.
+  p.surfaces[2].semi_diameter.reset();
+  p.configurations[1].changes = {{.surface = 2, .semi_diameter = 6}};
+  const Prescription back = read(zemax(p));
+  EXPECT_EQ(configured(back, 1).surfaces[2].semi_diameter, 6);
+  EXPECT_FALSE(configured(back, 0).surfaces[2].semi_diameter);
+  p.configurations[1].changes = {{.surface = 2, .semi_diameter = HUGE_VAL}};
+  EXPECT_FALSE(configured(read(zemax(p)), 1).surfaces[2].semi_diameter);
+  // Air in the place of a lens.
+  p.configurations[1].changes = {{.surface = 1, .medium = petzval::Medium{}}};
+  EXPECT_EQ(configured(read(zemax(p)), 1).surfaces[1].medium, petzval::Medium{});
+  EXPECT_TRUE(zemax(p).losses.empty());
+  // A glass that no table has.
+  p.configurations[1].changes = {{.surface = 1, .medium = petzval::Medium{.nd = 1.7, .vd = 40}}};
+  EXPECT_TRUE(lost(zemax(p), "configurations"));
+  EXPECT_EQ(configured(read(zemax(p)), 1).surfaces[1].medium.glass, "N-BK7");
+}
+
 TEST(RoundTrip, WhatIsLostIsSaid) {
-  const auto lost = [](const WrittenLens& written, std::string_view what) {
-    return std::ranges::find(written.losses, what, &petzval::ImportWarning::command) != written.losses.end();
-  };
   const auto glass = petzval::testing::data_prescription("double_gauss_100mm_f1.35");
   EXPECT_TRUE(lost(petzval::format_table(glass), "vd"));
   const auto zoom = petzval::testing::data_prescription("zoom_57-143mm_f2.8");

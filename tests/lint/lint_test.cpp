@@ -6,11 +6,13 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "../data_lenses.hpp"
 #include "petzval/core/error.hpp"
+#include "petzval/media/glass.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/illumination.hpp"
 
@@ -72,6 +74,136 @@ TEST(Lint, FindsAnotherFocalLengthThanDeclared) {
   EXPECT_EQ(lint(p)[0].wanted, 103);
   p.focal_length_mm.reset();
   EXPECT_TRUE(lint(p).empty());
+}
+
+/// The singlet, so many times as large as it is declared.
+Prescription in_another_unit(double factor) {
+  Prescription p = scale(singlet(), factor);
+  p.focal_length_mm = 100;
+  return p;
+}
+
+/// The singlet with all rims so many times as wide.
+Prescription with_rims(double factor) {
+  Prescription p = singlet();
+  p.surfaces[0].thickness = 8;  // room for the widest
+  p.surfaces[1].obscuration_semi_diameter = 1;
+  for (SurfaceRow& row : p.surfaces) *row.semi_diameter *= factor;
+  *p.surfaces[1].obscuration_semi_diameter *= factor;
+  return p;
+}
+
+TEST(Lint, FindsLengthsInAnotherUnit) {
+  expect_one(in_another_unit(25.4), Kind::units, {},
+             "focal length is 2540 mm, declared 100 mm: lengths are 25.4 times what they should be");
+  expect_one(in_another_unit(0.1), Kind::units, {},
+             "focal length is 10 mm, declared 100 mm: lengths are 0.1 times what they should be");
+  EXPECT_EQ(lint(in_another_unit(20)).at(0).kind, Kind::focal_length);
+}
+
+TEST(Lint, FindsDiametersInThePlaceOfSemiDiameters) {
+  expect_one(with_rims(2), Kind::apertures, {}, "f-number is 2.5, declared 5: semi-diameters are diameters");
+  expect_one(with_rims(0.5), Kind::apertures, {}, "f-number is 10, declared 5: semi-diameters are halves of them");
+  EXPECT_EQ(lint(with_rims(1.5)).at(0).kind, Kind::f_number);
+  // Were it so, the f-number would be another.
+  EXPECT_EQ(lint(with_rims(1.8)).at(0).kind, Kind::f_number);
+}
+
+TEST(Lint, FindsAStopThatDoesNotLimitTheBeam) {
+  Prescription p = singlet();
+  p.f_number.reset();
+  p.surfaces[1].semi_diameter = 7.5;
+  EXPECT_TRUE(lint(p).empty());
+  p.surfaces[1].semi_diameter = 5;
+  expect_one(p, Kind::idle_stop, 0,
+             "surface 0: the stop lets an axial beam of 10 mm radius pass, surface 1 clips it at 5 mm");
+  p.surfaces[0].semi_diameter.reset();
+  EXPECT_TRUE(lint(p).empty());
+}
+
+TEST(Lint, FindsIndicesThatAreNotThoseOfTheGlass) {
+  const auto glasses = GlassCatalogue::load(std::filesystem::path(PETZVAL_TEST_DATA) / "glass");
+  Prescription p = singlet();
+  p.focal_length_mm.reset();
+  const auto index_of = [&](Medium medium) {
+    p.surfaces[0].medium = std::move(medium);
+    p.surfaces[1].thickness = first_order(compile(p, {.glasses = &glasses})).back_focal_distance;
+    std::vector<std::string> messages;
+    for (const Finding& finding : lint(p, glasses)) {
+      if (finding.kind == Kind::glass_index) messages.push_back(finding.message);
+    }
+    return messages;
+  };
+  using Messages = std::vector<std::string>;
+  EXPECT_EQ(index_of({.glass = "N-BK7", .catalogue = "schott", .nd = 1.52}), Messages{});
+  EXPECT_EQ(index_of({.glass = "N-BK7", .catalogue = "schott", .nd = 1.6}),
+            Messages{"surface 0: n_d is 1.6, that of N-BK7 is 1.5168"});
+  EXPECT_EQ(index_of({.glass = "N-BK7", .nd = 1.6}), Messages{});
+  EXPECT_EQ(index_of({.glass = "N-NONE", .catalogue = "schott", .nd = 1.6}), Messages{});
+}
+
+TEST(Lint, KindsHaveNamesOfTheirOwn) {
+  std::set<std::string_view> names;
+  for (int kind = 0; kind <= static_cast<int>(Kind::film_size); ++kind) {
+    names.insert(name(static_cast<Kind>(kind)));
+  }
+  EXPECT_EQ(names.size(), 12u);
+  EXPECT_FALSE(names.contains("unknown"));
+}
+
+TEST(Repair, MendsWhatHasOneCure) {
+  const auto changes = [](const Repaired& repaired) {
+    std::vector<std::string> result;
+    for (const ImportWarning& change : repaired.changes) result.push_back(change.command + ": " + change.message);
+    return result;
+  };
+  using Changes = std::vector<std::string>;
+  EXPECT_EQ(repair(singlet()).prescription, singlet());
+  EXPECT_TRUE(repair(singlet()).changes.empty());
+
+  Repaired repaired = repair(in_another_unit(1000));
+  EXPECT_EQ(changes(repaired), Changes{"units: focal length is 100000 mm, declared 100 mm: lengths are 1000 times what "
+                                       "they should be; all lengths are scaled"});
+  EXPECT_NEAR(repaired.prescription.surfaces[1].radius, -50, 1e-12);
+  EXPECT_EQ(repaired.prescription.focal_length_mm, 100);
+
+  for (const double factor : {0.5, 2.0}) {
+    repaired = repair(with_rims(factor));
+    EXPECT_EQ(repaired.prescription, with_rims(1));
+    EXPECT_NE(changes(repaired).at(0).find(factor > 1 ? "; they are halved" : "; they are doubled"), std::string::npos);
+  }
+
+  Prescription p = singlet();
+  p.surfaces[1].stop = true;
+  p.surfaces[1].thickness = 90;
+  repaired = repair(p);
+  EXPECT_NEAR(repaired.prescription.surfaces[1].thickness, 100, 1e-9);
+  repaired.prescription.surfaces[1].thickness = 100;
+  EXPECT_EQ(repaired.prescription, singlet());
+  EXPECT_EQ(changes(repaired),
+            (Changes{"several_stops: surface 1: is the last of 2 marked as stop; the first is used; the marks behind "
+                     "the first are taken off",
+                     "image_distance: surface 1: the film is 90 mm behind it and the paraxial focus 100 mm; the film "
+                     "is put there"}));
+}
+
+TEST(Repair, LeavesWhatItWouldMakeInvalidAndPositions) {
+  Prescription p = singlet();
+  p.surfaces[1].radius = -1e12;  // focused beyond the longest thickness
+  p.focal_length_mm.reset();
+  p.f_number.reset();
+  EXPECT_EQ(lint(p).at(0).kind, Kind::image_distance);
+  EXPECT_EQ(repair(p).prescription, p);
+  p = scale(singlet(), 1e7);  // a thickness of 1e9 mm
+  p.focal_length_mm = 1e12;
+  EXPECT_EQ(lint(p).at(0).kind, Kind::units);
+  EXPECT_EQ(repair(p).prescription, p);
+
+  p = in_another_unit(10);
+  p.configurations = {{.name = "a"}, {.name = "b", .changes = {{.surface = 1, .thickness = 990}}}};
+  EXPECT_EQ(lint(p).at(0).kind, Kind::units);
+  EXPECT_EQ(repair(p).prescription, p);
+  EXPECT_TRUE(repair(p).changes.empty());
 }
 
 TEST(Lint, FindsAnotherFNumberThanDeclared) {
