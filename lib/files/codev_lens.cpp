@@ -175,8 +175,8 @@ void CodevBuilder::build() {
     if (s.aperture || s.edge) row.semi_diameter = (s.aperture ? *s.aperture : *s.edge) * lens_.unit;
     if (s.obscuration) row.obscuration_semi_diameter = *s.obscuration * lens_.unit;
     if (!s.label.empty()) row.comment = s.label;
-    if (s.cylinder_x) row.curved_in = Section::x;
-    if (s.cylinder_y && s.shape != 0) row.curved_in = Section::y;
+    // CYL alone is curved in y; of a plane in y, RDX is the radius in x.
+    if (s.shape != 0 && (s.cylinder_x || s.cylinder_y)) row.curved_in = s.cylinder_x ? Section::x : Section::y;
     before = row.medium;
   }
   // The thickness of the image surface is its distance from where the last surface put it.

@@ -422,7 +422,7 @@ void ZemaxReader::glass(Words words) {
   const double nd = value(words, 4), vd = value(words, 5);
   // 1.5 and 40 stand where nothing was known when the file was written.
   const bool dummy = nd == 0 || (nd == 1.5 && vd == 40);
-  if (!dummy || mode == 1) glass.nd = nd;
+  if (nd != 0 && (!dummy || mode == 1)) glass.nd = nd;
   if ((!dummy || mode == 1) && vd > 0) glass.vd = vd;
   glass.model = mode == 1 || glass.name == "___BLANK";
   if (mode == 2) glass.pickup = whole(words, 3, 0, 100'000);

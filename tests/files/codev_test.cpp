@@ -170,11 +170,52 @@ TEST(Codev, EveryWordIsHonouredOrNamed) {
   EXPECT_NE(warning(without, "stop"), "no warning");
 }
 
+TEST(Codev, WordsMayNameTheirSurface) {
+  const auto surface = [](std::size_t i, const std::string& words) {
+    return read(with(singlet, "\nGO", '\n' + words + "\nGO")).surfaces.at(i);
+  };
+  EXPECT_EQ(surface(1, "CIR S2 6").semi_diameter, 6);
+  EXPECT_EQ(surface(1, "CUY S2 0.0125").radius, 80);
+  EXPECT_EQ(surface(1, "CUY S2 0").radius, 0);
+  EXPECT_EQ(
+      surface(1, "S2 60 5 1.6:50"),
+      (petzval::SurfaceRow{
+          .radius = 60, .thickness = 5, .medium = {.nd = 1.6, .vd = 50}, .semi_diameter = 8, .comment = "front"}));
+  EXPECT_TRUE(surface(2, "GLA S3 REFL").mirror);
+  EXPECT_EQ(surface(2, "PIK GLA S3 GLA S2").medium.nd, 1.5);
+  EXPECT_EQ(surface(1, "PIK THI S2 THI S1").thickness, 2);
+  EXPECT_NE(warning(with(singlet, "\nGO", "\nPIK THI S2 THI S1 1 2\nGO"), "PIK"), "no warning");
+  EXPECT_TRUE(surface(1, "STO S2").stop);
+  // The object, by its number or its name, and a distance of its own for each position.
+  const Prescription p = read(with(singlet, "\nGO", "\nTHI SO 300\nZOO 2\nZOO THI SO 300 200\nCUY S2 0.02 0.025\nGO"));
+  EXPECT_EQ(p.design.object_distance_mm, 300);
+  EXPECT_EQ(p.configurations.at(1).subject_distance_mm, 200);
+  EXPECT_EQ(configured(p, 1).surfaces[1].radius, 40);
+}
+
+TEST(Codev, CylindersAreCurvedInOneSection) {
+  const auto row = [](const std::string& shape, const std::string& words) {
+    return read(with(with_line(words), "S 50 4", "S " + shape + " 4")).surfaces[1];
+  };
+  EXPECT_EQ(row("50", "CYL").curved_in, petzval::Section::y);
+  EXPECT_EQ(row("50", "CYL; RDX 0").curved_in, petzval::Section::y);
+  EXPECT_EQ(row("0", "RDX 40").curved_in, petzval::Section::x);
+  EXPECT_EQ(row("0", "RDX 40").radius, 40);
+  EXPECT_EQ(row("0", "CYL; RDX 40").curved_in, petzval::Section::x);
+}
+
 TEST(Codev, WhatNoLensHasIsRefused) {
   const auto refused = [](const std::string& words, std::string_view message) {
     return petzval::testing::refuses(with(singlet, "\nGO", '\n' + words + "\nGO"), message);
   };
   EXPECT_TRUE(refused("PIK RDY S9 Z1 RDY S2 Z1", "PIK is of a surface that does not exist"));
+  EXPECT_TRUE(refused("GLA", "GLA is empty, wanted the name of a glass"));
+  EXPECT_TRUE(refused("THI S9 5", "THI is of \"S9\", wanted a surface that the file has by then"));
+  EXPECT_TRUE(refused("EPD 0", "EPD is 0, wanted a number above 0"));
+  EXPECT_TRUE(refused("WL 0.5876", "WL is 0.5876, wanted 10 to 100000 nm"));
+  EXPECT_TRUE(refused("REF 4", "REF is 4, wanted the number of a wavelength, 1 to 3"));
+  EXPECT_TRUE(refused("CIR S2 -1", "CIR is -1, wanted a radius of 0 or more"));
+  EXPECT_TRUE(refused("S 50 4", "S is behind SI, the image"));
   EXPECT_TRUE(refused("ZOO 0", "ZOO is 0, wanted 1 to 1000 positions"));
   EXPECT_TRUE(refused("ZOO THI", "ZOO is incomplete"));
   EXPECT_TRUE(refused("ZOO 3\nZOO THI S9 4 5 6", "ZOO is of surface 9"));

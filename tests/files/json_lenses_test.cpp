@@ -230,6 +230,31 @@ TEST(Lentil, WhatTheFormatDoesNotSayIsRefused) {
   EXPECT_NE(warning(with(lentil, "\"year\"", "\"mass\": 5, \"year\""), "0001.mass"), "no warning");
 }
 
+TEST(Lentil, WhatIsMissingOrOfAnotherKindIsSaid) {
+  const auto refused = [](const std::string& old, const std::string& now) { return refusal(with(lentil, old, now)); };
+  EXPECT_EQ(refused("\"radius\": 50.6", "\"radius\": \"flat\""),
+            "x: 0001.optical-elements-patent[1].radius is \"flat\", wanted a number");
+  EXPECT_EQ(refused("{\"radius\": 50.6", "5, {\"radius\": 50.6"),
+            "x: 0001.optical-elements-patent[1] is \"5\", wanted an object");
+  EXPECT_EQ(refused("[2, 3, 4]", "[2, 3, null]"),
+            "x: 0001.optical-elements-patent[0].thickness is \"[2,3,null]\", wanted a number or three");
+  EXPECT_EQ(refusal("{\"optical-elements-patent\": 5}"),
+            "x: file.optical-elements-patent is no list, wanted a list of surfaces");
+  EXPECT_EQ(refusal("{\"0001\": [\"optical-elements-patent\", \"optical-elements-patent\"]}").substr(0, 6), "x: 000");
+  EXPECT_EQ(read(with(lentil, "\"BK7\"", "\"glass\"")).surfaces[1].medium, (petzval::Medium{.nd = 1.5168, .vd = 64.2}));
+  EXPECT_EQ(read(with(lentil, "\"abbe\": 64.2", "\"abbe\": 0")).surfaces[1].medium.vd, std::nullopt);
+  EXPECT_EQ(read(with(lentil, "\"radius\": 50.6", "\"radius\": 9999")).surfaces[1].radius, 9999);
+  EXPECT_EQ(read(with(with(lentil, "\"spherical\"", "\"planar\""), "\"radius\": 50.6", "\"radius\": 99999"))
+                .surfaces[1]
+                .radius,
+            0);
+  EXPECT_EQ(read(with(lentil, "\"fstop\": 5", "\"fstop\": \"five\"")).f_number, std::nullopt);
+  EXPECT_EQ(read(with(lentil, "\"company\": \"none\"", "\"company\": 7")).name, "7 singlet 2000");
+  // A lens alone, without a number.
+  const std::string alone = lentil.substr(9, lentil.size() - 10);
+  EXPECT_EQ(read(alone).surfaces, read(lentil).surfaces);
+}
+
 TEST(Lentil, ListsAreOfNumbersAndSurfaces) {
   using petzval::testing::refuses;
   EXPECT_TRUE(refuses(with(lentil, "[2, 3, 4]", "[2, 3]"), "thickness is \"[2,3]\", wanted a number or three"));

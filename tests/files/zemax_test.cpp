@@ -5,6 +5,7 @@
 #include <limits>
 #include <string>
 
+#include "core/text.hpp"
 #include "lens_text.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/paraxial/first_order.hpp"
@@ -365,6 +366,62 @@ TEST(Zemax, EveryCommandIsHonouredOrNamed) {
             }).find("x: line 40: ABCD: is not known"),
             std::string::npos);
   EXPECT_NE(warning(with(singlet, "ENVD 20 1 0", "ENVD 35 1 0"), "ENVD"), "no warning");
+}
+
+TEST(Zemax, ConfigurationsChangeShapesGlassesAndFNumbers) {
+  const Prescription p = read(with(singlet, "ENPD 10", "FNUM 5 0") +
+                              "MNUM 2 1\nLTTL 0 1 \"a\"\nLTTL 0 2 \"a\"\nMOFF 0 1 x\nTHIC 0 1 INFINITY\nTHIC 0 2 400\n"
+                              "CONN 2 1 0\nCONN 2 2 -0.5\nSDIA 3 1 0\nSDIA 3 2 6\nAPER 0 1 5\nAPER 0 2 8\n"
+                              "GLSS 2 1 \"N-BK7\"\nGLSS 2 2 \"AIR\"\nWLWT 1 1 1\nWLWT 1 2 1\n");
+  ASSERT_EQ(p.configurations.size(), 2u);
+  EXPECT_EQ(p.configurations[0].name, "a");
+  EXPECT_EQ(p.configurations[1].name, "a (2)");
+  EXPECT_EQ(p.configurations[1].focus_of, "a");
+  EXPECT_EQ(p.configurations[1].f_number, 8);
+  const Prescription near = configured(p, 1);
+  EXPECT_EQ(near.surfaces[1].conic, -0.5);
+  EXPECT_EQ(near.surfaces[1].medium, petzval::Medium{});
+  EXPECT_EQ(near.surfaces[2].semi_diameter, 6);
+  EXPECT_EQ(configured(p, 0).surfaces[2].semi_diameter, 7);
+  EXPECT_EQ(configured(p, 0).surfaces[1].medium.glass, "N-BK7");
+  EXPECT_EQ(warning(p, "WLWT"), "no warning");  // the same in both
+}
+
+TEST(Zemax, MarginalHeightsAreOfAZoneOfThePupil) {
+  const auto thickness = [](const std::string& aperture, const std::string& solve) {
+    return read(with(with(singlet, "  DISZ 48\n", "  DISZ 0\n  " + solve + "\n"), "ENPD 10", aperture))
+        .surfaces[2]
+        .thickness;
+  };
+  const double focus = petzval::first_order(compile(read(singlet))).back_focal_distance;
+  const double focal_length = petzval::first_order(compile(read(singlet))).effective_focal_length;
+  EXPECT_LT(thickness("ENPD 10", "MAZH 0 1"), thickness("ENPD 10", "MAZH 0 0.5"));
+  EXPECT_LT(thickness("ENPD 10", "MAZH 0 0.5"), focus);
+  EXPECT_NEAR(thickness("FNUM " + petzval::to_text(focal_length / 10) + " 0", "MAZH 0 1"),
+              thickness("ENPD 10", "MAZH 0 1"), 1e-9);
+  EXPECT_EQ(thickness("FLOA 0", "MAZH 0 1"), 0);    // without a pupil
+  EXPECT_EQ(thickness("ENPD 300", "MAZH 0 1"), 0);  // the ray misses
+}
+
+TEST(Zemax, WhatNoLensHasIsRefused) {
+  using petzval::testing::refuses;
+  const auto of_type = [](const std::string& type, const std::string& lines) {
+    return with(singlet, "TYPE STANDARD\n  CURV 0.02", "TYPE " + type + "\n" + lines + "  CURV 0.02");
+  };
+  EXPECT_TRUE(refuses(of_type("XASPHERE", "  XDAT 1 2000\n"), "XASPHERE is 2000 terms, wanted 0 to 1000"));
+  EXPECT_TRUE(refuses(of_type("XASPHERE", "  XDAT 1 1\n  XDAT 3 1\n"),
+                      "XASPHERE is normalised to a radius of 0, wanted one above 0"));
+  EXPECT_TRUE(refuses(of_type("XASPHERE", "  XDAT 1 21\n  XDAT 2 1\n  XDAT 23 1e-60\n"),
+                      "XASPHERE is with a term of order 42, wanted orders up to 40"));
+  EXPECT_TRUE(refuses(of_type("TOROIDAL", "  PARM 1 0\n  CONI -1\n"), "TYPE is TOROIDAL"));
+  EXPECT_TRUE(
+      refuses(with(singlet, "SURF 0\n", "SURF 0\n  STOP\n"), "STOP is at the object, wanted a surface of the lens"));
+  EXPECT_TRUE(
+      refuses(with(singlet, "SURF 4\n", "SURF 4\n  STOP\n"), "STOP is at the image, wanted a surface of the lens"));
+  EXPECT_TRUE(refuses(with(singlet, "___BLANK 1 0 1.5 60 0 0 0 0 0 0", "___BLANK 1"), "GLAS is a model without n_d"));
+  // The glass picked up from air is air.
+  EXPECT_EQ(read(with(singlet, "  DISZ 48\n", "  DISZ 48\n  GLAS ___BLANK 2 1 1.5 60 0\n")).surfaces[2].medium,
+            petzval::Medium{});
 }
 
 TEST(Zemax, WhatIsNotEvaluatedIsSaid) {

@@ -143,6 +143,44 @@ TEST(Validate, FieldsThatContradictEachOtherAreRefused) {
             "s: design: wavelength 0: it is 0.5876, wanted 10 to 100000 nm");
 }
 
+TEST(Validate, DesignsAndPositionsThatNoLensHasAreRefused) {
+  using petzval::ApertureSetting;
+  const std::string aperture = ", wanted a finite number of 0 or more";
+  for (const double value : {nan, infinity, -1.0}) {
+    EXPECT_EQ(refusal([&](auto& p) {
+                p.design.aperture = {ApertureSetting::f_number, value};
+              }),
+              "s: design: aperture is " + petzval::to_text(value) + aperture);
+  }
+  EXPECT_EQ(refusal([](auto& p) { p.design.object_distance_mm = nan; }),
+            "s: design: object distance is nan, wanted a length");
+  EXPECT_EQ(refusal([](auto& p) {
+              p.design.fields = {{}, {.y = infinity}};
+            }),
+            "s: design: field 1: a value is inf, wanted a finite number");
+  EXPECT_EQ(refusal([](auto& p) {
+              p.design.wavelengths = {{500, nan}};
+            }),
+            "s: design: wavelength 0: weight is nan, wanted a finite number");
+  EXPECT_EQ(refusal([](auto& p) {
+              p.design.wavelengths = {{500, 1}};
+              p.design.primary_wavelength = 1;
+            }),
+            "s: design: primary wavelength is 1, wanted one of 1");
+  for (const double distance : {nan, 0.0, -5.0}) {
+    EXPECT_EQ(refusal([&](auto& p) { p.configurations = {{.name = "a", .subject_distance_mm = distance}}; }),
+              "s: configuration 0: subject_distance_mm is " + petzval::to_text(distance) +
+                  ", wanted a length above 0, or inf");
+  }
+  EXPECT_EQ(refusal([](auto& p) { p.configurations = {{.name = "a", .stop = 2}}; }),
+            "s: configuration 0: stop is 2, wanted one of 2");
+  EXPECT_EQ(refusal([](auto& p) { p.configurations = {{.name = "a", .changes = {{.surface = -1}}}}; }),
+            "s: configuration 0: changed surface is -1, wanted one of 2");
+  EXPECT_EQ(refusal([](auto& p) { p.configurations = {{.name = "a", .focus_of = "a"}}; }),
+            "s: configuration 0 focuses another, wanted a zoom position first");
+  EXPECT_EQ(refusal([](auto& p) { p.configurations.resize(1001); }), "s: 1001 configurations, wanted at most 1000");
+}
+
 TEST(Validate, StrangeButLegalLensesPass) {
   const std::vector<std::function<void(Prescription&)>> changes = {
       [](auto& p) { p.surfaces[0].thickness = 0; },
@@ -202,6 +240,23 @@ TEST(Scale, LengthsFollowAndRatiosStay) {
   EXPECT_EQ(configured(petzval::scale(whole, 2), "middle"), scaled);
   EXPECT_EQ(scaled.surfaces[1].conic, -1);
   EXPECT_EQ(scaled.surfaces[0].semi_diameter, 2 * 29.285);
+}
+
+TEST(Scale, TheDesignsLengthsFollow) {
+  using enum petzval::ApertureSetting;
+  Prescription p = singlet();
+  p.design.object_distance_mm = 300;
+  p.design.fields = {{.x = 1, .y = 2}};
+  for (const auto& [setting, scaled] : {std::pair(entrance_pupil_diameter, 12.0), std::pair(f_number, 4.0),
+                                        std::pair(working_f_number, 4.0), std::pair(object_na, 4.0)}) {
+    p.design.aperture = {setting, 4};
+    EXPECT_EQ(petzval::scale(p, 3).design.aperture->value, scaled);
+  }
+  EXPECT_EQ(petzval::scale(p, 3).design.object_distance_mm, 900);
+  EXPECT_EQ(petzval::scale(p, 3).design.fields[0].y, 2);  // degrees
+  p.design.field_kind = petzval::FieldKind::object_height;
+  EXPECT_EQ(petzval::scale(p, 3).design.fields[0].x, 3);
+  EXPECT_EQ(petzval::scale(p, 3).design.fields[0].y, 6);
 }
 
 TEST(Scale, RefusesFactorsThatMakeNoLens) {
