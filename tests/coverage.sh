@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # Counts which lines and branches of include and lib the tests run. Prints a table of modules, the lines that report errors and
 # never ran, and the totals; fails below 95 % of lines or 85 % of branches, and where an importer has an error that no test sees.
+# Code that is inlined at each call and compiled for each instruction set has branches in each copy: these count apart.
 #
 #   sh tests/coverage.sh [arguments of ctest]
 #
