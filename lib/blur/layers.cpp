@@ -133,6 +133,7 @@ LayerSet::~LayerSet() = default;
 
 void LayerSet::peel(const PeelPlan& plan, int layers, const Peel& peel) {
   check_number(layers);
+  if (!peel) throw Error("layers: peel is empty, wanted a function");
   const LayerCamera& camera = plan.camera;
   check_size("layers", camera.layer_columns(), camera.layer_rows());
   Data& d = *data_;

@@ -123,6 +123,7 @@ Spread spread_of(const RayTable& t, double nearest) {
 LensRays::LensRays(const LayerCamera& camera, std::span<const PupilPoint> points, int channels, Source source,
                    const LensRaysOptions& options) {
   check(camera, points, channels, options);
+  if (!source) throw Error("lens rays: the source is empty, wanted a function");
   auto d = std::make_shared<Data>();
   d->camera = camera, d->camera.overscan = 0;
   d->points.assign(points.begin(), points.end());

@@ -20,6 +20,7 @@ void parallel_for(std::size_t count, std::size_t block, int threads,
                   const std::function<void(std::size_t, std::size_t)>& work) {
   if (block == 0) throw Error("parallel_for: block is 0, wanted 1 or more");
   if (threads < 1) throw Error("parallel_for: threads is " + std::to_string(threads) + ", wanted 1 or more");
+  if (!work) throw Error("parallel_for: work is empty, wanted a function");
   const std::size_t blocks = count / block + (count % block != 0);
   const auto do_block = [&](std::size_t k) { work(k * block, k * block + std::min(block, count - k * block)); };
   const std::size_t workers = std::min(static_cast<std::size_t>(threads), blocks);

@@ -20,4 +20,10 @@ std::string to_text(double value, int significant_digits) {
   return {buffer.data(), end};
 }
 
+std::string_view beginning(std::string_view text, std::size_t most) noexcept {
+  if (text.size() <= most) return text;
+  while (most > 0 && (static_cast<unsigned char>(text[most]) & 0xC0) == 0x80) --most;  // a byte that goes on
+  return text.substr(0, most);
+}
+
 }  // namespace petzval::inline v0

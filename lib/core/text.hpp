@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <string>
+#include <string_view>
 
 #include "petzval/core/export.hpp"
 
@@ -13,5 +15,8 @@ PETZVAL_API std::string to_text(double value);
 
 /// The same rounded to a number of significant digits.
 PETZVAL_API std::string to_text(double value, int significant_digits);
+
+/// The beginning of a UTF-8 text, at most this many bytes: whole characters.
+PETZVAL_API std::string_view beginning(std::string_view text, std::size_t most) noexcept;
 
 }  // namespace petzval::inline v0

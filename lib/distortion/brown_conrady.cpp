@@ -111,7 +111,7 @@ double BrownConrady::radius(double r) const noexcept { return r * polynomial(r *
 BrownConrady fit_brown_conrady(const LensDistortion& distortion, const BrownConradyOptions& options) {
   const Camera& camera = distortion.camera();
   const std::string where = camera.lens().name() + ": Brown-Conrady: ";
-  if (!camera.lens().rotationally_symmetric()) {
+  if (!with_iris(camera.lens(), {}).rotationally_symmetric()) {  // blades bend no ray
     throw Error(where + "the lens has cylinders, wanted one of revolution, whose distortion is radial");
   }
   if (camera.film().tilted())

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/text.hpp"
 #include "glass_reader.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/units.hpp"
@@ -133,7 +134,7 @@ class AgfReader {
     record_->formula = formula >= 1 && formula <= 13 && formula == std::floor(formula) ? static_cast<int>(formula) : 0;
     if (record_->formula == 0) {
       reader_.warn(line, record_->glass.name,
-                   "left out: its formula is " + std::string(w[2].substr(0, 100)) + ", known are 1 to 13");
+                   "left out: its formula is " + std::string(beginning(w[2], 100)) + ", known are 1 to 13");
     }
     record_->glass.nd = printed(4);
     record_->glass.vd = printed(5);

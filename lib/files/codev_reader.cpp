@@ -49,7 +49,7 @@ class CodevReader {
 
   void new_lens(Words) {}
   void radius_mode(Words w) { lens_.curvatures = w.size() > 1 && same(w[1], "N"); }
-  void title(Words w) { in_.lens.imported->title = w.size() > 1 ? std::string(w[1].substr(0, 4096)) : std::string(); }
+  void title(Words w) { in_.lens.imported->title = w.size() > 1 ? std::string(beginning(w[1], 4096)) : std::string(); }
   void dimension(Words);
   void aperture(Words);
   void wavelengths(Words);
@@ -68,7 +68,7 @@ class CodevReader {
   void asphere_begins(Words w) { surface(w); }
   void paraxial_image(Words) { lens_.paraxial_image = line_; }
   void tilt(Words);
-  void label(Words w) { surface(w).label = w.size() > 1 ? std::string(w[1].substr(0, 200)) : std::string(); }
+  void label(Words w) { surface(w).label = w.size() > 1 ? std::string(beginning(w[1], 200)) : std::string(); }
   void thickness(Words);
   void shape(Words);
   void glass(Words);

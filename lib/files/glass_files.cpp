@@ -53,7 +53,7 @@ void GlassReader::refuse(int line, const std::string& found, const std::string& 
 double GlassReader::number(int line, std::string_view what, std::string_view word) const {
   const auto value = files_detail::number(word);
   if (!value) {
-    refuse(line, std::string(what) + " is \"" + std::string(word.substr(0, 100)) + "\"", "a finite number");
+    refuse(line, std::string(what) + " is \"" + std::string(beginning(word, 100)) + "\"", "a finite number");
   }
   return *value;
 }

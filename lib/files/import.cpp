@@ -143,8 +143,7 @@ Import::Import(std::string where, std::string_view format, const GlassCatalogue*
 void Import::warn(int line, std::string_view command, const std::string& message) {
   auto& warnings = lens.imported->warnings;
   if (warnings.size() < most_warnings) {
-    const std::string_view word = command.substr(0, 60);
-    warnings.push_back({line, as_utf8(std::string(word), where_, "text"), message});
+    warnings.push_back({line, std::string(beginning(command, 60)), message});
   } else {
     ++left_out_;
   }
@@ -153,7 +152,7 @@ void Import::warn(int line, std::string_view command, const std::string& message
 void Import::refuse(int line, std::string_view command, const std::string& found, const std::string& wanted) const {
   std::string text = where_;
   if (line > 0) text += ": line " + std::to_string(line);
-  if (!command.empty()) text += ": " + std::string(command.substr(0, 60));
+  if (!command.empty()) text += ": " + std::string(beginning(command, 60));
   throw Error(text + " is " + found + ", wanted " + wanted);
 }
 

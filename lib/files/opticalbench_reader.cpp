@@ -151,7 +151,7 @@ void OpticalBenchReader::take(int line, const Cells& cells) {
 
 void OpticalBenchReader::note(const Cells& cells) {
   std::string text;
-  for (const auto cell : cells) text += (text.empty() ? "" : " ") + std::string(cell.substr(0, 4096));
+  for (const auto cell : cells) text += (text.empty() ? "" : " ") + std::string(beginning(cell, 4096));
   if (cells[0] == "title" && section_ == "descriptive data") {
     in_.lens.imported->title = text.size() > 6 ? text.substr(6) : std::string();
   } else if (in_.lens.imported->notes.size() < 1000) {
@@ -172,7 +172,7 @@ Length OpticalBenchReader::length(int line, const char* what, std::string_view c
   }
   const bool is_name = (cell[0] >= 'a' && cell[0] <= 'z') || (cell[0] >= 'A' && cell[0] <= 'Z');
   if (is_name && cell != "Infinity" && cell != "NaN" && cell != "nan" && cell != "inf") {
-    in_.refuse(line, what, "\"" + std::string(cell.substr(0, 60)) + "\"", "a number or a row of [variable distances]");
+    in_.refuse(line, what, "\"" + std::string(beginning(cell, 60)) + "\"", "a number or a row of [variable distances]");
   }
   return {in_.number(line, what, cell), nullptr};
 }
@@ -230,7 +230,7 @@ int OpticalBenchReader::odd_count() const {
 void OpticalBenchReader::take_asphere(int line, const Cells& cells) {
   const auto named = row_of_.find(std::string(cells[0]));
   if (named == row_of_.end()) {
-    in_.refuse(line, "asphere", "of surface \"" + std::string(cells[0].substr(0, 60)) + "\"", "one of [lens data]");
+    in_.refuse(line, "asphere", "of surface \"" + std::string(beginning(cells[0], 60)) + "\"", "one of [lens data]");
   }
   if (cells.size() < 3)
     in_.refuse(line, "asphere", std::to_string(cells.size()) + " columns", "its name, radius and conic");

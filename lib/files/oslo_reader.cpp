@@ -164,7 +164,7 @@ bool OsloReader::take_general(int line, std::string_view command, const Words& w
     std::string note;
     for (std::size_t i = 1; i < w.size(); ++i) note += (note.empty() ? "" : " ") + std::string(w[i]);
     if (!note.empty() && in_.lens.imported->notes.size() < 1000)
-      in_.lens.imported->notes.push_back(note.substr(0, 4096));
+      in_.lens.imported->notes.push_back(std::string(beginning(note, 4096)));
     return true;
   }
   if (command == "NXT") {

@@ -241,7 +241,8 @@ class RiiReader {
       c.resize(6);
       glass_.coefficients = std::move(c);
     } else {
-      reader_.refuse(line_, "type \"" + type.substr(0, 100) + "\"", "formula 1, 2, 3, 4, 5 or 7, or tabulated n or nk");
+      reader_.refuse(line_, "type \"" + std::string(beginning(type, 100)) + "\"",
+                     "formula 1, 2, 3, 4, 5 or 7, or tabulated n or nk");
     }
     const auto range = numbers(entry.range, "wavelength_range", reader_);
     if (range.size() != 2) {

@@ -182,9 +182,9 @@ void TableReader::read(std::string_view text) {
     if (line.empty()) continue;
     if (is_comment(line)) {
       const std::string_view words_of_it = trimmed(line.substr(std::min(line.find_first_not_of("#/;%"), line.size())));
-      if (said_.size() < 65'536) said_ += std::string(words_of_it.substr(0, 4096)) + ' ';
+      if (said_.size() < 65'536) said_ += std::string(beginning(words_of_it, 4096)) + ' ';
       auto& notes = in_.lens.imported->notes;
-      if (!words_of_it.empty() && notes.size() < 1000) notes.emplace_back(words_of_it.substr(0, 4096));
+      if (!words_of_it.empty() && notes.size() < 1000) notes.emplace_back(beginning(words_of_it, 4096));
       continue;
     }
     const auto columns = words(line.substr(0, line.find('#')), 64);

@@ -55,6 +55,8 @@ class ZemaxReader {
     return at < words.size() ? in_.number(line_, words[0], words[at]) : 0.0;
   }
   double length(Words words, std::size_t at) const { return value(words, at) * unit_; }
+  /// A word without which the command means nothing.
+  double stated(Words words, std::size_t at) const;
   int whole(Words words, std::size_t at, int least, int most) const;
   ZemaxSurface& surface() { return lens_.surfaces.back(); }
   std::string rest() const;
@@ -93,9 +95,9 @@ class ZemaxReader {
   // Commands of a surface.
   void type(Words w) { surface().type = w.size() > 1 ? std::string(w[1]) : std::string(); }
   void curvature(Words);
-  void conic(Words w) { surface().conic = value(w, 1); }
-  void parameter(Words w) { surface().parameters[whole(w, 1, 0, 1000)] = value(w, 2); }
-  void extra(Words w) { surface().extra[whole(w, 1, 0, 1000)] = value(w, 2); }
+  void conic(Words w) { surface().conic = stated(w, 1); }
+  void parameter(Words w) { surface().parameters[whole(w, 1, 0, 1000)] = stated(w, 2); }
+  void extra(Words w) { surface().extra[whole(w, 1, 0, 1000)] = stated(w, 2); }
   void thickness(Words);
   void glass(Words);
   void semi_diameter(Words);
@@ -245,6 +247,11 @@ void ZemaxReader::unknown(Words words) {
   in_.warn(line_, words[0], "is not known and is left out");
 }
 
+double ZemaxReader::stated(Words words, std::size_t at) const {
+  if (at >= words.size()) in_.refuse(line_, words[0], "without its number", "a number behind it");
+  return value(words, at);
+}
+
 int ZemaxReader::whole(Words words, std::size_t at, int least, int most) const {
   const double number = value(words, at);
   if (number >= least && number <= most && number == std::floor(number)) return static_cast<int>(number);
@@ -256,7 +263,7 @@ int ZemaxReader::whole(Words words, std::size_t at, int least, int most) const {
 std::string ZemaxReader::rest() const {
   const std::string_view line = trimmed(text_);
   const std::string_view behind = trimmed(line.substr(std::min(line.find_first_of(" \t"), line.size())));
-  return std::string(behind.substr(0, 4096));
+  return std::string(beginning(behind, 4096));
 }
 
 void ZemaxReader::fields(Words words, double DesignField::*member) {
@@ -267,7 +274,12 @@ void ZemaxReader::fields(Words words, double DesignField::*member) {
 }
 
 void ZemaxReader::aperture(Words words, ApertureSetting setting, double scale) {
-  in_.lens.design.aperture = DesignAperture{setting, value(words, 1) * scale};
+  auto& aperture = in_.lens.design.aperture;
+  if (aperture && aperture->setting != setting) {
+    in_.warn(line_, words[0], "is a second aperture; it is taken, the one before is left out");
+  }
+  // The size of the stop is that of its surface.
+  aperture = DesignAperture{setting, setting == ApertureSetting::stop_size ? 0 : stated(words, 1) * scale};
 }
 
 void ZemaxReader::mode(Words words) {
@@ -280,7 +292,7 @@ void ZemaxReader::note(Words) {
   constexpr std::size_t longest = 65'536;
   const std::string text = rest();
   if (text.starts_with("0")) {
-    if (note_.size() < longest) note_ += text.substr(std::min<std::size_t>(2, text.size()));
+    if (note_.size() < longest) note_ += trimmed(std::string_view(text).substr(1));
   } else {
     end_note();
   }
@@ -394,7 +406,7 @@ void ZemaxReader::configurations(Words words) {
 
 void ZemaxReader::curvature(Words words) {
   ZemaxSurface& s = surface();
-  s.curvature = value(words, 1) / unit_;
+  s.curvature = stated(words, 1) / unit_;
   const int solve = words.size() > 2 ? whole(words, 2, 0, 100) : 0;
   if (solve == 4) {
     s.curvature_pickup = ZemaxPickup{line_, whole(words, 3, 0, 100'000), value(words, 4), value(words, 5) / unit_};
@@ -411,7 +423,7 @@ void ZemaxReader::thickness(Words words) {
   if (words.size() > 1 && same(words[1], "INFINITY")) {
     surface().thickness = std::numeric_limits<double>::infinity();
   } else {
-    surface().thickness = length(words, 1);
+    surface().thickness = stated(words, 1) * unit_;
   }
 }
 
@@ -435,7 +447,7 @@ void ZemaxReader::glass(Words words) {
 }
 
 void ZemaxReader::semi_diameter(Words words) {
-  surface().semi_diameter = std::abs(length(words, 1));
+  surface().semi_diameter = std::abs(stated(words, 1) * unit_);
   surface().fixed_semi_diameter = words.size() > 2 && value(words, 2) != 0;
 }
 

@@ -23,8 +23,7 @@ constexpr const char* wanted_integer = "an integer up to 2^53";
 /// Strings of a document have any length; messages must not.
 std::string shortened(std::string_view text, std::size_t longest = 60) {
   if (text.size() <= longest) return std::string(text);
-  while (longest > 0 && (static_cast<unsigned char>(text[longest]) & 0xC0) == 0x80) --longest;  // whole characters only
-  return std::string(text.substr(0, longest)) + "...";
+  return std::string(beginning(text, longest)) + "...";
 }
 
 /// Receives the events of nlohmann's parser.

@@ -180,8 +180,11 @@ void fill_profile(PointImage& image, const Rays& rays) {
       if (rays.part[i] == part) own.push_back({rays.sets[i].x, rays.sets[i].y, rays.sets[i].weights});
     }
     const SpotSize size = psf_detail::spot_size(own);
-    if (size.max_radius == 0) continue;
-    const auto its = light_by_ring(image.psf, rays, {size.centroid, size.max_radius / rings}, part);
+    std::array<double, rings> its{};
+    if (std::ranges::any_of(own, [](const psf_detail::Points& points) { return !points.x.empty(); })) {
+      if (size.max_radius == 0) continue;  // a point
+      its = light_by_ring(image.psf, rays, {size.centroid, size.max_radius / rings}, part);
+    }
     for (std::size_t k = 0; k < rings; ++k) errors += (parts * its[k] - light[k]) * (parts * its[k] - light[k]);
   }
   image.error = (rays.uneven() ? uneven_confidence : confidence) * std::sqrt(errors / (parts * (parts - 1)) / squares);

@@ -526,6 +526,7 @@ class Search {
     if (found.empty()) return false;
     const Vec2<double> p = (place - found.middle) / found.half_axes;
     const double turn = std::atan2(p.x, p.y) / (2 * std::numbers::pi), radius = std::hypot(p.x, p.y);
+    if (!std::isfinite(radius)) return false;
     const auto k = static_cast<std::size_t>((turn - std::floor(turn)) * static_cast<double>(directions_)) % directions_;
     double to = 0;
     for (const std::size_t beside : {k, (k + 1) % directions_, (k + directions_ - 1) % directions_}) {

@@ -55,8 +55,8 @@ double entering_height(const HeightAt& height_at, double rim, double expected) {
     return height && *height <= rim;
   };
   // Spherical aberration may bring the heights back below the rim further out: steps small beside the beam find the
-  // first crossing. They grow where the estimate is far too small.
-  double step = expected / 16;
+  // first crossing. They grow where the estimate is far too small, or underflows.
+  double step = std::max(expected / 16, std::numeric_limits<double>::min());
   double low = 0, high = step;
   while (inside(high)) {
     low = high;

@@ -322,6 +322,11 @@ void trace_boundary(Sight& sight, PupilBoundary& boundary, const std::vector<See
 
 PupilBoundary boundary_of(const Lens& lens, const PupilPlane& plane, Wavelength at, std::size_t directions) {
   const std::size_t wavelength = lens.compiled_position(at);
+  constexpr std::size_t most = 1 << 20;
+  if (directions > most) {
+    throw Error(lens.name() + ": pupil boundary: directions is " + std::to_string(directions) + ", wanted at most " +
+                std::to_string(most));
+  }
   if (directions < 3 && !(directions == 1 && plane.on_axis() && lens.rotationally_symmetric())) {
     throw Error(lens.name() + ": pupil boundary: directions is " + std::to_string(directions) +
                 ", wanted 3 or more, or 1 on the axis of a lens of revolution");

@@ -13,10 +13,11 @@
 namespace petzval::inline v0::trace_detail {
 namespace {
 
-/// Arrays from a position on.
+/// Arrays from a position on; those that nobody asked for are null, and stay so.
 template <class R, class T>
 RayArrays<T> from(const RayArrays<T>& a, std::size_t o) noexcept {
-  return {a.x + o, a.y + o, a.z + o, a.dx + o, a.dy + o, a.dz + o};
+  const auto at = [o](T* p) { return p ? p + o : p; };
+  return {at(a.x), at(a.y), at(a.z), at(a.dx), at(a.dy), at(a.dz)};
 }
 
 /// Fates and surfaces from the tallies.

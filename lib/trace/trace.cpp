@@ -127,7 +127,7 @@ TracedRay<T> trace(const Lens& lens, const Ray<T>& ray, const TraceOptions& opti
 template <class T>
 TracedRay<T> trace(const Lens& lens, const Ray<T>& ray, const TraceOptions& options,
                    const std::function<void(int, const Vec3<T>&)>& seen) {
-  return trace_detail::trace_one(lens, ray, options, seen);
+  return seen ? trace_detail::trace_one(lens, ray, options, seen) : trace(lens, ray, options);
 }
 
 template PETZVAL_API TracedRay<float> trace(const Lens&, const Ray<float>&, const TraceOptions&) noexcept;

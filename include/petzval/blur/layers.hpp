@@ -88,8 +88,8 @@ class PETZVAL_API LayerSet {
   /// for the first layer; -1 or less: no surface is wanted. out: empty and black with alpha 1 before. Returns how many
   /// pixels were written.
   using Peel = std::function<std::size_t(int layer, std::span<const float> below, const LayerPlanes& out)>;
-  /// Layers until nothing is written, at most `layers`. Throws Error for less than one layer or more than 64, and for a
-  /// surface that is not below `below`.
+  /// Layers until nothing is written, at most `layers`. Throws Error for less than one layer or more than 64, for an
+  /// empty `peel`, and for a surface that is not below `below`.
   void peel(const PeelPlan& plan, int layers, const Peel& peel);
 
   /// The layers that peel() would find in lists. Fragments nearer to the last one than the bias are left out, but those

@@ -17,7 +17,7 @@ PETZVAL_API int processor_threads() noexcept;
 /// Blocks do not depend on the number of threads, and neither do results that each block writes to a place of its own.
 /// If `work` throws, no further block begins and the exception of the first block that threw is rethrown: the same one
 /// for any number of threads. If the system cannot start all threads, those that run do the work. Throws Error for a
-/// block of 0 and for fewer than 1 thread.
+/// block of 0, for fewer than 1 thread and for an empty `work`.
 PETZVAL_API void parallel_for(std::size_t count, std::size_t block, int threads,
                               const std::function<void(std::size_t begin, std::size_t end)>& work);
 

@@ -67,7 +67,7 @@ struct PupilBoundary : PupilRegion {
 /// that can be seen of the surface through which rays enter, at 48 x 48 places, and about those places between them
 /// whose rays come nearest to passing. Nothing passes a stop of area 0.
 ///
-/// directions: 3 or more, or 1, which is enough on the axis of a lens of revolution; 256 give areas within 5e-4 (3e-3
+/// directions: 3 to 2^20, or 1, which is enough on the axis of a lens of revolution; 256 give areas within 5e-4 (3e-3
 /// for crescents with tips as fine as needles; parts far from the middle are seen along few directions, and 1024 give
 /// all light of a ball lens at f/45, between two slivers, within 3e-3).
 /// Throws Error where PupilPlane does, for a wavelength that was not compiled, and for other directions.
