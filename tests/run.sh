@@ -63,4 +63,4 @@ if [ "${1-}" = --report ]; then
   exit
 fi
 echo "== Testing"
-exec ctest --test-dir "$BUILD_DIR" -j "$(nproc)" --output-on-failure "$@"
+exec ctest --test-dir "$BUILD_DIR" -j "$(nproc)" --output-on-failure --no-tests=error "$@"

@@ -32,5 +32,5 @@ for preset in ${presets:-asan tsan}; do
   cmake --build --preset "$preset"
   echo "== Testing with $preset"
   # The source tree and the installed tree are the same in every build.
-  ctest --preset "$preset" -j "$(nproc)" -E '^(house|packaging)' "$@"
+  ctest --preset "$preset" -j "$(nproc)" --no-tests=error -E '^(house|packaging)' "$@"
 done

@@ -292,7 +292,7 @@ void ZemaxReader::note(Words) {
   constexpr std::size_t longest = 65'536;
   const std::string text = rest();
   if (text.starts_with("0")) {
-    if (note_.size() < longest) note_ += trimmed(std::string_view(text).substr(1));
+    if (note_.size() < longest) note_ += text.substr(text.starts_with("0 ") ? 2 : 1);
   } else {
     end_note();
   }

@@ -69,6 +69,8 @@ TEST(ParallelFor, TakesBlocksAsLargeAsNumbersGo) {
   EXPECT_EQ(seen, (std::vector<std::size_t>{0, 10}));
 }
 
+TEST(ParallelFor, RefusesWorkThatIsEmpty) { EXPECT_THROW(parallel_for(1, 1, 1, {}), petzval::Error); }
+
 TEST(ParallelFor, StartsNoThreadForOneOrASingleBlock) {
   const auto caller = std::this_thread::get_id();
   const auto all_by_the_caller = [&](std::size_t count, int threads) {

@@ -403,6 +403,20 @@ TEST(Zemax, MarginalHeightsAreOfAZoneOfThePupil) {
   EXPECT_EQ(thickness("ENPD 300", "MAZH 0 1"), 0);  // the ray misses
 }
 
+TEST(Zemax, TextsAreCutBetweenCharacters) {
+  const std::string title = std::string(4095, 'a');
+  EXPECT_EQ(read(with(singlet, "NAME A singlet", "NAME " + title + "\xC3\xA9")).imported->title, title);
+  EXPECT_EQ(read(with(singlet, "NOTE 0 first pa", "NOTE 0\xC3\xA9 pa")).imported->notes[0], "\xC3\xA9 part");
+}
+
+TEST(Zemax, NamesASecondAperture) {
+  const Prescription p = read(with(singlet, "ENPD 10", "ENPD 10\nFNUM 4 0"));
+  ASSERT_TRUE(p.design.aperture);
+  EXPECT_EQ(p.design.aperture->setting, petzval::ApertureSetting::f_number);
+  ASSERT_FALSE(p.imported->warnings.empty());
+  EXPECT_EQ(p.imported->warnings[0].message, "is a second aperture; it is taken, the one before is left out");
+}
+
 TEST(Zemax, WhatNoLensHasIsRefused) {
   using petzval::testing::refuses;
   const auto of_type = [](const std::string& type, const std::string& lines) {
@@ -419,6 +433,15 @@ TEST(Zemax, WhatNoLensHasIsRefused) {
   EXPECT_TRUE(
       refuses(with(singlet, "SURF 4\n", "SURF 4\n  STOP\n"), "STOP is at the image, wanted a surface of the lens"));
   EXPECT_TRUE(refuses(with(singlet, "___BLANK 1 0 1.5 60 0 0 0 0 0 0", "___BLANK 1"), "GLAS is a model without n_d"));
+  // A command without its number is not 0.
+  for (const char* command : {"CURV", "CONI", "DISZ", "DIAM", "PARM 1", "XDAT 1"}) {
+    const std::string name = std::string(command).substr(0, 4);
+    EXPECT_TRUE(refuses(with_line(command), name + " is without its number, wanted a number behind it")) << command;
+  }
+  for (const char* command : {"ENPD", "FNUM", "OBNA"}) {
+    EXPECT_TRUE(refuses(with(singlet, "ENPD 10", command), "is without its number, wanted a number behind it"))
+        << command;
+  }
   // The glass picked up from air is air.
   EXPECT_EQ(read(with(singlet, "  DISZ 48\n", "  DISZ 48\n  GLAS ___BLANK 2 1 1.5 60 0\n")).surfaces[2].medium,
             petzval::Medium{});

@@ -36,7 +36,7 @@ struct ReadOptions {
 /// colours, windows) is left out. A stop without a size gets that of the declared aperture.
 ///
 /// Throws Error that names file, line, what was found and what was wanted; for other programs' binary files, what they
-/// are. Time is proportional to the size of the file, memory at most 4 times its size.
+/// are. Time is proportional to the size of the file; tests/README.md has the memory of the largest inputs.
 PETZVAL_API Prescription read_prescription(const std::filesystem::path& file, const ReadOptions& options = {});
 
 /// The same from memory. `where` is the name of the source in messages.
