@@ -283,6 +283,9 @@ def main():
     parser.add_argument("--modules", type=lambda text: text.split(","), default=MODULES)
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     options = parser.parse_args()
+    for name in ("count", "jobs"):
+        if getattr(options, name) < 1:
+            parser.error(f"--{name}: found {getattr(options, name)}, wanted 1 or more")
     for module in options.modules:
         if module not in MODULES:
             parser.error(f"--modules: found {module}, wanted some of {', '.join(MODULES)}")

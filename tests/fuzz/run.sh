@@ -30,6 +30,12 @@ if [ $# -gt 0 ] || [ -z "$runs" ]; then
   exit 2
 fi
 
+for number in "$runs" "$jobs"; do
+  case $number in
+    *[!0-9]* | 0*) echo "tests/fuzz/run.sh: found $number, wanted a whole number of 1 or more for --runs and --jobs" >&2; exit 2 ;;
+  esac
+done
+
 need $library_packages libcli11-dev libtinyobjloader-dev clang-14 libclang-rt-14-dev
 target=fuzz build -DCMAKE_CXX_COMPILER=clang++-14 -DBUILD_SHARED_LIBS=OFF -DPETZVAL_BUILD_FUZZERS=ON \
   -DPETZVAL_BUILD_TESTS=OFF -DPETZVAL_BUILD_EXAMPLES=OFF
