@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/householder.hpp"
 #include "core/text.hpp"
 #include "lens_facts.hpp"
 #include "petzval/camera/two_discs.hpp"
@@ -31,17 +32,16 @@ double outside(const EdgePoint& point, const Discs& discs) noexcept {
   return std::max(outside(point, discs[0]), outside(point, discs[1]));
 }
 
-/// Distances of edge points from the edge of what both discs contain, for a solver. Unknown: centre of each disc at the
-/// largest field, and radius. Lengths in units of `unit`, so that the solver's tolerances mean something.
+/// Distances of edge points from the edge of what both discs contain, for a solver: five numbers whose squares and
+/// whose products with their derivatives sum to those of all distances. Unknown: centre of each disc at the largest
+/// field, and radius. Lengths in units of `unit`, so that the solver's tolerances mean something.
 struct EdgeDistances {
   using Scalar = double;
-  enum { NUM_RESIDUALS = Eigen::Dynamic, NUM_PARAMETERS = 4 };
+  enum { NUM_RESIDUALS = 5, NUM_PARAMETERS = 4 };
 
   std::span<const EdgePoint> edges;
   std::span<const double> weights;
   double unit = 1, field = 1;
-
-  int NumResiduals() const { return static_cast<int>(edges.size()); }
 
   Discs discs(const double* p) const noexcept {
     return {{{p[0] * unit / field, p[1] * unit}, {p[2] * unit / field, p[3] * unit}}};
@@ -53,21 +53,26 @@ struct EdgeDistances {
     }
   }
 
-  /// jacobian: residuals x 4, by columns, or null.
+  /// jacobian: 5 x 4, by columns, or null.
   bool operator()(const double* p, double* residuals, double* jacobian) const {
     const Discs both = discs(p);
-    const std::size_t count = edges.size();
-    if (jacobian) std::fill_n(jacobian, 4 * count, 0.0);
-    for (std::size_t i = 0; i < count; ++i) {
+    Eigen::MatrixXd all = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(edges.size()), 5);
+    for (std::size_t i = 0; i < edges.size(); ++i) {
       const EdgePoint& e = edges[i];
       const double first = outside(e, both[0]), second = outside(e, both[1]);
       const std::size_t disc = first >= second ? 0 : 1;
-      residuals[i] = weights[i] * std::max(first, second) / unit;
-      if (!jacobian) continue;
       const double dy = e.y - both[disc].shift * e.field;
       const double length = std::max(std::hypot(e.x, dy), std::numeric_limits<double>::min());
-      jacobian[2 * disc * count + i] = -weights[i] * dy / length * e.field / field;
-      jacobian[(2 * disc + 1) * count + i] = -weights[i];
+      auto row = all.row(static_cast<Eigen::Index>(i));
+      const auto column = static_cast<Eigen::Index>(2 * disc);
+      row[column] = -weights[i] * dy / length * e.field / field;
+      row[column + 1] = -weights[i];
+      row[4] = weights[i] * std::max(first, second) / unit;
+    }
+    core_detail::to_triangle(all, 5);
+    Eigen::Map<Eigen::Vector<double, 5>>{residuals} = all.col(4).head<5>();
+    if (jacobian) {
+      Eigen::Map<Eigen::Matrix<double, 5, 4>>{jacobian} = all.topLeftCorner<5, 4>().triangularView<Eigen::Upper>();
     }
     return true;
   }

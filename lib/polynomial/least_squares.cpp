@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "least_squares.hpp"
 
-#include <Eigen/QR>
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "chart.hpp"
+#include "core/householder.hpp"
 #include "core/text.hpp"
 #include "data.hpp"
 #include "petzval/core/error.hpp"
@@ -189,15 +190,15 @@ RayPolynomial::Fit fit(const Lens& lens, const RayPolynomial::Domain& domain, in
                 " nm, wanted " + std::to_string(2 * systems * count) + " or more: a film within the image circle");
   }
   struct System {
-    Eigen::MatrixXd left;
-    Eigen::MatrixX2d right;
+    Eigen::MatrixXd both;  // sides of the equations
     Eigen::Index rows = 1;
+    void add(Eigen::Index row, double weight, const Equations::Row& equation) {
+      both.row(row).head(equation.left.size()) += weight * equation.left;
+      both.row(row).tail<2>() += weight * equation.right;
+    }
   };
   std::vector<System> all(equations.systems());
-  for (System& system : all) {
-    system.left.setZero(1 + 2 * passed / systems, 2 * count);
-    system.right.setZero(system.left.rows(), 2);
-  }
+  for (System& system : all) system.both.setZero(1 + 2 * passed / systems, 2 * count + 2);
 
   // The focus of the film's centre: the first moments of direction and offset over its pupil are those of the lens, so
   // that rays meet the axis in the same plane on average. A row as heavy as this one holds nearly exactly; heavy rows
@@ -210,14 +211,8 @@ RayPolynomial::Fit fit(const Lens& lens, const RayPolynomial::Domain& domain, in
     const double x = lines.axial.pupil_x[i], y = lines.axial.pupil_y[i], depth = domain.space.depth();
     const double cosine_squared = depth * depth / (x * x + y * y + depth * depth);
     const double light = heavy * cosine_squared * cosine_squared / domain.pupil_radius;
-    if (systems == 1) {
-      all[0].left.row(0) += light * (x * along[0].left + y * along[1].left);
-      all[0].right.row(0) += light * (x * along[0].right + y * along[1].right);
-    } else {
-      for (const std::size_t axis : {0u, 1u}) {
-        all[axis].left.row(0) += light * (axis == 0 ? x : y) * along[axis].left;
-        all[axis].right.row(0) += light * (axis == 0 ? x : y) * along[axis].right;
-      }
+    for (const std::size_t axis : {0u, 1u}) {
+      all[equations.system(axis)].add(0, light * (axis == 0 ? x : y), along[axis]);
     }
   }
 
@@ -226,23 +221,23 @@ RayPolynomial::Fit fit(const Lens& lens, const RayPolynomial::Domain& domain, in
     const auto& along = equations.of(lines.fitted, rays, i);
     for (const std::size_t axis : {0u, 1u}) {
       System& system = all[equations.system(axis)];
-      system.left.row(system.rows) = along[axis].left;
-      system.right.row(system.rows++) = along[axis].right;
+      system.add(system.rows++, 1, along[axis]);
     }
   }
 
   RayPolynomial::Fit fit;
   fit.wavelength_nm = nm;
-  for (const System& system : all) {
-    const Eigen::MatrixX2d solution = system.left.householderQr().solve(system.right);
-    const auto append = [&](std::vector<double>& to, Eigen::Index column, Eigen::Index from) {
-      const auto numbers = solution.col(column).segment(from, count);
-      to.insert(to.end(), numbers.begin(), numbers.end());
+  for (System& system : all) {
+    const Eigen::Index unknowns = 2 * count;
+    core_detail::to_triangle(system.both, unknowns);
+    const auto triangle = system.both.topLeftCorner(unknowns, unknowns).triangularView<Eigen::Upper>();
+    const auto append = [&](std::vector<double>& by_film, std::vector<double>& by_pupil, Eigen::Index side) {
+      const Eigen::VectorXd solution = triangle.solve(system.both.col(unknowns + side).head(unknowns));
+      by_film.insert(by_film.end(), solution.begin(), solution.begin() + count);
+      by_pupil.insert(by_pupil.end(), solution.begin() + count, solution.end());
     };
-    append(fit.direction_by_film, 0, 0);
-    append(fit.direction_by_pupil, 0, count);
-    append(fit.offset_by_film, 1, 0);
-    append(fit.offset_by_pupil, 1, count);
+    append(fit.direction_by_film, fit.direction_by_pupil, 0);
+    append(fit.offset_by_film, fit.offset_by_pupil, 1);
   }
 
   const RayPolynomial polynomial(degree, domain, {fit});

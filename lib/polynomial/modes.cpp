@@ -27,7 +27,8 @@ FitModes find_modes(const std::vector<RayPolynomial::Fit>& fits, const std::vect
   Eigen::MatrixXd left = all.colwise() - mean;
   left.topRows(each / 2) /= part * most_rad + least_rad;
   left.bottomRows(each / 2) /= part * most_mm + least_mm + 1e-300;
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(left.transpose() * left);
+  // A lazy product has the same bits on every processor; the other sums as its caches choose.
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(left.transpose().lazyProduct(left));
 
   FitModes result;
   result.weights.resize(fits.size(), {1});
