@@ -90,6 +90,7 @@ void CodevWriter::header() {
   out_.line("LEN");
   out_.line("TITLE " + quoted(p_.name));
   out_.line("DIM M");
+  out_.lose_nominal_data(true, {});
 }
 
 void CodevWriter::private_glasses() {
@@ -132,6 +133,7 @@ void CodevWriter::design() {
       const double diameter = pupils(lens, {}, main_meridian(lens)).entrance.diameter;
       if (std::isfinite(diameter) && diameter > 0) out_.line("EPD " + to_text(diameter));
     }
+    if (d.aperture) out_.lose("aperture", "of the stop's size becomes the diameter of the entrance pupil");
   }
   // Wavelengths fall from the first to the last.
   std::vector<std::pair<DesignWavelength, bool>> waves;

@@ -38,6 +38,7 @@ WrittenLens format_table(const Prescription& prescription) {
   if (p.focal_length_mm) nominal += to_text(*p.focal_length_mm) + " mm";
   if (p.f_number) nominal += (nominal.empty() ? "" : " ") + ("f/" + to_text(*p.f_number));
   if (!nominal.empty()) out.line("# " + nominal);
+  out.lose_nominal_data(false, {"focal_length_mm", "f_number"});
   out.line("# millimetres; the row of index 0 is the stop");
   out.line("# radius\tthickness\tn\taperture diameter");
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <initializer_list>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -24,6 +25,9 @@ class Writer {
   [[noreturn]] void refuse(std::size_t surface, const std::string& found, const std::string& wanted) const;
   void line(const std::string& text) { text_ += text + '\n'; }
   void lose(std::string_view what, const std::string& message) { losses_.push_back({0, std::string(what), message}); }
+  /// Loses the lens's nominal data and sources, but for those that are kept and, in a format with design data, those
+  /// that its aperture and its fields declare.
+  void lose_nominal_data(bool design_data, std::initializer_list<std::string_view> kept);
   /// The glass of the tables that a medium names; null if there is none.
   const Glass* glass(const Medium& medium);
   WrittenLens take() { return {std::move(text_), std::move(losses_)}; }

@@ -292,7 +292,8 @@ void ZemaxReader::note(Words) {
   constexpr std::size_t longest = 65'536;
   const std::string text = rest();
   if (text.starts_with("0")) {
-    if (note_.size() < longest) note_ += text.substr(text.starts_with("0 ") ? 2 : 1);
+    const bool blank = text.size() > 1 && (text[1] == ' ' || text[1] == '\t');
+    if (note_.size() < longest) note_ += text.substr(blank ? 2 : 1);
   } else {
     end_note();
   }

@@ -56,6 +56,7 @@ void ZemaxWriter::header() {
   out_.line("VERS 140730 0 0");
   out_.line("MODE SEQ");
   out_.line("NAME " + one_line(out_, p_.name));
+  out_.lose_nominal_data(true, {"source_design", p_.design.fields.empty() ? "half_field_deg" : ""});
   if (!p_.source_design.empty()) out_.line("NOTE 0 " + one_line(out_, p_.source_design));
   out_.line("UNIT MM X W X CM MR CPMM");
   aperture();
@@ -117,11 +118,17 @@ void ZemaxWriter::fields() {
 void ZemaxWriter::wavelengths() {
   std::vector<DesignWavelength> waves = p_.design.wavelengths;
   if (waves.empty()) waves = {{p_.reference_wavelength_nm, 1}};
-  if (waves.size() > 24) out_.lose("wavelengths", "all but the first 24 are lost"), waves.resize(24);
+  std::size_t primary = std::min(p_.design.primary_wavelength, waves.size() - 1);
+  if (waves.size() > 24) {
+    out_.lose("wavelengths",
+              primary < 24 ? "all but the first 24 are lost" : "all but 23 and the primary one are lost");
+    if (primary >= 24) waves[23] = waves[primary], primary = 23;
+    waves.resize(24);
+  }
   for (std::size_t i = 0; i < waves.size(); ++i) {
     out_.line("WAVM " + std::to_string(i + 1) + ' ' + to_text(waves[i].nm / 1000, 15) + ' ' + to_text(waves[i].weight));
   }
-  out_.line("PWAV " + std::to_string(std::min(p_.design.primary_wavelength, waves.size() - 1) + 1));
+  out_.line("PWAV " + std::to_string(primary + 1));
 }
 
 void ZemaxWriter::start(std::size_t number, const std::string& type, double curvature, double thickness) {

@@ -146,6 +146,7 @@ bool lost(const WrittenLens& written, std::string_view what) {
 }
 
 using Write = WrittenLens (*)(const Prescription&);
+const Write table = [](const Prescription& p) { return petzval::format_table(p); };
 const Write zemax = [](const Prescription& p) { return petzval::format_zemax(p, &glasses()); };
 const Write codev = [](const Prescription& p) { return petzval::format_codev(p, &glasses()); };
 
@@ -177,6 +178,49 @@ TEST(RoundTrip, TheDesignsApertureComesBack) {
   p.design.aperture = {stop_size, 5};
   EXPECT_EQ(read(zemax(p)).surfaces[0].semi_diameter, 5);
   EXPECT_FALSE(lost(zemax(p), "aperture"));
+  EXPECT_TRUE(lost(codev(p), "aperture"));
+}
+
+TEST(RoundTrip, NominalDataComeBackOrAreSaidToBeLost) {
+  Prescription p = singlet();
+  for (const Write write : {zemax, codev}) EXPECT_FALSE(lost(write(p), "nominal data"));
+  p.focal_length_mm = 50, p.f_number = 4, p.half_field_deg = 10, p.image_diagonal_mm = 17, p.notes = "sharp";
+  p.source_design = "US 1", p.source_numbers = "a book";
+  for (const bool by_design : {false, true}) {
+    if (by_design) {
+      p.design.aperture = {petzval::ApertureSetting::f_number, 4};
+      p.design.fields = {{.y = 10}};
+    }
+    for (const Write write : {zemax, codev, table}) {
+      const WrittenLens written = write(p);
+      std::string said;
+      for (const petzval::ImportWarning& loss : written.losses) {
+        if (loss.command == "nominal data") said += loss.message;
+      }
+      const Prescription back = read(written);
+      const auto kept_or_said = [&](const char* name, const auto& member) {
+        EXPECT_NE(back.*member == p.*member, said.find(name) != std::string::npos)
+            << name << ": " << said << written.text;
+      };
+      kept_or_said("focal_length_mm", &Prescription::focal_length_mm);
+      kept_or_said("f_number", &Prescription::f_number);
+      kept_or_said("half_field_deg", &Prescription::half_field_deg);
+      kept_or_said("image_diagonal_mm", &Prescription::image_diagonal_mm);
+      EXPECT_NE(said.find("notes"), std::string::npos);
+      EXPECT_NE(said.find("source_numbers"), std::string::npos);
+    }
+  }
+}
+
+TEST(RoundTrip, ThePrimaryWavelengthStaysWhereOthersAreLost) {
+  Prescription p = singlet();
+  for (int i = 0; i < 30; ++i) p.design.wavelengths.push_back({450.0 + 5 * i, 1});
+  p.design.primary_wavelength = 28;
+  const WrittenLens written = zemax(p);
+  EXPECT_TRUE(lost(written, "wavelengths"));
+  const Prescription back = read(written);
+  ASSERT_EQ(back.design.wavelengths.size(), 24u);
+  EXPECT_EQ(back.design.wavelengths[back.design.primary_wavelength].nm, 590);
 }
 
 TEST(RoundTrip, FieldsAndWavelengthsComeBack) {
