@@ -152,7 +152,7 @@ class Gathering {
                 .colours = rays_.table.channels == 1 ? 3 : 1,
                 .opaque = layers_.opaque,
                 .sums = &memory.sums[channel]};
-    if (range.empty()) range = {0, 0, 1};
+    if (range.empty()) range = {farthest_, farthest_, 1};  // the window holds no other pixels
     std::uint64_t made = 0;
     if (path_ == GatherPath::shift_invariant) {
       memory.steps.clear(), memory.ends.clear(), memory.first.assign(1, 0);

@@ -41,18 +41,23 @@ struct Beside {
   PETZVAL_INLINE Numbers operator()(const float* plane) const noexcept { return load(plane + offset); }
 };
 
-/// A pixel for each lane.
+/// A pixel for each lane of some. Others are beyond the ends of their rays, where there may be no pixels: they find 0.
 struct Anywhere {
   Places offsets;
+  Mask lanes;
 
   PETZVAL_INLINE Numbers operator()(const float* plane) const noexcept {
 #if defined(__AVX512F__)
-    return Numbers(_mm512_mask_i32gather_ps(_mm512_setzero_ps(), 0xffff, reinterpret_cast<__m512i>(offsets), plane, 4));
+    return Numbers(
+        _mm512_mask_i32gather_ps(_mm512_setzero_ps(), lanes.bits, reinterpret_cast<__m512i>(offsets), plane, 4));
 #elif defined(__AVX2__)
-    return Numbers(_mm256_i32gather_ps(plane, reinterpret_cast<__m256i>(offsets), 4));
+    return Numbers(_mm256_mask_i32gather_ps(_mm256_setzero_ps(), plane, reinterpret_cast<__m256i>(offsets),
+                                            reinterpret_cast<__m256>(lanes.bits), 4));
 #else
-    Numbers result;
-    for (int i = 0; i < width; ++i) result.v[i] = plane[offsets[i]];
+    Numbers result(0.0f);
+    for (int i = 0; i < width; ++i) {
+      if (lanes.bits[i]) result.v[i] = plane[offsets[i]];
+    }
     return result;
 #endif
   }
@@ -350,22 +355,6 @@ PETZVAL_INLINE Mask lanes_of(Places numbers, std::int32_t number) noexcept {
 #endif
 }
 
-PETZVAL_INLINE Places chosen(Mask mask, Places a, Places b) noexcept {
-#if defined(__AVX512F__)
-  return reinterpret_cast<Places>(
-      _mm512_mask_mov_epi32(reinterpret_cast<__m512i>(b), mask.bits, reinterpret_cast<__m512i>(a)));
-#else
-  return mask.bits ? a : b;
-#endif
-}
-
-/// A pixel for each of the lanes given. Others are beyond the ends of their rays, where there may be no pixels: they
-/// take the first one.
-template <class Visit>
-PETZVAL_INLINE void load_anywhere(Places offsets, Mask lanes, const Visit& visit) noexcept {
-  visit(Anywhere{chosen(lanes, offsets, Places{})}, lanes);
-}
-
 /// The pixels of lanes beside each other: mostly as far beside their own for all, which one load finds.
 template <class Visit>
 PETZVAL_INLINE void load_beside(Places offsets, Mask lanes, const Visit& visit) noexcept {
@@ -373,7 +362,7 @@ PETZVAL_INLINE void load_beside(Places offsets, Mask lanes, const Visit& visit) 
   if (!any(without(lanes, lanes_of(offsets, first)))) return visit(Beside{first}, lanes);
   Places own;
   for (int i = 0; i < width; ++i) own[i] = i;
-  load_anywhere(offsets + own, lanes, visit);
+  visit(Anywhere{offsets + own, lanes}, lanes);
 }
 
 template <bool opaque, int colours>
@@ -443,7 +432,7 @@ std::uint64_t follow_general(const TileJob& job, const DifferentRays& rays) noex
           const LayerWindow window = job.window.from(row, column);
           Found<opaque, colours> found(lanes);
           const auto load_pixels = [&](Numbers w, Mask here, const auto& visit) {
-            load_anywhere(pixels_at(line, w, window.stride), here, visit);
+            visit(Anywhere{pixels_at(line, w, window.stride), here}, here);
           };
           made += follow(window, rays, line, load_pixels, found);
           const int pixel = row * TileSums::columns + column;

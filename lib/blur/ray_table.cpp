@@ -60,6 +60,7 @@ void RayTable::ray_at(std::size_t channel, std::size_t ray, double column, doubl
 
 RayTable ray_table(const LayerCamera& camera, std::span<const PupilPoint> points, std::size_t channels,
                    const LensRays::Source& source, int step, int threads) {
+  constexpr double most = 1e15;  // far within floats, between which lines are interpolated
   RayTable table{.columns = camera.columns,
                  .rows = camera.rows,
                  .step = step,
@@ -82,10 +83,10 @@ RayTable ray_table(const LayerCamera& camera, std::span<const PupilPoint> points
         const double values[] = {ray.at.x - place.x, ray.at.y - place.y, ray.slope.x, ray.slope.y, ray.weight};
         for (std::size_t r = 0; r < row_count; ++r) {
           out[r * rays.size() + i] = static_cast<float>(values[r]);
-          if (std::isfinite(values[r]) && (r != weight || values[r] >= 0)) continue;
+          if (std::abs(values[r]) <= most && (r != weight || values[r] >= 0)) continue;
           throw Error("lens rays: ray " + std::to_string(i) + " of column " + to_text(place.x) + ", row " +
                       to_text(place.y) + (r == weight ? " has the weight " : " has the number ") + to_text(values[r]) +
-                      ", wanted a finite one, and no negative weight");
+                      ", wanted a finite one up to " + to_text(most) + ", and no negative weight");
         }
       }
     }

@@ -180,6 +180,35 @@ TEST(Gather, PathsAgree) {
   }
 }
 
+// Rays that end in the void far beside their pixels: the window of their tile holds none of its own pixels.
+TEST(Gather, ReadsNoPixelBesideItsWindow) {
+  const LayerCamera camera = layer_camera(6, 6, radians(20));
+  const LensRays rays(camera, vogel_points(6), 1,
+                      [](int, const Vec2<double>& raster, std::span<const PupilPoint> at, std::span<LayerRay> found) {
+                        for (std::size_t i = 0; i < at.size(); ++i) {
+                          found[i] = {.at = raster + Vec2<double>{0.0137, 0.0291},
+                                      .slope = {-400 + 100 * at[i].u + 3 * raster.y, -400 - 100 * at[i].v},
+                                      .weight = 1};
+                        }
+                      },
+                      {.nearest_mm = 400});
+  const PeelPlan plan = plan_peel(rays, 450, infinity);
+  // Nothing in the first rows, and surfaces nearer than planned in the last ones.
+  const int columns = plan.camera.layer_columns(), rows = plan.camera.layer_rows();
+  FragmentLists lists{.columns = columns, .rows = rows, .offsets = {0}, .fragments = {}};
+  for (int i = 0; i < columns * rows; ++i) {
+    if (i / columns > 8) lists.fragments.push_back({1, 1, 1, 1, 1});
+    lists.offsets.push_back(lists.fragments.size());
+  }
+  LayerSet layers;
+  layers.thin(lists, 0, 1);
+  for (const GatherPath path : {GatherPath::coherent, GatherPath::general}) {
+    const Blurred picture = gather(layers, rays, {.path = path});
+    for (const float value : picture.rgba) EXPECT_EQ(value, 0) << static_cast<int>(path);
+    for (const float share : picture.missed) EXPECT_EQ(share, 0);
+  }
+}
+
 TEST(Gather, FindsTheSameWithAndWithoutBounds) {
   for (const LensRays& rays : {thin_rays(25), tilted_rays(25)}) {
     const LayerSet layers = layers_of(boards, rays);
