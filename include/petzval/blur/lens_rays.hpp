@@ -80,7 +80,8 @@ class PETZVAL_API LensRays {
                                     std::span<LayerRay> found)>;
 
   /// Any rays: those of a lens of your own. channels: 1, or 3 where colours differ. Throws Error for an empty source,
-  /// for no points, for points that are not sets of one size, for numbers of rays beyond 1e15, and for negative weights.
+  /// for no points, for points that are not sets of one size, for rays whose numbers exceed 1e15, and for negative
+  /// weights.
   LensRays(const LayerCamera& camera, std::span<const PupilPoint> points, int channels, Source source,
            const LensRaysOptions& options = {});
 
