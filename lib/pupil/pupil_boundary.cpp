@@ -323,13 +323,10 @@ void trace_boundary(Sight& sight, PupilBoundary& boundary, const std::vector<See
 PupilBoundary boundary_of(const Lens& lens, const PupilPlane& plane, Wavelength at, std::size_t directions) {
   const std::size_t wavelength = lens.compiled_position(at);
   constexpr std::size_t most = 1 << 20;
-  if (directions > most) {
-    throw Error(lens.name() + ": pupil boundary: directions is " + std::to_string(directions) + ", wanted at most " +
-                std::to_string(most));
-  }
-  if (directions < 3 && !(directions == 1 && plane.on_axis() && lens.rotationally_symmetric())) {
-    throw Error(lens.name() + ": pupil boundary: directions is " + std::to_string(directions) +
-                ", wanted 3 or more, or 1 on the axis of a lens of revolution");
+  const bool one_is_enough = plane.on_axis() && lens.rotationally_symmetric();
+  if ((directions < 3 || directions > most) && !(directions == 1 && one_is_enough)) {
+    throw Error(lens.name() + ": pupil boundary: directions is " + std::to_string(directions) + ", wanted 3 to " +
+                std::to_string(most) + ", or 1 on the axis of a lens of revolution");
   }
   PupilBoundary boundary(plane, wavelength);
   const auto closed = [](const LensSurface& s) { return s.semi_diameter == 0; };

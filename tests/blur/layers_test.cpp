@@ -121,6 +121,7 @@ TEST(Peeling, RefusesASurfaceThatIsNotFarther) {
   EXPECT_NE(said.find("layer 1: column 1, row 0: inverse depth is 0.5"), std::string::npos) << said;
   EXPECT_NE(petzval::testing::message([&] { layers.peel(plan, 0, same_again); }).find("0 layers"), std::string::npos);
   EXPECT_NE(petzval::testing::message([&] { layers.peel(plan, 65, same_again); }).find("65 layers"), std::string::npos);
+  EXPECT_EQ(petzval::testing::message([&] { layers.peel(plan, 2, {}); }), "layers: peel is empty, wanted a function");
 }
 
 TEST(Lists, ComposeWhatAlphaLetsThrough) {

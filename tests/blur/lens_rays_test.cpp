@@ -209,6 +209,23 @@ TEST(CameraRays, RefuseAFilmThatTravelsAndOtherPictures) {
             std::string::npos);
 }
 
+TEST(LensRays, RefuseAnEmptySource) {
+  EXPECT_EQ(petzval::testing::message([] { LensRays(small_camera(), vogel_points(4), 1, {}); }),
+            "lens rays: the source is empty, wanted a function");
+}
+
+TEST(LensRays, RefuseNumbersThatFloatsLose) {
+  for (const double weight : {1e16, 1e300}) {
+    const std::string said = petzval::testing::message([&] {
+      LensRays(small_camera(), vogel_points(4), 1,
+               [&](int, const Vec2<double>& raster, std::span<const PupilPoint>, std::span<LayerRay> found) {
+                 for (LayerRay& ray : found) ray = {.at = raster, .weight = weight};
+               });
+    });
+    EXPECT_NE(said.find("wanted a finite one up to 1e+15"), std::string::npos) << said;
+  }
+}
+
 TEST(LayerCameras, RefuseFisheyes) {
   const Lens fisheye = petzval::testing::data_lens("fisheye_8mm_f2.8");
   EXPECT_NE(petzval::testing::message([&] {

@@ -136,6 +136,15 @@ TEST(BrownConrady, RefusesWhatIsNotRadialOrNoPinholesPicture) {
   EXPECT_NE(refused(data_lens("biogon_35mm_f2.8"), tilted).find("the film is tilted"), std::string::npos);
 }
 
+// Blades bend no ray; the middle of what passes between five of them is a little beside that of a disc.
+TEST(BrownConrady, HardlyDependsOnTheBlades) {
+  const Lens lens = data_lens("biogon_35mm_f2.8");
+  const auto fit = [](const Lens& l) { return fit_brown_conrady(distortion_of(l, small_film(36))); };
+  const BrownConrady bladed = fit(with_iris(lens, {.blades = 5})), round = fit(lens);
+  for (std::size_t i = 0; i < round.k.size(); ++i) EXPECT_NEAR(bladed.k[i], round.k[i], 1e-3);
+  EXPECT_NEAR(bladed.largest_px, round.largest_px, 0.01);
+}
+
 TEST(BrownConrady, SaysItsDirection) {
   EXPECT_EQ(name(BrownConradyDirection::to_undistorted), "Brown-Conrady D-U");
   EXPECT_EQ(name(BrownConradyDirection::to_distorted), "Brown-Conrady U-D");

@@ -84,5 +84,13 @@ TEST(PsfError, DoesNotChangeThePicture) {
   EXPECT_NEAR(at_once.error, in_steps.error, 1e-9);
 }
 
+// Parts of the samples without a ray count as darkness, not as agreement.
+TEST(PsfError, IsNotZeroForFewSamples) {
+  const Lens lens = testing::data_lens("double_gauss_100mm_f2.0");
+  for (const std::uint32_t samples : {2u, 3u, 5u}) {
+    EXPECT_GT(point_image(lens, {0, -1000}, {.samples = samples, .pixels = 8}).error, 0.3) << samples;
+  }
+}
+
 }  // namespace
 }  // namespace petzval
