@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "optiland_reader.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
+#include <string_view>
 #include <utility>
 
 #include "core/text.hpp"
@@ -91,15 +94,27 @@ void OptilandReader::fields(const JsonObject& o) {
   }
 }
 
+struct LengthUnit {
+  std::string_view name;
+  double nm;
+};
+constexpr LengthUnit lengths_in_nm[] = {{"", 1e3}, {"um", 1e3}, {"nm", 1}, {"mm", 1e6}, {"cm", 1e7}, {"m", 1e9}};
+
 void OptilandReader::wavelengths(const JsonObject& o) {
   const nlohmann::json& all = list(o, "wavelengths");
+  int primaries = 0;
   for (std::size_t i = 0; i < std::min<std::size_t>(all.size(), 1000); ++i) {
     const JsonObject w = entry(o, "wavelengths", i);
     const std::string unit = w.text("unit");
-    const double factor = unit == "nm" ? 1 : unit == "mm" ? 1e6 : 1000;
-    const double nm = *files_detail::number(to_text(w.needed("value") * factor, 12));
+    const auto known = std::ranges::find(lengths_in_nm, unit, &LengthUnit::name);
+    if (known == std::end(lengths_in_nm)) w.refuse("unit", io_detail::in_quotes(unit), "nm, um, mm, cm or m");
+    const double nm = *files_detail::number(to_text(w.needed("value") * known->nm, 12));
     in_.lens.design.wavelengths.push_back({nm, w.number("weight").value_or(1)});
-    if (w.flag("is_primary")) in_.lens.design.primary_wavelength = i;
+    if (!w.flag("is_primary")) continue;
+    if (primaries++ == 0) in_.lens.design.primary_wavelength = i;
+  }
+  if (primaries > 1) {
+    in_.warn(0, o.path + ".wavelengths", std::to_string(primaries) + " are primary; the first of them is taken");
   }
 }
 

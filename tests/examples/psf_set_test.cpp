@@ -184,6 +184,9 @@ TEST_F(PsfSets, QueriesGiveNodesBitForBitAndPointsBetween) {
   refused({"--field-deg", "3", "--distance-mm", "1500", "--wavelength-nm", "500"},
           "wavelength_nm is 500, wanted 587.5618");
   refused({"--field-deg", "3"}, "--distance-mm is required");
+  expect_failure("psf_set", {"query", file, "--field-deg", "3", "--distance-mm", "1500", "--out", path("no.png")},
+                 "wanted a name that ends in .exr");
+  EXPECT_FALSE(fs::exists(path("no.png")));
   write("text.exr", "no picture");
   expect_failure("psf_set",
                  {"query", path("text.exr"), "--field-deg", "3", "--distance-mm", "1500", "--out", path("no.exr")},

@@ -191,6 +191,10 @@ TEST(Optiland, WhatIsOfAnotherKindIsRefusedWithItsPlace) {
             "x: file.surface_group.surfaces[2].geometry.coefficients is no list, wanted a list");
   EXPECT_EQ(refused("{\"x\": 0, \"y\": 0, \"vx\": 0, \"vy\": 0}", "7"),
             "x: file.fields.fields[0] is \"7\", wanted an object");
+  EXPECT_EQ(refused("\"is_primary\": true, \"unit\": \"um\"", "\"unit\": \"inch\""),
+            "x: file.wavelengths.wavelengths[1].unit is \"inch\", wanted nm, um, mm, cm or m");
+  EXPECT_EQ(warning(with(optiland, "\"is_primary\": false", "\"is_primary\": true"), "file.wavelengths.wavelengths"),
+            "2 are primary; the first of them is taken");
   EXPECT_EQ(refused("{\"wavelengths\": [", "{\"waves\": ["),
             "x: file.wavelengths.wavelengths is missing, wanted a list");
   const std::string telecentric = with(optiland, "_telecentric\": false", "_telecentric\": true");

@@ -267,6 +267,12 @@ TEST(Image, IsDesqueezed) {
   }
 }
 
+TEST(Image, HasNoNegativeSize) {
+  EXPECT_EQ(petzval::testing::message([] { RgbImage(-1, 5); }), "picture of -1 x 5 pixels, wanted 0 or more");
+  EXPECT_EQ(petzval::testing::message([] { RgbImage(5, -1); }), "picture of 5 x -1 pixels, wanted 0 or more");
+  EXPECT_TRUE(RgbImage(0, 5).pixels.empty());
+}
+
 TEST(Image, SrgbOfLinearLight) {
   RgbImage image(3, 1);
   // IEC 61966-2-1 by hand: 0.5 is 0.735 of full scale. The last three lie at the linear part.

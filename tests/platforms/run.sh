@@ -76,5 +76,5 @@ for platform in $platforms; do
     continue
   fi
   echo "== Testing for $platform"
-  ctest --test-dir "$work/$platform/petzval" -j "$(nproc)" --output-on-failure -E '^(house|packaging)' "$@"
+  ctest --test-dir "$work/$platform/petzval" -j "$(nproc)" --no-tests=error --output-on-failure -E '^(house|packaging)' "$@"
 done

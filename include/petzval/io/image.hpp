@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "petzval/core/error.hpp"
 #include "petzval/core/export.hpp"
 #include "petzval/core/geometry.hpp"
 #include "petzval/iris/iris_weights.hpp"
@@ -22,12 +23,18 @@ struct RgbImage {
   std::vector<float> pixels;
 
   RgbImage() = default;
-  RgbImage(int w, int h)
-      : width(w), height(h), pixels(static_cast<std::size_t>(w) * static_cast<std::size_t>(h) * 3, 0.0f) {}
+  /// Black. Throws Error for a negative size.
+  RgbImage(int w, int h) : width(w), height(h), pixels(values_of(w, h), 0.0f) {}
   float* pixel(int x, int y) noexcept { return &pixels[offset(x, y)]; }
   const float* pixel(int x, int y) const noexcept { return &pixels[offset(x, y)]; }
 
  private:
+  static std::size_t values_of(int w, int h) {
+    if (w < 0 || h < 0) {
+      throw Error("picture of " + std::to_string(w) + " x " + std::to_string(h) + " pixels, wanted 0 or more");
+    }
+    return static_cast<std::size_t>(w) * static_cast<std::size_t>(h) * 3;
+  }
   std::size_t offset(int x, int y) const noexcept {
     return (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)) * 3;
   }
