@@ -247,12 +247,12 @@ class Gathering {
         for (std::size_t c = 0; c < 3; ++c) {
           const TileSums& sums = memory.sums[channels == 1 ? 0 : c];
           const float total = sums.total[at], colour = sums.colour[channels == 1 ? c : 0][at];
-          if (layers_.opaque && sums.open[at] == 0 && sums.missed[at] == 0) {
+          if (layers_.opaque && sums.open[at] == 0 && sums.missed[at] == 0 && total > 0) {
             rgba[c] = colour * per_ray, alpha += 1;
             continue;
           }
           const float known = total - sums.unknown[at];
-          unseen += sums.missed[at] / total;
+          if (total > 0) unseen += sums.missed[at] / total;  // the lens may leave a corner dark
           // Of rays that met what nothing is known of, the first layer is the nearest thing.
           if (known > 1e-6f * total) {
             rgba[c] = colour / known * total * per_ray;

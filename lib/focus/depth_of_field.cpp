@@ -91,7 +91,8 @@ FocusSolution hyperfocal(const Lens& lens, double blur_mm, const FocusOptions& o
   // The film as far behind infinity focus as infinity stays sharp enough.
   const focus_detail::Conjugates& c = solver.conjugates();
   const auto excess = [&](double shift) { return infinite->diameter(focus + c.direction * shift) - blur_mm; };
-  double shift = blur_mm;
+  // At least one that rounding leaves a difference of.
+  double shift = std::max(blur_mm, 4 * std::numeric_limits<double>::epsilon() * std::abs(focus));
   for (int i = 0; i < 100 && excess(shift) <= 0; ++i) shift *= 2;
   if (excess(shift) <= 0) return solver.nearest();
   return solver.subject(focus + c.direction * focus_detail::root(excess, 0, shift));

@@ -21,10 +21,14 @@ std::optional<Spacing> least_spacing(const Lens& lens, std::size_t surface) {
   // Heights on an equator round to beyond it, where a sag has no value.
   const double equator = std::min(domain(front), domain(rear)) * (1 - 1e-15);
   const double to = std::min({front.semi_diameter, rear.semi_diameter, equator});
-  if (!std::isfinite(front.semi_diameter) || !std::isfinite(rear.semi_diameter) || to < from) return {};
-
   // Where light runs backwards, behind a mirror, the next surface lies at smaller z.
   const double direction = lens.light_direction(surface + 1);
+  if (!std::isfinite(front.semi_diameter) || !std::isfinite(rear.semi_diameter)) {
+    if (front.mirror && direction * front.thickness < 0) return Spacing{direction * front.thickness, 0};
+    return {};
+  }
+  if (to < from) return {};
+
   // Surfaces with cylinders along x and y differ most along an axis or half way between.
   constexpr std::array<std::array<double, 2>, 3> azimuths{{{0, 1}, {1, 0}, {0.7071067811865476, 0.7071067811865476}}};
   const std::size_t azimuth_count = lens.rotationally_symmetric() ? 1 : azimuths.size();

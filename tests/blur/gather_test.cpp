@@ -168,6 +168,37 @@ TEST(Gather, IsTheReference) {
   }
 }
 
+// A lens that passes 70 % of the light on the right, none on the left.
+TEST(Gather, DarkensColoursAndKeepsAlpha) {
+  const LensRays rays(small_camera(), vogel_points(24), 1,
+                      [](int, const Vec2<double>& raster, std::span<const PupilPoint>, std::span<LayerRay> found) {
+                        double turn = 0.3;
+                        for (LayerRay& ray : found) {
+                          ray = {raster, {9000 * std::cos(turn), 9000 * std::sin(turn)}, raster.x < 75 ? 0 : 0.7};
+                          turn += 1;
+                        }
+                      },
+                      {.nearest_mm = 1000});
+  for (const Scene scene : {Scene(boards), Scene(panes)}) {
+    const LayerSet layers = layers_of(scene, rays, 1);  // of which much is missed
+    const Blurred reference = petzval::testing::reference_gather(layers, rays);
+    for (const GatherPath path : {GatherPath::coherent, GatherPath::general}) {
+      const Blurred picture = gather(layers, rays, {.path = path, .highlights_above = 0});
+      EXPECT_LT(difference(picture, reference).mean, 2e-4) << name(path);
+      double most = 0;
+      for (std::size_t i = 0; i < picture.missed.size(); ++i) {
+        const float* const pixel = &picture.rgba[4 * i];
+        ASSERT_NEAR(picture.missed[i], reference.missed[i], 0.06) << i;
+        ASSERT_LE(picture.missed[i], 1 + 1e-5f);
+        ASSERT_LE(pixel[3], 1 + 1e-5f);
+        ASSERT_LE(pixel[1], (i % 150 < 50 ? 0 : 0.7f) + 1e-5f);
+        most = std::max<double>(most, picture.missed[i]);
+      }
+      EXPECT_GT(most, 0.2);
+    }
+  }
+}
+
 TEST(Gather, PathsAgree) {
   // Steps of the first one begin at the middles of pixels, those of the others do not: rays land a pixel beside.
   const LensRays rays = thin_rays(25, 200);

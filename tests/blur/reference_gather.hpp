@@ -32,7 +32,7 @@ inline Blurred reference_gather(const LayerSet& layers, const LensRays& rays, do
       double colour[3] = {}, alpha = 0, missed = 0;
       for (int channel = 0; channel < 3; ++channel) {
         rays.at(std::min(channel, rays.channels() - 1), column, row, found);
-        double total = 0, known = 0, sum = 0;
+        double total = 0, known = 0, lost = 0, sum = 0, covered = 0;
         for (const LayerRay& ray : found) {
           total += ray.weight;
           const double steepest =
@@ -59,7 +59,7 @@ inline Blurred reference_gather(const LayerSet& layers, const LensRays& rays, do
               }
               if (w < low || w > high || w >= below) continue;
               sum += through * ray.weight * layers.channel(layer, channel)[pixel];
-              alpha += through * ray.weight * a / 3 / static_cast<double>(found.size());
+              covered += through * ray.weight * a;
               through *= 1 - a;
               met = met_here = true;
             }
@@ -69,15 +69,16 @@ inline Blurred reference_gather(const LayerSet& layers, const LensRays& rays, do
           if (met || empty) {
             known += ray.weight;
           } else {
-            missed += ray.weight;
+            lost += ray.weight;
             if (!std::isnan(guess)) {
-              known += ray.weight, sum += ray.weight * guess;
-              alpha += ray.weight * guess_alpha / 3 / static_cast<double>(found.size());
+              known += ray.weight, sum += ray.weight * guess, covered += ray.weight * guess_alpha;
             }
           }
         }
+        if (total > 0) missed += lost / total / 3;
         if (known > 0) {
           colour[channel] = sum / known * total / static_cast<double>(found.size());
+          alpha += covered / known / 3;
           continue;
         }
         // Of rays that met what nothing is known of, the first layer is the nearest thing.
@@ -88,7 +89,7 @@ inline Blurred reference_gather(const LayerSet& layers, const LensRays& rays, do
       }
       for (const double c : colour) picture.rgba.push_back(static_cast<float>(c));
       picture.rgba.push_back(static_cast<float>(alpha));
-      picture.missed.push_back(static_cast<float>(missed / 3 / static_cast<double>(found.size())));
+      picture.missed.push_back(static_cast<float>(missed));
     }
   }
   return picture;

@@ -178,6 +178,19 @@ TEST(Hyperfocal, IsTheNearestFocusWithInfinityAtTheLimit) {
   }
 }
 
+TEST(Hyperfocal, RunsToInfinityAsTheBlurGoesToZero) {
+  for (const FocusCriterion criterion : {thin, paraxial}) {
+    const Lens lens = data_lens("double_gauss_52mm_f1.8");
+    double before = 0;
+    for (const double blur : {1e-2, 1e-6, 1e-10, 1e-16, 1e-100, 5e-324}) {
+      const FocusSolution at = hyperfocal(lens, blur, {criterion});
+      ASSERT_EQ(at.status, FocusStatus::solved) << blur;
+      EXPECT_TRUE(at.distance > before || (blur < 1e-12 && at.distance > 1e12)) << blur << " " << at.distance;
+      before = at.distance;
+    }
+  }
+}
+
 TEST(Hyperfocal, OfAThinLensIsTheTextbooks) {
   const Lens lens = thin_singlet();
   const double f = first_order(lens).effective_focal_length, diameter = 5, c = 0.03;

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <optional>
@@ -247,6 +248,18 @@ TEST(Lint, FollowsTheLightBehindMirrors) {
   bool crosses = false;
   for (const Finding& finding : lint(p)) crosses = crosses || (finding.kind == Kind::overlap && finding.surface == 3);
   EXPECT_TRUE(crosses);
+}
+
+TEST(Lint, FollowsTheLightBehindMirrorsWithoutRims) {
+  Prescription p = data_prescription("catadioptric_mangin_1000mm_f7.5");
+  for (SurfaceRow& row : p.surfaces) row.semi_diameter.reset();
+  p.f_number.reset();
+  const auto crosses = [&] {
+    return std::ranges::any_of(lint(p), [](const Finding& f) { return f.kind == Kind::overlap && f.surface == 3; });
+  };
+  EXPECT_FALSE(crosses());
+  p.surfaces[3].thickness = 2;
+  EXPECT_TRUE(crosses());
 }
 
 TEST(Lint, SeesCylindersInBothSections) {

@@ -44,11 +44,12 @@ struct GatherStatistics {
   double gather_seconds = 0, highlight_seconds = 0;
 };
 
-/// A picture. Refilled without allocation if it does not grow.
+/// A picture. Refilled without allocation if it does not grow. Colours are darkened where the lens passes less light;
+/// alpha and missed are shares of the light that it passes there, so that a surface all over a dark corner has alpha 1.
 struct Blurred {
   int columns = 0, rows = 0;
-  std::vector<float> rgba;    ///< columns x rows x 4, linear, multiplied with alpha
-  std::vector<float> missed;  ///< columns x rows: the share of rays that met what the layers do not know
+  std::vector<float> rgba;    ///< columns x rows x 4, linear, colours multiplied with alpha
+  std::vector<float> missed;  ///< columns x rows: the share, by weight, of rays that met what the layers do not know
   GatherStatistics statistics;
 
   /// What gather() works with.

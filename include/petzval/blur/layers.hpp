@@ -77,6 +77,7 @@ struct LayerImage {
 ///
 /// A pixel without a surface in one layer has none in those behind it. Colours are linear and unlimited. Refilled
 /// without allocation if its size and number of layers do not grow. A filling that throws on its way leaves no layer.
+/// One that was moved from may be assigned to or destroyed, nothing else.
 class PETZVAL_API LayerSet {
  public:
   LayerSet();
