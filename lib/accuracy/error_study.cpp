@@ -95,6 +95,11 @@ RayStudy::RayStudy(const camera_detail::ExactModel<double>& exact, const Film& f
       tolerances_(tolerances.begin(), tolerances.end()),
       wavelengths_(wavelengths_of(exact.lens(), samples)) {
   const Lens& lens = exact.lens();
+  constexpr std::size_t most_points = std::size_t{1} << 20;
+  if (samples.film_points < 1 || samples.film_points > most_points) {
+    throw Error(lens.name() + ": model error: film_points is " + std::to_string(samples.film_points) +
+                ", wanted 1 to " + std::to_string(most_points));
+  }
   if (samples.depths_z.empty()) throw Error(lens.name() + ": model error: no depths, wanted one or more");
   for (const double z : samples.depths_z) {
     if (z < 0) continue;

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <string>
-
 #include "petzval/core/export.hpp"
 #include "petzval/film/film.hpp"
 #include "petzval/lens/lens.hpp"
@@ -12,10 +10,8 @@ namespace petzval::inline v0::camera_detail {
 /// Whether a film meets other rays than an upright one at its place.
 inline bool tilted_or_moving(const Film& film) noexcept { return film.tilted() || film.travel_mm != 0; }
 
-/// Throws Error for a film without area or pixels, with an infinite shift or travel, or tilted by a quarter turn or
-/// more.
-void check_rectangle(const std::string& where, const Film& film);
-/// The same, and for a film that reaches into the last surface or is tilted into the lens at any time.
+/// Throws Error where film_detail::check_rectangle() does, and for a film that reaches into the last surface or is
+/// tilted into the lens at any time.
 void check_film(const Lens& lens, const Film& film);
 /// The same, and for any film that is tilted or travels.
 void check_upright_film(const Lens& lens, const Film& film);

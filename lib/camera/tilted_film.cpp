@@ -21,6 +21,7 @@
 #include "camera_steps.hpp"
 #include "check_film.hpp"
 #include "core/text.hpp"
+#include "film/check_rectangle.hpp"
 #include "make_model.hpp"
 #include "petzval/core/error.hpp"
 #include "pupil/face.hpp"
@@ -160,7 +161,7 @@ TiltedFilm::TiltedFilm(const Film& film, const FilmPupilTable& pupils)
       travel_(-film.travel_mm / pupils.space().depth()),
       pupils_(pupils) {
   const std::string where = "tilted film";
-  check_rectangle(where, film);
+  film_detail::check_rectangle(where, film);
   film_.z_mm = pupils.space().film_z;
   for (const double time : {0.0, 1.0}) {
     const Film still = film_.at(time);
@@ -238,7 +239,7 @@ TwoPlaneRayDerivatives pinhole_line(const TiltedPlane& plane, const FilmPoint& f
 }  // namespace camera_detail
 
 double upright_radius(const Lens& lens, const Film& film, ModelKind model) {
-  camera_detail::check_rectangle(lens.name() + ": film", film);
+  film_detail::check_rectangle(lens.name() + ": film", film);
   if (!camera_detail::tilted_or_moving(film)) return film.radius_mm();
   const auto [placed_lens, placed_film] = camera_detail::placed(lens, film);
   return camera_detail::upright_radius(placed_lens, placed_film, model);

@@ -22,11 +22,13 @@ LensIdentity identity_of(const Prescription& prescription) {
 
 Film film_of(const Prescription& prescription, const Lens& lens) {
   constexpr double least_part = 0.1;  // of the light on the axis
-  const double diagonal =
-      prescription.image_diagonal_mm ? *prescription.image_diagonal_mm : image_circle_mm(lens, least_part);
+  const bool declared = prescription.image_diagonal_mm.has_value();
+  const double diagonal = declared ? *prescription.image_diagonal_mm : image_circle_mm(lens, least_part);
   if (!(diagonal > 0 && std::isfinite(diagonal))) {
-    throw Error(lens.name() + ": film: the prescription declares no image diagonal and the image circle is " +
-                to_text(diagonal) + " mm wide, wanted a film");
+    throw Error(lens.name() + ": film: the " +
+                (declared ? "declared image diagonal is " + to_text(diagonal) + " mm, wanted a positive, finite one"
+                          : "prescription declares no image diagonal and the image circle is " + to_text(diagonal) +
+                                " mm wide, wanted a film"));
   }
   const double unit = diagonal / std::hypot(3.0, 2.0);
   return {.width_mm = 3 * unit, .height_mm = 2 * unit, .columns = 1920, .rows = 1280};

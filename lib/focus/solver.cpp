@@ -22,6 +22,22 @@ void check_weight(const Lens& lens, const char* what, double weight) {
               ", wanted a finite one, 0 or more");
 }
 
+/// Throws Error for numbers that are no criterion or no origin.
+void check_kinds(const Lens& lens, const FocusOptions& options) {
+  using enum FocusCriterion;
+  const FocusCriterion criterion = options.criterion;
+  if (criterion != thin && criterion != paraxial && criterion != min_rms && criterion != min_max) {
+    throw Error(lens.name() + ": focus: found the criterion " + std::to_string(static_cast<int>(criterion)) +
+                ", wanted thin, paraxial, min_rms or min_max");
+  }
+  using enum DistanceOrigin;
+  const DistanceOrigin origin = options.origin;
+  if (origin != front_vertex && origin != film && origin != front_principal) {
+    throw Error(lens.name() + ": focus: found the origin " + std::to_string(static_cast<int>(origin)) +
+                ", wanted front_vertex, film or front_principal");
+  }
+}
+
 std::vector<FocusField> weighted_fields(const Lens& lens, const FocusOptions& options) {
   std::vector<FocusField> fields;
   for (const FocusField& field : options.fields) {
@@ -69,6 +85,7 @@ FocusSolver::FocusSolver(const Lens& lens, const FocusOptions& options)
       options_(options),
       fields_(weighted_fields(lens, options)),
       wavelengths_(weighted_wavelengths(lens, options)) {
+  check_kinds(lens, options);
   // The wavelength of largest weight; among equal ones the primary.
   wavelength_ = std::ranges::max_element(wavelengths_, {}, [&](const WavelengthWeight& w) {
                   return std::pair(w.weight, w.wavelength == lens.primary_wavelength());

@@ -104,6 +104,9 @@ double iris_area(const Iris& iris) {
 }
 
 double equal_area_f_number(const Iris& iris, double f_number) {
+  if (!(f_number > 0 && std::isfinite(f_number))) {
+    throw Error("iris: f_number is " + to_text(f_number) + ", wanted a finite one above 0");
+  }
   return f_number * std::sqrt(iris_area(iris) / std::numbers::pi);
 }
 

@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "core/text.hpp"
+#include "film/check_rectangle.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/media/glass.hpp"
 #include "petzval/paraxial/first_order.hpp"
@@ -190,6 +191,37 @@ void check_glasses(const Prescription& prescription, const GlassCatalogue& glass
   }
 }
 
+void check_size(const Lens& lens, const Film& film, Findings& findings) {
+  constexpr double too_large = 3, too_small = 0.02;
+  const double circle = image_circle_mm(with_film(lens, film.z_mm.value_or(lens.film_z())));
+  const double diameter = 2 * film.radius_mm();
+  const bool larger = diameter > too_large * circle;
+  if (!larger && !(diameter < too_small * circle && std::isfinite(circle))) return;
+  findings.push_back({Kind::film_size,
+                      {},
+                      diameter,
+                      circle,
+                      "the film is " + to_text(film.width_mm, 6) + " by " + mm(film.height_mm) +
+                          " and needs an image circle of " + mm(diameter) + "; the lens has one of " +
+                          to_text(circle, 4) + " mm, wanted a " + (larger ? "smaller" : "larger") + " film"});
+}
+
+void check_pixels(const Lens& lens, const Film& film, Findings& findings) {
+  // Pictures of an anamorphic lens are stretched later, or by such pixels.
+  if (!with_iris(lens, {}).rotationally_symmetric()) return;
+  const double width = film.width_mm / film.columns, height = film.height_mm / film.rows;
+  const double wanted_height = width * film.rows;
+  // Few pixels leave a film of whole ones a little too high or too low.
+  if (std::abs(width / height - 1) <= 0.005 || std::abs(film.height_mm - wanted_height) < width) return;
+  findings.push_back({Kind::pixel_shape,
+                      {},
+                      width / height,
+                      1,
+                      "pixels are " + to_text(width, 4) + " by " + to_text(height, 4) +
+                          " mm, wanted square ones: " + to_text(film.width_mm, 6) + " by " + mm(wanted_height) +
+                          " fit " + std::to_string(film.columns) + " by " + std::to_string(film.rows)});
+}
+
 }  // namespace
 
 std::string_view name(FindingKind kind) noexcept {
@@ -206,6 +238,7 @@ std::string_view name(FindingKind kind) noexcept {
     case Kind::idle_stop: return "idle_stop";
     case Kind::glass_index: return "glass_index";
     case Kind::film_size: return "film_size";
+    case Kind::pixel_shape: return "pixel_shape";
   }
   return "unknown";
 }
@@ -284,21 +317,11 @@ Repaired repair(const Prescription& prescription) {
 }
 
 std::vector<Finding> lint(const Lens& lens, const Film& film) {
-  constexpr double too_large = 3, too_small = 0.02;
-  const double circle = image_circle_mm(with_film(lens, film.z_mm.value_or(lens.film_z())));
-  const double diameter = 2 * film.radius_mm();
-  const auto finding = [&](const std::string& wanted) {
-    return std::vector<Finding>{{Kind::film_size,
-                                 {},
-                                 diameter,
-                                 circle,
-                                 "the film is " + to_text(film.width_mm, 6) + " by " + mm(film.height_mm) +
-                                     " and needs an image circle of " + mm(diameter) + "; the lens has one of " +
-                                     to_text(circle, 4) + " mm, wanted a " + wanted + " film"}};
-  };
-  if (diameter > too_large * circle) return finding("smaller");
-  if (diameter < too_small * circle && std::isfinite(circle)) return finding("larger");
-  return {};
+  film_detail::check_rectangle(lens.name() + ": film", film);
+  Findings findings;
+  check_size(lens, film, findings);
+  check_pixels(lens, film, findings);
+  return findings;
 }
 
 }  // namespace petzval::inline v0

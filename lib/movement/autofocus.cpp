@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <utility>
@@ -211,9 +212,10 @@ Autofocus autofocus(const ImageRays& lens, std::span<const FocusTarget> targets,
 
 std::vector<FocusTarget> region_targets(const Vec3<double>& centre, const Vec3<double>& half_width,
                                         const Vec3<double>& half_height, int columns, int rows) {
-  if (columns < 1 || rows < 1) {
+  constexpr std::int64_t most = std::int64_t{1} << 20;
+  if (columns < 1 || rows < 1 || std::int64_t{columns} * rows > most) {
     throw Error("region_targets: " + std::to_string(columns) + " x " + std::to_string(rows) +
-                " targets, wanted 1 x 1 or more");
+                " targets, wanted 1 x 1 or more and " + std::to_string(most) + " at most");
   }
   std::vector<FocusTarget> targets;
   for (int row = 0; row < rows; ++row) {

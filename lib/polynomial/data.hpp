@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "lens/between_wavelengths.hpp"
@@ -48,6 +49,9 @@ struct RayPolynomial::Data {
 };
 
 namespace polynomial_detail {
+
+/// Throws Error, which begins with `where`, for a degree that fits do not have.
+void check_degree(const std::string& where, int degree);
 
 /// Shift and radius of the pupil along x and y.
 inline std::array<RayPolynomial::Domain::Section, 2> sections(const RayPolynomial::Domain& domain) noexcept {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/low_discrepancy.hpp"
+#include "data.hpp"
 #include "least_squares.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/paraxial/first_order.hpp"
@@ -195,9 +196,7 @@ RayPolynomial RayPolynomial::fit(const Lens& lens, const FilmPupilTable& pupils,
   const std::string where = lens.name() + ": polynomial: ";
   // Rays do not depend on the iris.
   if (!lens.iris().round()) return fit(with_iris(lens, {}), pupils.of_round_stop(), degree);
-  if (!(degree >= 3 && degree <= 11 && degree % 2 == 1)) {
-    throw Error(where + "degree is " + std::to_string(degree) + ", wanted 3, 5, 7, 9 or 11");
-  }
+  polynomial_detail::check_degree(where, degree);
   if (pupils.wavelengths() != lens.wavelengths_nm().size()) {
     throw Error(where + "the pupils are of " + std::to_string(pupils.wavelengths()) +
                 " wavelengths, wanted the lens's " + std::to_string(lens.wavelengths_nm().size()));

@@ -14,6 +14,7 @@
 #include "modes.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/units.hpp"
+#include "pupil_table/repeated_wavelength.hpp"
 
 namespace petzval::inline v0 {
 namespace {
@@ -26,11 +27,15 @@ void check(const std::string& what, double value, double from, double to) {
   throw Error(what + " is " + to_text(value) + ", wanted a number from " + to_text(from) + " to " + to_text(to));
 }
 
+std::vector<double> wavelengths_of(const std::vector<RayPolynomial::Fit>& fits) {
+  std::vector<double> nm;
+  for (const RayPolynomial::Fit& fit : fits) nm.push_back(fit.wavelength_nm);
+  return nm;
+}
+
 void check(int degree, const RayPolynomial::Domain& domain, const std::vector<RayPolynomial::Fit>& fits) {
   const std::string where = "polynomial: ";
-  if (!(degree >= 3 && degree <= 11 && degree % 2 == 1)) {
-    throw Error(where + "degree is " + std::to_string(degree) + ", wanted 3, 5, 7, 9 or 11");
-  }
+  polynomial_detail::check_degree(where, degree);
   check(where + "film_z", domain.space.film_z, -largest, largest);
   check(where + "pupil_z", domain.space.pupil_z, -largest, largest);
   if (domain.space.depth() == 0) {
@@ -69,6 +74,11 @@ void check(int degree, const RayPolynomial::Domain& domain, const std::vector<Ra
     check(here + "max_rad", fit.max_rad, 0, largest);
     check(here + "rms_mm", fit.rms_mm, 0, largest);
     check(here + "max_mm", fit.max_mm, 0, largest);
+  }
+  const std::vector<double> nm = wavelengths_of(fits);
+  if (const auto repeated = pupil_table_detail::repeated_wavelength(nm)) {
+    throw Error(where + "fit " + std::to_string(*repeated) + ": wavelength_nm is " + to_text(nm[*repeated]) +
+                ", that of another fit, wanted each once");
   }
 }
 
@@ -121,9 +131,7 @@ RayPolynomial::Data::Data(int of_degree, const Domain& of_domain, std::vector<Fi
     throw Error("polynomial: primary_wavelength is " + std::to_string(primary) + ", wanted one of " +
                 std::to_string(fits.size()));
   }
-  std::vector<double> nm;
-  for (const Fit& fit : fits) nm.push_back(fit.wavelength_nm);
-  wavelengths = lens_detail::CompiledWavelengths(nm);
+  wavelengths = lens_detail::CompiledWavelengths(wavelengths_of(fits));
   std::vector<std::vector<double>> coefficients;
   std::transform(fits.begin(), fits.end(), std::back_inserter(coefficients), all_coefficients);
   const auto found = polynomial_detail::find_modes(fits, coefficients);
@@ -133,7 +141,13 @@ RayPolynomial::Data::Data(int of_degree, const Domain& of_domain, std::vector<Fi
   round_to<double>(in_double, domain, coefficients, found.modes);
 }
 
+void polynomial_detail::check_degree(const std::string& where, int degree) {
+  if (degree >= 3 && degree <= 11 && degree % 2 == 1) return;
+  throw Error(where + "degree is " + std::to_string(degree) + ", wanted 3, 5, 7, 9 or 11");
+}
+
 std::vector<RayPolynomial::Term> RayPolynomial::terms(int degree) {
+  polynomial_detail::check_degree("polynomial: ", degree);
   const int n = (degree - 1) / 2;
   std::vector<Term> result;
   for (int w = 0; w <= n; ++w) {
@@ -145,6 +159,7 @@ std::vector<RayPolynomial::Term> RayPolynomial::terms(int degree) {
 }
 
 std::vector<RayPolynomial::MirrorTerm> RayPolynomial::mirror_terms(int degree) {
+  polynomial_detail::check_degree("polynomial: ", degree);
   std::vector<MirrorTerm> result;
   for (const int odd : {0, 1}) {
     const int n = (degree - 1) / 2 - odd;

@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -14,6 +17,7 @@
 #include "iris/iris_shape.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/parallel.hpp"
+#include "repeated_wavelength.hpp"
 #include "rim_cut.hpp"
 
 namespace petzval::inline v0 {
@@ -64,6 +68,56 @@ bool obscured(const std::vector<std::vector<PupilPolygon>>& polygons) {
 void check_film_radius(const std::string& where, double film_radius) {
   if (film_radius >= 0 && std::isfinite(film_radius)) return;
   throw Error(where + ": film: its radius is " + to_text(film_radius) + " mm, wanted a finite one, 0 or more");
+}
+
+/// Throws Error for what no table is made of. count: of the wavelengths.
+void check_table(const TwoPlanes& space, double film_radius, std::size_t count, std::size_t primary,
+                 std::span<const double> wavelengths_nm) {
+  const std::string where = "pupil table: ";
+  if (!std::isfinite(space.depth()) || space.depth() == 0) {
+    throw Error(where + "the film lies at z = " + to_text(space.film_z) + " and the plane of the pupil at " +
+                to_text(space.pupil_z) + " mm, wanted two places");
+  }
+  check_film_radius("pupil table", film_radius);
+  constexpr std::size_t most = std::numeric_limits<std::uint16_t>::max();  // RayWavelengths::each
+  if (count < 1 || count > most) {
+    throw Error(where + "it has " + std::to_string(count) + " wavelengths, wanted 1 to " + std::to_string(most));
+  }
+  if (primary >= count) {
+    throw Error(where + "primary_wavelength is " + std::to_string(primary) + ", wanted one of " +
+                std::to_string(count));
+  }
+  if (wavelengths_nm.empty()) return;
+  if (wavelengths_nm.size() != count) {
+    throw Error(where + "wavelengths_nm has " + std::to_string(wavelengths_nm.size()) + " numbers, wanted " +
+                std::to_string(count) + " or none");
+  }
+  for (const double nm : wavelengths_nm) {
+    if (!(nm > 0 && std::isfinite(nm))) throw Error(where + "a wavelength is " + to_text(nm) + " nm, wanted a length");
+  }
+  if (const auto repeated = repeated_wavelength(wavelengths_nm)) {
+    throw Error(where + "wavelength " + std::to_string(*repeated) + " is " + to_text(wavelengths_nm[*repeated]) +
+                " nm, that of another one, wanted each once");
+  }
+}
+
+/// Throws Error for an outline in the plane of the pupil that is no disc or has no place. Areas and places of larger
+/// numbers would overflow in float.
+void check_outline(std::size_t wavelength, double shift, double radius) {
+  constexpr double largest = 1e15;
+  if (std::abs(shift) <= largest && radius >= 0 && radius <= largest) return;
+  throw Error("pupil table: wavelength " + std::to_string(wavelength) + ": a pupil has the shift " + to_text(shift) +
+              " and the radius " + to_text(radius) + " mm, wanted numbers up to " + to_text(largest) +
+              " and no negative radius");
+}
+
+void check_discs(std::span<const std::vector<PupilDisc>> discs) {
+  for (std::size_t w = 0; w < discs.size(); ++w) {
+    if (discs[w].empty()) {
+      throw Error("pupil table: wavelength " + std::to_string(w) + " has no disc, wanted one or more");
+    }
+    for (const auto& [shift, radius] : discs[w]) check_outline(w, shift, radius);
+  }
 }
 
 }  // namespace
@@ -132,7 +186,8 @@ FilmPupilTable FilmPupilTable::equal_area(const Lens& lens, double film_radius, 
 FilmPupilTable FilmPupilTable::of_discs(const TwoPlanes& space, std::span<const std::vector<PupilDisc>> discs,
                                         double film_radius, std::size_t primary_wavelength,
                                         std::span<const double> wavelengths_nm) {
-  check_film_radius("pupil table", film_radius);
+  check_table(space, film_radius, discs.size(), primary_wavelength, wavelengths_nm);
+  check_discs(discs);
   auto data = std::make_shared<Data>();
   data->primary = primary_wavelength;
   data->compiled = lens_detail::CompiledWavelengths(wavelengths_nm);
@@ -151,6 +206,11 @@ FilmPupilTable FilmPupilTable::of_round_stop() const {
 }
 
 FilmPupilTable FilmPupilTable::reshaped(std::span<const std::vector<PupilDisc>> discs) const {
+  if (discs.size() != wavelengths()) {
+    throw Error("pupil table: found discs of " + std::to_string(discs.size()) + " wavelengths, wanted those of " +
+                std::to_string(wavelengths()));
+  }
+  check_discs(discs);
   const FilmPupilTable round = of_round_stop();
   auto data = data_->alike();
   constexpr std::size_t strips = film_strips(PolygonFit::equal_area);
@@ -195,6 +255,11 @@ FilmPupilTable FilmPupilTable::cut_by_rim(const PupilRim& rim) const {
   if (!(rim.ratio > 0 && std::isfinite(rim.ratio)) || !std::isfinite(rim.radii_per_mm)) {
     throw Error("pupils: a rim of " + to_text(rim.ratio) + " radii that moves by " + to_text(rim.radii_per_mm) +
                 " of them per mm, wanted a positive radius and finite numbers");
+  }
+  constexpr double farthest = 1e6;  // beyond it, float does not tell the places of a pupil apart
+  if (!(std::abs(rim.radii_per_mm) * lit_radius() <= farthest)) {
+    throw Error("pupils: the rim moves by " + to_text(std::abs(rim.radii_per_mm) * lit_radius()) +
+                " radii over the film, wanted at most " + to_text(farthest));
   }
   auto data = data_->alike();
   data->whole = data_;
@@ -254,7 +319,12 @@ bool FilmPupilTable::cut() const noexcept { return data_->whole != nullptr; }
 FilmPupilTable FilmPupilTable::of_iris(const TwoPlanes& space, const Iris& iris, std::span<const PupilImage> images,
                                        double film_radius, std::size_t primary_wavelength,
                                        std::span<const double> wavelengths_nm) {
-  check_film_radius("pupil table", film_radius);
+  check_table(space, film_radius, images.size(), primary_wavelength, wavelengths_nm);
+  for (std::size_t w = 0; w < images.size(); ++w) {
+    const auto& [shift, radius] = images[w];
+    check_outline(w, shift.x, radius.x);
+    check_outline(w, shift.y, radius.y);
+  }
   auto data = std::make_shared<Data>();
   data->space = space;
   data->film_radius = film_radius;

@@ -14,6 +14,7 @@ namespace petzval::inline v0 {
 RayBundle trace_bundle(const Lens& lens, const PupilSampler& pupil, std::uint32_t samples, std::uint32_t seed,
                        int threads, std::uint32_t first) {
   if (threads < 1) throw Error("trace_bundle: threads is " + std::to_string(threads) + ", wanted 1 or more");
+  (void)lens.compiled_position(pupil.wavelength());
   const auto start = [&](std::size_t begin, std::size_t end, const RayArrays<double>& rays) {
     std::array<double, rays_detail::block_rays> room_u, room_v;
     const std::span u(room_u.data(), end - begin), v(room_v.data(), end - begin);

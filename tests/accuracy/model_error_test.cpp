@@ -235,6 +235,11 @@ TEST(ModelError, RefusesWhatItCannotMeasure) {
   }
   EXPECT_NE(refusal({}, ModelKind::thick, {.depths_z = {-1000}, .wavelengths = {1}}).find("wavelength 1"),
             std::string::npos);
+  for (const std::size_t points :
+       {std::size_t{0}, (std::size_t{1} << 20) + 1, std::numeric_limits<std::size_t>::max()}) {
+    EXPECT_NE(refusal({}, ModelKind::thick, {.depths_z = {-1000}, .film_points = points}).find(", wanted 1 to 1048576"),
+              std::string::npos);
+  }
   EXPECT_NE(refusal({.width_mm = 0}, ModelKind::thick, {.depths_z = {-1000}}).find("film: it is 0 by 24"),
             std::string::npos);
   EXPECT_NE(refusal({.tilt_rad = 0.1}, ModelKind::thick, {.depths_z = {-1000}}).find("tilted"), std::string::npos);

@@ -40,6 +40,9 @@ TEST(LensMetadata, FilmHasTheDeclaredDiagonalOrTheImageCircle) {
   EXPECT_NEAR(std::hypot(film.width_mm, film.height_mm), image_circle_mm(compile(p), 0.1), 1e-9);
   const Lens closed = with_semi_diameter(compile(p), compile(p).stop().value(), 0);
   EXPECT_NE(testing::message([&] { film_of(p, closed); }).find("wanted a film"), std::string::npos);
+  p.image_diagonal_mm = -1;
+  EXPECT_EQ(testing::message([&] { film_of(p, compile(p)); }),
+            p.name + ": film: the declared image diagonal is -1 mm, wanted a positive, finite one");
 }
 
 TEST(LensMetadata, IdentityIsThatOfThePrescription) {

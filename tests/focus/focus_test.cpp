@@ -229,6 +229,17 @@ TEST(Focus, RefusesWhatIsNoDistance) {
   EXPECT_EQ(message([&] { solve_focus(lens, std::nan("")); }), "element: subject distance is nan" + wanted);
 }
 
+TEST(Focus, RefusesNumbersThatAreNoCriterionOrOrigin) {
+  const Lens lens = compile(element(1.5, 50, -50, 4));
+  const FocusOptions by_99{.criterion = static_cast<FocusCriterion>(99)};
+  const std::string wanted = "element: focus: found the criterion 99, wanted thin, paraxial, min_rms or min_max";
+  EXPECT_EQ(message([&] { solve_focus(lens, 1000, by_99); }), wanted);
+  EXPECT_EQ(message([&] { with_focus(lens, 1000, by_99); }), wanted);
+  EXPECT_EQ(message([&] { depth_of_field(lens, 0.1, by_99); }), wanted);
+  EXPECT_EQ(message([&] { solve_subject(lens, 60, {.origin = static_cast<DistanceOrigin>(99)}); }),
+            "element: focus: found the origin 99, wanted front_vertex, film or front_principal");
+}
+
 TEST(WithFocus, MovesTheFilmOrSaysHowNearItCan) {
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
   EXPECT_EQ(with_focus(lens, 1000).film_z(), solve_focus(lens, 1000).film_z);

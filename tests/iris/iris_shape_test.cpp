@@ -12,6 +12,7 @@
 #include "../message.hpp"
 #include "core/low_discrepancy.hpp"
 #include "iris/iris_edges.hpp"
+#include "petzval/core/error.hpp"
 
 namespace petzval {
 namespace {
@@ -56,6 +57,9 @@ TEST(Iris, HasTheAreaOfItsCircularSegments) {
     }
   }
   EXPECT_NEAR(equal_area_f_number({.blades = 4}, 5.6), 5.6 * std::sqrt(2 / pi), 1e-14);
+  for (const double f_number : {0.0, -1.0, std::nan(""), std::numeric_limits<double>::infinity()}) {
+    EXPECT_THROW((void)equal_area_f_number({.blades = 6}, f_number), Error) << f_number;
+  }
 }
 
 TEST(IrisShape, HasTheMomentsOfARegularPolygon) {

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "../data_lenses.hpp"
+#include "../message.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/media/glass.hpp"
 #include "petzval/paraxial/first_order.hpp"
@@ -53,6 +54,35 @@ TEST(Lint, FindsAFilmFarFromTheImageCircle) {
   }
   // One that is shifted out of the circle.
   EXPECT_EQ(lint(lens, {.shift_x_mm = 200}).size(), 1u);
+}
+
+TEST(Lint, FindsPixelsThatAreNotSquare) {
+  const Lens lens = testing::data_lens("double_gauss_100mm_f2_28deg");
+  const std::vector<Finding> findings = lint(lens, {.columns = 1920, .rows = 1080});
+  ASSERT_EQ(findings.size(), 1u);
+  EXPECT_EQ(findings[0].kind, Kind::pixel_shape);
+  EXPECT_NEAR(findings[0].found, 0.84375, 1e-15);
+  EXPECT_EQ(findings[0].wanted, 1);
+  EXPECT_EQ(findings[0].message,
+            "pixels are 0.01875 by 0.02222 mm, wanted square ones: 36 by 20.25 mm fit 1920 by 1080");
+  EXPECT_EQ(lint(lens, {.width_mm = 360, .height_mm = 240, .columns = 1080, .rows = 1920}).size(), 2u);
+  EXPECT_EQ(lint(with_iris(lens, {.blades = 6}), {.columns = 1920, .rows = 1080}).size(), 1u);
+  EXPECT_EQ(lint(lens, {.columns = 3840, .rows = 2590}).size(), 1u);
+  // Within 0.5 %; as near as whole pixels come; and a lens that squeezes the picture.
+  EXPECT_TRUE(lint(lens, {.columns = 3840, .rows = 2570}).empty());
+  EXPECT_TRUE(lint(lens, {.columns = 10, .rows = 7}).empty());
+  EXPECT_TRUE(lint(testing::data_lens("anamorphic_60mm_2x"), {.columns = 1920, .rows = 1080}).empty());
+}
+
+TEST(Lint, RefusesAFilmThatNoCameraTakes) {
+  const Lens lens = testing::data_lens("double_gauss_100mm_f2.0");
+  const auto refusal = [&](const Film& film) { return testing::message([&] { lint(lens, film); }); };
+  EXPECT_EQ(refusal({.width_mm = 0}),
+            lens.name() + ": film: it is 0 by 24 mm, wanted positive lengths and an area that is a number");
+  for (const Film& film : {Film{.width_mm = std::nan("")}, Film{.height_mm = -24}, Film{.columns = 0},
+                           Film{.margin_mm = -1}, Film{.shift_x_mm = std::nan("")}, Film{.tilt_rad = 1.6}}) {
+    EXPECT_EQ(refusal(film).find(lens.name() + ": film: it"), 0u) << refusal(film);
+  }
 }
 
 void expect_one(const Prescription& p, Kind kind, std::optional<int> surface, const std::string& message) {
@@ -145,10 +175,10 @@ TEST(Lint, FindsIndicesThatAreNotThoseOfTheGlass) {
 
 TEST(Lint, KindsHaveNamesOfTheirOwn) {
   std::set<std::string_view> names;
-  for (int kind = 0; kind <= static_cast<int>(Kind::film_size); ++kind) {
+  for (int kind = 0; kind <= static_cast<int>(Kind::pixel_shape); ++kind) {
     names.insert(name(static_cast<Kind>(kind)));
   }
-  EXPECT_EQ(names.size(), 12u);
+  EXPECT_EQ(names.size(), 13u);
   EXPECT_FALSE(names.contains("unknown"));
 }
 

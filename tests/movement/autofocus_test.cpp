@@ -272,7 +272,12 @@ TEST(Autofocus, SaysWhatIsWrong) {
             "autofocus: the film stands at z = nan mm, wanted a finite place");
   EXPECT_EQ(message([&] { autofocus(bundles, {}, {}, paraxial); }),
             "autofocus: criterion is paraxial, wanted min_rms or min_max, or an ideal lens");
-  EXPECT_EQ(message([] { region_targets({}, {}, {}, 0, 2); }), "region_targets: 0 x 2 targets, wanted 1 x 1 or more");
+  const std::string wanted = " targets, wanted 1 x 1 or more and 1048576 at most";
+  EXPECT_EQ(message([] { region_targets({}, {}, {}, 0, 2); }), "region_targets: 0 x 2" + wanted);
+  EXPECT_EQ(message([] { region_targets({}, {}, {}, 2000000000, 2000000000); }),
+            "region_targets: 2000000000 x 2000000000" + wanted);
+  EXPECT_EQ(region_targets({}, {}, {}, 1024, 1024).size(), 1048576u);
+  EXPECT_EQ(message([] { region_targets({}, {}, {}, 1024, 1025); }), "region_targets: 1024 x 1025" + wanted);
 }
 
 TEST(RegionTargets, AreTheMiddlesOfItsParts) {

@@ -360,7 +360,7 @@ TEST(RayPolynomial, RaysDoNotDependOnTheirNeighbours) {
   const auto check = [&]<class T>(T, bool mirrors, unsigned fits) {
     std::vector<RayPolynomial::Fit> all_fits;
     for (unsigned w = 0; w < fits; ++w) {
-      all_fits.push_back(numbers(9, -0.6 + 0.1 * (w % 5), 0.01 * (w % 7), 587.5618, mirrors));
+      all_fits.push_back(numbers(9, -0.6 + 0.1 * (w % 5), 0.01 * (w % 7), 400 + w, mirrors));
     }
     const RayPolynomial polynomial(9, domain(mirrors), all_fits);
     Lines<T> all = all_over<T>(mirrors);
@@ -445,6 +445,8 @@ TEST(RayPolynomial, RefusesWhatIsNotConsistent) {
        "polynomial: pupil_radius along x is -3, wanted a number from 1e-12 to 1e+12"},
       {5, [](Domain&, Fits& f) { f.push_back(f[0]), f[1].offset_by_pupil[3] = infinity; },
        "polynomial: fit 1: offset_by_pupil: number 3 is inf, wanted a number from -1e+12 to 1e+12"},
+      {5, [](Domain&, Fits& f) { f.push_back(f[0]), f[1].wavelength_nm = 587.5618001; },
+       "polynomial: fit 1: wavelength_nm is 587.5618001, that of another fit, wanted each once"},
       {5, [](Domain&, Fits& f) { f[0].max_rad = -1; },
        "polynomial: fit 0: max_rad is -1, wanted a number from 0 to 1e+12"},
   };
@@ -453,6 +455,14 @@ TEST(RayPolynomial, RefusesWhatIsNotConsistent) {
     Fits fits{numbers(5, -0.6)};
     c.spoil(d, fits);
     EXPECT_EQ(testing::message([&] { RayPolynomial(c.degree, d, fits); }), c.message);
+  }
+}
+
+TEST(RayPolynomial, HasNoTermsOfOtherDegrees) {
+  for (const int degree : {-1, 0, 1, 2, 4, 13, 2000001}) {
+    const std::string refusal = "polynomial: degree is " + std::to_string(degree) + ", wanted 3, 5, 7, 9 or 11";
+    EXPECT_EQ(testing::message([&] { (void)RayPolynomial::terms(degree); }), refusal);
+    EXPECT_EQ(testing::message([&] { (void)RayPolynomial::mirror_terms(degree); }), refusal);
   }
 }
 

@@ -12,6 +12,7 @@
 
 #include "../data_lenses.hpp"
 #include "../declared_radius.hpp"
+#include "../message.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/units.hpp"
 #include "petzval/paraxial/first_order.hpp"
@@ -29,6 +30,7 @@ using petzval::testing::coverage;
 using petzval::testing::data_lens;
 using petzval::testing::data_prescriptions;
 using petzval::testing::declared_radius;
+using petzval::testing::message;
 using petzval::testing::passing;
 
 class DoubleGauss : public ::testing::TestWithParam<double> {};
@@ -626,6 +628,52 @@ TEST(FilmPupilTable, HasNothingOutsideItsFilm) {
   EXPECT_THROW((void)hexagons({.blades = 2}), Error);
   const FilmPupilTable dark = FilmPupilTable::enclosing(with_semi_diameter(lens, *lens.stop(), 0), 20);
   EXPECT_EQ(dark.sample({1, 2}, 0.5, 0.5).area, 0);
+}
+
+TEST(FilmPupilTable, RefusesWhatNoTableIsMadeOf) {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
+  using Nm = std::vector<double>;
+  // Of discs and of images alike.
+  const auto refusals = [](const TwoPlanes& space, const std::vector<PupilDisc>& discs, std::size_t primary,
+                           const Nm& nm) {
+    std::vector<std::vector<PupilDisc>> lists;
+    std::vector<PupilImage> images;
+    for (const auto& disc : discs) {
+      lists.push_back({disc}), images.push_back({{0, disc.shift}, {5, disc.radius}});
+    }
+    const std::string of_discs = message([&] { (void)FilmPupilTable::of_discs(space, lists, 10, primary, nm); });
+    const std::string of_iris = message([&] { (void)FilmPupilTable::of_iris(space, {}, images, 10, primary, nm); });
+    EXPECT_EQ(of_discs, of_iris);
+    return of_discs;
+  };
+  const TwoPlanes space{100, 0};
+  const std::string wanted = " mm, wanted numbers up to 1e+15 and no negative radius";
+  const std::string disc = "pupil table: wavelength 0: a pupil has the shift ";
+  EXPECT_EQ(refusals(space, {{0, 5}}, 0, {}), "no error");
+  EXPECT_EQ(refusals(space, {{0, 0}, {-2, 5}}, 1, {400, 500}), "no error");
+  EXPECT_EQ(refusals(space, {{0, -5}}, 0, {}), disc + "0 and the radius -5" + wanted);
+  EXPECT_EQ(refusals(space, {{nan, 5}}, 0, {}), disc + "nan and the radius 5" + wanted);
+  EXPECT_EQ(refusals(space, {{0, infinity}}, 0, {}), disc + "0 and the radius inf" + wanted);
+  EXPECT_EQ(refusals(space, {}, 0, {}), "pupil table: it has 0 wavelengths, wanted 1 to 65535");
+  EXPECT_EQ(refusals(space, std::vector<PupilDisc>(65536, {0, 5}), 0, {}),
+            "pupil table: it has 65536 wavelengths, wanted 1 to 65535");
+  EXPECT_EQ(refusals(space, {{0, 5}}, 7, {}), "pupil table: primary_wavelength is 7, wanted one of 1");
+  EXPECT_EQ(refusals({0, 0}, {{0, 5}}, 0, {}),
+            "pupil table: the film lies at z = 0 and the plane of the pupil at 0 mm, wanted two places");
+  EXPECT_NE(refusals({nan, 0}, {{0, 5}}, 0, {}), "no error");
+  EXPECT_EQ(refusals(space, {{0, 5}}, 0, {400, 500}), "pupil table: wavelengths_nm has 2 numbers, wanted 1 or none");
+  EXPECT_EQ(refusals(space, {{0, 5}}, 0, {nan}), "pupil table: a wavelength is nan nm, wanted a length");
+  EXPECT_EQ(refusals(space, {{0, 5}, {0, 5}, {0, 5}}, 0, {400, 500, 400}),
+            "pupil table: wavelength 2 is 400 nm, that of another one, wanted each once");
+
+  std::vector<std::vector<PupilDisc>> lists{{}};
+  EXPECT_EQ(message([&] { (void)FilmPupilTable::of_discs(space, lists, 10); }),
+            "pupil table: wavelength 0 has no disc, wanted one or more");
+  const FilmPupilTable table = FilmPupilTable::of_discs(space, std::array{std::vector<PupilDisc>{{0, 5}}}, 10);
+  EXPECT_NE(message([&] { (void)table.reshaped(lists); }), "no error");
+  lists.assign(3, {{0, 5}});
+  EXPECT_EQ(message([&] { (void)table.reshaped(lists); }),
+            "pupil table: found discs of 3 wavelengths, wanted those of 1");
 }
 
 TEST(FilmPupilTable, HasNothingInTheMiddleOfAnObscuration) {

@@ -4,11 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
 
 #include "../data_lenses.hpp"
+#include "../message.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/sobol.hpp"
 #include "petzval/core/units.hpp"
@@ -54,6 +56,16 @@ TEST(TraceBundle, IsTheSameForAnyNumberOfThreads) {
   }
   EXPECT_NE(trace_bundle(lens, pupil, 50000, 4, 1).x, one.x);
   EXPECT_THROW(trace_bundle(lens, pupil, 10, 0, 0), Error);
+}
+
+TEST(TraceBundle, RefusesAPupilOfAWavelengthThatTheLensLacks) {
+  const Lens one = data_lens("double_gauss_100mm_f2.0");
+  const Lens three = compile(testing::data_prescription("double_gauss_100mm_f2.0"), std::array{450.0, 550.0, 650.0},
+                             {.missing_glass = MissingGlass::abbe});
+  const PupilSampler pupil(pupil_boundary(three, {.z = -1500}, 2));
+  EXPECT_FALSE(trace_bundle(three, pupil, 100).empty());
+  EXPECT_EQ(testing::message([&] { trace_bundle(one, pupil, 100); }),
+            one.name() + ": wavelength 2 does not exist, wanted one of 1");
 }
 
 TEST(TraceBundle, BeginsWithTheHitsOfFewerSamples) {

@@ -22,7 +22,7 @@ struct ErrorSamples {
   /// Also, for each film point, the plane between these two in which its spot is smallest: errors over the local blur
   /// are largest there.
   std::optional<std::array<double, 2>> sharpest_between_z = {};
-  std::size_t film_points = 256;              ///< each with 128 lines a wavelength
+  std::size_t film_points = 256;              ///< 1 to 2^20, each with 128 lines a wavelength
   std::uint32_t seed = 0;                     ///< another seed gives other samples
   std::vector<std::size_t> wavelengths = {};  ///< positions among the compiled ones; empty: all
   int threads = 1;
@@ -62,8 +62,8 @@ struct ModelError {
 };
 
 /// Measures a built-in model. Throws Error where it cannot be built (see Camera), for a film that is tilted or travels,
-/// for no depths or depths that are not in front of the lens, for wavelengths that were not compiled, for a lens
-/// without focal length, and for one without light on the film.
+/// for no depths or depths that are not in front of the lens, for film points out of range, for wavelengths that were
+/// not compiled, for a lens without focal length, and for one without light on the film.
 PETZVAL_API ModelError model_error(const Lens& lens, const Film& film, ModelKind model, const ErrorSamples& samples);
 /// The same for models that were built before for this lens and film, a renderer's own included. Exact rays are traced
 /// once for all of them.

@@ -27,7 +27,7 @@ struct BokehControls {
   double lens_ratio = 1;
   /// By how many of these radii it moves against the film point from the axis to half of the film's longer side: over
   /// the same length in all directions, so that cat's eyes lie around the axis of a film that is not square, or
-  /// shifted.
+  /// shifted. Error where it moves by more than 1e6 radii over the film.
   double rate_of_change = 0;
   /// Weights make up for the area that the rim takes; else light falls with it. (What is left of the pupil of a fast
   /// lens sees the film under other angles: 12 % of an f/2's light are still lost where half of its pupil is, 30 % of

@@ -35,13 +35,13 @@ enum class Travel : std::uint8_t { to_film, to_scene };
 /// The result of tracing a ray. Every fate except `transmitted` is a loss, at the surface reported with it.
 enum class RayFate : std::uint8_t {
   transmitted,        ///< passed the last surface asked for
-  missed_surface,     ///< has no point in common with the surface (or only on its far sheet)
+  missed_surface,     ///< meets the surface nowhere, or on its far sheet alone; in trace() also an invalid ray
   totally_reflected,  ///< beyond the critical angle
   vignetted,          ///< outside the clear aperture (of an asphere: of its description) or in the central obscuration
   no_convergence,     ///< the iteration for an asphere did not converge
   outside_fit,        ///< outside the domain of a fitted model of the lens
   outside_film,       ///< starts or ends outside the film of a camera
-  invalid,            ///< a wavelength that does not exist, numbers that are not finite, or no unit direction
+  invalid,            ///< of cameras: no such wavelength, numbers that are not finite, or no unit direction
 };
 
 /// The fate as the programs print it: "transmitted", "missed_surface", ...

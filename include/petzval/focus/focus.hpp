@@ -79,7 +79,7 @@ struct FocusSolution {
 /// of least RMS radius in closed form, from bundles through everything that passes all rims, uniform in the area of the
 /// entrance pupil. min_max: the position of the least largest radius of the same bundles and the edges and corners of
 /// their pupils, to rounding; a largest radius is found within 0.2 %. Both lie behind the last vertex. Throws Error for
-/// a distance that is NaN or not positive; for invalid fields and weights; and, by the exact criteria, where
+/// a distance that is NaN or not positive; for invalid options, fields and weights; and, by the exact criteria, where
 /// pupil_boundary does and for an entrance pupil at infinity. Accuracy: paraxial and thin within rounding; by the exact
 /// criteria the film is that of infinitely many rays within 1e-5 mm on the axis and 2e-4 mm off it (double Gauss 100 mm
 /// f/2, 10 degrees).

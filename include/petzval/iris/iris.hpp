@@ -29,7 +29,7 @@ struct Iris {
 PETZVAL_API double iris_area(const Iris& iris);
 
 /// The f-number by its corners of an iris that passes as much light as a round one of f_number: f_number
-/// sqrt(iris_area(iris) / pi). Throws Error as iris_area does.
+/// sqrt(iris_area(iris) / pi). Throws Error as iris_area does, and for an f_number that is not a finite one above 0.
 ///
 ///     petzval::Lens lens = with_f_number(with_iris(wide_open, hexagon), petzval::equal_area_f_number(hexagon, 4));
 PETZVAL_API double equal_area_f_number(const Iris& iris, double f_number);

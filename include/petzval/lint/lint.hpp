@@ -29,6 +29,7 @@ enum class FindingKind : std::uint8_t {
   idle_stop,       ///< a rim clips the axial beam well before the marked stop does
   glass_index,     ///< n_d is not that of the named glass
   film_size,       ///< a film several times as large as the image circle, or smaller than a fiftieth of it
+  pixel_shape,     ///< pixels that are not square within 0.5 %, beyond the rounding to whole ones
 };
 
 /// "focal_length", "f_number", "overlap", ...
@@ -65,7 +66,9 @@ PETZVAL_API Repaired repair(const Prescription& prescription);
 
 /// The film of a camera compared with the image circle of its lens (image_circle_mm, of any light): found is the
 /// diameter of the circle about the axis that holds the film, wanted that of the image. A film is as large as one likes
-/// up to three times the image circle. Throws Error where with_film() and image_circle_mm() do.
+/// up to three times the image circle. Of its pixels, found is the width over the height, wanted 1; those of a lens
+/// with cylinders may have any shape. Throws Error for a film without area or pixels and other numbers that no Camera
+/// takes, and where with_film() and image_circle_mm() do.
 PETZVAL_API std::vector<Finding> lint(const Lens& lens, const Film& film);
 
 }  // namespace petzval::inline v0

@@ -60,7 +60,8 @@ PETZVAL_API Autofocus autofocus(const ImageRays& lens, std::span<const FocusTarg
                                 FocusCriterion criterion = FocusCriterion::min_rms);
 
 /// A region to focus on, as columns x rows targets in the middles of equal parts of the parallelogram
-/// centre +- half_width +- half_height (lens frame, mm). Throws Error unless columns and rows are 1 or more.
+/// centre +- half_width +- half_height (lens frame, mm). Throws Error unless columns and rows are 1 or more,
+/// and for more than 2^20 targets.
 PETZVAL_API std::vector<FocusTarget> region_targets(const Vec3<double>& centre, const Vec3<double>& half_width,
                                                     const Vec3<double>& half_height, int columns, int rows);
 

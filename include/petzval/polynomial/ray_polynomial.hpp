@@ -76,7 +76,7 @@ class PETZVAL_API RayPolynomial {
     int u, v, w;  ///< exponents
   };
   /// The terms u^i v^j w^k with i + j + k <= (degree - 1) / 2, in the order of coefficients: k changes slowest, i
-  /// fastest.
+  /// fastest. Throws Error for another degree than 3, 5, 7, 9 or 11.
   static std::vector<Term> terms(int degree);
   /// Exponents of film and pupil point along a component's own axis, and along the other one.
   struct MirrorTerm {
@@ -84,6 +84,7 @@ class PETZVAL_API RayPolynomial {
   };
   /// The terms f^2i p^2j f'^2k p'^2l with i + j + k + l <= (degree - 1) / 2, f' and p' along the other axis, in the
   /// order of coefficients: l changes slowest, then k and j, i fastest. Behind them f' p' times those of degree - 2.
+  /// Throws Error as terms() does.
   static std::vector<MirrorTerm> mirror_terms(int degree);
 
   /// Fits all compiled wavelengths by least squares (QR, in double) to exact rays through the pupils, with the focus of
@@ -94,7 +95,7 @@ class PETZVAL_API RayPolynomial {
   /// coefficients.
   static RayPolynomial fit(const Lens& lens, const FilmPupilTable& pupils, int degree);
   /// From data. primary_wavelength: position of the fit that is used by default; if unset, the one nearest to the d
-  /// line. Throws Error, which names the entry, for inconsistent data.
+  /// line. Throws Error, which names the entry, for inconsistent data and a wavelength that two fits have.
   RayPolynomial(int degree, const Domain& domain, std::vector<Fit> fits,
                 std::optional<std::size_t> primary_wavelength = {});
 

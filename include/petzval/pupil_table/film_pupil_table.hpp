@@ -158,20 +158,26 @@ class PETZVAL_API FilmPupilTable {
   static FilmPupilTable equal_area(const Lens& lens, double film_radius, int threads = 1);
 
   /// The same for the overlap of some discs, one list for each wavelength. One disc alone has a closed form: of_iris().
-  /// wavelengths_nm: the wavelengths; without them there are no samples by nm.
+  /// wavelengths_nm: the wavelengths; without them there are no samples by nm. Throws Error for planes in one place, a
+  /// film_radius or a disc's radius that is negative, a list without discs, and numbers that are not finite or beyond
+  /// 1e15; for other than 1 to 65535 lists, as many as rays have positions for; for a primary_wavelength without a
+  /// list; and for wavelengths_nm that are not positive, stand there twice (within 1e-6 nm) or are not one for each
+  /// list.
   static FilmPupilTable of_discs(const TwoPlanes& space, std::span<const std::vector<PupilDisc>> discs,
                                  double film_radius, std::size_t primary_wavelength = 0,
                                  std::span<const double> wavelengths_nm = {});
 
   /// The same film and planes, and pupils that have the shape of an overlap of discs, one list for each wavelength, and
   /// let through as much light as these do: about their middles they are scaled to the same projected_solid_angle(). A
-  /// bladed iris cuts them as it does these; discs are those of the round stop.
+  /// bladed iris cuts them as it does these; discs are those of the round stop. Throws Error for other discs than
+  /// of_discs() takes, and other than one list for each wavelength of these pupils.
   FilmPupilTable reshaped(std::span<const std::vector<PupilDisc>> discs) const;
 
   /// What a rim leaves of these pupils: cat's eyes that an artist asks for. Their light falls with their area. Where
   /// the rim moves by 5 radii or less over the film, areas are off by 2 % of the whole pupil's or less
   /// (tests/pupil_table/rim_test.cpp), and may be 0 where eyes nearly close. Throws Error for a ratio that is not
-  /// positive, numbers that are not finite, and the pupils of a lens with cylinders or a central obscuration.
+  /// positive, numbers that are not finite, a rim that moves by more than 1e6 radii over the film, and the pupils of a
+  /// lens with cylinders or a central obscuration.
   FilmPupilTable cut_by_rim(const PupilRim& rim) const;
   /// Whether a rim has cut them, and the pupils before that.
   bool cut() const noexcept;
@@ -181,7 +187,7 @@ class PETZVAL_API FilmPupilTable {
   FilmPupilTable of_round_stop() const;
 
   /// Pupils in closed form: images of an iris, one for each wavelength. iris: as the plane of the pupil shows it.
-  /// Throws Error for a film_radius that is negative or not finite, and for blades, roundness or rotation out of range.
+  /// Throws Error as of_discs() does, and for blades, roundness or rotation out of range.
   static FilmPupilTable of_iris(const TwoPlanes& space, const Iris& iris, std::span<const PupilImage> images,
                                 double film_radius, std::size_t primary_wavelength = 0,
                                 std::span<const double> wavelengths_nm = {});

@@ -33,7 +33,8 @@ struct RayBundle {
 /// film; without slopes.
 ///
 /// The bundle does not depend on `threads` (1 or more; more than one starts threads and ends them before it returns).
-/// Rays that leave the lens away from the film are lost. Throws Error for less than one thread.
+/// Rays that leave the lens away from the film are lost. Throws Error for less than one thread, and for a pupil whose
+/// wavelength the lens does not have.
 PETZVAL_API RayBundle trace_bundle(const Lens& lens, const PupilSampler& pupil, std::uint32_t samples,
                                    std::uint32_t seed = 0, int threads = 1, std::uint32_t first = 0);
 

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "petzval/film/film.hpp"
+
+namespace petzval::inline v0::film_detail {
+
+/// Throws Error, which begins with `where`, for a film without area or pixels, with an infinite shift or travel, or
+/// tilted by a quarter turn or more.
+void check_rectangle(const std::string& where, const Film& film);
+
+}  // namespace petzval::inline v0::film_detail
