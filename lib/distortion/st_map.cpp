@@ -158,8 +158,10 @@ Margin margin_of(const LensDistortion& distortion, const StMapOptions& options) 
 }  // namespace
 
 bool StMap::sees(int column, int row) const noexcept {
+  if (column < 0 || column >= width || row < 0 || row >= height) return false;
   const std::size_t i =
       static_cast<std::size_t>(row) * static_cast<std::size_t>(width) + static_cast<std::size_t>(column);
+  if (i >= std::min(s.size(), t.size())) return false;
   return s[i] != blind || t[i] != blind;
 }
 

@@ -30,6 +30,10 @@ RgbImage render(const Psf& psf, std::span<const std::array<double, 3>> weights) 
                 std::to_string(psf.wavelengths_nm.size()) + " wavelengths");
   }
   RgbImage image(psf.pixels, psf.pixels);
+  if (const std::size_t wanted = weights.size() * image.pixels.size() / 3; psf.counts.size() != wanted) {
+    throw Error("render: found " + std::to_string(psf.counts.size()) + " counts, wanted " + std::to_string(wanted) +
+                ", one for each pixel and wavelength");
+  }
   std::vector<double> sums(image.pixels.size(), 0.0);
   for (std::size_t w = 0; w < weights.size(); ++w) {
     const auto light = irradiance(psf, w);

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "svg.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <utility>
 
 #include "core/text.hpp"
@@ -13,15 +15,31 @@ std::string attribute(std::string_view name, double value) {
   return " " + std::string(name) + "=\"" + svg_number(value) + "\"";
 }
 
-/// Words as the content of an element of XML: & < > by their names.
+/// Whether XML 1.0 has a character of UTF-8 (its production 2).
+bool is_in_xml(std::string_view character) noexcept {
+  if (character == "\xEF\xBF\xBE" || character == "\xEF\xBF\xBF") return false;  // U+FFFE, U+FFFF
+  const auto first = static_cast<unsigned char>(character[0]);
+  return first >= ' ' || first == '\t' || first == '\n' || first == '\r';
+}
+
+/// Words as the content of an element of XML: & < > by their names. What is no character of XML becomes U+FFFD: a
+/// single one makes a figure that no program opens.
 std::string escaped_xml(std::string_view words) {
   std::string result;
-  for (const char c : words) {
-    switch (c) {
-      case '&': result += "&amp;"; break;
-      case '<': result += "&lt;"; break;
-      case '>': result += "&gt;"; break;
-      default: result += c;
+  for (std::size_t i = 0; i < words.size();) {
+    const std::size_t length = utf8_length(words, i);
+    const std::string_view character = words.substr(i, std::max<std::size_t>(length, 1));
+    i += character.size();
+    if (length == 0 || !is_in_xml(character)) {
+      result += "\xEF\xBF\xBD";
+    } else if (character == "&") {
+      result += "&amp;";
+    } else if (character == "<") {
+      result += "&lt;";
+    } else if (character == ">") {
+      result += "&gt;";
+    } else {
+      result += character;
     }
   }
   return result;

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <utility>
 
+#include "core/text.hpp"
 #include "io/json.hpp"
 #include "petzval/core/error.hpp"
 
@@ -47,23 +48,6 @@ std::string from_utf16(std::string_view bytes, bool big_endian) {
     if (pair) i += 2;
   }
   return text;
-}
-
-/// The bytes of the UTF-8 character at a place; 0 if there is none.
-std::size_t utf8_length(std::string_view text, std::size_t at) {
-  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-  const unsigned first = byte(at);
-  const std::size_t length = first < 0x80   ? 1
-                             : first < 0xC2 ? 0
-                             : first < 0xE0 ? 2
-                             : first < 0xF0 ? 3
-                             : first < 0xF5 ? 4
-                                            : 0;
-  if (length == 0 || at + length > text.size()) return 0;
-  for (std::size_t i = 1; i < length; ++i) {
-    if ((byte(at + i) & 0xC0) != 0x80) return 0;
-  }
-  return length;
 }
 
 bool is_utf8(std::string_view text) {

@@ -68,7 +68,6 @@ std::array<std::string, 4> colours_of(const Imf::ChannelList& channels) {
 }
 
 DeepPicture read(const std::filesystem::path& file, double unit_mm) {
-  io_detail::check_exr_attributes(file);
   Imf::MultiPartInputFile in(file.string().c_str(), 0);
   int part = 0;
   while (part < in.parts() && !(in.header(part).hasType() && in.header(part).type() == Imf::DEEPSCANLINE)) ++part;
@@ -157,13 +156,11 @@ void check(const FragmentLists& lists) {
 }  // namespace
 
 DeepPicture read_deep_exr(const std::filesystem::path& file, double unit_mm) {
-  try {
+  return io_detail::read_exr_file(file, [&] {
     if (!(unit_mm > 0 && std::isfinite(unit_mm)))
       throw Error("the unit is " + std::to_string(unit_mm) + " mm, wanted more than 0");
     return read(file, unit_mm);
-  } catch (const std::exception& e) {
-    throw Error(file.string() + ": " + e.what());
-  }
+  });
 }
 
 void write_deep_exr(const FragmentLists& lists, const std::filesystem::path& file) {

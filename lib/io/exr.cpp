@@ -155,7 +155,7 @@ std::uint64_t most_in_a_byte(Imf::Compression compression) noexcept {
 /// An EXR file, part by part.
 class Reader {
  public:
-  explicit Reader(const std::filesystem::path& file) : path_(checked(file)), file_(file.string().c_str(), 0) {}
+  explicit Reader(const std::filesystem::path& file) : path_(file), file_(file.string().c_str(), 0) {}
 
   int parts() const { return file_.parts(); }
 
@@ -204,11 +204,6 @@ class Reader {
   }
 
  private:
-  static const std::filesystem::path& checked(const std::filesystem::path& file) {
-    io_detail::check_exr_attributes(file);
-    return file;
-  }
-
   std::filesystem::path path_;
   Imf::MultiPartInputFile file_;
   std::uint64_t left_ = most_values;  ///< may still be read
@@ -242,22 +237,16 @@ void write_exr(std::span<const ExrPart> parts, const std::filesystem::path& file
 }
 
 std::vector<ExrPart> read_exr_parts(const std::filesystem::path& file) {
-  try {
+  return io_detail::read_exr_file(file, [&] {
     Reader reader(file);
     std::vector<ExrPart> parts;
     for (int i = 0; i < reader.parts(); ++i) parts.push_back(reader.part(i));
     return parts;
-  } catch (const std::exception& e) {
-    throw Error(file.string() + ": " + e.what());
-  }
+  });
 }
 
 ExrPart io_detail::read_first_part(const std::filesystem::path& file, std::span<const std::string_view> channels) {
-  try {
-    return Reader(file).part(0, channels);
-  } catch (const std::exception& e) {
-    throw Error(file.string() + ": " + e.what());
-  }
+  return read_exr_file(file, [&] { return Reader(file).part(0, channels); });
 }
 
 const std::vector<float>* io_detail::channel(const ExrPart& part, std::string_view name) noexcept {

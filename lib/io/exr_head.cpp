@@ -85,4 +85,14 @@ void check_exr_attributes(const std::filesystem::path& file) {
   }
 }
 
+void refuse_exr(const std::filesystem::path& file, const std::exception& error) {
+  if (dynamic_cast<const Error*>(&error)) throw Error(file.string() + ": " + error.what());
+  std::string reason = error.what();
+  // "Cannot read image file "x.exr". Reason."
+  const std::string name = '"' + file.string() + "\". ";
+  if (const auto at = reason.find(name); at != reason.npos) reason.erase(0, at + name.size());
+  if (reason.ends_with('.')) reason.pop_back();
+  throw Error(file.string() + ": cannot be read (" + reason + "), wanted a whole EXR file");
+}
+
 }  // namespace petzval::inline v0::io_detail

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <exception>
 #include <filesystem>
 
+#include "core/open_file.hpp"
 #include "petzval/core/version.hpp"
 
 namespace petzval::inline v0::io_detail {
@@ -11,5 +13,21 @@ namespace petzval::inline v0::io_detail {
 /// a damaged head states, or that has not the size of its type. What else is wrong with the head is left to OpenEXR.
 /// Throws Error without the file's name.
 void check_exr_attributes(const std::filesystem::path& file);
+
+/// Throws Error of one line for what went wrong with an EXR file: our own Error without the file's name, or an
+/// exception of OpenEXR, which names the file and not what was wanted.
+[[noreturn]] void refuse_exr(const std::filesystem::path& file, const std::exception& error);
+
+/// The result of read(), which opens the file by OpenEXR, after its attributes were checked.
+template <class Read>
+auto read_exr_file(const std::filesystem::path& file, const Read& read) {
+  core_detail::opened(file, "an EXR file");
+  try {
+    check_exr_attributes(file);
+    return read();
+  } catch (const std::exception& error) {
+    refuse_exr(file, error);
+  }
+}
 
 }  // namespace petzval::inline v0::io_detail

@@ -13,6 +13,7 @@
 #include <string_view>
 #include <utility>
 
+#include "core/open_file.hpp"
 #include "core/text.hpp"
 #include "io/exr.hpp"
 #include "io/file_room.hpp"
@@ -26,13 +27,13 @@ namespace {
 constexpr std::array<std::string_view, 3> rgb_channels{"R", "G", "B"};
 
 template <class Image>
-void validate(const Image& image, const std::filesystem::path& file) {
+void validate(const Image& image, const std::string& where) {
   if (image.width > 0 && image.height > 0 &&
       image.pixels.size() == static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height) * 3) {
     return;
   }
-  throw Error(file.string() + ": image is " + std::to_string(image.width) + " x " + std::to_string(image.height) +
-              " with " + std::to_string(image.pixels.size()) + " values, wanted 3 a pixel and at least one pixel");
+  throw Error(where + ": image is " + std::to_string(image.width) + " x " + std::to_string(image.height) + " with " +
+              std::to_string(image.pixels.size()) + " values, wanted 3 a pixel and at least one pixel");
 }
 
 float srgb(float linear) noexcept {
@@ -42,7 +43,7 @@ float srgb(float linear) noexcept {
 }  // namespace
 
 void write_exr(const RgbImage& image, const std::filesystem::path& file) {
-  validate(image, file);
+  validate(image, file.string());
   ExrPart part{.width = image.width, .height = image.height};
   for (std::size_t c = 0; c < rgb_channels.size(); ++c) {
     ExrChannel channel{std::string(rgb_channels[c]), {}};
@@ -81,7 +82,7 @@ void write_pfm(const char* kind, int width, int height, std::size_t row, std::sp
 }  // namespace
 
 void write_pfm(const RgbImage& image, const std::filesystem::path& file) {
-  validate(image, file);
+  validate(image, file.string());
   write_pfm("PF", image.width, image.height, 3 * static_cast<std::size_t>(image.width), image.pixels, file);
 }
 
@@ -94,8 +95,7 @@ void write_pfm(int width, int height, std::span<const float> values, const std::
 }
 
 RgbImage read_pfm(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in) throw Error(file.string() + ": cannot be opened, wanted a PFM file");
+  std::ifstream in = core_detail::opened(file, "a PFM file");
   std::string kind;
   std::int64_t width = 0, height = 0;
   double scale = 0;
@@ -138,7 +138,7 @@ RgbImage read_png(const std::filesystem::path& file) {
 }
 
 void write_png(const Rgb8Image& image, const std::filesystem::path& file) {
-  validate(image, file);
+  validate(image, file.string());
   png_image png{};
   png.version = PNG_IMAGE_VERSION;
   png.width = static_cast<png_uint_32>(image.width);
@@ -154,6 +154,7 @@ void write_png(const Rgb8Image& image, const std::filesystem::path& file) {
 }
 
 RgbImage desqueezed(const RgbImage& image, double squeeze) {
+  validate(image, "desqueezed");
   const double wide = std::max(squeeze, 1.0), high = 1 / std::min(squeeze, 1.0);
   const double width = std::round(image.width * wide), height = std::round(image.height * high);
   if (!(squeeze > 0 && width * height <= 1 << 30)) {

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/open_file.hpp"
 #include "core/text.hpp"
 #include "petzval/core/error.hpp"
 
@@ -129,8 +130,7 @@ bool JsonReader::flag_of(const JsonValue& value) const {
 }
 
 std::string read_text(const std::filesystem::path& file, const std::string& wanted) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw Error(file.string() + ": cannot be opened, wanted " + wanted);
+  std::ifstream stream = core_detail::opened(file, wanted);
   std::string text;
   std::error_code unknown;
   if (const auto size = std::filesystem::file_size(file, unknown); !unknown) text.reserve(size);

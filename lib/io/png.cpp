@@ -8,6 +8,7 @@
 #include <memory>
 #include <string>
 
+#include "core/open_file.hpp"
 #include "io/file_room.hpp"
 #include "petzval/core/error.hpp"
 
@@ -55,6 +56,7 @@ void check_size(std::size_t width, std::size_t height, const std::filesystem::pa
 }
 
 PngPicture read_png_picture(const std::filesystem::path& file) {
+  core_detail::refuse_folder(file, "a picture");
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> open(std::fopen(file.c_str(), "rb"), std::fclose);
   if (!open) throw Error(file.string() + ": cannot be opened, wanted a picture");
   PngRows rows;

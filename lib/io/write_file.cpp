@@ -20,6 +20,7 @@
 #include <system_error>
 #include <utility>
 
+#include "core/open_file.hpp"
 #include "json.hpp"
 #include "petzval/core/error.hpp"
 
@@ -131,9 +132,7 @@ class NewFile {
 /// The path that a new file may replace, at the end of links; nothing for a pipe or a device.
 std::optional<fs::path> place(fs::path file) {
   const auto type = fs::status(file).type();
-  const bool whole =
-      type == fs::file_type::regular || type == fs::file_type::directory || type == fs::file_type::not_found;
-  if (!whole) return {};
+  if (type != fs::file_type::regular && type != fs::file_type::not_found) return {};
   while (fs::is_symlink(fs::symlink_status(file))) file = file.parent_path() / fs::read_symlink(file);
   return file;
 }
@@ -141,6 +140,11 @@ std::optional<fs::path> place(fs::path file) {
 }  // namespace
 
 void write_file(std::string_view bytes, const fs::path& file) {
+  // The system would end the name there, and write over another file.
+  if (file.native().find(fs::path::value_type{}) != fs::path::string_type::npos) {
+    throw Error(file.string() + ": the name has a zero in it, wanted one without");
+  }
+  core_detail::refuse_folder(file, "the name of a file");
   try {
     if (const auto target = place(file)) {
       NewFile replacement(*target);

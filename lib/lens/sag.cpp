@@ -10,6 +10,7 @@
 namespace petzval::inline v0 {
 
 double sag(const Lens& lens, std::size_t surface, double x, double y) noexcept {
+  if (surface >= lens.surface_count()) return std::numeric_limits<double>::quiet_NaN();
   const auto& view = kernel::view<double>(lens);
   const auto& row = view.surfaces[surface];
   kernel::Asphere<double> shape;

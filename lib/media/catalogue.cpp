@@ -12,6 +12,7 @@
 #include <system_error>
 #include <utility>
 
+#include "core/open_file.hpp"
 #include "core/text.hpp"
 #include "glass_table.hpp"
 #include "petzval/core/error.hpp"
@@ -106,8 +107,7 @@ GlassCatalogue GlassCatalogue::load(const std::filesystem::path& directory) {
   std::sort(files.begin(), files.end());
   std::vector<Glass> glasses;
   for (const auto& file : files) {
-    std::ifstream stream(file, std::ios::binary);
-    if (!stream) throw Error(file.string() + ": cannot be opened, wanted a glass table");
+    std::ifstream stream = core_detail::opened(file, "a glass table");
     media_detail::read_glass_table(stream, file.string(), glasses);
   }
   return GlassCatalogue(std::move(glasses));

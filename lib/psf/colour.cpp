@@ -8,6 +8,7 @@
 #include <numeric>
 #include <string>
 
+#include "core/open_file.hpp"
 #include "core/text.hpp"
 #include "petzval/core/error.hpp"
 
@@ -41,6 +42,7 @@ std::array<double, columns> parse_line(std::string_view line, const std::string&
 /// Calls add(row, where) for each row of a table, of which the first number is a wavelength; they increase.
 template <std::size_t columns, class Add>
 void for_each_row(const std::filesystem::path& file, std::string_view header, const char* what, const Add& add) {
+  core_detail::refuse_folder(file, std::string("the table of ") + what);
   std::ifstream in(file);
   if (!in) throw Error(file.string() + ": cannot be read, wanted the table of " + what);
   double last = 0;
@@ -123,21 +125,43 @@ constexpr Matrix xyz_of_cones{
 /// XYZ of sRGB's white, D65.
 constexpr Triple srgb_white{0.9505, 1, 1.089};
 
-/// What load() makes sure of, for a light from elsewhere.
-void validate(const Spectrum& light) {
-  const auto& list = light.wavelengths_nm;
-  if (list.size() < 2 || list.size() != light.power.size()) {
-    throw Error("Spectrum: number of wavelengths is " + std::to_string(list.size()) + ", of powers " +
-                std::to_string(light.power.size()) + ", wanted two or more and as many powers");
+/// The nodes of between() for so many values. whose: the type of the table; values: what it has at each wavelength.
+void validate(const std::vector<double>& wavelengths_nm, std::size_t count, const std::string& whose,
+              const std::string& values) {
+  if (wavelengths_nm.size() < 2 || wavelengths_nm.size() != count) {
+    throw Error(whose + ": number of wavelengths is " + std::to_string(wavelengths_nm.size()) + ", of " + values + " " +
+                std::to_string(count) + ", wanted two or more and as many " + values);
   }
-  for (std::size_t i = 0; i < list.size(); ++i) {
-    if (!(list[i] > (i == 0 ? 0 : list[i - 1])) || !std::isfinite(list[i])) {
-      throw Error("Spectrum: wavelength " + std::to_string(i) + " is " + to_text(list[i]) +
+  double last = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double nm = wavelengths_nm[i];
+    if (!(nm > last) || !std::isfinite(nm)) {
+      throw Error(whose + ": wavelength " + std::to_string(i) + " is " + to_text(nm) +
                   " nm, wanted finite ones above 0 that increase");
     }
+    last = nm;
+  }
+}
+
+/// What load() makes sure of, for a light from elsewhere.
+void validate(const Spectrum& light) {
+  validate(light.wavelengths_nm, light.power.size(), "Spectrum", "powers");
+  for (std::size_t i = 0; i < light.power.size(); ++i) {
     if (!(light.power[i] >= 0) || !std::isfinite(light.power[i])) {
       throw Error("Spectrum: power " + std::to_string(i) + " is " + to_text(light.power[i]) +
                   ", wanted finite ones, 0 or more");
+    }
+  }
+}
+
+/// The same for a table from elsewhere, which may cover a part of the visible wavelengths.
+void validate(const ColourMatching& table) {
+  validate(table.wavelengths_nm, table.xyz.size(), "ColourMatching", "triples");
+  for (std::size_t i = 0; i < table.xyz.size(); ++i) {
+    for (const double value : table.xyz[i]) {
+      if (std::isfinite(value)) continue;
+      throw Error("ColourMatching: a value of triple " + std::to_string(i) + " is " + to_text(value) +
+                  ", wanted finite ones");
     }
   }
 }
@@ -212,6 +236,7 @@ Spectrum illuminant(std::string_view name, const std::filesystem::path& daylight
 
 Triple tristimulus(const Spectrum& light, const ColourMatching& table) {
   validate(light);
+  validate(table);
   return integral(light, table, table.wavelengths_nm.front(), table.wavelengths_nm.back());
 }
 

@@ -289,11 +289,13 @@ PointImage image_of(const Lens& lens, const std::vector<double>& sampled_area, c
 }  // namespace
 
 double Psf::ray_weight(std::size_t wavelength) const noexcept {
+  if (wavelength >= std::min(sent.size(), sampled_area.size())) return 0;
   if (entrance_pupil_area == 0 || sent[wavelength] == 0) return 0;
   return sampled_area[wavelength] / (static_cast<double>(sent[wavelength]) * units_per_ray * entrance_pupil_area);
 }
 
 double Psf::throughput(std::size_t wavelength) const noexcept {
+  if (wavelength >= transmitted.size()) return 0;
   return ray_weight(wavelength) * static_cast<double>(transmitted[wavelength]);
 }
 

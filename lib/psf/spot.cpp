@@ -16,14 +16,14 @@
 namespace petzval::inline v0 {
 namespace {
 
-/// Sets: a range of values that have x and y, N each, and N weights or none.
+/// Sets: a range of values that have x and y, and weights or none.
 template <class Sets>
 SpotSize size_of(const Sets& sets) noexcept {
   SpotSize size;
-  std::size_t count = 0;
   for (const auto& points : sets) {
-    if (count == 0 && !points.x.empty()) size.centroid = {points.x[0], points.y[0]};
-    count += points.x.size();
+    if (psf_detail::point_count(points) == 0) continue;
+    size.centroid = {points.x[0], points.y[0]};
+    break;
   }
   psf_detail::PartialSums weights{};
   psf_detail::for_each(sets, [&](std::size_t part, double, double, double w) { weights[part] += w; });

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "petzval/pupil/pupil_plane.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
@@ -124,11 +125,11 @@ Ray<double> PupilPlane::ray(double x, double y) const noexcept {
 
 void PupilPlane::rays(std::span<const double> x, std::span<const double> y,
                       const RayArrays<double>& rays) const noexcept {
+  const std::size_t count = std::min(x.size(), y.size());
   // The promise that nothing overlaps lets a compiler run this loop on lanes; it takes it of parameters only.
-  const auto fill = [count = x.size(), plane = *this](const double* __restrict in_x, const double* __restrict in_y,
-                                                      double* __restrict ox, double* __restrict oy,
-                                                      double* __restrict oz, double* __restrict dx,
-                                                      double* __restrict dy, double* __restrict dz) {
+  const auto fill = [count, plane = *this](const double* __restrict in_x, const double* __restrict in_y,
+                                           double* __restrict ox, double* __restrict oy, double* __restrict oz,
+                                           double* __restrict dx, double* __restrict dy, double* __restrict dz) {
     for (std::size_t i = 0; i < count; ++i) {
       const Vec3<double> place = plane.x_axis_ * in_x[i] + plane.y_axis_ * in_y[i], origin = plane.centre_ + place;
       const Vec3<double> direction = direction_from(place, plane.towards_, plane.reciprocal_distance_);

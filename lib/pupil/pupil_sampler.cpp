@@ -74,10 +74,11 @@ Vec2<double> PupilSampler::operator()(double u, double v) const noexcept {
 void PupilSampler::operator()(std::span<const double> u, std::span<const double> v, std::span<double> x,
                               std::span<double> y) const noexcept {
   constexpr std::size_t block = 64;
+  const std::size_t points = std::min({u.size(), v.size(), x.size(), y.size()});
   const auto steps = static_cast<double>(first_.size());
   const std::size_t last = first_.size() - 1;
-  for (std::size_t begin = 0; begin < u.size(); begin += block) {
-    const std::size_t count = std::min(block, u.size() - begin);
+  for (std::size_t begin = 0; begin < points; begin += block) {
+    const std::size_t count = std::min(block, points - begin);
     // One end is passed or not without a branch, which would be guessed wrong as often as not.
     std::array<std::uint32_t, block> at;
     std::array<double, block> across, up;

@@ -9,6 +9,8 @@
 #include <cstring>
 #include <limits>
 #include <random>
+#include <string>
+#include <string_view>
 
 namespace {
 
@@ -47,6 +49,24 @@ TEST(Number, DoesNotFollowTheLocale) {
   const char* before = std::setlocale(LC_NUMERIC, "de_DE.UTF-8");  // where the system has it
   EXPECT_EQ(to_text(0.5), "0.5");
   if (before != nullptr) std::setlocale(LC_NUMERIC, "C");
+}
+
+TEST(Utf8, OnlyWholeCharactersHaveALength) {
+  using petzval::utf8_length;
+  for (const std::string_view whole : {"a", "\xC2\x80", "\xDF\xBF", "\xE0\xA0\x80", "\xED\x9F\xBF", "\xEF\xBF\xBF",
+                                       "\xF0\x90\x80\x80", "\xF4\x8F\xBF\xBF"}) {
+    EXPECT_EQ(utf8_length(std::string(whole) + "a", 0), whole.size());
+    for (std::size_t cut = 1; cut < whole.size(); ++cut) {
+      EXPECT_EQ(utf8_length(whole.substr(0, cut), 0), 0u);
+      EXPECT_EQ(utf8_length(std::string(whole.substr(0, cut)) + "aaa", 0), 0u);
+      EXPECT_EQ(utf8_length(whole, cut), 0u);
+    }
+  }
+  // Longer than need be, surrogates, beyond U+10FFFF, and no first byte.
+  for (const char* none : {"\xC0\x80", "\xC1\xBF", "\xE0\x9F\xBF", "\xED\xA0\x80", "\xF0\x8F\xBF\xBF",
+                           "\xF4\x90\x80\x80", "\xF5\x80\x80\x80", "\x80", "\xFF", ""}) {
+    EXPECT_EQ(utf8_length(none, 0), 0u);
+  }
 }
 
 }  // namespace

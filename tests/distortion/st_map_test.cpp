@@ -159,6 +159,16 @@ TEST(StMap, MarksWhatSeesNothing) {
   EXPECT_EQ(maps.undistort.margin_x, film.columns / 2);  // cut
 }
 
+TEST(StMap, SeesNothingOutsideItself) {
+  EXPECT_FALSE(StMap{}.sees(0, 0));
+  const StMap map{.width = 2, .height = 1, .s = {0.5f, 0.5f}, .t = {0.5f, 0.5f}};
+  EXPECT_TRUE(map.sees(1, 0));
+  for (const auto& [column, row] : {std::pair{-1, 0}, {2, 0}, {0, -1}, {0, 1}, {-1, 1}}) {
+    EXPECT_FALSE(map.sees(column, row)) << column << ' ' << row;
+  }
+  EXPECT_FALSE((StMap{.width = 2, .height = 1, .s = {0.5f}, .t = {0.5f}}.sees(1, 0)));
+}
+
 TEST(StMap, MarginsHoldTheOverscan) {
   const Film film = small_film(36);
   const LensDistortion distortion = distortion_of("zoom_14-30mm_f4:wide", film);

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "../message.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/units.hpp"
 #include "petzval/files/lens_file.hpp"
@@ -123,6 +124,18 @@ TEST(Render, ShowsTheIrisUprightForALightBeyondTheFocus) {
     for (int row = 0; row < 32; ++row) upper += lit_in_row(row), lower += lit_in_row(63 - row);
     EXPECT_GT(light_z < -3000 ? lower : upper, 1.2 * (light_z < -3000 ? upper : lower));
   }
+}
+
+TEST(Render, WantsACountForEachPixelAndWavelength) {
+  Psf psf;
+  psf.pixels = 2;
+  psf.wavelengths_nm = {450, 650};
+  psf.counts.resize(7);
+  const std::vector<std::array<double, 3>> weights(2);
+  EXPECT_EQ(testing::message([&] { render(psf, weights); }),
+            "render: found 7 counts, wanted 8, one for each pixel and wavelength");
+  EXPECT_EQ(testing::message([&] { spectral_image(psf, weights); }),
+            "render: found 7 counts, wanted 8, one for each pixel and wavelength");
 }
 
 TEST(Render, WantsAWeightForEachWavelength) {

@@ -111,6 +111,17 @@ TEST(SpotFigure, EscapesTheNameOfTheLens) {
   EXPECT_NE(svg.find(">A &lt; B &amp; C</text>"), std::string::npos);
 }
 
+TEST(SpotFigure, ReplacesWhatXmlDoesNotHaveInTheNameOfTheLens) {
+  const std::array wavelengths{587.5618}, fields{0.0};
+  // A control character, U+FFFE, a surrogate's three bytes, Latin-1, and a character cut off.
+  const Lens lens =
+      lens_of("double_gauss_100mm_f1.35", wavelengths, "n\x17p\xEF\xBF\xBEq\xED\xA0\x80r\xB5s\xC2\xB5t\xE2\x82");
+  const std::string svg = spot_figure(lens, spot_diagram(lens, -infinity, fields, 64));
+  const std::string no = "\xEF\xBF\xBD";
+  EXPECT_NE(svg.find(">n" + no + "p" + no + "q" + no + no + no + "r" + no + "s\xC2\xB5t" + no + no + "</text>"),
+            std::string::npos);
+}
+
 TEST(SpotFigure, RefusesSpotsOfAnotherSet) {
   const std::array wavelengths{486.1, 656.3};
   const Lens lens = lens_of("double_gauss_100mm_f1.35", wavelengths);

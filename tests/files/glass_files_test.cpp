@@ -241,6 +241,7 @@ TEST_F(GlassFiles, OtherFilesAreRefused) {
   EXPECT_EQ(refusal("#include <vector>\n"), ": its first lines are of no glass file" + wanted);
   EXPECT_EQ(refusal(""), ": its first lines are of no glass file" + wanted);
   EXPECT_EQ(refusal("PK\x03\x04..."), ": is a zip archive (.zip, .zos or .zar)" + wanted);
+  EXPECT_EQ(message([&] { read_glasses(folder); }), folder.string() + ": is a folder" + wanted);
   EXPECT_TRUE(message([&] { read_glasses(folder / "absent.agf"); }).starts_with((folder / "absent.agf").string()));
 }
 

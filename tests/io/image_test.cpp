@@ -196,11 +196,11 @@ TEST_F(ImageFiles, FailureNamesTheFileAndLeavesNothingBehind) {
             std::string::npos);
   EXPECT_NE(message([&] { write_png(bytes, nowhere); }).find(nowhere.string() + ": cannot be written"),
             std::string::npos);
-  // The name of a folder: only the last step, the renaming, fails.
   const auto taken = folder_ / "taken";
   std::filesystem::create_directories(taken / "inside");
-  EXPECT_NE(message([&] { write_exr(linear, taken); }).find(taken.string() + ": cannot be written"), std::string::npos);
-  EXPECT_NE(message([&] { write_png(bytes, taken); }).find(taken.string() + ": cannot be written"), std::string::npos);
+  const std::string is_a_folder = taken.string() + ": is a folder, wanted the name of a file";
+  EXPECT_EQ(message([&] { write_exr(linear, taken); }), is_a_folder);
+  EXPECT_EQ(message([&] { write_png(bytes, taken); }), is_a_folder);
   EXPECT_EQ(files(), 1u);
 }
 
@@ -224,14 +224,22 @@ TEST_F(ImageFiles, RefusesImagesWithoutPixelsOrWithTooFew) {
 
 TEST_F(ImageFiles, ReadingSaysWhichFileIsBad) {
   const auto absent = folder_ / "absent.exr";
-  EXPECT_NE(message([&] { read_exr(absent); }).find(absent.string()), std::string::npos);
+  const std::string cannot_be_opened = absent.string() + ": cannot be opened, wanted an EXR file";
+  EXPECT_EQ(message([&] { read_exr(absent); }), cannot_be_opened);
+  EXPECT_EQ(message([&] { read_exr_parts(absent); }), cannot_be_opened);
+  EXPECT_EQ(message([&] { read_exr(folder_); }), folder_.string() + ": is a folder, wanted an EXR file");
+  EXPECT_EQ(message([&] { read_pfm(folder_); }), folder_.string() + ": is a folder, wanted a PFM file");
+  EXPECT_EQ(message([&] { read_png(folder_); }), folder_.string() + ": is a folder, wanted a picture");
 
   const auto file = folder_ / "a.exr";
   write_exr(random_floats(64, 64), file);
   const auto size = std::filesystem::file_size(file);
   for (const auto kept : {size / 2, std::uintmax_t(100), std::uintmax_t(4), std::uintmax_t(0)}) {
     std::filesystem::resize_file(file, kept);
-    EXPECT_NE(message([&] { read_exr(file); }).find(file.string()), std::string::npos) << kept;
+    const std::string said = message([&] { read_exr(file); });
+    EXPECT_TRUE(said.starts_with(file.string() + ": cannot be read (")) << kept << ": " << said;
+    EXPECT_TRUE(said.ends_with("), wanted a whole EXR file")) << kept << ": " << said;
+    EXPECT_EQ(said.find(file.string(), 1), std::string::npos) << kept << ": " << said;
   }
 
   write_exr(two_parts(), file);
@@ -239,7 +247,6 @@ TEST_F(ImageFiles, ReadingSaysWhichFileIsBad) {
     std::filesystem::resize_file(file, kept);
     EXPECT_NE(message([&] { read_exr_parts(file); }).find(file.string()), std::string::npos) << kept;
   }
-  EXPECT_NE(message([&] { read_exr_parts(absent); }).find(absent.string()), std::string::npos);
 }
 
 TEST(Image, IsDesqueezed) {
@@ -265,6 +272,11 @@ TEST(Image, IsDesqueezed) {
   for (const double bad : {0.0, -2.0, std::nan(""), std::numeric_limits<double>::infinity()}) {
     EXPECT_NE(message([&] { desqueezed(image, bad); }).find("squeeze"), std::string::npos) << bad;
   }
+  image.pixels.pop_back();
+  EXPECT_EQ(message([&] { desqueezed(image, 2); }),
+            "desqueezed: image is 20 x 10 with 599 values, wanted 3 a pixel and at least one pixel");
+  EXPECT_EQ(message([&] { desqueezed({}, 2); }),
+            "desqueezed: image is 0 x 0 with 0 values, wanted 3 a pixel and at least one pixel");
 }
 
 TEST(Image, HasNoNegativeSize) {

@@ -227,7 +227,8 @@ TEST(PrescriptionJson, FilesThatCannotBeOpenedAreNamed) {
   const fs::path folder = ::testing::TempDir();
   const std::string absent = (folder / "no such folder" / "lens.json").string();
   EXPECT_EQ(message([&] { petzval::read_prescription(absent); }), absent + ": cannot be opened, wanted a lens file");
-  EXPECT_EQ(message([&] { petzval::read_prescription(folder); }), folder.string() + ": cannot be read to its end");
+  EXPECT_EQ(message([&] { petzval::read_prescription(folder); }),
+            folder.string() + ": is a folder, wanted a lens file");
   const Prescription p = parse_prescription(file("\"surfaces\": [" + row + "]"), "x.json");
   EXPECT_EQ(message([&] { petzval::write_prescription(p, absent); }),
             absent + ": cannot be written (No such file or directory), wanted an existing, writable folder with space");

@@ -124,7 +124,11 @@ TEST_F(WriteFile, AFailureSaysTheSystemsReasonAndLeavesTheOldFile) {
   EXPECT_EQ(message([&] { write_file("new", inside); }), refusal(inside, ENOTDIR));
   EXPECT_EQ(message([&] { write_file("new", long_name); }), refusal(long_name, ENAMETOOLONG));
   fs::create_directory(taken);
-  EXPECT_EQ(message([&] { write_file("new", taken); }), refusal(taken, EISDIR));
+  for (const fs::path& folder : {taken, fs::path("."), fs::path("/")}) {
+    EXPECT_EQ(message([&] { write_file("new", folder); }),
+              folder.string() + ": is a folder, wanted the name of a file");
+  }
+  EXPECT_EQ(message([&] { read_floats(taken); }), taken.string() + ": is a folder, wanted a file of floats");
   const fs::path circle = folder_ / "circle";
   fs::create_symlink("circle", circle);
   EXPECT_EQ(message([&] { write_file("new", circle); }), refusal(circle, ELOOP));
@@ -132,6 +136,15 @@ TEST_F(WriteFile, AFailureSaysTheSystemsReasonAndLeavesTheOldFile) {
 #if defined(__linux__)
   EXPECT_EQ(message([&] { write_file("new", "/dev/full"); }), refusal("/dev/full", ENOSPC));
 #endif
+}
+
+TEST_F(WriteFile, ANameWithAZeroIsNoOtherName) {
+  write_file("old", file_);
+  fs::path longer = file_;
+  longer += std::string("\0.bak", 5);
+  EXPECT_EQ(message([&] { write_file("new", longer); }),
+            file_.string() + " .bak: the name has a zero in it, wanted one without");
+  EXPECT_EQ(text(file_), "old");
 }
 
 TEST_F(WriteFile, KeepsTheMode) {

@@ -110,6 +110,15 @@ TEST(Lens, AChangeMakesANewLens) {
   EXPECT_EQ(moved.film_z(), 60);
 }
 
+TEST(Sag, IsNanWhereThereIsNoSurface) {
+  const petzval::Lens lens = petzval::compile(singlet());
+  EXPECT_EQ(petzval::sag(lens, 1, 0, 0), 0);
+  EXPECT_TRUE(std::isnan(petzval::sag(lens, 0, 1e9, 0)));
+  for (const std::size_t beyond : {std::size_t{2}, std::size_t{99}, std::numeric_limits<std::size_t>::max()}) {
+    EXPECT_TRUE(std::isnan(petzval::sag(lens, beyond, 0, 0)));
+  }
+}
+
 TEST(Lens, RefusesAChangeThatMakesNoLens) {
   const petzval::Lens lens = petzval::compile(singlet());
   EXPECT_EQ(message([&] { petzval::with_semi_diameter(lens, 2, 3); }),

@@ -197,4 +197,10 @@ TEST_F(TableFolder, AFolderWithoutTablesIsRefused) {
             (folder / "absent").string() + ": No such file or directory, wanted a folder of glass tables");
 }
 
+TEST_F(TableFolder, AFolderWithTheNameOfATableIsRefused) {
+  fs::create_directory(folder / "glass_x.csv");
+  EXPECT_EQ(message([&] { GlassCatalogue::load(folder); }),
+            (folder / "glass_x.csv").string() + ": is a folder, wanted a glass table");
+}
+
 }  // namespace

@@ -203,6 +203,24 @@ TEST(RgbWeights, RefusesLightsWithoutLuminance) {
             "Spectrum: number of wavelengths is 2, of powers 1, wanted two or more and as many powers");
 }
 
+TEST(Tristimulus, RefusesTablesThatLoadWouldRefuse) {
+  const auto refusal = [](const ColourMatching& bad) {
+    const std::array set{500.0, 600.0};
+    const std::string said = message([&] { tristimulus(lights()[3], bad); });
+    EXPECT_EQ(message([&] { rgb_weights(set, bad, lights()[0], lights()[0]); }), said);
+    return said;
+  };
+  EXPECT_EQ(refusal({}),
+            "ColourMatching: number of wavelengths is 0, of triples 0, wanted two or more and as many triples");
+  EXPECT_EQ(refusal({{400, 700}, {{1, 1, 1}}}),
+            "ColourMatching: number of wavelengths is 2, of triples 1, wanted two or more and as many triples");
+  EXPECT_EQ(refusal({{700, 400}, {{1, 1, 1}, {1, 1, 1}}}),
+            "ColourMatching: wavelength 1 is 400 nm, wanted finite ones above 0 that increase");
+  EXPECT_EQ(refusal({{400, 700}, {{1, 1, 1}, {1, std::nan(""), 1}}}),
+            "ColourMatching: a value of triple 1 is nan, wanted finite ones");
+  EXPECT_DOUBLE_EQ(tristimulus({{400, 700}, {1, 1}}, {{500, 600}, {{1, 2, 3}, {1, 2, 3}}})[1], 200);
+}
+
 TEST(RgbTriple, GivesEachChannelItsOwnWavelength) {
   EXPECT_EQ(rgb_triple_nm, (std::array<double, 3>{650, 510, 475}));
   for (std::size_t i = 0; i < 3; ++i) {
@@ -233,6 +251,9 @@ TEST(Spectrum, SaysWhatIsWrongWithAFile) {
   EXPECT_EQ(of(header + "400\n"), "line 2: found \"400\", wanted two finite numbers with a comma between them");
   EXPECT_EQ(of(header + "500,1\n400,1\n"), "line 3: wavelength is 400 nm, wanted more than the 500 of the line before");
   EXPECT_EQ(of(header + "-5,1\n"), "line 2: wavelength is -5 nm, wanted more than 0");
+  const std::filesystem::path folder = ::testing::TempDir();
+  EXPECT_EQ(message([&] { Spectrum::load(folder); }),
+            folder.string() + ": is a folder, wanted the table of a light's power");
   EXPECT_EQ(message([] { Spectrum::load("no/such.csv"); }),
             "no/such.csv: cannot be read, wanted the table of a light's power");
 }

@@ -286,6 +286,15 @@ TEST(PointImage, BinsConvergeFasterThanRandomOnes) {
   RecordProperty("slope", std::to_string(slope));
 }
 
+TEST(Psf, AWavelengthThatDoesNotExistHasNoLight) {
+  EXPECT_EQ(Psf{}.ray_weight(0), 0);
+  EXPECT_EQ(Psf{}.throughput(0), 0);
+  Psf one;
+  one.sent = {10}, one.transmitted = {5}, one.sampled_area = {2}, one.entrance_pupil_area = 1;
+  EXPECT_EQ(one.throughput(0), 1);
+  EXPECT_EQ(one.throughput(1), 0);
+}
+
 TEST(PointImage, RefusesOptionsWithoutAMeaning) {
   const Lens lens = front_stop_lens();
   const auto message = [&](const PsfOptions& options) -> std::string {

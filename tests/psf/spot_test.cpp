@@ -36,6 +36,15 @@ TEST(SpotSize, OfNoneAndOne) {
   EXPECT_EQ(spot_size(std::array{4.0}, std::array{-7.0}).rms_radius, 0);
 }
 
+TEST(SpotSize, LeavesOutPointsWithoutBothCoordinates) {
+  const std::vector<double> x{1, 3, 2, 2}, y{5, 5, 4, 6}, longer{1, 3, 2, 2, 1e9};
+  EXPECT_EQ(spot_size(longer, y).rms_radius, spot_size(x, y).rms_radius);
+  EXPECT_EQ(spot_size(y, longer).centroid, spot_size(y, x).centroid);
+  EXPECT_EQ(spot_size(x, {}).centroid, Vec2<double>(0, 0));
+  const std::vector<RayBundle> sets{{.x = {7}, .y = {}}, {.x = longer, .y = y, .weights = {1, 1}}};
+  EXPECT_EQ(spot_size(sets).centroid, Vec2<double>(2, 5));
+}
+
 TEST(SpotSize, KeepsSmallSpotsFarFromTheAxis) {
   // A ring of a nanometre at a height of 40 mm: the coordinates resolve 1e-8 of it.
   std::vector<double> x, y;

@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 #include <limits>
 #include <string>
+#include <vector>
 
 #include "../data_lenses.hpp"
 #include "../message.hpp"
@@ -35,6 +36,18 @@ TEST(PupilPlane, RaysRunFromTheScenePointThroughThePupilPoint) {
   const double t = (point.z - ray.origin.z) / ray.direction.z;
   EXPECT_NEAR(ray.origin.x + t * ray.direction.x, 0, 1e-12);
   EXPECT_NEAR(ray.origin.y + t * ray.direction.y, 1000 * std::tan(radians(25)), 1e-12);
+}
+
+TEST(PupilPlane, LeavesOutPointsWithoutBothCoordinates) {
+  const PupilPlane plane(front_stop_lens(), {0.3, -infinity});
+  const std::vector<double> three(3, 1), two(2, 1);
+  for (const bool shorter_x : {false, true}) {
+    std::vector<double> out(18, 9);
+    plane.rays(shorter_x ? two : three, shorter_x ? three : two,
+               {&out[0], &out[3], &out[6], &out[9], &out[12], &out[15]});
+    EXPECT_EQ(out[1], 1);
+    for (std::size_t last = 2; last < out.size(); last += 3) EXPECT_EQ(out[last], 9) << shorter_x;
+  }
 }
 
 TEST(PupilPlane, AzimuthTurnsFromYToX) {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <span>
 #include <vector>
 
 #include "../data_lenses.hpp"
@@ -123,6 +124,22 @@ TEST(PupilSampler, ManyPointsAreThoseOneByOne) {
       EXPECT_EQ(u, x);
       EXPECT_EQ(v, y);
     }
+  }
+}
+
+TEST(PupilSampler, LeavesOutPointsThatASpanHasNoRoomFor) {
+  const PupilSampler sampler(pupil_boundary(data_lens("double_gauss_100mm_f1.35"), {0, -1000}));
+  const std::vector<double> u(100, 0.25), v(100, 0.5);
+  const Vec2<double> p = sampler(0.25, 0.5);
+  std::vector<double> x(100, -1), y(100, -1);
+  const auto sample = [&](std::size_t of_u, std::size_t of_v, std::size_t of_x, std::size_t of_y) {
+    std::fill(x.begin(), x.end(), -1), std::fill(y.begin(), y.end(), -1);
+    sampler(std::span(u).first(of_u), std::span(v).first(of_v), std::span(x).first(of_x), std::span(y).first(of_y));
+  };
+  for (int shortest = 0; shortest < 4; ++shortest) {
+    const auto size = [&](int span) -> std::size_t { return span == shortest ? 70 : 100; };
+    sample(size(0), size(1), size(2), size(3));
+    for (std::size_t i = 0; i < 100; ++i) EXPECT_EQ((Vec2<double>(x[i], y[i])), i < 70 ? p : Vec2<double>(-1, -1));
   }
 }
 

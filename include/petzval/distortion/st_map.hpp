@@ -20,6 +20,7 @@ struct PETZVAL_API StMap {
   int margin_x = 0, margin_y = 0;  ///< pixels on either side of the film's picture
   std::vector<float> s{}, t{};     ///< width x height, rows from the top
 
+  /// False outside the map.
   bool sees(int column, int row) const noexcept;
 };
 

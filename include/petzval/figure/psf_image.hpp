@@ -17,7 +17,8 @@ namespace petzval::inline v0 {
 /// It shows the film as a photograph does, turned by half a turn: to the left and down are +x and +y of the film, and a
 /// light beyond the focus shows the iris upright.
 ///
-/// weights: a linear RGB triple for each wavelength, as rgb_weights gives them. Throws Error for another number.
+/// weights: a linear RGB triple for each wavelength, as rgb_weights gives them. Throws Error for another number of
+/// them, and for a PSF without a count for each pixel and wavelength.
 PETZVAL_API RgbImage render(const Psf& psf, std::span<const std::array<double, 3>> weights);
 
 /// The same by wavelength, for write_exr(): a channel for each, and R, G, B of render() for viewers.

@@ -109,8 +109,9 @@ PETZVAL_API void write_png(const Rgb8Image& image, const std::filesystem::path& 
 PETZVAL_API IrisMap read_iris_map(const std::filesystem::path& file);
 
 /// The picture of an anamorphic lens as the scene looks: wider by squeeze(lens), or for less than 1 higher by its
-/// inverse, so that no detail is lost. Pixels are interpolated linearly. Throws Error for a squeeze that is not
-/// positive and finite, and for a picture beyond 2^30 pixels.
+/// inverse, so that no detail is lost. Pixels are interpolated linearly. Throws Error for an image without
+/// pixels or with another number of values, a squeeze that is not positive and finite, and a picture beyond 2^30
+/// pixels.
 PETZVAL_API RgbImage desqueezed(const RgbImage& image, double squeeze);
 
 /// Converts linear light times `exposure` to 8-bit sRGB. Values are clipped to 0 and 1; NaN becomes black.

@@ -14,7 +14,8 @@ namespace petzval::inline v0 {
 /// Writes a whole file or none: first to a new file in the same folder, flushed to the disk, which then replaces FILE
 /// and keeps its mode. A failure keeps the old file and leaves no partial one; of several writers at once one wins. A
 /// process that is killed may leave its new file, .petzval-PID-N. Links are followed. Pipes and devices are written to
-/// directly. Throws Error that names the file and the system's reason.
+/// directly. Throws Error that names the file and the system's reason; also for a folder, and for a name with a zero in
+/// it.
 PETZVAL_API void write_file(std::string_view bytes, const std::filesystem::path& file);
 
 /// Writes numbers as they are, little-endian floats of 32 bits, as write_file() does: Camera::tables().

@@ -180,7 +180,7 @@ PETZVAL_API Lens with_groups_at(const Lens& lens, double inverse_distance);
 PETZVAL_API Lens with_iris(const Lens& lens, const Iris& iris);
 
 /// Sag of a surface at (x, y), mm: the height along z over the plane of its vertex; NaN beyond the equator of a sphere
-/// or conic. Clear apertures are ignored.
+/// or conic, and for a surface that does not exist. Clear apertures are ignored.
 PETZVAL_API double sag(const Lens& lens, std::size_t surface, double x, double y) noexcept;
 
 }  // namespace petzval::inline v0

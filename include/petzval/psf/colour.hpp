@@ -38,7 +38,8 @@ struct Spectrum {
 PETZVAL_API Spectrum illuminant(std::string_view name, const std::filesystem::path& daylight_components);
 
 /// CIE XYZ of a light, in its unit of power; linear in the light. Exact integrals of both piecewise linear functions
-/// over the range of the table. Throws Error for a spectrum that load() would refuse.
+/// over the range of the table. Throws Error for a spectrum that load() would refuse, and for a table that has not two
+/// wavelengths or more, above 0 and increasing, with a triple each, all finite.
 PETZVAL_API std::array<double, 3> tristimulus(const Spectrum& light, const ColourMatching& table);
 
 /// Linear RGB weights of a set of wavelengths, in its order; they sum to the colour of the light at the luminance of

@@ -35,11 +35,13 @@ struct Psf {
   std::vector<double> sampled_area;        ///< of the pupil plane where the rays start, mm^2, per wavelength
   double entrance_pupil_area = 0;  ///< of the paraxial entrance pupil, mm^2; an ellipse in a lens with cylinders
 
-  /// The share of the light on the paraxial entrance pupil that a count of 1 carries. 0 for an empty pupil.
+  /// The share of the light on the paraxial entrance pupil that a count of 1 carries. 0 for an empty pupil and for a
+  /// wavelength that does not exist.
   PETZVAL_API double ray_weight(std::size_t wavelength) const noexcept;
 
   /// Area of the pupil plane that transmits to the film, over the area of the paraxial entrance pupil; the crop of the
-  /// picture does not change it. (From 89 degrees on both areas face the point.)
+  /// picture does not change it. (From 89 degrees on both areas face the point.) 0 for a wavelength that does not
+  /// exist.
   PETZVAL_API double throughput(std::size_t wavelength) const noexcept;
 };
 

@@ -22,6 +22,7 @@ struct SpotSize {
   double xx = 0, yy = 0, xy = 0;  ///< mean squares and product, mm^2
 };
 
+/// x, y: N each; points without both coordinates are left out.
 PETZVAL_API SpotSize spot_size(std::span<const double> x, std::span<const double> y) noexcept;
 
 /// The same of all rays of several bundles, by their weights where they have some.

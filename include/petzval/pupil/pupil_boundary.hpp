@@ -102,7 +102,8 @@ class PETZVAL_API PupilSampler {
 
   /// The point (x, y) of the plane for u, v in [0, 1). The sampler must not be empty.
   Vec2<double> operator()(double u, double v) const noexcept;
-  /// The same for many. u, v, x, y: N each; x and y may be u and v.
+  /// The same for many. u, v, x, y: N each; points that one of them has no room for are left out. x and y may
+  /// be u and v.
   void operator()(std::span<const double> u, std::span<const double> v, std::span<double> x,
                   std::span<double> y) const noexcept;
 

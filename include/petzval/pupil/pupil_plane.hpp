@@ -65,7 +65,8 @@ class PETZVAL_API PupilPlane {
   /// The ray of the point through (x, y). It starts in the plane, so that precision does not depend on the distance of
   /// the point.
   Ray<double> ray(double x, double y) const noexcept;
-  /// The same for many. x, y, and rays: N each. Outputs must not alias inputs.
+  /// The same for many. x, y, and rays: N each; points without both coordinates are left out. Outputs must not
+  /// alias inputs.
   void rays(std::span<const double> x, std::span<const double> y, const RayArrays<double>& rays) const noexcept;
 
   /// Where a ray, prolonged both ways, meets the plane.

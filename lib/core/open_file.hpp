@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <system_error>
+
+#include "petzval/core/error.hpp"
+
+namespace petzval::inline v0::core_detail {
+
+/// Throws Error for a folder: some systems open it as a file and fail only when it is read. wanted: the kind of file,
+/// for the message.
+inline void refuse_folder(const std::filesystem::path& file, const std::string& wanted) {
+  std::error_code unknown;
+  if (std::filesystem::is_directory(file, unknown)) throw Error(file.string() + ": is a folder, wanted " + wanted);
+}
+
+/// A file to read, its bytes as they are. Throws Error for one that cannot be opened.
+inline std::ifstream opened(const std::filesystem::path& file, const std::string& wanted) {
+  refuse_folder(file, wanted);
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) throw Error(file.string() + ": cannot be opened, wanted " + wanted);
+  return stream;
+}
+
+}  // namespace petzval::inline v0::core_detail
