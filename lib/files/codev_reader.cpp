@@ -330,7 +330,7 @@ void CodevReader::circle(Words w) {
       s = &numbered(w, w[i]);
     } else if (same(w[i], "EDG") || same(w[i], "HOL") || same(w[i], "OBS") || same(w[i], "CLR")) {
       kind = lower(w[i]);
-    } else if (lower(w[i][0]) != 'l') {
+    } else if (!w[i].starts_with('l') && !w[i].starts_with('L')) {  // an empty one in quotes is no label
       in_.warn(line_, "CIR", "its word " + in_quotes(w[i]) + " is left out");
     }
   }

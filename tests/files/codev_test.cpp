@@ -97,6 +97,7 @@ TEST(Codev, ShapesAreConicsAndEvenTerms) {
 TEST(Codev, AperturesAreRims) {
   EXPECT_EQ(read(with_line("CIR EDG 9")).surfaces[1].semi_diameter, 8);
   EXPECT_EQ(read(with(singlet, "CIR 8;", "CIR EDG 9;")).surfaces[1].semi_diameter, 9);
+  EXPECT_EQ(read(with(singlet, "CIR 8;", "CIR '' 9;")).surfaces[1].semi_diameter, 9);
   EXPECT_EQ(read(with_line("CIR HOL 2")).surfaces[1].obscuration_semi_diameter, 2);
   EXPECT_EQ(read(with_line("CIR OBS L'A' 3")).surfaces[1].obscuration_semi_diameter, 3);
   EXPECT_NE(warning(with_line("REX 5"), "REX"), "no warning");
