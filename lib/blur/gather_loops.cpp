@@ -295,17 +295,22 @@ PETZVAL_INLINE Places pixels_at(const Numbers (&line)[row_count], Numbers w, std
 /// Even steps of a pixel at most along each line, at multiples of their length: which depths bound a ray changes
 /// nothing of its steps. Steps count from the scene's far end.
 struct EvenSteps {
-  Numbers length, reach, first, last;  ///< first >= last, as rays run
+  Numbers length, reach, farthest, nearest, first, last;  ///< first >= last, as rays run
 
   PETZVAL_INLINE EvenSteps(const DifferentRays& rays, const Numbers (&line)[row_count]) noexcept {
     const Numbers none(0.0f), least(1e-6f / rays.most);  // of lines that hardly lean one step holds all depths
     const Numbers x = larger(line[slope_x], -line[slope_x]), y = larger(line[slope_y], -line[slope_y]);
     const Numbers steepest = larger(larger(x, y), least), tolerance(rays.tolerance);
     length = Numbers(1.0f) / steepest, reach = tolerance * length;
+    farthest = Numbers(rays.end), nearest = Numbers(rays.most);
     first = whole(Numbers(rays.from) * steepest + tolerance);
     last = whole(larger(Numbers(rays.to) * steepest - tolerance, none));
   }
-  PETZVAL_INLINE Numbers at(Numbers k) const noexcept { return (k + Numbers(0.5f)) * length; }
+  /// The middle of a step, but within the scene's depths: a ray that moves by less than a pixel stays in its own.
+  PETZVAL_INLINE Numbers at(Numbers k) const noexcept {
+    const Numbers middle = larger((k + Numbers(0.5f)) * length, farthest);
+    return select(middle < nearest, middle, nearest);
+  }
   PETZVAL_INLINE Numbers low(Numbers k) const noexcept { return larger(k * length - reach, Numbers(0.0f)); }
   PETZVAL_INLINE Numbers high(Numbers k) const noexcept { return (k + Numbers(1.0f)) * length + reach; }
 

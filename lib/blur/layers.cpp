@@ -32,6 +32,16 @@ void check_size(const std::string& where, int columns, int rows) {
   }
 }
 
+/// The size of a camera's layers, overscan included.
+void check_size(const LayerCamera& camera) {
+  constexpr int most = 1 << 15;  // far from where the sum overflows
+  if (camera.overscan < 0 || camera.overscan > most) {
+    throw Error("layers: overscan is " + std::to_string(camera.overscan) + " px, wanted 0 to " + std::to_string(most));
+  }
+  check_size("layers", camera.columns, camera.rows);
+  check_size("layers", camera.layer_columns(), camera.layer_rows());
+}
+
 std::string pixel_name(std::size_t pixel, int columns) {
   const auto width = static_cast<std::size_t>(columns);
   return "column " + std::to_string(pixel % width) + ", row " + std::to_string(pixel / width);
@@ -76,18 +86,24 @@ LayerPlanes LayerSet::Data::begin_layer() {
 void LayerSet::Data::end_layer(const std::string& where) {
   float* const w = plane(count, 0);
   const float* const alpha = plane(count, 4);
-  bool any = false, solid = true, ordered = true;
+  bool any = false, solid = true, ordered = true, mixed = true;
   for (std::size_t i = 0; i < pixels(); ++i) {
     w[i] = w[i] >= 0 ? w[i] : -1.0f;  // not a number: empty
     any |= w[i] >= 0;
     ordered &= w[i] < 0 || w[i] < below[i];
     solid &= w[i] < 0 || alpha[i] == 1;
+    mixed &= w[i] < 0 || (alpha[i] >= 0 && alpha[i] <= 1);
   }
   if (!ordered) {
     std::size_t i = 0;
     while (w[i] < 0 || w[i] < below[i]) ++i;
     throw Error(where + ": " + pixel_name(i, columns) + ": inverse depth is " + to_text(w[i], 6) +
                 " / mm, wanted one below " + to_text(below[i], 6) + ", or no surface");
+  }
+  if (!mixed) {
+    std::size_t i = 0;
+    while (w[i] < 0 || (alpha[i] >= 0 && alpha[i] <= 1)) ++i;
+    throw Error(where + ": " + pixel_name(i, columns) + ": alpha is " + to_text(alpha[i]) + ", wanted 0 to 1");
   }
   if (!any) return;
   ++count;
@@ -105,6 +121,7 @@ float axial_share(const LayerCamera& camera, std::size_t pixel) {
 }
 
 void check_pixels(const LayerCamera& camera, std::size_t pixels) {
+  check_size(camera);
   const auto wanted = static_cast<std::size_t>(camera.layer_columns()) * static_cast<std::size_t>(camera.layer_rows());
   if (pixels == wanted) return;
   throw Error("axial_depths: found " + std::to_string(pixels) + " pixels, wanted those of the layers, " +
@@ -135,7 +152,7 @@ void LayerSet::peel(const PeelPlan& plan, int layers, const Peel& peel) {
   check_number(layers);
   if (!peel) throw Error("layers: peel is empty, wanted a function");
   const LayerCamera& camera = plan.camera;
-  check_size("layers", camera.layer_columns(), camera.layer_rows());
+  check_size(camera);
   Data& d = *data_;
   Data::Filling filling(d, camera.layer_columns(), camera.layer_rows(), layers);
   const auto bias = static_cast<float>(plan.bias);

@@ -75,9 +75,17 @@ TableError error_of(const RayTable& coarse, const RayTable& fine, double nearest
 void check(const LayerCamera& camera, std::span<const PupilPoint> points, int channels,
            const LensRaysOptions& options) {
   const auto wrong = [](const std::string& what) { return Error("lens rays: " + what); };
-  if (camera.columns < 1 || camera.rows < 1 || !(camera.focal_px > 0) || !std::isfinite(camera.focal_px)) {
+  constexpr int most_side = 32768;
+  if (camera.columns < 1 || camera.rows < 1 || camera.columns > most_side || camera.rows > most_side) {
     throw wrong("layer camera is " + std::to_string(camera.columns) + " x " + std::to_string(camera.rows) +
-                " with a focal length of " + to_text(camera.focal_px) + " px, wanted positive numbers");
+                ", wanted 1 to " + std::to_string(most_side) + " pixels a side");
+  }
+  if (!(camera.focal_px > 0 && std::isfinite(camera.focal_px))) {
+    throw wrong("focal length of the layer camera is " + to_text(camera.focal_px) + " px, wanted a positive number");
+  }
+  if (!std::isfinite(camera.axis.x) || !std::isfinite(camera.axis.y)) {
+    throw wrong("axis of the layer camera is at " + to_text(camera.axis.x) + ", " + to_text(camera.axis.y) +
+                " px, wanted finite numbers");
   }
   if (channels != 1 && channels != 3) throw wrong(std::to_string(channels) + " channels, wanted 1 or 3");
   if (options.sets != 1 && options.sets != 4 && options.sets != 16) {
@@ -86,6 +94,10 @@ void check(const LayerCamera& camera, std::span<const PupilPoint> points, int ch
   if (points.empty() || points.size() % static_cast<std::size_t>(options.sets) != 0) {
     throw wrong(std::to_string(points.size()) + " points, wanted 1 or more, as many for each of " +
                 std::to_string(options.sets) + " sets");
+  }
+  for (const PupilPoint& p : points) {
+    if (p.u >= 0 && p.u <= 1 && p.v >= 0 && p.v <= 1) continue;
+    throw wrong("a point of the pupil is " + to_text(p.u) + ", " + to_text(p.v) + ", wanted two numbers from 0 to 1");
   }
   if (!(options.nearest_mm >= 0 && std::isfinite(options.nearest_mm))) {
     throw wrong("nearest depth is " + to_text(options.nearest_mm) + " mm, wanted 0 (a default) or more");

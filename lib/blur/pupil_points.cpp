@@ -2,6 +2,7 @@
 #include <cmath>
 #include <string>
 
+#include "core/text.hpp"
 #include "petzval/blur/lens_rays.hpp"
 #include "petzval/core/error.hpp"
 
@@ -11,6 +12,7 @@ std::vector<PupilPoint> vogel_points(int count, double turn) {
   if (count < 1 || count > (1 << 20)) {
     throw Error("vogel_points: " + std::to_string(count) + " points, wanted 1 to " + std::to_string(1 << 20));
   }
+  if (!std::isfinite(turn)) throw Error("vogel_points: turn is " + to_text(turn) + ", wanted a finite part of a turn");
   constexpr double golden = 0.38196601125010515;  // of a turn, 2 less the golden ratio
   std::vector<PupilPoint> points(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) {

@@ -25,6 +25,60 @@ Cell cell_at(double position, int step, std::size_t nodes, int end) {
   return {first, static_cast<float>((p - begin) / length)};
 }
 
+/// Which nodes of a channel have rays of any weight.
+std::vector<char> lit_nodes(const RayTable& table, std::size_t channel) {
+  std::vector<char> lit(table.node_columns * table.node_rows);
+  for (std::size_t n = 0; n < lit.size(); ++n) {
+    const float* const weights = table.node(channel, 0, n) + weight * table.rays;
+    lit[n] = std::any_of(weights, weights + table.rays, [](float w) { return w > 0; });
+  }
+  return lit;
+}
+
+/// Gives a node without light the mean of the lines that lit nodes beside it lead to: straight on through two in a row,
+/// or those of a single one. False, and no change, where there is none.
+bool lead_on(RayTable& table, std::size_t channel, const std::vector<char>& lit, int column, int row, bool two) {
+  const int columns = static_cast<int>(table.node_columns), rows = static_cast<int>(table.node_rows);
+  const auto is_lit = [&](int x, int y) {
+    return x >= 0 && y >= 0 && x < columns && y < rows && lit[static_cast<std::size_t>(y * columns + x)];
+  };
+  const auto node = [&](int x, int y) {
+    return table.node(channel, static_cast<std::size_t>(y), static_cast<std::size_t>(x));
+  };
+  const auto way = [&](int x, int y, int right, int down) {
+    const auto at = [](int n) { return static_cast<std::size_t>(n); };
+    return std::hypot(table.column_of(at(x + right)) - table.column_of(at(x)),
+                      table.row_of(at(y + down)) - table.row_of(at(y)));
+  };
+  std::vector<double> sums(weight * table.rays);
+  int found = 0;
+  for (int d = 0; d < 9; ++d) {
+    const int right = d % 3 - 1, down = d / 3 - 1, x = column + right, y = row + down;
+    if (!is_lit(x, y) || (two && !is_lit(x + right, y + down))) continue;
+    ++found;
+    const float *const near = node(x, y), *const far = two ? node(x + right, y + down) : near;
+    const double part = two ? way(column, row, right, down) / way(x, y, right, down) : 0;
+    for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += near[i] + part * (static_cast<double>(near[i]) - far[i]);
+  }
+  if (found == 0) return false;
+  float* const own = table.nodes.data() + (node(column, row) - table.nodes.data());
+  for (std::size_t i = 0; i < sums.size(); ++i) own[i] = static_cast<float>(sums[i] / found);
+  return true;
+}
+
+/// Between a lit node and one without light rays fade, and must stay where they are: any line of the dark node would
+/// draw them aside.
+void lead_into_the_dark(RayTable& table) {
+  for (std::size_t channel = 0; channel < table.channels; ++channel) {
+    const std::vector<char> lit = lit_nodes(table, channel);
+    for (std::size_t n = 0; n < lit.size(); ++n) {
+      if (lit[n]) continue;
+      const int column = static_cast<int>(n % table.node_columns), row = static_cast<int>(n / table.node_columns);
+      if (!lead_on(table, channel, lit, column, row, true)) lead_on(table, channel, lit, column, row, false);
+    }
+  }
+}
+
 std::size_t nodes_over(int length, int step) { return static_cast<std::size_t>((length + step - 1) / step) + 1; }
 
 }  // namespace
@@ -91,6 +145,7 @@ RayTable ray_table(const LayerCamera& camera, std::span<const PupilPoint> points
       }
     }
   });
+  lead_into_the_dark(table);
   return table;
 }
 

@@ -202,6 +202,11 @@ TEST(Images, AreRefusedWhereTheyDoNotFit) {
   says({}, "0 layers");
   says({{2, 1, rgba, depth}, {1, 1, std::span(rgba).first(4), std::span(depth).first(1)}}, "layer 1: size is 1 x 1");
   says({{2, 1, rgba, std::span(depth).first(1)}}, "layer 0: found 8 colours and 1 depths");
+  for (const float alpha : {2.0f, -1.0f, none, infinity}) {
+    std::vector<float> mixed = rgba;
+    mixed[7] = alpha;
+    says({{2, 1, mixed, depth}}, "layer 0: column 1, row 0: alpha is");
+  }
   says({{2, 1, rgba, depth}, {2, 1, rgba, nearer}}, "layer 1: column 0, row 0: inverse depth is 0.02");
   says({{2, 1, rgba, nearer}, {2, 1, rgba, depth}},
        "layer 1: column 1, row 0: inverse depth is 0 / mm");  // behind an empty pixel

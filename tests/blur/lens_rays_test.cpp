@@ -116,6 +116,16 @@ TEST(Rays, AreRefusedWhereOptionsDoNotFit) {
   says(vogel_points(6), {.sets = 4}, "6 points");
   says(vogel_points(6), {.sets = 2}, "2 sets");
   says(vogel_points(6), {.nearest_mm = -1}, "nearest depth is -1");
+  says({{-5, 1e9}}, {}, "a point of the pupil is -5, 1e+09, wanted two numbers from 0 to 1");
+  EXPECT_EQ(petzval::testing::message([] { vogel_points(4, std::nan("")); }),
+            "vogel_points: turn is nan, wanted a finite part of a turn");
+  LayerCamera camera = small_camera();
+  camera.axis.x = std::numeric_limits<double>::infinity();
+  EXPECT_NE(petzval::testing::message([&] { LensRays::thin(camera, {}, vogel_points(4)); }).find("axis of the layer"),
+            std::string::npos);
+  camera = small_camera(), camera.columns = 2000000000;
+  EXPECT_NE(petzval::testing::message([&] { LensRays::thin(camera, {}, vogel_points(4)); }).find("1 to 32768 pixels"),
+            std::string::npos);
 }
 
 // Pencils that vary over the picture in a way that no table follows, each through its place at the depth in focus.
@@ -212,6 +222,30 @@ TEST(CameraRays, RefuseAFilmThatTravelsAndOtherPictures) {
 TEST(LensRays, RefuseAnEmptySource) {
   EXPECT_EQ(petzval::testing::message([] { LensRays(small_camera(), vogel_points(4), 1, {}); }),
             "lens rays: the source is empty, wanted a function");
+}
+
+// A lens that squeezes the picture and leaves its left third dark: at the edge of the light rays stay where they are.
+TEST(LensRays, AreNotDrawnAsideByTheDark) {
+  const LayerCamera camera = small_camera();
+  const auto source = [&](int, const Vec2<double>& raster, std::span<const PupilPoint> at, std::span<LayerRay> found) {
+    const Vec2<double> off = raster - camera.axis;
+    const bool dark = raster.x < 100;
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      const LayerRay lit{
+          camera.axis + Vec2<double>{0.5 * off.x, 0.9 * off.y}, {900 * at[i].u + off.x, 900 * at[i].v}, 1};
+      found[i] = dark ? LayerRay{raster, {0, 0}, 0} : lit;
+    }
+  };
+  const LensRays rays(camera, vogel_points(8), 1, source);
+  EXPECT_LT(rays.error_px(), 0.1);
+  std::vector<LayerRay> found(rays.count()), exact(rays.count());
+  for (int column = 100; column < 320; ++column) {
+    rays.at(0, column, 120, found), rays.exact_at(0, column, 120, exact);
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      ASSERT_NEAR(found[i].at.x, exact[i].at.x, 1e-3) << column;
+      ASSERT_NEAR(found[i].slope.x, exact[i].slope.x, 1e-2) << column;
+    }
+  }
 }
 
 TEST(LensRays, RefuseNumbersThatFloatsLose) {

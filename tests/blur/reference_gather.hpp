@@ -50,7 +50,7 @@ inline Blurred reference_gather(const LayerSet& layers, const LensRays& rays, do
           double below = 1e30;
           for (int k = static_cast<int>(most * steepest + 1); k >= 0; --k) {
             const double low = std::max((k - tolerance) / steepest, 0.0), high = (k + 1 + tolerance) / steepest;
-            const std::size_t pixel = pixel_at((k + 0.5) / steepest);
+            const std::size_t pixel = pixel_at(std::clamp<double>((k + 0.5) / steepest, least, most));
             bool before = false, met_here = false;
             for (int layer = 0; layer < layers.count() && through > 1e-3; ++layer) {
               const double w = layers.inverse_depth(layer)[pixel], a = layers.channel(layer, 3)[pixel];

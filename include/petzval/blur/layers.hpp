@@ -90,7 +90,7 @@ class PETZVAL_API LayerSet {
   /// pixels were written.
   using Peel = std::function<std::size_t(int layer, std::span<const float> below, const LayerPlanes& out)>;
   /// Layers until nothing is written, at most `layers`. Throws Error for less than one layer or more than 64, for an
-  /// empty `peel`, and for a surface that is not below `below`.
+  /// empty `peel`, for a surface that is not below `below`, and for alphas outside 0 to 1.
   void peel(const PeelPlan& plan, int layers, const Peel& peel);
 
   /// The layers that peel() would find in lists. Fragments nearer to the last one than the bias are left out, but those
@@ -99,7 +99,8 @@ class PETZVAL_API LayerSet {
   void thin(const FragmentLists& lists, double bias, int layers);
 
   /// Pictures from near to far, one alone included. Throws Error for none, for pictures of different sizes or without
-  /// all their numbers, and for a surface nearer than one before it or behind an empty pixel.
+  /// all their numbers, for a surface nearer than one before it or behind an empty pixel, and for alphas outside 0
+  /// to 1.
   void set(std::span<const LayerImage> images);
 
   int columns() const noexcept;

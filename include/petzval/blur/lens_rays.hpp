@@ -24,7 +24,7 @@ struct PupilPoint {
 };
 
 /// Points of a spiral that cover a pupil evenly (Vogel 1979). turn: by which part of a full turn the spiral is rotated.
-/// Throws Error for fewer than 1 point or more than 2^20.
+/// Throws Error for fewer than 1 point or more than 2^20, and for a turn that is not finite.
 PETZVAL_API std::vector<PupilPoint> vogel_points(int count, double turn = 0);
 
 /// A ray of a lens in the scene as a line over inverse depth w: it passes the raster position at + slope w of the
@@ -68,7 +68,7 @@ struct LensRaysOptions {
 /// Rays are kept at nodes in steps of 16 to 256 px and interpolated between. The step is the largest at which, halfway
 /// between nodes, the lines of a place are right within 0.1 px (RMS) at the depth where they are nearest to each other,
 /// and their light within 0.6 %; or 16 px, and error_px() says what is left. At other depths a ray may be off by more,
-/// within the blur.
+/// within the blur. Nodes whose places get no light lead on the lines of those beside them.
 ///
 ///     const LensRays rays = LensRays::of(camera, layer_camera(camera), vogel_points(100));
 ///
@@ -80,8 +80,8 @@ class PETZVAL_API LensRays {
                                     std::span<LayerRay> found)>;
 
   /// Any rays: those of a lens of your own. channels: 1, or 3 where colours differ. Throws Error for an empty source,
-  /// for no points, for points that are not sets of one size, for rays whose numbers exceed 1e15, and for negative
-  /// weights.
+  /// for no points, for points beyond the pupil or that are not sets of one size, for rays whose numbers exceed 1e15,
+  /// and for negative weights.
   LensRays(const LayerCamera& camera, std::span<const PupilPoint> points, int channels, Source source,
            const LensRaysOptions& options = {});
 
