@@ -149,7 +149,14 @@ Lens with_f_number(const Lens& lens, double f_number, Wavelength wavelength) {
                 to_text(length / (2 * obscuration.height), 10) + ": the central obscuration of surface " +
                 std::to_string(obscuration.surface) + " is that large");
   }
-  return with_semi_diameter(lens, beam.stop, std::min(*height, stop.semi_diameter));
+  Lens stopped = with_semi_diameter(lens, beam.stop, std::min(*height, stop.semi_diameter));
+  // Strong spherical aberration lets rays nearer to the axis meet the stop as far out as the ray of height y does.
+  const double found = real_f_number(stopped, wavelength);
+  if (found > f_number * (1 + 1e-6)) {
+    throw Error(lens.name() + ": f-number is " + to_text(f_number) + ", wanted " + to_text(found, 10) +
+                " or more: rays nearer to the axis meet the rim of its stop");
+  }
+  return stopped;
 }
 
 }  // namespace petzval::inline v0

@@ -118,6 +118,24 @@ TEST(WithFNumber, TakesTheDeclaredOneWhereTheLensIsAsFastWithinHalfAPercent) {
   RecordProperty("refused", refused);
 }
 
+// Close behind a ball the outer rays cross those nearer to the axis: the rim that lets them pass is met by others
+// first.
+TEST(WithFNumber, IsRefusedWhereSphericalAberrationFoldsTheBeam) {
+  Prescription p;
+  p.name = "ball";
+  p.surfaces = {{.radius = 10, .thickness = 20, .medium = {.nd = 1.5}, .semi_diameter = 10},
+                {.radius = -10, .thickness = 3, .semi_diameter = 10},
+                {.thickness = 2, .stop = true}};
+  const Lens ball = compile(p);
+  for (const double n : {0.85, 3.0, 8.0}) EXPECT_NEAR(real_f_number(with_f_number(ball, n)), n, 1e-9);
+  const std::string said = message([&] { with_f_number(ball, 1.5); });
+  EXPECT_NE(said.find("rays nearer to the axis meet the rim of its stop"), std::string::npos) << said;
+  const std::string wanted = "wanted ";
+  const double next = std::stod(said.substr(said.find(wanted) + wanted.size()));
+  EXPECT_GT(next, 2);
+  EXPECT_NEAR(real_f_number(with_f_number(ball, next)), next, 1e-6 * next);
+}
+
 TEST(WithFNumber, RunsFromTheFastestLensesToPinholes) {
   const Lens lens = with_semi_diameter(data_lens("modern_58mm_f0.95"), 13, infinity);
   for (const double n : {0.95, 1.0, 1.4, 8.0, 64.0}) EXPECT_NEAR(real_f_number(with_f_number(lens, n)), n, 1e-12 * n);

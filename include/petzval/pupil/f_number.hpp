@@ -21,8 +21,8 @@ PETZVAL_API double real_f_number(const Lens& lens, Wavelength wavelength = {});
 ///
 /// For N faster than wide open by up to 0.5 % the lens stays wide open, as it is: declared f-numbers are rounded, and
 /// real_f_number tells the true one. Throws Error for N faster than that, naming the fastest possible, for N <= 0 or
-/// not finite, an afocal lens, and N so slow that a central obscuration leaves nothing of the axial beam, naming the
-/// surface and the f-number of the obscuration.
+/// not finite, an afocal lens, N so slow that a central obscuration leaves nothing of the axial beam, naming the
+/// surface and the f-number of the obscuration, and N that no stop gives, as spherical aberration folds the beam there.
 PETZVAL_API Lens with_f_number(const Lens& lens, double f_number, Wavelength wavelength = {});
 
 }  // namespace petzval::inline v0
