@@ -23,6 +23,9 @@ using camera_detail::FilmView;
 using camera_detail::LensFacts;
 using camera_detail::TiltedFilm;
 
+constexpr double same_place_mm = 1e-6;
+constexpr double rounding = 1e-9;  // of radii
+
 /// Throws Error for a model of another lens or film, as far as its pupils show.
 void check_model(const Lens& lens, const FilmPupilTable& pupils, double radius) {
   const std::size_t wavelengths = lens.wavelengths_nm().size();
@@ -30,27 +33,42 @@ void check_model(const Lens& lens, const FilmPupilTable& pupils, double radius) 
     throw Error(lens.name() + ": camera: the model is one for " + std::to_string(pupils.wavelengths()) +
                 " wavelengths, wanted the lens's " + std::to_string(wavelengths));
   }
-  constexpr double near = 1e-6;  // mm
-  if (!(std::abs(pupils.space().film_z - lens.film_z()) <= near)) {
+  if (!(std::abs(pupils.space().film_z - lens.film_z()) <= same_place_mm)) {
     throw Error(lens.name() + ": camera: the model has its film at z = " + to_text(pupils.space().film_z) +
                 " mm, wanted the lens's, " + to_text(lens.film_z()) + " mm");
   }
-  constexpr double rounding = 1e-9;
   if (!(radius <= pupils.film_radius() * (1 + rounding))) {
     throw Error(lens.name() + ": camera: the model is one for film points up to " + to_text(pupils.film_radius()) +
                 " mm from the axis, wanted " + to_text(radius) + " mm or more");
   }
 }
 
-/// Throws Error for polynomials of other wavelengths.
-void check_wavelengths(const Lens& lens, const AnyRayModel& model) {
+/// Throws Error for polynomials of other wavelengths, of another focus, and that end within the film.
+void check_polynomials(const Lens& lens, const AnyRayModel& model, double radius) {
   const auto* const polynomials = model.as<PolynomialModel>();
   if (!polynomials) return;
+  const std::string where = lens.name() + ": camera: the polynomials ";
   const auto& fits = polynomials->polynomial().fits();
+  if (fits.size() != lens.wavelengths_nm().size()) {
+    throw Error(where + "are fits for " + std::to_string(fits.size()) + " wavelengths, wanted the lens's " +
+                std::to_string(lens.wavelengths_nm().size()));
+  }
   for (std::size_t w = 0; w < fits.size(); ++w) {
     if (lens.position(Wavelength::nm(fits[w].wavelength_nm)) == w) continue;
-    throw Error(lens.name() + ": camera: the model has " + to_text(fits[w].wavelength_nm) + " nm for wavelength " +
-                std::to_string(w) + ", wanted the lens's, " + to_text(lens.wavelengths_nm()[w]) + " nm");
+    throw Error(where + "have " + to_text(fits[w].wavelength_nm) + " nm for wavelength " + std::to_string(w) +
+                ", wanted the lens's, " + to_text(lens.wavelengths_nm()[w]) + " nm");
+  }
+  const RayPolynomial::Domain& domain = polynomials->polynomial().domain();
+  const TwoPlanes& planes = model.pupils().space();
+  if (!(std::abs(domain.space.film_z - planes.film_z) <= same_place_mm &&
+        std::abs(domain.space.pupil_z - planes.pupil_z) <= same_place_mm)) {
+    throw Error(where + "have their film and pupil at z = " + to_text(domain.space.film_z) + " and " +
+                to_text(domain.space.pupil_z) + " mm, wanted those of the lens, " + to_text(planes.film_z) + " and " +
+                to_text(planes.pupil_z) + " mm");
+  }
+  if (!(radius <= domain.film_radius * (1 + rounding))) {
+    throw Error(where + "end " + to_text(domain.film_radius) + " mm from the axis, wanted " + to_text(radius) +
+                " mm or more");
   }
 }
 
@@ -171,7 +189,7 @@ Camera::Camera(const Lens& lens, const Film& film, const AnyRayModel& model, Nor
   const LensFacts facts(placed_lens);
   const double radius = camera_detail::upright_radius(facts, placed_film, model.kind());
   check_model(placed_lens, model.pupils(), radius);
-  check_wavelengths(placed_lens, model);
+  check_polynomials(placed_lens, model, radius);
   data_ = std::make_shared<const Data>(facts, placed_film, model, radius,
                                        CameraOptions{.normalisation = normalisation, .bokeh = bokeh});
 }

@@ -41,6 +41,11 @@ std::optional<Vec3<double>> seen_at(const ScenePoint& place) noexcept {
 
 std::optional<BundleBlur> blur_on(const RayBundle& bundle, const Film& film) {
   const std::size_t count = bundle.x.size();
+  for (const auto* numbers : {&bundle.y, &bundle.slope_x, &bundle.slope_y}) {
+    if (numbers->size() == count) continue;
+    throw Error("blur: the bundle has " + std::to_string(count) + " rays and " + std::to_string(numbers->size()) +
+                " of one of their numbers, wanted places and slopes of all");
+  }
   if (count == 0) return {};
   const Vec3<double> right = film.right(), up = film.up(), normal = film.normal();
   const double to_film = film.z() - bundle.plane_z;

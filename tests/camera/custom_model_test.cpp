@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "../data_lenses.hpp"
+#include "../message.hpp"
 #include "camera/exact_model.hpp"
 #include "camera/make_model.hpp"
 #include "camera/paraxial_model.hpp"
@@ -215,6 +216,28 @@ double mean_weight(const Camera& camera) {
   double sum = 0;
   for (const double weight : samples.weights) sum += weight;
   return sum / count;
+}
+
+TEST(OwnModel, OfPolynomialsIsRefusedForAnotherLensOrFilm) {
+  const Prescription prescription = testing::data_prescription("double_gauss_100mm_f2.0");
+  const auto focused = [&](std::vector<double> nm, double distance) {
+    return with_focus(compile(prescription, nm, {.missing_glass = MissingGlass::abbe}), distance);
+  };
+  const Lens lens = focused({587.5618, 450, 650}, 1000);
+  const Film film;
+  const double radius = upright_radius(lens, film);
+  const auto said = [&](const Lens& fitted, double to) {
+    const RayPolynomial polynomial = RayPolynomial::fit(fitted, FilmPupilTable::equal_area(fitted, to), 5);
+    return testing::message([&] {
+      Camera(lens, film, AnyRayModel(PolynomialModel(polynomial, FilmPupilTable::equal_area(lens, radius))));
+    });
+  };
+  EXPECT_EQ(said(lens, radius), "no error");
+  EXPECT_NE(said(focused({587.5618, 450, 650}, 2000), radius).find("have their film and pupil at z = "),
+            std::string::npos);
+  EXPECT_NE(said(focused({450}, 1000), radius).find("are fits for 1 wavelengths, wanted the lens's 3"),
+            std::string::npos);
+  EXPECT_NE(said(lens, 5).find("end 5 mm from the axis, wanted 21.6"), std::string::npos);
 }
 
 TEST(OwnModel, ClipsByItself) {

@@ -170,6 +170,13 @@ TEST(ImageRays, AreRefusedWithoutRaysOrFilm) {
   EXPECT_THROW(ImageRays(data_lens("mirror_newton_200mm_f8"), 10), Error);  // light leaves the lens towards -z
 }
 
+TEST(BundleBlur, WantsSlopes) {
+  const Lens lens = data_lens("double_gauss_100mm_f2.0");
+  const RayBundle spots = trace_bundle(lens, PupilSampler(pupil_boundary(lens, FieldPoint{.z = -infinity})), 64);
+  ASSERT_FALSE(spots.empty());
+  EXPECT_THROW(blur_on(spots, film_at(lens.film_z())), Error);
+}
+
 TEST(BundleBlur, OnATiltedFilmIsWhereRaysMeetItsPlane) {
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
   const RayBundle bundle = ImageRays(lens, 22).bundle({{150, -250, -1200}, false});

@@ -98,8 +98,9 @@ class PETZVAL_API Camera {
   /// discs of a lens with cylinders.
   Camera(const Lens& lens, const Film& film, const CameraOptions& options = {});
   /// With a model that was built before: a renderer's own, or polynomials read from a file (ray_model.hpp). Throws
-  /// Error also for a model of other wavelengths, of another place of the film, or whose pupils reach less far than
-  /// upright_radius(), and for lens_elements, lens_ratio and rate_of_change, which its pupils cannot follow.
+  /// Error also for a model of other wavelengths, of another place of the film, or whose pupils or polynomials reach
+  /// less far than upright_radius(), and for lens_elements, lens_ratio and rate_of_change, which its pupils cannot
+  /// follow.
   Camera(const Lens& lens, const Film& film, const AnyRayModel& model,
          Normalisation normalisation = Normalisation::irradiance, const BokehControls& bokeh = {});
 

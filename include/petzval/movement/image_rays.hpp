@@ -23,7 +23,8 @@ struct BundleBlur {
   /// the film, as signed_blur(), unless defocus makes less than a tenth of it.
   double signed_diameter = 0;
 };
-/// Nothing for an empty bundle, and where a ray runs along the film. Throws Error for a film without a place.
+/// Nothing for an empty bundle, and where a ray runs along the film. Throws Error for a film without a place, and for a
+/// bundle without slopes.
 PETZVAL_API std::optional<BundleBlur> blur_on(const RayBundle& bundle, const Film& film);
 
 /// Sends bundles from scene points through a lens: set up once for a lens and a film (milliseconds), then some
