@@ -64,7 +64,8 @@ int main(int argc, char** argv) {
 
   return examples::run(app, argc, argv, [&] {
     const petzval::Film film = options.film();
-    const petzval::Lens lens = examples::focused_lens(options);
+    const examples::LoadedLens loaded = examples::focused_lens(options);
+    const petzval::Lens& lens = loaded.lens;
     const std::filesystem::path folder = options.out_folder;
     if (out->given()) examples::make_folder(folder);  // measuring takes seconds
     examples::say_what_does_not_fit(lens, film);
@@ -79,8 +80,7 @@ int main(int argc, char** argv) {
 
     if (out->given()) {
       const auto write = [&](const char* kind, const std::string& text) {
-        const auto file =
-            folder / (std::filesystem::path(options.lens_file.file).stem().string() + "_accuracy_speed." + kind);
+        const auto file = folder / (loaded.id + "_accuracy_speed." + kind);
         examples::write_text(file, text);
         (options.json ? std::cerr : std::cout) << file.string() << '\n';
       };

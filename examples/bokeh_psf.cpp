@@ -127,8 +127,7 @@ Json to_json(const std::vector<Picture>& pictures, const examples::LoadedLens& l
             {"white_point", options.white_point},
             {"subject_distance_mm", finite_or_null(options.subject_mm)},
             {"distance_from", options.origin},
-            {"f_number_real",
-             options.iris.f_number > 0 ? options.iris.f_number_by_corners() : petzval::real_f_number(loaded.lens)},
+            {"f_number_real", petzval::real_f_number(examples::stopped_down(loaded.lens, options.iris))},
             {"field_deg", options.field_deg},
             {"samples", options.samples},
             {"results", Json::array()}};

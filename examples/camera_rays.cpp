@@ -147,7 +147,7 @@ int main(int argc, char** argv) {
                              .tilt_rad = petzval::radians(tilt_deg),
                              .swing_rad = petzval::radians(swing_deg)};
     const petzval::Lens lens = examples::focused(loaded, setup);
-    examples::say_what_does_not_fit(lens, film);
+    examples::say_what_does_not_fit(lens, film, false);
     const petzval::Camera camera(lens, film,
                                  {.model = *petzval::model_named(model), .bokeh = examples::controls_of(bokeh)});
     examples::write_text(out_file, rays_csv(camera, samples));

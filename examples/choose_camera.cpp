@@ -68,7 +68,7 @@ int main(int argc, char** argv) {
 
   return examples::run(app, argc, argv, [&] {
     const petzval::Film film = options.film();
-    const petzval::Lens lens = examples::focused_lens(options);
+    const petzval::Lens lens = examples::focused_lens(options).lens;
     examples::say_what_does_not_fit(lens, film);
     const petzval::ModelChoice choice = petzval::choose_model(
         lens, {.near_mm = options.near_mm, .far_mm = options.far_mm, .film = film},

@@ -243,8 +243,7 @@ int main(int argc, char** argv) {
 
     Json json{{"lens", lens.name()},
               {"dispersion", petzval::name(lens.dispersion())},
-              {"f_number_real",
-               options.iris.f_number > 0 ? options.iris.f_number_by_corners() : petzval::real_f_number(loaded.lens)},
+              {"f_number_real", petzval::real_f_number(lens)},
               {"subject_distance_mm", examples::finite_or_null(options.subject_mm)},
               {"white_point", options.white_point},
               {"primary_nm", set[lens.primary_wavelength()]},

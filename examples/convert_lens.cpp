@@ -51,6 +51,11 @@ struct Output {
                                       const std::filesystem::path& file);
 };
 
+/// Of a file that holds one position of a lens.
+void lose_positions(const Prescription& lens, std::vector<ImportWarning>& losses) {
+  if (lens.configurations.size() > 1) losses.push_back({0, "configurations", "all but the first are lost"});
+}
+
 std::vector<ImportWarning> write_text(const petzval::WrittenLens& written, const std::filesystem::path& file) {
   examples::write_text(file, written.text);
   return written.losses;
@@ -59,9 +64,12 @@ std::vector<ImportWarning> write_text(const petzval::WrittenLens& written, const
 /// What a file has that says what a lens does, not what it is made of.
 std::vector<ImportWarning> only_metadata(const Prescription& lens, const petzval::Lens& compiled) {
   const petzval::Film film = petzval::film_of(lens, compiled);
-  return {{0, "surfaces",
-           "are lost; the file has what the lens does to a picture of " + examples::number(film.width_mm, 4) + " x " +
-               examples::number(film.height_mm, 4) + " mm"}};
+  std::vector<ImportWarning> losses{{0, "surfaces",
+                                     "are lost; the file has what the lens does to a picture of " +
+                                         examples::number(film.width_mm, 4) + " x " +
+                                         examples::number(film.height_mm, 4) + " mm"}};
+  lose_positions(lens, losses);
+  return losses;
 }
 
 // Longer endings first: .opentrackio.json ends in .json too.
@@ -89,9 +97,11 @@ constexpr std::array outputs{
     Output{".osl",
            [](const Prescription& lens, const petzval::GlassCatalogue&, const std::filesystem::path& file) {
              examples::write_text(file, petzval::format_osl_camera(petzval::compile(lens)));
-             return std::vector<ImportWarning>{
+             std::vector<ImportWarning> losses{
                  {0, "wavelengths",
                   "the shader has the indices of " + examples::number(lens.reference_wavelength_nm) + " nm alone"}};
+             lose_positions(lens, losses);
+             return losses;
            }},
     Output{".zmx",
            [](const Prescription& lens, const petzval::GlassCatalogue& glasses, const std::filesystem::path& file) {

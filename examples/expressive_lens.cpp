@@ -41,6 +41,7 @@ struct Options {
   std::vector<double> light_mm;  // none: nearer and farther than the focus
   examples::CameraSetup setup;
   examples::ExpressiveFlags expressive;
+  bool from_lens_given = false;
   std::uint32_t samples = 1u << 17;
 };
 
@@ -121,7 +122,7 @@ Json description(const petzval::ExpressiveLens& expressive) {
 }
 
 void draw(Options options) {
-  if (options.expressive.change_nothing()) {
+  if (options.expressive.change_nothing() && !options.from_lens_given) {
     options.expressive.from_lens = 1;
     std::cerr << "note: no aberrations are given, so they are those of the lens (--from-lens 1)\n";
   }
@@ -208,5 +209,8 @@ int main(int argc, char** argv) {
       ->default_str("0.85 and 1.2 of the focus");
   examples::add_samples(app, options.samples);
   app.add_option("--out", options.out_folder, "folder for the results")->required()->type_name("DIR");
-  return examples::run(app, argc, argv, [&] { draw(options); });
+  return examples::run(app, argc, argv, [&] {
+    options.from_lens_given = app.get_option("--from-lens")->given();
+    draw(options);
+  });
 }

@@ -217,19 +217,20 @@ int main(int argc, char** argv) {
       "outweigh --focus-mm.",
       "focal_surface");
   examples::add_lens(app, options.lens_file);
-  app.add_option(
-         "--points", options.surface.points_file,
-         "{\"points\": [{\"pixel\": [x, y] or \"world_mm\": [x, y, z], \"distance_mm\", \"extent_stops\", "
-         "\"blur_px\", \"weight\", \"fade\"}]}; pixels from the upper left corner, centres at halves; the world "
-         "is the lens frame, with the scene at negative z; distance_mm null: infinity")
-      ->required()
-      ->type_name("POINTS.json");
+  auto* points =
+      app.add_option(
+             "--points", options.surface.points_file,
+             "{\"points\": [{\"pixel\": [x, y] or \"world_mm\": [x, y, z], \"distance_mm\", \"extent_stops\", "
+             "\"blur_px\", \"weight\", \"fade\"}]}; pixels from the upper left corner, centres at halves; the world "
+             "is the lens frame, with the scene at negative z; distance_mm null: infinity")
+          ->required()
+          ->type_name("POINTS.json");
   constexpr examples::Range side{1, 16384, "a whole number from 1 to 16384"};
   examples::add_count(app, "--width", options.width, side, "pixels across");
   examples::add_count(app, "--height", options.height, side, "pixels down");
   examples::add_camera(app, options.setup);
   examples::add_distance_origin(app, options.setup);
-  examples::add_surface_kind(app, options.surface);
+  examples::add_surface_kind(app, options.surface, points);
   app.add_option("--queries", options.queries_file, "places of the picture: a CSV file of x_px,y_px")
       ->type_name("Q.csv");
   app.add_option("--out", options.out_folder, "folder for the results")->required()->type_name("DIR");

@@ -236,14 +236,19 @@ int main(int argc, char** argv) {
   examples::add_movement_options(app, options);
   app.add_option("--keys", options.keys_file, "points and their keys")->type_name("FILE")->required();
   app.add_option("--out", options.out_folder, "folder for the table and the plot")->type_name("DIR")->required();
-  app.add_option("--criterion", options.criterion, "criterion of the real model without --tilt: min_rms, min_max")
-      ->one_of({"min_rms", "min_max"})
-      ->capture_default_str();
+  const auto* criterion =
+      app.add_option("--criterion", options.criterion, "criterion of the real model without --tilt: min_rms, min_max")
+          ->one_of({"min_rms", "min_max"})
+          ->capture_default_str();
   examples::add_number(app, "--frames-per-s", options.frames_per_s, examples::positive_number, "frames a second");
   app.add_flag("--tilt", options.tilt, "also tilt and swing the film");
   app.add_flag("--json", options.json, "print one JSON object instead of text");
 
   return examples::run(app, argc, argv, [&] {
+    if (criterion->given() && options.model != "real") {
+      throw petzval::Error("--criterion: found it with --model " + options.model +
+                           ", wanted --model real: the other models have one focus");
+    }
     const examples::MovingLens lens = examples::moving_lens(options);
     const auto points = examples::read_focus_points(options.keys_file);
     const std::vector<Frame> all = frames(options, lens, points);

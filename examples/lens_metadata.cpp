@@ -4,10 +4,12 @@
 //
 //   lens_metadata data/lenses/biogon_35mm_f2.8.json --f-number 4 --focus-mm 2000 --out out
 #include <array>
+#include <cmath>
 #include <filesystem>
 #include <iostream>
 #include <string>
 
+#include "petzval/core/error.hpp"
 #include "petzval/core/parallel.hpp"
 #include "petzval/core/units.hpp"
 #include "petzval/distortion/brown_conrady.hpp"
@@ -33,7 +35,13 @@ void write(const Options& options) {
   const examples::LoadedLens loaded = examples::load_lens(options.lens_file, std::array{petzval::d_line_nm});
   const petzval::Lens lens = examples::focused(loaded, options.setup);
   const auto [width, height] = options.setup.film_size();
-  const petzval::Film film{.width_mm = width, .height_mm = height, .columns = 1920, .rows = 1280};
+  constexpr int columns = 1920, most_rows = 8 * columns;
+  const double rows = std::round(columns * height / width);  // pixels are square
+  if (!(rows >= 1 && rows <= most_rows)) {
+    throw petzval::Error("--film-mm: found \"" + options.setup.film_mm + "\", wanted a height of 1/" + number(columns) +
+                         " to " + number(most_rows / columns) + " times the width");
+  }
+  const petzval::Film film{.width_mm = width, .height_mm = height, .columns = columns, .rows = static_cast<int>(rows)};
   const petzval::LensDistortion distortion(petzval::Camera(lens, film, {.model = petzval::ModelKind::exact_double}));
   const petzval::LensIdentity identity = petzval::identity_of(loaded.prescription);
   examples::make_folder(options.out_folder);

@@ -26,6 +26,7 @@ namespace {
 struct Options {
   examples::LensInput lens_file;
   double wavelength_nm = petzval::d_line_nm;
+  bool wavelength_given = false;
   bool json = false;
   double f_number = 0;    // 0: wide open
   double subject_mm = 0;  // 0: at infinity, with the film of the prescription
@@ -49,7 +50,7 @@ examples::LoadedLens load(const Options& options) {
 
 /// F, d and C if the dispersion is known and no wavelength is given.
 std::vector<double> figure_wavelengths(const Options& options, const petzval::Lens& lens) {
-  if (options.wavelength_nm != petzval::d_line_nm || lens.dispersion() == petzval::Dispersion::none) {
+  if (options.wavelength_given || lens.dispersion() == petzval::Dispersion::none) {
     return {options.wavelength_nm};
   }
   return {486.1327, petzval::d_line_nm, 656.2725};
@@ -85,8 +86,9 @@ int main(int argc, char** argv) {
       "lens_report");
   examples::add_lens(app, options.lens_file);
   app.add_flag("--json", options.json, "print one JSON object; null is an infinite or absent value");
-  examples::add_number(app, "--wavelength-nm", options.wavelength_nm, examples::positive_number,
-                       "wavelength (nm); without it figures show F, d and C");
+  const auto* wavelength =
+      examples::add_number(app, "--wavelength-nm", options.wavelength_nm, examples::positive_number,
+                           "wavelength (nm); without it figures show F, d and C");
   examples::add_number(app, "--f-number", options.f_number, examples::positive_number,
                        "stop the lens down to this f-number")
       ->default_str("wide open");
@@ -103,6 +105,7 @@ int main(int argc, char** argv) {
   out->excludes("--json");
 
   return examples::run(app, argc, argv, [&] {
+    options.wavelength_given = wavelength->given();
     const examples::Report report = examples::report(load(options));
     if (out->given()) return write_page(report, options);
     std::cout << (options.json ? examples::to_json(report).dump(2) + '\n' : examples::to_text(report));

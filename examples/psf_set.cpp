@@ -225,14 +225,8 @@ void compute(const Options& options) {
   say(examples::write_psf_set(job, parts, folder / "psf_set.exr", error));
 }
 
-/// Throws Error for the name of another file than an .exr.
-void want_exr(const fs::path& out) {
-  if (out.extension() != ".exr")
-    throw petzval::Error("--out: found " + out.string() + ", wanted a name that ends in .exr");
-}
-
 void merge(const std::vector<std::string>& names, const std::string& out) {
-  want_exr(out);
+  examples::want_ending("--out", out, ".exr");
   const std::vector<fs::path> folders(names.begin(), names.end());
   const auto job = examples::PsfJob::read(folders.front());
   for (const fs::path& folder : folders) {
@@ -251,7 +245,7 @@ struct Maybe {
 
 void query(const std::string& file, PsfSetPoint point, const Maybe& wavelength, const Maybe& f_number,
            const std::string& out) {
-  want_exr(out);
+  examples::want_ending("--out", out, ".exr");
   const petzval::PsfSet set = petzval::read_psf_set(file);
   const auto& nm = set.axes().wavelengths_nm;
   point.wavelength_nm =

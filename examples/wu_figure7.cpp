@@ -14,6 +14,7 @@
 #include "petzval/media/glass.hpp"
 #include "support/bokeh.hpp"
 #include "support/cli.hpp"
+#include "support/files.hpp"
 #include "support/load_lens.hpp"
 #include "support/wu2010.hpp"
 
@@ -58,9 +59,10 @@ int main(int argc, char** argv) {
       ->one_of({"min_rms", "paraxial"})
       ->capture_default_str();
   examples::add_samples(app, samples);
-  app.add_option("--out", out_file, "picture to write")->required()->type_name("PNG");
+  app.add_option("--out", out_file, "picture to write")->required()->type_name("FILE.png");
 
   return examples::run(app, argc, argv, [&] {
+    examples::want_ending("--out", out_file, ".png");
     const examples::BokehSetup setup{.light_mm = examples::wu_light_mm,
                                      .criterion = examples::named(criterion, examples::focus_criteria)};
     examples::Sheet sheet{"A point light at 1000 mm, and what five focus distances make of it", {}, {}};

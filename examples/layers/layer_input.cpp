@@ -74,6 +74,10 @@ LayerInput::LayerInput(const InputFlags& flags) : flags_(flags), depths_are_axia
   }
   if (flags.rgb.empty() != flags.depth.empty()) throw Error("--rgb and --depth: found one of them, wanted both");
   if (!flags.scene.empty()) {
+    if (!depths_are_axial_) {
+      throw Error("--depth-kind: found " + flags.depth_kind +
+                  " with --scene, wanted files: depths of scenes are axial");
+    }
     const auto description = blur_scene(flags.scene);
     if (!description) throw Error("--scene: found " + flags.scene + ", wanted " + std::string(blur_scene_names));
     pose_ = description->pose;

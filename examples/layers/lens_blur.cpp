@@ -25,6 +25,7 @@
 #include "support/cli.hpp"
 #include "support/files.hpp"
 #include "support/picture_files.hpp"
+#include "support/text.hpp"
 
 namespace {
 
@@ -113,6 +114,11 @@ class Job {
     }
     if (options_.compare && options_.frames > 1) result_["flicker"] = flicker_ / (options_.frames - 1);
     examples::write_text(folder / "blur.json", result_.dump(1) + '\n');
+    progress.reset();
+    if (rays_error_px_ > 1) {
+      std::cerr << "note: rays are interpolated over the picture, and are off by up to "
+                << examples::number(rays_error_px_, 3) << " pixels\n";
+    }
     std::cout << (folder / "blur.json").string() << '\n';
   }
 
@@ -129,6 +135,7 @@ class Job {
     // Layers reach beyond the picture, where nearer things may stand.
     const petzval::LensRays rays = lens_.rays(0.8 * nearest, threads_, time);
     const double rays_ms = ms_since(start);
+    rays_error_px_ = std::max(rays_error_px_, rays.error_px());
     petzval::PeelPlan plan = petzval::plan_peel(rays, 0.8 * nearest, std::numeric_limits<double>::infinity());
     if (!input_.scene()) plan.camera.overscan = 0;
 
@@ -221,7 +228,7 @@ class Job {
   petzval::Blurred blurred_;
   Json result_;
   std::vector<float> last_error_;
-  double flicker_ = 0;
+  double flicker_ = 0, rays_error_px_ = 0;  ///< the latter: of all frames
 };
 
 }  // namespace
@@ -242,11 +249,13 @@ int main(int argc, char** argv) {
                       "pixels of a scene are so many in each direction, and averaged");
   examples::add_number(app, "--highlights-above", options.highlights_above, {0, 1e9, "a number from 0 to 1e9"},
                        "radiance above which small lights become even discs; 0: none");
-  examples::add_count(app, "--frames", options.frames, {1, 100000, "a whole number from 1 to 100000"},
-                      "blur_0001.* and so on; --points has focus points with keys then");
-  examples::add_number(app, "--fps", options.frames_per_second, examples::positive_number, "frames per second");
+  auto* frames = examples::add_count(app, "--frames", options.frames, {1, 100000, "a whole number from 1 to 100000"},
+                                     "blur_0001.* and so on; --points has focus points with keys then");
+  examples::add_number(app, "--fps", options.frames_per_second, examples::positive_number, "frames per second")
+      ->needs(frames);
   examples::add_number(app, "--travel-mm", options.travel_mm, examples::finite_number,
-                       "way of the camera to the right over all frames (mm)");
+                       "way of the camera to the right over all frames (mm)")
+      ->needs(frames);
   examples::add_count(app, "--threads", options.threads, {1, 1024, "a whole number from 1 to 1024"},
                       "threads; the picture does not depend on them");
   examples::add_formats(app, options.formats, "png (sRGB)");

@@ -16,6 +16,7 @@
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/paraxial/ideal_lens.hpp"
 #include "renderer/lens_camera.hpp"
+#include "support/camera_setup.hpp"
 #include "support/focus_json.hpp"
 #include "support/load_lens.hpp"
 #include "support/text.hpp"
@@ -104,10 +105,12 @@ void add_lens(examples::App& app, LensFlags& flags) {
   app.add_flag("--chroma", flags.chroma, "red, green and blue have rays of their own, at 650, 510 and 475 nm");
   add_iris(app, flags.iris);
   add_bokeh(app, flags.bokeh);
-  app.add_option("--points", flags.surface.points_file,
-                 "what is in focus at places of the picture: a focal surface; with --frames, focus points with keys")
-      ->type_name("POINTS.json");
-  add_surface_kind(app, flags.surface);
+  auto* points =
+      app.add_option(
+             "--points", flags.surface.points_file,
+             "what is in focus at places of the picture: a focal surface; with --frames, focus points with keys")
+          ->type_name("POINTS.json");
+  add_surface_kind(app, flags.surface, points);
   add_expressive(app, flags.expressive);
 }
 
@@ -125,6 +128,7 @@ BlurLens::BlurLens(const LensFlags& flags, int columns, int rows, const renderer
   load();
   const petzval::Camera plain = camera({});
   film_ = plain.film();
+  if (!thin_) examples::say_what_does_not_fit(*lens_, film_);
   layers_ = thin_ ? petzval::layer_camera(columns, rows, petzval::radians(fov_deg())) : petzval::layer_camera(plain);
   if (keyed_ && !flags.surface.points_file.empty()) points_ = examples::read_focus_points(flags.surface.points_file);
   surface_ = surface_at(0);
@@ -152,8 +156,19 @@ void BlurLens::load() {
   }
   const petzval::FocusCriterion criterion =
       thin_ ? petzval::FocusCriterion::paraxial : petzval::FocusCriterion::min_rms;
-  lens_ = petzval::with_focus(lens, flags_.focus_mm - petzval::pupils(lens).entrance.z,
-                              {.criterion = criterion, .origin = petzval::DistanceOrigin::front_vertex});
+  // The user counts from the entrance pupil, and the library from the front vertex.
+  const double pupil_z = petzval::pupils(lens).entrance.z, from_vertex = flags_.focus_mm - pupil_z;
+  if (std::isfinite(pupil_z) && !(from_vertex > 0)) {
+    throw Error("--focus-mm: found " + number(flags_.focus_mm) + ", wanted more than " + number(pupil_z, 6) +
+                ": the entrance pupil, from which it counts, lies that far behind the front vertex");
+  }
+  try {
+    lens_ = petzval::with_focus(lens, from_vertex,
+                                {.criterion = criterion, .origin = petzval::DistanceOrigin::front_vertex});
+  } catch (const Error& error) {
+    throw Error("--focus-mm: found " + number(flags_.focus_mm) +
+                " from the entrance pupil, which lies at z = " + number(pupil_z, 6) + " mm: " + error.what());
+  }
   name_ = lens_->name();
 }
 

@@ -408,12 +408,13 @@ int main(int argc, char** argv) {
   app.get_option("--focus-mm")->required()->default_str("");
   examples::add_distance_origin(app, options.setup);
   examples::add_bokeh(app, options.bokeh);
-  app.add_option("--focal-surface", options.surface.points_file,
-                 "distances in focus, extents of the depth of field and blurs at places of the picture, for a "
-                 "first-order --model: {\"points\": [{\"pixel\": [x, y] or \"world_mm\": [x, y, z], "
-                 "\"distance_mm\", \"extent_stops\", \"blur_px\", \"weight\", \"fade\"}]}")
-      ->type_name("POINTS.json");
-  examples::add_surface_kind(app, options.surface);
+  auto* points =
+      app.add_option("--focal-surface", options.surface.points_file,
+                     "distances in focus, extents of the depth of field and blurs at places of the picture, for a "
+                     "first-order --model: {\"points\": [{\"pixel\": [x, y] or \"world_mm\": [x, y, z], "
+                     "\"distance_mm\", \"extent_stops\", \"blur_px\", \"weight\", \"fade\"}]}")
+          ->type_name("POINTS.json");
+  examples::add_surface_kind(app, options.surface, points);
   examples::add_expressive(app, options.expressive);
   constexpr examples::Range below_quarter_turn{-89.9, 89.9, "an angle from -89.9 to 89.9"};
   examples::add_number(app, "--tilt-deg", options.tilt_deg, below_quarter_turn, "tilt of the film about +x (degrees)");
@@ -435,12 +436,16 @@ int main(int argc, char** argv) {
       ->type_name("I/N");
   app.add_flag("--resume", options.resume,
                "go on from the checkpoint in DIR, to the bits of a run that was not cut off");
-  examples::add_formats(app, options.formats, "png (sRGB)");
+  const auto* formats = examples::add_formats(app, options.formats, "png (sRGB)");
   app.add_option("--out", options.out_folder, "folder for the results")->required()->type_name("DIR");
 
   return examples::run(app, argc, argv, [&] {
     if (options.samples == 0 && options.seconds == 0) options.samples = 64;
     if (!tile.empty()) options.shard = examples::parse_shard("--tile", tile);
+    if (options.shard.count > 1 && formats->given()) {
+      throw petzval::Error("--format: found it with --tile " + tile +
+                           ", wanted it for 'bokeh_scene merge', which writes the picture");
+    }
     Job(options).run();
   });
 }

@@ -117,8 +117,9 @@ int main(int argc, char** argv) {
          "radius, and skewness outwards; x_mm is the place of the ball. Highlights whose halo is as bright as "
          "they are measure the halo too")
       ->type_name("CSV");
-  app.add_option("--out", out, "PNG to write")->required()->type_name("PNG");
+  app.add_option("--out", out, "PNG to write")->required()->type_name("FILE.png");
   return examples::run(app, argc, argv, [&] {
+    examples::want_ending("--out", out, ".png");
     std::vector<Picture> pictures;
     for (const std::string& folder : folders) pictures.push_back(read(folder));
     petzval::write_png(examples::draw_sheet(sheet_of(pictures, title, columns)), out);

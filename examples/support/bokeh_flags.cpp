@@ -39,6 +39,14 @@ void add_bokeh(App& app, BokehFlags& flags) {
 
 petzval::BokehControls controls_of(const BokehFlags& flags) {
   petzval::BokehControls result = flags.controls;
+  if (result.keep_light && !result.vignettes()) {
+    throw petzval::Error(
+        "--keep-light: found it without --lens-ratio and --rate-of-change, wanted one of them: no rim cuts cat's eyes");
+  }
+  if (result.weight_distribution == 0 && result.weight_strength != petzval::EdgeWeight{}.strength) {
+    throw petzval::Error(
+        "--weight-strength: found it without --weight-distribution, wanted one: without it all weights are 1");
+  }
   if (!flags.iris_image.empty() && !flags.weight_map.empty()) {
     throw petzval::Error("--weight-map: found an --iris-image as well, wanted one of them");
   }

@@ -22,7 +22,7 @@ struct BokehFlags {
 void add_bokeh(App& app, BokehFlags& flags);
 
 /// The controls with their map. Notes on standard error how much light the cut of weights at 0 adds. Throws
-/// petzval::Error for files that cannot be read, and two maps.
+/// petzval::Error for files that cannot be read, two maps, and flags without an effect.
 petzval::BokehControls controls_of(const BokehFlags& flags);
 
 }  // namespace examples

@@ -61,8 +61,12 @@ petzval::Lens focused(const LoadedLens& loaded, const CameraSetup& setup) {
       {.criterion = named(setup.criterion, focus_criteria), .origin = named(setup.origin, distance_origins)});
 }
 
-void say_what_does_not_fit(const petzval::Lens& lens, const petzval::Film& film) {
-  for (const petzval::Finding& finding : petzval::lint(lens, film)) std::cerr << "note: " << finding.message << '\n';
+void say_what_does_not_fit(const petzval::Lens& lens, const petzval::Film& film, bool has_pixels) {
+  for (const petzval::Finding& finding : petzval::lint(lens, film)) {
+    if (has_pixels || finding.kind == petzval::FindingKind::film_size) {
+      std::cerr << "note: " << finding.message << '\n';
+    }
+  }
 }
 
 }  // namespace examples

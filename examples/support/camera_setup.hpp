@@ -43,7 +43,8 @@ std::array<double, 2> parse_size(const std::string& where, std::string_view text
 /// The loaded lens, stopped down and focused at its primary wavelength.
 petzval::Lens focused(const LoadedLens& loaded, const CameraSetup& setup);
 
-/// Notes on standard error a film that does not fit the image circle of its lens.
-void say_what_does_not_fit(const petzval::Lens& lens, const petzval::Film& film);
+/// Notes on standard error a film that does not fit its lens: what petzval::lint() finds. Without pixels it looks at
+/// the size of the film alone.
+void say_what_does_not_fit(const petzval::Lens& lens, const petzval::Film& film, bool has_pixels = true);
 
 }  // namespace examples

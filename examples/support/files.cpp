@@ -27,6 +27,11 @@ std::string read_text(const std::filesystem::path& file) {
 
 void write_text(const std::filesystem::path& file, const std::string& text) { petzval::write_file(text, file); }
 
+void want_ending(const std::string& option, const std::filesystem::path& file, const std::string& ending) {
+  if (file.extension() == ending) return;
+  throw petzval::Error(option + ": found " + file.string() + ", wanted a name that ends in " + ending);
+}
+
 void make_folder(const std::filesystem::path& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);

@@ -17,6 +17,9 @@ Json finite_or_null(double value);
 std::string read_text(const std::filesystem::path& file);
 void write_text(const std::filesystem::path& file, const std::string& text);
 
+/// Throws petzval::Error that names the option if the file's name does not end so.
+void want_ending(const std::string& option, const std::filesystem::path& file, const std::string& ending);
+
 /// Makes the folder and its parents if missing. Throws petzval::Error that names it.
 void make_folder(const std::filesystem::path& folder);
 

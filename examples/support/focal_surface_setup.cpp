@@ -84,14 +84,16 @@ std::vector<petzval::FocalPoint> points_of(const std::filesystem::path& file, co
 
 }  // namespace
 
-void add_surface_kind(App& app, FocalSurfaceSetup& setup) {
+void add_surface_kind(App& app, FocalSurfaceSetup& setup, Option* points) {
   app.add_option("--kind", setup.kind,
                  "how distances are interpolated between points: affine (by planes, which it reproduces) or shepard "
                  "(weighted means, flat at the points)")
       ->one_of(names(kinds))
-      ->capture_default_str();
+      ->capture_default_str()
+      ->needs(points);
   add_number(app, "--beta", setup.beta, {1, 8, "a number from 1 to 8"},
-             "weights of points fall with their distance in the picture to the power -beta");
+             "weights of points fall with their distance in the picture to the power -beta")
+      ->needs(points);
 }
 
 ReadSurface read_focal_surface(const FocalSurfaceSetup& setup, const petzval::Camera& camera,

@@ -20,8 +20,8 @@ struct FocalSurfaceSetup {
   double beta = 3;
 };
 
-/// Options --kind and --beta.
-void add_surface_kind(App& app, FocalSurfaceSetup& setup);
+/// Options --kind and --beta, which need the option of the points.
+void add_surface_kind(App& app, FocalSurfaceSetup& setup, Option* points);
 
 /// A point of the world in the lens frame, mm.
 using WorldToLens = std::function<petzval::Vec3<double>(const petzval::Vec3<double>&)>;

@@ -36,9 +36,13 @@ void add_iris_shape(App& app, IrisSetup& setup) {
 }
 
 petzval::Lens stopped_down(const petzval::Lens& lens, const IrisSetup& setup) {
-  if (setup.blades == 0 && setup.roundness != 0) {
-    throw petzval::Error(
-        "--roundness: found it without --blades, wanted a number of blades: a round iris has no edges");
+  if (setup.blades == 0) {
+    const auto refuse = [](const std::string& found, const std::string& why) {
+      throw petzval::Error(found + " without --blades, wanted a number of blades: a round iris has " + why);
+    };
+    if (setup.roundness != 0) refuse("--roundness: found it", "no edges");
+    if (setup.rotation_deg != 0) refuse("--iris-rotation-deg: found it", "no corners");
+    if (setup.area == "equal") refuse("--iris-area: found equal", "one area");
   }
   const petzval::Lens shaped = petzval::with_iris(lens, setup.iris());
   if (setup.f_number > 0) return petzval::with_f_number(shaped, setup.f_number_by_corners());

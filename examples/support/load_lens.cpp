@@ -63,9 +63,11 @@ Option* add_lens(App& app, LensInput& input, const std::string& name, const std:
   lens->type_name("FILE");
   app.add_option("--glasses", input.glass_files,
                  "glass catalogues to look into first (.agf, refractiveindex.info .yml)")
-      ->type_name("FILE...");
+      ->type_name("FILE...")
+      ->needs(lens);
   app.add_option("--configuration", input.configuration, "position of a zoom lens, by name or by number from 0")
-      ->default_str("the first");
+      ->default_str("the first")
+      ->needs(lens);
   return lens;
 }
 

@@ -19,8 +19,8 @@ struct LensInput {
   std::string configuration{};             ///< a name or a number from 0; empty: the first
 };
 
-/// The option LENS, or --lens, with --glasses and --configuration beside it. LENS is required if nothing is to be said
-/// about it.
+/// The option LENS, or --lens, with --glasses and --configuration, which need it. LENS is required if nothing is to be
+/// said about it.
 Option* add_lens(App& app, LensInput& input, const std::string& name = "LENS", const std::string& remark = "");
 
 /// The glass tables of petzval, and what --glasses adds.

@@ -52,8 +52,10 @@ void add_model_options(App& app, ModelOptions& options) {
   app.add_flag("--json", options.json, "print JSON");
 }
 
-petzval::Lens focused_lens(const ModelOptions& options) {
-  return focused(load_lens(options.lens_file, std::array{petzval::d_line_nm}), options.setup);
+LoadedLens focused_lens(const ModelOptions& options) {
+  LoadedLens loaded = load_lens(options.lens_file, std::array{petzval::d_line_nm});
+  loaded.lens = focused(loaded, options.setup);
+  return loaded;
 }
 
 std::string conditions(const petzval::Lens& lens, const ModelOptions& options) {

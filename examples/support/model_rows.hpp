@@ -27,7 +27,7 @@ struct ModelOptions {
 void add_model_options(App& app, ModelOptions& options);
 
 /// The lens of the options at the d line, stopped down and focused.
-petzval::Lens focused_lens(const ModelOptions& options);
+LoadedLens focused_lens(const ModelOptions& options);
 /// The conditions in one line: "f/2, focused at 3000 mm from the film, ...".
 std::string conditions(const petzval::Lens& lens, const ModelOptions& options);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "picture_files.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace examples {
@@ -31,6 +32,7 @@ std::vector<std::filesystem::path> write_picture(const petzval::RgbImage& image,
   for (const std::string& format : formats) {
     std::filesystem::path file = stem;
     file += '.' + format;
+    if (std::find(files.begin(), files.end(), file) != files.end()) continue;
     if (format == "exr") {
       petzval::ExrPart part = exr_part(image);
       part.texts = texts;

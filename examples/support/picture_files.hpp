@@ -15,7 +15,7 @@ namespace examples {
 Option* add_formats(App& app, std::vector<std::string>& formats, const std::string& png);
 
 /// Writes STEM.exr (linear float; texts and numbers go into its header), STEM.pfm (the same) and STEM.png (`shown`), as
-/// the formats say. Returns the paths. Throws petzval::Error that names a file.
+/// the formats say, each once. Returns the paths. Throws petzval::Error that names a file.
 std::vector<std::filesystem::path> write_picture(const petzval::RgbImage& image, const petzval::Rgb8Image& shown,
                                                  const std::vector<std::string>& formats,
                                                  const std::filesystem::path& stem,

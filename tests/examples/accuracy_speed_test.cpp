@@ -76,6 +76,15 @@ TEST_F(AccuracySpeed, ChoosesForFourBudgets) {
   EXPECT_EQ(outcome.out.find("nan"), std::string::npos);
 }
 
+TEST_F(AccuracySpeed, WritesAFileForEachPositionOfAZoom) {
+  const auto outcome =
+      run("accuracy_speed", {lens("zoom_70-210mm_f4"), "--configuration", "tele", "--json", "--out", path("out")});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  for (const char* ending : {".csv", ".svg"}) {
+    EXPECT_TRUE(std::filesystem::exists(path(std::string("out/zoom_70-210mm_f4_tele_accuracy_speed") + ending)));
+  }
+}
+
 TEST_F(AccuracySpeed, SkipsWhatCylindersDoNotHave) {
   const auto outcome = run("accuracy_speed", {lens("anamorphic_60mm_2x"), "--film-mm", "20x13", "--json"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;

@@ -171,6 +171,12 @@ TEST_F(BokehScene, RefusesWhatItCannotRender) {
   refused({"--budget-px", "1"}, "--model auto");
   refused({"--model", "auto", "--tile", "1/2"}, "--tile");
   refused({"--weight-map", path("no.png")}, "no.png");
+  refused({"--tile", "1/2", "--format", "pfm"},
+          "--format: found it with --tile 1/2, wanted it for 'bokeh_scene merge'");
+  refused({"--kind", "affine"}, "--kind requires --focal-surface");
+  refused({"--beta", "2"}, "--beta requires --focal-surface");
+  refused({"--iris-area", "equal"}, "--iris-area: found equal without --blades");
+  refused({"--keep-light"}, "--keep-light: found it without --lens-ratio");
   write("inside.json", R"({"camera": {"position_mm": [0, 0, 0]}, "objects": [
     {"sphere": {"centre_mm": [0, 0, 0], "radius_mm": 500}, "emission": [1, 1, 1]}]})");
   refused({"--scene", path("inside.json")}, "inside");
@@ -244,6 +250,7 @@ TEST_F(BokehScene, GoesOnSheets) {
   EXPECT_TRUE(read(path("balls.csv")).starts_with("lens,focus_mm,x_mm,"));
   render("small", {"--width", "36", "--height", "24"});
   expect_failure("bokeh_sheet", {path("a"), path("small"), "--out", path("c.png")}, "wanted all pictures of one size");
+  expect_failure("bokeh_sheet", {path("a"), "--out", path("c.jpg")}, "c.jpg, wanted a name that ends in .png");
   expect_failure("bokeh_sheet", {path("nothing"), "--out", path("c.png")}, "nothing");
   write("a/render.json", "{}");
   expect_failure("bokeh_sheet", {path("a"), "--out", path("c.png")}, "render.json");

@@ -178,6 +178,8 @@ TEST_F(CameraRays, RefusesABadCommandLineInOneLine) {
   expect_failure("camera_rays", with({"--film-mm", "36"}), "--film-mm: found \"36\"");
   expect_failure("camera_rays", with({"--film-mm", "0x24"}), "--film-mm: found \"0\"");
   expect_failure("camera_rays", with({"--f-number", "0.1"}), "0.1");
+  expect_failure("camera_rays", with({"--iris-rotation-deg", "5"}), "--iris-rotation-deg: found it without --blades");
+  expect_failure("camera_rays", with({"--weight-strength", "1"}), "found it without --weight-distribution");
   expect_failure("camera_rays", with({"--tilt-deg", "90"}), "--tilt-deg: found \"90\"");
   expect_failure("camera_rays", with({"--film-mm", "36x240", "--tilt-deg", "60"}), "where the last surface ends");
   EXPECT_FALSE(std::filesystem::exists(path("rays.csv")));

@@ -77,6 +77,18 @@ TEST_F(ConvertLens, ReportsWhatItRead) {
   EXPECT_EQ(json["configurations"].size(), 0u);
 }
 
+TEST_F(ConvertLens, SaysThatPositionsAreLost) {
+  for (const char* name : {"zoom.dat", "zoom.osl", "zoom.opentrackio.json", "zoom.stmap.exr"}) {
+    const std::string lost = path(name) + ": configurations all but the first are lost\n";
+    const auto whole = run("convert_lens", {lens("zoom_70-210mm_f4"), path(name)});
+    EXPECT_EQ(whole.status, 0) << whole.err;
+    EXPECT_NE(whole.err.find(lost), std::string::npos) << whole.err;
+    const auto one = run("convert_lens", {lens("zoom_70-210mm_f4"), path(name), "--configuration", "tele"});
+    EXPECT_EQ(one.status, 0) << one.err;
+    EXPECT_EQ(one.err.find(lost), std::string::npos) << one.err;
+  }
+}
+
 TEST_F(ConvertLens, StrictRefusesWithStatus3AndWritesNothing) {
   write("lens.dat", "50.6 5.2 1.5168 25.4\n-50.6 0 1 25.4\n");
   const auto outcome = run("convert_lens", {path("lens.dat"), path("lens.json"), "--strict"});

@@ -36,6 +36,9 @@ TEST_F(ExpressiveLensProgram, BeginsWithTheRealLens) {
   for (std::size_t k = 0; k < 13; ++k) {
     EXPECT_NEAR(twice["power"][k][1].get<double>() - 1, 2 * (json["power"][k][1].get<double>() - 1), 1e-12);
   }
+  const auto none = draw("double_gauss_100mm_f1.35", {"--light-mm", "850", "--from-lens", "0"}, "none");
+  EXPECT_TRUE(none["power"].empty());
+  EXPECT_TRUE(none["film_offsets_mm"].empty());
 }
 
 TEST_F(ExpressiveLensProgram, TakesASplinePointsAndADispersion) {

@@ -195,6 +195,12 @@ TEST_F(FocusPull, ExplainsItselfAndRefusesABadCommandLine) {
   };
   fails({}, "LENS is required");
   fails({lens("double_gauss_100mm_f2.0"), "--criterion", "sharp"}, "--criterion");
+  for (const std::string model : {"thin", "thick"}) {
+    fails({lens("double_gauss_100mm_f2.0"), "--model", model, "--criterion", "min_max"},
+          "--criterion: found it with --model " + model + ", wanted --model real");
+  }
+  fails({"--model", "thin", "--thin-focal-length-mm", "50", "--f-number", "2", "--configuration", "1"},
+        "--configuration requires LENS");
   fails({lens("double_gauss_100mm_f2.0"), "--frames-per-s", "0"}, "--frames-per-s: found \"0\"");
   expect_failure("focus_pull", {lens("double_gauss_100mm_f2.0"), "--out", path("out")}, "--keys is required");
 }

@@ -189,6 +189,54 @@ TEST_F(LensBlurProgram, RefusesWhatItCannotBlur) {
   refused(joined({thin, focus, {"--rgb", path("rgb.pfm"), "--depth", path("turned.pfm")}}),
           "turned.pfm: is 16 x 24, wanted the size of");
   refused(joined({thin, focus, files(), {"--lens-diameter-mm", "7000"}}), "lens-diameter-mm");
+  const Arguments gauss{"--scene", "town", "--lens", lens("double_gauss_100mm_f1.35")};
+  refused(joined({gauss, {"--focus-mm", "1"}}), "--focus-mm: found 1, wanted more than 64.0487: the entrance pupil");
+  refused(joined({gauss, {"--focus-mm", "70"}}),
+          "--focus-mm: found 70 from the entrance pupil, which lies at z = 64.0487 mm: ");
+}
+
+TEST_F(LensBlurProgram, RefusesFlagsWithoutAnEffect) {
+  const auto refused = [&](const Arguments& arguments, const std::string& reason) {
+    expect_failure("lens_blur", joined({arguments, {"--scene", "town", "--focus-mm", "3000", "--out", path("out")}}),
+                   reason);
+  };
+  refused(joined({thin, {"--depth-kind", "distance"}}), "--depth-kind: found distance with --scene, wanted files");
+  refused(joined({thin, {"--fps", "24"}}), "--fps requires --frames");
+  refused(joined({thin, {"--travel-mm", "500"}}), "--travel-mm requires --frames");
+  refused(joined({thin, {"--kind", "affine"}}), "--kind requires --points");
+  refused(joined({thin, {"--beta", "2"}}), "--beta requires --points");
+  refused(joined({thin, {"--iris-rotation-deg", "10"}}), "--iris-rotation-deg: found it without --blades");
+  for (const Arguments& model : {thin, {"--singlet", "50,-50,5,N-BK7"}}) {
+    refused(joined({model, {"--configuration", "tele"}}), "--configuration requires --lens");
+    refused(joined({model, {"--glasses", "none.agf"}}), "--glasses requires --lens");
+  }
+}
+
+// The film of 24 mm height is for lenses of that picture; --fov-deg makes it smaller.
+TEST_F(LensBlurProgram, SaysThatTheLensDoesNotLightTheFilm) {
+  const Arguments phone =
+      joined({small, {"--scene", "town", "--focus-mm", "1000", "--lens", lens("phone_5.6mm_f3.5")}});
+  const auto notes = [&](const Arguments& more) {
+    const auto outcome = run("lens_blur", joined({phone, more, {"--format", "png", "--out", path("out")}}));
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    int count = 0;
+    for (const std::string& line : lines(outcome.err)) {
+      count += line.starts_with("note: the film is 32 by 24 mm and needs an image circle of 40 mm");
+    }
+    return count;
+  };
+  EXPECT_EQ(notes({"--frames", "2"}), 1);
+  EXPECT_EQ(notes({"--fov-deg", "20"}), 0);
+}
+
+// The pupil of a fisheye moves with the field, and rays between the nodes of a table with it.
+TEST_F(LensBlurProgram, SaysHowFarInterpolatedRaysAreOff) {
+  const auto outcome =
+      run("lens_blur", {"--scene", "town", "--lens", lens("fisheye_10mm_f4"), "--fov-deg", "60", "--focus-mm", "3000",
+                        "--width", "160", "--height", "120", "--rays", "16", "--format", "png", "--out", path("out")});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_GT(read_json(path("out/blur.json"))["rays_error_px"], 1);
+  EXPECT_NE(outcome.err.find("note: rays are interpolated over the picture, and are off by up to "), std::string::npos);
 }
 
 }  // namespace

@@ -180,6 +180,17 @@ TEST_F(LensReport, DrawsTheFieldsAskedForAndBothSections) {
   EXPECT_NE(spots.find("f/8,"), std::string::npos);  // at 550 nm, the primary wavelength
   EXPECT_NE(spots.find("550 nm"), std::string::npos);
   EXPECT_EQ(spots.find("656"), std::string::npos);
+
+  // The d line alone, if it is asked for.
+  const std::string triplet = lens("cooke_triplet_50mm_f5");
+  const auto of_triplet = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{triplet, "--out", path("d")};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    run("lens_report", arguments);
+    return read(path("d/cooke_triplet_50mm_f5_spots.svg"));
+  };
+  EXPECT_NE(of_triplet({}).find("656.273 nm"), std::string::npos);
+  EXPECT_EQ(of_triplet({"--wavelength-nm", "587.5618"}).find("656.273 nm"), std::string::npos);
 }
 
 TEST_F(LensReport, DrawsALensThatLimitsNothing) {

@@ -223,6 +223,7 @@ TEST_F(PsfSets, RefusesABadCommandLineAndWritesNothing) {
   grid({"--samples", "0"}, "--samples: found \"0\"");
   grid({"--focus-mm", "20"}, "cannot be focused");
   grid({"--blades", "2"}, "blades");
+  grid({"--iris-rotation-deg", "5"}, "--iris-rotation-deg: found it without --blades");
   grid({"--check", "--shard", "1/2"}, "--check: found --shard 1/2");
 
   succeed(set("set"));

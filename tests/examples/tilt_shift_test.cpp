@@ -354,6 +354,12 @@ TEST_F(TiltShift, ExplainsItselfAndRefusesABadCommandLine) {
   fails({"--model", "thin", "--thin-focal-length-mm", "50"}, "found no --f-number");
   fails({"--model", "thin", "--thin-focal-length-mm", "0", "--f-number", "2"}, "--thin-focal-length-mm: found \"0\"");
   fails({file, "--model", "thin", "--thin-focal-length-mm", "50", "--f-number", "2"}, "wanted one of them");
+  const Arguments thin{"--model", "thin", "--thin-focal-length-mm", "50", "--f-number", "2"};
+  for (const std::string flag : {"--glasses", "--configuration"}) {
+    Arguments arguments = thin;
+    arguments.insert(arguments.end(), {flag, "tele"});
+    fails(arguments, flag + " requires LENS");
+  }
   fails({file, "--model", "perfect"}, "--model");
   fails({file, "--max-tilt-deg", "90"}, "--max-tilt-deg: found \"90\", wanted a number of degrees from 0 to 89");
   fails({file, "--film-mm", "36"}, "--film-mm: found \"36\", wanted a size like 36x24");
