@@ -12,7 +12,8 @@
 namespace petzval::fuzz {
 
 /// Numbers made of the bytes of a fuzzer; zeros when the bytes end. A byte more or less changes what follows, so few
-/// bytes stand for each number.
+/// bytes stand for each number. Compilers choose the order of a call's arguments: at most one of them asks for bytes,
+/// so that an input is the same work everywhere. Between braces the order is that of the text.
 class Bytes {
  public:
   Bytes(const std::uint8_t* data, std::size_t size) noexcept : left_(data, size) {}
@@ -43,7 +44,10 @@ class Bytes {
         1e-12,  1e10,   0.5};
     const int kind = byte();
     if (kind < 128) return hard[static_cast<std::size_t>(kind) % hard.size()];
-    if (kind < 224) return std::pow(10.0, count(-30, 30)) * between(-1, 1);
+    if (kind < 224) {
+      const double power = std::pow(10.0, count(-30, 30));
+      return power * between(-1, 1);
+    }
     std::uint64_t bits = 0;
     for (int i = 0; i < 8; ++i) bits = bits << 8 | byte();
     return std::bit_cast<double>(bits);

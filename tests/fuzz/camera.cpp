@@ -55,8 +55,8 @@ void samples(const Camera& camera, fuzz::Bytes& bytes) {
   std::array<std::array<T, count>, 9> out{};
   std::array<RayFate, count> fates;
   for (std::size_t i = 0; i < count; ++i) {
-    const FilmPoint film =
-        camera.film().point(bytes.number(0, 1) * camera.film().columns, bytes.number(0, 1) * camera.film().rows);
+    const Vec2<double> raster{bytes.number(0, 1) * camera.film().columns, bytes.number(0, 1) * camera.film().rows};
+    const FilmPoint film = camera.film().point(raster.x, raster.y);
     in[0][i] = static_cast<T>(film.x), in[1][i] = static_cast<T>(film.y);
     in[2][i] = static_cast<T>(bytes.number(0, 1)), in[3][i] = static_cast<T>(bytes.number(0, 1));
   }
@@ -78,7 +78,8 @@ void samples(const Camera& camera, fuzz::Bytes& bytes) {
 
 void from_the_scene(const Camera& camera, fuzz::Bytes& bytes) {
   const Vec3<double> point{bytes.number(-500, 500), bytes.number(-500, 500), bytes.number(-2000, -10)};
-  const ImportanceSample found = camera.sample_importance(point, bytes.number(0, 1), bytes.number(0, 1));
+  const double u = bytes.number(0, 1), v = bytes.number(0, 1);
+  const ImportanceSample found = camera.sample_importance(point, u, v);
   fuzz::require(std::isfinite(found.importance.we) && found.importance.we >= 0, "importance is 0 or more");
   fuzz::require(std::isfinite(found.pdf) && found.pdf >= 0, "a density is 0 or more");
   if (found) {

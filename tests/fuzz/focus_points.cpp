@@ -80,13 +80,17 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (kind % 16 == 1) options.max_tilt_rad = bytes.number(0, 1.5);
     if (kind % 16 == 2) options.film.shift_y_mm = bytes.number(-20, 20);
     if (work < 8) {  // exact rays, a thousand times as slow
-      const ImageRays lens(fuzz::wild_lens(bytes), bytes.number(1, 20), 16);
+      const Lens glass = fuzz::wild_lens(bytes);
+      const ImageRays lens(glass, bytes.number(1, 20), 16);
       const auto targets = wild_targets(bytes);
       if (work < 4) return tilt(lens, targets, options);
       return check(autofocus(lens, targets, {}, work % 2 ? FocusCriterion::min_rms : FocusCriterion::min_max).film);
     }
-    const IdealLens lens =
-        work < 64 ? thick_lens(fuzz::wild_lens(bytes)) : thin_lens(bytes.number(5, 300), bytes.number(0.8, 32));
+    const auto wild_thin_lens = [&] {
+      const double focal_length = bytes.number(5, 300);
+      return thin_lens(focal_length, bytes.number(0.8, 32));
+    };
+    const IdealLens lens = work < 64 ? thick_lens(fuzz::wild_lens(bytes)) : wild_thin_lens();
     if (work < 160) return tilt(lens, wild_targets(bytes), options);
     if (work < 192) return check(autofocus(lens, wild_targets(bytes)).film);
     surface(lens, {.width_mm = 36, .height_mm = 24, .z_mm = lens.rear_focal_z + bytes.number(0, 3)}, bytes);

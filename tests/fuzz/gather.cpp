@@ -35,7 +35,8 @@ FragmentLists wild_lists(fuzz::Bytes& bytes, int columns, int rows, bool tame) {
 /// A thin lens, or a line for each point and place that no lens has.
 LensRays wild_rays(fuzz::Bytes& bytes, const LayerCamera& camera, bool tame) {
   const int sets = bytes.one_in(8) ? 4 : 1, kind = bytes.count(0, 3);
-  const auto points = vogel_points(sets * bytes.count(1, 6), bytes.between(0, 1));
+  const int count = sets * bytes.count(1, 6);
+  const auto points = vogel_points(count, bytes.between(0, 1));
   const LensRaysOptions options{.nearest_mm = 400, .sets = sets};
   const auto number = [&](double least, double most) {
     return tame ? bytes.between(least, most) : bytes.number(least, most);
@@ -80,13 +81,15 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   fuzz::Bytes bytes(data, size);
   fuzz::done([&] {
     const bool tame = !bytes.one_in(4);
-    LayerCamera camera = layer_camera(bytes.count(1, 9), bytes.count(1, 9), bytes.between(0.3, 1.2));
+    const int columns = bytes.count(1, 9), rows = bytes.count(1, 9);
+    const LayerCamera camera = layer_camera(columns, rows, bytes.between(0.3, 1.2));
     const LensRays rays = wild_rays(bytes, camera, tame);
     const PeelPlan plan = plan_peel(rays, 450, infinity);
     if (plan.camera.overscan > 40) return;  // larger pictures, and no other work
     LayerSet layers;
-    layers.thin(wild_lists(bytes, plan.camera.layer_columns(), plan.camera.layer_rows(), tame),
-                bytes.one_in(2) ? plan.bias : 0, bytes.count(1, 4));
+    const FragmentLists lists = wild_lists(bytes, plan.camera.layer_columns(), plan.camera.layer_rows(), tame);
+    const double bias = bytes.one_in(2) ? plan.bias : 0;
+    layers.thin(lists, bias, bytes.count(1, 4));
     const auto path = static_cast<GatherPath>(bytes.count(0, 3));
     GatherOptions options{.path = path, .bounded = !bytes.one_in(4), .highlights_above = bytes.one_in(4) ? 1.0 : 0.0};
     const Blurred picture = gather(layers, rays, options);

@@ -20,7 +20,8 @@ FieldPoint wild_field(fuzz::Bytes& bytes) {
 }
 
 void aimed(const Lens& lens, fuzz::Bytes& bytes) {
-  const AimedRay ray = aim(lens, wild_field(bytes), {bytes.number(-1, 1), bytes.number(-1, 1)});
+  const FieldPoint field = wild_field(bytes);
+  const AimedRay ray = aim(lens, field, {bytes.number(-1, 1), bytes.number(-1, 1)});
   if (!ray) return;
   fuzz::require(fuzz::finite(ray.ray) && fuzz::unit(ray.ray.direction, 1e-12), "an aimed ray has unit length");
   fuzz::require(fuzz::finite(ray.end.ray), "the end of an aimed ray is finite");
@@ -37,7 +38,8 @@ void boundary(const Lens& lens, const PupilBoundary& found, fuzz::Bytes& bytes) 
   }
   const PupilSampler sampler(found);
   if (sampler.empty()) return;
-  const Vec2<double> p = sampler(bytes.between(0, 0.9999), bytes.between(0, 0.9999));
+  const double u = bytes.between(0, 0.9999), v = bytes.between(0, 0.9999);
+  const Vec2<double> p = sampler(u, v);
   fuzz::require(std::isfinite(p.x) && std::isfinite(p.y), "a sample of a pupil is finite");
 }
 
