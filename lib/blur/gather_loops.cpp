@@ -147,10 +147,10 @@ PETZVAL_INLINE void guess(const LayerWindow& window, const At& at, Numbers low, 
   }
 }
 
-/// Of rays with alpha that met a surface, what is left ends in the void.
+/// Of rays that met a surface with alpha below 1, be it 0, what is left ends in the void.
 template <bool opaque, int colours>
 PETZVAL_INLINE void end_partly(Found<opaque, colours>& found) noexcept {
-  if constexpr (!opaque) found.seeking = all_of(found.seeking, found.through >= Numbers(1.0f));
+  if constexpr (!opaque) found.seeking = all_of(found.seeking, found.below >= Numbers(1e30f));
 }
 
 template <bool opaque, int colours>

@@ -150,11 +150,11 @@ Lens with_f_number(const Lens& lens, double f_number, Wavelength wavelength) {
                 std::to_string(obscuration.surface) + " is that large");
   }
   Lens stopped = with_semi_diameter(lens, beam.stop, std::min(*height, stop.semi_diameter));
-  // Strong spherical aberration lets rays nearer to the axis meet the stop as far out as the ray of height y does.
+  // Strong spherical aberration lets other rays meet the stop as far out as the ray of height y does.
   const double found = real_f_number(stopped, wavelength);
-  if (found > f_number * (1 + 1e-6)) {
-    throw Error(lens.name() + ": f-number is " + to_text(f_number) + ", wanted " + to_text(found, 10) +
-                " or more: rays nearer to the axis meet the rim of its stop");
+  if (!(std::abs(found - f_number) <= 1e-6 * f_number)) {
+    throw Error(lens.name() + ": f-number is " + to_text(f_number) + ", wanted one that a stop gives, such as " +
+                to_text(found, 10) + ": spherical aberration folds the beam, and other rays meet its rim");
   }
   return stopped;
 }
