@@ -256,7 +256,7 @@ class Gathering {
           // Of rays that met what nothing is known of, the first layer is the nearest thing.
           if (known > 1e-6f * total) {
             rgba[c] = colour / known * total * per_ray;
-            alpha += layers_.opaque ? 1 - sums.open[at] / known : sums.alpha[at] / known;
+            alpha += layers_.opaque ? std::max(1 - sums.open[at] / known, 0.0f) : sums.alpha[at] / known;
           } else {
             const std::ptrdiff_t below = static_cast<std::ptrdiff_t>(tile.top + row + overscan_) * layers_.columns +
                                          tile.left + column + overscan_;

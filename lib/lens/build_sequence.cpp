@@ -73,7 +73,7 @@ SurfaceSequenceTables<R> build_sequence(std::span<const LensSurface> surfaces, s
   }
   for (std::size_t j = 0; j < count; ++j) {
     kernel::Step<R>& step = tables.steps[j];
-    double reach2 = std::numeric_limits<R>::max();
+    double reach2 = 1e15 * 1e15;  // mm^2: farther out, heights and directions lose each other
     if (j + 1 < count && tables.steps[j + 1].kind == StepKind::sphere && !tables.steps[j + 1].far) {
       const double curvature = surfaces[static_cast<std::size_t>(tables.steps[j + 1].surface)].curvature;
       reach2 = std::min(reach2, furthest2<R>() / (curvature * curvature));

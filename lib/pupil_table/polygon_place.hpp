@@ -59,7 +59,7 @@ struct InCell {
   T right_share() const { return area_before(polygon_corners / 2) / area_before(polygon_corners); }
   double expected(double share) const {
     if (!bladed) return sectors_in_halves(share, right_share());
-    const double place = share * BladedLayout::guide_steps;
+    const double place = std::max(share, 0.0) * BladedLayout::guide_steps;  // areas between nodes may turn over
     const std::size_t k = std::min(static_cast<std::size_t>(place), BladedLayout::guide_steps - 1);
     const double* guide = cell + BladedLayout::guide + k;
     return guide[0] + (place - static_cast<double>(k)) * (guide[1] - guide[0]);
@@ -160,8 +160,8 @@ int corrections_of(const In<double>& polygon) {
   const double whole = polygon.area_before(polygon_corners);
   for (std::size_t k = 0; whole > 0 && k < polygon.corners; ++k) {
     const double off = std::abs(polygon.expected(polygon.area_before(k) / whole) - static_cast<double>(k));
-    constexpr int most = 64;
-    if (off > 0.49) corrections = std::max(corrections, std::min(static_cast<int>(std::ceil(off)), most));
+    constexpr double most = 64;
+    if (off > 0.49) corrections = std::max(corrections, static_cast<int>(std::min(std::ceil(off), most)));
   }
   return corrections;
 }

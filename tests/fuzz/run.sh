@@ -52,9 +52,9 @@ trap 'exit 130' INT TERM
 fuzz() {
   mkdir -p "$BUILD_DIR/corpus/$1" "$BUILD_DIR/found/$1"
   status=0
-  "$programs/fuzz_$2" "$BUILD_DIR/corpus/$1" "$BUILD_DIR/seeds/$1" -runs="$runs" -max_len="$3" -rss_limit_mb=512 -timeout=10 \
-    -entropic_scale_per_exec_time=1 \
-    -artifact_prefix="$BUILD_DIR/found/$1/" -print_final_stats=1 >"$logs/$1" 2>&1 || status=$?
+  "$programs/fuzz_$2" "$BUILD_DIR/corpus/$1" "$BUILD_DIR/seeds/$1" -runs="$runs" -max_len="$3" -rss_limit_mb=512 \
+    -timeout=10 -entropic_scale_per_exec_time=1 -artifact_prefix="$BUILD_DIR/found/$1/" -print_final_stats=1 \
+    >"$logs/$1" 2>&1 || status=$?
   echo "$status" >"$logs/$1.status"
 }
 

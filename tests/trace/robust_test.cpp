@@ -256,4 +256,20 @@ TYPED_TEST(Robust, ARayThatMeetsAPlaneFarOutIsLostOrRight) {
   }
 }
 
+// Along a cylinder's axis nothing else bounds the place: 4e25 mm away directions lost their length.
+TEST(Robust, ARayThatMeetsASurfaceBeyond1e15MillimetresIsLost) {
+  petzval::Prescription p;
+  p.name = "cylinder";
+  p.surfaces = {
+      {.radius = 2, .thickness = 4, .medium = {.nd = 1.5}, .aspheric = {{4, 1e-3}}, .curved_in = petzval::Section::y},
+      {.thickness = 2}};
+  const petzval::Lens lens = petzval::compile(p);
+  for (const double x : {1e14, 4e25}) {
+    const Ray<double> ray{{x, 0.5, -3}, {0.28, 0.28, std::sqrt(1 - 2 * 0.28 * 0.28)}};
+    const auto end = petzval::trace(lens, ray, {.apertures = false});
+    EXPECT_EQ(end.fate, x < 1e15 ? RayFate::transmitted : RayFate::vignetted) << x;
+    EXPECT_EQ(end.surface, x < 1e15 ? 1 : 0) << x;
+  }
+}
+
 }  // namespace

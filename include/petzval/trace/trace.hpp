@@ -29,10 +29,11 @@ struct TraceOptions {
 /// may start anywhere on its line. A ray that is not finite, whose direction is not of unit length (|d|^2 within 1e-3),
 /// or whose wavelength the lens does not cover is lost as missed_surface at the first surface met. It is returned as it
 /// was given (one that is not finite: at the origin along the axis). A ray that meets a surface so far from the axis
-/// that the hit on the next sphere would lose half of its digits (1 / eps^(1/4) of its radii: 8000, float 54) is lost
-/// there as vignetted, apertures or none. Start rays of far objects near the lens: the rounding of a direction moves
-/// the hit by eps x distance. The arithmetic is that of reproducible batches, to the bit; batches are faster for many
-/// rays. Accuracy: double within 1e-13 relative, float within 1e-5, of 60-digit references (tests/trace).
+/// that the hit on the next sphere would lose half of its digits (1 / eps^(1/4) of its radii: 8000, float 54), or 1e15
+/// mm from it, is lost there as vignetted, apertures or none. Start rays of far objects near the lens: the rounding of
+/// a direction moves the hit by eps x distance. The arithmetic is that of reproducible batches, to the bit; batches are
+/// faster for many rays. Accuracy: double within 1e-13 relative, float within 1e-5, of 60-digit references
+/// (tests/trace).
 template <class T>
 PETZVAL_API TracedRay<T> trace(const Lens& lens, const Ray<T>& ray, const TraceOptions& options = {}) noexcept;
 
