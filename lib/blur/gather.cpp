@@ -23,6 +23,8 @@ namespace {
 
 using namespace blur_detail;
 
+constexpr std::size_t most_window = std::size_t{1} << 26;  // numbers of a copied window: 256 MiB
+
 int floor_of(double x) { return static_cast<int>(std::floor(x)); }
 
 /// A part of the picture whose rays are followed together.
@@ -205,6 +207,12 @@ class Gathering {
     const std::size_t columns = static_cast<std::size_t>(rect.right - rect.left + 1),
                       rows = static_cast<std::size_t>(rect.bottom - rect.top + 1), plane = columns * rows + slack;
     const std::size_t planes = static_cast<std::size_t>(LayerData::planes * count);
+    if (planes * plane > most_window) {
+      throw Error(
+          "gather: the rays of a few pixels reach over " + std::to_string(columns) + " x " + std::to_string(rows) +
+          " px of " + std::to_string(count) +
+          " layers, beyond their edges, wanted layers that reach as far (PeelPlan::camera) or surfaces farther away");
+    }
     if (memory.window.size() < 2 * slack + planes * plane) memory.window.resize(2 * slack + planes * plane);
     for (std::size_t p = 0; p < planes; ++p) {
       const float* const from =

@@ -11,9 +11,11 @@ namespace petzval::inline v0::film_detail {
 
 void check_rectangle(const std::string& where, const Film& film) {
   const auto refuse = [&](const std::string& found_and_wanted) { throw Error(where + ": " + found_and_wanted); };
-  if (!(film.width_mm > 0 && film.height_mm > 0 && std::isnormal(film.area_mm2()))) {
+  constexpr double longest = 1e9;  // mm; densities of rays on larger ones overflow
+  if (!(film.width_mm > 0 && film.height_mm > 0 && std::isnormal(film.area_mm2()) && film.width_mm <= longest &&
+        film.height_mm <= longest)) {
     refuse("it is " + to_text(film.width_mm) + " by " + to_text(film.height_mm) +
-           " mm, wanted positive lengths and an area that is a number");
+           " mm, wanted positive lengths up to " + to_text(longest) + " mm and an area that is a number");
   }
   if (film.columns <= 0 || film.rows <= 0) {
     refuse("it has " + std::to_string(film.columns) + " by " + std::to_string(film.rows) +

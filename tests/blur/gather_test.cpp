@@ -335,6 +335,10 @@ TEST(Gather, RefusesWhatDoesNotFit) {
   LayerSet too_near;
   too_near.thin(near, 0, 1);
   says(too_near, rays, {}, "px beyond the picture, wanted at most 16384: the nearest surface is 0.01 mm away");
+  near.fragments[0].depth_mm = 0.3f;
+  too_near.thin(near, 0, 1);
+  says(too_near, rays, {}, "beyond their edges, wanted layers that reach as far");
+  EXPECT_EQ(gather(layers, rays).columns, 150);
 }
 
 TEST(Highlights, AreEvenDiscs) {

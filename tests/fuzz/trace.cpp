@@ -89,6 +89,12 @@ void float_against_double(const Lens& lens, const Ray<double>& wanted, const Tra
   const TracedRay<float> in_float = trace(lens, narrow, options);
   const TracedRay<double> in_double = trace(lens, wide, options);
   if (!in_float.transmitted() || !in_double.transmitted()) return;
+  bool beyond = false;  // the rim of an asphere, where any crossing will do
+  trace<double>(lens, wide, options, [&](int i, const Vec3<double>& hit) {
+    const LensSurface& surface = lens.surfaces()[static_cast<std::size_t>(i)];
+    beyond |= !surface.aspheric.empty() && !(std::hypot(hit.x, hit.y) <= surface.semi_diameter);
+  });
+  if (beyond) return;
 
   double moved = eps * (1 + glm::length(wide.origin) + glm::length(in_double.ray.origin));
   for (int k = 0; k < 12; ++k) {

@@ -67,8 +67,9 @@ struct Blurred {
 ///
 /// Source: Lee, Eisemann, Seidel 2010, "Real-time lens blur effects and focus control", section 3.1.
 ///
-/// Throws Error for layers of another size, a path that the rays do not allow, and options out of range. A picture that
-/// memory does not suffice for is left empty.
+/// Throws Error for layers of another size, a path that the rays do not allow, options out of range, and rays of a tile
+/// that reach over more than 256 MiB of layers beyond their edges. A picture that memory does not suffice for is left
+/// empty.
 PETZVAL_API void gather(const LayerSet& layers, const LensRays& rays, const GatherOptions& options, Blurred& picture);
 PETZVAL_API Blurred gather(const LayerSet& layers, const LensRays& rays, const GatherOptions& options = {});
 
