@@ -46,7 +46,6 @@ TYPED_TEST(BatchWavelengths, MixedInABatchAreWhatEachGivesAlone) {
       for (std::size_t i = 17; i < mixed.size(); i += 19) mixed[i] = beyond[i % 5];
 
       for (BatchOptions options : ways(travel)) {
-        if (!loops_agree(options.arithmetic)) continue;
         std::vector<Answer<T>> alone;
         for (std::size_t w = 0; w < wavelengths_nm.size(); ++w) {
           options.wavelengths = {w};
@@ -88,7 +87,6 @@ TYPED_TEST(BatchWavelengths, MixedInABatchAreWhatEachGivesAloneHoweverManyThereA
     std::vector<std::uint16_t> mixed(rays.size());
     for (std::size_t i = 0; i < mixed.size(); ++i) mixed[i] = static_cast<std::uint16_t>(i % count);
     for (BatchOptions options : ways(Travel::to_scene)) {
-      if (!loops_agree(options.arithmetic)) continue;
       options.wavelengths = {.each = mixed.data()};
       const Answer<T> found = traced(sample.lens, rays, options);
       for (std::size_t w = 0; w < count; ++w) {
@@ -108,7 +106,6 @@ TYPED_TEST(BatchWavelengths, GivenForEachRayTakeThePlaceOfTheCommonOne) {
   const auto rays = rays_for<T>(sample, Travel::to_film, 70);
   const std::vector<std::uint16_t> second(rays.size(), 1);
   for (BatchOptions options : ways()) {
-    if (!loops_agree(options.arithmetic)) continue;
     options.wavelengths = {1};
     const auto wanted = traced(sample.lens, rays, options);
     options.wavelengths = {static_cast<std::size_t>(-1), second.data()};

@@ -180,17 +180,6 @@ auto bits(T x) {
   return std::bit_cast<std::conditional_t<sizeof(T) == 4, std::uint32_t, std::uint64_t>>(x);
 }
 
-/// Whether loops of different kinds have the same bits in an arithmetic. Clang chooses for each loop which operations
-/// it fuses; g++ fuses the same ones everywhere.
-inline bool loops_agree(Arithmetic arithmetic) {
-#ifdef __clang__
-  return arithmetic == Arithmetic::reproducible;
-#else
-  (void)arithmetic;
-  return true;
-#endif
-}
-
 template <class T>
 bool same_bits(const Ray<T>& a, const Ray<T>& b) {
   for (int k = 0; k < 3; ++k) {
