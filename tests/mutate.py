@@ -232,8 +232,8 @@ class Tests:
             if not self.make(LIBRARIES):
                 return None
             rounds = list(self.rounds(change.module))
-            # Of headers, what tests compile into themselves is the last to see.
-            for own in (False, True) if change.file.endswith(".hpp") else (False,):
+            # What tests compile into themselves, headers and a file or two, is the last to see.
+            for own in (False, True) if self.objects[str(path)] > 1 else (False,):
                 if own and not self.make([f"{change.module}_tests"]):
                     return change.module
                 for program, names, limit in rounds:

@@ -112,6 +112,12 @@ TEST(BladedPupils, TurnWithTheBladesAndAreMirroredInThem) {
 
 TEST(BladedPupils, MoveContinuouslyWithTheFilmPoint) {
   const FilmPupilTable table = FilmPupilTable::enclosing(vignetting(), corner);
+  for (const double v : {0.2, 0.9}) {  // from the centre of the film, which has no direction, upwards
+    const PupilSample centre = table.sample({0, 0}, 0.37, v), beside = table.sample({0, 1e-9}, 0.37, v);
+    EXPECT_NEAR(std::hypot(centre.x - beside.x, centre.y - beside.y), 0, 1e-6);
+    EXPECT_TRUE(table.contains({0, 0}, 0.99 * centre.x, 0.99 * centre.y));
+    EXPECT_FALSE(table.contains({0, 0}, 3 * centre.x, 3 * centre.y));
+  }
   for (const double r : {1e-6, 3.0, 20.0, 39.9}) {
     PupilSample before = table.sample({0, r}, 0.37, 0.9);
     double longest = 0;
