@@ -77,9 +77,9 @@ TEST(Lint, FindsPixelsThatAreNotSquare) {
 TEST(Lint, RefusesAFilmThatNoCameraTakes) {
   const Lens lens = testing::data_lens("double_gauss_100mm_f2.0");
   const auto refusal = [&](const Film& film) { return testing::message([&] { lint(lens, film); }); };
-  EXPECT_EQ(refusal({.width_mm = 0}),
-            lens.name() +
-                ": film: it is 0 by 24 mm, wanted positive lengths up to 1e+09 mm and an area that is a number");
+  EXPECT_EQ(
+      refusal({.width_mm = 0}),
+      lens.name() + ": film: it is 0 by 24 mm, wanted positive lengths up to 1e+09 mm and an area that is a number");
   for (const Film& film : {Film{.width_mm = std::nan("")}, Film{.height_mm = -24}, Film{.columns = 0},
                            Film{.margin_mm = -1}, Film{.shift_x_mm = std::nan("")}, Film{.tilt_rad = 1.6}}) {
     EXPECT_EQ(refusal(film).find(lens.name() + ": film: it"), 0u) << refusal(film);
