@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 
+#include "check_sides.hpp"
 #include "core/text.hpp"
 #include "petzval/camera/camera.hpp"
 #include "petzval/core/error.hpp"
@@ -15,20 +16,14 @@
 namespace petzval::inline v0 {
 namespace {
 
-constexpr int most_side = 32768;
-constexpr double steepest = radians(60);  // of rays from the axis
+using blur_detail::check_sides;
 
-void check_size(int columns, int rows) {
-  if (columns < 1 || rows < 1 || columns > most_side || rows > most_side) {
-    throw Error("layer camera: picture is " + std::to_string(columns) + " x " + std::to_string(rows) +
-                ", wanted 1 to " + std::to_string(most_side) + " pixels a side");
-  }
-}
+constexpr double steepest = radians(60);  // of rays from the axis
 
 }  // namespace
 
 LayerCamera layer_camera(int columns, int rows, double vertical_angle_rad) {
-  check_size(columns, rows);
+  check_sides("layer camera: picture", columns, rows);
   if (!(vertical_angle_rad > 0 && vertical_angle_rad <= radians(120))) {
     throw Error("layer camera: vertical angle is " + to_text(degrees(vertical_angle_rad)) +
                 " degrees, wanted more than 0 and at most 120: planes of pixels do not show more");
@@ -41,7 +36,7 @@ LayerCamera layer_camera(int columns, int rows, double vertical_angle_rad) {
 
 LayerCamera layer_camera(const Camera& camera) {
   const Film& film = camera.film();
-  check_size(film.columns, film.rows);
+  check_sides("layer camera: picture", film.columns, film.rows);
   const double origin = layer_origin_z(camera);
 
   // How far from the axis, per pixel, the ideal lens sees the scene of a film point next to it.

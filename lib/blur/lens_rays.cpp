@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "check_sides.hpp"
 #include "core/low_discrepancy.hpp"
 #include "core/text.hpp"
 #include "petzval/core/error.hpp"
@@ -75,11 +76,7 @@ TableError error_of(const RayTable& coarse, const RayTable& fine, double nearest
 void check(const LayerCamera& camera, std::span<const PupilPoint> points, int channels,
            const LensRaysOptions& options) {
   const auto wrong = [](const std::string& what) { return Error("lens rays: " + what); };
-  constexpr int most_side = 32768;
-  if (camera.columns < 1 || camera.rows < 1 || camera.columns > most_side || camera.rows > most_side) {
-    throw wrong("layer camera is " + std::to_string(camera.columns) + " x " + std::to_string(camera.rows) +
-                ", wanted 1 to " + std::to_string(most_side) + " pixels a side");
-  }
+  check_sides("lens rays: layer camera", camera.columns, camera.rows);
   if (!(camera.focal_px > 0 && std::isfinite(camera.focal_px))) {
     throw wrong("focal length of the layer camera is " + to_text(camera.focal_px) + " px, wanted a positive number");
   }
