@@ -119,6 +119,9 @@ namespace {
 /// Rows and columns of a map's samples.
 constexpr std::size_t map_cells = 256;
 
+/// Comparisons with what is not a number are false, and a cast of it to an index is anything.
+bool finite(double a, double b) noexcept { return (a + b) * 0 == 0; }
+
 /// Where a sum over such parts, which rises from 0, reaches a value: the last part that does not begin beyond it.
 /// Halved without branches, which nobody could predict.
 std::size_t part_at(const double* begins, double value) noexcept {
@@ -285,10 +288,12 @@ double IrisWeights::edge_at(double share) const noexcept {
 }
 
 double IrisWeights::at(const Vec2<double>& place) const noexcept {
+  if (!finite(place.x, place.y)) return 0;
   return (edge_.even() ? 1 : edge_at(shape_.share(place.x, place.y))) * map_at(place);
 }
 
 double IrisWeights::of_sample(double u, double v) const noexcept {
+  if (!finite(u, v)) return 0;
   return edge_at(v) * (map_.empty() ? 1 : map_at(shape_.sample(u, v)));
 }
 
@@ -302,8 +307,7 @@ std::size_t IrisWeights::column_of(double u) const noexcept {
 }
 
 IrisWeights::Drawn IrisWeights::draw(double u, double v) const noexcept {
-  // Comparisons with what is not a number are false; the pupil refuses it.
-  if (!((u + v) * 0 == 0)) return {u, v, 1};
+  if (!finite(u, v)) return {u, v, 1};  // the pupil refuses it
   u = std::clamp(u, 0.0, 1.0), v = std::clamp(v, 0.0, 1.0);
   if (map_.empty()) {
     const double at = v * static_cast<double>(rows_.size() - 1);

@@ -26,6 +26,7 @@ kernel::Asphere<R> rounded(const kernel::Asphere<double>& a) {
   kernel::Asphere<R> r;
   r.base = rounded<R>(a.base);
   r.height = static_cast<R>(a.height);
+  r.rim2 = static_cast<R>(a.rim2);
   r.even_count = a.even_count;
   r.odd_count = a.odd_count;
   std::transform(a.even.begin(), a.even.end(), r.even.begin(), [](double v) { return static_cast<R>(v); });

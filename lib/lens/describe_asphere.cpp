@@ -18,8 +18,8 @@ double power(double x, int n) {
 }
 
 /// Steeper parts of an asphere are not described: out there a polynomial of high order runs away, and with bounds of
-/// sag and slope that held there every ray would have to be searched for. Rays meet them where Newton's iteration finds
-/// them. (The steepest asphere of data/lenses has a slope of 3.)
+/// sag and slope that held there every ray would have to be searched for. Rims end there; without a rim, rays meet them
+/// where Newton's iteration finds them. (The steepest asphere of data/lenses has a slope of 3.)
 constexpr double steepest = 4;
 
 /// The height at which the strongest term alone has a slope.
@@ -33,14 +33,17 @@ double term_height(const LensSurface& s, double slope) {
 }
 
 /// The height up to which an asphere may be described: its clear aperture, within the domain of the base conic. An
-/// unlimited one ends where the strongest term alone has a slope of one.
+/// unlimited one ends where the strongest term alone has a slope of one, or a paraboloid of the base's radius the
+/// steepest: farther out a hyperboloid bends no more, and a weak term has crossings of its own.
 double height(const LensSurface& s) {
   constexpr double runs_away = 1e6;  // whatever the other terms are
   constexpr double least = 1e-12;    // mm; of less, float has no square
   const double curvature = std::abs(s.curvature) * std::sqrt(std::max(0.0, 1 + s.conic));
   double limit = curvature > 0 ? 1 / curvature : std::numeric_limits<double>::infinity();
   if (s.semi_diameter > 0) limit = std::min(limit, std::max(s.semi_diameter, least));
-  limit = std::min(limit, term_height(s, std::isfinite(s.semi_diameter) ? runs_away : 1));
+  const bool limited = std::isfinite(s.semi_diameter);
+  if (!limited && s.curvature != 0) limit = std::min(limit, steepest / std::abs(s.curvature));
+  limit = std::min(limit, term_height(s, limited ? runs_away : 1));
   return std::isfinite(limit) && limit > 0 ? limit : 1.0;
 }
 
@@ -170,6 +173,7 @@ kernel::Asphere<double> described(const LensSurface& s) {
     a = asphere_up_to(a.height * std::max(i - 1, 1) / samples, s);
     i = -1;
   }
+  if (std::isfinite(s.semi_diameter)) a.rim2 = a.height * a.height;
   bound(s, a);
   a.edge = kernel::sag(a, a.height * a.height).z;
   return a;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 
 #include "surface/quadric.hpp"
 
@@ -30,6 +31,7 @@ template <class R>
 struct Asphere {
   Quadric<R> base;
   R height = 1;  ///< half height to which it is described: the clear one, or as far as it is not steep
+  R rim2 = std::numeric_limits<R>::infinity();  ///< its square where there is a rim; farther out rays are vignetted
   int even_count = 0, odd_count = 0;
   std::array<R, max_asphere_order / 2> even{};  ///< of rho^2, rho^4, ...
   std::array<R, max_asphere_order / 2> odd{};   ///< of rho^3, rho^5, ...

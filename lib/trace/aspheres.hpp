@@ -289,21 +289,22 @@ void asphere(const kernel::Step<R>& s, const Lanes<R>& rim2, const Route<R>& rou
     per_n2[i] = media.per_n2(i);
   }
   meet(s, route, unsettled, b, per_n2, at);
+  const kernel::Asphere<R>& surface = route.aspheres[s.asphere];
+  const V described2(route.apertures ? surface.rim2 : std::numeric_limits<R>::infinity());
   for (int i = 0; i < vectors; ++i) {
     const V x = b.x[i], y = b.y[i], z = b.z[i], px = b.px[i], py = b.py[i], pz = b.pz[i], q = at.q[i];
     const Mask<R> found = at.found[i] | at.beside[i];
     b.x[i] = select(without(at.beside[i], at.found[i]), V(std::numeric_limits<R>::quiet_NaN()), x + q * px);
     b.y[i] = y + q * py;
     b.z[i] = z + q * pz;
+    const V u = ax * b.x[i] * b.x[i] + ay * b.y[i] * b.y[i];
     const V gx = at.slope[i] * ax * b.x[i], gy = at.slope[i] * ay * b.y[i];
     V way = q, twist = none;
     if constexpr (Follow::wanted) {
       way = ((b.x[i] - x) * px + (b.y[i] - y) * py + (b.z[i] - z) * pz) * per_n2[i];
-      const V u = ax * b.x[i] * b.x[i] + ay * b.y[i] * b.y[i];
-      const kernel::Asphere<R>& surface = route.aspheres[s.asphere];
       twist = V(s.sense + s.sense) * kernel::sag(surface, Rate<R>(u, V(R(1)))).slope.d;
     }
-    bend(s, rim2, media, b, i, found,
+    bend(s, V(select(u <= described2, rim2, V(R(-1)))), media, b, i, found,
          {way, px, py, pz, gx, gy, V(R(1)), none, at.rate[i], none, none, none, at.slope[i] * ax, at.slope[i] * ay,
           none, twist * ax, twist * ay},
          follow);

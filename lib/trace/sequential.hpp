@@ -79,6 +79,7 @@ TraceState<T> trace(const LensView<Storage<T>>& lens, const Vec<T>& origin, cons
 
     Vec<T> n;
     T cosine;
+    bool described = true;
     if (surface.asphere < 0) {
       const auto [point, hit, slant] = intersect(surface.quadric, p, ray.direction, sense);
       if (!hit) return end(RayFate::missed_surface);
@@ -99,12 +100,14 @@ TraceState<T> trace(const LensView<Storage<T>>& lens, const Vec<T>& origin, cons
       p = point;
       n = normal(asphere, p);
       cosine = absolute(dot(ray.direction, n));
+      const T x = asphere.base.ax * p.x, y = asphere.base.ay * p.y;
+      described = x * x + y * y <= asphere.rim2;
     }
     ray.origin = {p.x, p.y, T(p.z + lens.vertex_z[i])};
     observer(static_cast<int>(i), ray.origin);
 
     const T r2 = p.x * p.x + p.y * p.y;
-    if (path.apertures && !(r2 <= surface.semi_diameter_squared && r2 >= surface.obscuration_squared)) {
+    if (path.apertures && !(described && r2 <= surface.semi_diameter_squared && r2 >= surface.obscuration_squared)) {
       return end(RayFate::vignetted);
     }
     if (path.apertures && static_cast<std::int32_t>(i) == lens.stop && !within(lens.iris, p.x, p.y)) {

@@ -48,7 +48,7 @@ inline Blurred reference_gather(const LayerSet& layers, const LensRays& rays, do
           };
           const bool empty = layers.inverse_depth(0)[pixel_at(least)] < 0;
           double below = 1e30;
-          for (int k = static_cast<int>(most * steepest + 1); k >= 0; --k) {
+          for (int k = static_cast<int>(most * steepest + tolerance); k >= 0; --k) {
             const double low = std::max((k - tolerance) / steepest, 0.0), high = (k + 1 + tolerance) / steepest;
             const std::size_t pixel = pixel_at(std::clamp<double>((k + 0.5) / steepest, least, most));
             bool before = false, met_here = false;

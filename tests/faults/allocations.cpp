@@ -46,6 +46,11 @@ void release(void* place) noexcept {
 
 // Not inlined: a compiler that sees only one of them takes it for a mismatch.
 [[gnu::noinline]] void* operator new(std::size_t size) { return allocate(std::max<std::size_t>(size, 1), 0); }
+[[gnu::noinline]] void* operator new(std::size_t size, const std::nothrow_t&) noexcept try {
+  return operator new(size);
+} catch (const std::bad_alloc&) {
+  return nullptr;
+}
 [[gnu::noinline]] void* operator new(std::size_t size, std::align_val_t alignment) {
   return allocate(std::max<std::size_t>(size, 1), static_cast<std::size_t>(alignment));
 }

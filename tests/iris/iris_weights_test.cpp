@@ -181,6 +181,17 @@ TEST(OnionRings, HaveThePeriodTheySay) {
   }
 }
 
+TEST(IrisWeights, OfWhatIsNoNumberAreNone) {
+  for (const double no_number : {std::nan(""), std::numeric_limits<double>::infinity()}) {
+    for (const IrisMap& map : {IrisMap{}, some_map()}) {
+      const IrisWeights weights({.blades = 5}, {4, 0.6}, map, 0, "");
+      EXPECT_EQ(weights.of_sample(no_number, 0.5), 0);
+      EXPECT_EQ(weights.of_sample(0.5, no_number), 0);
+      EXPECT_EQ(weights.at({no_number, 0}), 0);
+    }
+  }
+}
+
 TEST(IrisWeights, RefuseWhatIsNoMap) {
   const auto refused = [](const IrisMap& map) {
     return message([&] {

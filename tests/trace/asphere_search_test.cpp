@@ -107,4 +107,68 @@ TYPED_TEST(AsphereSearch, FindsTheFirstCrossingOfEveryLane) {
   EXPECT_LT(count.doubtful, count.rays / 5);
 }
 
+/// An asphere without a rim, whose term adds 1e-10 mm, is its base as near as that; and that term has a slope at 1e12
+/// mm.
+TYPED_TEST(AsphereSearch, AWeakTermChangesLittle) {
+  using T = TypeParam;
+  constexpr double eps = std::numeric_limits<T>::epsilon();
+  testing_batches::Numbers random(5);
+  std::vector<Ray<T>> rays;
+  for (int i = 0; i < 1000; ++i) {
+    const double x = random(-0.7, 0.7), y = random(-0.7, 0.7);
+    const petzval::Vec3<double> at{random(-20, 20), random(-20, 20), random(-20, 20)};
+    rays.push_back(testing_batches::through<T>(at, {x, y, std::sqrt(1 - x * x - y * y)}, 5));
+  }
+  int missed = 0;
+  for (const double radius : {0.0, -400.0, 60.0}) {
+    for (const double conic : {-2.46, -1.0, 0.3}) {
+      petzval::SurfaceRow row;
+      row.radius = radius, row.conic = conic;
+      const petzval::Lens base = testing_lenses::one_surface(row);
+      row.aspheric = {{2, 1e-13}};
+      const petzval::Lens asphere = testing_lenses::one_surface(row);
+      for (const auto& options : testing_batches::ways()) {
+        const auto wanted = traced(base, rays, options), found = traced(asphere, rays, options);
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+          const petzval::Vec3<double> hit(wanted.rays[i].origin), other(found.rays[i].origin), off = other - hit;
+          const double size = 20 + std::hypot(hit.x, hit.y, hit.z), near = 1000 * eps * size + 1e-12 * size * size;
+          const bool passes = wanted.fates[i] == RayFate::transmitted;
+          missed += !passes;
+          const bool found_one = found.fates[i] == RayFate::transmitted;
+          if (found_one != passes || (passes && !(std::hypot(off.x, off.y, off.z) < near))) {
+            ADD_FAILURE() << "R " << radius << ", conic " << conic << ", " << testing_batches::text(options) << ", ray "
+                          << i << ": " << petzval::name(found.fates[i]) << " at " << other.x << " " << other.y << " "
+                          << other.z << ", wanted " << petzval::name(wanted.fates[i]) << " at " << hit.x << " " << hit.y
+                          << " " << hit.z;
+          }
+        }
+      }
+    }
+  }
+  EXPECT_GT(missed, 100);
+}
+
+/// The slope of this one is 4 at 5.83 mm, where its description ends.
+TYPED_TEST(AsphereSearch, RimsEndWhereAnAsphereIsSteep) {
+  petzval::SurfaceRow row;
+  row.radius = 177.4, row.semi_diameter = 21.3;
+  row.aspheric = {{7, -1.451e-5}};
+  const petzval::Lens lens = testing_lenses::one_surface(row);
+  const double height = petzval::kernel::view<double>(lens).aspheres[0].height;
+  EXPECT_NEAR(height, 5.83, 0.03);
+  std::mt19937 random(3);
+  const auto rays = steep_rays<TypeParam>(row, random, 1.3 * height, 2000, 1);
+  for (const auto& options : testing_batches::ways()) {
+    const auto found = traced(lens, rays, options);
+    int passing = 0, beyond = 0;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      if (found.fates[i] != RayFate::transmitted) continue;
+      ++passing;
+      beyond += std::hypot(found.rays[i].origin.x, found.rays[i].origin.y) > height * (1 + 1e-5);
+    }
+    EXPECT_GT(passing, 500) << testing_batches::text(options);
+    EXPECT_EQ(beyond, 0) << testing_batches::text(options);
+  }
+}
+
 }  // namespace
