@@ -46,7 +46,7 @@ class Search {
   void in_full(std::span<const std::uint32_t> which) {
     std::vector<std::uint32_t> seen, rings;
     look_along_y(which, seen, rings);
-    across(seen);
+    across(seen, Reach::near);
     std::vector<std::uint32_t> discs;
     for (const std::uint32_t p : seen) {
       if (std::find(rings.begin(), rings.end(), p) == rings.end()) discs.push_back(p);
@@ -338,28 +338,38 @@ class Search {
     return left;
   }
 
-  /// Extents along x, from the middle of those along y.
-  void across(std::span<const std::uint32_t> which) {
+  /// Extents along x, from the middle of those along y; of tiny pupils first near it, as ends are found in parts of the
+  /// line.
+  void across(std::span<const std::uint32_t> which, Reach reach) {
+    constexpr double tiny = 1e-4, near = 32;
     std::vector<Line> lines;
+    std::vector<std::uint32_t> far;
     for (const std::uint32_t p : which) {
       const PupilGuess& g = points_[p];
-      const double reach = std::max({(g.high - g.low) / 2, 2 * g.radius, 2 * found_[p].half_axes[1]});
-      lines.push_back({p, found_[p].middle[0], found_[p].middle[1], reach, 0});
+      const double half = found_[p].half_axes[1], all = std::max({(g.high - g.low) / 2, 2 * g.radius, 2 * half});
+      const bool close = reach == Reach::near && half < tiny * all;
+      lines.push_back({p, found_[p].middle[0], found_[p].middle[1], close ? near * half : all, 0});
     }
     const auto extent = extents_along(lines, mirrored_ ? 0 : -1, 1, mirrored_ ? 96 : 192, tolerance, clearances_);
     for (std::size_t i = 0; i < which.size(); ++i) {
+      const LineExtent& e = extent[i];
+      if (reach == Reach::near && (!e.any || e.from == -1 || e.to == 1)) {
+        far.push_back(which[i]);
+        continue;
+      }
       Found& found = found_[which[i]];
       const PupilGuess& g = points_[which[i]];
       found.half_axes[0] = found.half_axes[1];
-      if (!extent[i].any) continue;
+      if (!e.any) continue;
       if (g.ring) {  // the line may miss the ring's widest place
-        found.half_axes[0] = std::max(found.half_axes[1], lines[i].dx * extent[i].to);
+        found.half_axes[0] = std::max(found.half_axes[1], lines[i].dx * e.to);
         continue;
       }
-      const double from = mirrored_ ? -extent[i].to : extent[i].from;
-      found.middle[0] += lines[i].dx * (extent[i].to + from) / 2;
-      found.half_axes[0] = lines[i].dx * (extent[i].to - from) / 2;
+      const double from = mirrored_ ? -e.to : e.from;
+      found.middle[0] += lines[i].dx * (e.to + from) / 2;
+      found.half_axes[0] = lines[i].dx * (e.to - from) / 2;
     }
+    if (!far.empty()) across(far, Reach::far);
   }
 
   /// From the middle in a direction, in coordinates in which the pupil is about a unit disc.

@@ -26,7 +26,7 @@ double film_irradiance(const Lens& lens, const FilmPoint& point, Wavelength wave
   // Part dA of the plane, gap away from the film, is seen in the projected solid angle cos^4 dA / gap^2.
   const double gap = plane.towards().z / plane.reciprocal_distance();
   double sum = 0;
-  pupil_detail::for_each_node<3>(boundary, [&](const Vec2<double>& p, double area, double weight) {
+  pupil_detail::for_each_node<32>(boundary, [&](const Vec2<double>& p, double area, double weight) {
     sum += weight * area * std::pow(plane.ray(p.x, p.y).direction.z, 4);
   });
   if (sum == 0) return 0;

@@ -254,7 +254,7 @@ Candidate<T> newton(const Asphere<Storage<T>>& s, const Hit<T>& base, const Vec<
   } else if (any(absolute(d.z) > R(0.1))) {
     t = quotient(T(-p.z), d.z);
   }
-  const T offset = absolute(p.x) + absolute(p.y) + absolute(p.z);
+  const T offset = s.base.ax * absolute(p.x) + s.base.ay * absolute(p.y) + absolute(p.z);
   bool usable = false;
   for (int i = 0; i < 10 && !usable; ++i) {
     const auto f = clearance(s, p, d, t);

@@ -187,7 +187,7 @@ template <class R>
   V offset[vectors];
   Mask<R> moving[vectors], waiting[vectors];
   for (int i = 0; i < vectors; ++i) {
-    offset[i] = kernel::absolute(b.x[i]) + kernel::absolute(b.y[i]) + kernel::absolute(b.z[i]);
+    offset[i] = ax * kernel::absolute(b.x[i]) + ay * kernel::absolute(b.y[i]) + kernel::absolute(b.z[i]);
     at.rate[i] = at.slope[i] = none;
     moving[i] = b.alive[i];
     waiting[i] = at.found[i] = at.beside[i] = without(moving[i], moving[i]);

@@ -83,6 +83,26 @@ TEST(FilmPupilTable, CoversTheFilmBehindTinyStops) {
   }
 }
 
+// The ends of pupils are known to parts of the lines along which they are looked for: a line across all of a face told
+// nothing of one that is 1e-9 of it.
+TEST(FilmPupilTable, CoversTinyPupilsBehindHugeFaces) {
+  const auto area = [](double semi_diameter) {
+    Prescription p;
+    p.name = "huge face";
+    SurfaceRow stop, front, back;
+    stop.semi_diameter = 1e-3, stop.stop = true, stop.thickness = 10;
+    front.radius = 1000, front.medium.nd = 1.5, front.thickness = 5;
+    back.radius = -1000, back.thickness = 900;
+    front.semi_diameter = back.semi_diameter = semi_diameter;
+    p.surfaces = {stop, front, back};
+    return FilmPupilTable::enclosing(compile(p), 10).area({0, 5});
+  };
+  const double wanted = area(20);
+  EXPECT_NEAR(wanted / (std::numbers::pi * 1e-6), 1, 0.1);
+  for (const double semi_diameter : {1e3, 1e6, 1e100, 1e160})
+    EXPECT_NEAR(area(semi_diameter) / wanted, 1, 0.02) << semi_diameter;
+}
+
 /// The share of the rays that pass, of rays all over what the film point sees of the last surface, outside its pupil.
 double missed_anywhere(const Lens& lens, const FilmPupilTable& table, const FilmPoint& film, double widths,
                        int side = 700) {
