@@ -156,6 +156,12 @@ std::vector<FocusPosition> focus_positions(const Prescription& prescription) {
   return result;
 }
 
+/// A rim in the numbers of float too, which have squares from 1e-38 to 1e38; no ray goes on from beyond 1e15 mm.
+double usable_rim(double semi_diameter) noexcept {
+  if (semi_diameter < 1e-12) return 0;
+  return semi_diameter > 1e15 ? std::numeric_limits<double>::infinity() : semi_diameter;
+}
+
 }  // namespace
 
 Lens compile(const Prescription& source, std::span<const double> wavelengths_nm, const CompileOptions& options) {
@@ -183,7 +189,7 @@ Lens compile(const Prescription& source, std::span<const double> wavelengths_nm,
     s.conic = row.conic;
     s.curved_in = row.curved_in;
     s.aspheric = row.aspheric;
-    s.semi_diameter = row.semi_diameter.value_or(std::numeric_limits<double>::infinity());
+    s.semi_diameter = usable_rim(row.semi_diameter.value_or(std::numeric_limits<double>::infinity()));
     s.obscuration_semi_diameter = row.obscuration_semi_diameter.value_or(0);
     s.mirror = row.mirror;
     if (row.stop && !data->stop) data->stop = data->surfaces.size();
@@ -206,12 +212,12 @@ Lens with_semi_diameter(const Lens& lens, std::size_t surface, double semi_diame
     throw Error(lens.name() + ": surface " + std::to_string(surface) + ": semi_diameter is " + to_text(semi_diameter) +
                 " mm, wanted 0 or more");
   }
-  if (!lens.iris().round() && lens.stop() == surface && std::isinf(semi_diameter)) {
-    throw Error(lens.name() + ": surface " + std::to_string(surface) +
-                ": semi_diameter is inf mm, wanted a finite one for the iris of the stop");
+  if (!lens.iris().round() && lens.stop() == surface && std::isinf(usable_rim(semi_diameter))) {
+    throw Error(lens.name() + ": surface " + std::to_string(surface) + ": semi_diameter is " + to_text(semi_diameter) +
+                " mm, wanted one up to 1e15 mm for the iris of the stop");
   }
   auto data = std::make_shared<Lens::Data>(*lens.data_);
-  data->surfaces[surface].semi_diameter = semi_diameter;
+  data->surfaces[surface].semi_diameter = usable_rim(semi_diameter);
   data->build();
   return Lens(std::move(data));
 }

@@ -38,7 +38,7 @@ TEST(Iris, IsRefusedWhereTheStopCannotHaveIt) {
             "front stop: iris: rotation_rad is nan, wanted a finite angle");
   const Lens bladed = with_iris(lens, {.blades = 6});
   EXPECT_EQ(message([&] { with_semi_diameter(bladed, 0, std::numeric_limits<double>::infinity()); }),
-            "front stop: surface 0: semi_diameter is inf mm, wanted a finite one for the iris of the stop");
+            "front stop: surface 0: semi_diameter is inf mm, wanted one up to 1e15 mm for the iris of the stop");
 }
 
 TEST(Iris, KeepsItsShapeWhenTheLensIsStoppedDown) {

@@ -110,6 +110,15 @@ TEST(Lens, AChangeMakesANewLens) {
   EXPECT_EQ(moved.film_z(), 60);
 }
 
+TEST(Lens, RimsOfNoSizeAreClosedAndRimsBeyondAllRaysAreNone) {
+  petzval::Prescription p = singlet();
+  for (const auto& [wanted, found] : {std::pair{1e-160, 0.0}, {1e-12, 1e-12}, {1e15, 1e15}, {1e160, HUGE_VAL}}) {
+    p.surfaces[0].semi_diameter = wanted;
+    EXPECT_EQ(petzval::compile(p).surfaces()[0].semi_diameter, found);
+    EXPECT_EQ(petzval::with_semi_diameter(petzval::compile(singlet()), 0, wanted).surfaces()[0].semi_diameter, found);
+  }
+}
+
 TEST(Sag, IsNanWhereThereIsNoSurface) {
   const petzval::Lens lens = petzval::compile(singlet());
   EXPECT_EQ(petzval::sag(lens, 1, 0, 0), 0);
