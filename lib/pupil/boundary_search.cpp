@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <numeric>
 #include <optional>
 #include <utility>
@@ -38,7 +37,7 @@ class Search {
   std::vector<PupilRegion> regions() const {
     std::vector<PupilRegion> result;
     result.reserve(found_.size());
-    for (const Found& found : found_) result.push_back(region_of(found));
+    for (const Found& found : found_) result.push_back(region_of(found, units_));
     return result;
   }
 
@@ -120,7 +119,7 @@ class Search {
       std::vector<std::uint32_t> moved;
       for (const std::uint32_t point : settle(part)) lost.push_back(point);
       for (const std::uint32_t point : part) {
-        if (recentre(found_[point])) moved.push_back(point);
+        if (recentre(found_[point], units_)) moved.push_back(point);
       }
       for (const std::uint32_t point : settle(moved)) lost.push_back(point);
     }
@@ -231,36 +230,6 @@ class Search {
       lost.push_back(which[i]);
     }
     return lost;
-  }
-
-  /// Describes a pupil about its own middle where it was found far beside it. False: it was not, or has an obscuration.
-  bool recentre(Found& found) const {
-    if (found.empty()) return false;
-    std::vector<Vec2<double>> rim;  // in units of the half axes
-    Vec2<double> low{0, 0}, high{0, 0};
-    for (std::size_t k = 0; k < directions_; ++k) {
-      const auto& [obscured_from, obscured_to, to, slope] = found.ends[k];
-      if (obscured_to > 0 || !(to > 0)) return false;
-      rim.push_back(to * units_[k]);
-      for (int i : {0, 1}) low[i] = std::min(low[i], rim[k][i]), high[i] = std::max(high[i], rim[k][i]);
-    }
-    constexpr double far = 0.05;
-    const Vec2<double> middle = (low + high) / 2.0, half = (high - low) / 2.0;
-    if (std::abs(middle.x) < far * half.x && std::abs(middle.y) < far * half.y) return false;
-    Found result{found.middle + found.half_axes * middle, found.half_axes * half, {}, {}};
-    for (auto& p : rim) p = (p - middle) / half;
-    const auto turn = [](const Vec2<double>& a, const Vec2<double>& b) { return a.y * b.x - a.x * b.y; };
-    for (const Vec2<double>& unit : units_) {
-      for (std::size_t k = 0; k < directions_; ++k) {
-        const Vec2<double>&a = rim[k], &b = rim[(k + 1) % directions_];
-        if (!(turn(a, unit) >= 0 && turn(unit, b) > 0)) continue;
-        result.ends.push_back({0, 0, turn(a, b) / (turn(a, unit) + turn(unit, b)), 0});
-        break;
-      }
-    }
-    if (result.ends.size() != directions_) return false;
-    found = result;
-    return true;
   }
 
   /// Moves the sides of brackets outwards where the end does not lie between them, each time twice as far. Returns
@@ -529,45 +498,6 @@ class Search {
       before = *highest;
     }
     return {};
-  }
-
-  /// Whether a place lies within the outer ends, or little outside.
-  bool holds(const Found& found, const Vec2<double>& place) const noexcept {
-    if (found.empty()) return false;
-    const Vec2<double> p = (place - found.middle) / found.half_axes;
-    const double turn = std::atan2(p.x, p.y) / (2 * std::numbers::pi), radius = std::hypot(p.x, p.y);
-    if (!std::isfinite(radius)) return false;
-    const auto k = static_cast<std::size_t>((turn - std::floor(turn)) * static_cast<double>(directions_)) % directions_;
-    double to = 0;
-    for (const std::size_t beside : {k, (k + 1) % directions_, (k + directions_ - 1) % directions_}) {
-      to = std::max(to, found.ends[beside].to);
-    }
-    return radius <= 1.02 * to;
-  }
-
-  PupilRegion region_of(const Found& found) const {
-    PupilRegion region{.middle = found.middle, .half_axes = found.half_axes, .directions = directions_};
-    if (found.empty()) return region;
-    region.spans.reserve(directions_);
-    for (std::size_t k = 0; k < directions_; ++k) {
-      const auto& [obscured_from, obscured_to, to, slope] = found.ends[k];
-      if (!(to > 0)) continue;
-      const auto rim = [&, x = units_[k][0], y = units_[k][1]](double radius) -> RimPoint {
-        return {region.middle[0] + region.half_axes[0] * radius * x,
-                region.middle[1] + region.half_axes[1] * radius * y};
-      };
-      const auto add = [&](double begin, double end) { region.spans.push_back({k, begin, end, rim(begin), rim(end)}); };
-      std::vector<Gap> gaps = found.gaps.empty() ? std::vector<Gap>{} : found.gaps[k];
-      if (obscured_from < obscured_to) gaps.push_back({obscured_from, obscured_to});
-      std::sort(gaps.begin(), gaps.end(), [](const Gap& a, const Gap& b) { return a.from < b.from; });
-      double begin = 0;
-      for (const Gap& gap : gaps) {
-        if (gap.from > begin) add(begin, gap.from);
-        begin = gap.to;
-      }
-      add(begin, to);
-    }
-    return region;
   }
 
   std::span<const PupilGuess> points_;

@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "line_extents.hpp"
+#include "petzval/pupil/pupil_boundary.hpp"
 
 namespace petzval::inline v0::pupil_detail {
 
@@ -24,6 +26,15 @@ struct Found {
 
   bool empty() const noexcept { return ends.empty(); }
 };
+
+/// Describes a pupil about its own middle where it was found far beside it. units: of the directions. False: it was
+/// not, or has an obscuration.
+bool recentre(Found& found, std::span<const Vec2<double>> units);
+
+/// Whether a place lies within the outer ends, or little outside.
+bool holds(const Found& found, const Vec2<double>& place) noexcept;
+
+PupilRegion region_of(const Found& found, std::span<const Vec2<double>> units);
 
 /// Values halfway between two pupils that were found, by those and the next beyond them, if these were found too.
 class Interpolation {

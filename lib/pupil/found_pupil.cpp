@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "found_pupil.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace petzval::inline v0::pupil_detail {
+
+bool recentre(Found& found, std::span<const Vec2<double>> units) {
+  if (found.empty()) return false;
+  std::vector<Vec2<double>> rim;  // in units of the half axes
+  Vec2<double> low{0, 0}, high{0, 0};
+  const std::size_t directions = units.size();
+  for (std::size_t k = 0; k < directions; ++k) {
+    const auto& [obscured_from, obscured_to, to, slope] = found.ends[k];
+    if (obscured_to > 0 || !(to > 0)) return false;
+    rim.push_back(to * units[k]);
+    for (int i : {0, 1}) low[i] = std::min(low[i], rim[k][i]), high[i] = std::max(high[i], rim[k][i]);
+  }
+  constexpr double far = 0.05;
+  const Vec2<double> middle = (low + high) / 2.0, half = (high - low) / 2.0;
+  if (std::abs(middle.x) < far * half.x && std::abs(middle.y) < far * half.y) return false;
+  Found result{found.middle + found.half_axes * middle, found.half_axes * half, {}, {}};
+  for (auto& p : rim) p = (p - middle) / half;
+  const auto turn = [](const Vec2<double>& a, const Vec2<double>& b) { return a.y * b.x - a.x * b.y; };
+  for (const Vec2<double>& unit : units) {
+    for (std::size_t k = 0; k < directions; ++k) {
+      const Vec2<double>&a = rim[k], &b = rim[(k + 1) % directions];
+      if (!(turn(a, unit) >= 0 && turn(unit, b) > 0)) continue;
+      result.ends.push_back({0, 0, turn(a, b) / (turn(a, unit) + turn(unit, b)), 0});
+      break;
+    }
+  }
+  if (result.ends.size() != directions) return false;
+  found = result;
+  return true;
+}
+
+bool holds(const Found& found, const Vec2<double>& place) noexcept {
+  if (found.empty()) return false;
+  const Vec2<double> p = (place - found.middle) / found.half_axes;
+  const double turn = std::atan2(p.x, p.y) / (2 * std::numbers::pi), radius = std::hypot(p.x, p.y);
+  if (!std::isfinite(radius)) return false;
+  const std::size_t directions = found.ends.size();
+  const auto k = static_cast<std::size_t>((turn - std::floor(turn)) * static_cast<double>(directions)) % directions;
+  double to = 0;
+  for (const std::size_t beside : {k, (k + 1) % directions, (k + directions - 1) % directions}) {
+    to = std::max(to, found.ends[beside].to);
+  }
+  return radius <= 1.02 * to;
+}
+
+PupilRegion region_of(const Found& found, std::span<const Vec2<double>> units) {
+  const std::size_t directions = units.size();
+  PupilRegion region{.middle = found.middle, .half_axes = found.half_axes, .directions = directions};
+  if (found.empty()) return region;
+  region.spans.reserve(directions);
+  for (std::size_t k = 0; k < directions; ++k) {
+    const auto& [obscured_from, obscured_to, to, slope] = found.ends[k];
+    if (!(to > 0)) continue;
+    const auto rim = [&, x = units[k][0], y = units[k][1]](double radius) -> RimPoint {
+      return {region.middle[0] + region.half_axes[0] * radius * x, region.middle[1] + region.half_axes[1] * radius * y};
+    };
+    const auto add = [&](double begin, double end) { region.spans.push_back({k, begin, end, rim(begin), rim(end)}); };
+    std::vector<Gap> gaps = found.gaps.empty() ? std::vector<Gap>{} : found.gaps[k];
+    if (obscured_from < obscured_to) gaps.push_back({obscured_from, obscured_to});
+    std::sort(gaps.begin(), gaps.end(), [](const Gap& a, const Gap& b) { return a.from < b.from; });
+    double begin = 0;
+    for (const Gap& gap : gaps) {
+      if (gap.from > begin) add(begin, gap.from);
+      begin = gap.to;
+    }
+    add(begin, to);
+  }
+  return region;
+}
+
+}  // namespace petzval::inline v0::pupil_detail
