@@ -2,7 +2,6 @@
 #include "io/exr_head.hpp"
 
 #include <cstdint>
-#include <fstream>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -30,10 +29,9 @@ constexpr std::pair<std::uint64_t, std::string_view> fixed_sizes[] = {
 
 }  // namespace
 
-void check_exr_attributes(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::error_code without;
-  const std::uintmax_t size = std::filesystem::file_size(file, without);
+void check_exr_attributes(std::istream& in) {
+  const auto size = static_cast<std::uint64_t>(in.seekg(0, std::ios::end).tellg());
+  in.seekg(0);
   const auto word = [&] {
     unsigned char b[4] = {};
     in.read(reinterpret_cast<char*>(b), 4);
@@ -46,7 +44,7 @@ void check_exr_attributes(const std::filesystem::path& file) {
       name += c >= ' ' && c < 127 ? static_cast<char>(c) : '?';
     return name;
   };
-  if (without || word() != 20000630) return;
+  if (!in || word() != 20000630) return;
   const bool several_parts = word() >> 12 & 1;
   // The attributes of a part end with an empty name, the parts of a file with another one.
   for (bool first = true; in; first = false) {
