@@ -280,7 +280,8 @@ Limits limits(const float* const* corners, std::size_t corner_count, std::size_t
   return result;
 }
 
-/// The whole number at or below.
+/// The whole number at or below, of places rounded to 1/256 px: half a step from the middle of a pixel is between two,
+/// and rounding is not to choose.
 PETZVAL_INLINE Places floor_of(Numbers x) noexcept {
   constexpr int up = 1 << 15;  // conversions cut towards 0
   return __builtin_convertvector((x + Numbers(static_cast<float>(up))).v, Places) - up;

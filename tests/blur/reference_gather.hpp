@@ -42,8 +42,11 @@ inline Blurred reference_gather(const LayerSet& layers, const LensRays& rays, do
           bool met = false;
           const auto pixel_at = [&](double w) {
             const Vec2<double> at = ray.at + ray.slope * w;
-            const int x = std::clamp(static_cast<int>(std::floor(at.x)) + overscan, 0, layers.columns() - 1),
-                      y = std::clamp(static_cast<int>(std::floor(at.y)) + overscan, 0, layers.rows() - 1);
+            const auto floor_of = [](double place) {
+              return static_cast<int>(std::floor(std::round(256 * place) / 256));
+            };
+            const int x = std::clamp(floor_of(at.x) + overscan, 0, layers.columns() - 1),
+                      y = std::clamp(floor_of(at.y) + overscan, 0, layers.rows() - 1);
             return static_cast<std::size_t>(y * layers.columns() + x);
           };
           const bool empty = layers.inverse_depth(0)[pixel_at(least)] < 0;
