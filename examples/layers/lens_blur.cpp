@@ -94,6 +94,9 @@ class Job {
         side_(static_cast<int>(options.supersample)),
         input_(options.input),
         lens_(options.lens, input_.columns() * side_, input_.rows() * side_, input_.pose(), options.frames > 1) {
+    if (options.frames == 1 && options.travel_mm != 0) {
+      throw petzval::Error("--travel-mm: found 1 frame, wanted 2 or more for a way over all of them");
+    }
     if (!input_.scene()) {
       if (options.compare) throw petzval::Error("--compare: files have no scene to compare with, wanted --scene");
       if (side_ > 1) throw petzval::Error("--supersample: files have the pixels that they have, wanted --scene");
@@ -251,8 +254,10 @@ int main(int argc, char** argv) {
                        "radiance above which small lights become even discs; 0: none");
   auto* frames = examples::add_count(app, "--frames", options.frames, {1, 100000, "a whole number from 1 to 100000"},
                                      "blur_0001.* and so on; --points has focus points with keys then");
-  examples::add_number(app, "--fps", options.frames_per_second, examples::positive_number, "frames per second")
-      ->needs(frames);
+  examples::add_number(app, "--fps", options.frames_per_second, examples::positive_number,
+                       "frames per second, for the keys of --points")
+      ->needs(frames)
+      ->needs(app.get_option("--points"));
   examples::add_number(app, "--travel-mm", options.travel_mm, examples::finite_number,
                        "way of the camera to the right over all frames (mm)")
       ->needs(frames);

@@ -201,8 +201,10 @@ TEST_F(LensBlurProgram, RefusesFlagsWithoutAnEffect) {
                    reason);
   };
   refused(joined({thin, {"--depth-kind", "distance"}}), "--depth-kind: found distance with --scene, wanted files");
-  refused(joined({thin, {"--fps", "24"}}), "--fps requires --frames");
+  refused(joined({thin, {"--fps", "24"}}), "--fps requires --");
+  refused(joined({thin, {"--frames", "2", "--fps", "12"}}), "--fps requires --points");
   refused(joined({thin, {"--travel-mm", "500"}}), "--travel-mm requires --frames");
+  refused(joined({thin, {"--travel-mm", "500", "--frames", "1"}}), "--travel-mm: found 1 frame, wanted 2 or more");
   refused(joined({thin, {"--kind", "affine"}}), "--kind requires --points");
   refused(joined({thin, {"--beta", "2"}}), "--beta requires --points");
   refused(joined({thin, {"--iris-rotation-deg", "10"}}), "--iris-rotation-deg: found it without --blades");
