@@ -32,7 +32,11 @@ double film_irradiance(const Lens& lens, const FilmPoint& point, Wavelength wave
   };
   // Three nodes are enough as far as 39 degrees.
   const bool wide = std::max(boundary.half_axes[0], boundary.half_axes[1]) > 0.8 * std::abs(gap);
-  wide ? pupil_detail::for_each_node<32>(boundary, add) : pupil_detail::for_each_node<3>(boundary, add);
+  if (wide) {
+    pupil_detail::for_each_node<32>(boundary, add);
+  } else {
+    pupil_detail::for_each_node<3>(boundary, add);
+  }
   if (sum == 0) return 0;
   const double n = lens.index(lens.surface_count(), wavelength);
   return n * n * sum * std::numbers::pi / static_cast<double>(boundary.directions) * boundary.half_axes[0] *

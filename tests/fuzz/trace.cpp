@@ -17,7 +17,8 @@ namespace {
 
 using namespace petzval;
 
-constexpr std::size_t count = 9;  // more than a register of AVX-512 holds in double
+constexpr std::size_t count = 9;   // more than a register of AVX-512 holds in double
+constexpr double farthest = 1e15;  // mm; where rims end all rays, unless they are ignored
 
 /// From any place near the lens, mostly in the direction of travel.
 Ray<double> wild_ray(fuzz::Bytes& bytes, const Lens& lens, Travel travel) {
@@ -67,7 +68,7 @@ void one_against_batches(const Lens& lens, const std::array<Ray<double>, count>&
   for (std::size_t i = 0; i < count; ++i) {
     const TracedRay<T> one = trace(lens, rays[i], options);
     check(one, lens), check(exact[i], lens);
-    if (glm::length(Vec3<double>(one.ray.origin)) < 1e15) check(fast[i], lens);
+    if (glm::length(Vec3<double>(one.ray.origin)) < farthest) check(fast[i], lens);
     fuzz::require(one.fate == exact[i].fate && one.surface == exact[i].surface,
                   "a reproducible batch has the same fates");
     if (one.transmitted()) fuzz::require(same_bits(one.ray, exact[i].ray), "a reproducible batch has the same bits");
@@ -89,6 +90,11 @@ void float_against_double(const Lens& lens, const Ray<double>& wanted, const Tra
   const TracedRay<float> in_float = trace(lens, narrow, options);
   const TracedRay<double> in_double = trace(lens, wide, options);
   if (!in_float.transmitted() || !in_double.transmitted()) return;
+  if (!(glm::length(wide.origin) < farthest)) return;
+  constexpr double most_curved = 1e9;  // 1/mm, which tests/trace go to
+  if (std::ranges::any_of(lens.surfaces(), [](const LensSurface& s) { return std::abs(s.curvature) > most_curved; })) {
+    return;
+  }
   bool beyond = false;  // the rim of an asphere, where any crossing will do
   trace<double>(lens, wide, options, [&](int i, const Vec3<double>& hit) {
     const LensSurface& surface = lens.surfaces()[static_cast<std::size_t>(i)];
