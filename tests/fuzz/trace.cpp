@@ -90,8 +90,8 @@ void float_against_double(const Lens& lens, const Ray<double>& wanted, const Tra
   const TracedRay<float> in_float = trace(lens, narrow, options);
   const TracedRay<double> in_double = trace(lens, wide, options);
   if (!in_float.transmitted() || !in_double.transmitted()) return;
-  if (!(glm::length(wide.origin) < farthest)) return;
-  constexpr double most_curved = 1e9;  // 1/mm, which tests/trace go to
+  constexpr double farthest_start = 1e9, most_curved = 1e9;  // mm, 1/mm: the limits of tests/README.md
+  if (!(glm::length(wide.origin) < farthest_start)) return;
   if (std::ranges::any_of(lens.surfaces(), [](const LensSurface& s) { return std::abs(s.curvature) > most_curved; })) {
     return;
   }
