@@ -52,7 +52,7 @@ struct LensSurface {
   double conic = 0;
   Section curved_in = Section::both;
   std::vector<AsphereTerm> aspheric;
-  double semi_diameter = 0;              ///< infinite: unlimited, as from 1e15 mm on; of less than 1e-12 mm 0
+  double semi_diameter = 0;              ///< infinite: unlimited, as beyond 1e15 mm; of less than 1e-12 mm 0
   double obscuration_semi_diameter = 0;  ///< of the central obscuration; 0: none
   bool mirror = false;
 };
