@@ -37,10 +37,9 @@ double term_height(const LensSurface& s, double slope) {
 /// steepest: farther out a hyperboloid bends no more, and a weak term has crossings of its own.
 double height(const LensSurface& s) {
   constexpr double runs_away = 1e6;  // whatever the other terms are
-  constexpr double least = 1e-12;    // mm; of less, float has no square
   const double curvature = std::abs(s.curvature) * std::sqrt(std::max(0.0, 1 + s.conic));
   double limit = curvature > 0 ? 1 / curvature : std::numeric_limits<double>::infinity();
-  if (s.semi_diameter > 0) limit = std::min(limit, std::max(s.semi_diameter, least));
+  if (s.semi_diameter > 0) limit = std::min(limit, s.semi_diameter);
   const bool limited = std::isfinite(s.semi_diameter);
   if (!limited && s.curvature != 0) limit = std::min(limit, steepest / std::abs(s.curvature));
   limit = std::min(limit, term_height(s, limited ? runs_away : 1));

@@ -312,17 +312,18 @@ class Search {
   void across(std::span<const std::uint32_t> which, Reach reach) {
     constexpr double tiny = 1e-4, near = 32;
     std::vector<Line> lines;
+    std::vector<bool> close;
     std::vector<std::uint32_t> far;
     for (const std::uint32_t p : which) {
       const PupilGuess& g = points_[p];
       const double half = found_[p].half_axes[1], all = std::max({(g.high - g.low) / 2, 2 * g.radius, 2 * half});
-      const bool close = reach == Reach::near && half < tiny * all;
-      lines.push_back({p, found_[p].middle[0], found_[p].middle[1], close ? near * half : all, 0});
+      close.push_back(reach == Reach::near && half < tiny * all);
+      lines.push_back({p, found_[p].middle[0], found_[p].middle[1], close.back() ? near * half : all, 0});
     }
     const auto extent = extents_along(lines, mirrored_ ? 0 : -1, 1, mirrored_ ? 96 : 192, tolerance, clearances_);
     for (std::size_t i = 0; i < which.size(); ++i) {
       const LineExtent& e = extent[i];
-      if (reach == Reach::near && (!e.any || e.from == -1 || e.to == 1)) {
+      if (close[i] && (!e.any || e.from == -1 || e.to == 1)) {
         far.push_back(which[i]);
         continue;
       }
