@@ -30,6 +30,8 @@ struct Lens::Data {
   std::shared_ptr<const lens_detail::SharedTables<float>> in_float;
   std::shared_ptr<const lens_detail::SharedTables<double>> in_double;
 
+  static Lens lens(std::shared_ptr<const Data> data) noexcept { return Lens(std::move(data)); }
+
   /// Builds the tables from the rest.
   void build() {
     const auto aspheres = lens_detail::describe_aspheres(surfaces);

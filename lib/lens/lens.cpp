@@ -12,6 +12,7 @@
 #include "data.hpp"
 #include "iris/iris_edges.hpp"
 #include "petzval/core/error.hpp"
+#include "without_obscurations.hpp"
 
 namespace petzval::inline v0 {
 
@@ -199,7 +200,7 @@ Lens compile(const Prescription& source, std::span<const double> wavelengths_nm,
   data->focus_positions = focus_positions(prescription);
   data->indices = lens_detail::indices(prescription, wavelengths_nm, options, where);
   data->build();
-  return Lens(std::move(data));
+  return Lens::Data::lens(std::move(data));
 }
 
 Lens compile(const Prescription& prescription, const CompileOptions& options) {
@@ -216,10 +217,10 @@ Lens with_semi_diameter(const Lens& lens, std::size_t surface, double semi_diame
     throw Error(lens.name() + ": surface " + std::to_string(surface) + ": semi_diameter is " + to_text(semi_diameter) +
                 " mm, wanted one up to 1e15 mm for the iris of the stop");
   }
-  auto data = std::make_shared<Lens::Data>(*lens.data_);
+  auto data = std::make_shared<Lens::Data>(lens.data());
   data->surfaces[surface].semi_diameter = usable_rim(semi_diameter);
   data->build();
-  return Lens(std::move(data));
+  return Lens::Data::lens(std::move(data));
 }
 
 Lens with_film(const Lens& lens, double film_z) {
@@ -230,9 +231,9 @@ Lens with_film(const Lens& lens, double film_z) {
     throw Error(lens.name() + ": film_z is " + to_text(film_z) + " mm, wanted it behind the lens, " +
                 (direction > 0 ? "above " : "below ") + to_text(last_z) + " mm, where the last vertex is");
   }
-  auto data = std::make_shared<Lens::Data>(*lens.data_);
+  auto data = std::make_shared<Lens::Data>(lens.data());
   data->film_z = film_z;
-  return Lens(std::move(data));
+  return Lens::Data::lens(std::move(data));
 }
 
 Lens with_groups_at(const Lens& lens, double inverse_distance) {
@@ -247,7 +248,7 @@ Lens with_groups_at(const Lens& lens, double inverse_distance) {
                                               &FocusPosition::inverse_distance);
   const FocusPosition &to = *above, &from = *(above - 1);
   const double t = (inverse_distance - from.inverse_distance) / (to.inverse_distance - from.inverse_distance);
-  auto data = std::make_shared<Lens::Data>(*lens.data_);
+  auto data = std::make_shared<Lens::Data>(lens.data());
   for (std::size_t i = 0; i < data->surfaces.size(); ++i) {
     const double near = from.thicknesses[i], far = to.thicknesses[i];
     const double thickness = near == far ? near : near + t * (far - near);
@@ -259,7 +260,14 @@ Lens with_groups_at(const Lens& lens, double inverse_distance) {
   }
   place_vertices(*data);
   data->build();
-  return Lens(std::move(data));
+  return Lens::Data::lens(std::move(data));
+}
+
+Lens without_obscurations(const Lens& lens) {
+  auto data = std::make_shared<Lens::Data>(lens.data());
+  for (LensSurface& s : data->surfaces) s.obscuration_semi_diameter = 0;
+  data->build();
+  return Lens::Data::lens(std::move(data));
 }
 
 Lens with_iris(const Lens& lens, const Iris& iris) {
@@ -273,10 +281,10 @@ Lens with_iris(const Lens& lens, const Iris& iris) {
                   ", the stop, is unlimited, wanted a semi_diameter");
     }
   }
-  auto data = std::make_shared<Lens::Data>(*lens.data_);
+  auto data = std::make_shared<Lens::Data>(lens.data());
   data->iris = iris;
   data->build();
-  return Lens(std::move(data));
+  return Lens::Data::lens(std::move(data));
 }
 
 }  // namespace petzval::inline v0

@@ -6,9 +6,9 @@
 #include <limits>
 #include <numbers>
 
-#include "boundary_nodes.hpp"
 #include "core/meet_plane.hpp"
 #include "core/text.hpp"
+#include "directions_seen.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/aim.hpp"
@@ -17,30 +17,17 @@
 namespace petzval::inline v0 {
 
 double film_irradiance(const Lens& lens, const FilmPoint& point, Wavelength wavelength) {
-  const PupilPlane plane = PupilPlane::of_film(lens, point);
-  const bool alike_all_round = plane.on_axis() && lens.rotationally_symmetric();
-  PupilBoundary boundary =
-      alike_all_round ? exit_pupil_boundary(lens, point, wavelength, 1) : exit_pupil_boundary(lens, point, wavelength);
-  // Parts beside the middle are seen along few directions.
-  const bool parts = !boundary.empty() && boundary.spans.size() != boundary.directions;
-  if (parts && !alike_all_round) boundary = exit_pupil_boundary(lens, point, wavelength, 1024);
-  // Part dA of the plane, gap away from the film, is seen in the projected solid angle cos^4 dA / gap^2.
-  const double gap = plane.towards().z / plane.reciprocal_distance();
-  double sum = 0;
-  const auto add = [&](const Vec2<double>& p, double area, double weight) {
-    sum += weight * area * std::pow(plane.ray(p.x, p.y).direction.z, 4);
+  const bool alike_all_round = point.x == 0 && point.y == 0 && lens.rotationally_symmetric();
+  const auto seen = [&](std::size_t directions) {
+    return pupil_detail::directions_seen(lens, point, wavelength, directions);
   };
-  // Three nodes are enough as far as 39 degrees.
-  const bool wide = std::max(boundary.half_axes[0], boundary.half_axes[1]) > 0.8 * std::abs(gap);
-  if (wide) {
-    pupil_detail::for_each_node<32>(boundary, add);
-  } else {
-    pupil_detail::for_each_node<3>(boundary, add);
-  }
-  if (sum == 0) return 0;
+  PupilRegion region = seen(alike_all_round ? 1 : 256);
+  // Parts beside the middle are seen along few directions.
+  const bool parts = !region.empty() && region.spans.size() != region.directions;
+  if (parts && !alike_all_round) region = seen(1024);
+  if (region.empty()) return 0;
   const double n = lens.index(lens.surface_count(), wavelength);
-  return n * n * sum * std::numbers::pi / static_cast<double>(boundary.directions) * boundary.half_axes[0] *
-         boundary.half_axes[1] / (gap * gap);
+  return n * n * region.area();
 }
 
 double image_circle_mm(const Lens& lens, double least_part, Wavelength wavelength) {
@@ -57,7 +44,7 @@ double image_circle_mm(const Lens& lens, double least_part, Wavelength wavelengt
       const FilmPoint point{radius * std::sin(angle), radius * std::cos(angle)};
       // A coarse boundary tells whether there is one.
       const bool enough = least_part > 0 ? film_irradiance(lens, point, wavelength) >= wanted
-                                         : !exit_pupil_boundary(lens, point, wavelength, 16).empty();
+                                         : !pupil_detail::directions_seen(lens, point, wavelength, 16).empty();
       if (!enough) return false;
     }
     return true;

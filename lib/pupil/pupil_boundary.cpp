@@ -9,13 +9,17 @@
 #include <utility>
 
 #include "core/bisect.hpp"
+#include "directions_seen.hpp"
+#include "lens/without_obscurations.hpp"
 #include "petzval/core/error.hpp"
 #include "sight.hpp"
+#include "sines.hpp"
 
 namespace petzval::inline v0 {
 namespace {
 
 using Point = Vec2<double>;
+using pupil_detail::Coordinates;
 using pupil_detail::SeenPlace;
 using pupil_detail::Sight;
 
@@ -271,10 +275,9 @@ class Tracer {
 /// Farther than the corners of the box about the pupil.
 constexpr double farthest = 1.6;
 
-/// The boundary, from some rays that pass. It stays empty where the pupil is smaller than what rays resolve.
-void trace_boundary(Sight& sight, PupilBoundary& boundary, const std::vector<SeenPlace>& passing,
-                    std::size_t directions) {
-  const auto [inner, box] = boxes_about(sight, passing);
+/// The boundary, from a box within the pupil's and one about it. It stays empty where the pupil is smaller than what
+/// rays resolve.
+void trace_boundary(Sight& sight, PupilBoundary& boundary, const Box& inner, const Box& box, std::size_t directions) {
   boundary.middle = box.middle(), boundary.half_axes = box.half();
   Tracer tracer(sight, boundary);
   if (directions == 1) {  // alike all round
@@ -320,7 +323,28 @@ void trace_boundary(Sight& sight, PupilBoundary& boundary, const std::vector<See
   }
 }
 
-PupilBoundary boundary_of(const Lens& lens, const PupilPlane& plane, Wavelength at, std::size_t directions) {
+/// The boundary, from some rays that pass.
+void trace_boundary(Sight& sight, PupilBoundary& boundary, const std::vector<SeenPlace>& passing,
+                    std::size_t directions) {
+  auto [inner, box] = boxes_about(sight, passing);
+  // Of a ring that slips between most places, some show where it is but not how far it reaches. The disc that it is cut
+  // out of has its size.
+  constexpr std::size_t enough = 32;
+  const auto surfaces = sight.lens().surfaces();
+  const auto obscured = [](const LensSurface& s) { return s.obscuration_semi_diameter > 0; };
+  if (passing.size() < enough && std::any_of(surfaces.begin(), surfaces.end(), obscured)) {
+    const Lens open = without_obscurations(sight.lens());
+    Sight disc(open, sight.plane(), boundary.wavelength, sight.coordinates());
+    const Box about = boxes_about(disc, disc.passing_places()).second;
+    trace_boundary(sight, boundary, inner, about, directions);
+    if (!boundary.empty()) return;
+    boundary = PupilBoundary(boundary.plane, boundary.wavelength);
+  }
+  trace_boundary(sight, boundary, inner, box, directions);
+}
+
+PupilBoundary boundary_of(const Lens& lens, const PupilPlane& plane, Wavelength at, std::size_t directions,
+                          Coordinates coordinates = Coordinates::plane) {
   const std::size_t wavelength = lens.compiled_position(at);
   constexpr std::size_t most = 1 << 20;
   const bool one_is_enough = plane.on_axis() && lens.rotationally_symmetric();
@@ -331,7 +355,7 @@ PupilBoundary boundary_of(const Lens& lens, const PupilPlane& plane, Wavelength 
   PupilBoundary boundary(plane, wavelength);
   const auto closed = [](const LensSurface& s) { return s.semi_diameter == 0; };
   if (std::any_of(lens.surfaces().begin(), lens.surfaces().end(), closed)) return boundary;
-  Sight sight(lens, plane, wavelength);
+  Sight sight(lens, plane, wavelength, coordinates);
   if (directions == 1) {  // one line shows it, unless all of it lies between two samples
     const double reach = sight.reach();
     boundary.half_axes = {reach, reach};
@@ -354,5 +378,20 @@ PupilBoundary exit_pupil_boundary(const Lens& lens, const FilmPoint& point, Wave
                                   std::size_t directions) {
   return boundary_of(lens, PupilPlane::of_film(lens, point), wavelength, directions);
 }
+
+namespace pupil_detail {
+
+PupilRegion directions_seen(const Lens& lens, const FilmPoint& point, Wavelength wavelength, std::size_t directions) {
+  const PupilPlane plane = PupilPlane::of_film(lens, point);
+  PupilRegion region = boundary_of(lens, plane, wavelength, directions, Coordinates::sines);
+  const double per_distance = Sines(plane).per_distance();
+  region.middle *= per_distance, region.half_axes *= per_distance;
+  for (PupilSpan& span : region.spans) {
+    for (RimPoint* rim : {&span.from, &span.to}) rim->x *= per_distance, rim->y *= per_distance;
+  }
+  return region;
+}
+
+}  // namespace pupil_detail
 
 }  // namespace petzval::inline v0

@@ -11,6 +11,7 @@
 #include "face.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/trace/trace.hpp"
+#include "sines.hpp"
 #include "trace/clearances.hpp"
 
 namespace petzval::inline v0::pupil_detail {
@@ -28,43 +29,11 @@ struct Box {
   }
 };
 
-/// Places of a plane by the sines under which its point sees them, times its distance: a surface close to the point
-/// has a bounded image. Of a point at infinity they are the places themselves.
-class Sines {
- public:
-  explicit Sines(const PupilPlane& plane) noexcept {
-    const double cosine = glm::dot(plane.towards(), plane.normal());
-    per_distance_ = std::abs(plane.reciprocal_distance() / cosine);
-    if (per_distance_ == 0) return;
-    const Vec3<double> place = plane.towards() / plane.reciprocal_distance();
-    foot_ = plane.meet({plane.centre() + place, plane.normal()});
-  }
-
-  Place of(const Place& p) const noexcept {
-    const Place d = p - foot_;
-    const Place s = d * per_distance_;
-    return d / std::sqrt(1 + s.x * s.x + s.y * s.y);
-  }
-  /// Not finite for directions along the plane and beyond.
-  Place place(const Place& sines) const noexcept {
-    const Place s = sines * per_distance_;
-    return foot_ + sines / std::sqrt(1 - s.x * s.x - s.y * s.y);
-  }
-  /// By how much a step of sines is longer at a place, at most.
-  double stretch(const Place& p) const noexcept {
-    const Place s = (p - foot_) * per_distance_;
-    const double square = 1 + s.x * s.x + s.y * s.y;
-    return square * std::sqrt(square);
-  }
-  /// All that can be seen.
-  Box hemisphere() const noexcept {
-    return {{-1 / per_distance_, -1 / per_distance_}, {1 / per_distance_, 1 / per_distance_}};
-  }
-
- private:
-  Place foot_{0, 0};
-  double per_distance_ = 0;
-};
+/// All directions.
+Box hemisphere(const Sines& sines) noexcept {
+  const double all = 1 / sines.per_distance();
+  return {{-all, -all}, {all, all}};
+}
 
 /// What the point of a plane sees of the surface through which its rays enter, in sines.
 Box seen_face(const Lens& lens, const PupilPlane& plane, const Sines& sines) {
@@ -87,7 +56,7 @@ Box seen_face(const Lens& lens, const PupilPlane& plane, const Sines& sines) {
       const double before =
           glm::dot(plane.towards() - (place - plane.centre()) * plane.reciprocal_distance(), plane.normal());
       if (facing == 0) facing = before;
-      if (!(before / facing > 0.01)) return sines.hemisphere();
+      if (!(before / facing > 0.01)) return hemisphere(sines);
       box.take(sines.of(plane.meet({place, plane.direction_at(place)})));
     }
   }
@@ -97,24 +66,19 @@ Box seen_face(const Lens& lens, const PupilPlane& plane, const Sines& sines) {
 
 /// Places in even steps over a box of sines, row by row.
 struct Grid {
-  const Sines& sines;
-  int steps, side;
-  Place cell;
+  int side;
+  std::vector<SeenPlace> places;
   std::vector<double> x, y;
 
-  Grid(const Sines& of, const Box& box, int n)
-      : sines(of), steps(n), side(n + 1), cell((box.high - box.low) / static_cast<double>(n)) {
+  Grid(const Sines& sines, const Box& box, int steps) : side(steps + 1) {
+    const Place cell = (box.high - box.low) / static_cast<double>(steps);
     for (int j = 0; j < side; ++j) {
       for (int i = 0; i < side; ++i) {
         const Place p = sines.place(box.low + Place{static_cast<double>(i), static_cast<double>(j)} * cell);
+        places.push_back({p, cell * sines.stretch(p)});
         x.push_back(p.x), y.push_back(p.y);
       }
     }
-  }
-
-  SeenPlace place(int at) const noexcept {
-    const Place p{x[at], y[at]};
-    return {p, cell * sines.stretch(p)};
   }
 };
 
@@ -150,14 +114,23 @@ SeenPlaces places_seen(const Lens& lens, const PupilPlane& plane, int steps, boo
   return result;
 }
 
-Sight::Sight(const Lens& lens, const PupilPlane& plane, std::size_t wavelength)
-    : lens_(lens), plane_(plane), wavelength_(wavelength) {}
+Sight::Sight(const Lens& lens, const PupilPlane& plane, std::size_t wavelength, Coordinates coordinates)
+    : lens_(lens), plane_(plane), sines_(plane), coordinates_(coordinates), wavelength_(wavelength) {}
 
 RayArrays<double> Sight::rays(std::span<const double> x, std::span<const double> y) {
   for (auto& values : rays_) values.resize(x.size());
   const RayArrays<double> rays{rays_[0].data(), rays_[1].data(), rays_[2].data(),
                                rays_[3].data(), rays_[4].data(), rays_[5].data()};
-  plane_.rays(x, y, rays);
+  if (coordinates_ == Coordinates::plane) {
+    plane_.rays(x, y, rays);
+    return rays;
+  }
+  for (auto& values : places_) values.resize(x.size());
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const Place p = sines_.place({x[i], y[i]});
+    places_[0][i] = p.x, places_[1][i] = p.y;
+  }
+  plane_.rays(places_[0], places_[1], rays);
   return rays;
 }
 
@@ -188,12 +161,11 @@ Sight::Ends Sight::ends(std::span<const double> x, std::span<const double> y) {
 }
 
 double Sight::reach() const {
-  const Sines sines(plane_);
-  const Box box = seen_face(lens_, plane_, sines);
+  const Box box = seen_face(lens_, plane_, sines_);
   double farthest = 0;
   for (const double x : {box.low.x, box.high.x, 0.0}) {
     for (const double y : {box.low.y, box.high.y, 0.0}) {
-      const Place p = sines.place({x, y});
+      const Place p = coordinates_ == Coordinates::sines ? Place{x, y} : sines_.place({x, y});
       if (std::isfinite(p.x) && std::isfinite(p.y)) farthest = std::max({farthest, std::abs(p.x), std::abs(p.y)});
     }
   }
@@ -202,12 +174,16 @@ double Sight::reach() const {
 
 std::vector<SeenPlace> Sight::passing_places() {
   std::vector<SeenPlace> result;
-  const Sines sines(plane_);
-  const Box box = seen_face(lens_, plane_, sines);
-  const Grid grid(sines, box, 48);
+  if (coordinates_ == Coordinates::sines) {
+    result = Sight(lens_, plane_, wavelength_, Coordinates::plane).passing_places();
+    for (auto& [at, beside] : result) beside /= sines_.stretch(at), at = sines_.of(at);
+    return result;
+  }
+  const Box box = seen_face(lens_, plane_, sines_);
+  const Grid grid(sines_, box, 48);
   const auto take_passing = [&](const Grid& on, std::span<const double> values) {
-    for (int at = 0; at < on.side * on.side; ++at) {
-      if (values[at] >= 0) result.push_back(on.place(at));
+    for (std::size_t at = 0; at < on.places.size(); ++at) {
+      if (values[at] >= 0) result.push_back(on.places[at]);
     }
   };
   const auto values = clearances(grid.x, grid.y);
@@ -225,13 +201,13 @@ std::vector<SeenPlace> Sight::passing_places() {
   const auto take_summits = [&](const Grid& on, std::span<const double> heights) {
     const double lost = result.empty() ? -infinity : -1;  // otherwise than by a rim
     for (const std::size_t at : summits(heights, static_cast<std::size_t>(on.side))) {
-      if (heights[at] > lost) highest.push_back({heights[at], on.place(static_cast<int>(at))});
+      if (heights[at] > lost) highest.push_back({heights[at], on.places[at]});
     }
   };
   if (aspheric) {
     take_summits(grid, values);
   } else {
-    const Grid finer(sines, box, 96);
+    const Grid finer(sines_, box, 96);
     const auto heights = clearances(finer.x, finer.y, false);
     take_passing(finer, heights);
     take_summits(finer, heights);

@@ -9,6 +9,7 @@
 #include "petzval/core/ray.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/pupil/pupil_plane.hpp"
+#include "sines.hpp"
 
 namespace petzval::inline v0::pupil_detail {
 
@@ -33,13 +34,17 @@ SeenPlaces places_seen(const Lens& lens, const PupilPlane& plane, int steps, boo
 /// between two that are alike.
 std::vector<std::size_t> summits(std::span<const double> values, std::size_t row, bool half = false);
 
+/// What x and y of a place are: those of the plane, or its sines (sines.hpp), which are bounded.
+enum class Coordinates { plane, sines };
+
 /// The rays of one point, many at a time. Keeps the memory for them.
 class Sight {
  public:
-  Sight(const Lens& lens, const PupilPlane& plane, std::size_t wavelength);
+  Sight(const Lens& lens, const PupilPlane& plane, std::size_t wavelength, Coordinates coordinates);
 
   const Lens& lens() const noexcept { return lens_; }
   const PupilPlane& plane() const noexcept { return plane_; }
+  Coordinates coordinates() const noexcept { return coordinates_; }
 
   /// Of the rays through some places: trace/clearances.hpp, reproducible. x, y: N each. Returns N values, valid until
   /// the next call. apertures: as in BatchOptions.
@@ -52,7 +57,7 @@ class Sight {
   };
   Ends ends(std::span<const double> x, std::span<const double> y);
 
-  /// How far from the centre of the plane places lie that see the surface through which rays enter, mm.
+  /// How far from 0 the coordinates of places are that see the surface through which rays enter, mm.
   double reach() const;
 
   /// Looks for rays that pass, over all that can be seen of the surface through which they enter: at 48 x 48 places
@@ -64,7 +69,10 @@ class Sight {
 
   const Lens& lens_;
   PupilPlane plane_;
+  Sines sines_;
+  Coordinates coordinates_;
   std::size_t wavelength_;
+  std::array<std::vector<double>, 2> places_;
   std::array<std::vector<double>, 6> rays_;
   std::vector<double> values_;
   std::vector<RayFate> fates_;

@@ -109,7 +109,8 @@ double seen_in_all_directions(const Lens& lens, const FilmPoint& film, int side)
   std::vector<Ray<double>> rays;
   const auto add = [&](double i, double j) {
     const Vec2<double> c = low + cell * Vec2<double>{i, j};
-    const double dz = std::sqrt(std::max(1 - c.x * c.x - c.y * c.y, 1e-12)), gap = std::abs(lens.film_z() - back);
+    // Beside the half space dz is no number, and the ray is lost.
+    const double dz = std::sqrt(1 - c.x * c.x - c.y * c.y), gap = std::abs(lens.film_z() - back);
     rays.push_back(plane.ray(film.x + c.x / dz * gap, film.y + c.y / dz * gap));
   };
   std::vector<TracedRay<double>> ends;
@@ -206,6 +207,50 @@ TEST(FilmIrradiance, OfAFilmCloseToTheGlassIsThatOfAllRays) {
     for (const FilmPoint& film : {FilmPoint{}, FilmPoint{-2.8, 0}, FilmPoint{3, 4}}) {
       SCOPED_TRACE(std::to_string(gap) + " at " + std::to_string(film.x));
       EXPECT_NEAR(film_irradiance(close, film) / seen_in_all_directions(close, film, 600), 1, 3e-3);
+    }
+  }
+}
+
+/// A stop before a bowl of glass: its last surface has the film at its rim or within it.
+Lens bowl(double last_radius, double gap) {
+  Prescription p;
+  p.name = "bowl";
+  p.surfaces = {{.radius = 30, .thickness = 8, .medium = {.nd = 1.7}, .semi_diameter = 14, .stop = true},
+                {.radius = last_radius, .thickness = gap, .semi_diameter = 15}};
+  return compile(p);
+}
+
+// Directions along the film pass, which no plane holds.
+TEST(FilmIrradiance, InTheBowlOfTheLastSurfaceIsThatOfAllRays) {
+  for (const double radius : {0.0, 200.0, 60.0, 30.0, 20.0, -200.0, -60.0}) {
+    for (const double gap : {0.3, 1.0, 2.0}) {
+      const Lens lens = bowl(radius, gap);
+      for (const FilmPoint& film : {FilmPoint{}, FilmPoint{0, 3}, FilmPoint{4, -5}, FilmPoint{0, 10}}) {
+        SCOPED_TRACE(std::to_string(radius) + ", " + std::to_string(gap) + " at " + std::to_string(film.y));
+        EXPECT_NEAR(film_irradiance(lens, film) / seen_in_all_directions(lens, film, 600), 1, 3e-3);
+      }
+    }
+  }
+}
+
+TEST(FilmIrradiance, OfAThinRingIsTheShareOfItsDisc) {
+  for (const double radius : {5.0, 0.1, 0.01, 1e-3}) {
+    for (const double obscured : {0.5, 0.9, 0.99, 0.999}) {
+      Prescription p;
+      p.name = "ring";
+      p.surfaces = {{.thickness = 10, .semi_diameter = radius, .stop = true},
+                    {.radius = 80, .thickness = 6, .medium = {.nd = 1.6}, .semi_diameter = 20},
+                    {.radius = -80, .thickness = 60, .semi_diameter = 20}};
+      const Lens disc = compile(p);
+      p.surfaces[0].obscuration_semi_diameter = obscured * radius;
+      const Lens ring = compile(p);
+      for (const FilmPoint& film : {FilmPoint{}, FilmPoint{0, 4}, FilmPoint{-3, 5}}) {
+        SCOPED_TRACE(std::to_string(radius) + ", " + std::to_string(obscured) + " at " + std::to_string(film.y));
+        // In a wide beam the solid angle of the middle is another than the rim's.
+        const double share = 1 - obscured * obscured, bound = radius < 1 ? 1e-3 : 0.02;
+        EXPECT_NEAR(film_irradiance(ring, film) / film_irradiance(disc, film) / share, 1, bound);
+        EXPECT_NEAR(exit_pupil_boundary(ring, film).area() / exit_pupil_boundary(disc, film).area() / share, 1, bound);
+      }
     }
   }
 }

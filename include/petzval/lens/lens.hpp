@@ -142,12 +142,6 @@ class PETZVAL_API Lens {
  private:
   explicit Lens(std::shared_ptr<const Data> data) noexcept : data_(std::move(data)) {}
   std::shared_ptr<const Data> data_;
-
-  friend PETZVAL_API Lens compile(const Prescription&, std::span<const double>, const CompileOptions&);
-  friend PETZVAL_API Lens with_semi_diameter(const Lens&, std::size_t, double);
-  friend PETZVAL_API Lens with_film(const Lens&, double);
-  friend PETZVAL_API Lens with_iris(const Lens&, const Iris&);
-  friend PETZVAL_API Lens with_groups_at(const Lens&, double);
 };
 
 /// Compiles a prescription, in one of its configurations, for some wavelengths (nm). Throws Error, naming lens and

@@ -15,9 +15,7 @@ namespace petzval::inline v0 {
 /// Irradiance of the film of a lens at a point, in units of the radiance of a scene that is uniform in all directions:
 /// n'^2 times the projected solid angle in which the point sees the scene through the lens, in sr. Within 5e-4 for
 /// stops of 1e-6 mm and more; one that rays do not resolve counts as closed. Within 3e-3 where the pupil comes in
-/// parts; tests/pupil compares every lens of data/ with rays in all directions. Light is lost (percents to most of it)
-/// where the film is behind the last rim by less than 1/10 of its radius or lies in the bowl of the last surface, and
-/// behind stops below 0.1 mm whose obscuration is 0.9 of the rim or more. Throws Error where pupil_boundary does.
+/// parts; tests/pupil compares every lens of data/ with rays in all directions. Throws Error where pupil_boundary does.
 PETZVAL_API double film_irradiance(const Lens& lens, const FilmPoint& point, Wavelength wavelength = {});
 
 /// film_irradiance where the chief ray of a scene point meets the film, relative to that on the axis: natural and

@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "petzval/lens/lens.hpp"
+
+namespace petzval::inline v0 {
+
+/// The lens without its central obscurations: its pupils hold those of the lens, and none is a ring.
+Lens without_obscurations(const Lens& lens);
+
+}  // namespace petzval::inline v0

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+
+#include "petzval/film/film.hpp"
+#include "petzval/lens/lens.hpp"
+#include "petzval/lens/wavelength.hpp"
+#include "petzval/pupil/pupil_boundary.hpp"
+
+namespace petzval::inline v0::pupil_detail {
+
+/// The same region as exit_pupil_boundary()'s, by the sines of the directions in which the film point sees it: its area
+/// is the projected solid angle, sr. It holds directions along the film too, which no plane does.
+PupilRegion directions_seen(const Lens& lens, const FilmPoint& point, Wavelength wavelength, std::size_t directions);
+
+}  // namespace petzval::inline v0::pupil_detail
