@@ -73,7 +73,8 @@ void check_exr_attributes(std::istream& in) {
       const std::uint64_t width = word(), height = word();
       read = width > size || height > size ? size : 8 + 4 * width * height;
     } else if (type == "stringvector") {
-      for (read = 0; in && read < bytes; in.seekg(static_cast<std::streamoff>(begin + read))) read += 4 + word();
+      for (read = 0; in && read < bytes; in.seekg(static_cast<std::streamoff>(begin + read)))
+        read += std::uint64_t{4} + word();
     }
     if (read != bytes) {
       throw Error("attribute " + name + " of type " + type + " claims " + std::to_string(bytes) + " bytes, wanted " +
