@@ -10,8 +10,9 @@
 
 namespace petzval::inline v0::pupil_detail {
 
-/// The same region as exit_pupil_boundary()'s, by the sines of the directions in which the film point sees it: its area
-/// is the projected solid angle, sr. It holds directions along the film too, which no plane does.
+/// The same region as exit_pupil_boundary()'s, by the angles under which the film point sees it: a direction at the
+/// angle t from the normal of the film lies t from (0, 0), towards where it points. It holds directions along the film
+/// too, which no plane does.
 PupilRegion directions_seen(const Lens& lens, const FilmPoint& point, Wavelength wavelength, std::size_t directions);
 
 }  // namespace petzval::inline v0::pupil_detail

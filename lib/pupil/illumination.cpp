@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <limits>
 #include <numbers>
 
+#include "boundary_nodes.hpp"
 #include "core/meet_plane.hpp"
 #include "core/text.hpp"
 #include "directions_seen.hpp"
@@ -26,8 +28,15 @@ double film_irradiance(const Lens& lens, const FilmPoint& point, Wavelength wave
   const bool parts = !region.empty() && region.spans.size() != region.directions;
   if (parts && !alike_all_round) region = seen(1024);
   if (region.empty()) return 0;
+  // The projected solid angle of a small area about the angle t is sin t cos t / t of it.
+  double sum = 0;
+  pupil_detail::for_each_node<16>(region, [&](const Vec2<double>& angles, double area, double weight) {
+    const double angle = glm::length(angles);
+    sum += weight * area * (angle > 0 ? std::sin(2 * angle) / (2 * angle) : 1);
+  });
   const double n = lens.index(lens.surface_count(), wavelength);
-  return n * n * region.area();
+  return n * n * sum * std::numbers::pi / static_cast<double>(region.directions) * region.half_axes.x *
+         region.half_axes.y;
 }
 
 double image_circle_mm(const Lens& lens, double least_part, Wavelength wavelength) {

@@ -13,7 +13,6 @@
 #include "lens/without_obscurations.hpp"
 #include "petzval/core/error.hpp"
 #include "sight.hpp"
-#include "sines.hpp"
 
 namespace petzval::inline v0 {
 namespace {
@@ -382,14 +381,7 @@ PupilBoundary exit_pupil_boundary(const Lens& lens, const FilmPoint& point, Wave
 namespace pupil_detail {
 
 PupilRegion directions_seen(const Lens& lens, const FilmPoint& point, Wavelength wavelength, std::size_t directions) {
-  const PupilPlane plane = PupilPlane::of_film(lens, point);
-  PupilRegion region = boundary_of(lens, plane, wavelength, directions, Coordinates::sines);
-  const double per_distance = Sines(plane).per_distance();
-  region.middle *= per_distance, region.half_axes *= per_distance;
-  for (PupilSpan& span : region.spans) {
-    for (RimPoint* rim : {&span.from, &span.to}) rim->x *= per_distance, rim->y *= per_distance;
-  }
-  return region;
+  return boundary_of(lens, PupilPlane::of_film(lens, point), wavelength, directions, Coordinates::angles);
 }
 
 }  // namespace pupil_detail

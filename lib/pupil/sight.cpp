@@ -127,7 +127,7 @@ RayArrays<double> Sight::rays(std::span<const double> x, std::span<const double>
   }
   for (auto& values : places_) values.resize(x.size());
   for (std::size_t i = 0; i < x.size(); ++i) {
-    const Place p = sines_.place({x[i], y[i]});
+    const Place p = sines_.place_at_angles({x[i], y[i]});
     places_[0][i] = p.x, places_[1][i] = p.y;
   }
   plane_.rays(places_[0], places_[1], rays);
@@ -165,7 +165,12 @@ double Sight::reach() const {
   double farthest = 0;
   for (const double x : {box.low.x, box.high.x, 0.0}) {
     for (const double y : {box.low.y, box.high.y, 0.0}) {
-      const Place p = coordinates_ == Coordinates::sines ? Place{x, y} : sines_.place({x, y});
+      const Place p = sines_.place({x, y});
+      if (coordinates_ == Coordinates::angles) {
+        const Place a = sines_.angles(p);
+        farthest = std::max(farthest, std::isfinite(a.x) && std::isfinite(a.y) ? glm::length(a) : std::numbers::pi / 2);
+        continue;
+      }
       if (std::isfinite(p.x) && std::isfinite(p.y)) farthest = std::max({farthest, std::abs(p.x), std::abs(p.y)});
     }
   }
@@ -174,9 +179,9 @@ double Sight::reach() const {
 
 std::vector<SeenPlace> Sight::passing_places() {
   std::vector<SeenPlace> result;
-  if (coordinates_ == Coordinates::sines) {
+  if (coordinates_ == Coordinates::angles) {
     result = Sight(lens_, plane_, wavelength_, Coordinates::plane).passing_places();
-    for (auto& [at, beside] : result) beside /= sines_.stretch(at), at = sines_.of(at);
+    for (auto& [at, beside] : result) beside *= sines_.angle_per_step(at), at = sines_.angles(at);
     return result;
   }
   const Box box = seen_face(lens_, plane_, sines_);

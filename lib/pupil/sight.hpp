@@ -34,8 +34,9 @@ SeenPlaces places_seen(const Lens& lens, const PupilPlane& plane, int steps, boo
 /// between two that are alike.
 std::vector<std::size_t> summits(std::span<const double> values, std::size_t row, bool half = false);
 
-/// What x and y of a place are: those of the plane, or its sines (sines.hpp), which are bounded.
-enum class Coordinates { plane, sines };
+/// What x and y of a place are: those of the plane, mm, or the angles under which its point, at a finite distance, sees
+/// it (sines.hpp), rad.
+enum class Coordinates { plane, angles };
 
 /// The rays of one point, many at a time. Keeps the memory for them.
 class Sight {
@@ -57,7 +58,7 @@ class Sight {
   };
   Ends ends(std::span<const double> x, std::span<const double> y);
 
-  /// How far from 0 the coordinates of places are that see the surface through which rays enter, mm.
+  /// How far from 0 the coordinates of places are that see the surface through which rays enter.
   double reach() const;
 
   /// Looks for rays that pass, over all that can be seen of the surface through which they enter: at 48 x 48 places

@@ -3,14 +3,15 @@
 
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <limits>
+#include <numbers>
 
 #include "petzval/pupil/pupil_plane.hpp"
 
 namespace petzval::inline v0::pupil_detail {
 
 /// Places of a plane by the sines under which its point sees them, times its distance: a surface close to the point
-/// has a bounded image, and an area there is a projected solid angle. Of a point at infinity they are the places
-/// themselves.
+/// has a bounded image. Of a point at infinity they are the places themselves.
 class Sines {
  public:
   explicit Sines(const PupilPlane& plane) noexcept {
@@ -36,6 +37,25 @@ class Sines {
     const Vec2<double> s = (p - foot_) * per_distance_;
     const double square = 1 + s.x * s.x + s.y * s.y;
     return square * std::sqrt(square);
+  }
+  /// Places by the angles under which a point at a finite distance sees them, rad: these are bounded too, and tell
+  /// directions along the plane apart.
+  Vec2<double> angles(const Vec2<double>& p) const noexcept {
+    const Vec2<double> t = (p - foot_) * per_distance_;
+    const double tangent = glm::length(t);
+    return tangent == 0 ? t : t * (std::atan(tangent) / tangent);
+  }
+  /// Not finite for directions along the plane and beyond.
+  Vec2<double> place_at_angles(const Vec2<double>& angles) const noexcept {
+    const double angle = glm::length(angles);
+    if (angle == 0) return foot_;
+    const double tangent = angle < std::numbers::pi / 2 ? std::tan(angle) : std::numeric_limits<double>::infinity();
+    return foot_ + angles * (tangent / (angle * per_distance_));
+  }
+  /// By how much a step of the plane is shorter in angles, at most.
+  double angle_per_step(const Vec2<double>& p) const noexcept {
+    const Vec2<double> t = (p - foot_) * per_distance_;
+    return per_distance_ / (1 + t.x * t.x + t.y * t.y);
   }
   /// One over the distance of the point from the plane, 1/mm; 0 at infinity.
   double per_distance() const noexcept { return per_distance_; }

@@ -233,6 +233,34 @@ TEST(FilmIrradiance, InTheBowlOfTheLastSurfaceIsThatOfAllRays) {
   }
 }
 
+/// The same for a film point (0, y) by a grid over angles, which tells directions along the film apart.
+double seen_along_the_film(const Lens& lens, double y, int side) {
+  double sum = 0;
+  for (int i = 0; i < side; ++i) {
+    const double angle = pi / 2 * (i + 0.5) / side, weight = std::sin(2 * angle) / 2;
+    for (int k = 0; k < side; ++k) {
+      const double turn = pi * (k + 0.5) / side;  // the other half is alike
+      const Ray<double> ray{{0, y, lens.film_z()},
+                            {std::sin(angle) * std::sin(turn), std::sin(angle) * std::cos(turn), -std::cos(angle)}};
+      if (trace(lens, ray, {.travel = Travel::to_scene}).transmitted()) sum += weight;
+    }
+  }
+  return sum * pi * pi / (side * side);
+}
+
+// Much of their light comes along the film, in crescents that are slim by their sines.
+TEST(FilmIrradiance, BesideTheGlassIsThatOfAllRays) {
+  for (const double radius : {0.0, -60.0}) {
+    for (const double y : {11.0, 12.0, 17.0}) {
+      const Lens lens = bowl(radius, 1.5);
+      SCOPED_TRACE(std::to_string(radius) + " at " + std::to_string(y));
+      EXPECT_NEAR(film_irradiance(lens, {0, y}) / seen_along_the_film(lens, y, 1200), 1, 5e-3);
+    }
+  }
+  const Lens close = bowl(0, 0.3);
+  for (double y = 15; y < 20; y += 0.25) EXPECT_GT(film_irradiance(close, {0, y}), 1e-4) << y;
+}
+
 TEST(FilmIrradiance, OfAThinRingIsTheShareOfItsDisc) {
   for (const double radius : {5.0, 0.1, 0.01, 1e-3}) {
     for (const double obscured : {0.5, 0.9, 0.99, 0.999}) {
