@@ -24,6 +24,7 @@ function(petzval_library name)
     CXX_VISIBILITY_PRESET hidden
     VISIBILITY_INLINES_HIDDEN ON
     POSITION_INDEPENDENT_CODE ON
+    UNITY_BUILD OFF  # each file has names of its own, whatever the project around it chooses
     LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/lib
     ARCHIVE_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/lib
     WINDOWS_EXPORT_ALL_SYMBOLS ON
