@@ -39,24 +39,50 @@ double root(const Function& f, double a, double b) {
   }
 }
 
-/// The maximum of f between two positions by golden section. f may be -infinite where it is not defined; if it is at
-/// both positions compared, the search goes on nearer to `from`.
+/// The maximum of f between two positions, from < to: the vertices of parabolas through the three highest points where
+/// they close in, else golden sections. Between two positions that are as high the search goes on nearer to `from`. f
+/// may be -infinite where it is not defined; a search that has met no other value ends within a thousandth of the
+/// range. Source: Brent 1973, "Algorithms for Minimization without Derivatives", chapter 5.
 template <class Function>
 double highest(const Function& f, double from, double to, double tolerance) {
-  constexpr double golden = 0.6180339887498949;
-  constexpr double undefined = -std::numeric_limits<double>::infinity();
-  double a = to - golden * (to - from), b = from + golden * (to - from);
-  double at_a = f(a), at_b = f(b);
-  while (std::abs(to - from) > tolerance) {
-    if (at_a > at_b || at_a == undefined) {
-      to = b, b = a, at_b = at_a;
-      a = to - golden * (to - from), at_a = f(a);
+  constexpr double golden = 0.3819660112501051;
+  const double unseen = (to - from) / 1000;
+  double x = from + golden * (to - from), second = x, third = x;  // the highest position and the next
+  double at_x = f(x), at_second = at_x, at_third = at_x;
+  double step = 0, step_before = 0;
+  for (;;) {
+    const double middle = from + (to - from) / 2;
+    if (std::abs(x - middle) <= 2 * tolerance - (to - from) / 2) return x;
+    if (std::isinf(at_x) && to - from < unseen) return x;
+
+    double offset = 0, divisor = 0;  // of the vertex from x; not finite where a height is not
+    if (std::abs(step_before) > tolerance) {
+      const double r = (x - second) * (at_x - at_third), q = (x - third) * (at_x - at_second);
+      offset = (x - third) * q - (x - second) * r, divisor = 2 * (r - q);
+    }
+    const double vertex = x + offset / divisor;
+    if (vertex > from && vertex < to && std::abs(vertex - x) < std::abs(step_before) / 2) {
+      step_before = step, step = vertex - x;
+      if (std::min(vertex - from, to - vertex) < 2 * tolerance) step = std::copysign(tolerance, middle - x);
     } else {
-      from = a, a = b, at_a = at_b;
-      b = from + golden * (to - from), at_b = f(b);
+      step_before = x < middle ? to - x : from - x;
+      step = golden * step_before;
+    }
+
+    const double u = x + (std::abs(step) < tolerance ? std::copysign(tolerance, step) : step), at_u = f(u);
+    const bool higher = at_u > at_x || (at_u == at_x && u < x);
+    ((u < x) == higher ? to : from) = higher ? x : u;
+    if (higher) {
+      third = second, at_third = at_second;
+      second = x, at_second = at_x;
+      x = u, at_x = at_u;
+    } else if (at_u >= at_second || second == x) {
+      third = second, at_third = at_second;
+      second = u, at_second = at_u;
+    } else if (at_u >= at_third || third == x || third == second) {
+      third = u, at_third = at_u;
     }
   }
-  return at_a > at_b ? a : b;
 }
 
 }  // namespace petzval::inline v0::focus_detail
