@@ -8,6 +8,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/text.hpp"
+#include "petzval/core/error.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "pupil/face.hpp"
 #include "way_to_front.hpp"
@@ -21,6 +23,11 @@ Front front_of(const Lens& lens) {
     const double z = pupil_detail::face_of(lens, i, entrance).z_min;
     frontmost = std::min(frontmost, z);
     if (i > 0) behind_first = std::min(behind_first, z);
+  }
+  constexpr double farthest = 1e12;  // mm
+  if (!(std::abs(frontmost) <= farthest)) {
+    throw Error(lens.name() + ": the glass of the lens begins at z = " + to_text(frontmost) + " mm, wanted within " +
+                to_text(farthest) + " mm for a camera");
   }
   const LensSurface& first = lens.surfaces().front();
   const double half = pupil_detail::half_height(lens, 0, entrance), depth = sag(lens, 0, 0, half);

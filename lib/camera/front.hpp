@@ -13,6 +13,7 @@ struct Front {
   double curvature = 0;       ///< of a sphere; 0: a plane
   bool first_surface = true;  ///< it is the lens's first surface: exact rays start there by themselves
 };
+/// Throws Error where glass reaches beyond 1e12 mm, as steep polynomials may.
 Front front_of(const Lens& lens);
 
 /// How far a ray in the direction of the scene is from the front, along it.

@@ -10,12 +10,9 @@
 namespace petzval::inline v0::camera_detail {
 namespace {
 
-/// Numbers of a line up to here give finite rays, in float too.
-constexpr double reach = 1e12;
-
 template <class T>
-inline bool in_reach(T fx, T fy, T px, T py) noexcept {
-  return std::abs(fx) + std::abs(fy) + std::abs(px) + std::abs(py) <= static_cast<T>(reach);
+inline bool in_reach(T reach, T fx, T fy, T px, T py) noexcept {
+  return std::abs(fx) + std::abs(fy) + std::abs(px) + std::abs(py) <= reach;
 }
 
 /// SectionMaps in numbers of type T.
@@ -47,13 +44,13 @@ inline Mapped<T> mapped(const Maps<T>& maps, T film_x, T film_y, T pupil_x, T pu
 
 // The promise that nothing overlaps lets a compiler run these loops on lanes; it takes it of parameters only.
 template <class T, class MapsOf>
-void fill(std::size_t count, const MapsOf& maps_of, T z, const T* __restrict film_x, const T* __restrict film_y,
-          const T* __restrict pupil_x, const T* __restrict pupil_y, T* __restrict x, T* __restrict y,
-          T* __restrict out_z, T* __restrict dx, T* __restrict dy, T* __restrict dz,
+void fill(std::size_t count, const MapsOf& maps_of, T z, T reach, const T* __restrict film_x,
+          const T* __restrict film_y, const T* __restrict pupil_x, const T* __restrict pupil_y, T* __restrict x,
+          T* __restrict y, T* __restrict out_z, T* __restrict dx, T* __restrict dy, T* __restrict dz,
           RayFate* __restrict fates) noexcept {
   for (std::size_t i = 0; i < count; ++i) {
     const Maps<T> maps = maps_of(i);
-    const bool good = in_reach(film_x[i], film_y[i], pupil_x[i], pupil_y[i]);
+    const bool good = in_reach(reach, film_x[i], film_y[i], pupil_x[i], pupil_y[i]);
     // A line that is no good becomes the axis.
     const T fx = good ? film_x[i] : T(0), fy = good ? film_y[i] : T(0);
     const T px = good ? pupil_x[i] : T(0), py = good ? pupil_y[i] : T(0);
@@ -68,7 +65,7 @@ void fill(std::size_t count, const MapsOf& maps_of, T z, const T* __restrict fil
   for (std::size_t i = 0; i < count; ++i) {
     const Maps<T> maps = maps_of(i);
     const bool known = (maps.xa != T(0)) | (maps.xc != T(0));  // no map of a lens is zero
-    const bool good = known & in_reach(film_x[i], film_y[i], pupil_x[i], pupil_y[i]);
+    const bool good = known & in_reach(reach, film_x[i], film_y[i], pupil_x[i], pupil_y[i]);
     fates[i] = good ? RayFate::transmitted : RayFate::missed_surface;
   }
 }
@@ -77,8 +74,8 @@ template <class T>
 void to_scene(std::size_t count, const ParaxialJob<T>& job, const TwoPlaneRays<const T>& lines,
               const RayArrays<T>& rays, RayFate* fates) noexcept {
   const auto run = [&](std::size_t o, std::size_t n, const auto& maps_of) {
-    fill(n, maps_of, job.z, lines.film_x + o, lines.film_y + o, lines.pupil_x + o, lines.pupil_y + o, rays.x + o,
-         rays.y + o, rays.z + o, rays.dx + o, rays.dy + o, rays.dz + o, fates + o);
+    fill(n, maps_of, job.z, job.reach, lines.film_x + o, lines.film_y + o, lines.pupil_x + o, lines.pupil_y + o,
+         rays.x + o, rays.y + o, rays.z + o, rays.dx + o, rays.dy + o, rays.dz + o, fates + o);
   };
   if (!job.wavelengths.each && !job.wavelengths.each_nm) {
     run(0, count, [shared = job.shared ? maps_in<T>(*job.shared) : Maps<T>{}](std::size_t) { return shared; });
@@ -102,10 +99,11 @@ void to_scene(std::size_t count, const ParaxialJob<T>& job, const TwoPlaneRays<c
   }
 }
 
-RayFate one_to_scene(const SectionMaps* maps, double z, const TwoPlaneRay& line, Ray<double>& ray) noexcept {
+RayFate one_to_scene(const SectionMaps* maps, double z, double reach, const TwoPlaneRay& line,
+                     Ray<double>& ray) noexcept {
   auto& [o, d] = ray;
   o.x = 0, o.y = 0, o.z = z, d.x = 0, d.y = 0, d.z = -1;
-  if (!maps || !in_reach(line.film_x, line.film_y, line.pupil_x, line.pupil_y)) return RayFate::missed_surface;
+  if (!maps || !in_reach(reach, line.film_x, line.film_y, line.pupil_x, line.pupil_y)) return RayFate::missed_surface;
   const auto found = mapped(maps_in<double>(*maps), line.film_x, line.film_y, line.pupil_x, line.pupil_y);
   o.x = found.x, o.y = found.y, d.x = found.dx, d.y = found.dy, d.z = found.dz;
   return RayFate::transmitted;

@@ -14,6 +14,7 @@ struct ParaxialJob {
   bool sections_alike = false;          ///< those along y are those along x
   const SectionMaps* shared = nullptr;  ///< at the wavelength of all rays; null: it does not exist
   T z = 0;
+  T reach = 0;  ///< numbers of a line, in all, that give finite rays
   RayWavelengths wavelengths;
 };
 
@@ -23,7 +24,7 @@ struct ParaxialLoops {
   void (*of_double)(std::size_t count, const ParaxialJob<double>& job, const TwoPlaneRays<const double>& lines,
                     const RayArrays<double>& rays, RayFate* fates) noexcept;
   /// One line; maps: null as `shared`.
-  RayFate (*one)(const SectionMaps* maps, double z, const TwoPlaneRay& line, Ray<double>& ray) noexcept;
+  RayFate (*one)(const SectionMaps* maps, double z, double reach, const TwoPlaneRay& line, Ray<double>& ray) noexcept;
 };
 
 }  // namespace petzval::inline v0::camera_detail

@@ -29,7 +29,8 @@ PETZVAL_WIDEST(ParaxialLoops, paraxial_loops)
 
 namespace {
 
-constexpr double reach = 1e12;  // mm: numbers up to here give finite rays, in float too
+constexpr double farthest = 1e12;  // mm, of lines
+constexpr double largest = 1e18;   // of their rays before these have unit length: its square is finite in float too
 
 /// Film and pupil point to place and slope in the plane of the first vertex, before the lens, with the focus of exact
 /// rays.
@@ -94,6 +95,22 @@ StopImage stop_image(ModelKind model, const LensFacts& facts, std::size_t wavele
                      Meridian section) {
   return model == ModelKind::thin ? thin_image(facts, wavelength, space, section)
                                   : thick_image(facts, wavelength, space, section);
+}
+
+/// The numbers of a line, in all, that give finite rays by any of the maps. Throws Error where none do.
+double reach_of(const Lens& lens, const std::vector<SectionMaps>& maps) {
+  constexpr double wanted = farthest * largest;
+  double most = 0;
+  for (const auto& [x, y] : maps) {
+    for (const double number : {x.a, x.b, x.c, x.d, y.a, y.b, y.c, y.d}) {
+      if (!(std::abs(number) <= wanted)) {
+        throw Error(lens.name() + ": found " + to_text(number) + " in the map of its rays to first order, wanted " +
+                    to_text(wanted) + " at most");
+      }
+      most = std::max(most, std::abs(number));
+    }
+  }
+  return std::min(farthest, largest / most);
 }
 
 /// Throws Error for a lens that has no model of a kind.
@@ -204,6 +221,7 @@ ParaxialModel::ParaxialModel(ModelKind model, const LensFacts& facts, double fil
     if (model == ModelKind::pinhole) pinhole_shifts_.push_back(middle);
     to_scene_.push_back(seen_by(model, {x, y}, middle));
   }
+  reach_ = reach_of(lens, to_scene_);
   const lens_detail::CompiledWavelengths wavelengths(lens.wavelengths_nm());
   const auto between = [&](const std::vector<SectionMaps>& maps) -> lens_detail::BetweenWavelengths<8> {
     std::vector<std::array<double, 8>> values;
@@ -234,8 +252,8 @@ template <class T>
 void ParaxialModel::to_scene(std::size_t count, const TwoPlaneRays<const T>& lines, const RayWavelengths& wavelengths,
                              const RayArrays<T>& rays, RayFate* fates) const noexcept {
   SectionMaps own;
-  const ParaxialJob<T> job{between_.rows<T>(), sections_alike_, map_at(wavelengths.all, own), static_cast<T>(z_),
-                           wavelengths};
+  const ParaxialJob<T> job{between_.rows<T>(), sections_alike_,        map_at(wavelengths.all, own),
+                           static_cast<T>(z_), static_cast<T>(reach_), wavelengths};
   if constexpr (std::is_same_v<T, float>) {
     paraxial_loops().of_float(count, job, lines, rays, fates);
   } else {
@@ -246,9 +264,9 @@ void ParaxialModel::to_scene(std::size_t count, const TwoPlaneRays<const T>& lin
 RayFate ParaxialModel::to_scene(const TwoPlaneRay& line, Wavelength wavelength, Ray<double>& ray) const noexcept {
   const auto one = paraxial_loops().one;
   const std::size_t position = wavelength.position(primary_);
-  if (position < to_scene_.size()) return one(&to_scene_[position], z_, line, ray);
+  if (position < to_scene_.size()) return one(&to_scene_[position], z_, reach_, line, ray);
   SectionMaps own;
-  return one(map_at(wavelength, own), z_, line, ray);
+  return one(map_at(wavelength, own), z_, reach_, line, ray);
 }
 
 void ParaxialModel::to_film(std::size_t count, const RayArrays<const double>& rays, const RayWavelengths& wavelengths,
@@ -260,7 +278,7 @@ void ParaxialModel::to_film(std::size_t count, const RayArrays<const double>& ra
     const auto [x, y, slope_x, slope_y] = core_detail::slope_ray(core_detail::ray_at(rays, i), z_);
     if (!shared) map = inverse_at(wavelengths.at(i), own);
     const bool good =
-        map && rays.dz[i] > 0 && std::abs(x) + std::abs(y) + std::abs(slope_x) + std::abs(slope_y) <= reach;
+        map && rays.dz[i] > 0 && std::abs(x) + std::abs(y) + std::abs(slope_x) + std::abs(slope_y) <= farthest;
     const auto [mx, my] = good ? *map : SectionMaps{};
     fates[i] = good ? RayFate::transmitted : RayFate::missed_surface;
     lines.film_x[i] = good ? mx.a * x + mx.b * slope_x : 0;

@@ -79,7 +79,8 @@ class ParaxialModel {
   double z() const noexcept { return z_; }
   /// As in RayModel; empty unless this is the pinhole.
   std::span<const double> pinhole_shifts() const noexcept { return pinhole_shifts_; }
-  /// missed_surface: numbers that are not finite (or beyond 1e12 mm) and wavelengths that the lens does not cover.
+  /// missed_surface: numbers that are not finite, or beyond 1e12 mm, or whose rays are beyond 1e18, and wavelengths
+  /// that the lens does not cover.
   template <class T>
   PETZVAL_API void to_scene(std::size_t count, const TwoPlaneRays<const T>& lines, const RayWavelengths& wavelengths,
                             const RayArrays<T>& rays, RayFate* fates) const noexcept;
@@ -101,7 +102,8 @@ class ParaxialModel {
   ModelKind kind_;
   FilmPupilTable pupils_;
   std::size_t primary_;
-  double z_ = 0;  // of the first vertex, where rays are given
+  double z_ = 0;      // of the first vertex, where rays are given
+  double reach_ = 0;  // of the numbers of a line, in all
   bool sections_alike_;
   std::array<bool, 2> stop_upside_down_{};
   std::vector<SectionMaps> to_scene_, to_film_;                 // of each wavelength

@@ -21,13 +21,18 @@ void check_rectangle(const std::string& where, const Film& film) {
     refuse("it has " + std::to_string(film.columns) + " by " + std::to_string(film.rows) +
            " pixels, wanted one or more each way");
   }
-  if (!(film.margin_mm >= 0 && std::isfinite(film.margin_mm))) {
-    refuse("its margin is " + to_text(film.margin_mm) + " mm, wanted a finite one, 0 or more");
+  if (!(film.margin_mm >= 0 && film.margin_mm <= longest)) {
+    refuse("its margin is " + to_text(film.margin_mm) + " mm, wanted one of 0 to " + to_text(longest) + " mm");
   }
-  if (!std::isfinite(film.travel_mm)) refuse("it travels " + to_text(film.travel_mm) + " mm, wanted a finite way");
-  if (!(std::isfinite(film.shift_x_mm) && std::isfinite(film.shift_y_mm))) {
+  if (film.z_mm && !(std::abs(*film.z_mm) <= longest)) {
+    refuse("it is at z = " + to_text(*film.z_mm) + " mm, wanted it within " + to_text(longest) + " mm");
+  }
+  if (!(std::abs(film.travel_mm) <= longest)) {
+    refuse("it travels " + to_text(film.travel_mm) + " mm, wanted a way of up to " + to_text(longest) + " mm");
+  }
+  if (!(std::abs(film.shift_x_mm) <= longest && std::abs(film.shift_y_mm) <= longest)) {
     refuse("its centre is (" + to_text(film.shift_x_mm) + ", " + to_text(film.shift_y_mm) +
-           ") mm, wanted finite numbers");
+           ") mm, wanted numbers of up to " + to_text(longest) + " mm");
   }
   constexpr double quarter_turn = std::numbers::pi / 2;
   if (!(std::abs(film.tilt_rad) < quarter_turn && std::abs(film.swing_rad) < quarter_turn)) {

@@ -7,8 +7,8 @@
 
 namespace petzval::inline v0::film_detail {
 
-/// Throws Error, which begins with `where`, for a film without area or pixels, with an infinite shift or travel, or
-/// tilted by a quarter turn or more.
+/// Throws Error, which begins with `where`, for a film without area or pixels, with lengths beyond 1e9 mm, or tilted by
+/// a quarter turn or more.
 void check_rectangle(const std::string& where, const Film& film);
 
 }  // namespace petzval::inline v0::film_detail

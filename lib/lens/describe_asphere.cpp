@@ -162,6 +162,7 @@ void bound(const LensSurface& s, kernel::Asphere<double>& a) {
   }
 }
 
+/// Without bounds.
 kernel::Asphere<double> described(const LensSurface& s) {
   constexpr int samples = 256;
   kernel::Asphere<double> a = asphere_up_to(height(s), s);
@@ -172,13 +173,12 @@ kernel::Asphere<double> described(const LensSurface& s) {
     a = asphere_up_to(a.height * std::max(i - 1, 1) / samples, s);
     i = -1;
   }
-  if (std::isfinite(s.semi_diameter)) a.rim2 = a.height * a.height;
-  bound(s, a);
-  a.edge = kernel::sag(a, a.height * a.height).z;
   return a;
 }
 
 }  // namespace
+
+double described_height(const LensSurface& surface) { return described(surface).height; }
 
 kernel::Quadric<double> describe_quadric(const LensSurface& s) {
   return kernel::make_quadric<double>(s.curvature, s.conic, s.curved_in != Section::y, s.curved_in != Section::x);
@@ -187,7 +187,11 @@ kernel::Quadric<double> describe_quadric(const LensSurface& s) {
 std::vector<kernel::Asphere<double>> describe_aspheres(std::span<const LensSurface> surfaces) {
   std::vector<kernel::Asphere<double>> aspheres;
   for (const LensSurface& s : surfaces) {
-    if (!s.aspheric.empty()) aspheres.push_back(described(s));
+    if (s.aspheric.empty()) continue;
+    kernel::Asphere<double>& a = aspheres.emplace_back(described(s));
+    if (std::isfinite(s.semi_diameter)) a.rim2 = a.height * a.height;
+    bound(s, a);
+    a.edge = kernel::sag(a, a.height * a.height).z;
   }
   return aspheres;
 }

@@ -10,6 +10,7 @@
 
 #include "core/text.hpp"
 #include "data.hpp"
+#include "describe_asphere.hpp"
 #include "iris/iris_edges.hpp"
 #include "petzval/core/error.hpp"
 #include "without_obscurations.hpp"
@@ -163,6 +164,15 @@ double usable_rim(double semi_diameter) noexcept {
   return semi_diameter > 1e15 ? std::numeric_limits<double>::infinity() : semi_diameter;
 }
 
+void set_rim(LensSurface& surface, double semi_diameter) {
+  double& rim = surface.semi_diameter;
+  rim = usable_rim(semi_diameter);
+  const bool round = surface.curved_in == Section::both;  // an asphere in one section ends at a height, not at a radius
+  if (std::isfinite(rim) && rim > 0 && round && !surface.aspheric.empty()) {
+    rim = usable_rim(lens_detail::described_height(surface));
+  }
+}
+
 }  // namespace
 
 Lens compile(const Prescription& source, std::span<const double> wavelengths_nm, const CompileOptions& options) {
@@ -190,7 +200,7 @@ Lens compile(const Prescription& source, std::span<const double> wavelengths_nm,
     s.conic = row.conic;
     s.curved_in = row.curved_in;
     s.aspheric = row.aspheric;
-    s.semi_diameter = usable_rim(row.semi_diameter.value_or(std::numeric_limits<double>::infinity()));
+    set_rim(s, row.semi_diameter.value_or(std::numeric_limits<double>::infinity()));
     s.obscuration_semi_diameter = row.obscuration_semi_diameter.value_or(0);
     s.mirror = row.mirror;
     if (row.stop && !data->stop) data->stop = data->surfaces.size();
@@ -218,7 +228,7 @@ Lens with_semi_diameter(const Lens& lens, std::size_t surface, double semi_diame
                 " mm, wanted one up to 1e15 mm for the iris of the stop");
   }
   auto data = std::make_shared<Lens::Data>(lens.data());
-  data->surfaces[surface].semi_diameter = usable_rim(semi_diameter);
+  set_rim(data->surfaces[surface], semi_diameter);
   data->build();
   return Lens::Data::lens(std::move(data));
 }

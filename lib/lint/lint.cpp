@@ -42,21 +42,22 @@ void check_stops(const Prescription& prescription, Findings& findings) {
   }
 }
 
-void check_surfaces(const Lens& lens, Findings& findings) {
+void check_surfaces(const Prescription& rows, const Lens& lens, Findings& findings) {
   const int count = static_cast<int>(lens.surface_count());
   for (int i = 0; i < count; ++i) {
     const auto position = static_cast<std::size_t>(i);
     const LensSurface& surface = lens.surfaces()[position];
-    const double domain = lint_detail::domain(surface);
-    if (std::isfinite(surface.semi_diameter) && surface.semi_diameter > domain) {
-      findings.push_back({Kind::semi_diameter, i, surface.semi_diameter, domain,
-                          at(i) + "semi_diameter is " + mm(surface.semi_diameter) + ", wanted at most " + mm(domain) +
-                              ", where the surface ends"});
+    const double end = std::min(lint_detail::domain(surface), surface.semi_diameter);
+    const std::optional<double> declared = rows.surfaces[position].semi_diameter;
+    if (declared && std::isfinite(*declared) && surface.semi_diameter > 0 && *declared > end) {
+      findings.push_back(
+          {Kind::semi_diameter, i, *declared, end,
+           at(i) + "semi_diameter is " + mm(*declared) + ", wanted at most " + mm(end) + ", where the surface ends"});
     }
     // A stop of 0 is a closed iris. Any other rim of 0 is hardly intended.
     if (surface.semi_diameter == 0 && lens.stop() != position) {
-      findings.push_back(
-          {Kind::semi_diameter, i, 0, domain, at(i) + "semi_diameter is 0 mm; only the axial ray passes"});
+      findings.push_back({Kind::semi_diameter, i, 0, lint_detail::domain(surface),
+                          at(i) + "semi_diameter is 0 mm; only the axial ray passes"});
     }
     if (i + 1 == count) break;
     const auto spacing = lint_detail::least_spacing(lens, position);
@@ -249,7 +250,7 @@ std::vector<Finding> lint(const Prescription& prescription) {
   Findings findings;
   check_stops(rows, findings);
   check_stop(lens, findings);
-  check_surfaces(lens, findings);
+  check_surfaces(rows, lens, findings);
   check_first_order(rows, lens, findings);
   return findings;
 }

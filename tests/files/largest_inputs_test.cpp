@@ -90,6 +90,9 @@ void expect_frugal(const std::string& what, const std::string& text,
 class LargestInputs : public ::testing::Test {
  protected:
   void SetUp() override {
+#ifdef __SANITIZE_THREAD__
+    GTEST_SKIP() << "ThreadSanitizer takes memory of its own, several times that of the library";
+#endif
     if (status_megabytes("VmHWM") < 0) GTEST_SKIP() << "needs /proc/self/status";
   }
 };

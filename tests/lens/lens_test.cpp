@@ -46,6 +46,28 @@ TEST(Lens, SaysWhatThePrescriptionSays) {
   EXPECT_TRUE(lens.rotationally_symmetric());
 }
 
+// A term that has a slope of 4 at 5 mm, and at 12 mm one of 1800.
+TEST(Lens, HasTheRimOfAnAsphereWhereItIsAsSteepAsFour) {
+  petzval::Prescription p = singlet();
+  p.surfaces[1].aspheric = {{8, -std::pow(5, -7) / 2}};
+  const petzval::Lens lens = petzval::compile(p);
+  const double rim = lens.surfaces()[1].semi_diameter, step = 1e-4;
+  EXPECT_GT(rim, 4.9);
+  EXPECT_LT((petzval::sag(lens, 1, 0, rim - 2 * step) - petzval::sag(lens, 1, 0, rim - step)) / step, 4);
+  EXPECT_GT((petzval::sag(lens, 1, 0, rim - step) - petzval::sag(lens, 1, 0, rim)) / step, 3.8);
+  const auto fate_at = [&](double y) {
+    return petzval::trace(lens, petzval::Ray<double>{{0, y, 60}, {0, 0, -1}}, {.travel = petzval::Travel::to_scene})
+        .fate;
+  };
+  EXPECT_EQ(fate_at(rim + 1e-9), petzval::RayFate::vignetted);
+  EXPECT_NE(fate_at(rim - 1e-9), petzval::RayFate::vignetted);  // though it may not leave the glass
+  EXPECT_EQ(petzval::with_semi_diameter(lens, 1, 12).surfaces()[1].semi_diameter, rim);
+  EXPECT_EQ(petzval::with_semi_diameter(lens, 1, 3).surfaces()[1].semi_diameter, 3);
+  EXPECT_TRUE(std::isinf(petzval::with_semi_diameter(lens, 1, HUGE_VAL).surfaces()[1].semi_diameter));
+  p.surfaces[1].curved_in = petzval::Section::y;
+  EXPECT_EQ(petzval::compile(p).surfaces()[1].semi_diameter, 12);
+}
+
 TEST(Lens, FindsItsWavelengthsAndNamesThemWhereItDoesNot) {
   petzval::Prescription p = singlet();
   p.surfaces[0].medium.vd = 64.2;

@@ -80,8 +80,10 @@ TEST(Lint, RefusesAFilmThatNoCameraTakes) {
   EXPECT_EQ(
       refusal({.width_mm = 0}),
       lens.name() + ": film: it is 0 by 24 mm, wanted positive lengths up to 1e+09 mm and an area that is a number");
-  for (const Film& film : {Film{.width_mm = std::nan("")}, Film{.height_mm = -24}, Film{.columns = 0},
-                           Film{.margin_mm = -1}, Film{.shift_x_mm = std::nan("")}, Film{.tilt_rad = 1.6}}) {
+  for (const Film& film :
+       {Film{.width_mm = std::nan("")}, Film{.height_mm = -24}, Film{.columns = 0}, Film{.margin_mm = -1},
+        Film{.shift_x_mm = std::nan("")}, Film{.tilt_rad = 1.6}, Film{.width_mm = 2e9}, Film{.margin_mm = 2e9},
+        Film{.shift_x_mm = -2e9}, Film{.shift_y_mm = 2e9}, Film{.z_mm = -2e9}, Film{.travel_mm = 2e9}}) {
     EXPECT_EQ(refusal(film).find(lens.name() + ": film: it"), 0u) << refusal(film);
   }
 }
@@ -306,6 +308,17 @@ TEST(Lint, SeesCylindersInBothSections) {
     for (const Finding& finding : lint(p)) crosses = crosses || finding.kind == Kind::overlap;
     EXPECT_TRUE(crosses);
   }
+}
+
+TEST(Lint, FindsARimBeyondTheEndOfAnAsphere) {
+  Prescription p = singlet();
+  p.surfaces[1].aspheric = {{8, -std::pow(5, -7) / 2}};
+  const std::vector<Finding> findings = lint(p);
+  const auto rim = std::ranges::find(findings, Kind::semi_diameter, &Finding::kind);
+  ASSERT_NE(rim, findings.end());
+  EXPECT_EQ(rim->surface, 1);
+  EXPECT_EQ(rim->found, 12);
+  EXPECT_NEAR(rim->wanted, 4.95, 0.05);  // where it is as steep as 4
 }
 
 TEST(Lint, FindsASemiDiameterBeyondTheSurface) {

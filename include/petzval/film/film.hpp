@@ -20,7 +20,7 @@ struct FilmPoint {
 ///
 /// The film crosses the axis at z_mm (where the lens has its film plane, if that is not set) and turns about that
 /// point: its normal is Ry(swing) Rx(tilt) e_z (tilt about +x first). A shift moves the rectangle within that plane.
-/// Where the film travels, its place is that when the shutter opens.
+/// Where the film travels, its place is that when the shutter opens. Cameras and lint() take lengths up to 1e9 mm.
 ///
 ///     const Film film{.width_mm = 36, .height_mm = 24, .columns = 1920, .rows = 1280};
 ///     const Camera camera(lens, film);

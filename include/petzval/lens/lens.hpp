@@ -52,7 +52,9 @@ struct LensSurface {
   double conic = 0;
   Section curved_in = Section::both;
   std::vector<AsphereTerm> aspheric;
-  double semi_diameter = 0;              ///< infinite: unlimited, as beyond 1e15 mm; of less than 1e-12 mm 0
+  /// Infinite: unlimited, as beyond 1e15 mm; of less than 1e-12 mm 0. That of an asphere ends with its base conic and
+  /// where it is as steep as 4.
+  double semi_diameter = 0;
   double obscuration_semi_diameter = 0;  ///< of the central obscuration; 0: none
   bool mirror = false;
 };

@@ -20,7 +20,7 @@ enum class FindingKind : std::uint8_t {
   focal_length,   ///< computed differs from declared by more than 2 %
   f_number,       ///< the same for the f-number of an exact ray
   overlap,        ///< neighbouring surfaces intersect inside their clear apertures
-  semi_diameter,  ///< beyond the equator of the conic, or 0 on a surface that is not the stop
+  semi_diameter,  ///< beyond the end of the surface (LensSurface), or 0 on a surface that is not the stop
   no_stop,
   several_stops,
   image_distance,  ///< the film is farther from the paraxial focus than 2 % of the focal length
