@@ -33,8 +33,9 @@ void check(const Iris& iris, const std::string& where) {
   if (!(roundness >= -1 && roundness <= 1)) {
     throw Error(where + "roundness is " + to_text(roundness) + ", wanted -1 to 1");
   }
-  if (!std::isfinite(rotation_rad)) {
-    throw Error(where + "rotation_rad is " + to_text(rotation_rad) + ", wanted a finite angle");
+  constexpr double farthest = 1e6;  // of larger angles too little is left within a turn
+  if (!(std::abs(rotation_rad) <= farthest)) {
+    throw Error(where + "rotation_rad is " + to_text(rotation_rad) + ", wanted an angle within " + to_text(farthest));
   }
 }
 

@@ -300,25 +300,27 @@ PETZVAL_INLINE void sample_block(const Table& table, const R* film_x, const R* f
   const auto before = [&](std::size_t i, std::int32_t k) {
     return area_before<obscured>(layout, all, begin[i], k, t[i], s[i]);
   };
-  const R early = table.corrections > 0 ? R(0) : R(0.5);
+  const R early = table.corrections > 0 ? R(0) : R(0.5), last = static_cast<R>(corners - 1);
   for (std::size_t i = 0; i < block; ++i) {
     whole[i] = whole[i] * area_at<obscured>(layout, all, begin[i] + index(L::whole), t[i], s[i]);
-    target[i] = share_of(own_table, all, begin[i], t[i], s[i], whole[i], cosine[i], sine[i], fold[i], target[i]);
-    const R expected = expected_sector(own_table, all, begin[i], t[i], s[i], whole[i], target[i]);
-    const auto k = static_cast<std::int32_t>(expected - early);
-    sector[i] = k < corners ? k : corners - 1;
+    // Areas between nodes may turn over: a share is then anything, and a sector any of the polygon's.
+    target[i] = core_detail::clamped(
+        share_of(own_table, all, begin[i], t[i], s[i], whole[i], cosine[i], sine[i], fold[i], target[i]));
+    const R expected = expected_sector(own_table, all, begin[i], t[i], s[i], whole[i], target[i]) - early;
+    const R above = expected > R(0) ? expected : R(0);
+    sector[i] = static_cast<std::int32_t>(above < last ? above : last);
     target[i] = target[i] * whole[i];
   }
   // Sectors have nearly equal shares: the right one is this or the next, or else near.
   for (int step = 0; step < table.corrections; ++step) {
-    const std::int32_t last = sector[0];
+    const std::int32_t first = sector[0];
     for (std::size_t i = 0; i < block; ++i) {
       const std::int32_t k = sector[i];
       const std::int32_t back = (target[i] < before(i, k)) & (k > 0);
       const std::int32_t on = (target[i] > before(i, k + 1)) & (k < corners - 1);
       sector[i] = k + on - back;
     }
-    if (block == 1 && sector[0] == last) break;  // of many, some always move
+    if (block == 1 && sector[0] == first) break;  // of many, some always move
   }
   for (std::size_t i = 0; i < block; ++i) {
     const std::int32_t k = sector[i];

@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/loop_math.hpp"
 #include "film_pupil_table_loops.hpp"
 #include "petzval/core/geometry.hpp"
 #include "pupil_table/sector.hpp"
@@ -59,7 +60,7 @@ struct InCell {
   T right_share() const { return area_before(polygon_corners / 2) / area_before(polygon_corners); }
   double expected(double share) const {
     if (!bladed) return sectors_in_halves(share, right_share());
-    const double place = std::max(share, 0.0) * BladedLayout::guide_steps;  // areas between nodes may turn over
+    const double place = core_detail::clamped(share) * BladedLayout::guide_steps;  // areas between nodes may turn over
     const std::size_t k = std::min(static_cast<std::size_t>(place), BladedLayout::guide_steps - 1);
     const double* guide = cell + BladedLayout::guide + k;
     return guide[0] + (place - static_cast<double>(k)) * (guide[1] - guide[0]);

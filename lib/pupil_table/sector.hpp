@@ -70,9 +70,9 @@ struct Sector {
 /// those before sector k, `before(polygon_corners)` the whole.
 template <class AreaBefore>
 inline std::size_t sector_of_area(double area, const AreaBefore& before) noexcept {
+  constexpr double last = polygon_corners - 1;
   const double place = area / before(polygon_corners) * static_cast<double>(polygon_corners);
-  auto k = place > 0 ? static_cast<std::size_t>(place) : 0;
-  k = k < polygon_corners ? k : polygon_corners - 1;
+  auto k = place > 0 ? static_cast<std::size_t>(place < last ? place : last) : 0;
   while (k > 0 && area < before(k)) --k;
   while (k + 1 < polygon_corners && area >= before(k + 1)) ++k;
   return k;

@@ -257,7 +257,7 @@ TEST(IrisShape, RefusesWhatIsOutOfRange) {
   }
   EXPECT_EQ(refusal({.blades = 3, .roundness = -1.01}), "iris: roundness is -1.01, wanted -1 to 1");
   EXPECT_EQ(refusal({.blades = 3, .rotation_rad = std::numeric_limits<double>::infinity()}),
-            "iris: rotation_rad is inf, wanted a finite angle");
+            "iris: rotation_rad is inf, wanted an angle within 1e+06");
 }
 
 }  // namespace

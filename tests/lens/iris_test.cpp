@@ -35,7 +35,7 @@ TEST(Iris, IsRefusedWhereTheStopCannotHaveIt) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(refusal({.roundness = nan}), "front stop: iris: roundness is nan, wanted -1 to 1");
   EXPECT_EQ(refusal({.blades = 6, .rotation_rad = nan}),
-            "front stop: iris: rotation_rad is nan, wanted a finite angle");
+            "front stop: iris: rotation_rad is nan, wanted an angle within 1e+06");
   const Lens bladed = with_iris(lens, {.blades = 6});
   EXPECT_EQ(message([&] { with_semi_diameter(bladed, 0, std::numeric_limits<double>::infinity()); }),
             "front stop: surface 0: semi_diameter is inf mm, wanted one up to 1e15 mm for the iris of the stop");

@@ -18,7 +18,7 @@ struct Iris {
   /// straight; 1: the rim, so that the iris is round; below 0 the edges bend inwards; at -1 they are mirror images of
   /// the rim, or, of five blades and less, halve the angles of the straight polygon's corners.
   double roundness = 0;
-  /// The first corner's angle from +y towards -x: anticlockwise where +x points right and +y up.
+  /// The first corner's angle from +y towards -x: anticlockwise where +x points right and +y up. Within 1e6.
   double rotation_rad = 0;
 
   bool round() const noexcept { return blades == 0 || roundness == 1; }
