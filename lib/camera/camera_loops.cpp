@@ -88,7 +88,7 @@ void weigh(const FilmBounds<T>& film, T depth, std::size_t count, const T* film_
     PETZVAL_INDEPENDENT
     for (std::size_t i = 0; i < count; ++i) {
       const bool sampled = on_film(bounds, film_x[i], film_y[i]) & (areas[i] > T(0));
-      pdf[i] = sampled ? T(1) / areas[i] : T(0);
+      pdf[i] = sampled ? of.pdf_pupil(areas[i]) : T(0);
     }
   }
   if (T* const pdf = rays.pdf_direction) {
@@ -96,7 +96,7 @@ void weigh(const FilmBounds<T>& film, T depth, std::size_t count, const T* film_
     for (std::size_t i = 0; i < count; ++i) {
       const bool sampled = on_film(bounds, film_x[i], film_y[i]) & (areas[i] > T(0));
       const T length2 = of.length2(kept_x[i], kept_y[i], pupil_x[i], pupil_y[i]);
-      pdf[i] = sampled ? of.pdf_direction(length2, T(1) / areas[i]) : T(0);
+      pdf[i] = sampled ? of.pdf_direction(length2, of.pdf_pupil(areas[i])) : T(0);
     }
   }
 }
@@ -110,7 +110,7 @@ void weigh_one(const Front* front, double depth, const TwoPlaneRay& line, double
   const PupilWeight<double> of(depth);
   const double length2 = of.length2(line.film_x, line.film_y, line.pupil_x, line.pupil_y);
   ray.weight = scale * of.weight(length2, area);
-  ray.pdf_pupil = 1 / area;
+  ray.pdf_pupil = of.pdf_pupil(area);
   ray.pdf_direction = of.pdf_direction(length2, ray.pdf_pupil);
 }
 

@@ -31,14 +31,20 @@ struct PupilWeight {
     const T x = pupil_x - film_x, y = pupil_y - film_y;
     return x * x + y * y + depth2;
   }
+  /// Of places in the pupil, uniform.
+  static T pdf_pupil(T area) noexcept { return limited(T(1) / area); }
   /// cos / pdf_direction, pdf_direction = pdf_pupil length^3 / depth.
   T weight(T length2, T area) const noexcept {
     const T part = depth2 / length2 * per_depth;
     return area * part * part;
   }
   T pdf_direction(T length2, T pdf_pupil) const noexcept {
-    return length2 * core_detail::square_root(length2) * per_depth * pdf_pupil;
+    return limited(length2 * core_detail::square_root(length2) * per_depth * pdf_pupil);
   }
+
+ private:
+  /// Densities of float stay numbers, those of a film that all but touches a lens too.
+  static T limited(T pdf) noexcept { return pdf < T(1e36) ? pdf : T(1e36); }
 };
 
 /// The fate of a sample: of its ray, unless it has none.

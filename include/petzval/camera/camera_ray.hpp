@@ -26,7 +26,7 @@ struct CameraSample {
 ///
 /// The mean of weight x radiance over pupil samples is the irradiance of the film point (for unity_on_axis, relative to
 /// that of the axis for the same radiance). A lost ray has weight 0 and its fate. Densities are those of the sample,
-/// lost or not; they are 0 for a sample outside the film or without a pupil.
+/// lost or not; they are 0 for a sample outside the film or without a pupil, and 1e36 at most.
 struct CameraRay {
   Ray<double> ray{};
   RayFate fate = RayFate::vignetted;
