@@ -7,16 +7,19 @@
 
 namespace petzval::inline v0::focus_detail {
 
-/// A zero of f between a and b, where f has opposite signs (or is 0), within 2 eps of x. Bisection, with inverse
-/// quadratic interpolation where the last three points show f to be nearly straight. f must be finite;
-/// it may jump, and be constant far from the root.
+/// A zero of f between a and b, where f has opposite signs (or is 0), within 2 eps of x and eps^2 of |b - a|.
+/// Bisection, with inverse quadratic interpolation where the last three points show f to be nearly straight: at most
+/// five evaluations for each halving. f must be finite; it may jump, and be constant far from the root.
 template <class Function>
 double root(const Function& f, double a, double b) {
   double at_a = f(a), at_b = f(b);
   if (at_a == 0) return a;
+  constexpr double eps = std::numeric_limits<double>::epsilon();
+  const double least = eps * eps * std::abs(b - a) + std::numeric_limits<double>::min();
   double t = 0.5;
+  int slow = 0;  // steps since one halved the interval
   for (;;) {
-    const double x = a + t * (b - a), at_x = f(x);
+    const double x = a + t * (b - a), at_x = f(x), width = std::abs(b - a);
     double c = a, at_c = at_a;
     if ((at_x > 0) != (at_a > 0)) {
       c = b, at_c = at_b;
@@ -25,16 +28,17 @@ double root(const Function& f, double a, double b) {
     a = x, at_a = at_x;
 
     const double best = std::abs(at_a) < std::abs(at_b) ? a : b;
-    const double tolerance =
-        2 * std::numeric_limits<double>::epsilon() * std::abs(best) + std::numeric_limits<double>::min();
+    const double tolerance = 2 * eps * std::abs(best) + least;
     const double least_step = tolerance / std::abs(b - a);
     if (at_a == 0 || !(least_step < 0.5)) return at_a == 0 ? a : best;
 
     const double xi = (a - b) / (c - b), phi = (at_a - at_b) / (at_c - at_b);
     const bool straight = phi * phi < xi && (1 - phi) * (1 - phi) < 1 - xi;
-    t = straight ? at_a / (at_b - at_a) * at_c / (at_b - at_c) +
-                       (c - a) / (b - a) * at_a / (at_c - at_a) * at_b / (at_c - at_b)
-                 : 0.5;
+    // Before a jump it looks straight, with a root at the next number.
+    slow = std::abs(b - a) > width / 2 ? slow + 1 : 0;
+    t = straight && slow < 4 ? at_a / (at_b - at_a) * at_c / (at_b - at_c) +
+                                   (c - a) / (b - a) * at_a / (at_c - at_a) * at_b / (at_c - at_b)
+                             : 0.5;
     t = std::clamp(t, least_step, 1 - least_step);
   }
 }
@@ -52,7 +56,7 @@ double highest(const Function& f, double from, double to, double tolerance) {
   double step = 0, step_before = 0;
   for (;;) {
     const double middle = from + (to - from) / 2;
-    if (std::abs(x - middle) <= 2 * tolerance - (to - from) / 2) return x;
+    if (!(std::abs(x - middle) > 2 * tolerance - (to - from) / 2)) return x;
     if (std::isinf(at_x) && to - from < unseen) return x;
 
     double offset = 0, divisor = 0;  // of the vertex from x; not finite where a height is not
@@ -69,7 +73,9 @@ double highest(const Function& f, double from, double to, double tolerance) {
       step = golden * step_before;
     }
 
-    const double u = x + (std::abs(step) < tolerance ? std::copysign(tolerance, step) : step), at_u = f(u);
+    const double u = x + (std::abs(step) < tolerance ? std::copysign(tolerance, step) : step);
+    if (u == x) return x;
+    const double at_u = f(u);
     const bool higher = at_u > at_x || (at_u == at_x && u < x);
     ((u < x) == higher ? to : from) = higher ? x : u;
     if (higher) {
