@@ -4,9 +4,12 @@
 //     fuzz_replay TARGET              its seeds, cut off and changed, the same on every machine;
 //                                     an input that fails is kept in crash-TARGET
 //     fuzz_replay TARGET FILE...      inputs that a fuzzer has kept
+//     fuzz_replay TARGET --random N SEED   N inputs: random bytes, changes of seeds and of what took long;
+//                                     the slowest is kept in slowest-TARGET, one that fails in crash-TARGET
 //     fuzz_replay --list              a target, its libFuzzer program and its largest input a line
 //     fuzz_replay --write-seeds DIR   the seeds of each target in a folder of its own
 #include <algorithm>
+#include <chrono>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
@@ -29,7 +32,8 @@ const std::string* current = nullptr;
 std::string kept_in;
 
 /// Keeps the input as fuzzers do.
-void keep_input(int) {
+void keep_input(int signal) {
+  std::signal(signal, SIG_DFL);
   if (current != nullptr) std::ofstream(kept_in, std::ios::binary) << *current;
   std::cerr << "the input is in " << kept_in << '\n';
 }
@@ -87,6 +91,39 @@ void run_fixed(const Target& target) {
   }
 }
 
+/// A quarter of the bytes are 0: numbers of them are simple.
+std::string random_text(std::size_t largest, std::mt19937& engine) {
+  std::string text(std::min<std::size_t>(40 + engine() % 300, largest), '\0');
+  for (char& byte : text) {
+    if (engine() % 4 > 0) byte = static_cast<char>(engine() & 255);
+  }
+  return text;
+}
+
+void run_random(const Target& target, unsigned long count, unsigned long seed) {
+  constexpr double long_time = 5e-3;  // s
+  constexpr std::size_t most = 400;
+  std::vector<std::string> pool = seeds_of(target);
+  std::mt19937 engine(static_cast<std::mt19937::result_type>(seed));
+  double slowest = 0, total = 0;
+  for (unsigned long i = 0; i < count; ++i) {
+    std::string text =
+        engine() % 3 == 0 ? random_text(target.largest, engine) : changed(pool[engine() % pool.size()], pool, engine);
+    text.resize(std::min(text.size(), target.largest));
+    const auto start = std::chrono::steady_clock::now();
+    run(target, text);
+    const double took = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    total += took;
+    if (took > slowest) {
+      slowest = took;
+      std::ofstream("slowest-" + std::string(target.name), std::ios::binary) << text;
+    }
+    if (took < long_time) continue;
+    pool.size() < most ? pool.push_back(text) : void(pool[engine() % most] = text);
+  }
+  std::cout << target.name << ": " << count << " inputs in " << total << " s, the slowest in " << slowest << " s\n";
+}
+
 void write_seeds(const std::filesystem::path& folder) {
   for (const Target& target : petzval::fuzz::targets()) {
     const auto place = folder / target.name;
@@ -113,10 +150,12 @@ int main(int argc, char** argv) {
     std::cerr << "fuzz_replay: wanted a target of --list, --list or --write-seeds DIR\n";
     return 2;
   }
-  if (words.size() == 1) {
+  const bool random = words.size() == 4 && words[1] == "--random";
+  if (words.size() == 1 || random) {
     kept_in = "crash-" + words[0];
-    std::signal(SIGABRT, keep_input);
-    return run_fixed(*target), 0;
+    for (const int signal : {SIGABRT, SIGSEGV}) std::signal(signal, keep_input);
+    random ? run_random(*target, std::stoul(words[2]), std::stoul(words[3])) : run_fixed(*target);
+    return 0;
   }
   for (std::size_t i = 1; i < words.size(); ++i) {
     if (!std::filesystem::exists(words[i])) return std::cerr << "fuzz_replay: " << words[i] << " does not exist\n", 2;
