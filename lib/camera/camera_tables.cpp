@@ -39,7 +39,7 @@ class Numbers {
 void put_maps(Numbers& to, const camera_detail::ParaxialModel& model) {
   to.set(Table::rays_kind, 0);
   to.set(Table::reference_z, model.z());
-  for (const auto& [x, y] : model.maps()) to.add(std::array{x.a, x.b, x.c, x.d, y.a, y.b, y.c, y.d});
+  for (const camera_detail::SectionMaps& maps : model.maps()) to.add(maps.numbers());
 }
 
 void put_polynomial(Numbers& to, const RayPolynomial& polynomial) {

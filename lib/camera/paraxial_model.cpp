@@ -101,8 +101,8 @@ StopImage stop_image(ModelKind model, const LensFacts& facts, std::size_t wavele
 double reach_of(const Lens& lens, const std::vector<SectionMaps>& maps) {
   constexpr double wanted = farthest * largest;
   double most = 0;
-  for (const auto& [x, y] : maps) {
-    for (const double number : {x.a, x.b, x.c, x.d, y.a, y.b, y.c, y.d}) {
+  for (const SectionMaps& map : maps) {
+    for (const double number : map.numbers()) {
       if (!(std::abs(number) <= wanted)) {
         throw Error(lens.name() + ": found " + to_text(number) + " in the map of its rays to first order, wanted " +
                     to_text(wanted) + " at most");
@@ -225,7 +225,7 @@ ParaxialModel::ParaxialModel(ModelKind model, const LensFacts& facts, double fil
   const lens_detail::CompiledWavelengths wavelengths(lens.wavelengths_nm());
   const auto between = [&](const std::vector<SectionMaps>& maps) -> lens_detail::BetweenWavelengths<8> {
     std::vector<std::array<double, 8>> values;
-    for (const auto& [x, y] : maps) values.push_back({x.a, x.b, x.c, x.d, y.a, y.b, y.c, y.d});
+    for (const SectionMaps& map : maps) values.push_back(map.numbers());
     return {wavelengths, values};
   };
   between_ = between(to_scene_);

@@ -20,6 +20,8 @@ namespace petzval::inline v0::camera_detail {
 /// both are alike.
 struct SectionMaps {
   RayMatrix x, y;
+
+  std::array<double, 8> numbers() const noexcept { return {x.a, x.b, x.c, x.d, y.a, y.b, y.c, y.d}; }
 };
 
 /// The image of the stop in the plane of the pupil as a model sees it; two discs see that of the thick lens.

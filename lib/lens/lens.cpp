@@ -164,6 +164,7 @@ double usable_rim(double semi_diameter) noexcept {
   return semi_diameter > 1e15 ? std::numeric_limits<double>::infinity() : semi_diameter;
 }
 
+/// That of an asphere ends with the asphere.
 void set_rim(LensSurface& surface, double semi_diameter) {
   double& rim = surface.semi_diameter;
   rim = usable_rim(semi_diameter);

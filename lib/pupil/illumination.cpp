@@ -15,6 +15,7 @@
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/aim.hpp"
 #include "petzval/pupil/pupil_boundary.hpp"
+#include "pupil_region.hpp"
 
 namespace petzval::inline v0 {
 
@@ -35,8 +36,7 @@ double film_irradiance(const Lens& lens, const FilmPoint& point, Wavelength wave
     sum += weight * area * (angle > 0 ? std::sin(2 * angle) / (2 * angle) : 1);
   });
   const double n = lens.index(lens.surface_count(), wavelength);
-  return n * n * sum * std::numbers::pi / static_cast<double>(region.directions) * region.half_axes.x *
-         region.half_axes.y;
+  return pupil_detail::area_of(region, n * n * sum);
 }
 
 double image_circle_mm(const Lens& lens, double least_part, Wavelength wavelength) {

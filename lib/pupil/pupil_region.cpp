@@ -19,10 +19,15 @@ Vec2<double> PupilRegion::at(std::size_t direction, double radius) const noexcep
 double PupilRegion::area() const noexcept {
   double sum = 0;
   for (const PupilSpan& s : spans) sum += (s.to_radius - s.from_radius) * (s.to_radius + s.from_radius);
-  return directions == 0 ? 0 : sum * std::numbers::pi / static_cast<double>(directions) * half_axes[0] * half_axes[1];
+  return directions == 0 ? 0 : pupil_detail::area_of(*this, sum);
 }
 
 namespace pupil_detail {
+
+double area_of(const PupilRegion& region, double squared_radii) noexcept {
+  return squared_radii * std::numbers::pi / static_cast<double>(region.directions) * region.half_axes.x *
+         region.half_axes.y;
+}
 
 std::vector<Extent> extents(const PupilRegion& region) {
   std::vector<Extent> result(region.directions);

@@ -7,6 +7,9 @@
 
 namespace petzval::inline v0::pupil_detail {
 
+/// The area of squared radii, summed over the directions of a region.
+double area_of(const PupilRegion& region, double squared_radii) noexcept;
+
 /// What passes along one direction of a region, as one interval from the middle with one obscuration: the part around
 /// a dark middle, else the widest between two spans.
 struct Extent {

@@ -22,11 +22,7 @@ class Sines {
     foot_ = plane.meet({plane.centre() + place, plane.normal()});
   }
 
-  Vec2<double> of(const Vec2<double>& p) const noexcept {
-    const Vec2<double> d = p - foot_;
-    const Vec2<double> s = d * per_distance_;
-    return d / std::sqrt(1 + s.x * s.x + s.y * s.y);
-  }
+  Vec2<double> of(const Vec2<double>& p) const noexcept { return (p - foot_) / std::sqrt(secant2(p)); }
   /// Not finite for directions along the plane and beyond.
   Vec2<double> place(const Vec2<double>& sines) const noexcept {
     const Vec2<double> s = sines * per_distance_;
@@ -34,14 +30,13 @@ class Sines {
   }
   /// By how much a step of sines is longer at a place, at most.
   double stretch(const Vec2<double>& p) const noexcept {
-    const Vec2<double> s = (p - foot_) * per_distance_;
-    const double square = 1 + s.x * s.x + s.y * s.y;
+    const double square = secant2(p);
     return square * std::sqrt(square);
   }
   /// Places by the angles under which a point at a finite distance sees them, rad: these are bounded too, and tell
   /// directions along the plane apart.
   Vec2<double> angles(const Vec2<double>& p) const noexcept {
-    const Vec2<double> t = (p - foot_) * per_distance_;
+    const Vec2<double> t = tangents(p);
     const double tangent = glm::length(t);
     return tangent == 0 ? t : t * (std::atan(tangent) / tangent);
   }
@@ -53,14 +48,18 @@ class Sines {
     return foot_ + angles * (tangent / (angle * per_distance_));
   }
   /// By how much a step of the plane is shorter in angles, at most.
-  double angle_per_step(const Vec2<double>& p) const noexcept {
-    const Vec2<double> t = (p - foot_) * per_distance_;
-    return per_distance_ / (1 + t.x * t.x + t.y * t.y);
-  }
+  double angle_per_step(const Vec2<double>& p) const noexcept { return per_distance_ / secant2(p); }
   /// One over the distance of the point from the plane, 1/mm; 0 at infinity.
   double per_distance() const noexcept { return per_distance_; }
 
  private:
+  Vec2<double> tangents(const Vec2<double>& p) const noexcept { return (p - foot_) * per_distance_; }
+  /// The square of the secant of the angle under which a place is seen.
+  double secant2(const Vec2<double>& p) const noexcept {
+    const Vec2<double> t = tangents(p);
+    return 1 + t.x * t.x + t.y * t.y;
+  }
+
   Vec2<double> foot_{0, 0};
   double per_distance_ = 0;
 };

@@ -119,7 +119,11 @@ void run_random(const Target& target, unsigned long count, unsigned long seed) {
       std::ofstream("slowest-" + std::string(target.name), std::ios::binary) << text;
     }
     if (took < long_time) continue;
-    pool.size() < most ? pool.push_back(text) : void(pool[engine() % most] = text);
+    if (pool.size() < most) {
+      pool.push_back(text);
+    } else {
+      pool[engine() % most] = text;
+    }
   }
   std::cout << target.name << ": " << count << " inputs in " << total << " s, the slowest in " << slowest << " s\n";
 }

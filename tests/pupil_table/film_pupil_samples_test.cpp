@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: Apache-2.0
+// The samples of a FilmPupilTable: their density, their motion with the film point, one by one and in batches.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <utility>
+#include <vector>
+
+#include "../data_lenses.hpp"
+#include "petzval/pupil_table/film_pupil_table.hpp"
+
+namespace {
+
+using namespace petzval;
+using petzval::testing::data_lens;
+
+class UniformSamples : public ::testing::TestWithParam<std::pair<const char*, FilmPoint>> {};
+
+TEST_P(UniformSamples, HaveTheDensityOfTheArea) {
+  const auto& [id, film] = GetParam();
+  const FilmPupilTable table = FilmPupilTable::enclosing(data_lens(id), 22);
+  // Means of the samples and of places that belong to the pupil.
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<double> unit(0, 1);
+  std::array<double, 5> sampled{}, inside{};
+  const auto moments = [](double x, double y) { return std::array<double, 5>{x, y, x * x, x * y, y * y}; };
+  constexpr int side = 512;
+  for (int i = 0; i < side; ++i) {
+    for (int j = 0; j < side; ++j) {
+      const PupilSample s = table.sample(film, (i + 0.5) / side, (j + 0.5) / side);
+      const auto m = moments(s.x, s.y);
+      for (std::size_t k = 0; k < 5; ++k) sampled[k] += m[k] / (side * side);
+    }
+  }
+  const Vec2<double> middle = table.middle(film);
+  constexpr double half = 50;
+  int count = 0;
+  for (int i = 0; i < 1024; ++i) {
+    for (int j = 0; j < 1024; ++j) {
+      const double x = middle.x + half * ((i + 0.5) / 512 - 1), y = middle.y + half * ((j + 0.5) / 512 - 1);
+      if (!table.contains(film, x, y)) continue;
+      const auto m = moments(x, y);
+      for (std::size_t k = 0; k < 5; ++k) inside[k] += m[k];
+      ++count;
+    }
+  }
+  for (std::size_t k = 0; k < 5; ++k) EXPECT_NEAR(sampled[k], inside[k] / count, k < 2 ? 0.02 : 0.3) << k;
+  EXPECT_NEAR(table.area(film), count * std::pow(2 * half / 1024, 2), 1e-3 * table.area(film));
+}
+
+INSTANTIATE_TEST_SUITE_P(FilmPupilTable, UniformSamples,
+                         ::testing::Values(std::pair{"double_gauss_100mm_f1.35", FilmPoint{-9, 17}},
+                                           std::pair{"anamorphic_60mm_2x", FilmPoint{-9.4, 8.1}}));
+
+TEST(FilmPupilTable, MovesWithoutJumpsAcrossTheTable) {
+  const Lens lens = data_lens("double_gauss_100mm_f2.0");
+  constexpr double radius = 40;
+  const FilmPupilTable table = FilmPupilTable::enclosing(lens, radius);
+  for (const auto& [u, v] : {std::array{0.1, 0.9}, std::array{0.43, 0.5}, std::array{0.86, 0.99}}) {
+    const auto at = [&, u = u, v = v](double r) { return table.sample({0.28 * r, -0.96 * r}, u, v); };
+    // Steps across the nodes of the table against those within its strips.
+    constexpr int strips = 32, places = 32, steps = strips * places;
+    double across = 0, within = 0;
+    for (int i = 1; i < steps; ++i) {
+      const PupilSample a = at(radius * (i - 0.5) / steps), b = at(radius * (i + 0.5) / steps);
+      double& largest = i % places == 0 ? across : within;
+      largest = std::max(largest, std::hypot(a.x - b.x, a.y - b.y));
+    }
+    EXPECT_LT(across, 1.5 * within);
+    for (int i = 1; i < strips; ++i) {
+      const double node = radius * i / strips, next = std::nextafter(node, radius), before = std::nextafter(node, 0);
+      EXPECT_NEAR(at(before).x, at(next).x, 1e-10);
+      EXPECT_NEAR(at(before).y, at(next).y, 1e-10);
+      EXPECT_NEAR(at(before).area, at(next).area, 1e-9);
+    }
+  }
+}
+
+TEST(FilmPupilTable, IsContinuousAroundTheAxis) {
+  const Lens lens = data_lens("double_gauss_100mm_f2.0");
+  const FilmPupilTable table = FilmPupilTable::enclosing(lens, 40);
+  const PupilSample axis = table.sample({0, 0}, 0.3, 0.8);
+  for (int i = 0; i < 32; ++i) {
+    const double azimuth = 2 * std::numbers::pi * i / 32;
+    const PupilSample s = table.sample({1e-6 * std::sin(azimuth), 1e-6 * std::cos(azimuth)}, 0.3, 0.8);
+    // A polygon of 64 corners is round within 1 - cos(pi / 64).
+    EXPECT_NEAR(std::hypot(s.x - axis.x, s.y - axis.y), 0, 0.0025 * std::sqrt(axis.area));
+  }
+}
+
+class SampledTable : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(SampledTable, SamplesBatchesLikeSinglePoints) {
+  const Lens lens = data_lens(GetParam());
+  const FilmPupilTable table = FilmPupilTable::enclosing(lens, 20);
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> unit(0, 1);
+  for (const std::size_t count : {1u, 7u, 8u, 63u, 64u, 129u}) {
+    std::vector<double> x(count), y(count), u(count), v(count), px(count), py(count), areas(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      x[i] = 26 * unit(random) - 13, y[i] = 26 * unit(random) - 13, u[i] = unit(random), v[i] = unit(random);
+    }
+    table.sample<double>(count, x.data(), y.data(), u.data(), v.data(), {}, px.data(), py.data(), areas.data());
+    const std::vector<float> fx(x.begin(), x.end()), fy(y.begin(), y.end()), fu(u.begin(), u.end()),
+        fv(v.begin(), v.end());
+    std::vector<float> fpx(count), fpy(count), fareas(count);
+    table.sample<float>(count, fx.data(), fy.data(), fu.data(), fv.data(), {}, fpx.data(), fpy.data(), fareas.data());
+    for (std::size_t i = 0; i < count; ++i) {
+      const PupilSample s = table.sample({x[i], y[i]}, u[i], v[i]);
+      const double size = std::sqrt(s.area);
+      EXPECT_NEAR(px[i], s.x, 1e-12 * size);
+      EXPECT_NEAR(py[i], s.y, 1e-12 * size);
+      EXPECT_NEAR(areas[i], s.area, 1e-13 * s.area);
+      EXPECT_NEAR(fpx[i], s.x, 2e-4 * size);
+      EXPECT_NEAR(fpy[i], s.y, 2e-4 * size);
+      EXPECT_NEAR(fareas[i], s.area, 1e-5 * s.area);
+    }
+    // In place, and the same.
+    table.sample<double>(count, x.data(), y.data(), u.data(), v.data(), {}, u.data(), v.data(), areas.data());
+    EXPECT_EQ(u, px);
+    EXPECT_EQ(v, py);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(FilmPupilTable, SampledTable,
+                         ::testing::Values("catadioptric_mangin_1000mm_f7.5", "anamorphic_60mm_2x"));
+
+TEST_P(SampledTable, KnowsWhichSampleAPlaceIs) {
+  const Lens lens = data_lens(GetParam());
+  std::vector<FilmPupilTable> tables{FilmPupilTable::enclosing(lens, 20)};
+  const Lens round = data_lens("double_gauss_100mm_f1.35");
+  tables.push_back(FilmPupilTable::enclosing(with_iris(round, {.blades = 5, .rotation_rad = 0.3}), 20));
+  const PupilImage image{{-0.4, -0.4}, {20, 18}};
+  tables.push_back(FilmPupilTable::of_iris(two_planes(round), {.blades = 7, .roundness = 0.4}, {&image, 1}, 20));
+  std::mt19937_64 random(8);
+  std::uniform_real_distribution<double> unit(0, 1);
+  for (const FilmPupilTable& table : tables) {
+    for (int i = 0; i < 2000; ++i) {
+      const FilmPoint film{20 * unit(random) - 10, 20 * unit(random) - 10};
+      const double u = unit(random), v = unit(random);
+      const PupilSample s = table.sample(film, u, v);
+      const Vec2<double> at = table.position(film, s.x, s.y);
+      EXPECT_NEAR(std::remainder(at.x - u, 1), 0, 1e-9 / v);
+      EXPECT_NEAR(at.y, v, 1e-9);
+      const PupilSample edge = table.sample(film, u, 1);
+      const Vec2<double> middle = table.middle(film);
+      const Vec2<double> beyond = middle + 1.1 * (Vec2<double>{edge.x, edge.y} - middle);
+      EXPECT_GT(table.position(film, beyond.x, beyond.y).y, 1);
+    }
+    EXPECT_GT(table.position({100, 0}, 0, 0).y, 1);
+  }
+}
+
+class MovingSamples : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(MovingSamples, AreKnownByTheirDerivatives) {
+  const Lens lens = data_lens(GetParam());
+  const FilmPupilTable table = FilmPupilTable::enclosing(lens, 7);
+  std::mt19937_64 random(11);
+  std::uniform_real_distribution<double> unit(0, 1);
+  for (int i = 0; i < 200; ++i) {
+    const FilmPoint film{9 * unit(random) - 4.5, 9 * unit(random) - 4.5};
+    const double u = unit(random), v = unit(random), h = 1e-6;
+    const auto motion = table.derivatives(film, u, v);
+    const auto at = [&](double dx, double dy) { return table.sample({film.x + dx, film.y + dy}, u, v); };
+    const PupilSample right = at(h, 0), left = at(-h, 0), above = at(0, h), below = at(0, -h);
+    // A corner of the polygon or a node of the table may lie between.
+    const double slack = 1e-6 + 0.3 *
+                                    (std::hypot(right.x + left.x - 2 * at(0, 0).x, above.x + below.x - 2 * at(0, 0).x,
+                                                right.y + left.y - 2 * at(0, 0).y) +
+                                     std::abs(above.y + below.y - 2 * at(0, 0).y)) /
+                                    h;
+    EXPECT_NEAR(motion.by_film_x[0], (right.x - left.x) / (2 * h), slack);
+    EXPECT_NEAR(motion.by_film_x[1], (right.y - left.y) / (2 * h), slack);
+    EXPECT_NEAR(motion.by_film_y[0], (above.x - below.x) / (2 * h), slack);
+    EXPECT_NEAR(motion.by_film_y[1], (above.y - below.y) / (2 * h), slack);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(FilmPupilTable, MovingSamples, ::testing::Values("fisheye_8mm_f2.8", "anamorphic_60mm_2x"));
+
+}  // namespace
