@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "petzval/distortion/brown_conrady.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
 
+#include "core/least_squares.hpp"
 #include "core/text.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/units.hpp"
@@ -69,9 +69,7 @@ std::array<double, 6> fitted(const std::vector<Pair>& pairs, int in_denominator)
       wanted(static_cast<Eigen::Index>(i)) = weight * (pairs[i].to - r);
     }
     // Of least size where numerator and denominator say the same, as they do without distortion.
-    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
-    solver.setThreshold(1e-9);
-    const Eigen::VectorXd solution = solver.compute(rows).solve(wanted);
+    const Eigen::VectorXd solution = core_detail::least_squares(rows, wanted);
     for (int j = 0; j < unknowns; ++j) k[static_cast<std::size_t>(j)] = solution(j);
   }
   for (std::size_t j = 0; j < 6; ++j) k[j] /= std::pow(scale, 2.0 * static_cast<double>(j % 3 + 1));

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "petzval/files/lens_metadata.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <vector>
 
+#include "core/least_squares.hpp"
 #include "core/text.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/paraxial/first_order.hpp"
@@ -83,7 +83,7 @@ ExposureFalloff fit_exposure_falloff(const Lens& lens, const Film& film) {
     rows.row(static_cast<Eigen::Index>(i)) << weight * r2, weight * r2 * r2, weight * r2 * r2 * r2;
     lost(static_cast<Eigen::Index>(i)) = weight * (1 - places[i].light);
   }
-  const Eigen::VectorXd a = rows.completeOrthogonalDecomposition().solve(lost);
+  const Eigen::VectorXd a = core_detail::least_squares(rows, lost);
   for (int i = 0; i < 3; ++i) result.a[static_cast<std::size_t>(i)] = a(i) / std::pow(farthest, 2 * (i + 1));
   for (const Place& place : places) {
     result.largest_error = std::max(result.largest_error, std::abs(result.light(place.radius) - place.light));

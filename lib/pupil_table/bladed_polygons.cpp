@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bladed_polygons.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
+#include "core/least_squares.hpp"
 #include "iris/iris_edges.hpp"
 #include "iris/iris_shape.hpp"
 #include "lens/lens_view.hpp"
@@ -39,18 +38,16 @@ double sum(const std::array<double, terms>& coefficients, const std::array<doubl
 /// Least squares: coefficients of products(x, y), times x if odd, for values at points.
 template <std::size_t terms>
 std::array<double, terms> fitted(std::span<const Place> at, std::span<const double> values, bool odd) {
-  constexpr auto n = static_cast<Eigen::Index>(terms);
-  Eigen::Matrix<double, n, n> squares = Eigen::Matrix<double, n, n>::Zero();
-  Eigen::Matrix<double, n, 1> sums = Eigen::Matrix<double, n, 1>::Zero();
-  for (std::size_t i = 0; i < at.size(); ++i) {
-    const auto all = products<terms>(at[i].x, at[i].y);
-    const Eigen::Matrix<double, n, 1> row =
-        (odd ? at[i].x : 1.0) * Eigen::Map<const Eigen::Matrix<double, n, 1>>(all.data());
-    squares.noalias() += row * row.transpose();
-    sums += values[i] * row;
+  const auto count = static_cast<Eigen::Index>(at.size());
+  Eigen::MatrixXd rows(count, terms);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const Place& p = at[static_cast<std::size_t>(i)];
+    const auto all = products<terms>(p.x, p.y);
+    for (std::size_t j = 0; j < terms; ++j) rows(i, static_cast<Eigen::Index>(j)) = (odd ? p.x : 1.0) * all[j];
   }
+  const Eigen::VectorXd solution = core_detail::least_squares(rows, Eigen::VectorXd::Map(values.data(), count));
   std::array<double, terms> result;
-  Eigen::Map<Eigen::Matrix<double, n, 1>>(result.data()) = squares.ldlt().solve(sums);
+  std::copy_n(solution.begin(), terms, result.begin());
   return result;
 }
 
