@@ -85,8 +85,9 @@ PETZVAL_ONE_LANE_INLINE void leave(const Route<R>& route, const RayArrays<const 
     const V dx = per_n * b.px[i], dy = per_n * b.py[i], dz = per_n * b.pz[i];
     const V length = dx * dx + dy * dy + dz * dz;
     const V scale = V(R(1.5)) - V(R(0.5)) * length;
-    // Rays whose numbers have overflowed are lost at the last surface.
-    const Mask<R> sound = b.alive[i] & (length + b.z[i] * V(R(0)) < V(R(1.1)));
+    // Rays whose numbers have overflowed or lost their digits on the way are lost at the last surface.
+    const V excess = length - V(R(1)) + b.z[i] * V(R(0));
+    const Mask<R> sound = b.alive[i] & (excess * excess < V(100 * std::numeric_limits<R>::epsilon()));
     count<1>(b.tally[i], sound);
     const auto put = [&](R* to, V value, const R* before) { store(to + o, select(sound, value, load(before + o))); };
     put(out.x, b.x[i], in.x);
