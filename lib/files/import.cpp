@@ -364,18 +364,18 @@ std::optional<Medium> medium_of_code(std::string_view code) {
   const auto digits = [](std::string_view text) {
     return !text.empty() && text.size() <= 12 && std::ranges::all_of(text, [](char c) { return c >= '0' && c <= '9'; });
   };
-  const auto fraction = [](std::string_view text, std::size_t whole) {
-    return *files_detail::number(text) * std::pow(10.0, static_cast<double>(whole) - static_cast<double>(text.size()));
-  };
   std::string_view index = left, abbe = right;
   if (point == std::string_view::npos) {
     if (left.size() != 6) return {};
     index = left.substr(0, 3), abbe = left.substr(3);
   }
   if (!digits(index) || !digits(abbe) || index.size() < 3 || abbe.size() < 2) return {};
-  const double vd = fraction(abbe, 2);
+  const auto decimal = [](std::string_view whole, std::string_view rest) {
+    return *files_detail::number(std::string(whole).append(".").append(rest));
+  };
+  const double vd = decimal(abbe.substr(0, 2), abbe.substr(2));
   if (!(vd > 0)) return {};
-  return Medium{.glass = std::string(code), .nd = 1 + fraction(index, 0), .vd = vd};
+  return Medium{.glass = std::string(code), .nd = decimal("1", index), .vd = vd};
 }
 
 }  // namespace petzval::inline v0::files_detail

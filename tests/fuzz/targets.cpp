@@ -8,13 +8,13 @@
 // The functions LLVMFuzzerTestOneInput of the targets, under the names of their files.
 extern "C" {
 using Fuzzed = int(const std::uint8_t*, std::size_t);
-Fuzzed fuzz_lens_file, fuzz_glass_file, fuzz_ray_polynomial, fuzz_psf_set, fuzz_first_order, fuzz_trace, fuzz_pupil,
-    fuzz_focus, fuzz_camera, fuzz_psf, fuzz_gather, fuzz_written_lens;
+Fuzzed fuzz_lens_file, fuzz_glass_file, fuzz_ray_polynomial, fuzz_first_order, fuzz_trace, fuzz_pupil, fuzz_focus,
+    fuzz_camera, fuzz_psf, fuzz_gather, fuzz_written_lens;
 #ifdef PETZVAL_FUZZ_FITS
 Fuzzed fuzz_focus_points;
 #endif
 #ifdef PETZVAL_FUZZ_PICTURES
-Fuzzed fuzz_picture_file;
+Fuzzed fuzz_picture_file, fuzz_psf_set;
 #endif
 #ifdef PETZVAL_FUZZ_SCENES
 Fuzzed fuzz_scene_file;
@@ -38,12 +38,12 @@ std::span<const Target> targets() {
       Target{"rii", "glass_file", fuzz_glass_file, rii_texts, 4096, 600},
       Target{"glass_csv", "glass_file", fuzz_glass_file, glass_tables, 4096, 600},
       Target{"ray_polynomial", "ray_polynomial", fuzz_ray_polynomial, ray_polynomials, 16384, 600},
-      Target{"psf_set", "psf_set", fuzz_psf_set, random_bytes, 512, 1000},
 #ifdef PETZVAL_FUZZ_PICTURES
       Target{"exr", "picture_file", fuzz_picture_file, exr_files, 2048, 600},
       Target{"deep_exr", "picture_file", fuzz_picture_file, deep_exr_files, 2048, 600},
       Target{"png", "picture_file", fuzz_picture_file, png_files, 4096, 600},
       Target{"pfm", "picture_file", fuzz_picture_file, pfm_files, 4096, 600},
+      Target{"psf_set", "psf_set", fuzz_psf_set, random_bytes, 512, 1000},
 #endif
 #ifdef PETZVAL_FUZZ_SCENES
       Target{"scene", "scene_file", fuzz_scene_file, scene_texts, 4096, 600},
