@@ -174,7 +174,7 @@ PupilPolygon FilmCells::node(std::size_t wavelength, std::size_t i) const noexce
 FilmCells::Place FilmCells::find_bladed(const FilmPoint& film, std::size_t wavelength) const noexcept {
   const double r = std::hypot(film.x, film.y);
   const BladedTable<double> own = bladed_table<double>();
-  if (!(r <= own.lit_radius) || wavelength >= wavelengths_) return {};
+  if (!(r <= own.lit_radius)) return {};
   const double sine = r > 0 ? film.x / r : 0, cosine = r > 0 ? film.y / r : 1, row = r * own.rows_per_mm;
   const std::size_t i = std::min(static_cast<std::size_t>(row), rows_ - 1);
   const double turn = blades_ * (turn_of(sine, cosine) + 1) + first_blade_;
@@ -193,14 +193,13 @@ FilmCells::Place FilmCells::find_bladed(const FilmPoint& film, std::size_t wavel
 }
 
 FilmCells::Place FilmCells::find(const FilmPoint& film, std::size_t wavelength) const noexcept {
+  if (wavelength >= wavelengths_) return {};
   if (bladed()) return find_bladed(film, wavelength);
   const double x = std::abs(film.x), y = std::abs(film.y);
   constexpr double end = 1 + 1e-6;  // as in the loops
   const CellTable<double> own = table<double>();
   const double row = y * own.rows_per_mm, rows = static_cast<double>(own.rows);
-  if (!(x * x + y * y <= own.film_radius * own.film_radius) || !(row <= end * rows) || wavelength >= wavelengths_) {
-    return {};
-  }
+  if (!(x * x + y * y <= own.film_radius * own.film_radius) || !(row <= end * rows)) return {};
   const std::size_t i = std::min(static_cast<std::size_t>(row), own.rows - 1);
   const double s = row - static_cast<double>(i);
   const double width = own.half_widths[i] + s * (own.half_widths[i + 1] - own.half_widths[i]);

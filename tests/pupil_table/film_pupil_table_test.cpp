@@ -423,6 +423,35 @@ TEST(FilmPupilTable, HasOneTableForEachWavelength) {
   EXPECT_NE(table.area({7, -11}, 0), table.area({7, -11}, 1));
 }
 
+TEST(FilmPupilTable, IsDarkAtWavelengthsThatItDoesNotCover) {
+  const Lens lens = data_lens("double_gauss_100mm_f2.0");
+  const PupilImage image{.radius = {10, 10}};
+  const FilmPupilTable tables[]{FilmPupilTable::enclosing(lens, 20),
+                                FilmPupilTable::enclosing(data_lens("anamorphic_60mm_2x"), 10),
+                                FilmPupilTable::enclosing(with_iris(lens, {.blades = 6}), 20),
+                                FilmPupilTable::of_iris({50, 0}, {}, std::array{image}, 20)};
+  for (const FilmPupilTable& table : tables) {
+    const FilmPoint film{1, 2};
+    const Vec2<double> inside = table.middle(film);
+    ASSERT_GT(table.area(film), 0);
+    ASSERT_TRUE(table.contains(film, inside.x, inside.y));
+    for (const Wavelength beyond : {Wavelength(table.wavelengths()), Wavelength(60000), Wavelength::nm(10000)}) {
+      EXPECT_FALSE(table.covers(beyond));
+      EXPECT_EQ(table.area(film, beyond), 0);
+      EXPECT_EQ(table.sample(film, 0.3, 0.7, beyond).area, 0);
+      EXPECT_FALSE(table.contains(film, inside.x, inside.y, beyond));
+      EXPECT_LT(table.clearance(film, inside.x, inside.y, beyond), 0);
+      EXPECT_GT(table.position(film, inside.x, inside.y, beyond).y, 1);
+    }
+    const auto last = static_cast<std::uint16_t>(table.wavelengths());
+    const std::vector<std::uint16_t> each{last, 60000, last, 60000, 0, last, last, last};
+    std::vector<double> x(8, film.x), y(8, film.y), u(8, 0.3), v(8, 0.7), areas(8);
+    table.sample<double>(8, x.data(), y.data(), u.data(), v.data(), {.each = each.data()}, u.data(), v.data(),
+                         areas.data());
+    for (std::size_t i = 0; i < 8; ++i) EXPECT_EQ(areas[i] > 0, each[i] == 0) << i;
+  }
+}
+
 TEST(FilmPupilTable, OfAFilmWithoutSizeIsThatOfTheAxis) {
   const std::vector<std::vector<PupilDisc>> discs{{{0.1, 10}}};
   const PupilSample wanted = FilmPupilTable::of_discs({50, 0}, discs, 1).sample({0, 0}, 0.3, 0.7);
