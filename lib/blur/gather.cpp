@@ -76,16 +76,17 @@ class Gathering {
   void run() {
     // Rays of a tile are interpolated between its corners, which lie in one cell of the table.
     tile_columns_ = std::min(rays_.table.step, TileSums::columns);
+    tile_rows_ = std::min(rays_.table.step, TileSums::rows);
     const int across = (picture_.columns + tile_columns_ - 1) / tile_columns_,
-              down = (picture_.rows + TileSums::rows - 1) / TileSums::rows;
+              down = (picture_.rows + tile_rows_ - 1) / tile_rows_;
     parallel_for(static_cast<std::size_t>(across) * static_cast<std::size_t>(down), 4, options_.threads,
                  [&](std::size_t begin, std::size_t end) {
                    const Blurred::Memory::Loan loan(*picture_.memory);
                    for (std::size_t t = begin; t < end; ++t) {
                      const int left = static_cast<int>(t) % across * tile_columns_,
-                               top = static_cast<int>(t) / across * TileSums::rows;
+                               top = static_cast<int>(t) / across * tile_rows_;
                      follow({left, top, std::min(tile_columns_, picture_.columns - left),
-                             std::min(TileSums::rows, picture_.rows - top)},
+                             std::min(tile_rows_, picture_.rows - top)},
                             *loan);
                    }
                  });
@@ -287,7 +288,7 @@ class Gathering {
   const RayData& rays_;
   const GatherOptions& options_;
   GatherPath path_;
-  int overscan_, tile_columns_ = 0;
+  int overscan_, tile_columns_ = 0, tile_rows_ = 0;
   const Highlights& highlights_;
   Blurred& picture_;
   DepthRange all_;

@@ -18,8 +18,8 @@ namespace {
 
 using namespace blur_detail;
 
-constexpr int widest_step = 256, narrowest_step = 16;
-constexpr double same_px = 1e-3;  // lines that differ by less are the same
+constexpr int widest_step = 256, narrowest_step = 16;  // of large pictures
+constexpr double same_px = 1e-3;                       // lines that differ by less are the same
 
 /// How far a finer table is from what a coarser one interpolates, at the worst place.
 struct TableError {
@@ -142,15 +142,17 @@ LensRays::LensRays(const LayerCamera& camera, std::span<const PupilPoint> points
 
   const auto count = static_cast<std::size_t>(channels);
   const auto table = [&](int step) { return ray_table(d->camera, points, count, d->source, step, options.threads); };
-  // Steps above the picture's side would have no node within it to tell how wrong they are.
-  const auto side = static_cast<unsigned>(std::min(camera.columns, camera.rows));
-  const int first_step = std::clamp(static_cast<int>(std::bit_floor(side)), narrowest_step, widest_step);
+  // Steps above the picture's side would have no node within it to tell how wrong they are. Pixels of small pictures
+  // are large on the film: their steps are small.
+  const auto power_of_two = [](int length) { return static_cast<int>(std::bit_floor(static_cast<unsigned>(length))); };
+  const int last_step = std::clamp(power_of_two(std::max(camera.columns, camera.rows)) / 16, 2, narrowest_step);
+  const int first_step = std::clamp(power_of_two(std::min(camera.columns, camera.rows)), last_step, widest_step);
   d->table = table(first_step);
   for (int step = first_step / 2;; step /= 2) {
     RayTable fine = table(step);
     const TableError error = error_of(d->table, fine, nearest);
     d->error_px = error.px;
-    if (error.within_limits() || d->table.step == narrowest_step) break;
+    if (error.within_limits() || d->table.step == last_step) break;
     d->table = std::move(fine);
   }
 

@@ -23,7 +23,12 @@ constexpr double least_cosine = 0.0175;
 
 double subject_of(const Lens& lens, const Film& film, const DistortionOptions& options) {
   if (options.subject_z_mm) return *options.subject_z_mm;
-  return solve_subject(lens, film.z()).subject_z;
+  const FocusSolution found = solve_subject(lens, film.z());
+  if (found.status == FocusStatus::afocal || found.status == FocusStatus::no_rays) {
+    throw Error(lens.name() + ": distortion: no subject is in focus (" + std::string(name(found.status)) +
+                "), wanted a subject_z_mm");
+  }
+  return found.subject_z;
 }
 
 }  // namespace

@@ -62,6 +62,19 @@ bool is_fold(std::span<const ZemaxSurface> three) {
          three[1].glass->name == "MIRROR" && !three[1].stop;
 }
 
+/// A break is no surface: what it says of one is left out.
+void warn_of_surface(const ZemaxSurface& found, Import& in) {
+  std::string said;
+  const auto add = [&](bool is_there, std::string_view what) {
+    if (is_there) said.append(said.empty() ? "" : ", ").append(what);
+  };
+  add(found.curvature != 0 || found.curvature_pickup, "CURV");
+  add(found.conic != 0, "CONI");
+  add(found.glass.has_value(), found.glass ? "GLAS " + found.glass->name : "");
+  add(found.aperture || found.obscuration, "aperture");
+  if (!said.empty()) in.warn(found.line, "COORDBRK", "is no surface; its " + said + " is left out");
+}
+
 /// Behind a mirror that is taken out light runs the other way along z.
 void turn(std::span<ZemaxSurface> surfaces) {
   const auto opposite = [](double& value) { value = 0.0 - value; };
@@ -91,6 +104,7 @@ void fold_breaks(Surfaces& surfaces, std::vector<int>& place, Import& in) {
   for (std::size_t i = 1; i + 1 < surfaces.size(); ++i) {
     if (!is_break(surfaces[i])) continue;
     const ZemaxSurface found = surfaces[i];
+    warn_of_surface(found, in);
     if (changes_nothing(found) && !found.stop) {
       take_out(i, i + 1);
       --i;

@@ -84,13 +84,12 @@ FocusSolution Search::at(FocusStatus status, double vergence) const {
 
 /// The vergence at which the film is farthest out.
 double Search::limit() const {
-  const double paraxial = c_.vergence_of_infinite_film();
   const auto film_out = [&](double vergence) {
     const auto film_z = film(vergence);
     return film_z && c_.real(*film_z) ? c_.vergence_of_film(*film_z) : -infinity;
   };
   const double vertex = c_.vergence_of_vertex();
-  return highest(film_out, 0, std::min(4 * paraxial, vertex), flat * vertex);
+  return highest(film_out, 0, std::min(cap_, vertex), flat * vertex);
 }
 
 /// The vergence at which distances from the film turn, near the paraxial turning point.
@@ -131,9 +130,12 @@ FocusSolution Search::focus(double distance) const {
   if (c_.origin == DistanceOrigin::film && std::isfinite(distance)) return focus_from_film(distance);
   const double subject_z = std::isinf(distance) ? -infinity : c_.origin_z - distance;
   if (!(subject_z < 0)) return too_near();
-  const auto image = solver_.image(subject_z);
-  if (!image) return {.status = no_rays};
-  const double film_z = image->film_z, vergence = c_.vergence(subject_z);
+  const double vergence = c_.vergence(subject_z);
+  // Next to the front of the lens no pupil is seen.
+  const bool near = vergence > c_.vergence_of_infinite_film();
+  const auto image = near ? solver_.image_seen(subject_z) : solver_.image(subject_z);
+  if (!image) return near ? too_near() : FocusSolution{.status = no_rays};
+  const double film_z = image->film_z;
   if (!c_.real(film_z)) return film_vergence(film_z) < c_.vergence_of_infinite_film() ? farthest() : too_near();
 
   // Next to the limit the film may already have turned back.

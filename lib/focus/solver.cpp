@@ -129,12 +129,16 @@ std::optional<Image> FocusSolver::image(double subject_z) const {
   return cone(subject_z);
 }
 
-std::optional<Image> FocusSolver::image_at(double vergence) const {
+std::optional<Image> FocusSolver::image_seen(double subject_z) const {
   try {
-    return image(vergence > 0 ? conjugates_.subject_at(vergence) : -std::numeric_limits<double>::infinity());
+    return image(subject_z);
   } catch (const Error&) {
     return {};
   }
+}
+
+std::optional<Image> FocusSolver::image_at(double vergence) const {
+  return image_seen(vergence > 0 ? conjugates_.subject_at(vergence) : -std::numeric_limits<double>::infinity());
 }
 
 /// The cone of the paraxial pupil, as its one marginal ray.

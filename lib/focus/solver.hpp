@@ -36,8 +36,9 @@ class FocusSolver {
   /// The image of a subject; nothing if no ray of a field passes. Throws Error for a subject that is not in front of
   /// the lens, and if nothing limits the beam.
   std::optional<Image> image(double subject_z) const;
-  /// The image by vergence of the subject (Conjugates). Nothing also where image() throws: exact rays start in front of
-  /// the vertex of a concave first surface.
+  /// Nothing also where image() throws: exact rays start in front of the vertex of a concave first surface.
+  std::optional<Image> image_seen(double subject_z) const;
+  /// The same by vergence of the subject (Conjugates).
   std::optional<Image> image_at(double vergence) const;
 
  private:

@@ -80,7 +80,7 @@ bool limits_the_beam(const Lens& lens) {
 std::optional<double> unit_between(double length, double declared) {
   for (const double factor : {10.0, 25.4, 1000.0}) {
     for (const double ratio : {factor, 1 / factor}) {
-      if (std::abs(length - ratio * declared) <= 0.005 * std::abs(ratio * declared)) return ratio;
+      if (!differs(length, ratio * declared)) return ratio;
     }
   }
   return {};

@@ -133,6 +133,9 @@ Lens with_f_number(const Lens& lens, double f_number, Wavelength wavelength) {
   const LensSurface& stop = lens.surfaces()[beam.stop];
   const double y = length / (2 * f_number);
   const double largest = beam_height(lens, beam, wavelength);
+  if (!(largest > 0)) {
+    throw Error(lens.name() + ": no ray parallel to the axis passes, wanted light to set an f-number by");
+  }
   const HeightAt stop_height(lens, beam.stop, wavelength);
   const auto height = stop_height(std::min(y, largest));
   // Declared f-numbers are rounded, of the paraxial pupil, or of another glass. Without a rim, the one that was
@@ -152,6 +155,10 @@ Lens with_f_number(const Lens& lens, double f_number, Wavelength wavelength) {
   Lens stopped = with_semi_diameter(lens, beam.stop, std::min(*height, stop.semi_diameter));
   // Strong spherical aberration lets other rays meet the stop as far out as the ray of height y does.
   const double found = real_f_number(stopped, wavelength);
+  if (std::isinf(found)) {
+    throw Error(lens.name() + ": f-number is " + to_text(f_number) + ", wanted a smaller one: its stop of " +
+                to_text(*height) + " mm is closed");
+  }
   if (!(std::abs(found - f_number) <= 1e-6 * f_number)) {
     throw Error(lens.name() + ": f-number is " + to_text(f_number) + ", wanted one that a stop gives, such as " +
                 to_text(found, 10) + ": spherical aberration folds the beam, and other rays meet its rim");

@@ -12,6 +12,7 @@
 #include <numeric>
 #include <string>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "../data_lenses.hpp"
@@ -39,6 +40,20 @@ Lens focused(const char* id) { return with_focus(testing::data_lens(id), 3000, {
 
 /// Of single rays against batches.
 double precision(ModelKind model) { return model == ModelKind::exact_double ? 1e-11 : 2e-5; }
+
+// What has been moved from is still a camera, as a Lens is still a lens.
+TEST(Camera, IsStillOneAfterAMove) {
+  Camera camera(focused("double_gauss_100mm_f2.0"), {});
+  const CameraSample sample{.film = {3, 4}, .pupil_u = 0.3, .pupil_v = 0.6};
+  const CameraRay wanted = camera.sample(sample);
+  ASSERT_TRUE(wanted);
+  const Camera moved = std::move(camera);
+  for (const Camera& each : {std::as_const(camera), moved}) {
+    const CameraRay ray = each.sample(sample);
+    EXPECT_EQ(ray.ray.origin, wanted.ray.origin);
+    EXPECT_EQ(ray.weight, wanted.weight);
+  }
+}
 
 TEST(Camera, GivesTheSameRaySinglyAndInABatch) {
   const Lens lens = focused("double_gauss_100mm_f2.0");

@@ -235,7 +235,7 @@ TEST_F(LensBlurProgram, SaysThatTheLensDoesNotLightTheFilm) {
 TEST_F(LensBlurProgram, SaysHowFarInterpolatedRaysAreOff) {
   const auto outcome =
       run("lens_blur", {"--scene", "town", "--lens", lens("fisheye_10mm_f4"), "--fov-deg", "60", "--focus-mm", "3000",
-                        "--width", "160", "--height", "120", "--rays", "16", "--format", "png", "--out", path("out")});
+                        "--width", "320", "--height", "240", "--rays", "16", "--format", "png", "--out", path("out")});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_GT(read_json(path("out/blur.json"))["rays_error_px"], 1);
   EXPECT_NE(outcome.err.find("note: rays are interpolated over the picture, and are off by up to "), std::string::npos);

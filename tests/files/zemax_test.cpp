@@ -275,6 +275,10 @@ TEST(Zemax, BreaksThatChangeNothingGo) {
   const std::string plane = "  TYPE STANDARD\n  CURV 0\n  DISZ 0\n";
   EXPECT_EQ(read(with_breaks(moved(5), plane, moved(-5))).surfaces, p.surfaces);
   EXPECT_EQ(read(with_breaks("  TYPE COORDBRK\n  DISZ 0\n", plane, "  TYPE COORDBRK\n  DISZ 0\n")).surfaces.size(), 4u);
+  const std::string curved = "  TYPE COORDBRK\n  CURV 0.01\n  GLAS N-BK7 0 0 1.5 40 0\n  DISZ 0\n";
+  EXPECT_NE(warning(read(with_breaks(curved, plane, "  TYPE COORDBRK\n  DISZ 0\n")), "COORDBRK")
+                .find("is no surface; its CURV, GLAS N-BK7 is left out"),
+            std::string::npos);
   EXPECT_NE(refusal(with_breaks(moved(5), plane, moved(5))).find("COORDBRK is a tilt or decentre of surface 2"),
             std::string::npos);
   // A fold by a plane mirror is unfolded: light runs on as before.

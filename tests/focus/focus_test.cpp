@@ -122,6 +122,9 @@ TEST(Focus, NamesTheNearestDistanceThatCanBeReached) {
         const FocusSolution inside = solve_focus(lens, limit.distance * (1 - 1e-6), {criterion, origin});
         EXPECT_EQ(inside.status, Status::unreachable);
         EXPECT_NEAR(inside.distance, limit.distance, 1e-8 * limit.distance);
+        for (const double all_but_touching : {1e-3, 1e-9}) {
+          EXPECT_EQ(solve_focus(lens, all_but_touching, {criterion, origin}).distance, limit.distance);
+        }
         EXPECT_EQ(solve_focus(lens, limit.distance * (1 + 1e-6), {criterion, origin}).status, Status::solved);
       }
     }

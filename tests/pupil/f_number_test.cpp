@@ -32,6 +32,13 @@ Prescription telescope() {
   return p;
 }
 
+TEST(FNumber, SaysWhereNoLightPasses) {
+  const Lens lens = data_lens("double_gauss_100mm_f2.0");
+  EXPECT_NE(message([&] { with_f_number(lens, 1e300); }).find("mm is closed"), std::string::npos);
+  const Lens closed = with_semi_diameter(lens, *lens.stop(), 0);
+  EXPECT_NE(message([&] { with_f_number(closed, 8); }).find("no ray parallel to the axis passes"), std::string::npos);
+}
+
 TEST(RealFNumber, OfEveryLensInDataIsWithinTwoPercentOfTheDeclared) {
   for (const Prescription& p : data_prescriptions()) {
     if (!p.f_number) continue;

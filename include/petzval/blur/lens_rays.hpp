@@ -65,16 +65,22 @@ struct LensRaysOptions {
 /// The rays of a lens through the layers, for all pixels of a picture: a line for each point of the pupil, smooth over
 /// the picture. All that the blur knows of a lens.
 ///
-/// Rays are kept at nodes in steps of 16 to 256 px and interpolated between. The step is the largest at which, halfway
+/// Rays are kept at nodes in steps of up to 256 px and interpolated between. The step is the largest at which, halfway
 /// between nodes, the lines of a place are right within 0.1 px (RMS) at the depth where they are nearest to each other,
-/// and their light within 0.6 %; or 16 px, and error_px() says what is left. At other depths a ray may be off by more,
-/// within the blur. Nodes whose places get no light lead on the lines of those beside them.
+/// and their light within 0.6 %; or the least step, 16 px, and error_px() says what is left of the lines. In pictures
+/// below 512 px it is a 16th to a 32nd of the longer side, 2 px or more; pictures of a few pixels come out darker. At
+/// other depths a ray may be off by more, within the blur. Nodes whose places get no light lead on the lines of those
+/// beside them.
 ///
 ///     const LensRays rays = LensRays::of(camera, layer_camera(camera), vogel_points(100));
 ///
 /// Immutable, cheap to copy, shared freely between threads.
 class PETZVAL_API LensRays {
  public:
+  /// Copies. Moves copy too, so that no LensRays is ever empty.
+  LensRays(const LensRays&) = default;
+  LensRays& operator=(const LensRays&) = default;
+
   /// The rays of a raster position. channel: 0; of rays with colours 0 to 2. found: one for each point.
   using Source = std::function<void(int channel, const Vec2<double>& raster, std::span<const PupilPoint> points,
                                     std::span<LayerRay> found)>;

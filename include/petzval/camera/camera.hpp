@@ -91,6 +91,10 @@ struct CameraOptions {
 /// the frames of hosts.
 class PETZVAL_API Camera {
  public:
+  /// Copies. Moves copy too, so that no Camera is ever empty.
+  Camera(const Camera&) = default;
+  Camera& operator=(const Camera&) = default;
+
   /// The lens has its film where film.z_mm says, as with_film() would. A film that is tilted or travels takes four to
   /// six times as long to set up (7 ms rather than 1.3 for a double Gauss); fits of tilts need no camera. Throws
   /// Error for a film without area or pixels, one that is not behind the last surface, is tilted into the lens or comes

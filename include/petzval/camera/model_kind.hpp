@@ -11,9 +11,12 @@
 namespace petzval::inline v0 {
 
 /// The ray models of a lens, from the cheapest to the most accurate one. All have the exact lens's exposure on the axis
-/// within 0.5 %; thin_two_disc and polynomials have it within 2 % over the field (tests/camera/exposure_test.cpp). Not
-/// where pupils come in several parts, as those of a ball lens, or of catadioptrics beyond their field: their light may
-/// be wrong by a factor (FilmPupilTable::equal_area). Exact models hold all parts, within FilmPupilTable::enclosing.
+/// within 0.5 %; thin_two_disc and polynomials have it within 2 % over the declared field
+/// (tests/camera/exposure_test.cpp). Not where pupils come in several parts, as those of a ball lens, or of
+/// catadioptrics beyond their field: their light may be wrong by a factor (FilmPupilTable::equal_area). Exact models
+/// hold all parts, within FilmPupilTable::enclosing. Beyond the declared field polynomials of lenses with cylinders are
+/// up to 20 % too dark. Slopes are no angles: first-order models of lenses faster than f/0.36 are up to 5 % too bright,
+/// and beyond f/0.31 of no use.
 enum class ModelKind : std::uint8_t {
   pinhole,        ///< first order, every ray through the centre of the pupil
   thin,           ///< first order, a thin lens: a disc in the principal plane

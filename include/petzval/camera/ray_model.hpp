@@ -77,6 +77,10 @@ PETZVAL_API double upright_radius(const Lens& lens, const Film& film, ModelKind 
 /// virtual once a batch.
 class AnyRayModel {
  public:
+  /// Copies. Moves copy too, so that no AnyRayModel is ever empty.
+  AnyRayModel(const AnyRayModel&) = default;
+  AnyRayModel& operator=(const AnyRayModel&) = default;
+
   template <class M>
     requires(!std::same_as<M, AnyRayModel> && RayModel<M>)
   AnyRayModel(M model) : model_(std::make_shared<const Held<M>>(std::move(model))) {}

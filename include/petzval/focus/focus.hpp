@@ -75,14 +75,15 @@ struct FocusSolution {
 /// Film position that brings a subject into focus (the lens stays, the film moves).
 ///
 /// distance: > 0 or +inf. If two film positions serve one distance from the film, the one nearer to the rear focus. A
-/// lens with cylinders is focused in its main meridian, by the exact criteria over all azimuths. min_rms: the position
-/// of least RMS radius in closed form, from bundles through everything that passes all rims, uniform in the area of the
-/// entrance pupil. min_max: the position of the least largest radius of the same bundles and the edges and corners of
-/// their pupils, to rounding; a largest radius is found within 0.2 %. Both lie behind the last vertex. Throws Error for
-/// a distance that is NaN or not positive; for invalid options, fields and weights; and, by the exact criteria, where
-/// pupil_boundary does and for an entrance pupil at infinity. Accuracy: paraxial and thin within rounding; by the exact
-/// criteria the film is that of infinitely many rays within 1e-5 mm on the axis and 2e-4 mm off it (double Gauss 100 mm
-/// f/2, 10 degrees).
+/// lens with cylinders is focused in its main meridian, by the exact criteria over all azimuths; where the other
+/// section has little power, the film of least RMS radius turns back towards the lens as the subject comes nearer, and
+/// nearer subjects count as too near. min_rms: the position of least RMS radius in closed form, from bundles through
+/// everything that passes all rims, uniform in the area of the entrance pupil. min_max: the position of the least
+/// largest radius of the same bundles and the edges and corners of their pupils, to rounding; a largest radius is found
+/// within 0.2 %. Both lie behind the last vertex. Throws Error for a distance that is NaN or not positive; for invalid
+/// options, fields and weights; and, by the exact criteria, where pupil_boundary does and for an entrance pupil at
+/// infinity. Accuracy: paraxial and thin within rounding; by the exact criteria the film is that of infinitely many
+/// rays within 1e-5 mm on the axis and 2e-4 mm off it (double Gauss 100 mm f/2, 10 degrees).
 PETZVAL_API FocusSolution solve_focus(const Lens& lens, double distance, const FocusOptions& options = {});
 
 /// The inverse: the subject that is in focus on a film. Focused at the distance of the solution, the film is the same

@@ -73,6 +73,10 @@ struct FocalSurfaceOptions {
 /// Results are finite for every place, and the same for all instruction sets and however places are batched.
 class PETZVAL_API FocalSurface {
  public:
+  /// Copies. Moves copy too, so that no FocalSurface is ever empty.
+  FocalSurface(const FocalSurface&) = default;
+  FocalSurface& operator=(const FocalSurface&) = default;
+
   /// lens: the entrance pupil is the origin of distances; with the film it tells how large a blur comes of an error in
   /// inverse distance. film: its size tells how far points lie apart, in parts of the picture.
   ///

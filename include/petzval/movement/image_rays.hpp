@@ -36,6 +36,10 @@ PETZVAL_API std::optional<BundleBlur> blur_on(const RayBundle& bundle, const Fil
 /// radius is that of the rays there are, up to 40 % less than that of the pupil's edge.
 class PETZVAL_API ImageRays {
  public:
+  /// Copies. Moves copy too, so that no ImageRays is ever empty.
+  ImageRays(const ImageRays&) = default;
+  ImageRays& operator=(const ImageRays&) = default;
+
   /// film_radius: mm, of the farthest film point that matters: what lies beyond that has no bundles. rays: to send of
   /// each point, at least 16; half of them or more get through (but where it is less than a 16th of what a lens
   /// without symmetry of revolution may see). Throws Error where thick_lens and FilmPupilTable::enclosing do.

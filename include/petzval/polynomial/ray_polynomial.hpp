@@ -49,6 +49,10 @@ namespace petzval::inline v0 {
 /// Immutable, cheap to copy, free to share between threads.
 class PETZVAL_API RayPolynomial {
  public:
+  /// Copies. Moves copy too, so that no RayPolynomial is ever empty.
+  RayPolynomial(const RayPolynomial&) = default;
+  RayPolynomial& operator=(const RayPolynomial&) = default;
+
   /// The coefficients of one wavelength. Plain data, as in files; public so that it can be exported to shaders.
   struct Fit {
     double wavelength_nm = 0;

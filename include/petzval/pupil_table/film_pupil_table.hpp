@@ -130,6 +130,10 @@ struct FilmPupilArrays {
 /// Immutable, cheap to copy, free to share between threads.
 class PETZVAL_API FilmPupilTable {
  public:
+  /// Copies. Moves copy too, so that no FilmPupilTable is ever empty.
+  FilmPupilTable(const FilmPupilTable&) = default;
+  FilmPupilTable& operator=(const FilmPupilTable&) = default;
+
   /// Polygons that contain every ray that the lens passes and few others; rays still have to be traced. At most 1e-5 of
   /// the pupils' area is missed (tests/pupil_table/film_pupil_table_test.cpp: every lens of data/ wide open over its
   /// declared field, some of them stopped down; film_cells_test.cpp: a lens with cylinders from wide open to f/64),
