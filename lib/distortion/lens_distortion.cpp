@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <glm/geometric.hpp>
 #include <limits>
 
 #include "core/low_discrepancy.hpp"
@@ -114,26 +115,33 @@ std::optional<Vec2<double>> LensDistortion::undistorted(const Vec2<double>& dist
   const auto towards_middle = [](double from, double size) { return (from < size / 2 ? 0.005 : -0.005) * size; };
   const double hx = towards_middle(distorted_at.x, film.columns), hy = towards_middle(distorted_at.y, film.rows);
   const auto along_x = near(distorted_at.x + hx, distorted_at.y), along_y = near(distorted_at.x, distorted_at.y + hy);
-  const Vec2<double> by_x = along_x ? (*along_x - *start) / hx : Vec2<double>(1, 0);
-  const Vec2<double> by_y = along_y ? (*along_y - *start) / hy : Vec2<double>(0, 1);
+  Vec2<double> by_x = along_x ? (*along_x - *start) / hx : Vec2<double>(1, 0);
+  Vec2<double> by_y = along_y ? (*along_y - *start) / hy : Vec2<double>(0, 1);
 
-  // These derivatives are near enough: each step leaves a small part of the error.
+  // These derivatives are near enough to begin with; each step tells how much they are off along it (Broyden 1965).
   constexpr double settled = 1e-7, good = 5e-3;  // pixels
-  Vec2<double> at = *start;
+  Vec2<double> at = *start, step{0, 0}, last_miss{0, 0};
   double last = std::numeric_limits<double>::infinity();
   for (int i = 0; i < 40; ++i) {
     const auto shown = distorted(at);
     if (!shown) return {};
     const Vec2<double> miss = distorted_at - *shown;
     const double length = std::hypot(miss.x, miss.y);
-    if (length < settled || !(length < last)) {
-      if (std::min(length, last) < good) return at;
-      if (!(length < last)) return {};
+    if (length < settled) return at;
+    if (!(length < last)) return last < good ? std::optional(at - step) : std::nullopt;
+    if (i > 0) {
+      const Vec2<double> moved = last_miss - miss, expected = moved.x * by_x + moved.y * by_y;
+      if (const double along = glm::dot(step, expected); along != 0) {
+        const Vec2<double> missed = (step - expected) / along;
+        const Vec2<double> along_each{glm::dot(step, by_x), glm::dot(step, by_y)};
+        by_x += missed * along_each.x, by_y += missed * along_each.y;
+      }
     }
-    last = length;
-    at += miss.x * by_x + miss.y * by_y;
+    last = length, last_miss = miss;
+    step = miss.x * by_x + miss.y * by_y;
+    at += step;
   }
-  return last < good ? std::optional(at) : std::nullopt;
+  return last < good ? std::optional(at - step) : std::nullopt;
 }
 
 double LensDistortion::widest_field_rad() const noexcept {

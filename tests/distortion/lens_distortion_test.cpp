@@ -13,6 +13,7 @@
 #include "core/low_discrepancy.hpp"
 #include "distorting_lenses.hpp"
 #include "petzval/core/error.hpp"
+#include "petzval/files/lens_metadata.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/aim.hpp"
@@ -49,6 +50,28 @@ TEST(LensDistortion, IsNoneForLinearModels) {
       EXPECT_LT(far_apart(*shown, at), 2e-6);
       EXPECT_LT(far_apart(*back, at), 2e-6);
     }
+  }
+}
+
+TEST(LensDistortion, IsUndoneToTheCornersOfThePicture) {
+  for (const char* id : {"anamorphic_60mm_2x", "biogon_35mm_f2.8", "double_gauss_100mm_f2.0"}) {
+    SCOPED_TRACE(id);
+    const Prescription prescription = petzval::testing::data_prescription(id);
+    const Lens lens = with_focus(compile(prescription), 2000);
+    const Film film = film_of(prescription, lens);
+    const LensDistortion distortion(Camera(lens, film, {.model = ModelKind::exact_double}));
+    int found = 0;
+    for (int row = 0; row <= 8; ++row) {
+      for (int column = 0; column <= 8; ++column) {
+        const Vec2<double> at{column / 8.0 * film.columns, row / 8.0 * film.rows};
+        const auto straight = distortion.undistorted(at);
+        const auto back = straight ? distortion.distorted(*straight) : std::nullopt;
+        if (!back) continue;
+        ++found;
+        EXPECT_LT(far_apart(*back, at), 1e-6) << at.x << ' ' << at.y;
+      }
+    }
+    EXPECT_GT(found, 60);
   }
 }
 

@@ -57,7 +57,7 @@ class PETZVAL_API LensDistortion {
   /// or near it. Apertures are ignored: the place may be dark.
   std::optional<Vec2<double>> distorted(const Vec2<double>& undistorted) const noexcept;
 
-  /// The inverse, by Newton's iteration on distorted(), within 1e-6 pixels by ModelKind::exact_double and 0.005 by
+  /// The inverse, by Broyden's iteration on distorted(), within 1e-6 pixels by ModelKind::exact_double and 0.005 by
   /// models in float. Nothing where the film sees no light or no chief ray arrives, for places beside the film and its
   /// margin, and for fields of more than 89 degrees, which a pinhole does not see.
   std::optional<Vec2<double>> undistorted(const Vec2<double>& distorted) const noexcept;
