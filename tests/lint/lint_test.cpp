@@ -135,6 +135,17 @@ TEST(Lint, FindsLengthsInAnotherUnit) {
   EXPECT_EQ(lint(in_another_unit(20)).at(0).kind, Kind::focal_length);
 }
 
+TEST(Lint, FindsEveryLensInInches) {
+  for (const Prescription& millimetres : testing::data_prescriptions()) {
+    if (!millimetres.focal_length_mm || !millimetres.configurations.empty()) continue;  // theirs are scaled with them
+    SCOPED_TRACE(millimetres.name);
+    Prescription p = scale(millimetres, 1 / 25.4);
+    p.focal_length_mm = millimetres.focal_length_mm, p.image_diagonal_mm = millimetres.image_diagonal_mm;
+    const auto findings = lint(p);
+    EXPECT_TRUE(std::ranges::any_of(findings, [](const Finding& f) { return f.kind == Kind::units; }));
+  }
+}
+
 TEST(Lint, FindsDiametersInThePlaceOfSemiDiameters) {
   expect_one(with_rims(2), Kind::apertures, {}, "f-number is 2.5, declared 5: semi-diameters are diameters");
   expect_one(with_rims(0.5), Kind::apertures, {}, "f-number is 10, declared 5: semi-diameters are halves of them");
