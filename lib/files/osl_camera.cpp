@@ -110,6 +110,7 @@ OslCamera::OslCamera(const Lens& lens, const OslCameraOptions& options) : lens_(
   origin_z_ = std::isfinite(p.entrance.z) ? p.entrance.z : 0;
   f_number_ = real_f_number(lens_);
   film_radius_ = std::hypot(film_.width_mm, film_.height_mm) / 2;
+  focused(0);  // throws where a lens cannot be
   const auto& moves = lens_.focus_positions();
   const FocusSolution near = nearest_focus(lens_);
   const double least = moves.empty() ? std::max(1.25 * near.distance, 6 * std::abs(first.effective_focal_length))

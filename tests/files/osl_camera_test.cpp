@@ -248,6 +248,12 @@ TEST(OslCamera, WhatTheShaderCannotTraceIsRefused) {
   EXPECT_NE(refusal(data_lens("mirror_newton_200mm_f8")).find("is a mirror"), std::string::npos);
   EXPECT_NE(refusal(data_lens("anamorphic_60mm_2x")).find("is a cylinder"), std::string::npos);
   EXPECT_NE(refusal(petzval::compile(petzval::testing::open_singlet())).find("no stop with a rim"), std::string::npos);
+  // Its distant subjects are in focus within the space that the stop leaves.
+  petzval::Prescription behind;
+  behind.surfaces = {{.radius = 50, .thickness = 5, .medium = {.nd = 1.5168}, .semi_diameter = 12},
+                     {.radius = -50, .thickness = 48, .semi_diameter = 12},
+                     {.thickness = 60, .semi_diameter = 6, .stop = true}};
+  EXPECT_NE(refusal(petzval::compile(behind)).find("wanted at most 666"), std::string::npos);
 }
 
 TEST(OslCamera, CompilesWhereACompilerIsInstalled) {
