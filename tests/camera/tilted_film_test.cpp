@@ -168,6 +168,23 @@ TEST(TiltedFilm, HasABack) {
   EXPECT_FALSE(tilted.plane(0).virtual_point_of({0, 0, 0, 1.01 * -reach}));
 }
 
+TEST(TiltedFilm, GivesNoLightToRaysFromBehind) {
+  const Lens lens = testing::data_lens("double_gauss_100mm_f2.0");
+  for (const ModelKind model : {ModelKind::thick, ModelKind::exact_float, ModelKind::exact_double}) {
+    const Camera camera(lens, tilted_by({.width_mm = 4, .height_mm = 4}, 80, 0), {.model = model});
+    auto samples = random_samples(camera.film(), 500);
+    auto in_float = random_samples<float>(camera.film(), 500);
+    samples.run(camera), in_float.run(camera);
+    int dark = 0;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      EXPECT_EQ(samples.weights[i] > 0, samples.fates[i] == RayFate::transmitted) << name(model);
+      EXPECT_EQ(in_float.weights[i] > 0, in_float.fates[i] == RayFate::transmitted) << name(model);
+      dark += samples.weights[i] == 0;
+    }
+    EXPECT_GT(dark, 20) << name(model);
+  }
+}
+
 // Scheimpflug: the plane of the film and the plane of focus of a thin lens meet in the lens. With 1/s + 1/s' = 1/f,
 // film points (y, s' + y tan) are imaged to points of one plane, in which all rays of each meet.
 TEST(TiltedFilm, IsSharpInATiltedPlane) {

@@ -193,6 +193,13 @@ TEST(PupilPlane, RefusesPointsThatItCannotSee) {
                 "z is -1000 mm at a field of 100 degrees, wanted -inf, or a plane behind the entrance pupil (0 mm) "
                 "that this field meets outside the lens");
   EXPECT_EQ(said({radians(100), 0.1}).substr(0, start.size() + 10), start + "z is 0.1 m");
+  // Half a millimetre behind the pupil that field is still within the glass.
+  const Lens fisheye = data_lens("fisheye_6.3mm_f2.8");
+  const double just_behind = pupils(fisheye).entrance.z + 0.5;
+  EXPECT_NE(message([&] {
+              PupilPlane(fisheye, {radians(100), just_behind});
+            }).find("meets outside the lens"),
+            std::string::npos);
 
   // The stop in the rear focal plane of what stands before it.
   Prescription p;
