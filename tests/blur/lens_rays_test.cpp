@@ -244,6 +244,20 @@ TEST(CameraRays, RefuseAFilmThatTravelsAndOtherPictures) {
             std::string::npos);
 }
 
+TEST(LensRays, AreAskedForAtFewPlacesWhereTheyChangeEvenly) {
+  int places = 0;
+  const LensRays::Source source = [&](int, const Vec2<double>& raster, std::span<const PupilPoint> points,
+                                      std::span<LayerRay> found) {
+    ++places;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      found[i] = {raster + Vec2<double>{points[i].u, 0.01 * raster.x}, {1000 * points[i].v, 0}, 1};
+    }
+  };
+  const LensRays rays(layer_camera(512, 512, radians(30)), vogel_points(16), 1, source, {.threads = 1});
+  EXPECT_EQ(places, 3 * 3 + 5 * 5);  // nodes in steps of 256 px, and those halfway between them
+  EXPECT_LT(rays.error_px(), 1e-3);
+}
+
 TEST(LensRays, RefuseAnEmptySource) {
   EXPECT_EQ(petzval::testing::message([] { LensRays(small_camera(), vogel_points(4), 1, {}); }),
             "lens rays: the source is empty, wanted a function");

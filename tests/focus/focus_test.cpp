@@ -11,6 +11,7 @@
 #include "../message.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/paraxial/ideal_lens.hpp"
+#include "petzval/pupil/f_number.hpp"
 
 namespace petzval {
 namespace {
@@ -104,6 +105,13 @@ TEST(Focus, MovesTheFilmAwayAsTheSubjectComesNearer) {
         }
       }
     }
+  }
+}
+
+TEST(Focus, TheNearestSubjectOfANarrowBeamHasItsImageAtInfinity) {
+  for (const char* id : {"double_gauss_100mm_f2.0", "achromat_100mm"}) {
+    const Lens lens = with_f_number(data_lens(id), 1000);
+    EXPECT_EQ(nearest_focus(lens, {min_rms}).film_z, infinity) << id;
   }
 }
 
