@@ -83,6 +83,10 @@ for platform in $platforms; do
     echo "== ${program##*/}"
     (cd "$(dirname "$program")" && WINEDEBUG=-all $emulator "$program" --gtest_brief=1 "$@") || failed="$failed ${program##*/}"
   done
+  if [ $# -eq 0 ]; then
+    ctest --test-dir "$work/$platform/petzval" -j "$(nproc)" --no-tests=error --output-on-failure -R '^fuzz' ||
+      failed="$failed fuzz_replay"
+  fi
   if [ -n "$failed" ]; then
     echo "tests/platforms/run.sh: on $platform fail$failed" >&2
     exit 1

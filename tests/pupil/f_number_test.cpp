@@ -32,7 +32,7 @@ Prescription telescope() {
   return p;
 }
 
-TEST(FNumber, SaysWhereNoLightPasses) {
+TEST(WithFNumber, SaysWhereNoLightPasses) {
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
   EXPECT_NE(message([&] { with_f_number(lens, 1e300); }).find("mm is closed"), std::string::npos);
   const Lens closed = with_semi_diameter(lens, *lens.stop(), 0);

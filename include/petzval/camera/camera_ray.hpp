@@ -97,8 +97,8 @@ PETZVAL_API RasterDifferential by_raster(const CameraRayDifferential& ray, const
 ///
 /// First-order models are linear in slopes and do not conserve etendue, as no lens can that images planes sharply.
 /// There We has the factor (cos t / cos t')^4, t and t' the angles of the ray with the axis behind and before the lens,
-/// so that film and scene hold the same light, as they do in exact models. In polynomials they do as far as these are
-/// the lens: of a fisheye within 12 % at degree 3 and 2.5 % at degree 5, of wide lenses 4 % and 1 %.
+/// so that film and scene hold the same light, as they do in exact models. With polynomials they differ, the less the
+/// better the fit: by 12 % at degree 3 and 2.5 % at degree 5 for a fisheye, by 4 % and 1 % for wide lenses.
 struct Importance {
   double we = 0;  ///< 1/mm^2; 0 for a ray that is lost or misses the film
   /// invalid: a direction that is not of unit length, numbers that are not finite, a wavelength that the lens does not
