@@ -140,9 +140,9 @@ examples::Sheet sheet(const std::vector<Picture>& pictures, const petzval::Lens&
       for (const Picture& p : pictures) {
         if (p.field_deg != field) continue;
         row.pixel_mm = p.image.psf.pixel_mm;
-        row.tiles.push_back({examples::expose(petzval::render(p.image.psf, weights)).picture,
-                             {examples::focus_caption(p.focus_mm),
-                              "RMS radius " + examples::number(p.image.size.rms_radius, 3) + " mm"}});
+        std::vector<std::string> captions{examples::focus_caption(p.focus_mm)};
+        if (!triple) captions.push_back("RMS radius " + examples::number(p.image.size.rms_radius, 3) + " mm");
+        row.tiles.push_back({examples::expose(petzval::render(p.image.psf, weights)).picture, std::move(captions)});
       }
       result.rows.push_back(std::move(row));
     }

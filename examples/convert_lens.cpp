@@ -198,7 +198,9 @@ bool convert(const Options& options) {
   const auto glasses = examples::glasses_of(options.in);
   Prescription whole = petzval::read_prescription(options.in.file, {.glasses = &glasses});
   const std::vector<ImportWarning> warnings = whole.imported ? whole.imported->warnings : std::vector<ImportWarning>();
-  say("warning", options.in.file, warnings);
+  // A petzval-lens has the warnings of the file that it was made of.
+  const bool of_another = whole.imported && whole.imported->file != std::filesystem::path(options.in.file).filename();
+  say("warning", of_another ? options.in.file + ", made of " + whole.imported->file : options.in.file, warnings);
   if (options.strict && !warnings.empty()) {
     std::cerr << "convert_lens: " << options.in.file << ": " << warnings.size()
               << (warnings.size() == 1 ? " assumption" : " assumptions") << ", wanted none (--strict)\n";

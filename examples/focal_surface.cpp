@@ -99,6 +99,13 @@ class Surface {
   double beyond_pupil_ = 0;
 };
 
+std::string distance_in_words(double inverse) {
+  if (std::abs(inverse) < 1e-9) return "infinity";
+  const double mm = 1 / inverse;
+  return std::abs(mm) >= 1000 ? number(mm / 1000, 4) + " m" : number(mm, 4) + " mm";
+}
+std::string stops_in_words(double stops) { return number(stops, 4) + " stops"; }
+
 /// Round distances whose inverses lie within a range, the farthest first, not too close to each other.
 std::vector<examples::SurfaceMap::Level> distance_levels(double least, double most) {
   std::vector<examples::SurfaceMap::Level> result;
@@ -111,7 +118,7 @@ std::vector<examples::SurfaceMap::Level> distance_levels(double least, double mo
   for (double decade = 1e6; decade >= 10; decade /= 10) {
     for (const double digits : {1.0, 0.8, 0.6, 0.5, 0.4, 0.3, 0.25, 0.2, 0.15, 0.12}) {
       const double mm = digits * decade;
-      add(1 / mm, mm >= 1000 ? number(mm / 1000) + " m" : number(mm) + " mm");
+      add(1 / mm, distance_in_words(1 / mm));
     }
   }
   return result;
@@ -136,11 +143,11 @@ petzval::Rgb8Image map_of(const Surface& surface, const Options& options) {
                    options.surface.kind + ", beta " + number(options.surface.beta);
   sheet.width = film.columns, sheet.height = film.rows;
   const Surface::Frame frame = surface.frame(film);
-  const auto add = [&](std::string title, std::vector<double> values, auto levels_of, const char* low, const char* high,
-                       std::optional<double> petzval::FocalPoint::*fixed) {
+  const auto add = [&](std::string title, std::vector<double> values, auto levels_of, auto in_words, const char* low,
+                       const char* high, std::optional<double> petzval::FocalPoint::*fixed) {
     const auto [least, most] = std::minmax_element(values.begin(), values.end());
     auto levels = levels_of(*least, *most);
-    if (levels.empty()) title += ": the same everywhere, " + number(*least, 6);
+    if (levels.empty()) title += ": the same everywhere, " + in_words(*least);
     auto& map = sheet.maps.emplace_back(
         examples::SurfaceMap{std::move(title), std::move(values), std::move(levels), low, high, {}});
     for (std::size_t i = 0; i < surface.points().size(); ++i) {
@@ -151,10 +158,10 @@ petzval::Rgb8Image map_of(const Surface& surface, const Options& options) {
   };
   add("Distance in focus from the " + std::string(options.setup.origin == "film" ? "film" : "front vertex") +
           ", on a scale of 1/distance",
-      frame.inverses, distance_levels, "farther", "nearer", &petzval::FocalPoint::inverse_distance);
+      frame.inverses, distance_levels, distance_in_words, "farther", "nearer", &petzval::FocalPoint::inverse_distance);
   if (surface.has_extents()) {
     add("Extent of the depth of field, in stops: more is sharp above 0, less below", frame.extents, stop_levels,
-        "less is sharp", "more is sharp", &petzval::FocalPoint::extent_stops);
+        stops_in_words, "less is sharp", "more is sharp", &petzval::FocalPoint::extent_stops);
   }
   sheet.notes = {"Points by their numbers in " + options.surface.points_file +
                  "; the picture as a photograph shows it."};

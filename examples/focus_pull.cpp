@@ -75,7 +75,7 @@ class Pull {
     for (const auto& point : points) {
       for (const auto& key : point.keys) places.push_back(std::get<petzval::ScenePoint>(key.anchor));
     }
-    bundles_ = lens.bundles(places, 256);
+    bundles_ = lens.bundles(places, 4096);  // blurs within 2 %
   }
 
   Frame at(double time) {
@@ -248,6 +248,9 @@ int main(int argc, char** argv) {
     if (criterion->given() && options.model != "real") {
       throw petzval::Error("--criterion: found it with --model " + options.model +
                            ", wanted --model real: the other models have one focus");
+    }
+    if (criterion->given() && options.tilt) {
+      throw petzval::Error("--criterion: found it with --tilt, wanted one of them: tilted films have the least RMS");
     }
     const examples::MovingLens lens = examples::moving_lens(options);
     const auto points = examples::read_focus_points(options.keys_file);

@@ -41,9 +41,10 @@ petzval::Prescription singlet_of(const std::string& text, const petzval::GlassCa
     }
   }
   if (parts.size() != 4) throw Error("--singlet: found \"" + text + "\", wanted R1,R2,thickness,glass");
-  const auto length = [&](std::size_t i) {
+  const auto radius = [&](std::size_t i) {
     return examples::parse_number("--singlet", parts[i], examples::finite_number);
   };
+  const double thickness = examples::parse_number("--singlet", parts[2], examples::positive_number);
   const auto found = std::find_if(glasses.glasses().begin(), glasses.glasses().end(),
                                   [&](const petzval::Glass& g) { return g.name == parts[3]; });
   if (found == glasses.glasses().end()) {
@@ -52,8 +53,8 @@ petzval::Prescription singlet_of(const std::string& text, const petzval::GlassCa
   const petzval::Medium glass{.glass = found->name, .catalogue = found->catalogue, .nd = found->nd};
   petzval::Prescription p;
   p.id = "singlet", p.name = "singlet " + text;
-  p.surfaces = {{.radius = length(0), .thickness = length(2), .medium = glass, .stop = true},
-                {.radius = length(1), .thickness = 1}};
+  p.surfaces = {{.radius = radius(0), .thickness = thickness, .medium = glass, .stop = true},
+                {.radius = radius(1), .thickness = 1}};
   // As wide as both spheres allow; the f-number stops it down.
   double widest = std::numeric_limits<double>::infinity();
   for (const petzval::SurfaceRow& row : p.surfaces) {

@@ -131,7 +131,9 @@ Tile bokeh_tile(double focus_mm, const petzval::PointImage& image, const petzval
   Exposed exposed = expose(irradiance(image.psf, light));
   return {std::move(exposed.picture),
           {focus_caption(focus_mm),
-           "radius " + short_number(image.size.max_radius) + " mm, RMS " + short_number(image.size.rms_radius) + " mm",
+           image.throughput > 0 ? "radius " + short_number(image.size.max_radius) + " mm, RMS " +
+                                      short_number(image.size.rms_radius) + " mm"
+                                : std::string("no light passes"),
            "white " + short_number(exposed.white_per_mm2) + " / mm²"}};
 }
 

@@ -28,8 +28,8 @@ void add_bokeh(App& app, BokehFlags& flags) {
       "side (bokeh_psf: to 18 mm)");
   app.add_flag("--keep-light", c.keep_light, "cat's eyes keep the light of the whole pupil");
   add_number(app, "--weight-distribution", c.weight_distribution, finite_number,
-             "d of the weight 1 + p (d + 1) x^d - p, x: the share of the iris nearer to the centre; below 0 the middle "
-             "is bright");
+             "d of the weight 1 + p (|d| + 1) x^|d| - p, x: the share of the iris nearer to the centre; below 0 the "
+             "share farther from it, so that the middle is bright");
   add_number(app, "--weight-strength", c.weight_strength, finite_number,
              "p of the weight, 0 to 1; weights below 0, which others may give, are cut");
   app.add_option("--weight-map", flags.weight_map,

@@ -144,7 +144,8 @@ std::string to_text(const Report& r) {
     for (const Entry& entry : meridian.entries) line(entry.label, entry.value, entry.unit);
     if (&meridian == &r.main()) line("film, z", lens.film_z(), "mm");
     if (meridian.first_order.afocal) {
-      text << "\nThe lens is afocal: it has no focal length and no focal or principal points.\n";
+      text << (r.meridians.size() > 1 ? "\nIn this section the lens" : "\nThe lens")
+           << " is afocal: it has no focal length and no focal or principal points.\n";
     }
   }
   if (const auto& imported = r.loaded.prescription.imported) {

@@ -37,9 +37,10 @@ void say_what_is_known(const LoadedLens& loaded) {
 }
 
 void say_what_was_assumed(const LoadedLens& loaded) {
-  if (!loaded.prescription.imported) return;
-  for (const petzval::ImportWarning& warning : loaded.prescription.imported->warnings) {
-    std::cerr << "note: " << loaded.id << ": ";
+  const auto& imported = loaded.prescription.imported;
+  if (!imported) return;
+  for (const petzval::ImportWarning& warning : imported->warnings) {
+    std::cerr << "note: " << imported->file << ": ";
     if (warning.line > 0) std::cerr << "line " << warning.line << ": ";
     std::cerr << warning.command << ' ' << warning.message << '\n';
   }

@@ -127,7 +127,7 @@ class Figure {
                               name + (p ? ":  least RMS " + figure_detail::length_text(p->least_rms()) + " at " +
                                               signed_mm(p->best - zero_) + ",  " +
                                               figure_detail::length_text(p->rms(lens_.film_z())) + " on the film"
-                                        : ":  no focus, no ray passes"));
+                                        : ":  no focus: no ray passes, or all are parallel"));
       y += row;
     };
     for (std::size_t i = 0; i < fields_.size(); ++i) {
@@ -169,13 +169,13 @@ class Figure {
     for (const auto& p : curves_) {
       if (p) take(p->best);
     }
-    // At least to where the axial curve is at three times its least, and some depths of focus, 4 lambda N^2: the RMS
-    // radius of a uniform cone grows by 1 / sqrt(8) / N.
+    // At least to where the axial curve is at three times its least, and a depth of focus, 4 lambda N^2, on both sides:
+    // the RMS radius of a uniform cone grows by 1 / sqrt(8) / N.
     double pad = 0.25 * (to_ - from_);
     if (axis_) {
       const double lambda = lens_.wavelengths_nm()[lens_.primary_wavelength()] * 1e-6;
-      pad =
-          std::max({pad, std::sqrt(8 * std::max(axis_->least, 0.0) / axis_->steepness), 2 * lambda / axis_->steepness});
+      pad = std::max(
+          {pad, std::sqrt(8 * std::max(axis_->least, 0.0) / axis_->steepness), lambda / (2 * axis_->steepness)});
     }
     if (!(pad > 0)) pad = 1;
     from_ -= pad;
@@ -183,7 +183,7 @@ class Figure {
     for (const auto& p : curves_) {
       if (p) highest_ = std::max({highest_, 1.3 * p->rms(mean_->best), 1.3 * p->rms(lens_.film_z())});
     }
-    if (axis_) highest_ = std::max(highest_, 2.5 * axis_->least_rms());
+    if (axis_) highest_ = std::max({highest_, 2.5 * axis_->least_rms(), axis_->rms(axis_->best + pad)});
     if (!(highest_ > 0)) highest_ = 1e-3;
   }
 

@@ -7,6 +7,7 @@
 #include "core/text.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/paraxial/first_order.hpp"
+#include "petzval/pupil/f_number.hpp"
 #include "text_file.hpp"
 #include "written_lens.hpp"
 
@@ -30,6 +31,7 @@ class CodevWriter {
   CodevWriter(const Prescription& p, const GlassCatalogue* glasses) : out_(p, glasses), p_(out_.lens()) {}
 
   WrittenLens write() {
+    out_.state_indices_at_d();
     name_media();
     header();
     private_glasses();
@@ -130,7 +132,11 @@ void CodevWriter::design() {
     Prescription rows = p_;
     rows.configurations.clear();
     if (const Lens lens = compile(rows); has_pupils(lens)) {
-      const double diameter = pupils(lens, {}, main_meridian(lens)).entrance.diameter;
+      // Of the parallel beam whose exact rays fill the stop.
+      const Meridian meridian = main_meridian(lens);
+      const double by_rays = std::abs(first_order(lens, {}, meridian).effective_focal_length) / real_f_number(lens);
+      const bool parallel = std::isinf(d.object_distance_mm) && std::isfinite(by_rays);
+      const double diameter = parallel ? by_rays : pupils(lens, {}, meridian).entrance.diameter;
       if (std::isfinite(diameter) && diameter > 0) out_.line("EPD " + to_text(diameter));
     }
     if (d.aperture) out_.lose("aperture", "of the stop's size becomes the diameter of the entrance pupil");

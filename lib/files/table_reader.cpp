@@ -147,10 +147,11 @@ double TableReader::f_number(double aperture_scale) const {
   return paraxial_f_number(compile(p));
 }
 
-/// Some tables have semi-diameters in the place of diameters. The f-number that the file declares tells.
+/// Some tables have semi-diameters in the place of diameters. The f-number that the file declares tells, where no
+/// comment does.
 void TableReader::choose_diameters() {
   in_.lens.semi_diameters = "half of the table's apertures";
-  if (!in_.lens.f_number) return;
+  if (!in_.lens.f_number || lower(said_).find("aperture diameter") != std::string::npos) return;
   const double as_diameters = f_number(1), as_radii = f_number(2), declared = *in_.lens.f_number;
   const auto off = [&](double found) { return std::abs(std::log(found / declared)); };
   if (!(std::isfinite(as_diameters) && std::isfinite(as_radii)) || off(as_diameters) <= off(as_radii)) return;

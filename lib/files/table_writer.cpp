@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/text.hpp"
+#include "petzval/core/error.hpp"
 #include "text_file.hpp"
 #include "written_lens.hpp"
 
@@ -42,9 +43,13 @@ WrittenLens format_table(const Prescription& prescription) {
   out.line("# millimetres; the row of index 0 is the stop");
   out.line("# radius\tthickness\tn\taperture diameter");
 
-  bool disperses = p.object_space != Medium{}, planes = false, open = false, obscured = false;
+  if (p.object_space.nd != 1) {
+    throw Error(out.where() + ": a medium of index " + to_text(p.object_space.nd) +
+                " in front of the lens, wanted air for a table");
+  }
+  bool disperses = false, planes = false, open = false, obscured = false;
   const SurfaceRow* first_stop = nullptr;
-  double before = p.object_space.nd;
+  double before = 1;
   for (std::size_t i = 0; i < p.surfaces.size(); ++i) {
     const SurfaceRow& row = p.surfaces[i];
     if (row.mirror) out.refuse(i, "a mirror", "refracting surfaces for a table");
@@ -80,7 +85,6 @@ WrittenLens format_table(const Prescription& prescription) {
     }
     before = index;
   }
-  if (!first_stop) out.lose("stop", "none is marked; renderers want a row of index 0");
   if (planes) out.lose("radius", "of planes is written as 1e6 mm, as 0 marks the stop");
   if (disperses) out.lose("vd", "the dispersion of glasses is lost: a table has n_d alone");
   if (open) out.lose("semi_diameter", "surfaces without one get the largest of the others");

@@ -2,20 +2,38 @@
 #include "written_lens.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
+#include "import.hpp"
 #include "petzval/core/error.hpp"
+#include "petzval/lens/lens.hpp"
+#include "petzval/paraxial/first_order.hpp"
 
 namespace petzval::inline v0::files_detail {
 
 namespace {
 
-/// The rows in the first configuration.
+/// The rows in the first configuration. What it changes, the others change back.
 Prescription first_rows(const Prescription& lens) {
   if (lens.configurations.empty()) return lens;
   Prescription rows = configured(lens, 0);
   rows.name = lens.name;
   rows.configurations = lens.configurations;
+  for (const SurfaceChange& first : lens.configurations.front().changes) {
+    const SurfaceRow& row = lens.surfaces[static_cast<std::size_t>(first.surface)];
+    for (Configuration& other : rows.configurations) {
+      SurfaceChange& change = change_of(other, first.surface);
+      const auto as_in_the_row = [&](auto member, const auto& value) {
+        if (first.*member && !(change.*member)) change.*member = value;
+      };
+      as_in_the_row(&SurfaceChange::thickness, row.thickness);
+      as_in_the_row(&SurfaceChange::radius, row.radius);
+      as_in_the_row(&SurfaceChange::conic, row.conic);
+      as_in_the_row(&SurfaceChange::semi_diameter, row.semi_diameter.value_or(HUGE_VAL));
+      as_in_the_row(&SurfaceChange::medium, row.medium);
+    }
+  }
   return rows;
 }
 
@@ -25,6 +43,45 @@ Writer::Writer(const Prescription& lens, const GlassCatalogue* glasses)
     : where_(lens.name.empty() ? std::string("lens") : lens.name), glasses_(glasses) {
   validate(lens, where_);
   lens_ = first_rows(lens);
+  mark_the_stop();
+}
+
+/// Programs take the first surface where no stop is marked.
+void Writer::mark_the_stop() {
+  const auto marked = std::ranges::find_if(lens_.surfaces, &SurfaceRow::stop);
+  if (marked != lens_.surfaces.end()) {
+    if (!std::isfinite(marked->semi_diameter.value_or(HUGE_VAL)))
+      lose("stop", "has no rim; other programs give it that of the aperture");
+    return;
+  }
+  Prescription rows = lens_;
+  rows.configurations.clear();
+  const Lens lens = compile(rows);
+  if (!has_pupils(lens)) return lose("stop", "none is marked, and no rim limits the beam");
+  const std::size_t stop = pupils(lens, {}, main_meridian(lens)).stop;
+  lens_.surfaces[stop].stop = true;
+  lose("stop", "none is marked; surface " + std::to_string(stop) + ", whose rim limits the beam, becomes the stop");
+}
+
+void Writer::state_indices_at_d() {
+  const double reference = lens_.reference_wavelength_nm;
+  if (reference == d_line_nm) return;
+  const auto restate = [&](Medium& medium) {
+    if (const Glass* found = glass(medium)) {
+      medium.nd += refractive_index(*found, d_line_nm) - refractive_index(*found, reference);
+    } else if (medium.vd) {
+      medium.nd += abbe_index(medium.nd, *medium.vd, d_line_nm) - abbe_index(medium.nd, *medium.vd, reference);
+    }
+  };
+  restate(lens_.object_space);
+  for (SurfaceRow& row : lens_.surfaces) restate(row.medium);
+  for (Configuration& configuration : lens_.configurations) {
+    for (SurfaceChange& change : configuration.changes) {
+      if (change.medium) restate(*change.medium);
+    }
+  }
+  if (lens_.design.wavelengths.empty()) lens_.design.wavelengths = {{reference, 1}};
+  lens_.reference_wavelength_nm = d_line_nm;
 }
 
 void Writer::refuse(std::size_t surface, const std::string& found, const std::string& wanted) const {

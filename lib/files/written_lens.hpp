@@ -15,7 +15,7 @@ namespace petzval::inline v0::files_detail {
 /// A lens on its way into the format of another program: its text, and what is lost.
 class Writer {
  public:
-  /// Throws Error for an invalid lens.
+  /// The first configuration, with a marked stop where a surface limits its beam. Throws Error for an invalid lens.
   Writer(const Prescription& lens, const GlassCatalogue* glasses);
 
   const Prescription& lens() const noexcept { return lens_; }
@@ -28,11 +28,16 @@ class Writer {
   /// Loses the lens's nominal data and sources, but for those that are kept and, in a format with design data, those
   /// that its aperture and its fields declare.
   void lose_nominal_data(bool design_data, std::initializer_list<std::string_view> kept);
+  /// States the indices at the d line, as formats with glasses want them. The wavelength at which the lens states them
+  /// becomes that of its design. Throws Error for a glass that has no index there.
+  void state_indices_at_d();
   /// The glass of the tables that a medium names; null if there is none.
   const Glass* glass(const Medium& medium);
   WrittenLens take() { return {std::move(text_), std::move(losses_)}; }
 
  private:
+  void mark_the_stop();
+
   Prescription lens_;
   std::string where_;
   const GlassCatalogue* glasses_;

@@ -25,6 +25,7 @@ class ZemaxWriter {
   ZemaxWriter(const Prescription& p, const GlassCatalogue* glasses) : out_(p, glasses), p_(out_.lens()) {}
 
   WrittenLens write() {
+    out_.state_indices_at_d();
     header();
     fields();
     wavelengths();

@@ -12,6 +12,7 @@
 #include "petzval/lens/lens.hpp"
 #include "petzval/media/glass.hpp"
 #include "petzval/paraxial/first_order.hpp"
+#include "petzval/pupil/f_number.hpp"
 #include "petzval/trace/trace.hpp"
 
 namespace {
@@ -376,6 +377,85 @@ TEST(RoundTrip, WhatIsLostIsSaid) {
   const auto zoom = petzval::testing::data_prescription("zoom_57-143mm_f2.8");
   EXPECT_TRUE(lost(petzval::format_table(zoom), "configurations"));
   EXPECT_TRUE(lost(petzval::format_table(petzval::testing::data_prescription("achromat_100mm")), "stop"));
+}
+
+TEST(RoundTrip, AStopThatNoneHasMarkedIsTheOneThatLimitsTheBeam) {
+  Prescription p = singlet();
+  std::ranges::rotate(p.surfaces, p.surfaces.begin() + 1);  // the stop is the last
+  p.surfaces[1].thickness = 2, p.surfaces[2].thickness = 46;
+  p.surfaces[2].stop = false;
+  const double f_number = petzval::real_f_number(compile(p));
+  for (const Write write : {zemax, codev, table}) {
+    const WrittenLens written = write(p);
+    EXPECT_TRUE(lost(written, "stop"));
+    const Prescription back = read(written);
+    EXPECT_TRUE(back.surfaces[2].stop);
+    EXPECT_NEAR(petzval::real_f_number(compile(back)), f_number, 1e-9 * f_number);
+  }
+}
+
+TEST(RoundTrip, ConfigurationsChangeBackWhatTheFirstOneChanges) {
+  Prescription p = singlet();
+  p.configurations = {
+      {.name = "a", .changes = {{.surface = 1, .thickness = 5, .radius = 60, .conic = -1, .semi_diameter = 6}}},
+      {.name = "b", .changes = {{.surface = 0, .thickness = 3}}}};
+  const Prescription from_zemax = read(zemax(p)), from_codev = read(codev(p));
+  for (const int i : {0, 1}) {
+    EXPECT_EQ(configured(from_zemax, i).surfaces, configured(p, i).surfaces) << i;
+    EXPECT_EQ(configured(from_codev, i).surfaces[1].thickness, configured(p, i).surfaces[1].thickness) << i;
+    EXPECT_EQ(configured(from_codev, i).surfaces[1].radius, configured(p, i).surfaces[1].radius) << i;
+  }
+}
+
+TEST(RoundTrip, AStopWithoutARimIsSaidToGetOne) {
+  Prescription p = singlet();
+  p.surfaces[0].semi_diameter.reset();
+  for (const Write write : {zemax, codev, table}) EXPECT_TRUE(lost(write(p), "stop"));
+}
+
+TEST(RoundTrip, IndicesOfAnyLineComeBackAtThatLine) {
+  constexpr double e_line_nm = 546.074;
+  Prescription p = singlet();
+  p.surfaces[2].medium = {.nd = 1.7, .vd = 40};
+  p.surfaces.push_back({.radius = -80, .thickness = 40, .semi_diameter = 8});
+  p.reference_wavelength_nm = e_line_nm;
+  const Lens lens =
+      compile(p, std::array{e_line_nm, 650.0}, {.glasses = &glasses(), .missing_glass = petzval::MissingGlass::abbe});
+  for (const Write write : {zemax, codev}) {
+    const Prescription back = read(write(p));
+    EXPECT_EQ(back.design.wavelengths.at(0).nm, e_line_nm);
+    const Lens same = compile(back, std::array{e_line_nm, 650.0},
+                              {.glasses = &glasses(), .missing_glass = petzval::MissingGlass::abbe});
+    for (const std::size_t wavelength : {0, 1}) {
+      for (const std::size_t space : {2, 3}) {
+        // CODE V's private glasses have three indices, with a curve through them.
+        EXPECT_NEAR(same.index(space, wavelength), lens.index(space, wavelength), 1e-4) << write(p).text;
+      }
+    }
+  }
+}
+
+TEST(RoundTrip, TheApertureOfASeqIsThatOfItsStop) {
+  int warned = 0, written = 0;
+  for (const Prescription& p : lenses()) {
+    petzval::testing::message([&] {
+      const WrittenLens seq = codev(p);
+      ++written;
+      warned +=
+          static_cast<int>(std::ranges::count(read(seq).imported->warnings, "stop", &petzval::ImportWarning::command));
+    });
+  }
+  EXPECT_GE(written, 66);
+  EXPECT_EQ(warned, 0);
+}
+
+TEST(RoundTrip, TablesWantAirInFrontAndSayWhatTheirAperturesAre) {
+  Prescription p = singlet();
+  p.f_number = 2.5;  // of the lens wide open: twice the stop
+  EXPECT_EQ(read(table(p)).surfaces[0].semi_diameter, 5);
+  p.object_space.nd = 1.33;
+  EXPECT_EQ(petzval::testing::message([&] { table(p); }),
+            "singlet: a medium of index 1.33 in front of the lens, wanted air for a table");
 }
 
 }  // namespace

@@ -93,6 +93,24 @@ TEST(ImageRays, HaveTheSpotsOfOutlines) {
   }
 }
 
+TEST(ImageRays, OnTheSharpestFilmFindTheRmsThatTheyPromise) {
+  for (const char* id : {"modern_50mm_f1.0", "petzval_100mm_f1.6", "double_gauss_52mm_f1.8", "zoom_57-143mm_f2.8",
+                         "speed_panchro_26mm_f2", "retrofocus_100mm_f2.8"}) {
+    const Lens lens = data_lens(id);
+    for (const double slope : {0.0, 0.1}) {
+      const ScenePoint place{{0, -2000 * slope, -2000}};
+      const ImageRays many(lens, 20, 1 << 16);
+      const Film film = autofocus(many, std::vector{FocusTarget{.place = place}}).film;
+      const double expected = blur_on(many.bundle(place), film)->rms_radius;
+      for (const auto& [rays, within] : {std::pair(256, 0.07), std::pair(1024, 0.05), std::pair(4096, 0.02)}) {
+        EXPECT_NEAR(blur_on(ImageRays(lens, 20, static_cast<std::size_t>(rays)).bundle(place), film)->rms_radius,
+                    expected, within * expected)
+            << id << ' ' << slope << ' ' << rays;
+      }
+    }
+  }
+}
+
 TEST(ImageRays, TurnWithTheirPoints) {
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
   const ImageRays bundles(lens, 22);

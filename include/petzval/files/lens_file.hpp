@@ -49,11 +49,13 @@ struct WrittenLens {
 };
 
 /// A renderer's table of four columns: radius, thickness, n_d (0 at the stop), diameter, in mm. It has one index for
-/// all wavelengths, spheres only, and one stop. Throws Error for mirrors, cylinders and aspheres: without them it would
-/// be another lens.
+/// all wavelengths, spheres only, and one stop. Throws Error for mirrors, cylinders, aspheres and a medium in front of
+/// the lens: without them it would be another lens. This and the other formats mark the surface that limits the beam
+/// where no stop is marked.
 PETZVAL_API WrittenLens format_table(const Prescription& prescription);
 /// A .zmx of sequential Zemax, in millimetres. Glasses of the tables (ReadOptions) keep their names, with an offset
-/// where the printed n_d is another; others become models of n_d and V_d. Throws Error for strings with line breaks and
+/// where the printed n_d is another; others become models of n_d and V_d. Indices at another line than d are restated
+/// there, as in a .seq. Throws Error for strings with line breaks and
 /// for cylinders curved along x.
 PETZVAL_API WrittenLens format_zemax(const Prescription& prescription, const GlassCatalogue* glasses = nullptr);
 /// A .seq of CODE V, in millimetres. Glasses of the tables keep their names where the printed n_d is theirs; others
