@@ -152,16 +152,26 @@ bool correct(const double* c, const Place& wanted, Place& x) noexcept {
   }
 }
 
-/// The height on the film, along one axis, whose line through the centre of the pupil has a slope `s` (of the chart),
-/// or the nearest one. slope: by height, over that height.
+/// The least height on the film, along one axis, whose line through the centre of the pupil has a slope `s` (of the
+/// chart), or where slopes no longer grow: light may end there, and what is not fitted bends back. slope: by height,
+/// over that height.
 template <class Slope>
 double chief_height(double s, const Slope& slope) noexcept {
-  constexpr int halvings = 12;
+  constexpr int steps = 32, halvings = 7;
   const double length = std::abs(s), sign = slope(0) < 0 ? -1 : 1;
-  double low = 0, high = 1;
-  for (int i = 0; i < halvings; ++i) {
-    const double middle = (low + high) / 2;
-    (sign * middle * slope(middle) < length ? low : high) = middle;
+  const auto at = [&](double height) { return sign * height * slope(height); };
+  double low = 0, high = 0, before = 0;
+  for (int i = 1; i <= steps; ++i) {
+    const double next = static_cast<double>(i) / steps, reached = at(next);
+    if (reached < before) break;
+    low = high, high = next, before = reached;
+    if (reached >= length) break;
+  }
+  if (before > length) {
+    for (int i = 0; i < halvings; ++i) {
+      const double middle = (low + high) / 2;
+      (at(middle) < length ? low : high) = middle;
+    }
   }
   return std::copysign(high, sign * s);
 }
@@ -184,12 +194,10 @@ Place chief(OfMirrors<n>, const double* c, const SceneLine& line) noexcept {
   return {x / within, y / within, 0, 0};
 }
 
-/// The (f, p) of a line; false if there is none in the domain. Starts at a line of about the same direction and goes on
-/// over lines in between, in steps that the iteration can follow: mostly one, several for a fisheye.
+/// Goes from the line of x to the wanted one over lines in between, in steps that the iteration can follow: mostly one,
+/// several for a fisheye. False if it cannot, and if it ends outside the domain.
 template <class Symmetry>
-bool solve(const double* c, const SceneLine& line, Place& x) noexcept {
-  const Place wanted(line.sx, line.sy, line.ox, line.oy);
-  x = chief(Symmetry{}, c, line);
+bool follow(const double* c, const Place& wanted, Place& x) noexcept {
   Place first;
   Eigen::Matrix4d slope;
   evaluate(Symmetry{}, c, x, first, slope);
@@ -206,6 +214,17 @@ bool solve(const double* c, const SceneLine& line, Place& x) noexcept {
     }
   }
   return within(x, polynomial_detail::within_domain);
+}
+
+/// The (f, p) of a line; false if none in the domain is found. Starts at a line of about the same direction, or at the
+/// axis where that line lies outside the light, of which nothing was fitted.
+template <class Symmetry>
+bool solve(const double* c, const SceneLine& line, Place& x) noexcept {
+  const Place wanted(line.sx, line.sy, line.ox, line.oy);
+  x = chief(Symmetry{}, c, line);
+  if (follow<Symmetry>(c, wanted, x)) return true;
+  x.setZero();
+  return follow<Symmetry>(c, wanted, x);
 }
 
 using Solve = bool (*)(const double*, const SceneLine&, Place&) noexcept;

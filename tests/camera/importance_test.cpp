@@ -120,6 +120,34 @@ INSTANTIATE_TEST_SUITE_P(
                       Case{"anamorphic_60mm_2x", film, ModelKind::polynomial_5, 2e-5},
                       Case{"anamorphic_60mm_2x", film, ModelKind::exact_double, 1e-5}));
 
+TEST(Importance, OfPolynomialsFindsTheFilmPointOnFilmsThatAreWiderThanTheLight) {
+  // Light ends far within these films, and polynomials bend back beyond it.
+  const std::array<std::pair<const char*, Film>, 4> wide{{{"telephoto_100mm_f5", {.width_mm = 105, .height_mm = 70}},
+                                                          {"heliar_100mm_f4", {.width_mm = 219, .height_mm = 146}},
+                                                          {"phone_5.6mm_f3.5", {.width_mm = 20, .height_mm = 14}},
+                                                          {"zoom_14-30mm_f4", {.width_mm = 72, .height_mm = 48}}}};
+  for (const auto& [id, size] : wide) {
+    for (const ModelKind model : {ModelKind::polynomial_3, ModelKind::polynomial_5, ModelKind::polynomial_7,
+                                  ModelKind::polynomial_9, ModelKind::polynomial_11}) {
+      SCOPED_TRACE(std::string(id) + ' ' + std::string(name(model)));
+      const Camera camera(testing::data_lens(id), size, {.model = model});
+      const core_detail::Kronecker<5> random(6);
+      int passed = 0, lost = 0;
+      for (std::size_t i = 0; i < 1000; ++i) {
+        const CameraSample sample = sample_at(camera.film(), random(i));
+        const CameraRay ray = camera.sample(sample);
+        if (!ray) continue;
+        ++passed;
+        const Importance met = camera.importance({ray.ray.origin, -ray.ray.direction});
+        const Vec2<double> off{met.film.x - sample.film.x, met.film.y - sample.film.y};
+        lost += !met || std::hypot(off.x, off.y) > 1e-6;
+      }
+      EXPECT_GT(passed, 50);
+      EXPECT_LE(lost, 0.02 * passed);
+    }
+  }
+}
+
 TEST(Importance, OfAPinholeIsThatOfTheThickLensInOnePoint) {
   const Lens lens = testing::data_lens("double_gauss_100mm_f2_28deg");
   const Camera pinhole(lens, film, {.model = ModelKind::pinhole}), thick(lens, film, {.model = ModelKind::thick});
