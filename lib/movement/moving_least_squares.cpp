@@ -2,6 +2,7 @@
 #include "moving_least_squares.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -173,6 +174,9 @@ LeastSquaresJob<T> MovingLeastSquares::job(const Columns<T>& columns) const noex
   };
 }
 
+// The second moments of weights that fall so steeply are those of two points, and float loses the others.
+constexpr double steepest_in_float = 4;
+
 template <class T>
 void MovingLeastSquares::at(InstructionSet set, std::size_t count, const T* x, const T* y, T* out) const noexcept {
   if (points_.x.size() == 1) {
@@ -184,7 +188,16 @@ void MovingLeastSquares::at(InstructionSet set, std::size_t count, const T* x, c
     loop(work);
   };
   if constexpr (std::is_same_v<T, float>) {
-    run(job(in_float_), loops_of(set).in_float);
+    if (!affine_ || beta_ <= steepest_in_float) return run(job(in_float_), loops_of(set).in_float);
+    constexpr std::size_t block = 256;
+    std::array<double, block> xs, ys, values;
+    for (std::size_t i = 0; i < count; i += block) {
+      const std::size_t some = std::min(block, count - i);
+      std::copy_n(x + i, some, xs.begin());
+      std::copy_n(y + i, some, ys.begin());
+      at(set, some, xs.data(), ys.data(), values.data());
+      std::transform(values.begin(), values.begin() + some, out + i, [](double v) { return static_cast<float>(v); });
+    }
   } else {
     run(job(in_double_), loops_of(set).in_double);
   }

@@ -48,7 +48,8 @@ void check(const WeighedValue& point, double side, const std::string& where);
 ///
 /// Results are the same for all instruction sets and however places are batched; they are finite for any place, as
 /// constants beyond 1e6 sides. Accuracy: planes are reproduced within 1e-13 (float: 1e-5) of the range of values for
-/// beta up to 4, and within 1e-11 (1e-3) for 8. Source: Lancaster and Salkauskas 1981; weights of Lee et al. 2010,
+/// beta up to 4, and within 1e-11 for 8. In float, results are those in double within 2e-4 of that range; planes of
+/// beta above 4 are computed in double. Source: Lancaster and Salkauskas 1981; weights of Lee et al. 2010,
 /// section 5.2.
 class PETZVAL_API MovingLeastSquares {
  public:

@@ -10,6 +10,7 @@
 
 #include "../data_lenses.hpp"
 #include "../message.hpp"
+#include "core/low_discrepancy.hpp"
 #include "petzval/core/error.hpp"
 
 namespace {
@@ -205,6 +206,26 @@ TEST(FocalSurface, IsTheSameInFloatNextToALineOfPoints) {
       float in_float = 0;
       surface.at(1, &x, &y, &in_float, static_cast<float*>(nullptr));
       EXPECT_NEAR(static_cast<double>(in_float), surface.at(place).inverse_distance, 3e-7) << beside;
+    }
+  }
+}
+
+TEST(FocalSurface, IsTheSameInFloatHoweverSteeplyWeightsFall) {
+  for (const double beta : {1.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0}) {
+    for (unsigned seed = 0; seed < 60; ++seed) {
+      const FocalSurface surface(lens, film, random_points(seed, 3 + seed % 8), {.beta = beta});
+      std::vector<float> x, y;
+      for (std::size_t i = 0; i < 200; ++i) {
+        const auto [u, v] = core_detail::Kronecker<2>()(i);
+        x.push_back(static_cast<float>(36 * (u - 0.5))), y.push_back(static_cast<float>(24 * (v - 0.5)));
+      }
+      std::vector<float> in_float(x.size());
+      surface.at<float>(x.size(), x.data(), y.data(), in_float.data(), nullptr);
+      for (std::size_t i = 0; i < x.size(); ++i) {
+        EXPECT_NEAR(static_cast<double>(in_float[i]), surface.at({x[i], y[i]}).inverse_distance,
+                    2e-4 * (surface.nearest() - surface.farthest()))
+            << beta << ' ' << seed;
+      }
     }
   }
 }
