@@ -140,6 +140,7 @@ SceneSide::SceneSide(const LensFacts& facts, const Film& film, std::optional<Til
       primary_(model.pupils().primary_wavelength()),
       entrance_(focus ? focus.entrances(facts.lens(), model) : entrance_of(facts.lens(), model)) {
   const Lens& lens = facts.lens();
+  if (model.kind() == ModelKind::exact_float || model.kind() == ModelKind::exact_double) traced_ = lens;
   if (const FilmPupilTable& pupils = model.pupils(); model.pinhole() && pupils.cut()) {
     whole_ = tilted_ ? TiltedFilm(film, pupils.whole()).pupils() : pupils.whole();
   }

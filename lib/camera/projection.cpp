@@ -5,7 +5,9 @@
 #include <glm/geometric.hpp>
 #include <optional>
 
+#include "make_model.hpp"
 #include "petzval/camera/camera_ray.hpp"
+#include "petzval/trace/trace.hpp"
 #include "scene_side.hpp"
 
 namespace petzval::inline v0 {
@@ -31,6 +33,22 @@ struct Misses {
 
 }  // namespace
 
+void SceneSide::chief_rays(const AnyRayModel& model, std::size_t count, const TwoPlaneRays<const double>& lines,
+                           Wavelength wavelength, const RayArrays<double>& rays, RayFate* fates) const noexcept {
+  if (!traced_) return model.to_scene<double>(count, lines, {.all = wavelength}, rays, fates);
+  const double towards = towards_scene(*traced_, space_);
+  for (std::size_t i = 0; i < count; ++i) {
+    const Vec3<double> pupil{lines.pupil_x[i], lines.pupil_y[i], space_.pupil_z};
+    const Vec3<double> along = pupil - Vec3<double>{lines.film_x[i], lines.film_y[i], space_.film_z};
+    const auto end = trace(*traced_, Ray<double>{pupil, along * (towards / glm::length(along))},
+                           {.travel = Travel::to_scene, .wavelength = wavelength, .apertures = false});
+    const auto& [o, d] = end.ray;
+    rays.x[i] = o.x, rays.y[i] = o.y, rays.z[i] = o.z;
+    rays.dx[i] = d.x, rays.dy[i] = d.y, rays.dz[i] = d.z;
+    fates[i] = end.fate;
+  }
+}
+
 Projection SceneSide::project(const AnyRayModel& model, const Vec3<double>& point, Wavelength wavelength,
                               double time) const noexcept {
   Projection result;
@@ -50,9 +68,9 @@ Projection SceneSide::project(const AnyRayModel& model, const Vec3<double>& poin
       const auto [x, y] = chiefs.pupil_point(f);
       line[0][i] = f.x, line[1][i] = f.y, line[2][i] = x, line[3][i] = y;
     }
-    model.to_scene<double>(3, {line[0].data(), line[1].data(), line[2].data(), line[3].data()}, {.all = wavelength},
-                           {ray[0].data(), ray[1].data(), ray[2].data(), ray[3].data(), ray[4].data(), ray[5].data()},
-                           fates.data());
+    chief_rays(model, 3, {line[0].data(), line[1].data(), line[2].data(), line[3].data()}, wavelength,
+               {ray[0].data(), ray[1].data(), ray[2].data(), ray[3].data(), ray[4].data(), ray[5].data()},
+               fates.data());
     Misses found;
     Vec3<double> across{1, 0, 0}, up{0, 1, 0};
     for (int i : {0, 1, 2}) {
@@ -101,7 +119,9 @@ Projection SceneSide::project(const AnyRayModel& model, const Vec3<double>& poin
     if (step < settled) break;
   }
   const auto [x, y] = chiefs.pupil_point(film);
-  const bool within = model.clips_at_apertures() || model.pupils().contains(film, x, y, wavelength);
+  Ray<double> ray;
+  const bool within = model.to_scene(TwoPlaneRay{film.x, film.y, x, y}, wavelength, ray) == RayFate::transmitted &&
+                      (model.clips_at_apertures() || model.pupils().contains(film, x, y, wavelength));
   return done(within ? ProjectionStatus::converged : ProjectionStatus::vignetted);
 }
 

@@ -45,6 +45,10 @@ class SceneSide {
                      double time) const noexcept;
 
  private:
+  /// Chief rays, which the exact models trace whatever clips them.
+  void chief_rays(const AnyRayModel& model, std::size_t count, const TwoPlaneRays<const double>& lines,
+                  Wavelength wavelength, const RayArrays<double>& rays, RayFate* fates) const noexcept;
+
   /// What differs with the wavelength.
   struct Facts {
     double we = 0;       // 1/mm^2
@@ -104,6 +108,7 @@ class SceneSide {
   std::size_t primary_ = 0;
   std::vector<Compiled> compiled_;
   EntrancePupilTable entrance_;
+  std::optional<Lens> traced_;           // of the exact models
   std::optional<FilmPupilTable> whole_;  // of a pinhole whose pupils a rim has cut: those before, of the same film
 };
 
