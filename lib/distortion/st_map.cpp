@@ -17,25 +17,32 @@ namespace {
 
 using Place = std::optional<Vec2<double>>;
 using PlaceOf = std::function<Place(const Vec2<double>&)>;
+using ErrorOf = std::function<double(const Vec2<double>&, const Vec2<double>&)>;
 
 constexpr double widest_cell = 16;  // pixels
 constexpr int least_cells = 80;     // along the longer side
-constexpr int stencil = 4;          // nodes of a cubic
+constexpr int most_nodes = 6;       // of a polynomial along one axis
 constexpr float blind = -1;
 
-/// Lagrange's weights of four nodes at 0, 1, 2, 3.
-std::array<double, stencil> weights(double x) noexcept {
-  const double a = x, b = x - 1, c = x - 2, d = x - 3;
-  return {b * c * d / -6, a * c * d / 2, a * b * d / -2, a * b * c / 6};
+/// Lagrange's weights of n nodes at 0, 1, 2, ...
+std::array<double, most_nodes> weights(int n, double x) noexcept {
+  std::array<double, most_nodes> result{};
+  for (int i = 0; i < n; ++i) {
+    result[i] = 1;
+    for (int j = 0; j < n; ++j) {
+      if (j != i) result[i] *= (x - j) / (i - j);
+    }
+  }
+  return result;
 }
 
 /// Equally spaced nodes over some pixels, from edge to edge.
 struct NodeAxis {
   double from = 0, step = 1;
-  int nodes = stencil;
+  int nodes = most_nodes;
 
   NodeAxis(double first, int pixels, double cell)
-      : from(first), nodes(std::max(stencil, static_cast<int>(std::ceil(pixels / cell)) + 1)) {
+      : from(first), nodes(std::max(most_nodes, static_cast<int>(std::ceil(pixels / cell)) + 1)) {
     step = static_cast<double>(pixels) / (nodes - 1);
   }
   double node(int i) const noexcept { return from + i * step; }
@@ -44,32 +51,60 @@ struct NodeAxis {
   int cell(double x) const noexcept { return std::clamp(static_cast<int>(at(x)), 0, nodes - 2); }
 };
 
-/// A function of the raster that is smooth where it has values.
+/// A function of the raster, which is interpolated in cells where that gives what it gives.
 class NodeGrid {
  public:
-  NodeGrid(const PlaceOf& place_of, const NodeAxis& x, const NodeAxis& y, int threads)
-      : place_of_(place_of), x_(x), y_(y), places_(static_cast<std::size_t>(x.nodes) * y.nodes) {
+  /// error: of a place against another one, at most 1 where it may stand for it.
+  NodeGrid(const PlaceOf& place_of, const ErrorOf& error, const NodeAxis& x, const NodeAxis& y, int threads)
+      : place_of_(place_of),
+        x_(x),
+        y_(y),
+        places_(static_cast<std::size_t>(x.nodes) * y.nodes),
+        cells_(static_cast<std::size_t>(x.nodes - 1) * (y.nodes - 1)) {
     parallel_for(places_.size(), 64, threads, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         const int column = static_cast<int>(i % x_.nodes), row = static_cast<int>(i / x_.nodes);
         places_[i] = place_of_({x_.node(column), y_.node(row)});
       }
     });
+    parallel_for(cells_.size(), 64, threads, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const int column = static_cast<int>(i % (x_.nodes - 1)), row = static_cast<int>(i / (x_.nodes - 1));
+        cells_[i] = cell_at(column, row, error);
+      }
+    });
   }
 
   Place operator()(const Vec2<double>& at) const {
-    const int column = x_.cell(at.x), row = y_.cell(at.y);
-    if (known(column, row, 2) == 0) return {};
-    if (known(column, row, 1) < 4) return place_of_(at);
-    for (const int left : {column - 1, column - 2, column}) {
-      for (const int top : {row - 1, row - 2, row}) {
-        if (all_known(left, top)) return cubic(left, top, at);
-      }
-    }
-    return place_of_(at);
+    const Cell& cell = cells_[static_cast<std::size_t>(y_.cell(at.y)) * (x_.nodes - 1) + x_.cell(at.x)];
+    if (cell.kind == Cell::dark) return {};
+    return cell.kind == Cell::smooth ? interpolated(cell, at) : place_of_(at);
   }
 
  private:
+  struct Cell {
+    enum Kind { dark, rough, smooth } kind = dark;
+    int nodes = 0, left = 0, top = 0;  ///< smooth: of the polynomials
+  };
+
+  Cell cell_at(int column, int row, const ErrorOf& error) const {
+    if (known(column, row, 2) == 0) return {};
+    if (known(column, row, 1) < 4) return {.kind = Cell::rough};
+    const Vec2<double> middle{x_.node(column) + x_.step / 2, y_.node(row) + y_.step / 2};
+    const Place there = place_of_(middle);
+    if (!there) return {.kind = Cell::rough};
+    // Polynomials of many nodes, or of few, with the cell as near to their middle as light allows.
+    for (const int nodes : {most_nodes, 4}) {
+      const int before = nodes / 2 - 1;
+      for (const int left : {column - before, column - before - 1, column - before + 1}) {
+        for (const int top : {row - before, row - before - 1, row - before + 1}) {
+          const Cell cell{Cell::smooth, nodes, left, top};
+          if (all_known(cell) && error(interpolated(cell, middle), *there) <= 1) return cell;
+        }
+      }
+    }
+    return {.kind = Cell::rough};
+  }
   bool inside(int column, int row) const noexcept {
     return column >= 0 && row >= 0 && column < x_.nodes && row < y_.nodes;
   }
@@ -84,19 +119,20 @@ class NodeGrid {
     }
     return count;
   }
-  bool all_known(int left, int top) const noexcept {
-    for (int j = top; j < top + stencil; ++j) {
-      for (int i = left; i < left + stencil; ++i) {
+  bool all_known(const Cell& cell) const noexcept {
+    for (int j = cell.top; j < cell.top + cell.nodes; ++j) {
+      for (int i = cell.left; i < cell.left + cell.nodes; ++i) {
         if (!inside(i, j) || !place(i, j)) return false;
       }
     }
     return true;
   }
-  Vec2<double> cubic(int left, int top, const Vec2<double>& at) const noexcept {
-    const auto across = weights(x_.at(at.x) - left), down = weights(y_.at(at.y) - top);
+  Vec2<double> interpolated(const Cell& cell, const Vec2<double>& at) const noexcept {
+    const auto across = weights(cell.nodes, x_.at(at.x) - cell.left),
+               down = weights(cell.nodes, y_.at(at.y) - cell.top);
     Vec2<double> sum{0, 0};
-    for (int j = 0; j < stencil; ++j) {
-      for (int i = 0; i < stencil; ++i) sum += across[i] * down[j] * *place(left + i, top + j);
+    for (int j = 0; j < cell.nodes; ++j) {
+      for (int i = 0; i < cell.nodes; ++i) sum += across[i] * down[j] * *place(cell.left + i, cell.top + j);
     }
     return sum;
   }
@@ -104,6 +140,7 @@ class NodeGrid {
   const PlaceOf& place_of_;
   NodeAxis x_, y_;
   std::vector<Place> places_;
+  std::vector<Cell> cells_;
 };
 
 /// Of a film's pixels and a margin. raster: of an interpolated place, its raster position.
@@ -116,7 +153,16 @@ StMap map_of(const PlaceOf& place_of, const PlaceOf& raster, const Film& film, i
   const auto pixels = static_cast<std::size_t>(map.width) * static_cast<std::size_t>(map.height);
   map.s.assign(pixels, blind), map.t.assign(pixels, blind);
   const double cell = std::min(widest_cell, static_cast<double>(std::max(map.width, map.height)) / least_cells);
-  const NodeGrid grid(place_of, NodeAxis(-margin_x, map.width, cell), NodeAxis(-margin_y, map.height, cell), threads);
+  // Half a thousandth of a pixel in the middle of the picture, twice that in its corners, more far outside.
+  const Vec2<double> size{film.columns, film.rows};
+  const auto error = [&](const Vec2<double>& a, const Vec2<double>& b) {
+    const Place at = raster(a), wanted = raster(b);
+    if (!at || !wanted) return HUGE_VAL;
+    const double away = 2 * glm::distance(*wanted, size / 2.0) / glm::length(size);
+    return glm::distance(*at, *wanted) / (5e-4 * (1 + away * away));
+  };
+  const NodeGrid grid(place_of, error, NodeAxis(-margin_x, map.width, cell), NodeAxis(-margin_y, map.height, cell),
+                      threads);
   parallel_for(static_cast<std::size_t>(map.height), 8, threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t row = begin; row < end; ++row) {
       for (int column = 0; column < map.width; ++column) {

@@ -134,6 +134,28 @@ TEST(Projection, IsExactWhereChiefRaysAreClipped) {
   }
 }
 
+// Where it lets chief rays through to its corners, and those beside them not.
+TEST(Projection, OfACylindricalLensReachesTheEndOfTheLight) {
+  const Lens lens = testing::data_lens("anamorphic_60mm_2x");
+  const Film film{.width_mm = 29.54, .height_mm = 19.69};
+  const Camera camera(lens, film, {.model = ModelKind::exact_double});
+  const double pupil_z = pupils(lens).entrance.z, away = 5000;
+  const core_detail::Kronecker<2> random(7);
+  int seen = 0;
+  for (std::uint32_t i = 0; i < 1000; ++i) {
+    const auto [u, v] = random(i);
+    const double x = (u - 0.5) * away, y = (v - 0.5) * 0.6 * away;
+    const AimedRay chief = chief_ray(lens, {std::atan2(std::hypot(x, y), away), pupil_z - away, std::atan2(x, y)});
+    if (!chief || chief.status != AimStatus::converged || !film.contains(at_film(lens, chief.end.ray))) continue;
+    ++seen;
+    const FilmPoint wanted = at_film(lens, chief.end.ray);
+    const Projection p = camera.project({x, y, pupil_z - away});
+    EXPECT_TRUE(p) << x << ' ' << y;
+    EXPECT_NEAR(std::hypot(p.film.x - wanted.x, p.film.y - wanted.y), 0, 2e-5 * film.radius_mm());
+  }
+  EXPECT_GT(seen, 300);
+}
+
 TEST(Projection, PutsTheSceneUpright) {
   const Camera camera(testing::data_lens("double_gauss_100mm_f2_28deg"), wide, {.model = ModelKind::exact_double});
   const Projection p = camera.project({300, 200, -5000});

@@ -10,6 +10,7 @@
 #include "../data_lenses.hpp"
 #include "../message.hpp"
 #include "distorting_lenses.hpp"
+#include "petzval/files/lens_metadata.hpp"
 
 namespace petzval {
 namespace {
@@ -134,6 +135,30 @@ INSTANTIATE_TEST_SUITE_P(Lenses, StMapsOf,
                                            Case{"catadioptric_mangin_1000mm_f7.5", small_film(36)},
                                            Case{"double_gauss_100mm_f2_28deg", tilted_film()},
                                            Case{"biogon_35mm_f2.8", small_film(36), ModelKind::thin}));
+
+// Chief rays end within these pictures.
+TEST(StMap, IsTheDistortionUpToTheEndOfTheLight) {
+  for (const char* id : {"anamorphic_60mm_2x", "tessar_100mm_f3.5", "primoplan_100mm_f1.9", "fisheye_16mm_f2.8"}) {
+    SCOPED_TRACE(id);
+    const Lens lens = data_lens(id);
+    Film film = film_of(testing::data_prescription(id), lens);
+    film.columns = 480, film.rows = 320;
+    const LensDistortion distortion(Camera(lens, film, {.model = ModelKind::exact_double}));
+    const StMaps maps = st_maps(distortion);
+    int seen = 0;
+    for (int row = 0; row < film.rows; row += 3) {
+      for (int column = 0; column < film.columns; column += 3) {
+        const Vec2<double> at{column + 0.5, row + 0.5};
+        const auto back = distortion.undistorted(at);
+        if (!back || !maps.redistort.sees(column, row)) continue;
+        ++seen;
+        const double off = far_apart(shown(maps.redistort, film, column, row), *back);
+        EXPECT_LT(off, far_apart(*back, distortion.centre()) < film.columns ? 0.005 : 0.1) << column << ' ' << row;
+      }
+    }
+    EXPECT_GT(seen, 2000);
+  }
+}
 
 TEST(StMap, MarksWhatSeesNothing) {
   const Film film = small_film(36);
