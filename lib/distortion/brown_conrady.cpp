@@ -47,43 +47,100 @@ std::vector<Radii> radii_of(const LensDistortion& distortion) {
 
 double polynomial(double r2, const double* k) noexcept { return 1 + r2 * (k[0] + r2 * (k[1] + r2 * k[2])); }
 
-/// Coefficients of least squares, k1 to k3 and as many as wanted of the denominator's. to = from N / D is linear in
-/// them after it is multiplied by D; the weights 1 / D of the round before make its errors those of `to` (Sanathanan
-/// and Koerner 1963).
-std::array<double, 6> fitted(const std::vector<Pair>& pairs, int in_denominator) {
-  double scale = 0;
-  for (const Pair& pair : pairs) scale = std::max(scale, pair.from);
-  const int unknowns = 3 + in_denominator, rounds = in_denominator > 0 ? 8 : 1;
-  // In radii over the largest one, so that all powers have one magnitude.
-  std::array<double, 6> k{};
-  for (int round = 0; round < rounds; ++round) {
-    Eigen::MatrixXd rows(pairs.size(), unknowns);
-    Eigen::VectorXd wanted(pairs.size());
-    for (std::size_t i = 0; i < pairs.size(); ++i) {
-      const double r = pairs[i].from, r2 = (r / scale) * (r / scale);
-      const double weight = 1 / polynomial(r2, &k[3]);
-      for (int j = 0; j < unknowns; ++j) {
-        const double power = std::pow(r2, j % 3 + 1);
-        rows(static_cast<Eigen::Index>(i), j) = weight * power * (j < 3 ? r : -pairs[i].to);
-      }
-      wanted(static_cast<Eigen::Index>(i)) = weight * (pairs[i].to - r);
-    }
-    // Of least size where numerator and denominator say the same, as they do without distortion.
-    const Eigen::VectorXd solution = core_detail::least_squares(rows, wanted);
-    for (int j = 0; j < unknowns; ++j) k[static_cast<std::size_t>(j)] = solution(j);
+using Coefficients = std::array<double, 6>;
+
+double ratio(const Coefficients& k, double r2) noexcept { return polynomial(r2, &k[0]) / polynomial(r2, &k[3]); }
+
+double squares(const std::vector<Pair>& pairs, const Coefficients& k) noexcept {
+  double sum = 0;
+  for (const Pair& pair : pairs) {
+    const double error = pair.from * ratio(k, pair.from * pair.from) - pair.to;
+    sum += error * error;
   }
-  for (std::size_t j = 0; j < 6; ++j) k[j] /= std::pow(scale, 2.0 * static_cast<double>(j % 3 + 1));
-  return k;
+  return sum;
 }
 
-/// Whether the denominator stays well above 0 up to a radius.
-bool without_pole(const std::array<double, 6>& k, double radius) noexcept {
+/// Whether the denominator stays above 0 up to a radius.
+bool without_pole(const Coefficients& k, double radius) noexcept {
   constexpr int steps = 200;
   for (int i = 1; i <= steps; ++i) {
     const double r = radius * i / steps;
-    if (!(polynomial(r * r, &k[3]) > 0.05)) return false;
+    if (!(polynomial(r * r, &k[3]) > 1e-3)) return false;
   }
   return true;
+}
+
+/// The solution of least squares for k1 to k3 and as many as wanted of the denominator's. row(pair, powers) gives those
+/// of the numerator, those of the denominator and the wanted sum.
+template <class Row>
+Coefficients solved(const std::vector<Pair>& pairs, int in_denominator, const Row& row) {
+  const int unknowns = 3 + in_denominator;
+  Eigen::MatrixXd rows(pairs.size(), unknowns);
+  Eigen::VectorXd wanted(pairs.size());
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const double r2 = pairs[i].from * pairs[i].from;
+    const auto [by_numerator, by_denominator, sum] = row(pairs[i], r2);
+    const auto at = static_cast<Eigen::Index>(i);
+    for (int j = 0; j < unknowns; ++j) {
+      rows(at, j) = std::pow(r2, j % 3 + 1) * (j < 3 ? by_numerator : by_denominator);
+    }
+    wanted(at) = sum;
+  }
+  // Of least size where numerator and denominator say the same, as they do without distortion.
+  const Eigen::VectorXd solution = core_detail::least_squares(rows, wanted);
+  Coefficients k{};
+  for (int j = 0; j < unknowns; ++j) k[static_cast<std::size_t>(j)] = solution(j);
+  return k;
+}
+
+struct Slopes {
+  double by_numerator = 0, by_denominator = 0, sum = 0;
+};
+
+/// to = from N / D is linear in the coefficients after it is multiplied by D; the weights 1 / D of the round before
+/// make its errors those of `to` (Sanathanan and Koerner 1963).
+Coefficients linear_round(const std::vector<Pair>& pairs, int in_denominator, const Coefficients& before) {
+  return solved(pairs, in_denominator, [&](const Pair& pair, double r2) {
+    const double weight = 1 / polynomial(r2, &before[3]);
+    return Slopes{weight * pair.from, -weight * pair.to, weight * (pair.to - pair.from)};
+  });
+}
+
+/// Gauss and Newton's iteration for the errors of `to`, in steps that lessen them and meet no pole.
+Coefficients refined(const std::vector<Pair>& pairs, int in_denominator, Coefficients k, double reach) {
+  double now = squares(pairs, k);
+  for (int round = 0; round < 30; ++round) {
+    const Coefficients step = solved(pairs, in_denominator, [&](const Pair& pair, double r2) {
+      const double slope = pair.from / polynomial(r2, &k[3]), value = ratio(k, r2);
+      return Slopes{slope, -slope * value, pair.to - pair.from * value};
+    });
+    double part = 1, next = now;
+    Coefficients there = k;
+    for (; part > 1e-3; part /= 2) {
+      for (std::size_t j = 0; j < k.size(); ++j) there[j] = k[j] + part * step[j];
+      next = without_pole(there, reach) ? squares(pairs, there) : now;
+      if (next < now) break;
+    }
+    if (!(next < now)) break;
+    const bool settled = next > now * (1 - 1e-9);
+    k = there, now = next;
+    if (settled) break;
+  }
+  return k;
+}
+
+/// Coefficients of least squares, of forms without a pole up to `reach` radii; `fewer`: those with a shorter
+/// denominator, from which the search starts too.
+Coefficients fitted(const std::vector<Pair>& pairs, int in_denominator, const Coefficients& fewer, double reach) {
+  if (in_denominator == 0) return linear_round(pairs, 0, {});
+  Coefficients best = refined(pairs, in_denominator, fewer, reach), round{};
+  for (int i = 0; i < 8; ++i) {
+    round = linear_round(pairs, in_denominator, round);
+    if (!without_pole(round, reach)) continue;
+    const Coefficients found = refined(pairs, in_denominator, round, reach);
+    if (squares(pairs, found) < squares(pairs, best)) best = found;
+  }
+  return best;
 }
 
 /// Sets the errors of the coefficients.
@@ -130,14 +187,18 @@ BrownConrady fit_brown_conrady(const LensDistortion& distortion, const BrownConr
     farthest = std::max(farthest, pairs.back().from);
     result.field_rad = std::max(result.field_rad, std::atan(r.undistorted));
   }
-  result.k = fitted(pairs, 0);
-  measure(result, pairs, distortion.focal_length_px().x);
-  for (int terms = 1; terms <= 3 && options.form == RadialForm::rational; ++terms) {
+  if (!(farthest > 0)) throw Error(where + "no light reaches the film beside its middle");
+  // In radii over the largest one, so that all powers have one magnitude.
+  std::vector<Pair> scaled;
+  for (const Pair& pair : pairs) scaled.push_back({pair.from / farthest, pair.to / farthest});
+  Coefficients k{};
+  for (int terms = 0; terms <= (options.form == RadialForm::rational ? 3 : 0); ++terms) {
+    k = fitted(scaled, terms, k, 1.1);
     BrownConrady next = result;
-    next.k = fitted(pairs, terms);
-    if (!without_pole(next.k, 1.1 * farthest)) continue;
+    for (std::size_t j = 0; j < k.size(); ++j)
+      next.k[j] = k[j] / std::pow(farthest, 2.0 * static_cast<double>(j % 3 + 1));
     measure(next, pairs, distortion.focal_length_px().x);
-    if (next.rms_px < result.rms_px) result = next;
+    if (terms == 0 || next.rms_px < result.rms_px) result = next;
   }
   return result;
 }

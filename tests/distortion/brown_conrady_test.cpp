@@ -7,11 +7,13 @@
 #include <array>
 #include <cmath>
 #include <string>
+#include <tuple>
 
 #include "../data_lenses.hpp"
 #include "../message.hpp"
 #include "core/low_discrepancy.hpp"
 #include "distorting_lenses.hpp"
+#include "petzval/files/lens_metadata.hpp"
 #include "petzval/pupil/aim.hpp"
 #include "petzval/pupil/illumination.hpp"
 
@@ -121,6 +123,18 @@ TEST(BrownConrady, HasNoPoleWithinTheFilm) {
       EXPECT_GE(r, tangent / 2);
       EXPECT_LT(fit.largest_px, 4);  // of 480 pixels
     }
+  }
+}
+
+// Where a linear fit has a pole, or is not that of least squares.
+TEST(BrownConrady, FindsTheRationalFormOfLeastSquares) {
+  using enum BrownConradyDirection;
+  for (const auto& [id, direction, rms_px] :
+       {std::tuple("tessar_100mm_f5.5_1902", to_distorted, 0.02), std::tuple("heliar_100mm_f4", to_distorted, 0.001),
+        std::tuple("biotar_100mm_f1.4", to_undistorted, 0.05)}) {
+    const Lens lens = data_lens(id);
+    const LensDistortion distortion = distortion_of(lens, film_of(testing::data_prescription(id), lens));
+    EXPECT_LT(fit_brown_conrady(distortion, {direction}).rms_px, rms_px) << id;
   }
 }
 
