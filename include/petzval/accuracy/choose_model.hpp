@@ -39,11 +39,12 @@ struct ErrorBudget {
 
 /// A model as measured for a scene.
 ///
-/// The choice compares bounds with a budget; fresh samples stay below them. Rays: the largest error found, with 16
-/// times as many lines from the film points where it is largest, plus 4 % (50 % for exact_float, whose errors are
-/// noise; 15 % against the blur, which has sharp minima over the film and is measured at each field's sharpest depth
-/// where a budget limits it), plus float's eps times the focal length. Exposure and pupil shape: 4 % and the
-/// uncertainty of counting samples.
+/// The choice compares bounds with a budget; fresh samples stay below them, but for pupil shape and exposure of lenses
+/// whose pupils change abruptly over the film (a catadioptric: a fifth above, an anamorphic lens: 6 %). Rays: the
+/// largest error found, with 16 times as many lines from the film points where it is largest, plus 4 % (50 % for
+/// exact_float, whose errors are noise; 15 % against the blur, which has sharp minima over the film and is measured at
+/// each field's sharpest depth where a budget limits it), plus float's eps times the focal length. Exposure and pupil
+/// shape: 4 % and the uncertainty of counting samples.
 struct ModelCandidate {
   ModelKind model{};
   bool available = true;  ///< false: the lens cannot have it; `remark` says why
