@@ -110,17 +110,27 @@ MovingLeastSquares::MovingLeastSquares(const std::string& where, std::span<const
   least_value_ = least;
   soft_ = std::any_of(to.soft2.begin(), to.soft2.end(), [](double soft2) { return soft2 > 0; });
 
-  const auto fill = [&]<class R>(Columns<R>& columns) {
+  // Numbers as T have them.
+  const auto fill = [&]<class T, class R>(Columns<R>& columns, T) {
     const auto copied = [](const std::vector<double>& from) {
       std::vector<R> copies;
-      for (const double number : from) copies.insert(copies.end(), LeastSquaresJob<R>::copies, static_cast<R>(number));
+      for (const double number : from) {
+        copies.insert(copies.end(), LeastSquaresJob<R>::copies, static_cast<R>(static_cast<T>(number)));
+      }
       return copies;
     };
     columns = {copied(to.x), copied(to.y), copied(to.value), copied(to.alpha), copied(to.soft2)};
   };
-  fill(in_float_);
-  fill(in_double_);
+  if (steep()) {
+    fill(of_floats_, float());
+  } else {
+    fill(in_float_, float());
+  }
+  fill(in_double_, double());
 }
+
+// The second moments of weights that fall steeply are those of two points, and float loses the others.
+bool MovingLeastSquares::steep() const noexcept { return affine_ && beta_ > 4; }
 
 // A plane through points on a line with one beside it is the same however little that one weighs. So points nearly on a
 // line keep the slope along it alone, and those that fade count for this by the square of their share.
@@ -174,32 +184,31 @@ LeastSquaresJob<T> MovingLeastSquares::job(const Columns<T>& columns) const noex
   };
 }
 
-// The second moments of weights that fall so steeply are those of two points, and float loses the others.
-constexpr double steepest_in_float = 4;
-
 template <class T>
 void MovingLeastSquares::at(InstructionSet set, std::size_t count, const T* x, const T* y, T* out) const noexcept {
   if (points_.x.size() == 1) {
     std::fill_n(out, count, static_cast<T>(most()));
     return;
   }
-  const auto run = [&](LeastSquaresJob<T> work, void (*loop)(const LeastSquaresJob<T>&) noexcept) {
-    work.count = count, work.at_x = x, work.at_y = y, work.out = out;
+  const auto run = [&]<class R>(LeastSquaresJob<R> work, std::size_t places, const R* at_x, const R* at_y, R* to,
+                                void (*loop)(const LeastSquaresJob<R>&) noexcept) {
+    work.count = places, work.at_x = at_x, work.at_y = at_y, work.out = to;
     loop(work);
   };
+  const LeastSquaresLoops& loops = loops_of(set);
   if constexpr (std::is_same_v<T, float>) {
-    if (!affine_ || beta_ <= steepest_in_float) return run(job(in_float_), loops_of(set).in_float);
+    if (!steep()) return run(job(in_float_), count, x, y, out, loops.in_float);
     constexpr std::size_t block = 256;
     std::array<double, block> xs, ys, values;
     for (std::size_t i = 0; i < count; i += block) {
       const std::size_t some = std::min(block, count - i);
       std::copy_n(x + i, some, xs.begin());
       std::copy_n(y + i, some, ys.begin());
-      at(set, some, xs.data(), ys.data(), values.data());
+      run(job(of_floats_), some, xs.data(), ys.data(), values.data(), loops.in_double);
       std::transform(values.begin(), values.begin() + some, out + i, [](double v) { return static_cast<float>(v); });
     }
   } else {
-    run(job(in_double_), loops_of(set).in_double);
+    run(job(in_double_), count, x, y, out, loops.in_double);
   }
 }
 

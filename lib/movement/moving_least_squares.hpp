@@ -79,6 +79,8 @@ class PETZVAL_API MovingLeastSquares {
 
  private:
   void find_line(std::span<const double> shares);
+  /// Whether floats are computed in double.
+  bool steep() const noexcept;
 
   /// What counts of the points: places and values scaled by powers of two, weights against the heaviest point's, and
   /// squares of softness.
@@ -100,8 +102,9 @@ class PETZVAL_API MovingLeastSquares {
   Columns<double> points_;
   double low_ = 0, high_ = 0, least_value_ = 0;  ///< of the result, scaled
   bool soft_ = false;
-  Columns<float> in_float_;  ///< as LeastSquaresJob wants them
+  Columns<float> in_float_;  ///< as LeastSquaresJob wants them; empty if steep
   Columns<double> in_double_;
+  Columns<double> of_floats_;  ///< if steep: those of in_float_
 };
 
 }  // namespace petzval::inline v0::movement_detail

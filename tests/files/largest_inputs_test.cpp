@@ -30,6 +30,7 @@ Prescription ten_thousand_surfaces() {
     p.surfaces.push_back({.radius = 1000.0 + i, .thickness = 1, .medium = {.nd = 1.5}, .semi_diameter = 10});
     p.surfaces.push_back({.radius = -1000.5 - i, .thickness = 1, .semi_diameter = 10});
   }
+  p.surfaces[0] = {.radius = 0, .thickness = 1, .semi_diameter = 10, .stop = true};
   return p;
 }
 

@@ -42,9 +42,10 @@ struct StMapOptions {
 ///
 /// Both are computed at nodes, 16 pixels apart at most, and interpolated in between: within 0.001 pixels of
 /// LensDistortion, 0.02 near the end of the light and 0.1 at fields beyond 70 degrees. Where that does not reach it,
-/// mostly at the edge of what the film sees, they are computed pixel by pixel. One after the other they lead back within
-/// 0.005 pixels by exact and first-order models, where they are interpolated linearly (tests/distortion/st_map_test.cpp).
-/// Throws Error for an overscan below 1 or above 10, for fewer than 1 thread, and for a dark film.
+/// mostly at the edge of what the film sees, they are computed pixel by pixel. One after the other they lead back
+/// within 0.005 pixels by exact and first-order models, where they are interpolated linearly
+/// (tests/distortion/st_map_test.cpp). Throws Error for an overscan below 1 or above 10, for fewer than 1 thread, and
+/// for a dark film.
 PETZVAL_API StMaps st_maps(const LensDistortion& distortion, const StMapOptions& options = {});
 
 }  // namespace petzval::inline v0
