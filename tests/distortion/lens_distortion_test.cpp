@@ -57,11 +57,12 @@ TEST(LensDistortion, KeepsTheScaleOnTheAxis) {
   // Of the phone's lens, with odd aspheres, chief rays have another slope a thousandth of a radian off the axis.
   for (const auto& [id, within] : {std::pair("phone_5.6mm_f3.5", 1e-4), std::pair("fisheye_8mm_f2.8", 1e-6),
                                    std::pair("tessar_100mm_f2.8", 1e-6)}) {
+    const Lens lens = data_lens(id);
     for (const double size : {1.0, 0.1}) {
-      Film film = film_of(testing::data_prescription(id), data_lens(id));
+      Film film = film_of(testing::data_prescription(id), lens);
       film.width_mm *= size, film.height_mm *= size;
       const auto focal_length = [&](ModelKind model) {
-        return LensDistortion(Camera(data_lens(id), film, {.model = model})).pinhole().focal_length_mm.y;
+        return LensDistortion(Camera(lens, film, {.model = model})).pinhole().focal_length_mm.y;
       };
       const double expected = focal_length(ModelKind::thick);
       EXPECT_NEAR(focal_length(ModelKind::exact_double), expected, within * expected) << id << ' ' << size;

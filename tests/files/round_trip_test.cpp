@@ -381,7 +381,7 @@ TEST(RoundTrip, WhatIsLostIsSaid) {
 
 TEST(RoundTrip, AStopThatNoneHasMarkedIsTheOneThatLimitsTheBeam) {
   Prescription p = singlet();
-  std::ranges::rotate(p.surfaces, p.surfaces.begin() + 1);  // the stop is the last
+  std::rotate(p.surfaces.begin(), p.surfaces.begin() + 1, p.surfaces.end());  // the stop is the last
   p.surfaces[1].thickness = 2, p.surfaces[2].thickness = 46;
   p.surfaces[2].stop = false;
   const double f_number = petzval::real_f_number(compile(p));
