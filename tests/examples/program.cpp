@@ -2,6 +2,7 @@
 #include "program.hpp"
 
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <cstdlib>
 #include <fstream>
@@ -16,7 +17,7 @@ std::string quoted(const std::string& text) { return '\'' + text + '\''; }
 void Programs::SetUp() {
   const auto* test = testing::UnitTest::GetInstance()->current_test_info();
   folder = std::filesystem::path(testing::TempDir()) /
-           ("petzval_" + std::string(test->test_suite_name()) + '_' + test->name());
+           ("petzval_" + std::string(test->test_suite_name()) + '_' + test->name() + '_' + std::to_string(getpid()));
   std::filesystem::remove_all(folder);
   std::filesystem::create_directories(folder);
 }
