@@ -160,6 +160,27 @@ TEST(LocalFocus, SceneAndFilmAreInverse) {
   }
 }
 
+// Scene points are connected to places of their pupils, not of rectangles about these.
+TEST(LocalFocus, MostConnectionsArrive) {
+  const Lens lens = double_gauss();
+  const core_detail::Kronecker<5> random(3);
+  for (const auto& [what, options, film] : settings(lens, {ModelKind::thin, ModelKind::thick})) {
+    const Camera camera(lens, film, options);
+    int sent = 0, arrived = 0;
+    for (std::uint32_t i = 0; i < 400; ++i) {
+      const auto [x, y, z, u, v] = random(i);
+      const double away = 1000 + 4000 * z;
+      const Vec3<double> point{0.1 * (x - 0.5) * away, 0.1 * (y - 0.5) * away, -away};
+      ++sent;
+      const ImportanceSample found = camera.sample_importance(point, u, v);
+      arrived += found && found.importance.we > 0;
+    }
+    // Places are drawn in the widest pupil, of four times the area where extents open it by two stops.
+    const bool extents = what.ends_with("extents") || what.ends_with("all");
+    EXPECT_GT(arrived, (extents ? 0.28 : 0.73) * sent) << what;
+  }
+}
+
 // The density of film samples in the scene, by differences of film point and place in the pupil.
 TEST(LocalFocus, DensitiesAreThoseOfTheMapOfRays) {
   const Lens lens = double_gauss();
