@@ -6,6 +6,7 @@
 #include <functional>
 #include <vector>
 
+#include "petzval/core/export.hpp"
 #include "petzval/core/version.hpp"
 
 /// What passes along lines in the planes of pupils, for the search of their boundaries.
@@ -84,7 +85,7 @@ void close_in(std::vector<Bracket>& brackets, const std::vector<Line>& lines, do
 
 /// The extents along some lines, looked for at `samples` + 1 parameters from `low` to `high` of each; the ends are
 /// found within a tolerance. Where the first sample passes, the extent begins there.
-std::vector<LineExtent> extents_along(const std::vector<Line>& lines, double low, double high, int samples,
-                                      double tolerance, const PlaceClearances& clearances);
+PETZVAL_API std::vector<LineExtent> extents_along(const std::vector<Line>& lines, double low, double high, int samples,
+                                                  double tolerance, const PlaceClearances& clearances);
 
 }  // namespace petzval::inline v0::pupil_detail
