@@ -11,6 +11,7 @@
 #include "petzval/core/units.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/paraxial/first_order.hpp"
+#include "petzval/paraxial/ideal_lens.hpp"
 
 namespace petzval {
 namespace {
@@ -143,6 +144,26 @@ TEST(BothWays, AFilmBeyondTheLimitNamesTheNearestSubject) {
   EXPECT_NEAR(beyond.distance, nearest.distance, 1e-7 * nearest.distance);
   EXPECT_EQ(solve_focus(lens, 0.99 * nearest.distance, {min_rms}).status, FocusStatus::unreachable);
   EXPECT_EQ(nearest_focus(lens, {paraxial}).film_z, infinity);
+}
+
+// From the film, which moves away as the subject comes nearer, the nearest is imaged in its own size; behind a mirror
+// the two meet.
+TEST(BothWays, TheNearestSubjectFromTheFilmIsAsLargeAsItsImage) {
+  for (const char* id : {"double_gauss_100mm_f2.0", "telephoto_100mm_f5"}) {
+    const Lens lens = data_lens(id);
+    const IdealLens thick = thick_lens(lens);
+    const FocusSolution nearest = nearest_focus(lens, {.criterion = paraxial, .origin = DistanceOrigin::film});
+    const double f = thick.rear_focal_length;
+    EXPECT_NEAR(nearest.film_z - thick.rear_focal_z, f, 1e-9 * f) << id;
+    EXPECT_NEAR(thick.front_focal_z - nearest.subject_z, f, 1e-9 * f) << id;
+    EXPECT_NEAR(nearest.distance, nearest.film_z - nearest.subject_z, 1e-9 * f) << id;
+    EXPECT_EQ(nearest_focus(lens, {.criterion = paraxial}).film_z, infinity) << id;
+  }
+  const Lens mirror = data_lens("mirror_newton_200mm_f8");
+  const FocusSolution meets = nearest_focus(mirror, {.criterion = paraxial, .origin = DistanceOrigin::film});
+  EXPECT_NEAR(meets.distance, 0, 1e-9);
+  EXPECT_NEAR(meets.film_z, -400, 1e-9);
+  EXPECT_NEAR(nearest_focus(mirror, {.criterion = paraxial}).distance, 200, 1e-9);
 }
 
 TEST(BothWays, RefuseWhatIsNoFieldAndNoWeight) {
