@@ -8,8 +8,6 @@
 
 #include "core/meet_plane.hpp"
 #include "make_model.hpp"
-#include "petzval/pupil_table/two_plane_rays.hpp"
-#include "petzval/trace/trace.hpp"
 #include "trace/sequential.hpp"
 
 namespace petzval::inline v0::camera_detail {
@@ -33,6 +31,11 @@ struct Section {
   }
   std::array<double, 2> pair(double height) const noexcept {
     return along_x ? std::array{height, 0.0} : std::array{0.0, height};
+  }
+  TwoPlaneRay line(const Heights& h) const noexcept {
+    const auto [x, y] = pair(h.film);
+    const auto [pupil_x, pupil_y] = pair(h.pupil);
+    return {x, y, pupil_x, pupil_y};
   }
   Vec3<double> vector(double height, double z) const noexcept {
     return along_x ? Vec3<double>{height, 0, z} : Vec3<double>{0, height, z};
@@ -71,27 +74,27 @@ class FromStop {
   std::size_t stop_;
 };
 
-/// Where an exact line of the film's space goes, clear apertures ignored.
 std::optional<Ray<double>> to_scene(const Lens& lens, const TwoPlanes& space, std::size_t wavelength, Section section,
                                     const Heights& h) noexcept {
-  const Vec3<double> along = section.vector(h.pupil - h.film, space.depth());
-  const double towards = towards_scene(lens, space);
-  const auto end =
-      trace(lens, Ray<double>{section.vector(h.pupil, space.pupil_z), along * (towards / glm::length(along))},
-            {.travel = Travel::to_scene, .wavelength = wavelength, .apertures = false});
+  const auto end = unclipped(lens, space, wavelength, section.line(h));
   return end.transmitted() ? std::optional(end.ray) : std::nullopt;
 }
 
 std::optional<Ray<double>> to_scene(const AnyRayModel& model, std::size_t wavelength, Section section,
                                     const Heights& h) noexcept {
-  const auto [x, y] = section.pair(h.film);
-  const auto [pupil_x, pupil_y] = section.pair(h.pupil);
   Ray<double> ray;
-  const RayFate fate = model.to_scene(TwoPlaneRay{x, y, pupil_x, pupil_y}, wavelength, ray);
+  const RayFate fate = model.to_scene(section.line(h), wavelength, ray);
   return fate == RayFate::transmitted ? std::optional(ray) : std::nullopt;
 }
 
 }  // namespace
+
+TracedRay<double> unclipped(const Lens& lens, const TwoPlanes& space, Wavelength wavelength, const TwoPlaneRay& line) {
+  const Vec3<double> along{line.pupil_x - line.film_x, line.pupil_y - line.film_y, space.depth()};
+  const Ray<double> start{{line.pupil_x, line.pupil_y, space.pupil_z},
+                          along * (towards_scene(lens, space) / glm::length(along))};
+  return trace(lens, start, {.travel = Travel::to_scene, .wavelength = wavelength, .apertures = false});
+}
 
 ChiefRayTable::ChiefRayTable(const LensFacts& facts, const AnyRayModel& model, double film_radius,
                              std::size_t wavelength, std::optional<double> middle) {

@@ -10,8 +10,13 @@
 #include "petzval/camera/ray_model.hpp"
 #include "petzval/core/geometry.hpp"
 #include "petzval/film/film.hpp"
+#include "petzval/pupil_table/two_plane_rays.hpp"
+#include "petzval/trace/trace.hpp"
 
 namespace petzval::inline v0::camera_detail {
+
+/// Where an exact line of the film's space goes, clear apertures ignored.
+TracedRay<double> unclipped(const Lens& lens, const TwoPlanes& space, Wavelength wavelength, const TwoPlaneRay& line);
 
 /// The chief rays of one wavelength as image-space rays: for the exact and polynomial models, exact rays through the
 /// centre of the stop; for the others, the model's rays through the middles of its own pupils.

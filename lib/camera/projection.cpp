@@ -5,9 +5,7 @@
 #include <glm/geometric.hpp>
 #include <optional>
 
-#include "make_model.hpp"
 #include "petzval/camera/camera_ray.hpp"
-#include "petzval/trace/trace.hpp"
 #include "scene_side.hpp"
 
 namespace petzval::inline v0 {
@@ -36,12 +34,9 @@ struct Misses {
 void SceneSide::chief_rays(const AnyRayModel& model, std::size_t count, const TwoPlaneRays<const double>& lines,
                            Wavelength wavelength, const RayArrays<double>& rays, RayFate* fates) const noexcept {
   if (!traced_) return model.to_scene<double>(count, lines, {.all = wavelength}, rays, fates);
-  const double towards = towards_scene(*traced_, space_);
   for (std::size_t i = 0; i < count; ++i) {
-    const Vec3<double> pupil{lines.pupil_x[i], lines.pupil_y[i], space_.pupil_z};
-    const Vec3<double> along = pupil - Vec3<double>{lines.film_x[i], lines.film_y[i], space_.film_z};
-    const auto end = trace(*traced_, Ray<double>{pupil, along * (towards / glm::length(along))},
-                           {.travel = Travel::to_scene, .wavelength = wavelength, .apertures = false});
+    const auto end =
+        unclipped(*traced_, space_, wavelength, {lines.film_x[i], lines.film_y[i], lines.pupil_x[i], lines.pupil_y[i]});
     const auto& [o, d] = end.ray;
     rays.x[i] = o.x, rays.y[i] = o.y, rays.z[i] = o.z;
     rays.dx[i] = d.x, rays.dy[i] = d.y, rays.dz[i] = d.z;

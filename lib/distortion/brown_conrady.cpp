@@ -70,8 +70,8 @@ bool without_pole(const Coefficients& k, double radius) noexcept {
   return true;
 }
 
-/// The solution of least squares for k1 to k3 and as many as wanted of the denominator's. row(pair, powers) gives those
-/// of the numerator, those of the denominator and the wanted sum.
+/// The solution of least squares for k1 to k3 and as many as wanted of the denominator's. row(pair, r2) gives the
+/// slopes by N and by D, and the wanted sum.
 template <class Row>
 Coefficients solved(const std::vector<Pair>& pairs, int in_denominator, const Row& row) {
   const int unknowns = 3 + in_denominator;
