@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
 # Builds everything with sanitizers and runs the tests: AddressSanitizer, UndefinedBehaviorSanitizer and libstdc++'s assertions
-# (the preset asan), then ThreadSanitizer (tsan). Any report fails its test. CMakePresets.json has the flags.
+# (asan), then ThreadSanitizer (tsan), in build/asan and build/tsan. Any report fails its test.
 #
 #   sh tests/sanitize.sh [asan] [tsan] [-- arguments of ctest, such as -R Camera]
 #
@@ -11,10 +11,10 @@ set -eu
 root=$(CDPATH= cd -- "$(dirname -- "$0")/.." && pwd)
 . "$root/cmake/build.sh"
 
-presets=
+kinds=
 while [ $# -gt 0 ]; do
   case $1 in
-    asan | tsan) presets="$presets $1" ;;
+    asan | tsan) kinds="$kinds $1" ;;
     --) shift; break ;;
     *) echo "tests/sanitize.sh: found $1, wanted asan, tsan or --" >&2; exit 2 ;;
   esac
@@ -26,12 +26,19 @@ export ASAN_OPTIONS=detect_stack_use_after_return=1:check_initialization_order=1
 export "LSAN_OPTIONS=print_suppressions=0 suppressions=$root/tests/lsan.supp"
 export UBSAN_OPTIONS=print_stacktrace=1
 export "TSAN_OPTIONS=halt_on_error=1 suppressions=$root/tests/tsan.supp"
-cd "$root"
-for preset in ${presets:-asan tsan}; do
-  echo "== Building with $preset"
-  cmake --preset "$preset"
-  cmake --build --preset "$preset"
-  echo "== Testing with $preset"
+BUILD_ROOT=$BUILD_DIR
+for kind in ${kinds:-asan tsan}; do
+  case $kind in
+    asan)
+      flags="-fsanitize=address,undefined,float-cast-overflow -fno-sanitize-recover=undefined,float-cast-overflow"
+      flags="$flags -D_GLIBCXX_ASSERTIONS"
+      ;;
+    tsan) flags=-fsanitize=thread ;;
+  esac
+  echo "== $kind"
+  BUILD_DIR=$BUILD_ROOT/$kind
+  build -DCMAKE_BUILD_TYPE=RelWithDebInfo "-DCMAKE_CXX_FLAGS_RELWITHDEBINFO=-O1 -g1" "-DCMAKE_CXX_FLAGS=$flags"
+  echo "== Testing"
   # The source tree and the installed tree are the same in every build.
-  ctest --preset "$preset" -j "$(nproc)" --no-tests=error -E '^(house|packaging)' "$@"
+  ctest --test-dir "$BUILD_DIR" -j "$(nproc)" --output-on-failure --no-tests=error -E '^(house|packaging)' "$@"
 done
