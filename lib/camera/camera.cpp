@@ -150,7 +150,8 @@ Camera::Data::Data(const LensFacts& facts, const Film& placed, const AnyRayModel
     : lens(facts.lens()),
       film(placed),
       model(any),
-      tilted(camera_detail::tilted_or_moving(placed) ? std::optional(TiltedFilm(placed, any.pupils())) : std::nullopt),
+      tilted(camera_detail::tilted_or_moving(placed) ? std::optional(TiltedFilm(placed, any.pupils(), options.threads))
+                                                     : std::nullopt),
       weights(lens, model, options.bokeh),
       wavelengths(model, scales(lens, film, model, weights, options.normalisation), nm_of(lens, model)),
       front(camera_detail::front_of(lens)),

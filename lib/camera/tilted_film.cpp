@@ -155,7 +155,7 @@ double upright_radius(const LensFacts& facts, const Film& film, ModelKind model)
   return radius;
 }
 
-TiltedFilm::TiltedFilm(const Film& film, const FilmPupilTable& pupils)
+TiltedFilm::TiltedFilm(const Film& film, const FilmPupilTable& pupils, int threads)
     : film_(film),
       first_(plane_of(film, pupils.space())),
       travel_(-film.travel_mm / pupils.space().depth()),
@@ -175,7 +175,7 @@ TiltedFilm::TiltedFilm(const Film& film, const FilmPupilTable& pupils)
     throw Error(where + ": the pupils are those of film points up to " + to_text(pupils.film_radius()) +
                 " mm from the axis, wanted " + to_text(tilt.radius) + " mm or more");
   }
-  pupils_ = pupils.for_tilted_film(tilt);
+  pupils_ = pupils.for_tilted_film(tilt, threads);
 }
 
 FilmPoint TiltedPlane::virtual_point(const FilmPoint& film) const noexcept {

@@ -60,7 +60,7 @@ class PETZVAL_API TiltedFilm {
  public:
   /// pupils: those of the model, for a film of upright_radius(). Throws Error for a film that is no rectangle, tilted
   /// by a quarter turn or more, or near to the plane of the pupil at any time, and for pupils of a smaller film.
-  TiltedFilm(const Film& film, const FilmPupilTable& pupils);
+  TiltedFilm(const Film& film, const FilmPupilTable& pupils, int threads = 1);
 
   /// With its place.
   const Film& film() const noexcept { return film_; }

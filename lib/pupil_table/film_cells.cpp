@@ -291,9 +291,10 @@ bool FilmCells::contains(const FilmPoint& film, double x, double y, std::size_t 
   return at.cell && contains_place(at.polygon(), at.from_middle(x, y));
 }
 
-double FilmCells::clearance(const FilmPoint& film, double x, double y, std::size_t wavelength) const noexcept {
+double FilmCells::clearance(const FilmPoint& film, double x, double y, std::size_t wavelength,
+                            std::size_t& sector) const noexcept {
   const Place at = find(film, wavelength);
-  return at.cell ? clearance_of_place(at.polygon(), at.from_middle(x, y)) : -1;
+  return at.cell ? clearance_of_place(at.polygon(), at.from_middle(x, y), sector) : -1;
 }
 
 Vec2<double> FilmCells::position(const FilmPoint& film, double x, double y, std::size_t wavelength) const noexcept {

@@ -38,7 +38,9 @@ class FilmCells {
   double area(const FilmPoint& film, std::size_t wavelength) const noexcept;
   Vec2<double> middle(const FilmPoint& film, std::size_t wavelength) const noexcept;
   bool contains(const FilmPoint& film, double x, double y, std::size_t wavelength) const noexcept;
-  double clearance(const FilmPoint& film, double x, double y, std::size_t wavelength) const noexcept;
+  /// sector: as clearance_of_place().
+  double clearance(const FilmPoint& film, double x, double y, std::size_t wavelength,
+                   std::size_t& sector) const noexcept;
   Vec2<double> position(const FilmPoint& film, double x, double y, std::size_t wavelength) const noexcept;
   FilmPupilTable::Derivatives derivatives(const FilmPoint& film, double u, double v,
                                           std::size_t wavelength) const noexcept;

@@ -15,6 +15,7 @@
 #include "grid_pupils.hpp"
 #include "pupil/aim.hpp"
 #include "pupil/boundary_search.hpp"
+#include "virtual_film_point.hpp"
 
 namespace petzval::inline v0::pupil_table_detail {
 namespace {
@@ -247,34 +248,21 @@ std::vector<PupilPolygon> grid_polygons(const Lens& lens, const TwoPlanes& space
 
 std::vector<PupilPolygon> tilted_grid_polygons(const FilmPupilTable& upright, const FilmTilt& tilt,
                                                const FilmGrid& grid, std::size_t wavelength) {
-  struct Seen {
-    FilmPoint film;
-    double nearer;
-  };
-  const auto test = [&](std::size_t count, const auto& seen_by, const double* x, const double* y, double* clearances) {
-    for (std::size_t i = 0; i < count; ++i) {
-      const auto& [film, nearer] = seen_by(i);
-      const FilmPoint at{film.x - nearer * x[i], film.y - nearer * y[i]};
-      clearances[i] = upright.clearance(at, x[i], y[i], wavelength);
-    }
-  };
-
   // The pupils of some places of each point: of the middle one first, where there is light if anywhere.
   const std::size_t columns = 2 * grid.columns + 1;
   const std::vector<FilmPoint> points = points_of(grid);
   constexpr std::array parts{0.5, 0.0, 0.25, 0.75, 1.0};
   std::vector<std::vector<PupilRegion>> pupils;
   for (const double part : parts) {
-    std::vector<Seen> seen;
+    std::vector<VirtualFilmPoint> seen;
     std::vector<PupilGuess> guesses;
     for (const FilmPoint& point : points) {
-      const double nearer = Nearer(tilt, point).at(part);
-      seen.push_back({point, nearer});
+      seen.push_back({point, Nearer(tilt, point).at(part)});
       // Where the upright film has the pupil, or the last one on the way to it.
       Vec2<double> place{0, 0};
       double area = 0;
       for (int round = 0; round < 4; ++round) {
-        FilmPoint at{point.x - nearer * place.x, point.y - nearer * place.y};
+        FilmPoint at = seen.back().on_upright(place.x, place.y);
         for (int step = 0; step < 32 && !(area = upright.area(at, wavelength)); ++step) at = {0.95 * at.x, 0.95 * at.y};
         place = upright.middle(at, wavelength);
       }
@@ -284,8 +272,8 @@ std::vector<PupilPolygon> tilted_grid_polygons(const FilmPupilTable& upright, co
     pupils.push_back(grid_pupils(
         {guesses, columns}, grid_directions,
         [&](std::size_t count, const std::uint32_t* which, const double* x, const double* y, double* clearances) {
-          test(
-              count, [&](std::size_t i) { return seen[which[i]]; }, x, y, clearances);
+          const auto from = [&](std::size_t i) { return seen[which[i]]; };
+          upright_clearances(upright, wavelength, count, from, x, y, clearances);
         }));
   }
   std::vector<PupilPolygon> polygons = node_polygons(pupils.front(), columns, PolygonFit::enclosing);
@@ -299,12 +287,12 @@ std::vector<PupilPolygon> tilted_grid_polygons(const FilmPupilTable& upright, co
       polygons, probes, [&](const std::array<double, 4>& at) { return ProbedPoint(grid, at[0], at[1]).weights; },
       [&](std::span<const std::array<double, 4>> at, std::span<const std::uint32_t> which, const double* x,
           const double* y, double* clearances) {
-        const auto seen = [&](std::size_t i) {
+        const auto from = [&](std::size_t i) {
           const std::array<double, 4>& place = at[which[i]];
           const FilmPoint point = ProbedPoint(grid, place[0], place[1]).film;
-          return Seen{point, Nearer(tilt, point).at(place[2])};
+          return VirtualFilmPoint{point, Nearer(tilt, point).at(place[2])};
         };
-        test(which.size(), seen, x, y, clearances);
+        upright_clearances(upright, wavelength, which.size(), from, x, y, clearances);
       });
   mirror_at_axes(polygons, grid);
   return polygons;

@@ -116,13 +116,25 @@ bool FilmPupilTable::contains(const FilmPoint& film, double x, double y, Wavelen
   return contains_place(polygon, Point<double>{cosine * x - sine * y, sine * x + cosine * y} - polygon.middle());
 }
 
-double FilmPupilTable::clearance(const FilmPoint& film, double x, double y, Wavelength wavelength) const noexcept {
-  if (data_->images) return pupil_detail::clearance_of(contains(film, x, y, wavelength));
-  if (const auto& cells = data_->cells) return cells->clearance(film, x, y, data_->position(wavelength));
-  const auto [strip, t, cosine, sine] = data_->find(film, wavelength);
-  if (!strip) return -1;
-  const InStrip<double> polygon{strip, t};
-  return clearance_of_place(polygon, Point<double>{cosine * x - sine * y, sine * x + cosine * y} - polygon.middle());
+void FilmPupilTable::clearances(std::size_t count, const TwoPlaneRays<const double>& lines, Wavelength wavelength,
+                                double* clearances) const noexcept {
+  const std::size_t position = data_->position(wavelength);
+  std::size_t sector = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const FilmPoint film{lines.film_x[i], lines.film_y[i]};
+    const double x = lines.pupil_x[i], y = lines.pupil_y[i];
+    if (data_->images) {
+      clearances[i] = pupil_detail::clearance_of(contains(film, x, y, wavelength));
+    } else if (data_->cells) {
+      clearances[i] = data_->cells->clearance(film, x, y, position, sector);
+    } else if (const auto [strip, t, cosine, sine] = data_->find(film, position); strip) {
+      const InStrip<double> polygon{strip, t};
+      const Point<double> place{cosine * x - sine * y, sine * x + cosine * y};
+      clearances[i] = clearance_of_place(polygon, place - polygon.middle(), sector);
+    } else {
+      clearances[i] = -1;
+    }
+  }
 }
 
 Vec2<double> FilmPupilTable::position(const FilmPoint& film, double x, double y, Wavelength wavelength) const noexcept {

@@ -335,7 +335,7 @@ FilmPupilTable FilmPupilTable::of_iris(const TwoPlanes& space, const Iris& iris,
   return FilmPupilTable(std::move(data));
 }
 
-FilmPupilTable FilmPupilTable::for_tilted_film(const FilmTilt& tilt) const {
+FilmPupilTable FilmPupilTable::for_tilted_film(const FilmTilt& tilt, int threads) const {
   check_film_radius("tilted film", tilt.radius);
   auto data = std::make_shared<Data>();
   if (data_->images && tilt.travel == 0) {
@@ -345,7 +345,8 @@ FilmPupilTable FilmPupilTable::for_tilted_film(const FilmTilt& tilt) const {
     return FilmPupilTable(std::move(data));
   }
   // Edges of blades are alike neither all around nor at mirror images.
-  if (data_->bladed() || (data_->images && !data_->images->round())) return of_round_stop().for_tilted_film(tilt);
+  if (data_->bladed() || (data_->images && !data_->images->round()))
+    return of_round_stop().for_tilted_film(tilt, threads);
   data->space = data_->space;
   data->primary = data_->primary;
   data->compiled = data_->compiled;
@@ -354,14 +355,15 @@ FilmPupilTable FilmPupilTable::for_tilted_film(const FilmTilt& tilt) const {
     data->wavelengths = wavelengths();
     const FilmGrid grid = disc_grid(tilt.radius);
     data->cells.emplace(grid, tilt.radius, data->primary);
-    for (std::size_t w = 0; w < wavelengths(); ++w) {
-      data->cells->add(tilted_grid_polygons(*this, tilt, grid, w));
-    }
+    std::vector<std::vector<PupilPolygon>> polygons(wavelengths());
+    parallel_for(wavelengths(), 1, threads,
+                 [&](std::size_t w, std::size_t) { polygons[w] = tilted_grid_polygons(*this, tilt, grid, w); });
+    for (const auto& own : polygons) data->cells->add(own);
     return FilmPupilTable(std::move(data));
   }
   std::vector<FilmPupils> pupils;
   for (std::size_t w = 0; w < wavelengths(); ++w) pupils.push_back(tilted_film_pupils(*this, tilt, w));
-  const auto [lit_radius, polygons] = film_polygons(tilt.radius, PolygonFit::enclosing, pupils, 1);
+  const auto [lit_radius, polygons] = film_polygons(tilt.radius, PolygonFit::enclosing, pupils, threads);
   data->lit_radius = lit_radius;
   for (const auto& own : polygons) data->add(own);
   return FilmPupilTable(std::move(data));

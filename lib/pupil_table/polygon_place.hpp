@@ -140,12 +140,17 @@ bool contains_place(const In<double>& polygon, const Point<double>& q) {
   return found && found->first <= 1 && !found->second.obscures(found->first);
 }
 
-/// As FilmPupilTable::clearance().
+/// As FilmPupilTable::clearances(). facing: the sector that probably faces the place, replaced by the one that does.
 template <template <class> class In>
-double clearance_of_place(const In<double>& polygon, const Point<double>& q) {
-  const auto found = way_to_place(polygon, q);
-  if (!found) return -1;
-  const auto& [squared, sector] = *found;
+double clearance_of_place(const In<double>& polygon, const Point<double>& q, std::size_t& facing) {
+  Sector<double> sector = sector_at(polygon, facing);
+  if (!sector.faces(q)) {
+    const std::size_t k = sector_towards(polygon, q);
+    if (k == polygon_corners) return -1;
+    facing = k;
+    sector = sector_at(polygon, k);
+  }
+  const double way = sector.way_to(q), squared = way * way;
   double least = 1 - squared;
   if (sector.obscured > 0) {
     const double inner = sector.obscured_from - squared, outer = squared - sector.obscured_from - sector.obscured;

@@ -8,14 +8,10 @@
 
 #include "film_polygons.hpp"
 #include "pupil/boundary_search.hpp"
+#include "virtual_film_point.hpp"
 
 namespace petzval::inline v0::pupil_table_detail {
 namespace {
-
-/// A virtual film point on +y, and how much nearer a film point of it is (see FilmTilt).
-struct Field {
-  double height = 0, nearer = 0;
-};
 
 /// What the pupils of the upright film tell before those of the tilted one are looked for.
 struct Expected {
@@ -45,7 +41,7 @@ FilmPupils tilted_film_pupils(const FilmPupilTable& upright, const FilmTilt& til
   // Calls find(guesses, clearances) for the points at some heights, row by row.
   const auto search = [upright, tilt, wavelength, expected](std::span<const double> heights, const auto& find) {
     const double steepest = std::hypot(tilt.slope_x, tilt.slope_y);
-    std::vector<Field> fields;
+    std::vector<VirtualFilmPoint> fields;
     // The middle first, where there is light if anywhere. More between: the pupils of a plane far from the one in which
     // light is limited, a thin lens's, move by more than their size.
     for (const double part : {0.5, 0.0, 0.25, 0.75, 1.0}) {
@@ -55,24 +51,22 @@ FilmPupils tilted_film_pupils(const FilmPupilTable& upright, const FilmTilt& til
         const auto [first_low, last_low] = nearer(-steepest * height);
         const auto [first_high, last_high] = nearer(steepest * height);
         const double low = within(std::min(first_low, last_low)), high = within(std::max(first_high, last_high));
-        fields.push_back({height, low + part * (high - low)});
+        fields.push_back({{0, height}, low + part * (high - low)});
       }
     }
     std::vector<pupil_detail::PupilGuess> guesses;
-    for (const auto& [height, nearer] : fields) {
+    for (const VirtualFilmPoint& field : fields) {
       double y = 0;
       for (int round = 0; round < 2; ++round) {
-        y = upright.middle({0, std::min(height - nearer * y, expected.lit)}, wavelength)[1];
+        y = upright.middle({0, std::min(field.on_upright(0, y).y, expected.lit)}, wavelength)[1];
       }
       const double near = 3 * expected.radius, far = 12 * expected.radius;
       guesses.push_back({0, y - far, y + far, expected.radius, y, near, expected.ring});
     }
     return find(guesses, [&](std::size_t count, const std::uint32_t* which, const double* x, const double* y,
                              double* clearances) {
-      for (std::size_t i = 0; i < count; ++i) {
-        const auto& [height, nearer] = fields[which[i]];
-        clearances[i] = upright.clearance({-nearer * x[i], height - nearer * y[i]}, x[i], y[i], wavelength);
-      }
+      const auto from = [&](std::size_t i) { return fields[which[i]]; };
+      upright_clearances(upright, wavelength, count, from, x, y, clearances);
     });
   };
   return {[=](std::span<const double> heights) {

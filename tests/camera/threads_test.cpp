@@ -70,7 +70,9 @@ TEST(Camera, IsSharedByThreads) {
 // Threads that set a camera up share its wavelengths.
 TEST(Camera, SetUpDoesNotDependOnThreads) {
   for (const auto& [id, film] : {std::pair{"double_gauss_100mm_f2_28deg", Film{}},
-                                 {"anamorphic_60mm_2x", Film{.width_mm = 20, .height_mm = 14}}}) {
+                                 {"double_gauss_100mm_f2_28deg", Film{.tilt_rad = 0.1}},
+                                 {"anamorphic_60mm_2x", Film{.width_mm = 20, .height_mm = 14}},
+                                 {"anamorphic_60mm_2x", Film{.width_mm = 20, .height_mm = 14, .swing_rad = 0.1}}}) {
     Prescription p = testing::data_prescription(id);
     const Lens lens = compile(p, std::vector<double>{480, 540, 620}, {.missing_glass = MissingGlass::abbe});
     for (const ModelKind model : {ModelKind::polynomial_3, ModelKind::exact_float}) {

@@ -24,6 +24,12 @@ using petzval::testing::data_lens;
 using petzval::testing::message;
 using petzval::testing::passing;
 
+double clearance(const FilmPupilTable& table, const FilmPoint& film, double x, double y, Wavelength wavelength = {}) {
+  double result = 0;
+  table.clearances(1, {&film.x, &film.y, &x, &y}, wavelength, &result);
+  return result;
+}
+
 TEST(FilmPupilTable, SeesThroughAGlassCloseToTheFilm) {
   Prescription p = petzval::testing::data_prescription("double_gauss_100mm_f2.0");
   // A plate of 2 mm, 0.1 mm before the film, which moves back by what the plate shifts the image.
@@ -76,15 +82,47 @@ TEST(FilmPupilTable, KnowsHowFarWithinAPupilAPlaceLies) {
       const FilmPoint film{0.6 * radius * unit(random), 0.6 * radius * unit(random)};
       const Vec2<double> middle = table.middle(film);
       const double x = middle.x + reach * unit(random), y = middle.y + reach * unit(random);
-      const double here = table.clearance(film, x, y);
+      const double here = clearance(table, film, x, y);
       EXPECT_EQ(here >= 0, table.contains(film, x, y)) << id << ' ' << here;
       EXPECT_GT(here, -1) << id;
       constexpr double step = 1e-7;
-      EXPECT_NEAR(table.clearance(film, x + step * reach, y), here, 20 * step) << id;
-      EXPECT_NEAR(table.clearance({film.x, film.y + step * radius}, x, y), here, 20 * step) << id;
-      EXPECT_NEAR(table.clearance(film, x, y) - table.clearance({-film.x, -film.y}, -x, -y), 0, 1e-9) << id;
+      EXPECT_NEAR(clearance(table, film, x + step * reach, y), here, 20 * step) << id;
+      EXPECT_NEAR(clearance(table, {film.x, film.y + step * radius}, x, y), here, 20 * step) << id;
+      EXPECT_NEAR(clearance(table, film, x, y) - clearance(table, {-film.x, -film.y}, -x, -y), 0, 1e-9) << id;
     }
-    EXPECT_EQ(table.clearance({0, 2 * radius}, 0, 0), -1) << id;
+    EXPECT_EQ(clearance(table, {0, 2 * radius}, 0, 0), -1) << id;
+  }
+}
+
+TEST(FilmPupilTable, KnowsHowFarWithinPupilsManyPlacesLie) {
+  const Lens lens = data_lens("double_gauss_100mm_f2.0");
+  const FilmPupilTable tables[]{FilmPupilTable::enclosing(lens, 20),
+                                FilmPupilTable::enclosing(data_lens("catadioptric_mangin_1000mm_f7.5"), 20),
+                                FilmPupilTable::enclosing(data_lens("anamorphic_60mm_2x"), 20),
+                                FilmPupilTable::enclosing(with_iris(lens, {.blades = 5}), 20),
+                                FilmPupilTable::of_iris({50, 0}, {}, std::array{PupilImage{.radius = {10, 10}}}, 20)};
+  for (const FilmPupilTable& table : tables) {
+    const double reach = 1.5 * std::sqrt(table.area({0, 0}));
+    std::mt19937_64 random(5);
+    std::uniform_real_distribution<double> unit(-1, 1);
+    std::array<std::vector<double>, 4> at;
+    // Lines outwards, as pupils of tilted films are looked for, and places anywhere, on and off the film.
+    for (int line = 0; line < 100; ++line) {
+      const double film_x = 22 * unit(random), film_y = 22 * unit(random), x = unit(random), y = unit(random);
+      for (int i = 0; i < 30; ++i) {
+        const double way = reach * (line % 2 ? unit(random) : i / 30.0);
+        at[0].push_back(film_x), at[1].push_back(film_y), at[2].push_back(way * x), at[3].push_back(way * y);
+      }
+    }
+    std::vector<double> together(at[0].size());
+    table.clearances(together.size(), {at[0].data(), at[1].data(), at[2].data(), at[3].data()}, {}, together.data());
+    int within = 0;
+    for (std::size_t i = 0; i < together.size(); ++i) {
+      EXPECT_NEAR(together[i], clearance(table, {at[0][i], at[1][i]}, at[2][i], at[3][i]), 1e-12);
+      within += together[i] >= 0;
+    }
+    EXPECT_GT(within, 300);
+    EXPECT_LT(within, 2700);
   }
 }
 
@@ -440,7 +478,7 @@ TEST(FilmPupilTable, IsDarkAtWavelengthsThatItDoesNotCover) {
       EXPECT_EQ(table.area(film, beyond), 0);
       EXPECT_EQ(table.sample(film, 0.3, 0.7, beyond).area, 0);
       EXPECT_FALSE(table.contains(film, inside.x, inside.y, beyond));
-      EXPECT_LT(table.clearance(film, inside.x, inside.y, beyond), 0);
+      EXPECT_LT(clearance(table, film, inside.x, inside.y, beyond), 0);
       EXPECT_GT(table.position(film, inside.x, inside.y, beyond).y, 1);
     }
     const auto last = static_cast<std::uint16_t>(table.wavelengths());

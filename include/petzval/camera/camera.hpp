@@ -36,8 +36,8 @@ enum class Normalisation : std::uint8_t {
 struct CameraOptions {
   ModelKind model = ModelKind::exact_float;
   Normalisation normalisation = Normalisation::irradiance;
-  /// Of the set-up, 1 or more: they share the compiled wavelengths of exact models and polynomials. The camera does not
-  /// depend on them.
+  /// Of the set-up, 1 or more: they share the compiled wavelengths of exact models, polynomials and tilted films. The
+  /// camera does not depend on them.
   int threads = 1;
   BokehControls bokeh{};  ///< the defaults change nothing
   /// Of first-order models: what is in focus at each place of the film, in place of the film's own focus, where a point

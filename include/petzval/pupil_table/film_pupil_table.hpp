@@ -203,7 +203,8 @@ class PETZVAL_API FilmPupilTable {
   /// (tests/camera/tilted_exposure_test.cpp), except where enclosing() misses more: of a ball lens 10 mm across, tilted
   /// by 8 degrees, 2e-3 on a film of 3 x 2 mm, 2e-4 on one of 0.6 x 0.45 mm at f/8. This table's film_radius must reach
   /// to all points where its rays meet the upright film. Throws Error for a radius that is negative or not finite.
-  FilmPupilTable for_tilted_film(const FilmTilt& tilt) const;
+  /// threads: 1 or more, they share the wavelengths; the table does not depend on them.
+  FilmPupilTable for_tilted_film(const FilmTilt& tilt, int threads = 1) const;
 
   /// The planes that film points and samples lie in.
   const TwoPlanes& space() const noexcept;
@@ -236,10 +237,6 @@ class PETZVAL_API FilmPupilTable {
   /// Whether a place in the plane of the pupil belongs to the pupil of a film point.
   bool contains(const FilmPoint& film, double x, double y, Wavelength wavelength = {}) const noexcept;
 
-  /// How far within that pupil the place lies: from 1 in the middle to 0 at the edge, and on to -1 outside and in the
-  /// obscuration. Continuous over film points and places that the pupil faces; of pupils in closed form 1 or -1.
-  double clearance(const FilmPoint& film, double x, double y, Wavelength wavelength = {}) const noexcept;
-
   /// The u and v whose sample is a place in the pupil of a film point; v is above 1 outside, and where an obscuration
   /// lies that of its inner edge.
   Vec2<double> position(const FilmPoint& film, double x, double y, Wavelength wavelength = {}) const noexcept;
@@ -248,6 +245,11 @@ class PETZVAL_API FilmPupilTable {
   template <class T>
   void contains(std::size_t count, const TwoPlaneRays<const T>& lines, const RayWavelengths& wavelengths,
                 std::uint8_t* within) const noexcept;
+  /// How far within the pupils the places of some rays lie: from 1 in the middle to 0 at the edge, and on to -1 outside
+  /// and in the obscuration. Continuous over film points and places that the pupil faces; of pupils in closed form 1 or
+  /// -1. clearances: N. Fast where rays follow that differ little.
+  void clearances(std::size_t count, const TwoPlaneRays<const double>& lines, Wavelength wavelength,
+                  double* clearances) const noexcept;
 
   FilmPupilArrays arrays() const;
 

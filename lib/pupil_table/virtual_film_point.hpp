@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+
+#include "petzval/pupil_table/film_pupil_table.hpp"
+
+namespace petzval::inline v0::pupil_table_detail {
+
+/// A virtual film point of a tilted film, and how much nearer a film point of it is (see FilmTilt).
+struct VirtualFilmPoint {
+  FilmPoint at;
+  double nearer = 0;
+
+  /// Where the ray from that film point through (x, y) in the plane of the pupil meets the upright film.
+  FilmPoint on_upright(double x, double y) const noexcept { return {at.x - nearer * x, at.y - nearer * y}; }
+};
+
+/// The clearances, in the pupils of the upright film, of rays through places in the plane of the pupil. x, y,
+/// clearances: N each. from(i): where ray i comes from, a VirtualFilmPoint.
+template <class From>
+void upright_clearances(const FilmPupilTable& upright, std::size_t wavelength, std::size_t count, const From& from,
+                        const double* x, const double* y, double* clearances) {
+  constexpr std::size_t block = 256;
+  std::array<double, block> film_x, film_y;
+  for (std::size_t begin = 0; begin < count; begin += block) {
+    const std::size_t size = std::min(block, count - begin);
+    for (std::size_t i = 0; i < size; ++i) {
+      const FilmPoint film = from(begin + i).on_upright(x[begin + i], y[begin + i]);
+      film_x[i] = film.x, film_y[i] = film.y;
+    }
+    upright.clearances(size, {film_x.data(), film_y.data(), x + begin, y + begin}, wavelength, clearances + begin);
+  }
+}
+
+}  // namespace petzval::inline v0::pupil_table_detail
