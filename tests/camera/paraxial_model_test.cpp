@@ -306,6 +306,26 @@ TEST(ParaxialModel, HasAMapForEveryWavelength) {
             1e-6);
 }
 
+TEST(ParaxialModel, HasTwoSectionsForEveryWavelength) {
+  const Lens lens = compile(testing::data_prescription("anamorphic_60mm_2x"), std::array{450.0, 550.0, 650.0},
+                            {.missing_glass = MissingGlass::abbe});
+  for (const ModelKind kind : {ModelKind::thin, ModelKind::thick}) {
+    const ParaxialModel model(kind, lens, 10);
+    const auto lines = random_lines(133, 10, 5);
+    std::vector<std::uint16_t> each;
+    for (std::size_t i = 0; i < lines.size(); ++i) each.push_back(static_cast<std::uint16_t>(i * 7 % 3));
+    const auto mixed = to_scene(model, lines, {.each = each.data()});
+    for (std::size_t w = 0; w < 3; ++w) {
+      const auto same = to_scene(model, lines, {.all = w});
+      for (std::size_t i = 0; i < lines.size(); ++i) {
+        if (each[i] != w) continue;
+        EXPECT_NEAR(glm::length(mixed[i].ray.origin - same[i].ray.origin), 0, 1e-12) << name(kind);
+        EXPECT_NEAR(glm::length(mixed[i].ray.direction - same[i].ray.direction), 0, 1e-14) << name(kind);
+      }
+    }
+  }
+}
+
 TEST(ParaxialModel, AnswersInFloatAndInBatchesOfAnySizeAlike) {
   const Lens lens = testing::data_lens("double_gauss_100mm_f2.0");
   const ParaxialModel model(ModelKind::thick, lens, film_24x36);

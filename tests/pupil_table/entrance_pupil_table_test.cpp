@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -258,6 +259,36 @@ TEST(EntrancePupilTable, HasNothingForWhatIsNotInFrontOfTheLens) {
   EXPECT_EQ(s.table.pdf({0, 0, -1000}, {{0, 0, -1000}, {nan, 0, 1}}), 0);
   EXPECT_EQ(s.table.pdf({0, 0, -1000}, {{0, 0, -1000}, {0, 0, -1}}), 0);
   EXPECT_GT(s.table.sample({0, 0, -1000}, 0, 1).pdf, 0);
+}
+
+// Film points reach to where the light ends, in every direction of a film whose directions differ.
+TEST(LeavingRays, ComeFromAllOfTheFilm) {
+  const FilmPupilTable pupils = FilmPupilTable::enclosing(testing::data_lens("anamorphic_60mm_2x"), 40);
+  constexpr std::size_t directions = 256;
+  std::array<double, directions> reach{};
+  const auto rays =
+      leaving_rays(pupils, false,
+                   [&](std::size_t count, const TwoPlaneRays<const double>& lines, std::size_t,
+                       const RayArrays<double>&, RayFate* fates) {
+                     for (std::size_t i = 0; i < count; ++i) {
+                       const double x = lines.film_x[i], y = lines.film_y[i], turn = std::atan2(x, y) / (2 * pi);
+                       const auto k = static_cast<std::size_t>((turn - std::floor(turn)) * directions) % directions;
+                       reach[k] = std::max(reach[k], std::hypot(x, y));
+                       fates[i] = RayFate::missed_surface;
+                     }
+                   });
+  EXPECT_EQ(rays.size(), 1u);
+  EXPECT_TRUE(rays[0].empty());
+  double least = 40, most = 0;
+  for (std::size_t k = 0; k < directions; ++k) {
+    const double turn = 2 * pi * (static_cast<double>(k) + 0.5) / directions;
+    double lit = 40;
+    while (lit > 0 && pupils.area({lit * std::sin(turn), lit * std::cos(turn)}) == 0) lit -= 0.05;
+    least = std::min(least, lit), most = std::max(most, lit);
+    EXPECT_GT(reach[k], 0.98 * lit) << k;
+    EXPECT_LT(reach[k], 1.01 * lit) << k;
+  }
+  EXPECT_LT(least, 0.9 * most);
 }
 
 }  // namespace
