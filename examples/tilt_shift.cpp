@@ -196,7 +196,9 @@ double tidy(double value) { return std::abs(value) < 1e-9 ? 0.0 : value; }
 
 std::string film_in_words(const petzval::Film& film) {
   if (!film.tilted()) return "upright";
-  const auto degrees = [](double rad) { return number(tidy(petzval::degrees(rad)), 4) + "\u00b0"; };
+  const auto degrees = [](double rad) {
+    return number(tidy(std::round(1e5 * petzval::degrees(rad)) / 1e5), 4) + "\u00b0";
+  };
   return "tilted by " + degrees(film.tilt_rad) + ", swung by " + degrees(film.swing_rad);
 }
 

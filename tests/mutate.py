@@ -18,10 +18,12 @@ import sys
 import time
 
 MODULES = ("surface", "trace", "pupil", "pupil_table", "focus", "polynomial", "camera", "iris", "blur")
+OTHERS = ("accuracy", "distortion", "files", "film", "io", "lens", "lint", "media", "movement", "paraxial", "prescription", "psf",
+          "rays")  # by --modules
 # Programs that see these modules. Hashes of bits notice every change of rounding: they come last, and what they alone notice is
 # counted by itself.
 PROGRAMS = MODULES + ("lens", "paraxial", "rays", "movement", "accuracy", "psf", "bits")
-LIBRARIES = ("petzval-core", "petzval-blur")
+LIBRARIES = ("petzval-core", "petzval-blur", "petzval-fit", "petzval-image")
 WANTED = 90.0  # per cent
 QUICK = 0.5  # seconds: a program's quick tests run before its others
 LONGEST = 1.0  # seconds: longer tests of other modules are left out
@@ -155,21 +157,22 @@ def copy_tree(root, copy):
 
 
 class Tests:
-    def __init__(self, copy, jobs):
+    def __init__(self, copy, jobs, modules):
         self.copy, self.build, self.jobs = copy, copy / "build", jobs
+        self.programs = PROGRAMS + tuple(sorted(set(modules) - set(PROGRAMS)))
         # What is put back was compiled before.
         launcher = ["-DCMAKE_CXX_COMPILER_LAUNCHER=ccache"] if shutil.which("ccache") else []
         subprocess.run(["cmake", "-S", copy, "-B", self.build, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
                         "-DBUILD_SHARED_LIBS=ON", "-DPETZVAL_BUILD_EXAMPLES=OFF", "-DCMAKE_LINK_DEPENDS_NO_SHARED=ON", *launcher],
                        check=True, stdout=subprocess.DEVNULL)
-        if not self.make([*LIBRARIES, *(f"{p}_tests" for p in PROGRAMS)], quiet=False):
+        if not self.make([*LIBRARIES, *(f"{p}_tests" for p in self.programs)], quiet=False):
             sys.exit("the tests do not build")
         self.objects = collections.Counter()
         deps = subprocess.run(["ninja", "-C", self.build, "-t", "deps"], check=True, capture_output=True, text=True).stdout
         for line in deps.splitlines():
             if line.startswith("    "):
                 self.objects[os.path.normpath(self.build / line.strip())] += 1
-        self.seconds = {program: self.measured(program) for program in PROGRAMS}
+        self.seconds = {program: self.measured(program) for program in self.programs}
 
     def measured(self, program):
         """The seconds of each test where nothing is changed; kept as long as no file changes that the program is made of."""
@@ -194,7 +197,7 @@ class Tests:
                 yield program, ":".join(names), 20 + 5 * sum(self.seconds[program][name] for name in names)
 
         yield from some(module, lambda seconds: seconds <= QUICK)
-        others = sorted(set(PROGRAMS) - {module, "bits"}, key=lambda p: sum(self.seconds[p].values()))
+        others = sorted(set(self.programs) - {module, "bits"}, key=lambda p: sum(self.seconds[p].values()))
         for program in others:
             yield from some(program, lambda seconds: seconds <= QUICK)
         yield from some(module, lambda seconds: seconds > QUICK)
@@ -287,13 +290,13 @@ def main():
         if getattr(options, name) < 1:
             parser.error(f"--{name}: found {getattr(options, name)}, wanted 1 or more")
     for module in options.modules:
-        if module not in MODULES:
-            parser.error(f"--modules: found {module}, wanted some of {', '.join(MODULES)}")
+        if module not in MODULES + OTHERS:
+            parser.error(f"--modules: found {module}, wanted some of {', '.join(MODULES + OTHERS)}")
 
     signal.signal(signal.SIGTERM, lambda *_: sys.exit("stopped"))  # with the report and the file put back
     known = read_equivalent(options.root / "tests" / "mutants.txt")
     copy_tree(options.root, options.copy)
-    tests = Tests(options.copy, options.jobs)
+    tests = Tests(options.copy, options.jobs, options.modules)
     counts, survivors, done = collections.defaultdict(collections.Counter), [], 0
     try:
         for change in sample(options.root, options.modules, options.seed):

@@ -51,9 +51,9 @@ void check(const TiltView& view) {
   if (!(view.blur_mm > 0)) throw Error("tilt_figure: blur is " + to_text(view.blur_mm) + " mm, wanted more than 0");
 }
 
-/// Without rounding errors, and never "-0".
+/// To 1e-5 degrees, as less is where a fit ends, and never "-0".
 std::string degrees_text(double angle_rad) {
-  return to_text(std::round(1e6 * degrees(angle_rad)) / 1e6 + 0.0, 4) + "\u00b0";
+  return to_text(std::round(1e5 * degrees(angle_rad)) / 1e5 + 0.0, 4) + "\u00b0";
 }
 
 class Figure {
