@@ -446,11 +446,13 @@ ImportanceSample SceneSide::through_pinhole(const AnyRayModel& model, const Vec3
 
 double SceneSide::pdf(const AnyRayModel& model, const Vec3<double>& point, const Vec3<double>& direction,
                       Wavelength wavelength) const noexcept {
-  return model.pinhole() ? 0 : entrance_.pdf(point, {point, direction}, wavelength);
+  const Ray<double> ray{point, direction};
+  return model.pinhole() || !valid(ray, wavelength) ? 0 : entrance_.pdf(point, ray, wavelength);
 }
 
 double SceneSide::pdf_distant(const AnyRayModel& model, const Ray<double>& ray, Wavelength wavelength) const noexcept {
-  return model.pinhole() ? 0 : entrance_.pdf(ray.direction * -far, ray, wavelength) / squared(far);
+  if (model.pinhole() || !valid(ray, wavelength)) return 0;
+  return entrance_.pdf(ray.direction * -far, ray, wavelength) / squared(far);
 }
 
 }  // namespace camera_detail

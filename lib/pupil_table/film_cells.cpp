@@ -175,7 +175,8 @@ FilmCells::Place FilmCells::find_bladed(const FilmPoint& film, std::size_t wavel
   const double r = std::hypot(film.x, film.y);
   const BladedTable<double> own = bladed_table<double>();
   if (!(r <= own.lit_radius)) return {};
-  const double sine = r > 0 ? film.x / r : 0, cosine = r > 0 ? film.y / r : 1, row = r * own.rows_per_mm;
+  const bool off_axis = r * r > axis_r2<double>;
+  const double sine = off_axis ? film.x / r : 0, cosine = off_axis ? film.y / r : 1, row = r * own.rows_per_mm;
   const std::size_t i = std::min(static_cast<std::size_t>(row), rows_ - 1);
   const double turn = blades_ * (turn_of(sine, cosine) + 1) + first_blade_;
   const auto nearest = static_cast<std::size_t>(turn + 0.5);

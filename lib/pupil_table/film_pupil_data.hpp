@@ -120,11 +120,11 @@ struct FilmPupilTable::Data {
   }
   Place find(const FilmPoint& film, Wavelength at_wavelength) const noexcept {
     const std::size_t wavelength = position(at_wavelength);
-    const double r = std::sqrt(film.x * film.x + film.y * film.y);
+    const double r2 = film.x * film.x + film.y * film.y, r = std::sqrt(r2);
     if (!(r <= lit_radius * (1 + 1e-6)) || wavelength >= wavelengths) return {};
     const double at = r * strips_per_mm;
     const std::size_t strip = std::min(static_cast<std::size_t>(at), strips_each - 1);
-    const bool turn = r > 0;
+    const bool turn = r2 > pupil_table_detail::axis_r2<double>;
     return {&twice[(wavelength * strips_each + strip) * pupil_table_detail::StripLayout::size],
             at - static_cast<double>(strip), turn ? film.y / r : 1, turn ? film.x / r : 0};
   }

@@ -30,7 +30,7 @@ PETZVAL_INLINE Place<R> place_of(const StripTable<R>& table, R film_x, R film_y,
   const R r2 = film_x * film_x + film_y * film_y;
   const R r = core_detail::square_root(r2);
   const std::int32_t known = (r <= table.lit_radius) & (wavelength >= 0) & sound;
-  const std::int32_t turn = known & (r2 > R(0));
+  const std::int32_t turn = known & (r2 > axis_r2<R>);
   const R per_length = R(1) / (turn ? r : R(1));
   const R place = known ? r * table.strips_per_mm : R(0);
   const auto at = static_cast<std::int32_t>(place);
@@ -70,7 +70,7 @@ PETZVAL_INLINE Place<R> place_of(const BladedTable<R>& table, R film_x, R film_y
   const R r2 = film_x * film_x + film_y * film_y;
   const R r = core_detail::square_root(r2);
   const std::int32_t known = (r <= table.lit_radius) & (wavelength >= 0) & sound;
-  const std::int32_t off_axis = known & (r2 > R(0));
+  const std::int32_t off_axis = known & (r2 > axis_r2<R>);
   const R per_length = R(1) / (off_axis ? r : R(1));
   const R cosine = off_axis ? film_y * per_length : R(1), sine = off_axis ? film_x * per_length : R(0);
   const R row = known ? r * table.rows_per_mm : R(0);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 
 #include "core/loop_math.hpp"
 #include "core/simd.hpp"
@@ -14,6 +15,11 @@
 #include "pupil_table/sector.hpp"
 
 namespace petzval::inline v0::pupil_table_detail {
+
+/// Squared distances from the axis, mm^2, up to which film points count as on it: smaller ones have too few digits for
+/// a direction.
+template <class R>
+inline constexpr R axis_r2 = std::numeric_limits<R>::min() / std::numeric_limits<R>::epsilon();
 
 /// The polygons between two distances from the axis, as polynomials of the fraction t of the way, in one row of numbers
 /// that loops gather from: what is used together lies together. Corners are relative to the middle.

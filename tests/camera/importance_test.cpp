@@ -199,6 +199,12 @@ TEST(Importance, IsNothingForWhatMakesNoRay) {
     EXPECT_EQ(camera.sample_importance({0, 0, -1000}, 0.4, 0.6, 1).importance.fate, RayFate::invalid);
     EXPECT_EQ(camera.importance({{0, 0, -1000}, {0, 0, 1}}, 1).fate, RayFate::invalid);
     EXPECT_EQ(camera.importance({{0, 0, -1000}, {0, 0, 0.9}}).fate, RayFate::invalid);
+    EXPECT_EQ(camera.pdf_importance({0, 0, -1000}, {0, 0, 1}) > 0, model != ModelKind::pinhole);
+    EXPECT_EQ(camera.pdf_distant_importance({{0, 0, -1000}, {0, 0, 1}}) > 0, model != ModelKind::pinhole);
+    for (const double length : {0.9, 1e-160, 0.0, HUGE_VAL, std::numeric_limits<double>::quiet_NaN()}) {
+      EXPECT_EQ(camera.pdf_importance({0, 0, -1000}, {0, 0, length}), 0) << length;
+      EXPECT_EQ(camera.pdf_distant_importance({{0, 0, -1000}, {0, 0, length}}), 0) << length;
+    }
     EXPECT_FALSE(camera.project({0, 0, -1000}, 1));
     if (model != ModelKind::pinhole) {
       EXPECT_FALSE(camera.sample_importance({0, 0, -1000}, nan, 0.6));

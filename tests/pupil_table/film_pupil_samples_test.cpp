@@ -92,6 +92,39 @@ TEST(FilmPupilTable, IsContinuousAroundTheAxis) {
   }
 }
 
+/// Film points from 10 to the smallest numbers, mm from the axis, on two sides of it: near it they have its pupil.
+template <class T>
+void expect_the_pupil_of_the_axis(const FilmPupilTable& table, double share) {
+  std::vector<T> film_x, film_y;
+  for (T r = 10; r > 0; r /= 2) {
+    film_x.push_back(r), film_y.push_back(0);
+    film_x.push_back(r * T(-0.6)), film_y.push_back(r * T(0.8));
+  }
+  const std::size_t count = film_x.size();
+  std::vector<T> u(count, static_cast<T>(share)), v(count, T(0.8)), areas(count);
+  table.sample<T>(count, film_x.data(), film_y.data(), u.data(), v.data(), {}, u.data(), v.data(), areas.data());
+  const PupilSample axis = table.sample({0, 0}, share, T(0.8));
+  for (std::size_t i = 0; i < count; ++i) {
+    const double r = std::hypot(film_x[i], film_y[i]);
+    if (r > 1e-4) continue;
+    const PupilSample one = table.sample({film_x[i], film_y[i]}, share, T(0.8));
+    EXPECT_NEAR(std::hypot(one.x - axis.x, one.y - axis.y), 0, 2e-3 * std::sqrt(axis.area)) << r;
+    EXPECT_NEAR(std::hypot(u[i] - axis.x, v[i] - axis.y), 0, 2e-3 * std::sqrt(axis.area)) << r;
+  }
+}
+
+TEST(FilmPupilTable, HasThePupilOfTheAxisBesideIt) {
+  const Lens lens = data_lens("double_gauss_100mm_f2.0");
+  for (const FilmPupilTable& table :
+       {FilmPupilTable::enclosing(lens, 22), FilmPupilTable::enclosing(with_iris(lens, {.blades = 5}), 22),
+        FilmPupilTable::enclosing(data_lens("anamorphic_60mm_2x"), 22)}) {
+    for (const double share : {0.0, 0.3, 0.7}) {
+      expect_the_pupil_of_the_axis<float>(table, share);
+      expect_the_pupil_of_the_axis<double>(table, share);
+    }
+  }
+}
+
 class SampledTable : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(SampledTable, SamplesBatchesLikeSinglePoints) {

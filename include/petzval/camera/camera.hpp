@@ -149,7 +149,8 @@ class PETZVAL_API Camera {
   /// E We / pdf is the film's mean irradiance by light of the irradiance E across that direction.
   ImportanceSample sample_distant_importance(const Vec3<double>& direction, double u, double v,
                                              Wavelength wavelength = {}, double time = 0) const;
-  /// The density with which sample_importance() gives a direction at a point, 1/sr; the same at all times.
+  /// The density with which sample_importance() gives a direction at a point, 1/sr; the same at all times. 0 for what
+  /// is invalid as a ray (Importance::fate).
   double pdf_importance(const Vec3<double>& point, const Vec3<double>& direction, Wavelength wavelength = {}) const;
   /// The same for sample_distant_importance(): of a ray with its direction of travel, given anywhere on its line, among
   /// those of its direction, 1/mm^2 across it.

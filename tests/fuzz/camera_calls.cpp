@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: Apache-2.0
+// Any calls of some cameras, which are built once: samples, importance, connections and projections of any numbers.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include <glm/geometric.hpp>
+
+#include "../data_lenses.hpp"
+#include "bytes.hpp"
+#include "laws.hpp"
+#include "petzval/camera/camera.hpp"
+#include "petzval/focus/focus.hpp"
+
+namespace {
+
+using namespace petzval;
+
+constexpr std::size_t count = 5;
+
+Camera coloured(const char* id, const CameraOptions& options, const Film& film, const Iris& iris = {}) {
+  const std::vector<double> nm{450, 550, 650};
+  const Lens lens = compile(testing::data_prescription(id), nm, {.missing_glass = MissingGlass::abbe});
+  return {with_focus(with_iris(lens, iris), 10000), film, options};
+}
+
+/// Each kind of model, of pupil and of film.
+const Camera& some_camera(fuzz::Bytes& bytes) {
+  using Make = std::function<Camera()>;
+  constexpr const char *usual = "double_gauss_100mm_f2.0", *wide = "fisheye_8mm_f2.8", *flat = "anamorphic_60mm_2x";
+  const Film film{.columns = 36, .rows = 24}, small{.width_mm = 16, .height_mm = 12, .columns = 40, .rows = 30},
+      tilted{.columns = 36, .rows = 24, .margin_mm = 1, .tilt_rad = 0.1, .swing_rad = -0.05},
+      moving{.columns = 36, .rows = 24, .shift_x_mm = 5, .travel_mm = 0.5};
+  static const std::vector<Make> makers{
+      [=] { return coloured(usual, {.model = ModelKind::pinhole}, film); },
+      [=] { return coloured(usual, {.model = ModelKind::thin}, tilted, {.blades = 6, .roundness = 0.3}); },
+      [=] { return coloured(usual, {.model = ModelKind::thin_two_disc}, film); },
+      [=] { return coloured(usual, {.model = ModelKind::thick}, moving); },
+      [=] {
+        const ExpressiveLens bent{.power = {{0, 1}, {1, 1.2}}, .film_offsets = {{{5, 5}, 1, 1}}, .dispersion = {2}};
+        return coloured(usual, {.model = ModelKind::thick, .expressive = bent}, film);
+      },
+      [=] { return coloured(usual, {.model = ModelKind::polynomial_5}, film); },
+      [=] { return coloured(usual, {}, film); },
+      [=] { return coloured(usual, {.normalisation = Normalisation::unity_on_axis}, tilted); },
+      [=] { return coloured(usual, {.model = ModelKind::exact_double}, moving, {.blades = 5, .rotation_rad = 0.2}); },
+      [=] {
+        const BokehControls bokeh{.lens_elements = 7, .weight_distribution = 3, .weight_strength = 0.5};
+        return coloured(usual, {.bokeh = bokeh}, film);
+      },
+      [=] { return coloured(usual, {.bokeh = {.lens_ratio = 1.2, .rate_of_change = 0.5}}, film); },
+      [=] { return coloured(wide, {}, small); },
+      [=] { return coloured(wide, {.model = ModelKind::polynomial_3}, small); },
+      [=] { return coloured(flat, {}, small); },
+      [=] { return coloured(flat, {.model = ModelKind::thick}, small); },
+      [=] { return coloured("catadioptric_mangin_1000mm_f7.5", {.model = ModelKind::exact_double}, small); },
+  };
+  static std::vector<std::unique_ptr<Camera>> cameras(makers.size());
+  auto& camera = cameras[bytes.byte() % cameras.size()];
+  if (!camera) camera = std::make_unique<Camera>(makers[static_cast<std::size_t>(&camera - cameras.data())]());
+  return *camera;
+}
+
+Wavelength wild_wavelength(fuzz::Bytes& bytes) {
+  const int kind = bytes.byte();
+  if (kind < 128) return {};
+  if (kind < 192) return static_cast<std::size_t>(kind % 4);
+  return Wavelength::nm(bytes.number(430, 670));
+}
+
+CameraSample wild_sample(const Film& film, fuzz::Bytes& bytes) {
+  CameraSample s;
+  s.film = {bytes.number(-0.6, 0.6) * film.width_mm + film.shift_x_mm, bytes.number(-0.6, 0.6) * film.height_mm};
+  s.pupil_u = bytes.number(0, 1), s.pupil_v = bytes.number(0, 1);
+  s.wavelength = wild_wavelength(bytes), s.time = bytes.number(0, 1);
+  return s;
+}
+
+Vec3<double> wild_point(fuzz::Bytes& bytes) {
+  return {bytes.number(-800, 800), bytes.number(-800, 800), bytes.number(-3000, 0)};
+}
+
+Vec3<double> wild_direction(fuzz::Bytes& bytes) {
+  if (bytes.byte() < 16) return {bytes.wild(), bytes.wild(), bytes.wild()};
+  const double x = bytes.between(-0.7, 0.7), y = bytes.between(-0.7, 0.7);
+  return {x, y, std::sqrt(1 - x * x - y * y)};
+}
+
+bool density(double value) { return value >= 0 && std::isfinite(value); }
+
+void check(const CameraRay& ray) {
+  fuzz::require(fuzz::finite(ray.ray), "a camera ray is finite");
+  fuzz::require(density(ray.weight) && density(ray.pdf_film) && density(ray.pdf_pupil) && density(ray.pdf_direction),
+                "weight and densities of a camera ray are finite and not negative");
+  if (!ray) return;
+  fuzz::require(ray.fate == RayFate::transmitted, "a ray with a weight passes");
+  fuzz::require(fuzz::unit(ray.ray.direction, 2e-5), "a camera ray has unit length");
+}
+
+void check(const Importance& found) {
+  fuzz::require(density(found.we) && density(found.pdf_film) && density(found.pdf_pupil) &&
+                    density(found.pdf_position) && density(found.pdf_direction),
+                "importance and its densities are finite and not negative");
+  if (!found) return;
+  fuzz::require(found.fate == RayFate::transmitted, "a ray with importance passes");
+  fuzz::require(std::isfinite(found.film.x) && std::isfinite(found.film.y) && std::isfinite(found.raster.x) &&
+                    std::isfinite(found.raster.y),
+                "a ray with importance meets the film");
+}
+
+/// rounding: of |direction|^2.
+void check(const ImportanceSample& found, double rounding) {
+  check(found.importance);
+  fuzz::require(density(found.pdf), "the density of a connection is finite and not negative");
+  if (!found) return;
+  fuzz::require(found.pdf > 0, "a connection has a density");
+  fuzz::require(fuzz::unit(found.direction, rounding) && fuzz::finite(found.on_front), "a connection is finite");
+  fuzz::require(found.distance >= 0, "a connection has a length");
+}
+
+/// Within rounding, in the precision of the model, and what a pupil's polygon turns by where a film point is the axis
+/// in float and not in double. Rays at an edge may have either fate.
+void alike(const CameraRay& one, const Ray<double>& other, double weight) {
+  constexpr double rounding = 1e-2;
+  if (!one || !(weight > 0)) return;
+  const double size = 10 + glm::length(one.ray.origin);  // mm
+  fuzz::require(glm::length(one.ray.direction - other.direction) <= rounding &&
+                    glm::length(one.ray.origin - other.origin) <= rounding * size &&
+                    std::abs(one.weight - weight) <= rounding * one.weight,
+                "a ray of a batch is that of a single call");
+}
+
+template <class T>
+void samples(const Camera& camera, fuzz::Bytes& bytes) {
+  std::array<CameraSample, count> one;
+  std::array<std::array<T, count>, 5> in;
+  std::array<std::array<T, count>, 9> out{};
+  std::array<float, count> nm;
+  std::array<RayFate, count> fates;
+  const bool by_nm = bytes.one_in(4);
+  const Wavelength shared = wild_wavelength(bytes);
+  for (std::size_t i = 0; i < count; ++i) {
+    one[i] = wild_sample(camera.film(), bytes);
+    nm[i] = static_cast<float>(bytes.number(430, 670));
+    one[i].wavelength = by_nm ? Wavelength::nm(double{nm[i]}) : shared;
+    const std::array numbers{one[i].film.x, one[i].film.y, one[i].pupil_u, one[i].pupil_v, one[i].time};
+    for (std::size_t k = 0; k < numbers.size(); ++k) in[k][i] = static_cast<T>(numbers[k]);
+    one[i].film = {in[0][i], in[1][i]};
+    one[i].pupil_u = in[2][i], one[i].pupil_v = in[3][i], one[i].time = in[4][i];
+  }
+  camera.sample<T>(count,
+                   {in[0].data(),
+                    in[1].data(),
+                    in[2].data(),
+                    in[3].data(),
+                    {.all = shared, .each = nullptr, .each_nm = by_nm ? nm.data() : nullptr},
+                    in[4].data()},
+                   {{out[0].data(), out[1].data(), out[2].data(), out[3].data(), out[4].data(), out[5].data()},
+                    out[6].data(),
+                    fates.data(),
+                    out[7].data(),
+                    out[8].data()});
+  for (std::size_t i = 0; i < count; ++i) {
+    const Ray<double> ray{{out[0][i], out[1][i], out[2][i]}, {out[3][i], out[4][i], out[5][i]}};
+    check(CameraRay{ray, fates[i], out[6][i], 0, out[7][i], out[8][i]});
+    const CameraRay alone = camera.sample(one[i]);
+    check(alone);
+    alike(alone, ray, out[6][i]);
+  }
+}
+
+void differentials(const Camera& camera, fuzz::Bytes& bytes) {
+  const CameraRayDifferential found = camera.sample_differential(wild_sample(camera.film(), bytes));
+  check(found.sample);
+  fuzz::require(fuzz::finite(found.by_film_x) && fuzz::finite(found.by_film_y), "derivatives are finite");
+}
+
+void importance(const Camera& camera, fuzz::Bytes& bytes) {
+  std::array<std::array<double, count>, 7> in;
+  std::array<Importance, count> together;
+  const Wavelength wavelength = wild_wavelength(bytes);
+  for (std::size_t i = 0; i < count; ++i) {
+    const Vec3<double> start = wild_point(bytes), towards = wild_direction(bytes);
+    for (int k : {0, 1, 2})
+      in[static_cast<std::size_t>(k)][i] = start[k], in[static_cast<std::size_t>(k) + 3][i] = towards[k];
+    in[6][i] = bytes.number(0, 1);
+  }
+  camera.importance(count, {in[0].data(), in[1].data(), in[2].data(), in[3].data(), in[4].data(), in[5].data()},
+                    {.all = wavelength}, together.data(), in[6].data());
+  for (std::size_t i = 0; i < count; ++i) {
+    const Ray<double> ray{{in[0][i], in[1][i], in[2][i]}, {in[3][i], in[4][i], in[5][i]}};
+    const Importance alone = camera.importance(ray, wavelength, in[6][i]);
+    check(alone), check(together[i]);
+    if (alone && together[i]) {
+      fuzz::require(std::abs(alone.we - together[i].we) <= 1e-3 * alone.we, "importance is that of a single call");
+    }
+    fuzz::require(density(camera.pdf_distant_importance(ray, wavelength)), "the density of a ray is a number");
+  }
+}
+
+void connections(const Camera& camera, fuzz::Bytes& bytes) {
+  const Vec3<double> point = wild_point(bytes), direction = wild_direction(bytes);
+  const double u = bytes.number(0, 1), v = bytes.number(0, 1), time = bytes.number(0, 1);
+  const Wavelength wavelength = wild_wavelength(bytes);
+  const ImportanceSample found = camera.sample_importance(point, u, v, wavelength, time);
+  check(found, 1e-9);
+  if (found) {
+    const double again = camera.pdf_importance(point, found.direction, wavelength);
+    fuzz::require(density(again), "the density of a direction is a number");
+    const Importance met = camera.importance({point, found.direction}, wavelength, time);
+    check(met);
+    // At an edge a ray may have either fate; from far away it is too rough to be told.
+    constexpr double farthest = 1e9;  // mm
+    if (met && glm::length(point) < farthest) {
+      fuzz::require(std::abs(met.we - found.importance.we) <= 1e-3 * met.we, "a connection has its ray's importance");
+    }
+  }
+  constexpr double as_given = 1.001e-3;  // what cameras take for unit length
+  check(camera.sample_distant_importance(direction, u, v, wavelength, time), as_given);
+  fuzz::require(density(camera.pdf_importance(point, direction, wavelength)), "the density of a direction is a number");
+}
+
+void projections(const Camera& camera, fuzz::Bytes& bytes) {
+  const Projection seen = camera.project(wild_point(bytes), wild_wavelength(bytes), bytes.number(0, 1));
+  if (seen.status == ProjectionStatus::not_visible) return;
+  fuzz::require(std::isfinite(seen.film.x) && std::isfinite(seen.film.y) && std::isfinite(seen.raster.x) &&
+                    std::isfinite(seen.raster.y),
+                "a projection is finite");
+  if (seen) fuzz::require(camera.film().contains(seen.film), "what is seen lies on the film");
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  fuzz::Bytes bytes(data, size);
+  const Camera& camera = some_camera(bytes);
+  switch (bytes.count(0, 5)) {
+    case 0: samples<float>(camera, bytes); break;
+    case 1: samples<double>(camera, bytes); break;
+    case 2: differentials(camera, bytes); break;
+    case 3: importance(camera, bytes); break;
+    case 4: connections(camera, bytes); break;
+    default: projections(camera, bytes);
+  }
+  return 0;
+}
