@@ -212,4 +212,41 @@ TEST(Images, AreRefusedWhereTheyDoNotFit) {
        "layer 1: column 1, row 0: inverse depth is 0 / mm");  // behind an empty pixel
 }
 
+// Points at one depth, given by their distances: the raster position of each is the middle of its pixel.
+TEST(AxialDepths, AreThoseOfPointsInOnePlane) {
+  const LayerCamera camera{.columns = 24, .rows = 16, .focal_px = 20, .axis = {9, 6.5}, .overscan = 3};
+  constexpr double depth = 700;
+  std::vector<float> distances;
+  for (int row = 0; row < camera.layer_rows(); ++row) {
+    for (int column = 0; column < camera.layer_columns(); ++column) {
+      const Vec2<double> pixel{column + 0.5 - camera.overscan, row + 0.5 - camera.overscan};
+      const Vec2<double> off = (pixel - camera.axis) * (depth / camera.focal_px);
+      const Vec2<double> seen = camera.raster({off.x, -off.y, depth});
+      ASSERT_NEAR(seen.x, pixel.x, 1e-12);
+      ASSERT_NEAR(seen.y, pixel.y, 1e-12);
+      distances.push_back(static_cast<float>(std::hypot(off.x, off.y, depth)));
+    }
+  }
+  FragmentLists lists{.columns = camera.layer_columns(), .rows = camera.layer_rows(), .offsets = {0}, .fragments = {}};
+  for (const float distance : distances) {  // none, one and two of a pixel
+    for (std::size_t k = 0; k < lists.offsets.size() % 3; ++k) lists.fragments.push_back({.depth_mm = distance});
+    lists.offsets.push_back(lists.fragments.size());
+  }
+  axial_depths(camera, lists);
+  for (const auto& fragment : lists.fragments) EXPECT_NEAR(fragment.depth_mm, depth, 2e-4);
+  distances[5] = infinity, distances[6] = none;
+  axial_depths(camera, distances);
+  EXPECT_EQ(distances[5], infinity);
+  EXPECT_TRUE(std::isnan(distances[6]));
+  for (std::size_t i = 0; i < distances.size(); ++i) {
+    if (i == 5 || i == 6) continue;
+    EXPECT_NEAR(distances[i], depth, 2e-4) << i;
+  }
+  distances.pop_back();
+  lists.offsets.pop_back();
+  const auto wanted = ": found 659 pixels, wanted those of the layers, 30 x 22";
+  EXPECT_EQ(petzval::testing::message([&] { axial_depths(camera, distances); }), std::string("axial_depths") + wanted);
+  EXPECT_EQ(petzval::testing::message([&] { axial_depths(camera, lists); }), std::string("axial_depths") + wanted);
+}
+
 }  // namespace
