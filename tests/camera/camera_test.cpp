@@ -476,6 +476,14 @@ TEST(CameraTables, AreRefusedWhereListsEndBeyondThem) {
   }
 }
 
+TEST(ModelKind, HasItsName) {
+  EXPECT_EQ(models().size(), 11u);
+  for (const ModelKind model : models()) EXPECT_EQ(model_named(name(model)), model) << name(model);
+  for (const char* none : {"", "custom", "Thin", "thin ", "polynomial_4", "polynomial"}) {
+    EXPECT_FALSE(model_named(none)) << none;
+  }
+}
+
 TEST(Camera, RefusesModelsThatAreNone) {
   const Lens lens = focused("double_gauss_100mm_f2.0");
   for (const int number : {11, 12, 77}) {

@@ -70,6 +70,8 @@ TEST(HostFrame, GoesThereAndBack) {
         EXPECT_NEAR(glm::length(there.direction), 1, 1e-15);
         EXPECT_EQ(there.origin, frame.point_to_host(ray.origin));
         EXPECT_EQ(there.direction, frame.direction_to_host(ray.direction));
+        EXPECT_EQ(back.origin, frame.point_to_lens(there.origin));
+        EXPECT_EQ(back.direction, frame.direction_to_lens(there.direction));
         // Lengths scale for every host.
         EXPECT_NEAR(glm::distance(there.origin, frame.point_to_host({0, 0, 0})), glm::length(ray.origin) * per_mm,
                     1e-12 * 2000 * per_mm);

@@ -13,6 +13,7 @@
 #include "petzval/core/units.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/aim.hpp"
+#include "petzval/pupil/f_number.hpp"
 
 namespace petzval {
 namespace {
@@ -61,6 +62,39 @@ TEST(SpotSize, SetsCountAsOne) {
   const std::vector<RayBundle> sets{{.x = {1, 3}, .y = {5, 5}}, {.x = {}, .y = {}}, {.x = {2, 2}, .y = {4, 6}}};
   EXPECT_DOUBLE_EQ(spot_size(sets).rms_radius, 1);
   EXPECT_DOUBLE_EQ(spot_size(sets).centroid.y, 5);
+}
+
+/// 0.61 wavelengths over the numerical aperture, of slopes as first order has them.
+double radius_by_aperture(const Lens& lens, double wavelength_nm) {
+  const Pupil exit = pupils(lens).exit;
+  const double index = lens.index(lens.surface_count()), slope = exit.diameter / 2 / std::abs(lens.film_z() - exit.z);
+  return 0.61 * 1e-6 * wavelength_nm / (index * slope);
+}
+
+TEST(AiryRadius, IsThatOfTheNumericalApertureOfTheFilm) {
+  const Lens lens = data_lens("double_gauss_100mm_f2.0");
+  EXPECT_NEAR(airy_radius(lens), 1.22 * 587.5618e-6 * 2, 4e-5);
+  // Near objects, other stops, and media behind the lens.
+  for (const Lens& other : {lens, with_film(lens, lens.film_z() + 40), with_f_number(lens, 11),
+                            data_lens("eye_gullstrand_le_grand"), data_lens("mirror_newton_200mm_f8")}) {
+    const double nm = other.wavelengths_nm()[other.primary_wavelength()];
+    EXPECT_NEAR(airy_radius(other) / radius_by_aperture(other, nm), 1, 1e-9) << other.name();
+  }
+  EXPECT_GT(data_lens("eye_gullstrand_le_grand").index(5), 1.3);
+  const Lens two = compile(testing::data_prescription("achromat_100mm"), std::array{450.0, 650.0},
+                           {.missing_glass = MissingGlass::abbe});
+  EXPECT_NEAR(airy_radius(two, 1) / airy_radius(two, 0), 650.0 / 450.0, 0.01);
+  EXPECT_EQ(airy_radius(with_semi_diameter(lens, *lens.stop(), 0)), infinity);
+}
+
+TEST(AiryRadius, AgainstTheBlurTellsWhatDiffractionDoes) {
+  const SpotSize size{.centroid = {0, 0}, .rms_radius = 0.01, .max_radius = 0.02};
+  const double blur = 0.01 * std::sqrt(2.0);  // radius of the uniform disc
+  EXPECT_EQ(diffraction(0.099 * blur, size), Diffraction::negligible);
+  EXPECT_EQ(diffraction(0.101 * blur, size), Diffraction::visible);
+  EXPECT_EQ(diffraction(0.99 * blur, size), Diffraction::visible);
+  EXPECT_EQ(diffraction(1.01 * blur, size), Diffraction::dominant);
+  EXPECT_EQ(diffraction(infinity, size), Diffraction::dominant);
 }
 
 TEST(SpotDiagram, ImagesTheFieldUpsideDown) {
