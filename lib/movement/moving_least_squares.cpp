@@ -242,6 +242,8 @@ Vec2<double> MovingLeastSquares::slopes(const FilmPoint& place) const noexcept {
   const Columns<double>& points = points_;
   const std::size_t count = points.x.size();
   const V p{place.x * to_scaled_, place.y * to_scaled_};
+  if (!(std::abs(p.x) <= 2 * reach_in_sides && std::abs(p.y) <= 2 * reach_in_sides))
+    return {0, 0};  // as at() is constant
   const double value = at(place) * to_scaled_value_;
   if (!(value > low_ && value < high_)) return {0, 0};
   const auto away = [&](std::size_t i) { return p - V{points.x[i], points.y[i]}; };

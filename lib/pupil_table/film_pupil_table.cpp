@@ -92,7 +92,9 @@ double FilmPupilTable::area(const FilmPoint& film, Wavelength wavelength) const 
 }
 
 double FilmPupilTable::projected_solid_angle(const FilmPoint& film, Wavelength wavelength) const noexcept {
-  return solid_angle(space(), film, area(film, wavelength), [&](double u, double v) {
+  const double own = area(film, wavelength);
+  if (!(own > 0)) return 0;
+  return solid_angle(space(), film, own, [&](double u, double v) {
     const PupilSample s = sample(film, u, v, wavelength);
     return Vec2<double>{s.x, s.y};
   });

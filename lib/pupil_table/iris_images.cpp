@@ -102,6 +102,7 @@ double IrisImages::area(const FilmPoint& film, Wavelength wavelength) const noex
 
 Vec2<double> IrisImages::middle(const FilmPoint& film, Wavelength wavelength) const noexcept {
   const Image seen = image(film, wavelength);
+  if (!(seen.area > 0)) return {0, 0};
   return {seen.shift_x * film.x, seen.shift_y * film.y};
 }
 

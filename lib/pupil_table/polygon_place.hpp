@@ -150,7 +150,8 @@ double clearance_of_place(const In<double>& polygon, const Point<double>& q, std
     facing = k;
     sector = sector_at(polygon, k);
   }
-  const double way = sector.way_to(q), squared = way * way;
+  constexpr double farthest = 1e150;  // whose square is a number
+  const double way = std::min(sector.way_to(q), farthest), squared = way * way;
   double least = 1 - squared;
   if (sector.obscured > 0) {
     const double inner = sector.obscured_from - squared, outer = squared - sector.obscured_from - sector.obscured;

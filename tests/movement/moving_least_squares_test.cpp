@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <random>
 #include <vector>
 
@@ -137,6 +138,21 @@ TEST(MovingLeastSquares, ReproducesPlanes) {
       float value = 0;
       surface.at(1, &x, &y, &value);
       EXPECT_NEAR(value, plane(at.place), float_rounding) << beta;
+    }
+  }
+}
+
+TEST(MovingLeastSquares, IsConstantFarBesideThePicture) {
+  const double infinity = std::numeric_limits<double>::infinity();
+  for (const SurfaceKind kind : kinds) {
+    for (const double beta : betas) {
+      const auto surface = through(random_points(4, 12), kind, beta);
+      for (const double far : {1e9, 1e200, infinity, -infinity, std::nan("")}) {
+        for (const FilmPoint& place : {FilmPoint{far, 1}, {1, far}, {far, far}}) {
+          EXPECT_TRUE(std::isfinite(surface.at(place))) << far;
+          EXPECT_EQ(surface.slopes(place), Vec2<double>(0, 0)) << far;
+        }
+      }
     }
   }
 }

@@ -91,6 +91,8 @@ TEST(FilmPupilTable, KnowsHowFarWithinAPupilAPlaceLies) {
       EXPECT_NEAR(clearance(table, film, x, y) - clearance(table, {-film.x, -film.y}, -x, -y), 0, 1e-9) << id;
     }
     EXPECT_EQ(clearance(table, {0, 2 * radius}, 0, 0), -1) << id;
+    for (const double none : {HUGE_VAL, std::nan("")}) EXPECT_EQ(table.projected_solid_angle({0, none}), 0) << id;
+    for (const double far : {1e160, 1e308, HUGE_VAL}) EXPECT_EQ(clearance(table, {0, 1}, far, -far / 3), -1) << id;
   }
 }
 
