@@ -250,19 +250,20 @@ Vec2<double> MovingLeastSquares::slopes(const FilmPoint& place) const noexcept {
   const auto dot = [](const V& a, const V& b) { return a.x * b.x + a.y * b.y; };
   const auto r2_of = [&](std::size_t i) { return dot(away(i), away(i)) + points.soft2[i]; };
 
+  constexpr double touching = 1e-290;  // over which 1 is a number
   std::size_t nearest = 0;
   double least = std::numeric_limits<double>::infinity(), next = least;
   for (std::size_t i = 0; i < count; ++i) {
     const double r2 = r2_of(i);
     if (r2 < least) least = r2, nearest = i;
-    if (r2 > 0) next = std::min(next, r2);
+    if (r2 > touching) next = std::min(next, r2);
   }
   // At a point, the others alone determine the slopes: their weights relative to the nearest of them.
-  const bool on_point = least == 0;
+  const bool on_point = least <= touching;
   if (on_point && !(affine_ && std::isfinite(next))) return {0, 0};
   const auto weight = [&](std::size_t i) {
     const double r2 = r2_of(i);
-    if (r2 == 0) return 0.0;
+    if (r2 <= touching) return 0.0;
     return points.alpha[i] * std::pow((on_point ? next : least) / r2, beta_ / 2);
   };
   const V centre{points.x[nearest], points.y[nearest]};

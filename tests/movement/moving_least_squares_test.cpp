@@ -157,6 +157,24 @@ TEST(MovingLeastSquares, IsConstantFarBesideThePicture) {
   }
 }
 
+TEST(MovingLeastSquares, HasFiniteSlopesNextToItsPoints) {
+  for (const SurfaceKind kind : kinds) {
+    for (const double beta : betas) {
+      const auto points = random_points(4, 12);
+      const auto surface = through(points, kind, beta);
+      auto beside = points;
+      beside[0].place = {0, 0};
+      const auto through_origin = through(beside, kind, beta);
+      for (double r = 1e-3; r > 0; r /= 2) {
+        const Vec2<double> at_origin = through_origin.slopes({0, r});
+        EXPECT_TRUE(std::isfinite(at_origin.x) && std::isfinite(at_origin.y)) << name(kind) << beta << ' ' << r;
+        const Vec2<double> there = surface.slopes({points[3].place.x, points[3].place.y + r});
+        EXPECT_TRUE(std::isfinite(there.x) && std::isfinite(there.y)) << name(kind) << beta << ' ' << r;
+      }
+    }
+  }
+}
+
 TEST(MovingLeastSquares, SlopesAreFiniteDifferences) {
   for (const SurfaceKind kind : kinds) {
     for (const double beta : betas) {
