@@ -237,6 +237,16 @@ TEST(LensDistortion, KnowsTheFieldOfItsFilm) {
   ASSERT_TRUE(corner);
   const Vec2<double> tangent = (*corner - biogon.centre()) / biogon.focal_length_px();
   EXPECT_NEAR(biogon.widest_field_rad(), std::atan(std::hypot(tangent.x, tangent.y)), 0.02);
+  // Whichever corner is the farthest.
+  for (const double x : {4.0, -4.0}) {
+    for (const double y : {3.0, -3.0}) {
+      Film shifted = small_film(20);
+      shifted.shift_x_mm = x, shifted.shift_y_mm = y;
+      const Camera camera(data_lens("biogon_35mm_f2.8"), shifted, {.model = ModelKind::exact_double});
+      const CameraRay far = camera.sample({.film = {x < 0 ? -14.0 : 14.0, y < 0 ? y - 20 / 3.0 : y + 20 / 3.0}});
+      EXPECT_NEAR(LensDistortion(camera).widest_field_rad(), std::acos(-far.ray.direction.z), 0.02) << x << ' ' << y;
+    }
+  }
 }
 
 TEST(LensDistortion, SeesNothingOfDarkPlaces) {
