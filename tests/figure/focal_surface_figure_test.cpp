@@ -16,6 +16,7 @@ namespace petzval {
 namespace {
 
 using testing::count;
+using testing::marks;
 using testing::Points;
 
 const IdealLens lens = thin_lens(50, 2);
@@ -30,13 +31,6 @@ std::string drawn(const std::vector<FocalPoint>& points, const Film& on = film) 
   const FocalSurface surface(lens, film, points);
   return focal_surface_figure(
       {.title = "A <lens>", .remark = "f/2 & more", .lens = lens, .film = on, .surface = surface, .points = points});
-}
-
-Points marks(const std::string& svg) {
-  Points result;
-  const std::string circle = "<circle cx=\"([0-9.]+)\" cy=\"([0-9.]+)\" r=\"4\" fill=\"#(d0331f|fff)\"";
-  for (const testing::Match& mark : testing::matches(svg, circle)) result.push_back({mark.number(1), mark.number(2)});
-  return result;
 }
 
 TEST(FocalSurfaceFigure, TheSurfaceGoesThroughItsPoints) {

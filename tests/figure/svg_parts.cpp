@@ -20,6 +20,13 @@ std::size_t count(const std::string& text, const std::string& part) {
   return found;
 }
 
+Points marks(const std::string& svg) {
+  Points result;
+  const std::string circle = "<circle cx=\"([0-9.]+)\" cy=\"([0-9.]+)\" r=\"4\" fill=\"#(d0331f|fff)\"";
+  for (const Match& mark : matches(svg, circle)) result.push_back({mark.number(1), mark.number(2)});
+  return result;
+}
+
 std::vector<Points> paths(const std::string& svg, const std::string& style) {
   std::vector<Points> result;
   const std::string begin = "<path d=\"";

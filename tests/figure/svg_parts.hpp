@@ -26,6 +26,9 @@ std::vector<Match> matches(const std::string& text, const std::string& expressio
 /// How often a part occurs in a text.
 std::size_t count(const std::string& text, const std::string& part);
 
+/// Middles of the numbered points of a figure of a scene, px, in order.
+Points marks(const std::string& svg);
+
 /// The corners of each path whose attributes contain `style`, px.
 std::vector<Points> paths(const std::string& svg, const std::string& style);
 

@@ -16,6 +16,7 @@ namespace petzval {
 namespace {
 
 using testing::count;
+using testing::marks;
 using testing::paths;
 using testing::Points;
 
@@ -53,14 +54,6 @@ std::pair<double, double> crossing(const Points& a, const Points& b) {
   const double ux = a.at(1).first - ax, uy = a.at(1).second - ay, vx = b.at(1).first - bx, vy = b.at(1).second - by;
   const double t = ((bx - ax) * vy - (by - ay) * vx) / (ux * vy - uy * vx);
   return {ax + t * ux, ay + t * uy};
-}
-
-/// Pixels of the numbered points of the upper panel, in order.
-Points marks(const std::string& svg) {
-  Points result;
-  const std::string circle = "<circle cx=\"([0-9.]+)\" cy=\"([0-9.]+)\" r=\"4\" fill=\"#(d0331f|fff)\"";
-  for (const testing::Match& mark : testing::matches(svg, circle)) result.push_back({mark.number(1), mark.number(2)});
-  return result;
 }
 
 TEST(TiltFigure, FilmLensAndPlaneOfFocusMeetInOnePoint) {

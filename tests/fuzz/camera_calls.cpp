@@ -1,17 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Any calls of some cameras, which are built once: samples, importance, connections and projections of any numbers.
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <memory>
 #include <vector>
 
 #include <glm/geometric.hpp>
 
-#include "../data_lenses.hpp"
-#include "bytes.hpp"
+#include "fixed_lenses.hpp"
 #include "laws.hpp"
 #include "petzval/camera/camera.hpp"
 #include "petzval/focus/focus.hpp"
@@ -22,10 +19,8 @@ using namespace petzval;
 
 constexpr std::size_t count = 5;
 
-Camera coloured(const char* id, const CameraOptions& options, const Film& film, const Iris& iris = {}) {
-  const std::vector<double> nm{450, 550, 650};
-  const Lens lens = compile(testing::data_prescription(id), nm, {.missing_glass = MissingGlass::abbe});
-  return {with_focus(with_iris(lens, iris), 10000), film, options};
+Camera focused(const char* id, const CameraOptions& options, const Film& film, const Iris& iris = {}) {
+  return {with_focus(with_iris(fuzz::coloured(id), iris), 10000), film, options};
 }
 
 /// Each kind of model, of pupil and of film.
@@ -36,28 +31,28 @@ const Camera& some_camera(fuzz::Bytes& bytes) {
       tilted{.columns = 36, .rows = 24, .margin_mm = 1, .tilt_rad = 0.1, .swing_rad = -0.05},
       moving{.columns = 36, .rows = 24, .shift_x_mm = 5, .travel_mm = 0.5};
   static const std::vector<Make> makers{
-      [=] { return coloured(usual, {.model = ModelKind::pinhole}, film); },
-      [=] { return coloured(usual, {.model = ModelKind::thin}, tilted, {.blades = 6, .roundness = 0.3}); },
-      [=] { return coloured(usual, {.model = ModelKind::thin_two_disc}, film); },
-      [=] { return coloured(usual, {.model = ModelKind::thick}, moving); },
+      [=] { return focused(usual, {.model = ModelKind::pinhole}, film); },
+      [=] { return focused(usual, {.model = ModelKind::thin}, tilted, {.blades = 6, .roundness = 0.3}); },
+      [=] { return focused(usual, {.model = ModelKind::thin_two_disc}, film); },
+      [=] { return focused(usual, {.model = ModelKind::thick}, moving); },
       [=] {
         const ExpressiveLens bent{.power = {{0, 1}, {1, 1.2}}, .film_offsets = {{{5, 5}, 1, 1}}, .dispersion = {2}};
-        return coloured(usual, {.model = ModelKind::thick, .expressive = bent}, film);
+        return focused(usual, {.model = ModelKind::thick, .expressive = bent}, film);
       },
-      [=] { return coloured(usual, {.model = ModelKind::polynomial_5}, film); },
-      [=] { return coloured(usual, {}, film); },
-      [=] { return coloured(usual, {.normalisation = Normalisation::unity_on_axis}, tilted); },
-      [=] { return coloured(usual, {.model = ModelKind::exact_double}, moving, {.blades = 5, .rotation_rad = 0.2}); },
+      [=] { return focused(usual, {.model = ModelKind::polynomial_5}, film); },
+      [=] { return focused(usual, {}, film); },
+      [=] { return focused(usual, {.normalisation = Normalisation::unity_on_axis}, tilted); },
+      [=] { return focused(usual, {.model = ModelKind::exact_double}, moving, {.blades = 5, .rotation_rad = 0.2}); },
       [=] {
         const BokehControls bokeh{.lens_elements = 7, .weight_distribution = 3, .weight_strength = 0.5};
-        return coloured(usual, {.bokeh = bokeh}, film);
+        return focused(usual, {.bokeh = bokeh}, film);
       },
-      [=] { return coloured(usual, {.bokeh = {.lens_ratio = 1.2, .rate_of_change = 0.5}}, film); },
-      [=] { return coloured(wide, {}, small); },
-      [=] { return coloured(wide, {.model = ModelKind::polynomial_3}, small); },
-      [=] { return coloured(flat, {}, small); },
-      [=] { return coloured(flat, {.model = ModelKind::thick}, small); },
-      [=] { return coloured("catadioptric_mangin_1000mm_f7.5", {.model = ModelKind::exact_double}, small); },
+      [=] { return focused(usual, {.bokeh = {.lens_ratio = 1.2, .rate_of_change = 0.5}}, film); },
+      [=] { return focused(wide, {}, small); },
+      [=] { return focused(wide, {.model = ModelKind::polynomial_3}, small); },
+      [=] { return focused(flat, {}, small); },
+      [=] { return focused(flat, {.model = ModelKind::thick}, small); },
+      [=] { return focused("catadioptric_mangin_1000mm_f7.5", {.model = ModelKind::exact_double}, small); },
   };
   static std::vector<std::unique_ptr<Camera>> cameras(makers.size());
   auto& camera = cameras[bytes.byte() % cameras.size()];
@@ -65,18 +60,11 @@ const Camera& some_camera(fuzz::Bytes& bytes) {
   return *camera;
 }
 
-Wavelength wild_wavelength(fuzz::Bytes& bytes) {
-  const int kind = bytes.byte();
-  if (kind < 128) return {};
-  if (kind < 192) return static_cast<std::size_t>(kind % 4);
-  return Wavelength::nm(bytes.number(430, 670));
-}
-
 CameraSample wild_sample(const Film& film, fuzz::Bytes& bytes) {
   CameraSample s;
   s.film = {bytes.number(-0.6, 0.6) * film.width_mm + film.shift_x_mm, bytes.number(-0.6, 0.6) * film.height_mm};
   s.pupil_u = bytes.number(0, 1), s.pupil_v = bytes.number(0, 1);
-  s.wavelength = wild_wavelength(bytes), s.time = bytes.number(0, 1);
+  s.wavelength = fuzz::wild_wavelength(bytes), s.time = bytes.number(0, 1);
   return s;
 }
 
@@ -142,7 +130,7 @@ void samples(const Camera& camera, fuzz::Bytes& bytes) {
   std::array<float, count> nm;
   std::array<RayFate, count> fates;
   const bool by_nm = bytes.one_in(4);
-  const Wavelength shared = wild_wavelength(bytes);
+  const Wavelength shared = fuzz::wild_wavelength(bytes);
   for (std::size_t i = 0; i < count; ++i) {
     one[i] = wild_sample(camera.film(), bytes);
     nm[i] = static_cast<float>(bytes.number(430, 670));
@@ -182,7 +170,7 @@ void differentials(const Camera& camera, fuzz::Bytes& bytes) {
 void importance(const Camera& camera, fuzz::Bytes& bytes) {
   std::array<std::array<double, count>, 7> in;
   std::array<Importance, count> together;
-  const Wavelength wavelength = wild_wavelength(bytes);
+  const Wavelength wavelength = fuzz::wild_wavelength(bytes);
   for (std::size_t i = 0; i < count; ++i) {
     const Vec3<double> start = wild_point(bytes), towards = wild_direction(bytes);
     for (int k : {0, 1, 2})
@@ -205,7 +193,7 @@ void importance(const Camera& camera, fuzz::Bytes& bytes) {
 void connections(const Camera& camera, fuzz::Bytes& bytes) {
   const Vec3<double> point = wild_point(bytes), direction = wild_direction(bytes);
   const double u = bytes.number(0, 1), v = bytes.number(0, 1), time = bytes.number(0, 1);
-  const Wavelength wavelength = wild_wavelength(bytes);
+  const Wavelength wavelength = fuzz::wild_wavelength(bytes);
   const ImportanceSample found = camera.sample_importance(point, u, v, wavelength, time);
   check(found, 1e-9);
   if (found) {
@@ -225,7 +213,7 @@ void connections(const Camera& camera, fuzz::Bytes& bytes) {
 }
 
 void projections(const Camera& camera, fuzz::Bytes& bytes) {
-  const Projection seen = camera.project(wild_point(bytes), wild_wavelength(bytes), bytes.number(0, 1));
+  const Projection seen = camera.project(wild_point(bytes), fuzz::wild_wavelength(bytes), bytes.number(0, 1));
   if (seen.status == ProjectionStatus::not_visible) return;
   fuzz::require(std::isfinite(seen.film.x) && std::isfinite(seen.film.y) && std::isfinite(seen.raster.x) &&
                     std::isfinite(seen.raster.y),

@@ -33,6 +33,10 @@ bool done(const auto& work) {
 }
 
 template <class T>
+bool finite(const Vec2<T>& v) noexcept {
+  return std::isfinite(v.x) && std::isfinite(v.y);
+}
+template <class T>
 bool finite(const Vec3<T>& v) noexcept {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }

@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Any calls of tables that are built once: pupils of films, polynomials, distortions and focal surfaces.
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <numbers>
 #include <vector>
 
-#include "../data_lenses.hpp"
-#include "bytes.hpp"
+#include "fixed_lenses.hpp"
 #include "laws.hpp"
 #include "petzval/camera/camera.hpp"
 #include "petzval/distortion/lens_distortion.hpp"
@@ -25,33 +22,19 @@ using namespace petzval;
 constexpr std::size_t count = 5;
 constexpr double radius = 15;  // mm, of all films
 
-Lens coloured(const char* id) {
-  const std::array nm{450.0, 550.0, 650.0};
-  return compile(testing::data_prescription(id), nm, {.missing_glass = MissingGlass::abbe});
-}
-
 template <class T>
 const T& one_of(const std::vector<T>& all, fuzz::Bytes& bytes) {
   return all[bytes.byte() % all.size()];
 }
-
-bool finite(const Vec2<double>& v) { return std::isfinite(v.x) && std::isfinite(v.y); }
 
 FilmPoint wild_place(fuzz::Bytes& bytes) {
   const double x = bytes.number(-radius, radius), y = bytes.number(-radius, radius);
   return {x, y};
 }
 
-Wavelength wild_wavelength(fuzz::Bytes& bytes) {
-  const int kind = bytes.byte();
-  if (kind < 128) return {};
-  if (kind < 192) return static_cast<std::size_t>(kind % 4);
-  return Wavelength::nm(bytes.number(430, 670));
-}
-
 /// Strips, with an obscuration too, cells, a bladed iris, images of one, discs, a rim, and two of tilted films.
 std::vector<FilmPupilTable> pupil_tables() {
-  const Lens usual = coloured("double_gauss_100mm_f2.0"), flat = coloured("anamorphic_60mm_2x");
+  const Lens usual = fuzz::coloured("double_gauss_100mm_f2.0"), flat = fuzz::coloured("anamorphic_60mm_2x");
   const FilmPupilTable strips = FilmPupilTable::enclosing(usual, radius),
                        cells = FilmPupilTable::enclosing(flat, radius);
   const double steep = 0.1 / std::abs(strips.space().depth());
@@ -59,7 +42,7 @@ std::vector<FilmPupilTable> pupil_tables() {
   const std::vector<PupilImage> images(3, {.shift = {0.1, 0.2}, .radius = {10, 12}});
   const std::vector<std::vector<PupilDisc>> discs(3, {{0, 10}, {0.4, 11}});
   return {strips,
-          FilmPupilTable::equal_area(coloured("catadioptric_mangin_1000mm_f7.5"), radius),
+          FilmPupilTable::equal_area(fuzz::coloured("catadioptric_mangin_1000mm_f7.5"), radius),
           cells,
           FilmPupilTable::enclosing(with_iris(usual, {.blades = 5, .roundness = 0.2, .rotation_rad = 0.3}), radius),
           FilmPupilTable::of_iris({50, 0}, {.blades = 7}, images, radius, 1),
@@ -73,7 +56,7 @@ template <class T>
 void samples(const FilmPupilTable& table, fuzz::Bytes& bytes) {
   std::array<std::array<T, count>, 7> n{};
   std::array<FilmPoint, count> film;
-  const Wavelength wavelength = wild_wavelength(bytes);
+  const Wavelength wavelength = fuzz::wild_wavelength(bytes);
   for (std::size_t i = 0; i < count; ++i) {
     film[i] = wild_place(bytes);
     const double u = bytes.number(0, 1), v = bytes.number(0, 1);
@@ -91,7 +74,8 @@ void samples(const FilmPupilTable& table, fuzz::Bytes& bytes) {
     if (!(one.area > 0)) continue;
     const Vec2<double> at = table.position(film[i], one.x, one.y, wavelength);
     constexpr double fold = 0.02;  // of a bladed iris, at whose corners sectors of interpolated polygons may overlap
-    fuzz::require(finite(at) && at.x >= 0 && at.x <= 1 && at.y >= 0 && at.y <= 1 + fold, "a sample has its u and v");
+    fuzz::require(fuzz::finite(at) && at.x >= 0 && at.x <= 1 && at.y >= 0 && at.y <= 1 + fold,
+                  "a sample has its u and v");
   }
 }
 
@@ -99,7 +83,7 @@ void places(const FilmPupilTable& table, fuzz::Bytes& bytes) {
   std::array<std::array<double, count>, 4> n{};
   std::array<std::uint8_t, count> within;
   std::array<double, count> clearances;
-  const Wavelength wavelength = wild_wavelength(bytes);
+  const Wavelength wavelength = fuzz::wild_wavelength(bytes);
   const double size = bytes.byte() < 128 ? 20 : 60;
   for (std::size_t i = 0; i < count; ++i) {
     const FilmPoint film = wild_place(bytes);
@@ -123,16 +107,16 @@ void places(const FilmPupilTable& table, fuzz::Bytes& bytes) {
         std::isfinite(area) && area >= 0 && std::isfinite(angle) && angle >= 0 && angle < 2 * std::numbers::pi,
         "a pupil has an area");
     if (one) fuzz::require(area > 0, "a pupil that contains a place has an area");
-    fuzz::require(finite(table.middle(film, wavelength)), "a pupil has a middle");
+    fuzz::require(fuzz::finite(table.middle(film, wavelength)), "a pupil has a middle");
     const auto by = table.derivatives(film, bytes.number(0, 1), n[3][i], wavelength);
-    fuzz::require(finite(by.by_film_x) && finite(by.by_film_y), "derivatives of a sample are finite");
+    fuzz::require(fuzz::finite(by.by_film_x) && fuzz::finite(by.by_film_y), "derivatives of a sample are finite");
   }
 }
 
 std::vector<RayPolynomial> polynomials() {
   std::vector<RayPolynomial> result;
   for (const char* id : {"double_gauss_100mm_f2.0", "fisheye_8mm_f2.8", "anamorphic_60mm_2x"}) {
-    const Lens lens = coloured(id);
+    const Lens lens = fuzz::coloured(id);
     result.push_back(RayPolynomial::fit(lens, FilmPupilTable::equal_area(lens, 8), 3));
   }
   return result;
@@ -141,7 +125,7 @@ std::vector<RayPolynomial> polynomials() {
 void lines(const RayPolynomial& polynomial, fuzz::Bytes& bytes) {
   const FilmPoint film = wild_place(bytes);
   const TwoPlaneRay line{film.x, film.y, bytes.number(-20, 20), bytes.number(-20, 20)};
-  const Wavelength wavelength = wild_wavelength(bytes);
+  const Wavelength wavelength = fuzz::wild_wavelength(bytes);
   Ray<double> one, many;
   RayFate fate;
   const RayFate alone = polynomial.to_scene(line, wavelength, one);
@@ -165,7 +149,7 @@ std::vector<LensDistortion> distortions() {
   std::vector<LensDistortion> result;
   const Film film{.width_mm = 24, .height_mm = 16, .columns = 240, .rows = 160};
   for (const char* id : {"double_gauss_100mm_f2.0", "fisheye_8mm_f2.8", "anamorphic_60mm_2x"}) {
-    const Lens lens = with_focus(coloured(id), 3000);
+    const Lens lens = with_focus(fuzz::coloured(id), 3000);
     for (const ModelKind model : {ModelKind::exact_float, ModelKind::exact_double}) {
       result.emplace_back(Camera(lens, film, {.model = model}));
     }
@@ -176,9 +160,9 @@ std::vector<LensDistortion> distortions() {
 void pixels(const LensDistortion& distortion, fuzz::Bytes& bytes) {
   const Vec2<double> at{bytes.number(-20, 260), bytes.number(-20, 180)};
   const auto shown = distortion.distorted(at), seen = distortion.undistorted(at);
-  if (shown) fuzz::require(finite(*shown), "a distorted place is finite");
+  if (shown) fuzz::require(fuzz::finite(*shown), "a distorted place is finite");
   if (!seen) return;
-  fuzz::require(finite(*seen), "an undistorted place is finite");
+  fuzz::require(fuzz::finite(*seen), "an undistorted place is finite");
   const auto again = distortion.distorted(*seen);
   fuzz::require(again && std::hypot(again->x - at.x, again->y - at.y) < 0.02, "distortion undoes what is undistorted");
 }
@@ -219,7 +203,8 @@ void surface(fuzz::Bytes& bytes) {
     fuzz::require(std::abs(one.inverse_distance - n[2][i]) <= 1e-6 * (range + std::abs(one.inverse_distance)),
                   "a place in a batch is that of a single call");
     const auto slopes = found.slopes(place);
-    fuzz::require(finite(slopes.inverse_distance) && finite(slopes.extent_stops), "slopes of a surface are finite");
+    fuzz::require(fuzz::finite(slopes.inverse_distance) && fuzz::finite(slopes.extent_stops),
+                  "slopes of a surface are finite");
   }
 }
 
