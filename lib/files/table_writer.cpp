@@ -60,7 +60,7 @@ WrittenLens format_table(const Prescription& prescription) {
     obscured = obscured || row.obscuration_semi_diameter.value_or(0) > 0;
     const bool limited = row.semi_diameter && std::isfinite(*row.semi_diameter);
     open = open || !limited;
-    const double diameter = 2 * (limited ? *row.semi_diameter : std::max(largest, 1.0));
+    const double diameter = 2 * (limited ? *row.semi_diameter : largest > 0 ? largest : 1.0);
     const double index = row.medium.nd;
     const bool is_stop = row.stop && !first_stop;
     if (is_stop) first_stop = &row;

@@ -458,4 +458,17 @@ TEST(RoundTrip, TablesWantAirInFrontAndSayWhatTheirAperturesAre) {
             "singlet: a medium of index 1.33 in front of the lens, wanted air for a table");
 }
 
+TEST(RoundTrip, RowsOfATableWithoutARimGetTheWidestOne) {
+  Prescription p;
+  p.name = "small";
+  p.surfaces = {{.radius = 5, .thickness = 1, .medium = {.nd = 1.5}},
+                {.radius = -5, .thickness = 0.2, .semi_diameter = 0.6},
+                {.thickness = 4, .semi_diameter = 0.4, .stop = true}};
+  const Prescription back = read(table(p));
+  ASSERT_EQ(back.surfaces.size(), 3u);
+  EXPECT_EQ(back.surfaces[0].semi_diameter, 0.6);
+  EXPECT_EQ(back.surfaces[1].semi_diameter, 0.6);
+  EXPECT_EQ(back.surfaces[2].semi_diameter, 0.4);
+}
+
 }  // namespace
