@@ -18,12 +18,12 @@ import sys
 import time
 
 MODULES = ("surface", "trace", "pupil", "pupil_table", "focus", "polynomial", "camera", "iris", "blur")
-OTHERS = ("accuracy", "distortion", "files", "film", "io", "lens", "lint", "media", "movement", "paraxial", "prescription", "psf",
-          "rays")  # by --modules
+OTHERS = ("accuracy", "core", "distortion", "figure", "files", "film", "io", "lens", "lint", "media", "movement", "paraxial",
+          "prescription", "psf", "rays")  # by --modules
 # Programs that see these modules. Hashes of bits notice every change of rounding: they come last, and what they alone notice is
 # counted by itself.
 PROGRAMS = MODULES + ("lens", "paraxial", "rays", "movement", "accuracy", "psf", "bits")
-LIBRARIES = ("petzval-core", "petzval-blur", "petzval-fit", "petzval-image")
+LIBRARIES = ("petzval-core", "petzval-blur", "petzval-figure", "petzval-fit", "petzval-image")
 WANTED = 90.0  # per cent
 QUICK = 0.5  # seconds: a program's quick tests run before its others
 LONGEST = 1.0  # seconds: longer tests of other modules are left out

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
 # Builds everything with sanitizers and runs the tests: AddressSanitizer, UndefinedBehaviorSanitizer and libstdc++'s assertions
-# (asan), then ThreadSanitizer (tsan), in build/asan and build/tsan. Any report fails its test.
+# (asan), then ThreadSanitizer (tsan), in asan/ and tsan/ of build/ or BUILD_DIR=... Any report fails its test.
 #
 #   sh tests/sanitize.sh [asan] [tsan] [-- arguments of ctest, such as -R Camera]
 #

@@ -51,9 +51,12 @@ PETZVAL_DEVICE inline DevicePlace sample_image(const float* t, float film_x, flo
   return {image[0] * film_x + image[2] * x, image[1] * film_y + image[3] * y, image[4]};
 }
 
+/// Smaller squared distances from the axis, mm^2, have too few digits for a direction.
+PETZVAL_DEVICE inline bool off_axis(float square) { return square > 1e-31f; }
+
 PETZVAL_DEVICE inline DevicePlace sample_polygon(const float* t, float film_x, float film_y, float u, float v, int w) {
   const int strips = whole_number(t, Table::strips);
-  const float height = std::sqrt(film_x * film_x + film_y * film_y);
+  const float square = film_x * film_x + film_y * film_y, height = std::sqrt(square);
   const float at = t[Table::pupil_radius] > 0 ? height * static_cast<float>(strips) / t[Table::pupil_radius] : 0;
   const int strip = static_cast<int>(at) < strips ? static_cast<int>(at) : strips - 1;
   const float part = at - static_cast<float>(strip);
@@ -63,7 +66,8 @@ PETZVAL_DEVICE inline DevicePlace sample_polygon(const float* t, float film_x, f
     return a[0] + part * (a[1] + part * (a[2] + part * a[3]));
   };
   // The polygon is that of a film point on +y; it turns with the point, and u does not.
-  const float sine = height > 0 ? film_x / height : 0, cosine = height > 0 ? film_y / height : 1;
+  const bool turned = off_axis(square);
+  const float sine = turned ? film_x / height : 0, cosine = turned ? film_y / height : 1;
   float share = u - std::atan2(sine, cosine) / 6.28318531f;
   share -= std::floor(share);
   const float wanted = share * before(64);
@@ -130,8 +134,10 @@ PETZVAL_DEVICE inline DevicePlace sample_cell(const float* t, float film_x, floa
 PETZVAL_DEVICE inline DevicePlace sample_bladed(const float* t, float film_x, float film_y, float u, float v, int w) {
   const int rows = whole_number(t, Table::rows), columns = whole_number(t, Table::columns);
   const int blades = whole_number(t, Table::blades);
-  const float height = std::sqrt(film_x * film_x + film_y * film_y), count = static_cast<float>(blades);
-  const float sine = height > 0 ? film_x / height : 0, cosine = height > 0 ? film_y / height : 1;
+  const float square = film_x * film_x + film_y * film_y, height = std::sqrt(square);
+  const float count = static_cast<float>(blades);
+  const bool turned = off_axis(square);
+  const float sine = turned ? film_x / height : 0, cosine = turned ? film_y / height : 1;
   const float row = t[Table::pupil_radius] > 0 ? height * static_cast<float>(rows) / t[Table::pupil_radius] : 0;
   const int i = static_cast<int>(row) < rows ? static_cast<int>(row) : rows - 1;
   // In blades, from one turn before the first corner.

@@ -51,7 +51,7 @@ void check(const TiltView& view) {
   if (!(view.blur_mm > 0)) throw Error("tilt_figure: blur is " + to_text(view.blur_mm) + " mm, wanted more than 0");
 }
 
-/// To 1e-5 degrees, as less is where a fit ends, and never "-0".
+/// Rounded to 1e-5 degrees, as fits end within less than that; never "-0".
 std::string degrees_text(double angle_rad) {
   return to_text(std::round(1e5 * degrees(angle_rad)) / 1e5 + 0.0, 4) + "\u00b0";
 }

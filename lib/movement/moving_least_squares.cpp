@@ -241,16 +241,20 @@ Vec2<double> MovingLeastSquares::slopes(const FilmPoint& place) const noexcept {
   using V = Vec2<double>;
   const Columns<double>& points = points_;
   const std::size_t count = points.x.size();
-  const V p{place.x * to_scaled_, place.y * to_scaled_};
-  if (!(std::abs(p.x) <= 2 * reach_in_sides && std::abs(p.y) <= 2 * reach_in_sides))
-    return {0, 0};  // as at() is constant
+  // In reach, as at() has it; a coordinate beyond moves nothing.
+  const auto in_reach = [](double x) {
+    constexpr double reach = 2 * reach_in_sides;
+    return x < reach ? std::max(x, -reach) : reach;
+  };
+  const V wanted{place.x * to_scaled_, place.y * to_scaled_}, p{in_reach(wanted.x), in_reach(wanted.y)};
   const double value = at(place) * to_scaled_value_;
   if (!(value > low_ && value < high_)) return {0, 0};
   const auto away = [&](std::size_t i) { return p - V{points.x[i], points.y[i]}; };
   const auto dot = [](const V& a, const V& b) { return a.x * b.x + a.y * b.y; };
   const auto r2_of = [&](std::size_t i) { return dot(away(i), away(i)) + points.soft2[i]; };
 
-  constexpr double touching = 1e-290;  // over which 1 is a number
+  // Squared distance up to which a place counts as at the point: weights of the others stay normal numbers.
+  constexpr double touching = 1e-60;
   std::size_t nearest = 0;
   double least = std::numeric_limits<double>::infinity(), next = least;
   for (std::size_t i = 0; i < count; ++i) {
@@ -308,7 +312,7 @@ Vec2<double> MovingLeastSquares::slopes(const FilmPoint& place) const noexcept {
     }
     return result;
   };
-  const double unit = to_scaled_ / to_scaled_value_;
+  const V unit = V{p.x == wanted.x ? 1 : 0, p.y == wanted.y ? 1 : 0} * (to_scaled_ / to_scaled_value_);
   if (!affine_ || !(trace > 1e-290)) return with([](const V&) { return V{0, 0}; }) * unit;
   if (plane_ == 1) return with(in_planes) * unit;
   return (plane_ * with(in_planes) + (1 - plane_) * with(along_line)) * unit;

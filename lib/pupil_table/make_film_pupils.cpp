@@ -337,6 +337,7 @@ FilmPupilTable FilmPupilTable::of_iris(const TwoPlanes& space, const Iris& iris,
 
 FilmPupilTable FilmPupilTable::for_tilted_film(const FilmTilt& tilt, int threads) const {
   check_film_radius("tilted film", tilt.radius);
+  if (threads < 1) throw Error("tilted film: threads is " + std::to_string(threads) + ", wanted 1 or more");
   auto data = std::make_shared<Data>();
   if (data_->images && tilt.travel == 0) {
     *data = *data_;

@@ -86,7 +86,8 @@ CameraSample wild_sample(const Film& film, fuzz::Bytes& bytes) {
 }
 
 Vec3<double> wild_point(fuzz::Bytes& bytes) {
-  return {bytes.number(-800, 800), bytes.number(-800, 800), bytes.number(-3000, 0)};
+  const double beside = bytes.one_in(4) ? 40 : 800;
+  return {bytes.number(-beside, beside), bytes.number(-beside, beside), bytes.number(-3000, 0)};
 }
 
 Vec3<double> wild_direction(fuzz::Bytes& bytes) {
@@ -127,8 +128,8 @@ void check(const ImportanceSample& found, double rounding) {
   fuzz::require(found.distance >= 0, "a connection has a length");
 }
 
-/// Within rounding, in the precision of the model, and what a pupil's polygon turns by where a film point is the axis
-/// in float and not in double. Rays at an edge may have either fate.
+/// Within rounding, in the precision of the model. Rays at an edge may have either fate. A film point may count as on
+/// the axis in float and not in double: its pupil's polygon then turns by a part of a sector.
 void alike(const CameraRay& one, const Ray<double>& other, double weight) {
   constexpr double rounding = 1e-2;
   if (!one || !(weight > 0)) return;
@@ -216,11 +217,19 @@ void connections(const Camera& camera, fuzz::Bytes& bytes) {
   if (found) {
     const double again = camera.pdf_importance(point, found.direction, wavelength);
     fuzz::require(density(again), "the density of a direction is a number");
+    // From far away rays are too rough to be told.
+    constexpr double farthest = 1e9;  // mm
+    const bool near = glm::length(point) < farthest;
+    // Densities step between the 64 sectors of a pupil, which meet in its middle.
+    const double in_sector = 64 * u - std::floor(64 * u);
+    const bool inside = u > 0 && u < 1 && in_sector > 1e-6 && in_sector < 1 - 1e-6 && v > 1e-6 && v < 1 - 1e-6;
+    if (near && inside && camera.model() != ModelKind::pinhole) {
+      fuzz::require(std::abs(again - found.pdf) <= 1e-6 * found.pdf, "a connection has the density of its direction");
+    }
     const Importance met = camera.importance({point, found.direction}, wavelength, time);
     check(met);
-    // At an edge a ray may have either fate; from far away it is too rough to be told.
-    constexpr double farthest = 1e9;  // mm
-    if (met && glm::length(point) < farthest) {
+    // At an edge a ray may have either fate.
+    if (met && near) {
       fuzz::require(std::abs(met.we - found.importance.we) <= 1e-3 * met.we, "a connection has its ray's importance");
     }
   }
@@ -230,7 +239,9 @@ void connections(const Camera& camera, fuzz::Bytes& bytes) {
 }
 
 void projections(const Camera& camera, fuzz::Bytes& bytes) {
-  const Projection seen = camera.project(wild_point(bytes), fuzz::wild_wavelength(bytes), bytes.number(0, 1));
+  const Vec3<double> point = wild_point(bytes);
+  const Wavelength wavelength = fuzz::wild_wavelength(bytes);
+  const Projection seen = camera.project(point, wavelength, bytes.number(0, 1));
   if (seen.status == ProjectionStatus::not_visible) return;
   fuzz::require(std::isfinite(seen.film.x) && std::isfinite(seen.film.y) && std::isfinite(seen.raster.x) &&
                     std::isfinite(seen.raster.y),

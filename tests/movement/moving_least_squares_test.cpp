@@ -142,34 +142,41 @@ TEST(MovingLeastSquares, ReproducesPlanes) {
   }
 }
 
-TEST(MovingLeastSquares, IsConstantFarBesideThePicture) {
+TEST(MovingLeastSquares, HasTheSlopesOfFarPlaces) {
   const double infinity = std::numeric_limits<double>::infinity();
-  for (const SurfaceKind kind : kinds) {
-    for (const double beta : betas) {
-      const auto surface = through(random_points(4, 12), kind, beta);
-      for (const double far : {1e9, 1e200, infinity, -infinity, std::nan("")}) {
-        for (const FilmPoint& place : {FilmPoint{far, 1}, {1, far}, {far, far}}) {
-          EXPECT_TRUE(std::isfinite(surface.at(place))) << far;
-          EXPECT_EQ(surface.slopes(place), Vec2<double>(0, 0)) << far;
-        }
+  for (const double beta : betas) {
+    std::vector<WeighedValue> two = random_points(4, 2);
+    two[0].place = {0, -8}, two[0].value = 0;
+    two[1].place = {0, 8}, two[1].value = 1e-3;
+    const auto rising = through(two, SurfaceKind::affine, beta), any = through(random_points(4, 12), kinds[0], beta);
+    for (const double far : {1e9, 1e200, infinity, -infinity, std::nan("")}) {
+      EXPECT_EQ(rising.slopes({far, 1}).x, 0) << far;
+      EXPECT_NEAR(rising.slopes({far, 1}).y, rising.at({far, 1.5}) - rising.at({far, 0.5}), 1e-9) << beta << ' ' << far;
+      EXPECT_GT(rising.slopes({far, 1}).y, 1e-5) << beta << ' ' << far;
+      EXPECT_EQ(rising.slopes({1, far}), Vec2<double>(0, 0)) << far;
+      for (const FilmPoint& place : {FilmPoint{far, 1}, {1, far}, {far, far}}) {
+        EXPECT_TRUE(std::isfinite(any.at(place))) << far;
+        const Vec2<double> slopes = any.slopes(place);
+        EXPECT_TRUE(std::isfinite(slopes.x) && std::isfinite(slopes.y)) << far;
       }
     }
   }
 }
 
-TEST(MovingLeastSquares, HasFiniteSlopesNextToItsPoints) {
+TEST(MovingLeastSquares, HasTheSlopesOfItsPointsNextToThem) {
   for (const SurfaceKind kind : kinds) {
     for (const double beta : betas) {
-      const auto points = random_points(4, 12);
+      auto points = random_points(4, 12);
+      points[0].place = {0, 0};
       const auto surface = through(points, kind, beta);
-      auto beside = points;
-      beside[0].place = {0, 0};
-      const auto through_origin = through(beside, kind, beta);
+      const Vec2<double> at_point = surface.slopes({0, 0});
+      const double size = std::hypot(at_point.x, at_point.y);
       for (double r = 1e-3; r > 0; r /= 2) {
-        const Vec2<double> at_origin = through_origin.slopes({0, r});
-        EXPECT_TRUE(std::isfinite(at_origin.x) && std::isfinite(at_origin.y)) << name(kind) << beta << ' ' << r;
-        const Vec2<double> there = surface.slopes({points[3].place.x, points[3].place.y + r});
-        EXPECT_TRUE(std::isfinite(there.x) && std::isfinite(there.y)) << name(kind) << beta << ' ' << r;
+        const Vec2<double> beside = surface.slopes({0, r});
+        EXPECT_TRUE(std::isfinite(beside.x) && std::isfinite(beside.y)) << name(kind) << beta << ' ' << r;
+        if (r > 1e-8 || beta < 2) continue;  // next to the cusp of beta 1 they are others
+        EXPECT_NEAR(std::hypot(beside.x - at_point.x, beside.y - at_point.y), 0, 1e-4 * size + 1e-5)
+            << beta << ' ' << r;
       }
     }
   }

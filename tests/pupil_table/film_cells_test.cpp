@@ -155,7 +155,8 @@ TEST(FilmCells, MoveWithoutJumpsOverTheFilm) {
 TEST(FilmCells, HoldAllLinesOfATiltedFilm) {
   const FilmPupilTable upright = FilmPupilTable::enclosing(anamorphic(8), 1.4 * format);
   const double steep = 0.1 / -upright.space().depth();
-  const FilmTilt tilt{.slope_x = 0.8 * steep, .slope_y = -0.6 * steep, .low = -steep, .high = steep, .radius = format};
+  const double most = steep * format;
+  const FilmTilt tilt{.slope_x = 0.8 * steep, .slope_y = -0.6 * steep, .low = -most, .high = most, .radius = format};
   const FilmPupilTable table = upright.for_tilted_film(tilt);
   std::mt19937_64 random(2);
   std::uniform_real_distribution<double> unit(0, 1);

@@ -212,6 +212,10 @@ TEST(FilmPupilTable, CoversThePupilsOfATiltedFilm) {
   }
   const FilmPupilTable table = FilmPupilTable::enclosing(data_lens("double_gauss_100mm_f2.0"), 20);
   EXPECT_THROW((void)table.for_tilted_film({.radius = -1}), Error);
+  EXPECT_THROW((void)table.for_tilted_film({.radius = 5}, 0), Error);
+  const PupilImage disc{.radius = {10, 10}};
+  EXPECT_THROW((void)FilmPupilTable::of_iris({50, 0}, {}, std::array{disc}, 20).for_tilted_film({.radius = 5}, 0),
+               Error);
   EXPECT_THROW((void)table.for_tilted_film({.radius = std::numeric_limits<double>::quiet_NaN()}), Error);
 }
 

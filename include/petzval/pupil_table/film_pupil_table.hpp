@@ -202,8 +202,8 @@ class PETZVAL_API FilmPupilTable {
   /// its mirror images, holds the pupils of all points there. At most 1e-5 of their area is missed
   /// (tests/camera/tilted_exposure_test.cpp), except where enclosing() misses more: of a ball lens 10 mm across, tilted
   /// by 8 degrees, 2e-3 on a film of 3 x 2 mm, 2e-4 on one of 0.6 x 0.45 mm at f/8. This table's film_radius must reach
-  /// to all points where its rays meet the upright film. Throws Error for a radius that is negative or not finite.
-  /// threads: 1 or more, they share the wavelengths; the table does not depend on them.
+  /// to all points where its rays meet the upright film. Throws Error for a radius that is negative or not finite, and
+  /// for less than one thread. threads: they share the wavelengths; the table does not depend on them.
   FilmPupilTable for_tilted_film(const FilmTilt& tilt, int threads = 1) const;
 
   /// The planes that film points and samples lie in.
@@ -229,10 +229,10 @@ class PETZVAL_API FilmPupilTable {
 
   /// Area of the pupil of a film point, mm^2; 0 as in `sample`.
   double area(const FilmPoint& film, Wavelength wavelength = {}) const noexcept;
-  /// The projected solid angle in which a film point sees its pupil, sr, within 1e-4 of it. Times the square of the
-  /// index behind the lens it is the irradiance of the film for a scene of radiance 1.
+  /// The projected solid angle in which a film point sees its pupil, sr, within 1e-4 of it; 0 as in `sample`. Times the
+  /// square of the index behind the lens it is the irradiance of the film for a scene of radiance 1.
   double projected_solid_angle(const FilmPoint& film, Wavelength wavelength = {}) const noexcept;
-  /// The middle of its polygon; the centre of the central obscuration where there is one.
+  /// The middle of its polygon; the centre of the central obscuration where there is one. (0, 0) without a pupil.
   Vec2<double> middle(const FilmPoint& film, Wavelength wavelength = {}) const noexcept;
   /// Whether a place in the plane of the pupil belongs to the pupil of a film point.
   bool contains(const FilmPoint& film, double x, double y, Wavelength wavelength = {}) const noexcept;
@@ -247,7 +247,7 @@ class PETZVAL_API FilmPupilTable {
                 std::uint8_t* within) const noexcept;
   /// How far within the pupils the places of some rays lie: from 1 in the middle to 0 at the edge, and on to -1 outside
   /// and in the obscuration. Continuous over film points and places that the pupil faces; of pupils in closed form 1 or
-  /// -1. clearances: N. Fast where rays follow that differ little.
+  /// -1. clearances: N. Fast where successive rays differ little.
   void clearances(std::size_t count, const TwoPlaneRays<const double>& lines, Wavelength wavelength,
                   double* clearances) const noexcept;
 
