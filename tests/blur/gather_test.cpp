@@ -379,6 +379,21 @@ TEST(Highlights, AreEvenDiscs) {
   }
 }
 
+TEST(Highlights, AreLightsWhoseBlurHasMorePixelsThanRays) {
+  const LensRays rays = thin_rays(30, 32);  // focused at 2 m
+  static float lamp_at;
+  const Scene lamp = [](double x, double y) {
+    std::vector<Surface> seen;
+    if (std::abs(x) < 0.0014 && std::abs(y) < 0.0014) seen.push_back({lamp_at, 1000, 1000, 1000});
+    return seen;
+  };
+  for (const double radius_px : {-5.0, -4.0, -2.5, 0.0, 2.5, 4.0, 5.0}) {  // above 0: nearer than the focus
+    lamp_at = static_cast<float>(1 / 2000.0 + radius_px / (30 * rays.camera().focal_px));
+    const bool spread = std::numbers::pi * radius_px * radius_px > 32;
+    EXPECT_EQ(gather(layers_of(lamp, rays), rays).statistics.highlights > 0, spread) << radius_px;
+  }
+}
+
 TEST(Highlights, HideBehindWhatIsNearer) {
   // A far lamp behind a near board that covers the left half of its disc.
   const Scene lamp = [](double x, double y) {
