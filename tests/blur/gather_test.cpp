@@ -213,6 +213,27 @@ TEST(Gather, DarkensColoursAndKeepsAlpha) {
   }
 }
 
+// Rays of which nothing is known leave the mean of the others: what has one colour keeps it.
+TEST(Gather, KeepsAnEvenColourWhereSurfacesAreMissing) {
+  const Scene grey_boards = [](double x, double y) {
+    std::vector<Surface> seen;
+    if (std::abs(x) < 0.02) seen.push_back({1 / 1000.0f, 0.5f, 0.5f, 0.5f});
+    if (std::abs(y) < 0.03) seen.push_back({1 / 1500.0f, 0.5f, 0.5f, 0.5f});
+    seen.push_back({1 / 5000.0f, 0.5f, 0.5f, 0.5f});
+    return seen;
+  };
+  for (const LensRays& rays : {thin_rays(40), tilted_rays(40)}) {
+    const LayerSet layers = layers_of(grey_boards, rays, 1);
+    for (const GatherPath path : {GatherPath::coherent, GatherPath::general}) {
+      const Blurred picture = gather(layers, rays, {.path = path, .highlights_above = 0});
+      EXPECT_GT(picture.statistics.missed, 0u) << name(path);
+      for (std::size_t i = 0; i < picture.missed.size(); ++i) {
+        ASSERT_NEAR(picture.rgba[4 * i], 0.5, 1e-4) << name(path) << ' ' << i << ' ' << picture.missed[i];
+      }
+    }
+  }
+}
+
 TEST(Gather, PathsAgree) {
   // Steps of the first one begin at the middles of pixels, those of the others do not: rays land a pixel beside.
   const LensRays rays = thin_rays(25, 200);
