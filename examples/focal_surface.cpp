@@ -163,8 +163,8 @@ petzval::Rgb8Image map_of(const Surface& surface, const Options& options) {
     add("Extent of the depth of field, in stops: more is sharp above 0, less below", frame.extents, stop_levels,
         stops_in_words, "less is sharp", "more is sharp", &petzval::FocalPoint::extent_stops);
   }
-  sheet.notes = {"Points by their numbers in " + options.surface.points_file +
-                 "; the picture as a photograph shows it."};
+  const std::string points_file = std::filesystem::path(options.surface.points_file).filename().string();
+  sheet.notes = {"Points by their numbers in " + points_file + "; the picture as a photograph shows it."};
   return examples::draw_surface_sheet(sheet);
 }
 
