@@ -52,7 +52,7 @@ class Search {
     }
     outwards_near(discs, 24, false);
     outwards_near(rings, 320, true);
-    // Pupils of an unusual shape want a farther look.
+    // Pupils of an unusual shape want a farther look, as close as that at discs.
     std::vector<std::uint32_t> unusual;
     for (const auto* points : {&discs, &rings}) {
       for (const std::uint32_t p : *points) {
@@ -60,7 +60,7 @@ class Search {
         if (!std::all_of(found_[p].ends.begin(), found_[p].ends.end(), usual)) unusual.push_back(p);
       }
     }
-    outwards(unusual, 96, 4.8);
+    outwards(unusual, 72, 4.8);
     for (const std::uint32_t p : unusual) {
       const auto any = [](const Found::Ends& e) { return e.to > 0; };
       if (std::none_of(found_[p].ends.begin(), found_[p].ends.end(), any)) found_[p] = {};
