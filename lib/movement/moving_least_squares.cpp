@@ -15,9 +15,10 @@
 namespace petzval::inline v0::movement_detail {
 namespace {
 
-constexpr double longest_soft = 0.1;  // sides
-constexpr double full_alpha = 1e-3;   // of the largest: with less, a point becomes soft
-constexpr double negligible = 1e-9;   // of the largest
+constexpr double longest_soft = 0.1;                 // sides
+constexpr double full_alpha = 1e-3;                  // of the largest: with less, a point becomes soft
+constexpr double negligible = 1e-9;                  // of the largest
+constexpr double scaled_reach = 2 * reach_in_sides;  // a side is less than 2, scaled
 
 const LeastSquaresLoops& loops_of([[maybe_unused]] InstructionSet set) noexcept {
 #if defined(__x86_64__)
@@ -179,7 +180,7 @@ LeastSquaresJob<T> MovingLeastSquares::job(const Columns<T>& columns) const noex
       .low = static_cast<T>(low_),
       .high = static_cast<T>(high_),
       .to_scaled = static_cast<T>(to_scaled_),
-      .reach = static_cast<T>(2 * reach_in_sides),
+      .reach = static_cast<T>(scaled_reach),
       .from_scaled = static_cast<T>(1 / to_scaled_value_),
   };
 }
@@ -242,10 +243,7 @@ Vec2<double> MovingLeastSquares::slopes(const FilmPoint& place) const noexcept {
   const Columns<double>& points = points_;
   const std::size_t count = points.x.size();
   // In reach, as at() has it; a coordinate beyond moves nothing.
-  const auto in_reach = [](double x) {
-    constexpr double reach = 2 * reach_in_sides;
-    return x < reach ? std::max(x, -reach) : reach;
-  };
+  const auto in_reach = [](double x) { return x < scaled_reach ? std::max(x, -scaled_reach) : scaled_reach; };
   const V wanted{place.x * to_scaled_, place.y * to_scaled_}, p{in_reach(wanted.x), in_reach(wanted.y)};
   const double value = at(place) * to_scaled_value_;
   if (!(value > low_ && value < high_)) return {0, 0};

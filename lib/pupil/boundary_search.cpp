@@ -52,7 +52,7 @@ class Search {
     }
     outwards_near(discs, 24, false);
     outwards_near(rings, 320, true);
-    // Pupils of an unusual shape want a farther look, as close as that at discs.
+    // Pupils of an unusual shape are looked for farther out, in steps as long as those for discs.
     std::vector<std::uint32_t> unusual;
     for (const auto* points : {&discs, &rings}) {
       for (const std::uint32_t p : *points) {

@@ -14,7 +14,9 @@ namespace petzval::testing {
 template <class T>
 struct Samples {
   std::vector<T> film_x, film_y, pupil_u, pupil_v;
-  std::vector<std::uint16_t> wavelengths;  ///< empty: the first for all
+  Wavelength wavelength{};                 ///< of all, unless there is a list
+  std::vector<std::uint16_t> wavelengths;  ///< positions
+  std::vector<float> nm;                   ///< instead of both
   std::vector<T> times;                    ///< empty: 0
   std::vector<T> x, y, z, dx, dy, dz, weights, pdf_pupil, pdf_direction;
   std::vector<RayFate> fates;
@@ -28,24 +30,21 @@ struct Samples {
     pupil_v.push_back(static_cast<T>(v));
   }
 
+  RayWavelengths ray_wavelengths() const {
+    return {wavelength, wavelengths.empty() ? nullptr : wavelengths.data(), nm.empty() ? nullptr : nm.data()};
+  }
+
   CameraSample one(std::size_t i) const {
-    return {{film_x[i], film_y[i]},
-            pupil_u[i],
-            pupil_v[i],
-            wavelengths.empty() ? std::size_t{0} : wavelengths[i],
-            times.empty() ? 0 : times[i]};
+    return {{film_x[i], film_y[i]}, pupil_u[i], pupil_v[i], ray_wavelengths().at(i), times.empty() ? 0 : times[i]};
   }
 
   /// Samples `count` of them from `first` on.
   void run(const Camera& camera, std::size_t first, std::size_t count) {
     for (auto* column : {&x, &y, &z, &dx, &dy, &dz, &weights, &pdf_pupil, &pdf_direction}) column->resize(size());
     fates.resize(size());
-    const CameraSamples<T> samples{film_x.data() + first,
-                                   film_y.data() + first,
-                                   pupil_u.data() + first,
-                                   pupil_v.data() + first,
-                                   {.each = wavelengths.empty() ? nullptr : wavelengths.data() + first},
-                                   times.empty() ? nullptr : times.data() + first};
+    const CameraSamples<T> samples{film_x.data() + first,         film_y.data() + first,
+                                   pupil_u.data() + first,        pupil_v.data() + first,
+                                   ray_wavelengths().from(first), times.empty() ? nullptr : times.data() + first};
     const CameraRays<T> rays{{x.data(), y.data(), z.data(), dx.data(), dy.data(), dz.data()},
                              weights.data(),
                              fates.data(),

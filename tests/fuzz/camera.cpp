@@ -6,7 +6,7 @@
 #include <span>
 #include <type_traits>
 
-#include "laws.hpp"
+#include "camera_laws.hpp"
 #include "wild_lens.hpp"
 
 namespace {
@@ -59,44 +59,24 @@ CameraOptions wild_options(fuzz::Bytes& bytes) {
 
 template <class T>
 void samples(const Camera& camera, fuzz::Bytes& bytes) {
-  std::array<std::array<T, count>, 4> in;
-  std::array<std::array<T, count>, 9> out{};
-  std::array<RayFate, count> fates;
+  testing::Samples<T> samples;
   for (std::size_t i = 0; i < count; ++i) {
     const Vec2<double> raster{bytes.number(0, 1) * camera.film().columns, bytes.number(0, 1) * camera.film().rows};
     const FilmPoint film = camera.film().point(raster.x, raster.y);
-    in[0][i] = static_cast<T>(film.x), in[1][i] = static_cast<T>(film.y);
-    in[2][i] = static_cast<T>(bytes.number(0, 1)), in[3][i] = static_cast<T>(bytes.number(0, 1));
+    const double u = bytes.number(0, 1), v = bytes.number(0, 1);
+    samples.add(film.x, film.y, u, v);
   }
-  camera.sample<T>(count, {in[0].data(), in[1].data(), in[2].data(), in[3].data()},
-                   {{out[0].data(), out[1].data(), out[2].data(), out[3].data(), out[4].data(), out[5].data()},
-                    out[6].data(),
-                    fates.data(),
-                    out[7].data(),
-                    out[8].data()});
-  for (std::size_t i = 0; i < count; ++i) {
-    for (const auto& numbers : out) fuzz::require(std::isfinite(numbers[i]), "a camera ray is finite");
-    fuzz::require(out[6][i] >= 0, "a weight is 0 or more");
-    if (out[6][i] > 0) {
-      fuzz::require(fates[i] == RayFate::transmitted, "a ray with a weight passes");
-      fuzz::require(fuzz::unit(Vec3<T>{out[3][i], out[4][i], out[5][i]}, 2e-5), "a camera ray has unit length");
-    }
-  }
+  samples.run(camera);
+  fuzz::check(samples);
 }
 
 void from_the_scene(const Camera& camera, fuzz::Bytes& bytes) {
   const Vec3<double> point{bytes.number(-500, 500), bytes.number(-500, 500), bytes.number(-2000, -10)};
   const double u = bytes.number(0, 1), v = bytes.number(0, 1);
   const ImportanceSample found = camera.sample_importance(point, u, v);
-  fuzz::require(std::isfinite(found.importance.we) && found.importance.we >= 0, "importance is 0 or more");
-  fuzz::require(std::isfinite(found.pdf) && found.pdf >= 0, "a density is 0 or more");
-  if (found) {
-    fuzz::require(fuzz::unit(found.direction, 1e-9) && fuzz::finite(found.on_front), "a connection is finite");
-    const Importance met = camera.importance({point, found.direction});
-    fuzz::require(std::isfinite(met.we) && met.we >= 0, "importance of a ray is 0 or more");
-  }
-  const Projection seen = camera.project(point);
-  if (seen) fuzz::require(std::isfinite(seen.raster.x) && std::isfinite(seen.raster.y), "a projection is finite");
+  fuzz::check(found, 1e-9);
+  if (found) fuzz::check(camera.importance({point, found.direction}));
+  fuzz::check(camera.project(point));
 }
 
 }  // namespace

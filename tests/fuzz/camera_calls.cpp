@@ -8,9 +8,8 @@
 
 #include <glm/geometric.hpp>
 
+#include "camera_laws.hpp"
 #include "fixed_lenses.hpp"
-#include "laws.hpp"
-#include "petzval/camera/camera.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/movement/focal_surface.hpp"
 #include "petzval/paraxial/ideal_lens.hpp"
@@ -96,38 +95,6 @@ Vec3<double> wild_direction(fuzz::Bytes& bytes) {
   return {x, y, std::sqrt(1 - x * x - y * y)};
 }
 
-bool density(double value) { return value >= 0 && std::isfinite(value); }
-
-void check(const CameraRay& ray) {
-  fuzz::require(fuzz::finite(ray.ray), "a camera ray is finite");
-  fuzz::require(density(ray.weight) && density(ray.pdf_film) && density(ray.pdf_pupil) && density(ray.pdf_direction),
-                "weight and densities of a camera ray are finite and not negative");
-  if (!ray) return;
-  fuzz::require(ray.fate == RayFate::transmitted, "a ray with a weight passes");
-  fuzz::require(fuzz::unit(ray.ray.direction, 2e-5), "a camera ray has unit length");
-}
-
-void check(const Importance& found) {
-  fuzz::require(density(found.we) && density(found.pdf_film) && density(found.pdf_pupil) &&
-                    density(found.pdf_position) && density(found.pdf_direction),
-                "importance and its densities are finite and not negative");
-  if (!found) return;
-  fuzz::require(found.fate == RayFate::transmitted, "a ray with importance passes");
-  fuzz::require(std::isfinite(found.film.x) && std::isfinite(found.film.y) && std::isfinite(found.raster.x) &&
-                    std::isfinite(found.raster.y),
-                "a ray with importance meets the film");
-}
-
-/// rounding: of |direction|^2.
-void check(const ImportanceSample& found, double rounding) {
-  check(found.importance);
-  fuzz::require(density(found.pdf), "the density of a connection is finite and not negative");
-  if (!found) return;
-  fuzz::require(found.pdf > 0, "a connection has a density");
-  fuzz::require(fuzz::unit(found.direction, rounding) && fuzz::finite(found.on_front), "a connection is finite");
-  fuzz::require(found.distance >= 0, "a connection has a length");
-}
-
 /// Within rounding, in the precision of the model. Rays at an edge may have either fate. A film point may count as on
 /// the axis in float and not in double: its pupil's polygon then turns by a part of a sector.
 void alike(const CameraRay& one, const Ray<double>& other, double weight) {
@@ -142,46 +109,28 @@ void alike(const CameraRay& one, const Ray<double>& other, double weight) {
 
 template <class T>
 void samples(const Camera& camera, fuzz::Bytes& bytes) {
-  std::array<CameraSample, count> one;
-  std::array<std::array<T, count>, 5> in;
-  std::array<std::array<T, count>, 9> out{};
-  std::array<float, count> nm;
-  std::array<RayFate, count> fates;
+  testing::Samples<T> samples;
   const bool by_nm = bytes.one_in(4);
-  const Wavelength shared = fuzz::wild_wavelength(bytes);
+  samples.wavelength = fuzz::wild_wavelength(bytes);
   for (std::size_t i = 0; i < count; ++i) {
-    one[i] = wild_sample(camera.film(), bytes);
-    nm[i] = static_cast<float>(bytes.number(430, 670));
-    one[i].wavelength = by_nm ? Wavelength::nm(double{nm[i]}) : shared;
-    const std::array numbers{one[i].film.x, one[i].film.y, one[i].pupil_u, one[i].pupil_v, one[i].time};
-    for (std::size_t k = 0; k < numbers.size(); ++k) in[k][i] = static_cast<T>(numbers[k]);
-    one[i].film = {in[0][i], in[1][i]};
-    one[i].pupil_u = in[2][i], one[i].pupil_v = in[3][i], one[i].time = in[4][i];
+    const CameraSample s = wild_sample(camera.film(), bytes);
+    samples.add(s.film.x, s.film.y, s.pupil_u, s.pupil_v);
+    samples.times.push_back(static_cast<T>(s.time));
+    const auto nm = static_cast<float>(bytes.number(430, 670));
+    if (by_nm) samples.nm.push_back(nm);
   }
-  camera.sample<T>(count,
-                   {in[0].data(),
-                    in[1].data(),
-                    in[2].data(),
-                    in[3].data(),
-                    {.all = shared, .each = nullptr, .each_nm = by_nm ? nm.data() : nullptr},
-                    in[4].data()},
-                   {{out[0].data(), out[1].data(), out[2].data(), out[3].data(), out[4].data(), out[5].data()},
-                    out[6].data(),
-                    fates.data(),
-                    out[7].data(),
-                    out[8].data()});
+  samples.run(camera);
+  fuzz::check(samples);
   for (std::size_t i = 0; i < count; ++i) {
-    const Ray<double> ray{{out[0][i], out[1][i], out[2][i]}, {out[3][i], out[4][i], out[5][i]}};
-    check(CameraRay{ray, fates[i], out[6][i], 0, out[7][i], out[8][i]});
-    const CameraRay alone = camera.sample(one[i]);
-    check(alone);
-    alike(alone, ray, out[6][i]);
+    const CameraRay alone = camera.sample(samples.one(i));
+    fuzz::check(alone);
+    alike(alone, samples.ray(i), samples.weights[i]);
   }
 }
 
 void differentials(const Camera& camera, fuzz::Bytes& bytes) {
   const CameraRayDifferential found = camera.sample_differential(wild_sample(camera.film(), bytes));
-  check(found.sample);
+  fuzz::check(found.sample);
   fuzz::require(fuzz::finite(found.by_film_x) && fuzz::finite(found.by_film_y), "derivatives are finite");
 }
 
@@ -200,11 +149,11 @@ void importance(const Camera& camera, fuzz::Bytes& bytes) {
   for (std::size_t i = 0; i < count; ++i) {
     const Ray<double> ray{{in[0][i], in[1][i], in[2][i]}, {in[3][i], in[4][i], in[5][i]}};
     const Importance alone = camera.importance(ray, wavelength, in[6][i]);
-    check(alone), check(together[i]);
+    fuzz::check(alone), fuzz::check(together[i]);
     if (alone && together[i]) {
       fuzz::require(std::abs(alone.we - together[i].we) <= 1e-3 * alone.we, "importance is that of a single call");
     }
-    fuzz::require(density(camera.pdf_distant_importance(ray, wavelength)), "the density of a ray is a number");
+    fuzz::require(fuzz::density(camera.pdf_distant_importance(ray, wavelength)), "the density of a ray is a number");
   }
 }
 
@@ -213,10 +162,10 @@ void connections(const Camera& camera, fuzz::Bytes& bytes) {
   const double u = bytes.number(0, 1), v = bytes.number(0, 1), time = bytes.number(0, 1);
   const Wavelength wavelength = fuzz::wild_wavelength(bytes);
   const ImportanceSample found = camera.sample_importance(point, u, v, wavelength, time);
-  check(found, 1e-9);
+  fuzz::check(found, 1e-9);
   if (found) {
     const double again = camera.pdf_importance(point, found.direction, wavelength);
-    fuzz::require(density(again), "the density of a direction is a number");
+    fuzz::require(fuzz::density(again), "the density of a direction is a number");
     // From far away rays are too rough to be told.
     constexpr double farthest = 1e9;  // mm
     const bool near = glm::length(point) < farthest;
@@ -227,25 +176,23 @@ void connections(const Camera& camera, fuzz::Bytes& bytes) {
       fuzz::require(std::abs(again - found.pdf) <= 1e-6 * found.pdf, "a connection has the density of its direction");
     }
     const Importance met = camera.importance({point, found.direction}, wavelength, time);
-    check(met);
+    fuzz::check(met);
     // At an edge a ray may have either fate.
     if (met && near) {
       fuzz::require(std::abs(met.we - found.importance.we) <= 1e-3 * met.we, "a connection has its ray's importance");
     }
   }
   constexpr double as_given = 1.001e-3;  // what cameras take for unit length
-  check(camera.sample_distant_importance(direction, u, v, wavelength, time), as_given);
-  fuzz::require(density(camera.pdf_importance(point, direction, wavelength)), "the density of a direction is a number");
+  fuzz::check(camera.sample_distant_importance(direction, u, v, wavelength, time), as_given);
+  fuzz::require(fuzz::density(camera.pdf_importance(point, direction, wavelength)),
+                "the density of a direction is a number");
 }
 
 void projections(const Camera& camera, fuzz::Bytes& bytes) {
   const Vec3<double> point = wild_point(bytes);
   const Wavelength wavelength = fuzz::wild_wavelength(bytes);
   const Projection seen = camera.project(point, wavelength, bytes.number(0, 1));
-  if (seen.status == ProjectionStatus::not_visible) return;
-  fuzz::require(std::isfinite(seen.film.x) && std::isfinite(seen.film.y) && std::isfinite(seen.raster.x) &&
-                    std::isfinite(seen.raster.y),
-                "a projection is finite");
+  fuzz::check(seen);
   if (seen) fuzz::require(camera.film().contains(seen.film), "what is seen lies on the film");
 }
 
