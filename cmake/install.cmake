@@ -2,6 +2,7 @@
 # The installed tree: libraries and headers, data, and how CMake and pkg-config find them. Nothing in it holds an absolute
 # path, so it can be moved as a whole.
 include(CMakePackageConfigHelpers)
+include(GNUInstallDirs)
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/petzval)
 set(pkgconfig_dir ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
@@ -9,9 +10,10 @@ file(RELATIVE_PATH pc_libdir ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAKE_INST
 file(RELATIVE_PATH pc_datadir ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAKE_INSTALL_FULL_DATADIR}/petzval)
 file(RELATIVE_PATH pc_includedir ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAKE_INSTALL_FULL_INCLUDEDIR})
 
-# petzval_install(image DESCRIPTION "..." REQUIRES petzval-core STATIC_REQUIRES OpenEXR): one component, where it was built.
-# An export set of its own: a program that asks for core never hears of what the others link.
-# REQUIRES, STATIC_REQUIRES, STATIC_LIBS: what users link beside it, in pkg-config's words.
+# petzval_install(image DESCRIPTION "..." STATIC_REQUIRES OpenEXR): installs one component if it was built.
+# Each has an export set of its own, so that a program that asks for core needs none of the libraries that the others link.
+# REQUIRES, STATIC_REQUIRES, STATIC_LIBS: the other libraries that users link, in pkg-config's words. The components that it links
+# publicly come first, in the .pc file and in petzvalConfig.cmake.
 function(petzval_install component)
   cmake_parse_arguments(PARSE_ARGV 1 pc "" "DESCRIPTION;REQUIRES;STATIC_REQUIRES;STATIC_LIBS" "")
   set(name petzval-${component})
@@ -21,6 +23,15 @@ function(petzval_install component)
   install(TARGETS ${name} EXPORT ${name} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
     ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
   install(EXPORT ${name} NAMESPACE petzval:: FILE ${name}-targets.cmake DESTINATION ${package_dir})
+
+  get_target_property(needs ${name} INTERFACE_LINK_LIBRARIES)
+  list(FILTER needs INCLUDE REGEX "^petzval::")
+  list(TRANSFORM needs REPLACE "^petzval::" "")
+  string(APPEND component_needs "set(petzval_${component}_needs ${needs})\n")
+  set(component_needs "${component_needs}" PARENT_SCOPE)
+  list(TRANSFORM needs PREPEND petzval-)
+  list(JOIN needs ", " pc_needs)
+  string(JOIN ", " pc_REQUIRES ${pc_needs} ${pc_REQUIRES})
 
   get_target_property(type ${name} TYPE)
   if(type STREQUAL SHARED_LIBRARY)  # it has linked them itself
@@ -37,11 +48,12 @@ endfunction()
 
 petzval_install(core DESCRIPTION "Real lenses for renderers: prescriptions, ray tracing, pupils, focus, point spread functions"
   REQUIRES glm STATIC_REQUIRES yaml-cpp STATIC_LIBS -ldl)
-petzval_install(blur DESCRIPTION "Lens blur of layered pictures" REQUIRES petzval-core)
-petzval_install(fit DESCRIPTION "Least-squares fits for lens optics" REQUIRES petzval-core)
-petzval_install(figure DESCRIPTION "SVG figures of lenses" REQUIRES petzval-core)
-petzval_install(image DESCRIPTION "EXR and PNG images" REQUIRES "petzval-core, petzval-blur" STATIC_REQUIRES "OpenEXR libpng")
+petzval_install(blur DESCRIPTION "Lens blur of layered pictures")
+petzval_install(fit DESCRIPTION "Least-squares fits for lens optics")
+petzval_install(figure DESCRIPTION "SVG figures of lenses")
+petzval_install(image DESCRIPTION "EXR and PNG images" STATIC_REQUIRES "OpenEXR libpng")
 
+get_target_property(core_type petzval-core TYPE)
 configure_package_config_file(cmake/petzvalConfig.cmake.in petzvalConfig.cmake INSTALL_DESTINATION ${package_dir}
   PATH_VARS CMAKE_INSTALL_DATADIR NO_SET_AND_CHECK_MACRO)
 write_basic_package_version_file(petzvalConfigVersion.cmake COMPATIBILITY SameMinorVersion)
