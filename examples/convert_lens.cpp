@@ -75,14 +75,14 @@ std::vector<ImportWarning> only_metadata(const Prescription& lens, const petzval
 // Longer endings first: .opentrackio.json ends in .json too.
 constexpr std::array outputs{
     Output{".opentrackio.json",
-           [](const Prescription& lens, const petzval::GlassCatalogue&, const std::filesystem::path& file) {
-             const petzval::Lens compiled = petzval::compile(lens);
+           [](const Prescription& lens, const petzval::GlassCatalogue& glasses, const std::filesystem::path& file) {
+             const petzval::Lens compiled = petzval::compile(lens, {.glasses = &glasses});
              petzval::write_open_track_io(compiled, petzval::film_of(lens, compiled), petzval::identity_of(lens), file);
              return only_metadata(lens, compiled);
            }},
     Output{".stmap.exr",
-           [](const Prescription& lens, const petzval::GlassCatalogue&, const std::filesystem::path& file) {
-             const petzval::Lens compiled = petzval::compile(lens);
+           [](const Prescription& lens, const petzval::GlassCatalogue& glasses, const std::filesystem::path& file) {
+             const petzval::Lens compiled = petzval::compile(lens, {.glasses = &glasses});
              petzval::write_st_map(compiled, petzval::film_of(lens, compiled), petzval::identity_of(lens), file,
                                    {.threads = petzval::processor_threads()});
              return only_metadata(lens, compiled);
@@ -92,11 +92,13 @@ constexpr std::array outputs{
              petzval::write_prescription(lens, file);
              return std::vector<ImportWarning>();
            }},
-    Output{".dat", [](const Prescription& lens, const petzval::GlassCatalogue&,
-                      const std::filesystem::path& file) { return write_text(petzval::format_table(lens), file); }},
+    Output{".dat",
+           [](const Prescription& lens, const petzval::GlassCatalogue& glasses, const std::filesystem::path& file) {
+             return write_text(petzval::format_table(lens, &glasses), file);
+           }},
     Output{".osl",
-           [](const Prescription& lens, const petzval::GlassCatalogue&, const std::filesystem::path& file) {
-             examples::write_text(file, petzval::format_osl_camera(petzval::compile(lens)));
+           [](const Prescription& lens, const petzval::GlassCatalogue& glasses, const std::filesystem::path& file) {
+             examples::write_text(file, petzval::format_osl_camera(petzval::compile(lens, {.glasses = &glasses})));
              std::vector<ImportWarning> losses{
                  {0, "wavelengths",
                   "the shader has the indices of " + examples::number(lens.reference_wavelength_nm) + " nm alone"}};
@@ -147,9 +149,10 @@ Json to_json(const std::vector<ImportWarning>& warnings) {
   return json;
 }
 
-Json report(const Prescription& whole, const Prescription& lens, const std::vector<ImportWarning>& warnings,
-            const std::vector<ImportWarning>& losses, const std::vector<ImportWarning>& repairs) {
-  const petzval::Lens compiled = petzval::compile(lens);
+Json report(const Prescription& whole, const Prescription& lens, const petzval::GlassCatalogue& glasses,
+            const std::vector<ImportWarning>& warnings, const std::vector<ImportWarning>& losses,
+            const std::vector<ImportWarning>& repairs) {
+  const petzval::Lens compiled = petzval::compile(lens, {.glasses = &glasses});
   const petzval::Meridian main = petzval::main_meridian(compiled);
   const auto& imported = lens.imported;
   Json json{{"format", imported ? imported->format : "petzval"},
@@ -167,12 +170,12 @@ Json report(const Prescription& whole, const Prescription& lens, const std::vect
             {"losses", to_json(losses)},
             {"repairs", to_json(repairs)}};
   json["lint"] = Json::array();
-  for (const petzval::Finding& finding : petzval::lint(lens)) {
+  for (const petzval::Finding& finding : petzval::lint(lens, glasses)) {
     json["lint"].push_back({{"kind", name(finding.kind)}, {"message", finding.message}});
   }
   json["configurations"] = Json::array();
   for (const petzval::Configuration& c : whole.configurations) {
-    const petzval::Lens position = petzval::compile(whole, {.configuration = c.name});
+    const petzval::Lens position = petzval::compile(whole, {.glasses = &glasses, .configuration = c.name});
     json["configurations"].push_back(
         {{"name", c.name},
          {"focus_of", c.focus_of ? Json(*c.focus_of) : Json(nullptr)},
@@ -209,7 +212,7 @@ bool convert(const Options& options) {
   }
   std::vector<ImportWarning> repairs;
   if (options.repair) {
-    petzval::Repaired repaired = petzval::repair(whole);
+    petzval::Repaired repaired = petzval::repair(whole, &glasses);
     whole = std::move(repaired.prescription);
     repairs = std::move(repaired.changes);
     say("repaired", options.in.file, repairs);
@@ -219,7 +222,7 @@ bool convert(const Options& options) {
   const bool one = !options.in.configuration.empty();
   const auto losses = output.write(one ? lens : whole, glasses, options.out);
   say("lost", options.out, losses);
-  if (options.json) std::cout << report(whole, lens, warnings, losses, repairs).dump(2) << '\n';
+  if (options.json) std::cout << report(whole, lens, glasses, warnings, losses, repairs).dump(2) << '\n';
   return true;
 }
 

@@ -76,6 +76,9 @@ void surface_table(std::ostream& html, const Report& r) {
   for (std::size_t i = 0; i < p.surfaces.size(); ++i) {
     const petzval::SurfaceRow& row = p.surfaces[i];
     const petzval::LensSurface& compiled = r.loaded.lens.surfaces()[i];
+    const petzval::Glass* glass = petzval::glass_of(row.medium, r.loaded.glasses);
+    const std::optional<double> nd = row.medium.nd ? row.medium.nd : glass ? std::optional(glass->nd) : std::nullopt;
+    const std::optional<double> vd = row.medium.vd ? row.medium.vd : glass ? std::optional(glass->vd) : std::nullopt;
     std::string remarks;
     const auto remark = [&](const std::string& words) { remarks += (remarks.empty() ? "" : ", ") + words; };
     if (row.stop) remark("stop");
@@ -87,9 +90,8 @@ void surface_table(std::ostream& html, const Report& r) {
     if (!row.aspheric.empty()) remark("asphere of order " + std::to_string(row.aspheric.back().order));
     if (row.obscuration_semi_diameter) remark("central obscuration " + number(*row.obscuration_semi_diameter, 5));
     html << "<tr>" << cell(std::to_string(i)) << cell(row.radius == 0 ? "plane" : number(row.radius, 8))
-         << cell(number(row.thickness, 7)) << cell(row.medium.nd == 1 ? "" : number(row.medium.nd, 7))
-         << cell(row.medium.vd ? number(*row.medium.vd, 5) : "") << "<td>"
-         << escaped_html(row.medium.glass.value_or("")) << "</td>"
+         << cell(number(row.thickness, 7)) << cell(nd && !row.medium.is_air() ? number(*nd, 7) : "")
+         << cell(vd ? number(*vd, 5) : "") << "<td>" << escaped_html(row.medium.glass.value_or("")) << "</td>"
          << cell(std::isfinite(compiled.semi_diameter) ? number(compiled.semi_diameter, 5) : "unlimited") << "<td>"
          << remarks << "</td></tr>\n";
   }

@@ -160,14 +160,11 @@ std::string to_text(const Report& r) {
   for (std::size_t space = 1; space <= lens.surface_count(); ++space) {
     const petzval::Medium& medium = r.loaded.prescription.surfaces[space - 1].medium;
     if (medium == petzval::Medium{} || r.loaded.prescription.surfaces[space - 1].mirror) continue;
-    const petzval::Glass* found = !medium.glass      ? nullptr
-                                  : medium.catalogue ? r.loaded.glasses.find(*medium.glass, *medium.catalogue)
-                                                     : r.loaded.glasses.find(*medium.glass, medium.nd);
-    if (found) continue;
+    if (petzval::glass_of(medium, r.loaded.glasses) || !medium.nd) continue;
     text << "  surface " << space - 1 << ": " << medium.glass.value_or("a glass without a name") << ", n_d "
-         << number(medium.nd, 7);
+         << number(*medium.nd, 7);
     if (medium.vd) text << ", V_d " << number(*medium.vd, 4);
-    for (const petzval::Glass* nearest : petzval::nearest_glasses(r.loaded.glasses, medium.nd, medium.vd, 1)) {
+    for (const petzval::Glass* nearest : petzval::nearest_glasses(r.loaded.glasses, *medium.nd, medium.vd, 1)) {
       text << "; the nearest is " << nearest->name << " (" << nearest->catalogue << ", " << number(nearest->nd, 7)
            << ", " << number(nearest->vd, 4) << ")";
     }

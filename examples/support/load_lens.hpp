@@ -7,6 +7,7 @@
 
 #include "cli.hpp"
 #include "petzval/lens/lens.hpp"
+#include "petzval/lens/medium.hpp"
 #include "petzval/media/glass.hpp"
 #include "petzval/prescription/prescription.hpp"
 

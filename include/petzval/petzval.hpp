@@ -67,6 +67,7 @@
 #include "petzval/io/write_file.hpp"
 #include "petzval/iris/iris.hpp"
 #include "petzval/lens/lens.hpp"
+#include "petzval/lens/medium.hpp"
 #include "petzval/lint/lint.hpp"
 #include "petzval/media/glass.hpp"
 #include "petzval/movement/autofocus.hpp"

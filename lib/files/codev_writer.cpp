@@ -66,9 +66,9 @@ void CodevWriter::name_media() {
   for (const SurfaceRow& row : p_.surfaces) media.push_back(row.medium);
   for (const Medium& medium : media) {
     const bool known = std::ranges::any_of(names_, [&](const auto& entry) { return entry.first == medium; });
-    if (known || (!medium.glass && medium.nd == 1)) continue;
+    if (known || medium.is_air()) continue;
     const Glass* found = out_.glass(medium);
-    if (found && found->nd == medium.nd && found->catalogue.find('-') == std::string::npos) {
+    if (found && medium.nd.value_or(found->nd) == found->nd && found->catalogue.find('-') == std::string::npos) {
       std::string name;
       for (const char c : found->name) {
         if (c != '-' && c != ' ') name.push_back(c);
@@ -103,13 +103,14 @@ void CodevWriter::private_glasses() {
   for (const auto& entry : private_) {
     const std::string& name = entry.first;
     const Medium& medium = entry.second;
+    const double nd = out_.index(medium);
     const auto at = [&](double nm) {
       const Glass* found = out_.glass(medium);
-      if (found) return medium.nd + refractive_index(*found, nm) - refractive_index(*found, d_line_nm);
-      return medium.vd ? abbe_index(medium.nd, *medium.vd, nm) : medium.nd;
+      if (found) return nd + refractive_index(*found, nm) - refractive_index(*found, d_line_nm);
+      return medium.vd && *medium.vd > 0 ? abbe_index(nd, *medium.vd, nm) : nd;
     };
     without_vd = without_vd || !medium.vd;
-    out_.line(quoted(name) + ' ' + to_text(at(c_nm)) + ' ' + to_text(medium.nd) + ' ' + to_text(at(f_nm)));
+    out_.line(quoted(name) + ' ' + to_text(at(c_nm)) + ' ' + to_text(nd) + ' ' + to_text(at(f_nm)));
   }
   out_.line("END");
   if (without_vd) out_.lose("vd", "glasses without V_d get the same index at all wavelengths");
@@ -131,7 +132,7 @@ void CodevWriter::design() {
   } else {
     Prescription rows = p_;
     rows.configurations.clear();
-    if (const Lens lens = compile(rows); has_pupils(lens)) {
+    if (const Lens lens = out_.compiled(rows); has_pupils(lens)) {
       // Of the parallel beam whose exact rays fill the stop.
       const Meridian meridian = main_meridian(lens);
       const double by_rays = std::abs(first_order(lens, {}, meridian).effective_focal_length) / real_f_number(lens);

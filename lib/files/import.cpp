@@ -10,6 +10,8 @@
 
 #include "core/text.hpp"
 #include "io/json.hpp"
+#include "media/catalogue_age.hpp"
+#include "media/similar_names.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/lint/lint.hpp"
@@ -19,6 +21,8 @@
 
 namespace petzval::inline v0::files_detail {
 namespace {
+
+using media_detail::bare;
 
 constexpr std::size_t most_warnings = 1000;
 
@@ -38,15 +42,6 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 12> other_na
     {"CAFL", "CAF2"},
 }};
 
-/// Letters and digits only: "N-BK7" and "nbk7" are one glass.
-std::string bare(std::string_view name) {
-  std::string result;
-  for (const char c : name) {
-    if (c != '-' && c != ' ' && c != '_') result.push_back(lower(c));
-  }
-  return result;
-}
-
 /// The letters at the start: "SUMITA_AUG2011" and "schott-1983" are catalogues of sumita and schott.
 std::string_view maker(std::string_view catalogue) {
   return catalogue.substr(0, std::min(catalogue.find_first_of("-_ 0123456789"), catalogue.size()));
@@ -57,9 +52,7 @@ std::string describe(const Glass& glass) {
 }
 
 /// Catalogues of today count more than those of the past.
-int age(const Glass& glass) {
-  return glass.catalogue.ends_with("-1983") ? 2 : glass.catalogue.ends_with("-legacy") ? 1 : 0;
-}
+int age(const Glass& glass) { return media_detail::age(glass.catalogue); }
 
 /// Where the image of the stop lies in object space, from the first surface: the ray that crosses the axis there meets
 /// the middle of the stop.
@@ -69,7 +62,7 @@ double entrance_pupil_z(const RayMatrix& to_stop, double object_index) {
 
 /// How high the marginal ray of the design meets the stop, in mm: of exact rays where a parallel beam enters, else in
 /// first order. 0 where the aperture does not tell.
-double marginal_height_at_the_stop(const Prescription& rows, const DesignAperture& aperture) {
+double marginal_height_at_the_stop(const Prescription& rows, const DesignAperture& aperture, const Import& in) {
   const auto stop = std::ranges::find_if(rows.surfaces, [](const SurfaceRow& row) { return row.stop; });
   const auto position = static_cast<std::size_t>(stop - rows.surfaces.begin());
   Prescription open = rows;
@@ -79,7 +72,7 @@ double marginal_height_at_the_stop(const Prescription& rows, const DesignApertur
     row.obscuration_semi_diameter.reset();
   }
   open.configurations.clear();
-  const Lens compiled = compile(open);
+  const Lens compiled = in.compiled(open);
   const FirstOrder first = first_order(compiled, {}, main_meridian(compiled));
   const double object = rows.design.object_distance_mm;
 
@@ -162,10 +155,7 @@ double Import::number(int line, std::string_view command, std::string_view word)
 }
 
 const GlassCatalogue& Import::glasses() {
-  if (!glasses_) {
-    own_ = std::make_shared<const GlassCatalogue>(GlassCatalogue::load(data_directory() / "glass"));
-    glasses_ = own_.get();
-  }
+  if (!glasses_) glasses_ = &glass_tables();
   return *glasses_;
 }
 
@@ -229,12 +219,7 @@ Medium Import::glass(int line, std::string_view name, std::span<const std::strin
     return {.glass = std::string(name), .nd = *nd, .vd = vd};
   }
 
-  std::string alike;
-  for (const Glass& glass : glasses().glasses()) {
-    const bool near = bare(glass.name).starts_with(bare(name).substr(0, 4));
-    if (near && age(glass) == 0 && std::ranges::count(alike, ',') < 5)
-      alike += (alike.empty() ? "" : ", ") + glass.name;
-  }
+  const std::string alike = media_detail::similar_names(glasses(), name);
   refuse(line, name, "in no glass table and has no index in the file",
          "its catalogue (.agf or .yml) among the glasses to read: --glasses FILE" +
              (alike.empty() ? std::string() : " (names like it: " + alike + ")"));
@@ -263,7 +248,7 @@ void Import::size_the_stop() {
     return;
   }
   const int surface = static_cast<int>(stop - lens.surfaces.begin());
-  const double height = marginal_height_at_the_stop(configured(lens, 0), *aperture);
+  const double height = marginal_height_at_the_stop(configured(lens, 0), *aperture, *this);
   if (!(height > 0 && std::isfinite(height))) {
     warn(0, "stop", "the declared aperture does not give its size; the rims limit the beam");
     return;
@@ -274,7 +259,7 @@ void Import::size_the_stop() {
     Configuration& c = lens.configurations[i];
     DesignAperture own = *aperture;
     if (c.f_number && own.setting == ApertureSetting::f_number) own.value = *c.f_number;
-    const double size = marginal_height_at_the_stop(configured(lens, i), own);
+    const double size = marginal_height_at_the_stop(configured(lens, i), own, *this);
     if (c.stop || !(size > 0 && std::isfinite(size)) || std::abs(size - height) <= 1e-9 * height) continue;
     SurfaceChange& change = change_of(c, surface);
     if (!change.semi_diameter) change.semi_diameter = size;
@@ -287,7 +272,7 @@ void Import::compare_the_stop(double rim) {
   const auto& aperture = lens.design.aperture;
   if (!aperture || aperture->setting == ApertureSetting::stop_size || !(aperture->value > 0)) return;
   if (aperture->setting == ApertureSetting::f_number) return;  // lint() compares f-numbers
-  const double height = marginal_height_at_the_stop(configured(lens, 0), *aperture);
+  const double height = marginal_height_at_the_stop(configured(lens, 0), *aperture, *this);
   if (!(height > 0) || !std::isfinite(height) || std::abs(height - rim) <= 0.01 * rim) return;
   warn(0, "stop",
        "its rim has a semi-diameter of " + to_text(rim, 6) + " mm, the declared " +
@@ -298,7 +283,7 @@ void Import::compare_the_stop(double rim) {
 /// What the file declares and the lens misses, as lint() finds it.
 void Import::compare_the_declared() {
   using enum FindingKind;
-  for (const Finding& finding : lint(lens)) {
+  for (const Finding& finding : glasses_ ? lint(lens, *glasses_) : lint(lens)) {
     const bool declared =
         finding.kind == focal_length || finding.kind == units || finding.kind == apertures || finding.kind == f_number;
     if (declared) warn(0, name(finding.kind), finding.message);

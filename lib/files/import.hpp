@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <map>
-#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -18,7 +17,7 @@ namespace petzval::inline v0::files_detail {
 /// A prescription on its way from a file of another program: where it comes from, what was assumed, and the glasses.
 class Import {
  public:
-  /// where: the file's name, for messages. glasses: null: those of data_directory(), read when the first is asked for.
+  /// where: the file's name, for messages. glasses: null: glass_tables(), from the first glass on.
   Import(std::string where, std::string_view format, const GlassCatalogue* glasses);
 
   Prescription lens;  ///< `imported` is set
@@ -39,6 +38,8 @@ class Import {
   const GlassCatalogue& glasses();
   const std::string& where() const noexcept { return where_; }
 
+  /// Rows compiled for their reference wavelength.
+  Lens compiled(const Prescription& rows) const { return compile(rows, {.glasses = glasses_}); }
   /// Rows compiled for the primary wavelength of the design, with the n_d/V_d model where a glass is unknown.
   Lens at_primary_wavelength(const Prescription& rows);
 
@@ -56,7 +57,6 @@ class Import {
 
   std::string where_;
   const GlassCatalogue* glasses_;
-  std::shared_ptr<const GlassCatalogue> own_;
   std::multimap<std::string, const Glass*> by_name_;  ///< by bare name, in the order of the catalogue
   std::size_t left_out_ = 0;
 };

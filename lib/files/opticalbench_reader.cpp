@@ -334,7 +334,7 @@ void OpticalBenchReader::place(std::size_t column) {
 void OpticalBenchReader::place_film() {
   Prescription rows = in_.lens;
   rows.imported.reset();
-  const FirstOrder first = first_order(compile(rows));
+  const FirstOrder first = first_order(in_.compiled(rows));
   if (first.afocal || !(first.back_focal_distance > 0)) {
     in_.refuse(rows_.back().line, "thickness", "unknown, and light from afar is not focused behind it",
                "the film's place");
@@ -374,7 +374,7 @@ std::optional<double> OpticalBenchReader::subject_distance(std::size_t column) c
   if (const auto d0 = value("d0", column)) return positive(d0);
   const auto magnification = value("Magnification", column);
   if (!magnification || !std::isfinite(*magnification) || *magnification == 0) return {};
-  const FirstOrder first = first_order(compile(in_.lens));
+  const FirstOrder first = first_order(in_.compiled(in_.lens));
   return positive(first.effective_focal_length * (1 - 1 / *magnification) - first.front_principal_z);
 }
 

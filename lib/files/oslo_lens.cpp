@@ -81,16 +81,16 @@ Medium Builder::medium_of_indices(const OsloMedium& m) {
     if (wavelengths[i] > wavelengths[high]) high = i;
   }
   const double change = m.indices[low] - m.indices[high];
-  Medium result{.nd = first};
-  if (low == high || change == 0) return result;
+  double nd = first;
+  if (low == high || change == 0) return {.nd = nd};
   const double slope = change / (weight(low) - weight(high));
   const auto inverse_square = [](double nm) { return 1e6 / (nm * nm); };
-  result.nd = first + slope * (inverse_square(d_line_nm) - weight(0));
-  if (std::abs(wavelengths[0] * 1000 - d_line_nm) < 0.1) result.nd = first;
+  if (std::abs(wavelengths[0] * 1000 - d_line_nm) >= 0.1) nd += slope * (inverse_square(d_line_nm) - weight(0));
+  Medium result{.nd = nd};
   const double f_minus_c = slope * (inverse_square(spectral_line_nm("F")) - inverse_square(spectral_line_nm("C")));
-  if ((result.nd - 1) / f_minus_c > 0) result.vd = (result.nd - 1) / f_minus_c;
+  if ((nd - 1) / f_minus_c > 0) result.vd = (nd - 1) / f_minus_c;
   in_.warn(m.line, "GLA",
-           "indices at wavelengths are taken as n_d " + to_text(result.nd, 7) +
+           "indices at wavelengths are taken as n_d " + to_text(nd, 7) +
                (result.vd ? " and V_d " + to_text(*result.vd, 5) : std::string()));
   return result;
 }
@@ -150,7 +150,7 @@ void Builder::solve(std::size_t i) {
     if (row.mirror) sign = -sign;
     double curvature = row.radius == 0 ? 0 : 1 / row.radius;
     for (const AsphereTerm& term : row.aspheric) curvature += term.order == 2 ? 2 * term.coefficient : 0;
-    const double after = sign * row.medium.nd;
+    const double after = sign * row.medium.nd.value_or(1);
     u = (n * u - y * (after - n) * curvature) / after;
     n = after;
     if (k < i) y += u * row.thickness;
@@ -217,7 +217,7 @@ void Builder::declare() {
   }
   // OSLO writes the focal length behind the name, or the 100 with which every new lens begins.
   if (!oslo_.scale || *oslo_.scale <= 0) return;
-  const FirstOrder first = first_order(compile(lens));
+  const FirstOrder first = first_order(in_.compiled(lens));
   const double stated = *oslo_.scale * unit;
   if (!first.afocal && std::abs(std::abs(first.effective_focal_length) / stated - 1) < 0.01) {
     lens.focal_length_mm = std::copysign(stated, first.effective_focal_length);

@@ -144,7 +144,7 @@ double TableReader::f_number(double aperture_scale) const {
   for (SurfaceRow& row : p.surfaces) {
     if (row.semi_diameter) *row.semi_diameter *= aperture_scale;
   }
-  return paraxial_f_number(compile(p));
+  return paraxial_f_number(in_.compiled(p));
 }
 
 /// Some tables have semi-diameters in the place of diameters. The f-number that the file declares tells, where no
@@ -169,7 +169,7 @@ void TableReader::place_film() {
   if (last.thickness != 0) return;
   Prescription p = in_.lens;
   p.imported.reset();
-  const FirstOrder first = first_order(compile(p));
+  const FirstOrder first = first_order(in_.compiled(p));
   if (first.afocal || !(first.back_focal_distance > 0)) return;
   last.thickness = first.back_focal_distance;
   in_.lens.image_distance = "paraxial focus";

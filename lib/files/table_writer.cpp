@@ -27,8 +27,8 @@ std::string one_line(std::string text) {
 
 }  // namespace
 
-WrittenLens format_table(const Prescription& prescription) {
-  Writer out(prescription, nullptr);
+WrittenLens format_table(const Prescription& prescription, const GlassCatalogue* glasses) {
+  Writer out(prescription, glasses);
   const Prescription& p = out.lens();
   double largest = 0;
   for (const SurfaceRow& row : p.surfaces) {
@@ -43,8 +43,8 @@ WrittenLens format_table(const Prescription& prescription) {
   out.line("# millimetres; the row of index 0 is the stop");
   out.line("# radius\tthickness\tn\taperture diameter");
 
-  if (p.object_space.nd != 1) {
-    throw Error(out.where() + ": a medium of index " + to_text(p.object_space.nd) +
+  if (!p.object_space.is_air()) {
+    throw Error(out.where() + ": a medium of index " + to_text(out.index(p.object_space)) +
                 " in front of the lens, wanted air for a table");
   }
   bool disperses = false, planes = false, open = false, obscured = false;
@@ -61,7 +61,7 @@ WrittenLens format_table(const Prescription& prescription) {
     const bool limited = row.semi_diameter && std::isfinite(*row.semi_diameter);
     open = open || !limited;
     const double diameter = 2 * (limited ? *row.semi_diameter : largest > 0 ? largest : 1.0);
-    const double index = row.medium.nd;
+    const double index = out.index(row.medium);
     const bool is_stop = row.stop && !first_stop;
     if (is_stop) first_stop = &row;
     if (is_stop && row.radius == 0 && index == 1 && before == 1) {

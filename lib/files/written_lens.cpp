@@ -8,6 +8,7 @@
 #include "import.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/lens/lens.hpp"
+#include "petzval/lens/medium.hpp"
 #include "petzval/paraxial/first_order.hpp"
 
 namespace petzval::inline v0::files_detail {
@@ -56,7 +57,7 @@ void Writer::mark_the_stop() {
   }
   Prescription rows = lens_;
   rows.configurations.clear();
-  const Lens lens = compile(rows);
+  const Lens lens = compiled(rows);
   if (!has_pupils(lens)) return lose("stop", "none is marked, and no rim limits the beam");
   const std::size_t stop = pupils(lens, {}, main_meridian(lens)).stop;
   lens_.surfaces[stop].stop = true;
@@ -67,10 +68,12 @@ void Writer::state_indices_at_d() {
   const double reference = lens_.reference_wavelength_nm;
   if (reference == d_line_nm) return;
   const auto restate = [&](Medium& medium) {
+    if (!medium.nd) return;
+    double& nd = *medium.nd;
     if (const Glass* found = glass(medium)) {
-      medium.nd += refractive_index(*found, d_line_nm) - refractive_index(*found, reference);
-    } else if (medium.vd) {
-      medium.nd += abbe_index(medium.nd, *medium.vd, d_line_nm) - abbe_index(medium.nd, *medium.vd, reference);
+      nd += refractive_index(*found, d_line_nm) - refractive_index(*found, reference);
+    } else if (medium.vd && *medium.vd > 0) {
+      nd += abbe_index(nd, *medium.vd, d_line_nm) - abbe_index(nd, *medium.vd, reference);
     }
   };
   restate(lens_.object_space);
@@ -111,11 +114,15 @@ void Writer::lose_nominal_data(bool design_data, std::initializer_list<std::stri
 
 const Glass* Writer::glass(const Medium& medium) {
   if (!medium.glass) return nullptr;
-  if (!glasses_) {
-    own_ = std::make_shared<const GlassCatalogue>(GlassCatalogue::load(data_directory() / "glass"));
-    glasses_ = own_.get();
-  }
-  return medium.catalogue ? glasses_->find(*medium.glass, *medium.catalogue) : glasses_->find(*medium.glass, medium.nd);
+  if (!glasses_) glasses_ = &glass_tables();
+  return glass_of(medium, *glasses_);
+}
+
+double Writer::index(const Medium& medium) {
+  if (medium.nd || medium.is_air()) return medium.nd.value_or(1);
+  const Glass* found = glass(medium);
+  if (!found) throw Error(where_ + ": glass = \"" + *medium.glass + "\" without nd; must be in the glass tables");
+  return refractive_index(*found, lens_.reference_wavelength_nm);
 }
 
 }  // namespace petzval::inline v0::files_detail

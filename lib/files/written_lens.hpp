@@ -2,11 +2,11 @@
 #pragma once
 
 #include <initializer_list>
-#include <memory>
 #include <string>
 #include <string_view>
 
 #include "petzval/files/lens_file.hpp"
+#include "petzval/lens/lens.hpp"
 #include "petzval/media/glass.hpp"
 #include "petzval/prescription/prescription.hpp"
 
@@ -33,6 +33,10 @@ class Writer {
   void state_indices_at_d();
   /// The glass of the tables that a medium names; null if there is none.
   const Glass* glass(const Medium& medium);
+  /// Rows compiled for their reference wavelength.
+  Lens compiled(const Prescription& rows) const { return compile(rows, {.glasses = glasses_}); }
+  /// The index at the reference wavelength, as stated or of the glass. Throws Error if it is unknown.
+  double index(const Medium& medium);
   WrittenLens take() { return {std::move(text_), std::move(losses_)}; }
 
  private:
@@ -41,7 +45,6 @@ class Writer {
   Prescription lens_;
   std::string where_;
   const GlassCatalogue* glasses_;
-  std::shared_ptr<const GlassCatalogue> own_;
   std::string text_;
   std::vector<ImportWarning> losses_;
 };

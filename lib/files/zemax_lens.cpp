@@ -126,7 +126,7 @@ Medium Rows::medium(const ZemaxGlass& glass) {
         glass.line, "GLAS",
         "V_d is offset by " + to_text(glass.vd_offset) + "; the dispersion of " + glass.name + " is taken as it is");
   }
-  result.nd += glass.nd_offset;
+  *result.nd += glass.nd_offset;
   return result;
 }
 
@@ -360,7 +360,7 @@ void check_marginal_height(const ZemaxSurface& s, std::size_t number, Import& in
 void put_film_at_focus(const ZemaxSurface& s, Import& in) {
   Prescription rows = in.lens;
   rows.configurations.clear();
-  const Lens lens = compile(rows);
+  const Lens lens = in.compiled(rows);
   const FirstOrder first = first_order(lens, {}, main_meridian(lens));
   const bool behind = !first.afocal && first.back_focal_distance > 0;
   in.lens.surfaces.back().thickness = behind ? first.back_focal_distance : 0;

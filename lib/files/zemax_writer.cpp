@@ -152,11 +152,12 @@ std::string ZemaxWriter::glass_name(const Medium& medium) {
 }
 
 std::string ZemaxWriter::glass(const Medium& medium) {
-  const std::string numbers = " 0 " + to_text(medium.nd) + ' ' + to_text(medium.vd.value_or(0)) + " 0";
   const Glass* found = out_.glass(medium);
+  const double nd = medium.nd || !found ? out_.index(medium) : found->nd;
+  const std::string numbers = " 0 " + to_text(nd) + ' ' + to_text(medium.vd.value_or(0)) + " 0";
   if (!found) return "___BLANK 1" + numbers + " 0 0 0 0 0";
   // The printed n_d of a table differs from the catalogue's: type 4 states by how much.
-  const double offset = medium.nd - found->nd;
+  const double offset = nd - found->nd;
   if (offset == 0) return one_word(found->name) + " 0" + numbers + " 0 0 0 0 0";
   return one_word(found->name) + " 4 0 " + to_text(found->nd) + ' ' + to_text(found->vd) + " 0 0 0 0 " +
          to_text(offset) + " 0";

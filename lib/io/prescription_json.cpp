@@ -240,7 +240,7 @@ std::span<const Reader::Key> Reader::keys(Place place) {
       {"glass", [](R& r, V& v) { r.medium().glass = r.maybe_text(v); }},
       {"catalogue", [](R& r, V& v) { r.medium().catalogue = r.maybe_text(v); }},
       {"glass_origin", [](R& r, V& v) { r.medium().glass_origin = r.maybe_text(v); }},
-      {"nd", [](R& r, V& v) { r.medium().nd = r.number_of(v); }, {}, true},
+      {"nd", [](R& r, V& v) { r.medium().nd = r.maybe_number(v); }},
       {"vd", [](R& r, V& v) { r.medium().vd = r.maybe_number(v); }},
       {"radius", [](R& r, V& v) { r.row().radius = r.number_of(v); }, {}, true},
       {"thickness", [](R& r, V& v) { r.row().thickness = r.number_of(v); }, {}, true},

@@ -33,7 +33,8 @@ std::string medium(const Medium& m) {
   std::string text = member("glass", m.glass);
   if (m.catalogue) text += ", " + member("catalogue", m.catalogue);
   if (m.glass_origin) text += ", " + member("glass_origin", m.glass_origin);
-  return text + ", " + member("nd", m.nd) + ", " + member("vd", m.vd);
+  if (m.nd || m.is_air()) text += ", " + member("nd", m.nd.value_or(1));
+  return text + ", " + member("vd", m.vd);
 }
 
 std::string surface(const SurfaceRow& row) {

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "indices.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/text.hpp"
+#include "media/similar_names.hpp"
 #include "petzval/core/error.hpp"
+#include "petzval/lens/medium.hpp"
 #include "petzval/media/glass.hpp"
 
 namespace petzval::inline v0::lens_detail {
@@ -19,17 +23,65 @@ const Medium& medium(const Prescription& p, std::size_t space) {
 /// 1e-5.
 constexpr double rounded_line_nm = 0.05;
 
-bool is_air(const Medium& m) { return !m.glass && m.nd == 1.0; }
+/// The tables that media are looked up in, found or not.
+struct Tables {
+  const GlassCatalogue* glasses = nullptr;
+  std::string error{};  ///< if null
+};
 
-const Glass* find(const GlassCatalogue* glasses, const Medium& m) {
-  if (!glasses || !m.glass) return nullptr;
-  return m.catalogue ? glasses->find(*m.glass, *m.catalogue) : glasses->find(*m.glass, m.nd);
+/// The given tables, or those of the library if a medium names a glass.
+Tables tables_for(const Prescription& p, const GlassCatalogue* given) {
+  if (given) return {given};
+  const bool named = p.object_space.glass || std::ranges::any_of(p.surfaces, [](const SurfaceRow& row) {
+                       return row.medium.glass.has_value();
+                     });
+  if (!named) return {};
+  try {
+    return {&glass_tables()};
+  } catch (const Error& error) {
+    return {nullptr, error.what()};
+  }
 }
 
 std::string describe(const Medium& m) {
-  if (!m.glass) return "a medium of index " + to_text(m.nd) + " without a glass name";
-  return "glass \"" + *m.glass + "\"" + (m.catalogue ? " of catalogue \"" + *m.catalogue + "\"" : "");
+  if (!m.glass) return "nd = " + to_text(m.nd.value_or(1)) + " without a glass name";
+  return "glass = \"" + *m.glass + '"' + (m.catalogue ? " (catalogue \"" + *m.catalogue + "\")" : "");
 }
+
+/// Reason why no glass was found for a medium, behind its description.
+std::string why_missing(const Medium& m, const Tables& tables) {
+  if (!m.glass) return "";
+  if (!tables.glasses) {
+    return "; no glass tables were found (" + tables.error + "), CompileOptions::glasses must name them";
+  }
+  std::string others;
+  int count = 0;
+  for (const Glass& glass : tables.glasses->glasses()) {
+    if (!media_detail::same_bare(glass.name, *m.glass) || ++count > 5) continue;
+    others +=
+        (others.empty() ? "" : ", ") + glass.name + " (" + glass.catalogue + ", n_d " + to_text(glass.nd, 6) + ")";
+  }
+  if (others.empty()) return "; is in no glass table";
+  if (m.catalogue) return "; that catalogue lacks it, others have " + others;
+  if (!m.nd) return "; is in no glass table, but " + others;
+  return "; its n_d of " + to_text(*m.nd) + " is more than 0.01 from " + others;
+}
+
+/// For errors: names to try instead of one that no table has.
+std::string names_like(const Medium& m, const Tables& tables) {
+  if (!m.glass || !tables.glasses) return "";
+  const std::string names = media_detail::similar_names(*tables.glasses, *m.glass);
+  return names.empty() ? "" : " (names like it: " + names + ")";
+}
+
+/// Wavelengths at which a medium has an index.
+struct Range {
+  double shortest, longest;
+
+  bool has(double nm) const { return nm >= shortest - 1e-6 && nm <= longest + 1e-6; }
+};
+constexpr Range everywhere{0, 1e6};
+constexpr Range of_abbe_model{365, 1014};
 
 }  // namespace
 
@@ -43,17 +95,12 @@ Indices indices(const Prescription& prescription, std::span<const double> wavele
   Indices result;
   result.spectrum = Spectrum(wavelengths_nm);
   result.values.resize(spaces * wavelengths_nm.size());
+  const Tables tables = tables_for(prescription, options.glasses);
   bool dispersive = false, known_by_abbe = false, known_by_index = false;
 
   for (std::size_t space = 0; space < spaces; ++space) {
     const Medium& m = medium(prescription, space);
     const std::string here = where + (space == 0 ? ": object space" : ": surface " + std::to_string(space - 1));
-    const Glass* glass = find(options.glasses, m);
-    if (!is_air(m)) {
-      (glass ? dispersive : m.vd ? known_by_abbe : known_by_index) = true;
-      if (!glass) result.missing_glasses.push_back(here + ": " + describe(m) + " is in no glass table");
-    }
-
     // Errors of media/ name no surface.
     const auto ask = [&](const auto& question) {
       try {
@@ -62,28 +109,42 @@ Indices indices(const Prescription& prescription, std::span<const double> wavele
         throw Error(here + ": " + error.what());
       }
     };
-    const auto by_glass = [&](double nm) { return ask([&] { return refractive_index(*glass, nm); }); };
-    const auto by_abbe = [&](double nm) { return ask([&] { return abbe_index(m.nd, *m.vd, nm); }); };
+    const Glass* glass = tables.glasses ? ask([&] { return glass_of(m, *tables.glasses); }) : nullptr;
+    const bool constant = !glass && (m.is_air() || m.vd == 0.0);
+    if (!constant) (glass ? dispersive : m.vd ? known_by_abbe : known_by_index) = true;
+    std::string missing;
+    if (!constant && !glass) {
+      missing = here + ": " + describe(m) + why_missing(m, tables);
+      result.missing_glasses.push_back(missing);
+      if (!m.nd) throw Error(missing + names_like(m, tables) + "; n_d must be given, or a glass of the tables");
+    }
+
+    const Range range = constant ? everywhere : glass ? Range{glass->shortest_nm, glass->longest_nm} : of_abbe_model;
+    const auto usable = [&](double nm) {
+      return options.clamp_wavelengths ? std::clamp(nm, range.shortest, range.longest) : nm;
+    };
+    const auto by_glass = [&](double nm) { return ask([&] { return refractive_index(*glass, usable(nm)); }); };
+    const auto by_abbe = [&](double nm) { return ask([&] { return abbe_index(*m.nd, *m.vd, usable(nm)); }); };
     const auto index_at = [&](double nm) -> double {
       const bool at_reference = std::abs(nm - reference) <= 1e-6;
-      if (is_air(m)) return 1.0;
-      if (at_reference && options.index_policy == IndexPolicy::printed) return m.nd;
+      if (constant) return m.nd.value_or(1);
+      if (glass && !m.nd) return by_glass(nm);
+      if (at_reference && options.index_policy == IndexPolicy::printed) return *m.nd;
       if (glass) {
         if (options.index_policy == IndexPolicy::catalogue) return by_glass(nm);
-        return m.nd + (by_glass(nm) - by_glass(reference));
+        return *m.nd + (by_glass(nm) - by_glass(reference));
       }
-      const std::string missing = here + ": " + describe(m) + " is in no glass table";
       if (options.missing_glass == MissingGlass::error) {
-        throw Error(missing + ", wanted one for its index at " + to_text(nm) +
-                    " nm (or the n_d/V_d model, on request)");
+        throw Error(missing + names_like(m, tables) + "; the glass must be known at " + to_text(nm) +
+                    " nm, or CompileOptions::missing_glass be MissingGlass::abbe, which takes n_d and V_d");
       }
-      if (at_reference) return m.nd;
+      if (at_reference) return *m.nd;
       if (!m.vd) {
-        if (std::abs(nm - reference) <= rounded_line_nm) return m.nd;
-        throw Error(missing + " and has no V_d, wanted one of them for its index at " + to_text(nm) + " nm (only " +
-                    to_text(reference) + " nm can be used)");
+        if (std::abs(nm - reference) <= rounded_line_nm) return *m.nd;
+        throw Error(missing + "; without V_d the wavelength must be " + to_text(reference) + " nm, not " + to_text(nm) +
+                    " nm");
       }
-      return m.nd + (by_abbe(nm) - by_abbe(reference));
+      return *m.nd + (by_abbe(nm) - by_abbe(reference));
     };
     const auto sound_index_at = [&](double nm) {
       const double n = index_at(nm);
@@ -94,7 +155,14 @@ Indices indices(const Prescription& prescription, std::span<const double> wavele
     for (std::size_t w = 0; w < wavelengths_nm.size(); ++w) {
       result.values[w * spaces + space] = sound_index_at(wavelengths_nm[w]);
     }
-    result.spectrum.add(sound_index_at);
+    const bool clamped =
+        options.clamp_wavelengths && !std::ranges::all_of(wavelengths_nm, [&](double nm) { return range.has(nm); });
+    if (clamped) {
+      result.clamped_glasses.push_back(here + ": " + describe(m) + ": beyond " + to_text(range.shortest, 7) + " to " +
+                                       to_text(range.longest, 7) + " nm the index at the end of this range is taken");
+    }
+    const std::array kinks{range.shortest, range.longest};
+    result.spectrum.add(sound_index_at, clamped ? std::span<const double>(kinks) : std::span<const double>());
   }
   result.dispersion = known_by_index  ? Dispersion::none
                       : known_by_abbe ? Dispersion::abbe

@@ -15,7 +15,7 @@ struct Indices {
   std::vector<double> values;  ///< [wavelength * (surfaces + 1) + space], space 0 before the first surface
   Spectrum spectrum;           ///< the same media at wavelengths between
   Dispersion dispersion = Dispersion::none;
-  std::vector<std::string> missing_glasses;
+  std::vector<std::string> missing_glasses, clamped_glasses;
 };
 
 Indices indices(const Prescription& prescription, std::span<const double> wavelengths_nm, const CompileOptions& options,

@@ -57,6 +57,7 @@ double Lens::film_z() const noexcept { return data_->film_z; }
 std::span<const double> Lens::wavelengths_nm() const noexcept { return data_->wavelengths_nm; }
 Dispersion Lens::dispersion() const noexcept { return data_->indices.dispersion; }
 std::span<const std::string> Lens::missing_glasses() const noexcept { return data_->indices.missing_glasses; }
+std::span<const std::string> Lens::clamped_glasses() const noexcept { return data_->indices.clamped_glasses; }
 
 std::size_t Lens::primary_wavelength() const noexcept { return data_->primary; }
 

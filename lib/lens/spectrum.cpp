@@ -56,7 +56,7 @@ kernel::SpectralPlace<double> spectral_place(std::span<const double> wavelengths
 Spectrum::Spectrum(std::span<const double> wavelengths_nm)
     : compiled_nm_(wavelengths_nm.begin(), wavelengths_nm.end()), place_(spectral_place(wavelengths_nm)) {}
 
-void Spectrum::add(const std::function<double(double)>& index_at) {
+void Spectrum::add(const std::function<double(double)>& index_at, std::span<const double> kinks) {
   media_.emplace_back();
   SquaredIndex<double>& medium = media_.back();
   // By numerators over `terms`: the zeros of T_8 at odd halves, its extremes at whole ones.
@@ -88,6 +88,12 @@ void Spectrum::add(const std::function<double(double)>& index_at) {
     };
     for (std::size_t k = 0; k <= terms; ++k) check(nm_at(static_cast<double>(k)));
     for (const double nm : compiled_nm_) check(nm);
+    // The error of a smooth function peaks at the extremes of T_8; that of a function with kinks anywhere.
+    constexpr std::size_t places = 32 * terms;
+    for (const double nm : kinks) {
+      if (nm >= nm_at(0) && nm <= nm_at(terms)) check(nm);
+    }
+    for (std::size_t k = 0; !kinks.empty() && k <= places; ++k) check(nm_at(static_cast<double>(k) * terms / places));
   } catch (const Error&) {
     error_ = std::numeric_limits<double>::infinity();
   }

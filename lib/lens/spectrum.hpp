@@ -22,7 +22,8 @@ class Spectrum {
   explicit Spectrum(std::span<const double> wavelengths_nm);
 
   /// Adds the medium of the next space. index_at(nm) may throw Error: then the lens has its compiled wavelengths only.
-  void add(const std::function<double(double)>& index_at);
+  /// kinks: wavelengths where its slope jumps.
+  void add(const std::function<double(double)>& index_at, std::span<const double> kinks = {});
 
   /// Whether a wavelength lies in the range, or beside it by the rounding of a float.
   bool covers(double nm) const noexcept { return place_.covers(nm); }

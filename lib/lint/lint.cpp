@@ -87,22 +87,23 @@ std::optional<double> unit_between(double length, double declared) {
 }
 
 /// The f-number with all clear apertures so many times as large; nothing where it has none.
-std::optional<double> f_number_with(const Prescription& prescription, double factor) {
+std::optional<double> f_number_with(const Prescription& prescription, double factor, const GlassCatalogue* glasses) {
   Prescription scaled = prescription;
   for (SurfaceRow& row : scaled.surfaces) {
     if (row.semi_diameter) *row.semi_diameter *= factor;
     if (row.obscuration_semi_diameter) *row.obscuration_semi_diameter *= factor;
   }
-  const Lens lens = compile(scaled);
+  const Lens lens = compile(scaled, {.glasses = glasses});
   if (!has_pupils(lens)) return {};
   return real_f_number(lens);
 }
 
 /// By what factor all apertures are too large or too small: 2 or a half, if that gives the declared f-number.
-std::optional<double> aperture_factor(const Prescription& prescription, double f_number) {
+std::optional<double> aperture_factor(const Prescription& prescription, double f_number,
+                                      const GlassCatalogue* glasses) {
   const double factor = f_number < *prescription.f_number ? 2 : 0.5;
   if (std::abs(std::log2(*prescription.f_number / f_number)) < 0.8) return {};
-  const auto mended = f_number_with(prescription, 1 / factor);
+  const auto mended = f_number_with(prescription, 1 / factor, glasses);
   if (mended && std::abs(*mended - *prescription.f_number) <= 0.04 * *prescription.f_number) return factor;
   return {};
 }
@@ -131,7 +132,8 @@ double image_distance(const Prescription& prescription, const Lens& lens) {
   return paraxial_image_z(lens, object_z, {}, main_meridian(lens)) - lens.surfaces().back().vertex_z;
 }
 
-void check_first_order(const Prescription& prescription, const Lens& lens, Findings& findings) {
+void check_first_order(const Prescription& prescription, const Lens& lens, const GlassCatalogue* glasses,
+                       Findings& findings) {
   const FirstOrder data = first_order(lens, 0, main_meridian(lens));
   const double focal_length = data.effective_focal_length;
   const auto unit =
@@ -152,7 +154,7 @@ void check_first_order(const Prescription& prescription, const Lens& lens, Findi
   }
   if (prescription.f_number && limits_the_beam(lens)) {
     const double f_number = real_f_number(lens);
-    if (const auto factor = aperture_factor(prescription, f_number)) {
+    if (const auto factor = aperture_factor(prescription, f_number, glasses)) {
       findings.push_back({Kind::apertures,
                           {},
                           f_number,
@@ -182,12 +184,12 @@ void check_glasses(const Prescription& prescription, const GlassCatalogue& glass
   constexpr double another_glass = 0.005;
   for (std::size_t i = 0; i < prescription.surfaces.size(); ++i) {
     const Medium& medium = prescription.surfaces[i].medium;
-    if (!medium.glass || !medium.catalogue) continue;
+    if (!medium.glass || !medium.catalogue || !medium.nd) continue;
     const Glass* glass = glasses.find(*medium.glass, *medium.catalogue);
-    if (!glass || std::abs(glass->nd - medium.nd) <= another_glass) continue;
+    if (!glass || std::abs(glass->nd - *medium.nd) <= another_glass) continue;
     const int surface = static_cast<int>(i);
-    findings.push_back({Kind::glass_index, surface, medium.nd, glass->nd,
-                        at(surface) + "n_d is " + to_text(medium.nd, 6) + ", that of " + glass->name + " is " +
+    findings.push_back({Kind::glass_index, surface, *medium.nd, glass->nd,
+                        at(surface) + "n_d is " + to_text(*medium.nd, 6) + ", that of " + glass->name + " is " +
                             to_text(glass->nd, 6)});
   }
 }
@@ -244,28 +246,34 @@ std::string_view name(FindingKind kind) noexcept {
   return "unknown";
 }
 
-std::vector<Finding> lint(const Prescription& prescription) {
+namespace {
+
+Findings lint_rows(const Prescription& prescription, const GlassCatalogue* glasses) {
   const Prescription rows = configured(prescription, 0);
-  const Lens lens = compile(rows);
+  const Lens lens = compile(rows, {.glasses = glasses});
   Findings findings;
   check_stops(rows, findings);
   check_stop(lens, findings);
   check_surfaces(rows, lens, findings);
-  check_first_order(rows, lens, findings);
+  check_first_order(rows, lens, glasses, findings);
   return findings;
 }
 
+}  // namespace
+
+std::vector<Finding> lint(const Prescription& prescription) { return lint_rows(prescription, nullptr); }
+
 std::vector<Finding> lint(const Prescription& prescription, const GlassCatalogue& glasses) {
-  Findings findings = lint(prescription);
+  Findings findings = lint_rows(prescription, &glasses);
   check_glasses(configured(prescription, 0), glasses, findings);
   return findings;
 }
 
-Repaired repair(const Prescription& prescription) {
+Repaired repair(const Prescription& prescription, const GlassCatalogue* glasses) {
   Repaired result{prescription, {}};
   Prescription& p = result.prescription;
   const auto find = [&](Kind kind) -> std::optional<Finding> {
-    const Findings findings = lint(p);
+    const Findings findings = lint_rows(p, glasses);
     const auto found = std::ranges::find(findings, kind, &Finding::kind);
     return found == findings.end() ? std::nullopt : std::optional(*found);
   };

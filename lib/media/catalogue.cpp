@@ -12,6 +12,7 @@
 #include <system_error>
 #include <utility>
 
+#include "catalogue_age.hpp"
 #include "core/open_file.hpp"
 #include "core/text.hpp"
 #include "glass_table.hpp"
@@ -128,6 +129,31 @@ const Glass* GlassCatalogue::find(std::string_view name, double nd) const noexce
   if (const Glass* own = nearest_named(added(), name, nd, 0.002)) return own;
   const Glass* from_tables = nearest_named(tables(), name, nd, 0.01);
   return from_tables ? from_tables : nearest_named(added(), name, nd, 0.01);
+}
+
+const Glass* GlassCatalogue::find(std::string_view name) const {
+  if (const auto own = named(added(), name); !own.empty()) return own.data();
+  const auto candidates = named(tables(), name);
+  if (candidates.empty()) return nullptr;
+  constexpr double another_glass = 1e-4;
+  const auto age = [](const Glass& glass) { return media_detail::age(glass.catalogue); };
+  const Glass& first = *std::ranges::min_element(candidates, {}, age);
+  const auto equal_rank = [&](const Glass& glass) { return age(glass) == age(first); };
+  const bool ambiguous = std::ranges::any_of(candidates, [&](const Glass& glass) {
+    return equal_rank(glass) && std::abs(glass.nd - first.nd) > another_glass;
+  });
+  if (!ambiguous) return &first;
+  std::string list;
+  for (const Glass& glass : candidates) {
+    if (equal_rank(glass)) list += (list.empty() ? "" : ", ") + glass.catalogue + " (n_d " + to_text(glass.nd, 6) + ")";
+  }
+  throw Error("glass \"" + std::string(name) + "\" differs between catalogues: " + list +
+              "; the catalogue or n_d must be given");
+}
+
+const GlassCatalogue& glass_tables() {
+  static const GlassCatalogue tables = GlassCatalogue::load(data_directory() / "glass");
+  return tables;
 }
 
 GlassCatalogue with_glasses(const GlassCatalogue& catalogue, std::vector<Glass> glasses) {

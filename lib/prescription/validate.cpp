@@ -30,9 +30,20 @@ void check_nominal(const std::string& where, const char* what, const std::option
 }
 
 void check_medium(const std::string& where, const Medium& medium) {
-  if (!(medium.nd >= 0.1 && medium.nd <= 5)) refuse(where, "nd", medium.nd, "an index of 0.1 to 5");
-  if (medium.vd && !(*medium.vd > 0 && std::isfinite(*medium.vd)))
-    refuse(where, "vd", *medium.vd, "a finite number above 0");
+  if (medium.nd && !(*medium.nd >= 0.1 && *medium.nd <= 5)) refuse(where, "nd", *medium.nd, "an index of 0.1 to 5");
+  if (medium.vd && !medium.nd && !medium.glass) {
+    throw Error(where + ": vd = " + to_text(*medium.vd) + " without nd; must be given with nd or a glass");
+  }
+  if (medium.vd && !(*medium.vd >= 0 && std::isfinite(*medium.vd))) {
+    throw Error(where + ": vd = " + to_text(*medium.vd) +
+                "; must be finite and positive, or 0 for an index that does not depend on the wavelength");
+  }
+}
+
+/// For messages: "nd 1.5168", "glass N-BK7".
+std::string describe(const Medium& medium) {
+  if (medium.nd || !medium.glass) return "nd " + to_text(medium.nd.value_or(1));
+  return "glass " + *medium.glass;
 }
 
 void check_surface(const std::string& where, const SurfaceRow& row, const Medium& before) {
@@ -43,8 +54,8 @@ void check_surface(const std::string& where, const SurfaceRow& row, const Medium
     refuse(where, "thickness", row.thickness, "a finite length below 1e10 mm");
   check_medium(where, row.medium);
   if (row.mirror && row.medium != before) {
-    throw Error(where + ": the medium of the mirror (nd " + to_text(row.medium.nd) +
-                ") is not the one in front of it (nd " + to_text(before.nd) + "), wanted the same medium");
+    throw Error(where + ": the medium of the mirror (" + describe(row.medium) + ") is not the one in front of it (" +
+                describe(before) + "), wanted the same medium");
   }
 
   if (row.semi_diameter && !(*row.semi_diameter >= 0))

@@ -25,7 +25,7 @@ Lens lens_of(const std::string& id, std::span<const double> wavelengths, const s
   if (!name.empty()) p.name = name;
   for (auto& row : p.surfaces) {
     row.medium = {.nd = row.medium.nd, .vd = row.medium.vd};
-    row.medium.vd = row.medium.nd > 1 ? std::optional(50.0) : std::nullopt;
+    row.medium.vd = !row.medium.is_air() ? std::optional(50.0) : std::nullopt;
   }
   return compile(p, wavelengths, {.missing_glass = MissingGlass::abbe});
 }

@@ -92,7 +92,7 @@ int compare(const std::function<WrittenLens(const Prescription&)>& write, double
     }
     if (colours) {
       for (std::size_t i = 0; i < p.surfaces.size(); ++i) {
-        EXPECT_NEAR(back.surfaces[i].medium.nd, p.surfaces[i].medium.nd, 1e-12) << p.id << ' ' << i;
+        EXPECT_NEAR(back.surfaces[i].medium.nd.value(), p.surfaces[i].medium.nd.value(), 1e-12) << p.id << ' ' << i;
         if (p.surfaces[i].medium.vd && back.surfaces[i].medium.vd) {
           EXPECT_NEAR(*back.surfaces[i].medium.vd, *p.surfaces[i].medium.vd, 0.6) << p.id << ' ' << i;
         }

@@ -51,7 +51,7 @@ inline Prescription invented_lens(Bytes& bytes) {
     SurfaceRow row = wild_row(bytes, in_glass);
     if (row.mirror && !p.surfaces.empty()) row.medium = p.surfaces.back().medium;
     if (row.mirror && p.surfaces.empty()) row.medium = {};
-    if (!row.mirror) in_glass = row.medium.nd != 1;
+    if (!row.mirror) in_glass = !row.medium.is_air();
     p.surfaces.push_back(row);
   }
   p.surfaces.back().thickness = bytes.number(1, 200);

@@ -113,8 +113,8 @@ Prescription random_prescription(std::mt19937_64& random) {
     m.glass = maybe_text();
     if (m.glass) m.catalogue = maybe_text();
     if (m.glass) m.glass_origin = maybe_text();
-    m.nd = 1 + 4 * std::generate_canonical<double, 53>(random);
-    m.vd = maybe();
+    if (!m.glass || often()) m.nd = 1 + 4 * std::generate_canonical<double, 53>(random);
+    m.vd = often() ? maybe() : std::optional(0.0);
     return m;
   };
 
@@ -260,11 +260,20 @@ TEST(PrescriptionJson, MembersMayBeLeftOutButNotTheSurfaceItself) {
   petzval::Prescription expected;
   expected.surfaces = {{.radius = 50, .thickness = 5.5, .medium = {.nd = 1.5}}};
   EXPECT_EQ(p, expected);
+  // Without nd a medium is air, or the glass that it names.
+  const auto medium = [](const std::string& members) {
+    const std::string row_of = R"({"radius": 5, "thickness": 1)" + members + "}";
+    return parse_prescription(with_surface(row_of), "x.json").surfaces[1].medium;
+  };
+  EXPECT_TRUE(medium("").is_air());
+  EXPECT_TRUE(medium(R"(, "glass": null, "nd": null)").is_air());
+  EXPECT_EQ(medium(R"(, "glass": "N-BK7")"), petzval::Medium{.glass = "N-BK7"});
+  EXPECT_EQ(medium(R"(, "nd": 2.4, "vd": 0)"), (petzval::Medium{.nd = 2.4, .vd = 0}));
+  EXPECT_EQ(refusal(with_surface(R"({"radius": 5, "thickness": 1, "vd": 60})")).find("x.json: surface 1: vd = 60"), 0u);
   EXPECT_EQ(refusal("{}"), "x.json: key \"format\" is missing");
   EXPECT_EQ(refusal(file("\"id\": \"a\"")), "x.json: key \"surfaces\" is missing");
   EXPECT_EQ(refusal(with_surface(R"({"thickness": 5, "nd": 1})")), "x.json: surface 1: key \"radius\" is missing");
   EXPECT_EQ(refusal(with_surface(R"({"radius": 5, "nd": 1})")), "x.json: surface 1: key \"thickness\" is missing");
-  EXPECT_EQ(refusal(with_surface(R"({"radius": 5, "thickness": 1})")), "x.json: surface 1: key \"nd\" is missing");
   EXPECT_EQ(refusal(with_member(R"("aspheric": [{"order": 4}])")),
             "x.json: surface 1: aspheric 0: key \"coefficient\" is missing");
   EXPECT_EQ(refusal(file("\"surfaces\": []")), "x.json: no surfaces, wanted at least one");

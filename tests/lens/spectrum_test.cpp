@@ -247,4 +247,61 @@ TEST(Spectrum, WavelengthsOfRaysAreTheirOwn) {
   EXPECT_GT(any.position(0, 4), 70000u);
 }
 
+TEST(Clamp, WavelengthsBeyondAGlass_HaveTheIndexAtTheEndOfItsRange) {
+  const Glass& glass = *petzval::glass_tables().find("N-SF5", "schott");  // 370 to 2500 nm
+  const Prescription p = window(glass);
+  EXPECT_NE(message([&] { compile(p, std::array{360.0, 830.0}); }).find("370 to 2500 nm"), std::string::npos);
+  const Lens lens = compile(p, std::array{360.0, 370.0, 587.5618, 830.0}, {.clamp_wavelengths = true});
+  EXPECT_EQ(lens.index(1, 0), lens.index(1, 1));
+  EXPECT_EQ(lens.index(1, 2), glass.nd);
+  EXPECT_EQ(lens.index(1, 3) - lens.index(1, 2),
+            petzval::refractive_index(glass, 830) - petzval::refractive_index(glass, petzval::d_line_nm));
+  ASSERT_EQ(lens.clamped_glasses().size(), 1u);
+  for (const char* word : {"surface 0", "N-SF5", "370", "2500"}) {
+    EXPECT_NE(lens.clamped_glasses()[0].find(word), std::string::npos) << lens.clamped_glasses()[0];
+  }
+  EXPECT_TRUE(lens.covers(Wavelength::nm(360)));
+  EXPECT_FALSE(lens.covers(Wavelength::nm(355)));
+  EXPECT_TRUE(compile(p, std::array{370.0, 830.0}, {.clamp_wavelengths = true}).clamped_glasses().empty());
+}
+
+TEST(Clamp, ModelOfNdAndVd_IsClampedTo365To1014Nm) {
+  Prescription p;
+  p.surfaces = {{.thickness = 5, .medium = {.nd = 1.673, .vd = 32.2}}, {.thickness = 50}};
+  const CompileOptions options{.missing_glass = petzval::MissingGlass::abbe, .clamp_wavelengths = true};
+  const Lens lens = compile(p, std::array{360.0, 365.0, 1014.0, 1100.0}, options);
+  EXPECT_EQ(lens.index(1, 0), petzval::abbe_index(1.673, 32.2, 365));
+  EXPECT_EQ(lens.index(1, 0), lens.index(1, 1));
+  EXPECT_EQ(lens.index(1, 2), lens.index(1, 3));
+  EXPECT_EQ(lens.clamped_glasses().size(), 1u);
+}
+
+TEST(Clamp, EveryLensOfTheData_CompilesFrom360To830Nm) {
+  const CompileOptions options{.missing_glass = petzval::MissingGlass::abbe, .clamp_wavelengths = true};
+  double worst = 0;
+  for (const Prescription& p : petzval::testing::data_prescriptions()) {
+    if (compile(p).dispersion() == petzval::Dispersion::none) continue;
+    const Lens lens = compile(p, std::array{360.0, 830.0}, options);
+    worst = std::max(worst, lens.index_error());
+  }
+  EXPECT_LT(worst, 6e-3);
+}
+
+// The error of a clamped formula is that of all its wavelengths, between its extremes and at its kinks too.
+TEST(Clamp, IndexError_BoundsTheDistanceFromTheClampedFormula) {
+  double worst = 0;
+  for (const Glass& glass : petzval::glass_tables().glasses()) {
+    const Lens lens = compile(window(glass), std::array{360.0, 830.0}, {.clamp_wavelengths = true});
+    for (const double nm : steps(360, 830, 1500)) {
+      const double clamped = std::clamp(nm, glass.shortest_nm, glass.longest_nm);
+      const double error =
+          std::abs(lens.index(1, Wavelength::nm(nm)) - (petzval::refractive_index(glass, clamped) + glass.nd -
+                                                        petzval::refractive_index(glass, petzval::d_line_nm)));
+      ASSERT_LE(error, lens.index_error() + 1e-12) << glass.catalogue << ' ' << glass.name << ' ' << nm;
+      worst = std::max(worst, error);
+    }
+  }
+  EXPECT_LT(worst, 9e-3);
+}
+
 }  // namespace

@@ -114,6 +114,30 @@ TEST(GlassCatalogue, AnAddedGlassComesBeforeThoseOfItsName) {
   EXPECT_EQ(with_glasses(GlassCatalogue(), {named("mine", "F2", 1.62)}).find("F2", 1.613)->nd, 1.62);
 }
 
+TEST(GlassCatalogue, NameAlone_TakesTheNewestCatalogue) {
+  const GlassCatalogue tables({named("a-1983", "K", 1.51), named("b-legacy", "K", 1.52), named("c", "K", 1.53),
+                               named("d", "K", 1.53009), named("a-1983", "L", 1.61), named("b-legacy", "L", 1.62),
+                               named("a-1983", "M", 1.7), named("c", "N", 1.5), named("d", "N", 1.5002)});
+  EXPECT_EQ(tables.find("k")->catalogue, "c");
+  EXPECT_EQ(tables.find("L")->catalogue, "b-legacy");
+  EXPECT_EQ(tables.find("M")->catalogue, "a-1983");
+  EXPECT_EQ(tables.find("X"), nullptr);
+  const std::string ambiguous = message([&] { tables.find("N"); });
+  for (const char* word : {"\"N\"", "c (n_d 1.5)", "d (n_d 1.5002)"}) {
+    EXPECT_NE(ambiguous.find(word), std::string::npos) << ambiguous;
+  }
+  const auto more = with_glasses(tables, {named("mine", "N", 1.6)});
+  EXPECT_EQ(more.find("N")->catalogue, "mine");
+}
+
+TEST(GlassTables, AreLoadedOnce) {
+  const GlassCatalogue& tables = petzval::glass_tables();
+  EXPECT_EQ(&tables, &petzval::glass_tables());
+  EXPECT_EQ(tables.glasses().size(), GlassCatalogue::load(fs::path(PETZVAL_TEST_DATA) / "glass").glasses().size());
+  EXPECT_EQ(tables.find("N-BK7")->catalogue, "schott");
+  EXPECT_EQ(tables.find("BK7")->catalogue, "schott-legacy");
+}
+
 TEST(GlassCatalogue, WhatWasAddedLastIsFoundFirst) {
   const auto first = with_glasses(GlassCatalogue(), {named("mine", "X", 1.5), named("mine", "A", 1.4)});
   const auto second = with_glasses(first, {named("mine", "X", 1.6), named("mine", "Z", 1.7)});

@@ -120,7 +120,7 @@ TEST(SpotDiagram, GoesFieldByFieldAndByWavelengthWithin) {
   Prescription p = testing::data_prescription("double_gauss_100mm_f2.0");
   for (auto& row : p.surfaces) {
     row.medium = {.nd = row.medium.nd, .vd = row.medium.vd};
-    row.medium.vd = row.medium.nd > 1 ? std::optional(50.0) : std::nullopt;
+    row.medium.vd = !row.medium.is_air() ? std::optional(50.0) : std::nullopt;
   }
   const std::array wavelengths{486.1, 587.5618, 656.3};
   const Lens lens = compile(p, wavelengths, {.missing_glass = MissingGlass::abbe});

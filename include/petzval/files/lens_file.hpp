@@ -16,7 +16,7 @@ class GlassCatalogue;
 struct ReadOptions {
   /// Every assumption is an error: the first entry of Prescription::imported->warnings is thrown.
   bool strict = false;
-  /// Indices of glasses that a file only names. Null: the tables of data_directory(), which are read if a name occurs.
+  /// Indices of glasses that a file only names. Null: glass_tables(), loaded if a name occurs.
   const GlassCatalogue* glasses = nullptr;
 };
 
@@ -51,8 +51,8 @@ struct WrittenLens {
 /// A renderer's table of four columns: radius, thickness, n_d (0 at the stop), diameter, in mm. It has one index for
 /// all wavelengths, spheres only, and one stop. Throws Error for mirrors, cylinders, aspheres and a medium in front of
 /// the lens: without them it would be another lens. This and the other formats mark the surface that limits the beam
-/// where no stop is marked.
-PETZVAL_API WrittenLens format_table(const Prescription& prescription);
+/// where no stop is marked. glasses, for the indices of media that state none: as in ReadOptions.
+PETZVAL_API WrittenLens format_table(const Prescription& prescription, const GlassCatalogue* glasses = nullptr);
 /// A .zmx of sequential Zemax, in millimetres. Glasses of the tables (ReadOptions) keep their names, with an offset
 /// where the printed n_d is another; others become models of n_d and V_d. Indices at another line than d are restated
 /// there, as in a .seq. Throws Error for strings with line breaks and

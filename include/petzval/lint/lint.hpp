@@ -46,10 +46,11 @@ struct Finding {
 
 /// Compares the declared data of a prescription, in its first configuration, with computed ones, at its reference
 /// wavelength. The film is compared with the image of the design's object. Throws Error only for an invalid
-/// prescription.
+/// prescription, and for a glass without a stated index that glass_tables() lack.
 PETZVAL_API std::vector<Finding> lint(const Prescription& prescription);
 
-/// The same, and the glasses: an n_d that differs by more than 0.005 from that of the glass it names is a finding.
+/// The same with these glasses, and a check of them: an n_d that differs by more than 0.005 from that of the glass it
+/// names is a finding.
 PETZVAL_API std::vector<Finding> lint(const Prescription& prescription, const GlassCatalogue& glasses);
 
 /// A prescription without the faults whose cure is certain, and what was changed.
@@ -60,9 +61,9 @@ struct Repaired {
 
 /// Mends, in this order, what lint() finds beyond doubt: `units` by the factor, `apertures` by 2 or a half,
 /// `several_stops` by the first, and `image_distance` by the paraxial image; not by what makes a lens invalid. Every
-/// other finding, and a lens with configurations but for its stops, stays. Throws Error only for an invalid
-/// prescription.
-PETZVAL_API Repaired repair(const Prescription& prescription);
+/// other finding, and a lens with configurations but for its stops, stays. glasses: as in CompileOptions. Throws Error
+/// as lint() does.
+PETZVAL_API Repaired repair(const Prescription& prescription, const GlassCatalogue* glasses = nullptr);
 
 /// The film of a camera compared with the image circle of its lens (image_circle_mm, of any light): found is the
 /// diameter of the circle about the axis that holds the film, wanted that of the image. A film is as large as one likes

@@ -3,21 +3,36 @@
 
 #include <optional>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "petzval/core/version.hpp"
 
 namespace petzval::inline v0 {
 
-/// The medium behind a surface. nd is the printed index; the glass, if known, gives the dispersion.
+/// The medium behind a surface: air, a glass of a catalogue, or numbers. A stated index counts at the reference
+/// wavelength of the prescription, and the glass gives the dispersion; without a stated index the formula of the glass
+/// gives both.
+///
+///     petzval::Medium{}                                    // air
+///     petzval::Medium{.glass = "N-BK7"}                    // n_d and V_d of the glass tables
+///     petzval::Medium{.glass = "N-BK7", .nd = 1.5168}      // a printed index, the dispersion of the glass
+///     petzval::Medium{.nd = 1.62, .vd = 60.3}              // an unknown glass
 struct Medium {
   std::optional<std::string> glass{};         ///< "N-BK7"
   std::optional<std::string> catalogue{};     ///< of the glass; absent: any
   std::optional<std::string> glass_origin{};  ///< "matched": found by nd and vd, not printed in the source
-  double nd = 1;
-  std::optional<double> vd{};
+  std::optional<double> nd{};                 ///< absent: of the glass, or air if none is named
+  std::optional<double> vd{};                 ///< 0: without a known glass the index is nd at all wavelengths
 
-  bool operator==(const Medium&) const = default;
+  /// True if no glass is named and the index is 1 or absent.
+  bool is_air() const noexcept { return !glass && nd.value_or(1) == 1; }
+  /// True if all members are equal, or if both media are air.
+  bool operator==(const Medium& other) const {
+    if (is_air() || other.is_air()) return is_air() && other.is_air();
+    return std::tie(glass, catalogue, glass_origin, nd, vd) ==
+           std::tie(other.glass, other.catalogue, other.glass_origin, other.nd, other.vd);
+  }
 };
 
 /// coefficient * r^order added to the sag; order 2 or more, even or odd; coefficient in mm^(1 - order).

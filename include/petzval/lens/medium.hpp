@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include "petzval/core/export.hpp"
+#include "petzval/media/glass.hpp"
+#include "petzval/prescription/surface_row.hpp"
+
+namespace petzval::inline v0 {
+
+/// The glass that a medium names: of its catalogue if it states one, else the one nearest to its n_d, else by name
+/// alone (GlassCatalogue::find). nullptr if it names none or none is found.
+///
+/// @throws Error if the name alone is ambiguous
+PETZVAL_API const Glass* glass_of(const Medium& medium, const GlassCatalogue& glasses);
+
+/// The index of a medium at the reference wavelength of its prescription: 1 for air, the stated index, or the index of
+/// its glass; nullopt if the glass is in no table.
+///
+/// @throws Error if the name of the glass is ambiguous, or if its range does not include the wavelength
+PETZVAL_API std::optional<double> reference_index(const Medium& medium, const GlassCatalogue& glasses,
+                                                  double reference_wavelength_nm);
+
+}  // namespace petzval::inline v0

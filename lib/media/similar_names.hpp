@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "petzval/media/glass.hpp"
+
+namespace petzval::inline v0::media_detail {
+
+/// A name in lower case without dashes, blanks and underscores: "N-BK7" and "nbk7" are one glass.
+std::string bare(std::string_view name);
+/// True if two names are equal in bare letters.
+bool same_bare(std::string_view a, std::string_view b) noexcept;
+
+/// For messages: up to five names of glasses that differ from this one by a few letters, "N-BK7, K-BK7"; empty if there
+/// are none.
+std::string similar_names(const GlassCatalogue& glasses, std::string_view name);
+
+}  // namespace petzval::inline v0::media_detail
