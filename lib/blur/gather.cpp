@@ -16,6 +16,7 @@
 #include "layer_data.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/parallel.hpp"
+#include "pixel_steps.hpp"
 #include "ray_table.hpp"
 
 namespace petzval::inline v0 {
@@ -32,29 +33,17 @@ struct Tile {
   int left = 0, top = 0, columns = 0, rows = 0;
 };
 
-/// The steps of a ray that all pixels share: one for each pixel that it passes along its main direction, as far as it
-/// may meet depths of a range. all: the range of all layers.
+/// The steps of a ray that all pixels share, as far as it may meet depths of a range. all: the range of all layers.
 void add_steps(const float* rows, std::size_t stride, std::size_t i, const DepthRange& range, const DepthRange& all,
-               double tolerance, std::ptrdiff_t row_stride, std::vector<Step>& steps) {
-  const double ax = rows[at_x * stride + i], ay = rows[at_y * stride + i], bx = rows[slope_x * stride + i],
-               by = rows[slope_y * stride + i];
-  const bool along_x = std::abs(bx) >= std::abs(by);
-  const double a = along_x ? ax : ay, b = along_x ? bx : by, c = along_x ? ay : ax, d = along_x ? by : bx;
-  const auto offset = [&](int main, int other) {
-    return along_x ? other * row_stride + main : main * row_stride + other;
-  };
-  if (std::abs(b) * all.most < 1e-6) {
-    steps.push_back({offset(floor_of(a + 0.5), floor_of(c + 0.5)), 0, std::numeric_limits<float>::max()});
-    return;
-  }
-  const double length = 1 / std::abs(b), half = (0.5 + tolerance) * length, beyond = tolerance * length;
-  const int first = floor_of(a + b * (range.most + beyond) + 0.5),
-            last = floor_of(a + b * (range.least - beyond) + 0.5);
-  for (int k = first;; k += first < last ? 1 : -1) {
-    const double w = (k - a) / b;
-    steps.push_back({offset(k, floor_of(c + d * std::clamp<double>(w, 0, all.most) + 0.5)),
-                     static_cast<float>(std::max(w - half, 0.0)), static_cast<float>(w + half)});
-    if (k == last) break;
+               std::ptrdiff_t row_stride, std::vector<Step>& steps) {
+  const PixelSteps<double> of_ray(rows[at_x * stride + i], rows[at_y * stride + i], rows[slope_x * stride + i],
+                                  rows[slope_y * stride + i], range.most, range.least, all.least,
+                                  std::max(all.most, 1e-30f));
+  const auto low = [&](double n) { return static_cast<float>(std::max(of_ray.low(n), 0.0)); };
+  for (double n = 0; n <= of_ray.last(); ++n) {
+    const auto pixel = of_ray.pixel(n);
+    steps.push_back({static_cast<std::ptrdiff_t>(pixel.row) * row_stride + static_cast<std::ptrdiff_t>(pixel.column),
+                     low(n), low(n - 1)});
   }
 }
 
@@ -154,13 +143,14 @@ class Gathering {
                 .top = tile.top,
                 .colours = rays_.table.channels == 1 ? 3 : 1,
                 .opaque = layers_.opaque,
+                .gap = rays_.gap(),
                 .sums = &memory.sums[channel]};
     if (range.empty()) range = {farthest_, farthest_, 1};  // the window holds no other pixels
     std::uint64_t made = 0;
     if (path_ == GatherPath::shift_invariant) {
       memory.steps.clear(), memory.ends.clear(), memory.first.assign(1, 0);
       for (std::size_t i = 0; i < stride; ++i) {
-        add_steps(corners[0], stride, i, range, all_, options_.tolerance, job.window.stride, memory.steps);
+        add_steps(corners[0], stride, i, range, all_, job.window.stride, memory.steps);
         memory.first.push_back(static_cast<std::uint32_t>(memory.steps.size()));
         const auto at_end = [&](Row at, Row slope) {
           return floor_of(corners[0][at * stride + i] + farthest_ * corners[0][slope * stride + i] + 0.5f);
@@ -182,7 +172,6 @@ class Gathering {
                                .to = range.least,
                                .most = std::max(all_.most, 1e-30f),
                                .end = farthest_,
-                               .tolerance = static_cast<float>(options_.tolerance),
                                .side = rays_.side()};
       made = path_ == GatherPath::coherent ? loops.coherent(job, rays) : loops.general(job, rays);
     }
@@ -320,9 +309,6 @@ void gather(const LayerSet& layers, const LensRays& rays, const GatherOptions& o
     throw wrong("layers are " + std::to_string(layers.columns()) + " x " + std::to_string(layers.rows()) +
                 ", wanted the picture's " + std::to_string(camera.columns) + " x " + std::to_string(camera.rows) +
                 " and the same overscan on all sides");
-  }
-  if (!(options.tolerance >= 0 && options.tolerance <= 1)) {
-    throw wrong("tolerance is " + to_text(options.tolerance) + ", wanted 0 to 1");
   }
   if (!(options.highlights_above >= 0)) {
     throw wrong("highlights_above is " + to_text(options.highlights_above) + ", wanted 0 (none) or more");

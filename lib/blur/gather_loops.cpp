@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gather_loops.hpp"
 
+#include "pixel_steps.hpp"
 #include "ray_rows.hpp"
 #include "trace/lanes.hpp"
 
@@ -11,6 +12,16 @@ using Numbers = trace_detail::Lanes<float>;
 using Mask = trace_detail::Mask<float>;
 using Places = core_detail::Native<float>::Bits;  // of 32 bits
 constexpr int width = Numbers::width;
+
+template <>
+struct WholePixel<Numbers> {
+  static PETZVAL_INLINE Numbers below(Numbers x) noexcept {
+    // The sum rounds to 1/256; conversions cut towards 0.
+    constexpr int up = 1 << 15;
+    const Places whole = __builtin_convertvector((x + Numbers(static_cast<float>(up))).v, Places) - up;
+    return Numbers(__builtin_convertvector(whole, core_detail::Native<float>::Values));
+  }
+};
 
 PETZVAL_INLINE Numbers load(const float* from) noexcept {
   Numbers result;
@@ -71,11 +82,14 @@ struct Found {
   // Of surfaces that let light through:
   Numbers alpha{0.0f};
   Numbers through{1.0f};  ///< what is left of a ray
-  Numbers below{1e30f};   ///< steps overlap: what a ray has met in one it does not meet again in the next
+  Numbers below{1e30f};   ///< a surface that a ray has met it does not meet again in the next pixel
+
+  /// Inverse depth of the nearest surface that the ray passed in front of in the pixel before.
+  Numbers front{no_surface};
 
   /// The sums stay.
   PETZVAL_INLINE void begin_ray(Mask lanes) noexcept {
-    seeking = lanes;
+    seeking = lanes, front = Numbers(no_surface);
     if constexpr (!opaque) through = Numbers(1.0f), below = Numbers(1e30f);
   }
   PETZVAL_INLINE Found() noexcept : Found(first_lanes(0)) {}
@@ -84,36 +98,66 @@ struct Found {
   }
 };
 
-/// A step of rays that seek: lanes of `here` pass the pixels that `at` loads.
+PETZVAL_INLINE Numbers larger(Numbers a, Numbers b) noexcept { return select(a > b, a, b); }
+
+/// For Found::front, of a pixel that a ray passes in front of.
+PETZVAL_INLINE Numbers in_front(Numbers w) noexcept { return select(w >= Numbers(0.0f), w, Numbers(no_surface)); }
+
+/// Lanes of `hit` meet the surfaces of a layer in the pixels that `at` loads. Lanes whose rays end there leave `here`.
 template <bool opaque, int colours, class At>
-PETZVAL_INLINE void meet(const LayerWindow& window, const At& at, Numbers low, Numbers high, Numbers weight, Mask here,
-                         Found<opaque, colours>& found) noexcept {
+PETZVAL_INLINE void take(const LayerWindow& window, const At& at, std::ptrdiff_t layer, Numbers low, Numbers weight,
+                         Mask hit, Mask& here, Found<opaque, colours>& found) noexcept {
+  const Numbers share = opaque ? weight : weight * found.through;
+  for (int c = 0; c < colours; ++c) {
+    found.colour[c] = found.colour[c] + only(hit, share * at(window.colour[c] + layer));
+  }
+  Mask ended = hit;
+  if constexpr (!opaque) {
+    const Numbers alpha = at(window.alpha + layer);
+    found.alpha = found.alpha + only(hit, share * alpha);
+    found.through = select(hit, found.through * (Numbers(1.0f) - alpha), found.through);
+    found.below = select(hit, low, found.below);
+    ended = all_of(hit, found.through <= Numbers(1e-3f));
+  }
+  found.seeking = without(found.seeking, ended), here = without(here, ended);
+}
+
+/// A step of rays that seek: lanes of `here` pass the pixels that `at` loads, between the inverse depths low and high.
+/// before: the pixels of the step before.
+///
+/// A ray that passed in front of a surface in the pixel before and is behind one in this pixel went between their
+/// centres. If they are nearer to each other than `gap`, nothing is known of what lies between them: the ray meets the
+/// farther one. (At the edge of something small it passes that, and on one surface the colours are nearly the same.)
+template <bool opaque, int colours, class At>
+PETZVAL_INLINE void meet(const LayerWindow& window, const At& at, const At& before, Numbers low, Numbers high,
+                         Numbers gap, Numbers weight, Mask here, Found<opaque, colours>& found) noexcept {
   const float* depth = window.depth;
   std::ptrdiff_t layer = 0;
   [[maybe_unused]] const Numbers below = found.below;
+  const Numbers passed = found.front, none(no_surface);
+  Numbers front = none, joined_to = passed + gap;
   for (int l = 0; l < window.layers; ++l, depth += window.layer_stride, layer += window.layer_stride) {
     const Numbers w = at(depth);
-    Mask hit = all_of(w >= low, w <= high, here);
-    if constexpr (!opaque) hit = all_of(hit, w < below);
-    if (any(hit)) {
-      const Numbers share = opaque ? weight : weight * found.through;
-      for (int c = 0; c < colours; ++c) {
-        found.colour[c] = found.colour[c] + only(hit, share * at(window.colour[c] + layer));
-      }
-      if constexpr (opaque) {
-        found.seeking = without(found.seeking, hit), here = without(here, hit);
-      } else {
-        const Numbers alpha = at(window.alpha + layer);
-        found.alpha = found.alpha + only(hit, share * alpha);
-        found.through = select(hit, found.through * (Numbers(1.0f) - alpha), found.through);
-        found.below = select(hit, low, found.below);
-        const Mask full = all_of(hit, found.through <= Numbers(1e-3f));
-        found.seeking = without(found.seeking, full), here = without(here, full);
+    Mask hit = all_of(w >= low, w <= high, here), joined = all_of(w > high, w <= joined_to, here);
+    if constexpr (!opaque) hit = all_of(hit, w < below), joined = all_of(joined, w < below);
+    if (any(joined)) {
+      joined_to = select(joined, none, joined_to);  // once
+      const float* depth_before = window.depth;
+      std::ptrdiff_t layer_before = 0;
+      for (int k = 0; k < window.layers && any(joined); ++k) {
+        const Numbers v = before(depth_before);
+        const Mask met = all_of(v >= passed, v <= passed, joined);
+        take(window, before, layer_before, low, weight, met, here, found);
+        joined = without(joined, met);
+        depth_before += window.layer_stride, layer_before += window.layer_stride;
       }
     }
+    if (any(hit)) take(window, at, layer, low, weight, hit, here, found);
+    front = larger(front, select(w < low, in_front(w), none));
     // Surfaces behind this one are farther still: rays that have not reached it do not reach them.
-    if (!any(opaque ? all_of(here, w > high) : all_of(here, w >= low))) return;
+    if (!any(all_of(here, w >= low))) break;
   }
+  found.front = front;
 }
 
 /// Rays that found nothing see the void where the first layer is empty at the depth of the farthest surface.
@@ -173,12 +217,15 @@ PETZVAL_INLINE void keep(TileSums& sums, int pixel, const Found<opaque, colours>
 /// One ray of pixels side by side, from a step on.
 template <bool opaque, int colours>
 PETZVAL_INLINE std::uint64_t follow_ray(const LayerWindow& window, const Step* begin, const Step* from, const Step* end,
-                                        std::ptrdiff_t last, Numbers weight, Mask lanes,
+                                        std::ptrdiff_t last, Numbers gap, Numbers weight, Mask lanes,
                                         Found<opaque, colours>& found) noexcept {
   found.begin_ray(lanes);
+  // All pixels passed in front of the first layer in the step before.
+  if (from != begin) found.front = in_front(load(window.depth + from[-1].offset));
   std::uint64_t made = 0;
   for (const Step* step = from; step != end && any(found.seeking); ++step, ++made) {
-    meet(window, Beside{step->offset}, Numbers(step->low), Numbers(step->high), weight, found.seeking, found);
+    meet(window, Beside{step->offset}, Beside{step[step == begin ? 0 : -1].offset}, Numbers(step->low),
+         Numbers(step->high), gap, weight, found.seeking, found);
   }
   if (!any(found.seeking)) return made;
   end_partly(found);
@@ -200,6 +247,7 @@ std::uint64_t follow_rows(const TileJob& job, const SameRays& rays, int row, int
   const bool full = opaque && every(lanes);
   Found<opaque, colours> found[at_once];
   Numbers total(0.0f);
+  const Numbers gap(job.gap);
   std::uint64_t made = 0;
   for (std::size_t i = 0; i < rays.count; ++i) {
     const Step *const begin = rays.steps + rays.first[i], *const end = rays.steps + rays.first[i + 1], *step = begin;
@@ -228,7 +276,7 @@ std::uint64_t follow_rows(const TileJob& job, const SameRays& rays, int row, int
     made += static_cast<std::uint64_t>(at_once) * static_cast<std::uint64_t>(step - begin + met);
     if (met) continue;
     for (int r = 0; r < at_once; ++r)
-      made += follow_ray(windows[r], begin, step, end, rays.ends[i], weight, lanes, found[r]);
+      made += follow_ray(windows[r], begin, step, end, rays.ends[i], gap, weight, lanes, found[r]);
   }
   for (int r = 0; r < at_once; ++r) keep(*job.sums, (row + r) * TileSums::columns + column, found[r], total);
   return made;
@@ -280,73 +328,54 @@ Limits limits(const float* const* corners, std::size_t corner_count, std::size_t
   return result;
 }
 
-/// The whole number at or below, of places rounded to 1/256 px: half a step from the middle of a pixel is between two,
-/// and rounding is not to choose.
-PETZVAL_INLINE Places floor_of(Numbers x) noexcept {
-  constexpr int up = 1 << 15;  // conversions cut towards 0
-  return __builtin_convertvector((x + Numbers(static_cast<float>(up))).v, Places) - up;
+/// Offsets of pixels relative to each other.
+PETZVAL_INLINE Places offsets_of(Numbers column, Numbers row, std::ptrdiff_t stride) noexcept {
+  return __builtin_convertvector(row.v, Places) * static_cast<std::int32_t>(stride) +
+         __builtin_convertvector(column.v, Places);
 }
 
 /// The pixels that lines pass at an inverse depth, as offsets.
 PETZVAL_INLINE Places pixels_at(const Numbers (&line)[row_count], Numbers w, std::ptrdiff_t stride) noexcept {
-  const Numbers half(0.5f), x = line[at_x] + line[slope_x] * w + half, y = line[at_y] + line[slope_y] * w + half;
-  return floor_of(y) * static_cast<std::int32_t>(stride) + floor_of(x);
+  const Numbers half(0.5f);
+  return offsets_of(WholePixel<Numbers>::below(line[at_x] + line[slope_x] * w + half),
+                    WholePixel<Numbers>::below(line[at_y] + line[slope_y] * w + half), stride);
 }
 
-/// Even steps of a pixel at most along each line, at multiples of their length: which depths bound a ray changes
-/// nothing of its steps. Steps count from the scene's far end.
-struct EvenSteps {
-  Numbers length, reach, farthest, nearest, first, last;  ///< first >= last, as rays run
-
-  PETZVAL_INLINE EvenSteps(const DifferentRays& rays, const Numbers (&line)[row_count]) noexcept {
-    const Numbers none(0.0f), least(1e-6f / rays.most);  // of lines that hardly lean one step holds all depths
-    const Numbers x = larger(line[slope_x], -line[slope_x]), y = larger(line[slope_y], -line[slope_y]);
-    const Numbers steepest = larger(larger(x, y), least), tolerance(rays.tolerance);
-    length = Numbers(1.0f) / steepest, reach = tolerance * length;
-    farthest = Numbers(rays.end), nearest = Numbers(rays.most);
-    first = whole(Numbers(rays.from) * steepest + tolerance);
-    last = whole(larger(Numbers(rays.to) * steepest - tolerance, none));
-  }
-  /// The middle of a step, but within the scene's depths: a ray that moves by less than a pixel stays in its own.
-  PETZVAL_INLINE Numbers at(Numbers k) const noexcept {
-    const Numbers middle = larger((k + Numbers(0.5f)) * length, farthest);
-    return select(middle < nearest, middle, nearest);
-  }
-  PETZVAL_INLINE Numbers low(Numbers k) const noexcept { return larger(k * length - reach, Numbers(0.0f)); }
-  PETZVAL_INLINE Numbers high(Numbers k) const noexcept { return (k + Numbers(1.0f)) * length + reach; }
-
- private:
-  static PETZVAL_INLINE Numbers larger(Numbers a, Numbers b) noexcept { return select(a > b, a, b); }
-  /// Of numbers from 0 on.
-  static PETZVAL_INLINE Numbers whole(Numbers x) noexcept {
-    return Numbers(__builtin_convertvector(__builtin_convertvector(x.v, Places), core_detail::Native<float>::Values));
-  }
-};
-
-/// Follows the rays of lanes to their ends. load: calls visit(at, here) for all lanes given, with the planes' loader at
-/// the pixels of an inverse depth. Returns how many steps the longest ray made.
+/// Follows the rays of lanes to their ends. load: calls visit(at, before, here) for all lanes given, with the planes'
+/// loaders at the pixels of some offsets and of others. Returns how many steps the longest ray made.
 template <bool opaque, int colours, class Load>
-PETZVAL_INLINE std::uint64_t follow(const LayerWindow& window, const DifferentRays& rays,
+PETZVAL_INLINE std::uint64_t follow(const LayerWindow& window, const DifferentRays& rays, float gap,
                                     const Numbers (&line)[row_count], const Load& load,
                                     Found<opaque, colours>& found) noexcept {
-  const EvenSteps steps(rays, line);
-  const Numbers seen = line[weight], one(1.0f);
+  const PixelSteps<Numbers> steps(line[at_x], line[at_y], line[slope_x], line[slope_y], Numbers(rays.from),
+                                  Numbers(rays.to), Numbers(rays.end), Numbers(rays.most));
+  const Numbers seen = line[weight], zero(0.0f), one(1.0f);
+  const auto pixels_of = [&](Numbers n) {
+    const auto pixel = steps.pixel(n);
+    return offsets_of(pixel.column, pixel.row, window.stride);
+  };
   std::uint64_t made = 0;
-  Numbers k = steps.first;
-  for (Mask here = found.seeking; any(here); here = all_of(found.seeking, k >= steps.last), ++made) {
-    const Numbers low = steps.low(k), high = steps.high(k);
-    load(steps.at(k), here, [&](const auto& at, Mask lanes) { meet(window, at, low, high, seen, lanes, found); });
-    k = k - one;
+  Numbers n = zero, high = steps.low(-one);
+  Places pixels = pixels_of(n), pixels_before = pixels;
+  for (Mask here = found.seeking; any(here); here = all_of(found.seeking, n <= steps.last()), ++made) {
+    const Numbers low = larger(steps.low(n), zero);
+    load(pixels, pixels_before, here, [&](const auto& at, const auto& before, Mask lanes) {
+      meet(window, at, before, low, high, Numbers(gap), seen, lanes, found);
+    });
+    n = n + one, high = low, pixels_before = pixels, pixels = pixels_of(n);
   }
   if (!any(found.seeking)) return made;
   end_partly(found);
-  load(Numbers(rays.end), found.seeking,
-       [&](const auto& at, Mask lanes) { end_in_void(window, at, seen, lanes, found); });
-  k = steps.last;
-  for (Mask here = found.seeking; any(here); here = all_of(found.seeking, k <= steps.first)) {
-    const Numbers low = steps.low(k);
-    load(steps.at(k), here, [&](const auto& at, Mask lanes) { guess(window, at, low, seen, lanes, found); });
-    k = k + one;
+  const Places ends = pixels_at(line, Numbers(rays.end), window.stride);
+  load(ends, ends, found.seeking,
+       [&](const auto& at, const auto&, Mask lanes) { end_in_void(window, at, seen, lanes, found); });
+  n = steps.last();
+  for (Mask here = found.seeking; any(here); here = all_of(found.seeking, n >= zero)) {
+    const Numbers low = larger(steps.low(n), zero);
+    pixels = pixels_of(n);
+    load(pixels, pixels, here,
+         [&](const auto& at, const auto&, Mask lanes) { guess(window, at, low, seen, lanes, found); });
+    n = n - one;
   }
   give_up(seen, found);
   return made;
@@ -363,12 +392,13 @@ PETZVAL_INLINE Mask lanes_of(Places numbers, std::int32_t number) noexcept {
 
 /// The pixels of lanes beside each other: mostly as far beside their own for all, which one load finds.
 template <class Visit>
-PETZVAL_INLINE void load_beside(Places offsets, Mask lanes, const Visit& visit) noexcept {
-  const std::int32_t first = offsets[0];
-  if (!any(without(lanes, lanes_of(offsets, first)))) return visit(Beside{first}, lanes);
+PETZVAL_INLINE void load_beside(Places offsets, Places before, Mask lanes, const Visit& visit) noexcept {
+  const std::int32_t first = offsets[0], first_before = before[0];
+  const Mask alike = all_of(lanes_of(offsets, first), lanes_of(before, first_before));
+  if (!any(without(lanes, alike))) return visit(Beside{first}, Beside{first_before}, lanes);
   Places own;
   for (int i = 0; i < width; ++i) own[i] = i;
-  visit(Anywhere{offsets + own, lanes}, lanes);
+  visit(Anywhere{offsets + own, lanes}, Anywhere{before + own, lanes}, lanes);
 }
 
 template <bool opaque, int colours>
@@ -398,10 +428,10 @@ std::uint64_t follow_coherent(const TileJob& job, const DifferentRays& rays) noe
           line[r] = Numbers(left[at]) + place * Numbers(rise[at]);
         }
         found.begin_ray(lanes);
-        const auto load_pixels = [&](Numbers w, Mask here, const auto& visit) {
-          load_beside(pixels_at(line, w, window.stride), here, visit);
+        const auto load_pixels = [&](Places offsets, Places before, Mask here, const auto& visit) {
+          load_beside(offsets, before, here, visit);
         };
-        made += follow(window, rays, line, load_pixels, found);
+        made += follow(window, rays, job.gap, line, load_pixels, found);
         total = total + line[weight];
       }
       keep(*job.sums, row * TileSums::columns + column, found, total);
@@ -437,10 +467,10 @@ std::uint64_t follow_general(const TileJob& job, const DifferentRays& rays) noex
           }
           const LayerWindow window = job.window.from(row, column);
           Found<opaque, colours> found(lanes);
-          const auto load_pixels = [&](Numbers w, Mask here, const auto& visit) {
-            visit(Anywhere{pixels_at(line, w, window.stride), here}, here);
+          const auto load_pixels = [&](Places offsets, Places before, Mask here, const auto& visit) {
+            visit(Anywhere{offsets, here}, Anywhere{before, here}, here);
           };
-          made += follow(window, rays, line, load_pixels, found);
+          made += follow(window, rays, job.gap, line, load_pixels, found);
           const int pixel = row * TileSums::columns + column;
           for (int c = 0; c < colours; ++c) sums.colour[c][pixel] += sum_of(found.colour[c]);
           if constexpr (!opaque) sums.alpha[pixel] += sum_of(found.alpha);

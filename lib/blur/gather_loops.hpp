@@ -61,8 +61,7 @@ struct DifferentRays {
   float* scratch = nullptr;  ///< of coherent: 2 row_count row_stride numbers
   float from = 0, to = 0;    ///< inverse depths between which they are followed
   float most = 0, end = 0;   ///< of all surfaces, the nearest (above 0) and the farthest
-  float tolerance = 0;
-  int side = 1;  ///< pixels take `count` rays of side x side sets in turn
+  int side = 1;              ///< pixels take `count` rays of side x side sets in turn
 };
 
 struct TileJob {
@@ -71,6 +70,7 @@ struct TileJob {
   int left = 0, top = 0;      ///< of the tile in the picture
   int colours = 3;            ///< in common, 3 or 1
   bool opaque = true;
+  float gap = 0;  ///< surfaces of neighbouring pixels whose inverse depths differ by no more are joined
   TileSums* sums = nullptr;
 };
 

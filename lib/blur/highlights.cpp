@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "petzval/core/parallel.hpp"
+#include "pixel_steps.hpp"
 
 namespace petzval::inline v0::blur_detail {
 namespace {
@@ -59,8 +60,9 @@ struct Highlights::Stamp {
 Highlights::Highlights(const LayerData& layers, const LensRays& rays, const GatherOptions& options, int overscan)
     : layers_(layers),
       rays_(RayAccess::data(rays)),
-      tolerance_(options.tolerance),
-      nearest_(layers.depths().most),
+      gap_(rays_.gap()),
+      nearest_(std::max(layers.depths().most, 1e-30f)),
+      farthest_(layers.depths().least),
       overscan_(overscan) {
   if (options.highlights_above == 0) return;
   find(static_cast<float>(options.highlights_above));
@@ -178,27 +180,40 @@ float Highlights::visible(const float* line, double x, double y, const Highlight
   };
   // From the nearest surface of all, then from the nearest one below that way.
   double from = nearest_;
-  const double steepest = std::max({std::abs(line[slope_x]), std::abs(line[slope_y]), 1e-30f});
   // Nearer by less, nothing hides it from any ray: the umbra's offset.
   const double margin = 0.5 / std::max(rays_.largest_slope, 1e-30);
   for (int i = 0; i < 2; ++i) {
     from = layers_.n_buffer.below(rect_to(from)).most;
     if (from <= h.inverse_depth + margin) return 1;
   }
-  const int steps = static_cast<int>((from - h.inverse_depth) * steepest) + 1;
-  const double length = (from - h.inverse_depth) / steps, half = length * (0.5 + tolerance_);
-  float through = 1;
-  for (int k = 0; k < steps && through > 1e-3f; ++k) {
-    const double w = from - (k + 0.5) * length;
-    const Vec2<double> at = place_at(w);
-    const int column = std::clamp(static_cast<int>(std::floor(at.x)), 0, layers_.columns - 1),
-              row = std::clamp(static_cast<int>(std::floor(at.y)), 0, layers_.rows - 1);
+  const Vec2<double> first_pixel = place_at(0) - 0.5;
+  const PixelSteps<double> steps(first_pixel.x, first_pixel.y, line[slope_x], line[slope_y], from,
+                                 h.inverse_depth + margin, farthest_, nearest_);
+  float through = 1, front = no_surface, front_alpha = 0;
+  double high = steps.low(-1);
+  for (double n = 0; n <= steps.last() && through > 1e-3f; ++n) {
+    const auto at = steps.pixel(n);
+    const int column = static_cast<int>(std::clamp(at.column, 0.0, layers_.columns - 1.0)),
+              row = static_cast<int>(std::clamp(at.row, 0.0, layers_.rows - 1.0));
     const std::ptrdiff_t pixel = static_cast<std::ptrdiff_t>(row) * layers_.columns + column;
+    const double low = steps.low(n);
+    const float joined_to = front + gap_, joined_alpha = front_alpha;
+    bool joined = false;
+    front = no_surface;
     for (int layer = 0; layer < layers_.count; ++layer) {
-      const double met = layers_.plane(layer, 0)[pixel];
-      if (met < w - half || met <= h.inverse_depth + margin) break;
-      if (met <= w + half) through *= 1 - layers_.plane(layer, 4)[pixel];
+      const float met = layers_.plane(layer, 0)[pixel];
+      if (met <= h.inverse_depth + margin) break;
+      if (met < low) {
+        front = met, front_alpha = layers_.plane(layer, 4)[pixel];
+        break;
+      }
+      if (met <= high) {
+        through *= 1 - layers_.plane(layer, 4)[pixel];
+      } else if (met <= joined_to && !joined) {
+        through *= 1 - joined_alpha, joined = true;
+      }
     }
+    high = low;
   }
   return through;
 }

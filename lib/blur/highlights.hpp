@@ -48,7 +48,7 @@ class Highlights {
 
   const LayerData& layers_;
   const RayData& rays_;
-  double tolerance_, nearest_;  ///< nearest_: inverse depth of the nearest surface
+  float gap_, nearest_, farthest_;  ///< the latter: inverse depths of the nearest and the farthest surface
   int overscan_;
   std::vector<Highlight> found_;  ///< by rows
   std::vector<Group> groups_;

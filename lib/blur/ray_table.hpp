@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <mutex>
 #include <span>
@@ -58,6 +59,9 @@ struct LensRays::Data {
   /// Of the squares in which sets take turns.
   int side() const noexcept { return options.sets == 16 ? 4 : options.sets == 4 ? 2 : 1; }
   std::size_t rays_of_set() const noexcept { return points.size() / sets(); }
+  /// By how much inverse depths of neighbouring pixels may differ for layers to know nothing of what lies between: the
+  /// bias of peeling.
+  float gap() const noexcept { return largest_slope > 0 ? static_cast<float>(std::min(1 / largest_slope, 1e20)) : 0; }
 
  private:
   mutable std::once_flag dense_once_;

@@ -122,4 +122,71 @@ TEST(Points, FarBehindFocusCoverTheirCircleOfConfusion) {
   }
 }
 
+/// A grey pixel at an inverse depth before a black wall; something far nearer and something far behind stand in
+/// corners, so that the pixel is neither the nearest nor the farthest surface.
+LayerSet grey_pixel(const PeelPlan& plan, double inverse_depth, double wall) {
+  const int columns = plan.camera.layer_columns(), rows = plan.camera.layer_rows();
+  const int middle = columns / 2, centre = rows / 2;
+  FragmentLists lists{.columns = columns, .rows = rows, .offsets = {0}, .fragments = {}};
+  const auto depth = [](double w) { return static_cast<float>(1 / w); };
+  for (int row = 0; row < rows; ++row) {
+    for (int column = 0; column < columns; ++column) {
+      if (row == 0 && column == 0) lists.fragments.push_back({depth(1.5 * inverse_depth), 0, 0, 0, 1});
+      if (row == centre && column == middle) lists.fragments.push_back({depth(inverse_depth), 0.5f, 0.5f, 0.5f, 1});
+      lists.fragments.push_back({depth(row == 0 && column == 1 ? 0.5 * wall : wall), 0, 0, 0, 1});
+      lists.offsets.push_back(lists.fragments.size());
+    }
+  }
+  LayerSet layers;
+  layers.thin(lists, plan.bias, 4);
+  return layers;
+}
+
+/// The radius of the disc that has the second moments of a picture, and its light.
+struct Disc {
+  double radius = 0, light = 0;
+};
+Disc disc_of(const Blurred& picture) {
+  double light = 0, x = 0, y = 0, squares = 0;
+  const auto sum = [&](auto&& visit) {
+    for (int row = 0; row < picture.rows; ++row) {
+      for (int column = 0; column < picture.columns; ++column) {
+        visit(column, row,
+              static_cast<double>(picture.rgba[static_cast<std::size_t>(4 * (row * picture.columns + column))]));
+      }
+    }
+  };
+  sum([&](int column, int row, double value) { light += value, x += value * column, y += value * row; });
+  x /= light, y /= light;
+  sum([&](int column, int row, double value) {
+    squares += value * ((column - x) * (column - x) + (row - y) * (row - y));
+  });
+  return {std::sqrt(2 * squares / light), light};
+}
+
+// Rays land in whole pixels: along the main direction of a ray the places of a disc are rounded to them, across it
+// those of its steps are. The mean square of both is 1/12 and (1 + 4 / pi - 1) / 12 px^2.
+TEST(Points, HaveTheRadiusOfTheirCircleOfConfusionOnEveryPath) {
+  constexpr double pi = std::numbers::pi, focus = 1 / 1000.0, rounding = 2 * (1 / 12.0 + 4 / (12 * pi));
+  const LayerCamera camera = layer_camera(60, 44, radians(10));
+  const LensRays rays =
+      LensRays::thin(camera, {.radius_mm = 25, .inverse_focus = focus}, vogel_points(2000), {.nearest_mm = 250});
+  const double px = 25 * camera.focal_px;  // of the radius for each 1/mm off focus
+  for (const double wanted : {7.81, 3.35, -3.35, -5.2}) {
+    const double w = focus + wanted / px;
+    ASSERT_GT(w, 0);
+    const PeelPlan plan = plan_peel(rays, 0.5 / w, 1e7);
+    const LayerSet layers = grey_pixel(plan, w, 0.5 * w);
+    double fast = 0;
+    for (const GatherPath path : {GatherPath::shift_invariant, GatherPath::coherent, GatherPath::general}) {
+      const Disc disc = disc_of(gather(layers, rays, {.path = path, .highlights_above = 0}));
+      const double radius = std::sqrt(disc.radius * disc.radius - rounding);
+      EXPECT_NEAR(radius, std::abs(wanted), 0.03) << name(path) << ' ' << wanted;
+      EXPECT_NEAR(disc.light, 0.5, 0.01) << name(path) << ' ' << wanted;
+      if (path == GatherPath::shift_invariant) fast = disc.radius;
+      EXPECT_NEAR(disc.radius, fast, 0.02) << name(path) << ' ' << wanted;
+    }
+  }
+}
+
 }  // namespace

@@ -10,9 +10,9 @@
 
 namespace petzval::testing {
 
-/// The picture by the shortest code that could be right, in double: each ray of a pixel, step after step through all
+/// The picture by the shortest code that could be right, in double: each ray of a pixel, pixel after pixel through all
 /// depths, layer after layer. Without highlights.
-inline Blurred reference_gather(const LayerSet& layers, const LensRays& rays, double tolerance = 0.1) {
+inline Blurred reference_gather(const LayerSet& layers, const LensRays& rays) {
   const LayerCamera& camera = rays.camera();
   const int overscan = (layers.columns() - camera.columns) / 2;
   Blurred picture;
@@ -35,39 +35,58 @@ inline Blurred reference_gather(const LayerSet& layers, const LensRays& rays, do
         double total = 0, known = 0, lost = 0, sum = 0, covered = 0;
         for (const LayerRay& ray : found) {
           total += ray.weight;
-          const double steepest =
-              std::max({std::abs(ray.slope.x), std::abs(ray.slope.y), 1e-6 / std::max(most, 1e-30f)});
           double through = 1;
           double guess = std::numeric_limits<double>::quiet_NaN(), guess_alpha = 0;
           bool met = false;
-          const auto pixel_at = [&](double w) {
-            const Vec2<double> at = ray.at + ray.slope * w;
-            const auto floor_of = [](double place) {
-              return static_cast<int>(std::floor(std::round(256 * place) / 256));
-            };
-            const int x = std::clamp(floor_of(at.x) + overscan, 0, layers.columns() - 1),
-                      y = std::clamp(floor_of(at.y) + overscan, 0, layers.rows() - 1);
-            return static_cast<std::size_t>(y * layers.columns() + x);
+          const auto floor_of = [](double place) { return std::floor(std::round(256 * place) / 256); };
+          const auto index_of = [&](double x, double y) {
+            const double inside_x = std::clamp(x + overscan, 0.0, layers.columns() - 1.0),
+                         inside_y = std::clamp(y + overscan, 0.0, layers.rows() - 1.0);
+            return static_cast<std::size_t>(inside_y * layers.columns() + inside_x);
           };
-          const bool empty = layers.inverse_depth(0)[pixel_at(least)] < 0;
-          double below = 1e30;
-          for (int k = static_cast<int>(most * steepest + tolerance); k >= 0; --k) {
-            const double low = std::max((k - tolerance) / steepest, 0.0), high = (k + 1 + tolerance) / steepest;
-            const std::size_t pixel = pixel_at(std::clamp<double>((k + 0.5) / steepest, least, most));
-            bool before = false, met_here = false;
-            for (int layer = 0; layer < layers.count() && through > 1e-3; ++layer) {
-              const double w = layers.inverse_depth(layer)[pixel], a = layers.channel(layer, 3)[pixel];
-              if (w >= 0 && w < low && !before) {
-                guess = layers.channel(layer, channel)[pixel], guess_alpha = a, before = true;
-              }
-              if (w < low || w > high || w >= below) continue;
-              sum += through * ray.weight * layers.channel(layer, channel)[pixel];
+          const Vec2<double> end = ray.at + ray.slope * static_cast<double>(least);
+          const bool empty = layers.inverse_depth(0)[index_of(floor_of(end.x), floor_of(end.y))] < 0;
+          // Pixel after pixel along the main direction: m and s are the ray's there, o and t across it.
+          const bool along_x = std::abs(ray.slope.x) >= std::abs(ray.slope.y);
+          const double m = along_x ? ray.at.x : ray.at.y, o = along_x ? ray.at.y : ray.at.x,
+                       t = along_x ? ray.slope.y : ray.slope.x, hardly = 1e-6 / std::max(most, 1e-30f);
+          double s = along_x ? ray.slope.x : ray.slope.y;
+          if (std::abs(s) < hardly) s = hardly;
+          const double towards = s > 0 ? -1 : 1, before_first = 1.0 / 64,
+                       first = floor_of(m + s * most - towards * before_first),
+                       last = floor_of(m + s * least + towards * before_first);
+          const double gap = rays.largest_slope() > 0 ? 1 / rays.largest_slope() : 0;
+          // What the ray passed in front of in the pixel before.
+          double below = 1e30, front = -1e30, front_colour = 0, front_alpha = 0;
+          for (double k = first; towards * k <= towards * last && through > 1e-3; k += towards) {
+            // A pixel holds the depths between those of its two ends.
+            const double low = std::max((k + (s > 0 ? 0 : 1) - m) / s, 0.0), high = (k + (s > 0 ? 1 : 0) - m) / s,
+                         w_middle = std::clamp<double>((k + 0.5 - m) / s, least, most),
+                         across = floor_of(o + t * w_middle);
+            const std::size_t pixel = along_x ? index_of(k, across) : index_of(across, k);
+            bool met_here = false;
+            double front_here = -1e30, colour_here = 0, alpha_here = 0;
+            const auto meet = [&](double surface_colour, double a) {
+              sum += through * ray.weight * surface_colour;
               covered += through * ray.weight * a;
               through *= 1 - a;
               met = met_here = true;
+            };
+            for (int layer = 0; layer < layers.count() && through > 1e-3; ++layer) {
+              const double w = layers.inverse_depth(layer)[pixel], a = layers.channel(layer, 3)[pixel];
+              const double c = layers.channel(layer, channel)[pixel];
+              if (w >= 0 && w < low && front_here < 0) {
+                guess = c, guess_alpha = a, front_here = w, colour_here = c, alpha_here = a;
+              }
+              if (w < low || w >= below) continue;
+              if (w <= high) {
+                meet(c, a);
+              } else if (w <= front + gap && !met_here) {
+                meet(front_colour, front_alpha);
+              }
             }
             if (met_here) below = low;
-            if (through <= 1e-3) break;
+            front = front_here, front_colour = colour_here, front_alpha = alpha_here;
           }
           if (met || empty) {
             known += ray.weight;

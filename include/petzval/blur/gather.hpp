@@ -29,8 +29,6 @@ struct GatherOptions {
   /// Whether the depths below the rays of a tile bound the way of its rays. What they meet does not depend on it;
   /// guesses for those that meet nothing may.
   bool bounded = true;
-  /// By how much of its length a step along a ray is widened on both sides, so that rays do not slip between pixels.
-  double tolerance = 0.1;
   /// Surfaces brighter than this in any channel, of which the rays of a pixel would meet too few to show their blur
   /// evenly, are spread over the pixels instead: even discs of the lens's own shape. 0: none.
   double highlights_above = 1;
@@ -59,8 +57,10 @@ struct Blurred {
 
 /// The picture of layers through a lens.
 ///
-/// Each ray is followed from near to far in steps of a pixel until it meets a surface; those with alpha below 1 let the
-/// rest through. A ray that meets nothing is transparent if the first layer is empty where it ends, at the depth of the
+/// Each ray is followed from near to far, pixel after pixel along its main direction, until it meets a surface in the
+/// pixel that it passes at the surface's own depth; those with alpha below 1 let the rest through. A ray that passes
+/// between a pixel's surface and a nearer one of the next pixel meets the farther one if their inverse depths differ by
+/// less than the bias of peeling: what lies between is not in the layers. A ray that meets nothing is transparent if the first layer is empty where it ends, at the depth of the
 /// farthest surface. Else it slipped behind a surface: it counts as missed, and takes what it passed last before, or
 /// where there is nothing, the mean of the pixel's others. Beyond the layers' edges their last pixels repeat. Layers
 /// reach beyond the picture equally on all sides (PeelPlan::camera). The same bits for any number of threads.
