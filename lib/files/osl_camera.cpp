@@ -225,8 +225,8 @@ void OslCamera::boxes(std::string& text) const {
     // At the rings and halfway between them.
     std::vector<Box> at(2 * rings + 1);
     for (const double inverse : {0.0, 1 / nearest_}) {
-      const Lens set =
-          with_semi_diameter(focused(inverse), *lens_.stop(), stopped.surfaces()[*lens_.stop()].semi_diameter);
+      const Lens set = with_semi_diameter(focused(inverse), *lens_.stop(),
+                                          stopped.surfaces()[*lens_.stop()].semi_diameter, RimLimit::none);
       for (std::size_t k = 0; k < at.size(); ++k) {
         at[k].take(box_at(set, film_radius_ * static_cast<double>(k) / static_cast<double>(at.size() - 1)));
       }
@@ -276,7 +276,8 @@ std::string OslCamera::tables() const {
     const double inverse = static_cast<double>(k) / static_cast<double>(light_nodes - 1) / nearest_;
     const Lens set = focused(inverse);
     for (const Lens& stopped : stopped_) {
-      const Lens both = with_semi_diameter(set, *lens_.stop(), stopped.surfaces()[*lens_.stop()].semi_diameter);
+      const Lens both =
+          with_semi_diameter(set, *lens_.stop(), stopped.surfaces()[*lens_.stop()].semi_diameter, RimLimit::none);
       const double f_number = std::exp2(static_cast<double>(light.size() % stop_nodes));
       light.push_back(film_irradiance(both, {}) * f_number);
       shift.push_back(solve_focus(both, distance_from_vertex(inverse)).film_z - set.film_z());

@@ -202,7 +202,8 @@ Lens compile(const Prescription& source, std::span<const double> wavelengths_nm,
     s.conic = row.conic;
     s.curved_in = row.curved_in;
     s.aspheric = row.aspheric;
-    set_rim(s, row.semi_diameter.value_or(std::numeric_limits<double>::infinity()));
+    s.widest_semi_diameter = usable_rim(row.semi_diameter.value_or(std::numeric_limits<double>::infinity()));
+    set_rim(s, s.widest_semi_diameter);
     s.obscuration_semi_diameter = row.obscuration_semi_diameter.value_or(0);
     s.mirror = row.mirror;
     if (row.stop && !data->stop) data->stop = data->surfaces.size();
@@ -219,7 +220,7 @@ Lens compile(const Prescription& prescription, const CompileOptions& options) {
   return compile(prescription, std::array{prescription.reference_wavelength_nm}, options);
 }
 
-Lens with_semi_diameter(const Lens& lens, std::size_t surface, double semi_diameter) {
+Lens with_semi_diameter(const Lens& lens, std::size_t surface, double semi_diameter, RimLimit limit) {
   demand(lens, "surface", surface, lens.surface_count());
   if (!(semi_diameter >= 0)) {
     throw Error(lens.name() + ": surface " + std::to_string(surface) + ": semi_diameter is " + to_text(semi_diameter) +
@@ -228,6 +229,12 @@ Lens with_semi_diameter(const Lens& lens, std::size_t surface, double semi_diame
   if (!lens.iris().round() && lens.stop() == surface && std::isinf(usable_rim(semi_diameter))) {
     throw Error(lens.name() + ": surface " + std::to_string(surface) + ": semi_diameter is " + to_text(semi_diameter) +
                 " mm, wanted one up to 1e15 mm for the iris of the stop");
+  }
+  const double widest = lens.surfaces()[surface].widest_semi_diameter;
+  if (limit == RimLimit::prescription && usable_rim(semi_diameter) > widest) {
+    throw Error(lens.name() + ": surface " + std::to_string(surface) + ": semi_diameter = " + to_text(semi_diameter) +
+                " mm; must be at most " + to_text(widest) +
+                " mm, the clear aperture of the prescription (RimLimit::none allows more)");
   }
   auto data = std::make_shared<Lens::Data>(lens.data());
   set_rim(data->surfaces[surface], semi_diameter);

@@ -152,7 +152,7 @@ Lens with_f_number(const Lens& lens, double f_number, Wavelength wavelength) {
                 to_text(length / (2 * obscuration.height), 10) + ": the central obscuration of surface " +
                 std::to_string(obscuration.surface) + " is that large");
   }
-  Lens stopped = with_semi_diameter(lens, beam.stop, std::min(*height, stop.semi_diameter));
+  Lens stopped = with_semi_diameter(lens, beam.stop, std::min(*height, stop.semi_diameter), RimLimit::none);
   // Strong spherical aberration lets other rays meet the stop as far out as the ray of height y does.
   const double found = real_f_number(stopped, wavelength);
   if (std::isinf(found)) {

@@ -25,7 +25,7 @@ TEST(Iris, IsRefusedWhereTheStopCannotHaveIt) {
   for (auto& surface : p.surfaces) surface.stop = false;
   EXPECT_EQ(message([&] { with_iris(compile(p), {.blades = 6}); }),
             p.name + ": iris: no surface is marked as the stop, wanted one that the iris stands at");
-  const Lens open = with_semi_diameter(lens, 0, std::numeric_limits<double>::infinity());
+  const Lens open = with_semi_diameter(lens, 0, std::numeric_limits<double>::infinity(), RimLimit::none);
   EXPECT_EQ(message([&] { with_iris(open, {.blades = 6}); }),
             "front stop: iris: surface 0, the stop, is unlimited, wanted a semi_diameter");
   const auto refusal = [&](const Iris& iris) { return message([&] { with_iris(lens, iris); }); };

@@ -63,7 +63,8 @@ TEST(Lens, HasTheRimOfAnAsphereWhereItIsAsSteepAsFour) {
   EXPECT_NE(fate_at(rim - 1e-9), petzval::RayFate::vignetted);  // though it may not leave the glass
   EXPECT_EQ(petzval::with_semi_diameter(lens, 1, 12).surfaces()[1].semi_diameter, rim);
   EXPECT_EQ(petzval::with_semi_diameter(lens, 1, 3).surfaces()[1].semi_diameter, 3);
-  EXPECT_TRUE(std::isinf(petzval::with_semi_diameter(lens, 1, HUGE_VAL).surfaces()[1].semi_diameter));
+  EXPECT_TRUE(
+      std::isinf(petzval::with_semi_diameter(lens, 1, HUGE_VAL, petzval::RimLimit::none).surfaces()[1].semi_diameter));
   p.surfaces[1].curved_in = petzval::Section::y;
   EXPECT_EQ(petzval::compile(p).surfaces()[1].semi_diameter, 12);
 }
@@ -137,8 +138,31 @@ TEST(Lens, RimsOfNoSizeAreClosedAndRimsBeyondAllRaysAreNone) {
   for (const auto& [wanted, found] : {std::pair{1e-160, 0.0}, {1e-12, 1e-12}, {1e15, 1e15}, {1e160, HUGE_VAL}}) {
     p.surfaces[0].semi_diameter = wanted;
     EXPECT_EQ(petzval::compile(p).surfaces()[0].semi_diameter, found);
-    EXPECT_EQ(petzval::with_semi_diameter(petzval::compile(singlet()), 0, wanted).surfaces()[0].semi_diameter, found);
+    EXPECT_EQ(petzval::with_semi_diameter(petzval::compile(singlet()), 0, wanted, petzval::RimLimit::none)
+                  .surfaces()[0]
+                  .semi_diameter,
+              found);
   }
+}
+
+TEST(Lens, ARimOpensNoFurtherThanThePrescriptionSays) {
+  const petzval::Lens lens = petzval::compile(singlet());
+  EXPECT_EQ(lens.surfaces()[0].widest_semi_diameter, 12);
+  const petzval::Lens stopped = petzval::with_semi_diameter(lens, 0, 3);
+  EXPECT_EQ(stopped.surfaces()[0].widest_semi_diameter, 12);
+  EXPECT_EQ(petzval::with_semi_diameter(stopped, 0, 12).surfaces()[0].semi_diameter, 12);
+  for (const double beyond : {12.001, 1e3, HUGE_VAL}) {
+    const std::string refusal = message([&] { petzval::with_semi_diameter(lens, 0, beyond); });
+    for (const std::string& part :
+         {std::string("singlet: surface 0"), petzval::to_text(beyond), std::string("12 mm")}) {
+      EXPECT_NE(refusal.find(part), std::string::npos) << refusal;
+    }
+    EXPECT_EQ(petzval::with_semi_diameter(lens, 0, beyond, petzval::RimLimit::none).surfaces()[0].semi_diameter,
+              beyond);
+  }
+  petzval::Prescription p = singlet();
+  p.surfaces[0].semi_diameter.reset();
+  EXPECT_EQ(petzval::with_semi_diameter(petzval::compile(p), 0, 20).surfaces()[0].semi_diameter, 20);
 }
 
 TEST(Sag, IsNanWhereThereIsNoSurface) {

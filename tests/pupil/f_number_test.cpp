@@ -144,7 +144,7 @@ TEST(WithFNumber, IsRefusedWhereSphericalAberrationFoldsTheBeam) {
 }
 
 TEST(WithFNumber, RunsFromTheFastestLensesToPinholes) {
-  const Lens lens = with_semi_diameter(data_lens("modern_58mm_f0.95"), 13, infinity);
+  const Lens lens = with_semi_diameter(data_lens("modern_58mm_f0.95"), 13, infinity, RimLimit::none);
   for (const double n : {0.95, 1.0, 1.4, 8.0, 64.0}) EXPECT_NEAR(real_f_number(with_f_number(lens, n)), n, 1e-12 * n);
 }
 
@@ -255,7 +255,7 @@ TEST(WithFNumber, NamesTheFastestWhereTheLensIsSlower) {
   EXPECT_EQ(found.substr(0, start.size()), start);
   EXPECT_NE(found.find("(the fastest the lens can give) or more"), std::string::npos);
   // No stop is wide enough for a ray that misses the glass.
-  const Lens open = with_semi_diameter(lens, 5, infinity);
+  const Lens open = with_semi_diameter(lens, 5, infinity, RimLimit::none);
   EXPECT_NE(message([&] { with_f_number(open, 0.1); }).find("wanted 1.013132236 ("), std::string::npos)
       << message([&] { with_f_number(open, 0.1); });
 }

@@ -148,7 +148,7 @@ TEST(TextbookPupil, IsThatOfTheFirstRimNotOfTheStop) {
   const TextbookPupil near = textbook_entrance_pupil(lens, -1000);
   EXPECT_EQ(near.limiting, 8u);
   EXPECT_NEAR(near.diameter / 2, 25.132, 1e-3);
-  EXPECT_EQ(textbook_entrance_pupil(with_semi_diameter(lens, 5, 17.5), -1000).diameter, near.diameter);
+  EXPECT_EQ(textbook_entrance_pupil(with_semi_diameter(lens, 5, 17.5, RimLimit::none), -1000).diameter, near.diameter);
 }
 
 // Fault two: it is axial, but off the axis rims clip and shift the pupil.

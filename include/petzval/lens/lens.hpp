@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
@@ -61,6 +62,8 @@ struct LensSurface {
   double semi_diameter = 0;
   double obscuration_semi_diameter = 0;  ///< of the central obscuration; 0: none
   bool mirror = false;
+  /// Semi-diameter of the prescription, the upper limit of with_semi_diameter(); infinite if the row has none.
+  double widest_semi_diameter = 0;
 };
 
 /// The thicknesses of a lens whose groups move, focused at one distance.
@@ -166,9 +169,18 @@ PETZVAL_API Lens compile(const Prescription& prescription, std::span<const doubl
 /// Compiles for the reference wavelength of the prescription alone.
 PETZVAL_API Lens compile(const Prescription& prescription, const CompileOptions& options = {});
 
-/// The lens with another clear aperture at one surface (mm, >= 0; nothing passes one no larger than its central
-/// obscuration).
-PETZVAL_API Lens with_semi_diameter(const Lens& lens, std::size_t surface, double semi_diameter);
+/// The largest clear aperture that with_semi_diameter takes.
+enum class RimLimit : std::uint8_t {
+  prescription,  ///< LensSurface::widest_semi_diameter: a diaphragm cannot open beyond its mount
+  none,          ///< no limit, for programs that design a lens
+};
+
+/// Changes the clear aperture of one surface.
+///
+/// @param semi_diameter  in mm, 0 or more; the surface is closed if it is not larger than the central obscuration
+/// @throws Error  if the surface does not exist, and if semi_diameter is below 0, NaN, or above `limit`
+PETZVAL_API Lens with_semi_diameter(const Lens& lens, std::size_t surface, double semi_diameter,
+                                    RimLimit limit = RimLimit::prescription);
 
 /// The lens with its film at another place (lens frame, mm). Throws Error for one that is not behind the last vertex,
 /// on the side that light runs to.
