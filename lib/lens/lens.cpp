@@ -193,8 +193,11 @@ Lens compile(const Prescription& source, std::span<const double> wavelengths_nm,
     }
     data->wavelengths_nm.push_back(nm);
   }
-  data->primary = compiled(data->wavelengths_nm, prescription.reference_wavelength_nm)
+  data->primary = compiled(data->wavelengths_nm, options.primary_nm.value_or(prescription.reference_wavelength_nm))
                       .value_or(nearest(data->wavelengths_nm, d_line_nm));
+  if (options.primary_nm && !compiled(data->wavelengths_nm, *options.primary_nm)) {
+    throw Error(where + ": primary_nm = " + to_text(*options.primary_nm) + "; must be a compiled wavelength");
+  }
   for (const SurfaceRow& row : prescription.surfaces) {
     LensSurface s;
     s.thickness = row.thickness;

@@ -92,6 +92,13 @@ TEST(Lens, ItsPrimaryWavelengthIsTheReferenceElseTheOneNearestTheDLine) {
   p.reference_wavelength_nm = 546.0740;
   EXPECT_EQ(primary({petzval::d_line_nm, 546.0740 + 5e-7}), 1u);
   EXPECT_EQ(primary({480, 656.2725, petzval::d_line_nm}), 2u);
+  const auto chosen = [&](double nm) {
+    return petzval::compile(p, std::array{480.0, 656.2725},
+                            {.missing_glass = petzval::MissingGlass::abbe, .primary_nm = nm});
+  };
+  EXPECT_EQ(chosen(480).primary_wavelength(), 0u);
+  EXPECT_EQ(chosen(656.2725).primary_wavelength(), 1u);
+  EXPECT_NE(message([&] { chosen(500); }).find("primary_nm = 500"), std::string::npos);
 }
 
 TEST(Lens, ItsWavelengthsAreFoundByPositionByNanometresAndByDefault) {

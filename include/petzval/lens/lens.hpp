@@ -47,6 +47,8 @@ struct CompileOptions {
   /// Beyond the range of a glass, or of the n_d/V_d model (365 to 1014 nm), take the index at the end of the range
   /// instead of an Error: Lens::clamped_glasses() lists the surfaces.
   bool clamp_wavelengths = false;
+  /// Lens::primary_wavelength in nm, one of the compiled wavelengths; nullopt: the default of primary_wavelength().
+  std::optional<double> primary_nm{};
 };
 
 /// One surface of a compiled lens, in double. Millimetres. Curvature, never radius.
@@ -107,9 +109,9 @@ class PETZVAL_API Lens {
 
   /// Wavelengths the lens was compiled for.
   std::span<const double> wavelengths_nm() const noexcept;
-  /// Position of the wavelength at which every function works unless told otherwise: the reference wavelength of the
-  /// prescription where it was compiled (within 1e-6 nm), else the compiled one nearest to the d line. It does not
-  /// depend on the order of wavelengths.
+  /// Position of the wavelength at which every function works unless told otherwise: CompileOptions::primary_nm, else
+  /// the reference wavelength of the prescription if it was compiled (within 1e-6 nm), else the compiled one nearest to
+  /// the d line. It does not depend on the order of wavelengths.
   std::size_t primary_wavelength() const noexcept;
   /// Position of a compiled wavelength (within 1e-6 nm); throws Error with the list if it was not compiled.
   std::size_t wavelength(double nm) const;
@@ -161,8 +163,8 @@ class PETZVAL_API Lens {
 
 /// Compiles a prescription, in one of its configurations, for some wavelengths (nm). Throws Error, naming lens and
 /// surface, for an invalid prescription, a wavelength given twice (within 1e-6 nm) or outside the range of a glass
-/// (unless CompileOptions::clamp_wavelengths), a missing glass (see MissingGlass; always if the medium states no index)
-/// and an index outside 0..5.
+/// (unless CompileOptions::clamp_wavelengths), a missing glass (see MissingGlass; always if the medium states no
+/// index), an index outside 0..5, and a primary_nm that is not among the wavelengths.
 PETZVAL_API Lens compile(const Prescription& prescription, std::span<const double> wavelengths_nm,
                          const CompileOptions& options = {});
 
