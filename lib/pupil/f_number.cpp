@@ -103,6 +103,19 @@ Obscuration widest_obscuration(const Lens& lens, const Beam& beam, Wavelength wa
   return widest;
 }
 
+/// The axial beam of the stop at its widest.
+struct WidestBeam {
+  Beam beam;
+  bool open = false;  ///< true if the marked stop has no rim
+  double height = 0;  ///< entering height of the beam; infinite if the beam has no limit
+};
+
+WidestBeam widest_beam(const Lens& lens, double focal_length, Wavelength wavelength) {
+  const bool open = lens.stop() && std::isinf(lens.surfaces()[*lens.stop()].semi_diameter);
+  const Beam beam = open ? Beam{*lens.stop(), focal_length} : beam_of(lens, focal_length, wavelength);
+  return {beam, open, beam_height(lens, beam, wavelength)};
+}
+
 double focal_length(const Lens& lens, Wavelength wavelength) {
   return std::abs(first_order(lens, wavelength, main_meridian(lens, wavelength)).effective_focal_length);
 }
@@ -119,6 +132,12 @@ double real_f_number(const Lens& lens, Wavelength wavelength) {
   return std::isinf(length) ? infinity : f_number(length, beam_height(lens, beam, wavelength));
 }
 
+double fastest_f_number(const Lens& lens, Wavelength wavelength) {
+  const double length = focal_length(lens, wavelength);
+  if (std::isinf(length)) throw Error(lens.name() + ": afocal; must have a focal length for an f-number");
+  return length / (2 * widest_beam(lens, length, wavelength).height);
+}
+
 Lens with_f_number(const Lens& lens, double f_number, Wavelength wavelength) {
   if (!(f_number > 0 && std::isfinite(f_number))) {
     throw Error(lens.name() + ": f-number is " + to_text(f_number) + ", wanted a finite one above 0");
@@ -127,12 +146,9 @@ Lens with_f_number(const Lens& lens, double f_number, Wavelength wavelength) {
   if (std::isinf(length))
     throw Error(lens.name() + ": the lens is afocal, wanted a focal length to set an f-number by");
 
-  // A marked stop without a rim gets one.
-  const bool open = lens.stop() && std::isinf(lens.surfaces()[*lens.stop()].semi_diameter);
-  const Beam beam = open ? Beam{*lens.stop(), length} : beam_of(lens, length, wavelength);
+  const auto [beam, open, largest] = widest_beam(lens, length, wavelength);
   const LensSurface& stop = lens.surfaces()[beam.stop];
   const double y = length / (2 * f_number);
-  const double largest = beam_height(lens, beam, wavelength);
   if (!(largest > 0)) {
     throw Error(lens.name() + ": no ray parallel to the axis passes, wanted light to set an f-number by");
   }

@@ -46,6 +46,28 @@ TEST(RealFNumber, OfEveryLensInDataIsWithinTwoPercentOfTheDeclared) {
   }
 }
 
+TEST(FastestFNumber, IsTheLeastThatWithFNumberGives) {
+  for (const Prescription& p : data_prescriptions()) {
+    SCOPED_TRACE(p.id);
+    const Lens lens = compile(p);
+    if (std::isinf(real_f_number(lens))) continue;
+    const double fastest = fastest_f_number(lens);
+    EXPECT_EQ(fastest, real_f_number(lens));
+    EXPECT_THROW(with_f_number(lens, fastest / 1.006), Error);
+    EXPECT_NEAR(real_f_number(with_f_number(lens, fastest)), fastest, 1e-9 * fastest);
+  }
+  // A marked stop without a rim: the last ray that reaches the stop is the limit.
+  Prescription open = testing::data_prescription("double_gauss_100mm_f2.0");
+  for (SurfaceRow& row : open.surfaces) {
+    if (row.stop) row.semi_diameter.reset();
+  }
+  const Lens lens = compile(open);
+  const double fastest = fastest_f_number(lens);
+  EXPECT_LT(fastest, real_f_number(compile(testing::data_prescription("double_gauss_100mm_f2.0"))));
+  EXPECT_THROW(with_f_number(lens, fastest / 1.001), Error);
+  EXPECT_THROW(fastest_f_number(compile(telescope())), Error);
+}
+
 TEST(RealFNumber, BelongsToTheRayThatMeetsTheRimOfTheStop) {
   for (const Prescription& p : data_prescriptions()) {
     SCOPED_TRACE(p.id);
