@@ -144,7 +144,7 @@ void draw(Options options) {
   const double focus = options.setup.focus_mm;
   std::vector<double> lights = options.light_mm;
   if (lights.empty()) lights = std::isinf(focus) ? std::vector<double>{10000} : std::vector{0.85 * focus, 1.2 * focus};
-  const double from_z = examples::origin_z(lens, examples::named(options.setup.origin, examples::distance_origins));
+  const double from_z = petzval::origin_z(lens, examples::named(options.setup.origin, examples::distance_origins));
   const std::vector<double> fields = fields_rad(lens, film);
   examples::Sheet sheet{
       "Highlights of an expressive lens",

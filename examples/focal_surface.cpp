@@ -62,7 +62,7 @@ class Surface {
                                                           [](const petzval::Vec3<double>& place) { return place; });
     points_ = std::move(points);
     surface_.emplace(std::move(surface));
-    beyond_pupil_ = examples::origin_z(camera.lens(), origin) - surface_->origin_z();
+    beyond_pupil_ = petzval::origin_z(camera.lens(), origin) - surface_->origin_z();
   }
 
   const petzval::Lens& lens() const { return lens_; }

@@ -8,7 +8,6 @@
 #include "petzval/core/error.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/lint/lint.hpp"
-#include "petzval/paraxial/first_order.hpp"
 
 namespace examples {
 
@@ -30,15 +29,6 @@ Option* add_distance_origin(App& app, CameraSetup& setup) {
   return app.add_option("--distance-from", setup.origin, "origin of --focus-mm")
       ->one_of({"front_vertex", "film"})
       ->capture_default_str();
-}
-
-double origin_z(const petzval::Lens& lens, petzval::DistanceOrigin origin) {
-  switch (origin) {
-    case petzval::DistanceOrigin::film: return lens.film_z();
-    case petzval::DistanceOrigin::front_principal: return petzval::first_order(lens).front_principal_z;
-    case petzval::DistanceOrigin::front_vertex: break;
-  }
-  return 0;
 }
 
 Option* add_model(App& app, std::string& model) {

@@ -31,9 +31,6 @@ void add_camera(App& app, CameraSetup& setup);
 /// Option --distance-from, of --focus-mm.
 Option* add_distance_origin(App& app, CameraSetup& setup);
 
-/// z of the origin of distances, lens frame.
-double origin_z(const petzval::Lens& lens, petzval::DistanceOrigin origin);
-
 /// Option --model.
 Option* add_model(App& app, std::string& model);
 

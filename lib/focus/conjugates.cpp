@@ -44,13 +44,16 @@ double Conjugates::vergence_of_film(double film) const noexcept {
   return 1 / (lens.product() / (film - lens.rear_focal_z) + (near_z - lens.front_focal_z));
 }
 
-Conjugates::Conjugates(const IdealLens& thick, FocusCriterion criterion, DistanceOrigin from) noexcept
+Conjugates::Conjugates(const IdealLens& thick, FocusCriterion criterion, DistanceOrigin from, double pupil_z) noexcept
     : lens(criterion == FocusCriterion::thin ? thin_lens(thick) : thick),
       direction(lens.product() > 0 ? 1 : -1),
       origin(from),
       focal_distance(-lens.front_focal_z),
       near_z(std::abs(lens.front_focal_length) + std::max(0.0, lens.front_focal_z)) {
-  if (origin == DistanceOrigin::front_principal) {
+  if (origin == DistanceOrigin::entrance_pupil) {
+    origin_z = pupil_z;
+    focal_distance = pupil_z - lens.front_focal_z;
+  } else if (origin == DistanceOrigin::front_principal) {
     origin_z = thick.front_principal_z();
     // Of the thick lens a focal length, without what is lost in the difference of the two positions.
     focal_distance = criterion == FocusCriterion::thin ? origin_z - lens.front_focal_z : lens.front_focal_length;

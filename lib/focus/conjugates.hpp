@@ -13,8 +13,8 @@ namespace petzval::inline v0::focus_detail {
 /// along which the paraxial film is nearly the exact one.
 struct Conjugates {
   /// lens: thick. `thin` puts the thin lens in its place; distances from the front principal plane stay those of the
-  /// thick lens.
-  Conjugates(const IdealLens& lens, FocusCriterion criterion, DistanceOrigin origin) noexcept;
+  /// thick lens. pupil_z: entrance pupil, used by the origin of that name.
+  Conjugates(const IdealLens& lens, FocusCriterion criterion, DistanceOrigin origin, double pupil_z) noexcept;
   Conjugates() = default;
 
   IdealLens lens;

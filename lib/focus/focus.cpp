@@ -7,6 +7,7 @@
 #include "core/text.hpp"
 #include "moved_groups.hpp"
 #include "petzval/core/error.hpp"
+#include "petzval/paraxial/first_order.hpp"
 #include "solver.hpp"
 
 namespace petzval::inline v0 {
@@ -25,6 +26,7 @@ std::string_view name(DistanceOrigin origin) noexcept {
   switch (origin) {
     case DistanceOrigin::front_vertex: return "front_vertex";
     case DistanceOrigin::film: return "film";
+    case DistanceOrigin::entrance_pupil: return "entrance_pupil";
     case DistanceOrigin::front_principal: return "front_principal";
   }
   return "unknown";
@@ -39,6 +41,21 @@ std::string_view name(FocusStatus status) noexcept {
     case FocusStatus::too_blurred: return "too_blurred";
   }
   return "unknown";
+}
+
+double origin_z(const Lens& lens, DistanceOrigin origin) {
+  using enum DistanceOrigin;
+  switch (origin) {
+    case film: return lens.film_z();
+    case entrance_pupil: return focus_detail::entrance_pupil_z(lens, {}, main_meridian(lens));
+    case front_principal: {
+      const FirstOrder data = first_order(lens, {}, main_meridian(lens));
+      if (data.afocal) throw Error(lens.name() + ": afocal; must have a focal length for a front principal plane");
+      return data.front_principal_z;
+    }
+    case front_vertex: break;
+  }
+  return 0;
 }
 
 FocusSolution solve_focus(const Lens& lens, double distance, const FocusOptions& options) {
@@ -66,6 +83,7 @@ Lens with_focus(const Lens& lens, double distance, const FocusOptions& options) 
   const auto place = [&] {
     switch (options.origin) {
       case DistanceOrigin::film: return "film";
+      case DistanceOrigin::entrance_pupil: return "entrance pupil";
       case DistanceOrigin::front_principal: return "front principal plane";
       default: return "front vertex";
     }
@@ -79,7 +97,8 @@ Lens with_focus(const Lens& lens, double distance, const FocusOptions& options) 
   }
   const double nearest = solution.distance;
   if (std::isinf(nearest)) throw Error(subject + ": the lens forms no real image at any distance");
-  throw Error(subject + ", wanted " + (distance <= nearest ? "more than " : "at most ") + to_text(nearest, 9) + " mm");
+  throw Error(subject + ", wanted " + (distance <= nearest ? "more than " : "at most ") + to_text(nearest, 9) + " mm" +
+              (distance <= nearest ? focus_detail::hint_of_units(distance) : ""));
 }
 
 }  // namespace petzval::inline v0

@@ -7,6 +7,7 @@
 
 #include "core/text.hpp"
 #include "petzval/core/error.hpp"
+#include "solver.hpp"
 
 namespace petzval::inline v0::focus_detail {
 
@@ -27,7 +28,7 @@ Lens with_moved_groups(const Lens& lens, double distance, const FocusOptions& op
   };
   const auto refuse = [&](const std::string& why) -> Error {
     return Error(lens.name() + ": a subject at " + to_text(distance) + " mm cannot be focused by moving groups: " +
-                 why + ", wanted about " + to_text(nearest(), 6) + " mm or more");
+                 why + ", wanted about " + to_text(nearest(), 6) + " mm or more" + hint_of_units(distance));
   };
 
   // The error of the film is nearly linear in the inverse distance for which the groups stand. The secant's steps end

@@ -32,9 +32,9 @@ void check_kinds(const Lens& lens, const FocusOptions& options) {
   }
   using enum DistanceOrigin;
   const DistanceOrigin origin = options.origin;
-  if (origin != front_vertex && origin != film && origin != front_principal) {
-    throw Error(lens.name() + ": focus: found the origin " + std::to_string(static_cast<int>(origin)) +
-                ", wanted front_vertex, film or front_principal");
+  if (origin != front_vertex && origin != film && origin != entrance_pupil && origin != front_principal) {
+    throw Error(lens.name() + ": focus: origin = " + std::to_string(static_cast<int>(origin)) +
+                "; must be front_vertex, film, entrance_pupil or front_principal");
   }
 }
 
@@ -80,6 +80,17 @@ void check_film(const Lens& lens, double film_z) {
   throw Error(lens.name() + ": film_z is " + to_text(film_z) + " mm, wanted a finite place");
 }
 
+std::string hint_of_units(double distance) {
+  if (!(distance < 50)) return "";
+  return "; lengths are in mm: " + to_text(distance) + " m = " + to_text(1000 * distance) + " mm";
+}
+
+double entrance_pupil_z(const Lens& lens, Wavelength wavelength, Meridian meridian) {
+  const double z = pupils(lens, wavelength, meridian).entrance.z;
+  if (std::isfinite(z)) return z;
+  throw Error(lens.name() + ": focus: the entrance pupil is at infinity; distances must count from another origin");
+}
+
 FocusSolver::FocusSolver(const Lens& lens, const FocusOptions& options)
     : lens_(lens),
       options_(options),
@@ -94,7 +105,9 @@ FocusSolver::FocusSolver(const Lens& lens, const FocusOptions& options)
   const FirstOrder data = first_order(lens, wavelength_, meridian_);
   afocal_ = data.afocal;
   if (!afocal_) {
-    conjugates_ = Conjugates(paraxial_detail::focal_points(lens, data), options.criterion, options.origin);
+    const double pupil_z =
+        options.origin == DistanceOrigin::entrance_pupil ? entrance_pupil_z(lens, wavelength_, meridian_) : 0;
+    conjugates_ = Conjugates(paraxial_detail::focal_points(lens, data), options.criterion, options.origin, pupil_z);
     if (exact() && has_pupils(lens) && std::isinf(pupils(lens, lens.primary_wavelength()).entrance.z)) {
       throw Error(lens.name() + ": focus: the entrance pupil is at infinity, from where no field is seen; wanted the " +
                   "criterion paraxial or thin, found " + std::string(name(options.criterion)));

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "conjugates.hpp"
@@ -16,6 +17,13 @@ namespace petzval::inline v0::focus_detail {
 /// Throw Error for a subject distance that is NaN or not above 0, and for a film_z that is not finite.
 void check_distance(const Lens& lens, double distance);
 void check_film(const Lens& lens, double film_z);
+
+/// Hint for a message about a subject that is too near: a distance below 50 mm was probably meant in metres. Empty for
+/// larger distances.
+std::string hint_of_units(double distance);
+
+/// @throws Error  if the entrance pupil is at infinity or nothing limits the beam
+double entrance_pupil_z(const Lens& lens, Wavelength wavelength, Meridian meridian);
 
 /// Focus of one lens by one set of options: the solvers and the images behind focus, depth of field and breathing.
 class FocusSolver {

@@ -247,20 +247,75 @@ TEST(Focus, RefusesNumbersThatAreNoCriterionOrOrigin) {
   EXPECT_EQ(message([&] { solve_focus(lens, 1000, by_99); }), wanted);
   EXPECT_EQ(message([&] { with_focus(lens, 1000, by_99); }), wanted);
   EXPECT_EQ(message([&] { depth_of_field(lens, 0.1, by_99); }), wanted);
-  EXPECT_EQ(message([&] { solve_subject(lens, 60, {.origin = static_cast<DistanceOrigin>(99)}); }),
-            "element: focus: found the origin 99, wanted front_vertex, film or front_principal");
+  EXPECT_NE(message([&] { solve_subject(lens, 60, {.origin = static_cast<DistanceOrigin>(99)}); }).find("origin = 99"),
+            std::string::npos);
+}
+
+// A subject is one plane, wherever its distance counts from: the film, the limits and the blur are the same.
+TEST(Focus, OriginsShiftDistancesAndNothingElse) {
+  for (const char* id : {"double_gauss_100mm_f2.0", "retrofocus_100mm_f2", "telephoto_250mm_f5.6"}) {
+    const Lens lens = data_lens(id);
+    const double subject_z = -1500;
+    for (const FocusCriterion criterion : {paraxial, min_rms}) {
+      const Lens focused = with_focus(lens, -subject_z, {criterion});
+      const DepthOfField depth = depth_of_field(focused, 0.3, {criterion});
+      ASSERT_TRUE(depth);
+      for (const DistanceOrigin origin : {front_vertex, film, entrance_pupil, front_principal}) {
+        SCOPED_TRACE(std::string(id) + ' ' + std::string(name(criterion)) + ' ' + std::string(name(origin)));
+        const double z = origin_z(focused, origin);
+        const FocusOptions options{criterion, origin};
+        EXPECT_NEAR(solve_focus(lens, z - subject_z, options).film_z, focused.film_z(), 1e-9);
+        EXPECT_NEAR(solve_subject(lens, focused.film_z(), options).distance, z - subject_z, 1e-5);
+        EXPECT_NEAR(*blur_diameter(focused, z + 1200, options), *blur_diameter(focused, 1200, {criterion}), 1e-12);
+        const DepthOfField own = depth_of_field(focused, 0.3, options);
+        EXPECT_NEAR(own.near_distance, depth.near_distance + z, 1e-6);
+        EXPECT_NEAR(own.far_distance, depth.far_distance + z, 1e-6);
+      }
+    }
+  }
+}
+
+TEST(Focus, OriginsLieWhereTheLensHasThem) {
+  const Lens lens = data_lens("double_gauss_100mm_f2.0");
+  EXPECT_EQ(origin_z(lens, front_vertex), 0);
+  EXPECT_EQ(origin_z(lens, film), lens.film_z());
+  EXPECT_EQ(origin_z(lens, entrance_pupil), pupils(lens).entrance.z);
+  EXPECT_EQ(origin_z(lens, front_principal), first_order(lens).front_principal_z);
+}
+
+TEST(Focus, RefusesToCountFromAnEntrancePupilAtInfinity) {
+  // The stop in the rear focal plane of a thin element: telecentric in object space.
+  Prescription p = element(1.5, 50, -50, 0);
+  p.surfaces[0].stop = false;
+  p.surfaces[1].thickness = first_order(compile(p)).rear_focal_z;
+  p.surfaces.push_back({.thickness = 20, .semi_diameter = 2, .stop = true});
+  const Lens lens = compile(p);
+  ASSERT_TRUE(std::isinf(pupils(lens).entrance.z));
+  EXPECT_NE(message([&] { origin_z(lens, entrance_pupil); }).find("entrance pupil"), std::string::npos);
+  EXPECT_NE(message([&] {
+              solve_focus(lens, 500, {paraxial, entrance_pupil});
+            }).find("entrance pupil"),
+            std::string::npos);
 }
 
 TEST(WithFocus, MovesTheFilmOrSaysHowNearItCan) {
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
   EXPECT_EQ(with_focus(lens, 1000).film_z(), solve_focus(lens, 1000).film_z);
-  EXPECT_EQ(message([&] { with_focus(lens, 40, {paraxial}); }),
+  EXPECT_EQ(message([&] { with_focus(lens, 50, {paraxial}); }),
             lens.name() +
-                ": a subject 40 mm from the front vertex cannot be focused (paraxial), wanted more than 54.2448912 mm");
+                ": a subject 50 mm from the front vertex cannot be focused (paraxial), wanted more than 54.2448912 mm");
   const std::string from_film = message([&] { with_focus(lens, 40, {paraxial, film}); });
   const std::string start =
       lens.name() + ": a subject 40 mm from the film cannot be focused (paraxial), wanted more than 3";
   EXPECT_EQ(from_film.substr(0, start.size()), start);
+}
+
+TEST(WithFocus, TellsMetresFromMillimetres) {
+  const auto refusal = [&](double distance) {
+    return message([&] { with_focus(data_lens("double_gauss_100mm_f2.0"), distance); });
+  };
+  EXPECT_NE(refusal(2).find("2000 mm"), std::string::npos) << refusal(2);
+  EXPECT_EQ(refusal(51).find("51000"), std::string::npos) << refusal(51);
 }
 
 }  // namespace

@@ -25,7 +25,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
                                       : exact < 64  ? FocusCriterion::min_rms
                                       : exact < 160 ? FocusCriterion::paraxial
                                                     : FocusCriterion::thin};
-    options.origin = static_cast<DistanceOrigin>(bytes.count(0, 2));
+    options.origin = static_cast<DistanceOrigin>(bytes.count(0, 3));
     const int work = bytes.count(0, 6);
     const Lens lens = fuzz::wild_lens(bytes);
     if (bytes.one_in(8)) options.fields.push_back({bytes.number(0, 0.5), bytes.number(0, 2)});

@@ -23,6 +23,7 @@ enum class FocusCriterion : std::uint8_t {
 enum class DistanceOrigin : std::uint8_t {
   front_vertex,
   film,             ///< as engraved on barrels: the film of the solution
+  entrance_pupil,   ///< paraxial: the point from which a camera sees the scene
   front_principal,  ///< paraxial; that of the thick lens also for `thin`
 };
 
@@ -38,6 +39,14 @@ enum class FocusStatus : std::uint8_t {
 PETZVAL_API std::string_view name(FocusCriterion criterion) noexcept;
 PETZVAL_API std::string_view name(DistanceOrigin origin) noexcept;
 PETZVAL_API std::string_view name(FocusStatus status) noexcept;
+
+/// The plane from which distances count, for the lens as it is: its own film, and paraxial planes of the primary
+/// wavelength in the main meridian.
+///
+/// @return  z in the lens frame, mm
+/// @throws Error  if the entrance pupil is at infinity or nothing limits the beam, and for a front principal plane of
+///                an afocal lens
+PETZVAL_API double origin_z(const Lens& lens, DistanceOrigin origin);
 
 /// A field that counts in the focus, seen from the entrance pupil as in FieldPoint. The subjects of all fields lie in
 /// one plane perpendicular to the axis.
