@@ -83,6 +83,12 @@ bool gives_printed_index(const Glass& glass) {
   }
 }
 
+bool is_command(std::string_view word) {
+  static constexpr std::array<std::string_view, 10> commands = {"CC", "NM", "GC", "ED", "CD",
+                                                                "TD", "MD", "OD", "LD", "IT"};
+  return std::ranges::find(commands, word) != commands.end();
+}
+
 class AgfReader {
  public:
   AgfReader(const std::string& catalogue, GlassReader& reader) : catalogue_(catalogue), reader_(reader) {}
@@ -101,7 +107,9 @@ class AgfReader {
     const auto w = words(text, 32);
     if (w.empty() || w[0].starts_with('!')) return;
     const std::string_view command = w[0];
+    if (!began_ && !is_command(command)) return;  // words about the catalogue
     if (command == "NM") {
+      began_ = true;
       close_record();
       open_record(line, w);
     } else if (command == "CD") {
@@ -192,6 +200,7 @@ class AgfReader {
 
   std::string catalogue_;
   GlassReader& reader_;
+  bool began_ = false;  ///< the first NM was read
   std::optional<Record> record_;
   std::set<std::string> said_;
 };
@@ -201,9 +210,10 @@ class AgfReader {
 bool looks_like_agf(std::string_view text) {
   Lines lines(text);
   while (lines.next() && lines.number() <= 1000) {
-    const auto w = words(lines.text(), 1);
+    const auto w = words(lines.text(), 3);
     if (w.empty() || w[0].starts_with('!')) continue;
-    return w[0] == "CC" || w[0] == "NM";
+    if (w[0] == "CC") return true;
+    if (w[0] == "NM") return lines.number() == 1 || (w.size() > 2 && number(w[2]));
   }
   return false;
 }

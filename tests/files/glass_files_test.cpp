@@ -398,7 +398,7 @@ TEST_F(GlassFiles, AMillionLinesAreReadOrRefused) {
   EXPECT_EQ(read(lines).glasses.size(), 1u);
   lines = "CC\n";
   for (int i = 0; i < 1'000'000; ++i) lines += "X" + std::to_string(i) + "\n";
-  EXPECT_EQ(refusal(lines).substr(0, 24), ": no glass can be used (");
+  EXPECT_EQ(refusal(lines).substr(0, 22), ": no glass can be used");
   std::string many;
   for (int i = 0; i < 100'001; ++i) many += "NM G" + std::to_string(i) + " 1 0 1.5 0\nCD 2.25\nLD .4 .7\n";
   EXPECT_EQ(refusal(many), ": line 300001: one glass more, wanted at most 100000 in a file");

@@ -18,9 +18,10 @@ struct GlassFile {
 
 /// Reads glasses from a file, whose content tells the format, whatever its name:
 ///
-/// - a Zemax catalogue (.agf), as UTF-16, UTF-8 or Latin-1. The catalogue is called as the file, in lower case without
-///   its ending. All thirteen dispersion formulas are read. Formula 4 is printed in two forms: the one that gives the
-///   printed n_d is taken. Temperature, transmittance and mechanical data are not used, and a warning says so.
+/// - a Zemax catalogue (.agf), as UTF-16, UTF-8 or Latin-1, with or without words about it before the first glass. The
+///   catalogue is called as the file, in lower case without its ending. All thirteen dispersion formulas are read.
+///   Formula 4 is printed in two forms: the one that gives the printed n_d is taken. Temperature, transmittance and
+///   mechanical data are not used, and a warning says so.
 /// - a page of refractiveindex.info (YAML): formulas 1, 2, 3, 4, 5 and 7, tables of n, and tables of n and k between
 ///   the wavelengths where k is at most 0.01. The glass is called as the file, its catalogue "rii".
 /// - a table of this library (CSV, data/README.md).
@@ -29,8 +30,7 @@ struct GlassFile {
 /// 1e-4 in n_d or 0.2 in V_d. Glasses whose formula is unknown or gives no real index are left out with a warning.
 ///
 ///     const auto file = petzval::read_glasses("glasses/schott.agf");
-///     const auto tables = petzval::GlassCatalogue::load(petzval::data_directory() / "glass");
-///     const auto glasses = petzval::with_glasses(tables, file.glasses);
+///     const auto glasses = petzval::with_glasses(petzval::glass_tables(), file.glasses);
 ///
 /// Throws Error with file and line for a file that cannot be read, is of another kind or ends too early, for a number
 /// that is none or not finite, and where no glass is left. Warnings end after the first thousand.
