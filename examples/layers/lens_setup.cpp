@@ -144,7 +144,7 @@ void BlurLens::load() {
   examples::IrisSetup iris = flags_.iris;
   petzval::Lens lens = [&] {
     if (!flags_.lens_file.file.empty()) return examples::load_lens(flags_.lens_file, wavelengths).lens;
-    const auto glasses = petzval::GlassCatalogue::load(petzval::data_directory() / "glass");
+    const petzval::GlassCatalogue& glasses = petzval::glass_tables();
     if (!thin_ && iris.f_number == 0) iris.f_number = 2;
     return petzval::compile(
         thin_ ? thin_singlet(flags_.thin_lens_mm, flags_.lens_diameter_mm) : singlet_of(flags_.singlet, glasses),

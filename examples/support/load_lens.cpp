@@ -73,7 +73,7 @@ Option* add_lens(App& app, LensInput& input, const std::string& name, const std:
 }
 
 petzval::GlassCatalogue glasses_of(const LensInput& input) {
-  auto glasses = petzval::GlassCatalogue::load(petzval::data_directory() / "glass");
+  petzval::GlassCatalogue glasses = petzval::glass_tables();
   for (const std::string& file : input.glass_files) {
     petzval::GlassFile more = petzval::read_glasses(file);
     for (const petzval::ImportWarning& warning : more.warnings) {

@@ -108,7 +108,7 @@ Medium CodevBuilder::medium(const CodevSurface& s) {
       in_.refuse(s.line, s.glass, "a private glass without an index at the d line", "one near 587.56 nm under PWL");
     }
     Medium medium{.glass = own->name, .nd = *nd};
-    if (nf && nc && *nf != *nc) medium.vd = (*nd - 1) / (*nf - *nc);
+    if (nf && nc) medium.vd = *nf == *nc ? 0 : (*nd - 1) / (*nf - *nc);
     in_.warn(s.line, s.glass,
              medium.vd ? "is known by n_d and V_d, from its private indices"
                        : "is known by n_d alone, from its private indices");

@@ -68,7 +68,7 @@ void CodevWriter::name_media() {
     const bool known = std::ranges::any_of(names_, [&](const auto& entry) { return entry.first == medium; });
     if (known || medium.is_air()) continue;
     const Glass* found = out_.glass(medium);
-    if (found && medium.nd.value_or(found->nd) == found->nd && found->catalogue.find('-') == std::string::npos) {
+    if (found && !medium.nd && found->catalogue.find('-') == std::string::npos) {
       std::string name;
       for (const char c : found->name) {
         if (c != '-' && c != ' ') name.push_back(c);
@@ -130,9 +130,7 @@ void CodevWriter::design() {
     }
     out_.line(word + to_text(d.aperture->value));
   } else {
-    Prescription rows = p_;
-    rows.configurations.clear();
-    if (const Lens lens = out_.compiled(rows); has_pupils(lens)) {
+    if (const Lens lens = out_.as_given(); has_pupils(lens)) {
       // Of the parallel beam whose exact rays fill the stop.
       const Meridian meridian = main_meridian(lens);
       const double by_rays = std::abs(first_order(lens, {}, meridian).effective_focal_length) / real_f_number(lens);

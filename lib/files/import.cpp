@@ -10,10 +10,11 @@
 
 #include "core/text.hpp"
 #include "io/json.hpp"
-#include "media/catalogue_age.hpp"
 #include "media/similar_names.hpp"
 #include "petzval/core/error.hpp"
+#include "petzval/core/units.hpp"
 #include "petzval/lens/lens.hpp"
+#include "petzval/lens/medium.hpp"
 #include "petzval/lint/lint.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/f_number.hpp"
@@ -22,7 +23,7 @@
 namespace petzval::inline v0::files_detail {
 namespace {
 
-using media_detail::bare;
+using media_detail::same_bare;
 
 constexpr std::size_t most_warnings = 1000;
 
@@ -41,18 +42,6 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 12> other_na
     {"SEAWATER", "WATER"},
     {"CAFL", "CAF2"},
 }};
-
-/// The letters at the start: "SUMITA_AUG2011" and "schott-1983" are catalogues of sumita and schott.
-std::string_view maker(std::string_view catalogue) {
-  return catalogue.substr(0, std::min(catalogue.find_first_of("-_ 0123456789"), catalogue.size()));
-}
-
-std::string describe(const Glass& glass) {
-  return glass.name + " (" + glass.catalogue + ", n_d " + to_text(glass.nd, 6) + ", V_d " + to_text(glass.vd, 4) + ")";
-}
-
-/// Catalogues of today count more than those of the past.
-int age(const Glass& glass) { return media_detail::age(glass.catalogue); }
 
 /// Where the image of the stop lies in object space, from the first surface: the ray that crosses the axis there meets
 /// the middle of the stop.
@@ -159,55 +148,73 @@ const GlassCatalogue& Import::glasses() {
   return *glasses_;
 }
 
-const Glass* Import::find(std::string_view name, std::span<const std::string> catalogues, std::optional<double> nd) {
-  if (by_name_.empty()) {
-    for (const Glass& glass : glasses().glasses()) by_name_.emplace(bare(glass.name), &glass);
+namespace {
+
+/// The index of a glass, if its range has the wavelength.
+std::optional<double> index_at(const Glass& glass, double nm) {
+  if (nm < glass.shortest_nm - 1e-6 || nm > glass.longest_nm + 1e-6) return {};
+  return refractive_index(glass, nm);
+}
+
+/// The medium of a glass: n_d and V_d of its formula.
+Medium medium_of(const Glass& glass) {
+  Medium medium{.glass = glass.name, .catalogue = glass.catalogue, .nd = index_at(glass, d_line_nm)};
+  const auto n_f = index_at(glass, spectral_line_nm("F")), n_c = index_at(glass, spectral_line_nm("C"));
+  if (medium.nd && n_f && n_c) {
+    const double v = *n_f == *n_c ? 0 : (*medium.nd - 1) / (*n_f - *n_c);
+    if (v >= 0 && std::isfinite(v)) medium.vd = v;
   }
-  const auto rank = [&](const Glass& glass) {
-    const auto listed = std::ranges::find_if(catalogues, [&](const std::string& c) {
-      return same(c, glass.catalogue) || same(maker(c), maker(glass.catalogue));
-    });
-    // An index that the file states tells best, within its digits.
-    const double off = nd ? std::round(std::abs(glass.nd - *nd) / 1e-6) : 0;
-    return std::tuple(off, listed - catalogues.begin(), age(glass));
-  };
-  const auto [first, last] = by_name_.equal_range(bare(name));
-  const Glass* best = nullptr;
-  for (auto it = first; it != last; ++it) {
-    if (!best || rank(*it->second) < rank(*best)) best = it->second;
-  }
-  return best;
+  return medium;
+}
+
+// n_d of glasses of one name that are two glasses; half a unit of the fourth decimal.
+constexpr double another_glass = 0.01, rounded_index = 5e-5;
+
+}  // namespace
+
+const GlassNames& Import::names() {
+  if (!names_) names_.emplace(glasses());
+  return *names_;
 }
 
 Medium Import::glass(int line, std::string_view name, std::span<const std::string> catalogues, std::optional<double> nd,
-                     std::optional<double> vd) {
-  const auto medium = [](const Glass& found) {
-    return Medium{.glass = found.name, .catalogue = found.catalogue, .nd = found.nd, .vd = found.vd};
-  };
-  const Glass* found = find(name, catalogues, nd);
+                     std::optional<double> vd, Numbers numbers) {
+  std::string_view asked = name;
+  const Glass* found = names().find(asked, catalogues, nd, numbers);
   if (!found) {
     const auto other =
-        std::ranges::find_if(other_names, [&](const auto& entry) { return bare(entry.first) == bare(name); });
-    if (other != other_names.end()) found = find(other->second, {}, nd);
+        std::ranges::find_if(other_names, [&](const auto& entry) { return same_bare(entry.first, name); });
+    if (other != other_names.end()) found = names().find(other->second, catalogues, nd, numbers);
   }
   // "L-TIM28_MOLD" is a moulded L-TIM28, "NBK7_SCHOTT" an N-BK7.
+  bool names_its_maker = false;
   if (const std::size_t tail = name.find_last_of('_'); !found && tail != std::string_view::npos && tail > 0) {
     const std::string maker_name(name.substr(tail + 1));
-    found = find(name.substr(0, tail), std::array{maker_name}, nd);
-    const bool is_maker = found && same(maker(found->catalogue), maker(maker_name));
-    if (found && !is_maker) {
-      warn(line, name, "is in no table; " + describe(*found) + " is taken for it");
-    }
+    found = names().find(name.substr(0, tail), std::array{maker_name}, nd, numbers);
+    names_its_maker = found && is_listed(std::array{maker_name}, *found);
+    if (names_its_maker) asked = name.substr(0, tail);
   }
-  // A name alone does not tell a glass apart from one of another maker; its index does.
-  constexpr double another_glass = 0.01;
-  if (found && nd && std::abs(found->nd - *nd) > another_glass) {
+  if (found && numbers == Numbers::stated && nd && std::abs(found->nd - *nd) > another_glass) {
     warn(line, name,
          "has n_d " + to_text(*nd, 6) + " in the file; " + describe(*found) +
              " has another, so the file's n_d and V_d are taken");
     return {.glass = std::string(name), .nd = *nd, .vd = vd};
   }
-  if (found) return medium(*found);
+  if (found) {
+    if (!same_bare(asked, found->name)) {
+      warn(line, name, "is in no glass table; " + describe(*found) + " is taken for it");
+    } else if (!catalogues.empty() && !names_its_maker && !is_listed(catalogues, *found)) {
+      std::string list;
+      for (const std::string& c : catalogues) list += (list.empty() ? "" : ", ") + c;
+      warn(line, name, "is not in the catalogues of the file (" + list + "); " + describe(*found) + " is taken for it");
+    } else if (const std::string others = names().others(*found, catalogues, nd); !names_its_maker && !others.empty()) {
+      warn(line, name, "is in several catalogues; " + describe(*found) + " is taken, not " + others);
+    }
+    Medium medium = medium_of(*found);
+    // A stated index is that of another melt, or of a moulded glass.
+    if (numbers == Numbers::stated && nd && medium.nd && std::abs(*medium.nd - *nd) > rounded_index) medium.nd = nd;
+    return medium;
+  }
 
   if (nd && *nd > 0 && *nd <= 5) {
     std::string message = "is in no glass table; n_d " + to_text(*nd, 6) +
@@ -221,8 +228,38 @@ Medium Import::glass(int line, std::string_view name, std::span<const std::strin
 
   const std::string alike = media_detail::similar_names(glasses(), name);
   refuse(line, name, "in no glass table and has no index in the file",
-         "its catalogue (.agf or .yml) among the glasses to read: --glasses FILE" +
-             (alike.empty() ? std::string() : " (names like it: " + alike + ")"));
+         "a glass of ReadOptions::glasses (programs: --glasses FILE, an .agf or .yml)" +
+             (alike.empty() ? std::string() : "; names like it: " + alike));
+}
+
+/// The rows with indices at the primary wavelength of the design, if a glass has none at the d line.
+Prescription Import::with_reference(Prescription rows) const {
+  std::vector<Medium*> media{&rows.object_space};
+  for (SurfaceRow& row : rows.surfaces) media.push_back(&row.medium);
+  for (Configuration& c : rows.configurations) {
+    for (SurfaceChange& change : c.changes) {
+      if (change.medium) media.push_back(&*change.medium);
+    }
+  }
+  const auto unknown = [](const Medium* m) { return m->glass && !m->nd; };
+  if (lens.design.wavelengths.empty() || std::ranges::none_of(media, unknown)) return rows;
+  const double from = rows.reference_wavelength_nm, to = lens.design.wavelengths[lens.design.primary_wavelength].nm;
+  rows.reference_wavelength_nm = to;
+  try {
+    for (Medium* m : media) {
+      if (m->glass && m->catalogue && glasses_) {
+        const Glass* glass = glass_of(*m, *glasses_);
+        const auto before = index_at(*glass, from);
+        const double after = refractive_index(*glass, to);
+        m->nd = m->nd && before ? *m->nd + after - *before : after;
+      } else if (m->nd && m->vd && *m->vd > 0) {
+        m->nd = *m->nd + abbe_index(*m->nd, *m->vd, to) - abbe_index(*m->nd, *m->vd, from);
+      }
+    }
+  } catch (const Error& error) {
+    throw Error(where_ + ": primary wavelength: " + error.what());
+  }
+  return rows;
 }
 
 Lens Import::at_primary_wavelength(const Prescription& rows) {
@@ -317,6 +354,7 @@ Prescription Import::finish() {
   lens.source_numbers = origin.file;
   if (lens.surfaces.empty()) throw Error(where_ + ": no surfaces, wanted at least one");
   mark_a_stop();
+  lens = with_reference(lens);
   validate(lens, where_);
   size_the_stop();
   declare();

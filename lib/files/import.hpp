@@ -2,12 +2,12 @@
 #pragma once
 
 #include <cstddef>
-#include <map>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 
+#include "glass_names.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/media/glass.hpp"
 #include "petzval/prescription/prescription.hpp"
@@ -30,16 +30,21 @@ class Import {
   /// The word as a number; refuses what is none, also one with a decimal comma, beyond double or not a number.
   double number(int line, std::string_view command, std::string_view word) const;
 
-  /// A medium by the name that a file gives: "N-BK7", "NBK7" (dashes and blanks left out), "BK7_SCHOTT". catalogues: of
-  /// those the file names, the first that has it. nd, vd: what the file says beside, which counts where it is not in
-  /// the tables. Refuses a glass in no table without an index: the message names glasses near it.
+  /// A medium by the name that a file gives: "N-BK7", "NBK7" (dashes and blanks left out), "BK7_SCHOTT". Its n_d and
+  /// V_d are those of the formula of the glass, absent where its range misses the d, F and C lines. Warns where a glass
+  /// of another catalogue or name is taken.
+  ///
+  /// @param catalogues  those the file names, the first comes first; may be empty
+  /// @param nd, vd      numbers beside the name: taken if no table has the name, and as `numbers` says
+  /// @throws Error      with names like it for a glass in no table without an index
   Medium glass(int line, std::string_view name, std::span<const std::string> catalogues, std::optional<double> nd,
-               std::optional<double> vd);
+               std::optional<double> vd, Numbers numbers = Numbers::stated);
   const GlassCatalogue& glasses();
   const std::string& where() const noexcept { return where_; }
 
-  /// Rows compiled for their reference wavelength.
-  Lens compiled(const Prescription& rows) const { return compile(rows, {.glasses = glasses_}); }
+  /// Rows compiled for their reference wavelength: the d line, or the primary wavelength of the design if a glass has
+  /// no index at the d line.
+  Lens compiled(const Prescription& rows) const { return compile(with_reference(rows), {.glasses = glasses_}); }
   /// Rows compiled for the primary wavelength of the design, with the n_d/V_d model where a glass is unknown.
   Lens at_primary_wavelength(const Prescription& rows);
 
@@ -48,7 +53,8 @@ class Import {
   Prescription finish();
 
  private:
-  const Glass* find(std::string_view name, std::span<const std::string> catalogues, std::optional<double> nd);
+  const GlassNames& names();
+  Prescription with_reference(Prescription rows) const;
   void mark_a_stop();
   void size_the_stop();
   void compare_the_stop(double rim);
@@ -57,7 +63,7 @@ class Import {
 
   std::string where_;
   const GlassCatalogue* glasses_;
-  std::multimap<std::string, const Glass*> by_name_;  ///< by bare name, in the order of the catalogue
+  std::optional<GlassNames> names_;  ///< of glasses_, from the first glass on
   std::size_t left_out_ = 0;
 };
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <iterator>
 #include <limits>
 #include <string_view>
@@ -32,6 +33,17 @@ JsonObject entry(const JsonObject& object, const char* key, std::size_t i) {
   if (!value.is_object()) object.in.refuse(0, path, shown(value), "an object");
   return {value, std::move(path), object.in};
 }
+
+/// Measurements of materials on refractiveindex.info that the table "misc" has.
+struct Measurement {
+  std::string_view material, source, glass;
+};
+constexpr std::array<Measurement, 6> measurements = {{{"CaF2", "Malitson", "CAF2"},
+                                                      {"BaF2", "Malitson", "BAF2"},
+                                                      {"SiO2", "Malitson", "F_SILICA"},
+                                                      {"MgF2", "Dodge-o", "MGF2_O"},
+                                                      {"Al2O3", "Malitson-o", "SAPPHIRE_O"},
+                                                      {"H2O", "Daimon-20.0C", "WATER"}}};
 
 class OptilandReader {
  public:
@@ -165,7 +177,7 @@ Medium OptilandReader::medium(const JsonObject& material) {
     const double n = index && index->is_array() && index->size() == 1 && index->front().is_number()
                          ? index->front().get<double>()
                          : material.needed("index");
-    return n == 1 ? Medium{} : Medium{.nd = n};
+    return n == 1 ? Medium{} : Medium{.nd = n, .vd = 0};
   }
   if (type == "AbbeMaterial" || type == "AbbeMaterialE") {
     const auto value = [&](const char* key) {
@@ -176,25 +188,24 @@ Medium OptilandReader::medium(const JsonObject& material) {
     };
     return {.nd = value("index"), .vd = value("abbe")};
   }
-  if (type == "Material") {
-    const std::string name = material.text("name"), file = material.text("filename");
-    // The file's folder names the catalogue: ".../glass/schott/N-SK10.yml".
-    std::vector<std::string> catalogues;
-    const std::size_t end = file.find_last_of("/\\");
-    if (end != std::string::npos && end > 0) {
-      const std::size_t start = file.find_last_of("/\\", end - 1);
-      catalogues.push_back(
-          file.substr(start == std::string::npos ? 0 : start + 1, end - (start == std::string::npos ? 0 : start + 1)));
-    } else if (const std::string reference = material.text("reference"); !reference.empty()) {
-      catalogues.push_back(reference);
+  if (type == "Material" || type == "MaterialFile") {
+    // The path of the data: ".../glass/schott/N-SK10.yml", of the catalogue schott, or ".../main/CaF2/Daimon-20.yml",
+    // the measurement Daimon-20 of the material CaF2.
+    std::string path = material.text("filename");
+    std::ranges::replace(path, '\\', '/');
+    const std::filesystem::path file = path;
+    const std::string folder = file.parent_path().filename().string(), stem = file.stem().string();
+    const bool of_a_catalogue = path.find("/glass/") != std::string::npos || path.find("main/") == std::string::npos;
+    std::string name = material.text("name"), source = material.text("reference");
+    if (!path.empty()) {
+      if (name.empty()) name = of_a_catalogue ? stem : folder;
+      source = of_a_catalogue ? folder : stem;
     }
-    return in_.glass(0, name, catalogues, {}, {});
-  }
-  if (type == "MaterialFile") {
-    std::string name = material.text("filename");
-    name.erase(0, name.find_last_of("/\\") + 1);
-    if (const std::size_t point = name.find_last_of('.'); point != std::string::npos) name.resize(point);
-    return in_.glass(0, name, {}, {}, {});
+    const auto measured = std::ranges::find_if(
+        measurements, [&](const auto& m) { return same(m.material, name) && same(m.source, source); });
+    if (measured != measurements.end())
+      return in_.glass(0, measured->glass, std::array<std::string, 1>{"misc"}, {}, {});
+    return in_.glass(0, name, std::vector<std::string>(source.empty() ? 0 : 1, source), {}, {});
   }
   material.refuse("type", io_detail::in_quotes(type), "IdealMaterial, AbbeMaterial, Material, MaterialFile or Mirror");
 }

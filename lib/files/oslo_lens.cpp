@@ -82,7 +82,8 @@ Medium Builder::medium_of_indices(const OsloMedium& m) {
   }
   const double change = m.indices[low] - m.indices[high];
   double nd = first;
-  if (low == high || change == 0) return {.nd = nd};
+  if (low == high) return {.nd = nd};
+  if (change == 0) return {.nd = nd, .vd = 0};
   const double slope = change / (weight(low) - weight(high));
   const auto inverse_square = [](double nm) { return 1e6 / (nm * nm); };
   if (std::abs(wavelengths[0] * 1000 - d_line_nm) >= 0.1) nd += slope * (inverse_square(d_line_nm) - weight(0));

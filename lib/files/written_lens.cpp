@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/text.hpp"
 #include "import.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/lens/lens.hpp"
@@ -45,6 +46,7 @@ Writer::Writer(const Prescription& lens, const GlassCatalogue* glasses)
   validate(lens, where_);
   lens_ = first_rows(lens);
   mark_the_stop();
+  given_ = lens_;
 }
 
 /// Programs take the first surface where no stop is marked.
@@ -66,13 +68,23 @@ void Writer::mark_the_stop() {
 
 void Writer::state_indices_at_d() {
   const double reference = lens_.reference_wavelength_nm;
-  if (reference == d_line_nm) return;
+  const auto covers = [](const Glass& g, double nm) { return nm >= g.shortest_nm - 1e-6 && nm <= g.longest_nm + 1e-6; };
+  double rounding = 0;
   const auto restate = [&](Medium& medium) {
     if (!medium.nd) return;
     double& nd = *medium.nd;
     if (const Glass* found = glass(medium)) {
-      nd += refractive_index(*found, d_line_nm) - refractive_index(*found, reference);
-    } else if (medium.vd && *medium.vd > 0) {
+      // An index of the formula, or as the catalogue prints it, is that of the glass.
+      const bool printed = reference == d_line_nm && nd == found->nd;
+      const double off = covers(*found, reference) ? std::abs(nd - refractive_index(*found, reference)) : HUGE_VAL;
+      if (printed || off <= 1e-10) {
+        if (std::isfinite(off)) rounding = std::max(rounding, off);
+        medium.nd.reset();
+        medium.catalogue = found->catalogue;  // the name alone may be ambiguous
+      } else if (reference != d_line_nm) {
+        nd += refractive_index(*found, d_line_nm) - refractive_index(*found, reference);
+      }
+    } else if (medium.vd && *medium.vd > 0 && reference != d_line_nm) {
       nd += abbe_index(nd, *medium.vd, d_line_nm) - abbe_index(nd, *medium.vd, reference);
     }
   };
@@ -83,6 +95,11 @@ void Writer::state_indices_at_d() {
       if (change.medium) restate(*change.medium);
     }
   }
+  if (rounding > 1e-10) {
+    lose("nd",
+         "indices printed in the glass tables become those of the formulas, up to " + to_text(rounding, 2) + " away");
+  }
+  if (reference == d_line_nm) return;
   if (lens_.design.wavelengths.empty()) lens_.design.wavelengths = {{reference, 1}};
   lens_.reference_wavelength_nm = d_line_nm;
 }
@@ -112,11 +129,12 @@ void Writer::lose_nominal_data(bool design_data, std::initializer_list<std::stri
   if (!lost.empty()) lose("nominal data", "and sources have no place in this format: " + lost);
 }
 
-const Glass* Writer::glass(const Medium& medium) {
-  if (!medium.glass) return nullptr;
+const GlassCatalogue& Writer::glasses() {
   if (!glasses_) glasses_ = &glass_tables();
-  return glass_of(medium, *glasses_);
+  return *glasses_;
 }
+
+const Glass* Writer::glass(const Medium& medium) { return medium.glass ? glass_of(medium, glasses()) : nullptr; }
 
 double Writer::index(const Medium& medium) {
   if (medium.nd || medium.is_air()) return medium.nd.value_or(1);

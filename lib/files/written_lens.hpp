@@ -19,6 +19,8 @@ class Writer {
   Writer(const Prescription& lens, const GlassCatalogue* glasses);
 
   const Prescription& lens() const noexcept { return lens_; }
+  /// The lens as it was before state_indices_at_d(), in its first configuration and compiled.
+  Lens as_given() const { return compile(given_, {.glasses = glasses_}); }
   /// The prescription's name, for messages.
   const std::string& where() const noexcept { return where_; }
   /// Throws Error: "lens: surface 3: cylinder, wanted wanted".
@@ -28,9 +30,11 @@ class Writer {
   /// Loses the lens's nominal data and sources, but for those that are kept and, in a format with design data, those
   /// that its aperture and its fields declare.
   void lose_nominal_data(bool design_data, std::initializer_list<std::string_view> kept);
-  /// States the indices at the d line, as formats with glasses want them. The wavelength at which the lens states them
-  /// becomes that of its design. Throws Error for a glass that has no index there.
+  /// States the indices at the d line, as formats with glasses want them, and none for media whose index is that of
+  /// their glass. The wavelength at which the lens states them becomes that of its design. Throws Error for a stated
+  /// index of a glass that has none at the d line.
   void state_indices_at_d();
+  const GlassCatalogue& glasses();
   /// The glass of the tables that a medium names; null if there is none.
   const Glass* glass(const Medium& medium);
   /// Rows compiled for their reference wavelength.
@@ -42,7 +46,7 @@ class Writer {
  private:
   void mark_the_stop();
 
-  Prescription lens_;
+  Prescription lens_, given_;
   std::string where_;
   const GlassCatalogue* glasses_;
   std::string text_;

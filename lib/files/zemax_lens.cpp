@@ -118,13 +118,21 @@ Medium Rows::medium(const ZemaxGlass& glass) {
     if (!glass.nd) in_.refuse(glass.line, "GLAS", "a model without n_d", "its n_d");
     return {.nd = *glass.nd, .vd = glass.vd};
   }
-  Medium result;
+  // OpticStudio looks into the catalogues of GCAT, or of Schott if the file has no GCAT.
+  static const std::vector<std::string> by_default{"SCHOTT"};
   const auto code = medium_of_code(glass.name);
-  result = code ? *code : in_.glass(glass.line, glass.name, zemax_.catalogues, glass.nd, glass.vd);
+  Medium result = code ? *code
+                       : in_.glass(glass.line, glass.name, zemax_.catalogues.empty() ? by_default : zemax_.catalogues,
+                                   glass.nd, glass.vd, Numbers::leftovers);
   if (glass.vd_offset != 0) {
     in_.warn(
         glass.line, "GLAS",
         "V_d is offset by " + to_text(glass.vd_offset) + "; the dispersion of " + glass.name + " is taken as it is");
+  }
+  if (glass.nd_offset == 0) return result;
+  if (!result.nd) {
+    in_.refuse(glass.line, "GLAS", "an offset of " + glass.name + ", which has no index at the d line",
+               "an offset of 0");
   }
   *result.nd += glass.nd_offset;
   return result;

@@ -432,12 +432,15 @@ void ZemaxReader::glass(Words words) {
   if (words.size() < 2) in_.refuse(line_, "GLAS", "empty", "the name of a glass");
   ZemaxGlass glass{.line = line_, .name = std::string(words[1])};
   const int mode = words.size() > 2 ? whole(words, 2, 0, 100) : 0;
-  const double nd = value(words, 4), vd = value(words, 5);
-  // 1.5 and 40 stand where nothing was known when the file was written.
-  const bool dummy = nd == 0 || (nd == 1.5 && vd == 40);
-  if (nd != 0 && (!dummy || mode == 1)) glass.nd = nd;
-  if ((!dummy || mode == 1) && vd > 0) glass.vd = vd;
+  // Words: name, type of the solve (0 fixed, 1 model, 2 pickup, 4 offset), surface of a pickup, n_d, V_d, dPgF, three
+  // flags of variables, offsets of n_d and V_d. n_d and V_d are those of a model; of other types they are leftovers of
+  // a model that was there before, 1.5 and 40 if there was none.
   glass.model = mode == 1 || glass.name == "___BLANK";
+  const double nd = value(words, 4), vd = value(words, 5);
+  const bool known = nd != 0 && (glass.model || !(nd == 1.5 && vd == 40));
+  if (known) glass.nd = nd;
+  // A model of V_d 0 has the same index at all wavelengths.
+  if (known && (vd > 0 || (glass.model && vd == 0))) glass.vd = vd;
   if (mode == 2) glass.pickup = whole(words, 3, 0, 100'000);
   if (mode == 4) glass.nd_offset = value(words, 10), glass.vd_offset = value(words, 11);
   if (mode == 3 || mode > 4) {

@@ -2,9 +2,12 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <optional>
 #include <set>
+#include <vector>
 
 #include "core/text.hpp"
+#include "glass_names.hpp"
 #include "petzval/core/error.hpp"
 #include "text_file.hpp"
 #include "written_lens.hpp"
@@ -38,6 +41,8 @@ class ZemaxWriter {
 
  private:
   void header();
+  void choose_catalogues();
+  const Glass* resolved(const Glass& glass);
   void aperture();
   void fields();
   void wavelengths();
@@ -51,6 +56,8 @@ class ZemaxWriter {
 
   Writer out_;
   const Prescription& p_;
+  std::vector<std::string> catalogues_;  ///< GCAT
+  std::optional<GlassNames> names_;      ///< of the tables, from the first glass on
 };
 
 void ZemaxWriter::header() {
@@ -62,15 +69,48 @@ void ZemaxWriter::header() {
   out_.line("UNIT MM X W X CM MR CPMM");
   aperture();
   out_.line("ENVD 20 1 0");
+  choose_catalogues();
+  std::string catalogues = "GCAT";
+  for (const std::string& maker : catalogues_) catalogues += ' ' + maker;
+  if (!catalogues_.empty()) out_.line(catalogues);
+}
+
+/// The makers of all glasses, in an order in which names have the glasses that are meant, if there is one.
+void ZemaxWriter::choose_catalogues() {
+  std::vector<const Glass*> used;
+  const auto use = [&](const Medium& medium) {
+    const Glass* found = out_.glass(medium);
+    if (found && std::ranges::find(used, found) == used.end()) used.push_back(found);
+  };
+  use(p_.object_space);
+  for (const SurfaceRow& row : p_.surfaces) use(row.medium);
+  for (const Configuration& c : p_.configurations) {
+    for (const SurfaceChange& change : c.changes) use(change.medium.value_or(Medium{}));
+  }
+  const auto maker_of = [](const Glass& g) { return one_word(upper(g.catalogue.substr(0, g.catalogue.find('-')))); };
   std::set<std::string> makers;
-  for (const SurfaceRow& row : p_.surfaces) {
-    if (const Glass* found = out_.glass(row.medium)) {
-      makers.insert(upper(found->catalogue.substr(0, found->catalogue.find('-'))));
+  for (const Glass* glass : used) makers.insert(maker_of(*glass));
+  catalogues_.assign(makers.begin(), makers.end());
+  // A glass that an earlier maker has under its name moves its own maker to the front of that one.
+  for (std::size_t moves = 0; moves < catalogues_.size() * catalogues_.size(); ++moves) {
+    const auto hidden = std::ranges::find_if(used, [&](const Glass* g) { return resolved(*g) != g; });
+    if (hidden == used.end()) break;
+    const auto own = std::ranges::find(catalogues_, maker_of(**hidden));
+    const auto other = std::ranges::find(catalogues_, maker_of(*resolved(**hidden)));
+    if (other < own) std::rotate(other, own, own + 1);
+  }
+  for (const Glass* glass : used) {
+    if (const Glass* other = resolved(*glass); other != glass) {
+      out_.lose("glass", describe(*glass) + " becomes " + describe(*other) + " with an offset of its index");
     }
   }
-  std::string catalogues = "GCAT";
-  for (const std::string& maker : makers) catalogues += ' ' + one_word(maker);
-  if (!makers.empty()) out_.line(catalogues);
+}
+
+/// The glass that a .zmx with these catalogues means by the name of one.
+const Glass* ZemaxWriter::resolved(const Glass& glass) {
+  if (!names_) names_.emplace(out_.glasses());
+  const Glass* found = names_->find(one_word(glass.name), catalogues_, {}, Numbers::leftovers);
+  return found ? found : &glass;
 }
 
 void ZemaxWriter::aperture() {
@@ -153,14 +193,15 @@ std::string ZemaxWriter::glass_name(const Medium& medium) {
 
 std::string ZemaxWriter::glass(const Medium& medium) {
   const Glass* found = out_.glass(medium);
-  const double nd = medium.nd || !found ? out_.index(medium) : found->nd;
-  const std::string numbers = " 0 " + to_text(nd) + ' ' + to_text(medium.vd.value_or(0)) + " 0";
-  if (!found) return "___BLANK 1" + numbers + " 0 0 0 0 0";
+  if (!found) {
+    return "___BLANK 1 0 " + to_text(out_.index(medium)) + ' ' + to_text(medium.vd.value_or(0)) + " 0 0 0 0 0 0";
+  }
+  const Glass* meant = resolved(*found);
+  const std::string numbers = " 0 " + to_text(meant->nd) + ' ' + to_text(meant->vd) + " 0 0 0 0 ";
+  if (!medium.nd && meant == found) return one_word(found->name) + " 0" + numbers + "0 0";
   // The printed n_d of a table differs from the catalogue's: type 4 states by how much.
-  const double offset = nd - found->nd;
-  if (offset == 0) return one_word(found->name) + " 0" + numbers + " 0 0 0 0 0";
-  return one_word(found->name) + " 4 0 " + to_text(found->nd) + ' ' + to_text(found->vd) + " 0 0 0 0 " +
-         to_text(offset) + " 0";
+  const double offset = medium.nd.value_or(refractive_index(*found, d_line_nm)) - refractive_index(*meant, d_line_nm);
+  return one_word(found->name) + " 4" + numbers + to_text(offset) + " 0";
 }
 
 /// The type of a surface; its terms are lines behind CURV.

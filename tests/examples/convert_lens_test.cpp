@@ -48,7 +48,11 @@ TEST_F(ConvertLens, WritesEveryFormatByItsEnding) {
     const auto outcome = run("convert_lens", {lens("double_gauss_100mm_f2.0"), path(std::string("lens") + ending)});
     EXPECT_EQ(outcome.status, 0) << outcome.err;
     const auto back = petzval::read_prescription(path(std::string("lens") + ending));
-    EXPECT_NEAR(petzval::first_order(petzval::compile(back)).effective_focal_length, 100.7163339, 1e-6) << ending;
+    // Other programs' files name glasses, whose formulas differ from printed indices by a few 1e-6.
+    const bool names_glasses = std::string(ending) == ".zmx" || std::string(ending) == ".seq";
+    EXPECT_NEAR(petzval::first_order(petzval::compile(back)).effective_focal_length, 100.7163339,
+                names_glasses ? 1e-3 : 1e-6)
+        << ending;
   }
   EXPECT_EQ(read(path("lens.json")), read(lens("double_gauss_100mm_f2.0")));  // byte for byte
   EXPECT_EQ(run("convert_lens", {lens("double_gauss_100mm_f2.0"), path("lens.osl")}).status, 0);
@@ -113,7 +117,7 @@ TEST_F(ConvertLens, MissingGlassesComeFromFilesOfTheUser) {
   EXPECT_NEAR(json["f_number"].get<double>(), 8, 1e-6);
   const auto back = petzval::read_prescription(path("lens.json"));
   EXPECT_EQ(back.configurations.size(), 2u);
-  EXPECT_EQ(back.surfaces[0].medium.nd, 1.5168);
+  EXPECT_NEAR(back.surfaces[0].medium.nd.value(), 1.5168, 1e-7);  // by the formula
   // One position alone.
   EXPECT_EQ(
       run("convert_lens", {path("lens.zmx"), path("far.json"), "--glasses", path("my.agf"), "--configuration", "far"})

@@ -116,7 +116,7 @@ TEST(Codev, GlassesAreNamesCodesAndPrivateOnes) {
   const auto medium = [](const std::string& glass) { return read(with(singlet, "1.5:60", glass)).surfaces[1].medium; };
   EXPECT_EQ(medium("NBK7_SCHOTT").glass, "N-BK7");
   EXPECT_EQ(medium("nbk7_schott").catalogue, "schott");
-  EXPECT_EQ(medium("N-BK7_SCHOTT").nd, 1.5168);
+  EXPECT_NEAR(medium("N-BK7_SCHOTT").nd.value(), 1.5168, 1e-7);  // by the formula
   EXPECT_NEAR(medium("517.642").nd.value(), 1.517, 1e-12);
   EXPECT_NEAR(*medium("517.642").vd, 64.2, 1e-12);
   EXPECT_NEAR(medium("620410.603236").nd.value(), 1.62041, 1e-12);

@@ -143,7 +143,7 @@ TEST(Optiland, MaterialsAreNamesFilesAndNumbers) {
     EXPECT_EQ(medium(material).glass, "N-BK7") << material;
     EXPECT_EQ(medium(material).catalogue, "schott") << material;
   }
-  EXPECT_EQ(medium(R"({"type": "IdealMaterial", "index": [1.4]})"), petzval::Medium{.nd = 1.4});
+  EXPECT_EQ(medium(R"({"type": "IdealMaterial", "index": [1.4]})"), (petzval::Medium{.nd = 1.4, .vd = 0}));
   EXPECT_EQ(medium(R"({"type": "IdealMaterial", "index": [1.0]})"), petzval::Medium{});
   EXPECT_EQ(medium(R"({"type": "AbbeMaterialE", "index": [1.4], "abbe": [50]})"),
             (petzval::Medium{.nd = 1.4, .vd = 50}));

@@ -8,6 +8,7 @@
 #include "core/text.hpp"
 #include "lens_text.hpp"
 #include "petzval/lens/lens.hpp"
+#include "petzval/media/glass.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/f_number.hpp"
 
@@ -235,7 +236,8 @@ TEST(Zemax, GlassesAreFoundOrNamed) {
   };
   const petzval::Medium bk7 = read(glass("N-BK7 0 0 1.5 40 0 0 0 0 0 0")).surfaces[1].medium;
   EXPECT_EQ(bk7.catalogue, "schott");
-  EXPECT_EQ(bk7.nd, 1.5168);
+  const double formula = petzval::refractive_index(*petzval::glass_tables().find("N-BK7"), petzval::d_line_nm);
+  EXPECT_EQ(bk7.nd, formula);
   EXPECT_EQ(read(glass("NBK7 0 0 0 0 0")).surfaces[1].medium.glass, "N-BK7");
   // The dummy index of a glass that nobody knows.
   EXPECT_EQ(refusal(glass("XYZ12 0 0 1.5 40 0 0 0 0 0 0")).find("x: line 40: XYZ12 is in no glass table"), 0u);
@@ -244,9 +246,9 @@ TEST(Zemax, GlassesAreFoundOrNamed) {
   EXPECT_EQ(known.surfaces[1].medium, (petzval::Medium{.glass = "XYZ12", .nd = 1.62, .vd = 60.3}));
   EXPECT_NE(warning(known, "XYZ12").find("the nearest glass is"), std::string::npos);
   EXPECT_EQ(read(glass("517642 0 0 1.5 40 0")).surfaces[1].medium.nd, 1.517);
-  EXPECT_NEAR(read(glass("N-BK7 4 0 0 0 0 0 0 0 0.001 0")).surfaces[1].medium.nd.value(), 1.5178, 1e-12);
+  EXPECT_NEAR(read(glass("N-BK7 4 0 0 0 0 0 0 0 0.001 0")).surfaces[1].medium.nd.value(), formula + 0.001, 1e-12);
   EXPECT_EQ(read(glass("AIR 0 0 0 0 0")).surfaces[1].medium, petzval::Medium{});
-  EXPECT_NE(warning(glass("N-BK7 0 0 1.7 40 0"), "N-BK7").find("has n_d 1.7 in the file"), std::string::npos);
+  EXPECT_EQ(read(glass("N-BK7 0 0 1.7 40 0")).surfaces[1].medium, bk7);
 }
 
 TEST(Zemax, MirrorsKeepTheMediumInFront) {

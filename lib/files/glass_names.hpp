@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "petzval/media/glass.hpp"
+
+namespace petzval::inline v0::files_detail {
+
+/// How n_d and V_d that a file states beside the name of a glass count.
+enum class Numbers {
+  stated,    ///< they tell glasses of one name apart, and count where they differ from the glass
+  leftovers  ///< the name alone counts
+};
+
+/// For messages: "F2 (schott, n_d 1.62004, V_d 36.37)".
+std::string describe(const Glass& glass);
+
+/// True if the maker of a glass is that of a catalogue in the list: "SCHOTT" lists schott, schott-legacy, schott-1983.
+bool is_listed(std::span<const std::string> catalogues, const Glass& glass);
+
+/// Glasses by the names that files of other programs give them: dashes, blanks and case do not count.
+class GlassNames {
+ public:
+  /// The glasses must outlive it.
+  explicit GlassNames(const GlassCatalogue& glasses);
+
+  /// The glass that a file means; null if there is none.
+  ///
+  /// @param catalogues  those the file names, the first comes first; newer catalogues of a maker come before older ones
+  /// @param nd          the n_d beside the name; if `numbers` are leftovers it tells only catalogues apart that the
+  ///                    file does not name
+  const Glass* find(std::string_view name, std::span<const std::string> catalogues, std::optional<double> nd,
+                    Numbers numbers) const;
+
+  /// For messages: glasses of the name of `found`, in catalogues as new, that differ by more than 1e-4 in n_d; empty if
+  /// the file names the catalogue or states the n_d of `found`.
+  std::string others(const Glass& found, std::span<const std::string> catalogues, std::optional<double> nd) const;
+
+ private:
+  std::multimap<std::string, const Glass*> by_name_;  ///< by bare name, in the order of the catalogue
+};
+
+}  // namespace petzval::inline v0::files_detail
