@@ -32,7 +32,7 @@ bool same_maker(std::string_view catalogue, std::string_view own) {
 
 int age(const Glass& glass) { return media_detail::age(glass.catalogue); }
 
-/// Place of a glass's catalogue in a list; the size of the list if it is not there.
+/// Position of a glass's catalogue in a list; the size of the list if the catalogue is not listed.
 std::ptrdiff_t place_in(std::span<const std::string> catalogues, const Glass& glass) {
   const auto listed = std::ranges::find_if(
       catalogues, [&](const std::string& c) { return same(c, glass.catalogue) || same_maker(c, glass.catalogue); });

@@ -11,7 +11,7 @@
 
 namespace petzval::inline v0::files_detail {
 
-/// How n_d and V_d that a file states beside the name of a glass count.
+/// Meaning of n_d and V_d that a file states after the name of a glass.
 enum class Numbers {
   stated,    ///< they tell glasses of one name apart, and count where they differ from the glass
   leftovers  ///< the name alone counts
@@ -20,20 +20,22 @@ enum class Numbers {
 /// For messages: "F2 (schott, n_d 1.62004, V_d 36.37)".
 std::string describe(const Glass& glass);
 
-/// True if the maker of a glass is that of a catalogue in the list: "SCHOTT" lists schott, schott-legacy, schott-1983.
+/// True if a list names the maker of a glass: "SCHOTT" lists schott, schott-legacy, schott-1983.
 bool is_listed(std::span<const std::string> catalogues, const Glass& glass);
 
 /// Glasses by the names that files of other programs give them: dashes, blanks and case do not count.
 class GlassNames {
  public:
-  /// The glasses must outlive it.
+  /// The glasses must outlive the object.
   explicit GlassNames(const GlassCatalogue& glasses);
 
-  /// The glass that a file means; null if there is none.
+  /// Finds the glass for a name in a file.
   ///
-  /// @param catalogues  those the file names, the first comes first; newer catalogues of a maker come before older ones
-  /// @param nd          the n_d beside the name; if `numbers` are leftovers it tells only catalogues apart that the
-  ///                    file does not name
+  /// @param catalogues  catalogues that the file names; the first comes first, and newer catalogues of a maker come
+  ///                    before older ones
+  /// @param nd          n_d after the name; if `numbers` are leftovers, used only between catalogues outside
+  ///                    `catalogues`
+  /// @return            the glass; null if no table has the name
   const Glass* find(std::string_view name, std::span<const std::string> catalogues, std::optional<double> nd,
                     Numbers numbers) const;
 

@@ -211,7 +211,7 @@ Medium Import::glass(int line, std::string_view name, std::span<const std::strin
       warn(line, name, "is in several catalogues; " + describe(*found) + " is taken, not " + others);
     }
     Medium medium = medium_of(*found);
-    // A stated index is that of another melt, or of a moulded glass.
+    // Other melts and moulded glasses have their own index.
     if (numbers == Numbers::stated && nd && medium.nd && std::abs(*medium.nd - *nd) > rounded_index) medium.nd = nd;
     return medium;
   }
@@ -232,7 +232,7 @@ Medium Import::glass(int line, std::string_view name, std::span<const std::strin
              (alike.empty() ? std::string() : "; names like it: " + alike));
 }
 
-/// The rows with indices at the primary wavelength of the design, if a glass has none at the d line.
+/// Changes the reference to the primary wavelength of the design if a glass has no index at the d line.
 Prescription Import::with_reference(Prescription rows) const {
   std::vector<Medium*> media{&rows.object_space};
   for (SurfaceRow& row : rows.surfaces) media.push_back(&row.medium);

@@ -17,7 +17,7 @@ namespace petzval::inline v0::files_detail {
 /// A prescription on its way from a file of another program: where it comes from, what was assumed, and the glasses.
 class Import {
  public:
-  /// where: the file's name, for messages. glasses: null: glass_tables(), from the first glass on.
+  /// where: the file's name, for messages. glasses: null means glass_tables(), loaded for the first glass.
   Import(std::string where, std::string_view format, const GlassCatalogue* glasses);
 
   Prescription lens;  ///< `imported` is set
@@ -30,13 +30,13 @@ class Import {
   /// The word as a number; refuses what is none, also one with a decimal comma, beyond double or not a number.
   double number(int line, std::string_view command, std::string_view word) const;
 
-  /// A medium by the name that a file gives: "N-BK7", "NBK7" (dashes and blanks left out), "BK7_SCHOTT". Its n_d and
-  /// V_d are those of the formula of the glass, absent where its range misses the d, F and C lines. Warns where a glass
-  /// of another catalogue or name is taken.
+  /// A medium by the name in a file: "N-BK7", "NBK7" (dashes and blanks left out), "BK7_SCHOTT". n_d and V_d come from
+  /// the formula of the glass, and are absent if the formula does not reach the d, F and C lines. Warns if a glass of
+  /// another catalogue or name is taken.
   ///
-  /// @param catalogues  those the file names, the first comes first; may be empty
-  /// @param nd, vd      numbers beside the name: taken if no table has the name, and as `numbers` says
-  /// @throws Error      with names like it for a glass in no table without an index
+  /// @param catalogues  catalogues that the file names, the first comes first; may be empty
+  /// @param nd, vd      numbers after the name: taken if no table has the name, and as `numbers` says
+  /// @throws Error      with similar names for a glass in no table without an index
   Medium glass(int line, std::string_view name, std::span<const std::string> catalogues, std::optional<double> nd,
                std::optional<double> vd, Numbers numbers = Numbers::stated);
   const GlassCatalogue& glasses();
@@ -63,7 +63,7 @@ class Import {
 
   std::string where_;
   const GlassCatalogue* glasses_;
-  std::optional<GlassNames> names_;  ///< of glasses_, from the first glass on
+  std::optional<GlassNames> names_;  ///< names in glasses_; filled when the first glass is looked up
   std::size_t left_out_ = 0;
 };
 

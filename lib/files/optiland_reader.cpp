@@ -34,7 +34,7 @@ JsonObject entry(const JsonObject& object, const char* key, std::size_t i) {
   return {value, std::move(path), object.in};
 }
 
-/// Measurements of materials on refractiveindex.info that the table "misc" has.
+/// Measurements on refractiveindex.info that are in the table "misc".
 struct Measurement {
   std::string_view material, source, glass;
 };

@@ -74,13 +74,13 @@ void Writer::state_indices_at_d() {
     if (!medium.nd) return;
     double& nd = *medium.nd;
     if (const Glass* found = glass(medium)) {
-      // An index of the formula, or as the catalogue prints it, is that of the glass.
+      // An index from the formula or from the printed table means the glass itself.
       const bool printed = reference == d_line_nm && nd == found->nd;
       const double off = covers(*found, reference) ? std::abs(nd - refractive_index(*found, reference)) : HUGE_VAL;
       if (printed || off <= 1e-10) {
         if (std::isfinite(off)) rounding = std::max(rounding, off);
         medium.nd.reset();
-        medium.catalogue = found->catalogue;  // the name alone may be ambiguous
+        medium.catalogue = found->catalogue;  // without it the name may be ambiguous
       } else if (reference != d_line_nm) {
         nd += refractive_index(*found, d_line_nm) - refractive_index(*found, reference);
       }

@@ -30,9 +30,9 @@ class Writer {
   /// Loses the lens's nominal data and sources, but for those that are kept and, in a format with design data, those
   /// that its aperture and its fields declare.
   void lose_nominal_data(bool design_data, std::initializer_list<std::string_view> kept);
-  /// States the indices at the d line, as formats with glasses want them, and none for media whose index is that of
-  /// their glass. The wavelength at which the lens states them becomes that of its design. Throws Error for a stated
-  /// index of a glass that has none at the d line.
+  /// Restates the indices at the d line, for formats with glasses. A medium with the index of its glass keeps no stated
+  /// index. The reference wavelength becomes the wavelength of the design. Throws Error if the index of a glass is
+  /// stated and the glass does not reach the d line.
   void state_indices_at_d();
   const GlassCatalogue& glasses();
   /// The glass of the tables that a medium names; null if there is none.

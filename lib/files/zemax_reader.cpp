@@ -432,9 +432,9 @@ void ZemaxReader::glass(Words words) {
   if (words.size() < 2) in_.refuse(line_, "GLAS", "empty", "the name of a glass");
   ZemaxGlass glass{.line = line_, .name = std::string(words[1])};
   const int mode = words.size() > 2 ? whole(words, 2, 0, 100) : 0;
-  // Words: name, type of the solve (0 fixed, 1 model, 2 pickup, 4 offset), surface of a pickup, n_d, V_d, dPgF, three
-  // flags of variables, offsets of n_d and V_d. n_d and V_d are those of a model; of other types they are leftovers of
-  // a model that was there before, 1.5 and 40 if there was none.
+  // Words: name, solve type (0 fixed, 1 model, 2 pickup, 4 offset), surface of a pickup, n_d, V_d, dPgF, three flags of
+  // variables, offsets of n_d and V_d. n_d and V_d count for a model. For other types they are leftovers of an earlier
+  // model, or 1.5 and 40.
   glass.model = mode == 1 || glass.name == "___BLANK";
   const double nd = value(words, 4), vd = value(words, 5);
   const bool known = nd != 0 && (glass.model || !(nd == 1.5 && vd == 40));

@@ -57,7 +57,7 @@ class ZemaxWriter {
   Writer out_;
   const Prescription& p_;
   std::vector<std::string> catalogues_;  ///< GCAT
-  std::optional<GlassNames> names_;      ///< of the tables, from the first glass on
+  std::optional<GlassNames> names_;      ///< names in the tables; filled when the first glass is written
 };
 
 void ZemaxWriter::header() {
@@ -75,7 +75,7 @@ void ZemaxWriter::header() {
   if (!catalogues_.empty()) out_.line(catalogues);
 }
 
-/// The makers of all glasses, in an order in which names have the glasses that are meant, if there is one.
+/// Orders the makers of all glasses so that each name means its own glass, if possible.
 void ZemaxWriter::choose_catalogues() {
   std::vector<const Glass*> used;
   const auto use = [&](const Medium& medium) {
@@ -91,7 +91,7 @@ void ZemaxWriter::choose_catalogues() {
   std::set<std::string> makers;
   for (const Glass* glass : used) makers.insert(maker_of(*glass));
   catalogues_.assign(makers.begin(), makers.end());
-  // A glass that an earlier maker has under its name moves its own maker to the front of that one.
+  // If an earlier maker hides a glass by one of the same name, the maker of the glass moves before the other.
   for (std::size_t moves = 0; moves < catalogues_.size() * catalogues_.size(); ++moves) {
     const auto hidden = std::ranges::find_if(used, [&](const Glass* g) { return resolved(*g) != g; });
     if (hidden == used.end()) break;
@@ -106,7 +106,7 @@ void ZemaxWriter::choose_catalogues() {
   }
 }
 
-/// The glass that a .zmx with these catalogues means by the name of one.
+/// The glass that a reader of the .zmx finds for the name of a glass.
 const Glass* ZemaxWriter::resolved(const Glass& glass) {
   if (!names_) names_.emplace(out_.glasses());
   const Glass* found = names_->find(one_word(glass.name), catalogues_, {}, Numbers::leftovers);

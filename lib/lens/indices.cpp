@@ -23,13 +23,13 @@ const Medium& medium(const Prescription& p, std::size_t space) {
 /// 1e-5.
 constexpr double rounded_line_nm = 0.05;
 
-/// The tables that media are looked up in, found or not.
+/// Glass tables for the lookup of media, or the reason for their absence.
 struct Tables {
   const GlassCatalogue* glasses = nullptr;
   std::string error{};  ///< if null
 };
 
-/// The given tables, or those of the library if a medium names a glass.
+/// The given tables, or glass_tables() if a medium names a glass.
 Tables tables_for(const Prescription& p, const GlassCatalogue* given) {
   if (given) return {given};
   const bool named = p.object_space.glass || std::ranges::any_of(p.surfaces, [](const SurfaceRow& row) {
@@ -67,7 +67,7 @@ std::string why_missing(const Medium& m, const Tables& tables) {
   return "; its n_d of " + to_text(*m.nd) + " is more than 0.01 from " + others;
 }
 
-/// For errors: names to try instead of one that no table has.
+/// For errors: similar names in the tables.
 std::string names_like(const Medium& m, const Tables& tables) {
   if (!m.glass || !tables.glasses) return "";
   const std::string names = media_detail::similar_names(*tables.glasses, *m.glass);

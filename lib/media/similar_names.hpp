@@ -13,8 +13,7 @@ std::string bare(std::string_view name);
 /// True if two names are equal in bare letters.
 bool same_bare(std::string_view a, std::string_view b) noexcept;
 
-/// For messages: up to five names of glasses that differ from this one by a few letters, "N-BK7, K-BK7"; empty if there
-/// are none.
+/// For messages: up to five names in the tables that differ from a name by a few letters: "N-BK7, K-BK7".
 std::string similar_names(const GlassCatalogue& glasses, std::string_view name);
 
 }  // namespace petzval::inline v0::media_detail

@@ -54,8 +54,8 @@ void check_surface(const std::string& where, const SurfaceRow& row, const Medium
     refuse(where, "thickness", row.thickness, "a finite length below 1e10 mm");
   check_medium(where, row.medium);
   if (row.mirror && row.medium != before) {
-    throw Error(where + ": the medium of the mirror (" + describe(row.medium) + ") is not the one in front of it (" +
-                describe(before) + "), wanted the same medium");
+    throw Error(where + ": medium of the mirror = " + describe(row.medium) +
+                "; must equal the medium in front of it, " + describe(before));
   }
 
   if (row.semi_diameter && !(*row.semi_diameter >= 0))

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Glasses that files name: catalogues, numbers beside the name, substitutions, infrared and constant materials.
+// Glasses named in files: catalogues, numbers after the name, substitutions, infrared and constant materials.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -167,7 +167,7 @@ TEST(GlassNames, NamedGlass_HasTheIndexOfItsFormula) {
   const Glass& sk16 = *petzval::glass_tables().find("SK16", "hikari");
   EXPECT_EQ(p.surfaces[0].medium.nd, petzval::refractive_index(sk16, petzval::d_line_nm));
   EXPECT_NEAR(p.surfaces[0].medium.vd.value(), sk16.vd, 1e-3);
-  // Its own JSON and a .zmx keep it.
+  // The library's JSON and a .zmx keep the index.
   EXPECT_NEAR(focal_length(petzval::parse_prescription(format_prescription(p), "x"), 550), 49.9997831, 1e-7 * 50);
   std::string of_schott = cooke_triplet();
   for (std::size_t at; (at = of_schott.find("hikari")) != std::string::npos;) of_schott.replace(at, 6, "schott");
@@ -183,7 +183,7 @@ TEST(GlassNames, ZemaxWriter_OffsetsAGlassWhoseNameIsHidden) {
   const auto zmx = petzval::format_zemax(p);
   EXPECT_TRUE(std::ranges::any_of(zmx.losses, [](const auto& loss) { return loss.command == "glass"; }));
   EXPECT_NEAR(focal_length(read(zmx.text)), focal_length(p), 1e-9 * 50);
-  // Another order is enough for the glass that only one of them has.
+  // Another order of catalogues is enough if only hikari has the glass.
   const Prescription one = read(with(double_gauss("SCHOTT HIKARI", dummy, dummy), "GLAS SK4", "GLAS J-BK7A"));
   ASSERT_EQ(one.surfaces[0].medium.catalogue, "hikari");
   ASSERT_EQ(one.surfaces[3].medium.catalogue, "schott");
@@ -191,7 +191,7 @@ TEST(GlassNames, ZemaxWriter_OffsetsAGlassWhoseNameIsHidden) {
 }
 
 TEST(GlassNames, PrintedIndex_StaysBesideTheGlass) {
-  // A table with an index: that of the catalogue, rounded, and that of another melt.
+  // A table with an index: the rounded index of the catalogue, and the index of another melt.
   const auto nd = [](const std::string& index) {
     return read("[descriptive data]\ntitle\tx\n[lens data]\n1\t50\t4\t" + index +
                 "\t20\t64.2\tN-BK7\n2\t-50\t48\t\t20\n[constants]\nFocal Length\t50\n")

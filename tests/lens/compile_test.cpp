@@ -86,7 +86,7 @@ TEST(Compile, TheReferenceWavelengthIsThatOfTheTable) {
                    catalogue_index("N-BK7", "schott", d) - catalogue_index("N-BK7", "schott", 546.074));
 }
 
-/// Whether a message has all of these words.
+/// Succeeds if a message has all of these words.
 testing::AssertionResult says(const std::string& text, const std::vector<std::string>& words) {
   for (const std::string& word : words) {
     if (text.find(word) == std::string::npos)
@@ -165,7 +165,7 @@ TEST(Compile, TablesOfTheLibrary_AreTakenWhereNoneAreGiven) {
   }
   EXPECT_EQ(compile(doublet(flint)).dispersion(), Dispersion::catalogue);
   EXPECT_TRUE(compile(doublet(flint)).missing_glasses().empty());
-  // Empty tables are tables too.
+  // Empty tables are not replaced.
   const GlassCatalogue none;
   EXPECT_EQ(compile(doublet(flint), {.glasses = &none}).missing_glasses().size(), 2u);
 }

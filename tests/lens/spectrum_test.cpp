@@ -287,7 +287,7 @@ TEST(Clamp, EveryLensOfTheData_CompilesFrom360To830Nm) {
   EXPECT_LT(worst, 6e-3);
 }
 
-// The error of a clamped formula is that of all its wavelengths, between its extremes and at its kinks too.
+// index_error() covers the whole range, also between the nodes and at the kinks of a clamped formula.
 TEST(Clamp, IndexError_BoundsTheDistanceFromTheClampedFormula) {
   double worst = 0;
   for (const Glass& glass : petzval::glass_tables().glasses()) {

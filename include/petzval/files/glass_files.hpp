@@ -18,10 +18,10 @@ struct GlassFile {
 
 /// Reads glasses from a file, whose content tells the format, whatever its name:
 ///
-/// - a Zemax catalogue (.agf), as UTF-16, UTF-8 or Latin-1, with or without words about it before the first glass. The
-///   catalogue is called as the file, in lower case without its ending. All thirteen dispersion formulas are read.
-///   Formula 4 is printed in two forms: the one that gives the printed n_d is taken. Temperature, transmittance and
-///   mechanical data are not used, and a warning says so.
+/// - a Zemax catalogue (.agf), as UTF-16, UTF-8 or Latin-1, with or without words before the first glass. The catalogue
+///   is called as the file, in lower case without its ending. All thirteen dispersion formulas are read. Formula 4 is
+///   printed in two forms: the form that gives the printed n_d is taken. Temperature, transmittance and mechanical data
+///   are skipped with a warning.
 /// - a page of refractiveindex.info (YAML): formulas 1, 2, 3, 4, 5 and 7, tables of n, and tables of n and k between
 ///   the wavelengths where k is at most 0.01. The glass is called as the file, its catalogue "rii".
 /// - a table of this library (CSV, data/README.md).

@@ -35,8 +35,8 @@ struct ReadOptions {
 /// come out that differs from the file without a word. What changes nothing of the lens (merit functions, tolerances,
 /// colours, windows) is left out. A stop without a size gets that of the declared aperture.
 ///
-/// A glass that a file names has n_d and V_d of its formula. A warning names both glasses if one of another catalogue
-/// or name is taken. If a glass has no index at the d line (germanium), reference_wavelength_nm is the primary
+/// A glass that a file names has n_d and V_d of its formula. If a glass of another catalogue or name is taken, a
+/// warning names both. If a glass has no index at the d line (germanium), reference_wavelength_nm is the primary
 /// wavelength.
 ///
 /// Throws Error that names file, line, what was found and what was wanted; for other programs' binary files, what they
@@ -58,7 +58,7 @@ struct WrittenLens {
 /// where no stop is marked. glasses, for the indices of media that state none: as in ReadOptions.
 PETZVAL_API WrittenLens format_table(const Prescription& prescription, const GlassCatalogue* glasses = nullptr);
 /// A .zmx of sequential Zemax, in millimetres. Glasses of the tables (ReadOptions) keep their names, with an offset if
-/// n_d is neither that of the formula nor as the table prints it; others become models of n_d and V_d. Indices at
+/// n_d differs from the formula and from the printed table. Other media become models of n_d and V_d. Indices at
 /// another line than d are restated there, as in a .seq. Throws Error for strings with line breaks and for cylinders
 /// curved along x.
 PETZVAL_API WrittenLens format_zemax(const Prescription& prescription, const GlassCatalogue* glasses = nullptr);

@@ -19,8 +19,8 @@ namespace petzval::inline v0 {
 
 class GlassCatalogue;
 
-/// Source of the indices of media that state both an index and a glass. Media that state no index always have that of
-/// their glass.
+/// Source of the indices of media that state both an index and a glass. The formula of the glass applies to media
+/// without a stated index.
 enum class IndexPolicy {
   printed,    ///< the printed n_d plus n(lambda) - n(d) of the catalogue glass: at d the printed index
   catalogue,  ///< the catalogue glass alone
@@ -142,8 +142,8 @@ class PETZVAL_API Lens {
   double light_direction(std::size_t space) const;
 
   Dispersion dispersion() const noexcept;
-  /// One message for each surface whose medium has no catalogue glass: it names none, the tables lack it, its n_d
-  /// differs, or no tables were found.
+  /// One message for each surface whose medium has no catalogue glass, with the reason: no name, a name outside the
+  /// tables, another n_d, or missing tables.
   std::span<const std::string> missing_glasses() const noexcept;
   /// One message for each surface whose glass does not reach all compiled wavelengths
   /// (CompileOptions::clamp_wavelengths).

@@ -9,10 +9,10 @@
 
 namespace petzval::inline v0 {
 
-/// The glass that a medium names: of its catalogue if it states one, else the one nearest to its n_d, else by name
-/// alone (GlassCatalogue::find). nullptr if it names none or none is found.
+/// The glass of a medium: by name and catalogue, else by name and n_d, else by name (GlassCatalogue::find). nullptr for
+/// a medium without a name, and for a name outside the tables.
 ///
-/// @throws Error if the name alone is ambiguous
+/// @throws Error if the medium states neither catalogue nor n_d and the name is ambiguous
 PETZVAL_API const Glass* glass_of(const Medium& medium, const GlassCatalogue& glasses);
 
 /// The index of a medium at the reference wavelength of its prescription: 1 for air, the stated index, or the index of

@@ -49,8 +49,7 @@ struct Finding {
 /// prescription, and for a glass without a stated index that glass_tables() lack.
 PETZVAL_API std::vector<Finding> lint(const Prescription& prescription);
 
-/// The same with these glasses, and a check of them: an n_d that differs by more than 0.005 from that of the glass it
-/// names is a finding.
+/// The same with these glasses, and a check of the glasses: n_d of a medium must be within 0.005 of n_d of its glass.
 PETZVAL_API std::vector<Finding> lint(const Prescription& prescription, const GlassCatalogue& glasses);
 
 /// A prescription without the faults whose cure is certain, and what was changed.

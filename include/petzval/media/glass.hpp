@@ -72,10 +72,10 @@ class PETZVAL_API GlassCatalogue {
   /// first where its n_d is within 0.002.
   const Glass* find(std::string_view name, double nd) const noexcept;
 
-  /// The glass of that name, ignoring case; nullptr if there is none. Glasses that `with_glasses` added come first,
-  /// then catalogues of today, then "-legacy", then "-1983" ones; the first of equal rank is taken.
+  /// The glass of that name, ignoring case; nullptr for an unknown name. Glasses of `with_glasses` come first, then
+  /// catalogues of today, then "-legacy", then "-1983" ones; the first of equal rank is taken.
   ///
-  /// @throws Error with a list if glasses of equal rank differ by more than 1e-4 in n_d, as F2 of schott and cdgm do
+  /// @throws Error with a list if glasses of equal rank differ by more than 1e-4 in n_d, as F2 of schott and F2 of cdgm
   const Glass* find(std::string_view name) const;
 
   const std::vector<Glass>& glasses() const noexcept { return glasses_; }
@@ -90,8 +90,7 @@ class PETZVAL_API GlassCatalogue {
   friend PETZVAL_API GlassCatalogue with_glasses(const GlassCatalogue&, std::vector<Glass>);
 };
 
-/// The glass tables that the library ships, those of data_directory(): loaded at the first call, once per process, then
-/// shared by all threads.
+/// The glass tables in data_directory(), loaded at the first call, once per process, then shared by all threads.
 ///
 /// @throws Error if the tables are not found or invalid; the next call tries again
 PETZVAL_API const GlassCatalogue& glass_tables();

@@ -22,7 +22,7 @@ struct Medium {
   std::optional<std::string> glass{};         ///< "N-BK7"
   std::optional<std::string> catalogue{};     ///< of the glass; absent: any
   std::optional<std::string> glass_origin{};  ///< "matched": found by nd and vd, not printed in the source
-  std::optional<double> nd{};                 ///< absent: of the glass, or air if none is named
+  std::optional<double> nd{};                 ///< absent: of the glass; without a glass: air
   std::optional<double> vd{};                 ///< 0: without a known glass the index is nd at all wavelengths
 
   /// True if no glass is named and the index is 1 or absent.
