@@ -127,7 +127,7 @@ std::vector<std::size_t> left_to_do(const examples::PsfJob& job, const Options& 
   std::vector<std::size_t> left;
   for (std::size_t node = 0; node < job.axes().size(); ++node) {
     if (!options.shard.has(node)) continue;
-    if (options.resume && fs::exists(job.file(options.out_folder, node))) {
+    if (options.resume && examples::exists(job.file(options.out_folder, node))) {
       try {
         job.part(options.out_folder, node);
         continue;

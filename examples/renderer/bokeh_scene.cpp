@@ -151,13 +151,13 @@ class Job {
     const fs::path file = renderer::checkpoint_file(folder, options_.shard);
     const Json job = description_of_numbers(lens.camera());
     renderer::PictureSums sums(film_.columns, film_.rows);
-    if (options_.resume && fs::exists(file)) {
+    if (options_.resume && examples::exists(file)) {
       sums = renderer::Checkpoint::read(file, job);
     } else if (options_.resume) {
       std::cerr << "note: " << file.string() << " does not exist: the picture begins anew\n";
-    } else if (fs::exists(file)) {
+    } else if (examples::exists(file)) {
       const fs::path kept = fs::path(file).replace_extension(".before.exr");
-      fs::rename(file, kept);
+      examples::rename(file, kept);
       std::cerr << "note: without --resume the picture begins anew; the old sums are kept in " << kept.string() << '\n';
     }
     examples::make_folder(folder);
@@ -244,7 +244,7 @@ class Job {
                            ", wanted one model for all shards by name");
     }
     const fs::path file = renderer::checkpoint_file(options_.out_folder, options_.shard);
-    if (options_.resume && fs::exists(file)) {
+    if (options_.resume && examples::exists(file)) {
       Json job;
       renderer::Checkpoint::read_any(file, job);
       const std::string before = job.value("model", "");

@@ -6,10 +6,10 @@
 #include <map>
 #include <optional>
 #include <string>
-#include <system_error>
 
 #include "petzval/core/error.hpp"
 #include "renderer/checkpoint.hpp"
+#include "support/files.hpp"
 
 namespace renderer {
 namespace {
@@ -31,10 +31,7 @@ using ShardFiles = std::map<std::size_t, std::map<std::size_t, std::vector<fs::p
 ShardFiles shard_files(const std::vector<fs::path>& folders) {
   ShardFiles files;
   for (const fs::path& folder : folders) {
-    std::error_code error;
-    std::vector<fs::path> own;
-    for (const auto& entry : fs::directory_iterator(folder, error)) own.push_back(entry.path());
-    if (error) throw petzval::Error(folder.string() + ": cannot be read as a folder: " + error.message());
+    std::vector<fs::path> own = examples::entries(folder);
     std::sort(own.begin(), own.end());
     for (const fs::path& file : own) {
       if (const auto shard = shard_of(file)) files[shard->count][shard->index].push_back(file);

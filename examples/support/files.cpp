@@ -1,28 +1,27 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "files.hpp"
 
-#include <cerrno>
 #include <cmath>
-#include <cstring>
-#include <fstream>
-#include <sstream>
 #include <system_error>
 
 #include "petzval/core/error.hpp"
+#include "petzval/core/read_file.hpp"
 #include "petzval/io/write_file.hpp"
 
 namespace examples {
 
+namespace {
+
+[[noreturn]] void fail(const std::filesystem::path& file, const std::string& what, const std::error_code& error) {
+  throw petzval::Error(file.string() + ": " + what + " (" + error.message() + ")");
+}
+
+}  // namespace
+
 Json finite_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
-std::string read_text(const std::filesystem::path& file) {
-  if (std::filesystem::is_directory(file)) throw petzval::Error(file.string() + ": is a folder, wanted a file");
-  std::ifstream in(file, std::ios::binary);
-  if (!in) throw petzval::Error(file.string() + ": cannot be opened: " + std::strerror(errno));
-  std::ostringstream text;
-  text << in.rdbuf();
-  if (!in || in.bad()) throw petzval::Error(file.string() + ": cannot be read");
-  return std::move(text).str();
+std::string read_text(const std::filesystem::path& file, std::size_t most) {
+  return petzval::read_file(file, "a file", most);
 }
 
 void write_text(const std::filesystem::path& file, const std::string& text) { petzval::write_file(text, file); }
@@ -32,12 +31,34 @@ void want_ending(const std::string& option, const std::filesystem::path& file, c
   throw petzval::Error(option + ": found " + file.string() + ", wanted a name that ends in " + ending);
 }
 
-void make_folder(const std::filesystem::path& folder) {
+bool exists(const std::filesystem::path& file) {
   std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (!std::filesystem::is_directory(folder)) {
-    throw petzval::Error(folder.string() + ": cannot be created as a folder" + (error ? ": " + error.message() : ""));
+  const bool found = std::filesystem::exists(file, error);
+  if (error) fail(file, "cannot be looked up", error);
+  return found;
+}
+
+std::vector<std::filesystem::path> entries(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> result;
+  std::error_code error;
+  for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    result.push_back(entry->path());
   }
+  if (error) fail(folder, "cannot be read as a folder", error);
+  return result;
+}
+
+void rename(const std::filesystem::path& file, const std::filesystem::path& new_name) {
+  std::error_code error;
+  std::filesystem::rename(file, new_name, error);
+  if (error) fail(file, "cannot be renamed to " + new_name.string(), error);
+}
+
+void make_folder(const std::filesystem::path& folder) {
+  std::error_code error, unknown;
+  std::filesystem::create_directories(folder, error);
+  if (std::filesystem::is_directory(folder, unknown)) return;
+  fail(folder, "cannot be created as a folder", error ? error : std::make_error_code(std::errc::not_a_directory));
 }
 
 }  // namespace examples

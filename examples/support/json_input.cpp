@@ -19,7 +19,7 @@ void refuse(const std::string& where, const Json& found, const std::string& want
 
 Json read_json(const std::filesystem::path& file) {
   constexpr int deepest = 8;
-  const std::string text = read_text(file);
+  const std::string text = read_text(file, largest_json);
   std::vector<std::set<std::string>> open;
   const auto look = [&](int depth, Json::parse_event_t event, Json& value) {
     if (depth > deepest) {

@@ -35,8 +35,8 @@ std::vector<double> axis(const Json& description, const char* key) {
 std::optional<std::size_t> shard_count(const std::vector<fs::path>& folders) {
   std::set<std::size_t> counts;
   for (const fs::path& folder : folders) {
-    for (const auto& entry : fs::directory_iterator(folder)) {
-      if (const auto shard = shard_of_file(entry.path(), "shard")) counts.insert(shard->count);
+    for (const fs::path& entry : entries(folder)) {
+      if (const auto shard = shard_of_file(entry, "shard")) counts.insert(shard->count);
     }
   }
   return counts.size() == 1 && *counts.begin() > 1 ? std::optional(*counts.begin()) : std::nullopt;
@@ -150,7 +150,7 @@ PsfJob::PsfJob(Json description)
 
 PsfJob PsfJob::read(const fs::path& folder) {
   const fs::path file = folder / job_file;
-  if (!fs::exists(file)) throw petzval::Error(folder.string() + ": no " + job_file + ", wanted a folder of psf_set");
+  if (!exists(file)) throw petzval::Error(folder.string() + ": no " + job_file + ", wanted a folder of psf_set");
   try {
     return PsfJob(Json::parse(read_text(file)));
   } catch (const nlohmann::json::exception&) {
@@ -165,7 +165,7 @@ fs::path PsfJob::file(const fs::path& folder, std::size_t node) const {
 }
 
 void PsfJob::begin(const fs::path& folder, const Shard& shard) const {
-  if (fs::exists(folder / job_file)) {
+  if (exists(folder / job_file)) {
     if (read(folder).description_ != description_) {
       throw petzval::Error((folder / job_file).string() +
                            ": describes another set, wanted an empty folder or the same set");
@@ -218,7 +218,7 @@ std::vector<petzval::ExrPart> PsfJob::gather(const std::vector<fs::path>& folder
     std::optional<petzval::ExrPart> found;
     fs::path found_in;
     for (const fs::path& folder : folders) {
-      if (!fs::exists(file(folder, node))) continue;
+      if (!exists(file(folder, node))) continue;
       try {
         petzval::ExrPart own = part(folder, node);
         if (!found) {

@@ -51,6 +51,7 @@
 #include "petzval/core/error.hpp"
 #include "petzval/core/parallel.hpp"
 #include "petzval/core/ray.hpp"
+#include "petzval/core/read_file.hpp"
 #include "petzval/core/sobol.hpp"
 #include "petzval/core/units.hpp"
 #include "petzval/core/version.hpp"

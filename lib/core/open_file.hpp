@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cerrno>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -17,11 +18,15 @@ inline void refuse_folder(const std::filesystem::path& file, const std::string& 
   if (std::filesystem::is_directory(file, unknown)) throw Error(file.string() + ": is a folder, wanted " + wanted);
 }
 
+/// The system's reason for the last failure, which errno has: "No such file or directory".
+inline std::string reason() { return std::generic_category().message(errno); }
+
 /// A file to read, its bytes as they are. Throws Error for one that cannot be opened.
 inline std::ifstream opened(const std::filesystem::path& file, const std::string& wanted) {
   refuse_folder(file, wanted);
+  errno = 0;
   std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw Error(file.string() + ": cannot be opened, wanted " + wanted);
+  if (!stream) throw Error(file.string() + ": cannot be opened (" + reason() + "); must be " + wanted);
   return stream;
 }
 

@@ -12,6 +12,7 @@
 #include "optiland_reader.hpp"
 #include "oslo_reader.hpp"
 #include "petzval/core/error.hpp"
+#include "petzval/core/read_file.hpp"
 #include "petzval/io/lens_json.hpp"
 #include "table_reader.hpp"
 #include "text_file.hpp"
@@ -79,7 +80,7 @@ Prescription parse_lens(std::string bytes, const std::string& where, const ReadO
 }
 
 Prescription read_prescription(const std::filesystem::path& file, const ReadOptions& options) {
-  return parse_lens(io_detail::read_text(file, "a lens file"), file.string(), options);
+  return parse_lens(read_file(file, "a lens file"), file.string(), options);
 }
 
 }  // namespace petzval::inline v0

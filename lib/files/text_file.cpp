@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "core/text.hpp"
-#include "io/json.hpp"
 #include "petzval/core/error.hpp"
+#include "petzval/core/read_file.hpp"
 
 namespace petzval::inline v0::files_detail {
 namespace {
@@ -110,7 +110,7 @@ std::string as_utf8(std::string bytes, const std::string& where, const std::stri
 }
 
 std::string read_as_utf8(const std::filesystem::path& file, const std::string& wanted) {
-  return as_utf8(io_detail::read_text(file, wanted), file.string(), wanted);
+  return as_utf8(read_file(file, wanted), file.string(), wanted);
 }
 
 bool Lines::next() {

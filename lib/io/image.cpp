@@ -6,11 +6,13 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <fstream>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 #include "core/open_file.hpp"
@@ -79,6 +81,26 @@ void write_pfm(const char* kind, int width, int height, std::size_t row, std::sp
   write_file(bytes, file);
 }
 
+/// The next word of the head of a PFM file, and the one white space behind it. Cut off where it is longer than any word
+/// of such a head, or white space than any between them: the head of an endless file ends too.
+std::string next_word(std::istream& in) {
+  constexpr std::size_t longest = 64;
+  const auto blank = [](int c) { return c == ' ' || (c >= '\t' && c <= '\r'); };
+  int c = in.get();
+  for (std::size_t i = 0; i < longest && blank(c); ++i) c = in.get();
+  std::string word;
+  for (; in && !blank(c) && word.size() < longest; c = in.get()) word += static_cast<char>(c);
+  return word;
+}
+
+/// Reads a whole word as a number.
+template <class T>
+bool parse(std::string_view word, T& value) {
+  if (word.starts_with('+')) word.remove_prefix(1);
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  return error == std::errc() && end == word.data() + word.size();
+}
+
 }  // namespace
 
 void write_pfm(const RgbImage& image, const std::filesystem::path& file) {
@@ -96,12 +118,11 @@ void write_pfm(int width, int height, std::span<const float> values, const std::
 
 RgbImage read_pfm(const std::filesystem::path& file) {
   std::ifstream in = core_detail::opened(file, "a PFM file");
-  std::string kind;
   std::int64_t width = 0, height = 0;
   double scale = 0;
-  in >> kind >> width >> height >> scale;
-  in.get();  // the one white space before the values
-  if (!in || (kind != "PF" && kind != "Pf") || width < 1 || height < 1 || scale == 0) {
+  const std::string kind = next_word(in);
+  const bool numbers = parse(next_word(in), width) && parse(next_word(in), height) && parse(next_word(in), scale);
+  if (!numbers || (kind != "PF" && kind != "Pf") || width < 1 || height < 1 || scale == 0) {
     throw Error(file.string() + ": no head of a PFM file, wanted PF or Pf, width, height and scale");
   }
   io_detail::check_size(static_cast<std::size_t>(width), static_cast<std::size_t>(height), file);

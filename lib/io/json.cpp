@@ -5,13 +5,11 @@
 #include <charconv>
 #include <cstdint>
 #include <cstdlib>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <system_error>
 #include <utility>
 #include <vector>
 
-#include "core/open_file.hpp"
 #include "core/text.hpp"
 #include "petzval/core/error.hpp"
 
@@ -127,19 +125,6 @@ std::optional<std::string> JsonReader::maybe_text(const JsonValue& value) const 
 bool JsonReader::flag_of(const JsonValue& value) const {
   if (const bool* flag = std::get_if<bool>(&value)) return *flag;
   refuse(describe(value), "true or false");
-}
-
-std::string read_text(const std::filesystem::path& file, const std::string& wanted) {
-  std::ifstream stream = core_detail::opened(file, wanted);
-  std::string text;
-  std::error_code unknown;
-  if (const auto size = std::filesystem::file_size(file, unknown); !unknown) text.reserve(size);
-  std::array<char, 65536> block;
-  while (stream.read(block.data(), block.size()), stream.gcount() > 0) {
-    text.append(block.data(), static_cast<std::size_t>(stream.gcount()));
-  }
-  if (stream.bad()) throw Error(file.string() + ": cannot be read to its end");
-  return text;
 }
 
 std::string json_number(double value) {

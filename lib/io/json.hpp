@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstddef>
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -51,9 +50,6 @@ class JsonReader {
 
   std::string where_;
 };
-
-/// The bytes of a file. wanted: its kind, for the message if it cannot be opened.
-std::string read_text(const std::filesystem::path& file, const std::string& wanted);
 
 /// The shortest decimals that read back; without an exponent from 1e-4 to 1e16, and always with a point.
 std::string json_number(double value);

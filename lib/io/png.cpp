@@ -58,7 +58,7 @@ void check_size(std::size_t width, std::size_t height, const std::filesystem::pa
 PngPicture read_png_picture(const std::filesystem::path& file) {
   core_detail::refuse_folder(file, "a picture");
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> open(std::fopen(file.c_str(), "rb"), std::fclose);
-  if (!open) throw Error(file.string() + ": cannot be opened, wanted a picture");
+  if (!open) throw Error(file.string() + ": cannot be opened (" + core_detail::reason() + "); must be a picture");
   PngRows rows;
   const auto end = [](PngRows* own) { png_destroy_read_struct(&own->png, &own->info, nullptr); };
   const std::unique_ptr<PngRows, decltype(end)> ended(&rows, end);

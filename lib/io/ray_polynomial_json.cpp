@@ -11,6 +11,7 @@
 
 #include "json.hpp"
 #include "petzval/core/error.hpp"
+#include "petzval/core/read_file.hpp"
 #include "petzval/io/write_file.hpp"
 
 namespace petzval::inline v0 {
@@ -230,7 +231,7 @@ RayPolynomial parse_ray_polynomial(std::string_view json, const std::string& whe
 }
 
 RayPolynomial read_ray_polynomial(const std::filesystem::path& file) {
-  return parse_ray_polynomial(io_detail::read_text(file, "a ray polynomial file"), file.string());
+  return parse_ray_polynomial(read_file(file, "a ray polynomial file"), file.string());
 }
 
 std::string format_ray_polynomial(const RayPolynomial& polynomial) {

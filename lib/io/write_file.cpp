@@ -21,8 +21,8 @@
 #include <utility>
 
 #include "core/open_file.hpp"
-#include "json.hpp"
 #include "petzval/core/error.hpp"
+#include "petzval/core/read_file.hpp"
 
 namespace petzval::inline v0 {
 namespace {
@@ -176,7 +176,7 @@ void write_floats(std::span<const float> numbers, const std::filesystem::path& f
 }
 
 std::vector<float> read_floats(const std::filesystem::path& file) {
-  const std::string bytes = io_detail::read_text(file, "a file of floats");
+  const std::string bytes = read_file(file, "a file of floats");
   if (bytes.size() % sizeof(float) != 0) {
     throw Error(file.string() + ": found " + std::to_string(bytes.size()) + " bytes, wanted whole floats of 4");
   }

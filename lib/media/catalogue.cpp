@@ -6,17 +6,17 @@
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
-#include <fstream>
 #include <iterator>
 #include <memory>
+#include <sstream>
 #include <system_error>
 #include <utility>
 
 #include "catalogue_age.hpp"
-#include "core/open_file.hpp"
 #include "core/text.hpp"
 #include "glass_table.hpp"
 #include "petzval/core/error.hpp"
+#include "petzval/core/read_file.hpp"
 #include "petzval/media/glass.hpp"
 
 namespace petzval::inline v0 {
@@ -108,7 +108,7 @@ GlassCatalogue GlassCatalogue::load(const std::filesystem::path& directory) {
   std::sort(files.begin(), files.end());
   std::vector<Glass> glasses;
   for (const auto& file : files) {
-    std::ifstream stream = core_detail::opened(file, "a glass table");
+    std::istringstream stream(read_file(file, "a glass table"));
     media_detail::read_glass_table(stream, file.string(), glasses);
   }
   return GlassCatalogue(std::move(glasses));

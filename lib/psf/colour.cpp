@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <numeric>
+#include <sstream>
 #include <string>
 
-#include "core/open_file.hpp"
 #include "core/text.hpp"
 #include "petzval/core/error.hpp"
+#include "petzval/core/read_file.hpp"
 
 namespace petzval::inline v0 {
 namespace {
@@ -42,9 +42,7 @@ std::array<double, columns> parse_line(std::string_view line, const std::string&
 /// Calls add(row, where) for each row of a table, of which the first number is a wavelength; they increase.
 template <std::size_t columns, class Add>
 void for_each_row(const std::filesystem::path& file, std::string_view header, const char* what, const Add& add) {
-  core_detail::refuse_folder(file, std::string("the table of ") + what);
-  std::ifstream in(file);
-  if (!in) throw Error(file.string() + ": cannot be read, wanted the table of " + what);
+  std::istringstream in(read_file(file, std::string("the table of ") + what));
   double last = 0;
   std::string line;
   for (int count = 1; std::getline(in, line); ++count) {

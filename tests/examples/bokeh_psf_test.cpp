@@ -303,7 +303,7 @@ TEST_F(BokehPsf, RefusesABadCommandLineInOneLine) {
   refuse_iris({"--tolerance", "0"}, "--tolerance: found \"0\", wanted a number above 0, at most 1");
   refuse_iris({"--blades", "5", "--iris-area", "equal"}, "--iris-area: found equal without --f-number");
   refuse_iris({"--white-point", "D66"}, "--white-point: found \"D66\", wanted D65, D50, A, E or a file.csv");
-  refuse_iris({"--white-point", "none.csv"}, "none.csv: cannot be read, wanted the table of a light's power");
+  refuse_iris({"--white-point", "none.csv"}, "none.csv: cannot be opened (No such file or directory); must be the table of a light's power");
   refuse_iris({"--lens-ratio", "0"}, "--lens-ratio: found \"0\", wanted a finite number above 0");
   refuse_iris({"--model", "fast"}, "--model");
   refuse_iris({"--weight-map", "none.png"}, "none.png");

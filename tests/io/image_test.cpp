@@ -224,7 +224,8 @@ TEST_F(ImageFiles, RefusesImagesWithoutPixelsOrWithTooFew) {
 
 TEST_F(ImageFiles, ReadingSaysWhichFileIsBad) {
   const auto absent = folder_ / "absent.exr";
-  const std::string cannot_be_opened = absent.string() + ": cannot be opened, wanted an EXR file";
+  const std::string cannot_be_opened =
+      absent.string() + ": cannot be opened (No such file or directory); must be an EXR file";
   EXPECT_EQ(message([&] { read_exr(absent); }), cannot_be_opened);
   EXPECT_EQ(message([&] { read_exr_parts(absent); }), cannot_be_opened);
   EXPECT_EQ(message([&] { read_exr(folder_); }), folder_.string() + ": is a folder, wanted an EXR file");

@@ -226,7 +226,8 @@ TEST(PrescriptionJson, WhatCannotBeReadIsNotWritten) {
 TEST(PrescriptionJson, FilesThatCannotBeOpenedAreNamed) {
   const fs::path folder = ::testing::TempDir();
   const std::string absent = (folder / "no such folder" / "lens.json").string();
-  EXPECT_EQ(message([&] { petzval::read_prescription(absent); }), absent + ": cannot be opened, wanted a lens file");
+  EXPECT_EQ(message([&] { petzval::read_prescription(absent); }),
+            absent + ": cannot be opened (No such file or directory); must be a lens file");
   EXPECT_EQ(message([&] { petzval::read_prescription(folder); }),
             folder.string() + ": is a folder, wanted a lens file");
   const Prescription p = parse_prescription(file("\"surfaces\": [" + row + "]"), "x.json");

@@ -143,7 +143,7 @@ TEST(RayPolynomialJson, SaysWhatIsWrongAndWhere) {
   EXPECT_NE(why(with("\n}\n", "")).find("not JSON"), std::string::npos);
   EXPECT_EQ(why(std::string("{\0}", 3)), "x.json: byte 2 is zero, wanted JSON in UTF-8");
   EXPECT_EQ(message([] { read_ray_polynomial("/nowhere/x.json"); }),
-            "/nowhere/x.json: cannot be opened, wanted a ray polynomial file");
+            "/nowhere/x.json: cannot be opened (No such file or directory); must be a ray polynomial file");
 }
 
 TEST(RayPolynomialJson, EndsWhereFilesAreTooLarge) {

@@ -255,7 +255,7 @@ TEST(Spectrum, SaysWhatIsWrongWithAFile) {
   EXPECT_EQ(message([&] { Spectrum::load(folder); }),
             folder.string() + ": is a folder, wanted the table of a light's power");
   EXPECT_EQ(message([] { Spectrum::load("no/such.csv"); }),
-            "no/such.csv: cannot be read, wanted the table of a light's power");
+            "no/such.csv: cannot be opened (No such file or directory); must be the table of a light's power");
 }
 
 TEST(ColourMatching, SaysWhatIsWrongWithATable) {
@@ -276,8 +276,9 @@ TEST(ColourMatching, SaysWhatIsWrongWithATable) {
   EXPECT_EQ(of(header), "the table ends early, wanted one from 420 nm or less to 680 or more");
   EXPECT_EQ(of("") /* an empty file has no header */,
             "the table ends early, wanted one from 420 nm or less to 680 or more");
-  EXPECT_EQ(message([] { ColourMatching::load("no/such.csv"); }),
-            "no/such.csv: cannot be read, wanted the table of the colour matching functions");
+  EXPECT_EQ(
+      message([] { ColourMatching::load("no/such.csv"); }),
+      "no/such.csv: cannot be opened (No such file or directory); must be the table of the colour matching functions");
 }
 
 }  // namespace

@@ -40,7 +40,8 @@ struct ReadOptions {
 /// wavelength.
 ///
 /// Throws Error that names file, line, what was found and what was wanted; for other programs' binary files, what they
-/// are. Time is proportional to the size of the file; tests/README.md has the memory of the largest inputs.
+/// are. A file has at most largest_file_bytes. Time is proportional to the size of the file; tests/README.md has the
+/// memory of the largest inputs.
 PETZVAL_API Prescription read_prescription(const std::filesystem::path& file, const ReadOptions& options = {});
 
 /// The same from memory. `where` is the name of the source in messages.
