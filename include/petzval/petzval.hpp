@@ -36,7 +36,8 @@
 ///     lens = with_focus(with_f_number(lens, 2.0), 1000.0);  // f/2, focused at 1 m
 ///     PointImage bokeh = point_image(lens, {.field_rad = 0, .z = -1500});
 ///
-/// This header declares the core: a program links petzval::core, which brings GLM and nothing else. petzval/figure/ has
+/// This header declares the core, and dot, cross, length and normalize of Vec2 and Vec3: a program links petzval::core,
+/// which brings GLM and nothing else. petzval/figure/ has
 /// SVG figures (petzval::figure), petzval/io/image.hpp images (petzval::image), petzval/movement/tilt_fit.hpp the
 /// tilted film (petzval::fit).
 
@@ -88,3 +89,13 @@
 #include "petzval/pupil/pupil_boundary.hpp"
 #include "petzval/pupil/textbook.hpp"
 #include "petzval/trace/trace.hpp"
+
+// The functions of its vectors, for hosts without a vector library of their own.
+#include <glm/geometric.hpp>
+
+namespace petzval::inline v0 {
+using glm::cross;
+using glm::dot;
+using glm::length;
+using glm::normalize;
+}  // namespace petzval::inline v0

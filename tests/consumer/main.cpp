@@ -7,12 +7,7 @@
 #include <filesystem>
 #include <iostream>
 
-#include "petzval/core/error.hpp"
-#include "petzval/files/lens_file.hpp"
-#include "petzval/io/lens_json.hpp"
-#include "petzval/lens/lens.hpp"
-#include "petzval/media/glass.hpp"
-#include "petzval/trace/trace.hpp"
+#include "petzval/petzval.hpp"
 
 namespace {
 
@@ -38,6 +33,15 @@ bool throws_an_error_that_can_be_caught() {
   return false;
 }
 
+/// petzval.hpp brings the functions of its vectors, with and without their namespace.
+bool vectors_have_functions() {
+  const petzval::Vec3<double> x{2, 0, 0}, y{0, 3, 0};
+  const petzval::Vec2<double> across{3, 4};
+  return dot(x, y) == 0 && petzval::dot(x, x) == 4 && cross(x, y) == petzval::Vec3<double>{0, 0, 6} &&
+         petzval::cross(y, x).z == -6 && length(across) == 5 && petzval::length(x) == 2 &&
+         normalize(y) == petzval::Vec3<double>{0, 1, 0} && petzval::normalize(across).x == 3.0 / 5;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -58,5 +62,5 @@ int main(int argc, char** argv) {
   const auto lens = petzval::read_prescription(data / "lenses" / "analytic_plano_hyperbolic_100mm.json");
   good = near("lens from data", focus_behind(petzval::compile(lens)), 100) && good;
 
-  return throws_an_error_that_can_be_caught() && good ? 0 : 1;
+  return vectors_have_functions() && throws_an_error_that_can_be_caught() && good ? 0 : 1;
 }
