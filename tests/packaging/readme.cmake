@@ -5,7 +5,7 @@ cmake_minimum_required(VERSION 3.25)
 
 file(READ ${SOURCE}/README.md text)
 string(REGEX REPLACE ".*\n## Linking\n" "" text "${text}")
-if(NOT text MATCHES "^[^#]*\n    (cmake [^\n]*-B build[^\n]*)\n")
+if(NOT text MATCHES "^[^#]*`(cmake [^`&]*-B build[^`&]*) && ")
   message(FATAL_ERROR "README.md, Linking: no command with -B build; must have one")
 endif()
 string(REPLACE "-B build" "-S ${SOURCE} -B ${WORK}" command "${CMAKE_MATCH_1}")
