@@ -28,7 +28,7 @@ LensCamera::LensCamera(petzval::Camera camera, const Pose& pose) : camera_(std::
 }
 
 Vec3<double> LensCamera::turn_to_lens(const glm::vec3& direction) const noexcept {
-  // Unit length to double's precision, which a camera asks for.
+  // In double: the error of a float direction, far below petzval::unit_direction_tolerance, would still move the ray.
   return glm::normalize(glm::dvec3(direction) * turn_);
 }
 Vec3<double> LensCamera::to_lens(const glm::vec3& point) const noexcept {

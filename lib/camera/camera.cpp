@@ -161,6 +161,9 @@ Camera::Data::Data(const LensFacts& facts, const Film& placed, const AnyRayModel
       facts_(facts),
       radius_(radius),
       primary_(lens.primary_wavelength()),
+      clamp_(options.clamp_wavelengths),
+      shortest_nm_(std::ranges::min(lens.wavelengths_nm())),
+      longest_nm_(std::ranges::max(lens.wavelengths_nm())),
       view_{model, film, tilted ? &*tilted : nullptr, wavelengths, weights, front, focus} {}
 
 Camera::Camera(const Lens& lens, const Film& film, const CameraOptions& options) {
@@ -215,7 +218,11 @@ CameraRay Camera::sample(const CameraSample& s) const noexcept {
 
 template <class T>
 void Camera::sample(std::size_t count, const CameraSamples<T>& samples, const CameraRays<T>& rays) const noexcept {
-  camera_detail::sample_rays(data_->view(), count, samples, rays);
+  data_->in_range(count, samples.wavelengths, [&](std::size_t begin, std::size_t n, const RayWavelengths& own) {
+    CameraSamples<T> part = samples.from(begin);
+    part.wavelengths = own;
+    camera_detail::sample_rays(data_->view(), n, part, rays.from(begin));
+  });
 }
 
 CameraRayDifferential Camera::sample_differential(const CameraSample& s) const noexcept {

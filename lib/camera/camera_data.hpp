@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <cstddef>
 #include <mutex>
 #include <optional>
 
@@ -34,7 +37,26 @@ struct Camera::Data {
   /// A wavelength as the model takes it: a position, or nm where it takes any.
   Wavelength resolved(Wavelength given) const noexcept {
     if (!given.in_nm()) return given.position(primary_);
+    if (clamp_) given = Wavelength::nm(clamped(*given.in_nm()));
     return model.any_wavelength() ? given : Wavelength(lens.position(given));
+  }
+  /// The same for N rays: calls of_rays(begin, count, wavelengths) for consecutive ranges of them, which are one unless
+  /// each ray has a wavelength in nm to clamp.
+  template <class OfRays>
+  void in_range(std::size_t count, const RayWavelengths& given, const OfRays& of_rays) const {
+    RayWavelengths own = given.resolved(primary_);
+    if (!clamp_ || !own.in_nm()) return of_rays(0, count, own);
+    if (!own.each_nm) own.all = resolved(own.all);
+    if (!own.each_nm) return of_rays(0, count, own);
+    std::array<float, 256> nm;
+    for (std::size_t begin = 0; begin < count; begin += nm.size()) {
+      const std::size_t n = std::min(nm.size(), count - begin);
+      for (std::size_t i = 0; i < n; ++i) {
+        nm[i] = static_cast<float>(clamped(double{given.each_nm[begin + i]}));
+      }
+      own.each_nm = nm.data();
+      of_rays(begin, n, own);
+    }
   }
   /// Renderers that trace paths from the film alone never ask for it.
   const camera_detail::SceneSide& scene() const {
@@ -44,9 +66,14 @@ struct Camera::Data {
   }
 
  private:
+  /// Not a number stays one.
+  double clamped(double nm) const noexcept { return std::clamp(nm, shortest_nm_, longest_nm_); }
+
   camera_detail::LensFacts facts_;
   double radius_;
   std::size_t primary_;
+  bool clamp_;
+  double shortest_nm_, longest_nm_;
   camera_detail::FilmView view_;
   mutable std::once_flag scene_once_;
   mutable std::optional<camera_detail::SceneSide> scene_;

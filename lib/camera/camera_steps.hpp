@@ -50,7 +50,7 @@ struct PupilWeight {
 /// The fate of a sample: of its ray, unless it has none.
 inline RayFate fate_of(RayFate fate, bool kept, bool wanted, bool seen) noexcept {
   fate = seen ? fate : RayFate::vignetted;
-  fate = wanted ? fate : RayFate::invalid;
+  fate = wanted ? fate : RayFate::outside_spectrum;
   return kept ? fate : RayFate::outside_film;
 }
 

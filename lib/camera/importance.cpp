@@ -41,8 +41,9 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 double squared(double x) noexcept { return x * x; }
 
-/// As the tracers take directions.
-bool unit_length(const Vec3<double>& direction) noexcept { return std::abs(glm::dot(direction, direction) - 1) < 1e-3; }
+bool unit_length(const Vec3<double>& direction) noexcept {
+  return std::abs(glm::dot(direction, direction) - 1) < unit_direction_tolerance;
+}
 
 bool finite(const Vec3<double>& v) noexcept { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
@@ -189,7 +190,10 @@ bool SceneSide::valid(const Ray<double>& ray, Wavelength wavelength) const noexc
 SceneSide::Arrival SceneSide::arrive(const AnyRayModel& model, const Ray<double>& ray, Wavelength wavelength,
                                      double time) const noexcept {
   Arrival result;
-  if (!valid(ray, wavelength)) return result;
+  if (!valid(ray, wavelength)) {
+    result.fate = refused(wavelength);
+    return result;
+  }
   Ray<double> arrives{nearest_to_lens(ray), ray.direction};
   if (focus_) {
     const LocalFocus::Straight straight = focus_.straighten(arrives, wavelength, plane(time));
@@ -245,7 +249,7 @@ void SceneSide::weigh(Importance& result, const AnyRayModel& model, const Arriva
 Importance SceneSide::importance(const AnyRayModel& model, const Ray<double>& ray, Wavelength wavelength,
                                  double time) const noexcept {
   // No ray meets a point but one that was aimed at it.
-  if (model.pinhole()) return {.fate = valid(ray, wavelength) ? RayFate::vignetted : RayFate::invalid};
+  if (model.pinhole()) return {.fate = valid(ray, wavelength) ? RayFate::vignetted : refused(wavelength)};
   return arrived(model, arrive(model, ray, wavelength, time), ray.direction.z, wavelength, time);
 }
 
@@ -310,7 +314,7 @@ Importance SceneSide::arrived(const AnyRayModel& model, const Arrival& arrival, 
 
 ImportanceSample SceneSide::sample_importance(const AnyRayModel& model, const Vec3<double>& point, double u, double v,
                                               Wavelength wavelength, double time) const noexcept {
-  if (!wavelengths_.covers(wavelength) || !finite(point)) return {.importance = {.fate = RayFate::invalid}};
+  if (!wavelengths_.covers(wavelength) || !finite(point)) return {.importance = {.fate = refused(wavelength)}};
   if (model.pinhole()) return through_pinhole(model, point, u, v, wavelength, time);
   const EntranceSample s = entrance_.sample(point, u, v, wavelength);
   if (!(s.pdf > 0)) return {};
@@ -368,8 +372,10 @@ void SceneSide::sample_importance(const AnyRayModel& model, std::size_t count, c
 
 ImportanceSample SceneSide::sample_distant(const AnyRayModel& model, const Vec3<double>& direction, double u, double v,
                                            Wavelength wavelength, double time) const noexcept {
-  ImportanceSample result{.importance = {.fate = RayFate::invalid}};
-  if (!wavelengths_.covers(wavelength) || !unit_length(direction)) return result;
+  if (!wavelengths_.covers(wavelength) || !unit_length(direction)) {
+    return {.importance = {.fate = refused(wavelength)}};
+  }
+  ImportanceSample result;
   const Vec3<double> point = direction * -far;
   if (model.pinhole()) {
     const ImportanceSample s = through_pinhole(model, point, u, v, wavelength, time);
@@ -463,8 +469,12 @@ Importance Camera::importance(const Ray<double>& ray, Wavelength wavelength, dou
 
 void Camera::importance(std::size_t count, const RayArrays<const double>& rays, const RayWavelengths& wavelengths,
                         Importance* found, const double* times) const {
-  data_->scene().importance(data_->model, count, rays, wavelengths.resolved(data_->model.pupils().primary_wavelength()),
-                            times, found);
+  data_->in_range(count, wavelengths, [&](std::size_t begin, std::size_t n, const RayWavelengths& own) {
+    const auto from = [begin](const double* column) { return column + begin; };
+    data_->scene().importance(data_->model, n,
+                              {from(rays.x), from(rays.y), from(rays.z), from(rays.dx), from(rays.dy), from(rays.dz)},
+                              own, times ? times + begin : nullptr, found + begin);
+  });
 }
 
 ImportanceSample Camera::sample_importance(const Vec3<double>& point, double u, double v, Wavelength wavelength,
@@ -474,8 +484,10 @@ ImportanceSample Camera::sample_importance(const Vec3<double>& point, double u, 
 
 void Camera::sample_importance(std::size_t count, const Vec3<double>* points, const double* u, const double* v,
                                const RayWavelengths& wavelengths, ImportanceSample* found, const double* times) const {
-  data_->scene().sample_importance(data_->model, count, points, u, v,
-                                   wavelengths.resolved(data_->model.pupils().primary_wavelength()), times, found);
+  data_->in_range(count, wavelengths, [&](std::size_t begin, std::size_t n, const RayWavelengths& own) {
+    data_->scene().sample_importance(data_->model, n, points + begin, u + begin, v + begin, own,
+                                     times ? times + begin : nullptr, found + begin);
+  });
 }
 
 ImportanceSample Camera::sample_distant_importance(const Vec3<double>& direction, double u, double v,

@@ -77,8 +77,12 @@ class SceneSide {
   std::optional<TiltedPlane> plane(double time) const noexcept;
   std::optional<OnFilm> on_film(const FilmPoint& upright, const FilmPoint& pupil,
                                 const std::optional<TiltedPlane>& plane) const noexcept;
-  /// A direction of unit length, numbers that are finite, and a wavelength that is covered.
+  /// A unit direction, numbers that are finite, and a wavelength that is covered.
   bool valid(const Ray<double>& ray, Wavelength wavelength) const noexcept;
+  /// The fate of a ray or point that is not valid.
+  RayFate refused(Wavelength wavelength) const noexcept {
+    return wavelengths_.covers(wavelength) ? RayFate::invalid : RayFate::outside_spectrum;
+  }
   Arrival arrive(const AnyRayModel& model, const Ray<double>& ray, Wavelength wavelength, double time) const noexcept;
   /// The importance of a ray that arrives. cosine: of its angle with the axis in the scene.
   Importance arrived(const AnyRayModel& model, const Arrival& arrival, double cosine, Wavelength wavelength,

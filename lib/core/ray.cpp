@@ -13,6 +13,7 @@ std::string_view name(RayFate fate) noexcept {
     case RayFate::outside_fit: return "outside_fit";
     case RayFate::outside_film: return "outside_film";
     case RayFate::invalid: return "invalid";
+    case RayFate::outside_spectrum: return "outside_spectrum";
   }
   return "unknown";
 }

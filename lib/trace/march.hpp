@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 
 #include "aspheres.hpp"
 #include "steps.hpp"
@@ -33,7 +34,8 @@ PETZVAL_ONE_LANE_INLINE void enter(const Route<R>& route, const RayArrays<const 
     b.pz[i] = sense * (scale * dz);
     b.r2[i] = x * x + y * y;
     const V zero = (x + y + z) * V(R(0));  // unless one of them is not finite
-    b.alive[i] = (length > V(R(0.999))) & (length < V(R(1.001))) & (zero >= V(R(0)));
+    constexpr R shortest(1 - unit_direction_tolerance), longest(1 + unit_direction_tolerance);
+    b.alive[i] = (length > V(shortest)) & (length < V(longest)) & (zero >= V(R(0)));
     b.tally[i] = typename Native<R>::Bits{};
   }
   for (int i = b.used; i < Bundle<R>::vectors; ++i) {
@@ -78,6 +80,10 @@ template <class R>
 PETZVAL_ONE_LANE_INLINE void leave(const Route<R>& route, const RayArrays<const R>& in, const R* per_index,
                                    Bundle<R>& b, const RayArrays<R>& out) noexcept {
   using V = Lanes<R>;
+  // Of a direction that was off by t = unit_direction_tolerance in |d|^2, the step in enter() has left 3/4 t^2.
+  constexpr R entered(unit_direction_tolerance * unit_direction_tolerance);
+  constexpr R rounding = 100 * std::numeric_limits<R>::epsilon(), of_entry = entered * entered;
+  constexpr R most = rounding > of_entry ? rounding : of_entry;
   const V sense(route.sequence.last_sense);
   for (int i = 0; i < b.used; ++i) {
     const int o = i * V::width;
@@ -87,7 +93,7 @@ PETZVAL_ONE_LANE_INLINE void leave(const Route<R>& route, const RayArrays<const 
     const V scale = V(R(1.5)) - V(R(0.5)) * length;
     // Rays whose numbers have overflowed or lost their digits on the way are lost at the last surface.
     const V excess = length - V(R(1)) + b.z[i] * V(R(0));
-    const Mask<R> sound = b.alive[i] & (excess * excess < V(100 * std::numeric_limits<R>::epsilon()));
+    const Mask<R> sound = b.alive[i] & (excess * excess < V(most));
     count<1>(b.tally[i], sound);
     const auto put = [&](R* to, V value, const R* before) { store(to + o, select(sound, value, load(before + o))); };
     put(out.x, b.x[i], in.x);

@@ -188,8 +188,8 @@ TEST_P(AnyWavelength, IsTheSameInBatchesAndAlone) {
       const CameraSample sample{{in[0][i], in[1][i]}, in[2][i], in[3][i], all.wavelengths.at(i)};
       const CameraRay one = camera.sample(sample);
       if (i >= 7 && i <= 12) {
-        ASSERT_EQ(fates[i], RayFate::invalid) << name(model) << " " << nm[i];
-        ASSERT_EQ(one.fate, RayFate::invalid) << name(model) << " " << nm[i];
+        ASSERT_EQ(fates[i], RayFate::outside_spectrum) << name(model) << " " << nm[i];
+        ASSERT_EQ(one.fate, RayFate::outside_spectrum) << name(model) << " " << nm[i];
         ASSERT_EQ(out[6][i], 0);
         for (std::size_t k = 0; k < 6; ++k) ASSERT_TRUE(std::isfinite(out[k][i]));
         continue;
@@ -301,7 +301,7 @@ TEST(AnyWavelengthOf, MixedPositionsGiveTheRaysOfEach) {
       for (std::size_t i = 0; i < count; ++i) {
         if (each[i] != w) continue;
         ASSERT_EQ(fates[i], own_fates[i]);
-        ASSERT_EQ(fates[i] == RayFate::invalid, w == wavelengths);
+        ASSERT_EQ(fates[i] == RayFate::outside_spectrum, w == wavelengths);
         ASSERT_NEAR(mixed[6][i], own[6][i], limit * double{own[6][i]}) << w << " of " << wavelengths;
         for (std::size_t k = 3; k < 6; ++k) ASSERT_NEAR(mixed[k][i], own[k][i], limit) << w << " of " << wavelengths;
       }
@@ -314,7 +314,7 @@ TEST(AnyWavelengthOf, MixedPositionsGiveTheRaysOfEach) {
   }
 }
 
-TEST(AnyWavelengthOf, OthersAreInvalidOnBothSides) {
+TEST(AnyWavelengthOf, OthersAreOutsideTheSpectrumOnBothSides) {
   const Prescription prescription = petzval::testing::data_prescription("double_gauss_100mm_f2.0");
   const Lens lens = compiled(prescription, eight());
   const Film film = film_for(prescription, lens);
@@ -323,15 +323,88 @@ TEST(AnyWavelengthOf, OthersAreInvalidOnBothSides) {
     const Camera camera(lens, film, {.model = model});
     for (const double nm : {std::numeric_limits<double>::quiet_NaN(), 399.0, 701.0, 0.0, -1.0}) {
       const Wavelength bad = Wavelength::nm(nm);
-      EXPECT_EQ(camera.sample({.film = {}, .wavelength = bad}).fate, RayFate::invalid);
-      EXPECT_EQ(camera.sample_differential({.film = {}, .wavelength = bad}).sample.fate, RayFate::invalid);
-      EXPECT_EQ(camera.importance({{0, 0, -1000}, {0, 0, 1}}, bad).fate, RayFate::invalid);
-      EXPECT_EQ(camera.sample_importance({0, 0, -1000}, 0.5, 0.5, bad).importance.fate, RayFate::invalid);
-      EXPECT_EQ(camera.sample_distant_importance({0, 0, 1}, 0.5, 0.5, bad).importance.fate, RayFate::invalid);
+      EXPECT_EQ(camera.sample({.film = {}, .wavelength = bad}).fate, RayFate::outside_spectrum);
+      EXPECT_EQ(camera.sample_differential({.film = {}, .wavelength = bad}).sample.fate, RayFate::outside_spectrum);
+      EXPECT_EQ(camera.importance({{0, 0, -1000}, {0, 0, 1}}, bad).fate, RayFate::outside_spectrum);
+      EXPECT_EQ(camera.sample_importance({0, 0, -1000}, 0.5, 0.5, bad).importance.fate, RayFate::outside_spectrum);
+      EXPECT_EQ(camera.sample_distant_importance({0, 0, 1}, 0.5, 0.5, bad).importance.fate, RayFate::outside_spectrum);
       EXPECT_EQ(camera.pdf_importance({0, 0, -1000}, {0, 0, 1}, bad), 0);
       EXPECT_EQ(camera.project({0, 0, -1000}, bad).status, ProjectionStatus::not_visible);
     }
     EXPECT_EQ(camera.project({0, 0, -3000}, Wavelength::nm(511)).status, ProjectionStatus::converged);
+  }
+}
+
+TEST(AnyWavelengthOf, ClampedCamerasSeeTheLensAtTheEndsOfTheRange) {
+  const Prescription prescription = petzval::testing::data_prescription("double_gauss_100mm_f2.0");
+  const Lens lens = compiled(prescription, eight());
+  const Film film = film_for(prescription, lens);
+  const FilmPoint point{3, -2};
+  const Vec3<double> scene{40, 30, -2000};
+  for (const ModelKind model :
+       {ModelKind::exact_float, ModelKind::polynomial_5, ModelKind::thick, ModelKind::pinhole}) {
+    const Camera camera(lens, film, {.model = model, .clamp_wavelengths = true});
+    const auto same = [](const Ray<double>& a, const Ray<double>& b) {
+      return a.origin == b.origin && a.direction == b.direction;
+    };
+    for (const auto& [beyond, end] : {std::pair{360.0, 400.0}, {-1.0, 400.0}, {830.0, 700.0}, {511.0, 511.0}}) {
+      const Wavelength out = Wavelength::nm(beyond), in = Wavelength::nm(end);
+      const CameraSample sample{.film = point, .pupil_u = 0.3, .pupil_v = 0.6, .wavelength = out};
+      CameraSample at_end = sample;
+      at_end.wavelength = in;
+      const CameraRay ray = camera.sample(sample), wanted = camera.sample(at_end);
+      EXPECT_TRUE(ray) << name(model) << " " << beyond;
+      EXPECT_EQ(ray.weight, wanted.weight);
+      EXPECT_TRUE(same(ray.ray, wanted.ray));
+      EXPECT_TRUE(same(camera.sample_differential(sample).by_film_x, camera.sample_differential(at_end).by_film_x));
+      const auto connection = camera.sample_importance(scene, 0.3, 0.6, out);
+      EXPECT_TRUE(connection) << name(model) << " " << beyond;
+      EXPECT_EQ(connection.importance.we, camera.sample_importance(scene, 0.3, 0.6, in).importance.we);
+      const Ray<double> back{scene, connection.direction};
+      EXPECT_EQ(camera.importance(back, out).we, camera.importance(back, in).we);
+      EXPECT_EQ(camera.pdf_importance(scene, back.direction, out), camera.pdf_importance(scene, back.direction, in));
+      EXPECT_EQ(camera.project(scene, out).raster, camera.project(scene, in).raster);
+    }
+    const auto lost = camera.sample({.film = point, .wavelength = Wavelength::nm(std::nan(""))});
+    EXPECT_EQ(lost.fate, RayFate::outside_spectrum);
+
+    // Batches, of more rays than a block has.
+    constexpr std::size_t count = 777;
+    const std::vector<double> x(count, point.x), y(count, point.y), u(count, 0.3), v(count, 0.6);
+    std::vector<float> nm(count), clamped_nm(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      nm[i] = 360 + static_cast<float>(i);
+      clamped_nm[i] = std::clamp(nm[i], 400.0F, 700.0F);
+    }
+    const auto sampled = [&](const std::vector<float>& each_nm) {
+      std::array<std::vector<double>, 7> out;
+      for (auto& column : out) column.resize(count);
+      const auto at = [&](std::size_t k) { return out[k].data(); };
+      camera.sample<double>(count, {x.data(), y.data(), u.data(), v.data(), {.each_nm = each_nm.data()}},
+                            {{at(0), at(1), at(2), at(3), at(4), at(5)}, at(6)});
+      return out;
+    };
+    EXPECT_EQ(sampled(nm), sampled(clamped_nm)) << name(model);
+    const auto importances = [&](const std::vector<float>& each_nm) {
+      const std::vector<Vec3<double>> points(count, scene);
+      std::vector<ImportanceSample> found(count);
+      camera.sample_importance(count, points.data(), u.data(), v.data(), {.each_nm = each_nm.data()}, found.data());
+      std::array<std::vector<double>, 6> rays;
+      for (const ImportanceSample& f : found) {
+        for (int k = 0; k < 3; ++k) rays[k].push_back(scene[k]), rays[3 + k].push_back(f.direction[k]);
+      }
+      std::vector<Importance> of_rays(count);
+      camera.importance(
+          count, {rays[0].data(), rays[1].data(), rays[2].data(), rays[3].data(), rays[4].data(), rays[5].data()},
+          {.each_nm = each_nm.data()}, of_rays.data());
+      std::vector<double> we;
+      for (std::size_t i = 0; i < count; ++i) {
+        EXPECT_TRUE(found[i]) << name(model) << " " << nm[i];
+        we.push_back(found[i].importance.we), we.push_back(of_rays[i].we);
+      }
+      return we;
+    };
+    EXPECT_EQ(importances(nm), importances(clamped_nm)) << name(model);
   }
 }
 
@@ -364,8 +437,9 @@ TEST(AnyWavelengthOf, ModelsThatDoNotTakeItAreCompiledOnes) {
   static_assert(RayModel<ByPosition>);
   const Camera any(lens, film, AnyRayModel(model)), own(lens, film, AnyRayModel(ByPosition(model)));
   EXPECT_TRUE(any.sample({.film = {}, .pupil_u = 0.5, .wavelength = Wavelength::nm(511)}));
-  EXPECT_EQ(own.sample({.film = {}, .pupil_u = 0.5, .wavelength = Wavelength::nm(511)}).fate, RayFate::invalid);
-  EXPECT_EQ(own.importance({{0, 0, -1000}, {0, 0, 1}}, Wavelength::nm(511)).fate, RayFate::invalid);
+  EXPECT_EQ(own.sample({.film = {}, .pupil_u = 0.5, .wavelength = Wavelength::nm(511)}).fate,
+            RayFate::outside_spectrum);
+  EXPECT_EQ(own.importance({{0, 0, -1000}, {0, 0, 1}}, Wavelength::nm(511)).fate, RayFate::outside_spectrum);
   EXPECT_EQ(own.sample({.film = {}, .pupil_u = 0.5, .wavelength = Wavelength::nm(400)}).weight,
             own.sample({.film = {}, .pupil_u = 0.5, .wavelength = lens.wavelength(400)}).weight);
   EXPECT_TRUE(own.importance({{0, 0, -1000}, {0, 0, 1}}, Wavelength::nm(700)));
@@ -376,8 +450,8 @@ TEST(AnyWavelengthOf, ModelsThatDoNotTakeItAreCompiledOnes) {
   const auto at = [&](std::size_t k) { return out[k].data(); };
   own.sample<double>(2, {zero.data(), zero.data(), half.data(), half.data(), {.each_nm = nm.data()}},
                      {{at(0), at(1), at(2), at(3), at(4), at(5)}, at(6), fates.data()});
-  EXPECT_EQ(fates[0], RayFate::invalid);
-  EXPECT_EQ(fates[1], RayFate::invalid);
+  EXPECT_EQ(fates[0], RayFate::outside_spectrum);
+  EXPECT_EQ(fates[1], RayFate::outside_spectrum);
 }
 
 }  // namespace

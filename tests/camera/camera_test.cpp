@@ -390,8 +390,8 @@ TEST(Camera, GivesAFateToBadSamples) {
     expect_lost(camera, {{1, 2}, nan, 0.5}, RayFate::vignetted);
     expect_lost(camera, {{1, 2}, 0.5, nan}, RayFate::vignetted);
     expect_lost(camera, {{1, 2}, inf, 0.5}, RayFate::vignetted);
-    expect_lost(camera, {{1, 2}, 0.5, 0.5, 1}, RayFate::invalid);
-    expect_lost(camera, {{1, 2}, 0.5, 0.5, 1u << 20}, RayFate::invalid);
+    expect_lost(camera, {{1, 2}, 0.5, 0.5, 1}, RayFate::outside_spectrum);
+    expect_lost(camera, {{1, 2}, 0.5, 0.5, 1u << 20}, RayFate::outside_spectrum);
     // The corners of film and pupil square belong to them.
     for (const double u : {0.0, 1.0}) {
       const CameraRay corner = camera.sample({{18, -12}, u, 1 - u});
@@ -418,7 +418,7 @@ TEST(Camera, GivesAFateToBadSamplesInBatches) {
     EXPECT_EQ(samples.fates[3], RayFate::outside_film) << name(model);
     EXPECT_EQ(samples.fates[40], RayFate::outside_film) << name(model);
     EXPECT_EQ(samples.fates[50], RayFate::vignetted) << name(model);
-    EXPECT_EQ(samples.fates[60], RayFate::invalid) << name(model);
+    EXPECT_EQ(samples.fates[60], RayFate::outside_spectrum) << name(model);
     EXPECT_EQ(samples.fates[99], RayFate::outside_film) << name(model);
     for (std::size_t i = 0; i < samples.size(); ++i) {
       const auto& [origin, direction] = samples.ray(i);

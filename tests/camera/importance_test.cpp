@@ -19,6 +19,7 @@
 #include "petzval/core/parallel.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/pupil_boundary.hpp"
+#include "petzval/trace/trace.hpp"
 
 namespace petzval {
 namespace {
@@ -196,8 +197,8 @@ TEST(Importance, IsNothingForWhatMakesNoRay) {
       EXPECT_EQ(i.fate == RayFate::invalid, ray.origin.y != 500) << name(i.fate);
       expect_finite(i);
     }
-    EXPECT_EQ(camera.sample_importance({0, 0, -1000}, 0.4, 0.6, 1).importance.fate, RayFate::invalid);
-    EXPECT_EQ(camera.importance({{0, 0, -1000}, {0, 0, 1}}, 1).fate, RayFate::invalid);
+    EXPECT_EQ(camera.sample_importance({0, 0, -1000}, 0.4, 0.6, 1).importance.fate, RayFate::outside_spectrum);
+    EXPECT_EQ(camera.importance({{0, 0, -1000}, {0, 0, 1}}, 1).fate, RayFate::outside_spectrum);
     EXPECT_EQ(camera.importance({{0, 0, -1000}, {0, 0, 0.9}}).fate, RayFate::invalid);
     EXPECT_EQ(camera.pdf_importance({0, 0, -1000}, {0, 0, 1}) > 0, model != ModelKind::pinhole);
     EXPECT_EQ(camera.pdf_distant_importance({{0, 0, -1000}, {0, 0, 1}}) > 0, model != ModelKind::pinhole);
@@ -208,6 +209,30 @@ TEST(Importance, IsNothingForWhatMakesNoRay) {
     EXPECT_FALSE(camera.project({0, 0, -1000}, 1));
     if (model != ModelKind::pinhole) {
       EXPECT_FALSE(camera.sample_importance({0, 0, -1000}, nan, 0.6));
+    }
+  }
+}
+
+TEST(Importance, DirectionsPassWithinTheStatedTolerance) {
+  const Lens lens = compile(petzval::testing::data_prescription("double_gauss_100mm_f2.0"));
+  const Vec3<double> point{20, 10, -2000};
+  for (const ModelKind model :
+       {ModelKind::exact_float, ModelKind::exact_double, ModelKind::polynomial_5, ModelKind::thin}) {
+    const Camera camera(lens, {}, {.model = model});
+    const Vec3<double> direction = camera.sample_importance(point, 0.4, 0.6).direction;
+    const Importance unit = camera.importance({point, direction});
+    ASSERT_TRUE(unit) << name(model);
+    for (const double part : {-1.1, -0.9, 0.9, 1.1}) {
+      const Vec3<double> off = direction * std::sqrt(1 + part * unit_direction_tolerance);
+      const Importance found = camera.importance({point, off});
+      const bool passes = std::abs(part) < 1;
+      EXPECT_EQ(found.fate, passes ? RayFate::transmitted : RayFate::invalid) << name(model) << " " << part;
+      EXPECT_EQ(camera.sample_distant_importance(off, 0.4, 0.6).importance.fate, found.fate);
+      EXPECT_EQ(trace(lens, Ray<double>{point, off}).transmitted(), passes);
+      EXPECT_EQ(trace(lens, Ray<float>{Vec3<float>(point), Vec3<float>(off)}).transmitted(), passes);
+      if (!passes) continue;
+      EXPECT_NEAR(found.raster.x, unit.raster.x, 0.1) << name(model) << " " << part;
+      EXPECT_NEAR(found.raster.y, unit.raster.y, 0.1) << name(model) << " " << part;
     }
   }
 }
@@ -328,7 +353,7 @@ TEST(Importance, OfASunIsTheAreaThroughWhichItShines) {
               std::numbers::pi / 4 * std::pow(pupils(lens).entrance.diameter, 2),
               0.1 * s.importance.we / s.pdf * film.area_mm2());
   EXPECT_EQ(camera.sample_distant_importance({0, 0, 2}, 0.3, 0.4).importance.fate, RayFate::invalid);
-  EXPECT_EQ(camera.sample_distant_importance(direction, 0.3, 0.4, 7).importance.fate, RayFate::invalid);
+  EXPECT_EQ(camera.sample_distant_importance(direction, 0.3, 0.4, 7).importance.fate, RayFate::outside_spectrum);
   EXPECT_FALSE(camera.sample_distant_importance({0, 0, -1}, 0.3, 0.4));
   EXPECT_EQ(camera.pdf_distant_importance({s.on_front, direction}), 0);  // of a pinhole
 }

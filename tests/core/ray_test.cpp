@@ -14,13 +14,14 @@ using petzval::RayFate;
 
 TEST(Ray, EveryFateHasItsOwnName) {
   std::set<std::string_view> names;
-  for (const RayFate fate :
-       {RayFate::transmitted, RayFate::missed_surface, RayFate::totally_reflected, RayFate::vignetted,
-        RayFate::no_convergence, RayFate::outside_fit, RayFate::outside_film, RayFate::invalid}) {
+  for (const RayFate fate : {RayFate::transmitted, RayFate::missed_surface, RayFate::totally_reflected,
+                             RayFate::vignetted, RayFate::no_convergence, RayFate::outside_fit, RayFate::outside_film,
+                             RayFate::invalid, RayFate::outside_spectrum}) {
     names.insert(name(fate));
   }
   EXPECT_EQ(names, (std::set<std::string_view>{"transmitted", "missed_surface", "totally_reflected", "vignetted",
-                                               "no_convergence", "outside_fit", "outside_film", "invalid"}));
+                                               "no_convergence", "outside_fit", "outside_film", "invalid",
+                                               "outside_spectrum"}));
 }
 
 TEST(Ray, RunsTowardsTheFilmAlongTheAxisUnlessSaid) {

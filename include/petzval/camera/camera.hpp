@@ -45,6 +45,9 @@ struct CameraOptions {
   /// by s stops, one in 2^s is of use.
   std::optional<FocalSurface> focal_surface = {};
   ExpressiveLens expressive{};  ///< of first-order models
+  /// Samples, rays and connections at a wavelength in nm beyond the compiled range see the lens at the end of the
+  /// range. Otherwise they are lost as RayFate::outside_spectrum.
+  bool clamp_wavelengths = false;
 };
 
 /// A film behind a focused lens, seen through a ray model: what a renderer holds.
@@ -71,7 +74,10 @@ struct CameraOptions {
 /// are set up as an exact camera is.
 ///
 /// A sample has a wavelength of its own: a position among the compiled ones, or any between them in nm
-/// (Wavelength::nm(), RayWavelengths::each_nm), so that hero wavelengths need no camera per bin. Set-up grows with the
+/// (Wavelength::nm(), RayWavelengths::each_nm), so that hero wavelengths need no camera per bin. Beyond the compiled
+/// range it has weight 0 and the fate outside_spectrum: compile the lens for the whole range of the renderer (pbrt and
+/// Mitsuba: 360 to 830 nm, with CompileOptions::clamp_wavelengths, as glasses are known less far), or set
+/// CameraOptions::clamp_wavelengths. Set-up grows with the
 /// compiled ones only. A ray meets the film of 36 mm where that of a camera compiled for its wavelength does, in pixels
 /// of 1920: exact models within 1e-4, whatever wavelengths were compiled; polynomials of degree 7 and first-order ones
 /// within 0.03 (lenses faster than f/1.4: 0.08) from eight even ones over 400 to 700 nm, and within pixels from three
@@ -116,8 +122,8 @@ class PETZVAL_API Camera {
 
   /// One ray; it agrees with that of a batch within rounding. The densities of a pinhole's rays are those of the thick
   /// lens's pupil. Fates of invalid samples: outside_film for a film point that is outside the film or not finite,
-  /// invalid for a wavelength that the lens does not cover, vignetted for a pupil without area and pupil samples that
-  /// are not finite. Pupil samples outside the unit square count as its edge.
+  /// outside_spectrum for a wavelength that the lens does not cover, vignetted for a pupil without area and pupil
+  /// samples that are not finite. Pupil samples outside the unit square count as its edge.
   CameraRay sample(const CameraSample& sample) const noexcept;
   /// N rays, float or double, in the precision of the model.
   template <class T>
@@ -161,7 +167,8 @@ class PETZVAL_API Camera {
   /// pupil, a focal surface or an expressive lens, and for a renderer's own model.
   std::vector<float> tables() const;
 
-  /// Where the camera sees a scene point: the film point and raster position of its chief ray.
+  /// Where the camera sees a scene point: the film point and raster position of its chief ray. not_visible also for a
+  /// wavelength outside the compiled range.
   Projection project(const Vec3<double>& point, Wavelength wavelength = {}, double time = 0) const;
 
   /// Of the focal surface and the film offsets, on a grid of 96 x 64 places of the film as the shutter opens, which may

@@ -101,8 +101,8 @@ PETZVAL_API RasterDifferential by_raster(const CameraRayDifferential& ray, const
 /// better the fit: by 12 % at degree 3 and 2.5 % at degree 5 for a fisheye, by 4 % and 1 % for wide lenses.
 struct Importance {
   double we = 0;  ///< 1/mm^2; 0 for a ray that is lost or misses the film
-  /// invalid: a direction that is not of unit length, numbers that are not finite, a wavelength that the lens does not
-  /// cover.
+  /// invalid: a direction that is no unit vector (unit_direction_tolerance), or numbers that are not finite;
+  /// outside_spectrum: a wavelength outside the compiled range.
   RayFate fate = RayFate::vignetted;
   FilmPoint film{};  ///< where the ray meets the plane of the film
   Vec2<double> raster{0, 0};

@@ -37,7 +37,7 @@ namespace petzval::inline v0 {
 ///                                                    decide, and pupils() contain what passes
 ///     static constexpr bool linear_in_slopes         false: the model conserves etendue. true: it is linear in heights
 ///                                                    and slopes and conserves their area, as ideal lenses do
-///     static constexpr bool any_wavelength           false: samples at a wavelength in nm are invalid. true: the
+///     static constexpr bool any_wavelength           false: samples at a wavelength in nm are lost. true: the
 ///                                                    model takes it, and so does its table of pupils
 ///     std::span<const double> pinhole_shifts()       empty. Of a pinhole, one for each wavelength: its rays pass the
 ///                                                    plane of the pupils at so many times the film point

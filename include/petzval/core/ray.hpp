@@ -9,15 +9,20 @@
 
 namespace petzval::inline v0 {
 
+/// A direction counts as a unit vector d if | d . d - 1 | is less than this; others lose their ray. Directions that
+/// were normalised in float are within 4e-7. Exact rays correct the length; the other models leave the error in the
+/// result.
+inline constexpr double unit_direction_tolerance = 1e-3;
+
 /// A ray in the lens frame: millimetres, right-handed, origin at the vertex of the first surface, light from
 /// scene to film travels towards +z.
 template <class T>
 struct Ray {
   Vec3<T> origin{0, 0, 0};
-  Vec3<T> direction{0, 0, 1};  ///< unit length
+  Vec3<T> direction{0, 0, 1};  ///< unit vector (unit_direction_tolerance)
 };
 
-/// Rays as a structure of arrays: N values each, lens frame, unit directions.
+/// Rays as a structure of arrays: N values each, lens frame, unit directions (unit_direction_tolerance).
 template <class T>
 struct RayArrays {
   T* x = nullptr;
@@ -41,7 +46,8 @@ enum class RayFate : std::uint8_t {
   no_convergence,     ///< the iteration for an asphere did not converge
   outside_fit,        ///< outside the domain of a fitted model of the lens
   outside_film,       ///< starts or ends outside the film of a camera
-  invalid,            ///< of cameras: no such wavelength, numbers that are not finite, or no unit direction
+  invalid,            ///< of cameras: numbers that are not finite, or no unit direction (unit_direction_tolerance)
+  outside_spectrum,   ///< of cameras: a wavelength outside the compiled range (CameraOptions::clamp_wavelengths)
 };
 
 /// The fate as the programs print it: "transmitted", "missed_surface", ...

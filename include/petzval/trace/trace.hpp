@@ -26,14 +26,14 @@ struct TraceOptions {
 ///
 /// ray: lens frame, unit direction (within a few ulp, and so is the result, but within 1000 eps of |d|^2 where the ray
 /// grazes a surface). A ray is a whole line: surfaces are met in their order, also those behind the origin, so that it
-/// may start anywhere on its line. A ray that is not finite, whose direction is not of unit length (|d|^2 within 1e-3),
-/// or whose wavelength the lens does not cover is lost as missed_surface at the first surface met. It is returned as it
-/// was given (one that is not finite: at the origin along the axis). A ray that meets a surface so far from the axis
-/// that the hit on the next sphere would lose half of its digits (1 / eps^(1/4) of its radii: 8000, float 54), or 1e15
-/// mm from it, is lost there as vignetted, apertures or none. Start rays of far objects near the lens: the rounding of
-/// a direction moves the hit by eps x distance. The arithmetic is that of reproducible batches, to the bit; batches are
-/// faster for many rays. Accuracy: double within 1e-13 relative, float within 1e-5, of 60-digit references
-/// (tests/trace).
+/// may start anywhere on its line. A ray that is not finite, whose direction is no unit vector
+/// (unit_direction_tolerance), or whose wavelength the lens does not cover is lost as missed_surface at the first
+/// surface met. It is returned as it was given (one that is not finite: at the origin along the axis). A ray that meets
+/// a surface so far from the axis that the hit on the next sphere would lose half of its digits (1 / eps^(1/4) of its
+/// radii: 8000, float 54), or 1e15 mm from it, is lost there as vignetted, apertures or none. Start rays of far objects
+/// near the lens: the rounding of a direction moves the hit by eps x distance. The arithmetic is that of reproducible
+/// batches, to the bit; batches are faster for many rays. Accuracy: double within 1e-13 relative, float within 1e-5, of
+/// 60-digit references (tests/trace).
 template <class T>
 PETZVAL_API TracedRay<T> trace(const Lens& lens, const Ray<T>& ray, const TraceOptions& options = {}) noexcept;
 
