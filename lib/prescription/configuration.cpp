@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "configured_row.hpp"
 #include "core/text.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/prescription/prescription.hpp"
@@ -33,14 +34,37 @@ double place_of(const Prescription& p, const ConfigurationChoice& choice) {
   return static_cast<double>(found - p.configurations.begin());
 }
 
+/// Copies everything but the configurations: a copy of all of them for each one would take quadratic time.
+Prescription without_configurations(const Prescription& p) {
+  // A new member does not compile until it is named here.
+  const auto& [id, name, source_design, source_numbers, focal_length_mm, f_number, half_field_deg, image_diagonal_mm,
+               reference_wavelength_nm, semi_diameters, stop_size, image_distance, glass_names, notes, aliases,
+               imported, design, object_space, surfaces, configurations] = p;
+  return {id,
+          name,
+          source_design,
+          source_numbers,
+          focal_length_mm,
+          f_number,
+          half_field_deg,
+          image_diagonal_mm,
+          reference_wavelength_nm,
+          semi_diameters,
+          stop_size,
+          image_distance,
+          glass_names,
+          notes,
+          aliases,
+          imported,
+          design,
+          object_space,
+          surfaces,
+          {}};
+}
+
 void apply(const Configuration& configuration, Prescription& p) {
   for (const SurfaceChange& change : configuration.changes) {
-    SurfaceRow& row = p.surfaces[static_cast<std::size_t>(change.surface)];
-    row.thickness = change.thickness.value_or(row.thickness);
-    row.radius = change.radius.value_or(row.radius);
-    row.conic = change.conic.value_or(row.conic);
-    if (change.semi_diameter) row.semi_diameter = change.semi_diameter;
-    row.medium = change.medium.value_or(row.medium);
+    prescription_detail::apply(change, p.surfaces[static_cast<std::size_t>(change.surface)]);
   }
   if (configuration.stop) {
     for (SurfaceRow& row : p.surfaces) row.stop = false;
@@ -52,9 +76,9 @@ void apply(const Configuration& configuration, Prescription& p) {
   if (configuration.image_diagonal_mm) p.image_diagonal_mm = configuration.image_diagonal_mm;
 }
 
-/// The rows in one position of the list.
+/// The rows in one position of the list, without the list.
 Prescription rows_at(const Prescription& p, std::size_t number) {
-  Prescription result = p;
+  Prescription result = without_configurations(p);
   if (!p.configurations.empty()) apply(p.configurations[number], result);
   return result;
 }
@@ -133,7 +157,6 @@ Prescription configured(const Prescription& p, const ConfigurationChoice& choice
   const Configuration& first = p.configurations[number];
 
   Prescription result = rows_at(p, number);
-  result.configurations.clear();
   const auto zoom_positions =
       std::ranges::count_if(p.configurations, [](const Configuration& c) { return !c.focus_of; });
   if (t == 0) {

@@ -2,7 +2,10 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <string_view>
+#include <vector>
 
+#include "configured_row.hpp"
 #include "core/text.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/prescription/prescription.hpp"
@@ -110,61 +113,106 @@ void check_design(const std::string& where, const DesignData& design) {
   }
 }
 
-void check_configuration(const std::string& where, const Prescription& p, const Configuration& c) {
+/// Nominal data of a lens or of a configuration.
+template <class Declared>
+void check_nominal_data(const std::string& where, const Declared& declared) {
+  check_nominal(where, "focal_length_mm", declared.focal_length_mm);
+  if (declared.f_number && !(*declared.f_number > 0 && std::isfinite(*declared.f_number))) {
+    refuse(where, "f_number", *declared.f_number, "a finite number above 0 or no value");
+  }
+  check_nominal(where, "half_field_deg", declared.half_field_deg);
+  check_nominal(where, "image_diagonal_mm", declared.image_diagonal_mm);
+}
+
+/// Checks configurations of rows that are valid. Work and memory are proportional to the number of changes.
+class ConfigurationCheck {
+ public:
+  ConfigurationCheck(const std::string& where, const Prescription& p)
+      : where_(where), p_(p), change_of_(p.surfaces.size()) {}
+
+  void run();
+
+ private:
+  void check(const std::string& here, const Configuration& c);
+  void check_rows(const std::string& here, const Configuration& c);
+  void check_row(const std::string& here, std::size_t surface);
+  /// The medium behind a surface in the configuration that is being checked.
+  const Medium& medium(std::size_t surface) const {
+    const SurfaceChange* change = change_of_[surface];
+    return change && change->medium ? *change->medium : p_.surfaces[surface].medium;
+  }
+
+  const std::string& where_;
+  const Prescription& p_;
+  std::set<std::string_view> zoom_positions_;
+  std::vector<const SurfaceChange*> change_of_;  ///< by surface; null outside of check_rows()
+  SurfaceRow row_;                               ///< scratch
+};
+
+void ConfigurationCheck::run() {
+  const auto& list = p_.configurations;
+  if (list.size() > most_configurations) {
+    throw Error(where_ + ": " + std::to_string(list.size()) + " configurations, wanted at most " +
+                std::to_string(most_configurations));
+  }
+  for (const Configuration& c : list) {
+    if (!c.focus_of) zoom_positions_.insert(c.name);
+  }
+  std::set<std::string_view> names;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const Configuration& c = list[i];
+    const std::string here = where_ + ": configuration " + std::to_string(i);
+    if (c.name.empty()) throw Error(here + " has no name, wanted one");
+    if (!names.insert(c.name).second) throw Error(here + ": name \"" + c.name + "\" is given twice, wanted once");
+    if (i == 0 && c.focus_of) throw Error(here + " focuses another, wanted a zoom position first");
+    check(here, c);
+  }
+}
+
+void ConfigurationCheck::check(const std::string& here, const Configuration& c) {
   const auto check_place = [&](const char* what, int surface) {
-    if (surface < 0 || static_cast<std::size_t>(surface) >= p.surfaces.size()) {
-      refuse(where, what, surface, "one of " + std::to_string(p.surfaces.size()));
+    if (surface < 0 || static_cast<std::size_t>(surface) >= p_.surfaces.size()) {
+      refuse(here, what, surface, "one of " + std::to_string(p_.surfaces.size()));
     }
   };
   if (c.stop) check_place("stop", *c.stop);
   if (c.subject_distance_mm && !(*c.subject_distance_mm > 0)) {
-    refuse(where, "subject_distance_mm", *c.subject_distance_mm, "a length above 0, or inf");
+    refuse(here, "subject_distance_mm", *c.subject_distance_mm, "a length above 0, or inf");
   }
-  std::set<int> changed;
-  for (const SurfaceChange& change : c.changes) {
-    check_place("changed surface", change.surface);
-    if (!changed.insert(change.surface).second) {
-      throw Error(where + ": surface " + std::to_string(change.surface) + " is changed twice, wanted once");
-    }
+  for (const SurfaceChange& change : c.changes) check_place("changed surface", change.surface);
+  if (c.focus_of && !zoom_positions_.contains(*c.focus_of)) {
+    throw Error(here + " focuses \"" + *c.focus_of + "\", wanted the name of a zoom position");
   }
-  if (c.focus_of && std::ranges::none_of(p.configurations, [&](const Configuration& other) {
-        return !other.focus_of && other.name == *c.focus_of;
-      })) {
-    throw Error(where + " focuses \"" + *c.focus_of + "\", wanted the name of a zoom position");
-  }
+  check_nominal_data(here, c);
+  check_rows(here, c);
 }
 
-void check_configurations(const std::string& where, const Prescription& p) {
-  if (p.configurations.size() > most_configurations) {
-    throw Error(where + ": " + std::to_string(p.configurations.size()) + " configurations, wanted at most " +
-                std::to_string(most_configurations));
+void ConfigurationCheck::check_rows(const std::string& here, const Configuration& c) {
+  for (const SurfaceChange& change : c.changes) {
+    const SurfaceChange*& known = change_of_[static_cast<std::size_t>(change.surface)];
+    if (known) throw Error(here + ": surface " + std::to_string(change.surface) + " is changed twice, wanted once");
+    known = &change;
   }
-  std::set<std::string> names;
-  for (std::size_t i = 0; i < p.configurations.size(); ++i) {
-    const Configuration& c = p.configurations[i];
-    const std::string here = where + ": configuration " + std::to_string(i);
-    if (c.name.empty()) throw Error(here + " has no name, wanted one");
-    if (!names.insert(c.name).second) throw Error(here + ": name \"" + c.name + "\" is given twice, wanted once");
-    if (i == 0 && c.focus_of) throw Error(here + " focuses another, wanted a zoom position first");
-    check_configuration(here, p, c);
-    Prescription rows = p;
-    rows.configurations = {c};
-    rows.configurations[0].focus_of.reset();
-    rows = configured(rows, 0);
-    rows.configurations.clear();
-    validate(rows, here);
+  for (const SurfaceChange& change : c.changes) {
+    const auto surface = static_cast<std::size_t>(change.surface);
+    check_row(here, surface);
+    // A mirror has the medium in front of it.
+    if (change.medium && surface + 1 < p_.surfaces.size()) check_row(here, surface + 1);
   }
+  for (const SurfaceChange& change : c.changes) change_of_[static_cast<std::size_t>(change.surface)] = nullptr;
+}
+
+void ConfigurationCheck::check_row(const std::string& here, std::size_t surface) {
+  row_ = p_.surfaces[surface];
+  if (change_of_[surface]) prescription_detail::apply(*change_of_[surface], row_);
+  check_surface(here + ": surface " + std::to_string(surface), row_,
+                surface > 0 ? medium(surface - 1) : p_.object_space);
 }
 
 }  // namespace
 
 void validate(const Prescription& p, const std::string& where) {
-  check_nominal(where, "focal_length_mm", p.focal_length_mm);
-  if (p.f_number && !(*p.f_number > 0 && std::isfinite(*p.f_number))) {
-    refuse(where, "f_number", *p.f_number, "a finite number above 0 or no value");
-  }
-  check_nominal(where, "half_field_deg", p.half_field_deg);
-  check_nominal(where, "image_diagonal_mm", p.image_diagonal_mm);
+  check_nominal_data(where, p);
   if (!(p.reference_wavelength_nm >= 10 && p.reference_wavelength_nm <= 1e5)) {
     refuse(where, "reference_wavelength_nm", p.reference_wavelength_nm, "10 to 100000 nm");
   }
@@ -182,7 +230,7 @@ void validate(const Prescription& p, const std::string& where) {
     before = &p.surfaces[i].medium;
   }
   check_design(where + ": design", p.design);
-  check_configurations(where, p);
+  ConfigurationCheck(where, p).run();
 }
 
 }  // namespace petzval::inline v0

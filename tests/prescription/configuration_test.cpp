@@ -2,7 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
+#include <random>
 #include <string>
+#include <vector>
 
 #include "../data_lenses.hpp"
 #include "../message.hpp"
@@ -113,6 +116,77 @@ TEST(Configured, ScalesAndReverses) {
   EXPECT_EQ(configured(reversed, "tele").surfaces[0].thickness, 30);
   EXPECT_EQ(configured(reversed, "tele").surfaces[0].radius, -100);
   EXPECT_TRUE(configured(reversed, "tele").surfaces[1].stop);
+}
+
+/// The rows of each configuration, validated as a lens of their own: the first refusal.
+std::string refusal_of_rows(const Prescription& p) {
+  for (std::size_t i = 0; i < p.configurations.size(); ++i) {
+    const std::string refusal = message([&] {
+      Prescription alone = configured(p, i);
+      alone.configurations.clear();
+      validate(alone, "z: configuration " + std::to_string(i));
+    });
+    if (refusal != "no error") return refusal;
+  }
+  return "no error";
+}
+
+TEST(Validate, RefusesTheConfigurationsWhoseRowsAreNoLens) {
+  using Fault = std::function<void(Prescription&, petzval::SurfaceChange&)>;
+  const std::vector<Fault> faults = {
+      [](auto&, auto&) {},
+      [](auto&, auto& change) { change.thickness = HUGE_VAL; },
+      [](auto&, auto& change) { change.radius = 1e-13; },
+      [](auto&, auto& change) { change.conic = NAN; },
+      [](auto&, auto& change) { change.semi_diameter = 1; },  // inside the obscuration
+      [](auto&, auto& change) { change.medium = petzval::Medium{.nd = 6}; },
+      [](auto&, auto& change) { change.medium = petzval::Medium{.nd = 1.7}; },  // not that of the next mirror
+      [](auto& p, auto&) { p.configurations[1].f_number = 0; },
+      [](auto& p, auto&) { p.configurations[2].half_field_deg = NAN; }};
+  std::mt19937 random(7);
+  int refused = 0;
+  for (int trial = 0; trial < 400; ++trial) {
+    Prescription p = zoom();
+    for (int i = 0; i < 3; ++i) p.surfaces.push_back({.radius = 100.0 + i, .thickness = 5, .semi_diameter = 20});
+    p.surfaces[1].obscuration_semi_diameter = 2;
+    p.surfaces[3].obscuration_semi_diameter = 3;
+    p.surfaces[4].mirror = true;
+    ASSERT_EQ(message([&] { validate(p, "z"); }), "no error");
+    Configuration& c = p.configurations[random() % p.configurations.size()];
+    auto& change = c.changes[random() % c.changes.size()];
+    if (random() % 2 == 0) change = {.surface = static_cast<int>(3 + random() % 3)};
+    faults[random() % faults.size()](p, change);
+    const std::string refusal = message([&] { validate(p, "z"); });
+    EXPECT_EQ(refusal, refusal_of_rows(p)) << "trial " << trial;
+    refused += static_cast<int>(refusal != "no error");
+  }
+  EXPECT_GT(refused, 100);
+  EXPECT_LT(refused, 390);
+}
+
+// A copy of all positions for each of them would be 5e8 changes.
+TEST(Configured, TakesTheMostPositionsThereMayBe) {
+  constexpr int positions = 1000, surfaces = 500;
+  Prescription p;
+  for (int i = 0; i < surfaces; ++i) p.surfaces.push_back({.radius = 1e4 + i, .thickness = 1, .semi_diameter = 10});
+  p.surfaces[0].stop = true;
+  for (int c = 0; c < positions; ++c) {
+    Configuration& configuration = p.configurations.emplace_back();
+    configuration.name = "position " + std::to_string(c);
+    for (int i = 0; i < surfaces; ++i) configuration.changes.push_back({.surface = i, .thickness = 1 + 1e-3 * c});
+  }
+  validate(p, "zoom");
+  for (int c = 0; c < positions; ++c) {
+    const Prescription rows = configured(p, c);
+    ASSERT_EQ(rows.configurations.size(), 1u);
+    ASSERT_EQ(rows.surfaces.back().thickness, 1 + 1e-3 * c);
+  }
+  // All of them focus the first.
+  for (int c = 1; c < positions; ++c) {
+    p.configurations[static_cast<std::size_t>(c)].focus_of = p.configurations[0].name;
+    p.configurations[static_cast<std::size_t>(c)].subject_distance_mm = 100 + c;
+  }
+  EXPECT_EQ(petzval::compile(p).focus_positions().size(), static_cast<std::size_t>(positions));
 }
 
 }  // namespace

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "petzval/prescription/configuration.hpp"
+#include "petzval/prescription/surface_row.hpp"
+
+namespace petzval::inline v0::prescription_detail {
+
+/// Makes a configuration's change of a surface.
+inline void apply(const SurfaceChange& change, SurfaceRow& row) {
+  row.thickness = change.thickness.value_or(row.thickness);
+  row.radius = change.radius.value_or(row.radius);
+  row.conic = change.conic.value_or(row.conic);
+  if (change.semi_diameter) row.semi_diameter = change.semi_diameter;
+  if (change.medium) row.medium = *change.medium;
+}
+
+}  // namespace petzval::inline v0::prescription_detail
