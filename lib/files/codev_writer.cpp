@@ -21,9 +21,7 @@ constexpr double f_nm = 486.1327, c_nm = 656.2725;
 
 std::string quoted(std::string text) {
   std::ranges::replace(text, '\'', ' ');
-  std::ranges::replace(text, '\n', ' ');
-  std::ranges::replace(text, '\r', ' ');
-  return '\'' + text + '\'';
+  return '\'' + one_line(std::move(text)) + '\'';
 }
 
 class CodevWriter {

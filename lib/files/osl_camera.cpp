@@ -17,6 +17,7 @@
 #include "petzval/pupil/f_number.hpp"
 #include "petzval/pupil/illumination.hpp"
 #include "petzval/pupil/pupil_boundary.hpp"
+#include "text_file.hpp"
 
 namespace petzval::inline v0 {
 namespace {
@@ -37,12 +38,6 @@ std::string array(const std::string& name, std::span<const double> values) {
     text += (i > 0 ? "," : "") + std::string(i % 8 == 0 ? "\n    " : " ") + number(values[i]);
   }
   return text + " };\n";
-}
-
-std::string one_line(std::string text) {
-  std::ranges::replace_if(
-      text, [](char c) { return c == '\n' || c == '\r'; }, ' ');
-  return text;
 }
 
 /// What the film sees of the rear of the lens: in the plane of its last vertex, along the film point's direction from
@@ -146,8 +141,9 @@ Lens OslCamera::focused(double inverse_distance) const {
 
 std::string OslCamera::header() const {
   const FirstOrder first = first_order(lens_);
-  return "// " + one_line(lens_.name()) + "\n" + "// focal length " + to_text(first.effective_focal_length, 5) +
-         " mm, f/" + to_text(f_number_, 3) + ", " + std::to_string(lens_.surface_count()) + " surfaces, at " +
+  return "// " + files_detail::one_line(lens_.name()) + "\n" + "// focal length " +
+         to_text(first.effective_focal_length, 5) + " mm, f/" + to_text(f_number_, 3) + ", " +
+         std::to_string(lens_.surface_count()) + " surfaces, at " +
          to_text(lens_.wavelengths_nm()[lens_.primary_wavelength()], 7) +
          " nm\n"
          "//\n"

@@ -19,12 +19,6 @@ std::string cells(double radius, double thickness, double index, double diameter
   return to_text(radius) + '\t' + to_text(thickness) + '\t' + to_text(index) + '\t' + to_text(diameter);
 }
 
-std::string one_line(std::string text) {
-  std::ranges::replace(text, '\n', ' ');
-  std::ranges::replace(text, '\r', ' ');
-  return text;
-}
-
 }  // namespace
 
 WrittenLens format_table(const Prescription& prescription, const GlassCatalogue* glasses) {

@@ -48,7 +48,10 @@ std::string lower(std::string_view text);
 std::string upper(std::string_view text);
 bool same(std::string_view a, std::string_view b) noexcept;  ///< but for the case of ASCII letters
 
-/// Characters that some formats cannot have in a name: blanks and quotes become underscores.
+/// The text on one line that every reader takes: control characters, line breaks among them, become blanks.
+std::string one_line(std::string text);
+
+/// Characters that some formats cannot have in a name: blanks, quotes and control characters become underscores.
 std::string one_word(std::string_view text);
 
 }  // namespace petzval::inline v0::files_detail

@@ -17,12 +17,6 @@ namespace {
 
 using namespace files_detail;
 
-/// Refuses line breaks: what follows one would be a command.
-const std::string& one_line(const Writer& out, const std::string& text) {
-  if (text.find_first_of("\r\n") == std::string::npos) return text;
-  throw Error(out.where() + ": a text of several lines, wanted one line for a .zmx");
-}
-
 class ZemaxWriter {
  public:
   ZemaxWriter(const Prescription& p, const GlassCatalogue* glasses) : out_(p, glasses), p_(out_.lens()) {}
@@ -63,9 +57,9 @@ class ZemaxWriter {
 void ZemaxWriter::header() {
   out_.line("VERS 140730 0 0");
   out_.line("MODE SEQ");
-  out_.line("NAME " + one_line(out_, p_.name));
+  out_.line("NAME " + one_line(p_.name));
   out_.lose_nominal_data(true, {"source_design", p_.design.fields.empty() ? "half_field_deg" : ""});
-  if (!p_.source_design.empty()) out_.line("NOTE 0 " + one_line(out_, p_.source_design));
+  if (!p_.source_design.empty()) out_.line("NOTE 0 " + one_line(p_.source_design));
   out_.line("UNIT MM X W X CM MR CPMM");
   aperture();
   out_.line("ENVD 20 1 0");
@@ -225,7 +219,7 @@ void ZemaxWriter::surface(std::size_t i) {
   const std::string type = shape(i);
   start(i + 1, type, row.radius == 0 ? 0 : 1 / row.radius, row.thickness);
   if (row.stop) out_.line("  STOP");
-  if (row.comment) out_.line("  COMM " + one_line(out_, *row.comment));
+  if (row.comment) out_.line("  COMM " + one_line(*row.comment));
   if (type == "TOROIDAL") out_.line("  PARM 1 0");
   if (type == "EVENASPH" || type == "ODDASPHE") {
     for (const AsphereTerm& term : row.aspheric) {
@@ -271,7 +265,7 @@ void ZemaxWriter::configurations() {
                 " 0 0 0 1 1 0 0 0 \"\" 0");
     }
   };
-  operand("LTTL", 0, [&](const Configuration& c) { return '"' + one_word(one_line(out_, c.name)) + '"'; });
+  operand("LTTL", 0, [&](const Configuration& c) { return '"' + one_word(c.name) + '"'; });
   const auto far = [](const Configuration& c) { return !c.subject_distance_mm || std::isinf(*c.subject_distance_mm); };
   if (!std::ranges::all_of(list, far)) {
     operand("THIC", 0, [&](const Configuration& c) { return far(c) ? "1e10" : to_text(*c.subject_distance_mm); });

@@ -513,4 +513,26 @@ TEST(RoundTrip, RowsOfATableWithoutARimGetTheWidestOne) {
   EXPECT_EQ(back.surfaces[2].semi_diameter, 0.4);
 }
 
+TEST(RoundTrip, TextsWithControlCharactersComeBackOnOneLine) {
+  using namespace std::string_literals;
+  Prescription p = singlet();
+  p.name = "a\0b\nSURF 9\r\n!\x1B\x7F\xC2\x85z"s;
+  p.source_design = "first\nENPD 3"s;
+  p.surfaces[0].comment = "stop\0\n  DISZ 7"s;
+  p.configurations = {{.name = "wide\n\0"s}, {.name = "tele\tX"s, .changes = {{.surface = 0, .thickness = 3}}}};
+  for (const Write write : {zemax, codev, table}) {
+    const WrittenLens written = write(p);
+    const Prescription back = read(written);
+    EXPECT_EQ(back.name, "a b SURF 9  !   z") << written.text;
+    ASSERT_EQ(back.surfaces.size(), p.surfaces.size());
+    for (std::size_t i = 0; i < p.surfaces.size(); ++i) {
+      EXPECT_EQ(back.surfaces[i].thickness, p.surfaces[i].thickness) << written.text;
+      EXPECT_EQ(back.surfaces[i].semi_diameter, p.surfaces[i].semi_diameter);
+    }
+    if (write != table) {
+      EXPECT_EQ(back.configurations.size(), 2u) << written.text;
+    }
+  }
+}
+
 }  // namespace

@@ -462,10 +462,6 @@ TEST(Zemax, WhatIsNotEvaluatedIsSaid) {
   EXPECT_NE(refusal(singlet + "MNUM 1 1\n" + petzval::testing::repeated(100'001, "THIC 2 1 4\n"))
                 .find("more than 100000 values of configurations"),
             std::string::npos);
-  Prescription p = read(singlet);
-  p.name = "two\nlines";
-  EXPECT_EQ(petzval::testing::message([&] { format_zemax(p); }),
-            "two lines: a text of several lines, wanted one line for a .zmx");
 }
 
 TEST(Zemax, NumbersAreFiniteAndHaveDecimalPoints) {
