@@ -47,6 +47,37 @@ MeridianReport in_meridian(const petzval::Lens& lens, petzval::Meridian meridian
   return r;
 }
 
+/// The aperture that the file declares, as this lens has it; absent if nothing limits the beam.
+std::optional<double> computed_aperture(const petzval::Lens& lens, const petzval::DesignData& design,
+                                        const MeridianReport& r) {
+  using enum petzval::ApertureSetting;
+  if (!r.pupils) return {};
+  const petzval::FirstOrder& first = r.first_order;
+  const petzval::Pupil &entrance = r.pupils->entrance, &exit = r.pupils->exit;
+  const double object = design.object_distance_mm;
+  const bool by_exact_rays = std::isinf(object) && !first.afocal;
+  const double image_z = petzval::paraxial_image_z(lens, -object, 0, r.meridian);
+  const double slope = entrance.diameter / 2 / std::abs(entrance.z + object);
+  const double image_slope = exit.diameter / 2 / std::abs(image_z - exit.z);
+  switch (design.aperture->setting) {
+    case entrance_pupil_diameter:
+      return by_exact_rays ? std::abs(first.effective_focal_length) / petzval::real_f_number(lens) : entrance.diameter;
+    case f_number:
+      return by_exact_rays ? petzval::real_f_number(lens) : std::abs(first.effective_focal_length) / entrance.diameter;
+    case working_f_number: return 1 / (2 * image_slope);
+    case object_na: return first.object_index * std::sin(std::atan(slope));
+    case image_na: return std::abs(first.image_index) * std::sin(std::atan(image_slope));
+    case stop_size: return lens.surfaces()[r.pupils->stop].semi_diameter;
+  }
+  return {};
+}
+
+/// The value of a design's aperture; absent if the stop in the table is the value.
+std::optional<double> declared_value(const petzval::DesignAperture& aperture) {
+  const bool by_table = aperture.setting == petzval::ApertureSetting::stop_size && aperture.value == 0;
+  return by_table ? std::nullopt : std::optional(aperture.value);
+}
+
 /// The numbers of one meridian; null for absent ones.
 Json numbers(const MeridianReport& r) {
   Json json{{"afocal", r.first_order.afocal}};
@@ -81,6 +112,13 @@ Json to_json(const Report& r) {
             {"stop_inferred", pupils && pupils->stop_inferred}};
   json.update(numbers(r.main()));
   json["film_z_mm"] = finite_or_null(lens.film_z());
+  json["design_aperture"] = nullptr;
+  if (const auto& aperture = r.loaded.prescription.design.aperture) {
+    const auto or_null = [](std::optional<double> value) { return value ? finite_or_null(*value) : Json(nullptr); };
+    json["design_aperture"] = {{"setting", petzval::name(aperture->setting)},
+                               {"value", or_null(declared_value(*aperture))},
+                               {"computed", or_null(computed_aperture(lens, r.loaded.prescription.design, r.main()))}};
+  }
   json["meridian"] = r.main().meridian == petzval::Meridian::y ? "y" : "x";
   json["meridians"] = nullptr;
   if (r.meridians.size() > 1) {
@@ -143,6 +181,15 @@ std::string to_text(const Report& r) {
     if (r.meridians.size() > 1) text << "in the section " << section_name(meridian.meridian) << ":\n";
     for (const Entry& entry : meridian.entries) line(entry.label, entry.value, entry.unit);
     if (&meridian == &r.main()) line("film, z", lens.film_z(), "mm");
+    if (const auto& aperture = r.loaded.prescription.design.aperture; aperture && &meridian == &r.main()) {
+      using enum petzval::ApertureSetting;
+      const bool length = aperture->setting == entrance_pupil_diameter || aperture->setting == stop_size;
+      const std::string label = "aperture of the file, " + std::string(petzval::name(aperture->setting));
+      if (const auto value = declared_value(*aperture)) line(label.c_str(), *value, length ? "mm" : "");
+      if (const auto value = computed_aperture(lens, r.loaded.prescription.design, meridian)) {
+        line(declared_value(*aperture) ? "the same of this lens" : label.c_str(), *value, length ? "mm" : "");
+      }
+    }
     if (meridian.first_order.afocal) {
       text << (r.meridians.size() > 1 ? "\nIn this section the lens" : "\nThe lens")
            << " is afocal: it has no focal length and no focal or principal points.\n";

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <span>
 #include <utility>
 
@@ -27,6 +28,7 @@ class CodevBuilder {
   void choose_shapes();
   Medium medium(const CodevSurface& s);
   void put_paraxial_image();
+  std::optional<ApertureSetting> aperture_setting(std::string_view what) const;
   void build_zooms();
 
   CodevLens& lens_;
@@ -208,14 +210,28 @@ void CodevBuilder::put_paraxial_image() try {
   in_.warn(lens_.paraxial_image, "PIM", std::string("is not evaluated: ") + error.what());
 }
 
+/// The setting of the design's aperture, if a word is its command.
+std::optional<ApertureSetting> CodevBuilder::aperture_setting(std::string_view what) const {
+  using enum ApertureSetting;
+  const auto& aperture = in_.lens.design.aperture;
+  if (!aperture) return {};
+  const ApertureSetting setting = aperture->setting;
+  const bool same = (what == "epd" && setting == entrance_pupil_diameter) ||
+                    (what == "fno" && (setting == f_number || setting == working_f_number)) ||
+                    (what == "na" && setting == image_na) || (what == "nao" && setting == object_na);
+  return same ? std::optional(setting) : std::nullopt;
+}
+
 void CodevBuilder::build_zooms() {
   if (lens_.zoom_positions < 2) return;
   auto& list = in_.lens.configurations;
   list.resize(lens_.zoom_positions);
   for (std::size_t i = 0; i < list.size(); ++i) list[i].name = "position " + std::to_string(i + 1);
+  std::map<int, std::size_t> change_of;  // all positions change the same surfaces, in the same order
   for (const CodevZoom& z : lens_.zooms) {
     const bool lens_value = z.what == "thi" || z.what == "rdy" || z.what == "cuy";
-    if (!lens_value && z.what != "fno" && z.what != "tit") {
+    const auto setting = aperture_setting(z.what);
+    if (!lens_value && !setting && z.what != "fno" && z.what != "tit") {
       in_.warn(z.line, "ZOO", "of " + z.what + " is left out; all positions have the value of the first");
       continue;
     }
@@ -228,18 +244,29 @@ void CodevBuilder::build_zooms() {
     if (lens_value && !of_object && (surface < 0 || surface > last)) {
       in_.refuse(z.line, "ZOO", "of surface " + std::to_string(z.surface), "a surface of the lens");
     }
+    if (setting) in_.position_apertures.resize(list.size());
+    std::size_t changed = 0;
+    if (lens_value && !of_object) {
+      const auto [entry, first] = change_of.try_emplace(surface, change_of.size());
+      changed = entry->second;
+      for (std::size_t i = 0; first && i < list.size(); ++i) list[i].changes.emplace_back().surface = surface;
+    }
     for (std::size_t i = 0; i < list.size(); ++i) {
       if (z.what == "tit") {
         if (!z.values[i].empty()) list[i].name = z.values[i];
         continue;
       }
       const double value = in_.number(z.line, "ZOO", z.values[i]);
-      if (z.what == "fno") {
-        list[i].f_number = value;
+      if (z.what == "fno") list[i].f_number = value;
+      if (setting) {
+        const bool length = *setting == ApertureSetting::entrance_pupil_diameter;
+        if (value > 0) in_.position_apertures[i] = length ? value * lens_.unit : value;
+      } else if (!lens_value) {
+        continue;
       } else if (of_object) {
         if (value < codev_endless) list[i].subject_distance_mm = value * lens_.unit;
       } else {
-        SurfaceChange& change = change_of(list[i], surface);
+        SurfaceChange& change = list[i].changes[changed];
         if (z.what == "thi") {
           const double defocus = surface == last ? lens_.surfaces.back().thickness : 0;
           change.thickness = (value + defocus) * lens_.unit;

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
+#include <optional>
 #include <set>
+#include <vector>
 
 #include "core/text.hpp"
 #include "petzval/lens/lens.hpp"
@@ -29,6 +32,7 @@ class CodevWriter {
   CodevWriter(const Prescription& p, const GlassCatalogue* glasses) : out_(p, glasses), p_(out_.lens()) {}
 
   WrittenLens write() {
+    out_.lose_the_wider_stop();
     out_.state_indices_at_d();
     name_media();
     header();
@@ -50,12 +54,19 @@ class CodevWriter {
   void design();
   void surface(std::size_t i);
   std::string glass(const Medium& medium) const;
+  std::optional<double> beam_diameter(std::size_t position);
+  /// True if every zoom position has a beam, and they differ.
+  bool zoomed_beam() const {
+    return std::ranges::all_of(beams_, [](const auto& beam) { return beam.has_value(); }) &&
+           std::ranges::adjacent_find(beams_, std::ranges::not_equal_to()) != beams_.end();
+  }
   void zooms();
 
   Writer out_;
   const Prescription& p_;
   std::vector<std::pair<Medium, std::string>> names_;
   std::vector<std::pair<std::string, Medium>> private_;
+  std::vector<std::optional<double>> beams_;  ///< of the stop in each position; empty if the design declares its beam
 };
 
 /// Names of catalogues where the tables have the same n_d; private glasses, by their indices, for all others.
@@ -115,6 +126,17 @@ void CodevWriter::private_glasses() {
   out_.lose("glass", "glasses whose n_d no catalogue has are private ones, named PRIVATE1 and so on");
 }
 
+/// Of the parallel beam whose exact rays fill the stop in a position; absent if nothing limits the beam.
+std::optional<double> CodevWriter::beam_diameter(std::size_t position) {
+  const Lens lens = out_.at_primary_wavelength(configured(p_, position));
+  if (!has_pupils(lens)) return {};
+  const Meridian meridian = main_meridian(lens);
+  const double by_rays = std::abs(first_order(lens, {}, meridian).effective_focal_length) / real_f_number(lens);
+  const bool parallel = std::isinf(p_.design.object_distance_mm) && std::isfinite(by_rays);
+  const double diameter = parallel ? by_rays : pupils(lens, {}, meridian).entrance.diameter;
+  return std::isfinite(diameter) && diameter > 0 ? std::optional(diameter) : std::nullopt;
+}
+
 void CodevWriter::design() {
   const DesignData& d = p_.design;
   if (d.aperture && d.aperture->setting != ApertureSetting::stop_size) {
@@ -128,14 +150,10 @@ void CodevWriter::design() {
     }
     out_.line(word + to_text(d.aperture->value));
   } else {
-    if (const Lens lens = out_.as_given(); has_pupils(lens)) {
-      // Of the parallel beam whose exact rays fill the stop.
-      const Meridian meridian = main_meridian(lens);
-      const double by_rays = std::abs(first_order(lens, {}, meridian).effective_focal_length) / real_f_number(lens);
-      const bool parallel = std::isinf(d.object_distance_mm) && std::isfinite(by_rays);
-      const double diameter = parallel ? by_rays : pupils(lens, {}, meridian).entrance.diameter;
-      if (std::isfinite(diameter) && diameter > 0) out_.line("EPD " + to_text(diameter));
+    for (std::size_t i = 0; i < std::max<std::size_t>(p_.configurations.size(), 1); ++i) {
+      beams_.push_back(beam_diameter(i));
     }
+    if (beams_[0]) out_.line("EPD " + to_text(*beams_[0]));
     if (d.aperture) out_.lose("aperture", "of the stop's size becomes the diameter of the entrance pupil");
   }
   // Wavelengths fall from the first to the last.
@@ -180,7 +198,9 @@ void CodevWriter::surface(std::size_t i) {
   out_.line("S " + to_text(row.radius) + ' ' + to_text(row.thickness) + (row.mirror ? " REFL" : glass(row.medium)));
   if (row.stop) out_.line("  STO");
   if (row.comment) out_.line("  SLB " + quoted(*row.comment));
-  if (row.semi_diameter && std::isfinite(*row.semi_diameter)) out_.line("  CIR " + to_text(*row.semi_diameter));
+  // The beams of zoom positions give the size of their stop.
+  const bool limited = row.semi_diameter && std::isfinite(*row.semi_diameter) && !(row.stop && zoomed_beam());
+  if (limited) out_.line("  CIR " + to_text(*row.semi_diameter));
   if (row.obscuration_semi_diameter.value_or(0) > 0) {
     out_.line(std::string(row.mirror ? "  CIR HOL " : "  CIR OBS ") + to_text(*row.obscuration_semi_diameter));
   }
@@ -211,6 +231,11 @@ void CodevWriter::zooms() {
   if (!std::ranges::all_of(list, far)) {
     std::string line = "ZOO THI SO";
     for (const Configuration& c : list) line += ' ' + distance(far(c) ? INFINITY : *c.subject_distance_mm);
+    out_.line(line);
+  }
+  if (zoomed_beam()) {
+    std::string line = "ZOO EPD";
+    for (const auto& diameter : beams_) line += ' ' + to_text(*diameter);
     out_.line(line);
   }
   const auto values = [&](const char* name, std::optional<double> SurfaceChange::*member, double SurfaceRow::*of_row) {

@@ -7,8 +7,10 @@
 #include <limits>
 #include <tuple>
 #include <utility>
+#include <vector>
 
 #include "core/text.hpp"
+#include "declared_beam.hpp"
 #include "io/json.hpp"
 #include "media/similar_names.hpp"
 #include "petzval/core/error.hpp"
@@ -16,8 +18,6 @@
 #include "petzval/lens/lens.hpp"
 #include "petzval/lens/medium.hpp"
 #include "petzval/lint/lint.hpp"
-#include "petzval/paraxial/first_order.hpp"
-#include "petzval/pupil/f_number.hpp"
 #include "text_file.hpp"
 
 namespace petzval::inline v0::files_detail {
@@ -43,74 +43,40 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 12> other_na
     {"CAFL", "CAF2"},
 }};
 
-/// Where the image of the stop lies in object space, from the first surface: the ray that crosses the axis there meets
-/// the middle of the stop.
-double entrance_pupil_z(const RayMatrix& to_stop, double object_index) {
-  return to_stop.a == 0 ? std::numeric_limits<double>::infinity() : to_stop.b * object_index / to_stop.a;
-}
+/// The stop in one position: its rim in the file, and the declared marginal ray.
+struct StopSize {
+  std::size_t surface = 0;
+  std::optional<double> rim{};     ///< absent: open
+  std::optional<double> height{};  ///< of the marginal ray; absent: the aperture does not determine it
 
-/// How high the marginal ray of the design meets the stop, in mm: of exact rays where a parallel beam enters, else in
-/// first order. 0 where the aperture does not tell.
-double marginal_height_at_the_stop(const Prescription& rows, const DesignAperture& aperture, const Import& in) {
-  const auto stop = std::ranges::find_if(rows.surfaces, [](const SurfaceRow& row) { return row.stop; });
-  const auto position = static_cast<std::size_t>(stop - rows.surfaces.begin());
-  Prescription open = rows;
-  open.imported.reset();
-  for (SurfaceRow& row : open.surfaces) {
-    row.semi_diameter.reset();
-    row.obscuration_semi_diameter.reset();
+  bool clips_the_beam() const { return rim && height && *rim < 0.99 * *height; }
+  /// The smaller one; absent if neither is known. The digits of files are those of the rim.
+  std::optional<double> semi_diameter() const {
+    constexpr double digits = 1e-6;
+    if (!height || (rim && *rim <= *height * (1 + digits))) return rim;
+    return height;
   }
-  open.configurations.clear();
-  const Lens compiled = in.compiled(open);
-  const FirstOrder first = first_order(compiled, {}, main_meridian(compiled));
-  const double object = rows.design.object_distance_mm;
+};
 
-  // The marginal ray of the design: its height and slope in front of the first surface.
-  const RayMatrix to_stop = ray_matrix_to(compiled, position, {}, main_meridian(compiled));
-  const bool far = !std::isfinite(object);
-  const auto per_unit = [&](double height, double slope) { return to_stop.a * height + to_stop.b * slope; };
-  const double unit = far ? per_unit(1, 0) : per_unit(object, first.object_index);  // slope 1: u = 1, n u = n
-  const auto image_slope = [&] {
-    const RayMatrix all = ray_matrix(compiled, 0, compiled.surface_count(), {}, main_meridian(compiled));
-    return std::abs((far ? all.c : all.c * object + all.d * first.object_index) / first.image_index);
-  };
-  double height = 0;  // of the marginal ray at the stop
-  const double value = aperture.value;
-  switch (aperture.setting) {
-    case ApertureSetting::entrance_pupil_diameter:
-    case ApertureSetting::f_number: {
-      const bool by_ratio = aperture.setting == ApertureSetting::f_number;
-      if (by_ratio && first.afocal) break;
-      const double diameter = by_ratio ? std::abs(first.effective_focal_length) / value : value;
-      if (!first.afocal && far) {
-        try {
-          const double n = std::abs(first.effective_focal_length) / diameter;
-          const Lens wide = with_semi_diameter(compiled, position, 100 * std::abs(first.effective_focal_length));
-          height = with_f_number(wide, n).surfaces()[position].semi_diameter;
-          break;
-        } catch (const Error&) {
-          // rays of this height miss a surface: first order then
-        }
-      }
-      // A parallel beam, or the one from the object to the rim of the entrance pupil, where the stop's image is.
-      height = std::abs(unit) * diameter / 2;
-      if (!far) height *= 1 / std::abs(object + entrance_pupil_z(to_stop, first.object_index));
-      break;
+/// The stop has a size in each position: it opens and closes as the lens zooms.
+void set_the_stop(Prescription& lens, std::span<const StopSize> sizes) {
+  const std::size_t marked = stop_of(lens);
+  const std::optional<double> old = lens.surfaces[marked].semi_diameter;
+  if (sizes.front().surface == marked) lens.surfaces[marked].semi_diameter = sizes.front().semi_diameter();
+  const bool changed = lens.surfaces[marked].semi_diameter != old;
+  for (std::size_t i = 0; i < lens.configurations.size(); ++i) {
+    Configuration& c = lens.configurations[i];
+    const auto size = sizes[i].semi_diameter();
+    const auto known = std::ranges::find(c.changes, static_cast<int>(sizes[i].surface), &SurfaceChange::surface);
+    const auto now = known != c.changes.end() && known->semi_diameter ? known->semi_diameter
+                                                                      : lens.surfaces[sizes[i].surface].semi_diameter;
+    if (size && !(now && std::abs(*now - *size) <= 1e-9 * *size)) {
+      change_of(c, static_cast<int>(sizes[i].surface)).semi_diameter = size;
     }
-    case ApertureSetting::working_f_number: height = std::abs(unit) / image_slope() / (2 * value); break;
-    case ApertureSetting::image_na: {
-      const double sine = std::min(value / std::abs(first.image_index), 0.999999);
-      height = std::abs(unit) / image_slope() * sine / std::sqrt(1 - sine * sine);
-      break;
-    }
-    case ApertureSetting::object_na: {
-      const double sine = std::min(value / std::abs(first.object_index), 0.999999);
-      height = far ? 0 : std::abs(unit) * sine / std::sqrt(1 - sine * sine);
-      break;
-    }
-    case ApertureSetting::stop_size: break;
+    if (sizes[i].surface == marked || !changed) continue;
+    SurfaceChange& other = change_of(c, static_cast<int>(marked));  // no stop here: its rim is that of the file
+    if (!other.semi_diameter) other.semi_diameter = old.value_or(std::numeric_limits<double>::infinity());
   }
-  return height;
 }
 
 }  // namespace
@@ -266,6 +232,7 @@ Lens Import::at_primary_wavelength(const Prescription& rows) {
   const DesignData& design = lens.design;
   const double nm =
       design.wavelengths.empty() ? rows.reference_wavelength_nm : design.wavelengths[design.primary_wavelength].nm;
+  if (nm == rows.reference_wavelength_nm) return compiled(rows);
   return compile(rows, std::array{nm}, {.glasses = &glasses(), .missing_glass = MissingGlass::abbe});
 }
 
@@ -276,53 +243,72 @@ void Import::mark_a_stop() {
   warn(0, "stop", "no surface is marked as the stop; the first one is taken");
 }
 
+/// A declared aperture launches the beam and the rim of the stop clips it, so the smaller one is the size of the stop.
 void Import::size_the_stop() {
-  const auto stop = std::ranges::find_if(lens.surfaces, [](const SurfaceRow& row) { return row.stop; });
   const auto& aperture = lens.design.aperture;
-  if (stop->semi_diameter && !std::isinf(*stop->semi_diameter)) return compare_the_stop(*stop->semi_diameter);
-  if (!aperture || aperture->setting == ApertureSetting::stop_size || !(aperture->value > 0)) {
-    warn(0, "stop", "neither the size of the stop nor an aperture is given; the rims limit the beam");
-    return;
-  }
-  const int surface = static_cast<int>(stop - lens.surfaces.begin());
-  const double height = marginal_height_at_the_stop(configured(lens, 0), *aperture, *this);
-  if (!(height > 0 && std::isfinite(height))) {
-    warn(0, "stop", "the declared aperture does not give its size; the rims limit the beam");
-    return;
-  }
-  lens.stop_size = "from the declared " + std::string(name(aperture->setting)) + " of " + to_text(aperture->value, 8);
-  // The stop opens and closes as the lens zooms.
-  for (std::size_t i = 0; i < lens.configurations.size(); ++i) {
-    Configuration& c = lens.configurations[i];
+  const bool declared = aperture && aperture->setting != ApertureSetting::stop_size && aperture->value > 0 &&
+                        std::isfinite(aperture->value);
+  const auto at_primary = [&](const Prescription& rows) {
+    try {
+      return at_primary_wavelength(rows);
+    } catch (const Error&) {
+      return compiled(rows);  // a glass has no index there
+    }
+  };
+  std::vector<StopSize> sizes(std::max<std::size_t>(lens.configurations.size(), 1));
+  for (std::size_t i = 0; i < sizes.size(); ++i) {
+    const Prescription rows = configured(lens, i);
+    StopSize& size = sizes[i];
+    size.surface = stop_of(rows);
+    size.rim = rows.surfaces[size.surface].semi_diameter;
+    if (size.rim && std::isinf(*size.rim)) size.rim.reset();
+    if (!declared) break;
     DesignAperture own = *aperture;
-    if (c.f_number && own.setting == ApertureSetting::f_number) own.value = *c.f_number;
-    const double size = marginal_height_at_the_stop(configured(lens, i), own, *this);
-    if (c.stop || !(size > 0 && std::isfinite(size)) || std::abs(size - height) <= 1e-9 * height) continue;
-    SurfaceChange& change = change_of(c, surface);
-    if (!change.semi_diameter) change.semi_diameter = size;
+    const bool by_position = i < lens.configurations.size() && own.setting == ApertureSetting::f_number;
+    if (by_position) own.value = lens.configurations[i].f_number.value_or(own.value);
+    if (i < position_apertures.size()) own.value = position_apertures[i].value_or(own.value);
+    const double height =
+        marginal_height_at_the_stop(at_primary(without_rims(rows)), size.surface, lens.design.object_distance_mm, own);
+    if (height > 0 && std::isfinite(height)) size.height = height;
   }
-  stop->semi_diameter = height;
-}
-
-/// A rim of the stop and an aperture of the design may be two sizes of the beam.
-void Import::compare_the_stop(double rim) {
-  const auto& aperture = lens.design.aperture;
-  if (!aperture || aperture->setting == ApertureSetting::stop_size || !(aperture->value > 0)) return;
-  if (aperture->setting == ApertureSetting::f_number) return;  // lint() compares f-numbers
-  const double height = marginal_height_at_the_stop(configured(lens, 0), *aperture, *this);
-  if (!(height > 0) || !std::isfinite(height) || std::abs(height - rim) <= 0.01 * rim) return;
-  warn(0, "stop",
-       "its rim has a semi-diameter of " + to_text(rim, 6) + " mm, the declared " +
-           std::string(name(aperture->setting)) + " of " + to_text(aperture->value, 6) + " wants " +
-           to_text(height, 6) + " mm; the rim is taken");
+  const StopSize& first = sizes.front();
+  if (!first.height) {
+    if (first.rim) return;
+    return warn(0, "stop",
+                declared ? "the declared aperture does not give its size; the rims limit the beam"
+                         : "neither the size of the stop nor an aperture is given; the rims limit the beam");
+  }
+  const std::string beam =
+      "the declared " + std::string(name(aperture->setting)) + " of " + to_text(aperture->value, 6);
+  if (nominal_aperture && first.rim) {
+    // lint() compares f-numbers
+    if (aperture->setting == ApertureSetting::f_number || std::abs(*first.height / *first.rim - 1) <= 0.01) return;
+    return warn(0, "stop",
+                "its rim has a semi-diameter of " + to_text(*first.rim, 6) + " mm; " + beam + " needs " +
+                    to_text(*first.height, 6) + " mm; the rim is taken");
+  }
+  for (StopSize& size : sizes) {
+    if (nominal_aperture && size.rim) size.height.reset();
+  }
+  if (first.semi_diameter() == first.height) lens.stop_size = "from " + beam;
+  const auto clipped = std::ranges::find_if(sizes, &StopSize::clips_the_beam);
+  if (clipped != sizes.end()) {
+    clipped_ = true;
+    warn(0, "stop",
+         "the rim of " + to_text(*clipped->rim, 6) + " mm clips " + beam + ", whose marginal ray meets the stop at " +
+             to_text(*clipped->height, 6) + " mm" +
+             (sizes.size() > 1 ? ", in " + lens.configurations[static_cast<std::size_t>(clipped - sizes.begin())].name
+                               : std::string()));
+  }
+  set_the_stop(lens, sizes);
 }
 
 /// What the file declares and the lens misses, as lint() finds it.
 void Import::compare_the_declared() {
   using enum FindingKind;
   for (const Finding& finding : glasses_ ? lint(lens, *glasses_) : lint(lens)) {
-    const bool declared =
-        finding.kind == focal_length || finding.kind == units || finding.kind == apertures || finding.kind == f_number;
+    const bool declared = finding.kind == focal_length || finding.kind == units || finding.kind == apertures ||
+                          (finding.kind == f_number && !clipped_);
     if (declared) warn(0, name(finding.kind), finding.message);
   }
 }

@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "glass_names.hpp"
 #include "petzval/lens/lens.hpp"
@@ -21,6 +22,11 @@ class Import {
   Import(std::string where, std::string_view format, const GlassCatalogue* glasses);
 
   Prescription lens;  ///< `imported` is set
+  /// True if the design's aperture is a rounded number that describes the lens. It launches no beam: the rim of the
+  /// stop, if the file has one, is the size of the stop.
+  bool nominal_aperture = false;
+  /// The value of the design's aperture in each configuration; absent or too short: that of the design.
+  std::vector<std::optional<double>> position_apertures;
 
   /// Takes note of what the file does not say, or of what is left out. After a thousand only their number is kept.
   void warn(int line, std::string_view command, const std::string& message);
@@ -48,8 +54,8 @@ class Import {
   /// Rows compiled for the primary wavelength of the design, with the n_d/V_d model where a glass is unknown.
   Lens at_primary_wavelength(const Prescription& rows);
 
-  /// What is common to all: rims of a stop that has none by the aperture of the design, nominal data by the fields, a
-  /// name; validated. Returns the prescription.
+  /// What is common to all: the size of the stop by the aperture of the design, nominal data by the fields, a name;
+  /// validated. Returns the prescription.
   Prescription finish();
 
  private:
@@ -57,7 +63,6 @@ class Import {
   Prescription with_reference(Prescription rows) const;
   void mark_a_stop();
   void size_the_stop();
-  void compare_the_stop(double rim);
   void compare_the_declared();
   void declare();
 
@@ -65,6 +70,7 @@ class Import {
   const GlassCatalogue* glasses_;
   std::optional<GlassNames> names_;  ///< names in glasses_; filled when the first glass is looked up
   std::size_t left_out_ = 0;
+  bool clipped_ = false;  ///< the rim of the stop clips the declared beam: said in a warning
 };
 
 /// What a configuration changes of a surface: nothing yet, if it was not asked for before.

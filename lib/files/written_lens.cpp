@@ -2,10 +2,12 @@
 #include "written_lens.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
 #include "core/text.hpp"
+#include "declared_beam.hpp"
 #include "import.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/lens/lens.hpp"
@@ -46,7 +48,6 @@ Writer::Writer(const Prescription& lens, const GlassCatalogue* glasses)
   validate(lens, where_);
   lens_ = first_rows(lens);
   mark_the_stop();
-  given_ = lens_;
 }
 
 /// Programs take the first surface where no stop is marked.
@@ -64,6 +65,32 @@ void Writer::mark_the_stop() {
   const std::size_t stop = pupils(lens, {}, main_meridian(lens)).stop;
   lens_.surfaces[stop].stop = true;
   lose("stop", "none is marked; surface " + std::to_string(stop) + ", whose rim limits the beam, becomes the stop");
+}
+
+void Writer::lose_the_wider_stop() {
+  const auto& aperture = lens_.design.aperture;
+  const std::size_t stop = stop_of(lens_);
+  if (!aperture || aperture->setting == ApertureSetting::stop_size || !(aperture->value > 0) ||
+      stop == lens_.surfaces.size()) {
+    return;
+  }
+  const double rim = lens_.surfaces[stop].semi_diameter.value_or(HUGE_VAL);
+  const double height = marginal_height_at_the_stop(at_primary_wavelength(without_rims(lens_)), stop,
+                                                    lens_.design.object_distance_mm, *aperture);
+  if (!std::isfinite(rim) || !(height > 0) || !std::isfinite(height) || rim <= 1.01 * height) return;
+  lose("stop", "its rim of " + to_text(rim, 6) + " mm is wider than the declared " +
+                   std::string(name(aperture->setting)) + " of " + to_text(aperture->value, 6) +
+                   ", which other programs take: " + to_text(height, 6) + " mm");
+}
+
+void Writer::refuse_closed_rims(const std::string& format) const {
+  const auto check = [&](std::size_t surface, const std::optional<double>& semi_diameter) {
+    if (semi_diameter == 0.0) refuse(surface, "semi_diameter is 0 mm", "a rim that is not closed for a " + format);
+  };
+  for (std::size_t i = 0; i < lens_.surfaces.size(); ++i) check(i, lens_.surfaces[i].semi_diameter);
+  for (const Configuration& c : lens_.configurations) {
+    for (const SurfaceChange& change : c.changes) check(static_cast<std::size_t>(change.surface), change.semi_diameter);
+  }
 }
 
 void Writer::state_indices_at_d() {
@@ -132,6 +159,18 @@ void Writer::lose_nominal_data(bool design_data, std::initializer_list<std::stri
 const GlassCatalogue& Writer::glasses() {
   if (!glasses_) glasses_ = &glass_tables();
   return *glasses_;
+}
+
+Lens Writer::at_primary_wavelength(const Prescription& rows) {
+  const DesignData& design = lens_.design;
+  if (design.wavelengths.empty()) return compiled(rows);
+  const double nm = design.wavelengths[design.primary_wavelength].nm;
+  if (nm == rows.reference_wavelength_nm) return compiled(rows);
+  try {
+    return compile(rows, std::array{nm}, {.glasses = &glasses(), .missing_glass = MissingGlass::abbe});
+  } catch (const Error&) {
+    return compiled(rows);  // a glass has no index there
+  }
 }
 
 const Glass* Writer::glass(const Medium& medium) { return medium.glass ? glass_of(medium, glasses()) : nullptr; }

@@ -19,8 +19,6 @@ class Writer {
   Writer(const Prescription& lens, const GlassCatalogue* glasses);
 
   const Prescription& lens() const noexcept { return lens_; }
-  /// The lens as it was before state_indices_at_d(), in its first configuration and compiled.
-  Lens as_given() const { return compile(given_, {.glasses = glasses_}); }
   /// The prescription's name, for messages.
   const std::string& where() const noexcept { return where_; }
   /// Throws Error: "lens: surface 3: cylinder, wanted wanted".
@@ -30,10 +28,16 @@ class Writer {
   /// Loses the lens's nominal data and sources, but for those that are kept and, in a format with design data, those
   /// that its aperture and its fields declare.
   void lose_nominal_data(bool design_data, std::initializer_list<std::string_view> kept);
+  /// Loses a rim of the stop that is wider than the declared beam: programs launch the beam that the design declares.
+  void lose_the_wider_stop();
+  /// Throws Error for a rim with a semi-diameter of 0, in any configuration: such formats have no closed rim.
+  void refuse_closed_rims(const std::string& format) const;
   /// Restates the indices at the d line, for formats with glasses. A medium with the index of its glass keeps no stated
   /// index. The reference wavelength becomes the wavelength of the design. Throws Error if the index of a glass is
   /// stated and the glass does not reach the d line.
   void state_indices_at_d();
+  /// Rows compiled for the primary wavelength of the design, with the n_d/V_d model if a glass is unknown.
+  Lens at_primary_wavelength(const Prescription& rows);
   const GlassCatalogue& glasses();
   /// The glass of the tables that a medium names; null if there is none.
   const Glass* glass(const Medium& medium);
@@ -46,7 +50,7 @@ class Writer {
  private:
   void mark_the_stop();
 
-  Prescription lens_, given_;
+  Prescription lens_;
   std::string where_;
   const GlassCatalogue* glasses_;
   std::string text_;

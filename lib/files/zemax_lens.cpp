@@ -236,6 +236,7 @@ class Configurations {
 
  private:
   void take(const ZemaxOperand& operand);
+  void aperture(const ZemaxOperand& operand, double value);
   SurfaceChange& change(Configuration& c, const ZemaxOperand& operand);
 
   const ZemaxLens& zemax_;
@@ -245,6 +246,16 @@ class Configurations {
   Import& in_;
   std::map<std::pair<std::string, int>, std::pair<std::string, bool>> left_out_;  ///< first value; whether they differ
 };
+
+/// The value of the design's aperture in a configuration.
+void Configurations::aperture(const ZemaxOperand& operand, double value) {
+  const auto position = static_cast<std::size_t>(operand.configuration) - 1;
+  const ApertureSetting setting = in_.lens.design.aperture->setting;
+  if (setting == ApertureSetting::f_number) in_.lens.configurations[position].f_number = value;
+  if (!(value > 0)) return;
+  in_.position_apertures.resize(in_.lens.configurations.size());
+  in_.position_apertures[position] = setting == ApertureSetting::entrance_pupil_diameter ? value * unit_ : value;
+}
 
 /// The change of the operand's surface; a surface that the rows do not have is refused.
 SurfaceChange& Configurations::change(Configuration& c, const ZemaxOperand& operand) {
@@ -281,8 +292,8 @@ void Configurations::take(const ZemaxOperand& operand) {
   } else if (operand.name == "GLSS") {
     change(c, operand).medium = rows_.medium({.line = operand.line, .name = operand.value});
   } else if (operand.name == "APER" && in_.lens.design.aperture &&
-             in_.lens.design.aperture->setting == ApertureSetting::f_number) {
-    c.f_number = value();
+             in_.lens.design.aperture->setting != ApertureSetting::stop_size) {
+    aperture(operand, value());
   } else {
     const auto [entry, first] = left_out_.try_emplace({operand.name, operand.surface}, std::pair{operand.value, false});
     if (first || entry->second.second || entry->second.first == operand.value) return;

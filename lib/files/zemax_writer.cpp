@@ -22,6 +22,8 @@ class ZemaxWriter {
   ZemaxWriter(const Prescription& p, const GlassCatalogue* glasses) : out_(p, glasses), p_(out_.lens()) {}
 
   WrittenLens write() {
+    out_.refuse_closed_rims(".zmx");
+    out_.lose_the_wider_stop();
     out_.state_indices_at_d();
     header();
     fields();

@@ -223,4 +223,34 @@ TEST_F(LensReport, EveryProgramExplainsItself) {
   }
 }
 
+TEST_F(LensReport, PrintsTheApertureOfTheFileBesideTheComputedOne) {
+  const auto zmx = [](const std::string& aperture, const std::string& object) {
+    return "MODE SEQ\nUNIT MM\n" + aperture + "\nSURF 0\n  CURV 0\n  DISZ " + object +
+           "\nSURF 1\n  STOP\n  CURV 0\n  DISZ 2\n  DIAM 6 1\nSURF 2\n  CURV 0.02\n  DISZ 4\n"
+           "  GLAS ___BLANK 1 0 1.5 60\nSURF 3\n  CURV -0.02\n  DISZ 90\nSURF 4\n  CURV 0\n  DISZ 0\n";
+  };
+  struct Case {
+    const char *aperture, *object, *setting;
+    double declared, computed;
+  };
+  // A front stop of 6 mm clips what is wider.
+  for (const Case& c :
+       {Case{"ENPD 10", "INFINITY", "entrance_pupil_diameter", 10, 10},
+        Case{"ENPD 14", "INFINITY", "entrance_pupil_diameter", 14, 12}, Case{"FNUM 8 0", "INFINITY", "f_number", 8, 8},
+        Case{"OBNA 0.03 0", "100", "object_na", 0.03, 0.03}, Case{"FNUM 16 1", "100", "working_f_number", 16, 16}}) {
+    write("declared.zmx", zmx(c.aperture, c.object));
+    const auto json =
+        nlohmann::json::parse(run("lens_report", {path("declared.zmx"), "--json"}).out)["design_aperture"];
+    EXPECT_EQ(json["setting"], c.setting);
+    EXPECT_EQ(json["value"], c.declared);
+    EXPECT_NEAR(json["computed"].get<double>(), c.computed, 1e-6 * c.computed) << c.aperture;
+    EXPECT_NE(run("lens_report", {path("declared.zmx")}).out.find(c.setting), std::string::npos);
+  }
+  write("declared.zmx", zmx("FLOA 0", "INFINITY"));
+  const auto json = nlohmann::json::parse(run("lens_report", {path("declared.zmx"), "--json"}).out)["design_aperture"];
+  EXPECT_EQ(json["setting"], "stop_size");
+  EXPECT_TRUE(json["value"].is_null());
+  EXPECT_EQ(json["computed"], 6);
+}
+
 }  // namespace

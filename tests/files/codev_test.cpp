@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <string>
 
@@ -105,8 +106,24 @@ TEST(Codev, AperturesAreRims) {
 
 TEST(Codev, ApertureSettingsSizeTheStop) {
   const double focal = petzval::first_order(compile(read(singlet))).effective_focal_length;
-  EXPECT_NEAR(petzval::real_f_number(compile(read(with(singlet, "EPD 10", "FNO 6")))), 6, 1e-6);
+  // At the reference wavelength of the design.
+  const auto f_number = [](const Prescription& p) {
+    return petzval::real_f_number(compile(p, std::array{p.design.wavelengths.at(p.design.primary_wavelength).nm},
+                                          {.missing_glass = petzval::MissingGlass::abbe}));
+  };
+  EXPECT_NEAR(f_number(read(with(singlet, "EPD 10", "FNO 6"))), 6, 1e-6);
   EXPECT_NEAR(petzval::real_f_number(compile(read(singlet))), focal / 10, 1e-6);
+  // A circular aperture of the stop clips the declared beam, and does not widen it.
+  const auto with_rim = [](const std::string& rim) {
+    return *read(with(singlet, "STO", "STO; CIR " + rim)).surfaces[0].semi_diameter;
+  };
+  // Zoomed, each position has its own beam.
+  const Prescription zoom = read(with(singlet, "GO\n", "ZOO 3\nZOO EPD 10 8 4\nGO\n"));
+  ASSERT_EQ(zoom.configurations.size(), 3u);
+  const double sizes[] = {5, 4, 2};
+  for (int i = 0; i < 3; ++i) EXPECT_NEAR(*configured(zoom, i).surfaces[0].semi_diameter, sizes[i], 1e-9) << i;
+  EXPECT_NEAR(with_rim("7"), 5, 1e-9);
+  EXPECT_EQ(with_rim("3"), 3);
   const Prescription na = read(with(singlet, "EPD 10", "NA 0.05"));
   EXPECT_NEAR(petzval::paraxial_f_number(compile(na)), 1 / (2 * std::tan(std::asin(0.05))), 0.05);
   EXPECT_EQ(read(with(singlet, "EPD 10", "NAO 0.05")).design.aperture->setting, petzval::ApertureSetting::object_na);

@@ -535,4 +535,15 @@ TEST(RoundTrip, TextsWithControlCharactersComeBackOnOneLine) {
   }
 }
 
+TEST(RoundTrip, AStopWiderThanTheDeclaredBeamIsSaidToBeLost) {
+  Prescription p = singlet();
+  p.design.aperture = {petzval::ApertureSetting::entrance_pupil_diameter, 8};
+  for (const Write write : {zemax, codev}) {
+    EXPECT_TRUE(lost(write(p), "stop"));
+    EXPECT_NEAR(*read(write(p)).surfaces[0].semi_diameter, 4, 1e-9);
+  }
+  p.design.aperture->value = 10;
+  for (const Write write : {zemax, codev}) EXPECT_FALSE(lost(write(p), "stop"));
+}
+
 }  // namespace

@@ -33,7 +33,8 @@ struct ReadOptions {
 /// Text may be UTF-8, UTF-16 or Latin-1, with any line ends; lengths become millimetres. A command of the file is
 /// honoured, or is named in Prescription::imported->warnings with its line, or the file is refused: never does a lens
 /// come out that differs from the file without a word. What changes nothing of the lens (merit functions, tolerances,
-/// colours, windows) is left out. A stop without a size gets that of the declared aperture.
+/// colours, windows) is left out. A declared aperture launches the beam and the rim of the stop clips it: the size of
+/// the stop, in each configuration, is the smaller one. Solves of a .zmx have the values that the file states.
 ///
 /// A glass that a file names has n_d and V_d of its formula. If a glass of another catalogue or name is taken, a
 /// warning names both. If a glass has no index at the d line (germanium), reference_wavelength_nm is the primary
