@@ -12,6 +12,10 @@ namespace {
 
 using namespace files_detail;
 
+/// Readers take a thickness of 0 of the first glass for gaps in front of surfaces, and of the last surface for a film
+/// that has no position yet.
+constexpr double nearly_zero = 1e-9;
+
 /// Renderers take radius 0 for the stop. A sphere this flat departs from a plane by 5e-5 mm at 10 mm from the axis.
 constexpr double nearly_plane = 1e6;
 
@@ -37,6 +41,7 @@ WrittenLens format_table(const Prescription& prescription, const GlassCatalogue*
   out.line("# millimetres; the row of index 0 is the stop");
   out.line("# radius\tthickness\tn\taperture diameter");
 
+  out.refuse_closed_rims("table");
   if (!p.object_space.is_air()) {
     throw Error(out.where() + ": a medium of index " + to_text(out.index(p.object_space)) +
                 " in front of the lens, wanted air for a table");
@@ -58,22 +63,28 @@ WrittenLens format_table(const Prescription& prescription, const GlassCatalogue*
     const double index = out.index(row.medium);
     const bool is_stop = row.stop && !first_stop;
     if (is_stop) first_stop = &row;
+    double thickness = row.thickness;
+    if (thickness == 0 && ((i == 0 && index != 1) || i + 1 == p.surfaces.size())) {
+      thickness = nearly_zero;
+      out.lose("thickness", "of 0 behind surface " + std::to_string(i) + " is written as 1e-9 mm: readers take 0 for " +
+                                (i == 0 ? "gaps in front of surfaces" : "a film without a position"));
+    }
     if (is_stop && row.radius == 0 && index == 1 && before == 1) {
-      out.line(cells(0, row.thickness, 0, diameter));
+      out.line(cells(0, thickness, 0, diameter));
     } else {
       const double radius = row.radius == 0 ? nearly_plane : row.radius;
       planes = planes || row.radius == 0;
       // A stop on a lens surface becomes a row of its own, in air beside it.
       if (is_stop && before == 1) {
         out.line(cells(0, 0, 0, diameter));
-        out.line(cells(radius, row.thickness, index, diameter));
+        out.line(cells(radius, thickness, index, diameter));
       } else if (is_stop && index == 1) {
         out.line(cells(radius, 0, index, diameter));
-        out.line(cells(0, row.thickness, 0, diameter));
+        out.line(cells(0, thickness, 0, diameter));
       } else if (is_stop) {
         out.refuse(i, "the stop inside glass", "a stop in air for a table");
       } else {
-        out.line(cells(radius, row.thickness, index, diameter));
+        out.line(cells(radius, thickness, index, diameter));
       }
       if (is_stop) out.lose("stop", "of surface " + std::to_string(i) + " becomes a plane at its vertex");
     }

@@ -248,9 +248,9 @@ void ZemaxWriter::surface(std::size_t i) {
   if (row.conic != 0) out_.line("  CONI " + to_text(row.conic));
   if (row.semi_diameter && std::isfinite(*row.semi_diameter)) {
     out_.line("  DIAM " + to_text(*row.semi_diameter) + " 1 0 0 1 \"\"");
-    if (!row.obscuration_semi_diameter) out_.line("  FLAP 0 " + to_text(*row.semi_diameter) + " 0");
-  }
-  if (row.obscuration_semi_diameter && *row.obscuration_semi_diameter > 0) {
+    const double inner = row.obscuration_semi_diameter.value_or(0);
+    out_.line((inner > 0 ? "  CLAP " : "  FLAP ") + to_text(inner) + ' ' + to_text(*row.semi_diameter) + " 0");
+  } else if (row.obscuration_semi_diameter.value_or(0) > 0) {
     out_.line("  OBSC 0 " + to_text(*row.obscuration_semi_diameter) + " 0");
   }
 }

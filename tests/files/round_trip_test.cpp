@@ -535,6 +535,66 @@ TEST(RoundTrip, TextsWithControlCharactersComeBackOnOneLine) {
   }
 }
 
+/// The largest relative difference of the first-order data.
+double first_order_difference(const Prescription& a, const Prescription& b) {
+  const auto of_a = petzval::first_order(compile(a)), of_b = petzval::first_order(compile(b));
+  return std::max(std::abs(of_b.effective_focal_length / of_a.effective_focal_length - 1),
+                  std::abs(of_b.back_focal_distance - of_a.back_focal_distance) / of_a.effective_focal_length);
+}
+
+TEST(RoundTrip, ThicknessesOfZeroComeBackFromATable) {
+  const Prescription whole = singlet();
+  for (const bool first : {false, true}) {
+    for (const bool stop_in_front : {false, true}) {
+      Prescription p = whole;
+      if (!stop_in_front) {
+        p.surfaces = {{.radius = 50, .thickness = 3, .medium = {.nd = 1.5}, .semi_diameter = 9},
+                      {.radius = -90, .thickness = 1, .semi_diameter = 9},
+                      {.thickness = 44, .semi_diameter = 5, .stop = true}};
+      }
+      (first ? p.surfaces.front() : p.surfaces.back()).thickness = 0;
+      const WrittenLens written = table(p);
+      const Prescription back = read(written);
+      ASSERT_EQ(back.surfaces.size(), p.surfaces.size());
+      for (std::size_t i = 0; i < p.surfaces.size(); ++i) {
+        EXPECT_NEAR(back.surfaces[i].thickness, p.surfaces[i].thickness, 2e-9) << written.text;
+      }
+      EXPECT_LT(first_order_difference(p, back), 3e-5) << written.text;
+    }
+  }
+  // Nearly afocal: the focus lies far beyond the longest thickness.
+  Prescription p;
+  p.name = "nearly afocal";
+  p.surfaces = {{.radius = 0, .thickness = 1, .semi_diameter = 5, .stop = true},
+                {.radius = 50, .thickness = 3, .medium = {.nd = 1.5}, .semi_diameter = 9},
+                {.radius = 49.0000000001, .thickness = 0, .semi_diameter = 9}};
+  EXPECT_NEAR(read(table(p)).surfaces.back().thickness, 0, 2e-9);
+}
+
+TEST(RoundTrip, ClosedStopsComeBackOrAreRefused) {
+  Prescription p = singlet();
+  p.surfaces[0].semi_diameter = 0;
+  EXPECT_EQ(read(codev(p)).surfaces[0].semi_diameter, 0);
+  for (const Write write : {table, zemax}) {
+    const std::string refused = petzval::testing::message([&] { write(p); });
+    EXPECT_NE(refused.find("singlet: surface 0: semi_diameter"), std::string::npos) << refused;
+  }
+  // In one position alone.
+  p.surfaces[0].semi_diameter = 5;
+  p.configurations = {{.name = "open"}, {.name = "closed", .changes = {{.surface = 0, .semi_diameter = 0}}}};
+  EXPECT_NE(petzval::testing::message([&] { zemax(p); }).find("surface 0: semi_diameter"), std::string::npos);
+}
+
+TEST(RoundTrip, RimsOfDummyPlanesComeBackWithTheirObscurations) {
+  Prescription p = singlet();
+  p.surfaces.insert(p.surfaces.begin(), {.thickness = 3, .semi_diameter = 6, .obscuration_semi_diameter = 2});
+  for (const Write write : {zemax, codev}) {
+    const Prescription back = read(write(p));
+    EXPECT_EQ(back.surfaces[0].semi_diameter, 6);
+    EXPECT_EQ(back.surfaces[0].obscuration_semi_diameter, 2);
+  }
+}
+
 TEST(RoundTrip, AStopWiderThanTheDeclaredBeamIsSaidToBeLost) {
   Prescription p = singlet();
   p.design.aperture = {petzval::ApertureSetting::entrance_pupil_diameter, 8};

@@ -55,14 +55,16 @@ struct WrittenLens {
 };
 
 /// A renderer's table of four columns: radius, thickness, n_d (0 at the stop), diameter, in mm. It has one index for
-/// all wavelengths, spheres only, and one stop. Throws Error for mirrors, cylinders, aspheres and a medium in front of
-/// the lens: without them it would be another lens. This and the other formats mark the surface that limits the beam
-/// where no stop is marked. glasses, for the indices of media that state none: as in ReadOptions.
+/// all wavelengths, spheres only, and one stop. A thickness of 0 of the first glass or of the last surface is written
+/// as 1e-9 mm. Throws Error for mirrors, cylinders, aspheres, a closed stop and a medium in front of the lens: without
+/// them it would be another lens. This and the other formats mark the surface that limits the beam where no stop is
+/// marked, and write blanks for the control characters of texts. glasses, for the indices of media that state none: as
+/// in ReadOptions.
 PETZVAL_API WrittenLens format_table(const Prescription& prescription, const GlassCatalogue* glasses = nullptr);
 /// A .zmx of sequential Zemax, in millimetres. Glasses of the tables (ReadOptions) keep their names, with an offset if
 /// n_d differs from the formula and from the printed table. Other media become models of n_d and V_d. Indices at
-/// another line than d are restated there, as in a .seq. Throws Error for strings with line breaks and for cylinders
-/// curved along x.
+/// another line than d are restated there, as in a .seq. Throws Error for cylinders curved along x and for a closed
+/// stop.
 PETZVAL_API WrittenLens format_zemax(const Prescription& prescription, const GlassCatalogue* glasses = nullptr);
 /// A .seq of CODE V, in millimetres. Glasses of the tables keep their names where the printed n_d is theirs; others
 /// become private ones. Throws Error for aspheric terms that it lacks: of odd order, of order 2 and above 20.
