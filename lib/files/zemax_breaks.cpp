@@ -4,6 +4,8 @@
 #include <iterator>
 #include <optional>
 #include <span>
+#include <utility>
+#include <vector>
 
 #include "core/text.hpp"
 #include "zemax_lens.hpp"
@@ -28,7 +30,7 @@ bool changes_nothing(const ZemaxSurface& s) {
 /// A plane without glass on either side, as a place for breaks to stand at.
 bool is_dummy(const ZemaxSurface& s, const ZemaxSurface& before) {
   return s.type == "STANDARD" && s.curvature == 0 && !s.stop && !s.glass && !before.glass && !s.aperture &&
-         !s.obscuration;
+         !s.obscuration && !s.ring;
 }
 
 /// The number of a parameter that is the only one; nothing if there are several.
@@ -71,72 +73,78 @@ void warn_of_surface(const ZemaxSurface& found, Import& in) {
   add(found.curvature != 0 || found.curvature_pickup, "CURV");
   add(found.conic != 0, "CONI");
   add(found.glass.has_value(), found.glass ? "GLAS " + found.glass->name : "");
-  add(found.aperture || found.obscuration, "aperture");
+  add(found.aperture || found.obscuration || found.ring, "aperture");
   if (!said.empty()) in.warn(found.line, "COORDBRK", "is no surface; its " + said + " is left out");
 }
 
 /// Behind a mirror that is taken out light runs the other way along z.
-void turn(std::span<ZemaxSurface> surfaces) {
+void turn(ZemaxSurface& s) {
   const auto opposite = [](double& value) { value = 0.0 - value; };
-  for (ZemaxSurface& s : surfaces) {
-    opposite(s.thickness);
-    opposite(s.curvature);
-    if (s.type == "EVENASPH" || s.type == "ODDASPHE") {
-      for (auto& [number, value] : s.parameters) opposite(value);
-    }
-    for (auto& [number, value] : s.extra) {
-      if (number > 2) opposite(value);
-    }
+  opposite(s.thickness);
+  opposite(s.curvature);
+  if (s.type == "EVENASPH" || s.type == "ODDASPHE") {
+    for (auto& [number, value] : s.parameters) opposite(value);
+  }
+  for (auto& [number, value] : s.extra) {
+    if (number > 2) opposite(value);
   }
 }
 
 }  // namespace
 
 void fold_breaks(Surfaces& surfaces, std::vector<int>& place, Import& in) {
-  // Takes out surfaces from `first` up to `end`; the last one's thickness goes to the surface before them.
-  const auto take_out = [&](std::size_t first, std::size_t end) {
-    surfaces[first - 1].thickness += surfaces[end - 1].thickness;
-    const auto at = [](auto& list, std::size_t i) { return list.begin() + static_cast<std::ptrdiff_t>(i); };
-    surfaces.erase(at(surfaces, first), at(surfaces, end));
-    place.erase(at(place, first), at(place, end));
+  Surfaces kept;
+  std::vector<int> kept_place;
+  bool turned = false;
+  const auto keep = [&](std::size_t i) {
+    if (turned) turn(surfaces[i]);
+    kept.push_back(std::move(surfaces[i]));
+    kept_place.push_back(place[i]);
+  };
+  // Takes out surfaces up to `end`: the last one's thickness goes to the surface before them.
+  const auto take_out = [&](std::size_t end) {
+    const double thickness = surfaces[end - 1].thickness;
+    kept.back().thickness += turned ? 0.0 - thickness : thickness;
+    return end;
   };
 
-  for (std::size_t i = 1; i + 1 < surfaces.size(); ++i) {
-    if (!is_break(surfaces[i])) continue;
-    const ZemaxSurface found = surfaces[i];
+  std::size_t i = 0;
+  while (i < surfaces.size()) {
+    if (i == 0 || i + 1 == surfaces.size() || !is_break(surfaces[i])) {
+      keep(i++);
+      continue;
+    }
+    const ZemaxSurface& found = surfaces[i];
     warn_of_surface(found, in);
     if (changes_nothing(found) && !found.stop) {
-      take_out(i, i + 1);
-      --i;
+      i = take_out(i + 1);
       continue;
     }
     if (i + 3 < surfaces.size() && is_fold(std::span(surfaces).subspan(i, 3))) {
       in.warn(found.line, "COORDBRK",
               "the light folded by the plane mirror of surface " + std::to_string(place[i + 1]) +
                   " is unfolded; the mirror is left out");
-      surfaces[i + 2].thickness = 0.0 - surfaces[i + 2].thickness;
-      turn(std::span(surfaces).subspan(i + 3));
-      take_out(i, i + 3);
-      --i;
+      turned = !turned;
+      i = take_out(i + 3);
       continue;
     }
     std::size_t end = i + 1;
     bool bare = found.thickness == 0 && !found.stop;
     while (bare && end + 1 < surfaces.size() && !(is_break(surfaces[end]) && undoes(surfaces[end], found))) {
-      bare =
-          (is_dummy(surfaces[end], surfaces[i - 1]) || (is_break(surfaces[end]) && changes_nothing(surfaces[end]))) &&
-          surfaces[end].thickness == 0;
+      bare = (is_dummy(surfaces[end], kept.back()) || (is_break(surfaces[end]) && changes_nothing(surfaces[end]))) &&
+             surfaces[end].thickness == 0;
       ++end;
     }
     if (bare && end + 1 < surfaces.size()) {
-      take_out(i, end + 1);
-      --i;
+      i = take_out(end + 1);
       continue;
     }
     in.refuse(found.line, "COORDBRK",
               "a tilt or decentre of surface " + std::to_string(place[i]) + " that stays, or has glass within it",
               "a centred lens, with folds by plane mirrors at most");
   }
+  surfaces = std::move(kept);
+  place = std::move(kept_place);
 }
 
 }  // namespace petzval::inline v0::files_detail

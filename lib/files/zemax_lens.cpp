@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/text.hpp"
+#include "declared_beam.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/media/glass.hpp"
@@ -105,6 +106,7 @@ class Rows {
  private:
   void asphere(const ZemaxSurface& s, SurfaceRow& row) const;
   void rims(const ZemaxSurface& s, const Medium& before, SurfaceRow& row) const;
+  void clip_by_ring(const ZemaxSurface& s, SurfaceRow& row) const;
   void term(const ZemaxSurface& s, int order, double coefficient, SurfaceRow& row) const;
 
   const ZemaxLens& zemax_;
@@ -149,16 +151,18 @@ void Rows::term(const ZemaxSurface& s, int order, double coefficient, SurfaceRow
 }
 
 void Rows::asphere(const ZemaxSurface& s, SurfaceRow& row) const {
-  const auto parameter = [&](int i) {
-    const auto found = s.parameters.find(i);
-    return found == s.parameters.end() ? 0.0 : found->second;
-  };
   if (s.type == "STANDARD") return;
   if (s.type == "EVENASPH" || s.type == "ODDASPHE") {
-    const int step = s.type == "EVENASPH" ? 2 : 1;
-    for (int i = 1; i <= 8; ++i) {
-      const int order = step * i;
-      term(s, order, parameter(i) * std::pow(unit_, 1 - order), row);
+    // Powers of r up to r^20 and r^8.
+    const int step = s.type == "EVENASPH" ? 2 : 1, last = s.type == "EVENASPH" ? 10 : 8;
+    for (const auto& [number, value] : s.parameters) {
+      if (value == 0) continue;
+      if (number < 1 || number > last) {
+        in_.refuse(s.line, s.type, "with PARM " + std::to_string(number) + " of " + to_text(value),
+                   "terms of PARM 1 to " + std::to_string(last));
+      }
+      const int order = step * number;
+      term(s, order, value * std::pow(unit_, 1 - order), row);
     }
     return;
   }
@@ -181,8 +185,8 @@ void Rows::asphere(const ZemaxSurface& s, SurfaceRow& row) const {
     return;
   }
   if (s.type == "TOROIDAL") {
-    const bool only_a_cylinder = parameter(1) == 0 && s.conic == 0 &&
-                                 std::ranges::all_of(s.parameters, [](const auto& p) { return p.second == 0; });
+    const bool only_a_cylinder =
+        s.conic == 0 && std::ranges::all_of(s.parameters, [](const auto& p) { return p.second == 0; });
     if (only_a_cylinder) {
       row.curved_in = Section::y;
       return;
@@ -192,18 +196,35 @@ void Rows::asphere(const ZemaxSurface& s, SurfaceRow& row) const {
              "STANDARD, EVENASPH, ODDASPHE, XASPHERE, XOSPHERE, COORDBRK, or a TOROIDAL that is a cylinder");
 }
 
-/// Rims that the user set, of elements and of the stop; the width of the design's beams where the file has no other.
+/// Clear apertures (CLAP, FLAP) clip; so do semi-diameters (DIAM) of elements, the user's or the width of the design's
+/// beams, and the user's of the stop. A dummy surface, with one medium on both sides, clips by a clear aperture alone.
 void Rows::rims(const ZemaxSurface& s, const Medium& before, SurfaceRow& row) const {
   row.obscuration_semi_diameter = s.obscuration;
   const bool dummy = !row.mirror && row.medium == before;
+  const auto& aperture = in_.lens.design.aperture;
+  const bool floats = aperture && aperture->setting == ApertureSetting::stop_size;
+  if (s.semi_diameter > 0 && (s.stop ? s.fixed_semi_diameter || floats : !dummy)) row.semi_diameter = s.semi_diameter;
   if (s.aperture) {
-    row.semi_diameter = s.aperture;
-  } else if (s.semi_diameter > 0 && (s.fixed_semi_diameter || !(dummy || s.stop))) {
-    row.semi_diameter = s.semi_diameter;
+    // If the size of the stop launches the beam, its clear aperture clips it.
+    row.semi_diameter = s.stop && floats ? std::min(*s.aperture, row.semi_diameter.value_or(*s.aperture)) : *s.aperture;
   }
+  if (s.ring) clip_by_ring(s, row);
   if (row.obscuration_semi_diameter && row.semi_diameter && *row.semi_diameter <= *row.obscuration_semi_diameter) {
     row.semi_diameter.reset();  // the width of the beam that passes beside it
   }
+}
+
+/// An opaque ring that reaches the rim leaves the opening inside of it.
+void Rows::clip_by_ring(const ZemaxSurface& s, SurfaceRow& row) const {
+  const double rim = s.aperture.value_or(s.semi_diameter);
+  if (!(rim > 0) || s.ring->outer < rim * (1 - 1e-9)) {
+    in_.refuse(s.ring->line, "OBSC",
+               "an opaque ring from " + to_text(s.ring->inner, 6) + " to " + to_text(s.ring->outer, 6) +
+                   " mm that light passes inside and outside" +
+                   (rim > 0 ? ": the rim is at " + to_text(rim, 6) + " mm" : std::string()),
+               "a disc (OBSC 0 " + to_text(s.ring->outer, 6) + ") or a ring up to the rim");
+  }
+  row.semi_diameter = std::min(s.ring->inner, row.semi_diameter.value_or(s.ring->inner));
 }
 
 SurfaceRow Rows::row(const ZemaxSurface& s, const Medium& before) {
@@ -375,6 +396,50 @@ void check_marginal_height(const ZemaxSurface& s, std::size_t number, Import& in
   }
 }
 
+/// Object and film are planes perpendicular to the axis.
+void check_ends(const ZemaxSurface& object, const ZemaxSurface& image, Import& in) {
+  const bool near = std::isfinite(in.lens.design.object_distance_mm);
+  const auto refuse_tilt = [&](const ZemaxSurface& s, const std::string& place, const std::string& instead) {
+    if (s.type != "TILTSURF") return;
+    // PARM 1 and 2: tangents of the tilts in x and y.
+    for (const int axis : {1, 2}) {
+      const auto tangent = s.parameters.find(axis);
+      if (tangent == s.parameters.end() || tangent->second == 0) continue;
+      in.refuse(s.line, "TYPE",
+                "a TILTSURF at the " + place + ", tilted by " +
+                    to_text(std::atan(tangent->second) * 180 / std::acos(-1.0), 4) + " degrees in " +
+                    (axis == 1 ? "x" : "y"),
+                "an upright " + place + ": set PARM 1 and 2 to 0" + instead);
+    }
+  };
+  if (near) refuse_tilt(object, "object", " and focus on the tilted plane with a tilted film");
+  refuse_tilt(image, "image", " and tilt the film of the camera instead");
+  const auto curved = [](const ZemaxSurface& s) {
+    const bool terms = s.type == "EVENASPH" || s.type == "ODDASPHE";
+    return s.curvature != 0 ||
+           (terms && std::ranges::any_of(s.parameters, [](const auto& p) { return p.second != 0; }));
+  };
+  if (near && curved(object)) in.warn(object.line, "SURF", "the object is curved; a flat one is taken");
+  if (curved(image)) in.warn(image.line, "SURF", "the image is curved; a flat film is taken");
+}
+
+/// A telecentric object space (FTYP) has its pupil at infinity, wherever the stop is. The stop of this lens has to put
+/// it there, at 100 object distances or more.
+void check_telecentric(int line, Import& in) {
+  const double object = in.lens.design.object_distance_mm;
+  const std::size_t stop = stop_of(in.lens);
+  std::string found = "telecentric in object space";
+  if (std::isfinite(object) && stop < in.lens.surfaces.size()) {
+    const double pupil = entrance_pupil_z(in.at_primary_wavelength(without_rims(in.lens)), stop);
+    if (std::abs(pupil + object) >= 100 * std::abs(object)) return;
+    found += ", and the stop, surface " + std::to_string(stop) + ", puts the entrance pupil " +
+             to_text(pupil + object, 6) + " mm from the object";
+  }
+  in.refuse(line, "FTYP", found,
+            "pupils that the stop forms: switch Telecentric Object Space off (the second number is 0), or mark the "
+            "surface as the stop at which the chief rays cross the axis");
+}
+
 /// Where the image is at infinity: a film at the paraxial focus of light from infinity, if that lies behind the lens.
 void put_film_at_focus(const ZemaxSurface& s, Import& in) {
   Prescription rows = in.lens;
@@ -413,7 +478,7 @@ void build_lens(ZemaxLens zemax, double unit, Import& in) {
   if (!image.has_thickness) in.warn(image.line, "SURF", "the image is incomplete; the file may be cut off");
   const auto stops = std::ranges::count_if(zemax.surfaces, &ZemaxSurface::stop);
   if (stops > 1) in.warn(0, "STOP", "is marked on " + std::to_string(stops) + " surfaces; the first one is taken");
-  if (image.curvature != 0) in.warn(image.line, "SURF", "the image is curved; a flat film is taken");
+  check_ends(object, image, in);
 
   // Light that leaves as a parallel beam has no film.
   ZemaxSurface& last = zemax.surfaces[zemax.surfaces.size() - 2];
@@ -426,6 +491,7 @@ void build_lens(ZemaxLens zemax, double unit, Import& in) {
   }
   if (image_at_infinity) put_film_at_focus(zemax.surfaces[zemax.surfaces.size() - 2], in);
   if (image.stop) in.refuse(image.line, "STOP", "at the image", "a surface of the lens");
+  if (zemax.telecentric > 0) check_telecentric(zemax.telecentric, in);
   in.lens.semi_diameters = "of the file: clear apertures, else the widths of the design's beams";
   place.erase(place.begin());
   place.pop_back();

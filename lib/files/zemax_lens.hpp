@@ -24,6 +24,7 @@ struct ZemaxLens {
   std::vector<std::string> catalogues;
   int configurations = 1;
   std::vector<ZemaxOperand> operands;
+  int telecentric = 0;  ///< line of FTYP if the object space is telecentric; else 0
 };
 
 /// Makes the rows and configurations of a prescription: pickups are evaluated, coordinate breaks are folded.

@@ -357,6 +357,7 @@ void ZemaxReader::field_type(Words words) {
                                             FieldKind::real_image_height}[static_cast<std::size_t>(kind)];
     field_count_ = static_cast<std::size_t>(whole(words, 3, 0, 1000));
   }
+  if (value(words, 2) != 0) lens_.telecentric = line_;
   wavelength_count_ = static_cast<std::size_t>(whole(words, 4, 0, 1000));
 }
 
@@ -463,12 +464,11 @@ void ZemaxReader::clear_aperture(Words words) {
 
 void ZemaxReader::obscuration(Words words) {
   const double inner = length(words, 1), outer = length(words, 2);
-  if (inner > 0) {
-    in_.warn(
-        line_, "OBSC",
-        "a ring from " + to_text(inner) + " to " + to_text(outer) + " mm; the disc inside it is taken as obscured too");
+  if (inner > 0 && outer > inner) {
+    surface().ring = ZemaxRing{line_, inner, outer};
+  } else if (outer > 0 && inner <= 0) {
+    surface().obscuration = outer;
   }
-  if (outer > 0) surface().obscuration = outer;
 }
 
 void ZemaxReader::decentred_aperture(Words words) {

@@ -27,6 +27,12 @@ struct ZemaxGlass {
   double nd_offset = 0, vd_offset = 0;
 };
 
+/// OBSC with an opening: the ring that is opaque.
+struct ZemaxRing {
+  int line = 0;
+  double inner = 0, outer = 0;  ///< mm
+};
+
 /// One SURF of a .zmx as the file has it, in millimetres.
 struct ZemaxSurface {
   int line = 0;
@@ -43,6 +49,7 @@ struct ZemaxSurface {
   double semi_diameter = 0;
   bool fixed_semi_diameter = false;  ///< the user's, not the width of the design's beams
   std::optional<double> aperture, obscuration;
+  std::optional<ZemaxRing> ring;
   std::optional<ZemaxPickup> curvature_pickup, thickness_pickup;
   std::optional<std::array<double, 2>> marginal_height;  ///< MAZH: height and zone of the pupil
   std::optional<ZemaxPickup> thickness_sum, position;    ///< TCOM, TOLE: offset is the total

@@ -54,6 +54,11 @@ TEST(LensFile, TheSamplesOfOtherProgramsHaveTheirFocalLengths) {
   std::size_t known = 0, lenses = 0;
   for (const char* folder : {"zemax", "codev", "oslo", "pbrt", "table"}) {
     for (const auto& entry : fs::directory_iterator(formats / folder)) {
+      if (entry.path().filename() == "finite_conjugate_uv.zmx") {
+        // Telecentric object space, with a stop elsewhere.
+        EXPECT_NE(message([&] { petzval::read_prescription(entry.path()); }).find("line 38: FTYP"), std::string::npos);
+        continue;
+      }
       const Prescription lens = petzval::read_prescription(entry.path());
       ++lenses;
       const auto found = focal_lengths.find(entry.path().filename().string());
@@ -64,7 +69,7 @@ TEST(LensFile, TheSamplesOfOtherProgramsHaveTheirFocalLengths) {
     }
   }
   EXPECT_EQ(known, focal_lengths.size());
-  EXPECT_EQ(lenses, 28u);
+  EXPECT_EQ(lenses, 27u);
 }
 
 TEST(LensFile, ASampleCutOffAtAnyByteIsReadOrRefused) {
