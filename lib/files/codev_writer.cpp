@@ -66,7 +66,7 @@ class CodevWriter {
   const Prescription& p_;
   std::vector<std::pair<Medium, std::string>> names_;
   std::vector<std::pair<std::string, Medium>> private_;
-  std::vector<std::optional<double>> beams_;  ///< of the stop in each position; empty if the design declares its beam
+  std::vector<std::optional<double>> beams_;  ///< diameter for each position; empty if the design declares the beam
 };
 
 /// Names of catalogues where the tables have the same n_d; private glasses, by their indices, for all others.
@@ -126,7 +126,7 @@ void CodevWriter::private_glasses() {
   out_.lose("glass", "glasses whose n_d no catalogue has are private ones, named PRIVATE1 and so on");
 }
 
-/// Of the parallel beam whose exact rays fill the stop in a position; absent if nothing limits the beam.
+/// Diameter of the parallel beam whose exact rays fill the stop in a position; nullopt if the beam is unlimited.
 std::optional<double> CodevWriter::beam_diameter(std::size_t position) {
   const Lens lens = out_.at_primary_wavelength(configured(p_, position));
   if (!has_pupils(lens)) return {};

@@ -13,8 +13,8 @@
 namespace petzval::inline v0::files_detail {
 namespace {
 
-/// Where the image of the stop lies in object space, from the first surface: the ray that crosses the axis there meets
-/// the middle of the stop.
+/// Position of the stop's image in object space, from the first surface: a ray through its centre meets the centre of
+/// the stop.
 double entrance_pupil_z(const RayMatrix& to_stop, double object_index) {
   return to_stop.a == 0 ? std::numeric_limits<double>::infinity() : to_stop.b * object_index / to_stop.a;
 }
@@ -55,7 +55,7 @@ double marginal_height_at_the_stop(const Lens& compiled, std::size_t position, d
     const RayMatrix all = ray_matrix(compiled, 0, compiled.surface_count(), {}, main_meridian(compiled));
     return std::abs((far ? all.c : all.c * object + all.d * first.object_index) / first.image_index);
   };
-  double height = 0;  // of the marginal ray at the stop
+  double height = 0;  // marginal ray at the stop
   const double value = aperture.value;
   switch (aperture.setting) {
     case ApertureSetting::entrance_pupil_diameter:
@@ -73,7 +73,7 @@ double marginal_height_at_the_stop(const Lens& compiled, std::size_t position, d
           // rays of this height miss a surface: first order then
         }
       }
-      // A parallel beam, or the one from the object to the rim of the entrance pupil, where the stop's image is.
+      // A parallel beam, or the cone from the object to the rim of the entrance pupil, the image of the stop.
       height = std::abs(unit) * diameter / 2;
       if (!far) height *= 1 / std::abs(object + entrance_pupil_z(to_stop, first.object_index));
       break;

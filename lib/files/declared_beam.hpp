@@ -8,13 +8,13 @@
 
 namespace petzval::inline v0::files_detail {
 
-/// The rows alone, with every rim open.
+/// Rows without configurations, with every rim open.
 Prescription without_rims(Prescription rows);
 
-/// The surface that is marked as the stop; the number of surfaces if none is.
+/// Number of the marked stop; the number of surfaces if no stop is marked.
 std::size_t stop_of(const Prescription& rows);
 
-/// Where the image of a stop lies in object space, from the first surface, mm; infinite in a telecentric object space.
+/// Position of the entrance pupil, from the first surface, mm; infinite in a telecentric object space.
 double entrance_pupil_z(const Lens& compiled, std::size_t stop);
 
 /// Height of a design's marginal ray at the stop, in mm: of an exact ray if a parallel beam enters, else to first

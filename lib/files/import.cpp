@@ -47,10 +47,10 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 12> other_na
 struct StopSize {
   std::size_t surface = 0;
   std::optional<double> rim{};     ///< absent: open
-  std::optional<double> height{};  ///< of the marginal ray; absent: the aperture does not determine it
+  std::optional<double> height{};  ///< marginal ray at the stop; nullopt if the aperture does not determine the ray
 
   bool clips_the_beam() const { return rim && height && *rim < 0.99 * *height; }
-  /// The smaller one; absent if neither is known. The digits of files are those of the rim.
+  /// The smaller of both; nullopt if both are unknown. Equal within the digits of files, the rim is taken.
   std::optional<double> semi_diameter() const {
     constexpr double digits = 1e-6;
     if (!height || (rim && *rim <= *height * (1 + digits))) return rim;
@@ -74,7 +74,8 @@ void set_the_stop(Prescription& lens, std::span<const StopSize> sizes) {
       change_of(c, static_cast<int>(sizes[i].surface)).semi_diameter = size;
     }
     if (sizes[i].surface == marked || !changed) continue;
-    SurfaceChange& other = change_of(c, static_cast<int>(marked));  // no stop here: its rim is that of the file
+    SurfaceChange& other =
+        change_of(c, static_cast<int>(marked));  // no stop in this position: keeps the rim of the file
     if (!other.semi_diameter) other.semi_diameter = old.value_or(std::numeric_limits<double>::infinity());
   }
 }
@@ -252,7 +253,7 @@ void Import::size_the_stop() {
     try {
       return at_primary_wavelength(rows);
     } catch (const Error&) {
-      return compiled(rows);  // a glass has no index there
+      return compiled(rows);  // the wavelength is outside the range of a glass
     }
   };
   std::vector<StopSize> sizes(std::max<std::size_t>(lens.configurations.size(), 1));
@@ -291,9 +292,9 @@ void Import::size_the_stop() {
     if (nominal_aperture && size.rim) size.height.reset();
   }
   if (first.semi_diameter() == first.height) lens.stop_size = "from " + beam;
+  has_declared_beam_ = !nominal_aperture;
   const auto clipped = std::ranges::find_if(sizes, &StopSize::clips_the_beam);
   if (clipped != sizes.end()) {
-    clipped_ = true;
     warn(0, "stop",
          "the rim of " + to_text(*clipped->rim, 6) + " mm clips " + beam + ", whose marginal ray meets the stop at " +
              to_text(*clipped->height, 6) + " mm" +
@@ -308,7 +309,7 @@ void Import::compare_the_declared() {
   using enum FindingKind;
   for (const Finding& finding : glasses_ ? lint(lens, *glasses_) : lint(lens)) {
     const bool declared = finding.kind == focal_length || finding.kind == units || finding.kind == apertures ||
-                          (finding.kind == f_number && !clipped_);
+                          (finding.kind == f_number && !has_declared_beam_);
     if (declared) warn(0, name(finding.kind), finding.message);
   }
 }

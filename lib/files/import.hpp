@@ -25,7 +25,7 @@ class Import {
   /// True if the design's aperture is a rounded number that describes the lens. It launches no beam: the rim of the
   /// stop, if the file has one, is the size of the stop.
   bool nominal_aperture = false;
-  /// The value of the design's aperture in each configuration; absent or too short: that of the design.
+  /// Value of the design's aperture by configuration; nullopt or too short if it does not differ from the design.
   std::vector<std::optional<double>> position_apertures;
 
   /// Takes note of what the file does not say, or of what is left out. After a thousand only their number is kept.
@@ -54,8 +54,8 @@ class Import {
   /// Rows compiled for the primary wavelength of the design, with the n_d/V_d model where a glass is unknown.
   Lens at_primary_wavelength(const Prescription& rows);
 
-  /// What is common to all: the size of the stop by the aperture of the design, nominal data by the fields, a name;
-  /// validated. Returns the prescription.
+  /// Sizes the stop by the aperture of the design, sets nominal data by the fields, and a name. Returns the valid
+  /// prescription.
   Prescription finish();
 
  private:
@@ -70,7 +70,8 @@ class Import {
   const GlassCatalogue* glasses_;
   std::optional<GlassNames> names_;  ///< names in glasses_; filled when the first glass is looked up
   std::size_t left_out_ = 0;
-  bool clipped_ = false;  ///< the rim of the stop clips the declared beam: said in a warning
+  /// True if the stop has the size of the declared beam, or a warning says that its rim clips the beam.
+  bool has_declared_beam_ = false;
 };
 
 /// What a configuration changes of a surface: nothing yet, if it was not asked for before.

@@ -169,7 +169,7 @@ Lens Writer::at_primary_wavelength(const Prescription& rows) {
   try {
     return compile(rows, std::array{nm}, {.glasses = &glasses(), .missing_glass = MissingGlass::abbe});
   } catch (const Error&) {
-    return compiled(rows);  // a glass has no index there
+    return compiled(rows);  // the wavelength is outside the range of a glass
   }
 }
 

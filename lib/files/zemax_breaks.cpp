@@ -101,7 +101,7 @@ void fold_breaks(Surfaces& surfaces, std::vector<int>& place, Import& in) {
     kept.push_back(std::move(surfaces[i]));
     kept_place.push_back(place[i]);
   };
-  // Takes out surfaces up to `end`: the last one's thickness goes to the surface before them.
+  // Takes out surfaces up to `end`: the surface in front gets the thickness of the last.
   const auto take_out = [&](std::size_t end) {
     const double thickness = surfaces[end - 1].thickness;
     kept.back().thickness += turned ? 0.0 - thickness : thickness;

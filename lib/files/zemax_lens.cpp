@@ -197,7 +197,7 @@ void Rows::asphere(const ZemaxSurface& s, SurfaceRow& row) const {
 }
 
 /// Clear apertures (CLAP, FLAP) clip; so do semi-diameters (DIAM) of elements, the user's or the width of the design's
-/// beams, and the user's of the stop. A dummy surface, with one medium on both sides, clips by a clear aperture alone.
+/// beams, and the user's of the stop. Dummy surfaces, with one medium on both sides, clip only by a clear aperture.
 void Rows::rims(const ZemaxSurface& s, const Medium& before, SurfaceRow& row) const {
   row.obscuration_semi_diameter = s.obscuration;
   const bool dummy = !row.mirror && row.medium == before;
@@ -205,7 +205,7 @@ void Rows::rims(const ZemaxSurface& s, const Medium& before, SurfaceRow& row) co
   const bool floats = aperture && aperture->setting == ApertureSetting::stop_size;
   if (s.semi_diameter > 0 && (s.stop ? s.fixed_semi_diameter || floats : !dummy)) row.semi_diameter = s.semi_diameter;
   if (s.aperture) {
-    // If the size of the stop launches the beam, its clear aperture clips it.
+    // A clear aperture of the stop clips the beam that the size of the stop launches.
     row.semi_diameter = s.stop && floats ? std::min(*s.aperture, row.semi_diameter.value_or(*s.aperture)) : *s.aperture;
   }
   if (s.ring) clip_by_ring(s, row);
@@ -214,7 +214,7 @@ void Rows::rims(const ZemaxSurface& s, const Medium& before, SurfaceRow& row) co
   }
 }
 
-/// An opaque ring that reaches the rim leaves the opening inside of it.
+/// An opaque ring that reaches the rim leaves an opening of its inner radius.
 void Rows::clip_by_ring(const ZemaxSurface& s, SurfaceRow& row) const {
   const double rim = s.aperture.value_or(s.semi_diameter);
   if (!(rim > 0) || s.ring->outer < rim * (1 - 1e-9)) {
@@ -247,6 +247,9 @@ SurfaceRow Rows::row(const ZemaxSurface& s, const Medium& before) {
 }
 
 // --- configurations ---------------------------------------------------------------------------------------------
+
+/// Operands that change nothing of the lens: weights, coatings, comments, drawing.
+constexpr std::string_view silent_operands[] = {"MOFF", "FLWT", "WLWT", "COTN", "CWGT", "GCRS", "NCOM", "MCOM", "SDRW"};
 
 class Configurations {
  public:
@@ -295,7 +298,7 @@ void Configurations::take(const ZemaxOperand& operand) {
   }
   Configuration& c = list[static_cast<std::size_t>(operand.configuration) - 1];
   const auto value = [&] { return in_.number(operand.line, operand.name, operand.value); };
-  if (operand.name == "MOFF") return;
+  if (std::ranges::find(silent_operands, operand.name) != std::end(silent_operands)) return;
   if (operand.name == "LTTL") {
     if (!operand.value.empty()) c.name = operand.value;
   } else if (operand.name == "THIC" && operand.surface == 0) {
@@ -352,48 +355,61 @@ std::optional<double> crossing(const Lens& lens, double height) {
   return at.z - at.y / direction.y * direction.z - lens.surfaces().back().vertex_z;
 }
 
-/// MAZH: the thickness behind which the marginal ray, of a zone of the pupil or (zone 0) of first order, is on the
-/// axis. The file's where it is that; the one computed, said in a warning, where it is not.
-void check_marginal_height(const ZemaxSurface& s, std::size_t number, Import& in) {
-  const auto [height, zone] = *s.marginal_height;
-  SurfaceRow& row = in.lens.surfaces[number];
-  const auto not_evaluated = [&] {
-    in.warn(s.solve_line, "MAZH", "this marginal height solve is not evaluated; the file's thickness is taken");
-  };
+/// Distance from the last surface to the crossing of marginal ray and axis: a ray of a zone of the pupil, or to first
+/// order (zone 0).
+std::optional<double> marginal_crossing(double zone, Import& in) {
   const DesignData& design = in.lens.design;
-  if (height != 0 || !std::isinf(design.object_distance_mm)) return not_evaluated();
-  Prescription front = in.lens;
-  front.surfaces.resize(number + 1);
-  front.configurations.clear();
-  for (SurfaceRow& surface : front.surfaces) {
+  Prescription rows = in.lens;
+  rows.configurations.clear();
+  for (SurfaceRow& surface : rows.surfaces) {
     surface.semi_diameter.reset();
     surface.obscuration_semi_diameter.reset();
   }
-  try {
-    const Lens lens = in.at_primary_wavelength(front);
-    const FirstOrder first = first_order(lens, {}, main_meridian(lens));
-    if (first.afocal) return not_evaluated();
-    std::optional<double> focus = first.back_focal_distance;
-    if (zone != 0) {
-      using enum ApertureSetting;
-      const auto& set = design.aperture;
-      const double focal_length = std::abs(first.effective_focal_length);
-      const double diameter = !set                                      ? 0
-                              : set->setting == entrance_pupil_diameter ? set->value
-                              : set->setting == f_number                ? focal_length / set->value
-                                                                        : 0;
-      focus = diameter > 0 ? crossing(lens, zone * diameter / 2) : std::nullopt;
-    }
-    if (!focus || !std::isfinite(*focus)) return not_evaluated();
-    // The digits that files state, and what indices of one catalogue's editions differ by.
-    if (std::abs(*focus - row.thickness) <= 2e-4 * std::abs(first.effective_focal_length)) return;
-    in.warn(s.solve_line, "MAZH",
-            "the file states " + to_text(row.thickness, 8) + " mm, its solve gives " + to_text(*focus, 8) +
-                " mm, which is taken");
-    row.thickness = *focus;
-  } catch (const Error&) {
-    not_evaluated();
+  const Lens lens = in.at_primary_wavelength(rows);
+  const Meridian meridian = main_meridian(lens);
+  const FirstOrder first = first_order(lens, {}, meridian);
+  if (first.afocal) return {};
+  if (zone == 0) {
+    return paraxial_image_z(lens, -design.object_distance_mm, {}, meridian) - lens.surfaces().back().vertex_z;
   }
+  if (!std::isinf(design.object_distance_mm) || !design.aperture) return {};
+  using enum ApertureSetting;
+  const double value = design.aperture->value;
+  const double diameter = design.aperture->setting == entrance_pupil_diameter ? value
+                          : design.aperture->setting == f_number              ? first.effective_focal_length / value
+                                                                              : 0;
+  return diameter != 0 ? crossing(lens, zone * std::abs(diameter) / 2) : std::nullopt;
+}
+
+/// MAZH behind the last surface: the film is where the marginal ray crosses the axis. The file states its distance. A
+/// missing one is computed; one that the rays of this lens do not meet is taken and named, as a glass is then another.
+void check_the_film(const ZemaxSurface& last, Import& in) {
+  const auto [height, zone] = *last.marginal_height;
+  double& stated = in.lens.surfaces.back().thickness;
+  std::optional<double> focus;
+  if (height == 0) {
+    try {
+      focus = marginal_crossing(zone, in);
+    } catch (const Error&) {
+      // not evaluated
+    }
+  }
+  if (focus && !std::isfinite(*focus)) focus.reset();
+  if (stated == 0) {
+    in.warn(last.solve_line, "MAZH",
+            focus
+                ? "the file states a thickness of 0; its marginal ray crosses the axis at " + to_text(*focus, 8) +
+                      " mm, where the film is put"
+                : "the file states a thickness of 0, and its solve is not evaluated; the film is at the last surface");
+    stated = focus.value_or(0);
+    return;
+  }
+  // The digits that files state, and differences between the editions of a glass catalogue.
+  constexpr double tolerance = 1e-3;
+  if (!focus || std::abs(*focus - stated) <= tolerance * std::max(std::abs(*focus), std::abs(stated))) return;
+  in.warn(last.solve_line, "MAZH",
+          "the file puts the film at " + to_text(stated, 8) +
+              " mm; the marginal ray of its solve crosses the axis at " + to_text(*focus, 8) + " mm. The film stays");
 }
 
 /// Object and film are planes perpendicular to the axis.
@@ -423,8 +439,8 @@ void check_ends(const ZemaxSurface& object, const ZemaxSurface& image, Import& i
   if (curved(image)) in.warn(image.line, "SURF", "the image is curved; a flat film is taken");
 }
 
-/// A telecentric object space (FTYP) has its pupil at infinity, wherever the stop is. The stop of this lens has to put
-/// it there, at 100 object distances or more.
+/// A telecentric object space (FTYP) has its pupil at infinity, at any position of the stop. The stop must put the
+/// pupil there: 100 object distances away or more.
 void check_telecentric(int line, Import& in) {
   const double object = in.lens.design.object_distance_mm;
   const std::size_t stop = stop_of(in.lens);
@@ -496,10 +512,8 @@ void build_lens(ZemaxLens zemax, double unit, Import& in) {
   place.erase(place.begin());
   place.pop_back();
   Configurations(zemax, place, unit, rows, in).build();
-  for (std::size_t i = 0; i < in.lens.surfaces.size(); ++i) {
-    const ZemaxSurface& s = zemax.surfaces[i + 1];
-    if (s.marginal_height) check_marginal_height(s, i, in);
-  }
+  const ZemaxSurface& behind = zemax.surfaces[zemax.surfaces.size() - 2];
+  if (behind.marginal_height && !image_at_infinity) check_the_film(behind, in);
 }
 
 }  // namespace petzval::inline v0::files_detail

@@ -23,16 +23,22 @@ using io_detail::in_quotes;
 
 constexpr std::size_t most_surfaces = 10'000, most_operands = 100'000;
 
-/// Commands that change nothing of the lens: windows, tolerances of rays, coatings, colours, polarisation.
-constexpr std::array silent{
-    std::string_view("VERS"), std::string_view("PFIL"), std::string_view("LANG"), std::string_view("GFAC"),
-    std::string_view("RAIM"), std::string_view("PUSH"), std::string_view("SDMA"), std::string_view("OMMA"),
-    std::string_view("ROPD"), std::string_view("HYPR"), std::string_view("PICB"), std::string_view("POLS"),
-    std::string_view("GLRS"), std::string_view("GSTD"), std::string_view("NSCD"), std::string_view("COFN"),
-    std::string_view("BLNK"), std::string_view("TOL"),  std::string_view("HIDE"), std::string_view("MIRR"),
-    std::string_view("SLAB"), std::string_view("POPS"), std::string_view("FIMP"), std::string_view("COAT"),
-    std::string_view("MEMA"), std::string_view("VDSZ"), std::string_view("SCOL"), std::string_view("EFFL"),
-    std::string_view("DMFS"), std::string_view("CONF"), std::string_view("RAYS"), std::string_view("UNCO")};
+/// Commands that change nothing of the lens: the program's windows, tolerances, analyses, coatings, colours and
+/// polarisation; variables of the optimisation; pickups and solves, as the file states the values that they gave.
+constexpr std::string_view silent[] = {
+    // the file and its author
+    "VERS", "PFIL", "LANG", "AUTH", "CSUM", "LUID", "BLNK",
+    // rays and the pupil; pupil data that follow from the lens
+    "RAIM", "PUSH", "SDMA", "OMMA", "ROPD", "HYPR", "PICB", "GFAC", "GLRS", "GSTD", "NSCD", "PUPD", "ZVDX", "ZVDY",
+    "ZVCX", "ZVCY", "ZVAN",
+    // coatings, polarisation, scattering, physical optics
+    "POLS", "COFN", "COAT", "POPS", "FIMP", "MEMA",
+    // drawing and rows of the editor
+    "HIDE", "MIRR", "SLAB", "SSID", "SCOL", "UDAD", "UNCO",
+    // variables, pickups and solves
+    "VDSZ", "VPAR", "VCON", "PPAR", "PCON", "PKUP", "EDGE", "TCED",
+    // merit function and tolerances
+    "DMFS", "EFFL", "CONF", "RAYS", "TOL", "TCMM"};
 
 class ZemaxReader {
  public:
@@ -50,6 +56,7 @@ class ZemaxReader {
 
   bool take(std::span<const Command> commands, Words words);
   void unknown(Words words);
+  void name_unknown();
   /// The words of a line by number: the command is 0. A missing one counts as 0.
   double value(Words words, std::size_t at) const {
     return at < words.size() ? in_.number(line_, words[0], words[at]) : 0.0;
@@ -119,6 +126,12 @@ class ZemaxReader {
   double unit_ = 1;        ///< mm
   std::size_t field_count_ = 0, wavelength_count_ = 0;
   std::string note_;
+  struct Unknown {
+    std::string name;
+    int line = 0;  ///< the first
+    std::size_t lines = 0;
+  };
+  std::vector<Unknown> unknown_;
   bool in_configurations_ = false, unit_given_ = false;
 };
 
@@ -197,12 +210,13 @@ void ZemaxReader::read(std::string_view text) {
     line_ = lines.number(), text_ = lines.text();
     const auto all = words(text_);
     if (all.empty()) continue;
-    if (silent.end() != std::ranges::find(silent, all[0])) continue;
+    if (std::ranges::find(silent, all[0]) != std::end(silent)) continue;
     if (!lens_.surfaces.empty() && !in_configurations_ && take(of_surfaces(), all)) continue;
     if (take(of_file(), all)) continue;
     unknown(all);
   }
   end_note();
+  name_unknown();
   if (!unit_given_) in_.warn(0, "UNIT", "is missing; lengths are taken as millimetres");
   if (lens_.surfaces.size() < 3) {
     throw Error(in_.where() + ": " + std::to_string(lens_.surfaces.size()) +
@@ -244,7 +258,23 @@ void ZemaxReader::unknown(Words words) {
   const bool operand = !lens_.surfaces.empty() && words[0].size() == 4 && words.size() >= 9 &&
                        std::ranges::all_of(words.subspan(1, 8), [](auto word) { return number(word).has_value(); });
   if (operand) return;
-  in_.warn(line_, words[0], "is not known and is left out");
+  const auto known = std::ranges::find(unknown_, words[0], &Unknown::name);
+  if (known != unknown_.end()) {
+    ++known->lines;
+  } else if (unknown_.size() < 100) {
+    unknown_.push_back({std::string(words[0]), line_, 1});
+  } else {
+    in_.warn(line_, words[0], "is not known and is left out");
+  }
+}
+
+/// One warning for each unknown command, however often it occurs.
+void ZemaxReader::name_unknown() {
+  for (const Unknown& u : unknown_) {
+    in_.warn(u.line, u.name,
+             "is not known and is left out" +
+                 (u.lines > 1 ? ", here and in " + std::to_string(u.lines - 1) + " more lines" : std::string()));
+  }
 }
 
 double ZemaxReader::stated(Words words, std::size_t at) const {
@@ -409,13 +439,9 @@ void ZemaxReader::configurations(Words words) {
 void ZemaxReader::curvature(Words words) {
   ZemaxSurface& s = surface();
   s.curvature = stated(words, 1) / unit_;
-  const int solve = words.size() > 2 ? whole(words, 2, 0, 100) : 0;
-  if (solve == 4) {
+  // The file states the solution of any other solve.
+  if (const int solve = words.size() > 2 ? whole(words, 2, 0, 100) : 0; solve == 4) {
     s.curvature_pickup = ZemaxPickup{line_, whole(words, 3, 0, 100'000), value(words, 4), value(words, 5) / unit_};
-  } else if (solve > 1) {
-    in_.warn(
-        line_, "CURV",
-        "its solve (type " + std::to_string(solve) + ") is not evaluated; the curvature that the file states is taken");
   }
 }
 
@@ -444,10 +470,6 @@ void ZemaxReader::glass(Words words) {
   if (known && (vd > 0 || (glass.model && vd == 0))) glass.vd = vd;
   if (mode == 2) glass.pickup = whole(words, 3, 0, 100'000);
   if (mode == 4) glass.nd_offset = value(words, 10), glass.vd_offset = value(words, 11);
-  if (mode == 3 || mode > 4) {
-    in_.warn(line_, "GLAS",
-             "its solve (type " + std::to_string(mode) + ") is not evaluated; the glass stated is taken");
-  }
   surface().glass = std::move(glass);
 }
 

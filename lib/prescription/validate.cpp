@@ -196,7 +196,7 @@ void ConfigurationCheck::check_rows(const std::string& here, const Configuration
   for (const SurfaceChange& change : c.changes) {
     const auto surface = static_cast<std::size_t>(change.surface);
     check_row(here, surface);
-    // A mirror has the medium in front of it.
+    // A mirror has the medium of the surface in front.
     if (change.medium && surface + 1 < p_.surfaces.size()) check_row(here, surface + 1);
   }
   for (const SurfaceChange& change : c.changes) change_of_[static_cast<std::size_t>(change.surface)] = nullptr;

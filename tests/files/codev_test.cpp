@@ -113,7 +113,7 @@ TEST(Codev, ApertureSettingsSizeTheStop) {
   };
   EXPECT_NEAR(f_number(read(with(singlet, "EPD 10", "FNO 6"))), 6, 1e-6);
   EXPECT_NEAR(petzval::real_f_number(compile(read(singlet))), focal / 10, 1e-6);
-  // A circular aperture of the stop clips the declared beam, and does not widen it.
+  // A circular aperture of the stop clips the declared beam and never widens the beam.
   const auto with_rim = [](const std::string& rim) {
     return *read(with(singlet, "STO", "STO; CIR " + rim)).surfaces[0].semi_diameter;
   };

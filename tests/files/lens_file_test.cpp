@@ -128,7 +128,7 @@ TEST(LensFile, HugeFilesAreReadOrRefusedSoon) {
   EXPECT_EQ(refusal(rows), "x: more than 10000 surfaces, wanted fewer");
   std::string commands =
       "MODE SEQ\nUNIT MM\nSURF 0\nDISZ INFINITY\nSURF 1\nSTOP\nDISZ 5\nCURV 0.01\nDIAM 5 1\nGLAS ___BLANK 1 0 1.5 60\n";
-  for (int i = 0; i < 200'000; ++i) commands += "ABCD\n";
+  for (int i = 0; i < 200'000; ++i) commands += "A" + std::to_string(i) + "\n";
   const Prescription lens = petzval::testing::read(commands + "SURF 2\nDISZ 90\nSURF 3\n");
   EXPECT_EQ(lens.imported->warnings.size(), 1001u);
   EXPECT_NE(lens.imported->warnings.back().message.find("more warnings are left out"), std::string::npos);

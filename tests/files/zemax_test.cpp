@@ -240,7 +240,7 @@ TEST(Zemax, DeclaredBeams_AreClippedByTheRimOfTheStop) {
     EXPECT_NE(said.find("3 mm"), std::string::npos) << said;
     EXPECT_NE(said.find(petzval::to_text(declared, 6)), std::string::npos) << said;
   }
-  // The size of the stop launches the beam, automatic or not; its clear aperture clips it.
+  // The size of the stop launches the beam, automatic or not; a clear aperture clips the beam.
   EXPECT_EQ(stop("FLOA 0", wide).surfaces[0].semi_diameter, 7);
   EXPECT_EQ(stop("FLOA 0", "  DIAM 4 0 0 0 1 \"\"\n").surfaces[0].semi_diameter, 4);
   EXPECT_EQ(stop("FLOA 0", narrow + "  CLAP 0 6 0\n").surfaces[0].semi_diameter, 3);
@@ -330,6 +330,44 @@ TEST(Zemax, TelecentricObjectSpacesAreRefusedUnlessTheStopMakesThem) {
   EXPECT_TRUE(read(text).surfaces[3].stop);
 }
 
+TEST(Zemax, CommandsThatChangeNoLensAreSilent) {
+  std::string header, lines;
+  for (const char* command : {"CSUM 1693307950", "LUID 1", "AUTH somebody", "PUPD 11.5 10", "ZVDX 0 0", "ZVDY 0 0.1",
+                              "ZVCX 0 0", "ZVCY 0 0.2", "ZVAN 0 0", "TCMM a tolerance"}) {
+    header += std::string(command) + "\n";
+  }
+  for (const char* command :
+       {"COAT AR", "SSID 1", "UDAD 0 1", "VPAR 2", "VCON", "VDSZ 0 0", "PPAR 2 1 1 0", "EDGE 2 5"}) {
+    lines += std::string("  ") + command + "\n";
+  }
+  Prescription p = read(with(with(singlet, "  DISZ 4\n", "  DISZ 4\n" + lines), "MODE SEQ\n", "MODE SEQ\n" + header));
+  EXPECT_TRUE(p.imported->warnings.empty()) << p.imported->warnings.front().command;
+  EXPECT_EQ(p.surfaces, read(singlet).surfaces);
+  EXPECT_TRUE(read(singlet + "MNUM 2 1\nCOTN 2 1 AR\nCOTN 2 2 none\nFLWT 1 1 1\nFLWT 1 2 2\nCSUM 5\n")
+                  .imported->warnings.empty());
+}
+
+TEST(Zemax, SolvesWhoseSolutionIsStatedAreSilent) {
+  for (const std::string& text :
+       {with(singlet, "CURV -0.02 0", "CURV -0.02 11"), with(singlet, "CURV 0.02 0", "CURV 0.02 2 -0.1"),
+        with(singlet, "___BLANK 1 0 1.5 60 0", "N-BK7 3 0 1.5168 64.17 0"),
+        with(singlet, "  DISZ 4\n", "  DISZ 4\n  MAZH 1 0\n"), with(singlet, "  DISZ 48\n", "  DISZ 48\n  MAZH 1 0\n"),
+        with(singlet, "  DISZ 48\n", "  DISZ 49.33\n  MAZH 0 0\n")}) {
+    EXPECT_TRUE(read(text).imported->warnings.empty()) << text;
+  }
+  // A film elsewhere than its solve says stays, and is named with both distances.
+  const Prescription p = read(with(singlet, "  DISZ 48\n", "  DISZ 48\n  MAZH 0 0\n"));
+  EXPECT_EQ(p.surfaces[2].thickness, 48);
+  const double focus = petzval::first_order(compile(p)).back_focal_distance;
+  EXPECT_NE(warning(p, "MAZH").find("48 mm"), std::string::npos) << warning(p, "MAZH");
+  EXPECT_NE(warning(p, "MAZH").find(petzval::to_text(focus, 8)), std::string::npos) << warning(p, "MAZH");
+  // A near object is imaged by the same solve.
+  const Prescription near =
+      read(with(with(singlet, "  DISZ 48\n", "  DISZ 0\n  MAZH 0 0\n"), "DISZ INFINITY", "DISZ 200"));
+  const petzval::Lens lens = compile(near);
+  EXPECT_NEAR(near.surfaces[2].thickness, petzval::paraxial_image_z(lens, -200) - lens.surfaces()[2].vertex_z, 1e-9);
+}
+
 TEST(Zemax, TheStopIsAsWideAsTheDesignSays) {
   const auto paraxial = [](const std::string& line) {
     const petzval::Lens lens = compile(read(with(singlet, "ENPD 10", line)));
@@ -360,8 +398,6 @@ TEST(Zemax, PickupsAndSumsAreEvaluated) {
   EXPECT_NE(refusal(with(text, "4 2 -1", "4 7 -1")).find("picked up from surface 7"), std::string::npos);
   const Prescription glass = read(with(singlet, "  DISZ 48\n", "  DISZ 48\n  GLAS ___BLANK 2 2 1.5 60 0\n"));
   EXPECT_EQ(glass.surfaces[2].medium.nd, 1.5);
-  // Solves that are not evaluated are named.
-  EXPECT_NE(warning(with(singlet, "CURV -0.02 0", "CURV -0.02 11"), "CURV"), "no warning");
   // The marginal height of the last surface is the focus.
   const double focus = petzval::first_order(compile(read(singlet))).back_focal_distance;
   const Prescription solved = read(with(singlet, "  DISZ 48\n", "  DISZ 0\n  MAZH 0 0\n"));
@@ -501,6 +537,11 @@ TEST(Zemax, EveryCommandIsHonouredOrNamed) {
   EXPECT_EQ(warning(with_line("ABCD 1"), "ABCD"), "is not known and is left out");
   const Prescription p = read(with_line("ABCD 1"));
   EXPECT_EQ(p.imported->warnings[0].line, 40);
+  // Once for each command.
+  const Prescription twice = read(with_line("ABCD 1\n  EFGH\n  ABCD 2\n  ABCD 3"));
+  ASSERT_EQ(twice.imported->warnings.size(), 2u);
+  EXPECT_EQ(twice.imported->warnings[0].line, 40);
+  EXPECT_NE(warning(twice, "ABCD").find("2 more lines"), std::string::npos) << warning(twice, "ABCD");
   // The merit function, tolerances and windows change nothing.
   EXPECT_TRUE(read(singlet + "EFFL 0 2 0 0 0 0 50 1 0 0\nREAY 4 2 0 1 0 0 2.25 0 0 0\nTOL TOFF 0 0 0 0\n")
                   .imported->warnings.empty());
@@ -594,7 +635,7 @@ TEST(Zemax, WhatIsNotEvaluatedIsSaid) {
   using petzval::testing::warns;
   EXPECT_TRUE(warns(with(singlet, "GLAS ___BLANK 1 0 1.5 60 0 0 0 0 0 0", "GLAS N-BK7 4 0 0 0 0 0 0 0 0 0.5"), "GLAS",
                     "V_d is offset by 0.5; the dispersion of N-BK7 is taken as it is"));
-  EXPECT_TRUE(warns(with(singlet, "  DISZ 48\n", "  DISZ 48\n  MAZH 1 0\n"), "MAZH", "is not evaluated"));
+  EXPECT_TRUE(warns(with(singlet, "  DISZ 48\n", "  DISZ 0\n  MAZH 1 0\n"), "MAZH", "is not evaluated"));
   EXPECT_TRUE(warns(with(singlet, "FTYP 0", "FTYP 7"), "FTYP", "field type 7 is not known; fields are left out"));
   EXPECT_NE(refusal(singlet + "MNUM 1 1\n" + petzval::testing::repeated(100'001, "THIC 2 1 4\n"))
                 .find("more than 100000 values of configurations"),

@@ -140,7 +140,7 @@ TEST(Validate, RefusesTheConfigurationsWhoseRowsAreNoLens) {
       [](auto&, auto& change) { change.conic = NAN; },
       [](auto&, auto& change) { change.semi_diameter = 1; },  // inside the obscuration
       [](auto&, auto& change) { change.medium = petzval::Medium{.nd = 6}; },
-      [](auto&, auto& change) { change.medium = petzval::Medium{.nd = 1.7}; },  // not that of the next mirror
+      [](auto&, auto& change) { change.medium = petzval::Medium{.nd = 1.7}; },  // differs from the next mirror
       [](auto& p, auto&) { p.configurations[1].f_number = 0; },
       [](auto& p, auto&) { p.configurations[2].half_field_deg = NAN; }};
   std::mt19937 random(7);
