@@ -24,12 +24,13 @@ constexpr std::size_t ray_film_points = 384, pupil_film_points = 40;
 
 /// z of the planes in which a scene's rays are compared.
 std::vector<double> depths_of(const Lens& lens, const SceneRequirements& scene) {
-  const double nearest = scene.near_mm, farthest = scene.far_mm, film_z = lens.film_z();
-  if (!(nearest <= farthest) || !(film_z - nearest < 0)) {
-    throw Error(lens.name() + ": choose_model: the scene is from " + to_text(nearest, 6) + " to " +
-                to_text(farthest, 6) + " mm from the film, wanted from more than " + to_text(film_z, 6) +
-                " mm, in front of the lens, to as far or farther");
+  const double film_z = lens.film_z(), from_z = origin_z(lens, scene.origin);
+  if (!(scene.near_mm <= scene.far_mm) || !(from_z - scene.near_mm < 0)) {
+    throw Error(lens.name() + ": choose_model: near_mm = " + to_text(scene.near_mm, 6) + ", far_mm = " +
+                to_text(scene.far_mm, 6) + " from the " + std::string(name(scene.origin)) + "; must be more than " +
+                to_text(std::max(from_z, 0.0), 6) + " mm, in front of the lens, and as far or farther");
   }
+  const double nearest = scene.near_mm + (film_z - from_z), farthest = scene.far_mm + (film_z - from_z);
   // The plane of finite distance that measures as those near infinity do: there it is angles that count.
   const double last = std::isinf(farthest) ? 1e4 * nearest : farthest;
   constexpr int steps = 4;
@@ -58,7 +59,8 @@ struct Setting {
     for (const double nm : scene.wavelengths_nm) samples.wavelengths.push_back(lens.wavelength(nm));
     samples.wavelengths = wavelengths_of(lens, samples);
     const bool blur = std::ranges::any_of(tolerances, [](const Tolerance& t) { return t.of_blur > 0; });
-    if (blur) samples.sharpest_between_z = {lens.film_z() - scene.near_mm, lens.film_z() - scene.far_mm};
+    const double from_z = origin_z(lens, scene.origin);
+    if (blur) samples.sharpest_between_z = {from_z - scene.near_mm, from_z - scene.far_mm};
     rays.emplace(exact, film, samples, tolerances);
     pupils.emplace(exact, film, pupil_film_points, samples);
   }

@@ -48,7 +48,7 @@ TEST_P(Promise, HoldsOnFreshSamples) {
   const Scene& scene = GetParam();
   const Lens lens = focused(scene.id, scene.focus);
   const Film film{.width_mm = scene.width, .height_mm = scene.width / 1.5};
-  SceneRequirements wanted{.near_mm = scene.near, .far_mm = scene.far, .film = film};
+  SceneRequirements wanted{.near_mm = scene.near, .far_mm = scene.far, .film = film, .origin = DistanceOrigin::film};
   if (scene.f_number > 0) wanted.f_number = scene.f_number;
   const std::array<ErrorBudget, 6> budgets{{{.max_px = 4},
                                             {.max_px = 1},
@@ -273,15 +273,27 @@ TEST(ChooseModel, StopsTheLensDown) {
   EXPECT_LT(stopped, 0.5 * open);
 }
 
+// The origin shifts the distances of a scene and nothing else.
+TEST(ChooseModel, DistancesCountFromTheirOrigin) {
+  const Lens lens = usual_lens();
+  const auto bound = [&](double near, DistanceOrigin origin) {
+    return candidate_of(choose_model(lens, {.near_mm = near, .origin = origin}, {}), ModelKind::thick).bound_px;
+  };
+  const double from_vertex = bound(1500, DistanceOrigin::front_vertex);
+  EXPECT_NEAR(bound(1500 + lens.film_z(), DistanceOrigin::film), from_vertex, 1e-9 * from_vertex);
+  EXPECT_GT(std::abs(bound(1500, DistanceOrigin::film) - from_vertex), 1e-3 * from_vertex);
+}
+
 TEST(ChooseModel, RefusesImpossibleScenesAndBudgets) {
   const Lens lens = focused("double_gauss_52mm_f1.8", 3000);
   const auto refusal = [&](const SceneRequirements& scene, const ErrorBudget& budget) {
     return testing::message([&] { choose_model(lens, scene, budget); });
   };
-  for (const double near : {0.0, -1.0, 60.0, std::nan("")}) {
-    EXPECT_NE(refusal({.near_mm = near}, {}).find("wanted from more than"), std::string::npos) << near;
+  for (const double near : {0.0, -1.0, std::nan("")}) {
+    EXPECT_NE(refusal({.near_mm = near}, {}).find("near_mm = "), std::string::npos) << near;
   }
-  EXPECT_NE(refusal({.near_mm = 2000, .far_mm = 1000}, {}).find("to as far or farther"), std::string::npos);
+  EXPECT_NE(refusal({.near_mm = 60, .origin = DistanceOrigin::film}, {}).find("near_mm = 60"), std::string::npos);
+  EXPECT_NE(refusal({.near_mm = 2000, .far_mm = 1000}, {}).find("far_mm = 1000"), std::string::npos);
   EXPECT_NE(refusal({.near_mm = 2000, .wavelengths_nm = {400}}, {}).find("400"), std::string::npos);
   EXPECT_NE(refusal({.near_mm = 2000, .film = {.rows = 0}}, {}).find("3840 by 0 pixels"), std::string::npos);
   EXPECT_NE(refusal(usual(), {.max_px = -1}).find("max_px is -1"), std::string::npos);

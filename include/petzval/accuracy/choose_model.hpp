@@ -11,17 +11,19 @@
 #include "petzval/camera/model_kind.hpp"
 #include "petzval/core/export.hpp"
 #include "petzval/film/film.hpp"
+#include "petzval/focus/focus.hpp"
 #include "petzval/lens/lens.hpp"
 
 namespace petzval::inline v0 {
 
 /// The scene that a camera is chosen for.
 struct SceneRequirements {
-  double near_mm = 0;  ///< of the nearest object, from the film, mm
-  double far_mm = std::numeric_limits<double>::infinity();
+  double near_mm = 0;                                       ///< distance of the nearest object from `origin`, mm
+  double far_mm = std::numeric_limits<double>::infinity();  ///< of the farthest
   Film film = {};
   std::optional<double> f_number = {};      ///< unset: as the lens is
   std::vector<double> wavelengths_nm = {};  ///< compiled ones; empty: all of them
+  DistanceOrigin origin = DistanceOrigin::front_vertex;
 };
 
 /// The largest errors that a model may have. Unset limits are not checked.
@@ -67,8 +69,8 @@ struct ModelChoice {
 /// The fastest model whose errors stay within a budget over film, pupil and depths of the scene.
 ///
 /// The lens must be focused; with_f_number() stops it down. Errors are compared at the nearest and the farthest depth,
-/// at three between them (equally spaced in 1/distance) and at the focus, the same for all models (min_rms). Among
-/// equally fast models the first of models() is chosen; pinhole, thin and thick count as equally fast.
+/// at three between them (equally spaced in 1/distance from the film) and at the focus, the same for all models
+/// (min_rms). Among equally fast models the first of models() is chosen; pinhole, thin and thick count as equally fast.
 ///
 ///     const ModelChoice choice = choose_model(lens, {.near_mm = 1000, .film = film}, {.max_px = 0.25});
 ///     const Camera camera(lens, film, {.model = choice.model});
