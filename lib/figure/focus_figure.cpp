@@ -40,7 +40,8 @@ std::optional<Parabola> parabola(const std::array<double, 3>& values, double z, 
   return Parabola{z + shift * step, values[1] - bend * shift * shift, bend / (step * step)};
 }
 
-std::vector<std::optional<Parabola>> parabolas(const Lens& lens, double subject_z, std::span<const double> fields_rad) {
+std::vector<std::optional<Parabola>> parabolas(const Lens& lens, double subject_z, std::span<const double> fields_rad,
+                                               std::span<const double> weights) {
   const double step = 0.01 * std::max(std::abs(lens.film_z() - lens.surfaces().back().vertex_z), 1e-3);
   const std::array shifted{with_film(lens, lens.film_z() - step), lens, with_film(lens, lens.film_z() + step)};
   std::vector<std::optional<Parabola>> result;
@@ -52,7 +53,9 @@ std::vector<std::optional<Parabola>> parabolas(const Lens& lens, double subject_
     std::array<double, 3> squares{};
     for (std::size_t k = 0; k < 3; ++k) {
       std::vector<RayBundle> hits;
-      for (const PupilSampler& sampler : samplers) hits.push_back(trace_bundle(shifted[k], sampler, rays));
+      for (std::size_t w = 0; w < samplers.size(); ++w) {
+        hits.push_back(figure_detail::weighted(trace_bundle(shifted[k], samplers[w], rays), weights[w]));
+      }
       const double rms = spot_size(hits).rms_radius;
       squares[k] = rms * rms;
     }
@@ -78,11 +81,11 @@ std::optional<Parabola> mean(const std::vector<std::optional<Parabola>>& fields)
 
 class Figure {
  public:
-  Figure(const Lens& lens, double subject_z, std::span<const double> fields_rad)
-      : lens_(lens), subject_z_(subject_z), fields_(fields_rad) {
+  Figure(const Lens& lens, double subject_z, std::span<const double> fields_rad, std::vector<double> weights)
+      : lens_(lens), subject_z_(subject_z), fields_(fields_rad), weights_(std::move(weights)) {
     std::vector<double> with_axis(fields_rad.begin(), fields_rad.end());
     with_axis.push_back(0);
-    curves_ = parabolas(lens, subject_z, with_axis);
+    curves_ = parabolas(lens, subject_z, with_axis, weights_);
     axis_ = curves_.back();
     curves_.pop_back();
     mean_ = mean(curves_);
@@ -151,7 +154,8 @@ class Figure {
 
   std::string wavelengths_in_words() const {
     const auto count = lens_.wavelengths_nm().size();
-    return count == 1 ? "" : ", " + std::to_string(count) + " wavelengths with equal weight";
+    return count == 1 ? ""
+                      : ", " + std::to_string(count) + " wavelengths with " + figure_detail::weights_text(weights_);
   }
 
   static std::string signed_mm(double mm) {
@@ -190,6 +194,7 @@ class Figure {
   const Lens& lens_;
   double subject_z_;
   std::span<const double> fields_;
+  std::vector<double> weights_;                  // of the wavelengths
   std::vector<std::optional<Parabola>> curves_;  // of fields_
   std::optional<Parabola> axis_, mean_;
   bool paraxial_ = false;
@@ -199,9 +204,11 @@ class Figure {
 
 }  // namespace
 
-std::string focus_figure(const Lens& lens, double subject_z, std::span<const double> fields_rad) {
+std::string focus_figure(const Lens& lens, double subject_z, std::span<const double> fields_rad,
+                         std::span<const double> wavelength_weights) {
   if (fields_rad.empty()) throw Error("focus_figure: no fields, wanted at least one");
-  return Figure(lens, subject_z, fields_rad).draw();
+  return Figure(lens, subject_z, fields_rad, figure_detail::checked_weights("focus_figure", lens, wavelength_weights))
+      .draw();
 }
 
 }  // namespace petzval::inline v0

@@ -68,7 +68,7 @@ figure_detail::Axis spanning(Frames frames, const Diagram& diagram) {
 }  // namespace
 
 std::string focus_pull_figure(std::string_view title, std::string_view remark, Frames frames,
-                              std::span<const double> key_times) {
+                              std::span<const double> key_times, std::string_view distance_from) {
   check(frames);
   std::vector<Diagram> diagrams{
       {"in focus (1/m)", {{[](const auto& f) { return 1e3 / f.subject_distance; }, "#1a8f3c", {}}}, true},
@@ -112,8 +112,8 @@ std::string focus_pull_figure(std::string_view title, std::string_view remark, F
     y += height + gap;
   }
   svg.text(figure_detail::sheet_margin, foot + 4,
-           "In focus: on the axis, from the film, as 1/distance; 0 is infinity. Dotted: keys. Grey: no point to serve, "
-           "the film stays.",
+           "In focus: on the axis, from the " + std::string(distance_from) +
+               ", as 1/distance; 0 is infinity. Dotted: keys. Grey: no point to serve, the film stays.",
            figure_detail::small_text);
   return std::move(svg).finish();
 }

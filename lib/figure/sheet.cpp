@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/text.hpp"
+#include "petzval/core/error.hpp"
 #include "petzval/core/units.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/f_number.hpp"
@@ -62,6 +63,36 @@ void draw_head(Svg& svg, const Lens& lens, std::string_view kind, double subject
                (f_number > 0 && std::isfinite(f_number) ? ",  f/" + to_text(f_number, 3) : "") + ",  subject at " +
                (std::isinf(subject_z) ? "infinity" : "z = " + to_text(subject_z, 6) + " mm") + ",  film at z = " +
                to_text(lens.film_z(), 6) + " mm,  " + to_text(lens.wavelengths_nm()[wavelength], 6) + " nm");
+}
+
+std::vector<double> checked_weights(std::string_view where, const Lens& lens, std::span<const double> weights) {
+  const std::size_t count = lens.wavelengths_nm().size();
+  if (weights.empty()) return std::vector<double>(count, 1);
+  double sum = 0;
+  for (const double weight : weights) {
+    if (!(weight >= 0 && std::isfinite(weight))) {
+      throw Error(std::string(where) + ": wavelength weight = " + to_text(weight) + "; must be finite, 0 or more");
+    }
+    sum += weight;
+  }
+  if (weights.size() != count || !(sum > 0)) {
+    throw Error(std::string(where) + ": " + std::to_string(weights.size()) + " wavelength weights of sum " +
+                to_text(sum) + "; must be " + std::to_string(count) + ", one per compiled wavelength, not all 0");
+  }
+  return {weights.begin(), weights.end()};
+}
+
+std::string weights_text(std::span<const double> weights) {
+  if (std::ranges::all_of(weights, [&](double w) { return w == weights.front(); })) return "equal weight";
+  std::string text;
+  for (const double weight : weights) text += (text.empty() ? "weights " : ", ") + to_text(weight, 3);
+  return text;
+}
+
+RayBundle weighted(RayBundle bundle, double weight) {
+  if (weight == 0) bundle.x.clear(), bundle.y.clear();  // no light: not in the largest radius either
+  bundle.weights.assign(bundle.x.size(), weight);
+  return bundle;
 }
 
 double draw_scale_bar(Svg& svg, double x, double y, double px_per_mm, double longest, std::string_view remark) {

@@ -2,10 +2,13 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "petzval/lens/lens.hpp"
+#include "petzval/rays/ray_bundle.hpp"
 #include "svg.hpp"
 
 /// What the figures share: head line, colours of fields, scale bar, lengths as text.
@@ -33,6 +36,18 @@ std::string glass_colour(double index);
 /// The name of the lens, and a line with the kind of figure, focal length, f-number, subject, film and wavelength.
 /// Takes the top 56 px.
 void draw_head(Svg& svg, const Lens& lens, std::string_view kind, double subject_z, std::size_t wavelength);
+
+/// Weights of the compiled wavelengths: the given weights, or equal weights if `weights` is empty.
+///
+/// @param where  the figure's name, for messages
+/// @throws Error  for weights that are not one per wavelength, below 0, not finite, or all 0
+std::vector<double> checked_weights(std::string_view where, const Lens& lens, std::span<const double> weights);
+
+/// "equal weight", or "weights 1, 0.5, 1" in the order of the compiled wavelengths.
+std::string weights_text(std::span<const double> weights);
+
+/// Gives every ray of a bundle the weight of its wavelength.
+RayBundle weighted(RayBundle bundle, double weight);
 
 /// A bar of round length, at most `longest` px, with its left end at (x, y) and its length as text to the right.
 /// Returns about where the text ends.

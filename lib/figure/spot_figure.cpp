@@ -63,9 +63,10 @@ std::string marker(std::size_t kind, double x, double y) {
 
 class Figure {
  public:
-  Figure(const Lens& lens, std::span<const Spot> spots)
+  Figure(const Lens& lens, std::span<const Spot> spots, std::vector<double> weights)
       : lens_(lens),
         spots_(spots),
+        weights_(std::move(weights)),
         wavelengths_(lens.wavelengths_nm().size()),
         rows_(spots.size() / wavelengths_),
         columns_(wavelengths_ == 1 ? 1 : 1 + wavelengths_),
@@ -81,7 +82,7 @@ class Figure {
     middle_ = order[wavelengths_ / 2];
     for (std::size_t row = 0; row < rows_; ++row) {
       std::vector<RayBundle> hits;
-      for (const Spot& spot : of(row)) hits.push_back(spot.hits);
+      for (const Spot& spot : of(row)) hits.push_back(figure_detail::weighted(spot.hits, weights_[spot.wavelength]));
       sizes_.push_back(spot_size(hits));
     }
     limit_ = 1.08 * std::max(extent(), airy(middle_));
@@ -183,7 +184,8 @@ class Figure {
     svg_.text(
         gap, y + 24,
         "Origin: centroid of all rays of the field. RMS and max: radii about the centroid of the rays in the cell. "
-        "Wavelengths have equal weight. Chief ray: through the stop's centre.",
+        "Wavelengths have " +
+            figure_detail::weights_text(weights_) + ". Chief ray: through the stop's centre.",
         small_text);
     // A closed stop has no Airy circle.
     const std::string circle = !std::isfinite(f_number_)
@@ -199,6 +201,7 @@ class Figure {
 
   const Lens& lens_;
   std::span<const Spot> spots_;
+  std::vector<double> weights_;
   std::size_t wavelengths_, rows_, columns_;
   std::size_t middle_ = 0;  // the median wavelength, for what has one wavelength
   std::vector<Look> looks_;
@@ -210,7 +213,7 @@ class Figure {
 
 }  // namespace
 
-std::string spot_figure(const Lens& lens, std::span<const Spot> spots) {
+std::string spot_figure(const Lens& lens, std::span<const Spot> spots, std::span<const double> wavelength_weights) {
   const std::size_t wavelengths = lens.wavelengths_nm().size();
   bool ordered = !spots.empty() && spots.size() % wavelengths == 0;
   for (std::size_t i = 0; ordered && i < spots.size(); ++i) ordered = spots[i].wavelength == i % wavelengths;
@@ -218,7 +221,7 @@ std::string spot_figure(const Lens& lens, std::span<const Spot> spots) {
     throw Error("spot_figure: " + std::to_string(spots.size()) + " spots, wanted fields by " +
                 std::to_string(wavelengths) + " wavelengths in the order of spot_diagram");
   }
-  return Figure(lens, spots).draw();
+  return Figure(lens, spots, figure_detail::checked_weights("spot_figure", lens, wavelength_weights)).draw();
 }
 
 }  // namespace petzval::inline v0

@@ -79,6 +79,23 @@ TEST(FocusFigure, TheMeanIsTheRootOfTheMeanSquare) {
   EXPECT_NEAR(mean.on_film / std::sqrt((a * a + b * b) / 2), 1, 6e-3);
 }
 
+TEST(FocusFigure, WeighsWavelengths) {
+  const Prescription p = testing::data_prescription("cooke_triplet_50mm_f5");
+  const CompileOptions abbe{.missing_glass = MissingGlass::abbe};
+  const Lens three = compile(p, std::array{486.1327, d_line_nm, 656.2725}, abbe);
+  const auto on_film = [](const Lens& lens, std::span<const double> weights) {
+    return line_of(focus_figure(lens, -infinity, std::array{0.0}, weights), "field 0\u00b0").on_film;
+  };
+  const double equal = on_film(three, {});
+  EXPECT_EQ(on_film(three, std::array{2.0, 2.0, 2.0}), equal);
+  const double blue = on_film(compile(p, std::array{486.1327}, abbe), {});
+  EXPECT_EQ(on_film(three, std::array{1.0, 0.0, 0.0}), blue);
+  EXPECT_NE(blue, equal);
+  for (const std::vector<double>& wrong : {std::vector{1.0}, {1.0, -1.0, 1.0}, {0.0, 0.0, 0.0}}) {
+    EXPECT_THROW(focus_figure(three, -infinity, std::array{0.0}, wrong), Error);
+  }
+}
+
 TEST(FocusFigure, CurvesStayWithinTheFrame) {
   const Lens lens = data_lens("tessar_100mm_f2.8");  // its curves leave the frame at the top
   const std::string svg = focus_figure(lens, -infinity, std::array{0.0, radians(25.0)});

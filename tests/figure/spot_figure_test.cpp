@@ -52,6 +52,18 @@ TEST(SpotFigure, HasACellForEachFieldAndWavelength) {
   EXPECT_EQ(svg, spot_figure(lens, spots));
 }
 
+TEST(SpotFigure, WeighsTheColumnOfAllWavelengths) {
+  const std::array wavelengths{486.1, 587.6, 656.3};
+  const Lens lens = lens_of("double_gauss_100mm_f2.0", wavelengths);
+  const auto spots = spot_diagram(lens, -infinity, std::array{radians(7.0)}, 512);
+  const auto rms = [](const SpotSize& size) { return "RMS " + to_text(1e3 * size.rms_radius, 3) + " \u00b5m,"; };
+  const std::string alone = spot_figure(lens, spots, std::array{0.0, 0.0, 3.0});
+  EXPECT_EQ(count(alone, rms(spots[2].size)), 2u);
+  EXPECT_EQ(count(spot_figure(lens, spots), rms(spots[2].size)), 1u);
+  EXPECT_EQ(spot_figure(lens, spots, std::array{0.5, 0.5, 0.5}), spot_figure(lens, spots));
+  EXPECT_THROW(spot_figure(lens, spots, std::array{1.0, 1.0}), Error);
+}
+
 TEST(SpotFigure, DrawsWithinItsCells) {
   const std::array wavelengths{587.5618};
   const Lens lens = lens_of("double_gauss_100mm_f1.35", wavelengths);

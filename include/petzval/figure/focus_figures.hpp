@@ -19,17 +19,21 @@ namespace petzval::inline v0 {
 /// distance of the film from the paraxial focus. Lines mark the paraxial focus, the film, and the minima of the axial
 /// spot and of all fields; the numbers are printed below.
 ///
-/// RMS radii are about the centroid, over all compiled wavelengths with equal weight and the vignetted pupil by area.
-/// Their square is a parabola in the film position, found from three positions. The same lens gives the same bytes.
+/// RMS radii are about the centroid, over all compiled wavelengths and the vignetted pupil by area. Their square is a
+/// parabola in the film position, found from three positions. The same lens gives the same bytes.
 ///
-/// subject_z: lens frame, mm, -inf at infinity. Throws Error where pupil_boundary does, and for no fields.
-PETZVAL_API std::string focus_figure(const Lens& lens, double subject_z, std::span<const double> fields_rad);
+/// @param subject_z           lens frame, mm, -inf at infinity
+/// @param wavelength_weights  one per compiled wavelength, by the light in it; empty: equal weights
+/// @throws Error  where pupil_boundary does, for no fields, and for weights that are not one per wavelength, below 0,
+///                or all 0
+PETZVAL_API std::string focus_figure(const Lens& lens, double subject_z, std::span<const double> fields_rad,
+                                     std::span<const double> wavelength_weights = {});
 
 /// A film and the subject in focus at one time.
 struct FocusPullFrame {
   double time = 0;              ///< s
   Film film;                    ///< z_mm is set
-  double subject_distance = 0;  ///< on the axis, from the film, mm, > 0; may be infinite
+  double subject_distance = 0;  ///< on the axis, mm, > 0; may be infinite
   double rms_mm = 0;            ///< blur of the focus points; NaN where none was used and the film stayed
 };
 
@@ -37,10 +41,14 @@ struct FocusPullFrame {
 /// position, the RMS blur of the focus points, and tilt and swing where the film has any. Vertical lines mark the keys;
 /// curves are grey where the film stayed.
 ///
-/// title: the lens's name; remark: a line about the conditions. Frames are in the order of time. Throws Error for no
-/// frames and for invalid numbers.
+/// @param title          the lens's name
+/// @param remark         a line about the conditions
+/// @param frames         in the order of time
+/// @param distance_from  origin of the subject distances, in words
+/// @throws Error  for no frames and for invalid numbers
 PETZVAL_API std::string focus_pull_figure(std::string_view title, std::string_view remark,
-                                          std::span<const FocusPullFrame> frames, std::span<const double> key_times);
+                                          std::span<const FocusPullFrame> frames, std::span<const double> key_times,
+                                          std::string_view distance_from = "front vertex");
 
 /// A focus point in the figure; a point that the fit did not use is drawn hollow.
 struct TiltFigurePoint {

@@ -17,8 +17,12 @@ namespace petzval::inline v0 {
 /// The dashed Airy circle has the radius 1.22 wavelength N, with the paraxial image-side f-number N. The first 600 rays
 /// of a spot are drawn. The same spots give the same bytes.
 ///
-/// spots: as spot_diagram gives them for this lens. Throws Error for no spots, and for a number of spots that is no
-/// multiple of the number of wavelengths.
-PETZVAL_API std::string spot_figure(const Lens& lens, std::span<const Spot> spots);
+/// @param spots               as spot_diagram gives them for this lens
+/// @param wavelength_weights  one per compiled wavelength, by the light in it: of the column of all wavelengths; empty:
+///                            equal weights
+/// @throws Error  for no spots, a number of spots that is no multiple of the number of wavelengths, and weights that
+///                are not one per wavelength, below 0, or all 0
+PETZVAL_API std::string spot_figure(const Lens& lens, std::span<const Spot> spots,
+                                    std::span<const double> wavelength_weights = {});
 
 }  // namespace petzval::inline v0
