@@ -111,8 +111,9 @@ PsfPart from_exr_part(const ExrPart& part) {
   return result;
 }
 
-PsfSet read_psf_set(const std::filesystem::path& file) {
-  std::vector<ExrPart> parts = read_exr_parts(file);
+PsfSet read_psf_set(const std::filesystem::path& file) { return psf_set_of(read_exr_parts(file), file); }
+
+PsfSet psf_set_of(std::vector<ExrPart> parts, const std::filesystem::path& file) {
   try {
     std::vector<PsfPart> found;
     std::array<std::set<double>, 4> seen;

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "petzval/core/export.hpp"
 #include "petzval/io/image.hpp"
@@ -32,5 +33,8 @@ PETZVAL_API PsfPart from_exr_part(const ExrPart& part);
 /// The set of a file's parts. Throws Error that names the file, for parts that from_exr_part refuses, and for nodes of
 /// the grid that no part holds.
 PETZVAL_API PsfSet read_psf_set(const std::filesystem::path& file);
+
+/// The same of parts that were read, whose other attributes a program wants to see. file: for messages.
+PETZVAL_API PsfSet psf_set_of(std::vector<ExrPart> parts, const std::filesystem::path& file);
 
 }  // namespace petzval::inline v0
