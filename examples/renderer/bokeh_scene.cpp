@@ -38,6 +38,7 @@
 #include "support/expressive_flags.hpp"
 #include "support/files.hpp"
 #include "support/focal_surface_setup.hpp"
+#include "support/interrupt.hpp"
 #include "support/load_lens.hpp"
 #include "support/model_rows.hpp"
 #include "support/picture_files.hpp"
@@ -143,16 +144,17 @@ class Job {
     expressive_ = examples::expressive_of(options.expressive, lens_, film_);
   }
 
-  void run() {
+  /// False if a signal ended the work.
+  bool run() {
     const renderer::LensCamera lens = camera(chosen_.model);
     refuse_walls(lens);
     say_where_focus_is_steep(lens.camera());
     const fs::path folder = options_.out_folder;
     const fs::path file = renderer::checkpoint_file(folder, options_.shard);
-    const Json job = description_of_numbers(lens.camera());
+    Json job = description_of_numbers(lens.camera());
     renderer::PictureSums sums(film_.columns, film_.rows);
     if (options_.resume && examples::exists(file)) {
-      sums = renderer::Checkpoint::read(file, job);
+      sums = resumed(file, job);
     } else if (options_.resume) {
       std::cerr << "note: " << file.string() << " does not exist: the picture begins anew\n";
     } else if (examples::exists(file)) {
@@ -166,12 +168,19 @@ class Job {
       if (options_.shard.has(t)) tiles.push_back(t);
     }
     const renderer::UnitTracer tracer(scene_, lens, colours_, integrator_, options_.seed);
-    const renderer::RenderReport report =
-        renderer::render(tracer, sums, tiles, effort(), static_cast<int>(options_.threads),
-                         [&] { renderer::Checkpoint::write(sums, job, file); });
+    const renderer::RenderReport report = [&] {
+      const examples::Interrupt interrupt;
+      return renderer::render(
+          tracer, sums, tiles, effort(), static_cast<int>(options_.threads),
+          [&] { renderer::Checkpoint::write(sums, job, file); }, [] { return examples::Interrupt::asked(); });
+    }();
     say(file);
-    if (!report.finished) std::cerr << "note: out of time; the same command with --resume goes on\n";
-    if (options_.shard.count > 1) return;
+    if (report.interrupted) {
+      std::cerr << "note: interrupted; the same command with --resume goes on\n";
+    } else if (!report.finished) {
+      std::cerr << "note: out of time; the same command with --resume goes on\n";
+    }
+    if (options_.shard.count > 1) return !report.interrupted;
     write_results(sums, job,
                   {{"model", petzval::name(chosen_.model)},
                    {"why", chosen_.why},
@@ -179,8 +188,9 @@ class Job {
                    {"lens_seconds_share", report.busy_seconds > 0 ? report.lens_seconds / report.busy_seconds : 0},
                    {"paths", report.paths},
                    {"paths_per_second", report.seconds > 0 ? static_cast<double>(report.paths) / report.seconds : 0},
-                   {"finished", report.finished}},
+                   {"finished", report.finished && !report.interrupted}},
                   options_.formats, folder);
+    return !report.interrupted;
   }
 
  private:
@@ -217,6 +227,23 @@ class Job {
     std::cerr << "note: about the pixel (" << examples::number(pixel.x, 3) << ", " << examples::number(pixel.y, 3)
               << ") the focus is so steep that rays of several film points coincide; of these, light paths know one: "
                  "--integrator path has all their light\n";
+  }
+  /// The sums of a picture that goes on. It may get more samples than it was begun with.
+  static renderer::PictureSums resumed(const fs::path& file, Json& job) {
+    Json found;
+    renderer::PictureSums sums = renderer::Checkpoint::read_any(file, found);
+    const auto without_samples = [](Json of) {
+      of.erase("samples");
+      return of;
+    };
+    renderer::refuse_other_job(file, without_samples(found), without_samples(job));
+    const Json had = found.value("samples", Json()), asked = job.at("samples");
+    if (had.is_number() && asked.is_number() && had > asked) {
+      std::cerr << "note: " << file.string() << ": --spp = " << asked << "; the picture was begun with " << had
+                << ", which it keeps\n";
+      job["samples"] = had;
+    }
+    return sums;
   }
   renderer::Effort effort() const {
     renderer::Effort effort;
@@ -316,8 +343,8 @@ class Job {
               {"dispersion", options_.expressive.dispersion},
               {"from_lens", options_.expressive.from_lens}}},
             {"seed", options_.seed},
+            {"sequence", "16 rounds of Owen-Sobol points"},
             {"samples", options_.samples > 0 ? Json(options_.samples) : Json()},
-            {"passes", options_.samples > 0 ? Json(effort().passes()) : Json()},
             {"petzval", PETZVAL_VERSION}};
   }
 
@@ -367,7 +394,8 @@ int main(int argc, char** argv) {
       "mean "
       "radiance and luminance of tiles with standard errors.\n"
       "Without --spp and --time-s it takes 64 samples of each pixel. --time-s alone takes as many as it can, --time-s "
-      "with --spp leaves the rest for --resume.",
+      "with --spp leaves the rest for --resume. Ctrl-C writes sums and picture as they are. --resume goes on; a larger "
+      "--spp adds samples to a finished picture, to the bits of one run.",
       "bokeh_scene");
   app.add_option(
          "--scene", options.scene,
@@ -395,7 +423,9 @@ int main(int argc, char** argv) {
   examples::add_count(app, "--spp", options.samples, {1, 1u << 24, "a whole number from 1 to 16777216"},
                       "samples of each pixel")
       ->default_str("64");
-  examples::add_number(app, "--time-s", options.seconds, examples::positive_number, "time limit (s)")
+  examples::add_number(app, "--time-s", options.seconds, examples::positive_number,
+                       "begin no pass over the picture after this time (s); a pass, which is always finished, takes 1 "
+                       "sample of each pixel, with --spp up to 16")
       ->default_str("none");
   examples::add_count(app, "--seed", options.seed, {0, 4294967295.0, "a whole number from 0 to 4294967295"},
                       "another seed gives other noise");
@@ -435,17 +465,19 @@ int main(int argc, char** argv) {
          "render every Nth tile of 16 x 16 pixels, from the Ith on; 'bokeh_scene merge DIR --out DIR' adds them")
       ->type_name("I/N");
   app.add_flag("--resume", options.resume,
-               "go on from the checkpoint in DIR, to the bits of a run that was not cut off");
+               "go on from the checkpoint in DIR, with as many samples or more, to the bits of one run");
   const auto* formats = examples::add_formats(app, options.formats, "png (sRGB)");
   app.add_option("--out", options.out_folder, "folder for the results")->required()->type_name("DIR");
 
-  return examples::run(app, argc, argv, [&] {
+  bool whole = true;
+  const int status = examples::run(app, argc, argv, [&] {
     if (options.samples == 0 && options.seconds == 0) options.samples = 64;
     if (!tile.empty()) options.shard = examples::parse_shard("--tile", tile);
     if (options.shard.count > 1 && formats->given()) {
       throw petzval::Error("--format: found it with --tile " + tile +
                            ", wanted it for 'bokeh_scene merge', which writes the picture");
     }
-    Job(options).run();
+    whole = Job(options).run();
   });
+  return whole ? status : examples::interrupted_status;
 }

@@ -100,7 +100,6 @@ std::vector<petzval::ExrPart> Checkpoint::parts(const PictureSums& sums) {
     add_channels(pixels, rgb[c], [&](std::size_t i) { return sums.pixels_[i][c]; });
     add_channels(totals, rgb[c], [&](std::size_t r) { return sums.totals_[r][c]; });
   }
-  add_channels(tiles, "passes", [&](std::size_t t) { return whole(sums.tiles_[t].passes); });
   for (std::size_t r = 0; r < PictureSums::rounds; ++r) {
     add_channels(tiles, of_round("samples_", r), [&](std::size_t t) { return whole(sums.tiles_[t].samples[r]); });
     add_channels(tiles, of_round("luminance_", r), [&](std::size_t t) { return sums.tiles_[t].luminance[r]; });
@@ -150,7 +149,6 @@ PictureSums Checkpoint::read_any(const fs::path& file, Json& job) {
       read_channels(all.front(), rgb[c], [&](std::size_t i, const FixedSum& own) { sums.pixels_[i][c] = own; });
       read_channels(totals, rgb[c], [&](std::size_t r, const FixedSum& own) { sums.totals_[r][c] = own; });
     }
-    read_channels(tiles, "passes", [&](std::size_t t, const FixedSum& own) { sums.tiles_[t].passes = count(own); });
     for (std::size_t r = 0; r < PictureSums::rounds; ++r) {
       read_channels(tiles, of_round("samples_", r),
                     [&](std::size_t t, const FixedSum& own) { sums.tiles_[t].samples[r] = count(own); });

@@ -12,7 +12,7 @@ namespace renderer {
 /// The sums of a picture as an EXR of 32-bit floats, bit for bit.
 ///
 /// A sum is an exact series of floats: channel R is the sum rounded, R.1 what is left, R.2 the rest of that, and so on
-/// as far as a picture needs them. Part "sums" has the pixels, "tiles" passes, samples and luminance by tile and round,
+/// as far as a picture needs them. Part "sums" has the pixels, "tiles" samples and luminance by tile and round,
 /// "totals" a pixel for each round. Texts of the first part: the job, JSON of all that decides the numbers, and a
 /// checksum of it and of all values.
 class Checkpoint {

@@ -57,8 +57,8 @@ std::uint64_t PictureSums::samples(std::size_t tile) const noexcept {
   return std::accumulate(own.begin(), own.end(), std::uint64_t{0});
 }
 
-void PictureSums::add(std::size_t tile, std::uint32_t samples, std::span<const Contribution> contributions) {
-  const std::size_t round = tiles_[tile].passes++ % rounds;
+void PictureSums::add(std::size_t tile, std::size_t round, std::uint32_t samples,
+                      std::span<const Contribution> contributions) {
   tiles_[tile].samples[round] += samples;
   const auto width = static_cast<std::size_t>(width_);
   for (const auto& [pixel, rgb] : contributions) {
@@ -83,7 +83,7 @@ void PictureSums::add(const PictureSums& part) {
                          " pixels, wanted " + std::to_string(width_) + " x " + std::to_string(height_));
   }
   for (std::size_t t = 0; t < tiles_.size(); ++t) {
-    if (tiles_[t].passes > 0 && part.tiles_[t].passes > 0) {
+    if (samples(t) > 0 && part.samples(t) > 0) {
       throw petzval::Error("found tile " + std::to_string(t) + " in two parts, wanted it in one");
     }
   }
@@ -91,7 +91,6 @@ void PictureSums::add(const PictureSums& part) {
     for (std::size_t c = 0; c < 3; ++c) pixels_[p][c] += part.pixels_[p][c];
   }
   for (std::size_t t = 0; t < tiles_.size(); ++t) {
-    tiles_[t].passes += part.tiles_[t].passes;
     for (std::size_t r = 0; r < rounds; ++r) {
       tiles_[t].samples[r] += part.tiles_[t].samples[r];
       tiles_[t].luminance[r] += part.tiles_[t].luminance[r];

@@ -30,9 +30,10 @@ struct Estimate {
 
 /// The sums of a picture: the same bits in whatever order, and in whatever parts, contributions are added.
 ///
-/// A picture is traced in units: a tile of 16 x 16 pixels, fewer at the right and lower edges, in a pass over the film.
+/// A picture is traced in units: samples of the pixels of a tile of 16 x 16, fewer at the right and lower edges.
 /// Contributions of a unit may fall on any pixel. The value of a pixel is the sum of all that fell on it over its own
-/// samples. Passes belong in turn to 16 rounds, whose scatter gives standard errors.
+/// samples. Samples belong to 16 rounds that do not depend on each other: their scatter gives standard errors. The
+/// numbers of samples by round tell which samples a tile has, so that any picture can get more.
 class PictureSums {
  public:
   static constexpr int tile_pixels = 16;
@@ -46,14 +47,14 @@ class PictureSums {
   std::size_t tile_rows() const noexcept { return tile_rows_; }
   std::size_t tiles() const noexcept { return tiles_.size(); }
   PixelBlock block(std::size_t tile) const noexcept;
-  /// Passes and samples of each pixel that a tile has.
-  std::uint32_t passes(std::size_t tile) const noexcept { return tiles_[tile].passes; }
+  /// Number of samples of each pixel of a tile: in all rounds, or in one round.
   std::uint64_t samples(std::size_t tile) const noexcept;
+  std::uint32_t samples(std::size_t tile, std::size_t round) const noexcept { return tiles_[tile].samples[round]; }
   /// Contributions that were left out: not finite, or beyond 2^40.
   std::uint64_t rejected() const noexcept { return rejected_; }
 
-  /// Adds the next pass of a tile, with so many samples of each of its pixels. Not by several threads at once.
-  void add(std::size_t tile, std::uint32_t samples, std::span<const Contribution> contributions);
+  /// Adds a unit: so many samples of each pixel of a tile, of one round. Not by several threads at once.
+  void add(std::size_t tile, std::size_t round, std::uint32_t samples, std::span<const Contribution> contributions);
   /// Adds the sums of another part of the picture. Throws petzval::Error for a tile that both have, or another size.
   void add(const PictureSums& part);
 
@@ -69,7 +70,6 @@ class PictureSums {
  private:
   friend class Checkpoint;
   struct Tile {
-    std::uint32_t passes = 0;
     std::array<std::uint32_t, rounds> samples{};  ///< of each pixel
     std::array<FixedSum, rounds> luminance{};
 

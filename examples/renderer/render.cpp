@@ -21,58 +21,84 @@ constexpr double save_every = 20, save_share = 20;
 
 }  // namespace
 
-std::uint32_t Effort::passes() const noexcept {
-  if (!samples) return std::numeric_limits<std::uint32_t>::max();
-  // As many as there are rounds to compare, or more: a unit has 16 samples of a pixel at most.
-  constexpr std::uint32_t most = 16;
-  const auto rounds = static_cast<std::uint32_t>(PictureSums::rounds);
-  return std::max(std::min(*samples, rounds), *samples / most + (*samples % most != 0));
+namespace {
+
+/// Samples of a round in a picture of so many samples.
+std::uint32_t share(std::uint32_t samples, std::size_t round) noexcept {
+  constexpr auto rounds = static_cast<std::uint32_t>(PictureSums::rounds);
+  return samples / rounds + (round < samples % rounds ? 1 : 0);
 }
 
-std::uint32_t Effort::first_sample(std::uint32_t pass) const noexcept {
-  if (!samples) return pass;
-  return static_cast<std::uint32_t>(std::uint64_t{*samples} * pass / passes());
+constexpr std::uint32_t most_of_unit = 16;
+
+}  // namespace
+
+SampleRange Effort::next(const PictureSums& sums, std::size_t tile) const noexcept {
+  SampleRange range;
+  for (std::uint32_t round = 0; round < PictureSums::rounds; ++round) {
+    const std::uint32_t has = sums.samples(tile, round);
+    const std::uint32_t wanted = samples ? share(*samples, round) : std::numeric_limits<std::uint32_t>::max();
+    if (has >= wanted || (range.count > 0 && has >= range.first)) continue;
+    range = {round, has, samples ? std::min(wanted - has, most_of_unit) : 1};
+  }
+  return range;
 }
 
-std::uint32_t Effort::samples_in(std::uint32_t pass) const noexcept {
-  return first_sample(pass + 1) - first_sample(pass);
+std::size_t Effort::units_left(const PictureSums& sums, std::size_t tile) const noexcept {
+  std::size_t units = 0;
+  for (std::size_t round = 0; samples && round < PictureSums::rounds; ++round) {
+    const std::uint32_t has = sums.samples(tile, round), wanted = share(*samples, round);
+    if (has < wanted) units += (wanted - has + most_of_unit - 1) / most_of_unit;
+  }
+  return units;
 }
 
 RenderReport render(const UnitTracer& tracer, PictureSums& sums, const std::vector<std::size_t>& tiles,
-                    const Effort& effort, int threads, const std::function<void()>& save) {
+                    const Effort& effort, int threads, const std::function<void()>& save,
+                    const std::function<bool()>& stop) {
   const auto begin = Clock::now();
   auto saved = begin;
   double save_takes = 0;
   RenderReport report;
   std::mutex keeping;
   const auto late = [&] { return effort.seconds && seconds_since(begin) >= *effort.seconds; };
-  std::uint32_t pass = effort.passes();
+  const auto lacks = [&](std::size_t tile) { return effort.next(sums, tile).count > 0; };
   std::size_t units = 0;
-  for (const std::size_t tile : tiles) {
-    pass = std::min(pass, sums.passes(tile));
-    if (effort.samples) units += effort.passes() - std::min(effort.passes(), sums.passes(tile));
-  }
+  for (const std::size_t tile : tiles) units += effort.units_left(sums, tile);
   std::optional<examples::Progress> progress;
   if (effort.samples) progress.emplace("tiles", units);
-  for (; pass < effort.passes() && !tiles.empty() && !late(); ++pass) {
+  while (!late() && !stop()) {
+    // A pass: the tiles that have the fewest samples.
+    std::uint64_t least = std::numeric_limits<std::uint64_t>::max();
     std::vector<std::size_t> missing;
     for (const std::size_t tile : tiles) {
-      if (sums.passes(tile) == pass) missing.push_back(tile);
+      if (!lacks(tile) || sums.samples(tile) > least) continue;
+      if (sums.samples(tile) < least) missing.clear();
+      least = sums.samples(tile);
+      missing.push_back(tile);
     }
+    if (missing.empty()) break;
     petzval::parallel_for(missing.size(), 1, threads, [&](std::size_t i, std::size_t) {
+      if (stop()) return;
       const auto unit_begin = Clock::now();
       const PixelBlock block = sums.block(missing[i]);
-      const std::uint32_t count = effort.samples_in(pass);
+      SampleRange range;
+      {
+        const std::lock_guard guard(keeping);
+        range = effort.next(sums, missing[i]);
+      }
       Splats splats;
       double lens_seconds = 0;
-      tracer.trace(block, effort.first_sample(pass), count, splats, lens_seconds);
+      tracer.trace(block, range, splats, lens_seconds);
       const double busy_seconds = seconds_since(unit_begin);
       const std::lock_guard guard(keeping);
-      sums.add(missing[i], count, splats.all());
-      report.paths += std::uint64_t{count} * static_cast<std::uint64_t>(block.width * block.height);
+      sums.add(missing[i], range.round, range.count, splats.all());
+      report.paths += std::uint64_t{range.count} * static_cast<std::uint64_t>(block.width * block.height);
       report.lens_seconds += lens_seconds;
       report.busy_seconds += busy_seconds;
-      if (progress) progress->step("pass " + std::to_string(pass + 1) + " of " + std::to_string(effort.passes()));
+      if (progress) {
+        progress->step(std::to_string(least + range.count) + " of " + std::to_string(*effort.samples) + " samples");
+      }
       if (seconds_since(saved) < std::max(save_every, save_share * save_takes)) return;
       const auto save_begin = Clock::now();
       save();
@@ -81,9 +107,8 @@ RenderReport render(const UnitTracer& tracer, PictureSums& sums, const std::vect
     });
   }
   report.seconds = seconds_since(begin);
-  report.finished = !effort.samples || std::all_of(tiles.begin(), tiles.end(), [&](std::size_t tile) {
-    return sums.passes(tile) == effort.passes();
-  });
+  report.finished = !effort.samples || std::none_of(tiles.begin(), tiles.end(), lacks);
+  report.interrupted = stop() && !(effort.samples && report.finished);
   save();
   return report;
 }

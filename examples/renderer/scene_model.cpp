@@ -96,8 +96,8 @@ Pilot pilot_of(const Scene& scene, const LensCamera& exact, const PathColourSour
     for (const std::size_t tile : tiles) {
       Splats splats;
       double seconds = 0;
-      tracer.trace(sums.block(tile), 0, samples, splats, seconds);
-      sums.add(tile, samples, splats.all());
+      tracer.trace(sums.block(tile), {.count = samples}, splats, seconds);
+      sums.add(tile, 0, samples, splats.all());
     }
     const petzval::RgbImage image = sums.picture();
     for (std::size_t p = 0; p < image.pixels.size(); p += 3) {

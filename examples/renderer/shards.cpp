@@ -40,19 +40,19 @@ ShardFiles shard_files(const std::vector<fs::path>& folders) {
   return files;
 }
 
-void refuse_unfinished(const fs::path& file, const PictureSums& sums, const Shard& shard, std::uint32_t passes) {
+void refuse_unfinished(const fs::path& file, const PictureSums& sums, const Shard& shard, std::uint64_t samples) {
   std::size_t tiles = 0, unfinished = 0;
   for (std::size_t t = 0; t < sums.tiles(); ++t) {
     if (shard.has(t)) {
       ++tiles;
-      unfinished += sums.passes(t) < passes;
-    } else if (sums.passes(t) > 0) {
+      unfinished += sums.samples(t) < samples;
+    } else if (sums.samples(t) > 0) {
       throw petzval::Error(file.string() + " has tile " + std::to_string(t) + " of another shard");
     }
   }
   if (unfinished == 0) return;
   throw petzval::Error(file.string() + " is unfinished: " + std::to_string(unfinished) + " of " +
-                       std::to_string(tiles) + " tiles lack passes");
+                       std::to_string(tiles) + " tiles lack samples");
 }
 
 /// A shard from its files, which agree. job: that of the picture, or null, which becomes that of the first file.
@@ -64,9 +64,9 @@ PictureSums shard_sums(const std::vector<fs::path>& files, const Shard& shard, J
     if (job.is_null()) job = own_job;
     refuse_other_job(file, own_job, job);
     if (!found) {
-      const auto passes = job.find("passes");
+      const auto samples = job.find("samples");
       refuse_unfinished(file, sums, shard,
-                        passes != job.end() && passes->is_number() ? passes->get<std::uint32_t>() : 1);
+                        samples != job.end() && samples->is_number() ? samples->get<std::uint64_t>() : 1);
       found = std::move(sums);
     } else if (*found != sums) {
       throw petzval::Error(file.string() + " and " + files.front().string() + " differ");

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "renderer/unit_tracer.hpp"
 
-#include <algorithm>
-#include <span>
-
 #include "petzval/core/sobol.hpp"
 
 namespace renderer {
@@ -12,11 +9,11 @@ namespace {
 /// Seeds of what is drawn before a path begins; its own numbers have the seed itself.
 enum class Drawn : std::uint64_t { film = 1, pupil = 2 };
 
-/// Places of the unit square for the samples of a pixel, spread evenly among those of a unit.
-void spread(std::uint64_t seed, Drawn what, std::uint32_t pixel, std::uint32_t first, std::span<double> u,
-            std::span<double> v) {
-  const auto key = mixed(mixed(mixed(seed + static_cast<std::uint64_t>(what)) + pixel) + first);
-  petzval::owen_sobol(0, static_cast<std::uint32_t>(key), u, v);
+/// Point of the unit square for a sample of a pixel: the Owen-Sobol sequence of its round.
+petzval::Vec2<double> drawn(std::uint64_t seed, Drawn what, std::uint32_t pixel, std::uint32_t round,
+                            std::uint32_t sample) {
+  const auto key = mixed(mixed(mixed(seed + static_cast<std::uint64_t>(what)) + pixel) + round);
+  return petzval::owen_sobol(sample, static_cast<std::uint32_t>(key));
 }
 
 }  // namespace
@@ -28,8 +25,17 @@ std::optional<Integrator> integrator_named(std::string_view name) noexcept {
   return {};
 }
 
-void UnitTracer::trace(const PixelBlock& block, std::uint32_t first, std::uint32_t count, Splats& splats,
+void UnitTracer::trace(const PixelBlock& block, const SampleRange& samples, Splats& splats,
                        double& lens_seconds) const {
+  // Rays of a batch agree with those of another batch within rounding only. Batches of one sample of each pixel make
+  // the bits independent of how the samples are divided among calls.
+  for (std::uint32_t i = 0; i < samples.count; ++i) {
+    trace_once(block, samples.round, samples.first + i, splats, lens_seconds);
+  }
+}
+
+void UnitTracer::trace_once(const PixelBlock& block, std::uint32_t round, std::uint32_t sample, Splats& splats,
+                            double& lens_seconds) const {
   const auto columns = static_cast<std::uint32_t>(lens_.film().columns);
   const auto pixels = static_cast<std::size_t>(block.width) * static_cast<std::size_t>(block.height);
   const auto pixel_at = [&](std::size_t i) {
@@ -39,30 +45,24 @@ void UnitTracer::trace(const PixelBlock& block, std::uint32_t first, std::uint32
         static_cast<std::uint32_t>(block.y) + static_cast<std::uint32_t>(i / static_cast<std::size_t>(block.width));
     return y * columns + x;
   };
-  const std::size_t paths = pixels * count;
   std::vector<Random> random;
   std::vector<PathColours> colours;
-  random.reserve(paths), colours.reserve(paths);
-  for (std::size_t i = 0; i < paths; ++i) {
-    random.emplace_back(seed_, pixel_at(i / count), first + static_cast<std::uint32_t>(i % count));
+  random.reserve(pixels), colours.reserve(pixels);
+  for (std::size_t i = 0; i < pixels; ++i) {
+    random.emplace_back(seed_, pixel_at(i), std::uint64_t{sample} * PictureSums::rounds + round);
     colours.push_back(colours_.draw(random.back()()));
   }
   LensCamera::Batch batch;
   std::vector<std::vector<petzval::Importance>> seen;  // of the batch's rays, by lane
   if (integrator_ != Integrator::light) {
-    batch.resize(paths, !colours.front().one_wavelength);
-    std::vector<double> u(count), v(count);
-    for (std::size_t p = 0; p < pixels; ++p) {
-      const std::uint32_t pixel = pixel_at(p);
-      const std::size_t begin = p * count;
-      spread(seed_, Drawn::film, pixel, first, u, v);
-      for (std::size_t i = 0; i < count; ++i) {
-        batch.raster_x[begin + i] = static_cast<float>(pixel % columns + u[i]);
-        batch.raster_y[begin + i] = static_cast<float>(pixel / columns + v[i]);
-      }
-      spread(seed_, Drawn::pupil, pixel, first, u, v);
-      std::copy(u.begin(), u.end(), batch.u.begin() + static_cast<std::ptrdiff_t>(begin));
-      std::copy(v.begin(), v.end(), batch.v.begin() + static_cast<std::ptrdiff_t>(begin));
+    batch.resize(pixels, !colours.front().one_wavelength);
+    for (std::size_t i = 0; i < pixels; ++i) {
+      const std::uint32_t pixel = pixel_at(i);
+      const auto place = drawn(seed_, Drawn::film, pixel, round, sample);
+      const auto pupil = drawn(seed_, Drawn::pupil, pixel, round, sample);
+      batch.raster_x[i] = static_cast<float>(pixel % columns + place.x);
+      batch.raster_y[i] = static_cast<float>(pixel / columns + place.y);
+      batch.u[i] = static_cast<float>(pupil.x), batch.v[i] = static_cast<float>(pupil.y);
     }
     for (std::size_t i = 0; i < batch.nm.size(); ++i) {
       batch.nm[i] = colours[i].nm[static_cast<std::size_t>(colours[i].hero)];
@@ -75,22 +75,22 @@ void UnitTracer::trace(const PixelBlock& block, std::uint32_t first, std::uint32
       std::vector<float> nm(batch.nm.size());
       for (std::size_t lane = 0; lane < seen.size(); ++lane) {
         for (std::size_t i = 0; i < nm.size(); ++i) nm[i] = colours[i].nm[lane];
-        seen[lane].resize(paths);
+        seen[lane].resize(pixels);
         lens_.importance(batch, nm, seen[lane]);
       }
     }
   }
   LensConnections connections(scene_, lens_, integrator_ == Integrator::bidirectional);
-  for (std::size_t i = 0; i < paths; ++i) {
+  for (std::size_t i = 0; i < pixels; ++i) {
     if (integrator_ == Integrator::light) {
       trace_light(scene_, colours[i], random[i], connections);
       continue;
     }
     const LensView view(lens_, colours[i], lens_seconds);
-    const FilmSample sample = view.film_sample(batch, i, pixel_at(i / count), seen);
-    if (integrator_ == Integrator::path) trace_path(scene_, view, sample, random[i], splats);
+    const FilmSample film = view.film_sample(batch, i, pixel_at(i), seen);
+    if (integrator_ == Integrator::path) trace_path(scene_, view, film, random[i], splats);
     if (integrator_ == Integrator::bidirectional) {
-      trace_both(scene_, view, sample, random[i], connections, splats);
+      trace_both(scene_, view, film, random[i], connections, splats);
     }
   }
   connections.finish(splats, lens_seconds);

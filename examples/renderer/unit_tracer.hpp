@@ -8,8 +8,16 @@
 
 namespace renderer {
 
-/// Traces a picture in units: some samples of each pixel of a block. What a unit adds follows from the seed, its pixels
-/// and its samples alone.
+/// Samples of a pixel: `count` of one of the PictureSums::rounds, from the sample `first` of that round on.
+///
+/// The samples of a round are one sequence over film and pupil, evenly spread from its beginning to anywhere; rounds do
+/// not depend on each other.
+struct SampleRange {
+  std::uint32_t round = 0, first = 0, count = 0;
+};
+
+/// Traces a picture in units: some samples of each pixel of a block. The contributions of a unit depend on the seed,
+/// its pixels and its samples, and on nothing else.
 class UnitTracer {
  public:
   /// The scene, the lens and the colours must outlive it.
@@ -17,12 +25,15 @@ class UnitTracer {
              std::uint64_t seed) noexcept
       : scene_(scene), lens_(lens), colours_(colours), integrator_(integrator), seed_(seed) {}
 
-  /// Samples `first` to `first + count` of each pixel: one path for each, by the light tracer as many. lens_seconds:
-  /// the time spent in the lens is added to it.
-  void trace(const PixelBlock& block, std::uint32_t first, std::uint32_t count, Splats& splats,
-             double& lens_seconds) const;
+  /// Traces one path for each sample of each pixel of a block; the light tracer starts as many paths at the lamps.
+  ///
+  /// @param lens_seconds  gets the time spent in the lens added
+  void trace(const PixelBlock& block, const SampleRange& samples, Splats& splats, double& lens_seconds) const;
 
  private:
+  void trace_once(const PixelBlock& block, std::uint32_t round, std::uint32_t sample, Splats& splats,
+                  double& lens_seconds) const;
+
   const Scene& scene_;
   const LensCamera& lens_;
   const PathColourSource& colours_;

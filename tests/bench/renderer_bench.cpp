@@ -56,8 +56,9 @@ Pass add_pass(const Scene& scene, const LensCamera& lens, const PathColourSource
   const auto begin = Clock::now();
   for (std::size_t tile = 0; tile < sums.tiles(); ++tile) {
     Splats splats;
-    tracer.trace(sums.block(tile), static_cast<std::uint32_t>(sums.samples(tile)), samples, splats, pass.lens_seconds);
-    sums.add(tile, samples, splats.all());
+    const auto round = static_cast<std::uint32_t>(sums.samples(tile) / samples % PictureSums::rounds);
+    tracer.trace(sums.block(tile), {round, sums.samples(tile, round), samples}, splats, pass.lens_seconds);
+    sums.add(tile, round, samples, splats.all());
   }
   pass.seconds = std::chrono::duration<double>(Clock::now() - begin).count();
   return pass;

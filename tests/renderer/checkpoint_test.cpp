@@ -43,7 +43,7 @@ TEST_F(CheckpointFile, KeepsLargeCountsAndNothing) {
   Checkpoint::write(PictureSums(3, 1), job_, file_);
   EXPECT_EQ(Checkpoint::read(file_, job_), PictureSums(3, 1));
   PictureSums many(1, 1);
-  many.add(0, 4294967295u, std::vector<Contribution>(3, {0, {1e30f, 0, 0}}));
+  many.add(0, 0, 4294967295u, std::vector<Contribution>(3, {0, {1e30f, 0, 0}}));
   Checkpoint::write(many, job_, file_);
   EXPECT_EQ(Checkpoint::read(file_, job_), many);
   EXPECT_EQ(many.rejected(), 3u);
@@ -53,7 +53,8 @@ TEST_F(CheckpointFile, GoesOnToTheSameBits) {
   Checkpoint::write(made_up_part(width, height, 1, 1, 7), job_, file_);
   PictureSums resumed = Checkpoint::read(file_, job_);
   for (std::uint32_t pass = 7; pass < 18; ++pass) {
-    for (std::size_t t = 0; t < resumed.tiles(); ++t) resumed.add(t, 3, made_up_unit(resumed, t, pass));
+    for (std::size_t t = 0; t < resumed.tiles(); ++t)
+      resumed.add(t, pass % PictureSums::rounds, 3, made_up_unit(resumed, t, pass));
   }
   EXPECT_EQ(resumed, sums_);
 }

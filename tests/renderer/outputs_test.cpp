@@ -53,7 +53,7 @@ TEST(Outputs, StatisticsAreThoseOfTheSums) {
 
 TEST(Outputs, WhatIsNotKnownIsNull) {
   PictureSums sums(32, 16);
-  sums.add(1, 6, {});
+  sums.add(1, 0, 6, {});
   const Json json = statistics(sums);
   EXPECT_EQ(json["samples"], 3) << "half of the pixels have 6";
   EXPECT_TRUE(json["mean_radiance"][0]["standard_error"].is_null());

@@ -42,7 +42,7 @@ TEST(PictureSums, HaveTheSameBitsInAnyOrder) {
     for (std::uint32_t pass = 0; pass < 20; ++pass) {
       std::vector<Contribution> unit = made_up_unit(backwards, t, pass);
       std::shuffle(unit.begin(), unit.end(), random);
-      backwards.add(t, 3, unit);
+      backwards.add(t, pass % PictureSums::rounds, 3, unit);
     }
   }
   EXPECT_EQ(backwards, forwards);
@@ -73,27 +73,28 @@ TEST(PictureSums, RefuseOtherSizesAndTilesThatStandTwice) {
 TEST(PictureSums, LeaveOutWhatIsNoLight) {
   PictureSums sums(width, height);
   constexpr float infinity = std::numeric_limits<float>::infinity();
-  sums.add(0, 1,
+  sums.add(0, 0, 1,
            std::vector<Contribution>{
                {0, {std::nanf(""), 1, 1}}, {0, {1, -infinity, 1}}, {0, {1, 1, 0x1p40f}}, {0, {1, 2, -3}}});
   EXPECT_EQ(sums.rejected(), 3u);
   EXPECT_EQ(sums.picture().pixel(0, 0)[1], 2);
   EXPECT_EQ(sums.picture().pixel(0, 0)[2], -3);
   PictureSums both(width, height);
-  both.add(8, 1, std::vector<Contribution>{{0, {0, 0, infinity}}});
+  both.add(8, 0, 1, std::vector<Contribution>{{0, {0, 0, infinity}}});
   both.add(sums);
   EXPECT_EQ(both.rejected(), 4u);
 }
 
 TEST(PictureSums, APixelIsItsSumOverItsOwnSamples) {
   PictureSums sums(width, height);
-  sums.add(0, 4, std::vector<Contribution>{{1, {8, 0, 0}}, {static_cast<std::uint32_t>(width - 1), {3, 0, 0}}});
+  sums.add(0, 0, 4, std::vector<Contribution>{{1, {8, 0, 0}}, {static_cast<std::uint32_t>(width - 1), {3, 0, 0}}});
   EXPECT_EQ(sums.picture().pixel(1, 0)[0], 2);
   EXPECT_EQ(sums.picture().pixel(width - 1, 0)[0], 0) << "a tile without samples";
-  sums.add(2, 6, {});
+  sums.add(2, 1, 6, {});
   EXPECT_EQ(sums.picture().pixel(width - 1, 0)[0], 0.5f);
   EXPECT_EQ(sums.samples(2), 6u);
-  EXPECT_EQ(sums.passes(2), 1u);
+  EXPECT_EQ(sums.samples(2, 1), 6u);
+  EXPECT_EQ(sums.samples(2, 0), 0u);
 }
 
 /// Of pixels over the samples of their tile, of luminance over its area, which is smaller at the edges.
@@ -122,7 +123,7 @@ TEST(PictureSums, MeansArePlainMeans) {
           luminance_size[fallen_on] += std::abs(weighted);
         }
       }
-      sums.add(t, 1 + pass % 2, unit);
+      sums.add(t, pass, 1 + pass % 2, unit);
     }
   }
   const petzval::RgbImage picture = sums.picture();
@@ -165,7 +166,7 @@ TEST(PictureSums, StandardErrorsAreThoseOfTheScatter) {
           unit.push_back({p, {value, value, value}});
         }
       }
-      sums.add(0, samples, unit);
+      sums.add(0, pass, samples, unit);
     }
     const Estimate green = sums.mean()[1], tile = sums.luminance(0);
     squares += green.standard_error * green.standard_error;
@@ -193,7 +194,7 @@ TEST(PictureSums, StandardErrorsFollowTheSamplesOfEachRound) {
       for (std::size_t pass = 0; pass < passes; ++pass) {
         std::vector<Contribution> unit(4 + pass % 2);
         for (Contribution& own : unit) own.rgb.fill(light(random));
-        sums.add(0, static_cast<std::uint32_t>(unit.size()), unit);
+        sums.add(0, pass % PictureSums::rounds, static_cast<std::uint32_t>(unit.size()), unit);
       }
       const double error = sums.mean()[0].standard_error;
       ASSERT_NEAR(sums.luminance(0).standard_error, error, 1e-6);
@@ -210,7 +211,7 @@ TEST(PictureSums, AreNotANumberWithoutAnythingToCompare) {
   PictureSums sums(width, height);
   EXPECT_EQ(sums.mean()[0].mean, 0);
   EXPECT_TRUE(std::isnan(sums.mean()[0].standard_error));
-  sums.add(0, 5, std::vector<Contribution>{{0, {1, 1, 1}}});
+  sums.add(0, 0, 5, std::vector<Contribution>{{0, {1, 1, 1}}});
   EXPECT_EQ(sums.mean()[0].mean, 1.0 / (5 * 16 * 16));
   EXPECT_TRUE(std::isnan(sums.mean()[0].standard_error));
   EXPECT_TRUE(std::isnan(sums.luminance(3).standard_error));

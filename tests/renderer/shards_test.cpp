@@ -43,7 +43,7 @@ class Shards : public testing::Test {
   const std::filesystem::path folder_ = std::filesystem::path(testing::TempDir()) / "petzval_shards" /
                                         testing::UnitTest::GetInstance()->current_test_info()->name();
   const std::filesystem::path here_ = folder_ / "here", there_ = folder_ / "there";
-  Json job_{{"lens", "a lens"}, {"passes", passes}};
+  Json job_{{"lens", "a lens"}, {"samples", 3 * passes}};
 };
 
 TEST_F(Shards, MergeToTheBitsOfTheWhole) {
@@ -74,19 +74,20 @@ TEST_F(Shards, MissingAndUnfinishedOnesAreNamed) {
   write(here_, {2, 5});
   write(there_, {3, 5}, passes - 1);
   write(there_, {5, 5});
-  EXPECT_EQ(refusal({here_, there_}), here_.string() + ", " + there_.string() + ": shard 1/5 is missing; shard 3/5: " +
-                                          (there_ / "tile_3_of_5.exr").string() +
-                                          " is unfinished: 2 of 2 tiles lack passes; shard 4/5 is missing" + wanted(5));
+  EXPECT_EQ(refusal({here_, there_}),
+            here_.string() + ", " + there_.string() +
+                ": shard 1/5 is missing; shard 3/5: " + (there_ / "tile_3_of_5.exr").string() +
+                " is unfinished: 2 of 2 tiles lack samples; shard 4/5 is missing" + wanted(5));
   EXPECT_EQ(refusal({folder_}), folder_.string() + ": no shard, wanted tile_I_of_N.exr of one N, or sums.exr");
   EXPECT_EQ(refusal({folder_ / "nowhere"}).find((folder_ / "nowhere").string() + ": cannot be read"), 0u);
 }
 
 TEST_F(Shards, OfAPictureByTimeHaveAPassAtLeast) {
-  job_["passes"] = nullptr;
+  job_["samples"] = nullptr;
   write(here_, {1, 2}, 1);
   write(here_, {2, 2}, 3);
   Json job;
-  EXPECT_EQ(gather({here_}, job).passes(1), 3u);
+  EXPECT_EQ(gather({here_}, job).samples(1), 9u);
   write(here_, {2, 2}, 0);
   EXPECT_NE(refusal({here_}).find("unfinished: 4 of 4"), std::string::npos);
 }
@@ -109,7 +110,7 @@ TEST_F(Shards, ThatDifferOrAreCorruptAreRefused) {
   write(here_, {1, 2});
   write(here_, {2, 2});
   PictureSums other = made_up_part(width, height, 2, 2, passes);
-  other.add(1, 1, {});
+  other.add(1, 0, 1, {});
   Checkpoint::write(other, job_, checkpoint_file(there_, {2, 2}));
   EXPECT_NE(refusal({here_, there_}).find("differ"), std::string::npos);
   std::filesystem::rename(here_ / "tile_1_of_2.exr", here_ / "tile_2_of_2.exr");
