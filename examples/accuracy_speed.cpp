@@ -32,7 +32,7 @@ double nearest_mm(const petzval::Lens& lens, const Options& options) {
   const double far = 100 * std::abs(petzval::first_order(lens, 0, petzval::main_meridian(lens)).effective_focal_length);
   const double half = std::min(options.setup.focus_mm, far) / 2;
   // If half the distance lies inside the lens (macro), take the middle between its front and the focus.
-  const double front = lens.film_z();
+  const double front = petzval::origin_z(lens, options.setup.focus.distance_origin());
   return half > front ? half : (front + std::min(options.setup.focus_mm, far)) / 2;
 }
 
@@ -59,8 +59,7 @@ int main(int argc, char** argv) {
       "--out writes DIR/LENS_accuracy_speed.csv and .svg and prints their paths (with --json on standard error).",
       "accuracy_speed");
   examples::add_model_options(app, options);
-  const auto* out =
-      app.add_option("--out", options.out_folder, "folder for the table and the figure")->type_name("DIR");
+  const auto* out = examples::add_out_folder(app, options.out_folder, "folder for the table and the figure");
 
   return examples::run(app, argc, argv, [&] {
     const petzval::Film film = options.film();
@@ -68,12 +67,13 @@ int main(int argc, char** argv) {
     const petzval::Lens& lens = loaded.lens;
     const std::filesystem::path folder = options.out_folder;
     if (out->given()) examples::make_folder(folder);  // measuring takes seconds
-    examples::say_what_does_not_fit(lens, film);
+    examples::say_what_does_not_fit(lens, film, "--resolution");
     std::vector<petzval::ErrorBudget> budgets;
     for (const double px : budgets_px) budgets.push_back({.max_px = px});
     const double nearest = nearest_mm(lens, options);
-    const auto choices =
-        petzval::choose_models(lens, {.near_mm = nearest, .film = film}, budgets, petzval::processor_threads());
+    const auto choices = petzval::choose_models(
+        lens, {.near_mm = nearest, .film = film, .origin = options.setup.focus.distance_origin()}, budgets,
+        petzval::processor_threads());
     const auto& table = choices.front().table;
     examples::say_what_is_missing(table);
     const auto rows = examples::model_rows(table, film, false);

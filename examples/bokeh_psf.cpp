@@ -11,6 +11,7 @@
 #include <numbers>
 #include <numeric>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,7 @@
 #include "support/bokeh_flags.hpp"
 #include "support/camera_setup.hpp"
 #include "support/cli.hpp"
+#include "support/design.hpp"
 #include "support/files.hpp"
 #include "support/iris_setup.hpp"
 #include "support/load_lens.hpp"
@@ -38,7 +40,8 @@ constexpr int picture_pixels = 512, tile_pixels = 320;
 struct Options {
   std::vector<std::string> formats;
   examples::LensInput lens_file;
-  std::string model = "exact_double", out_folder, origin = "front_vertex", criterion = "min_rms", white_point = "D65";
+  std::string model = "exact_double", out_folder, white_point = "D65";
+  examples::FocusFlags focus;
   std::vector<double> focus_mm, wavelengths_nm{petzval::d_line_nm};
   double subject_mm = 0, field_deg = 0, tolerance = 0;
   examples::IrisSetup iris;
@@ -62,22 +65,22 @@ petzval::PointImage image_of(const Picture& picture, const petzval::PsfOptions& 
   return petzval::point_image(picture.scene.lens, picture.scene.light, options);
 }
 
-std::vector<Picture> render(const examples::LoadedLens& loaded, const Options& options,
-                            const petzval::BokehControls& controls, const examples::BokehSetup& setup) {
+/// The focused lenses, before anything is traced. Throws petzval::Error for those that cannot be.
+std::vector<Picture> focused(const examples::LoadedLens& loaded, const Options& options,
+                             const petzval::BokehControls& controls) {
   const petzval::Lens lens = examples::stopped_down(loaded.lens, options.iris);
-  examples::Progress progress("bokeh", options.focus_mm.size());
+  const examples::BokehSetup setup{.light_mm = options.subject_mm,
+                                   .origin = options.focus.distance_origin(),
+                                   .criterion = options.focus.options().criterion,
+                                   .field_rad = petzval::radians(options.field_deg)};
   std::vector<Picture> pictures;
   for (const double focus : options.focus_mm) {
-    progress.step(examples::focus_caption(focus));
     Picture picture{focus, examples::focused_scene(lens, focus, setup), {}, {}};
+    examples::want_light(picture.scene.lens, picture.scene.light, "--field-deg");
     if (!options.plain()) {
       picture.camera =
           examples::camera_of(picture.scene, {.model = *petzval::model_named(options.model), .bokeh = controls});
     }
-    picture.image = image_of(picture, {.samples = options.samples,
-                                       .tolerance = options.tolerance,
-                                       .pixels = picture_pixels,
-                                       .threads = petzval::processor_threads()});
     pictures.push_back(std::move(picture));
   }
   return pictures;
@@ -91,8 +94,8 @@ examples::Sheet contact_sheet(const std::vector<Picture>& pictures, const exampl
   examples::SheetRow row{
       .title = loaded.lens.name(),
       .subtitle = "point light at " + examples::number(options.subject_mm) + " mm, " +
-                  examples::number(options.field_deg) + "°; distances from the " +
-                  (options.origin == "film" ? "film" : "front vertex") + "; focus " + options.criterion +
+                  examples::number(options.field_deg) + "°; distances from the " + options.focus.from() + "; focus " +
+                  options.focus.criterion +
                   (options.iris.f_number > 0 ? "; f/" + examples::number(options.iris.f_number) : "; wide open") +
                   (options.iris.blades > 0 ? "; " + std::to_string(options.iris.blades) + " blades" : "") +
                   (options.model == "exact_double" ? "" : "; " + options.model),
@@ -110,7 +113,7 @@ examples::Sheet contact_sheet(const std::vector<Picture>& pictures, const exampl
   return {"Bokeh of a point light", {std::move(row)}, examples::bokeh_notes()};
 }
 
-Json to_json(const std::vector<Picture>& pictures, const examples::LoadedLens& loaded, const Options& options,
+Json to_json(std::span<const Picture> pictures, const examples::LoadedLens& loaded, const Options& options,
              const petzval::BokehControls& controls) {
   Json json{{"lens", loaded.lens.name()},
             {"model", options.model},
@@ -126,7 +129,7 @@ Json to_json(const std::vector<Picture>& pictures, const examples::LoadedLens& l
             {"wavelengths_nm", options.wavelengths_nm},
             {"white_point", options.white_point},
             {"subject_distance_mm", finite_or_null(options.subject_mm)},
-            {"distance_from", options.origin},
+            {"distance_from", options.focus.origin},
             {"f_number_real", petzval::real_f_number(examples::stopped_down(loaded.lens, options.iris))},
             {"field_deg", options.field_deg},
             {"samples", options.samples},
@@ -142,7 +145,7 @@ Json to_json(const std::vector<Picture>& pictures, const examples::LoadedLens& l
     json["results"].push_back(
         {{"focus_mm", finite_or_null(p.focus_mm)},
          {"film_z_mm", p.scene.lens.film_z()},
-         {"criterion", options.criterion},
+         {"criterion", options.focus.criterion},
          {"throughput", p.image.throughput},
          {"centroid_mm", if_any(pair(p.image.size.centroid))},
          {"rms_radius_mm", if_any(p.image.size.rms_radius)},
@@ -162,25 +165,37 @@ Json to_json(const std::vector<Picture>& pictures, const examples::LoadedLens& l
   return json;
 }
 
-void write_all(const std::vector<Picture>& pictures, const examples::LoadedLens& loaded, const Options& options,
-               const petzval::BokehControls& controls) {
-  const auto sheet = examples::draw_sheet(contact_sheet(pictures, loaded, options));
+/// Traces the pictures. Each picture is written when it is complete, with the numbers of all complete pictures, so that
+/// an interrupted run loses only the current picture.
+void render(std::vector<Picture> pictures, const examples::LoadedLens& loaded, const Options& options,
+            const petzval::BokehControls& controls) {
   const std::filesystem::path folder = options.out_folder;
   examples::make_folder(folder);
-  const auto written = [](const std::filesystem::path& file) { std::cout << file.string() << '\n'; };
-  for (const Picture& p : pictures) {
-    const std::string stem = loaded.id + "_focus_" + examples::number(p.focus_mm) + "mm";
-    const petzval::RgbImage image = examples::irradiance(p.image.psf, options.light);
-    for (const auto& file :
-         examples::write_picture(image, examples::expose(image).picture, options.formats, folder / stem)) {
-      written(file);
+  const auto written = [](const std::filesystem::path& file) { std::cout << file.string() << std::endl; };
+  const std::filesystem::path numbers = folder / (loaded.id + "_bokeh.json");
+  {
+    examples::Progress progress("bokeh", pictures.size());
+    for (std::size_t i = 0; i < pictures.size(); ++i) {
+      Picture& p = pictures[i];
+      progress.step(examples::focus_caption(p.focus_mm));
+      p.image = image_of(p, {.samples = options.samples,
+                             .tolerance = options.tolerance,
+                             .pixels = picture_pixels,
+                             .threads = petzval::processor_threads()});
+      const std::string stem = loaded.id + "_focus_" + examples::number(p.focus_mm) + "mm";
+      const petzval::RgbImage image = examples::irradiance(p.image.psf, options.light);
+      for (const auto& file :
+           examples::write_picture(image, examples::expose(image).picture, options.formats, folder / stem)) {
+        written(file);
+      }
+      const std::span whole = std::span(pictures).first(i + 1);
+      examples::write_text(numbers, to_json(whole, loaded, options, controls).dump(1) + '\n');
     }
   }
-  petzval::write_png(sheet, folder / (loaded.id + "_bokeh.png"));
+  petzval::write_png(examples::draw_sheet(contact_sheet(pictures, loaded, options)),
+                     folder / (loaded.id + "_bokeh.png"));
   written(folder / (loaded.id + "_bokeh.png"));
-  examples::write_text(folder / (loaded.id + "_bokeh.json"),
-                       to_json(pictures, loaded, options, controls).dump(1) + '\n');
-  written(folder / (loaded.id + "_bokeh.json"));
+  written(numbers);
 }
 
 }  // namespace
@@ -189,7 +204,8 @@ int main(int argc, char** argv) {
   Options options;
   examples::App app(
       "Renders the geometric point spread function of a lens for a point light, focused at several distances.\n"
-      "Writes to DIR, and prints the paths: LENS_focus_<D>mm.exr (float, linear: share of the light in the paraxial "
+      "Writes to DIR, and prints the paths, each picture when it is complete: LENS_focus_<D>mm.exr (float, linear: "
+      "share of the light in the paraxial "
       "entrance pupil, per mm^2 of film), LENS_focus_<D>mm.png (each with its own exposure), LENS_bokeh.png (all at "
       "one "
       "scale) and LENS_bokeh.json. Images show the film as a photograph does, turned by half a turn (+x to the left, "
@@ -203,13 +219,10 @@ int main(int argc, char** argv) {
       ->default_str("");
   examples::add_numbers(app, "--focus-mm", options.focus_mm, examples::positive_length, "focus distances (mm), or inf")
       ->required();
-  app.add_option("--distance-from", options.origin, "origin of the distances of light and focus")
-      ->one_of({"front_vertex", "film"})
-      ->capture_default_str();
-  examples::add_criterion(app, options.criterion);
-  examples::add_numbers(
-      app, "--wavelengths-nm", options.wavelengths_nm, examples::positive_number,
-      "wavelengths of the light (nm); several, from 420 to 680, are weighted to RGB by the CIE 1931 functions");
+  examples::add_focus(app, options.focus);
+  examples::add_wavelengths(
+      app, "--wavelengths-nm", options.wavelengths_nm,
+      "wavelengths of the light; several, from 420 to 680 nm, are weighted to RGB by the CIE 1931 functions");
   examples::add_white_point(app, options.white_point);
   examples::add_model(app, options.model)->capture_default_str();
   examples::add_iris(app, options.iris);
@@ -223,17 +236,13 @@ int main(int argc, char** argv) {
       "first, then twice as many")
       ->default_str("all samples");
   examples::add_formats(app, options.formats, "each with its own exposure");
-  app.add_option("--out", options.out_folder, "folder for the results")->required()->type_name("DIR");
+  examples::add_out_folder(app, options.out_folder)->required();
 
   return examples::run(app, argc, argv, [&] {
     options.light = examples::white_light(options.white_point);
     examples::rgb_weights(options.wavelengths_nm, options.light);  // refuses an invalid set before the work
     const auto loaded = examples::load_lens(options.lens_file, options.wavelengths_nm);
-    const examples::BokehSetup setup{.light_mm = options.subject_mm,
-                                     .origin = examples::named(options.origin, examples::distance_origins),
-                                     .criterion = examples::named(options.criterion, examples::focus_criteria),
-                                     .field_rad = petzval::radians(options.field_deg)};
     const petzval::BokehControls controls = examples::controls_of(options.bokeh);
-    write_all(render(loaded, options, controls, setup), loaded, options, controls);
+    render(focused(loaded, options, controls), loaded, options, controls);
   });
 }

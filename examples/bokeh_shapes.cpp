@@ -25,15 +25,13 @@ namespace {
 using examples::number;
 
 constexpr int tile_pixels = 200;
-constexpr double focus_mm = 2000, light_mm = 10000;  // from the film
+constexpr double focus_mm = 2000, light_mm = 10000;  // from the front vertex
 
 petzval::Lens lens_of_data(const std::string& id) {
   return petzval::compile(petzval::read_prescription(petzval::data_directory() / "lenses" / (id + ".json")));
 }
 
-petzval::Lens focused(const petzval::Lens& lens) {
-  return petzval::with_focus(lens, focus_mm, {.origin = petzval::DistanceOrigin::film});
-}
+petzval::Lens focused(const petzval::Lens& lens) { return petzval::with_focus(lens, focus_mm); }
 
 std::uint32_t samples = 1 << 19;  // of a tile
 
@@ -56,7 +54,7 @@ examples::Tile tile(const petzval::PointImage& image, const std::vector<std::str
 /// The Tronnier double Gauss at f/4, and a light on its axis.
 struct AxialScene {
   petzval::Lens lens = focused(petzval::with_f_number(lens_of_data("double_gauss_100mm_f2.0"), 4));
-  petzval::FieldPoint light{0, lens.film_z() - light_mm};
+  petzval::FieldPoint light{0, -light_mm};
   double half_width_mm = 1.08 * petzval::point_image(lens, light, {.samples = 1 << 14}).size.max_radius;
   std::string text = lens.name() +
                      " at f/4, focused at 2 m. A point of light at 10 m on the axis, as a photograph shows "
@@ -105,9 +103,7 @@ examples::Sheet cats_eyes() {
   const petzval::Lens lens = focused(lens_of_data("double_gauss_100mm_f1.35"));
   const petzval::TwoDiscs discs = petzval::fit_two_discs(lens, half_film_mm);
   const petzval::BokehControls eye{.lens_ratio = discs.lens_ratio, .rate_of_change = discs.rate_of_change};
-  const auto light = [&](double field_deg) {
-    return petzval::FieldPoint{petzval::radians(field_deg), lens.film_z() - light_mm};
-  };
+  const auto light = [&](double field_deg) { return petzval::FieldPoint{petzval::radians(field_deg), -light_mm}; };
   const double half_width_mm = 1.08 * petzval::point_image(lens, light(0), {.samples = 1 << 14}).size.max_radius;
   examples::Sheet sheet{
       "Cat's eyes over the field",
@@ -216,7 +212,7 @@ int main(int argc, char** argv) {
       "blades, straight, rounded and hollow), bokeh_cats_eyes.png (a lens over its field beside two fitted discs), "
       "bokeh_weights.png (weights of the rim) and bokeh_maps.png (onion rings, an image as iris).",
       "bokeh_shapes");
-  app.add_option("--out", out_folder, "folder for the sheets")->required()->type_name("DIR");
+  examples::add_out_folder(app, out_folder, "folder for the sheets")->required();
   examples::add_samples(app, samples);
   return examples::run(app, argc, argv, [&] {
     struct Drawn {

@@ -121,12 +121,12 @@ int main(int argc, char** argv) {
                  "to 1, uniform by area over the model's pupil of the film point")
       ->required()
       ->type_name("CSV");
-  app.add_option("--out", out_file,
-                 "CSV to write, one line per sample in the same order: x_mm,y_mm,z_mm,dx,dy,dz,weight,"
-                 "pdf_pupil_per_mm2,pdf_direction_per_sr,fate, with 17 digits. The mean of weight x radiance is the "
-                 "irradiance of the film point; the weight is 0 unless the fate is transmitted")
-      ->required()
-      ->type_name("CSV");
+  examples::add_out_file(app, out_file,
+                         "CSV to write, one line per sample in the same order: x_mm,y_mm,z_mm,dx,dy,dz,weight,"
+                         "pdf_pupil_per_mm2,pdf_direction_per_sr,fate, with 17 digits. The mean of weight x radiance "
+                         "is the irradiance of the film point; the weight is 0 unless the fate is transmitted",
+                         "CSV")
+      ->required();
   examples::add_model(app, model)->required();
   examples::add_camera(app, setup);
   examples::BokehFlags bokeh;
@@ -147,7 +147,7 @@ int main(int argc, char** argv) {
                              .tilt_rad = petzval::radians(tilt_deg),
                              .swing_rad = petzval::radians(swing_deg)};
     const petzval::Lens lens = examples::focused(loaded, setup);
-    examples::say_what_does_not_fit(lens, film, false);
+    examples::say_what_does_not_fit(lens, film, "");
     const petzval::Camera camera(lens, film,
                                  {.model = *petzval::model_named(model), .bokeh = examples::controls_of(bokeh)});
     examples::write_text(out_file, rays_csv(camera, samples));

@@ -32,8 +32,9 @@ double verified_max_px(const petzval::Lens& lens, const Options& options, petzva
   std::mt19937 random(20'241);
   std::uniform_real_distribution<double> unit;
   const double near = 1 / options.near_mm, far = 1 / options.far_mm;
-  std::vector<double> depths{lens.film_z() - options.near_mm, lens.film_z() - options.far_mm};
-  for (int k = 0; k < 3; ++k) depths.push_back(lens.film_z() - 1 / (far + unit(random) * (near - far)));
+  const double from_z = petzval::origin_z(lens, options.setup.focus.distance_origin());
+  std::vector<double> depths{from_z - options.near_mm, from_z - options.far_mm};
+  for (int k = 0; k < 3; ++k) depths.push_back(from_z - 1 / (far + unit(random) * (near - far)));
   const petzval::ErrorSamples samples{.depths_z = depths,
                                       .film_points = 512,
                                       .seed = static_cast<std::uint32_t>(random()),
@@ -49,7 +50,7 @@ int main(int argc, char** argv) {
       "Chooses the fastest model of a lens for a scene. The error of its rays must be within a budget for all points "
       "of "
       "the film and the pupil and all depths of the scene, its exposure within 1 %, and the shape of its pupil within "
-      "2 % of the area. Distances count from the film. At the d line (587.5618 nm).\n"
+      "2 % of the area. At the d line (587.5618 nm).\n"
       "predicted_max_px is the bound that the choice used; max_px in the table is the bound of each model; "
       "verified_max_px is the largest error of fresh samples.",
       "choose_camera");
@@ -69,9 +70,13 @@ int main(int argc, char** argv) {
   return examples::run(app, argc, argv, [&] {
     const petzval::Film film = options.film();
     const petzval::Lens lens = examples::focused_lens(options).lens;
-    examples::say_what_does_not_fit(lens, film);
+    examples::say_what_does_not_fit(lens, film, "--resolution");
     const petzval::ModelChoice choice = petzval::choose_model(
-        lens, {.near_mm = options.near_mm, .far_mm = options.far_mm, .film = film},
+        lens,
+        {.near_mm = options.near_mm,
+         .far_mm = options.far_mm,
+         .film = film,
+         .origin = options.setup.focus.distance_origin()},
         {.max_px = options.budget_px, .exposure = 0.01, .pupil_shape = 0.02}, petzval::processor_threads());
     examples::say_what_is_missing(choice.table);
     const auto rows = examples::model_rows(choice.table, film, true);

@@ -20,6 +20,7 @@
 #include "petzval/pupil/f_number.hpp"
 #include "support/bokeh.hpp"
 #include "support/cli.hpp"
+#include "support/design.hpp"
 #include "support/files.hpp"
 #include "support/iris_setup.hpp"
 #include "support/load_lens.hpp"
@@ -37,8 +38,16 @@ struct Options {
   std::string out_folder, white_point = "D65";
   double subject_mm = 0;                    ///< 0: twenty focal lengths
   std::vector<double> focus_mm, field_deg;  ///< none: about the light; the axis and 0.7 of the field
+  examples::FocusFlags focus;
   examples::IrisSetup iris;
   std::uint32_t samples = 1u << 18;
+
+  examples::BokehSetup scene(double field) const {
+    return {.light_mm = subject_mm,
+            .origin = focus.distance_origin(),
+            .criterion = focus.options().criterion,
+            .field_rad = petzval::radians(field)};
+  }
 };
 
 /// The set over the visible range, with the wavelengths of the RGB triple among it.
@@ -79,37 +88,30 @@ void complete(Options& options, const examples::LoadedLens& loaded) {
     for (const double share : {0.8, 0.9, 1.0, 1.1, 1.2})
       options.focus_mm.push_back(rounded(share * options.subject_mm, 3));
   }
-  if (options.field_deg.empty()) options.field_deg = {0, rounded(0.7 * examples::half_field_deg(loaded), 2)};
+  if (options.field_deg.empty())
+    options.field_deg = {0, rounded(0.7 * examples::half_field_deg(loaded, loaded.lens), 2)};
 }
 
 struct Picture {
-  double field_deg = 0, focus_mm = 0, film_z_mm = 0;
+  double field_deg = 0, focus_mm = 0, half_width_mm = 0;
+  examples::BokehScene scene;
   petzval::PointImage image;
 };
 
-std::vector<Picture> render(const petzval::Lens& lens, const Options& options) {
-  examples::Progress progress("chromatic bokeh", options.field_deg.size() * options.focus_mm.size());
+/// The pictures before they are traced. @throws petzval::Error  if a focus is out of reach or a field is dark
+std::vector<Picture> prepared(const petzval::Lens& lens, const Options& options) {
   std::vector<Picture> pictures;
   for (const double field : options.field_deg) {
     double half_width_mm = 1e-4;  // of all at a field; a perfect point has no size
-    std::vector<examples::BokehScene> scenes;
+    const std::size_t first = pictures.size();
     for (const double focus : options.focus_mm) {
-      scenes.push_back(
-          examples::focused_scene(lens, focus, {.light_mm = options.subject_mm, .field_rad = petzval::radians(field)}));
-      const auto sketch =
-          petzval::point_image(scenes.back().lens, scenes.back().light, {.samples = 1u << 10, .pixels = 1});
+      const auto scene = examples::focused_scene(lens, focus, options.scene(field));
+      examples::want_light(scene.lens, scene.light, "--field-deg");
+      const auto sketch = petzval::point_image(scene.lens, scene.light, {.samples = 1u << 10, .pixels = 1});
       half_width_mm = std::max(half_width_mm, 1.08 * sketch.size.max_radius);
+      pictures.push_back({field, focus, 0, scene, {}});
     }
-    for (std::size_t i = 0; i < scenes.size(); ++i) {
-      const double focus = options.focus_mm[i];
-      progress.step(examples::number(field) + "°, " + examples::focus_caption(focus));
-      auto image = petzval::point_image(scenes[i].lens, scenes[i].light,
-                                        {.samples = options.samples,
-                                         .pixels = tile_pixels,
-                                         .half_width_mm = half_width_mm,
-                                         .threads = petzval::processor_threads()});
-      pictures.push_back({field, focus, scenes[i].lens.film_z(), std::move(image)});
-    }
+    for (std::size_t i = first; i < pictures.size(); ++i) pictures[i].half_width_mm = half_width_mm;
   }
   return pictures;
 }
@@ -119,13 +121,15 @@ examples::Sheet sheet(const std::vector<Picture>& pictures, const petzval::Lens&
   const auto set = wavelengths_nm();
   const std::string title =
       lens.name() + ", " +
-      (std::isinf(options.subject_mm) ? std::string("a point of light at infinity")
-                                      : "a point of light at " + examples::number(options.subject_mm) + " mm");
+      (std::isinf(options.subject_mm)
+           ? std::string("a point of light at infinity")
+           : "a point of light at " + examples::number(options.subject_mm) + " mm from the " + options.focus.from());
   examples::Sheet result{
       title,
       {},
       {"The film is where the primary wavelength, " + examples::number(set[lens.primary_wavelength()]) +
-           " nm, is sharpest. Tiles of a row have the same scale of film and their own exposure.",
+           " nm, is in focus (" + options.focus.criterion +
+           "). Tiles of a row have the same scale of film and their own exposure.",
        "In three wavelengths each channel has its own image, and no colours lie between them."}};
   for (const double field : options.field_deg) {
     for (const bool triple : {false, true}) {
@@ -217,17 +221,18 @@ int main(int argc, char** argv) {
       "chromatic_bokeh");
   examples::add_lens(app, options.lens_file);
   examples::add_number(app, "--subject-distance-mm", options.subject_mm, examples::positive_length,
-                       "distance of the light from the front vertex (mm), or inf")
+                       "distance of the light (mm), or inf")
       ->default_str("20 focal lengths");
   examples::add_numbers(app, "--focus-mm", options.focus_mm, examples::positive_length, "focus distances (mm), or inf")
       ->default_str("0.8, 0.9, 1, 1.1, 1.2 of the light's distance; for inf 25, 50, 100 focal lengths, and inf");
+  examples::add_focus(app, options.focus);
   examples::add_numbers(app, "--field-deg", options.field_deg, examples::finite_number,
                         "angles of the light towards +y, seen from the paraxial entrance pupil (degrees)")
       ->default_str("0 and 0.7 of the lens's half field");
   examples::add_iris(app, options.iris);
   examples::add_white_point(app, options.white_point);
   examples::add_samples(app, options.samples);
-  app.add_option("--out", options.out_folder, "folder for the results")->required()->type_name("DIR");
+  examples::add_out_folder(app, options.out_folder)->required();
 
   return examples::run(app, argc, argv, [&] {
     const auto set = wavelengths_nm();
@@ -235,42 +240,55 @@ int main(int argc, char** argv) {
     const auto loaded = examples::load_lens(options.lens_file, set);
     complete(options, loaded);
     const petzval::Lens lens = examples::stopped_down(loaded.lens, options.iris);
-    const auto pictures = render(lens, options);
-    const auto in_focus = examples::focused_scene(lens, options.subject_mm, {.light_mm = options.subject_mm});
+    auto pictures = prepared(lens, options);
+    const auto in_focus = examples::focused_scene(lens, options.subject_mm, options.scene(0));
     std::vector<double> fields_rad;
     for (const double field : options.field_deg) fields_rad.push_back(petzval::radians(field));
     const auto colour = petzval::chromatic_aberration(in_focus.lens, in_focus.light.z, fields_rad);
+    std::cout << table(colour, options) << std::flush;
 
     Json json{{"lens", lens.name()},
               {"dispersion", petzval::name(lens.dispersion())},
               {"f_number_real", petzval::real_f_number(lens)},
               {"subject_distance_mm", examples::finite_or_null(options.subject_mm)},
+              {"distance_from", options.focus.origin},
+              {"criterion", options.focus.criterion},
               {"white_point", options.white_point},
               {"primary_nm", set[lens.primary_wavelength()]},
               {"rgb_weights", weights}};
     json.update(to_json(colour, options));
-    const auto contact_sheet = examples::draw_sheet(sheet(pictures, lens, options, weights));
-
-    std::cout << table(colour, options);
     const std::filesystem::path folder = options.out_folder;
     examples::make_folder(folder);
-    for (const Picture& p : pictures) {
-      const auto name =
-          loaded.id + "_" + examples::number(p.field_deg) + "deg_focus_" + examples::number(p.focus_mm) + "mm.exr";
-      petzval::write_exr(std::array{petzval::spectral_image(p.image.psf, weights)}, folder / name);
-      std::cout << (folder / name).string() << '\n';
-      json["pictures"].push_back({{"file", name},
-                                  {"field_deg", p.field_deg},
-                                  {"focus_mm", examples::finite_or_null(p.focus_mm)},
-                                  {"film_z_mm", p.film_z_mm},
-                                  {"throughput", p.image.throughput},
-                                  {"rms_radius_mm", p.image.throughput > 0 ? Json(p.image.size.rms_radius) : Json()},
-                                  {"picture_centre_mm", {p.image.psf.centre.x, p.image.psf.centre.y}},
-                                  {"picture_pixel_mm", p.image.psf.pixel_mm}});
+    const auto written = [](const std::filesystem::path& file) { std::cout << file.string() << std::endl; };
+    const std::filesystem::path numbers = folder / (loaded.id + "_chromatic.json");
+    {
+      // Each picture is written when it is complete, so that an interrupted run loses only the current picture.
+      examples::Progress progress("chromatic bokeh", pictures.size());
+      for (Picture& p : pictures) {
+        progress.step(examples::number(p.field_deg) + "°, " + examples::focus_caption(p.focus_mm));
+        p.image = petzval::point_image(p.scene.lens, p.scene.light,
+                                       {.samples = options.samples,
+                                        .pixels = tile_pixels,
+                                        .half_width_mm = p.half_width_mm,
+                                        .threads = petzval::processor_threads()});
+        const auto name =
+            loaded.id + "_" + examples::number(p.field_deg) + "deg_focus_" + examples::number(p.focus_mm) + "mm.exr";
+        petzval::write_exr(std::array{petzval::spectral_image(p.image.psf, weights)}, folder / name);
+        written(folder / name);
+        json["pictures"].push_back({{"file", name},
+                                    {"field_deg", p.field_deg},
+                                    {"focus_mm", examples::finite_or_null(p.focus_mm)},
+                                    {"film_z_mm", p.scene.lens.film_z()},
+                                    {"throughput", p.image.throughput},
+                                    {"rms_radius_mm", p.image.throughput > 0 ? Json(p.image.size.rms_radius) : Json()},
+                                    {"picture_centre_mm", {p.image.psf.centre.x, p.image.psf.centre.y}},
+                                    {"picture_pixel_mm", p.image.psf.pixel_mm}});
+        examples::write_text(numbers, json.dump(1) + '\n');
+      }
     }
-    petzval::write_png(contact_sheet, folder / (loaded.id + "_chromatic.png"));
-    std::cout << (folder / (loaded.id + "_chromatic.png")).string() << '\n';
-    examples::write_text(folder / (loaded.id + "_chromatic.json"), json.dump(1) + '\n');
-    std::cout << (folder / (loaded.id + "_chromatic.json")).string() << '\n';
+    petzval::write_png(examples::draw_sheet(sheet(pictures, lens, options, weights)),
+                       folder / (loaded.id + "_chromatic.png"));
+    written(folder / (loaded.id + "_chromatic.png"));
+    written(numbers);
   });
 }

@@ -238,9 +238,9 @@ int main(int argc, char** argv) {
       "refused IN.",
       "convert_lens");
   examples::add_lens(app, options.in, "IN", "the lens to convert")->required();
-  app.add_option("OUT", options.out, "the file to write: .json .dat .zmx .seq .osl .opentrackio.json .stmap.exr")
-      ->required()
-      ->type_name("FILE");
+  examples::add_out_file(app, options.out, "the file to write: .json .dat .zmx .seq .osl .opentrackio.json .stmap.exr",
+                         "FILE", "OUT")
+      ->required();
   app.add_flag("--strict", options.strict, "refuse a file of which anything had to be assumed or left out");
   app.add_flag("--repair", options.repair, "mend faults whose cure is certain, and say what was changed");
   app.add_flag("--json", options.json, "print a report of IN as one JSON object");

@@ -144,13 +144,13 @@ void draw(Options options) {
   const double focus = options.setup.focus_mm;
   std::vector<double> lights = options.light_mm;
   if (lights.empty()) lights = std::isinf(focus) ? std::vector<double>{10000} : std::vector{0.85 * focus, 1.2 * focus};
-  const double from_z = petzval::origin_z(lens, examples::named(options.setup.origin, examples::distance_origins));
+  const double from_z = petzval::origin_z(lens, options.setup.focus.distance_origin());
   const std::vector<double> fields = fields_rad(lens, film);
   examples::Sheet sheet{
       "Highlights of an expressive lens",
       {},
       {lens.name() + " at f/" + number(petzval::real_f_number(lens), 3) + ", " + examples::focus_caption(focus) +
-           " from the " + (options.setup.origin == "film" ? "film" : "front vertex") +
+           " from the " + options.setup.focus.from() +
            ". A point of light over the field, as a photograph shows it. The tiles of a light have one scale, and each "
            "its own exposure.",
        "Fields are those of film points on the way to the corner of " + options.setup.film_mm +
@@ -199,16 +199,14 @@ int main(int argc, char** argv) {
       "expressive_lens");
   examples::add_lens(app, options.lens_file);
   examples::add_camera(app, options.setup);
-  examples::add_distance_origin(app, options.setup);
   examples::add_expressive(app, options.expressive);
   app.add_option("--model", options.model, "first-order model that is bent")
       ->one_of({"thin", "thick", "thin_two_disc"})
       ->capture_default_str();
-  examples::add_numbers(app, "--light-mm", options.light_mm, examples::positive_length,
-                        "distances of the lights, from the same origin (mm)")
+  examples::add_numbers(app, "--light-mm", options.light_mm, examples::positive_length, "distances of the lights (mm)")
       ->default_str("0.85 and 1.2 of the focus");
   examples::add_samples(app, options.samples);
-  app.add_option("--out", options.out_folder, "folder for the results")->required()->type_name("DIR");
+  examples::add_out_folder(app, options.out_folder)->required();
   return examples::run(app, argc, argv, [&] {
     options.from_lens_given = app.get_option("--from-lens")->given();
     draw(options);

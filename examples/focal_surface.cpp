@@ -35,10 +35,12 @@ namespace {
 
 using examples::number;
 
+constexpr std::uint32_t usual_width = 600;
+
 struct Options {
   examples::LensInput lens_file;
   std::string queries_file, out_folder;
-  std::uint32_t width = 600, height = 400;
+  std::uint32_t width = 0, height = 0;  // 0: not given
   examples::CameraSetup setup;
   examples::FocalSurfaceSetup surface;
 };
@@ -49,13 +51,9 @@ class Surface {
   explicit Surface(const Options& options)
       : loaded_(examples::load_lens(options.lens_file, std::array{petzval::d_line_nm})),
         lens_(examples::focused(loaded_, options.setup)) {
-    const auto [width, height] = options.setup.film_size();
-    const petzval::Film film{.width_mm = width,
-                             .height_mm = height,
-                             .columns = static_cast<int>(options.width),
-                             .rows = static_cast<int>(options.height)};
+    const petzval::Film film = options.setup.film(options.width, options.height, usual_width);
     const petzval::Camera camera(lens_, film, {.model = petzval::ModelKind::thick});
-    const petzval::DistanceOrigin origin = examples::named(options.setup.origin, examples::distance_origins);
+    const petzval::DistanceOrigin origin = options.setup.focus.distance_origin();
     film_ = camera.film();
     ideal_ = petzval::thick_lens(camera.lens());
     auto [points, surface] = examples::read_focal_surface(options.surface, camera, origin, options.setup.focus_mm,
@@ -156,9 +154,8 @@ petzval::Rgb8Image map_of(const Surface& surface, const Options& options) {
       if (point.*fixed) map.points.push_back({at.x, at.y, i + 1});
     }
   };
-  add("Distance in focus from the " + std::string(options.setup.origin == "film" ? "film" : "front vertex") +
-          ", on a scale of 1/distance",
-      frame.inverses, distance_levels, distance_in_words, "farther", "nearer", &petzval::FocalPoint::inverse_distance);
+  add("Distance in focus from the " + options.setup.focus.from() + ", on a scale of 1/distance", frame.inverses,
+      distance_levels, distance_in_words, "farther", "nearer", &petzval::FocalPoint::inverse_distance);
   if (surface.has_extents()) {
     add("Extent of the depth of field, in stops: more is sharp above 0, less below", frame.extents, stop_levels,
         stops_in_words, "less is sharp", "more is sharp", &petzval::FocalPoint::extent_stops);
@@ -187,7 +184,8 @@ void write(const Options& options) {
   const petzval::Rgb8Image map = map_of(surface, options);
   const std::string side = petzval::focal_surface_figure(
       {surface.lens().name(),
-       "f/" + number(petzval::real_f_number(surface.lens()), 3) + ", film " + options.setup.film_mm + " mm.",
+       "f/" + number(petzval::real_f_number(surface.lens()), 3) + ", film " + number(surface.film().width_mm) + " x " +
+           number(surface.film().height_mm) + " mm.",
        surface.ideal(), surface.film(), surface.surface(), surface.points()});
   const std::vector<double> inverses = surface.frame(surface.film()).inverses;
   const std::string found = options.queries_file.empty() ? "" : answers(surface, options.queries_file);
@@ -232,14 +230,11 @@ int main(int argc, char** argv) {
              "is the lens frame, with the scene at negative z; distance_mm null: infinity")
           ->required()
           ->type_name("POINTS.json");
-  constexpr examples::Range side{1, 16384, "a whole number from 1 to 16384"};
-  examples::add_count(app, "--width", options.width, side, "pixels across");
-  examples::add_count(app, "--height", options.height, side, "pixels down");
+  examples::add_picture_size(app, options.width, options.height, usual_width);
   examples::add_camera(app, options.setup);
-  examples::add_distance_origin(app, options.setup);
   examples::add_surface_kind(app, options.surface, points);
   app.add_option("--queries", options.queries_file, "places of the picture: a CSV file of x_px,y_px")
       ->type_name("Q.csv");
-  app.add_option("--out", options.out_folder, "folder for the results")->required()->type_name("DIR");
+  examples::add_out_folder(app, options.out_folder)->required();
   return examples::run(app, argc, argv, [&] { write(options); });
 }

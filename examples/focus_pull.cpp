@@ -36,7 +36,8 @@ constexpr double none = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t most_frames = 100000;
 
 struct Options : examples::MovementOptions {
-  std::string keys_file, out_folder, criterion = "min_rms";
+  std::string keys_file, out_folder;
+  examples::FocusFlags focus;
   double frames_per_s = 24;
   bool tilt = false, json = false;
 };
@@ -92,7 +93,7 @@ class Pull {
   }
 
  private:
-  petzval::FocusCriterion criterion() const { return examples::named(options_.criterion, examples::focus_criteria); }
+  petzval::FocusCriterion criterion() const { return options_.focus.options().criterion; }
 
   void focus(const std::vector<petzval::FocusTarget>& targets, Frame& frame) {
     const auto found = bundles_ ? petzval::autofocus(*bundles_, targets, film_, criterion())
@@ -113,15 +114,22 @@ class Pull {
     frame.rms_um = 1e3 * found.rms_mm;
   }
 
-  /// The distance in focus on the axis, from the film; by rays for the real model. Infinite if nothing is in focus.
+  /// The distance in focus on the axis; by rays for the real model. Infinite if nothing is in focus.
   double distance() const {
-    if (lens_.exact) {
-      const petzval::FocusOptions focus{.criterion = criterion(), .origin = petzval::DistanceOrigin::film};
-      return petzval::solve_subject(*lens_.lens, film_.z(), focus).distance;
-    }
+    if (lens_.exact) return petzval::solve_subject(*lens_.lens, film_.z(), options_.focus.options()).distance;
     const petzval::ScenePoint place = lens_.ideal.scene_of({0, 0, film_.z()});
     const bool real = !place.at_infinity && place.position.z < lens_.ideal.front_focal_z;
-    return real ? film_.z() - place.position.z : infinity;
+    return real ? origin_z() - place.position.z : infinity;
+  }
+  /// z of the origin of distances for an ideal lens, whose front vertex is at z = 0.
+  double origin_z() const {
+    switch (options_.focus.distance_origin()) {
+      case petzval::DistanceOrigin::film: return film_.z();
+      case petzval::DistanceOrigin::entrance_pupil: return lens_.ideal.pupils.entrance.z;
+      case petzval::DistanceOrigin::front_principal: return lens_.ideal.front_principal_z();
+      case petzval::DistanceOrigin::front_vertex: break;
+    }
+    return 0;
   }
 
   /// By the chief ray through the exit pupil, compared with a film focused at infinity.
@@ -197,7 +205,8 @@ std::string plot(const Options& options, const examples::MovingLens& lens,
   const std::string remark = lens.conditions + ", " + std::to_string(points.size()) +
                              (points.size() == 1 ? " focus point, " : " focus points, ") +
                              number(options.frames_per_s) + " frames a second";
-  return petzval::focus_pull_figure(lens.title, remark, shown, std::vector<double>(keys.begin(), keys.end()));
+  return petzval::focus_pull_figure(lens.title, remark, shown, std::vector<double>(keys.begin(), keys.end()),
+                                    options.focus.from());
 }
 
 /// One frame per second, and the last one.
@@ -229,17 +238,14 @@ int main(int argc, char** argv) {
       "used within its interval.\n"
       "The film starts at infinity focus. It keeps its place in a frame without points (no_targets), with points out "
       "of "
-      "reach (unreachable) or without a solution (not_converged). subject_distance_mm: in focus on the axis, from the "
-      "film.\n"
+      "reach (unreachable) or without a solution (not_converged). subject_distance_mm: in focus on the axis.\n"
       "Writes NAME_focus_pull.csv and NAME_focus_pull.svg into DIR.",
       "focus_pull");
   examples::add_movement_options(app, options);
   app.add_option("--keys", options.keys_file, "points and their keys")->type_name("FILE")->required();
-  app.add_option("--out", options.out_folder, "folder for the table and the plot")->type_name("DIR")->required();
-  const auto* criterion =
-      app.add_option("--criterion", options.criterion, "criterion of the real model without --tilt: min_rms, min_max")
-          ->one_of({"min_rms", "min_max"})
-          ->capture_default_str();
+  examples::add_out_folder(app, options.out_folder, "folder for the table and the plot")->required();
+  examples::add_distance_origin(app, options.focus.origin);
+  const auto* criterion = examples::add_criterion(app, options.focus.criterion, {"min_rms", "min_max"});
   examples::add_number(app, "--frames-per-s", options.frames_per_s, examples::positive_number, "frames a second");
   app.add_flag("--tilt", options.tilt, "also tilt and swing the film");
   app.add_flag("--json", options.json, "print one JSON object instead of text");
@@ -263,8 +269,11 @@ int main(int argc, char** argv) {
     examples::write_text(csv_file, to_csv(all));
     examples::write_text(svg_file, svg);
     if (options.json) {
-      const Json json{
-          {"lens", lens.title}, {"model", options.model}, {"frames", to_json(all)}, {"files", {csv_file, svg_file}}};
+      const Json json{{"lens", lens.title},
+                      {"model", options.model},
+                      {"distance_from", options.focus.origin},
+                      {"frames", to_json(all)},
+                      {"files", {csv_file, svg_file}}};
       std::cout << json.dump(1) << '\n';
       return;
     }

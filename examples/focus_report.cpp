@@ -20,7 +20,9 @@
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "support/cli.hpp"
+#include "support/design.hpp"
 #include "support/files.hpp"
+#include "support/iris_setup.hpp"
 #include "support/load_lens.hpp"
 #include "support/text.hpp"
 
@@ -36,9 +38,9 @@ constexpr double none = std::numeric_limits<double>::quiet_NaN();  // no value
 struct Options {
   examples::LensInput lens_file;
   std::string origin = "front_vertex";
-  std::vector<std::string> criteria{"paraxial", "min_rms", "min_max"};
-  std::vector<double> distance_mm, field_deg{0}, wavelengths_nm{petzval::d_line_nm};
-  double blur_mm = 0.03, f_number = 0;  // f_number 0: wide open
+  std::vector<std::string> criteria{"min_rms", "paraxial", "min_max"};
+  std::vector<double> distance_mm, field_deg{0}, wavelengths_nm;  // none: of the file
+  double blur_mm = 0.03, f_number = 0;                            // f_number 0: wide open
   bool json = false;
 };
 
@@ -62,8 +64,11 @@ struct Report {
   std::vector<Limits> limits;
 };
 
-/// Distances as engraved on lenses of 50 to 100 mm; in proportion for others, rounded to two digits.
-std::vector<double> usual_distances(const petzval::Lens& lens) {
+/// The object of the file. Without a finite one distances as engraved on lenses of 50 to 100 mm; in proportion for
+/// others, rounded to two digits.
+std::vector<double> usual_distances(const petzval::Lens& lens, const petzval::DesignData& design,
+                                    petzval::DistanceOrigin origin) {
+  if (std::isfinite(design.object_distance_mm)) return {design.object_distance_mm + petzval::origin_z(lens, origin)};
   const auto first = petzval::first_order(lens, 0, petzval::main_meridian(lens));
   std::vector<double> distances;
   if (!first.afocal) {
@@ -88,7 +93,7 @@ petzval::FocusOptions focus_options(const std::string& criterion, const Options&
 
 petzval::Lens stopped_down(const examples::LoadedLens& loaded, double f_number) {
   if (f_number == 0) return loaded.lens;
-  return petzval::with_f_number(loaded.lens, f_number);
+  return examples::stopped_to(loaded.lens, f_number);
 }
 
 void solve(Row& row, const petzval::Lens& lens, const petzval::FocusOptions& focus, double blur_mm) {
@@ -115,9 +120,40 @@ std::string refusal(Work&& work) {
   return "";
 }
 
+/// The message about a subject that is out of reach; it names the nearest distance.
+std::string reason(const petzval::Lens& lens, const Row& row, const Options& options) {
+  return refusal([&] { petzval::with_focus(lens, row.distance, focus_options(row.criterion, options)); });
+}
+
+/// Fields that no light reaches, and reports without any answer, are errors. Distances that look like metres are noted.
+void want_answers(const Report& report, const std::vector<double>& distances, const Options& options) {
+  const double z = petzval::origin_z(report.lens, examples::named(options.origin, examples::distance_origins)) -
+                   *std::ranges::max_element(distances);
+  const bool no_rays =
+      std::ranges::any_of(report.rows, [](const Row& r) { return r.focus.status == FocusStatus::no_rays; });
+  for (const double field : options.field_deg) {
+    if (no_rays && field != 0) examples::want_light(report.lens, {petzval::radians(field), z}, "--field-deg");
+  }
+  if (std::ranges::none_of(report.rows, [](const Row& r) { return r.refusal.empty(); })) {
+    throw petzval::Error(report.rows.front().refusal);
+  }
+  const auto unreached = [&](const Row& r) { return r.refusal.empty() && r.focus.status == FocusStatus::unreachable; };
+  const bool none_solved = std::ranges::none_of(report.rows, [](const Row& r) { return r.refusal.empty() && r.focus; });
+  constexpr double metres = 50;
+  for (const Row& row : report.rows) {
+    if (!unreached(row) || options.distance_mm.empty()) continue;
+    const std::string why = reason(report.lens, row, options);
+    if (none_solved) throw petzval::Error(why);
+    if (row.distance < metres) examples::note(why);
+  }
+}
+
 Report report(const examples::LoadedLens& loaded, const Options& options) {
   Report result{stopped_down(loaded, options.f_number), {}, {}};
-  const auto distances = options.distance_mm.empty() ? usual_distances(result.lens) : options.distance_mm;
+  const auto distances = options.distance_mm.empty()
+                             ? usual_distances(result.lens, loaded.prescription.design,
+                                               examples::named(options.origin, examples::distance_origins))
+                             : options.distance_mm;
   examples::Progress progress("focus", options.criteria.size() * distances.size());
   for (const std::string& criterion : options.criteria) {
     const petzval::FocusOptions focus = focus_options(criterion, options);
@@ -134,9 +170,7 @@ Report report(const examples::LoadedLens& loaded, const Options& options) {
       result.rows.push_back(std::move(row));
     }
   }
-  if (std::ranges::none_of(result.rows, [](const Row& r) { return r.refusal.empty(); })) {
-    throw petzval::Error(result.rows.front().refusal);
-  }
+  want_answers(result, distances, options);
   return result;
 }
 
@@ -181,9 +215,7 @@ std::string in_words(double value, int decimals) {
 std::string to_text(const Report& report, const Options& options) {
   std::ostringstream text;
   text << report.lens.name() << "\ndistances in mm from the "
-       << (options.origin == "film"           ? "film"
-           : options.origin == "front_vertex" ? "front vertex"
-                                              : "front principal plane")
+       << examples::in_words(examples::named(options.origin, examples::distance_origins))
        << "; film_z from the front vertex; depth of field for a blur of " << examples::number(options.blur_mm)
        << " mm in diameter\n";
   std::string before;
@@ -238,14 +270,10 @@ int main(int argc, char** argv) {
                "fraction");
   examples::add_numbers(app, "--distance-mm", options.distance_mm, examples::positive_length,
                         "subject distances (mm), or inf")
-      ->default_str("10, 20, 50, 100 focal lengths, rounded, and inf");
-  app.add_option("--criterion", options.criteria, "criteria of focus")
-      ->delimiter(',')
-      ->one_of(examples::names(examples::focus_criteria))
-      ->capture_default_str();
-  app.add_option("--distance-from", options.origin, "origin of distances")
-      ->one_of(examples::names(examples::distance_origins))
-      ->capture_default_str();
+      ->default_str(
+          "the object of the file, if it is not at infinity, else 10, 20, 50, 100 focal lengths, rounded, and inf");
+  examples::add_criteria(app, options.criteria);
+  examples::add_distance_origin(app, options.origin);
   examples::add_number(app, "--blur-mm", options.blur_mm, examples::positive_number,
                        "largest blur in the depth of field, a diameter on the film (mm); 0.03 is usual for 24 x 36 mm");
   examples::add_number(app, "--f-number", options.f_number, examples::positive_number,
@@ -253,15 +281,18 @@ int main(int argc, char** argv) {
       ->default_str("wide open");
   examples::add_numbers(app, "--field-deg", options.field_deg, examples::finite_number,
                         "fields of min_rms and min_max, of equal weight (degrees)");
-  examples::add_numbers(app, "--wavelengths-nm", options.wavelengths_nm, examples::positive_number,
-                        "wavelengths of min_rms and min_max, of equal weight (nm)");
+  examples::add_wavelengths(app, "--wavelengths-nm", options.wavelengths_nm,
+                            "wavelengths of min_rms and min_max, of equal weight")
+      ->default_str("the primary one of the file, else the d line");
 
   return examples::run(app, argc, argv, [&] {
     for (const std::string& criterion : options.criteria) {
       if (std::ranges::count(options.criteria, criterion) == 1) continue;
       throw petzval::Error("--criterion: found " + criterion + " twice, wanted every criterion once");
     }
-    const Report r = report(examples::load_lens(options.lens_file, options.wavelengths_nm), options);
+    examples::LensFile file = examples::read_lens(options.lens_file);
+    if (options.wavelengths_nm.empty()) options.wavelengths_nm = {examples::light_of(file).primary_nm};
+    const Report r = report(examples::compiled(std::move(file), options.wavelengths_nm), options);
     std::cout << (options.json ? to_json(r, options).dump(1) + '\n' : to_text(r, options));
   });
 }

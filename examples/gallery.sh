@@ -104,7 +104,7 @@ mkdir -p "$out/focus_pull"
   --out "$out/focus_pull" > "$out/focus_pull/focus_pull.txt"
 echo "$out/focus_pull"
 "$programs/focal_surface" "$lenses/double_gauss_52mm_f1.8.json" --points "$here/scenes/statues_focus.json" --width 600 --height 400 \
-  --distance-from front_vertex --focus-mm 1500 --out "$out/focal_surface"
+  --focus-mm 1500 --out "$out/focal_surface"
 
 echo "== Scenes through lenses (11/12)"
 mkdir -p "$out/scenes"
@@ -121,7 +121,7 @@ if [ -x "$programs/bokeh_scene" ]; then
       spp=$((16 * spp)) width=$((2 * width)) height=$((2 * height))
     fi
     "$programs/bokeh_scene" --scene "$name" --lens "$lenses/$lens.json" --spp "$spp" --width "$width" --height "$height" \
-      --distance-from front_vertex $resume --out "$folder" "$@" > "$out/scenes/log.txt"
+      $resume --out "$folder" "$@" > "$out/scenes/log.txt"
     scenes="$scenes $folder"
   }
   wu="double_gauss_100mm_f1.35 double_gauss_100mm_f1.7_substitute double_gauss_100mm_f2_28deg"
@@ -138,12 +138,17 @@ if [ -x "$programs/bokeh_scene" ]; then
   for lens in $wu; do scene "chess_$lens" chess "$lens" 32 480 320 --focus-mm 880; done
   "$programs/bokeh_sheet" --columns 2 --title "Chess, after figure 9 of Wu et al. 2010" --out "$out/scenes/chess.png" $scenes
   scenes=
-  scene street street double_gauss_100mm_f2_28deg 48 480 320 --focus-mm 2960
+  # Scenes count from the entrance pupil.
+  scene street street double_gauss_100mm_f2_28deg 48 480 320 --focus-mm 3000 --distance-from entrance_pupil
   "$programs/bokeh_sheet" --title "A street at night" --out "$out/scenes/street.png" $scenes
   scenes=
-  scene statues_near statues double_gauss_52mm_f1.8 32 450 300 --focus-mm 1500 --integrator path
-  scene statues_far statues double_gauss_52mm_f1.8 32 450 300 --focus-mm 6000 --integrator path
-  scene statues_both statues double_gauss_52mm_f1.8 32 450 300 --focus-mm 1500 --integrator path --model thin_two_disc \
+  statues="--distance-from entrance_pupil --integrator path"
+  # shellcheck disable=SC2086
+  scene statues_near statues double_gauss_52mm_f1.8 32 450 300 --focus-mm 1500 $statues
+  # shellcheck disable=SC2086
+  scene statues_far statues double_gauss_52mm_f1.8 32 450 300 --focus-mm 6000 $statues
+  # shellcheck disable=SC2086
+  scene statues_both statues double_gauss_52mm_f1.8 32 450 300 --focus-mm 1500 $statues --model thin_two_disc \
     --focal-surface "$here/scenes/statues_focus.json"
   "$programs/bokeh_sheet" --columns 3 --title "Two statues, after figure 1 (d) of Lee et al. 2010" \
     --out "$out/scenes/statues.png" $scenes
@@ -170,7 +175,7 @@ if [ -x "$programs/bokeh_scene" ]; then
   blur tilt town --thin-lens-mm 50 --lens-diameter-mm 40 --focus-mm 5000 --tilt-deg 6
   blur knot knot --thin-lens-mm 50 --lens-diameter-mm 100 --focus-mm 3600
   blur leaves leaves --thin-lens-mm 50 --lens-diameter-mm 100 --focus-mm 5000 --layers 8
-  blur cats_eyes statues --lens "$lenses/double_gauss_100mm_f1.35.json" --focus-mm 3000 --fov-deg 22
+  blur cats_eyes statues --lens "$lenses/double_gauss_100mm_f1.35.json" --focus-mm 3000 --distance-from entrance_pupil --fov-deg 22
   blur surface statues --thin-lens-mm 50 --lens-diameter-mm 28 --focus-mm 5000 --points "$here/scenes/statues_focus.json"
   blur night street --thin-lens-mm 100 --lens-diameter-mm 50 --focus-mm 3000 --fov-deg 14 --rays 32 --blades 6
   cp "$here/scenes.html" "$scenes_file"

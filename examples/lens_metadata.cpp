@@ -72,6 +72,6 @@ int main(int argc, char** argv) {
       "lens_metadata");
   examples::add_lens(app, options.lens_file);
   examples::add_camera(app, options.setup);
-  app.add_option("--out", options.out_folder, "folder for the files")->required()->type_name("DIR");
+  examples::add_out_folder(app, options.out_folder, "folder for the files")->required();
   return examples::run(app, argc, argv, [&] { write(options); });
 }

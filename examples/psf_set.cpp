@@ -23,6 +23,7 @@
 #include "petzval/pupil/f_number.hpp"
 #include "support/bokeh.hpp"
 #include "support/cli.hpp"
+#include "support/design.hpp"
 #include "support/files.hpp"
 #include "support/iris_setup.hpp"
 #include "support/load_lens.hpp"
@@ -33,13 +34,15 @@ namespace {
 
 namespace fs = std::filesystem;
 using examples::Json;
+using examples::number;
 using petzval::PsfSetPoint;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 struct Options {
   examples::LensInput lens_file;
-  std::string out_folder, origin = "front_vertex", criterion = "min_rms";
+  std::string out_folder;
+  examples::FocusFlags focus;
   petzval::PsfSet::Axes axes{
       .fields_deg = {}, .distances_mm = {}, .wavelengths_nm = {petzval::d_line_nm}, .f_numbers = {}};
   double focus_mm = infinity;
@@ -68,8 +71,8 @@ class Scenes {
     }
     auto scene = examples::focused_scene(*stopped_, options_.focus_mm,
                                          {.light_mm = point.distance_mm,
-                                          .origin = examples::named(options_.origin, examples::distance_origins),
-                                          .criterion = examples::named(options_.criterion, examples::focus_criteria),
+                                          .origin = options_.focus.distance_origin(),
+                                          .criterion = options_.focus.options().criterion,
                                           .field_rad = petzval::radians(point.field_deg)});
     petzval::PupilPlane(scene.lens, scene.light);
     return scene;
@@ -105,12 +108,12 @@ examples::PsfJob job_of(const examples::LoadedLens& loaded, const Options& optio
                            {"dispersion", petzval::name(loaded.lens.dispersion())},
                            {"fields_deg", options.axes.fields_deg},
                            {"distances_mm", std::move(distances)},
-                           {"distance_from", options.origin},
+                           {"distance_from", options.focus.origin},
                            {"wavelengths_nm", options.axes.wavelengths_nm},
                            {"f_numbers", std::move(f_numbers)},
                            {"wide_open", options.axes.f_numbers.empty()},
                            {"focus_mm", examples::finite_or_null(options.focus_mm)},
-                           {"criterion", options.criterion},
+                           {"criterion", options.focus.criterion},
                            {"iris",
                             {{"blades", options.iris.blades},
                              {"roundness", options.iris.roundness},
@@ -190,6 +193,23 @@ void say(const std::vector<fs::path>& files) {
   for (const fs::path& file : files) std::cout << file.string() << '\n';
 }
 
+/// Refuses points from which no ray can be sent, and fields without light at any distance and f-number, before anything
+/// is written.
+void want_light(const petzval::PsfSet::Axes& axes, Scenes& scenes) {
+  std::vector<bool> lit(axes.fields_deg.size());
+  for (std::size_t node = 0; node < axes.size(); ++node) {
+    const PsfSetPoint point = axes.point(node);
+    const examples::BokehScene scene = scenes.at(point);
+    const auto field = std::ranges::find(axes.fields_deg, point.field_deg) - axes.fields_deg.begin();
+    const auto at = lit.begin() + field;
+    if (!*at) *at = examples::reached_by_light(scene.lens, scene.light);
+  }
+  const auto dark = std::ranges::find(lit, false);
+  if (dark == lit.end()) return;
+  throw petzval::Error("--fields = " + number(axes.fields_deg[static_cast<std::size_t>(dark - lit.begin())]) +
+                       ": no light passes " + scenes.lens().name() + " from there; must be fields that the lens sees");
+}
+
 void compute(const Options& options) {
   petzval::PsfSet::Axes axes = options.axes;
   if (axes.f_numbers.empty()) axes.f_numbers = {1};  // found out below
@@ -204,8 +224,7 @@ void compute(const Options& options) {
   const auto loaded = examples::load_lens(options.lens_file, options.axes.wavelengths_nm);
   const examples::PsfJob job = job_of(loaded, options);
   Scenes scenes(loaded, options);
-  // Refuses what no ray can be sent from before anything is written.
-  for (std::size_t node = 0; node < job.axes().size(); ++node) scenes.at(job.axes().point(node));
+  want_light(job.axes(), scenes);
 
   const fs::path folder = options.out_folder;
   job.begin(folder, options.shard);
@@ -243,17 +262,24 @@ struct Maybe {
   examples::Option* option = nullptr;
 };
 
-void query(const std::string& file, PsfSetPoint point, const Maybe& wavelength, const Maybe& f_number,
-           const std::string& out) {
+void query(const std::string& file, PsfSetPoint point, const std::string& origin, const Maybe& wavelength,
+           const Maybe& f_number, const std::string& out) {
   examples::want_ending("--out", out, ".exr");
-  const petzval::PsfSet set = petzval::read_psf_set(file);
+  std::vector<petzval::ExrPart> parts = petzval::read_exr_parts(file);
+  const std::string of_set = examples::distance_from(parts.front());
+  if (origin != of_set) {
+    throw petzval::Error("--distance-from = " + origin + ": the distances of " + file + " count from " + of_set +
+                         "; must be the same");
+  }
+  const petzval::PsfSet set = petzval::psf_set_of(std::move(parts), file);
   const auto& nm = set.axes().wavelengths_nm;
   point.wavelength_nm =
       wavelength.option->given() ? wavelength.value : *std::min_element(nm.begin(), nm.end(), [](double a, double b) {
         return std::abs(a - petzval::d_line_nm) < std::abs(b - petzval::d_line_nm);
       });
   point.f_number = f_number.option->given() ? f_number.value : set.axes().f_numbers.front();
-  const petzval::ExrPart part = petzval::to_exr_part(set.at(point), point);
+  petzval::ExrPart part = petzval::to_exr_part(set.at(point), point);
+  part.texts[examples::distance_from_key] = of_set;
   petzval::write_exr({&part, 1}, out);
   say({out});
 }
@@ -276,17 +302,13 @@ int main_compute(int argc, char** argv) {
   examples::add_numbers(app, "--distances-mm", options.axes.distances_mm, examples::positive_length,
                         "distances of the light (mm, ascending), the last may be inf")
       ->required();
-  examples::add_numbers(app, "--wavelengths-nm", options.axes.wavelengths_nm, examples::positive_number,
-                        "wavelengths (nm, ascending)");
+  examples::add_wavelengths(app, "--wavelengths-nm", options.axes.wavelengths_nm, "wavelengths, ascending");
   examples::add_numbers(app, "--f-numbers", options.axes.f_numbers, examples::positive_number,
                         "f-numbers, by exact rays (ascending)")
       ->default_str("wide open");
   examples::add_number(app, "--focus-mm", options.focus_mm, examples::positive_length,
                        "focus distance (mm), or inf; each f-number has its film");
-  app.add_option("--distance-from", options.origin, "origin of the distances of light and focus")
-      ->one_of({"front_vertex", "film"})
-      ->capture_default_str();
-  examples::add_criterion(app, options.criterion);
+  examples::add_focus(app, options.focus);
   examples::add_iris_shape(app, options.iris);
   examples::add_samples(app, options.samples);
   examples::add_count(app, "--pixels", options.pixels, {3, 1025, "an odd number from 3 to 1025"},
@@ -299,7 +321,7 @@ int main_compute(int argc, char** argv) {
   app.add_flag("--resume", options.resume, "keep the PSFs that an interrupted run has left whole in DIR");
   app.add_flag("--check", options.check,
                "compare the middles between nodes with traced PSFs: interpolation_error in the index");
-  app.add_option("--out", options.out_folder, "folder for the results")->required()->type_name("DIR");
+  examples::add_out_folder(app, options.out_folder)->required();
   return examples::run(app, argc, argv, [&] { compute(options); });
 }
 
@@ -312,12 +334,12 @@ int main_merge(int argc, char** argv) {
       "Names every PSF that is missing or corrupt, and its shard; to repair it, run that shard with --resume.",
       "psf_set merge");
   app.add_option("DIR", folders, "folders that psf_set --shard wrote to")->required();
-  app.add_option("--out", out, "the set")->required()->type_name("FILE.exr");
+  examples::add_out_file(app, out, "the set", "FILE.exr")->required();
   return examples::run(app, argc, argv, [&] { merge(folders, out); });
 }
 
 int main_query(int argc, char** argv) {
-  std::string file, out;
+  std::string file, out, origin = "front_vertex";
   PsfSetPoint point;
   Maybe wavelength, f_number;
   examples::App app("Looks up a PSF of a set: a node as it is, any other point interpolated.", "psf_set query");
@@ -328,13 +350,13 @@ int main_query(int argc, char** argv) {
   examples::add_number(app, "--distance-mm", point.distance_mm, examples::positive_length, "its distance (mm), or inf")
       ->required()
       ->default_str("");
-  wavelength.option =
-      examples::add_number(app, "--wavelength-nm", wavelength.value, examples::positive_number, "wavelength (nm)")
-          ->default_str("that of the set nearest to the d line");
+  examples::add_distance_origin(app, origin);
+  wavelength.option = examples::add_wavelength(app, "--wavelength-nm", wavelength.value, "wavelength")
+                          ->default_str("that of the set nearest to the d line");
   f_number.option = examples::add_number(app, "--f-number", f_number.value, examples::positive_number, "f-number")
                         ->default_str("the smallest of the set");
-  app.add_option("--out", out, "the PSF: a set of one part")->required()->type_name("PSF.exr");
-  return examples::run(app, argc, argv, [&] { query(file, point, wavelength, f_number, out); });
+  examples::add_out_file(app, out, "the PSF: a set of one part", "PSF.exr")->required();
+  return examples::run(app, argc, argv, [&] { query(file, point, origin, wavelength, f_number, out); });
 }
 
 }  // namespace

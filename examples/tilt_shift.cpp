@@ -357,7 +357,7 @@ int main(int argc, char** argv) {
       "tilt_shift");
   examples::add_movement_options(app, options);
   app.add_option("--points", options.points_file, "the points to focus on")->type_name("FILE")->required();
-  app.add_option("--out", options.out_folder, "folder for the pictures")->type_name("DIR")->required();
+  examples::add_out_folder(app, options.out_folder, "folder for the pictures")->required();
   constexpr examples::Range angle{0, 89, "a number of degrees from 0 to 89"};
   examples::add_number(app, "--max-tilt-deg", options.max_tilt_deg, angle, "largest tilt of the film (degrees)");
   app.add_flag("--robust", options.robust, "ignore outliers: points far from the plane of most others get no weight");

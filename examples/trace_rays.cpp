@@ -91,20 +91,20 @@ int main(int argc, char** argv) {
   app.add_option("--rays", rays_file, "CSV with the columns x_mm,y_mm,z_mm,dx,dy,dz; directions of any length")
       ->required()
       ->type_name("CSV");
-  app.add_option(
-         "--out", out_file,
-         "CSV to write, one line per ray in the same order: x_mm,y_mm,z_mm,dx,dy,dz,fate,surface, with 17 digits. The "
-         "point is the hit on the last surface that the ray reached; surfaces count from 0. After missed_surface and "
-         "no_convergence it is the hit on the surface before, or the ray's origin if there is none")
-      ->required()
-      ->type_name("CSV");
+  examples::add_out_file(
+      app, out_file,
+      "CSV to write, one line per ray in the same order: x_mm,y_mm,z_mm,dx,dy,dz,fate,surface, with 17 digits. The "
+      "point is the hit on the last surface that the ray reached; surfaces count from 0. After missed_surface and "
+      "no_convergence it is the hit on the surface before, or the ray's origin if there is none",
+      "CSV")
+      ->required();
   app.add_option("--precision", precision, "arithmetic of the trace")
       ->one_of({"float", "double"})
       ->capture_default_str();
   app.add_option("--travel", travel, "direction of travel through the lens")
       ->one_of({"to_film", "to_scene"})
       ->capture_default_str();
-  examples::add_number(app, "--wavelength-nm", wavelength_nm, examples::positive_number, "wavelength (nm)");
+  examples::add_wavelength(app, "--wavelength-nm", wavelength_nm, "wavelength");
   app.add_flag("--ignore-apertures", ignore_apertures, "rays pass outside the clear diameters too");
 
   return examples::run(app, argc, argv, [&] {

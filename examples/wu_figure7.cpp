@@ -55,11 +55,9 @@ int main(int argc, char** argv) {
       "Repeats figure 7 of Wu et al. 2010: a point light at 1000 mm from the front vertex, on axis, at the d line, "
       "through four double Gauss lenses focused at 800 to 1200 mm. One PNG.",
       "wu_figure7");
-  app.add_option("--criterion", criterion, "criterion of focus: least RMS blur on axis, or cardinal points")
-      ->one_of({"min_rms", "paraxial"})
-      ->capture_default_str();
+  examples::add_criterion(app, criterion);
   examples::add_samples(app, samples);
-  app.add_option("--out", out_file, "picture to write")->required()->type_name("FILE.png");
+  examples::add_out_file(app, out_file, "picture to write", "FILE.png")->required();
 
   return examples::run(app, argc, argv, [&] {
     examples::want_ending("--out", out_file, ".png");
@@ -73,9 +71,10 @@ int main(int argc, char** argv) {
       }
     }
     sheet.notes = {
-        std::string("After figure 7 of Wu et al. 2010. On axis, 587.56 nm, wide open; distances from the front "
-                    "vertex; film at the ") +
-        (criterion == "min_rms" ? "least RMS blur" : "paraxial focus") + " of the focus distance."};
+        "After figure 7 of Wu et al. 2010. On axis, 587.56 nm, wide open; distances from the front vertex; film "
+        "focused "
+        "by " +
+        criterion + "."};
     for (const std::string& note : examples::bokeh_notes()) sheet.notes.push_back(note);
     petzval::write_png(examples::draw_sheet(sheet), out_file);
     std::cout << out_file << '\n';

@@ -171,7 +171,7 @@ int main(int argc, char** argv) {
       "it. Sharpest: least RMS radius.",
       "wu_statements");
   examples::add_samples(app, samples);
-  app.add_option("--html", html_file, "also write the table as HTML")->type_name("FILE");
+  examples::add_out_file(app, html_file, "also write the table as HTML", "FILE", "--html");
 
   return examples::run(app, argc, argv, [&] {
     const std::vector<Verdict> all = all_verdicts(samples);

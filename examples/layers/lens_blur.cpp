@@ -264,6 +264,6 @@ int main(int argc, char** argv) {
   examples::add_count(app, "--threads", options.threads, {1, 1024, "a whole number from 1 to 1024"},
                       "threads; the picture does not depend on them");
   examples::add_formats(app, options.formats, "png (sRGB)");
-  app.add_option("--out", options.out_folder, "folder for the results")->required()->type_name("DIR");
+  examples::add_out_folder(app, options.out_folder)->required();
   return examples::run(app, argc, argv, [&] { Job(options).run(); });
 }

@@ -88,9 +88,12 @@ void add_lens(examples::App& app, LensFlags& flags) {
   examples::add_lens(app, flags.lens_file, "--lens", "by exact rays");
   app.add_option("--singlet", flags.singlet, "two spheres by exact rays; f/2 without --f-number")
       ->type_name("R1,R2,THICKNESS,GLASS");
-  add_number(app, "--focus-mm", flags.focus_mm, examples::positive_length,
-             "depth in focus from the entrance pupil, where layers are seen from (mm), or inf")
+  add_number(
+      app, "--focus-mm", flags.focus_mm, examples::positive_length,
+      "distance of the subject in focus (mm), or inf; depths of layers count from the entrance pupil, from where "
+      "they are seen")
       ->required();
+  examples::add_focus(app, flags.focus);
   constexpr examples::Range angle{1e-3, 120, "more than 0 and at most 120"};
   add_number(app, "--fov-deg", flags.fov_deg, angle,
              "vertical angle of the picture (degrees); 30 for a thin lens, else that of a film 24 mm high")
@@ -155,21 +158,15 @@ void BlurLens::load() {
     throw Error("--focus-mm: found " + number(flags_.focus_mm) + ", wanted more than the focal length, " +
                 number(flags_.thin_lens_mm) + ": what is nearer has no real image");
   }
-  const petzval::FocusCriterion criterion =
-      thin_ ? petzval::FocusCriterion::paraxial : petzval::FocusCriterion::min_rms;
-  // The user counts from the entrance pupil, and the library from the front vertex.
-  const double pupil_z = petzval::pupils(lens).entrance.z, from_vertex = flags_.focus_mm - pupil_z;
-  if (std::isfinite(pupil_z) && !(from_vertex > 0)) {
-    throw Error("--focus-mm: found " + number(flags_.focus_mm) + ", wanted more than " + number(pupil_z, 6) +
-                ": the entrance pupil, from which it counts, lies that far behind the front vertex");
-  }
+  petzval::FocusOptions focus = flags_.focus.options();
+  if (thin_) focus.criterion = petzval::FocusCriterion::paraxial;  // the only focus of a thin lens
   try {
-    lens_ = petzval::with_focus(lens, from_vertex,
-                                {.criterion = criterion, .origin = petzval::DistanceOrigin::front_vertex});
+    lens_ = petzval::with_focus(lens, flags_.focus_mm, focus);
   } catch (const Error& error) {
-    throw Error("--focus-mm: found " + number(flags_.focus_mm) +
-                " from the entrance pupil, which lies at z = " + number(pupil_z, 6) + " mm: " + error.what());
+    throw Error("--focus-mm = " + number(flags_.focus_mm) + ": " + error.what());
   }
+  // Layers are seen from the entrance pupil.
+  focus_depth_mm_ = flags_.focus_mm + petzval::pupils(*lens_).entrance.z - petzval::origin_z(*lens_, focus.origin);
   name_ = lens_->name();
 }
 
@@ -207,7 +204,7 @@ std::optional<petzval::FocalSurface> BlurLens::surface_at(double time) {
     if (surface_) return surface_;
     const petzval::Camera plain = camera({});
     const renderer::LensCamera in_world(plain, pose_);
-    return examples::read_focal_surface(flags_.surface, plain, petzval::DistanceOrigin::front_vertex, flags_.focus_mm,
+    return examples::read_focal_surface(flags_.surface, plain, flags_.focus.distance_origin(), flags_.focus_mm,
                                         [&](const petzval::Vec3<double>& p) { return in_world.to_lens(glm::vec3(p)); })
         .surface;
   }
@@ -237,7 +234,7 @@ petzval::LensRays BlurLens::rays(double nearest_mm, int threads, double time) {
   }
 
   petzval::ThinLens thin{.radius_mm = flags_.lens_diameter_mm / 2,
-                         .inverse_focus = 1 / flags_.focus_mm,
+                         .inverse_focus = 1 / focus_depth_mm_,
                          .iris = flags_.iris.iris(),
                          .edge = controls_.edge(),
                          .map = controls_.weight_map};
@@ -255,7 +252,7 @@ petzval::LensRays BlurLens::rays(double nearest_mm, int threads, double time) {
     };
   } else if (film_.tilted()) {
     // What a tilted film has in focus is linear over the picture; the picture keeps its frame.
-    const double power = 1 / flags_.thin_lens_mm, image = power - 1 / flags_.focus_mm;
+    const double power = 1 / flags_.thin_lens_mm, image = power - 1 / focus_depth_mm_;
     thin.focus = [=, normal = film_.normal(), camera = layers_](const petzval::Vec2<double>& raster) {
       const petzval::Vec2<double> run = (raster - camera.axis) / camera.focal_px;
       return petzval::FocusAt{power - image * (1 - (normal.x * run.x - normal.y * run.y) / normal.z), 1};

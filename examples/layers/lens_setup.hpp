@@ -25,6 +25,7 @@ struct LensFlags {
   examples::LensInput lens_file;
   std::string singlet;
   double focus_mm = 0, fov_deg = 0;
+  examples::FocusFlags focus;
   double tilt_deg = 0, swing_deg = 0;
   std::uint32_t rays = 100;
   bool chroma = false, jitter = false;
@@ -58,6 +59,7 @@ class BlurLens {
   renderer::Pose pose_;
   bool keyed_, thin_ = false;
   std::string name_;
+  double focus_depth_mm_ = 0;  ///< distance of the subject in focus from the entrance pupil
   /// Of thin lenses as well: a thin singlet, whose first-order model it is.
   std::optional<petzval::Lens> lens_;
   petzval::Film film_;

@@ -49,6 +49,8 @@ namespace {
 namespace fs = std::filesystem;
 using examples::Json;
 
+constexpr std::uint32_t usual_width = 600;
+
 struct Options {
   examples::LensInput lens_file;
   std::string scene, model = "exact_float", integrator = "bidirectional", wavelengths = "d",
@@ -59,7 +61,7 @@ struct Options {
   examples::FocalSurfaceSetup surface;
   examples::Shard shard;
   std::vector<std::string> formats{"exr", "png"};
-  std::uint32_t samples = 0, width = 600, height = 400, seed = 0;
+  std::uint32_t samples = 0, width = 0, height = 0, seed = 0;  // width, height 0: not given
   std::uint32_t threads = static_cast<std::uint32_t>(petzval::processor_threads());
   double budget_px = 0, seconds = 0, tilt_deg = 0, swing_deg = 0;
   bool resume = false;
@@ -127,13 +129,9 @@ class Job {
         scene_(description(options)),
         loaded_(examples::load_lens(options.lens_file, colours_.compiled_nm())),
         lens_(examples::focused(loaded_, options.setup)) {
-    const auto [width, height] = options.setup.film_size();
-    film_ = {.width_mm = width,
-             .height_mm = height,
-             .columns = static_cast<int>(options.width),
-             .rows = static_cast<int>(options.height),
-             .tilt_rad = petzval::radians(options.tilt_deg),
-             .swing_rad = petzval::radians(options.swing_deg)};
+    film_ = options.setup.film(options.width, options.height, usual_width);
+    film_.tilt_rad = petzval::radians(options.tilt_deg);
+    film_.swing_rad = petzval::radians(options.swing_deg);
     if (!scene_.has_light()) std::cerr << "note: " << options.scene << " has no light: the picture is black\n";
     examples::say_what_does_not_fit(lens_, film_);
     choose_model();
@@ -215,9 +213,9 @@ class Job {
   /// Through the points of the file, where the model sees them.
   petzval::FocalSurface surface() const {
     const renderer::LensCamera lens = camera(chosen_.model);
-    return examples::read_focal_surface(
-               options_.surface, lens.camera(), examples::named(options_.setup.origin, examples::distance_origins),
-               options_.setup.focus_mm, [&](const petzval::Vec3<double>& world) { return lens.to_lens(world); })
+    return examples::read_focal_surface(options_.surface, lens.camera(), options_.setup.focus.distance_origin(),
+                                        options_.setup.focus_mm,
+                                        [&](const petzval::Vec3<double>& world) { return lens.to_lens(world); })
         .surface;
   }
   void say_where_focus_is_steep(const petzval::Camera& camera) const {
@@ -312,12 +310,12 @@ class Job {
             {"white", white},
             {"width", film_.columns},
             {"height", film_.rows},
-            {"film_mm", setup.film_mm},
+            {"film_mm", examples::number(film_.width_mm) + "x" + examples::number(film_.height_mm)},
             {"tilt_deg", options_.tilt_deg},
             {"swing_deg", options_.swing_deg},
             {"focus_mm", examples::finite_or_null(setup.focus_mm)},
-            {"distance_from", setup.origin},
-            {"criterion", setup.criterion},
+            {"distance_from", setup.focus.origin},
+            {"criterion", setup.focus.criterion},
             {"f_number", setup.iris.f_number},
             {"real_f_number", petzval::real_f_number(lens_)},
             {"iris",
@@ -371,7 +369,7 @@ int merge(int argc, char** argv) {
       "bokeh_scene merge");
   app.add_option("FOLDER", folders, "folders with tile_I_of_N.exr")->required();
   examples::add_formats(app, formats, "png (sRGB)");
-  app.add_option("--out", out_folder, "folder for the results")->required()->type_name("DIR");
+  examples::add_out_folder(app, out_folder)->required();
   return examples::run(app, argc, argv, [&] {
     Json job;
     const renderer::PictureSums sums = renderer::gather({folders.begin(), folders.end()}, job);
@@ -431,12 +429,9 @@ int main(int argc, char** argv) {
                       "another seed gives other noise");
   examples::add_count(app, "--threads", options.threads, {1, 1024, "a whole number from 1 to 1024"},
                       "threads; the picture does not depend on them");
-  constexpr examples::Range side{1, 16384, "a whole number from 1 to 16384"};
-  examples::add_count(app, "--width", options.width, side, "pixels across");
-  examples::add_count(app, "--height", options.height, side, "pixels down");
+  examples::add_picture_size(app, options.width, options.height, usual_width);
   examples::add_camera(app, options.setup);
   app.get_option("--focus-mm")->required()->default_str("");
-  examples::add_distance_origin(app, options.setup);
   examples::add_bokeh(app, options.bokeh);
   auto* points =
       app.add_option("--focal-surface", options.surface.points_file,
@@ -467,7 +462,7 @@ int main(int argc, char** argv) {
   app.add_flag("--resume", options.resume,
                "go on from the checkpoint in DIR, with as many samples or more, to the bits of one run");
   const auto* formats = examples::add_formats(app, options.formats, "png (sRGB)");
-  app.add_option("--out", options.out_folder, "folder for the results")->required()->type_name("DIR");
+  examples::add_out_folder(app, options.out_folder)->required();
 
   bool whole = true;
   const int status = examples::run(app, argc, argv, [&] {

@@ -31,11 +31,12 @@ struct Picture {
   /// What is in focus, and what else differs from an upright film behind the lens.
   std::vector<std::string> captions() const {
     const Json &mm = job.at("focus_mm"), &expressive = job.at("expressive");
-    const std::string from = job.at("distance_from") == "film" ? " from the film" : " from the front vertex";
+    std::string from = job.at("distance_from");
+    std::replace(from.begin(), from.end(), '_', ' ');
     const bool surface = !job.at("focal_surface").at("points").get<std::string>().empty();
     std::vector<std::string> lines{surface        ? "a focal surface"
                                    : mm.is_null() ? "focus infinity"
-                                                  : "focus " + number(mm.get<double>()) + " mm" + from};
+                                                  : "focus " + number(mm.get<double>()) + " mm from the " + from};
     const bool bent = !expressive.at("power_spline").empty() || !expressive.at("curvature_points").empty() ||
                       expressive.at("dispersion") != 1 || expressive.at("from_lens") != 0;
     if (job.at("tilt_deg") != 0 || job.at("swing_deg") != 0) lines.emplace_back("film tilted");
@@ -117,7 +118,7 @@ int main(int argc, char** argv) {
          "radius, and skewness outwards; x_mm is the place of the ball. Highlights whose halo is as bright as "
          "they are measure the halo too")
       ->type_name("CSV");
-  app.add_option("--out", out, "PNG to write")->required()->type_name("FILE.png");
+  examples::add_out_file(app, out, "PNG to write", "FILE.png")->required();
   return examples::run(app, argc, argv, [&] {
     examples::want_ending("--out", out, ".png");
     std::vector<Picture> pictures;

@@ -39,9 +39,7 @@ glm::vec3 LensCamera::turn_to_world(const Vec3<double>& direction) const noexcep
 }
 glm::vec3 LensCamera::to_world(const Vec3<double>& point) const noexcept { return origin_ + turn_ * glm::dvec3(point); }
 
-double LensCamera::depth(const glm::vec3& point) const noexcept {
-  return film().z_mm.value_or(camera_.lens().film_z()) - to_lens(point).z;
-}
+double LensCamera::depth(const glm::vec3& point) const noexcept { return -to_lens(point).z; }
 
 void LensCamera::Batch::resize(std::size_t count, bool with_nm) {
   for (auto* column : {&raster_x, &raster_y, &u, &v, &weights, &x_, &y_}) column->resize(count);

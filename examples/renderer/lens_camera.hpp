@@ -31,7 +31,7 @@ class LensCamera {
   const petzval::Film& film() const noexcept { return camera_.film(); }
   /// Where the lens sees a point sharp.
   petzval::Projection project(const glm::vec3& point) const noexcept { return camera_.project(to_lens(point)); }
-  /// How far a point lies in front of the film, along the axis, mm.
+  /// Distance of a point from the front vertex along the axis, mm; negative behind the vertex.
   double depth(const glm::vec3& point) const noexcept;
   /// A point of the world in the lens frame, mm.
   petzval::Vec3<double> to_lens(const glm::vec3& point) const noexcept;

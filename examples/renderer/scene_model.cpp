@@ -20,7 +20,7 @@ namespace {
 
 using examples::number;
 
-/// The nearest and the farthest surface in the picture, along the axis from the film, mm; infinity for the sky.
+/// The nearest and the farthest surface in the picture, along the axis from the front vertex, mm; infinity for the sky.
 std::array<double, 2> depths(const Scene& scene, const LensCamera& exact) {
   constexpr std::size_t count = 4096;
   LensCamera::Batch batch;
@@ -67,7 +67,7 @@ petzval::ModelChoice choice(const LensCamera& exact, const std::array<double, 2>
 
 std::string in_words(const std::array<double, 2>& depths) {
   return number(depths[0], 3) + " mm to " + (std::isinf(depths[1]) ? "infinity" : number(depths[1], 3) + " mm") +
-         " from the film";
+         " from the front vertex";
 }
 
 /// What a pilot picture says about a scene.

@@ -38,8 +38,7 @@ void check_light(const petzval::Lens& lens, const BokehSetup& setup, double orig
     const double middle = (enough + refused) / 2;
     (in_front(lens, origin_z - middle) ? enough : refused) = middle;
   }
-  throw petzval::Error(lens.name() + ": a light " + number(setup.light_mm) + " mm from the " +
-                       (setup.origin == petzval::DistanceOrigin::film ? "film" : "front vertex") +
+  throw petzval::Error(lens.name() + ": a light " + number(setup.light_mm) + " mm from the " + in_words(setup.origin) +
                        " is not in front of the lens, wanted more than " + number(enough, 6) + " mm");
 }
 

@@ -1,34 +1,63 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "camera_setup.hpp"
 
-#include <iostream>
+#include <algorithm>
+#include <cmath>
+#include <utility>
 
 #include "cli.hpp"
 #include "petzval/camera/model_kind.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/lint/lint.hpp"
+#include "text.hpp"
 
 namespace examples {
 
 std::array<double, 2> CameraSetup::film_size() const { return parse_size("--film-mm", film_mm, positive_number); }
 
-void add_camera(App& app, CameraSetup& setup) {
-  add_iris(app, setup.iris);
-  add_number(
-      app, "--focus-mm", setup.focus_mm, positive_length,
-      "distance of the subject in focus from the film (mm), or inf; at the primary of the wavelengths in use: the one "
-      "nearest to the d line, unless the lens states its reference");
-  add_criterion(app, setup.criterion);
-  app.add_option("--film-mm", setup.film_mm, "width and height of the film (mm)")
-      ->type_name("WxH")
-      ->capture_default_str();
+petzval::Film CameraSetup::film(std::uint32_t columns, std::uint32_t rows, std::uint32_t usual_columns) const {
+  constexpr double most = 16384;
+  auto [width, height] = film_size();
+  double across = columns, down = rows;
+  if (!film_given && across > 0 && down > 0) {
+    if (down > across) std::swap(width, height);
+    (across * height > down * width) ? height = width* down / across : width = height * across / down;
+  }
+  if (across == 0 && down == 0) across = usual_columns;
+  if (across == 0) across = std::max(1.0, std::round(down * width / height));
+  if (down == 0) down = std::max(1.0, std::round(across * height / width));
+  if ((columns == 0 || rows == 0) && std::max(across, down) > most) {
+    throw petzval::Error("--film-mm = " + film_mm + ": a picture of " + number(across) + " x " + number(down) +
+                         " pixels; must have at most " + number(most) + " along each side");
+  }
+  return {.width_mm = width, .height_mm = height, .columns = static_cast<int>(across), .rows = static_cast<int>(down)};
 }
 
-Option* add_distance_origin(App& app, CameraSetup& setup) {
-  return app.add_option("--distance-from", setup.origin, "origin of --focus-mm")
-      ->one_of({"front_vertex", "film"})
-      ->capture_default_str();
+void add_camera(App& app, CameraSetup& setup) {
+  add_iris(app, setup.iris);
+  add_number(app, "--focus-mm", setup.focus_mm, positive_length,
+             "distance of the subject in focus (mm), or inf; at the primary of the wavelengths in use: the one nearest "
+             "to the d line, unless the lens states its reference");
+  add_focus(app, setup.focus);
+  app.add_option(
+         "--film-mm",
+         [&setup](const std::string& text) {
+           setup.film_mm = text;
+           setup.film_given = true;
+         },
+         "width and height of the film (mm)")
+      ->type_name("WxH")
+      ->default_str(setup.film_mm);
+}
+
+void add_picture_size(App& app, std::uint32_t& width, std::uint32_t& height, std::uint32_t usual_width) {
+  constexpr Range side{1, 16384, "a whole number from 1 to 16384"};
+  width = height = 0;
+  add_count(app, "--width", width, side,
+            "pixels across; with --height and without --film-mm the film has the picture's shape, within 36 x 24 mm")
+      ->default_str(std::to_string(usual_width) + ", or by --height");
+  add_count(app, "--height", height, side, "pixels down")->default_str("by --width: square pixels");
 }
 
 Option* add_model(App& app, std::string& model) {
@@ -46,15 +75,14 @@ std::array<double, 2> parse_size(const std::string& where, std::string_view text
 }
 
 petzval::Lens focused(const LoadedLens& loaded, const CameraSetup& setup) {
-  return petzval::with_focus(
-      stopped_down(loaded.lens, setup.iris), setup.focus_mm,
-      {.criterion = named(setup.criterion, focus_criteria), .origin = named(setup.origin, distance_origins)});
+  return petzval::with_focus(stopped_down(loaded.lens, setup.iris), setup.focus_mm, setup.focus.options());
 }
 
-void say_what_does_not_fit(const petzval::Lens& lens, const petzval::Film& film, bool has_pixels) {
+void say_what_does_not_fit(const petzval::Lens& lens, const petzval::Film& film, const std::string& pixel_flags) {
   for (const petzval::Finding& finding : petzval::lint(lens, film)) {
-    if (has_pixels || finding.kind == petzval::FindingKind::film_size) {
-      std::cerr << "note: " << finding.message << '\n';
+    if (finding.kind == petzval::FindingKind::film_size) note(finding.message);
+    if (finding.kind == petzval::FindingKind::pixel_shape && !pixel_flags.empty()) {
+      note("--film-mm and " + pixel_flags + " have different shapes: " + finding.message);
     }
   }
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -16,20 +17,30 @@ namespace examples {
 /// Command line of the programs with a camera.
 struct CameraSetup {
   IrisSetup iris;
-  double focus_mm = 3000;       ///< of the subject
-  std::string origin = "film";  ///< of that distance
-  std::string criterion = "min_rms";
+  double focus_mm = 3000;  ///< distance of the subject in focus
+  FocusFlags focus;        ///< origin and criterion of focus_mm
   std::string film_mm = "36x24";
+  bool film_given = false;
 
   /// Width and height of the film. Throws petzval::Error.
   std::array<double, 2> film_size() const;
+
+  /// A film with so many pixels; 0: not given.
+  ///
+  /// A picture decides the shape of a film that is not given: the largest of that shape within 36 x 24 mm, or within
+  /// 24 x 36 mm for an upright picture. A film decides numbers of pixels that are not given, so that pixels are square;
+  /// usual_columns: of a picture of which neither is given.
+  ///
+  /// @throws petzval::Error  for an invalid --film-mm, and for a film so slim that the picture would need more than
+  ///                         16384 pixels
+  petzval::Film film(std::uint32_t columns, std::uint32_t rows, std::uint32_t usual_columns) const;
 };
 
-/// Options of add_iris, --focus-mm, --criterion and --film-mm.
+/// Options of add_iris, --focus-mm, --distance-from, --criterion and --film-mm.
 void add_camera(App& app, CameraSetup& setup);
 
-/// Option --distance-from, of --focus-mm.
-Option* add_distance_origin(App& app, CameraSetup& setup);
+/// Options --width and --height, 0 if not given, for CameraSetup::film.
+void add_picture_size(App& app, std::uint32_t& width, std::uint32_t& height, std::uint32_t usual_width);
 
 /// Option --model.
 Option* add_model(App& app, std::string& model);
@@ -40,8 +51,10 @@ std::array<double, 2> parse_size(const std::string& where, std::string_view text
 /// The loaded lens, stopped down and focused at its primary wavelength.
 petzval::Lens focused(const LoadedLens& loaded, const CameraSetup& setup);
 
-/// Notes on standard error a film that does not fit its lens: what petzval::lint() finds. Without pixels it looks at
-/// the size of the film alone.
-void say_what_does_not_fit(const petzval::Lens& lens, const petzval::Film& film, bool has_pixels = true);
+/// Notes on standard error the findings of petzval::lint() about a film.
+///
+/// @param pixel_flags  the options that set the numbers of pixels; if empty, only the size of the film is checked
+void say_what_does_not_fit(const petzval::Lens& lens, const petzval::Film& film,
+                           const std::string& pixel_flags = "--width and --height");
 
 }  // namespace examples

@@ -5,12 +5,19 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cctype>
+#include <cerrno>
 #include <charconv>
 #include <cmath>
+#include <cstring>
+#include <filesystem>
 #include <iostream>
 #include <memory>
+#include <set>
+#include <system_error>
 
 #include "petzval/core/error.hpp"
+#include "petzval/media/glass.hpp"
 #include "text.hpp"
 
 namespace examples {
@@ -63,6 +70,76 @@ Option* App::kept(CLI::Option* option) {
   return &options_.back();
 }
 
+namespace {
+
+std::string_view without_blanks(std::string_view text) {
+  while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
+  while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
+  return text;
+}
+
+/// The values of a comma list by parse(text). These numbers name results: a repeated one would overwrite a result.
+template <class Parse>
+std::vector<double> parse_list(const std::string& where, std::string_view text, const Parse& parse) {
+  std::vector<double> values;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    values.push_back(parse(without_blanks(text.substr(begin, end - begin))));
+    begin = end + 1;
+  }
+  std::vector<double> sorted = values;
+  std::sort(sorted.begin(), sorted.end());
+  if (const auto twice = std::adjacent_find(sorted.begin(), sorted.end()); twice != sorted.end()) {
+    throw petzval::Error(where + ": found " + number(*twice) + " twice, wanted every number once");
+  }
+  return values;
+}
+
+/// @throws petzval::Error  if the folder is not writable or cannot be created
+void want_folder(const std::string& flag, const std::filesystem::path& folder) {
+  const auto refuse = [&](const std::string& why) {
+    throw petzval::Error(flag + " = " + folder.string() + ": cannot be created as a folder: " + why);
+  };
+  if (folder.empty()) refuse("it has no name");
+  std::error_code error;
+  std::filesystem::path place = folder;
+  while (!std::filesystem::exists(place, error)) {
+    const std::filesystem::path above = place.parent_path();
+    place = above.empty() || above == place ? std::filesystem::path(".") : above;
+  }
+  if (!std::filesystem::is_directory(place, error)) refuse(place.string() + " is a file");
+  if (access(place.c_str(), W_OK | X_OK) != 0) refuse(place.string() + ": " + std::strerror(errno));
+}
+
+/// @throws petzval::Error  if the file cannot be created
+void want_file(const std::string& flag, const std::filesystem::path& file) {
+  const auto refuse = [&](const std::string& why) {
+    throw petzval::Error(flag + " = " + file.string() + ": cannot be written: " + why);
+  };
+  std::error_code error;
+  if (file.empty()) refuse("it has no name");
+  if (std::filesystem::is_directory(file, error)) refuse("it is a folder");
+  if (std::filesystem::is_other(file, error)) return;  // a device or a pipe
+  const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
+  if (!std::filesystem::is_directory(folder, error)) refuse(folder.string() + " is no folder");
+  if (access(folder.c_str(), W_OK | X_OK) != 0) refuse(folder.string() + ": " + std::strerror(errno));
+}
+
+/// A wavelength in nm by a number or by the letter of a spectral line.
+double parse_wavelength(const std::string& where, std::string_view text) {
+  double number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  const bool letter = !text.empty() && std::isalpha(static_cast<unsigned char>(text.front())) != 0;
+  if (!letter || end == text.data() + text.size()) return parse_number(where, text, positive_number);  // "inf" too
+  try {
+    return petzval::spectral_line_nm(text);
+  } catch (const petzval::Error& unknown) {
+    throw petzval::Error(where + " = " + std::string(text) + ": " + unknown.what());
+  }
+}
+
+}  // namespace
+
 double parse_number(const std::string& where, std::string_view text, const Range& range) {
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -74,19 +151,11 @@ double parse_number(const std::string& where, std::string_view text, const Range
 }
 
 std::vector<double> parse_numbers(const std::string& where, std::string_view text, const Range& range) {
-  std::vector<double> values;
-  for (std::size_t begin = 0; begin <= text.size();) {
-    const std::size_t end = std::min(text.find(',', begin), text.size());
-    values.push_back(parse_number(where, text.substr(begin, end - begin), range));
-    begin = end + 1;
-  }
-  // These numbers name results: a repeated one would overwrite a result.
-  std::vector<double> sorted = values;
-  std::sort(sorted.begin(), sorted.end());
-  if (const auto twice = std::adjacent_find(sorted.begin(), sorted.end()); twice != sorted.end()) {
-    throw petzval::Error(where + ": found " + number(*twice) + " twice, wanted every number once");
-  }
-  return values;
+  return parse_list(where, text, [&](std::string_view item) { return parse_number(where, item, range); });
+}
+
+std::vector<double> parse_wavelengths(const std::string& where, std::string_view text) {
+  return parse_list(where, text, [&](std::string_view item) { return parse_wavelength(where, item); });
 }
 
 Option* add_number(App& app, const std::string& flag, double& value, const Range& range, const std::string& help) {
@@ -106,11 +175,88 @@ Option* add_numbers(App& app, const std::string& flag, std::vector<double>& valu
       ->default_str(joined(values));
 }
 
-Option* add_criterion(App& app, std::string& criterion) {
+Option* add_wavelengths(App& app, const std::string& flag, std::vector<double>& values, const std::string& help) {
   return app
-      .add_option("--criterion", criterion,
-                  "criterion of focus, on axis: cardinal points (of a thin or the thick lens), least RMS blur or least "
-                  "largest blur")
+      .add_option(
+          flag, [&values, flag](const std::string& text) { values = parse_wavelengths(flag, text); },
+          help + " (nm, or spectral lines like F,d,C)")
+      ->type_name("NM,...")
+      ->default_str(joined(values));
+}
+
+Option* add_wavelength(App& app, const std::string& flag, double& value, const std::string& help) {
+  return app
+      .add_option(
+          flag, [&value, flag](const std::string& text) { value = parse_wavelength(flag, text); },
+          help + " (nm, or a spectral line like F)")
+      ->type_name("NM")
+      ->default_str(number(value));
+}
+
+Option* add_out_folder(App& app, std::string& folder, const std::string& help) {
+  Option* out = app.add_option("--out", folder, help)->type_name("DIR");
+  app.add_check([out, &folder] {
+    if (out->given()) want_folder("--out", folder);
+  });
+  return out;
+}
+
+Option* add_out_file(App& app, std::string& file, const std::string& help, const std::string& type_name,
+                     const std::string& flag) {
+  Option* out = app.add_option(flag, file, help)->type_name(type_name);
+  app.add_check([out, &file, flag] {
+    if (out->given()) want_file(flag, file);
+  });
+  return out;
+}
+
+std::string in_words(petzval::DistanceOrigin origin) {
+  std::string words(name(origin));
+  std::replace(words.begin(), words.end(), '_', ' ');
+  return origin == petzval::DistanceOrigin::front_principal ? words + " plane" : words;
+}
+
+std::string FocusFlags::from() const { return in_words(distance_origin()); }
+
+Option* add_distance_origin(App& app, std::string& origin) {
+  return app.add_option("--distance-from", origin, "origin of all distances, which count towards the scene")
+      ->one_of(names(distance_origins))
+      ->capture_default_str();
+}
+
+void add_focus(App& app, FocusFlags& flags) {
+  add_distance_origin(app, flags.origin);
+  add_criterion(app, flags.criterion);
+}
+
+Option* add_film_choice(App& app, std::string& film, const std::string& default_words) {
+  return app
+      .add_option("--film", film,
+                  "position of the film. file: of the lens file; focus: where the subject is in focus by --criterion")
+      ->one_of({"file", "focus"})
+      ->default_str(default_words);
+}
+
+void note(const std::string& text) {
+  static std::set<std::string> said;
+  if (said.insert(text).second) std::cerr << "note: " << text << '\n';
+}
+
+namespace {
+
+constexpr const char* criterion_help =
+    "meaning of \"in focus\", on the axis unless fields are given: thin, paraxial (cardinal points of the thin or the "
+    "thick lens), min_rms, min_max (exact rays: least RMS blur, least largest blur)";
+
+}  // namespace
+
+Option* add_criterion(App& app, std::string& criterion, const std::vector<std::string>& allowed) {
+  return app.add_option("--criterion", criterion, criterion_help)->one_of(allowed)->capture_default_str();
+}
+
+Option* add_criteria(App& app, std::vector<std::string>& criteria) {
+  return app.add_option("--criterion", criteria, criterion_help)
+      ->delimiter(',')
       ->one_of(names(focus_criteria))
       ->capture_default_str();
 }
@@ -142,6 +288,7 @@ int run(App& app, int argc, char** argv, const std::function<void()>& body) {
   };
   try {
     app.app_->parse(argc, argv);
+    for (const auto& check : app.checks_) check();
     body();
     std::cout.flush();
     return std::cout ? 0 : fail("cannot write to standard output");

@@ -37,8 +37,11 @@ inline constexpr Range positive_number{std::numeric_limits<double>::min(), std::
 /// The whole text as one decimal number, in every locale. Throws petzval::Error beginning with `where`.
 double parse_number(const std::string& where, std::string_view text, const Range& range);
 
-/// "10" or "0,10,20"; refuses repeated numbers. Throws petzval::Error beginning with `where`.
+/// "10", "0,10,20" or "0, 10, 20"; refuses repeated numbers. Throws petzval::Error beginning with `where`.
 std::vector<double> parse_numbers(const std::string& where, std::string_view text, const Range& range);
+
+/// The same for wavelengths in nm; letters are spectral lines: "F,d,C", "486.1, e".
+std::vector<double> parse_wavelengths(const std::string& where, std::string_view text);
 
 /// An option of a command line; its functions return it. CLI11 stays in cli.cpp: it takes seconds to compile.
 class Option {
@@ -73,6 +76,8 @@ class App {
                      const std::string& help);
   Option* add_flag(const std::string& name, bool& value, const std::string& help);
   Option* get_option(const std::string& name);
+  /// A check that run() makes before the body.
+  void add_check(std::function<void()> check) { checks_.push_back(std::move(check)); }
 
  private:
   friend int run(App& app, int argc, char** argv, const std::function<void()>& body);
@@ -80,12 +85,22 @@ class App {
 
   std::unique_ptr<CLI::App> app_;
   std::deque<Option> options_;
+  std::vector<std::function<void()>> checks_;
 };
 
 /// Options read by the functions above. --help shows the value of the variable as the default.
 Option* add_number(App& app, const std::string& flag, double& value, const Range& range, const std::string& help);
 Option* add_numbers(App& app, const std::string& flag, std::vector<double>& values, const Range& range,
                     const std::string& help);
+
+/// Wavelengths in nm, by numbers or by spectral lines.
+Option* add_wavelength(App& app, const std::string& flag, double& value, const std::string& help);
+Option* add_wavelengths(App& app, const std::string& flag, std::vector<double>& values, const std::string& help);
+
+/// --out, the folder or the file for results. run() checks before the body starts that the path can be written.
+Option* add_out_folder(App& app, std::string& folder, const std::string& help = "folder for the results");
+Option* add_out_file(App& app, std::string& file, const std::string& help, const std::string& type_name,
+                     const std::string& flag = "--out");
 
 /// A whole number; the range has whole ends from 0 on.
 Option* add_count(App& app, const std::string& flag, std::uint32_t& value, const Range& range, const std::string& help);
@@ -94,6 +109,7 @@ Option* add_count(App& app, const std::string& flag, std::uint32_t& value, const
 inline constexpr std::array focus_criteria{petzval::FocusCriterion::thin, petzval::FocusCriterion::paraxial,
                                            petzval::FocusCriterion::min_rms, petzval::FocusCriterion::min_max};
 inline constexpr std::array distance_origins{petzval::DistanceOrigin::front_vertex, petzval::DistanceOrigin::film,
+                                             petzval::DistanceOrigin::entrance_pupil,
                                              petzval::DistanceOrigin::front_principal};
 
 template <class Enum, std::size_t count>
@@ -109,8 +125,40 @@ Enum named(const std::string& text, const std::array<Enum, count>& all) {
   return *std::find_if(all.begin(), all.end(), [&](Enum e) { return name(e) == text; });
 }
 
-/// --criterion: what "in focus" means, by name. --help shows the value of the variable as the default.
-Option* add_criterion(App& app, std::string& criterion);
+/// --distance-from and --criterion, with the same meaning and the same defaults in every program.
+struct FocusFlags {
+  std::string origin = "front_vertex";
+  std::string criterion = "min_rms";
+
+  petzval::DistanceOrigin distance_origin() const { return named(origin, distance_origins); }
+  petzval::FocusOptions options() const {
+    return {.criterion = named(criterion, focus_criteria), .origin = distance_origin()};
+  }
+  /// "front vertex", "film", ...
+  std::string from() const;
+};
+
+/// --distance-from, for all distances of a program.
+Option* add_distance_origin(App& app, std::string& origin);
+
+/// --criterion: the meaning of "in focus", by name, or several names separated by commas. --help shows the value of the
+/// variable as the default.
+Option* add_criterion(App& app, std::string& criterion,
+                      const std::vector<std::string>& allowed = names(focus_criteria));
+Option* add_criteria(App& app, std::vector<std::string>& criteria);
+
+/// --distance-from and --criterion.
+void add_focus(App& app, FocusFlags& flags);
+
+/// --film: "file" has the film where the file of the lens has it, "focus" where the subject is in focus. default_words:
+/// the default in words.
+Option* add_film_choice(App& app, std::string& film, const std::string& default_words);
+
+/// "front vertex", "film", "entrance pupil" or "front principal plane".
+std::string in_words(petzval::DistanceOrigin origin);
+
+/// Prints "note: TEXT" on standard error, each text once.
+void note(const std::string& text);
 
 /// Rays per wavelength, 1 to 2^26.
 Option* add_samples(App& app, std::uint32_t& samples);

@@ -31,7 +31,8 @@ std::vector<petzval::FocalPoint> points_of(const std::filesystem::path& file, co
     refuse(file.string() + ": points", document.contains("points") ? document["points"] : Json(),
            "a list of one point or more");
   }
-  const double entrance_z = petzval::pupils(camera.lens()).entrance.z, counted_from = origin_z(camera.lens(), origin);
+  const double entrance_z = petzval::pupils(camera.lens()).entrance.z,
+               counted_from = petzval::origin_z(camera.lens(), origin);
   std::vector<petzval::FocalPoint> result;
   for (const Json& json : document["points"]) {
     const JsonEntry entry{file.string() + ": point " + std::to_string(result.size() + 1), json};
@@ -103,7 +104,7 @@ ReadSurface read_focal_surface(const FocalSurfaceSetup& setup, const petzval::Ca
     petzval::FocalSurface surface(
         petzval::thick_lens(camera.lens()), camera.film(), points,
         {named(setup.kind, kinds), setup.beta,
-         1 / (focus_mm + petzval::pupils(camera.lens()).entrance.z - origin_z(camera.lens(), origin))});
+         1 / (focus_mm + petzval::pupils(camera.lens()).entrance.z - petzval::origin_z(camera.lens(), origin))});
     return {std::move(points), std::move(surface)};
   } catch (const petzval::Error& error) {
     throw petzval::Error(setup.points_file + ": " + error.what());

@@ -4,6 +4,7 @@
 #include "petzval/core/error.hpp"
 #include "petzval/core/units.hpp"
 #include "petzval/pupil/f_number.hpp"
+#include "text.hpp"
 
 namespace examples {
 
@@ -35,6 +36,18 @@ void add_iris_shape(App& app, IrisSetup& setup) {
       ->capture_default_str();
 }
 
+petzval::Lens stopped_to(const petzval::Lens& lens, double f_number) {
+  // Names round: an "f/1.8" may open to f/1.85.
+  constexpr double by_name = 1.04, rounded = 1.005;
+  const double fastest = f_number > 0 ? petzval::fastest_f_number(lens) : 0;
+  if (!(f_number < fastest && fastest <= by_name * f_number)) return petzval::with_f_number(lens, f_number);
+  if (fastest > rounded * f_number) {
+    note(lens.name() + ": --f-number = " + number(f_number) + ": the lens opens to f/" + number(fastest, 4) +
+         ", which is used");
+  }
+  return petzval::with_f_number(lens, fastest);
+}
+
 petzval::Lens stopped_down(const petzval::Lens& lens, const IrisSetup& setup) {
   if (setup.blades == 0) {
     const auto refuse = [](const std::string& found, const std::string& why) {
@@ -45,7 +58,7 @@ petzval::Lens stopped_down(const petzval::Lens& lens, const IrisSetup& setup) {
     if (setup.area == "equal") refuse("--iris-area: found equal", "one area");
   }
   const petzval::Lens shaped = petzval::with_iris(lens, setup.iris());
-  if (setup.f_number > 0) return petzval::with_f_number(shaped, setup.f_number_by_corners());
+  if (setup.f_number > 0) return stopped_to(shaped, setup.f_number_by_corners());
   if (setup.area == "equal" && !setup.iris().round()) {
     throw petzval::Error("--iris-area: found equal without --f-number, wanted one: wide open, blades open no further");
   }

@@ -28,6 +28,10 @@ void add_iris_shape(App& app, IrisSetup& setup);
 /// The same and --f-number.
 void add_iris(App& app, IrisSetup& setup);
 
+/// petzval::with_f_number for the f-number of a command line. Names of lenses round: an f-number that is faster than
+/// the lens by at most 4 % opens the lens fully, and a note on standard error gives the true f-number.
+petzval::Lens stopped_to(const petzval::Lens& lens, double f_number);
+
 /// The lens with that iris, stopped down. Throws petzval::Error for an iris and an f-number that it cannot have.
 petzval::Lens stopped_down(const petzval::Lens& lens, const IrisSetup& setup);
 

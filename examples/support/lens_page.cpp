@@ -21,7 +21,7 @@ namespace {
 std::vector<double> fields_rad(const Report& r, const PageOptions& options) {
   std::vector<double> fields = options.field_deg;
   if (fields.empty()) {
-    const double half = half_field_deg(r.loaded);
+    const double half = half_field_deg(r.loaded, r.loaded.lens);
     // Half of the picture's area lies within 0.7 of its radius. Three digits keep captions short.
     fields = {0, half};
     const double power = std::pow(10, std::floor(std::log10(0.7 * half)) - 2);

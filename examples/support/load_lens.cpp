@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "load_lens.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <filesystem>
@@ -16,28 +17,21 @@
 namespace examples {
 namespace {
 
-petzval::CompileOptions with_stand_ins(const petzval::GlassCatalogue& glasses) {
-  return {.glasses = &glasses, .missing_glass = petzval::MissingGlass::abbe};
-}
-
-void say_what_is_known(const LoadedLens& loaded) {
-  if (loaded.lens.dispersion() == petzval::Dispersion::catalogue) return;
-  const std::size_t missing = loaded.lens.missing_glasses().size();
-  const std::string line = number(loaded.prescription.reference_wavelength_nm) + " nm";
-  std::cerr << "note: " << loaded.id << ": ";
-  if (missing == 0) {
-    std::cerr << "no medium disperses\n";
+/// Says how well the dispersion is known, if it matters.
+void say_what_is_known(const LensFile& file, const petzval::Lens& lens) {
+  const double reference = file.prescription.reference_wavelength_nm;
+  const auto at_reference = [&](double nm) { return std::abs(nm - reference) <= 0.05; };  // as in MissingGlass::abbe
+  if (lens.dispersion() == petzval::Dispersion::catalogue || std::ranges::all_of(lens.wavelengths_nm(), at_reference)) {
     return;
   }
-  std::cerr << missing << (missing == 1 ? " medium is" : " media are") << " in no glass table; "
-            << (loaded.lens.dispersion() == petzval::Dispersion::abbe
-                    ? "the n_d/V_d model is used away from " + line
-                    : "without V_d the lens can be used at " + line + " only")
-            << '\n';
+  const std::size_t missing = lens.missing_glasses().size();
+  if (missing == 0) return note(file.id + ": no medium disperses");
+  note(file.id + ": " + std::to_string(missing) + (missing == 1 ? " medium is" : " media are") +
+       " in no glass table; the n_d/V_d model is used away from " + number(reference) + " nm");
 }
 
-void say_what_was_assumed(const LoadedLens& loaded) {
-  const auto& imported = loaded.prescription.imported;
+void say_what_was_assumed(const LensFile& file) {
+  const auto& imported = file.prescription.imported;
   if (!imported) return;
   for (const petzval::ImportWarning& warning : imported->warnings) {
     std::cerr << "note: " << imported->file << ": ";
@@ -46,12 +40,12 @@ void say_what_was_assumed(const LoadedLens& loaded) {
   }
 }
 
-void say_what_limits(const LoadedLens& loaded) {
-  if (!petzval::has_pupils(loaded.lens)) return;
-  const petzval::Pupils pupils = petzval::pupils(loaded.lens);
+void say_what_limits(const LensFile& file, const petzval::Lens& lens) {
+  if (!petzval::has_pupils(lens)) return;
+  const petzval::Pupils pupils = petzval::pupils(lens);
   if (!pupils.stop_inferred) return;
-  std::cerr << "note: " << loaded.id << (loaded.lens.stop() ? ": the stop has no rim" : ": no stop is marked")
-            << "; surface " << pupils.stop << ", which limits the axial beam, serves as one\n";
+  note(file.id + (lens.stop() ? ": the stop has no rim" : ": no stop is marked") + "; surface " +
+       std::to_string(pupils.stop) + ", which limits the axial beam, serves as one");
 }
 
 }  // namespace
@@ -94,33 +88,46 @@ petzval::ConfigurationChoice configuration_of(const LensInput& input) {
   return text;
 }
 
-LoadedLens load_lens(const LensInput& input, std::span<const double> wavelengths_nm) {
+LensFile read_lens(const LensInput& input) {
   auto glasses = glasses_of(input);
   const petzval::Prescription whole = petzval::read_prescription(input.file, {.glasses = &glasses});
   petzval::Prescription prescription = petzval::configured(whole, configuration_of(input));
-  petzval::Lens lens = petzval::compile(prescription, wavelengths_nm, with_stand_ins(glasses));
   std::string id = std::filesystem::path(input.file).stem().string();
   if (!input.configuration.empty()) id += '_' + input.configuration;
-  LoadedLens loaded{std::move(id), std::move(prescription), std::move(glasses), std::move(lens)};
-  say_what_was_assumed(loaded);
-  say_what_is_known(loaded);
-  say_what_limits(loaded);
-  return loaded;
+  return {std::move(id), std::move(prescription), std::move(glasses)};
 }
 
-double half_field_deg(const LoadedLens& loaded) {
-  const petzval::Prescription& p = loaded.prescription;
+LoadedLens compiled(LensFile file, std::span<const double> wavelengths_nm, std::optional<double> primary_nm) {
+  petzval::Lens lens = compiled_for(file, wavelengths_nm, primary_nm);
+  say_what_was_assumed(file);
+  say_what_limits(file, lens);
+  return {std::move(file), std::move(lens)};
+}
+
+LoadedLens load_lens(const LensInput& input, std::span<const double> wavelengths_nm) {
+  return compiled(read_lens(input), wavelengths_nm);
+}
+
+double half_field_deg(const LensFile& file, const petzval::Lens& lens) {
+  const petzval::Prescription& p = file.prescription;
   if (p.half_field_deg) return *p.half_field_deg;
-  const petzval::Meridian meridian = petzval::main_meridian(loaded.lens);
-  const double focal_length = std::abs(petzval::first_order(loaded.lens, {}, meridian).effective_focal_length);
+  const petzval::Meridian meridian = petzval::main_meridian(lens);
+  const double focal_length = std::abs(petzval::first_order(lens, {}, meridian).effective_focal_length);
   if (p.image_diagonal_mm && std::isfinite(focal_length)) {
     return std::round(100 * petzval::degrees(std::atan(*p.image_diagonal_mm / 2 / focal_length))) / 100;
   }
   return 10;
 }
 
-petzval::Lens compiled_for(const LoadedLens& loaded, std::span<const double> wavelengths_nm) {
-  return petzval::compile(loaded.prescription, wavelengths_nm, with_stand_ins(loaded.glasses));
+petzval::CompileOptions compile_options(const LensFile& file, std::optional<double> primary_nm) {
+  return {.glasses = &file.glasses, .missing_glass = petzval::MissingGlass::abbe, .primary_nm = primary_nm};
+}
+
+petzval::Lens compiled_for(const LensFile& file, std::span<const double> wavelengths_nm,
+                           std::optional<double> primary_nm) {
+  petzval::Lens lens = petzval::compile(file.prescription, wavelengths_nm, compile_options(file, primary_nm));
+  say_what_is_known(file, lens);
+  return lens;
 }
 
 }  // namespace examples

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -30,23 +31,39 @@ petzval::GlassCatalogue glasses_of(const LensInput& input);
 /// "tele" or "1", "0.5": by name or by number.
 petzval::ConfigurationChoice configuration_of(const LensInput& input);
 
-/// A lens file, read and compiled.
-struct LoadedLens {
+/// A lens file as it was read, in the configuration of the command line.
+struct LensFile {
   std::string id;  ///< the name of the file without its ending, and of the configuration; output files begin with it
   petzval::Prescription prescription;
   petzval::GlassCatalogue glasses;
+};
+
+/// A lens file, read and compiled.
+struct LoadedLens : LensFile {
   petzval::Lens lens;  ///< for the given wavelengths
 };
 
-/// Reads and compiles a lens with these glasses. What its file left open is noted on standard error. The n_d/V_d model
-/// replaces glasses that are in no table (without V_d only the reference wavelength is left). Notes on standard error
-/// report this, and the surface that serves as the stop if none is marked.
+/// Reads a lens.
+LensFile read_lens(const LensInput& input);
+
+/// Compiles a lens that was read. primary_nm: Lens::primary_wavelength.
+///
+/// Notes on standard error report the assumptions of the import, and the surface that serves as the stop if no stop is
+/// marked. The n_d/V_d model replaces glasses that are in no table (without V_d only the reference wavelength can be
+/// used); a note reports this if a wavelength other than the reference is used.
+LoadedLens compiled(LensFile file, std::span<const double> wavelengths_nm, std::optional<double> primary_nm = {});
+
+/// Both.
 LoadedLens load_lens(const LensInput& input, std::span<const double> wavelengths_nm);
 
-/// As declared, or by the diagonal of the image, or 10 degrees if the source has neither.
-double half_field_deg(const LoadedLens& loaded);
+/// As declared, or by the diagonal of the image, or 10 degrees if the source has neither. lens: compiled from the file.
+double half_field_deg(const LensFile& file, const petzval::Lens& lens);
+
+/// With the glasses of the file; the n_d/V_d model replaces those that are in no table.
+petzval::CompileOptions compile_options(const LensFile& file, std::optional<double> primary_nm = {});
 
 /// The prescription compiled for other wavelengths, in the same way.
-petzval::Lens compiled_for(const LoadedLens& loaded, std::span<const double> wavelengths_nm);
+petzval::Lens compiled_for(const LensFile& file, std::span<const double> wavelengths_nm,
+                           std::optional<double> primary_nm = {});
 
 }  // namespace examples

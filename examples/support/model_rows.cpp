@@ -19,6 +19,7 @@ namespace examples {
 namespace {
 
 constexpr Range pixel_count{1, 1e6, "a whole number from 1 to 1000000"};
+constexpr std::uint32_t usual_columns = 3840;
 
 /// Names and values of a row in JSON and CSV.
 template <class Use>
@@ -37,18 +38,21 @@ void for_numbers(const ModelRow& row, Use use) {
 }  // namespace
 
 petzval::Film ModelOptions::film() const {
-  const auto [width, height] = setup.film_size();
+  if (resolution.empty()) return setup.film(0, 0, usual_columns);
   const auto [columns, rows] = parse_size("--resolution", resolution, pixel_count);
   if (columns != std::floor(columns) || rows != std::floor(rows)) {
     throw petzval::Error("--resolution: found \"" + resolution + "\", wanted two whole numbers");
   }
-  return {width, height, static_cast<int>(columns), static_cast<int>(rows)};
+  return setup.film(static_cast<std::uint32_t>(columns), static_cast<std::uint32_t>(rows), usual_columns);
 }
 
 void add_model_options(App& app, ModelOptions& options) {
   add_lens(app, options.lens_file);
   add_camera(app, options.setup);
-  app.add_option("--resolution", options.resolution, "pixels across and up")->type_name("WxH")->capture_default_str();
+  app.add_option("--resolution", options.resolution,
+                 "pixels across and up; without --film-mm the film has their shape, within 36 x 24 mm")
+      ->type_name("WxH")
+      ->default_str("3840 across, square");
   app.add_flag("--json", options.json, "print JSON");
 }
 
@@ -63,9 +67,10 @@ std::string conditions(const petzval::Lens& lens, const ModelOptions& options) {
   const petzval::Film film = options.film();
   const double focus = options.setup.focus_mm;
   return "f/" + number(petzval::real_f_number(lens), 3) + ", focused at " +
-         (std::isinf(focus) ? "infinity" : number(focus) + " mm from the film") + " (" + options.setup.criterion +
-         "), film " + size(film.width_mm, film.height_mm) + " mm, " + size(film.columns, film.rows) + " pixels of " +
-         number(1e3 * film.pixel_mm(), 3) + " um, " + number(petzval::d_line_nm, 6) + " nm";
+         (std::isinf(focus) ? "infinity" : number(focus) + " mm from the " + options.setup.focus.from()) + " (" +
+         options.setup.focus.criterion + "), film " + size(film.width_mm, film.height_mm) + " mm, " +
+         size(film.columns, film.rows) + " pixels of " + number(1e3 * film.pixel_mm(), 3) + " um, " +
+         number(petzval::d_line_nm, 6) + " nm";
 }
 
 std::vector<ModelRow> model_rows(std::span<const petzval::ModelCandidate> table, const petzval::Film& film,

@@ -18,7 +18,7 @@ namespace examples {
 struct ModelOptions {
   LensInput lens_file;
   CameraSetup setup;
-  std::string resolution = "3840x2560";
+  std::string resolution{};  ///< empty: not given
   bool json = false;
 
   /// Throws petzval::Error.
@@ -28,7 +28,7 @@ void add_model_options(App& app, ModelOptions& options);
 
 /// The lens of the options at the d line, stopped down and focused.
 LoadedLens focused_lens(const ModelOptions& options);
-/// The conditions in one line: "f/2, focused at 3000 mm from the film, ...".
+/// The conditions in one line: "f/2, focused at 3000 mm from the front vertex, ...".
 std::string conditions(const petzval::Lens& lens, const ModelOptions& options);
 
 /// A model as the programs print it. Models that cannot be built have no row.

@@ -6,6 +6,7 @@
 
 #include "camera_setup.hpp"
 #include "cli.hpp"
+#include "iris_setup.hpp"
 #include "load_lens.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/units.hpp"
@@ -59,7 +60,7 @@ MovingLens moving_lens(const MovementOptions& options) {
   }
   const LoadedLens loaded = load_lens(options.lens_file, std::array{petzval::d_line_nm});
   petzval::Lens lens = loaded.lens;
-  if (options.f_number > 0) lens = petzval::with_f_number(lens, options.f_number);
+  if (options.f_number > 0) lens = stopped_to(lens, options.f_number);
   result.id = loaded.id;
   result.title = lens.name();
   result.conditions = "f/" + number(petzval::real_f_number(lens), 3) + ", " + options.model + " model";

@@ -140,6 +140,11 @@ Sheet contact_sheet(const PsfJob& job, const std::vector<petzval::ExrPart>& part
 
 }  // namespace
 
+std::string distance_from(const petzval::ExrPart& part) {
+  const auto text = part.texts.find(distance_from_key);
+  return text == part.texts.end() ? "front_vertex" : text->second;
+}
+
 PsfJob::PsfJob(Json description)
     : description_(std::move(description)),
       id_(petzval::checksum(description_.dump())),
@@ -187,6 +192,7 @@ void PsfJob::write(const fs::path& folder, std::size_t node, const petzval::PsfK
   petzval::ExrPart part = petzval::to_exr_part(kernel, axes_.point(node));
   part.texts["lens"] = description_.at("lens").get<std::string>();
   part.texts["job"] = id_;
+  part.texts[distance_from_key] = description_.at("distance_from").get<std::string>();
   petzval::write_exr({&part, 1}, file(folder, node));
 }
 

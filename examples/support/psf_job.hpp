@@ -14,6 +14,10 @@
 
 namespace examples {
 
+/// Text of an EXR part of a set: the origin of its distance. Parts without this text count from the front vertex.
+inline constexpr const char* distance_from_key = "distance_from";
+std::string distance_from(const petzval::ExrPart& part);
+
 /// A set of PSFs to be computed: all that its numbers depend on.
 ///
 /// A folder holds job.json, which says what is computed; psfs/NAME.exr, one file for each PSF, there as soon as it is

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <numbers>
@@ -80,10 +81,40 @@ TEST_F(BokehPsf, TellsTheRealFNumber) {
   EXPECT_EQ(bokeh(declared)["f_number_real"], wide_open);
 }
 
-TEST_F(BokehPsf, HasNoSizeWhereNothingGetsThrough) {
-  const auto result = bokeh({"--subject-distance-mm", "1000", "--focus-mm", "1000", "--field-deg", "50"})["results"][0];
-  EXPECT_EQ(result["throughput"], 0.0);
-  for (const char* key : {"centroid_mm", "rms_radius_mm", "radius_mm"}) EXPECT_TRUE(result[key].is_null()) << key;
+TEST_F(BokehPsf, RefusesAFieldThatNoLightReaches) {
+  for (const char* model : {"exact_double", "thin"}) {
+    expect_failure("bokeh_psf",
+                   {lens(id), "--subject-distance-mm", "1000", "--focus-mm", "1000", "--field-deg", "60", "--model",
+                    model, "--out", path("no")},
+                   "--field-deg = 60");
+  }
+  EXPECT_FALSE(std::filesystem::exists(path("no")));
+}
+
+TEST_F(BokehPsf, RefusesAFolderThatCannotBeBeforeItComputes) {
+  write("taken", "");
+  for (const std::string& out : {path("taken"), path("taken") + "/below"}) {
+    // So many samples take minutes.
+    expect_failure(
+        "bokeh_psf",
+        {lens(id), "--subject-distance-mm", "1000", "--focus-mm", "1000,1500", "--samples", "67108864", "--out", out},
+        "--out = " + out);
+  }
+}
+
+// A run that is cut off keeps the pictures that are whole, with their numbers.
+TEST_F(BokehPsf, KeepsWholePicturesWhenItIsKilled) {
+  const std::string first = path("cut/") + id + "_focus_900mm.exr", numbers = path("cut/") + id + "_bokeh.json";
+  write("kill.sh", "'" + std::string(PETZVAL_TEST_PROGRAMS) + "/bokeh_psf' '" + lens(id) +
+                       "' --subject-distance-mm 1000 --focus-mm 900,1000,1100 --samples 4194304 --out '" + path("cut") +
+                       "' > /dev/null 2>&1 & pid=$!\nwhile [ ! -e '" + numbers +
+                       "' ] && kill -0 $pid; do :; done 2> /dev/null\nkill -INT $pid 2> /dev/null\n"
+                       "kill -9 $pid 2> /dev/null\nwait $pid\nexit 0\n");
+  ASSERT_EQ(std::system(("sh '" + path("kill.sh") + "' 2> /dev/null").c_str()), 0);
+  EXPECT_TRUE(std::filesystem::exists(first));
+  const auto json = read_json(numbers);
+  EXPECT_GE(json["results"].size(), 1u);
+  EXPECT_EQ(json["results"][0]["focus_mm"], 900);
 }
 
 TEST_F(BokehPsf, SendsFewRaysInVain) {
@@ -320,6 +351,7 @@ TEST_F(BokehPsf, RefusesABadCommandLineInOneLine) {
   refuse({"--subject-distance-mm", "0", "--focus-mm", "1000"}, "--subject-distance-mm: found \"0\"");
   refuse({"--subject-distance-mm", "nan", "--focus-mm", "1000"}, "--subject-distance-mm: found \"nan\"");
   refuse({"--subject-distance-mm", "1000", "--focus-mm", "15"}, "cannot be focused");
+  refuse({"--subject-distance-mm", "1000", "--focus-mm", "2"}, "2000 mm");  // metres?
   refuse({"--subject-distance-mm", "100", "--distance-from", "film", "--focus-mm", "1000"},
          "a light 100 mm from the film is not in front of the lens, wanted more than 167.985 mm");
   refuse({"--subject-distance-mm", "1e-3", "--focus-mm", "1000"},

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <sys/wait.h>
+
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "petzval/io/image.hpp"
@@ -105,6 +109,73 @@ TEST_F(BokehScene, HasTheBitsOfOneRunHoweverItIsCutUp) {
     render("seed", {"--seed", "1"});
     return read(path("seed/picture.exr"));
   }());
+}
+
+// A finished picture that gets more samples has the bits of a picture rendered with all samples at once.
+TEST_F(BokehScene, AddsSamplesToAFinishedPicture) {
+  for (const char* integrator : {"path", "bidirectional"}) {
+    const std::string at_once = std::string("once_") + integrator, grown = std::string("grown_") + integrator;
+    render(at_once, {"--integrator", integrator, "--spp", "40"});
+    for (const char* samples : {"3", "16", "40"}) {
+      const json report = render(grown, {"--integrator", integrator, "--spp", samples, "--resume"});
+      EXPECT_EQ(report["samples"], std::stoi(samples));
+      EXPECT_TRUE(report["finished"]);
+    }
+    EXPECT_EQ(read(path(grown + "/picture.exr")), read(path(at_once + "/picture.exr"))) << integrator;
+    EXPECT_EQ(read_json(path(grown + "/render.json"))["mean_radiance"],
+              read_json(path(at_once + "/render.json"))["mean_radiance"]);
+  }
+  // A smaller --spp keeps the existing samples.
+  const Outcome fewer = run("bokeh_scene", arguments("grown_path", {"--integrator", "path", "--spp", "4", "--resume"}));
+  EXPECT_EQ(fewer.status, 0);
+  EXPECT_NE(fewer.err.find("--spp = 4"), std::string::npos) << fewer.err;
+  EXPECT_EQ(read(path("grown_path/picture.exr")), read(path("once_path/picture.exr")));
+}
+
+// An interrupt writes the sums and the picture so far; --resume continues to the bits of one run.
+TEST_F(BokehScene, KeepsItsWorkAtAnInterrupt) {
+  const Arguments many{"--spp", "400", "--threads", "1"};
+  std::string command = "'" + std::string(PETZVAL_TEST_PROGRAMS) + "/bokeh_scene'";
+  for (const std::string& argument : arguments("cut", many)) command += " '" + argument + "'";
+  write("interrupt.sh", command + " > '" + path("said") + "' 2> '" + path("err") + "' & pid=$!\nwhile [ ! -d '" +
+                            path("cut") +
+                            "' ] && kill -0 $pid; do :; done 2> /dev/null\n"
+                            "sleep 0.3\nkill -TERM $pid\nwait $pid\nexit $?\n");
+  const int status = std::system(("sh '" + path("interrupt.sh") + "'").c_str());
+  EXPECT_TRUE(std::filesystem::exists(path("cut/sums.exr")));
+  EXPECT_TRUE(std::filesystem::exists(path("cut/picture.png")));
+  if (!read_json(path("cut/render.json"))["finished"]) {
+    EXPECT_EQ(WEXITSTATUS(status), 130);
+    EXPECT_NE(read(path("err")).find("--resume"), std::string::npos) << read(path("err"));
+  }
+  render("cut", {"--spp", "400", "--threads", "1", "--resume"});
+  render("whole", many);
+  EXPECT_EQ(read(path("cut/picture.exr")), read(path("whole/picture.exr")));
+}
+
+// Without --film-mm the film has the shape of the picture; without --height the picture has the shape of the film.
+TEST_F(BokehScene, PixelsAreSquareUnlessToldOtherwise) {
+  const auto shape = [&](const std::string& out, const Arguments& more) {
+    Arguments all{"--scene",    path("scene.json"),
+                  "--lens",     lens("double_gauss_100mm_f2_28deg"),
+                  "--focus-mm", "1000",
+                  "--spp",      "1",
+                  "--out",      path(out)};
+    all.insert(all.end(), more.begin(), more.end());
+    const Outcome outcome = run("bokeh_scene", all);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    const json job = read_json(path(out) + "/render.json")["job"];
+    return std::tuple(job["film_mm"].get<std::string>(), job["width"].get<int>(), job["height"].get<int>(),
+                      outcome.err);
+  };
+  EXPECT_EQ(shape("wide", {"--width", "96", "--height", "54"}), std::tuple("36x20.25", 96, 54, ""));
+  EXPECT_EQ(shape("tall", {"--width", "48", "--height", "96"}), std::tuple("18x36", 48, 96, ""));
+  EXPECT_EQ(shape("square", {"--width", "48", "--height", "48"}), std::tuple("24x24", 48, 48, ""));
+  EXPECT_EQ(shape("usual", {"--width", "90"}), std::tuple("36x24", 90, 60, ""));
+  EXPECT_EQ(shape("film", {"--width", "96", "--film-mm", "24x9"}), std::tuple("24x9", 96, 36, ""));
+  const auto [film, width, height, note] = shape("egg", {"--width", "96", "--height", "54", "--film-mm", "36x24"});
+  EXPECT_EQ(film, "36x24");
+  for (const char* flag : {"--film-mm", "--width", "--height"}) EXPECT_NE(note.find(flag), std::string::npos) << note;
 }
 
 TEST_F(BokehScene, SeesTheSameByEveryIntegratorAndModel) {
@@ -226,7 +297,8 @@ TEST_F(BokehScene, TakesAFocalSurfaceAndAberrations) {
   EXPECT_NEAR(mean(light, 0), mean(surface, 0), 5 * std::hypot(error(light, 0), error(surface, 0)));
   const auto refused = [&](const std::string& points, const std::string& reason) {
     write("bad.json", points);
-    expect_failure("bokeh_scene", arguments("x", with({"--focal-surface", path("bad.json")})), reason);
+    expect_failure("bokeh_scene",
+                   arguments("x", with({"--focal-surface", path("bad.json"), "--distance-from", "film"})), reason);
   };
   refused("{}", "bad.json: points: found null, wanted a list of one point or more");
   refused(R"({"points": [{"distance_mm": 4}]})", "point 1: found no place, wanted one of pixel and world_mm");

@@ -54,8 +54,7 @@ class CameraRays : public Programs {
 
 TEST_F(CameraRays, GivesTheLibrarysNumbers) {
   const petzval::Lens wide_open = petzval::compile(petzval::read_prescription(lens("double_gauss_100mm_f2.0")));
-  const petzval::Lens lens_f4 =
-      petzval::with_focus(petzval::with_f_number(wide_open, 4), 3000, {.origin = petzval::DistanceOrigin::film});
+  const petzval::Lens lens_f4 = petzval::with_focus(petzval::with_f_number(wide_open, 4), 3000);
   const petzval::Camera camera(lens_f4, {}, {.model = petzval::ModelKind::exact_double});
   const auto rows = rays("double_gauss_100mm_f2.0", std::string(header) + "7.5,-10.25,0.125,0.75,587.5618\n",
                          "exact_double", {"--f-number", "4"});
@@ -73,9 +72,8 @@ TEST_F(CameraRays, GivesTheLibrarysNumbers) {
 TEST_F(CameraRays, FocusesByTheCriterionAsked) {
   const petzval::Lens whole = petzval::compile(petzval::read_prescription(lens("double_gauss_100mm_f2_28deg")));
   for (const auto criterion : {petzval::FocusCriterion::paraxial, petzval::FocusCriterion::min_rms}) {
-    const petzval::Camera camera(
-        petzval::with_focus(whole, 3000, {.criterion = criterion, .origin = petzval::DistanceOrigin::film}), {},
-        {.model = petzval::ModelKind::exact_double});
+    const petzval::Camera camera(petzval::with_focus(whole, 3000, {.criterion = criterion}), {},
+                                 {.model = petzval::ModelKind::exact_double});
     const auto rows = rays("double_gauss_100mm_f2_28deg", std::string(header) + "0,0,0.125,0.75,587.5618\n",
                            "exact_double", {"--criterion", std::string(petzval::name(criterion))});
     const auto r = camera.sample({.film = {}, .pupil_u = 0.125, .pupil_v = 0.75});
@@ -100,8 +98,7 @@ TEST_F(CameraRays, TurnsTheImageUpsideDownOnEveryRung) {
 // Tilting moves the upper edge of the film; it sees what a film point at its new place sees.
 TEST_F(CameraRays, TiltsItsFilm) {
   const petzval::Lens lens_3m =
-      petzval::with_focus(petzval::compile(petzval::read_prescription(lens("double_gauss_100mm_f2.0"))), 3000,
-                          {.origin = petzval::DistanceOrigin::film});
+      petzval::with_focus(petzval::compile(petzval::read_prescription(lens("double_gauss_100mm_f2.0"))), 3000);
   const petzval::Film film{.tilt_rad = petzval::radians(8.0), .swing_rad = petzval::radians(-3.0)};
   const std::string csv = std::string(header) + "7.5,-10.25,0.125,0.75,587.5618\n";
   for (const petzval::ModelKind model : {petzval::ModelKind::thick, petzval::ModelKind::exact_double}) {
@@ -132,7 +129,7 @@ TEST_F(CameraRays, TakesIrisAndWeights) {
   for (int i = 0; i < 64; ++i) csv += "5,-3," + std::to_string(i / 64.) + ",0.9,587.5618\n";
   const petzval::Lens hexagon = petzval::with_focus(
       petzval::with_iris(petzval::compile(petzval::read_prescription(lens("double_gauss_100mm_f2.0"))), {.blades = 6}),
-      3000, {.origin = petzval::DistanceOrigin::film});
+      3000);
   const petzval::Camera camera(hexagon, {},
                                {.model = petzval::ModelKind::thin,
                                 .bokeh = {.lens_ratio = 1.2, .rate_of_change = 0.5, .weight_distribution = -4}});

@@ -60,7 +60,7 @@ TEST_F(ChooseCamera, GivesItsReasonsInWords) {
   const auto outcome = run("choose_camera", {lens("double_gauss_52mm_f1.8"), "--near-mm", "1000", "--far-mm", "5000",
                                              "--focus-mm", "2000", "--budget-px", "0.5"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_NE(outcome.out.find("focused at 2000 mm from the film"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("focused at 2000 mm from the front vertex"), std::string::npos) << outcome.out;
   EXPECT_NE(outcome.out.find(" is the fastest inside the budget: "), std::string::npos) << outcome.out;
   EXPECT_NE(outcome.out.find(" will not do: "), std::string::npos) << outcome.out;
   EXPECT_EQ(outcome.out.find("nan"), std::string::npos);
@@ -74,10 +74,10 @@ TEST_F(ChooseCamera, ExplainsItselfAndRefusesABadCommandLine) {
   expect_failure("choose_camera", {file, "--far-mm", "inf", "--budget-px", "1"}, "--near-mm is required");
   expect_failure("choose_camera", {file, "--near-mm", "1000", "--budget-px", "1"}, "--far-mm is required");
   expect_failure("choose_camera", {file, "--near-mm", "1000", "--far-mm", "inf"}, "--budget-px is required");
-  expect_failure("choose_camera", {file, "--near-mm", "1000", "--far-mm", "500", "--budget-px", "1"},
-                 "to as far or farther");
-  expect_failure("choose_camera", {file, "--near-mm", "10", "--far-mm", "500", "--budget-px", "1"},
-                 "in front of the lens");
+  expect_failure("choose_camera", {file, "--near-mm", "1000", "--far-mm", "500", "--budget-px", "1"}, "far_mm = 500");
+  expect_failure("choose_camera",
+                 {file, "--near-mm", "10", "--far-mm", "500", "--budget-px", "1", "--distance-from", "film"},
+                 "near_mm = 10");
   expect_failure("choose_camera", {file, "--near-mm", "1000", "--far-mm", "inf", "--budget-px", "-1"},
                  "--budget-px: found \"-1\"");
 }

@@ -97,6 +97,16 @@ TEST_F(ChromaticBokeh, LateralColourIsNoneOnTheAxis) {
   EXPECT_GT(json["lateral"][1]["wavelengths"][0]["chief_ray_shift_mm"], 0.01);
 }
 
+TEST_F(ChromaticBokeh, FocusesAsItIsTold) {
+  const auto film = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> all{"--focus-mm", "2000", "--field-deg", "0"};
+    all.insert(all.end(), more.begin(), more.end());
+    return colours(all)["pictures"][0]["film_z_mm"].get<double>();
+  };
+  EXPECT_GT(film({"--distance-from", "film"}), film({}) + 0.1);  // nearer to the lens
+  EXPECT_NE(film({"--criterion", "paraxial"}), film({}));
+}
+
 TEST_F(ChromaticBokeh, RefusesABadCommandLineInOneLine) {
   const auto refuse = [&](std::vector<std::string> more, const std::string& reason) {
     std::vector<std::string> arguments{lens(id), "--out", path("out")};
@@ -108,6 +118,9 @@ TEST_F(ChromaticBokeh, RefusesABadCommandLineInOneLine) {
   refuse({"--subject-distance-mm", "0"}, "--subject-distance-mm: found \"0\"");
   refuse({"--focus-mm", "15"}, "cannot be focused");
   refuse({"--field-deg", "95"}, "95");
+  refuse({"--field-deg", "0,60"}, "--field-deg = 60");
+  write("taken", "");
+  expect_failure("chromatic_bokeh", {lens(id), "--samples", "67108864", "--out", path("taken")}, "--out");
   expect_failure("chromatic_bokeh", {lens("fisheye_10mm_f4"), "--out", path("out")},
                  "wanted one of them for its index at 430 nm");
 }

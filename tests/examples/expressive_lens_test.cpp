@@ -71,7 +71,7 @@ TEST_F(ExpressiveLensProgram, RefusesWhatIsNoLens) {
   refused({"--curvature-points", "1:2"}, "--curvature-points: found \"1\", wanted x,y:offset");
   refused({"--curvature-points", "0,0:-500"}, "wanted the film between");
   refused({"--model", "exact_float"}, "--model");
-  refused({"--light-mm", "20", "--from-lens", "1"}, "scene point: z is");
+  refused({"--light-mm", "20", "--from-lens", "1", "--distance-from", "film"}, "scene point: z is");
 }
 
 }  // namespace

@@ -99,18 +99,14 @@ TEST_F(FocalSurfaceProgram, TakesPointsOfTheWorldAndKinds) {
   write("points.json", R"({"points": [{"world_mm": [0, 0, -2000]}, {"world_mm": [200, 100, -3000]}]})");
   write("q.csv", "x_px,y_px\n150,100\n");
   for (const char* kind : {"affine", "shepard"}) {
-    const auto outcome = run("focal_surface", arguments({"--queries", path("q.csv"), "--kind", kind, "--beta", "2",
-                                                         "--distance-from", "front_vertex", "--f-number", "4"}));
+    const auto outcome =
+        run("focal_surface", arguments({"--queries", path("q.csv"), "--kind", kind, "--beta", "2", "--f-number", "4"}));
     ASSERT_EQ(outcome.status, 0) << outcome.err;
     EXPECT_NEAR(rows(read(path("out/answers.csv")))[0][2], 2000, 1e-6);
   }
   // The picture does not depend on its resolution.
   const auto small = pfm("out/surface.pfm", 300, 200);
-  ASSERT_EQ(
-      run("focal_surface",
-          arguments({"--kind", "shepard", "--beta", "2", "--distance-from", "front_vertex", "--f-number", "4"}, 900))
-          .status,
-      0);
+  ASSERT_EQ(run("focal_surface", arguments({"--kind", "shepard", "--beta", "2", "--f-number", "4"}, 900)).status, 0);
   const auto large = pfm("out/surface.pfm", 900, 600);
   for (const std::size_t x : {10u, 100u, 290u}) {
     EXPECT_NEAR(large[(3 * 50 + 1) * 900 + 3 * x + 1], small[50 * 300 + x], 1e-9) << x;
@@ -123,8 +119,9 @@ TEST_F(FocalSurfaceProgram, RefusesWhatIsNoSurface) {
     expect_failure("focal_surface", arguments(std::move(more)), reason);
   };
   refused(R"({"points": [{"pixel": [1, 2], "distance_mm": 100}]})",
-          "points.json: focal surface: point 1: the object is");
-  refused(R"({"points": [{"pixel": [1, 2], "distance_mm": 20}]})", "point 1: distance_mm: found 20, wanted more than");
+          "points.json: focal surface: point 1: the object is", {"--distance-from", "film"});
+  refused(R"({"points": [{"pixel": [1, 2], "distance_mm": 20}]})", "point 1: distance_mm: found 20, wanted more than",
+          {"--distance-from", "film"});
   refused(R"({"points": [{"pixel": [1, 2], "distance_mm": 3000, "fade": 2}]})", "point 1: fade: found 2, wanted");
   refused(R"({"points": [{"pixel": [1, 2], "distance_mm": 3000, "weight": 0}]})", "none of 1 points has a weight");
   refused(R"({"points": [{"pixel": [1, 2], "distance_mm": 3000, "blur_px": 1e9}]})", "point 1: a blur of");

@@ -50,7 +50,7 @@ TEST_F(FocusPull, PassesItsKeysAndStaysBetweenThem) {
   EXPECT_EQ(all[96]["time_s"], 4);
   for (const std::size_t i : {0u, 12u, 24u}) {
     EXPECT_NEAR(all[i]["film_z_mm"], film_of(1000), 1e-9);
-    EXPECT_NEAR(all[i]["subject_distance_mm"], 1000 + film_of(1000), 1e-6);
+    EXPECT_NEAR(all[i]["subject_distance_mm"], 1000, 1e-6);
     EXPECT_NEAR(all[i]["breathing"], film_of(1000) / 50 - 1, 1e-12);
   }
   for (const std::size_t i : {72u, 96u}) EXPECT_NEAR(all[i]["film_z_mm"], film_of(4000), 1e-9);
@@ -59,6 +59,14 @@ TEST_F(FocusPull, PassesItsKeysAndStaysBetweenThem) {
     EXPECT_EQ(all[i]["status"], "solved");
     EXPECT_EQ(all[i]["targets"], 1);
     EXPECT_NEAR(all[i]["rms_blur_um"], 0, 1e-9);
+  }
+}
+
+TEST_F(FocusPull, CountsDistancesFromTheirOrigin) {
+  for (const auto& [origin, z] :
+       {std::pair{"film", film_of(1000)}, {"entrance_pupil", 0.0}, {"front_principal", 0.0}}) {
+    const json all = frames(thin_50, rack, {"--distance-from", origin});
+    EXPECT_NEAR(all[0]["subject_distance_mm"], 1000 + z, 1e-6) << origin;
   }
 }
 
@@ -155,7 +163,7 @@ TEST_F(FocusPull, WritesATableAndAPlot) {
   const auto rows = lines(read(path("out/thin_lens_focus_pull.csv")));
   ASSERT_EQ(rows.size(), 98u);
   EXPECT_EQ(rows[0], "time_s,film_z_mm,subject_distance_mm,tilt_deg,swing_deg,rms_blur_um,breathing,targets,status");
-  EXPECT_TRUE(rows[1].starts_with("0,52.63157894736842,1052.63157")) << rows[1];
+  EXPECT_TRUE(rows[1].starts_with("0,52.63157894736842,1000")) << rows[1];
   EXPECT_TRUE(rows[1].ends_with(",1,solved")) << rows[1];
   EXPECT_TRUE(read(path("out/thin_lens_focus_pull.svg")).ends_with("</svg>\n"));
   for (const std::string& name : names) EXPECT_NE(outcome.out.find(name), std::string::npos) << name;

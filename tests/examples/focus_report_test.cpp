@@ -65,15 +65,17 @@ TEST_F(FocusReport, HasRowsForUsualDistancesUnasked) {
   std::set<std::string> criteria;
   for (const auto& row : json) criteria.insert(row["criterion"].get<std::string>());
   EXPECT_EQ(criteria, (std::set<std::string>{"paraxial", "min_rms", "min_max"}));
-  EXPECT_EQ(json[0]["distance_mm"], 1000);
-  EXPECT_TRUE(json[4]["distance_mm"].is_null());
-  EXPECT_EQ(json[4]["breathing"], 0);
-  EXPECT_TRUE(json[4]["far_limit_mm"].is_null());
   // Spherical aberration at f/2 gives a blur of 0.07 mm, more than the 0.03 mm allowed.
-  EXPECT_EQ(json[5]["status"], "solved");
-  EXPECT_EQ(json[5]["depth_status"], "too_blurred");
-  EXPECT_TRUE(json[5]["near_limit_mm"].is_null());
-  EXPECT_TRUE(json[5]["hyperfocal_mm"].is_null());
+  EXPECT_EQ(json[0]["criterion"], "min_rms");
+  EXPECT_EQ(json[0]["distance_mm"], 1000);
+  EXPECT_EQ(json[0]["status"], "solved");
+  EXPECT_EQ(json[0]["depth_status"], "too_blurred");
+  EXPECT_TRUE(json[0]["near_limit_mm"].is_null());
+  EXPECT_TRUE(json[0]["hyperfocal_mm"].is_null());
+  EXPECT_EQ(json[5]["criterion"], "paraxial");
+  EXPECT_TRUE(json[9]["distance_mm"].is_null());
+  EXPECT_EQ(json[9]["breathing"], 0);
+  EXPECT_TRUE(json[9]["far_limit_mm"].is_null());
 }
 
 TEST_F(FocusReport, DeepensTheFieldAsTheLensIsStoppedDown) {
@@ -104,9 +106,20 @@ TEST_F(FocusReport, SaysWhatIsOutOfReach) {
   }
   EXPECT_NEAR(json[0]["nearest_distance_mm"].get<double>(), 54.2448912, 1e-6);
   EXPECT_EQ(json[1]["status"], "solved");
+}
 
-  const auto beyond = rows("cooke_triplet_50mm_f5", {"--criterion", "min_rms", "--field-deg", "75"});
-  EXPECT_EQ(beyond[0]["status"], "no_rays");
+TEST_F(FocusReport, RefusesAFieldThatNoLightReaches) {
+  expect_failure("focus_report", {lens("cooke_triplet_50mm_f5"), "--field-deg", "0,75"}, "--field-deg = 75");
+}
+
+// A report without any answer is an error, and a distance that looks like metres gets a hint.
+TEST_F(FocusReport, TellsMetresFromMillimetres) {
+  const std::string file = lens("double_gauss_100mm_f2.0");
+  expect_failure("focus_report", {file, "--distance-mm", "2"}, "2000 mm");
+  const auto both = run("focus_report", {file, "--distance-mm", "2,3000", "--criterion", "min_rms"});
+  EXPECT_EQ(both.status, 0);
+  EXPECT_NE(both.out.find("unreachable"), std::string::npos) << both.out;
+  EXPECT_NE(both.err.find("2000 mm"), std::string::npos) << both.err;
 }
 
 TEST_F(FocusReport, LosesOneRowWhereTheLensRefusesASubject) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <string>
 
+#include "petzval/files/lens_file.hpp"
+#include "petzval/focus/focus.hpp"
 #include "petzval/io/image.hpp"
 #include "program.hpp"
 
@@ -9,8 +11,8 @@ namespace {
 class LensMetadata : public Programs {};
 
 TEST_F(LensMetadata, WritesBothFilesOfTheFocusedLens) {
-  const auto outcome =
-      run("lens_metadata", {lens("biogon_35mm_f2.8"), "--f-number", "4", "--focus-mm", "2000", "--out", path("out")});
+  const auto outcome = run("lens_metadata", {lens("biogon_35mm_f2.8"), "--f-number", "4", "--focus-mm", "2000",
+                                             "--distance-from", "film", "--out", path("out")});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_NE(outcome.out.find("field 30 degrees; Brown-Conrady within"), std::string::npos) << outcome.out;
   const auto sample = read_json(path("out/biogon_35mm_f2.8.opentrackio.json")).at("lens");
@@ -20,6 +22,15 @@ TEST_F(LensMetadata, WritesBothFilesOfTheFocusedLens) {
   ASSERT_EQ(parts.size(), 2u);
   EXPECT_EQ(parts[1].width, 1920);
   EXPECT_NEAR(parts[1].numbers.at("focus"), 2, 1e-6);
+}
+
+// The files have the distance from the film, as their formats say, whatever the command line counts from.
+TEST_F(LensMetadata, TurnsDistancesIntoThoseOfTheFormat) {
+  const petzval::Lens whole = petzval::compile(petzval::read_prescription(lens("biogon_35mm_f2.8")));
+  const double film_z = petzval::with_focus(whole, 2000).film_z();
+  ASSERT_EQ(run("lens_metadata", {lens("biogon_35mm_f2.8"), "--focus-mm", "2000", "--out", path("out")}).status, 0);
+  const auto sample = read_json(path("out/biogon_35mm_f2.8.opentrackio.json")).at("lens");
+  EXPECT_NEAR(sample.at("focusDistance").get<double>(), 2 + film_z / 1000, 1e-6);
 }
 
 TEST_F(LensMetadata, HasSquarePixelsOnAnyFilm) {

@@ -193,6 +193,17 @@ TEST_F(PsfSets, QueriesGiveNodesBitForBitAndPointsBetween) {
                  path("text.exr"));
 }
 
+TEST_F(PsfSets, QueriesCountDistancesAsTheSetDoes) {
+  succeed(set("film", {"--distance-from", "film"}));
+  const std::vector<std::string> query{"query", path("film/psf_set.exr"), "--field-deg", "7", "--distance-mm", "1000",
+                                       "--out", path("psf.exr")};
+  expect_failure("psf_set", query, "--distance-from = front_vertex");
+  auto from_film = query;
+  from_film.insert(from_film.end(), {"--distance-from", "film"});
+  succeed(from_film);
+  EXPECT_EQ(petzval::read_exr_parts(path("psf.exr")).front().texts.at("distance_from"), "film");
+}
+
 TEST_F(PsfSets, RefusesABadCommandLineAndWritesNothing) {
   const std::string file = lens("double_gauss_100mm_f2_28deg");
   const auto refused = [&](std::vector<std::string> more, const std::string& reason) {
@@ -214,6 +225,7 @@ TEST_F(PsfSets, RefusesABadCommandLineAndWritesNothing) {
   refused({"--fields", "-1", "--distances-mm", "1000"}, "--fields: found \"-1\"");
   refused({"--fields", "7,0", "--distances-mm", "1000"}, "found 0 after 7, wanted ascending numbers");
   refused({"--fields", "0,95", "--distances-mm", "1000"}, "95 degrees");
+  refused({"--fields", "0,60", "--distances-mm", "1000, 2000"}, "--fields = 60");
   refused({"--fields", "0", "--distances-mm", "1000,-5"}, "--distances-mm: found \"-5\"");
   refused({"--fields", "0", "--distances-mm", "1000,1000"}, "twice");
   grid({"--f-numbers", "1"}, "f-number is 1, wanted");

@@ -53,6 +53,23 @@ TEST_F(Readme, ShowsWhatTheProgramsPrint) {
   }
 }
 
+/// Commands of several lines can be copied into a shell: every line but the last ends in a backslash.
+TEST_F(Readme, CommandsOfAllPagesCanBeCopied) {
+  std::size_t found = 0;
+  for (const char* name : {"README.md", "data/README.md", "tests/README.md", "tests/bench/README.md",
+                           "examples/renderer/README.md", "examples/hosts/README.md"}) {
+    const auto page = lines(read(root() / name));
+    for (std::size_t i = 0; i + 1 < page.size(); ++i) {
+      if (!page[i].starts_with("    build/") && !page[i].starts_with("    sh ")) continue;
+      ++found;
+      for (std::size_t k = i; k + 1 < page.size() && page[k + 1].starts_with("        "); ++k) {
+        EXPECT_TRUE(page[k].ends_with("\\")) << name << ':' << k + 1 << ": " << page[k];
+      }
+    }
+  }
+  EXPECT_GE(found, 4u);
+}
+
 TEST_F(Readme, HasAtMost150Lines) { EXPECT_LE(lines(read(root() / "README.md")).size(), 150u); }
 
 /// A path in back quotes, or one that a link leads to, is looked up from the root of the repository or from the page's
