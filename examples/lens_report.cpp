@@ -6,6 +6,7 @@
 //   lens_report data/lenses/double_gauss_100mm_f1.35.json --json --wavelength-nm 486.1327
 //   lens_report data/lenses/double_gauss_100mm_f1.35.json --out out --field-deg 0,6,12 --f-number 2
 #include <array>
+#include <cmath>
 #include <filesystem>
 #include <iostream>
 #include <string>
@@ -16,7 +17,9 @@
 #include "petzval/focus/focus.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "support/cli.hpp"
+#include "support/design.hpp"
 #include "support/files.hpp"
+#include "support/iris_setup.hpp"
 #include "support/lens_page.hpp"
 #include "support/lens_report.hpp"
 #include "support/load_lens.hpp"
@@ -25,42 +28,65 @@ namespace {
 
 struct Options {
   examples::LensInput lens_file;
-  double wavelength_nm = petzval::d_line_nm;
-  bool wavelength_given = false;
-  bool json = false;
-  double f_number = 0;    // 0: wide open
-  double subject_mm = 0;  // 0: at infinity, with the film of the prescription
-  std::string out_folder;
+  double wavelength_nm = petzval::d_line_nm, subject_mm = 0;
+  bool wavelength_given = false, subject_given = false, json = false;
+  double f_number = 0;  // 0: wide open
+  examples::FocusFlags focus;
+  std::string film, out_folder;
   std::vector<double> field_deg;
 };
 
-/// The lens, stopped down and focused.
-petzval::Lens set(petzval::Lens lens, const Options& options) {
-  if (options.f_number > 0) lens = petzval::with_f_number(lens, options.f_number);
-  return options.subject_mm > 0
-             ? petzval::with_focus(lens, options.subject_mm, {.criterion = petzval::FocusCriterion::paraxial})
-             : lens;
-}
-
-examples::LoadedLens load(const Options& options) {
-  examples::LoadedLens loaded = examples::load_lens(options.lens_file, std::array{options.wavelength_nm});
-  loaded.lens = set(loaded.lens, options);
-  return loaded;
-}
-
-/// F, d and C if the dispersion is known and no wavelength is given.
-std::vector<double> figure_wavelengths(const Options& options, const petzval::Lens& lens) {
-  if (options.wavelength_given || lens.dispersion() == petzval::Dispersion::none) {
-    return {options.wavelength_nm};
+/// The subject, film and light by the command line; the file gives the values that are not set there.
+examples::ReportSubject subject_of(const examples::LensFile& file, const Options& options) {
+  examples::ReportSubject subject{.focus = options.focus};
+  const petzval::DesignData& design = file.prescription.design;
+  const bool designed =
+      std::isfinite(design.object_distance_mm) || !design.wavelengths.empty() || !design.fields.empty();
+  subject.distance_of_file = !options.subject_given && designed;
+  if (options.subject_given) {
+    subject.distance_mm = options.subject_mm;
+  } else {
+    subject.focus.origin = "front_vertex";
+    subject.distance_mm = design.object_distance_mm;
   }
-  return {486.1327, petzval::d_line_nm, 656.2725};
+  subject.film_of_file = options.film == "file" || (options.film.empty() && !options.subject_given);
+  if (options.wavelength_given) {
+    subject.light = {.wavelengths_nm = {options.wavelength_nm}, .weights = {1}, .primary_nm = options.wavelength_nm};
+  } else {
+    subject.light = examples::light_of(file);
+  }
+  return subject;
+}
+
+/// The lens, stopped down and focused.
+petzval::Lens set(petzval::Lens lens, const Options& options, const examples::ReportSubject& subject) {
+  if (options.f_number > 0) lens = examples::stopped_to(lens, options.f_number);
+  return subject.film_of_file ? lens : petzval::with_focus(lens, subject.distance_mm, subject.focus.options());
+}
+
+examples::Report report_of(const Options& options) {
+  examples::LensFile file = examples::read_lens(options.lens_file);
+  examples::ReportSubject subject = subject_of(file, options);
+  const std::array primary{subject.light.primary_nm};
+  examples::LoadedLens loaded = examples::compiled(std::move(file), primary);
+  const auto declared = examples::declared_pupil(loaded.prescription.design, loaded.lens);
+  // Heights of images are those on the film of the file.
+  subject.fields = options.field_deg.empty() ? examples::fields_of(loaded, loaded.lens)
+                                             : examples::ReportFields{options.field_deg, false};
+  loaded.lens = set(loaded.lens, options, subject);
+  if (!options.field_deg.empty() && petzval::has_pupils(loaded.lens)) {
+    for (const double field : options.field_deg) {
+      examples::want_light(loaded.lens, {petzval::radians(field), examples::subject_z(subject, loaded.lens)},
+                           "--field-deg");
+    }
+  }
+  return examples::report(std::move(loaded), std::move(subject), declared);
 }
 
 void write_page(const examples::Report& report, const Options& options) {
-  const auto colours = examples::compiled_for(report.loaded, figure_wavelengths(options, report.loaded.lens));
-  examples::PageOptions page{.field_deg = options.field_deg, .colours = set(colours, options)};
-  if (options.subject_mm > 0) page.subject_mm = options.subject_mm;
-  const auto figures = examples::lens_figures(report, page);
+  const examples::ReportLight& light = report.subject.light;
+  const auto colours = examples::compiled_for(report.loaded, light.wavelengths_nm, light.primary_nm);
+  const auto figures = examples::lens_figures(report, set(colours, options, report.subject));
 
   const std::filesystem::path folder = options.out_folder;
   examples::make_folder(folder);
@@ -79,34 +105,35 @@ int main(int argc, char** argv) {
   Options options;
   examples::App app(
       "Reports the first-order data, pupils, f-numbers and lint findings of a lens, for a lens with cylinders in both "
-      "sections. Lengths in mm; z from the first vertex, towards the film. Findings are not failures.\n"
+      "sections. Lengths in mm; z from the first vertex, towards the film. Findings are not failures. Subject, "
+      "wavelengths with their weights, and fields are those of the file, if it has them.\n"
       "With --out: writes LENS_layout.svg (and LENS_layout_x.svg of a lens with cylinders), LENS_spots.svg, "
       "LENS_footprints.svg, LENS_focus.svg, LENS_illumination.svg and LENS.html, a page with all of them, to DIR, and "
       "prints their paths instead.",
       "lens_report");
   examples::add_lens(app, options.lens_file);
   app.add_flag("--json", options.json, "print one JSON object; null is an infinite or absent value");
-  const auto* wavelength =
-      examples::add_number(app, "--wavelength-nm", options.wavelength_nm, examples::positive_number,
-                           "wavelength (nm); without it figures show F, d and C");
+  const auto* wavelength = examples::add_wavelength(app, "--wavelength-nm", options.wavelength_nm, "wavelength")
+                               ->default_str("those of the file, else F, d and C; numbers at the primary one");
   examples::add_number(app, "--f-number", options.f_number, examples::positive_number,
                        "stop the lens down to this f-number")
       ->default_str("wide open");
-  examples::add_number(
-      app, "--subject-distance-mm", options.subject_mm, examples::positive_length,
-      "put the film at the paraxial image of a subject at this distance from the front vertex (mm), or "
-      "inf")
-      ->default_str("infinity, with the film of the prescription");
-  auto* out = app.add_option("--out", options.out_folder, "draw figures and a page in this folder")->type_name("DIR");
+  const auto* subject = examples::add_number(app, "--subject-distance-mm", options.subject_mm,
+                                             examples::positive_length, "distance of the subject (mm), or inf")
+                            ->default_str("that of the file, with the film of the file");
+  examples::add_focus(app, options.focus);
+  examples::add_film_choice(app, options.film, "file; with --subject-distance-mm focus");
+  auto* out = examples::add_out_folder(app, options.out_folder, "draw figures and a page in this folder");
   examples::add_numbers(app, "--field-deg", options.field_deg, examples::finite_number,
                         "fields of the figures (degrees)")
-      ->default_str("the axis, 0.7 and 1 of the declared half field")
+      ->default_str("those of the file, else the axis, 0.7 and 1 of the declared half field")
       ->needs(out);
   out->excludes("--json");
 
   return examples::run(app, argc, argv, [&] {
     options.wavelength_given = wavelength->given();
-    const examples::Report report = examples::report(load(options));
+    options.subject_given = subject->given();
+    const examples::Report report = report_of(options);
     if (out->given()) return write_page(report, options);
     std::cout << (options.json ? examples::to_json(report).dump(2) + '\n' : examples::to_text(report));
   });

@@ -4,9 +4,9 @@
 //   spot_diagram data/lenses/cooke_triplet_50mm_f5.json --field-deg 0,14,20 --wavelengths-nm 486.1,587.6,656.3 --out
 //   out
 #include <iostream>
-#include <limits>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "petzval/core/units.hpp"
@@ -14,7 +14,9 @@
 #include "petzval/focus/focus.hpp"
 #include "petzval/psf/spot.hpp"
 #include "support/cli.hpp"
+#include "support/design.hpp"
 #include "support/files.hpp"
+#include "support/iris_setup.hpp"
 #include "support/load_lens.hpp"
 #include "support/text.hpp"
 
@@ -27,28 +29,70 @@ constexpr examples::Range film_shift{-1e6, 1e6, "a number from -1000000 to 10000
 
 struct Options {
   examples::LensInput lens_file;
-  std::string out_folder;
-  std::vector<double> field_deg, wavelengths_nm;
-  double subject_mm = std::numeric_limits<double>::infinity(), defocus_mm = 0;
+  std::string out_folder, film = "focus";
+  std::vector<double> field_deg, wavelengths_nm;  // empty: the fields and wavelengths of the file
+  double subject_mm = 0, defocus_mm = 0, f_number = 0;
+  bool subject_given = false;
+  examples::FocusFlags focus;
   std::uint32_t samples = 4096;
 };
 
-std::vector<petzval::Spot> spots(const petzval::Lens& lens, const Options& options) {
+/// The lens and all that its spots depend on.
+struct Setting {
+  examples::LoadedLens loaded;
+  petzval::Lens lens;  ///< stopped down, with its film
+  examples::ReportLight light;
+  examples::ReportFields fields;
+  double subject_mm = 0;
+  std::string origin;
+};
+
+Setting setting_of(const Options& options) {
+  examples::LensFile file = examples::read_lens(options.lens_file);
+  examples::ReportLight light;
+  if (options.wavelengths_nm.empty()) {
+    light = examples::light_of(file);
+  } else {
+    light = {.wavelengths_nm = options.wavelengths_nm,
+             .weights = std::vector<double>(options.wavelengths_nm.size(), 1)};
+  }
+  const std::optional<double> primary = light.of_file ? std::optional(light.primary_nm) : std::nullopt;
+  examples::LoadedLens loaded = examples::compiled(std::move(file), light.wavelengths_nm, primary);
+  examples::FocusFlags focus = options.focus;
+  double subject_mm = options.subject_mm;
+  if (!options.subject_given) {
+    focus.origin = "front_vertex";
+    subject_mm = loaded.prescription.design.object_distance_mm;
+  }
+  petzval::Lens lens = options.f_number > 0 ? examples::stopped_to(loaded.lens, options.f_number) : loaded.lens;
+  if (options.film == "focus") lens = petzval::with_focus(lens, subject_mm, focus.options());
+  lens = petzval::with_film(lens, lens.film_z() + options.defocus_mm);
+  examples::ReportFields fields{options.field_deg, false};
+  if (fields.degrees.empty()) fields = examples::fields_of(loaded, loaded.lens);
+  return {std::move(loaded), std::move(lens), std::move(light), std::move(fields), subject_mm, focus.origin};
+}
+
+std::vector<petzval::Spot> spots(const Setting& setting, std::uint32_t samples) {
+  const double subject_z =
+      petzval::origin_z(setting.lens, examples::named(setting.origin, examples::distance_origins)) - setting.subject_mm;
   std::vector<double> fields;
-  for (const double degrees : options.field_deg) fields.push_back(petzval::radians(degrees));
-  return petzval::spot_diagram(lens, -options.subject_mm, fields, options.samples);
+  for (const double degrees : setting.fields.degrees) {
+    fields.push_back(petzval::radians(degrees));
+    examples::want_light(setting.lens, {fields.back(), subject_z}, "--field-deg");
+  }
+  return petzval::spot_diagram(setting.lens, subject_z, fields, samples);
 }
 
 /// The field of a spot as given, without a conversion to radians and back. Spots are ordered by field.
-double field_deg(const Options& options, std::size_t spot) {
-  return options.field_deg[spot / options.wavelengths_nm.size()];
+double field_deg(const Setting& setting, std::size_t spot) {
+  return setting.fields.degrees[spot / setting.light.wavelengths_nm.size()];
 }
 
-std::string hits_csv(const std::vector<petzval::Spot>& all, const Options& options) {
+std::string hits_csv(const std::vector<petzval::Spot>& all, const Setting& setting) {
   std::string csv = "field_deg,wavelength_nm,x_mm,y_mm\n";
   for (std::size_t i = 0; i < all.size(); ++i) {
-    const std::string start = examples::number(field_deg(options, i)) + ',' +
-                              examples::number(options.wavelengths_nm[all[i].wavelength]) + ',';
+    const std::string start = examples::number(field_deg(setting, i)) + ',' +
+                              examples::number(setting.light.wavelengths_nm[all[i].wavelength]) + ',';
     for (std::size_t k = 0; k < all[i].hits.x.size(); ++k) {
       csv += start + examples::number(all[i].hits.x[k]) + ',' + examples::number(all[i].hits.y[k]) + '\n';
     }
@@ -56,14 +100,15 @@ std::string hits_csv(const std::vector<petzval::Spot>& all, const Options& optio
   return csv;
 }
 
-Json to_json(const std::vector<petzval::Spot>& all, const petzval::Lens& lens, const Options& options) {
+Json to_json(const std::vector<petzval::Spot>& all, const Setting& setting, const Options& options) {
   const auto or_null = [](const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); };
   Json rows = Json::array();
   for (std::size_t i = 0; i < all.size(); ++i) {
     const petzval::Spot& spot = all[i];
     const bool empty = spot.hits.x.empty();  // no ray passes: no size
-    rows.push_back({{"field_deg", field_deg(options, i)},
-                    {"wavelength_nm", options.wavelengths_nm[spot.wavelength]},
+    rows.push_back({{"field_deg", field_deg(setting, i)},
+                    {"wavelength_nm", setting.light.wavelengths_nm[spot.wavelength]},
+                    {"wavelength_weight", setting.light.weights[spot.wavelength]},
                     {"chief_ray_height_mm", or_null(spot.chief_ray_height)},
                     {"relative_illumination", or_null(spot.relative_illumination)},
                     {"rms_radius_mm", empty ? Json(nullptr) : Json(spot.size.rms_radius)},
@@ -71,8 +116,12 @@ Json to_json(const std::vector<petzval::Spot>& all, const petzval::Lens& lens, c
                     {"reference", "centroid"},
                     {"rays_sent", spot.hits.sent},
                     {"rays_transmitted", spot.hits.x.size()},
-                    {"film_z_mm", lens.film_z()},
-                    {"dispersion", petzval::name(lens.dispersion())}});
+                    {"film_z_mm", setting.lens.film_z()},
+                    {"film", options.film},
+                    {"criterion", options.film == "focus" ? Json(options.focus.criterion) : Json()},
+                    {"subject_distance_mm", examples::finite_or_null(setting.subject_mm)},
+                    {"distance_from", setting.origin},
+                    {"dispersion", petzval::name(setting.lens.dispersion())}});
   }
   return rows;
 }
@@ -82,44 +131,48 @@ Json to_json(const std::vector<petzval::Spot>& all, const petzval::Lens& lens, c
 int main(int argc, char** argv) {
   Options options;
   examples::App app(
-      "Draws spot diagrams. The film stands at the paraxial image of the subject at the primary wavelength (the "
-      "one nearest to the d line, 587.5618 nm), plus --defocus-mm.\n"
+      "Draws spot diagrams. The film stands where the subject is in focus at the primary wavelength (that of the file, "
+      "else the one nearest to the d line, 587.5618 nm), or with --film file where the file has it, plus "
+      "--defocus-mm.\n"
       "Writes to DIR, and prints the paths: LENS_spots.svg, LENS_spots.csv (the hits: "
       "field_deg,wavelength_nm,x_mm,y_mm) and LENS_spots.json (one row per field and wavelength: height of the chief "
-      "ray "
-      "through the centre of the stop; illumination of the film relative to the axis; RMS and largest radius about the "
-      "centroid; null if no such ray exists).",
+      "ray through the centre of the stop; illumination of the film relative to the axis; RMS and largest radius about "
+      "the centroid; null if no such ray exists).",
       "spot_diagram");
   examples::add_lens(app, options.lens_file);
   examples::add_numbers(app, "--field-deg", options.field_deg, examples::finite_number,
                         "field angles towards +y, in object space at the paraxial entrance pupil (degrees)")
-      ->required();
-  examples::add_numbers(app, "--wavelengths-nm", options.wavelengths_nm, examples::positive_number, "wavelengths (nm)")
-      ->required();
-  examples::add_number(app, "--subject-distance-mm", options.subject_mm, examples::positive_length,
-                       "distance of the subject from the front vertex (mm), or inf");
+      ->default_str("those of the file, else the axis, 0.7 and 1 of the declared half field");
+  examples::add_wavelengths(app, "--wavelengths-nm", options.wavelengths_nm, "wavelengths")
+      ->default_str("those of the file, with their weights, else F, d and C");
+  examples::add_number(app, "--f-number", options.f_number, examples::positive_number,
+                       "stop the lens down (by exact rays)")
+      ->default_str("wide open");
+  auto* subject = examples::add_number(app, "--subject-distance-mm", options.subject_mm, examples::positive_length,
+                                       "distance of the subject (mm), or inf")
+                      ->default_str("that of the file");
+  examples::add_focus(app, options.focus);
+  examples::add_film_choice(app, options.film, options.film);
   examples::add_number(app, "--defocus-mm", options.defocus_mm, film_shift,
                        "shift of the film away from the lens (mm), -1000000 to 1000000");
   examples::add_samples(app, options.samples);
-  app.add_option("--out", options.out_folder, "folder for the results")->required()->type_name("DIR");
+  examples::add_out_folder(app, options.out_folder)->required();
 
   return examples::run(app, argc, argv, [&] {
-    const auto loaded = examples::load_lens(options.lens_file, options.wavelengths_nm);
-    const double image_z =
-        petzval::with_focus(loaded.lens, options.subject_mm, {.criterion = petzval::FocusCriterion::paraxial}).film_z();
-    const petzval::Lens lens = petzval::with_film(loaded.lens, image_z + options.defocus_mm);
-    const auto all = spots(lens, options);
+    options.subject_given = subject->given();
+    const Setting setting = setting_of(options);
+    const auto all = spots(setting, options.samples);
 
     const std::filesystem::path folder = options.out_folder;
     const auto write = [&](const char* kind, const std::string& text) {
-      const auto file = folder / (loaded.id + "_spots." + kind);
+      const auto file = folder / (setting.loaded.id + "_spots." + kind);
       examples::write_text(file, text);
       std::cout << file.string() << '\n';
     };
-    const std::string figure = petzval::spot_figure(lens, all);
+    const std::string figure = petzval::spot_figure(setting.lens, all, setting.light.weights);
     examples::make_folder(folder);
     write("svg", figure);
-    write("csv", hits_csv(all, options));
-    write("json", to_json(all, lens, options).dump(1) + '\n');
+    write("csv", hits_csv(all, setting));
+    write("json", to_json(all, setting, options).dump(1) + '\n');
   });
 }

@@ -18,19 +18,6 @@
 namespace examples {
 namespace {
 
-std::vector<double> fields_rad(const Report& r, const PageOptions& options) {
-  std::vector<double> fields = options.field_deg;
-  if (fields.empty()) {
-    const double half = half_field_deg(r.loaded, r.loaded.lens);
-    // Half of the picture's area lies within 0.7 of its radius. Three digits keep captions short.
-    fields = {0, half};
-    const double power = std::pow(10, std::floor(std::log10(0.7 * half)) - 2);
-    if (half > 0) fields.insert(fields.begin() + 1, std::round(0.7 * half / power) * power);
-  }
-  for (double& field : fields) field = petzval::radians(field);
-  return fields;
-}
-
 constexpr std::string_view style =
     R"(  body { margin: 0 auto; max-width: 62rem; padding: 2rem 1.5rem 4rem; font: 16px/1.55 system-ui, sans-serif;
          color: #1d2026; background: #fbfbfa; }
@@ -113,17 +100,30 @@ void sources(std::ostream& html, const petzval::Prescription& p) {
   html << "</table>\n";
 }
 
+/// The subject, wavelengths and fields of the figures, and where they come from.
+std::string conditions(const ReportSubject& subject) {
+  const auto origin = [](bool of_file) { return of_file ? " (as in the file)" : ""; };
+  std::string text = in_words(subject);
+  text[0] = 'S';
+  return text + ". Wavelengths: " + in_words(subject.light) + origin(subject.light.of_file) +
+         ". Fields: " + in_words(subject.fields) + origin(subject.fields.of_file) + ".";
+}
+
 }  // namespace
 
-std::vector<LensFigure> lens_figures(const Report& r, const PageOptions& options) {
+std::vector<LensFigure> lens_figures(const Report& r, const petzval::Lens& colours) {
   const petzval::Lens& lens = r.loaded.lens;
-  const double subject_z = -options.subject_mm;
+  const double subject_z = examples::subject_z(r.subject, lens);
+  const std::vector<double>& weights = r.subject.light.weights;
   std::vector<LensFigure> result;
   const auto add = [&](const char* name, const char* title, const char* caption, std::string svg) {
     result.push_back({name, title, caption, std::move(svg)});
   };
   const bool limited = r.main().pupils.has_value();
-  const std::vector<double> fields = limited ? fields_rad(r, options) : std::vector<double>();
+  std::vector<double> fields;
+  for (std::size_t i = 0; limited && i < r.subject.fields.degrees.size(); ++i) {
+    fields.push_back(petzval::radians(r.subject.fields.degrees[i]));
+  }
 
   add("layout", "The lens",
       "Follow one colour from the left: its rays come from one far point and should meet in one point of the film. If "
@@ -136,11 +136,10 @@ std::vector<LensFigure> lens_figures(const Report& r, const PageOptions& options
   }
   if (!limited) return result;
 
-  const petzval::Lens& colours = options.colours;
   add("spots", "Spots",
       "Hits of a point's rays on the film. Compare the spot with the dashed Airy circle: within it, diffraction "
       "dominates. A comet is coma, a line or a cross astigmatism; separate colours are lateral colour.",
-      petzval::spot_figure(colours, petzval::spot_diagram(colours, subject_z, fields)));
+      petzval::spot_figure(colours, petzval::spot_diagram(colours, subject_z, fields), weights));
   add("footprints", "Pupils",
       "The vignetted pupil of each field point. The more of the dashed circle is missing, the darker the corner. "
       "Bright "
@@ -150,7 +149,7 @@ std::vector<LensFigure> lens_figures(const Report& r, const PageOptions& options
       "Size of the spots against the film position. Separate minima mean curvature of field; a high, flat minimum is "
       "an "
       "aberration that focusing does not remove.",
-      petzval::focus_figure(colours, subject_z, fields));
+      petzval::focus_figure(colours, subject_z, fields, weights));
   const double farthest = *std::ranges::max_element(fields, {}, [](double f) { return std::abs(f); });
   if (farthest != 0) {
     add("illumination", "Brightness",
@@ -170,7 +169,8 @@ std::string lens_page(const Report& r, const std::vector<LensFigure>& figures) {
           "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>"
        << name << "</title>\n<style>\n"
        << style << "</style>\n</head>\n<body>\n<h1>" << name << "</h1>\n<p class=\"lead\">"
-       << escaped_html(r.loaded.prescription.source_design) << "</p>\n";
+       << escaped_html(r.loaded.prescription.source_design) << "</p>\n<p class=\"lead\">"
+       << escaped_html(conditions(r.subject)) << "</p>\n";
   for (const LensFigure& figure : figures) {
     html << "<h2>" << figure.title << "</h2>\n<figure>\n"
          << figure.svg << "<figcaption>" << figure.caption << "</figcaption>\n</figure>\n";

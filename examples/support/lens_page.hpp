@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <limits>
 #include <string>
 #include <vector>
 
@@ -9,22 +8,16 @@
 
 namespace examples {
 
-/// Options of the figures of a report.
-struct PageOptions {
-  std::vector<double> field_deg;  ///< empty: the axis, 0.7 and 1 of the declared half field
-  double subject_mm = std::numeric_limits<double>::infinity();  ///< from the front vertex
-  petzval::Lens colours;  ///< the lens for the wavelengths of the spots and the focus curve
-};
-
 struct LensFigure {
   std::string name;  ///< "layout"; its file is LENS_layout.svg
   std::string title, caption;
   std::string svg;
 };
 
-/// The figures of a lens; only the layout, without rays, if nothing limits the beam. Throws petzval::Error for fields
-/// and subjects that the lens cannot see.
-std::vector<LensFigure> lens_figures(const Report& report, const PageOptions& options);
+/// The figures of a lens; only the layout, without rays, if nothing limits the beam. colours: the lens for the
+/// wavelengths of the report, which the spots and the focus curve show. Throws petzval::Error for fields and subjects
+/// that the lens cannot see.
+std::vector<LensFigure> lens_figures(const Report& report, const petzval::Lens& colours);
 
 /// A page with the figures, the numbers, the prescription and its sources. It needs no other file.
 std::string lens_page(const Report& report, const std::vector<LensFigure>& figures);

@@ -31,16 +31,18 @@ MeridianReport in_meridian(const petzval::Lens& lens, petzval::Meridian meridian
     const petzval::Pupil &entrance = r.pupils->entrance, &exit = r.pupils->exit;
     r.entries.insert(r.entries.end(),
                      {{"entrance_pupil_z_mm", "entrance pupil, z", "mm", entrance.z},
-                      {"entrance_pupil_diameter_mm", "entrance pupil, diameter", "mm", entrance.diameter},
+                      {"entrance_pupil_diameter_mm", "entrance pupil, diameter (image of the rim of the stop)", "mm",
+                       entrance.diameter},
                       {"exit_pupil_z_mm", "exit pupil, z", "mm", exit.z},
                       {"exit_pupil_diameter_mm", "exit pupil, diameter", "mm", exit.diameter}});
     if (meridian == petzval::main_meridian(lens)) {
-      r.entries.insert(r.entries.end(), {{"f_number", "f-number, paraxial", "", petzval::paraxial_f_number(lens)},
-                                         {"f_number_real", "f-number by the exact ray to the rim of the stop", "",
-                                          petzval::real_f_number(lens)}});
+      r.entries.insert(
+          r.entries.end(),
+          {{"f_number", "f-number, paraxial (EFL / that diameter)", "", petzval::paraxial_f_number(lens)},
+           {"f_number_real", "f-number by the exact ray to the rim of the stop", "", petzval::real_f_number(lens)}});
     } else {
-      r.entries.push_back(
-          {"f_number", "f-number, paraxial", "", std::abs(first.effective_focal_length) / entrance.diameter});
+      r.entries.push_back({"f_number", "f-number, paraxial (EFL / that diameter)", "",
+                           std::abs(first.effective_focal_length) / entrance.diameter});
     }
   }
   r.entries.push_back({"petzval_sum_per_mm", "Petzval sum", "1/mm", first.petzval_sum});
@@ -81,8 +83,9 @@ std::optional<double> declared_value(const petzval::DesignAperture& aperture) {
 /// The numbers of one meridian; null for absent ones.
 Json numbers(const MeridianReport& r) {
   Json json{{"afocal", r.first_order.afocal}};
-  for (const char* key : {"entrance_pupil_z_mm", "entrance_pupil_diameter_mm", "exit_pupil_z_mm",
-                          "exit_pupil_diameter_mm", "f_number", "f_number_real"}) {
+  for (const char* key :
+       {"entrance_pupil_z_mm", "entrance_pupil_diameter_mm", "exit_pupil_z_mm", "exit_pupil_diameter_mm", "f_number",
+        "f_number_real", "declared_entrance_pupil_diameter_mm", "declared_f_number"}) {
     json[key] = nullptr;
   }
   for (const Entry& entry : r.entries) json[entry.key] = finite_or_null(entry.value);
@@ -91,15 +94,51 @@ Json numbers(const MeridianReport& r) {
 
 }  // namespace
 
-Report report(LoadedLens loaded) {
+double subject_z(const ReportSubject& subject, const petzval::Lens& lens) {
+  return petzval::origin_z(lens, subject.focus.distance_origin()) - subject.distance_mm;
+}
+
+std::string in_words(const ReportSubject& subject) {
+  std::string text = "subject ";
+  text += std::isinf(subject.distance_mm) ? "at infinity"
+                                          : number(subject.distance_mm) + " mm from the " + subject.focus.from();
+  if (subject.distance_of_file) text += " (as in the file)";
+  return text + "; film " + (subject.film_of_file ? "as in the file" : "in focus (" + subject.focus.criterion + ")");
+}
+
+std::string in_words(const ReportLight& light) {
+  std::string text;
+  for (std::size_t i = 0; i < light.wavelengths_nm.size(); ++i) {
+    text += (i == 0 ? "" : ", ") + number(light.wavelengths_nm[i], 6) + " nm";
+    if (light.wavelengths_nm.size() > 1) text += " (weight " + number(light.weights[i], 3) + ")";
+  }
+  return text;
+}
+
+std::string in_words(const ReportFields& fields) {
+  std::string text;
+  for (const double field : fields.degrees) text += (text.empty() ? "" : ", ") + number(field, 5);
+  return text + " degrees";
+}
+
+Report report(LoadedLens loaded, ReportSubject subject, const std::optional<DeclaredPupil>& declared_pupil) {
   const petzval::Lens& lens = loaded.lens;
   const petzval::Meridian main = petzval::main_meridian(lens);
   std::vector<MeridianReport> meridians{in_meridian(lens, main)};
   if (!lens.rotationally_symmetric()) {
     meridians.push_back(in_meridian(lens, main == petzval::Meridian::y ? petzval::Meridian::x : petzval::Meridian::y));
   }
+  if (declared_pupil) {
+    auto& entries = meridians.front().entries;
+    const auto petzval_sum = entries.end() - 1;
+    entries.insert(
+        petzval_sum,
+        {{"declared_entrance_pupil_diameter_mm", "entrance pupil as declared in the file (EPD of OpticStudio)", "mm",
+          declared_pupil->diameter},
+         {"declared_f_number", "EFL / declared pupil (image space F/# of OpticStudio)", "", declared_pupil->f_number}});
+  }
   auto findings = petzval::lint(loaded.prescription, loaded.glasses);
-  return {std::move(loaded), std::move(meridians), std::move(findings)};
+  return {std::move(loaded), std::move(subject), declared_pupil, std::move(meridians), std::move(findings)};
 }
 
 Json to_json(const Report& r) {
@@ -119,6 +158,17 @@ Json to_json(const Report& r) {
                                {"value", or_null(declared_value(*aperture))},
                                {"computed", or_null(computed_aperture(lens, r.loaded.prescription.design, r.main()))}};
   }
+  const ReportSubject& subject = r.subject;
+  json["subject_distance_mm"] = finite_or_null(subject.distance_mm);
+  json["subject_distance_of_file"] = subject.distance_of_file;
+  json["distance_from"] = subject.focus.origin;
+  json["film"] = subject.film_of_file ? "file" : "focus";
+  json["criterion"] = subject.film_of_file ? Json() : Json(subject.focus.criterion);
+  json["wavelengths_nm"] = subject.light.wavelengths_nm;
+  json["wavelength_weights"] = subject.light.weights;
+  json["wavelengths_of_file"] = subject.light.of_file;
+  json["fields_deg"] = subject.fields.degrees;
+  json["fields_of_file"] = subject.fields.of_file;
   json["meridian"] = r.main().meridian == petzval::Meridian::y ? "y" : "x";
   json["meridians"] = nullptr;
   if (r.meridians.size() > 1) {
@@ -171,7 +221,8 @@ std::string to_text(const Report& r) {
        << lens.surface_count() << (lens.surface_count() == 1 ? " surface" : " surfaces")
        << ", stop: " << stop_in_words(r.main().pupils) << "\nat " << number(lens.wavelengths_nm()[0])
        << " nm, dispersion: " << petzval::name(lens.dispersion())
-       << "; z counts from the first vertex towards the film\n";
+       << "; z counts from the first vertex towards the film\n"
+       << in_words(r.subject) << '\n';
   const auto line = [&](const char* label, double value, const char* unit) {
     text << "  " << std::left << std::setw(58) << label << std::right << std::setw(14) << in_words(value)
          << (*unit ? " " : "") << unit << '\n';

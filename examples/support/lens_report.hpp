@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "cli.hpp"
+#include "design.hpp"
 #include "files.hpp"
 #include "load_lens.hpp"
 #include "petzval/lint/lint.hpp"
@@ -28,15 +31,37 @@ struct MeridianReport {
   std::vector<Entry> entries;
 };
 
+/// The conditions of a report: subject, film, light and fields.
+struct ReportSubject {
+  double distance_mm = std::numeric_limits<double>::infinity();  ///< subject distance from the origin of `focus`, mm
+  bool distance_of_file = false;
+  FocusFlags focus{};
+  bool film_of_file = true;
+  ReportLight light{};
+  ReportFields fields{};
+};
+
 struct Report {
-  LoadedLens loaded;
+  LoadedLens loaded;  ///< at the primary wavelength of the light, with its stop and film
+  ReportSubject subject;
+  std::optional<DeclaredPupil> declared_pupil;
   std::vector<MeridianReport> meridians;  ///< the main one first; a lens of revolution has one
   std::vector<petzval::Finding> findings;
 
   const MeridianReport& main() const { return meridians.front(); }
 };
 
-Report report(LoadedLens loaded);
+/// declared_pupil: of the lens as the file has it, whose aperture the file declares.
+Report report(LoadedLens loaded, ReportSubject subject, const std::optional<DeclaredPupil>& declared_pupil);
+
+/// z of the subject in the frame of a lens that is focused, mm; -inf at infinity.
+double subject_z(const ReportSubject& subject, const petzval::Lens& lens);
+
+/// "subject at infinity (as in the file); film as in the file".
+std::string in_words(const ReportSubject& subject);
+/// "486.133 nm (weight 1), ..."; "0, 14, 20 degrees".
+std::string in_words(const ReportLight& light);
+std::string in_words(const ReportFields& fields);
 
 Json to_json(const Report& report);
 std::string to_text(const Report& report);

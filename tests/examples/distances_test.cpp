@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: Apache-2.0
+// The options that mean the same in every program: distances, focus, f-numbers, lists.
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "petzval/files/lens_file.hpp"
+#include "petzval/focus/focus.hpp"
+#include "petzval/pupil/f_number.hpp"
+#include "program.hpp"
+
+namespace {
+
+using Arguments = std::vector<std::string>;
+
+class Distances : public Programs {
+ protected:
+  static Arguments joined(Arguments a, const Arguments& b) {
+    a.insert(a.end(), b.begin(), b.end());
+    return a;
+  }
+  nlohmann::json printed(const std::string& program, const Arguments& arguments) const {
+    const auto outcome = run(program, arguments);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return nlohmann::json::parse(outcome.out);
+  }
+  /// The film on which programs put a subject at 1000 mm, by the name of the program.
+  std::vector<std::pair<std::string, double>> films(const std::string& id, const Arguments& more) const {
+    const std::string file = lens(id);
+    std::vector<std::pair<std::string, double>> result;
+    const auto add = [&](const char* program, const nlohmann::json& film) { result.emplace_back(program, film); };
+    add("lens_report",
+        printed("lens_report", joined({file, "--json", "--subject-distance-mm", "1000"}, more))["film_z_mm"]);
+    EXPECT_EQ(run("spot_diagram", joined({file, "--subject-distance-mm", "1000", "--field-deg", "0", "--wavelengths-nm",
+                                          "d", "--samples", "64", "--out", path("spots")},
+                                         more))
+                  .status,
+              0);
+    add("spot_diagram", read_json(path("spots/" + id + "_spots.json"))[0]["film_z_mm"]);
+    EXPECT_EQ(run("bokeh_psf", joined({file, "--subject-distance-mm", "1000", "--focus-mm", "1000", "--samples", "1024",
+                                       "--out", path("bokeh")},
+                                      more))
+                  .status,
+              0);
+    add("bokeh_psf", read_json(path("bokeh/" + id + "_bokeh.json"))["results"][0]["film_z_mm"]);
+    add("focus_report",
+        printed("focus_report", joined({file, "--json", "--distance-mm", "1000"}, more))[0]["film_z_mm"]);
+    // The film's distance from a subject at 1 m, less where it counts from.
+    EXPECT_EQ(run("lens_metadata", joined({file, "--focus-mm", "1000", "--out", path("data")}, more)).status, 0);
+    add("lens_metadata",
+        1000 * read_json(path("data/" + id + ".opentrackio.json"))["lens"]["focusDistance"].get<double>());
+    return result;
+  }
+};
+
+TEST_F(Distances, OneDistanceIsOneFilmInEveryProgram) {
+  const std::string id = "double_gauss_100mm_f2.0";
+  const petzval::Lens whole = petzval::compile(petzval::read_prescription(lens(id)));
+  using enum petzval::DistanceOrigin;
+  for (const auto origin : {front_vertex, film, entrance_pupil}) {
+    const Arguments flags =
+        origin == front_vertex ? Arguments{} : Arguments{"--distance-from", std::string(petzval::name(origin))};
+    const petzval::Lens focused = petzval::with_focus(whole, 1000, {.origin = origin});
+    for (const auto& [program, found] : films(id, flags)) {
+      SCOPED_TRACE(program + " from " + std::string(petzval::name(origin)));
+      if (program == "lens_metadata") {
+        // In metres of the file, to a micrometre.
+        EXPECT_NEAR(found, focused.film_z() + 1000 - petzval::origin_z(focused, origin), 2e-3);
+      } else {
+        EXPECT_NEAR(found, focused.film_z(), 1e-9);
+      }
+    }
+  }
+  // By another criterion all agree as well.
+  const petzval::Lens paraxial = petzval::with_focus(whole, 1000, {petzval::FocusCriterion::paraxial});
+  for (const auto& [program, found] : films(id, {"--criterion", "paraxial"})) {
+    // The file format's distance is that of the sharpest subject.
+    if (program == "lens_metadata") continue;
+    EXPECT_NEAR(found, paraxial.film_z(), 1e-9) << program;
+  }
+}
+
+TEST_F(Distances, EveryProgramWithADistanceSaysWhereItCountsFrom) {
+  const std::vector<Arguments> programs{
+      {"lens_report"},      {"spot_diagram"},    {"focus_report"},  {"bokeh_psf"},       {"psf_set"},
+      {"psf_set", "query"}, {"chromatic_bokeh"}, {"focal_surface"}, {"expressive_lens"}, {"lens_metadata"},
+      {"accuracy_speed"},   {"choose_camera"},   {"camera_rays"},
+#ifdef PETZVAL_TEST_FOCUS_PULL
+      {"focus_pull"},
+#endif
+#ifdef PETZVAL_TEST_BOKEH_SCENE
+      {"bokeh_scene"},
+#endif
+#ifdef PETZVAL_TEST_LENS_BLUR
+      {"lens_blur"},
+#endif
+  };
+  for (const Arguments& program : programs) {
+    const std::string help = run(program[0], joined({program.begin() + 1, program.end()}, {"--help"})).out;
+    const std::size_t at = help.find("--distance-from TEXT");
+    ASSERT_NE(at, std::string::npos) << program[0];
+    const std::string line = help.substr(at, 200);
+    EXPECT_NE(line.find("=front_vertex"), std::string::npos) << program[0] << ": " << line;
+    for (const char* origin : {"film", "entrance_pupil"}) EXPECT_NE(line.find(origin), std::string::npos) << line;
+    const std::size_t criterion = help.find("--criterion TEXT");
+    if (program.size() > 1) continue;  // a query does not focus
+    ASSERT_NE(criterion, std::string::npos) << program[0];
+    EXPECT_NE(help.substr(criterion, 200).find("min_rms"), std::string::npos) << program[0];
+  }
+}
+
+// A lens opens to the f-number of its own name, which is rounded.
+TEST_F(Distances, ALensTakesTheFNumberOfItsName) {
+  const std::vector<std::pair<std::string, std::string>> lenses{{"double_gauss_52mm_f1.8", "1.8"},
+                                                                {"modern_58mm_f0.95", "0.95"},
+                                                                {"telephoto_200mm_f1.8", "1.8"},
+                                                                {"apodized_135mm_f2.8", "2.8"},
+                                                                {"triplet_98mm_f4.4", "4.4"}};
+  for (const auto& [id, name] : lenses) {
+    const auto outcome = run("lens_report", {lens(id), "--json", "--f-number", name});
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    const double fastest = petzval::fastest_f_number(petzval::compile(petzval::read_prescription(lens(id))));
+    EXPECT_NEAR(nlohmann::json::parse(outcome.out)["f_number_real"].get<double>(), fastest, 1e-9) << id;
+    EXPECT_NE(outcome.err.find("--f-number = " + name), std::string::npos) << outcome.err;
+  }
+  const std::string file = lens("double_gauss_52mm_f1.8");
+  expect_failure("lens_report", {file, "--f-number", "1.77"}, "1.77");
+  // The others take it in the same way.
+  for (const auto& [program, more] : std::vector<std::pair<std::string, Arguments>>{
+           {"focus_report", {"--json"}},
+           {"bokeh_psf",
+            {"--subject-distance-mm", "2000", "--focus-mm", "1000", "--samples", "64", "--out", path("o")}},
+           {"psf_set", {"--fields", "0", "--distances-mm", "2000", "--samples", "64", "--out", path("p")}}}) {
+    const auto outcome = run(program, joined({file, program == "psf_set" ? "--f-numbers" : "--f-number", "1.8"}, more));
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_EQ(lines(outcome.err).size(), 1u) << outcome.err;
+  }
+}
+
+TEST_F(Distances, ListsTakeBlanksAndSpectralLines) {
+  const auto of = [&](const std::string& distances, const std::string& wavelengths) {
+    return printed("focus_report", {lens("cooke_triplet_50mm_f5"), "--json", "--criterion", "min_rms", "--distance-mm",
+                                    distances, "--wavelengths-nm", wavelengths});
+  };
+  EXPECT_EQ(of("1000, 2000", "F,d, C"), of("1000,2000", "486.1327,587.5618,656.2725"));
+  expect_failure("focus_report", {lens("cooke_triplet_50mm_f5"), "--wavelengths-nm", "F,q"}, "--wavelengths-nm = q");
+  expect_failure("focus_report", {lens("cooke_triplet_50mm_f5"), "--wavelengths-nm", "d,587.5618"}, "twice");
+}
+
+// What cannot be written is said before anything is computed, and nothing is made.
+TEST_F(Distances, EveryProgramChecksWhereItWrites) {
+  write("taken", "");
+  const std::string file = lens("double_gauss_100mm_f2.0"), taken = path("taken");
+  write("points.json", R"({"points": [{"pixel": [10, 10], "distance_mm": 2000}]})");
+  write("rays.csv", "x_mm,y_mm,z_mm,dx,dy,dz\n0,0,-10,0,0,1\n");
+  const std::vector<Arguments> all{
+      {"lens_report", file},
+      {"spot_diagram", file},
+      {"bokeh_psf", file, "--subject-distance-mm", "1000", "--focus-mm", "900"},
+      {"psf_set", file, "--fields", "0", "--distances-mm", "1000"},
+      {"chromatic_bokeh", file},
+      {"focal_surface", file, "--points", path("points.json")},
+      {"expressive_lens", file},
+      {"lens_metadata", file},
+      {"accuracy_speed", file},
+      {"bokeh_shapes"},
+  };
+  for (const Arguments& arguments : all) {
+    const Arguments out = joined({arguments.begin() + 1, arguments.end()}, {"--out", taken});
+    expect_failure(arguments[0], out, "--out = " + taken);
+  }
+  expect_failure("trace_rays", {file, "--rays", path("rays.csv"), "--out", path("none/traced.csv")}, "--out");
+  expect_failure("wu_figure7", {"--out", path("none/figure.png")}, "--out");
+  expect_failure("convert_lens", {file, path("none/lens.zmx")}, "OUT");
+  EXPECT_FALSE(std::filesystem::exists(path("none")));
+}
+
+}  // namespace
