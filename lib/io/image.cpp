@@ -81,8 +81,8 @@ void write_pfm(const char* kind, int width, int height, std::size_t row, std::sp
   write_file(bytes, file);
 }
 
-/// The next word of the head of a PFM file, and the one white space behind it. Cut off where it is longer than any word
-/// of such a head, or white space than any between them: the head of an endless file ends too.
+/// Reads the next word of the head of a PFM file, and one white space behind it. Words and white space longer than any
+/// valid head has are cut off, so that the head of an endless file ends.
 std::string next_word(std::istream& in) {
   constexpr std::size_t longest = 64;
   const auto blank = [](int c) { return c == ' ' || (c >= '\t' && c <= '\r'); };

@@ -98,6 +98,7 @@ class Reader : public io_detail::JsonReader {
   };
   struct Open {
     Place place;
+    std::size_t byte = 0;     ///< of its bracket
     std::uint32_t seen = 0;   ///< keys met, by number in the table of the place
     std::size_t entries = 0;  ///< of a list
   };
@@ -116,6 +117,7 @@ class Reader : public io_detail::JsonReader {
     }
   }
   int whole_number(const JsonValue& value, int least, int most) const;
+  double radius_of(const JsonValue& value) const;
   template <class Enum, std::size_t count>
   Enum one_of(const JsonValue& value, const std::array<Enum, count>& all) const;
 
@@ -171,9 +173,10 @@ std::span<const Reader::Key> Reader::keys(Place place) {
       {"position", [](R& r, V& v) { r.configuration().name = r.text_of(v); }},
       {"variable_gaps", nullptr, Place::variable_gaps},
   }};
-  static constexpr std::array<Key, 6> imported = {{
+  static constexpr std::array<Key, 7> imported = {{
       {"format", [](R& r, V& v) { r.lens_.imported->format = r.text_of(v); }, {}, true},
       {"file", [](R& r, V& v) { r.lens_.imported->file = r.text_of(v); }},
+      {"entry", [](R& r, V& v) { r.lens_.imported->entry = r.text_of(v); }},
       {"units", [](R& r, V& v) { r.lens_.imported->units = r.text_of(v); }},
       {"title", [](R& r, V& v) { r.lens_.imported->title = r.text_of(v); }},
       {"notes", nullptr, Place::notes},
@@ -230,21 +233,22 @@ std::span<const Reader::Key> Reader::keys(Place place) {
   static constexpr std::array<Key, 6> change = {{
       {"surface", [](R& r, V& v) { r.change().surface = r.whole_number(v, 0, longest_list); }, {}, true},
       {"thickness", [](R& r, V& v) { r.change().thickness = r.number_of(v); }},
-      {"radius", [](R& r, V& v) { r.change().radius = r.number_of(v); }},
+      {"radius", [](R& r, V& v) { r.change().radius = r.radius_of(v); }},
       {"conic", [](R& r, V& v) { r.change().conic = r.number_of(v); }},
       {"semi_diameter", [](R& r, V& v) { r.change().semi_diameter = r.number_of(v); }},
       {"medium", nullptr, Place::new_medium},
   }};
   // The keys of the medium come first: object_space has only these.
-  static constexpr std::array<Key, 15> surface = {{
+  static constexpr std::array<Key, 16> surface = {{
       {"glass", [](R& r, V& v) { r.medium().glass = r.maybe_text(v); }},
       {"catalogue", [](R& r, V& v) { r.medium().catalogue = r.maybe_text(v); }},
       {"glass_origin", [](R& r, V& v) { r.medium().glass_origin = r.maybe_text(v); }},
       {"nd", [](R& r, V& v) { r.medium().nd = r.maybe_number(v); }},
       {"vd", [](R& r, V& v) { r.medium().vd = r.maybe_number(v); }},
-      {"radius", [](R& r, V& v) { r.row().radius = r.number_of(v); }, {}, true},
+      {"radius", [](R& r, V& v) { r.row().radius = r.radius_of(v); }, {}, true},
       {"thickness", [](R& r, V& v) { r.row().thickness = r.number_of(v); }, {}, true},
       {"semi_diameter", [](R& r, V& v) { r.row().semi_diameter = r.maybe_number(v); }},
+      {"semi_diameter_computed", [](R& r, V& v) { r.row().semi_diameter_computed = r.flag_of(v); }},
       {"inner_semi_diameter", [](R& r, V& v) { r.row().obscuration_semi_diameter = r.maybe_number(v); }},
       {"conic", [](R& r, V& v) { r.row().conic = r.number_of(v); }},
       {"aspheric", nullptr, Place::aspheric},
@@ -253,7 +257,7 @@ std::span<const Reader::Key> Reader::keys(Place place) {
       {"curved_in",
        [](R& r, V& v) {
          const std::string section = r.text_of(v);
-         if (section != "x" && section != "y") r.refuse(describe(v), "\"x\" or \"y\"");
+         if (section != "x" && section != "y") r.refuse(describe(v), R"("x" or "y")");
          r.row().curved_in = section == "x" ? Section::x : Section::y;
        }},
       {"comment", [](R& r, V& v) { r.row().comment = r.maybe_text(v); }},
@@ -282,26 +286,27 @@ std::span<const Reader::Key> Reader::keys(Place place) {
   }
 }
 
-/// The place in words: file, surface, term and key.
+/// The position in words: surface, term and key.
 std::string Reader::here() const {
-  std::string text = where_;
+  std::string text;
+  const auto add = [&text](std::string_view word) { text += (text.empty() ? "" : ": ") + std::string(word); };
   for (const Open& open : open_) {
     switch (open.place) {
-      case Place::source: text += ": source"; break;
-      case Place::zoom: text += ": zoom"; break;
-      case Place::variable_gaps: text += ": variable_gaps"; break;
-      case Place::imported: text += ": imported"; break;
-      case Place::design: text += ": design"; break;
-      case Place::aperture: text += ": aperture"; break;
-      case Place::object_space: text += ": object_space"; break;
-      case Place::new_medium: text += ": medium"; break;
+      case Place::source: add("source"); break;
+      case Place::zoom: add("zoom"); break;
+      case Place::variable_gaps: add("variable_gaps"); break;
+      case Place::imported: add("imported"); break;
+      case Place::design: add("design"); break;
+      case Place::aperture: add("aperture"); break;
+      case Place::object_space: add("object_space"); break;
+      case Place::new_medium: add("medium"); break;
       default:
         if (const auto list = list_of(open.place)) {
-          text += ": " + std::string(list->word) + (list->entry ? ' ' + std::to_string(open.entries - 1) : "");
+          add(list->word + (list->entry ? ' ' + std::to_string(open.entries - 1) : std::string()));
         }
     }
   }
-  if (const Key* key = open_.empty() ? nullptr : current()) return text + ": " + std::string(key->name);
+  if (const Key* key = open_.empty() ? nullptr : current()) add(key->name);
   return text;
 }
 
@@ -311,10 +316,10 @@ void Reader::key(const std::string& name) {
     const auto [end, status] = std::from_chars(name.data(), name.data() + name.size(), gap_);
     const bool whole = status == std::errc() && end == name.data() + name.size() && name == std::to_string(gap_);
     if (!whole || gap_ < 0 || static_cast<std::size_t>(gap_) >= longest_list) {
-      throw Error(here() + ": key " + in_quotes(name) + ", wanted the number of a surface");
+      fail("key " + in_quotes(name) + " must be the number of a surface");
     }
     if (std::ranges::find(configuration().changes, gap_, &SurfaceChange::surface) != configuration().changes.end())
-      throw Error(here() + ": key " + in_quotes(name) + " is given twice, wanted once");
+      fail("key " + in_quotes(name) + " is given twice; must be given once");
     return;
   }
   const auto table = keys(object.place);
@@ -323,17 +328,17 @@ void Reader::key(const std::string& name) {
   if (found == table.end()) {
     std::string known;
     for (const Key& k : table) known += (known.empty() ? "" : ", ") + std::string(k.name);
-    throw Error(here() + ": key " + in_quotes(name) + " is unknown, wanted one of " + known);
+    fail("key " + in_quotes(name) + " is unknown; must be one of " + known);
   }
   const auto index = static_cast<int>(found - table.begin());
   const std::uint32_t bit = std::uint32_t{1} << index;
-  if (object.seen & bit) throw Error(here() + ": key " + in_quotes(name) + " is given twice, wanted once");
+  if (object.seen & bit) fail("key " + in_quotes(name) + " is given twice; must be given once");
   object.seen |= bit;
   key_ = index;
 }
 
 void Reader::assign(JsonValue value) {
-  if (open_.empty()) throw Error(where_ + ": document is " + describe(value) + ", wanted an object");
+  if (open_.empty()) refuse_kind(describe(value), "an object");
   switch (open_.back().place) {
     case Place::variable_gaps: {
       const double thickness = number_of(value);
@@ -353,10 +358,10 @@ void Reader::assign(JsonValue value) {
   }
   if (is_list(open_.back().place)) {
     count_entry();
-    refuse(describe(value), "an object");
+    refuse_kind(describe(value), "an object");
   }
   const Key& key = *current();
-  if (key.opens) refuse(describe(value), is_list(*key.opens) ? "a list" : "an object");
+  if (key.opens) refuse_kind(describe(value), is_list(*key.opens) ? "a list" : "an object");
   key.set(*this, value);
 }
 
@@ -364,14 +369,14 @@ void Reader::count_entry() {
   if (open_.back().entries++ < longest_list) return;
   const bool surfaces = open_.back().place == Place::surfaces;
   throw Error(where_ + ": more than " + std::to_string(longest_list) + (surfaces ? " surfaces" : " entries in a list") +
-              ", wanted fewer");
+              "; must be fewer");
 }
 
 void Reader::open(bool list) {
   const std::string found = list ? "a list" : "an object";
   if (open_.empty()) {
-    if (list) throw Error(where_ + ": document is a list, wanted an object");
-    open_.push_back({Place::file});
+    if (list) refuse_kind(found, "an object");
+    open_.push_back({Place::file, byte()});
     return;
   }
   const Place outer = open_.back().place;
@@ -379,28 +384,23 @@ void Reader::open(bool list) {
   if (is_list(outer)) {
     count_entry();
     inner = list_of(outer)->entry;
-    if (list || !inner) refuse(found, inner ? "an object" : "a string");
+    if (list || !inner) refuse_kind(found, inner ? "an object" : "a string");
   } else if (outer == Place::variable_gaps) {
-    refuse(found, "a number");
+    refuse_kind(found, "a number");
   } else {
     inner = current()->opens;
-    if (!inner) refuse(found, "a plain value");
-    if (is_list(*inner) != list) refuse(found, is_list(*inner) ? "a list" : "an object");
+    if (!inner) refuse_kind(found, "a plain value");
+    if (is_list(*inner) != list) refuse_kind(found, is_list(*inner) ? "a list" : "an object");
   }
-  open_.push_back({*inner});
+  if ((*inner == Place::zoom || *inner == Place::configurations) && !lens_.configurations.empty()) {
+    fail(R"("zoom" beside "configurations"; must be one of them)");
+  }
+  open_.push_back({*inner, byte()});
   key_ = -1;
   switch (*inner) {
     case Place::surface: lens_.surfaces.emplace_back(); break;
     case Place::term: row().aspheric.emplace_back(); break;
-    case Place::zoom:
-      if (!lens_.configurations.empty())
-        throw Error(where_ + ": \"zoom\" beside \"configurations\", wanted one of them");
-      lens_.configurations.push_back({.name = "zoom"});
-      break;
-    case Place::configurations:
-      if (!lens_.configurations.empty())
-        throw Error(where_ + ": \"zoom\" beside \"configurations\", wanted one of them");
-      break;
+    case Place::zoom: lens_.configurations.push_back({.name = "zoom"}); break;
     case Place::imported: lens_.imported.emplace(); break;
     case Place::warning: lens_.imported->warnings.emplace_back(); break;
     case Place::aperture: lens_.design.aperture.emplace(); break;
@@ -417,6 +417,11 @@ int Reader::whole_number(const JsonValue& value, int least, int most) const {
   const double number = number_of(value);
   if (number >= least && number <= most && number == std::floor(number)) return static_cast<int>(number);
   refuse(describe(value), "a whole number from " + std::to_string(least) + " to " + std::to_string(most));
+}
+
+double Reader::radius_of(const JsonValue& value) const {
+  if (const double* radius = std::get_if<double>(&value)) return *radius;
+  refuse(describe(value), "a number; 0 is a plane");
 }
 
 template <class Enum, std::size_t count>
@@ -436,10 +441,27 @@ void Reader::close() {
   const auto table = keys(closed.place);
   for (std::size_t i = 0; i < table.size(); ++i) {
     if (table[i].required && !(closed.seen & (std::uint32_t{1} << i))) {
-      throw Error(here() + ": key \"" + std::string(table[i].name) + "\" is missing");
+      std::string message = "key " + in_quotes(table[i].name) + " is missing";
+      if (table[i].name == "format" && closed.place == Place::file) message += "; must be " + in_quotes(format_name);
+      fail(closed.byte, message);
     }
   }
   open_.pop_back();
+}
+
+/// The path in the document that a message of validate() names: "surfaces[1].nd" for "surface 1: nd is 9".
+std::string path_of(std::string_view message) {
+  std::string path;
+  const auto add = [&path](std::string_view key) { path += (path.empty() ? "" : ".") + std::string(key); };
+  for (std::size_t end = message.find(": "); end != std::string_view::npos; end = message.find(": ")) {
+    const std::string_view part = message.substr(0, end);
+    const std::size_t blank = part.find(' ');
+    add(part.substr(0, blank));
+    if (blank != std::string_view::npos) path += "s[" + std::string(part.substr(blank + 1)) + ']';
+    message.remove_prefix(end + 2);
+  }
+  add(message.substr(0, message.find(' ')));
+  return path;
 }
 
 }  // namespace
@@ -448,7 +470,14 @@ Prescription parse_prescription(std::string_view json, const std::string& where)
   Reader reader(where);
   reader.parse(json);
   Prescription prescription = reader.take();
-  validate(prescription, where);
+  try {
+    validate(prescription, where);
+  } catch (const Error& error) {
+    std::string_view message = error.what();
+    if (!message.starts_with(where + ": ")) throw;
+    message.remove_prefix(where.size() + 2);
+    throw Error(where + io_detail::json_position(json, path_of(message)) + ": " + std::string(message));
+  }
   return prescription;
 }
 

@@ -41,6 +41,7 @@ std::string surface(const SurfaceRow& row) {
   const bool limited = row.semi_diameter && std::isfinite(*row.semi_diameter);
   std::string text = "{" + member("radius", row.radius) + ", " + member("thickness", row.thickness) + ", " +
                      medium(row.medium) + ", " + member("semi_diameter", limited ? row.semi_diameter : std::nullopt);
+  if (row.semi_diameter_computed) text += ", " + member("semi_diameter_computed", true);
   if (row.obscuration_semi_diameter) text += ", " + member("inner_semi_diameter", row.obscuration_semi_diameter);
   text += ", " + member("conic", row.conic) + ", \"aspheric\": [";
   for (std::size_t i = 0; i < row.aspheric.size(); ++i) text += (i > 0 ? ", " : "") + json(row.aspheric[i]);
@@ -67,7 +68,8 @@ std::string imported(const FileOrigin& origin) {
            member("message", w.message) + "}";
   };
   return "{\n    " + member("format", origin.format) + ",\n    " + member("file", origin.file) + ",\n    " +
-         member("units", origin.units) + ",\n    " + member("title", origin.title) +
+         (origin.entry.empty() ? "" : member("entry", origin.entry) + ",\n    ") + member("units", origin.units) +
+         ",\n    " + member("title", origin.title) +
          ",\n    \"notes\": " + list(origin.notes, [](const std::string& note) { return json(note); }) +
          ",\n    \"warnings\": " + list(origin.warnings, warning) + "\n  }";
 }

@@ -97,6 +97,7 @@ class Reader : public io_detail::JsonReader {
  private:
   struct Open {
     Place place;
+    std::size_t byte = 0;    ///< of its bracket
     std::uint32_t seen = 0;  ///< keys met, by number
     std::size_t key = 0;     ///< the one just read
   };
@@ -121,12 +122,12 @@ class Reader : public io_detail::JsonReader {
 };
 
 std::string Reader::here() const {
-  std::string text = where_;
+  std::string text;
   if (open_.empty()) return text;
   const bool in_fit = open_.size() > 2;
   const Open& object = open_[in_fit ? 2 : 0];
-  if (in_fit) text += ": fit " + std::to_string(fits_.size() - 1);
-  if (object.seen != 0) text += ": " + std::string(keys(object.place)[object.key]);
+  if (in_fit) text += "fit " + std::to_string(fits_.size() - 1);
+  if (object.seen != 0) text += (text.empty() ? "" : ": ") + std::string(keys(object.place)[object.key]);
   return text;
 }
 
@@ -138,11 +139,11 @@ void Reader::key(const std::string& name) {
   if (found == known.end()) {
     std::string all;
     for (const std::string_view k : known) all += (all.empty() ? "" : ", ") + std::string(k);
-    throw Error(here() + ": key " + in_quotes(name) + " is unknown, wanted one of " + all);
+    fail("key " + in_quotes(name) + " is unknown; must be one of " + all);
   }
   object.key = static_cast<std::size_t>(found - known.begin());
   const std::uint32_t bit = std::uint32_t{1} << object.key;
-  if (seen & bit) throw Error(here() + ": key " + in_quotes(name) + " is given twice, wanted once");
+  if (seen & bit) fail("key " + in_quotes(name) + " is given twice; must be given once");
   object.seen = seen | bit;
 }
 
@@ -160,7 +161,7 @@ std::optional<Place> Reader::wanted() const {
 
 void Reader::assign(JsonValue value) {
   if (const auto inner = wanted()) {
-    refuse(describe(value), *inner == Place::file || *inner == Place::fit ? "an object" : "a list");
+    refuse_kind(describe(value), *inner == Place::file || *inner == Place::fit ? "an object" : "a list");
   }
   const Open& in = open_.back();
   if (in.place == Place::list) {
@@ -168,8 +169,8 @@ void Reader::assign(JsonValue value) {
     std::vector<double>& list = fits_.back().*fit_lists[key].of;
     static const std::size_t longest = 2 * RayPolynomial::mirror_terms(highest_degree).size();
     if (list.size() == longest) {
-      throw Error(here() + " has more than " + std::to_string(longest) + " numbers, wanted a polynomial of degree " +
-                  std::to_string(highest_degree) + " or less");
+      fail("more than " + std::to_string(longest) + " numbers; must be a polynomial of degree " +
+           std::to_string(highest_degree) + " or less");
     }
     list.push_back(number_of(value));
   } else if (in.place == Place::fit) {
@@ -190,16 +191,16 @@ void Reader::assign(JsonValue value) {
 void Reader::open(bool list) {
   const auto inner = wanted();
   const std::string found = list ? "a list" : "an object";
-  if (!inner) refuse(found, open_.back().place == Place::list ? "a number" : "a plain value");
+  if (!inner) refuse_kind(found, open_.back().place == Place::list ? "a number" : "a plain value");
   const bool wants_list = *inner == Place::fits || *inner == Place::list;
-  if (wants_list != list) refuse(found, wants_list ? "a list" : "an object");
+  if (wants_list != list) refuse_kind(found, wants_list ? "a list" : "an object");
   if (*inner == Place::fit) {
     if (fits_.size() == most_fits) {
-      throw Error(where_ + ": more than " + std::to_string(most_fits) + " fits, wanted one for each wavelength");
+      throw Error(where_ + ": more than " + std::to_string(most_fits) + " fits; must be one for each wavelength");
     }
     fits_.emplace_back();
   }
-  open_.push_back({*inner});
+  open_.push_back({*inner, byte()});
 }
 
 void Reader::close() {
@@ -210,7 +211,7 @@ void Reader::close() {
     const std::uint32_t optional = closed.place == Place::file && !(seen & mirror_keys) ? mirror_keys : 0;
     for (std::size_t i = 0; i < known.size(); ++i) {
       if (!((seen | optional) & (std::uint32_t{1} << i)))
-        throw Error(here() + ": key " + in_quotes(known[i]) + " is missing");
+        fail(closed.byte, "key " + in_quotes(known[i]) + " is missing");
     }
   }
   open_.pop_back();

@@ -13,11 +13,10 @@ namespace petzval::inline v0 {
 
 /// Reads a lens from JSON (format "petzval-lens 1"; data/README.md has its keys); read_prescription() in
 /// files/lens_file.hpp reads a file of this or any other format. `where` is the name of the source in messages. Throws
-/// Error that names it, the surface (from 0), the key, what was found and what was wanted, or the byte at which the
-/// text is not JSON. It refuses unknown and duplicate keys, comments, NaN, numbers out of range of double, brackets
-/// nested deeper than the format has them, lists of more than 10,000 entries, and all that `validate` refuses. Time is
-/// proportional to the size of the file, memory at most 4 times its size (8 times for a file that is one number of
-/// megabytes).
+/// Error that names it, line and column, the surface (from 0), the key, its value and the rule. It refuses unknown and
+/// duplicate keys, comments, NaN, numbers out of range of double, brackets nested deeper than the format has them,
+/// lists of more than 10,000 entries, and all that `validate` refuses. Time is proportional to the size of the file,
+/// memory at most 4 times its size (8 times for a file that is one number of megabytes).
 PETZVAL_API Prescription parse_prescription(std::string_view json, const std::string& where);
 
 /// The lens as JSON: one surface a line, numbers as the shortest decimals that read back exactly. Reading and writing
@@ -27,11 +26,11 @@ PETZVAL_API std::string format_prescription(const Prescription& prescription);
 /// Writes that text as write_file does. Throws Error that names the file.
 PETZVAL_API void write_prescription(const Prescription& prescription, const std::filesystem::path& file);
 
-/// Reads ray polynomials from a JSON file (format "petzval-ray-polynomial 1"). Throws Error that names the file, the
-/// fit (from 0), the key, what was found and what was wanted, or the byte at which the text is not JSON. Every key must
-/// occur once, pupil_shift_x and pupil_radius_x_mm with mirror symmetry only, and no other. It refuses numbers out of
-/// range of double, lists longer than those of a polynomial of degree 11, more than 10,000 fits, and all that the
-/// constructor of RayPolynomial refuses.
+/// Reads ray polynomials from a JSON file (format "petzval-ray-polynomial 1"). Throws Error that names the file, line
+/// and column, the fit (from 0), the key, its value and the rule. Every key must occur once, pupil_shift_x and
+/// pupil_radius_x_mm with mirror symmetry only, and no other. It refuses numbers out of range of double, lists longer
+/// than a polynomial of degree 11 has, more than 10,000 fits, and all that the constructor of RayPolynomial
+/// refuses.
 PETZVAL_API RayPolynomial read_ray_polynomial(const std::filesystem::path& file);
 
 /// The same from memory. `where` is the name of the source in messages.

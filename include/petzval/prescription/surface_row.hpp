@@ -51,7 +51,8 @@ struct SurfaceRow {
   double radius = 0;     ///< at the vertex; positive if the centre lies on the +z side; 0 is a plane
   double thickness = 0;  ///< to the next vertex (the last: to the film); negative where light runs backwards
   Medium medium{};       ///< behind the surface; of a mirror: the medium in front of it
-  std::optional<double> semi_diameter{};              ///< of the clear aperture; absent: unlimited
+  std::optional<double> semi_diameter{};  ///< of the clear aperture; absent: compile() computes it; infinite: unlimited
+  bool semi_diameter_computed = false;    ///< true if with_apertures() has computed it, false if the source states it
   std::optional<double> obscuration_semi_diameter{};  ///< of a central obscuration; rays inside it are lost
   double conic = 0;                                   ///< k in c r^2 / (1 + sqrt(1 - (1+k) c^2 r^2))
   std::vector<AsphereTerm> aspheric{};
