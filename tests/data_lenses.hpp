@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -56,19 +57,21 @@ struct OpenLens {
 };
 inline OpenLens without_the_rim_of_its_stop(Prescription p) {
   for (SurfaceRow& row : p.surfaces) {
-    if (row.stop) row.semi_diameter.reset();
+    if (row.stop) row.semi_diameter = std::numeric_limits<double>::infinity();
   }
   const Lens marked = compile(p);
   for (SurfaceRow& row : p.surfaces) row.stop = false;
   return {marked, compile(p)};
 }
 
-/// A biconvex 50 mm lens, stopped at its front: without any rim, or with one at its rear.
+/// An ideal 50 mm lens without thickness, and so without an edge, stopped at its front: without any rim, or with one at
+/// its rear.
 inline Prescription open_singlet(std::optional<double> rear_semi_diameter = {}) {
   Prescription p;
   p.name = "open";
-  p.surfaces = {{.radius = 50, .thickness = 5, .medium = {.nd = 1.5}, .stop = true},
-                {.radius = -50, .thickness = 48, .semi_diameter = rear_semi_diameter}};
+  constexpr double unlimited = std::numeric_limits<double>::infinity();
+  p.surfaces = {{.radius = 50, .medium = {.nd = 1.5}, .semi_diameter = unlimited, .stop = true},
+                {.radius = -50, .thickness = 48, .semi_diameter = rear_semi_diameter.value_or(unlimited)}};
   return p;
 }
 

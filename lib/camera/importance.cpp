@@ -301,9 +301,13 @@ Importance SceneSide::arrived(const AnyRayModel& model, const Arrival& arrival, 
     result.fate = RayFate::vignetted;
     return result;
   }
-  const bool within = sampled.contains(met->virtual_point, pupil.x, pupil.y, wavelength);
+  // Rays through other zones of the surfaces, as of a ball lens: film points send none there.
+  if (!sampled.contains(met->virtual_point, pupil.x, pupil.y, wavelength)) {
+    result.fate = RayFate::vignetted;
+    return result;
+  }
   weigh(result, model, arrival, placed ? placed->weight(met->virtual_point, pupil) : 1, cosine,
-        within ? sampled.area(met->virtual_point, wavelength) : 0, at);
+        sampled.area(met->virtual_point, wavelength), at);
   if (!weights_) return result;
   const double density = weights_.density(sampled.position(met->virtual_point, pupil.x, pupil.y, wavelength));
   result.we *= weights_.of_line({upright.x, upright.y, pupil.x, pupil.y}, wavelength);

@@ -11,6 +11,7 @@
 
 #include "build_tables.hpp"
 #include "describe_asphere.hpp"
+#include "edges.hpp"
 #include "indices.hpp"
 #include "petzval/lens/lens.hpp"
 
@@ -20,6 +21,7 @@ namespace petzval::inline v0 {
 struct Lens::Data {
   std::string name;
   std::vector<LensSurface> surfaces;
+  std::vector<double> rims;  ///< semi-diameters as given; `surfaces` end at the edges
   std::optional<std::size_t> stop;
   Iris iris;
   double film_z = 0;
@@ -34,6 +36,7 @@ struct Lens::Data {
 
   /// Builds the tables from the rest.
   void build() {
+    lens_detail::end_at_edges(surfaces, rims, indices.values);
     const auto aspheres = lens_detail::describe_aspheres(surfaces);
     build(aspheres, in_float);
     build(aspheres, in_double);

@@ -8,6 +8,7 @@
 #include <tuple>
 #include <utility>
 
+#include "compile.hpp"
 #include "core/text.hpp"
 #include "data.hpp"
 #include "describe_asphere.hpp"
@@ -165,19 +166,10 @@ double usable_rim(double semi_diameter) noexcept {
   return semi_diameter > 1e15 ? std::numeric_limits<double>::infinity() : semi_diameter;
 }
 
-/// That of an asphere ends with the asphere.
-void set_rim(LensSurface& surface, double semi_diameter) {
-  double& rim = surface.semi_diameter;
-  rim = usable_rim(semi_diameter);
-  const bool round = surface.curved_in == Section::both;  // an asphere in one section ends at a height, not at a radius
-  if (std::isfinite(rim) && rim > 0 && round && !surface.aspheric.empty()) {
-    rim = usable_rim(lens_detail::described_height(surface));
-  }
-}
-
 }  // namespace
 
-Lens compile(const Prescription& source, std::span<const double> wavelengths_nm, const CompileOptions& options) {
+Lens lens_detail::compile_as_given(const Prescription& source, std::span<const double> wavelengths_nm,
+                                   const CompileOptions& options) {
   const auto name_of = [](const Prescription& p) { return p.name.empty() ? std::string("lens") : p.name; };
   validate(source, name_of(source));
   const Prescription prescription = configured(source, options.configuration);
@@ -205,8 +197,8 @@ Lens compile(const Prescription& source, std::span<const double> wavelengths_nm,
     s.conic = row.conic;
     s.curved_in = row.curved_in;
     s.aspheric = row.aspheric;
-    s.widest_semi_diameter = usable_rim(row.semi_diameter.value_or(std::numeric_limits<double>::infinity()));
-    set_rim(s, s.widest_semi_diameter);
+    data->rims.push_back(usable_rim(row.semi_diameter.value_or(std::numeric_limits<double>::infinity())));
+    s.widest_semi_diameter = row.semi_diameter_computed ? std::numeric_limits<double>::infinity() : data->rims.back();
     s.obscuration_semi_diameter = row.obscuration_semi_diameter.value_or(0);
     s.mirror = row.mirror;
     if (row.stop && !data->stop) data->stop = data->surfaces.size();
@@ -219,8 +211,11 @@ Lens compile(const Prescription& source, std::span<const double> wavelengths_nm,
   return Lens::Data::lens(std::move(data));
 }
 
-Lens compile(const Prescription& prescription, const CompileOptions& options) {
-  return compile(prescription, std::array{prescription.reference_wavelength_nm}, options);
+Lens lens_detail::with_rims(const Lens& lens, std::vector<double> rims) {
+  auto data = std::make_shared<Lens::Data>(lens.data());
+  data->rims = std::move(rims);
+  data->build();
+  return Lens::Data::lens(std::move(data));
 }
 
 Lens with_semi_diameter(const Lens& lens, std::size_t surface, double semi_diameter, RimLimit limit) {
@@ -240,7 +235,7 @@ Lens with_semi_diameter(const Lens& lens, std::size_t surface, double semi_diame
                 " mm, the clear aperture of the prescription (RimLimit::none allows more)");
   }
   auto data = std::make_shared<Lens::Data>(lens.data());
-  set_rim(data->surfaces[surface], semi_diameter);
+  data->rims[surface] = usable_rim(semi_diameter);
   data->build();
   return Lens::Data::lens(std::move(data));
 }

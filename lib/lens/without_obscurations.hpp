@@ -6,6 +6,6 @@
 namespace petzval::inline v0 {
 
 /// The lens without its central obscurations: its pupils hold those of the lens, and none is a ring.
-Lens without_obscurations(const Lens& lens);
+PETZVAL_API Lens without_obscurations(const Lens& lens);
 
 }  // namespace petzval::inline v0

@@ -49,7 +49,9 @@ void check_surfaces(const Prescription& rows, const Lens& lens, Findings& findin
     const LensSurface& surface = lens.surfaces()[position];
     const double end = std::min(lint_detail::domain(surface), surface.semi_diameter);
     const std::optional<double> declared = rows.surfaces[position].semi_diameter;
-    if (declared && std::isfinite(*declared) && surface.semi_diameter > 0 && *declared > end) {
+    // Apertures that end where two surfaces meet are overlaps.
+    const bool meets_another = surface.semi_diameter == surface.edge;
+    if (declared && std::isfinite(*declared) && surface.semi_diameter > 0 && *declared > end && !meets_another) {
       findings.push_back(
           {Kind::semi_diameter, i, *declared, end,
            at(i) + "semi_diameter is " + mm(*declared) + ", wanted at most " + mm(end) + ", where the surface ends"});

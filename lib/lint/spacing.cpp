@@ -6,6 +6,9 @@
 #include <cmath>
 #include <limits>
 
+#include "lens/data.hpp"
+#include "lens/edges.hpp"
+
 namespace petzval::inline v0::lint_detail {
 
 double domain(const LensSurface& surface) {
@@ -14,17 +17,23 @@ double domain(const LensSurface& surface) {
   return 1 / (std::abs(surface.curvature) * std::sqrt(bend));
 }
 
-std::optional<Spacing> least_spacing(const Lens& lens, std::size_t surface) {
+namespace {
+
+/// The least spacing of two surfaces of a lens.
+std::optional<Spacing> spacing_of(const Lens& lens, std::size_t surface, std::size_t next) {
   const LensSurface& front = lens.surfaces()[surface];
-  const LensSurface& rear = lens.surfaces()[surface + 1];
+  const LensSurface& rear = lens.surfaces()[next];
+  // Compiled apertures end where surfaces meet; apertures of the prescription may be larger.
+  const double front_rim = lens.data().rims[surface], rear_rim = lens.data().rims[next];
+  const double distance = rear.vertex_z - front.vertex_z;
   const double from = std::max(front.obscuration_semi_diameter, rear.obscuration_semi_diameter);
   // Heights on an equator round to beyond it, where a sag has no value.
   const double equator = std::min(domain(front), domain(rear)) * (1 - 1e-15);
-  const double to = std::min({front.semi_diameter, rear.semi_diameter, equator});
+  const double to = std::min({front_rim, rear_rim, equator});
   // Where light runs backwards, behind a mirror, the next surface lies at smaller z.
   const double direction = lens.light_direction(surface + 1);
-  if (!std::isfinite(front.semi_diameter) || !std::isfinite(rear.semi_diameter)) {
-    if (front.mirror && direction * front.thickness < 0) return Spacing{direction * front.thickness, 0};
+  if (!std::isfinite(front_rim) || !std::isfinite(rear_rim)) {
+    if (front.mirror && direction * distance < 0) return Spacing{direction * distance, 0};
     return {};
   }
   if (to < from) return {};
@@ -40,9 +49,26 @@ std::optional<Spacing> least_spacing(const Lens& lens, std::size_t surface) {
     for (int i = 0; i <= samples; ++i) {
       const double height = from + (to - from) * i / samples;
       const double x = azimuths[azimuth][0] * height, y = azimuths[azimuth][1] * height;
-      const double width = direction * (front.thickness + sag(lens, surface + 1, x, y) - sag(lens, surface, x, y));
+      const double width = direction * (distance + lens_detail::sag_of(rear, x, y) - lens_detail::sag_of(front, x, y));
       if (width < least.width) least = {width, height};
     }
+  }
+  return least;
+}
+
+}  // namespace
+
+std::optional<Spacing> least_spacing(const Lens& lens, std::size_t surface) {
+  const auto changes = [&](std::size_t i) {
+    return lens_detail::changes_rays(lens.surfaces(), lens.data().indices.values, i);
+  };
+  std::optional<Spacing> least;
+  if (!changes(surface) && lens.stop() != surface) return least;
+  for (std::size_t next = surface + 1; next < lens.surface_count(); ++next) {
+    if (!changes(next) && (lens.stop() != next || !changes(surface))) continue;
+    const std::optional<Spacing> spacing = spacing_of(lens, surface, next);
+    if (spacing && (!least || spacing->width < least->width)) least = spacing;
+    if (changes(next)) break;
   }
   return least;
 }

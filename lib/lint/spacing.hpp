@@ -17,8 +17,9 @@ struct Spacing {
   double height;  ///< from the axis, mm
 };
 
-/// The least spacing between a surface and the next one, within both clear apertures. Nothing if they have no
-/// height in common, or if one of them is unlimited: then only a vertex on the wrong side of a mirror is found.
+/// The least spacing between a surface and the stop or the next surface that changes rays, within both apertures as the
+/// prescription states them. nullopt if they have no height in common, or if one of them is unlimited: then only a
+/// vertex on the wrong side of a mirror is found.
 std::optional<Spacing> least_spacing(const Lens& lens, std::size_t surface);
 
 }  // namespace petzval::inline v0::lint_detail

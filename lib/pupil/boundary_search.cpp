@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <optional>
 #include <utility>
 
 #include "found_pupil.hpp"
+#include "pupil_region.hpp"
 
 namespace petzval::inline v0::pupil_detail {
 namespace {
@@ -20,13 +20,13 @@ constexpr double tolerance = 2e-5;
 class Search {
  public:
   Search(std::span<const PupilGuess> points, std::size_t directions, bool mirrored, const PlaceClearances& clearances,
-         const PlacesSeen& places_seen)
+         const ConnectedPupils* connected)
       : points_(points),
         directions_(directions),
         traced_(mirrored ? directions / 2 : directions),
         mirrored_(mirrored),
-        clearances_(clearances),
-        places_seen_(places_seen),
+        clearances_(&clearances),
+        connected_(connected),
         found_(points.size()) {
     PupilRegion unit_circle{.half_axes = {1, 1}, .directions = directions};
     for (std::size_t k = 0; k < directions; ++k) units_.push_back(unit_circle.unit(k));
@@ -37,7 +37,27 @@ class Search {
   std::vector<PupilRegion> regions() const {
     std::vector<PupilRegion> result;
     result.reserve(found_.size());
-    for (const Found& found : found_) result.push_back(region_of(found, units_));
+    for (std::uint32_t p = 0; p < found_.size(); ++p) {
+      result.push_back(region_of(found_[p], units_));
+      const bool in_parts = result[p].spans.size() > directions_ || !found_[p].gaps.empty();
+      if (connected_ && in_parts) keep_connected(result[p], connected_->chief(p).value_or(result[p].middle));
+    }
+    return result;
+  }
+
+  /// Their parts that obscurations leave.
+  std::vector<PupilRegion> obscured_regions(const PlaceClearances& clearances) {
+    const std::vector<PupilRegion> open = regions();
+    clearances_ = &clearances;
+    connected_ = nullptr;
+    std::vector<std::uint32_t> lit;
+    for (std::uint32_t p = 0; p < open.size(); ++p) {
+      if (!open[p].empty()) lit.push_back(p);
+    }
+    outwards_near(lit, 320, true);
+    outwards_far(lit, true);
+    std::vector<PupilRegion> result = regions();
+    for (std::size_t p = 0; p < open.size(); ++p) keep_within(result[p], open[p]);
     return result;
   }
 
@@ -52,20 +72,8 @@ class Search {
     }
     outwards_near(discs, 24, false);
     outwards_near(rings, 320, true);
-    // Pupils of an unusual shape are looked for farther out, in steps as long as those for discs.
-    std::vector<std::uint32_t> unusual;
-    for (const auto* points : {&discs, &rings}) {
-      for (const std::uint32_t p : *points) {
-        const auto usual = [&](const Found::Ends& e) { return is_usual(e, points == &rings); };
-        if (!std::all_of(found_[p].ends.begin(), found_[p].ends.end(), usual)) unusual.push_back(p);
-      }
-    }
-    outwards(unusual, 72, 4.8);
-    for (const std::uint32_t p : unusual) {
-      const auto any = [](const Found::Ends& e) { return e.to > 0; };
-      if (std::none_of(found_[p].ends.begin(), found_[p].ends.end(), any)) found_[p] = {};
-    }
-    if (places_seen_) elsewhere(which);
+    outwards_far(discs, false);
+    outwards_far(rings, true);
   }
 
   /// Of which points anything passes.
@@ -73,15 +81,7 @@ class Search {
     std::vector<std::uint32_t> all(points_.size()), seen, rings;
     std::iota(all.begin(), all.end(), 0u);
     std::vector<bool> lit(points_.size(), true);
-    Batch batch;
-    for (const std::uint32_t p : look_along_y(all, seen, rings)) {
-      batch.clear();
-      if (places_seen_) {
-        for (const SeenPlace& place : places_seen_(p).places) batch.add({p, place.at.x, place.at.y}, 0);
-      }
-      batch.test(clearances_);
-      lit[p] = std::any_of(batch.clearances.begin(), batch.clearances.end(), [](double c) { return c >= 0; });
-    }
+    for (const std::uint32_t p : look_along_y(all, seen, rings)) lit[p] = false;
     return lit;
   }
 
@@ -150,7 +150,7 @@ class Search {
       }
     }
     by_slope_.assign(steps.size(), false);
-    batch.test(clearances_);
+    batch.test(*clearances_);
     const auto put = [&](std::size_t i, double end, double slope) {
       const auto& [point, k, from, at_from, to] = steps[i];
       by_slope_[i] = true;
@@ -173,7 +173,7 @@ class Search {
     }
     batch.clear();
     for (const std::size_t i : open) batch.add(outward(steps[i].point, steps[i].direction), steps[i].to);
-    batch.test(clearances_);
+    batch.test(*clearances_);
     for (std::size_t j = 0; j < open.size(); ++j) {
       const auto& [point, k, from, at_from, to] = steps[open[j]];
       const double expected = found_[point].ends[k].slope, at_to = batch.clearances[j];
@@ -210,7 +210,7 @@ class Search {
     std::vector<bool> nowhere(which.size(), false);
     for (const Bracket& b : widened(brackets, lines)) nowhere[b.line / traced_] = true;
     std::erase_if(brackets, [&](const Bracket& b) { return nowhere[b.line / traced_]; });
-    close_in(brackets, lines, tolerance, clearances_);
+    close_in(brackets, lines, tolerance, *clearances_);
     for (const Bracket& b : brackets) {
       Found& found = found_[lines[b.line].point];
       const std::size_t k = b.line % traced_;
@@ -245,7 +245,7 @@ class Search {
         batch.add(lines[brackets[j].line], brackets[j].with);
         batch.add(lines[brackets[j].line], brackets[j].without);
       }
-      batch.test(clearances_);
+      batch.test(*clearances_);
       std::size_t left = 0;
       for (std::size_t i = 0; i < open.size(); ++i) {
         Bracket& b = brackets[open[i]];
@@ -283,7 +283,7 @@ class Search {
       const bool near = reach == Reach::near && g.near > 0;
       lines.push_back({p, g.x, near ? g.y : (g.low + g.high) / 2, 0, near ? g.near : (g.high - g.low) / 2});
     }
-    const auto extent = extents_along(lines, -1, 1, samples, tolerance, clearances_);
+    const auto extent = extents_along(lines, -1, 1, samples, tolerance, *clearances_, part_along_y(which, lines));
     std::vector<std::uint32_t> left;
     for (std::size_t i = 0; i < which.size(); ++i) {
       const LineExtent& e = extent[i];
@@ -307,6 +307,15 @@ class Search {
     return left;
   }
 
+  /// The part of each line along y that counts: the one about the chief ray.
+  PartOfLine part_along_y(std::span<const std::uint32_t> which, const std::vector<Line>& lines) const {
+    if (!connected_) return {};
+    return [this, which, &lines](std::size_t l) -> std::optional<double> {
+      const auto chief = connected_->chief(which[l]);
+      return chief ? std::optional((chief->y - lines[l].y) / lines[l].dy) : std::nullopt;
+    };
+  }
+
   /// Extents along x, from the middle of those along y; of tiny pupils first near it, as ends are found in parts of the
   /// line.
   void across(std::span<const std::uint32_t> which, Reach reach) {
@@ -320,7 +329,7 @@ class Search {
       close.push_back(reach == Reach::near && half < tiny * all);
       lines.push_back({p, found_[p].middle[0], found_[p].middle[1], close.back() ? near * half : all, 0});
     }
-    const auto extent = extents_along(lines, mirrored_ ? 0 : -1, 1, mirrored_ ? 96 : 192, tolerance, clearances_);
+    const auto extent = extents_along(lines, mirrored_ ? 0 : -1, 1, mirrored_ ? 96 : 192, tolerance, *clearances_);
     for (std::size_t i = 0; i < which.size(); ++i) {
       const LineExtent& e = extent[i];
       if (close[i] && (!e.any || e.from == -1 || e.to == 1)) {
@@ -361,7 +370,7 @@ class Search {
       found_[p].gaps.clear();
       for (const std::size_t k : looked) lines.push_back(outward(p, k));
     }
-    const auto extent = extents_along(lines, 0, reach, samples, tolerance, clearances_);
+    const auto extent = extents_along(lines, 0, reach, samples, tolerance, *clearances_);
     for (std::size_t i = 0; i < extent.size(); ++i) {
       const LineExtent& e = extent[i];
       if (!e.any) continue;
@@ -421,91 +430,25 @@ class Search {
     return true;
   }
 
-  /// Looks for parts of pupils outside the regions that were found, and makes the regions larger to hold them.
-  void elsewhere(std::span<const std::uint32_t> which) {
-    Batch batch;
-    std::vector<std::uint32_t> larger;
+  /// Looks for pupils of an unusual shape farther out, in steps as long as those for discs.
+  void outwards_far(std::span<const std::uint32_t> which, bool rings) {
+    std::vector<std::uint32_t> unusual;
     for (const std::uint32_t p : which) {
-      Found& found = found_[p];
-      const auto [places, row] = places_seen_(p);
-      batch.clear();
-      for (const SeenPlace& place : places) batch.add({p, place.at.x, place.at.y}, 0);
-      batch.test(clearances_);
-      Vec2<double> low{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()}, high = -low;
-      const auto take = [&](const Vec2<double>& at) {
-        for (int axis : {0, 1}) low[axis] = std::min(low[axis], at[axis]), high[axis] = std::max(high[axis], at[axis]);
-      };
-      std::size_t passing = 0;
-      for (std::size_t i = 0; i < places.size(); ++i) {
-        if (!batch.passes(i)) continue;
-        ++passing;
-        const auto& [place, beside] = places[i];
-        if (!holds(found, place)) take(place - beside), take(place + beside);
-      }
-      // Parts smaller than a place count where few of them pass.
-      constexpr std::size_t enough = 16;
-      if (passing < enough) {
-        for (const std::size_t i : highest_summits(batch.clearances, row)) {
-          if (holds(found, places[i].at)) continue;
-          const auto near = near_summit(p, places[i]);
-          if (near) take(near->at - near->beside), take(near->at + near->beside);
-        }
-      }
-      if (!(low.y < high.y)) continue;
-      for (std::size_t k = 0; k < found.ends.size(); ++k) {
-        if (found.ends[k].to > 0) take(found.middle + found.half_axes * units_[k] * found.ends[k].to);
-      }
-      if (mirrored_) {
-        const double x = points_[p].x, half = std::max(x - low.x, high.x - x);
-        low.x = x - half, high.x = x + half;
-      }
-      found.middle = (low + high) / 2.0;
-      found.half_axes = (high - low) / 2.0;
-      larger.push_back(p);
+      const auto usual = [&](const Found::Ends& e) { return is_usual(e, rings); };
+      if (!std::all_of(found_[p].ends.begin(), found_[p].ends.end(), usual)) unusual.push_back(p);
     }
-    outwards(larger, 480, 1.6);
-  }
-
-  /// The highest summits of the rays that a rim stops.
-  std::vector<std::size_t> highest_summits(const std::vector<double>& values, std::size_t row) const {
-    std::vector<std::size_t> result = summits(values, row, mirrored_);
-    std::erase_if(result, [&](std::size_t i) { return values[i] <= -1; });
-    std::stable_sort(result.begin(), result.end(), [&](auto a, auto b) { return values[a] > values[b]; });
-    constexpr std::size_t most = 8;
-    if (result.size() > most) result.resize(most);
-    return result;
-  }
-
-  /// A place that passes near one whose clearance is a maximum, looked for in smaller and smaller steps.
-  std::optional<SeenPlace> near_summit(std::uint32_t point, SeenPlace place) const {
-    constexpr int half_side = 4, passes = 6;
-    double before = -1;
-    Batch batch;
-    for (int pass = 0; pass < passes; ++pass) {
-      batch.clear();
-      const Vec2<double> step = place.beside / static_cast<double>(half_side);
-      for (int j = -half_side; j <= half_side; ++j) {
-        for (int i = -half_side; i <= half_side; ++i) {
-          batch.add({point, place.at.x + i * step.x, place.at.y + j * step.y}, 0);
-        }
-      }
-      batch.test(clearances_);
-      const auto highest = std::max_element(batch.clearances.begin(), batch.clearances.end());
-      const std::size_t at = static_cast<std::size_t>(highest - batch.clearances.begin());
-      place = {{batch.x[at], batch.y[at]}, step * 2.0};
-      if (*highest >= 0) return SeenPlace{place.at, step};
-      // At a ridge the value grows by half as much in each pass, roughly.
-      if (4 * (*highest - before) < -*highest) break;
-      before = *highest;
+    outwards(unusual, 72, 4.8);
+    for (const std::uint32_t p : unusual) {
+      const auto any = [](const Found::Ends& e) { return e.to > 0; };
+      if (std::none_of(found_[p].ends.begin(), found_[p].ends.end(), any)) found_[p] = {};
     }
-    return {};
   }
 
   std::span<const PupilGuess> points_;
   std::size_t directions_, traced_;
   bool mirrored_;
-  const PlaceClearances& clearances_;
-  const PlacesSeen& places_seen_;
+  const PlaceClearances* clearances_;
+  const ConnectedPupils* connected_;
   std::vector<Found> found_;
   std::vector<Vec2<double>> units_;  // of the directions
   std::vector<bool> by_slope_;
@@ -515,8 +458,8 @@ class Search {
 
 std::vector<PupilRegion> find_regions(std::span<const PupilGuess> points, const SearchOrder& order,
                                       std::size_t directions, bool mirrored, const PlaceClearances& clearances,
-                                      const PlacesSeen& places_seen) {
-  Search search(points, directions, mirrored, clearances, places_seen);
+                                      const ConnectedPupils* connected) {
+  Search search(points, directions, mirrored, clearances, connected);
   search.in_full(order.full);
   for (const auto& round : order.rounds) {
     std::vector<Halfway> halfway;
@@ -533,13 +476,12 @@ std::vector<PupilRegion> find_regions(std::span<const PupilGuess> points, const 
     search.between(halfway);
     search.in_full(full);
   }
-  return search.regions();
+  return connected && connected->obscured ? search.obscured_regions(connected->obscured) : search.regions();
 }
 
-std::vector<bool> lit_points(std::span<const PupilGuess> points, const PlaceClearances& clearances,
-                             const PlacesSeen& places_seen) {
+std::vector<bool> lit_points(std::span<const PupilGuess> points, const PlaceClearances& clearances) {
   constexpr std::size_t any_directions = 2;
-  return Search(points, any_directions, false, clearances, places_seen).lit_points();
+  return Search(points, any_directions, false, clearances, nullptr).lit_points();
 }
 
 }  // namespace petzval::inline v0::pupil_detail

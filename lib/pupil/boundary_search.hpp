@@ -4,13 +4,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "line_extents.hpp"
 #include "petzval/pupil/pupil_boundary.hpp"
 #include "search_order.hpp"
-#include "sight.hpp"
 
 namespace petzval::inline v0::pupil_detail {
 
@@ -23,8 +23,14 @@ struct PupilGuess {
   bool ring = false;  ///< the lens has a central obscuration: the pupil may be what is left of a ring about (x, y)
 };
 
-/// Places all over what a point sees, for parts of its pupil that lie elsewhere than the guess has them.
-using PlacesSeen = std::function<SeenPlaces(std::uint32_t point)>;
+/// Makes the pupils of a lens connected sets: of several parts that pass, the part about the chief ray counts.
+struct ConnectedPupils {
+  /// Place of the chief ray of a point; nullopt if there is none: the widest part counts. Called where it matters.
+  std::function<std::optional<Vec2<double>>(std::uint32_t point)> chief;
+  /// Clearances of a lens with its central obscurations, which may divide its pupils; empty: the lens has no
+  /// obscurations. If it is set, find_regions() takes the clearances of the lens without obscurations.
+  PlaceClearances obscured{};
+};
 
 /// The regions of many points at once, in batches, to 2e-5 of the half axes.
 ///
@@ -32,14 +38,13 @@ using PlacesSeen = std::function<SeenPlaces(std::uint32_t point)>;
 /// where to look. Of a direction with several obscurations the widest is known well, the others roughly; the surfaces
 /// of the RimPoints are unknown.
 ///
-/// mirrored: pupils are alike at x and -x, and half of the directions are traced. directions: even. places_seen may be
-/// empty.
+/// mirrored: pupils are alike at x and -x, and half of the directions are traced. directions: even. connected: null:
+/// all parts count that lie along the lines that are looked at.
 std::vector<PupilRegion> find_regions(std::span<const PupilGuess> points, const SearchOrder& order,
                                       std::size_t directions, bool mirrored, const PlaceClearances& clearances,
-                                      const PlacesSeen& places_seen = {});
+                                      const ConnectedPupils* connected = nullptr);
 
 /// Of which points anything passes, as far as find_regions() would see it.
-std::vector<bool> lit_points(std::span<const PupilGuess> points, const PlaceClearances& clearances,
-                             const PlacesSeen& places_seen = {});
+std::vector<bool> lit_points(std::span<const PupilGuess> points, const PlaceClearances& clearances);
 
 }  // namespace petzval::inline v0::pupil_detail

@@ -2,6 +2,7 @@
 #include "line_extents.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace petzval::inline v0::pupil_detail {
@@ -38,8 +39,36 @@ void close_in(std::vector<Bracket>& brackets, const std::vector<Line>& lines, do
   }
 }
 
+namespace {
+
+/// Narrows the range from `first` to `last` to one part. near: called if there are several parts.
+template <class Passes, class Near>
+void narrow(int& first, int& last, const Passes& passes, const Near& near, double low, double step) {
+  std::vector<std::array<int, 2>> parts;
+  for (int i = first; i <= last; ++i) {
+    if (!passes(i)) continue;
+    if (i > first && passes(i - 1)) {
+      parts.back()[1] = i;
+    } else {
+      parts.push_back({i, i});
+    }
+  }
+  if (parts.size() == 1) return;
+  const std::optional<double> parameter = near();
+  const auto badness = [&](const std::array<int, 2>& p) -> double {
+    if (!parameter) return p[0] - p[1];
+    const double sample = (*parameter - low) / step;
+    return std::max({p[0] - sample, sample - p[1], 0.0});
+  };
+  const auto best = *std::min_element(parts.begin(), parts.end(),
+                                      [&](const auto& a, const auto& b) { return badness(a) < badness(b); });
+  first = best[0], last = best[1];
+}
+
+}  // namespace
+
 std::vector<LineExtent> extents_along(const std::vector<Line>& lines, double low, double high, int samples,
-                                      double tolerance, const PlaceClearances& clearances) {
+                                      double tolerance, const PlaceClearances& clearances, const PartOfLine& part) {
   const double step = (high - low) / samples;
   Batch batch;
   std::vector<LineExtent> result(lines.size());
@@ -60,6 +89,9 @@ std::vector<LineExtent> extents_along(const std::vector<Line>& lines, double low
     while (first <= samples && !passes(first)) ++first;
     if (first > samples) continue;
     while (!passes(last)) --last;
+    if (part)
+      narrow(
+          first, last, passes, [&] { return part(l); }, low, step);
     const auto parameter = [&](int i) { return low + step * i; };
     for (int i = first, before = first; i <= last; ++i) {
       if (!passes(i)) continue;

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "petzval/core/export.hpp"
@@ -83,9 +84,15 @@ struct Bracket {
 void close_in(std::vector<Bracket>& brackets, const std::vector<Line>& lines, double tolerance,
               const PlaceClearances& clearances);
 
+/// The parameter near which the part of a line lies that counts; nullopt: the widest part counts.
+using PartOfLine = std::function<std::optional<double>(std::size_t line)>;
+
 /// The extents along some lines, looked for at `samples` + 1 parameters from `low` to `high` of each; the ends are
 /// found within a tolerance. Where the first sample passes, the extent begins there.
+///
+/// part: called for lines of which several parts pass, and chooses a part. Empty: the extent covers all parts.
 PETZVAL_API std::vector<LineExtent> extents_along(const std::vector<Line>& lines, double low, double high, int samples,
-                                                  double tolerance, const PlaceClearances& clearances);
+                                                  double tolerance, const PlaceClearances& clearances,
+                                                  const PartOfLine& part = {});
 
 }  // namespace petzval::inline v0::pupil_detail

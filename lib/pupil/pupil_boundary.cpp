@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -12,6 +13,7 @@
 #include "directions_seen.hpp"
 #include "lens/without_obscurations.hpp"
 #include "petzval/core/error.hpp"
+#include "pupil_region.hpp"
 #include "sight.hpp"
 
 namespace petzval::inline v0 {
@@ -72,7 +74,9 @@ std::pair<Box, Box> boxes_about(Sight& sight, const std::vector<SeenPlace>& pass
 /// Looks along the directions of a boundary, all at once. Radii are in units of its half axes.
 class Tracer {
  public:
-  Tracer(Sight& sight, PupilBoundary& boundary) : sight_(sight), boundary_(boundary) {}
+  /// near: a place of the part to keep; nullopt: all parts are kept.
+  Tracer(Sight& sight, PupilBoundary& boundary, const std::optional<Point>& near)
+      : sight_(sight), boundary_(boundary), near_(near) {}
 
   struct Seen {
     bool disc = true;   ///< one span in each direction, from the middle
@@ -85,15 +89,12 @@ class Tracer {
     sample(steps + 1, [&](std::size_t, int i) { return reach * i / steps; });
     const double step = reach / steps;
     const std::vector<Sliver> slivers = find_slivers(step, steps);
-    Seen seen;
     auto sliver = slivers.begin();
     for (std::size_t k = 0; k < directions; ++k) {
       const double* value = values_.data() + k * (static_cast<std::size_t>(steps) + 1);
-      int spans = 0;
       for (int i = 0; i <= steps; ++i) {
         const bool passes = value[i] >= 0, before = i > 0 && value[i - 1] >= 0;
         if (passes && !before) {
-          ++spans;
           if (i == 0) {
             ends_.push_back({k, {0, 0, 0, 0, 1}});
           } else {
@@ -104,7 +105,6 @@ class Tracer {
           ends_.push_back({k, {step * (i - 1), value[i - 1], step * i, value[i], tolerance}});
         }
         if (sliver != slivers.end() && sliver->direction == k && sliver->sample == i) {
-          ++spans;
           const auto& [low, middle, high] = sliver->radii;
           const auto& [at_low, at_middle, at_high] = sliver->values;
           ends_.push_back({k, {middle, at_middle, low, at_low, tolerance}});
@@ -113,10 +113,15 @@ class Tracer {
         }
       }
       // No ray beyond `reach` enters the first surface: one that passes there touches its rim.
-      if (value[steps] >= 0) ends_.push_back({k, {reach, 0, reach, 0, 1}}), seen.whole = false;
-      seen.disc = seen.disc && spans == 1 && value[0] >= 0;
+      if (value[steps] >= 0) ends_.push_back({k, {reach, 0, reach, 0, 1}});
     }
     finish();
+    const auto& spans = boundary_.spans;
+    Seen seen{.disc = spans.size() == directions};
+    for (std::size_t i = 0; i < spans.size(); ++i) {
+      seen.disc = seen.disc && spans[i].direction == i && spans[i].from_radius == 0;
+      seen.whole = seen.whole && spans[i].to_radius < reach;
+    }
     return seen;
   }
 
@@ -263,10 +268,12 @@ class Tracer {
       boundary_.spans.push_back(
           {ends_[i].direction, ends_[i].radius.above(), ends_[i + 1].radius.above(), rim(i), rim(i + 1)});
     }
+    if (near_) pupil_detail::keep_connected(boundary_, *near_);
   }
 
   Sight& sight_;
   PupilBoundary& boundary_;
+  std::optional<Point> near_;
   std::vector<double> x_, y_, values_;
   std::vector<End> ends_;
 };
@@ -274,11 +281,15 @@ class Tracer {
 /// Farther than the corners of the box about the pupil.
 constexpr double farthest = 1.6;
 
-/// The boundary, from a box within the pupil's and one about it. It stays empty where the pupil is smaller than what
-/// rays resolve.
-void trace_boundary(Sight& sight, PupilBoundary& boundary, const Box& inner, const Box& box, std::size_t directions) {
+/// The boundary, from some rays that pass. It stays empty if the pupil is too small for rays.
+///
+/// The pupil is connected: of several parts the part nearest to the chief ray counts, or to the middle of these rays.
+void trace_boundary(Sight& sight, PupilBoundary& boundary, const std::vector<SeenPlace>& passing,
+                    std::size_t directions) {
+  const auto [inner, box] = boxes_about(sight, passing);
+  const Point near = sight.chief().value_or(inner.middle());
   boundary.middle = box.middle(), boundary.half_axes = box.half();
-  Tracer tracer(sight, boundary);
+  Tracer tracer(sight, boundary, near);
   if (directions == 1) {  // alike all round
     const double reach =
         std::max({std::abs(box.low.x), std::abs(box.high.x), std::abs(box.low.y), std::abs(box.high.y)});
@@ -295,8 +306,7 @@ void trace_boundary(Sight& sight, PupilBoundary& boundary, const Box& inner, con
     const bool simple = shape.disc;
     shape = tracer.scan(samples, farthest, samples, 1e-10);
     if (boundary.spans.empty()) break;
-    Box seen = box_of(boundary);
-    seen.take(inner.low), seen.take(inner.high);
+    const Box seen = box_of(boundary);
     const Point before = std::exchange(boundary.half_axes, seen.half());
     boundary.middle = seen.middle();
     const Point now = boundary.half_axes;
@@ -322,24 +332,41 @@ void trace_boundary(Sight& sight, PupilBoundary& boundary, const Box& inner, con
   }
 }
 
-/// The boundary, from some rays that pass.
-void trace_boundary(Sight& sight, PupilBoundary& boundary, const std::vector<SeenPlace>& passing,
-                    std::size_t directions) {
-  auto [inner, box] = boxes_about(sight, passing);
-  // Of a ring that slips between most places, some show where it is but not how far it reaches. The disc that it is cut
-  // out of has its size.
-  constexpr std::size_t enough = 32;
-  const auto surfaces = sight.lens().surfaces();
-  const auto obscured = [](const LensSurface& s) { return s.obscuration_semi_diameter > 0; };
-  if (passing.size() < enough && std::any_of(surfaces.begin(), surfaces.end(), obscured)) {
-    const Lens open = without_obscurations(sight.lens());
-    Sight disc(open, sight.plane(), boundary.wavelength, sight.coordinates());
-    const Box about = boxes_about(disc, disc.passing_places()).second;
-    trace_boundary(sight, boundary, inner, about, directions);
-    if (!boundary.empty()) return;
-    boundary = PupilBoundary(boundary.plane, boundary.wavelength);
+/// The boundary of a lens without obscurations.
+PupilBoundary open_boundary(const Lens& lens, const PupilPlane& plane, std::size_t wavelength, std::size_t directions,
+                            Coordinates coordinates) {
+  PupilBoundary boundary(plane, wavelength);
+  const auto closed = [](const LensSurface& s) { return s.semi_diameter == 0; };
+  if (std::any_of(lens.surfaces().begin(), lens.surfaces().end(), closed)) return boundary;
+  Sight sight(lens, plane, wavelength, coordinates);
+  if (directions == 1) {  // one line shows it, unless all of it lies between two samples
+    const double reach = sight.reach();
+    boundary.half_axes = {reach, reach};
+    if (reach > 0) Tracer(sight, boundary, Point{0, 0}).scan(1, 1, 512, Tracer::finest);
+    if (!boundary.empty()) {
+      // The half axes of the pupil.
+      const double radius = boundary.spans.back().to_radius;
+      if (!(radius > 0)) return boundary;
+      for (PupilSpan& span : boundary.spans) span.from_radius /= radius, span.to_radius /= radius;
+      boundary.half_axes *= radius;
+      return boundary;
+    }
+    boundary = PupilBoundary(plane, wavelength);
   }
-  trace_boundary(sight, boundary, inner, box, directions);
+  const std::vector<SeenPlace> passing = sight.passing_places();
+  if (!passing.empty()) trace_boundary(sight, boundary, passing, directions);
+  return boundary;
+}
+
+/// The parts of a boundary that obscurations leave.
+PupilBoundary obscured_boundary(const Lens& lens, const PupilBoundary& open, Coordinates coordinates) {
+  PupilBoundary result = open;
+  if (open.empty()) return result;
+  Sight sight(lens, open.plane, open.wavelength, coordinates);
+  const bool one = open.directions == 1;
+  Tracer(sight, result, {}).scan(open.directions, farthest, one ? 512 : 192, Tracer::finest);
+  pupil_detail::keep_within(result, open);
+  return result;
 }
 
 PupilBoundary boundary_of(const Lens& lens, const PupilPlane& plane, Wavelength at, std::size_t directions,
@@ -351,20 +378,12 @@ PupilBoundary boundary_of(const Lens& lens, const PupilPlane& plane, Wavelength 
     throw Error(lens.name() + ": pupil boundary: directions is " + std::to_string(directions) + ", wanted 3 to " +
                 std::to_string(most) + ", or 1 on the axis of a lens of revolution");
   }
-  PupilBoundary boundary(plane, wavelength);
-  const auto closed = [](const LensSurface& s) { return s.semi_diameter == 0; };
-  if (std::any_of(lens.surfaces().begin(), lens.surfaces().end(), closed)) return boundary;
-  Sight sight(lens, plane, wavelength, coordinates);
-  if (directions == 1) {  // one line shows it, unless all of it lies between two samples
-    const double reach = sight.reach();
-    boundary.half_axes = {reach, reach};
-    if (reach > 0) Tracer(sight, boundary).scan(1, 1, 512, Tracer::finest);
-    if (!boundary.empty()) return boundary;
-    boundary = PupilBoundary(plane, wavelength);
+  const auto obscures = [](const LensSurface& s) { return s.obscuration_semi_diameter > 0; };
+  if (std::none_of(lens.surfaces().begin(), lens.surfaces().end(), obscures)) {
+    return open_boundary(lens, plane, wavelength, directions, coordinates);
   }
-  const std::vector<SeenPlace> passing = sight.passing_places();
-  if (!passing.empty()) trace_boundary(sight, boundary, passing, directions);
-  return boundary;
+  const Lens open = without_obscurations(lens);
+  return obscured_boundary(lens, open_boundary(open, plane, wavelength, directions, coordinates), coordinates);
 }
 
 }  // namespace

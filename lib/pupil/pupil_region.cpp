@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
 #include <numbers>
+#include <vector>
 
 #include "pupil_region.hpp"
 
@@ -43,6 +47,66 @@ std::vector<Extent> extents(const PupilRegion& region) {
     e.to = span.to_radius, e.rim = span.to, e.lit = true;
   }
   return result;
+}
+
+void keep_connected(PupilRegion& region, const Vec2<double>& place) {
+  const std::vector<PupilSpan>& spans = region.spans;
+  if (spans.empty()) return;
+  const Vec2<double> half{std::max(region.half_axes.x, 1e-300), std::max(region.half_axes.y, 1e-300)};
+  const Vec2<double> at = (place - region.middle) / half;
+  std::size_t nearest = 0;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < spans.size(); ++i) {
+    const Vec2<double> unit = region.unit(spans[i].direction);
+    const double along = std::clamp(glm::dot(at, unit), spans[i].from_radius, spans[i].to_radius);
+    const double distance = glm::length(at - unit * along);
+    if (distance < least) least = distance, nearest = i;
+  }
+
+  std::vector<std::size_t> first(region.directions + 1, 0);  // of the spans of each direction
+  for (const PupilSpan& span : spans) ++first[span.direction + 1];
+  for (std::size_t k = 0; k < region.directions; ++k) first[k + 1] += first[k];
+  std::vector<bool> kept(spans.size(), false);
+  std::vector<std::size_t> open{nearest};
+  kept[nearest] = true;
+  bool middle = false;  // the spans that begin there were taken
+  const auto take = [&](std::size_t i) {
+    if (!kept[i]) kept[i] = true, open.push_back(i);
+  };
+  // Between two directions the ends of a crescent's tip may move by more than its width.
+  const double steep = region.directions == 1 ? 0 : 0.1;
+  while (!open.empty()) {
+    const PupilSpan span = spans[open.back()];
+    open.pop_back();
+    for (const std::size_t beside :
+         {(span.direction + 1) % region.directions, (span.direction + region.directions - 1) % region.directions}) {
+      for (std::size_t i = first[beside]; i < first[beside + 1]; ++i) {
+        const double gap = std::max(spans[i].from_radius - span.to_radius, span.from_radius - spans[i].to_radius);
+        if (gap <= steep * span.to_radius) take(i);
+      }
+    }
+    if (span.from_radius > 0 || middle) continue;
+    middle = true;
+    for (std::size_t i = 0; i < spans.size(); ++i) {
+      if (spans[i].from_radius == 0) take(i);
+    }
+  }
+  std::vector<PupilSpan> connected;
+  for (std::size_t i = 0; i < spans.size(); ++i) {
+    if (kept[i]) connected.push_back(spans[i]);
+  }
+  region.spans = std::move(connected);
+}
+
+void keep_within(PupilRegion& region, const PupilRegion& other) {
+  auto span = other.spans.begin();
+  std::erase_if(region.spans, [&](const PupilSpan& part) {
+    while (span != other.spans.end() && (span->direction < part.direction ||
+                                         (span->direction == part.direction && span->to_radius < part.from_radius))) {
+      ++span;
+    }
+    return span == other.spans.end() || span->direction != part.direction || span->from_radius > part.to_radius;
+  });
 }
 
 }  // namespace pupil_detail

@@ -25,4 +25,11 @@ struct Extent {
 /// Of each direction.
 std::vector<Extent> extents(const PupilRegion& region);
 
+/// Leaves the spans that are connected with the one nearest to a place: spans of neighbouring directions whose radii
+/// overlap, and spans that begin at the middle, are connected.
+void keep_connected(PupilRegion& region, const Vec2<double>& place);
+
+/// Keeps the spans that overlap a span of another region with the same middle, half axes and directions.
+void keep_within(PupilRegion& region, const PupilRegion& other);
+
 }  // namespace petzval::inline v0::pupil_detail

@@ -67,11 +67,12 @@ Box seen_face(const Lens& lens, const PupilPlane& plane, const Sines& sines) {
 /// Places in even steps over a box of sines, row by row.
 struct Grid {
   int side;
+  Place low, cell;  // in sines
   std::vector<SeenPlace> places;
   std::vector<double> x, y;
 
-  Grid(const Sines& sines, const Box& box, int steps) : side(steps + 1) {
-    const Place cell = (box.high - box.low) / static_cast<double>(steps);
+  Grid(const Sines& sines, const Box& box, int steps)
+      : side(steps + 1), low(box.low), cell((box.high - box.low) / static_cast<double>(steps)) {
     for (int j = 0; j < side; ++j) {
       for (int i = 0; i < side; ++i) {
         const Place p = sines.place(box.low + Place{static_cast<double>(i), static_cast<double>(j)} * cell);
@@ -80,36 +81,47 @@ struct Grid {
       }
     }
   }
+
+  /// The connected part of the places with values of 0 and more that is nearest to `near`; without it the largest part.
+  std::vector<SeenPlace> connected(std::span<const double> values, const std::optional<Place>& near) const {
+    std::vector<int> part(places.size(), -1);
+    std::vector<std::size_t> best, own;
+    double least = infinity;
+    for (std::size_t start = 0; start < places.size(); ++start) {
+      if (!(values[start] >= 0) || part[start] >= 0) continue;
+      own.assign(1, start);
+      part[start] = static_cast<int>(start);
+      double distance = infinity;
+      for (std::size_t next = 0; next < own.size(); ++next) {
+        const int column = static_cast<int>(own[next]) % side, row = static_cast<int>(own[next]) / side;
+        if (near) distance = std::min(distance, glm::length((*near - low) / cell - Place(column, row)));
+        for (int j = std::max(row - 1, 0); j <= std::min(row + 1, side - 1); ++j) {
+          for (int i = std::max(column - 1, 0); i <= std::min(column + 1, side - 1); ++i) {
+            const auto at = static_cast<std::size_t>(j * side + i);
+            if (values[at] >= 0 && part[at] < 0) part[at] = static_cast<int>(start), own.push_back(at);
+          }
+        }
+      }
+      if (near ? distance < least : own.size() > best.size()) least = distance, best = own;
+    }
+    std::vector<SeenPlace> result;
+    for (const std::size_t at : best) result.push_back(places[at]);
+    return result;
+  }
 };
 
 }  // namespace
 
-std::vector<std::size_t> summits(std::span<const double> values, std::size_t row, bool half) {
+std::vector<std::size_t> summits(std::span<const double> values, std::size_t row) {
   std::vector<std::size_t> result;
   for (std::size_t i = row; i + row < values.size(); ++i) {
     const std::size_t column = i % row;
-    if (!(values[i] < 0) || column + 1 == row || (column == 0 && !half)) continue;
+    if (!(values[i] < 0) || column + 1 == row || column == 0) continue;
     bool summit = true;
     for (const std::size_t at : {i - row, i, i + row}) {
-      for (std::size_t n = at - (column > 0); n <= at + 1; ++n) summit = summit && !(values[n] > values[i]);
+      for (std::size_t n = at - 1; n <= at + 1; ++n) summit = summit && !(values[n] > values[i]);
     }
     if (summit) result.push_back(i);
-  }
-  return result;
-}
-
-SeenPlaces places_seen(const Lens& lens, const PupilPlane& plane, int steps, bool half) {
-  const Sines sines(plane);
-  const Box box = seen_face(lens, plane, sines);
-  const Place cell = (box.high - box.low) / static_cast<double>(steps);
-  const int first = half ? steps / 2 : 0;
-  SeenPlaces result{{}, static_cast<std::size_t>(steps + 1 - first)};
-  result.places.reserve(result.row * static_cast<std::size_t>(steps + 1));
-  for (int j = 0; j <= steps; ++j) {
-    for (int i = first; i <= steps; ++i) {
-      const Place p = sines.place(box.low + Place{static_cast<double>(i), static_cast<double>(j)} * cell);
-      result.places.push_back({p, cell * sines.stretch(p)});
-    }
   }
   return result;
 }
@@ -177,6 +189,13 @@ double Sight::reach() const {
   return farthest;
 }
 
+std::optional<Vec2<double>> Sight::chief() const {
+  const AimedRay ray = aim(lens_, plane_, {}, wavelength_);
+  if (!ray || !ray.end.transmitted()) return {};
+  const Place p = plane_.meet(ray.ray);
+  return coordinates_ == Coordinates::angles ? sines_.angles(p) : p;
+}
+
 std::vector<SeenPlace> Sight::passing_places() {
   std::vector<SeenPlace> result;
   if (coordinates_ == Coordinates::angles) {
@@ -184,15 +203,12 @@ std::vector<SeenPlace> Sight::passing_places() {
     for (auto& [at, beside] : result) beside *= sines_.angle_per_step(at), at = sines_.angles(at);
     return result;
   }
+  const std::optional<Place> centre = chief();
+  const std::optional<Place> near = centre ? std::optional(sines_.of(*centre)) : std::nullopt;
   const Box box = seen_face(lens_, plane_, sines_);
   const Grid grid(sines_, box, 48);
-  const auto take_passing = [&](const Grid& on, std::span<const double> values) {
-    for (std::size_t at = 0; at < on.places.size(); ++at) {
-      if (values[at] >= 0) result.push_back(on.places[at]);
-    }
-  };
   const auto values = clearances(grid.x, grid.y);
-  take_passing(grid, values);
+  result = grid.connected(values, near);
   constexpr std::size_t enough = 32;
   if (result.size() >= enough) return result;
 
@@ -214,19 +230,21 @@ std::vector<SeenPlace> Sight::passing_places() {
   } else {
     const Grid finer(sines_, box, 96);
     const auto heights = clearances(finer.x, finer.y, false);
-    take_passing(finer, heights);
+    if (auto places = finer.connected(heights, near); places.size() > result.size()) result = std::move(places);
     take_summits(finer, heights);
+  }
+  if (centre) {
+    const double at[] = {centre->x, centre->y};
+    const Place half = result.empty() ? (box.high - box.low) / 4.0 : result.front().beside;
+    if (clearances({at, 1}, {at + 1, 1})[0] >= 0) {
+      result.push_back({*centre, half});
+      return result;
+    }
+    highest.push_back({0, {*centre, half}});
   }
   std::stable_sort(highest.begin(), highest.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
   const std::size_t most = aspheric ? 8 : 64;
   if (highest.size() > most) highest.resize(most);
-  const AimedRay chief = aim(lens_, plane_, {}, wavelength_);
-  if (chief) {
-    const Place p = plane_.meet(chief.ray);
-    const Place half = result.empty() ? (box.high - box.low) / 4.0 : result.front().beside;
-    if (chief.status == AimStatus::converged) result.push_back({p, half});
-    highest.push_back({0, {p, half}});
-  }
   std::vector<double> x, y;
   for (const auto& [height, summit] : highest) {
     constexpr int half_side = 4;

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -18,21 +19,9 @@ struct SeenPlace {
   Vec2<double> at{0, 0}, beside{0, 0};
 };
 
-/// Places in rows.
-struct SeenPlaces {
-  std::vector<SeenPlace> places;
-  std::size_t row = 0;  ///< places in one
-};
-
-/// Places all over what the point of a plane sees of the surface through which its rays enter: steps + 1 a side, even
-/// in the sines of their directions. Some are not finite: directions along the plane. half: those with x >= 0 alone, of
-/// a point for which the others are alike.
-SeenPlaces places_seen(const Lens& lens, const PupilPlane& plane, int steps, bool half);
-
 /// Of values in rows, one for each place, those that are negative and that no neighbour exceeds: a part of a pupil may
-/// slip between these places. Places at the border do not count, but for the first column of a half, which stands
-/// between two that are alike.
-std::vector<std::size_t> summits(std::span<const double> values, std::size_t row, bool half = false);
+/// slip between these places. Places at the border do not count.
+std::vector<std::size_t> summits(std::span<const double> values, std::size_t row);
 
 /// What x and y of a place are: those of the plane, mm, or the angles under which its point, at a finite distance, sees
 /// it (sines.hpp), rad.
@@ -61,8 +50,12 @@ class Sight {
   /// How far from 0 the coordinates of places are that see the surface through which rays enter.
   double reach() const;
 
+  /// Place of the chief ray, which apertures may stop; nullopt if no ray goes through the centre of the stop.
+  std::optional<Vec2<double>> chief() const;
+
   /// Looks for rays that pass, over all that can be seen of the surface through which they enter: at 48 x 48 places
-  /// and, where few of them pass, about those of 96 x 96 at which the clearance has a maximum.
+  /// and, where few of them pass, about those of 96 x 96 at which the clearance has a maximum. Of several parts it
+  /// returns the one nearest to the chief ray, without a chief ray the largest.
   std::vector<SeenPlace> passing_places();
 
  private:

@@ -41,17 +41,6 @@ pupil_detail::PlaceClearances traced_lines(const Lens& lens, const TwoPlanes& sp
       };
 }
 
-pupil_detail::SeenPlaces places_seen(const Lens& lens, const TwoPlanes& space, const FilmPoint& film) {
-  constexpr int steps = 48;
-  // Half of the pupil of a point on +y is like the other.
-  const bool half = lens.rotationally_symmetric() && film.x == 0;
-  pupil_detail::SeenPlaces seen = pupil_detail::places_seen(lens, PupilPlane::of_film(lens, film), steps, half);
-  const double scale = space.depth() / (lens.surfaces().back().vertex_z - space.film_z);
-  const Vec2<double> from{film.x, film.y};
-  for (auto& [at, beside] : seen.places) at = from + (at - from) * scale, beside = beside * std::abs(scale);
-  return seen;
-}
-
 std::vector<pupil_detail::PupilGuess> first_order_guesses(const Lens& lens, const TwoPlanes& space,
                                                           std::span<const FilmPoint> points, std::size_t wavelength) {
   const Pupils paraxial = petzval::pupils(lens, wavelength);

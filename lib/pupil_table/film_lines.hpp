@@ -17,10 +17,6 @@ namespace petzval::inline v0::pupil_table_detail {
 pupil_detail::PlaceClearances traced_lines(const Lens& lens, const TwoPlanes& space, std::vector<FilmPoint> points,
                                            std::size_t wavelength);
 
-/// Places of the plane of the pupil all over what a film point sees of the last surface; of a point on +y of a lens of
-/// revolution, over half of it.
-pupil_detail::SeenPlaces places_seen(const Lens& lens, const TwoPlanes& space, const FilmPoint& film);
-
 /// Where the pupils of film points are expected to first order. Rays pass the last surface: a pupil is no larger than
 /// what is seen through it.
 std::vector<pupil_detail::PupilGuess> first_order_guesses(const Lens& lens, const TwoPlanes& space,

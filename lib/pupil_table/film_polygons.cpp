@@ -5,40 +5,63 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "core/meet_plane.hpp"
 #include "film_lines.hpp"
+#include "lens/without_obscurations.hpp"
 #include "petzval/core/parallel.hpp"
 #include "pupil/aim.hpp"
 
 namespace petzval::inline v0::pupil_table_detail {
 
+namespace {
+
+/// Where the chief ray of a film point crosses the plane of the pupil.
+std::optional<Vec2<double>> chief_place(const Lens& lens, const TwoPlanes& space, const FilmPoint& film,
+                                        std::size_t wavelength) {
+  const AimedRay chief = pupil_detail::aim(lens, PupilPlane::of_film(lens, film), {}, wavelength);
+  if (!chief || !chief.end.transmitted()) return {};
+  const auto place = core_detail::meet_plane(chief.ray, space.pupil_z);
+  if (!std::isfinite(place.x) || !std::isfinite(place.y)) return {};
+  return Vec2<double>{place.x, place.y};
+}
+
+}  // namespace
+
 FilmPupils traced_pupils(const Lens& lens, const TwoPlanes& space, std::size_t wavelength) {
-  // Calls find(guesses, clearances, places seen) for the points at some heights.
-  const auto search = [&lens, space, wavelength](std::span<const double> heights, const auto& find) {
+  const auto surfaces = lens.surfaces();
+  const auto obscures = [](const LensSurface& s) { return s.obscuration_semi_diameter > 0; };
+  const bool obscured = std::any_of(surfaces.begin(), surfaces.end(), obscures);
+  const Lens open = obscured ? without_obscurations(lens) : lens;
+  // Calls find(guesses, clearances, points) for the points at some heights.
+  const auto search = [open, space, wavelength](std::span<const double> heights, const auto& find) {
     std::vector<FilmPoint> points;
     for (const double height : heights) points.push_back({0, height});
-    std::vector<pupil_detail::PupilGuess> guesses = first_order_guesses(lens, space, points, wavelength);
+    std::vector<pupil_detail::PupilGuess> guesses = first_order_guesses(open, space, points, wavelength);
     for (std::size_t i = 0; i < points.size(); ++i) {
       // Aberrations move the image of a tiny stop by more than its size.
       constexpr double tiny = 1e-3;
       pupil_detail::PupilGuess& guess = guesses[i];
       if (guess.radius > tiny * (guess.high - guess.low)) continue;
-      const AimedRay chief = pupil_detail::aim(lens, PupilPlane::of_film(lens, points[i]), {}, wavelength);
-      const double y = chief ? core_detail::meet_plane(chief.ray, space.pupil_z).y : guess.y;
-      if (std::isfinite(y)) guess.y = y;
+      if (const auto chief = chief_place(open, space, points[i], wavelength)) guess.y = chief->y;
     }
-    return find(guesses, traced_lines(lens, space, points, wavelength),
-                [&](std::uint32_t i) { return places_seen(lens, space, points[i]); });
+    return find(guesses, traced_lines(open, space, points, wavelength), points);
   };
-  const auto regions = [](const auto& guesses, const auto& clearances, const auto& seen) {
+  const auto regions = [&lens, open, obscured, space, wavelength](const auto& guesses, const auto& clearances,
+                                                                  const std::vector<FilmPoint>& points) {
+    const pupil_detail::ConnectedPupils connected{
+        [&](std::uint32_t i) { return chief_place(open, space, points[i], wavelength); },
+        obscured ? traced_lines(lens, space, points, wavelength) : pupil_detail::PlaceClearances{}};
     const auto order = pupil_detail::SearchOrder::rows(guesses.size(), guesses.size());
-    return pupil_detail::find_regions(guesses, order, region_directions, true, clearances, seen);
+    return pupil_detail::find_regions(guesses, order, region_directions, true, clearances, &connected);
   };
   return {[=](std::span<const double> heights) { return search(heights, regions); },
           [=](std::span<const double> heights) {
-            return search(heights, [](const auto&... found) { return pupil_detail::lit_points(found...); });
+            return search(heights, [](const auto& guesses, const auto& clearances, const auto&) {
+              return pupil_detail::lit_points(guesses, clearances);
+            });
           }};
 }
 

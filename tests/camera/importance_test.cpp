@@ -255,7 +255,7 @@ TEST(Importance, IsConnectedToAFilmThatIsDarkOnTheAxis) {
     missed += !(camera.pdf_importance(r.ray.origin + r.ray.direction * 1000.0, -r.ray.direction) > 0);
   }
   EXPECT_GT(seen, 500);
-  EXPECT_LT(missed, 0.01 * seen);  // the disc clips pupils abruptly within a field
+  EXPECT_LT(missed, 0.02 * seen);  // the disc clips pupils abruptly within a field
 }
 
 TEST(Importance, OfManyRaysIsThatOfEach) {

@@ -180,11 +180,12 @@ double mean_weight(const Camera& camera, const FilmPoint& film) {
   return sum;
 }
 
-void expect_exposures(const Lens& lens, const Film& film, double corner = 0.45, double tolerance = 2e-3) {
+void expect_exposures(const Lens& lens, const Film& film) {
+  constexpr double corner = 0.45;
   const Camera camera(lens, film, {.model = ModelKind::exact_double});
   for (const auto& [x, y] : {std::array{0.0, 0.0}, {corner, corner}, {-0.4, corner}, {0.1, -0.48}}) {
     const FilmPoint point{film.shift_x_mm + x * film.width_mm, film.shift_y_mm + y * film.height_mm};
-    EXPECT_NEAR(mean_weight(camera, point) / irradiance(lens, pose_of(lens, film), point), 1, tolerance)
+    EXPECT_NEAR(mean_weight(camera, point) / irradiance(lens, pose_of(lens, film), point), 1, 2e-3)
         << point.x << ", " << point.y;
   }
 }
@@ -202,12 +203,6 @@ INSTANTIATE_TEST_SUITE_P(
                       Case{"anamorphic_60mm_2x", 0, {.width_mm = 20, .height_mm = 14}, 6, 6, 0.95},
                       Case{"anamorphic_60mm_2x", 32, {.width_mm = 20, .height_mm = 14}, -5, 6, 0.95},
                       Case{"catadioptric_mangin_1000mm_f7.5", 0, {.width_mm = 20, .height_mm = 20}, 8, 0, 0.9}));
-
-// The paraxial exit pupil of a ball lies far behind the film and far from its rays. Half of the samples pass, which
-// limits the accuracy of means.
-TEST(TiltedFilm, ExposesWhereAberrationsMoveThePupil) {
-  expect_exposures(testing::data_lens("ball_10mm"), tilted_by({.width_mm = 0.6, .height_mm = 0.45}, -8, 5), 0.49, 4e-3);
-}
 
 // If the exit pupil is at infinity, pupils lie in the plane of the last vertex.
 TEST(TiltedFilm, ExposesBehindATelecentricLens) {

@@ -24,13 +24,12 @@ using enum DistanceOrigin;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr auto criteria = {thin, paraxial, min_rms, min_max};
 
-/// A very thin 50 mm singlet at f/10.
+/// A 50 mm singlet without thickness at f/10.
 Lens thin_singlet(double semi_diameter = 2.5) {
   Prescription p;
   p.name = "thin singlet";
-  p.surfaces = {
-      {.radius = 51.68, .thickness = 1e-6, .medium = {.nd = 1.5168}, .semi_diameter = semi_diameter, .stop = true},
-      {.radius = -51.68, .semi_diameter = 2 * semi_diameter}};
+  p.surfaces = {{.radius = 51.68, .medium = {.nd = 1.5168}, .semi_diameter = semi_diameter, .stop = true},
+                {.radius = -51.68, .semi_diameter = 2 * semi_diameter}};
   return compile(p);
 }
 

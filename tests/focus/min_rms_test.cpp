@@ -153,9 +153,8 @@ TEST(MinRms, WithoutRaysSaysSo) {
 }
 
 TEST(MinRms, WithoutAnyRimIsAnError) {
-  Prescription p = data_prescription("singlet_50mm_biconvex");
+  Prescription p = testing::open_singlet();
   p.name = "endless";
-  for (SurfaceRow& row : p.surfaces) row.semi_diameter.reset();
   try {
     solve_focus(compile(p), 1000, {min_rms});
     FAIL() << "no error";

@@ -38,7 +38,7 @@ Lens thin_singlet(double stop_distance) {
   p.name = "thin";
   const Medium glass{.nd = 1.5, .vd = 50};
   p.surfaces = {{.thickness = stop_distance, .semi_diameter = 0.5, .stop = true},
-                {.radius = 100, .thickness = 1e-6, .medium = glass, .semi_diameter = 30},
+                {.radius = 100, .medium = glass, .semi_diameter = 30},
                 {.radius = -100, .thickness = 100, .semi_diameter = 30}};
   return compile(p, f_d_c, {.missing_glass = MissingGlass::abbe});
 }

@@ -59,7 +59,7 @@ TEST(FastestFNumber, IsTheLeastThatWithFNumberGives) {
   // A marked stop without a rim: the last ray that reaches the stop is the limit.
   Prescription open = testing::data_prescription("double_gauss_100mm_f2.0");
   for (SurfaceRow& row : open.surfaces) {
-    if (row.stop) row.semi_diameter.reset();
+    if (row.stop) row.semi_diameter = infinity;
   }
   const Lens lens = compile(open);
   const double fastest = fastest_f_number(lens);
@@ -314,7 +314,7 @@ TEST(WithFNumber, GivesAMarkedStopItsRim) {
 TEST(RealFNumber, OfAStopWithoutARimIsThatOfTheSurfaceThatLimits) {
   const auto [marked, unmarked] = testing::without_the_rim_of_its_stop(testing::open_singlet(10));
   EXPECT_EQ(real_f_number(marked), real_f_number(unmarked));
-  EXPECT_NEAR(real_f_number(marked), 2.49, 0.01);
+  EXPECT_NEAR(real_f_number(marked), 2.53, 0.01);
   const Lens endless = compile(testing::open_singlet());
   EXPECT_EQ(message([&] { real_f_number(endless); }), message([&] { pupils(endless); }));
 }

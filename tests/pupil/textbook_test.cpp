@@ -124,7 +124,8 @@ TEST(TextbookPupil, OfAHoleIsTheHoleFromNearAndFar) {
   // A hole on the front of a plane plate: the same circle for every object, and for a converging beam.
   Prescription p;
   p.name = "plate";
-  p.surfaces = {{.thickness = 2, .medium = {.nd = 1.5}, .semi_diameter = 3, .stop = true}, {.thickness = 10}};
+  p.surfaces = {{.thickness = 2, .medium = {.nd = 1.5}, .semi_diameter = 3, .stop = true},
+                {.thickness = 10, .semi_diameter = infinity}};
   for (const double z : {-infinity, -1e6, -7.0, -0.5, 5.0}) {
     EXPECT_NEAR(textbook_entrance_pupil(compile(p), z).diameter, 6, 1e-13) << z;
   }

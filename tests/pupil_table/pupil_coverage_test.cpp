@@ -123,9 +123,7 @@ double missed_anywhere(const Lens& lens, const FilmPupilTable& table, const Film
 TEST(FilmPupilTable, CoversPupilsInParts) {
   // Of the primoplan a sliver begins to show that is smaller than a 48th of the last surface.
   for (const auto& [id, f_number, radius, widths, side, most] :
-       {std::tuple{"ball_10mm", 8.0, 0.38, 3.0, 700, 1e-3}, std::tuple{"ball_10mm", 16.0, 0.38, 3.0, 700, 1e-3},
-        std::tuple{"ball_10mm", 22.0, 0.38, 3.0, 1000, 1e-3}, std::tuple{"ball_10mm", 45.0, 0.26, 3.0, 1500, 1e-2},
-        std::tuple{"catadioptric_mangin_1000mm_f7.5", 16.0, 21.6, 1.2, 700, 1e-3},
+       {std::tuple{"catadioptric_mangin_1000mm_f7.5", 16.0, 21.6, 1.2, 700, 1e-3},
         std::tuple{"primoplan_100mm_f1.9", 45.0, 39.5, 1.2, 700, 0.05}}) {
     const Lens lens = with_f_number(data_lens(id), f_number);
     const FilmPupilTable table = FilmPupilTable::enclosing(lens, radius);

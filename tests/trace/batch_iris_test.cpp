@@ -146,7 +146,10 @@ TYPED_TEST(BatchIris, WithoutAperturesEveryRimIsOpen) {
     if (std::any_of(wide.surfaces.begin(), wide.surfaces.end(), [](const auto& s) { return !s.aspheric.empty(); })) {
       continue;  // their description depends on the aperture
     }
-    for (auto& s : wide.surfaces) s.semi_diameter = s.obscuration_semi_diameter = std::nullopt;
+    for (auto& s : wide.surfaces) {
+      s.semi_diameter = std::numeric_limits<double>::infinity();
+      s.obscuration_semi_diameter.reset();
+    }
     const Lens open = petzval::compile(wide);
     for (const Travel travel : {Travel::to_film, Travel::to_scene}) {
       const auto rays = rays_for<T>(sample, travel, 200);
@@ -155,6 +158,7 @@ TYPED_TEST(BatchIris, WithoutAperturesEveryRimIsOpen) {
         options.apertures = false;
         const auto found = traced(sample.lens, rays, options);
         for (std::size_t i = 0; i < rays.size(); ++i) {
+          if (wanted.fates[i] == RayFate::vignetted) continue;  // by the edge of an element
           ASSERT_EQ(found.fates[i], wanted.fates[i]) << sample.id << " " << text(options) << " ray " << i;
           ASSERT_EQ(found.surfaces[i], wanted.surfaces[i]) << sample.id << " " << text(options) << " ray " << i;
           ASSERT_NE(found.fates[i], RayFate::vignetted) << sample.id << " " << text(options) << " ray " << i;

@@ -40,8 +40,8 @@ petzval::Lens random_lens(Random& random) {
     row.radius = kind == 0 ? 0 : scale * std::pow(10.0, uniform(random, -1, 3)) * (random() % 2 ? 1 : -1);
     row.thickness = scale * uniform(random, random() % 10 ? 0 : -1, 1);
     row.medium.nd = random() % 2 ? 1 : uniform(random, 0.8, 4);
-    if (random() % 3) row.semi_diameter = scale * uniform(random, 0.1, 3);
-    if (random() % 10 == 0) row.obscuration_semi_diameter = row.semi_diameter.value_or(scale) * 0.3;
+    row.semi_diameter = random() % 3 ? scale * uniform(random, 0.1, 3) : std::numeric_limits<double>::infinity();
+    if (random() % 10 == 0) row.obscuration_semi_diameter = std::min(*row.semi_diameter, scale) * 0.3;
     if (kind == 1) row.conic = uniform(random, -20, 5);
     if (kind == 2 && row.radius != 0) row.curved_in = random() % 2 ? petzval::Section::x : petzval::Section::y;
     if (kind == 3) {

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -59,9 +60,12 @@ struct LensSurface {
   double conic = 0;
   Section curved_in = Section::both;
   std::vector<AsphereTerm> aspheric;
-  /// Infinite: unlimited, as beyond 1e15 mm; of less than 1e-12 mm 0. That of an asphere ends with its base conic and
-  /// where it is as steep as 4.
+  /// Clear aperture. Infinite: unlimited, as beyond 1e15 mm; 0 below 1e-12 mm. The aperture of an asphere ends with the
+  /// base conic and at a slope of 4, the aperture of an element at `edge`.
   double semi_diameter = 0;
+  /// Height at which the surface meets the one before or behind it (infinite if it meets neither): beyond it the
+  /// element, or the air between two elements, has no positive thickness, and no ray passes.
+  double edge = std::numeric_limits<double>::infinity();
   double obscuration_semi_diameter = 0;  ///< of the central obscuration; 0: none
   bool mirror = false;
   /// Semi-diameter of the prescription, the upper limit of with_semi_diameter(); infinite if the row has none.
@@ -161,10 +165,11 @@ class PETZVAL_API Lens {
   std::shared_ptr<const Data> data_;
 };
 
-/// Compiles a prescription, in one of its configurations, for some wavelengths (nm). Throws Error, naming lens and
-/// surface, for an invalid prescription, a wavelength given twice (within 1e-6 nm) or outside the range of a glass
-/// (unless CompileOptions::clamp_wavelengths), a missing glass (see MissingGlass; always if the medium states no
-/// index), an index outside 0..5, and a primary_nm that is not among the wavelengths.
+/// Compiles a prescription, in one of its configurations, for some wavelengths (nm). Surfaces without a clear aperture
+/// get a computed one, as with_apertures() does (pupil/apertures.hpp). Throws Error, naming lens and surface, for an
+/// invalid prescription, a wavelength given twice (within 1e-6 nm) or outside the range of a glass (unless
+/// CompileOptions::clamp_wavelengths), a missing glass (see MissingGlass; always if the medium states no index), an
+/// index outside 0..5, and a primary_nm that is not among the wavelengths.
 PETZVAL_API Lens compile(const Prescription& prescription, std::span<const double> wavelengths_nm,
                          const CompileOptions& options = {});
 

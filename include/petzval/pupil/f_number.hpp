@@ -15,8 +15,9 @@ namespace petzval::inline v0 {
 /// where nothing limits y. Throws Error where pupils() does.
 PETZVAL_API double real_f_number(const Lens& lens, Wavelength wavelength = {});
 
-/// f-number of the widest axial beam, below which with_f_number() refuses: real_f_number() if the stop has a rim. If the
-/// marked stop has no rim, the last axis-parallel ray that reaches the stop sets the limit, 0 if there is no last ray.
+/// f-number of the widest axial beam, below which with_f_number() refuses: real_f_number() if the stop has a rim. If
+/// the marked stop has no rim, the last axis-parallel ray that reaches the stop sets the limit, 0 if there is no last
+/// ray.
 ///
 /// @throws Error  if the lens is afocal or nothing limits the axial beam
 PETZVAL_API double fastest_f_number(const Lens& lens, Wavelength wavelength = {});

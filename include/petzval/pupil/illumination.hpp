@@ -14,9 +14,10 @@ namespace petzval::inline v0 {
 
 /// Irradiance of the film of a lens at a point, in units of the radiance of a scene that is uniform in all directions:
 /// n'^2 times the projected solid angle in which the point sees the scene through the lens, in sr. Within 5e-4 for
-/// stops of 1e-6 mm and more; one that rays do not resolve counts as closed. Within 3e-3 where the pupil comes in
-/// parts; tests/pupil compares every lens of data/ with rays in all directions. Within 5 % of the little light that
-/// comes along the film beside a lens that nearly touches it. Throws Error where pupil_boundary does.
+/// stops of 1e-6 mm and more; one that rays do not resolve counts as closed. Only light of the
+/// pupil counts, as in pupil_boundary; tests/pupil compares every lens of data/ with rays in all directions. Within 5 %
+/// of the little light that comes along the film beside a lens that nearly touches it. Throws Error where
+/// pupil_boundary does.
 PETZVAL_API double film_irradiance(const Lens& lens, const FilmPoint& point, Wavelength wavelength = {});
 
 /// film_irradiance where the chief ray of a scene point meets the film, relative to that on the axis: natural and

@@ -63,13 +63,16 @@ struct PupilBoundary : PupilRegion {
   PupilBoundary(const PupilPlane& p, std::size_t w) : plane(p), wavelength(w) {}
 };
 
-/// Finds the boundary by tracing, wherever the pupil lies and in as many parts as it comes: the search looks at all
-/// that can be seen of the surface through which rays enter, at 48 x 48 places, and about those places between them
-/// whose rays come nearest to passing. Nothing passes a stop of area 0.
+/// The pupil is the connected set of rays about the chief ray, less central obscurations, which may divide it. Rays
+/// that reach the stop through other zones of the surfaces do not belong to it: a ball lens that is stopped down has
+/// such zones. Parts count as connected if they are closer than a tenth of the pupil's radius.
+///
+/// Finds the boundary by tracing, wherever the pupil lies: the search looks at all that can be seen of the surface
+/// through which rays enter, at 48 x 48 places, and about those places between them whose rays come nearest to passing.
+/// Nothing passes a stop of area 0.
 ///
 /// directions: 3 to 2^20, or 1, which is enough on the axis of a lens of revolution; 256 give areas within 5e-4 (3e-3
-/// for crescents with tips as fine as needles; parts far from the middle are seen along few directions, and 1024 give
-/// all light of a ball lens at f/45, between two slivers, within 3e-3).
+/// for crescents with tips as fine as needles).
 /// Throws Error where PupilPlane does, for a wavelength that was not compiled, and for other directions.
 PETZVAL_API PupilBoundary pupil_boundary(const Lens& lens, const FieldPoint& point, Wavelength wavelength = {},
                                          std::size_t directions = 256);

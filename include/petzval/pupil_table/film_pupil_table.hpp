@@ -136,12 +136,9 @@ class PETZVAL_API FilmPupilTable {
 
   /// Polygons that contain every ray that the lens passes and few others; rays still have to be traced. At most 1e-5 of
   /// the pupils' area is missed (tests/pupil_table/film_pupil_table_test.cpp: every lens of data/ wide open over its
-  /// declared field, some of them stopped down; film_cells_test.cpp: a lens with cylinders from wide open to f/64),
-  /// except where a pupil comes in parts that lie apart, as a ball lens's do: narrow rings of its film, where parts
-  /// appear, miss up to 15 % of their light (0.5 % of that of its declared field, 1 to 13 % of that of a film six times
-  /// as large), and at f/45 most of it is missed from 0.26 mm off the axis on. Behind tiny stops, whose images move
-  /// over the film by more than their size, pupils hold more than the rays that pass: half of the samples are lost at
-  /// about f/1e5, most at f/1e6.
+  /// declared field, some of them stopped down; film_cells_test.cpp: a lens with cylinders from wide open to f/64).
+  /// Pupils are those of exit_pupil_boundary(). Behind tiny stops, whose images move over the film by more than their
+  /// size, pupils hold more than the rays that pass: half of the samples are lost at about f/1e5, most at f/1e6.
   ///
   /// Of a bladed iris at least 97.5 % of the samples pass on the double Gauss, the Tessar and a fisheye of data/, at
   /// any film point 93 % (tests/pupil_table/bladed_pupils_test.cpp: 5 to 9 blades from f/2.87 to f/16); in narrow rings
@@ -155,9 +152,9 @@ class PETZVAL_API FilmPupilTable {
   static FilmPupilTable enclosing(const Lens& lens, double film_radius, int threads = 1);
 
   /// Polygons that have the area of the pupils and nearly their shape, for models without rims: an outline with one
-  /// obscuration. That is not enough for pupils in several parts (a ball lens, catadioptrics beyond their field): they
-  /// are described as one part of about that area, and a ball lens at f/8 gets up to 2.5 times its light. So do the
-  /// models that use these pupils, polynomials and two discs; exact ones do not. Throws Error as enclosing() does, and
+  /// obscuration. That is not enough for pupils that an obscuration divides (catadioptrics beyond their field): they
+  /// are described as one part of about that area. So do the models that use these pupils, polynomials and two discs;
+  /// exact ones do not. Throws Error as enclosing() does, and
   /// for an iris with blades of a lens with cylinders or central obscurations.
   static FilmPupilTable equal_area(const Lens& lens, double film_radius, int threads = 1);
 

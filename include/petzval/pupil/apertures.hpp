@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "petzval/core/export.hpp"
+#include "petzval/lens/lens.hpp"
+#include "petzval/prescription/prescription.hpp"
+
+namespace petzval::inline v0 {
+
+/// Gives a clear aperture to each surface that has none, or a computed one: the smallest that passes the beam.
+///
+/// Other programs call these automatic semi-diameters or default apertures. The beam fills the stop, for the axis and
+/// for fields up to the largest one that the prescription declares: `half_field_deg`, the fields of `design`, or the
+/// field whose image lies at half of `image_diagonal_mm`; 20 degrees if it declares no field. Exact rays are aimed at
+/// the rim of the stop, or at the last point towards it from which a ray passes the given apertures and the edges of
+/// the elements. The heights at which they meet a surface, and 5 % more, are its aperture. For a zoom lens the largest
+/// of all positions counts.
+///
+/// A stop without an aperture gets the one of the f-number or the entrance pupil that the prescription declares.
+/// Dummy surfaces, which change no rays, stay unlimited. All surfaces stay unlimited if neither the stop nor another
+/// surface nor an f-number limits the axial beam, or if the entrance pupil lies at infinity. compile() does the same
+/// for the configuration and the wavelengths that it is asked for; readers of files call this function.
+///
+/// @param options  glasses, and the treatment of missing ones. The wavelength is the primary one of the design, or else
+///                 the reference wavelength.
+/// @return         the prescription; `semi_diameter_computed` is true in the rows that got an aperture
+/// @throws Error   if compile() does
+PETZVAL_API Prescription with_apertures(const Prescription& prescription, const CompileOptions& options = {});
+
+}  // namespace petzval::inline v0

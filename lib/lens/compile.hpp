@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "petzval/lens/lens.hpp"
+
+namespace petzval::inline v0::lens_detail {
+
+/// Compiles a prescription as compile() does, but leaves surfaces without a clear aperture unlimited.
+Lens compile_as_given(const Prescription& prescription, std::span<const double> wavelengths_nm,
+                      const CompileOptions& options);
+
+/// The lens with other semi-diameters (mm), in the order of the surfaces.
+Lens with_rims(const Lens& lens, std::vector<double> rims);
+
+}  // namespace petzval::inline v0::lens_detail

@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: Apache-2.0
+// compile() is defined here and not in the module lens: the apertures that a prescription lacks are found by aimed
+// rays.
+#include "petzval/pupil/apertures.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <vector>
+
+#include "aim.hpp"
+#include "lens/compile.hpp"
+#include "lens/data.hpp"
+#include "lens/edges.hpp"
+#include "petzval/core/error.hpp"
+#include "petzval/paraxial/first_order.hpp"
+#include "petzval/pupil/f_number.hpp"
+#include "trace/sequential.hpp"
+
+namespace petzval::inline v0 {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double margin = 0.05;
+constexpr double default_half_field_rad = 20 * std::numbers::pi / 180;
+
+bool lacks_aperture(const SurfaceRow& row) { return !row.semi_diameter; }
+
+/// The lens with its stop as large as the prescription declares the beam, if the stop is marked and has no aperture.
+Lens with_declared_stop(const Lens& lens, const Prescription& rows) {
+  if (!lens.stop() || std::isfinite(lens.data().rims[*lens.stop()])) return lens;
+  std::optional<double> f_number = rows.f_number;
+  if (const auto& aperture = rows.design.aperture; aperture && aperture->value > 0) {
+    if (aperture->setting == ApertureSetting::f_number) f_number = aperture->value;
+    if (aperture->setting == ApertureSetting::entrance_pupil_diameter) {
+      f_number = std::abs(first_order(lens, {}, main_meridian(lens)).effective_focal_length) / aperture->value;
+    }
+  }
+  if (!f_number) return lens;
+  try {
+    return with_f_number(lens, *f_number);
+  } catch (const Error&) {
+    return lens;  // rays of this height do not reach the stop
+  }
+}
+
+/// Distance of the object plane, and the largest field that the prescription declares, as an angle (rad).
+struct DeclaredField {
+  double z = -infinity;
+  double half_rad = default_half_field_rad;
+};
+
+DeclaredField declared_field(const Prescription& rows, const Lens& lens) {
+  DeclaredField result;
+  const DesignData& design = rows.design;
+  if (std::isfinite(design.object_distance_mm) && design.object_distance_mm > 0) result.z = -design.object_distance_mm;
+  const Meridian meridian = main_meridian(lens);
+  const FirstOrder first = first_order(lens, {}, meridian);
+  const double to_pupil = pupils(lens, {}, meridian).entrance.z - result.z;  // from the object
+  double largest = 0;
+  for (const DesignField& field : design.fields) largest = std::max(largest, std::hypot(field.x, field.y));
+  const auto of_image_height = [&](double height) {
+    if (std::isinf(result.z)) return std::atan(std::abs(height / first.effective_focal_length));
+    // Magnification of a finite object: f / (distance from the front focus).
+    const double size = height * std::abs((first.front_focal_z - result.z) / first.effective_focal_length);
+    return std::atan(std::abs(size / to_pupil));
+  };
+  if (rows.half_field_deg) {
+    result.half_rad = *rows.half_field_deg * std::numbers::pi / 180;
+  } else if (largest > 0 && design.field_kind == FieldKind::angle_deg) {
+    result.half_rad = largest * std::numbers::pi / 180;
+  } else if (largest > 0 && design.field_kind == FieldKind::object_height && std::isfinite(result.z)) {
+    result.half_rad = std::atan(std::abs(largest / to_pupil));
+  } else if (largest > 0 && design.field_kind != FieldKind::object_height && !first.afocal) {
+    result.half_rad = of_image_height(largest);
+  } else if (rows.image_diagonal_mm && !first.afocal) {
+    result.half_rad = of_image_height(*rows.image_diagonal_mm / 2);
+  }
+  return result;
+}
+
+/// The heights at which the rays of a beam meet the surfaces of a lens.
+class BeamHeights {
+ public:
+  explicit BeamHeights(const Lens& lens) : lens_(lens), heights_(lens.surface_count(), 0.0) {}
+
+  /// Takes the beam of a field: rays through the rim of the stop, or as near to it as rays pass. mirrored: the beam is
+  /// symmetric about its meridian, x = 0.
+  void add(const FieldPoint& point, bool mirrored) {
+    const PupilPlane plane(lens_, point);
+    if (!pupil_detail::aim(lens_, plane, {}, {})) return;
+    constexpr int rays = 24;
+    for (int i = 0; i <= (mirrored ? rays / 2 : rays - 1); ++i) {
+      const double angle = 2 * std::numbers::pi * i / rays;
+      add(plane, {std::sin(angle), std::cos(angle)});
+    }
+  }
+
+  const std::vector<double>& heights() const noexcept { return heights_; }
+
+ private:
+  void add(const PupilPlane& plane, const StopPoint& rim) {
+    const auto ray_at = [&](double fraction) {
+      return pupil_detail::aim(lens_, plane, {fraction * rim.x, fraction * rim.y}, {});
+    };
+    AimedRay last = ray_at(1);
+    if (last.status != AimStatus::converged) {
+      // The centre may be obscured.
+      constexpr int steps = 8, halvings = 4;
+      double passes = -1, lost = 1;
+      for (int i = steps - 1; i >= 0 && passes < 0; --i) {
+        const double fraction = static_cast<double>(i) / steps;
+        last = ray_at(fraction);
+        (last.status == AimStatus::converged ? passes : lost) = fraction;
+      }
+      if (passes < 0) return;
+      for (int i = 0; i < halvings; ++i) {
+        const double fraction = (passes + lost) / 2;
+        const AimedRay next = ray_at(fraction);
+        if (next.status == AimStatus::converged) last = next;
+        (next.status == AimStatus::converged ? passes : lost) = fraction;
+      }
+    }
+    const auto vector = [](const Vec3<double>& v) { return kernel::Vec<double>{v.x, v.y, v.z}; };
+    kernel::trace(kernel::view<double>(lens_), vector(last.ray.origin), vector(last.ray.direction),
+                  {.wavelength = lens_.primary_wavelength()}, [&](int surface, const kernel::Vec<double>& hit) {
+                    double& height = heights_[static_cast<std::size_t>(surface)];
+                    height = std::max(height, std::hypot(hit.x, hit.y));
+                  });
+  }
+
+  const Lens& lens_;
+  std::vector<double> heights_;
+};
+
+/// Semi-diameters of all surfaces: computed from the beam where the prescription states none.
+std::vector<double> rims_of(const Lens& given, const Prescription& rows) {
+  const Lens lens = with_declared_stop(given, rows);
+  std::vector<double> rims = lens.data().rims;
+  if (!has_pupils(lens)) return rims;
+  BeamHeights beam(lens);
+  try {
+    const auto [z, half] = declared_field(rows, lens);
+    constexpr std::array parts{0.0, 0.5, 0.7, 0.85, 1.0};
+    const bool round = with_iris(lens, {}).rotationally_symmetric();
+    for (const double part : parts) {
+      beam.add({.field_rad = part * half, .z = z}, round);
+      if (round || part == 0) continue;
+      beam.add({.field_rad = part * half, .z = z, .azimuth_rad = std::numbers::pi / 2}, false);
+      beam.add({.field_rad = part * half, .z = z, .azimuth_rad = std::numbers::pi / 4}, false);
+    }
+  } catch (const Error&) {
+    // A field angle has no meaning, or no stop limits the beam.
+  }
+  for (std::size_t i = 0; i < rims.size(); ++i) {
+    const bool computed = lacks_aperture(rows.surfaces[i]) && lens.stop() != i &&
+                          lens_detail::changes_rays(lens.surfaces(), lens.data().indices.values, i);
+    const double height = (1 + margin) * beam.heights()[i];
+    if (computed && height > lens.surfaces()[i].obscuration_semi_diameter) rims[i] = height;
+  }
+  return rims;
+}
+
+}  // namespace
+
+Lens compile(const Prescription& prescription, std::span<const double> wavelengths_nm, const CompileOptions& options) {
+  const Lens given = lens_detail::compile_as_given(prescription, wavelengths_nm, options);
+  const Prescription rows = configured(prescription, options.configuration);
+  if (std::ranges::none_of(rows.surfaces, lacks_aperture)) return given;
+  return lens_detail::with_rims(given, rims_of(given, rows));
+}
+
+Lens compile(const Prescription& prescription, const CompileOptions& options) {
+  return compile(prescription, std::array{prescription.reference_wavelength_nm}, options);
+}
+
+Prescription with_apertures(const Prescription& prescription, const CompileOptions& options) {
+  Prescription result = prescription;
+  for (SurfaceRow& row : result.surfaces) {
+    if (row.semi_diameter_computed) row.semi_diameter.reset();
+    row.semi_diameter_computed = false;
+  }
+  if (std::ranges::none_of(result.surfaces, lacks_aperture)) return result;
+  const Prescription given = result;
+  const DesignData& design = given.design;
+  const double nm =
+      design.wavelengths.empty() ? given.reference_wavelength_nm : design.wavelengths[design.primary_wavelength].nm;
+
+  // Beams change slowly from one zoom position to the next.
+  constexpr std::size_t most = 9;
+  const std::size_t count = std::max<std::size_t>(given.configurations.size(), 1), tried = std::min(count, most);
+  for (std::size_t k = 0; k < tried; ++k) {
+    CompileOptions own = options;
+    own.primary_nm.reset();
+    own.configuration = tried == 1 ? 0 : k * (count - 1) / (tried - 1);
+    const Lens lens = lens_detail::compile_as_given(given, std::array{nm}, own);
+    const std::vector<double> rims = rims_of(lens, configured(given, own.configuration));
+    for (std::size_t i = 0; i < rims.size(); ++i) {
+      SurfaceRow& row = result.surfaces[i];
+      if (!lacks_aperture(given.surfaces[i]) || !std::isfinite(rims[i])) continue;
+      row.semi_diameter = std::max(rims[i], row.semi_diameter.value_or(0));
+      row.semi_diameter_computed = true;
+    }
+  }
+  return result;
+}
+
+}  // namespace petzval::inline v0
