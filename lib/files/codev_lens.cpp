@@ -256,7 +256,7 @@ void CodevBuilder::build_zooms() {
         if (!z.values[i].empty()) list[i].name = z.values[i];
         continue;
       }
-      const double value = in_.number(z.line, "ZOO", z.values[i]);
+      const double value = is_infinite(z.values[i]) ? codev_endless : in_.number(z.line, "ZOO", z.values[i]);
       if (z.what == "fno") list[i].f_number = value;
       if (setting) {
         const bool length = *setting == ApertureSetting::entrance_pupil_diameter;

@@ -301,7 +301,10 @@ void CodevReader::lens_surface(Words w) {
   if (lens_.surfaces.size() >= most_surfaces + 2) {
     throw Error(in_.where() + ": more than " + std::to_string(most_surfaces) + " surfaces, wanted fewer");
   }
-  CodevSurface s{.line = line_, .shape = value(w, 1), .thickness = value(w, 2)};
+  // Other programs write planes and far objects as "inf"; without RDM, this number is no curvature.
+  const bool plane = w.size() > 1 && is_infinite(w[1]), endless = w.size() > 2 && is_infinite(w[2]);
+  if (plane && lens_.curvatures.value_or(false)) in_.must_be(line_, w[0], in_quotes(w[1]), "a finite curvature");
+  CodevSurface s{.line = line_, .shape = plane ? 0 : value(w, 1), .thickness = endless ? codev_endless : value(w, 2)};
   if (w.size() > 3) {
     if (same(w[3], "REFL") || same(w[3], "REFL.")) {
       s.mirror = true;
@@ -369,7 +372,9 @@ void CodevReader::not_a_shape(Words w) {
 void CodevReader::thickness(Words w) {
   if (zoomed_values(w)) return;
   const bool named = w.size() > 1 && number_of(w[1]);
-  (named ? numbered(w, w[1]) : surface(w)).thickness = needed(w, named ? 2 : 1);
+  const std::size_t at = named ? 2 : 1;
+  const bool endless = at < w.size() && is_infinite(w[at]);
+  (named ? numbered(w, w[1]) : surface(w)).thickness = endless ? codev_endless : needed(w, at);
 }
 
 void CodevReader::shape(Words w) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <map>
@@ -8,6 +9,7 @@
 #include <vector>
 
 #include "core/text.hpp"
+#include "glass_names.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/f_number.hpp"
@@ -26,6 +28,9 @@ std::string quoted(std::string text) {
   std::ranges::replace(text, '\'', ' ');
   return '\'' + one_line(std::move(text)) + '\'';
 }
+
+/// "SCHOTT" for schott and schott-legacy.
+std::string maker_of(const Glass& glass) { return upper(glass.catalogue.substr(0, glass.catalogue.find('-'))); }
 
 class CodevWriter {
  public:
@@ -69,25 +74,33 @@ class CodevWriter {
   std::vector<std::optional<double>> beams_;  ///< diameter for each position; empty if the design declares the beam
 };
 
-/// Names of catalogues where the tables have the same n_d; private glasses, by their indices, for all others.
+/// "BK7_SCHOTT": the name without dashes and the maker, as CODE V names the glasses of all its catalogues.
+std::string codev_name(const Glass& glass) {
+  std::string name;
+  for (const char c : glass.name) {
+    if (c != '-' && c != ' ') name.push_back(c);
+  }
+  return name + '_' + maker_of(glass);
+}
+
+/// Catalogue glasses keep their names if the name and the maker mean this glass; other media become private glasses.
 void CodevWriter::name_media() {
+  std::optional<GlassNames> names;
   std::vector<Medium> media{p_.object_space};
   for (const SurfaceRow& row : p_.surfaces) media.push_back(row.medium);
   for (const Medium& medium : media) {
     const bool known = std::ranges::any_of(names_, [&](const auto& entry) { return entry.first == medium; });
     if (known || medium.is_air()) continue;
-    const Glass* found = out_.glass(medium);
-    if (found && !medium.nd && found->catalogue.find('-') == std::string::npos) {
-      std::string name;
-      for (const char c : found->name) {
-        if (c != '-' && c != ' ') name.push_back(c);
+    if (const Glass* found = out_.glass(medium); found && !medium.nd) {
+      if (!names) names.emplace(out_.glasses());
+      if (names->find(found->name, std::array{maker_of(*found)}, {}, Numbers::stated) == found) {
+        names_.emplace_back(medium, codev_name(*found));
+        continue;
       }
-      names_.emplace_back(medium, name + '_' + found->catalogue);
-    } else {
-      const std::string name = "PRIVATE" + std::to_string(private_.size() + 1);
-      names_.emplace_back(medium, name);
-      private_.emplace_back(name, medium);
     }
+    const std::string name = "PRIVATE" + std::to_string(private_.size() + 1);
+    names_.emplace_back(medium, name);
+    private_.emplace_back(name, medium);
   }
 }
 
@@ -109,6 +122,7 @@ void CodevWriter::private_glasses() {
   out_.line("PRV");
   out_.line("PWL " + to_text(c_nm) + ' ' + to_text(d_line_nm) + ' ' + to_text(f_nm));
   bool without_vd = false;
+  std::string list;
   for (const auto& entry : private_) {
     const std::string& name = entry.first;
     const Medium& medium = entry.second;
@@ -119,11 +133,16 @@ void CodevWriter::private_glasses() {
       return medium.vd && *medium.vd > 0 ? abbe_index(nd, *medium.vd, nm) : nd;
     };
     without_vd = without_vd || !medium.vd;
+    list += (list.empty() ? "" : ", ") + name + " (" + (medium.glass ? *medium.glass + ", " : "") + "n_d " +
+            to_text(nd, 7) + ')';
     out_.line(quoted(name) + ' ' + to_text(at(c_nm)) + ' ' + to_text(nd) + ' ' + to_text(at(f_nm)));
   }
   out_.line("END");
   if (without_vd) out_.lose("vd", "glasses without V_d get the same index at all wavelengths");
-  out_.lose("glass", "glasses whose n_d no catalogue has are private ones, named PRIVATE1 and so on");
+  out_.lose("glass",
+            "media without the name and n_d of a catalogue glass become private ones, with indices at C, d and "
+            "F alone: " +
+                list);
 }
 
 /// Diameter of the parallel beam whose exact rays fill the stop in a position; nullopt if the beam is unlimited.
@@ -139,7 +158,8 @@ std::optional<double> CodevWriter::beam_diameter(std::size_t position) {
 
 void CodevWriter::design() {
   const DesignData& d = p_.design;
-  if (d.aperture && d.aperture->setting != ApertureSetting::stop_size) {
+  const bool by_stop = d.aperture && d.aperture->setting == ApertureSetting::stop_size;
+  if (d.aperture && !by_stop && d.aperture->value > 0) {
     const char* word = "EPD ";
     switch (d.aperture->setting) {
       case ApertureSetting::f_number:
@@ -154,7 +174,11 @@ void CodevWriter::design() {
       beams_.push_back(beam_diameter(i));
     }
     if (beams_[0]) out_.line("EPD " + to_text(*beams_[0]));
-    if (d.aperture) out_.lose("aperture", "of the stop's size becomes the diameter of the entrance pupil");
+    if (by_stop) out_.lose("aperture", "of the stop's size becomes the diameter of the entrance pupil");
+    if (d.aperture && !by_stop) {
+      out_.lose("aperture",
+                std::string(name(d.aperture->setting)) + " of 0 becomes the diameter of the entrance pupil");
+    }
   }
   // Wavelengths fall from the first to the last.
   std::vector<std::pair<DesignWavelength, bool>> waves;
@@ -199,7 +223,8 @@ void CodevWriter::surface(std::size_t i) {
   if (row.stop) out_.line("  STO");
   if (row.comment) out_.line("  SLB " + quoted(*row.comment));
   // The beams of zoom positions give the size of their stop.
-  const bool limited = row.semi_diameter && std::isfinite(*row.semi_diameter) && !(row.stop && zoomed_beam());
+  const bool limited = row.semi_diameter && std::isfinite(*row.semi_diameter) && !row.semi_diameter_computed &&
+                       !(row.stop && zoomed_beam());
   if (limited) out_.line("  CIR " + to_text(*row.semi_diameter));
   if (row.obscuration_semi_diameter.value_or(0) > 0) {
     out_.line(std::string(row.mirror ? "  CIR HOL " : "  CIR OBS ") + to_text(*row.obscuration_semi_diameter));

@@ -32,6 +32,10 @@ bool same_maker(std::string_view catalogue, std::string_view own) {
 
 int age(const Glass& glass) { return media_detail::age(glass.catalogue); }
 
+/// Rank of the maker if nothing else decides: names without a prefix (F2, SK16) are Schott's; CDGM has other glasses of
+/// the same names.
+int maker(const Glass& glass) { return same_maker(glass.catalogue, "schott") ? 0 : glass.catalogue == "cdgm" ? 2 : 1; }
+
 /// Position of a glass's catalogue in a list; the size of the list if the catalogue is not listed.
 std::ptrdiff_t place_in(std::span<const std::string> catalogues, const Glass& glass) {
   const auto listed = std::ranges::find_if(
@@ -58,8 +62,9 @@ const Glass* GlassNames::find(std::string_view name, std::span<const std::string
   const auto rank = [&](const Glass& glass) {
     const double off = nd ? std::round(std::abs(glass.nd - *nd) / 1e-6) : 0;  // within its digits
     const std::ptrdiff_t place = place_in(catalogues, glass);
-    return numbers == Numbers::stated ? std::tuple(off, place, age(glass), 0.0)
-                                      : std::tuple(0.0, place, age(glass), is_listed(catalogues, glass) ? 0.0 : off);
+    return numbers == Numbers::stated
+               ? std::tuple(off, place, age(glass), 0.0, maker(glass))
+               : std::tuple(0.0, place, age(glass), is_listed(catalogues, glass) ? 0.0 : off, maker(glass));
   };
   const auto [first, last] = by_name_.equal_range(bare(name));
   const Glass* best = nullptr;

@@ -82,8 +82,8 @@ void set_the_stop(Prescription& lens, std::span<const StopSize> sizes) {
 
 }  // namespace
 
-Import::Import(std::string where, std::string_view format, const GlassCatalogue* glasses)
-    : where_(std::move(where)), glasses_(glasses) {
+Import::Import(std::string where, std::string_view format, const ReadOptions& options)
+    : where_(std::move(where)), entry_(options.entry), glasses_(options.glasses) {
   const std::filesystem::path path = where_;
   lens.id = path.stem().string();
   lens.imported = FileOrigin{std::string(format), path.filename().string()};
@@ -103,6 +103,11 @@ void Import::refuse(int line, std::string_view command, const std::string& found
   if (line > 0) text += ": line " + std::to_string(line);
   if (!command.empty()) text += ": " + std::string(beginning(command, 60));
   throw Error(text + " is " + found + ", wanted " + wanted);
+}
+
+void Import::must_be(int line, std::string_view parameter, const std::string& value, const std::string& rule) const {
+  throw Error(where_ + ':' + std::to_string(line) + ": " + std::string(beginning(parameter, 60)) + " = " + value +
+              "; must be " + rule);
 }
 
 double Import::number(int line, std::string_view command, std::string_view word) const {

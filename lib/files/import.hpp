@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "glass_names.hpp"
+#include "petzval/files/lens_file.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/media/glass.hpp"
 #include "petzval/prescription/prescription.hpp"
@@ -18,8 +19,9 @@ namespace petzval::inline v0::files_detail {
 /// A prescription on its way from a file of another program: where it comes from, what was assumed, and the glasses.
 class Import {
  public:
-  /// where: the file's name, for messages. glasses: null means glass_tables(), loaded for the first glass.
-  Import(std::string where, std::string_view format, const GlassCatalogue* glasses);
+  /// @param where    the file's name, for messages
+  /// @param options  a null catalogue means glass_tables(), loaded for the first glass
+  Import(std::string where, std::string_view format, const ReadOptions& options);
 
   Prescription lens;  ///< `imported` is set
   /// True if the design's aperture is a rounded number that describes the lens. It launches no beam: the rim of the
@@ -33,6 +35,9 @@ class Import {
   /// Throws Error: "file: line 7: CURV is found, wanted wanted".
   [[noreturn]] void refuse(int line, std::string_view command, const std::string& found,
                            const std::string& wanted) const;
+  /// Throws Error: "file:7: parameter = value; must be rule".
+  [[noreturn]] void must_be(int line, std::string_view parameter, const std::string& value,
+                            const std::string& rule) const;
   /// The word as a number; refuses what is none, also one with a decimal comma, beyond double or not a number.
   double number(int line, std::string_view command, std::string_view word) const;
 
@@ -47,6 +52,8 @@ class Import {
                std::optional<double> vd, Numbers numbers = Numbers::stated);
   const GlassCatalogue& glasses();
   const std::string& where() const noexcept { return where_; }
+  /// ReadOptions::entry.
+  const std::string& entry() const noexcept { return entry_; }
 
   /// Rows compiled for their reference wavelength: the d line, or the primary wavelength of the design if a glass has
   /// no index at the d line.
@@ -66,7 +73,7 @@ class Import {
   void compare_the_declared();
   void declare();
 
-  std::string where_;
+  std::string where_, entry_;
   const GlassCatalogue* glasses_;
   std::optional<GlassNames> names_;  ///< names in glasses_; filled when the first glass is looked up
   std::size_t left_out_ = 0;

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/text.hpp"
 #include "io/json.hpp"
 #include "petzval/core/error.hpp"
 
@@ -49,7 +50,9 @@ std::string with_quoted_numbers(std::string_view text) {
 /// Receives the events of nlohmann's parser, and makes a tree of them where its owner can empty it.
 class Builder {
  public:
-  Builder(nlohmann::json& root, const std::string& where) : next_(&root), where_(where) {}
+  /// tokens: of the text as it is in the file.
+  Builder(nlohmann::json& root, const std::string& where, std::string_view text)
+      : next_(&root), where_(where), tokens_(text) {}
 
   bool null() { return add(nullptr); }
   bool boolean(bool value) { return add(value); }
@@ -63,17 +66,21 @@ class Builder {
   bool end_object() { return close(); }
   bool end_array() { return close(); }
   bool key(std::string& name) {
+    tokens_.next();
     next_ = &(*open_.back())[name];
     return true;
   }
-  bool parse_error(std::size_t byte, const std::string&, const nlohmann::json::exception& error) {
-    if (dynamic_cast<const nlohmann::json::parse_error*>(&error)) {
-      throw Error(where_ + ": byte " + std::to_string(byte) + " is no JSON, wanted a lens");
-    }
-    throw Error(where_ + ": a number is out of range, wanted finite numbers");
+  bool parse_error(std::size_t, const std::string&, const nlohmann::json::exception& error) {
+    tokens_.next();
+    const std::string token = io_detail::in_quotes(tokens_.token());
+    if (dynamic_cast<const nlohmann::json::parse_error*>(&error)) fail("not JSON: " + token);
+    fail(token + " is out of range; must be a finite number");
   }
 
  private:
+  [[noreturn]] void fail(const std::string& message) const {
+    throw Error(where_ + ':' + tokens_.line_and_column(tokens_.byte()) + ": " + message);
+  }
   nlohmann::json& place() {
     if (open_.empty() || open_.back()->is_object()) return *next_;
     open_.back()->push_back(nullptr);
@@ -81,19 +88,20 @@ class Builder {
   }
   template <class Value>
   bool add(Value&& value) {
+    tokens_.next();
     place() = std::forward<Value>(value);
     return true;
   }
   bool open(nlohmann::json::value_t type) {
-    if (open_.size() >= deepest) {
-      throw Error(where_ + ": more than " + std::to_string(deepest) + " levels, wanted fewer");
-    }
+    tokens_.next();
+    if (open_.size() >= deepest) fail("more than " + std::to_string(deepest) + " levels of brackets; must be fewer");
     nlohmann::json& here = place();
     here = type;
     open_.push_back(&here);
     return true;
   }
   bool close() {
+    tokens_.next();
     open_.pop_back();
     return true;
   }
@@ -101,6 +109,7 @@ class Builder {
   nlohmann::json* next_;               ///< the root, then the member whose key was read last
   std::vector<nlohmann::json*> open_;  ///< an entry moves only while none of its own is open
   const std::string& where_;
+  io_detail::JsonTokens tokens_;
 };
 
 /// From the leaves on: the destructor of a list or object that has entries allocates, and ends the program where there
@@ -114,28 +123,38 @@ void empty(nlohmann::json& value) noexcept {
 }  // namespace
 
 // The first constructor is done before the text is read, so that whatever is thrown then finds the destructor.
-JsonTree::JsonTree(std::string_view text, const std::string& where) : JsonTree() {
+JsonTree::JsonTree(std::string_view text, std::string where) : JsonTree() {
+  text_ = text, where_ = std::move(where);
   if (text.size() > largest_text) {
-    throw Error(where + ": " + std::to_string(text.size()) + " bytes, wanted at most " + std::to_string(largest_text));
+    throw Error(where_ + ": " + std::to_string(text.size()) + " bytes; must be at most " +
+                std::to_string(largest_text));
   }
-  Builder builder(root_, where);
+  Builder builder(root_, where_, text);
   nlohmann::json::sax_parse(with_quoted_numbers(text), &builder);
 }
 
 JsonTree::~JsonTree() { empty(root_); }
 
+void JsonTree::refuse(const std::string& path, const std::string& value, const std::string& rule) const {
+  // Paths begin with "file". In a database they begin with the key of the lens.
+  const std::string_view in_text = path == "file"              ? std::string_view()
+                                   : path.starts_with("file.") ? std::string_view(path).substr(5)
+                                                               : std::string_view(path);
+  throw Error(where_ + io_detail::json_position(text_, std::string(in_text)) + ": " + path +
+              (value == "missing" ? " is " : " = ") + value + "; must be " + rule);
+}
+
 std::string shown(const nlohmann::json& value) {
   const auto* word = value.get_ptr<const std::string*>();
-  return io_detail::in_quotes(word ? *word : value.dump());
+  if (word) return io_detail::in_quotes(*word);
+  const std::string text = value.dump();
+  constexpr std::size_t longest = 60;
+  return text.size() <= longest ? text : std::string(beginning(text, longest)) + "...";
 }
 
 const nlohmann::json* JsonObject::find(const char* key) const {
   const auto found = json.find(key);
   return found == json.end() || found->is_null() ? nullptr : &*found;
-}
-
-void JsonObject::refuse(const char* key, const std::string& found, const std::string& wanted) const {
-  in.refuse(0, path + '.' + key, found, wanted);
 }
 
 std::optional<double> JsonObject::number(const char* key) const {
@@ -171,7 +190,7 @@ bool JsonObject::flag(const char* key) const {
 JsonObject JsonObject::object(const char* key) const {
   const nlohmann::json* value = find(key);
   if (!value || !value->is_object()) refuse(key, value ? shown(*value) : "missing", "an object");
-  return {*value, path + '.' + key, in};
+  return {*value, path + '.' + key, in, tree};
 }
 
 void JsonObject::name_others(std::initializer_list<std::string_view> used) const {

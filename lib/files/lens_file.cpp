@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "codev_reader.hpp"
+#include "flaresim_reader.hpp"
 #include "import.hpp"
 #include "io/json.hpp"
 #include "lentil_reader.hpp"
@@ -14,6 +15,7 @@
 #include "petzval/core/error.hpp"
 #include "petzval/core/read_file.hpp"
 #include "petzval/io/lens_json.hpp"
+#include "petzval/pupil/apertures.hpp"
 #include "table_reader.hpp"
 #include "text_file.hpp"
 #include "zemax_reader.hpp"
@@ -24,8 +26,8 @@ namespace {
 using namespace files_detail;
 
 constexpr const char* wanted =
-    "a lens: petzval JSON, Zemax .zmx, CODE V .seq, OSLO .len, an OpticalBench or renderer's table, lentil or optiland "
-    "JSON";
+    "a lens: petzval JSON, Zemax .zmx, CODE V .seq, OSLO .len, FlareSim .lens, an OpticalBench table, a table of "
+    "surfaces, lentil or optiland JSON";
 
 /// A format of another program: how to know it, and how to read it.
 struct Format {
@@ -41,15 +43,49 @@ constexpr std::array formats{
     Format{"opticalbench", is_opticalbench, read_opticalbench},
     Format{"optiland", is_optiland, read_optiland},
     Format{"lentil", is_lentil, read_lentil},
+    Format{"flaresim", is_flaresim, read_flaresim},
     Format{"codev", is_codev, read_codev},
     Format{"table", is_table, read_table},
 };
+
+/// A line of dashes and colons, which rules the columns of BEAM FOUR.
+bool is_ruler(std::string_view line) {
+  return line.size() >= 8 && line.find(':') != std::string_view::npos &&
+         line.find_first_not_of("-_: \t") == std::string_view::npos;
+}
+
+/// Throws Error for the lens of a program that has no reader here, with the format in which it exports lenses.
+void refuse_other_programs(std::string_view text, const std::string& where) {
+  const std::string_view start = trimmed(text);
+  if (start.starts_with('{') && text.find("\"optical_model\"") != std::string_view::npos) {
+    throw Error(where + ": is a ray-optics model (.roa); must be exported from ray-optics as .seq or .zmx");
+  }
+  std::string_view first;
+  for (Lines lines(text); lines.next() && lines.number() <= 8;) {
+    const std::string_view line = trimmed(lines.text());
+    if (first.empty()) first = line;
+    const auto head = words(first, 3);
+    const bool counts = head.size() > 1 && number(head[0]) && lower(head[1]).starts_with("surf");
+    if (counts && is_ruler(line)) {
+      throw Error(where + ": is a table of BEAM FOUR (.OPT); must be exported as .zmx, or typed as a table");
+    }
+  }
+}
 
 void refuse_warnings(const Prescription& lens, const std::string& where) {
   if (!lens.imported || lens.imported->warnings.empty()) return;
   const ImportWarning& first = lens.imported->warnings.front();
   throw Error(where + (first.line > 0 ? ": line " + std::to_string(first.line) : "") + ": " + first.command + ": " +
               first.message + "; wanted a file without assumptions (strict)");
+}
+
+/// The lens with the apertures that its source lacks.
+Prescription completed(Prescription lens, const GlassCatalogue* glasses) {
+  try {
+    return with_apertures(lens, {.glasses = glasses, .missing_glass = MissingGlass::abbe});
+  } catch (const Error&) {
+    return lens;  // it has no index at its own wavelength, which compile() says
+  }
 }
 
 }  // namespace
@@ -59,24 +95,25 @@ Prescription parse_lens(std::string bytes, const std::string& where, const ReadO
     const std::size_t first = bytes.find_first_not_of(" \t\r\n");
     return first != std::string::npos && bytes[first] == '{' && bytes.find("\"petzval-lens 1\"") != std::string::npos;
   }();
-  if (own_json) return parse_prescription(bytes, where);
+  if (own_json) return completed(parse_prescription(bytes, where), options.glasses);
 
   const std::string text = as_utf8(std::move(bytes), where, wanted);
+  refuse_other_programs(text, where);
   for (const Format& format : formats) {
     if (!format.is(text)) continue;
-    Import in(where, format.name, options.glasses);
+    Import in(where, format.name, options);
     format.read(text, in);
-    Prescription lens = in.finish();
+    Prescription lens = completed(in.finish(), options.glasses);
     if (options.strict) refuse_warnings(lens, where);
     return lens;
   }
-  if (trimmed(text).empty()) throw Error(where + ": is empty, wanted " + wanted);
-  // Most likely a damaged file of the library's own: its messages name the byte.
+  if (trimmed(text).empty()) throw Error(where + ": is empty; must be " + wanted);
+  // Most likely a damaged file of the library's own: its messages name line and column.
   if (const std::string_view start = trimmed(text); start.starts_with('{')) {
     return parse_prescription(text, where);
   }
   std::string first_line(trimmed(text.substr(0, text.find_first_of("\r\n"))));
-  throw Error(where + ": begins with " + io_detail::in_quotes(first_line) + ", wanted " + wanted);
+  throw Error(where + ": begins with " + io_detail::in_quotes(first_line) + "; must be " + wanted);
 }
 
 Prescription read_prescription(const std::filesystem::path& file, const ReadOptions& options) {

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cmath>
+#include <vector>
 
 #include "core/text.hpp"
 #include "io/json.hpp"
@@ -16,12 +17,57 @@ namespace {
 constexpr std::size_t most_surfaces = 10'000;
 constexpr std::array<const char*, 3> positions = {"short", "middle", "long"};
 
+/// A member of a lens as text, whatever its type; empty if it is absent.
+std::string text_of(const nlohmann::json& lens, const char* name) {
+  const auto found = lens.is_object() ? lens.find(name) : lens.end();
+  if (found == lens.end() || found->is_null()) return {};
+  return found->is_string() ? found->get<std::string>() : found->dump();
+}
+
+std::string title_of(const nlohmann::json& lens) {
+  std::string title;
+  for (const char* part : {"company", "product-name", "year"}) {
+    if (const std::string word = text_of(lens, part); !word.empty()) title += (title.empty() ? "" : " ") + word;
+  }
+  return title;
+}
+
+/// The lens of a database that a program asks for.
+struct Entry {
+  std::string key;
+  const nlohmann::json* lens = nullptr;
+};
+
+/// The lenses of a database with a key. Without such a key: the lenses with this name.
+std::vector<Entry> entries_of(const nlohmann::json& database, const std::string& word) {
+  std::vector<Entry> by_key, by_name;
+  for (const auto& [key, lens] : database.items()) {
+    if (same(key, word)) by_key.push_back({key, &lens});
+    if (same(text_of(lens, "product-name"), word) || same(title_of(lens), word)) by_name.push_back({key, &lens});
+  }
+  return by_key.empty() ? by_name : by_key;
+}
+
+/// "1 (angenieux double-gauss 1953), 2 (...)", as long as messages may be.
+std::string listed(const nlohmann::json& database) {
+  constexpr std::size_t longest = 4000;
+  std::string list;
+  for (const auto& [key, lens] : database.items()) {
+    if (list.size() > longest) return list + ", ...";
+    list += (list.empty() ? "" : ", ") + std::string(beginning(key, 60));
+    if (const std::string title = title_of(lens); !title.empty())
+      list += " (" + std::string(beginning(title, 80)) + ')';
+  }
+  return list;
+}
+
 class LentilReader {
  public:
   explicit LentilReader(Import& in) : in_(in) {}
   void read(std::string_view text);
 
  private:
+  Entry choose(const nlohmann::json& database) const;
   void lens(const JsonObject& o);
   void element(const JsonObject& e);
   void thickness(const JsonObject& e, SurfaceRow& row);
@@ -65,17 +111,24 @@ void LentilReader::element(const JsonObject& e) {
   } else if (material != "air") {
     row.medium.nd = e.needed("ior");
     if (const double vd = e.number("abbe").value_or(0); vd > 0) row.medium.vd = vd;
-    if (!material.empty() && material != "glass" && material != "none") row.medium.glass = e.text("material");
+    const bool is_name = !material.empty() && material != "glass" && material != "none" && material != "abbe";
+    if (is_name) row.medium.glass = e.text("material");
   }
   if (row.radius != 0 && std::abs(row.radius) >= 9999) row.radius = geometry == "planar" ? 0 : row.radius;
   const double rim = e.number("housing-radius").value_or(0);
   if (rim > 0) row.semi_diameter = rim;
   const nlohmann::json* asphere = e.find("aspherical-equation");
   if (geometry == "aspherical" || (asphere && asphere->is_array())) {
-    e.refuse("lens-geometry", "aspherical", "spherical or planar: the format does not say what its coefficients are");
+    e.refuse("lens-geometry", "aspherical",
+             "spherical, planar, cyl-x or cyl-y: the format does not define its coefficients");
   }
-  if (geometry.starts_with("cyl")) {
-    e.refuse("lens-geometry", io_detail::in_quotes(geometry), "spherical or planar surfaces");
+  // The letter names the axis of the cylinder: normals of cyl-y have no y component.
+  if (geometry == "cyl-y") {
+    row.curved_in = Section::x;
+  } else if (geometry == "cyl-x") {
+    row.curved_in = Section::y;
+  } else if (!geometry.empty() && geometry != "spherical" && geometry != "planar") {
+    e.refuse("lens-geometry", io_detail::in_quotes(geometry), "spherical, planar, cyl-x or cyl-y");
   }
   e.name_others(
       {"radius", "thickness", "material", "ior", "abbe", "housing-radius", "lens-geometry", "aspherical-equation"});
@@ -97,21 +150,13 @@ void LentilReader::lens(const JsonObject& o) {
   for (std::size_t i = 0; i < elements->size(); ++i) {
     const nlohmann::json& e = (*elements)[i];
     const std::string path = o.path + '.' + key + '[' + std::to_string(i) + ']';
-    if (!e.is_object()) in_.refuse(0, path, shown(e), "an object");
-    element({e, path, in_});
+    if (!e.is_object()) o.tree.refuse(path, shown(e), "an object");
+    element({e, path, in_, o.tree});
   }
-  const auto words = [&](const char* name) {
-    const nlohmann::json* value = o.find(name);
-    return !value ? std::string() : value->is_string() ? value->get<std::string>() : value->dump();
-  };
-  std::string title;
-  for (const char* part : {"company", "product-name", "year"}) {
-    if (const std::string word = words(part); !word.empty()) title += (title.empty() ? "" : " ") + word;
-  }
-  in_.lens.imported->title = title;
-  if (const std::string patent = words("patent-number"); !patent.empty()) in_.lens.source_design = patent;
+  in_.lens.imported->title = title_of(o.json);
+  if (const std::string patent = text_of(o.json, "patent-number"); !patent.empty()) in_.lens.source_design = patent;
   for (const char* note : {"notes", "lens-type", "photographic-description"}) {
-    if (const std::string word = words(note); !word.empty()) in_.lens.imported->notes.push_back(word);
+    if (const std::string word = text_of(o.json, note); !word.empty()) in_.lens.imported->notes.push_back(word);
   }
   for (const char* name : {"focal-length-mm-raytraced", "focal-length-mm-patent"}) {
     const nlohmann::json* value = o.find(name);
@@ -122,28 +167,33 @@ void LentilReader::lens(const JsonObject& o) {
   in_.lens.semi_diameters = "housing radii";
   o.name_others({"company", "product-name", "year", "patent-number", "notes", "lens-type", "photographic-description",
                  "focal-length-mm-raytraced", "focal-length-mm-patent", "fstop", "optical-elements-patent",
-                 "optical-elements-adjusted", "production-status"});
+                 "optical-elements-adjusted", "production-status", "production-ready", "commercial", "prime",
+                 "patent-location", "polynomial-optics", "implementation-version"});
+}
+
+/// The lens of a database that the options name; the only lens if the database has a single lens.
+Entry LentilReader::choose(const nlohmann::json& database) const {
+  const std::string& wanted = in_.entry();
+  const auto found = wanted.empty() ? std::vector<Entry>() : entries_of(database, wanted);
+  if (found.size() == 1) return found.front();
+  if (database.size() == 1) return {database.begin().key(), &*database.begin()};
+  const std::string rule = "; must be the key of one of " + std::to_string(database.size()) + ": " + listed(database);
+  if (wanted.empty()) throw Error(in_.where() + ": no lens is chosen (--configuration, ReadOptions::entry)" + rule);
+  throw Error(in_.where() + ": --configuration (ReadOptions::entry) = " + io_detail::in_quotes(wanted) +
+              (found.empty() ? "" : ", the name of " + std::to_string(found.size()) + " lenses") + rule);
 }
 
 void LentilReader::read(std::string_view text) {
   const JsonTree tree(text, in_.where());
   const nlohmann::json& document = tree.root();
-  if (!document.is_object()) in_.refuse(0, "file", "no object", "an object");
+  if (!document.is_object()) tree.refuse("file", shown(document), "an object");
   if (document.contains("optical-elements-patent") || document.contains("optical-elements-adjusted")) {
-    return lens({document, "file", in_});
+    return lens({document, "file", in_, tree});
   }
-  // A database: lenses by their numbers.
-  if (document.size() != 1) {
-    std::string names;
-    for (const auto& [key, value] : document.items()) {
-      if (names.size() < 200) names += (names.empty() ? "" : ", ") + key;
-    }
-    in_.refuse(0, "file", "a database of " + std::to_string(document.size()) + " lenses (" + names + ")",
-               "one lens in a file");
-  }
-  const auto only = document.begin();
-  if (!only->is_object()) in_.refuse(0, only.key(), "no object", "a lens");
-  lens({*only, only.key(), in_});
+  const Entry entry = choose(document);
+  if (!entry.lens->is_object()) tree.refuse(entry.key, shown(*entry.lens), "a lens");
+  if (document.size() > 1 || !entries_of(document, in_.entry()).empty()) in_.lens.imported->entry = entry.key;
+  lens({*entry.lens, entry.key, in_, tree});
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "petzval/files/open_track_io.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <string_view>
 #include <utility>
@@ -78,9 +79,11 @@ std::string distortion(const BrownConrady& fit, double size) {
 
 std::string how_well(const BrownConrady& in, const BrownConrady& out, const ExposureFalloff& falloff,
                      const Film& film) {
+  const double rises_to = std::min(in.rises_to_rad, out.rises_to_rad);
   return "Computed from a prescription. Of " + std::to_string(film.columns) + " x " + std::to_string(film.rows) +
          " pixels the largest error of D-U is " + to_text(in.largest_px, 2) + ", of U-D " + to_text(out.largest_px, 2) +
-         ", up to a field of " + to_text(degrees(in.field_rad), 3) + " degrees; that of exposureFalloff is " +
+         ", up to a field of " + to_text(degrees(in.field_rad), 3) + " degrees; beyond it they extrapolate, and from " +
+         to_text(degrees(rises_to), 3) + " degrees on they fold the picture. The error of exposureFalloff is " +
          to_text(falloff.largest_error, 2) + ".";
 }
 

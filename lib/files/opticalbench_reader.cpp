@@ -26,8 +26,14 @@ namespace {
 
 constexpr std::size_t most_rows = 10'000, most_columns = 100;
 
-/// The cells of a line, without the empty ones at its end; of one with too many, one more than are allowed.
+/// The cells of a line, without empty cells at its end; at most one cell more than allowed. A comment behind "//" ends
+/// the line, unless "//" is part of a word ("https://...").
 std::vector<std::string_view> cells_of(std::string_view line) {
+  for (std::size_t at = line.find("//"); at != std::string_view::npos; at = line.find("//", at + 1)) {
+    if (at > 0 && line[at - 1] != ' ' && line[at - 1] != '\t') continue;
+    line = line.substr(0, at);
+    break;
+  }
   std::vector<std::string_view> cells;
   for (std::size_t from = 0; cells.size() <= most_columns + 1;) {
     const std::size_t to = line.find('\t', from);
@@ -112,7 +118,7 @@ void OpticalBenchReader::read(std::string_view text) {
   for (Lines lines(text); lines.next();) {
     const std::string_view line = lines.text();
     const std::string_view start = trimmed(line);
-    if (start.empty() || start.starts_with('#')) continue;
+    if (start.empty() || start.starts_with('#') || start.starts_with("//")) continue;
     if (start.starts_with('[')) {
       section_ = lower(start.substr(1, start.find(']') == std::string_view::npos ? start.npos : start.find(']') - 1));
       continue;
@@ -193,7 +199,7 @@ void OpticalBenchReader::take_surface(int line, const Cells& cells) {
     surface.comment = "field stop";
   } else if (radius == "CG") {
     surface.comment = "cover glass";
-  } else if (!same(radius, "Infinity")) {
+  } else if (!is_infinite(radius)) {
     surface.radius = in_.number(line, "radius", radius);
   }
   std::optional<double> nd, vd;
@@ -236,7 +242,7 @@ void OpticalBenchReader::take_asphere(int line, const Cells& cells) {
     in_.refuse(line, "asphere", std::to_string(cells.size()) + " columns", "its name, radius and conic");
   if (!aspheres_.insert(named->second).second) in_.refuse(line, "asphere", "given twice", "one row of it");
   SurfaceRow& surface = in_.lens.surfaces[named->second];
-  const double radius = same(cells[1], "Infinity") ? 0 : in_.number(line, "radius", cells[1]);
+  const double radius = is_infinite(cells[1]) ? 0 : in_.number(line, "radius", cells[1]);
   if (std::abs(radius - surface.radius) > 1e-3 * std::abs(surface.radius)) {
     in_.warn(line, cells[0],
              "its asphere has a radius of " + to_text(radius) + ", [lens data] one of " + to_text(surface.radius) +

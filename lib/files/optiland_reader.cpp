@@ -30,8 +30,8 @@ const nlohmann::json& list(const JsonObject& object, const char* key) {
 JsonObject entry(const JsonObject& object, const char* key, std::size_t i) {
   const nlohmann::json& value = object.json.at(key).at(i);
   std::string path = object.path + '.' + key + '[' + std::to_string(i) + ']';
-  if (!value.is_object()) object.in.refuse(0, path, shown(value), "an object");
-  return {value, std::move(path), object.in};
+  if (!value.is_object()) object.tree.refuse(path, shown(value), "an object");
+  return {value, std::move(path), object.in, object.tree};
 }
 
 /// Measurements on refractiveindex.info that are in the table "misc".
@@ -148,7 +148,7 @@ void OptilandReader::terms(const JsonObject& geometry, int first, int step, Surf
     const int order = first + step * static_cast<int>(i);
     if (coefficient == 0) continue;
     if (order < 2 || order > 40) {
-      geometry.refuse("coefficients", "given for order " + std::to_string(order), "orders 2 to 40");
+      geometry.refuse("coefficients", to_text(coefficient) + " of order " + std::to_string(order), "of orders 2 to 40");
     }
     row.aspheric.push_back({order, coefficient});
   }
@@ -261,7 +261,7 @@ void OptilandReader::surfaces(const JsonObject& group) {
 
 void OptilandReader::read(std::string_view text) {
   const JsonTree tree(text, in_.where());
-  const JsonObject root{tree.root(), "file", in_};
+  const JsonObject root{tree.root(), "file", in_, tree};
   if (root.find("name") && root.find("name")->is_string()) in_.lens.imported->title = root.text("name");
   if (root.find("aperture")) aperture(root.object("aperture"));
   if (root.find("fields")) fields(root.object("fields"));

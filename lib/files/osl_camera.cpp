@@ -399,7 +399,8 @@ ASPHERE
       float r2 = x * x + y * y;
       float limit = rim[i];
       if (i == stop) limit = min(limit, stop_radius);
-      if (r2 > limit * limit || r2 < inner_rim[i] * inner_rim[i]) passes = 0;
+      // r2 is no number if the ray misses an asphere.
+      if (!(r2 <= limit * limit && r2 >= inner_rim[i] * inner_rim[i])) passes = 0;
       if (i == stop && blades > 2) {
         // The middle of the nearest blade's edge lies on the first axis.
         float sector = 6.28318531 / blades;

@@ -168,6 +168,12 @@ std::optional<double> number(std::string_view word) {
   return value;
 }
 
+bool is_infinite(std::string_view word) noexcept {
+  if (word.starts_with('+') || word.starts_with('-')) word.remove_prefix(1);
+  static constexpr std::array<std::string_view, 5> all = {"inf", "inf.", "infinity", "infinite", "\u221e"};
+  return std::ranges::any_of(all, [&](std::string_view other) { return same(other, word); });
+}
+
 char lower(char c) noexcept { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
 
 std::string lower(std::string_view text) {

@@ -43,6 +43,9 @@ std::string_view trimmed(std::string_view text);
 /// exponents (1.0D+10) are allowed, a decimal comma is not.
 std::optional<double> number(std::string_view word);
 
+/// True for "inf", "Infinity", "infinite" and the sign of it, in any case, with or without a sign.
+bool is_infinite(std::string_view word) noexcept;
+
 char lower(char c) noexcept;
 std::string lower(std::string_view text);
 std::string upper(std::string_view text);

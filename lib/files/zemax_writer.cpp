@@ -246,7 +246,7 @@ void ZemaxWriter::surface(std::size_t i) {
     out_.line("  GLAS " + glass(row.medium));
   }
   if (row.conic != 0) out_.line("  CONI " + to_text(row.conic));
-  if (row.semi_diameter && std::isfinite(*row.semi_diameter)) {
+  if (row.semi_diameter && std::isfinite(*row.semi_diameter) && !row.semi_diameter_computed) {
     out_.line("  DIAM " + to_text(*row.semi_diameter) + " 1 0 0 1 \"\"");
     const double inner = row.obscuration_semi_diameter.value_or(0);
     out_.line((inner > 0 ? "  CLAP " : "  FLAP ") + to_text(inner) + ' ' + to_text(*row.semi_diameter) + " 0");

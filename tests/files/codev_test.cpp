@@ -247,6 +247,19 @@ TEST(Codev, WhatNoLensHasIsRefused) {
             std::string::npos);
 }
 
+TEST(Codev, InfinityIsAPlaneOrAFarObject) {
+  for (const char* word : {"inf", "INF", "Infinity"}) {
+    const Prescription p = read(with(with(singlet, "SO 0 1e13", "SO " + std::string(word) + ' ' + word), "S 0 2",
+                                     "S " + std::string(word) + " 2"));
+    EXPECT_EQ(p.design.object_distance_mm, HUGE_VAL);
+    EXPECT_EQ(p.surfaces, read(singlet).surfaces);
+    EXPECT_EQ(read(with(singlet, "\nGO", "\nTHI SO 300\nTHI SO " + std::string(word) + "\nGO")).design, p.design);
+  }
+  EXPECT_TRUE(petzval::testing::refuses(with(singlet, "S 50 4", "S 50 inf"), "thickness"));
+  EXPECT_TRUE(
+      petzval::testing::refuses(with(with(singlet, "RDM;", "RDM N;"), "S 0 2", "S inf 2"), "x:13: S = \"inf\""));
+}
+
 TEST(Codev, ThreeLettersOfAWordAreEnough) {
   const Prescription p = read(with(with(singlet, "EPD 10", "EPDIAMETER 12"), "VUY 0 0.2", "VUYX 0 0.2"));
   EXPECT_EQ(p.design.aperture, (petzval::DesignAperture{petzval::ApertureSetting::entrance_pupil_diameter, 12}));

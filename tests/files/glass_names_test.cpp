@@ -35,13 +35,12 @@ double focal_length(const Prescription& p, double nm = petzval::d_line_nm, const
   return first_order(lens).effective_focal_length;
 }
 
-/// A double Gauss of 75 mm: glasses named, indices of the words behind "0 0".
+/// A double Gauss lens of 84 mm with named glasses. sk4, f2: the words after the names.
 std::string double_gauss(const std::string& catalogues, const std::string& sk4, const std::string& f2) {
   struct Row {
     double radius, thickness;
     std::string glass;
   };
-  // A scaled sketch of the kind: two positive menisci about cemented pairs.
   const std::vector<Row> rows{{42.2, 6.5, "SK4 " + sk4},
                               {113.3, 0.4, ""},
                               {28.3, 9.2, "SK4 " + sk4},
@@ -239,7 +238,7 @@ TEST(GlassNames, IdealMaterial_HasItsIndexAtEveryWavelength) {
 class InfraredGlass : public ::testing::Test {
  protected:
   void SetUp() override {
-    folder = fs::path(::testing::TempDir()) / "petzval_InfraredGlass";
+    folder = fs::path(::testing::TempDir()) / ::testing::UnitTest::GetInstance()->current_test_info()->name();
     fs::remove_all(folder);
     fs::create_directories(folder);
   }

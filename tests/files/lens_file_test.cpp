@@ -114,6 +114,13 @@ TEST(LensFile, OtherFilesAreNamed) {
   EXPECT_NE(refusal(""), "no error");
   EXPECT_NE(refusal("\xFF\xFE"s), "no error");
   EXPECT_NE(refusal("{\"lens\": 5}"), "no error");
+  // Models of other programs, and the format to export.
+  const std::string roa = refusal("{\"optical_model\": {\"seq_model\": {\"ifcs\": []}}}");
+  for (const char* word : {"ray-optics", ".seq", ".zmx"}) EXPECT_NE(roa.find(word), std::string::npos) << roa;
+  const std::string opt = refusal(
+      "  3 surfaces  SIMPLE.OPT\n  index   Z     Curv    Diam   Mir/Lens\n--------:-----:-------:------:---------:\n"
+      "   1.0  : 0.0 : 0.02  : 10 : Lens\n");
+  EXPECT_NE(opt.find("BEAM FOUR"), std::string::npos) << opt;
 }
 
 TEST(LensFile, HugeFilesAreReadOrRefusedSoon) {
@@ -125,7 +132,7 @@ TEST(LensFile, HugeFilesAreReadOrRefusedSoon) {
   EXPECT_EQ(refusal(surfaces), "x: more than 10000 surfaces, wanted fewer");
   std::string rows;
   for (int i = 0; i < 200'000; ++i) rows += "50 1 1.5 10\n";
-  EXPECT_EQ(refusal(rows), "x: more than 10000 surfaces, wanted fewer");
+  EXPECT_EQ(refusal(rows), "x: more than 10000 surfaces; must be fewer");
   std::string commands =
       "MODE SEQ\nUNIT MM\nSURF 0\nDISZ INFINITY\nSURF 1\nSTOP\nDISZ 5\nCURV 0.01\nDIAM 5 1\nGLAS ___BLANK 1 0 1.5 60\n";
   for (int i = 0; i < 200'000; ++i) commands += "A" + std::to_string(i) + "\n";

@@ -60,7 +60,7 @@ TEST(OpticalBench, EveryWordOfTheFormIsHonouredOrNamed) {
   EXPECT_EQ(s[1].medium.glass, "F2");
   EXPECT_EQ(s[2].radius, 0);
   EXPECT_EQ(s[3].comment, "field stop");
-  EXPECT_EQ(s[3].semi_diameter, std::nullopt);
+  EXPECT_FALSE(s[3].semi_diameter);
   EXPECT_EQ(s[3].thickness, 10);
   EXPECT_TRUE(s[4].stop);
   EXPECT_EQ(s[4].semi_diameter, 10);
@@ -122,6 +122,16 @@ TEST(OpticalBench, ConstantsSayWhichPowersTheCoefficientsHave) {
   EXPECT_EQ(orders("AsphericalOddCount\t1"), (Orders{3, 4, 6, 8, 10}));
   EXPECT_EQ(orders("AsphericalOddCount\t2"), (Orders{3, 4, 5, 6, 8}));
   EXPECT_EQ(orders("AsphericalOddCount\t20"), (Orders{3, 4, 5, 6, 7}));
+}
+
+TEST(OpticalBench, PlanesHaveASignAndLinesHaveComments) {
+  const auto lens = parse_lens(plain, "x.txt");
+  for (const char* word : {"-Infinity", "+Infinity", "inf"}) {
+    EXPECT_EQ(parse_lens(with(plain, "3\tInfinity", "3\t" + std::string(word)), "x.txt"), lens) << word;
+  }
+  const std::string commented = with(with(plain, "1\tAS", "// a comment\n1\tAS"), "d2\t97\n", "d2\t97 // mm\n");
+  EXPECT_EQ(parse_lens(commented, "x.txt"), lens);
+  EXPECT_EQ(parse_lens(with(plain, "title\tplain", "title\thttps://x"), "x.txt").imported->title, "https://x");
 }
 
 TEST(OpticalBench, OnePositionIsNoConfiguration) {

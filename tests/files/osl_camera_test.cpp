@@ -98,7 +98,7 @@ std::vector<Found> run(const Lens& lens, const Setting& s, const std::vector<Sam
   std::vector<Found> found;
   std::ifstream lines(out);
   for (Found f; lines >> f.p[0] >> f.p[1] >> f.p[2] >> f.d[0] >> f.d[1] >> f.d[2] >> f.c;) found.push_back(f);
-  EXPECT_EQ(found.size(), samples.size());
+  EXPECT_EQ(found.size(), samples.size()) << lens.name();
   fs::remove_all(folder);
   return found;
 }

@@ -2,6 +2,8 @@
 // Every lens of data/lenses goes into another program's format and comes back as the same lens.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <string>
@@ -176,6 +178,81 @@ const Write table = [](const Prescription& p) { return petzval::format_table(p);
 const Write zemax = [](const Prescription& p) { return petzval::format_zemax(p, &glasses()); };
 const Write codev = [](const Prescription& p) { return petzval::format_codev(p, &glasses()); };
 
+/// A lens of catalogue glasses: current, discontinued ones of Schott, and of other makers.
+Prescription catalogue_lens() {
+  Prescription p = singlet();
+  p.name = "catalogue";
+  p.surfaces.clear();
+  for (const auto& [glass, catalogue] :
+       {std::pair("BK7", "schott-legacy"), std::pair("SK16", "schott-legacy"), std::pair("SK4", "schott-legacy"),
+        std::pair("F2", "schott"), std::pair("N-LAK9", "schott"), std::pair("S-BSL7", "ohara"), std::pair("F2", "cdgm"),
+        std::pair("FC5", "hoya")}) {
+    p.surfaces.push_back(
+        {.radius = 80, .thickness = 3, .medium = {.glass = glass, .catalogue = catalogue}, .semi_diameter = 9});
+    p.surfaces.push_back({.radius = -150, .thickness = 1, .semi_diameter = 9});
+  }
+  p.surfaces.front().stop = true;
+  p.surfaces.back().thickness = 5;
+  return p;
+}
+
+TEST(RoundTrip, CodevKeepsCatalogueGlassesAtEveryWavelength) {
+  const Prescription lens = catalogue_lens();
+  const WrittenLens written = codev(lens);
+  for (const char* name :
+       {"BK7_SCHOTT", "SK16_SCHOTT", "SK4_SCHOTT", "F2_SCHOTT", "NLAK9_SCHOTT", "SBSL7_OHARA", "F2_CDGM"}) {
+    EXPECT_NE(written.text.find(name), std::string::npos) << name;
+  }
+  EXPECT_EQ(written.text.find("PRIVATE"), std::string::npos) << written.text;
+  EXPECT_FALSE(lost(written, "glass"));
+  const Prescription back = read(written);
+  for (const double nm : {486.1327, 587.5618, 656.2725, 435.8, 500.0, 620.0, 706.5}) {
+    const auto first = [nm](const Prescription& p) {
+      return petzval::first_order(compile(p, std::array{nm}, {.glasses = &glasses()}));
+    };
+    const auto a = first(lens), b = first(back);
+    EXPECT_NEAR(b.effective_focal_length / a.effective_focal_length, 1, 1e-9) << nm;
+    EXPECT_NEAR(b.back_focal_distance / a.back_focal_distance, 1, 1e-9) << nm;
+  }
+  EXPECT_TRUE(back.imported->warnings.empty()) << back.imported->warnings.front().message;
+}
+
+// An index of its own, and a medium without a name, have no place in a catalogue.
+TEST(RoundTrip, CodevNamesTheMediaThatBecomePrivate) {
+  Prescription lens = catalogue_lens();
+  lens.surfaces[0].medium.nd = 1.5168 + 0.0005;
+  lens.surfaces[2].medium = {.nd = 1.62, .vd = 60};
+  const WrittenLens written = codev(lens);
+  const auto loss = std::ranges::find(written.losses, "glass", &petzval::ImportWarning::command);
+  ASSERT_NE(loss, written.losses.end());
+  for (const char* word : {"PRIVATE1 (BK7, n_d 1.5173)", "PRIVATE2 (n_d 1.62)"}) {
+    EXPECT_NE(loss->message.find(word), std::string::npos) << loss->message;
+  }
+  EXPECT_EQ(loss->message.find("SK4"), std::string::npos) << loss->message;
+  const Prescription back = read(written);
+  for (const double nm : {486.1327, 587.5618, 656.2725}) {
+    const auto focal_length = [nm](const Prescription& p) {
+      return petzval::first_order(
+                 compile(p, std::array{nm}, {.glasses = &glasses(), .missing_glass = petzval::MissingGlass::abbe}))
+          .effective_focal_length;
+    };
+    EXPECT_NEAR(focal_length(back) / focal_length(lens), 1, 1e-5) << nm;
+  }
+}
+
+TEST(RoundTrip, CodevWritesNoApertureOfZero) {
+  for (const auto setting : {petzval::ApertureSetting::entrance_pupil_diameter, petzval::ApertureSetting::f_number,
+                             petzval::ApertureSetting::image_na}) {
+    Prescription p = singlet();
+    p.design.aperture = {setting, 0};
+    const WrittenLens written = codev(p);
+    EXPECT_TRUE(lost(written, "aperture"));
+    EXPECT_GT(read(written).design.aperture.value().value, 0) << written.text;
+    p.surfaces = {{.radius = 0, .thickness = 1}};  // no pupil
+    EXPECT_EQ(codev(p).text.find("EPD"), std::string::npos);
+  }
+}
+
 TEST(RoundTrip, TheDesignsApertureComesBack) {
   using enum petzval::ApertureSetting;
   for (const double object : {HUGE_VAL, 200.0}) {
@@ -295,7 +372,8 @@ TEST(RoundTrip, RowsComeBack) {
     EXPECT_EQ(back.surfaces[1].obscuration_semi_diameter, 1);
     EXPECT_EQ(back.surfaces[1].semi_diameter, 8);
     EXPECT_EQ(back.surfaces[1].medium, p.surfaces[1].medium);
-    EXPECT_FALSE(back.surfaces[2].semi_diameter);
+    EXPECT_TRUE(back.surfaces[2].semi_diameter_computed);
+    EXPECT_FALSE(back.surfaces[1].semi_diameter_computed);
   }
 }
 
@@ -382,9 +460,9 @@ TEST(RoundTrip, GlassesAndRimsOfConfigurationsComeBack) {
   p.configurations[1].changes = {{.surface = 2, .semi_diameter = 6}};
   const Prescription back = read(zemax(p));
   EXPECT_EQ(configured(back, 1).surfaces[2].semi_diameter, 6);
-  EXPECT_FALSE(configured(back, 0).surfaces[2].semi_diameter);
+  EXPECT_TRUE(configured(back, 0).surfaces[2].semi_diameter_computed);
   p.configurations[1].changes = {{.surface = 2, .semi_diameter = HUGE_VAL}};
-  EXPECT_FALSE(configured(read(zemax(p)), 1).surfaces[2].semi_diameter);
+  EXPECT_TRUE(configured(read(zemax(p)), 1).surfaces[2].semi_diameter_computed);
   // Air in the place of a lens.
   p.configurations[1].changes = {{.surface = 1, .medium = petzval::Medium{}}};
   EXPECT_EQ(configured(read(zemax(p)), 1).surfaces[1].medium, petzval::Medium{});

@@ -67,14 +67,16 @@ Texts codev_texts() {
 Texts tables() {
   return written([](const Prescription& lens) { return format_table(lens); });
 }
+Texts typed_tables() { return {seed("patent.txt"), seed("sheet.csv")}; }
+Texts flaresim_texts() { return {seed("flaresim.lens")}; }
 Texts oslo_texts() { return {sample("oslo_words.len")}; }
 Texts opticalbench_texts() { return {sample("opticalbench_macro.txt"), sample("opticalbench_zoom.txt")}; }
 Texts lentil_texts() { return {seed("lentil.json")}; }
 Texts optiland_texts() { return {seed("optiland.json")}; }
 Texts all_lens_texts() {
   Texts result;
-  for (const auto& texts :
-       {own_json, zemax_texts, codev_texts, tables, oslo_texts, opticalbench_texts, lentil_texts, optiland_texts}) {
+  for (const auto& texts : {own_json, zemax_texts, codev_texts, tables, typed_tables, flaresim_texts, oslo_texts,
+                            opticalbench_texts, lentil_texts, optiland_texts}) {
     const Texts some = texts();
     result.insert(result.end(), some.begin(), some.begin() + 1);
   }

@@ -11,6 +11,8 @@ namespace petzval::fuzz {
 std::vector<std::string> own_json();
 std::vector<std::string> zemax_texts();
 std::vector<std::string> codev_texts();
+std::vector<std::string> typed_tables();
+std::vector<std::string> flaresim_texts();
 std::vector<std::string> oslo_texts();
 std::vector<std::string> opticalbench_texts();
 std::vector<std::string> tables();

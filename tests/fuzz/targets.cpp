@@ -28,6 +28,8 @@ std::span<const Target> targets() {
       Target{"petzval_json", "lens_file", fuzz_lens_file, own_json, 8192, 1000},
       Target{"zemax", "lens_file", fuzz_lens_file, zemax_texts, 8192, 600},
       Target{"codev", "lens_file", fuzz_lens_file, codev_texts, 8192, 600},
+      Target{"typed_table", "lens_file", fuzz_lens_file, typed_tables, 4096, 600},
+      Target{"flaresim", "lens_file", fuzz_lens_file, flaresim_texts, 4096, 600},
       Target{"oslo", "lens_file", fuzz_lens_file, oslo_texts, 4096, 600},
       Target{"opticalbench", "lens_file", fuzz_lens_file, opticalbench_texts, 4096, 600},
       Target{"table", "lens_file", fuzz_lens_file, tables, 4096, 600},

@@ -18,6 +18,9 @@ struct ReadOptions {
   bool strict = false;
   /// Indices of glasses that a file only names. Null: glass_tables(), loaded if a name occurs.
   const GlassCatalogue* glasses = nullptr;
+  /// The lens to read of a file that holds several (a lentil database): its key, or its name if no other lens has the
+  /// name. Not used by other files. Prescription::imported->entry names the lens that was read.
+  std::string entry{};
 };
 
 /// Reads a lens from a file of any of these formats, which it knows by their content:
@@ -27,22 +30,24 @@ struct ReadOptions {
 ///     codev                 .seq
 ///     oslo                  .len
 ///     opticalbench          the tables of Photons to Photos, .txt
-///     table                 renderers' tables: radius, thickness, index, aperture, four columns or five
-///     lentil, optiland      their JSON
+///     flaresim              .lens
+///     table                 rows of numbers, with heads or without: renderers', patents', CSV (data/README.md)
+///     lentil, optiland      their JSON; of a database of lentil, ReadOptions::entry
 ///
 /// Text may be UTF-8, UTF-16 or Latin-1, with any line ends; lengths become millimetres. A command of the file is
 /// honoured, or is named in Prescription::imported->warnings with its line, or the file is refused: never does a lens
 /// come out that differs from the file without a word. What changes nothing of the lens (merit functions, tolerances,
 /// colours, windows) is left out. A declared aperture launches the beam and the rim of the stop clips it: the size of
-/// the stop, in each configuration, is the smaller one. Solves of a .zmx have the values that the file states.
+/// the stop, in each configuration, is the smaller one. Solves of a .zmx have the values that the file states. Surfaces
+/// without a clear aperture get the aperture of with_apertures().
 ///
 /// A glass that a file names has n_d and V_d of its formula. If a glass of another catalogue or name is taken, a
 /// warning names both. If a glass has no index at the d line (germanium), reference_wavelength_nm is the primary
 /// wavelength.
 ///
-/// Throws Error that names file, line, what was found and what was wanted; for other programs' binary files, what they
-/// are. A file has at most largest_file_bytes. Time is proportional to the size of the file; tests/README.md has the
-/// memory of the largest inputs.
+/// Throws Error that names file, line, value and rule (of JSON also the column), or the kind of a file that is no lens
+/// or that only another program reads. A file has at most largest_file_bytes. Time is proportional to the size of the
+/// file; tests/README.md has the memory of the largest inputs.
 PETZVAL_API Prescription read_prescription(const std::filesystem::path& file, const ReadOptions& options = {});
 
 /// The same from memory. `where` is the name of the source in messages.
@@ -66,8 +71,9 @@ PETZVAL_API WrittenLens format_table(const Prescription& prescription, const Gla
 /// another line than d are restated there, as in a .seq. Throws Error for cylinders curved along x and for a closed
 /// stop.
 PETZVAL_API WrittenLens format_zemax(const Prescription& prescription, const GlassCatalogue* glasses = nullptr);
-/// A .seq of CODE V, in millimetres. Glasses of the tables keep their names where the printed n_d is theirs; others
-/// become private ones. Throws Error for aspheric terms that it lacks: of odd order, of order 2 and above 20.
+/// A .seq of CODE V, in millimetres. Glasses of the tables keep their names (BK7_SCHOTT) if the n_d is theirs; other
+/// media become private glasses with indices at C, d and F. Throws Error for aspheric terms that it lacks: of odd
+/// order, of order 2 and above 20.
 PETZVAL_API WrittenLens format_codev(const Prescription& prescription, const GlassCatalogue* glasses = nullptr);
 
 }  // namespace petzval::inline v0

@@ -19,12 +19,13 @@ struct ImportWarning {
 
 /// The file of another program from which a prescription was read.
 struct FileOrigin {
-  std::string format{};      ///< "zemax", "codev", "oslo", "opticalbench", "table", "lentil" or "optiland"
+  std::string format{};      ///< "zemax", "codev", "oslo", "opticalbench", "flaresim", "table", "lentil", "optiland"
   std::string file{};        ///< its name without folders
   std::string units = "mm";  ///< of its lengths: "mm", "cm", "in" or "m"; those of the prescription are mm
   std::string title{};
   std::vector<std::string> notes{};
   std::vector<ImportWarning> warnings{};
+  std::string entry{};  ///< the lens of a file that holds several, by its key; else empty
 
   bool operator==(const FileOrigin&) const = default;
 };

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+// The .lens files of FlareSim.
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "lens_text.hpp"
+#include "petzval/lens/lens.hpp"
+#include "petzval/paraxial/first_order.hpp"
+
+namespace {
+
+using petzval::Prescription;
+using petzval::testing::read;
+using petzval::testing::refuses;
+using petzval::testing::warning;
+using petzval::testing::with;
+
+/// 49.83 mm, f/4.98 by semi-diameters.
+const std::string lens = R"(# A singlet 50mm f/4.98
+#
+# Patent: none
+# 3 surfaces, 1 glass element, f/5.0
+
+name: Singlet 50mm f/4.98
+focal_length: 49.83
+
+surfaces:
+# radius       thickness    ior      abbe     semi_ap   coating
+  50.6         5.2          1.5168   64.2     12.7      1      # front
+  -50.6        1            1.00000  0.00     12.7      0
+  stop         46.1         1.00000  0.00     4.7       0
+)";
+
+TEST(FlareSim, SaysWhatTheFileSays) {
+  const Prescription p = read(lens);
+  EXPECT_EQ(p.imported->format, "flaresim");
+  EXPECT_EQ(p.imported->title, "Singlet 50mm f/4.98");
+  EXPECT_EQ(p.focal_length_mm, 49.83);
+  EXPECT_EQ(p.f_number, 4.98);  // from the name; comments round the f-number
+  EXPECT_EQ(p.imported->notes.size(), 3u);
+  EXPECT_TRUE(p.imported->warnings.empty());
+  const std::vector<petzval::SurfaceRow> expected = {
+      {.radius = 50.6,
+       .thickness = 5.2,
+       .medium = {.nd = 1.5168, .vd = 64.2},
+       .semi_diameter = 12.7,
+       .comment = "front"},
+      {.radius = -50.6, .thickness = 1, .semi_diameter = 12.7},
+      {.radius = 0, .thickness = 46.1, .semi_diameter = 4.7, .stop = true}};
+  EXPECT_EQ(p.surfaces, expected);
+  EXPECT_EQ(read(with(lens, "  stop  ", "  STOP  ")).surfaces, expected);
+  EXPECT_EQ(read(with(with(lens, "# radius       thickness    ior      abbe     semi_ap   coating\n", ""), "# front",
+                      "#front"))
+                .surfaces,
+            expected);
+}
+
+// In the public collection most files have full diameters in the column of semi-diameters.
+TEST(FlareSim, DiametersAreToldByTheDeclaredFNumber) {
+  std::string diameters = lens;
+  for (const auto& [old, now] :
+       {std::pair("12.7      1", "25.4  1"), std::pair("12.7      0", "25.4  0"), std::pair("4.7 ", "9.4 ")})
+    diameters = with(diameters, old, now);
+  EXPECT_EQ(read(diameters).surfaces, read(lens).surfaces);
+  EXPECT_NE(warning(diameters, "aperture").find("diameters"), std::string::npos);
+  EXPECT_NE(warning(diameters, "aperture").find("4.98"), std::string::npos);
+  // Without an f-number the name of the column counts, and that is said.
+  std::string silent = lens;
+  while (silent.find("f/") != std::string::npos) silent = with(silent, "f/", "n=");
+  EXPECT_EQ(read(silent).surfaces, read(lens).surfaces);
+  EXPECT_NE(warning(silent, "aperture"), "no warning");
+}
+
+TEST(FlareSim, PlanesAndCylindersHaveWords) {
+  for (const char* plane : {"inf ", "0   ", "INF "}) EXPECT_EQ(read(with(lens, "-50.6", plane)).surfaces[1].radius, 0);
+  const auto type = [](const std::string& word) { return with(lens, "12.7      0", "12.7      0   " + word); };
+  EXPECT_EQ(read(type("cyl_y")).surfaces[1].curved_in, petzval::Section::x);
+  EXPECT_EQ(read(type("cyl_x")).surfaces[1].curved_in, petzval::Section::y);
+  EXPECT_EQ(read(type("sph")).surfaces, read(lens).surfaces);
+  EXPECT_TRUE(refuses(type("toric"), "x:12: type = \"toric\""));
+  EXPECT_TRUE(refuses(type("toric -95"), "x:12: row = "));
+}
+
+TEST(FlareSim, WhatIsNotUnderstoodIsRefusedOrNamed) {
+  EXPECT_TRUE(refuses(lens + "asphere 0 0 1e-6\n", "x:14: row = \"asphere\""));
+  EXPECT_TRUE(refuses(with(lens, "5.2 ", "5,2 "), "x:11: thickness = \"5,2\""));
+  EXPECT_TRUE(refuses(with(lens, "49.83", "long"), "x:7: focal_length = \"long\""));
+  EXPECT_TRUE(refuses(with(lens, "1.5168 ", "15168  "), "x:11: index = 15168"));
+  EXPECT_TRUE(refuses(with(lens, "surfaces:", "all surfaces\nsurfaces:"), "x:9: "));
+  EXPECT_NE(warning(with(lens, "name:", "maker: me\nname:"), "maker"), "no warning");
+  EXPECT_TRUE(refuses(lens.substr(0, lens.find("  50.6")), "no rows"));
+}
+
+}  // namespace
