@@ -55,7 +55,9 @@ void write(const Options& options) {
   const petzval::BrownConrady fit = petzval::fit_brown_conrady(distortion);
   std::cout << "pinhole " << number(fit.pinhole.focal_length_mm.y, 6) << " mm in front of its film, field "
             << number(petzval::degrees(fit.field_rad), 3) << " degrees; Brown-Conrady within "
-            << number(fit.largest_px, 2) << " pixels of " << film.columns << " x " << film.rows << '\n';
+            << number(fit.largest_px, 2) << " pixels of " << film.columns << " x " << film.rows
+            << "; beyond this field the coefficients extrapolate, up to "
+            << number(petzval::degrees(fit.rises_to_rad), 3) << " degrees\n";
   written(".opentrackio.json", [&](const auto& file) { petzval::write_open_track_io(lens, film, identity, file); });
   written(".stmap.exr", [&](const auto& file) {
     petzval::write_st_map(lens, film, identity, file, {.threads = petzval::processor_threads()});

@@ -60,7 +60,9 @@ double squares(const std::vector<Pair>& pairs, const Coefficients& k) noexcept {
   return sum;
 }
 
-/// Whether the denominator stays above 0 up to a radius.
+constexpr double beyond = 1.25;  ///< in largest radii: the range of usable coefficients beyond the film
+
+/// False if the denominator falls to 0 before a radius.
 bool without_pole(const Coefficients& k, double radius) noexcept {
   constexpr int steps = 200;
   for (int i = 1; i <= steps; ++i) {
@@ -70,11 +72,34 @@ bool without_pole(const Coefficients& k, double radius) noexcept {
   return true;
 }
 
-/// The solution of least squares for k1 to k3 and as many as wanted of the denominator's. row(pair, r2) gives the
-/// slopes by N and by D, and the wanted sum.
+/// The radius, at most `most`, up to which the radius that coefficients lead to rises.
+double rises_to(const Coefficients& k, double most) noexcept {
+  constexpr int steps = 400;
+  double before = 0;
+  for (int i = 1; i <= steps; ++i) {
+    const double r = most * i / steps, found = r * ratio(k, r * r);
+    if (!(found > before) || !(polynomial(r * r, &k[3]) > 1e-3)) return most * (i - 1) / steps;
+    before = found;
+  }
+  return most;
+}
+
+/// True if no term is so large that others cancel it. (A scale over the film that differs from the axis's makes terms
+/// of numerator and denominator 1e12; fisheyes of 150 degrees need 45.) Radii are over the largest one.
+bool bounded(const Coefficients& k) noexcept {
+  return std::all_of(k.begin(), k.end(), [](double term) { return std::abs(term) <= 100; });
+}
+
+/// Numbers of terms of numerator and denominator.
+struct Terms {
+  int in_numerator = 3, in_denominator = 0;
+};
+
+/// The solution of least squares for the first terms of numerator and denominator. row(pair, r2) gives the slopes by
+/// N and by D, and the sum that they have to make.
 template <class Row>
-Coefficients solved(const std::vector<Pair>& pairs, int in_denominator, const Row& row) {
-  const int unknowns = 3 + in_denominator;
+Coefficients solved(const std::vector<Pair>& pairs, const Terms& terms, const Row& row) {
+  const int n = terms.in_numerator, unknowns = n + terms.in_denominator;
   Eigen::MatrixXd rows(pairs.size(), unknowns);
   Eigen::VectorXd wanted(pairs.size());
   for (std::size_t i = 0; i < pairs.size(); ++i) {
@@ -82,14 +107,14 @@ Coefficients solved(const std::vector<Pair>& pairs, int in_denominator, const Ro
     const auto [by_numerator, by_denominator, sum] = row(pairs[i], r2);
     const auto at = static_cast<Eigen::Index>(i);
     for (int j = 0; j < unknowns; ++j) {
-      rows(at, j) = std::pow(r2, j % 3 + 1) * (j < 3 ? by_numerator : by_denominator);
+      rows(at, j) = j < n ? std::pow(r2, j + 1) * by_numerator : std::pow(r2, j - n + 1) * by_denominator;
     }
     wanted(at) = sum;
   }
   // Of least size where numerator and denominator say the same, as they do without distortion.
   const Eigen::VectorXd solution = core_detail::least_squares(rows, wanted);
   Coefficients k{};
-  for (int j = 0; j < unknowns; ++j) k[static_cast<std::size_t>(j)] = solution(j);
+  for (int j = 0; j < unknowns; ++j) k[static_cast<std::size_t>(j < n ? j : j - n + 3)] = solution(j);
   return k;
 }
 
@@ -99,18 +124,18 @@ struct Slopes {
 
 /// to = from N / D is linear in the coefficients after it is multiplied by D; the weights 1 / D of the round before
 /// make its errors those of `to` (Sanathanan and Koerner 1963).
-Coefficients linear_round(const std::vector<Pair>& pairs, int in_denominator, const Coefficients& before) {
-  return solved(pairs, in_denominator, [&](const Pair& pair, double r2) {
+Coefficients linear_round(const std::vector<Pair>& pairs, const Terms& terms, const Coefficients& before) {
+  return solved(pairs, terms, [&](const Pair& pair, double r2) {
     const double weight = 1 / polynomial(r2, &before[3]);
     return Slopes{weight * pair.from, -weight * pair.to, weight * (pair.to - pair.from)};
   });
 }
 
 /// Gauss and Newton's iteration for the errors of `to`, in steps that lessen them and meet no pole.
-Coefficients refined(const std::vector<Pair>& pairs, int in_denominator, Coefficients k, double reach) {
+Coefficients refined(const std::vector<Pair>& pairs, const Terms& terms, Coefficients k, double reach) {
   double now = squares(pairs, k);
   for (int round = 0; round < 30; ++round) {
-    const Coefficients step = solved(pairs, in_denominator, [&](const Pair& pair, double r2) {
+    const Coefficients step = solved(pairs, terms, [&](const Pair& pair, double r2) {
       const double slope = pair.from / polynomial(r2, &k[3]), value = ratio(k, r2);
       return Slopes{slope, -slope * value, pair.to - pair.from * value};
     });
@@ -131,13 +156,13 @@ Coefficients refined(const std::vector<Pair>& pairs, int in_denominator, Coeffic
 
 /// Coefficients of least squares, of forms without a pole up to `reach` radii; `fewer`: those with a shorter
 /// denominator, from which the search starts too.
-Coefficients fitted(const std::vector<Pair>& pairs, int in_denominator, const Coefficients& fewer, double reach) {
-  if (in_denominator == 0) return linear_round(pairs, 0, {});
-  Coefficients best = refined(pairs, in_denominator, fewer, reach), round{};
+Coefficients fitted(const std::vector<Pair>& pairs, const Terms& terms, const Coefficients& fewer, double reach) {
+  if (terms.in_denominator == 0) return linear_round(pairs, terms, {});
+  Coefficients best = refined(pairs, terms, fewer, reach), round{};
   for (int i = 0; i < 8; ++i) {
-    round = linear_round(pairs, in_denominator, round);
+    round = linear_round(pairs, terms, round);
     if (!without_pole(round, reach)) continue;
-    const Coefficients found = refined(pairs, in_denominator, round, reach);
+    const Coefficients found = refined(pairs, terms, round, reach);
     if (squares(pairs, found) < squares(pairs, best)) best = found;
   }
   return best;
@@ -191,16 +216,32 @@ BrownConrady fit_brown_conrady(const LensDistortion& distortion, const BrownConr
   // In radii over the largest one, so that all powers have one magnitude.
   std::vector<Pair> scaled;
   for (const Pair& pair : pairs) scaled.push_back({pair.from / farthest, pair.to / farthest});
+  const double px = distortion.focal_length_px().x;
+  const auto model_of = [&](const Coefficients& k) {
+    BrownConrady model = result;
+    for (std::size_t j = 0; j < k.size(); ++j) {
+      model.k[j] = k[j] / std::pow(farthest, 2.0 * static_cast<double>(j % 3 + 1));
+    }
+    measure(model, pairs, px);
+    const double rise = farthest * rises_to(k, 4);
+    model.rises_to_rad = std::atan(to_undistorted ? model.radius(rise) : rise);
+    return model;
+  };
+  // More terms than need be follow the errors of rounding, and lead astray beyond the film.
+  constexpr double exact_px = 2e-5;
+  std::vector<Terms> forms{{1, 0}, {2, 0}, {3, 0}};
+  if (options.form == RadialForm::rational) forms.insert(forms.end(), {{3, 1}, {3, 2}, {3, 3}});
+  BrownConrady rising = model_of({}), within = rising;
   Coefficients k{};
-  for (int terms = 0; terms <= (options.form == RadialForm::rational ? 3 : 0); ++terms) {
+  for (const Terms& terms : forms) {
     k = fitted(scaled, terms, k, 1.1);
-    BrownConrady next = result;
-    for (std::size_t j = 0; j < k.size(); ++j)
-      next.k[j] = k[j] / std::pow(farthest, 2.0 * static_cast<double>(j % 3 + 1));
-    measure(next, pairs, distortion.focal_length_px().x);
-    if (terms == 0 || next.rms_px < result.rms_px) result = next;
+    const BrownConrady next = model_of(k);
+    if (!bounded(k)) continue;
+    if (next.rms_px < within.rms_px) within = next;
+    if (rises_to(k, beyond) >= beyond && next.rms_px < 0.8 * rising.rms_px) rising = next;
+    if (rising.rms_px < exact_px) break;
   }
-  return result;
+  return rising.rms_px <= std::max(2 * within.rms_px, 0.001) ? rising : within;
 }
 
 }  // namespace petzval::inline v0

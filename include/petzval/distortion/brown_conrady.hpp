@@ -36,8 +36,11 @@ struct PETZVAL_API BrownConrady {
   Pinhole pinhole;
   double rms_px = 0;      ///< of the errors at 33 x 33 places of the film, without dark ones
   double largest_px = 0;  ///< of those errors
-  /// The widest field among these places, as the pinhole sees it: the coefficients are valid up to there.
+  /// The widest field among these places, as the pinhole sees it: the coefficients are fitted up to there.
   double field_rad = 0;
+  /// The field up to which r' rises with r, at most the field of 4 times the largest radius of the film: beyond it the
+  /// coefficients fold the picture or have a pole.
+  double rises_to_rad = 0;
 
   /// r' of r.
   double radius(double r) const noexcept;
@@ -49,8 +52,12 @@ struct BrownConradyOptions {
 };
 
 /// Fits the coefficients by least squares over the film, in pixels of the picture that they lead to, with the scale on
-/// the axis as it is. Of the rational forms with 0 to 3 terms in the denominator the best one is taken that has no pole
-/// up to 1.1 times the radius that the film sees.
+/// the axis as it is.
+///
+/// Forms of 1 to 3 terms in the numerator and 0 to 3 in the denominator are tried. Of the
+/// forms whose r' rises up to 1.25 times the largest radius of the film, the form with the least error is taken. If its
+/// RMS error is above 0.001 pixels and more than twice the error of a form without pole up to 1.1 times that radius,
+/// the latter is taken; rises_to_rad gives its range. No term exceeds 100 at the largest radius.
 ///
 /// Throws Error for lenses with cylinders and tilted films, whose distortion is not radial; for fisheyes, whose film
 /// sees fields of 88 degrees and more: no picture of a pinhole holds them; and for a dark film. st_maps() has the first

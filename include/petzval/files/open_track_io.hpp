@@ -16,7 +16,8 @@ namespace petzval::inline v0 {
 /// - static.camera: activeSensorPhysicalDimensions (mm) and activeSensorResolution, those of the film;
 /// - static.lens: make, model, serialNumber, nominalFocalLength (mm), distortionOverscanMax, and calibrationHistory,
 /// one
-///   text that says how large the errors of the distortion and of the falloff are, and up to which field they hold;
+///   text that says how large the errors of the distortion and of the falloff are, up to which field they hold, and
+///   from which field on the coefficients fold the picture;
 /// - lens: distortion as "Brown-Conrady D-U" and "Brown-Conrady U-D", whose radial coefficients are those of OpenLensIO
 ///   1.0: radii in mm on the film, k1, k3, k5 in the numerator and k2, k4, k6 in the denominator; overscan;
 ///   pinholeFocalLength (mm), projectionOffset (mm, to the right and down), entrancePupilOffset and focusDistance from
