@@ -177,7 +177,7 @@ if [ -x "$programs/bokeh_scene" ]; then
   blur leaves leaves --thin-lens-mm 50 --lens-diameter-mm 100 --focus-mm 5000 --layers 8
   blur cats_eyes statues --lens "$lenses/double_gauss_100mm_f1.35.json" --focus-mm 3000 --distance-from entrance_pupil --fov-deg 22
   blur surface statues --thin-lens-mm 50 --lens-diameter-mm 28 --focus-mm 5000 --points "$here/scenes/statues_focus.json"
-  blur night street --thin-lens-mm 100 --lens-diameter-mm 50 --focus-mm 3000 --fov-deg 14 --rays 32 --blades 6
+  blur night street --thin-lens-mm 100 --lens-diameter-mm 50 --focus-mm 3000 --fov-deg 14 --blades 6
   cp "$here/scenes.html" "$scenes_file"
 else
   echo "bokeh_scene was not built: no Embree (libembree-dev, libtinyobjloader-dev)"

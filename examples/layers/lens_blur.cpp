@@ -35,13 +35,15 @@ using petzval::RgbImage;
 struct Options {
   lens_blur::InputFlags input;
   lens_blur::LensFlags lens;
-  std::uint32_t layers = 4, supersample = 1, threads = static_cast<std::uint32_t>(petzval::processor_threads());
+  std::uint32_t layers = 4, supersample = 0, threads = static_cast<std::uint32_t>(petzval::processor_threads());
   std::uint32_t frames = 1;
-  double frames_per_second = 24, travel_mm = 0, highlights_above = 1;
+  double frames_per_second = 24, travel_mm = 0, highlights_above = -1;  ///< the last: below 0: threshold_of()
   bool compare = false;
   std::vector<std::string> formats;
   std::string out_folder;
 };
+
+constexpr examples::Range supersamples{1, 4, "1, 2 or 4"};
 
 double ms_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
@@ -86,17 +88,44 @@ RgbImage sharp_of(const petzval::LayerSet& layers, const petzval::LayerCamera& c
   return image;
 }
 
+lens_blur::LensFlags with_supersample(lens_blur::LensFlags flags, int side) {
+  flags.supersample = static_cast<std::uint32_t>(side);
+  return flags;
+}
+
+/// The brightness above which small lights become even discs, unless it is given. A light is seen as the dots of single
+/// rays if it is much brighter than its surroundings: 6 times the mean of the first layer, but no more than white, as
+/// which all above 1 is shown. In files that end at white, as PNGs do, what is white may be a light: 0.75 there.
+double threshold_of(const petzval::LayerSet& layers, bool of_file) {
+  double sum = 0;
+  float brightest = 0;
+  std::size_t count = 0;
+  for (std::size_t i = 0; layers.count() > 0 && i < layers.inverse_depth(0).size(); ++i) {
+    if (layers.inverse_depth(0)[i] < 0) continue;
+    float most = 0;
+    for (int c = 0; c < 3; ++c) most = std::max(most, layers.channel(0, c)[i]);
+    brightest = std::max(brightest, most);
+    sum += static_cast<double>(std::min(most, 1.0f)), ++count;
+  }
+  const double white = of_file && brightest <= 1 ? 0.75 : 1;
+  return count > 0 ? std::max(1e-3, std::min(white, 6 * sum / static_cast<double>(count))) : white;
+}
+
 class Job {
  public:
   explicit Job(const Options& options)
       : options_(options),
         threads_(static_cast<int>(options.threads)),
-        side_(static_cast<int>(options.supersample)),
         input_(options.input),
-        lens_(options.lens, input_.columns() * side_, input_.rows() * side_, input_.pose(), options.frames > 1) {
+        side_(options.supersample > 0 ? static_cast<int>(options.supersample)
+              : input_.scene()        ? 2
+                                      : 1),
+        lens_(with_supersample(options.lens, side_), input_.columns() * side_, input_.rows() * side_, input_.pose(),
+              options.frames > 1) {
     if (options.frames == 1 && options.travel_mm != 0) {
       throw petzval::Error("--travel-mm: found 1 frame, wanted 2 or more for a way over all of them");
     }
+    if (side_ == 3) throw petzval::Error(std::string("--supersample = 3; must be ") + supersamples.words);
     if (!input_.scene()) {
       if (options.compare) throw petzval::Error("--compare: files have no scene to compare with, wanted --scene");
       if (side_ > 1) throw petzval::Error("--supersample: files have the pixels that they have, wanted --scene");
@@ -143,14 +172,15 @@ class Job {
     if (!input_.scene()) plan.camera.overscan = 0;
 
     // A picture alone is worked out twice, and the second time counts: the first one finds no memory yet.
-    double peel_ms = 0, n_buffer_ms = 0, gather_ms = 0;
+    double peel_ms = 0, n_buffer_ms = 0, gather_ms = 0, threshold = 0;
     for (int run = 0; run < (options_.frames > 1 ? 1 : 2); ++run) {
       start = std::chrono::steady_clock::now();
       input_.fill(plan, static_cast<int>(options_.layers), threads_, layers_);
       n_buffer_ms = 1e3 * layers_.n_buffer_seconds();
       peel_ms = ms_since(start) - n_buffer_ms;
+      threshold = options_.highlights_above < 0 ? threshold_of(layers_, !input_.scene()) : options_.highlights_above;
       start = std::chrono::steady_clock::now();
-      petzval::gather(layers_, rays, {.threads = threads_, .highlights_above = options_.highlights_above}, blurred_);
+      petzval::gather(layers_, rays, {.threads = threads_, .highlights_above = threshold}, blurred_);
       gather_ms = ms_since(start);
     }
     const RgbImage picture = averaged(colours_of(blurred_), side_);
@@ -166,7 +196,7 @@ class Job {
               {"rows", picture.height},
               {"layers", layers_.count()},
               {"most_layers", plan.most_layers},
-              {"rays", options_.lens.rays},
+              {"rays", rays.count() * static_cast<std::size_t>(side_ * side_)},
               {"overscan_px", plan.camera.overscan},
               {"rays_ms", rays_ms},
               {"rays_error_px", rays.error_px()},
@@ -175,7 +205,9 @@ class Job {
               {"gather_ms", gather_ms},
               {"total_ms", peel_ms + n_buffer_ms + gather_ms},
               {"miss_rate", static_cast<double>(statistics.missed) / static_cast<double>(statistics.rays)},
-              {"highlights", statistics.highlights}};
+              {"highlights_above", threshold},
+              {"highlights", statistics.highlights},
+              {"supersample", side_}};
     if (options_.compare) compare(rays, picture, json);
     if (options_.frames == 1) {
       result_ = json;
@@ -188,6 +220,10 @@ class Job {
     const auto start = std::chrono::steady_clock::now();
     const RgbImage reference = averaged(input_.scene()->reference(rays, threads_), side_);
     json["reference_ms"] = ms_since(start);
+    // Both follow the same number of rays.
+    const auto ns_per_ray = [&](double ms) { return 1e6 * ms / static_cast<double>(blurred_.statistics.rays); };
+    json["ns_per_ray"] = ns_per_ray(json["total_ms"].get<double>());
+    json["reference_ns_per_ray"] = ns_per_ray(json["reference_ms"].get<double>());
     const lens_blur::Likeness all = lens_blur::likeness(picture, reference);
     json["psnr_db"] = examples::finite_or_null(all.psnr_db), json["ssim"] = all.ssim;
     if (side_ == 1) {
@@ -224,8 +260,9 @@ class Job {
   }
 
   Options options_;
-  int threads_, side_;
+  int threads_;
   lens_blur::LayerInput input_;
+  int side_;
   lens_blur::BlurLens lens_;
   petzval::LayerSet layers_;
   petzval::Blurred blurred_;
@@ -248,10 +285,13 @@ int main(int argc, char** argv) {
   constexpr examples::Range layers{1, 64, "a whole number from 1 to 64"};
   examples::add_count(app, "--layers", options.layers, layers, "surfaces behind each other, at most");
   app.add_flag("--compare", options.compare, "measure the picture of a scene against all rays traced");
-  examples::add_count(app, "--supersample", options.supersample, {1, 4, "a whole number from 1 to 4"},
-                      "pixels of a scene are so many in each direction, and averaged");
+  examples::add_count(app, "--supersample", options.supersample, supersamples,
+                      "pixels of a scene are so many in each direction, and averaged; the rays of a pixel are divided "
+                      "between them")
+      ->default_str("2; files: 1");
   examples::add_number(app, "--highlights-above", options.highlights_above, {0, 1e9, "a number from 0 to 1e9"},
-                       "radiance above which small lights become even discs; 0: none");
+                       "radiance above which small lights become even discs; 0: none")
+      ->default_str("6 times the mean; at most 1, or 0.75 in files that end at 1");
   auto* frames = examples::add_count(app, "--frames", options.frames, {1, 100000, "a whole number from 1 to 100000"},
                                      "blur_0001.* and so on; --points has focus points with keys then");
   examples::add_number(app, "--fps", options.frames_per_second, examples::positive_number,

@@ -70,7 +70,6 @@ petzval::Prescription thin_singlet(double focal_length, double diameter) {
   petzval::Prescription p;
   p.id = "thin", p.name = "thin lens of " + number(focal_length) + " mm";
   p.surfaces = {{.radius = radius,
-                 .thickness = 1e-6 * focal_length,
                  .medium = {.glass = "N-BK7", .nd = 1.5168},
                  .semi_diameter = std::min(diameter / 2, 0.9 * radius),
                  .stop = true},
@@ -102,10 +101,10 @@ void add_lens(examples::App& app, LensFlags& flags) {
   add_number(app, "--tilt-deg", flags.tilt_deg, tilt, "of the film, about the horizontal axis (degrees)");
   add_number(app, "--swing-deg", flags.swing_deg, tilt, "of the film, about the vertical axis (degrees)");
   constexpr examples::Range rays{1, 16384, "a whole number from 1 to 16384"};
-  add_count(app, "--rays", flags.rays, rays, "through the lens, for each pixel");
-  app.add_flag(
-      "--jitter", flags.jitter,
-      "16 sets of rays, of which pixels take one in turn: grain instead of repeated patterns, at a third of the speed");
+  add_count(app, "--rays", flags.rays, rays, "through the lens, for each pixel of the picture")
+      ->default_str("256; through surfaces 512 with --jitter");
+  app.add_flag("--jitter", flags.jitter,
+               "16 sets of rays, of which pixels take one in turn: grain instead of patterns");
   app.add_flag("--chroma", flags.chroma, "red, green and blue have rays of their own, at 650, 510 and 475 nm");
   add_iris(app, flags.iris);
   add_bokeh(app, flags.bokeh);
@@ -128,10 +127,15 @@ BlurLens::BlurLens(const LensFlags& flags, int columns, int rows, const renderer
     throw Error("--thin-lens-mm and --lens-diameter-mm: found one of them, wanted both");
   }
   thin_ = flags.thin_lens_mm > 0;
+  if (flags.rays == 0) {
+    flags_.rays = thin_ ? 256 : 512;
+    flags_.jitter = flags_.jitter || !thin_;
+  }
   if (thin_ && flags.iris.f_number > 0) throw Error("--f-number: a thin lens has --lens-diameter-mm");
   load();
-  const petzval::Camera plain = camera({});
+  const petzval::Camera plain = camera({}, flags.supersample);
   film_ = plain.film();
+  shown_ = camera({}, 1).film();
   if (!thin_) examples::say_what_does_not_fit(*lens_, film_);
   layers_ = thin_ ? petzval::layer_camera(columns, rows, petzval::radians(fov_deg())) : petzval::layer_camera(plain);
   if (keyed_ && !flags.surface.points_file.empty()) points_ = examples::read_focus_points(flags.surface.points_file);
@@ -160,17 +164,15 @@ void BlurLens::load() {
   }
   petzval::FocusOptions focus = flags_.focus.options();
   if (thin_) focus.criterion = petzval::FocusCriterion::paraxial;  // the only focus of a thin lens
-  try {
-    lens_ = petzval::with_focus(lens, flags_.focus_mm, focus);
-  } catch (const Error& error) {
-    throw Error("--focus-mm = " + number(flags_.focus_mm) + ": " + error.what());
-  }
+  lens_ = examples::for_flag("--focus-mm", [&] { return petzval::with_focus(lens, flags_.focus_mm, focus); });
   // Layers are seen from the entrance pupil.
   focus_depth_mm_ = flags_.focus_mm + petzval::pupils(*lens_).entrance.z - petzval::origin_z(*lens_, focus.origin);
   name_ = lens_->name();
 }
 
-petzval::Camera BlurLens::camera(const std::optional<petzval::FocalSurface>& surface) const {
+petzval::Camera BlurLens::camera(const std::optional<petzval::FocalSurface>& surface, std::uint32_t supersample) const {
+  const int columns = columns_ / static_cast<int>(flags_.supersample) * static_cast<int>(supersample),
+            rows = rows_ / static_cast<int>(flags_.supersample) * static_cast<int>(supersample);
   // The film that has the angle of the picture, by the ideal lens.
   double height = 24;
   if (thin_ || flags_.fov_deg > 0) {
@@ -180,10 +182,10 @@ petzval::Camera BlurLens::camera(const std::optional<petzval::FocalSurface>& sur
         std::abs(seen.at_infinity ? seen.position.y / seen.position.z : seen.position.y / (origin - seen.position.z));
     height = 2 * std::tan(petzval::radians(fov_deg()) / 2) / per_mm;
   }
-  const petzval::Film film{.width_mm = height * columns_ / rows_,
+  const petzval::Film film{.width_mm = height * columns / rows,
                            .height_mm = height,
-                           .columns = columns_,
-                           .rows = rows_,
+                           .columns = columns,
+                           .rows = rows,
                            .tilt_rad = petzval::radians(flags_.tilt_deg),
                            .swing_rad = petzval::radians(flags_.swing_deg)};
   const bool first_order = surface || !flags_.expressive.change_nothing();
@@ -202,7 +204,7 @@ std::optional<petzval::FocalSurface> BlurLens::surface_at(double time) {
   if (flags_.surface.points_file.empty()) return {};
   if (!keyed_) {
     if (surface_) return surface_;
-    const petzval::Camera plain = camera({});
+    const petzval::Camera plain = camera({}, 1);
     const renderer::LensCamera in_world(plain, pose_);
     return examples::read_focal_surface(flags_.surface, plain, flags_.focus.distance_origin(), flags_.focus_mm,
                                         [&](const petzval::Vec3<double>& p) { return in_world.to_lens(glm::vec3(p)); })
@@ -210,27 +212,26 @@ std::optional<petzval::FocalSurface> BlurLens::surface_at(double time) {
   }
   const petzval::IdealLens ideal = petzval::thick_lens(*lens_);
   const std::vector<petzval::FocalPoint> seen =
-      petzval::focal_points(ideal, film_, points_, {.time = time, .film = film_});
+      petzval::focal_points(ideal, film_, points_, {.time = time, .film = shown_});
   if (seen.empty()) return surface_;  // the last one stays
   return petzval::FocalSurface(
-      ideal, film_, seen,
+      ideal, shown_, seen,
       {.kind = flags_.surface.kind == "shepard" ? petzval::SurfaceKind::shepard : petzval::SurfaceKind::affine,
        .beta = flags_.surface.beta});
 }
 
 petzval::LensRays BlurLens::rays(double nearest_mm, int threads, double time) {
   if (keyed_) surface_ = surface_at(time);
-  const int sets = flags_.jitter ? 16 : 1;
-  std::vector<petzval::PupilPoint> points;
-  for (int set = 0; set < sets; ++set) {
-    const auto turned = petzval::vogel_points(static_cast<int>(flags_.rays), 0.618 * set);
-    points.insert(points.end(), turned.begin(), turned.end());
-  }
+  // Each part of a pixel has its own rays; all parts together have the number of rays that --rays gives.
+  const auto parts = static_cast<int>(flags_.supersample * flags_.supersample);
+  const int sets = flags_.jitter ? 16 : parts;
+  const std::vector<petzval::PupilPoint> points =
+      petzval::vogel_sets((static_cast<int>(flags_.rays) + parts - 1) / parts, sets);
   const petzval::LensRaysOptions options{.nearest_mm = nearest_mm, .sets = sets, .threads = threads};
   if (!thin_ || controls_.vignettes() || !flags_.expressive.change_nothing()) {
     std::vector<petzval::Wavelength> wavelengths;
     for (std::size_t i = 1; flags_.chroma && i <= colours_nm.size(); ++i) wavelengths.emplace_back(i);
-    return petzval::LensRays::of(camera(surface_), layers_, points, wavelengths, options);
+    return petzval::LensRays::of(camera(surface_, flags_.supersample), layers_, points, wavelengths, options);
   }
 
   petzval::ThinLens thin{.radius_mm = flags_.lens_diameter_mm / 2,

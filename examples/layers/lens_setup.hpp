@@ -27,7 +27,8 @@ struct LensFlags {
   double focus_mm = 0, fov_deg = 0;
   examples::FocusFlags focus;
   double tilt_deg = 0, swing_deg = 0;
-  std::uint32_t rays = 100;
+  std::uint32_t rays = 0;         ///< 0: 256 of a thin lens; 512 with jitter through surfaces
+  std::uint32_t supersample = 1;  ///< 1, 2 or 4: columns and rows per column and row of the result
   bool chroma = false, jitter = false;
   examples::IrisSetup iris;
   examples::BokehFlags bokeh;
@@ -51,7 +52,8 @@ class BlurLens {
  private:
   void load();
   double fov_deg() const;
-  petzval::Camera camera(const std::optional<petzval::FocalSurface>& surface) const;
+  /// supersample: pixels of the film for each one of the picture, in each direction.
+  petzval::Camera camera(const std::optional<petzval::FocalSurface>& surface, std::uint32_t supersample) const;
   std::optional<petzval::FocalSurface> surface_at(double time);
 
   LensFlags flags_;
@@ -63,6 +65,7 @@ class BlurLens {
   /// Of thin lenses as well: a thin singlet, whose first-order model it is.
   std::optional<petzval::Lens> lens_;
   petzval::Film film_;
+  petzval::Film shown_;  ///< with the pixels of the picture, in which focus points count
   petzval::BokehControls controls_;
   petzval::LayerCamera layers_;
   std::vector<petzval::FocusPoint> points_;

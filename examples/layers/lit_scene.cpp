@@ -302,10 +302,19 @@ petzval::RgbImage LitScene::reference(const petzval::LensRays& rays, int threads
   const auto focal = static_cast<float>(camera.focal_px);
   const auto axis = glm::vec2(camera.axis);
 
-  // Rays that all pixels share are worked out once, as a renderer with an accumulation buffer does.
-  std::vector<petzval::LayerRay> shared(count);
+  // Rays that all pixels of a set share are worked out once, as a renderer with an accumulation buffer does.
   const bool same = rays.shift_invariant() && rays.channels() == 1;
-  if (same) rays.exact_at(0, 0, 0, shared);
+  const int side = rays.sets() == 16 ? 4 : rays.sets() == 4 ? 2 : 1;
+  std::vector<petzval::LayerRay> shared(same ? count * static_cast<std::size_t>(rays.sets()) : 0);
+  const auto of_set = [&](int column, int row) {
+    return std::span(shared).subspan(static_cast<std::size_t>(row % side * side + column % side) * count, count);
+  };
+  for (int row = 0; same && row < side; ++row) {
+    for (int column = 0; column < side; ++column) {
+      rays.exact_at(0, column, row, of_set(column, row));
+      for (petzval::LayerRay& ray : of_set(column, row)) ray.at -= petzval::Vec2<double>{column, row};
+    }
+  }
 
   for_squares(camera.columns, camera.rows, threads, [&](const Square& square) {
     thread_local std::vector<petzval::LayerRay> own;
@@ -322,7 +331,8 @@ petzval::RgbImage LitScene::reference(const petzval::LensRays& rays, int threads
       for (std::size_t i = 0; i < count; ++i) {
         for (int lane = 0; lane < packet; ++lane) {
           if (!square.has(lane)) continue;
-          const petzval::LayerRay& ray = same ? shared[i] : own[static_cast<std::size_t>(lane) * count + i];
+          const petzval::LayerRay& ray = same ? of_set(square.column_of(lane), square.row_of(lane))[i]
+                                              : own[static_cast<std::size_t>(lane) * count + i];
           glm::vec2 at(ray.at);
           if (same)
             at += glm::vec2{static_cast<float>(square.column_of(lane)), static_cast<float>(square.row_of(lane))};

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <random>
 #include <string>
+#include <utility>
 
 #include "renderer/built_in_scenes.hpp"
 #include "renderer/solids.hpp"
@@ -115,11 +116,12 @@ SceneDescription street_scene() {
     light(scene, "traffic light", {-kerb + 300, 3000, -away - 9000}, 40, red, 1.0f);
   }
 
-  // Strings of bulbs hang across the street, from 5 m.
-  for (const float away : {5200.0f, 9500.0f, 15500.0f}) {
+  // Strings of bulbs hang across the street, from 5 m. Bulbs do not hide each other: a hidden
+  // bulb's light would show around the nearer bulb.
+  for (const auto& [away, shift] : {std::pair{5200.0f, 0.0f}, std::pair{9500.0f, 0.33f}, std::pair{15500.0f, -0.33f}}) {
     constexpr int bulbs = 9;
     for (int i = 0; i < bulbs; ++i) {
-      const float across = 2 * (static_cast<float>(i) + 0.5f) / bulbs - 1;  // -1 to 1
+      const float across = 2 * (static_cast<float>(i) + shift + 0.5f) / bulbs - 1;  // -1 to 1
       const float half_width = std::min(0.2f * away, walls);
       const float y = eye_height + 0.055f * away + 0.04f * away * across * across;
       const Rgb colours[] = {warm, warm, red, warm, green, warm};

@@ -90,7 +90,7 @@ class Gathering {
     for (std::size_t channel = 0; channel < rays_.table.channels; ++channel) {
       TileSums& sums = memory.sums[channel];
       for (int row = 0; row < tile.rows; ++row) {
-        const int from = row * TileSums::columns;
+        const int from = TileSums::place(row, 0, sums_side());
         for (float* plane : {sums.colour[0], sums.colour[1], sums.colour[2], sums.alpha, sums.total, sums.open,
                              sums.missed, sums.unknown}) {
           std::fill_n(plane + from, TileSums::columns, 0.0f);
@@ -157,11 +157,22 @@ class Gathering {
         };
         memory.ends.push_back(at_end(at_y, slope_y) * job.window.stride + at_end(at_x, slope_x));
       }
-      made = loops.same(job, {.count = stride,
-                              .steps = memory.steps.data(),
-                              .first = memory.first.data(),
-                              .weights = corners[0] + weight * stride,
-                              .ends = memory.ends.data()});
+      const LayerWindow all = job.window;
+      const int side = job.side = rays_.side();
+      for (int row = 0; row < std::min(side, tile.rows); ++row) {
+        for (int column = 0; column < std::min(side, tile.columns); ++column) {
+          const std::size_t count = rays_.rays_of_set(),
+                            begin = set_of(tile.left + column, tile.top + row, side) * count;
+          job.window = all.from(row, column);
+          job.columns = (tile.columns - column + side - 1) / side, job.rows = (tile.rows - row + side - 1) / side;
+          job.first_sum = TileSums::place(row, column, side);
+          made += loops.same(job, {.count = count,
+                                   .steps = memory.steps.data(),
+                                   .first = memory.first.data() + begin,
+                                   .weights = corners[0] + weight * stride + begin,
+                                   .ends = memory.ends.data() + begin});
+        }
+      }
     } else {
       memory.scratch.resize(2 * rays_.table.node_size());
       const DifferentRays rays{.count = rays_.rays_of_set(),
@@ -230,13 +241,16 @@ class Gathering {
     return w;
   }
 
+  /// As in TileSums::place().
+  int sums_side() const noexcept { return path_ == GatherPath::shift_invariant ? rays_.side() : 1; }
+
   void compose(const Tile& tile, const Memory& memory) {
     const std::size_t channels = rays_.table.channels;
     const float per_ray = 1 / static_cast<float>(rays_.rays_of_set());
     double missed = 0;
     for (int row = 0; row < tile.rows; ++row) {
       for (int column = 0; column < tile.columns; ++column) {
-        const int at = row * TileSums::columns + column;
+        const int at = TileSums::place(row, column, sums_side());
         const std::size_t pixel =
             static_cast<std::size_t>(tile.top + row) * static_cast<std::size_t>(picture_.columns) +
             static_cast<std::size_t>(tile.left + column);

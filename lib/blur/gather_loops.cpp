@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gather_loops.hpp"
 
+#include <utility>
+
 #include "pixel_steps.hpp"
 #include "ray_rows.hpp"
 #include "trace/lanes.hpp"
@@ -45,12 +47,27 @@ PETZVAL_INLINE Mask first_lanes(std::size_t count) noexcept {
   return lane < Numbers(static_cast<float>(count));
 }
 
-/// Pixels side by side, one for each lane.
-struct Beside {
+/// Every side-th number.
+template <int side, int... lanes>
+PETZVAL_INLINE Numbers load_every(const float* from, std::integer_sequence<int, lanes...> all) noexcept {
+  if constexpr (side == 1) {
+    return load(from);
+  } else {
+    const Numbers a = load_every<side / 2>(from, all), b = load_every<side / 2>(from + side / 2 * width, all);
+    return Numbers(__builtin_shufflevector(a.v, b.v, (2 * lanes)...));
+  }
+}
+
+/// Pixels `side` columns apart, one for each lane.
+template <int side>
+struct Apart {
   std::ptrdiff_t offset;
 
-  PETZVAL_INLINE Numbers operator()(const float* plane) const noexcept { return load(plane + offset); }
+  PETZVAL_INLINE Numbers operator()(const float* plane) const noexcept {
+    return load_every<side>(plane + offset, std::make_integer_sequence<int, width>{});
+  }
 };
+using Beside = Apart<1>;
 
 /// A pixel for each lane of some. Others are beyond the ends of their rays, where there may be no pixels: they find 0.
 struct Anywhere {
@@ -214,35 +231,35 @@ PETZVAL_INLINE void keep(TileSums& sums, int pixel, const Found<opaque, colours>
   add(sums.unknown + pixel, found.unknown);
 }
 
-/// One ray of pixels side by side, from a step on.
-template <bool opaque, int colours>
+/// One ray of pixels `side` columns apart, from a step on.
+template <int side, bool opaque, int colours>
 PETZVAL_INLINE std::uint64_t follow_ray(const LayerWindow& window, const Step* begin, const Step* from, const Step* end,
                                         std::ptrdiff_t last, Numbers gap, Numbers weight, Mask lanes,
                                         Found<opaque, colours>& found) noexcept {
   found.begin_ray(lanes);
   // All pixels passed in front of the first layer in the step before.
-  if (from != begin) found.front = in_front(load(window.depth + from[-1].offset));
+  if (from != begin) found.front = in_front(Apart<side>{from[-1].offset}(window.depth));
   std::uint64_t made = 0;
   for (const Step* step = from; step != end && any(found.seeking); ++step, ++made) {
-    meet(window, Beside{step->offset}, Beside{step[step == begin ? 0 : -1].offset}, Numbers(step->low),
+    meet(window, Apart<side>{step->offset}, Apart<side>{step[step == begin ? 0 : -1].offset}, Numbers(step->low),
          Numbers(step->high), gap, weight, found.seeking, found);
   }
   if (!any(found.seeking)) return made;
   end_partly(found);
-  end_in_void(window, Beside{last}, weight, found.seeking, found);
+  end_in_void(window, Apart<side>{last}, weight, found.seeking, found);
   for (const Step* step = end; step-- != begin && any(found.seeking);) {
-    guess(window, Beside{step->offset}, Numbers(step->low), weight, found.seeking, found);
+    guess(window, Apart<side>{step->offset}, Numbers(step->low), weight, found.seeking, found);
   }
   give_up(weight, found);
   return made;
 }
 
-/// The rays of `at_once` rows of pixels side by side. Where all pixels meet the first layer in the same step, which
-/// most do, nothing has to be told apart.
-template <bool opaque, int colours, int at_once>
+/// The rays of `at_once` rows of pixels `side` columns apart. In most cases all pixels meet the first layer in the same
+/// step, and need no masks.
+template <int side, bool opaque, int colours, int at_once>
 std::uint64_t follow_rows(const TileJob& job, const SameRays& rays, int row, int column) noexcept {
   LayerWindow windows[at_once];
-  for (int r = 0; r < at_once; ++r) windows[r] = job.window.from(row + r, column);
+  for (int r = 0; r < at_once; ++r) windows[r] = job.window.from((row + r) * side, column * side);
   const Mask lanes = first_lanes(static_cast<std::size_t>(job.columns - column));
   const bool full = opaque && every(lanes);
   Found<opaque, colours> found[at_once];
@@ -258,14 +275,14 @@ std::uint64_t follow_rows(const TileJob& job, const SameRays& rays, int row, int
       const Numbers low(step->low), high(step->high);
       Mask all = lanes, reached = first_lanes(0);
       for (int r = 0; r < at_once; ++r) {
-        const Numbers w = load(windows[r].depth + step->offset);
+        const Numbers w = Apart<side>{step->offset}(windows[r].depth);
         const Mask here = w >= low;
         reached = reached | here, all = all_of(all, here, w <= high);
       }
       if (every(all)) {
         for (int r = 0; r < at_once; ++r) {
           for (int c = 0; c < colours; ++c) {
-            found[r].colour[c] = found[r].colour[c] + weight * load(windows[r].colour[c] + step->offset);
+            found[r].colour[c] = found[r].colour[c] + weight * Apart<side>{step->offset}(windows[r].colour[c]);
           }
         }
         met = true;
@@ -276,24 +293,35 @@ std::uint64_t follow_rows(const TileJob& job, const SameRays& rays, int row, int
     made += static_cast<std::uint64_t>(at_once) * static_cast<std::uint64_t>(step - begin + met);
     if (met) continue;
     for (int r = 0; r < at_once; ++r)
-      made += follow_ray(windows[r], begin, step, end, rays.ends[i], gap, weight, lanes, found[r]);
+      made += follow_ray<side>(windows[r], begin, step, end, rays.ends[i], gap, weight, lanes, found[r]);
   }
-  for (int r = 0; r < at_once; ++r) keep(*job.sums, (row + r) * TileSums::columns + column, found[r], total);
+  for (int r = 0; r < at_once; ++r) {
+    keep(*job.sums, job.first_sum + (row + r) * TileSums::columns + column, found[r], total);
+  }
   return made;
 }
 
-template <bool opaque, int colours>
-std::uint64_t follow_same(const TileJob& job, const SameRays& rays) noexcept {
+template <int side, bool opaque, int colours>
+std::uint64_t follow_sets(const TileJob& job, const SameRays& rays) noexcept {
   constexpr int at_once = width == 16 ? 4 : 2;
   std::uint64_t made = 0;
   for (int column = 0; column < job.columns; column += width) {
     int row = 0;
     for (; row + at_once <= job.rows; row += at_once) {
-      made += follow_rows<opaque, colours, at_once>(job, rays, row, column);
+      made += follow_rows<side, opaque, colours, at_once>(job, rays, row, column);
     }
-    for (; row < job.rows; ++row) made += follow_rows<opaque, colours, 1>(job, rays, row, column);
+    for (; row < job.rows; ++row) made += follow_rows<side, opaque, colours, 1>(job, rays, row, column);
   }
   return made * static_cast<std::uint64_t>(width);
+}
+
+template <bool opaque, int colours>
+std::uint64_t follow_same(const TileJob& job, const SameRays& rays) noexcept {
+  switch (job.side) {
+    case 1: return follow_sets<1, opaque, colours>(job, rays);
+    case 2: return follow_sets<2, opaque, colours>(job, rays);
+    default: return follow_sets<4, opaque, colours>(job, rays);
+  }
 }
 
 Limits limits(const float* const* corners, std::size_t corner_count, std::size_t stride, std::size_t count, float w,

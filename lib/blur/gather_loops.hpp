@@ -9,8 +9,8 @@
 
 namespace petzval::inline v0::blur_detail {
 
-/// Layers around a tile: a window of them, or where rays leave them a copy with repeated edges. Lanes read up to 63
-/// numbers beyond the ends of what rays reach.
+/// Layers around a tile: a window of them, or a copy with repeated edges if rays leave them. Lanes read up to 66
+/// numbers beyond the pixels that rays reach.
 struct LayerWindow {
   int layers = 0;
   std::ptrdiff_t stride = 0;        ///< from row to row
@@ -28,9 +28,13 @@ struct LayerWindow {
   }
 };
 
-/// Sums over the rays of the pixels of a tile, [row][column], of weights and of weights times what was found.
+/// Sums over the rays of the pixels of a tile, of weights and of weights times what was found.
 struct TileSums {
   static constexpr int columns = 64, rows = 16, pixels = columns * rows;
+  /// Position of the sums of a pixel. side: pixels side columns and rows apart stand side by side, as they do on lanes.
+  static constexpr int place(int row, int column, int side) noexcept {
+    return (row % side * (rows / side) + row / side) * columns + column % side * (columns / side) + column / side;
+  }
   float colour[3][pixels], alpha[pixels];
   float total[pixels];    ///< of all rays
   float open[pixels];     ///< of those that ended in the void (alpha 1 less), where no surface is
@@ -44,7 +48,7 @@ struct Step {
   float low, high;  ///< low >= 0
 };
 
-/// The rays of a tile that are the same for all its pixels: ray i has the steps first[i] to first[i + 1] - 1.
+/// The rays that are the same for all pixels of a job: ray i has the steps first[i] to first[i + 1] - 1.
 struct SameRays {
   std::size_t count = 0;
   const Step* steps = nullptr;
@@ -64,10 +68,13 @@ struct DifferentRays {
   int side = 1;              ///< pixels take `count` rays of side x side sets in turn
 };
 
+/// A tile or, for `same`, the pixels of a tile that take one set of rays: every side-th column and row.
 struct TileJob {
   LayerWindow window;
-  int columns = 0, rows = 0;  ///< of the tile
-  int left = 0, top = 0;      ///< of the tile in the picture
+  int columns = 0, rows = 0;  ///< of the pixels
+  int side = 1;               ///< of `same`: 1, 2 or 4
+  int left = 0, top = 0;      ///< of the first pixel in the picture
+  int first_sum = 0;          ///< TileSums::place() of the first pixel
   int colours = 3;            ///< in common, 3 or 1
   bool opaque = true;
   float gap = 0;  ///< surfaces of neighbouring pixels whose inverse depths differ by no more are joined

@@ -13,7 +13,8 @@
 namespace petzval::inline v0::blur_detail {
 namespace {
 
-constexpr int block = NBuffer::block;
+constexpr std::size_t least_rays = 64, most_rays = 16384;  // of a stamp
+constexpr int group_cell = 16;                             // px
 
 /// The area that the lines of a node cover at an inverse depth, as an ellipse of the same moments has it.
 class CoveredArea {
@@ -50,11 +51,38 @@ class CoveredArea {
 
 }  // namespace
 
+void CountsIn::fill(int columns, int rows, int block, const std::vector<Highlight>& of) {
+  columns_ = columns, rows_ = rows, block_ = block;
+  stride_ = static_cast<std::size_t>((columns + block - 1) / block + 1);
+  before_.assign(stride_ * static_cast<std::size_t>((rows + block - 1) / block + 1), 0);
+  for (const Highlight& h : of) {
+    ++before_[static_cast<std::size_t>(h.row / block + 1) * stride_ + static_cast<std::size_t>(h.column / block + 1)];
+  }
+  for (std::size_t i = stride_; i < before_.size(); ++i) {
+    if (i % stride_ != 0) before_[i] += before_[i - 1] + before_[i - stride_] - before_[i - stride_ - 1];
+  }
+}
+
+std::uint32_t CountsIn::operator()(const PixelRect& rect) const noexcept {
+  if (before_.empty()) return 0;
+  const auto at = [&](int pixel, int end) { return static_cast<std::size_t>(std::clamp(pixel, 0, end - 1) / block_); };
+  const std::size_t left = at(rect.left, columns_), right = at(rect.right, columns_) + 1, top = at(rect.top, rows_),
+                    bottom = at(rect.bottom, rows_) + 1;
+  return before_[bottom * stride_ + right] + before_[top * stride_ + left] - before_[top * stride_ + right] -
+         before_[bottom * stride_ + left];
+}
+
 /// What a light of 1 adds to a rectangle of the picture, from the light's pixel on.
 struct Highlights::Stamp {
   int left = 0, top = 0, columns = 0, rows = 0;
   bool hidden = false;  ///< from some rays
   std::vector<float> light;
+};
+
+/// Highlights with one stamp.
+struct Highlights::Alike {
+  Group members;
+  Stamp stamp;
 };
 
 Highlights::Highlights(const LayerData& layers, const LensRays& rays, const GatherOptions& options, int overscan)
@@ -67,6 +95,10 @@ Highlights::Highlights(const LayerData& layers, const LensRays& rays, const Gath
   if (options.highlights_above == 0) return;
   find(static_cast<float>(options.highlights_above));
   make_groups();
+  if (found_.empty() || !rays_.shift_invariant) return;
+  for (std::size_t channel = 0; channel < rays_.table.channels; ++channel) {
+    shared_.push_back(rays_.dense({0, 0, 1, 1}, channel, most_rays));
+  }
 }
 
 void Highlights::find(float above) {
@@ -84,7 +116,9 @@ void Highlights::find(float above) {
     }
   }
   if (bright.empty()) return;
-  count_blocks(bright);
+  // In blocks of one pixel: the borders of larger blocks would treat neighbours differently.
+  CountsIn bright_in;
+  bright_in.fill(layers_.columns, layers_.rows, 1, bright);
 
   const RayTable& table = rays_.table;
   std::vector<CoveredArea> areas;
@@ -99,16 +133,16 @@ void Highlights::find(float above) {
   };
   const auto rays = static_cast<double>(rays_.rays_of_set());
   for (Highlight h : bright) {
-    h.area = static_cast<float>(areas[node(h.row, table.rows, table.node_rows) * table.node_columns +
-                                      node(h.column, table.columns, table.node_columns)]
+    h.area = static_cast<float>(areas[node(h.row, table.area.rows, table.node_rows) * table.node_columns +
+                                      node(h.column, table.area.columns, table.node_columns)]
                                     .at(h.inverse_depth));
     // Rays show a wide bright surface well: enough of each pixel's meet it.
     const int reach = static_cast<int>(std::sqrt(h.area / std::numbers::pi));
     const double covered =
-        count_in({h.column - reach, h.row - reach, h.column + reach, h.row + reach}) / std::max(h.area, 1.0f);
+        bright_in({h.column - reach, h.row - reach, h.column + reach, h.row + reach}) / std::max(h.area, 1.0f);
     if (h.area > rays && covered < 0.5 && covered * rays < 32) found_.push_back(h);
   }
-  count_blocks(found_);
+  found_in_.fill(layers_.columns, layers_.rows, NBuffer::block, found_);
   std::size_t at = 0;
   for (int row = 0; row <= layers_.rows; ++row) {
     while (at < found_.size() && found_[at].row < row) ++at;
@@ -116,21 +150,8 @@ void Highlights::find(float above) {
   }
 }
 
-void Highlights::count_blocks(const std::vector<Highlight>& of) {
-  block_columns_ = (layers_.columns + block - 1) / block;
-  const int block_rows = (layers_.rows + block - 1) / block;
-  const auto stride = static_cast<std::size_t>(block_columns_ + 1);
-  before_.assign(stride * static_cast<std::size_t>(block_rows + 1), 0);
-  for (const Highlight& h : of) {
-    ++before_[static_cast<std::size_t>(h.row / block + 1) * stride + static_cast<std::size_t>(h.column / block + 1)];
-  }
-  for (std::size_t i = stride; i < before_.size(); ++i) {
-    if (i % stride != 0) before_[i] += before_[i - 1] + before_[i - stride] - before_[i - stride - 1];
-  }
-}
-
 void Highlights::make_groups() {
-  constexpr int cell = 16;
+  constexpr int cell = group_cell;
   // Blurs of one group differ by less than a pixel.
   const auto key_of = [&](const Highlight& h) {
     return std::tuple(h.row / cell, h.column / cell, h.layer, static_cast<int>(h.inverse_depth * rays_.largest_slope));
@@ -141,16 +162,6 @@ void Highlights::make_groups() {
     if (added) groups_.emplace_back();
     groups_[at->second].push_back(i);
   }
-}
-
-std::uint32_t Highlights::count_in(const PixelRect& rect) const noexcept {
-  if (before_.empty()) return 0;
-  const auto stride = static_cast<std::size_t>(block_columns_ + 1);
-  const auto at = [](int pixel, int end) { return static_cast<std::size_t>(std::clamp(pixel, 0, end - 1) / block); };
-  const std::size_t left = at(rect.left, layers_.columns), right = at(rect.right, layers_.columns) + 1,
-                    top = at(rect.top, layers_.rows), bottom = at(rect.bottom, layers_.rows) + 1;
-  return before_[bottom * stride + right] + before_[top * stride + left] - before_[top * stride + right] -
-         before_[bottom * stride + left];
 }
 
 void Highlights::cut(const PixelRect& rect, int columns, int layers, int planes, std::size_t plane_stride,
@@ -218,10 +229,10 @@ float Highlights::visible(const float* line, double x, double y, const Highlight
   return through;
 }
 
-Highlights::Stamp Highlights::stamp_of(const Highlight& h, double rays_of_pixel, std::size_t channel) const {
-  const RayTable& table = rays_.dense();
-  const auto rays = static_cast<std::size_t>(std::clamp(rays_of_pixel * h.area, 64.0, static_cast<double>(table.rays)));
-  const double side = std::max(1.0, 3 * std::sqrt(h.area / static_cast<double>(rays)));
+Highlights::Stamp Highlights::stamp_of(const Highlight& h, double rays_of_pixel, const RayTable& table) const {
+  const auto rays = static_cast<std::size_t>(std::clamp<double>(rays_of_pixel * h.area, least_rays, table.rays));
+  // A ray's light is spread over a tent that overlaps the tents of its neighbours, so that the sum is even.
+  const double half = std::max(0.75, 2.1 * std::sqrt(h.area / static_cast<double>(rays)));
   const double x = h.column + 0.5 - overscan_, y = h.row + 0.5 - overscan_, w = h.inverse_depth;
 
   struct Splat {
@@ -234,31 +245,34 @@ Highlights::Stamp Highlights::stamp_of(const Highlight& h, double rays_of_pixel,
     float line[row_count];
     // Where the ray's line leads at the highlight's depth, from a place of the picture.
     const auto lead = [&](const Vec2<double>& from) {
-      table.ray_at(channel, ray, from.x, from.y, line);
+      table.ray_at(0, ray, from.x, from.y, line);
       return Vec2<double>{from.x + line[at_x] + w * line[slope_x], from.y + line[at_y] + w * line[slope_y]};
     };
     Vec2<double> place{x, y};
     double stretch = 1, off = 1;
-    for (int k = 0; k < 12 && off > 0.05; ++k) {
-      const Vec2<double> miss = Vec2<double>{x, y} - lead(place);
-      off = std::max(std::abs(miss.x), std::abs(miss.y));
-      place += miss;
-    }
-    if (off > 1) continue;
-    if (!rays_.shift_invariant) {
+    if (rays_.shift_invariant) {
+      for (std::size_t r = 0; r < row_count; ++r) line[r] = table.node(0, 0, 0)[r * table.rays + ray];
+      place -= Vec2<double>{line[at_x] + w * line[slope_x], line[at_y] + w * line[slope_y]};
+    } else {
+      for (int k = 0; k < 12 && off > 0.05; ++k) {
+        const Vec2<double> miss = Vec2<double>{x, y} - lead(place);
+        off = std::max(std::abs(miss.x), std::abs(miss.y));
+        place += miss;
+      }
+      if (off > 1) continue;
       const Vec2<double> here = lead(place), across = lead(place + Vec2<double>{1, 0}) - here,
                          down = lead(place + Vec2<double>{0, 1}) - here;
       stretch = std::abs(across.x * down.y - across.y * down.x);
       if (!(stretch > 1e-3)) continue;
+      lead(place);
     }
-    lead(place);
     const float through = visible(line, place.x, place.y, h);
     stamp.hidden |= through < 1;
     const double light = through * line[weight] / (static_cast<double>(rays) * stretch);
     if (!(light > 0)) continue;
-    splats.push_back({place.x - 0.5 * side, place.y - 0.5 * side, light});
-    left = std::min(left, splats.back().x), right = std::max(right, splats.back().x + side);
-    top = std::min(top, splats.back().y), bottom = std::max(bottom, splats.back().y + side);
+    splats.push_back({place.x, place.y, light});
+    left = std::min(left, place.x - half), right = std::max(right, place.x + half);
+    top = std::min(top, place.y - half), bottom = std::max(bottom, place.y + half);
   }
   if (splats.empty()) return stamp;
 
@@ -267,38 +281,92 @@ Highlights::Stamp Highlights::stamp_of(const Highlight& h, double rays_of_pixel,
   stamp.columns = static_cast<int>(std::ceil(right)) - first_column;
   stamp.rows = static_cast<int>(std::ceil(bottom)) - first_row;
   stamp.light.resize(static_cast<std::size_t>(stamp.columns) * static_cast<std::size_t>(stamp.rows));
+  const auto share_before = [half](double distance) {  // of a tent's light
+    const double t = std::clamp(distance / half, -1.0, 1.0);
+    return t < 0 ? 0.5 * (1 + t) * (1 + t) : 1 - 0.5 * (1 - t) * (1 - t);
+  };
+  std::vector<double> across, down;
+  const auto shares = [&](double centre, int first, std::vector<double>& of_pixels) {
+    of_pixels.clear();
+    for (int pixel = first; pixel < centre + half; ++pixel) {
+      of_pixels.push_back(share_before(pixel + 1 - centre) - share_before(pixel - centre));
+    }
+  };
   for (const Splat& s : splats) {
-    const auto covered = [&](double begin, int pixel) {
-      return std::max(std::min(begin + side, pixel + 1.0) - std::max<double>(begin, pixel), 0.0);
-    };
-    for (int row = static_cast<int>(std::floor(s.y)); row < std::ceil(s.y + side); ++row) {
-      for (int column = static_cast<int>(std::floor(s.x)); column < std::ceil(s.x + side); ++column) {
-        const auto at = static_cast<std::size_t>(row - first_row) * static_cast<std::size_t>(stamp.columns) +
-                        static_cast<std::size_t>(column - first_column);
-        stamp.light[at] += static_cast<float>(s.light * covered(s.x, column) * covered(s.y, row) / (side * side));
-      }
+    const int column = static_cast<int>(std::floor(s.x - half)), row = static_cast<int>(std::floor(s.y - half));
+    shares(s.x, column, across), shares(s.y, row, down);
+    for (std::size_t j = 0; j < down.size(); ++j) {
+      float* const light =
+          &stamp.light[(static_cast<std::size_t>(row - first_row) + j) * static_cast<std::size_t>(stamp.columns) +
+                       static_cast<std::size_t>(column - first_column)];
+      for (std::size_t i = 0; i < across.size(); ++i) light[i] += static_cast<float>(s.light * down[j] * across[i]);
     }
   }
   return stamp;
 }
 
-std::vector<Highlights::Stamp> Highlights::stamps_of(const Group& group, std::size_t channel) const {
+const Highlight& Highlights::brightest(const Group& group) const {
   const auto brightness = [&](std::size_t i) { return found_[i].light[0] + found_[i].light[1] + found_[i].light[2]; };
-  const std::size_t brightest = *std::max_element(
-      group.begin(), group.end(), [&](std::size_t a, std::size_t b) { return brightness(a) < brightness(b); });
-  std::vector<Stamp> stamps{stamp_of(found_[brightest], 16, channel)};
-  if (!stamps[0].hidden || group.size() == 1) return stamps;
-  // What stands before them hides other rays of each.
-  stamps.clear();
-  const double rays_of_pixel = std::clamp(16.0 / static_cast<double>(group.size()), 1.0, 4.0);
-  for (const std::size_t member : group) stamps.push_back(stamp_of(found_[member], rays_of_pixel, channel));
+  return found_[*std::max_element(group.begin(), group.end(),
+                                  [&](std::size_t a, std::size_t b) { return brightness(a) < brightness(b); })];
+}
+
+RasterArea Highlights::area_of(const Group& group, std::size_t channel) const {
+  const RayTable& table = rays_.table;
+  const Highlight& light = brightest(group);
+  std::vector<float> rows(table.node_size());
+  const int column = light.column - overscan_, row = light.row - overscan_;
+  table.at(channel, column + 0.5, row + 0.5, rows.data());
+  int left = column, right = column, top = row, bottom = row;
+  for (std::size_t i = 0; i < table.rays; ++i) {
+    if (rows[weight * table.rays + i] == 0) continue;
+    const auto along = [&](Row at, Row slope) {
+      return static_cast<int>(rows[at * table.rays + i] + light.inverse_depth * rows[slope * table.rays + i]);
+    };
+    const int x = column - along(at_x, slope_x), y = row - along(at_y, slope_y);
+    left = std::min(left, x), right = std::max(right, x), top = std::min(top, y), bottom = std::max(bottom, y);
+  }
+  // The blur changes with its position, and members of a group lie up to a cell apart.
+  const int margin = 2 + group_cell + std::max(right - left, bottom - top) / 8;
+  left = std::max(left - margin, 0), right = std::min(right + margin, table.area.columns);
+  top = std::max(top - margin, 0), bottom = std::min(bottom + margin, table.area.rows);
+  return left < right && top < bottom ? RasterArea{left, top, right - left, bottom - top} : RasterArea{};
+}
+
+std::vector<Highlights::Alike> Highlights::stamps_of(const Group& group, std::size_t channel) const {
+  constexpr double rays_of_pixel = 2.5;
+  constexpr int cell = 4;
+  // Nearer surfaces hide other rays of each highlight. Highlights of one cell share their rays, which moves the edge of
+  // the shadow by less than a cell.
+  std::map<std::pair<int, int>, Group> cells;
+  for (const std::size_t member : group) {
+    cells[{found_[member].row / cell, found_[member].column / cell}].push_back(member);
+  }
+  std::vector<Alike> stamps;
+  const Highlight& light = brightest(group);
+  RayTable own;
+  if (!rays_.shift_invariant) {
+    const RasterArea area = area_of(group, channel);
+    if (area.columns == 0) return stamps;
+    const double count = std::clamp<double>(rays_of_pixel * light.area, least_rays, most_rays);
+    own = rays_.dense(area, channel, static_cast<std::size_t>(count));
+  }
+  const RayTable& table = rays_.shift_invariant ? shared_[channel] : own;
+  if (cells.size() == 1 || !stamp_of(light, 0.5, table).hidden) {
+    stamps.push_back({group, stamp_of(light, rays_of_pixel, table)});
+    return stamps;
+  }
+  const double rays = std::max(1.0, rays_of_pixel / static_cast<double>(cells.size()));
+  for (const auto& [place, members] : cells) {
+    stamps.push_back({members, stamp_of(brightest(members), rays, table)});
+  }
   return stamps;
 }
 
 void Highlights::spread(int threads, Blurred& picture) const {
   const std::size_t channels = rays_.table.channels;
   constexpr std::size_t at_once = 64;
-  std::vector<std::vector<Stamp>> stamps(channels * std::min(at_once, groups_.size()));
+  std::vector<std::vector<Alike>> stamps(channels * std::min(at_once, groups_.size()));
   for (std::size_t begin = 0; begin < groups_.size(); begin += at_once) {
     const std::size_t count = channels * std::min(at_once, groups_.size() - begin);
     parallel_for(count, 1, threads, [&](std::size_t first, std::size_t end) {
@@ -306,9 +374,8 @@ void Highlights::spread(int threads, Blurred& picture) const {
     });
     // One after the other: the same sums for any number of threads.
     for (std::size_t i = 0; i < count; ++i) {
-      const Group& group = groups_[begin + i / channels];
-      for (std::size_t member = 0; member < group.size(); ++member) {
-        add(stamps[i][stamps[i].size() == 1 ? 0 : member], found_[group[member]], i % channels, picture);
+      for (const auto& [members, stamp] : stamps[i]) {
+        for (const std::size_t member : members) add(stamp, found_[member], i % channels, picture);
       }
     }
   }

@@ -13,7 +13,7 @@ namespace petzval::inline v0 {
 struct LayerSet::Data {
   static constexpr int planes = 5;
   /// Before, between and after planes: lanes may read that far beyond the ends of a row.
-  static constexpr std::size_t slack = 64;
+  static constexpr std::size_t slack = 128;
 
   int columns = 0, rows = 0, count = 0;
   bool opaque = true;

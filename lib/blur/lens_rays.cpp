@@ -141,7 +141,9 @@ LensRays::LensRays(const LayerCamera& camera, std::span<const PupilPoint> points
   const double nearest = 1 / d->options.nearest_mm;
 
   const auto count = static_cast<std::size_t>(channels);
-  const auto table = [&](int step) { return ray_table(d->camera, points, count, d->source, step, options.threads); };
+  const auto table = [&](int step) {
+    return ray_table({0, 0, d->camera.columns, d->camera.rows}, points, count, d->source, step, options.threads);
+  };
   // Steps above the picture's side would have no node within it to tell how wrong they are. Pixels of small pictures
   // are large on the film: their steps are small.
   const auto power_of_two = [](int length) { return static_cast<int>(std::bit_floor(static_cast<unsigned>(length))); };
@@ -158,7 +160,7 @@ LensRays::LensRays(const LayerCamera& camera, std::span<const PupilPoint> points
 
   const Spread spread = spread_of(d->table, nearest);
   d->largest_slope = spread.steepest;
-  d->shift_invariant = options.sets == 1 && spread.differ_px <= same_px && spread.light <= 1e-6;
+  d->shift_invariant = spread.differ_px <= same_px && spread.light <= 1e-6;
   data_ = std::move(d);
 }
 
@@ -185,7 +187,7 @@ double LensRays::reach_px(double least_inverse_depth, double most_inverse_depth)
           for (const double w : {least_inverse_depth, most_inverse_depth}) {
             const double px = x + node[at_x * n + i] + w * node[slope_x * n + i],
                          py = y + node[at_y * n + i] + w * node[slope_y * n + i];
-            reach = std::max({reach, -px, px - t.columns, -py, py - t.rows});
+            reach = std::max({reach, -px, px - t.area.columns, -py, py - t.area.rows});
           }
         }
       }
@@ -194,17 +196,17 @@ double LensRays::reach_px(double least_inverse_depth, double most_inverse_depth)
   return reach;
 }
 
-const RayTable& LensRays::Data::dense() const {
-  std::call_once(dense_once_, [this] {
-    // As many as memory of 64 MiB holds; any run of these points covers the pupil evenly.
-    const std::size_t nodes = table.channels * table.node_columns * table.node_rows;
-    const std::size_t count = std::clamp<std::size_t>((std::size_t{1} << 24) / (nodes * row_count), 256, 16384);
-    const core_detail::Kronecker<2> points_of;
-    std::vector<PupilPoint> many(count);
-    for (std::size_t i = 0; i < count; ++i) many[i] = {points_of(i)[0], points_of(i)[1]};
-    dense_ = ray_table(camera, many, table.channels, source, table.step, options.threads);
-  });
-  return dense_;
+RayTable LensRays::Data::dense(const RasterArea& area, std::size_t channel, std::size_t count) const {
+  const core_detail::Kronecker<2> points_of;
+  std::vector<PupilPoint> many(count);
+  for (std::size_t i = 0; i < count; ++i) many[i] = {points_of(i)[0], points_of(i)[1]};
+  const auto of_channel = [&](int, const Vec2<double>& raster, std::span<const PupilPoint> points_of_area,
+                              std::span<LayerRay> rays) {
+    source(static_cast<int>(channel), raster, points_of_area, rays);
+  };
+  // Three nodes along a side are enough for the width of a blur.
+  const int step = std::max(2 * table.step, (std::max(area.columns, area.rows) + 1) / 2);
+  return ray_table(area, many, 1, of_channel, step, 1);
 }
 
 void LensRays::at(int channel, int column, int row, std::span<LayerRay> rays) const {

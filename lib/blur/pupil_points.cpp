@@ -22,4 +22,20 @@ std::vector<PupilPoint> vogel_points(int count, double turn) {
   return points;
 }
 
+std::vector<PupilPoint> vogel_sets(int count, int sets) {
+  if (sets < 1 || count < 1 || count > (1 << 20) / sets) {
+    throw Error("vogel_sets: " + std::to_string(sets) + " sets of " + std::to_string(count) +
+                " points; must be 1 or more of each, and " + std::to_string(1 << 20) + " points at most in all");
+  }
+  std::vector<PupilPoint> points;
+  for (int set = 0; set < sets; ++set) {
+    // Each set goes between the radii and the directions of the others.
+    const double outwards = ((set + 0.5) / sets - 0.5) / count;
+    for (const PupilPoint& p : vogel_points(count, static_cast<double>(set) / sets)) {
+      points.push_back({p.u, p.v + outwards});
+    }
+  }
+  return points;
+}
+
 }  // namespace petzval::inline v0

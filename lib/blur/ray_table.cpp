@@ -84,14 +84,15 @@ std::size_t nodes_over(int length, int step) { return static_cast<std::size_t>((
 }  // namespace
 
 double RayTable::column_of(std::size_t node) const noexcept {
-  return std::min<double>(static_cast<double>(node) * step, columns);
+  return area.left + std::min<double>(static_cast<double>(node) * step, area.columns);
 }
 double RayTable::row_of(std::size_t node) const noexcept {
-  return std::min<double>(static_cast<double>(node) * step, rows);
+  return area.top + std::min<double>(static_cast<double>(node) * step, area.rows);
 }
 
 void RayTable::at(std::size_t channel, double column, double row, float* found) const noexcept {
-  const Cell x = cell_at(column, step, node_columns, columns), y = cell_at(row, step, node_rows, rows);
+  const Cell x = cell_at(column - area.left, step, node_columns, area.columns),
+             y = cell_at(row - area.top, step, node_rows, area.rows);
   const float *const a = node(channel, y.first, x.first), *const b = node(channel, y.first, x.first + 1),
                      *const c = node(channel, y.first + 1, x.first), *const d = node(channel, y.first + 1, x.first + 1);
   for (std::size_t i = 0; i < node_size(); ++i) {
@@ -101,7 +102,8 @@ void RayTable::at(std::size_t channel, double column, double row, float* found) 
 }
 
 void RayTable::ray_at(std::size_t channel, std::size_t ray, double column, double row, float* found) const noexcept {
-  const Cell x = cell_at(column, step, node_columns, columns), y = cell_at(row, step, node_rows, rows);
+  const Cell x = cell_at(column - area.left, step, node_columns, area.columns),
+             y = cell_at(row - area.top, step, node_rows, area.rows);
   const float *const a = node(channel, y.first, x.first) + ray, *const b = node(channel, y.first, x.first + 1) + ray,
                      *const c = node(channel, y.first + 1, x.first) + ray,
                      *const d = node(channel, y.first + 1, x.first + 1) + ray;
@@ -112,16 +114,15 @@ void RayTable::ray_at(std::size_t channel, std::size_t ray, double column, doubl
   }
 }
 
-RayTable ray_table(const LayerCamera& camera, std::span<const PupilPoint> points, std::size_t channels,
+RayTable ray_table(const RasterArea& area, std::span<const PupilPoint> points, std::size_t channels,
                    const LensRays::Source& source, int step, int threads) {
   constexpr double most = 1e15;  // far within floats, between which lines are interpolated
-  RayTable table{.columns = camera.columns,
-                 .rows = camera.rows,
+  RayTable table{.area = area,
                  .step = step,
                  .channels = channels,
                  .rays = points.size(),
-                 .node_columns = nodes_over(camera.columns, step),
-                 .node_rows = nodes_over(camera.rows, step),
+                 .node_columns = nodes_over(area.columns, step),
+                 .node_rows = nodes_over(area.rows, step),
                  .nodes = {}};
   const std::size_t nodes = table.node_columns * table.node_rows;
   table.nodes.resize(channels * nodes * table.node_size());

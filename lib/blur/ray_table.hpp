@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <mutex>
 #include <span>
 #include <vector>
 
@@ -15,10 +14,15 @@ namespace petzval::inline v0::blur_detail {
 /// Layers of more overscan are refused.
 inline constexpr double most_reach_px = 16384;
 
-/// Rays at nodes over a picture: every `step` pixels from its upper left corner, and at its right and lower edges.
+/// A rectangle of raster positions.
+struct RasterArea {
+  int left = 0, top = 0, columns = 0, rows = 0;
+};
+
+/// Rays at nodes over an area: every `step` pixels from its upper left corner, and at its right and lower edges.
 struct RayTable {
-  int columns = 0, rows = 0;           ///< of the picture
-  int step = 0;                        ///< px, a power of 2
+  RasterArea area;
+  int step = 0;                        ///< px
   std::size_t channels = 0, rays = 0;  ///< rays of a node and channel
   std::size_t node_columns = 0, node_rows = 0;
   std::vector<float> nodes;  ///< [channel][node row][node column][Row][ray]
@@ -29,14 +33,14 @@ struct RayTable {
   }
   double column_of(std::size_t node) const noexcept;  ///< raster position
   double row_of(std::size_t node) const noexcept;
-  /// The rows of a place of the picture, interpolated between the nodes around it: node_size() numbers.
+  /// The rows of a place of the area, interpolated between the nodes around it: node_size() numbers.
   void at(std::size_t channel, double column, double row, float* found) const noexcept;
   /// The same of one ray: row_count numbers.
   void ray_at(std::size_t channel, std::size_t ray, double column, double row, float* found) const noexcept;
 };
 
 /// The rays of a source at all nodes. Throws Error for rays that are not finite, and for negative weights.
-RayTable ray_table(const LayerCamera& camera, std::span<const PupilPoint> points, std::size_t channels,
+RayTable ray_table(const RasterArea& area, std::span<const PupilPoint> points, std::size_t channels,
                    const LensRays::Source& source, int step, int threads);
 
 }  // namespace petzval::inline v0::blur_detail
@@ -52,8 +56,9 @@ struct LensRays::Data {
   double error_px = 0, largest_slope = 0;
   bool shift_invariant = false;
 
-  /// Many more rays, for light that few would show as dots; traced when first asked for.
-  const blur_detail::RayTable& dense() const;
+  /// Rays of a channel over an area of the picture, for light that few would show as dots: the first points of a
+  /// sequence, any run of which covers the pupil evenly.
+  blur_detail::RayTable dense(const blur_detail::RasterArea& area, std::size_t channel, std::size_t count) const;
 
   std::size_t sets() const noexcept { return static_cast<std::size_t>(options.sets); }
   /// Of the squares in which sets take turns.
@@ -62,10 +67,6 @@ struct LensRays::Data {
   /// By how much inverse depths of neighbouring pixels may differ for layers to know nothing of what lies between: the
   /// bias of peeling.
   float gap() const noexcept { return largest_slope > 0 ? static_cast<float>(std::min(1 / largest_slope, 1e20)) : 0; }
-
- private:
-  mutable std::once_flag dense_once_;
-  mutable blur_detail::RayTable dense_;
 };
 
 class RayAccess {

@@ -65,7 +65,7 @@ double miss_rate(const petzval::Blurred& picture) {
 
 lens_blur::LensFlags thin_lens(double diameter_mm) {
   lens_blur::LensFlags lens;
-  lens.thin_lens_mm = 50, lens.lens_diameter_mm = diameter_mm, lens.focus_mm = focus_mm;
+  lens.thin_lens_mm = 50, lens.lens_diameter_mm = diameter_mm, lens.focus_mm = focus_mm, lens.rays = 100;
   return lens;
 }
 
@@ -143,13 +143,13 @@ void report_thin(const Settings& settings, const LoadedScene& scene, double diam
   }
   const RgbImage ours = colours_of(picture);
   const lens_blur::Likeness four = lens_blur::likeness(ours, reference), of_post = lens_blur::likeness(post, reference);
-  const double missed = miss_rate(picture);
+  const double missed = miss_rate(picture), rays = static_cast<double>(picture.statistics.rays);
   view.peel(1, layers);
   view.gather(layers, picture);
   const double one = lens_blur::likeness(colours_of(picture), reference).psnr_db;
 
-  std::printf("| %s, %.0f mm | %.1f | %.2f | %.1f | %.0f, %.1fx | %.1f/%.3f | %.1f | %.1f/%.3f, %.0f | %.4f | ",
-              scene.name.c_str(), diameter_mm, peel, n_buffer, gather, reference_ms,
+  std::printf("| %s, %.0f mm | %.1f | %.2f | %.1f | %.0f, %.0f, %.1fx | %.1f/%.3f | %.1f | %.1f/%.3f, %.0f | %.4f | ",
+              scene.name.c_str(), diameter_mm, peel, n_buffer, gather, reference_ms, 1e-3 * rays / reference_ms,
               reference_ms / (peel + n_buffer + gather), four.psnr_db, four.ssim, one, of_post.psnr_db, of_post.ssim,
               single, 100 * missed);
   std::printf("%.1fx, %.1fx | %.1fx, %.1fx |\n", general / gather, coherent / gather, unbounded / gather,
@@ -207,7 +207,7 @@ void report_lenses(const Settings& settings, const LoadedScene& scene) {
   lens_blur::LensFlags tilted = thin_lens(100);
   tilted.tilt_deg = 1;
   lens_blur::LensFlags singlet;
-  singlet.singlet = "102,-102,12,N-BK7", singlet.focus_mm = focus_mm, singlet.fov_deg = 30;
+  singlet.singlet = "102,-102,12,N-BK7", singlet.focus_mm = focus_mm, singlet.fov_deg = 30, singlet.rays = 100;
   lens_blur::LensFlags chroma = singlet;
   chroma.chroma = true;
   for (const Row& row : {Row{"thin, 300 mm", thin_lens(300)}, Row{"thin, 100 mm, film tilted by 1 degree", tilted},
@@ -265,7 +265,8 @@ int run(std::vector<char*> arguments) {
   for (const char* name : scene_names) scenes.push_back(std::make_unique<LoadedScene>(name));
 
   std::printf(
-      "| thin lens, diameter | peel | N-buffer | gather | reference, times as slow | PSNR/SSIM | of one layer | "
+      "| thin lens, diameter | peel | N-buffer | gather | reference, Mray/s, times as slow | PSNR/SSIM | of one layer "
+      "| "
       "single image, ms | missed, %% | general, coherent path: times as slow | unbounded: the "
       "same, general |\n"
       "|---|---|---|---|---|---|---|---|---|---|---|\n"

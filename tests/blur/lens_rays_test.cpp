@@ -8,6 +8,8 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <span>
+#include <tuple>
 #include <vector>
 
 #include "../data_lenses.hpp"
@@ -111,6 +113,39 @@ TEST(ThinLensRays, RefuseWhatIsNoLens) {
               return FocusAt{std::numeric_limits<double>::infinity(), 1};
             }},
        "wanted a finite one");
+}
+
+/// RMS error of the share of points that lie on one side of lines through the pupil.
+double half_plane_error(std::span<const PupilPoint> points) {
+  constexpr int lines = 400;
+  double squares = 0;
+  for (int i = 0; i < lines; ++i) {
+    const double turn = 2 * std::numbers::pi * 0.7548776662466927 * i, s = 2 * (i + 0.5) / lines - 1;
+    const double area = 0.5 + (s * std::sqrt(1 - s * s) + std::asin(s)) / std::numbers::pi;
+    const auto below = std::count_if(points.begin(), points.end(), [&](const PupilPoint& p) {
+      return std::sqrt(p.v) * std::cos(2 * std::numbers::pi * p.u - turn) < s;
+    });
+    squares += std::pow(static_cast<double>(below) / static_cast<double>(points.size()) - area, 2) / lines;
+  }
+  return std::sqrt(squares);
+}
+
+TEST(VogelSets, CoverThePupilEachAndTogether) {
+  for (const auto& [sets, count, together, alone] :
+       {std::tuple(4, 64, 0.0057, 0.0124), std::tuple(16, 100, 0.0013, 0.0088)}) {
+    const std::vector<PupilPoint> points = vogel_sets(count, sets);
+    ASSERT_EQ(points.size(), static_cast<std::size_t>(sets * count));
+    EXPECT_NEAR(half_plane_error(points), together, 0.1 * together);
+    for (int set = 0; set < sets; ++set) {
+      EXPECT_LT(half_plane_error(
+                    std::span(points).subspan(static_cast<std::size_t>(set * count), static_cast<std::size_t>(count))),
+                1.2 * alone);
+    }
+  }
+  const std::vector<PupilPoint> one = vogel_sets(9, 1), spiral = vogel_points(9);
+  for (std::size_t i = 0; i < one.size(); ++i) EXPECT_EQ(one[i].v, spiral[i].v);
+  EXPECT_NE(petzval::testing::message([] { vogel_sets(0, 4); }), "");
+  EXPECT_NE(petzval::testing::message([] { vogel_sets(1 << 19, 4); }), "");
 }
 
 TEST(Rays, AreRefusedWhereOptionsDoNotFit) {

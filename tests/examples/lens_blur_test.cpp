@@ -49,8 +49,8 @@ class LensBlurProgram : public Programs {
 TEST_F(LensBlurProgram, WritesPicturesAndTheirMeasures) {
   const auto outcome = run("lens_blur", joined({thin,
                                                 small,
-                                                {"--scene", "town", "--focus-mm", "5000", "--compare", "--format",
-                                                 "exr,png,pfm", "--out", path("out")}}));
+                                                {"--scene", "town", "--focus-mm", "5000", "--compare", "--supersample",
+                                                 "1", "--format", "exr,png,pfm", "--out", path("out")}}));
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   for (const char* name : {"blur", "sharp", "missed", "reference"}) {
     const RgbImage exr = petzval::read_exr(path(std::string("out/") + name + ".exr"));
@@ -190,9 +190,9 @@ TEST_F(LensBlurProgram, RefusesWhatItCannotBlur) {
           "turned.pfm: is 16 x 24, wanted the size of");
   refused(joined({thin, focus, files(), {"--lens-diameter-mm", "7000"}}), "lens-diameter-mm");
   const Arguments gauss{"--scene", "town", "--lens", lens("double_gauss_100mm_f1.35")};
-  refused(joined({gauss, {"--focus-mm", "1"}}), "--focus-mm = 1: ");
+  refused(joined({gauss, {"--focus-mm", "1"}}), "--focus-mm: ");
   refused(joined({gauss, {"--focus-mm", "1"}}), "1000 mm");  // metres?
-  refused(joined({gauss, {"--focus-mm", "70", "--distance-from", "entrance_pupil"}}), "--focus-mm = 70: ");
+  refused(joined({gauss, {"--focus-mm", "70", "--distance-from", "entrance_pupil"}}), "--focus-mm: ");
 }
 
 TEST_F(LensBlurProgram, RefusesFlagsWithoutAnEffect) {
@@ -233,9 +233,11 @@ TEST_F(LensBlurProgram, SaysThatTheLensDoesNotLightTheFilm) {
 
 // The pupil of a fisheye moves with the field, and rays between the nodes of a table with it.
 TEST_F(LensBlurProgram, SaysHowFarInterpolatedRaysAreOff) {
-  const auto outcome =
-      run("lens_blur", {"--scene", "town", "--lens", lens("fisheye_10mm_f4"), "--fov-deg", "60", "--focus-mm", "3000",
-                        "--width", "320", "--height", "240", "--rays", "16", "--format", "png", "--out", path("out")});
+  const auto outcome = run("lens_blur", {"--scene",       "town", "--lens",     lens("fisheye_10mm_f4"),
+                                         "--fov-deg",     "60",   "--focus-mm", "3000",
+                                         "--width",       "320",  "--height",   "240",
+                                         "--supersample", "1",    "--rays",     "16",
+                                         "--format",      "png",  "--out",      path("out")});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_GT(read_json(path("out/blur.json"))["rays_error_px"], 1);
   EXPECT_NE(outcome.err.find("note: rays are interpolated over the picture, and are off by up to "), std::string::npos);

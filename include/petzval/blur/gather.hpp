@@ -60,10 +60,11 @@ struct Blurred {
 /// Each ray is followed from near to far, pixel after pixel along its main direction, until it meets a surface in the
 /// pixel that it passes at the surface's own depth; those with alpha below 1 let the rest through. A ray that passes
 /// between a pixel's surface and a nearer one of the next pixel meets the farther one if their inverse depths differ by
-/// less than the bias of peeling: what lies between is not in the layers. A ray that meets nothing is transparent if the first layer is empty where it ends, at the depth of the
-/// farthest surface. Else it slipped behind a surface: it counts as missed, and takes what it passed last before, or
-/// where there is nothing, the mean of the pixel's others. Beyond the layers' edges their last pixels repeat. Layers
-/// reach beyond the picture equally on all sides (PeelPlan::camera). The same bits for any number of threads.
+/// less than the bias of peeling: what lies between is not in the layers. A ray that meets nothing is transparent if
+/// the first layer is empty where it ends, at the depth of the farthest surface. Else it slipped behind a surface: it
+/// counts as missed, and takes what it passed last before, or where there is nothing, the mean of the pixel's others.
+/// Beyond the layers' edges their last pixels repeat. Layers reach beyond the picture equally on all sides
+/// (PeelPlan::camera). The same bits for any number of threads.
 ///
 /// Source: Lee, Eisemann, Seidel 2010, "Real-time lens blur effects and focus control", section 3.1.
 ///
