@@ -85,7 +85,8 @@ examples::Sheet sheet_of(const std::vector<Picture>& pictures, const std::string
 
 std::string ball_table(const std::vector<Picture>& pictures) {
   std::string csv =
-      "lens,focus_mm,x_mm,centroid_x_px,centroid_y_px,axis_ratio,long_axis_to_radius_deg,outward_skewness,light\n";
+      "lens,focus_mm,x_mm,centroid_x_px,centroid_y_px,axis_ratio,long_axis_to_radius_deg,outward_skewness,light,"
+      "beside,trusted\n";
   for (const Picture& p : pictures) {
     const auto highlights = renderer::ball_highlights(p.image);
     for (std::size_t i = 0; i < highlights.size(); ++i) {
@@ -93,9 +94,9 @@ std::string ball_table(const std::vector<Picture>& pictures) {
       const renderer::Highlight& h = *highlights[i];
       csv +=
           '"' + p.lens() + "\"," + p.job.at("focus_mm").dump() + ',' + std::to_string(25 * (static_cast<int>(i) - 6));
-      for (const double x : {h.x, h.y, h.axis_ratio, h.to_radius_deg, h.outward_skewness, h.light})
+      for (const double x : {h.x, h.y, h.axis_ratio, h.to_radius_deg, h.outward_skewness, h.light, h.beside})
         csv += ',' + number(x, 4);
-      csv += '\n';
+      csv += h.trusted() ? ",yes\n" : ",no\n";
     }
   }
   return csv;
@@ -112,12 +113,14 @@ int main(int argc, char** argv) {
   app.add_option("FOLDER", folders, "folders with picture.exr and render.json")->required();
   examples::add_count(app, "--columns", columns, {1, 100, "a whole number from 1 to 100"}, "pictures in a row");
   app.add_option("--title", title, "title of the sheet")->capture_default_str();
-  app.add_option(
-         "--balls", balls,
-         "CSV to write: of the balls scene, each highlight's ratio of axes, the angle of the long axis against the "
-         "radius, and skewness outwards; x_mm is the place of the ball. Highlights whose halo is as bright as "
-         "they are measure the halo too")
-      ->type_name("CSV");
+  examples::add_out_file(
+      app, balls,
+      "CSV to write: of the balls scene, each highlight's ratio of axes, the angle of the long axis against the "
+      "radius, "
+      "and skewness outwards; x_mm is the position of the ball, `beside` the light of other spots near the ball, as a "
+      "fraction of the highlight's. trusted: yes for highlights of 6 pixels and more that are whole and far brighter "
+      "than other spots",
+      "CSV", "--balls");
   examples::add_out_file(app, out, "PNG to write", "FILE.png")->required();
   return examples::run(app, argc, argv, [&] {
     examples::want_ending("--out", out, ".png");

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "petzval/core/units.hpp"
 #include "renderer/luminance.hpp"
@@ -57,6 +58,32 @@ double spacing_of(const petzval::RgbImage& picture) {
   return found;
 }
 
+/// A pixel of a mask.
+struct Point {
+  int column, row;
+  double x, y, value, mean;  ///< value and mean of 3 x 3 pixels over the background
+};
+
+/// Parts a mask into the spot with the most light and the rest. Points up to two pixels apart belong together: grain
+/// leaves gaps of one. Returns the first point of the rest.
+std::vector<Point>::iterator brightest_spot_first(std::vector<Point>& points) {
+  double most = 0;
+  auto first = points.begin(), first_of_most = first, end_of_most = first;
+  while (first != points.end()) {
+    auto rest = first + 1;
+    for (auto at = first; at != rest; ++at) {
+      rest = std::partition(rest, points.end(), [&](const Point& p) {
+        return std::abs(p.column - at->column) <= 2 && std::abs(p.row - at->row) <= 2;
+      });
+    }
+    double light = 0;
+    for (auto p = first; p != rest; ++p) light += p->value;
+    if (light > most) most = light, first_of_most = first, end_of_most = rest;
+    first = rest;
+  }
+  return std::rotate(points.begin(), first_of_most, end_of_most);
+}
+
 }  // namespace
 
 std::optional<Highlight> highlight_in(const petzval::RgbImage& picture, int first_column, int last_column) {
@@ -68,9 +95,6 @@ std::optional<Highlight> highlight_in(const petzval::RgbImage& picture, int firs
   }
   if (beside.empty()) return {};
   const double background = quantile(beside, 0.5);
-  struct Point {
-    double x, y, value, mean;
-  };
   std::vector<Point> points;
   std::vector<double> means;
   for (int y = 1; y + 1 < picture.height; ++y) {
@@ -79,7 +103,7 @@ std::optional<Highlight> highlight_in(const petzval::RgbImage& picture, int firs
       for (int dy : {-1, 0, 1}) {
         for (int dx : {-1, 0, 1}) mean += (luminance_at(picture, x + dx, y + dy) - background) / 9;
       }
-      points.push_back({x + 0.5, y + 0.5, luminance_at(picture, x, y) - background, mean});
+      points.push_back({x, y, x + 0.5, y + 0.5, luminance_at(picture, x, y) - background, mean});
       means.push_back(mean);
     }
   }
@@ -87,10 +111,23 @@ std::optional<Highlight> highlight_in(const petzval::RgbImage& picture, int firs
   const double least = 0.25 * quantile(means, 0.975);
   if (!(least > 0)) return {};
   std::erase_if(points, [&](const Point& p) { return p.mean <= least; });
+  if (points.empty()) return {};
 
+  // Balls show each other's highlights as spots of their own.
   Highlight result;
+  const auto rest = brightest_spot_first(points);
+  for (auto p = rest; p != points.end(); ++p) result.beside += p->value;
+  points.erase(rest, points.end());
+  const auto [left, right] = std::minmax_element(points.begin(), points.end(),
+                                                 [](const Point& a, const Point& b) { return a.column < b.column; });
+  const auto [top, bottom] =
+      std::minmax_element(points.begin(), points.end(), [](const Point& a, const Point& b) { return a.row < b.row; });
+  result.width = right->column - left->column + 1, result.height = bottom->row - top->row + 1;
+  result.whole = left->column > std::max(first_column, 1) && right->column < std::min(last_column, picture.width - 2) &&
+                 top->row > 1 && bottom->row < picture.height - 2;
   for (const Point& p : points) result.light += p.value, result.x += p.value * p.x, result.y += p.value * p.y;
   if (!(result.light > 0)) return {};
+  result.beside /= result.light;
   result.x /= result.light, result.y /= result.light;
   const double from_x = result.x - picture.width / 2.0, from_y = result.y - picture.height / 2.0;
   const double radius = std::hypot(from_x, from_y);

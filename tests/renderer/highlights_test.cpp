@@ -54,6 +54,31 @@ TEST(Highlights, HaveTheAxesAndTheTailsTheyWereGiven) {
   EXPECT_NEAR(found[6]->axis_ratio, 1, 0.03);
 }
 
+TEST(Highlights, ReflectionsOfOtherBallsDoNotCount) {
+  petzval::RgbImage image = row_of_lights(1, 0, 0.1);
+  for (int y = 28; y < 32; ++y) {
+    for (int x = 341; x < 345; ++x) image.pixel(x, y)[0] = image.pixel(x, y)[1] = image.pixel(x, y)[2] = 3;
+  }
+  const auto found = ball_highlights(image);
+  ASSERT_TRUE(found[6] && found[7]);
+  EXPECT_NEAR(found[6]->axis_ratio, 1, 0.03);
+  EXPECT_NEAR(found[6]->x, 325, 0.3);
+  EXPECT_GT(found[6]->beside, 0.05);
+  EXPECT_FALSE(found[6]->trusted());
+  EXPECT_LT(found[7]->beside, 0.001);
+  EXPECT_TRUE(found[7]->trusted());
+}
+
+TEST(Highlights, OfAFewPixelsAreNotTrusted) {
+  petzval::RgbImage image(24, 24);
+  for (int y = 11; y < 13; ++y) {
+    for (int x = 10; x < 14; ++x) image.pixel(x, y)[0] = image.pixel(x, y)[1] = image.pixel(x, y)[2] = 3;
+  }
+  const auto found = highlight_in(image, 0, 23);
+  ASSERT_TRUE(found);
+  EXPECT_FALSE(found->trusted());
+}
+
 TEST(Highlights, AreNotFoundInTheDark) {
   EXPECT_FALSE(highlight_in(petzval::RgbImage(40, 30), 0, 39));
   const auto none = ball_highlights(petzval::RgbImage(200, 30));
