@@ -147,6 +147,9 @@ Json to_json(std::span<const Picture> pictures, const examples::LoadedLens& load
          {"film_z_mm", p.scene.lens.film_z()},
          {"criterion", options.focus.criterion},
          {"throughput", p.image.throughput},
+         {"throughput_of_round_iris", options.iris.area == "equal"
+                                          ? p.image.throughput * std::numbers::pi / petzval::iris_area(iris)
+                                          : p.image.throughput},
          {"centroid_mm", if_any(pair(p.image.size.centroid))},
          {"rms_radius_mm", if_any(p.image.size.rms_radius)},
          {"second_moments_mm2", if_any(std::array{p.image.size.xx, p.image.size.yy, p.image.size.xy})},
@@ -209,8 +212,10 @@ int main(int argc, char** argv) {
       "entrance pupil, per mm^2 of film), LENS_focus_<D>mm.png (each with its own exposure), LENS_bokeh.png (all at "
       "one "
       "scale) and LENS_bokeh.json. Images show the film as a photograph does, turned by half a turn (+x to the left, "
-      "+y down); centroids are in the axes of the film. The lens is focused at the "
-      "primary wavelength: the one nearest to the d line (587.5618 nm).",
+      "+y down); centroids are in the axes of the film. throughput is a fraction of the light on the paraxial entrance "
+      "pupil of the stop as it is open, throughput_of_round_iris of a round iris with the same f-number: --iris-area "
+      "equal opens the stop. The lens is focused at the primary wavelength: the one nearest to the d line "
+      "(587.5618 nm).",
       "bokeh_psf");
   examples::add_lens(app, options.lens_file);
   examples::add_number(app, "--subject-distance-mm", options.subject_mm, examples::positive_length,
@@ -227,7 +232,7 @@ int main(int argc, char** argv) {
   examples::add_model(app, options.model)->capture_default_str();
   examples::add_iris(app, options.iris);
   examples::add_bokeh(app, options.bokeh);
-  examples::add_number(app, "--field-deg", options.field_deg, examples::finite_number,
+  examples::add_number(app, "--field-deg", options.field_deg, examples::field_angle,
                        "angle of the light towards +y, seen from the paraxial entrance pupil (degrees)");
   examples::add_samples(app, options.samples);
   examples::add_number(

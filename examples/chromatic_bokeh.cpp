@@ -226,7 +226,7 @@ int main(int argc, char** argv) {
   examples::add_numbers(app, "--focus-mm", options.focus_mm, examples::positive_length, "focus distances (mm), or inf")
       ->default_str("0.8, 0.9, 1, 1.1, 1.2 of the light's distance; for inf 25, 50, 100 focal lengths, and inf");
   examples::add_focus(app, options.focus);
-  examples::add_numbers(app, "--field-deg", options.field_deg, examples::finite_number,
+  examples::add_numbers(app, "--field-deg", options.field_deg, examples::field_angle,
                         "angles of the light towards +y, seen from the paraxial entrance pupil (degrees)")
       ->default_str("0 and 0.7 of the lens's half field");
   examples::add_iris(app, options.iris);

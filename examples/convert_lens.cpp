@@ -4,7 +4,8 @@
 //
 //   convert_lens lens.zmx lens.json
 //   convert_lens zoom.txt tele.zmx --configuration tele --glasses hoya.agf --json
-//   convert_lens table.dat lens.json --repair
+//   convert_lens table.dat lens.json --repair --match-glasses
+//   convert_lens lenses.json lens.json --configuration 2004
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -199,7 +200,7 @@ void say(const char* kind, const std::string& file, const std::vector<ImportWarn
 bool convert(const Options& options) {
   const Output& output = output_for(options.out);
   const auto glasses = examples::glasses_of(options.in);
-  Prescription whole = petzval::read_prescription(options.in.file, {.glasses = &glasses});
+  auto [whole, configuration, one] = examples::read_configurations(options.in, glasses);
   const std::vector<ImportWarning> warnings = whole.imported ? whole.imported->warnings : std::vector<ImportWarning>();
   // A petzval-lens has the warnings of the file that it was made of.
   const bool of_another = whole.imported && whole.imported->file != std::filesystem::path(options.in.file).filename();
@@ -217,9 +218,10 @@ bool convert(const Options& options) {
     repairs = std::move(repaired.changes);
     say("repaired", options.in.file, repairs);
   }
-  Prescription lens = petzval::configured(whole, examples::configuration_of(options.in));
+  whole = examples::with_matched_glasses(options.in, std::move(whole), glasses);
+  Prescription lens = examples::for_flag("--configuration",
+                                         [&, &chosen = configuration] { return petzval::configured(whole, chosen); });
   // A position that was asked for is a lens of its own; else all positions are written.
-  const bool one = !options.in.configuration.empty();
   const auto losses = output.write(one ? lens : whole, glasses, options.out);
   say("lost", options.out, losses);
   if (options.json) std::cout << report(whole, lens, glasses, warnings, losses, repairs).dump(2) << '\n';
@@ -232,8 +234,9 @@ int main(int argc, char** argv) {
   Options options;
   bool refused = false;
   examples::App app(
-      "Reads a lens of any format (petzval JSON, Zemax .zmx, CODE V .seq, OSLO .len, OpticalBench and renderers' "
-      "tables, lentil and optiland JSON; known by its content) and writes OUT in the format of its ending. Warnings "
+      "Reads a lens of any format (petzval JSON, Zemax .zmx, CODE V .seq, OSLO .len, FlareSim .lens, OpticalBench and "
+      "other tables, lentil and optiland JSON; known by its content) and writes OUT in the format of its ending. "
+      "Warnings "
       "name the lines of IN that were not taken as they are. The exit status is 0 if OUT was written, 3 if --strict "
       "refused IN.",
       "convert_lens");

@@ -279,7 +279,7 @@ int main(int argc, char** argv) {
   examples::add_number(app, "--f-number", options.f_number, examples::positive_number,
                        "stop the lens down (by exact rays)")
       ->default_str("wide open");
-  examples::add_numbers(app, "--field-deg", options.field_deg, examples::finite_number,
+  examples::add_numbers(app, "--field-deg", options.field_deg, examples::field_angle,
                         "fields of min_rms and min_max, of equal weight (degrees)");
   examples::add_wavelengths(app, "--wavelengths-nm", options.wavelengths_nm,
                             "wavelengths of min_rms and min_max, of equal weight")

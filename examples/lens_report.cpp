@@ -124,8 +124,7 @@ int main(int argc, char** argv) {
   examples::add_focus(app, options.focus);
   examples::add_film_choice(app, options.film, "file; with --subject-distance-mm focus");
   auto* out = examples::add_out_folder(app, options.out_folder, "draw figures and a page in this folder");
-  examples::add_numbers(app, "--field-deg", options.field_deg, examples::finite_number,
-                        "fields of the figures (degrees)")
+  examples::add_numbers(app, "--field-deg", options.field_deg, examples::field_angle, "fields of the figures (degrees)")
       ->default_str("those of the file, else the axis, 0.7 and 1 of the declared half field")
       ->needs(out);
   out->excludes("--json");

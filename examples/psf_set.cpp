@@ -65,6 +65,7 @@ class Scenes {
   examples::BokehScene at(const PsfSetPoint& point) {
     if (!stopped_ || f_number_ != point.f_number) {
       examples::IrisSetup iris = options_.iris;
+      iris.f_number_flag = "--f-numbers";
       if (!wide_open_) iris.f_number = point.f_number;
       stopped_ = examples::stopped_down(lens_, iris);
       f_number_ = point.f_number;
@@ -74,7 +75,7 @@ class Scenes {
                                           .origin = options_.focus.distance_origin(),
                                           .criterion = options_.focus.options().criterion,
                                           .field_rad = petzval::radians(point.field_deg)});
-    petzval::PupilPlane(scene.lens, scene.light);
+    examples::for_flag("--fields", [&] { return petzval::PupilPlane(scene.lens, scene.light); });
     return scene;
   }
 
@@ -344,7 +345,7 @@ int main_query(int argc, char** argv) {
   Maybe wavelength, f_number;
   examples::App app("Looks up a PSF of a set: a node as it is, any other point interpolated.", "psf_set query");
   app.add_option("FILE.exr", file, "a set of psf_set")->required();
-  examples::add_number(app, "--field-deg", point.field_deg, examples::finite_number, "angle of the light (degrees)")
+  examples::add_number(app, "--field-deg", point.field_deg, examples::field_angle, "angle of the light (degrees)")
       ->required()
       ->default_str("");
   examples::add_number(app, "--distance-mm", point.distance_mm, examples::positive_length, "its distance (mm), or inf")

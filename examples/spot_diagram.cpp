@@ -140,7 +140,7 @@ int main(int argc, char** argv) {
       "the centroid; null if no such ray exists).",
       "spot_diagram");
   examples::add_lens(app, options.lens_file);
-  examples::add_numbers(app, "--field-deg", options.field_deg, examples::finite_number,
+  examples::add_numbers(app, "--field-deg", options.field_deg, examples::field_angle,
                         "field angles towards +y, in object space at the paraxial entrance pupil (degrees)")
       ->default_str("those of the file, else the axis, 0.7 and 1 of the declared half field");
   examples::add_wavelengths(app, "--wavelengths-nm", options.wavelengths_nm, "wavelengths")

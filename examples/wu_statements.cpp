@@ -162,13 +162,11 @@ int main(int argc, char** argv) {
   examples::App app(
       "Compares the statements of Wu et al. 2010 about their figure 7 with radial profiles, and prints a table.\n"
       "Irradiances are relative to the mean of the disc: of the core (within 0.2 of the radius), of the brightest of "
-      "ten "
-      "rings, of the darkest ring inside that; deviation: RMS over the area. Uniform: the deviation is below 0.25. "
-      "Ring: "
-      "the brightest ring lies in the outer half; with a slight core if the core is 1.5 times as bright as the darkest "
+      "ten rings, of the darkest ring inside that; deviation: RMS over the area. Uniform: the deviation is below 0.25, "
+      "and core and innermost tenth are below 1.25; nearly even with a bright core: one of them is above. Ring: the "
+      "brightest ring lies in the outer half; with a slight core if the core is 1.5 times as bright as the darkest "
       "ring. Core: the brightest ring lies in the inner half; with a dark centre if the innermost tenth is below 0.95 "
-      "of "
-      "it. Sharpest: least RMS radius.",
+      "of it. Sharpest: least RMS radius.",
       "wu_statements");
   examples::add_samples(app, samples);
   examples::add_out_file(app, html_file, "also write the table as HTML", "FILE", "--html");

@@ -27,7 +27,7 @@ std::optional<Integrator> integrator_named(std::string_view name) noexcept {
 
 void UnitTracer::trace(const PixelBlock& block, const SampleRange& samples, Splats& splats,
                        double& lens_seconds) const {
-  // Rays of a batch agree with those of another batch within rounding only. Batches of one sample of each pixel make
+  // The same ray in two batches agrees within rounding only. Batches of one sample of each pixel make
   // the bits independent of how the samples are divided among calls.
   for (std::uint32_t i = 0; i < samples.count; ++i) {
     trace_once(block, samples.round, samples.first + i, splats, lens_seconds);

@@ -14,7 +14,7 @@
 
 namespace examples {
 
-std::array<double, 2> CameraSetup::film_size() const { return parse_size("--film-mm", film_mm, positive_number); }
+std::array<double, 2> CameraSetup::film_size() const { return parse_size("--film-mm", film_mm, film_side); }
 
 petzval::Film CameraSetup::film(std::uint32_t columns, std::uint32_t rows, std::uint32_t usual_columns) const {
   constexpr double most = 16384;
@@ -75,7 +75,8 @@ std::array<double, 2> parse_size(const std::string& where, std::string_view text
 }
 
 petzval::Lens focused(const LoadedLens& loaded, const CameraSetup& setup) {
-  return petzval::with_focus(stopped_down(loaded.lens, setup.iris), setup.focus_mm, setup.focus.options());
+  const petzval::Lens lens = stopped_down(loaded.lens, setup.iris);
+  return for_flag("--focus-mm", [&] { return petzval::with_focus(lens, setup.focus_mm, setup.focus.options()); });
 }
 
 void say_what_does_not_fit(const petzval::Lens& lens, const petzval::Film& film, const std::string& pixel_flags) {

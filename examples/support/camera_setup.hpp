@@ -14,6 +14,9 @@
 
 namespace examples {
 
+/// Width or height of a film, mm.
+inline constexpr Range film_side{std::numeric_limits<double>::min(), 1e6, "a length above 0, at most 1e6 mm"};
+
 /// Command line of the programs with a camera.
 struct CameraSetup {
   IrisSetup iris;

@@ -104,6 +104,7 @@ void want_folder(const std::string& flag, const std::filesystem::path& folder) {
   std::error_code error;
   std::filesystem::path place = folder;
   while (!std::filesystem::exists(place, error)) {
+    if (error) refuse(error.message());
     const std::filesystem::path above = place.parent_path();
     place = above.empty() || above == place ? std::filesystem::path(".") : above;
   }
@@ -118,6 +119,7 @@ void want_file(const std::string& flag, const std::filesystem::path& file) {
   };
   std::error_code error;
   if (file.empty()) refuse("it has no name");
+  if (!std::filesystem::exists(file, error) && error) refuse(error.message());
   if (std::filesystem::is_directory(file, error)) refuse("it is a folder");
   if (std::filesystem::is_other(file, error)) return;  // a device or a pipe
   const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
@@ -130,7 +132,9 @@ double parse_wavelength(const std::string& where, std::string_view text) {
   double number = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
   const bool letter = !text.empty() && std::isalpha(static_cast<unsigned char>(text.front())) != 0;
-  if (!letter || end == text.data() + text.size()) return parse_number(where, text, positive_number);  // "inf" too
+  if (!letter || end == text.data() + text.size()) {
+    return parse_number(where, text, {10, 1e5, "10 to 100000 nm"});  // "inf" too
+  }
   try {
     return petzval::spectral_line_nm(text);
   } catch (const petzval::Error& unknown) {

@@ -12,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "petzval/core/error.hpp"
 #include "petzval/focus/focus.hpp"
 
 namespace CLI {
@@ -31,6 +32,7 @@ struct Range {
 inline constexpr Range finite_number{};
 inline constexpr Range positive_length{std::numeric_limits<double>::min(), std::numeric_limits<double>::infinity(),
                                        "a number above 0, or inf"};
+inline constexpr Range field_angle{-180, 180, "an angle from -180 to 180 degrees"};
 inline constexpr Range positive_number{std::numeric_limits<double>::min(), std::numeric_limits<double>::max(),
                                        "a finite number above 0"};
 
@@ -87,6 +89,17 @@ class App {
   std::deque<Option> options_;
   std::vector<std::function<void()>> checks_;
 };
+
+/// Runs work and returns its result. Throws its petzval::Error with the flag at fault, if it names no flag.
+template <class Work>
+auto for_flag(const std::string& flag, const Work& work) {
+  try {
+    return work();
+  } catch (const petzval::Error& error) {
+    const std::string message = error.what();
+    throw petzval::Error(message.starts_with("--") ? message : flag + ": " + message);
+  }
+}
 
 /// Options read by the functions above. --help shows the value of the variable as the default.
 Option* add_number(App& app, const std::string& flag, double& value, const Range& range, const std::string& help);

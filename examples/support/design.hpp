@@ -15,7 +15,7 @@ namespace examples {
 struct ReportLight {
   std::vector<double> wavelengths_nm, weights;
   double primary_nm = petzval::d_line_nm;
-  bool of_file = false;  ///< true: as the file has them; false: those of the command line, or F, d and C
+  bool of_file = false;  ///< true: from the file; false: from the command line, or F, d and C
 };
 
 /// The wavelengths of the file; without any F, d and C, or the reference wavelength alone if a medium has no

@@ -36,13 +36,15 @@ void add_iris_shape(App& app, IrisSetup& setup) {
       ->capture_default_str();
 }
 
-petzval::Lens stopped_to(const petzval::Lens& lens, double f_number) {
+petzval::Lens stopped_to(const petzval::Lens& lens, double f_number, const std::string& flag) {
   // Names round: an "f/1.8" may open to f/1.85.
   constexpr double by_name = 1.04, rounded = 1.005;
   const double fastest = f_number > 0 ? petzval::fastest_f_number(lens) : 0;
-  if (!(f_number < fastest && fastest <= by_name * f_number)) return petzval::with_f_number(lens, f_number);
+  if (!(f_number < fastest && fastest <= by_name * f_number)) {
+    return for_flag(flag, [&] { return petzval::with_f_number(lens, f_number); });
+  }
   if (fastest > rounded * f_number) {
-    note(lens.name() + ": --f-number = " + number(f_number) + ": the lens opens to f/" + number(fastest, 4) +
+    note(lens.name() + ": " + flag + " = " + number(f_number) + ": the lens opens to f/" + number(fastest, 4) +
          ", which is used");
   }
   return petzval::with_f_number(lens, fastest);
@@ -57,10 +59,11 @@ petzval::Lens stopped_down(const petzval::Lens& lens, const IrisSetup& setup) {
     if (setup.rotation_deg != 0) refuse("--iris-rotation-deg: found it", "no corners");
     if (setup.area == "equal") refuse("--iris-area: found equal", "one area");
   }
-  const petzval::Lens shaped = petzval::with_iris(lens, setup.iris());
-  if (setup.f_number > 0) return stopped_to(shaped, setup.f_number_by_corners());
+  const petzval::Lens shaped = for_flag("--blades", [&] { return petzval::with_iris(lens, setup.iris()); });
+  if (setup.f_number > 0) return stopped_to(shaped, setup.f_number_by_corners(), setup.f_number_flag);
   if (setup.area == "equal" && !setup.iris().round()) {
-    throw petzval::Error("--iris-area: found equal without --f-number, wanted one: wide open, blades open no further");
+    throw petzval::Error("--iris-area: found equal without " + setup.f_number_flag +
+                         ", wanted one: wide open, blades open no further");
   }
   return shaped;
 }

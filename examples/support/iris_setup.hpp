@@ -16,6 +16,7 @@ struct IrisSetup {
   std::uint32_t blades = 0;
   double roundness = 0, rotation_deg = 0;
   std::string area = "circumscribed";
+  std::string f_number_flag = "--f-number";  ///< for messages
 
   petzval::Iris iris() const;
   /// What petzval::with_f_number takes. Throws petzval::Error for an iris out of range.
@@ -30,7 +31,7 @@ void add_iris(App& app, IrisSetup& setup);
 
 /// petzval::with_f_number for the f-number of a command line. Names of lenses round: an f-number that is faster than
 /// the lens by at most 4 % opens the lens fully, and a note on standard error gives the true f-number.
-petzval::Lens stopped_to(const petzval::Lens& lens, double f_number);
+petzval::Lens stopped_to(const petzval::Lens& lens, double f_number, const std::string& flag = "--f-number");
 
 /// The lens with that iris, stopped down. Throws petzval::Error for an iris and an f-number that it cannot have.
 petzval::Lens stopped_down(const petzval::Lens& lens, const IrisSetup& setup);

@@ -64,8 +64,12 @@ void surface_table(std::ostream& html, const Report& r) {
     const petzval::SurfaceRow& row = p.surfaces[i];
     const petzval::LensSurface& compiled = r.loaded.lens.surfaces()[i];
     const petzval::Glass* glass = petzval::glass_of(row.medium, r.loaded.glasses);
-    const std::optional<double> nd = row.medium.nd ? row.medium.nd : glass ? std::optional(glass->nd) : std::nullopt;
-    const std::optional<double> vd = row.medium.vd ? row.medium.vd : glass ? std::optional(glass->vd) : std::nullopt;
+    // Of the row, or else of its glass.
+    const auto either = [&](std::optional<double> own, double petzval::Glass::*of_glass, int digits) {
+      return own ? number(*own, digits) : glass ? number(glass->*of_glass, digits) : std::string();
+    };
+    const std::string nd = row.medium.is_air() ? "" : either(row.medium.nd, &petzval::Glass::nd, 7),
+                      vd = either(row.medium.vd, &petzval::Glass::vd, 5);
     std::string remarks;
     const auto remark = [&](const std::string& words) { remarks += (remarks.empty() ? "" : ", ") + words; };
     if (row.stop) remark("stop");
@@ -76,9 +80,10 @@ void surface_table(std::ostream& html, const Report& r) {
     if (row.conic != 0) remark("conic " + number(row.conic, 6));
     if (!row.aspheric.empty()) remark("asphere of order " + std::to_string(row.aspheric.back().order));
     if (row.obscuration_semi_diameter) remark("central obscuration " + number(*row.obscuration_semi_diameter, 5));
+    if (row.semi_diameter_computed) remark("semi-diameter computed");
     html << "<tr>" << cell(std::to_string(i)) << cell(row.radius == 0 ? "plane" : number(row.radius, 8))
-         << cell(number(row.thickness, 7)) << cell(nd && !row.medium.is_air() ? number(*nd, 7) : "")
-         << cell(vd ? number(*vd, 5) : "") << "<td>" << escaped_html(row.medium.glass.value_or("")) << "</td>"
+         << cell(number(row.thickness, 7)) << cell(nd) << cell(vd) << "<td>"
+         << escaped_html(row.medium.glass.value_or("")) << "</td>"
          << cell(std::isfinite(compiled.semi_diameter) ? number(compiled.semi_diameter, 5) : "unlimited") << "<td>"
          << remarks << "</td></tr>\n";
   }

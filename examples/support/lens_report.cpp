@@ -141,6 +141,16 @@ Report report(LoadedLens loaded, ReportSubject subject, const std::optional<Decl
   return {std::move(loaded), std::move(subject), declared_pupil, std::move(meridians), std::move(findings)};
 }
 
+/// The surfaces, from 0, whose aperture the source does not state.
+std::vector<std::size_t> computed_apertures(const Report& r) {
+  std::vector<std::size_t> result;
+  const auto& surfaces = r.loaded.prescription.surfaces;
+  for (std::size_t i = 0; i < surfaces.size(); ++i) {
+    if (surfaces[i].semi_diameter_computed) result.push_back(i);
+  }
+  return result;
+}
+
 Json to_json(const Report& r) {
   const petzval::Lens& lens = r.loaded.lens;
   const auto& pupils = r.main().pupils;
@@ -178,6 +188,7 @@ Json to_json(const Report& r) {
     }
   }
   const auto& imported = r.loaded.prescription.imported;
+  json["computed_apertures"] = computed_apertures(r);
   json["format"] = imported ? imported->format : "petzval";
   json["warnings"] = Json::array();
   if (imported) {
@@ -246,6 +257,12 @@ std::string to_text(const Report& r) {
            << " is afocal: it has no focal length and no focal or principal points.\n";
     }
   }
+  if (const auto computed = computed_apertures(r); !computed.empty()) {
+    text << "\nclear apertures computed from the beam, as the source states none: surface"
+         << (computed.size() == 1 ? " " : "s ");
+    for (const std::size_t i : computed) text << (i == computed.front() ? "" : ", ") << i;
+    text << '\n';
+  }
   if (const auto& imported = r.loaded.prescription.imported) {
     text << "\nread from " << imported->file << " (" << imported->format << ", lengths in " << imported->units
          << "); assumed:" << (imported->warnings.empty() ? " nothing" : "") << '\n';
@@ -254,7 +271,7 @@ std::string to_text(const Report& r) {
            << '\n';
     }
   }
-  if (!lens.missing_glasses().empty()) text << "\nin no glass table:\n";
+  if (!lens.missing_glasses().empty()) text << "\nmedia without a glass of the tables:\n";
   for (std::size_t space = 1; space <= lens.surface_count(); ++space) {
     const petzval::Medium& medium = r.loaded.prescription.surfaces[space - 1].medium;
     if (medium == petzval::Medium{} || r.loaded.prescription.surfaces[space - 1].mirror) continue;

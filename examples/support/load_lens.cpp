@@ -11,6 +11,7 @@
 #include "petzval/core/units.hpp"
 #include "petzval/files/glass_files.hpp"
 #include "petzval/files/lens_file.hpp"
+#include "petzval/lint/match_glasses.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "text.hpp"
 
@@ -24,10 +25,13 @@ void say_what_is_known(const LensFile& file, const petzval::Lens& lens) {
   if (lens.dispersion() == petzval::Dispersion::catalogue || std::ranges::all_of(lens.wavelengths_nm(), at_reference)) {
     return;
   }
+  const std::string line = number(reference) + " nm";
   const std::size_t missing = lens.missing_glasses().size();
   if (missing == 0) return note(file.id + ": no medium disperses");
-  note(file.id + ": " + std::to_string(missing) + (missing == 1 ? " medium is" : " media are") +
-       " in no glass table; the n_d/V_d model is used away from " + number(reference) + " nm");
+  note(file.id + ": " + std::to_string(missing) + (missing == 1 ? " medium has" : " media have") +
+       " no glass of the tables; " +
+       (lens.dispersion() == petzval::Dispersion::abbe ? "the n_d/V_d model is used away from " + line
+                                                       : "without V_d the lens can be used at " + line + " only"));
 }
 
 void say_what_was_assumed(const LensFile& file) {
@@ -48,20 +52,34 @@ void say_what_limits(const LensFile& file, const petzval::Lens& lens) {
        std::to_string(pupils.stop) + ", which limits the axial beam, serves as one");
 }
 
+petzval::ConfigurationChoice choice_of(const std::string& text) {
+  if (text.empty()) return {};
+  double number = 0;
+  const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (status == std::errc() && end == text.data() + text.size()) return number;
+  return text;
+}
+
 }  // namespace
 
 Option* add_lens(App& app, LensInput& input, const std::string& name, const std::string& remark) {
-  Option* lens = app.add_option(name, input.file,
-                                "a lens: JSON as in data/lenses, .zmx, .seq, .len, OpticalBench or renderers' tables" +
-                                    (remark.empty() ? "" : "; " + remark));
+  Option* lens =
+      app.add_option(name, input.file,
+                     "a lens: JSON as in data/lenses, .zmx, .seq, .len, .lens, OpticalBench or other tables" +
+                         (remark.empty() ? "" : "; " + remark));
   if (name == "LENS" && remark.empty()) lens->required();
   lens->type_name("FILE");
   app.add_option("--glasses", input.glass_files,
                  "glass catalogues to look into first (.agf, refractiveindex.info .yml)")
       ->type_name("FILE...")
       ->needs(lens);
-  app.add_option("--configuration", input.configuration, "position of a zoom lens, by name or by number from 0")
+  app.add_option("--configuration", input.configuration,
+                 "position of a zoom lens, by name or by number from 0; the lens of a database, by its key or name "
+                 "(2004, or 2004/long)")
       ->default_str("the first")
+      ->needs(lens);
+  app.add_flag("--match-glasses", input.match_glasses,
+               "give media known by n_d and V_d alone the nearest glass (within 0.001 and 0.5), and say which")
       ->needs(lens);
   return lens;
 }
@@ -79,21 +97,39 @@ petzval::GlassCatalogue glasses_of(const LensInput& input) {
   return glasses;
 }
 
-petzval::ConfigurationChoice configuration_of(const LensInput& input) {
-  const std::string& text = input.configuration;
-  if (text.empty()) return {};
-  double number = 0;
-  const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (status == std::errc() && end == text.data() + text.size()) return number;
-  return text;
+ReadLens read_configurations(const LensInput& input, const petzval::GlassCatalogue& glasses) {
+  const std::size_t slash = input.configuration.find('/');
+  const std::string first = input.configuration.substr(0, slash);
+  petzval::Prescription whole = petzval::read_prescription(input.file, {.glasses = &glasses, .entry = first});
+  std::string position = input.configuration;
+  if (whole.imported && !whole.imported->entry.empty()) {
+    position = slash == std::string::npos ? "" : position.substr(slash + 1);
+  }
+  return {std::move(whole), choice_of(position), !position.empty()};
+}
+
+petzval::Prescription with_matched_glasses(const LensInput& input, petzval::Prescription lens,
+                                           const petzval::GlassCatalogue& glasses) {
+  if (!input.match_glasses) return lens;
+  petzval::MatchedGlasses result = petzval::match_glasses(lens, glasses);
+  const auto say = [&](const std::vector<petzval::ImportWarning>& media, const char* verdict) {
+    for (const petzval::ImportWarning& medium : media) {
+      note(input.file + ": " + medium.command + ": " + verdict + medium.message);
+    }
+  };
+  say(result.matched, "matched: ");
+  say(result.unmatched, "not matched: ");
+  return std::move(result.prescription);
 }
 
 LensFile read_lens(const LensInput& input) {
   auto glasses = glasses_of(input);
-  const petzval::Prescription whole = petzval::read_prescription(input.file, {.glasses = &glasses});
-  petzval::Prescription prescription = petzval::configured(whole, configuration_of(input));
+  const ReadLens read = read_configurations(input, glasses);
+  petzval::Prescription prescription = with_matched_glasses(
+      input, for_flag("--configuration", [&] { return petzval::configured(read.whole, read.configuration); }), glasses);
   std::string id = std::filesystem::path(input.file).stem().string();
   if (!input.configuration.empty()) id += '_' + input.configuration;
+  std::ranges::replace(id, '/', '_');
   return {std::move(id), std::move(prescription), std::move(glasses)};
 }
 

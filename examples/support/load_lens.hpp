@@ -19,6 +19,7 @@ struct LensInput {
   std::string file{};                      ///< of any format that read_prescription() knows
   std::vector<std::string> glass_files{};  ///< looked into before the tables of petzval
   std::string configuration{};             ///< a name or a number from 0; empty: the first
+  bool match_glasses = false;              ///< media without a name get the nearest glass
 };
 
 /// The option LENS, or --lens, with --glasses and --configuration, which need it. LENS is required if nothing is to be
@@ -28,8 +29,19 @@ Option* add_lens(App& app, LensInput& input, const std::string& name = "LENS", c
 /// The glass tables of petzval, and what --glasses adds.
 petzval::GlassCatalogue glasses_of(const LensInput& input);
 
-/// "tele" or "1", "0.5": by name or by number.
-petzval::ConfigurationChoice configuration_of(const LensInput& input);
+/// A lens file as it is, with all its configurations, and the one that the command line chooses: "tele", or "1" and
+/// "0.5" by number. If a file holds several lenses, the first word names the lens: "2004", "2004/long".
+struct ReadLens {
+  petzval::Prescription whole;
+  petzval::ConfigurationChoice configuration;
+  bool one_configuration = false;  ///< true if the command line names a configuration
+};
+ReadLens read_configurations(const LensInput& input, const petzval::GlassCatalogue& glasses);
+
+/// The lens with the names of the nearest glasses if --match-glasses is given. Notes on standard error name each medium
+/// and its glass, or the reason for no glass.
+petzval::Prescription with_matched_glasses(const LensInput& input, petzval::Prescription lens,
+                                           const petzval::GlassCatalogue& glasses);
 
 /// A lens file as it was read, in the configuration of the command line.
 struct LensFile {

@@ -39,7 +39,7 @@ void add_movement_options(App& app, MovementOptions& options) {
 
 MovingLens moving_lens(const MovementOptions& options) {
   MovingLens result;
-  const auto [width, height] = parse_size("--film-mm", options.film_mm, positive_number);
+  const auto [width, height] = parse_size("--film-mm", options.film_mm, film_side);
   result.film = {.width_mm = width, .height_mm = height};
   if (options.focal_length_mm > 0) {
     if (!options.lens_file.file.empty()) {

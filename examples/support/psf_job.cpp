@@ -155,7 +155,8 @@ PsfJob::PsfJob(Json description)
 
 PsfJob PsfJob::read(const fs::path& folder) {
   const fs::path file = folder / job_file;
-  if (!exists(file)) throw petzval::Error(folder.string() + ": no " + job_file + ", wanted a folder of psf_set");
+  if (!examples::exists(file))
+    throw petzval::Error(folder.string() + ": no " + job_file + ", wanted a folder of psf_set");
   try {
     return PsfJob(Json::parse(read_text(file)));
   } catch (const nlohmann::json::exception&) {
@@ -170,7 +171,7 @@ fs::path PsfJob::file(const fs::path& folder, std::size_t node) const {
 }
 
 void PsfJob::begin(const fs::path& folder, const Shard& shard) const {
-  if (exists(folder / job_file)) {
+  if (examples::exists(folder / job_file)) {
     if (read(folder).description_ != description_) {
       throw petzval::Error((folder / job_file).string() +
                            ": describes another set, wanted an empty folder or the same set");
@@ -224,7 +225,7 @@ std::vector<petzval::ExrPart> PsfJob::gather(const std::vector<fs::path>& folder
     std::optional<petzval::ExrPart> found;
     fs::path found_in;
     for (const fs::path& folder : folders) {
-      if (!exists(file(folder, node))) continue;
+      if (!examples::exists(file(folder, node))) continue;
       try {
         petzval::ExrPart own = part(folder, node);
         if (!found) {

@@ -29,6 +29,7 @@ const char* words(Look look) {
     case Look::hollow_core: return "bright core with dark centre";
     case Look::core: return "bright core, dark ring";
     case Look::uniform: return "uniform disc";
+    case Look::even_and_core: return "nearly even, bright core";
     case Look::point: return "sharpest of the five";
   }
   return "";
@@ -79,7 +80,7 @@ ProfileShape profile_shape(std::span<const double, 64> profile) {
 }
 
 Look look(const ProfileShape& shape) {
-  if (shape.deviation < 0.25) return Look::uniform;
+  if (shape.deviation < 0.25) return std::max(shape.core, shape.centre) > 1.25 ? Look::even_and_core : Look::uniform;
   if (shape.brightest_ring >= 5) return shape.core > 1.5 * shape.darkest_inside ? Look::ring_and_core : Look::ring;
   return shape.centre < 0.95 * shape.brightest ? Look::hollow_core : Look::core;
 }

@@ -15,6 +15,7 @@ enum class Look {
   hollow_core,    ///< bright core with a dark centre, dark ring around
   core,           ///< bright core, dark ring around
   uniform,        ///< uniform disc
+  even_and_core,  ///< nearly even disc with a bright core; the paper has no words for it
   point,          ///< in focus: the sharpest of the five
 };
 const char* words(Look look);

@@ -195,6 +195,8 @@ TEST_F(BokehPsf, HasTheShapeOfTheIris) {
     const double opened = 16 / equal.at("f_number_real").get<double>();
     EXPECT_NEAR(opened * opened * share, 1, 1e-11);
     EXPECT_NEAR(number(equal["results"][0], "throughput") * opened * opened / number(round, "throughput"), 1, 5e-3);
+    EXPECT_NEAR(number(equal["results"][0], "throughput_of_round_iris") / number(round, "throughput"), 1, 5e-3);
+    EXPECT_EQ(number(bladed, "throughput_of_round_iris"), number(bladed, "throughput"));
   }
   EXPECT_EQ(result({"--blades", "5", "--roundness", "1"}), round);
   EXPECT_LT(number(result({"--blades", "5", "--roundness", "-1"}), "throughput"),
@@ -334,7 +336,8 @@ TEST_F(BokehPsf, RefusesABadCommandLineInOneLine) {
   refuse_iris({"--tolerance", "0"}, "--tolerance: found \"0\", wanted a number above 0, at most 1");
   refuse_iris({"--blades", "5", "--iris-area", "equal"}, "--iris-area: found equal without --f-number");
   refuse_iris({"--white-point", "D66"}, "--white-point: found \"D66\", wanted D65, D50, A, E or a file.csv");
-  refuse_iris({"--white-point", "none.csv"}, "none.csv: cannot be opened (No such file or directory); must be the table of a light's power");
+  refuse_iris({"--white-point", "none.csv"},
+              "none.csv: cannot be opened (No such file or directory); must be the table of a light's power");
   refuse_iris({"--lens-ratio", "0"}, "--lens-ratio: found \"0\", wanted a finite number above 0");
   refuse_iris({"--model", "fast"}, "--model");
   refuse_iris({"--weight-map", "none.png"}, "none.png");

@@ -126,6 +126,50 @@ TEST_F(ConvertLens, MissingGlassesComeFromFilesOfTheUser) {
   EXPECT_NEAR(petzval::read_prescription(path("far.json")).surfaces[1].thickness, 2.1 * 25.4, 1e-9);
 }
 
+// Germanium is opaque at the d line: its V_d is 0, and the lens is one for 10.6 um.
+TEST_F(ConvertLens, InfraredGlassOfAUsersFile_IsReadByEveryProgramThatRecommendsIt) {
+  write("ge.zmx", R"(MODE SEQ
+UNIT MM X W X CM MR CPMM
+ENPD 20
+WAVM 1 10.6 1
+PWAV 1
+SURF 0
+  DISZ INFINITY
+SURF 1
+  STOP
+  CURV 0.01
+  DISZ 4
+  GLAS GERMANIUM 0 0 1.5 40
+SURF 2
+  CURV 0.007
+  DISZ 90
+SURF 3
+)");
+  write("infrared.agf", "NM GERMANIUM 2 000000 4.003 0 0 0\nCD 14.0 0.2 0.3 24 0 0 0 0 0 0\nLD 3 12\n");
+  const auto expect_both = [&](const std::string& program, std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), path("ge.zmx"));
+    const auto without = run(program, arguments);
+    EXPECT_NE(without.status, 0) << program;
+    EXPECT_NE(without.err.find("--glasses FILE"), std::string::npos) << without.err;
+    arguments.insert(arguments.end(), {"--glasses", path("infrared.agf")});
+    const auto with = run(program, arguments);
+    EXPECT_EQ(with.status, 0) << program << ' ' << with.err;
+  };
+  expect_both("convert_lens", {path("ge.json")});
+  expect_both("lens_report", {"--wavelength-nm", "10600"});
+  expect_both("spot_diagram", {"--wavelengths-nm", "10600", "--field-deg", "0", "--out", path("spots")});
+  const auto back = petzval::read_prescription(path("ge.json"));
+  EXPECT_EQ(back.reference_wavelength_nm, 10600);
+  EXPECT_NEAR(petzval::first_order(petzval::compile(back)).effective_focal_length, 106.5453, 1e-4);
+  for (const char* ending : {".zmx", ".seq", ".dat", ".osl"}) {
+    EXPECT_EQ(
+        run("convert_lens", {path("ge.json"), path(std::string("out") + ending), "--glasses", path("infrared.agf")})
+            .status,
+        0)
+        << ending;
+  }
+}
+
 TEST_F(ConvertLens, RepairsWhatIsCertain) {
   // A lens of 50 mm that declares 50 mm and f/5, with diameters in the place of semi-diameters, ten times too large.
   write("lens.json", R"({"format": "petzval-lens 1", "name": "bad", "focal_length_mm": 50, "f_number": 5, "surfaces": [
@@ -150,6 +194,48 @@ TEST_F(ConvertLens, EveryProgramTakesEveryFormat) {
   const auto zoom = run("lens_report", {lens("zoom_70-210mm_f4"), "--json", "--configuration", "tele"});
   EXPECT_NEAR(nlohmann::json::parse(zoom.out)["effective_focal_length_mm"].get<double>(), 205.265, 1e-3);
   expect_failure("lens_report", {lens("zoom_70-210mm_f4"), "--configuration", "far"}, "wide, middle, tele");
+}
+
+// The lens that data/README.md types, with the glasses that its numbers mean.
+TEST_F(ConvertLens, TablesAsPeopleTypeThemGetTheirGlasses) {
+  write("cooke.txt",
+        "# Cooke triplet 50 mm f/5\nR d nd vd semi\n22.01359 3.25896 1.62041 60.3 9.5\n-435.76044 6.00755\n"
+        "-22.21328 0.99997 1.62004 36.4 5\n20.29192 4.75041 1 - 4.8 stop\n79.6836 2.95208 1.62041 60.3 8\n"
+        "-18.39533 42.20778\n");
+  const auto plain = run("lens_report", {path("cooke.txt"), "--json"});
+  ASSERT_EQ(plain.status, 0) << plain.err;
+  EXPECT_NEAR(nlohmann::json::parse(plain.out)["effective_focal_length_mm"].get<double>(), 50.0213, 1e-3);
+  EXPECT_EQ(plain.err.find("matched"), std::string::npos);
+
+  const auto matched = run("convert_lens", {path("cooke.txt"), path("cooke.json"), "--match-glasses"});
+  ASSERT_EQ(matched.status, 0) << matched.err;
+  const auto lens = petzval::read_prescription(path("cooke.json"));
+  for (const std::size_t i : {0u, 2u, 4u}) {
+    EXPECT_EQ(lens.surfaces[i].medium.glass_origin, "matched") << i;
+    EXPECT_NE(matched.err.find(lens.surfaces[i].medium.glass.value()), std::string::npos) << matched.err;
+  }
+  EXPECT_EQ(lens.surfaces[0].medium.nd, 1.62041);
+  EXPECT_NEAR(petzval::first_order(petzval::compile(lens)).effective_focal_length, 50.0213, 1e-3);
+  EXPECT_NE(run("lens_report", {path("cooke.txt"), "--match-glasses"}).err.find("matched"), std::string::npos);
+}
+
+TEST_F(ConvertLens, OneLensOfADatabaseIsAConfiguration) {
+  const std::string element = R"({"radius": 50, "thickness": [5, 6, 7], "material": "abbe", "ior": 1.5, "abbe": 60},
+    {"radius": -50, "thickness": 47, "material": "air"})";
+  write("lenses.json", R"({"2003": {"product-name": "a", "optical-elements-patent": [)" + element +
+                           R"(]}, "2004": {"product-name": "b", "optical-elements-patent": [)" + element + "]}}");
+  for (const char* word : {"--configuration", "2003 (a)", "2004 (b)"}) {
+    expect_failure("convert_lens", {path("lenses.json"), path("lens.json")}, word);
+  }
+  for (const char* chosen : {"2004", "b"}) {
+    ASSERT_EQ(run("convert_lens", {path("lenses.json"), path("lens.json"), "--configuration", chosen}).status, 0);
+    const auto lens = petzval::read_prescription(path("lens.json"));
+    EXPECT_EQ(lens.imported->entry, "2004");
+    EXPECT_EQ(lens.configurations.size(), 3u);
+  }
+  ASSERT_EQ(run("convert_lens", {path("lenses.json"), path("lens.json"), "--configuration", "2004/long"}).status, 0);
+  EXPECT_EQ(petzval::read_prescription(path("lens.json")).surfaces[0].thickness, 7);
+  EXPECT_EQ(run("lens_report", {path("lenses.json"), "--configuration", "2004/long"}).status, 0);
 }
 
 TEST_F(ConvertLens, BadFilesFailInOneLine) {

@@ -74,7 +74,7 @@ TEST_F(Distances, OneDistanceIsOneFilmInEveryProgram) {
   // By another criterion all agree as well.
   const petzval::Lens paraxial = petzval::with_focus(whole, 1000, {petzval::FocusCriterion::paraxial});
   for (const auto& [program, found] : films(id, {"--criterion", "paraxial"})) {
-    // The file format's distance is that of the sharpest subject.
+    // The file format's distance means the sharpest subject.
     if (program == "lens_metadata") continue;
     EXPECT_NEAR(found, paraxial.film_z(), 1e-9) << program;
   }
@@ -147,7 +147,7 @@ TEST_F(Distances, ListsTakeBlanksAndSpectralLines) {
   expect_failure("focus_report", {lens("cooke_triplet_50mm_f5"), "--wavelengths-nm", "d,587.5618"}, "twice");
 }
 
-// What cannot be written is said before anything is computed, and nothing is made.
+// Programs refuse an output that cannot be written before they compute anything.
 TEST_F(Distances, EveryProgramChecksWhereItWrites) {
   write("taken", "");
   const std::string file = lens("double_gauss_100mm_f2.0"), taken = path("taken");

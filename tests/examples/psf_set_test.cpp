@@ -230,7 +230,7 @@ TEST_F(PsfSets, RefusesABadCommandLineAndWritesNothing) {
   refused({"--fields", "0", "--distances-mm", "1000,1000"}, "twice");
   grid({"--f-numbers", "1"}, "f-number is 1, wanted");
   grid({"--f-numbers", "0"}, "--f-numbers: found \"0\"");
-  grid({"--wavelengths-nm", "5"}, "5 nm");
+  grid({"--wavelengths-nm", "5"}, "--wavelengths-nm");
   grid({"--pixels", "32"}, "--pixels: found \"32\", wanted an odd number");
   grid({"--samples", "0"}, "--samples: found \"0\"");
   grid({"--focus-mm", "20"}, "cannot be focused");

