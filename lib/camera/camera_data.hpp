@@ -66,7 +66,7 @@ struct Camera::Data {
   }
 
  private:
-  /// Not a number stays one.
+  /// NaN stays NaN.
   double clamped(double nm) const noexcept { return std::clamp(nm, shortest_nm_, longest_nm_); }
 
   camera_detail::LensFacts facts_;

@@ -368,7 +368,7 @@ TEST(AnyWavelengthOf, ClampedCamerasSeeTheLensAtTheEndsOfTheRange) {
     const auto lost = camera.sample({.film = point, .wavelength = Wavelength::nm(std::nan(""))});
     EXPECT_EQ(lost.fate, RayFate::outside_spectrum);
 
-    // Batches, of more rays than a block has.
+    // Batches of several blocks.
     constexpr std::size_t count = 777;
     const std::vector<double> x(count, point.x), y(count, point.y), u(count, 0.3), v(count, 0.6);
     std::vector<float> nm(count), clamped_nm(count);

@@ -14,7 +14,10 @@ namespace petzval::inline v0 {
 /// x is the share of the iris's area that lies nearer to its centre, by lines that have the shape of the iris; for
 /// d < 0 it is 1 less that share, and |d| stands for d. So the mean over the iris is 1 whatever its shape, as long as
 /// no weight is cut: d > 0 makes the rim of a blur bright, d < 0 its middle (a strength below 0 the other way round).
-/// Source: "Recreating realistic bokeh by biasing lens-sample positions", 2017.
+/// The weights conserve the light that passes the iris. On the film each part of the pupil counts with the cosine of
+/// its rays to the fourth, so that the light of a picture changes: by 1 % at f/4, by 1.5 % (exact) to 3.5 % (thin) at
+/// f/2 and by 6 % to 13 % at f/1.1 for d = 4 or -4 and p = 0.8. Source: "Recreating realistic bokeh by biasing
+/// lens-sample positions", 2017.
 struct EdgeWeight {
   double distribution = 0;  ///< d, -1000 to 1000
   double strength = 0.5;    ///< p: 0 to 1, of which nothing is cut; -1e6 to 1e6
