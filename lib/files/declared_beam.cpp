@@ -31,7 +31,7 @@ Prescription without_rims(Prescription rows) {
   rows.imported.reset();
   rows.configurations.clear();
   for (SurfaceRow& row : rows.surfaces) {
-    row.semi_diameter.reset();
+    row.semi_diameter = std::numeric_limits<double>::infinity();  // without a number it would be computed
     row.obscuration_semi_diameter.reset();
   }
   return rows;
