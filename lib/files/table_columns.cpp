@@ -226,7 +226,7 @@ std::optional<double> unit_of(std::string_view cell) {
 std::optional<TableColumn> column_of(std::string_view head) {
   auto [name, bracket] = plain(head);
   TableColumn column{.name = std::string(head)};
-  const auto find = [&] { return std::ranges::find(heads, std::string_view(name), &Head::name); };
+  const auto find = [&own = name] { return std::ranges::find(heads, std::string_view(own), &Head::name); };
   if (!bracket.empty()) {
     if (const auto unit = unit_of(bracket)) {
       column.unit_mm = *unit;

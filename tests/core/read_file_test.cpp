@@ -75,7 +75,7 @@ TEST_F(ReadFile, MissingFile_IsRefusedWithTheReasonOfTheSystem) {
   const std::pair<fs::path, int> cases[] = {
       {file_, ENOENT}, {folder_ / std::string(300, 'n'), ENAMETOOLONG}, {folder_ / "loop", ELOOP}};
   for (const auto& [file, reason] : cases) {
-    expect_contains(message([&] { read_file(file, "a lens file"); }),
+    expect_contains(message([&, &missing = file] { read_file(missing, "a lens file"); }),
                     {file.string() + ": ", std::strerror(reason), "a lens file"});
   }
 }

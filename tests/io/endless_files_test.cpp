@@ -61,7 +61,7 @@ TEST(EndlessFiles, OfBytes_AreRefusedWithSizeAndLimit) {
   fs::resize_file(huge, largest_file_bytes + 1);
   for (const auto& [kind, read] : of_bytes) {
     for (const fs::path& file : {fs::path("/dev/zero"), huge}) {
-      const std::string said = testing::message([&] { read(file); });
+      const std::string said = testing::message([&, &reader = read] { reader(file); });
       EXPECT_NE(said.find("256 MiB"), std::string::npos) << kind << ", " << file << ": " << said;
     }
   }
@@ -70,7 +70,7 @@ TEST(EndlessFiles, OfBytes_AreRefusedWithSizeAndLimit) {
 
 TEST(EndlessFiles, OfPictures_AreRefusedByTheirHeads) {
   for (const auto& [kind, read] : of_pictures) {
-    const std::string said = testing::message([&] { read("/dev/zero"); });
+    const std::string said = testing::message([&reader = read] { reader("/dev/zero"); });
     EXPECT_EQ(said.rfind("/dev/zero: ", 0), 0u) << kind << ": " << said;
   }
   const fs::path digits = fs::path(::testing::TempDir()) / ("petzval_digits_" + std::to_string(getpid()));

@@ -211,14 +211,14 @@ TEST(Apertures, GiveOptilandsTripletTheSpotsOfOpticStudio) {
     EXPECT_NEAR(image.size.rms_radius, rms, (field == 0 ? 0.04 : 0.15) * rms) << field;
     EXPECT_LE(image.throughput, 1.1) << field;
     // Without ray aiming the beam fills the paraxial entrance pupil, and not the stop.
-    const auto launched = [&](std::size_t at) {
+    const auto launched = [&, angle_rad = radians(field)](std::size_t at) {
       std::vector<Vec2<double>> hits;
       constexpr int rings = 6;  // as both programs send rays by default
       for (int ring = 0; ring <= rings; ++ring) {
         for (int k = 0; k < std::max(6 * ring, 1); ++k) {
           const double r = 5.0 * ring / rings, angle = 2 * std::numbers::pi * k / std::max(6 * ring, 1);
           const Ray<double> ray{{r * std::sin(angle), r * std::cos(angle), entrance.z},
-                                {0, std::sin(radians(field)), std::cos(radians(field))}};
+                                {0, std::sin(angle_rad), std::cos(angle_rad)}};
           const auto end = trace(lens, ray, {.wavelength = at, .apertures = false}).ray;
           const double t = (lens.film_z() - end.origin.z) / end.direction.z;
           hits.push_back({end.origin.x + t * end.direction.x, end.origin.y + t * end.direction.y});
