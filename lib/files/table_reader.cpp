@@ -25,8 +25,18 @@ using io_detail::in_quotes;
 
 constexpr std::size_t most_rows = 10'000;
 
-/// The number in front of a row: "3", "S3", "3*", "3."; nullopt for anything else.
+/// The mark of the stop behind the number of a row: "4(stop)", "4 STO", "4S"; empty without a mark.
+std::string_view stop_mark_of(std::string_view label) {
+  const std::size_t end = std::min(label.find_first_not_of("0123456789"), label.size());
+  std::string_view mark = label.substr(end);
+  while (mark.starts_with(' ')) mark.remove_prefix(1);
+  const bool marks = mark != "*" && (is_stop_word(mark) || same(mark, "s"));
+  return end > 0 && marks ? mark : std::string_view();
+}
+
+/// The number in front of a row: "3", "S3", "3*", "3.", "3(stop)"; nullopt for anything else.
 std::optional<int> label_of(std::string_view cell) {
+  cell.remove_suffix(stop_mark_of(cell).size());
   if (cell.starts_with('S') || cell.starts_with('s') || cell.starts_with('#')) cell.remove_prefix(1);
   while (!cell.empty() && std::string_view("*.):").find(cell.back()) != std::string_view::npos) cell.remove_suffix(1);
   if (cell.empty() || cell.size() > 5 || cell.find_first_not_of("0123456789") != std::string_view::npos) return {};
@@ -68,6 +78,8 @@ class TableReader {
   void take_text(const TableLine& line);
   void use_comment_as_head();
   void drop_labels();
+  void take_titles();
+  void end_last_row();
   bool are_labels() const;
   void name_star(int line, std::string_view label);
   void guess();
@@ -114,6 +126,27 @@ void TableReader::take_text(const TableLine& line) {
   notes.insert(notes.begin(), std::move(title));
 }
 
+/// Lines with numbers and words in front of the head are titles: "50 mm f/5", "EPD 10".
+void TableReader::take_titles() {
+  const auto is_value = [](std::string_view cell) {
+    return looks_like_a_number(cell) || is_plane_word(cell) || is_none(cell) || is_stop_word(cell);
+  };
+  const auto title = [&](const RawRow& row) { return !std::ranges::all_of(row.cells, is_value); };
+  if (!std::ranges::all_of(rows_, title)) return;
+  for (const RawRow& row : std::exchange(rows_, {})) take_text({row.line, row.cells, {}});
+}
+
+/// A last row may end behind its radius, or name its thickness in words: the film is at the paraxial focus.
+void TableReader::end_last_row() {
+  const std::size_t thickness = find(Column::thickness);
+  auto& cells = rows_.back().cells;
+  if (rows_.size() < 2 || thickness > cells.size() || is_stop_word(cells.front())) return;
+  if (thickness == cells.size()) cells.push_back("-");
+  for (const char* word : {"bf", "bfl", "b.f.", "(bf)", "variable", "(variable)"}) {
+    if (same(cells[thickness], word)) cells[thickness] = "-";
+  }
+}
+
 /// "mm mm - - mm" below the heads.
 bool TableReader::take_units(const TableLine& line) {
   if (head_line_ == 0 || !rows_.empty() || line.cells.size() > columns_.size()) return false;
@@ -143,6 +176,7 @@ void TableReader::take_lines() {
       in_.must_be(line.number, "row", "more than " + std::to_string(TableText::most_cells) + " cells", "fewer");
     }
     if (is_head(line.cells, by_blanks)) {
+      if (head_line_ == 0) take_titles();
       if (!rows_.empty()) {
         in_.must_be(line.number, "row", in_quotes(line.cells[0]) + " ..., a head behind rows",
                     "one head in front of one table");
@@ -227,6 +261,7 @@ void TableReader::drop_labels() {
     if (is_stop_word(row.cells[0])) continue;
     row.object = is_object_word(row.cells[0]), row.image = is_image_word(row.cells[0]);
     if (row.cells[0].ends_with('*')) name_star(row.line, row.cells[0]);
+    if (const auto mark = stop_mark_of(row.cells[0]); !mark.empty()) row.stop = std::string(mark);
     row.cells.erase(row.cells.begin());
   }
 }
@@ -367,6 +402,7 @@ void TableReader::put(TableRow& row, const TableColumn& column, std::string_view
     case Column::left_out: break;
     case Column::number:
       if (is_stop_word(cell)) row.stop = std::string(cell), row.in_medium = true;
+      if (const auto mark = stop_mark_of(cell); !mark.empty()) row.stop = std::string(mark);
       if (cell.size() > 1 && cell.ends_with('*')) name_star(raw.line, cell);
       break;
     case Column::radius: row.radius = is_plane_word(cell) ? 0 : mm * value(raw, column, cell); break;
@@ -377,7 +413,7 @@ void TableReader::put(TableRow& row, const TableColumn& column, std::string_view
     }
     case Column::thickness:
     case Column::gap_before: row.thickness = mm * value(raw, column, cell); break;
-    case Column::index: row.index = value(raw, column, cell); break;
+    case Column::index: row.index = same(cell, "air") ? 1 : value(raw, column, cell); break;
     case Column::abbe: row.abbe = value(raw, column, cell); break;
     case Column::glass:
       if (same(cell, "mirror") || same(cell, "refl")) {
@@ -478,6 +514,7 @@ void TableReader::read() {
   drop_labels();
   guess();
   if (head_line_ != 0) check_head();
+  end_last_row();
   if (text_.has_decimal_commas()) in_.warn(rows_.front().line, "numbers", "have decimal commas");
 
   auto& notes = in_.lens.imported->notes;

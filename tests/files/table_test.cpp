@@ -209,6 +209,31 @@ TEST(Table, HeadsThatAreNotKnownAreNamedOrRefused) {
   EXPECT_EQ(read("My lens\n50 5 1.5 12\n-50 90 1 12\n").imported->title, "My lens");
 }
 
+// A mark behind the number of a row, a title with numbers, and a last row without a distance.
+TEST(Table, MarksTitlesAndLastRowsAreTypedInManyWays) {
+  const std::string rows =
+      "1 40 4 1.62041 60.3 9.5\n2 -300 5 1 - 9.25\n3X inf 3 1 - 7\n4 -30 2 1.6727 32.2 7.5\n5 inf 60 Air - 8\n";
+  for (const char* mark : {"(stop)", "S", "STO", "stop"}) {
+    expect_two_lenses("No r d nd vd semi\n" + with(rows, "X", mark));
+    expect_two_lenses("50 mm f/5\nNo r d nd vd semi\n" + with(rows, "X", mark));
+  }
+  EXPECT_EQ(read("50 mm f/5\nr d nd vd\n40 4 1.62041 60.3\n-300 50\n").f_number, 5);
+  EXPECT_NE(refusal("40 4 1.62041 60.3\nr d nd vd\n-300 50\n").find("x:2: row = "), std::string::npos);
+  for (const char* end : {"-300", "-300 BF", "-300 (variable)"}) {
+    const Prescription p = read("r d nd vd\n40 4 1.62041 60.3\n" + std::string(end) + "\n");
+    EXPECT_NEAR(p.surfaces[1].thickness, petzval::paraxial_image_z(compile(p), -HUGE_VAL) - 4, 1e-9) << end;
+  }
+}
+
+// A marked stop without a size stays the stop.
+TEST(Table, AMarkedStopWithoutASizeIsAsWideAsTheBeam) {
+  const Prescription p = read("40 4 1.62041 60.3\n-300 5\nstop 3\n-30 2 1.6727 32.2\ninf 60\n");
+  const petzval::Pupils pupils = petzval::pupils(compile(p));
+  EXPECT_FALSE(pupils.stop_inferred);
+  EXPECT_EQ(pupils.stop, 2u);
+  EXPECT_TRUE(p.surfaces[2].semi_diameter_computed);
+}
+
 // Patents print no apertures, and nothing for air.
 TEST(Table, PatentsAreTypedAsTheyArePrinted) {
   expect_two_lenses("40 4 1.62041 60.3\n-300 5\nstop 3\n-30 2 1.6727 32.2\ninf 60\n", false);
@@ -256,7 +281,7 @@ TEST(Table, GlassesHaveNames) {
     EXPECT_NEAR(petzval::first_order(compile(p)).effective_focal_length, 50.0213, 1e-3);
     const bool rims = text.find("SK16 9") != std::string::npos || text.find(" 9\n") != std::string::npos ||
                       text.find(" 4.5") != std::string::npos;
-    EXPECT_EQ(p.surfaces[0].semi_diameter, rims ? std::optional(4.5) : std::nullopt);
+    EXPECT_EQ(as_typed(p.surfaces)[0].semi_diameter, rims ? std::optional(4.5) : std::nullopt);
   }
   EXPECT_NE(refusal("50 5 NOGLASS9\n-50 90\n").find("NOGLASS9"), std::string::npos);
   // F2 of Schott and of CDGM are two glasses.
