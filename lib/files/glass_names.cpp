@@ -60,7 +60,9 @@ GlassNames::GlassNames(const GlassCatalogue& glasses) {
 const Glass* GlassNames::find(std::string_view name, std::span<const std::string> catalogues, std::optional<double> nd,
                               Numbers numbers) const {
   const auto rank = [&](const Glass& glass) {
-    const double off = nd ? std::round(std::abs(glass.nd - *nd) / 1e-6) : 0;  // within its digits
+    double off = nd ? std::round(std::abs(glass.nd - *nd) / 1e-6) : 0;  // within its digits
+    constexpr double another_glass = 2e-3 / 1e-6;
+    if (numbers == Numbers::leftovers) off = std::min(off, another_glass);
     const std::ptrdiff_t place = place_in(catalogues, glass);
     return numbers == Numbers::stated
                ? std::tuple(off, place, age(glass), 0.0, maker(glass))
