@@ -29,6 +29,38 @@ constexpr double default_half_field_rad = 20 * std::numbers::pi / 180;
 
 bool lacks_aperture(const SurfaceRow& row) { return !row.semi_diameter; }
 
+double object_z(const Prescription& rows) {
+  const double distance = rows.design.object_distance_mm;
+  return std::isfinite(distance) && distance > 0 ? -distance : -infinity;
+}
+
+/// Height at which an aimed ray meets a surface.
+double height_at(const Lens& lens, const Ray<double>& ray, std::size_t at) {
+  const auto vector = [](const Vec3<double>& v) { return kernel::Vec<double>{v.x, v.y, v.z}; };
+  double height = 0;
+  kernel::trace(kernel::view<double>(lens), vector(ray.origin), vector(ray.direction),
+                {.wavelength = lens.primary_wavelength()}, [&](int surface, const kernel::Vec<double>& hit) {
+                  if (static_cast<std::size_t>(surface) == at) height = std::hypot(hit.x, hit.y);
+                });
+  return height;
+}
+
+/// The lens with its stop as large as the axial beam that the other apertures and the edges pass, if they limit it.
+Lens with_widest_stop(const Lens& lens, const Prescription& rows) {
+  if (!lacks_aperture(rows.surfaces[*lens.stop()]) || !has_pupils(lens)) return lens;
+  const PupilPlane axis(lens, {.z = object_z(rows)});
+  const auto ray_at = [&](double part) { return pupil_detail::aim(lens, axis, {0, part}, {}); };
+  const auto passes = [&](double part) { return ray_at(part).status == AimStatus::converged; };
+  double low = 0, high = 1;
+  while (high < 1e6 && passes(high)) low = high, high *= 2;
+  for (int i = 0; i < 50; ++i) {
+    const double middle = (low + high) / 2;
+    (passes(middle) ? low : high) = middle;
+  }
+  const double height = low > 0 ? height_at(lens, ray_at(low).ray, *lens.stop()) : 0;
+  return height > 0 ? with_semi_diameter(lens, *lens.stop(), height) : lens;
+}
+
 /// The lens with its stop as large as the prescription declares the beam, if the stop is marked and has no aperture.
 Lens with_declared_stop(const Lens& lens, const Prescription& rows) {
   if (!lens.stop() || std::isfinite(lens.data().rims[*lens.stop()])) return lens;
@@ -39,7 +71,7 @@ Lens with_declared_stop(const Lens& lens, const Prescription& rows) {
       f_number = std::abs(first_order(lens, {}, main_meridian(lens)).effective_focal_length) / aperture->value;
     }
   }
-  if (!f_number) return lens;
+  if (!f_number) return with_widest_stop(lens, rows);
   try {
     return with_f_number(lens, *f_number);
   } catch (const Error&) {
@@ -56,7 +88,7 @@ struct DeclaredField {
 DeclaredField declared_field(const Prescription& rows, const Lens& lens) {
   DeclaredField result;
   const DesignData& design = rows.design;
-  if (std::isfinite(design.object_distance_mm) && design.object_distance_mm > 0) result.z = -design.object_distance_mm;
+  result.z = object_z(rows);
   const Meridian meridian = main_meridian(lens);
   const FirstOrder first = first_order(lens, {}, meridian);
   const double to_pupil = pupils(lens, {}, meridian).entrance.z - result.z;  // from the object

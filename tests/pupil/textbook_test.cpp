@@ -194,7 +194,7 @@ TEST(TextbookPupil, RefusesWhatIsNoPointAndNoWavelength) {
 TEST(TextbookPupil, NeedsARim) {
   Prescription p;
   p.name = "endless";
-  p.surfaces = {{.thickness = 10, .medium = {.nd = 1.5}, .stop = true}, {.thickness = 10}};
+  p.surfaces = {{.thickness = 10, .medium = {.nd = 1.5}, .semi_diameter = infinity, .stop = true}, {.thickness = 10}};
   EXPECT_EQ(message([&] { textbook_entrance_pupil(compile(p), -infinity); }),
             "endless: the stop has no rim and no surface limits the axial beam, wanted a semi_diameter");
   p.surfaces[1].semi_diameter = 4;

@@ -16,10 +16,11 @@ namespace petzval::inline v0 {
 /// the elements. The heights at which they meet a surface, and 5 % more, are its aperture. For a zoom lens the largest
 /// of all positions counts.
 ///
-/// A stop without an aperture gets the one of the f-number or the entrance pupil that the prescription declares.
-/// Dummy surfaces, which change no rays, stay unlimited. All surfaces stay unlimited if neither the stop nor another
-/// surface nor an f-number limits the axial beam, or if the entrance pupil lies at infinity. compile() does the same
-/// for the configuration and the wavelengths that it is asked for; readers of files call this function.
+/// A stop without an aperture gets the one of the f-number or the entrance pupil that the prescription declares, or
+/// else of the axial beam that the other apertures and the edges pass. Dummy surfaces, which change no rays, stay
+/// unlimited. All surfaces stay unlimited if neither the stop nor another surface nor an f-number limits the axial
+/// beam, or if the entrance pupil lies at infinity. compile() does the same for the configuration and the wavelengths
+/// that it is asked for; readers of files call this function.
 ///
 /// @param options  glasses, and the treatment of missing ones. The wavelength is the primary one of the design, or else
 ///                 the reference wavelength.
