@@ -135,7 +135,7 @@ void want_answers(const Report& report, const std::vector<double>& distances, co
     if (no_rays && field != 0) examples::want_light(report.lens, {petzval::radians(field), z}, "--field-deg");
   }
   if (std::ranges::none_of(report.rows, [](const Row& r) { return r.refusal.empty(); })) {
-    throw petzval::Error(report.rows.front().refusal);
+    throw petzval::Error("--distance-mm: " + report.rows.front().refusal);
   }
   const auto unreached = [&](const Row& r) { return r.refusal.empty() && r.focus.status == FocusStatus::unreachable; };
   const bool none_solved = std::ranges::none_of(report.rows, [](const Row& r) { return r.refusal.empty() && r.focus; });

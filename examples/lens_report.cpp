@@ -61,7 +61,9 @@ examples::ReportSubject subject_of(const examples::LensFile& file, const Options
 /// The lens, stopped down and focused.
 petzval::Lens set(petzval::Lens lens, const Options& options, const examples::ReportSubject& subject) {
   if (options.f_number > 0) lens = examples::stopped_to(lens, options.f_number);
-  return subject.film_of_file ? lens : petzval::with_focus(lens, subject.distance_mm, subject.focus.options());
+  return subject.film_of_file ? lens : examples::for_flag("--subject-distance-mm", [&] {
+    return petzval::with_focus(lens, subject.distance_mm, subject.focus.options());
+  });
 }
 
 examples::Report report_of(const Options& options) {

@@ -45,6 +45,7 @@ struct Setting {
   examples::ReportFields fields;
   double subject_mm = 0;
   std::string origin;
+  bool fields_given;  ///< on the command line
 };
 
 Setting setting_of(const Options& options) {
@@ -65,11 +66,14 @@ Setting setting_of(const Options& options) {
     subject_mm = loaded.prescription.design.object_distance_mm;
   }
   petzval::Lens lens = options.f_number > 0 ? examples::stopped_to(loaded.lens, options.f_number) : loaded.lens;
-  if (options.film == "focus") lens = petzval::with_focus(lens, subject_mm, focus.options());
+  if (options.film == "focus")
+    lens = examples::for_flag("--subject-distance-mm",
+                              [&] { return petzval::with_focus(lens, subject_mm, focus.options()); });
   lens = petzval::with_film(lens, lens.film_z() + options.defocus_mm);
   examples::ReportFields fields{options.field_deg, false};
   if (fields.degrees.empty()) fields = examples::fields_of(loaded, loaded.lens);
-  return {std::move(loaded), std::move(lens), std::move(light), std::move(fields), subject_mm, focus.origin};
+  return {std::move(loaded), std::move(lens), std::move(light),          std::move(fields),
+          subject_mm,        focus.origin,    !options.field_deg.empty()};
 }
 
 std::vector<petzval::Spot> spots(const Setting& setting, std::uint32_t samples) {
@@ -78,7 +82,12 @@ std::vector<petzval::Spot> spots(const Setting& setting, std::uint32_t samples) 
   std::vector<double> fields;
   for (const double degrees : setting.fields.degrees) {
     fields.push_back(petzval::radians(degrees));
-    examples::want_light(setting.lens, {fields.back(), subject_z}, "--field-deg");
+    try {
+      examples::want_light(setting.lens, {fields.back(), subject_z}, "--field-deg");
+    } catch (const petzval::Error& dark) {
+      if (setting.fields_given) throw;
+      examples::note("of the fields of the file: " + std::string(dark.what()));
+    }
   }
   return petzval::spot_diagram(setting.lens, subject_z, fields, samples);
 }

@@ -12,6 +12,7 @@
 #include "petzval/core/sobol.hpp"
 #include "petzval/figure/psf_image.hpp"
 #include "petzval/media/glass.hpp"
+#include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/pupil_plane.hpp"
 #include "text.hpp"
 
@@ -30,7 +31,15 @@ bool in_front(const petzval::Lens& lens, double z) {
 
 /// Refuses a light that is not in front of the lens and names the least distance.
 void check_light(const petzval::Lens& lens, const BokehSetup& setup, double origin_z) {
-  if (in_front(lens, origin_z - setup.light_mm)) return;
+  if (in_front(lens, origin_z - setup.light_mm)) {
+    const double focal_length =
+        std::abs(petzval::first_order(lens, {}, petzval::main_meridian(lens)).effective_focal_length);
+    if (setup.light_mm < 0.2 * focal_length) {
+      note("a light " + number(setup.light_mm) + " mm from the " + in_words(setup.origin) +
+           "; lengths are in mm: " + number(setup.light_mm) + " m = " + number(1000 * setup.light_mm) + " mm");
+    }
+    return;
+  }
   petzval::PupilPlane(lens, {.z = -std::numeric_limits<double>::infinity()});  // refuses a lens without fields
   double refused = setup.light_mm, enough = std::max(1.0, refused);
   while (!in_front(lens, origin_z - enough)) enough *= 2;
