@@ -45,7 +45,6 @@ struct Setting {
   examples::ReportFields fields;
   double subject_mm = 0;
   std::string origin;
-  bool fields_given;  ///< on the command line
 };
 
 Setting setting_of(const Options& options) {
@@ -72,21 +71,20 @@ Setting setting_of(const Options& options) {
   lens = petzval::with_film(lens, lens.film_z() + options.defocus_mm);
   examples::ReportFields fields{options.field_deg, false};
   if (fields.degrees.empty()) fields = examples::fields_of(loaded, loaded.lens);
-  return {std::move(loaded), std::move(lens), std::move(light),          std::move(fields),
-          subject_mm,        focus.origin,    !options.field_deg.empty()};
+  return {std::move(loaded), std::move(lens), std::move(light), std::move(fields), subject_mm, focus.origin};
 }
 
-std::vector<petzval::Spot> spots(const Setting& setting, std::uint32_t samples) {
+std::vector<petzval::Spot> spots(const Setting& setting, bool fields_given, std::uint32_t samples) {
   const double subject_z =
       petzval::origin_z(setting.lens, examples::named(setting.origin, examples::distance_origins)) - setting.subject_mm;
   std::vector<double> fields;
   for (const double degrees : setting.fields.degrees) {
     fields.push_back(petzval::radians(degrees));
-    try {
-      examples::want_light(setting.lens, {fields.back(), subject_z}, "--field-deg");
-    } catch (const petzval::Error& dark) {
-      if (setting.fields_given) throw;
-      examples::note("of the fields of the file: " + std::string(dark.what()));
+    const petzval::FieldPoint point{fields.back(), subject_z};
+    if (fields_given) {
+      examples::want_light(setting.lens, point, "--field-deg");
+    } else if (!examples::reached_by_light(setting.lens, point)) {
+      examples::note("the file has a field of " + examples::number(degrees) + " degrees, from which no light passes");
     }
   }
   return petzval::spot_diagram(setting.lens, subject_z, fields, samples);
@@ -170,7 +168,7 @@ int main(int argc, char** argv) {
   return examples::run(app, argc, argv, [&] {
     options.subject_given = subject->given();
     const Setting setting = setting_of(options);
-    const auto all = spots(setting, options.samples);
+    const auto all = spots(setting, !options.field_deg.empty(), options.samples);
 
     const std::filesystem::path folder = options.out_folder;
     const auto write = [&](const char* kind, const std::string& text) {

@@ -116,8 +116,8 @@ int main(int argc, char** argv) {
   examples::add_out_file(
       app, balls,
       "CSV to write: of the balls scene, each highlight's ratio of axes, the angle of the long axis against the "
-      "radius, "
-      "and skewness outwards; x_mm is the position of the ball, `beside` the light of other spots near the ball, as a "
+      "radius, and skewness outwards; x_mm is the position of the ball, `beside` the light of other spots near the "
+      "ball, as a "
       "fraction of the highlight's. trusted: yes for highlights of 6 pixels and more that are whole and far brighter "
       "than other spots",
       "CSV", "--balls");

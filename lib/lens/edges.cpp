@@ -8,6 +8,7 @@
 
 #include "core/bisect.hpp"
 #include "describe_asphere.hpp"
+#include "equator.hpp"
 
 namespace petzval::inline v0::lens_detail {
 namespace {
@@ -18,25 +19,18 @@ bool is_sphere(const LensSurface& s) noexcept {
   return s.conic == 0 && s.aspheric.empty() && s.curved_in == Section::both;
 }
 
-/// Height of the equator of the base conic, where it has one.
-double equator(const LensSurface& s) noexcept {
-  const double bend = 1 + s.conic;
-  return bend > 0 && s.curvature != 0 ? 1 / (std::abs(s.curvature) * std::sqrt(bend)) : infinity;
-}
-
 /// The least height at which two surfaces meet, up to a height. direction: of light between them, +1 or -1.
 double meeting_height(const LensSurface& front, const LensSurface& rear, double direction, double up_to) {
   const double distance = direction * (rear.vertex_z - front.vertex_z);
   if (!(distance > 0)) return infinity;
-  const auto in_order = [&](double height, double x, double y) {
-    const double gap =
-        distance + direction * (sag_of(rear, x * height, y * height) - sag_of(front, x * height, y * height));
-    return !(gap < 0);
-  };
   // A height on an equator may round to a height beyond it.
   const double end = std::min({up_to, equator(front) * (1 - 1e-15), equator(rear) * (1 - 1e-15), 1e15});
   const auto meet_along = [&](double x, double y) {
-    const auto ordered = [&](double height) { return in_order(height, x, y); };
+    const auto ordered = [&](double height) {
+      const double gap =
+          distance + direction * (sag_of(rear, x * height, y * height) - sag_of(front, x * height, y * height));
+      return !(gap < 0);
+    };
     // The slopes of two spheres differ in one sense at all heights.
     if (is_sphere(front) && is_sphere(rear)) return ordered(end) ? infinity : core_detail::last_with(0, end, ordered);
     // Others are looked at in steps of 1 / 64 of the range, or of 1 / 16 of the height where the range is long.

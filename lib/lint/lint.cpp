@@ -7,6 +7,7 @@
 
 #include "core/text.hpp"
 #include "film/check_rectangle.hpp"
+#include "lens/equator.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/media/glass.hpp"
 #include "petzval/paraxial/first_order.hpp"
@@ -47,7 +48,7 @@ void check_surfaces(const Prescription& rows, const Lens& lens, Findings& findin
   for (int i = 0; i < count; ++i) {
     const auto position = static_cast<std::size_t>(i);
     const LensSurface& surface = lens.surfaces()[position];
-    const double end = std::min(lint_detail::domain(surface), surface.semi_diameter);
+    const double end = std::min(lens_detail::equator(surface), surface.semi_diameter);
     const std::optional<double> declared = rows.surfaces[position].semi_diameter;
     // Apertures that end where two surfaces meet are overlaps.
     const bool meets_another = surface.semi_diameter == surface.edge;
@@ -58,7 +59,7 @@ void check_surfaces(const Prescription& rows, const Lens& lens, Findings& findin
     }
     // A stop of 0 is a closed iris. Any other rim of 0 is hardly intended.
     if (surface.semi_diameter == 0 && lens.stop() != position) {
-      findings.push_back({Kind::semi_diameter, i, 0, lint_detail::domain(surface),
+      findings.push_back({Kind::semi_diameter, i, 0, lens_detail::equator(surface),
                           at(i) + "semi_diameter is 0 mm; only the axial ray passes"});
     }
     if (i + 1 == count) break;

@@ -8,14 +8,9 @@
 
 #include "lens/data.hpp"
 #include "lens/edges.hpp"
+#include "lens/equator.hpp"
 
 namespace petzval::inline v0::lint_detail {
-
-double domain(const LensSurface& surface) {
-  const double bend = 1 + surface.conic;
-  if (!(bend > 0) || surface.curvature == 0) return std::numeric_limits<double>::infinity();
-  return 1 / (std::abs(surface.curvature) * std::sqrt(bend));
-}
 
 namespace {
 
@@ -28,7 +23,7 @@ std::optional<Spacing> spacing_of(const Lens& lens, std::size_t surface, std::si
   const double distance = rear.vertex_z - front.vertex_z;
   const double from = std::max(front.obscuration_semi_diameter, rear.obscuration_semi_diameter);
   // Heights on an equator round to beyond it, where a sag has no value.
-  const double equator = std::min(domain(front), domain(rear)) * (1 - 1e-15);
+  const double equator = std::min(lens_detail::equator(front), lens_detail::equator(rear)) * (1 - 1e-15);
   const double to = std::min({front_rim, rear_rim, equator});
   // Where light runs backwards, behind a mirror, the next surface lies at smaller z.
   const double direction = lens.light_direction(surface + 1);

@@ -8,9 +8,6 @@
 
 namespace petzval::inline v0::lint_detail {
 
-/// The height of the equator of a surface's conic; infinite for a paraboloid, a hyperboloid and a plane.
-double domain(const LensSurface& surface);
-
 /// The distance between two neighbouring surfaces where they come closest.
 struct Spacing {
   double width;   ///< along the direction of light, mm; negative where they overlap

@@ -34,15 +34,13 @@ double object_z(const Prescription& rows) {
   return std::isfinite(distance) && distance > 0 ? -distance : -infinity;
 }
 
-/// Height at which an aimed ray meets a surface.
-double height_at(const Lens& lens, const Ray<double>& ray, std::size_t at) {
+/// Calls take(surface, height) for each surface that an aimed ray meets.
+void for_heights(const Lens& lens, const Ray<double>& ray, const auto& take) {
   const auto vector = [](const Vec3<double>& v) { return kernel::Vec<double>{v.x, v.y, v.z}; };
-  double height = 0;
   kernel::trace(kernel::view<double>(lens), vector(ray.origin), vector(ray.direction),
                 {.wavelength = lens.primary_wavelength()}, [&](int surface, const kernel::Vec<double>& hit) {
-                  if (static_cast<std::size_t>(surface) == at) height = std::hypot(hit.x, hit.y);
+                  take(static_cast<std::size_t>(surface), std::hypot(hit.x, hit.y));
                 });
-  return height;
 }
 
 /// The lens with its stop as large as the axial beam that the other apertures and the edges pass, if they limit it.
@@ -57,7 +55,12 @@ Lens with_widest_stop(const Lens& lens, const Prescription& rows) {
     const double middle = (low + high) / 2;
     (passes(middle) ? low : high) = middle;
   }
-  const double height = low > 0 ? height_at(lens, ray_at(low).ray, *lens.stop()) : 0;
+  double height = 0;
+  if (low > 0) {
+    for_heights(lens, ray_at(low).ray, [&](std::size_t surface, double at) {
+      if (surface == *lens.stop()) height = at;
+    });
+  }
   return height > 0 ? with_semi_diameter(lens, *lens.stop(), height) : lens;
 }
 
@@ -156,12 +159,8 @@ class BeamHeights {
         (next.status == AimStatus::converged ? passes : lost) = fraction;
       }
     }
-    const auto vector = [](const Vec3<double>& v) { return kernel::Vec<double>{v.x, v.y, v.z}; };
-    kernel::trace(kernel::view<double>(lens_), vector(last.ray.origin), vector(last.ray.direction),
-                  {.wavelength = lens_.primary_wavelength()}, [&](int surface, const kernel::Vec<double>& hit) {
-                    double& height = heights_[static_cast<std::size_t>(surface)];
-                    height = std::max(height, std::hypot(hit.x, hit.y));
-                  });
+    for_heights(lens_, last.ray,
+                [&](std::size_t surface, double height) { heights_[surface] = std::max(heights_[surface], height); });
   }
 
   const Lens& lens_;
@@ -200,6 +199,8 @@ std::vector<double> rims_of(const Lens& given, const Prescription& rows) {
 
 Lens compile(const Prescription& prescription, std::span<const double> wavelengths_nm, const CompileOptions& options) {
   const Lens given = lens_detail::compile_as_given(prescription, wavelengths_nm, options);
+  // A configuration may add apertures, and takes none away.
+  if (std::ranges::none_of(prescription.surfaces, lacks_aperture)) return given;
   const Prescription rows = configured(prescription, options.configuration);
   if (std::ranges::none_of(rows.surfaces, lacks_aperture)) return given;
   return lens_detail::with_rims(given, rims_of(given, rows));

@@ -37,20 +37,6 @@ bool recentre(Found& found, std::span<const Vec2<double>> units) {
   return true;
 }
 
-bool holds(const Found& found, const Vec2<double>& place) noexcept {
-  if (found.empty()) return false;
-  const Vec2<double> p = (place - found.middle) / found.half_axes;
-  const double turn = std::atan2(p.x, p.y) / (2 * std::numbers::pi), radius = std::hypot(p.x, p.y);
-  if (!std::isfinite(radius)) return false;
-  const std::size_t directions = found.ends.size();
-  const auto k = static_cast<std::size_t>((turn - std::floor(turn)) * static_cast<double>(directions)) % directions;
-  double to = 0;
-  for (const std::size_t beside : {k, (k + 1) % directions, (k + directions - 1) % directions}) {
-    to = std::max(to, found.ends[beside].to);
-  }
-  return radius <= 1.02 * to;
-}
-
 PupilRegion region_of(const Found& found, std::span<const Vec2<double>> units) {
   const std::size_t directions = units.size();
   PupilRegion region{.middle = found.middle, .half_axes = found.half_axes, .directions = directions};

@@ -31,9 +31,6 @@ struct Found {
 /// not, or has an obscuration.
 bool recentre(Found& found, std::span<const Vec2<double>> units);
 
-/// Whether a place lies within the outer ends, or little outside.
-bool holds(const Found& found, const Vec2<double>& place) noexcept;
-
 PupilRegion region_of(const Found& found, std::span<const Vec2<double>> units);
 
 /// Values halfway between two pupils that were found, by those and the next beyond them, if these were found too.

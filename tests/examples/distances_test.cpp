@@ -85,13 +85,13 @@ TEST_F(Distances, EveryProgramWithADistanceSaysWhereItCountsFrom) {
       {"lens_report"},      {"spot_diagram"},    {"focus_report"},  {"bokeh_psf"},       {"psf_set"},
       {"psf_set", "query"}, {"chromatic_bokeh"}, {"focal_surface"}, {"expressive_lens"}, {"lens_metadata"},
       {"accuracy_speed"},   {"choose_camera"},   {"camera_rays"},
-#ifdef PETZVAL_TEST_FOCUS_PULL
+#ifdef PETZVAL_TEST_HAS_focus_pull
       {"focus_pull"},
 #endif
-#ifdef PETZVAL_TEST_BOKEH_SCENE
+#ifdef PETZVAL_TEST_HAS_bokeh_scene
       {"bokeh_scene"},
 #endif
-#ifdef PETZVAL_TEST_LENS_BLUR
+#ifdef PETZVAL_TEST_HAS_lens_blur
       {"lens_blur"},
 #endif
   };

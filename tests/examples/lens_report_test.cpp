@@ -6,6 +6,7 @@
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "program.hpp"
+#include "relay_zmx.hpp"
 
 namespace {
 
@@ -104,37 +105,14 @@ TEST_F(LensReport, SaysNothingAboutGlassesAtTheReferenceWavelength) {
   EXPECT_NE(page.err.find("4 media"), std::string::npos) << page.err;
 }
 
-constexpr const char* litho = R"(VERS 140124 258 36214 0 0
+const std::string litho = examples_testing::relay_zmx(R"(VERS 140124 258 36214 0 0
 MODE SEQ
 NAME Relay at 450 nm
 UNIT MM X W X CM MR CPMM
 ENPD 12.5
 FTYP 1 0 2 2 0 0 0
 YFLN 0.0 6.0
-WAVM 1 0.55 1.0
-WAVM 2 0.45 0.25
-PWAV 2
-SURF 0
-  TYPE STANDARD
-  CURV 0.0
-  DISZ 200.0
-SURF 1
-  STOP
-  TYPE STANDARD
-  CURV 0.02
-  DISZ 5.0
-  GLAS N-BK7 0 0 1.5168 64.17
-  DIAM 10.0 1 0 0 1
-SURF 2
-  TYPE STANDARD
-  CURV -0.02
-  DISZ 63.0
-  DIAM 10.0 1 0 0 1
-SURF 3
-  TYPE STANDARD
-  CURV 0.0
-  DISZ 0.0
-)";
+)");
 
 // The file gives the object distance, the wavelengths with weights, the primary wavelength and the fields.
 TEST_F(LensReport, TakesTheConditionsOfTheFile) {

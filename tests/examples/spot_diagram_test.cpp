@@ -10,6 +10,7 @@
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "program.hpp"
+#include "relay_zmx.hpp"
 
 namespace {
 
@@ -84,37 +85,14 @@ TEST_F(SpotDiagram, PutsTheFilmInFocusAtTheDLine) {
 
 // Without flags a lens of another program is seen in its own light, from its own fields, at its own object.
 TEST_F(SpotDiagram, TakesTheConditionsOfTheFile) {
-  write("relay.zmx", R"(VERS 140124 258 36214 0 0
+  write("relay.zmx", examples_testing::relay_zmx(R"(VERS 140124 258 36214 0 0
 MODE SEQ
 NAME Relay
 UNIT MM X W X CM MR CPMM
 ENPD 10.0
 FTYP 1 0 3 2 0 0 0
 YFLN 0.0 6.0 -10.0
-WAVM 1 0.55 1.0
-WAVM 2 0.45 0.25
-PWAV 2
-SURF 0
-  TYPE STANDARD
-  CURV 0.0
-  DISZ 200.0
-SURF 1
-  STOP
-  TYPE STANDARD
-  CURV 0.02
-  DISZ 5.0
-  GLAS N-BK7 0 0 1.5168 64.17
-  DIAM 10.0 1 0 0 1
-SURF 2
-  TYPE STANDARD
-  CURV -0.02
-  DISZ 63.0
-  DIAM 10.0 1 0 0 1
-SURF 3
-  TYPE STANDARD
-  CURV 0.0
-  DISZ 0.0
-)");
+)"));
   const auto outcome = run("spot_diagram", {path("relay.zmx"), "--out", path("spots"), "--film", "file"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const auto json = read_json(path("spots/relay_spots.json"));
