@@ -140,7 +140,8 @@ void TableReader::take_titles() {
 void TableReader::end_last_row() {
   const std::size_t thickness = find(Column::thickness);
   auto& cells = rows_.back().cells;
-  if (rows_.size() < 2 || thickness > cells.size() || is_stop_word(cells.front())) return;
+  if (thickness == columns_.size() || rows_.size() < 2) return;
+  if (thickness > cells.size() || is_stop_word(cells.front())) return;
   if (thickness == cells.size()) cells.push_back("-");
   for (const char* word : {"bf", "bfl", "b.f.", "(bf)", "variable", "(variable)"}) {
     if (same(cells[thickness], word)) cells[thickness] = "-";

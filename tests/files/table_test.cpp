@@ -172,6 +172,16 @@ TEST(Table, HeadsNameTheColumns) {
   EXPECT_EQ(cm.surfaces.at(0).semi_diameter, 0.95);
 }
 
+TEST(Table, GapsInFrontHaveAHead) {
+  for (const char* text : {"# radius, gap before, n\n50.6 0 1.5168\n-50.6 5.2 1\n0 1 0\n",
+                           "# radius, gap before, n, aperture\n50.6 0 1.5168 25.4\n-50.6 5.2 1 25.4\n0 1 0 9.4\n"}) {
+    const Prescription p = read(text);
+    ASSERT_EQ(p.surfaces.size(), 3u) << text;
+    EXPECT_EQ(p.surfaces[0].thickness, 5.2) << text;
+    EXPECT_EQ(p.surfaces[1].thickness, 1) << text;
+  }
+}
+
 TEST(Table, UnitsAreThoseOfTheHeads) {
   for (const char* head : {"R (in) d (cm) nd semi (in)", "radius thickness index semi\n(in) cm - in"}) {
     const Prescription p = read(std::string(head) + "\n2 0.5 1.5 0.5\n-2 9 1 0.5\n");
