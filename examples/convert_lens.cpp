@@ -219,8 +219,8 @@ bool convert(const Options& options) {
     say("repaired", options.in.file, repairs);
   }
   whole = examples::with_matched_glasses(options.in, std::move(whole), glasses);
-  Prescription lens = examples::for_flag("--configuration",
-                                         [&, &chosen = configuration] { return petzval::configured(whole, chosen); });
+  Prescription lens = examples::for_flag(
+      "--configuration", [&all = whole, &chosen = configuration] { return petzval::configured(all, chosen); });
   // A position that was asked for is a lens of its own; else all positions are written.
   const auto losses = output.write(one ? lens : whole, glasses, options.out);
   say("lost", options.out, losses);
